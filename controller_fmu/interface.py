@@ -1,0 +1,133 @@
+"""What goes into the controller, what comes out, and what can be set: every signal and its unit."""
+
+from enum import IntEnum
+from math import pi
+from typing import Annotated, NamedTuple
+
+from modelkit.signal import Signal
+from modelkit.vocabulary import Gear, Pose, Prompt
+
+GUO = "Guo 2015"
+HOUSE = "chosen; the source states none"
+
+
+class System(IntEnum):
+    """Which paper's system parks the car."""
+
+    NTBPTCWPT = 0
+    """Path tracking combined with point tracking (Guo 2015, section 4)."""
+    NTBPT = 1
+    """Path tracking only (Guo 2015, section 3)."""
+
+
+class Phase(IntEnum):
+    """State of the manoeuvre chart."""
+
+    STANDBY = 0
+    PRE_STEER = 1
+    PATH_TRACKING = 2
+    STOP = 3
+    TO_Q2 = 4
+    TO_Q1 = 5
+    TO_Q4 = 6
+    TO_Q3 = 7
+    STRAIGHTEN = 8
+    PARKED = 9
+    FAILED = 10
+    TAKEOVER = 11
+
+
+class Reason(IntEnum):
+    """Why the controller failed."""
+
+    NONE = 0
+    BAD_INPUT = 1
+    """An input is NaN or infinite."""
+    BAD_PARAMETER = 2
+    """A parameter has no meaning (not finite, not positive)."""
+    NO_PATH = 3
+    """No path of this kind leads from the start pose to the target."""
+    TOO_MANY_SHIFTS = 4
+    TIMEOUT = 5
+    NOT_MOVING = 6
+    """The driver was asked to move and did not."""
+    NOT_STOPPING = 7
+    """The driver was asked to stop and did not."""
+    WRONG_DIRECTION = 8
+    POSE_FROZEN = 9
+    """The pose does not change although the car moves."""
+    STEERING_FAULT = 10
+    """The steering wheel does not follow its request."""
+    MISSED_TARGET = 11
+    """The end of the path was reached too far from the target pose."""
+    LEFT_PATH = 12
+    """The car is so far off that the path no longer helps."""
+
+
+class ControllerInput(NamedTuple):
+    """From the vehicle."""
+
+    odometry: Pose = Pose()
+    measured_speed: Annotated[float, Signal("m/s", "speed, reverse negative")] = 0.0
+    steering_wheel_angle: Annotated[float, Signal("rad", "steering-wheel angle, left positive")] = 0.0
+    gear: Annotated[int, Signal("1", "selector position", states=Gear)] = int(Gear.PARK)
+    brake_pedal: Annotated[float, Signal("1", "brake pedal, 0 released to 1 full", 0.0, 1.0)] = 0.0
+    driver_takeover: Annotated[bool, Signal("1", "the driver has taken over")] = False
+
+
+class Segment(NamedTuple):
+    """A piece of path of constant curvature."""
+
+    length: Annotated[float, Signal("m", "length along the path, >= 0; 0: unused")] = 0.0
+    curvature: Annotated[float, Signal("1/m", "curvature of the path seen with x along the heading, left positive")] = 0.0
+
+
+class Path(NamedTuple):
+    """The planned path: a start pose and pieces driven in reverse from it."""
+
+    start: Pose = Pose()
+    segments: tuple[Segment, ...] = (Segment(),) * 3
+
+
+class ControllerOutput(NamedTuple):
+    """To the vehicle, the driver, the log and the judge."""
+
+    steering_wheel_request: Annotated[float, Signal("rad", "steering-wheel angle asked for, left positive")] = 0.0
+    steering_active: Annotated[bool, Signal("1", "the controller holds the steering wheel")] = False
+    prompt: Annotated[int, Signal("1", "prompt shown to the driver", states=Prompt)] = 0
+    advised_speed: Annotated[float, Signal("m/s", "largest speed advised with the prompt, >= 0")] = 0.0
+    speed_control_active: Annotated[bool, Signal("1", "the controller drives: speed_request holds")] = False
+    speed_request: Annotated[float, Signal("m/s", "speed asked for, reverse negative")] = 0.0
+    brake_request: Annotated[bool, Signal("1", "the controller brakes to standstill and holds")] = False
+    phase: Annotated[int, Signal("1", "state of the manoeuvre chart", states=Phase)] = 0
+    reason: Annotated[int, Signal("1", "why the controller failed", states=Reason)] = 0
+    shifts: Annotated[int, Signal("1", "manoeuvres so far, the first reverse counts one")] = 0
+    reference: Pose = Pose()
+    lateral_error: Annotated[float, Signal("m", "y of the car minus y of the reference, in the slot's frame")] = 0.0
+    heading_error: Annotated[float, Signal("rad", "heading of the car minus heading of the reference")] = 0.0
+    path: Path = Path()
+
+
+class NtbptParams(NamedTuple):
+    """Gains and geometry of NTBPT and point tracking."""
+
+    k1: Annotated[float, Signal("1/m2", "path tracking, distance gain", 0.0, 100.0, GUO)] = 1.0
+    k2: Annotated[float, Signal("1/m", "path tracking, heading gain", 0.0, 100.0, GUO)] = 0.8
+    k3: Annotated[float, Signal("1/m2", "point tracking, distance gain", 0.0, 100.0, GUO)] = 1.0
+    k4: Annotated[float, Signal("1/m", "point tracking, heading gain", 0.0, 100.0, GUO)] = 4.0
+    radius: Annotated[float, Signal("m", "radius wished for both arcs", 0.5, 100.0, GUO + ", eq. (9)")] = 5.5
+    q2_distance: Annotated[float, Signal("m", "Q1 to Q2 along the tangent", 0.1, 10.0, GUO + ", Table 2")] = 1.0
+    q4_distance: Annotated[float, Signal("m", "Q3 to Q4 straight ahead", 0.1, 10.0, GUO + ", Table 2")] = 2.5
+
+
+class ControllerParams(NamedTuple):
+    """The system chosen, the car it thinks it drives, the target and every limit."""
+
+    system: Annotated[int, Signal("1", "which paper's system", states=System)] = int(System.NTBPTCWPT)
+    sample_time: Annotated[float, Signal("s", "controller's sample time, whole nanoseconds", 1e-4, 1.0, HOUSE)] = 0.01
+    wheelbase: Annotated[float, Signal("m", "front to rear axle", 0.1, 20.0, GUO + ", Table 1")] = 2.405
+    steering_ratio: Annotated[float, Signal("1", "steering-wheel angle over front-wheel angle", 1.0, 60.0, GUO + ", Table 1")] = 19.0
+    steering_wheel_limit: Annotated[float, Signal("rad", "largest steering-wheel angle", 0.1, 20.0, GUO + ", Table 1")] = 570.0 * pi / 180.0
+    steering_wheel_rate: Annotated[float, Signal("rad/s", "largest steering-wheel rate", 0.01, 100.0, GUO + ", Table 1")] = 570.0 * pi / 180.0
+    target: Pose = Pose(-7.608, -3.056, 0.0)
+    ntbpt: NtbptParams = NtbptParams()

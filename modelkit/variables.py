@@ -1,0 +1,109 @@
+"""From the types of a model package to its flat list of named variables, and back.
+
+Nested NamedTuples become dotted names, tuples become indices from 1 as FMI 2.0's structured
+naming has them: ``pose.x``, ``ultrasonic[3]``, ``scene.boxes[2].length``. The order is the
+order of the fields, depth first, and is the same everywhere.
+"""
+
+import typing
+from collections.abc import Callable, Iterator, Sequence
+from typing import Any, NamedTuple
+
+from modelkit.signal import Signal
+
+UNDOCUMENTED = Signal("1", "")
+
+
+class Variable(NamedTuple):
+    """One scalar of a model: its flat name, Python type, meaning and start value."""
+
+    name: str
+    kind: type
+    """``float``, ``int`` or ``bool``."""
+    signal: Signal
+    start: Any
+
+
+def variables(cls: type[Any], value: Any = None) -> list[Variable]:
+    """Return the flat variables of NamedTuple ``cls``, starting at ``value`` or its defaults.
+
+    Raises ``TypeError`` if a field is neither float, int, bool, NamedTuple nor tuple of these.
+    """
+    return list(_walk(cls, cls() if value is None else value, "", UNDOCUMENTED))
+
+
+def flatten(value: Any) -> list[Any]:
+    """Return the scalars of a nested NamedTuple in the order of :func:`variables`."""
+    if not isinstance(value, tuple):
+        return [value]
+    return [scalar for item in value for scalar in flatten(item)]
+
+
+def constructor_source(value: Any, name_of: Callable[[type[Any]], str], array: str, at: int = 0) -> tuple[str, int]:
+    """Return (expression, next index) that rebuilds ``value``'s shape from ``array[at:]``.
+
+    ``name_of`` names a NamedTuple class in the scope where the expression will be used.
+    """
+    if not isinstance(value, tuple):
+        return _scalar_source(value, f"{array}[{at}]"), at + 1
+    parts = []
+    for item in value:
+        part, at = constructor_source(item, name_of, array, at)
+        parts.append(part)
+    if hasattr(value, "_fields"):
+        return f"{name_of(type(value))}({', '.join(parts)})", at
+    return f"({', '.join(parts)},)", at
+
+
+def constructor(cls: type[Any], value: Any = None) -> Callable[[Sequence[Any]], Any]:
+    """Return a fast function from a flat sequence of scalars to an instance of ``cls``."""
+    scope: dict[str, Any] = {}
+
+    def name_of(inner: type[Any]) -> str:
+        name = f"{inner.__name__}_{id(inner)}"
+        scope[name] = inner
+        return name
+
+    expression, _ = constructor_source(cls() if value is None else value, name_of, "v")
+    function: Callable[[Sequence[Any]], Any] = eval(f"lambda v: {expression}", scope)  # noqa: S307
+    return function
+
+
+def with_values(cls: type[Any], changes: dict[str, Any], value: Any = None) -> Any:
+    """Return ``value`` (or the defaults of ``cls``) with some flat names changed.
+
+    Raises ``KeyError`` with the unknown name, ``ValueError`` if a number is out of its range.
+    """
+    known = variables(cls, value)
+    index = {variable.name: place for place, variable in enumerate(known)}
+    scalars = [variable.start for variable in known]
+    for name, new in changes.items():
+        if name not in index:
+            raise KeyError(name)
+        signal = known[index[name]].signal
+        if not signal.low <= new <= signal.high:
+            raise ValueError(f"{name} = {new}: expected [{signal.low}, {signal.high}] {signal.unit}")
+        scalars[index[name]] = known[index[name]].kind(new)
+    return constructor(cls, value)(scalars)
+
+
+def _scalar_source(value: Any, item: str) -> str:
+    return f"bool({item})" if isinstance(value, bool) else f"int({item})" if isinstance(value, int) else item
+
+
+def _walk(hint: Any, value: Any, name: str, signal: Signal) -> Iterator[Variable]:
+    if typing.get_origin(hint) is typing.Annotated:
+        marks = [mark for mark in hint.__metadata__ if isinstance(mark, Signal)]
+        yield from _walk(hint.__origin__, value, name, marks[0] if marks else signal)
+    elif hint in (float, int, bool):
+        yield Variable(name, hint, signal, hint(value))
+    elif hasattr(hint, "_fields"):
+        hints = typing.get_type_hints(hint, include_extras=True)
+        for field, item in zip(hint._fields, value, strict=True):
+            yield from _walk(hints[field], item, f"{name}.{field}" if name else field, signal)
+    elif typing.get_origin(hint) is tuple:
+        element = typing.get_args(hint)[0]
+        for number, item in enumerate(value, start=1):
+            yield from _walk(element, item, f"{name}[{number}]", signal)
+    else:
+        raise TypeError(f"{name}: a model field is float, int, bool, NamedTuple or tuple, not {hint}")

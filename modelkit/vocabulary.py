@@ -1,0 +1,39 @@
+"""The words both FMUs speak: a pose, the prompts to the driver, the gears.
+
+Frame: ISO 8855. x forward, y left, heading counter-clockwise from x; the reference point of a
+car is the midpoint of its rear axle.
+"""
+
+from enum import IntEnum
+from typing import Annotated, NamedTuple
+
+from modelkit.signal import Signal
+
+
+class Pose(NamedTuple):
+    """Position and heading in the plane."""
+
+    x: Annotated[float, Signal("m", "x of the rear-axle midpoint")] = 0.0
+    y: Annotated[float, Signal("m", "y of the rear-axle midpoint")] = 0.0
+    heading: Annotated[float, Signal("rad", "heading, counter-clockwise from the x axis")] = 0.0
+
+
+class Prompt(IntEnum):
+    """What the controller asks of the driver."""
+
+    NONE = 0
+    STOP = 1
+    FORWARD = 2
+    REVERSE = 3
+    SLOW_DOWN = 4
+    """Keep the direction, drive no faster than the advised speed."""
+    TAKE_OVER = 5
+
+
+class Gear(IntEnum):
+    """Selector position."""
+
+    PARK = 0
+    REVERSE = 1
+    NEUTRAL = 2
+    DRIVE = 3

@@ -1,7 +1,7 @@
 """What goes into the vehicle, what comes out, and what can be set: every signal and its unit."""
 
 from enum import IntEnum
-from math import inf, pi
+from math import pi
 from typing import Annotated, NamedTuple
 
 from modelkit.signal import Signal
@@ -9,6 +9,8 @@ from modelkit.vocabulary import Gear, Pose, Prompt
 
 GUO = "Guo 2015, Table 1"
 HOUSE = "chosen; the source states none"
+NEVER = 1e9
+"""A time or distance that is not reached (FMI 2.0 has no portable infinity)."""
 
 
 class Body(IntEnum):
@@ -62,7 +64,7 @@ class DriveParams(NamedTuple):
 class ProfilePoint(NamedTuple):
     """One corner of the driver's speed profile."""
 
-    at: Annotated[float, Signal("1", "time [s] or driven distance [m] from which the speed holds; inf: unused", 0.0)] = inf
+    at: Annotated[float, Signal("1", "time [s] or driven distance [m] from which the speed holds; 1e9: unused", 0.0)] = NEVER
     speed: Annotated[float, Signal("m/s", "speed the driver wants, >= 0", 0.0, 50.0)] = 0.0
 
 
@@ -75,7 +77,7 @@ class DriverParams(NamedTuple):
     obeys_stop: Annotated[bool, Signal("1", "stops when prompted")] = True
     obeys_direction: Annotated[bool, Signal("1", "changes direction when prompted")] = True
     obeys_slow_down: Annotated[bool, Signal("1", "slows down when prompted")] = True
-    takeover_time: Annotated[float, Signal("s", "takes over at this time; inf: never", 0.0)] = inf
+    takeover_time: Annotated[float, Signal("s", "takes over at this time; 1e9: never", 0.0)] = NEVER
 
 
 class VehicleParams(NamedTuple):

@@ -73,6 +73,7 @@ class ControllerInput(NamedTuple):
     gear: Annotated[int, Signal("1", "selector position", states=Gear)] = int(Gear.PARK)
     brake_pedal: Annotated[float, Signal("1", "brake pedal, 0 released to 1 full", 0.0, 1.0)] = 0.0
     driver_takeover: Annotated[bool, Signal("1", "the driver has taken over")] = False
+    vehicle_fault: Annotated[int, Signal("1", "why the vehicle brakes by itself; 0: it does not")] = 0
 
 
 class Segment(NamedTuple):

@@ -19,6 +19,16 @@ class Body(IntEnum):
     KINEMATIC = 0
 
 
+class VehicleFault(IntEnum):
+    """Why the vehicle brakes by itself."""
+
+    NONE = 0
+    BAD_INPUT = 1
+    """An input is NaN or infinite."""
+    BAD_PARAMETER = 2
+    """A parameter is NaN, infinite or without meaning."""
+
+
 class VehicleInput(NamedTuple):
     """From the controller."""
 
@@ -43,6 +53,7 @@ class VehicleOutput(NamedTuple):
     gear: Annotated[int, Signal("1", "selector position", states=Gear)] = int(Gear.PARK)
     brake_pedal: Annotated[float, Signal("1", "brake pedal, 0 released to 1 full", 0.0, 1.0)] = 0.0
     driver_takeover: Annotated[bool, Signal("1", "the driver has taken over")] = False
+    vehicle_fault: Annotated[int, Signal("1", "why the vehicle brakes by itself", states=VehicleFault)] = 0
     distance: Annotated[float, Signal("m", "distance driven, both directions counted")] = 0.0
 
 

@@ -1,0 +1,65 @@
+"""The driver: chooses speed and direction by a speed profile and by the prompts shown.
+
+A prompt is acted on once it has stood for the reaction delay. The driver may ignore prompts to
+stop, to change direction or to slow down, and may take over, which means: brake to standstill
+and hold the wheel.
+"""
+
+from typing import NamedTuple
+
+from modelkit.vocabulary import Prompt
+from vehicle_fmu.interface import DriverParams
+
+STOP = int(Prompt.STOP)
+TAKE_OVER = int(Prompt.TAKE_OVER)
+FORWARD = int(Prompt.FORWARD)
+REVERSE = int(Prompt.REVERSE)
+SLOW_DOWN = int(Prompt.SLOW_DOWN)
+
+
+class DriverState(NamedTuple):
+    """What the driver has seen and means to do."""
+
+    seen: int = 0
+    """Prompt shown now."""
+    seen_since: int = 0
+    """Time [ns] since when it is shown."""
+    heeded: int = 0
+    """Prompt the driver acts on."""
+    direction: int = 0
+    """-1 reverse, 0 stop, 1 forward."""
+    takeover: bool = False
+
+
+def watch(state: DriverState, prompt: int, time_ns: int, params: DriverParams) -> DriverState:
+    """Return the driver's intention at ``time_ns`` with ``prompt`` on the display."""
+    since = state.seen_since if prompt == state.seen else time_ns
+    heeded = prompt if (time_ns - since) * 1e-9 >= params.reaction_delay else state.heeded
+    takeover = state.takeover or time_ns * 1e-9 >= params.takeover_time or heeded == TAKE_OVER
+    direction = 0 if takeover else _direction(state.direction, heeded, params)
+    return DriverState(prompt, since, heeded, direction, takeover)
+
+
+def wanted_speed(state: DriverState, advised_speed: float, time_ns: int, distance: float, params: DriverParams) -> float:
+    """Return the speed [m/s] the driver wants, reverse negative."""
+    speed = profile_speed(params, distance if params.profile_over_distance else time_ns * 1e-9)
+    if params.obeys_slow_down and state.heeded == SLOW_DOWN and advised_speed < speed:
+        speed = advised_speed
+    return state.direction * speed
+
+
+def profile_speed(params: DriverParams, at: float) -> float:
+    """Return the speed [m/s] of the last profile point not after ``at`` [s or m]; 0 before the first."""
+    speed = 0.0
+    for point in params.profile:
+        if point.at <= at:
+            speed = point.speed
+    return speed
+
+
+def _direction(direction: int, heeded: int, params: DriverParams) -> int:
+    if heeded == STOP and params.obeys_stop:
+        return 0
+    if (heeded == FORWARD or heeded == REVERSE) and (direction == 0 or params.obeys_direction):
+        return 1 if heeded == FORWARD else -1
+    return direction

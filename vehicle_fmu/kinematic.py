@@ -1,0 +1,43 @@
+"""The car without tyre slip: Guo 2015, eq. (1), for the rear-axle midpoint.
+
+    x' = v cos(heading)    y' = v sin(heading)    heading' = v tan(phi) / L
+
+Print gives R = tan(phi) / L; the turning radius is R = L / tan(phi). Valid for |phi| < pi/2.
+"""
+
+import math
+
+from modelkit.vocabulary import Pose
+
+
+def kinematic_rates(heading: float, speed: float, front_wheel_angle: float, wheelbase: float) -> Pose:
+    """Return (x', y', heading') [m/s, m/s, rad/s]."""
+    return Pose(
+        speed * math.cos(heading),
+        speed * math.sin(heading),
+        speed * math.tan(front_wheel_angle) / wheelbase,
+    )
+
+
+def move(
+    pose: Pose, speed: float, next_speed: float, angle: float, next_angle: float, wheelbase: float, h: float
+) -> Pose:
+    """Return the pose ``h`` [s] later, speed and front-wheel angle going linearly to their next values.
+
+    Both are known functions of time, so heading, then position, are integrals: Simpson's rule,
+    with the heading halfway from the parabola through the three rates. Fourth order in ``h``.
+    """
+    middle_speed = 0.5 * (speed + next_speed)
+    rate = speed * math.tan(angle) / wheelbase
+    middle_rate = middle_speed * math.tan(0.5 * (angle + next_angle)) / wheelbase
+    next_rate = next_speed * math.tan(next_angle) / wheelbase
+    heading = pose.heading
+    middle_heading = heading + h * (5.0 * rate + 8.0 * middle_rate - next_rate) / 24.0
+    next_heading = heading + h * (rate + 4.0 * middle_rate + next_rate) / 6.0
+    x_rate = speed * math.cos(heading) + 4.0 * middle_speed * math.cos(middle_heading)
+    y_rate = speed * math.sin(heading) + 4.0 * middle_speed * math.sin(middle_heading)
+    return Pose(
+        pose.x + h * (x_rate + next_speed * math.cos(next_heading)) / 6.0,
+        pose.y + h * (y_rate + next_speed * math.sin(next_heading)) / 6.0,
+        next_heading,
+    )

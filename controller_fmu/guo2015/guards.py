@@ -1,0 +1,78 @@
+"""The guards of the manoeuvre chart, worked out from the pose, the wheel and the speed."""
+
+from controller_fmu.guo2015.chart import Guard
+from controller_fmu.guo2015.legs import Tracking, point_of_leg
+from controller_fmu.guo2015.path import distance_to_end, reference_at
+from controller_fmu.guo2015.planner import TwoArcPath
+from controller_fmu.guo2015.prompts import stopping_distance
+from controller_fmu.interface import ControllerInput, ControllerParams, Phase, System
+from modelkit.vocabulary import Pose
+
+PATH_TRACKING = int(Phase.PATH_TRACKING)
+TO_Q1 = int(Phase.TO_Q1)
+TO_Q2 = int(Phase.TO_Q2)
+TO_Q3 = int(Phase.TO_Q3)
+TO_Q4 = int(Phase.TO_Q4)
+STRAIGHTEN = int(Phase.STRAIGHTEN)
+NTBPTCWPT = int(System.NTBPTCWPT)
+
+
+def bit(guard: int, holds: bool) -> int:
+    """Return the bit of ``guard`` if it holds."""
+    return 1 << guard if holds else 0
+
+
+def within(lateral: float, heading: float, lateral_limit: float, heading_limit: float) -> bool:
+    """Return whether both errors are within their limits."""
+    return abs(lateral) <= lateral_limit and abs(heading) <= heading_limit
+
+
+def wheel_guards(leg: int, wheel: float, request: float, tolerance: float) -> int:
+    """Return the bits that say the wheel stands at ``request`` for its leg, or straight."""
+    there = abs(wheel - request) <= tolerance
+    return (
+        bit(int(Guard.WHEEL_SET_FOR_PATH), there and leg == PATH_TRACKING)
+        | bit(int(Guard.WHEEL_SET_FOR_Q2), there and leg == TO_Q2)
+        | bit(int(Guard.WHEEL_SET_FOR_Q1), there and leg == TO_Q1)
+        | bit(int(Guard.WHEEL_SET_FOR_Q4), there and leg == TO_Q4)
+        | bit(int(Guard.WHEEL_SET_FOR_Q3), there and leg == TO_Q3)
+        | bit(int(Guard.WHEEL_STRAIGHT), abs(wheel) <= tolerance)
+    )
+
+
+def way_guards(tracking: Tracking, pose: Pose, path: TwoArcPath, speed: float, params: ControllerParams) -> int:
+    """Return the bits that say the car left the path or reached the end of its leg."""
+    limit = params.threshold
+    points = params.system == NTBPTCWPT
+    left = not within(tracking.lateral_error, tracking.heading_error, limit.leave_lateral, limit.leave_heading)
+    to_end = distance_to_end(path, reference_at(path, pose.x, tracking.piece))
+    q2 = point_of_leg(TO_Q2, path, params.ntbpt)
+    at_q1 = tracking.ahead <= 0.0
+    resumed = within(tracking.lateral_error, tracking.heading_error, limit.resume_lateral, limit.resume_heading)
+    share = limit.moving_share
+    right = within(pose.y, pose.heading, share * limit.park_lateral, share * limit.park_heading)
+    stop = stopping_distance(speed, params.prompting)
+    return (
+        bit(int(Guard.OFF_PATH), points and left)
+        | bit(int(Guard.PATH_END), to_end <= stop)
+        | bit(int(Guard.PAST_Q2), pose.x > q2.x or pose.y > q2.y)
+        | bit(int(Guard.AT_Q1_RIGHT), at_q1 and resumed)
+        | bit(int(Guard.AT_Q1_WRONG), at_q1 and not resumed)
+        | bit(int(Guard.POSE_RIGHT), right)
+        | bit(int(Guard.PAST_Q4), pose.x > params.ntbpt.q4_distance)
+        | bit(int(Guard.AT_Q3), pose.x <= stop)
+    )
+
+
+def standing_guards(leg: int, pose: Pose, inputs: ControllerInput, params: ControllerParams) -> int:
+    """Return the bits that say the car stands and what it stands for."""
+    limit = params.threshold
+    if abs(inputs.measured_speed) > limit.standstill:
+        return 0
+    at_end = leg == STRAIGHTEN
+    wrong = params.system == NTBPTCWPT and not within(pose.y, pose.heading, limit.park_lateral, limit.park_heading)
+    return (
+        bit(int(Guard.STANDING_TO_DRIVE), not at_end)
+        | bit(int(Guard.STANDING_AT_END), at_end and not wrong)
+        | bit(int(Guard.STANDING_AT_END_WRONG), at_end and wrong)
+    )

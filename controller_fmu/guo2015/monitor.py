@@ -1,0 +1,93 @@
+"""Watches the car and the driver at every sample; each reason to fail has a limit in time.
+
+A quantity that must not last has a clock [ns] that runs while it holds and is put back to zero
+when it does not.
+"""
+
+from typing import NamedTuple
+
+from controller_fmu.interface import ControllerInput, ControllerParams, Phase, Reason
+from modelkit.maths import is_finite, move_towards, sign
+from modelkit.vocabulary import Pose
+
+STANDBY = int(Phase.STANDBY)
+STEERING_PHASES = (int(Phase.PRE_STEER), int(Phase.STRAIGHTEN))
+
+DIRECTION_OF_PHASE = (0, 0, -1, 0, 1, -1, 1, -1, 0, 0, 0, 0)
+"""Direction that each Phase drives in, in its order."""
+
+
+class MonitorState(NamedTuple):
+    """Clocks [ns] and what the wheel and the pose should be."""
+
+    waiting: int = 0
+    stopping: int = 0
+    wrong_way: int = 0
+    frozen: int = 0
+    lag: int = 0
+    wheel: float = 0.0
+    """Steering-wheel angle [rad] that its rate limit explains."""
+    pose: Pose = Pose()
+    """Pose at the last sample."""
+
+
+def watch(
+    state: MonitorState, inputs: ControllerInput, phase: int, request: float, dt_ns: int, params: ControllerParams
+) -> MonitorState:
+    """Return the clocks after one sample of ``dt_ns`` in ``phase`` with the wheel at ``request``."""
+    speed = inputs.measured_speed
+    still = abs(speed) <= params.threshold.standstill
+    direction = DIRECTION_OF_PHASE[phase]
+    dt = dt_ns * 1e-9
+    wheel = move_towards(state.wheel, request, params.steering_wheel_rate * dt) if phase != STANDBY else request
+    dx = inputs.odometry.x - state.pose.x
+    dy = inputs.odometry.y - state.pose.y
+    way = speed * dt
+    unmoved = dx * dx + dy * dy < 0.01 * way * way and not still
+    return MonitorState(
+        waiting=state.waiting + dt_ns if still and (direction != 0 or phase in STEERING_PHASES) else 0,
+        stopping=state.stopping + dt_ns if not still and direction == 0 else 0,
+        wrong_way=state.wrong_way + dt_ns if sign(speed) * direction < 0.0 and not still else 0,
+        frozen=state.frozen + dt_ns if unmoved else 0,
+        lag=state.lag + dt_ns if abs(wheel - inputs.steering_wheel_angle) > params.limit.wheel_lag else 0,
+        wheel=wheel,
+        pose=inputs.odometry,
+    )
+
+
+def reason_to_fail(
+    state: MonitorState, inputs: ControllerInput, phase: int, running_ns: int, shifts: int, params: ControllerParams
+) -> int:
+    """Return the first Reason that holds, ``NONE`` if the car and the driver are as they should be."""
+    limit = params.limit
+    if inputs.vehicle_fault != 0:
+        return int(Reason.VEHICLE_FAULT)
+    if phase == STANDBY:
+        return int(Reason.NONE)
+    if state.frozen * 1e-9 > limit.pose_frozen:
+        return int(Reason.POSE_FROZEN)
+    if state.lag * 1e-9 > limit.wheel_fault:
+        return int(Reason.STEERING_FAULT)
+    if state.wrong_way * 1e-9 > limit.wrong_direction:
+        return int(Reason.WRONG_DIRECTION)
+    if state.stopping * 1e-9 > limit.stopping:
+        return int(Reason.NOT_STOPPING)
+    if state.waiting * 1e-9 > limit.patience:
+        return int(Reason.STEERING_FAULT) if phase in STEERING_PHASES else int(Reason.NOT_MOVING)
+    if shifts > limit.shifts:
+        return int(Reason.TOO_MANY_SHIFTS)
+    if running_ns * 1e-9 > limit.duration:
+        return int(Reason.TIMEOUT)
+    return int(Reason.NONE)
+
+
+def is_finite_input(inputs: ControllerInput) -> bool:
+    """Return False if any number that the controller steers by is NaN or infinite."""
+    pose = inputs.odometry
+    return (
+        is_finite(pose.x)
+        and is_finite(pose.y)
+        and is_finite(pose.heading)
+        and is_finite(inputs.measured_speed)
+        and is_finite(inputs.steering_wheel_angle)
+    )

@@ -1,0 +1,224 @@
+"""The NTBPTcwPT system at one sample: plan once, track the leg, let the chart decide, prompt."""
+
+import math
+from typing import NamedTuple
+
+from controller_fmu.guo2015.chart import Guard, transition
+from controller_fmu.guo2015.guards import bit, standing_guards, way_guards, wheel_guards, within
+from controller_fmu.guo2015.legs import Tracking, track
+from controller_fmu.guo2015.monitor import (
+    DIRECTION_OF_PHASE,
+    MonitorState,
+    is_finite_input,
+    reason_to_fail,
+    watch,
+)
+from controller_fmu.guo2015.path import SECOND_ARC, reference_at
+from controller_fmu.guo2015.planner import Plan, plan
+from controller_fmu.guo2015.prompts import advised_speed, prompt_of
+from controller_fmu.interface import ControllerInput, ControllerOutput, ControllerParams, Path, Phase, Reason, Segment
+from controller_fmu.slot_frame import to_slot, to_world
+from modelkit.maths import clamp
+from modelkit.vocabulary import Pose
+
+STANDBY = int(Phase.STANDBY)
+PRE_STEER = int(Phase.PRE_STEER)
+PATH_TRACKING = int(Phase.PATH_TRACKING)
+STOP = int(Phase.STOP)
+STRAIGHTEN = int(Phase.STRAIGHTEN)
+PARKED = int(Phase.PARKED)
+FAILED = int(Phase.FAILED)
+NO_REASON = int(Reason.NONE)
+
+
+class ParkingState(NamedTuple):
+    """Everything the system remembers."""
+
+    phase: int = STANDBY
+    leg: int = PATH_TRACKING
+    """What is driven next, once the car stands and the wheel is set."""
+    driven: int = PATH_TRACKING
+    """What was driven last: its law holds while the car comes to a stop."""
+    reason: int = NO_REASON
+    shifts: int = 0
+    direction: int = 0
+    running_ns: int = 0
+    piece: int = 0
+    plan: Plan = Plan()
+    tracking: Tracking = Tracking()
+    request: float = 0.0
+    advice: float = 0.0
+    takeover: bool = False
+    monitor: MonitorState = MonitorState()
+
+
+def sample(state: ParkingState, inputs: ControllerInput, params: ControllerParams, dt_ns: int) -> ParkingState:
+    """Return the system one sample of ``dt_ns`` later."""
+    if state.phase >= PARKED:
+        return _ended(state, state.phase, state.reason, inputs.driver_takeover)
+    if not is_finite_input(inputs):
+        return _ended(state, FAILED, int(Reason.BAD_INPUT), inputs.driver_takeover)
+    planned = state.plan
+    if state.phase == STANDBY:
+        smallest = params.wheelbase / math.tan(params.steering_wheel_limit / params.steering_ratio)
+        reserve = params.ntbpt.radius_reserve
+        planned = plan(inputs.odometry, params.target, params.ntbpt.radius, reserve * smallest)
+    pose = to_slot(inputs.odometry, planned.frame)
+    watched = inputs.steering_wheel_angle if state.phase == STANDBY else state.request
+    monitor = watch(state.monitor, inputs, state.phase, watched, dt_ns, params)
+    leg = state.driven if state.phase == STOP else state.leg
+    tracking = track(leg, pose, planned.path, state.piece, params)
+    reason = _reason(state, monitor, inputs, planned, pose, tracking, params)
+    guards = _guards(state, inputs, planned, pose, tracking, reason, params)
+    phase, next_leg = transition(state.phase, state.leg, guards)
+    return _moved_on(state, inputs, planned, pose, monitor, reason, phase, next_leg, dt_ns, params)
+
+
+def outputs(state: ParkingState, params: ControllerParams) -> ControllerOutput:
+    """Return the outputs that hold until the next sample."""
+    active = state.phase != STANDBY and state.phase < PARKED
+    frame = state.plan.frame
+    path = state.plan.path
+    k = frame.mirror / path.radius if path.found else 0.0
+    line = math.sqrt(_squared_distance(path.tangent1, path.tangent2))
+    pieces = (
+        Segment(path.radius * (path.tangent1.heading - path.start.heading), -k),
+        Segment(line, 0.0),
+        Segment(path.radius * path.tangent2.heading, k),
+    )
+    return ControllerOutput(
+        steering_wheel_request=state.request,
+        steering_active=active,
+        prompt=prompt_of(state.phase, state.advice, params.prompting),
+        advised_speed=state.advice,
+        speed_control_active=False,
+        speed_request=0.0,
+        brake_request=state.phase == FAILED and not state.takeover,
+        phase=state.phase,
+        reason=state.reason,
+        shifts=state.shifts,
+        reference=to_world(state.tracking.reference, frame),
+        lateral_error=state.tracking.lateral_error,
+        heading_error=state.tracking.heading_error,
+        path=Path(to_world(path.start, frame), pieces),
+    )
+
+
+def _reason(
+    state: ParkingState,
+    monitor: MonitorState,
+    inputs: ControllerInput,
+    planned: Plan,
+    pose: Pose,
+    tracking: Tracking,
+    params: ControllerParams,
+) -> int:
+    limit = params.threshold
+    reason = reason_to_fail(monitor, inputs, state.phase, state.running_ns, state.shifts, params)
+    if reason != NO_REASON:
+        return reason
+    if not planned.path.found:
+        return int(Reason.NO_PATH)
+    if abs(tracking.lateral_error) > limit.lost_lateral:
+        return int(Reason.LEFT_PATH)
+    straight = state.phase == STRAIGHTEN and abs(inputs.steering_wheel_angle) <= limit.wheel
+    if straight and not within(pose.y, pose.heading, limit.miss_lateral, limit.miss_heading):
+        return int(Reason.MISSED_TARGET)
+    return NO_REASON
+
+
+def _guards(
+    state: ParkingState,
+    inputs: ControllerInput,
+    planned: Plan,
+    pose: Pose,
+    tracking: Tracking,
+    reason: int,
+    params: ControllerParams,
+) -> int:
+    wheel = inputs.steering_wheel_angle
+    standing = standing_guards(state.leg, pose, inputs, params)
+    return (
+        bit(int(Guard.TAKEOVER), inputs.driver_takeover)
+        | bit(int(Guard.FAULT), reason != NO_REASON)
+        | bit(int(Guard.PLANNED), planned.path.found and abs(inputs.measured_speed) <= params.threshold.standstill)
+        | wheel_guards(state.leg, wheel, state.request, params.threshold.wheel)
+        | way_guards(tracking, pose, planned.path, inputs.measured_speed, params)
+        | standing
+    )
+
+
+def _moved_on(
+    state: ParkingState,
+    inputs: ControllerInput,
+    planned: Plan,
+    pose: Pose,
+    monitor: MonitorState,
+    reason: int,
+    phase: int,
+    leg: int,
+    dt_ns: int,
+    params: ControllerParams,
+) -> ParkingState:
+    if phase >= PARKED:
+        moved = _ended(state, phase, reason if phase == FAILED else NO_REASON, inputs.driver_takeover)
+        return moved
+    back_on_path = state.phase == STOP and phase == PRE_STEER and leg == PATH_TRACKING
+    direction = DIRECTION_OF_PHASE[phase]
+    turned = direction != 0 and direction != state.direction
+    driven = phase if direction != 0 else state.driven
+    tracking = track(
+        driven if phase == STOP else leg, pose, planned.path, SECOND_ARC if back_on_path else state.piece, params
+    )
+    advice = params.prompting.speed_limit
+    if phase == PATH_TRACKING:
+        reference = reference_at(planned.path, pose.x, tracking.piece)
+        advice = advised_speed(planned.path, reference, inputs.measured_speed, params)
+    return ParkingState(
+        phase=phase,
+        leg=leg,
+        driven=driven,
+        reason=NO_REASON,
+        shifts=state.shifts + 1 if turned else state.shifts,
+        direction=direction if direction != 0 else state.direction,
+        running_ns=state.running_ns + dt_ns if phase != STANDBY else 0,
+        piece=tracking.piece,
+        plan=planned,
+        tracking=tracking,
+        request=_wheel_request(phase, tracking, planned, params),
+        advice=advice,
+        takeover=inputs.driver_takeover,
+        monitor=monitor,
+    )
+
+
+def _wheel_request(phase: int, tracking: Tracking, planned: Plan, params: ControllerParams) -> float:
+    if phase == STANDBY or phase == STRAIGHTEN:
+        return 0.0
+    wheel = params.steering_ratio * planned.frame.mirror * tracking.front_wheel_angle
+    return clamp(wheel, -params.steering_wheel_limit, params.steering_wheel_limit)
+
+
+def _ended(state: ParkingState, phase: int, reason: int, takeover: bool) -> ParkingState:
+    return ParkingState(
+        phase=phase,
+        leg=state.leg,
+        driven=state.driven,
+        reason=reason,
+        shifts=state.shifts,
+        direction=state.direction,
+        running_ns=state.running_ns,
+        piece=state.piece,
+        plan=state.plan,
+        tracking=state.tracking,
+        request=state.request,
+        advice=0.0,
+        takeover=takeover,
+        monitor=state.monitor,
+    )
+
+
+def _squared_distance(a: Pose, b: Pose) -> float:
+    dx = a.x - b.x
+    dy = a.y - b.y
+    return dx * dx + dy * dy

@@ -1,0 +1,1 @@
+"""How a model package becomes an FMU, and what goes with it."""

@@ -1,0 +1,135 @@
+"""The Python sources inside a PythonFMU, below one package whose name is a hash of them.
+
+So two FMUs, two builds of one FMU, and a host that has imported the same packages itself never share a module.
+"""
+
+import ast
+import re
+import sys
+from importlib import metadata
+from importlib.util import find_spec
+from pathlib import Path
+from typing import NamedTuple
+
+import fmus
+import modelkit
+from fmus.archive import content_hash
+from modelkit.model import Model
+
+SLAVE_FILES = ("layout.py", "slave.py")
+RUNTIME_FILES = ("_version.py", "default_experiment.py", "enums.py", "fmi2slave.py", "logmsg.py", "variables.py")
+RUNTIME_INIT = b'"""The part of PythonFMU that runs inside an FMU."""\n'
+SCRIPT = '''"""Entry point of this FMU."""
+
+from {root}.fmus.layout import Layout
+from {root}.fmus.slave import ModelSlave
+from {root}.{package} import {attribute}
+
+
+class {script}({base}):
+    model = {attribute}
+    build = "{hash}"
+    layout = Layout({attribute})
+'''
+
+
+class Bundle(NamedTuple):
+    """Python sources ready to be put below ``resources``."""
+
+    hash: str
+    script: str
+    """Name of the slave's module."""
+    files: dict[str, bytes]
+
+
+def bundle(model: Model) -> Bundle:
+    """Return all sources that ``model`` needs, with their imports pointing below the hashed root package."""
+    name = model.package.__name__
+    if "." in name:
+        raise ValueError(f"{name}: the package of a model must be a top-level package")
+    originals = {
+        **_package("modelkit", modelkit.__file__),
+        **_package(name, model.package.__file__),
+        **{f"fmus/{file}": (_folder(fmus.__file__) / file).read_bytes() for file in SLAVE_FILES},
+        "fmus/__init__.py": b"",
+        **{f"pythonfmu/{file}": (runtime_folder() / file).read_bytes() for file in RUNTIME_FILES},
+        "pythonfmu/__init__.py": RUNTIME_INIT,
+    }
+    script = SCRIPT.format(
+        root="{root}", script="{script}", base="ModelSlave", hash="{hash}", package=name, attribute=_attribute(model)
+    )
+    digest = content_hash({**originals, "script": script.encode()})
+    root, module = f"fmu_{digest[:16]}", f"slave_{digest[:16]}"
+    tops = {path.split("/")[0] for path in originals}
+    files = {f"{root}/{path}": rewrite(text, path, root, tops) for path, text in originals.items()}
+    files[f"{root}/__init__.py"] = b""
+    files[f"{module}.py"] = script.format(root=root, script=module.title(), hash=digest).encode()
+    return Bundle(digest, module, files)
+
+
+def rewrite(source: bytes, path: str, root: str, tops: set[str]) -> bytes:
+    """Return ``source`` with ``from top.x import y`` made ``from root.top.x import y``, line numbers kept.
+
+    Raises ``ValueError`` for ``import top.x`` and for packages that are neither bundled nor of the standard library.
+    """
+    lines = source.split(b"\n")
+    for node in ast.walk(ast.parse(source)):
+        if isinstance(node, ast.Import):
+            for alias in node.names:
+                _check_import(alias.name, f"{path}:{node.lineno}", set())
+        elif isinstance(node, ast.ImportFrom) and node.level == 0:
+            _check_import(node.module or "", f"{path}:{node.lineno}", tops)
+            if (node.module or "").split(".")[0] in tops:
+                line = lines[node.lineno - 1]
+                head, tail = line[: node.col_offset], line[node.col_offset :]
+                lines[node.lineno - 1] = head + re.sub(rb"^from\s+", f"from {root}.".encode(), tail)
+    return b"\n".join(lines)
+
+
+def runtime_folder() -> Path:
+    """Return the folder of the installed PythonFMU."""
+    spec = find_spec("pythonfmu")
+    if spec is None or spec.origin is None:
+        raise ModuleNotFoundError("pythonfmu is not installed")
+    return _folder(spec.origin)
+
+
+def runtime_version() -> str:
+    """Return the version of the installed PythonFMU."""
+    return metadata.version("pythonfmu")
+
+
+def runtime_licence() -> bytes:
+    """Return the licence text of the installed PythonFMU; it goes with its binaries."""
+    text = metadata.distribution("pythonfmu").read_text("licenses/LICENSE")
+    if not text:
+        raise FileNotFoundError("the licence of pythonfmu is not in its distribution")
+    return text.encode()
+
+
+def _check_import(module: str, where: str, tops: set[str]) -> None:
+    top = module.split(".")[0]
+    if top not in tops and top not in sys.stdlib_module_names:
+        raise ValueError(
+            f"{where}: import of {module}: an FMU holds modelkit and the model's own package, "
+            "imported as 'from package.file import name', and the standard library"
+        )
+
+
+def _attribute(model: Model) -> str:
+    """Return the name under which the model's package offers it."""
+    for name, value in vars(model.package).items():
+        if value is model:
+            return name
+    raise ValueError(f"{model.package.__name__}: its __init__.py must hold the Model of {model.name}")
+
+
+def _package(name: str, origin: str | None) -> dict[str, bytes]:
+    folder = _folder(origin)
+    return {f"{name}/{file.relative_to(folder).as_posix()}": file.read_bytes() for file in folder.rglob("*.py")}
+
+
+def _folder(origin: str | None) -> Path:
+    if origin is None:
+        raise ValueError("a package without __init__.py cannot be bundled")
+    return Path(origin).parent

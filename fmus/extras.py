@@ -1,0 +1,81 @@
+"""What an FMU of any kind carries beside its code: page, licence, icon, terminals, reference result."""
+
+from xml.etree import ElementTree
+from xml.etree.ElementTree import Element, SubElement
+
+from fmus.description import fmi_variables
+from fmus.icon import icon
+from fmus.pages import LICENCE, index_page
+from modelkit.model import Model
+from modelkit.variables import flatten, variables
+
+LS_REF = "extra/org.fmi-standard.fmi-ls-ref"
+LS_NAMESPACE = "http://fmi-standard.org/fmi-ls-manifest"
+MOST_ROWS = 600
+
+
+def documentation(model: Model, needs: str) -> dict[str, bytes]:
+    """Return path -> content; ``needs`` is HTML that says what the host must have."""
+    picture = icon(model.name, len(variables(model.inputs)), len(variables(model.outputs)))
+    return {
+        "documentation/index.html": index_page(model, needs),
+        "documentation/licenses/license.txt": LICENCE.encode(),
+        "model.png": picture,
+        "terminalsAndIcons/terminalsAndIcons.xml": terminals(model),
+    }
+
+
+def terminals(model: Model) -> bytes:
+    """Return terminalsAndIcons.xml (as FMI 3.0 defines it): a bus of all inputs and a bus of all outputs."""
+    root = Element("fmiTerminalsAndIcons", fmiVersion="3.0")
+    node = SubElement(root, "Terminals")
+    for causality in ("input", "output"):
+        members = [variable.name for variable in fmi_variables(model) if variable.causality == causality]
+        if members:
+            terminal = SubElement(
+                node, "Terminal", name=f"{causality}s", matchingRule="bus", description=f"all {causality}s, by name"
+            )
+            for name in members:
+                SubElement(
+                    terminal, "TerminalMemberVariable", variableName=name, memberName=name, variableKind="signal"
+                )
+    return _xml(root)
+
+
+def reference_result(model: Model) -> dict[str, bytes]:
+    """Return path -> content of the default experiment's outputs, inputs at their start values, and its manifest.
+
+    The rows are at whole multiples of the default step, at most about 600 of them.
+    """
+    file = f"{model.name}_out.csv"
+    ElementTree.register_namespace("fmi-ls", LS_NAMESPACE)
+    names = {"name": "org.fmi-standard.fmi-ls-ref", "version": "1.0.0-alpha.1", "description": "Reference results"}
+    root = Element("fmiReferences", {f"{{{LS_NAMESPACE}}}fmi-ls-{key}": value for key, value in names.items()})
+    SubElement(
+        root, "Related", type="text/csv", source=file, role="result", description="Outputs of the default experiment"
+    )
+    lines = [",".join(f'"{name}"' for name in ["time", *(item.name for item in variables(model.outputs))])]
+    lines += [",".join(repr(float(value)) for value in row) for row in _rows(model)]
+    table = ("\n".join(lines) + "\n").encode()
+    return {f"{LS_REF}/fmi-ls-manifest.xml": _xml(root), f"{LS_REF}/{file}": table}
+
+
+def _rows(model: Model) -> list[list[float]]:
+    """Return [time, outputs...] of the model run in this process."""
+    steps = round(model.stop_time / model.step_size)
+    every = max(1, -(-steps // MOST_ROWS))
+    params, inputs = model.params(), model.inputs()
+    state, outputs = model.initialize(params)
+    rows = [[0.0, *flatten(outputs)]]
+    for number in range(1, steps + 1):
+        time, before = number * model.step_size, (number - 1) * model.step_size
+        state, outputs = model.step(state, inputs, params, round(time * 1e9) - round(before * 1e9))
+        if number % every == 0:
+            rows.append([time, *flatten(outputs)])
+    return rows
+
+
+def _xml(root: Element) -> bytes:
+    ElementTree.indent(root)
+    content: bytes = ElementTree.tostring(root, encoding="UTF-8", xml_declaration=True)
+    return content + b"\n"

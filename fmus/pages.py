@@ -1,0 +1,96 @@
+"""The page of an FMU, documentation/index.html, made from the types of its model."""
+
+from html import escape
+
+from fmus.description import FmiVariable, describe, fmi_variables, limits, project_version
+from fmus.units import unit
+from modelkit.model import Model
+
+LICENCE = """MIT License
+
+Copyright (c) the apa-cosim authors
+
+Permission is hereby granted, free of charge, to any person obtaining a copy
+of this software and associated documentation files (the "Software"), to deal
+in the Software without restriction, including without limitation the rights
+to use, copy, modify, merge, publish, distribute, sublicense, and/or sell
+copies of the Software, and to permit persons to whom the Software is
+furnished to do so, subject to the following conditions:
+
+The above copyright notice and this permission notice shall be included in all
+copies or substantial portions of the Software.
+
+THE SOFTWARE IS PROVIDED "AS IS", WITHOUT WARRANTY OF ANY KIND, EXPRESS OR
+IMPLIED, INCLUDING BUT NOT LIMITED TO THE WARRANTIES OF MERCHANTABILITY,
+FITNESS FOR A PARTICULAR PURPOSE AND NONINFRINGEMENT. IN NO EVENT SHALL THE
+AUTHORS OR COPYRIGHT HOLDERS BE LIABLE FOR ANY CLAIM, DAMAGES OR OTHER
+LIABILITY, WHETHER IN AN ACTION OF CONTRACT, TORT OR OTHERWISE, ARISING FROM,
+OUT OF OR IN CONNECTION WITH THE SOFTWARE OR THE USE OR OTHER DEALINGS IN THE
+SOFTWARE.
+"""
+STYLE = """
+body { font: 15px/1.5 sans-serif; max-width: 72em; margin: 2em auto; padding: 0 1em; color: #222 }
+table { border-collapse: collapse; margin: 1em 0 } td, th { border: 1px solid #ccc; text-align: left }
+td, th { padding: .2em .6em }
+th { background: #f2f2ef } td.n { text-align: right; font-family: monospace } td.v { font-family: monospace }
+"""
+COLUMNS = ("name", "reference", "type", "unit", "shown in", "start", "min", "max", "meaning")
+USE = """
+<h2>Time</h2>
+<p>The default communication step is {step:g} s. Any step is allowed, also a changing one; times are rounded to whole
+nanoseconds. Inputs are held over a step. If the model is sampled, it keeps its own sample time whatever the
+communication step. No output depends on an input of the same instant.</p>
+<h2>Connecting</h2>
+<p>Connect every output to the input of the same name. All connected signals are Real, Integer or Boolean, in SI
+units; tuples are written out as <code>name[1]</code>, <code>name[2]</code>.</p>
+<ol>
+<li>Instantiate; set parameters. They are fixed once Initialization Mode is left.</li>
+<li>Enter Initialization Mode; read all outputs, which are valid here, and write them to the inputs.</li>
+<li>Leave Initialization Mode. For each step k: all doStep at k h; then read all outputs, then write all inputs.</li>
+</ol>
+<h2>When something is wrong</h2>
+<p>A bad input shows as a status in the outputs. A wrong call and an exception are logged (switch logging on).
+FMU state can be saved, restored and serialized; a restored instance continues to the same bits.</p>
+"""
+
+
+def index_page(model: Model, needs: str) -> bytes:
+    """Return the page; ``needs`` is HTML that says what the host must have."""
+    known = fmi_variables(model)
+    parts = [
+        f"<!DOCTYPE html>\n<html lang='en'><head><meta charset='utf-8'><title>{escape(model.name)}</title>",
+        f"<style>{STYLE}</style></head><body>",
+        f"<h1>{escape(model.name)}</h1>\n<p>{escape(model.description)}. FMI 2.0 for Co-Simulation, from apa-cosim "
+        f"{project_version()}, MIT licence.</p>",
+        f"<h2>What it needs</h2>{needs}",
+        USE.format(step=model.step_size),
+        *(_table(title, [item for item in known if item.causality == causality]) for title, causality in TABLES),
+        "</body></html>\n",
+    ]
+    return "\n".join(parts).encode()
+
+
+TABLES = (("Inputs", "input"), ("Outputs", "output"), ("Parameters", "parameter"))
+
+
+def _table(title: str, items: list[FmiVariable]) -> str:
+    head = "".join(f"<th>{column}</th>" for column in COLUMNS)
+    rows = "\n".join(_row(item) for item in items)
+    return f"<h2>{title}</h2>\n<table>\n<tr>{head}</tr>\n{rows}\n</table>"
+
+
+def _row(item: FmiVariable) -> str:
+    real = item.kind is float
+    shown = (unit(item.signal.unit).display or "") if real else ""
+    numbers = (item.start, *limits(item))
+    cells = [
+        f"<td class='v'>{escape(item.name)}</td><td class='n'>{item.vr}</td><td>{item.fmi_type}</td>",
+        f"<td>{escape(item.signal.unit) if real else ''}</td><td>{escape(shown)}</td>",
+        *(f"<td class='n'>{'' if number is None else _number(number)}</td>" for number in numbers),
+        f"<td>{escape(describe(item))}</td>",
+    ]
+    return f"<tr>{''.join(cells)}</tr>"
+
+
+def _number(value: float | int | bool) -> str:
+    return str(value).lower() if isinstance(value, bool) else f"{value:.10g}"

@@ -40,7 +40,9 @@ def watch(state: DriverState, prompt: int, time_ns: int, params: DriverParams) -
     return DriverState(prompt, since, heeded, direction, takeover)
 
 
-def wanted_speed(state: DriverState, advised_speed: float, time_ns: int, distance: float, params: DriverParams) -> float:
+def wanted_speed(
+    state: DriverState, advised_speed: float, time_ns: int, distance: float, params: DriverParams
+) -> float:
     """Return the speed [m/s] the driver wants, reverse negative."""
     speed = profile_speed(params, distance if params.profile_over_distance else time_ns * 1e-9)
     if params.obeys_slow_down and state.heeded == SLOW_DOWN and advised_speed < speed:

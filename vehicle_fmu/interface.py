@@ -75,7 +75,9 @@ class DriveParams(NamedTuple):
 class ProfilePoint(NamedTuple):
     """One corner of the driver's speed profile."""
 
-    at: Annotated[float, Signal("1", "time [s] or driven distance [m] from which the speed holds; 1e9: unused", 0.0)] = NEVER
+    at: Annotated[
+        float, Signal("1", "time [s] or driven distance [m] from which the speed holds; 1e9: unused", 0.0)
+    ] = NEVER
     speed: Annotated[float, Signal("m/s", "speed the driver wants, >= 0", 0.0, 50.0)] = 0.0
 
 

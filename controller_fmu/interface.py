@@ -167,7 +167,7 @@ class LimitParams(NamedTuple):
     shifts: Annotated[int, Signal("1", "most manoeuvres, the first reverse counts one", 1, 100, "GB/T 41630")] = 8
     duration: Annotated[float, Signal("s", "longest time from start to parked", 1.0, 3600.0, HOUSE)] = 120.0
     patience: Annotated[float, Signal("s", "longest wait for the driver to move", 0.1, 600.0, HOUSE)] = 15.0
-    stopping: Annotated[float, Signal("s", "longest wait for the driver to stop", 0.1, 60.0, HOUSE)] = 4.0
+    stopping: Annotated[float, Signal("s", "longest wait for the driver to stop", 0.1, 60.0, HOUSE)] = 2.5
     wrong_direction: Annotated[float, Signal("s", "longest drive against the prompt", 0.1, 60.0, HOUSE)] = 1.5
     pose_frozen: Annotated[float, Signal("s", "longest drive without a change of pose", 0.1, 60.0, HOUSE)] = 0.5
     wheel_lag: Annotated[

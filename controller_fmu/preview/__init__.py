@@ -1,0 +1,1 @@
+"""Dual-point preview with fuzzy steering and speed on sharp curves (the preview paper)."""

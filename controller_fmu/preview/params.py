@@ -1,0 +1,103 @@
+"""What can be set in the dual-point preview system, with the paper's values."""
+
+from enum import IntEnum
+from math import pi
+from typing import Annotated, NamedTuple
+
+from modelkit.signal import Signal
+
+PAPER = "preview paper"
+HOUSE = "chosen; the source states none"
+ROAD_PIECES = 12
+
+
+class Method(IntEnum):
+    """How many preview points."""
+
+    DUAL = 0
+    """The paper's two points and its sequence."""
+    SINGLE = 1
+    """The conventional one: L1 by (5) everywhere, no slowing."""
+
+
+class Camera(IntEnum):
+    """Where yL and epsL come from."""
+
+    KINEMATICS = 0
+    """Equation (2), integrated from the odometry, as the paper simulates it."""
+    GEOMETRY = 1
+    """The road ahead seen from the measured pose."""
+
+
+class RuleTable(IntEnum):
+    """Which steering rules."""
+
+    SYMMETRIC = 0
+    PRINTED = 1
+
+
+class RoadPiece(NamedTuple):
+    """A piece of road of constant curvature."""
+
+    length: Annotated[float, Signal("m", "length along the road, >= 0; 0: unused", 0.0)] = 0.0
+    curvature: Annotated[float, Signal("1/m", "curvature, left positive")] = 0.0
+
+
+ROAD = (
+    RoadPiece(100.0, 0.0),
+    RoadPiece(50.0 * pi, -0.01),
+    RoadPiece(100.0, 0.0),
+    RoadPiece(50.0 * pi, 0.02),
+    RoadPiece(102.0, 0.0),
+    RoadPiece(25.0 * pi, -0.04),
+    RoadPiece(102.0, 0.0),
+    RoadPiece(20.0 * pi, 0.05),
+    RoadPiece(100.0, 0.0),
+) + (RoadPiece(),) * 3
+"""Fig. 7 is lost. Printed: the curvatures, and curve 2 from s = 357.1 to 514.2 m, a half circle. 100 m straights and a
+quarter circle as curve 1 put it there to the decimetre. Chosen: half circles for curves 3 and 4, 102 m before each (the
+length decides where in its period the alternation meets the curve, see docs/preview.md)."""
+
+
+class PreviewParams(NamedTuple):
+    """Road, preview distances, sequence, speeds and fuzzy sets."""
+
+    method: Annotated[int, Signal("1", "one or two preview points", states=Method)] = int(Method.DUAL)
+    camera: Annotated[int, Signal("1", "where yL and epsL come from", states=Camera)] = int(Camera.KINEMATICS)
+    rules: Annotated[int, Signal("1", "steering rule table", states=RuleTable)] = int(RuleTable.SYMMETRIC)
+    road: tuple[RoadPiece, ...] = ROAD
+    set_speed: Annotated[float, Signal("m/s", "speed on straights", 0.1, 40.0, PAPER)] = 8.3
+    safe_acceleration: Annotated[
+        float, Signal("m/s2", "a in the safe speed sqrt(a / |kappa|)", 0.01, 10.0, PAPER + ", (3)")
+    ] = 0.578
+    straight_slope: Annotated[float, Signal("s", "a1 of L1 = a1 v + a2", 0.0, 10.0, PAPER + ", (5)")] = 1.22
+    straight_offset: Annotated[float, Signal("m", "a2 of L1 = a1 v + a2", -50.0, 50.0, PAPER + ", (5)")] = -4.04
+    straight_shortest: Annotated[float, Signal("m", "smallest L1 on straights", 0.1, 50.0, PAPER + ", (5)")] = 4.5
+    straight_longest: Annotated[float, Signal("m", "largest L1 on straights", 0.1, 100.0, PAPER + ", (5)")] = 15.5
+    curve_slope: Annotated[float, Signal("m2", "b1 of L1 = b1 |kappa2| + b2", -1e4, 0.0, PAPER + ", (6)")] = -50.0
+    curve_offset: Annotated[float, Signal("m", "b2 of L1 = b1 |kappa2| + b2", 0.1, 50.0, PAPER + ", (6)")] = 4.5
+    curve_shortest: Annotated[float, Signal("m", "smallest L1 on curves", 0.1, 50.0, PAPER + ", (6)")] = 2.0
+    curve_longest: Annotated[float, Signal("m", "largest L1 on curves", 0.1, 50.0, PAPER + ", (6)")] = 4.0
+    near_gap: Annotated[float, Signal("m", "L2 - L1, near", 0.1, 50.0, PAPER + ", (4)")] = 2.0
+    far_gap: Annotated[
+        float, Signal("m", "L2 - L1, far: 2 + 18 as the printed 25.7 m at 5.7 m", 0.1, 100.0, PAPER + ", (4)")
+    ] = 20.0
+    period: Annotated[float, Signal("s", "T, period of the alternation", 0.01, 100.0, PAPER)] = 1.0
+    far_time: Annotated[float, Signal("s", "td, far part of the period", 0.0, 100.0, PAPER)] = 0.2
+    lateral_range: Annotated[float, Signal("m", "yL that maps to 3", 1e-3, 10.0, PAPER)] = 0.2
+    heading_range: Annotated[float, Signal("rad", "epsL that maps to 3", 1e-3, 3.0, PAPER)] = 30.0 * pi / 180.0
+    steering_range: Annotated[float, Signal("rad", "front-wheel angle at 3", 1e-3, 1.5, PAPER)] = 34.5 * pi / 180.0
+    speed_range: Annotated[float, Signal("m/s", "speed error that maps to 3", 1e-3, 100.0, PAPER)] = 6.0
+    rate_range: Annotated[float, Signal("m/s2", "speed-error rate that maps to 3", 1e-3, 1e6, PAPER)] = 1000.0
+    force_range: Annotated[float, Signal("N", "force at 3", 1.0, 1e5, PAPER)] = 750.0
+    lateral_gain: Annotated[float, Signal("1", "factor on the mapped yL", 0.01, 100.0, HOUSE)] = 2.0
+    heading_gain: Annotated[float, Signal("1", "factor on the mapped epsL", 0.01, 100.0, HOUSE)] = 1.0
+    lateral_peaks: tuple[float, ...] = (-3.0, -1.5, 0.0, 1.5, 3.0)
+    heading_peaks: tuple[float, ...] = (-3.0, -1.5, 0.0, 1.5, 3.0)
+    steering_peaks: tuple[float, ...] = (-3.0, -2.0, -1.0, 0.0, 1.0, 2.0, 3.0)
+    speed_peaks: tuple[float, ...] = (-0.3, -0.1, 0.0, 0.1, 0.3)
+    rate_peaks: tuple[float, ...] = (-3.0, -1.5, 0.0, 1.5, 3.0)
+    force_peaks: tuple[float, ...] = (-3.5, -2.0, -1.0, 0.0, 1.0, 2.0, 3.5)
+    centre_to_rear: Annotated[
+        float, Signal("m", "lr, centre of gravity to rear axle", 0.01, 10.0, PAPER + ", Table 3")
+    ] = 0.76

@@ -7,12 +7,14 @@ when it does not.
 from typing import NamedTuple
 
 from controller_fmu.interface import ControllerInput, ControllerParams, Phase, Reason
-from modelkit.maths import is_finite, move_towards, sign
+from modelkit.maths import move_towards, sign
 from modelkit.vocabulary import Pose
 
 STANDBY = int(Phase.STANDBY)
 STEERING_PHASES = (int(Phase.PRE_STEER), int(Phase.STRAIGHTEN))
 
+FARTHEST = 1e9
+"""No position [m], heading [rad] or speed [m/s] is beyond this; NaN is not within it either."""
 DIRECTION_OF_PHASE = (0, 0, -1, 0, 1, -1, 1, -1, 0, 0, 0, 0)
 """Direction that each Phase drives in, in its order."""
 
@@ -81,13 +83,13 @@ def reason_to_fail(
     return int(Reason.NONE)
 
 
-def is_finite_input(inputs: ControllerInput) -> bool:
-    """Return False if any number that the controller steers by is NaN or infinite."""
+def is_usable_input(inputs: ControllerInput) -> bool:
+    """Return False if a number that the controller steers by is NaN, infinite or beyond all sense."""
     pose = inputs.odometry
     return (
-        is_finite(pose.x)
-        and is_finite(pose.y)
-        and is_finite(pose.heading)
-        and is_finite(inputs.measured_speed)
-        and is_finite(inputs.steering_wheel_angle)
+        abs(pose.x) < FARTHEST
+        and abs(pose.y) < FARTHEST
+        and abs(pose.heading) < FARTHEST
+        and abs(inputs.measured_speed) < FARTHEST
+        and abs(inputs.steering_wheel_angle) < FARTHEST
     )

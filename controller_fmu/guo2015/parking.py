@@ -9,7 +9,7 @@ from controller_fmu.guo2015.legs import Tracking, track
 from controller_fmu.guo2015.monitor import (
     DIRECTION_OF_PHASE,
     MonitorState,
-    is_finite_input,
+    is_usable_input,
     reason_to_fail,
     watch,
 )
@@ -56,7 +56,7 @@ def sample(state: ParkingState, inputs: ControllerInput, params: ControllerParam
     """Return the system one sample of ``dt_ns`` later."""
     if state.phase >= PARKED:
         return _ended(state, state.phase, state.reason, inputs.driver_takeover)
-    if not is_finite_input(inputs):
+    if not is_usable_input(inputs):
         return _ended(state, FAILED, int(Reason.BAD_INPUT), inputs.driver_takeover)
     planned = state.plan
     if state.phase == STANDBY:
@@ -161,8 +161,7 @@ def _moved_on(
     params: ControllerParams,
 ) -> ParkingState:
     if phase >= PARKED:
-        moved = _ended(state, phase, reason if phase == FAILED else NO_REASON, inputs.driver_takeover)
-        return moved
+        return _ended(state, phase, reason if phase == FAILED else NO_REASON, inputs.driver_takeover)
     back_on_path = state.phase == STOP and phase == PRE_STEER and leg == PATH_TRACKING
     direction = DIRECTION_OF_PHASE[phase]
     turned = direction != 0 and direction != state.direction

@@ -25,12 +25,15 @@ class TwoArcPath(NamedTuple):
     """The path in the slot's frame."""
 
     found: bool = False
-    radius: float = 0.0
+    radius: float = 1.0
     start: Pose = Pose()
     tangent1: Pose = Pose()
     """End of the first arc, start of the line."""
     tangent2: Pose = Pose()
     """End of the line, start of the second arc: Q1."""
+
+
+NO_PATH = TwoArcPath()
 
 
 class Plan(NamedTuple):
@@ -64,7 +67,7 @@ def two_arcs(start: Pose, largest_radius: float, smallest_radius: float) -> TwoA
     if _centre_distance_squared(start, radius) < 4.0 * radius * radius:
         radius = touching_radius(start)
     if not smallest_radius <= radius <= largest_radius or not -HALF_PI < start.heading < HALF_PI:
-        return TwoArcPath(False, 0.0, start, start, start)
+        return NO_PATH
     s0 = math.sin(start.heading)
     c0 = math.cos(start.heading)
     dx = start.x + radius * s0
@@ -73,7 +76,7 @@ def two_arcs(start: Pose, largest_radius: float, smallest_radius: float) -> TwoA
     line = math.sqrt(line_squared) if line_squared > 0.0 else 0.0
     h1 = math.atan2(dy, dx) - math.atan2(-2.0 * radius, line)
     if h1 < start.heading - 1e-12 or h1 < -1e-12 or h1 > STEEPEST or start.x <= 0.0:
-        return TwoArcPath(False, 0.0, start, start, start)
+        return NO_PATH
     s1 = math.sin(h1)
     c1 = math.cos(h1)
     tangent2 = Pose(radius * s1, radius - radius * c1, h1)

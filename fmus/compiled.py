@@ -1,0 +1,95 @@
+"""A model as machine code, by numba. The one file that sees numba.
+
+Model files know nothing of it: every function of the model's package and of the model files of
+``modelkit`` is made compilable from outside. No fast-math and no contraction of a*b + c, so the
+results are CPython's, to the last bit, as long as both use the same C library.
+"""
+
+import importlib
+import inspect
+import pkgutil
+import sys
+from collections.abc import Callable, Iterator
+from types import FunctionType, ModuleType
+from typing import Any
+
+import numba
+from numba import types
+from numba.core.errors import NumbaError
+from numba.extending import register_jitable
+
+from fmus.flat_entry import Entries, entries
+from fmus.sources import MODELKIT_FILES, load
+from modelkit.model import Model
+
+POINTER = types.CPointer(types.float64)
+OPTIONS: dict[str, Any] = {"error_model": "numpy", "fastmath": False, "nogil": True}
+INITIALIZE = types.void(POINTER, POINTER, POINTER)
+STEP = types.void(POINTER, POINTER, POINTER, POINTER, types.int64)
+_done: set[str] = set()
+
+
+def make_compilable(package: ModuleType) -> None:
+    """Let compiled code call every function of ``package`` and of modelkit's model files."""
+    for name in (*MODELKIT_FILES, *(module.__name__ for module in modules(package))):
+        if name not in _done:
+            _done.add(name)
+            for function in functions(importlib.import_module(name)):
+                register_jitable(error_model="numpy")(function)
+
+
+def modules(package: ModuleType) -> Iterator[ModuleType]:
+    """Yield every module of ``package``, subpackages too."""
+    for found in pkgutil.walk_packages(package.__path__, f"{package.__name__}."):
+        yield importlib.import_module(found.name)
+
+
+def functions(module: ModuleType) -> list[FunctionType]:
+    """Return the functions that ``module`` itself defines."""
+    found = [item for item in vars(module).values() if inspect.isfunction(item)]
+    return [item for item in found if item.__module__ == module.__name__]
+
+
+def compiled_entries(model: Model) -> Entries:
+    """Return ``model_initialize`` and ``model_step`` compiled for this process, over numpy arrays of doubles."""
+    make_compilable(model.package)
+    plain = entries(model)
+    jit: Callable[[Any], Any] = numba.njit(**OPTIONS)
+    return Entries(jit(plain.initialize), jit(plain.step))
+
+
+def intermediate_code(model: Model) -> dict[str, str]:
+    """Return name -> LLVM IR of the two entry functions over pointers to doubles.
+
+    Each text defines one function whose symbol contains the name; it returns an i32, zero if all
+    went well, and takes two pointers that carry nothing before the arguments of the Python function.
+    Raises ``TypeError`` with numba's explanation if the model cannot be compiled.
+    """
+    make_compilable(model.package)
+    plain = entries(model)
+    wanted = (("model_initialize", plain.initialize, INITIALIZE), ("model_step", plain.step, STEP))
+    return {name: _code(function, signature, name) for name, function, signature in wanted}
+
+
+def _code(function: Callable[..., None], signature: Any, name: str) -> str:
+    try:
+        compiled = numba.njit(signature, no_cpython_wrapper=True, no_cfunc_wrapper=True, **OPTIONS)(function)
+    except NumbaError as error:
+        raise TypeError(f"{name} cannot be compiled: {error}") from error
+    return str(compiled.inspect_llvm(compiled.signatures[0]))
+
+
+def main(arguments: list[str]) -> int:
+    """Print the IR of ``package:NAME`` (a Model), a line ``;; name`` before each function's text."""
+    try:
+        code = intermediate_code(load(arguments[0]))
+    except TypeError as error:
+        print(error, file=sys.stderr)
+        return 1
+    for name, text in code.items():
+        print(f";; {name}\n{text}")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

@@ -1,0 +1,106 @@
+"""From LLVM IR to an object file for any platform: hide all but the entries, optimise, emit.
+
+Numba runs in a process of its own, told to know nothing of this machine's processor, so that the
+same sources give the same bytes everywhere. The IR is kept in ``fmus/dist/cache`` under the hash
+of the model's sources.
+"""
+
+import os
+import re
+import subprocess
+import sys
+from importlib.metadata import version
+from pathlib import Path
+
+import llvmlite.binding as llvm
+
+from fmus.sources import reference, source_hash
+from modelkit.model import Model
+
+CACHE = Path(__file__).parent / "dist" / "cache"
+ENTRIES = ("model_initialize", "model_step")
+LIBM = frozenset(
+    "acos asin atan atan2 ceil cos exp fabs floor fmax fmin log pow round rint sin sqrt tan tanh trunc sinh cosh".split()
+)
+"""Functions of the C library that a model may call."""
+
+
+def intermediate_code(model: Model) -> str:
+    """Return numba's IR of both entries, from the cache if the sources are the same."""
+    tools = f"numba {version('numba')}, llvmlite {version('llvmlite')}"
+    path = CACHE / f"{model.name}-{source_hash(model, tools, _own_sources())}.ll"
+    if path.exists():
+        return path.read_text()
+    text = _run_numba(model)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    part = path.with_name(f"{path.name}.{os.getpid()}.part")
+    part.write_text(text)
+    part.replace(path)
+    return text
+
+
+def _own_sources() -> str:
+    here = Path(__file__).parent
+    return "".join((here / name).read_text() for name in ("compiled.py", "flat_entry.py"))
+
+
+def _run_numba(model: Model) -> str:
+    environment = {
+        **os.environ,
+        "PYTHONPATH": os.pathsep.join(path for path in sys.path if path),
+        "PYTHONHASHSEED": "0",
+        "NUMBA_CPU_NAME": "generic",
+        "NUMBA_CPU_FEATURES": "",
+        "NUMBA_DISABLE_INTEL_SVML": "1",
+    }
+    command = [sys.executable, "-m", "fmus.compiled", reference(model)]
+    done = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
+    if done.returncode:
+        raise TypeError(f"{model.name}: {done.stderr.strip()}")
+    return done.stdout
+
+
+def object_code(model: Model, triple: str) -> bytes:
+    """Return a relocatable object file for ``triple`` that defines the two entries and needs libm only.
+
+    Raises ``TypeError`` if the model's code needs anything else.
+    """
+    llvm.initialize_all_targets()
+    llvm.initialize_all_asmprinters()
+    machine = llvm.Target.from_triple(triple).create_target_machine(cpu="", opt=2, reloc="pic", codemodel="default")
+    module = _module(intermediate_code(model))
+    module.triple = triple
+    module.data_layout = str(machine.target_data)
+    builder = llvm.create_pass_builder(machine, llvm.create_pipeline_tuning_options(speed_level=2))
+    builder.getModulePassManager().run(module, builder)
+    foreign = [item.name for item in module.functions if item.is_declaration and not _allowed(item.name)]
+    if foreign:
+        raise TypeError(f"{model.name}: its code needs {', '.join(foreign)}, which a native FMU does not have")
+    return bytes(machine.emit_object(module))
+
+
+def _allowed(name: str) -> bool:
+    return name in LIBM or name.startswith("llvm.")
+
+
+def _module(text: str) -> llvm.ModuleRef:
+    """Return one module with the entries under their plain names and everything else internal."""
+    parts = re.split(r"^;; (\w+)\n", text, flags=re.MULTILINE)[1:]
+    modules = [_one(name, code) for name, code in zip(parts[::2], parts[1::2], strict=True)]
+    for other in modules[1:]:
+        modules[0].link_in(other)
+    return modules[0]
+
+
+def _one(name: str, code: str) -> llvm.ModuleRef:
+    module = llvm.parse_assembly(code)
+    entry = [item for item in module.functions if name in item.name and not item.is_declaration]
+    if len(entry) != 1:
+        raise TypeError(f"{len(entry)} functions are called {name}; no function of a model may have this name")
+    for item in (*module.functions, *module.global_variables):
+        if not item.is_declaration:
+            item.linkage = "internal"
+    entry[0].name = name
+    entry[0].linkage = "external"
+    entry[0].visibility = "hidden"
+    return module

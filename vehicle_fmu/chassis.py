@@ -1,0 +1,110 @@
+"""The rigid car in the plane: mass, gravity on a slope, air drag, and how forces move it.
+
+ISO 8855, car frame at the centre of gravity:
+
+    m (v_x' - v_y r) = F_x    m (v_y' + v_x r) = F_y    I_z r' = M_z
+
+The position kept is the rear-axle midpoint, whose lateral speed is v_y - b r.
+"""
+
+import math
+from typing import Annotated, NamedTuple
+
+from modelkit.signal import Signal
+from modelkit.vocabulary import Pose
+
+GRAVITY = 9.81
+CHOSEN = "chosen, usual for a small car"
+
+
+class ChassisParams(NamedTuple):
+    """Mass, where it is, what slows it down, and which axle drives."""
+
+    mass: Annotated[float, Signal("kg", "mass", 10.0, 1e5, CHOSEN)] = 1100.0
+    yaw_inertia: Annotated[float, Signal("kg.m2", "moment of inertia about the vertical", 1.0, 1e6, CHOSEN)] = 1500.0
+    cg_to_rear: Annotated[float, Signal("m", "centre of gravity to rear axle", 0.01, 20.0, CHOSEN)] = 1.40
+    cg_height: Annotated[float, Signal("m", "centre of gravity above the road", 0.0, 3.0, CHOSEN)] = 0.55
+    rolling_resistance: Annotated[float, Signal("1", "rolling resistance over load", 0.0, 0.2, CHOSEN)] = 0.012
+    drag_x: Annotated[float, Signal("kg/m", "air drag over speed squared, along", 0.0, 10.0, CHOSEN)] = 0.4
+    drag_y: Annotated[float, Signal("kg/m", "air drag over speed squared, across", 0.0, 10.0, CHOSEN)] = 1.5
+    front_drive_share: Annotated[float, Signal("1", "share of the drive on the front axle", 0.0, 1.0, CHOSEN)] = 1.0
+    front_brake_share: Annotated[float, Signal("1", "share of the brake on the front axle", 0.0, 1.0, CHOSEN)] = 0.65
+
+
+class RoadParams(NamedTuple):
+    """The road plane and its grip under each wheel."""
+
+    slope: Annotated[float, Signal("1", "rise per metre along the world's x", -1.0, 1.0)] = 0.0
+    bank: Annotated[float, Signal("1", "rise per metre along the world's y", -1.0, 1.0)] = 0.0
+    grip: tuple[Annotated[float, Signal("1", "friction against a dry road; front left, front right, rear left, rear right", 0.0, 2.0)], ...] = (1.0, 1.0, 1.0, 1.0)
+
+
+class Motion(NamedTuple):
+    """Where the car is and how it moves."""
+
+    pose: Pose = Pose()
+    speed_x: float = 0.0
+    """Forward speed [m/s], the same at the rear axle and the centre of gravity."""
+    speed_y: float = 0.0
+    """Leftward speed of the centre of gravity [m/s]."""
+    yaw_rate: float = 0.0
+
+
+class Wrench(NamedTuple):
+    """Forces [N] and moment [N m] on the centre of gravity, in the car's frame."""
+
+    x: float
+    y: float
+    yaw: float
+
+
+class Gravity(NamedTuple):
+    """Acceleration of gravity [m/s2] in the car's frame: along, to the left, into the road."""
+
+    x: float
+    y: float
+    normal: float
+
+
+def gravity_in_car(heading: float, road: RoadParams) -> Gravity:
+    """Return gravity [m/s2] seen by a car of this heading on the plane z = slope x + bank y."""
+    normal = GRAVITY / math.sqrt(1.0 + road.slope * road.slope + road.bank * road.bank)
+    east = -normal * road.slope
+    north = -normal * road.bank
+    cos = math.cos(heading)
+    sin = math.sin(heading)
+    return Gravity(east * cos + north * sin, north * cos - east * sin, normal)
+
+
+def accelerations(motion: Motion, tires: Wrench, gravity: Gravity, p: ChassisParams) -> Wrench:
+    """Return F_x / m, F_y / m [m/s2] and M_z / I_z [rad/s2] of tyres, gravity and air."""
+    drag_x = p.drag_x * motion.speed_x * abs(motion.speed_x)
+    drag_y = p.drag_y * motion.speed_y * abs(motion.speed_y)
+    return Wrench(
+        (tires.x - drag_x) / p.mass + gravity.x, (tires.y - drag_y) / p.mass + gravity.y, tires.yaw / p.yaw_inertia
+    )
+
+
+def move_body(motion: Motion, change: Wrench, cg_to_rear: float, h: float) -> Motion:
+    """Return the motion ``h`` [s] later under accelerations ``change``.
+
+    Forces change the velocity, then the axes turn under it by an exact rotation (so that turning
+    neither makes nor takes energy); the pose follows the mean of old and new velocity.
+    """
+    yaw_rate = motion.yaw_rate + h * change.yaw
+    turn = 0.5 * h * (motion.yaw_rate + yaw_rate)
+    push_x = motion.speed_x + h * change.x
+    push_y = motion.speed_y + h * change.y
+    cos = math.cos(turn)
+    sin = math.sin(turn)
+    speed_x = push_x * cos + push_y * sin
+    speed_y = push_y * cos - push_x * sin
+    heading = motion.pose.heading
+    rear = 0.5 * ((motion.speed_y - cg_to_rear * motion.yaw_rate) + (speed_y - cg_to_rear * yaw_rate))
+    along = 0.5 * (motion.speed_x + speed_x)
+    cos = math.cos(heading + 0.5 * turn)
+    sin = math.sin(heading + 0.5 * turn)
+    pose = Pose(
+        motion.pose.x + h * (along * cos - rear * sin), motion.pose.y + h * (along * sin + rear * cos), heading + turn
+    )
+    return Motion(pose, speed_x, speed_y, yaw_rate)

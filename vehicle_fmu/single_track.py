@@ -1,0 +1,222 @@
+"""The car with one wheel per axle and three degrees of freedom: along, across, yaw.
+
+    F_yf = -C_f s_f    F_yr = -C_r s_r    C = stiffness at rest load * F_z / F_z at rest
+    F_zf = m (g b - a_x h) / L            F_zr = m (g a + a_x h) / L
+
+One parametrised model, two well-known instances:
+
+- full (``small_angles`` false): slip s = V_y / |V_x| in the wheel's own frame, forces turned by
+  the steering angle; with h = 0 the 3-DOF model of the preview paper (section 2, Table 3:
+  linear tyres, rolling resistance, air drag along and across).
+- ``small_angles`` true: s_f = beta + a r / |v| - sign(v) delta, s_r = beta - b r / |v|, forces
+  across the car: CommonRoad's ST with C_f = mu C_Sf m g b / L. ST holds for v > 0; here the
+  sign of v makes it hold in reverse, where ST diverges.
+
+In a step slip follows over a relaxation length (see tires.relax), so that v = 0 is no special
+case; rolling resistance and brake act through a stiff spring that slips, so that they hold a
+car at rest and let go without a jump. Forces are limited by friction.
+"""
+
+import math
+from typing import Annotated, NamedTuple
+
+from modelkit.maths import clamp, sign
+from modelkit.signal import Signal
+from vehicle_fmu.chassis import (
+    GRAVITY,
+    ChassisParams,
+    Gravity,
+    Motion,
+    RoadParams,
+    Wrench,
+    accelerations,
+    gravity_in_car,
+    move_body,
+)
+from vehicle_fmu.effort import Effort
+from vehicle_fmu.tires import relax
+
+CHOSEN = "chosen, usual for a small car"
+HOLD_RATE = 30.0
+"""A held car rocks at this rate [rad/s] on its brakes and tyres (0.3 mm under 0.03 g)."""
+LOOK_AHEAD = 0.01
+"""Time [s] by which forces look ahead on their springs, which damps them."""
+
+
+class SingleTrackParams(NamedTuple):
+    """Axle stiffness, friction and form of the equations."""
+
+    stiffness_front: Annotated[float, Signal("N/rad", "cornering stiffness of the front axle at rest load", 1.0, 1e7, CHOSEN)] = 65000.0
+    stiffness_rear: Annotated[float, Signal("N/rad", "cornering stiffness of the rear axle at rest load", 1.0, 1e7, CHOSEN)] = 65000.0
+    load_height: Annotated[float, Signal("m", "height h of the load transfer by a_x; 0: none", 0.0, 3.0, CHOSEN)] = 0.0
+    friction: Annotated[float, Signal("1", "largest force over load, both axles", 0.01, 3.0, CHOSEN)] = 1.0
+    relaxation: Annotated[float, Signal("m", "relaxation length", 0.01, 5.0, CHOSEN)] = 0.3
+    small_angles: Annotated[bool, Signal("1", "linearised in steering and slip angle, as CommonRoad's ST")] = False
+
+
+class AxleForces(NamedTuple):
+    """Forces of the road on the car [N], each in its wheel's direction."""
+
+    front: float = 0.0
+    """Lateral, front axle."""
+    rear: float = 0.0
+    """Lateral, rear axle."""
+    along: float = 0.0
+    """Drive less brake and rolling resistance, all wheels."""
+
+
+class SingleTrackState(NamedTuple):
+    """Motion and what the springs of tyres and brake remember."""
+
+    motion: Motion = Motion()
+    front: float = 0.0
+    """Carcass deflection [m] of the front axle to the left; its force has the same sign."""
+    rear: float = 0.0
+    hold: float = 0.0
+    """Deflection [m] of brake and rolling resistance; its force has the opposite sign."""
+    forces: AxleForces = AxleForces()
+    """Of the last step."""
+
+
+class Slip(NamedTuple):
+    """Sliding across and rolling speed of an axle's wheel [m/s]."""
+
+    across: float
+    along: float
+
+
+class Axles(NamedTuple):
+    """One number for each axle."""
+
+    front: float
+    rear: float
+
+
+def axle_loads(accel: float, normal: float, wheelbase: float, p: SingleTrackParams, chassis: ChassisParams) -> Axles:
+    """Return the axle loads [N] at longitudinal acceleration ``accel`` [m/s2], never below zero."""
+    weight = chassis.mass * normal
+    rest = weight * chassis.cg_to_rear / wheelbase
+    front = clamp(rest - chassis.mass * accel * p.load_height / wheelbase, 0.0, weight)
+    return Axles(front, weight - front)
+
+
+def axle_stiffness(loads: Axles, wheelbase: float, p: SingleTrackParams, chassis: ChassisParams) -> Axles:
+    """Return the cornering stiffness [N/rad] under ``loads``: proportional to load."""
+    rest_front = chassis.mass * GRAVITY * chassis.cg_to_rear / wheelbase
+    rest_rear = chassis.mass * GRAVITY - rest_front
+    return Axles(p.stiffness_front * loads.front / rest_front, p.stiffness_rear * loads.rear / rest_rear)
+
+
+def front_slip(motion: Motion, angle: float, wheelbase: float, b: float, small: bool) -> Slip:
+    """Return the front wheel's sliding and rolling speed [m/s] at steering ``angle`` [rad]."""
+    across = motion.speed_y + (wheelbase - b) * motion.yaw_rate
+    if small:
+        return Slip(across - motion.speed_x * angle, abs(motion.speed_x))
+    cos = math.cos(angle)
+    sin = math.sin(angle)
+    return Slip(across * cos - motion.speed_x * sin, abs(motion.speed_x * cos + across * sin))
+
+
+def rear_slip(motion: Motion, b: float) -> Slip:
+    """Return the rear wheel's sliding and rolling speed [m/s]."""
+    return Slip(motion.speed_y - b * motion.yaw_rate, abs(motion.speed_x))
+
+
+def steady_force(slip: Slip, stiffness: float, largest: float) -> float:
+    """Return the lateral force [N] of an axle in steady rolling; 0 at standstill, where slip has no meaning."""
+    if slip.along <= 0.0:
+        return 0.0
+    return clamp(-stiffness * slip.across / slip.along, -largest, largest)
+
+
+def wrench(front: float, rear: float, along: float, angle: float, wheelbase: float, b: float, small: bool) -> Wrench:
+    """Return force and moment on the car [N, N m] of the axles' lateral and the wheels' rolling force."""
+    a = wheelbase - b
+    if small:
+        return Wrench(along, front + rear, a * front - b * rear)
+    cos = math.cos(angle)
+    return Wrench(along - front * math.sin(angle), front * cos + rear, a * front * cos - b * rear)
+
+
+def single_track_rates(
+    motion: Motion, angle: float, force: float, accel: float, wheelbase: float, chassis: ChassisParams, p: SingleTrackParams
+) -> Wrench:
+    """Return (v_x' - v_y r, v_y' + v_x r, r') [m/s2, m/s2, rad/s2] of steadily rolling tyres on a flat road.
+
+    ``force`` [N] pushes along; ``accel`` [m/s2] moves load. beta' of ST is the second over v_x, minus r.
+    """
+    loads = axle_loads(accel, GRAVITY, wheelbase, p, chassis)
+    stiffness = axle_stiffness(loads, wheelbase, p, chassis)
+    b = chassis.cg_to_rear
+    front = front_slip(motion, angle, wheelbase, b, p.small_angles)
+    rear = rear_slip(motion, b)
+    rolling = chassis.rolling_resistance * chassis.mass * GRAVITY * sign(motion.speed_x)
+    total = wrench(
+        steady_force(front, stiffness.front, p.friction * loads.front),
+        steady_force(rear, stiffness.rear, p.friction * loads.rear),
+        force - rolling,
+        angle,
+        wheelbase,
+        b,
+        p.small_angles,
+    )
+    return accelerations(motion, total, Gravity(0.0, 0.0, GRAVITY), chassis)
+
+
+def step_single_track(
+    state: SingleTrackState,
+    angle: float,
+    effort: Effort,
+    wheelbase: float,
+    chassis: ChassisParams,
+    p: SingleTrackParams,
+    road: RoadParams,
+    h: float,
+) -> SingleTrackState:
+    """Return the car ``h`` [s] later at front-wheel ``angle`` [rad] under ``effort``."""
+    motion = state.motion
+    b = chassis.cg_to_rear
+    gravity = gravity_in_car(motion.pose.heading, road)
+    accel = state.forces.along / chassis.mass
+    loads = axle_loads(accel, gravity.normal, wheelbase, p, chassis)
+    stiffness = axle_stiffness(loads, wheelbase, p, chassis)
+    grip = Axles(
+        p.friction * loads.front * 0.5 * (road.grip[0] + road.grip[1]),
+        p.friction * loads.rear * 0.5 * (road.grip[2] + road.grip[3]),
+    )
+    front, front_force = _push(
+        state.front, front_slip(motion, angle, wheelbase, b, p.small_angles), stiffness.front, grip.front, p, h
+    )
+    rear, rear_force = _push(state.rear, rear_slip(motion, b), stiffness.rear, grip.rear, p, h)
+    hold, along = _along(state.hold, motion.speed_x, effort, loads, grip, chassis, h)
+    total = wrench(front_force, rear_force, along, angle, wheelbase, b, p.small_angles)
+    change = accelerations(motion, total, gravity, chassis)
+    return SingleTrackState(move_body(motion, change, b, h), front, rear, hold, AxleForces(front_force, rear_force, along))
+
+
+def _push(deflection: float, slip: Slip, stiffness: float, grip: float, p: SingleTrackParams, h: float) -> tuple[float, float]:
+    """Return the axle's next deflection [m] and its lateral force [N]; the carcass slips at the limit of grip."""
+    spring = stiffness / p.relaxation
+    now = relax(deflection, -slip.across, slip.along, p.relaxation, h)
+    ahead = relax(deflection, -slip.across, slip.along, p.relaxation, h + LOOK_AHEAD)
+    if spring <= 0.0:
+        return now, 0.0
+    limit = grip / spring
+    return clamp(now, -limit, limit), clamp(spring * ahead, -grip, grip)
+
+
+def _along(
+    hold: float, speed: float, effort: Effort, loads: Axles, grip: Axles, chassis: ChassisParams, h: float
+) -> tuple[float, float]:
+    """Return the brake's next deflection [m] and the rolling force of all wheels [N]."""
+    share = chassis.front_drive_share
+    drive = clamp(effort.drive * share, -grip.front, grip.front)
+    drive = drive + clamp(effort.drive * (1.0 - share), -grip.rear, grip.rear)
+    share = chassis.front_brake_share
+    brake = clamp(effort.brake * share, 0.0, grip.front) + clamp(effort.brake * (1.0 - share), 0.0, grip.rear)
+    level = brake + chassis.rolling_resistance * (loads.front + loads.rear)
+    spring = chassis.mass * HOLD_RATE * HOLD_RATE
+    limit = level / spring
+    now = clamp(hold + h * speed, -limit, limit)
+    ahead = clamp(hold + (h + LOOK_AHEAD) * speed, -limit, limit)
+    return now, drive - spring * ahead

@@ -25,6 +25,9 @@ from {root}.fmus.layout import Layout
 from {root}.fmus.slave import ModelSlave
 from {root}.{package} import {attribute}
 
+NAMESPACE = globals()
+"""A second reference: PythonFMU's binary drops one before the first instance exists (see ``keep_script``)."""
+
 
 class {script}({base}):
     model = {attribute}

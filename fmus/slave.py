@@ -9,6 +9,7 @@ the next fmi2DoStep is refused, until fmi2Reset or a restored state.
 import ctypes
 import json
 import math
+import sys
 import threading
 import traceback
 from collections.abc import Callable, Sequence
@@ -46,6 +47,12 @@ def pin_thread() -> None:
         PINNED.done = True
 
 
+def keep_script(module: str) -> None:
+    """Give back the reference to the script's namespace that the binary drops at every instantiation."""
+    if module in sys.modules:
+        ctypes.pythonapi.Py_IncRef(ctypes.py_object(vars(sys.modules[module])))
+
+
 class ModelSlave(Fmi2Slave):  # type: ignore[misc]
     """Base of the slave classes: a subclass names its ``model`` and its ``build``."""
 
@@ -57,6 +64,7 @@ class ModelSlave(Fmi2Slave):  # type: ignore[misc]
     def __init__(self, **kwargs: Any) -> None:
         super().__init__(**kwargs)
         pin_thread()
+        keep_script(type(self).__module__)
         self.values: Values = list(self.layout.start)
         self.mode = INSTANTIATED
         self.refused = ""

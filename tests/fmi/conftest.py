@@ -1,0 +1,25 @@
+import sys
+from pathlib import Path
+
+import pytest
+
+sys.path.insert(0, str(Path(__file__).parent))
+
+import toy_model  # noqa: E402
+from controller_fmu import MODEL as CONTROLLER  # noqa: E402
+from fmus.python_fmu import build  # noqa: E402
+from vehicle_fmu import MODEL as VEHICLE  # noqa: E402
+
+MODELS = {model.name: model for model in (toy_model.MODEL, VEHICLE, CONTROLLER)}
+
+
+@pytest.fixture(scope="session")
+def python_fmus(tmp_path_factory):
+    """Paths of the PythonFMUs of all models, by name."""
+    folder = tmp_path_factory.mktemp("python_fmus")
+    return {name: build(model, folder) for name, model in MODELS.items()}
+
+
+@pytest.fixture(params=list(MODELS))
+def model(request):
+    return MODELS[request.param]

@@ -1,0 +1,96 @@
+"""One FMU instance on FMPy, by variable name, with its log kept."""
+
+import random
+import shutil
+import tempfile
+from ctypes import byref
+
+import fmpy
+from fmpy.fmi2 import FMU2Slave, defaultCallbacks, fmi2CallbackFunctions, fmi2CallbackLoggerTYPE
+from fmpy.logging import addLoggerProxy
+
+from fmus.description import limits
+
+OK, WARNING, DISCARD, ERROR, FATAL = range(5)
+
+
+class Host:
+    def __init__(self, path, name="instance"):
+        self.folder = tempfile.mkdtemp(prefix="fmu_")
+        fmpy.extract(str(path), self.folder)
+        self.description = fmpy.read_model_description(self.folder)
+        self.refs = {v.name: v.valueReference for v in self.description.modelVariables}
+        self.types = {v.name: v.type for v in self.description.modelVariables}
+        self.log = []
+        self.callbacks = fmi2CallbackFunctions()
+        self.callbacks.logger = fmi2CallbackLoggerTYPE(self._logger)
+        self.callbacks.allocateMemory = defaultCallbacks.allocateMemory
+        self.callbacks.freeMemory = defaultCallbacks.freeMemory
+        addLoggerProxy(byref(self.callbacks))
+        self.fmu = FMU2Slave(
+            guid=self.description.guid,
+            modelIdentifier=self.description.coSimulation.modelIdentifier,
+            unzipDirectory=self.folder,
+            instanceName=name,
+        )
+        self.fmu.instantiate(callbacks=self.callbacks, loggingOn=True)
+
+    def _logger(self, environment, name, status, category, message):
+        self.log.append((status, category.decode(), message.decode()))
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.fmu.freeInstance()
+        shutil.rmtree(self.folder, ignore_errors=True)
+
+    def initialize(self, start=0.0, **params):
+        self.fmu.setupExperiment(startTime=start)
+        self.set(params)
+        self.fmu.enterInitializationMode()
+        self.fmu.exitInitializationMode()
+
+    def set(self, values):
+        for fmi_type in ("Real", "Integer", "Boolean"):
+            names = [name for name in values if self.types[name] == fmi_type]
+            if names:
+                setter = getattr(self.fmu, f"set{fmi_type}")
+                setter([self.refs[name] for name in names], [values[name] for name in names])
+
+    def get(self, names):
+        found = {}
+        for fmi_type in ("Real", "Integer", "Boolean"):
+            chosen = [name for name in names if self.types[name] == fmi_type]
+            if chosen:
+                values = getattr(self.fmu, f"get{fmi_type}")([self.refs[name] for name in chosen])
+                found.update(zip(chosen, map(bool, values) if fmi_type == "Boolean" else values, strict=True))
+        return [found[name] for name in names]
+
+    def outputs(self):
+        return self.get([v.name for v in self.description.modelVariables if v.causality == "output"])
+
+    def step(self, time, size):
+        """Return the status of fmi2DoStep."""
+        status = []
+        call = self.fmu.fmi2DoStep
+        try:
+            call(self.fmu.component, time, size, 1)
+        except Exception as error:
+            status.append(getattr(error, "status", error))
+        return status[0] if status else OK
+
+
+def random_inputs(known, seed, count):
+    """Return ``count`` dicts of input values inside their limits; the same for the same seed."""
+    source = random.Random(seed)
+    chosen = [variable for variable in known if variable.causality == "input"]
+    return [{variable.name: _random_value(source, variable) for variable in chosen} for _ in range(count)]
+
+
+def _random_value(source, variable):
+    if variable.kind is bool:
+        return source.random() < 0.2
+    low, high = limits(variable)
+    low, high = -2.0 if low is None else low, 2.0 if high is None else high
+    return source.randint(int(low), int(high)) if variable.kind is int else source.uniform(low, high)

@@ -1,0 +1,78 @@
+"""Nested types, tuples, a hidden state that no output shows, and faults on demand."""
+
+import math
+from enum import IntEnum
+from typing import Annotated, NamedTuple
+
+from modelkit.random import seed_state, uniform
+from modelkit.signal import Signal
+
+GAIN = 1.0
+
+
+class Mode(IntEnum):
+    SLEEPING = 0
+    SWINGING = 1
+    TIRED = 2
+
+
+class Oscillator(NamedTuple):
+    position: Annotated[float, Signal("m", "distance from rest")] = 0.0
+    velocity: Annotated[float, Signal("m/s", "velocity")] = 0.0
+
+
+class Params(NamedTuple):
+    stiffness: Annotated[float, Signal("N/m", "spring", 0.0, 1e4, "chosen")] = 40.0
+    mass: Annotated[float, Signal("kg", "of each oscillator", 0.1, 100.0)] = 2.0
+    start: tuple[Oscillator, ...] = (Oscillator(0.1, 0.0), Oscillator(-0.2, 0.5))
+    seed: Annotated[int, Signal("1", "of the noise", 0, 1000)] = 7
+    noisy: Annotated[bool, Signal("1", "with noise on the angle")] = True
+    broken: Annotated[bool, Signal("1", "initialize divides by zero")] = False
+
+
+class Input(NamedTuple):
+    force: tuple[Annotated[float, Signal("N", "on each oscillator")], ...] = (0.0, 0.0)
+    wish: Annotated[int, Signal("1", "mode wished", states=Mode)] = 1
+    brake: Annotated[bool, Signal("1", "stops both")] = False
+    divisor: Annotated[float, Signal("1", "a step divides by it")] = 1.0
+
+
+class Output(NamedTuple):
+    oscillators: tuple[Oscillator, ...] = (Oscillator(), Oscillator())
+    angle: Annotated[float, Signal("rad", "of the line through both, noisy")] = 0.0
+    mode: Annotated[int, Signal("1", "mode", states=Mode)] = 0
+    count: Annotated[int, Signal("1", "steps so far")] = 0
+    resting: Annotated[bool, Signal("1", "braked")] = False
+
+
+class State(NamedTuple):
+    oscillators: tuple[Oscillator, ...] = (Oscillator(), Oscillator())
+    random: int = 1
+    time_ns: int = 0
+    count: int = 0
+
+
+def initialize(params: Params) -> tuple[State, Output]:
+    if params.broken:
+        print(1.0 / (params.mass - params.mass))
+    state = State(params.start, seed_state(params.seed), 0, 0)
+    return state, Output(params.start, 0.0, int(Mode.SLEEPING), 0, False)
+
+
+def step(state: State, inputs: Input, params: Params, dt_ns: int) -> tuple[State, Output]:
+    dt = dt_ns * 1e-9 * GAIN / inputs.divisor
+    first = swing(state.oscillators[0], inputs.force[0], inputs.brake, params, dt)
+    second = swing(state.oscillators[1], inputs.force[1], inputs.brake, params, dt)
+    random, noise = uniform(state.random)
+    angle = math.atan(second.position - first.position)
+    if params.noisy:
+        angle = angle + 1e-3 * noise
+    new = State((first, second), random, state.time_ns + dt_ns, state.count + 1)
+    return new, Output((first, second), angle, inputs.wish, new.count, inputs.brake)
+
+
+def swing(now: Oscillator, force: float, brake: bool, params: Params, dt: float) -> Oscillator:
+    if brake:
+        return Oscillator(now.position, 0.0)
+    velocity = now.velocity + dt * (force - params.stiffness * now.position) / params.mass
+    return Oscillator(now.position + dt * velocity, velocity)

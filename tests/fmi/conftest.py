@@ -5,10 +5,11 @@ import pytest
 
 sys.path.insert(0, str(Path(__file__).parent))
 
-import toy_model  # noqa: E402
-from controller_fmu import MODEL as CONTROLLER  # noqa: E402
-from fmus.python_fmu import build  # noqa: E402
-from vehicle_fmu import MODEL as VEHICLE  # noqa: E402
+import toy_model
+
+from controller_fmu import MODEL as CONTROLLER
+from fmus.python_fmu import build
+from vehicle_fmu import MODEL as VEHICLE
 
 MODELS = {model.name: model for model in (toy_model.MODEL, VEHICLE, CONTROLLER)}
 

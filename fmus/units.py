@@ -29,6 +29,8 @@ SYMBOLS: dict[str, tuple[float, Exponents]] = {
     "V": (1.0, {"kg": 1, "m": 2, "s": -3, "A": -1}),
 }
 FACTOR = re.compile(r"(1|%|[A-Za-z]+)\^?(-?\d+)?")
+PRODUCT = rf"{FACTOR.pattern}([.*]{FACTOR.pattern})*"
+UNIT = re.compile(rf"{FACTOR.pattern}([./*]({FACTOR.pattern}|\({PRODUCT}\)))*")
 
 NOMINAL = {"kg": 1e3, "kg.m2": 1e3, "N": 1e3, "N.m": 1e3, "N/rad": 1e4, "Pa": 1e5}
 """Typical magnitude of a car's quantity in this unit, where it is not one."""
@@ -66,6 +68,8 @@ def unit(name: str) -> Unit:
 
 def _factors(name: str) -> list[tuple[str, int]]:
     """Return (symbol, power) of each factor; a slash turns over the factor or bracket behind it."""
+    if UNIT.fullmatch(name) is None:
+        raise ValueError(f"unit {name!r}: expected the like of m, 1, m/s2, N.m/rad, kg/(m.s)")
     found, sign, depth_sign = [], 1, 1
     for token in re.findall(r"[./*()]|[^./*()]+", name):
         if token == "/":
@@ -81,6 +85,4 @@ def _factors(name: str) -> list[tuple[str, int]]:
             if match is None or match[1] not in SYMBOLS:
                 raise ValueError(f"unit {name!r}: {token!r} is not one of {', '.join(SYMBOLS)}")
             found.append((match[1], sign * depth_sign * int(match[2] or 1)))
-    if not found:
-        raise ValueError("a unit is missing; a pure number has the unit 1")
     return found

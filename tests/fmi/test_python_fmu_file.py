@@ -1,0 +1,211 @@
+"""What is in the .fmu file: valid, complete, the same bytes at every build."""
+
+import io
+import os
+import struct
+import subprocess
+import sys
+import zipfile
+import zlib
+from pathlib import Path
+from xml.etree import ElementTree
+
+import fmpy
+import pytest
+from fmpy.validation import validate_fmu
+from lxml import etree
+
+from fmus.archive import archive_bytes, archive_guid, content_guid
+from fmus.build import build_all
+from fmus.description import fmi_variables, model_description
+from fmus.python_fmu import build
+from fmus.units import unit
+
+BIN = Path(sys.executable).parent
+
+
+def read(path, name):
+    with zipfile.ZipFile(path) as archive:
+        return archive.read(name)
+
+
+def description(path):
+    return ElementTree.fromstring(read(path, "modelDescription.xml"))
+
+
+def test_fmpy_finds_nothing_wrong(python_fmus, model):
+    assert validate_fmu(str(python_fmus[model.name])) == []
+
+
+def test_fmutool_finds_nothing_wrong(python_fmus, model):
+    command = [BIN / "fmutool", "-input", python_fmus[model.name], "-check"]
+    result = subprocess.run(command, capture_output=True, text=True, check=True)
+    text = result.stdout + result.stderr
+    assert "compliant with FMI-2.0" in text
+    assert "No semantic error" in text
+    assert "ERROR" not in text
+    assert "WARNING" not in text
+
+
+def test_builds_are_byte_identical(python_fmus, model, tmp_path):
+    again = build(model, tmp_path)
+    assert again.read_bytes() == python_fmus[model.name].read_bytes()
+
+
+def test_a_build_in_another_process_is_byte_identical(python_fmus, tmp_path):
+    code = f"import toy_model; from fmus.python_fmu import build; build(toy_model.MODEL, {str(tmp_path)!r})"
+    path = os.pathsep.join([str(Path(__file__).parent), *sys.path])
+    subprocess.run(
+        [sys.executable, "-c", code], check=True, env={"PYTHONHASHSEED": "5", "PYTHONPATH": path, "TZ": "A3"}
+    )
+    assert (tmp_path / "Toy.fmu").read_bytes() == python_fmus["Toy"].read_bytes()
+
+
+def test_an_unchanged_build_is_left_alone(tmp_path):
+    seen = []
+    first = build_all(tmp_path, progress=seen.append)
+    stamps = [built.path.stat().st_mtime_ns for built in first]
+    second = build_all(tmp_path)
+    assert seen == first
+    assert [built.changed for built in first] == [True, True]
+    assert [built.changed for built in second] == [False, False]
+    assert [built.path.stat().st_mtime_ns for built in second] == stamps
+    assert {built.path for built in first} == {tmp_path / "python/Controller.fmu", tmp_path / "python/Vehicle.fmu"}
+    first[0].path.write_bytes(b"not a zip")
+    assert [built.changed for built in build_all(tmp_path)] == [True, False]
+    with pytest.raises(ValueError, match="kind 'wasm': expected one of"):
+        build_all(tmp_path, kinds=("wasm",))
+
+
+def test_the_archive_depends_on_its_content_alone():
+    one, other = {"a": b"1", "b.so": b"2"}, {"b.so": b"2", "a": b"1"}
+    assert archive_bytes(one) == archive_bytes(other)
+    assert content_guid(one) == content_guid(other)
+    assert content_guid({"a": b"12", "b": b""}) != content_guid({"a": b"1", "b": b"2"})
+    entries = zipfile.ZipFile(io.BytesIO(archive_bytes(one))).infolist()
+    assert {entry.date_time for entry in entries} == {(1980, 1, 1, 0, 0, 0)}
+    assert {entry.compress_type for entry in entries} == {zipfile.ZIP_DEFLATED}
+
+
+def test_guid_is_in_the_description_and_changes_with_the_content(python_fmus):
+    guids = {archive_guid(path) for path in python_fmus.values()}
+    assert len(guids) == len(python_fmus)
+    for path in python_fmus.values():
+        assert description(path).get("guid") == archive_guid(path)
+
+
+def test_every_real_has_a_unit_and_every_variable_a_meaning(python_fmus, model):
+    root = description(python_fmus[model.name])
+    defined = {node.get("name"): node for node in root.find("UnitDefinitions")}
+    for scalar in root.find("ModelVariables"):
+        assert scalar.get("description"), scalar.get("name")
+        assert scalar.get("variability"), scalar.get("name")
+        real = scalar.find("Real")
+        if real is not None:
+            assert real.get("unit") in defined, scalar.get("name")
+            if real.get("unit") == "rad":
+                assert real.get("displayUnit") == "deg"
+    degrees = [node for name, node in defined.items() if name == "rad"]
+    for node in degrees:
+        assert float(node.find("DisplayUnit").get("factor")) == pytest.approx(57.29577951308232, rel=1e-15)
+
+
+def test_value_references_are_one_running_number(python_fmus, model):
+    scalars = list(description(python_fmus[model.name]).find("ModelVariables"))
+    assert [int(scalar.get("valueReference")) for scalar in scalars] == list(range(len(scalars)))
+    order = [scalar.get("causality") for scalar in scalars]
+    assert order == sorted(order, key=["parameter", "input", "output", "independent"].index)
+    assert scalars[-1].get("name") == "time"
+
+
+def test_outputs_depend_on_no_input(python_fmus, model):
+    root = description(python_fmus[model.name])
+    scalars = list(root.find("ModelVariables"))
+    outputs = [str(place) for place, scalar in enumerate(scalars, 1) if scalar.get("causality") == "output"]
+    structure = root.find("ModelStructure")
+    assert [node.get("index") for node in structure.find("Outputs")] == outputs
+    assert {node.get("dependencies") for node in structure.find("Outputs")} == {""}
+    assert [node.get("index") for node in structure.find("InitialUnknowns")] == outputs
+    for node in structure.find("InitialUnknowns"):
+        assert {scalars[int(place) - 1].get("causality") for place in node.get("dependencies").split()} == {"parameter"}
+
+
+def test_capabilities_and_default_experiment(python_fmus, model):
+    root = description(python_fmus[model.name])
+    simulation = root.find("CoSimulation")
+    for flag in ("canHandleVariableCommunicationStepSize", "canGetAndSetFMUstate", "canSerializeFMUstate"):
+        assert simulation.get(flag) == "true"
+    for flag in ("needsExecutionTool", "canBeInstantiatedOnlyOncePerProcess"):
+        assert simulation.get(flag) == "false"
+    assert float(root.find("DefaultExperiment").get("stepSize")) == model.step_size
+    assert root.get("generationDateAndTime").endswith("Z")
+    assert len(root.find("LogCategories")) == 5
+
+
+def test_the_kind_of_fmu_changes_only_what_it_says(model):
+    one = ElementTree.fromstring(model_description(model, guid="a", generation_tool="b", flags={"x": True}))
+    other = ElementTree.fromstring(model_description(model, guid="c", generation_tool="d", flags={"x": False}))
+    for root in (one, other):
+        for name in ("guid", "generationTool"):
+            del root.attrib[name]
+        del root.find("CoSimulation").attrib["x"]
+    assert ElementTree.tostring(one) == ElementTree.tostring(other)
+
+
+def test_documentation_names_every_variable(python_fmus, model):
+    page = read(python_fmus[model.name], "documentation/index.html").decode()
+    for variable in fmi_variables(model)[:-1]:
+        assert f"<td class='v'>{variable.name}</td>" in page
+    assert "CPython 3.11" in page
+    assert b"MIT License" in read(python_fmus[model.name], "documentation/licenses/license.txt")
+    assert b"Permission is hereby granted" in read(python_fmus[model.name], "documentation/licenses/pythonfmu.txt")
+
+
+def test_icon_is_a_picture(python_fmus, model):
+    content = read(python_fmus[model.name], "model.png")
+    assert content.startswith(b"\x89PNG\r\n\x1a\n")
+    width, height = struct.unpack(">II", content[16:24])
+    length = struct.unpack(">I", content[33:37])[0]
+    pixels = zlib.decompress(content[41 : 41 + length])
+    assert (width, height) == (96, 96)
+    assert len(pixels) == height * (1 + 4 * width)
+    rows = [pixels[1 + row * (1 + 4 * width) : (row + 1) * (1 + 4 * width)] for row in range(height)]
+    colours = {row[place : place + 4] for row in rows for place in range(0, 4 * width, 4)}
+    assert len(colours) > 10
+    assert bytes([255, 255, 255, 0]) in colours
+
+
+def test_terminals_keep_to_their_schema(python_fmus, model):
+    schema = Path(fmpy.__file__).parent / "schema/fmi3/fmi3TerminalsAndIcons.xsd"
+    document = etree.fromstring(read(python_fmus[model.name], "terminalsAndIcons/terminalsAndIcons.xml"))
+    etree.XMLSchema(file=str(schema)).assertValid(document)
+    members = {node.get("variableName") for node in document.iter("TerminalMemberVariable")}
+    assert members == {item.name for item in fmi_variables(model) if item.causality in ("input", "output")}
+
+
+@pytest.mark.parametrize(
+    ("name", "exponents", "factor", "display"),
+    [
+        ("m/s2", {"m": 1, "s": -2}, 1.0, None),
+        ("1", {}, 1.0, None),
+        ("1/m2", {"m": -2}, 1.0, None),
+        ("N.m/rad", {"kg": 1, "m": 2, "s": -2, "rad": -1}, 1.0, ("N.m/deg", 0.017453292519943295)),
+        ("rad/s", {"s": -1, "rad": 1}, 1.0, ("deg/s", 57.29577951308232)),
+        ("kg/(m.s)", {"kg": 1, "m": -1, "s": -1}, 1.0, None),
+        ("kg.m2", {"kg": 1, "m": 2}, 1.0, None),
+        ("km/h", {"m": 1, "s": -1}, 1.0 / 3.6, None),
+        ("m.s-1", {"m": 1, "s": -1}, 1.0, None),
+    ],
+)
+def test_units(name, exponents, factor, display):
+    this = unit(name)
+    assert this.exponents == exponents
+    assert this.factor == pytest.approx(factor, rel=1e-15)
+    assert this.display == (display and display[0])
+    assert this.display_factor == pytest.approx(display[1] if display else 1.0, rel=1e-14)
+
+
+@pytest.mark.parametrize("name", ["", "furlong", "m//", "m/", "m/(s", "m^x", "rad s"])
+def test_an_unreadable_unit_is_refused(name):
+    with pytest.raises(ValueError, match="unit"):
+        unit(name)

@@ -18,7 +18,7 @@ CASE_4 = {
     "drive.acceleration_limit": 10.0,
     "drive.deceleration_limit": 3.5,
     "driver.profile[1].speed": 1.5,
-    "driver.profile[2].at": 4.6,
+    "driver.profile[2].at": 4.3,
     "driver.profile[2].speed": 0.53,
     "driver.reaction_delay": 0.0,
     "driver.obeys_slow_down": False,

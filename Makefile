@@ -1,0 +1,53 @@
+# Two commands do all the set-up: `make run` and `make test`. The rest is for those who work on it.
+PYTHON ?= $(shell command -v python3.11 || command -v python3)
+VENV ?= .venv
+BIN = $(VENV)/bin
+SCENARIO ?= guo2015-case4
+
+.PHONY: run test check lint types bench docs reproduce clean help
+
+help: ## Show this list
+	@grep -hE '^[a-z]+:.*## ' $(MAKEFILE_LIST) | sed 's/:.*## /\t/' | expand -t 14
+
+run: $(VENV)/.run ## Install, build the FMUs, run a parking case, print the table, name the log, figure and report
+	$(BIN)/apa build
+	$(BIN)/apa run $(SCENARIO)
+
+test: $(VENV)/.test ## Install and pass the tests
+	$(BIN)/python -m pytest -n auto --dist loadfile -q
+
+check: lint types test ## Lint, types and tests
+
+lint: $(VENV)/.test
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+
+types: $(VENV)/.test
+	$(BIN)/mypy modelkit vehicle_fmu controller_fmu fmus orchestrator
+
+bench: $(VENV)/.test ## Measure speed, as ratios side by side in one run
+	$(BIN)/python -m benchmarks
+
+reproduce: $(VENV)/.test ## The papers' numbers beside ours
+	$(BIN)/apa reproduce all
+
+docs: $(VENV)/.docs ## Build the documentation site into site/
+	$(BIN)/python docs/generate.py
+	$(BIN)/mkdocs build --strict
+
+clean: ## Remove what was built and logged, and the virtual environment
+	rm -rf fmus/dist runs site build *.egg-info $(VENV)
+
+$(VENV)/.run: pyproject.toml
+	@$(PYTHON) -c 'import sys; sys.exit("Python 3.11 or newer is needed; name one with: make PYTHON=python3.11") if sys.version_info < (3, 11) else None'
+	$(PYTHON) -m venv $(VENV)
+	$(BIN)/python -m pip install --quiet --editable '.[native,sweep]'
+	@touch $@
+
+$(VENV)/.test: $(VENV)/.run pyproject.toml
+	$(BIN)/python -m pip install --quiet --editable '.[native,sweep,export,test]'
+	@touch $@
+
+$(VENV)/.docs: $(VENV)/.run pyproject.toml
+	$(BIN)/python -m pip install --quiet --editable '.[native,sweep,docs]'
+	@touch $@

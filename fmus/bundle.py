@@ -26,7 +26,7 @@ from {root}.fmus.slave import ModelSlave
 from {root}.{package} import {attribute}
 
 NAMESPACE = globals()
-"""A second reference: PythonFMU's binary drops one before the first instance exists (see ``keep_script``)."""
+"""A second reference: PythonFMU's binary drops one before the first instance exists (see ``tidy_up``)."""
 
 
 class {script}({base}):

@@ -47,10 +47,15 @@ def pin_thread() -> None:
         PINNED.done = True
 
 
-def keep_script(module: str) -> None:
-    """Give back the reference to the script's namespace that the binary drops at every instantiation."""
+def tidy_up(module: str, resources: str | None) -> None:
+    """Mend what the binary does at every instantiation.
+
+    It drops one reference to the script's namespace too many, and leaves the FMU's folder in ``sys.path``.
+    """
     if module in sys.modules:
         ctypes.pythonapi.Py_IncRef(ctypes.py_object(vars(sys.modules[module])))
+    while resources in sys.path:
+        sys.path.remove(resources)
 
 
 class ModelSlave(Fmi2Slave):  # type: ignore[misc]
@@ -64,7 +69,7 @@ class ModelSlave(Fmi2Slave):  # type: ignore[misc]
     def __init__(self, **kwargs: Any) -> None:
         super().__init__(**kwargs)
         pin_thread()
-        keep_script(type(self).__module__)
+        tidy_up(type(self).__module__, self.resources)
         self.values: Values = list(self.layout.start)
         self.mode = INSTANTIATED
         self.refused = ""

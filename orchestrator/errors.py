@@ -1,0 +1,25 @@
+"""The errors a user can cause or meet, each one sentence that says what would be right."""
+
+import difflib
+from collections.abc import Iterable
+
+
+class BadInput(ValueError):
+    """Something the user wrote is wrong: file, key, value, what would be right. Exit code 2."""
+
+    def __init__(self, text: str, *, file: object = None, key: str | None = None) -> None:
+        place = ": ".join(str(part) for part in (file, key) if part is not None)
+        super().__init__(f"{place}: {text}" if place else text)
+
+
+class RunError(Exception):
+    """A slave refused to go on; the run is aborted and says so."""
+
+
+def suggestion(word: str, known: Iterable[str]) -> str:
+    """Return ``; did you mean X?`` with the closest of ``known``, or an empty string."""
+    names = list(known)
+    close = difflib.get_close_matches(word, names, n=2, cutoff=0.6)
+    if not close:
+        close = [name for name in names if name.rsplit(".", 1)[-1] == word.rsplit(".", 1)[-1]][:2]
+    return f"; did you mean {' or '.join(close)}?" if close else ""

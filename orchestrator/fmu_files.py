@@ -1,0 +1,52 @@
+"""Which .fmu files a run uses, built when they are missing or older than their sources."""
+
+import hashlib
+from collections.abc import Callable
+from pathlib import Path
+
+from orchestrator.models import MODELS
+
+ROOT = Path(__file__).parent.parent
+SOURCES = ("modelkit", "vehicle_fmu", "controller_fmu", "fmus")
+KINDS = ("python", "native")
+
+
+def fmu_files(kind: str, say: Callable[[str], None] = lambda text: None) -> dict[str, Path]:
+    """Return slave name -> up-to-date FMU of ``kind``."""
+    from fmus.build import DIST
+
+    files = {name: DIST / kind / f"{model.name}.fmu" for name, model in MODELS.items()}
+    if not all(path.is_file() for path in files.values()) or _stamp(DIST / kind) != sources_hash():
+        say(f"building {kind} FMUs")
+        build(kind)
+    return files
+
+
+def build(kind: str) -> list[str]:
+    """Build the FMUs of ``kind`` and return one line about each."""
+    from fmus.build import DIST, build_all
+
+    before = sources_hash()
+    lines = [
+        f"{built.path}  {built.path.stat().st_size / 1024:.0f} KiB  {built.guid}{'' if built.changed else '  unchanged'}"
+        for built in build_all(kinds=(kind,))
+    ]
+    (DIST / kind / "sources.sha256").write_text(before, encoding="ascii")
+    return lines
+
+
+def sources_hash() -> str:
+    """Return a hash over all files that an FMU is made from."""
+    digest = hashlib.sha256()
+    for room in SOURCES:
+        for path in sorted((ROOT / room).rglob("*")):
+            relative = path.relative_to(ROOT)
+            if path.is_file() and "dist" not in relative.parts and "__pycache__" not in relative.parts:
+                digest.update(str(relative).encode())
+                digest.update(path.read_bytes())
+    return digest.hexdigest()
+
+
+def _stamp(folder: Path) -> str:
+    stamp = folder / "sources.sha256"
+    return stamp.read_text(encoding="ascii") if stamp.is_file() else ""

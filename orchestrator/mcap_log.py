@@ -1,0 +1,160 @@
+"""The log of a run: every exchange of every slave, parameters, pictures and words, in one MCAP file.
+
+Channels: ``/vehicle``, ``/controller`` (outputs as they are, inputs as they were seen),
+``/vehicle/parameters``, ``/controller/parameters`` (once), ``/tf``, ``/scene``, ``/path``, ``/trail``
+(Foxglove types, at 20 Hz or on change) and ``/log``. Times are simulated time from zero; nothing in
+the file depends on the clock on the wall, so the same run gives the same bytes.
+"""
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from foxglove_schemas_protobuf.FrameTransforms_pb2 import FrameTransforms
+from foxglove_schemas_protobuf.Log_pb2 import Log
+from foxglove_schemas_protobuf.PosesInFrame_pb2 import PosesInFrame
+from foxglove_schemas_protobuf.SceneUpdate_pb2 import SceneUpdate
+
+from modelkit.variables import Variable
+from orchestrator import scene
+from orchestrator.geometry import Car, boxes, sample_path, slot_box
+from orchestrator.master import End
+from orchestrator.mcap_file import McapFile
+from orchestrator.read_log import VARIABLES
+from orchestrator.recording import to_json
+from orchestrator.scenario import Slot
+from orchestrator.schema import PACKAGE, descriptor_set, file_descriptor
+from orchestrator.slave import Array, Ports, Slave
+from orchestrator.wire import Encoder
+
+SCENE_PERIOD_NS = 50_000_000
+TRAIL_PERIOD_NS = 1_000_000_000
+
+
+class _SlaveChannel:
+    """One channel for all inputs and outputs of a slave."""
+
+    def __init__(self, file: McapFile, slave: Slave) -> None:
+        ports = (slave.outputs, slave.inputs)
+        variables = [variable for group in ports for variable in group.variables]
+        notes = ["output"] * len(slave.outputs.names) + ["input"] * len(slave.inputs.names)
+        self._channel = add_channel(file, f"/{slave.name}", slave.name.title().replace("_", ""), variables, notes)
+        self._encoder = Encoder(variables)
+        self._file = file
+        self._row: Array = np.empty(len(variables))
+        self._split = len(slave.outputs.names)
+        self._outputs, self._inputs = slave.outputs.values, slave.inputs.values
+
+    def write(self, t_ns: int) -> None:
+        self._row[: self._split] = self._outputs
+        self._row[self._split :] = self._inputs
+        self._file.write(self._channel, t_ns, self._encoder.encode(self._row))
+
+
+class McapLog:
+    """Observer that writes the log."""
+
+    def __init__(self, path: Path, slaves: list[Slave], slot: Slot | None, info: dict[str, Any]) -> None:
+        self._file = McapFile(path)
+        self._file.writer.add_metadata("apa", {key: json.dumps(value) for key, value in info.items()})
+        self._channels = [_SlaveChannel(self._file, slave) for slave in slaves]
+        self._log = self._file.known_channel("/log", Log)
+        for slave in slaves:
+            self._write_parameters(slave)
+        self._pictures = _Pictures(self._file, {slave.name: slave for slave in slaves}, slot)
+
+    def exchanged(self, t_ns: int) -> None:
+        """Write one message per slave, and the pictures when due."""
+        for channel in self._channels:
+            channel.write(t_ns)
+        self._pictures.exchanged(t_ns)
+
+    def say(self, t_ns: int, level: int, name: str, text: str) -> None:
+        """Write one line to ``/log``."""
+        if self._file.open:
+            line = Log(timestamp=scene.stamp(t_ns), level=level, message=text, name=name)  # type: ignore[arg-type]
+            self._file.write(self._log, t_ns, line.SerializeToString(deterministic=True))
+
+    def closed(self, end: End) -> None:
+        """Write how the run ended and give the file its name."""
+        self._pictures.closed(end.t_ns)
+        self._file.writer.add_metadata("end", {"reason": json.dumps(end.reason), "t_ns": json.dumps(end.t_ns)})
+        self._file.close()
+
+    def _write_parameters(self, slave: Slave) -> None:
+        ports: Ports = slave.parameters
+        notes = ["parameter"] * len(ports.names)
+        message = slave.name.title().replace("_", "") + "Parameters"
+        channel = add_channel(self._file, f"/{slave.name}/parameters", message, ports.variables, notes)
+        self._file.write(channel, 0, Encoder(ports.variables).encode(ports.values))
+
+
+class _Pictures:
+    """Frames and scene, as far as the slaves have the signals for them."""
+
+    def __init__(self, file: McapFile, slaves: dict[str, Slave], slot: Slot | None) -> None:
+        self._file = file
+        self._vehicle = slaves.get("vehicle")
+        self._controller = slaves.get("controller")
+        self._car = Car.of(_named(self._vehicle.parameters) if self._vehicle else {})
+        self._transforms = file.known_channel("/tf", FrameTransforms)
+        self._scene = file.known_channel("/scene", SceneUpdate)
+        self._path = file.known_channel("/path", SceneUpdate)
+        self._trail = file.known_channel("/trail", PosesInFrame)
+        self._poses: list[tuple[float, float, float]] = []
+        self._next_ns = 0
+        self._path_places = _places(self._controller.outputs, "path.") if self._controller else np.empty(0, np.intp)
+        self._path_seen = b""
+        self._draw_still(slot)
+
+    def exchanged(self, t_ns: int) -> None:
+        if self._vehicle is None or t_ns < self._next_ns:
+            return
+        self._next_ns = t_ns - t_ns % SCENE_PERIOD_NS + SCENE_PERIOD_NS
+        values = _named(self._vehicle.outputs)
+        pose = scene.pose_of(values, "pose") or (0.0, 0.0, 0.0)
+        odometry = scene.pose_of(values, "odometry") or pose
+        message = scene.frames(t_ns, self._car, pose, odometry, values.get("front_wheel_angle", 0.0))
+        self._file.write(self._transforms, t_ns, message.SerializeToString(deterministic=True))
+        self._poses.append(pose)
+        if t_ns % TRAIL_PERIOD_NS < SCENE_PERIOD_NS:
+            self._draw_trail(t_ns)
+        self._draw_path(t_ns)
+
+    def closed(self, t_ns: int) -> None:
+        if self._poses:
+            self._draw_trail(t_ns)
+
+    def _draw_still(self, slot: Slot | None) -> None:
+        obstacles = boxes(_named(self._vehicle.parameters)) if self._vehicle else []
+        target = scene.pose_of(_named(self._controller.parameters), "target") if self._controller else None
+        update = scene.still_life(0, self._car, slot_box(slot) if slot else None, obstacles, target)
+        self._file.write(self._scene, 0, update.SerializeToString(deterministic=True))
+
+    def _draw_trail(self, t_ns: int) -> None:
+        message = scene.trail(t_ns, self._poses[:: max(1, len(self._poses) // 300)])
+        self._file.write(self._trail, t_ns, message.SerializeToString(deterministic=True))
+
+    def _draw_path(self, t_ns: int) -> None:
+        if self._controller is None or not len(self._path_places):
+            return
+        seen = self._controller.outputs.values[self._path_places].tobytes()
+        if seen != self._path_seen:
+            self._path_seen = seen
+            update = scene.planned_path(t_ns, sample_path(_named(self._controller.outputs)))
+            self._file.write(self._path, t_ns, update.SerializeToString(deterministic=True))
+
+
+def add_channel(file: McapFile, topic: str, message: str, variables: list[Variable], notes: list[str]) -> int:
+    """Return a new channel whose schema is made from ``variables``."""
+    descriptors = descriptor_set(file_descriptor(message, variables, notes))
+    return file.channel(topic, f"{PACKAGE}.{message}", descriptors, {VARIABLES: to_json(variables, notes)})
+
+
+def _named(ports: Ports) -> dict[str, float]:
+    return dict(zip(ports.names, ports.values.tolist(), strict=True))
+
+
+def _places(ports: Ports, prefix: str) -> np.ndarray[Any, np.dtype[np.intp]]:
+    return np.array([place for place, name in enumerate(ports.names) if name.startswith(prefix)], dtype=np.intp)

@@ -1,0 +1,142 @@
+"""Pictures for MCAP viewers, in Foxglove's well-known message types: frames, car, wheels, slot, obstacles, path, trail.
+
+The car and its wheels are drawn once, each fixed to its own frame; what moves are the frames.
+"""
+
+import math
+from collections.abc import Mapping
+
+from foxglove_schemas_protobuf.Color_pb2 import Color
+from foxglove_schemas_protobuf.FrameTransforms_pb2 import FrameTransforms
+from foxglove_schemas_protobuf.Pose_pb2 import Pose
+from foxglove_schemas_protobuf.PosesInFrame_pb2 import PosesInFrame
+from foxglove_schemas_protobuf.Quaternion_pb2 import Quaternion
+from foxglove_schemas_protobuf.SceneEntity_pb2 import SceneEntity
+from foxglove_schemas_protobuf.SceneUpdate_pb2 import SceneUpdate
+from foxglove_schemas_protobuf.Vector3_pb2 import Vector3
+from google.protobuf.duration_pb2 import Duration
+from google.protobuf.timestamp_pb2 import Timestamp
+
+from orchestrator.geometry import WHEEL_RADIUS, WHEEL_WIDTH, Box, Car
+from orchestrator.slave import Array
+
+WORLD = "world"
+CAR = "car"
+ODOMETRY = "odometry"
+CAR_HEIGHT = 1.4
+BODY = (0.20, 0.42, 0.75, 0.85)
+TYRE = (0.10, 0.10, 0.10, 1.0)
+GREEN = (0.15, 0.60, 0.30, 0.9)
+GREY = (0.55, 0.57, 0.60, 0.9)
+ORANGE = (0.90, 0.50, 0.10, 1.0)
+
+
+def stamp(t_ns: int) -> Timestamp:
+    """Return ``t_ns`` as a protobuf timestamp."""
+    return Timestamp(seconds=t_ns // 1_000_000_000, nanos=t_ns % 1_000_000_000)
+
+
+def turned(heading: float) -> Quaternion:
+    """Return the rotation by ``heading`` [rad] about z."""
+    return Quaternion(z=math.sin(0.5 * heading), w=math.cos(0.5 * heading))
+
+
+def posed(x: float, y: float, heading: float, z: float = 0.0) -> Pose:
+    """Return a pose in the plane, lifted by ``z`` [m]."""
+    return Pose(position=Vector3(x=x, y=y, z=z), orientation=turned(heading))
+
+
+def frames(
+    t_ns: int, car: Car, pose: tuple[float, float, float], odometry: tuple[float, float, float], front_wheel: float
+) -> FrameTransforms:
+    """Return the frames of the car, of its front wheels and of its pose as odometry has it, at ``t_ns``."""
+    message = FrameTransforms()
+    time = stamp(t_ns)
+
+    def add(parent: str, child: str, x: float, y: float, heading: float) -> None:
+        message.transforms.add(
+            timestamp=time,
+            parent_frame_id=parent,
+            child_frame_id=child,
+            translation=Vector3(x=x, y=y),
+            rotation=turned(heading),
+        )
+
+    add(WORLD, CAR, *pose)
+    add(WORLD, ODOMETRY, *odometry)
+    for number, (x, y) in enumerate(car.wheels()):
+        add(CAR, f"wheel_{number + 1}", x, y, front_wheel if x > 0.0 else 0.0)
+    return message
+
+
+def still_life(
+    t_ns: int, car: Car, slot: Box | None, obstacles: list[Box], target: tuple[float, float, float] | None
+) -> SceneUpdate:
+    """Return everything that never changes in its own frame: car, wheels, slot, obstacles, target outline."""
+    update = SceneUpdate()
+    body = _entity(update, t_ns, "car", CAR)
+    length, middle = car.front + car.rear, 0.5 * (car.front - car.rear)
+    body.cubes.add(
+        pose=posed(middle, 0.0, 0.0, 0.5 * CAR_HEIGHT + 0.15),
+        size=Vector3(x=length, y=2.0 * car.half_width, z=CAR_HEIGHT),
+        color=_color((*BODY[:3], 0.45)),
+    )
+    _line(body, car.outline(), BODY, 0.06)
+    for number in range(4):
+        wheel = _entity(update, t_ns, f"wheel_{number + 1}", f"wheel_{number + 1}")
+        size = Vector3(x=2.0 * WHEEL_RADIUS, y=WHEEL_WIDTH, z=2.0 * WHEEL_RADIUS)
+        wheel.cubes.add(pose=posed(0.0, 0.0, 0.0, WHEEL_RADIUS), size=size, color=_color(TYRE))
+    ghost = _entity(update, t_ns, "odometry", ODOMETRY)
+    _line(ghost, car.outline(), (*ORANGE[:3], 0.5), 0.03)
+    if slot is not None:
+        _line(_entity(update, t_ns, "slot", WORLD), slot.outline(), GREY, 0.08)
+    for number, box in enumerate(obstacles, start=1):
+        obstacle = _entity(update, t_ns, f"obstacle_{number}", WORLD)
+        size = Vector3(x=box.length, y=box.width, z=CAR_HEIGHT)
+        obstacle.cubes.add(pose=posed(box.x, box.y, box.heading, 0.5 * CAR_HEIGHT), size=size, color=_color(GREY))
+    if target is not None:
+        goal = _entity(update, t_ns, "target", WORLD)
+        _line(goal, car.outline(), GREEN, 0.05, posed(*target))
+    return update
+
+
+def planned_path(t_ns: int, points: Array) -> SceneUpdate:
+    """Return the planned path as a line; without points, its removal."""
+    update = SceneUpdate()
+    if len(points):
+        _line(_entity(update, t_ns, "path", WORLD), points, ORANGE, 0.05)
+    else:
+        update.deletions.add(timestamp=stamp(t_ns), id="path")
+    return update
+
+
+def trail(t_ns: int, poses: list[tuple[float, float, float]]) -> PosesInFrame:
+    """Return where the car has been."""
+    return PosesInFrame(timestamp=stamp(t_ns), frame_id=WORLD, poses=[posed(*pose) for pose in poses])
+
+
+def pose_of(values: Mapping[str, float], prefix: str) -> tuple[float, float, float] | None:
+    """Return the pose called ``prefix`` among flat values, or None if it is not there."""
+    names = [f"{prefix}.{axis}" for axis in ("x", "y", "heading")]
+    if not all(name in values for name in names):
+        return None
+    x, y, heading = (values[name] for name in names)
+    return x, y, heading
+
+
+def _entity(update: SceneUpdate, t_ns: int, name: str, frame: str) -> SceneEntity:
+    return update.entities.add(
+        timestamp=stamp(t_ns), frame_id=frame, id=name, lifetime=Duration(), frame_locked=True
+    )
+
+
+def _line(
+    entity: SceneEntity, points: Array, color: tuple[float, ...], thickness: float, at: Pose | None = None
+) -> None:
+    line = entity.lines.add(pose=at or posed(0.0, 0.0, 0.0), thickness=thickness, color=_color(color))
+    for x, y in points.tolist():
+        line.points.add(x=x, y=y, z=0.02)
+
+
+def _color(rgba: tuple[float, ...]) -> Color:
+    return Color(r=rgba[0], g=rgba[1], b=rgba[2], a=rgba[3])

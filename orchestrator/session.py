@@ -1,0 +1,151 @@
+"""One run from a scenario: make the slaves, the master, its observers and faults; run; return the recording."""
+
+import platform
+import time
+from collections.abc import Callable, Mapping
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from orchestrator.endings import Standstill
+from orchestrator.errors import RunError
+from orchestrator.faults import manipulators
+from orchestrator.master import End, Interrupt, Master, Observer
+from orchestrator.model_slave import ModelSlave
+from orchestrator.models import MODELS
+from orchestrator.recording import Recorder, Recording
+from orchestrator.scenario import Scenario
+from orchestrator.slave import Slave
+from orchestrator.watch import FMI_LEVELS, Watch
+
+PACKAGES = ("apa-cosim", "fmpy", "pythonfmu", "numpy", "mcap", "protobuf")
+
+
+class Ran(NamedTuple):
+    """What a run leaves behind."""
+
+    recording: Recording
+    end: End
+    wall_time: float
+    """Time of the co-simulation itself [s]: initialization, steps, log; without loading and building."""
+
+
+class Words:
+    """Messages of FMUs and of the watch, handed to whoever listens; times are the master's."""
+
+    def __init__(self) -> None:
+        self.t_ns = 0
+        self.listeners: list[Callable[[int, int, str, str], None]] = []
+
+    def say(self, t_ns: int, level: int, name: str, text: str) -> None:
+        """Pass on one line."""
+        for listener in self.listeners:
+            listener(t_ns, level, name, text)
+
+    def from_fmu(self, name: str, status: int, text: str) -> None:
+        """Pass on a message of an FMU."""
+        self.say(self.t_ns, FMI_LEVELS.get(status, 4), name, text)
+
+    def exchanged(self, t_ns: int) -> None:
+        """Note the time."""
+        self.t_ns = t_ns
+
+    def closed(self, end: End) -> None:
+        """Nothing to close."""
+
+
+def make_slaves(scenario: Scenario, files: Mapping[str, Path] | None, words: Words) -> list[Slave]:
+    """Return the slaves of a scenario: FMUs from ``files``, or the models in process."""
+    slaves: list[Slave] = []
+    for name, model in MODELS.items():
+        parameters = getattr(scenario, name)
+        if files is None:
+            slaves.append(ModelSlave(name, model, parameters))
+        else:
+            from orchestrator.fmu_slave import FmuSlave
+
+            slaves.append(FmuSlave(name, files[name], parameters, words.from_fmu, model))
+    return slaves
+
+
+def run_scenario(
+    scenario: Scenario,
+    files: Mapping[str, Path] | None = None,
+    *,
+    kind: str = "none",
+    log: Path | None = None,
+    observers: tuple[Observer, ...] = (),
+    interrupt: Interrupt | None = None,
+) -> Ran:
+    """Return the recording of one run. Errors of a slave end it as aborted; ``BadInput`` passes through."""
+    words = Words()
+    slaves = make_slaves(scenario, files, words)
+    return run_slaves(scenario, slaves, words, kind=kind, log=log, observers=observers, interrupt=interrupt)
+
+
+def run_slaves(
+    scenario: Scenario,
+    slaves: list[Slave],
+    words: Words,
+    *,
+    kind: str = "none",
+    log: Path | None = None,
+    observers: tuple[Observer, ...] = (),
+    interrupt: Interrupt | None = None,
+) -> Ran:
+    """Return the recording of one run of given slaves."""
+    master = Master(slaves, scenario.step_ns, scenario.stop_ns, scenario.every)
+    master.interrupt = interrupt or Interrupt()
+    master.manipulators += manipulators(scenario.faults, slaves, scenario.seed, scenario.file)
+    named = {slave.name: slave for slave in slaves}
+    if {"vehicle", "controller"} <= named.keys() and "phase" in named["controller"].outputs.index:
+        master.endings.append(Standstill(named["vehicle"], named["controller"]))
+    info = provenance(scenario, slaves, kind)
+    recorder = Recorder(slaves, scenario.stop_ns // scenario.step_ns + 1)
+    watch = Watch(slaves, scenario.faults, words.say)
+    master.observers += [words, recorder]
+    if log is not None:
+        from orchestrator.mcap_log import McapLog
+
+        file = McapLog(log, slaves, scenario.slot, info)
+        words.listeners.append(file.say)
+        master.observers += [watch, file, *observers]
+    else:
+        master.observers += [watch, *observers]
+    begun = time.perf_counter()
+    end = _drive(master, words)
+    master.close(end)
+    wall_time = time.perf_counter() - begun
+    return Ran(recorder.recording({**info, "end": {"reason": end.reason, "t_ns": end.t_ns}}), end, wall_time)
+
+
+def _drive(master: Master, words: Words) -> End:
+    try:
+        master.initialize()
+        return master.run()
+    except RunError as error:
+        words.say(words.t_ns, 4, "run", str(error))
+        return End(f"error: {error}", words.t_ns)
+    except KeyboardInterrupt:
+        return End("interrupted", words.t_ns)
+
+
+def provenance(scenario: Scenario, slaves: list[Slave], kind: str) -> dict[str, Any]:
+    """Return what is needed to repeat the run: scenario, FMUs, seed, versions."""
+    return {
+        "scenario": scenario.model_dump(mode="json", exclude={"file"}),
+        "fmus": [{"name": slave.name, "kind": kind, "guid": slave.identity} for slave in slaves],
+        "seed": scenario.seed,
+        "versions": versions(),
+    }
+
+
+def versions() -> dict[str, str]:
+    """Return the versions of Python, of this project and of what it stands on."""
+    found = {"python": platform.python_version()}
+    for package in PACKAGES:
+        try:
+            found[package] = version(package)
+        except PackageNotFoundError:
+            found[package] = "not installed"
+    return found

@@ -1,0 +1,63 @@
+"""What the master steps: something with named inputs and outputs in arrays allocated once.
+
+One slave hosts an FMU (``fmu_slave``), another the same model in process (``model_slave``); the
+master, the faults, the log and the checks cannot tell them apart.
+"""
+
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from modelkit.variables import Variable
+
+Array = NDArray[np.float64]
+Indices = NDArray[np.intp]
+
+
+class Ports:
+    """The inputs, or the outputs, of a slave: variables in order, and their values in one array.
+
+    Integers and booleans are kept as doubles, which hold every 32-bit integer exactly, so that an
+    exchange, a log row and a fault are one array operation.
+    """
+
+    def __init__(self, variables: list[Variable]) -> None:
+        self.variables = variables
+        self.names = [variable.name for variable in variables]
+        self.index = {name: place for place, name in enumerate(self.names)}
+        self.values: Array = np.array([float(variable.start) for variable in variables], dtype=np.float64)
+
+    def indices(self, kind: type) -> Indices:
+        """Return the places of the variables of Python type ``kind``."""
+        return np.array([place for place, item in enumerate(self.variables) if item.kind is kind], dtype=np.intp)
+
+
+class Slave(Protocol):
+    """One model in the co-simulation. Calls come in the order of the methods, from one thread."""
+
+    name: str
+    inputs: Ports
+    outputs: Ports
+    parameters: Ports
+    """Parameters with the values they have in this run."""
+    identity: str
+    """GUID of the FMU, or what says which model this is."""
+
+    def initialize(self, stop_ns: int) -> None:
+        """Enter initialization; afterwards outputs can be fetched and inputs sent."""
+
+    def start(self) -> None:
+        """Leave initialization: time is zero and runs from here on."""
+
+    def fetch_outputs(self) -> None:
+        """Bring ``outputs.values`` up to date."""
+
+    def send_inputs(self) -> None:
+        """Hand ``inputs.values`` to the model."""
+
+    def step(self, t_ns: int, dt_ns: int) -> None:
+        """Move on from ``t_ns`` by ``dt_ns``. Raises ``RunError`` if the model refuses."""
+
+    def close(self) -> None:
+        """Terminate and free; may be called at any time, and twice."""

@@ -1,0 +1,241 @@
+"""summary.json: the promised result of a run, computed from its recording alone.
+
+SI units and radians. ``final`` errors are measured in the target's frame: longitudinal along its
+heading, lateral to its left, heading wrapped to (-pi, pi].
+"""
+
+import math
+from typing import Any
+
+import numpy as np
+from pydantic import BaseModel, ConfigDict
+
+from orchestrator.endings import FINAL_PHASES
+from orchestrator.errors import BadInput, suggestion
+from orchestrator.geometry import in_frame
+from orchestrator.recording import Recording
+from orchestrator.scenario import Limit, Outcome, Scenario
+from orchestrator.scene import pose_of
+
+
+class _Part(BaseModel):
+    model_config = ConfigDict(extra="forbid", ser_json_inf_nan="constants")
+
+
+class Final(_Part):
+    """Where and how the car stands at the end."""
+
+    x: float
+    y: float
+    heading: float
+    lateral_error: float
+    longitudinal_error: float
+    heading_error: float
+    steering_wheel_angle: float
+
+
+class Event(_Part):
+    """One change of the manoeuvre chart; ``from`` and ``to`` are names of phases."""
+
+    t: float
+    from_: str
+    to: str
+    x: float
+    y: float
+    heading: float
+
+
+class Check(_Part):
+    """One limit and how the run stands against it."""
+
+    id: str
+    limit: float
+    value: float
+    passed: bool
+    source: str
+    unit: str
+    margin: float
+    """Distance to the limit, negative beyond it."""
+    required: bool
+    t: float
+    """When the value occurred [s]."""
+
+
+class FmuUsed(_Part):
+    """One slave of the run."""
+
+    name: str
+    kind: str
+    guid: str
+
+
+class Summary(_Part):
+    """The whole of summary.json."""
+
+    scenario: str
+    outcome: Outcome
+    reason: str
+    duration: float
+    shifts: int
+    max_speed: float
+    final: Final
+    events: list[Event]
+    checks: list[Check]
+    fmus: list[FmuUsed]
+    wall_time: float
+    real_time_factor: float
+    seed: int
+    versions: dict[str, str]
+
+    def as_json(self) -> dict[str, Any]:
+        """Return the summary as plain data; numbers that are not finite become null."""
+        data: dict[str, Any] = _finite(self.model_dump())
+        for event in data["events"]:
+            event["from"] = event.pop("from_")
+        data["events"] = [{key: event[key] for key in ("t", "from", "to", "x", "y", "heading")} for event in data["events"]]
+        return data
+
+
+def summarize(recording: Recording, scenario: Scenario, wall_time: float) -> Summary:
+    """Return the summary of a run. Raises ``BadInput`` if a limit names a signal that does not exist."""
+    t = recording.t
+    duration = float(t[-1]) if len(t) else 0.0
+    numbers = {
+        "duration": duration,
+        "shifts": _last(recording, "controller.shifts", 0.0),
+        "max_speed": _largest(recording, "vehicle.speed"),
+    }
+    final = _final(recording)
+    numbers.update({f"final.{name}": value for name, value in final.model_dump().items()})
+    checks = [_check(limit, recording, numbers, scenario.file) for limit in scenario.limits]
+    outcome, reason = _outcome(recording, checks)
+    return Summary(
+        scenario=scenario.name,
+        outcome=outcome,
+        reason=reason,
+        duration=duration,
+        shifts=int(numbers["shifts"]),
+        max_speed=numbers["max_speed"],
+        final=final,
+        events=_events(recording),
+        checks=checks,
+        fmus=[FmuUsed(**item) for item in recording.info.get("fmus", [])],
+        wall_time=wall_time,
+        real_time_factor=duration / wall_time if wall_time > 0.0 else 0.0,
+        seed=scenario.seed,
+        versions=recording.info.get("versions", {}),
+    )
+
+
+def phase_changes(recording: Recording) -> list[tuple[int, str, str]]:
+    """Return (row, from, to) of every change of phase."""
+    phases = recording.signals.get("controller.phase")
+    if phases is None or not len(phases):
+        return []
+    names = recording.states("controller.phase")
+    rows = np.flatnonzero(np.diff(phases)) + 1
+    return [(int(row), _state(names, phases[row - 1]), _state(names, phases[row])) for row in rows]
+
+
+def _state(names: dict[int, str], value: float) -> str:
+    return names.get(int(value), f"{value:g}") if math.isfinite(value) else "nan"
+
+
+def _events(recording: Recording) -> list[Event]:
+    t = recording.t
+    empty = np.zeros(len(t))
+    x, y, heading = (recording.signals.get(f"vehicle.pose.{axis}", empty) for axis in ("x", "y", "heading"))
+    return [
+        Event(t=float(t[row]), from_=before, to=after, x=float(x[row]), y=float(y[row]), heading=float(heading[row]))
+        for row, before, after in phase_changes(recording)
+    ]
+
+
+def _final(recording: Recording) -> Final:
+    end = {name: _last(recording, f"vehicle.{name}", math.nan) for name in ("pose.x", "pose.y", "pose.heading")}
+    x, y, heading = end.values()
+    target = pose_of(recording.parameters_of("controller"), "target") or (0.0, 0.0, 0.0)
+    along, across, turn = in_frame(x, y, heading, target)
+    return Final(
+        x=x,
+        y=y,
+        heading=heading,
+        lateral_error=across,
+        longitudinal_error=along,
+        heading_error=turn,
+        steering_wheel_angle=_last(recording, "vehicle.steering_wheel_angle", math.nan),
+    )
+
+
+def _outcome(recording: Recording, checks: list[Check]) -> tuple[Outcome, str]:
+    end = str(recording.info.get("end", {}).get("reason", ""))
+    if end == "interrupted" or end.startswith("error"):
+        return "aborted", end
+    phase = _state(recording.states("controller.phase"), _last(recording, "controller.phase", math.nan))
+    if phase == "FAILED":
+        why = _state(recording.states("controller.reason"), _last(recording, "controller.reason", math.nan))
+        return "failed", why.lower()
+    missed = [check.id for check in checks if check.required and not check.passed]
+    if phase == "PARKED":
+        return ("not_parked", "beyond its limit: " + ", ".join(missed)) if missed else ("parked", "all checks passed")
+    if phase in FINAL_PHASES:
+        return "not_parked", phase.lower()
+    return "not_parked", f"stop time reached in {phase.lower()}"
+
+
+def _check(limit: Limit, recording: Recording, numbers: dict[str, float], file: str) -> Check:
+    if limit.signal is not None:
+        if limit.signal not in recording.signals:
+            hint = suggestion(limit.signal, recording.signals)
+            raise BadInput(f"no signal of this name{hint}", file=file, key=f"limits: {limit.id}: signal: {limit.signal}")
+        values, times = recording.signals[limit.signal], recording.t
+    else:
+        key = str(limit.summary)
+        if key not in numbers:
+            hint = suggestion(key, numbers) or f"; known are {', '.join(numbers)}"
+            raise BadInput(f"no such number{hint}", file=file, key=f"limits: {limit.id}: summary: {key}")
+        values, times = np.array([numbers[key]]), np.array([numbers["duration"]])
+    return _judge(limit, values, times)
+
+
+def _judge(limit: Limit, values: np.ndarray[Any, Any], times: np.ndarray[Any, Any]) -> Check:
+    """Return the check at the worst value; NaN is the worst there is and passes nothing."""
+    if not len(values):
+        worst, bound, margin, when = math.nan, limit.max if limit.max is not None else limit.min, math.nan, 0.0
+    else:
+        if limit.max is not None:
+            bound, margins = limit.max, limit.max - np.abs(values)
+        else:
+            assert limit.min is not None
+            bound, margins = limit.min, values - limit.min
+        row = int(np.argmin(np.where(np.isnan(margins), -np.inf, margins)))
+        worst, margin, when = float(values[row]), float(margins[row]), float(times[row])
+    return Check(
+        id=limit.id,
+        limit=float(bound or 0.0),
+        value=worst,
+        passed=margin >= 0.0,
+        source=limit.source,
+        unit=limit.unit,
+        margin=margin,
+        required=limit.required,
+        t=when,
+    )
+
+
+def _last(recording: Recording, name: str, default: float) -> float:
+    values = recording.signals.get(name)
+    return float(values[-1]) if values is not None and len(values) else default
+
+
+def _largest(recording: Recording, name: str) -> float:
+    values = recording.signals.get(name)
+    return float(np.max(np.abs(values))) if values is not None and len(values) else 0.0
+
+
+def _finite(data: Any) -> Any:
+    if isinstance(data, dict):
+        return {key: _finite(value) for key, value in data.items()}
+    if isinstance(data, list):
+        return [_finite(value) for value in data]
+    return None if isinstance(data, float) and not math.isfinite(data) else data

@@ -29,7 +29,12 @@ class _Given(NamedTuple):
 
 def scenario_names() -> list[str]:
     """Return the names of the shipped scenarios, sorted."""
-    return sorted(path.stem for path in (ROOM / "scenarios").glob("*.yaml"))
+    return _shipped("scenarios")
+
+
+def car_names() -> list[str]:
+    """Return the names of the shipped cars, sorted."""
+    return _shipped("cars")
 
 
 def load_scenario(name: str, sets: Iterable[str] = ()) -> Scenario:
@@ -158,6 +163,10 @@ def _merge(below: dict[str, Any], above: Mapping[str, Any]) -> dict[str, Any]:
     return result
 
 
+def _shipped(folder: str) -> list[str]:
+    return sorted(path.stem for path in (ROOM / folder).glob("*.yaml"))
+
+
 def _find(name: str, folder: str, what: str, beside: Path) -> Path:
     """Return the file of a shipped name, or of a path relative to ``beside``. Raises ``BadInput``."""
     if name.endswith((".yaml", ".yml")) or "/" in name or "\\" in name:
@@ -168,6 +177,6 @@ def _find(name: str, folder: str, what: str, beside: Path) -> Path:
     shipped = ROOM / folder / f"{name}.yaml"
     if shipped.is_file():
         return shipped
-    known = sorted(path.stem for path in (ROOM / folder).glob("*.yaml"))
+    known = _shipped(folder)
     hint = suggestion(name, known) or f"; shipped are {', '.join(known) or 'none'}"
     raise BadInput(f"no {what} of this name{hint}", key=name)

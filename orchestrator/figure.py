@@ -1,0 +1,229 @@
+"""overview.png: the four panels of the paper, the path with the car drawn along it, and a ribbon of chart states."""
+
+import math
+from pathlib import Path
+from typing import Any
+
+import matplotlib as mpl
+import numpy as np
+from matplotlib.figure import Figure
+from matplotlib.patches import Patch, Polygon
+
+from orchestrator.geometry import WHEEL_RADIUS, WHEEL_WIDTH, Box, Car, boxes, place, sample_path, slot_box
+from orchestrator.quantities import DEGREE
+from orchestrator.recording import Recording
+from orchestrator.scenario import Scenario
+from orchestrator.scene import pose_of
+from orchestrator.slave import Array
+from orchestrator.summary import Summary, phase_changes
+
+BLUE, RUST, GREEN, GREY, INK = "#2563a8", "#c2571a", "#2f8f5b", "#8a8f98", "#22262c"
+PHASE_COLOURS = {
+    "STANDBY": "#c9cdd3",
+    "PRE_STEER": "#f2c14e",
+    "PATH_TRACKING": "#2563a8",
+    "STOP": "#b23a48",
+    "TO_Q2": "#6a4c93",
+    "TO_Q1": "#8d7bc4",
+    "TO_Q4": "#3a7d8c",
+    "TO_Q3": "#6fb1bd",
+    "STRAIGHTEN": "#e08e45",
+    "PARKED": "#2f8f5b",
+    "FAILED": "#7a1f2b",
+    "TAKEOVER": "#444a52",
+}
+SPARE_COLOURS = ("#4f7cac", "#9c6644", "#5c946e", "#a65e9c", "#787f3e", "#b56576")
+STYLE: dict[str, Any] = {
+    "font.size": 9.0,
+    "axes.edgecolor": GREY,
+    "axes.labelcolor": INK,
+    "axes.titlesize": 10.0,
+    "axes.titleweight": "bold",
+    "axes.titlelocation": "left",
+    "axes.grid": True,
+    "grid.color": "#e3e6ea",
+    "grid.linewidth": 0.7,
+    "xtick.color": INK,
+    "ytick.color": INK,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "legend.frameon": False,
+}
+OUTLINES = 14
+"""About how many outlines are drawn along the path."""
+
+
+def draw(recording: Recording, summary: Summary, scenario: Scenario, path: Path) -> None:
+    """Write the overview picture of a run to ``path``."""
+    with mpl.rc_context(STYLE):
+        figure = Figure(figsize=(13.0, 9.0), layout="constrained")
+        grid = figure.add_gridspec(4, 2, width_ratios=(1.0, 1.15), height_ratios=(1.0, 1.0, 1.0, 0.22))
+        speed = figure.add_subplot(grid[0, 0])
+        position = figure.add_subplot(grid[1, 0], sharex=speed)
+        heading = figure.add_subplot(grid[2, 0], sharex=speed)
+        ribbon = figure.add_subplot(grid[3, 0], sharex=speed)
+        _speed(speed, recording)
+        _position(position, recording)
+        _heading(heading, recording)
+        for axis in (speed, position, heading):
+            axis.tick_params(labelbottom=False)
+            for row, _, _ in phase_changes(recording):
+                axis.axvline(recording.t[row], color="#d5d9df", linewidth=0.8, zorder=0)
+        names = _ribbon(ribbon, recording)
+        plan = figure.add_subplot(grid[0:3, 1])
+        _plan(plan, recording, scenario)
+        _legend(figure.add_subplot(grid[3, 1]), names)
+        figure.suptitle(_title(summary, scenario), x=0.012, ha="left", fontsize=12.5, fontweight="bold", color=INK)
+        figure.savefig(path, dpi=120, metadata={"Software": "apa-cosim"})
+
+
+def _title(summary: Summary, scenario: Scenario) -> str:
+    final = summary.final
+    return (
+        f"{scenario.name}: {summary.outcome.replace('_', ' ')} after {summary.duration:.1f} s, {summary.shifts} shifts; "
+        f"{final.lateral_error * 100:+.1f} cm lateral, {final.heading_error / DEGREE:+.2f} deg"
+    )
+
+
+def _signal(recording: Recording, name: str) -> Array:
+    return recording.signals.get(name, np.full(len(recording.t), np.nan))
+
+
+def _speed(axis: Any, recording: Recording) -> None:
+    t = recording.t
+    axis.set_title("(a) speed and steering wheel")
+    axis.plot(t, _signal(recording, "vehicle.speed"), color=BLUE, linewidth=1.5)
+    axis.set_ylabel("speed [m/s]", color=BLUE)
+    wheel = axis.twinx()
+    wheel.grid(False)
+    wheel.spines["right"].set_visible(True)
+    request = _signal(recording, "controller.steering_wheel_request") / DEGREE
+    wheel.plot(t, request, color=RUST, linewidth=0.8, alpha=0.55, linestyle=(0, (3, 2)), label="request")
+    wheel.plot(t, _signal(recording, "vehicle.steering_wheel_angle") / DEGREE, color=RUST, linewidth=1.5, label="angle")
+    wheel.set_ylabel("steering wheel [deg]", color=RUST)
+    wheel.legend(loc="upper right", fontsize=8)
+
+
+def _position(axis: Any, recording: Recording) -> None:
+    t = recording.t
+    axis.set_title("(b) position")
+    for name, colour in (("x", BLUE), ("y", RUST)):
+        reference = _used(recording, f"controller.reference.{name}")
+        axis.plot(t, reference, color=colour, linewidth=0.8, alpha=0.6, linestyle=(0, (3, 2)))
+        axis.plot(t, _signal(recording, f"vehicle.pose.{name}"), color=colour, linewidth=1.5, label=name)
+    axis.plot([], [], color=GREY, linewidth=0.8, linestyle=(0, (3, 2)), label="reference")
+    axis.set_ylabel("position [m]")
+    axis.legend(loc="upper right", fontsize=8, ncols=3)
+
+
+def _heading(axis: Any, recording: Recording) -> None:
+    t = recording.t
+    axis.set_title("(c) heading")
+    reference = _used(recording, "controller.reference.heading") / DEGREE
+    axis.plot(t, reference, color=GREEN, linewidth=0.8, alpha=0.7, linestyle=(0, (3, 2)), label="reference")
+    axis.plot(t, _signal(recording, "vehicle.pose.heading") / DEGREE, color=GREEN, linewidth=1.5, label="heading")
+    axis.set_ylabel("heading [deg]")
+    axis.legend(loc="upper right", fontsize=8, ncols=2)
+
+
+def _used(recording: Recording, name: str) -> Array:
+    """Return a reference signal, blank until the controller first gives one."""
+    prefix = name.rsplit(".", 1)[0]
+    given = np.zeros(len(recording.t), dtype=bool)
+    for axis in ("x", "y", "heading"):
+        given |= _signal(recording, f"{prefix}.{axis}") != 0.0
+    return np.where(given, _signal(recording, name), np.nan)
+
+
+def _ribbon(axis: Any, recording: Recording) -> list[str]:
+    """Draw the states of the chart over time and return those that occurred."""
+    axis.set_yticks([])
+    axis.grid(False)
+    axis.spines["left"].set_visible(False)
+    axis.set_xlabel("time [s]")
+    t = recording.t
+    states = recording.states("controller.phase")
+    phases = _signal(recording, "controller.phase")
+    edges = [0, *(row for row, _, _ in phase_changes(recording)), len(t) - 1]
+    names: dict[str, None] = {}
+    for first, last in zip(edges, edges[1:], strict=False):
+        value = phases[first]
+        name = states.get(int(value), f"{value:g}") if math.isfinite(value) else "unknown"
+        names[name] = None
+        axis.axvspan(t[first], t[last], color=_colour(name), linewidth=0)
+    axis.set_xlim(t[0], t[-1])
+    axis.set_ylim(0.0, 1.0)
+    axis.set_title("states of the chart", fontsize=8.5, fontweight="normal")
+    return list(names)
+
+
+def _colour(name: str) -> str:
+    return PHASE_COLOURS.get(name) or SPARE_COLOURS[sum(map(ord, name)) % len(SPARE_COLOURS)]
+
+
+def _legend(axis: Any, names: list[str]) -> None:
+    axis.axis("off")
+    handles = [Patch(color=_colour(name), label=name.lower().replace("_", " ")) for name in names]
+    axis.legend(handles=handles, loc="center left", ncols=5, fontsize=8, borderaxespad=0.0, handlelength=1.2)
+
+
+def _plan(axis: Any, recording: Recording, scenario: Scenario) -> None:
+    axis.set_title("(d) path of the rear-axle midpoint, outline along it")
+    axis.set_aspect("equal", adjustable="datalim")
+    axis.set_xlabel("x [m]")
+    axis.set_ylabel("y [m]")
+    vehicle = recording.parameters_of("vehicle")
+    car = Car.of(vehicle)
+    for box in boxes(vehicle):
+        axis.add_patch(Polygon(box.outline(), facecolor="#c4c8ce", edgecolor=GREY, linewidth=1.0))
+    if scenario.slot is not None:
+        _slot(axis, slot_box(scenario.slot))
+    target = pose_of(recording.parameters_of("controller"), "target")
+    if target is not None:
+        axis.plot(*place(car.outline(), *target).T, color=GREEN, linewidth=1.4, linestyle=(0, (4, 2)), label="target")
+    planned = _planned(recording)
+    if len(planned):
+        axis.plot(*planned.T, color=RUST, linewidth=1.6, linestyle=(0, (5, 2)), label="planned path", zorder=4)
+    x, y, heading = (_signal(recording, f"vehicle.pose.{name}") for name in ("x", "y", "heading"))
+    _outlines(axis, car, x, y, heading)
+    axis.plot(x, y, color=BLUE, linewidth=1.8, label="driven path", zorder=5)
+    _wheels(axis, recording, car, (x[-1], y[-1], heading[-1]))
+    axis.legend(loc="best", fontsize=8)
+
+
+def _slot(axis: Any, box: Box) -> None:
+    axis.add_patch(Polygon(box.outline(), facecolor="#eef1f4", edgecolor=GREY, linewidth=1.4, label="slot", zorder=0))
+
+
+def _planned(recording: Recording) -> Array:
+    """Return the last path that was planned, (n, 2) [m]."""
+    lengths = recording.signals.get("controller.path.segments[1].length", np.zeros(0))
+    rows = np.flatnonzero(lengths > 0.0)
+    return sample_path(recording.values_at("controller", int(rows[-1]))) if len(rows) else np.empty((0, 2))
+
+
+def _outlines(axis: Any, car: Car, x: Array, y: Array, heading: Array) -> None:
+    """Draw the car at equal distances along its way, later ones darker."""
+    way = np.concatenate([[0.0], np.cumsum(np.nan_to_num(np.hypot(np.diff(x), np.diff(y))))])
+    if way[-1] <= 0.0:
+        rows = np.array([len(x) - 1])
+    else:
+        rows = np.unique(np.searchsorted(way, np.linspace(0.0, way[-1], OUTLINES)).clip(0, len(x) - 1))
+        rows[-1] = len(x) - 1
+    for number, row in enumerate(rows):
+        share = (number + 1) / len(rows)
+        last = number == len(rows) - 1
+        points = place(car.outline(), x[row], y[row], heading[row])
+        face = (0.145, 0.388, 0.659, 0.16 if last else 0.0)
+        edge = (0.145, 0.388, 0.659, 1.0 if last else 0.12 + 0.4 * share)
+        axis.add_patch(Polygon(points, facecolor=face, edgecolor=edge, linewidth=1.8 if last else 0.9, zorder=3))
+    axis.autoscale_view()
+
+
+def _wheels(axis: Any, recording: Recording, car: Car, pose: tuple[float, float, float]) -> None:
+    steered = float(_signal(recording, "vehicle.front_wheel_angle")[-1])
+    half_length, half_width = WHEEL_RADIUS, 0.5 * WHEEL_WIDTH
+    corners = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]]) * np.array([half_length, half_width])
+    for x, y in car.wheels():
+        local = place(corners, x, y, steered if x > 0.0 and math.isfinite(steered) else 0.0)
+        axis.add_patch(Polygon(place(local, *pose), facecolor=INK, linewidth=0, zorder=6))

@@ -1,0 +1,84 @@
+"""What is printed: tables and a progress bar on a terminal, plain text elsewhere. NO_COLOR is respected."""
+
+import math
+import sys
+from typing import TextIO
+
+from rich.console import Console
+from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeElapsedColumn
+from rich.table import Table
+
+from orchestrator.master import End
+from orchestrator.quantities import DEGREE
+from orchestrator.summary import Summary
+
+PARKED, NOT_PARKED, BAD_INPUT, INTERRUPTED = 0, 1, 2, 130
+"""Exit codes."""
+COLOURS = {"parked": "bold green", "not_parked": "bold yellow", "failed": "bold red", "aborted": "bold red"}
+PROGRESS_PERIOD_NS = 500_000_000
+
+
+def console(stream: TextIO | None = None) -> Console:
+    """Return a console that writes colours only to a terminal that wants them."""
+    stream = stream or sys.stdout
+    return Console(file=stream, highlight=False, soft_wrap=not stream.isatty())
+
+
+class ProgressBar:
+    """Observer that shows simulated time on standard error, if that is a terminal."""
+
+    def __init__(self, title: str, stop_ns: int) -> None:
+        columns = (TextColumn(title), BarColumn(), TaskProgressColumn(), TextColumn("{task.completed:.0f} s"))
+        self._progress = Progress(*columns, TimeElapsedColumn(), console=console(sys.stderr), transient=True)
+        self._task = self._progress.add_task(title, total=stop_ns / 1e9)
+        self._next_ns = 0
+        self._progress.start()
+
+    def exchanged(self, t_ns: int) -> None:
+        """Move the bar twice per simulated second."""
+        if t_ns >= self._next_ns:
+            self._next_ns = t_ns + PROGRESS_PERIOD_NS
+            self._progress.update(self._task, completed=t_ns / 1e9)
+
+    def closed(self, end: End) -> None:
+        """Remove the bar."""
+        self._progress.stop()
+
+
+def print_summary(summary: Summary, title: str, expected: str) -> None:
+    """Print outcome, numbers and checks of a run."""
+    out = console()
+    style = COLOURS[summary.outcome]
+    wanted = "" if summary.outcome == expected else f"  (expected: {expected})"
+    out.print(f"[bold]{summary.scenario}[/]  {title}".rstrip(), markup=True)
+    out.print(f"[{style}]{summary.outcome}[/]: {summary.reason}{wanted}")
+    final = summary.final
+    out.print(
+        f"{summary.duration:.2f} s, {summary.shifts} shifts, up to {summary.max_speed:.2f} m/s; at the end "
+        f"{final.lateral_error * 100:+.1f} cm lateral, {final.longitudinal_error * 100:+.1f} cm longitudinal, "
+        f"{final.heading_error / DEGREE:+.2f} deg, wheel {final.steering_wheel_angle / DEGREE:+.1f} deg"
+    )
+    if summary.checks:
+        out.print(_checks(summary, out))
+    out.print(f"{summary.wall_time:.2f} s of computing, {summary.real_time_factor:.0f} times real time")
+
+
+def _checks(summary: Summary, out: Console) -> Table:
+    table = Table(box=None if not out.is_terminal else Table().box, pad_edge=out.is_terminal)
+    for name, justify in (("check", "left"), ("value", "right"), ("limit", "right"), ("margin", "right"), ("", "left")):
+        table.add_column(name, justify=justify)  # type: ignore[arg-type]
+    table.add_column("source")
+    for check in summary.checks:
+        verdict = "[green]pass[/]" if check.passed else "[red]MISS[/]" if check.required else "[yellow]miss[/]"
+        numbers = [readable(number, check.unit) for number in (check.value, check.limit, check.margin)]
+        table.add_row(check.id, *numbers, verdict, check.source)
+    return table
+
+
+def readable(value: float, unit: str) -> str:
+    """Return a number for people: angles in degrees, the rest in SI."""
+    if not math.isfinite(value):
+        return str(value)
+    if unit.startswith("rad"):
+        return f"{value / DEGREE:.2f} {unit.replace('rad', 'deg')}"
+    return f"{value:.3f} {unit}" if unit != "1" else f"{value:g}"

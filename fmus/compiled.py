@@ -18,6 +18,7 @@ from numba import types
 from numba.core.errors import NumbaError
 from numba.extending import register_jitable
 
+from fmus.compiled_types import install
 from fmus.flat_entry import Entries, entries
 from fmus.sources import MODELKIT_FILES, load
 from modelkit.model import Model
@@ -31,6 +32,7 @@ _done: set[str] = set()
 
 def make_compilable(package: ModuleType) -> None:
     """Let compiled code call every function of ``package`` and of modelkit's model files."""
+    install()
     for name in (*MODELKIT_FILES, *(module.__name__ for module in modules(package))):
         if name not in _done:
             _done.add(name)

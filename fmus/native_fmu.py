@@ -93,7 +93,7 @@ def _text(text: str) -> str:
 def _guid(model: Model, platforms: list[str]) -> str:
     """Return a GUID that depends on the model's sources, the FMI side, the platforms and the makers of the code."""
     here = Path(__file__).parent
-    makers = ("compiled.py", "flat_entry.py", "native_ir.py", "native_fmu.py", "platforms.py", "description.py")
+    makers = ("compiled.py", "compiled_types.py", "flat_entry.py", "native_ir.py", "native_fmu.py", "platforms.py", "description.py")
     files = {f"native/{name}": (NATIVE / name).read_bytes() for name in (*SOURCES, *HEADERS)}
     files |= {name: (here / name).read_bytes() for name in makers}
     files["model"] = source_hash(model).encode()

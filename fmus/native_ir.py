@@ -20,7 +20,7 @@ from modelkit.model import Model
 CACHE = Path(__file__).parent / "dist" / "cache"
 ENTRIES = ("model_initialize", "model_step")
 LIBM = frozenset(
-    "acos asin atan atan2 ceil cos exp fabs floor fmax fmin log pow round rint sin sqrt tan tanh trunc sinh cosh".split()
+    ["acos", "asin", "atan", "atan2", "ceil", "cos", "exp", "fabs", "floor", "fmax", "fmin", "log", "pow", "round", "rint", "sin", "sqrt", "tan", "tanh", "trunc", "sinh", "cosh"]
 )
 """Functions of the C library that a model may call."""
 
@@ -41,7 +41,7 @@ def intermediate_code(model: Model) -> str:
 
 def _own_sources() -> str:
     here = Path(__file__).parent
-    return "".join((here / name).read_text() for name in ("compiled.py", "flat_entry.py"))
+    return "".join((here / name).read_text() for name in ("compiled.py", "compiled_types.py", "flat_entry.py"))
 
 
 def _run_numba(model: Model) -> str:
@@ -52,6 +52,7 @@ def _run_numba(model: Model) -> str:
         "NUMBA_CPU_NAME": "generic",
         "NUMBA_CPU_FEATURES": "",
         "NUMBA_DISABLE_INTEL_SVML": "1",
+        "NUMBA_OPT": "1",
     }
     command = [sys.executable, "-m", "fmus.compiled", reference(model)]
     done = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)

@@ -37,7 +37,7 @@ def make_compilable(package: ModuleType) -> None:
         if name not in _done:
             _done.add(name)
             for function in functions(importlib.import_module(name)):
-                register_jitable(error_model="numpy")(function)
+                register_jitable(error_model="numpy", forceinline=True)(function)
 
 
 def modules(package: ModuleType) -> Iterator[ModuleType]:

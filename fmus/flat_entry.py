@@ -69,13 +69,14 @@ def _stores(model: Model) -> list[str]:
     return [
         f"    {array}[{place}] = {source}"
         for cls, name, array in groups
-        for place, source in enumerate(_scalars(cls(), name))
+        for place, source in enumerate(scalars(cls(), name))
     ]
 
 
-def _scalars(shape: Any, source: str) -> list[str]:
+def scalars(shape: Any, source: str) -> list[str]:
+    """Return the expression of every scalar of ``shape``, which is called ``source``, in the order of ``variables``."""
     if not isinstance(shape, tuple):
         return [source]
     fields = getattr(shape, "_fields", None)
     names = [f".{field}" for field in fields] if fields else [f"[{place}]" for place in range(len(shape))]
-    return [scalar for name, item in zip(names, shape, strict=True) for scalar in _scalars(item, source + name)]
+    return [scalar for name, item in zip(names, shape, strict=True) for scalar in scalars(item, source + name)]

@@ -20,7 +20,7 @@ EXAMPLES = """examples:
   apa run my.yaml --set vehicle.body=double_track --set "vehicle.steering.rate_limit=105 deg/s"
   apa run guo2015-case4 --set stop_time=30 --fmus none --out /tmp/trial --json
 
-writes DIR/run.mcap, DIR/summary.json and DIR/overview.png
+writes DIR/run.mcap, DIR/summary.json, DIR/overview.png and DIR/report.html (the replay)
 """
 
 
@@ -36,7 +36,7 @@ def add_parser(subparsers: Any) -> argparse.ArgumentParser:
     )
     parser.add_argument("--out", type=Path, metavar="DIR", help="where results go (default: runs/NAME)")
     parser.add_argument("--json", action="store_true", help="print summary.json instead of the table")
-    parser.add_argument("--no-figure", action="store_true", help="do not draw overview.png")
+    parser.add_argument("--no-figure", action="store_true", help="write neither overview.png nor report.html")
     return parser
 
 
@@ -51,6 +51,11 @@ def run(arguments: argparse.Namespace) -> int:
         from orchestrator.figure import draw
 
         draw(ran.recording, summary, scenario, out / "overview.png")
+    if not arguments.no_figure and len(ran.recording.t) > 1:
+        from orchestrator.report.replay import write_replay
+        from orchestrator.report.words import read_words
+
+        write_replay(out / "report.html", ran.recording, summary, read_words(out / "run.mcap"))
     if arguments.json:
         print(text)
     else:

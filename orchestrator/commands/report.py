@@ -1,0 +1,45 @@
+"""``apa report``: the replay page of a run, one HTML file that needs nothing else."""
+
+import argparse
+from pathlib import Path
+from typing import Any
+
+from orchestrator.read_log import read_log
+from orchestrator.recording import Recording
+from orchestrator.report.replay import write_replay
+from orchestrator.report.words import read_words
+from orchestrator.scenario import Scenario
+from orchestrator.summary import summarize
+from orchestrator.terminal import PARKED
+
+EXAMPLES = """examples:
+  apa report runs/guo2015-case4/run.mcap                  writes runs/guo2015-case4/report.html
+  apa report run.mcap --out /tmp/page.html
+
+The page plays the run in any browser, offline: top view, curves, states, checks, parameters.
+"""
+
+
+def add_parser(subparsers: Any) -> argparse.ArgumentParser:
+    """Add the command."""
+    parser: argparse.ArgumentParser = subparsers.add_parser("report", help="replay page of a run", epilog=EXAMPLES)
+    parser.add_argument("log", type=Path, metavar="RUN.mcap", help="log of a run")
+    parser.add_argument("--out", type=Path, metavar="FILE", help="the page (default: report.html beside the log)")
+    return parser
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Write the page. Returns 0."""
+    log: Path = arguments.log
+    out: Path = arguments.out or log.parent / "report.html"
+    recording = read_log(log)
+    scenario = scenario_of(recording, log)
+    out.parent.mkdir(parents=True, exist_ok=True)
+    write_replay(out, recording, summarize(recording, scenario, 0.0), read_words(log))
+    print(out)
+    return PARKED
+
+
+def scenario_of(recording: Recording, log: Path) -> Scenario:
+    """Return the scenario that a log carries; one with its name alone if it carries none."""
+    return Scenario(**{"name": log.stem, **recording.info.get("scenario", {}), "file": str(log)})

@@ -1,0 +1,54 @@
+"""One HTML file from a template and data: style, scripts and numbers inside, nothing fetched."""
+
+import base64
+import hashlib
+import html
+import re
+from pathlib import Path
+
+ROOM = Path(__file__).parent
+SCRIPTS = ("data.js", "show.js", "scene.js", "scene_parts.js", "timeline.js", "plots.js", "tables.js", "main.js")
+UPLOT = ROOM / "third_party" / "uplot"
+
+
+def page(title: str, data: str) -> str:
+    """Return the page; ``title`` is plain text, ``data`` comes from ``payload.Arrays.pack``."""
+    uplot = UPLOT / "uPlot.iife.min.js"
+    licence = (UPLOT / "LICENSE").read_text(encoding="utf-8").strip()
+    library = f"/*!\nuPlot {(UPLOT / 'VERSION').read_text(encoding='utf-8').strip()}\n{licence}\n*/\n{_read(uplot)}"
+    own = "\n".join(_read(ROOM / "template" / name) for name in SCRIPTS)
+    script = f'(() => {{\n"use strict";\n{own}\n}})();\n'
+    parts = {
+        "TITLE": html.escape(title),
+        "POLICY": policy([library, script]),
+        "STYLE": f"{_read(UPLOT / 'uPlot.min.css')}\n{_style()}",
+        "DATA": data,
+        "LIBRARY": library,
+        "SCRIPT": script,
+    }
+    return re.sub(r"@([A-Z]+)@", lambda match: parts[match[1]], _read(ROOM / "template" / "page.html"))
+
+
+def policy(scripts: list[str]) -> str:
+    """Return a content security policy: these scripts and inline style only, and no network at all."""
+    hashes = " ".join(
+        f"'sha256-{base64.b64encode(hashlib.sha256(item.encode()).digest()).decode()}'" for item in scripts
+    )
+    return f"default-src 'none'; script-src {hashes}; style-src 'unsafe-inline'; img-src data:; form-action 'none'"
+
+
+def _style() -> str:
+    """Return the style sheet; the dark colours also hold where the system asks for dark."""
+    style = _read(ROOM / "template" / "style.css")
+    dark = re.search(r':root\[data-theme="dark"\] \{([^}]*)\}', style)
+    assert dark is not None
+    small = "".join(
+        f':root[data-theme="auto"] {selector} {{{body}}}'
+        for selector, body in re.findall(r':root\[data-theme="dark"\] ([^{}]+?) \{([^}]*)\}', style)
+    )
+    automatic = f'@media (prefers-color-scheme: dark) {{ :root[data-theme="auto"] {{{dark[1]}}} {small} }}'
+    return style.replace("@DARK@", automatic)
+
+
+def _read(path: Path) -> str:
+    return path.read_text(encoding="utf-8")

@@ -1,0 +1,52 @@
+"""Which curves a page shows at first; every other signal can be added on the page."""
+
+from typing import Any
+
+import numpy as np
+
+from orchestrator.recording import Recording
+from orchestrator.summary import Check
+
+DEGREE = 0.017453292519943295
+GROUPS: tuple[tuple[str, str, float, tuple[str, ...]], ...] = (
+    ("Speed", "m/s", 0.2, ("vehicle.speed", "controller.advised_speed", "controller.speed_request")),
+    (
+        "Steering wheel",
+        "rad",
+        5.0 * DEGREE,
+        ("vehicle.steering_wheel_angle", "controller.steering_wheel_request"),
+    ),
+    ("Position", "m", 0.5, ("vehicle.pose.x", "vehicle.pose.y")),
+    ("Heading", "rad", 5.0 * DEGREE, ("vehicle.pose.heading", "controller.reference.heading")),
+    ("Lateral error", "m", 0.01, ("controller.lateral_error",)),
+    ("Heading error", "rad", 0.5 * DEGREE, ("controller.heading_error",)),
+    ("Clearance", "m", 0.2, ("vehicle.clearance",)),
+)
+"""Title, unit, smallest span of the y axis, signals."""
+
+
+def plots_of(recordings: list[Recording], checks: list[Check], more: list[str]) -> list[dict[str, Any]]:
+    """Return the plots for ``template/plots.js``: groups that have something to show, then ``more`` one by one."""
+    plots = []
+    for title, unit, least, names in GROUPS:
+        signals = [name for name in names if any(_alive(item, name) for item in recordings)]
+        if signals:
+            plots.append(_plot(title, unit, least, signals, checks))
+    shown = {name for plot in plots for name in plot["signals"]}
+    for name in more:
+        if name not in shown:
+            variable = next((item.variables[name] for item in recordings if name in item.signals), None)
+            if variable is not None:
+                shown.add(name)
+                plots.append(_plot(name, variable.signal.unit, 0.0, [name], checks))
+    return plots
+
+
+def _plot(title: str, unit: str, least: float, signals: list[str], checks: list[Check]) -> dict[str, Any]:
+    limits: list[float] = []
+    return {"title": title, "unit": unit, "least": least, "signals": signals, "limits": limits}
+
+
+def _alive(recording: Recording, name: str) -> bool:
+    values = recording.signals.get(name)
+    return values is not None and len(values) > 0 and bool(np.any(values != 0.0))

@@ -1,0 +1,104 @@
+"""The replay page of one run."""
+
+from pathlib import Path
+from typing import Any
+
+from orchestrator.quantities import DEGREE
+from orchestrator.recording import Recording
+from orchestrator.report.page import page
+from orchestrator.report.payload import Arrays
+from orchestrator.report.plots import plots_of
+from orchestrator.report.run_data import ribbons_of, run_data
+from orchestrator.report.words import Line
+from orchestrator.summary import Check, Summary
+from orchestrator.terminal import readable
+
+MOST_ROWS = (2400, 1200, 600)
+LARGEST_PAGE = 1_000_000
+KEYS = (
+    "Keys: space plays, arrows step 0.1 s (1 s with shift), Home, End, + and - change speed, F fits, C follows. "
+    "Click a plot to go there, drag to zoom, double-click to reset."
+)
+KINDS = {"parked": "good", "not_parked": "warn", "failed": "bad", "aborted": "bad"}
+
+
+def write_replay(path: Path, recording: Recording, summary: Summary, words: list[Line]) -> None:
+    """Write the page of a run to ``path``; fewer instants are kept if it would pass 1 MB."""
+    path.write_text(replay_page(recording, summary, words), encoding="utf-8")
+
+
+def replay_page(recording: Recording, summary: Summary, words: list[Line]) -> str:
+    """Return the page of a run."""
+    text = ""
+    for most in MOST_ROWS:
+        text = _page(recording, summary, words, most)
+        if len(text.encode()) < LARGEST_PAGE:
+            break
+    return text
+
+
+def _page(recording: Recording, summary: Summary, words: list[Line], most: int) -> str:
+    arrays = Arrays()
+    scenario = recording.info.get("scenario", {})
+    title = str(scenario.get("title") or summary.scenario)
+    run = run_data(recording, arrays, words, label="", most=most, keep=[check.t for check in summary.checks])
+    run["checks"] = check_rows(summary.checks)
+    header = {
+        "title": title,
+        "subtitle": " \u00b7 ".join(str(item) for item in (summary.scenario, scenario.get("description")) if item),
+        "verdict": verdict(summary),
+        "facts": facts(summary),
+        "plots": plots_of([recording], summary.checks, []),
+        "ribbons": ribbons_of([recording]),
+        "runs": [run],
+        "foot": foot(recording, run["rows"]),
+    }
+    return page(title, arrays.pack(header))
+
+
+def verdict(summary: Summary) -> dict[str, str]:
+    """Return the outcome in words and its colour."""
+    words = summary.outcome.replace("_", " ")
+    why = summary.reason.replace("_", " ")
+    text = words if summary.outcome == "parked" else f"{words}: {why}"
+    return {"text": text[:60], "kind": KINDS[summary.outcome]}
+
+
+def facts(summary: Summary) -> list[list[str]]:
+    """Return the few numbers that stand above everything else."""
+    final = summary.final
+    return [
+        ["Duration", f"{summary.duration:.2f} s"],
+        ["Manoeuvres", str(summary.shifts)],
+        ["Fastest", f"{summary.max_speed * 3.6:.1f} km/h"],
+        ["Lateral", f"{final.lateral_error * 100:+.1f} cm"],
+        ["Longitudinal", f"{final.longitudinal_error * 100:+.1f} cm"],
+        ["Heading", f"{final.heading_error / DEGREE:+.2f}\u00b0"],
+    ]
+
+
+def check_rows(checks: list[Check]) -> list[dict[str, Any]]:
+    """Return the checks as the page shows them: numbers with their unit."""
+    return [
+        {
+            "id": check.id,
+            "passed": check.passed,
+            "required": check.required,
+            "value_text": readable(check.value, check.unit),
+            "limit_text": readable(check.limit, check.unit),
+            "margin_text": readable(check.margin, check.unit),
+            "t": check.t,
+            "source": check.source,
+        }
+        for check in checks
+    ]
+
+
+def foot(recording: Recording, rows: list[Any]) -> str:
+    """Return where the page's numbers come from."""
+    version = recording.info.get("versions", {}).get("apa-cosim", "")
+    kept, all_rows, deviation = rows
+    return (
+        f"apa-cosim {version}. {kept} of {all_rows} instants shown, off by at most {100 * deviation:.2g} % of a "
+        f"signal's range; states change at their exact times. {KEYS}"
+    )

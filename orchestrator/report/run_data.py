@@ -1,0 +1,133 @@
+"""A recording as the data of a page: thinned signals, paths, surroundings, parameters, provenance."""
+
+from typing import Any
+
+import numpy as np
+
+from modelkit.variables import Variable, variables
+from orchestrator.geometry import sample_path
+from orchestrator.models import MODELS
+from orchestrator.recording import Recording
+from orchestrator.report.payload import Arrays
+from orchestrator.report.still import Point, origin_of, still_of
+from orchestrator.report.thinning import thin
+from orchestrator.report.words import Line
+from orchestrator.slave import Array
+
+CHART = "controller.phase"
+RIBBONS = (CHART, "controller.prompt", "vehicle.gear", "controller.reason")
+MOST_PATHS = 40
+
+
+def run_data(
+    recording: Recording,
+    arrays: Arrays,
+    words: list[Line],
+    *,
+    label: str,
+    most: int,
+    keep: list[float],
+    origin: Point | None = None,
+) -> dict[str, Any]:
+    """Return one run for the page; its arrays go to ``arrays``. Rows at the times ``keep`` [s] stay."""
+    t = recording.t
+    lines = [values for name, values in recording.signals.items() if not _held(recording.variables[name])]
+    steps = [values for name, values in recording.signals.items() if _held(recording.variables[name])]
+    rows = [int(np.clip(np.searchsorted(t, moment), 0, len(t) - 1)) for moment in keep]
+    thinned = thin(t, lines, steps, rows, most)
+    origin = origin or origin_of(recording)
+    return {
+        "label": label,
+        "time": arrays.add(t[thinned.rows]),
+        "rows": [len(thinned.rows), len(t), thinned.deviation],
+        "signals": {name: _signal(recording, name, thinned.rows, arrays) for name in recording.signals},
+        "paths": _paths(recording, arrays, origin),
+        "scene": still_of(recording, origin),
+        "chart": CHART if CHART in recording.signals else None,
+        "log": [line._asdict() for line in words],
+        "parameters": _parameters(recording),
+        "provenance": _provenance(recording),
+    }
+
+
+def ribbons_of(recordings: list[Recording]) -> list[str]:
+    """Return the modes that make ribbons: the chart first, then those that change."""
+    chosen = []
+    for name in RIBBONS:
+        changing = [item for item in recordings if name in item.signals and np.ptp(item.signals[name]) != 0.0]
+        if changing or (name == CHART and any(CHART in item.signals for item in recordings)):
+            chosen.append(name)
+    return chosen
+
+
+def _held(variable: Variable) -> bool:
+    return variable.kind is not float
+
+
+def _signal(recording: Recording, name: str, rows: np.ndarray[Any, Any], arrays: Arrays) -> dict[str, Any]:
+    variable, values = recording.variables[name], recording.signals[name]
+    result: dict[str, Any] = {"unit": variable.signal.unit, "text": variable.signal.text}
+    if _held(variable):
+        result["held"] = True
+    if variable.signal.unit == "rad" and name.endswith("heading"):
+        result["turn"] = True
+    if recording.states(name):
+        result["states"] = recording.states(name)
+    if len(values) and np.isfinite(values[0]) and (values == values[0]).all():
+        return {**result, "c": float(values[0])}
+    finite = values[np.isfinite(values)]
+    offset = (
+        0.0 if not len(finite) or np.abs(finite).max() < 1e3 else float(np.round(0.5 * (finite.min() + finite.max())))
+    )
+    return {**result, "o": offset, "a": arrays.add(values[rows] - offset)}
+
+
+def _paths(recording: Recording, arrays: Arrays, origin: Point) -> list[dict[str, Any]]:
+    """Return the planned paths with the time from which each held; the last ones if there were many."""
+    names = [name for name in recording.signals if name.startswith("controller.path.")]
+    if not names or not len(recording.t):
+        return []
+    table = np.column_stack([recording.signals[name] for name in names])
+    changes = np.flatnonzero((table[1:] != table[:-1]).any(axis=1) & ~np.isnan(table[1:]).any(axis=1)) + 1
+    found = []
+    for row in [0, *changes.tolist()][-MOST_PATHS:]:
+        points: Array = sample_path(recording.values_at("controller", row))
+        if len(points):
+            x, y = arrays.add(points[:, 0] - origin[0]), arrays.add(points[:, 1] - origin[1])
+            found.append({"t": float(recording.t[row]), "x": x, "y": y})
+    return found
+
+
+def _parameters(recording: Recording) -> list[dict[str, Any]]:
+    """Return every parameter with its value, and whether it differs from the default."""
+    starts = {
+        f"{owner}.{item.name}": float(item.start) for owner, model in MODELS.items() for item in variables(model.params)
+    }
+    rows = []
+    for name, value in recording.parameters.items():
+        signal, states = recording.variables[name].signal, recording.states(name)
+        changed = name in starts and value != starts[name]
+        state = states.get(int(value)) if np.isfinite(value) else None
+        rows.append(
+            {"name": name, "value": value, "unit": signal.unit, "text": signal.text, "state": state, "changed": changed}
+        )
+    return rows
+
+
+def _provenance(recording: Recording) -> list[list[str]]:
+    """Return the run's provenance as lines of key and text."""
+    lines: list[list[str]] = []
+    for key, value in recording.info.items():
+        _flatten(str(key), value, lines)
+    return lines
+
+
+def _flatten(key: str, value: Any, lines: list[list[str]]) -> None:
+    if isinstance(value, dict) and value:
+        for name, item in value.items():
+            _flatten(f"{key}.{name}", item, lines)
+    elif isinstance(value, list) and value and isinstance(value[0], dict):
+        for number, item in enumerate(value, start=1):
+            _flatten(f"{key}[{number}]", item, lines)
+    elif value not in (None, "", [], {}):
+        lines.append([key, str(value)])

@@ -1,0 +1,173 @@
+// Puts the page together: one clock for the view, the ribbons and the plots.
+
+const SPEEDS = [0.1, 0.25, 0.5, 1, 2, 4, 8, 16];
+
+class Player {
+  constructor(page) {
+    this.page = page;
+    this.duration = Math.max(...page.runs.map((run) => run.duration));
+    this.t = 0;
+    this.speed = 1;
+    this.playing = false;
+    const seek = (t) => { this.seek(t); };
+    this.scene = new Scene(page, $("view"));
+    this.timeline = new Timeline(page, seek);
+    this.plots = new Plots(page, $("plots"), seek);
+    for (const item of SPEEDS) $("speed").append(element("option", { value: item }, `${item}\u00d7`));
+    this.setSpeed(1);
+    $("play").addEventListener("click", () => this.toggle());
+    $("home").addEventListener("click", () => this.seek(0));
+    $("end").addEventListener("click", () => this.seek(this.duration));
+    $("speed").addEventListener("change", (event) => this.setSpeed(Number(event.target.value)));
+  }
+
+  setSpeed(speed) { this.speed = speed; $("speed").value = String(speed); }
+
+  faster(way) { this.setSpeed(SPEEDS[Math.min(SPEEDS.length - 1, Math.max(0, SPEEDS.indexOf(this.speed) + way))]); }
+
+  seek(t) {
+    this.t = Math.min(this.duration, Math.max(0, t));
+    this.show();
+  }
+
+  toggle() { if (this.playing) this.pause(); else this.play(); }
+
+  play() {
+    if (this.t >= this.duration) this.t = 0;
+    this.playing = true;
+    $("play").textContent = "Pause";
+    let last = null;
+    const frame = (now) => {
+      if (!this.playing) return;
+      if (last !== null) this.t += (now - last) / 1000 * this.speed;
+      last = now;
+      if (this.t >= this.duration) { this.t = this.duration; this.pause(); }
+      this.show();
+      if (this.playing) requestAnimationFrame(frame);
+    };
+    requestAnimationFrame(frame);
+  }
+
+  pause() { this.playing = false; $("play").textContent = "Play"; }
+
+  show() {
+    this.scene.draw(this.t);
+    this.timeline.show(this.t);
+    this.plots.show(this.t);
+    $("clock").textContent = `${this.t.toFixed(2)} / ${this.duration.toFixed(2)} s`;
+    headsUp(this.page.runs[0], this.t);
+  }
+
+  paint() {
+    this.timeline.paint();
+    for (const node of document.querySelectorAll(".details .chip i")) node.style.background = stateColor(node.parentNode.dataset.state, Number(node.parentNode.dataset.value));
+    this.plots.paint();
+    this.show();
+  }
+}
+
+// What driver and controller do at this moment, over the top view.
+function headsUp(run, t) {
+  const at = Math.min(t, run.duration), box = $("hud");
+  const speed = run.at("vehicle.speed", at), wheel = run.at("vehicle.steering_wheel_angle", at);
+  const lines = [];
+  for (const name of ["controller.phase", "controller.prompt", "vehicle.gear"])
+    if (run.signals[name]) lines.push([name.split(".")[1], run.stateName(name, run.at(name, at)), run.at(name, at)]);
+  const cells = lines.filter(([kind, state]) => !(kind === "prompt" && state === "NONE")).map(([kind, state, value]) => {
+    const chip = element("span", { class: `tag ${kind}` }, kind === "prompt" ? `driver: ${words(state)}` : words(state));
+    if (kind === "phase") chip.style.background = stateColor(state, value);
+    return chip;
+  });
+  cells.push(element("span", { class: "tag plain" }, `${digits(Math.round(speed * 36) / 10)} km/h`), element("span", { class: "tag plain" }, `wheel ${digits(Math.round(wheel * 180 / Math.PI))}\u00b0`));
+  box.replaceChildren(...cells);
+}
+
+function headline(page) {
+  document.title = page.title;
+  $("title").textContent = page.title;
+  $("subtitle").textContent = page.subtitle;
+  $("verdict").textContent = page.verdict.text;
+  $("verdict").classList.add(page.verdict.kind);
+  for (const [key, value] of page.facts) $("facts").append(element("div", {}, element("dt", {}, key), element("dd", {}, value)));
+  $("foot").textContent = page.foot;
+}
+
+function themes(player) {
+  const root = document.documentElement, dark = matchMedia("(prefers-color-scheme: dark)");
+  const isDark = () => (root.dataset.theme === "auto" ? dark.matches : root.dataset.theme === "dark");
+  $("theme").addEventListener("click", () => { root.dataset.theme = isDark() ? "light" : "dark"; player.paint(); });
+  dark.addEventListener("change", () => player.paint());
+}
+
+function layers(player) {
+  for (const name of Object.keys(player.scene.layers)) {
+    if (name === "sensors" && !player.page.runs.some((run) => run.scene.sensors.length)) continue;
+    const box = element("input", { type: "checkbox", checked: true });
+    box.addEventListener("change", () => { player.scene.layers[name] = box.checked; player.show(); });
+    $("layers").append(element("label", {}, box, name));
+  }
+  const follow = () => {
+    player.scene.following = !player.scene.following;
+    $("follow").setAttribute("aria-pressed", String(player.scene.following));
+    if (!player.scene.following) player.scene.fit();
+    player.show();
+  };
+  const fit = () => { if (player.scene.following) follow(); player.scene.fit(); player.show(); };
+  $("zoom-in").addEventListener("click", () => player.scene.zoom(1.4));
+  $("zoom-out").addEventListener("click", () => player.scene.zoom(1 / 1.4));
+  $("fit").addEventListener("click", fit);
+  $("follow").addEventListener("click", follow);
+  return { f: fit, c: follow };
+}
+
+function keyboard(player, extra) {
+  const keys = {
+    " ": () => player.toggle(), ArrowLeft: (event) => player.seek(player.t - (event.shiftKey ? 1 : 0.1)), ArrowRight: (event) => player.seek(player.t + (event.shiftKey ? 1 : 0.1)),
+    Home: () => player.seek(0), End: () => player.seek(player.duration), "+": () => player.faster(1), "=": () => player.faster(1), "-": () => player.faster(-1), ...extra,
+  };
+  document.addEventListener("keydown", (event) => {
+    if (event.ctrlKey || event.metaKey || event.altKey || event.target.closest("input, select, textarea")) return;
+    if (event.key === " " && event.target.closest("button, summary, a")) return;
+    if (!keys[event.key]) return;
+    event.preventDefault();
+    keys[event.key](event);
+  });
+}
+
+function links(player) {
+  const go = (hash) => {
+    const match = /^#t=([\d.]+)$/.exec(hash);
+    if (!match) return false;
+    player.pause();
+    player.seek(Number(match[1]));
+    return true;
+  };
+  document.addEventListener("click", (event) => {
+    const link = event.target.closest("a.moment");
+    if (!link || !go(link.getAttribute("href"))) return;
+    event.preventDefault();
+    history.replaceState(null, "", link.getAttribute("href"));
+    $("scene").scrollIntoView({ block: "nearest" });
+  });
+  addEventListener("hashchange", () => go(location.hash));
+  return go(location.hash);
+}
+
+async function start() {
+  const page = await unpack($("data").textContent.trim());
+  headline(page);
+  fillTables(page);
+  const player = new Player(page);
+  themes(player);
+  keyboard(player, layers(player));
+  if (!links(player)) player.seek(0);
+  player.paint();
+  window.replay = player;
+  document.documentElement.dataset.ready = "yes";
+}
+
+start().catch((error) => {
+  $("notice").hidden = false;
+  $("notice").textContent = `This page cannot be shown: ${error.message}`;
+  throw error;
+});

@@ -1,0 +1,203 @@
+// What is drawn in the top view, piece by piece, from the ground up.
+
+function drawGround(scene) {
+  const g = scene.context;
+  const spacing = [0.5, 1, 2, 5, 10, 20, 50, 100].find((step) => step * scene.scale >= 34) || 200;
+  g.strokeStyle = color("grid");
+  g.lineWidth = 1;
+  g.beginPath();
+  const left = scene.middle[0] - scene.width / 2 / scene.scale, low = scene.middle[1] - scene.height / 2 / scene.scale;
+  for (let u = Math.ceil(left / spacing) * spacing; u < left + scene.width / scene.scale; u += spacing) {
+    const px = Math.round((u - left) * scene.scale) + 0.5;
+    g.moveTo(px, 0); g.lineTo(px, scene.height);
+  }
+  for (let v = Math.ceil(low / spacing) * spacing; v < low + scene.height / scene.scale; v += spacing) {
+    const py = Math.round(scene.height - (v - low) * scene.scale) + 0.5;
+    g.moveTo(0, py); g.lineTo(scene.width, py);
+  }
+  g.stroke();
+}
+
+function drawStill(scene, run) {
+  const g = scene.context, still = run.scene;
+  if (still.slot) {
+    scene.trace(still.slot, true);
+    g.fillStyle = color("slot");
+    g.fill();
+    g.strokeStyle = color("slot-line");
+    g.lineWidth = Math.max(1.5, 0.07 * scene.scale);
+    g.stroke();
+  }
+  for (const box of still.boxes) {
+    scene.trace(box, true);
+    g.fillStyle = color("box");
+    g.fill();
+    g.strokeStyle = color("box-line");
+    g.lineWidth = 1.5;
+    g.stroke();
+  }
+  g.lineWidth = Math.max(2, 0.12 * scene.scale);
+  g.strokeStyle = color("kerb");
+  for (const kerb of still.kerbs) { scene.trace(kerb); g.stroke(); }
+  if (still.target) {
+    const car = still.car;
+    scene.trace(rectangle(-car.rear, car.front, car.half).map(([u, v]) => moved(still.target, u, v)), true);
+    g.setLineDash([5, 5]);
+    g.lineWidth = 1.5;
+    g.strokeStyle = color("target");
+    g.stroke();
+    g.setLineDash([]);
+  }
+}
+
+function drawPaths(scene, run, number, t) {
+  const g = scene.context, [ox, oy] = run.scene.origin;
+  g.lineJoin = g.lineCap = "round";
+  const plan = run.paths.filter((path) => path.t <= t).pop() || run.paths[0];
+  if (scene.layers.planned && plan && number === 0) {
+    scene.trace(Array.from(plan.x, (x, i) => [x, plan.y[i]]));
+    g.setLineDash([7, 6]);
+    g.lineWidth = 2;
+    g.strokeStyle = color("planned");
+    g.stroke();
+    g.setLineDash([]);
+  }
+  if (scene.layers.trail) drawTrail(scene, run, number, t);
+  if (!scene.layers.driven) return;
+  const x = run.values("vehicle.pose.x"), y = run.values("vehicle.pose.y");
+  if (!x || !y) return;
+  const now = run.row(t), points = Array.from(x, (value, i) => [value - ox, y[i] - oy]);
+  g.lineWidth = 2;
+  g.strokeStyle = color("ahead");
+  scene.trace(points.slice(now));
+  g.stroke();
+  g.lineWidth = 3;
+  const name = scene.page.ribbons[0];
+  if (scene.page.runs.length > 1 || !name) {
+    g.strokeStyle = color(number ? "run-b" : "run-a");
+    scene.trace([...points.slice(0, now + 1), scene.poseAt(run, t)]);
+    g.stroke();
+    return;
+  }
+  for (const span of run.spans(name)) {
+    if (span.from > t) break;
+    const last = Math.min(run.row(span.to), now);
+    g.strokeStyle = stateColor(run.stateName(name, span.value), span.value);
+    scene.trace([...points.slice(run.row(span.from), last + 1), ...(last === now ? [scene.poseAt(run, t)] : [])]);
+    g.stroke();
+  }
+}
+
+// Outlines where the car was, at equal distances.
+function drawTrail(scene, run, number, t) {
+  const g = scene.context, car = run.scene.car;
+  if (!run.trail) {
+    run.trail = [];
+    let last = null;
+    for (const time of run.time) {
+      const pose = scene.poseAt(run, time);
+      if (!Number.isFinite(pose[0] + pose[1] + pose[2])) continue;
+      const far = last && Math.hypot(pose[0] - last[0], pose[1] - last[1]) + 1.5 * Math.abs(pose[2] - last[2]);
+      if (!last || far > 0.55) { run.trail.push([time, pose]); last = pose; }
+    }
+  }
+  g.lineWidth = 1;
+  g.strokeStyle = color(number ? "trail-b" : "trail");
+  for (const [time, pose] of run.trail) {
+    if (time > t) break;
+    scene.trace(rectangle(-car.rear, car.front, car.half).map(([u, v]) => moved(pose, u, v)), true);
+    g.stroke();
+  }
+}
+
+function drawRays(scene, run, t) {
+  const g = scene.context, pose = scene.poseAt(run, t);
+  for (const sensor of run.scene.sensors) {
+    const range = run.at(sensor.signal, t);
+    if (!Number.isFinite(range) || range <= 0) continue;
+    const seen = range < 0.999 * sensor.range, reach = Math.min(range, sensor.range);
+    const [x, y] = moved(pose, sensor.x, sensor.y);
+    const middle = scene.pixel(x, y), facing = -(scene.turn + pose[2] + sensor.heading);
+    g.beginPath();
+    g.moveTo(...middle);
+    g.arc(...middle, reach * scene.scale, facing - sensor.half, facing + sensor.half);
+    g.closePath();
+    g.fillStyle = color(seen ? "ray" : "ray-free");
+    g.fill();
+    if (!seen) continue;
+    g.beginPath();
+    g.arc(...middle, reach * scene.scale, facing - sensor.half, facing + sensor.half);
+    g.strokeStyle = color("ray-line");
+    g.lineWidth = 2;
+    g.stroke();
+  }
+}
+
+// Angles of the left and right front wheels for one equivalent angle (Ackermann).
+function wheelAngles(angle, car) {
+  const tangent = Math.tan(angle), track = car.half - 0.18;
+  return [Math.atan2(car.wheelbase * tangent, car.wheelbase + track * tangent), Math.atan2(car.wheelbase * tangent, car.wheelbase - track * tangent)];
+}
+
+function drawWheel(scene, pose, x, y, angle) {
+  const g = scene.context, [cx, cy] = moved(pose, x, y), heading = pose[2] + angle;
+  scene.trace(rectangle(-0.31, 0.31, 0.1).map(([u, v]) => moved([cx, cy, heading], u, v)), true);
+  g.fillStyle = color("tyre");
+  g.fill();
+}
+
+function drawCar(scene, run, number, t) {
+  const g = scene.context, car = run.scene.car, pose = scene.poseAt(run, t);
+  if (!Number.isFinite(pose[0] + pose[1] + pose[2])) return;
+  const angle = run.at("vehicle.front_wheel_angle", t), [right, left] = wheelAngles(Number.isFinite(angle) ? angle : 0, car);
+  body(scene, pose, car);
+  g.fillStyle = color(number ? "body-b" : "body");
+  g.fill();
+  g.strokeStyle = color(number ? "run-b" : "body-line");
+  g.lineWidth = 1.5;
+  g.stroke();
+  const side = car.half - 0.12;
+  for (const [x, y, turn] of [[0, -side, 0], [0, side, 0], [car.wheelbase, -side, right], [car.wheelbase, side, left]])
+    drawWheel(scene, pose, x, y, turn);
+  const at = (u, v) => moved(pose, u, v), length = car.front + car.rear, half = car.half;
+  const glass = (points) => { scene.trace(points.map(([u, v]) => at(u, v)), true); g.fillStyle = color("glass"); g.fill(); };
+  const nose = car.front - 0.27 * length, tail = -car.rear + 0.12 * length;
+  glass([[nose, -0.78 * half], [nose, 0.78 * half], [nose - 0.13 * length, 0.66 * half], [nose - 0.13 * length, -0.66 * half]]);
+  glass([[tail, -0.7 * half], [tail, 0.7 * half], [tail + 0.08 * length, 0.62 * half], [tail + 0.08 * length, -0.62 * half]]);
+  const reverse = run.stateName("vehicle.gear", run.at("vehicle.gear", t)) === "REVERSE";
+  const braking = run.at("vehicle.brake_pedal", t) > 0.01;
+  for (const flank of [-1, 1]) {
+    const lamp = (u, from, to, fill) => { scene.trace([[u, flank * from], [u, flank * to], [u + 0.12, flank * to], [u + 0.12, flank * from]].map(([a, b]) => at(a, b)), true); g.fillStyle = fill; g.fill(); };
+    lamp(car.front - 0.2, 0.55 * half, 0.85 * half, color("lamp"));
+    lamp(-car.rear + 0.06, 0.6 * half, 0.88 * half, braking ? "#ff3b30" : color("tail"));
+    if (reverse) lamp(-car.rear + 0.06, 0.38 * half, 0.56 * half, "#ffffff");
+  }
+  const [px, py] = scene.pixel(pose[0], pose[1]);
+  g.beginPath();
+  g.arc(px, py, 3, 0, 2 * Math.PI);
+  g.fillStyle = color(number ? "run-b" : "run-a");
+  g.fill();
+}
+
+// The body with rounded corners as the current path.
+function body(scene, pose, car) {
+  const g = scene.context, r = 0.28 * scene.scale;
+  const corners = rectangle(-car.rear, car.front, car.half).map(([u, v]) => scene.pixel(...moved(pose, u, v)));
+  g.beginPath();
+  g.moveTo((corners[3][0] + corners[0][0]) / 2, (corners[3][1] + corners[0][1]) / 2);
+  corners.forEach((corner, i) => g.arcTo(...corner, ...corners[(i + 1) % 4], r));
+  g.closePath();
+}
+
+function drawScale(scene) {
+  const g = scene.context, length = [0.5, 1, 2, 5, 10, 20, 50].find((step) => step * scene.scale >= 50) || 100;
+  const x = 16, y = scene.height - 16, end = x + length * scene.scale;
+  g.strokeStyle = g.fillStyle = color("ink-soft");
+  g.lineWidth = 1.5;
+  g.beginPath();
+  g.moveTo(x, y - 4); g.lineTo(x, y); g.lineTo(end, y); g.lineTo(end, y - 4);
+  g.stroke();
+  g.font = "12px system-ui, sans-serif";
+  g.textAlign = "left";
+  g.fillText(`${length} m`, end + 6, y + 1);
+}

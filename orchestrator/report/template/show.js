@@ -1,0 +1,46 @@
+// Small things everything else uses: elements, colours, numbers as people read them.
+
+const $ = (id) => document.getElementById(id);
+
+// An element with text; text never becomes markup.
+function element(tag, attributes = {}, ...children) {
+  const node = document.createElement(tag);
+  for (const [key, value] of Object.entries(attributes)) {
+    if (key === "on") for (const [event, handler] of Object.entries(value)) node.addEventListener(event, handler);
+    else if (key === "style") for (const [name, item] of Object.entries(value)) node.style.setProperty(name, item);
+    else if (value !== undefined && value !== null && value !== false) node.setAttribute(key, value === true ? "" : value);
+  }
+  for (const child of children.flat()) if (child !== null && child !== undefined) node.append(child);
+  return node;
+}
+
+const color = (name) => getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
+
+// SI unit -> what people read: [unit, factor].
+const DISPLAY = { rad: ["deg", 180 / Math.PI], "rad/s": ["deg/s", 180 / Math.PI], "rad/s2": ["deg/s\u00b2", 180 / Math.PI], "1": ["", 1], "m/s2": ["m/s\u00b2", 1] };
+const display = (unit) => DISPLAY[unit] || [unit, 1];
+
+function digits(value) {
+  if (value === null || !Number.isFinite(value)) return "\u2013";
+  if (value === 0) return "0";
+  const size = Math.abs(value);
+  if (size >= 1e6 || size < 1e-4) return value.toExponential(2).replace("-", "\u2212");
+  const text = value.toFixed(size >= 1000 ? 1 : size >= 100 ? 1 : size >= 10 ? 2 : size >= 1 ? 3 : 4);
+  return text.replace(/(\.\d*?)0+$/, "$1").replace(/\.$/, "").replace("-", "\u2212");
+}
+
+function quantity(value, unit) {
+  const [name, factor] = display(unit);
+  return value === null || value === undefined ? "\u2013" : `${digits(value * factor)}${name ? "\u2009" + name : ""}`;
+}
+
+const words = (name) => name.toLowerCase().replaceAll("_", " ").replace(/\bq(\d)/g, "Q$1");
+
+// Names of states -> colour; the same name has the same colour everywhere on the page.
+const NAMED = { STANDBY: "idle", OFF: "idle", NONE: "idle", PARK: "idle", NEUTRAL: "idle", PARKED: "good", PARKING_FINISH: "good", FAILED: "bad", FAIL: "bad",
+  TAKEOVER: "warn", TAKE_OVER: "warn", STOP: "stop", SLOW_DOWN: "warn", FORWARD: "s1", DRIVE: "s1", REVERSE: "s0", PATH_TRACKING: "s0", PRE_STEER: "s6", STRAIGHTEN: "s4",
+  TO_Q2: "s1", TO_Q1: "s2", TO_Q4: "s3", TO_Q3: "s5" };
+
+function stateColor(name, value) {
+  return color(NAMED[name] || `s${((Math.round(value) % 8) + 8) % 8}`);
+}

@@ -16,7 +16,7 @@ import modelkit
 from fmus.archive import content_hash
 from modelkit.model import Model
 
-SLAVE_FILES = ("layout.py", "slave.py")
+SLAVE_FILES = ("binary.py", "layout.py", "slave.py")
 RUNTIME_FILES = ("_version.py", "default_experiment.py", "enums.py", "fmi2slave.py", "logmsg.py", "variables.py")
 RUNTIME_INIT = b'"""The part of PythonFMU that runs inside an FMU."""\n'
 SCRIPT = '''"""Entry point of this FMU."""
@@ -26,7 +26,7 @@ from {root}.fmus.slave import ModelSlave
 from {root}.{package} import {attribute}
 
 NAMESPACE = globals()
-"""A second reference: PythonFMU's binary drops one before the first instance exists (see ``tidy_up``)."""
+"""A second reference: PythonFMU's binary drops one before the first instance exists (see ``fmus.binary.keep``)."""
 
 
 class {script}({base}):

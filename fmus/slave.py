@@ -1,16 +1,13 @@
 """The slave inside a PythonFMU: keeps the values, calls the model, never lets an exception out.
 
-The FMI binary of PythonFMU answers an exception with fmi2Fatal and frees its Python objects twice, so every method
-here returns normally. An exception of the model is logged with its traceback and fmi2DoStep gives fmi2Discard. A wrong
-call (unknown value reference, parameter set too late) is logged too; as the binary cannot answer it with fmi2Error,
-the next fmi2DoStep is refused, until fmi2Reset or a restored state.
+The FMI binary of PythonFMU answers an exception with fmi2Fatal, so every method here returns normally. An exception of
+the model is logged with its traceback and fmi2DoStep gives fmi2Discard. A wrong call (unknown value reference,
+parameter set too late) is logged too; as the binary cannot answer it with fmi2Error, the next fmi2DoStep is refused,
+until fmi2Reset or a restored state.
 """
 
-import ctypes
 import json
 import math
-import sys
-import threading
 import traceback
 from collections.abc import Callable, Sequence
 from typing import Any, ClassVar, NamedTuple
@@ -18,6 +15,7 @@ from typing import Any, ClassVar, NamedTuple
 from pythonfmu.enums import Fmi2Status  # type: ignore[import-untyped]
 from pythonfmu.fmi2slave import Fmi2Slave  # type: ignore[import-untyped]
 
+from fmus.binary import keep, pin_thread, tidy_path
 from fmus.layout import Layout, Values, picker
 from modelkit.model import Model
 from modelkit.variables import constructor, flatten
@@ -26,7 +24,6 @@ INSTANTIATED, INITIALIZATION, STEPPING, TERMINATED = range(4)
 FMI_TYPES = {float: "Real", int: "Integer", bool: "Boolean"}
 MISSING: dict[type, Any] = {float: math.nan, int: 0, bool: False}
 MOST_PICKERS = 256
-PINNED = threading.local()
 
 
 class Snapshot(NamedTuple):
@@ -40,24 +37,6 @@ class Snapshot(NamedTuple):
     state: Any
 
 
-def pin_thread() -> None:
-    """Keep this thread's Python state alive: a host thread that Python did not start loses it after every call."""
-    if not hasattr(PINNED, "done"):
-        ctypes.pythonapi.PyGILState_Ensure()
-        PINNED.done = True
-
-
-def tidy_up(module: str, resources: str | None) -> None:
-    """Mend what the binary does at every instantiation.
-
-    It drops one reference to the script's namespace too many, and leaves the FMU's folder in ``sys.path``.
-    """
-    if module in sys.modules:
-        ctypes.pythonapi.Py_IncRef(ctypes.py_object(vars(sys.modules[module])))
-    while resources in sys.path:
-        sys.path.remove(resources)
-
-
 class ModelSlave(Fmi2Slave):  # type: ignore[misc]
     """Base of the slave classes: a subclass names its ``model`` and its ``build``."""
 
@@ -69,7 +48,8 @@ class ModelSlave(Fmi2Slave):  # type: ignore[misc]
     def __init__(self, **kwargs: Any) -> None:
         super().__init__(**kwargs)
         pin_thread()
-        tidy_up(type(self).__module__, self.resources)
+        keep(self)
+        tidy_path(self.resources)
         self.values: Values = list(self.layout.start)
         self.mode = INSTANTIATED
         self.refused = ""

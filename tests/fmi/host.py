@@ -1,7 +1,9 @@
 """One FMU instance on FMPy, by variable name, with its log kept."""
 
+import itertools
 import random
 import shutil
+import sys
 import tempfile
 from ctypes import byref
 
@@ -14,8 +16,12 @@ from fmus.description import limits
 OK, WARNING, DISCARD, ERROR, FATAL = range(5)
 
 
+NUMBERS = itertools.count()
+
+
 class Host:
-    def __init__(self, path, name="instance"):
+    def __init__(self, path, name=None):
+        self.name = name or f"instance {next(NUMBERS)}"
         self.folder = tempfile.mkdtemp(prefix="fmu_")
         fmpy.extract(str(path), self.folder)
         self.description = fmpy.read_model_description(self.folder)
@@ -31,12 +37,12 @@ class Host:
             guid=self.description.guid,
             modelIdentifier=self.description.coSimulation.modelIdentifier,
             unzipDirectory=self.folder,
-            instanceName=name,
+            instanceName=self.name,
         )
         self.fmu.instantiate(callbacks=self.callbacks, loggingOn=True)
 
     def _logger(self, environment, name, status, category, message):
-        self.log.append((status, category.decode(), message.decode()))
+        self.log.append((status, (category or b"").decode(), message.decode()))
 
     def __enter__(self):
         return self
@@ -79,6 +85,12 @@ class Host:
         except Exception as error:
             status.append(getattr(error, "status", error))
         return status[0] if status else OK
+
+
+def slaves(host):
+    """Return the Python objects behind a host's instance: after a reset the last of them is in use."""
+    modules = [module for name, module in sys.modules.items() if name.startswith("fmu_") and name.endswith(".binary")]
+    return [slave for module in modules for slave in module.KEPT if slave.instance_name == host.name]
 
 
 def random_inputs(known, seed, count):

@@ -1,7 +1,9 @@
 """Exceptions and wrong calls: logged, refused, never fmi2Fatal, never a crash."""
 
+import gc
+
 import pytest
-from host import DISCARD, ERROR, OK, Host
+from host import DISCARD, ERROR, FATAL, OK, Host, slaves
 
 TOO_HIGH = 10_000
 
@@ -38,17 +40,43 @@ def test_a_failing_initialize_is_logged_and_no_step_is_taken(python_fmus):
 def test_percent_signs_reach_the_host_as_they_are(python_fmus, text):
     """FMPy formats the message as printf does, so a lone %n would crash here."""
     with Host(python_fmus["Toy"]) as host:
-        slave = newest_slave()
-        slave._error(text)
+        slaves(host)[-1]._error(text)
         host.initialize()
         assert host.log[0] == (ERROR, "logStatusError", text.encode("utf-8", "replace").decode())
 
 
-def newest_slave():
-    """Return the Python object of the newest instance in this process."""
-    import gc
+def test_an_interrupt_that_strikes_before_the_first_line_does_no_harm(python_fmus):
+    """Ctrl-C can raise at the entry of a method; the binary then frees its objects twice."""
 
-    return [item for item in gc.get_objects() if type(item).__name__.startswith("Slave_")][-1]
+    def interrupted(*_):
+        raise KeyboardInterrupt
+
+    for _ in range(5):
+        with Host(python_fmus["Toy"]) as host:
+            host.initialize()
+            slaves(host)[-1].do_step = interrupted
+            assert host.step(0.0, 0.01) == FATAL
+            assert "KeyboardInterrupt" in host.log[-1][2]
+            assert host.get(["mass"]) == [2.0]
+        gc.collect()
+        with Host(python_fmus["Toy"]) as host:
+            host.initialize()
+            slaves(host)[-1].do_step = interrupted
+            assert host.step(0.0, 0.01) == FATAL
+            host.fmu.reset()
+            host.initialize()
+            assert host.step(0.0, 0.01) == OK
+        gc.collect()
+
+
+def test_freed_instances_are_given_back(python_fmus):
+    counts = []
+    for _ in range(6):
+        with Host(python_fmus["Toy"], "always the same") as host:
+            host.initialize()
+            host.fmu.reset()
+            counts.append(len(slaves(host)))
+    assert counts[1:] == [counts[1]] * 5
 
 
 def test_an_unknown_value_reference_or_a_wrong_type_is_refused(python_fmus):

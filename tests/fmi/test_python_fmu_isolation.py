@@ -12,7 +12,7 @@ from pathlib import Path
 import fmpy
 import pytest
 import toy_model
-from host import OK, Host, random_inputs
+from host import OK, Host, random_inputs, slaves
 
 import controller_fmu
 import modelkit
@@ -38,11 +38,9 @@ def build_elsewhere(folder, package, change):
     return Path(result.stdout.strip())
 
 
-def instance_roots():
-    """Return the root packages of all instances in this process."""
-    gc.collect()
-    found = [item for item in gc.get_objects() if type(item).__name__.startswith("Slave_")]
-    return {item.model.step.__module__.split(".")[0] for item in found}
+def roots_of(hosts):
+    """Return the root packages of the instances' code."""
+    return {slave.model.step.__module__.split(".")[0] for host in hosts for slave in slaves(host)}
 
 
 def test_all_fmus_run_beside_the_packages_of_the_host(python_fmus):
@@ -53,7 +51,7 @@ def test_all_fmus_run_beside_the_packages_of_the_host(python_fmus):
     try:
         for host in hosts.values():
             host.initialize()
-        roots = instance_roots()
+        roots = roots_of(hosts.values())
         assert len(roots) == 3
         assert all(root.startswith("fmu_") for root in roots)
         for number in range(10):
@@ -126,7 +124,7 @@ def test_a_different_build_of_the_real_models_beside_the_first(python_fmus, tmp_
     with Host(python_fmus[name], "first") as first, Host(other, "second") as second:
         for host in (first, second):
             host.initialize()
-        assert len(instance_roots()) == 2
+        assert len(roots_of((first, second))) == 2
         for number, values in enumerate(inputs):
             for host in (first, second):
                 host.set(values)

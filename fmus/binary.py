@@ -1,0 +1,56 @@
+"""What the FMI binary of PythonFMU 0.7 gets wrong about threads, references and the path, mended from inside.
+
+At every instantiation it drops one reference to the namespace of the slave's script too many, and leaves the FMU's
+folder in ``sys.path``. When an exception comes out of a method (a KeyboardInterrupt can strike before the first line
+of one) it gives up its references to slave, class and log, but keeps the pointers and gives them up again later. In a
+thread that Python did not start, every call makes and destroys a thread state.
+"""
+
+import ctypes
+import sys
+import threading
+from typing import Any
+
+PINNED = threading.local()
+KEPT: list[Any] = []
+"""Slaves with a spare reference each, and one to their log."""
+FREED_AFTER_EXCEPTION = 2
+"""``sys.getrefcount`` of a slave that only ``KEPT`` and the call itself know: its spare reference is used up."""
+FREED = FREED_AFTER_EXCEPTION + 1
+"""The same with the spare reference left."""
+
+
+def pin_thread() -> None:
+    """Keep this thread's Python state alive until the thread ends."""
+    if not hasattr(PINNED, "done"):
+        ctypes.pythonapi.PyGILState_Ensure()
+        PINNED.done = True
+
+
+def keep(slave: Any) -> None:
+    """Give ``slave``, its log, its class and its script a spare reference; take those of freed slaves back."""
+    for place in reversed(range(len(KEPT))):
+        count = sys.getrefcount(KEPT[place])
+        if count <= FREED:
+            freed = KEPT.pop(place)
+            if count == FREED:
+                _add_reference(freed.log_queue, -1)
+                _add_reference(freed, -1)
+    cls = type(slave)
+    spare = [slave, slave.log_queue, cls]
+    if cls.__module__ in sys.modules:
+        spare.append(vars(sys.modules[cls.__module__]))
+    for item in spare:
+        _add_reference(item, 1)
+    KEPT.append(slave)
+
+
+def tidy_path(resources: str | None) -> None:
+    """Take the FMU's folder out of ``sys.path``: all of its modules are imported by now."""
+    while resources in sys.path:
+        sys.path.remove(resources)
+
+
+def _add_reference(item: Any, change: int) -> None:
+    call = ctypes.pythonapi.Py_IncRef if change > 0 else ctypes.pythonapi.Py_DecRef
+    call(ctypes.py_object(item))

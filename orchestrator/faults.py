@@ -128,9 +128,7 @@ class Delay(_Window):
 class Noise(_Window):
     """White Gaussian noise on every exchange, the same for the same seed."""
 
-    def __init__(
-        self, fault: Fault, slave: int, values: Array, places: Indices, sigma: float, seed: int
-    ) -> None:
+    def __init__(self, fault: Fault, slave: int, values: Array, places: Indices, sigma: float, seed: int) -> None:
         super().__init__(fault, slave, values, places)
         self._sigma = sigma
         self._random = seed_state(seed)
@@ -196,7 +194,9 @@ def _receivers(signal: str, slaves: list[Slave], file: object, key: str) -> list
 
 
 def _matching(names: list[str], wanted: str) -> list[int]:
-    return [place for place, name in enumerate(names) if name == wanted or name.startswith((wanted + ".", wanted + "["))]
+    return [
+        place for place, name in enumerate(names) if name == wanted or name.startswith((wanted + ".", wanted + "["))
+    ]
 
 
 def _check(fault: Fault, file: object, key: str) -> None:

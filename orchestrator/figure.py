@@ -49,6 +49,8 @@ STYLE: dict[str, Any] = {
     "axes.spines.right": False,
     "legend.frameon": False,
 }
+FAR = 50.0
+"""Beyond this [m] from the origin, positions are shown from the start."""
 OUTLINES = 14
 """About how many outlines are drawn along the path."""
 
@@ -57,22 +59,19 @@ def draw(recording: Recording, summary: Summary, scenario: Scenario, path: Path)
     """Write the overview picture of a run to ``path``."""
     with mpl.rc_context(STYLE):
         figure = Figure(figsize=(13.0, 9.0), layout="constrained")
-        grid = figure.add_gridspec(4, 2, width_ratios=(1.0, 1.15), height_ratios=(1.0, 1.0, 1.0, 0.22))
-        speed = figure.add_subplot(grid[0, 0])
-        position = figure.add_subplot(grid[1, 0], sharex=speed)
-        heading = figure.add_subplot(grid[2, 0], sharex=speed)
-        ribbon = figure.add_subplot(grid[3, 0], sharex=speed)
-        _speed(speed, recording)
-        _position(position, recording)
-        _heading(heading, recording)
-        for axis in (speed, position, heading):
+        grid = figure.add_gridspec(4, 3, height_ratios=(1.45, 0.07, 1.0, 0.075))
+        _plan(figure.add_subplot(grid[0, :]), recording, scenario)
+        panels = [figure.add_subplot(grid[2, column]) for column in range(3)]
+        for axis, panel in zip(panels, (_speed, _position, _heading), strict=True):
+            panel(axis, recording)
             axis.tick_params(labelbottom=False)
+            axis.set_xlim(recording.t[0], recording.t[-1])
             for row, _, _ in phase_changes(recording):
                 axis.axvline(recording.t[row], color="#d5d9df", linewidth=0.8, zorder=0)
-        names = _ribbon(ribbon, recording)
-        plan = figure.add_subplot(grid[0:3, 1])
-        _plan(plan, recording, scenario)
-        _legend(figure.add_subplot(grid[3, 1]), names)
+        names: list[str] = []
+        for column, axis in enumerate(panels):
+            names = _ribbon(figure.add_subplot(grid[3, column], sharex=axis), recording)
+        _legend(figure.add_subplot(grid[1, :]), names)
         figure.suptitle(_title(summary, scenario), x=0.012, ha="left", fontsize=12.5, fontweight="bold", color=INK)
         figure.savefig(path, dpi=120, metadata={"Software": "apa-cosim"})
 
@@ -91,7 +90,7 @@ def _signal(recording: Recording, name: str) -> Array:
 
 def _speed(axis: Any, recording: Recording) -> None:
     t = recording.t
-    axis.set_title("(a) speed and steering wheel")
+    axis.set_title("(a) speed, steering")
     axis.plot(t, _signal(recording, "vehicle.speed"), color=BLUE, linewidth=1.5)
     axis.set_ylabel("speed [m/s]", color=BLUE)
     wheel = axis.twinx()
@@ -101,29 +100,35 @@ def _speed(axis: Any, recording: Recording) -> None:
     wheel.plot(t, request, color=RUST, linewidth=0.8, alpha=0.55, linestyle=(0, (3, 2)), label="request")
     wheel.plot(t, _signal(recording, "vehicle.steering_wheel_angle") / DEGREE, color=RUST, linewidth=1.5, label="angle")
     wheel.set_ylabel("steering wheel [deg]", color=RUST)
-    wheel.legend(loc="upper right", fontsize=8)
+    wheel.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), fontsize=8, ncols=2, borderaxespad=0.0)
 
 
 def _position(axis: Any, recording: Recording) -> None:
     t = recording.t
-    axis.set_title("(b) position")
+    far = max(abs(_signal(recording, f"vehicle.pose.{name}")[0]) for name in ("x", "y")) > FAR
+    axis.set_title("(b) way from start" if far else "(b) position")
     for name, colour in (("x", BLUE), ("y", RUST)):
-        reference = _used(recording, f"controller.reference.{name}")
+        driven = _signal(recording, f"vehicle.pose.{name}")
+        origin = driven[0] if far else 0.0
+        reference = _used(recording, f"controller.reference.{name}") - origin
         axis.plot(t, reference, color=colour, linewidth=0.8, alpha=0.6, linestyle=(0, (3, 2)))
-        axis.plot(t, _signal(recording, f"vehicle.pose.{name}"), color=colour, linewidth=1.5, label=name)
+        axis.plot(t, driven - origin, color=colour, linewidth=1.5, label=name)
     axis.plot([], [], color=GREY, linewidth=0.8, linestyle=(0, (3, 2)), label="reference")
     axis.set_ylabel("position [m]")
-    axis.legend(loc="upper right", fontsize=8, ncols=3)
+    axis.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), fontsize=8, ncols=3, borderaxespad=0.0)
 
 
 def _heading(axis: Any, recording: Recording) -> None:
     t = recording.t
     axis.set_title("(c) heading")
-    reference = _used(recording, "controller.reference.heading") / DEGREE
+    driven = _signal(recording, "vehicle.pose.heading")
+    reference = _used(recording, "controller.reference.heading")
+    turns = np.round((driven - reference) / (2.0 * np.pi))
+    reference = (reference + turns * 2.0 * np.pi) / DEGREE
     axis.plot(t, reference, color=GREEN, linewidth=0.8, alpha=0.7, linestyle=(0, (3, 2)), label="reference")
-    axis.plot(t, _signal(recording, "vehicle.pose.heading") / DEGREE, color=GREEN, linewidth=1.5, label="heading")
+    axis.plot(t, driven / DEGREE, color=GREEN, linewidth=1.5, label="heading")
     axis.set_ylabel("heading [deg]")
-    axis.legend(loc="upper right", fontsize=8, ncols=2)
+    axis.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), fontsize=8, ncols=2, borderaxespad=0.0)
 
 
 def _used(recording: Recording, name: str) -> Array:
@@ -151,9 +156,7 @@ def _ribbon(axis: Any, recording: Recording) -> list[str]:
         name = states.get(int(value), f"{value:g}") if math.isfinite(value) else "unknown"
         names[name] = None
         axis.axvspan(t[first], t[last], color=_colour(name), linewidth=0)
-    axis.set_xlim(t[0], t[-1])
     axis.set_ylim(0.0, 1.0)
-    axis.set_title("states of the chart", fontsize=8.5, fontweight="normal")
     return list(names)
 
 
@@ -164,7 +167,17 @@ def _colour(name: str) -> str:
 def _legend(axis: Any, names: list[str]) -> None:
     axis.axis("off")
     handles = [Patch(color=_colour(name), label=name.lower().replace("_", " ")) for name in names]
-    axis.legend(handles=handles, loc="center left", ncols=5, fontsize=8, borderaxespad=0.0, handlelength=1.2)
+    axis.legend(
+        handles=handles,
+        title="states of the chart",
+        title_fontsize=8,
+        loc="center",
+        ncols=len(handles),
+        fontsize=8,
+        borderaxespad=0.0,
+        handlelength=1.2,
+        columnspacing=1.4,
+    )
 
 
 def _plan(axis: Any, recording: Recording, scenario: Scenario) -> None:
@@ -188,7 +201,7 @@ def _plan(axis: Any, recording: Recording, scenario: Scenario) -> None:
     _outlines(axis, car, x, y, heading)
     axis.plot(x, y, color=BLUE, linewidth=1.8, label="driven path", zorder=5)
     _wheels(axis, recording, car, (x[-1], y[-1], heading[-1]))
-    axis.legend(loc="best", fontsize=8)
+    axis.legend(loc="upper left", fontsize=8)
 
 
 def _slot(axis: Any, box: Box) -> None:

@@ -5,7 +5,9 @@ from collections.abc import Iterable, Mapping
 from orchestrator.errors import BadInput, suggestion
 
 
-def flatten_section(section: Mapping[str, object], names: Iterable[str], *, file: object, key: str) -> dict[str, object]:
+def flatten_section(
+    section: Mapping[str, object], names: Iterable[str], *, file: object, key: str
+) -> dict[str, object]:
     """Return flat name -> raw value. A list may stand for a NamedTuple (in field order) or for an array.
 
     Raises ``BadInput`` for a name the model does not have, with the closest ones.
@@ -24,9 +26,7 @@ def merge_flat(below: dict[str, object], above: Mapping[str, object]) -> dict[st
     return {**kept, **above}
 
 
-def _flatten(
-    name: str, value: object, known: list[str], flat: dict[str, object], file: object, key: str
-) -> None:
+def _flatten(name: str, value: object, known: list[str], flat: dict[str, object], file: object, key: str) -> None:
     if name in known:
         flat[name] = value
         return
@@ -39,7 +39,9 @@ def _flatten(
             _flatten(f"{name}.{child}", item, known, flat, file, key)
     elif isinstance(value, list):
         if len(value) > len(children):
-            raise BadInput(f"{len(value)} values given, expected at most {len(children)}", file=file, key=f"{key}.{name}")
+            raise BadInput(
+                f"{len(value)} values given, expected at most {len(children)}", file=file, key=f"{key}.{name}"
+            )
         for child, item in zip(children, value, strict=False):
             _flatten(child, item, known, flat, file, key)
     else:
@@ -60,5 +62,3 @@ def _children(name: str, known: list[str]) -> list[str]:
 def _roots(known: list[str]) -> str:
     roots = dict.fromkeys(name.split(".")[0].split("[")[0] for name in known)
     return ", ".join(roots)
-
-

@@ -33,7 +33,7 @@ LogCallback = Callable[[str, int, str], None]
 """Called with (slave name, FMI status, message)."""
 
 
-class _Transfer:
+class Transfer:
     """One direction of one type: value references, C array, and where its values sit in the ports."""
 
     def __init__(self, function: Any, component: Any, ports: Ports, kind: type, references: dict[str, int]) -> None:
@@ -43,18 +43,18 @@ class _Transfer:
         self.array: Any = ((ctypes.c_double if kind is float else ctypes.c_int32) * max(self.count, 1))()
         self.view: np.ndarray[Any, Any] = np.frombuffer(self.array, dtype=np.float64 if kind is float else np.int32)
         self.view = self.view[: self.count]
-        self._references = (ctypes.c_uint32 * max(self.count, 1))(*[references[name] for name in names])
+        self.references = (ctypes.c_uint32 * max(self.count, 1))(*[references[name] for name in names])
         pointer = ctypes.c_void_p
-        self._call = function
+        self.function = function
         self._arguments = (
             pointer(component),
-            pointer(ctypes.addressof(self._references)),
+            pointer(ctypes.addressof(self.references)),
             ctypes.c_size_t(self.count),
             pointer(ctypes.addressof(self.array)),
         )
 
     def __call__(self) -> int:
-        return int(self._call(*self._arguments))
+        return int(self.function(*self._arguments))
 
 
 class FmuSlave:
@@ -117,23 +117,35 @@ class FmuSlave:
     def fetch_outputs(self) -> None:
         """One get call per type that has outputs."""
         values = self.outputs.values
-        for transfer in self._gets:
+        for transfer in self.gets:
             if transfer() > 1:
-                raise RunError(f"{self.name} gives no outputs: {self._last_message}")
+                raise self.no_outputs()
             values[transfer.places] = transfer.view
 
     def send_inputs(self) -> None:
         """One set call per type that has inputs."""
         values = self.inputs.values
-        for transfer in self._sets:
+        for transfer in self.sets:
             transfer.view[:] = values[transfer.places]
             if transfer() > 1:
-                raise RunError(f"{self.name} refuses its inputs: {self._last_message}")
+                raise self.no_inputs()
 
     def step(self, t_ns: int, dt_ns: int) -> None:
         """Call fmi2DoStep at ``t_ns / 1e9`` seconds, computed from the count, never accumulated."""
-        if self._do_step(self._component, t_ns / 1e9, dt_ns / 1e9, 1) > 1:
-            raise RunError(f"{self.name} failed at {t_ns / 1e9:g} s: {self._last_message or 'no message'}")
+        if self.do_step(self.component, t_ns / 1e9, dt_ns / 1e9, 1) > 1:
+            raise self.no_step(t_ns)
+
+    def no_outputs(self) -> RunError:
+        """Return the error of a get call that failed."""
+        return RunError(f"{self.name} gives no outputs: {self._last_message}")
+
+    def no_inputs(self) -> RunError:
+        """Return the error of a set call that failed."""
+        return RunError(f"{self.name} refuses its inputs: {self._last_message}")
+
+    def no_step(self, t_ns: int) -> RunError:
+        """Return the error of a step that failed."""
+        return RunError(f"{self.name} failed at {t_ns / 1e9:g} s: {self._last_message or 'no message'}")
 
     def close(self) -> None:
         """Terminate, free the instance, remove the extracted files."""
@@ -149,25 +161,25 @@ class FmuSlave:
     def _bind(self) -> None:
         assert self._instance is not None
         library, component = self._instance.dll, self._instance.component
-        self._component = ctypes.c_void_p(component)
+        self.component = ctypes.c_void_p(component)
 
         def function(name: str) -> Any:
             found = library[name]
             found.restype = ctypes.c_int
             return found
 
-        def transfers(verb: str, ports: Ports) -> list[_Transfer]:
+        def transfers(verb: str, ports: Ports) -> list[Transfer]:
             pairs = (("Real", float), ("Integer", int), ("Boolean", bool))
             made = [
-                _Transfer(function(f"fmi2{verb}{word}"), component, ports, kind, self._references)
+                Transfer(function(f"fmi2{verb}{word}"), component, ports, kind, self._references)
                 for word, kind in pairs
             ]
             return [transfer for transfer in made if transfer.count]
 
-        self._gets = transfers("Get", self.outputs)
-        self._sets = transfers("Set", self.inputs)
-        self._do_step = function("fmi2DoStep")
-        self._do_step.argtypes = [ctypes.c_void_p, ctypes.c_double, ctypes.c_double, ctypes.c_int]
+        self.gets = transfers("Get", self.outputs)
+        self.sets = transfers("Set", self.inputs)
+        self.do_step = function("fmi2DoStep")
+        self.do_step.argtypes = [ctypes.c_void_p, ctypes.c_double, ctypes.c_double, ctypes.c_int]
 
     def _set_parameters(self) -> None:
         assert self._instance is not None

@@ -94,7 +94,9 @@ def _parameters(owner: str, layers: list[tuple[dict[str, Any], Any]], seed: obje
             section = {**section, "target": content["target"]}
         flat = flatten_section(section, names, file=file, key=owner)
         given = merge_flat(given, {name: _Given(value, file) for name, value in flat.items()})
-    result = {variable.name: _value(variable, given[variable.name], owner) for variable in known if variable.name in given}
+    result = {
+        variable.name: _value(variable, given[variable.name], owner) for variable in known if variable.name in given
+    }
     for variable in known:
         if variable.name.rsplit(".", 1)[-1] == "seed" and variable.name not in result:
             result[variable.name] = seed

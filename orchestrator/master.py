@@ -118,10 +118,13 @@ class Master:
                 slave.step(t_ns, dt_ns)
             count += 1
 
-    def close(self, end: End) -> None:
-        """Tell the observers and free the slaves."""
+    def finish(self, end: End) -> None:
+        """Tell the observers."""
         for observer in self.observers:
             observer.closed(end)
+
+    def free(self) -> None:
+        """Free the slaves."""
         for slave in self.slaves:
             slave.close()
 

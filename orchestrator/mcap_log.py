@@ -15,12 +15,13 @@ from foxglove_schemas_protobuf.FrameTransforms_pb2 import FrameTransforms
 from foxglove_schemas_protobuf.Log_pb2 import Log
 from foxglove_schemas_protobuf.PosesInFrame_pb2 import PosesInFrame
 from foxglove_schemas_protobuf.SceneUpdate_pb2 import SceneUpdate
+from numpy.typing import NDArray
 
 from modelkit.variables import Variable
 from orchestrator import scene
 from orchestrator.geometry import Car, boxes, sample_path, slot_box
 from orchestrator.master import End
-from orchestrator.mcap_file import McapFile
+from orchestrator.mcap_file import CHUNK_SIZE, MESSAGE_HEADER, McapFile
 from orchestrator.read_log import VARIABLES
 from orchestrator.recording import to_json
 from orchestrator.scenario import Slot
@@ -30,26 +31,38 @@ from orchestrator.wire import Encoder
 
 SCENE_PERIOD_NS = 50_000_000
 TRAIL_PERIOD_NS = 1_000_000_000
+AXES = ("x", "y", "heading")
+DRAWN = (*(f"pose.{axis}" for axis in AXES), *(f"odometry.{axis}" for axis in AXES), "front_wheel_angle")
+"""Outputs of the vehicle that the moving frames are made from."""
 
 
 class _SlaveChannel:
-    """One channel for all inputs and outputs of a slave."""
+    """One channel for all inputs and outputs of a slave; rows are kept until a chunk is due."""
 
     def __init__(self, file: McapFile, slave: Slave) -> None:
-        ports = (slave.outputs, slave.inputs)
-        variables = [variable for group in ports for variable in group.variables]
+        variables = [*slave.outputs.variables, *slave.inputs.variables]
         notes = ["output"] * len(slave.outputs.names) + ["input"] * len(slave.inputs.names)
         self._channel = add_channel(file, f"/{slave.name}", slave.name.title().replace("_", ""), variables, notes)
         self._encoder = Encoder(variables)
         self._file = file
-        self._row: Array = np.empty(len(variables))
         self._split = len(slave.outputs.names)
         self._outputs, self._inputs = slave.outputs.values, slave.inputs.values
+        self.size = self._encoder.size
+        self._rows: Array = np.empty((0, len(variables)))
 
-    def write(self, t_ns: int) -> None:
-        self._row[: self._split] = self._outputs
-        self._row[self._split :] = self._inputs
-        self._file.write(self._channel, t_ns, self._encoder.encode(self._row))
+    def allocate(self, rows: int) -> None:
+        """Make room for ``rows`` exchanges."""
+        self._rows = np.empty((rows, self._rows.shape[1]))
+
+    def note(self, place: int) -> None:
+        """Keep the present values as row ``place``."""
+        row = self._rows[place]
+        row[: self._split] = self._outputs
+        row[self._split :] = self._inputs
+
+    def write(self, times: NDArray[np.int64]) -> None:
+        """Hand the first rows, one for each of ``times``, to the file."""
+        self._file.write_rows(self._channel, times, self._encoder.rows(self._rows[: len(times)]))
 
 
 class McapLog:
@@ -57,18 +70,31 @@ class McapLog:
 
     def __init__(self, path: Path, slaves: list[Slave], slot: Slot | None, info: dict[str, Any]) -> None:
         self._file = McapFile(path)
-        self._file.writer.add_metadata("apa", {key: json.dumps(value) for key, value in info.items()})
+        self._file.metadata("apa", {key: json.dumps(value) for key, value in info.items()})
         self._channels = [_SlaveChannel(self._file, slave) for slave in slaves]
         self._log = self._file.known_channel("/log", Log)
         for slave in slaves:
             self._write_parameters(slave)
-        self._pictures = _Pictures(self._file, {slave.name: slave for slave in slaves}, slot)
+        named = {slave.name: slave for slave in slaves}
+        self._pictures: list[_Pictures] = []
+        if "vehicle" in named and set(DRAWN) <= named["vehicle"].outputs.index.keys():
+            self._pictures.append(_Pictures(self._file, named, slot))
+        rows = max(1, CHUNK_SIZE // sum(channel.size + MESSAGE_HEADER.itemsize for channel in self._channels))
+        self._times = np.empty(rows, dtype=np.int64)
+        self._count = 0
+        for channel in self._channels:
+            channel.allocate(rows)
 
     def exchanged(self, t_ns: int) -> None:
-        """Write one message per slave, and the pictures when due."""
+        """Keep one row per slave; a chunk's worth of them goes to the file at once."""
+        for pictures in self._pictures:
+            pictures.exchanged(t_ns)
+        self._times[self._count] = t_ns
         for channel in self._channels:
-            channel.write(t_ns)
-        self._pictures.exchanged(t_ns)
+            channel.note(self._count)
+        self._count += 1
+        if self._count == len(self._times):
+            self._write_rows()
 
     def say(self, t_ns: int, level: int, name: str, text: str) -> None:
         """Write one line to ``/log``."""
@@ -78,9 +104,17 @@ class McapLog:
 
     def closed(self, end: End) -> None:
         """Write how the run ended and give the file its name."""
-        self._pictures.closed(end.t_ns)
-        self._file.writer.add_metadata("end", {"reason": json.dumps(end.reason), "t_ns": json.dumps(end.t_ns)})
+        self._write_rows()
+        for pictures in self._pictures:
+            pictures.closed(end.t_ns)
+        self._file.metadata("end", {"reason": json.dumps(end.reason), "t_ns": json.dumps(end.t_ns)})
         self._file.close()
+
+    def _write_rows(self) -> None:
+        for channel in self._channels:
+            channel.write(self._times[: self._count])
+        self._count = 0
+        self._file.flush()
 
     def _write_parameters(self, slave: Slave) -> None:
         ports: Ports = slave.parameters
@@ -95,9 +129,11 @@ class _Pictures:
 
     def __init__(self, file: McapFile, slaves: dict[str, Slave], slot: Slot | None) -> None:
         self._file = file
-        self._vehicle = slaves.get("vehicle")
+        self._vehicle = slaves["vehicle"]
         self._controller = slaves.get("controller")
-        self._car = Car.of(_named(self._vehicle.parameters) if self._vehicle else {})
+        self._car = Car.of(_named(self._vehicle.parameters))
+        self._frames = scene.Frames(self._car)
+        self._places = [self._vehicle.outputs.index[name] for name in DRAWN]
         self._transforms = file.known_channel("/tf", FrameTransforms)
         self._scene = file.known_channel("/scene", SceneUpdate)
         self._path = file.known_channel("/path", SceneUpdate)
@@ -109,14 +145,13 @@ class _Pictures:
         self._draw_still(slot)
 
     def exchanged(self, t_ns: int) -> None:
-        if self._vehicle is None or t_ns < self._next_ns:
+        if t_ns < self._next_ns:
             return
         self._next_ns = t_ns - t_ns % SCENE_PERIOD_NS + SCENE_PERIOD_NS
-        values = _named(self._vehicle.outputs)
-        pose = scene.pose_of(values, "pose") or (0.0, 0.0, 0.0)
-        odometry = scene.pose_of(values, "odometry") or pose
-        message = scene.frames(t_ns, self._car, pose, odometry, values.get("front_wheel_angle", 0.0))
-        self._file.write(self._transforms, t_ns, message.SerializeToString(deterministic=True))
+        x, y, heading, *seen, wheel = self._vehicle.outputs.values[self._places].tolist()
+        pose = (x, y, heading)
+        message = self._frames.at(t_ns, pose, (seen[0], seen[1], seen[2]), wheel)
+        self._file.write(self._transforms, t_ns, message)
         self._poses.append(pose)
         if t_ns % TRAIL_PERIOD_NS < SCENE_PERIOD_NS:
             self._draw_trail(t_ns)
@@ -127,7 +162,7 @@ class _Pictures:
             self._draw_trail(t_ns)
 
     def _draw_still(self, slot: Slot | None) -> None:
-        obstacles = boxes(_named(self._vehicle.parameters)) if self._vehicle else []
+        obstacles = boxes(_named(self._vehicle.parameters))
         target = scene.pose_of(_named(self._controller.parameters), "target") if self._controller else None
         update = scene.still_life(0, self._car, slot_box(slot) if slot else None, obstacles, target)
         self._file.write(self._scene, 0, update.SerializeToString(deterministic=True))

@@ -62,7 +62,9 @@ def scalar(value: object, variable: Variable, *, file: object = None) -> float |
     if result != result:
         raise BadInput("nan is not a value for a parameter", file=file, key=key)
     if not low <= result <= high:
-        raise BadInput(f"{value} is out of range, expected {low:g} to {high:g} {variable.signal.unit}", file=file, key=key)
+        raise BadInput(
+            f"{value} is out of range, expected {low:g} to {high:g} {variable.signal.unit}", file=file, key=key
+        )
     return result
 
 

@@ -2,10 +2,10 @@
 
 import os
 import struct
-import zlib
 from pathlib import Path
 from typing import Any, NamedTuple
 
+import zstandard
 from mcap.exceptions import McapError
 from mcap.records import Attachment, Channel, Message, Metadata, Schema
 from mcap.stream_reader import CRCValidationError, StreamReader
@@ -14,7 +14,7 @@ from mcap.writer import Writer
 from orchestrator.errors import BadInput
 from orchestrator.mcap_file import CHUNK_SIZE, LIBRARY
 
-BROKEN = (McapError, CRCValidationError, EOFError, struct.error, zlib.error, ValueError, KeyError, MemoryError)
+BROKEN = (McapError, CRCValidationError, zstandard.ZstdError, EOFError, struct.error, ValueError, KeyError, MemoryError)
 
 
 class Recovered(NamedTuple):

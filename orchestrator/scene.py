@@ -23,6 +23,7 @@ from orchestrator.slave import Array
 WORLD = "world"
 CAR = "car"
 ODOMETRY = "odometry"
+FRONT_WHEELS = ("front_right_wheel", "front_left_wheel")
 CAR_HEIGHT = 1.4
 BODY = (0.20, 0.42, 0.75, 0.85)
 TYRE = (0.10, 0.10, 0.10, 1.0)
@@ -46,27 +47,31 @@ def posed(x: float, y: float, heading: float, z: float = 0.0) -> Pose:
     return Pose(position=Vector3(x=x, y=y, z=z), orientation=turned(heading))
 
 
-def frames(
-    t_ns: int, car: Car, pose: tuple[float, float, float], odometry: tuple[float, float, float], front_wheel: float
-) -> FrameTransforms:
-    """Return the frames of the car, of its front wheels and of its pose as odometry has it, at ``t_ns``."""
-    message = FrameTransforms()
-    time = stamp(t_ns)
+class Frames:
+    """The frames of the car, of its front wheels and of its pose as odometry has it: one message, filled anew."""
 
-    def add(parent: str, child: str, x: float, y: float, heading: float) -> None:
-        message.transforms.add(
-            timestamp=time,
-            parent_frame_id=parent,
-            child_frame_id=child,
-            translation=Vector3(x=x, y=y),
-            rotation=turned(heading),
-        )
+    def __init__(self, car: Car) -> None:
+        self._message = FrameTransforms()
+        self._parts = [self._add(WORLD, CAR, 0.0, 0.0), self._add(WORLD, ODOMETRY, 0.0, 0.0)]
+        self._parts += [self._add(CAR, name, *at) for name, at in zip(FRONT_WHEELS, car.wheels()[2:], strict=True)]
 
-    add(WORLD, CAR, *pose)
-    add(WORLD, ODOMETRY, *odometry)
-    for number, (x, y) in enumerate(car.wheels()):
-        add(CAR, f"wheel_{number + 1}", x, y, front_wheel if x > 0.0 else 0.0)
-    return message
+    def at(
+        self, t_ns: int, pose: tuple[float, float, float], odometry: tuple[float, float, float], front_wheel: float
+    ) -> bytes:
+        """Return the message at ``t_ns``."""
+        seconds, nanos = divmod(t_ns, 1_000_000_000)
+        turns = (pose[2], odometry[2], front_wheel, front_wheel)
+        for (time, _, rotation), turn in zip(self._parts, turns, strict=True):
+            time.seconds, time.nanos = seconds, nanos
+            rotation.z, rotation.w = math.sin(0.5 * turn), math.cos(0.5 * turn)
+        for (_, translation, _), (x, y, _) in zip(self._parts[:2], (pose, odometry), strict=True):
+            translation.x, translation.y = x, y
+        return self._message.SerializeToString(deterministic=True)
+
+    def _add(self, parent: str, child: str, x: float, y: float) -> tuple[Timestamp, Vector3, Quaternion]:
+        part = self._message.transforms.add(parent_frame_id=parent, child_frame_id=child)
+        part.translation.x, part.translation.y = x, y
+        return part.timestamp, part.translation, part.rotation
 
 
 def still_life(
@@ -82,9 +87,11 @@ def still_life(
         color=_color((*BODY[:3], 0.45)),
     )
     _line(body, car.outline(), BODY, 0.06)
-    for number in range(4):
-        wheel = _entity(update, t_ns, f"wheel_{number + 1}", f"wheel_{number + 1}")
-        size = Vector3(x=2.0 * WHEEL_RADIUS, y=WHEEL_WIDTH, z=2.0 * WHEEL_RADIUS)
+    size = Vector3(x=2.0 * WHEEL_RADIUS, y=WHEEL_WIDTH, z=2.0 * WHEEL_RADIUS)
+    for x, y in car.wheels()[:2]:
+        body.cubes.add(pose=posed(x, y, 0.0, WHEEL_RADIUS), size=size, color=_color(TYRE))
+    for name in FRONT_WHEELS:
+        wheel = _entity(update, t_ns, name, name)
         wheel.cubes.add(pose=posed(0.0, 0.0, 0.0, WHEEL_RADIUS), size=size, color=_color(TYRE))
     ghost = _entity(update, t_ns, "odometry", ODOMETRY)
     _line(ghost, car.outline(), (*ORANGE[:3], 0.5), 0.03)
@@ -125,9 +132,7 @@ def pose_of(values: Mapping[str, float], prefix: str) -> tuple[float, float, flo
 
 
 def _entity(update: SceneUpdate, t_ns: int, name: str, frame: str) -> SceneEntity:
-    return update.entities.add(
-        timestamp=stamp(t_ns), frame_id=frame, id=name, lifetime=Duration(), frame_locked=True
-    )
+    return update.entities.add(timestamp=stamp(t_ns), frame_id=frame, id=name, lifetime=Duration(), frame_locked=True)
 
 
 def _line(

@@ -114,8 +114,9 @@ def run_slaves(
         master.observers += [watch, *observers]
     begun = time.perf_counter()
     end = _drive(master, words)
-    master.close(end)
+    master.finish(end)
     wall_time = time.perf_counter() - begun
+    master.free()
     return Ran(recorder.recording({**info, "end": {"reason": end.reason, "t_ns": end.t_ns}}), end, wall_time)
 
 

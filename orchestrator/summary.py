@@ -92,7 +92,9 @@ class Summary(_Part):
         data: dict[str, Any] = _finite(self.model_dump())
         for event in data["events"]:
             event["from"] = event.pop("from_")
-        data["events"] = [{key: event[key] for key in ("t", "from", "to", "x", "y", "heading")} for event in data["events"]]
+        data["events"] = [
+            {key: event[key] for key in ("t", "from", "to", "x", "y", "heading")} for event in data["events"]
+        ]
         return data
 
 
@@ -187,7 +189,9 @@ def _check(limit: Limit, recording: Recording, numbers: dict[str, float], file: 
     if limit.signal is not None:
         if limit.signal not in recording.signals:
             hint = suggestion(limit.signal, recording.signals)
-            raise BadInput(f"no signal of this name{hint}", file=file, key=f"limits: {limit.id}: signal: {limit.signal}")
+            raise BadInput(
+                f"no signal of this name{hint}", file=file, key=f"limits: {limit.id}: signal: {limit.signal}"
+            )
         values, times = recording.signals[limit.signal], recording.t
     else:
         key = str(limit.summary)

@@ -7,7 +7,7 @@ import numpy as np
 
 from orchestrator.faults import Fault
 from orchestrator.master import End
-from orchestrator.slave import Slave
+from orchestrator.slave import Array, Indices, Slave
 
 DEBUG, INFO, WARNING, ERROR = 1, 2, 3, 4
 """Levels of Foxglove's Log message."""
@@ -27,12 +27,12 @@ class Watch:
 
     def __init__(self, slaves: list[Slave], faults: Iterable[Fault], say: Say) -> None:
         self._say = say
-        self._watched = []
+        self._watched: list[tuple[Array, Indices, list[_Mode], bytes]] = []
         for slave in slaves:
             modes = _modes(slave)
             places = np.array([mode.place for mode in modes], dtype=np.intp)
             if modes:
-                self._watched.append((slave.outputs.values, places, modes, slave.outputs.values[places].copy()))
+                self._watched.append((slave.outputs.values, places, modes, slave.outputs.values[places].tobytes()))
         edges = [(round(fault.start * 1e9), f"{fault.kind} of {fault.signal} begins") for fault in faults]
         edges += [
             (round(fault.stop * 1e9), f"{fault.kind} of {fault.signal} ends") for fault in faults if fault.stop < 1e9
@@ -43,18 +43,18 @@ class Watch:
         """Say what has changed since the last exchange."""
         while self._edges and self._edges[0][0] <= t_ns:
             self._say(t_ns, WARNING, "fault", self._edges.pop(0)[1])
-        for values, places, modes, before in self._watched:
-            now = values[places]
-            if (now != before).any():
-                self._tell(t_ns, modes, before, now)
-                before[:] = now
+        for number, (values, places, modes, before) in enumerate(self._watched):
+            now = values[places].tobytes()
+            if now != before:
+                self._tell(t_ns, modes, np.frombuffer(before), np.frombuffer(now))
+                self._watched[number] = (values, places, modes, now)
 
     def closed(self, end: End) -> None:
         """Say why the run ended."""
         level = ERROR if end.reason.startswith("error") else INFO
         self._say(end.t_ns, level, "run", f"ended: {end.reason}")
 
-    def _tell(self, t_ns: int, modes: list[_Mode], before: np.ndarray, now: np.ndarray) -> None:  # type: ignore[type-arg]
+    def _tell(self, t_ns: int, modes: list[_Mode], before: Array, now: Array) -> None:
         for mode, old, new in zip(modes, before.tolist(), now.tolist(), strict=True):
             if old != new:
                 was, becomes = (mode.states.get(int(value), str(value)) for value in (old, new))

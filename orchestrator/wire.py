@@ -1,7 +1,7 @@
 """Protobuf bytes of a slave's values, made by filling a template: every message has the same layout.
 
 All scalars are written at fixed width (double, sfixed32, one byte for a bool, five bytes for an enum:
-a varint may be padded), zeros included, so that a message is one copy and a few array writes.
+a varint may be padded), zeros included, so that many messages are a few array operations.
 """
 
 from typing import Any
@@ -29,29 +29,34 @@ class Encoder:
         self._kinds = [_kind(variable) for variable in variables]
         self._offsets: list[tuple[int, int]] = []
         template = self._message(tree([variable.name for variable in variables]), 0)
-        self._buffer: NDArray[np.uint8] = np.frombuffer(template, dtype=np.uint8).copy()
+        self._template: NDArray[np.uint8] = np.frombuffer(template, dtype=np.uint8)[None, :]
         self.size = len(template)
         self.layout = {kind: self._scatter(kind) for kind in WIDTHS}
         """Kind -> (places of the variables, byte offsets of their values)."""
-        self._doubles, self._integers, self._enums, self._booleans = self.layout.values()
 
     def encode(self, values: Array) -> bytes:
         """Return the message for ``values``, in the order of the variables."""
-        buffer = self._buffer
-        places, where = self._doubles
-        if len(places):
-            buffer[where] = values[places].view(np.uint8).reshape(-1, 8)
-        places, where = self._integers
-        if len(places):
-            buffer[where] = values[places].astype(np.int32).view(np.uint8).reshape(-1, 4)
-        places, where = self._enums
-        if len(places):
-            bits = values[places].astype(np.int64)[:, None] >> SHIFTS
-            buffer[where] = (bits & LOW_BITS) | CONTINUES
-        places, where = self._booleans
-        if len(places):
-            buffer[where] = (values[places] != 0.0)[:, None]
-        return buffer.tobytes()
+        return self.rows(values[None, :]).tobytes()
+
+    def rows(self, values: Array) -> NDArray[np.uint8]:
+        """Return one message per row of ``values`` (n, variables), all of the same size."""
+        count = len(values)
+        messages = np.repeat(self._template, count, axis=0)
+        for kind, (places, where) in self.layout.items():
+            if not len(places):
+                continue
+            chosen = np.take(values, places, axis=1)
+            if kind == "double":
+                raw = chosen.view(np.uint8)
+            elif kind == "int":
+                raw = chosen.astype(np.int32).view(np.uint8)
+            elif kind == "bool":
+                raw = (chosen != 0.0).astype(np.uint8)
+            else:
+                bits = chosen.astype(np.int64)[:, :, None] >> SHIFTS
+                raw = ((bits & LOW_BITS) | CONTINUES).astype(np.uint8)
+            messages[:, where.ravel()] = raw.reshape(count, -1)
+        return messages
 
     def _message(self, fields: dict[str, Any], start: int) -> bytes:
         """Return the template of a message whose first byte stands at ``start``; note where values go."""

@@ -21,7 +21,9 @@ def run(arguments: argparse.Namespace) -> int:
     """Print names, expected outcomes and titles. Returns 0."""
     scenarios = [load_scenario(name) for name in scenario_names()]
     if arguments.json:
-        rows = [{"name": item.name, "title": item.title, "expect": item.expect, "file": item.file} for item in scenarios]
+        rows = [
+            {"name": item.name, "title": item.title, "expect": item.expect, "file": item.file} for item in scenarios
+        ]
         print(json.dumps({"scenarios": rows, "cars": car_names()}, indent=2))
         return 0
     out = console()

@@ -10,7 +10,9 @@ from orchestrator.recover import recover
 def add_parser(subparsers: Any) -> argparse.ArgumentParser:
     """Add the command."""
     parser: argparse.ArgumentParser = subparsers.add_parser(
-        "recover", help="mend the log of a killed run", epilog="example:\n  apa recover runs/guo2015-case4/run.mcap.part"
+        "recover",
+        help="mend the log of a killed run",
+        epilog="example:\n  apa recover runs/guo2015-case4/run.mcap.part",
     )
     parser.add_argument("file", type=Path, help="a log, usually run.mcap.part")
     return parser

@@ -41,8 +41,7 @@ class Transfer:
         names = [ports.names[place] for place in self.places]
         self.count = len(names)
         self.array: Any = ((ctypes.c_double if kind is float else ctypes.c_int32) * max(self.count, 1))()
-        self.view: np.ndarray[Any, Any] = np.frombuffer(self.array, dtype=np.float64 if kind is float else np.int32)
-        self.view = self.view[: self.count]
+        self.view: Any = np.ctypeslib.as_array(self.array)[: self.count]
         self.references = (ctypes.c_uint32 * max(self.count, 1))(*[references[name] for name in names])
         pointer = ctypes.c_void_p
         self.function = function

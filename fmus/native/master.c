@@ -1,0 +1,140 @@
+/* The exchange of orchestrator/master.py as one call: read all outputs, copy them to the connected
+ * inputs, write down every array, write all inputs, step all. Drives FMUs through the pointers to
+ * their FMI 2.0 functions and knows nothing else of them. Holds no lock and no static data.
+ */
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include "fmi2.h"
+
+#define NANOSECONDS 1e9
+
+/* All variables of one FMI type and one direction: one call. */
+typedef struct {
+    int (*call)(void *component, const uint32_t *references, size_t count, void *buffer);
+    const uint32_t *references;
+    void *buffer;          /* doubles if real, else 32-bit integers */
+    const int64_t *places; /* where the values sit in the slave's array */
+    int64_t count;
+    int64_t real;
+} Transfer;
+
+typedef struct {
+    void *component;
+    int (*do_step)(void *component, double time, double step, int no_rollback);
+    double *inputs;
+    double *outputs;
+    int64_t input_count;
+    int64_t output_count;
+    const Transfer *gets;
+    const Transfer *sets;
+    int64_t get_count;
+    int64_t set_count;
+    int64_t every; /* stepped every n-th time, by n communication steps */
+} Slave;
+
+/* All signals from one slave to another. */
+typedef struct {
+    int64_t source;
+    int64_t target;
+    const int64_t *source_places;
+    const int64_t *target_places;
+    int64_t count;
+} Link;
+
+typedef enum { NOTHING, FETCH, SEND, STEP } Failure;
+
+typedef struct {
+    const Slave *slaves;
+    const Link *links;
+    int64_t slave_count;
+    int64_t link_count;
+    int64_t step_ns;
+    int64_t last;    /* number of the last exchange; nothing is stepped after it */
+    int64_t failed;  /* out: number of the slave that refused */
+    int64_t failure; /* out: in what, see Failure */
+} Run;
+
+static int fetch(const Slave *slave) {
+    for (int64_t g = 0; g < slave->get_count; g++) {
+        const Transfer *get = &slave->gets[g];
+        if (get->call(slave->component, get->references, (size_t)get->count, get->buffer) > fmi2Warning) return 0;
+        for (int64_t i = 0; i < get->count; i++)
+            slave->outputs[get->places[i]] =
+                get->real ? ((const double *)get->buffer)[i] : (double)((const int32_t *)get->buffer)[i];
+    }
+    return 1;
+}
+
+static int send(const Slave *slave) {
+    for (int64_t s = 0; s < slave->set_count; s++) {
+        const Transfer *set = &slave->sets[s];
+        for (int64_t i = 0; i < set->count; i++) {
+            double value = slave->inputs[set->places[i]];
+            if (set->real)
+                ((double *)set->buffer)[i] = value;
+            else
+                ((int32_t *)set->buffer)[i] = (int32_t)value;
+        }
+        if (set->call(slave->component, set->references, (size_t)set->count, set->buffer) > fmi2Warning) return 0;
+    }
+    return 1;
+}
+
+static double *record(const Run *run, double *row) {
+    for (int64_t k = 0; k < run->slave_count; k++) {
+        const Slave *slave = &run->slaves[k];
+        memcpy(row, slave->inputs, (size_t)slave->input_count * sizeof *row);
+        row += slave->input_count;
+        memcpy(row, slave->outputs, (size_t)slave->output_count * sizeof *row);
+        row += slave->output_count;
+    }
+    return row;
+}
+
+static int fail(Run *run, int64_t slave, Failure failure) {
+    run->failed = slave;
+    run->failure = failure;
+    return 0;
+}
+
+/* Everything up to the moment at which all arrays are as they are at this exchange. */
+static int exchange(Run *run, int64_t number) {
+    for (int64_t k = 0; k < run->slave_count; k++)
+        if (number % run->slaves[k].every == 0 && !fetch(&run->slaves[k])) return fail(run, k, FETCH);
+    for (int64_t l = 0; l < run->link_count; l++) {
+        const Link *link = &run->links[l];
+        if (number % run->slaves[link->target].every) continue;
+        for (int64_t i = 0; i < link->count; i++)
+            run->slaves[link->target].inputs[link->target_places[i]] =
+                run->slaves[link->source].outputs[link->source_places[i]];
+    }
+    return 1;
+}
+
+static int advance(Run *run, int64_t number) {
+    double time = (double)(number * run->step_ns) / NANOSECONDS;
+    for (int64_t k = 0; k < run->slave_count; k++)
+        if (number % run->slaves[k].every == 0 && !send(&run->slaves[k])) return fail(run, k, SEND);
+    for (int64_t k = 0; k < run->slave_count; k++) {
+        const Slave *slave = &run->slaves[k];
+        if (number % slave->every) continue;
+        double step = (double)(slave->every * run->step_ns) / NANOSECONDS;
+        if (slave->do_step(slave->component, time, step, fmi2True) > fmi2Warning) return fail(run, k, STEP);
+    }
+    return 1;
+}
+
+/* Do the exchanges numbered first, first + 1 ... at most `count` of them, stepping after each, and
+ * return how many rows were written to `rows`. Fewer than asked: `last` is reached, or a slave refused. */
+FMI2_EXPORT int64_t master_run(Run *run, int64_t first, int64_t count, double *rows) {
+    run->failure = NOTHING;
+    for (int64_t done = 0; done < count; done++) {
+        int64_t number = first + done;
+        if (!exchange(run, number)) return done;
+        rows = record(run, rows);
+        if (number == run->last || !advance(run, number)) return done + 1;
+    }
+    return count;
+}

@@ -4,7 +4,7 @@ import difflib
 from collections.abc import Iterable
 
 
-class BadInput(ValueError):
+class BadInput(ValueError):  # noqa: N818 - said as it is
     """Something the user wrote is wrong: file, key, value, what would be right. Exit code 2."""
 
     def __init__(self, text: str, *, file: object = None, key: str | None = None) -> None:

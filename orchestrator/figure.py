@@ -1,6 +1,7 @@
 """overview.png: the four panels of the paper, the path with the car drawn along it, and a ribbon of chart states."""
 
 import math
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -33,7 +34,7 @@ PHASE_COLOURS = {
     "TAKEOVER": "#444a52",
 }
 SPARE_COLOURS = ("#4f7cac", "#9c6644", "#5c946e", "#a65e9c", "#787f3e", "#b56576")
-STYLE: dict[str, Any] = {
+STYLE: Any = {
     "font.size": 9.0,
     "axes.edgecolor": GREY,
     "axes.labelcolor": INK,
@@ -79,7 +80,8 @@ def draw(recording: Recording, summary: Summary, scenario: Scenario, path: Path)
 def _title(summary: Summary, scenario: Scenario) -> str:
     final = summary.final
     return (
-        f"{scenario.name}: {summary.outcome.replace('_', ' ')} after {summary.duration:.1f} s, {summary.shifts} shifts; "
+        f"{scenario.name}: {summary.outcome.replace('_', ' ')} after {summary.duration:.1f} s, "
+        f"{summary.shifts} shifts; "
         f"{final.lateral_error * 100:+.1f} cm lateral, {final.heading_error / DEGREE:+.2f} deg"
     )
 
@@ -151,7 +153,7 @@ def _ribbon(axis: Any, recording: Recording) -> list[str]:
     phases = _signal(recording, "controller.phase")
     edges = [0, *(row for row, _, _ in phase_changes(recording)), len(t) - 1]
     names: dict[str, None] = {}
-    for first, last in zip(edges, edges[1:], strict=False):
+    for first, last in pairwise(edges):
         value = phases[first]
         name = states.get(int(value), f"{value:g}") if math.isfinite(value) else "unknown"
         names[name] = None

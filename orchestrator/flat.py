@@ -1,4 +1,4 @@
-"""From nested YAML sections to the flat names of a model: ``{driver: {profile: [[0, 1.5]]}}`` -> ``driver.profile[1].at``."""
+"""From nested YAML sections to flat names: ``{driver: {profile: [[0, 1.5]]}}`` -> ``driver.profile[1].at``."""
 
 from collections.abc import Iterable, Mapping
 

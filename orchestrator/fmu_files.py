@@ -27,10 +27,10 @@ def build(kind: str) -> list[str]:
     from fmus.build import DIST, build_all
 
     before = sources_hash()
-    lines = [
-        f"{built.path}  {built.path.stat().st_size / 1024:.0f} KiB  {built.guid}{'' if built.changed else '  unchanged'}"
-        for built in build_all(kinds=(kind,))
-    ]
+    lines = []
+    for built in build_all(kinds=(kind,)):
+        size = f"{built.path.stat().st_size / 1024:.0f} KiB"
+        lines.append(f"{built.path}  {size}  {built.guid}{'' if built.changed else '  unchanged'}")
     (DIST / kind / "sources.sha256").write_text(before, encoding="ascii")
     return lines
 

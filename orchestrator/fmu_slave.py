@@ -53,6 +53,7 @@ class Transfer:
         )
 
     def __call__(self) -> int:
+        """Make the call and return its FMI status."""
         return int(self.function(*self._arguments))
 
 

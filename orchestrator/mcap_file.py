@@ -172,7 +172,7 @@ class McapFile:
             message_index_length=0,
             message_index_offsets={},
         )
-        builder = RecordBuilder()
+        builder: Any = RecordBuilder()
         for channel, entries in self._entries.items():
             index.message_index_offsets[channel] = self._size + len(chunk) + builder.count
             MessageIndex(channel_id=channel, records=entries).write(builder)
@@ -204,6 +204,7 @@ class McapFile:
 
 
 def _bytes(record: Any) -> bytes:
-    builder = RecordBuilder()
+    builder: Any = RecordBuilder()
     record.write(builder)
-    return builder.end()
+    written: bytes = builder.end()
+    return written

@@ -67,7 +67,12 @@ def from_json(text: str) -> list[Variable]:
     """Return the variables that a channel's metadata describes (see ``recording.to_json``)."""
     result = []
     for row in json.loads(text):
-        states = IntEnum(row["states"]["name"], row["states"]["values"]) if row["states"] else None  # type: ignore[misc]
+        states = _enum(row["states"]) if row["states"] else None
         signal = Signal(row["unit"], row["text"], states=states)
         result.append(Variable(row["name"], KINDS[row["type"]], signal, KINDS[row["type"]]()))
     return result
+
+
+def _enum(states: dict[str, Any]) -> type[IntEnum]:
+    made: Any = IntEnum(states["name"], states["values"])
+    return made  # type: ignore[no-any-return]

@@ -52,7 +52,7 @@ class _Copier:
     """Copies records from a stream that may end anywhere into a new file."""
 
     def __init__(self, stream: Any) -> None:
-        self._writer = Writer(stream, chunk_size=CHUNK_SIZE)
+        self._writer: Any = Writer(stream, chunk_size=CHUNK_SIZE)
         self._writer.start(profile="", library=LIBRARY)
         self._schemas: dict[int, int] = {0: 0}
         self._channels: dict[int, int] = {}

@@ -12,12 +12,17 @@ from orchestrator.errors import BadInput, suggestion
 from orchestrator.flat import flatten_section, merge_flat
 from orchestrator.models import MODELS
 from orchestrator.quantities import scalar
-from orchestrator.scenario import Limit, Scenario
+from orchestrator.requirements import Requirement
+from orchestrator.scenario import Scenario
 from orchestrator.yaml_file import explain, read_mapping, read_yaml
 
 ROOM = Path(__file__).parent
 FIELDS = [*(name for name in Scenario.model_fields if name != "file"), "target"]
 INHERITED_NOT = ("name", "title", "description", "base")
+
+
+Layer = tuple[dict[str, Any], object]
+"""What one file says, and the file."""
 
 
 class _Given(NamedTuple):
@@ -61,7 +66,7 @@ def load_scenario(name: str, sets: Iterable[str] = ()) -> Scenario:
         raise explain(error, path, FIELDS) from None
 
 
-def _layers(path: Path, seen: tuple[Path, ...]) -> list[tuple[dict[str, Any], Path]]:
+def _layers(path: Path, seen: tuple[Path, ...]) -> list[Layer]:
     """Return the file at ``path`` below it its bases, lowest first."""
     if path in seen:
         raise BadInput(f"inherits from itself by way of {', '.join(item.stem for item in seen)}", file=path, key="base")
@@ -71,7 +76,7 @@ def _layers(path: Path, seen: tuple[Path, ...]) -> list[tuple[dict[str, Any], Pa
     return [*below, (content, path)]
 
 
-def _car_layer(car: object, path: Path) -> list[tuple[dict[str, Any], Path]]:
+def _car_layer(car: object, path: Path) -> list[Layer]:
     if car is None:
         return []
     file = _find(str(car), "cars", "car", path.parent)
@@ -82,7 +87,7 @@ def _car_layer(car: object, path: Path) -> list[tuple[dict[str, Any], Path]]:
     return [(content, file)]
 
 
-def _parameters(owner: str, layers: list[tuple[dict[str, Any], Any]], seed: object) -> dict[str, Any]:
+def _parameters(owner: str, layers: list[Layer], seed: object) -> dict[str, Any]:
     known = variables(MODELS[owner].params)
     names = [variable.name for variable in known]
     given: dict[str, object] = {}
@@ -94,7 +99,7 @@ def _parameters(owner: str, layers: list[tuple[dict[str, Any], Any]], seed: obje
             section = {**section, "target": content["target"]}
         flat = flatten_section(section, names, file=file, key=owner)
         given = merge_flat(given, {name: _Given(value, file) for name, value in flat.items()})
-    result = {
+    result: dict[str, Any] = {
         variable.name: _value(variable, given[variable.name], owner) for variable in known if variable.name in given
     }
     for variable in known:
@@ -118,9 +123,10 @@ def _limits(given: object, path: Path) -> list[dict[str, Any]]:
         if isinstance(item, str):
             file = _find(item, "limits", "set of limits", path.parent)
             try:
-                result += [Limit(**entry).model_dump() for entry in read_yaml(file) or []]
+                entries = [Requirement.model_validate(entry) for entry in read_yaml(file) or []]
             except ValidationError as error:
-                raise explain(error, file, list(Limit.model_fields)) from None
+                raise explain(error, file, list(Requirement.model_fields)) from None
+            result += [entry.model_dump(by_alias=True, exclude_none=True) for entry in entries]
         else:
             result.append(item)
     return result
@@ -137,9 +143,7 @@ def _set_layer(sets: Iterable[str]) -> dict[str, Any]:
         except yaml.YAMLError:
             parsed = value
         owner, dot, name = key.partition(".")
-        if owner in MODELS and dot:
-            layer.setdefault(owner, {})[name] = parsed
-        elif owner in ("target", "slot", "every") and dot:
+        if dot and owner in (*MODELS, "target", "slot", "every"):
             layer.setdefault(owner, {})[name] = parsed
         else:
             layer[key] = parsed

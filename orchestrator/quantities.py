@@ -46,6 +46,15 @@ def number(value: object, unit: str, *, file: object = None, key: str | None = N
     return magnitude * factor
 
 
+def measured(value: object, *, file: object = None, key: str | None = None) -> tuple[float, str | None]:
+    """Return ``value`` in SI and the SI unit its text has (None if it has none). Raises ``BadInput``."""
+    match = QUANTITY.match(value) if isinstance(value, str) else None
+    if match is None or not match[2]:
+        return number(value, "1", file=file, key=key), None
+    unit = FACTORS[match[2]][0] if match[2] in FACTORS else match[2]
+    return number(value, unit, file=file, key=key), unit
+
+
 def scalar(value: object, variable: Variable, *, file: object = None) -> float | int | bool:
     """Return ``value`` as the type of ``variable``: numbers with unit, names of states, true and false.
 

@@ -1,12 +1,13 @@
 """A scenario: what is parked where, by what, for how long, with which faults, judged by which limits."""
 
-from typing import Any, Literal
+from typing import Literal
 
 from pydantic import BaseModel, ConfigDict, Field, field_validator, model_validator
 
 from orchestrator.errors import BadInput
 from orchestrator.faults import Fault
 from orchestrator.quantities import Seconds, number
+from orchestrator.requirements import Requirement
 
 Outcome = Literal["parked", "not_parked", "failed", "aborted"]
 NANOSECONDS = 1_000_000_000
@@ -36,43 +37,6 @@ class Slot(_Strict):
         return number(value, "rad")
 
 
-class Limit(_Strict):
-    """One check: the largest absolute value (or the smallest value) allowed, and who says so."""
-
-    id: str
-    signal: str | None = None
-    """``vehicle.speed``: judged over the whole run."""
-    summary: str | None = None
-    """``final.lateral_error``, ``shifts``, ``duration``: a number of the summary."""
-    max: float | None = None
-    """Largest absolute value allowed."""
-    min: float | None = None
-    """Smallest value allowed."""
-    unit: str = "1"
-    source: str
-    required: bool = True
-    """A run counts as parked only if every required check passes."""
-
-    @model_validator(mode="before")
-    @classmethod
-    def _quantities(cls, data: Any) -> Any:
-        if not isinstance(data, dict):
-            raise BadInput(f"{data!r}: expected the name of a set of limits or a mapping with id, max, source")
-        converted = dict(data)
-        for key in ("max", "min"):
-            if converted.get(key) is not None:
-                converted[key] = number(converted[key], str(converted.get("unit", "1")), key=key)
-        return converted
-
-    @model_validator(mode="after")
-    def _complete(self) -> "Limit":
-        if (self.signal is None) == (self.summary is None):
-            raise BadInput("expected exactly one of signal and summary")
-        if (self.max is None) == (self.min is None):
-            raise BadInput("expected exactly one of max and min")
-        return self
-
-
 class Scenario(_Strict):
     """A scenario with its base, car and ``--set`` values merged in; parameters by flat name, in SI units."""
 
@@ -92,7 +56,7 @@ class Scenario(_Strict):
     controller: dict[str, float | int | bool] = {}
     slot: Slot | None = None
     faults: list[Fault] = []
-    limits: list[Limit] = []
+    limits: list[Requirement] = []
     expect: Outcome = "parked"
     """The outcome this scenario is meant to have."""
     file: str = ""

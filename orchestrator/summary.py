@@ -11,10 +11,10 @@ import numpy as np
 from pydantic import BaseModel, ConfigDict
 
 from orchestrator.endings import FINAL_PHASES
-from orchestrator.errors import BadInput, suggestion
 from orchestrator.geometry import in_frame
+from orchestrator.judge import Check, judge
 from orchestrator.recording import Recording
-from orchestrator.scenario import Limit, Outcome, Scenario
+from orchestrator.scenario import Outcome, Scenario
 from orchestrator.scene import pose_of
 
 
@@ -43,22 +43,6 @@ class Event(_Part):
     x: float
     y: float
     heading: float
-
-
-class Check(_Part):
-    """One limit and how the run stands against it."""
-
-    id: str
-    limit: float
-    value: float
-    passed: bool
-    source: str
-    unit: str
-    margin: float
-    """Distance to the limit, negative beyond it."""
-    required: bool
-    t: float
-    """When the value occurred [s]."""
 
 
 class FmuUsed(_Part):
@@ -100,33 +84,37 @@ class Summary(_Part):
 
 def summarize(recording: Recording, scenario: Scenario, wall_time: float) -> Summary:
     """Return the summary of a run. Raises ``BadInput`` if a limit names a signal that does not exist."""
-    t = recording.t
-    duration = float(t[-1]) if len(t) else 0.0
-    numbers = {
-        "duration": duration,
-        "shifts": _last(recording, "controller.shifts", 0.0),
-        "max_speed": _largest(recording, "vehicle.speed"),
-    }
-    final = _final(recording)
-    numbers.update({f"final.{name}": value for name, value in final.model_dump().items()})
-    checks = [_check(limit, recording, numbers, scenario.file) for limit in scenario.limits]
+    numbers = numbers_of(recording)
+    checks = judge(scenario.limits, recording, numbers, scenario.file)
     outcome, reason = _outcome(recording, checks)
     return Summary(
         scenario=scenario.name,
         outcome=outcome,
         reason=reason,
-        duration=duration,
+        duration=numbers["duration"],
         shifts=int(numbers["shifts"]),
         max_speed=numbers["max_speed"],
-        final=final,
+        final=_final(recording),
         events=_events(recording),
         checks=checks,
         fmus=[FmuUsed(**item) for item in recording.info.get("fmus", [])],
         wall_time=wall_time,
-        real_time_factor=duration / wall_time if wall_time > 0.0 else 0.0,
+        real_time_factor=numbers["duration"] / wall_time if wall_time > 0.0 else 0.0,
         seed=scenario.seed,
         versions=recording.info.get("versions", {}),
     )
+
+
+def numbers_of(recording: Recording) -> dict[str, float]:
+    """Return the numbers that requirements may name: duration [s], shifts, max_speed [m/s], final.x and so on."""
+    final = {f"final.{name}": value for name, value in _final(recording).model_dump().items()}
+    t = recording.t
+    return {
+        "duration": float(t[-1]) if len(t) else 0.0,
+        "shifts": _last(recording, "controller.shifts", 0.0),
+        "max_speed": _largest(recording, "vehicle.speed"),
+        **final,
+    }
 
 
 def phase_changes(recording: Recording) -> list[tuple[int, str, str]]:
@@ -183,48 +171,6 @@ def _outcome(recording: Recording, checks: list[Check]) -> tuple[Outcome, str]:
     if phase in FINAL_PHASES:
         return "not_parked", phase.lower()
     return "not_parked", f"stop time reached in {phase.lower()}"
-
-
-def _check(limit: Limit, recording: Recording, numbers: dict[str, float], file: str) -> Check:
-    if limit.signal is not None:
-        if limit.signal not in recording.signals:
-            hint = suggestion(limit.signal, recording.signals)
-            raise BadInput(
-                f"no signal of this name{hint}", file=file, key=f"limits: {limit.id}: signal: {limit.signal}"
-            )
-        values, times = recording.signals[limit.signal], recording.t
-    else:
-        key = str(limit.summary)
-        if key not in numbers:
-            hint = suggestion(key, numbers) or f"; known are {', '.join(numbers)}"
-            raise BadInput(f"no such number{hint}", file=file, key=f"limits: {limit.id}: summary: {key}")
-        values, times = np.array([numbers[key]]), np.array([numbers["duration"]])
-    return _judge(limit, values, times)
-
-
-def _judge(limit: Limit, values: np.ndarray[Any, Any], times: np.ndarray[Any, Any]) -> Check:
-    """Return the check at the worst value; NaN is the worst there is and passes nothing."""
-    if not len(values):
-        worst, bound, margin, when = math.nan, limit.max if limit.max is not None else limit.min, math.nan, 0.0
-    else:
-        if limit.max is not None:
-            bound, margins = limit.max, limit.max - np.abs(values)
-        else:
-            assert limit.min is not None
-            bound, margins = limit.min, values - limit.min
-        row = int(np.argmin(np.where(np.isnan(margins), -np.inf, margins)))
-        worst, margin, when = float(values[row]), float(margins[row]), float(times[row])
-    return Check(
-        id=limit.id,
-        limit=float(bound or 0.0),
-        value=worst,
-        passed=margin >= 0.0,
-        source=limit.source,
-        unit=limit.unit,
-        margin=margin,
-        required=limit.required,
-        t=when,
-    )
 
 
 def _last(recording: Recording, name: str, default: float) -> float:

@@ -8,6 +8,7 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
+from orchestrator.judge import Check
 from orchestrator.master import End
 from orchestrator.quantities import DEGREE
 from orchestrator.summary import Summary
@@ -15,6 +16,7 @@ from orchestrator.summary import Summary
 PARKED, NOT_PARKED, BAD_INPUT, INTERRUPTED = 0, 1, 2, 130
 """Exit codes."""
 COLOURS = {"parked": "bold green", "not_parked": "bold yellow", "failed": "bold red", "aborted": "bold red"}
+SIGNS = {"max": "\u2264", "min": "\u2265", "max_abs": "\u00b1", "equals": "="}
 PROGRESS_PERIOD_NS = 500_000_000
 
 
@@ -59,19 +61,21 @@ def print_summary(summary: Summary, title: str, expected: str) -> None:
         f"{final.heading_error / DEGREE:+.2f} deg, wheel {final.steering_wheel_angle / DEGREE:+.1f} deg"
     )
     if summary.checks:
-        out.print(_checks(summary, out))
+        out.print(checks_table(summary.checks, out))
     out.print(f"{summary.wall_time:.2f} s of computing, {summary.real_time_factor:.0f} times real time")
 
 
-def _checks(summary: Summary, out: Console) -> Table:
+def checks_table(checks: list[Check], out: Console) -> Table:
+    """Return the checks as a table."""
     table = Table(box=None if not out.is_terminal else Table().box, pad_edge=out.is_terminal)
     for name, justify in (("check", "left"), ("value", "right"), ("limit", "right"), ("margin", "right"), ("", "left")):
         table.add_column(name, justify=justify)  # type: ignore[arg-type]
     table.add_column("source")
-    for check in summary.checks:
+    for check in checks:
         verdict = "[green]pass[/]" if check.passed else "[red]MISS[/]" if check.required else "[yellow]miss[/]"
-        numbers = [readable(number, check.unit) for number in (check.value, check.limit, check.margin)]
-        table.add_row(check.id, *numbers, verdict, check.source)
+        value = check.note or readable(check.value, check.unit)
+        limit = f"{SIGNS[check.condition]} {readable(check.limit, check.unit)}"
+        table.add_row(check.id, value, limit, readable(check.margin, check.unit), verdict, check.source)
     return table
 
 

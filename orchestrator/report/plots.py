@@ -4,8 +4,8 @@ from typing import Any
 
 import numpy as np
 
+from orchestrator.judge import Check
 from orchestrator.recording import Recording
-from orchestrator.summary import Check
 
 DEGREE = 0.017453292519943295
 GROUPS: tuple[tuple[str, str, float, tuple[str, ...]], ...] = (
@@ -43,8 +43,13 @@ def plots_of(recordings: list[Recording], checks: list[Check], more: list[str]) 
 
 
 def _plot(title: str, unit: str, least: float, signals: list[str], checks: list[Check]) -> dict[str, Any]:
-    limits: list[float] = []
+    limits = sorted({bound for check in checks if check.signal in signals for bound in _bounds(check)})
     return {"title": title, "unit": unit, "least": least, "signals": signals, "limits": limits}
+
+
+def _bounds(check: Check) -> list[float]:
+    """Return the horizontal lines that show a limit."""
+    return [check.limit, -check.limit] if check.condition == "max_abs" else [check.limit]
 
 
 def _alive(recording: Recording, name: str) -> bool:

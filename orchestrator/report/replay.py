@@ -3,6 +3,7 @@
 from pathlib import Path
 from typing import Any
 
+from orchestrator.judge import Check
 from orchestrator.quantities import DEGREE
 from orchestrator.recording import Recording
 from orchestrator.report.page import page
@@ -10,8 +11,8 @@ from orchestrator.report.payload import Arrays
 from orchestrator.report.plots import plots_of
 from orchestrator.report.run_data import ribbons_of, run_data
 from orchestrator.report.words import Line
-from orchestrator.summary import Check, Summary
-from orchestrator.terminal import readable
+from orchestrator.summary import Summary
+from orchestrator.terminal import SIGNS, readable
 
 MOST_ROWS = (2400, 1200, 600)
 LARGEST_PAGE = 1_000_000
@@ -84,8 +85,8 @@ def check_rows(checks: list[Check]) -> list[dict[str, Any]]:
             "id": check.id,
             "passed": check.passed,
             "required": check.required,
-            "value_text": readable(check.value, check.unit),
-            "limit_text": readable(check.limit, check.unit),
+            "value_text": check.note or readable(check.value, check.unit),
+            "limit_text": f"{SIGNS[check.condition]} {readable(check.limit, check.unit)}",
             "margin_text": readable(check.margin, check.unit),
             "t": check.t,
             "source": check.source,

@@ -12,6 +12,7 @@ import threading
 from typing import Any
 
 PINNED = threading.local()
+LOCK = threading.Lock()
 KEPT: list[Any] = []
 """Slaves with a spare reference each, and one to their log."""
 FREED_AFTER_EXCEPTION = 2
@@ -29,6 +30,18 @@ def pin_thread() -> None:
 
 def keep(slave: Any) -> None:
     """Give ``slave``, its log, its class and its script a spare reference; take those of freed slaves back."""
+    cls = type(slave)
+    spare = [slave, slave.log_queue, cls]
+    if cls.__module__ in sys.modules:
+        spare.append(vars(sys.modules[cls.__module__]))
+    for item in spare:
+        _add_reference(item, 1)
+    with LOCK:
+        _take_back()
+        KEPT.append(slave)
+
+
+def _take_back() -> None:
     for place in reversed(range(len(KEPT))):
         count = sys.getrefcount(KEPT[place])
         if count <= FREED:
@@ -36,13 +49,6 @@ def keep(slave: Any) -> None:
             if count == FREED:
                 _add_reference(freed.log_queue, -1)
                 _add_reference(freed, -1)
-    cls = type(slave)
-    spare = [slave, slave.log_queue, cls]
-    if cls.__module__ in sys.modules:
-        spare.append(vars(sys.modules[cls.__module__]))
-    for item in spare:
-        _add_reference(item, 1)
-    KEPT.append(slave)
 
 
 def tidy_path(resources: str | None) -> None:

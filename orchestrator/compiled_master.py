@@ -6,7 +6,8 @@ and endings see them as if they had been there: log, recording and progress bar 
 An ending in mid-block means that the FMUs have run on for the rest of it; nobody looks at that.
 
 It covers FMUs of any kind. Faults change inputs between exchange and step, so a run with
-manipulators, or with a model in process, takes the Python loop.
+manipulators, or with a model in process, takes the Python loop; so does one on a machine where
+the compiled loop cannot be built.
 """
 
 import ctypes
@@ -69,10 +70,13 @@ class CompiledMaster(Master):
         fmus = [slave for slave in self.slaves if isinstance(slave, FmuSlave)]
         if self.manipulators or len(fmus) < len(self.slaves):
             return super().run()
-        return self._run_blocks(fmus)
+        try:
+            plan = _Plan(self, fmus)
+        except RuntimeError:
+            return super().run()
+        return self._run_blocks(fmus, plan)
 
-    def _run_blocks(self, fmus: list[FmuSlave]) -> End:
-        plan = _Plan(self, fmus)
+    def _run_blocks(self, fmus: list[FmuSlave], plan: "_Plan") -> End:
         views = plan.views(fmus)
         first = 0
         while True:

@@ -53,9 +53,10 @@ class State(NamedTuple):
 
 
 def initialize(params: Params) -> tuple[State, Output]:
+    count = 0
     if params.broken:
-        print(1.0 / (params.mass - params.mass))
-    state = State(params.start, seed_state(params.seed), 0, 0)
+        count = int(1.0 / (params.mass - params.mass))
+    state = State(params.start, seed_state(params.seed), 0, count)
     return state, Output(params.start, 0.0, int(Mode.SLEEPING), 0, False)
 
 

@@ -1,0 +1,91 @@
+import shutil
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from orchestrator.load_scenario import load_scenario
+from orchestrator.report.replay import replay_page
+from orchestrator.report.words import Line
+from orchestrator.session import run_scenario
+from orchestrator.summary import summarize
+
+FLAGS = [
+    "--headless",
+    "--no-sandbox",
+    "--disable-gpu",
+    "--disable-quic",
+    "--no-first-run",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+]
+EVIL = "<script>window.evil = 1</script><img src=x onerror='window.evil = 1'>"
+
+
+@pytest.fixture(scope="session")
+def case4():
+    """Recording and summary of case 4, run in process, with a hostile title."""
+    scenario = load_scenario("guo2015-case4").model_copy(update={"title": f"{EVIL} & case 4"})
+    ran = run_scenario(scenario)
+    return ran.recording, summarize(ran.recording, scenario, ran.wall_time)
+
+
+@pytest.fixture(scope="session")
+def replay(case4, tmp_path_factory) -> Path:
+    """The replay page of that run, with a hostile message."""
+    path: Path = tmp_path_factory.mktemp("replay") / "report.html"
+    path.write_text(replay_page(*case4, [Line(1.0, "warning", "model", EVIL)]), encoding="utf-8")
+    return path
+
+
+def chromium() -> str | None:
+    """Return the path of an installed Chromium or Chrome."""
+    names = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable", "chrome")
+    return next((path for path in map(shutil.which, names) if path), None)
+
+
+@pytest.fixture(scope="session")
+def browser() -> Iterator[Any]:
+    """A headless Chromium; without one the tests that need it are skipped."""
+    program = chromium()
+    if program is None:
+        pytest.skip("no Chromium found (Debian: apt-get install chromium)")
+    api = pytest.importorskip("playwright.sync_api", reason="the package playwright is not installed")
+    with api.sync_playwright() as play:
+        session = play.chromium.launch(executable_path=program, args=FLAGS)
+        yield session
+        session.close()
+
+
+class Seen:
+    """What a page did that it should not have done."""
+
+    def __init__(self, page: Any) -> None:
+        self.console: list[str] = []
+        self.requests: list[str] = []
+        page.on("console", lambda message: self.console.append(f"{message.type}: {message.text}"))
+        page.on("pageerror", lambda error: self.console.append(f"error: {error}"))
+        page.on("request", lambda request: self.requests.append(request.url))
+
+
+@pytest.fixture
+def show(browser):
+    """Open a page file: returns (page, what it did); closed after the test."""
+    contexts = []
+
+    def opened(
+        path: Path, fragment: str = "", width: int = 1280, height: int = 900, **options: Any
+    ) -> tuple[Any, Seen]:
+        context = browser.new_context(viewport={"width": width, "height": height}, **options)
+        contexts.append(context)
+        page = context.new_page()
+        seen = Seen(page)
+        page.goto(path.as_uri() + fragment)
+        page.wait_for_selector("html[data-ready]", timeout=20_000)
+        return page, seen
+
+    yield opened
+    for context in contexts:
+        context.close()

@@ -45,6 +45,7 @@ def faults(source, room):
     tree = ast.parse(source)
     inside = {id(node) for function in functions(tree) for part in function.body for node in ast.walk(part)}
     harmless = {id(node) for part in annotations_and_docstrings(tree) for node in ast.walk(part)}
+    harmless |= integer_remainders(tree)
     found = []
     for node in ast.walk(tree):
         if id(node) not in harmless:
@@ -79,6 +80,62 @@ def import_faults(node, in_function, room):
         if node.level or not (own or module in STANDARD | KIT):
             yield f"from {'.' * node.level}{module} import"
         yield from (f"from {module} import {alias.name}" for alias in node.names if alias.name in INEXACT | {"*"})
+
+
+def integer_remainders(tree):
+    """Return the ids of all ``a % b`` of integers: there CPython and compiled code agree."""
+    constants = integer_names(tree.body, set(), [])
+    found = set()
+    for scope in functions(tree):
+        arguments = scope.args.posonlyargs + scope.args.args + scope.args.kwonlyargs
+        body = [node for part in scope.body for node in ast.walk(part)]
+        known = integer_names(body, constants, arguments)
+        found |= {id(node) for node in ast.walk(scope) if is_remainder(node) and is_integer(node, known)}
+    return found
+
+
+def integer_names(nodes, known, arguments):
+    """Return ``known`` and all names that ``arguments`` and ``nodes`` bind to integers alone."""
+    bound = {item.arg: [ast.Constant(0) if is_name(item.annotation, "int") else None] for item in arguments}
+    for node in nodes:
+        if isinstance(node, ast.Assign | ast.AnnAssign):
+            for target in node.targets if isinstance(node, ast.Assign) else [node.target]:
+                parts = target.elts if isinstance(target, ast.Tuple) else [target]
+                for part in parts:
+                    if isinstance(part, ast.Name):
+                        bound.setdefault(part.id, []).append(node.value if part is target else None)
+        elif isinstance(node, ast.AugAssign) and isinstance(node.target, ast.Name):
+            bound.setdefault(node.target.id, []).append(node.value if not isinstance(node.op, ast.Div) else None)
+        elif isinstance(node, ast.For) and isinstance(node.target, ast.Name):
+            in_range = isinstance(node.iter, ast.Call) and is_name(node.iter.func, "range")
+            bound.setdefault(node.target.id, []).append(ast.Constant(0) if in_range else None)
+    known = known | set(bound)
+    for _ in bound:
+        known = known - {name for name, values in bound.items() if not all(is_integer(item, known) for item in values)}
+    return known
+
+
+def is_integer(node, known):
+    if isinstance(node, ast.Constant):
+        return type(node.value) is int
+    if isinstance(node, ast.BinOp):
+        whole = isinstance(node.op, ast.Add | ast.Sub | ast.Mult | ast.FloorDiv | ast.Mod)
+        return whole and is_integer(node.left, known) and is_integer(node.right, known)
+    if isinstance(node, ast.IfExp):
+        return is_integer(node.body, known) and is_integer(node.orelse, known)
+    if isinstance(node, ast.UnaryOp):
+        return is_integer(node.operand, known)
+    if isinstance(node, ast.Call):
+        return is_name(node.func, "int") or is_name(node.func, "len")
+    return isinstance(node, ast.Name) and node.id in known
+
+
+def is_remainder(node):
+    return isinstance(node, ast.BinOp) and isinstance(node.op, ast.Mod)
+
+
+def is_name(node, name):
+    return isinstance(node, ast.Name) and node.id == name
 
 
 def functions(tree):
@@ -137,6 +194,15 @@ def test_model_function_arguments_are_annotated(name):
 def test_the_rules_find_what_they_should(body, what):
     found = faults(f"def f(x: float) -> float:\n    {body}\n", "controller_fmu")
     assert any(what.split(" import")[0] in fault for fault in found)
+
+
+def test_remainders_of_integers_alone_are_allowed():
+    head = "N = 3\nM = 2.5\ndef f(x: float, n: int, m: int) -> float:\n    k = n // 2\n    k = k // N\n    m = x + m\n"
+    source = head + "    return {}\n"
+    for fine in ("n % 2", "k % N", "(n + 1) % 4", "int(x) % N"):
+        assert faults(source.format(fine), "vehicle_fmu") == []
+    for wrong in ("x % 2", "n % M", "n % 2.0", "(n / 2) % 2", "m % 2", "g % 2"):
+        assert faults(source.format(wrong), "vehicle_fmu") == ["7: %"]
 
 
 def test_docstrings_annotations_and_module_constants_are_allowed():

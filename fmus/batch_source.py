@@ -13,10 +13,11 @@ from fmus.flat_entry import scalars
 from modelkit.model import Model
 from modelkit.variables import Variable, constructor_source, variables
 
-How = Literal["last", "largest", "smallest", "travel"]
+How = Literal["last", "largest", "greatest", "smallest", "travel"]
 KEEP: dict[str, tuple[str, str]] = {
     "last": ("0.0", "{kept} = {now}"),
     "largest": ("0.0", "if abs({now}) > abs({kept}) or {now} != {now}:\n    {kept} = {now}"),
+    "greatest": ("{now}", "if {now} > {kept} or {now} != {now}:\n    {kept} = {now}"),
     "smallest": ("{now}", "if {now} < {kept} or {now} != {now}:\n    {kept} = {now}"),
     "travel": ("0.0", "{kept} += abs({now} - {before})\n{before} = {now}"),
 }
@@ -30,7 +31,7 @@ class Kept(NamedTuple):
     """One number kept of a run."""
 
     how: How
-    """``last``; ``largest`` absolute value, with its sign; ``smallest``; ``travel``: sum of absolute changes."""
+    """``last``; ``largest`` absolute value, with its sign; ``greatest``; ``smallest``; ``travel``: sum of absolute changes."""
     signal: str
     """An output, ``vehicle.speed``; or an input as its model saw it."""
 

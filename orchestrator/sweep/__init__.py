@@ -1,0 +1,1 @@
+"""Studies: thousands of runs of one scenario with parameters varied, in one table."""

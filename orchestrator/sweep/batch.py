@@ -1,0 +1,42 @@
+"""The compiled batch: every run is one call of machine code, on threads, on all cores. No FMU, no log."""
+
+import threading
+from functools import lru_cache
+
+import numpy as np
+
+from fmus.batch_source import Ending
+from fmus.batch_source import Kept as KeptSignal
+from fmus.compiled_batch import Rows, compiled_rows
+from modelkit.variables import variables
+from orchestrator.endings import STANDSTILL_SPEED, STANDSTILL_TIME_NS, final_phases
+from orchestrator.models import MODELS
+from orchestrator.slave import Array
+from orchestrator.sweep.job import Chunk, Job, arrays
+from orchestrator.sweep.kept import FIRST_KEPT, Kept
+
+_compiling = threading.Lock()
+
+
+def run_batch(job: Job, chunk: Chunk) -> Array:
+    """Return one row of kept numbers per run of ``chunk``. Scenarios with faults cannot be run so."""
+    rows = compiled(tuple(job.kept))
+    parameters, times = arrays(job, chunk)
+    out = np.empty((len(parameters), FIRST_KEPT + len(job.kept)))
+    rows(parameters, times, out)
+    return out
+
+
+def compiled(kept: tuple[Kept, ...]) -> Rows:
+    """Return the compiled runs, made once per process."""
+    with _compiling:
+        return _compiled(kept)
+
+
+@lru_cache
+def _compiled(kept: tuple[Kept, ...]) -> Rows:
+    phase = next(item for item in variables(MODELS["controller"].outputs) if item.name == "phase")
+    ending = Ending(
+        "controller.phase", tuple(final_phases(phase)), "vehicle.speed", STANDSTILL_SPEED, STANDSTILL_TIME_NS
+    )
+    return compiled_rows(MODELS, ending, [KeptSignal(item.how, item.signal) for item in kept])  # type: ignore[arg-type]

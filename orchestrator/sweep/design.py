@@ -1,0 +1,141 @@
+"""From a study to one line of numbers per run: grid points times samples, and a seed for each run.
+
+The samples are the same at every grid point (common random numbers), so that a difference between
+two points is the parameter's and not luck. The last grid key, then the sample, changes fastest.
+"""
+
+import hashlib
+import itertools
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.special import ndtr, ndtri
+from scipy.stats import qmc
+
+from modelkit.variables import Variable
+from orchestrator.errors import BadInput
+from orchestrator.quantities import number, scalar
+from orchestrator.scenario import Scenario
+from orchestrator.slave import Array
+from orchestrator.sweep.fields import Field, find_field
+from orchestrator.sweep.study import Range, Samples, Spread, Study
+
+MOST_RUNS = 100_000_000
+
+
+class Design(NamedTuple):
+    """All runs of a study."""
+
+    fields: list[Field]
+    values: Array
+    """(runs, fields), SI units; states and truth values as numbers."""
+    seeds: NDArray[np.int64]
+
+    def digest(self) -> str:
+        """Return a hash of everything: equal for equal designs."""
+        made = hashlib.sha256("\n".join(field.key for field in self.fields).encode())
+        made.update(np.ascontiguousarray(self.values).tobytes())
+        made.update(self.seeds.tobytes())
+        return made.hexdigest()
+
+
+class _Column(NamedTuple):
+    """Fields that share their values."""
+
+    fields: list[Field]
+    values: Array
+
+
+def make_design(study: Study, scenario: Scenario) -> Design:
+    """Return the design of ``study``. Raises ``BadInput`` for an unknown key or a value out of range."""
+    grid = [_grid_column(key, values, scenario) for key, values in study.runs.grid.items()]
+    sampled: list[_Column] = []
+    count = 1
+    for stream, samples in enumerate((study.runs.monte_carlo, study.runs.latin_hypercube)):
+        if samples is not None:
+            count = samples.n
+            sampled += _sampled_columns(samples, stream == 1, [study.seed, stream], scenario)
+    points = math.prod(len(column.values) for column in grid)
+    if points * count > MOST_RUNS:
+        raise BadInput(f"{points * count} runs, expected at most {MOST_RUNS}", key="runs")
+    columns = _crossed(grid, count) + [_Column(column.fields, np.tile(column.values, points)) for column in sampled]
+    fields = [field for column in columns for field in column.fields]
+    twice = sorted({field.key for field in fields if [item.key for item in fields].count(field.key) > 1})
+    if twice:
+        raise BadInput("is varied twice", key=f"runs: {twice[0]}")
+    lines = [column.values for column in columns for _ in column.fields]
+    values = np.column_stack(lines) if lines else np.empty((points * count, 0))
+    seeds = np.random.default_rng([study.seed, 2]).integers(1, 2**31 - 1, size=points * count)
+    return Design(fields, np.ascontiguousarray(values), seeds)
+
+
+def _crossed(grid: list[_Column], count: int) -> list[_Column]:
+    points = np.array(list(itertools.product(*[column.values for column in grid])), dtype=np.float64)
+    return [_Column(column.fields, np.repeat(points[:, place], count)) for place, column in enumerate(grid)]
+
+
+def _grid_column(key: str, values: list[Any] | Range, scenario: Scenario) -> _Column:
+    fields = _fields(key, scenario)
+    first = fields[0].variable
+    if isinstance(values, Range):
+        unit = first.signal.unit
+        ends = [number(end, unit, key=key) for end in (values.first, values.last)]
+        raw: list[Any] = np.linspace(ends[0], ends[1], values.steps).tolist()
+    else:
+        raw = values
+    if not raw:
+        raise BadInput("an empty list of values", key=f"runs.grid: {key}")
+    return _Column(fields, np.array([_checked(item, fields) for item in raw]))
+
+
+def _sampled_columns(samples: Samples, latin: bool, seed: list[int], scenario: Scenario) -> list[_Column]:
+    rng = np.random.default_rng(seed)
+    size = len(samples.spreads)
+    if size == 0:
+        return []
+    chances = qmc.LatinHypercube(d=size, rng=rng).random(samples.n) if latin else rng.random((samples.n, size))
+    columns = []
+    for place, (key, spread) in enumerate(samples.spreads.items()):
+        fields = _fields(key, scenario)
+        drawn = _quantiles(chances[:, place], spread, fields[0].variable, key)
+        if spread.choice is None:
+            drawn = np.round(drawn) if fields[0].variable.kind is int else drawn
+            for end in (drawn.min(), drawn.max()):
+                _checked(float(end), fields)
+        columns.append(_Column(fields, drawn))
+    return columns
+
+
+def _quantiles(chances: Array, spread: Spread, variable: Variable, key: str) -> Array:
+    """Return the values of a distribution at ``chances`` in [0, 1)."""
+    unit = variable.signal.unit
+    if spread.choice is not None:
+        values = np.array([float(scalar(item, variable)) for item in spread.choice])
+        return values[np.floor(chances * len(values)).astype(np.intp)]
+    if variable.kind is bool:
+        raise BadInput("true or false: expected choice", key=key)
+    if spread.uniform is not None:
+        low, high = (number(end, unit, key=key) for end in spread.uniform)
+        if not low <= high:
+            raise BadInput(f"uniform from {low:g} to {high:g}: expected the lower end first", key=key)
+        return low + chances * (high - low)
+    assert spread.normal is not None
+    mean, sigma = (number(item, unit, key=key) for item in spread.normal)
+    if not sigma > 0.0:
+        raise BadInput(f"standard deviation {sigma:g}: expected more than 0", key=key)
+    low, high = (ndtr((end - mean) / sigma) for end in (variable.signal.low, variable.signal.high))
+    return np.asarray(mean + sigma * ndtri(low + (high - low) * np.clip(chances, 1e-16, None)))
+
+
+def _fields(key: str, scenario: Scenario) -> list[Field]:
+    return [find_field(part.strip(), scenario) for part in key.split(",")]
+
+
+def _checked(value: Any, fields: list[Field]) -> float:
+    """Return a value that all of ``fields`` accept."""
+    results = {float(scalar(value, field.variable._replace(name=field.key))) for field in fields}
+    if len(results) != 1:
+        raise BadInput(f"{value!r} means different numbers to {', '.join(field.key for field in fields)}")
+    return results.pop()

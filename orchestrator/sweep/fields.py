@@ -1,0 +1,83 @@
+"""What a study can vary: any parameter of a model, some fields of the scenario, the numbers of a fault."""
+
+import re
+from typing import Any, NamedTuple
+
+from modelkit.signal import Signal
+from modelkit.variables import Variable, variables
+from orchestrator.errors import BadInput, suggestion
+from orchestrator.models import MODELS
+from orchestrator.scenario import Scenario
+
+TIME = Signal("s", "", 0.0, 1e6)
+SCENARIO_FIELDS: dict[str, Variable] = {
+    "stop_time": Variable("stop_time", float, Signal("s", "largest length of a run", 0.0, 1e6), 60.0),
+    "step": Variable("step", float, Signal("s", "communication step", 1e-9, 1e6), 0.01),
+    "seed": Variable("seed", int, Signal("1", "seed of the run", 0, 2**31 - 1), 1),
+    **{
+        f"every.{name}": Variable(f"every.{name}", int, Signal("1", f"decimation of the {name}", 1, 1e6), 1)
+        for name in MODELS
+    },
+}
+FAULT_FIELDS = {"start": TIME, "stop": TIME, "delay": TIME, "probability": Signal("1", "", 0.0, 1.0)}
+SIGNAL_FIELDS = ("value", "sigma")
+FAULT_KEY = re.compile(r"^faults\[(\d+)\]\.(\w+)$")
+
+
+class Field(NamedTuple):
+    """One number that may differ from run to run; ``key`` names its column."""
+
+    key: str
+    owner: str
+    """A model's name, ``scenario`` or ``faults``."""
+    name: str
+    place: int
+    """Place among the flat parameters of the model, or number of the fault from 0."""
+    variable: Variable
+
+
+def find_field(key: str, scenario: Scenario, file: object = None) -> Field:
+    """Return the field called ``key``. Raises ``BadInput`` with close names if there is none."""
+    owner, _, name = key.partition(".")
+    if owner == "target":
+        owner, name = "controller", key
+    if owner in MODELS:
+        return _parameter(key, owner, name, file)
+    if key in SCENARIO_FIELDS:
+        return Field(key, "scenario", key, -1, SCENARIO_FIELDS[key])
+    fault = FAULT_KEY.match(key)
+    if fault is not None:
+        return _fault(key, int(fault[1]), fault[2], scenario, file)
+    known = [
+        *SCENARIO_FIELDS,
+        *(f"{model}.{item.name}" for model in MODELS for item in variables(MODELS[model].params)),
+    ]
+    hint = suggestion(key, known) or "; known are vehicle.*, controller.*, " + ", ".join(SCENARIO_FIELDS)
+    raise BadInput(f"unknown{hint}", file=file, key=key)
+
+
+def _parameter(key: str, owner: str, name: str, file: object) -> Field:
+    known = variables(MODELS[owner].params)
+    for place, variable in enumerate(known):
+        if variable.name == name:
+            return Field(f"{owner}.{name}", owner, name, place, variable)
+    raise BadInput(f"unknown{suggestion(name, [item.name for item in known])}", file=file, key=key)
+
+
+def _fault(key: str, number: int, name: str, scenario: Scenario, file: object) -> Field:
+    if not 1 <= number <= len(scenario.faults):
+        raise BadInput(f"the scenario has {len(scenario.faults)} faults", file=file, key=key)
+    if name in FAULT_FIELDS:
+        signal = FAULT_FIELDS[name]
+    elif name in SIGNAL_FIELDS:
+        signal = Signal(_unit_of(scenario.faults[number - 1].signal), "")
+    else:
+        raise BadInput(f"expected one of {', '.join((*FAULT_FIELDS, *SIGNAL_FIELDS))}", file=file, key=key)
+    return Field(key, "faults", name, number - 1, Variable(key, float, signal, 0.0))
+
+
+def _unit_of(signal: str) -> str:
+    owner, _, name = signal.partition(".")
+    model: Any = MODELS.get(owner)
+    known = [] if model is None else [*variables(model.outputs), *variables(model.inputs)]
+    return next((item.signal.unit for item in known if item.name == name), "1")

@@ -1,0 +1,123 @@
+"""One study bound to its scenario: from a line of the design to parameter arrays, or to a scenario of its own.
+
+A job is plain data, so that it can be sent to another process or machine.
+"""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from modelkit.variables import flatten, variables, with_values
+from orchestrator.load_scenario import load_scenario
+from orchestrator.models import MODELS
+from orchestrator.scenario import NANOSECONDS, Scenario
+from orchestrator.slave import Array
+from orchestrator.sweep.fields import Field
+from orchestrator.sweep.kept import Kept, kept_numbers
+from orchestrator.sweep.study import Study
+
+Times = NDArray[np.int64]
+PROBE = 1_000_003
+"""A seed that no scenario has, to find out what follows the seed."""
+
+
+class Job(NamedTuple):
+    """Everything a run needs beside its line of the design."""
+
+    scenario: dict[str, Any]
+    """The scenario all runs share, as plain data."""
+    keys: list[str]
+    """Columns of the design."""
+    owners: list[str]
+    names: list[str]
+    places: list[int]
+    seeded: list[tuple[str, str, int]]
+    """(model, parameter, place) of the parameters that take the run's seed."""
+    kept: list[Kept]
+
+
+class Chunk(NamedTuple):
+    """Some neighbouring runs."""
+
+    number: int
+    first: int
+    """Row of the first one in the table, from 0."""
+    values: Array
+    seeds: NDArray[np.int64]
+
+
+def study_scenario(study: Study) -> Scenario:
+    """Return the scenario all runs share. Raises ``BadInput``."""
+    return load_scenario(study.scenario, [f"{key}={value}" for key, value in study.set.items()])
+
+
+def make_job(study: Study, scenario: Scenario, fields: list[Field]) -> Job:
+    """Return the job of ``study``, whose scenario is ``scenario`` and whose design varies ``fields``."""
+    sets = [f"{key}={value}" for key, value in study.set.items()]
+    probed = load_scenario(study.scenario, [*sets, f"seed={PROBE}"])
+    varied = {field.key for field in fields}
+    seeded = [
+        (owner, variable.name, place)
+        for owner, model in MODELS.items()
+        for place, variable in enumerate(variables(model.params))
+        if getattr(probed, owner).get(variable.name) == PROBE and f"{owner}.{variable.name}" not in varied
+    ]
+    return Job(
+        scenario.model_dump(mode="python"),
+        [field.key for field in fields],
+        [field.owner for field in fields],
+        [field.name for field in fields],
+        [field.place for field in fields],
+        seeded,
+        kept_numbers(scenario),
+    )
+
+
+def chunk_scenario(job: Job, chunk: Chunk, number: int) -> Scenario:
+    """Return the complete scenario of one run of ``chunk``, for the ordinary ``apa run``."""
+    data = {**job.scenario, **{owner: dict(job.scenario[owner]) for owner in MODELS}}
+    data["every"] = dict(data["every"])
+    data["faults"] = [dict(fault) for fault in data["faults"]]
+    data["seed"] = int(chunk.seeds[number])
+    kinds = {owner: [item.kind for item in variables(model.params)] for owner, model in MODELS.items()}
+    for owner, name, place, value in zip(job.owners, job.names, job.places, chunk.values[number].tolist(), strict=True):
+        if owner in MODELS:
+            data[owner][name] = kinds[owner][place](value)
+        elif owner == "faults":
+            data["faults"][place][name] = value
+        elif name.startswith("every."):
+            data["every"][name.removeprefix("every.")] = int(value)
+        else:
+            data[name] = int(value) if name == "seed" else value
+    for owner, name, _ in job.seeded:
+        data[owner][name] = data["seed"]
+    return Scenario(**data)
+
+
+def arrays(job: Job, chunk: Chunk) -> tuple[Array, Times]:
+    """Return (parameters, times) of every run of ``chunk`` as the compiled batch takes them."""
+    scenario = Scenario(**job.scenario)
+    count = len(chunk.seeds)
+    base = [flatten(with_values(model.params, getattr(scenario, owner))) for owner, model in MODELS.items()]
+    starts = dict(zip(MODELS, np.cumsum([0, *map(len, base)]).tolist(), strict=False))
+    parameters = np.tile(np.array([float(item) for part in base for item in part]), (count, 1))
+    seeds, steps, stops = chunk.seeds.copy(), np.full(count, scenario.step), np.full(count, scenario.stop_time)
+    every = {owner: np.full(count, scenario.every.get(owner, 1), dtype=np.int64) for owner in MODELS}
+    for column, (owner, name, place) in enumerate(zip(job.owners, job.names, job.places, strict=True)):
+        values = chunk.values[:, column]
+        if owner in MODELS:
+            parameters[:, starts[owner] + place] = values
+        elif name == "seed":
+            seeds = values.astype(np.int64)
+        elif name == "step":
+            steps = values
+        elif name == "stop_time":
+            stops = values
+        elif name.startswith("every."):
+            every[name.removeprefix("every.")] = values.astype(np.int64)
+    for owner, _, place in job.seeded:
+        parameters[:, starts[owner] + place] = seeds
+    step_ns = np.round(steps * NANOSECONDS).astype(np.int64)
+    stop_ns = np.round(stops * NANOSECONDS).astype(np.int64) // step_ns * step_ns
+    return parameters, np.column_stack([step_ns, stop_ns, *every.values()])

@@ -1,0 +1,126 @@
+"""STUDY.yaml: which scenario, what is varied and how, and what the result page shows."""
+
+from pathlib import Path
+from typing import Any
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+
+from orchestrator.errors import BadInput, suggestion
+from orchestrator.yaml_file import explain, read_mapping
+
+SHIPPED = Path(__file__).parent.parent / "studies"
+
+
+class _Strict(BaseModel):
+    model_config = ConfigDict(extra="forbid", populate_by_name=True)
+
+
+class Range(_Strict):
+    """Equally spaced values, both ends included."""
+
+    first: float | str = Field(alias="from")
+    last: float | str = Field(alias="to")
+    steps: int = Field(ge=1, le=1_000_000)
+    """Number of values."""
+
+
+class Spread(_Strict):
+    """A distribution: exactly one of the three."""
+
+    uniform: tuple[float | str, float | str] | None = None
+    """Lower and upper end."""
+    normal: tuple[float | str, float | str] | None = None
+    """Mean and standard deviation; cut off where the parameter's range ends."""
+    choice: list[Any] | None = Field(default=None, min_length=1)
+    """Any of these, equally likely."""
+
+    @model_validator(mode="after")
+    def _one(self) -> "Spread":
+        if sum(item is not None for item in (self.uniform, self.normal, self.choice)) != 1:
+            raise BadInput("expected exactly one of uniform, normal and choice")
+        return self
+
+
+class Samples(_Strict):
+    """``n`` samples of some parameters: ``{n: 100, vehicle.start.y: {uniform: [-0.1, 0.1]}, ...}``."""
+
+    n: int = Field(ge=1)
+    spreads: dict[str, Spread] = {}
+
+    @model_validator(mode="before")
+    @classmethod
+    def _beside(cls, data: Any) -> Any:
+        if not isinstance(data, dict) or "spreads" in data:
+            return data
+        return {"n": data.get("n"), "spreads": {key: value for key, value in data.items() if key != "n"}}
+
+
+class Runs(_Strict):
+    """Every grid point is run with every sample; samples of both kinds are joined side by side."""
+
+    grid: dict[str, list[Any] | Range] = {}
+    monte_carlo: Samples | None = None
+    latin_hypercube: Samples | None = None
+
+    @model_validator(mode="after")
+    def _same_n(self) -> "Runs":
+        if self.monte_carlo and self.latin_hypercube and self.monte_carlo.n != self.latin_hypercube.n:
+            raise BadInput("monte_carlo and latin_hypercube are joined side by side: expected the same n", key="runs")
+        return self
+
+
+class Axes(_Strict):
+    """What the map of the result page shows."""
+
+    x: str
+    y: str
+    split: str | None = None
+    """One map for each value of this parameter."""
+
+
+class Study(_Strict):
+    """One study. A key ``a, b`` gives the same value to both parameters."""
+
+    name: str = Field(pattern=r"^[A-Za-z0-9._-]+$")
+    title: str = ""
+    description: str = ""
+    scenario: str
+    """Name of a shipped scenario, or a file relative to the study's."""
+    set: dict[str, Any] = {}
+    """Changes of the scenario that hold for every run, as with ``apa run --set``."""
+    seed: int = Field(default=1, ge=0)
+    """Seed of the samples and of the runs' own seeds."""
+    runs: Runs
+    map: Axes | None = None
+
+
+def study_names() -> list[str]:
+    """Return the names of the shipped studies, sorted."""
+    return sorted(path.stem for path in SHIPPED.glob("*.yaml"))
+
+
+def load_study(name: str) -> Study:
+    """Return the study called ``name`` or written in the file ``name``. Raises ``BadInput``."""
+    path = _find(name)
+    content = read_mapping(path)
+    content.setdefault("name", path.stem)
+    try:
+        study = Study(**content)
+    except ValidationError as error:
+        raise explain(error, path, list(Study.model_fields)) from None
+    if study.scenario.endswith((".yaml", ".yml")):
+        return study.model_copy(update={"scenario": str((path.parent / study.scenario).resolve())})
+    return study
+
+
+def _find(name: str) -> Path:
+    if name.endswith((".yaml", ".yml")) or "/" in name:
+        path = Path(name)
+        if not path.is_file():
+            raise BadInput("no such file", file=name)
+        return path
+    path = SHIPPED / f"{name}.yaml"
+    if not path.is_file():
+        hint = suggestion(name, study_names()) or f"; shipped are {', '.join(study_names()) or 'none'}"
+        raise BadInput(f"no study of this name{hint}", key=name)
+    return path

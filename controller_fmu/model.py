@@ -7,11 +7,10 @@ the communication step, and holds its outputs in between.
 import math
 from typing import NamedTuple
 
-from controller_fmu.guo2015.parking import ParkingState, outputs, sample
-from controller_fmu.interface import ControllerInput, ControllerOutput, ControllerParams, Phase, Reason
+from controller_fmu.guo2015.parking import AT_REST, ParkingState, failed, outputs, sample
+from controller_fmu.interface import ControllerInput, ControllerOutput, ControllerParams, Reason
 from modelkit.maths import is_finite
 
-FAILED = int(Phase.FAILED)
 BAD_PARAMETER = int(Reason.BAD_PARAMETER)
 
 
@@ -25,9 +24,7 @@ class ControllerState(NamedTuple):
 
 def initialize(params: ControllerParams) -> tuple[ControllerState, ControllerOutput]:
     """Return the controller in standby; with unusable parameters, failed."""
-    parking = ParkingState()
-    if not _is_usable(params):
-        parking = ParkingState(phase=FAILED, reason=BAD_PARAMETER)
+    parking = AT_REST if _is_usable(params) else failed(BAD_PARAMETER)
     return ControllerState(0, 0, parking), outputs(parking, params)
 
 

@@ -63,24 +63,24 @@ def reason_to_fail(
     """Return the first Reason that holds, ``NONE`` if the car and the driver are as they should be."""
     limit = params.limit
     if inputs.vehicle_fault != 0:
-        return int(Reason.VEHICLE_FAULT)
+        return Reason.VEHICLE_FAULT.value
     if phase == STANDBY:
-        return int(Reason.NONE)
+        return Reason.NONE.value
     if state.frozen * 1e-9 > limit.pose_frozen:
-        return int(Reason.POSE_FROZEN)
+        return Reason.POSE_FROZEN.value
     if state.lag * 1e-9 > limit.wheel_fault:
-        return int(Reason.STEERING_FAULT)
+        return Reason.STEERING_FAULT.value
     if state.wrong_way * 1e-9 > limit.wrong_direction:
-        return int(Reason.WRONG_DIRECTION)
+        return Reason.WRONG_DIRECTION.value
     if state.stopping * 1e-9 > limit.stopping:
-        return int(Reason.NOT_STOPPING)
+        return Reason.NOT_STOPPING.value
     if state.waiting * 1e-9 > limit.patience:
-        return int(Reason.STEERING_FAULT) if phase in STEERING_PHASES else int(Reason.NOT_MOVING)
+        return Reason.STEERING_FAULT.value if phase in STEERING_PHASES else Reason.NOT_MOVING.value
     if shifts > limit.shifts:
-        return int(Reason.TOO_MANY_SHIFTS)
+        return Reason.TOO_MANY_SHIFTS.value
     if running_ns * 1e-9 > limit.duration:
-        return int(Reason.TIMEOUT)
-    return int(Reason.NONE)
+        return Reason.TIMEOUT.value
+    return Reason.NONE.value
 
 
 def is_usable_input(inputs: ControllerInput) -> bool:

@@ -28,7 +28,7 @@ STOP = int(Phase.STOP)
 STRAIGHTEN = int(Phase.STRAIGHTEN)
 PARKED = int(Phase.PARKED)
 FAILED = int(Phase.FAILED)
-NO_REASON = int(Reason.NONE)
+NO_REASON = Reason.NONE.value
 
 
 class ParkingState(NamedTuple):
@@ -52,12 +52,20 @@ class ParkingState(NamedTuple):
     monitor: MonitorState = MonitorState()
 
 
+AT_REST = ParkingState()
+
+
+def failed(reason: int) -> ParkingState:
+    """Return the system that has failed before it began."""
+    return _ended(AT_REST, FAILED, reason, False)
+
+
 def sample(state: ParkingState, inputs: ControllerInput, params: ControllerParams, dt_ns: int) -> ParkingState:
     """Return the system one sample of ``dt_ns`` later."""
     if state.phase >= PARKED:
         return _ended(state, state.phase, state.reason, inputs.driver_takeover)
     if not is_usable_input(inputs):
-        return _ended(state, FAILED, int(Reason.BAD_INPUT), inputs.driver_takeover)
+        return _ended(state, FAILED, Reason.BAD_INPUT.value, inputs.driver_takeover)
     planned = state.plan
     if state.phase == STANDBY:
         smallest = params.wheelbase / math.tan(params.steering_wheel_limit / params.steering_ratio)
@@ -118,12 +126,12 @@ def _reason(
     if reason != NO_REASON:
         return reason
     if not planned.path.found:
-        return int(Reason.NO_PATH)
+        return Reason.NO_PATH.value
     if abs(tracking.lateral_error) > limit.lost_lateral:
-        return int(Reason.LEFT_PATH)
+        return Reason.LEFT_PATH.value
     straight = state.phase == STRAIGHTEN and abs(inputs.steering_wheel_angle) <= limit.wheel
     if straight and not within(pose.y, pose.heading, limit.miss_lateral, limit.miss_heading):
-        return int(Reason.MISSED_TARGET)
+        return Reason.MISSED_TARGET.value
     return NO_REASON
 
 
@@ -139,9 +147,9 @@ def _guards(
     wheel = inputs.steering_wheel_angle
     standing = standing_guards(state.leg, pose, inputs, params)
     return (
-        bit(int(Guard.TAKEOVER), inputs.driver_takeover)
-        | bit(int(Guard.FAULT), reason != NO_REASON)
-        | bit(int(Guard.PLANNED), planned.path.found and abs(inputs.measured_speed) <= params.threshold.standstill)
+        bit(Guard.TAKEOVER.value, inputs.driver_takeover)
+        | bit(Guard.FAULT.value, reason != NO_REASON)
+        | bit(Guard.PLANNED.value, planned.path.found and abs(inputs.measured_speed) <= params.threshold.standstill)
         | wheel_guards(state.leg, wheel, state.request, params.threshold.wheel)
         | way_guards(tracking, pose, planned.path, inputs.measured_speed, params)
         | standing

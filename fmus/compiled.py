@@ -13,16 +13,15 @@ from collections.abc import Callable, Iterator
 from types import FunctionType, ModuleType
 from typing import Any
 
-import numba
-from numba import types
-from numba.core.errors import NumbaError
-from numba.extending import register_jitable
-
 from fmus.compiled_types import install
 from fmus.flat_entry import Entries, entries
 from fmus.sources import MODELKIT_FILES, load
 from modelkit.model import Model
 
+numba: Any = importlib.import_module(
+    "numba"
+)  # untyped on purpose: what it says of its types changes with every version
+types = numba.types
 POINTER = types.CPointer(types.float64)
 OPTIONS: dict[str, Any] = {"error_model": "numpy", "fastmath": False, "nogil": True}
 INITIALIZE = types.void(POINTER, POINTER, POINTER)
@@ -37,7 +36,7 @@ def make_compilable(package: ModuleType) -> None:
         if name not in _done:
             _done.add(name)
             for function in functions(importlib.import_module(name)):
-                register_jitable(error_model="numpy", forceinline=True)(function)
+                numba.extending.register_jitable(error_model="numpy", forceinline=True)(function)
 
 
 def modules(package: ModuleType) -> Iterator[ModuleType]:
@@ -76,7 +75,7 @@ def intermediate_code(model: Model) -> dict[str, str]:
 def _code(function: Callable[..., None], signature: Any, name: str) -> str:
     try:
         compiled = numba.njit(signature, no_cpython_wrapper=True, no_cfunc_wrapper=True, **OPTIONS)(function)
-    except NumbaError as error:
+    except numba.core.errors.NumbaError as error:
         raise TypeError(f"{name} cannot be compiled: {error}") from error
     return str(compiled.inspect_llvm(compiled.signatures[0]))
 

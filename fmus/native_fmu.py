@@ -30,6 +30,16 @@ instance on one thread at a time.</p>
 <p>A parameter outside its range, a variable that does not exist, a call out of order or a step that is not
 in (0, 3600] s is answered with fmi2Error and a message to the logger; nothing is changed by such a call.</p>
 """
+MAKERS = (
+    "compiled.py",
+    "compiled_types.py",
+    "description.py",
+    "flat_entry.py",
+    "native_fmu.py",
+    "native_ir.py",
+    "platforms.py",
+)
+"""Files that decide what is in the binaries."""
 KINDS = {float: "REAL", int: "INTEGER", bool: "BOOLEAN"}
 
 
@@ -93,9 +103,8 @@ def _text(text: str) -> str:
 def _guid(model: Model, platforms: list[str]) -> str:
     """Return a GUID that depends on the model's sources, the FMI side, the platforms and the makers of the code."""
     here = Path(__file__).parent
-    makers = ("compiled.py", "compiled_types.py", "flat_entry.py", "native_ir.py", "native_fmu.py", "platforms.py", "description.py")
     files = {f"native/{name}": (NATIVE / name).read_bytes() for name in (*SOURCES, *HEADERS)}
-    files |= {name: (here / name).read_bytes() for name in makers}
+    files |= {name: (here / name).read_bytes() for name in MAKERS}
     files["model"] = source_hash(model).encode()
     files["platforms"] = " ".join(platforms).encode()
     return content_guid({**files, DESCRIPTION: _description(model, "")})

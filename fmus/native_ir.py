@@ -12,15 +12,15 @@ import sys
 from importlib.metadata import version
 from pathlib import Path
 
-import llvmlite.binding as llvm
+import llvmlite.binding as llvm  # type: ignore[import-untyped]
 
 from fmus.sources import reference, source_hash
 from modelkit.model import Model
 
 CACHE = Path(__file__).parent / "dist" / "cache"
-ENTRIES = ("model_initialize", "model_step")
 LIBM = frozenset(
-    ["acos", "asin", "atan", "atan2", "ceil", "cos", "exp", "fabs", "floor", "fmax", "fmin", "log", "pow", "round", "rint", "sin", "sqrt", "tan", "tanh", "trunc", "sinh", "cosh"]
+    """acos asin atan atan2 ceil cos cosh exp fabs floor fmax fmin log pow rint round sin sinh sqrt tan tanh
+    trunc""".split()  # noqa: SIM905
 )
 """Functions of the C library that a model may call."""
 

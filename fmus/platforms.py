@@ -68,9 +68,7 @@ def link(name: str, target: Target, sources: Mapping[str, str], object_file: byt
 def compile_c(directory: Path, target: str, output: str, arguments: Iterable[str]) -> None:
     """Make a shared library in ``directory`` with the C compiler of ziglang; ``RuntimeError`` with its words."""
     command = [sys.executable, "-m", "ziglang", "cc", "-target", target, "-shared", "-o", output, *arguments]
-    done = subprocess.run(
-        command, cwd=directory, env={**os.environ, "SOURCE_DATE_EPOCH": "0"}, capture_output=True, text=True, check=False
-    )
+    done = subprocess.run(command, cwd=directory, env=os.environ, capture_output=True, text=True, check=False)
     if done.returncode:
         raise RuntimeError(f"{' '.join(command)}: {done.stderr.strip()}")
 

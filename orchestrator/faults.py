@@ -202,6 +202,6 @@ def _matching(names: list[str], wanted: str) -> list[int]:
 def _check(fault: Fault, file: object, key: str) -> None:
     for need in NEEDS[fault.kind]:
         if getattr(fault, need) is None:
-            raise BadInput(f"a {fault.kind} needs {need}", file=file, key=key)
+            raise BadInput(f"kind {fault.kind} needs {need}", file=file, key=key)
     if fault.stop <= fault.start:
         raise BadInput(f"stop {fault.stop:g} s is not after start {fault.start:g} s", file=file, key=key)

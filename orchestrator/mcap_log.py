@@ -79,11 +79,12 @@ class McapLog:
         self._pictures: list[_Pictures] = []
         if "vehicle" in named and set(DRAWN) <= named["vehicle"].outputs.index.keys():
             self._pictures.append(_Pictures(self._file, named, slot))
-        rows = max(1, CHUNK_SIZE // sum(channel.size + MESSAGE_HEADER.itemsize for channel in self._channels))
+        rows = max(1, CHUNK_SIZE // 2 // sum(channel.size + MESSAGE_HEADER.itemsize for channel in self._channels))
         self._times = np.empty(rows, dtype=np.int64)
         self._count = 0
         for channel in self._channels:
             channel.allocate(rows)
+        self._file.flush()
 
     def exchanged(self, t_ns: int) -> None:
         """Keep one row per slave; a chunk's worth of them goes to the file at once."""

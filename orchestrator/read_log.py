@@ -74,5 +74,6 @@ def from_json(text: str) -> list[Variable]:
 
 
 def _enum(states: dict[str, Any]) -> type[IntEnum]:
-    made: Any = IntEnum(states["name"], states["values"])
-    return made  # type: ignore[no-any-return]
+    functional: Any = IntEnum
+    made: type[IntEnum] = functional(states["name"], states["values"])
+    return made

@@ -13,6 +13,9 @@ from modelkit.variables import Variable
 from orchestrator.master import End
 from orchestrator.slave import Array, Slave
 
+FIRST_ROWS = 1 << 14
+"""Exchanges that the recorder has room for at first."""
+
 
 @dataclass
 class Recording:
@@ -54,19 +57,22 @@ class Recording:
 
 
 class Recorder:
-    """Observer that keeps every exchange in arrays allocated once."""
+    """Observer that keeps every exchange in arrays, doubled in length when they are full."""
 
     def __init__(self, slaves: list[Slave], exchanges: int) -> None:
         self._slaves = slaves
         self._ports = [ports for slave in slaves for ports in (slave.inputs, slave.outputs)]
-        self._rows = [np.empty((exchanges, len(ports.names))) for ports in self._ports]
-        self._times = np.empty(exchanges, dtype=np.int64)
+        room = min(exchanges, FIRST_ROWS)
+        self._rows = [np.empty((room, len(ports.names))) for ports in self._ports]
+        self._times = np.empty(room, dtype=np.int64)
         self._count = 0
-        self._pairs = [(rows, ports.values) for rows, ports in zip(self._rows, self._ports, strict=True)]
+        self._pair()
 
     def exchanged(self, t_ns: int) -> None:
         """Copy all inputs and outputs."""
         count = self._count
+        if count == len(self._times):
+            self._grow()
         self._times[count] = t_ns
         for rows, values in self._pairs:
             rows[count] = values
@@ -74,6 +80,14 @@ class Recorder:
 
     def closed(self, end: End) -> None:
         """Nothing to close."""
+
+    def _pair(self) -> None:
+        self._pairs = [(rows, ports.values) for rows, ports in zip(self._rows, self._ports, strict=True)]
+
+    def _grow(self) -> None:
+        self._rows = [np.concatenate([rows, np.empty_like(rows)]) for rows in self._rows]
+        self._times = np.concatenate([self._times, np.empty_like(self._times)])
+        self._pair()
 
     def recording(self, info: dict[str, Any]) -> Recording:
         """Return what has been seen so far."""

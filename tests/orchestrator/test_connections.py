@@ -1,0 +1,50 @@
+"""Connections by equal names, refused where type or unit differ."""
+
+import pytest
+from toy_models import BRAIN, PLANT
+
+from modelkit.signal import Signal
+from modelkit.variables import Variable
+from orchestrator.connections import connect
+from orchestrator.errors import BadInput
+from orchestrator.model_slave import ModelSlave
+from orchestrator.slave import Slave
+
+
+def toys() -> list[ModelSlave]:
+    return [ModelSlave("plant", PLANT, {}), ModelSlave("brain", BRAIN, {})]
+
+
+def replace(slave: Slave, name: str, variable: Variable) -> None:
+    slave.inputs.variables[slave.inputs.index[name]] = variable
+
+
+def test_equal_names_are_connected_both_ways() -> None:
+    slaves = toys()
+    found = {
+        (slaves[link.source].outputs.names[a], slaves[link.target].inputs.names[b])
+        for link in connect(list(slaves))
+        for a, b in zip(link.source_places, link.target_places, strict=True)
+    }
+    names = {"command", "mode", "active", "right", "pose.x", "pose.y", "pose.heading", "moving", "left"}
+    assert found == {(name, name) for name in names}
+
+
+def test_another_unit_is_refused_by_name() -> None:
+    slaves = toys()
+    replace(slaves[0], "command", Variable("command", float, Signal("rad", ""), 0.0))
+    with pytest.raises(BadInput, match="command: output of brain is in m/s, input of plant in rad"):
+        connect(list(slaves))
+
+
+def test_another_type_is_refused_by_name() -> None:
+    slaves = toys()
+    replace(slaves[0], "command", Variable("command", int, Signal("m/s", ""), 0))
+    with pytest.raises(BadInput, match="command: output of brain is float, input of plant is int"):
+        connect(list(slaves))
+
+
+def test_two_sources_for_one_input_are_refused() -> None:
+    slaves = [*toys(), ModelSlave("second", BRAIN, {})]
+    with pytest.raises(BadInput, match="brain and second both have an output"):
+        connect(list(slaves))

@@ -1,0 +1,114 @@
+"""The master: order of the exchange, whole nanoseconds, several rates, endings."""
+
+from typing import NamedTuple
+
+import numpy as np
+import pytest
+from toy_models import BRAIN, PLANT
+
+from orchestrator.master import Master
+from orchestrator.model_slave import ModelSlave
+from orchestrator.recording import Recorder, Recording
+
+STEP = 10_000_000
+
+
+def toys() -> list[ModelSlave]:
+    return [ModelSlave("plant", PLANT, {}), ModelSlave("brain", BRAIN, {})]
+
+
+def run(steps: int, every: dict[str, int] | None = None) -> Recording:
+    slaves = toys()
+    master = Master(slaves, STEP, steps * STEP, every)
+    recorder = Recorder(slaves, steps + 1)
+    master.observers.append(recorder)
+    master.initialize()
+    end = master.run()
+    master.finish(end)
+    master.free()
+    assert end == ("stop_time", steps * STEP)
+    return recorder.recording({})
+
+
+def test_each_side_sees_the_other_as_it_was_before_the_step() -> None:
+    found = run(5)
+    assert found.signals["plant.left"].tolist() == [0, 1, 2, 3, 4, 5]
+    assert found.signals["brain.right"].tolist() == [0, 1, 2, 3, 4, 5]
+
+
+def test_order_of_the_slaves_does_not_matter() -> None:
+    recordings = []
+    for slaves in (toys(), toys()[::-1]):
+        master = Master(slaves, STEP, 20 * STEP)
+        recorder = Recorder(slaves, 21)
+        master.observers.append(recorder)
+        master.initialize()
+        master.run()
+        recordings.append(recorder.recording({}).signals)
+    assert recordings[0].keys() == recordings[1].keys()
+    for name, values in recordings[0].items():
+        assert values.tobytes() == recordings[1][name].tobytes(), name
+
+
+def test_one_exchange_in_initialization_gives_inputs_before_the_first_step() -> None:
+    slaves = toys()
+    master = Master(slaves, STEP, STEP)
+    master.initialize()
+    assert slaves[0].inputs.values[slaves[0].inputs.index["command"]] == 2.0
+
+
+def test_time_is_counted_not_added() -> None:
+    slaves = toys()
+    times: list[int] = []
+
+    class Clock(ModelSlave):
+        def step(self, t_ns: int, dt_ns: int) -> None:
+            times.append(t_ns)
+            super().step(t_ns, dt_ns)
+
+    slaves[1] = Clock("brain", BRAIN, {})
+    master = Master(slaves, 333_333_333, 3_333_333_330)
+    master.initialize()
+    assert master.run().t_ns == 3_333_333_330
+    assert times == [k * 333_333_333 for k in range(10)]
+
+
+def test_a_slow_slave_acts_at_its_own_instants_and_holds_between() -> None:
+    found = run(9, {"brain": 3})
+    y = found.signals["plant.pose.y"]
+    assert y == pytest.approx(np.arange(10) * 0.01)
+    # It saw y at 0, 0.03, 0.06 s, and shows each from the end of its own step on.
+    assert found.signals["brain.seen"] == pytest.approx([0, 0, 0, 0, 0, 0, 0.03, 0.03, 0.03, 0.06])
+    assert found.signals["brain.pose.y"] == pytest.approx([0, 0, 0, 0.03, 0.03, 0.03, 0.06, 0.06, 0.06, 0.09])
+
+
+def test_equal_rates_above_one_are_one_larger_step() -> None:
+    found = run(8, {"plant": 2, "brain": 2})
+    assert found.signals["plant.left"].tolist() == [0, 0, 1, 1, 2, 2, 3, 3, 4]
+
+
+def test_an_ending_ends_and_an_interrupt_too() -> None:
+    class At:
+        def reached(self, t_ns: int) -> str:
+            return "enough" if t_ns >= 3 * STEP else ""
+
+    master = Master(toys(), STEP, 100 * STEP)
+    master.endings.append(At())
+    master.initialize()
+    assert master.run() == ("enough", 3 * STEP)
+    master = Master(toys(), STEP, 100 * STEP)
+    master.interrupt.requested = True
+    master.initialize()
+    assert master.run() == ("interrupted", 0)
+
+
+def test_the_recorder_grows() -> None:
+    class Small(NamedTuple):
+        exchanges: int = 2
+
+    slaves = toys()
+    recorder = Recorder(slaves, Small().exchanges)
+    for t in range(9):
+        slaves[0].outputs.values[0] = t
+        recorder.exchanged(t)
+    assert recorder.recording({}).signals["plant.pose.x"].tolist() == list(range(9))

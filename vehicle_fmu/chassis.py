@@ -36,7 +36,12 @@ class RoadParams(NamedTuple):
 
     slope: Annotated[float, Signal("1", "rise per metre along the world's x", -1.0, 1.0)] = 0.0
     bank: Annotated[float, Signal("1", "rise per metre along the world's y", -1.0, 1.0)] = 0.0
-    grip: tuple[Annotated[float, Signal("1", "friction against a dry road; front left, front right, rear left, rear right", 0.0, 2.0)], ...] = (1.0, 1.0, 1.0, 1.0)
+    grip: tuple[
+        Annotated[
+            float, Signal("1", "friction against a dry road; front left, front right, rear left, rear right", 0.0, 2.0)
+        ],
+        ...,
+    ] = (1.0, 1.0, 1.0, 1.0)
 
 
 class Motion(NamedTuple):

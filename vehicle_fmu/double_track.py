@@ -13,6 +13,7 @@ import math
 from typing import Annotated, NamedTuple
 
 from modelkit.signal import Signal
+from modelkit.vocabulary import Pose
 from vehicle_fmu.chassis import (
     CHOSEN,
     ChassisParams,
@@ -25,7 +26,7 @@ from vehicle_fmu.chassis import (
 )
 from vehicle_fmu.effort import Effort
 from vehicle_fmu.loads import Felt, Loads, RollParams, feel, wheel_loads
-from vehicle_fmu.tires import TireParams
+from vehicle_fmu.tires import Force, TireParams
 from vehicle_fmu.wheels import Contact, HubParams, Wheel, turn_wheel
 
 
@@ -34,7 +35,9 @@ class DoubleTrackParams(NamedTuple):
 
     track_front: Annotated[float, Signal("m", "front track width", 0.1, 5.0, CHOSEN)] = 1.42
     track_rear: Annotated[float, Signal("m", "rear track width", 0.1, 5.0, CHOSEN)] = 1.42
-    ackermann: Annotated[float, Signal("1", "front wheels: 0 parallel to 1 aimed at one turning centre", 0.0, 1.0, CHOSEN)] = 1.0
+    ackermann: Annotated[
+        float, Signal("1", "front wheels: 0 parallel to 1 aimed at one turning centre", 0.0, 1.0, CHOSEN)
+    ] = 1.0
     hub: HubParams = HubParams()
     roll: RollParams = RollParams()
     tires: TireParams = TireParams()
@@ -71,6 +74,35 @@ def wheel_angles(angle: float, wheelbase: float, track: float, ackermann: float)
     tangent = math.tan(angle)
     half = 0.5 * ackermann * track * tangent / wheelbase
     return _inner(tangent, 1.0 - half), _inner(tangent, 1.0 + half)
+
+
+def resting(
+    pose: Pose, angle: float, wheelbase: float, chassis: ChassisParams, p: DoubleTrackParams, road: RoadParams
+) -> DoubleTrackState:
+    """Return the car at rest, its carcasses deflected so that they carry it on the slope."""
+    gravity = gravity_in_car(pose.heading, road)
+    felt = Felt(-gravity.x, -gravity.y)
+    loads = wheel_loads(felt, gravity.normal, wheelbase, (p.track_front, p.track_rear), chassis, p.roll)
+    left, right = wheel_angles(angle, wheelbase, p.track_front, p.ackermann)
+    share = 1.0 / (chassis.mass * gravity.normal)
+    return DoubleTrackState(
+        Motion(pose, 0.0, 0.0, 0.0),
+        (
+            _carrying(chassis.mass * share * loads.front_left, felt, left, p.tires),
+            _carrying(chassis.mass * share * loads.front_right, felt, right, p.tires),
+            _carrying(chassis.mass * share * loads.rear_left, felt, 0.0, p.tires),
+            _carrying(chassis.mass * share * loads.rear_right, felt, 0.0, p.tires),
+        ),
+        felt,
+    )
+
+
+def _carrying(mass: float, felt: Felt, angle: float, tires: TireParams) -> Wheel:
+    cos = math.cos(angle)
+    sin = math.sin(angle)
+    x = mass * (felt.x * cos + felt.y * sin)
+    y = mass * (felt.y * cos - felt.x * sin)
+    return Wheel(0.0, x / tires.carcass_x, y / tires.carcass_y, Force(x, y))
 
 
 def step_double_track(

@@ -20,7 +20,9 @@ from vehicle_fmu.chassis import CHOSEN, GRAVITY, ChassisParams
 class RollParams(NamedTuple):
     """How the body leans and what that does to loads and wheels."""
 
-    arm: Annotated[float, Signal("m", "sprung mass's arm about the roll axis, times its share of the mass", 0.0, 3.0, CHOSEN)] = 0.45
+    arm: Annotated[
+        float, Signal("m", "sprung mass's arm about the roll axis, times its share of the mass", 0.0, 3.0, CHOSEN)
+    ] = 0.45
     stiffness_front: Annotated[float, Signal("N.m/rad", "roll stiffness of the front axle", 1.0, 1e7, CHOSEN)] = 30000.0
     stiffness_rear: Annotated[float, Signal("N.m/rad", "roll stiffness of the rear axle", 1.0, 1e7, CHOSEN)] = 22000.0
     camber_front: Annotated[float, Signal("1", "front camber into the turn over roll angle", -2.0, 2.0, CHOSEN)] = 0.0

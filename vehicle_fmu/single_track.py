@@ -34,11 +34,11 @@ from vehicle_fmu.chassis import (
     move_body,
 )
 from vehicle_fmu.effort import Effort
-from vehicle_fmu.tires import relax
+from vehicle_fmu.tires import relax, slide_rate
 
 CHOSEN = "chosen, usual for a small car"
-HOLD_RATE = 30.0
-"""A held car rocks at this rate [rad/s] on its brakes and tyres (0.3 mm under 0.03 g)."""
+HOLD_RATE = 40.0
+"""A held car rocks at this rate [rad/s] on its brakes and tyres (6 mm under 1 g)."""
 LOOK_AHEAD = 0.01
 """Time [s] by which forces look ahead on their springs, which damps them."""
 
@@ -46,8 +46,12 @@ LOOK_AHEAD = 0.01
 class SingleTrackParams(NamedTuple):
     """Axle stiffness, friction and form of the equations."""
 
-    stiffness_front: Annotated[float, Signal("N/rad", "cornering stiffness of the front axle at rest load", 1.0, 1e7, CHOSEN)] = 65000.0
-    stiffness_rear: Annotated[float, Signal("N/rad", "cornering stiffness of the rear axle at rest load", 1.0, 1e7, CHOSEN)] = 65000.0
+    stiffness_front: Annotated[
+        float, Signal("N/rad", "cornering stiffness of the front axle at rest load", 1.0, 1e7, CHOSEN)
+    ] = 65000.0
+    stiffness_rear: Annotated[
+        float, Signal("N/rad", "cornering stiffness of the rear axle at rest load", 1.0, 1e7, CHOSEN)
+    ] = 65000.0
     load_height: Annotated[float, Signal("m", "height h of the load transfer by a_x; 0: none", 0.0, 3.0, CHOSEN)] = 0.0
     friction: Annotated[float, Signal("1", "largest force over load, both axles", 0.01, 3.0, CHOSEN)] = 1.0
     relaxation: Annotated[float, Signal("m", "relaxation length", 0.01, 5.0, CHOSEN)] = 0.3
@@ -139,7 +143,13 @@ def wrench(front: float, rear: float, along: float, angle: float, wheelbase: flo
 
 
 def single_track_rates(
-    motion: Motion, angle: float, force: float, accel: float, wheelbase: float, chassis: ChassisParams, p: SingleTrackParams
+    motion: Motion,
+    angle: float,
+    force: float,
+    accel: float,
+    wheelbase: float,
+    chassis: ChassisParams,
+    p: SingleTrackParams,
 ) -> Wrench:
     """Return (v_x' - v_y r, v_y' + v_x r, r') [m/s2, m/s2, rad/s2] of steadily rolling tyres on a flat road.
 
@@ -185,24 +195,35 @@ def step_single_track(
         p.friction * loads.rear * 0.5 * (road.grip[2] + road.grip[3]),
     )
     front, front_force = _push(
-        state.front, front_slip(motion, angle, wheelbase, b, p.small_angles), stiffness.front, grip.front, p, h
+        state.front,
+        front_slip(motion, angle, wheelbase, b, p.small_angles),
+        stiffness.front,
+        grip.front,
+        p.stiffness_front / p.relaxation,
+        h,
     )
-    rear, rear_force = _push(state.rear, rear_slip(motion, b), stiffness.rear, grip.rear, p, h)
+    rear, rear_force = _push(
+        state.rear, rear_slip(motion, b), stiffness.rear, grip.rear, p.stiffness_rear / p.relaxation, h
+    )
     hold, along = _along(state.hold, motion.speed_x, effort, loads, grip, chassis, h)
     total = wrench(front_force, rear_force, along, angle, wheelbase, b, p.small_angles)
     change = accelerations(motion, total, gravity, chassis)
-    return SingleTrackState(move_body(motion, change, b, h), front, rear, hold, AxleForces(front_force, rear_force, along))
+    return SingleTrackState(
+        move_body(motion, change, b, h), front, rear, hold, AxleForces(front_force, rear_force, along)
+    )
 
 
-def _push(deflection: float, slip: Slip, stiffness: float, grip: float, p: SingleTrackParams, h: float) -> tuple[float, float]:
-    """Return the axle's next deflection [m] and its lateral force [N]; the carcass slips at the limit of grip."""
-    spring = stiffness / p.relaxation
-    now = relax(deflection, -slip.across, slip.along, p.relaxation, h)
-    ahead = relax(deflection, -slip.across, slip.along, p.relaxation, h + LOOK_AHEAD)
-    if spring <= 0.0:
-        return now, 0.0
-    limit = grip / spring
-    return clamp(now, -limit, limit), clamp(spring * ahead, -grip, grip)
+def _push(
+    deflection: float, slip: Slip, stiffness: float, grip: float, carcass: float, h: float
+) -> tuple[float, float]:
+    """Return the axle's next deflection [m] and its lateral force [N]."""
+    speed = slip.along if slip.along > 0.1 * abs(slip.across) else 0.1 * abs(slip.across)
+    secant = stiffness
+    if stiffness * abs(slip.across) > grip * speed:
+        secant = grip * speed / abs(slip.across)
+    rate = slide_rate(carcass, speed, secant)
+    now = relax(deflection, -slip.across, rate, h)
+    return now, carcass * relax(deflection, -slip.across, rate, h + LOOK_AHEAD)
 
 
 def _along(

@@ -1,18 +1,18 @@
 """One wheel: spin, carcass springs, drive and brake torque.
 
     I omega' = T_drive - R F_x - friction,  friction <= T_brake + f_r R F_z, sticking at rest
-    u' = (R omega - V_x) - V u / sigma_x    w' = -V_y - V w / sigma_y    V = max(|V_x|, |R omega|)
+    u' = (R omega - V_x) - rate_x u    w' = -V_y - rate_y w        (see tires)
 
-The force is taken at the deflection a look-ahead time further on, which damps the carcass at low
-speed and changes nothing in steady rolling. Spin and force are solved together, linearised about
-the old spin (secant stiffness), so that one step of any length is stable from standstill up.
+The force is taken at the deflection a damping time further on, which damps the carcass at low
+speed and changes nothing in steady rolling. Spin and longitudinal force are solved together (the
+force is linear in the new spin), so that a step of any length is stable from standstill up.
 """
 
 from typing import Annotated, NamedTuple
 
 from modelkit.maths import move_towards
 from modelkit.signal import Signal
-from vehicle_fmu.tires import Force, TireParams, relax, tire_force
+from vehicle_fmu.tires import Force, TireParams, relax, secants, slide_rate
 
 COMMONROAD = "CommonRoad vehicle models 3.0.2"
 
@@ -53,31 +53,27 @@ class Contact(NamedTuple):
 
 
 def turn_wheel(wheel: Wheel, contact: Contact, hub: HubParams, tires: TireParams, h: float) -> Wheel:
-    """Return the wheel ``h`` [s] later and its mean force [N] on the car over the step."""
+    """Return the wheel ``h`` [s] later and its force [N] on the car over the step."""
     rim = hub.radius * wheel.spin
-    speed = _larger(abs(contact.along), abs(rim))
+    speed = _larger(_larger(abs(contact.along), abs(rim)), 0.1 * abs(contact.across))
+    slide_x = rim - contact.along
+    slide_y = speed * tires.camber_slip * contact.camber - contact.across
+    over = 1.0 / speed if speed > 1e-12 else 0.0
+    secant = secants(slide_x * over, slide_y * over, contact.load, contact.camber, contact.grip, tires)
+    rate_x = slide_rate(tires.carcass_x, speed, secant.x)
+    rate_y = slide_rate(tires.carcass_y, speed, secant.y)
     ahead = h + tires.damping
-    length = tires.relaxation_x
-    u = relax(wheel.u, rim - contact.along, speed, length, ahead)
-    w = relax(wheel.w, -contact.across, speed, tires.relaxation_y, ahead)
-    force = tire_force(u / length, w / tires.relaxation_y, contact.load, contact.camber, contact.grip, tires)
-    stiffness = force.x / u if abs(u) > 1e-9 else _spring(contact, tires)
-    slope = stiffness * hub.radius * ahead / (1.0 + ahead * speed / length)
+    force = tires.carcass_x * relax(wheel.u, slide_x, rate_x, ahead)
+    slope = tires.carcass_x * hub.radius * ahead / (1.0 + ahead * rate_x)
     inertia = hub.inertia + h * hub.radius * slope
-    free = wheel.spin + h * (contact.drive - hub.radius * force.x) / inertia
+    free = wheel.spin + h * (contact.drive - hub.radius * force) / inertia
     spin = move_towards(free, 0.0, h * contact.brake / inertia)
     return Wheel(
         spin,
-        relax(wheel.u, hub.radius * spin - contact.along, speed, length, h),
-        relax(wheel.w, -contact.across, speed, tires.relaxation_y, h),
-        Force(force.x + slope * (spin - wheel.spin), force.y),
+        relax(wheel.u, hub.radius * spin - contact.along, rate_x, h),
+        relax(wheel.w, slide_y, rate_y, h),
+        Force(force + slope * (spin - wheel.spin), tires.carcass_y * relax(wheel.w, slide_y, rate_y, ahead)),
     )
-
-
-def _spring(contact: Contact, tires: TireParams) -> float:
-    if contact.load <= 0.0 or contact.grip <= 0.0:
-        return 0.0
-    return tires.stiffness_x * contact.load / tires.relaxation_x
 
 
 def _larger(a: float, b: float) -> float:

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from modelkit.model import Model
 
-MODELKIT_FILES = ("modelkit.maths", "modelkit.random", "modelkit.signal", "modelkit.vocabulary")
+MODELKIT_FILES = ("modelkit.maths", "modelkit.random", "modelkit.signal", "modelkit.vocabulary", "modelkit.geometry")
 
 
 def source_files(model: Model) -> list[Path]:

@@ -8,6 +8,7 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
+from orchestrator.compare import Difference
 from orchestrator.judge import Check
 from orchestrator.master import End
 from orchestrator.quantities import DEGREE
@@ -77,6 +78,23 @@ def checks_table(checks: list[Check], out: Console) -> Table:
         limit = f"{SIGNS[check.condition]} {readable(check.limit, check.unit)}"
         table.add_row(check.id, value, limit, readable(check.margin, check.unit), verdict, check.source)
     return table
+
+
+def differences_table(rows: list[Difference], out: Console) -> Table:
+    """Return signals that differ between two runs as a table."""
+    table = Table(box=None if not out.is_terminal else Table().box, pad_edge=out.is_terminal)
+    for name in ("signal", "largest", "tolerance", "at", "first beyond", ""):
+        table.add_column(name, justify="left" if name in ("signal", "") else "right")
+    for row in rows:
+        largest = "" if row.largest is None else precise(row.largest, row.unit)
+        times = ["" if t is None else f"{t:.3f} s" for t in (row.t_largest, row.first)]
+        table.add_row(row.signal, largest, precise(row.allowed, row.unit), *times, row.note)
+    return table
+
+
+def precise(value: float, unit: str) -> str:
+    """Return a number that may be tiny, in SI."""
+    return f"{value:.3g} {unit}" if unit != "1" else f"{value:.3g}"
 
 
 def readable(value: float, unit: str) -> str:

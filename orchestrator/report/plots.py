@@ -32,12 +32,12 @@ def plots_of(recordings: list[Recording], checks: list[Check], more: list[str]) 
         signals = [name for name in names if any(_alive(item, name) for item in recordings)]
         if signals:
             plots.append(_plot(title, unit, least, signals, checks))
-    shown = {name for plot in plots for name in plot["signals"]}
+    shown = {_short(name) for plot in plots for name in plot["signals"]}
     for name in more:
-        if name not in shown:
+        if _short(name) not in shown:
             variable = next((item.variables[name] for item in recordings if name in item.signals), None)
             if variable is not None:
-                shown.add(name)
+                shown.add(_short(name))
                 plots.append(_plot(name, variable.signal.unit, 0.0, [name], checks))
     return plots
 
@@ -45,6 +45,11 @@ def plots_of(recordings: list[Recording], checks: list[Check], more: list[str]) 
 def _plot(title: str, unit: str, least: float, signals: list[str], checks: list[Check]) -> dict[str, Any]:
     limits = sorted({bound for check in checks if check.signal in signals for bound in _bounds(check)})
     return {"title": title, "unit": unit, "least": least, "signals": signals, "limits": limits}
+
+
+def _short(name: str) -> str:
+    """Return the name without its slave: an input and the output that feeds it are one curve."""
+    return name.partition(".")[2]
 
 
 def _bounds(check: Check) -> list[float]:

@@ -53,18 +53,25 @@ function provenanceCard(run, tag) {
   return card(`Where it came from${tag}`, table(["", ""], rows), false);
 }
 
-function differencesCard(page) {
-  if (!page.differences) return null;
-  const rows = page.differences.map((item) => row([pill(item.passed), element("code", {}, item.signal), numberCell(quantity(item.largest, item.unit)), numberCell(item.tolerance_text),
-    moment(item.t_largest), item.first === null ? "\u2013" : moment(item.first), item.note || ""]));
-  const missed = page.differences.filter((item) => !item.passed).length;
-  const title = missed ? `Signals: ${missed} of ${page.differences.length} differ` : `Signals: all ${page.differences.length} agree`;
-  return card(title, table(["", "signal", "largest difference", "tolerance", "at", "first beyond", ""], rows));
+function differencesCards(page) {
+  if (!page.differences) return [];
+  const line = (item) => row([pill(item.passed), element("code", {}, item.signal), numberCell(quantity(item.largest, item.unit)), numberCell(item.tolerance_text),
+    moment(item.t_largest), item.first === null ? "\u2013" : moment(item.first), item.note || ""]);
+  const heads = ["", "signal", "largest difference", "tolerance", "at", "first beyond", ""];
+  const [missed, agreed] = [false, true].map((passed) => page.differences.filter((item) => item.passed === passed));
+  const lists = [[missed, `${missed.length} of ${page.differences.length} signals differ`], [agreed, `${agreed.length} signals agree`]];
+  return lists.filter(([items]) => items.length).map(([items, title]) => card(title, table(heads, items.map(line)), items === missed));
+}
+
+function changesCard(page) {
+  if (!page.changes) return null;
+  const rows = page.changes.map(([name, a, b]) => row([element("code", {}, name), numberCell(a), numberCell(b)]));
+  return card(`Parameters that differ: ${rows.length}`, rows.length ? table(["name", "A", "B"], rows) : "none", rows.length > 0);
 }
 
 function fillTables(page) {
   const box = $("details"), tags = page.runs.map((run) => (page.runs.length > 1 ? ` ${run.label}` : ""));
-  for (const item of [differencesCard(page), ...page.runs.map((run, i) => checksCard(run, tags[i]))]) if (item) $("checks").append(item);
+  for (const item of [changesCard(page), ...differencesCards(page), ...page.runs.map((run, i) => checksCard(run, tags[i]))]) if (item) $("checks").append(item);
   const cards = [];
   for (const make of [eventsCard, logCard, parametersCard, provenanceCard]) page.runs.forEach((run, i) => cards.push(make(run, tags[i])));
   for (const item of cards) if (item) box.append(item);

@@ -1,0 +1,83 @@
+"""``apa compare``: do two runs agree, signal by signal."""
+
+import argparse
+import sys
+from pathlib import Path
+from typing import Any
+
+from orchestrator.compare import Comparison, compare
+from orchestrator.errors import BadInput
+from orchestrator.quantities import number
+from orchestrator.read_log import read_log
+from orchestrator.report.overlay import write_overlay
+from orchestrator.report.words import read_words
+from orchestrator.terminal import console, differences_table
+from orchestrator.tolerance import Tolerance, read_tolerances
+
+EXAMPLES = """examples:
+  apa compare reference/run.mcap runs/guo2015-case4/run.mcap
+  apa compare A.mcap B.mcap --abs 0.01 --rel 0.02 --time "100 ms" --html overlay.html
+  apa compare A.mcap B.mcap --signals "vehicle.pose.*" --tolerances tolerances.yaml --json
+
+A value of B may differ from A by max(ABS, REL * |A|), at any moment of A within TIME.
+TOLERANCES.yaml changes this for some signals, the last pattern that fits counts:
+  "vehicle.pose.*": {abs: 1 cm, time: 100 ms}
+  "*.heading": {abs: 0.5 deg}
+
+exit codes: 0 all within tolerance, 1 something differs, 2 bad input
+"""
+SAME, DIFFERENT = 0, 1
+
+
+def add_parser(subparsers: Any) -> argparse.ArgumentParser:
+    """Add the command."""
+    parser: argparse.ArgumentParser = subparsers.add_parser("compare", help="compare two runs", epilog=EXAMPLES)
+    parser.add_argument("a", type=Path, metavar="A.mcap", help="the reference")
+    parser.add_argument("b", type=Path, metavar="B.mcap", help="the run to judge")
+    parser.add_argument("--abs", default="1e-9", metavar="NUMBER", help="absolute tolerance in SI units (1e-9)")
+    parser.add_argument("--rel", default="1e-9", metavar="NUMBER", help="tolerance relative to A (1e-9)")
+    parser.add_argument("--time", default="0", metavar="SECONDS", help="tolerance along time (0)")
+    parser.add_argument("--tolerances", type=Path, metavar="FILE", help="tolerances of single signals, YAML")
+    parser.add_argument(
+        "--signals", action="append", metavar="PATTERN", help="compare only these, for example vehicle.pose.*"
+    )
+    parser.add_argument("--html", type=Path, metavar="FILE", help="write a page with both cars and all curves")
+    parser.add_argument("--json", action="store_true", help="print the whole comparison as JSON")
+    return parser
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Compare and print. Returns 0 if all signals are within tolerance, 1 if not."""
+    bounds = [
+        number(getattr(arguments, key), unit, key=f"--{key}")
+        for key, unit in (("abs", "1"), ("rel", "1"), ("time", "s"))
+    ]
+    for key, bound in zip(("abs", "rel", "time"), bounds, strict=True):
+        if not bound >= 0.0:
+            raise BadInput(f"{bound:g} is not 0 or more", key=f"--{key}")
+    runs = read_log(arguments.a), read_log(arguments.b)
+    tolerances = read_tolerances(arguments.tolerances, Tolerance(*bounds))
+    found = compare(*runs, tolerances, arguments.signals or ["*"])
+    if arguments.html:
+        write_overlay(arguments.html, runs, (read_words(arguments.a), read_words(arguments.b)), found)
+    if arguments.json:
+        print(found.model_dump_json(indent=2))
+    else:
+        _print(found)
+        if arguments.html:
+            print(arguments.html, file=sys.stderr)
+    return SAME if found.passed else DIFFERENT
+
+
+def _print(found: Comparison) -> None:
+    out = console()
+    if found.parameters:
+        names = ", ".join(change.name for change in found.parameters[:5])
+        out.print(f"{len(found.parameters)} parameters differ: {names}{', ...' if len(found.parameters) > 5 else ''}")
+    if found.only_in_b:
+        out.print(f"only in B: {', '.join(found.only_in_b)}")
+    if found.passed:
+        out.print(f"[green]same[/]: all {found.compared} signals within tolerance")
+        return
+    out.print(f"[red]different[/]: {found.differing} of {found.compared} signals beyond tolerance")
+    out.print(differences_table([row for row in found.signals if not row.passed], out))

@@ -1,0 +1,1 @@
+"""A whole automated parking assist: slot search, planners, tracking, position tuning, supervision."""

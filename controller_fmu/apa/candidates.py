@@ -1,0 +1,183 @@
+"""One candidate each: the first move of a way into the slot, how many moves in all, and what it costs."""
+
+import math
+from typing import NamedTuple
+
+from controller_fmu.apa.exit import Exit
+from controller_fmu.apa.move import NO_PIECES, Move, end_of, is_move_free, length_of
+from controller_fmu.apa.outline import Car
+from controller_fmu.apa.shuffle import finish, full_lock
+from controller_fmu.apa.slot import Site
+from controller_fmu.apa.turns import forward_turn, reverse_s, reverse_turn, straight_move, turn_of, two_arcs
+from modelkit.maths import sign
+from modelkit.vocabulary import Pose
+
+PREFIX_STEP = 0.25
+REVERSE_PREFIXES = 41
+STRAIGHT_PREFIXES = 32
+FORWARD_PREFIXES = 48
+BACK_WAYS = 16
+SWING_WAYS = 13
+SWING_ANGLES = 13
+SHARES = 4
+CHOICES = 4
+ALL_CHOICES_UP_TO = 3
+LEAST_TURN = 1.0 * math.pi / 180.0
+OFF_CENTRE_COST = 2.0
+
+
+class Candidate(NamedTuple):
+    """A first move and the price of the whole way."""
+
+    found: bool
+    move: Move
+    moves: int
+    """Moves in all; the first one counts."""
+    cost: float
+    """Way in all [m], and what else is not liked."""
+
+
+def none_from(start: Pose) -> Candidate:
+    """Return that there is nothing."""
+    return Candidate(False, Move(start, 0, NO_PIECES), 0, 0.0)
+
+
+def into_parallel(start: Pose, number: int, way_in: Exit, site: Site, car: Car) -> Candidate:
+    """Return the reverse into a parallel slot, straight back at first or from a straight way ahead."""
+    turn = turn_of(car.curvature, car.curvature, car.ramp)
+    if number < REVERSE_PREFIXES:
+        straight = PREFIX_STEP * number
+        move = reverse_s(start, way_in.pose, straight, turn, turn)
+        good = move.direction != 0 and is_move_free(move, car, site.obstacles)
+        return Candidate(good, move, 1 + way_in.moves, length_of(move))
+    ahead = _ahead(start, number - REVERSE_PREFIXES, car)
+    after = reverse_s(end_of(ahead), way_in.pose, 0.0, turn, turn)
+    good = (
+        after.direction != 0 and is_move_free(ahead, car, site.obstacles) and is_move_free(after, car, site.obstacles)
+    )
+    return Candidate(good, ahead, 2 + way_in.moves, length_of(ahead) + length_of(after))
+
+
+def _ahead(start: Pose, number: int, car: Car) -> Move:
+    if number < STRAIGHT_PREFIXES:
+        return straight_move(start, 1, PREFIX_STEP * (number + 1))
+    way = 2.0 * PREFIX_STEP * (number - STRAIGHT_PREFIXES + 1)
+    return two_arcs(start, 1, 0.4 * car.curvature, way, 0.0, 0.0)
+
+
+def into_perpendicular(start: Pose, share: int, site: Site, car: Car) -> Candidate:
+    """Return the reverse line, arc, line into a perpendicular slot, at 1, 0.85, 0.7 or 0.55 of the lock."""
+    turn = turn_of((1.0 - 0.15 * share) * car.curvature, car.curvature, car.ramp)
+    move = reverse_turn(start, turn)
+    good = move.direction != 0 and is_move_free(move, car, site.obstacles)
+    return Candidate(good, move, 1, length_of(move))
+
+
+def swing(start: Pose, number: int, site: Site, car: Car) -> Candidate:
+    """Return the move forward and to the left from which :func:`into_perpendicular` leads in."""
+    share = number % 2
+    angle = (number // 2) % SWING_ANGLES
+    ahead = number // (2 * SWING_ANGLES)
+    gentle = turn_of((1.0 - 0.2 * share) * car.curvature, car.curvature, car.ramp)
+    move = forward_turn(start, 0.5 * ahead, 2.0 * gentle.angle + angle * 5.0 * math.pi / 180.0, gentle)
+    none = Candidate(False, move, 2, 0.0)
+    if move.direction == 0:
+        return none
+    after = into_perpendicular(end_of(move), 2 * share, site, car)
+    if not after.found or not is_move_free(move, car, site.obstacles):
+        return none
+    return Candidate(True, move, 2, length_of(move) + after.cost)
+
+
+def back_and_forth(start: Pose, number: int, site: Site, car: Car) -> Candidate:
+    """Return the reverse at full lock to the right that, after one forward to the left, leads in."""
+    back = full_lock(start, -1, -1.0, 1.5 * (1 + number % 4), site, car)
+    if back.direction == 0:
+        return none_from(start)
+    ahead = full_lock(end_of(back), 1, 1.0, 1.0 * (1 + (number // 4) % 5), site, car)
+    if ahead.direction == 0:
+        return none_from(start)
+    after = into_perpendicular(end_of(ahead), number // 20, site, car)
+    return Candidate(after.found, back, 3, length_of(back) + length_of(ahead) + after.cost)
+
+
+def back_and_swing(start: Pose, number: int, site: Site, car: Car) -> Candidate:
+    """Return the reverse, straight or a little bent, from which :func:`swing` at once leads in."""
+    k = 0.35 * car.curvature * (number % 3 - 1)
+    back = two_arcs(start, -1, k, 0.5 * (1 + (number // 3) % BACK_WAYS), 0.0, 0.0)
+    after = swing(end_of(back), number // (3 * BACK_WAYS), site, car)
+    good = after.found and is_move_free(back, car, site.obstacles)
+    return Candidate(good, back, 3, length_of(back) + after.cost)
+
+
+def ahead_back_and_swing(start: Pose, number: int, site: Site, car: Car) -> Candidate:
+    """Return the straight move forward from which :func:`back_and_swing` leads in."""
+    ahead = straight_move(start, 1, 1.5 * (1 + number % 4))
+    if not is_move_free(ahead, car, site.obstacles):
+        return none_from(start)
+    after = back_and_swing(end_of(ahead), number // 4, site, car)
+    return Candidate(after.found, ahead, 4, length_of(ahead) + after.cost)
+
+
+def swing_back_and_forth(start: Pose, number: int, site: Site, car: Car) -> Candidate:
+    """Return the move forward to the left from which :func:`back_and_forth` leads in."""
+    full = turn_of(car.curvature, car.curvature, car.ramp)
+    ahead = 1.0 * (number % 5)
+    angle = 2.0 * full.angle + ((number // 5) % 4) * 12.0 * math.pi / 180.0
+    move = forward_turn(start, ahead, angle, full)
+    if move.direction == 0 or not is_move_free(move, car, site.obstacles):
+        return none_from(start)
+    after = back_and_forth(end_of(move), number // 20, site, car)
+    return Candidate(after.found, move, 4, length_of(move) + after.cost)
+
+
+def inside_count(moves: int) -> int:
+    """Return how many candidates :func:`inside` has for this number of moves."""
+    if moves - 1 > ALL_CHOICES_UP_TO:
+        return 4
+    count = 4
+    for _ in range(moves - 1):
+        count = count * CHOICES
+    return count
+
+
+def inside(start: Pose, number: int, moves: int, site: Site, car: Car) -> Candidate:
+    """Return the first of ``moves`` short moves in the slot, of which the last ends as wished.
+
+    Each but the last is an arc at full lock, to lessen the heading or the other way, as far as nothing
+    is near or half of that.
+    """
+    direction = 1 if number % 2 == 0 else -1
+    sense = 1.0 if (number // 2) % 2 == 0 else -1.0
+    rest = number // 4
+    pose = start
+    way = 0.0
+    first = Move(start, 0, NO_PIECES)
+    for step in range(moves - 1):
+        choice = rest % CHOICES if moves - 1 <= ALL_CHOICES_UP_TO else 0
+        rest = rest // CHOICES
+        move = _inside_step(pose, direction, choice, site, car)
+        if move.direction == 0:
+            return none_from(start)
+        if step == 0:
+            first = move
+        pose = end_of(move)
+        way += length_of(move)
+        direction = -direction
+    last = finish(pose, direction, sense, 1.0, site, car)
+    if moves == 1:
+        first = last.move
+    return Candidate(last.found, first, moves, way + length_of(last.move) + OFF_CENTRE_COST * last.off_centre)
+
+
+def _inside_step(pose: Pose, direction: int, choice: int, site: Site, car: Car) -> Move:
+    turned = abs(pose.heading) > LEAST_TURN
+    lessening = -sign(pose.heading) * direction if turned else 1.0
+    sense = lessening if choice < 2 else -lessening
+    longest = 4.0
+    if turned and choice == 0:
+        longest = abs(pose.heading) / car.curvature
+    move = full_lock(pose, direction, sense, longest, site, car)
+    if choice % 2 == 1 and move.direction != 0:
+        return full_lock(pose, direction, sense, 0.5 * length_of(move), site, car)
+    return move

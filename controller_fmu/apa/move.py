@@ -1,0 +1,101 @@
+"""A move: one way driven in one direction, as pieces of linear curvature.
+
+Continuous curvature is a B-spline of degree one over the way driven (its knots are the ends of the
+ramps), so the limits of curvature and curvature rate hold exactly and everywhere.
+"""
+
+from typing import NamedTuple
+
+from controller_fmu.apa.curve import advance
+from controller_fmu.apa.outline import Car, Obstacles, is_free
+from modelkit.vocabulary import Pose
+
+PIECES = 7
+
+
+class Piece(NamedTuple):
+    """A line, an arc or a ramp."""
+
+    length: float = 0.0
+    k0: float = 0.0
+    k1: float = 0.0
+
+
+class Move(NamedTuple):
+    """Start (slot's frame), direction (1, -1; 0: no move) and pieces; those of length 0 are unused."""
+
+    start: Pose = Pose()
+    direction: int = 0
+    pieces: tuple[Piece, ...] = (Piece(),) * PIECES
+
+
+NO_PIECE = Piece(0.0, 0.0, 0.0)
+NO_PIECES = (NO_PIECE,) * PIECES
+NO_MOVE = Move(Pose(0.0, 0.0, 0.0), 0, NO_PIECES)
+
+
+class PathPoint(NamedTuple):
+    """A point of a move: pose, curvature [1/m], slope of the curvature [1/m2], way left to the end [m]."""
+
+    pose: Pose
+    curvature: float
+    slope: float
+    left: float
+
+
+def length_of(move: Move) -> float:
+    """Return the length [m] of a move."""
+    total = 0.0
+    for piece in move.pieces:
+        total += piece.length
+    return total
+
+
+def end_of(move: Move) -> Pose:
+    """Return the pose at the end of a move."""
+    pose = move.start
+    for piece in move.pieces:
+        if piece.length > 0.0:
+            pose = advance(pose, float(move.direction), piece.length, piece.k0, piece.k1)
+    return pose
+
+
+def point_at(move: Move, way: float) -> PathPoint:
+    """Return the point ``way`` [m] along a move; before its start and past its end, straight on."""
+    direction = float(move.direction)
+    left = length_of(move) - way
+    pose = move.start
+    if way < 0.0:
+        return PathPoint(advance(pose, direction, way, 0.0, 0.0), first_curvature(move), 0.0, left)
+    rest = way
+    last = 0.0
+    for piece in move.pieces:
+        if piece.length > 0.0:
+            if rest <= piece.length:
+                slope = (piece.k1 - piece.k0) / piece.length
+                k = piece.k0 + slope * rest
+                return PathPoint(advance(pose, direction, rest, piece.k0, k), k, slope, left)
+            pose = advance(pose, direction, piece.length, piece.k0, piece.k1)
+            rest -= piece.length
+            last = piece.k1
+    return PathPoint(advance(pose, direction, rest, 0.0, 0.0), last, 0.0, left)
+
+
+def first_curvature(move: Move) -> float:
+    """Return the curvature [1/m] that a move begins with."""
+    for piece in move.pieces:
+        if piece.length > 0.0:
+            return piece.k0
+    return 0.0
+
+
+def is_move_free(move: Move, car: Car, obstacles: Obstacles) -> bool:
+    """Return whether a move meets no obstacle."""
+    pose = move.start
+    direction = float(move.direction)
+    for piece in move.pieces:
+        if piece.length > 0.0:
+            if not is_free(pose, direction, piece.length, piece.k0, piece.k1, car, obstacles):
+                return False
+            pose = advance(pose, direction, piece.length, piece.k0, piece.k1)
+    return True

@@ -1,0 +1,139 @@
+"""The car's outline against boxes with sides along the axes of the slot's frame: clearance, free way.
+
+Two rectangles that do not touch are nearest at a corner of one of them; whether they touch is told
+by the separating axis theorem on the four directions of their sides.
+"""
+
+import math
+from typing import NamedTuple
+
+from controller_fmu.apa.curve import advance
+from modelkit.vocabulary import Pose
+
+FAR = 60.0
+"""Half length [m] of a box that stands for a wall without end."""
+
+
+class Car(NamedTuple):
+    """What a planner needs to know of the car."""
+
+    front: float = 3.2
+    """Rear axle to front bumper [m]."""
+    rear: float = 0.6
+    """Rear axle to rear bumper [m]."""
+    half_width: float = 0.825
+    curvature: float = 0.2
+    """Largest curvature [1/m] that is planned."""
+    ramp: float = 0.8
+    """Way [m] over which the curvature goes from 0 to the largest."""
+
+
+class Box(NamedTuple):
+    """Something solid: x from ``x0`` to ``x1``, y from ``y0`` to ``y1`` [m]; empty if x0 > x1."""
+
+    x0: float = 1.0
+    x1: float = -1.0
+    y0: float = 1.0
+    y1: float = -1.0
+
+
+class Obstacles(NamedTuple):
+    """What stands around a slot, in the slot's frame."""
+
+    behind: Box = Box()
+    ahead: Box = Box()
+    beside: Box = Box()
+    """Kerb or wall that the slot ends at."""
+    opposite: Box = Box()
+
+
+def box_clearance(pose: Pose, car: Car, box: Box) -> float:
+    """Return the distance [m] of the outline to the box; negative: how deep they overlap at least."""
+    if box.x0 > box.x1:
+        return FAR
+    c = math.cos(pose.heading)
+    s = math.sin(pose.heading)
+    middle = 0.5 * (car.front - car.rear)
+    half = 0.5 * (car.front + car.rear)
+    side = car.half_width
+    a = 0.5 * (box.x1 - box.x0)
+    b = 0.5 * (box.y1 - box.y0)
+    dx = pose.x + middle * c - 0.5 * (box.x0 + box.x1)
+    dy = pose.y + middle * s - 0.5 * (box.y0 + box.y1)
+    ac = abs(c)
+    ass = abs(s)
+    along = dx * c + dy * s
+    across = dy * c - dx * s
+    gap = _larger(
+        _larger(abs(dx) - a - half * ac - side * ass, abs(dy) - b - half * ass - side * ac),
+        _larger(abs(along) - half - a * ac - b * ass, abs(across) - side - a * ass - b * ac),
+    )
+    if gap <= 0.0:
+        return gap
+    best = _corner_squared(dx + half * c - side * s, dy + half * s + side * c, a, b)
+    best = _smaller(best, _corner_squared(dx + half * c + side * s, dy + half * s - side * c, a, b))
+    best = _smaller(best, _corner_squared(dx - half * c - side * s, dy - half * s + side * c, a, b))
+    best = _smaller(best, _corner_squared(dx - half * c + side * s, dy - half * s - side * c, a, b))
+    best = _smaller(best, _corner_squared(along - a * c - b * s, across + a * s - b * c, half, side))
+    best = _smaller(best, _corner_squared(along - a * c + b * s, across + a * s + b * c, half, side))
+    best = _smaller(best, _corner_squared(along + a * c - b * s, across - a * s - b * c, half, side))
+    best = _smaller(best, _corner_squared(along + a * c + b * s, across - a * s + b * c, half, side))
+    return math.sqrt(best)
+
+
+def clearance(pose: Pose, car: Car, obstacles: Obstacles) -> float:
+    """Return the distance [m] of the outline to the nearest obstacle; <= 0: contact."""
+    nearest = box_clearance(pose, car, obstacles.behind)
+    nearest = _smaller(nearest, box_clearance(pose, car, obstacles.ahead))
+    nearest = _smaller(nearest, box_clearance(pose, car, obstacles.beside))
+    return _smaller(nearest, box_clearance(pose, car, obstacles.opposite))
+
+
+def free_way(pose: Pose, direction: float, curvature: float, longest: float, car: Car, obstacles: Obstacles) -> float:
+    """Return how far [m] the car can drive at this curvature before an obstacle is nearer than 0.
+
+    The boxes are grown by the margin beforehand. Looked at every 4 cm.
+    """
+    step = 0.04
+    way = 0.0
+    while way < longest:
+        next_way = _smaller(way + step, longest)
+        if clearance(advance(pose, direction, next_way, curvature, curvature), car, obstacles) <= 0.0:
+            return way
+        way = next_way
+    return longest
+
+
+def is_free(pose: Pose, direction: float, length: float, k0: float, k1: float, car: Car, obstacles: Obstacles) -> bool:
+    """Return whether the car meets no obstacle on this piece of path, looked at every 10 cm."""
+    count = 1 + math.floor(length / 0.1)
+    for number in range(1, count + 1):
+        way = length * number / count
+        k = k0 + (k1 - k0) * number / count
+        if clearance(advance(pose, direction, way, k0, k), car, obstacles) <= 0.0:
+            return False
+    return True
+
+
+def grown(box: Box, margin: float) -> Box:
+    """Return the box with its sides moved out by ``margin`` [m]; an empty one stays empty."""
+    if box.x0 > box.x1:
+        return box
+    return Box(box.x0 - margin, box.x1 + margin, box.y0 - margin, box.y1 + margin)
+
+
+def _corner_squared(x: float, y: float, half_length: float, half_width: float) -> float:
+    """Return the squared distance [m2] of a point to a box around the origin."""
+    dx = abs(x) - half_length
+    dy = abs(y) - half_width
+    dx = dx if dx > 0.0 else 0.0
+    dy = dy if dy > 0.0 else 0.0
+    return dx * dx + dy * dy
+
+
+def _smaller(a: float, b: float) -> float:
+    return a if a < b else b
+
+
+def _larger(a: float, b: float) -> float:
+    return a if a > b else b

@@ -1,0 +1,163 @@
+"""The search for the next move: a list of stages, each a family of candidates, a few at a time.
+
+Stages go from fewer moves to more; the search ends with the first stage in which a candidate is free
+of obstacles, and takes the cheapest of that stage. Only the next move is kept: at its end the car
+stands where it really stands, and the search is made again from there.
+"""
+
+from typing import NamedTuple
+
+from controller_fmu.apa.candidates import (
+    BACK_WAYS,
+    FORWARD_PREFIXES,
+    REVERSE_PREFIXES,
+    SHARES,
+    SWING_ANGLES,
+    SWING_WAYS,
+    Candidate,
+    ahead_back_and_swing,
+    back_and_forth,
+    back_and_swing,
+    inside,
+    inside_count,
+    into_parallel,
+    into_perpendicular,
+    none_from,
+    swing,
+    swing_back_and_forth,
+)
+from controller_fmu.apa.exit import VARIANTS, Exit, exit_of
+from controller_fmu.apa.move import NO_PIECES, Move
+from controller_fmu.apa.outline import Car
+from controller_fmu.apa.slot import PARALLEL, Site
+from modelkit.vocabulary import Pose
+
+SEARCHING = 0
+FOUND = 1
+NOTHING = 2
+
+INSIDE = 0
+ENTRY = 20
+TURN = 40
+SWING = 41
+BACK_AND_FORTH = 42
+SWING_BACK_AND_FORTH = 43
+BACK_AND_SWING = 44
+AHEAD_BACK_AND_SWING = 45
+NO_STAGE = -1
+STEEPEST_INSIDE = 0.9
+"""Past this heading [rad] short moves are not looked for."""
+
+IN_PARALLEL = (1, 2, 3, 4, 5, 6, 7, 8, NO_STAGE)
+"""Stages of a car in a parallel slot: short moves, 1 to 8 of them."""
+IN_PERPENDICULAR = (1, 40, 2, 41, 3, 44, 42, 45, 4, 43, NO_STAGE)
+
+
+class PlanSearch(NamedTuple):
+    """How far the search has come, and the best so far."""
+
+    status: int = SEARCHING
+    stage: int = 0
+    number: int = 0
+    way_in: Exit = Exit()
+    found: bool = False
+    cost: float = 0.0
+    moves: int = 0
+    """Moves of the best way, its first included."""
+    move: Move = Move()
+    """First move of the best way."""
+
+
+def new_search(start: Pose) -> PlanSearch:
+    """Return a search not yet begun, from ``start`` (slot's frame)."""
+    none = Exit(False, Pose(0.0, 0.0, 0.0), 0)
+    return PlanSearch(SEARCHING, 0, 0, none, False, 0.0, 0, Move(start, 0, NO_PIECES))
+
+
+def search_on(search: PlanSearch, site: Site, car: Car, count: int) -> PlanSearch:
+    """Return the search after at most ``count`` more candidates."""
+    for _ in range(count):
+        if search.status == SEARCHING:
+            search = _one_more(search, site, car)
+    return search
+
+
+def stage_of(place: int, start: Pose, site: Site, car: Car) -> int:
+    """Return the family of candidates at ``place`` in the order for this start, -1 past the last."""
+    if site.kind == PARALLEL:
+        if start.y < 1.3 * car.half_width:
+            return IN_PARALLEL[place] if place < len(IN_PARALLEL) else NO_STAGE
+        return ENTRY + place if place < VARIANTS else NO_STAGE
+    return IN_PERPENDICULAR[place] if place < len(IN_PERPENDICULAR) else NO_STAGE
+
+
+def count_of(stage: int) -> int:
+    """Return how many candidates a stage has."""
+    if stage == TURN:
+        return SHARES
+    if stage == SWING:
+        return 2 * SWING_ANGLES * SWING_WAYS
+    if stage == BACK_AND_FORTH:
+        return 20 * SHARES
+    if stage == BACK_AND_SWING:
+        return 3 * BACK_WAYS * 2 * SWING_ANGLES
+    if stage == AHEAD_BACK_AND_SWING:
+        return 4 * 3 * BACK_WAYS * 2 * SWING_ANGLES
+    if stage == SWING_BACK_AND_FORTH:
+        return 20 * 20 * SHARES
+    if stage >= ENTRY:
+        return REVERSE_PREFIXES + FORWARD_PREFIXES
+    return inside_count(stage)
+
+
+def _one_more(search: PlanSearch, site: Site, car: Car) -> PlanSearch:
+    start = search.move.start
+    stage = stage_of(search.stage, start, site, car)
+    if stage == NO_STAGE:
+        return _with_status(search, NOTHING)
+    way_in = search.way_in
+    is_entry = ENTRY <= stage < TURN
+    if is_entry and search.number == 0:
+        way_in = exit_of(stage - ENTRY, site, car)
+    candidate = _candidate(stage, search.number, start, way_in, site, car)
+    better = candidate.found and (not search.found or candidate.cost < search.cost)
+    last = search.number + 1 >= count_of(stage) or (is_entry and (candidate.found or not way_in.found))
+    found = search.found or candidate.found
+    return PlanSearch(
+        FOUND if last and found else SEARCHING,
+        search.stage + 1 if last else search.stage,
+        0 if last else search.number + 1,
+        way_in,
+        found,
+        candidate.cost if better else search.cost,
+        candidate.moves if better else search.moves,
+        candidate.move if better else search.move,
+    )
+
+
+def _candidate(stage: int, number: int, start: Pose, way_in: Exit, site: Site, car: Car) -> Candidate:
+    if stage == TURN:
+        return into_perpendicular(start, number, site, car)
+    if stage == SWING:
+        return swing(start, number, site, car)
+    if stage == BACK_AND_FORTH:
+        return back_and_forth(start, number, site, car)
+    if stage == BACK_AND_SWING:
+        return back_and_swing(start, number, site, car)
+    if stage == AHEAD_BACK_AND_SWING:
+        return ahead_back_and_swing(start, number, site, car)
+    if stage == SWING_BACK_AND_FORTH:
+        return swing_back_and_forth(start, number, site, car)
+    if stage >= ENTRY:
+        if not way_in.found:
+            return none_from(start)
+        return into_parallel(start, number, way_in, site, car)
+    if abs(start.heading) > STEEPEST_INSIDE:
+        return none_from(start)
+    return inside(start, number, stage, site, car)
+
+
+def _with_status(search: PlanSearch, status: int) -> PlanSearch:
+    return PlanSearch(
+        status, search.stage, search.number, search.way_in, search.found, search.cost, search.moves, search.move
+    )

@@ -1,0 +1,131 @@
+"""A slot as found or given, its target, and what stands around it, in the frame of the target.
+
+The slot's own frame (A's frame): origin at corner A, the edge passed first; x along the road towards
+corner B; y out of the slot. A slot on the left is mirrored, so that it lies at y < 0 as well.
+The target's frame has x along the parked heading: along the road (parallel), or out of the slot
+(perpendicular, parked in reverse).
+"""
+
+import math
+from enum import IntEnum
+from typing import Annotated, NamedTuple
+
+from controller_fmu.apa.outline import FAR, Box, Car, Obstacles, grown
+from controller_fmu.slot_frame import SlotFrame, to_world
+from modelkit.signal import Signal
+from modelkit.vocabulary import Pose
+
+
+class Kind(IntEnum):
+    """How a car stands in a slot."""
+
+    NONE = 0
+    PARALLEL = 1
+    PERPENDICULAR = 2
+
+
+class Side(IntEnum):
+    """Where a slot lies, seen along the road from A to B."""
+
+    RIGHT = 0
+    LEFT = 1
+
+
+PARALLEL = int(Kind.PARALLEL)
+PERPENDICULAR = int(Kind.PERPENDICULAR)
+LEFT = int(Side.LEFT)
+UNSEEN = 50.0
+
+
+class Slot(NamedTuple):
+    """Corners and extents; the defaults are a slot that is not there."""
+
+    kind: Annotated[int, Signal("1", "how the car will stand", states=Kind)] = int(Kind.NONE)
+    side: Annotated[int, Signal("1", "side of the road", states=Side)] = int(Side.RIGHT)
+    a: Pose = Pose()
+    """Corner A in the world; heading: from A along the road."""
+    length: Annotated[float, Signal("m", "corner A to corner B along the road", 0.0)] = 0.0
+    b_out: Annotated[float, Signal("m", "how far corner B stands out further than corner A")] = 0.0
+    depth: Annotated[float, Signal("m", "corner A to the kerb or wall; 50: none seen", 0.0)] = UNSEEN
+    opposite: Annotated[float, Signal("m", "corner A to what lies across the road; 50: none seen", 0.0)] = UNSEEN
+
+
+class Site(NamedTuple):
+    """A slot as the planner sees it: frame of the target, obstacles grown by the margin, where x may end."""
+
+    kind: int = PARALLEL
+    frame: SlotFrame = SlotFrame()
+    obstacles: Obstacles = Obstacles()
+    x_low: float = 0.0
+    x_high: float = 0.0
+
+
+class Margins(NamedTuple):
+    """Distances [m] kept to the neighbours and to the kerb or wall, and how far inside the line to park."""
+
+    neighbour: float = 0.2
+    beside: float = 0.1
+    inset: float = 0.0
+
+
+def mirror_of(slot: Slot) -> float:
+    """Return 1 for a slot on the right, -1 on the left."""
+    return -1.0 if slot.side == LEFT else 1.0
+
+
+def target_of(slot: Slot, car: Car, margins: Margins) -> Pose:
+    """Return the pose to park at, in A's frame."""
+    line = 0.5 * slot.b_out - margins.inset
+    if slot.kind == PERPENDICULAR:
+        y = line - car.front
+        lowest = car.rear + margins.neighbour - slot.depth
+        return Pose(0.5 * slot.length, lowest if y < lowest else y, 0.5 * math.pi)
+    y = line - car.half_width
+    lowest = car.half_width + margins.beside - slot.depth
+    return Pose(0.5 * (slot.length - car.front - car.rear) + car.rear, lowest if y < lowest else y, 0.0)
+
+
+def site_of(slot: Slot, car: Car, margins: Margins) -> Site:
+    """Return the slot in the frame of its target."""
+    target = target_of(slot, car, margins)
+    frame = SlotFrame(to_world(target, SlotFrame(slot.a, mirror_of(slot))), mirror_of(slot))
+    x = target.x
+    y = target.y
+    behind = Box(-FAR, 0.0, -FAR, 0.0)
+    ahead = Box(slot.length, FAR, -FAR, slot.b_out)
+    beside = Box(-FAR, FAR, -FAR, -slot.depth) if slot.depth < UNSEEN else Box(1.0, -1.0, 1.0, -1.0)
+    opposite = Box(-FAR, FAR, slot.opposite, FAR) if slot.opposite < UNSEEN else Box(1.0, -1.0, 1.0, -1.0)
+    turned = slot.kind == PERPENDICULAR
+    near = margins.neighbour
+    beside_margin = margins.neighbour if turned else margins.beside
+    obstacles = Obstacles(
+        grown(_seen_from(behind, x, y, turned), near),
+        grown(_seen_from(ahead, x, y, turned), near),
+        grown(_seen_from(beside, x, y, turned), beside_margin - 0.01),
+        grown(_seen_from(opposite, x, y, turned), near),
+    )
+    if turned:
+        return Site(slot.kind, frame, obstacles, -0.05, 0.1)
+    slack = 0.5 * (slot.length - car.front - car.rear) - near
+    slack = slack - 0.01 if slack > 0.01 else 0.0
+    return Site(slot.kind, frame, obstacles, -slack, slack)
+
+
+def shortest_for_one_move(car: Car, inner_radius: float, depth: float) -> float:
+    """Return L_min [m] = r + sqrt(2 (R_min + d) B_y + l^2 - B_y^2) of the source.
+
+    r rear overhang, R_min the inner rear wheel's turning radius, d the width, l nose to rear axle,
+    B_y how deep the car stands behind corner B. The corner of the nose, at radius
+    sqrt((R_min + d)^2 + l^2), passes corner B, which lies R_min + d - B_y from the centre.
+    """
+    width = 2.0 * car.half_width
+    under = 2.0 * (inner_radius + width) * depth + car.front * car.front - depth * depth
+    return car.rear + (math.sqrt(under) if under > 0.0 else 0.0)
+
+
+def _seen_from(box: Box, x: float, y: float, turned: bool) -> Box:
+    if box.x0 > box.x1:
+        return box
+    if turned:
+        return Box(box.y0 - y, box.y1 - y, x - box.x1, x - box.x0)
+    return Box(box.x0 - x, box.x1 - x, box.y0 - y, box.y1 - y)

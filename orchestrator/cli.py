@@ -7,6 +7,8 @@ import sys
 from collections.abc import Sequence
 from types import ModuleType
 
+from rich.markup import escape
+
 from orchestrator import commands
 from orchestrator.errors import BadInput, RunError
 from orchestrator.terminal import BAD_INPUT, INTERRUPTED, NOT_PARKED, console
@@ -61,7 +63,7 @@ def command_modules() -> list[ModuleType]:
 
 
 def _complain(text: str) -> None:
-    console(sys.stderr).print(f"[bold red]apa:[/] {text.replace('[', chr(92) + '[')}")
+    console(sys.stderr).print(f"[bold red]apa:[/] {escape(text)}", soft_wrap=True)
 
 
 if __name__ == "__main__":

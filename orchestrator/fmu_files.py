@@ -1,13 +1,16 @@
 """Which .fmu files a run uses, built when they are missing or older than their sources."""
 
 import hashlib
-from collections.abc import Callable
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 from orchestrator.models import MODELS
 
 ROOT = Path(__file__).parent.parent
 SOURCES = ("modelkit", "vehicle_fmu", "controller_fmu", "fmus")
+STAMP = "sources.sha256"
 KINDS = ("python", "native")
 
 
@@ -26,13 +29,26 @@ def build(kind: str) -> list[str]:
     """Build the FMUs of ``kind`` and return one line about each."""
     from fmus.build import DIST, build_all
 
-    before = sources_hash()
     lines = []
-    for built in build_all(kinds=(kind,)):
-        size = f"{built.path.stat().st_size / 1024:.0f} KiB"
-        lines.append(f"{built.path}  {size}  {built.guid}{'' if built.changed else '  unchanged'}")
-    (DIST / kind / "sources.sha256").write_text(before, encoding="ascii")
+    with _alone(DIST):
+        before = sources_hash()
+        for built in build_all(kinds=(kind,)):
+            size = f"{built.path.stat().st_size / 1024:.0f} KiB"
+            lines.append(f"{built.path}  {size}  {built.guid}{'' if built.changed else '  unchanged'}")
+        (DIST / kind / STAMP).write_text(before, encoding="ascii")
     return lines
+
+
+@contextmanager
+def _alone(folder: Path) -> Iterator[None]:
+    """Let one process build at a time, where the system has file locks."""
+    folder.mkdir(parents=True, exist_ok=True)
+    with (folder / ".lock").open("w", encoding="ascii") as lock:
+        if sys.platform != "win32":
+            import fcntl
+
+            fcntl.flock(lock, fcntl.LOCK_EX)
+        yield
 
 
 def sources_hash() -> str:
@@ -48,5 +64,5 @@ def sources_hash() -> str:
 
 
 def _stamp(folder: Path) -> str:
-    stamp = folder / "sources.sha256"
+    stamp = folder / STAMP
     return stamp.read_text(encoding="ascii") if stamp.is_file() else ""

@@ -1,13 +1,12 @@
 """An FMI 2.0 co-simulation FMU behind the face of a slave. FMPy loads it; the arrays are allocated once.
 
 Each exchange is at most one call per type and direction (``fmi2GetReal`` and so on), made straight
-through ctypes on pointers that never change. The FMU lives on the thread that made it.
+through ctypes on pointers that never change.
 """
 
 import ctypes
 import shutil
 import tempfile
-import threading
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
@@ -20,12 +19,12 @@ from fmpy.fmi2 import (
     fmi2CallbackFunctions,
     fmi2CallbackLoggerTYPE,
 )
-from fmpy.model_description import ScalarVariable, read_model_description
+from fmpy.model_description import ModelDescription, ScalarVariable, read_model_description
 
 from modelkit.model import Model
 from modelkit.signal import Signal
 from modelkit.variables import Variable, variables
-from orchestrator.errors import RunError
+from orchestrator.errors import BadInput, RunError
 from orchestrator.slave import Ports
 
 KINDS = {"Real": float, "Integer": int, "Enumeration": int, "Boolean": bool}
@@ -66,11 +65,10 @@ class FmuSlave:
         self.name = name
         self._log = log
         self._last_message = ""
-        self._thread = threading.get_ident()
-        self._directory = _ascii_directory()
+        self._path = path
+        self._directory = ""
         self._instance: FMU2Slave | None = None
-        extract(str(path), unzipdir=self._directory)
-        self._description = read_model_description(str(path), validate=False)
+        self._description = _description(path)
         self.identity = self._description.guid
         scalars = self._description.modelVariables
         self._references = {scalar.name: scalar.valueReference for scalar in scalars}
@@ -85,7 +83,9 @@ class FmuSlave:
         self._changed = {key: self.parameters.variables[self.parameters.index[key]].kind for key in parameters}
 
     def initialize(self, stop_ns: int) -> None:
-        """Instantiate, set the parameters, enter Initialization Mode."""
+        """Extract, instantiate, set the parameters, enter Initialization Mode."""
+        self._directory = _ascii_directory()
+        extract(str(self._path), unzipdir=self._directory)
         co_simulation = self._description.coSimulation
         self._instance = FMU2Slave(
             guid=self._description.guid,
@@ -156,7 +156,9 @@ class FmuSlave:
             except Exception as error:
                 self._log(self.name, 1, f"terminate: {error}")
             instance.freeInstance()
-        shutil.rmtree(self._directory, ignore_errors=True)
+        if self._directory:
+            shutil.rmtree(self._directory, ignore_errors=True)
+            self._directory = ""
 
     def _bind(self) -> None:
         assert self._instance is not None
@@ -209,6 +211,17 @@ class FmuSlave:
         callbacks.allocateMemory = defaultCallbacks.allocateMemory
         callbacks.freeMemory = defaultCallbacks.freeMemory
         return callbacks
+
+
+def _description(path: Path) -> ModelDescription:
+    """Return what the FMU says of itself. Raises ``BadInput`` if the file is no FMI 2.0 co-simulation FMU."""
+    try:
+        description = read_model_description(str(path), validate=False)
+    except Exception as error:
+        raise BadInput(f"is not an FMU: {error}", file=path) from error
+    if description.fmiVersion != "2.0" or description.coSimulation is None:
+        raise BadInput(f"is FMI {description.fmiVersion}; expected FMI 2.0 for co-simulation", file=path)
+    return description
 
 
 def _known_variables(model: Model | None) -> dict[str, Variable]:

@@ -80,7 +80,11 @@ def run_scenario(
     """Return the recording of one run. Errors of a slave end it as aborted; ``BadInput`` passes through."""
     words = Words()
     slaves = make_slaves(scenario, files, words)
-    return run_slaves(scenario, slaves, words, kind=kind, log=log, observers=observers, interrupt=interrupt)
+    try:
+        return run_slaves(scenario, slaves, words, kind=kind, log=log, observers=observers, interrupt=interrupt)
+    finally:
+        for slave in slaves:
+            slave.close()
 
 
 def run_slaves(

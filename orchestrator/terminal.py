@@ -5,6 +5,7 @@ import sys
 from typing import TextIO
 
 from rich.console import Console
+from rich.markup import escape
 from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
@@ -18,13 +19,15 @@ PARKED, NOT_PARKED, BAD_INPUT, INTERRUPTED = 0, 1, 2, 130
 """Exit codes."""
 COLOURS = {"parked": "bold green", "not_parked": "bold yellow", "failed": "bold red", "aborted": "bold red"}
 SIGNS = {"max": "\u2264", "min": "\u2265", "max_abs": "\u00b1", "equals": "="}
+PIPED_WIDTH = 200
+"""Characters in a line that goes to a file or another program."""
 PROGRESS_PERIOD_NS = 500_000_000
 
 
 def console(stream: TextIO | None = None) -> Console:
     """Return a console that writes colours only to a terminal that wants them."""
     stream = stream or sys.stdout
-    return Console(file=stream, highlight=False, soft_wrap=not stream.isatty())
+    return Console(file=stream, highlight=False, width=None if stream.isatty() else PIPED_WIDTH)
 
 
 class ProgressBar:
@@ -53,8 +56,8 @@ def print_summary(summary: Summary, title: str, expected: str) -> None:
     out = console()
     style = COLOURS[summary.outcome]
     wanted = "" if summary.outcome == expected else f"  (expected: {expected})"
-    out.print(f"[bold]{summary.scenario}[/]  {title}".rstrip(), markup=True)
-    out.print(f"[{style}]{summary.outcome}[/]: {summary.reason}{wanted}")
+    out.print(f"[bold]{summary.scenario}[/]  {escape(title)}".rstrip())
+    out.print(f"[{style}]{summary.outcome}[/]: {escape(summary.reason)}{wanted}")
     final = summary.final
     out.print(
         f"{summary.duration:.2f} s, {summary.shifts} shifts, up to {summary.max_speed:.2f} m/s; at the end "
@@ -76,7 +79,7 @@ def checks_table(checks: list[Check], out: Console) -> Table:
         verdict = "[green]pass[/]" if check.passed else "[red]MISS[/]" if check.required else "[yellow]miss[/]"
         value = check.note or readable(check.value, check.unit)
         limit = f"{SIGNS[check.condition]} {readable(check.limit, check.unit)}"
-        table.add_row(check.id, value, limit, readable(check.margin, check.unit), verdict, check.source)
+        table.add_row(escape(check.id), value, limit, readable(check.margin, check.unit), verdict, escape(check.source))
     return table
 
 

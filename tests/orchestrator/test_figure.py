@@ -1,0 +1,52 @@
+"""The overview picture is drawn for any run: parked, failed, far away, broken."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from matplotlib.image import imread
+
+from orchestrator.figure import draw
+from orchestrator.geometry import Car, in_frame, place, sample_path
+from orchestrator.load_scenario import load_scenario
+from orchestrator.session import run_scenario
+from orchestrator.summary import summarize
+
+DEMO = str(Path(__file__).with_name("demo.yaml"))
+
+
+@pytest.mark.parametrize(
+    "sets",
+    [
+        ["stop_time=8"],
+        ["stop_time=8", "vehicle.start=[1e4, -2e4, 200 deg]", "target=[1e4, -2e4, 200 deg]"],
+        ["stop_time=1", "faults=[{signal: vehicle.odometry.x, kind: override, value: nan, start: 0.5}]"],
+        ["stop_time=0.01"],
+    ],
+)
+def test_a_picture_of_any_run(tmp_path: Path, sets: list[str]) -> None:
+    scenario = load_scenario(DEMO, sets)
+    ran = run_scenario(scenario)
+    draw(ran.recording, summarize(ran.recording, scenario, 1.0), scenario, tmp_path / "a.png")
+    picture = imread(tmp_path / "a.png")
+    assert picture.shape[:2] == (1080, 1560)
+    assert picture[..., :3].std() > 0.05
+
+
+def test_the_sampled_path_ends_where_two_arcs_do() -> None:
+    values = {"path.start.x": 0.0, "path.start.y": 0.0, "path.start.heading": 0.0}
+    angle = np.arcsin(3.804 / 5.5)
+    for number, curvature in ((1, -1 / 5.5), (2, 1 / 5.5)):
+        values[f"path.segments[{number}].length"] = 5.5 * angle
+        values[f"path.segments[{number}].curvature"] = curvature
+    end = sample_path(values)[-1]
+    assert end == pytest.approx([-2 * 3.804, -2 * 5.5 * (1 - np.cos(angle))], abs=1e-12)
+    assert sample_path({}).shape == (0, 2)
+
+
+def test_frames_go_there_and_back() -> None:
+    points = Car.of({"wheelbase": 2.4, "front_overhang": 0.8, "rear_overhang": 0.6, "width": 1.6}).outline()
+    assert points.min(axis=0).tolist() == [-0.6, -0.8]
+    assert points.max(axis=0) == pytest.approx([3.2, 0.8])
+    x, y = place(points[:1], 5.0, 6.0, 2.0)[0]
+    assert in_frame(x, y, 2.5, (5.0, 6.0, 2.0)) == pytest.approx((*points[0], 0.5))

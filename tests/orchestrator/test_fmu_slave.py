@@ -1,0 +1,87 @@
+"""Runs with FMUs: the same bits as in process, errors told, nothing left behind."""
+
+import tempfile
+import zipfile
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from fmus.build import build_all
+from orchestrator.errors import BadInput, RunError
+from orchestrator.fmu_slave import FmuSlave
+from orchestrator.load_scenario import load_scenario
+from orchestrator.models import MODELS
+from orchestrator.session import run_scenario
+
+DEMO = str(Path(__file__).with_name("demo.yaml"))
+
+
+@pytest.fixture(scope="module")
+def files(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
+    out = tmp_path_factory.mktemp("fmus")
+    build_all(out, ("python",))
+    return {name: out / "python" / f"{model.name}.fmu" for name, model in MODELS.items()}
+
+
+def silent(name: str, status: int, text: str) -> None:
+    pass
+
+
+@pytest.mark.parametrize(
+    "more", [[], ["every={controller: 2}"], ["faults=[{signal: vehicle.odometry.x, kind: noise, sigma: 2 mm}]"]]
+)
+def test_fmus_give_the_bits_of_the_models_in_process(files: dict[str, Path], more: list[str]) -> None:
+    scenario = load_scenario(DEMO, ["stop_time=15", *more])
+    here = run_scenario(scenario).recording
+    there = run_scenario(scenario, files, kind="python").recording
+    assert there.signals.keys() == here.signals.keys()
+    for name, values in here.signals.items():
+        assert np.ascontiguousarray(there.signals[name]).tobytes() == np.ascontiguousarray(values).tobytes(), name
+    assert there.parameters == here.parameters
+    assert {name: there.states(name) for name in here.signals} == {name: here.states(name) for name in here.signals}
+
+
+def test_nothing_is_left_behind(files: dict[str, Path], tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    run_scenario(load_scenario(DEMO, ["stop_time=0.1"]), files, kind="python")
+    bad = load_scenario(DEMO, ["stop_time=0.1", "faults=[{signal: vehicle.nothing, kind: freeze}]"])
+    with pytest.raises(BadInput):
+        run_scenario(bad, files, kind="python")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_extraction_goes_to_an_ascii_path(
+    files: dict[str, Path], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    odd = tmp_path / "größe"
+    odd.mkdir()
+    monkeypatch.setattr(tempfile, "tempdir", str(odd))
+    ran = run_scenario(load_scenario(DEMO, ["stop_time=0.1"]), files, kind="python")
+    assert ran.end.reason == "stop_time"
+    assert list(odd.iterdir()) == []
+
+
+def test_a_parameter_the_fmu_does_not_have_is_named(files: dict[str, Path]) -> None:
+    with pytest.raises(RunError, match=r"Vehicle\.fmu has no parameter tail; is it outdated\?"):
+        FmuSlave("vehicle", files["vehicle"], {"tail": 3.0}, silent)
+
+
+def test_a_file_that_is_no_fmu(tmp_path: Path) -> None:
+    path = tmp_path / "x.fmu"
+    path.write_text("no zip")
+    with pytest.raises(BadInput, match=r"x\.fmu: is not an FMU"):
+        FmuSlave("vehicle", path, {}, silent)
+    with zipfile.ZipFile(path, "w") as archive:
+        archive.writestr("readme.txt", "empty")
+    with pytest.raises(BadInput, match=r"x\.fmu: is not an FMU"):
+        FmuSlave("vehicle", path, {}, silent)
+
+
+def test_units_and_start_values_come_from_the_fmu(files: dict[str, Path]) -> None:
+    slave = FmuSlave("vehicle", files["vehicle"], {"wheelbase": 2.5}, silent)
+    place = slave.parameters.index["wheelbase"]
+    assert slave.parameters.values[place] == 2.5
+    assert slave.parameters.variables[place].signal.unit == "m"
+    assert slave.outputs.variables[slave.outputs.index["pose.heading"]].signal.unit == "rad"
+    slave.close()

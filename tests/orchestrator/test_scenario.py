@@ -1,0 +1,145 @@
+"""Scenarios: what can be written, how layers merge, and one clear sentence for every mistake."""
+
+import math
+from pathlib import Path
+
+import pytest
+
+from orchestrator.errors import BadInput
+from orchestrator.load_scenario import car_names, load_scenario, scenario_names
+from orchestrator.quantities import number
+
+DEMO = str(Path(__file__).with_name("demo.yaml"))
+
+
+def write(tmp_path: Path, text: str, name: str = "mine.yaml") -> str:
+    path = tmp_path / name
+    path.write_text(text, encoding="utf-8")
+    return str(path)
+
+
+@pytest.mark.parametrize("name", scenario_names())
+def test_every_shipped_scenario_loads_and_says_what_it_is(name: str) -> None:
+    scenario = load_scenario(name)
+    assert scenario.name == name
+    assert scenario.title
+    assert scenario.limits
+
+
+def test_the_five_cases_and_their_car_are_shipped() -> None:
+    assert {f"guo2015-case{n}{rate}" for n in range(1, 6) for rate in ("", "-105")} <= set(scenario_names())
+    assert "guo2015" in car_names()
+
+
+@pytest.mark.parametrize(
+    ("text", "unit", "value"),
+    [
+        ("570 deg", "rad", 570 * math.pi / 180),
+        ("105 deg/s", "rad/s", 105 * math.pi / 180),
+        ("5 km/h", "m/s", 5 / 3.6),
+        ("-2.5cm", "m", -0.025),
+        ("1e-3", "s", 0.001),
+        ("200 ms", "s", 0.2),
+        (3, "m", 3.0),
+        ("7 m/s2", "m/s2", 7.0),
+    ],
+)
+def test_quantities(text: object, unit: str, value: float) -> None:
+    assert number(text, unit) == pytest.approx(value, rel=1e-15)
+
+
+def test_flat_nested_and_list_forms_mean_the_same(tmp_path: Path) -> None:
+    flat = "vehicle: {'driver.profile[1].at': 1, 'driver.profile[1].speed': 5 km/h, start.heading: 90 deg}"
+    nested = "vehicle: {driver: {profile: [{at: 1, speed: 5 km/h}]}, start: {heading: 90 deg}}"
+    listed = "vehicle: {driver.profile: [[1, 5 km/h]], start: [0, 0, 90 deg]}"
+    found = [load_scenario(write(tmp_path, text)).vehicle for text in (flat, nested, listed)]
+    assert found[0] == found[1]
+    assert {**found[0], "start.x": 0.0, "start.y": 0.0} == found[2]
+
+
+def test_layers_car_base_file_and_set(tmp_path: Path) -> None:
+    write(tmp_path, "vehicle: {wheelbase: 2.0, width: 1.5}\ncontroller: {wheelbase: 2.0}", "small.yaml")
+    base = "car: small.yaml\nseed: 7\nslot: {x: 1, y: 2, length: 6, width: 2}\ntarget: [1, 2, 3 deg]\n"
+    write(tmp_path, base + "vehicle: {width: 1.6, driver.profile: [[0, 1], [2, 0.5]]}", "below.yaml")
+    path = write(tmp_path, "base: below.yaml\nslot: {width: 3}\nvehicle: {driver.profile: [[0, 0.3]]}\ntarget: {x: 9}")
+    scenario = load_scenario(path, ["vehicle.front_overhang=90 cm", "controller.system=ntbpt", "stop_time=12 s"])
+    assert scenario.vehicle["wheelbase"] == 2.0
+    assert scenario.vehicle["width"] == 1.6
+    assert scenario.vehicle["front_overhang"] == pytest.approx(0.9)
+    assert {key for key in scenario.vehicle if "profile" in key} == {"driver.profile[1].at", "driver.profile[1].speed"}
+    assert scenario.controller["system"] == 1
+    assert scenario.controller["target.x"] == 9.0
+    assert scenario.controller["target.y"] == 2.0
+    assert scenario.slot is not None
+    assert (scenario.slot.x, scenario.slot.width) == (1.0, 3.0)
+    assert (scenario.seed, scenario.stop_time, scenario.name) == (7, 12.0, "mine")
+
+
+def test_title_is_not_inherited(tmp_path: Path) -> None:
+    assert load_scenario(write(tmp_path, "base: guo2015-case4")).title == ""
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("stop_tim: 3", r"mine\.yaml: stop_tim: unknown; did you mean stop_time\?"),
+        ("wheelbase: 3", r"wheelbase: unknown; did you mean .*vehicle\.wheelbase"),
+        ("vehicle: {wheelbas: 3}", r"mine\.yaml: vehicle\.wheelbas: unknown; did you mean wheelbase"),
+        ("vehicle: {ratio: 3}", r"vehicle\.ratio: unknown; did you mean steering\.ratio"),
+        ("vehicle: {wheelbase: long}", r"mine\.yaml: vehicle\.wheelbase: 'long' is not a number"),
+        ("vehicle: {wheelbase: 3 deg}", r"vehicle\.wheelbase: '3 deg' is in 'deg', expected a number in m"),
+        ("vehicle: {wheelbase: -3}", r"vehicle\.wheelbase: -3 is out of range, expected 0\.1 to 20 m"),
+        ("vehicle: {wheelbase: .nan}", r"vehicle\.wheelbase: nan is not a value"),
+        ("vehicle: {wheelbase: [1, 2]}", r"vehicle\.wheelbase: \[1, 2\] is not a number"),
+        ("vehicle: {body: kinematik}", r"vehicle\.body: 'kinematik' is none of kinematic.*did you mean kinematic"),
+        ("vehicle: {body: 77}", r"vehicle\.body: 77 is none of 0 kinematic"),
+        ("vehicle: {start: 3}", r"vehicle\.start: 3 is one value, expected a mapping or list of x, y, heading"),
+        ("vehicle: {start: [1, 2, 3, 4]}", r"vehicle\.start: 4 values given, expected at most 3"),
+        ("vehicle: {driver: {obeys_stop: maybe}}", r"obeys_stop: 'maybe' is neither true nor false"),
+        ("vehicle: 3", r"vehicle: 3: expected a mapping"),
+        ("step: 0", r"step: 0 s is not a whole positive number of nanoseconds"),
+        ("step: 0.5e-9", r"step: 5e-10 s is not a whole positive number"),
+        ("stop_time: -1", r"stop_time: -1 is not a time of 0 s or later"),
+        ("stop_time: 4 m", r"stop_time: '4 m' is in 'm', expected a number in s"),
+        ("seed: -1", r"mine\.yaml: seed: -1: input should be greater than or equal to 0"),
+        ("every: {plant: 2}", r"every\.plant: unknown; known are vehicle, controller"),
+        ("every: {vehicle: 0}", r"every\.vehicle: 0 is not a whole number of at least 1"),
+        ("slot: {x: 1}", r"mine\.yaml: slot\.y: is missing"),
+        ("slot: {x: 1, y: 2, length: 0, width: 1}", r"slot\.length"),
+        ("faults: [{signal: vehicle.speed, kind: melt}]", r"faults\[1\]\.kind: 'melt'"),
+        ("faults: [{signal: vehicle.speed, kind: freeze, when: 3}]", r"faults\[1\]\.when: unknown"),
+        ("expect: glory", r"expect: 'glory'"),
+        ("limits: [hous]", r"hous: no set of limits of this name; did you mean house"),
+        ("car: tank", r"tank: no car of this name; "),
+        ("base: guo2015-case9", r"guo2015-case9: no scenario of this name; did you mean guo2015-case"),
+        ("base: mine.yaml", r"base: inherits from itself"),
+        ("a: [1", r"mine\.yaml: line \d+, column \d+"),
+        ("seed: 1\nseed: 2", r"line 2, column 1: key 'seed' is written twice"),
+        ("- 1", r"mine\.yaml: expected a mapping"),
+    ],
+)
+def test_a_mistake_is_one_clear_sentence(tmp_path: Path, text: str, message: str) -> None:
+    with pytest.raises(BadInput, match=message) as caught:
+        load_scenario(write(tmp_path, text))
+    assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ("vehicle.wheelbase", "expected KEY=VALUE"),
+        ("vehicle.wheelbas=3", r"--set: vehicle\.wheelbas: unknown; did you mean wheelbase"),
+        ("controller.system=mpcc", r"--set: controller\.system: 'mpcc' is none of ntbptcwpt"),
+        ("nothing=3", "--set: nothing: unknown"),
+    ],
+)
+def test_a_wrong_set_is_explained(given: str, message: str) -> None:
+    with pytest.raises(BadInput, match=message):
+        load_scenario(DEMO, [given])
+
+
+def test_names_and_paths_that_do_not_exist() -> None:
+    with pytest.raises(BadInput, match="guo2015-case44: no scenario of this name; did you mean guo2015-case4"):
+        load_scenario("guo2015-case44")
+    with pytest.raises(BadInput, match=r"nowhere/x\.yaml: no such file"):
+        load_scenario("nowhere/x.yaml")

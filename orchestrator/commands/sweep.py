@@ -1,0 +1,70 @@
+"""``apa sweep``: a study of thousands of runs, from YAML to a table and a page."""
+
+import argparse
+from pathlib import Path
+from typing import Any
+
+from orchestrator.errors import BadInput
+from orchestrator.fmu_files import KINDS
+from orchestrator.terminal import INTERRUPTED, PARKED, console
+
+EXAMPLES = """examples:
+  apa sweep guo2015-speed-rate                 compiled, on all cores; table and page in runs/guo2015-speed-rate
+  apa sweep my-study.yaml --resume             go on after Ctrl-C, a kill or a power cut
+  apa sweep my-study.yaml --fmus native        the same table from FMUs, only slower
+  apa sweep my-study.yaml --dask               on a Dask cluster of this machine's own
+  apa sweep my-study.yaml --dask tcp://10.0.0.5:8786
+  apa replay runs/my-study/my-study.parquet --row 4711
+
+A study is made of a scenario and of what is varied: grid, monte_carlo, latin_hypercube; see docs/sweeps.md.
+"""
+
+
+def add_parser(subparsers: Any) -> argparse.ArgumentParser:
+    """Add the command."""
+    parser: argparse.ArgumentParser = subparsers.add_parser("sweep", help="run a study of many runs", epilog=EXAMPLES)
+    parser.add_argument("study", metavar="NAME|FILE", help="a shipped study, or a YAML file")
+    parser.add_argument("--out", type=Path, metavar="DIR", help="where table and page go (default: runs/NAME)")
+    parser.add_argument("--resume", action="store_true", help="go on with an unfinished study")
+    parser.add_argument("--restart", action="store_true", help="throw the runs of an unfinished study away")
+    parser.add_argument("--fmus", choices=KINDS, help="run FMUs of this kind instead of the compiled batch")
+    parser.add_argument(
+        "--dask", nargs="?", const="local", metavar="ADDRESS", help="use Dask: its own local workers, or a scheduler's"
+    )
+    parser.add_argument("--workers", type=int, metavar="N", help="threads or processes (default: all cores)")
+    parser.add_argument("--chunk", type=int, metavar="N", help="runs per part, at most these are lost by a kill")
+    parser.add_argument("--no-page", action="store_true", help="write no result page")
+    return parser
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Run what is missing, write table and page, print the outcome. Returns 0, 130 if interrupted."""
+    from orchestrator.sweep.study import load_study
+
+    for name in ("workers", "chunk"):
+        if getattr(arguments, name) is not None and getattr(arguments, name) < 1:
+            raise BadInput(f"{getattr(arguments, name)}: expected 1 or more", key=f"--{name}")
+    try:
+        from orchestrator.sweep.sweep import Options, sweep
+    except ModuleNotFoundError as error:
+        raise BadInput(f"{error.name} is not installed; run: pip install 'apa-cosim[native,sweep]'") from error
+    study = load_study(arguments.study)
+    out: Path = arguments.out or Path("runs") / study.name
+    out.mkdir(parents=True, exist_ok=True)
+    names = ("fmus", "dask", "workers", "chunk", "resume", "restart")
+    swept = sweep(study, out, Options(**{name: getattr(arguments, name) for name in names}))
+    screen = console()
+    if swept.note:
+        screen.print(f"not compiled: {swept.note}", markup=False)
+    if swept.made:
+        rate = swept.made / swept.seconds
+        screen.print(f"{swept.made} runs in {swept.seconds:.1f} s, {rate:.0f} a second ({swept.engine})", markup=False)
+    if swept.table is None:
+        screen.print(f"{swept.done} of {swept.count} runs are kept; go on with: apa sweep {arguments.study} --resume")
+        return INTERRUPTED
+    screen.print(f"table in {swept.table}", markup=False)
+    if not arguments.no_page:
+        from orchestrator.sweep.page import write_page
+
+        screen.print(f"page in {write_page(swept.table)}", markup=False)
+    return PARKED

@@ -1,0 +1,75 @@
+"""Chunks on a Dask cluster: one of this machine's own, or one whose scheduler is named.
+
+Dask hands the chunks of a worker that is lost to the others; a chunk may be done twice, its rows are
+the same. Workers need this project installed, of the same version.
+"""
+
+import importlib
+import queue
+from collections.abc import Iterator
+from contextlib import suppress
+from typing import Any
+
+from orchestrator.errors import BadInput
+from orchestrator.fmu_files import sources_hash
+from orchestrator.master import Interrupt
+from orchestrator.slave import Array
+from orchestrator.sweep.engines import AHEAD, POLL, Task, cores
+from orchestrator.sweep.job import Chunk, Job
+
+distributed: Any = importlib.import_module("distributed")
+CONNECT = 10.0
+"""How long to look for the scheduler [s]."""
+
+
+class DaskEngine:
+    """Threads of Dask workers."""
+
+    def __init__(self, task: Task, address: str | None, workers: int | None) -> None:
+        self._task = task
+        self._cluster: Any = None
+        if address is None:
+            self._cluster = distributed.LocalCluster(
+                n_workers=workers or cores(), threads_per_worker=1, processes=True, dashboard_address=None
+            )
+        try:
+            self._client = distributed.Client(address or self._cluster, timeout=CONNECT, set_as_default=False)
+        except OSError as error:
+            raise BadInput(f"no scheduler answers: {error}", key=f"--dask {address}") from error
+        self.name = f"{task.name} on Dask at {self._client.scheduler.address}"
+        self.workers = max(1, sum(self._client.nthreads().values()))
+
+    def results(self, job: Job, chunks: Iterator[Chunk], interrupt: Interrupt) -> Iterator[tuple[Chunk, Array]]:
+        """Yield chunks with their rows as they are done."""
+        try:
+            self._check_sources()
+            yield from self._results(job, chunks, interrupt)
+        finally:
+            self._client.close()
+            if self._cluster is not None:
+                self._cluster.close()
+
+    def _results(self, job: Job, chunks: Iterator[Chunk], interrupt: Interrupt) -> Iterator[tuple[Chunk, Array]]:
+        done: queue.SimpleQueue[Any] = queue.SimpleQueue()
+        waiting: dict[Any, tuple[Any, Chunk]] = {}
+        while True:
+            while len(waiting) < AHEAD * self.workers and not interrupt.requested:
+                chunk = next(chunks, None)
+                if chunk is None:
+                    break
+                future = self._client.submit(self._task.work, job, chunk, pure=False)
+                waiting[future.key] = (future, chunk)
+                future.add_done_callback(done.put)
+            if not waiting or interrupt.requested:
+                return
+            with suppress(queue.Empty):
+                future, chunk = waiting.pop(done.get(timeout=POLL).key)
+                yield chunk, future.result()
+
+    def _check_sources(self) -> None:
+        """Raise ``BadInput`` if a worker has other sources: its bits could differ."""
+        own = sources_hash()
+        others = self._client.run(sources_hash)
+        strange = [address for address, found in others.items() if found != own]
+        if strange:
+            raise BadInput(f"{', '.join(strange)} runs another version of this project", key="--dask")

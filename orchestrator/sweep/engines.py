@@ -1,0 +1,136 @@
+"""Who does the runs: threads with compiled code, processes with models or FMUs, or a Dask cluster.
+
+Every engine takes chunks and gives back (chunk, rows), as they are done. All engines give the same
+bits, so a study begun with one may be finished with another.
+"""
+
+import os
+import signal
+from collections.abc import Callable, Iterator
+from concurrent.futures import FIRST_COMPLETED, Executor, Future, ProcessPoolExecutor, ThreadPoolExecutor, wait
+from contextlib import contextmanager
+from functools import partial
+from importlib.util import find_spec
+from multiprocessing import get_context
+from typing import Any, NamedTuple, Protocol
+
+from orchestrator.errors import BadInput
+from orchestrator.master import Interrupt
+from orchestrator.scenario import Scenario
+from orchestrator.slave import Array
+from orchestrator.sweep.batch import run_batch
+from orchestrator.sweep.fmu_runs import run_recorded
+from orchestrator.sweep.job import Chunk, Job
+from orchestrator.sweep.kept import why_not_compiled
+
+Work = Callable[[Job, Chunk], Array]
+BATCH_CHUNK = 500
+"""Runs per chunk of the compiled batch: about half a second."""
+RECORDED_CHUNK = 8
+"""Runs per chunk where each run is a recording: some seconds."""
+AHEAD = 2
+"""Chunks handed out per worker."""
+POLL = 0.2
+"""How often an interrupt is looked for [s]."""
+
+
+class Engine(Protocol):
+    """Does chunks."""
+
+    name: str
+    workers: int
+
+    def results(self, job: Job, chunks: Iterator[Chunk], interrupt: Interrupt) -> Iterator[tuple[Chunk, Array]]:
+        """Yield chunks with their rows in any order; after an interrupt only those in hand."""
+
+
+class Task(NamedTuple):
+    """How one chunk is done, and how large it should be."""
+
+    work: Work
+    name: str
+    chunk: int
+    threads: bool
+    """Threads are enough: the work holds no lock."""
+    note: str = ""
+    """Why it is not the compiled batch."""
+
+    @property
+    def is_compiled(self) -> bool:
+        """Return whether there is machine code to be made first."""
+        return self.threads
+
+
+def choose_task(scenario: Scenario, job: Job, fmus: str | None) -> Task:
+    """Return how the runs are done: compiled where that is possible, otherwise one by one in the Python master."""
+    if fmus is not None:
+        from orchestrator.fmu_files import fmu_files
+
+        files = {name: str(path) for name, path in fmu_files(fmus).items()}
+        return Task(partial(run_recorded, kind=fmus, files=files), f"{fmus} FMUs", RECORDED_CHUNK, False)
+    why = why_not_compiled(scenario, job.kept)
+    if not why and find_spec("numba") is None:
+        why = "numba is not installed"
+    if why:
+        work = partial(run_recorded, kind="none", files=None)
+        return Task(
+            work, "models in process", RECORDED_CHUNK, False, f"{why}: every run goes through the Python master"
+        )
+    return Task(run_batch, "compiled batch", BATCH_CHUNK, True)
+
+
+class LocalEngine:
+    """Threads or processes of this machine."""
+
+    def __init__(self, task: Task, workers: int | None = None) -> None:
+        self.name = task.name
+        self.workers = workers or cores()
+        self._task = task
+
+    def results(self, job: Job, chunks: Iterator[Chunk], interrupt: Interrupt) -> Iterator[tuple[Chunk, Array]]:
+        """Yield chunks with their rows as they are done."""
+        with self._executor() as executor:
+            waiting: dict[Future[Array], Chunk] = {}
+            while True:
+                while len(waiting) < AHEAD * self.workers and not interrupt.requested:
+                    chunk = next(chunks, None)
+                    if chunk is None:
+                        break
+                    waiting[executor.submit(self._task.work, job, chunk)] = chunk
+                if not waiting:
+                    return
+                if interrupt.requested:
+                    for future in [future for future in waiting if future.cancel()]:
+                        del waiting[future]
+                for future in wait(waiting, timeout=POLL, return_when=FIRST_COMPLETED).done:
+                    yield waiting.pop(future), future.result()
+
+    @contextmanager
+    def _executor(self) -> Iterator[Executor]:
+        kind: Any = partial(ProcessPoolExecutor, mp_context=get_context("spawn"), initializer=_deaf)
+        executor = (ThreadPoolExecutor if self._task.threads else kind)(self.workers)
+        try:
+            yield executor
+        finally:
+            executor.shutdown(wait=True, cancel_futures=True)
+
+
+def make_engine(task: Task, dask: str | None, workers: int | None) -> Engine:
+    """Return the engine: Dask if an address or ``local`` is given. Raises ``BadInput`` if Dask is missing."""
+    if dask is None:
+        return LocalEngine(task, workers)
+    if find_spec("distributed") is None:
+        raise BadInput("Dask is not installed; run: pip install 'apa-cosim[sweep]'", key="--dask")
+    from orchestrator.sweep.dask_engine import DaskEngine
+
+    return DaskEngine(task, None if dask == "local" else dask, workers)
+
+
+def cores() -> int:
+    """Return the number of processor cores this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+def _deaf() -> None:
+    """Leave Ctrl-C to the parent: it ends the study in order."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)

@@ -1,0 +1,22 @@
+"""Runs one by one through the Python master, on FMUs or on the models in process; with faults if there are any."""
+
+from collections.abc import Mapping
+from pathlib import Path
+
+import numpy as np
+
+from orchestrator.session import run_scenario
+from orchestrator.slave import Array
+from orchestrator.sweep.job import Chunk, Job, chunk_scenario
+from orchestrator.sweep.kept import FIRST_KEPT, row_of
+
+
+def run_recorded(job: Job, chunk: Chunk, kind: str, files: Mapping[str, str] | None) -> Array:
+    """Return one row of kept numbers per run of ``chunk``, read off its recording."""
+    paths = None if files is None else {name: Path(path) for name, path in files.items()}
+    rows = np.empty((len(chunk.seeds), FIRST_KEPT + len(job.kept)))
+    for number in range(len(rows)):
+        scenario = chunk_scenario(job, chunk, number)
+        ran = run_scenario(scenario, paths, kind=kind)
+        rows[number] = row_of(ran.recording, scenario, job.kept)
+    return rows

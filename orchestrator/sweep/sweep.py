@@ -1,0 +1,140 @@
+"""One study from its file to its table: what is missing is run, written part by part, joined at the end."""
+
+import sys
+import time
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeRemainingColumn
+
+from orchestrator.fmu_files import sources_hash
+from orchestrator.interrupts import on_interrupt
+from orchestrator.master import Interrupt
+from orchestrator.session import versions
+from orchestrator.sweep.batch import compiled
+from orchestrator.sweep.design import Design, make_design
+from orchestrator.sweep.engines import choose_task, make_engine
+from orchestrator.sweep.job import Job, make_job, study_scenario
+from orchestrator.sweep.kept import CLEARANCE
+from orchestrator.sweep.store import Store, chunks, job_to
+from orchestrator.sweep.study import Study
+from orchestrator.sweep.verdict import PARKED, RESULTS, judge
+from orchestrator.terminal import console
+
+
+@dataclass
+class Options:
+    """How a study is run; none of it changes a bit of the table."""
+
+    fmus: str | None = None
+    dask: str | None = None
+    """Address of a scheduler, or ``local``."""
+    workers: int | None = None
+    chunk: int | None = None
+    resume: bool = False
+    restart: bool = False
+
+
+@dataclass
+class Swept:
+    """What came of it."""
+
+    table: Path | None
+    """None if interrupted."""
+    count: int
+    """Runs of the study."""
+    done: int
+    """Runs in the table or in its parts."""
+    made: int
+    """Runs made now."""
+    parked: int
+    """Of those made now."""
+    seconds: float
+    engine: str
+    note: str
+
+
+def sweep(study: Study, folder: Path, options: Options) -> Swept:
+    """Run a study, or the rest of it. Raises ``BadInput``."""
+    scenario = study_scenario(study)
+    design = make_design(study, scenario)
+    job = make_job(study, scenario, design.fields)
+    task = choose_task(scenario, job, options.fmus)
+    store = Store(folder, study.name, design.fields, _numbers(job), _about(study, job, design))
+    size = store.begin(options.chunk or task.chunk, resume=options.resume, restart=options.restart)
+    total = len(design.seeds)
+    missing = [chunk for chunk in chunks(design.values, design.seeds, size) if not store.has(chunk.number)]
+    swept = Swept(None, total, total - sum(len(chunk.seeds) for chunk in missing), 0, 0, 0.0, task.name, task.note)
+    interrupt = Interrupt()
+    if missing and task.is_compiled:
+        compiled(tuple(job.kept))
+    begun = time.perf_counter()
+    if missing:
+        engine = make_engine(task, options.dask, options.workers)
+        swept.engine = f"{engine.name}, {engine.workers} at a time"
+        with on_interrupt(interrupt), _Shown(study, swept) as progress:
+            for chunk, rows in engine.results(job, iter(missing), interrupt):
+                verdict = judge(job, chunk, rows)
+                store.write(chunk, verdict)
+                swept.parked += int((verdict.outcome == PARKED).sum())
+                progress.add(len(rows))
+    swept.seconds = time.perf_counter() - begun
+    if swept.done == total:
+        swept.table = store.finish(-(-total // size))
+    return swept
+
+
+def _numbers(job: Job) -> list[str]:
+    return [name for name in RESULTS if name != "min_clearance" or CLEARANCE in job.kept]
+
+
+def _about(study: Study, job: Job, design: Design) -> dict[str, Any]:
+    """Return what a table says about itself: enough to go on with it and to run any row again."""
+    return {
+        "study": study.model_dump(mode="json", by_alias=True),
+        "job": job_to(job),
+        "design": design.digest(),
+        "sources": sources_hash(),
+        "versions": versions(),
+    }
+
+
+class _Shown:
+    """Progress with rate and time left on standard error, if that is a terminal."""
+
+    def __init__(self, study: Study, swept: Swept) -> None:
+        columns = (
+            TextColumn(study.name),
+            BarColumn(),
+            TaskProgressColumn(),
+            TextColumn("{task.completed:.0f} of {task.total:.0f} runs, {task.fields[rate]:.0f}/s, left"),
+            TimeRemainingColumn(),
+            TextColumn("{task.fields[parked]}"),
+        )
+        self._swept = swept
+        self._begun = time.perf_counter()
+        self._progress = Progress(
+            *columns, console=console(sys.stderr), transient=True, disable=not sys.stderr.isatty()
+        )
+        self._task = self._progress.add_task(
+            study.name, total=swept.count, completed=swept.done, rate=0.0, parked=""
+        )
+
+    def __enter__(self) -> "_Shown":
+        self._progress.start()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._progress.stop()
+
+    def add(self, count: int) -> None:
+        """Show that ``count`` more runs are written."""
+        self._swept.done += count
+        self._swept.made += count
+        self._progress.update(
+            self._task,
+            completed=self._swept.done,
+            rate=self._swept.made / (time.perf_counter() - self._begun),
+            parked=f"{100.0 * self._swept.parked / self._swept.made:.1f} % parked",
+        )

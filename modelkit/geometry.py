@@ -204,7 +204,7 @@ def _side_in_cone(a: Point, b: Point, side: Point) -> float:
 
 
 def _cut(at_a: float, at_b: float) -> Point:
-    """Return the part (low, high) of [0, 1] where a linear function with these end values is >= 0; empty: low > high."""
+    """Return the part (low, high) of [0, 1] where a line with these end values is >= 0; low > high if none."""
     if at_a >= 0.0 and at_b >= 0.0:
         return Point(0.0, 1.0)
     if at_a < 0.0 and at_b < 0.0:

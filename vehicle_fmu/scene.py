@@ -1,0 +1,90 @@
+"""What stands around the car: boxes and kerb lines, and how near the car's outline is to them.
+
+A box may appear and disappear at given times. A kerb lower than the ground clearance stops the
+wheels but passes under the bumpers: clearance to it is measured from the part of the outline
+between the tyres' outer ends.
+"""
+
+from typing import Annotated, NamedTuple
+
+from modelkit.geometry import FAR, Box, boxes_gap, centre_gap, line_box, outline
+from modelkit.signal import Signal
+from modelkit.vocabulary import Pose
+
+HOUSE = "chosen; the source states none"
+FOREVER = 1e9
+
+
+class Obstacle(NamedTuple):
+    """An oriented box that stands in the way for some time."""
+
+    x: Annotated[float, Signal("m", "x of the centre")] = 0.0
+    y: Annotated[float, Signal("m", "y of the centre")] = 0.0
+    heading: Annotated[float, Signal("rad", "direction of its length")] = 0.0
+    length: Annotated[float, Signal("m", "length; 0: unused", 0.0, 1000.0)] = 0.0
+    width: Annotated[float, Signal("m", "width", 0.0, 1000.0)] = 0.0
+    appear_at: Annotated[float, Signal("s", "there from this time on", 0.0)] = 0.0
+    disappear_at: Annotated[float, Signal("s", "gone from this time on; 1e9: never", 0.0)] = FOREVER
+
+
+class Kerb(NamedTuple):
+    """A straight kerb from point 1 to point 2."""
+
+    x1: Annotated[float, Signal("m", "x of the first end")] = 0.0
+    y1: Annotated[float, Signal("m", "y of the first end")] = 0.0
+    x2: Annotated[float, Signal("m", "x of the second end")] = 0.0
+    y2: Annotated[float, Signal("m", "y of the second end")] = 0.0
+    height: Annotated[float, Signal("m", "height; 0: unused", 0.0, 10.0)] = 0.0
+
+
+class SceneParams(NamedTuple):
+    """Everything around the car, and what passes under it."""
+
+    boxes: tuple[Obstacle, ...] = (Obstacle(),) * 16
+    kerbs: tuple[Kerb, ...] = (Kerb(),) * 4
+    ground_clearance: Annotated[float, Signal("m", "kerbs lower than this pass under the bumpers", 0.0, 1.0, HOUSE)] = (
+        0.15
+    )
+    wheel_radius: Annotated[float, Signal("m", "tyres reach this far beyond the axles", 0.0, 1.0, HOUSE)] = 0.3
+
+
+class CarSize(NamedTuple):
+    """The car's outline [m]."""
+
+    wheelbase: float
+    front_overhang: float
+    rear_overhang: float
+    width: float
+
+
+def is_there(obstacle: Obstacle, time_ns: int) -> bool:
+    """Return whether the obstacle stands in the scene now."""
+    return obstacle.length > 0.0 and obstacle.appear_at <= time_ns * 1e-9 < obstacle.disappear_at
+
+
+def obstacle_box(obstacle: Obstacle) -> Box:
+    """Return the obstacle's rectangle."""
+    return Box(obstacle.x, obstacle.y, obstacle.heading, obstacle.length, obstacle.width)
+
+
+def clearance(pose: Pose, size: CarSize, scene: SceneParams, time_ns: int) -> float:
+    """Return the distance [m] from the car to the nearest thing; 0 in contact, ``FAR`` in an empty scene."""
+    body = outline(pose, size.wheelbase, size.front_overhang, size.rear_overhang, size.width)
+    nearest = FAR
+    for obstacle in scene.boxes:
+        if is_there(obstacle, time_ns):
+            nearest = nearer(nearest, body, obstacle_box(obstacle))
+    low = outline(pose, size.wheelbase, scene.wheel_radius, scene.wheel_radius, size.width)
+    for kerb in scene.kerbs:
+        if kerb.height > 0.0:
+            part = low if kerb.height < scene.ground_clearance else body
+            nearest = nearer(nearest, part, line_box(kerb.x1, kerb.y1, kerb.x2, kerb.y2))
+    return nearest
+
+
+def nearer(nearest: float, car: Box, thing: Box) -> float:
+    """Return the smaller of ``nearest`` and the gap between car and thing."""
+    if centre_gap(car, thing) >= nearest:
+        return nearest
+    gap = boxes_gap(car, thing)
+    return gap if gap < nearest else nearest

@@ -1,0 +1,140 @@
+"""Twelve ultrasonic sensors: distance to the nearest thing inside each cone.
+
+Numbers: 1 to 4 front, from left to right; 5 to 8 rear, from left to right; 9 front left side,
+10 rear left side; 11 front right side, 12 rear right side. A reading of ``max_range`` means that
+nothing was heard; nothing reads less than ``min_range``. All sensors measure together, every
+``cycle``: the exact distance, plus noise, rounded to the resolution, or lost. With its seed, a
+run repeats to the bit.
+"""
+
+import math
+from math import pi
+from typing import Annotated, NamedTuple
+
+from modelkit.geometry import Box, Point, cone_box, line_box, reach
+from modelkit.maths import clamp
+from modelkit.random import normal, seed_state, uniform
+from modelkit.signal import Signal
+from modelkit.vocabulary import Pose
+from vehicle_fmu.scene import HOUSE, SceneParams, is_there, obstacle_box
+
+USUAL = "usual for parking sensors"
+
+
+class Mount(NamedTuple):
+    """Where a sensor sits on the car and where it looks."""
+
+    x: Annotated[float, Signal("m", "ahead of the rear axle")] = 0.0
+    y: Annotated[float, Signal("m", "to the left of the car's middle")] = 0.0
+    yaw: Annotated[float, Signal("rad", "direction of its axis, left positive")] = 0.0
+
+
+MOUNTS = (
+    Mount(3.10, 0.68, pi / 6.0),
+    Mount(3.205, 0.25, 0.0),
+    Mount(3.205, -0.25, 0.0),
+    Mount(3.10, -0.68, -pi / 6.0),
+    Mount(-0.50, 0.68, pi * 5.0 / 6.0),
+    Mount(-0.60, 0.25, pi),
+    Mount(-0.60, -0.25, pi),
+    Mount(-0.50, -0.68, -pi * 5.0 / 6.0),
+    Mount(2.80, 0.825, pi / 2.0),
+    Mount(-0.20, 0.825, pi / 2.0),
+    Mount(2.80, -0.825, -pi / 2.0),
+    Mount(-0.20, -0.825, -pi / 2.0),
+)
+"""For the car of Guo 2015 with its outline: 3.205 m ahead, 0.6 m behind, 0.825 m to each side."""
+
+
+class UltrasonicParams(NamedTuple):
+    """Mounting and quality of the sensors; noise and dropout are off by default."""
+
+    mounts: tuple[Mount, ...] = MOUNTS
+    half_angle: Annotated[float, Signal("rad", "half opening of the cone", 0.01, 1.5, USUAL)] = 30.0 * pi / 180.0
+    min_range: Annotated[float, Signal("m", "nearest distance told", 0.0, 10.0, USUAL)] = 0.15
+    max_range: Annotated[float, Signal("m", "farthest distance heard", 0.1, 100.0, USUAL)] = 5.0
+    resolution: Annotated[float, Signal("m", "step of a reading; 0: none", 0.0, 1.0, USUAL)] = 0.01
+    cycle: Annotated[float, Signal("s", "time between readings", 1e-3, 10.0, USUAL)] = 0.04
+    noise: Annotated[float, Signal("m", "standard deviation of a reading", 0.0, 10.0, HOUSE)] = 0.0
+    dropout: Annotated[float, Signal("1", "probability that a reading is lost", 0.0, 1.0, HOUSE)] = 0.0
+    kerb_height: Annotated[float, Signal("m", "kerbs lower than this are not heard", 0.0, 10.0, HOUSE)] = 0.08
+    seed: Annotated[int, Signal("1", "seed of noise and dropout", 0, 2147483647)] = 1
+
+
+class UltrasonicState(NamedTuple):
+    """Readings held until the next cycle, and the random generator."""
+
+    readings: tuple[float, ...] = (0.0,) * 12
+    random: int = 1
+
+
+def first_readings(pose: Pose, scene: SceneParams, params: UltrasonicParams) -> UltrasonicState:
+    """Return the readings [m] at time zero."""
+    return measure(UltrasonicState((0.0,) * 12, seed_state(params.seed)), pose, scene, params, 0)
+
+
+def is_due(before_ns: int, now_ns: int, cycle: float) -> bool:
+    """Return whether a multiple of ``cycle`` [s] lies in (before, now]."""
+    cycle_ns = int(cycle * 1e9 + 0.5)
+    return now_ns // cycle_ns > before_ns // cycle_ns
+
+
+def measure(
+    state: UltrasonicState, pose: Pose, scene: SceneParams, params: UltrasonicParams, time_ns: int
+) -> UltrasonicState:
+    """Return new readings [m] of all sensors of a car at ``pose``."""
+    mounts = params.mounts
+    random, one = _read(state.random, mounts[0], pose, scene, params, time_ns)
+    random, two = _read(random, mounts[1], pose, scene, params, time_ns)
+    random, three = _read(random, mounts[2], pose, scene, params, time_ns)
+    random, four = _read(random, mounts[3], pose, scene, params, time_ns)
+    random, five = _read(random, mounts[4], pose, scene, params, time_ns)
+    random, six = _read(random, mounts[5], pose, scene, params, time_ns)
+    random, seven = _read(random, mounts[6], pose, scene, params, time_ns)
+    random, eight = _read(random, mounts[7], pose, scene, params, time_ns)
+    random, nine = _read(random, mounts[8], pose, scene, params, time_ns)
+    random, ten = _read(random, mounts[9], pose, scene, params, time_ns)
+    random, eleven = _read(random, mounts[10], pose, scene, params, time_ns)
+    random, twelve = _read(random, mounts[11], pose, scene, params, time_ns)
+    return UltrasonicState((one, two, three, four, five, six, seven, eight, nine, ten, eleven, twelve), random)
+
+
+def heard_distance(pose: Pose, mount: Mount, scene: SceneParams, params: UltrasonicParams, time_ns: int) -> float:
+    """Return the distance [m] from a sensor to the nearest thing in its cone, at most ``max_range``."""
+    cos = math.cos(pose.heading)
+    sin = math.sin(pose.heading)
+    start = Point(pose.x + mount.x * cos - mount.y * sin, pose.y + mount.x * sin + mount.y * cos)
+    direction = pose.heading + mount.yaw
+    nearest = params.max_range
+    for obstacle in scene.boxes:
+        if is_there(obstacle, time_ns):
+            nearest = _nearer(nearest, start, direction, params.half_angle, obstacle_box(obstacle))
+    for kerb in scene.kerbs:
+        if kerb.height > 0.0 and kerb.height >= params.kerb_height:
+            line = line_box(kerb.x1, kerb.y1, kerb.x2, kerb.y2)
+            nearest = _nearer(nearest, start, direction, params.half_angle, line)
+    return nearest
+
+
+def _nearer(nearest: float, start: Point, direction: float, half_angle: float, box: Box) -> float:
+    dx = box.x - start.x
+    dy = box.y - start.y
+    far = nearest + reach(box)
+    if dx * dx + dy * dy >= far * far:
+        return nearest
+    distance = cone_box(start, direction, half_angle, box)
+    return distance if distance < nearest else nearest
+
+
+def _read(
+    random: int, mount: Mount, pose: Pose, scene: SceneParams, params: UltrasonicParams, time_ns: int
+) -> tuple[int, float]:
+    distance = heard_distance(pose, mount, scene, params, time_ns)
+    random, chance = uniform(random)
+    random, error = normal(random)
+    if chance < params.dropout or distance >= params.max_range:
+        return random, params.max_range
+    reading = distance + params.noise * error
+    if params.resolution > 0.0:
+        reading = params.resolution * math.floor(reading / params.resolution + 0.5)
+    return random, clamp(reading, params.min_range, params.max_range)

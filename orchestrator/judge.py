@@ -18,7 +18,7 @@ CHART = "controller.phase"
 class Check(BaseModel):
     """One requirement and how the run stands against it."""
 
-    model_config = ConfigDict(extra="forbid", ser_json_inf_nan="constants")
+    model_config = ConfigDict(extra="forbid")
 
     id: str
     limit: float

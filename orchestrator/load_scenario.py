@@ -12,9 +12,9 @@ from orchestrator.errors import BadInput, suggestion
 from orchestrator.flat import flatten_section, merge_flat
 from orchestrator.models import MODELS
 from orchestrator.quantities import scalar
-from orchestrator.requirements import Requirement
+from orchestrator.requirements import read_requirements
 from orchestrator.scenario import Scenario
-from orchestrator.yaml_file import explain, read_mapping, read_yaml
+from orchestrator.yaml_file import explain, read_mapping
 
 ROOM = Path(__file__).parent
 FIELDS = [*(name for name in Scenario.model_fields if name != "file"), "target"]
@@ -44,7 +44,7 @@ def car_names() -> list[str]:
 
 def load_scenario(name: str, sets: Iterable[str] = ()) -> Scenario:
     """Return the scenario called ``name`` or written in the file ``name``. Raises ``BadInput``."""
-    path = _find(name, "scenarios", "scenario", Path.cwd())
+    path = find_file(name, "scenarios", "scenario", Path.cwd())
     layers = _layers(path, ())
     layers.append((_set_layer(sets), "--set"))
     merged: dict[str, Any] = {}
@@ -72,14 +72,14 @@ def _layers(path: Path, seen: tuple[Path, ...]) -> list[Layer]:
         raise BadInput(f"inherits from itself by way of {', '.join(item.stem for item in seen)}", file=path, key="base")
     content = read_mapping(path)
     base = content.get("base")
-    below = [] if base is None else _layers(_find(str(base), "scenarios", "scenario", path.parent), (*seen, path))
+    below = [] if base is None else _layers(find_file(str(base), "scenarios", "scenario", path.parent), (*seen, path))
     return [*below, (content, path)]
 
 
 def _car_layer(car: object, path: Path) -> list[Layer]:
     if car is None:
         return []
-    file = _find(str(car), "cars", "car", path.parent)
+    file = find_file(str(car), "cars", "car", path.parent)
     content = read_mapping(file)
     for key in content:
         if key not in (*MODELS, "name", "title", "description", "source"):
@@ -121,11 +121,8 @@ def _limits(given: object, path: Path) -> list[dict[str, Any]]:
     result: list[dict[str, Any]] = []
     for item in given:
         if isinstance(item, str):
-            file = _find(item, "limits", "set of limits", path.parent)
-            try:
-                entries = [Requirement.model_validate(entry) for entry in read_yaml(file) or []]
-            except ValidationError as error:
-                raise explain(error, file, list(Requirement.model_fields)) from None
+            file = find_file(item, "limits", "set of limits", path.parent)
+            entries = read_requirements(file)
             result += [entry.model_dump(by_alias=True, exclude_none=True) for entry in entries]
         else:
             result.append(item)
@@ -173,7 +170,7 @@ def _shipped(folder: str) -> list[str]:
     return sorted(path.stem for path in (ROOM / folder).glob("*.yaml"))
 
 
-def _find(name: str, folder: str, what: str, beside: Path) -> Path:
+def find_file(name: str, folder: str, what: str, beside: Path) -> Path:
     """Return the file of a shipped name, or of a path relative to ``beside``. Raises ``BadInput``."""
     if name.endswith((".yaml", ".yml")) or "/" in name or "\\" in name:
         path = beside / name

@@ -4,16 +4,17 @@ The limits of a scenario, the shipped sets in ``orchestrator/limits`` and the fi
 are all lists of these.
 """
 
+from pathlib import Path
 from typing import Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, model_validator
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
 from orchestrator.errors import BadInput, suggestion
 from orchestrator.quantities import Seconds, measured
+from orchestrator.yaml_file import explain, read_yaml
 
 Condition = Literal["max", "min", "max_abs", "equals"]
 CONDITIONS: tuple[Condition, ...] = ("max", "min", "max_abs", "equals")
-WORDS: dict[Condition, str] = {"max": "at most", "min": "at least", "max_abs": "within +-", "equals": "equal to"}
 
 
 class Window(BaseModel):
@@ -95,6 +96,21 @@ class Requirement(BaseModel):
         """Return the limit [SI unit], or the name of a state."""
         value: float | str = getattr(self, self.condition)
         return value
+
+
+def read_requirements(path: Path) -> list[Requirement]:
+    """Return the requirements in a YAML file. Raises ``BadInput`` with the place of a mistake."""
+    content = read_yaml(path)
+    if not isinstance(content, list) or not content:
+        raise BadInput("expected a list of requirements, each with id, signal, a limit, source", file=path)
+    found = []
+    for number, entry in enumerate(content, start=1):
+        try:
+            found.append(Requirement.model_validate(entry))
+        except ValidationError as error:
+            mistake = explain(error, None, list(Requirement.model_fields))
+            raise BadInput(f"requirement {number}: {mistake}", file=path) from None
+    return found
 
 
 def _limit(data: dict[str, Any], key: str) -> dict[str, Any]:

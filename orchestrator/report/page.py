@@ -21,7 +21,7 @@ def page(title: str, data: str) -> str:
     parts = {
         "TITLE": html.escape(title),
         "POLICY": policy([library, script]),
-        "STYLE": f"{_read(UPLOT / 'uPlot.min.css')}\n{_style()}",
+        "STYLE": f"{_read(UPLOT / 'uPlot.min.css')}\n{style()}",
         "DATA": data,
         "LIBRARY": library,
         "SCRIPT": script,
@@ -37,7 +37,7 @@ def policy(scripts: list[str]) -> str:
     return f"default-src 'none'; script-src {hashes}; style-src 'unsafe-inline'; img-src data:; form-action 'none'"
 
 
-def _style() -> str:
+def style() -> str:
     """Return the style sheet; the dark colours also hold where the system asks for dark."""
     style = _read(ROOM / "template" / "style.css")
     dark = re.search(r':root\[data-theme="dark"\] \{([^}]*)\}', style)

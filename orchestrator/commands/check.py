@@ -1,0 +1,62 @@
+"""``apa check``: does a run meet requirements written as data."""
+
+import argparse
+import json
+from pathlib import Path
+from typing import Any
+
+from orchestrator.judge import judge
+from orchestrator.junit import Suite, cases_of, write_junit
+from orchestrator.load_scenario import find_file
+from orchestrator.read_log import read_log
+from orchestrator.requirements import read_requirements
+from orchestrator.summary import numbers_of
+from orchestrator.terminal import checks_table, console
+
+EXAMPLES = """examples:
+  apa check runs/guo2015-case4/run.mcap gbt41630
+  apa check run.mcap requirements.yaml house --junit checks.xml
+
+REQUIREMENTS.yaml is a list; each entry has an id, a signal of the run or a number of the summary, one of
+max, min, max_abs and equals, a source, and may have a window:
+  - {id: crawl at Q1, signal: vehicle.speed, max_abs: 2 km/h, window: {phase: TO_Q1}, source: REQ-12}
+  - {id: parked in time, signal: controller.phase, equals: PARKED, window: {at: end}, source: REQ-13}
+  - {id: slow at first, signal: vehicle.speed, min: -1 m/s, window: {from: 0, to: 2 s}, source: REQ-14}
+
+exit codes: 0 all required ones met, 1 not, 2 bad input
+"""
+MET, MISSED = 0, 1
+
+
+def add_parser(subparsers: Any) -> argparse.ArgumentParser:
+    """Add the command."""
+    parser: argparse.ArgumentParser = subparsers.add_parser(
+        "check", help="judge a run by requirements", epilog=EXAMPLES
+    )
+    parser.add_argument("log", type=Path, metavar="RUN.mcap", help="log of a run")
+    parser.add_argument("requirements", nargs="+", metavar="REQUIREMENTS", help="YAML files or names of shipped sets")
+    parser.add_argument("--junit", type=Path, metavar="FILE", help="write the verdicts as JUnit XML")
+    parser.add_argument("--json", action="store_true", help="print the checks as JSON")
+    return parser
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Judge and print. Returns 0 if every required requirement is met, 1 if not."""
+    recording = read_log(arguments.log)
+    numbers = numbers_of(recording)
+    checks = []
+    for name in arguments.requirements:
+        file = find_file(name, "limits", "set of limits", Path.cwd())
+        checks += judge(read_requirements(file), recording, numbers, str(file))
+    if arguments.junit:
+        write_junit(arguments.junit, [Suite(str(arguments.log), cases_of(checks), numbers["duration"])])
+    missed = [check for check in checks if check.required and not check.passed]
+    if arguments.json:
+        data = [json.loads(check.model_dump_json()) for check in checks]
+        print(json.dumps({"passed": not missed, "checks": data}, indent=2))
+    else:
+        out = console()
+        out.print(checks_table(checks, out))
+        met = sum(check.passed for check in checks)
+        out.print(f"{met} of {len(checks)} met" + (f", {len(missed)} required missed" if missed else ""))
+    return MISSED if missed else MET

@@ -1,0 +1,114 @@
+"""``apa test``: run scenarios, judge each, write JUnit and one page: the test step of a controller in CI."""
+
+import argparse
+import json
+from pathlib import Path
+from typing import Any
+
+from orchestrator.errors import BadInput
+from orchestrator.fmu_files import KINDS, fmu_files
+from orchestrator.interrupts import on_interrupt
+from orchestrator.junit import write_junit
+from orchestrator.load_scenario import find_file
+from orchestrator.master import Interrupt
+from orchestrator.report.collection import write_collection
+from orchestrator.requirements import read_requirements
+from orchestrator.suite import Bench, Tested, chosen, run_test
+from orchestrator.terminal import INTERRUPTED, console
+
+EXAMPLES = """examples:
+  apa test "guo2015-*" --out results
+  apa test guo2015-case4 my.yaml --controller their.fmu --junit results/junit.xml
+  apa test "*" --requirements gbt41630 --set vehicle.body=double_track
+
+A scenario passes if its outcome is the one it expects and, where that is a parked car, its required limits
+hold; requirements given here are judged besides. Their FMU needs inputs and outputs of the same names, types
+and units; parameters it does not have are left out and listed.
+
+writes DIR/index.html, DIR/junit.xml and for each scenario DIR/NAME/run.mcap, summary.json and report.html
+exit codes: 0 all passed, 1 not, 2 bad input
+"""
+PASSED, FAILED = 0, 1
+
+
+def add_parser(subparsers: Any) -> argparse.ArgumentParser:
+    """Add the command."""
+    parser: argparse.ArgumentParser = subparsers.add_parser("test", help="run and judge scenarios", epilog=EXAMPLES)
+    parser.add_argument("scenarios", nargs="+", metavar="SCENARIO", help="names, patterns of names, or YAML files")
+    parser.add_argument("--controller", type=Path, metavar="FMU", help="use this controller instead of the shipped one")
+    parser.add_argument("--vehicle", type=Path, metavar="FMU", help="use this vehicle instead of the shipped one")
+    parser.add_argument("--fmus", choices=(*KINDS, "none"), default="python", help="kind of the shipped FMUs")
+    parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", help="as in apa run, for all")
+    parser.add_argument(
+        "--requirements", action="append", default=[], metavar="FILE", help="further requirements, or a shipped set"
+    )
+    parser.add_argument(
+        "--out", type=Path, metavar="DIR", default=Path("runs/test"), help="where results go (runs/test)"
+    )
+    parser.add_argument("--junit", type=Path, metavar="FILE", help="where JUnit XML goes (default: DIR/junit.xml)")
+    parser.add_argument("--json", action="store_true", help="print the verdicts as JSON")
+    return parser
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Run all, print a line for each. Returns 0 if all passed, 1 if not, 130 if interrupted."""
+    out: Path = arguments.out
+    interrupt = Interrupt()
+    bench = _bench(arguments, interrupt)
+    names = chosen(arguments.scenarios)
+    tested: list[Tested] = []
+    with on_interrupt(interrupt):
+        for name in names:
+            if interrupt.requested:
+                break
+            tested.append(run_test(name, arguments.set, bench, out))
+            if not arguments.json:
+                _print(tested[-1])
+    write_junit(arguments.junit or out / "junit.xml", [item.suite() for item in tested])
+    write_collection(out / "index.html", tested)
+    passed = sum(item.passed for item in tested)
+    if arguments.json:
+        print(json.dumps({"passed": passed == len(names), "scenarios": [_row(item) for item in tested]}, indent=2))
+    else:
+        console().print(f"{passed} of {len(names)} scenarios passed; results in {out}", markup=False)
+    if interrupt.requested:
+        return INTERRUPTED
+    return PASSED if passed == len(names) else FAILED
+
+
+def _bench(arguments: argparse.Namespace, interrupt: Interrupt) -> Bench:
+    foreign = {name: getattr(arguments, name) for name in ("controller", "vehicle") if getattr(arguments, name)}
+    for path in foreign.values():
+        if not path.is_file():
+            raise BadInput("no such file", file=path)
+    if foreign and arguments.fmus == "none":
+        raise BadInput("the models in process cannot be joined with an FMU; use --fmus python", key="--fmus")
+    files = None if arguments.fmus == "none" else {**fmu_files(arguments.fmus), **foreign}
+    found = [find_file(name, "limits", "set of limits", Path.cwd()) for name in arguments.requirements]
+    requirements = [(str(file), read_requirements(file)) for file in found]
+    return Bench(files, arguments.fmus, frozenset(foreign), requirements, interrupt)
+
+
+def _print(tested: Tested) -> None:
+    out = console()
+    verdict = "[green]pass[/]" if tested.passed else "[red]FAIL[/]"
+    out.print(f"{verdict}  {tested.scenario.name}")
+    for case in tested.cases:
+        if not case.passed and not case.skipped:
+            out.print(f"        {case.name}: {case.text}", markup=False)
+    if tested.error:
+        out.print(f"        {tested.error}", markup=False)
+    if tested.ignored:
+        out.print(f"        left out: {', '.join(tested.ignored)}", markup=False)
+
+
+def _row(tested: Tested) -> dict[str, Any]:
+    return {
+        "scenario": tested.scenario.name,
+        "passed": tested.passed,
+        "outcome": tested.summary.outcome if tested.summary else None,
+        "expected": tested.scenario.expect,
+        "error": tested.error,
+        "left_out": tested.ignored,
+        "cases": [case._asdict() for case in tested.cases],
+    }

@@ -1,0 +1,111 @@
+"""One page over many runs: a small picture, the verdict and a link to the replay of each."""
+
+import html
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from orchestrator.geometry import Car, place, slot_box
+from orchestrator.recording import Recording
+from orchestrator.report.page import style
+from orchestrator.scene import pose_of
+from orchestrator.slave import Array
+from orchestrator.suite import Tested
+
+PAGE = """<!doctype html>
+<html lang="en" data-theme="auto">
+<head>
+<meta charset="utf-8">
+<meta name="viewport" content="width=device-width, initial-scale=1">
+<meta name="color-scheme" content="light dark">
+<meta http-equiv="Content-Security-Policy" content="default-src 'none'; style-src 'unsafe-inline'; img-src data:">
+<link rel="icon" href="data:,">
+<title>{title}</title>
+<style>{style}</style>
+</head>
+<body>
+<header class="top"><div class="headline"><h1>{title}</h1></div><span class="verdict {kind}">{verdict}</span></header>
+<main class="runs">
+{cards}
+</main>
+</body>
+</html>
+"""
+CARD = """<article class="card run {kind}">
+<a href="{link}" class="picture" aria-label="Replay of {name}">{picture}</a>
+<div class="words"><h2><a href="{link}">{name}</a> <span class="pill {kind}">{verdict}</span></h2>
+<p>{title}</p><p class="soft">{outcome}</p>{missed}</div>
+</article>"""
+WIDTH, HEIGHT = 300.0, 150.0
+
+
+def write_collection(path: Path, tested: list[Tested]) -> None:
+    """Write the page; failures come first."""
+    passed = sum(item.passed for item in tested)
+    kind = "good" if passed == len(tested) else "bad"
+    cards = "\n".join(_card(item) for item in sorted(tested, key=lambda item: item.passed))
+    parts = {"title": "Scenarios tested", "style": style(), "kind": kind, "cards": cards}
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(PAGE.format(verdict=f"{passed} of {len(tested)} passed", **parts), encoding="utf-8")
+
+
+def _card(item: Tested) -> str:
+    name = item.scenario.name
+    missed = [f"{case.name}: {case.text}" for case in item.cases if not case.passed and not case.skipped]
+    missed += [item.error] if item.error else []
+    summary = item.summary
+    outcome = (
+        f"{summary.outcome.replace('_', ' ')}, {summary.duration:.1f} s, {summary.shifts} shifts" if summary else ""
+    )
+    return CARD.format(
+        kind="good" if item.passed else "bad",
+        verdict="pass" if item.passed else "fail",
+        link=html.escape(f"{name}/report.html"),
+        name=html.escape(name),
+        title=html.escape(item.scenario.title),
+        outcome=html.escape(outcome),
+        picture=picture(item.recording) if item.recording is not None else "",
+        missed="".join(f'<p class="missed">{html.escape(text)}</p>' for text in missed),
+    )
+
+
+def picture(recording: Recording) -> str:
+    """Return a small SVG: slot, driven path, car at start and end, turned so that the target points right."""
+    x, y, heading = (recording.signals.get(f"vehicle.pose.{axis}", np.zeros(1)) for axis in ("x", "y", "heading"))
+    good = np.isfinite(x) & np.isfinite(y) & np.isfinite(heading)
+    if not good.any():
+        return ""
+    x, y, heading = x[good], y[good], heading[good]
+    target = pose_of(recording.parameters_of("controller"), "target") or (0.0, 0.0, 0.0)
+    car = Car.of(recording.parameters_of("vehicle")).outline()
+    rows = np.unique(np.linspace(0, len(x) - 1, 160).astype(int))
+    shapes: list[tuple[str, Array]] = []
+    slot: Any = recording.info.get("scenario", {}).get("slot")
+    if slot:
+        from orchestrator.scenario import Slot
+
+        shapes.append(("slot", slot_box(Slot(**slot)).outline()))
+    shapes += [("start", place(car, x[0], y[0], heading[0])), ("way", np.column_stack([x, y])[rows])]
+    shapes.append(("end", place(car, x[-1], y[-1], heading[-1])))
+    return _svg([(kind, place(points - points_origin(target), 0.0, 0.0, -target[2])) for kind, points in shapes])
+
+
+def points_origin(target: tuple[float, float, float]) -> Array:
+    """Return the target's position, (2,) [m]."""
+    return np.array(target[:2])
+
+
+def _svg(shapes: list[tuple[str, Array]]) -> str:
+    everything = np.vstack([points for _, points in shapes])
+    low, high = everything.min(axis=0), everything.max(axis=0)
+    scale = min((WIDTH - 16.0) / max(high[0] - low[0], 1e-3), (HEIGHT - 16.0) / max(high[1] - low[1], 1e-3))
+    middle = 0.5 * (low + high)
+    lines = []
+    for kind, points in shapes:
+        px = WIDTH / 2 + (points[:, 0] - middle[0]) * scale
+        py = HEIGHT / 2 - (points[:, 1] - middle[1]) * scale
+        text = " ".join(f"{a:.1f},{b:.1f}" for a, b in zip(px, py, strict=True) if math.isfinite(a + b))
+        lines.append(f'<polyline class="{kind}" points="{text}"/>')
+    return f'<svg viewBox="0 0 {WIDTH:g} {HEIGHT:g}" role="img">{"".join(lines)}</svg>'

@@ -1,0 +1,132 @@
+"""Requirements as data: what a file may say, and what a run must do to meet it."""
+
+import math
+
+import numpy as np
+import pytest
+
+from modelkit.signal import Signal
+from modelkit.variables import Variable
+from orchestrator.errors import BadInput
+from orchestrator.judge import judge
+from orchestrator.load_scenario import ROOM
+from orchestrator.recording import Recording
+from orchestrator.requirements import Requirement, read_requirements
+from orchestrator.summary import numbers_of
+
+PHASE = {"STANDBY": 0, "DRIVE": 1, "PARKED": 2}
+T = np.array([0.0, 1.0, 2.0, 3.0, 4.0])
+SPEED = np.array([0.0, -1.0, -2.0, 0.5, 0.0])
+
+
+def recording(speed=SPEED, phase=(0, 1, 1, 1, 2)) -> Recording:
+    from enum import IntEnum
+
+    states = IntEnum("Phase", PHASE)
+    variables = {
+        "vehicle.speed": Variable("speed", float, Signal("m/s", ""), 0.0),
+        "controller.phase": Variable("phase", int, Signal("1", "", states=states), 0),
+    }
+    signals = {"vehicle.speed": np.asarray(speed, dtype=float), "controller.phase": np.asarray(phase, dtype=float)}
+    return Recording((T * 1e9).astype(np.int64), signals, {}, variables)
+
+
+def check(run=None, **entry):
+    run = recording() if run is None else run
+    requirement = Requirement.model_validate({"id": "r", "signal": "vehicle.speed", "source": "test", **entry})
+    return judge([requirement], run, numbers_of(run), "file")[0]
+
+
+@pytest.mark.parametrize(
+    ("entry", "value", "t", "margin"),
+    [
+        ({"max": 1}, 0.5, 3.0, 0.5),
+        ({"max": "1.8 km/h"}, 0.5, 3.0, 0.0),
+        ({"max": 0.4}, 0.5, 3.0, -0.1),
+        ({"min": -3}, -2.0, 2.0, 1.0),
+        ({"min": "-1 m/s"}, -2.0, 2.0, -1.0),
+        ({"max_abs": 2.5}, -2.0, 2.0, 0.5),
+        ({"max_abs": 1.5}, -2.0, 2.0, -0.5),
+        ({"max_abs": 0.6, "window": {"from": 3}}, 0.5, 3.0, 0.1),
+        ({"max_abs": 0.6, "window": {"from": "2500 ms", "to": "4 s"}}, 0.5, 3.0, 0.1),
+        ({"max_abs": 1.5, "window": {"to": 1}}, -1.0, 1.0, 0.5),
+        ({"equals": 0, "window": {"at": "end"}}, 0.0, 4.0, 0.0),
+        ({"equals": 0}, -2.0, 2.0, -2.0),
+        ({"max_abs": 0.1, "window": {"phase": "STANDBY"}}, 0.0, 0.0, 0.1),
+        ({"max_abs": 0.1, "window": {"phase": ["standby", "parked"]}}, 0.0, 0.0, 0.1),
+        ({"min": -1.5, "window": {"phase": "drive", "from": 3}}, 0.5, 3.0, 2.0),
+    ],
+)
+def test_worst_value_its_moment_and_margin(entry, value, t, margin):
+    found = check(**entry)
+    assert (found.value, found.t) == (value, t)
+    assert found.margin == pytest.approx(margin)
+    assert found.passed == (margin >= 0.0)
+
+
+def test_states_by_name():
+    at_end = {"signal": "controller.phase", "window": {"at": "end"}}
+    parked = check(equals="PARKED", **at_end)
+    assert parked.passed
+    assert parked.note == "PARKED"
+    assert not check(equals="drive", **at_end).passed
+    with pytest.raises(BadInput, match="did you mean parked"):
+        check(equals="Parkd", **at_end)
+
+
+def test_numbers_of_the_summary():
+    assert check(signal="duration", max="4 s").passed
+    assert not check(signal="duration", max="3999 ms").passed
+    assert check(signal="max_speed", max="7.2 km/h").margin == pytest.approx(0.0)
+    with pytest.raises(BadInput, match="no window"):
+        check(signal="duration", max=1, window={"at": "end"})
+
+
+def test_not_a_number_passes_nothing():
+    broken = recording(speed=[0.0, math.nan, 0.0, 0.0, 0.0])
+    found = check(broken, max=100)
+    assert not found.passed
+    assert found.t == 1.0
+    assert found.note == "not a number"
+
+
+def test_a_window_that_never_comes_fails_unless_told_otherwise():
+    entry = {"max": 1, "window": {"from": 10}}
+    assert not check(**entry).passed
+    assert check(**entry).note == "the window never comes"
+    assert check(max=1, window={"from": 10, "if_never": "pass"}).passed
+
+
+@pytest.mark.parametrize(
+    ("entry", "message"),
+    [
+        ({"max": "3 deg"}, "limit is in rad, the signal in m/s"),
+        ({"max": "fast"}, "not a number"),
+        ({"max": 1, "min": 0}, "exactly one of"),
+        ({}, "exactly one of"),
+        ({"maximum": 1}, "did you mean max"),
+        ({"max": 1, "window": {"from": 2, "to": 1}}, "is after"),
+        ({"max": 1, "window": {"phase": "FLYING"}}, "known are"),
+        ({"max": 1, "signal": "vehicle.sped"}, "did you mean vehicle.speed"),
+        ({"max": "3 deg", "unit": "m"}, "not in m"),
+    ],
+)
+def test_mistakes_are_named(entry, message):
+    with pytest.raises(ValueError, match=message):
+        check(**entry)
+
+
+def test_a_file_names_its_faulty_entry(tmp_path):
+    file = tmp_path / "r.yaml"
+    file.write_text("- {id: a, signal: duration, max: 1 s, source: me}\n- {id: b, signal: duration, source: me}\n")
+    with pytest.raises(BadInput, match=r"r\.yaml: requirement 2: b: exactly one of|requirement 2: .*exactly one of"):
+        read_requirements(file)
+    file.write_text("a: 1\n")
+    with pytest.raises(BadInput, match="expected a list"):
+        read_requirements(file)
+
+
+@pytest.mark.parametrize("file", sorted((ROOM / "limits").glob("*.yaml")), ids=lambda path: path.stem)
+def test_shipped_sets_can_be_read_and_survive_a_log(file):
+    for requirement in read_requirements(file):
+        assert Requirement.model_validate(requirement.model_dump(mode="json")) == requirement

@@ -1,0 +1,77 @@
+"""``apa reproduce``: the papers' numbers beside ours, with their pictures."""
+
+import argparse
+import json
+import sys
+from pathlib import Path
+from typing import Any
+
+from orchestrator.fmu_files import KINDS, fmu_files
+from orchestrator.load_scenario import load_scenario
+from orchestrator.reproduce.papers import paper, papers
+from orchestrator.reproduce.result import Drive, Driven
+from orchestrator.reproduce.table import print_reproduction
+from orchestrator.session import run_scenario
+from orchestrator.summary import summarize
+from orchestrator.terminal import NOT_PARKED, PARKED, console
+
+EXAMPLES = """examples:
+  apa reproduce guo2015                 the five cases at both steering rates, beside the paper
+  apa reproduce all --json > all.json   every paper, for machines
+
+exit codes: 0 every stated check holds, 1 one does not, 2 bad input
+"""
+
+
+def add_parser(subparsers: Any) -> argparse.ArgumentParser:
+    """Add the command."""
+    parser: argparse.ArgumentParser = subparsers.add_parser(
+        "reproduce", help="show a paper's numbers beside ours", epilog=EXAMPLES
+    )
+    parser.add_argument("paper", metavar="PAPER", help=f"{', '.join(papers())} or all")
+    parser.add_argument("--fmus", choices=(*KINDS, "none"), default="none", help="FMUs to drive; none: in process")
+    parser.add_argument("--out", type=Path, metavar="DIR", help="where pictures go (default: runs/reproduce/PAPER)")
+    parser.add_argument("--json", action="store_true", help="print JSON instead of the table")
+    return parser
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Reproduce, write pictures and result.json, print. Returns 0 if every check holds, else 1."""
+    names = papers() if arguments.paper == "all" else [arguments.paper]
+    functions = [(name, paper(name)) for name in names]
+    drive = _driver(arguments.fmus)
+    results = []
+    for name, function in functions:
+        out: Path = arguments.out or Path("runs/reproduce") / name
+        if arguments.out is not None and len(names) > 1:
+            out = arguments.out / name
+        out.mkdir(parents=True, exist_ok=True)
+        result = function(out, drive)
+        text = json.dumps(result.as_json(), indent=2)
+        (out / "result.json").write_text(text + "\n", encoding="utf-8")
+        results.append(result)
+        if not arguments.json:
+            print_reproduction(result, out)
+    if arguments.json:
+        print(json.dumps([result.as_json() for result in results], indent=2))
+    return PARKED if all(result.passed for result in results) else NOT_PARKED
+
+
+def _driver(kind: str) -> Drive:
+    def say(text: str) -> None:
+        print(text, file=sys.stderr)
+
+    files = None if kind == "none" else fmu_files(kind, say)
+    done: dict[str, Driven] = {}
+    err = console(sys.stderr)
+
+    def drive(name: str) -> Driven:
+        if name not in done:
+            if err.is_terminal:
+                err.print(f"driving {name}")
+            scenario = load_scenario(name)
+            ran = run_scenario(scenario, files, kind=kind)
+            done[name] = Driven(scenario, ran.recording, summarize(ran.recording, scenario, ran.wall_time))
+        return done[name]
+
+    return drive

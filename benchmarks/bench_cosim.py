@@ -1,0 +1,47 @@
+"""Where the time of one co-simulation step goes: models, FMI calls, log; and the real-time factor of case 4.
+
+Case 4 is run in process, with PythonFMUs, and with PythonFMUs and the log, in turn; medians.
+"""
+
+import statistics
+import tempfile
+from collections.abc import Callable
+from pathlib import Path
+
+from orchestrator.fmu_files import fmu_files
+from orchestrator.load_scenario import load_scenario
+from orchestrator.session import Ran, run_scenario
+
+ROUNDS = 5
+
+
+def main() -> None:
+    """Print the split."""
+    scenario = load_scenario("guo2015-case4")
+    python, native = (fmu_files(kind, lambda text: None) for kind in ("python", "native"))
+    folder = Path(tempfile.mkdtemp())
+    runs: dict[str, Callable[[], Ran]] = {
+        "models in process": lambda: run_scenario(scenario),
+        "PythonFMUs": lambda: run_scenario(scenario, python, kind="python"),
+        "PythonFMUs, log": lambda: run_scenario(scenario, python, kind="python", log=folder / "python.mcap"),
+        "native FMUs": lambda: run_scenario(scenario, native, kind="native"),
+        "native FMUs, log": lambda: run_scenario(scenario, native, kind="native", log=folder / "native.mcap"),
+    }
+    times: dict[str, list[float]] = {name: [] for name in runs}
+    for _ in range(ROUNDS):
+        for name, run in runs.items():
+            ran = run()
+            times[name].append(ran.wall_time)
+    steps = len(ran.recording.t) - 1
+    median = {name: statistics.median(values) for name, values in times.items()}
+    print(f"case 4: {steps} communication steps of {scenario.step * 1e3:g} ms, medians of {ROUNDS} runs")
+    for name, wall in median.items():
+        factor = ran.recording.t[-1] / wall
+        print(f"  {name:20} {wall * 1e3:8.1f} ms  {wall / steps * 1e6:7.1f} us a step  {factor:6.0f} times real time")
+    base, fmus, log = (median[name] / steps * 1e6 for name in list(runs)[:3])
+    print("one step of the PythonFMU pair, all signals exchanged and recorded:")
+    print(f"  models and master {base:.1f} us, FMI calls {fmus - base:.1f} us, log {log - fmus:.1f} us")
+
+
+if __name__ == "__main__":
+    main()

@@ -10,7 +10,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch, Polygon
 
-from orchestrator.geometry import WHEEL_RADIUS, WHEEL_WIDTH, Box, Car, boxes, place, sample_path, slot_box
+from orchestrator.geometry import WHEEL_RADIUS, WHEEL_WIDTH, Box, Car, boxes, kerbs, place, sample_path, slot_box
 from orchestrator.quantities import DEGREE
 from orchestrator.recording import Recording
 from orchestrator.scenario import Scenario
@@ -108,7 +108,7 @@ def _speed(axis: Any, recording: Recording) -> None:
 def _position(axis: Any, recording: Recording) -> None:
     t = recording.t
     far = max(abs(_signal(recording, f"vehicle.pose.{name}")[0]) for name in ("x", "y")) > FAR
-    axis.set_title("(b) way from start" if far else "(b) position")
+    axis.set_title("(b) position")
     for name, colour in (("x", BLUE), ("y", RUST)):
         driven = _signal(recording, f"vehicle.pose.{name}")
         origin = driven[0] if far else 0.0
@@ -116,7 +116,7 @@ def _position(axis: Any, recording: Recording) -> None:
         axis.plot(t, reference, color=colour, linewidth=0.8, alpha=0.6, linestyle=(0, (3, 2)))
         axis.plot(t, driven - origin, color=colour, linewidth=1.5, label=name)
     axis.plot([], [], color=GREY, linewidth=0.8, linestyle=(0, (3, 2)), label="reference")
-    axis.set_ylabel("position [m]")
+    axis.set_ylabel("way from start [m]" if far else "position [m]")
     axis.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), fontsize=8, ncols=3, borderaxespad=0.0)
 
 
@@ -190,7 +190,11 @@ def _plan(axis: Any, recording: Recording, scenario: Scenario) -> None:
     vehicle = recording.parameters_of("vehicle")
     car = Car.of(vehicle)
     for box in boxes(vehicle):
-        axis.add_patch(Polygon(box.outline(), facecolor="#c4c8ce", edgecolor=GREY, linewidth=1.0))
+        passing = box.appear_at > 0.0 or box.disappear_at < recording.t[-1]
+        face, hatch = ("#f3d9c9", "///") if passing else ("#c4c8ce", None)
+        axis.add_patch(Polygon(box.outline(), facecolor=face, hatch=hatch, edgecolor=GREY, linewidth=1.0))
+    for kerb in kerbs(vehicle):
+        axis.plot([kerb.x1, kerb.x2], [kerb.y1, kerb.y2], color="#5b6068", linewidth=2.5, solid_capstyle="butt")
     if scenario.slot is not None:
         _slot(axis, slot_box(scenario.slot))
     target = pose_of(recording.parameters_of("controller"), "target")

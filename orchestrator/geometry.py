@@ -41,13 +41,15 @@ class Car(NamedTuple):
 
 
 class Box(NamedTuple):
-    """An oriented rectangle: its middle [m], heading [rad] and size [m]."""
+    """An oriented rectangle: its middle [m], heading [rad] and size [m], and when it is there [s]."""
 
-    x: float
-    y: float
-    heading: float
-    length: float
-    width: float
+    x: float = 0.0
+    y: float = 0.0
+    heading: float = 0.0
+    length: float = 0.0
+    width: float = 0.0
+    appear_at: float = 0.0
+    disappear_at: float = 1e9
 
     def outline(self) -> Array:
         """Return the closed outline in the world, (5, 2) [m]."""
@@ -74,17 +76,37 @@ def slot_box(slot: Slot) -> Box:
     return Box(slot.x, slot.y, slot.heading, slot.length, slot.width)
 
 
+class Kerb(NamedTuple):
+    """A straight kerb between two points [m]."""
+
+    x1: float = 0.0
+    y1: float = 0.0
+    x2: float = 0.0
+    y2: float = 0.0
+    height: float = 0.0
+
+
 def boxes(parameters: Mapping[str, float]) -> list[Box]:
     """Return the obstacles among a vehicle's parameters: ``scene.boxes[1].x`` and so on; empty ones left out."""
-    found = []
-    number = 1
-    while f"scene.boxes[{number}].x" in parameters:
-        prefix = f"scene.boxes[{number}]."
-        box = Box(*(parameters.get(prefix + field, 0.0) for field in Box._fields))
-        if box.length > 0.0 and box.width > 0.0:
-            found.append(box)
-        number += 1
-    return found
+    rows = _rows(parameters, "scene.boxes", Box._field_defaults)
+    return [box for box in (Box(*row) for row in rows) if box.length > 0.0 and box.width > 0.0]
+
+
+def kerbs(parameters: Mapping[str, float]) -> list[Kerb]:
+    """Return the kerbs among a vehicle's parameters: ``scene.kerbs[1].x1`` and so on; empty ones left out."""
+    return [
+        kerb
+        for kerb in (Kerb(*row) for row in _rows(parameters, "scene.kerbs", Kerb._field_defaults))
+        if kerb.height > 0.0
+    ]
+
+
+def _rows(parameters: Mapping[str, float], array: str, fields: Mapping[str, float]) -> list[list[float]]:
+    rows: list[list[float]] = []
+    while any(f"{array}[{len(rows) + 1}].{field}" in parameters for field in fields):
+        prefix = f"{array}[{len(rows) + 1}]."
+        rows.append([parameters.get(prefix + field, default) for field, default in fields.items()])
+    return rows
 
 
 def sample_path(values: Mapping[str, float], spacing: float = 0.05) -> Array:

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from modelkit.variables import Variable
 from orchestrator import scene
-from orchestrator.geometry import Car, boxes, sample_path, slot_box
+from orchestrator.geometry import Car, boxes, kerbs, sample_path, slot_box
 from orchestrator.master import End
 from orchestrator.mcap_file import CHUNK_SIZE, MESSAGE_HEADER, McapFile
 from orchestrator.read_log import VARIABLES
@@ -143,11 +143,18 @@ class _Pictures:
         self._next_ns = 0
         self._path_places = _places(self._controller.outputs, "path.") if self._controller else np.empty(0, np.intp)
         self._path_seen = b""
-        self._draw_still(slot)
+        obstacles, around = boxes(_named(self._vehicle.parameters)), kerbs(_named(self._vehicle.parameters))
+        target = scene.pose_of(_named(self._controller.parameters), "target") if self._controller else None
+        self._stage = scene.Stage(slot_box(slot) if slot else None, obstacles, around, target)
+        self._changes = self._stage.changes_ns()
 
     def exchanged(self, t_ns: int) -> None:
         if t_ns < self._next_ns:
             return
+        if self._changes and t_ns >= self._changes[0]:
+            self._changes = [change for change in self._changes if change > t_ns]
+            still = scene.still_life(t_ns, self._car, self._stage)
+            self._file.write(self._scene, t_ns, still.SerializeToString(deterministic=True))
         self._next_ns = t_ns - t_ns % SCENE_PERIOD_NS + SCENE_PERIOD_NS
         x, y, heading, *seen, wheel = self._vehicle.outputs.values[self._places].tolist()
         pose = (x, y, heading)
@@ -161,12 +168,6 @@ class _Pictures:
     def closed(self, t_ns: int) -> None:
         if self._poses:
             self._draw_trail(t_ns)
-
-    def _draw_still(self, slot: Slot | None) -> None:
-        obstacles = boxes(_named(self._vehicle.parameters))
-        target = scene.pose_of(_named(self._controller.parameters), "target") if self._controller else None
-        update = scene.still_life(0, self._car, slot_box(slot) if slot else None, obstacles, target)
-        self._file.write(self._scene, 0, update.SerializeToString(deterministic=True))
 
     def _draw_trail(self, t_ns: int) -> None:
         message = scene.trail(t_ns, self._poses[:: max(1, len(self._poses) // 300)])

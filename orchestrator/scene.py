@@ -5,7 +5,9 @@ The car and its wheels are drawn once, each fixed to its own frame; what moves a
 
 import math
 from collections.abc import Mapping
+from typing import NamedTuple
 
+import numpy as np
 from foxglove_schemas_protobuf.Color_pb2 import Color
 from foxglove_schemas_protobuf.FrameTransforms_pb2 import FrameTransforms
 from foxglove_schemas_protobuf.Pose_pb2 import Pose
@@ -17,7 +19,7 @@ from foxglove_schemas_protobuf.Vector3_pb2 import Vector3
 from google.protobuf.duration_pb2 import Duration
 from google.protobuf.timestamp_pb2 import Timestamp
 
-from orchestrator.geometry import WHEEL_RADIUS, WHEEL_WIDTH, Box, Car
+from orchestrator.geometry import WHEEL_RADIUS, WHEEL_WIDTH, Box, Car, Kerb
 from orchestrator.slave import Array
 
 WORLD = "world"
@@ -74,11 +76,32 @@ class Frames:
         return part.timestamp, part.translation, part.rotation
 
 
-def still_life(
-    t_ns: int, car: Car, slot: Box | None, obstacles: list[Box], target: tuple[float, float, float] | None
-) -> SceneUpdate:
-    """Return everything that never changes in its own frame: car, wheels, slot, obstacles, target outline."""
+class Stage(NamedTuple):
+    """What stands around the car."""
+
+    slot: Box | None
+    obstacles: list[Box]
+    kerbs: list[Kerb]
+    target: tuple[float, float, float] | None
+
+    def changes_ns(self) -> list[int]:
+        """Return the times at which an obstacle appears or disappears, and zero, sorted."""
+        times = {round(t * 1e9) for box in self.obstacles for t in (box.appear_at, box.disappear_at) if t < 1e9}
+        return sorted({0, *times})
+
+
+def still_life(t_ns: int, car: Car, stage: Stage) -> SceneUpdate:
+    """Return everything that stands still in its own frame: car, wheels, slot, obstacles, kerbs, target outline."""
     update = SceneUpdate()
+    _draw_car(update, t_ns, car)
+    _draw_stage(update, t_ns, stage)
+    if stage.target is not None:
+        goal = _entity(update, t_ns, "target", WORLD)
+        _line(goal, car.outline(), GREEN, 0.05, posed(*stage.target))
+    return update
+
+
+def _draw_car(update: SceneUpdate, t_ns: int, car: Car) -> None:
     body = _entity(update, t_ns, "car", CAR)
     length, middle = car.front + car.rear, 0.5 * (car.front - car.rear)
     body.cubes.add(
@@ -95,16 +118,21 @@ def still_life(
         wheel.cubes.add(pose=posed(0.0, 0.0, 0.0, WHEEL_RADIUS), size=size, color=_color(TYRE))
     ghost = _entity(update, t_ns, "odometry", ODOMETRY)
     _line(ghost, car.outline(), (*ORANGE[:3], 0.5), 0.03)
-    if slot is not None:
-        _line(_entity(update, t_ns, "slot", WORLD), slot.outline(), GREY, 0.08)
-    for number, box in enumerate(obstacles, start=1):
+
+
+def _draw_stage(update: SceneUpdate, t_ns: int, stage: Stage) -> None:
+    if stage.slot is not None:
+        _line(_entity(update, t_ns, "slot", WORLD), stage.slot.outline(), GREY, 0.08)
+    for number, kerb in enumerate(stage.kerbs, start=1):
+        line = np.array([[kerb.x1, kerb.y1], [kerb.x2, kerb.y2]])
+        _line(_entity(update, t_ns, f"kerb_{number}", WORLD), line, GREY, 0.1)
+    for number, box in enumerate(stage.obstacles, start=1):
+        if not box.appear_at * 1e9 <= t_ns < box.disappear_at * 1e9:
+            update.deletions.add(timestamp=stamp(t_ns), id=f"obstacle_{number}")
+            continue
         obstacle = _entity(update, t_ns, f"obstacle_{number}", WORLD)
         size = Vector3(x=box.length, y=box.width, z=CAR_HEIGHT)
         obstacle.cubes.add(pose=posed(box.x, box.y, box.heading, 0.5 * CAR_HEIGHT), size=size, color=_color(GREY))
-    if target is not None:
-        goal = _entity(update, t_ns, "target", WORLD)
-        _line(goal, car.outline(), GREEN, 0.05, posed(*target))
-    return update
 
 
 def planned_path(t_ns: int, points: Array) -> SceneUpdate:

@@ -5,10 +5,13 @@ Model files know nothing of it: every function of the model's package and of the
 results are CPython's, to the last bit, as long as both use the same C library.
 """
 
+import ast
 import importlib
 import inspect
 import pkgutil
+import re
 import sys
+import textwrap
 from collections.abc import Callable, Iterator
 from types import FunctionType, ModuleType
 from typing import Any
@@ -36,7 +39,14 @@ def make_compilable(package: ModuleType) -> None:
         if name not in _done:
             _done.add(name)
             for function in functions(importlib.import_module(name)):
-                numba.extending.register_jitable(error_model="numpy", forceinline=True)(function)
+                inline = not has_loop(function)
+                numba.extending.register_jitable(error_model="numpy", forceinline=inline)(function)
+
+
+def has_loop(function: FunctionType) -> bool:
+    """Return whether a function has a loop: one that has is called, not copied to each place that calls it."""
+    tree = ast.parse(textwrap.dedent(inspect.getsource(function)))
+    return any(isinstance(node, ast.For | ast.While) for node in ast.walk(tree))
 
 
 def modules(package: ModuleType) -> Iterator[ModuleType]:
@@ -75,9 +85,27 @@ def intermediate_code(model: Model) -> dict[str, str]:
 def _code(function: Callable[..., None], signature: Any, name: str) -> str:
     try:
         compiled = numba.njit(signature, no_cpython_wrapper=True, no_cfunc_wrapper=True, **OPTIONS)(function)
-    except numba.core.errors.NumbaError as error:
-        raise TypeError(f"{name} cannot be compiled: {error}") from error
+    except Exception as error:
+        raise TypeError(f"{name} cannot be compiled{_where(error)}: {plain(str(error))}") from error
     return str(compiled.inspect_llvm(compiled.signatures[0]))
+
+
+def plain(text: str) -> str:
+    """Return numba's explanation without colours and without what it says twice."""
+    lines = dict.fromkeys(line.rstrip() for line in re.sub(r"\x1b\[[0-9;]*m", "", text).splitlines())
+    return "\n".join(line for line in lines if line and "Rejected as" not in line and "candidate impl" not in line)
+
+
+def _where(error: BaseException) -> str:
+    """Return the model's function in which numba gave up, if it got as far as naming one."""
+    found = ""
+    trace = error.__traceback__
+    while trace is not None:
+        function = getattr(trace.tb_frame.f_locals.get("state"), "func_id", None)
+        if function is not None:
+            found = f", in {function.func_qualname} ({function.filename}:{function.firstlineno})"
+        trace = trace.tb_next
+    return found
 
 
 def main(arguments: list[str]) -> int:

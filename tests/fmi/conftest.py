@@ -2,6 +2,8 @@ import pytest
 import toy_model
 
 from controller_fmu import MODEL as CONTROLLER
+from fmus import native_fmu
+from fmus.platforms import host
 from fmus.python_fmu import build
 from vehicle_fmu import MODEL as VEHICLE
 
@@ -13,6 +15,23 @@ def python_fmus(tmp_path_factory):
     """Paths of the PythonFMUs of all models, by name."""
     folder = tmp_path_factory.mktemp("python_fmus")
     return {name: build(model, folder) for name, model in MODELS.items()}
+
+
+class NativeFmus(dict):
+    """Path of each model's native FMU for this machine, built when it is first asked for."""
+
+    def __init__(self, folder):
+        self.folder = folder
+
+    def __missing__(self, name):
+        self[name] = native_fmu.build(MODELS[name], self.folder, [host()])
+        return self[name]
+
+
+@pytest.fixture(scope="session")
+def native_fmus(tmp_path_factory):
+    """Paths of the native FMUs of all models for this machine, by name."""
+    return NativeFmus(tmp_path_factory.mktemp("native_fmus"))
 
 
 @pytest.fixture(params=list(MODELS))

@@ -16,6 +16,9 @@ class Mode(IntEnum):
     TIRED = 2
 
 
+SLEEPING = int(Mode.SLEEPING)
+
+
 class Oscillator(NamedTuple):
     position: Annotated[float, Signal("m", "distance from rest")] = 0.0
     velocity: Annotated[float, Signal("m/s", "velocity")] = 0.0
@@ -57,7 +60,7 @@ def initialize(params: Params) -> tuple[State, Output]:
     if params.broken:
         count = int(1.0 / (params.mass - params.mass))
     state = State(params.start, seed_state(params.seed), 0, count)
-    return state, Output(params.start, 0.0, int(Mode.SLEEPING), 0, False)
+    return state, Output(params.start, 0.0, SLEEPING, 0, False)
 
 
 def step(state: State, inputs: Input, params: Params, dt_ns: int) -> tuple[State, Output]:

@@ -1,0 +1,98 @@
+"""A native FMU's library called as C calls it, by ctypes: every status is seen, nothing is checked on the way."""
+
+import ctypes
+import zipfile
+from ctypes import CFUNCTYPE, byref, c_char_p, c_double, c_int, c_size_t, c_uint, c_void_p
+
+from fmpy import read_model_description
+
+OK, WARNING, DISCARD, ERROR, FATAL = range(5)
+CO_SIMULATION = 1
+LOGGER = CFUNCTYPE(None, c_void_p, c_char_p, c_int, c_char_p, c_char_p, c_char_p)
+NUMBER = {"Real": c_double, "Integer": c_int, "Boolean": c_int}
+
+
+class Callbacks(ctypes.Structure):
+    _fields_ = (
+        ("logger", LOGGER),
+        ("allocate", c_void_p),
+        ("free", c_void_p),
+        ("finished", c_void_p),
+        ("environment", c_void_p),
+    )
+
+
+class Library:
+    """The shared library of one FMU and its description."""
+
+    def __init__(self, path, folder, platform="linux64"):
+        with zipfile.ZipFile(path) as archive:
+            archive.extractall(folder)
+        self.description = read_model_description(str(path))
+        self.refs = {v.name: v.valueReference for v in self.description.modelVariables}
+        self.types = {v.name: v.type for v in self.description.modelVariables}
+        (file,) = (folder / "binaries" / platform).iterdir()
+        self.file = file
+        self.dll = ctypes.CDLL(str(file))
+        self.dll.fmi2Instantiate.restype = c_void_p
+        self.dll.fmi2GetVersion.restype = c_char_p
+        self.dll.fmi2GetTypesPlatform.restype = c_char_p
+        self.messages = []
+        self.callbacks = Callbacks(LOGGER(self._log), None, None, None, None)
+
+    def _log(self, _environment, name, status, category, text, argument):
+        assert text == b"%s"
+        self.messages.append((status, category.decode(), argument.decode()))
+
+    def instantiate(self, name=b"toy", kind=CO_SIMULATION, guid=None, callbacks=True, logging=1):
+        guid = self.description.guid.encode() if guid is None else guid
+        pointer = byref(self.callbacks) if callbacks else None
+        return self.dll.fmi2Instantiate(name, kind, guid or None, b"file:///tmp", pointer, 0, logging)
+
+    def call(self, function, component, *arguments):
+        """Return the status of fmi2<function>."""
+        return getattr(self.dll, f"fmi2{function}")(c_void_p(component), *arguments)
+
+    def setup(self, component, start=0.0):
+        return self.call("SetupExperiment", component, 0, c_double(0.0), c_double(start), 0, c_double(0.0))
+
+    def initialized(self, **values):
+        """Return a new instance, ready to step."""
+        component = self.instantiate()
+        assert self.setup(component) == OK
+        for name, value in values.items():
+            assert self.set(component, name, value) == OK
+        assert self.call("EnterInitializationMode", component) == OK
+        assert self.call("ExitInitializationMode", component) == OK
+        return component
+
+    def set(self, component, name, value):
+        number = NUMBER[self.types[name]](value)
+        reference = byref(c_uint(self.refs[name]))
+        return self.call(f"Set{self.types[name]}", component, reference, c_size_t(1), byref(number))
+
+    def get(self, component, name):
+        number = NUMBER[self.types[name]]()
+        reference = byref(c_uint(self.refs[name]))
+        status = self.call(f"Get{self.types[name]}", component, reference, c_size_t(1), byref(number))
+        assert status == OK, self.messages
+        return number.value
+
+    def outputs(self, component):
+        return [self.get(component, v.name) for v in self.description.modelVariables if v.causality == "output"]
+
+    def step(self, component, time, size=0.01):
+        return self.call("DoStep", component, c_double(time), c_double(size), 1)
+
+    def free(self, component):
+        self.dll.fmi2FreeInstance(c_void_p(component))
+
+
+def array(kind, *values):
+    """Return a C array of ``kind``."""
+    return (kind * len(values))(*values)
+
+
+def state_pointer():
+    """Return an empty fmi2FMUstate."""
+    return c_void_p(None)

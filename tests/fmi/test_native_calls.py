@@ -1,0 +1,295 @@
+"""Wrong calls on a native FMU: refused with fmi2Error and a message, nothing changed; state saved and restored."""
+
+import ctypes
+import math
+import random
+from ctypes import byref, c_double, c_int, c_size_t, c_uint, c_void_p
+
+import pytest
+from raw import DISCARD, ERROR, OK, Library, array, state_pointer
+
+NO_REFERENCE = 4_000_000_000
+
+
+@pytest.fixture
+def toy(native_fmus, tmp_path):
+    return Library(native_fmus["Toy"], tmp_path)
+
+
+def test_version_and_platform(toy):
+    assert toy.dll.fmi2GetVersion() == b"2.0"
+    assert toy.dll.fmi2GetTypesPlatform() == b"default"
+
+
+@pytest.mark.parametrize(
+    ("wrong", "words"),
+    [
+        ({"name": b""}, "needs a name"),
+        ({"name": None}, "needs a name"),
+        ({"kind": 0}, "co-simulation only"),
+        ({"guid": b"{another}"}, "GUID {another} is not that of this binary"),
+        ({"guid": b""}, "GUID (null)"),
+    ],
+)
+def test_instantiate_refuses_and_says_why(toy, wrong, words):
+    assert toy.instantiate(**wrong) is None
+    (status, category, text) = toy.messages[-1]
+    assert (status, category) == (ERROR, "logStatusError")
+    assert words in text
+
+
+def test_instantiate_without_callbacks_gives_nothing(toy):
+    assert toy.instantiate(callbacks=False) is None
+
+
+PHASES = ("instantiated", "initialization", "stepping", "terminated")
+ALLOWED = {
+    "SetupExperiment": ("instantiated",),
+    "EnterInitializationMode": ("instantiated",),
+    "ExitInitializationMode": ("initialization",),
+    "DoStep": ("stepping",),
+    "Terminate": ("stepping",),
+    "Reset": PHASES,
+    "GetReal": ("initialization", "stepping", "terminated"),
+    "GetInteger": ("initialization", "stepping", "terminated"),
+    "GetBoolean": ("initialization", "stepping", "terminated"),
+    "SetReal": ("instantiated", "initialization", "stepping"),
+    "SetInteger": ("instantiated", "initialization", "stepping"),
+    "SetBoolean": ("instantiated", "initialization", "stepping"),
+    "GetFMUstate": PHASES,
+    "SetDebugLogging": PHASES,
+    "CancelStep": (),
+}
+
+
+def in_phase(toy, phase):
+    component = toy.instantiate()
+    if phase == "instantiated":
+        return component
+    toy.setup(component)
+    toy.call("EnterInitializationMode", component)
+    if phase in ("stepping", "terminated"):
+        toy.call("ExitInitializationMode", component)
+    if phase == "terminated":
+        toy.call("Terminate", component)
+    return component
+
+
+def call(toy, function, component):
+    if function == "SetupExperiment":
+        return toy.setup(component)
+    if function == "DoStep":
+        return toy.step(component, 0.0)
+    if function == "GetFMUstate":
+        state = state_pointer()
+        status = toy.call(function, component, byref(state))
+        toy.call("FreeFMUstate", component, byref(state))
+        return status
+    if function == "SetDebugLogging":
+        return toy.call(function, component, 1, c_size_t(0), None)
+    if function[3:] in ("Real", "Integer", "Boolean"):
+        return toy.call(function, component, None, c_size_t(0), None)
+    return toy.call(function, component)
+
+
+@pytest.mark.parametrize("phase", PHASES)
+@pytest.mark.parametrize("function", ALLOWED)
+def test_calls_out_of_order_are_refused(toy, phase, function):
+    component = in_phase(toy, phase)
+    expected = OK if phase in ALLOWED[function] else ERROR
+    assert call(toy, function, component) == expected
+    assert bool(toy.messages) == (expected == ERROR)
+    assert all(function in text for _, _, text in toy.messages)
+    toy.free(component)
+
+
+@pytest.mark.parametrize("function", [name for name in ALLOWED if name != "Instantiate"])
+def test_no_instance_is_an_error_not_a_crash(toy, function):
+    assert call(toy, function, None) == ERROR
+    toy.free(None)
+
+
+def test_wrong_references_types_and_directions(toy):
+    component = toy.initialized()
+    one, number, flag = c_size_t(1), byref(c_double()), byref(c_int())
+    before = toy.outputs(component)
+
+    def refused(function, reference, value, words):
+        assert toy.call(function, component, byref(c_uint(reference)), one, value) == ERROR
+        assert words in toy.messages[-1][2]
+
+    refused("GetReal", NO_REFERENCE, number, "no value reference 4000000000; the last is")
+    refused("GetReal", toy.refs["wish"], number, f"wish (value reference {toy.refs['wish']}) is Integer")
+    refused("GetBoolean", toy.refs["mass"], flag, "mass (value reference 1) is Real")
+    refused("SetReal", toy.refs["angle"], number, "angle is calculated by the FMU")
+    refused("SetReal", toy.refs["time"], number, "time is calculated by the FMU")
+    refused("SetReal", toy.refs["mass"], number, "parameter mass is fixed after initialization")
+    assert toy.call("GetReal", component, None, one, number) == ERROR
+    assert toy.call("SetReal", component, byref(c_uint(8)), one, None) == ERROR
+    assert toy.call("GetString", component, byref(c_uint(8)), one, None) == ERROR
+    assert toy.call("SetString", component, None, c_size_t(0), None) == OK
+    assert toy.outputs(component) == before
+    toy.free(component)
+
+
+@pytest.mark.parametrize(("name", "value"), [("mass", 0.0), ("mass", math.nan), ("stiffness", math.inf), ("seed", -1)])
+def test_a_parameter_out_of_range_is_refused(toy, name, value):
+    component = toy.instantiate()
+    assert toy.set(component, name, value) == ERROR
+    assert f"{name} = " in toy.messages[-1][2]
+    assert "is not in [" in toy.messages[-1][2]
+    toy.free(component)
+
+
+def test_a_refused_set_changes_none_of_its_values(toy):
+    component = toy.initialized()
+    references = array(c_uint, toy.refs["force[1]"], toy.refs["mass"])
+    assert toy.call("SetReal", component, references, c_size_t(2), array(c_double, 5.0, 3.0)) == ERROR
+    assert toy.get(component, "force[1]") == 0.0
+    toy.free(component)
+
+
+@pytest.mark.parametrize(
+    ("time", "size", "words"),
+    [
+        (0.0, 0.0, "is not in (0, 3600] s"),
+        (0.0, -0.01, "is not in (0, 3600] s"),
+        (0.0, math.nan, "is not in (0, 3600] s"),
+        (0.0, 1e300, "is not in (0, 3600] s"),
+        (0.0, 1e-12, "under a nanosecond"),
+        (1.0, 0.01, "called at 1.000000000 s, but the FMU is at 0.000000000 s"),
+        (math.inf, 0.01, "is no time"),
+        (math.nan, 0.01, "is no time"),
+    ],
+)
+def test_a_wrong_step_is_refused_and_the_next_one_goes_on(toy, time, size, words):
+    component = toy.initialized()
+    assert toy.step(component, time, size) == ERROR
+    assert words in toy.messages[-1][2]
+    assert toy.step(component, 0.0) == OK
+    assert toy.get(component, "count") == 1
+    toy.free(component)
+
+
+def test_times_of_the_experiment_are_checked(toy):
+    component = toy.instantiate()
+    assert toy.setup(component, math.nan) == ERROR
+    assert toy.call("SetupExperiment", component, 0, c_double(0), c_double(1), 1, c_double(0.5)) == ERROR
+    assert "is not after start time" in toy.messages[-1][2]
+    toy.free(component)
+
+
+def test_what_the_fmu_declares_that_it_cannot_do(toy):
+    component = toy.initialized()
+    one = c_size_t(1)
+    assert toy.call("SetRealInputDerivatives", component, None, one, None, None) == ERROR
+    assert toy.call("GetRealOutputDerivatives", component, None, one, None, None) == ERROR
+    assert toy.call("GetDirectionalDerivative", component, None, one, None, one, None, None) == ERROR
+    assert toy.call("GetStatus", component, 0, byref(c_int())) == DISCARD
+    assert toy.call("GetStringStatus", component, 1, byref(c_void_p())) == DISCARD
+    assert toy.call("GetStatus", component, 0, None) == ERROR
+    time, over = c_double(), c_int(7)
+    toy.step(component, 0.0)
+    assert toy.call("GetRealStatus", component, 2, byref(time)) == OK
+    assert toy.call("GetBooleanStatus", component, 3, byref(over)) == OK
+    assert (time.value, over.value) == (0.01, 0)
+    toy.free(component)
+
+
+def test_log_categories(toy):
+    component = toy.instantiate(logging=0)
+    categories = (ctypes.c_char_p * 1)(b"logStatusWarning")
+    assert toy.call("SetDebugLogging", component, 1, c_size_t(1), categories) == OK
+    assert toy.call("SetDebugLogging", component, 1, c_size_t(1), (ctypes.c_char_p * 1)(b"nonsense")) == ERROR
+    assert toy.messages[-1][2] == "no log category nonsense"
+    toy.free(component)
+
+
+def test_reset_starts_afresh(toy):
+    component = toy.initialized(mass=3.0)
+    first = [toy.step(component, 0.01 * k) for k in range(20)] and toy.outputs(component)
+    assert toy.call("Reset", component) == OK
+    toy.setup(component)
+    toy.call("EnterInitializationMode", component)
+    assert toy.get(component, "mass") == 2.0
+    assert toy.set(component, "mass", 3.0) == OK
+    toy.call("ExitInitializationMode", component)
+    assert [toy.step(component, 0.01 * k) for k in range(20)] == [OK] * 20
+    assert toy.outputs(component) == first
+    toy.free(component)
+
+
+def test_a_parameter_set_in_initialization_mode_counts(toy):
+    component = toy.instantiate()
+    toy.setup(component)
+    toy.call("EnterInitializationMode", component)
+    assert toy.get(component, "oscillators[1].position") == 0.1
+    assert toy.set(component, "start[1].position", 0.5) == OK
+    assert toy.get(component, "oscillators[1].position") == 0.5
+    toy.free(component)
+
+
+def save(toy, component):
+    state = state_pointer()
+    assert toy.call("GetFMUstate", component, byref(state)) == OK
+    return state
+
+
+def run_on(toy, component, count, first=0):
+    for k in range(first, first + count):
+        toy.set(component, "force[1]", math.sin(0.3 * k))
+        assert toy.step(component, 0.01 * k) == OK
+    return toy.outputs(component)
+
+
+def test_a_restored_state_goes_on_to_the_same_bits(toy):
+    component = toy.initialized()
+    run_on(toy, component, 30)
+    state = save(toy, component)
+    expected = run_on(toy, component, 30, first=30)
+    assert toy.call("SetFMUstate", component, state) == OK
+    assert run_on(toy, component, 30, first=30) == expected
+    again = c_void_p(state.value)
+    assert toy.call("GetFMUstate", component, byref(again)) == OK
+    assert again.value == state.value
+    assert toy.call("FreeFMUstate", component, byref(state)) == OK
+    assert state.value is None
+    assert toy.call("FreeFMUstate", component, byref(state)) == OK
+    toy.free(component)
+
+
+def test_a_serialized_state_goes_on_in_another_instance(toy):
+    component, other = toy.initialized(), toy.instantiate(b"other")
+    run_on(toy, component, 30)
+    state, size = save(toy, component), c_size_t()
+    assert toy.call("SerializedFMUstateSize", component, state, byref(size)) == OK
+    content = ctypes.create_string_buffer(size.value)
+    assert toy.call("SerializeFMUstate", component, state, content, size) == OK
+    restored = state_pointer()
+    assert toy.call("DeSerializeFMUstate", other, content, size, byref(restored)) == OK
+    assert toy.call("SetFMUstate", other, restored) == OK
+    assert run_on(toy, other, 30, first=30) == run_on(toy, component, 30, first=30)
+    for instance, pointer in ((component, state), (other, restored)):
+        toy.call("FreeFMUstate", instance, byref(pointer))
+        toy.free(instance)
+
+
+def test_damaged_or_foreign_bytes_are_no_state(toy):
+    component = toy.initialized()
+    state, size, nothing = save(toy, component), c_size_t(), state_pointer()
+    toy.call("SerializedFMUstateSize", component, state, byref(size))
+    content = ctypes.create_string_buffer(size.value)
+    assert toy.call("SerializeFMUstate", component, state, content, c_size_t(size.value - 1)) == ERROR
+    toy.call("SerializeFMUstate", component, state, content, size)
+    source = random.Random(4)
+    for _ in range(200):
+        damaged = bytearray(content.raw)
+        damaged[source.randrange(len(damaged))] ^= 1 << source.randrange(8)
+        buffer = ctypes.create_string_buffer(bytes(damaged), len(damaged))
+        assert toy.call("DeSerializeFMUstate", component, buffer, size, byref(nothing)) == ERROR
+    assert toy.call("DeSerializeFMUstate", component, content, c_size_t(10), byref(nothing)) == ERROR
+    assert nothing.value is None
+    assert toy.call("SetFMUstate", component, None) == ERROR
+    assert toy.call("SetFMUstate", component, state) == OK
+    toy.call("FreeFMUstate", component, byref(state))
+    toy.free(component)

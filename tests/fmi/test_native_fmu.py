@@ -1,0 +1,97 @@
+"""The native FMU is its model, to the bit, and differs from the PythonFMU in nothing else."""
+
+import re
+import struct
+import subprocess
+import sys
+import zipfile
+from pathlib import Path
+
+import fmpy
+import pytest
+from fmpy.validation import validate_fmu
+from host import OK, Host, random_inputs
+from test_python_fmu import STEPS, in_process
+
+from fmus import native_fmu
+from fmus.description import fmi_variables
+from fmus.platforms import host
+
+
+def bits(values):
+    return [struct.pack("d", value) if isinstance(value, float) else value for value in values]
+
+
+@pytest.mark.parametrize("seed", [1, 2])
+def test_equals_the_model_in_process_to_the_bit(native_fmus, model, seed):
+    inputs = random_inputs(fmi_variables(model), seed, len(STEPS))
+    expected = in_process(model, inputs, STEPS)
+    with Host(native_fmus[model.name]) as fmu:
+        fmu.initialize()
+        assert bits(fmu.outputs()) == bits(expected[0])
+        time = 0.0
+        for number, (size, values) in enumerate(zip(STEPS, inputs, strict=True), start=1):
+            fmu.set(values)
+            assert fmu.step(time, size) == OK
+            time += size
+            assert bits(fmu.outputs()) == bits(expected[number])
+        assert fmu.get(["time"]) == [time]
+        assert fmu.log == []
+
+
+def test_starts_at_any_time_and_steps_are_rounded_at_their_ends(native_fmus):
+    with Host(native_fmus["Toy"]) as fmu:
+        fmu.initialize(start=7.5)
+        assert fmu.get(["time"]) == [7.5]
+        time = 7.5
+        for number in range(1, 301):
+            assert fmu.step(time, 1.0 / 3.0) == OK
+            time = 7.5 + number * (1.0 / 3.0)
+        assert fmu.get(["count"]) == [300]
+
+
+def test_simulates_alone_and_gives_the_reference_result(native_fmus, model, tmp_path):
+    fmpy.extract(str(native_fmus[model.name]), str(tmp_path))
+    reference = fmpy.util.read_csv(tmp_path / f"extra/org.fmi-standard.fmi-ls-ref/{model.name}_out.csv")
+    stop, interval = reference["time"][-1], reference["time"][1]
+    names = list(reference.dtype.names[1:])
+    result = fmpy.simulate_fmu(
+        str(native_fmus[model.name]), stop_time=stop, step_size=model.step_size, output_interval=interval, output=names
+    )
+    assert len(result) == len(reference) > 50
+    for name in names:
+        assert (result[name] == reference[name]).all(), name
+
+
+def test_description_is_the_python_fmus_but_for_guid_and_tool(native_fmus, python_fmus, model):
+    def text(path):
+        with zipfile.ZipFile(path) as archive:
+            content = archive.read("modelDescription.xml").decode()
+        return re.sub(r'(guid|generationTool)="[^"]*"', "", content)
+
+    assert text(native_fmus[model.name]) == text(python_fmus[model.name])
+
+
+def test_checkers_find_nothing(native_fmus, model):
+    path = str(native_fmus[model.name])
+    assert validate_fmu(path) == []
+    command = [Path(sys.executable).parent / "fmutool", "-input", path, "-check"]
+    result = subprocess.run(command, capture_output=True, text=True, check=True)
+    text = result.stdout + result.stderr
+    assert "No semantic error" in text
+    assert "ERROR" not in text
+    assert "WARNING" not in text
+
+
+def test_two_builds_are_the_same_bytes(native_fmus, tmp_path):
+    from toy_model import MODEL
+
+    again = native_fmu.build(MODEL, tmp_path / "elsewhere", [host()])
+    assert again.read_bytes() == native_fmus["Toy"].read_bytes()
+    stamp = again.stat().st_mtime_ns
+    assert native_fmu.build(MODEL, tmp_path / "elsewhere", [host()]).stat().st_mtime_ns == stamp
+
+
+def test_another_model_has_another_guid(native_fmus):
+    guids = {fmpy.read_model_description(str(native_fmus[name])).guid for name in ("Toy", "Vehicle", "Controller")}
+    assert len(guids) == 3

@@ -1,0 +1,146 @@
+"""The native FMU in a host without Python: what it needs, leaks, fuzzed calls, sanitizers."""
+
+import shutil
+import subprocess
+import sys
+import threading
+from pathlib import Path
+
+import pytest
+from elf import dynamic
+from raw import OK, Library
+
+from fmus import native_fmu
+from fmus.native_ir import object_code
+from fmus.platforms import LINUX, NATIVE, SOURCES
+
+HERE = Path(__file__).parent
+LIMIT = 400_000
+pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="the host program uses dlopen")
+
+
+@pytest.fixture(scope="module")
+def host(tmp_path_factory):
+    """The host program, made by the C compiler that makes the FMUs."""
+    program = tmp_path_factory.mktemp("host") / "host"
+    options = ["-std=gnu11", "-O1", "-Wall", "-Wextra", f"-I{NATIVE}"]
+    command = [sys.executable, "-m", "ziglang", "cc", *options, str(HERE / "host.c"), "-o", str(program), "-ldl", "-lm"]
+    subprocess.run(command, check=True)
+    return program
+
+
+@pytest.fixture
+def library(native_fmus, model, tmp_path):
+    return Library(native_fmus[model.name], tmp_path)
+
+
+def run(*command, **more):
+    done = subprocess.run([str(word) for word in command], capture_output=True, text=True, env={}, check=False, **more)
+    assert done.returncode == 0, (done.returncode, done.stdout, done.stderr)
+    return done.stdout
+
+
+def test_needs_nothing_but_the_c_library(library):
+    content = library.file.read_bytes()
+    needed, undefined, defined = dynamic(content)
+    assert set(needed) <= {"libc.so.6", "libm.so.6"}
+    assert "malloc" in undefined
+    assert not [name for name in undefined if name.startswith(("Py", "_Py", "numba", "NRT", "fmi2", "model_"))]
+    assert all(name.startswith("fmi2") for name in defined)
+    assert len(defined) == 34
+    assert len(content) < LIMIT
+
+
+def test_steps_in_a_host_without_python(host, library):
+    names = [v.name for v in library.description.modelVariables if v.causality == "output" and v.type == "Real"][:20]
+    references = [library.refs[name] for name in names]
+    text = run(host, "run", library.file, library.description.guid, 50, 0.01, *references)
+    rows = [[float.fromhex(word) for word in line.split()] for line in text.splitlines()]
+    component = library.initialized()
+    for number, row in enumerate(rows):
+        assert library.step(component, number * 0.01) == OK
+        assert [library.get(component, name) for name in names] == row
+    assert number == 49
+    library.free(component)
+
+
+def test_ten_thousand_instances_leave_no_memory_behind(host, library):
+    before, after = map(int, run(host, "many", library.file, library.description.guid, 10_000).split())
+    assert after <= before + 8
+
+
+def test_a_hundred_instances_do_not_know_of_each_other(native_fmus, tmp_path):
+    toy = Library(native_fmus["Toy"], tmp_path)
+    crowd = [toy.initialized(stiffness=float(10 + number)) for number in range(100)]
+    for k in range(20):
+        for component in crowd:
+            assert toy.step(component, 0.01 * k) == OK
+    together = [toy.outputs(component) for component in crowd]
+    for number in (0, 50, 99):
+        alone = toy.initialized(stiffness=float(10 + number))
+        for k in range(20):
+            toy.step(alone, 0.01 * k)
+        assert toy.outputs(alone) == together[number]
+        toy.free(alone)
+    assert len({str(values) for values in together}) == 100
+    for component in crowd:
+        toy.free(component)
+
+
+def test_instances_on_several_threads(native_fmus, tmp_path):
+    toy = Library(native_fmus["Toy"], tmp_path)
+    found = {}
+
+    def drive(number):
+        component = toy.initialized(stiffness=float(10 + number))
+        for k in range(500):
+            toy.step(component, 0.01 * k)
+        found[number] = toy.outputs(component)
+        toy.free(component)
+
+    threads = [threading.Thread(target=drive, args=(number,)) for number in range(4)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    together = dict(found)
+    for number in range(4):
+        drive(number)
+    assert found == together
+    assert len({str(values) for values in found.values()}) == 4
+
+
+@pytest.mark.parametrize("seed", [1, 2])
+def test_no_random_call_crashes(host, library, seed):
+    text = run(host, "fuzz", library.file, library.description.guid, seed, 20_000, timeout=120)
+    calls, refused, messages = (int(word.split()[0]) for word in text.split(", "))
+    assert calls == 20_000
+    assert 0.2 < refused / calls < 0.8
+    assert messages > refused / 2
+
+
+@pytest.mark.skipif(shutil.which("gcc") is None, reason="needs gcc for its AddressSanitizer")
+def test_sanitizers_find_nothing(model, tmp_path):
+    guid = "{sanitized}"
+    (tmp_path / "model_sizes.h").write_text(native_fmu.sizes_header(model))
+    (tmp_path / "model_tables.c").write_text(native_fmu.tables(model, guid))
+    (tmp_path / "model.o").write_bytes(object_code(model, LINUX.triple))
+    options = ["-g", "-O1", "-fsanitize=address,undefined", "-fno-sanitize-recover=all", "-Wall", "-Wextra"]
+    includes = [f"-I{NATIVE}", f"-I{tmp_path}"]
+    sources = [*(NATIVE / name for name in SOURCES), tmp_path / "model_tables.c", tmp_path / "model.o"]
+    run_gcc = ["gcc", *options, *includes]
+    library, program = tmp_path / "model.so", tmp_path / "host"
+    env = {"check": True, "capture_output": True}
+    subprocess.run([*run_gcc, "-std=c11", "-fPIC", "-shared", *map(str, sources), "-o", str(library), "-lm"], **env)
+    subprocess.run([*run_gcc, "-std=gnu11", str(HERE / "host.c"), "-o", str(program), "-ldl", "-lm"], **env)
+    run(program, "many", library, guid, 100)
+    assert "refused" in run(program, "fuzz", library, guid, 3, 20_000, timeout=300)
+
+
+@pytest.mark.skipif(shutil.which("valgrind") is None, reason="needs valgrind")
+def test_valgrind_finds_nothing(host, native_fmus, tmp_path):
+    toy = Library(native_fmus["Toy"], tmp_path)
+    check = ["valgrind", "--quiet", "--leak-check=full", "--error-exitcode=9"]
+    command = [*check, str(host), "fuzz", str(toy.file), toy.description.guid, "5", "3000"]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr

@@ -15,7 +15,9 @@ from modelkit.vocabulary import Pose
 PREFIX_STEP = 0.25
 REVERSE_PREFIXES = 41
 STRAIGHT_PREFIXES = 32
-FORWARD_PREFIXES = 48
+BENT_PREFIXES = 16
+BENT_S_PREFIXES = 8
+FORWARD_PREFIXES = 88
 BACK_WAYS = 16
 SWING_WAYS = 13
 SWING_ANGLES = 13
@@ -43,14 +45,14 @@ def none_from(start: Pose) -> Candidate:
 
 
 def into_parallel(start: Pose, number: int, way_in: Exit, site: Site, car: Car) -> Candidate:
-    """Return the reverse into a parallel slot, straight back at first or from a straight way ahead."""
+    """Return the reverse into a parallel slot, straight back at first, or after a move before it."""
     turn = turn_of(car.curvature, car.curvature, car.ramp)
     if number < REVERSE_PREFIXES:
         straight = PREFIX_STEP * number
         move = reverse_s(start, way_in.pose, straight, turn, turn)
         good = move.direction != 0 and is_move_free(move, car, site.obstacles)
         return Candidate(good, move, 1 + way_in.moves, length_of(move))
-    ahead = _ahead(start, number - REVERSE_PREFIXES, car)
+    ahead = _before(start, number - REVERSE_PREFIXES, car)
     after = reverse_s(end_of(ahead), way_in.pose, 0.0, turn, turn)
     good = (
         after.direction != 0 and is_move_free(ahead, car, site.obstacles) and is_move_free(after, car, site.obstacles)
@@ -58,11 +60,20 @@ def into_parallel(start: Pose, number: int, way_in: Exit, site: Site, car: Car) 
     return Candidate(good, ahead, 2 + way_in.moves, length_of(ahead) + length_of(after))
 
 
-def _ahead(start: Pose, number: int, car: Car) -> Move:
+def _before(start: Pose, number: int, car: Car) -> Move:
+    """Return a move before the reverse: forward straight, bent to the left, or to the left and back to the
+    same heading; or straight back, with the wheel turned at standstill after it.
+    """
     if number < STRAIGHT_PREFIXES:
         return straight_move(start, 1, PREFIX_STEP * (number + 1))
     way = 2.0 * PREFIX_STEP * (number - STRAIGHT_PREFIXES + 1)
-    return two_arcs(start, 1, 0.4 * car.curvature, way, 0.0, 0.0)
+    if number < STRAIGHT_PREFIXES + BENT_PREFIXES:
+        return two_arcs(start, 1, 0.4 * car.curvature, way, 0.0, 0.0)
+    way = way - 2.0 * PREFIX_STEP * BENT_PREFIXES
+    if number < STRAIGHT_PREFIXES + BENT_PREFIXES + BENT_S_PREFIXES:
+        return two_arcs(start, 1, 0.6 * car.curvature, way, way, 0.0)
+    way = PREFIX_STEP * (number - STRAIGHT_PREFIXES - BENT_PREFIXES - BENT_S_PREFIXES + 1)
+    return straight_move(start, -1, way)
 
 
 def into_perpendicular(start: Pose, share: int, site: Site, car: Car) -> Candidate:

@@ -10,7 +10,8 @@ import importlib.util
 import os
 import platform
 import sys
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
@@ -49,10 +50,24 @@ def compiled_rows(models: Mapping[str, Model], ending: Ending | None, kept: Sequ
     text = HEAD + run_source(models, ending, kept, scope) + LOOP
     for model in models.values():
         make_compilable(model.package)
-    module = _module(f"apa_rows_{_digest(text, models)}", text, scope)
-    module.run = numba.njit(forceinline=True, **OPTIONS)(module.run)
-    compiled: Rows = numba.njit(ROWS, cache=True, **OPTIONS)(module.rows)
+    name = f"apa_rows_{_digest(text, models)}"
+    with _alone(name):
+        module = _module(name, text, scope)
+        module.run = numba.njit(forceinline=True, **OPTIONS)(module.run)
+        compiled: Rows = numba.njit(ROWS, cache=True, **OPTIONS)(module.rows)
     return compiled
+
+
+@contextmanager
+def _alone(name: str) -> Iterator[None]:
+    """Let one process compile at a time, where the system has file locks; the others find it in the cache."""
+    CACHE.mkdir(parents=True, exist_ok=True)
+    with (CACHE / f"{name}.lock").open("w", encoding="ascii") as lock:
+        if sys.platform != "win32":
+            import fcntl
+
+            fcntl.flock(lock, fcntl.LOCK_EX)
+        yield
 
 
 def _digest(text: str, models: Mapping[str, Model]) -> str:
@@ -67,7 +82,6 @@ def _module(name: str, text: str, scope: Mapping[str, Any]) -> Any:
     """Return ``text`` as a module with a file of its own, which numba's cache asks for."""
     path = CACHE / f"{name}.py"
     if not path.exists():
-        path.parent.mkdir(parents=True, exist_ok=True)
         part = path.with_name(f"{path.name}.{os.getpid()}.part")
         part.write_text(text)
         part.replace(path)

@@ -1,0 +1,135 @@
+"""Rows of the compiled batch against the Python master, run by run, to the last bit."""
+
+from typing import Annotated, NamedTuple
+
+import numpy as np
+import pytest
+
+from fmus.batch_source import Kept, run_source
+from modelkit.signal import Signal
+from orchestrator.fmu_files import fmu_files
+from orchestrator.models import MODELS
+from orchestrator.session import run_scenario
+from orchestrator.summary import summarize
+from orchestrator.sweep.batch import run_batch
+from orchestrator.sweep.fmu_runs import run_recorded
+from orchestrator.sweep.job import Chunk, chunk_scenario
+from orchestrator.sweep.kept import row_of, why_not_compiled
+from orchestrator.sweep.verdict import OUTCOMES, judge
+
+LIMITS = [
+    {"id": "end heading", "signal": "final.heading_error", "max_abs": "3 deg", "source": "test"},
+    {"id": "wheel", "signal": "vehicle.steering_wheel_angle", "max": "500 deg", "source": "test"},
+    {"id": "backwards", "signal": "vehicle.speed", "min": -1.9, "source": "test"},
+    {"id": "at rest", "signal": "vehicle.speed", "max_abs": 1e-6, "window": {"at": "end"}, "source": "test"},
+    {"id": "seen", "signal": "controller.measured_speed", "max_abs": 1.8, "source": "test", "required": False},
+    {"id": "time", "signal": "duration", "max": 30.0, "source": "test"},
+]
+WINDOWED = [
+    {"id": "late", "signal": "vehicle.speed", "max_abs": 1.0, "window": {"from": 4.0, "to": 9.0}, "source": "test"},
+    {
+        "id": "way",
+        "signal": "vehicle.speed",
+        "max_abs": 0.6,
+        "window": {"phase": "TO_Q4", "if_never": "pass"},
+        "source": "t",
+    },
+    {"id": "ends", "signal": "controller.phase", "equals": "PARKED", "window": {"at": "end"}, "source": "test"},
+]
+
+
+def assert_same(job, chunk, rows, number, files=None, kind="none"):
+    scenario = chunk_scenario(job, chunk, number)
+    ran = run_scenario(scenario, files, kind=kind)
+    np.testing.assert_array_equal(rows[number], row_of(ran.recording, scenario, job.kept))
+    summary = summarize(ran.recording, scenario, 1.0)
+    verdict = judge(job, chunk, rows)
+    assert (OUTCOMES[verdict.outcome[number]], verdict.reason[number]) == (summary.outcome, summary.reason)
+    numbers = {name: float(values[number]) for name, values in verdict.numbers.items()}
+    assert {name: numbers[f"final.{name}"] for name in summary.final.model_dump()} == summary.final.model_dump()
+    assert (numbers["duration"], numbers["shifts"]) == (summary.duration, summary.shifts)
+    assert numbers["max_speed"] == summary.max_speed
+
+
+def test_rows_equal_the_python_master(bind, some):
+    _, _, job, chunk = bind()
+    rows = run_batch(job, chunk)
+    for number in some(len(rows), 12):
+        assert_same(job, chunk, rows, number)
+    assert len(set(judge(job, chunk, rows).reason)) > 3
+
+
+@pytest.mark.parametrize("kind", ["python", "native"])
+def test_rows_equal_fmu_runs(bind, some, kind):
+    _, _, job, chunk = bind()
+    rows = run_batch(job, chunk)
+    files = fmu_files(kind)
+    for number in some(len(rows), 6, seed=7):
+        assert_same(job, chunk, rows, number, files, kind)
+
+
+def test_rows_do_not_depend_on_their_neighbours(bind):
+    _, _, job, chunk = bind()
+    whole = run_batch(job, chunk)
+    back = np.arange(len(whole))[::-1]
+    np.testing.assert_array_equal(run_batch(job, Chunk(0, 0, chunk.values[back], chunk.seeds[back]))[back], whole)
+
+
+@pytest.mark.parametrize("every", [{"controller": 5}, {"vehicle": 3}, {"vehicle": 2, "controller": 4}])
+def test_multi_rate_is_the_masters(bind, every):
+    _, _, job, chunk = bind(
+        set={f"every.{name}": count for name, count in every.items()}, runs={"grid": {"step": [0.005, 0.01]}}
+    )
+    rows = run_batch(job, chunk)
+    for number in range(len(rows)):
+        assert_same(job, chunk, rows, number)
+
+
+@pytest.mark.parametrize(
+    "name", ["guo2015-case1", "guo2015-case5", "guo2015-case4-far", "guo2015-case4-left", "fault-no-path"]
+)
+def test_shipped_scenarios(bind, name):
+    _, _, job, chunk = bind(scenario=name, runs={"grid": {}})
+    assert_same(job, chunk, run_batch(job, chunk), 0)
+
+
+def test_limits_on_signals_and_numbers(bind, tmp_path, some):
+    (tmp_path / "a.yaml").write_text(f"base: guo2015-case4\nlimits: {LIMITS}\n")
+    scenario, _, job, chunk = bind(scenario=str(tmp_path / "a.yaml"))
+    assert why_not_compiled(scenario, job.kept) == ""
+    rows = run_batch(job, chunk)
+    for number in some(len(rows), 10):
+        assert_same(job, chunk, rows, number)
+
+
+def test_limits_with_a_window_are_judged_from_recordings(bind, tmp_path):
+    (tmp_path / "a.yaml").write_text(f"base: guo2015-case4\nlimits: {WINDOWED}\n")
+    scenario, _, job, chunk = bind(scenario=str(tmp_path / "a.yaml"), runs={"grid": {"controller.system": [0, 1]}})
+    assert "'late' needs the whole run" in why_not_compiled(scenario, job.kept)
+    rows = run_recorded(job, chunk, "none", None)
+    for number in range(len(rows)):
+        assert_same(job, chunk, rows, number)
+
+
+def test_faults_go_through_the_python_master(bind):
+    scenario, _, job, chunk = bind(scenario="fault-pose-frozen", runs={"grid": {"faults[1].start": [0.5, 3.0]}})
+    assert why_not_compiled(scenario, job.kept) == "the scenario has faults"
+    rows = run_recorded(job, chunk, "none", None)
+    for number in range(2):
+        assert_same(job, chunk, rows, number)
+    assert rows[0, 1] != rows[1, 1]
+
+
+def test_the_text_of_a_run_names_what_it_does_not_know():
+    with pytest.raises(KeyError, match=r"vehicle\.sped"):
+        run_source(MODELS, None, [Kept("last", "vehicle.sped")], {})
+
+
+class Wrong(NamedTuple):
+    prompt: Annotated[float, Signal("1", "an integer at its receiver")] = 0.0
+
+
+def test_connected_types_must_agree():
+    models = {**MODELS, "controller": MODELS["controller"]._replace(outputs=Wrong)}
+    with pytest.raises(TypeError, match=r"controller\.prompt and vehicle\.prompt differ in type"):
+        run_source(models, None, [], {})

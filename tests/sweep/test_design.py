@@ -1,0 +1,128 @@
+import math
+
+import numpy as np
+import pytest
+
+from orchestrator.errors import BadInput
+from orchestrator.sweep.study import Study
+
+SPEED = "vehicle.driver.profile[1].speed"
+
+
+def design(bind, **runs):
+    return bind(runs=runs)[1]
+
+
+def column(made, key):
+    return made.values[:, [field.key for field in made.fields].index(key)]
+
+
+def test_a_grid_is_every_combination_once(bind):
+    made = design(bind, grid={"controller.system": ["ntbpt", "ntbptcwpt"], SPEED: {"from": 1, "to": 2, "steps": 3}})
+    assert sorted(map(tuple, made.values.tolist())) == [(s, v) for s in (0.0, 1.0) for v in (1.0, 1.5, 2.0)]
+
+
+def test_units_and_states_are_read_as_in_a_scenario(bind):
+    made = design(
+        bind, grid={SPEED: ["3.6 km/h"], "vehicle.start.heading": ["180 deg"], "controller.system": ["ntbpt"]}
+    )
+    assert made.values.tolist() == [[1.0, math.pi, 1.0]]
+
+
+def test_keys_with_a_comma_share_their_values(bind):
+    made = design(bind, grid={"vehicle.steering.rate_limit, controller.steering_wheel_rate": [1.0, 2.0]})
+    assert made.values.tolist() == [[1.0, 1.0], [2.0, 2.0]]
+
+
+def test_every_grid_point_has_the_same_samples(bind):
+    sampled = {"n": 7, "vehicle.start.x": {"uniform": [-1, 1]}}
+    made = design(bind, grid={SPEED: [1.0, 2.0]}, monte_carlo=sampled)
+    x = column(made, "vehicle.start.x").reshape(2, 7)
+    assert (x[0] == x[1]).all()
+    assert len(set(x[0])) == 7
+    assert len(set(made.seeds.tolist())) == 14
+
+
+def test_latin_hypercube_has_one_sample_in_each_stratum(bind):
+    made = design(bind, latin_hypercube={"n": 50, "vehicle.start.x": {"uniform": [-1, 1]}})
+    strata = np.floor((column(made, "vehicle.start.x") + 1.0) / 2.0 * 50)
+    assert sorted(strata) == list(range(50))
+
+
+def test_normal_samples_have_their_mean_and_deviation(bind):
+    made = design(bind, latin_hypercube={"n": 2000, "vehicle.start.x": {"normal": [3.0, 0.5]}})
+    x = column(made, "vehicle.start.x")
+    assert abs(x.mean() - 3.0) < 0.01
+    assert abs(x.std() - 0.5) < 0.01
+
+
+def test_normal_samples_stay_in_the_range_of_the_parameter(bind):
+    made = design(bind, monte_carlo={"n": 2000, "vehicle.driver.reaction_delay": {"normal": [0.1, 0.3]}})
+    delay = column(made, "vehicle.driver.reaction_delay")
+    assert delay.min() >= 0.0
+    assert (delay < 0.05).any()
+
+
+def test_choices_are_about_equally_frequent(bind):
+    made = design(bind, latin_hypercube={"n": 300, "vehicle.driver.obeys_stop": {"choice": [True, False, True]}})
+    assert column(made, "vehicle.driver.obeys_stop").sum() == 200
+
+
+def test_both_kinds_of_samples_are_joined_side_by_side(bind):
+    made = design(
+        bind,
+        monte_carlo={"n": 5, "vehicle.start.x": {"uniform": [0, 1]}},
+        latin_hypercube={"n": 5, "vehicle.start.y": {"uniform": [0, 1]}},
+    )
+    assert made.values.shape == (5, 2)
+
+
+def test_the_same_study_gives_the_same_design_and_another_seed_another(bind):
+    assert bind()[1].digest() == bind()[1].digest()
+    assert bind(seed=2)[1].digest() != bind()[1].digest()
+
+
+def test_scenario_fields_and_faults_can_be_varied(bind):
+    fault = {"signal": "vehicle.odometry", "kind": "freeze", "start": 1.0}
+    scenario, made, job, chunk = bind(
+        scenario="fault-pose-frozen",
+        runs={"grid": {"faults[1].start": [2.0], "stop_time": ["12 s"], "every.vehicle": [2]}},
+    )
+    assert fault["kind"] == scenario.faults[0].kind
+    from orchestrator.sweep.job import chunk_scenario
+
+    one = chunk_scenario(job, chunk, 0)
+    assert (one.faults[0].start, one.stop_time, one.every) == (2.0, 12.0, {"vehicle": 2})
+    assert made.values.tolist() == [[2.0, 12.0, 2.0]]
+
+
+@pytest.mark.parametrize(
+    ("runs", "says"),
+    [
+        ({"grid": {"vehicle.weelbase": [2.0]}}, "wheelbase"),
+        ({"grid": {"vehicle.wheelbase": [-1.0]}}, "out of range"),
+        ({"grid": {"vehicle.wheelbase": ["3 s"]}}, "'3 s' is in 's'"),
+        ({"grid": {"vehicle.wheelbase": []}}, "empty list"),
+        ({"grid": {"vehicle.start.x": [1]}, "monte_carlo": {"n": 1, "vehicle.start.x": {"uniform": [0, 1]}}}, "twice"),
+        ({"monte_carlo": {"n": 3, "vehicle.wheelbase": {"uniform": [-3, 3]}}}, "out of range"),
+        ({"monte_carlo": {"n": 3, "vehicle.start.x": {"uniform": [3, -3]}}}, "lower end first"),
+        ({"monte_carlo": {"n": 3, "vehicle.start.x": {"normal": [3, 0]}}}, "more than 0"),
+        ({"monte_carlo": {"n": 3, "vehicle.driver.obeys_stop": {"uniform": [0, 1]}}}, "expected choice"),
+        ({"grid": {"faults[1].start": [1.0]}}, "has 0 faults"),
+        ({"grid": {"speed": [1.0]}}, "unknown"),
+    ],
+)
+def test_a_mistake_is_one_clear_sentence(bind, runs, says):
+    with pytest.raises(BadInput, match=says.replace("[", r"\[")):
+        bind(runs=runs)
+
+
+def test_different_numbers_of_samples_are_refused():
+    samples = [{"n": count, "vehicle.start.x": {"uniform": [0, 1]}} for count in (2, 3)]
+    with pytest.raises(ValueError, match="same n"):
+        Study(name="a", scenario="b", runs={"monte_carlo": samples[0], "latin_hypercube": samples[1]})
+
+
+def test_a_spread_has_exactly_one_distribution():
+    with pytest.raises(ValueError, match="exactly one of uniform, normal and choice"):
+        Study(name="a", scenario="b", runs={"monte_carlo": {"n": 1, "x": {"uniform": [0, 1], "choice": [1]}}})

@@ -80,6 +80,7 @@ class McapLog:
         if "vehicle" in named and set(DRAWN) <= named["vehicle"].outputs.index.keys():
             self._pictures.append(_Pictures(self._file, named, slot))
         rows = max(1, CHUNK_SIZE // 2 // sum(channel.size + MESSAGE_HEADER.itemsize for channel in self._channels))
+        self.rows_per_chunk = rows
         self._times = np.empty(rows, dtype=np.int64)
         self._count = 0
         for channel in self._channels:
@@ -112,8 +113,9 @@ class McapLog:
         self._file.close()
 
     def _write_rows(self) -> None:
-        for channel in self._channels:
-            channel.write(self._times[: self._count])
+        if self._count:
+            for channel in self._channels:
+                channel.write(self._times[: self._count])
         self._count = 0
         self._file.flush()
 

@@ -109,3 +109,18 @@ def test_a_slave_that_fails_aborts_and_says_so(
     found = read_log(tmp_path / "run.mcap")
     assert found.t[-1] == 0.5
     assert json.loads((tmp_path / "summary.json").read_text())["outcome"] == "aborted"
+
+
+def test_a_slave_that_does_not_start_aborts_too(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from orchestrator.errors import RunError
+    from orchestrator.model_slave import ModelSlave
+
+    def initialize(self: ModelSlave, stop_ns: int) -> None:
+        raise RunError(f"{self.name} refuses to initialize")
+
+    monkeypatch.setattr(ModelSlave, "initialize", initialize)
+    assert main(["run", DEMO, "--fmus", "none", "--out", str(tmp_path)]) == 1
+    assert "aborted: error: vehicle refuses to initialize" in capsys.readouterr().out
+    assert len(read_log(tmp_path / "run.mcap").t_ns) == 0

@@ -167,3 +167,17 @@ def test_no_log_is_explained(tmp_path: Path) -> None:
         read_log(path)
     with pytest.raises(BadInput, match="cannot be read"):
         read_log(tmp_path / "none.mcap")
+
+
+@pytest.mark.parametrize("rows", [0, 1, 2, 3])
+def test_any_number_of_rows_about_a_chunk(tmp_path: Path, rows: int) -> None:
+    slaves = [ModelSlave("plant", PLANT, {}), ModelSlave("brain", BRAIN, {})]
+    for slave in slaves:
+        slave.initialize(0)
+        slave.fetch_outputs()
+    log = McapLog(tmp_path / "x.mcap", list(slaves), None, {})
+    count = 0 if rows == 0 else log.rows_per_chunk + rows - 2
+    for row in range(count):
+        log.exchanged(row)
+    log.closed(End("done", count))
+    assert read_log(tmp_path / "x.mcap").t_ns.tolist() == list(range(count))

@@ -92,12 +92,24 @@ class PreviewParams(NamedTuple):
     force_range: Annotated[float, Signal("N", "force at 3", 1.0, 1e5, PAPER)] = 750.0
     lateral_gain: Annotated[float, Signal("1", "factor on the mapped yL", 0.01, 100.0, HOUSE)] = 2.0
     heading_gain: Annotated[float, Signal("1", "factor on the mapped epsL", 0.01, 100.0, HOUSE)] = 1.0
-    lateral_peaks: tuple[float, ...] = (-3.0, -1.5, 0.0, 1.5, 3.0)
-    heading_peaks: tuple[float, ...] = (-3.0, -1.5, 0.0, 1.5, 3.0)
-    steering_peaks: tuple[float, ...] = (-3.0, -2.0, -1.0, 0.0, 1.0, 2.0, 3.0)
-    speed_peaks: tuple[float, ...] = (-0.3, -0.1, 0.0, 0.1, 0.3)
-    rate_peaks: tuple[float, ...] = (-3.0, -1.5, 0.0, 1.5, 3.0)
-    force_peaks: tuple[float, ...] = (-3.5, -2.0, -1.0, 0.0, 1.0, 2.0, 3.5)
+    lateral_peaks: Annotated[
+        tuple[float, ...], Signal("1", "peaks of the sets of yL, on [-3, 3]", -10.0, 10.0, HOUSE)
+    ] = (-3.0, -1.5, 0.0, 1.5, 3.0)
+    heading_peaks: Annotated[
+        tuple[float, ...], Signal("1", "peaks of the sets of epsL, on [-3, 3]", -10.0, 10.0, HOUSE)
+    ] = (-3.0, -1.5, 0.0, 1.5, 3.0)
+    steering_peaks: Annotated[
+        tuple[float, ...], Signal("1", "peaks of the sets of the steering angle, on [-3, 3]", -10.0, 10.0, HOUSE)
+    ] = (-3.0, -2.0, -1.0, 0.0, 1.0, 2.0, 3.0)
+    speed_peaks: Annotated[
+        tuple[float, ...], Signal("1", "peaks of the sets of the speed error, on [-3, 3]", -10.0, 10.0, HOUSE)
+    ] = (-0.3, -0.1, 0.0, 0.1, 0.3)
+    rate_peaks: Annotated[
+        tuple[float, ...], Signal("1", "peaks of the sets of its rate, on [-3, 3]", -10.0, 10.0, HOUSE)
+    ] = (-3.0, -1.5, 0.0, 1.5, 3.0)
+    force_peaks: Annotated[
+        tuple[float, ...], Signal("1", "peaks of the sets of the force, on [-3, 3]", -10.0, 10.0, HOUSE)
+    ] = (-3.5, -2.0, -1.0, 0.0, 1.0, 2.0, 3.5)
     centre_to_rear: Annotated[
         float, Signal("m", "lr, centre of gravity to rear axle", 0.01, 10.0, PAPER + ", Table 3")
     ] = 0.76

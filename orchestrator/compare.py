@@ -2,13 +2,13 @@
 
 import math
 from collections.abc import Iterable
-from fnmatch import fnmatchcase
 from typing import Any
 
 import numpy as np
 from pydantic import BaseModel, ConfigDict
 
 from orchestrator.errors import BadInput
+from orchestrator.patterns import fits, matching
 from orchestrator.recording import Recording
 from orchestrator.tolerance import Tolerance, Tolerances
 from orchestrator.tube import Curve, distance
@@ -63,18 +63,17 @@ class Comparison(BaseModel):
     only_in_b: list[str]
 
 
-def compare(a: Recording, b: Recording, tolerances: Tolerances, patterns: Iterable[str] = ("*",)) -> Comparison:
+def compare(a: Recording, b: Recording, tolerances: Tolerances, patterns: Iterable[str] | None = None) -> Comparison:
     """Return how run ``b`` differs from the reference ``a`` in the signals that match one of ``patterns``.
 
     A signal that only the reference has counts as differing; one that only ``b`` has is listed.
     Raises ``BadInput`` if nothing is left to compare.
     """
-    names = [name for name in a.signals if any(fnmatchcase(name, pattern) for pattern in patterns)]
-    new = [name for name in b.signals if name not in a.signals and any(fnmatchcase(name, item) for item in patterns)]
-    if not names or not len(a.t) or not len(b.t):
-        raise BadInput(
-            f"nothing to compare: no signal matches {', '.join(patterns)}" if not names else "a run is empty"
-        )
+    chosen = ["*"] if patterns is None else list(patterns)
+    names = matching(a.signals, chosen)
+    new = [name for name in b.signals if name not in a.signals and any(fits(name, item) for item in chosen)]
+    if not len(a.t) or not len(b.t):
+        raise BadInput("nothing to compare: a run is empty")
     rows = [_duration(a, b, tolerances), *(_signal(name, a, b, tolerances) for name in names)]
     rows.sort(key=_severity, reverse=True)
     missed = sum(not row.passed for row in rows)

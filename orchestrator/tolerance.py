@@ -1,10 +1,10 @@
 """How far a signal may be from its reference, in value and in time."""
 
-import fnmatch
 from pathlib import Path
 from typing import NamedTuple
 
 from orchestrator.errors import BadInput, suggestion
+from orchestrator.patterns import fits
 from orchestrator.quantities import number
 from orchestrator.yaml_file import read_mapping
 
@@ -33,7 +33,7 @@ class Tolerances:
         """Return the tolerance of ``signal``, whose SI unit is ``unit``. Raises ``BadInput`` for a wrong unit."""
         found = self._default
         for pattern, given, file in self._rows:
-            if not fnmatch.fnmatchcase(signal, pattern):
+            if not fits(signal, pattern):
                 continue
             key = f"{pattern}: {{}}"
             if "abs" in given:

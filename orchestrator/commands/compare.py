@@ -57,7 +57,7 @@ def run(arguments: argparse.Namespace) -> int:
             raise BadInput(f"{bound:g} is not 0 or more", key=f"--{key}")
     runs = read_log(arguments.a), read_log(arguments.b)
     tolerances = read_tolerances(arguments.tolerances, Tolerance(*bounds))
-    found = compare(*runs, tolerances, arguments.signals or ["*"])
+    found = compare(*runs, tolerances, arguments.signals)
     if arguments.html:
         write_overlay(arguments.html, runs, (read_words(arguments.a), read_words(arguments.b)), found)
     if arguments.json:

@@ -1,17 +1,20 @@
 """What stands still in the top view: car, slot, target, obstacles, kerbs, sensors, relative to an origin."""
 
+import re
 from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 
-from orchestrator.geometry import Car, boxes, slot_box
+from orchestrator.geometry import Box, Car, boxes, kerbs, slot_box
 from orchestrator.recording import Recording
 from orchestrator.scenario import Slot
 from orchestrator.scene import pose_of
 from orchestrator.slave import Array
 
 Point = tuple[float, float]
+MOUNT = re.compile(r"(\w+)\.mounts\[(\d+)\]\.x")
+"""A sensor's place on the car among the parameters: ``ultrasonic.mounts[3].x``."""
 
 
 def origin_of(recording: Recording) -> Point:
@@ -36,36 +39,33 @@ def still_of(recording: Recording, origin: Point) -> dict[str, Any]:
         "car": {"front": car.front, "rear": car.rear, "half": car.half_width, "wheelbase": car.wheelbase},
         "slot": _less(slot_box(Slot(**slot)).outline()[:4], origin) if slot else None,
         "target": [target[0] - origin[0], target[1] - origin[1], target[2]] if target else None,
-        "boxes": [_less(box.outline()[:4], origin) for box in boxes(vehicle)],
-        "kerbs": [_less(line, origin) for line in kerbs(vehicle)],
+        "boxes": [_box(box, origin) for box in boxes(vehicle)],
+        "kerbs": [_less(np.array([[line.x1, line.y1], [line.x2, line.y2]]), origin) for line in kerbs(vehicle)],
         "sensors": sensors(vehicle, recording.signals),
     }
-
-
-def kerbs(vehicle: Mapping[str, float]) -> list[Array]:
-    """Return the kerb lines among a vehicle's parameters, each (2, 2) [m]; those of no length left out."""
-    found = []
-    number = 1
-    while f"scene.kerbs[{number}].x1" in vehicle:
-        x1, y1, x2, y2 = (vehicle[f"scene.kerbs[{number}].{name}"] for name in ("x1", "y1", "x2", "y2"))
-        if (x1, y1) != (x2, y2):
-            found.append(np.array([[x1, y1], [x2, y2]]))
-        number += 1
-    return found
 
 
 def sensors(vehicle: Mapping[str, float], signals: Mapping[str, Array]) -> list[dict[str, Any]]:
     """Return the distance sensors that are both mounted (parameters) and read out (signals)."""
     found = []
-    number = 1
-    while f"sensors.mounts[{number}].x" in vehicle:
-        signal, mount = f"vehicle.ultrasonic[{number}]", f"sensors.mounts[{number}]."
-        if signal in signals:
-            x, y, heading = (vehicle[mount + name] for name in ("x", "y", "heading"))
-            half, reach = vehicle.get("sensors.half_angle", 0.5), vehicle.get("sensors.range", 5.0)
+    for name, x in vehicle.items():
+        match = MOUNT.fullmatch(name)
+        if match is None:
+            continue
+        group, number = match.groups()
+        y, heading = (vehicle.get(f"{group}.mounts[{number}].{field}", 0.0) for field in ("y", "yaw"))
+        half, reach = vehicle.get(f"{group}.half_angle", 0.5), vehicle.get(f"{group}.max_range", 5.0)
+        signal = next(
+            (text for text in (f"vehicle.{group}[{number}]", f"vehicle.{group}.readings[{number}]") if text in signals),
+            None,
+        )
+        if signal is not None:
             found.append({"signal": signal, "x": x, "y": y, "heading": heading, "half": half, "range": reach})
-        number += 1
     return found
+
+
+def _box(box: Box, origin: Point) -> dict[str, Any]:
+    return {"corners": _less(box.outline()[:4], origin), "from": box.appear_at, "to": box.disappear_at}
 
 
 def _less(points: Array, origin: Point) -> list[list[float]]:

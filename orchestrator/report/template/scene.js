@@ -48,9 +48,7 @@ class Scene {
         const pose = this.poseAt(run, t);
         for (const [x, y] of rectangle(-car.rear, car.front, car.half)) take(...moved(pose, x, y));
       });
-      for (const shape of [...(run.scene.slot ? [run.scene.slot] : [])]) shape.forEach(([x, y]) => take(x, y));
-      if (run.scene.boxes.length + run.scene.kerbs.length <= 40)
-        for (const shape of run.scene.boxes) shape.forEach(([x, y]) => take(x, y));
+      for (const shape of [run.scene.slot || [], ...run.scene.boxes.map((item) => item.corners)]) shape.forEach(([x, y]) => { if (near(box, ...this.turned(x, y))) take(x, y); });
     }
     return box[0] < box[2] ? box : [-5, -5, 5, 5];
   }
@@ -124,7 +122,7 @@ class Scene {
     }
     g.clearRect(0, 0, this.width, this.height);
     drawGround(this);
-    drawStill(this, run);
+    drawStill(this, run, t);
     this.page.runs.forEach((item, number) => drawPaths(this, item, number, Math.min(t, item.duration)));
     if (this.layers.sensors) drawRays(this, run, Math.min(t, run.duration));
     for (let number = this.page.runs.length - 1; number >= 0; number--) {
@@ -147,6 +145,12 @@ class Scene {
     }
     if (closed) g.closePath();
   }
+}
+
+// Whether a point is not so far from a box that showing it would make everything small.
+function near(box, x, y) {
+  const reach = Math.max(10, box[2] - box[0], box[3] - box[1]);
+  return x > box[0] - reach && x < box[2] + reach && y > box[1] - reach && y < box[3] + reach;
 }
 
 const rectangle = (back, front, half) => [[back, -half], [front, -half], [front, half], [back, half]];

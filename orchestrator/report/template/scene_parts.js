@@ -18,7 +18,7 @@ function drawGround(scene) {
   g.stroke();
 }
 
-function drawStill(scene, run) {
+function drawStill(scene, run, t) {
   const g = scene.context, still = run.scene;
   if (still.slot) {
     scene.trace(still.slot, true);
@@ -29,7 +29,8 @@ function drawStill(scene, run) {
     g.stroke();
   }
   for (const box of still.boxes) {
-    scene.trace(box, true);
+    if (t < box.from || t >= box.to) continue;
+    scene.trace(box.corners, true);
     g.fillStyle = color("box");
     g.fill();
     g.strokeStyle = color("box-line");

@@ -64,7 +64,7 @@ def make_job(study: Study, scenario: Scenario, fields: list[Field]) -> Job:
         if getattr(probed, owner).get(variable.name) == PROBE and f"{owner}.{variable.name}" not in varied
     ]
     return Job(
-        scenario.model_dump(mode="python"),
+        {**scenario.model_dump(mode="python"), "file": scenario.name},
         [field.key for field in fields],
         [field.owner for field in fields],
         [field.name for field in fields],

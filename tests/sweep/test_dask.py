@@ -1,0 +1,78 @@
+"""A study on a Dask cluster of separate processes on this machine, one of them killed on the way."""
+
+import signal
+import socket
+import subprocess
+import sys
+import time
+
+import pytest
+
+from orchestrator.cli import main
+
+STUDY = """
+name: trial
+scenario: guo2015-case4
+runs:
+  grid: {controller.system: [ntbpt, ntbptcwpt]}
+  latin_hypercube:
+    n: 1500
+    "vehicle.driver.profile[1].speed": {uniform: [2 km/h, 2.0]}
+"""
+CHUNK = 25
+
+
+def started(*arguments):
+    return subprocess.Popen([sys.executable, "-m", *arguments], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+
+
+@pytest.fixture
+def cluster():
+    """Address of a scheduler with two workers of one thread, and the processes."""
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        port = free.getsockname()[1]
+    address = f"tcp://127.0.0.1:{port}"
+    scheduler = started(
+        "distributed.cli.dask_scheduler", "--host", "127.0.0.1", "--port", str(port), "--no-dashboard", "--no-show"
+    )
+    common = ("--no-dashboard", "--no-nanny", "--nthreads", "1", "--host", "127.0.0.1")
+    workers = [started("distributed.cli.dask_worker", address, *common) for _ in range(2)]
+    yield address, workers
+    for process in (*workers, scheduler):
+        process.kill()
+        process.wait()
+
+
+def test_nothing_is_lost_when_a_worker_is_killed(cluster, tmp_path):
+    address, workers = cluster
+    study = tmp_path / "trial.yaml"
+    study.write_text(STUDY)
+    common = ["sweep", str(study), "--chunk", str(CHUNK), "--no-page", "--out"]
+    assert main([*common, str(tmp_path / "here")]) == 0
+    there = subprocess.Popen(
+        [sys.executable, "-m", "orchestrator", *common, str(tmp_path / "there"), "--dask", address],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+    parts = tmp_path / "there" / "parts"
+    while len(list(parts.glob("*.parquet"))) < 10:
+        assert there.poll() is None, there.communicate()
+        time.sleep(0.01)
+    workers[0].send_signal(signal.SIGKILL)
+    out, error = there.communicate()
+    assert there.returncode == 0, error
+    assert "on Dask at tcp://127.0.0.1" in out
+    assert workers[1].poll() is None
+    tables = [(tmp_path / place / "trial.parquet").read_bytes() for place in ("here", "there")]
+    assert tables[0] == tables[1]
+
+
+def test_a_scheduler_that_does_not_answer(tmp_path, capsys, monkeypatch):
+    from orchestrator.sweep import dask_engine
+
+    monkeypatch.setattr(dask_engine, "CONNECT", 0.3)
+    code = main(["sweep", "guo2015-trial", "--out", str(tmp_path), "--no-page", "--dask", "tcp://127.0.0.1:9"])
+    assert code == 2
+    assert "no scheduler answers" in capsys.readouterr().err

@@ -1,0 +1,155 @@
+"""A study that is killed, interrupted, finished elsewhere, and its rows run again."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from orchestrator.cli import main
+from orchestrator.sweep.store import Table
+
+STUDY = """
+name: trial
+scenario: guo2015-case4
+runs:
+  grid: {controller.system: [ntbpt, ntbptcwpt]}
+  latin_hypercube:
+    n: 600
+    "vehicle.driver.profile[1].speed": {uniform: [2 km/h, 2.0]}
+    vehicle.start.y: {uniform: [-10 cm, 10 cm]}
+"""
+COUNT = 1200
+CHUNK = 20
+
+
+@pytest.fixture(scope="module")
+def study(tmp_path_factory):
+    path = tmp_path_factory.mktemp("study") / "trial.yaml"
+    path.write_text(STUDY)
+    return path
+
+
+@pytest.fixture(scope="module")
+def whole(study, tmp_path_factory):
+    """The table of a study that nothing happened to."""
+    return sweep(study, tmp_path_factory.mktemp("whole"))
+
+
+def sweep(study, out, *more):
+    assert main(["sweep", str(study), "--out", str(out), "--chunk", str(CHUNK), "--no-page", *more]) == 0
+    return out / "trial.parquet"
+
+
+def begun(study, out, *more):
+    command = [sys.executable, "-m", "orchestrator", "sweep", str(study), "--out", str(out), "--chunk", str(CHUNK)]
+    return subprocess.Popen([*command, "--no-page", *more], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+
+
+def parts(out):
+    return sorted((out / "parts").glob("*.parquet"))
+
+
+def wait_for_parts(process, out, count):
+    while len(parts(out)) < count:
+        assert process.poll() is None, process.communicate()
+        time.sleep(0.005)
+
+
+def test_a_killed_study_goes_on_to_the_same_bytes(study, whole, tmp_path):
+    process = begun(study, tmp_path, "--workers", "1")
+    wait_for_parts(process, tmp_path, 3)
+    os.kill(process.pid, signal.SIGKILL)
+    process.communicate()
+    kept = {path: path.stat().st_mtime_ns for path in parts(tmp_path)}
+    assert 3 <= len(kept) < COUNT / CHUNK
+    again = begun(study, tmp_path, "--workers", "1", "--resume")
+    wait_for_parts(again, tmp_path, len(kept) + 2)
+    os.kill(again.pid, signal.SIGKILL)
+    again.communicate()
+    assert {path: path.stat().st_mtime_ns for path in kept} == kept
+    assert sweep(study, tmp_path, "--resume").read_bytes() == whole.read_bytes()
+    assert not (tmp_path / "parts").exists()
+
+
+def test_an_interrupted_study_keeps_what_is_done(study, whole, tmp_path):
+    process = begun(study, tmp_path, "--workers", "1")
+    wait_for_parts(process, tmp_path, 2)
+    process.send_signal(signal.SIGINT)
+    out, error = process.communicate()
+    assert process.returncode == 130, error
+    assert "go on with: apa sweep" in out
+    assert f"{len(parts(tmp_path)) * CHUNK} of {COUNT} runs are kept" in out
+    assert sweep(study, tmp_path, "--resume").read_bytes() == whole.read_bytes()
+
+
+def test_an_unfinished_study_is_not_overwritten_unasked(study, tmp_path, capsys):
+    (tmp_path / "parts").mkdir()
+    assert main(["sweep", str(study), "--out", str(tmp_path), "--no-page"]) == 0
+    process = begun(study, tmp_path, "--workers", "1")
+    wait_for_parts(process, tmp_path, 1)
+    process.kill()
+    process.communicate()
+    assert main(["sweep", str(study), "--out", str(tmp_path), "--no-page"]) == 2
+    assert "--resume goes on, --restart" in capsys.readouterr().err
+    other = tmp_path / "other.yaml"
+    other.write_text(study.read_text().replace("2.0]", "2.1]"))
+    assert main(["sweep", str(other), "--out", str(tmp_path), "--no-page", "--resume"]) == 2
+    assert "made with another design and study" in capsys.readouterr().err
+    sweep(study, tmp_path, "--restart")
+
+
+def test_a_study_may_be_finished_by_another_engine(study, tmp_path):
+    small = tmp_path / "trial.yaml"
+    small.write_text(study.read_text().replace("n: 600", "n: 6"))
+    common = ["sweep", str(small), "--no-page", "--chunk", "4", "--out"]
+    assert main([*common, str(tmp_path / "batch")]) == 0
+    assert main([*common, str(tmp_path / "fmus"), "--fmus", "python"]) == 0
+    tables = [(tmp_path / kind / "trial.parquet").read_bytes() for kind in ("batch", "fmus")]
+    assert tables[0] == tables[1]
+
+
+def test_rows_come_in_order_with_units_and_study(whole):
+    table = Table(whole)
+    assert table.count == COUNT
+    assert table.column("row").tolist() == list(range(COUNT))
+    assert table.note("final.heading_error")[0] == "rad"
+    assert table.note("controller.system")[2] == {"0": "NTBPTCWPT", "1": "NTBPT"}
+    assert table.about["study"]["scenario"] == "guo2015-case4"
+    assert set(table.column("outcome")) >= {"parked", "failed"}
+
+
+def test_any_row_can_be_replayed_with_the_same_bits(whole, some, tmp_path, capsys):
+    for number in some(COUNT, 4, seed=12):
+        out = tmp_path / str(number)
+        code = main(["replay", str(whole), "--row", str(number), "--out", str(out), "--no-figure"])
+        assert "same bits as in the table" in capsys.readouterr().out
+        assert code == (0 if Table(whole).row(number)["outcome"] == "parked" else 1)
+        assert (out / "run.mcap").stat().st_size > 10_000
+
+
+def test_a_row_can_be_replayed_on_fmus(whole, tmp_path, capsys):
+    main(["replay", str(whole), "--row", "700", "--out", str(tmp_path), "--no-figure", "--fmus", "python"])
+    assert "same bits as in the table" in capsys.readouterr().out
+
+
+def test_a_replay_says_if_the_bits_differ(whole, tmp_path, capsys, monkeypatch):
+    original = Table.row
+    monkeypatch.setattr(Table, "row", lambda self, number: {**original(self, number), "max_speed": 1e-3})
+    assert main(["replay", str(whole), "--row", "3", "--out", str(tmp_path), "--no-figure"]) == 2
+    assert "differs from the table: max_speed" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("row", ["-1", str(COUNT)])
+def test_a_row_that_is_not_there(whole, row, capsys):
+    assert main(["replay", str(whole), "--row", row]) == 2
+    assert f"expected 0 to {COUNT - 1}" in capsys.readouterr().err
+
+
+def test_what_is_no_table(tmp_path, capsys):
+    Path(tmp_path / "a.parquet").write_text("no")
+    assert main(["replay", str(tmp_path / "a.parquet"), "--row", "0"]) == 2
+    assert "cannot be read as a table" in capsys.readouterr().err

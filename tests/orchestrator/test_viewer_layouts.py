@@ -1,0 +1,52 @@
+"""The shipped layouts are what the code makes, and speak only of topics and fields that a log has."""
+
+import json
+
+import pytest
+from mcap.reader import make_reader
+
+from orchestrator.cli import main
+from orchestrator.read_log import read_log
+from orchestrator.viewer_layouts import FOLDER, TITLES, layout
+
+
+@pytest.fixture(scope="module")
+def log(tmp_path_factory):
+    out = tmp_path_factory.mktemp("case4")
+    main(["run", "guo2015-case4", "--fmus", "none", "--no-figure", "--out", str(out)])
+    return out / "run.mcap"
+
+
+@pytest.mark.parametrize("viewer", TITLES)
+def test_shipped_file_is_what_the_code_makes(viewer):
+    assert json.loads((FOLDER / f"{viewer}.json").read_text()) == layout(viewer)
+
+
+@pytest.mark.parametrize("viewer", TITLES)
+def test_every_panel_is_placed_once(viewer):
+    made = layout(viewer)
+    placed = []
+
+    def walk(node):
+        if isinstance(node, str):
+            placed.append(node)
+        else:
+            assert 0 < node["splitPercentage"] < 100
+            walk(node["first"])
+            walk(node["second"])
+
+    walk(made["layout"])
+    assert sorted(placed) == sorted(made["configById"])
+    assert all(panel[TITLES[viewer]] for panel in made["configById"].values())
+
+
+@pytest.mark.parametrize("viewer", TITLES)
+def test_topics_and_fields_exist_in_a_log(viewer, log):
+    run = read_log(log)
+    with log.open("rb") as stream:
+        topics = {channel.topic for channel in make_reader(stream).get_summary().channels.values()}
+    for panel in layout(viewer)["configById"].values():
+        for path in panel.get("paths", []):
+            assert path["value"].removeprefix("/") in run.signals
+        named = [*panel.get("topics", {}), panel.get("topicToRender"), panel.get("topicPath")]
+        assert {topic for topic in named if topic} <= topics

@@ -61,6 +61,7 @@ def test_nothing_is_lost_when_a_worker_is_killed(cluster, tmp_path):
         assert there.poll() is None, there.communicate()
         time.sleep(0.01)
     workers[0].send_signal(signal.SIGKILL)
+    assert len(list(parts.glob("*.parquet"))) < 100
     out, error = there.communicate()
     assert there.returncode == 0, error
     assert "on Dask at tcp://127.0.0.1" in out

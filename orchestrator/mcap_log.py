@@ -31,6 +31,7 @@ from orchestrator.wire import Encoder
 
 SCENE_PERIOD_NS = 50_000_000
 TRAIL_PERIOD_NS = 1_000_000_000
+TRAIL_POSES = 100
 AXES = ("x", "y", "heading")
 DRAWN = (*(f"pose.{axis}" for axis in AXES), *(f"odometry.{axis}" for axis in AXES), "front_wheel_angle")
 """Outputs of the vehicle that the moving frames are made from."""
@@ -172,7 +173,7 @@ class _Pictures:
             self._draw_trail(t_ns)
 
     def _draw_trail(self, t_ns: int) -> None:
-        message = scene.trail(t_ns, self._poses[:: max(1, len(self._poses) // 300)])
+        message = scene.trail(t_ns, self._poses[:: max(1, len(self._poses) // TRAIL_POSES)])
         self._file.write(self._trail, t_ns, message.SerializeToString(deterministic=True))
 
     def _draw_path(self, t_ns: int) -> None:

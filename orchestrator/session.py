@@ -16,7 +16,7 @@ from orchestrator.models import MODELS
 from orchestrator.recording import Recorder, Recording
 from orchestrator.scenario import Scenario
 from orchestrator.slave import Slave
-from orchestrator.watch import FMI_LEVELS, Watch
+from orchestrator.watch import ERROR, FMI_LEVELS, Watch
 
 PACKAGES = ("apa-cosim", "fmpy", "pythonfmu", "numpy", "mcap", "protobuf")
 
@@ -27,7 +27,7 @@ class Ran(NamedTuple):
     recording: Recording
     end: End
     wall_time: float
-    """Time of the co-simulation itself [s]: initialization, steps, log; without loading and building."""
+    """Time from the first exchange to the closed log [s]; building, loading and initializing come before."""
 
 
 class Words:
@@ -44,7 +44,7 @@ class Words:
 
     def from_fmu(self, name: str, status: int, text: str) -> None:
         """Pass on a message of an FMU."""
-        self.say(self.t_ns, FMI_LEVELS.get(status, 4), name, text)
+        self.say(self.t_ns, FMI_LEVELS.get(status, ERROR), name, text)
 
     def exchanged(self, t_ns: int) -> None:
         """Note the time."""
@@ -116,8 +116,11 @@ def run_slaves(
         master.observers += [watch, file, *observers]
     else:
         master.observers += [watch, *observers]
+    end = _guarded(words, master.initialize)
     begun = time.perf_counter()
-    end = _drive(master, words)
+    if end is None:
+        end = _guarded(words, master.run)
+    assert end is not None
     master.finish(end)
     wall_time = time.perf_counter() - begun
     master.free()
@@ -134,12 +137,12 @@ def _master(slaves: list[Slave], scenario: Scenario, kind: str) -> Master:
     return make(slaves, scenario.step_ns, scenario.stop_ns, scenario.every)
 
 
-def _drive(master: Master, words: Words) -> End:
+def _guarded(words: Words, act: Callable[[], End | None]) -> End | None:
+    """Return what ``act`` returns, or how the run ended if it cannot go on."""
     try:
-        master.initialize()
-        return master.run()
+        return act()
     except RunError as error:
-        words.say(words.t_ns, 4, "run", str(error))
+        words.say(words.t_ns, ERROR, "run", str(error))
         return End(f"error: {error}", words.t_ns)
     except KeyboardInterrupt:
         return End("interrupted", words.t_ns)

@@ -1,12 +1,14 @@
 """The driver: chooses speed and direction by a speed profile and by the prompts shown.
 
 A prompt is acted on once it has stood for the reaction delay. The driver may ignore prompts to
-stop, to change direction or to slow down, and may take over, which means: brake to standstill
-and hold the wheel.
+stop, to change direction or to slow down, may drive faster than meant or unsteadily, may brake
+or grab the wheel, and may take over, which means: brake to standstill and hold the wheel.
 """
 
+import math
 from typing import NamedTuple
 
+from modelkit.maths import TWO_PI
 from modelkit.vocabulary import Prompt
 from vehicle_fmu.interface import DriverParams
 
@@ -15,6 +17,8 @@ TAKE_OVER = int(Prompt.TAKE_OVER)
 FORWARD = int(Prompt.FORWARD)
 REVERSE = int(Prompt.REVERSE)
 SLOW_DOWN = int(Prompt.SLOW_DOWN)
+CONFIRM_LASTS = 0.5
+"""How long the confirm button is pressed [s]."""
 
 
 class DriverState(NamedTuple):
@@ -47,7 +51,32 @@ def wanted_speed(
     speed = profile_speed(params, distance if params.profile_over_distance else time_ns * 1e-9)
     if params.obeys_slow_down and state.heeded == SLOW_DOWN and advised_speed < speed:
         speed = advised_speed
+    if params.speed_error != 0.0:
+        speed = speed * (1.0 + params.speed_error)
+    if params.wobble > 0.0 and speed > 0.0:
+        speed = speed + params.wobble * math.sin(TWO_PI * time_ns * 1e-9 / params.wobble_period)
+        speed = speed if speed > 0.0 else 0.0
     return state.direction * speed
+
+
+def brakes(time_ns: int, params: DriverParams) -> bool:
+    """Return whether the driver steps on the brake whatever is prompted."""
+    return time_ns * 1e-9 >= params.brake_time
+
+
+def grabs(time_ns: int, params: DriverParams) -> bool:
+    """Return whether the driver turns the wheel against the controller."""
+    return time_ns * 1e-9 >= params.grab_time
+
+
+def switch_is_on(time_ns: int, params: DriverParams) -> bool:
+    """Return whether the parking assist's switch is on."""
+    return params.apa_switch_time <= time_ns * 1e-9 < params.apa_switch_off_time
+
+
+def confirms(time_ns: int, params: DriverParams) -> bool:
+    """Return whether the confirm button is pressed."""
+    return params.confirm_time <= time_ns * 1e-9 < params.confirm_time + CONFIRM_LASTS
 
 
 def profile_speed(params: DriverParams, at: float) -> float:

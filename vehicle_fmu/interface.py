@@ -6,6 +6,12 @@ from typing import Annotated, NamedTuple
 
 from modelkit.signal import Signal
 from modelkit.vocabulary import Gear, Pose, Prompt
+from vehicle_fmu.chassis import ChassisParams, RoadParams
+from vehicle_fmu.double_track import DoubleTrackParams
+from vehicle_fmu.odometry import OdometryParams
+from vehicle_fmu.scene import SceneParams
+from vehicle_fmu.single_track import SingleTrackParams
+from vehicle_fmu.ultrasonic import UltrasonicParams
 
 GUO = "Guo 2015, Table 1"
 HOUSE = "chosen; the source states none"
@@ -17,6 +23,11 @@ class Body(IntEnum):
     """Which equations move the car."""
 
     KINEMATIC = 0
+    """Without tyre slip."""
+    SINGLE_TRACK = 1
+    """Three degrees of freedom, linear tyres."""
+    DOUBLE_TRACK = 2
+    """Four wheels, Magic Formula, load transfer."""
 
 
 class VehicleFault(IntEnum):
@@ -55,6 +66,13 @@ class VehicleOutput(NamedTuple):
     driver_takeover: Annotated[bool, Signal("1", "the driver has taken over")] = False
     vehicle_fault: Annotated[int, Signal("1", "why the vehicle brakes by itself", states=VehicleFault)] = 0
     distance: Annotated[float, Signal("m", "distance driven, both directions counted")] = 0.0
+    ultrasonic: tuple[
+        Annotated[float, Signal("m", "distance heard: 1-4 front, 5-8 rear, 9-10 left, 11-12 right")], ...
+    ] = (0.0,) * 12
+    clearance: Annotated[float, Signal("m", "outline to the nearest thing of the scene; 1e9: nothing there")] = NEVER
+    contact: Annotated[bool, Signal("1", "the outline touches something")] = False
+    apa_switch: Annotated[bool, Signal("1", "the driver has switched the parking assist on")] = False
+    driver_confirm: Annotated[bool, Signal("1", "the driver presses the confirm button")] = False
 
 
 class SteeringParams(NamedTuple):
@@ -63,6 +81,14 @@ class SteeringParams(NamedTuple):
     ratio: Annotated[float, Signal("1", "steering-wheel angle over front-wheel angle", 1.0, 60.0, GUO)] = 19.0
     angle_limit: Annotated[float, Signal("rad", "largest steering-wheel angle", 0.1, 20.0, GUO)] = 570.0 * pi / 180.0
     rate_limit: Annotated[float, Signal("rad/s", "largest steering-wheel rate", 0.01, 100.0, GUO)] = 570.0 * pi / 180.0
+    dead_time: Annotated[float, Signal("s", "from a request to the first movement", 0.0, 1.0, HOUSE)] = 0.0
+    lag: Annotated[float, Signal("s", "time constant behind the request", 0.0, 2.0, HOUSE)] = 0.0
+    backlash: Annotated[float, Signal("rad", "steering-wheel angle without effect on the wheels", 0.0, 1.0, HOUSE)] = (
+        0.0
+    )
+    standstill_rate: Annotated[
+        float, Signal("rad/s", "largest steering-wheel rate at standstill; 0: as when moving", 0.0, 100.0, HOUSE)
+    ] = 0.0
 
 
 class DriveParams(NamedTuple):
@@ -70,6 +96,21 @@ class DriveParams(NamedTuple):
 
     acceleration_limit: Annotated[float, Signal("m/s2", "largest acceleration", 0.01, 20.0, HOUSE)] = 1.5
     deceleration_limit: Annotated[float, Signal("m/s2", "largest deceleration", 0.01, 20.0, HOUSE)] = 3.0
+    shift_time: Annotated[
+        float, Signal("s", "from one gear to the other, at standstill; 0: at once", 0.0, 10.0, HOUSE)
+    ] = 0.0
+    speed_gain: Annotated[float, Signal("1/s", "pedals: acceleration over speed error", 0.0, 100.0, HOUSE)] = 5.0
+    speed_integral: Annotated[float, Signal("1/s2", "pedals: acceleration over integral of it", 0.0, 100.0, HOUSE)] = (
+        5.0
+    )
+    integral_limit: Annotated[float, Signal("m", "largest integral of the speed error", 0.0, 100.0, HOUSE)] = 0.5
+    drive_force_limit: Annotated[float, Signal("N", "largest drive force, all wheels", 0.0, 1e5, HOUSE)] = 4000.0
+    brake_force_limit: Annotated[float, Signal("N", "largest brake force, all wheels", 0.0, 1e5, HOUSE)] = 12000.0
+    drive_lag: Annotated[float, Signal("s", "lag of the drive force", 0.0, 2.0, HOUSE)] = 0.10
+    brake_lag: Annotated[float, Signal("s", "lag of the brake force", 0.0, 2.0, HOUSE)] = 0.05
+    hold_deceleration: Annotated[float, Signal("m/s2", "brake force over mass while standing", 0.0, 20.0, HOUSE)] = 4.0
+    creep_force: Annotated[float, Signal("N", "force at idle in D and R at rest; 0: none", 0.0, 5000.0, HOUSE)] = 0.0
+    creep_speed: Annotated[float, Signal("m/s", "speed at which the creep force is gone", 0.1, 10.0, HOUSE)] = 2.0
 
 
 class ProfilePoint(NamedTuple):
@@ -91,6 +132,15 @@ class DriverParams(NamedTuple):
     obeys_direction: Annotated[bool, Signal("1", "changes direction when prompted")] = True
     obeys_slow_down: Annotated[bool, Signal("1", "slows down when prompted")] = True
     takeover_time: Annotated[float, Signal("s", "takes over at this time; 1e9: never", 0.0)] = NEVER
+    brake_time: Annotated[float, Signal("s", "brakes to standstill from this time on; 1e9: never", 0.0)] = NEVER
+    grab_time: Annotated[float, Signal("s", "grabs the wheel and turns it from this time on; 1e9: never", 0.0)] = NEVER
+    grab_angle: Annotated[float, Signal("rad", "steering-wheel angle turned to when grabbing", -20.0, 20.0)] = 0.0
+    speed_error: Annotated[float, Signal("1", "drives faster than meant by this share", -1.0, 5.0)] = 0.0
+    wobble: Annotated[float, Signal("m/s", "amplitude of the speed's swing about the one meant", 0.0, 10.0)] = 0.0
+    wobble_period: Annotated[float, Signal("s", "period of that swing", 0.1, 1000.0)] = 3.0
+    apa_switch_time: Annotated[float, Signal("s", "switches the parking assist on; 1e9: never", 0.0)] = NEVER
+    apa_switch_off_time: Annotated[float, Signal("s", "switches it off again; 1e9: never", 0.0)] = NEVER
+    confirm_time: Annotated[float, Signal("s", "presses the confirm button for half a second; 1e9: never", 0.0)] = NEVER
 
 
 class VehicleParams(NamedTuple):
@@ -105,4 +155,12 @@ class VehicleParams(NamedTuple):
     steering: SteeringParams = SteeringParams()
     drive: DriveParams = DriveParams()
     driver: DriverParams = DriverParams()
+    chassis: ChassisParams = ChassisParams()
+    single_track: SingleTrackParams = SingleTrackParams()
+    double_track: DoubleTrackParams = DoubleTrackParams()
+    road: RoadParams = RoadParams()
+    scene: SceneParams = SceneParams()
+    ultrasonic: UltrasonicParams = UltrasonicParams()
+    odometry: OdometryParams = OdometryParams()
     largest_step: Annotated[float, Signal("s", "longest internal integration step", 1e-4, 0.1, HOUSE)] = 0.005
+    body_step: Annotated[float, Signal("s", "longest internal step of the bodies with mass", 1e-5, 0.02, HOUSE)] = 0.001

@@ -1,24 +1,25 @@
-"""The vehicle as one step: driver, steering, drive, body.
+"""The vehicle as one step: the car and its driver, then what its sensors tell.
 
 A communication step of any length is split into equal internal steps of at most
-``largest_step``. Inputs that are not finite make the car brake to standstill with the wheel
-held, and show as ``vehicle_fault``.
+``largest_step`` (``body_step`` for the bodies with mass). Inputs that are not finite make the car
+brake to standstill with the wheel held, and show as ``vehicle_fault``. Sensors with a cycle are
+read at the end of a communication step in which their time has come.
 """
 
 import math
 from typing import NamedTuple
 
 from modelkit.maths import is_finite
-from modelkit.vocabulary import Gear, Pose
-from vehicle_fmu.drive import change_speed
-from vehicle_fmu.driver import DriverState, wanted_speed, watch
+from modelkit.vocabulary import Pose
+from vehicle_fmu.body import KINEMATIC, told
+from vehicle_fmu.car import CarState, car_params, parked_car, step_car
+from vehicle_fmu.driver import confirms, switch_is_on
 from vehicle_fmu.interface import VehicleFault, VehicleInput, VehicleOutput, VehicleParams
-from vehicle_fmu.kinematic import move
-from vehicle_fmu.steering import turn_steering_wheel
+from vehicle_fmu.odometry import told_speed
+from vehicle_fmu.scene import CarSize, clearance
+from vehicle_fmu.ultrasonic import UltrasonicState, first_readings, is_due, measure
+from vehicle_fmu.usable import is_usable
 
-PARK = int(Gear.PARK)
-REVERSE = int(Gear.REVERSE)
-DRIVE = int(Gear.DRIVE)
 NO_FAULT = int(VehicleFault.NONE)
 BAD_INPUT = int(VehicleFault.BAD_INPUT)
 BAD_PARAMETER = int(VehicleFault.BAD_PARAMETER)
@@ -27,21 +28,19 @@ BAD_PARAMETER = int(VehicleFault.BAD_PARAMETER)
 class VehicleState(NamedTuple):
     """Everything the vehicle remembers."""
 
-    time_ns: int = 0
-    pose: Pose = Pose()
-    speed: float = 0.0
-    steering_wheel_angle: float = 0.0
-    distance: float = 0.0
-    gear: int = PARK
+    car: CarState = CarState()
+    ultrasonic: UltrasonicState = UltrasonicState()
     fault: int = NO_FAULT
-    driver: DriverState = DriverState()
 
 
 def initialize(params: VehicleParams) -> tuple[VehicleState, VehicleOutput]:
     """Return the car at rest at its start pose, wheel straight, in park."""
-    fault = NO_FAULT if _is_usable(params) else BAD_PARAMETER
-    start = params.start if fault == NO_FAULT else Pose(0.0, 0.0, 0.0)
-    state = VehicleState(0, start, 0.0, 0.0, 0.0, PARK, fault, DriverState(0, 0, 0, 0, False))
+    if is_usable(params):
+        car = parked_car(params.start, car_params(params))
+        state = VehicleState(car, first_readings(params.start, params.scene, params.ultrasonic), NO_FAULT)
+    else:
+        nothing = UltrasonicState((0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0), 1)
+        state = VehicleState(CarState(), nothing, BAD_PARAMETER)
     return state, _outputs(state, params)
 
 
@@ -49,80 +48,66 @@ def step(
     state: VehicleState, inputs: VehicleInput, params: VehicleParams, dt_ns: int
 ) -> tuple[VehicleState, VehicleOutput]:
     """Return the vehicle ``dt_ns`` later, its inputs held."""
-    if state.fault == NO_FAULT and not _is_finite_input(inputs):
-        state = _with_fault(state, BAD_INPUT)
-    if state.fault != BAD_PARAMETER and dt_ns > 0:
-        count = math.ceil(dt_ns * 1e-9 / params.largest_step - 1e-9)
-        start_ns = state.time_ns
+    fault = state.fault
+    if fault == NO_FAULT and not _is_finite_input(inputs):
+        fault = BAD_INPUT
+    car = state.car
+    heard = state.ultrasonic
+    if fault != BAD_PARAMETER and dt_ns > 0:
+        reduced = car_params(params)
+        count = _internal_steps(params, dt_ns)
+        start_ns = car.time_ns
         for number in range(1, count + 1):
-            state = _internal_step(state, inputs, params, start_ns + dt_ns * number // count)
+            car = step_car(car, inputs, fault != NO_FAULT, reduced, start_ns + dt_ns * number // count)
+        if is_due(start_ns, car.time_ns, params.ultrasonic.cycle):
+            heard = measure(heard, car.pose, params.scene, params.ultrasonic, car.time_ns)
+    state = VehicleState(car, heard, fault)
     return state, _outputs(state, params)
 
 
-def _internal_step(state: VehicleState, inputs: VehicleInput, params: VehicleParams, next_ns: int) -> VehicleState:
-    h = (next_ns - state.time_ns) * 1e-9
-    driver = watch(state.driver, inputs.prompt, state.time_ns, params.driver)
-    target = _target_speed(state, driver, inputs, params)
-    speed = change_speed(state.speed, target, params.drive, h)
-    request = state.steering_wheel_angle
-    if inputs.steering_active and not driver.takeover and state.fault == NO_FAULT:
-        request = inputs.steering_wheel_request
-    wheel = turn_steering_wheel(state.steering_wheel_angle, request, params.steering, h)
-    ratio = params.steering.ratio
-    angle = state.steering_wheel_angle / ratio
-    pose = move(state.pose, state.speed, speed, angle, wheel / ratio, params.wheelbase, h)
-    distance = state.distance + 0.5 * h * abs(state.speed + speed)
-    gear = REVERSE if target < 0.0 else DRIVE if target > 0.0 else state.gear
-    return VehicleState(next_ns, pose, speed, wheel, distance, gear, state.fault, driver)
-
-
-def _target_speed(state: VehicleState, driver: DriverState, inputs: VehicleInput, params: VehicleParams) -> float:
-    if state.fault != NO_FAULT or inputs.brake_request or driver.takeover:
-        return 0.0
-    if inputs.speed_control_active:
-        return inputs.speed_request
-    return wanted_speed(driver, inputs.advised_speed, state.time_ns, state.distance, params.driver)
+def _internal_steps(params: VehicleParams, dt_ns: int) -> int:
+    longest = params.largest_step
+    if params.body != KINEMATIC and params.body_step < longest:
+        longest = params.body_step
+    return math.ceil(dt_ns * 1e-9 / longest - 1e-9)
 
 
 def _outputs(state: VehicleState, params: VehicleParams) -> VehicleOutput:
+    car = state.car
+    speed = car.speed
+    measured = car.speed if params.odometry.perfect else car.rolled_speed
+    if params.body != KINEMATIC:
+        speed = told(speed)
+        measured = told(measured)
+    gap = 0.0
+    front = 0.0
+    if state.fault != BAD_PARAMETER:
+        gap = _clearance(car.pose, params, car.time_ns)
+        front = car.steering.play / params.steering.ratio
     return VehicleOutput(
-        pose=state.pose,
-        odometry=state.pose,
-        speed=state.speed,
-        measured_speed=state.speed,
-        steering_wheel_angle=state.steering_wheel_angle,
-        front_wheel_angle=state.steering_wheel_angle / params.steering.ratio,
-        gear=state.gear,
-        brake_pedal=1.0 if state.driver.direction == 0 else 0.0,
-        driver_takeover=state.driver.takeover,
+        pose=car.pose,
+        odometry=car.odometry.pose,
+        speed=speed,
+        measured_speed=told_speed(measured, params.odometry),
+        steering_wheel_angle=car.steering_wheel_angle,
+        front_wheel_angle=front,
+        gear=car.selector.gear,
+        brake_pedal=car.brake_pedal,
+        driver_takeover=car.driver.takeover,
         vehicle_fault=state.fault,
-        distance=state.distance,
+        distance=car.distance,
+        ultrasonic=state.ultrasonic.readings,
+        clearance=gap,
+        contact=gap <= 0.0,
+        apa_switch=switch_is_on(car.time_ns, params.driver),
+        driver_confirm=confirms(car.time_ns, params.driver),
     )
 
 
-def _with_fault(state: VehicleState, fault: int) -> VehicleState:
-    return VehicleState(
-        state.time_ns,
-        state.pose,
-        state.speed,
-        state.steering_wheel_angle,
-        state.distance,
-        state.gear,
-        fault,
-        state.driver,
-    )
+def _clearance(pose: Pose, params: VehicleParams, time_ns: int) -> float:
+    size = CarSize(params.wheelbase, params.front_overhang, params.rear_overhang, params.width)
+    return clearance(pose, size, params.scene, time_ns)
 
 
 def _is_finite_input(inputs: VehicleInput) -> bool:
     return is_finite(inputs.steering_wheel_request + inputs.advised_speed + inputs.speed_request)
-
-
-def _is_usable(params: VehicleParams) -> bool:
-    start = params.start
-    return (
-        is_finite(start.x + start.y + start.heading)
-        and is_finite(params.wheelbase)
-        and params.wheelbase > 0.0
-        and params.steering.ratio > 0.0
-        and params.largest_step > 0.0
-    )

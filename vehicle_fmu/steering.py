@@ -1,10 +1,69 @@
-"""The steering wheel: angle and rate limits (Guo 2015, Table 1)."""
+"""The steering: request -> dead time -> lag -> angle and rate limits -> steering wheel -> backlash -> front wheels.
+
+Angle and rate limits are Guo 2015, Table 1; everything else is off by default. The dead time is
+a line of ``CELLS`` requests, so it is met to a 32nd of itself whatever the step. At standstill
+the tyres scrub and the wheel may turn slower.
+"""
+
+import math
+from typing import NamedTuple
 
 from modelkit.maths import clamp, move_towards
 from vehicle_fmu.interface import SteeringParams
 
+CELLS = 32
+STANDSTILL = 0.05
+"""Speed [m/s] below which the car counts as standing for the steering."""
 
-def turn_steering_wheel(angle: float, request: float, params: SteeringParams, h: float) -> float:
+
+class SteeringState(NamedTuple):
+    """What the steering remembers besides the angle of the wheel."""
+
+    line: tuple[float, ...] = (0.0,) * 32
+    """Requests [rad] of the dead time, oldest first."""
+    lagged: float = 0.0
+    """Request after dead time and lag [rad]."""
+    play: float = 0.0
+    """Steering-wheel angle [rad] that the front wheels follow: the wheel's, less the backlash."""
+
+
+def turn_steering_wheel(angle: float, request: float, params: SteeringParams, h: float, speed: float = 1.0) -> float:
     """Return the steering-wheel angle [rad] ``h`` [s] later, on its way from ``angle`` to ``request``."""
     target = clamp(request, -params.angle_limit, params.angle_limit)
-    return move_towards(angle, target, params.rate_limit * h)
+    rate = params.rate_limit
+    if params.standstill_rate > 0.0 and abs(speed) < STANDSTILL:
+        rate = params.standstill_rate
+    return move_towards(angle, target, rate * h)
+
+
+def pass_request(
+    state: SteeringState, request: float, params: SteeringParams, start_ns: int, end_ns: int
+) -> SteeringState:
+    """Return the steering with ``request`` [rad] held from ``start_ns`` to ``end_ns`` at the head of its line."""
+    line = state.line
+    late = request
+    if params.dead_time > 0.0:
+        cell_ns = int(params.dead_time * 1e9 / CELLS + 0.5)
+        count = end_ns // cell_ns - start_ns // cell_ns
+        if count > CELLS:
+            count = CELLS
+        for _ in range(count):
+            line = line[1:] + (request,)
+        late = line[0]
+    share = 1.0
+    if params.lag > 0.0:
+        share = 1.0 - math.exp(-(end_ns - start_ns) * 1e-9 / params.lag)
+    lagged = state.lagged + share * (late - state.lagged) if share < 1.0 else late
+    return SteeringState(line, lagged, state.play)
+
+
+def hold_request(angle: float, play: float) -> SteeringState:
+    """Return the steering with nothing on its way: every request is the wheel's own ``angle`` [rad]."""
+    a = angle
+    half = (a, a, a, a, a, a, a, a, a, a, a, a, a, a, a, a)
+    return SteeringState(half + half, angle, play)
+
+
+def take_up_play(play: float, angle: float, backlash: float) -> float:
+    """Return the steering-wheel angle [rad] the front wheels follow when the wheel is at ``angle``."""
+    return clamp(play, angle - 0.5 * backlash, angle + 0.5 * backlash)

@@ -68,9 +68,14 @@ class UltrasonicState(NamedTuple):
     random: int = 1
 
 
+Twelve = tuple[float, float, float, float, float, float, float, float, float, float, float, float]
+
+
 def first_readings(pose: Pose, scene: SceneParams, params: UltrasonicParams) -> UltrasonicState:
     """Return the readings [m] at time zero."""
-    return measure(UltrasonicState((0.0,) * 12, seed_state(params.seed)), pose, scene, params, 0)
+    m = params.max_range
+    silent = UltrasonicState((m, m, m, m, m, m, m, m, m, m, m, m), seed_state(params.seed))
+    return measure(silent, pose, scene, params, 0)
 
 
 def is_due(before_ns: int, now_ns: int, cycle: float) -> bool:
@@ -83,58 +88,97 @@ def measure(
     state: UltrasonicState, pose: Pose, scene: SceneParams, params: UltrasonicParams, time_ns: int
 ) -> UltrasonicState:
     """Return new readings [m] of all sensors of a car at ``pose``."""
-    mounts = params.mounts
-    random, one = _read(state.random, mounts[0], pose, scene, params, time_ns)
-    random, two = _read(random, mounts[1], pose, scene, params, time_ns)
-    random, three = _read(random, mounts[2], pose, scene, params, time_ns)
-    random, four = _read(random, mounts[3], pose, scene, params, time_ns)
-    random, five = _read(random, mounts[4], pose, scene, params, time_ns)
-    random, six = _read(random, mounts[5], pose, scene, params, time_ns)
-    random, seven = _read(random, mounts[6], pose, scene, params, time_ns)
-    random, eight = _read(random, mounts[7], pose, scene, params, time_ns)
-    random, nine = _read(random, mounts[8], pose, scene, params, time_ns)
-    random, ten = _read(random, mounts[9], pose, scene, params, time_ns)
-    random, eleven = _read(random, mounts[10], pose, scene, params, time_ns)
-    random, twelve = _read(random, mounts[11], pose, scene, params, time_ns)
-    return UltrasonicState((one, two, three, four, five, six, seven, eight, nine, ten, eleven, twelve), random)
+    random = state.random
+    d = heard_distances(pose, scene, params, time_ns)
+    if params.noise <= 0.0 and params.dropout <= 0.0:
+        return UltrasonicState(_exact(d, params), random)
+    random, a = _disturbed(random, d[0], params)
+    random, b = _disturbed(random, d[1], params)
+    random, c = _disturbed(random, d[2], params)
+    random, e = _disturbed(random, d[3], params)
+    random, f = _disturbed(random, d[4], params)
+    random, g = _disturbed(random, d[5], params)
+    random, h = _disturbed(random, d[6], params)
+    random, i = _disturbed(random, d[7], params)
+    random, j = _disturbed(random, d[8], params)
+    random, k = _disturbed(random, d[9], params)
+    random, m = _disturbed(random, d[10], params)
+    random, n = _disturbed(random, d[11], params)
+    return UltrasonicState((a, b, c, e, f, g, h, i, j, k, m, n), random)
 
 
-def heard_distance(pose: Pose, mount: Mount, scene: SceneParams, params: UltrasonicParams, time_ns: int) -> float:
-    """Return the distance [m] from a sensor to the nearest thing in its cone, at most ``max_range``."""
-    cos = math.cos(pose.heading)
-    sin = math.sin(pose.heading)
-    start = Point(pose.x + mount.x * cos - mount.y * sin, pose.y + mount.x * sin + mount.y * cos)
-    direction = pose.heading + mount.yaw
-    nearest = params.max_range
+def heard_distances(pose: Pose, scene: SceneParams, params: UltrasonicParams, time_ns: int) -> Twelve:
+    """Return the exact distance [m] from each sensor to the nearest thing in its cone, at most ``max_range``."""
+    m = params.max_range
+    d = (m, m, m, m, m, m, m, m, m, m, m, m)
     for obstacle in scene.boxes:
         if is_there(obstacle, time_ns):
-            nearest = _nearer(nearest, start, direction, params.half_angle, obstacle_box(obstacle))
+            d = _hear(d, pose, params.mounts, params.half_angle, obstacle_box(obstacle))
     for kerb in scene.kerbs:
         if kerb.height > 0.0 and kerb.height >= params.kerb_height:
             line = line_box(kerb.x1, kerb.y1, kerb.x2, kerb.y2)
-            nearest = _nearer(nearest, start, direction, params.half_angle, line)
-    return nearest
+            d = _hear(d, pose, params.mounts, params.half_angle, line)
+    return d
 
 
-def _nearer(nearest: float, start: Point, direction: float, half_angle: float, box: Box) -> float:
+def _hear(d: Twelve, pose: Pose, mounts: tuple[Mount, ...], half: float, box: Box) -> Twelve:
+    return (
+        _nearer(d[0], pose, mounts[0], half, box),
+        _nearer(d[1], pose, mounts[1], half, box),
+        _nearer(d[2], pose, mounts[2], half, box),
+        _nearer(d[3], pose, mounts[3], half, box),
+        _nearer(d[4], pose, mounts[4], half, box),
+        _nearer(d[5], pose, mounts[5], half, box),
+        _nearer(d[6], pose, mounts[6], half, box),
+        _nearer(d[7], pose, mounts[7], half, box),
+        _nearer(d[8], pose, mounts[8], half, box),
+        _nearer(d[9], pose, mounts[9], half, box),
+        _nearer(d[10], pose, mounts[10], half, box),
+        _nearer(d[11], pose, mounts[11], half, box),
+    )
+
+
+def _nearer(nearest: float, pose: Pose, mount: Mount, half_angle: float, box: Box) -> float:
+    cos = math.cos(pose.heading)
+    sin = math.sin(pose.heading)
+    start = Point(pose.x + mount.x * cos - mount.y * sin, pose.y + mount.x * sin + mount.y * cos)
     dx = box.x - start.x
     dy = box.y - start.y
     far = nearest + reach(box)
     if dx * dx + dy * dy >= far * far:
         return nearest
-    distance = cone_box(start, direction, half_angle, box)
+    distance = cone_box(start, pose.heading + mount.yaw, half_angle, box)
     return distance if distance < nearest else nearest
 
 
-def _read(
-    random: int, mount: Mount, pose: Pose, scene: SceneParams, params: UltrasonicParams, time_ns: int
-) -> tuple[int, float]:
-    distance = heard_distance(pose, mount, scene, params, time_ns)
+def _exact(d: Twelve, params: UltrasonicParams) -> Twelve:
+    return (
+        _told(d[0], params),
+        _told(d[1], params),
+        _told(d[2], params),
+        _told(d[3], params),
+        _told(d[4], params),
+        _told(d[5], params),
+        _told(d[6], params),
+        _told(d[7], params),
+        _told(d[8], params),
+        _told(d[9], params),
+        _told(d[10], params),
+        _told(d[11], params),
+    )
+
+
+def _disturbed(random: int, distance: float, params: UltrasonicParams) -> tuple[int, float]:
     random, chance = uniform(random)
     random, error = normal(random)
     if chance < params.dropout or distance >= params.max_range:
         return random, params.max_range
-    reading = distance + params.noise * error
+    return random, _told(distance + params.noise * error, params)
+
+
+def _told(distance: float, params: UltrasonicParams) -> float:
+    if distance >= params.max_range:
+        return params.max_range
     if params.resolution > 0.0:
-        reading = params.resolution * math.floor(reading / params.resolution + 0.5)
-    return random, clamp(reading, params.min_range, params.max_range)
+        distance = params.resolution * math.floor(distance / params.resolution + 0.5)
+    return clamp(distance, params.min_range, params.max_range)

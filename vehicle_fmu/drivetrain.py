@@ -1,0 +1,103 @@
+"""Gear selector, and pedals that follow a speed: force requests to drive and brake for the bodies with mass.
+
+    reference' within the acceleration limits (see drive)
+    force = m (reference' + k_p (reference - speed)) + k_i m * integral of the error
+
+A force along the gear's direction goes to the drive, against it to the brake; both lag. At a
+reference of zero the brake holds the car. In D and R the car creeps: a force that fades out at
+the creep speed. The traction limit is the tyres' own.
+"""
+
+from typing import NamedTuple
+
+from modelkit.maths import clamp
+from modelkit.vocabulary import Gear
+from vehicle_fmu.drive import change_speed
+from vehicle_fmu.effort import Effort
+from vehicle_fmu.interface import DriveParams
+
+PARK = int(Gear.PARK)
+REVERSE = int(Gear.REVERSE)
+NEUTRAL = int(Gear.NEUTRAL)
+DRIVE = int(Gear.DRIVE)
+STANDSTILL = 0.02
+"""Speed [m/s] below which the selector may be moved."""
+NO_GEAR = -1
+
+
+class Selector(NamedTuple):
+    """Gear engaged, and the one being engaged."""
+
+    gear: int = PARK
+    wanted: int = NO_GEAR
+    left_ns: int = 0
+    """Time [ns] until ``wanted`` is engaged."""
+
+
+class Pedals(NamedTuple):
+    """What the feet remember."""
+
+    reference: float = 0.0
+    """Speed [m/s] the pedals aim at."""
+    integral: float = 0.0
+    """Integral of the speed error [m]."""
+    effort: Effort = Effort()
+
+
+def shift(selector: Selector, target: float, speed: float, shift_time: float, step_ns: int) -> Selector:
+    """Return the selector ``step_ns`` later when the driver wants to go at ``target`` [m/s].
+
+    With a shift time the car must stand, and N is engaged meanwhile; without, the gear follows at once.
+    """
+    gear = selector.gear
+    wanted = REVERSE if target < 0.0 else DRIVE if target > 0.0 else gear
+    if shift_time <= 0.0:
+        return Selector(wanted, NO_GEAR, 0)
+    if selector.wanted != NO_GEAR:
+        left = selector.left_ns - step_ns
+        return Selector(selector.wanted, NO_GEAR, 0) if left <= 0 else Selector(NEUTRAL, selector.wanted, left)
+    if wanted == gear or abs(speed) >= STANDSTILL:
+        return Selector(gear, NO_GEAR, 0)
+    return Selector(NEUTRAL, wanted, int(shift_time * 1e9))
+
+
+def geared_speed(selector: Selector, target: float) -> float:
+    """Return the speed [m/s] to aim at with the gear engaged: ``target`` if it fits, else 0."""
+    if (target > 0.0 and selector.gear == DRIVE) or (target < 0.0 and selector.gear == REVERSE):
+        return target
+    return 0.0
+
+
+def press(pedals: Pedals, target: float, speed: float, gear: int, mass: float, p: DriveParams, h: float) -> Pedals:
+    """Return the pedals ``h`` [s] later, on the way from ``speed`` to ``target`` [m/s]."""
+    reference = change_speed(pedals.reference, target, p, h)
+    creep = _creep(gear, speed, p)
+    if reference == 0.0 and target == 0.0:
+        effort = _lag(pedals.effort, creep, mass * p.hold_deceleration, p, h)
+        return Pedals(0.0, 0.0, effort)
+    error = reference - speed
+    integral = clamp(pedals.integral + h * error, -p.integral_limit, p.integral_limit)
+    push = (reference - pedals.reference) / h + p.speed_gain * error + p.speed_integral * integral
+    force = mass * push - creep
+    along = 1.0 if reference > 0.0 else -1.0
+    if force * along >= 0.0:
+        return Pedals(reference, integral, _lag(pedals.effort, force + creep, 0.0, p, h))
+    return Pedals(reference, integral, _lag(pedals.effort, creep, abs(force), p, h))
+
+
+def _creep(gear: int, speed: float, p: DriveParams) -> float:
+    """Return the force [N] with which an automatic gearbox pushes at idle."""
+    if gear == DRIVE:
+        return p.creep_force * clamp(1.0 - speed / p.creep_speed, 0.0, 1.0)
+    if gear == REVERSE:
+        return -p.creep_force * clamp(1.0 + speed / p.creep_speed, 0.0, 1.0)
+    return 0.0
+
+
+def _lag(effort: Effort, drive: float, brake: float, p: DriveParams, h: float) -> Effort:
+    wanted = clamp(drive, -p.drive_force_limit, p.drive_force_limit)
+    pressed = clamp(brake, 0.0, p.brake_force_limit)
+    return Effort(
+        effort.drive + (wanted - effort.drive) * h / (p.drive_lag + h),
+        effort.brake + (pressed - effort.brake) * h / (p.brake_lag + h),
+    )

@@ -85,12 +85,19 @@ def _allowed(name: str) -> bool:
 
 
 def _module(text: str) -> llvm.ModuleRef:
-    """Return one module with the entries under their plain names and everything else internal."""
+    """Return one module with the entries under their plain names and everything else internal.
+
+    Functions that both entries call are in both texts under the same symbol; linking keeps one.
+    """
     parts = re.split(r"^;; (\w+)\n", text, flags=re.MULTILINE)[1:]
-    modules = [_one(name, code) for name, code in zip(parts[::2], parts[1::2], strict=True)]
-    for other in modules[1:]:
-        modules[0].link_in(other)
-    return modules[0]
+    names = parts[::2]
+    first, *others = [_one(name, code) for name, code in zip(names, parts[1::2], strict=True)]
+    for other in others:
+        first.link_in(other)
+    for item in (*first.functions, *first.global_variables):
+        if not item.is_declaration and item.name not in names:
+            item.linkage = "internal"
+    return first
 
 
 def _one(name: str, code: str) -> llvm.ModuleRef:
@@ -98,9 +105,6 @@ def _one(name: str, code: str) -> llvm.ModuleRef:
     entry = [item for item in module.functions if name in item.name and not item.is_declaration]
     if len(entry) != 1:
         raise TypeError(f"{len(entry)} functions are called {name}; no function of a model may have this name")
-    for item in (*module.functions, *module.global_variables):
-        if not item.is_declaration:
-            item.linkage = "internal"
     entry[0].name = name
     entry[0].linkage = "external"
     entry[0].visibility = "hidden"

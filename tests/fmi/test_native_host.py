@@ -66,7 +66,7 @@ def test_steps_in_a_host_without_python(host, library):
 
 def test_ten_thousand_instances_leave_no_memory_behind(host, library):
     before, after = map(int, run(host, "many", library.file, library.description.guid, 10_000).split())
-    assert after <= before + 8
+    assert after < before + 200, "kB; the smallest leak, 32 bytes per instance, would be 280"
 
 
 def test_a_hundred_instances_do_not_know_of_each_other(native_fmus, tmp_path):

@@ -22,6 +22,7 @@ NEVER_ENDING = [
     *("--set", "stop_time=100000"),
     *("--set", "vehicle.driver.obeys_stop=false"),
     *("--set", "vehicle.driver.obeys_direction=false"),
+    *("--set", "faults=[{signal: vehicle.brake_request, kind: override, value: false}]"),
 ]
 
 
@@ -103,7 +104,7 @@ def start(out: Path) -> "subprocess.Popen[str]":
     process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     part = out / "run.mcap.part"
     deadline = time.monotonic() + 120.0
-    while not (part.exists() and part.stat().st_size > 100_000):
+    while not (part.exists() and part.stat().st_size > 400_000):
         assert process.poll() is None, process.communicate()
         assert time.monotonic() < deadline
         time.sleep(0.02)
@@ -137,5 +138,5 @@ def test_ctrl_c_ends_with_a_readable_log_and_130(tmp_path: Path) -> None:
     assert "aborted: interrupted" in output
     found = read_log(tmp_path / "run.mcap")
     assert found.info["end"]["reason"] == "interrupted"
-    assert len(found.t_ns) > 100
+    assert len(found.t_ns) > 1000
     assert not (tmp_path / "run.mcap.part").exists()

@@ -117,9 +117,7 @@ class _Shown:
         self._progress = Progress(
             *columns, console=console(sys.stderr), transient=True, disable=not sys.stderr.isatty()
         )
-        self._task = self._progress.add_task(
-            study.name, total=swept.count, completed=swept.done, rate=0.0, parked=""
-        )
+        self._task = self._progress.add_task(study.name, total=swept.count, completed=swept.done, rate=0.0, parked="")
 
     def __enter__(self) -> "_Shown":
         self._progress.start()

@@ -1,0 +1,130 @@
+"""Pictures of a study as SVG texts: success maps and histograms. Colours come from the page's style."""
+
+import html
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from orchestrator.slave import Array
+from orchestrator.sweep.statistics import Axis, Map, wilson
+
+WIDTH, HEIGHT = 520.0, 330.0
+LEFT, RIGHT, TOP, BOTTOM = 62.0, 8.0, 8.0, 44.0
+SCALE = ("#00224e", "#123570", "#3b496c", "#575d6d", "#707173", "#8a8678", "#a59c74", "#c3b369", "#e1cc55", "#fee838")
+"""Cividis (Nunez, Anderton, Renslow 2018): read alike with and without colour vision; dark is 0, bright is 1."""
+MOST_TICKS = 8
+
+
+def colour(rate: float) -> str:
+    """Return the colour of a success rate in [0, 1]."""
+    place = min(max(rate, 0.0), 1.0) * (len(SCALE) - 1)
+    low = min(int(place), len(SCALE) - 2)
+    a, b = (tuple(int(SCALE[number][at : at + 2], 16) for at in (1, 3, 5)) for number in (low, low + 1))
+    return "#" + "".join(f"{round(x + (y - x) * (place - low)):02x}" for x, y in zip(a, b, strict=True))
+
+
+def success_map(shown: Map) -> str:
+    """Return the map as SVG; every cell tells its numbers when pointed at."""
+    rows, columns = shown.runs.shape
+    width, height = (WIDTH - LEFT - RIGHT) / columns, (HEIGHT - TOP - BOTTOM) / rows
+    cells = []
+    for row in range(rows):
+        for column in range(columns):
+            count, good = int(shown.runs[row, column]), int(shown.parked[row, column])
+            if count:
+                low, high = wilson(good, count)
+                note = (
+                    f"{shown.x.labels[column]} {shown.x.unit}, {shown.y.labels[row]} {shown.y.unit}: "
+                    f"{100.0 * good / count:.1f} % of {count} parked (95 %: {100.0 * low:.0f} to {100.0 * high:.0f} %)"
+                )
+                at = f'x="{LEFT + column * width:.2f}" y="{TOP + (rows - 1 - row) * height:.2f}"'
+                size = f'width="{width + 0.3:.2f}" height="{height + 0.3:.2f}"'
+                fill = colour(good / count)
+                cells.append(f'<rect class="cell" {at} {size} fill="{fill}"><title>{html.escape(note)}</title></rect>')
+    return _svg(cells + _axis_x(shown.x, width) + _axis_y(shown.y, height), f"Success map {shown.title}")
+
+
+def scale_bar() -> str:
+    """Return the colour scale of the maps as SVG."""
+    steps = "".join(
+        f'<rect x="{70 + 3 * step}" y="4" width="3.3" height="12" fill="{colour(step / 99)}"/>' for step in range(100)
+    )
+    return (
+        '<svg viewBox="0 0 480 20" style="max-width:480px" role="img" aria-label="Scale">'
+        f'<text x="66" y="14" text-anchor="end">0 % parked</text>{steps}<text x="376" y="14">100 % parked</text></svg>'
+    )
+
+
+def histogram(values: Array, good: NDArray[np.bool_], name: str, unit: str, bins: int = 40) -> str:
+    """Return a histogram as SVG: parked runs below, the others stacked on them."""
+    finite = np.isfinite(values)
+    values, good = values[finite], good[finite]
+    if not len(values):
+        return ""
+    low, high = float(values.min()), float(values.max())
+    if float(np.ptp(np.round(values) - values)) == 0.0 and high - low <= bins:
+        edges = np.arange(low - 0.5, high + 1.0)
+    else:
+        edges = np.linspace(low, high if high > low else low + 1.0, bins + 1)
+    yes, no = (np.histogram(values[kind], edges)[0] for kind in (good, ~good))
+    tallest = max(1, int((yes + no).max()))
+    width, full = (WIDTH - LEFT - RIGHT) / len(yes), 200.0 - TOP - BOTTOM
+    bars = []
+    for place, (a, b) in enumerate(zip(yes.tolist(), no.tolist(), strict=True)):
+        note = html.escape(f"{edges[place]:.4g} to {edges[place + 1]:.4g} {unit}: {a} parked, {b} not")
+        x = LEFT + place * width
+        for kind, count, below in (("yes", a, 0), ("no", b, a)):
+            if count:
+                y = TOP + full * (1.0 - (below + count) / tallest)
+                size = f'width="{max(width - 0.6, 0.5):.2f}" height="{full * count / tallest:.2f}"'
+                bars.append(f'<rect class="{kind}" x="{x:.2f}" y="{y:.2f}" {size}><title>{note}</title></rect>')
+    shown = np.linspace(edges[0], edges[-1], 6)
+    where = [LEFT + (WIDTH - LEFT - RIGHT) * number / 5.0 for number in range(6)]
+    ticks = _ticks_x([f"{value:.3g}" for value in shown], where, 200.0)
+    counts = [
+        f'<text x="{LEFT - 6}" y="{TOP + full * (1 - share) + 4:.1f}" text-anchor="end">{tallest * share:.0f}</text>'
+        for share in (0.0, 0.5, 1.0)
+    ]
+    return _svg(bars + ticks + counts, f"{name} [{unit}]", 200.0)
+
+
+def _axis_x(axis: Axis, width: float) -> list[str]:
+    step = max(1, -(-len(axis.labels) // MOST_TICKS))
+    places = range(0, len(axis.labels), step)
+    lines = _ticks_x(
+        [axis.labels[place] for place in places], [LEFT + (place + 0.5) * width for place in places], HEIGHT
+    )
+    label = html.escape(f"{axis.name} [{axis.unit}]")
+    return [
+        *lines,
+        f'<text class="title" x="{(LEFT + WIDTH) / 2:.1f}" y="{HEIGHT - 8:.1f}" text-anchor="middle">{label}</text>',
+    ]
+
+
+def _axis_y(axis: Axis, height: float) -> list[str]:
+    step = max(1, -(-len(axis.labels) // MOST_TICKS))
+    lines = []
+    for place in range(0, len(axis.labels), step):
+        y = TOP + (len(axis.labels) - place - 0.5) * height
+        lines.append(f'<text x="{LEFT - 6}" y="{y + 4:.1f}" text-anchor="end">{html.escape(axis.labels[place])}</text>')
+    middle = (TOP + HEIGHT - BOTTOM) / 2
+    label = html.escape(f"{axis.name} [{axis.unit}]")
+    turned = f'transform="rotate(-90 12 {middle:.1f})"'
+    return [*lines, f'<text class="title" x="12" y="{middle:.1f}" text-anchor="middle" {turned}>{label}</text>']
+
+
+def _ticks_x(labels: Sequence[str], places: Sequence[float], height: float) -> list[str]:
+    y = height - BOTTOM + 16.0
+    return [
+        f'<text x="{x:.1f}" y="{y:.1f}" text-anchor="middle">{html.escape(label)}</text>'
+        for label, x in zip(labels, places, strict=True)
+    ]
+
+
+def _svg(parts: list[str], label: str, height: float = HEIGHT) -> str:
+    frame = (
+        f'<rect class="frame" x="{LEFT}" y="{TOP}" width="{WIDTH - LEFT - RIGHT}" height="{height - TOP - BOTTOM}"/>'
+    )
+    name = html.escape(label, quote=True)
+    return f'<svg viewBox="0 0 {WIDTH:g} {height:g}" role="img" aria-label="{name}">{"".join(parts)}{frame}</svg>'

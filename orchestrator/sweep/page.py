@@ -1,0 +1,219 @@
+"""The result page of a study: one HTML file without scripts, made from the table alone."""
+
+import html
+from collections import Counter
+from collections.abc import Callable, Iterable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import yaml
+
+from orchestrator.quantities import DEGREE
+from orchestrator.report.page import style
+from orchestrator.sweep.figures import histogram, scale_bar, success_map
+from orchestrator.sweep.statistics import influences, maps, parked, wilson, worst
+from orchestrator.sweep.store import Table
+from orchestrator.sweep.verdict import RESULTS
+
+PAGE = """<!doctype html>
+<html lang="en" data-theme="auto">
+<head>
+<meta charset="utf-8">
+<meta name="viewport" content="width=device-width, initial-scale=1">
+<meta name="color-scheme" content="light dark">
+<meta http-equiv="Content-Security-Policy" content="default-src 'none'; style-src 'unsafe-inline'; img-src data:">
+<link rel="icon" href="data:,">
+<title>{title}</title>
+<style>{style}</style>
+</head>
+<body>
+<header class="top"><div class="headline"><h1>{title}</h1><p id="subtitle">{subtitle}</p></div>
+<span class="verdict {kind}">{verdict}</span></header>
+<dl class="facts">{facts}</dl>
+<main class="study">
+{cards}
+</main>
+<footer>{foot}</footer>
+</body>
+</html>
+"""
+WORST = 12
+HISTOGRAMS = ("final.lateral_error", "final.heading_error", "duration", "shifts", "steering_effort", "min_clearance")
+REPLAYS = "row-{}"
+"""Where `apa replay` puts a row, beside the table."""
+escape = html.escape
+
+
+def write_page(path: Path) -> Path:
+    """Write the page beside the table at ``path``; return where it is."""
+    table = Table(path)
+    page = path.with_suffix(".html")
+    page.write_text(study_page(table), encoding="utf-8")
+    return page
+
+
+def study_page(table: Table) -> str:
+    """Return the page."""
+    study = table.about["study"]
+    good = parked(table)
+    share = 100.0 * good.mean()
+    cards = [_maps(table), _reasons(table), _histograms(table), _influences(table), _worst(table), _about(table)]
+    return PAGE.format(
+        title=escape(study["title"] or study["name"]),
+        subtitle=escape(study["description"]),
+        style=style() + (Path(__file__).parent / "page.css").read_text(encoding="utf-8"),
+        kind="good" if share >= 99.0 else "warn" if share >= 50.0 else "bad",
+        verdict=f"{share:.1f} % parked",
+        facts=_facts(table, int(good.sum())),
+        cards="\n".join(card for card in cards if card),
+        foot=escape(f"apa-cosim {table.about['versions'].get('apa-cosim', '')}, {table.path.name}"),
+    )
+
+
+def _facts(table: Table, good: int) -> str:
+    low, high = wilson(good, table.count)
+    outcomes = Counter(table.column("outcome").tolist())
+    facts = {
+        "runs": f"{table.count:,}".replace(",", " "),
+        "parked": f"{good:,}".replace(",", " "),
+        "95 % interval": f"{100 * low:.2f} to {100 * high:.2f} %",
+        **{
+            name.replace("_", " "): f"{outcomes[name]}"
+            for name in ("not_parked", "failed", "aborted")
+            if outcomes[name]
+        },
+        "median time": f"{float(np.median(table.column('duration'))):.1f} s",
+        "scenario": Path(table.about["study"]["scenario"]).stem,
+        "seed": str(table.about["study"]["seed"]),
+    }
+    return "".join(f"<div><dt>{escape(name)}</dt><dd>{escape(value)}</dd></div>" for name, value in facts.items())
+
+
+def _card(title: str, text: str, body: str) -> str:
+    return f'<section class="card"><h2>{title}</h2><p>{text}</p>{body}</section>'
+
+
+def _maps(table: Table) -> str:
+    shown = maps(table)
+    if not shown:
+        return ""
+    figures = "".join(
+        f"<figure><figcaption>{escape(item.title)} {_rate(int(item.parked.sum()), int(item.runs.sum()))}</figcaption>"
+        f"{success_map(item)}</figure>"
+        for item in shown
+    )
+    text = "Share of runs that end parked within all required limits. Point at a cell for its numbers."
+    return _card("Success", text, f'<div class="maps">{figures}</div>{scale_bar()}')
+
+
+def _rate(good: int, count: int) -> str:
+    low, high = wilson(good, count)
+    share = 100.0 * good / max(count, 1)
+    return f'<span class="quiet">{share:.1f} % of {count} runs (95 %: {100 * low:.1f} to {100 * high:.1f} %)</span>'
+
+
+def _reasons(table: Table) -> str:
+    counts = Counter(zip(table.column("outcome").tolist(), table.column("reason").tolist(), strict=True))
+    rows = [
+        (
+            _pill(outcome),
+            escape(reason),
+            f"{count}",
+            f"{100 * count / table.count:.2f} %",
+            _meter(count / table.count, "good" if outcome == "parked" else "bad"),
+        )
+        for (outcome, reason), count in counts.most_common(20)
+    ]
+    return _card("How the runs end", "", _table(("outcome", "reason", "runs", "share", ""), rows))
+
+
+def _histograms(table: Table) -> str:
+    good = parked(table)
+    figures = []
+    for name in HISTOGRAMS:
+        if name in table.names():
+            unit = RESULTS[name].unit
+            values = np.asarray(table.column(name), dtype=np.float64)
+            if unit == "rad" and name != "steering_effort":
+                values, unit = values / DEGREE, "deg"
+            caption = f"<figcaption>{escape(name)} <span class='quiet'>[{unit}]</span></figcaption>"
+            figures.append(f"<figure>{caption}{histogram(values, good, name, unit)}</figure>")
+    return _card("Results", "Parked runs in green, the others in red.", f'<div class="side">{"".join(figures)}</div>')
+
+
+def _influences(table: Table) -> str:
+    found = influences(table)
+    if not found:
+        return ""
+    results = list(found[0].share)
+    rows = []
+    for item in found:
+        cells = [f"<code>{escape(item.name)}</code>", _meter(item.share["parked"])]
+        for name in results:
+            cells.append(f"{100 * item.share[name]:.1f} %")
+            cells.append(f"{item.rank[name]:+.2f}")
+        rows.append(tuple(cells))
+    heads = ["parameter", ""] + [text for name in results for text in (f"of {name}", "rank")]
+    text = (
+        "Share of the variance of a result that goes with one parameter alone (first order; what is missing to 100 % "
+        "is joint effects and chance), and Spearman's rank correlation."
+    )
+    return _card("What it depends on", text, _table(heads, rows))
+
+
+def _worst(table: Table) -> str:
+    rows = []
+    keys = [key for key in table.job.keys if len(np.unique(table.column(key))) > 1]
+    for number in worst(table, WORST):
+        row = table.row(number)
+        replay = table.path.parent / REPLAYS.format(number) / "report.html"
+        command = f"<code>apa replay {escape(table.path.name)} --row {number}</code>"
+        link = f'<a href="{escape(REPLAYS.format(number))}/report.html">replay</a> ' if replay.is_file() else ""
+        rows.append(
+            (
+                str(number),
+                f"{_pill(row['outcome'])} {escape(row['reason'])}",
+                f"{100.0 * row['final.lateral_error']:+.1f} cm",
+                f"{row['final.heading_error'] / DEGREE:+.2f} deg",
+                f"{row['duration']:.1f} s",
+                *(_value(table, key, row[key]) for key in keys),
+                link + command,
+            )
+        )
+    heads = ("row", "outcome", "lateral", "heading", "time", *(escape(key) for key in keys), "look at it")
+    text = "Furthest beyond their limits; the command repeats a row to the same bits, with log and replay."
+    return _card("Worst runs", text, _table(heads, rows))
+
+
+def _value(table: Table, key: str, value: Any) -> str:
+    state = table.note(key)[2].get(str(int(value))) if isinstance(value, int) else None
+    return escape(state.lower() if state else f"{value:.4g}" if isinstance(value, float) else str(value).lower())
+
+
+def _about(table: Table) -> str:
+    about = table.about
+    content = {key: value for key, value in about["study"].items() if value not in (None, "", {}, [])}
+    text = yaml.safe_dump(content, sort_keys=False, allow_unicode=True, width=100)
+    rows: list[tuple[str, ...]] = [(escape(name), escape(str(value))) for name, value in about["versions"].items()]
+    rows.append(("sources", f"<code>{escape(about['sources'][:16])}</code>"))
+    return (
+        f'<section class="card"><details><summary>Study and versions</summary><pre class="scroll">{escape(text)}</pre>'
+        f"{_table(('what', 'version'), rows)}</details></section>"
+    )
+
+
+def _pill(outcome: str) -> str:
+    kind = {"parked": "good", "not_parked": "warn"}.get(outcome, "bad")
+    return f'<span class="pill {kind}">{escape(outcome.replace("_", " "))}</span>'
+
+
+def _meter(share: float, kind: str = "") -> str:
+    return f'<div class="meter {kind}"><i style="width:{100.0 * share:.2f}%"></i></div>'
+
+
+def _table(heads: Iterable[str], rows: Iterable[tuple[str, ...]]) -> str:
+    number: Callable[[str], str] = lambda text: ' class="number"' if text[:1] in "+-0123456789" else ""  # noqa: E731
+    body = "".join("<tr>" + "".join(f"<td{number(cell)}>{cell}</td>" for cell in row) + "</tr>" for row in rows)
+    head = "".join(f"<th>{text}</th>" for text in heads)
+    return f'<div class="scroll"><table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table></div>'

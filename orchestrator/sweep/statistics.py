@@ -1,0 +1,170 @@
+"""What a table says: success rates over two parameters, what the result depends on, which runs are worst."""
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.stats import rankdata  # type: ignore[import-untyped]
+
+from orchestrator.slave import Array
+from orchestrator.sweep.store import Table
+from orchestrator.sweep.study import Axes
+
+MOST_VALUES = 60
+"""An axis with more different values than this is divided into bins."""
+BINS = 24
+Z95 = 1.959963984540054
+"""Of the normal distribution: 95 % of it lie within +-Z95."""
+
+
+class Axis(NamedTuple):
+    """One parameter cut into cells."""
+
+    name: str
+    unit: str
+    text: str
+    edges: Array
+    """One more than cells; for single values halfway between them."""
+    labels: list[str]
+    """One for each cell."""
+    cell: NDArray[np.intp]
+    """Cell of every run."""
+
+
+class Map(NamedTuple):
+    """Success over two parameters, for one value of a third."""
+
+    title: str
+    x: Axis
+    y: Axis
+    parked: NDArray[np.intp]
+    """(cells of y, cells of x)."""
+    runs: NDArray[np.intp]
+
+
+class Influence(NamedTuple):
+    """What one parameter does."""
+
+    name: str
+    share: dict[str, float]
+    """Result -> share of its variance that goes with this parameter alone, 0 to 1."""
+    rank: dict[str, float]
+    """Result -> Spearman's rank correlation, -1 to 1."""
+
+
+def wilson(successes: int, count: int) -> tuple[float, float]:
+    """Return the 95 % confidence interval of a success rate (Wilson 1927)."""
+    if count == 0:
+        return 0.0, 1.0
+    p, z2 = successes / count, Z95 * Z95
+    middle = p + z2 / (2.0 * count)
+    half = Z95 * math.sqrt(p * (1.0 - p) / count + z2 / (4.0 * count * count))
+    scale = 1.0 + z2 / count
+    return max(0.0, (middle - half) / scale), min(1.0, (middle + half) / scale)
+
+
+def parked(table: Table) -> NDArray[np.bool_]:
+    """Return which runs are parked."""
+    found: NDArray[np.bool_] = table.column("outcome") == "parked"
+    return found
+
+
+def axis(table: Table, name: str) -> Axis:
+    """Return one parameter cut into its values, if they are few, or into equal bins."""
+    values = np.asarray(table.column(name), dtype=np.float64)
+    unit, text, states = table.note(name)
+    different = np.unique(values)
+    if len(different) <= MOST_VALUES:
+        cell = np.searchsorted(different, values)
+        labels = [states.get(f"{value:.0f}", "").lower() or f"{value:.4g}" for value in different.tolist()]
+        middle = 0.5 * (different[1:] + different[:-1])
+        ends = (different[0], different[-1]) if len(different) > 1 else (different[0] - 0.5, different[0] + 0.5)
+        first = ends[0] if len(different) == 1 else 2.0 * different[0] - middle[0]
+        last = ends[1] if len(different) == 1 else 2.0 * different[-1] - middle[-1]
+        return Axis(name, unit, text, np.concatenate([[first], middle, [last]]), labels, cell)
+    edges = np.linspace(different[0], different[-1], BINS + 1)
+    cell = np.clip(np.searchsorted(edges, values, side="right") - 1, 0, BINS - 1)
+    return Axis(name, unit, text, edges, [f"{edge:.4g}" for edge in 0.5 * (edges[1:] + edges[:-1])], cell)
+
+
+def default_axes(table: Table) -> Axes | None:
+    """Return the study's axes, or the first two numbers that vary, split by the first mode that varies."""
+    given = table.about["study"].get("map")
+    if given is not None:
+        return Axes(**given)
+    different = {key: len(np.unique(table.column(key))) for key in table.job.keys}
+    modes = [key for key, count in different.items() if 1 < count <= 4 and table.note(key)[2]]
+    numbers = [key for key, count in different.items() if count > 1 and key not in modes[:1]]
+    return Axes(x=numbers[0], y=numbers[1], split=modes[0] if modes else None) if len(numbers) > 1 else None
+
+
+def maps(table: Table) -> list[Map]:
+    """Return the success maps of a table; none if it varies less than two parameters."""
+    axes = default_axes(table)
+    if axes is None:
+        return []
+    x, y = axis(table, axes.x), axis(table, axes.y)
+    good = parked(table)
+    if axes.split is None:
+        return [_map("", x, y, good, np.ones(len(good), dtype=bool))]
+    split = axis(table, axes.split)
+    return [_map(label, x, y, good, split.cell == number) for number, label in enumerate(split.labels)]
+
+
+def _map(title: str, x: Axis, y: Axis, good: NDArray[np.bool_], chosen: NDArray[np.bool_]) -> Map:
+    shape = (len(y.labels), len(x.labels))
+    place = y.cell * shape[1] + x.cell
+    runs = np.bincount(place[chosen], minlength=shape[0] * shape[1]).reshape(shape)
+    successes = np.bincount(place[chosen & good], minlength=shape[0] * shape[1]).reshape(shape)
+    return Map(title, x, y, successes, runs)
+
+
+def influences(table: Table) -> list[Influence]:
+    """Return what every varied parameter does to the results, the strongest on success first."""
+    results: dict[str, Any] = {
+        "parked": parked(table).astype(np.float64),
+        "lateral error": np.abs(table.column("final.lateral_error")),
+        "duration": table.column("duration"),
+    }
+    ranks = {name: rankdata(values) for name, values in results.items()}
+    found = []
+    for key in dict.fromkeys(table.job.keys):
+        cut = axis(table, key)
+        if len(cut.labels) > 1:
+            own = rankdata(table.column(key))
+            shares = {name: variance_share(values, cut.cell) for name, values in results.items()}
+            found.append(Influence(key, shares, {name: _correlation(own, other) for name, other in ranks.items()}))
+    return sorted(found, key=lambda item: -item.share["parked"])
+
+
+def variance_share(values: Array, cell: NDArray[np.intp]) -> float:
+    """Return the variance of the cell means over the variance of ``values``: the first-order sensitivity, 0 to 1.
+
+    Corrected for the variance that the means of so few runs have by chance; never below 0.
+    """
+    good = np.isfinite(values)
+    values, cell = values[good], cell[good]
+    total = float(np.var(values)) if len(values) else 0.0
+    if total == 0.0:
+        return 0.0
+    counts = np.bincount(cell)
+    used = counts > 0
+    means = np.bincount(cell, weights=values)[used] / counts[used]
+    between = float(np.sum(counts[used] * (means - values.mean()) ** 2)) / len(values)
+    degrees = len(values) - int(used.sum())
+    chance = (total - between) * (int(used.sum()) - 1) / degrees if degrees > 0 else 0.0
+    return min(1.0, max(0.0, (between - chance) / total))
+
+
+def _correlation(a: Array, b: Array) -> float:
+    if np.ptp(a) == 0.0 or np.ptp(b) == 0.0:
+        return 0.0
+    return float(np.corrcoef(a, b)[0, 1])
+
+
+def worst(table: Table, count: int) -> list[int]:
+    """Return the rows that are furthest beyond their limits, those that failed before those that parked."""
+    share = np.nan_to_num(table.column("limit_share"), nan=np.inf)
+    order = np.lexsort((-share, parked(table)))
+    return [int(row) for row in order[:count]]

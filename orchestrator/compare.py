@@ -102,7 +102,14 @@ def _signal(name: str, a: Recording, b: Recording, tolerances: Tolerances) -> Di
     first, second = _curve(a, name, held), _curve(b, name, held)
     if unit == "rad" and name.endswith("heading"):
         first, second = _unwrapped(first, second)
-    return _judged(name, unit, tolerance, first, second)
+    row = _judged(name, unit, tolerance, first, second)
+    states = a.states(name)
+    if states and row.first is not None:
+        seen = [
+            states.get(int(value), str(value)) for curve in (first, second) for value in curve.at(np.array([row.first]))
+        ]
+        return row.model_copy(update={"note": f"{seen[0]} / {seen[1]}"})
+    return row
 
 
 def _judged(name: str, unit: str, tolerance: Tolerance, first: Curve, second: Curve) -> Difference:

@@ -36,6 +36,8 @@ class Check(BaseModel):
     condition: Condition
     note: str = ""
     """Name of the state, or why there is no value."""
+    limit_name: str = ""
+    """Name of the state asked for."""
 
 
 def judge(requirements: list[Requirement], recording: Recording, numbers: dict[str, float], file: str) -> list[Check]:
@@ -112,6 +114,7 @@ def _worst(item: Requirement, values: Array, times: Array, limit: float, unit: s
         signal=item.signal,
         condition=item.condition,
         note=note,
+        limit_name=states.get(int(limit), "") if states and item.condition == "equals" and math.isfinite(limit) else "",
     )
 
 

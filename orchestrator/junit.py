@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from orchestrator.judge import Check
-from orchestrator.terminal import SIGNS, readable
+from orchestrator.terminal import limit_text, readable
 
 UNPRINTABLE = {code: "?" for code in range(32) if chr(code) not in "\t\n\r"}
 """Control characters, which XML cannot hold."""
@@ -41,9 +41,8 @@ def cases_of(checks: list[Check]) -> list[Case]:
 def sentence(check: Check) -> str:
     """Return value, limit, margin, moment and source of a check in one line."""
     value = check.note or readable(check.value, check.unit)
-    limit = f"{SIGNS[check.condition]} {readable(check.limit, check.unit)}"
     margin = readable(check.margin, check.unit)
-    return f"{check.signal}: {value} at {check.t:.3f} s, asked {limit}, margin {margin} ({check.source})"
+    return f"{check.signal}: {value} at {check.t:.3f} s, asked {limit_text(check)}, margin {margin} ({check.source})"
 
 
 def write_junit(path: Path, suites: list[Suite]) -> None:

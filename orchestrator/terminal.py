@@ -78,9 +78,13 @@ def checks_table(checks: list[Check], out: Console) -> Table:
     for check in checks:
         verdict = "[green]pass[/]" if check.passed else "[red]MISS[/]" if check.required else "[yellow]miss[/]"
         value = check.note or readable(check.value, check.unit)
-        limit = f"{SIGNS[check.condition]} {readable(check.limit, check.unit)}"
-        table.add_row(escape(check.id), value, limit, readable(check.margin, check.unit), verdict, escape(check.source))
+        table.add_row(escape(check.id), value, limit_text(check), readable(check.margin, check.unit), verdict, escape(check.source))
     return table
+
+
+def limit_text(check: Check) -> str:
+    """Return what is asked for, as people read it."""
+    return f"{SIGNS[check.condition]} {check.limit_name or readable(check.limit, check.unit)}"
 
 
 def differences_table(rows: list[Difference], out: Console) -> Table:

@@ -12,7 +12,7 @@ from orchestrator.report.plots import plots_of
 from orchestrator.report.run_data import ribbons_of, run_data
 from orchestrator.report.words import Line
 from orchestrator.summary import Summary
-from orchestrator.terminal import SIGNS, readable
+from orchestrator.terminal import limit_text, readable
 
 MOST_ROWS = (2400, 1200, 600)
 LARGEST_PAGE = 1_000_000
@@ -86,7 +86,7 @@ def check_rows(checks: list[Check]) -> list[dict[str, Any]]:
             "passed": check.passed,
             "required": check.required,
             "value_text": check.note or readable(check.value, check.unit),
-            "limit_text": f"{SIGNS[check.condition]} {readable(check.limit, check.unit)}",
+            "limit_text": limit_text(check),
             "margin_text": readable(check.margin, check.unit),
             "t": check.t,
             "source": check.source,

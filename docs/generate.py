@@ -1,0 +1,250 @@
+"""Writes docs/reference from the types, the charts' tables, the scenarios and the command line.
+
+Nothing in docs/reference is written by hand; ``make docs`` runs this before the site is built.
+"""
+
+import argparse
+import ast
+import importlib
+import inspect
+import os
+import pkgutil
+import sys
+import textwrap
+from collections.abc import Iterator
+from enum import IntEnum
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+ROOT = Path(__file__).parent.parent
+sys.path.insert(0, str(ROOT))
+
+import controller_fmu  # noqa: E402
+from modelkit.model import Model  # noqa: E402
+from modelkit.variables import Variable, variables  # noqa: E402
+from orchestrator.cli import parser  # noqa: E402
+from orchestrator.load_scenario import ROOM, load_scenario, scenario_names  # noqa: E402
+from orchestrator.models import MODELS  # noqa: E402
+from orchestrator.quantities import DEGREE  # noqa: E402
+from orchestrator.requirements import Requirement, read_requirements  # noqa: E402
+from orchestrator.scenario import Scenario  # noqa: E402
+from orchestrator.summary import Summary  # noqa: E402
+from orchestrator.terminal import SIGNS, readable  # noqa: E402
+
+MADE = "<!-- Made by docs/generate.py; do not edit. -->\n"
+UNBOUNDED = 1e300
+
+
+def main() -> None:
+    """Write all reference pages."""
+    folder = ROOT / "docs" / "reference"
+    folder.mkdir(parents=True, exist_ok=True)
+    pages = {f"{name}.md": model_page(model) for name, model in MODELS.items()}
+    pages.update({"charts.md": charts_page(), "commands.md": commands_page(), "scenarios.md": scenarios_page()})
+    pages["files.md"] = files_page()
+    for name, text in pages.items():
+        (folder / name).write_text(MADE + text, encoding="utf-8")
+        print(folder.relative_to(ROOT) / name)
+
+
+def model_page(model: Model) -> str:
+    """Return the page of a model package: inputs, outputs, parameters, modes."""
+    parts = [f"# {model.name} FMU\n\n{model.description}\n"]
+    parts.append(f"Communication step by default {model.step_size:g} s, stop time {model.stop_time:g} s.\n")
+    groups = {"Inputs": model.inputs, "Outputs": model.outputs, "Parameters": model.params}
+    for title, cls in groups.items():
+        parts.append(f"## {title}\n\n{signal_table(variables(cls), title == 'Parameters')}")
+    enums = {item.signal.states for cls in groups.values() for item in variables(cls) if item.signal.states}
+    for enum in sorted(enums, key=lambda item: item.__name__):
+        parts.append(f"## {enum.__name__}\n\n{(enum.__doc__ or '').strip()}\n\n{state_table(enum)}")
+    return "\n".join(parts)
+
+
+def signal_table(items: list[Variable], starts: bool) -> str:
+    """Return a table of variables; array elements that differ only in their number share a row."""
+    head = ["name", "unit", "meaning"] + (["default", "range", "source"] if starts else ["type"])
+    rows = []
+    for item, count in collapsed(items):
+        signal = item.signal
+        text = signal.text + (
+            f" ([{signal.states.__name__}](#{signal.states.__name__.lower()}))" if signal.states else ""
+        )
+        name = f"`{item.name}`" + (f" to `[{count}]`" if count > 1 else "")
+        more = [start_text(item), range_text(item), signal.source] if starts else [item.kind.__name__]
+        rows.append([name, "" if signal.unit == "1" else signal.unit, text, *more])
+    return table(head, rows)
+
+
+def collapsed(items: list[Variable]) -> Iterator[tuple[Variable, int]]:
+    """Return variables and how many array elements each stands for: those of element 1 stand for all alike."""
+    counts: dict[str, int] = {}
+    for item in items:
+        key, number = split_index(item.name)
+        counts[key] = max(counts.get(key, 1), number)
+    for item in items:
+        key, number = split_index(item.name)
+        if number == 1:
+            yield item, counts[key]
+
+
+def split_index(name: str) -> tuple[str, int]:
+    """Return (name without its first index, that index or 1)."""
+    if "[" not in name:
+        return name, 1
+    head, rest = name.split("[", 1)
+    number, tail = rest.split("]", 1)
+    return f"{head}[]{tail}", int(number)
+
+
+def start_text(item: Variable) -> str:
+    """Return the default for people: angles in degrees as well, modes by name."""
+    if item.signal.states is not None:
+        return item.signal.states(item.start).name.lower()
+    if item.kind is bool:
+        return str(item.start).lower()
+    if item.signal.unit.startswith("rad"):
+        return f"{item.start:.6g} ({item.start / DEGREE:.5g} {item.signal.unit.replace('rad', 'deg')})"
+    return f"{item.start:.6g}"
+
+
+def range_text(item: Variable) -> str:
+    """Return the range allowed, empty if there is none."""
+    low, high = item.signal.low, item.signal.high
+    if low < -UNBOUNDED and high > UNBOUNDED:
+        return ""
+    if high > UNBOUNDED:
+        return f"from {low:g}"
+    return f"{low:g} to {high:g}" if low > -UNBOUNDED else f"to {high:g}"
+
+
+def state_table(enum: type[IntEnum]) -> str:
+    """Return a table of the states of a mode."""
+    return table(["value", "name"], [[str(int(member)), member.name] for member in enum])
+
+
+def charts_page() -> str:
+    """Return diagrams of all charts, drawn from the tables that the controller runs."""
+    parts = ["# Charts\n\nDrawn from the transition tables that the controller runs; earlier rows come first.\n"]
+    for module in chart_modules():
+        states, guards = enums_of(module)
+        summary = (module.__doc__ or module.__name__).strip().splitlines()[0]
+        parts.append(f"## {module.__name__}\n\n{summary}\n\n{mermaid(module, states, guards)}")
+        rows = [[label(states, row[0]), guards(row[1]).name, label(states, row[2])] for row in module.TRANSITIONS]
+        parts.append(table(["from", "when", "to"], rows))
+    return "\n".join(parts)
+
+
+def chart_modules() -> list[ModuleType]:
+    """Return the controller's modules that hold a transition table."""
+    names = [item.name for item in pkgutil.walk_packages(controller_fmu.__path__, "controller_fmu.")]
+    modules = [importlib.import_module(name) for name in sorted(names)]
+    return [module for module in modules if hasattr(module, "TRANSITIONS") and hasattr(module, "Guard")]
+
+
+def enums_of(module: ModuleType) -> tuple[type[IntEnum], type[IntEnum]]:
+    """Return (states, guards) of a chart: the states are the enum that has all targets as members."""
+    targets = {row[2] for row in module.TRANSITIONS}
+    for value in vars(module).values():
+        if isinstance(value, type) and issubclass(value, IntEnum) and value not in (IntEnum, module.Guard):
+            if targets <= {int(member) for member in value}:
+                return value, module.Guard
+    raise LookupError(f"{module.__name__}: no enum has all states of its chart")
+
+
+def label(states: type[IntEnum], value: int) -> str:
+    """Return the name of a state; values that are none mean any."""
+    return states(value).name if value in {int(member) for member in states} else "any state"
+
+
+def mermaid(module: ModuleType, states: type[IntEnum], guards: type[IntEnum]) -> str:
+    """Return the chart as a Mermaid diagram; rows from any state start at one node."""
+    lines = ["```mermaid", "stateDiagram-v2"]
+    for row in module.TRANSITIONS:
+        source = label(states, row[0]).replace(" ", "_")
+        lines.append(f"    {source} --> {label(states, row[2])}: {guards(row[1]).name.lower().replace('_', ' ')}")
+    return "\n".join([*lines, "```", ""])
+
+
+def commands_page() -> str:
+    """Return the help of every command."""
+    os.environ["COLUMNS"] = "100"
+    top = parser()
+    parts = [f"# Commands\n\n```text\n{top.format_help()}```\n"]
+    for name, sub in subcommands(top):
+        parts.append(f"## apa {name}\n\n```text\n{sub.format_help()}```\n")
+    return "\n".join(parts)
+
+
+def subcommands(top: argparse.ArgumentParser, prefix: str = "") -> Iterator[tuple[str, argparse.ArgumentParser]]:
+    """Return (name, parser) of all commands and their sub-commands."""
+    for action in top._actions:
+        if isinstance(action, argparse._SubParsersAction):
+            for name, sub in action.choices.items():
+                yield f"{prefix}{name}", sub
+                yield from subcommands(sub, f"{prefix}{name} ")
+
+
+def scenarios_page() -> str:
+    """Return the shipped scenarios, cars and sets of limits."""
+    shipped = [load_scenario(name) for name in scenario_names()]
+    rows = [[f"`{item.name}`", item.title, item.expect.replace("_", " "), item.source] for item in shipped]
+    parts = ["# Scenarios, cars, limits\n\n## Scenarios\n", table(["name", "what happens", "expected", "source"], rows)]
+    cars = sorted(path.stem for path in (ROOM / "cars").glob("*.yaml"))
+    parts.append("## Cars\n\n" + "\n".join(f"- `{name}`" for name in cars) + "\n")
+    for path in sorted((ROOM / "limits").glob("*.yaml")):
+        rows = [limit_row(item) for item in read_requirements(path)]
+        parts.append(f"## Limits: {path.stem}\n\n{table(['id', 'signal', 'limit', 'source'], rows)}")
+    return "\n".join(parts)
+
+
+def limit_row(item: Requirement) -> list[str]:
+    """Return a requirement as a row."""
+    limit = item.limit
+    text = limit if isinstance(limit, str) else readable(limit, item.unit or "1")
+    return [item.id, f"`{item.signal}`", f"{SIGNS[item.condition]} {text}", item.source]
+
+
+def files_page() -> str:
+    """Return what stands in a scenario, in requirements and in summary.json."""
+    parts = ["# Files\n"]
+    for title, model in (("Scenario (YAML)", Scenario), ("Requirement (YAML)", Requirement), ("summary.json", Summary)):
+        schema: dict[str, Any] = model.model_json_schema()
+        rows = [[f"`{name}`", type_text(item), docstring(model, name)] for name, item in schema["properties"].items()]
+        about = (inspect.getdoc(model) or "").replace("``", "`")
+        parts.append(f"## {title}\n\n{about}\n\n{table(['key', 'type', 'meaning'], rows)}")
+    return "\n".join(parts)
+
+
+def docstring(model: Any, name: str) -> str:
+    """Return the text that stands under a field in its class."""
+    tree = ast.parse(textwrap.dedent(inspect.getsource(model))).body[0]
+    assert isinstance(tree, ast.ClassDef)
+    for node, after in zip(tree.body, tree.body[1:], strict=False):
+        if isinstance(node, ast.AnnAssign) and isinstance(node.target, ast.Name) and node.target.id == name:
+            if isinstance(after, ast.Expr) and isinstance(after.value, ast.Constant):
+                return " ".join(str(after.value.value).split()).replace("``", "`")
+    return ""
+
+
+def type_text(item: dict[str, Any]) -> str:
+    """Return the JSON type of a schema entry."""
+    if "$ref" in item:
+        return str(item["$ref"]).rsplit("/", 1)[-1]
+    if "anyOf" in item:
+        return " or ".join(dict.fromkeys(type_text(part) for part in item["anyOf"] if part.get("type") != "null"))
+    if item.get("type") == "array":
+        return f"list of {type_text(item.get('items', {}))}"
+    if "enum" in item:
+        return " or ".join(str(value) for value in item["enum"])
+    return str(item.get("type", "object"))
+
+
+def table(head: list[str], rows: list[list[str]]) -> str:
+    """Return a Markdown table."""
+    lines = [head, ["---"] * len(head), *rows]
+    return "\n".join("| " + " | ".join(cell.replace("|", "\\|") for cell in line) + " |" for line in lines) + "\n"
+
+
+if __name__ == "__main__":
+    main()

@@ -78,7 +78,14 @@ def checks_table(checks: list[Check], out: Console) -> Table:
     for check in checks:
         verdict = "[green]pass[/]" if check.passed else "[red]MISS[/]" if check.required else "[yellow]miss[/]"
         value = check.note or readable(check.value, check.unit)
-        table.add_row(escape(check.id), value, limit_text(check), readable(check.margin, check.unit), verdict, escape(check.source))
+        table.add_row(
+            escape(check.id),
+            value,
+            limit_text(check),
+            readable(check.margin, check.unit),
+            verdict,
+            escape(check.source),
+        )
     return table
 
 

@@ -18,13 +18,19 @@ static const char *const CATEGORIES[] = {"logAll", "logStatusWarning", "logStatu
 fmi2Status report(const Slave *slave, fmi2Status status, const char *format, ...) {
     static const char *const category[] = {"logAll",         "logStatusWarning", "logStatusDiscard",
                                            "logStatusError", "logStatusFatal",   "logAll"};
-    char message[512];
+    char message[512], escaped[2 * sizeof message]; /* the host takes the text as a printf format */
     va_list arguments;
     if (!slave->logger || (!slave->logging && status < fmi2Error)) return status;
     va_start(arguments, format);
     vsnprintf(message, sizeof message, format, arguments);
     va_end(arguments);
-    slave->logger(slave->environment, slave->name, status, category[status], "%s", message);
+    char *to = escaped;
+    for (const char *from = message; *from; from++) {
+        if (*from == '%') *to++ = '%';
+        *to++ = *from;
+    }
+    *to = '\0';
+    slave->logger(slave->environment, slave->name, status, category[status], escaped);
     return status;
 }
 

@@ -8,7 +8,7 @@ from fmpy import read_model_description
 
 OK, WARNING, DISCARD, ERROR, FATAL = range(5)
 CO_SIMULATION = 1
-LOGGER = CFUNCTYPE(None, c_void_p, c_char_p, c_int, c_char_p, c_char_p, c_char_p)
+LOGGER = CFUNCTYPE(None, c_void_p, c_char_p, c_int, c_char_p, c_char_p)
 NUMBER = {"Real": c_double, "Integer": c_int, "Boolean": c_int}
 
 
@@ -40,9 +40,9 @@ class Library:
         self.messages = []
         self.callbacks = Callbacks(LOGGER(self._log), None, None, None, None)
 
-    def _log(self, _environment, name, status, category, text, argument):
-        assert text == b"%s"
-        self.messages.append((status, category.decode(), argument.decode()))
+    def _log(self, _environment, name, status, category, text):
+        assert name in (b"toy", b"other", b"")
+        self.messages.append((status, category.decode(), text.decode()))
 
     def instantiate(self, name=b"toy", kind=CO_SIMULATION, guid=None, callbacks=True, logging=1):
         guid = self.description.guid.encode() if guid is None else guid

@@ -28,6 +28,7 @@ def test_version_and_platform(toy):
         ({"name": None}, "needs a name"),
         ({"kind": 0}, "co-simulation only"),
         ({"guid": b"{another}"}, "GUID {another} is not that of this binary"),
+        ({"guid": b"100%d %s %n"}, "GUID 100%%d %%s %%n is not"),
         ({"guid": b""}, "GUID (null)"),
     ],
 )

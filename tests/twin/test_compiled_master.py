@@ -1,0 +1,138 @@
+"""The compiled master is the Python master, block by block: recordings, endings, errors, multi-rate, threads."""
+
+import threading
+
+import pytest
+from test_same_bits import differing
+
+from orchestrator import compiled_master
+from orchestrator.compiled_master import CompiledMaster
+from orchestrator.errors import RunError
+from orchestrator.fmu_slave import FmuSlave
+from orchestrator.load_scenario import load_scenario
+from orchestrator.master import Master
+from orchestrator.session import run_scenario
+
+NAME = "guo2015-case4-105"
+
+
+def both(files, *changes):
+    """Return the same run by the Python master and by the compiled one."""
+    scenario = load_scenario(NAME, list(changes))
+    return run_scenario(scenario, files, kind="python"), run_scenario(scenario, files, kind="native")
+
+
+@pytest.fixture
+def loops(monkeypatch):
+    """The compiled calls made, as numbers of rows."""
+    calls = []
+    advance = compiled_master._Plan.advance
+
+    def counted(self, first):
+        calls.append(advance(self, first))
+        return calls[-1]
+
+    monkeypatch.setattr(compiled_master._Plan, "advance", counted)
+    return calls
+
+
+@pytest.mark.parametrize("kind", ["native", "python"])
+def test_whole_run(fmus, loops, kind):
+    expected, found = both(fmus[kind], "stop_time=12")
+    assert found.end == expected.end
+    assert differing(found.recording, expected.recording) == {}
+    assert sum(loops) == len(found.recording.t_ns) == 1201
+    assert set(loops[:-1]) == {compiled_master.BLOCK}
+
+
+def test_an_ending_in_mid_block(fmus, loops):
+    expected, found = both(fmus["native"])
+    assert found.end == expected.end
+    assert found.end.reason == "standstill"
+    assert len(found.recording.t_ns) == len(expected.recording.t_ns) < sum(loops)
+
+
+def test_multi_rate(fmus, loops):
+    expected, found = both(fmus["native"], "stop_time=12", "every.controller=3")
+    assert differing(found.recording, expected.recording) == {}
+    assert loops
+
+
+def test_faults_take_the_python_loop(fmus, loops):
+    scenario = load_scenario("fault-pose-frozen", ["stop_time=3"])
+    assert run_scenario(scenario, fmus["native"], kind="native").end.t_ns > 0
+    assert loops == []
+
+
+def slaves(files, log):
+    return [FmuSlave(name, path, {}, log) for name, path in files.items()]
+
+
+class Seen:
+    """Observer that counts."""
+
+    def __init__(self):
+        self.times = []
+
+    def exchanged(self, t_ns):
+        self.times.append(t_ns)
+
+    def closed(self, end):
+        self.end = end
+
+
+def drive(make, files, after=None):
+    """Run 3 s with ``make``'s master; ``after`` may break something once time is zero. Return times, error, log."""
+    log = []
+    master = make(slaves(files, lambda *words: log.append(words)), 10_000_000, 3_000_000_000)
+    seen = Seen()
+    master.observers.append(seen)
+    error = ""
+    try:
+        master.initialize()
+        if after is not None:
+            after(master)
+        master.run()
+    except RunError as raised:
+        error = str(raised)
+    finally:
+        master.free()
+    return seen.times, error, log
+
+
+def break_vehicle(master):
+    """Bring the vehicle 1.5 s ahead of the master's clock."""
+    master.slaves[0].step(0, 1_500_000_000)
+
+
+def test_a_refused_step_ends_the_run_with_the_fmus_words(fmus):
+    expected, found = drive(Master, fmus["native"], break_vehicle), drive(CompiledMaster, fmus["native"], break_vehicle)
+    assert found == expected
+    assert found[0] == [0]
+    assert "vehicle failed at 0 s: fmi2DoStep: called at 0.0" in found[1]
+
+
+def test_runs_on_several_threads_at_once(fmus):
+    expected = run_scenario(load_scenario(NAME, ["stop_time=12"]), fmus["native"], kind="native").recording
+    found = {}
+
+    def job(number):
+        scenario = load_scenario(NAME, ["stop_time=12"])
+        found[number] = run_scenario(scenario, fmus["native"], kind="native").recording
+
+    threads = [threading.Thread(target=job, args=(number,)) for number in range(4)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert len(found) == 4
+    assert all(differing(recording, expected) == {} for recording in found.values())
+
+
+def test_without_a_compiler_the_python_loop_does_it(fmus, monkeypatch, loops):
+    def absent():
+        raise RuntimeError("no compiler")
+
+    monkeypatch.setattr("fmus.master_library.master_library", absent)
+    times, error, _ = drive(CompiledMaster, fmus["native"])
+    assert (len(times), error, loops) == (301, "", [])

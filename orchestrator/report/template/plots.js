@@ -152,7 +152,11 @@ class Plots {
 
   paint() {
     for (const item of this.all) {
-      item.values.forEach(({ chip, number }) => { chip.querySelector("i").style.background = this.stroke(item, number); });
+      item.values.forEach(({ chip, number, run }) => {
+        const mark = chip.querySelector("i"), second = this.page.runs.length > 1 && run === this.page.runs[1];
+        mark.style.background = second ? "none" : this.stroke(item, number);
+        mark.style.border = `2px ${second ? "dashed" : "solid"} ${this.stroke(item, number)}`;
+      });
       item.u.redraw(false);
     }
   }

@@ -116,7 +116,7 @@ function drawRays(scene, run, t) {
   for (const sensor of run.scene.sensors) {
     const range = run.at(sensor.signal, t);
     if (!Number.isFinite(range) || range <= 0) continue;
-    const seen = range < 0.999 * sensor.range, reach = Math.min(range, sensor.range);
+    const seen = range < 0.999 * sensor.range, reach = seen ? range : Math.min(0.45, sensor.range);
     const [x, y] = moved(pose, sensor.x, sensor.y);
     const middle = scene.pixel(x, y), facing = -(scene.turn + pose[2] + sensor.heading);
     g.beginPath();

@@ -1,0 +1,73 @@
+"""Writes docs/images: the pages of this project as a headless Chromium shows them. ``python docs/pictures.py``.
+
+Needs Chromium (or Chrome) and the package playwright; the pictures are kept in the repository.
+"""
+
+import shutil
+import sys
+import tempfile
+from pathlib import Path
+from typing import Any
+
+from playwright.sync_api import sync_playwright
+
+from orchestrator.cli import main as apa
+
+IMAGES = Path(__file__).parent / "images"
+FLAGS = [
+    "--headless",
+    "--no-sandbox",
+    "--disable-gpu",
+    "--disable-quic",
+    "--no-first-run",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+]
+GENTLE = ["--set", "vehicle.driver.profile=[[0, 0.8]]", "--set", "vehicle.driver.obeys_slow_down=true"]
+
+
+def main() -> None:
+    """Run, open, photograph."""
+    IMAGES.mkdir(exist_ok=True)
+    with tempfile.TemporaryDirectory() as folder, sync_playwright() as play:
+        runs = make_runs(Path(folder))
+        program = shutil.which("chromium") or shutil.which("google-chrome") or sys.exit("no Chromium found")
+        browser = play.chromium.launch(executable_path=program, args=FLAGS)
+        wide = {"viewport": {"width": 1440, "height": 900}}
+        phone = {"viewport": {"width": 390, "height": 844}, "device_scale_factor": 2, "is_mobile": True}
+        photograph(browser, runs["report"], "report", "#t=14.5", wide)
+        photograph(browser, runs["report"], "report-dark", "#t=14.5", {**wide, "color_scheme": "dark"})
+        photograph(browser, runs["report"], "report-phone", "#t=12", {**phone, "color_scheme": "dark"})
+        photograph(browser, runs["compare"], "compare", "#t=9", wide)
+        photograph(browser, runs["tests"], "tests", "", {"viewport": {"width": 1300, "height": 800}})
+        browser.close()
+
+
+def make_runs(folder: Path) -> dict[str, Path]:
+    """Return the pages to photograph, made by the commands a user would give."""
+    case4, gentle = folder / "case4", folder / "gentle"
+    apa(["run", "guo2015-case4", "--fmus", "none", "--out", str(case4)])
+    apa(["run", "guo2015-case4", "--fmus", "none", "--no-figure", "--out", str(gentle), *GENTLE])
+    overlay = folder / "overlay.html"
+    limits = ["--abs", "0.01", "--time", "0.2"]
+    apa(["compare", str(case4 / "run.mcap"), str(gentle / "run.mcap"), "--html", str(overlay), *limits])
+    apa(["test", "guo2015-*", "fault-*", "--fmus", "none", "--out", str(folder / "tests")])
+    return {"report": case4 / "report.html", "compare": overlay, "tests": folder / "tests" / "index.html"}
+
+
+def photograph(browser: Any, path: Path, name: str, fragment: str, options: dict[str, Any]) -> None:
+    """Write docs/images/``name``.png of a page at a moment."""
+    context = browser.new_context(**options)
+    page = context.new_page()
+    page.goto(path.as_uri() + fragment)
+    if fragment:
+        page.wait_for_selector("html[data-ready]")
+        page.wait_for_timeout(300)
+    page.screenshot(path=IMAGES / f"{name}.png")
+    context.close()
+    print(f"docs/images/{name}.png")
+
+
+if __name__ == "__main__":
+    main()

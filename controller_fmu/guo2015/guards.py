@@ -15,6 +15,23 @@ TO_Q3 = int(Phase.TO_Q3)
 TO_Q4 = int(Phase.TO_Q4)
 STRAIGHTEN = int(Phase.STRAIGHTEN)
 NTBPTCWPT = int(System.NTBPTCWPT)
+WHEEL_SET_FOR_PATH = int(Guard.WHEEL_SET_FOR_PATH)
+WHEEL_SET_FOR_Q2 = int(Guard.WHEEL_SET_FOR_Q2)
+WHEEL_SET_FOR_Q1 = int(Guard.WHEEL_SET_FOR_Q1)
+WHEEL_SET_FOR_Q4 = int(Guard.WHEEL_SET_FOR_Q4)
+WHEEL_SET_FOR_Q3 = int(Guard.WHEEL_SET_FOR_Q3)
+WHEEL_STRAIGHT = int(Guard.WHEEL_STRAIGHT)
+OFF_PATH = int(Guard.OFF_PATH)
+PATH_END = int(Guard.PATH_END)
+PAST_Q2 = int(Guard.PAST_Q2)
+AT_Q1_RIGHT = int(Guard.AT_Q1_RIGHT)
+AT_Q1_WRONG = int(Guard.AT_Q1_WRONG)
+POSE_RIGHT = int(Guard.POSE_RIGHT)
+PAST_Q4 = int(Guard.PAST_Q4)
+AT_Q3 = int(Guard.AT_Q3)
+STANDING_TO_DRIVE = int(Guard.STANDING_TO_DRIVE)
+STANDING_AT_END = int(Guard.STANDING_AT_END)
+STANDING_AT_END_WRONG = int(Guard.STANDING_AT_END_WRONG)
 
 
 def bit(guard: int, holds: bool) -> int:
@@ -31,12 +48,12 @@ def wheel_guards(leg: int, wheel: float, request: float, tolerance: float) -> in
     """Return the bits that say the wheel stands at ``request`` for its leg, or straight."""
     there = abs(wheel - request) <= tolerance
     return (
-        bit(Guard.WHEEL_SET_FOR_PATH.value, there and leg == PATH_TRACKING)
-        | bit(Guard.WHEEL_SET_FOR_Q2.value, there and leg == TO_Q2)
-        | bit(Guard.WHEEL_SET_FOR_Q1.value, there and leg == TO_Q1)
-        | bit(Guard.WHEEL_SET_FOR_Q4.value, there and leg == TO_Q4)
-        | bit(Guard.WHEEL_SET_FOR_Q3.value, there and leg == TO_Q3)
-        | bit(Guard.WHEEL_STRAIGHT.value, abs(wheel) <= tolerance)
+        bit(WHEEL_SET_FOR_PATH, there and leg == PATH_TRACKING)
+        | bit(WHEEL_SET_FOR_Q2, there and leg == TO_Q2)
+        | bit(WHEEL_SET_FOR_Q1, there and leg == TO_Q1)
+        | bit(WHEEL_SET_FOR_Q4, there and leg == TO_Q4)
+        | bit(WHEEL_SET_FOR_Q3, there and leg == TO_Q3)
+        | bit(WHEEL_STRAIGHT, abs(wheel) <= tolerance)
     )
 
 
@@ -53,14 +70,14 @@ def way_guards(tracking: Tracking, pose: Pose, path: TwoArcPath, speed: float, p
     right = within(pose.y, pose.heading, share * limit.park_lateral, share * limit.park_heading)
     stop = stopping_distance(speed, params.prompting)
     return (
-        bit(Guard.OFF_PATH.value, points and left)
-        | bit(Guard.PATH_END.value, to_end <= stop)
-        | bit(Guard.PAST_Q2.value, pose.x > q2.x or pose.y > q2.y)
-        | bit(Guard.AT_Q1_RIGHT.value, at_q1 and resumed)
-        | bit(Guard.AT_Q1_WRONG.value, at_q1 and not resumed)
-        | bit(Guard.POSE_RIGHT.value, right)
-        | bit(Guard.PAST_Q4.value, pose.x > params.ntbpt.q4_distance)
-        | bit(Guard.AT_Q3.value, pose.x <= stop)
+        bit(OFF_PATH, points and left)
+        | bit(PATH_END, to_end <= stop)
+        | bit(PAST_Q2, pose.x > q2.x or pose.y > q2.y)
+        | bit(AT_Q1_RIGHT, at_q1 and resumed)
+        | bit(AT_Q1_WRONG, at_q1 and not resumed)
+        | bit(POSE_RIGHT, right)
+        | bit(PAST_Q4, pose.x > params.ntbpt.q4_distance)
+        | bit(AT_Q3, pose.x <= stop)
     )
 
 
@@ -72,7 +89,7 @@ def standing_guards(leg: int, pose: Pose, inputs: ControllerInput, params: Contr
     at_end = leg == STRAIGHTEN
     wrong = params.system == NTBPTCWPT and not within(pose.y, pose.heading, limit.park_lateral, limit.park_heading)
     return (
-        bit(Guard.STANDING_TO_DRIVE.value, not at_end)
-        | bit(Guard.STANDING_AT_END.value, at_end and not wrong)
-        | bit(Guard.STANDING_AT_END_WRONG.value, at_end and wrong)
+        bit(STANDING_TO_DRIVE, not at_end)
+        | bit(STANDING_AT_END, at_end and not wrong)
+        | bit(STANDING_AT_END_WRONG, at_end and wrong)
     )

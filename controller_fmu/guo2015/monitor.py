@@ -13,6 +13,15 @@ from modelkit.vocabulary import Pose
 STANDBY = int(Phase.STANDBY)
 STEERING_PHASES = (int(Phase.PRE_STEER), int(Phase.STRAIGHTEN))
 
+VEHICLE_FAULT = int(Reason.VEHICLE_FAULT)
+NO_REASON = int(Reason.NONE)
+POSE_FROZEN = int(Reason.POSE_FROZEN)
+STEERING_FAULT = int(Reason.STEERING_FAULT)
+WRONG_DIRECTION = int(Reason.WRONG_DIRECTION)
+NOT_STOPPING = int(Reason.NOT_STOPPING)
+NOT_MOVING = int(Reason.NOT_MOVING)
+TOO_MANY_SHIFTS = int(Reason.TOO_MANY_SHIFTS)
+TIMEOUT = int(Reason.TIMEOUT)
 FARTHEST = 1e9
 """No position [m], heading [rad] or speed [m/s] is beyond this; NaN is not within it either."""
 DIRECTION_OF_PHASE = (0, 0, -1, 0, 1, -1, 1, -1, 0, 0, 0, 0)
@@ -63,24 +72,24 @@ def reason_to_fail(
     """Return the first Reason that holds, ``NONE`` if the car and the driver are as they should be."""
     limit = params.limit
     if inputs.vehicle_fault != 0:
-        return Reason.VEHICLE_FAULT.value
+        return VEHICLE_FAULT
     if phase == STANDBY:
-        return Reason.NONE.value
+        return NO_REASON
     if state.frozen * 1e-9 > limit.pose_frozen:
-        return Reason.POSE_FROZEN.value
+        return POSE_FROZEN
     if state.lag * 1e-9 > limit.wheel_fault:
-        return Reason.STEERING_FAULT.value
+        return STEERING_FAULT
     if state.wrong_way * 1e-9 > limit.wrong_direction:
-        return Reason.WRONG_DIRECTION.value
+        return WRONG_DIRECTION
     if state.stopping * 1e-9 > limit.stopping:
-        return Reason.NOT_STOPPING.value
+        return NOT_STOPPING
     if state.waiting * 1e-9 > limit.patience:
-        return Reason.STEERING_FAULT.value if phase in STEERING_PHASES else Reason.NOT_MOVING.value
+        return STEERING_FAULT if phase in STEERING_PHASES else NOT_MOVING
     if shifts > limit.shifts:
-        return Reason.TOO_MANY_SHIFTS.value
+        return TOO_MANY_SHIFTS
     if running_ns * 1e-9 > limit.duration:
-        return Reason.TIMEOUT.value
-    return Reason.NONE.value
+        return TIMEOUT
+    return NO_REASON
 
 
 def is_usable_input(inputs: ControllerInput) -> bool:

@@ -28,7 +28,14 @@ STOP = int(Phase.STOP)
 STRAIGHTEN = int(Phase.STRAIGHTEN)
 PARKED = int(Phase.PARKED)
 FAILED = int(Phase.FAILED)
-NO_REASON = Reason.NONE.value
+NO_REASON = int(Reason.NONE)
+BAD_INPUT = int(Reason.BAD_INPUT)
+NO_PATH = int(Reason.NO_PATH)
+LEFT_PATH = int(Reason.LEFT_PATH)
+MISSED_TARGET = int(Reason.MISSED_TARGET)
+GUARD_TAKEOVER = int(Guard.TAKEOVER)
+GUARD_FAULT = int(Guard.FAULT)
+GUARD_PLANNED = int(Guard.PLANNED)
 
 
 class ParkingState(NamedTuple):
@@ -65,7 +72,7 @@ def sample(state: ParkingState, inputs: ControllerInput, params: ControllerParam
     if state.phase >= PARKED:
         return _ended(state, state.phase, state.reason, inputs.driver_takeover)
     if not is_usable_input(inputs):
-        return _ended(state, FAILED, Reason.BAD_INPUT.value, inputs.driver_takeover)
+        return _ended(state, FAILED, BAD_INPUT, inputs.driver_takeover)
     planned = state.plan
     if state.phase == STANDBY:
         smallest = params.wheelbase / math.tan(params.steering_wheel_limit / params.steering_ratio)
@@ -126,12 +133,12 @@ def _reason(
     if reason != NO_REASON:
         return reason
     if not planned.path.found:
-        return Reason.NO_PATH.value
+        return NO_PATH
     if abs(tracking.lateral_error) > limit.lost_lateral:
-        return Reason.LEFT_PATH.value
+        return LEFT_PATH
     straight = state.phase == STRAIGHTEN and abs(inputs.steering_wheel_angle) <= limit.wheel
     if straight and not within(pose.y, pose.heading, limit.miss_lateral, limit.miss_heading):
-        return Reason.MISSED_TARGET.value
+        return MISSED_TARGET
     return NO_REASON
 
 
@@ -147,9 +154,9 @@ def _guards(
     wheel = inputs.steering_wheel_angle
     standing = standing_guards(state.leg, pose, inputs, params)
     return (
-        bit(Guard.TAKEOVER.value, inputs.driver_takeover)
-        | bit(Guard.FAULT.value, reason != NO_REASON)
-        | bit(Guard.PLANNED.value, planned.path.found and abs(inputs.measured_speed) <= params.threshold.standstill)
+        bit(GUARD_TAKEOVER, inputs.driver_takeover)
+        | bit(GUARD_FAULT, reason != NO_REASON)
+        | bit(GUARD_PLANNED, planned.path.found and abs(inputs.measured_speed) <= params.threshold.standstill)
         | wheel_guards(state.leg, wheel, state.request, params.threshold.wheel)
         | way_guards(tracking, pose, planned.path, inputs.measured_speed, params)
         | standing

@@ -4,6 +4,12 @@ from enum import IntEnum
 from math import pi
 from typing import Annotated, NamedTuple
 
+from controller_fmu.hsic.params import HsicParams
+from controller_fmu.hsic.signals import HsicSignals
+from controller_fmu.preview.params import PreviewParams
+from controller_fmu.preview.signals import PreviewSignals
+from controller_fmu.zhang2022.params import ZhangParams
+from controller_fmu.zhang2022.signals import ZhangSignals
 from modelkit.signal import Signal
 from modelkit.vocabulary import Gear, Pose, Prompt
 
@@ -18,6 +24,12 @@ class System(IntEnum):
     """Path tracking combined with point tracking (Guo 2015, section 4)."""
     NTBPT = 1
     """Path tracking only (Guo 2015, section 3)."""
+    ZHANG2022 = 2
+    """Quintic path, MPC steering, PID speed (Zhang 2022)."""
+    HSIC = 3
+    """Human-simulated intelligent control."""
+    PREVIEW = 4
+    """Dual-point preview with fuzzy steering and speed on a road (does not park)."""
 
 
 class Phase(IntEnum):
@@ -103,6 +115,8 @@ class ControllerOutput(NamedTuple):
     advised_speed: Annotated[float, Signal("m/s", "largest speed advised with the prompt, >= 0")] = 0.0
     speed_control_active: Annotated[bool, Signal("1", "the controller drives: speed_request holds")] = False
     speed_request: Annotated[float, Signal("m/s", "speed asked for, reverse negative")] = 0.0
+    force_control_active: Annotated[bool, Signal("1", "force_request holds, not speed_request")] = False
+    force_request: Annotated[float, Signal("N", "drive and brake force asked for, forward positive")] = 0.0
     brake_request: Annotated[bool, Signal("1", "the controller brakes to standstill and holds")] = False
     phase: Annotated[int, Signal("1", "state of the manoeuvre chart", states=Phase)] = 0
     reason: Annotated[int, Signal("1", "why the controller failed", states=Reason)] = 0
@@ -111,6 +125,9 @@ class ControllerOutput(NamedTuple):
     lateral_error: Annotated[float, Signal("m", "y of the car minus y of the reference, in the slot's frame")] = 0.0
     heading_error: Annotated[float, Signal("rad", "heading of the car minus heading of the reference")] = 0.0
     path: Path = Path()
+    zhang2022: ZhangSignals = ZhangSignals()
+    hsic: HsicSignals = HsicSignals()
+    preview: PreviewSignals = PreviewSignals()
 
 
 class NtbptParams(NamedTuple):
@@ -196,3 +213,6 @@ class ControllerParams(NamedTuple):
     threshold: ThresholdParams = ThresholdParams()
     prompting: PromptParams = PromptParams()
     limit: LimitParams = LimitParams()
+    zhang2022: ZhangParams = ZhangParams()
+    hsic: HsicParams = HsicParams()
+    preview: PreviewParams = PreviewParams()

@@ -3,12 +3,10 @@
 import math
 from typing import NamedTuple
 
-from controller_fmu.preview.params import Camera, PreviewParams
+from controller_fmu.preview.params import PreviewParams
 from controller_fmu.preview.road import ahead, lateral_offset, longitudinal_offset, road_at
 from modelkit.maths import wrap_angle
 from modelkit.vocabulary import Pose
-
-GEOMETRY = int(Camera.GEOMETRY)
 
 
 class Sight(NamedTuple):
@@ -57,12 +55,3 @@ def look(road_s: float, centre: Pose, l1: float, params: PreviewParams) -> Sight
     """Return yL and epsL measured from the pose: the road where it crosses the line L1 ahead of the car."""
     point = road_at(params.road, ahead(params.road, road_s + l1, centre, l1)).pose
     return Sight(lateral_offset(centre, point.x, point.y), wrap_angle(point.heading - centre.heading))
-
-
-def next_sight(
-    sight: Sight, moved: Motion, kappa1: float, road_s: float, centre: Pose, l1: float, params: PreviewParams
-) -> Sight:
-    """Return the errors from the chosen camera."""
-    if params.camera == GEOMETRY:
-        return look(road_s, centre, l1, params)
-    return integrate_sight(sight, moved, kappa1, l1)

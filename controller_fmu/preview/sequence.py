@@ -1,27 +1,11 @@
 """The two preview distances and the set speed as the car nears, drives and leaves a curve (preview paper, Fig. 4)."""
 
-from enum import IntEnum
 from typing import NamedTuple
 
 from controller_fmu.preview.params import PreviewParams
 from controller_fmu.preview.safe_speed import safe_speed
+from controller_fmu.preview.stage import Stage
 from modelkit.maths import clamp
-
-
-class Stage(IntEnum):
-    """What the two preview points have seen."""
-
-    STRAIGHT = 0
-    """L2 alternates between near and far."""
-    SLOWING = 1
-    """Far L2 has seen the curve (A): slow down, L2 = L1 + 2."""
-    SHORTENED = 2
-    """Near L2 has seen it (B): L1 from (6), L2 unchanged."""
-    CURVE = 3
-    """L1 has seen it (C): steer, L2 = L1 + 2."""
-    LEAVING = 4
-    """L2 has seen the exit (D)."""
-
 
 CURVE = int(Stage.CURVE)
 LEAVING = int(Stage.LEAVING)

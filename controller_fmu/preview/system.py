@@ -1,13 +1,14 @@
 """The preview system as one sampled step: see, sequence, steer, drive."""
 
-from typing import Annotated, NamedTuple
+from typing import NamedTuple
 
 from controller_fmu.preview.control import drive_force, steering_angle
 from controller_fmu.preview.params import Camera, Method, PreviewParams
-from controller_fmu.preview.preview import Sight, centre_of_gravity, motion, next_sight
+from controller_fmu.preview.preview import Sight, centre_of_gravity, integrate_sight, look, motion
 from controller_fmu.preview.road import curvature_at, project, road_length
-from controller_fmu.preview.sequence import Sequence, Stage, advance, straight_distance
-from modelkit.signal import Signal
+from controller_fmu.preview.sequence import Sequence, advance, straight_distance
+from controller_fmu.preview.signals import PreviewSignals
+from controller_fmu.preview.stage import Stage
 from modelkit.vocabulary import Pose
 
 KINEMATICS = int(Camera.KINEMATICS)
@@ -24,20 +25,7 @@ class PreviewState(NamedTuple):
     sight: Sight = Sight()
     sequence: Sequence = Sequence()
     last_error: float = 0.0
-
-
-class PreviewSignals(NamedTuple):
-    """What the preview system saw and chose."""
-
-    s: Annotated[float, Signal("m", "arc length of the car along the road")] = 0.0
-    stage: Annotated[int, Signal("1", "stage of the preview sequence", states=Stage)] = 0
-    l1: Annotated[float, Signal("m", "first preview distance")] = 0.0
-    l2: Annotated[float, Signal("m", "second preview distance")] = 0.0
-    kappa1: Annotated[float, Signal("1/m", "road curvature at the first preview point")] = 0.0
-    kappa2: Annotated[float, Signal("1/m", "road curvature at the second preview point")] = 0.0
-    y_l: Annotated[float, Signal("m", "lateral error at the first preview point, road to the left positive")] = 0.0
-    eps_l: Annotated[float, Signal("rad", "heading error at the first preview point, road turning left positive")] = 0.0
-    set_speed: Annotated[float, Signal("m/s", "speed set by the sequence")] = 0.0
+    signals: PreviewSignals = PreviewSignals()
 
 
 class PreviewCommand(NamedTuple):
@@ -46,7 +34,6 @@ class PreviewCommand(NamedTuple):
     front_wheel_angle: float
     force: float
     finished: bool
-    signals: PreviewSignals
 
 
 def preview_step(
@@ -56,11 +43,13 @@ def preview_step(
     centre = centre_of_gravity(rear, params.centre_to_rear)
     before = state.centre if state.started else centre
     moved = motion(before, centre)
-    s = _arc_length(state.s, moved.forward, centre, params)
+    s = _arc_length(state, moved.forward, centre, params)
     held = state.sequence
     kappa1 = curvature_at(params.road, s + held.l1)
     kappa2 = curvature_at(params.road, s + held.l2)
-    sight = next_sight(state.sight, moved, kappa1, s, centre, held.l1, params)
+    sight = look(s, centre, held.l1, params)
+    if state.started and params.camera == KINEMATICS:
+        sight = integrate_sight(state.sight, moved, kappa1, held.l1)
     sequence = _sequence(held, kappa1, kappa2, speed, params, dt)
     error = speed - sequence.set_speed
     rate = (error - state.last_error) / dt if state.started else 0.0
@@ -68,15 +57,15 @@ def preview_step(
         s, sequence.stage, sequence.l1, sequence.l2, kappa1, kappa2, sight.y_l, sight.eps_l, sequence.set_speed
     )
     finished = s + sequence.l1 > road_length(params.road)
-    command = PreviewCommand(steering_angle(sight, params), drive_force(error, rate, params), finished, signals)
-    return PreviewState(True, centre, s, sight, sequence, error), command
+    command = PreviewCommand(steering_angle(sight, params), drive_force(error, rate, params), finished)
+    return PreviewState(True, centre, s, sight, sequence, error, signals), command
 
 
-def _arc_length(s: float, forward: float, centre: Pose, params: PreviewParams) -> float:
+def _arc_length(state: PreviewState, forward: float, centre: Pose, params: PreviewParams) -> float:
     """Return the car's arc length [m]: projected on the road, or driven distance where (2) stands for the camera."""
-    if params.camera == KINEMATICS:
-        return s + forward
-    return project(params.road, s, centre.x, centre.y)
+    if state.started and params.camera == KINEMATICS:
+        return state.s + forward
+    return project(params.road, state.s, centre.x, centre.y)
 
 
 def _sequence(held: Sequence, kappa1: float, kappa2: float, speed: float, params: PreviewParams, dt: float) -> Sequence:

@@ -72,7 +72,7 @@ def drive(params: PreviewParams, start_speed: float = 7.0, dt: float = 0.01, lon
                 command.force,
                 math.atan2(x[4], x[3]),
                 offset,
-                command.signals,
+                state.signals,
             )
         )
         x = integrate(x, command.front_wheel_angle, command.force, dt)

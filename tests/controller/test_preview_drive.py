@@ -6,7 +6,7 @@ import pytest
 from preview_car import Row, drive
 
 from controller_fmu.preview.params import Camera, Method, PreviewParams
-from controller_fmu.preview.sequence import Stage
+from controller_fmu.preview.stage import Stage
 
 P = PreviewParams()
 CURVES = ((100.0, -0.01), (357.08, 0.02), (616.16, -0.04), (796.7, 0.05))

@@ -3,7 +3,8 @@
 import pytest
 
 from controller_fmu.preview.params import PreviewParams
-from controller_fmu.preview.sequence import Sequence, Stage, advance, curve_distance, straight_distance
+from controller_fmu.preview.sequence import Sequence, advance, curve_distance, straight_distance
+from controller_fmu.preview.stage import Stage
 
 P = PreviewParams()
 

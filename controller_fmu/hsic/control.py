@@ -1,0 +1,56 @@
+"""Curvature and speed of each control mode."""
+
+from controller_fmu.hsic.characteristic_states import Errors, Stage
+from controller_fmu.hsic.params import HsicGains
+from controller_fmu.hsic.rules import SpeedMode, SteerMode
+from modelkit.maths import clamp
+
+TURN_IN = Stage.TURN_IN.value
+COUNTER = Stage.COUNTER.value
+STAND = SpeedMode.STAND.value
+FAST = SpeedMode.FAST.value
+APPROACH = SpeedMode.APPROACH.value
+STRAIGHT = SteerMode.STRAIGHT.value
+EXTREMUM_HOLD = SteerMode.EXTREMUM_HOLD.value
+BANG_BANG = SteerMode.BANG_BANG.value
+PID = SteerMode.PID.value
+STRONG_PD = SteerMode.STRONG_PD.value
+SHARPNESS = 10.0
+"""Slope of the bang-bang's edge, so that it does not chatter on its switching line."""
+
+
+def curvature(
+    mode: int, stage: int, found: Errors, direction: int, integral: float, arc: float, lock: float, gain: HsicGains
+) -> float:
+    """Return the curvature [1/m] asked for, left positive, held to the car's ``lock``.
+
+    With s the way driven, y' = d theta and theta' = d kappa (d = +1 forward, -1 in reverse), so
+    kappa = -kp y - kd y' gives y'' + kd y' + kp y = 0 in either direction. Bang-bang is the same
+    switching line with a steep slope. Extremum hold keeps the planned ``arc``: to the right while
+    turning in, to the left while counter-steering (in reverse).
+    """
+    if mode == STRAIGHT:
+        return 0.0
+    if mode == EXTREMUM_HOLD and stage == TURN_IN:
+        return -arc
+    if mode == EXTREMUM_HOLD and stage == COUNTER:
+        return arc
+    line = gain.lateral * found.lateral + gain.heading * direction * found.heading
+    if mode == BANG_BANG or mode == EXTREMUM_HOLD:
+        line = SHARPNESS * line
+    if mode == STRONG_PD:
+        line = gain.strengthened * line
+    if mode == PID:
+        line = line + gain.integral * integral
+    return clamp(-line, -lock, lock)
+
+
+def speed(mode: int, found: Errors, gain: HsicGains) -> float:
+    """Return the speed [m/s] without its sign."""
+    if mode == STAND:
+        return 0.0
+    if mode == FAST:
+        return gain.fast
+    if mode == APPROACH:
+        return clamp(gain.approach * abs(found.ahead), gain.creep, gain.fast)
+    return gain.slow

@@ -1,0 +1,52 @@
+"""Key points P1 to P4 from the car and the slot, in the slot's frame: P4 is the origin."""
+
+import math
+from typing import NamedTuple
+
+from controller_fmu.hsic.params import HsicSlot
+from controller_fmu.zhang2022.key_points import arc_line_arc
+from modelkit.vocabulary import Pose
+
+
+class KeyPoints(NamedTuple):
+    """Ready point, two turning points on the common tangent, and how far the car may go in the slot."""
+
+    p1: Pose = Pose()
+    p2: Pose = Pose()
+    p3: Pose = Pose()
+    radius: float = 1.0
+    found: bool = False
+    rearmost: float = 0.0
+    """Smallest x [m] of the rear axle in the slot."""
+    foremost: float = 0.0
+    """Largest x [m] of the rear axle in the slot."""
+
+
+def ready_point(slot: HsicSlot, wheelbase: float, radius: float) -> Pose:
+    """Return P1: parallel, ``ready_gap`` beside the neighbour, tail level with the slot's front end.
+
+    The car stands centred in the slot at P4. Where tail-level is too near for two arcs of ``radius``
+    (S^2 + H^2 < 4 H R) the point lies as far ahead as they need.
+    """
+    y = slot.ready_gap + 0.5 * (slot.slot_width + slot.width)
+    length = slot.front_overhang + wheelbase + slot.rear_overhang
+    x = 0.5 * (slot.slot_length + length)
+    need = 4.0 * y * radius - y * y
+    if need > x * x:
+        x = math.sqrt(need) * 1.001
+    return Pose(x, y, 0.0)
+
+
+def key_points(start: Pose, slot: HsicSlot, wheelbase: float, radius: float) -> KeyPoints:
+    """Return the key points of the way from ``start`` (taken as P1, parallel) to the origin.
+
+    P2 and P3 are the ends of the common tangent of two arcs of ``radius`` [m].
+    """
+    arcs = arc_line_arc(start.x, start.y, radius)
+    sin = math.sin(arcs.angle)
+    cos = math.cos(arcs.angle)
+    p3 = Pose(radius * sin, radius * (1.0 - cos), arcs.angle)
+    p2 = Pose(p3.x + arcs.line * cos, p3.y + arcs.line * sin, arcs.angle)
+    room = 0.5 * (slot.slot_length - slot.front_overhang - wheelbase - slot.rear_overhang) - slot.end_gap
+    room = room if room > 0.0 else 0.0
+    return KeyPoints(start, p2, p3, radius, arcs.line >= 0.0 and arcs.angle > 0.0, -room, room)

@@ -1,0 +1,67 @@
+"""Outputs of human-simulated intelligent control."""
+
+from controller_fmu.hsic.characteristic_states import errors
+from controller_fmu.hsic.key_points import KeyPoints
+from controller_fmu.hsic.rules import RULES
+from controller_fmu.hsic.signals import HsicSignals
+from controller_fmu.hsic.system import HsicState
+from controller_fmu.interface import ControllerOutput, ControllerParams, Path, Phase, Segment
+from controller_fmu.slot_frame import SlotFrame, to_world
+from modelkit.vocabulary import Pose, Prompt
+
+PRE_STEER = Phase.PRE_STEER.value
+PATH_TRACKING = Phase.PATH_TRACKING.value
+STRAIGHTEN = Phase.STRAIGHTEN.value
+TAKEOVER = Phase.TAKEOVER.value
+NO_PROMPT = Prompt.NONE.value
+
+
+def tangent_error(points: KeyPoints, pose: Pose) -> float:
+    """Return how far ``pose`` lies left of the common tangent of the two arcs [m]."""
+    return errors(pose, points.p3, 0.0, 1).lateral
+
+
+def planned_path(points: KeyPoints, frame: SlotFrame) -> Path:
+    """Return arc, common tangent, arc; empty without key points."""
+    if not points.found:
+        return Path(Pose(0.0, 0.0, 0.0), (Segment(0.0, 0.0), Segment(0.0, 0.0), Segment(0.0, 0.0)))
+    k = frame.mirror / points.radius
+    arc = points.radius * points.p3.heading
+    line = errors(points.p2, points.p3, 0.0, 1).ahead
+    return Path(to_world(points.p1, frame), (Segment(arc, -k), Segment(line, 0.0), Segment(arc, k)))
+
+
+def hsic_outputs(state: HsicState, params: ControllerParams) -> ControllerOutput:
+    """Return the outputs that hold until the next sample."""
+    active = state.phase == PRE_STEER or state.phase == PATH_TRACKING or state.phase == STRAIGHTEN
+    modes = RULES[state.characteristic]
+    signals = HsicSignals(
+        characteristic=state.characteristic,
+        stage=state.course.stage,
+        speed_mode=modes[0],
+        steer_mode=modes[1],
+        distance=state.found.distance,
+        tangent_error=tangent_error(state.course.points, state.pose),
+    )
+    turn = state.frame.mirror * params.steering_ratio * state.angle
+    wheel = turn if active else 0.0
+    brake = state.phase != PATH_TRACKING and state.phase != TAKEOVER
+    return ControllerOutput(
+        steering_wheel_request=wheel,
+        steering_active=active,
+        prompt=NO_PROMPT,
+        advised_speed=0.0,
+        speed_control_active=active,
+        speed_request=state.set_speed,
+        force_control_active=False,
+        force_request=0.0,
+        brake_request=brake,
+        phase=state.phase,
+        reason=state.reason,
+        shifts=state.shifts,
+        reference=to_world(state.course.goal, state.frame),
+        lateral_error=state.found.lateral,
+        heading_error=state.found.heading,
+        path=planned_path(state.course.points, state.frame),
+        hsic=signals,
+    )

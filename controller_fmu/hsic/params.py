@@ -1,0 +1,73 @@
+"""What can be set in human-simulated intelligent control: car and slot, thresholds, gains, speeds."""
+
+from math import pi
+from typing import Annotated, NamedTuple
+
+from modelkit.signal import Signal
+
+PAPER = "HSIC paper"
+ZHANG = "Zhang 2022, Table 1"
+HOUSE = "chosen; the source states none"
+DEGREE = pi / 180.0
+
+
+class HsicSlot(NamedTuple):
+    """Body of the car and the slot it is centred in."""
+
+    width: Annotated[float, Signal("m", "width of the car", 0.1, 5.0, ZHANG)] = 1.82
+    front_overhang: Annotated[float, Signal("m", "front axle to bumper", 0.0, 5.0, ZHANG)] = 0.966
+    rear_overhang: Annotated[float, Signal("m", "rear axle to bumper", 0.0, 5.0, ZHANG)] = 0.85
+    slot_length: Annotated[float, Signal("m", "length of the slot", 0.1, 30.0, HOUSE)] = 7.0
+    slot_width: Annotated[float, Signal("m", "width of the slot", 0.1, 10.0, HOUSE)] = 2.2
+    ready_gap: Annotated[float, Signal("m", "gap to the neighbour at the ready point", 0.0, 5.0, PAPER)] = 0.5
+    end_gap: Annotated[float, Signal("m", "gap kept to the slot's ends", 0.0, 5.0, HOUSE)] = 0.2
+    radius_reserve: Annotated[float, Signal("1", "planned radius over the smallest", 1.0, 3.0, HOUSE)] = 1.05
+
+
+class HsicThresholds(NamedTuple):
+    """When a state counts as aligned, near, reached, parked."""
+
+    aligned: Annotated[float, Signal("rad", "heading error below which the car is aligned", 1e-3, 1.5, HOUSE)] = (
+        5.0 * DEGREE
+    )
+    turned: Annotated[float, Signal("rad", "heading error that ends an arc", 1e-4, 1.5, HOUSE)] = 0.4 * DEGREE
+    near: Annotated[float, Signal("m", "distance below which the car is near", 1e-3, 20.0, HOUSE)] = 0.8
+    reached: Annotated[float, Signal("m", "distance at which a key point is reached", 1e-4, 1.0, HOUSE)] = 0.01
+    ready_heading: Annotated[float, Signal("rad", "heading error accepted at the ready point", 1e-4, 0.5, HOUSE)] = (
+        1.0 * DEGREE
+    )
+    ready_lateral: Annotated[float, Signal("m", "lateral error accepted at the ready point", 1e-3, 2.0, HOUSE)] = 0.1
+    retreat: Annotated[float, Signal("m", "driven back for another approach", 0.1, 20.0, HOUSE)] = 3.0
+    parked_heading: Annotated[float, Signal("rad", "largest heading error of a parked car", 1e-4, 0.5, PAPER)] = (
+        5.0 * DEGREE
+    )
+    parked_lateral: Annotated[float, Signal("m", "largest lateral error of a parked car", 1e-4, 1.0, PAPER)] = 0.1
+    shuffle_share: Annotated[
+        float, Signal("1", "share of the parked limits that ends the shuffle", 0.01, 1.0, HOUSE)
+    ] = 0.6
+    wheel: Annotated[float, Signal("rad", "steering wheel counts as turned", 1e-4, 1.0, HOUSE)] = 2.0 * DEGREE
+
+
+class HsicGains(NamedTuple):
+    """Steering and speed of the control modes."""
+
+    lateral: Annotated[float, Signal("1/m2", "proportional, lateral error to curvature", 0.0, 100.0, HOUSE)] = 2.5
+    heading: Annotated[
+        float, Signal("1/m", "derivative, heading error (the rate of the lateral one) to curvature", 0.0, 100.0, HOUSE)
+    ] = 4.0
+    integral: Annotated[
+        float, Signal("1/m3", "integral over the way, lateral error to curvature", 0.0, 100.0, HOUSE)
+    ] = 0.1
+    strengthened: Annotated[float, Signal("1", "factor on both where the car moves away", 1.0, 10.0, HOUSE)] = 2.0
+    fast: Annotated[float, Signal("m/s", "speed far from the key point", 0.01, 3.0, HOUSE)] = 0.8
+    slow: Annotated[float, Signal("m/s", "speed with a large heading error", 0.01, 3.0, HOUSE)] = 0.35
+    approach: Annotated[float, Signal("1/s", "speed per distance near the key point", 0.01, 10.0, HOUSE)] = 0.8
+    creep: Annotated[float, Signal("m/s", "smallest speed", 1e-3, 1.0, HOUSE)] = 0.08
+
+
+class HsicParams(NamedTuple):
+    """Slot, thresholds, gains."""
+
+    slot: HsicSlot = HsicSlot()
+    threshold: HsicThresholds = HsicThresholds()
+    gain: HsicGains = HsicGains()

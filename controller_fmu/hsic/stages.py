@@ -1,0 +1,103 @@
+"""The four stages: which key point is steered for, and when the next stage begins."""
+
+from typing import NamedTuple
+
+from controller_fmu.hsic.characteristic_states import Errors, Stage, errors
+from controller_fmu.hsic.key_points import KeyPoints, key_points
+from controller_fmu.hsic.params import HsicParams
+from modelkit.vocabulary import Pose
+
+READY = Stage.READY.value
+TURN_IN = Stage.TURN_IN.value
+TANGENT = Stage.TANGENT.value
+COUNTER = Stage.COUNTER.value
+SHUFFLE = Stage.SHUFFLE.value
+
+
+class Course(NamedTuple):
+    """Stage, key points, and the point steered for."""
+
+    stage: int = READY
+    points: KeyPoints = KeyPoints()
+    goal: Pose = Pose()
+    done: bool = False
+    lost: bool = False
+    """The key points cannot be reached from where the car stands ready."""
+    hold: bool = True
+    """Stand until the wheel is where it should be."""
+    way: int = 1
+    """Direction in which the goal is approached, +1 forward."""
+
+
+def is_parked(pose: Pose, share: float, params: HsicParams) -> bool:
+    """Return whether heading and lateral error are within a share of the paper's limits: 5 deg, 0.1 m."""
+    threshold = params.threshold
+    return abs(pose.heading) < share * threshold.parked_heading and abs(pose.y) < share * threshold.parked_lateral
+
+
+def advance(course: Course, pose: Pose, found: Errors, wheelbase: float, params: HsicParams) -> Course:
+    """Return the course after looking at the pose (slot frame) and its errors to the goal."""
+    arrived = course.way * found.ahead >= -params.threshold.reached
+    if course.stage == READY:
+        return _ready(course, pose, found, arrived, wheelbase, params)
+    if course.stage == TURN_IN:
+        if arrived or pose.heading >= course.goal.heading - params.threshold.turned:
+            return _go(course, TANGENT, course.points.p3, False, pose)
+        return course
+    if course.stage == TANGENT:
+        return _go(course, COUNTER, Pose(0.0, 0.0, 0.0), True, pose) if arrived else course
+    if course.stage == COUNTER:
+        return _counter(course, pose, arrived, params)
+    return _shuffle(course, pose, found, arrived, params)
+
+
+def _ready(course: Course, pose: Pose, found: Errors, arrived: bool, wheelbase: float, params: HsicParams) -> Course:
+    """Return P2 as goal if the car stands ready, else another approach to P1 with more room."""
+    threshold = params.threshold
+    if not arrived:
+        return course
+    p1 = course.points.p1
+    at_p1 = course.goal.x == p1.x
+    aligned = abs(found.heading) <= threshold.ready_heading and abs(found.lateral) <= threshold.ready_lateral
+    if aligned and pose.x >= p1.x - 0.1:
+        points = key_points(pose, params.slot, wheelbase, course.points.radius)
+        if points.found:
+            return Course(TURN_IN, points, points.p2, False, False, True, -1)
+    farther = Pose(p1.x + threshold.retreat, p1.y, 0.0)
+    return _go(course, READY, farther if at_p1 else p1, True, pose)
+
+
+def _counter(course: Course, pose: Pose, arrived: bool, params: HsicParams) -> Course:
+    """Return done at P4 if parked; otherwise on to the slot's end, then the shuffle."""
+    if arrived and is_parked(pose, 1.0, params):
+        return _done(course)
+    if arrived and pose.x <= course.points.rearmost + params.threshold.reached:
+        return _go(course, SHUFFLE, Pose(course.points.foremost, 0.0, 0.0), True, pose)
+    if arrived:
+        return _go(course, COUNTER, Pose(course.points.rearmost, 0.0, 0.0), False, pose)
+    return course
+
+
+def _shuffle(course: Course, pose: Pose, found: Errors, arrived: bool, params: HsicParams) -> Course:
+    """Return done as soon as the car is parked, else the other end of the slot when this one is reached."""
+    if is_parked(pose, params.threshold.shuffle_share, params):
+        return _done(course)
+    if not arrived:
+        return course
+    front = course.points.foremost
+    rear = course.points.rearmost
+    return _go(course, SHUFFLE, Pose(rear if course.goal.x == front else front, 0.0, 0.0), True, pose)
+
+
+def _go(course: Course, stage: int, goal: Pose, hold: bool, pose: Pose) -> Course:
+    way = way_to(goal, pose)
+    return Course(stage, course.points, goal, False, False, hold, way)
+
+
+def way_to(goal: Pose, pose: Pose) -> int:
+    """Return +1 if the goal is approached forward from ``pose``, -1 in reverse."""
+    return -1 if errors(pose, goal, 0.0, 1).ahead > 0.0 else 1
+
+
+def _done(course: Course) -> Course:
+    return Course(course.stage, course.points, course.goal, True, False, True, course.way)

@@ -1,0 +1,225 @@
+"""Human-simulated intelligent control at one sample: recognise, look up the rule, steer and drive."""
+
+import math
+from typing import NamedTuple
+
+from controller_fmu.guo2015.monitor import MonitorState, is_usable_input, reason_to_fail, watch
+from controller_fmu.hsic.characteristic_states import Errors, Stage, errors, recognise
+from controller_fmu.hsic.control import curvature, speed
+from controller_fmu.hsic.key_points import key_points, ready_point
+from controller_fmu.hsic.rules import RULES, SpeedMode
+from controller_fmu.hsic.stages import Course, advance, is_parked, way_to
+from controller_fmu.interface import ControllerInput, ControllerParams, Phase, Reason
+from controller_fmu.slot_frame import SlotFrame, to_slot
+from modelkit.maths import clamp
+from modelkit.vocabulary import Pose
+
+STANDBY = Phase.STANDBY.value
+PRE_STEER = Phase.PRE_STEER.value
+PATH_TRACKING = Phase.PATH_TRACKING.value
+TO_Q4 = Phase.TO_Q4.value
+STRAIGHTEN = Phase.STRAIGHTEN.value
+PARKED = Phase.PARKED.value
+FAILED = Phase.FAILED.value
+TAKEOVER = Phase.TAKEOVER.value
+NO_REASON = Reason.NONE.value
+BAD_INPUT = Reason.BAD_INPUT.value
+NO_PATH = Reason.NO_PATH.value
+LEFT_PATH = Reason.LEFT_PATH.value
+MISSED_TARGET = Reason.MISSED_TARGET.value
+TURN_ROUND = SpeedMode.TURN_ROUND.value
+READY = Stage.READY.value
+LOST = 3.0
+"""A key point's axis may be this many times farther off than a path before the car counts as lost."""
+
+
+class HsicState(NamedTuple):
+    """Everything the system remembers."""
+
+    phase: int = STANDBY
+    reason: int = NO_REASON
+    running_ns: int = 0
+    frame: SlotFrame = SlotFrame()
+    course: Course = Course()
+    direction: int = 1
+    """Direction last driven, +1 forward."""
+    shifts: int = 0
+    counted: int = 0
+    """Direction of the manoeuvre counted last; 0: none yet."""
+    characteristic: int = 0
+    integral: float = 0.0
+    """Lateral error over the way to the goal [m^2]."""
+    angle: float = 0.0
+    """Front-wheel angle asked for, in the slot's frame [rad]."""
+    set_speed: float = 0.0
+    found: Errors = Errors(0.0, 0.0, 0.0, 0.0, 0.0)
+    pose: Pose = Pose()
+    """The car's, in the slot's frame."""
+    monitor: MonitorState = MonitorState()
+
+
+def hsic_sample(state: HsicState, inputs: ControllerInput, params: ControllerParams, dt_ns: int) -> HsicState:
+    """Return the system one sample of ``dt_ns`` later."""
+    if state.phase >= PARKED:
+        return state
+    if not is_usable_input(inputs):
+        return _ended(state, FAILED, BAD_INPUT)
+    if inputs.driver_takeover:
+        return _ended(state, TAKEOVER, NO_REASON)
+    if state.phase == STANDBY:
+        return _planned(state, inputs, params)
+    pose = to_slot(inputs.odometry, state.frame)
+    watched = _watched_phase(state)
+    wheel = state.frame.mirror * params.steering_ratio * state.angle
+    monitor = watch(state.monitor, inputs, watched, wheel, dt_ns, params)
+    reason = reason_to_fail(monitor, inputs, watched, state.running_ns, state.shifts, params)
+    lost = abs(state.found.lateral) > LOST * params.threshold.lost_lateral
+    if reason == NO_REASON and state.course.stage != READY and lost:
+        reason = LEFT_PATH
+    if reason != NO_REASON:
+        return _ended(state, FAILED, reason)
+    if state.phase == STRAIGHTEN:
+        return _straightened(state, inputs, pose, monitor, params, dt_ns)
+    return _driven(state, inputs, pose, monitor, params, dt_ns)
+
+
+def _watched_phase(state: HsicState) -> int:
+    """Return the phase that drives as this state does, for the monitor."""
+    if state.phase != PATH_TRACKING:
+        return state.phase
+    return TO_Q4 if state.direction > 0 else PATH_TRACKING
+
+
+def _planned(state: HsicState, inputs: ControllerInput, params: ControllerParams) -> HsicState:
+    """Return the system on its way to the ready point, or failed where there are no key points."""
+    slot = params.hsic.slot
+    radius = slot.radius_reserve * params.wheelbase / math.tan(params.steering_wheel_limit / params.steering_ratio)
+    right = SlotFrame(params.target, 1.0)
+    frame = right if to_slot(inputs.odometry, right).y >= 0.0 else SlotFrame(params.target, -1.0)
+    p1 = ready_point(slot, params.wheelbase, radius)
+    points = key_points(p1, slot, params.wheelbase, radius)
+    phase = PRE_STEER if points.found else FAILED
+    reason = NO_REASON if points.found else NO_PATH
+    return HsicState(
+        phase=phase,
+        reason=reason,
+        running_ns=0,
+        frame=frame,
+        course=Course(READY, points, p1, False, False, True, way_to(p1, to_slot(inputs.odometry, frame))),
+        direction=1,
+        shifts=0,
+        counted=0,
+        characteristic=0,
+        integral=0.0,
+        angle=0.0,
+        set_speed=0.0,
+        found=state.found,
+        pose=state.pose,
+        monitor=state.monitor,
+    )
+
+
+def _driven(
+    state: HsicState, inputs: ControllerInput, pose: Pose, monitor: MonitorState, params: ControllerParams, dt_ns: int
+) -> HsicState:
+    """Return the system after one look at the situation and the rule that belongs to it."""
+    hsic = params.hsic
+    v = inputs.measured_speed
+    seen = errors(pose, state.course.goal, v, state.direction)
+    course = advance(state.course, pose, seen, params.wheelbase, hsic)
+    new_goal = course.goal.x != state.course.goal.x or course.stage != state.course.stage
+    found = errors(pose, course.goal, v, state.direction) if new_goal else seen
+    characteristic = recognise(course.stage, found, hsic.threshold)
+    speed_mode, steer_mode = RULES[characteristic]
+    direction = state.direction
+    hold = course.hold
+    if speed_mode == TURN_ROUND and abs(v) <= params.threshold.standstill:
+        direction = -1 if found.ahead > 0.0 else 1
+        hold = hold or direction != state.direction
+    turning = speed_mode == TURN_ROUND and direction == state.direction
+    integral = 0.0 if new_goal else state.integral + found.lateral * abs(v) * dt_ns * 1e-9
+    lock = math.tan(params.steering_wheel_limit / params.steering_ratio) / params.wheelbase
+    bend = curvature(steer_mode, course.stage, found, direction, integral, 1.0 / course.points.radius, lock, hsic.gain)
+    angle = math.atan(params.wheelbase * bend)
+    off = abs(inputs.steering_wheel_angle - state.frame.mirror * params.steering_ratio * angle)
+    if abs(v) <= params.threshold.standstill and off <= hsic.threshold.wheel:
+        hold = False
+    still = hold or turning or course.done
+    phase = STRAIGHTEN if course.done else PRE_STEER if still else PATH_TRACKING
+    counted = _counted(state, course.stage, phase, direction)
+    shifts = state.shifts + 1 if counted != state.counted else state.shifts
+    set_speed = 0.0 if still else direction * speed(speed_mode, found, hsic.gain)
+    return HsicState(
+        phase=phase,
+        reason=NO_REASON,
+        running_ns=state.running_ns + dt_ns,
+        frame=state.frame,
+        course=Course(course.stage, course.points, course.goal, course.done, course.lost, hold, course.way),
+        direction=direction,
+        shifts=shifts,
+        counted=counted,
+        characteristic=characteristic,
+        integral=clamp(integral, -1.0, 1.0),
+        angle=angle,
+        set_speed=set_speed,
+        found=found,
+        pose=pose,
+        monitor=monitor,
+    )
+
+
+def _counted(state: HsicState, stage: int, phase: int, direction: int) -> int:
+    """Return the direction of the manoeuvre being driven: the first reverse begins the first one."""
+    if phase != PATH_TRACKING or stage == READY or (state.counted == 0 and direction > 0):
+        return state.counted
+    return direction
+
+
+def _straightened(
+    state: HsicState, inputs: ControllerInput, pose: Pose, monitor: MonitorState, params: ControllerParams, dt_ns: int
+) -> HsicState:
+    """Return the system at its end: wheel to the middle, then parked or missed."""
+    phase = STRAIGHTEN
+    reason = NO_REASON
+    still = abs(inputs.measured_speed) <= params.threshold.standstill
+    if still and abs(inputs.steering_wheel_angle) <= params.hsic.threshold.wheel:
+        near = is_parked(pose, 1.0, params.hsic)
+        phase = PARKED if near else FAILED
+        reason = NO_REASON if near else MISSED_TARGET
+    return HsicState(
+        phase=phase,
+        reason=reason,
+        running_ns=state.running_ns + dt_ns,
+        frame=state.frame,
+        course=state.course,
+        direction=state.direction,
+        shifts=state.shifts,
+        counted=state.counted,
+        characteristic=state.characteristic,
+        integral=0.0,
+        angle=0.0,
+        set_speed=0.0,
+        found=errors(pose, state.course.goal, inputs.measured_speed, state.direction),
+        pose=pose,
+        monitor=monitor,
+    )
+
+
+def _ended(state: HsicState, phase: int, reason: int) -> HsicState:
+    return HsicState(
+        phase=phase,
+        reason=reason,
+        running_ns=state.running_ns,
+        frame=state.frame,
+        course=state.course,
+        direction=state.direction,
+        shifts=state.shifts,
+        counted=state.counted,
+        characteristic=state.characteristic,
+        integral=state.integral,
+        angle=state.angle,
+        set_speed=0.0,
+        found=state.found,
+        pose=state.pose,
+        monitor=state.monitor,
+    )

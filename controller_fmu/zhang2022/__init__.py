@@ -1,0 +1,1 @@
+"""Quintic path, model predictive steering, PID speed (Zhang 2022)."""

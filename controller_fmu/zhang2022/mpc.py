@@ -1,0 +1,123 @@
+"""Front-wheel angle by linear time-varying MPC on the kinematic error model (Zhang 2022, section 3.1)."""
+
+import math
+from typing import NamedTuple
+
+from controller_fmu.zhang2022.params import MpcParams
+from controller_fmu.zhang2022.path import QuinticPath, Reference, at
+from controller_fmu.zhang2022.qp import SOLVED, Solution, Stages, solve
+from controller_fmu.zhang2022.qp_stage import Stage, Weights
+from modelkit.maths import clamp, is_finite
+
+SLOWEST = 0.2
+"""Speed assumed where the car stands [m/s]: without motion nothing can be predicted."""
+
+
+class Car(NamedTuple):
+    """What the MPC knows of the car."""
+
+    wheelbase: float
+    angle_limit: float
+    """Largest front-wheel angle [rad]."""
+    rate_limit: float
+    """Largest front-wheel rate [rad/s]."""
+
+
+class Steering(NamedTuple):
+    """The front-wheel angle and where it is going."""
+
+    angle: float = 0.0
+    rate: float = 0.0
+    """Held until the next solution [rad/s]."""
+    status: int = 0
+    iterations: int = 0
+
+
+def steer(
+    steering: Steering, path: QuinticPath, reference: Reference, speed: float, car: Car, p: MpcParams
+) -> Steering:
+    """Return the rate of the front-wheel angle until the next solution.
+
+    The first increment of the optimal sequence, spread over a prediction step. Where the solver does
+    not end well, the rate found last stays (within the limit) and the status says why.
+    """
+    angle = clamp(steering.angle, -car.angle_limit, car.angle_limit)
+    stages = prediction(path, reference, speed, car, p)
+    found = solve(reference.lateral_error, reference.heading_error, angle, stages, weights(car, p), p.tolerance, p.cap)
+    rate = found.nodes[0].u / p.step_time if is_usable(found) else steering.rate
+    if found.status != SOLVED:
+        rate = steering.rate
+    return Steering(angle, clamp(rate, -car.rate_limit, car.rate_limit), found.status, found.iterations)
+
+
+def is_usable(found: Solution) -> bool:
+    """Return whether the first increment is a number."""
+    return is_finite(found.nodes[0].u)
+
+
+def turned(steering: Steering, car: Car, dt: float) -> Steering:
+    """Return the steering ``dt`` [s] later at its present rate."""
+    angle = clamp(steering.angle + steering.rate * dt, -car.angle_limit, car.angle_limit)
+    return Steering(angle, steering.rate, steering.status, steering.iterations)
+
+
+def prediction(path: QuinticPath, reference: Reference, speed: float, car: Car, p: MpcParams) -> Stages:
+    """Return the stages of the horizon, linearised where the car will be on the path at this speed (reverse)."""
+    fast = -speed if speed < 0.0 else 0.0
+    v = -(fast if fast > SLOWEST else SLOWEST)
+    step = v * p.step_time
+    x0 = reference.pose.x
+    x1 = _onward(path, x0, step)
+    x2 = _onward(path, x1, step)
+    x3 = _onward(path, x2, step)
+    x4 = _onward(path, x3, step)
+    x5 = _onward(path, x4, step)
+    x6 = _onward(path, x5, step)
+    x7 = _onward(path, x6, step)
+    x8 = _onward(path, x7, step)
+    x9 = _onward(path, x8, step)
+    x10 = _onward(path, x9, step)
+    x11 = _onward(path, x10, step)
+    return (
+        _stage(path, x0, step, 0, car, p),
+        _stage(path, x1, step, 1, car, p),
+        _stage(path, x2, step, 2, car, p),
+        _stage(path, x3, step, 3, car, p),
+        _stage(path, x4, step, 4, car, p),
+        _stage(path, x5, step, 5, car, p),
+        _stage(path, x6, step, 6, car, p),
+        _stage(path, x7, step, 7, car, p),
+        _stage(path, x8, step, 8, car, p),
+        _stage(path, x9, step, 9, car, p),
+        _stage(path, x10, step, 10, car, p),
+        _stage(path, x11, step, 11, car, p),
+    )
+
+
+def _onward(path: QuinticPath, x: float, step: float) -> float:
+    """Return x [m] a distance ``step`` (signed) further along the path."""
+    slope = at(path, x).slope
+    return x + step / math.sqrt(1.0 + slope * slope)
+
+
+def _stage(path: QuinticPath, x: float, step: float, number: int, car: Car, p: MpcParams) -> Stage:
+    """Return one prediction step: psi' = v (delta - delta_r) / (L cos^2 delta_r), e' = v psi, held over the step."""
+    half = at(path, _onward(path, x, 0.5 * step))
+    r = clamp(math.atan(car.wheelbase * half.curvature), -car.angle_limit, car.angle_limit)
+    cos = math.cos(r)
+    g = step / (car.wheelbase * cos * cos)
+    return Stage(step, g, 0.5 * step * g, r, 1.0 if number < p.horizon else 0.0)
+
+
+def weights(car: Car, p: MpcParams) -> Weights:
+    """Return weights and limits of the QP."""
+    return Weights(
+        p.lateral,
+        p.heading,
+        p.angle,
+        p.increment,
+        p.softness,
+        p.corridor,
+        car.angle_limit,
+        car.rate_limit * p.step_time,
+    )

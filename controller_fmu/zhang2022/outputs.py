@@ -1,0 +1,70 @@
+"""Outputs of the quintic, MPC and PID system."""
+
+import math
+
+from controller_fmu.interface import ControllerOutput, ControllerParams, Path, Phase, Segment
+from controller_fmu.slot_frame import to_world
+from controller_fmu.zhang2022.path import NOT_PLANNED
+from controller_fmu.zhang2022.signals import ZhangSignals
+from controller_fmu.zhang2022.system import ZhangState
+from modelkit.vocabulary import Pose, Prompt
+
+STANDBY = int(Phase.STANDBY)
+PATH_TRACKING = int(Phase.PATH_TRACKING)
+STRAIGHTEN = int(Phase.STRAIGHTEN)
+TAKEOVER = int(Phase.TAKEOVER)
+NO_PROMPT = int(Prompt.NONE)
+
+
+def zhang_signals(state: ZhangState, params: ControllerParams) -> ZhangSignals:
+    """Return the system's own outputs."""
+    return ZhangSignals(
+        path_status=state.path.status,
+        largest_curvature=state.path.largest_curvature,
+        solver_status=state.steering.status,
+        iterations=state.steering.iterations,
+        reference_angle=state.frame.mirror * math.atan(params.wheelbase * state.reference.curvature),
+        set_speed=state.set_speed,
+    )
+
+
+def planned_path(state: ZhangState) -> Path:
+    """Return the arc path whose key points the quintics go through; empty without a path."""
+    if state.path.status == NOT_PLANNED:
+        return Path(Pose(0.0, 0.0, 0.0), (Segment(0.0, 0.0), Segment(0.0, 0.0), Segment(0.0, 0.0)))
+    arcs = state.path.arcs
+    k = state.frame.mirror / arcs.radius
+    arc = arcs.radius * arcs.angle
+    pieces = (Segment(arc, -k), Segment(arcs.line, 0.0), Segment(arc, k))
+    return Path(to_world(state.path.start, state.frame), pieces)
+
+
+def zhang_outputs(state: ZhangState, params: ControllerParams) -> ControllerOutput:
+    """Return the outputs that hold until the next sample."""
+    active = state.phase == PATH_TRACKING or state.phase == STRAIGHTEN
+    driving = state.phase == PATH_TRACKING
+    turn = state.frame.mirror * params.steering_ratio * state.steering.angle
+    wheel = turn if active else 0.0
+    force = state.pid.force if driving else 0.0
+    speed = state.set_speed if driving else 0.0
+    brake = not driving and state.phase != TAKEOVER
+    shifts = 0 if state.phase == STANDBY else 1
+    return ControllerOutput(
+        steering_wheel_request=wheel,
+        steering_active=active,
+        prompt=NO_PROMPT,
+        advised_speed=0.0,
+        speed_control_active=active,
+        speed_request=speed,
+        force_control_active=driving,
+        force_request=force,
+        brake_request=brake,
+        phase=state.phase,
+        reason=state.reason,
+        shifts=shifts,
+        reference=to_world(state.reference.pose, state.frame),
+        lateral_error=state.reference.lateral_error,
+        heading_error=state.reference.heading_error,
+        path=planned_path(state),
+        zhang2022=zhang_signals(state, params),
+    )

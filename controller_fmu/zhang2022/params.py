@@ -1,0 +1,57 @@
+"""What can be set in the quintic, MPC and PID system."""
+
+from typing import Annotated, NamedTuple
+
+from modelkit.signal import Signal
+
+PAPER = "Zhang 2022, Table 1"
+HOUSE = "chosen; the source states none"
+
+
+class QuinticParams(NamedTuple):
+    """The path: arc, line, arc for the key points, quintics through them."""
+
+    radius: Annotated[
+        float, Signal("m", "radius wished for both arcs; larger if the quintics need it", 0.5, 100.0, HOUSE)
+    ] = 5.0
+    curvature_share: Annotated[float, Signal("1", "share of the car's curvature the path may use", 0.1, 1.0, HOUSE)] = (
+        0.95
+    )
+
+
+class MpcParams(NamedTuple):
+    """Horizon, weights, limits and solver of the steering MPC."""
+
+    period: Annotated[float, Signal("s", "time between two solutions", 1e-3, 1.0, HOUSE)] = 0.05
+    step_time: Annotated[float, Signal("s", "length of one prediction step", 1e-3, 1.0, HOUSE)] = 0.1
+    horizon: Annotated[int, Signal("1", "prediction steps that carry weight, at most 12", 1, 12, HOUSE)] = 12
+    lateral: Annotated[float, Signal("1", "weight on lateral error [1/m2]", 0.0, 1e6, HOUSE)] = 100.0
+    heading: Annotated[float, Signal("1", "weight on heading error [1/rad2]", 0.0, 1e6, HOUSE)] = 20.0
+    angle: Annotated[float, Signal("1", "weight on front-wheel angle off the path's [1/rad2]", 0.0, 1e6, HOUSE)] = 0.1
+    increment: Annotated[float, Signal("1", "weight on an angle increment [1/rad2]", 1e-9, 1e6, HOUSE)] = 1.0
+    corridor: Annotated[float, Signal("m", "soft limit on lateral error", 1e-3, 10.0, HOUSE)] = 0.05
+    softness: Annotated[float, Signal("1", "weight on leaving the corridor [1/m2]", 1e-3, 1e6, HOUSE)] = 1000.0
+    tolerance: Annotated[float, Signal("1", "complementarity at which the solver stops", 1e-15, 1e-2, HOUSE)] = 1e-10
+    cap: Annotated[int, Signal("1", "most iterations of the solver", 1, 200, HOUSE)] = 40
+
+
+class PidParams(NamedTuple):
+    """Speed controller, equation (8), with conditional integration against wind-up."""
+
+    proportional: Annotated[float, Signal("N.s/m", "Kp", 0.0, 1e6, HOUSE)] = 4000.0
+    integral: Annotated[float, Signal("N/m", "Ki", 0.0, 1e6, HOUSE)] = 2000.0
+    derivative: Annotated[float, Signal("kg", "Kd", 0.0, 1e5, HOUSE)] = 0.0
+    limit: Annotated[float, Signal("N", "largest force", 1.0, 1e5, HOUSE)] = 2000.0
+
+
+class ZhangParams(NamedTuple):
+    """Path, steering, speed."""
+
+    speed: Annotated[float, Signal("m/s", "speed driven in reverse, magnitude", 0.05, 3.0, PAPER)] = 1.0
+    ramp: Annotated[float, Signal("m/s2", "change of the set speed at start and end", 0.05, 5.0, HOUSE)] = 0.5
+    stop_distance: Annotated[
+        float, Signal("m", "distance to the target at which the brake holds", 1e-4, 0.5, HOUSE)
+    ] = 0.01
+    quintic: QuinticParams = QuinticParams()
+    mpc: MpcParams = MpcParams()
+    pid: PidParams = PidParams()

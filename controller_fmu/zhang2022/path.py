@@ -1,0 +1,135 @@
+"""The parking path: three quintics through the key points, its check and its look-up."""
+
+import math
+from enum import IntEnum
+from typing import NamedTuple
+
+from controller_fmu.zhang2022.key_points import ArcLineArc, arc_line_arc, largest_radius
+from controller_fmu.zhang2022.quintic import Quintic, Shape, quintic, shape
+from modelkit.vocabulary import Pose
+
+CANDIDATES = 9
+SAMPLES = 32
+FOOT_STEPS = 5
+STEEPEST = 1.2
+"""Largest heading of a path given as y(x) [rad]."""
+
+
+class PathStatus(IntEnum):
+    """Whether there is a path, and if not why."""
+
+    NONE = 0
+    FOUND = 1
+    BAD_START = 2
+    """The start is not ahead of and beside the target, or turned too far."""
+    CURVATURE_LIMIT = 3
+    """No radius keeps the quintics' curvature under the car's."""
+
+
+NOT_PLANNED = int(PathStatus.NONE)
+FOUND = int(PathStatus.FOUND)
+BAD_START = int(PathStatus.BAD_START)
+CURVATURE_LIMIT = int(PathStatus.CURVATURE_LIMIT)
+EMPTY = ArcLineArc(0.0, 0.0, 1.0)
+
+
+class QuinticPath(NamedTuple):
+    """Pieces from the start (largest x) to the target at the origin, driven in reverse."""
+
+    status: int = NOT_PLANNED
+    start: Pose = Pose()
+    arcs: ArcLineArc = EMPTY
+    largest_curvature: float = 0.0
+    first: Quintic = Quintic()
+    line: Quintic = Quintic()
+    last: Quintic = Quintic()
+
+
+class Reference(NamedTuple):
+    """The path's point nearest to the car and the errors against it."""
+
+    pose: Pose = Pose()
+    curvature: float = 0.0
+    lateral_error: float = 0.0
+    heading_error: float = 0.0
+
+
+def plan(start: Pose, radius: float, curvature_limit: float) -> QuinticPath:
+    """Return the path from ``start`` (slot frame) to the origin, or why there is none.
+
+    Radii from the one wished to the largest that fits are tried in turn: the larger the arcs, the
+    smaller the quintics' peak. The first whose curvature stays within ``curvature_limit`` [1/m] is taken.
+    """
+    if not (start.x > 0.1 and start.y > 0.01 and abs(start.heading) < 0.5):
+        return _refused(BAD_START, start, 0.0)
+    widest = largest_radius(start.x, start.y)
+    tightest = radius if radius < widest else widest
+    smallest_peak = 1e9
+    for candidate in range(CANDIDATES):
+        share = candidate / (CANDIDATES - 1.0)
+        arcs = arc_line_arc(start.x, start.y, tightest + share * (widest - tightest))
+        if arcs.line >= 0.0 and 0.0 < arcs.angle < STEEPEST:
+            path = through(start, arcs)
+            if path.largest_curvature <= curvature_limit:
+                return path
+            if path.largest_curvature < smallest_peak:
+                smallest_peak = path.largest_curvature
+    return _refused(CURVATURE_LIMIT, start, smallest_peak)
+
+
+def through(start: Pose, arcs: ArcLineArc) -> QuinticPath:
+    """Return the three quintics through the ends of the arcs; the middle one is the line itself."""
+    x = arcs.radius * math.sin(arcs.angle)
+    y = arcs.radius * (1.0 - math.cos(arcs.angle))
+    slope = math.tan(arcs.angle)
+    x2 = x + arcs.line * math.cos(arcs.angle)
+    y2 = y + arcs.line * math.sin(arcs.angle)
+    first = quintic(x2, y2, slope, start.x, start.y, math.tan(start.heading))
+    length = x2 - x if x2 - x > 1e-9 else 1e-9
+    line = Quintic(x, length, y, slope * length, 0.0, 0.0, 0.0)
+    last = quintic(0.0, 0.0, 0.0, x, y, slope)
+    peak = _peak(first)
+    other = _peak(last)
+    return QuinticPath(FOUND, start, arcs, peak if peak > other else other, first, line, last)
+
+
+def at(path: QuinticPath, x: float) -> Shape:
+    """Return the path at ``x`` [m] of the slot frame; straight on beyond both ends."""
+    if x > path.first.x0 + path.first.length:
+        slope = math.tan(path.start.heading)
+        return Shape(path.start.y + slope * (x - path.start.x), slope, 0.0)
+    if x > path.first.x0:
+        return shape(path.first, x)
+    if x > path.line.x0:
+        return shape(path.line, x)
+    if x > 0.0:
+        return shape(path.last, x)
+    return Shape(0.0, 0.0, 0.0)
+
+
+def nearest(path: QuinticPath, pose: Pose) -> Reference:
+    """Return the reference at the foot of the perpendicular from ``pose``, and the errors, left positive.
+
+    Newton on (x - px) + (y - py) y' = 0 with slope 1 + y'^2, from x = px.
+    """
+    x = pose.x
+    for _ in range(FOOT_STEPS):
+        point = at(path, x)
+        x = x - ((x - pose.x) + (point.y - pose.y) * point.slope) / (1.0 + point.slope * point.slope)
+    point = at(path, x)
+    heading = math.atan(point.slope)
+    lateral = (pose.y - point.y) * math.cos(heading) - (pose.x - x) * math.sin(heading)
+    return Reference(Pose(x, point.y, heading), point.curvature, lateral, pose.heading - heading)
+
+
+def _peak(piece: Quintic) -> float:
+    largest = 0.0
+    for sample in range(SAMPLES + 1):
+        curvature = abs(shape(piece, piece.x0 + piece.length * sample / SAMPLES).curvature)
+        if curvature > largest:
+            largest = curvature
+    return largest
+
+
+def _refused(status: int, start: Pose, peak: float) -> QuinticPath:
+    return QuinticPath(status, start, EMPTY, peak, Quintic(), Quintic(), Quintic())

@@ -1,0 +1,55 @@
+"""One quintic y(x) between two points, equation (4) of Zhang 2022."""
+
+import math
+from typing import NamedTuple
+
+
+class Quintic(NamedTuple):
+    """y(t) = y0 + m0 t + c3 t^3 + c4 t^4 + c5 t^5 with t = (x - x0) / length in [0, 1]."""
+
+    x0: float = 0.0
+    length: float = 1.0
+    y0: float = 0.0
+    m0: float = 0.0
+    c3: float = 0.0
+    c4: float = 0.0
+    c5: float = 0.0
+
+
+class Shape(NamedTuple):
+    """What a path y(x) does at one x."""
+
+    y: float
+    slope: float
+    curvature: float
+
+
+def quintic(x0: float, y0: float, slope0: float, x1: float, y1: float, slope1: float) -> Quintic:
+    """Return the quintic with the given positions [m] and slopes at both ends and zero curvature there.
+
+    (5) of the paper gives four conditions for six coefficients; the two it leaves out are y'' = 0
+    at both ends, so that neighbouring pieces join with continuous curvature. Needs x1 != x0.
+    """
+    length = x1 - x0
+    rise = y1 - y0
+    m0 = slope0 * length
+    m1 = slope1 * length
+    return Quintic(
+        x0,
+        length,
+        y0,
+        m0,
+        10.0 * rise - 6.0 * m0 - 4.0 * m1,
+        -15.0 * rise + 8.0 * m0 + 7.0 * m1,
+        6.0 * rise - 3.0 * m0 - 3.0 * m1,
+    )
+
+
+def shape(piece: Quintic, x: float) -> Shape:
+    """Return y [m], slope and curvature y'' / (1 + y'^2)^(3/2) [1/m] at ``x`` [m]."""
+    t = (x - piece.x0) / piece.length
+    y = piece.y0 + t * (piece.m0 + t * t * (piece.c3 + t * (piece.c4 + t * piece.c5)))
+    slope = (piece.m0 + t * t * (3.0 * piece.c3 + t * (4.0 * piece.c4 + t * 5.0 * piece.c5))) / piece.length
+    bend = t * (6.0 * piece.c3 + t * (12.0 * piece.c4 + t * 20.0 * piece.c5)) / (piece.length * piece.length)
+    norm = 1.0 + slope * slope
+    return Shape(y, slope, bend / (norm * math.sqrt(norm)))

@@ -1,0 +1,186 @@
+"""The quintic, MPC and PID system at one sample: plan once, steer, drive, brake at the target, straighten."""
+
+import math
+from typing import NamedTuple
+
+from controller_fmu.guo2015.monitor import MonitorState, is_usable_input, reason_to_fail, watch
+from controller_fmu.interface import ControllerInput, ControllerParams, Phase, Reason
+from controller_fmu.slot_frame import SlotFrame, to_slot
+from controller_fmu.zhang2022.mpc import Car, Steering, steer, turned
+from controller_fmu.zhang2022.path import FOUND, QuinticPath, Reference, nearest, plan
+from controller_fmu.zhang2022.pid import PidState, pid
+from modelkit.maths import move_towards
+from modelkit.vocabulary import Pose
+
+STANDBY = int(Phase.STANDBY)
+PATH_TRACKING = int(Phase.PATH_TRACKING)
+STRAIGHTEN = int(Phase.STRAIGHTEN)
+PARKED = int(Phase.PARKED)
+FAILED = int(Phase.FAILED)
+TAKEOVER = int(Phase.TAKEOVER)
+NO_REASON = int(Reason.NONE)
+BAD_INPUT = int(Reason.BAD_INPUT)
+NO_PATH = int(Reason.NO_PATH)
+LEFT_PATH = int(Reason.LEFT_PATH)
+MISSED_TARGET = int(Reason.MISSED_TARGET)
+CREEP = 0.03
+"""Speed [m/s] left at the target, so that it is reached."""
+
+
+class ZhangState(NamedTuple):
+    """Everything the system remembers."""
+
+    phase: int = STANDBY
+    reason: int = NO_REASON
+    running_ns: int = 0
+    solved_ns: int = 0
+    """Time since the MPC was solved last."""
+    frame: SlotFrame = SlotFrame()
+    path: QuinticPath = QuinticPath()
+    reference: Reference = Reference()
+    steering: Steering = Steering()
+    set_speed: float = 0.0
+    pid: PidState = PidState()
+    monitor: MonitorState = MonitorState()
+
+
+def zhang_sample(state: ZhangState, inputs: ControllerInput, params: ControllerParams, dt_ns: int) -> ZhangState:
+    """Return the system one sample of ``dt_ns`` later."""
+    if state.phase >= PARKED:
+        return state
+    if not is_usable_input(inputs):
+        return _ended(state, FAILED, BAD_INPUT)
+    if inputs.driver_takeover:
+        return _ended(state, TAKEOVER, NO_REASON)
+    if state.phase == STANDBY:
+        return _planned(state, inputs, params)
+    pose = to_slot(inputs.odometry, state.frame)
+    reference = nearest(state.path, pose)
+    wheel = state.frame.mirror * params.steering_ratio * state.steering.angle
+    monitor = watch(state.monitor, inputs, state.phase, wheel, dt_ns, params)
+    reason = reason_to_fail(monitor, inputs, state.phase, state.running_ns, 1, params)
+    if reason == NO_REASON and abs(reference.lateral_error) > params.threshold.lost_lateral:
+        reason = LEFT_PATH
+    if reason != NO_REASON:
+        return _ended(state, FAILED, reason)
+    if state.phase == STRAIGHTEN:
+        return _straightened(state, inputs, pose, monitor, params, dt_ns)
+    return _driven(state, inputs, pose, reference, monitor, params, dt_ns)
+
+
+def car_of(params: ControllerParams) -> Car:
+    """Return wheelbase [m] and the limits of the front-wheel angle [rad, rad/s]."""
+    ratio = params.steering_ratio
+    return Car(params.wheelbase, params.steering_wheel_limit / ratio, params.steering_wheel_rate / ratio)
+
+
+def _planned(state: ZhangState, inputs: ControllerInput, params: ControllerParams) -> ZhangState:
+    """Return the system on its path, or failed for want of one."""
+    car = car_of(params)
+    right = SlotFrame(params.target, 1.0)
+    frame = right if to_slot(inputs.odometry, right).y >= 0.0 else SlotFrame(params.target, -1.0)
+    start = to_slot(inputs.odometry, frame)
+    quintic = params.zhang2022.quintic
+    limit = quintic.curvature_share * math.tan(car.angle_limit) / car.wheelbase
+    path = plan(start, quintic.radius, limit)
+    angle = frame.mirror * inputs.steering_wheel_angle / params.steering_ratio
+    found = path.status == FOUND
+    phase = PATH_TRACKING if found else FAILED
+    reason = NO_REASON if found else NO_PATH
+    return ZhangState(
+        phase=phase,
+        reason=reason,
+        running_ns=0,
+        solved_ns=math.floor(params.zhang2022.mpc.period * 1e9),
+        frame=frame,
+        path=path,
+        reference=state.reference,
+        steering=Steering(angle, 0.0, 0, 0),
+        set_speed=0.0,
+        pid=state.pid,
+        monitor=state.monitor,
+    )
+
+
+def _driven(
+    state: ZhangState,
+    inputs: ControllerInput,
+    pose: Pose,
+    reference: Reference,
+    monitor: MonitorState,
+    params: ControllerParams,
+    dt_ns: int,
+) -> ZhangState:
+    """Return the system with its steering and speed for the next sample; at the target it brakes."""
+    zhang = params.zhang2022
+    dt = dt_ns * 1e-9
+    car = car_of(params)
+    steering = state.steering
+    solved_ns = state.solved_ns + dt_ns
+    if solved_ns * 1e-9 > zhang.mpc.period - 0.5 * dt:
+        steering = steer(steering, state.path, reference, inputs.measured_speed, car, zhang.mpc)
+        solved_ns = 0
+    arrived = pose.x <= zhang.stop_distance
+    room = 2.0 * zhang.ramp * (pose.x if pose.x > 0.0 else 0.0)
+    slow = math.sqrt(room) + CREEP
+    wanted = -(slow if slow < zhang.speed else zhang.speed)
+    set_speed = move_towards(state.set_speed, wanted, zhang.ramp * dt)
+    speed = pid(state.pid, set_speed - inputs.measured_speed, zhang.pid, dt)
+    phase = STRAIGHTEN if arrived else PATH_TRACKING
+    held_speed = 0.0 if arrived else set_speed
+    return ZhangState(
+        phase=phase,
+        reason=NO_REASON,
+        running_ns=state.running_ns + dt_ns,
+        solved_ns=solved_ns,
+        frame=state.frame,
+        path=state.path,
+        reference=reference,
+        steering=turned(steering, car, dt),
+        set_speed=held_speed,
+        pid=speed,
+        monitor=monitor,
+    )
+
+
+def _straightened(
+    state: ZhangState, inputs: ControllerInput, pose: Pose, monitor: MonitorState, params: ControllerParams, dt_ns: int
+) -> ZhangState:
+    """Return the system at the target: wheel to the middle, then parked or missed."""
+    limit = params.threshold
+    phase = STRAIGHTEN
+    reason = NO_REASON
+    still = abs(inputs.measured_speed) <= limit.standstill
+    if still and abs(inputs.steering_wheel_angle) <= limit.wheel:
+        near = abs(pose.y) <= limit.miss_lateral and abs(pose.heading) <= limit.miss_heading
+        phase = PARKED if near else FAILED
+        reason = NO_REASON if near else MISSED_TARGET
+    return ZhangState(
+        phase=phase,
+        reason=reason,
+        running_ns=state.running_ns + dt_ns,
+        solved_ns=0,
+        frame=state.frame,
+        path=state.path,
+        reference=nearest(state.path, pose),
+        steering=Steering(0.0, 0.0, state.steering.status, state.steering.iterations),
+        set_speed=0.0,
+        pid=state.pid,
+        monitor=monitor,
+    )
+
+
+def _ended(state: ZhangState, phase: int, reason: int) -> ZhangState:
+    return ZhangState(
+        phase=phase,
+        reason=reason,
+        running_ns=state.running_ns,
+        solved_ns=state.solved_ns,
+        frame=state.frame,
+        path=state.path,
+        reference=state.reference,
+        steering=state.steering,
+        set_speed=0.0,
+        pid=state.pid,
+        monitor=state.monitor,
+    )

@@ -1,0 +1,81 @@
+"""The steering QP against OSQP and DAQP, and against its own optimality conditions."""
+
+import daqp
+import numpy as np
+import osqp
+import pytest
+import scipy.sparse
+from qp_problems import dense, random_problem
+
+from controller_fmu.zhang2022.qp import STAGES, Status, solve
+
+PROBLEMS = 2000
+
+
+def steering(solution):
+    return np.array([node.u for node in solution.nodes])
+
+
+def test_thousands_of_random_problems_against_daqp():
+    rng = np.random.default_rng(2022)
+    worst = 0.0
+    for _ in range(PROBLEMS):
+        problem = random_problem(rng)
+        ours = solve(*problem, 1e-12, 60)
+        assert ours.status == Status.SOLVED
+        h, f, g, limit = dense(*problem)
+        theirs, _, flag, _ = daqp.solve(h, f, g, limit, np.full_like(limit, -1e30))
+        assert flag == 1
+        worst = max(worst, np.abs(steering(ours) - theirs[:STAGES]).max())
+    assert worst < 1e-6
+
+
+def test_hundreds_of_random_problems_against_osqp():
+    rng = np.random.default_rng(7)
+    worst, compared = 0.0, 0
+    for _ in range(300):
+        problem = random_problem(rng)
+        h, f, g, limit = dense(*problem)
+        solver = osqp.OSQP()
+        solver.setup(
+            scipy.sparse.triu(h, format="csc"), f, scipy.sparse.csc_matrix(g), np.full_like(limit, -np.inf), limit,
+            eps_abs=1e-9, eps_rel=1e-9, max_iter=200_000, polishing=True, verbose=False,
+        )  # fmt: skip
+        theirs = solver.solve(raise_error=False)
+        if theirs.info.status == "solved":
+            compared += 1
+            worst = max(worst, np.abs(steering(solve(*problem, 1e-12, 60)) - theirs.x[:STAGES]).max())
+    assert compared > 290
+    assert worst < 1e-6
+
+
+def test_limits_hold_and_the_soft_one_gives():
+    rng = np.random.default_rng(3)
+    for _ in range(50):
+        _, psi, d, stages, w = random_problem(rng)
+        found = solve(1.5, psi, d, stages, w, 1e-10, 60)
+        assert found.status == Status.SOLVED
+        for node in found.nodes:
+            assert abs(node.d) <= w.limit_d + 1e-8
+            assert abs(node.u) <= w.limit_u + 1e-8
+            assert abs(node.e) <= w.limit_e + node.s + 1e-8
+
+
+def test_iteration_cap_is_reported():
+    problem = random_problem(np.random.default_rng(1))
+    assert solve(*problem, 1e-12, 2).status == Status.ITERATION_CAP
+
+
+@pytest.mark.parametrize("bad", [float("nan"), float("inf")])
+def test_bad_numbers_end_in_failed(bad):
+    _, psi, d, stages, w = random_problem(np.random.default_rng(1))
+    assert solve(bad, psi, d, stages, w, 1e-10, 40).status in (Status.FAILED, Status.ITERATION_CAP)
+
+
+def test_mirrored_problem_has_the_mirrored_solution():
+    rng = np.random.default_rng(5)
+    for _ in range(20):
+        e, psi, d, stages, w = random_problem(rng)
+        mirrored = tuple(stage._replace(r=-stage.r) for stage in stages)
+        left, right = solve(e, psi, d, stages, w, 1e-12, 60), solve(-e, -psi, -d, mirrored, w, 1e-12, 60)
+        assert steering(left) == pytest.approx(-steering(right), abs=1e-9)

@@ -85,6 +85,19 @@ def press(pedals: Pedals, target: float, speed: float, gear: int, mass: float, p
     return Pedals(reference, integral, _lag(pedals.effort, creep, abs(force), p, h))
 
 
+def obey(pedals: Pedals, force: float, speed: float, gear: int, p: DriveParams, h: float) -> Pedals:
+    """Return the pedals ``h`` [s] later under a force request [N], forward positive.
+
+    Along the gear's direction it goes to the drive, against it to the brake. The aim follows ``speed``,
+    so that a speed request takes over without a jump.
+    """
+    creep = _creep(gear, speed, p)
+    along = -1.0 if gear == REVERSE else 1.0
+    if force * along >= 0.0:
+        return Pedals(speed, 0.0, _lag(pedals.effort, force + creep, 0.0, p, h))
+    return Pedals(speed, 0.0, _lag(pedals.effort, creep, abs(force), p, h))
+
+
 def _creep(gear: int, speed: float, p: DriveParams) -> float:
     """Return the force [N] with which an automatic gearbox pushes at idle."""
     if gear == DRIVE:

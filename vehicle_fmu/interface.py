@@ -49,6 +49,8 @@ class VehicleInput(NamedTuple):
     advised_speed: Annotated[float, Signal("m/s", "largest speed advised with the prompt, >= 0")] = 0.0
     speed_control_active: Annotated[bool, Signal("1", "the controller drives: speed_request holds")] = False
     speed_request: Annotated[float, Signal("m/s", "speed asked for, reverse negative")] = 0.0
+    force_control_active: Annotated[bool, Signal("1", "force_request holds, not speed_request")] = False
+    force_request: Annotated[float, Signal("N", "drive and brake force asked for, forward positive")] = 0.0
     brake_request: Annotated[bool, Signal("1", "the controller brakes to standstill and holds")] = False
 
 

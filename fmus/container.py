@@ -1,0 +1,66 @@
+"""ParkingSystem.fmu: one FMU with the whole system inside, joined by fmucontainer of the FMU Manipulation Toolbox.
+
+The container steps its FMUs as our master does: read all outputs, write all inputs, step all. It is
+made from JSON, not from the .ssp, because the toolbox does not read the parameters of an .ssp.
+"""
+
+import json
+import shutil
+import subprocess
+import sys
+import tempfile
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Any
+
+from fmus.system import NAME, System, as_text
+
+PACKAGE = "fmu_manipulation_toolbox"
+
+
+def write_container(system: System, path: Path) -> Path:
+    """Write the container. Raises ``RuntimeError`` if the toolbox is not installed or refuses."""
+    if find_spec(PACKAGE) is None:
+        raise RuntimeError("a container needs fmucontainer: pip install fmu-manipulation-toolbox")
+    with tempfile.TemporaryDirectory(prefix="apa-container-") as directory:
+        here = Path(directory)
+        for part in system.parts:
+            shutil.copyfile(part.fmu, here / f"{part.model.name}.fmu")
+        file = here / f"{NAME}.json"
+        file.write_text(json.dumps(assembly(system), indent=1))
+        code = f"from {PACKAGE}.cli.fmucontainer import fmucontainer; fmucontainer()"
+        command = [sys.executable, "-c", code, "-fmu-directory", directory, "-container", file.name]
+        done = subprocess.run(command, capture_output=True, text=True, check=False)
+        made = here / f"{NAME}.fmu"
+        if done.returncode or not made.is_file():
+            raise RuntimeError(f"fmucontainer: {(done.stdout + done.stderr).strip()}")
+        path.parent.mkdir(parents=True, exist_ok=True)
+        shutil.copyfile(made, path)
+    return path
+
+
+def assembly(system: System) -> dict[str, Any]:
+    """Return what fmucontainer is told: FMUs, links, start values, and all outputs as ``vehicle.pose.x``."""
+    files = {part.name: f"{part.model.name}.fmu" for part in system.parts}
+    return {
+        "name": f"{NAME}.fmu",
+        "step_size": system.step,
+        "auto_link": False,
+        "auto_input": False,
+        "auto_output": False,
+        "auto_parameter": False,
+        "fmu": list(files.values()),
+        "link": [
+            [files[sender.name], name, files[receiver.name], name] for sender, receiver, name in system.connections()
+        ],
+        "output": [
+            [files[part.name], variable.name, f"{part.name}.{variable.name}"]
+            for part in system.parts
+            for variable in part.of("output")
+        ],
+        "start": [
+            [files[part.name], variable.name, as_text(value)]
+            for part in system.parts
+            for variable, value in part.settings()
+        ],
+    }

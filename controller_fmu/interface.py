@@ -4,6 +4,8 @@ from enum import IntEnum
 from math import pi
 from typing import Annotated, NamedTuple
 
+from controller_fmu.apa.params import ApaParams
+from controller_fmu.apa.signals import ApaSignals
 from controller_fmu.hsic.params import HsicParams
 from controller_fmu.hsic.signals import HsicSignals
 from controller_fmu.preview.params import PreviewParams
@@ -30,6 +32,8 @@ class System(IntEnum):
     """Human-simulated intelligent control."""
     PREVIEW = 4
     """Dual-point preview with fuzzy steering and speed on a road (does not park)."""
+    APA = 5
+    """The whole parking assist: slot search, planner, tracking, position tuning."""
 
 
 class Phase(IntEnum):
@@ -76,6 +80,16 @@ class Reason(IntEnum):
     """The car is so far off that the path no longer helps."""
     VEHICLE_FAULT = 13
     """The vehicle reports that it brakes by itself."""
+    OVER_SPEED = 20
+    """The driver drives faster than the assist may be driven."""
+    SENSOR_LOSS = 21
+    """A distance sensor tells nothing usable."""
+    BLOCKED = 22
+    """Something stands in the way and stays."""
+    NO_SLOT = 23
+    """The search came to its end without a slot."""
+    SLOT_TOO_SHORT = 24
+    """The search came to its end with slots that the car does not fit into."""
 
 
 class ControllerInput(NamedTuple):
@@ -88,6 +102,11 @@ class ControllerInput(NamedTuple):
     brake_pedal: Annotated[float, Signal("1", "brake pedal, 0 released to 1 full", 0.0, 1.0)] = 0.0
     driver_takeover: Annotated[bool, Signal("1", "the driver has taken over")] = False
     vehicle_fault: Annotated[int, Signal("1", "why the vehicle brakes by itself; 0: it does not")] = 0
+    ultrasonic: tuple[
+        Annotated[float, Signal("m", "distance heard: 1-4 front, 5-8 rear, 9-10 left, 11-12 right")], ...
+    ] = (5.0,) * 12
+    apa_switch: Annotated[bool, Signal("1", "the driver has switched the parking assist on")] = False
+    driver_confirm: Annotated[bool, Signal("1", "the driver presses the confirm button")] = False
 
 
 class Segment(NamedTuple):
@@ -128,6 +147,7 @@ class ControllerOutput(NamedTuple):
     zhang2022: ZhangSignals = ZhangSignals()
     hsic: HsicSignals = HsicSignals()
     preview: PreviewSignals = PreviewSignals()
+    apa: ApaSignals = ApaSignals()
 
 
 class NtbptParams(NamedTuple):
@@ -216,3 +236,4 @@ class ControllerParams(NamedTuple):
     zhang2022: ZhangParams = ZhangParams()
     hsic: HsicParams = HsicParams()
     preview: PreviewParams = PreviewParams()
+    apa: ApaParams = ApaParams()

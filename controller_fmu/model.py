@@ -7,6 +7,8 @@ the communication step, and holds its outputs in between.
 import math
 from typing import NamedTuple
 
+from controller_fmu.apa.outputs import apa_outputs
+from controller_fmu.apa.system import AT_START, ApaState, apa_sample
 from controller_fmu.guo2015.parking import AT_REST, ParkingState, failed, outputs, sample
 from controller_fmu.hsic.outputs import hsic_outputs
 from controller_fmu.hsic.system import HsicState, hsic_sample
@@ -20,6 +22,7 @@ BAD_PARAMETER = int(Reason.BAD_PARAMETER)
 ZHANG2022 = int(System.ZHANG2022)
 HSIC = int(System.HSIC)
 PREVIEW = int(System.PREVIEW)
+APA = int(System.APA)
 
 
 class ControllerState(NamedTuple):
@@ -31,12 +34,13 @@ class ControllerState(NamedTuple):
     zhang2022: ZhangState = ZhangState()
     hsic: HsicState = HsicState()
     preview: DrivingState = DrivingState()
+    apa: ApaState = AT_START
 
 
 def initialize(params: ControllerParams) -> tuple[ControllerState, ControllerOutput]:
     """Return the controller in standby; with unusable parameters, failed."""
     parking = AT_REST if _is_usable(params) else failed(BAD_PARAMETER)
-    state = ControllerState(0, 0, parking, ZhangState(), HsicState(), DrivingState())
+    state = ControllerState(0, 0, parking, ZhangState(), HsicState(), DrivingState(), AT_START)
     return state, _outputs(state, params)
 
 
@@ -53,6 +57,7 @@ def step(
             next_ns += period_ns
             count += 1
     parking, zhang2022, hsic, preview = state.parking, state.zhang2022, state.hsic, state.preview
+    apa = state.apa
     for _ in range(count):
         if params.system == ZHANG2022:
             zhang2022 = zhang_sample(zhang2022, inputs, params, period_ns)
@@ -60,9 +65,11 @@ def step(
             hsic = hsic_sample(hsic, inputs, params, period_ns)
         elif params.system == PREVIEW:
             preview = driving_sample(preview, inputs, params, period_ns)
+        elif params.system == APA:
+            apa = apa_sample(apa, inputs, params, period_ns)
         else:
             parking = sample(parking, inputs, params, period_ns)
-    after = ControllerState(end_ns, next_ns, parking, zhang2022, hsic, preview)
+    after = ControllerState(end_ns, next_ns, parking, zhang2022, hsic, preview, apa)
     return after, _outputs(after, params)
 
 
@@ -76,6 +83,8 @@ def _outputs(state: ControllerState, params: ControllerParams) -> ControllerOutp
         return hsic_outputs(state.hsic, params)
     if params.system == PREVIEW:
         return driving_outputs(state.preview, params)
+    if params.system == APA:
+        return apa_outputs(state.apa, params)
     return outputs(state.parking, params)
 
 

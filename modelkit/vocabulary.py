@@ -28,6 +28,8 @@ class Prompt(IntEnum):
     SLOW_DOWN = 4
     """Keep the direction, drive no faster than the advised speed."""
     TAKE_OVER = 5
+    CONFIRM = 6
+    """Press the confirm button, if that is wished."""
 
 
 class Gear(IntEnum):

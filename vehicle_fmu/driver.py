@@ -17,6 +17,7 @@ TAKE_OVER = int(Prompt.TAKE_OVER)
 FORWARD = int(Prompt.FORWARD)
 REVERSE = int(Prompt.REVERSE)
 SLOW_DOWN = int(Prompt.SLOW_DOWN)
+CONFIRM = int(Prompt.CONFIRM)
 CONFIRM_LASTS = 0.5
 """How long the confirm button is pressed [s]."""
 
@@ -77,6 +78,11 @@ def switch_is_on(time_ns: int, params: DriverParams) -> bool:
 def confirms(time_ns: int, params: DriverParams) -> bool:
     """Return whether the confirm button is pressed."""
     return params.confirm_time <= time_ns * 1e-9 < params.confirm_time + CONFIRM_LASTS
+
+
+def presses_confirm(state: DriverState, time_ns: int, params: DriverParams) -> bool:
+    """Return whether the confirm button is pressed: at its time, or because it was asked for."""
+    return confirms(time_ns, params) or (params.confirms_when_asked and state.heeded == CONFIRM)
 
 
 def profile_speed(params: DriverParams, at: float) -> float:

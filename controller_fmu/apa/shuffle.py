@@ -16,6 +16,8 @@ from controller_fmu.apa.turns import two_arcs
 from modelkit.vocabulary import Pose
 
 LONGEST_LINE = 8.0
+SHORTEST = 0.02
+"""An arc shorter than this [m] is left out: it turns the car by less than 0.3 deg."""
 STEEPEST = 1.2
 
 
@@ -41,7 +43,7 @@ def finish(start: Pose, direction: int, sense: float, share: float, site: Site, 
     second = middle * turn / abs(c)
     if first < -1e-9:
         return none
-    first = first if first > 0.0 else 0.0
+    first = first if first > SHORTEST else 0.0
     x = start.x + (2.0 * math.sin(middle) - math.sin(start.heading)) / c
     line = 0.0
     wanted = direction * (0.0 - x)

@@ -1,0 +1,68 @@
+"""Where a neighbour's side ends, from the last (or first) distances heard of it.
+
+Past the corner the sensor hears the corner itself, at r = sqrt(d^2 + e^2): d the distance to the side's
+line, e how far the corner lies behind (or ahead) along it, until the corner leaves the cone of half
+angle g at e = d tan(g). So e = sqrt(r^2 - d^2), and each sample tells the corner anew.
+"""
+
+import math
+from typing import NamedTuple
+
+from controller_fmu.apa.line_fit import Line, distance
+
+
+class Heard(NamedTuple):
+    """One sample: sensor at (u, w), distance r; r <= 0: none."""
+
+    u: float = 0.0
+    w: float = 0.0
+    r: float = 0.0
+
+
+KEPT = 4
+NO_SAMPLE = Heard(0.0, 0.0, 0.0)
+NO_SAMPLES = (NO_SAMPLE,) * KEPT
+TELLING = 1.03
+"""A sample tells the corner well if r is larger than the distance to the line by this factor."""
+
+
+def remember(samples: tuple[Heard, ...], new: Heard) -> tuple[Heard, ...]:
+    """Return the samples with a new one first, the oldest dropped."""
+    return (new, samples[0], samples[1], samples[2])
+
+
+def append(samples: tuple[Heard, ...], new: Heard, count: int) -> tuple[Heard, ...]:
+    """Return the samples with a new one at place ``count``; unchanged if all places are taken."""
+    return (
+        new if count == 0 else samples[0],
+        new if count == 1 else samples[1],
+        new if count == 2 else samples[2],
+        new if count == 3 else samples[3],
+    )
+
+
+def corner(samples: tuple[Heard, ...], line: Line, sense: float, half_angle: float) -> float:
+    """Return u [m] of the corner on ``line``; ``sense`` -1: it lies behind the sensor, 1: ahead.
+
+    The mean over the samples that tell it, weighted by how well; else where the cone's edge meets the
+    line from the outermost sample.
+    """
+    total = 0.0
+    weights = 0.0
+    outermost = samples[0]
+    cos = 1.0 / math.sqrt(1.0 + line.b * line.b)
+    for sample in samples:
+        if sample.r > 0.0:
+            d = distance(line, sample.u, sample.w)
+            if d > 0.0 and sample.r > TELLING * d:
+                e = math.sqrt(sample.r * sample.r - d * d)
+                weight = e * e / (sample.r * sample.r)
+                foot = sample.u + line.b * d * cos
+                total += weight * (foot + sense * e * cos)
+                weights += weight
+            if sense * (sample.u - outermost.u) < 0.0:
+                outermost = sample
+    if weights > 0.0:
+        return total / weights
+    d = distance(line, outermost.u, outermost.w)
+    return outermost.u + cos * (line.b * d + sense * 0.5 * d * math.tan(half_angle))

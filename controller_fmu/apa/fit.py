@@ -1,0 +1,66 @@
+"""Whether a slot is long enough, for how many moves, and what is missing if not."""
+
+from typing import NamedTuple
+
+from controller_fmu.apa.exit import VARIANTS, exit_of
+from controller_fmu.apa.outline import Car
+from controller_fmu.apa.params import ApaParams
+from controller_fmu.apa.slot import PARALLEL, Margins, Slot, site_of
+from modelkit.vocabulary import Pose
+
+
+class Fit(NamedTuple):
+    """Whether a slot can be used."""
+
+    fits: bool = False
+    moves: int = 0
+    """Moves that its shortest way takes at least."""
+    missing: float = 0.0
+    """Length (width) [m] that it lacks, >= 0."""
+
+
+LONGEST_LACK = 3.0
+HALVINGS = 5
+
+
+def fit_of(slot: Slot, car: Car, params: ApaParams) -> Fit:
+    """Return whether the car fits. Parallel: a way out of the slot exists within the shift limit; else by width."""
+    length = car.front + car.rear
+    width = 2.0 * car.half_width
+    if slot.kind != PARALLEL:
+        missing = width + params.search.perpendicular_room - slot.length
+        shallow = length - params.search.depth_room - slot.depth
+        missing = missing if missing > 0.0 else 0.0
+        return Fit(missing <= 0.0 and shallow <= 0.0, 1, missing)
+    moves = least_moves(slot, car, params)
+    if moves > 0:
+        return Fit(True, moves, 0.0)
+    low = 0.0
+    high = LONGEST_LACK
+    for _ in range(HALVINGS):
+        middle = 0.5 * (low + high)
+        if least_moves(_longer(slot, middle), car, params) > 0:
+            high = middle
+        else:
+            low = middle
+    return Fit(False, 0, high)
+
+
+def least_moves(slot: Slot, car: Car, params: ApaParams) -> int:
+    """Return the fewest moves into a parallel slot, 0 if it takes more than allowed."""
+    plan = params.plan
+    if slot.length < car.front + car.rear + 2.0 * plan.margin + 0.1:
+        return 0
+    for attempt in range(2):
+        inset = -plan.stand_out if attempt == 1 else 0.0
+        site = site_of(slot, car, Margins(plan.margin, plan.kerb_margin, inset))
+        for variant in range(VARIANTS):
+            way_in = exit_of(variant, site, car)
+            if way_in.found and way_in.moves + 1 <= plan.shifts:
+                return way_in.moves + 1
+    return 0
+
+
+def _longer(slot: Slot, by: float) -> Slot:
+    a = Pose(slot.a.x, slot.a.y, slot.a.heading)
+    return Slot(slot.kind, slot.side, a, slot.length + by, slot.b_out, slot.depth, slot.opposite)

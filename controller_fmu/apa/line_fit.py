@@ -1,0 +1,78 @@
+"""The side of a neighbour from distances heard while driving past it.
+
+A sensor at (u, w) hears the distance r to the nearest point of a flat side, which is its distance to
+the line w = a + b u; with the slope's angle alpha
+
+    w - r / cos(alpha) = a + b u
+
+so b and a follow from the regressions of w and of r on u, whatever way the car took and however it
+was turned (as long as the foot lies in the cone).
+"""
+
+import math
+from typing import NamedTuple
+
+
+class Sums(NamedTuple):
+    """Sums over the samples (u, w, r)."""
+
+    n: float = 0.0
+    u: float = 0.0
+    w: float = 0.0
+    r: float = 0.0
+    uu: float = 0.0
+    uw: float = 0.0
+    ur: float = 0.0
+
+
+class Line(NamedTuple):
+    """w = a + b u."""
+
+    a: float = 0.0
+    b: float = 0.0
+
+
+LEAST_SPREAD = 1e-6
+
+
+def add(sums: Sums, u: float, w: float, r: float) -> Sums:
+    """Return the sums with one sample more."""
+    return Sums(sums.n + 1.0, sums.u + u, sums.w + w, sums.r + r, sums.uu + u * u, sums.uw + u * w, sums.ur + u * r)
+
+
+def spread(sums: Sums) -> float:
+    """Return the sum of squared distances [m2] of u from its mean."""
+    return sums.uu - sums.u * sums.u / sums.n if sums.n > 0.0 else 0.0
+
+
+def slope(first: Sums, second: Sums) -> float:
+    """Return b of two sides taken as parallel, each with its own offset."""
+    s = spread(first) + spread(second)
+    if s <= LEAST_SPREAD:
+        return 0.0
+    w = _with_w(first) + _with_w(second)
+    r = _with_r(first) + _with_r(second)
+    b = 0.0
+    for _ in range(3):
+        b = (w - r * math.sqrt(1.0 + b * b)) / s
+    return b
+
+
+def offset(sums: Sums, b: float) -> float:
+    """Return a [m] of a side of slope ``b``; 0 without samples."""
+    if sums.n <= 0.0:
+        return 0.0
+    return (sums.w - sums.r * math.sqrt(1.0 + b * b) - b * sums.u) / sums.n
+
+
+def distance(line: Line, u: float, w: float) -> float:
+    """Return the distance [m] of a point from the line, positive on the road's side (larger w)."""
+    return (w - line.a - line.b * u) / math.sqrt(1.0 + line.b * line.b)
+
+
+def _with_w(sums: Sums) -> float:
+    return sums.uw - sums.u * sums.w / sums.n if sums.n > 0.0 else 0.0
+
+
+def _with_r(sums: Sums) -> float:
+    return sums.ur - sums.u * sums.r / sums.n if sums.n > 0.0 else 0.0

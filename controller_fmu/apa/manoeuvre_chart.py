@@ -1,0 +1,59 @@
+"""The inner chart: plan, set the wheel, drive, halt, and so on until in place; then straighten the wheel."""
+
+from enum import IntEnum
+
+
+class Step(IntEnum):
+    """What the assist is doing while it parks."""
+
+    IDLE = 0
+    PLAN = 1
+    SET_WHEEL = 2
+    DRIVE = 3
+    HALT = 4
+    STRAIGHTEN = 5
+    DONE = 6
+
+
+class StepGuard(IntEnum):
+    """Conditions that are worked out at every sample; one bit each."""
+
+    STARTED = 0
+    IN_PLACE = 1
+    """The car stands as it should, or nothing better is left and it stands well enough."""
+    PLANNED = 2
+    """The next move is found, and driving is allowed."""
+    WHEEL_SET = 3
+    MUST_HALT = 4
+    """The end of the move, a jump of its curvature, or something in the way."""
+    STANDING_TO_GO_ON = 5
+    """Standing within a move, the way is free."""
+    STANDING_AT_END = 6
+    WHEEL_STRAIGHT = 7
+
+
+Row = tuple[int, int, int]
+
+
+def _row(source: Step, guard: StepGuard, target: Step) -> Row:
+    return (int(source), int(guard), int(target))
+
+
+TRANSITIONS: tuple[Row, ...] = (
+    _row(Step.IDLE, StepGuard.STARTED, Step.PLAN),
+    _row(Step.PLAN, StepGuard.IN_PLACE, Step.STRAIGHTEN),
+    _row(Step.PLAN, StepGuard.PLANNED, Step.SET_WHEEL),
+    _row(Step.SET_WHEEL, StepGuard.WHEEL_SET, Step.DRIVE),
+    _row(Step.DRIVE, StepGuard.MUST_HALT, Step.HALT),
+    _row(Step.HALT, StepGuard.STANDING_AT_END, Step.PLAN),
+    _row(Step.HALT, StepGuard.STANDING_TO_GO_ON, Step.SET_WHEEL),
+    _row(Step.STRAIGHTEN, StepGuard.WHEEL_STRAIGHT, Step.DONE),
+)
+
+
+def step_transition(step: int, guards: int) -> int:
+    """Return the step after one sample; ``guards`` holds bit g for guard g."""
+    for source, guard, target in TRANSITIONS:
+        if source == step and (guards >> guard) & 1 == 1:
+            return target
+    return step

@@ -1,0 +1,151 @@
+"""What the parking assist puts out: requests, prompts, warnings, and what it knows of slot and plan."""
+
+from controller_fmu.apa.chart import Mode
+from controller_fmu.apa.manoeuvre_chart import Step
+from controller_fmu.apa.move import Piece
+from controller_fmu.apa.params import Longitudinal
+from controller_fmu.apa.parking import Parking, is_planned, site_for
+from controller_fmu.apa.signals import Alarm, ApaSignals, PlannedMove, PlannedPiece
+from controller_fmu.apa.slot import mirror_of
+from controller_fmu.apa.system import ApaState
+from controller_fmu.interface import ControllerOutput, ControllerParams, Path, Phase, Segment
+from controller_fmu.slot_frame import SlotFrame, to_world
+from modelkit.vocabulary import Pose, Prompt
+
+OFF = Mode.OFF.value
+STANDBY = Mode.STANDBY.value
+SEARCH = Mode.PARKING_SPACE_SEARCH.value
+APPEARS = Mode.PARKING_SPACE_APPEARS.value
+ASSIST = Mode.AUTO_PARKING_ASSIST.value
+TUNING = Mode.POSITION_TUNING.value
+FINISH = Mode.PARKING_FINISH.value
+FAIL = Mode.FAIL.value
+SET_WHEEL = Step.SET_WHEEL.value
+DRIVE = Step.DRIVE.value
+HALT = Step.HALT.value
+OWN_SPEED = Longitudinal.OWN_SPEED.value
+NO_PROMPT = Prompt.NONE.value
+STOP = Prompt.STOP.value
+FORWARD = Prompt.FORWARD.value
+REVERSE = Prompt.REVERSE.value
+SLOW_DOWN = Prompt.SLOW_DOWN.value
+CONFIRM = Prompt.CONFIRM.value
+PHASE_OF_STEP = (
+    Phase.STANDBY.value,
+    Phase.STOP.value,
+    Phase.PRE_STEER.value,
+    Phase.PATH_TRACKING.value,
+    Phase.STOP.value,
+    Phase.STRAIGHTEN.value,
+    Phase.STRAIGHTEN.value,
+)
+"""One for each member of Step, in its order."""
+MOVING = 0.05
+
+
+def phase_of(state: ApaState) -> int:
+    """Return the phase as every controller tells it, for what judges and ends a run."""
+    if state.mode == FAIL:
+        return Phase.TAKEOVER.value if state.taken_over else Phase.FAILED.value
+    if state.mode == FINISH:
+        return Phase.PARKED.value
+    if state.mode == ASSIST or state.mode == TUNING:
+        return PHASE_OF_STEP[state.parking.step]
+    return Phase.STANDBY.value
+
+
+def prompt_of(state: ApaState, params: ControllerParams) -> int:
+    """Return what the driver is asked for."""
+    if state.mode == SEARCH:
+        if state.search.count > 0:
+            return STOP
+        return SLOW_DOWN if state.search.way > MOVING else FORWARD
+    if state.mode == STANDBY:
+        return STOP if params.apa.search.given else SLOW_DOWN
+    if state.mode == APPEARS:
+        return CONFIRM if is_planned(state.parking) else STOP
+    if state.mode == FINISH or state.mode == FAIL:
+        return NO_PROMPT if state.taken_over else STOP
+    if (state.mode == ASSIST or state.mode == TUNING) and params.apa.drive.longitudinal != OWN_SPEED:
+        if state.parking.step != DRIVE:
+            return STOP
+        if state.parking.tracked.way > MOVING:
+            return SLOW_DOWN
+        return FORWARD if state.parking.direction > 0 else REVERSE
+    return NO_PROMPT
+
+
+def alarm_of(state: ApaState) -> int:
+    """Return the warning shown."""
+    if state.mode == FAIL:
+        return Alarm.TAKEN_OVER.value if state.taken_over else Alarm.FAILED.value
+    if state.mode == STANDBY:
+        return Alarm.SLOW_DOWN.value
+    if state.parking.sight.blocked:
+        return Alarm.OBSTACLE.value
+    if state.mode == SEARCH and state.search.refusals > 0 and state.search.count == 0:
+        return Alarm.SLOT_TOO_SHORT.value
+    return Alarm.NONE.value
+
+
+def apa_outputs(state: ApaState, params: ControllerParams) -> ControllerOutput:
+    """Return the outputs that hold until the next sample."""
+    driving = state.mode == ASSIST or state.mode == TUNING
+    own = driving and params.apa.drive.longitudinal == OWN_SPEED
+    parking = state.parking
+    site = site_for(state.slot, parking.attempt, params)
+    advised = params.apa.search.speed if state.mode == SEARCH or state.mode == STANDBY else abs(parking.speed)
+    stopping = driving and parking.step != DRIVE
+    braking = (own and stopping) or (driving and parking.sight.blocked)
+    failed = state.mode == FAIL and not state.taken_over
+    return ControllerOutput(
+        steering_wheel_request=parking.wheel if driving else 0.0,
+        steering_active=driving,
+        prompt=prompt_of(state, params),
+        advised_speed=advised,
+        speed_control_active=own,
+        speed_request=parking.speed if own else 0.0,
+        brake_request=braking or failed or state.mode == FINISH,
+        phase=phase_of(state),
+        reason=state.reason,
+        shifts=parking.shifts,
+        reference=to_world(parking.tracked.reference, site.frame),
+        lateral_error=parking.tracked.lateral_error,
+        heading_error=parking.tracked.heading_error,
+        path=Path(Pose(0.0, 0.0, 0.0), (Segment(0.0, 0.0), Segment(0.0, 0.0), Segment(0.0, 0.0))),
+        apa=_signals(state, site.frame, params),
+    )
+
+
+def _signals(state: ApaState, frame: SlotFrame, params: ControllerParams) -> ApaSignals:
+    slot = state.slot
+    shown = slot.kind > 0
+    nowhere = Pose(0.0, 0.0, 0.0)
+    b = to_world(Pose(slot.length, slot.b_out, 0.0), SlotFrame(slot.a, mirror_of(slot)))
+    return ApaSignals(
+        mode=state.mode,
+        alarm=alarm_of(state),
+        confirm=state.mode == APPEARS and is_planned(state.parking),
+        slots=state.search.count,
+        missing=state.search.refused.missing,
+        slot=slot,
+        corner_b=b if shown else nowhere,
+        target=to_world(nowhere, frame) if shown else nowhere,
+        moves=state.parking.plan.moves,
+        move=_move(state.parking, frame),
+    )
+
+
+def _move(parking: Parking, frame: SlotFrame) -> PlannedMove:
+    move = parking.plan.move
+    m = frame.mirror
+    p = move.pieces
+    pieces = (
+        _piece(p[0], m), _piece(p[1], m), _piece(p[2], m), _piece(p[3], m), _piece(p[4], m), _piece(p[5], m),
+        _piece(p[6], m),
+    )  # fmt: skip
+    return PlannedMove(to_world(move.start, frame), move.direction, pieces)
+
+
+def _piece(piece: Piece, mirror: float) -> PlannedPiece:
+    return PlannedPiece(piece.length, mirror * piece.k0, mirror * piece.k1)

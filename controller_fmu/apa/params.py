@@ -1,0 +1,149 @@
+"""What can be set of the parking assist: the car it drives, sensors, margins, speeds, limits."""
+
+from enum import IntEnum
+from math import pi
+from typing import Annotated, NamedTuple
+
+from controller_fmu.apa.slot import Slot
+from modelkit.signal import Signal
+
+HOUSE = "chosen; the source states none"
+SOURCE = "APA function requirements"
+USUAL = "usual for parking sensors"
+
+
+class Longitudinal(IntEnum):
+    """Who drives."""
+
+    OWN_SPEED = 0
+    """The controller asks for speed and brake."""
+    DRIVER = 1
+    """The driver drives as prompted."""
+
+
+class Wish(IntEnum):
+    """Which slots the driver wants."""
+
+    ANY = 0
+    PARALLEL = 1
+    PERPENDICULAR = 2
+
+
+class SensorMount(NamedTuple):
+    """Where a sensor sits on the car and where it looks."""
+
+    x: Annotated[float, Signal("m", "ahead of the rear axle")] = 0.0
+    y: Annotated[float, Signal("m", "to the left of the car's middle")] = 0.0
+    yaw: Annotated[float, Signal("rad", "direction of its axis, left positive")] = 0.0
+
+
+MOUNTS = (
+    SensorMount(3.10, 0.68, pi / 6.0),
+    SensorMount(3.205, 0.25, 0.0),
+    SensorMount(3.205, -0.25, 0.0),
+    SensorMount(3.10, -0.68, -pi / 6.0),
+    SensorMount(-0.50, 0.68, pi * 5.0 / 6.0),
+    SensorMount(-0.60, 0.25, pi),
+    SensorMount(-0.60, -0.25, pi),
+    SensorMount(-0.50, -0.68, -pi * 5.0 / 6.0),
+    SensorMount(2.80, 0.825, pi / 2.0),
+    SensorMount(-0.20, 0.825, pi / 2.0),
+    SensorMount(2.80, -0.825, -pi / 2.0),
+    SensorMount(-0.20, -0.825, -pi / 2.0),
+)
+
+
+class SensorParams(NamedTuple):
+    """The twelve ultrasonic sensors as the controller believes them to be."""
+
+    mounts: tuple[SensorMount, ...] = MOUNTS
+    half_angle: Annotated[float, Signal("rad", "half opening of the cone", 0.01, 1.5, USUAL)] = 30.0 * pi / 180.0
+    min_range: Annotated[float, Signal("m", "nearest distance told", 0.0, 10.0, USUAL)] = 0.15
+    max_range: Annotated[float, Signal("m", "farthest distance heard", 0.1, 100.0, USUAL)] = 5.0
+    blind_time: Annotated[float, Signal("s", "longest time a sensor may tell nothing usable", 0.01, 10.0, HOUSE)] = 0.3
+
+
+class PlanParams(NamedTuple):
+    """How the way into the slot is planned."""
+
+    curvature_share: Annotated[float, Signal("1", "planned curvature over the car's largest", 0.5, 1.0, HOUSE)] = 0.95
+    ramp: Annotated[float, Signal("m", "way over which the curvature rises to the planned", 0.05, 5.0, HOUSE)] = 0.8
+    margin: Annotated[float, Signal("m", "distance kept to neighbours", 0.0, 1.0, HOUSE)] = 0.15
+    kerb_margin: Annotated[float, Signal("m", "distance kept to kerb or wall beside", 0.0, 1.0, HOUSE)] = 0.1
+    stand_out: Annotated[float, Signal("m", "how far the car may stand out if it must", 0.0, 0.15, "GB/T 41630")] = 0.1
+    at_a_time: Annotated[int, Signal("1", "candidates looked at in one sample", 1, 1000, HOUSE)] = 40
+    shifts: Annotated[int, Signal("1", "most shifts, the first reverse counts one", 1, 30, "GB/T 41630")] = 8
+
+
+class DriveParams(NamedTuple):
+    """How the path is driven and tracked."""
+
+    longitudinal: Annotated[int, Signal("1", "who drives", states=Longitudinal)] = int(Longitudinal.OWN_SPEED)
+    k1: Annotated[float, Signal("1/m2", "path tracking, distance gain", 0.0, 100.0, HOUSE)] = 2.0
+    k2: Annotated[float, Signal("1/m", "path tracking, heading gain", 0.0, 100.0, HOUSE)] = 2.4
+    speed: Annotated[float, Signal("m/s", "largest speed while parking", 0.1, 1.38, HOUSE)] = 0.8
+    creep: Annotated[float, Signal("m/s", "speed at the end of a move", 0.01, 0.5, HOUSE)] = 0.08
+    deceleration: Annotated[float, Signal("m/s2", "planned towards the end of a move", 0.1, 5.0, HOUSE)] = 0.5
+    brake: Annotated[float, Signal("m/s2", "deceleration when braking to standstill", 0.1, 10.0, HOUSE)] = 2.0
+    delay: Annotated[float, Signal("s", "from a brake request to its effect", 0.0, 2.0, HOUSE)] = 0.03
+    reaction: Annotated[float, Signal("s", "from a prompt to what the driver does", 0.0, 5.0, HOUSE)] = 0.3
+    steering_reserve: Annotated[float, Signal("1", "share of the wheel's rate used by the path", 0.1, 1.0, HOUSE)] = 0.7
+
+
+class SearchParams(NamedTuple):
+    """Slot search while driving past."""
+
+    wish: Annotated[int, Signal("1", "which slots are wanted", states=Wish)] = int(Wish.ANY)
+    speed: Annotated[float, Signal("m/s", "largest speed of the search", 0.1, 10.0, "20 km/h")] = 20.0 / 3.6
+    way: Annotated[float, Signal("m", "longest way searched", 1.0, 1000.0, HOUSE)] = 60.0
+    beside: Annotated[float, Signal("m", "farthest neighbour looked at", 0.1, 10.0, HOUSE)] = 2.5
+    step: Annotated[float, Signal("m", "least jump of distance at an edge", 0.05, 5.0, HOUSE)] = 0.4
+    wall: Annotated[float, Signal("m", "least length of a neighbour seen", 0.1, 5.0, HOUSE)] = 0.6
+    perpendicular_room: Annotated[
+        float, Signal("m", "narrowest perpendicular slot over the car's width", 0.4, 5.0, HOUSE)
+    ] = 0.95
+    depth_room: Annotated[float, Signal("m", "depth that may be missing", 0.0, 2.0, HOUSE)] = 0.1
+    given: Annotated[bool, Signal("1", "no search: the slot is given")] = False
+    slot: Slot = Slot()
+
+
+class EndParams(NamedTuple):
+    """When the car is parked well enough."""
+
+    lateral: Annotated[float, Signal("m", "parked without tuning", 0.001, 0.5, HOUSE)] = 0.02
+    heading: Annotated[float, Signal("rad", "parked without tuning", 0.001, 0.5, HOUSE)] = 0.5 * pi / 180.0
+    miss_lateral: Annotated[float, Signal("m", "parked if nothing better is left", 0.0, 1.0, "GB/T 41630")] = 0.12
+    miss_heading: Annotated[float, Signal("rad", "parked if nothing better is left", 0.0, 1.0, "GB/T 41630")] = (
+        2.5 * pi / 180.0
+    )
+
+
+class GuardParams(NamedTuple):
+    """Supervision: each limit ends in Fail with its reason, or stops the car."""
+
+    stop_gap: Annotated[float, Signal("m", "known obstacle ahead: stop at this distance", 0.0, 1.0, HOUSE)] = 0.16
+    surprise: Annotated[float, Signal("m", "nearer than expected by this: unknown obstacle", 0.05, 2.0, HOUSE)] = 0.25
+    surprise_gap: Annotated[float, Signal("m", "distance kept to an unknown obstacle", 0.1, 2.0, HOUSE)] = 0.4
+    blocked: Annotated[float, Signal("s", "longest wait before an obstacle", 0.1, 600.0, HOUSE)] = 10.0
+    over_speed: Annotated[float, Signal("m/s", "driver's speed while parking", 0.1, 10.0, SOURCE + ", 5 km/h")] = (
+        5.0 / 3.6
+    )
+    over_speed_time: Annotated[float, Signal("s", "for longer than this", 0.0, 10.0, HOUSE)] = 0.3
+    pedal: Annotated[float, Signal("1", "brake pedal counts as pressed", 0.01, 1.0, HOUSE)] = 0.2
+    patience: Annotated[float, Signal("s", "longest wait for the driver, wheel or car", 0.1, 600.0, HOUSE)] = 15.0
+    confirm: Annotated[float, Signal("s", "longest wait for confirmation", 0.1, 3600.0, HOUSE)] = 60.0
+    duration: Annotated[float, Signal("s", "longest time from confirmation to parked", 1.0, 3600.0, HOUSE)] = 180.0
+
+
+class ApaParams(NamedTuple):
+    """The whole parking assist."""
+
+    front_overhang: Annotated[float, Signal("m", "front axle to bumper", 0.0, 5.0, HOUSE)] = 0.80
+    rear_overhang: Annotated[float, Signal("m", "rear axle to bumper", 0.0, 5.0, HOUSE)] = 0.60
+    width: Annotated[float, Signal("m", "body width", 0.1, 5.0, HOUSE)] = 1.65
+    sensors: SensorParams = SensorParams()
+    plan: PlanParams = PlanParams()
+    drive: DriveParams = DriveParams()
+    search: SearchParams = SearchParams()
+    end: EndParams = EndParams()
+    guard: GuardParams = GuardParams()

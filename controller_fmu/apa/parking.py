@@ -1,0 +1,229 @@
+"""The parking manoeuvre at one sample: plan, set the wheel, drive, halt, plan again, straighten."""
+
+import math
+from typing import NamedTuple
+
+from controller_fmu.apa.manoeuvre_chart import Step, StepGuard, step_transition
+from controller_fmu.apa.move import length_of
+from controller_fmu.apa.outline import Car
+from controller_fmu.apa.params import ApaParams, Longitudinal
+from controller_fmu.apa.planner import FOUND, NOTHING, SEARCHING, PlanSearch, new_search, search_on
+from controller_fmu.apa.slot import PARALLEL, Margins, Site, Slot, site_of
+from controller_fmu.apa.speed import planned_speed, stopping_way
+from controller_fmu.apa.supervisor import Sight, look
+from controller_fmu.apa.tracking import Tracked, set_wheel, track
+from controller_fmu.apa.watch import STANDING
+from controller_fmu.interface import ControllerInput, ControllerParams
+from controller_fmu.slot_frame import to_slot
+from modelkit.maths import clamp
+from modelkit.vocabulary import Pose
+
+IDLE = int(Step.IDLE)
+PLAN = int(Step.PLAN)
+SET_WHEEL = int(Step.SET_WHEEL)
+DRIVE = int(Step.DRIVE)
+HALT = int(Step.HALT)
+STRAIGHTEN = int(Step.STRAIGHTEN)
+DONE = int(Step.DONE)
+OWN_SPEED = int(Longitudinal.OWN_SPEED)
+AT_END = 0.04
+"""Left of a move [m] that is not worth driving."""
+X_TOLERANCE = 0.08
+
+
+class Parking(NamedTuple):
+    """Everything the manoeuvre remembers."""
+
+    step: int = IDLE
+    plan: PlanSearch = PlanSearch()
+    attempt: int = 0
+    """1: the car may stand out of the slot a little."""
+    tracked: Tracked = Tracked()
+    shifts: int = 0
+    direction: int = 0
+    """Last driven, 0: not yet."""
+    ended: bool = False
+    """The last of the planned moves is driven."""
+    sight: Sight = Sight()
+    wheel: float = 0.0
+    """Steering-wheel angle asked for [rad]."""
+    speed: float = 0.0
+    """Speed asked for or advised [m/s], reverse negative."""
+
+
+def car_of(params: ControllerParams) -> Car:
+    """Return the car as the planner sees it."""
+    lock = math.tan(params.steering_wheel_limit / params.steering_ratio)
+    apa = params.apa
+    return Car(
+        params.wheelbase + apa.front_overhang,
+        apa.rear_overhang,
+        0.5 * apa.width,
+        apa.plan.curvature_share * lock / params.wheelbase,
+        apa.plan.ramp,
+    )
+
+
+def site_for(slot: Slot, attempt: int, params: ControllerParams) -> Site:
+    """Return the slot as the planner sees it, with the margins of this attempt."""
+    plan = params.apa.plan
+    inset = -plan.stand_out if attempt > 0 else 0.0
+    return site_of(slot, car_of(params), Margins(plan.margin, plan.kerb_margin, inset))
+
+
+def is_in_place(pose: Pose, site: Site, lateral: float, heading: float) -> bool:
+    """Return whether a pose (target's frame) is within these limits, and its x where it may end."""
+    return (
+        abs(pose.y) <= lateral
+        and abs(pose.heading) <= heading
+        and site.x_low - X_TOLERANCE <= pose.x <= site.x_high + X_TOLERANCE
+    )
+
+
+def park(state: Parking, slot: Slot, inputs: ControllerInput, allowed: bool, params: ControllerParams) -> Parking:
+    """Return the manoeuvre one sample later; while not ``allowed`` the first plan is made, and no more."""
+    site = site_for(slot, state.attempt, params)
+    car = car_of(params)
+    pose = to_slot(inputs.odometry, site.frame)
+    plan = state.plan
+    attempt = state.attempt
+    if state.step == PLAN:
+        plan = search_on(plan, site, car, params.apa.plan.at_a_time)
+        if plan.status == NOTHING and attempt == 0 and state.direction == 0 and site.kind == PARALLEL:
+            attempt = 1
+            site = site_for(slot, attempt, params)
+            pose = to_slot(inputs.odometry, site.frame)
+            plan = new_search(pose)
+    tracked = state.tracked
+    sight = Sight(100.0, False, False)
+    if state.step == DRIVE or state.step == HALT or state.step == SET_WHEEL:
+        drive = params.apa.drive
+        tracked = track(plan.move, tracked.way, pose, drive.k1, drive.k2, params.wheelbase)
+        around = site_of(slot, car, Margins(0.0, 0.0, 0.0 if attempt == 0 else -params.apa.plan.stand_out)).obstacles
+        mirror = site.frame.mirror
+        sight = look(inputs.ultrasonic, pose, mirror, plan.move.direction, inputs.measured_speed, around, params.apa)
+    guards = _guards(state, plan, tracked, sight, pose, site, inputs, allowed, params)
+    step = step_transition(state.step, guards)
+    return _moved_on(state, step, plan, attempt, tracked, sight, pose, site, inputs, params)
+
+
+def _guards(
+    state: Parking,
+    plan: PlanSearch,
+    tracked: Tracked,
+    sight: Sight,
+    pose: Pose,
+    site: Site,
+    inputs: ControllerInput,
+    allowed: bool,
+    params: ControllerParams,
+) -> int:
+    apa = params.apa
+    standing = abs(inputs.measured_speed) <= STANDING
+    own = apa.drive.longitudinal == OWN_SPEED
+    stop = stopping_way(inputs.measured_speed, apa.drive, apa.drive.delay if own else apa.drive.reaction)
+    limit = apa.end
+    right = is_in_place(pose, site, limit.lateral, limit.heading)
+    well_enough = is_in_place(pose, site, limit.miss_lateral, limit.miss_heading)
+    stuck = plan.status == NOTHING or (plan.status == FOUND and more_shifts(state, plan) > apa.plan.shifts)
+    wheel = inputs.steering_wheel_angle
+    at_end = tracked.left <= AT_END or (sight.blocked and not sight.unknown)
+    return (
+        (1 << StepGuard.STARTED.value)
+        | _bit(StepGuard.IN_PLACE.value, right or (stuck and well_enough and allowed))
+        | _bit(StepGuard.PLANNED.value, plan.status == FOUND and not stuck and allowed)
+        | _bit(StepGuard.WHEEL_SET.value, abs(wheel - state.wheel) <= params.threshold.wheel and not sight.blocked)
+        | _bit(StepGuard.MUST_HALT.value, tracked.to_stop <= stop or sight.blocked)
+        | _bit(StepGuard.STANDING_AT_END.value, standing and at_end)
+        | _bit(StepGuard.STANDING_TO_GO_ON.value, standing and not at_end and not sight.blocked)
+        | _bit(StepGuard.WHEEL_STRAIGHT.value, abs(wheel) <= params.threshold.wheel)
+    )
+
+
+def more_shifts(state: Parking, plan: PlanSearch) -> int:
+    """Return the shifts at the end of the plan: those driven and at least those to come."""
+    first = 0 if plan.move.direction == state.direction or (state.shifts == 0 and plan.move.direction > 0) else 1
+    return state.shifts + first + plan.moves - 1
+
+
+def has_failed(state: Parking, params: ControllerParams) -> bool:
+    """Return whether no way leads on from here."""
+    stuck = state.plan.status == NOTHING
+    return state.step == PLAN and (
+        stuck or (state.plan.status == FOUND and more_shifts(state, state.plan) > params.apa.plan.shifts)
+    )
+
+
+def _moved_on(
+    state: Parking,
+    step: int,
+    plan: PlanSearch,
+    attempt: int,
+    tracked: Tracked,
+    sight: Sight,
+    pose: Pose,
+    site: Site,
+    inputs: ControllerInput,
+    params: ControllerParams,
+) -> Parking:
+    mirror = site.frame.mirror
+    shifts = state.shifts
+    direction = state.direction
+    ended = state.ended
+    wheel = state.wheel
+    speed = 0.0
+    if step == PLAN and state.step != PLAN:
+        ended = state.step == HALT and plan.moves <= 1
+        plan = new_search(pose)
+    if step == SET_WHEEL and state.step == PLAN:
+        tracked = Tracked(0.0, length_of(plan.move), length_of(plan.move), pose, 0.0, 0.0, 0.0, 0.0)
+    if step == SET_WHEEL:
+        wheel = _wheel(mirror * set_wheel(plan.move, tracked.way, params.wheelbase), params)
+    if step == DRIVE:
+        if state.step != DRIVE and plan.move.direction != direction:
+            shifts = shifts + 1 if shifts > 0 or plan.move.direction < 0 else shifts
+            direction = plan.move.direction
+        speed = direction * _speed(tracked, sight, params)
+    if step == DRIVE or step == HALT:
+        wheel = _wheel(mirror * tracked.front_wheel_angle, params)
+    if step == STRAIGHTEN or step == IDLE:
+        wheel = 0.0
+    return Parking(step, plan, attempt, tracked, shifts, direction, ended, sight, wheel, speed)
+
+
+def _speed(tracked: Tracked, sight: Sight, params: ControllerParams) -> float:
+    rate = params.steering_wheel_rate / params.steering_ratio
+    speed = planned_speed(tracked.to_stop, tracked.slope, params.wheelbase, rate, params.apa.drive)
+    speed = sight.speed if sight.speed < speed else speed
+    return speed if speed > params.apa.drive.creep else params.apa.drive.creep
+
+
+def _wheel(front_wheel_angle: float, params: ControllerParams) -> float:
+    return clamp(params.steering_ratio * front_wheel_angle, -params.steering_wheel_limit, params.steering_wheel_limit)
+
+
+def _bit(guard: int, holds: bool) -> int:
+    return 1 << guard if holds else 0
+
+
+def start_planning(slot: Slot, pose: Pose, params: ControllerParams) -> Parking:
+    """Return the manoeuvre at its beginning: the first plan is made from a car at ``pose`` (world)."""
+    site = site_for(slot, 0, params)
+    none = Tracked(0.0, 0.0, 0.0, Pose(0.0, 0.0, 0.0), 0.0, 0.0, 0.0, 0.0)
+    sight = Sight(100.0, False, False)
+    return Parking(PLAN, new_search(to_slot(pose, site.frame)), 0, none, 0, 0, False, sight, 0.0, 0.0)
+
+
+def is_planned(state: Parking) -> bool:
+    """Return whether the first plan is found."""
+    return state.step == PLAN and state.plan.status == FOUND
+
+
+def is_planning(state: Parking) -> bool:
+    """Return whether the search for a plan goes on."""
+    return state.step == PLAN and state.plan.status == SEARCHING
+
+
+def tracking_limits(params: ApaParams) -> float:
+    """Return how far off its path [m] the car may come before it is called lost."""
+    return 0.5 * params.width

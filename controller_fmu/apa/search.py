@@ -1,0 +1,176 @@
+"""The search for slots on both sides while driving past, and the slots remembered."""
+
+import math
+from typing import NamedTuple
+
+from controller_fmu.apa.fit import Fit, fit_of
+from controller_fmu.apa.line_fit import offset, slope
+from controller_fmu.apa.outline import Car
+from controller_fmu.apa.params import ApaParams, Wish
+from controller_fmu.apa.search_side import DEEP, START, SideState, hear
+from controller_fmu.apa.slot import PARALLEL, PERPENDICULAR, UNSEEN, Slot
+from controller_fmu.interface import ControllerInput
+from modelkit.vocabulary import Pose
+
+ANY = int(Wish.ANY)
+LEFT_SENSOR = 8
+RIGHT_SENSOR = 10
+RIGHT = 0
+LEFT = 1
+REMEMBERED = 3
+SENSOR_CYCLE_NS = 40_000_000
+LONG_NEIGHBOUR = 2.6
+"""A neighbour longer than this [m] along the road stands parallel to it."""
+NO_SLOT = Slot(0, 0, Pose(0.0, 0.0, 0.0), 0.0, 0.0, UNSEEN, UNSEEN)
+NO_SLOTS = (NO_SLOT,) * REMEMBERED
+
+
+class SearchState(NamedTuple):
+    """Both sides, and the slots found, the newest first."""
+
+    begun: bool = False
+    origin: Pose = Pose()
+    clock_ns: int = 0
+    right: SideState = START
+    left: SideState = START
+    far_right: float = DEEP
+    """Nearest distance [m] heard on the right since the last neighbour on the left, and the other way round."""
+    far_left: float = DEEP
+    way: float = 0.0
+    """Driven since the search began [m]."""
+    slots: tuple[Slot, ...] = NO_SLOTS
+    count: int = 0
+    """Valid slots remembered."""
+    seen: int = 0
+    """Gaps between neighbours judged on the right (16 each) and on the left."""
+    refused: Fit = Fit()
+    """Of the last gap that was refused."""
+    refusals: int = 0
+
+
+def begin_search(pose: Pose, clock_ns: int) -> SearchState:
+    """Return a search that begins at ``pose``."""
+    return SearchState(True, pose, clock_ns, START, START, DEEP, DEEP, 0.0, NO_SLOTS, 0, 0, Fit(False, 0, 0.0), 0)
+
+
+def search(state: SearchState, inputs: ControllerInput, car: Car, params: ApaParams, dt_ns: int) -> SearchState:
+    """Return the search after one sample; sensors tell something new every 40 ms."""
+    clock = state.clock_ns + dt_ns
+    way = state.way + abs(inputs.measured_speed) * dt_ns * 1e-9
+    if state.clock_ns % SENSOR_CYCLE_NS >= dt_ns or abs(inputs.measured_speed) < 0.01:
+        return _with_sides(state, state.right, state.left, state.far_right, state.far_left, clock, way)
+    pose = inputs.odometry
+    right_r = inputs.ultrasonic[RIGHT_SENSOR]
+    left_r = inputs.ultrasonic[LEFT_SENSOR]
+    right = _hear(state.right, state.origin, pose, 1.0, RIGHT_SENSOR, right_r, params)
+    left = _hear(state.left, state.origin, pose, -1.0, LEFT_SENSOR, left_r, params)
+    top = 0.99 * params.sensors.max_range
+    far_left = DEEP if right.mode == 1 and state.right.mode != 1 else state.far_left
+    far_right = DEEP if left.mode == 1 and state.left.mode != 1 else state.far_right
+    far_left = left_r if left_r < far_left and left_r < top else far_left
+    far_right = right_r if right_r < far_right and right_r < top else far_right
+    state = _with_sides(state, right, left, far_right, far_left, clock, way)
+    if right.fresh:
+        state = _judge(state, right, RIGHT, far_left, car, params)
+    if left.fresh:
+        state = _judge(state, left, LEFT, far_right, car, params)
+    return state
+
+
+def slot_of(side: SideState, which: int, origin: Pose, opposite_heard: float, car: Car, params: ApaParams) -> Slot:
+    """Return the gap between the last two neighbours as a slot, in the world."""
+    mirror = -1.0 if which == LEFT else 1.0
+    b = slope(side.before, side.sums)
+    a1 = offset(side.before, b)
+    a2 = offset(side.sums, b)
+    cos = 1.0 / math.sqrt(1.0 + b * b)
+    u = side.edge
+    w = mirror * (a1 + b * u)
+    c = math.cos(origin.heading)
+    s = math.sin(origin.heading)
+    corner_a = Pose(origin.x + u * c - w * s, origin.y + u * s + w * c, origin.heading + mirror * math.atan(b))
+    length = (side.edge_b - side.edge) / cos
+    depth = side.depth if side.depth < DEEP else UNSEEN
+    opposite = UNSEEN
+    if opposite_heard < DEEP:
+        beside = side.sums.r / side.sums.n if side.sums.n > 0.0 else 0.0
+        opposite = beside + 2.0 * car.half_width + opposite_heard
+    kind = kind_of(length, depth, side.extent, car, params)
+    return Slot(kind, which, corner_a, length if length > 0.0 else 0.0, (a2 - a1) * cos, depth, opposite)
+
+
+def kind_of(length: float, depth: float, neighbour: float, car: Car, params: ApaParams) -> int:
+    """Return how a car would stand in a gap: by its length, its depth, and how the neighbour stands."""
+    if params.search.wish != ANY:
+        return params.search.wish
+    car_length = car.front + car.rear
+    if length < 0.8 * car_length:
+        return PERPENDICULAR
+    if depth < car_length - params.search.depth_room:
+        return PARALLEL
+    return PARALLEL if neighbour > LONG_NEIGHBOUR else PERPENDICULAR
+
+
+def _hear(
+    side: SideState, origin: Pose, pose: Pose, mirror: float, sensor: int, reading: float, params: ApaParams
+) -> SideState:
+    mount = params.sensors.mounts[sensor]
+    c = math.cos(pose.heading)
+    s = math.sin(pose.heading)
+    dx = pose.x + mount.x * c - mount.y * s - origin.x
+    dy = pose.y + mount.x * s + mount.y * c - origin.y
+    c = math.cos(origin.heading)
+    s = math.sin(origin.heading)
+    return hear(side, dx * c + dy * s, mirror * (dy * c - dx * s), reading, params.sensors.half_angle, params.search)
+
+
+def _judge(state: SearchState, side: SideState, which: int, far: float, car: Car, params: ApaParams) -> SearchState:
+    """Return the search with a new gap judged, or a known one measured better."""
+    slot = slot_of(side, which, state.origin, far, car, params)
+    mark = side.found * 16 if which == RIGHT else side.found
+    known = (state.seen // 16) * 16 if which == RIGHT else state.seen % 16
+    other = state.seen - known
+    if mark == known:
+        first = state.slots[0]
+        better = state.count > 0 and first.side == which and abs(first.length - slot.length) < 0.5
+        kept = Slot(first.kind, which, slot.a, slot.length, slot.b_out, slot.depth, slot.opposite)
+        slots = (kept, state.slots[1], state.slots[2]) if better else state.slots
+        return _with_slots(state, slots, state.count, state.seen, state.refused, state.refusals)
+    fit = fit_of(slot, car, params)
+    seen = mark + other
+    if not fit.fits:
+        return _with_slots(state, state.slots, state.count, seen, fit, state.refusals + 1)
+    count = state.count + 1 if state.count < REMEMBERED else REMEMBERED
+    slots = (slot, state.slots[0], state.slots[1])
+    return _with_slots(state, slots, count, seen, state.refused, state.refusals)
+
+
+def without_first(state: SearchState) -> SearchState:
+    """Return the search with its newest slot given up."""
+    slots = (state.slots[1], state.slots[2], NO_SLOT)
+    count = state.count - 1 if state.count > 0 else 0
+    return _with_slots(state, slots, count, state.seen, state.refused, state.refusals + 1)
+
+
+def _with_sides(
+    state: SearchState,
+    right: SideState,
+    left: SideState,
+    far_right: float,
+    far_left: float,
+    clock_ns: int,
+    way: float,
+) -> SearchState:
+    return SearchState(
+        state.begun, state.origin, clock_ns, right, left, far_right, far_left, way, state.slots, state.count,
+        state.seen, state.refused, state.refusals,
+    )  # fmt: skip
+
+
+def _with_slots(
+    state: SearchState, slots: tuple[Slot, ...], count: int, seen: int, refused: Fit, refusals: int
+) -> SearchState:
+    return SearchState(
+        state.begun, state.origin, state.clock_ns, state.right, state.left, state.far_right, state.far_left,
+        state.way, slots, count, seen, refused, refusals,
+    )  # fmt: skip

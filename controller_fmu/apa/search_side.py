@@ -1,0 +1,200 @@
+"""What one side sensor has heard on the way past: a neighbour, a gap, the next neighbour.
+
+Coordinates: u along the car's heading when the search began, w to the road (away from the slots), both
+mirrored on the left side. Distances are averaged over 10 cm of way before they are used.
+"""
+
+from typing import NamedTuple
+
+from controller_fmu.apa.edge import KEPT, NO_SAMPLES, Heard, append, corner, remember
+from controller_fmu.apa.line_fit import Line, Sums, add, distance, offset, slope
+from controller_fmu.apa.params import SearchParams
+
+NOTHING = 0
+WALL = 1
+GAP = 2
+NEXT_WALL = 3
+
+BIN = 0.1
+FLAT = 0.35
+"""Steeper than this [m/m] the distance does not belong to a flat side along the road."""
+CONFIRMED = 0.4
+"""A gap is one once it is this long [m]: shorter ones are lost echoes."""
+DEEP = 50.0
+
+
+class SideState(NamedTuple):
+    """Everything remembered of one side."""
+
+    mode: int = NOTHING
+    n: float = 0.0
+    """Readings in the bin being filled, and their sums."""
+    u: float = 0.0
+    w: float = 0.0
+    r: float = 0.0
+    last: Heard = Heard()
+    """Last full bin."""
+    steady: int = 0
+    """Bins in a row whose distance does not change steeply."""
+    begun: float = 0.0
+    """Where the neighbour in hand began [m]."""
+    extent: float = 0.0
+    """Length seen of the first neighbour [m]."""
+    missed: float = 0.0
+    """Where the neighbour was not heard any more [m]."""
+    count: int = 0
+    samples: tuple[Heard, ...] = NO_SAMPLES
+    sums: Sums = Sums()
+    """Of the neighbour in hand."""
+    before: Sums = Sums()
+    """Of the neighbour before the gap."""
+    edge: float = 0.0
+    """u of corner A [m]."""
+    depth: float = DEEP
+    found: int = 0
+    """Counts the gaps between two neighbours; a slot is new or better whenever ``fresh``."""
+    fresh: bool = False
+    edge_b: float = 0.0
+    """u of corner B [m]."""
+
+
+EMPTY = Sums(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+START = SideState(
+    NOTHING, 0.0, 0.0, 0.0, 0.0, Heard(0.0, 0.0, 0.0), 0, 0.0, 0.0, 0.0, 0, NO_SAMPLES, EMPTY, EMPTY, 0.0, DEEP,
+    0, False, 0.0,
+)  # fmt: skip
+
+
+def hear(side: SideState, u: float, w: float, r: float, half_angle: float, params: SearchParams) -> SideState:
+    """Return the side after one reading: bins are closed after 10 cm, or where the distance jumps."""
+    if side.n > 0.0:
+        mean = side.r / side.n
+        first = side.u / side.n
+        full = abs(u - first) >= 0.5 * BIN or abs(r - mean) > params.step
+        if full:
+            sample = Heard(first, side.w / side.n, mean)
+            side = _sampled(_with_bin(side, 0.0, 0.0, 0.0, 0.0), sample, half_angle, params)
+            return _with_bin(side, 1.0, u, w, r)
+        return _not_fresh(_with_bin(side, side.n + 1.0, side.u + u, side.w + w, side.r + r))
+    return _not_fresh(_with_bin(side, 1.0, u, w, r))
+
+
+def _sampled(side: SideState, sample: Heard, half_angle: float, params: SearchParams) -> SideState:
+    """Return the side after one full bin."""
+    near = sample.r < params.beside
+    way = sample.u - side.last.u
+    change = sample.r - side.last.r
+    level = way > 0.0 and abs(change) <= FLAT * way + 0.03
+    steady = side.steady + 1 if level else 0
+    side = _with_last(side, sample, steady)
+    if side.mode == NOTHING:
+        return _begin_wall(side, sample) if near else side
+    if side.mode == WALL:
+        return _on_wall(side, sample, half_angle, params)
+    if side.mode == GAP:
+        return _in_gap(side, sample, params)
+    return _on_next_wall(side, sample, half_angle, params)
+
+
+def _on_wall(side: SideState, sample: Heard, half_angle: float, params: SearchParams) -> SideState:
+    expected = side.samples[0].r if side.samples[0].r > 0.0 else sample.r
+    if sample.r <= expected + params.step:
+        sums = add(side.sums, sample.u, sample.w, sample.r) if side.steady >= 2 else side.sums
+        fresh = side.found > 0 and side.steady >= 2 and side.mode == WALL and side.edge_b > side.edge
+        missed = sample.u
+        return _wall(side, sums, remember(side.samples, sample), missed, fresh)
+    if sample.u - side.missed < CONFIRMED:
+        return side
+    extent = side.missed - side.begun
+    if side.sums.n < 3.0 or extent < params.wall:
+        return _fresh_start(side)
+    b = slope(side.sums, EMPTY)
+    line = Line(offset(side.sums, b), b)
+    edge = corner(side.samples, line, -1.0, half_angle)
+    return SideState(
+        GAP, side.n, side.u, side.w, side.r, side.last, 0, side.begun, extent, side.missed, 0, NO_SAMPLES, EMPTY,
+        side.sums, edge, DEEP, side.found, False, 0.0,
+    )  # fmt: skip
+
+
+def _in_gap(side: SideState, sample: Heard, params: SearchParams) -> SideState:
+    b = slope(side.before, EMPTY)
+    d = distance(Line(offset(side.before, b), b), sample.u, sample.w)
+    if sample.r < 1.3 * d + params.step:
+        return SideState(
+            NEXT_WALL, side.n, side.u, side.w, side.r, side.last, 0, sample.u, side.extent, sample.u, 1,
+            append(NO_SAMPLES, sample, 0), EMPTY, side.before, side.edge, side.depth, side.found, False, 0.0,
+        )  # fmt: skip
+    depth = side.depth
+    if side.steady >= 4 and sample.r < params.beside + 2.4 and sample.r - d < depth:
+        depth = sample.r - d
+    return SideState(
+        GAP, side.n, side.u, side.w, side.r, side.last, side.steady, side.begun, side.extent, side.missed, 0,
+        NO_SAMPLES, EMPTY, side.before, side.edge, depth, side.found, False, 0.0,
+    )  # fmt: skip
+
+
+def _on_next_wall(side: SideState, sample: Heard, half_angle: float, params: SearchParams) -> SideState:
+    if abs(sample.r - side.samples[0].r) > 2.0 * params.step + 0.4:
+        if sample.u - side.missed < CONFIRMED:
+            return side
+        return SideState(
+            GAP, side.n, side.u, side.w, side.r, side.last, 0, side.begun, side.extent, side.missed, 0, NO_SAMPLES,
+            EMPTY, side.before, side.edge, side.depth, side.found, False, 0.0,
+        )  # fmt: skip
+    samples = append(side.samples, sample, side.count)
+    count = side.count + 1 if side.count < KEPT else KEPT
+    sums = add(side.sums, sample.u, sample.w, sample.r) if side.steady >= 2 else side.sums
+    if sample.u - side.begun < params.wall or sums.n < 2.0:
+        return SideState(
+            NEXT_WALL, side.n, side.u, side.w, side.r, side.last, side.steady, side.begun, side.extent, sample.u,
+            count, samples, sums, side.before, side.edge, side.depth, side.found, False, 0.0,
+        )  # fmt: skip
+    b = slope(side.before, sums)
+    edge_b = corner(samples, Line(offset(sums, b), b), 1.0, half_angle)
+    return SideState(
+        WALL, side.n, side.u, side.w, side.r, side.last, side.steady, side.begun, side.extent, sample.u, count,
+        remember(NO_SAMPLES, sample), sums, side.before, side.edge, side.depth, side.found + 1, True, edge_b,
+    )  # fmt: skip
+
+
+def _begin_wall(side: SideState, sample: Heard) -> SideState:
+    return SideState(
+        WALL, side.n, side.u, side.w, side.r, side.last, 0, sample.u, 0.0, sample.u, 0,
+        remember(NO_SAMPLES, sample), EMPTY, EMPTY, 0.0, DEEP, side.found, False, 0.0,
+    )  # fmt: skip
+
+
+def _fresh_start(side: SideState) -> SideState:
+    return SideState(
+        NOTHING, side.n, side.u, side.w, side.r, side.last, 0, 0.0, 0.0, 0.0, 0, NO_SAMPLES, EMPTY, EMPTY, 0.0,
+        DEEP, side.found, False, 0.0,
+    )  # fmt: skip
+
+
+def _wall(side: SideState, sums: Sums, samples: tuple[Heard, ...], missed: float, fresh: bool) -> SideState:
+    return SideState(
+        WALL, side.n, side.u, side.w, side.r, side.last, side.steady, side.begun, side.extent, missed, side.count,
+        samples, sums, side.before, side.edge, side.depth, side.found, fresh, side.edge_b,
+    )  # fmt: skip
+
+
+def _with_bin(side: SideState, n: float, u: float, w: float, r: float) -> SideState:
+    return SideState(
+        side.mode, n, u, w, r, side.last, side.steady, side.begun, side.extent, side.missed, side.count,
+        side.samples, side.sums, side.before, side.edge, side.depth, side.found, side.fresh, side.edge_b,
+    )  # fmt: skip
+
+
+def _with_last(side: SideState, last: Heard, steady: int) -> SideState:
+    return SideState(
+        side.mode, side.n, side.u, side.w, side.r, last, steady, side.begun, side.extent, side.missed, side.count,
+        side.samples, side.sums, side.before, side.edge, side.depth, side.found, False, side.edge_b,
+    )  # fmt: skip
+
+
+def _not_fresh(side: SideState) -> SideState:
+    return SideState(
+        side.mode, side.n, side.u, side.w, side.r, side.last, side.steady, side.begun, side.extent, side.missed,
+        side.count, side.samples, side.sums, side.before, side.edge, side.depth, side.found, False, side.edge_b,
+    )  # fmt: skip

@@ -1,0 +1,55 @@
+"""What the parking assist tells beside the controller's common outputs."""
+
+from enum import IntEnum
+from typing import Annotated, NamedTuple
+
+from controller_fmu.apa.chart import Mode
+from controller_fmu.apa.slot import Slot
+from modelkit.signal import Signal
+from modelkit.vocabulary import Pose
+
+
+class Alarm(IntEnum):
+    """What the display warns of."""
+
+    NONE = 0
+    SLOW_DOWN = 1
+    """Too fast to search."""
+    SLOT_TOO_SHORT = 2
+    OBSTACLE = 3
+    """The car stands before something in the way."""
+    FAILED = 4
+    TAKEN_OVER = 5
+
+
+class PlannedPiece(NamedTuple):
+    """A piece of the move being driven, seen in the world."""
+
+    length: Annotated[float, Signal("m", "length, >= 0; 0: unused")] = 0.0
+    start_curvature: Annotated[float, Signal("1/m", "at its start, left positive")] = 0.0
+    end_curvature: Annotated[float, Signal("1/m", "at its end, left positive")] = 0.0
+
+
+class PlannedMove(NamedTuple):
+    """The move being driven."""
+
+    start: Pose = Pose()
+    direction: Annotated[int, Signal("1", "1 forward, -1 in reverse, 0 none")] = 0
+    pieces: tuple[PlannedPiece, ...] = (PlannedPiece(),) * 7
+
+
+class ApaSignals(NamedTuple):
+    """State, slot and plan of the parking assist."""
+
+    mode: Annotated[int, Signal("1", "state of the outer chart", states=Mode)] = 0
+    alarm: Annotated[int, Signal("1", "warning on the display", states=Alarm)] = 0
+    confirm: Annotated[bool, Signal("1", "the display asks to confirm the slot")] = False
+    slots: Annotated[int, Signal("1", "valid slots remembered")] = 0
+    missing: Annotated[float, Signal("m", "length that the last refused slot lacks", 0.0)] = 0.0
+    slot: Slot = Slot()
+    corner_b: Pose = Pose()
+    """Corner B in the world."""
+    target: Pose = Pose()
+    """Pose to park at, in the world."""
+    moves: Annotated[int, Signal("1", "moves of the plan still to drive")] = 0
+    move: PlannedMove = PlannedMove()

@@ -1,0 +1,88 @@
+"""The clearance supervisor: slows down and stops before anything in the way, whoever drives.
+
+The sensors on the driven side are compared with what they should hear from the slot as it is known.
+Something nearer than that by ``surprise`` is unknown and is kept away from; what is known is left to
+the path, except straight ahead, where the car stops at ``stop_gap``.
+"""
+
+import math
+from typing import NamedTuple
+
+from controller_fmu.apa.outline import Box, Obstacles
+from controller_fmu.apa.params import ApaParams, SensorMount
+from controller_fmu.apa.speed import stopping_way
+from modelkit import geometry
+from modelkit.geometry import Point, cone_box
+from modelkit.vocabulary import Pose
+
+FREE = 100.0
+STRAIGHT = 0.2
+LOOKED_AT = 1.5
+
+
+class Sight(NamedTuple):
+    """What the supervisor says."""
+
+    speed: float = FREE
+    """Largest speed [m/s] with which the car still stops in time."""
+    blocked: bool = False
+    unknown: bool = False
+    """What blocks is not part of the slot."""
+
+
+def look(
+    readings: tuple[float, ...],
+    pose: Pose,
+    mirror: float,
+    direction: int,
+    speed: float,
+    around: Obstacles,
+    params: ApaParams,
+) -> Sight:
+    """Return the sight in ``direction`` of a car at ``pose`` (slot's frame) among obstacles not grown."""
+    first = 0 if direction > 0 else 4
+    gap = FREE
+    unknown = False
+    for number in range(first, first + 4):
+        reading = readings[number]
+        if reading < LOOKED_AT:
+            mount = params.sensors.mounts[number]
+            nearer = reading < expected(mount, pose, mirror, around, params) - params.guard.surprise
+            ahead = abs(mount.yaw) < STRAIGHT or abs(mount.yaw) > math.pi - STRAIGHT
+            left = FREE
+            if nearer:
+                left = reading - params.guard.surprise_gap
+            elif ahead:
+                left = reading - params.guard.stop_gap
+            if left < gap:
+                gap = left
+                unknown = nearer
+    room = gap if gap > 0.0 else 0.0
+    allowed = math.sqrt(params.drive.brake * room)
+    blocked = gap <= stopping_way(speed, params.drive, params.drive.delay)
+    return Sight(allowed, blocked, blocked and unknown)
+
+
+def expected(mount: SensorMount, pose: Pose, mirror: float, around: Obstacles, params: ApaParams) -> float:
+    """Return the distance [m] that a sensor should hear from the obstacles around, at most its range."""
+    c = math.cos(pose.heading)
+    s = math.sin(pose.heading)
+    y = mirror * mount.y
+    at = Point(pose.x + mount.x * c - y * s, pose.y + mount.x * s + y * c)
+    axis = pose.heading + mirror * mount.yaw
+    half = params.sensors.half_angle
+    nearest = _smaller(params.sensors.max_range, _heard(at, axis, half, around.behind))
+    nearest = _smaller(nearest, _heard(at, axis, half, around.ahead))
+    nearest = _smaller(nearest, _heard(at, axis, half, around.beside))
+    return _smaller(nearest, _heard(at, axis, half, around.opposite))
+
+
+def _heard(at: Point, axis: float, half_angle: float, box: Box) -> float:
+    if box.x0 > box.x1:
+        return FREE
+    middle = geometry.Box(0.5 * (box.x0 + box.x1), 0.5 * (box.y0 + box.y1), 0.0, box.x1 - box.x0, box.y1 - box.y0)
+    return cone_box(at, axis, half_angle, middle)
+
+
+def _smaller(a: float, b: float) -> float:
+    return a if a < b else b

@@ -1,0 +1,188 @@
+"""The parking assist at one sample: watch, search, plan and park, and let the outer chart decide."""
+
+from typing import NamedTuple
+
+from controller_fmu.apa.chart import Guard, Mode, transition
+from controller_fmu.apa.exit import Exit
+from controller_fmu.apa.manoeuvre_chart import Step
+from controller_fmu.apa.move import NO_MOVE
+from controller_fmu.apa.parking import (
+    DONE,
+    IDLE,
+    PLAN,
+    Parking,
+    car_of,
+    has_failed,
+    is_planned,
+    is_planning,
+    park,
+    start_planning,
+)
+from controller_fmu.apa.planner import SEARCHING, PlanSearch
+from controller_fmu.apa.relocate import relocated
+from controller_fmu.apa.search import NO_SLOT, SearchState, begin_search, search, without_first
+from controller_fmu.apa.slot import Slot
+from controller_fmu.apa.supervisor import Sight
+from controller_fmu.apa.tracking import Tracked
+from controller_fmu.apa.watch import STANDING, Watch, is_taken_over, reason_to_fail, watch
+from controller_fmu.interface import ControllerInput, ControllerParams, Reason
+from modelkit.vocabulary import Pose
+
+OFF = int(Mode.OFF)
+STANDBY = int(Mode.STANDBY)
+SEARCH = int(Mode.PARKING_SPACE_SEARCH)
+APPEARS = int(Mode.PARKING_SPACE_APPEARS)
+ASSIST = int(Mode.AUTO_PARKING_ASSIST)
+TUNING = int(Mode.POSITION_TUNING)
+FAIL = int(Mode.FAIL)
+HALT = int(Step.HALT)
+NO_REASON = int(Reason.NONE)
+NOWHERE = Pose(0.0, 0.0, 0.0)
+DRIVEN_ON = 0.3
+LOST = 1.0
+
+
+class ApaState(NamedTuple):
+    """Everything the parking assist remembers."""
+
+    mode: int = OFF
+    reason: int = NO_REASON
+    taken_over: bool = False
+    clock_ns: int = 0
+    search: SearchState = SearchState()
+    slot: Slot = NO_SLOT
+    """The slot chosen."""
+    parking: Parking = Parking()
+    watch: Watch = Watch()
+    waited_ns: int = 0
+    """For the driver's confirmation."""
+    pose: Pose = NOWHERE
+    """Where the car stood when the slot was shown."""
+
+
+NOT_PARKING = Parking(
+    IDLE,
+    PlanSearch(SEARCHING, 0, 0, Exit(False, NOWHERE, 0), False, 0.0, 0, NO_MOVE),
+    0,
+    Tracked(0.0, 0.0, 0.0, NOWHERE, 0.0, 0.0, 0.0, 0.0),
+    0,
+    0,
+    False,
+    Sight(100.0, False, False),
+    0.0,
+    0.0,
+)
+NOT_WATCHED = Watch(0, 0, 0, 0, 0, 0, 0, 0, 0, 0.0, 0.0, NOWHERE)
+AT_START = ApaState(OFF, NO_REASON, False, 0, begin_search(NOWHERE, 0), NO_SLOT, NOT_PARKING, NOT_WATCHED, 0, NOWHERE)
+
+
+def apa_sample(state: ApaState, inputs: ControllerInput, params: ControllerParams, dt_ns: int) -> ApaState:
+    """Return the assist one sample of ``dt_ns`` later."""
+    driving = state.mode == ASSIST or state.mode == TUNING
+    parking = state.parking
+    seen = watch(state.watch, inputs, parking.step, parking.wheel, parking.sight.blocked, driving, dt_ns, params)
+    taken = driving and is_taken_over(seen, inputs, params)
+    reason = reason_to_fail(seen, inputs, driving, params) if state.mode != OFF else NO_REASON
+    found = state.search
+    slot = state.slot
+    if reason == NO_REASON and not taken:
+        if state.mode == SEARCH or state.mode == APPEARS:
+            found = search(found, inputs, car_of(params), params.apa, dt_ns)
+        if driving or state.mode == APPEARS:
+            if driving and parking.step == HALT:
+                slot = relocated(slot, inputs, params)
+            parking = park(parking, slot, inputs, driving, params)
+    reason = _later_reason(reason, state, parking, found, params)
+    guards = _guards(state, parking, found, seen, inputs, reason, taken, params)
+    mode = transition(state.mode, guards)
+    return _moved_on(state, mode, parking, found, slot, seen, reason, taken, inputs, params, dt_ns)
+
+
+def _later_reason(reason: int, state: ApaState, parking: Parking, found: SearchState, params: ControllerParams) -> int:
+    if reason != NO_REASON:
+        return reason
+    if state.mode == ASSIST or state.mode == TUNING:
+        if has_failed(parking, params):
+            return Reason.TOO_MANY_SHIFTS.value if parking.plan.found else Reason.NO_PATH.value
+        if abs(parking.tracked.lateral_error) > LOST:
+            return Reason.LEFT_PATH.value
+    if state.mode == SEARCH and found.way > params.apa.search.way:
+        return Reason.SLOT_TOO_SHORT.value if found.refusals > 0 else Reason.NO_SLOT.value
+    if state.mode == APPEARS and state.waited_ns * 1e-9 > params.apa.guard.confirm:
+        return Reason.TIMEOUT.value
+    if state.mode == APPEARS and params.apa.search.given and has_failed(parking, params):
+        return Reason.NO_PATH.value
+    return NO_REASON
+
+
+def _guards(
+    state: ApaState,
+    parking: Parking,
+    found: SearchState,
+    seen: Watch,
+    inputs: ControllerInput,
+    reason: int,
+    taken: bool,
+    params: ControllerParams,
+) -> int:
+    given = params.apa.search.given
+    speed = abs(inputs.measured_speed)
+    standing = speed <= STANDING
+    limit = params.apa.search.speed
+    dx = inputs.odometry.x - state.pose.x
+    dy = inputs.odometry.y - state.pose.y
+    moved = dx * dx + dy * dy > DRIVEN_ON * DRIVEN_ON
+    return (
+        _bit(Guard.SWITCHED_OFF.value, not inputs.apa_switch)
+        | _bit(Guard.TAKEN_OVER.value, taken or not inputs.apa_switch)
+        | _bit(Guard.FAULT.value, reason != NO_REASON)
+        | _bit(Guard.SWITCHED_ON.value, inputs.apa_switch)
+        | _bit(Guard.READY.value, not given and speed <= limit)
+        | _bit(Guard.SLOT_GIVEN.value, given and standing)
+        | _bit(Guard.TOO_FAST.value, speed > 1.1 * limit)
+        | _bit(Guard.SLOT_AT_STANDSTILL.value, found.count > 0 and standing)
+        | _bit(Guard.NO_PLAN.value, not given and has_failed(parking, params))
+        | _bit(Guard.DRIVEN_ON.value, not given and moved)
+        | _bit(Guard.CONFIRMED.value, inputs.driver_confirm and standing and is_planned(parking))
+        | _bit(Guard.NEARLY.value, parking.step == PLAN and parking.ended and is_planning(parking))
+        | _bit(Guard.ENDED.value, parking.step == DONE)
+    )
+
+
+def _moved_on(
+    state: ApaState,
+    mode: int,
+    parking: Parking,
+    found: SearchState,
+    slot: Slot,
+    seen: Watch,
+    reason: int,
+    taken: bool,
+    inputs: ControllerInput,
+    params: ControllerParams,
+    dt_ns: int,
+) -> ApaState:
+    clock = state.clock_ns + dt_ns
+    pose = state.pose
+    waited = state.waited_ns + dt_ns if mode == APPEARS and is_planned(parking) else 0
+    if mode == OFF or mode == STANDBY:
+        found = begin_search(inputs.odometry, clock)
+        parking = NOT_PARKING
+        slot = NO_SLOT if mode == OFF else slot
+    if mode == SEARCH and state.mode == APPEARS:
+        found = without_first(found) if has_failed(parking, params) else found
+        parking = NOT_PARKING
+        slot = NO_SLOT
+    if mode == APPEARS and state.mode != APPEARS:
+        slot = params.apa.search.slot if params.apa.search.given else found.slots[0]
+        parking = start_planning(slot, inputs.odometry, params)
+        pose = inputs.odometry
+    over = mode == FAIL
+    switched_off = state.mode != FAIL and (taken or not inputs.apa_switch)
+    taken_over = (state.taken_over or switched_off) if over else False
+    kept = (reason if state.mode != FAIL else state.reason) if over and not taken_over else NO_REASON
+    return ApaState(mode, kept, taken_over, clock, found, slot, parking, seen, waited, pose)
+
+
+def _bit(guard: int, holds: bool) -> int:
+    return 1 << guard if holds else 0

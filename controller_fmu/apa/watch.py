@@ -1,0 +1,142 @@
+"""Watches driver, car and sensors at every sample; a reason to fail or a takeover comes from clocks [ns]."""
+
+import math
+from typing import NamedTuple
+
+from controller_fmu.apa.manoeuvre_chart import Step
+from controller_fmu.apa.params import ApaParams, Longitudinal
+from controller_fmu.interface import ControllerInput, ControllerParams, Reason
+from modelkit.maths import is_finite, move_towards
+from modelkit.vocabulary import Gear, Pose
+
+STANDING = 0.01
+OWN_SPEED = int(Longitudinal.OWN_SPEED)
+SET_WHEEL = int(Step.SET_WHEEL)
+DRIVE = int(Step.DRIVE)
+HALT = int(Step.HALT)
+STRAIGHTEN = int(Step.STRAIGHTEN)
+PARK = int(Gear.PARK)
+NEUTRAL = int(Gear.NEUTRAL)
+NONE = Reason.NONE.value
+SETTLING = 0.3
+"""The driver's pedal and selector are looked at this long [s] after the assist took over."""
+
+
+class Watch(NamedTuple):
+    """Clocks [ns] and what was last."""
+
+    waiting: int = 0
+    stopping: int = 0
+    blocked: int = 0
+    fast: int = 0
+    blind: int = 0
+    frozen: int = 0
+    lag: int = 0
+    away: int = 0
+    running: int = 0
+    """Since the driver confirmed."""
+    wheel: float = 0.0
+    """Steering-wheel angle [rad] that its rate explains."""
+    angle: float = 0.0
+    """Steering-wheel angle [rad] at the last sample."""
+    pose: Pose = Pose()
+
+
+def watch(
+    state: Watch,
+    inputs: ControllerInput,
+    step: int,
+    request: float,
+    blocked: bool,
+    driving: bool,
+    dt_ns: int,
+    params: ControllerParams,
+) -> Watch:
+    """Return the clocks after one sample; ``driving``: the assist has been given the car."""
+    speed = inputs.measured_speed
+    still = abs(speed) <= STANDING
+    dt = dt_ns * 1e-9
+    angle = inputs.steering_wheel_angle
+    wheel = move_towards(state.wheel, request, params.steering_wheel_rate * dt) if driving else angle
+    off = abs(wheel - angle) > params.limit.wheel_lag and driving
+    against = (angle - state.angle) * (request - angle) < 0.0
+    dx = inputs.odometry.x - state.pose.x
+    dy = inputs.odometry.y - state.pose.y
+    way = speed * dt
+    unmoved = dx * dx + dy * dy < 0.01 * way * way and abs(speed) > 0.1
+    moving_expected = step == SET_WHEEL or step == DRIVE or step == STRAIGHTEN
+    own = params.apa.drive.longitudinal == OWN_SPEED
+    limit = params.apa.guard.over_speed if not own else 1.5 * params.apa.drive.speed
+    return Watch(
+        waiting=state.waiting + dt_ns if still and moving_expected and not blocked else 0,
+        stopping=state.stopping + dt_ns if not still and step == HALT else 0,
+        blocked=state.blocked + dt_ns if blocked and still and driving else 0,
+        fast=state.fast + dt_ns if abs(speed) > limit and driving else 0,
+        blind=state.blind + dt_ns if not _all_heard(inputs, params.apa) else 0,
+        frozen=state.frozen + dt_ns if unmoved else 0,
+        lag=state.lag + dt_ns if off and not against and step == DRIVE else 0,
+        away=state.away + dt_ns if off and against else 0,
+        running=state.running + dt_ns if driving else 0,
+        wheel=wheel,
+        angle=angle,
+        pose=inputs.odometry,
+    )
+
+
+def is_taken_over(state: Watch, inputs: ControllerInput, params: ControllerParams) -> bool:
+    """Return whether the driver has taken the car back: by signal, brake, selector or steering wheel."""
+    own = params.apa.drive.longitudinal == OWN_SPEED
+    settled = state.running * 1e-9 > SETTLING
+    pedal = own and settled and inputs.brake_pedal > params.apa.guard.pedal
+    out_of_gear = (inputs.gear == PARK or inputs.gear == NEUTRAL) and abs(inputs.measured_speed) > 0.2
+    wheel = state.away * 1e-9 > 0.2
+    return inputs.driver_takeover or pedal or (settled and out_of_gear) or wheel
+
+
+def reason_to_fail(state: Watch, inputs: ControllerInput, driving: bool, params: ControllerParams) -> int:
+    """Return the first Reason that holds, ``NONE`` if all is as it should be."""
+    guard = params.apa.guard
+    if not is_finite_input(inputs):
+        return Reason.BAD_INPUT.value
+    if inputs.vehicle_fault != 0:
+        return Reason.VEHICLE_FAULT.value
+    if state.blind * 1e-9 > params.apa.sensors.blind_time:
+        return Reason.SENSOR_LOSS.value
+    if state.frozen * 1e-9 > params.limit.pose_frozen:
+        return Reason.POSE_FROZEN.value
+    if not driving:
+        return NONE
+    if state.fast * 1e-9 > guard.over_speed_time:
+        return Reason.OVER_SPEED.value
+    if state.lag * 1e-9 > params.limit.wheel_fault:
+        return Reason.STEERING_FAULT.value
+    if state.stopping * 1e-9 > params.limit.stopping:
+        return Reason.NOT_STOPPING.value
+    if state.blocked * 1e-9 > guard.blocked:
+        return Reason.BLOCKED.value
+    if state.waiting * 1e-9 > guard.patience:
+        return Reason.NOT_MOVING.value
+    if state.running * 1e-9 > guard.duration:
+        return Reason.TIMEOUT.value
+    return NONE
+
+
+def is_finite_input(inputs: ControllerInput) -> bool:
+    """Return False if a number that the assist steers by is NaN or infinite (sensors: see SENSOR_LOSS)."""
+    pose = inputs.odometry
+    return (
+        is_finite(pose.x)
+        and is_finite(pose.y)
+        and is_finite(pose.heading)
+        and is_finite(inputs.measured_speed)
+        and is_finite(inputs.steering_wheel_angle)
+        and is_finite(inputs.brake_pedal)
+    )
+
+
+def _all_heard(inputs: ControllerInput, params: ApaParams) -> bool:
+    """Return whether every sensor tells a distance: finite, not under half of the nearest it can tell."""
+    for reading in inputs.ultrasonic:
+        if not is_finite(reading) or reading < 0.5 * params.sensors.min_range:
+            return False
+    return math.isfinite(params.sensors.min_range)

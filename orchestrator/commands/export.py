@@ -12,6 +12,7 @@ EXAMPLES = """examples:
   apa export csv runs/guo2015-case4/run.mcap
   apa export mf4 runs/guo2015-case4/run.mcap --out case4.mf4
   apa export rerun runs/guo2015-case4/run.mcap
+  apa export ssp guo2015-case4
 """
 
 

@@ -50,7 +50,7 @@ def _page(runs: tuple[Recording, Recording], words: tuple[list[Line], list[Line]
         },
         "facts": _facts(found),
         "plots": plots_of(list(runs), [], [row.signal for row in missed][:MOST_PLOTS]),
-        "ribbons": ribbons_of(list(runs))[:2],
+        "ribbons": ribbons_of(list(runs), 2),
         "differences": [_row(row) for row in found.signals],
         "changes": [_change(item.name, item.unit, item.a, item.b) for item in found.parameters],
         "runs": data,

@@ -30,7 +30,7 @@ def plots_of(recordings: list[Recording], checks: list[Check], more: list[str]) 
     plots = []
     for title, unit, least, names in GROUPS:
         signals = [name for name in names if any(_alive(item, name) for item in recordings)]
-        if signals:
+        if any(_changes(item, name) for item in recordings for name in signals):
             plots.append(_plot(title, unit, least, signals, checks))
     shown = {_short(name) for plot in plots for name in plot["signals"]}
     for name in more:
@@ -55,6 +55,11 @@ def _short(name: str) -> str:
 def _bounds(check: Check) -> list[float]:
     """Return the horizontal lines that show a limit."""
     return [check.limit, -check.limit] if check.condition == "max_abs" else [check.limit]
+
+
+def _changes(recording: Recording, name: str) -> bool:
+    values = recording.signals.get(name)
+    return values is not None and bool(np.any(values != values[:1]))
 
 
 def _alive(recording: Recording, name: str) -> bool:

@@ -17,6 +17,7 @@ from orchestrator.slave import Array
 CHART = "controller.phase"
 RIBBONS = (CHART, "controller.prompt", "vehicle.gear", "controller.reason")
 MOST_PATHS = 40
+MOST_RIBBONS = 7
 
 
 def run_data(
@@ -50,14 +51,20 @@ def run_data(
     }
 
 
-def ribbons_of(recordings: list[Recording]) -> list[str]:
-    """Return the modes that make ribbons: the chart first, then those that change."""
-    chosen = []
-    for name in RIBBONS:
-        changing = [item for item in recordings if name in item.signals and np.ptp(item.signals[name]) != 0.0]
-        if changing or (name == CHART and any(CHART in item.signals for item in recordings)):
-            chosen.append(name)
-    return chosen
+def ribbons_of(recordings: list[Recording], most: int = MOST_RIBBONS) -> list[str]:
+    """Return the modes that make ribbons: the chart first, then all others that change, each once."""
+    names = [name for item in recordings for name in item.signals if item.states(name)]
+    chosen: dict[str, str] = {}
+    for name in [*(name for name in RIBBONS if name in names), *names]:
+        short = name.partition(".")[2]
+        if short not in chosen and (name == CHART or any(_changes(item, name) for item in recordings)):
+            chosen[short] = name
+    return list(chosen.values())[:most]
+
+
+def _changes(recording: Recording, name: str) -> bool:
+    values = recording.signals.get(name)
+    return values is not None and bool((values != values[:1]).any())
 
 
 def _held(variable: Variable) -> bool:

@@ -5,11 +5,14 @@ from typing import Any
 
 import pytest
 
+from orchestrator.compare import compare
 from orchestrator.load_scenario import load_scenario
+from orchestrator.report.overlay import write_overlay
 from orchestrator.report.replay import replay_page
 from orchestrator.report.words import Line
 from orchestrator.session import run_scenario
 from orchestrator.summary import summarize
+from orchestrator.tolerance import Tolerance, Tolerances
 
 FLAGS = [
     "--headless",
@@ -37,6 +40,16 @@ def replay(case4, tmp_path_factory) -> Path:
     """The replay page of that run, with a hostile message."""
     path: Path = tmp_path_factory.mktemp("replay") / "report.html"
     path.write_text(replay_page(*case4, [Line(1.0, "warning", "model", EVIL)]), encoding="utf-8")
+    return path
+
+
+@pytest.fixture(scope="session")
+def overlay(case4, tmp_path_factory) -> Path:
+    """The page of that run and one with another gain."""
+    scenario = load_scenario("guo2015-case4", ["controller.ntbpt.k4=3"])
+    runs = (case4[0], run_scenario(scenario).recording)
+    path: Path = tmp_path_factory.mktemp("overlay") / "overlay.html"
+    write_overlay(path, runs, ([], []), compare(*runs, Tolerances(Tolerance(0.01, 0.0, 0.1))))
     return path
 
 

@@ -154,3 +154,17 @@ def test_phone(show, replay):
     page.tap("#play")
     until(page, "window.replay.t > 0.2")
     assert seen.console == []
+
+
+def test_two_runs_on_one_page(show, overlay):
+    page, seen = show(overlay)
+    assert page.locator("#verdict").inner_text().endswith("differ")
+    assert page.locator(".lane", has_text="phase A").count() == 1
+    assert page.locator(".lane", has_text="phase B").count() == 1
+    assert page.locator("#checks tr", has_text="controller.ntbpt.k4").count() == 1
+    assert page.locator("#checks .pill.bad").count() >= 1
+    assert page.evaluate("window.replay.plots.all[0].u.series.length") >= 3
+    page.keyboard.press("End")
+    assert shades(page) > 20
+    assert seen.console == []
+    assert seen.requests == [overlay.as_uri()]

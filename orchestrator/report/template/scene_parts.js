@@ -152,7 +152,7 @@ function drawCar(scene, run, number, t) {
   if (!Number.isFinite(pose[0] + pose[1] + pose[2])) return;
   const angle = run.at("vehicle.front_wheel_angle", t), [right, left] = wheelAngles(Number.isFinite(angle) ? angle : 0, car);
   body(scene, pose, car);
-  g.fillStyle = color(number ? "body-b" : "body");
+  g.fillStyle = color(run.at("vehicle.contact", t) > 0 ? "bad" : number ? "body-b" : "body");
   g.fill();
   g.strokeStyle = color(number ? "run-b" : "body-line");
   g.lineWidth = 1.5;

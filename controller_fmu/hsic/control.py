@@ -5,6 +5,7 @@ from controller_fmu.hsic.params import HsicGains
 from controller_fmu.hsic.rules import SpeedMode, SteerMode
 from modelkit.maths import clamp
 
+READY = Stage.READY.value
 TURN_IN = Stage.TURN_IN.value
 COUNTER = Stage.COUNTER.value
 STAND = SpeedMode.STAND.value
@@ -27,7 +28,8 @@ def curvature(
     With s the way driven, y' = d theta and theta' = d kappa (d = +1 forward, -1 in reverse), so
     kappa = -kp y - kd y' gives y'' + kd y' + kp y = 0 in either direction. Bang-bang is the same
     switching line with a steep slope. Extremum hold keeps the planned ``arc``: to the right while
-    turning in, to the left while counter-steering (in reverse).
+    turning in, to the left while counter-steering (in reverse). On the way to the ready point the lateral
+    term is bounded, so that its line is approached no steeper than ``steepest``: cars stand beside it.
     """
     if mode == STRAIGHT:
         return 0.0
@@ -35,7 +37,10 @@ def curvature(
         return -arc
     if mode == EXTREMUM_HOLD and stage == COUNTER:
         return arc
-    line = gain.lateral * found.lateral + gain.heading * direction * found.heading
+    lateral = gain.lateral * found.lateral
+    if stage == READY:
+        lateral = clamp(lateral, -gain.heading * gain.steepest, gain.heading * gain.steepest)
+    line = lateral + gain.heading * direction * found.heading
     if mode == BANG_BANG or mode == EXTREMUM_HOLD:
         line = SHARPNESS * line
     if mode == STRONG_PD:

@@ -25,12 +25,11 @@ class KeyPoints(NamedTuple):
 def ready_point(slot: HsicSlot, wheelbase: float, radius: float) -> Pose:
     """Return P1: parallel, ``ready_gap`` beside the neighbour, tail level with the slot's front end.
 
-    The car stands centred in the slot at P4. Where tail-level is too near for two arcs of ``radius``
+    At P4 the car stands ``rear_gap`` ahead of the slot's rear end. Where tail-level is too near for two arcs of ``radius``
     (S^2 + H^2 < 4 H R) the point lies as far ahead as they need.
     """
     y = slot.ready_gap + 0.5 * (slot.slot_width + slot.width)
-    length = slot.front_overhang + wheelbase + slot.rear_overhang
-    x = 0.5 * (slot.slot_length + length)
+    x = slot.slot_length - slot.rear_gap
     need = 4.0 * y * radius - y * y
     if need > x * x:
         x = math.sqrt(need) * 1.001
@@ -47,6 +46,9 @@ def key_points(start: Pose, slot: HsicSlot, wheelbase: float, radius: float) -> 
     cos = math.cos(arcs.angle)
     p3 = Pose(radius * sin, radius * (1.0 - cos), arcs.angle)
     p2 = Pose(p3.x + arcs.line * cos, p3.y + arcs.line * sin, arcs.angle)
-    room = 0.5 * (slot.slot_length - slot.front_overhang - wheelbase - slot.rear_overhang) - slot.end_gap
-    room = room if room > 0.0 else 0.0
-    return KeyPoints(start, p2, p3, radius, arcs.line >= 0.0 and arcs.angle > 0.0, -room, room)
+    ahead = slot.slot_length - slot.rear_gap - slot.front_overhang - wheelbase - slot.rear_overhang - slot.end_gap
+    behind = slot.rear_gap - slot.end_gap
+    foremost = ahead if ahead > 0.0 else 0.0
+    rearmost = -behind if behind > 0.0 else 0.0
+    found = arcs.line >= 0.0 and arcs.angle > 0.0
+    return KeyPoints(start, p2, p3, radius, found, rearmost, foremost)

@@ -12,13 +12,14 @@ DEGREE = pi / 180.0
 
 
 class HsicSlot(NamedTuple):
-    """Body of the car and the slot it is centred in."""
+    """Body of the car and the slot around it."""
 
     width: Annotated[float, Signal("m", "width of the car", 0.1, 5.0, ZHANG)] = 1.82
     front_overhang: Annotated[float, Signal("m", "front axle to bumper", 0.0, 5.0, ZHANG)] = 0.966
     rear_overhang: Annotated[float, Signal("m", "rear axle to bumper", 0.0, 5.0, ZHANG)] = 0.85
-    slot_length: Annotated[float, Signal("m", "length of the slot", 0.1, 30.0, HOUSE)] = 7.0
+    slot_length: Annotated[float, Signal("m", "length of the slot", 0.1, 30.0, HOUSE)] = 7.2
     slot_width: Annotated[float, Signal("m", "width of the slot", 0.1, 10.0, HOUSE)] = 2.2
+    rear_gap: Annotated[float, Signal("m", "gap to the slot's rear end when parked", 0.0, 10.0, HOUSE)] = 0.6
     ready_gap: Annotated[float, Signal("m", "gap to the neighbour at the ready point", 0.0, 5.0, PAPER)] = 0.5
     end_gap: Annotated[float, Signal("m", "gap kept to the slot's ends", 0.0, 5.0, HOUSE)] = 0.2
     radius_reserve: Annotated[float, Signal("1", "planned radius over the smallest", 1.0, 3.0, HOUSE)] = 1.05
@@ -58,11 +59,14 @@ class HsicGains(NamedTuple):
     integral: Annotated[
         float, Signal("1/m3", "integral over the way, lateral error to curvature", 0.0, 100.0, HOUSE)
     ] = 0.1
+    steepest: Annotated[
+        float, Signal("rad", "heading at which the ready point's line is approached at most", 0.01, 1.0, HOUSE)
+    ] = 4.5 * DEGREE
     strengthened: Annotated[float, Signal("1", "factor on both where the car moves away", 1.0, 10.0, HOUSE)] = 2.0
     fast: Annotated[float, Signal("m/s", "speed far from the key point", 0.01, 3.0, HOUSE)] = 0.8
     slow: Annotated[float, Signal("m/s", "speed with a large heading error", 0.01, 3.0, HOUSE)] = 0.35
-    approach: Annotated[float, Signal("1/s", "speed per distance near the key point", 0.01, 10.0, HOUSE)] = 0.8
-    creep: Annotated[float, Signal("m/s", "smallest speed", 1e-3, 1.0, HOUSE)] = 0.08
+    approach: Annotated[float, Signal("1/s", "speed per distance near the key point", 0.01, 10.0, HOUSE)] = 1.0
+    creep: Annotated[float, Signal("m/s", "smallest speed", 1e-3, 1.0, HOUSE)] = 0.12
 
 
 class HsicParams(NamedTuple):

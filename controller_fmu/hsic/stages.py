@@ -12,6 +12,8 @@ TURN_IN = Stage.TURN_IN.value
 TANGENT = Stage.TANGENT.value
 COUNTER = Stage.COUNTER.value
 SHUFFLE = Stage.SHUFFLE.value
+READY_REACH = 0.3
+"""Distance [m] from P1 along the road within which the car stands ready."""
 
 
 class Course(NamedTuple):
@@ -59,7 +61,7 @@ def _ready(course: Course, pose: Pose, found: Errors, arrived: bool, wheelbase: 
     p1 = course.points.p1
     at_p1 = course.goal.x == p1.x
     aligned = abs(found.heading) <= threshold.ready_heading and abs(found.lateral) <= threshold.ready_lateral
-    if aligned and pose.x >= p1.x - 0.1:
+    if aligned and abs(pose.x - p1.x) <= READY_REACH:
         points = key_points(pose, params.slot, wheelbase, course.points.radius)
         if points.found:
             return Course(TURN_IN, points, points.p2, False, False, True, -1)

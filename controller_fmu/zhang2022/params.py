@@ -38,8 +38,8 @@ class MpcParams(NamedTuple):
 class PidParams(NamedTuple):
     """Speed controller, equation (8), with conditional integration against wind-up."""
 
-    proportional: Annotated[float, Signal("N.s/m", "Kp", 0.0, 1e6, HOUSE)] = 4000.0
-    integral: Annotated[float, Signal("N/m", "Ki", 0.0, 1e6, HOUSE)] = 2000.0
+    proportional: Annotated[float, Signal("N.s/m", "Kp", 0.0, 1e6, HOUSE)] = 6000.0
+    integral: Annotated[float, Signal("N/m", "Ki", 0.0, 1e6, HOUSE)] = 1000.0
     derivative: Annotated[float, Signal("kg", "Kd", 0.0, 1e5, HOUSE)] = 0.0
     limit: Annotated[float, Signal("N", "largest force", 1.0, 1e5, HOUSE)] = 2000.0
 

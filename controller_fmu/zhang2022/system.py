@@ -23,6 +23,8 @@ BAD_INPUT = int(Reason.BAD_INPUT)
 NO_PATH = int(Reason.NO_PATH)
 LEFT_PATH = int(Reason.LEFT_PATH)
 MISSED_TARGET = int(Reason.MISSED_TARGET)
+STOPPING_SHARE = 0.7
+"""Share of the ramp planned for stopping: what is left makes up for the lag of the speed."""
 CREEP = 0.03
 """Speed [m/s] left at the target, so that it is reached."""
 
@@ -121,7 +123,7 @@ def _driven(
         steering = steer(steering, state.path, reference, inputs.measured_speed, car, zhang.mpc)
         solved_ns = 0
     arrived = pose.x <= zhang.stop_distance
-    room = 2.0 * zhang.ramp * (pose.x if pose.x > 0.0 else 0.0)
+    room = 2.0 * STOPPING_SHARE * zhang.ramp * (pose.x if pose.x > 0.0 else 0.0)
     slow = math.sqrt(room) + CREEP
     wanted = -(slow if slow < zhang.speed else zhang.speed)
     set_speed = move_towards(state.set_speed, wanted, zhang.ramp * dt)

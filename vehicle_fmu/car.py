@@ -6,9 +6,9 @@ from modelkit.vocabulary import Gear, Pose
 from vehicle_fmu.body import KINEMATIC, BodyState, motion_of, place, push_body, wheel_speed
 from vehicle_fmu.chassis import ChassisParams, RoadParams
 from vehicle_fmu.double_track import DoubleTrackParams
-from vehicle_fmu.drive import change_speed
+from vehicle_fmu.drive import change_speed, push_speed
 from vehicle_fmu.driver import DriverState, brakes, grabs, wanted_speed, watch
-from vehicle_fmu.drivetrain import NO_GEAR, Pedals, Selector, geared_speed, press, shift
+from vehicle_fmu.drivetrain import NO_GEAR, Pedals, Selector, along, geared_speed, obey, press, shift
 from vehicle_fmu.effort import Effort
 from vehicle_fmu.interface import DriveParams, DriverParams, SteeringParams, VehicleInput, VehicleParams
 from vehicle_fmu.kinematic import move
@@ -53,16 +53,6 @@ class CarState(NamedTuple):
     odometry: OdometryState = OdometryState()
 
 
-class Move(NamedTuple):
-    """What the drive and the body did in a step."""
-
-    pedals: Pedals
-    body: BodyState
-    pose: Pose
-    speed: float
-    rolled_speed: float
-
-
 def car_params(params: VehicleParams) -> CarParams:
     """Return the part of the parameters that an internal step needs."""
     return CarParams(
@@ -79,8 +69,9 @@ def car_params(params: VehicleParams) -> CarParams:
     )
 
 
-def parked_car(start: Pose, params: CarParams) -> CarState:
-    """Return the car at rest, wheel straight, in park, the brake pressed."""
+def parked_car(start: Pose, usable: bool, params: CarParams) -> CarState:
+    """Return the car at rest, wheel straight, in park, the brake pressed; on its tyres if its numbers are usable."""
+    body = params.body if usable else KINEMATIC
     return CarState(
         0,
         start,
@@ -93,7 +84,7 @@ def parked_car(start: Pose, params: CarParams) -> CarState:
         Selector(PARK, NO_GEAR, 0),
         hold_request(0.0, 0.0),
         Pedals(0.0, 0.0, Effort(0.0, params.chassis.mass * params.drive.hold_deceleration)),
-        place(start, params.body, params.wheelbase, params.chassis, params.double_track, params.road),
+        place(start, body, params.wheelbase, params.chassis, params.double_track, params.road),
         OdometryState(start, 0.0),
     )
 
@@ -102,51 +93,70 @@ def step_car(state: CarState, inputs: VehicleInput, faulty: bool, params: CarPar
     """Return the car at ``next_ns``; a faulty one brakes and holds its wheel."""
     h = (next_ns - state.time_ns) * 1e-9
     driver = watch(state.driver, inputs.prompt, state.time_ns, params.driver)
+    free = not (faulty or inputs.brake_request or driver.takeover or brakes(state.time_ns, params.driver))
     target = 0.0
-    if not faulty:
+    if free:
         target = _target_speed(state, driver, inputs, params.driver)
     selector = shift(state.selector, target, state.speed, params.drive.shift_time, next_ns - state.time_ns)
-    steering = _steer(state, inputs, driver.takeover or faulty, params, next_ns)
+    steering = state.steering
+    if grabs(state.time_ns, params.driver):
+        steering = hold_request(params.driver.grab_angle, steering.play)
+    elif inputs.steering_active and not driver.takeover and not faulty:
+        steering = pass_request(steering, inputs.steering_wheel_request, params.steering, state.time_ns, next_ns)
+    else:
+        steering = hold_request(state.steering_wheel_angle, steering.play)
     wheel = turn_steering_wheel(state.steering_wheel_angle, steering.lagged, params.steering, h, state.speed)
     play = take_up_play(steering.play, wheel, params.steering.backlash)
     angle = state.steering.play / params.steering.ratio
     next_angle = play / params.steering.ratio
-    moved = _drive(state, geared_speed(selector, target), selector.gear, angle, next_angle, params, h)
-    odometry = OdometryState(moved.pose, 0.0)
+    target = geared_speed(selector, target)
+    forced = free and inputs.force_control_active and target != 0.0
+    middle = 0.5 * (angle + next_angle)
+    pedals = state.pedals
+    body = state.body
+    if params.body == KINEMATIC:
+        speed = change_speed(state.speed, target, params.drive, h)
+        if forced:
+            speed = push_speed(state.speed, inputs.force_request, params.chassis.mass, along(selector), h)
+        pose = move(state.pose, state.speed, speed, angle, next_angle, params.wheelbase, h)
+        rolled = speed
+    else:
+        if forced:
+            pedals = obey(pedals, inputs.force_request, state.speed, selector.gear, params.drive, h)
+        else:
+            pedals = press(pedals, target, state.speed, selector.gear, params.chassis.mass, params.drive, h)
+        body = _push(body, middle, pedals.effort, selector.gear, params, h)
+        motion = motion_of(body, params.body)
+        pose = motion.pose
+        speed = motion.speed_x
+        rolled = wheel_speed(body, params.body, params.double_track.hub.radius)
+    odometry = OdometryState(pose, 0.0)
     if not params.odometry.perfect:
-        way = 0.5 * h * (state.rolled_speed + moved.rolled_speed)
-        odometry = reckon(state.odometry, way, 0.5 * (angle + next_angle), params.wheelbase, params.odometry)
+        way = 0.5 * h * (state.rolled_speed + rolled)
+        odometry = reckon(state.odometry, way, middle, params.wheelbase, params.odometry)
     return CarState(
         next_ns,
-        moved.pose,
-        moved.speed,
-        moved.rolled_speed,
+        pose,
+        speed,
+        rolled,
         wheel,
-        state.distance + 0.5 * h * abs(state.speed + moved.speed),
-        _brake_pedal(state.time_ns, driver, inputs.speed_control_active, params.driver),
+        state.distance + 0.5 * h * abs(state.speed + speed),
+        _brake_pedal(state.time_ns, driver, inputs.speed_control_active or inputs.force_control_active, params.driver),
         driver,
         selector,
         SteeringState(steering.line, steering.lagged, play),
-        moved.pedals,
-        moved.body,
+        pedals,
+        body,
         odometry,
     )
 
 
-def _drive(
-    state: CarState, target: float, gear: int, angle: float, next_angle: float, params: CarParams, h: float
-) -> Move:
-    if params.body == KINEMATIC:
-        speed = change_speed(state.speed, target, params.drive, h)
-        pose = move(state.pose, state.speed, speed, angle, next_angle, params.wheelbase, h)
-        return Move(state.pedals, state.body, pose, speed, speed)
-    pedals = press(state.pedals, target, state.speed, gear, params.chassis.mass, params.drive, h)
-    effort = pedals.effort
+def _push(body: BodyState, angle: float, effort: Effort, gear: int, params: CarParams, h: float) -> BodyState:
     if gear == PARK:
         effort = Effort(0.0, params.drive.brake_force_limit)
-    body = push_body(
-        state.body,
-        0.5 * (angle + next_angle),
+    return push_body(
+        body,
+        angle,
         effort,
         params.body,
         params.wheelbase,
@@ -156,29 +166,15 @@ def _drive(
         params.road,
         h,
     )
-    motion = motion_of(body, params.body)
-    rolled = wheel_speed(body, params.body, params.double_track.hub.radius)
-    return Move(pedals, body, motion.pose, motion.speed_x, rolled)
-
-
-def _steer(state: CarState, inputs: VehicleInput, held: bool, params: CarParams, next_ns: int) -> SteeringState:
-    """Return the steering with the request of the controller, or of the driver, on its way."""
-    if grabs(state.time_ns, params.driver):
-        return hold_request(params.driver.grab_angle, state.steering.play)
-    if inputs.steering_active and not held:
-        return pass_request(state.steering, inputs.steering_wheel_request, params.steering, state.time_ns, next_ns)
-    return hold_request(state.steering_wheel_angle, state.steering.play)
 
 
 def _target_speed(state: CarState, driver: DriverState, inputs: VehicleInput, params: DriverParams) -> float:
-    if inputs.brake_request or driver.takeover or brakes(state.time_ns, params):
-        return 0.0
-    if inputs.speed_control_active:
+    if inputs.speed_control_active or inputs.force_control_active:
         return inputs.speed_request
     return wanted_speed(driver, inputs.advised_speed, state.time_ns, state.distance, params)
 
 
-def _brake_pedal(time_ns: int, driver: DriverState, speed_control: bool, params: DriverParams) -> float:
+def _brake_pedal(time_ns: int, driver: DriverState, driven: bool, params: DriverParams) -> float:
     if brakes(time_ns, params) or driver.takeover:
         return 1.0
-    return 1.0 if driver.direction == 0 and not speed_control else 0.0
+    return 1.0 if driver.direction == 0 and not driven else 0.0

@@ -120,10 +120,10 @@ def step_double_track(
     gravity = gravity_in_car(motion.pose.heading, road)
     loads = wheel_loads(state.felt, gravity.normal, wheelbase, (p.track_front, p.track_rear), chassis, p.roll)
     corners = _corners(angle, effort, loads, wheelbase, chassis, p, road)
-    fl = _turn(state.wheels[0], corners[0], motion, chassis, p, h)
-    fr = _turn(state.wheels[1], corners[1], motion, chassis, p, h)
-    rl = _turn(state.wheels[2], corners[2], motion, chassis, p, h)
-    rr = _turn(state.wheels[3], corners[3], motion, chassis, p, h)
+    fl = _turn(state.wheels[0], corners[0], motion, p.hub, p.tires, h)
+    fr = _turn(state.wheels[1], corners[1], motion, p.hub, p.tires, h)
+    rl = _turn(state.wheels[2], corners[2], motion, p.hub, p.tires, h)
+    rr = _turn(state.wheels[3], corners[3], motion, p.hub, p.tires, h)
     on_fl = _wrench(fl, corners[0])
     on_fr = _wrench(fr, corners[1])
     on_rl = _wrench(rl, corners[2])
@@ -175,7 +175,7 @@ def _corners(
     )
 
 
-def _turn(wheel: Wheel, at: Corner, motion: Motion, chassis: ChassisParams, p: DoubleTrackParams, h: float) -> Wheel:
+def _turn(wheel: Wheel, at: Corner, motion: Motion, hub: HubParams, tires: TireParams, h: float) -> Wheel:
     forward = motion.speed_x - at.y * motion.yaw_rate
     leftward = motion.speed_y + at.x * motion.yaw_rate
     cos = math.cos(at.angle)
@@ -189,7 +189,7 @@ def _turn(wheel: Wheel, at: Corner, motion: Motion, chassis: ChassisParams, p: D
         at.drive,
         at.brake,
     )
-    return turn_wheel(wheel, contact, p.hub, p.tires, h)
+    return turn_wheel(wheel, contact, hub, tires, h)
 
 
 def _wrench(wheel: Wheel, at: Corner) -> Wrench:

@@ -75,14 +75,11 @@ def switch_is_on(time_ns: int, params: DriverParams) -> bool:
     return params.apa_switch_time <= time_ns * 1e-9 < params.apa_switch_off_time
 
 
-def confirms(time_ns: int, params: DriverParams) -> bool:
-    """Return whether the confirm button is pressed."""
-    return params.confirm_time <= time_ns * 1e-9 < params.confirm_time + CONFIRM_LASTS
-
-
 def presses_confirm(state: DriverState, time_ns: int, params: DriverParams) -> bool:
     """Return whether the confirm button is pressed: at its time, or because it was asked for."""
-    return confirms(time_ns, params) or (params.confirms_when_asked and state.heeded == CONFIRM)
+    if params.confirms_when_asked and state.heeded == CONFIRM:
+        return True
+    return params.confirm_time <= time_ns * 1e-9 < params.confirm_time + CONFIRM_LASTS
 
 
 def profile_speed(params: DriverParams, at: float) -> float:

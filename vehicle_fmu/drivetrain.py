@@ -68,6 +68,11 @@ def geared_speed(selector: Selector, target: float) -> float:
     return 0.0
 
 
+def along(selector: Selector) -> float:
+    """Return the direction of the gear: -1 in reverse, else 1."""
+    return -1.0 if selector.gear == REVERSE else 1.0
+
+
 def press(pedals: Pedals, target: float, speed: float, gear: int, mass: float, p: DriveParams, h: float) -> Pedals:
     """Return the pedals ``h`` [s] later, on the way from ``speed`` to ``target`` [m/s]."""
     reference = change_speed(pedals.reference, target, p, h)

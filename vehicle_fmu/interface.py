@@ -143,6 +143,7 @@ class DriverParams(NamedTuple):
     apa_switch_time: Annotated[float, Signal("s", "switches the parking assist on; 1e9: never", 0.0)] = NEVER
     apa_switch_off_time: Annotated[float, Signal("s", "switches it off again; 1e9: never", 0.0)] = NEVER
     confirm_time: Annotated[float, Signal("s", "presses the confirm button for half a second; 1e9: never", 0.0)] = NEVER
+    confirms_when_asked: Annotated[bool, Signal("1", "presses the confirm button when prompted to")] = True
 
 
 class VehicleParams(NamedTuple):

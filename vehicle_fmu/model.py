@@ -13,9 +13,9 @@ from modelkit.maths import is_finite
 from modelkit.vocabulary import Pose
 from vehicle_fmu.body import KINEMATIC, told
 from vehicle_fmu.car import CarState, car_params, parked_car, step_car
-from vehicle_fmu.driver import confirms, switch_is_on
-from vehicle_fmu.interface import VehicleFault, VehicleInput, VehicleOutput, VehicleParams
-from vehicle_fmu.odometry import told_speed
+from vehicle_fmu.driver import presses_confirm, switch_is_on
+from vehicle_fmu.interface import DriverParams, VehicleFault, VehicleInput, VehicleOutput, VehicleParams
+from vehicle_fmu.odometry import OdometryParams, told_speed
 from vehicle_fmu.scene import CarSize, clearance
 from vehicle_fmu.ultrasonic import UltrasonicState, first_readings, is_due, measure
 from vehicle_fmu.usable import is_usable
@@ -35,13 +35,20 @@ class VehicleState(NamedTuple):
 
 def initialize(params: VehicleParams) -> tuple[VehicleState, VehicleOutput]:
     """Return the car at rest at its start pose, wheel straight, in park."""
+    fault = NO_FAULT
+    start = params.start
+    heard = UltrasonicState((0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0), 1)
+    gap = 0.0
     if is_usable(params):
-        car = parked_car(params.start, car_params(params))
-        state = VehicleState(car, first_readings(params.start, params.scene, params.ultrasonic), NO_FAULT)
+        heard = first_readings(start, params.scene, params.ultrasonic)
+        gap = clearance(
+            start, CarSize(params.wheelbase, params.front_overhang, params.rear_overhang, params.width), params.scene, 0
+        )
     else:
-        nothing = UltrasonicState((0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0), 1)
-        state = VehicleState(CarState(), nothing, BAD_PARAMETER)
-    return state, _outputs(state, params)
+        fault = BAD_PARAMETER
+        start = Pose(0.0, 0.0, 0.0)
+    state = VehicleState(parked_car(start, fault == NO_FAULT, car_params(params)), heard, fault)
+    return state, _outputs(state, gap, params.body, params.steering.ratio, params.odometry, params.driver)
 
 
 def step(
@@ -53,42 +60,50 @@ def step(
         fault = BAD_INPUT
     car = state.car
     heard = state.ultrasonic
-    if fault != BAD_PARAMETER and dt_ns > 0:
-        reduced = car_params(params)
-        count = _internal_steps(params, dt_ns)
-        start_ns = car.time_ns
-        for number in range(1, count + 1):
-            car = step_car(car, inputs, fault != NO_FAULT, reduced, start_ns + dt_ns * number // count)
-        if is_due(start_ns, car.time_ns, params.ultrasonic.cycle):
-            heard = measure(heard, car.pose, params.scene, params.ultrasonic, car.time_ns)
+    gap = 0.0
+    if fault != BAD_PARAMETER:
+        if dt_ns > 0:
+            reduced = car_params(params)
+            count = _internal_steps(dt_ns, params.body, params.largest_step, params.body_step)
+            start_ns = car.time_ns
+            for number in range(1, count + 1):
+                car = step_car(car, inputs, fault != NO_FAULT, reduced, start_ns + dt_ns * number // count)
+            if is_due(start_ns, car.time_ns, params.ultrasonic.cycle):
+                heard = measure(heard, car.pose, params.scene, params.ultrasonic, car.time_ns)
+        gap = clearance(
+            car.pose,
+            CarSize(params.wheelbase, params.front_overhang, params.rear_overhang, params.width),
+            params.scene,
+            car.time_ns,
+        )
     state = VehicleState(car, heard, fault)
-    return state, _outputs(state, params)
+    return state, _outputs(state, gap, params.body, params.steering.ratio, params.odometry, params.driver)
 
 
-def _internal_steps(params: VehicleParams, dt_ns: int) -> int:
-    longest = params.largest_step
-    if params.body != KINEMATIC and params.body_step < longest:
-        longest = params.body_step
+def _internal_steps(dt_ns: int, body: int, largest_step: float, body_step: float) -> int:
+    longest = largest_step
+    if body != KINEMATIC and body_step < longest:
+        longest = body_step
     return math.ceil(dt_ns * 1e-9 / longest - 1e-9)
 
 
-def _outputs(state: VehicleState, params: VehicleParams) -> VehicleOutput:
+def _outputs(
+    state: VehicleState, gap: float, body: int, ratio: float, odometry: OdometryParams, driver: DriverParams
+) -> VehicleOutput:
     car = state.car
     speed = car.speed
-    measured = car.speed if params.odometry.perfect else car.rolled_speed
-    if params.body != KINEMATIC:
+    measured = car.speed if odometry.perfect else car.rolled_speed
+    if body != KINEMATIC:
         speed = told(speed)
         measured = told(measured)
-    gap = 0.0
     front = 0.0
     if state.fault != BAD_PARAMETER:
-        gap = _clearance(car.pose, params, car.time_ns)
-        front = car.steering.play / params.steering.ratio
+        front = car.steering.play / ratio
     return VehicleOutput(
         pose=car.pose,
         odometry=car.odometry.pose,
         speed=speed,
-        measured_speed=told_speed(measured, params.odometry),
+        measured_speed=told_speed(measured, odometry),
         steering_wheel_angle=car.steering_wheel_angle,
         front_wheel_angle=front,
         gear=car.selector.gear,
@@ -99,15 +114,10 @@ def _outputs(state: VehicleState, params: VehicleParams) -> VehicleOutput:
         ultrasonic=state.ultrasonic.readings,
         clearance=gap,
         contact=gap <= 0.0,
-        apa_switch=switch_is_on(car.time_ns, params.driver),
-        driver_confirm=confirms(car.time_ns, params.driver),
+        apa_switch=switch_is_on(car.time_ns, driver),
+        driver_confirm=presses_confirm(car.driver, car.time_ns, driver),
     )
 
 
-def _clearance(pose: Pose, params: VehicleParams, time_ns: int) -> float:
-    size = CarSize(params.wheelbase, params.front_overhang, params.rear_overhang, params.width)
-    return clearance(pose, size, params.scene, time_ns)
-
-
 def _is_finite_input(inputs: VehicleInput) -> bool:
-    return is_finite(inputs.steering_wheel_request + inputs.advised_speed + inputs.speed_request)
+    return is_finite(inputs.steering_wheel_request + inputs.advised_speed + inputs.speed_request + inputs.force_request)

@@ -1,7 +1,7 @@
 """The steering: request -> dead time -> lag -> angle and rate limits -> steering wheel -> backlash -> front wheels.
 
 Angle and rate limits are Guo 2015, Table 1; everything else is off by default. The dead time is
-a line of ``CELLS`` requests, so it is met to a 32nd of itself whatever the step. At standstill
+a line of ``CELLS`` requests, so it is met to a 16th of itself whatever the step. At standstill
 the tyres scrub and the wheel may turn slower.
 """
 
@@ -11,7 +11,7 @@ from typing import NamedTuple
 from modelkit.maths import clamp, move_towards
 from vehicle_fmu.interface import SteeringParams
 
-CELLS = 32
+CELLS = 16
 STANDSTILL = 0.05
 """Speed [m/s] below which the car counts as standing for the steering."""
 
@@ -19,7 +19,7 @@ STANDSTILL = 0.05
 class SteeringState(NamedTuple):
     """What the steering remembers besides the angle of the wheel."""
 
-    line: tuple[float, ...] = (0.0,) * 32
+    line: tuple[float, ...] = (0.0,) * 16
     """Requests [rad] of the dead time, oldest first."""
     lagged: float = 0.0
     """Request after dead time and lag [rad]."""
@@ -60,8 +60,7 @@ def pass_request(
 def hold_request(angle: float, play: float) -> SteeringState:
     """Return the steering with nothing on its way: every request is the wheel's own ``angle`` [rad]."""
     a = angle
-    half = (a, a, a, a, a, a, a, a, a, a, a, a, a, a, a, a)
-    return SteeringState(half + half, angle, play)
+    return SteeringState((a, a, a, a, a, a, a, a, a, a, a, a, a, a, a, a), angle, play)
 
 
 def take_up_play(play: float, angle: float, backlash: float) -> float:

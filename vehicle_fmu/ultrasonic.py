@@ -61,6 +61,16 @@ class UltrasonicParams(NamedTuple):
     seed: Annotated[int, Signal("1", "seed of noise and dropout", 0, 2147483647)] = 1
 
 
+class Ear(NamedTuple):
+    """What turns an exact distance into a reading."""
+
+    min_range: float
+    max_range: float
+    resolution: float
+    noise: float
+    dropout: float
+
+
 class UltrasonicState(NamedTuple):
     """Readings held until the next cycle, and the random generator."""
 
@@ -89,35 +99,42 @@ def measure(
 ) -> UltrasonicState:
     """Return new readings [m] of all sensors of a car at ``pose``."""
     random = state.random
-    d = heard_distances(pose, scene, params, time_ns)
-    if params.noise <= 0.0 and params.dropout <= 0.0:
-        return UltrasonicState(_exact(d, params), random)
-    random, a = _disturbed(random, d[0], params)
-    random, b = _disturbed(random, d[1], params)
-    random, c = _disturbed(random, d[2], params)
-    random, e = _disturbed(random, d[3], params)
-    random, f = _disturbed(random, d[4], params)
-    random, g = _disturbed(random, d[5], params)
-    random, h = _disturbed(random, d[6], params)
-    random, i = _disturbed(random, d[7], params)
-    random, j = _disturbed(random, d[8], params)
-    random, k = _disturbed(random, d[9], params)
-    random, m = _disturbed(random, d[10], params)
-    random, n = _disturbed(random, d[11], params)
+    ear = Ear(params.min_range, params.max_range, params.resolution, params.noise, params.dropout)
+    d = heard_distances(pose, scene, params.mounts, params.half_angle, params.max_range, params.kerb_height, time_ns)
+    random, a = _told(random, d[0], ear)
+    random, b = _told(random, d[1], ear)
+    random, c = _told(random, d[2], ear)
+    random, e = _told(random, d[3], ear)
+    random, f = _told(random, d[4], ear)
+    random, g = _told(random, d[5], ear)
+    random, h = _told(random, d[6], ear)
+    random, i = _told(random, d[7], ear)
+    random, j = _told(random, d[8], ear)
+    random, k = _told(random, d[9], ear)
+    random, m = _told(random, d[10], ear)
+    random, n = _told(random, d[11], ear)
     return UltrasonicState((a, b, c, e, f, g, h, i, j, k, m, n), random)
 
 
-def heard_distances(pose: Pose, scene: SceneParams, params: UltrasonicParams, time_ns: int) -> Twelve:
+def heard_distances(
+    pose: Pose,
+    scene: SceneParams,
+    mounts: tuple[Mount, ...],
+    half_angle: float,
+    max_range: float,
+    kerb_height: float,
+    time_ns: int,
+) -> Twelve:
     """Return the exact distance [m] from each sensor to the nearest thing in its cone, at most ``max_range``."""
-    m = params.max_range
+    m = max_range
     d = (m, m, m, m, m, m, m, m, m, m, m, m)
     for obstacle in scene.boxes:
         if is_there(obstacle, time_ns):
-            d = _hear(d, pose, params.mounts, params.half_angle, obstacle_box(obstacle))
+            d = _hear(d, pose, mounts, half_angle, obstacle_box(obstacle))
     for kerb in scene.kerbs:
-        if kerb.height > 0.0 and kerb.height >= params.kerb_height:
+        if kerb.height > 0.0 and kerb.height >= kerb_height:
             line = line_box(kerb.x1, kerb.y1, kerb.x2, kerb.y2)
-            d = _hear(d, pose, params.mounts, params.half_angle, line)
+            d = _hear(d, pose, mounts, half_angle, line)
     return d
 
 
@@ -151,34 +168,16 @@ def _nearer(nearest: float, pose: Pose, mount: Mount, half_angle: float, box: Bo
     return distance if distance < nearest else nearest
 
 
-def _exact(d: Twelve, params: UltrasonicParams) -> Twelve:
-    return (
-        _told(d[0], params),
-        _told(d[1], params),
-        _told(d[2], params),
-        _told(d[3], params),
-        _told(d[4], params),
-        _told(d[5], params),
-        _told(d[6], params),
-        _told(d[7], params),
-        _told(d[8], params),
-        _told(d[9], params),
-        _told(d[10], params),
-        _told(d[11], params),
-    )
-
-
-def _disturbed(random: int, distance: float, params: UltrasonicParams) -> tuple[int, float]:
-    random, chance = uniform(random)
-    random, error = normal(random)
-    if chance < params.dropout or distance >= params.max_range:
-        return random, params.max_range
-    return random, _told(distance + params.noise * error, params)
-
-
-def _told(distance: float, params: UltrasonicParams) -> float:
-    if distance >= params.max_range:
-        return params.max_range
-    if params.resolution > 0.0:
-        distance = params.resolution * math.floor(distance / params.resolution + 0.5)
-    return clamp(distance, params.min_range, params.max_range)
+def _told(random: int, distance: float, ear: Ear) -> tuple[int, float]:
+    """Return the generator and a reading; with neither noise nor dropout nothing is drawn by lot."""
+    chance = 1.0
+    error = 0.0
+    if ear.noise > 0.0 or ear.dropout > 0.0:
+        random, chance = uniform(random)
+        random, error = normal(random)
+    if chance < ear.dropout or distance >= ear.max_range:
+        return random, ear.max_range
+    reading = distance + ear.noise * error
+    if ear.resolution > 0.0:
+        reading = ear.resolution * math.floor(reading / ear.resolution + 0.5)
+    return random, clamp(reading, ear.min_range, ear.max_range)

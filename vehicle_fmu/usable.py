@@ -1,10 +1,10 @@
 """Whether the parameters describe a car: finite numbers, and positive ones where equations divide."""
 
 from modelkit.maths import is_finite
-from vehicle_fmu.body import DOUBLE_TRACK, KINEMATIC
+from vehicle_fmu.body import DOUBLE_TRACK, KINEMATIC, SINGLE_TRACK
 from vehicle_fmu.chassis import ChassisParams
 from vehicle_fmu.double_track import DoubleTrackParams
-from vehicle_fmu.interface import VehicleParams
+from vehicle_fmu.interface import DriveParams, VehicleParams
 from vehicle_fmu.scene import SceneParams
 from vehicle_fmu.single_track import SingleTrackParams
 from vehicle_fmu.tires import TireParams
@@ -22,24 +22,24 @@ def is_usable(params: VehicleParams) -> bool:
         and _sizes(params.steering.ratio)
         and _sizes(params.largest_step)
         and _sizes(params.driver.wobble_period)
+        and _sizes(params.chassis.mass)
         and _hears(params.ultrasonic)
         and _stands(params.scene)
-        and (params.body == KINEMATIC or _has_mass(params))
+        and (params.body == KINEMATIC or (_sizes(params.body_step) and is_finite(params.road.slope + params.road.bank)))
+        and (params.body == KINEMATIC or _is_chassis(params.chassis, params.wheelbase))
+        and (params.body == KINEMATIC or _drives(params.drive))
+        and (params.body != SINGLE_TRACK or _is_single(params.single_track))
+        and (params.body != DOUBLE_TRACK or _is_double(params.double_track))
     )
 
 
-def _has_mass(params: VehicleParams) -> bool:
-    drive = params.drive
+def _drives(drive: DriveParams) -> bool:
     return (
-        _sizes(params.body_step)
-        and _is_chassis(params.chassis, params.wheelbase)
-        and is_finite(drive.speed_gain + drive.speed_integral + drive.integral_limit + drive.hold_deceleration)
+        is_finite(drive.speed_gain + drive.speed_integral + drive.integral_limit + drive.hold_deceleration)
         and is_finite(drive.drive_force_limit + drive.brake_force_limit + drive.creep_force)
         and drive.drive_lag >= 0.0
         and drive.brake_lag >= 0.0
         and _sizes(drive.creep_speed)
-        and is_finite(params.road.slope + params.road.bank)
-        and (_is_double(params.double_track) if params.body == DOUBLE_TRACK else _is_single(params.single_track))
     )
 
 

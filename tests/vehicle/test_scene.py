@@ -15,7 +15,6 @@ from vehicle_fmu.ultrasonic import (
     MOUNTS,
     UltrasonicParams,
     first_readings,
-    heard_distances,
     is_due,
     measure,
 )
@@ -132,7 +131,7 @@ def test_noise_has_its_deviation_dropout_its_rate_and_the_seed_repeats() -> None
 def test_low_kerbs_are_not_heard() -> None:
     for height, seen in ((0.05, False), (0.12, True)):
         scene = SceneParams(kerbs=(Kerb(4.0, -3.0, 4.0, 3.0, height), *(Kerb(),) * 3))
-        assert (heard_distances(Pose(), scene, EXACT, 0)[1] < 5.0) is seen
+        assert (first_readings(Pose(), scene, EXACT).readings[1] < 5.0) is seen
 
 
 def test_cycle() -> None:

@@ -30,7 +30,11 @@ def plots_of(recordings: list[Recording], checks: list[Check], more: list[str]) 
     plots = []
     for title, unit, least, names in GROUPS:
         signals = [name for name in names if any(_alive(item, name) for item in recordings)]
-        if any(_changes(item, name) for item in recordings for name in signals):
+        if not any(_changes(item, name) for item in recordings for name in signals):
+            continue
+        if _far_apart(recordings, signals):
+            plots += [_plot(f"{title}: {_words(name)}", unit, least, [name], checks) for name in signals]
+        else:
             plots.append(_plot(title, unit, least, signals, checks))
     shown = {_short(name) for plot in plots for name in plot["signals"]}
     for name in more:
@@ -55,6 +59,25 @@ def _short(name: str) -> str:
 def _bounds(check: Check) -> list[float]:
     """Return the horizontal lines that show a limit."""
     return [check.limit, -check.limit] if check.condition == "max_abs" else [check.limit]
+
+
+def _far_apart(recordings: list[Recording], names: list[str]) -> bool:
+    """Return whether curves in one plot would be flat lines, far from each other."""
+    ranges = []
+    for item in recordings:
+        for name in names:
+            values = item.signals.get(name, np.empty(0))
+            finite = values[np.isfinite(values)]
+            if len(finite) and not name.endswith("heading"):
+                ranges.append((float(finite.min()), float(finite.max())))
+    if not ranges:
+        return False
+    whole = max(high for _, high in ranges) - min(low for low, _ in ranges)
+    return whole > 20.0 * max(high - low for low, high in ranges)
+
+
+def _words(name: str) -> str:
+    return _short(name).replace(".", " ").replace("_", " ")
 
 
 def _changes(recording: Recording, name: str) -> bool:

@@ -59,23 +59,27 @@ def _page(recording: Recording, summary: Summary, words: list[Line], most: int) 
 
 def verdict(summary: Summary) -> dict[str, str]:
     """Return the outcome in words and its colour."""
-    words = summary.outcome.replace("_", " ")
-    why = summary.reason.replace("_", " ")
-    text = words if summary.outcome == "parked" else f"{words}: {why}"
-    return {"text": text[:60], "kind": KINDS[summary.outcome]}
+    return {"text": summary.outcome.replace("_", " "), "kind": KINDS[summary.outcome]}
 
 
 def facts(summary: Summary) -> list[list[str]]:
-    """Return the few numbers that stand above everything else."""
+    """Return the few numbers that stand above everything else; why, if the car is not parked."""
     final = summary.final
+    why = [["Why", summary.reason.replace("_", " ")]] if summary.outcome != "parked" else []
     return [
+        *why,
         ["Duration", f"{summary.duration:.2f} s"],
         ["Manoeuvres", str(summary.shifts)],
         ["Fastest", f"{summary.max_speed * 3.6:.1f} km/h"],
-        ["Lateral", f"{final.lateral_error * 100:+.1f} cm"],
-        ["Longitudinal", f"{final.longitudinal_error * 100:+.1f} cm"],
+        ["Lateral", length(final.lateral_error)],
+        ["Longitudinal", length(final.longitudinal_error)],
         ["Heading", f"{final.heading_error / DEGREE:+.2f}\u00b0"],
     ]
+
+
+def length(value: float) -> str:
+    """Return a signed length: centimetres where a car is parked, metres where it is not."""
+    return f"{value * 100:+.1f} cm" if abs(value) < 1.0 else f"{value:+.2f} m"
 
 
 def check_rows(checks: list[Check]) -> list[dict[str, Any]]:

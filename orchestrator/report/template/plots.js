@@ -23,7 +23,7 @@ class Plots {
     const curves = this.curves(plot);
     if (!curves.length) return;
     const [unit, factor] = display(plot.unit);
-    const values = curves.map(([run, name]) => Array.from(run.values(name), (value) => (Number.isFinite(value) ? value * factor : null)));
+    const values = curves.map(([run, name]) => Array.from(straightened(run, name, curves[0]), (value) => (Number.isFinite(value) ? value * factor : null)));
     const data = this.page.runs.length > 1
       ? uPlot.join(curves.map(([run], i) => [Array.from(run.time), values[i]]))
       : [Array.from(curves[0][0].time), ...values];
@@ -178,6 +178,24 @@ class Plots {
     this.choice = element("div", { class: "chooser" }, choice);
     this.box.append(this.choice);
   }
+}
+
+// Values of a signal; headings without jumps of whole turns, and beside the first heading of the plot.
+function straightened(run, name, [firstRun, firstName]) {
+  const values = run.values(name);
+  if (!run.signals[name].turn) return values;
+  const turns = (difference) => 2 * Math.PI * Math.round(difference / (2 * Math.PI));
+  const result = Float64Array.from(values);
+  if (run === firstRun && name === firstName) {
+    for (let i = 1; i < result.length; i++) if (Number.isFinite(result[i] + result[i - 1])) result[i] += turns(result[i - 1] - result[i]);
+    return result;
+  }
+  const base = straightened(firstRun, firstName, [firstRun, firstName]);
+  for (let i = 0; i < result.length; i++) {
+    const beside = base[firstRun.row(run.time[i])];
+    if (Number.isFinite(beside + result[i])) result[i] += turns(beside - result[i]);
+  }
+  return result;
 }
 
 // A y range with some air, never narrower than `least`, and never empty.

@@ -175,7 +175,7 @@ function drawCar(scene, run, number, t) {
   }
   const [px, py] = scene.pixel(pose[0], pose[1]);
   g.beginPath();
-  g.arc(px, py, 3, 0, 2 * Math.PI);
+  g.arc(px, py, (car.front + car.rear) * scene.scale < 16 ? 6 : 3, 0, 2 * Math.PI);
   g.fillStyle = color(number ? "run-b" : "run-a");
   g.fill();
 }

@@ -23,7 +23,14 @@ KEPT = 4
 NO_SAMPLE = Heard(0.0, 0.0, 0.0)
 NO_SAMPLES = (NO_SAMPLE,) * KEPT
 TELLING = 1.03
+UNTOLD = 0.25
+"""A sample that does not tell the corner lies at most this times d short of it: sqrt(1.03^2 - 1)."""
 """A sample tells the corner well if r is larger than the distance to the line by this factor."""
+
+
+def seen_up_to(line: Line, sense: float, half_angle: float) -> float:
+    """Return r / d at which the corner leaves the cone, the car driving along u: 1 / cos(g - sense beta)."""
+    return 1.0 / math.cos(half_angle - sense * math.atan(line.b))
 
 
 def remember(samples: tuple[Heard, ...], new: Heard) -> tuple[Heard, ...]:
@@ -44,25 +51,27 @@ def append(samples: tuple[Heard, ...], new: Heard, count: int) -> tuple[Heard, .
 def corner(samples: tuple[Heard, ...], line: Line, sense: float, half_angle: float) -> float:
     """Return u [m] of the corner on ``line``; ``sense`` -1: it lies behind the sensor, 1: ahead.
 
-    The mean over the samples that tell it, weighted by how well; else where the cone's edge meets the
-    line from the outermost sample.
+    The mean over the samples that tell it, weighted by how well. If none does, the corner lies between
+    what the outermost sample still heard and what the next one, one spacing on, did not: the middle.
     """
     total = 0.0
     weights = 0.0
-    outermost = samples[0]
+    outermost = NO_SAMPLE
+    spacing = abs(samples[0].u - samples[1].u) if samples[1].r > 0.0 else 0.0
     cos = 1.0 / math.sqrt(1.0 + line.b * line.b)
+    most = seen_up_to(line, sense, half_angle)
     for sample in samples:
-        if sample.r > 0.0:
-            d = distance(line, sample.u, sample.w)
-            if d > 0.0 and sample.r > TELLING * d:
+        d = distance(line, sample.u, sample.w)
+        if sample.r > 0.0 and d > 0.0 and sample.r <= 1.01 * most * d + 0.01:
+            if sample.r > TELLING * d:
                 e = math.sqrt(sample.r * sample.r - d * d)
                 weight = e * e / (sample.r * sample.r)
-                foot = sample.u + line.b * d * cos
-                total += weight * (foot + sense * e * cos)
+                total += weight * (sample.u + cos * (line.b * d + sense * e))
                 weights += weight
-            if sense * (sample.u - outermost.u) < 0.0:
+            if outermost.r <= 0.0 or sense * (sample.u - outermost.u) < 0.0:
                 outermost = sample
     if weights > 0.0:
         return total / weights
     d = distance(line, outermost.u, outermost.w)
-    return outermost.u + cos * (line.b * d + sense * 0.5 * d * math.tan(half_angle))
+    e = 0.5 * (d * math.sqrt(most * most - 1.0) - spacing + d * UNTOLD)
+    return outermost.u + cos * (line.b * d + sense * e)

@@ -57,7 +57,7 @@ def phase_of(state: ApaState) -> int:
 def prompt_of(state: ApaState, params: ControllerParams) -> int:
     """Return what the driver is asked for."""
     if state.mode == SEARCH:
-        if state.search.count > 0:
+        if state.search.valid > 0:
             return STOP
         return SLOW_DOWN if state.search.way > MOVING else FORWARD
     if state.mode == STANDBY:
@@ -83,7 +83,7 @@ def alarm_of(state: ApaState) -> int:
         return Alarm.SLOW_DOWN.value
     if state.parking.sight.blocked:
         return Alarm.OBSTACLE.value
-    if state.mode == SEARCH and state.search.refusals > 0 and state.search.count == 0:
+    if state.mode == SEARCH and state.search.refusals > 0 and state.search.valid == 0:
         return Alarm.SLOT_TOO_SHORT.value
     return Alarm.NONE.value
 
@@ -126,7 +126,7 @@ def _signals(state: ApaState, frame: SlotFrame, params: ControllerParams) -> Apa
         mode=state.mode,
         alarm=alarm_of(state),
         confirm=state.mode == APPEARS and is_planned(state.parking),
-        slots=state.search.count,
+        slots=state.search.valid,
         missing=state.search.refused.missing,
         slot=slot,
         corner_b=b if shown else nowhere,

@@ -39,7 +39,7 @@ class SearchState(NamedTuple):
     way: float = 0.0
     """Driven since the search began [m]."""
     slots: tuple[Slot, ...] = NO_SLOTS
-    count: int = 0
+    valid: int = 0
     """Valid slots remembered."""
     seen: int = 0
     """Gaps between neighbours judged on the right (16 each) and on the left."""
@@ -132,15 +132,15 @@ def _judge(state: SearchState, side: SideState, which: int, far: float, car: Car
     other = state.seen - known
     if mark == known:
         first = state.slots[0]
-        better = state.count > 0 and first.side == which and abs(first.length - slot.length) < 0.5
+        better = state.valid > 0 and first.side == which and abs(first.length - slot.length) < 0.5
         kept = Slot(first.kind, which, slot.a, slot.length, slot.b_out, slot.depth, slot.opposite)
         slots = (kept, state.slots[1], state.slots[2]) if better else state.slots
-        return _with_slots(state, slots, state.count, state.seen, state.refused, state.refusals)
+        return _with_slots(state, slots, state.valid, state.seen, state.refused, state.refusals)
     fit = fit_of(slot, car, params)
     seen = mark + other
     if not fit.fits:
-        return _with_slots(state, state.slots, state.count, seen, fit, state.refusals + 1)
-    count = state.count + 1 if state.count < REMEMBERED else REMEMBERED
+        return _with_slots(state, state.slots, state.valid, seen, fit, state.refusals + 1)
+    count = state.valid + 1 if state.valid < REMEMBERED else REMEMBERED
     slots = (slot, state.slots[0], state.slots[1])
     return _with_slots(state, slots, count, seen, state.refused, state.refusals)
 
@@ -148,7 +148,7 @@ def _judge(state: SearchState, side: SideState, which: int, far: float, car: Car
 def without_first(state: SearchState) -> SearchState:
     """Return the search with its newest slot given up."""
     slots = (state.slots[1], state.slots[2], NO_SLOT)
-    count = state.count - 1 if state.count > 0 else 0
+    count = state.valid - 1 if state.valid > 0 else 0
     return _with_slots(state, slots, count, state.seen, state.refused, state.refusals + 1)
 
 
@@ -162,7 +162,7 @@ def _with_sides(
     way: float,
 ) -> SearchState:
     return SearchState(
-        state.begun, state.origin, clock_ns, right, left, far_right, far_left, way, state.slots, state.count,
+        state.begun, state.origin, clock_ns, right, left, far_right, far_left, way, state.slots, state.valid,
         state.seen, state.refused, state.refusals,
     )  # fmt: skip
 

@@ -1,26 +1,32 @@
 """What one side sensor has heard on the way past: a neighbour, a gap, the next neighbour.
 
 Coordinates: u along the car's heading when the search began, w to the road (away from the slots), both
-mirrored on the left side. Distances are averaged over 10 cm of way before they are used.
+mirrored on the left side. Distances are averaged over about 15 cm of way before they are used.
 """
 
 from typing import NamedTuple
 
-from controller_fmu.apa.edge import KEPT, NO_SAMPLES, Heard, append, corner, remember
+from controller_fmu.apa.edge import KEPT, NO_SAMPLES, Heard, append, corner, remember, seen_up_to
 from controller_fmu.apa.line_fit import Line, Sums, add, distance, offset, slope
 from controller_fmu.apa.params import SearchParams
+from modelkit.maths import clamp
 
 NOTHING = 0
 WALL = 1
 GAP = 2
 NEXT_WALL = 3
 
-BIN = 0.1
-FLAT = 0.35
+BIN = 0.16
+FLAT = 0.1
+STEP = 0.012
+BAND = 0.02
 """Steeper than this [m/m] the distance does not belong to a flat side along the road."""
 CONFIRMED = 0.4
 """A gap is one once it is this long [m]: shorter ones are lost echoes."""
 DEEP = 50.0
+STEEPEST = 0.15
+STAGGER = 0.3
+"""The next neighbour may stand this much [m] further in."""
 
 
 class SideState(NamedTuple):
@@ -42,7 +48,8 @@ class SideState(NamedTuple):
     """Length seen of the first neighbour [m]."""
     missed: float = 0.0
     """Where the neighbour was not heard any more [m]."""
-    count: int = 0
+    taken: int = 0
+    """Samples kept of the next neighbour's beginning."""
     samples: tuple[Heard, ...] = NO_SAMPLES
     sums: Sums = Sums()
     """Of the neighbour in hand."""
@@ -66,7 +73,7 @@ START = SideState(
 
 
 def hear(side: SideState, u: float, w: float, r: float, half_angle: float, params: SearchParams) -> SideState:
-    """Return the side after one reading: bins are closed after 10 cm, or where the distance jumps."""
+    """Return the side after one reading: bins are closed after about 15 cm, or where the distance jumps."""
     if side.n > 0.0:
         mean = side.r / side.n
         first = side.u / side.n
@@ -84,7 +91,7 @@ def _sampled(side: SideState, sample: Heard, half_angle: float, params: SearchPa
     near = sample.r < params.beside
     way = sample.u - side.last.u
     change = sample.r - side.last.r
-    level = way > 0.0 and abs(change) <= FLAT * way + 0.03
+    level = way > 0.0 and abs(change) <= FLAT * way + STEP
     steady = side.steady + 1 if level else 0
     side = _with_last(side, sample, steady)
     if side.mode == NOTHING:
@@ -92,17 +99,20 @@ def _sampled(side: SideState, sample: Heard, half_angle: float, params: SearchPa
     if side.mode == WALL:
         return _on_wall(side, sample, half_angle, params)
     if side.mode == GAP:
-        return _in_gap(side, sample, params)
+        return _in_gap(side, sample, half_angle, params)
     return _on_next_wall(side, sample, half_angle, params)
 
 
 def _on_wall(side: SideState, sample: Heard, half_angle: float, params: SearchParams) -> SideState:
     expected = side.samples[0].r if side.samples[0].r > 0.0 else sample.r
-    if sample.r <= expected + params.step:
-        sums = add(side.sums, sample.u, sample.w, sample.r) if side.steady >= 2 else side.sums
+    most = expected + params.step
+    if side.sums.n >= 3.0:
+        most = _still_heard(side.sums, EMPTY, sample, -1.0, half_angle)
+    if sample.r <= most:
+        sums = _with_sample(side.sums, EMPTY, sample, side.steady)
         fresh = side.found > 0 and side.steady >= 2 and side.mode == WALL and side.edge_b > side.edge
-        missed = sample.u
-        return _wall(side, sums, remember(side.samples, sample), missed, fresh)
+        begun = sample.u if side.sums.n == 0.0 else side.begun
+        return _wall(side, begun, sums, remember(side.samples, sample), fresh)
     if sample.u - side.missed < CONFIRMED:
         return side
     extent = side.missed - side.begun
@@ -111,16 +121,35 @@ def _on_wall(side: SideState, sample: Heard, half_angle: float, params: SearchPa
     b = slope(side.sums, EMPTY)
     line = Line(offset(side.sums, b), b)
     edge = corner(side.samples, line, -1.0, half_angle)
+    extent = edge - side.begun
     return SideState(
         GAP, side.n, side.u, side.w, side.r, side.last, 0, side.begun, extent, side.missed, 0, NO_SAMPLES, EMPTY,
         side.sums, edge, DEEP, side.found, False, 0.0,
     )  # fmt: skip
 
 
-def _in_gap(side: SideState, sample: Heard, params: SearchParams) -> SideState:
+def _with_sample(sums: Sums, other: Sums, sample: Heard, steady: int) -> Sums:
+    """Return the sums with a sample that belongs to the flat side, not to its corner."""
+    if steady < 2:
+        return sums
+    if sums.n >= 4.0:
+        b = clamp(slope(sums, other), -STEEPEST, STEEPEST)
+        if abs(sample.r - distance(Line(offset(sums, b), b), sample.u, sample.w)) > BAND:
+            return sums
+    return add(sums, sample.u, sample.w, sample.r)
+
+
+def _still_heard(sums: Sums, other: Sums, sample: Heard, sense: float, half_angle: float) -> float:
+    """Return the largest distance [m] at which a sensor there hears a side or its corner, with 2 cm for noise."""
+    b = clamp(slope(sums, other), -STEEPEST, STEEPEST)
+    line = Line(offset(sums, b), b)
+    return 1.03 * distance(line, sample.u, sample.w) * seen_up_to(line, sense, half_angle) + 0.02
+
+
+def _in_gap(side: SideState, sample: Heard, half_angle: float, params: SearchParams) -> SideState:
     b = slope(side.before, EMPTY)
     d = distance(Line(offset(side.before, b), b), sample.u, sample.w)
-    if sample.r < 1.3 * d + params.step:
+    if sample.r < _still_heard(side.before, EMPTY, sample, 1.0, half_angle) + STAGGER:
         return SideState(
             NEXT_WALL, side.n, side.u, side.w, side.r, side.last, 0, sample.u, side.extent, sample.u, 1,
             append(NO_SAMPLES, sample, 0), EMPTY, side.before, side.edge, side.depth, side.found, False, 0.0,
@@ -142,9 +171,9 @@ def _on_next_wall(side: SideState, sample: Heard, half_angle: float, params: Sea
             GAP, side.n, side.u, side.w, side.r, side.last, 0, side.begun, side.extent, side.missed, 0, NO_SAMPLES,
             EMPTY, side.before, side.edge, side.depth, side.found, False, 0.0,
         )  # fmt: skip
-    samples = append(side.samples, sample, side.count)
-    count = side.count + 1 if side.count < KEPT else KEPT
-    sums = add(side.sums, sample.u, sample.w, sample.r) if side.steady >= 2 else side.sums
+    samples = append(side.samples, sample, side.taken)
+    count = side.taken + 1 if side.taken < KEPT else KEPT
+    sums = _with_sample(side.sums, side.before, sample, side.steady)
     if sample.u - side.begun < params.wall or sums.n < 2.0:
         return SideState(
             NEXT_WALL, side.n, side.u, side.w, side.r, side.last, side.steady, side.begun, side.extent, sample.u,
@@ -153,7 +182,7 @@ def _on_next_wall(side: SideState, sample: Heard, half_angle: float, params: Sea
     b = slope(side.before, sums)
     edge_b = corner(samples, Line(offset(sums, b), b), 1.0, half_angle)
     return SideState(
-        WALL, side.n, side.u, side.w, side.r, side.last, side.steady, side.begun, side.extent, sample.u, count,
+        WALL, side.n, side.u, side.w, side.r, side.last, side.steady, edge_b, side.extent, sample.u, count,
         remember(NO_SAMPLES, sample), sums, side.before, side.edge, side.depth, side.found + 1, True, edge_b,
     )  # fmt: skip
 
@@ -172,23 +201,23 @@ def _fresh_start(side: SideState) -> SideState:
     )  # fmt: skip
 
 
-def _wall(side: SideState, sums: Sums, samples: tuple[Heard, ...], missed: float, fresh: bool) -> SideState:
+def _wall(side: SideState, begun: float, sums: Sums, samples: tuple[Heard, ...], fresh: bool) -> SideState:
     return SideState(
-        WALL, side.n, side.u, side.w, side.r, side.last, side.steady, side.begun, side.extent, missed, side.count,
+        WALL, side.n, side.u, side.w, side.r, side.last, side.steady, begun, side.extent, samples[0].u, side.taken,
         samples, sums, side.before, side.edge, side.depth, side.found, fresh, side.edge_b,
     )  # fmt: skip
 
 
 def _with_bin(side: SideState, n: float, u: float, w: float, r: float) -> SideState:
     return SideState(
-        side.mode, n, u, w, r, side.last, side.steady, side.begun, side.extent, side.missed, side.count,
+        side.mode, n, u, w, r, side.last, side.steady, side.begun, side.extent, side.missed, side.taken,
         side.samples, side.sums, side.before, side.edge, side.depth, side.found, side.fresh, side.edge_b,
     )  # fmt: skip
 
 
 def _with_last(side: SideState, last: Heard, steady: int) -> SideState:
     return SideState(
-        side.mode, side.n, side.u, side.w, side.r, last, steady, side.begun, side.extent, side.missed, side.count,
+        side.mode, side.n, side.u, side.w, side.r, last, steady, side.begun, side.extent, side.missed, side.taken,
         side.samples, side.sums, side.before, side.edge, side.depth, side.found, False, side.edge_b,
     )  # fmt: skip
 
@@ -196,5 +225,5 @@ def _with_last(side: SideState, last: Heard, steady: int) -> SideState:
 def _not_fresh(side: SideState) -> SideState:
     return SideState(
         side.mode, side.n, side.u, side.w, side.r, side.last, side.steady, side.begun, side.extent, side.missed,
-        side.count, side.samples, side.sums, side.before, side.edge, side.depth, side.found, False, side.edge_b,
+        side.taken, side.samples, side.sums, side.before, side.edge, side.depth, side.found, False, side.edge_b,
     )  # fmt: skip

@@ -140,7 +140,7 @@ def _guards(
         | _bit(Guard.READY.value, not given and speed <= limit)
         | _bit(Guard.SLOT_GIVEN.value, given and standing)
         | _bit(Guard.TOO_FAST.value, speed > 1.1 * limit)
-        | _bit(Guard.SLOT_AT_STANDSTILL.value, found.count > 0 and standing)
+        | _bit(Guard.SLOT_AT_STANDSTILL.value, found.valid > 0 and standing)
         | _bit(Guard.NO_PLAN.value, not given and has_failed(parking, params))
         | _bit(Guard.DRIVEN_ON.value, not given and moved)
         | _bit(Guard.CONFIRMED.value, inputs.driver_confirm and standing and is_planned(parking))

@@ -40,7 +40,11 @@ def write_container(system: System, path: Path) -> Path:
 
 
 def assembly(system: System) -> dict[str, Any]:
-    """Return what fmucontainer is told: FMUs, links, start values, and all outputs as ``vehicle.pose.x``."""
+    """Return what fmucontainer is told: FMUs, links, start values, outputs as ``vehicle.pose.x``.
+
+    A linked output is left out: the container shows it under the same name as a local variable.
+    """
+    linked = {(sender.name, name) for sender, _, name in system.connections()}
     files = {part.name: f"{part.model.name}.fmu" for part in system.parts}
     return {
         "name": f"{NAME}.fmu",
@@ -57,6 +61,7 @@ def assembly(system: System) -> dict[str, Any]:
             [files[part.name], variable.name, f"{part.name}.{variable.name}"]
             for part in system.parts
             for variable in part.of("output")
+            if (part.name, variable.name) not in linked
         ],
         "start": [
             [files[part.name], variable.name, as_text(value)]

@@ -1,0 +1,170 @@
+"""Other masters, with PythonFMUs and with native ones, end at the pose at which ours ends."""
+
+import csv
+import subprocess
+import sys
+import zipfile
+from pathlib import Path
+from types import SimpleNamespace
+
+import fmpy
+import numpy as np
+import pytest
+from fmpy.fmi2 import FMU2Slave
+from fmpy.ssp.simulation import simulate_ssp
+from fmpy.ssp.ssd import read_ssd
+from libcosimpy.CosimExecution import CosimExecution
+from libcosimpy.CosimLogging import CosimLogLevel, log_output_level
+from libcosimpy.CosimObserver import CosimObserver
+
+from fmus.container import write_container
+from fmus.ssp import write_ssp
+from orchestrator.errors import BadInput
+from orchestrator.load_scenario import load_scenario
+from orchestrator.session import run_scenario
+from orchestrator.system_of import system_of
+
+POSE = ("pose.x", "pose.y", "pose.heading")
+KINDS = ("native", "python")
+SCENARIO = load_scenario("guo2015-case4-105", [])
+TOLERANCE = 1e-9
+
+
+@pytest.fixture(scope="module")
+def ours(fmus):
+    """(end time [s], steps, pose there) of our master."""
+    recording = run_scenario(SCENARIO, fmus["native"], kind="native").recording
+    return recording.t[-1], len(recording.t_ns) - 1, [recording.signals[f"vehicle.{name}"][-1] for name in POSE]
+
+
+@pytest.fixture(scope="module", params=KINDS)
+def kind(request):
+    return request.param
+
+
+@pytest.fixture(scope="module")
+def system(fmus, kind):
+    return system_of(SCENARIO, fmus[kind])
+
+
+@pytest.fixture(scope="module")
+def ssp(system, tmp_path_factory):
+    return write_ssp(system, tmp_path_factory.mktemp("ssp") / "ParkingSystem.ssp")
+
+
+@pytest.fixture(scope="module")
+def container(system, tmp_path_factory):
+    return write_container(system, tmp_path_factory.mktemp("container") / "ParkingSystem.fmu")
+
+
+def references(path):
+    return {v.name: v.valueReference for v in fmpy.read_model_description(str(path)).modelVariables}
+
+
+def test_a_plain_loop_over_fmpy(system, ours, tmp_path):
+    parts = {part.name: load(part, tmp_path / part.name) for part in system.parts}
+    links = [(parts[a.name], parts[b.name], name) for a, b, name in system.connections()]
+
+    def exchange():
+        values = [(receiver, name, get(sender, name)) for sender, receiver, name in links]
+        for receiver, name, value in values:
+            set_value(receiver, name, value)
+
+    exchange()
+    for part in parts.values():
+        part.fmu.exitInitializationMode()
+    for k in range(ours[1]):
+        exchange()
+        for part in parts.values():
+            part.fmu.doStep(k * SCENARIO.step, SCENARIO.step)
+    assert [get(parts["vehicle"], name) for name in POSE] == pytest.approx(ours[2], abs=TOLERANCE)
+    for part in parts.values():
+        part.fmu.terminate()
+        part.fmu.freeInstance()
+
+
+def load(part, folder):
+    fmpy.extract(str(part.fmu), str(folder))
+    description = fmpy.read_model_description(str(folder))
+    fmu = FMU2Slave(
+        guid=description.guid, modelIdentifier=part.model.name, unzipDirectory=str(folder), instanceName=part.name
+    )
+    fmu.instantiate()
+    fmu.setupExperiment(startTime=0.0)
+    loaded = SimpleNamespace(fmu=fmu, variables={v.name: v for v in description.modelVariables})
+    for name, value in part.parameters.items():
+        set_value(loaded, name, value)
+    fmu.enterInitializationMode()
+    return loaded
+
+
+def get(part, name):
+    variable = part.variables[name]
+    return getattr(part.fmu, f"get{variable.type}")([variable.valueReference])[0]
+
+
+def set_value(part, name, value):
+    variable = part.variables[name]
+    getattr(part.fmu, f"set{variable.type}")([variable.valueReference], [value])
+
+
+def test_libcosim_reads_the_ssp(system, ssp, ours):
+    log_output_level(CosimLogLevel.FATAL)
+    execution = CosimExecution.from_ssp_file(ssp_path=str(ssp))
+    observer = CosimObserver.create_last_value()
+    execution.add_observer(observer)
+    assert execution.step(ours[1])
+    known = references(system.parts[0].fmu)
+    index = execution.slave_index_from_instance_name("vehicle")
+    found = observer.last_real_values(index, [known[name] for name in POSE])
+    assert list(found) == pytest.approx(ours[2], abs=TOLERANCE)
+
+
+def test_fmpy_simulates_the_container(container, ours, tmp_path):
+    table = tmp_path / "result.csv"
+    command = [Path(sys.executable).parent / "fmpy", "simulate", container, "--stop-time", repr(float(ours[0]))]
+    subprocess.run([*command, "--output-interval", "0.01", "--output-file", table], check=True, capture_output=True)
+    with table.open() as file:
+        last = list(csv.DictReader(file))[-1]
+    assert float(last["time"]) == pytest.approx(ours[0])
+    assert [float(last[f"vehicle.{name}"]) for name in POSE] == pytest.approx(ours[2], abs=TOLERANCE)
+
+
+def test_fmpy_simulates_the_ssp_given_the_parameters(system, ssp, ours):
+    """FMPy reads no parameter bindings, so they are handed over; its last rows lie behind the stop time."""
+    settings = [
+        SimpleNamespace(name=f"{part.name}.{name}", value=value)
+        for part in system.parts
+        for name, value in part.parameters.items()
+    ]
+    chosen = SimpleNamespace(parameters=settings)
+    result = simulate_ssp(str(ssp), stop_time=ours[0], step_size=SCENARIO.step, parameter_set=chosen)
+    found = [result[f"vehicle.{name}"][ours[1] - 1] for name in POSE]
+    assert found == pytest.approx(ours[2], abs=TOLERANCE)
+
+
+def test_the_ssp_is_valid_and_the_same_bytes_each_time(system, ssp, tmp_path):
+    structure = read_ssd(str(ssp))
+    assert [component.name for component in structure.system.elements] == ["vehicle", "controller"]
+    assert len(structure.system.connections) == len(system.connections()) > 10
+    assert write_ssp(system, tmp_path / "again.ssp").read_bytes() == ssp.read_bytes()
+    with zipfile.ZipFile(ssp) as archive:
+        text = archive.read("SystemStructure.ssd").decode()
+        values = archive.read("resources/vehicle.ssv").decode()
+    assert 'xmlns:osp="http://opensimulationplatform.com/SSP/OSPAnnotations"' in text
+    assert 'baseStepSize="0.01"' in text
+    assert 'stepSize="0.01"' in text
+    assert values.count("<ssv:Parameter ") == len(SCENARIO.vehicle) > 0
+
+
+@pytest.mark.parametrize("name", ["fault-pose-frozen"])
+def test_what_a_system_file_cannot_say_is_refused(fmus, name):
+    with pytest.raises(BadInput, match="faults live in apa's own master"):
+        system_of(load_scenario(name, []), fmus["native"])
+    with pytest.raises(BadInput, match="one communication step for all"):
+        system_of(load_scenario("guo2015-case4", ["every.controller=2"]), fmus["native"])
+
+
+def test_the_reference_is_a_parked_car(ours):
+    assert ours[1] > 1000
+    assert np.isfinite(ours[2]).all()

@@ -83,7 +83,7 @@ def parked_car(start: Pose, usable: bool, params: CarParams) -> CarState:
         DriverState(0, 0, 0, 0, False),
         Selector(PARK, NO_GEAR, 0),
         hold_request(0.0, 0.0),
-        Pedals(0.0, 0.0, Effort(0.0, params.chassis.mass * params.drive.hold_deceleration)),
+        Pedals(0.0, 0.0, Effort(0.0, params.chassis.mass * params.drive.hold_deceleration), 0.0),
         place(start, body, params.wheelbase, params.chassis, params.double_track, params.road),
         OdometryState(start, 0.0),
     )

@@ -23,6 +23,10 @@ DRIVE = int(Gear.DRIVE)
 STANDSTILL = 0.02
 """Speed [m/s] below which the selector may be moved."""
 NO_GEAR = -1
+LAST_DECELERATION = 0.5
+"""Deceleration [m/s2] with which a car comes to rest, so that it rocks little on its tyres."""
+FIRMER = 4.0
+"""Growth [m/s3] of that if it does not come to rest, as on a slope."""
 
 
 class Selector(NamedTuple):
@@ -42,6 +46,8 @@ class Pedals(NamedTuple):
     integral: float = 0.0
     """Integral of the speed error [m]."""
     effort: Effort = Effort()
+    stopping: float = 0.0
+    """Time [s] since the aim became to stand."""
 
 
 def shift(selector: Selector, target: float, speed: float, shift_time: float, step_ns: int) -> Selector:
@@ -78,16 +84,16 @@ def press(pedals: Pedals, target: float, speed: float, gear: int, mass: float, p
     reference = change_speed(pedals.reference, target, p, h)
     creep = _creep(gear, speed, p)
     if reference == 0.0 and target == 0.0:
-        effort = _lag(pedals.effort, creep, mass * p.hold_deceleration, p, h)
-        return Pedals(0.0, 0.0, effort)
+        brake = mass * _stopping_deceleration(speed, pedals.stopping, p)
+        return Pedals(0.0, 0.0, _lag(pedals.effort, creep, brake, p, h), pedals.stopping + h)
     error = reference - speed
     integral = clamp(pedals.integral + h * error, -p.integral_limit, p.integral_limit)
     push = (reference - pedals.reference) / h + p.speed_gain * error + p.speed_integral * integral
     force = mass * push - creep
     along = 1.0 if reference > 0.0 else -1.0
     if force * along >= 0.0:
-        return Pedals(reference, integral, _lag(pedals.effort, force + creep, 0.0, p, h))
-    return Pedals(reference, integral, _lag(pedals.effort, creep, abs(force), p, h))
+        return Pedals(reference, integral, _lag(pedals.effort, force + creep, 0.0, p, h), 0.0)
+    return Pedals(reference, integral, _lag(pedals.effort, creep, abs(force), p, h), 0.0)
 
 
 def obey(pedals: Pedals, force: float, speed: float, gear: int, p: DriveParams, h: float) -> Pedals:
@@ -99,8 +105,16 @@ def obey(pedals: Pedals, force: float, speed: float, gear: int, p: DriveParams, 
     creep = _creep(gear, speed, p)
     along = -1.0 if gear == REVERSE else 1.0
     if force * along >= 0.0:
-        return Pedals(speed, 0.0, _lag(pedals.effort, force + creep, 0.0, p, h))
-    return Pedals(speed, 0.0, _lag(pedals.effort, creep, abs(force), p, h))
+        return Pedals(speed, 0.0, _lag(pedals.effort, force + creep, 0.0, p, h), 0.0)
+    return Pedals(speed, 0.0, _lag(pedals.effort, creep, abs(force), p, h), 0.0)
+
+
+def _stopping_deceleration(speed: float, time: float, p: DriveParams) -> float:
+    """Return how hard to brake [m/s2] at the end of a stop: gently while it still rolls, then to hold."""
+    if abs(speed) < STANDSTILL:
+        return p.hold_deceleration
+    gentle = LAST_DECELERATION + FIRMER * time + p.speed_gain * abs(speed)
+    return gentle if gentle < p.hold_deceleration else p.hold_deceleration
 
 
 def _creep(gear: int, speed: float, p: DriveParams) -> float:

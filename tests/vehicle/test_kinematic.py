@@ -1,0 +1,59 @@
+"""The kinematic car against CommonRoad's KS and against exact circles."""
+
+import math
+from typing import Any
+
+import pytest
+from cars import CARS
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from vehiclemodels.vehicle_dynamics_ks import vehicle_dynamics_ks
+
+from modelkit.vocabulary import Pose
+from vehicle_fmu.drive import change_speed
+from vehicle_fmu.interface import DriveParams, SteeringParams
+from vehicle_fmu.kinematic import kinematic_rates, move
+from vehicle_fmu.steering import turn_steering_wheel
+
+
+@settings(deadline=None)
+@given(st.sampled_from(CARS), st.floats(-13.0, 40.0), st.floats(-0.9, 0.9), st.floats(-4.0, 4.0))
+def test_rates_equal_ks(car: Any, speed: float, angle: float, heading: float) -> None:
+    theirs = vehicle_dynamics_ks([1.0, 2.0, angle, speed, heading], [0.0, 0.0], car)
+    ours = kinematic_rates(heading, speed, angle, car.a + car.b)
+    assert ours.x == pytest.approx(theirs[0], abs=1e-12)
+    assert ours.y == pytest.approx(theirs[1], abs=1e-12)
+    assert ours.heading == pytest.approx(theirs[4], abs=1e-12, rel=1e-12)
+
+
+@pytest.mark.parametrize("car", CARS)
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_steering_stops_and_turns_as_fast_as_in_ks_at_its_limits(car: Any, side: float) -> None:
+    params = SteeringParams(1.0, car.steering.max, car.steering.v_max)
+    h = 1e-3
+    for angle, request in ((0.0, 9.0 * side), (0.3 * side, -9.0 * side), (car.steering.max * side, 9.0 * side)):
+        rate = (turn_steering_wheel(angle, request, params, h) - angle) / h
+        theirs = vehicle_dynamics_ks([0.0, 0.0, angle, 5.0, 0.0], [100.0 * math.copysign(1.0, request), 0.0], car)
+        assert rate == pytest.approx(theirs[2], abs=1e-12)
+
+
+@pytest.mark.parametrize("car", CARS)
+def test_acceleration_is_limited_as_in_ks_below_its_switching_speed(car: Any) -> None:
+    params = DriveParams(car.longitudinal.a_max, car.longitudinal.a_max)
+    for speed, target in ((2.0, 30.0), (2.0, 0.0), (-2.0, -30.0), (-2.0, 0.0)):
+        rate = (change_speed(speed, target, params, 1e-3) - speed) / 1e-3
+        wish = math.copysign(100.0, target - speed)
+        theirs = vehicle_dynamics_ks([0.0, 0.0, 0.0, speed, 0.0], [0.0, wish], car)
+        assert rate == pytest.approx(theirs[3], rel=1e-12)
+
+
+@given(st.floats(-2.0, 2.0), st.floats(-0.6, 0.6), st.floats(0.001, 0.1))
+def test_a_held_wheel_drives_an_exact_circle(speed: float, angle: float, h: float) -> None:
+    pose = move(Pose(), speed, speed, angle, angle, 2.4, h)
+    turn = speed * h * math.tan(angle) / 2.4
+    x, y = speed * h, 0.0
+    if abs(turn) > 1e-9:
+        x, y = speed * h * math.sin(turn) / turn, speed * h * (1.0 - math.cos(turn)) / turn
+    assert pose.heading == pytest.approx(turn, abs=1e-15, rel=1e-12)
+    assert pose.x == pytest.approx(x, abs=1e-9)
+    assert pose.y == pytest.approx(y, abs=1e-9)

@@ -46,6 +46,16 @@ def fit_of(slot: Slot, car: Car, params: ApaParams) -> Fit:
     return Fit(False, 0, high)
 
 
+def shortest_of_iso(kind: int, wheelbase: float, params: ApaParams) -> float:
+    """Return the length (width) [m] of the shortest slot of ISO 16787 (secondary source) for this car."""
+    length = wheelbase + params.front_overhang + params.rear_overhang
+    if kind != PARALLEL:
+        return params.width + 1.2
+    if length < 4.0:
+        return length + 1.0
+    return 1.25 * length if length <= 6.0 else length + 1.5
+
+
 def least_moves(slot: Slot, car: Car, params: ApaParams) -> int:
     """Return the fewest moves into a parallel slot, 0 if it takes more than allowed."""
     plan = params.plan

@@ -1,6 +1,7 @@
 """What the parking assist puts out: requests, prompts, warnings, and what it knows of slot and plan."""
 
 from controller_fmu.apa.chart import Mode
+from controller_fmu.apa.fit import shortest_of_iso
 from controller_fmu.apa.manoeuvre_chart import Step
 from controller_fmu.apa.move import Piece
 from controller_fmu.apa.params import Longitudinal
@@ -132,6 +133,8 @@ def _signals(state: ApaState, frame: SlotFrame, params: ControllerParams) -> Apa
         corner_b=b if shown else nowhere,
         target=to_world(nowhere, frame) if shown else nowhere,
         moves=state.parking.plan.moves,
+        parking_time=state.watch.running * 1e-9,
+        iso_spare=slot.length - shortest_of_iso(slot.kind, params.wheelbase, params.apa) if shown else 0.0,
         move=_move(state.parking, frame),
     )
 

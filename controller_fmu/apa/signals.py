@@ -52,4 +52,6 @@ class ApaSignals(NamedTuple):
     target: Pose = Pose()
     """Pose to park at, in the world."""
     moves: Annotated[int, Signal("1", "moves of the plan still to drive")] = 0
+    parking_time: Annotated[float, Signal("s", "since the driver confirmed", 0.0)] = 0.0
+    iso_spare: Annotated[float, Signal("m", "length (width) of the slot over the shortest of ISO 16787")] = 0.0
     move: PlannedMove = PlannedMove()

@@ -168,6 +168,7 @@ def _moved_on(
     if mode == OFF or mode == STANDBY:
         found = begin_search(inputs.odometry, clock)
         parking = NOT_PARKING
+        seen = NOT_WATCHED
         slot = NO_SLOT if mode == OFF else slot
     if mode == SEARCH and state.mode == APPEARS:
         found = without_first(found) if has_failed(parking, params) else found

@@ -76,7 +76,7 @@ def watch(
         frozen=state.frozen + dt_ns if unmoved else 0,
         lag=state.lag + dt_ns if off and not against and step == DRIVE else 0,
         away=state.away + dt_ns if off and against else 0,
-        running=state.running + dt_ns if driving else 0,
+        running=state.running + dt_ns if driving else state.running,
         wheel=wheel,
         angle=angle,
         pose=inputs.odometry,

@@ -1,0 +1,56 @@
+"""The shipped cars: usable, their sensors on their outline, CommonRoad's numbers in the files of its cars."""
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+import yaml
+from cars import CARS, double_track_car, single_track_car
+
+from modelkit.variables import flatten, variables, with_values
+from orchestrator.load_scenario import car_names, load_scenario
+from vehicle_fmu.interface import Body, VehicleParams
+from vehicle_fmu.usable import is_usable
+
+
+def loaded(name: str, tmp_path: Path) -> Any:
+    """Return the parameters of a car as a scenario gets them."""
+    file = tmp_path / "scenario.yaml"
+    content = {"name": "any", "car": name, "target": {"x": 0, "y": 0, "heading": 0}}
+    file.write_text(yaml.safe_dump(content))
+    return with_values(VehicleParams, load_scenario(str(file)).vehicle)
+
+
+@pytest.mark.parametrize("name", car_names())
+def test_every_car_is_usable_on_every_body(name: str, tmp_path: Path) -> None:
+    car = loaded(name, tmp_path)
+    for body in Body:
+        assert is_usable(car._replace(body=int(body)))
+
+
+@pytest.mark.parametrize("name", [name for name in car_names() if name != "preview"])
+def test_sensors_sit_on_the_outline(name: str, tmp_path: Path) -> None:
+    car = loaded(name, tmp_path)
+    front, rear, side = car.wheelbase + car.front_overhang, -car.rear_overhang, 0.5 * car.width
+    for mount in car.ultrasonic.mounts:
+        assert rear - 0.01 <= mount.x <= front + 0.01
+        assert abs(mount.y) <= side + 0.01
+        gap = min(front - mount.x, mount.x - rear, side - abs(mount.y))
+        assert gap < 0.15, "near the skin of the car"
+
+
+@pytest.mark.parametrize("number", [1, 2, 3])
+def test_commonroads_cars_have_commonroads_numbers(number: int, tmp_path: Path) -> None:
+    car = loaded(f"commonroad{number}", tmp_path)
+    wheelbase, chassis, double = double_track_car(CARS[number - 1])
+    _, _, single = single_track_car(CARS[number - 1])
+    assert car.wheelbase == pytest.approx(wheelbase, rel=1e-6)
+    chosen = {"rolling_resistance", "drag_x", "drag_y"}
+    for field in set(chassis._fields) - chosen:
+        assert getattr(car.chassis, field) == pytest.approx(getattr(chassis, field), rel=1e-5)
+    for field in ("stiffness_front", "stiffness_rear", "load_height"):
+        assert getattr(car.single_track, field) == pytest.approx(getattr(single, field), rel=1e-5)
+    ours = dict(zip((v.name for v in variables(type(double))), flatten(car.double_track), strict=True))
+    theirs = dict(zip((v.name for v in variables(type(double))), flatten(double), strict=True))
+    for name in set(theirs) - {"ackermann"}:
+        assert ours[name] == pytest.approx(theirs[name], rel=1e-5, abs=1e-9), name

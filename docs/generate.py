@@ -18,7 +18,9 @@ from types import ModuleType
 from typing import Any
 
 ROOT = Path(__file__).parent.parent
-sys.path.insert(0, str(ROOT))
+sys.path[:0] = [str(ROOT), str(ROOT / "docs")]
+
+from chart_svg import chart_svg  # noqa: E402
 
 import controller_fmu  # noqa: E402
 from modelkit.model import Model  # noqa: E402
@@ -129,9 +131,11 @@ def charts_page() -> str:
     for module in chart_modules():
         states, guards = enums_of(module)
         summary = (module.__doc__ or module.__name__).strip().splitlines()[0]
-        parts.append(f"## {module.__name__}\n\n{summary}\n\n{mermaid(module, states, guards)}")
         rows = [[label(states, row[0]), guards(row[1]).name, label(states, row[2])] for row in module.TRANSITIONS]
+        arcs = [(source, target, guard.lower().replace("_", " ")) for source, guard, target in rows]
+        parts.append(f"## {module.__name__}\n\n{summary}\n\n{chart_svg(arcs, [item.name for item in states])}\n")
         parts.append(table(["from", "when", "to"], rows))
+        parts.append(f"As Mermaid source:\n\n{mermaid(module, states, guards)}")
     return "\n".join(parts)
 
 
@@ -159,7 +163,7 @@ def label(states: type[IntEnum], value: int) -> str:
 
 def mermaid(module: ModuleType, states: type[IntEnum], guards: type[IntEnum]) -> str:
     """Return the chart as a Mermaid diagram; rows from any state start at one node."""
-    lines = ["```mermaid", "stateDiagram-v2"]
+    lines = ["```text", "stateDiagram-v2"]
     for row in module.TRANSITIONS:
         source = label(states, row[0]).replace(" ", "_")
         lines.append(f"    {source} --> {label(states, row[2])}: {guards(row[1]).name.lower().replace('_', ' ')}")

@@ -3,6 +3,7 @@
 from pathlib import Path
 from typing import Any
 
+from orchestrator.errors import BadInput
 from orchestrator.judge import Check
 from orchestrator.quantities import DEGREE
 from orchestrator.recording import Recording
@@ -29,7 +30,9 @@ def write_replay(path: Path, recording: Recording, summary: Summary, words: list
 
 
 def replay_page(recording: Recording, summary: Summary, words: list[Line]) -> str:
-    """Return the page of a run."""
+    """Return the page of a run. Raises ``BadInput`` if the run has no instant to show."""
+    if not len(recording.t):
+        raise BadInput("the run has no instant to show")
     text = ""
     for most in MOST_ROWS:
         text = _page(recording, summary, words, most)

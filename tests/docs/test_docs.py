@@ -97,7 +97,9 @@ def test_every_row_of_every_chart_is_drawn(generate):
     modules = generate.chart_modules()
     assert "controller_fmu.guo2015.chart" in [module.__name__ for module in modules]
     page = generate.charts_page()
-    assert page.count(" --> ") == sum(len(module.TRANSITIONS) for module in modules)
+    rows = sum(len(module.TRANSITIONS) for module in modules)
+    assert page.count(" --> ") == rows
+    assert page.count("<text") - page.count("<rect") == rows
 
 
 def test_every_command_is_in_the_reference(generate):

@@ -10,6 +10,7 @@ import zlib
 import numpy as np
 import pytest
 
+from orchestrator.errors import BadInput
 from orchestrator.load_scenario import load_scenario
 from orchestrator.report.page import page
 from orchestrator.report.payload import Arrays
@@ -142,3 +143,18 @@ def test_thinning_says_when_it_cannot():
     thinned = thin(t, [noise], [], [], 500)
     assert len(thinned.rows) <= 502
     assert thinned.deviation > 0.1
+
+
+def test_a_run_of_one_instant_has_a_page_and_one_of_none_is_refused():
+    scenario = load_scenario("guo2015-case4", ["stop_time=0.01"])
+    recording = run_scenario(scenario).recording
+    for rows in (1, 0):
+        recording.t_ns = recording.t_ns[:rows]
+        recording.signals = {name: values[:rows] for name, values in recording.signals.items()}
+        summary = summarize(recording, scenario, 0.0)
+        if rows:
+            header, arrays = data_of(replay_page(recording, summary, []))
+            assert arrays[header["runs"][0]["time"]].tolist() == [0.0]
+        else:
+            with pytest.raises(BadInput, match="no instant"):
+                replay_page(recording, summary, [])

@@ -50,9 +50,10 @@ def step(
     """Return the controller ``dt_ns`` later, its inputs held."""
     end_ns = state.time_ns + dt_ns
     next_ns = state.next_sample_ns
-    period_ns = math.floor(params.sample_time * 1e9 + 0.5)
+    period_ns = 0
     count = 0
     if state.parking.reason != BAD_PARAMETER:
+        period_ns = math.floor(params.sample_time * 1e9 + 0.5)
         while next_ns < end_ns:
             next_ns += period_ns
             count += 1

@@ -105,6 +105,7 @@ def test_slow_down_prompt_comes_before_the_tangent_point(case_4: Run) -> None:
         ({"driver.profile[2].speed": 1.5}, {"system": int(System.NTBPT)}, Reason.MISSED_TARGET),
         ({"start.x": math.nan}, {}, Reason.VEHICLE_FAULT),
         ({}, {"target.y": math.nan}, Reason.BAD_PARAMETER),
+        ({}, {"sample_time": math.nan}, Reason.BAD_PARAMETER),
     ],
 )
 def test_every_trouble_ends_with_its_reason(

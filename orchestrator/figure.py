@@ -216,8 +216,12 @@ def _slot(axis: Any, box: Box) -> None:
 
 def _planned(recording: Recording) -> Array:
     """Return the last path that was planned, (n, 2) [m]."""
-    lengths = recording.signals.get("controller.path.segments[1].length", np.zeros(0))
-    rows = np.flatnonzero(lengths > 0.0)
+    marks = [
+        values
+        for name, values in recording.signals.items()
+        if name.endswith(("path.segments[1].length", "move.direction"))
+    ]
+    rows = np.flatnonzero(np.any([values != 0.0 for values in marks], axis=0)) if marks else np.empty(0, dtype=np.intp)
     return sample_path(recording.values_at("controller", int(rows[-1]))) if len(rows) else np.empty((0, 2))
 
 

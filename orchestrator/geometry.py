@@ -1,7 +1,7 @@
 """Where things are in the plane: the car's outline and wheels, the planned path, the slot."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -110,24 +110,50 @@ def _rows(parameters: Mapping[str, float], array: str, fields: Mapping[str, floa
 
 
 def sample_path(values: Mapping[str, float], spacing: float = 0.05) -> Array:
-    """Return points (n, 2) [m] of a planned path given as ``path.start`` and ``path.segments[i]``, driven in reverse.
+    """Return points (n, 2) [m] of the path a controller plans, from its outputs by flat name; empty if there is none.
 
-    Each segment has constant curvature seen with x along the heading; empty if there is no path.
+    Either ``path``: arcs driven in reverse from ``path.start``, curvature seen with x along the heading.
+    Or a ``move`` (``apa.move``): pieces of linear curvature driven in ``direction`` from ``move.start``.
     """
-    x, y, heading = (values.get(f"path.start.{axis}", 0.0) for axis in ("x", "y", "heading"))
+    pieces = [(length, k, k) for length, k in _fields(values, "path.segments", ("length", "curvature"))]
+    if any(length > 0.0 for length, _, _ in pieces):
+        return _driven(pose_at(values, "path.start"), -1.0, [(length, -k, -k) for length, k, _ in pieces], spacing)
+    for name, direction in values.items():
+        if name.endswith("move.direction") and direction != 0.0:
+            prefix = name.removesuffix(".direction")
+            moves = _fields(values, f"{prefix}.pieces", ("length", "start_curvature", "end_curvature"))
+            turned = [(length, direction * k0, direction * k1) for length, k0, k1 in moves]
+            return _driven(pose_at(values, f"{prefix}.start"), direction, turned, spacing)
+    return np.empty((0, 2))
+
+
+def pose_at(values: Mapping[str, float], prefix: str) -> tuple[float, float, float]:
+    """Return the pose called ``prefix`` among flat values, zeros for what lacks."""
+    x, y, heading = (values.get(f"{prefix}.{axis}", 0.0) for axis in ("x", "y", "heading"))
+    return x, y, heading
+
+
+def _fields(values: Mapping[str, float], array: str, fields: tuple[str, ...]) -> list[tuple[float, ...]]:
+    rows: list[tuple[float, ...]] = []
+    while f"{array}[{len(rows) + 1}].{fields[0]}" in values:
+        rows.append(tuple(values[f"{array}[{len(rows) + 1}].{field}"] for field in fields))
+    return rows
+
+
+def _driven(
+    start: tuple[float, float, float], direction: float, pieces: Sequence[tuple[float, ...]], spacing: float
+) -> Array:
+    """Return points along pieces (length, rate of turning per metre at the start, at the end) from ``start``."""
+    x, y, heading = start
     points = [(x, y)]
-    number = 1
-    while f"path.segments[{number}].length" in values:
-        length = values[f"path.segments[{number}].length"]
-        curvature = values[f"path.segments[{number}].curvature"]
+    for length, k0, k1 in pieces:
         count = min(max(1, math.ceil(length / spacing)), 10_000) if length > 0.0 and math.isfinite(length) else 0
-        for _ in range(count):
+        for number in range(count):
             ds = length / count
-            turn = -curvature * ds
+            turn = (k0 + (k1 - k0) * (number + 0.5) / count) * ds
             chord = ds * (math.sin(0.5 * turn) / (0.5 * turn) if turn != 0.0 else 1.0)
-            x -= chord * math.cos(heading + 0.5 * turn)
-            y -= chord * math.sin(heading + 0.5 * turn)
+            x += direction * chord * math.cos(heading + 0.5 * turn)
+            y += direction * chord * math.sin(heading + 0.5 * turn)
             heading += turn
             points.append((x, y))
-        number += 1
     return np.array(points) if len(points) > 1 else np.empty((0, 2))

@@ -144,7 +144,7 @@ class _Pictures:
         self._trail = file.known_channel("/trail", PosesInFrame)
         self._poses: list[tuple[float, float, float]] = []
         self._next_ns = 0
-        self._path_places = _places(self._controller.outputs, "path.") if self._controller else np.empty(0, np.intp)
+        self._path_places = _path_places(self._controller.outputs) if self._controller else np.empty(0, np.intp)
         self._path_seen = b""
         obstacles, around = boxes(_named(self._vehicle.parameters)), kerbs(_named(self._vehicle.parameters))
         target = scene.pose_of(_named(self._controller.parameters), "target") if self._controller else None
@@ -196,5 +196,7 @@ def _named(ports: Ports) -> dict[str, float]:
     return dict(zip(ports.names, ports.values.tolist(), strict=True))
 
 
-def _places(ports: Ports, prefix: str) -> np.ndarray[Any, np.dtype[np.intp]]:
-    return np.array([place for place, name in enumerate(ports.names) if name.startswith(prefix)], dtype=np.intp)
+def _path_places(ports: Ports) -> np.ndarray[Any, np.dtype[np.intp]]:
+    """Return where the outputs are that the planned path is drawn from (see ``geometry.sample_path``)."""
+    chosen = [place for place, name in enumerate(ports.names) if name.startswith("path.") or "move." in name]
+    return np.array(chosen, dtype=np.intp)

@@ -5,18 +5,16 @@ from typing import Any
 import numpy as np
 
 from modelkit.variables import Variable, variables
-from orchestrator.geometry import sample_path
 from orchestrator.models import MODELS
 from orchestrator.recording import Recording
 from orchestrator.report.payload import Arrays
+from orchestrator.report.plans import plans_of
 from orchestrator.report.still import Point, origin_of, still_of
 from orchestrator.report.thinning import thin
 from orchestrator.report.words import Line
-from orchestrator.slave import Array
 
 CHART = "controller.phase"
 RIBBONS = (CHART, "controller.prompt", "vehicle.gear", "controller.reason")
-MOST_PATHS = 40
 MOST_RIBBONS = 7
 
 
@@ -42,7 +40,7 @@ def run_data(
         "time": arrays.add(t[thinned.rows]),
         "rows": [len(thinned.rows), len(t), thinned.deviation],
         "signals": {name: _signal(recording, name, thinned.rows, arrays) for name in recording.signals},
-        "paths": _paths(recording, arrays, origin),
+        "plans": plans_of(recording, arrays, origin),
         "scene": still_of(recording, origin),
         "chart": CHART if CHART in recording.signals else None,
         "log": [line._asdict() for line in words],
@@ -87,22 +85,6 @@ def _signal(recording: Recording, name: str, rows: np.ndarray[Any, Any], arrays:
         0.0 if not len(finite) or np.abs(finite).max() < 1e3 else float(np.round(0.5 * (finite.min() + finite.max())))
     )
     return {**result, "o": offset, "a": arrays.add(values[rows] - offset)}
-
-
-def _paths(recording: Recording, arrays: Arrays, origin: Point) -> list[dict[str, Any]]:
-    """Return the planned paths with the time from which each held; the last ones if there were many."""
-    names = [name for name in recording.signals if name.startswith("controller.path.")]
-    if not names or not len(recording.t):
-        return []
-    table = np.column_stack([recording.signals[name] for name in names])
-    changes = np.flatnonzero((table[1:] != table[:-1]).any(axis=1) & ~np.isnan(table[1:]).any(axis=1)) + 1
-    found = []
-    for row in [0, *changes.tolist()][-MOST_PATHS:]:
-        points: Array = sample_path(recording.values_at("controller", row))
-        if len(points):
-            x, y = arrays.add(points[:, 0] - origin[0]), arrays.add(points[:, 1] - origin[1])
-            found.append({"t": float(recording.t[row]), "x": x, "y": y})
-    return found
 
 
 def _parameters(recording: Recording) -> list[dict[str, Any]]:

@@ -19,12 +19,8 @@ MOUNT = re.compile(r"(\w+)\.mounts\[(\d+)\]\.x")
 
 def origin_of(recording: Recording) -> Point:
     """Return a whole number of metres near the first finite position: keeps float32 exact far away."""
-    result = []
-    for axis in ("x", "y"):
-        values = recording.signals.get(f"vehicle.pose.{axis}", np.zeros(1))
-        finite = values[np.isfinite(values)]
-        result.append(float(np.round(finite[0])) if len(finite) else 0.0)
-    return result[0], result[1]
+    x, y = (float(np.round(_first(recording, f"vehicle.pose.{axis}"))) for axis in ("x", "y"))
+    return x, y
 
 
 def still_of(recording: Recording, origin: Point) -> dict[str, Any]:
@@ -35,7 +31,7 @@ def still_of(recording: Recording, origin: Point) -> dict[str, Any]:
     target = pose_of(controller, "target")
     return {
         "origin": list(origin),
-        "turn": target[2] if target else 0.0,
+        "turn": _first(recording, "vehicle.pose.heading"),
         "car": {"front": car.front, "rear": car.rear, "half": car.half_width, "wheelbase": car.wheelbase},
         "slot": _less(slot_box(Slot(**slot)).outline()[:4], origin) if slot else None,
         "target": [target[0] - origin[0], target[1] - origin[1], target[2]] if target else None,
@@ -66,6 +62,13 @@ def sensors(vehicle: Mapping[str, float], signals: Mapping[str, Array]) -> list[
 
 def _box(box: Box, origin: Point) -> dict[str, Any]:
     return {"corners": _less(box.outline()[:4], origin), "from": box.appear_at, "to": box.disappear_at}
+
+
+def _first(recording: Recording, name: str) -> float:
+    """Return the first finite value of a signal, 0 if there is none."""
+    values = recording.signals.get(name, np.zeros(0))
+    finite = values[np.isfinite(values)]
+    return float(finite[0]) if len(finite) else 0.0
 
 
 def _less(points: Array, origin: Point) -> list[list[float]]:

@@ -27,7 +27,7 @@ class Run {
     this.duration = this.time.length ? this.time[this.time.length - 1] : 0;
     this.arrays = arrays;
     this.cache = new Map();
-    this.paths = data.paths.map((path) => ({ t: path.t, x: arrays[path.x], y: arrays[path.y] }));
+    this.plans = data.plans.map((plan) => ({ ...plan, x: arrays[plan.x], y: arrays[plan.y] }));
   }
 
   // Values of a signal at this.time in SI units; null if there is no such signal.
@@ -65,6 +65,9 @@ class Run {
     if (this.signals[name].turn) change = Math.atan2(Math.sin(change), Math.cos(change));
     return values[row] + share * change;
   }
+
+  // What the controller had in mind at t: the plan that held then, or the first one.
+  plan(t) { return this.plans.filter((plan) => plan.t <= t).pop() || this.plans[0]; }
 
   stateName(name, value) {
     const states = this.signals[name] && this.signals[name].states;

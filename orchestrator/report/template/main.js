@@ -55,7 +55,7 @@ class Player {
     this.timeline.show(this.t);
     this.plots.show(this.t);
     $("clock").textContent = `${this.t.toFixed(2)} / ${this.duration.toFixed(2)} s`;
-    headsUp(this.page.runs[0], this.t);
+    headsUp(this.page, this.t);
   }
 
   paint() {
@@ -67,12 +67,14 @@ class Player {
 }
 
 // What driver and controller do at this moment, over the top view.
-function headsUp(run, t) {
+function headsUp(page, t) {
+  const run = page.runs[0];
   const at = Math.min(t, run.duration), box = $("hud");
   const speed = run.at("vehicle.speed", at), wheel = run.at("vehicle.steering_wheel_angle", at);
   const lines = [];
-  for (const name of ["controller.phase", "controller.prompt", "vehicle.gear"])
-    if (run.signals[name]) lines.push([name.split(".")[1], run.stateName(name, run.at(name, at)), run.at(name, at)]);
+  const outer = page.ribbons.filter((name) => /\.(mode|stage)$/.test(name));
+  for (const name of [...outer, "controller.phase", "controller.prompt", "vehicle.gear"])
+    if (run.signals[name]) lines.push([outer.includes(name) ? "phase" : name.split(".")[1], run.stateName(name, run.at(name, at)), run.at(name, at)]);
   const cells = lines.filter(([kind, state]) => !(kind === "prompt" && state === "NONE")).map(([kind, state, value]) => {
     const chip = element("span", { class: `tag ${kind}` }, kind === "prompt" ? `driver: ${words(state)}` : words(state));
     if (kind === "phase") chip.style.background = stateColor(state, value);

@@ -22,7 +22,7 @@ class Scene {
     this.context.setTransform(ratio, 0, 0, ratio, 0, 0);
   }
 
-  // World (already relative to the page's origin) -> view, turned so that the target points right.
+  // World (already relative to the page's origin) -> view, turned so that the car at first points right.
   turned(x, y) {
     const c = Math.cos(this.turn), s = Math.sin(this.turn);
     return [c * x - s * y, s * x + c * y];

@@ -51,18 +51,24 @@ function drawStill(scene, run, t) {
   }
 }
 
+// The slot that was found, the pose wanted, the path planned.
+function drawPlan(scene, run, plan) {
+  if (!plan) return;
+  const g = scene.context, car = run.scene.car;
+  g.setLineDash([7, 6]);
+  g.lineWidth = 2;
+  g.strokeStyle = color("planned");
+  for (const shape of [plan.slot, plan.target && rectangle(-car.rear, car.front, car.half).map(([u, v]) => moved(plan.target, u, v))])
+    if (shape) { scene.trace(shape, true); g.stroke(); }
+  scene.trace(Array.from(plan.x, (x, i) => [x, plan.y[i]]));
+  g.stroke();
+  g.setLineDash([]);
+}
+
 function drawPaths(scene, run, number, t) {
   const g = scene.context, [ox, oy] = run.scene.origin;
   g.lineJoin = g.lineCap = "round";
-  const plan = run.paths.filter((path) => path.t <= t).pop() || run.paths[0];
-  if (scene.layers.planned && plan && number === 0) {
-    scene.trace(Array.from(plan.x, (x, i) => [x, plan.y[i]]));
-    g.setLineDash([7, 6]);
-    g.lineWidth = 2;
-    g.strokeStyle = color("planned");
-    g.stroke();
-    g.setLineDash([]);
-  }
+  if (scene.layers.planned && number === 0) drawPlan(scene, run, run.plan(t));
   if (scene.layers.trail) drawTrail(scene, run, number, t);
   if (!scene.layers.driven) return;
   const x = run.values("vehicle.pose.x"), y = run.values("vehicle.pose.y");

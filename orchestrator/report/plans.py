@@ -1,0 +1,61 @@
+"""What the controller has in mind over time: planned path, slot it found, pose it wants to reach."""
+
+import re
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from orchestrator.geometry import place, pose_at, sample_path
+from orchestrator.recording import Recording
+from orchestrator.report.payload import Arrays
+from orchestrator.slave import Array
+
+MOST_PLANS = 60
+PARTS = re.compile(r"controller\.(path|.*\bmove|.*\bslot|.*\bcorner_b|.*\btarget)\.")
+OPEN_DEPTH = 5.5
+"""Drawn depth [m] of a slot whose end the sensors have not seen."""
+Point = tuple[float, float]
+
+
+def plans_of(recording: Recording, arrays: Arrays, origin: Point) -> list[dict[str, Any]]:
+    """Return the plans with the time from which each held, positions less ``origin``; the last ones if many."""
+    names = [name for name in recording.signals if PARTS.match(name)]
+    if not names or not len(recording.t):
+        return []
+    table = np.column_stack([recording.signals[name] for name in names])
+    same = (table[1:] == table[:-1]) | (np.isnan(table[1:]) & np.isnan(table[:-1]))
+    changes = np.flatnonzero(~same.all(axis=1)) + 1
+    found = []
+    for row in [0, *changes.tolist()][-MOST_PLANS:]:
+        values = recording.values_at("controller", row)
+        plan: dict[str, Any] = {"t": float(recording.t[row])}
+        points = sample_path(values) - origin
+        plan["x"], plan["y"] = arrays.add(points[:, 0]), arrays.add(points[:, 1])
+        slot, target = found_slot(values), wanted_pose(values)
+        if slot is not None:
+            plan["slot"] = np.round(slot - origin, 4).tolist()
+        if target is not None:
+            plan["target"] = [target[0] - origin[0], target[1] - origin[1], target[2]]
+        found.append(plan)
+    return found
+
+
+def found_slot(values: Mapping[str, float]) -> Array | None:
+    """Return the corners (4, 2) [m] of the slot a parking assist has chosen; None if it has none.
+
+    Corner A is the edge passed first, x runs along the road to corner B, the slot lies to the right
+    (``side`` 0) or to the left.
+    """
+    if not values.get("apa.slot.kind", 0.0) > 0.0:
+        return None
+    length, out = values["apa.slot.length"], values["apa.slot.b_out"]
+    depth = min(values["apa.slot.depth"], OPEN_DEPTH)
+    mirror = -1.0 if values["apa.slot.side"] > 0.0 else 1.0
+    corners = np.array([[0.0, 0.0], [length, out], [length, -depth], [0.0, -depth]]) * np.array([1.0, mirror])
+    return place(corners, *pose_at(values, "apa.slot.a"))
+
+
+def wanted_pose(values: Mapping[str, float]) -> tuple[float, float, float] | None:
+    """Return the pose a parking assist wants to park at; None if it has no slot."""
+    return pose_at(values, "apa.target") if values.get("apa.slot.kind", 0.0) > 0.0 else None

@@ -1,0 +1,76 @@
+"""What the page draws of the controller's intentions, against the controller's own geometry."""
+
+import math
+
+import numpy as np
+import pytest
+
+from controller_fmu.apa.move import Move, Piece, end_of
+from controller_fmu.apa.slot import Kind, Side
+from modelkit.vocabulary import Pose
+from orchestrator.geometry import sample_path
+from orchestrator.load_scenario import load_scenario
+from orchestrator.report.payload import Arrays
+from orchestrator.report.plans import found_slot, plans_of, wanted_pose
+from orchestrator.report.run_data import ribbons_of
+from orchestrator.session import run_scenario
+
+
+@pytest.fixture(scope="module")
+def recording():
+    return run_scenario(load_scenario("apa-parallel")).recording
+
+
+@pytest.mark.parametrize("direction", [1, -1])
+def test_a_sampled_move_ends_where_the_controller_says(direction):
+    pieces = (Piece(1.5, 0.0, 0.15), Piece(2.0, 0.15, 0.15), Piece(1.0, 0.15, -0.1), Piece(0.5, 0.0, 0.0))
+    start = Pose(3.0, -2.0, 0.7)
+    values = {"apa.move.direction": float(direction)}
+    values |= {f"apa.move.start.{axis}": value for axis, value in start._asdict().items()}
+    for number, piece in enumerate(pieces, start=1):
+        for name, value in zip(("length", "start_curvature", "end_curvature"), piece, strict=True):
+            values[f"apa.move.pieces[{number}].{name}"] = value
+    points = sample_path(values, 0.02)
+    end = end_of(Move(start, direction, (*pieces, *(Piece(),) * 3)))
+    assert points[0] == pytest.approx([start.x, start.y])
+    assert points[-1] == pytest.approx([end.x, end.y], abs=1e-4)
+
+
+@pytest.mark.parametrize(("side", "mirror"), [(Side.RIGHT, 1.0), (Side.LEFT, -1.0)])
+def test_a_found_slot_lies_on_its_side_of_the_road(side, mirror):
+    heading = 0.3
+    values = {"apa.slot.kind": float(Kind.PARALLEL), "apa.slot.side": float(side), "apa.slot.length": 6.0}
+    values |= {"apa.slot.b_out": 0.1, "apa.slot.depth": 2.2}
+    values |= {"apa.slot.a.x": 4.0, "apa.slot.a.y": 5.0, "apa.slot.a.heading": heading}
+    along = np.array([math.cos(heading), math.sin(heading)])
+    out = mirror * np.array([-math.sin(heading), math.cos(heading)])
+    a = np.array([4.0, 5.0])
+    expected = [a, a + 6.0 * along + 0.1 * out, a + 6.0 * along - 2.2 * out, a - 2.2 * out]
+    np.testing.assert_allclose(found_slot(values), expected, atol=1e-12)
+
+
+def test_no_slot_no_pose_no_path():
+    assert found_slot({"apa.slot.kind": 0.0}) is None
+    assert wanted_pose({}) is None
+    assert len(sample_path({})) == 0
+
+
+def test_plans_follow_the_run(recording):
+    arrays = Arrays()
+    plans = plans_of(recording, arrays, (0.0, 0.0))
+    assert "slot" not in plans[0]
+    last = plans[-1]
+    assert last["target"][1] == pytest.approx(recording.signals["vehicle.pose.y"][-1], abs=0.05)
+    assert last["target"][2] == pytest.approx(recording.signals["vehicle.pose.heading"][-1], abs=0.01)
+    assert len(last["slot"]) == 4
+    assert [plan["t"] for plan in plans] == sorted(plan["t"] for plan in plans)
+    assert max(arrays.lengths) > 20
+
+
+def test_every_changing_mode_is_a_ribbon_once(recording):
+    ribbons = ribbons_of([recording])
+    assert ribbons[0] == "controller.phase"
+    assert "controller.apa.mode" in ribbons
+    shorts = [name.partition(".")[2] for name in ribbons]
+    assert len(shorts) == len(set(shorts))
+    assert "controller.hsic.stage" not in ribbons

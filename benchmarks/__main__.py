@@ -12,7 +12,7 @@ def main(names: list[str]) -> int:
     folder = Path(__file__).parent
     found = sorted(path.stem for path in folder.glob("bench_*.py"))
     chosen = [name for name in found if not names or name.removeprefix("bench_") in names or name in names]
-    print(f"{platform.python_implementation()} {platform.python_version()}, {os.cpu_count()} cores, {platform.machine()}")
+    print(f"Python {platform.python_version()}, {os.cpu_count()} cores, {platform.machine()}")
     failed = 0
     for name in chosen:
         print(f"\n== {name.removeprefix('bench_')}", flush=True)

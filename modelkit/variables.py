@@ -65,7 +65,7 @@ def constructor(cls: type[Any], value: Any = None) -> Callable[[Sequence[Any]], 
         return name
 
     expression, _ = constructor_source(cls() if value is None else value, name_of, "v")
-    function: Callable[[Sequence[Any]], Any] = eval(f"lambda v: {expression}", scope)  # noqa: S307
+    function: Callable[[Sequence[Any]], Any] = eval(f"lambda v: {expression}", scope)
     return function
 
 

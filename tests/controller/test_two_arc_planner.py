@@ -1,6 +1,7 @@
 """The two-arc path against its own definition: tangency, ends, radii, and eq. (9) and Table 2 of Guo 2015."""
 
 import math
+from itertools import pairwise
 
 import pytest
 from hypothesis import assume, given
@@ -97,7 +98,7 @@ def test_way_to_the_end_is_the_integral_along_the_path(start: Pose, radius: floa
     count = 4000
     xs = [start.x * k / count for k in range(count + 1)]
     points = [(x, reference_at(path, x, 0).y) for x in xs]
-    length = sum(math.dist(p, q) for p, q in zip(points, points[1:], strict=False))
+    length = sum(math.dist(p, q) for p, q in pairwise(points))
     assert distance_to_end(path, reference_at(path, start.x, 0)) == pytest.approx(length, rel=1e-5)
 
 

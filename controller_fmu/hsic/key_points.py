@@ -25,8 +25,8 @@ class KeyPoints(NamedTuple):
 def ready_point(slot: HsicSlot, wheelbase: float, radius: float) -> Pose:
     """Return P1: parallel, ``ready_gap`` beside the neighbour, tail level with the slot's front end.
 
-    At P4 the car stands ``rear_gap`` ahead of the slot's rear end. Where tail-level is too near for two arcs of ``radius``
-    (S^2 + H^2 < 4 H R) the point lies as far ahead as they need.
+    At P4 the car stands ``rear_gap`` ahead of the slot's rear end. Where tail-level is too near for
+    two arcs of ``radius`` (S^2 + H^2 < 4 H R) the point lies as far ahead as they need.
     """
     y = slot.ready_gap + 0.5 * (slot.slot_width + slot.width)
     x = slot.slot_length - slot.rear_gap

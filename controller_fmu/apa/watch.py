@@ -18,6 +18,8 @@ STRAIGHTEN = int(Step.STRAIGHTEN)
 PARK = int(Gear.PARK)
 NEUTRAL = int(Gear.NEUTRAL)
 NONE = Reason.NONE.value
+PULLED = 0.3
+"""The wheel is this far [rad] from what its rate explains and goes the other way: the driver turns it."""
 SETTLING = 0.3
 """The driver's pedal and selector are looked at this long [s] after the assist took over."""
 
@@ -59,6 +61,7 @@ def watch(
     angle = inputs.steering_wheel_angle
     wheel = move_towards(state.wheel, request, params.steering_wheel_rate * dt) if driving else angle
     off = abs(wheel - angle) > params.limit.wheel_lag and driving
+    pulled = abs(wheel - angle) > PULLED and driving
     against = (angle - state.angle) * (request - angle) < 0.0
     dx = inputs.odometry.x - state.pose.x
     dy = inputs.odometry.y - state.pose.y
@@ -75,7 +78,7 @@ def watch(
         blind=state.blind + dt_ns if not _all_heard(inputs, params.apa) else 0,
         frozen=state.frozen + dt_ns if unmoved else 0,
         lag=state.lag + dt_ns if off and not against and step == DRIVE else 0,
-        away=state.away + dt_ns if off and against else 0,
+        away=state.away + dt_ns if pulled and against else 0,
         running=state.running + dt_ns if driving else state.running,
         wheel=wheel,
         angle=angle,

@@ -1,95 +1,219 @@
 """Whole runs as machine code: many at once, without Python in between and without the interpreter's lock.
 
-The text of a run comes from ``batch_source``; the models are made compilable by ``compiled``. The
-machine code is kept in ``fmus/dist/cache`` under a hash of every source it is made from, because
-numba's own cache does not notice an edit in another file.
+The models' code is the native FMU's, made by ``native_ir`` from the same Python source; the exchange
+is ``native/batch.c``, told by tables what is connected to what. The tables are made from the types:
+an output and an input of the same name are connected. Only :class:`Ending` and :class:`Kept` name
+signals. Libraries are kept in ``fmus/dist/lib`` under a hash of all they are made from.
 """
 
+import ctypes
 import hashlib
-import importlib.util
 import os
-import platform
-import sys
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
-from importlib.metadata import version
+import tempfile
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal, NamedTuple
 
-import numba
-from numba import types
+import numpy as np
+from numpy.typing import NDArray
 
-from fmus.batch_source import Ending, Kept, run_source
-from fmus.compiled import OPTIONS, make_compilable
-from fmus.sources import source_hash
+from fmus.native_ir import intermediate_code, object_code
+from fmus.platforms import CODE, NATIVE, PLATFORMS, WARNINGS, Target, compile_c, host
 from modelkit.model import Model
+from modelkit.variables import Variable, variables
 
-CACHE = Path(__file__).parent / "dist" / "cache"
-ROWS = types.void(
-    types.Array(types.float64, 2, "C", readonly=True),
-    types.Array(types.int64, 2, "C", readonly=True),
-    types.float64[:, ::1],
+LIBRARIES = Path(__file__).parent / "dist" / "lib"
+How = Literal["last", "largest", "greatest", "smallest", "travel"]
+HOW: tuple[How, ...] = ("last", "largest", "greatest", "smallest", "travel")
+FIRST_KEPT = 2
+"""A row begins with the end (0 stop time, 1 standstill, 2 aborted) and its time [ns]."""
+Doubles = NDArray[np.float64]
+Rows = Callable[[Doubles, NDArray[np.int64], Doubles], None]
+"""``rows(parameters, times, out)``: one run for each line of the three arrays; see :func:`compiled_rows`."""
+Pointer, Long = ctypes.c_void_p, ctypes.c_int64
+
+
+class Kept(NamedTuple):
+    """One number kept of a run."""
+
+    how: How
+    """``last``; ``largest`` absolute value, signed; ``greatest``; ``smallest``; ``travel``: sum of absolute changes."""
+    signal: str
+    """An output, ``vehicle.speed``; or an input as its model saw it."""
+
+
+class Ending(NamedTuple):
+    """A run is over when a mode has a final value and a speed has been small for a time."""
+
+    mode: str
+    final: tuple[int, ...]
+    speed: str
+    still: float
+    """Largest absolute speed that counts as standing."""
+    time_ns: int
+
+
+def _structure(name: str, **fields: Any) -> Any:
+    return type(name, (ctypes.Structure,), {"_fields_": list(fields.items())})
+
+
+ModelC = _structure(
+    "ModelC", initialize=Pointer, step=Pointer, starts=Pointer, parameters=Long, inputs=Long, outputs=Long, states=Long
 )
-HEAD = '"""Made by fmus/compiled_batch.py; safe to delete."""\n\n\n'
-LOOP = """
-
-def rows(p, times, out):
-    for number in range(out.shape[0]):
-        run(p[number], times[number], out[number])
-"""
-Rows = Callable[[Any, Any, Any], None]
-"""``rows(p, times, out)``: one run for each line of the three arrays, see ``run_source``; holds no lock."""
+LinkC = _structure("LinkC", source=Long, source_place=Long, target=Long, target_place=Long)
+SignalC = _structure("SignalC", model=Long, place=Long, input=Long)
+KeptC = _structure("KeptC", how=Long, signal=SignalC)
+BatchC = _structure(
+    "BatchC",
+    models=Pointer,
+    links=Pointer,
+    kept=Pointer,
+    model_count=Long,
+    link_count=Long,
+    kept_count=Long,
+    mode=SignalC,
+    speed=SignalC,
+    final=ctypes.c_uint64,
+    still=ctypes.c_double,
+    still_ns=Long,
+)
 
 
 def compiled_rows(models: Mapping[str, Model], ending: Ending | None, kept: Sequence[Kept]) -> Rows:
-    """Return the compiled function, from the cache if no source has changed. Compiles for some ten seconds otherwise.
+    """Return the compiled runs.
 
-    Raises ``KeyError`` for a kept signal that no model has.
+    ``parameters``: for each run those of all models, one after the other, as doubles. ``times``: step
+    [ns], stop [ns], then the decimation of each model. ``out`` receives the end, its time [ns] and ``kept``.
+    Raises ``KeyError`` for a signal that does not exist, ``TypeError`` if connected types differ or a model
+    cannot be compiled, ``RuntimeError`` where there is no compiler.
     """
-    scope: dict[str, Any] = {}
-    text = HEAD + run_source(models, ending, kept, scope) + LOOP
-    for model in models.values():
-        make_compilable(model.package)
-    name = f"apa_rows_{_digest(text, models)}"
-    with _alone(name):
-        module = _module(name, text, scope)
-        module.run = numba.njit(forceinline=True, **OPTIONS)(module.run)
-        compiled: Rows = numba.njit(ROWS, cache=True, **OPTIONS)(module.rows)
-    return compiled
+    tables = _Tables(models, ending, kept)
+    library = ctypes.CDLL(str(_library("batch", ("batch.c",), b"", "")))
+    library.batch_rows.restype = Long
+    library.batch_rows.argtypes = [Pointer, Long, Pointer, Pointer, Pointer]
+
+    def rows(parameters: Doubles, times: NDArray[np.int64], out: Doubles) -> None:
+        """Run all; no lock is held meanwhile."""
+        count = len(parameters)
+        shapes = (
+            (parameters, tables.width, np.float64),
+            (times, 2 + len(models), np.int64),
+            (out, 2 + len(kept), np.float64),
+        )
+        for array, width, kind in shapes:
+            if array.shape != (count, width) or array.dtype != kind or not array.flags.c_contiguous:
+                raise ValueError(f"{array.dtype} {array.shape}: expected {count} lines of {width} in C order")
+        pointers = (array.ctypes.data for array in (parameters, times, out))
+        if library.batch_rows(tables.address, count, *pointers):
+            raise MemoryError
+
+    return rows
 
 
-@contextmanager
-def _alone(name: str) -> Iterator[None]:
-    """Let one process compile at a time, where the system has file locks; the others find it in the cache."""
-    CACHE.mkdir(parents=True, exist_ok=True)
-    with (CACHE / f"{name}.lock").open("w", encoding="ascii") as lock:
-        if sys.platform != "win32":
-            import fcntl
+class _Tables:
+    """The C structures of a batch, and all memory they point to."""
 
-            fcntl.flock(lock, fcntl.LOCK_EX)
-        yield
+    def __init__(self, models: Mapping[str, Model], ending: Ending | None, kept: Sequence[Kept]) -> None:
+        self._held: list[Any] = []
+        self._places: dict[str, Any] = {}
+        for number, (owner, model) in enumerate(models.items()):
+            for is_input, cls in ((1, model.inputs), (0, model.outputs)):
+                for place, variable in enumerate(variables(cls)):
+                    self._places[f"{owner}.{variable.name}"] = (number, place, is_input)
+        links = connections(models)
+        notes = [KeptC(HOW.index(item.how), self._signal(item.signal)) for item in kept]
+        parts = [self._model(model) for model in models.values()]
+        end = ending or Ending("", (), "", 0.0, 0)
+        found = [self._signal(name) if ending else SignalC(0, 0, 0) for name in (end.mode, end.speed)]
+        self._batch = BatchC(
+            self._array(ModelC, parts),
+            self._array(LinkC, [LinkC(*link) for link in links]),
+            self._array(KeptC, notes),
+            len(parts),
+            len(links),
+            len(notes),
+            *found,
+            sum(1 << value for value in end.final),
+            end.still,
+            end.time_ns,
+        )
+        self.address = ctypes.addressof(self._batch)
+        self.width = sum(part.parameters for part in parts)
+
+    def _signal(self, name: str) -> Any:
+        return SignalC(*self._places[name])
+
+    def _model(self, model: Model) -> Any:
+        library = ctypes.CDLL(str(model_library(model)))
+        starts = np.array([float(item.start) for item in variables(model.inputs)])
+        self._held += [library, starts]
+        functions = (ctypes.cast(function, Pointer) for function in (library.batch_initialize, library.batch_step))
+        sizes = (len(variables(cls)) for cls in (model.params, model.inputs, model.outputs, model.state))
+        return ModelC(*functions, starts.ctypes.data, *sizes)
+
+    def _array(self, kind: Any, items: list[Any]) -> int:
+        held = (kind * max(len(items), 1))(*items)
+        self._held.append(held)
+        return ctypes.addressof(held)
 
 
-def _digest(text: str, models: Mapping[str, Model]) -> str:
-    here = Path(__file__).parent
-    own = "".join(path.read_text() for path in sorted(here.glob("compiled*.py")))
-    tools = f"numba {version('numba')}, llvmlite {version('llvmlite')}, python {platform.python_version()}"
-    parts = [text, own, tools, *(source_hash(model) for model in models.values())]
-    return hashlib.sha256("\0".join(parts).encode()).hexdigest()[:32]
+def connections(models: Mapping[str, Model]) -> list[tuple[int, int, int, int]]:
+    """Return (source model, output, target model, input) of equal names. Raises ``TypeError`` if types differ."""
+    found = []
+    owners = list(models)
+    for target, receiver in enumerate(models.values()):
+        for place, wanted in enumerate(variables(receiver.inputs)):
+            source = _source(wanted, target, list(models.values()))
+            if source is not None:
+                number, output, kind = source
+                if kind is not wanted.kind:
+                    raise TypeError(f"{owners[number]}.{wanted.name} and {owners[target]}.{wanted.name} differ in type")
+                found.append((number, output, target, place))
+    return found
 
 
-def _module(name: str, text: str, scope: Mapping[str, Any]) -> Any:
-    """Return ``text`` as a module with a file of its own, which numba's cache asks for."""
-    path = CACHE / f"{name}.py"
+def _source(wanted: Variable, target: int, models: list[Model]) -> tuple[int, int, type] | None:
+    for number, model in enumerate(models):
+        for place, offered in enumerate(variables(model.outputs)):
+            if number != target and offered.name == wanted.name:
+                return number, place, offered.kind
+    return None
+
+
+def model_library(model: Model) -> Path:
+    """Return the library with the two functions of ``model``, made anew only if a source has changed."""
+    maker = (Path(__file__).parent / "native_ir.py").read_bytes()
+    digest = hashlib.sha256(maker + intermediate_code(model).encode()).digest()
+    make = partial(object_code, model, _target().triple)
+    return _library(model.name, ("batch_model.c",), digest, "model.o", make)
+
+
+def _target() -> Target:
+    targets = PLATFORMS[host()].targets
+    return targets[-1 if os.name == "posix" and os.uname().machine == "arm64" else 0]
+
+
+def _library(
+    name: str, sources: Sequence[str], more: bytes, object_file: str, make: Callable[[], bytes] = lambda: b""
+) -> Path:
+    target = _target()
+    objects = (object_file,) if object_file else ()
+    options = (*WARNINGS, *CODE, *sources, *objects, *target.options)
+    digest = hashlib.sha256(" ".join((target.compiler, *options)).encode() + more)
+    for source in sources:
+        digest.update((NATIVE / source).read_bytes())
+    path = LIBRARIES / f"{name}-{digest.hexdigest()[:16]}{PLATFORMS[host()].suffix}"
     if not path.exists():
-        part = path.with_name(f"{path.name}.{os.getpid()}.part")
-        part.write_text(text)
-        part.replace(path)
-    spec = importlib.util.spec_from_file_location(name, path)
-    assert spec is not None
-    assert spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    sys.modules[name] = module
-    spec.loader.exec_module(module)
-    vars(module).update(scope)
-    return module
+        path.parent.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryDirectory(prefix="apa-batch-") as directory:
+            here = Path(directory)
+            for source in sources:
+                (here / source).write_bytes((NATIVE / source).read_bytes())
+            for item in objects:
+                (here / item).write_bytes(make())
+            compile_c(here, target.compiler, path.name, options)
+            part = path.with_name(f"{path.name}.{os.getpid()}.part")
+            part.write_bytes((here / path.name).read_bytes())
+            part.replace(path)
+    return path

@@ -5,9 +5,8 @@ from functools import lru_cache
 
 import numpy as np
 
-from fmus.batch_source import Ending
-from fmus.batch_source import Kept as KeptSignal
-from fmus.compiled_batch import Rows, compiled_rows
+from fmus.compiled_batch import Ending, Rows, compiled_rows
+from fmus.compiled_batch import Kept as KeptSignal
 from modelkit.variables import variables
 from orchestrator.endings import STANDSTILL_SPEED, STANDSTILL_TIME_NS, final_phases
 from orchestrator.models import MODELS

@@ -69,8 +69,9 @@ def choose_task(scenario: Scenario, job: Job, fmus: str | None) -> Task:
         files = {name: str(path) for name, path in fmu_files(fmus).items()}
         return Task(partial(run_recorded, kind=fmus, files=files), f"{fmus} FMUs", RECORDED_CHUNK, False)
     why = why_not_compiled(scenario, job.kept)
-    if not why and find_spec("numba") is None:
-        why = "numba is not installed"
+    missing = [name for name in ("numba", "ziglang") if find_spec(name) is None]
+    if not why and missing:
+        why = f"{' and '.join(missing)} not installed"
     if why:
         work = partial(run_recorded, kind="none", files=None)
         return Task(

@@ -5,7 +5,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 import pytest
 
-from fmus.batch_source import Kept, run_source
+from fmus.compiled_batch import Kept, compiled_rows, connections
 from modelkit.signal import Signal
 from orchestrator.fmu_files import fmu_files
 from orchestrator.models import MODELS
@@ -13,7 +13,7 @@ from orchestrator.session import run_scenario
 from orchestrator.summary import summarize
 from orchestrator.sweep.batch import run_batch
 from orchestrator.sweep.fmu_runs import run_recorded
-from orchestrator.sweep.job import Chunk, chunk_scenario
+from orchestrator.sweep.job import Chunk, arrays, chunk_scenario
 from orchestrator.sweep.kept import row_of, why_not_compiled
 from orchestrator.sweep.verdict import OUTCOMES, judge
 
@@ -120,9 +120,9 @@ def test_faults_go_through_the_python_master(bind):
     assert rows[0, 1] != rows[1, 1]
 
 
-def test_the_text_of_a_run_names_what_it_does_not_know():
+def test_a_signal_that_does_not_exist():
     with pytest.raises(KeyError, match=r"vehicle\.sped"):
-        run_source(MODELS, None, [Kept("last", "vehicle.sped")], {})
+        compiled_rows(MODELS, None, [Kept("last", "vehicle.sped")])
 
 
 class Wrong(NamedTuple):
@@ -132,4 +132,14 @@ class Wrong(NamedTuple):
 def test_connected_types_must_agree():
     models = {**MODELS, "controller": MODELS["controller"]._replace(outputs=Wrong)}
     with pytest.raises(TypeError, match=r"controller\.prompt and vehicle\.prompt differ in type"):
-        run_source(models, None, [], {})
+        connections(models)
+
+
+def test_arrays_of_another_shape_are_refused(bind):
+    _, _, job, chunk = bind()
+    rows = compiled_rows(MODELS, None, [Kept("last", "vehicle.speed")])
+    parameters, times = arrays(job, chunk)
+    with pytest.raises(ValueError, match="expected 192 lines of 3 in C order"):
+        rows(parameters, times, np.empty((192, 4)))
+    with pytest.raises(ValueError, match="in C order"):
+        rows(np.asfortranarray(parameters), times, np.empty((192, 3)))

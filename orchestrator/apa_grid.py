@@ -1,0 +1,195 @@
+"""The grid study of the parking assist: cases, how one is set up, driven and judged.
+
+Every case is made from its number alone, so that a failing run is repeated by its number.
+"""
+
+import math
+import random
+from collections.abc import Mapping
+from typing import Any, NamedTuple
+
+from controller_fmu.apa.slot import PARALLEL, PERPENDICULAR
+from orchestrator.apa_loop import Loop
+
+BODIES = ("kinematic", "double_track")
+BODY = {"kinematic": 0, "double_track": 2}
+CARS: dict[str, tuple[float, float, float, float, float]] = {
+    "guo2015": (2.405, 0.80, 0.60, 1.65, 4.166),
+    "zhang2022": (2.62, 0.966, 0.85, 1.82, 4.8),
+    "commonroad1": (2.579, 0.88, 0.839, 1.674, 5.0),
+}
+"""Wheelbase, front overhang, rear overhang, width, turning radius of the rear axle's middle [m]."""
+RATIO = 19.0
+EXTRA = {PARALLEL: (0.0, 0.4, 0.8, 1.6), PERPENDICULAR: (0.0, 0.3, 0.8)}
+"""Length (width) over the shortest of ISO 16787 [m]."""
+BESIDE = (0.5, 1.0, 1.5)
+HEADINGS = (-5.0, 0.0, 5.0)
+SPEEDS = (1.0, 2.5, 20.0 / 3.6)
+STOP = 150.0
+
+
+class Case(NamedTuple):
+    """One run of the grid."""
+
+    number: int
+    car: str
+    kind: int
+    side: int
+    """1 right, -1 left."""
+    extra: float
+    beside: float
+    """Lateral distance to the neighbours where the car comes nearest to them [m]."""
+    heading: float
+    """Against the road [rad], positive away from the slot."""
+    body: str
+    speed: float
+    """Of the driver during the search [m/s]."""
+    length: float
+    """Of the slot along the road [m]."""
+
+
+class Result(NamedTuple):
+    """What came of it."""
+
+    case: Case
+    mode: int
+    reason: int
+    lateral: float
+    """Final errors against the true slot [m, rad]."""
+    heading: float
+    shifts: int
+    parking_time: float
+    nearest: float
+    """Smallest clearance of the whole run [m]."""
+    corner_a: float
+    """Distances of the corners found from the true ones [m]; NaN if no slot was found."""
+    corner_b: float
+    along: float
+    """x of the rear axle beyond corner B when the car stood to plan [m]; NaN if it did not."""
+
+
+def cases() -> list[Case]:
+    """Return the whole grid; what is drawn by lot is drawn from the case's number."""
+    found: list[Case] = []
+    for car, (wheelbase, front, rear, width, _) in CARS.items():
+        for kind in (PARALLEL, PERPENDICULAR):
+            for side in (1, -1):
+                for extra in EXTRA[kind]:
+                    for beside in BESIDE:
+                        for degrees in HEADINGS:
+                            for body in BODIES:
+                                number = len(found)
+                                speed = SPEEDS[random.Random(number).randrange(len(SPEEDS))]
+                                length = _shortest(kind, wheelbase + front + rear, width) + extra
+                                heading = math.radians(degrees)
+                                found.append(
+                                    Case(number, car, kind, side, extra, beside, heading, body, speed, length)
+                                )
+    return found
+
+
+def parameters(case: Case) -> tuple[dict[str, Any], dict[str, Any]]:
+    """Return (vehicle, controller) parameters of a case."""
+    wheelbase, front, rear, width, radius = CARS[case.car]
+    lot = random.Random(1000 + case.number)
+    lock = RATIO * math.atan(wheelbase / radius)
+    car = {"wheelbase": wheelbase, "front_overhang": front, "rear_overhang": rear, "width": width}
+    vehicle: dict[str, Any] = {**car, "body": BODY[case.body], "steering.ratio": RATIO, "steering.angle_limit": lock}
+    controller: dict[str, Any] = {"system": 5, "wheelbase": wheelbase, "steering_ratio": RATIO}
+    controller |= {"steering_wheel_limit": lock, "steering_wheel_rate": math.radians(570.0)}
+    controller |= {f"apa.{name}": car[name] for name in ("front_overhang", "rear_overhang", "width")}
+    for number, (x, y) in enumerate(mounts(wheelbase + front, -rear, 0.5 * width), start=1):
+        vehicle |= {f"ultrasonic.mounts[{number}].x": x, f"ultrasonic.mounts[{number}].y": y}
+        controller |= {f"apa.sensors.mounts[{number}].x": x, f"apa.sensors.mounts[{number}].y": y}
+    vehicle |= {"ultrasonic.noise": 0.01, "ultrasonic.dropout": 0.01, "ultrasonic.seed": case.number + 1}
+    vehicle |= {"odometry.perfect": False, "odometry.radius_error": lot.uniform(-0.005, 0.005), "odometry.tick": 0.02}
+    vehicle |= {"odometry.steering_offset": lot.uniform(-0.001, 0.001), "odometry.steering_resolution": 0.001}
+    vehicle |= {"driver.apa_switch_time": 0.5, "driver.profile[1].speed": case.speed}
+    return vehicle | _scene(case, front + rear + wheelbase, width), controller
+
+
+def mounts(front: float, rear: float, half: float) -> list[tuple[float, float]]:
+    """Return where the twelve sensors sit on a car's outline: 4 front, 4 rear, 2 left, 2 right."""
+    return [
+        (front - 0.1, half - 0.15), (front, 0.25), (front, -0.25), (front - 0.1, 0.15 - half),
+        (rear + 0.1, half - 0.15), (rear, 0.25), (rear, -0.25), (rear + 0.1, 0.15 - half),
+        (front - 0.4, half), (rear + 0.4, half), (front - 0.4, -half), (rear + 0.4, -half),
+    ]  # fmt: skip
+
+
+def _shortest(kind: int, length: float, width: float) -> float:
+    if kind == PERPENDICULAR:
+        return width + 1.2
+    return length + 1.0 if length < 4.0 else 1.25 * length
+
+
+def _scene(case: Case, length: float, width: float) -> dict[str, Any]:
+    """Return two neighbours, behind a parallel slot a wall 0.4 m deeper than the car is wide, and the start."""
+    along, deep = (4.4, 1.8) if case.kind == PARALLEL else (1.8, 4.6)
+    things = [(-along, 0.0, -deep, 0.0), (case.length, case.length + along, -deep, 0.0)]
+    if case.kind == PARALLEL:
+        things.append((-12.0, case.length + 12.0, -width - 1.4, -width - 0.4))
+    scene: dict[str, Any] = {}
+    for number, (x0, x1, y0, y1) in enumerate(things, start=1):
+        name = f"scene.boxes[{number}]."
+        scene |= {name + "x": 0.5 * (x0 + x1), name + "y": 0.5 * (y0 + y1) * case.side}
+        scene |= {name + "length": x1 - x0, name + "width": y1 - y0}
+    start = -along - 5.0
+    nearest = -along if case.heading > 0.0 else case.length + 3.0
+    y = case.beside + 0.5 * width + (start - nearest) * math.tan(case.heading)
+    if case.heading > 0.0:
+        y = case.beside + 0.5 * width + (start - nearest) * math.tan(case.heading) + 0.5 * length * math.sin(case.heading)
+    return scene | {"start.x": start, "start.y": case.side * y, "start.heading": case.side * case.heading}
+
+
+def drive(case: Case, loop: Loop) -> Result:
+    """Return the result of one case."""
+    vehicle, controller = parameters(case)
+    nearest, found, planned = math.inf, (math.nan, math.nan), math.nan
+    last: Mapping[str, float] = {}
+    for row in loop.run(vehicle, controller, STOP):
+        nearest = min(nearest, row["vehicle.clearance"])
+        if row["controller.apa.mode"] == 3 and math.isnan(planned):
+            planned = row["vehicle.pose.x"] - case.length
+            found = _corner_errors(case, row)
+        last = row
+    wheelbase, front, rear, width, _ = CARS[case.car]
+    if case.kind == PARALLEL:
+        lateral = last["vehicle.pose.y"] + case.side * 0.5 * width
+        turned = last["vehicle.pose.heading"]
+    else:
+        lateral = last["vehicle.pose.x"] - 0.5 * case.length
+        turned = last["vehicle.pose.heading"] - case.side * 0.5 * math.pi
+    return Result(
+        case,
+        int(last["controller.apa.mode"]),
+        int(last["controller.reason"]),
+        lateral,
+        math.remainder(turned, 2.0 * math.pi),
+        int(last["controller.shifts"]),
+        last["controller.apa.parking_time"],
+        nearest,
+        found[0],
+        found[1],
+        planned,
+    )
+
+
+def _corner_errors(case: Case, row: Mapping[str, float]) -> tuple[float, float]:
+    """Return the distances of A and B as found from the true corners, odometry error included."""
+    a = math.hypot(row["controller.apa.slot.a.x"], row["controller.apa.slot.a.y"])
+    b = math.hypot(row["controller.apa.corner_b.x"] - case.length, row["controller.apa.corner_b.y"])
+    return a, b
+
+
+def is_within_gbt(result: Result) -> bool:
+    """Return whether the car is parked within GB/T 41630: heading, lateral position, shifts, no contact."""
+    most = 8 if result.case.kind == PARALLEL else 7
+    parked = result.mode == 6 and result.shifts <= most and result.nearest > 0.0
+    return parked and abs(result.lateral) <= 0.15 and abs(result.heading) <= math.radians(3.0)
+
+
+def is_within_house(result: Result) -> bool:
+    """Return whether the car is parked within the house limits."""
+    good = is_within_gbt(result) and result.shifts <= 3 and result.parking_time <= 60.0 and result.nearest >= 0.1
+    return good and abs(result.lateral) <= 0.05 and abs(result.heading) <= math.radians(1.0)

@@ -1,0 +1,149 @@
+"""Cost of a 1 ms step of each body, in CPython and compiled, beside CommonRoad's right-hand sides in Python.
+
+All in one process and thread, in turn, medians of CPU time. The first table steps bodies alone; CommonRoad's functions give
+derivatives only, which an integrator calls once to four times a step. The second steps the whole vehicle
+(driver, steering, drive, sensors, outputs) by 10 ms, its bodies with mass by 1 ms.
+"""
+
+import statistics
+import time
+from collections.abc import Callable
+from typing import Any
+
+import numba
+import numpy as np
+from vehiclemodels.init_mb import init_mb
+from vehiclemodels.parameters_vehicle2 import parameters_vehicle2
+from vehiclemodels.vehicle_dynamics_ks import vehicle_dynamics_ks
+from vehiclemodels.vehicle_dynamics_mb import vehicle_dynamics_mb
+from vehiclemodels.vehicle_dynamics_st import vehicle_dynamics_st
+
+from fmus.compiled import compiled_entries
+from fmus.flat_entry import sizes
+from modelkit.variables import flatten, with_values
+from modelkit.vocabulary import Pose, Prompt
+from vehicle_fmu import MODEL
+from vehicle_fmu.chassis import ChassisParams, Motion, RoadParams
+from vehicle_fmu.double_track import DoubleTrackParams, DoubleTrackState, step_double_track
+from vehicle_fmu.effort import Effort
+from vehicle_fmu.interface import VehicleInput, VehicleParams
+from vehicle_fmu.kinematic import move
+from vehicle_fmu.single_track import SingleTrackParams, SingleTrackState, step_single_track
+from vehicle_fmu.wheels import Wheel
+
+ROUNDS = 7
+WHEELBASE = 2.405
+CAR = (ChassisParams(), RoadParams(), SingleTrackParams(), DoubleTrackParams())
+MOVING = Motion(Pose(), 1.0, 0.0, 0.0)
+NAMES = ("kinematic", "single_track", "double_track")
+Rounds = dict[str, tuple[int, Callable[[int], Any]]]
+"""Name -> how many steps a round has, and the round."""
+
+
+def kinematic(n: int, pose: Any) -> Any:
+    """Return the pose after ``n`` steps of 1 ms."""
+    for _ in range(n):
+        pose = move(pose, 1.0, 1.0, 0.2, 0.2, 2.405, 0.001)
+    return pose
+
+
+def single(n: int, state: Any, effort: Any, chassis: Any, road: Any, p: Any) -> Any:
+    """Return the single track after ``n`` steps of 1 ms."""
+    for _ in range(n):
+        state = step_single_track(state, 0.2, effort, 2.405, chassis, p, road, 0.001)
+    return state
+
+
+def double(n: int, state: Any, effort: Any, chassis: Any, road: Any, p: Any) -> Any:
+    """Return the double track after ``n`` steps of 1 ms."""
+    for _ in range(n):
+        state = step_double_track(state, 0.2, effort, 2.405, chassis, p, road, 0.001)
+    return state
+
+
+def bodies(jit: Callable[[Any], Any], n: int) -> Rounds:
+    """Return the three bodies, their loops made by ``jit``."""
+    chassis, road, one, two = CAR
+    push = Effort(200.0, 0.0)
+    k, s, d = jit(kinematic), jit(single), jit(double)
+    four = DoubleTrackState(MOVING, (Wheel(1.0 / 0.344),) * 4)
+    return {
+        "kinematic": (n, lambda n: k(n, Pose())),
+        "single_track": (n, lambda n: s(n, SingleTrackState(MOVING), push, chassis, road, one)),
+        "double_track": (n, lambda n: d(n, four, push, chassis, road, two)),
+    }
+
+
+def commonroad(n: int) -> Rounds:
+    """Return CommonRoad's right-hand sides, in Python."""
+    car = parameters_vehicle2()
+    state = [0.0, 0.0, 0.05, 5.0, 0.0, 0.1, 0.0]
+    big = init_mb(state, car)
+    return {
+        "KS": (n, lambda n: [vehicle_dynamics_ks(state[:5], [0.0, 0.1], car) for _ in range(n)]),
+        "ST": (n, lambda n: [vehicle_dynamics_st(state, [0.0, 0.1], car) for _ in range(n)]),
+        "MB": (n, lambda n: [vehicle_dynamics_mb(list(big), [0.0, 0.1], car) for _ in range(n)]),
+    }
+
+
+def vehicles(step: Any, loop: Any, n: int) -> Rounds:
+    """Return the whole vehicle with each body, stepped ``n`` times 10 ms by ``loop``."""
+    inputs = VehicleInput(3.0, True, int(Prompt.FORWARD))
+    u = np.array([float(value) for value in flatten(inputs)])
+    found: Rounds = {}
+    for body, name in enumerate(NAMES):
+        p = np.array([float(value) for value in flatten(with_values(VehicleParams, {"body": body}))])
+        size = sizes(MODEL)
+        s, y = np.zeros(size["state"]), np.zeros(size["outputs"])
+        step.initialize(s, p, y)
+        found[name] = (n, lambda n, s=s, p=p, y=y: loop(step.step, s, u, p, y, n))  # type: ignore[misc]
+    return found
+
+
+def loop_python(step: Any, s: Any, u: Any, p: Any, y: Any, n: int) -> None:
+    """Step ``n`` times 10 ms."""
+    for _ in range(n):
+        step(s, u, p, y, 10_000_000)
+
+
+def medians(groups: dict[str, Rounds]) -> dict[str, float]:
+    """Return label -> microseconds a step, every round in turn."""
+    times: dict[str, list[float]] = {}
+    for rounds in groups.values():
+        for n, run in rounds.values():
+            run(n)  # compiles
+    for _ in range(ROUNDS):
+        for group, rounds in groups.items():
+            for name, (n, run) in rounds.items():
+                before = time.thread_time()
+                run(n)
+                times.setdefault(f"{group} {name}", []).append((time.thread_time() - before) / n * 1e6)
+    return {label: statistics.median(values) for label, values in times.items()}
+
+
+def main() -> None:
+    """Print both tables."""
+    entries = compiled_entries(MODEL)
+    jit: Callable[[Any], Any] = numba.njit(error_model="numpy")
+    found = medians(
+        {
+            "CPython": bodies(lambda function: function, 300),
+            "compiled": bodies(jit, 30_000),
+            "CommonRoad": commonroad(300),
+            "vehicle": vehicles(entries, jit(loop_python), 2_000),
+        }
+    )
+    print("one 1 ms step of a body [us]")
+    print(f"  {'':14}{'CPython':>10}{'compiled':>10}{'times real time':>18}{'CommonRoad RHS':>17}{'RHS / step':>12}")
+    for name, theirs in zip(NAMES, ("KS", "ST", "MB"), strict=True):
+        python, fast, rhs = found[f"CPython {name}"], found[f"compiled {name}"], found[f"CommonRoad {theirs}"]
+        ratio = f"{rhs / python:.2f} | {rhs / fast:.0f}"
+        print(f"  {name:14}{python:10.1f}{fast:10.3f}{1000.0 / fast:18.0f}{f'{theirs} {rhs:.1f}':>17}{ratio:>12}")
+    print("the whole vehicle, compiled, one communication step of 10 ms")
+    for name in NAMES:
+        cost = found[f"vehicle {name}"]
+        print(f"  {name:14}{cost:10.2f} us{1e4 / cost:12.0f} times real time")
+
+
+if __name__ == "__main__":
+    main()

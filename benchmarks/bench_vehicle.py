@@ -1,8 +1,8 @@
 """Cost of a 1 ms step of each body, in CPython and compiled, beside CommonRoad's right-hand sides in Python.
 
-All in one process and thread, in turn, medians of CPU time. The first table steps bodies alone; CommonRoad's functions give
-derivatives only, which an integrator calls once to four times a step. The second steps the whole vehicle
-(driver, steering, drive, sensors, outputs) by 10 ms, its bodies with mass by 1 ms.
+All in one process and thread, in turn, medians of CPU time. The first table steps bodies alone;
+CommonRoad gives derivatives only, which an integrator calls once to four times a step. The second table
+steps the whole vehicle (driver, steering, drive, sensors, outputs) by 10 ms, bodies with mass by 1 ms.
 """
 
 import statistics

@@ -87,6 +87,7 @@ def _planned(state: ZhangState, inputs: ControllerInput, params: ControllerParam
     path = plan(start, quintic.radius, limit)
     angle = frame.mirror * inputs.steering_wheel_angle / params.steering_ratio
     found = path.status == FOUND
+    reference = nearest(path, start) if found else state.reference
     phase = PATH_TRACKING if found else FAILED
     reason = NO_REASON if found else NO_PATH
     return ZhangState(
@@ -96,7 +97,7 @@ def _planned(state: ZhangState, inputs: ControllerInput, params: ControllerParam
         solved_ns=math.floor(params.zhang2022.mpc.period * 1e9),
         frame=frame,
         path=path,
-        reference=state.reference,
+        reference=reference,
         steering=Steering(angle, 0.0, 0, 0),
         set_speed=0.0,
         pid=state.pid,

@@ -1,0 +1,32 @@
+"""Every number that the reproduction of the HSIC paper promises."""
+
+from pathlib import Path
+
+import pytest
+
+from orchestrator.load_scenario import load_scenario
+from orchestrator.reproduce.result import Driven, Reproduction
+from orchestrator.reproduce.hsic import reproduce
+from orchestrator.session import run_scenario
+from orchestrator.summary import summarize
+
+
+def drive(name: str) -> Driven:
+    scenario = load_scenario(name)
+    ran = run_scenario(scenario)
+    return Driven(scenario, ran.recording, summarize(ran.recording, scenario, ran.wall_time))
+
+
+@pytest.fixture(scope="module")
+def reproduction(tmp_path_factory: pytest.TempPathFactory) -> Reproduction:
+    return reproduce(tmp_path_factory.mktemp("hsic"), drive)
+
+
+def test_every_stated_check_holds(reproduction: Reproduction) -> None:
+    asked = [row for row in reproduction.rows if row.limit is not None]
+    assert not [row for row in asked if not row.passed]
+    assert len(asked) == 4 * 3 + 3 + 1
+
+
+def test_figure_is_written(reproduction: Reproduction) -> None:
+    assert all(Path(figure).stat().st_size > 20_000 for figure in reproduction.figures)

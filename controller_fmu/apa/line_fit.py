@@ -53,7 +53,7 @@ def slope(first: Sums, second: Sums) -> float:
     w = _with_w(first) + _with_w(second)
     r = _with_r(first) + _with_r(second)
     b = 0.0
-    for _ in range(3):
+    for _ in range(6):
         b = (w - r * math.sqrt(1.0 + b * b)) / s
     return b
 

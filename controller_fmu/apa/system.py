@@ -103,7 +103,7 @@ def _later_reason(reason: int, state: ApaState, parking: Parking, found: SearchS
         return reason
     if state.mode == ASSIST or state.mode == TUNING:
         if has_failed(parking, params):
-            return Reason.TOO_MANY_SHIFTS.value if parking.plan.found else Reason.NO_PATH.value
+            return _no_way(parking)
         if abs(parking.tracked.lateral_error) > LOST:
             return Reason.LEFT_PATH.value
     if state.mode == SEARCH and found.way > params.apa.search.way:
@@ -111,8 +111,12 @@ def _later_reason(reason: int, state: ApaState, parking: Parking, found: SearchS
     if state.mode == APPEARS and state.waited_ns * 1e-9 > params.apa.guard.confirm:
         return Reason.TIMEOUT.value
     if state.mode == APPEARS and params.apa.search.given and has_failed(parking, params):
-        return Reason.NO_PATH.value
+        return _no_way(parking)
     return NO_REASON
+
+
+def _no_way(parking: Parking) -> int:
+    return Reason.TOO_MANY_SHIFTS.value if parking.plan.found else Reason.NO_PATH.value
 
 
 def _guards(

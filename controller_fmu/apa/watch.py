@@ -118,7 +118,7 @@ def reason_to_fail(state: Watch, inputs: ControllerInput, driving: bool, params:
     if state.blocked * 1e-9 > guard.blocked:
         return Reason.BLOCKED.value
     if state.waiting * 1e-9 > guard.patience:
-        return Reason.NOT_MOVING.value
+        return Reason.STEERING_FAULT.value if abs(state.wheel - state.angle) > PULLED else Reason.NOT_MOVING.value
     if state.running * 1e-9 > guard.duration:
         return Reason.TIMEOUT.value
     return NONE

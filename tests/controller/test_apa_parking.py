@@ -1,0 +1,118 @@
+"""The assist in the closed loop: parked where it should be, and every way to fail with its reason."""
+
+import math
+from typing import Any
+
+import pytest
+
+from controller_fmu.apa.chart import Mode
+from controller_fmu.interface import Reason
+from tests.controller.apa_bench import CAR, RADIUS, Run, box, car_settings, drive
+
+HALF = 0.5 * CAR["width"]
+FRONT = CAR["wheelbase"] + CAR["front_overhang"]
+
+
+def given(kind: str, length: float, side: int, **more: Any) -> tuple[dict[str, Any], dict[str, Any]]:
+    """Return the parameters of a car that stands past a slot it is told of."""
+    vehicle, controller = car_settings(CAR, RADIUS)
+    along, deep = (4.4, 1.8) if kind == "parallel" else (1.8, 4.6)
+    for number, x in enumerate((-along, length), start=1):
+        vehicle |= box(number, x, x + along, *((-deep, 0.0) if side > 0 else (0.0, deep)))
+    vehicle |= {"start.x": length + 1.0, "start.y": side * (1.0 + HALF), "driver.apa_switch_time": 0.05}
+    slot = {"kind": 1 if kind == "parallel" else 2, "side": 0 if side > 0 else 1, "length": length}
+    controller |= {"apa.search.given": True} | {f"apa.search.slot.{name}": value for name, value in slot.items()}
+    return vehicle | more, controller
+
+
+def run(more: dict[str, Any] | None = None, asked: dict[str, Any] | None = None, stop: float = 60.0) -> Run:
+    vehicle, controller = given("parallel", 7.2, 1)
+    return drive(vehicle | (more or {}), controller | (asked or {}), stop)
+
+
+@pytest.mark.parametrize(("kind", "length"), [("parallel", 7.2), ("parallel", 5.7), ("perpendicular", 3.1)])
+@pytest.mark.parametrize("side", [1, -1])
+def test_the_car_is_parked_within_the_house_limits(kind: str, length: float, side: int) -> None:
+    end = drive(*given(kind, length, side), 90.0)
+    pose = end.vehicle.pose
+    assert end.controller.apa.mode == Mode.PARKING_FINISH
+    if kind == "parallel":
+        lateral, turned = pose.y + side * HALF, pose.heading
+    else:
+        lateral, turned = pose.x - 0.5 * length, pose.heading - side * 0.5 * math.pi
+        assert pose.y == pytest.approx(-side * FRONT, abs=0.1)
+    assert abs(lateral) < 0.05
+    assert abs(turned) < math.radians(1.0)
+    assert end.nearest > 0.1
+    assert end.controller.shifts <= (8 if length == 5.7 else 3)
+    assert abs(end.vehicle.steering_wheel_angle) < math.radians(5.0)
+
+
+def test_the_left_is_the_mirror_image_of_the_right() -> None:
+    right, left = (drive(*given("parallel", 7.2, side), 60.0).vehicle.pose for side in (1, -1))
+    assert (left.x, left.y, left.heading) == pytest.approx((right.x, -right.y, -right.heading), abs=1e-9)
+
+
+def test_the_driver_drives_as_prompted() -> None:
+    end = run({"driver.profile[1].speed": 0.6}, {"apa.drive.longitudinal": 1}, 90.0)
+    assert end.controller.apa.mode == Mode.PARKING_FINISH
+    assert end.nearest > 0.1
+    assert not end.controller.speed_control_active
+
+
+@pytest.mark.parametrize(
+    "more",
+    [{"driver.takeover_time": 6.0}, {"driver.brake_time": 6.0}, {"driver.grab_time": 6.0, "driver.grab_angle": 9.0}],
+)
+def test_the_driver_takes_over_at_any_time(more: dict[str, Any]) -> None:
+    end = run(more)
+    assert end.controller.apa.mode == Mode.FAIL
+    assert end.controller.phase == 11
+    assert end.controller.reason == Reason.NONE
+    assert not end.controller.steering_active
+    assert end.time < 9.0
+
+
+def test_switching_off_is_taking_over() -> None:
+    end = run({"driver.apa_switch_off_time": 6.0}, stop=8.0)
+    assert end.controller.apa.mode == Mode.OFF
+    assert not end.controller.steering_active
+
+
+@pytest.mark.parametrize(
+    ("more", "asked", "reason"),
+    [
+        ({}, {"apa.guard.duration": 8.0}, Reason.TIMEOUT),
+        (
+            {"driver.profile[1].speed": 2.0, "driver.obeys_slow_down": False},
+            {"apa.drive.longitudinal": 1, "apa.guard.over_speed": 1.0},
+            Reason.OVER_SPEED,
+        ),
+        (
+            {"ultrasonic.min_range": 0.0, "scene.boxes[3].length": 0.0},
+            {"apa.sensors.min_range": 12.0},
+            Reason.SENSOR_LOSS,
+        ),
+        ({"steering.rate_limit": 0.02}, {}, Reason.STEERING_FAULT),
+        ({}, {"apa.plan.shifts": 1, "apa.search.slot.length": 5.7}, Reason.TOO_MANY_SHIFTS),
+    ],
+)
+def test_every_failure_has_its_reason(more: dict[str, Any], asked: dict[str, Any], reason: Reason) -> None:
+    end = run(more, asked)
+    assert end.controller.apa.mode == Mode.FAIL
+    assert Reason(end.controller.reason) == reason
+    assert end.vehicle.clearance > 0.0
+
+
+def test_something_that_stays_in_the_way_is_not_touched() -> None:
+    thing = box(4, 2.0, 2.6, -0.8, -0.2) | {"scene.boxes[4].appear_at": 5.0}
+    end = run(thing, stop=60.0)
+    assert Reason(end.controller.reason) == Reason.BLOCKED
+    assert end.nearest > 0.1
+
+
+def test_something_that_goes_away_again_is_waited_for() -> None:
+    thing = box(4, 2.0, 2.6, -0.8, -0.2) | {"scene.boxes[4].appear_at": 5.0, "scene.boxes[4].disappear_at": 14.0}
+    end = run(thing, stop=60.0)
+    assert end.controller.apa.mode == Mode.PARKING_FINISH
+    assert end.nearest > 0.1

@@ -1,0 +1,94 @@
+"""Slot search: sides, corners and refusals, with ideal and noisy sensors; and what the supervisor sees."""
+
+import math
+from typing import Any
+
+import pytest
+
+from controller_fmu.apa.edge import NO_SAMPLES, Heard, append, corner
+from controller_fmu.apa.line_fit import Line, Sums, add, offset, slope
+from controller_fmu.apa.outline import Box, Obstacles
+from controller_fmu.apa.params import ApaParams
+from controller_fmu.apa.supervisor import look
+from modelkit.vocabulary import Pose
+from tests.controller.apa_bench import CAR, RADIUS, box, car_settings, drive
+
+HALF = math.radians(30.0)
+
+
+@pytest.mark.parametrize("tilt", [-0.08, 0.0, 0.05])
+def test_a_side_is_measured_whatever_way_the_car_takes(tilt: float) -> None:
+    sums = Sums()
+    for n in range(30):
+        u, w = 0.1 * n, 0.3 + 0.05 * math.sin(0.2 * n)
+        sums = add(sums, u, w, (w + 1.0 - tilt * u) / math.hypot(1.0, tilt))
+    b = slope(sums, Sums())
+    assert b == pytest.approx(tilt, abs=1e-9)
+    assert offset(sums, b) == pytest.approx(-1.0, abs=1e-9)
+
+
+@pytest.mark.parametrize("sense", [-1.0, 1.0])
+@pytest.mark.parametrize("tilt", [-0.06, 0.0, 0.06])
+def test_a_corner_is_where_its_echoes_come_from(sense: float, tilt: float) -> None:
+    line = Line(-1.0, tilt)
+    place = 4.0
+    samples = NO_SAMPLES
+    for n in range(4):
+        u = place - sense * (0.2 + 0.08 * n)
+        samples = append(samples, Heard(u, 0.0, math.hypot(u - place, 1.0 - tilt * place)), n)
+    assert corner(samples, line, sense, HALF) == pytest.approx(place, abs=1e-9)
+
+
+def scene(kind: str, length: float, side: int, speed: float, **more: Any) -> tuple[dict[str, Any], dict[str, Any]]:
+    """Return the parameters of a drive past two neighbours with a gap of ``length`` between them."""
+    vehicle, controller = car_settings(CAR, RADIUS)
+    along, deep = (4.4, 1.8) if kind == "parallel" else (1.8, 4.6)
+    for number, x in enumerate((-along, length), start=1):
+        vehicle |= box(number, x, x + along, *((-deep, 0.0) if side > 0 else (0.0, deep)))
+    vehicle |= {"start.x": -along - 4.0, "start.y": side * (1.0 + 0.5 * CAR["width"]), "driver.apa_switch_time": 0.1}
+    return vehicle | {"driver.profile[1].speed": speed} | more, controller
+
+
+@pytest.mark.parametrize(("kind", "length"), [("parallel", 6.4), ("perpendicular", 3.1)])
+@pytest.mark.parametrize("side", [1, -1])
+@pytest.mark.parametrize("speed", [1.5, 5.0])
+def test_corners_are_found_within_10_cm(kind: str, length: float, side: int, speed: float) -> None:
+    noise = {"ultrasonic.noise": 0.01, "ultrasonic.dropout": 0.01}
+    vehicle, controller = scene(kind, length, side, speed, **noise)
+    run = drive(vehicle, controller, 16.0, keep=True)
+    shown = next(asked for _, _, asked in run.rows if asked.apa.mode == 3)
+    assert shown.apa.slot.kind == (1 if kind == "parallel" else 2)
+    assert shown.apa.slot.side == (0 if side > 0 else 1)
+    assert math.hypot(shown.apa.slot.a.x, shown.apa.slot.a.y) < 0.1
+    assert math.hypot(shown.apa.corner_b.x - length, shown.apa.corner_b.y) < 0.1
+
+
+def test_a_gap_too_short_is_refused_with_what_is_missing() -> None:
+    vehicle, controller = scene("parallel", 4.7, 1, 2.5)
+    run = drive(vehicle, controller | {"apa.search.way": 20.0}, 30.0)
+    assert run.controller.apa.slots == 0
+    assert run.controller.reason == 24
+    assert 0.2 < run.controller.apa.missing < 2.0
+
+
+def test_no_slot_is_seen_where_there_is_none() -> None:
+    vehicle, controller = car_settings(CAR, RADIUS)
+    vehicle |= box(1, -2.0, 9.0, -1.8, 0.0) | {"start.x": -8.0, "start.y": 1.9, "driver.apa_switch_time": 0.1}
+    run = drive(vehicle | {"driver.profile[1].speed": 3.0}, controller | {"apa.search.way": 25.0}, 30.0)
+    assert (run.controller.apa.slots, run.controller.reason) == (0, 23)
+
+
+def test_the_supervisor_tells_known_from_unknown() -> None:
+    params = ApaParams()
+    here = Pose(0.0, 0.0, 0.0)
+    behind = Obstacles(behind=Box(-20.0, -1.0, -10.0, 10.0))
+    far = (5.0,) * 4
+    quiet = look(far + (5.0, 0.4, 0.4, 5.0) + far, here, 1.0, -1, 0.0, behind, params)
+    assert not quiet.blocked
+    near = look(far + (5.0, 0.16, 0.16, 5.0) + far, here, 1.0, -1, 0.3, behind, params)
+    assert near.blocked
+    assert not near.unknown
+    surprise = look(far + (5.0, 0.4, 0.4, 5.0) + far, here, 1.0, -1, 0.3, Obstacles(), params)
+    assert surprise.blocked
+    assert surprise.unknown
+    assert not look(far + (5.0, 0.4, 0.4, 5.0) + far, here, 1.0, 1, 0.3, Obstacles(), params).blocked

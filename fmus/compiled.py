@@ -16,6 +16,7 @@ from collections.abc import Callable, Iterator
 from types import FunctionType, ModuleType
 from typing import Any
 
+from fmus.compiled_modules import collect
 from fmus.compiled_types import install
 from fmus.flat_entry import Entries, entries
 from fmus.sources import MODELKIT_FILES, load
@@ -27,8 +28,10 @@ numba: Any = importlib.import_module(
 types = numba.types
 POINTER = types.CPointer(types.float64)
 OPTIONS: dict[str, Any] = {"error_model": "numpy", "fastmath": False, "nogil": True}
+BARE: dict[str, Any] = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 INITIALIZE = types.void(POINTER, POINTER, POINTER)
 STEP = types.void(POINTER, POINTER, POINTER, POINTER, types.int64)
+HEAD = ";; module\n"
 _done: set[str] = set()
 
 
@@ -69,25 +72,30 @@ def compiled_entries(model: Model) -> Entries:
     return Entries(jit(plain.initialize), jit(plain.step))
 
 
-def intermediate_code(model: Model) -> dict[str, str]:
-    """Return name -> LLVM IR of the two entry functions over pointers to doubles.
+def intermediate_code(model: Model) -> list[str]:
+    """Return LLVM modules which, linked, hold the two entry functions over pointers to doubles and all they call.
 
-    Each text defines one function whose symbol contains the name; it returns an i32, zero if all
-    went well, and takes two pointers that carry nothing before the arguments of the Python function.
-    Raises ``TypeError`` with numba's explanation if the model cannot be compiled.
+    The symbols of the entries contain ``model_initialize`` and ``model_step``; they return an i32, zero
+    if all went well, and take two pointers that carry nothing before the arguments of the Python function.
+    Raises ``TypeError`` with numba's explanation if the model cannot be compiled. Nothing can be run in
+    this process afterwards, see ``compiled_modules``.
     """
+    found = collect()
     make_compilable(model.package)
     plain = entries(model)
-    wanted = (("model_initialize", plain.initialize, INITIALIZE), ("model_step", plain.step, STEP))
-    return {name: _code(function, signature, name) for name, function, signature in wanted}
+    for name, function, signature in (
+        ("model_initialize", plain.initialize, INITIALIZE),
+        ("model_step", plain.step, STEP),
+    ):
+        _compile(function, signature, name)
+    return found
 
 
-def _code(function: Callable[..., None], signature: Any, name: str) -> str:
+def _compile(function: Callable[..., None], signature: Any, name: str) -> None:
     try:
-        compiled = numba.njit(signature, no_cpython_wrapper=True, no_cfunc_wrapper=True, **OPTIONS)(function)
+        numba.njit(signature, **BARE, **OPTIONS)(function)
     except Exception as error:
         raise TypeError(f"{name} cannot be compiled{_where(error)}: {plain(str(error))}") from error
-    return str(compiled.inspect_llvm(compiled.signatures[0]))
 
 
 def plain(text: str) -> str:
@@ -109,14 +117,14 @@ def _where(error: BaseException) -> str:
 
 
 def main(arguments: list[str]) -> int:
-    """Print the IR of ``package:NAME`` (a Model), a line ``;; name`` before each function's text."""
+    """Print the LLVM modules of ``package:NAME`` (a Model), each behind a line ``;; module``."""
     try:
         code = intermediate_code(load(arguments[0]))
     except TypeError as error:
         print(error, file=sys.stderr)
         return 1
-    for name, text in code.items():
-        print(f";; {name}\n{text}")
+    for text in code:
+        print(f"{HEAD}{text}")
     return 0
 
 

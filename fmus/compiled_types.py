@@ -1,8 +1,11 @@
-"""Teaches numba the defaults of NamedTuples: ``State()`` and ``State(mode=3)`` mean in compiled code what they say.
+"""Teaches numba what model code needs of NamedTuples.
 
-Numba (0.68) accepts such calls but leaves the missing fields out. Here a missing field takes its
-default as a constant. Literal types of the arguments are widened, so that ``State(0)`` and
-``State(count)`` have one type.
+Defaults: numba (0.68) accepts ``State()`` and ``State(mode=3)`` but leaves the missing fields out.
+Here a missing field takes its default as a constant. Literal types of the arguments are widened, so
+that ``State(0)`` and ``State(count)`` have one type.
+
+Speed: whenever a variable comes or goes, numba takes its value apart to the last scalar in search of
+references to count. For types of plain numbers, there are none: it need not look.
 """
 
 import inspect
@@ -12,12 +15,25 @@ from typing import Any
 numba: Any = import_module("numba")  # untyped on purpose: what it says of its types changes with every version
 templates: Any = import_module("numba.core.typing.templates")
 collections: Any = import_module("numba.core.typing.collections")
+runtime: Any = import_module("numba.core.runtime.context")
 types = numba.types
+HOLDS_REFERENCES: dict[Any, bool] = {}
+count_references = runtime.NRTContext._call_incref_decref
 
 
 def install() -> None:
-    """Put the constructor with defaults in the place of numba's own; may be called twice."""
+    """Put constructor and reference counting in the place of numba's own; may be called twice."""
     collections.NamedTupleClassAttribute.resolve___call__ = _constructor
+    runtime.NRTContext._call_incref_decref = _count_references
+
+
+def _count_references(context: Any, builder: Any, kind: Any, value: Any, name: str) -> None:
+    """Emit the counting of all references in ``value``, if its type can hold any."""
+    holds = HOLDS_REFERENCES.get(kind)
+    if holds is None:
+        holds = HOLDS_REFERENCES[kind] = context._context.data_model_manager[kind].contains_nrt_meminfo()
+    if holds:
+        count_references(context, builder, kind, value, name)
 
 
 def _constructor(attribute: Any, class_type: Any) -> Any:

@@ -32,6 +32,7 @@ in (0, 3600] s is answered with fmi2Error and a message to the logger; nothing i
 """
 MAKERS = (
     "compiled.py",
+    "compiled_modules.py",
     "compiled_types.py",
     "description.py",
     "flat_entry.py",

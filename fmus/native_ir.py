@@ -6,7 +6,6 @@ of the model's sources.
 """
 
 import os
-import re
 import subprocess
 import sys
 from importlib.metadata import version
@@ -17,6 +16,8 @@ import llvmlite.binding as llvm  # type: ignore[import-untyped]
 from fmus.sources import reference, source_hash
 from modelkit.model import Model
 
+HEAD = ";; module\n"
+ENTRIES = ("model_initialize", "model_step")
 CACHE = Path(__file__).parent / "dist" / "cache"
 LIBM = frozenset(
     """acos asin atan atan2 ceil cos cosh exp fabs floor fmax fmin log pow rint round sin sinh sqrt tan tanh
@@ -40,8 +41,8 @@ def intermediate_code(model: Model) -> str:
 
 
 def _own_sources() -> str:
-    here = Path(__file__).parent
-    return "".join((here / name).read_text() for name in ("compiled.py", "compiled_types.py", "flat_entry.py"))
+    names = ("compiled.py", "compiled_modules.py", "compiled_types.py", "flat_entry.py")
+    return "".join((Path(__file__).parent / name).read_text() for name in names)
 
 
 def _run_numba(model: Model) -> str:
@@ -52,7 +53,6 @@ def _run_numba(model: Model) -> str:
         "NUMBA_CPU_NAME": "generic",
         "NUMBA_CPU_FEATURES": "",
         "NUMBA_DISABLE_INTEL_SVML": "1",
-        "NUMBA_OPT": "1",
     }
     command = [sys.executable, "-m", "fmus.compiled", reference(model)]
     done = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
@@ -85,27 +85,22 @@ def _allowed(name: str) -> bool:
 
 
 def _module(text: str) -> llvm.ModuleRef:
-    """Return one module with the entries under their plain names and everything else internal.
-
-    Functions that both entries call are in both texts under the same symbol; linking keeps one.
-    """
-    parts = re.split(r"^;; (\w+)\n", text, flags=re.MULTILINE)[1:]
-    names = parts[::2]
-    first, *others = [_one(name, code) for name, code in zip(names, parts[1::2], strict=True)]
+    """Return all modules linked into one, with the entries under their plain names and everything else internal."""
+    first, *others = [llvm.parse_assembly(part) for part in text.split(HEAD)[1:]]
     for other in others:
         first.link_in(other)
     for item in (*first.functions, *first.global_variables):
-        if not item.is_declaration and item.name not in names:
+        if not item.is_declaration:
             item.linkage = "internal"
+    for name in ENTRIES:
+        _export(first, name)
     return first
 
 
-def _one(name: str, code: str) -> llvm.ModuleRef:
-    module = llvm.parse_assembly(code)
+def _export(module: llvm.ModuleRef, name: str) -> None:
     entry = [item for item in module.functions if name in item.name and not item.is_declaration]
     if len(entry) != 1:
         raise TypeError(f"{len(entry)} functions are called {name}; no function of a model may have this name")
     entry[0].name = name
     entry[0].linkage = "external"
     entry[0].visibility = "hidden"
-    return module

@@ -18,8 +18,8 @@ TANGENT = 0.03
 NOTES = [
     "The formulas of the key points and of the characteristic states are pictures in the source and lost; they "
     "are derived from the geometry and the captions of its Fig. 10. The car is that of Zhang 2022, the slot is chosen.",
-    "The deviation from the common tangent is taken between P2 and P3. hsic-shuffle drives a car whose steering is 18 % "
-    "slower than the controller thinks, so its tangent deviation is reported, not judged.",
+    "The deviation from the common tangent is taken between P2 and P3. hsic-shuffle drives a car whose steering is "
+    "18 % slower than the controller thinks, so its tangent deviation is reported, not judged.",
     "The car turns its wheel at standstill at each turning point, as a careful driver does: that costs the time.",
 ]
 

@@ -1,11 +1,13 @@
 """Runs of which only a few numbers are kept, as compiled code where that is possible."""
 
+import os
 from collections.abc import Iterable, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from importlib.util import find_spec
 
 import numpy as np
 
-from modelkit.variables import flatten, with_values
+from modelkit.variables import variables, with_values
 from orchestrator.models import MODELS
 from orchestrator.scenario import Scenario
 from orchestrator.slave import Array
@@ -13,24 +15,44 @@ from orchestrator.sweep.batch import compiled
 from orchestrator.sweep.kept import FIRST_KEPT, Kept
 
 
-def parameters_of(scenario: Scenario) -> list[float]:
-    """Return the parameters of all models of a scenario, one after the other, as doubles."""
+def parameter_row(scenario: Scenario) -> tuple[Array, dict[str, int], Array]:
+    """Return all parameters as doubles, where each stands by name, and step, stop [ns] and decimations."""
     numbers: list[float] = []
+    places: dict[str, int] = {}
     for owner, model in MODELS.items():
-        values = flatten(with_values(model.params, dict(getattr(scenario, owner))))
-        numbers += [float(value) for value in values]
-    return numbers
+        values = with_values(model.params, dict(getattr(scenario, owner)))
+        for variable in variables(model.params, values):
+            places[f"{owner}.{variable.name}"] = len(numbers)
+            numbers.append(float(variable.start))
+    times = [scenario.step_ns, scenario.stop_ns, *(scenario.every.get(name, 1) for name in MODELS)]
+    return np.array(numbers), places, np.array(times, dtype=np.int64)
+
+
+def timed_rows(parameters: Array, times: Array, kept: Sequence[Kept]) -> Array:
+    """Return for each run its end [s] and the ``kept`` numbers. Compiles the models first if sources changed."""
+    out = np.empty((len(parameters), FIRST_KEPT + len(kept)))
+    shares = np.array_split(np.arange(len(parameters)), os.cpu_count() or 1)
+    rows = compiled(tuple(kept))
+
+    def work(share: Array) -> None:
+        part = np.empty((len(share), out.shape[1]))
+        rows(np.ascontiguousarray(parameters[share]), np.ascontiguousarray(times[share]), part)
+        out[share] = part
+
+    with ThreadPoolExecutor() as pool:
+        list(pool.map(work, [share for share in shares if len(share)]))
+    return np.column_stack([out[:, 1] * 1e-9, out[:, FIRST_KEPT:]])
+
+
+def timed(scenarios: Iterable[Scenario], kept: Sequence[Kept]) -> Array:
+    """Return for each scenario its end [s] and the ``kept`` numbers."""
+    rows = [parameter_row(scenario) for scenario in scenarios]
+    return timed_rows(np.array([row for row, _, _ in rows]), np.array([times for _, _, times in rows]), kept)
 
 
 def measure(scenarios: Iterable[Scenario], kept: Sequence[Kept]) -> Array:
-    """Return one row of ``kept`` numbers per scenario. Compiles the models first if sources changed."""
-    runs = list(scenarios)
-    rows = compiled(tuple(kept))
-    parameters = np.array([parameters_of(run) for run in runs])
-    times = np.array([[run.step_ns, run.stop_ns, *(run.every.get(name, 1) for name in MODELS)] for run in runs])
-    out = np.empty((len(runs), FIRST_KEPT + len(kept)))
-    rows(parameters, times.astype(np.int64), out)
-    return out[:, FIRST_KEPT:]
+    """Return one row of ``kept`` numbers per scenario."""
+    return timed(scenarios, kept)[:, 1:]
 
 
 def available() -> bool:

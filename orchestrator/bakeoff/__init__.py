@@ -1,0 +1,1 @@
+"""Every parking controller on the same slots, cars, bodies and disturbances."""

@@ -1,0 +1,91 @@
+"""NTBPTcwPT against plain NTBPT under driver speed errors: the claim of Guo 2015 as a success rate."""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from orchestrator.load_scenario import load_scenario
+from orchestrator.reproduce.many import parameter_row, timed_rows
+from orchestrator.scenario import Scenario
+from orchestrator.slave import Array
+from orchestrator.sweep.kept import PHASE, POSE
+
+SPEED = 0.8
+"""Speed the driver means [m/s]."""
+FASTEST, SLOWEST = 1.0, -0.5
+"""Uniform relative error of the speed driven."""
+WOBBLE = 0.3
+"""Largest amplitude of its swing [m/s], uniform from 0."""
+PARKED = 9.0
+Z95 = 1.959964
+
+
+class Rate(NamedTuple):
+    """A success rate and its 95 % confidence interval (Wilson)."""
+
+    name: str
+    runs: int
+    successes: int
+    low: float
+    high: float
+
+    @property
+    def rate(self) -> float:
+        """Successes over runs."""
+        return self.successes / self.runs
+
+
+class Study(NamedTuple):
+    """Both systems under the same driver errors."""
+
+    speed: Array
+    """Mean speed driven in each run [m/s]."""
+    success: dict[str, "np.ndarray[tuple[int], np.dtype[np.bool_]]"]
+    rates: list[Rate]
+
+
+def study(runs: int, seed: int) -> Study:
+    """Return the success of both systems in ``runs`` drives each, the same drivers for both.
+
+    A drive succeeds if the controller says parked within 5 cm and 1 deg of Q3's line. Table 1's
+    steering rate; the driver obeys stop and direction prompts after 0.3 s, but not slow-down prompts.
+    """
+    rng = np.random.default_rng(seed)
+    error, wobble = rng.uniform(SLOWEST, FASTEST, runs), rng.uniform(0.0, WOBBLE, runs)
+    period, delay = rng.uniform(1.0, 6.0, runs), rng.uniform(0.1, 0.6, runs)
+    success = {}
+    for name in ("ntbptcwpt", "ntbpt"):
+        rows, times = _rows(_scenario(name), error, wobble, period, delay)
+        end = timed_rows(rows, times, (*POSE, PHASE))
+        lateral, heading, phase = end[:, 2] + 3.056, end[:, 3], end[:, 4]
+        success[name] = (phase == PARKED) & (np.abs(lateral) <= 0.05) & (np.abs(heading) <= math.radians(1.0))
+    rates = [wilson(name, runs, int(won.sum())) for name, won in success.items()]
+    return Study(SPEED * (1.0 + error), success, rates)
+
+
+def wilson(name: str, runs: int, successes: int) -> Rate:
+    """Return the rate with Wilson's 95 % interval."""
+    p, z2 = successes / runs, Z95 * Z95
+    centre = (p + z2 / (2 * runs)) / (1 + z2 / runs)
+    half = Z95 * math.sqrt(p * (1 - p) / runs + z2 / (4 * runs * runs)) / (1 + z2 / runs)
+    return Rate(name, runs, successes, centre - half, centre + half)
+
+
+def _scenario(system: str) -> Scenario:
+    sets = [f"vehicle.driver.profile[1].speed={SPEED}", "vehicle.driver.profile[2].at=1e9"]
+    return load_scenario("guo2015-case4", [*sets, f"controller.system={system}", "stop_time=120"])
+
+
+def _rows(scenario: Scenario, error: Array, wobble: Array, period: Array, delay: Array) -> tuple[Array, Array]:
+    """Return parameters and times of one run per driver."""
+    row, places, times = parameter_row(scenario)
+    rows = np.tile(row, (len(error), 1))
+    for name, values in (
+        ("speed_error", error),
+        ("wobble", wobble),
+        ("wobble_period", period),
+        ("reaction_delay", delay),
+    ):
+        rows[:, places[f"vehicle.driver.{name}"]] = values
+    return rows, np.tile(times, (len(error), 1))

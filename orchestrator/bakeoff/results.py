@@ -1,0 +1,60 @@
+"""What a run of the bake-off came to, from the few numbers kept of it."""
+
+import math
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from controller_fmu.interface import Phase, Reason
+from orchestrator.bakeoff.entries import Entry
+from orchestrator.reproduce.many import timed
+from orchestrator.sweep.kept import CLEARANCE, EFFORT, PHASE, POSE, REASON, SHIFTS, WHEEL, Kept
+
+LATERAL, HEADING = 0.15, math.radians(3.0)
+"""GB/T 41630, parallel parking [m, rad]."""
+HOUSE_LATERAL, HOUSE_HEADING = 0.05, math.radians(1.0)
+KEPT: tuple[Kept, ...] = (*POSE, WHEEL, PHASE, REASON, SHIFTS, EFFORT, CLEARANCE)
+
+
+class Result(NamedTuple):
+    """One run: SI units and radians; errors in the slot's frame, whose origin is the target."""
+
+    entry: Entry
+    parked: bool
+    """The controller says parked, within GB/T 41630, without contact."""
+    house: bool
+    """Within 5 cm and 1 deg besides."""
+    reason: str
+    time: float
+    shifts: int
+    longitudinal: float
+    lateral: float
+    heading: float
+    clearance: float
+    effort: float
+    """Way of the steering wheel [rad]."""
+
+
+def results(runs: Sequence[Entry]) -> list[Result]:
+    """Return what every run came to."""
+    table = timed([entry.scenario for entry in runs], KEPT)
+    return [_result(entry, row) for entry, row in zip(runs, table, strict=True)]
+
+
+def _result(entry: Entry, row: "np.ndarray[tuple[int], np.dtype[np.float64]]") -> Result:
+    time, x, y, heading, _, phase, reason, shifts, effort, clearance = (float(value) for value in row)
+    told = int(phase) == Phase.PARKED
+    within = abs(y) <= LATERAL and abs(heading) <= HEADING
+    why = "" if told and within and clearance > 0.0 else _why(int(phase), int(reason), within, clearance)
+    house = abs(y) <= HOUSE_LATERAL and abs(heading) <= HOUSE_HEADING
+    parked = why == ""
+    return Result(entry, parked, parked and house, why, time, int(shifts), x, y, heading, clearance, effort)
+
+
+def _why(phase: int, reason: int, within: bool, clearance: float) -> str:
+    if phase == Phase.FAILED:
+        return Reason(reason).name.lower()
+    if clearance <= 0.0:
+        return "contact"
+    return "stop time" if within or phase != Phase.PARKED else "beyond GB/T 41630"

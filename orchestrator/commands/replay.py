@@ -29,7 +29,7 @@ def add_parser(subparsers: Any) -> argparse.ArgumentParser:
     parser.add_argument(
         "--fmus", choices=(*KINDS, "none"), default="none", help="kind of FMU (default: none, in process)"
     )
-    parser.add_argument("--out", type=Path, metavar="DIR", help="where results go (default: runs/NAME-row-N)")
+    parser.add_argument("--out", type=Path, metavar="DIR", help="where results go (default: row-N beside the table)")
     parser.add_argument("--json", action="store_true", help="print summary.json instead of the table")
     parser.add_argument("--no-figure", action="store_true", help="write neither overview.png nor report.html")
     return parser
@@ -45,7 +45,7 @@ def run(arguments: argparse.Namespace) -> int:
     table = Table(arguments.table)
     scenario = chunk_scenario(table.job, table.chunk(arguments.row), 0)
     name = f"{table.about['study']['name']}-row-{arguments.row}"
-    out: Path = arguments.out or Path("runs") / name
+    out: Path = arguments.out or table.path.parent / f"row-{arguments.row}"
     out.mkdir(parents=True, exist_ok=True)
     content = scenario.model_dump(mode="python", exclude={"file", "base", "car"}, by_alias=True, exclude_none=True)
     text = yaml.safe_dump({**content, "name": name}, sort_keys=False, allow_unicode=True)

@@ -1,6 +1,8 @@
 """``apa sweep``: a study of thousands of runs, from YAML to a table and a page."""
 
 import argparse
+from contextlib import redirect_stdout
+from io import StringIO
 from pathlib import Path
 from typing import Any
 
@@ -33,6 +35,8 @@ def add_parser(subparsers: Any) -> argparse.ArgumentParser:
     )
     parser.add_argument("--workers", type=int, metavar="N", help="threads or processes (default: all cores)")
     parser.add_argument("--chunk", type=int, metavar="N", help="runs per part, at most these are lost by a kill")
+    parser.add_argument("--picture", type=Path, metavar="FILE", help="write the success map as a PNG, too")
+    parser.add_argument("--replays", type=int, default=3, metavar="N", help="replay the N worst runs for the page (3)")
     parser.add_argument("--no-page", action="store_true", help="write no result page")
     return parser
 
@@ -63,8 +67,26 @@ def run(arguments: argparse.Namespace) -> int:
         screen.print(f"{swept.done} of {swept.count} runs are kept; go on with: apa sweep {arguments.study} --resume")
         return INTERRUPTED
     screen.print(f"table in {swept.table}", markup=False)
+    if arguments.picture is not None:
+        from orchestrator.sweep.picture import draw_maps
+        from orchestrator.sweep.store import Table
+
+        draw_maps(Table(swept.table), arguments.picture)
+        screen.print(f"picture in {arguments.picture}", markup=False)
     if not arguments.no_page:
         from orchestrator.sweep.page import write_page
 
+        _replay_worst(swept.table, arguments.replays)
         screen.print(f"page in {write_page(swept.table)}", markup=False)
     return PARKED
+
+
+def _replay_worst(path: Path, count: int) -> None:
+    """Run the worst rows again with log and replay page, quietly, so that the result page can link to them."""
+    from orchestrator.cli import main
+    from orchestrator.sweep.statistics import worst
+    from orchestrator.sweep.store import Table
+
+    for row in worst(Table(path), count):
+        with redirect_stdout(StringIO()):
+            main(["replay", str(path), "--row", str(row)])

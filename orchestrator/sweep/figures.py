@@ -10,10 +10,12 @@ from orchestrator.slave import Array
 from orchestrator.sweep.statistics import Axis, Map, wilson
 
 WIDTH, HEIGHT = 520.0, 330.0
-LEFT, RIGHT, TOP, BOTTOM = 62.0, 8.0, 8.0, 44.0
+LEFT, RIGHT, TOP, BOTTOM = 62.0, 22.0, 8.0, 44.0
 SCALE = ("#00224e", "#123570", "#3b496c", "#575d6d", "#707173", "#8a8678", "#a59c74", "#c3b369", "#e1cc55", "#fee838")
 """Cividis (Nunez, Anderton, Renslow 2018): read alike with and without colour vision; dark is 0, bright is 1."""
 MOST_TICKS = 8
+TAILS = (0.005, 0.995)
+"""Share of the runs below and above what a histogram shows."""
 
 
 def colour(rate: float) -> str:
@@ -22,6 +24,16 @@ def colour(rate: float) -> str:
     low = min(int(place), len(SCALE) - 2)
     a, b = (tuple(int(SCALE[number][at : at + 2], 16) for at in (1, 3, 5)) for number in (low, low + 1))
     return "#" + "".join(f"{round(x + (y - x) * (place - low)):02x}" for x, y in zip(a, b, strict=True))
+
+
+def short(value: float) -> str:
+    """Return a number in few characters, without an exponent where that is possible."""
+    return f"{value:.0f}" if 1000.0 <= abs(value) < 1e6 else f"{value:.3g}"
+
+
+def named(axis: Axis) -> str:
+    """Return the name of an axis with its unit, if it has one."""
+    return axis.name if axis.unit == "1" else f"{axis.name} [{axis.unit}]"
 
 
 def success_map(shown: Map) -> str:
@@ -57,16 +69,20 @@ def scale_bar() -> str:
 
 
 def histogram(values: Array, good: NDArray[np.bool_], name: str, unit: str, bins: int = 40) -> str:
-    """Return a histogram as SVG: parked runs below, the others stacked on them."""
+    """Return a histogram as SVG: parked runs below, the others stacked on them; the end bars hold what lies beyond."""
     finite = np.isfinite(values)
     values, good = values[finite], good[finite]
     if not len(values):
         return ""
-    low, high = float(values.min()), float(values.max())
-    if float(np.ptp(np.round(values) - values)) == 0.0 and high - low <= bins:
+    low, high = (float(end) for end in np.quantile(values, TAILS))
+    whole = bool((values == np.round(values)).all())
+    if whole and high - low <= bins:
         edges = np.arange(low - 0.5, high + 1.0)
+        marks = np.arange(low, high + 0.5, max(1, round((high - low) / 8)))
     else:
         edges = np.linspace(low, high if high > low else low + 1.0, bins + 1)
+        marks = np.linspace(edges[0], edges[-1], 6)
+    values = np.clip(values, edges[0], edges[-1])
     yes, no = (np.histogram(values[kind], edges)[0] for kind in (good, ~good))
     tallest = max(1, int((yes + no).max()))
     width, full = (WIDTH - LEFT - RIGHT) / len(yes), 200.0 - TOP - BOTTOM
@@ -79,9 +95,8 @@ def histogram(values: Array, good: NDArray[np.bool_], name: str, unit: str, bins
                 y = TOP + full * (1.0 - (below + count) / tallest)
                 size = f'width="{max(width - 0.6, 0.5):.2f}" height="{full * count / tallest:.2f}"'
                 bars.append(f'<rect class="{kind}" x="{x:.2f}" y="{y:.2f}" {size}><title>{note}</title></rect>')
-    shown = np.linspace(edges[0], edges[-1], 6)
-    where = [LEFT + (WIDTH - LEFT - RIGHT) * number / 5.0 for number in range(6)]
-    ticks = _ticks_x([f"{value:.3g}" for value in shown], where, 200.0)
+    where = LEFT + (WIDTH - LEFT - RIGHT) * (marks - edges[0]) / (edges[-1] - edges[0])
+    ticks = _ticks_x([short(mark) for mark in marks.tolist()], where.tolist(), 200.0)
     counts = [
         f'<text x="{LEFT - 6}" y="{TOP + full * (1 - share) + 4:.1f}" text-anchor="end">{tallest * share:.0f}</text>'
         for share in (0.0, 0.5, 1.0)
@@ -95,7 +110,7 @@ def _axis_x(axis: Axis, width: float) -> list[str]:
     lines = _ticks_x(
         [axis.labels[place] for place in places], [LEFT + (place + 0.5) * width for place in places], HEIGHT
     )
-    label = html.escape(f"{axis.name} [{axis.unit}]")
+    label = html.escape(named(axis))
     return [
         *lines,
         f'<text class="title" x="{(LEFT + WIDTH) / 2:.1f}" y="{HEIGHT - 8:.1f}" text-anchor="middle">{label}</text>',
@@ -109,7 +124,7 @@ def _axis_y(axis: Axis, height: float) -> list[str]:
         y = TOP + (len(axis.labels) - place - 0.5) * height
         lines.append(f'<text x="{LEFT - 6}" y="{y + 4:.1f}" text-anchor="end">{html.escape(axis.labels[place])}</text>')
     middle = (TOP + HEIGHT - BOTTOM) / 2
-    label = html.escape(f"{axis.name} [{axis.unit}]")
+    label = html.escape(named(axis))
     turned = f'transform="rotate(-90 12 {middle:.1f})"'
     return [*lines, f'<text class="title" x="12" y="{middle:.1f}" text-anchor="middle" {turned}>{label}</text>']
 

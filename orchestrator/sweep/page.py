@@ -12,7 +12,7 @@ import yaml
 from orchestrator.quantities import DEGREE
 from orchestrator.report.page import style
 from orchestrator.sweep.figures import histogram, scale_bar, success_map
-from orchestrator.sweep.statistics import influences, maps, parked, wilson, worst
+from orchestrator.sweep.statistics import for_people, influences, maps, parked, varied, wilson, worst
 from orchestrator.sweep.store import Table
 from orchestrator.sweep.verdict import RESULTS
 
@@ -42,6 +42,8 @@ WORST = 12
 HISTOGRAMS = ("final.lateral_error", "final.heading_error", "duration", "shifts", "steering_effort", "min_clearance")
 REPLAYS = "row-{}"
 """Where `apa replay` puts a row, beside the table."""
+NEVER = 1e8
+"""A clearance beyond this [m]: there was nothing in the scene."""
 escape = html.escape
 
 
@@ -133,13 +135,17 @@ def _histograms(table: Table) -> str:
     figures = []
     for name in HISTOGRAMS:
         if name in table.names():
-            unit = RESULTS[name].unit
-            values = np.asarray(table.column(name), dtype=np.float64)
-            if unit == "rad" and name != "steering_effort":
-                values, unit = values / DEGREE, "deg"
+            factor, unit = for_people(RESULTS[name].unit)
+            values = np.asarray(table.column(name), dtype=np.float64) * factor
+            if name == "min_clearance" and float(values.min()) >= NEVER:
+                continue
             caption = f"<figcaption>{escape(name)} <span class='quiet'>[{unit}]</span></figcaption>"
             figures.append(f"<figure>{caption}{histogram(values, good, name, unit)}</figure>")
-    return _card("Results", "Parked runs in green, the others in red.", f'<div class="side">{"".join(figures)}</div>')
+    return _card(
+        "Results",
+        "Parked runs in green, the others in red; the end bars hold the 0.5 % beyond.",
+        f'<div class="side">{"".join(figures)}</div>',
+    )
 
 
 def _influences(table: Table) -> str:
@@ -164,7 +170,7 @@ def _influences(table: Table) -> str:
 
 def _worst(table: Table) -> str:
     rows = []
-    keys = [key for key in table.job.keys if len(np.unique(table.column(key))) > 1]
+    keys = varied(table)
     for number in worst(table, WORST):
         row = table.row(number)
         replay = table.path.parent / REPLAYS.format(number) / "report.html"
@@ -177,18 +183,20 @@ def _worst(table: Table) -> str:
                 f"{100.0 * row['final.lateral_error']:+.1f} cm",
                 f"{row['final.heading_error'] / DEGREE:+.2f} deg",
                 f"{row['duration']:.1f} s",
-                *(_value(table, key, row[key]) for key in keys),
                 link + command,
+                *(_value(table, key, row[key]) for key in keys),
             )
         )
-    heads = ("row", "outcome", "lateral", "heading", "time", *(escape(key) for key in keys), "look at it")
+    heads = ("row", "outcome", "lateral", "heading", "time", "look at it", *(escape(key) for key in keys))
     text = "Furthest beyond their limits; the command repeats a row to the same bits, with log and replay."
     return _card("Worst runs", text, _table(heads, rows))
 
 
 def _value(table: Table, key: str, value: Any) -> str:
     state = table.note(key)[2].get(str(int(value))) if isinstance(value, int) else None
-    return escape(state.lower() if state else f"{value:.4g}" if isinstance(value, float) else str(value).lower())
+    factor, unit = for_people(table.note(key)[0])
+    number = f"{value * factor:.4g} {unit if unit != '1' else ''}" if isinstance(value, float) else str(value).lower()
+    return escape(state.lower() if state else number)
 
 
 def _about(table: Table) -> str:

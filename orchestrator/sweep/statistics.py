@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.stats import rankdata  # type: ignore[import-untyped]
 
+from orchestrator.quantities import DEGREE
 from orchestrator.slave import Array
 from orchestrator.sweep.store import Table
 from orchestrator.sweep.study import Axes
@@ -53,6 +54,21 @@ class Influence(NamedTuple):
     """Result -> Spearman's rank correlation, -1 to 1."""
 
 
+def for_people(unit: str) -> tuple[float, str]:
+    """Return (factor, unit) in which people read an SI unit: degrees for radians."""
+    return (1.0 / DEGREE, unit.replace("rad", "deg")) if unit.startswith("rad") else (1.0, unit)
+
+
+def varied(table: Table) -> list[str]:
+    """Return the parameters that differ from run to run; of those that always agree the first."""
+    found: dict[str, Any] = {}
+    for key in table.job.keys:
+        values = table.column(key)
+        if len(np.unique(values)) > 1 and not any(np.array_equal(values, other) for other in found.values()):
+            found[key] = values
+    return list(found)
+
+
 def wilson(successes: int, count: int) -> tuple[float, float]:
     """Return the 95 % confidence interval of a success rate (Wilson 1927)."""
     if count == 0:
@@ -72,8 +88,9 @@ def parked(table: Table) -> NDArray[np.bool_]:
 
 def axis(table: Table, name: str) -> Axis:
     """Return one parameter cut into its values, if they are few, or into equal bins."""
-    values = np.asarray(table.column(name), dtype=np.float64)
     unit, text, states = table.note(name)
+    factor, unit = for_people(unit)
+    values = np.asarray(table.column(name), dtype=np.float64) * factor
     different = np.unique(values)
     if len(different) <= MOST_VALUES:
         cell = np.searchsorted(different, values)
@@ -129,12 +146,11 @@ def influences(table: Table) -> list[Influence]:
     }
     ranks = {name: rankdata(values) for name, values in results.items()}
     found = []
-    for key in dict.fromkeys(table.job.keys):
+    for key in varied(table):
         cut = axis(table, key)
-        if len(cut.labels) > 1:
-            own = rankdata(table.column(key))
-            shares = {name: variance_share(values, cut.cell) for name, values in results.items()}
-            found.append(Influence(key, shares, {name: _correlation(own, other) for name, other in ranks.items()}))
+        own = rankdata(table.column(key))
+        shares = {name: variance_share(values, cut.cell) for name, values in results.items()}
+        found.append(Influence(key, shares, {name: _correlation(own, other) for name, other in ranks.items()}))
     return sorted(found, key=lambda item: -item.share["parked"])
 
 

@@ -89,8 +89,8 @@ def test_switching_off_is_taking_over() -> None:
             Reason.OVER_SPEED,
         ),
         (
-            {"ultrasonic.min_range": 0.0, "scene.boxes[3].length": 0.0},
-            {"apa.sensors.min_range": 12.0},
+            {},
+            {"apa.sensors.min_range": 10.0},
             Reason.SENSOR_LOSS,
         ),
         ({"steering.rate_limit": 0.02}, {}, Reason.STEERING_FAULT),

@@ -1,0 +1,195 @@
+"""Cost of one control step of each controller; the fuzzy law beside scikit-fuzzy, the QP beside cvxpy + OSQP and DAQP.
+
+All in one process, in turn. Each controller is driven in closed loop first; the inputs it saw are then
+played to it again, in CPython and compiled, and the step is timed alone. Means over the drive: the MPC is
+solved in every fifth step only. Medians over the rounds.
+"""
+
+import statistics
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import cvxpy
+import daqp
+import numba
+import numpy as np
+import osqp
+import scipy.sparse
+import skfuzzy
+from skfuzzy import control
+
+from controller_fmu import MODEL
+from controller_fmu.preview.fuzzy import infer
+from controller_fmu.preview.rule_tables import STEERING_SYMMETRIC
+from controller_fmu.zhang2022.qp import STAGES, solve
+from fmus.compiled import compiled_entries
+from fmus.flat_entry import sizes
+from modelkit.variables import constructor, flatten, variables, with_values
+from orchestrator.bakeoff.entries import scenario_of
+from orchestrator.load_scenario import load_scenario
+from orchestrator.models import MODELS
+from orchestrator.scenario import Scenario
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "controller"))
+from qp_problems import dense, random_problem
+
+STEPS, ROUNDS = 800, 5
+PEAKS5, PEAKS7 = (-3.0, -1.5, 0.0, 1.5, 3.0), (-3.0, -2.0, -1.0, 0.0, 1.0, 2.0, 3.0)
+NAMES = ("NB", "NM", "NS", "ZE", "PS", "PM", "PB")
+
+
+def micros(work: Callable[[], Any], count: int, rounds: int = ROUNDS) -> float:
+    """Return the median time [us] of one of ``count`` steps done by ``work``."""
+    work()
+    spent = []
+    for _ in range(rounds):
+        begun = time.perf_counter()
+        work()
+        spent.append(time.perf_counter() - begun)
+    return 1e6 * statistics.median(spent) / count
+
+
+def scenarios() -> dict[str, Scenario]:
+    """Return the drive of each controller."""
+    parking = ("ntbptcwpt", "ntbpt", "zhang2022", "hsic")
+    found = {name: scenario_of(name, "zhang2022", "kinematic", "far", "none") for name in parking}
+    return {**found, "preview": load_scenario("preview", ["vehicle.body=kinematic"])}
+
+
+def inputs_seen(scenario: Scenario) -> list[Any]:
+    """Return what the controller is given in a closed loop, step by step."""
+    vehicle = MODELS["vehicle"]
+    vp, cp = with_values(vehicle.params, dict(scenario.vehicle)), with_values(MODEL.params, dict(scenario.controller))
+    (vs, vo), (cs, co) = vehicle.initialize(vp), MODEL.initialize(cp)
+    seen = []
+    for _ in range(STEPS):
+        heard, told = receive(vehicle, MODEL, vo), receive(MODEL, vehicle, co)
+        seen.append(heard)
+        vs, vo = vehicle.step(vs, told, vp, scenario.step_ns)
+        cs, co = MODEL.step(cs, heard, cp, scenario.step_ns)
+    return seen
+
+
+def receive(source: Any, target: Any, outputs: Any) -> Any:
+    """Return the inputs of ``target`` with the outputs of ``source`` connected by name."""
+    given = dict(zip((item.name for item in variables(source.outputs)), flatten(outputs), strict=True))
+    return constructor(target.inputs)([given.get(item.name, item.start) for item in variables(target.inputs)])
+
+
+def bench_controllers() -> None:
+    """Print the cost of one step of each controller."""
+    compiled = compiled_entries(MODEL)
+    print(f"{'control step [us]':24s}{'CPython':>10s}{'compiled':>10s}")
+    for name, scenario in scenarios().items():
+        params = with_values(MODEL.params, dict(scenario.controller))
+        seen = inputs_seen(scenario)
+        python = micros(lambda p=params, u=seen, h=scenario.step_ns: replay(p, u, h), STEPS)
+        fast = micros(compiled_replay(compiled, params, seen, scenario.step_ns), STEPS)
+        print(f"{name:24s}{python:10.1f}{fast:10.2f}")
+
+
+def replay(params: Any, seen: list[Any], step_ns: int) -> None:
+    """Step the controller in CPython through the inputs it saw."""
+    state, _ = MODEL.initialize(params)
+    for inputs in seen:
+        state, _ = MODEL.step(state, inputs, params, step_ns)
+
+
+def compiled_replay(compiled: Any, params: Any, seen: list[Any], step_ns: int) -> Callable[[], None]:
+    """Return the same for compiled code; the calls from CPython, about 1 us each, are in the time."""
+    size = sizes(MODEL)
+    s, y = np.zeros(size["state"]), np.zeros(size["outputs"])
+    p = np.array([float(value) for value in flatten(params)])
+    rows = [np.array([float(value) for value in flatten(inputs)]) for inputs in seen]
+
+    def work() -> None:
+        compiled.initialize(s, p, y)
+        for row in rows:
+            compiled.step(s, row, p, y, step_ns)
+
+    return work
+
+
+def bench_fuzzy() -> None:
+    """Print the cost of one fuzzy inference."""
+    points = np.random.default_rng(1).uniform(-3.0, 3.0, (200, 2)).tolist()
+    fast = numba.njit(error_model="numpy")(infer)
+
+    def ours(function: Any) -> Callable[[], None]:
+        return lambda: [function(a, b, PEAKS5, PEAKS5, PEAKS7, STEERING_SYMMETRIC) for a, b in points] and None
+
+    simulation = scikit_fuzzy()
+
+    def theirs() -> None:
+        for a, b in points:
+            simulation.input["row"], simulation.input["column"] = a, b
+            simulation.compute()
+
+    python, machine = micros(ours(infer), 200), micros(ours(fast), 200)
+    other = micros(theirs, 200, 3)
+    print(f"\n{'fuzzy inference [us]':24s}{'CPython':>10s}{'compiled':>10s}{'scikit-fuzzy':>14s}")
+    print(f"{'5 x 5 rules':24s}{python:10.1f}{machine:10.2f}{other:14.0f}   {other / python:.0f} times ours in CPython")
+
+
+def scikit_fuzzy() -> Any:
+    """Return the steering controller in scikit-fuzzy, universe of 601 points."""
+    row, column = (control.Antecedent(np.linspace(-3.0, 3.0, 601), name) for name in ("row", "column"))
+    out = control.Consequent(np.linspace(-3.0, 3.0, 601), "out")
+    for variable, peaks, names in ((row, PEAKS5, NAMES[::1][:5]), (column, PEAKS5, NAMES[:5]), (out, PEAKS7, NAMES)):
+        corners = (peaks[0], *peaks, peaks[-1])
+        for place, name in enumerate(names):
+            variable[name] = skfuzzy.trimf(variable.universe, corners[place : place + 3])
+    rules = [
+        control.Rule(row[NAMES[i]] & column[NAMES[j]], out[NAMES[STEERING_SYMMETRIC[5 * i + j]]])
+        for i in range(5)
+        for j in range(5)
+    ]
+    return control.ControlSystemSimulation(control.ControlSystem(rules), cache=False)
+
+
+def bench_qp() -> None:
+    """Print the cost of one QP of the MPC, 12 steps, tolerance 1e-10 (ours) and 1e-6 (OSQP)."""
+    rng = np.random.default_rng(1)
+    problems = [random_problem(rng) for _ in range(30)]
+    matrices = [dense(*problem) for problem in problems]
+    fast = numba.njit(error_model="numpy")(solve)
+
+    def ours(function: Any) -> Callable[[], None]:
+        return lambda: [function(*problem, 1e-10, 40) for problem in problems] and None
+
+    def by_daqp() -> None:
+        for h, f, g, limit in matrices:
+            daqp.solve(h, f, g, limit, np.full_like(limit, -1e30))
+
+    def by_osqp() -> None:
+        for h, f, g, limit in matrices:
+            solver = osqp.OSQP()
+            upper = scipy.sparse.triu(h, format="csc")
+            low = np.full_like(limit, -np.inf)
+            solver.setup(upper, f, scipy.sparse.csc_matrix(g), low, limit, eps_abs=1e-6, eps_rel=1e-6, verbose=False)
+            solver.solve(raise_error=False)
+
+    def by_cvxpy() -> None:
+        for h, f, g, limit in matrices:
+            x = cvxpy.Variable(2 * STAGES)
+            cost = 0.5 * cvxpy.quad_form(x, cvxpy.psd_wrap(h)) + f @ x
+            cvxpy.Problem(cvxpy.Minimize(cost), [g @ x <= limit]).solve(solver=cvxpy.OSQP, eps_abs=1e-6, eps_rel=1e-6)
+
+    ways = {
+        "ours, CPython": ours(solve),
+        "ours, compiled": ours(fast),
+        "DAQP": by_daqp,
+        "OSQP, set-up and solve": by_osqp,
+    }
+    print(f"\n{'QP of 12 steps [us]':24s}{'time':>10s}")
+    for name, work in {**ways, "cvxpy + OSQP": by_cvxpy}.items():
+        print(f"{name:24s}{micros(work, len(problems), 3):10.0f}")
+
+
+if __name__ == "__main__":
+    bench_fuzzy()
+    bench_qp()
+    bench_controllers()

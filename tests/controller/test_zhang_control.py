@@ -1,0 +1,81 @@
+"""The MPC's prediction, its fall-back, and the PID."""
+
+import math
+
+import pytest
+
+from controller_fmu.zhang2022.mpc import Car, Steering, prediction, steer, turned
+from controller_fmu.zhang2022.params import MpcParams, PidParams
+from controller_fmu.zhang2022.path import nearest, plan
+from controller_fmu.zhang2022.pid import PidState, pid
+from controller_fmu.zhang2022.qp import Status
+from modelkit.vocabulary import Pose
+
+CAR = Car(2.62, 0.57, 0.5)
+PATH = plan(Pose(8.5, 2.8, 0.0), 5.0, 0.235)
+P = MpcParams()
+
+
+def test_prediction_is_the_kinematic_car_to_first_order():
+    pose = Pose(6.0, 0.0, 0.0)
+    reference = nearest(PATH, pose._replace(y=2.2))
+    stage = prediction(PATH, reference, -1.0, CAR, P)[0]
+    small = 1e-4
+    gained = -1.0 * P.step_time * (math.tan(stage.r + small) - math.tan(stage.r)) / CAR.wheelbase
+    assert stage.a == pytest.approx(-P.step_time)
+    assert stage.g * small == pytest.approx(gained, rel=1e-3)
+    assert stage.c == pytest.approx(0.5 * stage.a * stage.g)
+
+
+def test_on_a_straight_path_with_a_straight_wheel_nothing_is_asked():
+    found = steer(Steering(), PATH, nearest(PATH, Pose(-0.5, 0.0, 0.0)), -1.0, CAR, P)
+    assert found.status == Status.SOLVED
+    assert found.rate == pytest.approx(0.0, abs=1e-6)
+
+
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_off_the_path_the_car_is_steered_back(side):
+    reference = nearest(PATH, Pose(0.0, 0.0, 0.0))._replace(lateral_error=0.2 * side)
+    found = steer(Steering(), PATH, reference, -1.0, CAR, P)
+    assert found.rate * side < -0.1, "in reverse, too far left: steer right, so that the tail comes in"
+    assert abs(found.rate) <= CAR.rate_limit
+
+
+def test_fall_back_keeps_the_last_rate_within_its_limit():
+    reference = nearest(PATH, Pose(3.0, 0.5, 0.3))
+    capped = steer(Steering(0.1, 0.2, 0, 0), PATH, reference, -1.0, CAR, P._replace(cap=1))
+    assert (capped.status, capped.rate) == (Status.ITERATION_CAP, 0.2)
+    bad = steer(Steering(0.1, 0.9, 0, 0), PATH, reference._replace(lateral_error=math.nan), -1.0, CAR, P)
+    assert bad.status in (Status.FAILED, Status.ITERATION_CAP)
+    assert bad.rate == CAR.rate_limit
+
+
+def test_turned_stays_within_the_lock():
+    steering = Steering(0.5, 0.5, 0, 0)
+    for _ in range(100):
+        steering = turned(steering, CAR, 0.01)
+    assert steering.angle == CAR.angle_limit
+
+
+def test_horizon_drops_the_weights_beyond_it():
+    stages = prediction(PATH, nearest(PATH, Pose(6.0, 2.2, 0.2)), -1.0, CAR, P._replace(horizon=5))
+    assert [stage.on for stage in stages] == [1.0] * 5 + [0.0] * 7
+
+
+def test_pid_is_equation_eight():
+    p, dt, state, integral, last = PidParams(100.0, 50.0, 10.0, 1e9), 0.01, PidState(), 0.0, None
+    for k in range(50):
+        error = math.sin(0.1 * k)
+        integral += error * dt
+        rate = 0.0 if last is None else (error - last) / dt
+        state, last = pid(state, error, p, dt), error
+        assert state.force == pytest.approx(100.0 * error + 50.0 * integral + 10.0 * rate)
+
+
+def test_pid_does_not_wind_up():
+    p, state = PidParams(100.0, 1000.0, 0.0, 50.0), PidState()
+    for _ in range(1000):
+        state = pid(state, 1.0, p, 0.01)
+    assert state.force == 50.0
+    assert state.integral <= 0.01
+    assert pid(state, -0.2, p, 0.01).force < 0.0

@@ -1,0 +1,53 @@
+"""Every number that the reproduction of the preview paper promises. The sweep of the set speed has its own test."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from orchestrator.load_scenario import load_scenario
+from orchestrator.reproduce import preview
+from orchestrator.reproduce.result import Driven, Reproduction
+from orchestrator.session import run_scenario
+from orchestrator.summary import summarize
+
+
+def drive(name: str) -> Driven:
+    scenario = load_scenario(name)
+    ran = run_scenario(scenario)
+    return Driven(scenario, ran.recording, summarize(ran.recording, scenario, ran.wall_time))
+
+
+@pytest.fixture(scope="module")
+def reproduction(tmp_path_factory: pytest.TempPathFactory) -> Reproduction:
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(preview, "available", lambda: False)
+        return preview.reproduce(tmp_path_factory.mktemp("preview"), drive)
+
+
+def test_every_stated_check_holds(reproduction: Reproduction) -> None:
+    asked = [row for row in reproduction.rows if row.limit is not None]
+    assert not [row for row in asked if not row.passed]
+    assert len(asked) == 4 + 4 + 1 + 1 + 1 + 5 + 1
+
+
+def test_both_definitions_of_eps_are_shown(reproduction: Reproduction) -> None:
+    steady = [row.ours for row in reproduction.rows if row.item.endswith("by (2)")]
+    chord = [row.ours for row in reproduction.rows if row.item.endswith("as the chord")]
+    assert np.allclose(steady, (-2.39, 4.54, -7.14, 7.57), atol=0.05)
+    assert np.allclose(chord, (-1.15, 2.01, -2.86, 2.86), atol=0.05)
+
+
+def test_the_single_point_steers_earlier_and_is_too_fast(reproduction: Reproduction) -> None:
+    for curve in (2, 3):
+        before = {
+            row.run: float(row.ours) for row in reproduction.rows if row.item.endswith(f"before curve {curve} by")
+        }
+        assert before["preview-single"] > before["preview"] + 1.5
+        share = {row.run: float(row.ours) for row in reproduction.rows if row.item.endswith(f"there, curve {curve}")}
+        assert share["preview-single"] > 1.4 > 1.03 > share["preview"]
+
+
+def test_figures_are_written(reproduction: Reproduction) -> None:
+    assert len(reproduction.figures) == 2
+    assert all(Path(figure).stat().st_size > 20_000 for figure in reproduction.figures)

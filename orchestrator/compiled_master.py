@@ -81,7 +81,8 @@ class CompiledMaster(Master):
         first = 0
         while True:
             count = plan.advance(first)
-            for row in range(count):
+            unseen = 0 if self.observers or self.endings else max(count - 1, 0)
+            for row in range(unseen, count):
                 for values, place in views:
                     values[:] = plan.rows[row, place]
                 t_ns = (first + row) * self.step_ns

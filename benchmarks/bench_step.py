@@ -1,0 +1,131 @@
+"""Cost of one co-simulation step of the pair, all signals exchanged, in every way we can drive it; side by side.
+
+Case 4 with its step of 10 ms, run to the same number of steps each time, in turn; medians. The limit is the
+same exchange and the same machine code without any FMI between. Last, whole runs: case 4 up to its end,
+recorded and written to a log, from initialization on.
+"""
+
+import statistics
+import tempfile
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+from libcosimpy.CosimExecution import CosimExecution
+from libcosimpy.CosimLogging import CosimLogLevel, log_output_level
+
+from fmus.compiled_batch import compiled_rows
+from fmus.ssp import write_ssp
+from modelkit.variables import variables, with_values
+from orchestrator.compiled_master import CompiledMaster
+from orchestrator.fmu_files import fmu_files
+from orchestrator.fmu_slave import FmuSlave
+from orchestrator.load_scenario import load_scenario
+from orchestrator.master import Master
+from orchestrator.models import MODELS
+from orchestrator.scenario import Scenario
+from orchestrator.session import run_scenario
+from orchestrator.system_of import system_of
+
+ROUNDS = 7
+STEPS = 2000
+Files = dict[str, Path]
+Loop = Callable[[], float]
+"""Drives STEPS steps and returns the seconds they took, without loading and initializing."""
+
+
+def master_loop(make: type[Master], files: Files, scenario: Scenario) -> Loop:
+    """Return a loop by one of our masters."""
+
+    def loop() -> float:
+        slaves = [
+            FmuSlave(name, path, getattr(scenario, name), lambda *_: None, MODELS[name]) for name, path in files.items()
+        ]
+        master = make(list(slaves), scenario.step_ns, STEPS * scenario.step_ns)
+        master.initialize()
+        begun = time.perf_counter()
+        master.run()
+        taken = time.perf_counter() - begun
+        master.free()
+        return taken
+
+    return loop
+
+
+def libcosim_loop(ssp: Path) -> Loop:
+    """Return a loop by libcosim, inside its C++ code."""
+
+    def loop() -> float:
+        execution = CosimExecution.from_ssp_file(ssp_path=str(ssp))
+        execution.step(1)
+        begun = time.perf_counter()
+        execution.step(STEPS)
+        return time.perf_counter() - begun
+
+    return loop
+
+
+def in_process_loop(scenario: Scenario) -> Loop:
+    """Return the limit: the models' machine code and the exchange in one compiled loop, no FMI."""
+    rows = compiled_rows(MODELS, None, [])
+    values = [
+        float(item.start)
+        for name, model in MODELS.items()
+        for item in variables(model.params, with_values(model.params, getattr(scenario, name)))
+    ]
+    parameters = np.array([values])
+    times = np.array([[scenario.step_ns, STEPS * scenario.step_ns, 1, 1]], dtype=np.int64)
+    out = np.empty((1, 2))
+
+    def loop() -> float:
+        begun = time.perf_counter()
+        rows(parameters, times, out)
+        return time.perf_counter() - begun
+
+    return loop
+
+
+def main() -> None:
+    """Print both tables."""
+    log_output_level(CosimLogLevel.FATAL)
+    scenario = load_scenario("guo2015-case4", [])
+    python, native = (fmu_files(kind, print) for kind in ("python", "native"))
+    folder = Path(tempfile.mkdtemp(prefix="apa_bench_"))
+    loops = {
+        "PythonFMUs, our Python master": master_loop(Master, python, scenario),
+        "native, FMI calls from Python": master_loop(Master, native, scenario),
+        "native, libcosim": libcosim_loop(write_ssp(system_of(scenario, native), folder / "native.ssp")),
+        "native, compiled master": master_loop(CompiledMaster, native, scenario),
+        "limit: no FMI at all": in_process_loop(scenario),
+    }
+    times: dict[str, list[float]] = {name: [] for name in loops}
+    for _ in range(ROUNDS):
+        for name, loop in loops.items():
+            times[name].append(loop())
+    median = {name: statistics.median(values) / STEPS * 1e6 for name, values in times.items()}
+    least = {name: min(values) / STEPS * 1e6 for name, values in times.items()}
+    ours = median["native, compiled master"]
+    print(f"one step of the pair, {STEPS} steps, median (and least) of {ROUNDS} rounds")
+    for name, cost in median.items():
+        print(f"  {name:30} {cost:8.2f} us ({least[name]:8.2f})  {cost / ours:8.2f} times the compiled master")
+    whole_runs(scenario, python, native, folder)
+
+
+def whole_runs(scenario: Scenario, python: Files, native: Files, folder: Path) -> None:
+    """Print wall times of case 4 to its end, recorded, without and with the log."""
+    kinds = {"python": python, "native": native}
+    walls: dict[tuple[str, bool], list[float]] = {(kind, log): [] for log in (False, True) for kind in kinds}
+    for _ in range(5):
+        for kind, log in walls:
+            path = folder / f"{kind}.mcap" if log else None
+            walls[kind, log].append(run_scenario(scenario, kinds[kind], kind=kind, log=path).wall_time)
+    print("case 4 to its end, recorded; medians of 5")
+    for log in (False, True):
+        one, other = (statistics.median(walls[kind, log]) * 1e3 for kind in ("python", "native"))
+        what = "with the log" if log else "without log"
+        print(f"  {what:14} PythonFMUs {one:7.1f} ms   native {other:7.1f} ms   {one / other:5.1f} times faster")
+
+
+if __name__ == "__main__":
+    main()

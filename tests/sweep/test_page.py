@@ -1,0 +1,152 @@
+"""What a study's page and its numbers say."""
+
+import shutil
+from html.parser import HTMLParser
+
+import numpy as np
+import pytest
+
+from orchestrator.cli import main
+from orchestrator.sweep.figures import SCALE, colour, histogram
+from orchestrator.sweep.page import study_page
+from orchestrator.sweep.statistics import axis, influences, maps, variance_share, varied, wilson, worst
+from orchestrator.sweep.store import Table
+
+EVIL = "<script>window.evil = 1</script><img src=x onerror='window.evil = 1'>"
+STUDY = """
+name: trial
+title: "<script>window.evil = 1</script><img src=x onerror='window.evil = 1'>"
+scenario: guo2015-case4
+runs:
+  grid:
+    controller.system: [ntbpt, ntbptcwpt]
+    "vehicle.driver.profile[1].speed": [0.6, 1.2, 1.8]
+    vehicle.steering.rate_limit, controller.steering_wheel_rate: [570 deg/s, 1995 deg/s]
+  latin_hypercube: {n: 15, vehicle.start.y: {uniform: [-10 cm, 10 cm]}}
+"""
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """A finished study with its page and the replay of its worst run."""
+    path = tmp_path_factory.mktemp("page")
+    (path / "trial.yaml").write_text(STUDY)
+    picture = ["--picture", str(path / "map.png")]
+    assert main(["sweep", str(path / "trial.yaml"), "--out", str(path), "--replays", "1", *picture]) == 0
+    return path
+
+
+@pytest.fixture(scope="module")
+def table(folder):
+    return Table(folder / "trial.parquet")
+
+
+class Page(HTMLParser):
+    def __init__(self, text):
+        super().__init__()
+        self.tags = []
+        self.feed(text)
+
+    def handle_starttag(self, tag, attrs):
+        self.tags.append((tag, dict(attrs)))
+
+
+def test_the_page_needs_nothing_but_itself(folder):
+    text = (folder / "trial.html").read_text()
+    tags = Page(text).tags
+    assert "script" not in {tag for tag, _ in tags}
+    assert all(not value.startswith(("http", "//")) for _, found in tags for value in found.values() if value)
+    assert EVIL not in text
+    assert len(text) < 300_000
+
+
+def test_every_cell_of_the_map_tells_its_numbers(table):
+    text = study_page(table)
+    assert text.count('class="cell"') == 2 * 3 * 2
+    assert "of 15 parked (95 %:" in text
+
+
+def test_the_worst_run_links_to_its_replay_and_every_one_has_its_command(folder, table):
+    text = (folder / "trial.html").read_text()
+    rows = worst(table, 12)
+    assert f'href="row-{rows[0]}/report.html"' in text
+    assert (folder / f"row-{rows[0]}" / "report.html").is_file()
+    assert all(f"apa replay trial.parquet --row {row}<" in text for row in rows)
+    assert table.row(rows[0])["limit_share"] == np.nanmax(table.column("limit_share"))
+
+
+def test_maps_count_every_run_once(table):
+    shown = maps(table)
+    assert [item.title for item in shown] == ["ntbptcwpt", "ntbpt"]
+    assert sum(item.runs.sum() for item in shown) == table.count
+    assert sum(item.parked.sum() for item in shown) == (table.column("outcome") == "parked").sum()
+
+
+def test_parameters_that_always_agree_are_shown_once(table):
+    assert "controller.steering_wheel_rate" not in varied(table)
+    assert [item.name for item in influences(table)].count("vehicle.steering.rate_limit") == 1
+
+
+def test_an_axis_with_many_values_is_cut_into_equal_bins(table):
+    cut = axis(table, "vehicle.driver.profile[1].speed")
+    assert cut.labels == ["0.6", "1.2", "1.8"]
+    np.testing.assert_allclose(cut.edges, [0.3, 0.9, 1.5, 2.1])
+    assert axis(table, "vehicle.steering.rate_limit").unit == "deg/s"
+    assert axis(table, "controller.system").labels == ["ntbptcwpt", "ntbpt"]
+
+
+def test_the_picture_is_written(folder):
+    assert (folder / "map.png").read_bytes()[:8] == b"\x89PNG\r\n\x1a\n"
+
+
+def test_the_confidence_interval_is_wilsons():
+    # Wilson 1927 as tabulated by Newcombe 1998, table I: 81 of 263, 15 of 148, 0 of 20, 1 of 29.
+    for good, count, low, high in ((81, 263, 0.2553, 0.3662), (15, 148, 0.0624, 0.1605), (0, 20, 0.0, 0.1611)):
+        np.testing.assert_allclose(wilson(good, count), (low, high), atol=5e-5)
+    np.testing.assert_allclose(wilson(1, 29), (0.0061, 0.1718), atol=5e-5)
+
+
+def test_the_share_of_variance_is_the_analytic_one():
+    rng = np.random.default_rng(3)
+    a, b = rng.integers(0, 5, 40_000), rng.integers(0, 5, 40_000)
+    values = 3.0 * a + 1.0 * b
+    assert abs(variance_share(values, a) - 0.9) < 0.01
+    assert abs(variance_share(values, b) - 0.1) < 0.01
+    assert variance_share(rng.random(40_000), a) < 0.001
+    assert variance_share(np.ones(10), np.zeros(10, dtype=np.intp)) == 0.0
+
+
+def test_a_histogram_holds_every_run(table):
+    values = np.append(np.linspace(0.0, 1.0, 1000), [50.0, -50.0, np.nan])
+    text = histogram(values, np.ones(len(values), dtype=bool), "x", "m")
+    counts = [int(part.split(" parked")[0].rsplit(" ", 1)[-1]) for part in text.split("<title>")[1:]]
+    assert sum(counts) == 1002
+
+
+def test_colours_run_along_the_scale():
+    assert (colour(0.0), colour(1.0), colour(-1.0), colour(2.0)) == (SCALE[0], SCALE[-1], SCALE[0], SCALE[-1])
+
+
+def test_the_page_in_a_browser(folder):
+    program = next(
+        (path for path in map(shutil.which, ("chromium", "chromium-browser", "google-chrome")) if path), None
+    )
+    if program is None:
+        pytest.skip("no Chromium found (Debian: apt-get install chromium)")
+    api = pytest.importorskip("playwright.sync_api", reason="the package playwright is not installed")
+    flags = ("headless", "no-sandbox", "disable-gpu", "disable-quic", "no-first-run", "disable-background-networking")
+    quiet = ("disable-component-update", "disable-sync")
+    with api.sync_playwright() as play:
+        browser = play.chromium.launch(executable_path=program, args=[f"--{flag}" for flag in (*flags, *quiet)])
+        for width in (1280, 390):
+            page = browser.new_page(viewport={"width": width, "height": 900})
+            seen, requests = [], []
+            page.on("console", lambda message, seen=seen: seen.append(message.text))
+            page.on("request", lambda request, requests=requests: requests.append(request.url))
+            page.goto((folder / "trial.html").as_uri())
+            assert page.locator("svg rect.cell").first.bounding_box()["width"] > 20
+            assert page.evaluate("document.documentElement.scrollWidth") <= width
+            assert page.evaluate("window.evil") is None
+            assert seen == []
+            assert requests == [(folder / "trial.html").as_uri()]
+        browser.close()

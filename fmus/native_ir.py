@@ -13,12 +13,14 @@ from pathlib import Path
 
 import llvmlite.binding as llvm  # type: ignore[import-untyped]
 
+from fmus.locks import one_at_a_time
 from fmus.sources import reference, source_hash
 from modelkit.model import Model
 
 HEAD = ";; module\n"
 ENTRIES = ("model_initialize", "model_step")
 CACHE = Path(__file__).parent / "dist" / "cache"
+KEPT = 4
 LIBM = frozenset(
     """acos asin atan atan2 ceil cos cosh exp fabs floor fmax fmin log pow rint round sin sinh sqrt tan tanh
     trunc""".split()  # noqa: SIM905
@@ -30,14 +32,20 @@ def intermediate_code(model: Model) -> str:
     """Return numba's IR of both entries, from the cache if the sources are the same."""
     tools = f"numba {version('numba')}, llvmlite {version('llvmlite')}"
     path = CACHE / f"{model.name}-{source_hash(model, tools, _own_sources())}.ll"
-    if path.exists():
+    with one_at_a_time(path):
+        if not path.exists():
+            part = path.with_name(f"{path.name}.{os.getpid()}.part")
+            part.write_text(_run_numba(model))
+            part.replace(path)
+            _forget_old(model)
         return path.read_text()
-    text = _run_numba(model)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    part = path.with_name(f"{path.name}.{os.getpid()}.part")
-    part.write_text(text)
-    part.replace(path)
-    return text
+
+
+def _forget_old(model: Model) -> None:
+    """Delete all but the newest codes of ``model``; each can have many megabytes."""
+    by_age = sorted(CACHE.glob(f"{model.name}-*.ll"), key=lambda path: path.stat().st_mtime)
+    for path in by_age[:-KEPT]:
+        path.unlink(missing_ok=True)
 
 
 def _own_sources() -> str:

@@ -18,6 +18,7 @@ from typing import Any, Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from fmus.locks import one_at_a_time
 from fmus.native_ir import intermediate_code, object_code
 from fmus.platforms import CODE, NATIVE, PLATFORMS, WARNINGS, Target, compile_c, host
 from modelkit.model import Model
@@ -204,16 +205,22 @@ def _library(
     for source in sources:
         digest.update((NATIVE / source).read_bytes())
     path = LIBRARIES / f"{name}-{digest.hexdigest()[:16]}{PLATFORMS[host()].suffix}"
-    if not path.exists():
-        path.parent.mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryDirectory(prefix="apa-batch-") as directory:
-            here = Path(directory)
-            for source in sources:
-                (here / source).write_bytes((NATIVE / source).read_bytes())
-            for item in objects:
-                (here / item).write_bytes(make())
-            compile_c(here, target.compiler, path.name, options)
-            part = path.with_name(f"{path.name}.{os.getpid()}.part")
-            part.write_bytes((here / path.name).read_bytes())
-            part.replace(path)
+    with one_at_a_time(path):
+        if not path.exists():
+            _build(path, target, options, sources, {item: make() for item in objects})
     return path
+
+
+def _build(
+    path: Path, target: Target, options: Sequence[str], sources: Sequence[str], objects: Mapping[str, bytes]
+) -> None:
+    with tempfile.TemporaryDirectory(prefix="apa-batch-") as directory:
+        here = Path(directory)
+        for source in sources:
+            (here / source).write_bytes((NATIVE / source).read_bytes())
+        for name, content in objects.items():
+            (here / name).write_bytes(content)
+        compile_c(here, target.compiler, path.name, options)
+        part = path.with_name(f"{path.name}.{os.getpid()}.part")
+        part.write_bytes((here / path.name).read_bytes())
+        part.replace(path)

@@ -82,9 +82,7 @@ def cases() -> list[Case]:
                                 speed = SPEEDS[random.Random(number).randrange(len(SPEEDS))]
                                 length = _shortest(kind, wheelbase + front + rear, width) + extra
                                 heading = math.radians(degrees)
-                                found.append(
-                                    Case(number, car, kind, side, extra, beside, heading, body, speed, length)
-                                )
+                                found.append(Case(number, car, kind, side, extra, beside, heading, body, speed, length))
     return found
 
 
@@ -138,7 +136,12 @@ def _scene(case: Case, length: float, width: float) -> dict[str, Any]:
     nearest = -along if case.heading > 0.0 else case.length + 3.0
     y = case.beside + 0.5 * width + (start - nearest) * math.tan(case.heading)
     if case.heading > 0.0:
-        y = case.beside + 0.5 * width + (start - nearest) * math.tan(case.heading) + 0.5 * length * math.sin(case.heading)
+        y = (
+            case.beside
+            + 0.5 * width
+            + (start - nearest) * math.tan(case.heading)
+            + 0.5 * length * math.sin(case.heading)
+        )
     return scene | {"start.x": start, "start.y": case.side * y, "start.heading": case.side * case.heading}
 
 

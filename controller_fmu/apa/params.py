@@ -102,6 +102,9 @@ class SearchParams(NamedTuple):
     perpendicular_room: Annotated[
         float, Signal("m", "narrowest perpendicular slot over the car's width", 0.4, 5.0, HOUSE)
     ] = 0.95
+    unsure: Annotated[
+        float, Signal("s", "each end of a slot is drawn in by this times the speed of the search", 0.0, 0.1, HOUSE)
+    ] = 0.01
     depth_room: Annotated[float, Signal("m", "depth that may be missing", 0.0, 2.0, HOUSE)] = 0.1
     given: Annotated[bool, Signal("1", "no search: the slot is given")] = False
     slot: Slot = Slot()

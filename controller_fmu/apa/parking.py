@@ -11,7 +11,7 @@ from controller_fmu.apa.planner import FOUND, NOTHING, SEARCHING, PlanSearch, ne
 from controller_fmu.apa.slot import PARALLEL, Margins, Site, Slot, site_of
 from controller_fmu.apa.speed import planned_speed, stopping_way
 from controller_fmu.apa.supervisor import Sight, look
-from controller_fmu.apa.tracking import Tracked, set_wheel, track
+from controller_fmu.apa.tracking import Leg, Tracked, next_standstill, set_wheel, track
 from controller_fmu.apa.watch import STANDING
 from controller_fmu.interface import ControllerInput, ControllerParams
 from controller_fmu.slot_frame import to_slot
@@ -26,8 +26,14 @@ HALT = int(Step.HALT)
 STRAIGHTEN = int(Step.STRAIGHTEN)
 DONE = int(Step.DONE)
 OWN_SPEED = int(Longitudinal.OWN_SPEED)
+TIGHTER = 2
+CLOSER = 0.6
+CLOSEST = 0.3
+"""Shares of the margins."""
 AT_END = 0.04
 """Left of a move [m] that is not worth driving."""
+AT_JUMP = 0.06
+"""A car that halts nearer than this [m] to a jump of curvature has halted for it."""
 X_TOLERANCE = 0.08
 
 
@@ -37,7 +43,8 @@ class Parking(NamedTuple):
     step: int = IDLE
     plan: PlanSearch = PlanSearch()
     attempt: int = 0
-    """1: the car may stand out of the slot a little."""
+    """Odd: the car may stand out of the slot a little; 2 or 3, 4 or 5: smaller margins."""
+    leg: Leg = Leg()
     tracked: Tracked = Tracked()
     shifts: int = 0
     direction: int = 0
@@ -65,10 +72,26 @@ def car_of(params: ControllerParams) -> Car:
 
 
 def site_for(slot: Slot, attempt: int, params: ControllerParams) -> Site:
-    """Return the slot as the planner sees it, with the margins of this attempt."""
+    """Return the slot as the planner sees it. Odd attempts stand out a little, 2 and 4 more keep smaller margins."""
     plan = params.apa.plan
-    inset = -plan.stand_out if attempt > 0 else 0.0
-    return site_of(slot, car_of(params), Margins(plan.margin, plan.kerb_margin, inset))
+    inset = -plan.stand_out if attempt % 2 == 1 else 0.0
+    share = 1.0 if attempt < TIGHTER else CLOSER if attempt < 2 * TIGHTER else CLOSEST
+    return site_of(slot, car_of(params), Margins(share * plan.margin, share * plan.kerb_margin, inset))
+
+
+def next_attempt(state: Parking, plan: PlanSearch, site: Site, params: ControllerParams) -> int:
+    """Return the attempt to make after a search that led nowhere; the same if there is none.
+
+    At first a parallel car may stand out. A car that is under way may come nearer to the neighbours: it
+    may stand nearer to them already than the margin, from where every move would be refused.
+    """
+    nothing = plan.status == NOTHING
+    if state.direction == 0:
+        return 1 if nothing and state.attempt == 0 and site.kind == PARALLEL else state.attempt
+    too_many = plan.status == FOUND and more_shifts(state, plan) > params.apa.plan.shifts
+    if (nothing or too_many) and state.attempt < 2 * TIGHTER:
+        return state.attempt + TIGHTER
+    return state.attempt
 
 
 def is_in_place(pose: Pose, site: Site, lateral: float, heading: float) -> bool:
@@ -89,8 +112,8 @@ def park(state: Parking, slot: Slot, inputs: ControllerInput, allowed: bool, par
     attempt = state.attempt
     if state.step == PLAN:
         plan = search_on(plan, site, car, params.apa.plan.at_a_time)
-        if plan.status == NOTHING and attempt == 0 and state.direction == 0 and site.kind == PARALLEL:
-            attempt = 1
+        attempt = next_attempt(state, plan, site, params)
+        if attempt != state.attempt:
             site = site_for(slot, attempt, params)
             pose = to_slot(inputs.odometry, site.frame)
             plan = new_search(pose)
@@ -98,8 +121,10 @@ def park(state: Parking, slot: Slot, inputs: ControllerInput, allowed: bool, par
     sight = Sight(100.0, False, False)
     if state.step == DRIVE or state.step == HALT or state.step == SET_WHEEL:
         drive = params.apa.drive
-        tracked = track(plan.move, tracked.way, pose, drive.k1, drive.k2, params.wheelbase)
-        around = site_of(slot, car, Margins(0.0, 0.0, 0.0 if attempt == 0 else -params.apa.plan.stand_out)).obstacles
+        tracked = track(plan.move, state.leg, tracked.way, pose, drive.k1, drive.k2, params.wheelbase)
+        around = site_of(
+            slot, car, Margins(0.0, 0.0, -params.apa.plan.stand_out if attempt % 2 == 1 else 0.0)
+        ).obstacles
         mirror = site.frame.mirror
         sight = look(inputs.ultrasonic, pose, mirror, plan.move.direction, inputs.measured_speed, around, params.apa)
     guards = _guards(state, plan, tracked, sight, pose, site, inputs, allowed, params)
@@ -170,15 +195,20 @@ def _moved_on(
     shifts = state.shifts
     direction = state.direction
     ended = state.ended
+    leg = state.leg
     wheel = state.wheel
     speed = 0.0
     if step == PLAN and state.step != PLAN:
         ended = state.step == HALT and plan.moves <= 1
+        attempt = attempt % TIGHTER
         plan = new_search(pose)
     if step == SET_WHEEL and state.step == PLAN:
-        tracked = Tracked(0.0, length_of(plan.move), length_of(plan.move), pose, 0.0, 0.0, 0.0, 0.0)
+        leg = Leg(0.0, next_standstill(plan.move, 0.0))
+        tracked = Tracked(0.0, length_of(plan.move), leg.end, pose, 0.0, 0.0, 0.0, 0.0)
+    if step == SET_WHEEL and state.step == HALT and tracked.to_stop < AT_JUMP:
+        leg = Leg(leg.end, next_standstill(plan.move, leg.end))
     if step == SET_WHEEL:
-        wheel = _wheel(mirror * set_wheel(plan.move, tracked.way, params.wheelbase), params)
+        wheel = _wheel(mirror * set_wheel(plan.move, leg, tracked.way, params.wheelbase), params)
     if step == DRIVE:
         if state.step != DRIVE and plan.move.direction != direction:
             shifts = shifts + 1 if shifts > 0 or plan.move.direction < 0 else shifts
@@ -188,7 +218,7 @@ def _moved_on(
         wheel = _wheel(mirror * tracked.front_wheel_angle, params)
     if step == STRAIGHTEN or step == IDLE:
         wheel = 0.0
-    return Parking(step, plan, attempt, tracked, shifts, direction, ended, sight, wheel, speed)
+    return Parking(step, plan, attempt, leg, tracked, shifts, direction, ended, sight, wheel, speed)
 
 
 def _speed(tracked: Tracked, sight: Sight, params: ControllerParams) -> float:
@@ -211,7 +241,7 @@ def start_planning(slot: Slot, pose: Pose, params: ControllerParams) -> Parking:
     site = site_for(slot, 0, params)
     none = Tracked(0.0, 0.0, 0.0, Pose(0.0, 0.0, 0.0), 0.0, 0.0, 0.0, 0.0)
     sight = Sight(100.0, False, False)
-    return Parking(PLAN, new_search(to_slot(pose, site.frame)), 0, none, 0, 0, False, sight, 0.0, 0.0)
+    return Parking(PLAN, new_search(to_slot(pose, site.frame)), 0, Leg(0.0, 0.0), none, 0, 0, False, sight, 0.0, 0.0)
 
 
 def is_planned(state: Parking) -> bool:

@@ -46,11 +46,13 @@ class SearchState(NamedTuple):
     refused: Fit = Fit()
     """Of the last gap that was refused."""
     refusals: int = 0
+    fastest: float = 0.0
+    """Largest speed of the search [m/s]."""
 
 
 def begin_search(pose: Pose, clock_ns: int) -> SearchState:
     """Return a search that begins at ``pose``."""
-    return SearchState(True, pose, clock_ns, START, START, DEEP, DEEP, 0.0, NO_SLOTS, 0, 0, Fit(False, 0, 0.0), 0)
+    return SearchState(True, pose, clock_ns, START, START, DEEP, DEEP, 0.0, NO_SLOTS, 0, 0, Fit(False, 0, 0.0), 0, 0.0)
 
 
 def search(state: SearchState, inputs: ControllerInput, car: Car, params: ApaParams, dt_ns: int) -> SearchState:
@@ -58,7 +60,9 @@ def search(state: SearchState, inputs: ControllerInput, car: Car, params: ApaPar
     clock = state.clock_ns + dt_ns
     way = state.way + abs(inputs.measured_speed) * dt_ns * 1e-9
     if state.clock_ns % SENSOR_CYCLE_NS >= dt_ns or abs(inputs.measured_speed) < 0.01:
-        return _with_sides(state, state.right, state.left, state.far_right, state.far_left, clock, way)
+        return _with_sides(state, state.right, state.left, state.far_right, state.far_left, clock, way, state.fastest)
+    speed = abs(inputs.measured_speed)
+    speed = speed if speed > state.fastest else state.fastest
     pose = inputs.odometry
     right_r = inputs.ultrasonic[RIGHT_SENSOR]
     left_r = inputs.ultrasonic[LEFT_SENSOR]
@@ -69,27 +73,29 @@ def search(state: SearchState, inputs: ControllerInput, car: Car, params: ApaPar
     far_right = DEEP if left.mode == 1 and state.left.mode != 1 else state.far_right
     far_left = left_r if left_r < far_left and left_r < top else far_left
     far_right = right_r if right_r < far_right and right_r < top else far_right
-    state = _with_sides(state, right, left, far_right, far_left, clock, way)
+    state = _with_sides(state, right, left, far_right, far_left, clock, way, speed)
     if right.fresh:
-        state = _judge(state, right, RIGHT, far_left, car, params)
+        state = _judge(state, right, RIGHT, far_left, speed, car, params)
     if left.fresh:
-        state = _judge(state, left, LEFT, far_right, car, params)
+        state = _judge(state, left, LEFT, far_right, speed, car, params)
     return state
 
 
-def slot_of(side: SideState, which: int, origin: Pose, opposite_heard: float, car: Car, params: ApaParams) -> Slot:
-    """Return the gap between the last two neighbours as a slot, in the world."""
+def slot_of(
+    side: SideState, which: int, origin: Pose, opposite_heard: float, unsure: float, car: Car, params: ApaParams
+) -> Slot:
+    """Return the gap between the last two neighbours as a slot, in the world, each end drawn in by ``unsure`` [m]."""
     mirror = -1.0 if which == LEFT else 1.0
     b = slope(side.before, side.sums)
     a1 = offset(side.before, b)
     a2 = offset(side.sums, b)
     cos = 1.0 / math.sqrt(1.0 + b * b)
-    u = side.edge
+    u = side.edge + unsure
     w = mirror * (a1 + b * u)
     c = math.cos(origin.heading)
     s = math.sin(origin.heading)
     corner_a = Pose(origin.x + u * c - w * s, origin.y + u * s + w * c, origin.heading + mirror * math.atan(b))
-    length = (side.edge_b - side.edge) / cos
+    length = (side.edge_b - side.edge) / cos - 2.0 * unsure
     depth = side.depth if side.depth < DEEP else UNSEEN
     opposite = UNSEEN
     if opposite_heard < DEEP:
@@ -124,9 +130,11 @@ def _hear(
     return hear(side, dx * c + dy * s, mirror * (dy * c - dx * s), reading, params.sensors.half_angle, params.search)
 
 
-def _judge(state: SearchState, side: SideState, which: int, far: float, car: Car, params: ApaParams) -> SearchState:
+def _judge(
+    state: SearchState, side: SideState, which: int, far: float, speed: float, car: Car, params: ApaParams
+) -> SearchState:
     """Return the search with a new gap judged, or a known one measured better."""
-    slot = slot_of(side, which, state.origin, far, car, params)
+    slot = slot_of(side, which, state.origin, far, params.search.unsure * speed, car, params)
     mark = side.found * 16 if which == RIGHT else side.found
     known = (state.seen // 16) * 16 if which == RIGHT else state.seen % 16
     other = state.seen - known
@@ -160,10 +168,11 @@ def _with_sides(
     far_left: float,
     clock_ns: int,
     way: float,
+    fastest: float,
 ) -> SearchState:
     return SearchState(
         state.begun, state.origin, clock_ns, right, left, far_right, far_left, way, state.slots, state.valid,
-        state.seen, state.refused, state.refusals,
+        state.seen, state.refused, state.refusals, fastest,
     )  # fmt: skip
 
 
@@ -172,5 +181,5 @@ def _with_slots(
 ) -> SearchState:
     return SearchState(
         state.begun, state.origin, state.clock_ns, state.right, state.left, state.far_right, state.far_left,
-        state.way, slots, count, seen, refused, refusals,
+        state.way, slots, count, seen, refused, refusals, state.fastest,
     )  # fmt: skip

@@ -23,7 +23,7 @@ from controller_fmu.apa.relocate import relocated
 from controller_fmu.apa.search import NO_SLOT, SearchState, begin_search, search, without_first
 from controller_fmu.apa.slot import Slot
 from controller_fmu.apa.supervisor import Sight
-from controller_fmu.apa.tracking import Tracked
+from controller_fmu.apa.tracking import Leg, Tracked
 from controller_fmu.apa.watch import STANDING, Watch, is_taken_over, reason_to_fail, watch
 from controller_fmu.interface import ControllerInput, ControllerParams, Reason
 from modelkit.vocabulary import Pose
@@ -64,6 +64,7 @@ NOT_PARKING = Parking(
     IDLE,
     PlanSearch(SEARCHING, 0, 0, Exit(False, NOWHERE, 0), False, 0.0, 0, NO_MOVE),
     0,
+    Leg(0.0, 0.0),
     Tracked(0.0, 0.0, 0.0, NOWHERE, 0.0, 0.0, 0.0, 0.0),
     0,
     0,

@@ -20,7 +20,8 @@ from modelkit.vocabulary import Pose
 
 STEEPEST = 1.3
 JUMP = 1e-6
-PASSED = 0.004
+INTO = 0.001
+"""So far [m] into a leg its curvature is looked up: past a jump at its start."""
 
 
 class Tracked(NamedTuple):
@@ -40,37 +41,44 @@ class Tracked(NamedTuple):
     """Change of the reference's curvature over the way [1/m2]."""
 
 
-def track(move: Move, way: float, pose: Pose, k1: float, k2: float, wheelbase: float) -> Tracked:
-    """Return the tracking of ``move`` by a car at ``pose`` (slot's frame) that was at ``way`` before."""
+class Leg(NamedTuple):
+    """The part of a move between two standstills; odometry may jitter around their places, the leg does not."""
+
+    start: float = 0.0
+    end: float = 0.0
+
+
+def track(move: Move, leg: Leg, way: float, pose: Pose, k1: float, k2: float, wheelbase: float) -> Tracked:
+    """Return the tracking of ``leg`` of ``move`` by a car at ``pose`` (slot's frame) that was at ``way`` before."""
     direction = float(move.direction)
     for _ in range(2):
         at = point_at(move, way).pose
         way += direction * ((pose.x - at.x) * math.cos(at.heading) + (pose.y - at.y) * math.sin(at.heading))
-    point = point_at(move, way)
+    point = point_at(move, way if way > leg.start + INTO else leg.start + INTO)
     at = point.pose
     e = (pose.y - at.y) * math.cos(at.heading) - (pose.x - at.x) * math.sin(at.heading)
     turned = clamp(wrap_angle(pose.heading - at.heading), -STEEPEST, STEEPEST)
     c = math.cos(turned)
     angle = math.atan(wheelbase * c * c * c * (point.curvature - k1 * e - direction * k2 * math.tan(turned)))
-    return Tracked(way, point.left, to_standstill(move, way), at, e, turned, angle, point.slope)
+    return Tracked(way, length_of(move) - way, leg.end - way, at, e, turned, angle, point.slope)
 
 
-def to_standstill(move: Move, way: float) -> float:
-    """Return the way [m] to the next jump of curvature, or to the end; one within 4 mm counts as passed."""
+def next_standstill(move: Move, after: float) -> float:
+    """Return where [m] along a move the next jump of curvature after ``after`` lies, or its end."""
     along = 0.0
     last = 0.0
     begun = False
     for piece in move.pieces:
         if piece.length > 0.0:
-            if begun and abs(piece.k0 - last) > JUMP and along > way + PASSED:
-                return along - way
+            if begun and abs(piece.k0 - last) > JUMP and along > after + JUMP:
+                return along
             along += piece.length
             last = piece.k1
             begun = True
-    return along - way
+    return along
 
 
-def set_wheel(move: Move, way: float, wheelbase: float) -> float:
-    """Return the front-wheel angle [rad] to set at standstill before driving on from ``way``."""
-    ahead = way + 1.5 * PASSED if way + 1.5 * PASSED < length_of(move) else way
-    return math.atan(wheelbase * point_at(move, ahead if ahead > 0.0 else 0.0).curvature)
+def set_wheel(move: Move, leg: Leg, way: float, wheelbase: float) -> float:
+    """Return the front-wheel angle [rad] to set at standstill before driving on from ``way`` within ``leg``."""
+    at = way if way > leg.start else leg.start
+    return math.atan(wheelbase * point_at(move, at + INTO).curvature)

@@ -5,10 +5,10 @@ import math
 import pytest
 
 from controller_fmu.apa.curve import advance
-from controller_fmu.apa.move import Move, end_of, point_at
+from controller_fmu.apa.move import Move, end_of, length_of, point_at
 from controller_fmu.apa.params import DriveParams
 from controller_fmu.apa.speed import planned_speed, stopping_way
-from controller_fmu.apa.tracking import set_wheel, to_standstill, track
+from controller_fmu.apa.tracking import Leg, next_standstill, set_wheel, track
 from controller_fmu.apa.turns import forward_turn, reverse_turn, straight_move, turn_of, two_arcs
 from modelkit.vocabulary import Pose
 
@@ -20,7 +20,7 @@ def drive_along(move: Move, start: Pose, k1: float = 2.0, k2: float = 2.4) -> tu
     """Return the lateral errors every centimetre, and the last pose, of an ideal car."""
     pose, way, errors = start, 0.0, []
     while True:
-        tracked = track(move, way, pose, k1, k2, WHEELBASE)
+        tracked = track(move, Leg(0.0, length_of(move)), way, pose, k1, k2, WHEELBASE)
         way = tracked.way
         if tracked.left <= 0.0:
             return errors, pose
@@ -57,19 +57,23 @@ def test_a_path_that_turns_far_is_followed_to_its_end(move: Move) -> None:
 
 def test_on_the_path_the_wheel_is_the_paths() -> None:
     move = reverse_turn(Pose(8.0, -9.0, -1.3), TURN)
-    for n in range(0, 90):
+    for n in range(1, 90):
         point = point_at(move, 0.1 * n)
-        tracked = track(move, 0.1 * n, point.pose, 2.0, 2.4, WHEELBASE)
+        tracked = track(move, Leg(0.0, length_of(move)), 0.1 * n, point.pose, 2.0, 2.4, WHEELBASE)
         assert tracked.lateral_error == pytest.approx(0.0, abs=1e-9)
         assert tracked.front_wheel_angle == pytest.approx(math.atan(WHEELBASE * point.curvature), abs=1e-9)
 
 
 def test_a_jump_of_curvature_is_a_standstill() -> None:
     move = two_arcs(Pose(0.0, 0.0, 0.1), 1, 0.15, 0.5, 0.7, 0.0)
-    assert to_standstill(move, 0.1) == pytest.approx(0.4)
-    assert to_standstill(move, 0.499) == pytest.approx(0.701)
-    assert set_wheel(move, 0.0, WHEELBASE) == pytest.approx(math.atan(0.15 * WHEELBASE))
-    assert set_wheel(move, 0.499, WHEELBASE) == pytest.approx(-math.atan(0.15 * WHEELBASE))
+    first, second = Leg(0.0, next_standstill(move, 0.0)), Leg(0.5, next_standstill(move, 0.5))
+    assert (first.end, second.end) == pytest.approx((0.5, 1.2))
+    assert set_wheel(move, first, 0.0, WHEELBASE) == pytest.approx(math.atan(0.15 * WHEELBASE))
+    for way in (0.47, 0.5, 0.53):
+        assert set_wheel(move, second, way, WHEELBASE) == pytest.approx(-math.atan(0.15 * WHEELBASE))
+        pose = point_at(move, way).pose
+        angle = track(move, second, way, pose, 2.0, 2.4, WHEELBASE).front_wheel_angle
+        assert angle == pytest.approx(-math.atan(0.15 * WHEELBASE), abs=0.03)
 
 
 def test_speed_falls_towards_a_standstill_and_where_the_wheel_has_to_turn() -> None:

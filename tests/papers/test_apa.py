@@ -1,0 +1,41 @@
+"""Every number that the reproduction of the APA source promises."""
+
+
+import pytest
+
+from orchestrator.load_scenario import load_scenario
+from orchestrator.reproduce.apa import reproduce
+from orchestrator.reproduce.result import Driven, Reproduction
+from orchestrator.session import run_scenario
+from orchestrator.summary import summarize
+
+
+def drive(name: str) -> Driven:
+    scenario = load_scenario(name)
+    ran = run_scenario(scenario)
+    return Driven(scenario, ran.recording, summarize(ran.recording, scenario, ran.wall_time))
+
+
+@pytest.fixture(scope="module")
+def reproduction(tmp_path_factory: pytest.TempPathFactory) -> Reproduction:
+    return reproduce(tmp_path_factory.mktemp("apa"), drive)
+
+
+def test_every_stated_check_holds(reproduction: Reproduction) -> None:
+    asked = [row for row in reproduction.rows if row.limit is not None]
+    assert not [row for row in asked if not row.passed]
+    assert len(asked) == 3 + 2 + 1 + 4 * 2 + 3 * 2 + 1
+
+
+def test_iso_slots_are_shorter_than_l_min_and_take_several_moves(reproduction: Reproduction) -> None:
+    rows = {row.item: row.ours for row in reproduction.rows}
+    for name in ("guo2015", "zhang2022", "commonroad1"):
+        iso, closed = rows[f"{name}: shortest slot of ISO 16787"], rows[f"{name}: L_min, formula and search"]
+        assert isinstance(iso, float)
+        assert isinstance(closed, float)
+        assert iso < closed
+        assert 3 <= float(rows[f"{name}: moves into that slot"]) <= 8
+
+
+def test_the_picture_is_drawn(reproduction: Reproduction) -> None:
+    assert all(figure.stat().st_size > 10_000 for figure in reproduction.figures)

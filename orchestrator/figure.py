@@ -32,7 +32,21 @@ PHASE_COLOURS = {
     "PARKED": "#2f8f5b",
     "FAILED": "#7a1f2b",
     "TAKEOVER": "#444a52",
+    "READY_AWAY": "#1b2a49",
+    "READY_TURNED": "#2563a8",
+    "READY_FAR": "#6fa8dc",
+    "READY_NEAR": "#b7d3ef",
+    "SLOT_AWAY": "#5a2d0c",
+    "SLOT_TURNED": "#b5541c",
+    "SLOT_FAR": "#e08e45",
+    "SLOT_NEAR": "#f2c89b",
+    "SHUFFLE_AWAY": "#123d24",
+    "SHUFFLE_TURNED": "#2f8f5b",
+    "SHUFFLE_FAR": "#7cc49a",
+    "SHUFFLE_NEAR": "#c3e6d0",
 }
+RIBBONS = ("controller.hsic.characteristic", "controller.preview.stage", "controller.phase")
+"""What the ribbon shows: the first of these that changes during the run."""
 SPARE_COLOURS = ("#4f7cac", "#9c6644", "#5c946e", "#a65e9c", "#787f3e", "#b56576")
 STYLE: Any = {
     "font.size": 9.0,
@@ -149,9 +163,10 @@ def _ribbon(axis: Any, recording: Recording) -> list[str]:
     axis.spines["left"].set_visible(False)
     axis.set_xlabel("time [s]")
     t = recording.t
-    states = recording.states("controller.phase")
-    phases = _signal(recording, "controller.phase")
-    edges = [0, *(row for row, _, _ in phase_changes(recording)), len(t) - 1]
+    shown = next((name for name in RIBBONS if np.ptp(_signal(recording, name)) > 0.0), RIBBONS[-1])
+    states = recording.states(shown)
+    phases = _signal(recording, shown)
+    edges = [0, *(int(row) + 1 for row in np.flatnonzero(np.diff(phases))), len(t) - 1]
     names: dict[str, None] = {}
     for first, last in pairwise(edges):
         value = phases[first]

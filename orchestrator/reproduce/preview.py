@@ -66,7 +66,8 @@ def curves() -> list[tuple[float, float, float]]:
 def sweep() -> Array:
     """Return largest |yL| [m] and largest |epsL| [rad] (in curve 4) for each set speed of Fig. 11."""
     kept = [Kept("largest", "controller.preview.y_l"), Kept("largest", "controller.preview.eps_l")]
-    return np.abs(measure([load_scenario(f"preview-{speed}") for speed in SWEEP], kept))
+    runs = [load_scenario("preview-18", [f"controller.preview.set_speed={speed}"]) for speed in SWEEP]
+    return np.abs(measure(runs, kept))
 
 
 def entries(driven: Driven, after: int, before: int) -> list[int]:
@@ -191,7 +192,7 @@ def _single(main: Driven, single: Driven) -> list[Row]:
 def _sweep_rows(table: Array) -> list[Row]:
     rows = []
     for speed, (y, eps) in zip(SWEEP, table, strict=True):
-        name = f"preview-{speed}"
+        name = f"set speed {speed} m/s"
         rows.append(Row(name, "largest |yL|", "m", 0.02, float(y), note="about 2 cm printed"))
         rows.append(Row(name, "|yL| within 2 cm", "", "yes", "yes" if y < 0.02 else "no", 0.0))
         rows.append(

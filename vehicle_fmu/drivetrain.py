@@ -3,7 +3,8 @@
     reference' within the acceleration limits (see drive)
     force = m (reference' + k_p (reference - speed)) + k_i m * integral of the error
 
-A force along the gear's direction goes to the drive, against it to the brake; both lag. At a
+A force along the gear's direction goes to the drive, against it to the brake; both lag. The
+integral waits while the force is beyond what the drive has (no windup). At a
 reference of zero the brake holds the car. In D and R the car creeps: a force that fades out at
 the creep speed. The traction limit is the tyres' own.
 """
@@ -87,9 +88,11 @@ def press(pedals: Pedals, target: float, speed: float, gear: int, mass: float, p
         brake = mass * _stopping_deceleration(speed, pedals.stopping, p)
         return Pedals(0.0, 0.0, _lag(pedals.effort, creep, brake, p, h), pedals.stopping + h)
     error = reference - speed
-    integral = clamp(pedals.integral + h * error, -p.integral_limit, p.integral_limit)
-    push = (reference - pedals.reference) / h + p.speed_gain * error + p.speed_integral * integral
+    push = (reference - pedals.reference) / h + p.speed_gain * error + p.speed_integral * pedals.integral
     force = mass * push - creep
+    integral = pedals.integral
+    if abs(force) < p.drive_force_limit:
+        integral = clamp(integral + h * error, -p.integral_limit, p.integral_limit)
     along = 1.0 if reference > 0.0 else -1.0
     if force * along >= 0.0:
         return Pedals(reference, integral, _lag(pedals.effort, force + creep, 0.0, p, h), 0.0)

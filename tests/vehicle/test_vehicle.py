@@ -92,6 +92,18 @@ def test_shift_time_needs_standstill_and_time(body: int) -> None:
     assert speeds[-1] < -0.4
 
 
+@pytest.mark.parametrize("limit", [1.5, 10.0])
+def test_pedals_overshoot_by_less_than_a_tenth_even_when_more_is_asked_than_the_drive_has(limit: float) -> None:
+    car = with_values(VehicleParams, {"body": 1, "drive.acceleration_limit": limit, "driver.profile[1].speed": 1.5})
+    state, out = MODEL.initialize(car)
+    fastest = 0.0
+    for _ in range(600):
+        state, out = MODEL.step(state, prompted(Prompt.FORWARD), car, STEP_NS)
+        fastest = max(fastest, out.speed)
+    assert 1.5 < fastest < 1.65
+    assert out.speed == pytest.approx(1.5, rel=0.005)
+
+
 def test_force_request_moves_and_brakes() -> None:
     for body in BODIES:
         car = params(body=body)

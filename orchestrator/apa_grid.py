@@ -26,6 +26,22 @@ BESIDE = (0.5, 1.0, 1.5)
 HEADINGS = (-5.0, 0.0, 5.0)
 SPEEDS = (1.0, 2.5, 20.0 / 3.6)
 STOP = 150.0
+KEPT = (
+    "vehicle.pose.x",
+    "vehicle.pose.y",
+    "vehicle.pose.heading",
+    "vehicle.clearance",
+    "controller.phase",
+    "controller.reason",
+    "controller.shifts",
+    "controller.apa.mode",
+    "controller.apa.parking_time",
+    "controller.apa.slot.a.x",
+    "controller.apa.slot.a.y",
+    "controller.apa.corner_b.x",
+    "controller.apa.corner_b.y",
+)
+"""Signals that a result is made of."""
 
 
 class Case(NamedTuple):
@@ -156,7 +172,7 @@ def drive(case: Case, loop: Loop) -> Result:
             planned = row["vehicle.pose.x"] - case.length
             found = _corner_errors(case, row)
         last = row
-    wheelbase, front, rear, width, _ = CARS[case.car]
+    width = CARS[case.car][3]
     if case.kind == PARALLEL:
         lateral = last["vehicle.pose.y"] + case.side * 0.5 * width
         turned = last["vehicle.pose.heading"]
@@ -196,3 +212,18 @@ def is_within_house(result: Result) -> bool:
     """Return whether the car is parked within the house limits."""
     good = is_within_gbt(result) and result.shifts <= 3 and result.parking_time <= 60.0 and result.nearest >= 0.1
     return good and abs(result.lateral) <= 0.05 and abs(result.heading) <= math.radians(1.0)
+
+
+def totals(results: list[Result]) -> dict[str, int]:
+    """Return how many runs did what."""
+    corners = [result for result in results if not math.isnan(result.corner_a)]
+    return {
+        "runs": len(results),
+        "touched something": sum(result.nearest <= 0.0 for result in results),
+        "parked within GB/T 41630": sum(is_within_gbt(result) for result in results),
+        "parked within the house limits": sum(is_within_house(result) for result in results),
+        "ended in Fail with a reason": sum(result.mode == 7 and result.reason > 0 for result in results),
+        "neither parked nor failed": sum(result.mode not in (6, 7) for result in results),
+        "slots found": len(corners),
+        "both corners within 10 cm": sum(max(result.corner_a, result.corner_b) <= 0.1 for result in corners),
+    }

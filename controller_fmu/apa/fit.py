@@ -21,6 +21,18 @@ class Fit(NamedTuple):
 
 LONGEST_LACK = 3.0
 HALVINGS = 5
+CLOSER_FROM = 2
+CLOSER = 0.6
+CLOSEST = 0.3
+"""Shares of the margins."""
+
+
+def margins_of(attempt: int, params: ApaParams) -> Margins:
+    """Return the margins of an attempt: odd ones stand out a little, from 2 and from 4 on closer ones are kept."""
+    plan = params.plan
+    inset = -plan.stand_out if attempt % 2 == 1 else 0.0
+    share = 1.0 if attempt < CLOSER_FROM else CLOSER if attempt < 2 * CLOSER_FROM else CLOSEST
+    return Margins(share * plan.margin, share * plan.kerb_margin, inset)
 
 
 def fit_of(slot: Slot, car: Car, params: ApaParams) -> Fit:
@@ -61,9 +73,8 @@ def least_moves(slot: Slot, car: Car, params: ApaParams) -> int:
     plan = params.plan
     if slot.length < car.front + car.rear + 2.0 * plan.margin + 0.1:
         return 0
-    for attempt in range(2):
-        inset = -plan.stand_out if attempt == 1 else 0.0
-        site = site_of(slot, car, Margins(plan.margin, plan.kerb_margin, inset))
+    for attempt in range(2 * CLOSER_FROM):
+        site = site_of(slot, car, margins_of(attempt, params))
         for variant in range(VARIANTS):
             way_in = exit_of(variant, site, car)
             if way_in.found and way_in.moves + 1 <= plan.shifts:

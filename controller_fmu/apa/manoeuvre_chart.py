@@ -15,7 +15,7 @@ class Step(IntEnum):
     DONE = 6
 
 
-class StepGuard(IntEnum):
+class Guard(IntEnum):
     """Conditions that are worked out at every sample; one bit each."""
 
     STARTED = 0
@@ -35,19 +35,19 @@ class StepGuard(IntEnum):
 Row = tuple[int, int, int]
 
 
-def _row(source: Step, guard: StepGuard, target: Step) -> Row:
+def _row(source: Step, guard: Guard, target: Step) -> Row:
     return (int(source), int(guard), int(target))
 
 
 TRANSITIONS: tuple[Row, ...] = (
-    _row(Step.IDLE, StepGuard.STARTED, Step.PLAN),
-    _row(Step.PLAN, StepGuard.IN_PLACE, Step.STRAIGHTEN),
-    _row(Step.PLAN, StepGuard.PLANNED, Step.SET_WHEEL),
-    _row(Step.SET_WHEEL, StepGuard.WHEEL_SET, Step.DRIVE),
-    _row(Step.DRIVE, StepGuard.MUST_HALT, Step.HALT),
-    _row(Step.HALT, StepGuard.STANDING_AT_END, Step.PLAN),
-    _row(Step.HALT, StepGuard.STANDING_TO_GO_ON, Step.SET_WHEEL),
-    _row(Step.STRAIGHTEN, StepGuard.WHEEL_STRAIGHT, Step.DONE),
+    _row(Step.IDLE, Guard.STARTED, Step.PLAN),
+    _row(Step.PLAN, Guard.IN_PLACE, Step.STRAIGHTEN),
+    _row(Step.PLAN, Guard.PLANNED, Step.SET_WHEEL),
+    _row(Step.SET_WHEEL, Guard.WHEEL_SET, Step.DRIVE),
+    _row(Step.DRIVE, Guard.MUST_HALT, Step.HALT),
+    _row(Step.HALT, Guard.STANDING_AT_END, Step.PLAN),
+    _row(Step.HALT, Guard.STANDING_TO_GO_ON, Step.SET_WHEEL),
+    _row(Step.STRAIGHTEN, Guard.WHEEL_STRAIGHT, Step.DONE),
 )
 
 

@@ -3,7 +3,10 @@
 import math
 from typing import NamedTuple
 
-from controller_fmu.apa.manoeuvre_chart import Step, StepGuard, step_transition
+from controller_fmu.apa.fit import CLOSER_FROM as TIGHTER
+from controller_fmu.apa.fit import margins_of
+from controller_fmu.apa.manoeuvre_chart import Guard as StepGuard
+from controller_fmu.apa.manoeuvre_chart import Step, step_transition
 from controller_fmu.apa.move import length_of
 from controller_fmu.apa.outline import Car
 from controller_fmu.apa.params import ApaParams, Longitudinal
@@ -26,10 +29,6 @@ HALT = int(Step.HALT)
 STRAIGHTEN = int(Step.STRAIGHTEN)
 DONE = int(Step.DONE)
 OWN_SPEED = int(Longitudinal.OWN_SPEED)
-TIGHTER = 2
-CLOSER = 0.6
-CLOSEST = 0.3
-"""Shares of the margins."""
 AT_END = 0.04
 """Left of a move [m] that is not worth driving."""
 AT_JUMP = 0.06
@@ -73,22 +72,20 @@ def car_of(params: ControllerParams) -> Car:
 
 def site_for(slot: Slot, attempt: int, params: ControllerParams) -> Site:
     """Return the slot as the planner sees it. Odd attempts stand out a little, 2 and 4 more keep smaller margins."""
-    plan = params.apa.plan
-    inset = -plan.stand_out if attempt % 2 == 1 else 0.0
-    share = 1.0 if attempt < TIGHTER else CLOSER if attempt < 2 * TIGHTER else CLOSEST
-    return site_of(slot, car_of(params), Margins(share * plan.margin, share * plan.kerb_margin, inset))
+    return site_of(slot, car_of(params), margins_of(attempt, params.apa))
 
 
 def next_attempt(state: Parking, plan: PlanSearch, site: Site, params: ControllerParams) -> int:
     """Return the attempt to make after a search that led nowhere; the same if there is none.
 
-    At first a parallel car may stand out. A car that is under way may come nearer to the neighbours: it
-    may stand nearer to them already than the margin, from where every move would be refused.
+    At first a parallel car may stand out, then the margins may be closer. A car that is under way may
+    stand nearer to the neighbours than the margin, from where every move would be refused.
     """
     nothing = plan.status == NOTHING
-    if state.direction == 0:
-        return 1 if nothing and state.attempt == 0 and site.kind == PARALLEL else state.attempt
     too_many = plan.status == FOUND and more_shifts(state, plan) > params.apa.plan.shifts
+    if state.direction == 0:
+        following = state.attempt + (1 if site.kind == PARALLEL else TIGHTER)
+        return following if (nothing or too_many) and following < 2 * TIGHTER else state.attempt
     if (nothing or too_many) and state.attempt < 2 * TIGHTER:
         return state.attempt + TIGHTER
     return state.attempt

@@ -4,7 +4,7 @@ import math
 from pathlib import Path
 
 import numpy as np
-from scipy.interpolate import splev, splrep
+from scipy.interpolate import splev, splrep  # type: ignore[import-untyped]
 
 from controller_fmu.apa.chart import Mode
 from controller_fmu.apa.curve import advance

@@ -4,7 +4,8 @@ import pytest
 
 from controller_fmu.apa.chart import TRANSITIONS, Guard, Mode, transition
 from controller_fmu.apa.manoeuvre_chart import TRANSITIONS as STEPS
-from controller_fmu.apa.manoeuvre_chart import Step, StepGuard, step_transition
+from controller_fmu.apa.manoeuvre_chart import Guard as StepGuard
+from controller_fmu.apa.manoeuvre_chart import Step, step_transition
 from controller_fmu.apa.outputs import PHASE_OF_STEP
 
 DRIVING = (Mode.AUTO_PARKING_ASSIST, Mode.POSITION_TUNING)

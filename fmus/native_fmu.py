@@ -41,6 +41,7 @@ MAKERS = (
     "platforms.py",
 )
 """Files that decide what is in the binaries."""
+NUL = r'"\0"'
 KINDS = {float: "REAL", int: "INTEGER", bool: "BOOLEAN"}
 
 
@@ -73,27 +74,39 @@ def sizes_header(model: Model) -> str:
 
 
 def tables(model: Model, guid: str) -> str:
-    """Return the C source with the GUID and one line per variable, in the order of the value references."""
-    lines = ['#include "model.h"', "", "#include <math.h>", "", f"const char model_guid[] = {_text(guid)};", ""]
-    lines.append("const Variable model_variables[MODEL_VARIABLES] = {")
-    for place, variable in enumerate(fmi_variables(model)):
+    """Return the C source with the GUID and what is known of each variable, in the order of the value references."""
+    known = fmi_variables(model)
+    for place, variable in enumerate(known):
         if variable.vr != place:
             raise ValueError(f"{variable.name}: value reference {variable.vr} is not its place {place}")
-        lines.append(f"    {{{_row(variable)}}},")
-    return "\n".join([*lines, "};", ""])
+    names = [variable.name.encode() for variable in known]
+    places = [sum(len(name) + 1 for name in names[:number]) for number in range(len(names))]
+    parameters = [variable for variable in known if variable.causality == "parameter"]
+    starts = [_number(float(variable.start)) for variable in known if variable.start is not None]
+    parts = [
+        f'#include "model.h"\n\n#include <math.h>\n\nconst char model_guid[] = {_text(guid)};\n',
+        _table("unsigned char model_kinds[MODEL_VARIABLES]", [KINDS[variable.kind] for variable in known]),
+        _table("double model_starts[MODEL_PARAMETERS + MODEL_INPUTS + 1]", [*starts, "0"]),
+        _table("double model_limits[MODEL_PARAMETERS + 1][2]", [*map(_limits, parameters), "{0, 0}"]),
+        _table("uint32_t model_name_places[MODEL_VARIABLES]", [str(place) for place in places]),
+        "const char model_names[] =\n" + "\n".join(f"    {_text(name.decode())} {NUL}" for name in names) + ";\n",
+    ]
+    return "\n".join(parts)
 
 
-def _row(variable: FmiVariable) -> str:
+def _table(declaration: str, items: Iterable[str]) -> str:
+    lines = "".join(f"    {item},\n" for item in items)
+    return f"const {declaration} = {{\n{lines}}};\n"
+
+
+def _limits(variable: FmiVariable) -> str:
     low, high = limits(variable)
-    numbers = (0.0 if variable.start is None else float(variable.start), low, high)
-    start, lowest, highest = (_number(value) for value in numbers)
-    lowest = "-INFINITY" if low is None else lowest
-    return ", ".join((_text(variable.name), KINDS[variable.kind], start, lowest, highest))
+    return f"{{{_number(-math.inf if low is None else low)}, {_number(math.inf if high is None else high)}}}"
 
 
-def _number(value: float | None) -> str:
-    if value is None or math.isinf(value):
-        return "INFINITY" if value is None or value > 0.0 else "-INFINITY"
+def _number(value: float) -> str:
+    if math.isinf(value):
+        return "INFINITY" if value > 0.0 else "-INFINITY"
     return float(value).hex()
 
 

@@ -15,16 +15,12 @@
 
 typedef enum { REAL, INTEGER, BOOLEAN } Kind;
 
-typedef struct {
-    const char *name;
-    Kind kind;
-    double start;
-    double low; /* a parameter outside [low, high] is refused */
-    double high;
-} Variable;
-
 extern const char model_guid[];
-extern const Variable model_variables[MODEL_VARIABLES];
+extern const unsigned char model_kinds[MODEL_VARIABLES];
+extern const double model_starts[MODEL_PARAMETERS + MODEL_INPUTS + 1];
+extern const double model_limits[MODEL_PARAMETERS + 1][2]; /* a parameter outside is refused */
+extern const uint32_t model_name_places[MODEL_VARIABLES];
+extern const char model_names[]; /* one after the other: no pointers to be relocated */
 
 /* Compiled from the Python source. They return 0 if all went well; the first two arguments belong
  * to the calling convention of the compiler and carry nothing here. */

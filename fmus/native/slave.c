@@ -63,7 +63,7 @@ int refresh(Slave *slave) {
 
 static void start_values(Slave *slave) {
     memset(&slave->saved, 0, sizeof slave->saved);
-    for (int i = 0; i < MODEL_VARIABLES; i++) slave->saved.values[i] = model_variables[i].start;
+    memcpy(slave->saved.values, model_starts, (MODEL_PARAMETERS + MODEL_INPUTS) * sizeof *model_starts);
     slave->saved.phase = INSTANTIATED;
     slave->saved.stale = 1;
 }

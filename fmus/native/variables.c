@@ -6,30 +6,34 @@
 
 static const char *const KINDS[] = {"Real", "Integer", "Boolean"};
 
-/* True if `reference` names a variable of this kind; reports the call if not. */
-static int known(const Slave *slave, fmi2ValueReference reference, Kind kind, const char *function) {
+static const char *name_of(fmi2ValueReference reference) { return model_names + model_name_places[reference]; }
+
+static int is_known(fmi2ValueReference reference, Kind kind) {
+    return reference < MODEL_VARIABLES && model_kinds[reference] == kind;
+}
+
+/* Report a value reference that is not known as a variable of this kind. */
+static fmi2Status unknown(const Slave *slave, fmi2ValueReference reference, const char *function) {
     if (reference >= MODEL_VARIABLES)
         return report(slave, fmi2Error, "%s: no value reference %u; the last is %d", function, reference,
-                      MODEL_VARIABLES - 1),
-               0;
-    if (model_variables[reference].kind != kind)
-        return report(slave, fmi2Error, "%s: %s (value reference %u) is %s", function, model_variables[reference].name,
-                      reference, KINDS[model_variables[reference].kind]),
-               0;
-    return 1;
+                      MODEL_VARIABLES - 1);
+    return report(slave, fmi2Error, "%s: %s (value reference %u) is %s", function, name_of(reference), reference,
+                  KINDS[model_kinds[reference]]);
 }
 
 /* True if the variable may be set now, and to this value; reports the call if not. */
 static int settable(const Slave *slave, fmi2ValueReference reference, double value, const char *function) {
-    const Variable *variable = &model_variables[reference];
     if (reference >= MODEL_PARAMETERS + MODEL_INPUTS)
-        return report(slave, fmi2Error, "%s: %s is calculated by the FMU", function, variable->name), 0;
+        return report(slave, fmi2Error, "%s: %s is calculated by the FMU", function, name_of(reference)), 0;
     if (reference >= MODEL_PARAMETERS) return 1;
+    const double *limits = model_limits[reference];
     if (!(slave->saved.phase & (INSTANTIATED | INITIALIZATION)))
-        return report(slave, fmi2Error, "%s: parameter %s is fixed after initialization", function, variable->name), 0;
-    if (!(variable->low <= value && value <= variable->high))
-        return report(slave, fmi2Error, "%s: %s = %.17g is not in [%g, %g]", function, variable->name, value,
-                      variable->low, variable->high),
+        return report(slave, fmi2Error, "%s: parameter %s is fixed after initialization", function,
+                      name_of(reference)),
+               0;
+    if (!(limits[0] <= value && value <= limits[1]))
+        return report(slave, fmi2Error, "%s: %s = %.17g is not in [%g, %g]", function, name_of(reference), value,
+                      limits[0], limits[1]),
                0;
     return 1;
 }
@@ -46,7 +50,7 @@ static int as_integer(double value) {
         if (!slave) return fmi2Error;                                                                             \
         if (count && (!references || !values)) return report(slave, fmi2Error, "fmi2Get" #Type ": null pointer"); \
         for (size_t i = 0; i < count; i++)                                                                        \
-            if (!known(slave, references[i], KIND, "fmi2Get" #Type)) return fmi2Error;                            \
+            if (!is_known(references[i], KIND)) return unknown(slave, references[i], "fmi2Get" #Type);            \
         if (slave->saved.stale && !refresh(slave)) return fmi2Error;                                              \
         for (size_t i = 0; i < count; i++) values[i] = convert(slave->saved.values[references[i]]);               \
         return fmi2OK;                                                                                            \
@@ -58,10 +62,10 @@ static int as_integer(double value) {
         Slave *slave = slave_in(component, INSTANTIATED | INITIALIZATION | STEPPING, "fmi2Set" #Type);            \
         if (!slave) return fmi2Error;                                                                             \
         if (count && (!references || !values)) return report(slave, fmi2Error, "fmi2Set" #Type ": null pointer"); \
-        for (size_t i = 0; i < count; i++)                                                                        \
-            if (!known(slave, references[i], KIND, "fmi2Set" #Type) ||                                            \
-                !settable(slave, references[i], convert(values[i]), "fmi2Set" #Type))                             \
-                return fmi2Error;                                                                                 \
+        for (size_t i = 0; i < count; i++) {                                                                      \
+            if (!is_known(references[i], KIND)) return unknown(slave, references[i], "fmi2Set" #Type);            \
+            if (!settable(slave, references[i], convert(values[i]), "fmi2Set" #Type)) return fmi2Error;           \
+        }                                                                                                         \
         for (size_t i = 0; i < count; i++) {                                                                      \
             slave->saved.values[references[i]] = convert(values[i]);                                              \
             if (references[i] < MODEL_PARAMETERS) slave->saved.stale = 1;                                         \

@@ -62,8 +62,8 @@ Read from it:
   ends 2 cm short of Q3 the others end within 0.6 cm of it.
 - What parks on one body parks on every body. Case 1 (Table 1's rate, path tracking only) and case 2 do not, on any.
 - Cases 3 and 5 end where the chart first finds the pose right, anywhere ahead of Q3. That place along the slot is
-  sensitive: 0.2 to 0.9 m for 2 cm at the switching points, and 2.3 m in case 5, with one shift less on the double
-  track.
+  sensitive: 4 to 13 cm in case 3, 0.7 m in case 5 at 105 deg/s. In case 5 at Table 1's rate the driver shuffles at
+  1.5 m/s: two shifts more on the single track, one less, and 2.3 m further ahead, on the double track.
 
 ![case 4](images/bodies-case4.png)
 
@@ -79,9 +79,13 @@ Read from it:
 
 Dead time 60 ms, lag 80 ms, backlash 4 deg at the wheel, wheel radius wrong by 0.3 %, ticks of 2 cm. The wheel is
 then up to 80 deg behind its request. With the default `controller.limit.wheel_lag` the controller calls that a
-steering fault and stops cases 4 and 5; here the limit is 2 rad.
+steering fault and stops case 4; here the limit is 2 rad.
 
 <REAL>
+
+The slower wheel costs up to 2 cm at the end of what parks. Case 5, with its shuffling at 1.5 m/s, no longer parks
+on any body, the kinematic one included: it is the steering, not the tyres. The controller gives up after its limit
+of shifts.
 """
 
 

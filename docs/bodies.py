@@ -83,8 +83,8 @@ steering fault and stops case 4; here the limit is 2 rad.
 
 <REAL>
 
-The slower wheel costs up to 2 cm at the end of what parks. Case 5, with its shuffling at 1.5 m/s, no longer parks
-on any body, the kinematic one included: it is the steering, not the tyres. The controller gives up after its limit
+This costs up to 2.4 cm at the end of what parks. Case 5, with its shuffling at 1.5 m/s, no longer parks
+on any body, the kinematic one included: it is not the tyres. The controller gives up after its limit
 of shifts.
 """
 

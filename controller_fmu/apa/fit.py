@@ -27,10 +27,20 @@ CLOSEST = 0.3
 """Shares of the margins."""
 
 
+def stands_out(attempt: int) -> bool:
+    """Return whether the car may stand out of the slot a little in this attempt: in odd ones."""
+    return attempt % 2 == 1
+
+
+def wide_again(attempt: int) -> int:
+    """Return the attempt that keeps the full margins, as far out as this one."""
+    return attempt % CLOSER_FROM
+
+
 def margins_of(attempt: int, params: ApaParams) -> Margins:
     """Return the margins of an attempt: odd ones stand out a little, from 2 and from 4 on closer ones are kept."""
     plan = params.plan
-    inset = -plan.stand_out if attempt % 2 == 1 else 0.0
+    inset = -plan.stand_out if stands_out(attempt) else 0.0
     share = 1.0 if attempt < CLOSER_FROM else CLOSER if attempt < 2 * CLOSER_FROM else CLOSEST
     return Margins(share * plan.margin, share * plan.kerb_margin, inset)
 
@@ -84,4 +94,4 @@ def least_moves(slot: Slot, car: Car, params: ApaParams) -> int:
 
 def _longer(slot: Slot, by: float) -> Slot:
     a = Pose(slot.a.x, slot.a.y, slot.a.heading)
-    return Slot(slot.kind, slot.side, a, slot.length + by, slot.b_out, slot.depth, slot.opposite)
+    return Slot(slot.kind, slot.side, a, slot.length + by, slot.b_out, slot.depth, slot.opposite, slot.unsure)

@@ -103,7 +103,7 @@ class SearchParams(NamedTuple):
         float, Signal("m", "narrowest perpendicular slot over the car's width", 0.4, 5.0, HOUSE)
     ] = 0.95
     unsure: Annotated[
-        float, Signal("s", "each end of a slot is drawn in by this times the speed of the search", 0.0, 0.1, HOUSE)
+        float, Signal("s", "a corner is unsure by this times the speed of the search", 0.0, 0.1, HOUSE)
     ] = 0.01
     depth_room: Annotated[float, Signal("m", "depth that may be missing", 0.0, 2.0, HOUSE)] = 0.1
     given: Annotated[bool, Signal("1", "no search: the slot is given")] = False
@@ -125,6 +125,10 @@ class GuardParams(NamedTuple):
     """Supervision: each limit ends in Fail with its reason, or stops the car."""
 
     stop_gap: Annotated[float, Signal("m", "known obstacle ahead: stop at this distance", 0.0, 1.0, HOUSE)] = 0.16
+    corner_gap: Annotated[
+        float,
+        Signal("m", "known obstacle at a corner, nearer than thought: stop at this distance", 0.0, 1.0, HOUSE),
+    ] = 0.24
     surprise: Annotated[float, Signal("m", "nearer than expected by this: unknown obstacle", 0.05, 2.0, HOUSE)] = 0.25
     surprise_gap: Annotated[float, Signal("m", "distance kept to an unknown obstacle", 0.1, 2.0, HOUSE)] = 0.4
     blocked: Annotated[float, Signal("s", "longest wait before an obstacle", 0.1, 600.0, HOUSE)] = 10.0

@@ -4,7 +4,7 @@ import math
 from typing import NamedTuple
 
 from controller_fmu.apa.fit import CLOSER_FROM as TIGHTER
-from controller_fmu.apa.fit import margins_of
+from controller_fmu.apa.fit import margins_of, stands_out, wide_again
 from controller_fmu.apa.manoeuvre_chart import Guard as StepGuard
 from controller_fmu.apa.manoeuvre_chart import Step, step_transition
 from controller_fmu.apa.move import length_of
@@ -50,6 +50,8 @@ class Parking(NamedTuple):
     """Last driven, 0: not yet."""
     ended: bool = False
     """The last of the planned moves is driven."""
+    cut: bool = False
+    """The move was cut short by something of the slot that is nearer than thought: plan again."""
     sight: Sight = Sight()
     wheel: float = 0.0
     """Steering-wheel angle asked for [rad]."""
@@ -120,7 +122,7 @@ def park(state: Parking, slot: Slot, inputs: ControllerInput, allowed: bool, par
         drive = params.apa.drive
         tracked = track(plan.move, state.leg, tracked.way, pose, drive.k1, drive.k2, params.wheelbase)
         around = site_of(
-            slot, car, Margins(0.0, 0.0, -params.apa.plan.stand_out if attempt % 2 == 1 else 0.0)
+            slot, car, Margins(0.0, 0.0, -params.apa.plan.stand_out if stands_out(attempt) else 0.0)
         ).obstacles
         mirror = site.frame.mirror
         sight = look(inputs.ultrasonic, pose, mirror, plan.move.direction, inputs.measured_speed, around, params.apa)
@@ -149,7 +151,7 @@ def _guards(
     well_enough = is_in_place(pose, site, limit.miss_lateral, limit.miss_heading)
     stuck = plan.status == NOTHING or (plan.status == FOUND and more_shifts(state, plan) > apa.plan.shifts)
     wheel = inputs.steering_wheel_angle
-    at_end = tracked.left <= AT_END or (sight.blocked and not sight.unknown)
+    at_end = tracked.left <= AT_END or state.cut
     return (
         (1 << StepGuard.STARTED.value)
         | _bit(StepGuard.IN_PLACE.value, right or (stuck and well_enough and allowed))
@@ -195,9 +197,12 @@ def _moved_on(
     leg = state.leg
     wheel = state.wheel
     speed = 0.0
+    cut = state.cut
+    if step == HALT and state.step == DRIVE:
+        cut = sight.blocked and not sight.unknown
     if step == PLAN and state.step != PLAN:
         ended = state.step == HALT and plan.moves <= 1
-        attempt = attempt % TIGHTER
+        attempt = wide_again(attempt)
         plan = new_search(pose)
     if step == SET_WHEEL and state.step == PLAN:
         leg = Leg(0.0, next_standstill(plan.move, 0.0))
@@ -215,7 +220,7 @@ def _moved_on(
         wheel = _wheel(mirror * tracked.front_wheel_angle, params)
     if step == STRAIGHTEN or step == IDLE:
         wheel = 0.0
-    return Parking(step, plan, attempt, leg, tracked, shifts, direction, ended, sight, wheel, speed)
+    return Parking(step, plan, attempt, leg, tracked, shifts, direction, ended, cut, sight, wheel, speed)
 
 
 def _speed(tracked: Tracked, sight: Sight, params: ControllerParams) -> float:
@@ -238,7 +243,9 @@ def start_planning(slot: Slot, pose: Pose, params: ControllerParams) -> Parking:
     site = site_for(slot, 0, params)
     none = Tracked(0.0, 0.0, 0.0, Pose(0.0, 0.0, 0.0), 0.0, 0.0, 0.0, 0.0)
     sight = Sight(100.0, False, False)
-    return Parking(PLAN, new_search(to_slot(pose, site.frame)), 0, Leg(0.0, 0.0), none, 0, 0, False, sight, 0.0, 0.0)
+    return Parking(
+        PLAN, new_search(to_slot(pose, site.frame)), 0, Leg(0.0, 0.0), none, 0, 0, False, False, sight, 0.0, 0.0
+    )
 
 
 def is_planned(state: Parking) -> bool:

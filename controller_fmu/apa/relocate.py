@@ -2,12 +2,16 @@
 
 The two middle sensors of the front (rear) hear the nearest point of what lies across their way, which
 for a flat obstacle is the distance along its normal, whatever the car's heading within the cone. If both
-agree, the corner's x (parallel) or the depth (perpendicular) is moved there, at most by ``FURTHEST``.
+agree, the corner of a parallel slot is moved there, at most by ``FURTHEST``; a wall beside is moved nearer
+where the rear corner sensor hears it nearer.
 """
 
 import math
 
-from controller_fmu.apa.slot import PARALLEL, Slot, mirror_of
+from controller_fmu.apa.outline import Obstacles
+from controller_fmu.apa.parking import car_of
+from controller_fmu.apa.slot import PARALLEL, Margins, Slot, mirror_of, site_of
+from controller_fmu.apa.supervisor import WRONG, expected
 from controller_fmu.interface import ControllerInput, ControllerParams
 from controller_fmu.slot_frame import SlotFrame, to_slot, to_world
 from modelkit.vocabulary import Pose
@@ -17,6 +21,8 @@ AGREE = 0.15
 FURTHEST = 0.15
 STEEPEST = 0.45
 FRONT = 1
+REAR_LEFT = 4
+REAR_RIGHT = 7
 REAR = 5
 
 
@@ -32,7 +38,24 @@ def relocated(slot: Slot, inputs: ControllerInput, params: ControllerParams) -> 
     end = _heard_at(pose, mirror_of(slot), inputs, FRONT, params) - slot.length
     if abs(end) <= FURTHEST:
         slot = _moved(slot, 0.0, end)
-    return slot
+    return _shallower(slot, inputs, params)
+
+
+def _shallower(slot: Slot, inputs: ControllerInput, params: ControllerParams) -> Slot:
+    """Return the slot with the wall beside as near as the rear corner sensor on its side hears it."""
+    site = site_of(slot, car_of(params), Margins(0.0, 0.0, 0.0))
+    pose = to_slot(inputs.odometry, site.frame)
+    number = REAR_RIGHT if site.frame.mirror > 0.0 else REAR_LEFT
+    nothing = site.obstacles.opposite
+    mount = params.apa.sensors.mounts[number]
+    mirror = site.frame.mirror
+    alone = Obstacles(nothing, nothing, site.obstacles.beside, nothing)
+    should = expected(mount, pose, mirror, alone, params.apa)
+    lacks = should - inputs.ultrasonic[number]
+    if lacks <= WRONG or lacks > FURTHEST or should > expected(mount, pose, mirror, site.obstacles, params.apa):
+        return slot
+    a = Pose(slot.a.x, slot.a.y, slot.a.heading)
+    return Slot(slot.kind, slot.side, a, slot.length, slot.b_out, slot.depth - lacks, slot.opposite, slot.unsure)
 
 
 def _heard_at(pose: Pose, mirror: float, inputs: ControllerInput, first: int, params: ControllerParams) -> float:
@@ -56,4 +79,4 @@ def _x_of(pose: Pose, mirror: float, params: ControllerParams, number: int) -> f
 
 def _moved(slot: Slot, start: float, end: float) -> Slot:
     a = to_world(Pose(start, 0.0, 0.0), SlotFrame(slot.a, mirror_of(slot)))
-    return Slot(slot.kind, slot.side, a, slot.length - start + end, slot.b_out, slot.depth, slot.opposite)
+    return Slot(slot.kind, slot.side, a, slot.length - start + end, slot.b_out, slot.depth, slot.opposite, 0.0)

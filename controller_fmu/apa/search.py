@@ -21,7 +21,7 @@ REMEMBERED = 3
 SENSOR_CYCLE_NS = 40_000_000
 LONG_NEIGHBOUR = 2.6
 """A neighbour longer than this [m] along the road stands parallel to it."""
-NO_SLOT = Slot(0, 0, Pose(0.0, 0.0, 0.0), 0.0, 0.0, UNSEEN, UNSEEN)
+NO_SLOT = Slot(0, 0, Pose(0.0, 0.0, 0.0), 0.0, 0.0, UNSEEN, UNSEEN, 0.0)
 NO_SLOTS = (NO_SLOT,) * REMEMBERED
 
 
@@ -59,7 +59,7 @@ def search(state: SearchState, inputs: ControllerInput, car: Car, params: ApaPar
     """Return the search after one sample; sensors tell something new every 40 ms."""
     clock = state.clock_ns + dt_ns
     way = state.way + abs(inputs.measured_speed) * dt_ns * 1e-9
-    if state.clock_ns % SENSOR_CYCLE_NS >= dt_ns or abs(inputs.measured_speed) < 0.01:
+    if not is_new_reading(state.clock_ns, dt_ns) or abs(inputs.measured_speed) < 0.01:
         return _with_sides(state, state.right, state.left, state.far_right, state.far_left, clock, way, state.fastest)
     speed = abs(inputs.measured_speed)
     speed = speed if speed > state.fastest else state.fastest
@@ -81,28 +81,38 @@ def search(state: SearchState, inputs: ControllerInput, car: Car, params: ApaPar
     return state
 
 
+def is_new_reading(clock_ns: int, dt_ns: int) -> bool:
+    """Return whether the sensors have told something new since the last sample."""
+    return clock_ns % SENSOR_CYCLE_NS < dt_ns
+
+
+def left_part(seen: int) -> int:
+    """Return how many gaps were judged on the left."""
+    return seen % 16
+
+
 def slot_of(
     side: SideState, which: int, origin: Pose, opposite_heard: float, unsure: float, car: Car, params: ApaParams
 ) -> Slot:
-    """Return the gap between the last two neighbours as a slot, in the world, each end drawn in by ``unsure`` [m]."""
+    """Return the gap between the last two neighbours as a slot, in the world, its corners ``unsure`` by so much [m]."""
     mirror = -1.0 if which == LEFT else 1.0
     b = slope(side.before, side.sums)
     a1 = offset(side.before, b)
     a2 = offset(side.sums, b)
     cos = 1.0 / math.sqrt(1.0 + b * b)
-    u = side.edge + unsure
+    u = side.edge
     w = mirror * (a1 + b * u)
     c = math.cos(origin.heading)
     s = math.sin(origin.heading)
     corner_a = Pose(origin.x + u * c - w * s, origin.y + u * s + w * c, origin.heading + mirror * math.atan(b))
-    length = (side.edge_b - side.edge) / cos - 2.0 * unsure
+    length = (side.edge_b - side.edge) / cos
     depth = side.depth if side.depth < DEEP else UNSEEN
     opposite = UNSEEN
     if opposite_heard < DEEP:
         beside = side.sums.r / side.sums.n if side.sums.n > 0.0 else 0.0
         opposite = beside + 2.0 * car.half_width + opposite_heard
     kind = kind_of(length, depth, side.extent, car, params)
-    return Slot(kind, which, corner_a, length if length > 0.0 else 0.0, (a2 - a1) * cos, depth, opposite)
+    return Slot(kind, which, corner_a, length if length > 0.0 else 0.0, (a2 - a1) * cos, depth, opposite, unsure)
 
 
 def kind_of(length: float, depth: float, neighbour: float, car: Car, params: ApaParams) -> int:
@@ -136,12 +146,12 @@ def _judge(
     """Return the search with a new gap judged, or a known one measured better."""
     slot = slot_of(side, which, state.origin, far, params.search.unsure * speed, car, params)
     mark = side.found * 16 if which == RIGHT else side.found
-    known = (state.seen // 16) * 16 if which == RIGHT else state.seen % 16
+    known = state.seen - left_part(state.seen) if which == RIGHT else left_part(state.seen)
     other = state.seen - known
     if mark == known:
         first = state.slots[0]
         better = state.valid > 0 and first.side == which and abs(first.length - slot.length) < 0.5
-        kept = Slot(first.kind, which, slot.a, slot.length, slot.b_out, slot.depth, slot.opposite)
+        kept = Slot(first.kind, which, slot.a, slot.length, slot.b_out, slot.depth, slot.opposite, slot.unsure)
         slots = (kept, state.slots[1], state.slots[2]) if better else state.slots
         return _with_slots(state, slots, state.valid, state.seen, state.refused, state.refusals)
     fit = fit_of(slot, car, params)

@@ -25,6 +25,8 @@ CONFIRMED = 0.4
 """A gap is one once it is this long [m]: shorter ones are lost echoes."""
 DEEP = 50.0
 STEEPEST = 0.15
+STEEP = 1.0
+"""The face of a neighbour across the way comes nearer by 1 / sin(g) per metre, its corner by sin(g) at most."""
 STAGGER = 0.3
 """The next neighbour may stand this much [m] further in."""
 
@@ -171,8 +173,11 @@ def _on_next_wall(side: SideState, sample: Heard, half_angle: float, params: Sea
             GAP, side.n, side.u, side.w, side.r, side.last, 0, side.begun, side.extent, side.missed, 0, NO_SAMPLES,
             EMPTY, side.before, side.edge, side.depth, side.found, False, 0.0,
         )  # fmt: skip
-    samples = append(side.samples, sample, side.taken)
-    count = side.taken + 1 if side.taken < KEPT else KEPT
+    earlier = side.samples[side.taken - 1]
+    steep = side.taken < KEPT and sample.r - earlier.r < -STEEP * (sample.u - earlier.u)
+    taken = 0 if steep else side.taken
+    samples = append(NO_SAMPLES if steep else side.samples, sample, taken)
+    count = taken + 1 if taken < KEPT else KEPT
     sums = _with_sample(side.sums, side.before, sample, side.steady)
     if sample.u - side.begun < params.wall or sums.n < 2.0:
         return SideState(

@@ -48,6 +48,7 @@ class Slot(NamedTuple):
     b_out: Annotated[float, Signal("m", "how far corner B stands out further than corner A")] = 0.0
     depth: Annotated[float, Signal("m", "corner A to the kerb or wall; 50: none seen", 0.0)] = UNSEEN
     opposite: Annotated[float, Signal("m", "corner A to what lies across the road; 50: none seen", 0.0)] = UNSEEN
+    unsure: Annotated[float, Signal("m", "each corner may lie this much further in than it was found", 0.0)] = 0.0
 
 
 class Site(NamedTuple):
@@ -91,8 +92,8 @@ def site_of(slot: Slot, car: Car, margins: Margins) -> Site:
     frame = SlotFrame(to_world(target, SlotFrame(slot.a, mirror_of(slot))), mirror_of(slot))
     x = target.x
     y = target.y
-    behind = Box(-FAR, 0.0, -FAR, 0.0)
-    ahead = Box(slot.length, FAR, -FAR, slot.b_out)
+    behind = Box(-FAR, slot.unsure, -FAR, 0.0)
+    ahead = Box(slot.length - slot.unsure, FAR, -FAR, slot.b_out)
     beside = Box(-FAR, FAR, -FAR, -slot.depth) if slot.depth < UNSEEN else Box(1.0, -1.0, 1.0, -1.0)
     opposite = Box(-FAR, FAR, slot.opposite, FAR) if slot.opposite < UNSEEN else Box(1.0, -1.0, 1.0, -1.0)
     turned = slot.kind == PERPENDICULAR
@@ -106,7 +107,7 @@ def site_of(slot: Slot, car: Car, margins: Margins) -> Site:
     )
     if turned:
         return Site(slot.kind, frame, obstacles, -0.05, 0.1)
-    slack = 0.5 * (slot.length - car.front - car.rear) - near
+    slack = 0.5 * (slot.length - car.front - car.rear) - near - slot.unsure
     slack = slack - 0.01 if slack > 0.01 else 0.0
     return Site(slot.kind, frame, obstacles, -slack, slack)
 

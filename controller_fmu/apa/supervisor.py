@@ -11,13 +11,15 @@ from typing import NamedTuple
 from controller_fmu.apa.outline import Box, Obstacles
 from controller_fmu.apa.params import ApaParams, SensorMount
 from controller_fmu.apa.speed import stopping_way
-from modelkit import geometry
+from modelkit.geometry import Box as OrientedBox
 from modelkit.geometry import Point, cone_box
 from modelkit.vocabulary import Pose
 
 FREE = 100.0
 STRAIGHT = 0.2
 LOOKED_AT = 1.5
+WRONG = 0.03
+"""A corner sensor hears something known this much [m] nearer than it should: the slot is not as it was found."""
 
 
 class Sight(NamedTuple):
@@ -47,13 +49,16 @@ def look(
         reading = readings[number]
         if reading < LOOKED_AT:
             mount = params.sensors.mounts[number]
-            nearer = reading < expected(mount, pose, mirror, around, params) - params.guard.surprise
+            should = expected(mount, pose, mirror, around, params)
+            nearer = reading < should - params.guard.surprise
             ahead = abs(mount.yaw) < STRAIGHT or abs(mount.yaw) > math.pi - STRAIGHT
             left = FREE
             if nearer:
                 left = reading - params.guard.surprise_gap
             elif ahead:
                 left = reading - params.guard.stop_gap
+            elif reading < params.guard.corner_gap and reading < should - WRONG:
+                left = -1.0
             if left < gap:
                 gap = left
                 unknown = nearer
@@ -80,7 +85,7 @@ def expected(mount: SensorMount, pose: Pose, mirror: float, around: Obstacles, p
 def _heard(at: Point, axis: float, half_angle: float, box: Box) -> float:
     if box.x0 > box.x1:
         return FREE
-    middle = geometry.Box(0.5 * (box.x0 + box.x1), 0.5 * (box.y0 + box.y1), 0.0, box.x1 - box.x0, box.y1 - box.y0)
+    middle = OrientedBox(0.5 * (box.x0 + box.x1), 0.5 * (box.y0 + box.y1), 0.0, box.x1 - box.x0, box.y1 - box.y0)
     return cone_box(at, axis, half_angle, middle)
 
 

@@ -69,6 +69,7 @@ NOT_PARKING = Parking(
     0,
     0,
     False,
+    False,
     Sight(100.0, False, False),
     0.0,
     0.0,

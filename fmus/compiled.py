@@ -99,9 +99,10 @@ def _compile(function: Callable[..., None], signature: Any, name: str) -> None:
 
 
 def plain(text: str) -> str:
-    """Return numba's explanation without colours and without what it says twice."""
+    """Return numba's explanation without colours, without types of hundreds of fields, and each line once."""
     lines = dict.fromkeys(line.rstrip() for line in re.sub(r"\x1b\[[0-9;]*m", "", text).splitlines())
-    return "\n".join(line for line in lines if line and "Rejected as" not in line and "candidate impl" not in line)
+    noise = (">>>", "- Of which", "Overload", "With argument", "Rejected", "There are", "During: Pass", "raised from")
+    return "\n".join(line for line in lines if line and not line.lstrip().startswith(noise))
 
 
 def _where(error: BaseException) -> str:

@@ -1,10 +1,13 @@
 """What the bake-off drives: controllers, starts, cars, bodies, disturbances, as scenarios."""
 
+import math
 from collections.abc import Iterator
-from typing import Any, NamedTuple
+from functools import lru_cache
+from typing import NamedTuple
 
 from orchestrator.load_scenario import load_scenario
 from orchestrator.scenario import Scenario
+from vehicle_fmu.interface import Body
 
 CONTROLLERS = ("ntbptcwpt", "ntbpt", "zhang2022", "hsic")
 CARS = ("guo2015", "zhang2022")
@@ -47,26 +50,27 @@ def entries() -> Iterator[Entry]:
 
 def scenario_of(controller: str, car: str, body: str, start: str, disturbance: str) -> Scenario:
     """Return the scenario of one run: the slot of zhang2022, a car in front and one behind."""
-    sets = [f"{key}={value}" for key, value in _settings(controller, body, start).items()]
-    scenario = load_scenario("zhang2022", [f"car={car}", "stop_time=120", *sets])
-    vehicle = dict(scenario.vehicle)
+    base = _base(controller, car)
+    x, y, heading = STARTS[start]
+    vehicle = {**base.vehicle, "body": int(Body[body.upper()]), "start.x": x, "start.y": y}
+    vehicle["start.heading"] = math.radians(heading)
     for key, value in DISTURBANCES[disturbance].items():
         name = key.removeprefix("vehicle.")
         vehicle[name] = vehicle[name] * value if name == "steering.ratio" else value
-    if any(key.startswith("vehicle.odometry") for key in DISTURBANCES[disturbance]):
-        vehicle["odometry.perfect"] = False
-    return scenario.model_copy(update={"vehicle": vehicle})
+        if name.startswith("odometry"):
+            vehicle["odometry.perfect"] = False
+    return base.model_copy(update={"vehicle": vehicle})
 
 
-def _settings(controller: str, body: str, start: str) -> dict[str, Any]:
-    x, y, heading = STARTS[start]
-    return {
-        "vehicle.body": body,
-        "vehicle.start.x": x,
-        "vehicle.start.y": y,
-        "vehicle.start.heading": f"{heading} deg",
+@lru_cache
+def _base(controller: str, car: str) -> Scenario:
+    sets = {
+        "stop_time": 120,
         "vehicle.driver.profile[1].speed": DRIVER_SPEED,
         "controller.system": controller,
         "controller.hsic.slot.slot_length": SLOT_LENGTH,
         "controller.hsic.slot.rear_gap": REAR_GAP,
     }
+    loaded = load_scenario("zhang2022", [f"car={car}", *(f"{key}={value}" for key, value in sets.items())])
+    body = {f"hsic.slot.{key}": loaded.vehicle[key] for key in ("width", "front_overhang", "rear_overhang")}
+    return loaded.model_copy(update={"controller": {**loaded.controller, **body}})

@@ -117,7 +117,8 @@ def test_rows_come_in_order_with_units_and_study(whole):
     assert table.count == COUNT
     assert table.column("row").tolist() == list(range(COUNT))
     assert table.note("final.heading_error")[0] == "rad"
-    assert table.note("controller.system")[2] == {"0": "NTBPTCWPT", "1": "NTBPT"}
+    states = table.note("controller.system")[2]
+    assert (states["0"], states["1"]) == ("NTBPTCWPT", "NTBPT")
     assert table.about["study"]["scenario"] == "guo2015-case4"
     assert set(table.column("outcome")) >= {"parked", "failed"}
 

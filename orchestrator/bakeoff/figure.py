@@ -32,7 +32,7 @@ def draw(found: list[Result], study: Study | None, file: Path) -> Path:
         errors.scatter([100.0 * item.lateral for item in won], [np.degrees(item.heading) for item in won], **style)
         spent.scatter([item.time for item in won], [item.effort / (2.0 * np.pi) for item in won], **style)
     share.set_xticks(range(len(CONTROLLERS)), CONTROLLERS)
-    share.set(ylabel="%", ylim=(0, 100), title="parked within GB/T 41630, no contact; dark: within 5 cm and 1 deg")
+    share.set(ylabel="%", ylim=(0, 100), title="parked (GB/T 41630, no contact); dark: 5 cm, 1 deg")
     errors.add_patch(Rectangle((-5, -1), 10, 2, fill=False, edgecolor="#888888", linestyle=":"))
     errors.set(xlabel="final lateral error [cm]", ylabel="final heading [deg]", title="where the parked ones stand")
     spent.set(xlabel="time [s]", ylabel="steering wheel [turns]", title="what it took", xlim=(0, None), ylim=(0, None))
@@ -54,7 +54,8 @@ def _claim(axis: Axes, study: Study) -> None:
     middle = 0.5 * (edges[1:] + edges[:-1])
     for name, won in study.success.items():
         rate = [100.0 * won[place == k].mean() if (place == k).any() else np.nan for k in range(len(middle))]
-        axis.plot(middle, rate, "o-", markersize=3, color=COLOURS[name], label=name)
+        style = "o-" if name.endswith("house") else "o:"
+        axis.plot(middle, rate, style, markersize=3, color=COLOURS[name.partition(",")[0]], label=name)
     count = study.rates[0].runs
     axis.set(
         xlabel="mean speed driven [m/s]", ylabel="%", ylim=(-3, 103), title=f"driver speed errors, {count} runs each"

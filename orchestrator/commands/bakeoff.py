@@ -6,6 +6,7 @@ import statistics
 from pathlib import Path
 from typing import Any
 
+from rich.markup import escape
 from rich.table import Table
 
 from orchestrator.bakeoff.cost import costs
@@ -68,7 +69,7 @@ def _print(found: list[Result], rates: list[Rate], spent: dict[str, float]) -> N
     table = Table(box=None, title="the same slot, cars, bodies, starts and disturbances; medians of the parked ones")
     heads = ("controller", "runs", "parked", "house", "time [s]", "shifts", "lateral [cm]", "heading [deg]")
     for head in (*heads, "clearance [m]", "wheel [turns]", "step [us]", "why not"):
-        table.add_column(head, justify="left" if head in ("controller", "why not") else "right")
+        table.add_column(escape(head), justify="left" if head in ("controller", "why not") else "right")
     for name in CONTROLLERS:
         table.add_row(*_cells(name, [item for item in found if item.entry.controller == name], spent[name]))
     to.print(table)

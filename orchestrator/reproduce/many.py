@@ -41,7 +41,7 @@ def timed_rows(parameters: Array, times: Array, kept: Sequence[Kept]) -> Array:
 
     with ThreadPoolExecutor() as pool:
         list(pool.map(work, [share for share in shares if len(share)]))
-    return np.column_stack([out[:, 1] * 1e-9, out[:, FIRST_KEPT:]])
+    return np.column_stack([out[:, 1] / 1e9, out[:, FIRST_KEPT:]])
 
 
 def timed(scenarios: Iterable[Scenario], kept: Sequence[Kept]) -> Array:

@@ -1,0 +1,42 @@
+"""The other papers' controllers, compiled and in CPython: the same bits at the end of the same drive."""
+
+import pytest
+
+from orchestrator.load_scenario import load_scenario
+from orchestrator.reproduce.many import available, timed
+from orchestrator.session import run_scenario
+from orchestrator.sweep.kept import CLEARANCE, PHASE, POSE, SHIFTS, WHEEL, Kept
+
+pytestmark = pytest.mark.skipif(not available(), reason="needs numba, llvmlite and ziglang")
+
+KEPT = (
+    *POSE,
+    WHEEL,
+    PHASE,
+    SHIFTS,
+    CLEARANCE,
+    Kept("last", "controller.preview.y_l"),
+    Kept("last", "controller.lateral_error"),
+)
+DRIVES = {
+    "zhang2022": 30,
+    "zhang2022-double-track": 6,
+    "hsic": 60,
+    "hsic-shuffle": 60,
+    "preview": 16,
+    "preview-geometry": 16,
+}
+
+
+@pytest.mark.parametrize("name", DRIVES)
+def test_same_bits(name):
+    scenario = load_scenario(name, [f"stop_time={DRIVES[name]}"])
+    recording = run_scenario(scenario).recording
+    row = timed([scenario], KEPT)[0]
+    ours = [
+        min(values) if item.how == "smallest" else values[-1]
+        for item in KEPT
+        for values in [recording.signals[item.signal]]
+    ]
+    assert row[0] == recording.t[-1]
+    assert [float(value) for value in row[1:]] == [float(value) for value in ours]

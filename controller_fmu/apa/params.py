@@ -139,7 +139,7 @@ class GuardParams(NamedTuple):
     pedal: Annotated[float, Signal("1", "brake pedal counts as pressed", 0.01, 1.0, HOUSE)] = 0.2
     patience: Annotated[float, Signal("s", "longest wait for the driver, wheel or car", 0.1, 600.0, HOUSE)] = 15.0
     confirm: Annotated[float, Signal("s", "longest wait for confirmation", 0.1, 3600.0, HOUSE)] = 60.0
-    duration: Annotated[float, Signal("s", "longest time from confirmation to parked", 1.0, 3600.0, HOUSE)] = 180.0
+    duration: Annotated[float, Signal("s", "longest time from confirmation to parked", 1.0, 3600.0, HOUSE)] = 120.0
 
 
 class ApaParams(NamedTuple):

@@ -91,7 +91,7 @@ def apa_sample(state: ApaState, inputs: ControllerInput, params: ControllerParam
         if state.mode == SEARCH or state.mode == APPEARS:
             found = search(found, inputs, car_of(params), params.apa, dt_ns)
         if driving or state.mode == APPEARS:
-            if driving and parking.step == HALT:
+            if driving and parking.step == HALT and abs(inputs.measured_speed) <= STANDING:
                 slot = relocated(slot, inputs, params)
             parking = park(parking, slot, inputs, driving, params)
     reason = _later_reason(reason, state, parking, found, params)

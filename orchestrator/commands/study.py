@@ -14,7 +14,7 @@ from orchestrator.apa_loop import Loop
 from orchestrator.terminal import console
 
 EPILOG = """examples:
-  apa study apa-grid                     every run of the grid (compiles first, if numba is installed)
+  apa study apa-grid                     every run of the grid: hours, unless --compiled
   apa study apa-grid --every 20          each 20th run
   apa study apa-grid --run 658           that run again
 """
@@ -27,18 +27,18 @@ def add_parser(subparsers: Any) -> argparse.ArgumentParser:
     parser.add_argument("name", choices=["apa-grid"])
     parser.add_argument("--every", type=int, default=1, metavar="N", help="only each N-th run")
     parser.add_argument("--first", type=int, default=0, metavar="N", help="begin at run N")
-    parser.add_argument("--run", type=int, metavar="N", help="only this run")
-    parser.add_argument("--plain", action="store_true", help="do not compile: every signal as CPython computes it")
+    parser.add_argument("--run", type=int, metavar="N", dest="number", help="only this run")
+    parser.add_argument("--compiled", action="store_true", help="compile first (minutes, needs numba), then run faster")
     parser.add_argument("--json", action="store_true", help="print JSON")
     return parser
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Print one line a run and the totals. Returns 1 if a run touched something."""
-    loop = Loop(KEPT, compiled=not arguments.plain)
+    loop = Loop(KEPT, compiled=arguments.compiled)
     chosen = cases()[arguments.first :: max(arguments.every, 1)]
-    if arguments.run is not None:
-        chosen = [case for case in cases() if case.number == arguments.run]
+    if arguments.number is not None:
+        chosen = [case for case in cases() if case.number == arguments.number]
     results = []
     for case in chosen:
         result = drive(case, loop)

@@ -1,6 +1,5 @@
 """Every number that the reproduction of the APA source promises."""
 
-
 import pytest
 
 from orchestrator.load_scenario import load_scenario

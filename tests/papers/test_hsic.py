@@ -5,8 +5,8 @@ from pathlib import Path
 import pytest
 
 from orchestrator.load_scenario import load_scenario
-from orchestrator.reproduce.result import Driven, Reproduction
 from orchestrator.reproduce.hsic import reproduce
+from orchestrator.reproduce.result import Driven, Reproduction
 from orchestrator.session import run_scenario
 from orchestrator.summary import summarize
 

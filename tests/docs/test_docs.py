@@ -13,6 +13,7 @@ from orchestrator.cli import parser
 from orchestrator.load_scenario import load_scenario
 from orchestrator.models import MODELS
 from orchestrator.requirements import read_requirements
+from orchestrator.sweep.study import load_study
 
 ROOT = Path(__file__).parents[2]
 PAGES = sorted([ROOT / "README.md", *(ROOT / "docs").glob("*.md")], key=lambda path: path.name)
@@ -48,11 +49,20 @@ def test_commands_in_the_documentation_parse(line):
     parser().parse_args(shlex.split(line, comments=True)[1:])
 
 
-def scenarios() -> list[str]:
-    return [block for page in PAGES for block in blocks(page, "yaml") if block.startswith("name:")]
+def named(study: bool) -> list[str]:
+    """Return the YAML blocks that begin with a name: studies have ``runs``, scenarios do not."""
+    found = [block for page in PAGES for block in blocks(page, "yaml") if block.startswith("name:")]
+    return [block for block in found if ("\nruns:" in block) == study]
 
 
-@pytest.mark.parametrize("text", scenarios())
+@pytest.mark.parametrize("text", named(study=True))
+def test_studies_in_the_documentation_are_valid(text, tmp_path):
+    file = tmp_path / "study.yaml"
+    file.write_text(text)
+    assert load_study(str(file)).name == yaml.safe_load(text)["name"]
+
+
+@pytest.mark.parametrize("text", named(study=False))
 def test_scenarios_in_the_documentation_are_valid(text, tmp_path):
     file = tmp_path / "scenario.yaml"
     file.write_text(text)

@@ -18,6 +18,8 @@ from fmus.sources import reference, source_hash
 from modelkit.model import Model
 
 HEAD = ";; module\n"
+WIDE = 250
+"""Scalars a function may take before it is always inlined."""
 ENTRIES = ("model_initialize", "model_step")
 CACHE = Path(__file__).parent / "dist" / "cache"
 KEPT = 4
@@ -102,7 +104,16 @@ def _module(text: str) -> llvm.ModuleRef:
             item.linkage = "internal"
     for name in ENTRIES:
         _export(first, name)
+    _inline_wide_calls(first)
     return first
+
+
+def _inline_wide_calls(module: llvm.ModuleRef) -> None:
+    """Mark functions that take a whole state or whole parameters: passing those costs more than the call saves."""
+    for item in module.functions:
+        wide = not item.is_declaration and sum(1 for _ in item.arguments) > WIDE
+        if wide and item.name not in ENTRIES:
+            item.add_function_attribute("alwaysinline")
 
 
 def _export(module: llvm.ModuleRef, name: str) -> None:

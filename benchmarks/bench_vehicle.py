@@ -3,6 +3,7 @@
 All in one process and thread, in turn, medians of CPU time. The first table steps bodies alone;
 CommonRoad gives derivatives only, which an integrator calls once to four times a step. The second table
 steps the whole vehicle (driver, steering, drive, sensors, outputs) by 10 ms, bodies with mass by 1 ms.
+The third drives a whole case with native FMUs.
 """
 
 import statistics
@@ -22,6 +23,9 @@ from fmus.compiled import compiled_entries
 from fmus.flat_entry import sizes
 from modelkit.variables import flatten, with_values
 from modelkit.vocabulary import Pose, Prompt
+from orchestrator.fmu_files import fmu_files
+from orchestrator.load_scenario import load_scenario
+from orchestrator.session import run_scenario
 from vehicle_fmu import MODEL
 from vehicle_fmu.chassis import ChassisParams, Motion, RoadParams
 from vehicle_fmu.double_track import DoubleTrackParams, DoubleTrackState, step_double_track
@@ -121,8 +125,25 @@ def medians(groups: dict[str, Rounds]) -> dict[str, float]:
     return {label: statistics.median(values) for label, values in times.items()}
 
 
+def native_factors() -> dict[str, float]:
+    """Return how many times faster than real time the native FMUs drive case 4 with each body, by wall time.
+
+    The whole pair runs under the compiled master, every signal recorded, no log.
+    """
+    files = fmu_files("native")
+    factors = {}
+    for name in NAMES:
+        times = []
+        for _ in range(ROUNDS):
+            scenario = load_scenario("guo2015-case4", [f"vehicle.body={name}"])
+            ran = run_scenario(scenario, files, kind="native")
+            times.append(float(ran.recording.t[-1]) / ran.wall_time)
+        factors[name] = statistics.median(times)
+    return factors
+
+
 def main() -> None:
-    """Print both tables."""
+    """Print the tables."""
     entries = compiled_entries(MODEL)
     jit: Callable[[Any], Any] = numba.njit(error_model="numpy")
     found = medians(
@@ -143,6 +164,9 @@ def main() -> None:
     for name in NAMES:
         cost = found[f"vehicle {name}"]
         print(f"  {name:14}{cost:10.2f} us{1e4 / cost:12.0f} times real time")
+    print("case 4 with native FMUs under the compiled master, every signal recorded")
+    for name, factor in native_factors().items():
+        print(f"  {name:14}{factor:25.0f} times real time")
 
 
 if __name__ == "__main__":

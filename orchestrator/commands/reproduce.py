@@ -7,12 +7,10 @@ from pathlib import Path
 from typing import Any
 
 from orchestrator.fmu_files import KINDS, fmu_files
-from orchestrator.load_scenario import load_scenario
+from orchestrator.reproduce.drive import drive
 from orchestrator.reproduce.papers import paper, papers
 from orchestrator.reproduce.result import Drive, Driven
 from orchestrator.reproduce.table import print_reproduction
-from orchestrator.session import run_scenario
-from orchestrator.summary import summarize
 from orchestrator.terminal import NOT_PARKED, PARKED, console
 
 EXAMPLES = """examples:
@@ -65,13 +63,11 @@ def _driver(kind: str) -> Drive:
     done: dict[str, Driven] = {}
     err = console(sys.stderr)
 
-    def drive(name: str) -> Driven:
+    def drive_once(name: str) -> Driven:
         if name not in done:
             if err.is_terminal:
                 err.print(f"driving {name}")
-            scenario = load_scenario(name)
-            ran = run_scenario(scenario, files, kind=kind)
-            done[name] = Driven(scenario, ran.recording, summarize(ran.recording, scenario, ran.wall_time))
+            done[name] = drive(name, files, kind)
         return done[name]
 
-    return drive
+    return drive_once

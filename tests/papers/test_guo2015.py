@@ -4,11 +4,9 @@ from pathlib import Path
 
 import pytest
 
-from orchestrator.load_scenario import load_scenario
+from orchestrator.reproduce.drive import drive
 from orchestrator.reproduce.guo2015 import reproduce
-from orchestrator.reproduce.result import Driven, Reproduction
-from orchestrator.session import run_scenario
-from orchestrator.summary import summarize
+from orchestrator.reproduce.result import Reproduction
 
 SCENARIOS = [
     *(f"guo2015-case{case}{rate}" for case in range(1, 6) for rate in ("", "-105")),
@@ -16,12 +14,6 @@ SCENARIOS = [
     "guo2015-case4-left",
     "guo2015-case4-far",
 ]
-
-
-def drive(name: str) -> Driven:
-    scenario = load_scenario(name)
-    ran = run_scenario(scenario)
-    return Driven(scenario, ran.recording, summarize(ran.recording, scenario, ran.wall_time))
 
 
 @pytest.fixture(scope="module")

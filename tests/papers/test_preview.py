@@ -5,17 +5,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from orchestrator.load_scenario import load_scenario
 from orchestrator.reproduce import preview
-from orchestrator.reproduce.result import Driven, Reproduction
-from orchestrator.session import run_scenario
-from orchestrator.summary import summarize
-
-
-def drive(name: str) -> Driven:
-    scenario = load_scenario(name)
-    ran = run_scenario(scenario)
-    return Driven(scenario, ran.recording, summarize(ran.recording, scenario, ran.wall_time))
+from orchestrator.reproduce.drive import drive
+from orchestrator.reproduce.result import Reproduction
 
 
 @pytest.fixture(scope="module")

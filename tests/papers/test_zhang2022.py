@@ -4,17 +4,9 @@ from pathlib import Path
 
 import pytest
 
-from orchestrator.load_scenario import load_scenario
-from orchestrator.reproduce.result import Driven, Reproduction
+from orchestrator.reproduce.drive import drive
+from orchestrator.reproduce.result import Reproduction
 from orchestrator.reproduce.zhang2022 import reproduce
-from orchestrator.session import run_scenario
-from orchestrator.summary import summarize
-
-
-def drive(name: str) -> Driven:
-    scenario = load_scenario(name)
-    ran = run_scenario(scenario)
-    return Driven(scenario, ran.recording, summarize(ran.recording, scenario, ran.wall_time))
 
 
 @pytest.fixture(scope="module")

@@ -3,9 +3,20 @@
 import sys
 
 from controller_fmu import model
-from controller_fmu.interface import ControllerInput, ControllerOutput, ControllerParams
-from modelkit.model import Model
+from controller_fmu.interface import ControllerInput, ControllerOutput, ControllerParams, System
+from modelkit.model import Branch, Branches, Model
 
+SYSTEMS = Branches(
+    parameter="system",
+    common="clock",
+    systems=(
+        Branch((System.NTBPTCWPT, System.NTBPT), "parking", model.parking_step),
+        Branch((System.ZHANG2022,), "zhang2022", model.zhang_step),
+        Branch((System.HSIC,), "hsic", model.hsic_step),
+        Branch((System.PREVIEW,), "preview", model.preview_step),
+        Branch((System.APA,), "apa", model.apa_step),
+    ),
+)
 MODEL = Model(
     name="Controller",
     description="Automated parking: planner, path and point tracking, manoeuvre chart",
@@ -15,7 +26,8 @@ MODEL = Model(
     inputs=ControllerInput,
     outputs=ControllerOutput,
     initialize=model.initialize,
-    step=model.step,
+    step=SYSTEMS.step,
     step_size=0.01,
     stop_time=60.0,
+    branches=SYSTEMS,
 )

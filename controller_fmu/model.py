@@ -1,7 +1,8 @@
 """The controller as one step: sample, let the chosen system act, hold its outputs.
 
 A sampled system: it acts at the instants k * sample_time with the inputs that hold then, whatever
-the communication step, and holds its outputs in between.
+the communication step, and holds its outputs in between. Each system has a step of its own, of the
+same shape; ``controller_fmu.MODEL`` names them all.
 """
 
 import math
@@ -9,27 +10,38 @@ from typing import NamedTuple
 
 from controller_fmu.apa.outputs import apa_outputs
 from controller_fmu.apa.system import AT_START, ApaState, apa_sample
-from controller_fmu.guo2015.parking import AT_REST, ParkingState, failed, outputs, sample
+from controller_fmu.guo2015.parking import AT_REST, ParkingState, outputs, sample
 from controller_fmu.hsic.outputs import hsic_outputs
 from controller_fmu.hsic.system import HsicState, hsic_sample
-from controller_fmu.interface import ControllerInput, ControllerOutput, ControllerParams, Reason, System
+from controller_fmu.interface import ControllerInput, ControllerOutput, ControllerParams, Phase, Reason, System
 from controller_fmu.preview.driving import DrivingState, driving_outputs, driving_sample
 from controller_fmu.zhang2022.outputs import zhang_outputs
 from controller_fmu.zhang2022.system import ZhangState, zhang_sample
 from modelkit.maths import is_finite
+from modelkit.vocabulary import Prompt
 
+FAILED = int(Phase.FAILED)
 BAD_PARAMETER = int(Reason.BAD_PARAMETER)
+STOP = int(Prompt.STOP)
 ZHANG2022 = int(System.ZHANG2022)
 HSIC = int(System.HSIC)
 PREVIEW = int(System.PREVIEW)
 APA = int(System.APA)
 
 
-class ControllerState(NamedTuple):
-    """Everything the controller remembers."""
+class Clock(NamedTuple):
+    """When the controller acts next."""
 
     time_ns: int = 0
     next_sample_ns: int = 0
+    usable: bool = True
+    """False: the parameters make no sense, and it never acts."""
+
+
+class ControllerState(NamedTuple):
+    """Everything the controller remembers: its clock, and the memory of each system."""
+
+    clock: Clock = Clock()
     parking: ParkingState = ParkingState()
     zhang2022: ZhangState = ZhangState()
     hsic: HsicState = HsicState()
@@ -37,56 +49,98 @@ class ControllerState(NamedTuple):
     apa: ApaState = AT_START
 
 
+class Due(NamedTuple):
+    """What the clock says of a communication step."""
+
+    clock: Clock
+    samples: int
+    period_ns: int
+
+
 def initialize(params: ControllerParams) -> tuple[ControllerState, ControllerOutput]:
     """Return the controller in standby; with unusable parameters, failed."""
-    parking = AT_REST if _is_usable(params) else failed(BAD_PARAMETER)
-    state = ControllerState(0, 0, parking, ZhangState(), HsicState(), DrivingState(), AT_START)
-    return state, _outputs(state, params)
-
-
-def step(
-    state: ControllerState, inputs: ControllerInput, params: ControllerParams, dt_ns: int
-) -> tuple[ControllerState, ControllerOutput]:
-    """Return the controller ``dt_ns`` later, its inputs held."""
-    end_ns = state.time_ns + dt_ns
-    next_ns = state.next_sample_ns
-    period_ns = 0
-    count = 0
-    if state.parking.reason != BAD_PARAMETER:
-        period_ns = math.floor(params.sample_time * 1e9 + 0.5)
-        while next_ns < end_ns:
-            next_ns += period_ns
-            count += 1
-    parking, zhang2022, hsic, preview = state.parking, state.zhang2022, state.hsic, state.preview
-    apa = state.apa
-    for _ in range(count):
-        if params.system == ZHANG2022:
-            zhang2022 = zhang_sample(zhang2022, inputs, params, period_ns)
-        elif params.system == HSIC:
-            hsic = hsic_sample(hsic, inputs, params, period_ns)
-        elif params.system == PREVIEW:
-            preview = driving_sample(preview, inputs, params, period_ns)
-        elif params.system == APA:
-            apa = apa_sample(apa, inputs, params, period_ns)
-        else:
-            parking = sample(parking, inputs, params, period_ns)
-    after = ControllerState(end_ns, next_ns, parking, zhang2022, hsic, preview, apa)
-    return after, _outputs(after, params)
-
-
-def _outputs(state: ControllerState, params: ControllerParams) -> ControllerOutput:
-    """Return the outputs of the chosen system."""
-    if state.parking.reason == BAD_PARAMETER:
-        return outputs(state.parking, params)
+    usable = _is_usable(params)
+    state = ControllerState(
+        Clock(0, 0, usable), AT_REST, ZhangState(), HsicState(), DrivingState(), AT_START
+    )
+    if not usable:
+        return state, refused()
     if params.system == ZHANG2022:
-        return zhang_outputs(state.zhang2022, params)
+        return state, zhang_outputs(state.zhang2022, params)
     if params.system == HSIC:
-        return hsic_outputs(state.hsic, params)
+        return state, hsic_outputs(state.hsic, params)
     if params.system == PREVIEW:
-        return driving_outputs(state.preview, params)
+        return state, driving_outputs(state.preview, params)
     if params.system == APA:
-        return apa_outputs(state.apa, params)
-    return outputs(state.parking, params)
+        return state, apa_outputs(state.apa, params)
+    return state, outputs(state.parking, params)
+
+
+def parking_step(
+    clock: Clock, own: ParkingState, inputs: ControllerInput, params: ControllerParams, dt_ns: int
+) -> tuple[Clock, ParkingState, ControllerOutput]:
+    """Return NTBPTcwPT and NTBPT ``dt_ns`` later, the inputs held."""
+    due = tick(clock, params.sample_time, dt_ns)
+    for _ in range(due.samples):
+        own = sample(own, inputs, params, due.period_ns)
+    return due.clock, own, outputs(own, params) if clock.usable else refused()
+
+
+def zhang_step(
+    clock: Clock, own: ZhangState, inputs: ControllerInput, params: ControllerParams, dt_ns: int
+) -> tuple[Clock, ZhangState, ControllerOutput]:
+    """Return the quintic, MPC and PID system ``dt_ns`` later, the inputs held."""
+    due = tick(clock, params.sample_time, dt_ns)
+    for _ in range(due.samples):
+        own = zhang_sample(own, inputs, params, due.period_ns)
+    return due.clock, own, zhang_outputs(own, params) if clock.usable else refused()
+
+
+def hsic_step(
+    clock: Clock, own: HsicState, inputs: ControllerInput, params: ControllerParams, dt_ns: int
+) -> tuple[Clock, HsicState, ControllerOutput]:
+    """Return human-simulated intelligent control ``dt_ns`` later, the inputs held."""
+    due = tick(clock, params.sample_time, dt_ns)
+    for _ in range(due.samples):
+        own = hsic_sample(own, inputs, params, due.period_ns)
+    return due.clock, own, hsic_outputs(own, params) if clock.usable else refused()
+
+
+def preview_step(
+    clock: Clock, own: DrivingState, inputs: ControllerInput, params: ControllerParams, dt_ns: int
+) -> tuple[Clock, DrivingState, ControllerOutput]:
+    """Return the dual-point preview on its road ``dt_ns`` later, the inputs held."""
+    due = tick(clock, params.sample_time, dt_ns)
+    for _ in range(due.samples):
+        own = driving_sample(own, inputs, params, due.period_ns)
+    return due.clock, own, driving_outputs(own, params) if clock.usable else refused()
+
+
+def apa_step(
+    clock: Clock, own: ApaState, inputs: ControllerInput, params: ControllerParams, dt_ns: int
+) -> tuple[Clock, ApaState, ControllerOutput]:
+    """Return the whole parking assist ``dt_ns`` later, the inputs held."""
+    due = tick(clock, params.sample_time, dt_ns)
+    for _ in range(due.samples):
+        own = apa_sample(own, inputs, params, due.period_ns)
+    return due.clock, own, apa_outputs(own, params) if clock.usable else refused()
+
+
+def tick(clock: Clock, sample_time: float, dt_ns: int) -> Due:
+    """Return the clock ``dt_ns`` later, and how many samples of which length [ns] were due before."""
+    end_ns = clock.time_ns + dt_ns
+    if not clock.usable:
+        return Due(Clock(end_ns, clock.next_sample_ns, False), 0, 0)
+    period_ns = math.floor(sample_time * 1e9 + 0.5)
+    samples = 0
+    if clock.next_sample_ns < end_ns:
+        samples = (end_ns - clock.next_sample_ns + period_ns - 1) // period_ns
+    return Due(Clock(end_ns, clock.next_sample_ns + samples * period_ns, True), samples, period_ns)
+
+
+def refused() -> ControllerOutput:
+    """Return the outputs of a controller that cannot work with its parameters: it stops the car."""
+    return ControllerOutput(prompt=STOP, brake_request=True, phase=FAILED, reason=BAD_PARAMETER)
 
 
 def _is_usable(params: ControllerParams) -> bool:

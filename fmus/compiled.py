@@ -18,6 +18,7 @@ from typing import Any
 
 from fmus.compiled_modules import collect
 from fmus.compiled_types import install
+from fmus.compiled_views import viewer
 from fmus.flat_entry import Entries, entries
 from fmus.sources import MODELKIT_FILES, load
 from modelkit.model import Model
@@ -67,9 +68,17 @@ def functions(module: ModuleType) -> list[FunctionType]:
 def compiled_entries(model: Model) -> Entries:
     """Return ``model_initialize`` and ``model_step`` compiled for this process, over numpy arrays of doubles."""
     make_compilable(model.package)
-    plain = entries(model)
+    plain = _with_branches(model)
     jit: Callable[[Any], Any] = numba.njit(**OPTIONS)
-    return Entries(jit(plain.initialize), jit(plain.step))
+    return Entries(jit(plain.initialize), jit(plain.step), plain.branches)
+
+
+def _with_branches(model: Model) -> Entries:
+    """Return the entries, of which the step may call the branches from compiled code."""
+    plain = entries(model, viewer)
+    for branch in plain.branches.values():
+        numba.extending.register_jitable(error_model="numpy")(branch)
+    return plain
 
 
 def intermediate_code(model: Model) -> list[str]:
@@ -82,7 +91,7 @@ def intermediate_code(model: Model) -> list[str]:
     """
     found = collect()
     make_compilable(model.package)
-    plain = entries(model)
+    plain = _with_branches(model)
     for name, function, signature in (
         ("model_initialize", plain.initialize, INITIALIZE),
         ("model_step", plain.step, STEP),

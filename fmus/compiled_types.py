@@ -12,6 +12,9 @@ import inspect
 from importlib import import_module
 from typing import Any
 
+from fmus import compiled_views
+from fmus.compiled_views import value_type
+
 numba: Any = import_module("numba")  # untyped on purpose: what it says of its types changes with every version
 templates: Any = import_module("numba.core.typing.templates")
 collections: Any = import_module("numba.core.typing.collections")
@@ -22,8 +25,13 @@ count_references = runtime.NRTContext._call_incref_decref
 
 
 def install() -> None:
-    """Put constructor and reference counting in the place of numba's own; may be called twice."""
+    """Put constructor and reference counting in the place of numba's own, and add views; may be called twice."""
+    if collections.NamedTupleClassAttribute.resolve___call__ is _constructor:
+        return
+    compiled_views.install()
     collections.NamedTupleClassAttribute.resolve___call__ = _constructor
+    for kind in (types.NamedTuple, types.NamedUniTuple):
+        kind.mangling_args = property(lambda named: (named.instance_class.__name__, ()))
     runtime.NRTContext._call_incref_decref = _count_references
 
 
@@ -47,7 +55,7 @@ def _constructor(attribute: Any, class_type: Any) -> Any:
         def apply(self, args: tuple[Any, ...], kws: Any) -> Any:
             given = pysig.bind(*args, **dict(kws)).arguments
             fields = tuple(
-                types.unliteral(given[name]) if name in given else numba.typeof(parameter.default)
+                value_type(types.unliteral(given[name])) if name in given else numba.typeof(parameter.default)
                 for name, parameter in pysig.parameters.items()
             )
             return templates.signature(types.BaseTuple.from_types(fields, cls), *fields).replace(pysig=pysig)

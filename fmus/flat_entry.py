@@ -4,14 +4,15 @@
     model_step(s, u, p, y, dt_ns)     s, u, p -> s, y: the state is replaced in place
 
 Every scalar is a double; integers up to 2^53 and truth values pass through unchanged. The order is
-that of ``modelkit.variables``.
+that of ``modelkit.variables``. The step of a model with branches is one function for each, which reads
+and writes the memory of its system only.
 """
 
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
-from modelkit.model import Model
-from modelkit.variables import constructor_source, variables
+from modelkit.model import Branch, Branches, Model
+from modelkit.variables import constructor, constructor_source, flatten, variables
 
 
 class Entries(NamedTuple):
@@ -19,14 +20,18 @@ class Entries(NamedTuple):
 
     initialize: Callable[..., None]
     step: Callable[..., None]
+    branches: dict[str, Callable[..., None]]
+    """What ``step`` chooses from, under the names by which it calls them."""
 
 
-def entries(model: Model) -> Entries:
-    """Return the two functions of ``model``."""
+def entries(model: Model, see: Callable[[type[Any]], Callable[..., Any]] = constructor) -> Entries:
+    """Return the two functions of ``model``; ``see(cls)`` makes the function from an array to a ``cls`` to read from."""
     scope: dict[str, Any] = {"initialize": model.initialize, "step": model.step}
+    scope |= {"see_inputs": see(model.inputs), "see_params": see(model.params)}
     exec(initialize_source(model, scope), scope)
     exec(step_source(model, scope), scope)
-    return Entries(scope["model_initialize"], scope["model_step"])
+    branches = {name: item for name, item in scope.items() if name.startswith("branch_")}
+    return Entries(scope["model_initialize"], scope["model_step"], branches)
 
 
 def sizes(model: Model) -> dict[str, int]:
@@ -37,24 +42,59 @@ def sizes(model: Model) -> dict[str, int]:
 
 def initialize_source(model: Model, scope: dict[str, Any]) -> str:
     """Return the text of ``model_initialize``; the names it needs are put into ``scope``."""
-    lines = ["def model_initialize(s, p, y):", f"    state, outputs = initialize({_build(model.params, 'p', scope)})"]
-    return "\n".join(lines + _stores(model)) + "\n"
+    call = "    state, outputs = initialize(see_params(p))"
+    stores = [*_stores(model.state(), "state", "s"), *_stores(model.outputs(), "outputs", "y")]
+    return "\n".join(["def model_initialize(s, p, y):", call, *stores, ""])
 
 
 def step_source(model: Model, scope: dict[str, Any]) -> str:
     """Return the text of ``model_step``; the names it needs are put into ``scope``."""
-    groups = ((model.state, "s"), (model.inputs, "u"), (model.params, "p"))
-    arguments = [_build(cls, array, scope) for cls, array in groups]
-    lines = ["def model_step(s, u, p, y, dt_ns):", f"    state, outputs = step({', '.join(arguments)}, dt_ns)"]
-    return "\n".join(lines + _stores(model)) + "\n"
+    if model.branches:
+        return _choice_source(model, model.branches, scope)
+    given = (_build(model.state(), "s", scope), "see_inputs(u)", "see_params(p)")
+    stores = [*_stores(model.state(), "state", "s"), *_stores(model.outputs(), "outputs", "y")]
+    call = f"    state, outputs = step({', '.join(given)}, dt_ns)"
+    return "\n".join(["def model_step(s, u, p, y, dt_ns):", call, *stores, ""])
 
 
-def _build(cls: type[Any], array: str, scope: dict[str, Any]) -> str:
+def _choice_source(model: Model, branches: Branches, scope: dict[str, Any]) -> str:
+    """Return the text of a function for each branch and of the ``model_step`` that chooses."""
+    place = [item.name for item in variables(model.params)].index(branches.parameter)
+    first, *others = branches.systems
+    lines = [line for branch in branches.systems for line in _branch_source(model, branches.common, branch, scope)]
+    lines += ["def model_step(s, u, p, y, dt_ns):", f"    chosen = int(p[{place}])"]
+    for branch in others:
+        values = tuple(int(value) for value in branch.values)
+        lines += [f"    if chosen in {values}:", f"        branch_{branch.field}(s, u, p, y, dt_ns)", "        return"]
+    return "\n".join([*lines, f"    branch_{first.field}(s, u, p, y, dt_ns)", ""])
+
+
+def _branch_source(model: Model, common: str, branch: Branch, scope: dict[str, Any]) -> list[str]:
+    shape = model.state()
+    scope[f"step_{branch.field}"] = branch.step
+    parts = [(name, getattr(shape, name), _place(shape, name)) for name in (common, branch.field)]
+    given = [_build(part, "s", scope, at) for _, part, at in parts]
+    arguments = ", ".join((*given, "see_inputs(u)", "see_params(p)"))
+    stores = [line for name, part, at in parts for line in _stores(part, "common" if name == common else "own", "s", at)]
+    return [
+        f"def branch_{branch.field}(s, u, p, y, dt_ns):",
+        f"    common, own, outputs = step_{branch.field}({arguments}, dt_ns)",
+        *stores,
+        *_stores(model.outputs(), "outputs", "y"),
+    ]
+
+
+def _place(shape: Any, field: str) -> int:
+    """Return the index of the first scalar of ``field``."""
+    return len(flatten(shape[: shape._fields.index(field)]))
+
+
+def _build(shape: Any, array: str, scope: dict[str, Any], at: int = 0) -> str:
     def name_of(inner: type[Any]) -> str:
         known = {found: name for name, found in scope.items() if isinstance(found, type)}
         return known.get(inner) or _remember(inner, scope)
 
-    expression, _ = constructor_source(cls(), name_of, array)
+    expression, _ = constructor_source(shape, name_of, array, at)
     return expression
 
 
@@ -64,13 +104,8 @@ def _remember(cls: type[Any], scope: dict[str, Any]) -> str:
     return name
 
 
-def _stores(model: Model) -> list[str]:
-    groups = ((model.state, "state", "s"), (model.outputs, "outputs", "y"))
-    return [
-        f"    {array}[{place}] = {source}"
-        for cls, name, array in groups
-        for place, source in enumerate(scalars(cls(), name))
-    ]
+def _stores(shape: Any, name: str, array: str, at: int = 0) -> list[str]:
+    return [f"    {array}[{place}] = {source}" for place, source in enumerate(scalars(shape, name), start=at)]
 
 
 def scalars(shape: Any, source: str) -> list[str]:

@@ -6,6 +6,7 @@ of the model's sources.
 """
 
 import os
+import re
 import subprocess
 import sys
 from importlib.metadata import version
@@ -18,8 +19,10 @@ from fmus.sources import reference, source_hash
 from modelkit.model import Model
 
 HEAD = ";; module\n"
-WIDE = 250
+WIDE = 60
 """Scalars a function may take before it is always inlined."""
+NUMBA_S_CHOICE = re.compile(r"\b(noinline|alwaysinline)\b")
+"""Numba says of each function whether it is inlined; LLVM, which sees all callers, decides better."""
 ENTRIES = ("model_initialize", "model_step")
 CACHE = Path(__file__).parent / "dist" / "cache"
 KEPT = 4
@@ -96,7 +99,8 @@ def _allowed(name: str) -> bool:
 
 def _module(text: str) -> llvm.ModuleRef:
     """Return all modules linked into one, with the entries under their plain names and everything else internal."""
-    first, *others = [llvm.parse_assembly(part) for part in text.split(HEAD)[1:]]
+    free = NUMBA_S_CHOICE.sub("nounwind", text)
+    first, *others = [llvm.parse_assembly(part) for part in free.split(HEAD)[1:]]
     for other in others:
         first.link_in(other)
     for item in (*first.functions, *first.global_variables):
@@ -109,7 +113,7 @@ def _module(text: str) -> llvm.ModuleRef:
 
 
 def _inline_wide_calls(module: llvm.ModuleRef) -> None:
-    """Mark functions that take a whole state or whole parameters: passing those costs more than the call saves."""
+    """Mark functions that take a whole state: passing it costs more than the call saves."""
     for item in module.functions:
         wide = not item.is_declaration and sum(1 for _ in item.arguments) > WIDE
         if wide and item.name not in ENTRIES:

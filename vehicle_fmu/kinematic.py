@@ -27,10 +27,18 @@ def move(
     Both are known functions of time, so heading, then position, are integrals: Simpson's rule,
     with the heading halfway from the parabola through the three rates. Fourth order in ``h``.
     """
+    if speed == 0.0 and next_speed == 0.0:
+        return pose
+    tan = math.tan(angle)
+    middle_tan = tan
+    next_tan = tan
+    if next_angle != angle:
+        middle_tan = math.tan(0.5 * (angle + next_angle))
+        next_tan = math.tan(next_angle)
     middle_speed = 0.5 * (speed + next_speed)
-    rate = speed * math.tan(angle) / wheelbase
-    middle_rate = middle_speed * math.tan(0.5 * (angle + next_angle)) / wheelbase
-    next_rate = next_speed * math.tan(next_angle) / wheelbase
+    rate = speed * tan / wheelbase
+    middle_rate = middle_speed * middle_tan / wheelbase
+    next_rate = next_speed * next_tan / wheelbase
     heading = pose.heading
     middle_heading = heading + h * (5.0 * rate + 8.0 * middle_rate - next_rate) / 24.0
     next_heading = heading + h * (rate + 4.0 * middle_rate + next_rate) / 6.0

@@ -128,37 +128,40 @@ def heard_distances(
     """Return the exact distance [m] from each sensor to the nearest thing in its cone, at most ``max_range``."""
     m = max_range
     d = (m, m, m, m, m, m, m, m, m, m, m, m)
+    ahead = Point(math.cos(pose.heading), math.sin(pose.heading))
     for obstacle in scene.boxes:
         if is_there(obstacle, time_ns):
-            d = _hear(d, pose, mounts, half_angle, obstacle_box(obstacle))
+            d = _hear(d, pose, ahead, mounts, half_angle, obstacle_box(obstacle))
     for kerb in scene.kerbs:
         if kerb.height > 0.0 and kerb.height >= kerb_height:
             line = line_box(kerb.x1, kerb.y1, kerb.x2, kerb.y2)
-            d = _hear(d, pose, mounts, half_angle, line)
+            d = _hear(d, pose, ahead, mounts, half_angle, line)
     return d
 
 
-def _hear(d: Twelve, pose: Pose, mounts: tuple[Mount, ...], half: float, box: Box) -> Twelve:
+def _hear(d: Twelve, pose: Pose, ahead: Point, mounts: tuple[Mount, ...], half: float, box: Box) -> Twelve:
     return (
-        _nearer(d[0], pose, mounts[0], half, box),
-        _nearer(d[1], pose, mounts[1], half, box),
-        _nearer(d[2], pose, mounts[2], half, box),
-        _nearer(d[3], pose, mounts[3], half, box),
-        _nearer(d[4], pose, mounts[4], half, box),
-        _nearer(d[5], pose, mounts[5], half, box),
-        _nearer(d[6], pose, mounts[6], half, box),
-        _nearer(d[7], pose, mounts[7], half, box),
-        _nearer(d[8], pose, mounts[8], half, box),
-        _nearer(d[9], pose, mounts[9], half, box),
-        _nearer(d[10], pose, mounts[10], half, box),
-        _nearer(d[11], pose, mounts[11], half, box),
+        _nearer(d[0], pose, ahead, mounts[0], half, box),
+        _nearer(d[1], pose, ahead, mounts[1], half, box),
+        _nearer(d[2], pose, ahead, mounts[2], half, box),
+        _nearer(d[3], pose, ahead, mounts[3], half, box),
+        _nearer(d[4], pose, ahead, mounts[4], half, box),
+        _nearer(d[5], pose, ahead, mounts[5], half, box),
+        _nearer(d[6], pose, ahead, mounts[6], half, box),
+        _nearer(d[7], pose, ahead, mounts[7], half, box),
+        _nearer(d[8], pose, ahead, mounts[8], half, box),
+        _nearer(d[9], pose, ahead, mounts[9], half, box),
+        _nearer(d[10], pose, ahead, mounts[10], half, box),
+        _nearer(d[11], pose, ahead, mounts[11], half, box),
     )
 
 
-def _nearer(nearest: float, pose: Pose, mount: Mount, half_angle: float, box: Box) -> float:
-    cos = math.cos(pose.heading)
-    sin = math.sin(pose.heading)
-    start = Point(pose.x + mount.x * cos - mount.y * sin, pose.y + mount.x * sin + mount.y * cos)
+def _nearer(nearest: float, pose: Pose, ahead: Point, mount: Mount, half_angle: float, box: Box) -> float:
+    """Return the smaller of ``nearest`` and what one sensor hears of a box; ``ahead`` is the car's unit vector."""
+    start = Point(
+        pose.x + mount.x * ahead.x - mount.y * ahead.y,
+        pose.y + mount.x * ahead.y + mount.y * ahead.x,
+    )
     dx = box.x - start.x
     dy = box.y - start.y
     far = nearest + reach(box)

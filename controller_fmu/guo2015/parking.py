@@ -62,11 +62,6 @@ class ParkingState(NamedTuple):
 AT_REST = ParkingState()
 
 
-def failed(reason: int) -> ParkingState:
-    """Return the system that has failed before it began."""
-    return _ended(AT_REST, FAILED, reason, False)
-
-
 def sample(state: ParkingState, inputs: ControllerInput, params: ControllerParams, dt_ns: int) -> ParkingState:
     """Return the system one sample of ``dt_ns`` later."""
     if state.phase >= PARKED:

@@ -55,6 +55,7 @@ typedef struct {
     double *state, *inputs, *outputs, *fetched;
     const double *parameters;
     int64_t every;
+    int due; /* at this exchange */
 } Slave;
 
 static double look(const Slave *slaves, Signal signal) {
@@ -62,10 +63,10 @@ static double look(const Slave *slaves, Signal signal) {
     return signal.input ? slave->inputs[signal.place] : slave->fetched[signal.place];
 }
 
-static void hand_over(const Batch *batch, const Slave *slaves, int64_t count) {
+static void hand_over(const Batch *batch, const Slave *slaves) {
     for (int64_t k = 0; k < batch->link_count; k++) {
         const Link *link = &batch->links[k];
-        if (count % slaves[link->target].every == 0) {
+        if (slaves[link->target].due) {
             slaves[link->target].inputs[link->target_place] = slaves[link->source].fetched[link->source_place];
         }
     }
@@ -101,18 +102,19 @@ static int stands(const Batch *batch, const Slave *slaves) {
     return final && !(fabs(look(slaves, batch->speed)) > batch->still);
 }
 
-static void initialize(const Batch *batch, const Slave *slaves) {
+static void initialize(const Batch *batch, Slave *slaves) {
     for (int64_t m = 0; m < batch->model_count; m++) {
         const Model *model = &batch->models[m];
+        slaves[m].due = 1;
         memcpy(slaves[m].inputs, model->starts, (size_t)model->inputs * sizeof(double));
         model->initialize(slaves[m].state, slaves[m].parameters, slaves[m].outputs);
         memcpy(slaves[m].fetched, slaves[m].outputs, (size_t)model->outputs * sizeof(double));
     }
-    hand_over(batch, slaves, 0);
+    hand_over(batch, slaves);
 }
 
 /* Fills row: the end, its time [ns], what is kept. */
-static void run(const Batch *batch, const Slave *slaves, int64_t step_ns, int64_t last, double *row, double *before) {
+static void run(const Batch *batch, Slave *slaves, int64_t step_ns, int64_t last, double *row, double *before) {
     double *kept = row + 2;
     End end = STOP_TIME;
     int64_t since = -1, count = 0;
@@ -120,11 +122,12 @@ static void run(const Batch *batch, const Slave *slaves, int64_t step_ns, int64_
     begin_notes(batch, slaves, kept, before);
     for (;; count++) {
         for (int64_t m = 0; m < batch->model_count; m++) {
-            if (count % slaves[m].every == 0) {
+            slaves[m].due = slaves[m].every == 1 || count % slaves[m].every == 0;
+            if (slaves[m].due) {
                 memcpy(slaves[m].fetched, slaves[m].outputs, (size_t)batch->models[m].outputs * sizeof(double));
             }
         }
-        hand_over(batch, slaves, count);
+        hand_over(batch, slaves);
         note(batch, slaves, kept, before);
         const int64_t now = count * step_ns;
         since = !stands(batch, slaves) ? -1 : since < 0 ? now : since;
@@ -135,8 +138,8 @@ static void run(const Batch *batch, const Slave *slaves, int64_t step_ns, int64_
         if (count == last) break;
         for (int64_t m = 0; m < batch->model_count; m++) {
             const Slave *slave = &slaves[m];
-            if (count % slave->every == 0 && batch->models[m].step(slave->state, slave->inputs, slave->parameters,
-                                                                   slave->outputs, slave->every * step_ns)) {
+            if (slave->due && batch->models[m].step(slave->state, slave->inputs, slave->parameters, slave->outputs,
+                                                    slave->every * step_ns)) {
                 end = ABORTED;
             }
         }

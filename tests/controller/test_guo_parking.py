@@ -10,7 +10,6 @@ from hypothesis import strategies as st
 
 from controller_fmu import MODEL as CONTROLLER
 from controller_fmu.interface import ControllerInput, ControllerParams, Phase, Reason, System
-from controller_fmu.model import initialize, step
 from modelkit.variables import constructor, variables, with_values
 from modelkit.vocabulary import Pose, Prompt
 
@@ -24,6 +23,7 @@ CASE_4 = {
     "driver.obeys_slow_down": False,
 }
 PROMPTS = {"prompting.reaction": 0.0}
+initialize, step = CONTROLLER.initialize, CONTROLLER.step
 TARGET = (-7.608, -3.056)
 
 

@@ -11,16 +11,16 @@ the compiled loop cannot be built.
 """
 
 import ctypes
-from collections.abc import Sequence
+from contextlib import suppress
 from typing import Any
 
 import numpy as np
 
 from orchestrator.fmu_slave import FmuSlave, Transfer
 from orchestrator.master import End, Master
-from orchestrator.slave import Indices, Slave
+from orchestrator.slave import Indices
 
-BLOCK = 100
+BLOCK = 250
 """Exchanges per compiled call."""
 FETCH, SEND, STEP = 1, 2, 3
 Pointer = ctypes.c_void_p
@@ -32,7 +32,7 @@ def _structure(name: str, **fields: Any) -> Any:
 
 
 TransferC = _structure(
-    "TransferC", call=Pointer, references=Pointer, buffer=Pointer, places=Pointer, count=Long, real=Long
+    "TransferC", call=Pointer, references=Pointer, values=Pointer, integers=Pointer, count=Long
 )
 SlaveC = _structure(
     "SlaveC",
@@ -47,6 +47,8 @@ SlaveC = _structure(
     get_count=Long,
     set_count=Long,
     every=Long,
+    step=ctypes.c_double,
+    due=Long,
 )
 LinkC = _structure("LinkC", source=Long, target=Long, source_places=Pointer, target_places=Pointer, count=Long)
 RunC = _structure(
@@ -65,26 +67,32 @@ RunC = _structure(
 class CompiledMaster(Master):
     """A master whose loop is compiled wherever it can be."""
 
+    _plan: "_Plan | None" = None
+
+    def initialize(self) -> None:
+        """Enter initialization, exchange once, leave it, and lay out the loop's memory: time is zero."""
+        super().initialize()
+        fmus = [slave for slave in self.slaves if isinstance(slave, FmuSlave)]
+        self._plan = None
+        if not self.manipulators and len(fmus) == len(self.slaves):
+            with suppress(RuntimeError):
+                self._plan = _Plan(self, fmus)
+
     def run(self) -> End:
         """Exchange and step until an ending, the stop time or an interrupt. Raises ``RunError``."""
-        fmus = [slave for slave in self.slaves if isinstance(slave, FmuSlave)]
-        if self.manipulators or len(fmus) < len(self.slaves):
+        if self._plan is None:
             return super().run()
-        try:
-            plan = _Plan(self, fmus)
-        except RuntimeError:
-            return super().run()
-        return self._run_blocks(fmus, plan)
+        return self._run_blocks(self._plan)
 
-    def _run_blocks(self, fmus: list[FmuSlave], plan: "_Plan") -> End:
-        views = plan.views(fmus)
+    def _run_blocks(self, plan: "_Plan") -> End:
         first = 0
         while True:
             count = plan.advance(first)
             unseen = 0 if self.observers or self.endings else max(count - 1, 0)
+            rows = plan.rows_of_ports(unseen, count)
             for row in range(unseen, count):
-                for values, place in views:
-                    values[:] = plan.rows[row, place]
+                for values, place in plan.ports:
+                    values[:] = rows[row - unseen, place]
                 t_ns = (first + row) * self.step_ns
                 for observer in self.observers:
                     observer.exchanged(t_ns)
@@ -92,11 +100,15 @@ class CompiledMaster(Master):
                 if reason:
                     return End(reason, t_ns)
             first += count
-            plan.check(fmus, first)
+            plan.check(first)
 
 
 class _Plan:
-    """The C structures of one run, and all memory they point to."""
+    """The C structures of one run, and all memory they point to.
+
+    The arrays of the compiled loop have their values in the order of the transfers, so that those of one
+    type lie together and an FMU reads and writes them in place.
+    """
 
     def __init__(self, master: Master, fmus: list[FmuSlave]) -> None:
         from fmus.master_library import master_library
@@ -104,16 +116,20 @@ class _Plan:
         self._call = ctypes.CDLL(str(master_library())).master_run
         self._call.restype = ctypes.c_int64
         self._call.argtypes = [Pointer, Long, Long, Pointer]
+        self._fmus = fmus
         self._kept: list[Any] = []
         self._step_ns = master.step_ns
         self.last = master.stop_ns // master.step_ns
-        slaves = [self._slave(slave, every) for slave, every in zip(fmus, master.every, strict=True)]
+        orders = [(_order(slave.sets), _order(slave.gets)) for slave in fmus]
+        slaves = [
+            self._slave(slave, every, *order) for slave, every, order in zip(fmus, master.every, orders, strict=True)
+        ]
         links = [
             LinkC(
                 link.source,
                 link.target,
-                self._places(link.source_places),
-                self._places(link.target_places),
+                self._places(np.argsort(orders[link.source][1])[link.source_places]),
+                self._places(np.argsort(orders[link.target][0])[link.target_places]),
                 len(link.source_places),
             )
             for link in master.connections
@@ -128,24 +144,29 @@ class _Plan:
             0,
             0,
         )
-        self.rows = np.empty((BLOCK, sum(len(part.values) for slave in fmus for part in (slave.inputs, slave.outputs))))
+        self.ports: list[tuple[Any, slice]] = []
+        """(slave's array, its place in a row of the ports) of all inputs and outputs."""
+        columns: list[Any] = []
+        at = 0
+        for slave, order in zip(fmus, orders, strict=True):
+            for ports, places in zip((slave.inputs, slave.outputs), order, strict=True):
+                self.ports.append((ports.values, slice(at, at + len(places))))
+                columns.append(at + np.argsort(places))
+                at += len(places)
+        self._columns = np.concatenate(columns)
+        self.rows = np.empty((BLOCK, at))
 
-    def views(self, fmus: Sequence[Slave]) -> list[tuple[Any, slice]]:
-        """Return (slave's array, its place in a row) in the order of the rows."""
-        found, at = [], 0
-        for slave in fmus:
-            for ports in (slave.inputs, slave.outputs):
-                found.append((ports.values, slice(at, at + len(ports.values))))
-                at += len(ports.values)
-        return found
+    def rows_of_ports(self, begin: int, end: int) -> Any:
+        """Return the rows with their values in the order of the slaves' ports."""
+        return self.rows[begin:end, self._columns]
 
     def advance(self, first: int) -> int:
         """Do a block of exchanges; return how many are in ``rows``."""
         return int(self._call(ctypes.addressof(self._run), first, BLOCK, self.rows.ctypes.data))
 
-    def check(self, fmus: list[FmuSlave], number: int) -> None:
+    def check(self, number: int) -> None:
         """Raise the ``RunError`` of the slave that refused in the block just done; ``number`` rows are complete."""
-        slave = fmus[self._run.failed]
+        slave = self._fmus[self._run.failed]
         if self._run.failure == FETCH:
             raise slave.no_outputs()
         if self._run.failure == SEND:
@@ -153,31 +174,36 @@ class _Plan:
         if self._run.failure == STEP:
             raise slave.no_step((number - 1) * self._step_ns)
 
-    def _slave(self, slave: FmuSlave, every: int) -> Any:
-        gets, sets = ([self._transfer(item) for item in group] for group in (slave.gets, slave.sets))
+    def _slave(self, slave: FmuSlave, every: int, inputs: Indices, outputs: Indices) -> Any:
+        arrays = [slave.inputs.values[inputs], slave.outputs.values[outputs]]
+        self._kept.append(arrays)
+        sets, gets = (
+            self._transfers(group, array) for group, array in zip((slave.sets, slave.gets), arrays, strict=True)
+        )
         return SlaveC(
             slave.component,
             ctypes.cast(slave.do_step, Pointer),
-            slave.inputs.values.ctypes.data,
-            slave.outputs.values.ctypes.data,
-            len(slave.inputs.values),
-            len(slave.outputs.values),
+            *(array.ctypes.data for array in arrays),
+            *map(len, arrays),
             self._array(TransferC, gets),
             self._array(TransferC, sets),
             len(gets),
             len(sets),
             every,
+            every * self._step_ns / 1e9,
+            True,
         )
 
-    def _transfer(self, item: Transfer) -> Any:
-        return TransferC(
-            ctypes.cast(item.function, Pointer),
-            ctypes.addressof(item.references),
-            ctypes.addressof(item.array),
-            self._places(item.places),
-            item.count,
-            item.view.dtype == np.float64,
-        )
+    def _transfers(self, group: list[Transfer], array: Any) -> list[Any]:
+        found, at = [], 0
+        for item in group:
+            real = item.view.dtype == np.float64
+            values = array.ctypes.data + at * array.itemsize
+            buffer = None if real else ctypes.addressof(item.array)
+            references = ctypes.addressof(item.references)
+            found.append(TransferC(ctypes.cast(item.function, Pointer), references, values, buffer, item.count))
+            at += item.count
+        return found
 
     def _places(self, places: Indices) -> int:
         kept = np.ascontiguousarray(places, dtype=np.int64)
@@ -188,3 +214,8 @@ class _Plan:
         kept = (kind * max(len(items), 1))(*items)
         self._kept.append((kept, items))
         return ctypes.addressof(kept)
+
+
+def _order(transfers: list[Transfer]) -> Indices:
+    """Return the places of all values of ``transfers`` in the ports."""
+    return np.concatenate([np.empty(0, dtype=np.intp), *(item.places for item in transfers)])

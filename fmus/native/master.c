@@ -10,14 +10,13 @@
 
 #define NANOSECONDS 1e9
 
-/* All variables of one FMI type and one direction: one call. */
+/* All variables of one FMI type and one direction: one call. They lie together in the slave's array. */
 typedef struct {
     int (*call)(void *component, const uint32_t *references, size_t count, void *buffer);
     const uint32_t *references;
-    void *buffer;          /* doubles if real, else 32-bit integers */
-    const int64_t *places; /* where the values sit in the slave's array */
+    double *values;
+    int32_t *integers; /* what is handed over instead of the values, unless they are real: then null */
     int64_t count;
-    int64_t real;
 } Transfer;
 
 typedef struct {
@@ -32,6 +31,8 @@ typedef struct {
     int64_t get_count;
     int64_t set_count;
     int64_t every; /* stepped every n-th time, by n communication steps */
+    double step;   /* their length [s] */
+    int64_t due;   /* at this exchange */
 } Slave;
 
 /* All signals from one slave to another. */
@@ -46,7 +47,7 @@ typedef struct {
 typedef enum { NOTHING, FETCH, SEND, STEP } Failure;
 
 typedef struct {
-    const Slave *slaves;
+    Slave *slaves;
     const Link *links;
     int64_t slave_count;
     int64_t link_count;
@@ -56,13 +57,17 @@ typedef struct {
     int64_t failure; /* out: in what, see Failure */
 } Run;
 
+static int call(const Slave *slave, const Transfer *transfer) {
+    void *buffer = transfer->integers ? (void *)transfer->integers : (void *)transfer->values;
+    return transfer->call(slave->component, transfer->references, (size_t)transfer->count, buffer) <= fmi2Warning;
+}
+
 static int fetch(const Slave *slave) {
     for (int64_t g = 0; g < slave->get_count; g++) {
         const Transfer *get = &slave->gets[g];
-        if (get->call(slave->component, get->references, (size_t)get->count, get->buffer) > fmi2Warning) return 0;
-        for (int64_t i = 0; i < get->count; i++)
-            slave->outputs[get->places[i]] =
-                get->real ? ((const double *)get->buffer)[i] : (double)((const int32_t *)get->buffer)[i];
+        if (!call(slave, get)) return 0;
+        if (get->integers)
+            for (int64_t i = 0; i < get->count; i++) get->values[i] = get->integers[i];
     }
     return 1;
 }
@@ -70,14 +75,9 @@ static int fetch(const Slave *slave) {
 static int send(const Slave *slave) {
     for (int64_t s = 0; s < slave->set_count; s++) {
         const Transfer *set = &slave->sets[s];
-        for (int64_t i = 0; i < set->count; i++) {
-            double value = slave->inputs[set->places[i]];
-            if (set->real)
-                ((double *)set->buffer)[i] = value;
-            else
-                ((int32_t *)set->buffer)[i] = (int32_t)value;
-        }
-        if (set->call(slave->component, set->references, (size_t)set->count, set->buffer) > fmi2Warning) return 0;
+        if (set->integers)
+            for (int64_t i = 0; i < set->count; i++) set->integers[i] = (int32_t)set->values[i];
+        if (!call(slave, set)) return 0;
     }
     return 1;
 }
@@ -101,11 +101,14 @@ static int fail(Run *run, int64_t slave, Failure failure) {
 
 /* Everything up to the moment at which all arrays are as they are at this exchange. */
 static int exchange(Run *run, int64_t number) {
-    for (int64_t k = 0; k < run->slave_count; k++)
-        if (number % run->slaves[k].every == 0 && !fetch(&run->slaves[k])) return fail(run, k, FETCH);
+    for (int64_t k = 0; k < run->slave_count; k++) {
+        Slave *slave = &run->slaves[k];
+        slave->due = slave->every == 1 || number % slave->every == 0;
+        if (slave->due && !fetch(slave)) return fail(run, k, FETCH);
+    }
     for (int64_t l = 0; l < run->link_count; l++) {
         const Link *link = &run->links[l];
-        if (number % run->slaves[link->target].every) continue;
+        if (!run->slaves[link->target].due) continue;
         for (int64_t i = 0; i < link->count; i++)
             run->slaves[link->target].inputs[link->target_places[i]] =
                 run->slaves[link->source].outputs[link->source_places[i]];
@@ -116,12 +119,11 @@ static int exchange(Run *run, int64_t number) {
 static int advance(Run *run, int64_t number) {
     double time = (double)(number * run->step_ns) / NANOSECONDS;
     for (int64_t k = 0; k < run->slave_count; k++)
-        if (number % run->slaves[k].every == 0 && !send(&run->slaves[k])) return fail(run, k, SEND);
+        if (run->slaves[k].due && !send(&run->slaves[k])) return fail(run, k, SEND);
     for (int64_t k = 0; k < run->slave_count; k++) {
         const Slave *slave = &run->slaves[k];
-        if (number % slave->every) continue;
-        double step = (double)(slave->every * run->step_ns) / NANOSECONDS;
-        if (slave->do_step(slave->component, time, step, fmi2True) > fmi2Warning) return fail(run, k, STEP);
+        if (!slave->due) continue;
+        if (slave->do_step(slave->component, time, slave->step, fmi2True) > fmi2Warning) return fail(run, k, STEP);
     }
     return 1;
 }

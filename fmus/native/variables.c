@@ -12,6 +12,8 @@ static int is_known(fmi2ValueReference reference, Kind kind) {
     return reference < MODEL_VARIABLES && model_kinds[reference] == kind;
 }
 
+static int is_input(fmi2ValueReference reference) { return reference - MODEL_PARAMETERS < MODEL_INPUTS; }
+
 /* Report a value reference that is not known as a variable of this kind. */
 static fmi2Status unknown(const Slave *slave, fmi2ValueReference reference, const char *function) {
     if (reference >= MODEL_VARIABLES)
@@ -25,7 +27,6 @@ static fmi2Status unknown(const Slave *slave, fmi2ValueReference reference, cons
 static int settable(const Slave *slave, fmi2ValueReference reference, double value, const char *function) {
     if (reference >= MODEL_PARAMETERS + MODEL_INPUTS)
         return report(slave, fmi2Error, "%s: %s is calculated by the FMU", function, name_of(reference)), 0;
-    if (reference >= MODEL_PARAMETERS) return 1;
     const double *limits = model_limits[reference];
     if (!(slave->saved.phase & (INSTANTIATED | INITIALIZATION)))
         return report(slave, fmi2Error, "%s: parameter %s is fixed after initialization", function,
@@ -42,17 +43,19 @@ static int as_integer(double value) {
     return value >= INT_MAX ? INT_MAX : value <= INT_MIN ? INT_MIN : value == value ? (int)value : 0;
 }
 
-/* All values are checked before the first is taken: a refused call changes nothing. */
+/* All values to be set are checked before the first is taken: a refused call changes nothing. */
 #define GET(Type, KIND, convert)                                                                                  \
     fmi2Status fmi2Get##Type(fmi2Component component, const fmi2ValueReference references[], size_t count,        \
                              fmi2##Type values[]) {                                                               \
         Slave *slave = slave_in(component, READABLE, "fmi2Get" #Type);                                            \
         if (!slave) return fmi2Error;                                                                             \
         if (count && (!references || !values)) return report(slave, fmi2Error, "fmi2Get" #Type ": null pointer"); \
-        for (size_t i = 0; i < count; i++)                                                                        \
-            if (!is_known(references[i], KIND)) return unknown(slave, references[i], "fmi2Get" #Type);            \
         if (slave->saved.stale && !refresh(slave)) return fmi2Error;                                              \
-        for (size_t i = 0; i < count; i++) values[i] = convert(slave->saved.values[references[i]]);               \
+        const double *const mine = slave->saved.values;                                                           \
+        for (size_t i = 0; i < count; i++) {                                                                      \
+            if (!is_known(references[i], KIND)) return unknown(slave, references[i], "fmi2Get" #Type);            \
+            values[i] = convert(mine[references[i]]);                                                             \
+        }                                                                                                         \
         return fmi2OK;                                                                                            \
     }
 
@@ -62,14 +65,16 @@ static int as_integer(double value) {
         Slave *slave = slave_in(component, INSTANTIATED | INITIALIZATION | STEPPING, "fmi2Set" #Type);            \
         if (!slave) return fmi2Error;                                                                             \
         if (count && (!references || !values)) return report(slave, fmi2Error, "fmi2Set" #Type ": null pointer"); \
+        size_t parameters = 0;                                                                                    \
         for (size_t i = 0; i < count; i++) {                                                                      \
             if (!is_known(references[i], KIND)) return unknown(slave, references[i], "fmi2Set" #Type);            \
+            if (is_input(references[i])) continue;                                                                \
             if (!settable(slave, references[i], convert(values[i]), "fmi2Set" #Type)) return fmi2Error;           \
+            parameters++;                                                                                         \
         }                                                                                                         \
-        for (size_t i = 0; i < count; i++) {                                                                      \
-            slave->saved.values[references[i]] = convert(values[i]);                                              \
-            if (references[i] < MODEL_PARAMETERS) slave->saved.stale = 1;                                         \
-        }                                                                                                         \
+        double *const mine = slave->saved.values;                                                                 \
+        for (size_t i = 0; i < count; i++) mine[references[i]] = convert(values[i]);                              \
+        if (parameters) slave->saved.stale = 1;                                                                   \
         return fmi2OK;                                                                                            \
     }
 

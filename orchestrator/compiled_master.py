@@ -18,7 +18,7 @@ import numpy as np
 
 from orchestrator.fmu_slave import FmuSlave, Transfer
 from orchestrator.master import End, Master
-from orchestrator.slave import Indices
+from orchestrator.slave import Indices, places_of
 
 BLOCK = 250
 """Exchanges per compiled call."""
@@ -91,8 +91,7 @@ class CompiledMaster(Master):
             unseen = 0 if self.observers or self.endings else max(count - 1, 0)
             rows = plan.rows_of_ports(unseen, count)
             for row in range(unseen, count):
-                for values, place in plan.ports:
-                    values[:] = rows[row - unseen, place]
+                self.values[:] = rows[row - unseen]
                 t_ns = (first + row) * self.step_ns
                 for observer in self.observers:
                     observer.exchanged(t_ns)
@@ -144,20 +143,13 @@ class _Plan:
             0,
             0,
         )
-        self.ports: list[tuple[Any, slice]] = []
-        """(slave's array, its place in a row of the ports) of all inputs and outputs."""
-        columns: list[Any] = []
-        at = 0
-        for slave, order in zip(fmus, orders, strict=True):
-            for ports, places in zip((slave.inputs, slave.outputs), order, strict=True):
-                self.ports.append((ports.values, slice(at, at + len(places))))
-                columns.append(at + np.argsort(places))
-                at += len(places)
-        self._columns = np.concatenate(columns)
-        self.rows = np.empty((BLOCK, at))
+        places = (part for order in orders for part in order)
+        starts = (part.start for part in places_of(fmus))
+        self._columns = np.concatenate([at + np.argsort(part) for at, part in zip(starts, places, strict=True)])
+        self.rows = np.empty((BLOCK, len(self._columns)))
 
     def rows_of_ports(self, begin: int, end: int) -> Any:
-        """Return the rows with their values in the order of the slaves' ports."""
+        """Return the rows with their values in the order of the master's."""
         return self.rows[begin:end, self._columns]
 
     def advance(self, first: int) -> int:

@@ -9,7 +9,7 @@ from math import lcm
 from typing import NamedTuple, Protocol
 
 from orchestrator.connections import connect
-from orchestrator.slave import Array, Indices, Slave
+from orchestrator.slave import all_values, Array, Indices, Slave
 
 
 class Observer(Protocol):
@@ -68,6 +68,8 @@ class Master:
 
     def __init__(self, slaves: list[Slave], step_ns: int, stop_ns: int, every: dict[str, int] | None = None) -> None:
         self.slaves = slaves
+        self.values = all_values(slaves)
+        """All inputs and outputs in one array."""
         self.step_ns = step_ns
         self.stop_ns = stop_ns
         self.every = [(every or {}).get(slave.name, 1) for slave in slaves]

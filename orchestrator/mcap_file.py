@@ -1,11 +1,12 @@
 """Writes an MCAP file whose rows of equal layout cost next to nothing, and that survives a kill.
 
-64 KiB chunks are handed to the operating system at once, into ``path``.part, which gets its name when
+256 KiB chunks are handed to the operating system at once, into ``path``.part, which gets its name when
 complete. A block of messages of one channel and of one size is one array, message headers included;
-everything else goes through the records of the ``mcap`` package. Format: mcap.dev/spec.
+what is written once goes through the records of the ``mcap`` package. Format: mcap.dev/spec.
 """
 
 import os
+import struct
 import zlib
 from pathlib import Path
 from typing import Any
@@ -20,8 +21,6 @@ from mcap.records import (
     DataEnd,
     Footer,
     Header,
-    Message,
-    MessageIndex,
     Metadata,
     MetadataIndex,
     Schema,
@@ -31,12 +30,16 @@ from mcap.writer import MCAP0_MAGIC
 from mcap_protobuf.schema import build_file_descriptor_set
 from numpy.typing import NDArray
 
-CHUNK_SIZE = 64 * 1024
+CHUNK_SIZE = 256 * 1024
 LIBRARY = "apa-cosim"
 MESSAGE_HEADER = np.dtype(
     [("opcode", "u1"), ("length", "<u8"), ("channel", "<u2"), ("sequence", "<u4"), ("log", "<u8"), ("publish", "<u8")]
 )
+MESSAGE = struct.Struct("<BQHIQQ")
 MESSAGE_OPCODE = 5
+INDEX_HEADER = struct.Struct("<BQHI")
+INDEX_ENTRY = struct.Struct("<QQ")
+INDEX_OPCODE = 7
 FOOTER_SIZE = 9 + 8 + 8 + 4
 
 
@@ -87,11 +90,9 @@ class McapFile:
 
     def write(self, channel: int, t_ns: int, data: bytes) -> None:
         """Append one message at ``t_ns`` of simulated time."""
-        message = Message(
-            channel_id=channel, log_time=t_ns, data=data, publish_time=t_ns, sequence=self._counts[channel]
-        )
-        self._note(channel, np.array([t_ns]), np.array([self._chunk_size]))
-        self._add(_bytes(message))
+        head = MESSAGE.pack(MESSAGE_OPCODE, MESSAGE.size - 9 + len(data), channel, self._counts[channel], t_ns, t_ns)
+        self._note(channel, 1, INDEX_ENTRY.pack(t_ns, self._chunk_size), t_ns, t_ns)
+        self._add(head + data)
 
     def write_rows(self, channel: int, t_ns: NDArray[np.int64], rows: NDArray[np.uint8]) -> None:
         """Append messages of equal size, one per row, at the times ``t_ns``."""
@@ -106,7 +107,8 @@ class McapFile:
         header["log"] = header["publish"] = t_ns
         block[:, :head] = header.view(np.uint8).reshape(count, head)
         block[:, head:] = rows
-        self._note(channel, t_ns, self._chunk_size + np.arange(count) * (head + size))
+        entries = np.column_stack((t_ns, self._chunk_size + np.arange(count) * (head + size))).astype("<u8")
+        self._note(channel, count, entries.tobytes(), int(t_ns.min()), int(t_ns.max()))
         self._add(block.tobytes())
 
     def flush(self) -> None:
@@ -137,19 +139,21 @@ class McapFile:
         if self._chunk_size >= CHUNK_SIZE and self._entries:
             self._write_chunk()
 
-    def _note(self, channel: int, times: NDArray[np.int64], offsets: NDArray[np.int64]) -> None:
-        self._entries.setdefault(channel, []).extend(zip(times.tolist(), offsets.tolist(), strict=True))
-        self._counts[channel] += len(times)
+    def _note(self, channel: int, count: int, entries: bytes, first_ns: int, last_ns: int) -> None:
+        self._entries.setdefault(channel, []).append(entries)
+        self._counts[channel] += count
+        self._chunk_first_ns, self._chunk_last_ns = min(self._chunk_first_ns, first_ns), max(self._chunk_last_ns, last_ns)
 
     def _begin_chunk(self) -> None:
         self._parts: list[bytes] = []
         self._chunk_size = 0
-        self._entries: dict[int, list[tuple[int, int]]] = {}
+        self._chunk_first_ns, self._chunk_last_ns = 1 << 62, 0
+        self._entries: dict[int, list[bytes]] = {}
+        """Channel -> times and offsets in the chunk of its messages."""
 
     def _write_chunk(self) -> None:
         records = b"".join(self._parts)
-        times = [t for entries in self._entries.values() for t, _ in entries]
-        first, last = min(times), max(times)
+        first, last = self._chunk_first_ns, self._chunk_last_ns
         packed = self._compressor.compress(records)
         chunk = _bytes(
             Chunk(
@@ -172,14 +176,15 @@ class McapFile:
             message_index_length=0,
             message_index_offsets={},
         )
-        builder: Any = RecordBuilder()
-        for channel, entries in self._entries.items():
-            index.message_index_offsets[channel] = self._size + len(chunk) + builder.count
-            MessageIndex(channel_id=channel, records=entries).write(builder)
-        index.message_index_length = builder.count
+        found = b""
+        for channel, parts in self._entries.items():
+            index.message_index_offsets[channel] = self._size + len(chunk) + len(found)
+            entries = b"".join(parts)
+            found += INDEX_HEADER.pack(INDEX_OPCODE, 6 + len(entries), channel, len(entries)) + entries
+        index.message_index_length = len(found)
         self._chunks.append(index)
         self._first_ns, self._last_ns = min(self._first_ns, first), max(self._last_ns, last)
-        self._write(chunk + builder.end())
+        self._write(chunk + found)
         self._begin_chunk()
 
     def _write_summary(self) -> None:

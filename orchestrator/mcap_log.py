@@ -7,6 +7,7 @@ the file depends on the clock on the wall, so the same run gives the same bytes.
 """
 
 import json
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -26,7 +27,7 @@ from orchestrator.read_log import VARIABLES
 from orchestrator.recording import to_json
 from orchestrator.scenario import Slot
 from orchestrator.schema import PACKAGE, descriptor_set, file_descriptor
-from orchestrator.slave import Array, Ports, Slave
+from orchestrator.slave import Array, Ports, Slave, all_values, places_of
 from orchestrator.wire import Encoder
 
 SCENE_PERIOD_NS = 50_000_000
@@ -38,32 +39,21 @@ DRAWN = (*(f"pose.{axis}" for axis in AXES), *(f"odometry.{axis}" for axis in AX
 
 
 class _SlaveChannel:
-    """One channel for all inputs and outputs of a slave; rows are kept until a chunk is due."""
+    """One channel for all inputs and outputs of a slave; ``columns`` are its inputs, its outputs in a row of all."""
 
-    def __init__(self, file: McapFile, slave: Slave) -> None:
+    def __init__(self, file: McapFile, slave: Slave, columns: Sequence[slice]) -> None:
         variables = [*slave.outputs.variables, *slave.inputs.variables]
         notes = ["output"] * len(slave.outputs.names) + ["input"] * len(slave.inputs.names)
         self._channel = add_channel(file, f"/{slave.name}", slave.name.title().replace("_", ""), variables, notes)
         self._encoder = Encoder(variables)
         self._file = file
-        self._split = len(slave.outputs.names)
-        self._outputs, self._inputs = slave.outputs.values, slave.inputs.values
+        self._inputs, self._outputs = columns
         self.size = self._encoder.size
-        self._rows: Array = np.empty((0, len(variables)))
 
-    def allocate(self, rows: int) -> None:
-        """Make room for ``rows`` exchanges."""
-        self._rows = np.empty((rows, self._rows.shape[1]))
-
-    def note(self, place: int) -> None:
-        """Keep the present values as row ``place``."""
-        row = self._rows[place]
-        row[: self._split] = self._outputs
-        row[self._split :] = self._inputs
-
-    def write(self, times: NDArray[np.int64]) -> None:
-        """Hand the first rows, one for each of ``times``, to the file."""
-        self._file.write_rows(self._channel, times, self._encoder.rows(self._rows[: len(times)]))
+    def write(self, times: NDArray[np.int64], rows: Array) -> None:
+        """Hand one message for each of ``times`` to the file."""
+        seen = np.concatenate([rows[:, self._outputs], rows[:, self._inputs]], axis=1)
+        self._file.write_rows(self._channel, times, self._encoder.rows(seen))
 
 
 class McapLog:
@@ -72,7 +62,10 @@ class McapLog:
     def __init__(self, path: Path, slaves: list[Slave], slot: Slot | None, info: dict[str, Any]) -> None:
         self._file = McapFile(path)
         self._file.metadata("apa", {key: json.dumps(value) for key, value in info.items()})
-        self._channels = [_SlaveChannel(self._file, slave) for slave in slaves]
+        places = places_of(slaves)
+        self._channels = [
+            _SlaveChannel(self._file, slave, places[2 * k : 2 * k + 2]) for k, slave in enumerate(slaves)
+        ]
         self._log = self._file.known_channel("/log", Log)
         for slave in slaves:
             self._write_parameters(slave)
@@ -82,19 +75,18 @@ class McapLog:
             self._pictures.append(_Pictures(self._file, named, slot))
         rows = max(1, CHUNK_SIZE // 2 // sum(channel.size + MESSAGE_HEADER.itemsize for channel in self._channels))
         self.rows_per_chunk = rows
+        self._values = all_values(slaves)
+        self._rows = np.empty((rows, len(self._values)))
         self._times = np.empty(rows, dtype=np.int64)
         self._count = 0
-        for channel in self._channels:
-            channel.allocate(rows)
         self._file.flush()
 
     def exchanged(self, t_ns: int) -> None:
-        """Keep one row per slave; a chunk's worth of them goes to the file at once."""
+        """Keep a row; a chunk's worth of them goes to the file at once."""
         for pictures in self._pictures:
             pictures.exchanged(t_ns)
         self._times[self._count] = t_ns
-        for channel in self._channels:
-            channel.note(self._count)
+        self._rows[self._count] = self._values
         self._count += 1
         if self._count == len(self._times):
             self._write_rows()
@@ -116,7 +108,7 @@ class McapLog:
     def _write_rows(self) -> None:
         if self._count:
             for channel in self._channels:
-                channel.write(self._times[: self._count])
+                channel.write(self._times[: self._count], self._rows[: self._count])
         self._count = 0
         self._file.flush()
 
@@ -142,7 +134,7 @@ class _Pictures:
         self._scene = file.known_channel("/scene", SceneUpdate)
         self._path = file.known_channel("/path", SceneUpdate)
         self._trail = file.known_channel("/trail", PosesInFrame)
-        self._poses: list[tuple[float, float, float]] = []
+        self._poses: list[bytes] = []
         self._next_ns = 0
         self._path_places = _path_places(self._controller.outputs) if self._controller else np.empty(0, np.intp)
         self._path_seen = b""
@@ -163,7 +155,7 @@ class _Pictures:
         pose = (x, y, heading)
         message = self._frames.at(t_ns, pose, (seen[0], seen[1], seen[2]), wheel)
         self._file.write(self._transforms, t_ns, message)
-        self._poses.append(pose)
+        self._poses.append(scene.trail_pose(pose))
         if t_ns % TRAIL_PERIOD_NS < SCENE_PERIOD_NS:
             self._draw_trail(t_ns)
         self._draw_path(t_ns)
@@ -174,7 +166,7 @@ class _Pictures:
 
     def _draw_trail(self, t_ns: int) -> None:
         message = scene.trail(t_ns, self._poses[:: max(1, len(self._poses) // TRAIL_POSES)])
-        self._file.write(self._trail, t_ns, message.SerializeToString(deterministic=True))
+        self._file.write(self._trail, t_ns, message)
 
     def _draw_path(self, t_ns: int) -> None:
         if self._controller is None or not len(self._path_places):

@@ -11,7 +11,7 @@ import numpy as np
 
 from modelkit.variables import Variable
 from orchestrator.master import End
-from orchestrator.slave import Array, Slave
+from orchestrator.slave import Array, Slave, all_values
 
 FIRST_ROWS = 1 << 14
 """Exchanges that the recorder has room for at first."""
@@ -61,12 +61,11 @@ class Recorder:
 
     def __init__(self, slaves: list[Slave], exchanges: int) -> None:
         self._slaves = slaves
-        self._ports = [ports for slave in slaves for ports in (slave.inputs, slave.outputs)]
+        self._values = all_values(slaves)
         room = min(exchanges, FIRST_ROWS)
-        self._rows = [np.empty((room, len(ports.names))) for ports in self._ports]
+        self._rows = np.empty((room, len(self._values)))
         self._times = np.empty(room, dtype=np.int64)
         self._count = 0
-        self._pair()
 
     def exchanged(self, t_ns: int) -> None:
         """Copy all inputs and outputs."""
@@ -74,31 +73,25 @@ class Recorder:
         if count == len(self._times):
             self._grow()
         self._times[count] = t_ns
-        for rows, values in self._pairs:
-            rows[count] = values
+        self._rows[count] = self._values
         self._count = count + 1
 
     def closed(self, end: End) -> None:
         """Nothing to close."""
 
-    def _pair(self) -> None:
-        self._pairs = [(rows, ports.values) for rows, ports in zip(self._rows, self._ports, strict=True)]
-
     def _grow(self) -> None:
-        self._rows = [np.concatenate([rows, np.empty_like(rows)]) for rows in self._rows]
+        self._rows = np.concatenate([self._rows, np.empty_like(self._rows)])
         self._times = np.concatenate([self._times, np.empty_like(self._times)])
-        self._pair()
 
     def recording(self, info: dict[str, Any]) -> Recording:
         """Return what has been seen so far."""
         signals: dict[str, Array] = {}
         variables: dict[str, Variable] = {}
         parameters: dict[str, float] = {}
-        owners = [slave.name for slave in self._slaves for _ in range(2)]
-        for owner, ports, rows in zip(owners, self._ports, self._rows, strict=True):
-            for place, variable in enumerate(ports.variables):
-                signals[f"{owner}.{variable.name}"] = rows[: self._count, place]
-                variables[f"{owner}.{variable.name}"] = variable
+        seen = [(slave.name, item) for slave in self._slaves for item in slave.inputs.variables + slave.outputs.variables]
+        for (owner, variable), column in zip(seen, self._rows[: self._count].T, strict=True):
+            signals[f"{owner}.{variable.name}"] = column
+            variables[f"{owner}.{variable.name}"] = variable
         for slave in self._slaves:
             for place, variable in enumerate(slave.parameters.variables):
                 parameters[f"{slave.name}.{variable.name}"] = float(slave.parameters.values[place])

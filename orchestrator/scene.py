@@ -145,9 +145,15 @@ def planned_path(t_ns: int, points: Array) -> SceneUpdate:
     return update
 
 
-def trail(t_ns: int, poses: list[tuple[float, float, float]]) -> PosesInFrame:
-    """Return where the car has been."""
-    return PosesInFrame(timestamp=stamp(t_ns), frame_id=WORLD, poses=[posed(*pose) for pose in poses])
+def trail(t_ns: int, poses: list[bytes]) -> bytes:
+    """Return the message that tells where the car has been; each pose as :func:`trail_pose` made it."""
+    head = PosesInFrame(timestamp=stamp(t_ns), frame_id=WORLD)
+    return head.SerializeToString(deterministic=True) + b"".join(poses)
+
+
+def trail_pose(pose: tuple[float, float, float]) -> bytes:
+    """Return a pose as a part of a trail: fields of a protobuf message may be written one after the other."""
+    return PosesInFrame(poses=[posed(*pose)]).SerializeToString(deterministic=True)
 
 
 def pose_of(values: Mapping[str, float], prefix: str) -> tuple[float, float, float] | None:

@@ -4,6 +4,7 @@ One slave hosts an FMU (``fmu_slave``), another the same model in process (``mod
 master, the faults, the log and the checks cannot tell them apart.
 """
 
+from collections.abc import Sequence
 from typing import Protocol
 
 import numpy as np
@@ -61,3 +62,31 @@ class Slave(Protocol):
 
     def close(self) -> None:
         """Terminate and free; may be called at any time, and twice."""
+
+
+def all_values(slaves: Sequence[Slave]) -> Array:
+    """Return one array of all inputs and outputs, slave by slave, of which each port's ``values`` are a part.
+
+    Whoever looks at everything copies one row instead of one for each port. May be called again: an array
+    already shared by just these slaves is returned as it is.
+    """
+    ports = [ports for slave in slaves for ports in (slave.inputs, slave.outputs)]
+    size = sum(len(item.values) for item in ports)
+    bases = {id(item.values.base) for item in ports}
+    shared = ports[0].values.base if ports else None
+    if len(bases) == 1 and shared is not None and len(shared) == size:
+        return shared
+    shared = np.concatenate([np.empty(0), *(item.values for item in ports)])
+    for item, part in zip(ports, places_of(slaves), strict=True):
+        item.values = shared[part]
+    return shared
+
+
+def places_of(slaves: Sequence[Slave]) -> list[slice]:
+    """Return where the inputs, then the outputs, of each slave are in :func:`all_values`."""
+    found, at = [], 0
+    for slave in slaves:
+        for ports in (slave.inputs, slave.outputs):
+            found.append(slice(at, at + len(ports.values)))
+            at += len(ports.values)
+    return found

@@ -60,9 +60,7 @@ class Due(NamedTuple):
 def initialize(params: ControllerParams) -> tuple[ControllerState, ControllerOutput]:
     """Return the controller in standby; with unusable parameters, failed."""
     usable = _is_usable(params)
-    state = ControllerState(
-        Clock(0, 0, usable), AT_REST, ZhangState(), HsicState(), DrivingState(), AT_START
-    )
+    state = ControllerState(Clock(0, 0, usable), AT_REST, ZhangState(), HsicState(), DrivingState(), AT_START)
     if not usable:
         return state, refused()
     if params.system == ZHANG2022:

@@ -16,11 +16,11 @@ extending: Any = import_module("numba.extending")
 imputils: Any = import_module("numba.core.imputils")
 templates: Any = import_module("numba.core.typing.templates")
 conversion: Any = import_module("numba.core.typeconv")
-types = numba.types
+types: Any = numba.types
 POINTER = types.CPointer(types.float64)
 
 
-class View(types.IterableType):  # type: ignore[misc]
+class View(types.IterableType):  # type: ignore[misc, name-defined]
     """A tuple, named or not, whose scalars lie in an array of doubles, as ``modelkit.variables`` orders them."""
 
     def __init__(self, whole: Any) -> None:
@@ -46,7 +46,7 @@ class View(types.IterableType):  # type: ignore[misc]
         return self.whole if other == self.whole or (isinstance(other, View) and other.whole == self.whole) else None
 
 
-class ViewIterator(types.SimpleIteratorType):  # type: ignore[misc]
+class ViewIterator(types.SimpleIteratorType):  # type: ignore[misc, name-defined]
     """Goes through the items of a view of a tuple."""
 
     def __init__(self, view: View) -> None:
@@ -79,7 +79,7 @@ def viewer(cls: type[Any]) -> Callable[..., Any]:
     """Return a function for compiled code from a pointer to doubles, or an array of them, to the view of a ``cls``."""
     view = View(numba.typeof(cls()))
 
-    @extending.intrinsic
+    @extending.intrinsic  # type: ignore[untyped-decorator]
     def look(_typing: Any, scalars: Any) -> Any:
         def emit(context: Any, builder: Any, _signature: Any, args: Any) -> Any:
             if isinstance(scalars, types.Array):

@@ -25,7 +25,7 @@ class Entries(NamedTuple):
 
 
 def entries(model: Model, see: Callable[[type[Any]], Callable[..., Any]] = constructor) -> Entries:
-    """Return the two functions of ``model``; ``see(cls)`` makes the function from an array to a ``cls`` to read from."""
+    """Return the two functions of ``model``; ``see(cls)`` makes the function from an array to a ``cls``."""
     scope: dict[str, Any] = {"initialize": model.initialize, "step": model.step}
     scope |= {"see_inputs": see(model.inputs), "see_params": see(model.params)}
     exec(initialize_source(model, scope), scope)
@@ -75,7 +75,9 @@ def _branch_source(model: Model, common: str, branch: Branch, scope: dict[str, A
     parts = [(name, getattr(shape, name), _place(shape, name)) for name in (common, branch.field)]
     given = [_build(part, "s", scope, at) for _, part, at in parts]
     arguments = ", ".join((*given, "see_inputs(u)", "see_params(p)"))
-    stores = [line for name, part, at in parts for line in _stores(part, "common" if name == common else "own", "s", at)]
+    stores = [
+        line for name, part, at in parts for line in _stores(part, "common" if name == common else "own", "s", at)
+    ]
     return [
         f"def branch_{branch.field}(s, u, p, y, dt_ns):",
         f"    common, own, outputs = step_{branch.field}({arguments}, dt_ns)",

@@ -31,9 +31,7 @@ def _structure(name: str, **fields: Any) -> Any:
     return type(name, (ctypes.Structure,), {"_fields_": list(fields.items())})
 
 
-TransferC = _structure(
-    "TransferC", call=Pointer, references=Pointer, values=Pointer, integers=Pointer, count=Long
-)
+TransferC = _structure("TransferC", call=Pointer, references=Pointer, values=Pointer, integers=Pointer, count=Long)
 SlaveC = _structure(
     "SlaveC",
     component=Pointer,

@@ -4,6 +4,7 @@ import hashlib
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from importlib.util import find_spec
 from pathlib import Path
 
 from orchestrator.models import MODELS
@@ -12,6 +13,18 @@ ROOT = Path(__file__).parent.parent
 SOURCES = ("modelkit", "vehicle_fmu", "controller_fmu", "fmus")
 STAMP = "sources.sha256"
 KINDS = ("python", "native")
+COMPILERS = ("llvmlite", "numba", "ziglang")
+"""What the extra ``native`` installs."""
+
+
+def can_compile() -> bool:
+    """Return whether models can be compiled here."""
+    return all(find_spec(name) is not None for name in COMPILERS)
+
+
+def default_kind() -> str:
+    """Return ``native``, the faster kind, where it can be built."""
+    return "native" if can_compile() else "python"
 
 
 def fmu_files(kind: str, say: Callable[[str], None] = lambda text: None) -> dict[str, Path]:

@@ -9,7 +9,7 @@ from math import lcm
 from typing import NamedTuple, Protocol
 
 from orchestrator.connections import connect
-from orchestrator.slave import all_values, Array, Indices, Slave
+from orchestrator.slave import Array, Indices, Slave, all_values
 
 
 class Observer(Protocol):

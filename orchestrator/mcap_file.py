@@ -142,12 +142,16 @@ class McapFile:
     def _note(self, channel: int, count: int, entries: bytes, first_ns: int, last_ns: int) -> None:
         self._entries.setdefault(channel, []).append(entries)
         self._counts[channel] += count
-        self._chunk_first_ns, self._chunk_last_ns = min(self._chunk_first_ns, first_ns), max(self._chunk_last_ns, last_ns)
+        self._chunk_first_ns, self._chunk_last_ns = (
+            min(self._chunk_first_ns, first_ns),
+            max(self._chunk_last_ns, last_ns),
+        )
 
     def _begin_chunk(self) -> None:
         self._parts: list[bytes] = []
         self._chunk_size = 0
-        self._chunk_first_ns, self._chunk_last_ns = 1 << 62, 0
+        self._chunk_first_ns = 1 << 62
+        self._chunk_last_ns = 0
         self._entries: dict[int, list[bytes]] = {}
         """Channel -> times and offsets in the chunk of its messages."""
 

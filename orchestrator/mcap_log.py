@@ -63,9 +63,7 @@ class McapLog:
         self._file = McapFile(path)
         self._file.metadata("apa", {key: json.dumps(value) for key, value in info.items()})
         places = places_of(slaves)
-        self._channels = [
-            _SlaveChannel(self._file, slave, places[2 * k : 2 * k + 2]) for k, slave in enumerate(slaves)
-        ]
+        self._channels = [_SlaveChannel(self._file, slave, places[2 * k : 2 * k + 2]) for k, slave in enumerate(slaves)]
         self._log = self._file.known_channel("/log", Log)
         for slave in slaves:
             self._write_parameters(slave)

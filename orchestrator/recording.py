@@ -88,7 +88,9 @@ class Recorder:
         signals: dict[str, Array] = {}
         variables: dict[str, Variable] = {}
         parameters: dict[str, float] = {}
-        seen = [(slave.name, item) for slave in self._slaves for item in slave.inputs.variables + slave.outputs.variables]
+        seen = [
+            (slave.name, item) for slave in self._slaves for item in slave.inputs.variables + slave.outputs.variables
+        ]
         for (owner, variable), column in zip(seen, self._rows[: self._count].T, strict=True):
             signals[f"{owner}.{variable.name}"] = column
             variables[f"{owner}.{variable.name}"] = variable

@@ -15,7 +15,7 @@ from orchestrator.bakeoff.entries import CONTROLLERS, entries
 from orchestrator.bakeoff.figure import draw
 from orchestrator.bakeoff.results import Result, results
 from orchestrator.errors import BadInput
-from orchestrator.reproduce.many import available
+from orchestrator.fmu_files import can_compile
 from orchestrator.terminal import console
 
 EXAMPLES = """examples:
@@ -39,7 +39,7 @@ def add_parser(subparsers: Any) -> argparse.ArgumentParser:
 
 def run(arguments: argparse.Namespace) -> int:
     """Drive everything, write the picture, print. Returns 0."""
-    if not available():
+    if not can_compile():
         raise BadInput("the bake-off runs as compiled code: install apa-cosim[native]")
     if arguments.runs < 0:
         raise BadInput(f"--runs {arguments.runs}: expected a number of at least 0")

@@ -6,7 +6,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from orchestrator.fmu_files import KINDS, fmu_files
+from orchestrator.fmu_files import KINDS, default_kind, fmu_files
 from orchestrator.interrupts import on_interrupt
 from orchestrator.load_scenario import load_scenario
 from orchestrator.master import Interrupt, Observer
@@ -32,7 +32,10 @@ def add_parser(subparsers: Any) -> argparse.ArgumentParser:
         "--set", action="append", default=[], metavar="KEY=VALUE", help="vehicle.KEY, controller.KEY or a scenario key"
     )
     parser.add_argument(
-        "--fmus", choices=(*KINDS, "none"), default="python", help="kind of FMU; none runs the models in process"
+        "--fmus",
+        choices=(*KINDS, "none"),
+        default=default_kind(),
+        help="kind of FMU (default: native where it can be built); none runs the models in process",
     )
     parser.add_argument("--out", type=Path, metavar="DIR", help="where results go (default: runs/NAME)")
     parser.add_argument("--json", action="store_true", help="print summary.json instead of the table")

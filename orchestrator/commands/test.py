@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from orchestrator.errors import BadInput
-from orchestrator.fmu_files import KINDS, fmu_files
+from orchestrator.fmu_files import KINDS, default_kind, fmu_files
 from orchestrator.interrupts import on_interrupt
 from orchestrator.junit import write_junit
 from orchestrator.load_scenario import find_file
@@ -37,7 +37,12 @@ def add_parser(subparsers: Any) -> argparse.ArgumentParser:
     parser.add_argument("scenarios", nargs="+", metavar="SCENARIO", help="names, patterns of names, or YAML files")
     parser.add_argument("--controller", type=Path, metavar="FMU", help="use this controller instead of the shipped one")
     parser.add_argument("--vehicle", type=Path, metavar="FMU", help="use this vehicle instead of the shipped one")
-    parser.add_argument("--fmus", choices=(*KINDS, "none"), default="python", help="kind of the shipped FMUs")
+    parser.add_argument(
+        "--fmus",
+        choices=(*KINDS, "none"),
+        default=default_kind(),
+        help="kind of the shipped FMUs (default: native where it can be built)",
+    )
     parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", help="as in apa run, for all")
     parser.add_argument(
         "--requirements", action="append", default=[], metavar="FILE", help="further requirements, or a shipped set"

@@ -3,7 +3,6 @@
 import os
 from collections.abc import Iterable, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from importlib.util import find_spec
 
 import numpy as np
 
@@ -53,8 +52,3 @@ def timed(scenarios: Iterable[Scenario], kept: Sequence[Kept]) -> Array:
 def measure(scenarios: Iterable[Scenario], kept: Sequence[Kept]) -> Array:
     """Return one row of ``kept`` numbers per scenario."""
     return timed(scenarios, kept)[:, 1:]
-
-
-def available() -> bool:
-    """Return whether models can be compiled here."""
-    return all(find_spec(name) is not None for name in ("llvmlite", "numba", "ziglang"))

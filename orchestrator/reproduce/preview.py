@@ -7,8 +7,9 @@ import numpy as np
 
 from controller_fmu.preview.params import ROAD
 from controller_fmu.preview.stage import Stage
+from orchestrator.fmu_files import can_compile
 from orchestrator.load_scenario import load_scenario
-from orchestrator.reproduce.many import available, measure
+from orchestrator.reproduce.many import measure
 from orchestrator.reproduce.preview_figure import draw_preview, draw_sweep
 from orchestrator.reproduce.result import Drive, Driven, Reproduction, Row
 from orchestrator.slave import Array
@@ -46,7 +47,7 @@ def reproduce(out: Path, drive: Drive) -> Reproduction:
     rows = _speeds(main) + _errors(main) + _settling(main) + _points(eight)
     rows += _geometry(main, drive("preview-geometry")) + _single(main, single)
     figures = draw_preview(main, eight, single, out)
-    if available():
+    if can_compile():
         table = sweep()
         rows += _sweep_rows(table)
         figures.append(draw_sweep(SWEEP, table, out / "preview-sweep.png"))

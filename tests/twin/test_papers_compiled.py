@@ -2,12 +2,13 @@
 
 import pytest
 
+from orchestrator.fmu_files import can_compile
 from orchestrator.load_scenario import load_scenario
-from orchestrator.reproduce.many import available, timed
+from orchestrator.reproduce.many import timed
 from orchestrator.session import run_scenario
 from orchestrator.sweep.kept import CLEARANCE, PHASE, POSE, SHIFTS, WHEEL, Kept
 
-pytestmark = pytest.mark.skipif(not available(), reason="needs numba, llvmlite and ziglang")
+pytestmark = pytest.mark.skipif(not can_compile(), reason="needs numba, llvmlite and ziglang")
 
 KEPT = (
     *POSE,

@@ -20,7 +20,7 @@ types: Any = numba.types
 POINTER = types.CPointer(types.float64)
 
 
-class View(types.IterableType):  # type: ignore[misc, name-defined]
+class View(types.IterableType):  # type: ignore[misc]
     """A tuple, named or not, whose scalars lie in an array of doubles, as ``modelkit.variables`` orders them."""
 
     def __init__(self, whole: Any) -> None:
@@ -46,7 +46,7 @@ class View(types.IterableType):  # type: ignore[misc, name-defined]
         return self.whole if other == self.whole or (isinstance(other, View) and other.whole == self.whole) else None
 
 
-class ViewIterator(types.SimpleIteratorType):  # type: ignore[misc, name-defined]
+class ViewIterator(types.SimpleIteratorType):  # type: ignore[misc]
     """Goes through the items of a view of a tuple."""
 
     def __init__(self, view: View) -> None:

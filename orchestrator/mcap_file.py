@@ -150,8 +150,8 @@ class McapFile:
     def _begin_chunk(self) -> None:
         self._parts: list[bytes] = []
         self._chunk_size = 0
-        self._chunk_first_ns = 1 << 62
-        self._chunk_last_ns = 0
+        self._chunk_first_ns: int = 1 << 62
+        self._chunk_last_ns: int = 0
         self._entries: dict[int, list[bytes]] = {}
         """Channel -> times and offsets in the chunk of its messages."""
 

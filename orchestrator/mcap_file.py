@@ -59,6 +59,7 @@ class McapFile:
         self._first_ns, self._last_ns = 1 << 62, 0
         self._chunks: list[ChunkIndex] = []
         self._metadata: list[MetadataIndex] = []
+        self._chunk_first_ns, self._chunk_last_ns = 1 << 62, 0
         self._compressor = zstandard.ZstdCompressor(level=1)
         self._begin_chunk()
         self._write(MCAP0_MAGIC + _bytes(Header(profile="", library=LIBRARY)))
@@ -150,8 +151,8 @@ class McapFile:
     def _begin_chunk(self) -> None:
         self._parts: list[bytes] = []
         self._chunk_size = 0
-        self._chunk_first_ns: int = 1 << 62
-        self._chunk_last_ns: int = 0
+        self._chunk_first_ns = 1 << 62
+        self._chunk_last_ns = 0
         self._entries: dict[int, list[bytes]] = {}
         """Channel -> times and offsets in the chunk of its messages."""
 

@@ -1,11 +1,20 @@
 /* A host without Python: loads a co-simulation FMU, steps it, prints its outputs; or fuzzes it.
  *
- *     host run   LIBRARY GUID STEPS SIZE REFERENCE...   one line of Real outputs per step, in hexadecimal
+ *     host run   LIBRARY GUID STEPS SIZE WORD...        one line of Real outputs per step, in hexadecimal;
+ *                                                       a word is a value reference, or an input held all the
+ *                                                       time: real:REFERENCE=VALUE, int:..., bool:...
  *     host many  LIBRARY GUID COUNT                     instantiate, step and free COUNT times; resident kB before, after
  *     host fuzz  LIBRARY GUID SEED CALLS                random calls with random arguments
  */
 #define _POSIX_C_SOURCE 200809L
+#ifdef _WIN32
+#include <windows.h>
+#define dlopen(path, flags) ((void *)LoadLibraryA(path))
+#define dlsym(handle, name) ((void *)GetProcAddress((HMODULE)(handle), name))
+#define dlerror() "the library cannot be loaded"
+#else
 #include <dlfcn.h>
+#endif
 #include <math.h>
 #include <stdarg.h>
 #include <stdint.h>
@@ -51,11 +60,27 @@ static fmi2Component start(const char *guid) {
     return slave;
 }
 
-static int run(const char *guid, int steps, double size, int count, char **texts) {
+static int hold(fmi2Component slave, const char *text) {
+    fmi2ValueReference reference;
+    double value;
+    if (sscanf(text, "%*[a-z]:%u=%lf", &reference, &value) != 2) return 1;
+    int integer = (int)value;
+    return *text == 'r'   ? CALL(fmi2SetReal)(slave, &reference, 1, &value)
+           : *text == 'i' ? CALL(fmi2SetInteger)(slave, &reference, 1, &integer)
+                          : CALL(fmi2SetBoolean)(slave, &reference, 1, &integer);
+}
+
+static int run(const char *guid, int steps, double size, int words, char **texts) {
     fmi2ValueReference references[64];
     double values[64];
     fmi2Component slave = start(guid);
-    for (int i = 0; i < count; i++) references[i] = (unsigned)atoi(texts[i]);
+    int count = 0;
+    for (int i = 0; i < words; i++) {
+        if (!strchr(texts[i], ':'))
+            references[count++] = (unsigned)atoi(texts[i]);
+        else if (hold(slave, texts[i]))
+            return 7;
+    }
     for (int k = 0; k < steps; k++) {
         if (CALL(fmi2DoStep)(slave, k * size, size, 1)) return 5;
         if (CALL(fmi2GetReal)(slave, references, (size_t)count, values)) return 6;

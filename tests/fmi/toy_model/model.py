@@ -31,6 +31,7 @@ class Params(NamedTuple):
     seed: Annotated[int, Signal("1", "of the noise", 0, 1000)] = 7
     noisy: Annotated[bool, Signal("1", "with noise on the angle")] = True
     broken: Annotated[bool, Signal("1", "initialize divides by zero")] = False
+    drift: tuple[Oscillator, ...] = (Oscillator(0.3, 0.2), Oscillator(-0.1, 0.4), Oscillator(0.05, -0.6))
 
 
 class Input(NamedTuple):
@@ -46,6 +47,8 @@ class Output(NamedTuple):
     mode: Annotated[int, Signal("1", "mode", states=Mode)] = 0
     count: Annotated[int, Signal("1", "steps so far")] = 0
     resting: Annotated[bool, Signal("1", "braked")] = False
+    drifted: Oscillator = Oscillator()
+    pull: Annotated[float, Signal("N", "sum of the forces")] = 0.0
 
 
 class State(NamedTuple):
@@ -60,7 +63,7 @@ def initialize(params: Params) -> tuple[State, Output]:
     if params.broken:
         count = int(1.0 / (params.mass - params.mass))
     state = State(params.start, seed_state(params.seed), 0, count)
-    return state, Output(params.start, 0.0, SLEEPING, 0, False)
+    return state, Output(params.start, 0.0, SLEEPING, 0, False, params.drift[0], 0.0)
 
 
 def step(state: State, inputs: Input, params: Params, dt_ns: int) -> tuple[State, Output]:
@@ -72,7 +75,34 @@ def step(state: State, inputs: Input, params: Params, dt_ns: int) -> tuple[State
     if params.noisy:
         angle = angle + 1e-3 * noise
     new = State((first, second), random, state.time_ns + dt_ns, state.count + 1)
-    return new, Output((first, second), angle, inputs.wish, new.count, inputs.brake)
+    return new, Output(
+        (first, second),
+        angle,
+        inputs.wish,
+        new.count,
+        inputs.brake,
+        drifted(params.drift, new.count, first),
+        pull(inputs.force),
+    )
+
+
+def drifted(table: tuple[Oscillator, ...], count: int, now: Oscillator) -> Oscillator:
+    """Read the parameters in all ways: item by item, by a variable, from the end, whole, or not at all."""
+    place = count % len(table)
+    total = 0.0
+    for item in table:
+        total = total + item.velocity
+    chosen = table[place]
+    if count > 50:
+        chosen = table[-1] if count > 100 else now
+    return Oscillator(chosen.position + total, chosen.velocity)
+
+
+def pull(forces: tuple[float, ...]) -> float:
+    total = 0.0
+    for force in forces:
+        total = total + force
+    return total + 0.5 * forces[len(forces) - 1]
 
 
 def swing(now: Oscillator, force: float, brake: bool, params: Params, dt: float) -> Oscillator:

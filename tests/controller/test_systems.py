@@ -1,0 +1,56 @@
+"""The systems in one controller: each acts alone, and all refuse parameters that make no sense alike."""
+
+import math
+
+import pytest
+
+from controller_fmu import MODEL, SYSTEMS
+from controller_fmu.interface import ControllerInput, ControllerParams, Phase, Reason, System
+from modelkit.vocabulary import Prompt
+
+NAMES = [branch.field for branch in SYSTEMS.systems]
+
+
+def after(params, dts):
+    state, out = MODEL.initialize(params)
+    for dt_ns in dts:
+        state, out = MODEL.step(state, ControllerInput(), params, dt_ns)
+    return state, out
+
+
+def test_every_system_has_a_branch():
+    assert sorted(value for branch in SYSTEMS.systems for value in branch.values) == sorted(System)
+    assert set(NAMES) == set(MODEL.state._fields) - {SYSTEMS.common}
+
+
+@pytest.mark.parametrize("system", System)
+def test_only_the_chosen_system_remembers_anything(system):
+    params = ControllerParams(system=int(system))
+    before, _ = MODEL.initialize(params)
+    state, _ = after(params, [10_000_000] * 30)
+    (own,) = (branch.field for branch in SYSTEMS.systems if system in branch.values)
+    assert getattr(state, own) != getattr(before, own)
+    assert all(getattr(state, name) == getattr(before, name) for name in NAMES if name != own)
+    assert state.clock.time_ns == 300_000_000
+
+
+def test_an_unknown_system_is_the_first():
+    known, unknown = ControllerParams(system=0), ControllerParams(system=99)
+    assert after(known, [10_000_000] * 5) == after(unknown, [10_000_000] * 5)
+
+
+@pytest.mark.parametrize("system", System)
+def test_all_refuse_parameters_without_meaning(system):
+    for bad in ({"wheelbase": math.nan}, {"steering_ratio": 0.0}, {"sample_time": 0.0}):
+        for dts in ([], [10_000_000] * 3):
+            _, out = after(ControllerParams(system=int(system))._replace(**bad), dts)
+            assert (out.phase, out.reason) == (Phase.FAILED, Reason.BAD_PARAMETER)
+            assert out.brake_request
+            assert out.prompt == Prompt.STOP
+
+
+@pytest.mark.parametrize("steps", [[7_000_000] * 10, [70_000_000], [1] * 3 + [69_999_997]])
+def test_samples_fall_on_whole_periods_whatever_the_step(steps):
+    state, _ = after(ControllerParams(sample_time=0.02), steps)
+    assert state.clock.time_ns == 70_000_000
+    assert state.clock.next_sample_ns == 80_000_000

@@ -5,14 +5,18 @@ made from JSON, not from the .ssp, because the toolbox does not read the paramet
 """
 
 import json
+import re
 import shutil
 import subprocess
 import sys
 import tempfile
+import zipfile
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
+from fmus.archive import DESCRIPTION, content_guid, write_archive
+from fmus.description import AUTHOR, GENERATED
 from fmus.system import NAME, System, as_text
 
 PACKAGE = "fmu_manipulation_toolbox"
@@ -34,9 +38,19 @@ def write_container(system: System, path: Path) -> Path:
         made = here / f"{NAME}.fmu"
         if done.returncode or not made.is_file():
             raise RuntimeError(f"fmucontainer: {(done.stdout + done.stderr).strip()}")
-        path.parent.mkdir(parents=True, exist_ok=True)
-        shutil.copyfile(made, path)
-    return path
+        return write_archive(path, _ours(made))
+
+
+def _ours(made: Path) -> dict[str, bytes]:
+    """Return the files of a container without what the toolbox knows of this machine: user, clock, random GUID."""
+    with zipfile.ZipFile(made) as archive:
+        files = {name: archive.read(name) for name in archive.namelist() if not name.endswith("/")}
+    text = files[DESCRIPTION].decode()
+    for attribute, value in {"guid": "", "generationDateAndTime": GENERATED, "author": AUTHOR}.items():
+        text = re.sub(rf' {attribute}="[^"]*"', f' {attribute}="{value}"', text, count=1)
+    files[DESCRIPTION] = text.encode()
+    files[DESCRIPTION] = text.replace(' guid=""', f' guid="{content_guid(files)}"', 1).encode()
+    return files
 
 
 def assembly(system: System) -> dict[str, Any]:

@@ -13,6 +13,7 @@ from modelkit.signal import Signal
 from modelkit.variables import variables
 
 GENERATED = "2000-01-01T00:00:00Z"
+AUTHOR = "The apa-cosim authors"
 """Date written into every FMU: the content decides the bytes, not the day."""
 FMI_TYPES = {float: "Real", int: "Integer", bool: "Boolean"}
 LARGEST_INTEGER = 2**31 - 1
@@ -97,7 +98,7 @@ def model_description(model: Model, *, guid: str, generation_tool: str, flags: d
         modelName=model.name,
         guid=guid,
         description=model.description,
-        author="The apa-cosim authors",
+        author=AUTHOR,
         version=project_version(),
         copyright="Copyright (c) the apa-cosim authors",
         license="MIT",

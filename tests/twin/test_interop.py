@@ -120,6 +120,10 @@ def test_libcosim_reads_the_ssp(system, ssp, ours):
     assert list(found) == pytest.approx(ours[2], abs=TOLERANCE)
 
 
+def test_a_container_is_the_same_bytes_again(container, system, tmp_path):
+    assert write_container(system, tmp_path / "again.fmu").read_bytes() == container.read_bytes()
+
+
 def test_fmpy_simulates_the_container(container, ours, tmp_path):
     table = tmp_path / "result.csv"
     command = [Path(sys.executable).parent / "fmpy", "simulate", container, "--stop-time", repr(float(ours[0]))]

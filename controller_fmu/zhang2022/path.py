@@ -9,6 +9,8 @@ from controller_fmu.zhang2022.quintic import Quintic, Shape, quintic, shape
 from modelkit.vocabulary import Pose
 
 CANDIDATES = 9
+ROUNDS = 4
+"""Each looks at radii four times as close to each other as the one before."""
 SAMPLES = 32
 FOOT_STEPS = 5
 STEEPEST = 1.2
@@ -45,6 +47,13 @@ class QuinticPath(NamedTuple):
     last: Quintic = Quintic()
 
 
+class Tried(NamedTuple):
+    """The path found or refused, and its radius or the best one [m]."""
+
+    path: QuinticPath = QuinticPath()
+    radius: float = 0.0
+
+
 class Reference(NamedTuple):
     """The path's point nearest to the car and the errors against it."""
 
@@ -58,23 +67,41 @@ def plan(start: Pose, radius: float, curvature_limit: float) -> QuinticPath:
     """Return the path from ``start`` (slot frame) to the origin, or why there is none.
 
     Radii from the one wished to the largest that fits are tried in turn: the larger the arcs, the
-    smaller the quintics' peak. The first whose curvature stays within ``curvature_limit`` [1/m] is taken.
+    smaller the quintics' peak, until the line between them is gone and the peak rises again. The first
+    whose curvature stays within ``curvature_limit`` [1/m] is taken. Where none of them does, the radii
+    around the best are tried in finer steps before the start is refused.
     """
     if not (start.x > 0.1 and start.y > 0.01 and abs(start.heading) < 0.5):
         return _refused(BAD_START, start, 0.0)
     widest = largest_radius(start.x, start.y)
-    tightest = radius if radius < widest else widest
+    low = radius if radius < widest else widest
+    high = widest
+    tried = Tried()
+    for _ in range(ROUNDS):
+        tried = _first_within(start, low, high, curvature_limit)
+        if tried.path.status == FOUND:
+            return tried.path
+        step = (high - low) / (CANDIDATES - 1.0)
+        low = tried.radius - step if tried.radius - step > low else low
+        high = tried.radius + step if tried.radius + step < high else high
+    return tried.path
+
+
+def _first_within(start: Pose, low: float, high: float, curvature_limit: float) -> Tried:
+    """Return the path of the smallest of some radii that keeps the limit, or the refusal and the best radius."""
     smallest_peak = 1e9
+    best = low
     for candidate in range(CANDIDATES):
         share = candidate / (CANDIDATES - 1.0)
-        arcs = arc_line_arc(start.x, start.y, tightest + share * (widest - tightest))
+        arcs = arc_line_arc(start.x, start.y, low + share * (high - low))
         if arcs.line >= 0.0 and 0.0 < arcs.angle < STEEPEST:
             path = through(start, arcs)
             if path.largest_curvature <= curvature_limit:
-                return path
+                return Tried(path, arcs.radius)
             if path.largest_curvature < smallest_peak:
                 smallest_peak = path.largest_curvature
-    return _refused(CURVATURE_LIMIT, start, smallest_peak)
+                best = arcs.radius
+    return Tried(_refused(CURVATURE_LIMIT, start, smallest_peak), best)
 
 
 def through(start: Pose, arcs: ArcLineArc) -> QuinticPath:

@@ -56,7 +56,7 @@ def micros(work: Callable[[], Any], count: int, rounds: int = ROUNDS) -> float:
 def scenarios() -> dict[str, Scenario]:
     """Return the drive of each controller."""
     parking = ("ntbptcwpt", "ntbpt", "zhang2022", "hsic")
-    found = {name: scenario_of(name, "zhang2022", "kinematic", "far", "none") for name in parking}
+    found = {name: scenario_of(name, 7.7, "zhang2022", "kinematic", "far", "none") for name in parking}
     return {**found, "preview": load_scenario("preview", ["vehicle.body=kinematic"])}
 
 

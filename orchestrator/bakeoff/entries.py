@@ -1,19 +1,29 @@
-"""What the bake-off drives: controllers, starts, cars, bodies, disturbances, as scenarios."""
+"""What the bake-off drives: controllers, slots, cars, starts, bodies, disturbances, as scenarios.
+
+Every slot lies between two parked cars before a wall; its target has the car flush with the neighbours.
+The papers' controllers are told slot, target and start. The parking assist is told nothing: it drives past
+along the line through the same start pose, finds the slot with its sensors and chooses its own target.
+"""
 
 import math
 from collections.abc import Iterator
 from functools import lru_cache
 from typing import NamedTuple
 
+from orchestrator.apa_grid import mounts
 from orchestrator.load_scenario import load_scenario
 from orchestrator.scenario import Scenario
 from vehicle_fmu.interface import Body
 
-CONTROLLERS = ("ntbptcwpt", "ntbpt", "zhang2022", "hsic")
+CONTROLLERS = ("ntbptcwpt", "ntbpt", "zhang2022", "hsic", "apa")
+ASSIST = "apa"
+"""The controller that looks for its slot."""
+SLOTS = (6.2, 7.7, 9.2)
+"""Lengths [m]."""
 CARS = ("guo2015", "zhang2022")
 BODIES = ("kinematic", "double_track")
-STARTS = {"near": (7.6, 3.0, 0.0), "far": (8.5, 2.8, 0.0), "crooked": (8.5, 2.8, 2.0)}
-"""Start pose from the place in the slot: x [m], y [m], heading [deg]."""
+STARTS = {"near": (1.15, 3.0, 0.0), "far": (2.05, 2.8, 0.0), "crooked": (2.05, 2.8, 2.0)}
+"""Start pose: x ahead of the slot's front end [m], y from the target [m], heading [deg]."""
 DISTURBANCES: dict[str, dict[str, float]] = {
     "none": {},
     "steering 5 % slow": {"vehicle.steering.ratio": 1.05},
@@ -22,14 +32,20 @@ DISTURBANCES: dict[str, dict[str, float]] = {
     "steering dead time 0.1 s": {"vehicle.steering.dead_time": 0.1},
 }
 """Changed parameters; a steering ratio is a factor on the car's own."""
-SLOT_WIDTH, SLOT_LENGTH, REAR_GAP = 2.2, 7.7, 0.4
-DRIVER_SPEED = 0.5
+REAR_END, DEPTH = -1.25, 2.2
+"""The slot's rear end from the target, and its depth from the neighbours to the wall [m]."""
+NEIGHBOUR_LENGTH, NEIGHBOUR_WIDTH, WALL_LENGTH, WALL_WIDTH = 4.4, 1.8, 40.0, 1.0
+DRIVER_SPEED, SEARCH_SPEED = 0.5, 2.0
+"""Of the driver while parking, and while driving past [m/s]."""
+LEAD_IN = 5.0
+"""The assist's run begins this far behind the rear neighbour [m]."""
 
 
 class Entry(NamedTuple):
     """One run of the bake-off."""
 
     controller: str
+    slot: float
     car: str
     body: str
     start: str
@@ -40,20 +56,25 @@ class Entry(NamedTuple):
 def entries() -> Iterator[Entry]:
     """Yield every run: the product of all of the above."""
     for controller in CONTROLLERS:
-        for car in CARS:
-            for body in BODIES:
-                for start in STARTS:
-                    for disturbance in DISTURBANCES:
-                        scenario = scenario_of(controller, car, body, start, disturbance)
-                        yield Entry(controller, car, body, start, disturbance, scenario)
+        for slot in SLOTS:
+            for car in CARS:
+                for body in BODIES:
+                    for start in STARTS:
+                        for disturbance in DISTURBANCES:
+                            scenario = scenario_of(controller, slot, car, body, start, disturbance)
+                            yield Entry(controller, slot, car, body, start, disturbance, scenario)
 
 
-def scenario_of(controller: str, car: str, body: str, start: str, disturbance: str) -> Scenario:
-    """Return the scenario of one run: the slot of zhang2022, a car in front and one behind."""
-    base = _base(controller, car)
-    x, y, heading = STARTS[start]
+def scenario_of(controller: str, slot: float, car: str, body: str, start: str, disturbance: str) -> Scenario:
+    """Return the scenario of one run."""
+    base = _base(controller, slot, car)
+    ahead, y, degrees = STARTS[start]
+    x, slope = REAR_END + slot + ahead, math.tan(math.radians(degrees))
+    if controller == ASSIST:
+        begin = REAR_END - NEIGHBOUR_LENGTH - LEAD_IN
+        x, y = begin, y - (x - begin) * slope
     vehicle = {**base.vehicle, "body": int(Body[body.upper()]), "start.x": x, "start.y": y}
-    vehicle["start.heading"] = math.radians(heading)
+    vehicle["start.heading"] = math.radians(degrees)
     for key, value in DISTURBANCES[disturbance].items():
         name = key.removeprefix("vehicle.")
         vehicle[name] = vehicle[name] * value if name == "steering.ratio" else value
@@ -63,14 +84,49 @@ def scenario_of(controller: str, car: str, body: str, start: str, disturbance: s
 
 
 @lru_cache
-def _base(controller: str, car: str) -> Scenario:
+def _base(controller: str, slot: float, car: str) -> Scenario:
+    """Return the scenario without start, body and disturbance."""
+    searches = controller == ASSIST
     sets = {
-        "stop_time": 120,
-        "vehicle.driver.profile[1].speed": DRIVER_SPEED,
+        "car": car,
+        "stop_time": 200 if searches else 120,
+        "vehicle.driver.profile[1].speed": SEARCH_SPEED if searches else DRIVER_SPEED,
         "controller.system": controller,
-        "controller.hsic.slot.slot_length": SLOT_LENGTH,
-        "controller.hsic.slot.rear_gap": REAR_GAP,
     }
-    loaded = load_scenario("zhang2022", [f"car={car}", *(f"{key}={value}" for key, value in sets.items())])
-    body = {f"hsic.slot.{key}": loaded.vehicle[key] for key in ("width", "front_overhang", "rear_overhang")}
-    return loaded.model_copy(update={"controller": {**loaded.controller, **body}})
+    loaded = load_scenario("zhang2022", [f"{key}={value}" for key, value in sets.items()])
+    body = {key: loaded.vehicle[key] for key in ("width", "front_overhang", "rear_overhang")}
+    vehicle = {**loaded.vehicle, **_scene(slot, 0.5 * body["width"])}
+    told = {f"hsic.slot.{key}": value for key, value in body.items()}
+    told |= {"hsic.slot.slot_length": slot, "hsic.slot.slot_width": body["width"]}
+    told["hsic.slot.rear_gap"] = -REAR_END - body["rear_overhang"]
+    if searches:
+        front = loaded.vehicle["wheelbase"] + body["front_overhang"]
+        vehicle |= _sensors(front, body["rear_overhang"], 0.5 * body["width"], "ultrasonic.")
+        vehicle |= {"ultrasonic.noise": 0.01, "ultrasonic.dropout": 0.01, "driver.apa_switch_time": 0.5}
+        told = {f"apa.{key}": value for key, value in body.items()}
+        told |= _sensors(front, body["rear_overhang"], 0.5 * body["width"], "apa.sensors.")
+    return loaded.model_copy(update={"vehicle": vehicle, "controller": {**loaded.controller, **told}})
+
+
+def _sensors(front: float, rear: float, half_width: float, owner: str) -> dict[str, float]:
+    """Return where the twelve sensors sit on the outline [m], as parameters of their ``owner``."""
+    placed: dict[str, float] = {}
+    for number, (x, y) in enumerate(mounts(front, -rear, half_width), start=1):
+        placed |= {f"{owner}mounts[{number}].x": x, f"{owner}mounts[{number}].y": y}
+    return placed
+
+
+def _scene(slot: float, line: float) -> dict[str, float]:
+    """Return the car in front, the one behind, both flush with ``line`` [m], and the wall beside the slot."""
+    middle = line - 0.5 * NEIGHBOUR_WIDTH
+    front = REAR_END + slot + 0.5 * NEIGHBOUR_LENGTH
+    things = (
+        (front, middle, NEIGHBOUR_LENGTH, NEIGHBOUR_WIDTH),
+        (REAR_END - 0.5 * NEIGHBOUR_LENGTH, middle, NEIGHBOUR_LENGTH, NEIGHBOUR_WIDTH),
+        (0.0, line - DEPTH - 0.5 * WALL_WIDTH, WALL_LENGTH, WALL_WIDTH),
+    )
+    scene: dict[str, float] = {}
+    for number, thing in enumerate(things, start=1):
+        names = (f"scene.boxes[{number}].{key}" for key in ("x", "y", "length", "width"))
+        scene |= dict(zip(names, thing, strict=True))
+    return scene

@@ -12,40 +12,61 @@ from matplotlib.axes import Axes
 from matplotlib.patches import Rectangle
 
 from orchestrator.bakeoff.driver_study import Study
-from orchestrator.bakeoff.entries import CONTROLLERS
-from orchestrator.bakeoff.results import Result
+from orchestrator.bakeoff.entries import CONTROLLERS, SLOTS
+from orchestrator.bakeoff.results import REFUSED, Result
 
-COLOURS = {"ntbptcwpt": "#1f5fbf", "ntbpt": "#7fa8dd", "zhang2022": "#d1602a", "hsic": "#2b8a5a"}
+COLOURS = {"ntbptcwpt": "#1f5fbf", "ntbpt": "#7fa8dd", "zhang2022": "#d1602a", "hsic": "#2b8a5a", "apa": "#8a4fa8"}
+BAR = 0.16
+"""Width of a bar; the slots lie 1 apart."""
 
 
 def draw(found: list[Result], study: Study | None, file: Path) -> Path:
     """Write parked share, final errors, time and steering effort, and the driver study; return the path."""
-    figure, axes = plt.subplots(2, 2, figsize=(11.0, 8.0), layout="constrained")
+    figure, axes = plt.subplots(2, 2, figsize=(12.0, 8.5), layout="constrained")
     share, errors, spent, claim = axes.flat
-    for place, name in enumerate(CONTROLLERS):
-        mine = [item for item in found if item.entry.controller == name]
-        won = [item for item in mine if item.parked]
-        colour = COLOURS[name]
-        share.bar(place, 100.0 * len(won) / len(mine), color=colour)
-        share.bar(place, 100.0 * sum(item.house for item in mine) / len(mine), color="#222222", alpha=0.35, width=0.4)
-        style = {"color": colour, "s": 14, "alpha": 0.8, "label": name}
+    _shares(share, found)
+    for name in CONTROLLERS:
+        won = [item for item in found if item.entry.controller == name and item.parked]
+        style = {"color": COLOURS[name], "s": 10, "alpha": 0.6, "label": name, "linewidths": 0}
         errors.scatter([100.0 * item.lateral for item in won], [np.degrees(item.heading) for item in won], **style)
         spent.scatter([item.time for item in won], [item.effort / (2.0 * np.pi) for item in won], **style)
-    share.set_xticks(range(len(CONTROLLERS)), CONTROLLERS)
-    share.set(ylabel="%", ylim=(0, 100), title="parked (GB/T 41630, no contact); dark: 5 cm, 1 deg")
-    errors.add_patch(Rectangle((-5, -1), 10, 2, fill=False, edgecolor="#888888", linestyle=":"))
+    errors.add_patch(Rectangle((-5, -1), 10, 2, fill=False, edgecolor="#666666", linestyle=":"))
     errors.set(xlabel="final lateral error [cm]", ylabel="final heading [deg]", title="where the parked ones stand")
     spent.set(xlabel="time [s]", ylabel="steering wheel [turns]", title="what it took", xlim=(0, None), ylim=(0, None))
-    spent.legend(frameon=False)
-    if study is not None:
+    spent.legend(frameon=False, markerscale=2)
+    if study is None:
+        claim.set_visible(False)
+    else:
         _claim(claim, study)
     for axis in axes.flat:
         axis.grid(alpha=0.25, linewidth=0.6)
+        axis.set_axisbelow(True)
         axis.spines[["top", "right"]].set_visible(False)
     file.parent.mkdir(parents=True, exist_ok=True)
     figure.savefig(file, dpi=110)
     plt.close(figure)
     return file
+
+
+def _shares(axis: Axes, found: list[Result]) -> None:
+    """Draw for each slot and controller the share parked, within it the exact ones, and above it the refused."""
+    for number, name in enumerate(CONTROLLERS):
+        for place, slot in enumerate(SLOTS):
+            mine = [item for item in found if item.entry.controller == name and item.entry.slot == slot]
+            if not mine:
+                continue
+            x = place + BAR * (number - 0.5 * (len(CONTROLLERS) - 1))
+            parked, exact, refused = (
+                100.0 * sum(wins) / len(mine)
+                for wins in zip(*((item.parked, item.house, item.reason == REFUSED) for item in mine), strict=True)
+            )
+            axis.bar(x, parked, color=COLOURS[name], width=0.9 * BAR)
+            axis.bar(x, exact, color="#222222", alpha=0.35, width=0.4 * BAR)
+            axis.bar(
+                x, refused, bottom=100.0 - refused, color="none", edgecolor="#bbbbbb", hatch="////", width=0.9 * BAR
+            )
+    axis.set_xticks(range(len(SLOTS)), [f"{slot:g} m" for slot in SLOTS])
+    axis.set(ylabel="%", ylim=(0, 100), title="parked (GB/T 41630, no contact); dark: 5 cm, 1 deg; hatched: refused")
 
 
 def _claim(axis: Axes, study: Study) -> None:

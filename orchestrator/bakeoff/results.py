@@ -7,18 +7,22 @@ from typing import NamedTuple
 import numpy as np
 
 from controller_fmu.interface import Phase, Reason
-from orchestrator.bakeoff.entries import Entry
+from orchestrator.bakeoff.entries import ASSIST, Entry
+from orchestrator.endings import STANDSTILL_TIME_NS
 from orchestrator.reproduce.many import timed
 from orchestrator.sweep.kept import CLEARANCE, EFFORT, PHASE, POSE, REASON, SHIFTS, WHEEL, Kept
 
 LATERAL, HEADING = 0.15, math.radians(3.0)
 """GB/T 41630, parallel parking [m, rad]."""
+REFUSED = Reason.NO_PATH.name.lower()
+"""Why a drive is not begun at all."""
 HOUSE_LATERAL, HOUSE_HEADING = 0.05, math.radians(1.0)
-KEPT: tuple[Kept, ...] = (*POSE, WHEEL, PHASE, REASON, SHIFTS, EFFORT, CLEARANCE)
+PARKING_TIME = Kept("last", "controller.apa.parking_time")
+KEPT: tuple[Kept, ...] = (*POSE, WHEEL, PHASE, REASON, SHIFTS, EFFORT, CLEARANCE, PARKING_TIME)
 
 
 class Result(NamedTuple):
-    """One run: SI units and radians; errors in the slot's frame, whose origin is the target."""
+    """One run: SI units and radians; errors in the slot's frame, whose x axis has the car flush with the neighbours."""
 
     entry: Entry
     parked: bool
@@ -27,11 +31,14 @@ class Result(NamedTuple):
     """Within 5 cm and 1 deg besides."""
     reason: str
     time: float
+    """From the first instant (the assist: from the driver's confirmation) until the car stands parked."""
     shifts: int
     longitudinal: float
+    """Not judged: the assist chooses its own place along the slot."""
     lateral: float
     heading: float
     clearance: float
+    """Smallest of the whole run (the assist: with its way past the slot)."""
     effort: float
     """Way of the steering wheel [rad]."""
 
@@ -43,8 +50,9 @@ def results(runs: Sequence[Entry]) -> list[Result]:
 
 
 def _result(entry: Entry, row: "np.ndarray[tuple[int], np.dtype[np.float64]]") -> Result:
-    time, x, y, heading, _, phase, reason, shifts, effort, clearance = (float(value) for value in row)
+    end, x, y, heading, _, phase, reason, shifts, effort, clearance, confirmed = (float(value) for value in row)
     told = int(phase) == Phase.PARKED
+    time = confirmed if entry.controller == ASSIST else end - STANDSTILL_TIME_NS / 1e9
     within = abs(y) <= LATERAL and abs(heading) <= HEADING
     why = "" if told and within and clearance > 0.0 else _why(int(phase), int(reason), within, clearance)
     house = abs(y) <= HOUSE_LATERAL and abs(heading) <= HOUSE_HEADING

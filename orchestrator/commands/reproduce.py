@@ -6,7 +6,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from orchestrator.fmu_files import KINDS, fmu_files
+from orchestrator.fmu_files import KINDS, default_kind, fmu_files
 from orchestrator.reproduce.drive import drive
 from orchestrator.reproduce.papers import paper, papers
 from orchestrator.reproduce.result import Drive, Driven
@@ -27,7 +27,12 @@ def add_parser(subparsers: Any) -> argparse.ArgumentParser:
         "reproduce", help="show a paper's numbers beside ours", epilog=EXAMPLES
     )
     parser.add_argument("paper", metavar="PAPER", help=f"{', '.join(papers())} or all")
-    parser.add_argument("--fmus", choices=(*KINDS, "none"), default="none", help="FMUs to drive; none: in process")
+    parser.add_argument(
+        "--fmus",
+        choices=(*KINDS, "none"),
+        default=default_kind(),
+        help="kind of FMU (default: native where it can be built); none drives the models in process",
+    )
     parser.add_argument("--out", type=Path, metavar="DIR", help="where pictures go (default: runs/reproduce/PAPER)")
     parser.add_argument("--json", action="store_true", help="print JSON instead of the table")
     return parser

@@ -6,7 +6,7 @@ import pytest
 
 from orchestrator.reproduce.drive import drive
 from orchestrator.reproduce.guo2015 import reproduce
-from orchestrator.reproduce.result import Reproduction
+from orchestrator.reproduce.result import Drive, Reproduction
 
 SCENARIOS = [
     *(f"guo2015-case{case}{rate}" for case in range(1, 6) for rate in ("", "-105")),
@@ -57,3 +57,7 @@ def test_faults_end_with_a_reason_and_a_stopped_car(name: str, reason: str) -> N
     assert driven.summary.outcome == driven.scenario.expect
     assert driven.summary.reason == reason
     assert driven.recording.signals["vehicle.speed"][-1] == 0.0
+
+
+def test_native_fmus_give_the_same_numbers(reproduction: Reproduction, native: Drive, tmp_path: Path) -> None:
+    assert reproduce(tmp_path, native).rows == reproduction.rows

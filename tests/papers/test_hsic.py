@@ -6,7 +6,7 @@ import pytest
 
 from orchestrator.reproduce.drive import drive
 from orchestrator.reproduce.hsic import reproduce
-from orchestrator.reproduce.result import Reproduction
+from orchestrator.reproduce.result import Drive, Reproduction
 
 
 @pytest.fixture(scope="module")
@@ -22,3 +22,7 @@ def test_every_stated_check_holds(reproduction: Reproduction) -> None:
 
 def test_figure_is_written(reproduction: Reproduction) -> None:
     assert all(Path(figure).stat().st_size > 20_000 for figure in reproduction.figures)
+
+
+def test_native_fmus_give_the_same_numbers(reproduction: Reproduction, native: Drive, tmp_path: Path) -> None:
+    assert reproduce(tmp_path, native).rows == reproduction.rows

@@ -7,14 +7,18 @@ import pytest
 
 from orchestrator.reproduce import preview
 from orchestrator.reproduce.drive import drive
-from orchestrator.reproduce.result import Reproduction
+from orchestrator.reproduce.result import Drive, Reproduction
 
 
 @pytest.fixture(scope="module")
 def reproduction(tmp_path_factory: pytest.TempPathFactory) -> Reproduction:
+    return without_sweep(tmp_path_factory.mktemp("preview"), drive)
+
+
+def without_sweep(out: Path, by: Drive) -> Reproduction:
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(preview, "available", lambda: False)
-        return preview.reproduce(tmp_path_factory.mktemp("preview"), drive)
+        patch.setattr(preview, "can_compile", lambda: False)
+        return preview.reproduce(out, by)
 
 
 def test_every_stated_check_holds(reproduction: Reproduction) -> None:
@@ -43,3 +47,7 @@ def test_the_single_point_steers_earlier_and_is_too_fast(reproduction: Reproduct
 def test_figures_are_written(reproduction: Reproduction) -> None:
     assert len(reproduction.figures) == 2
     assert all(Path(figure).stat().st_size > 20_000 for figure in reproduction.figures)
+
+
+def test_native_fmus_give_the_same_numbers(reproduction: Reproduction, native: Drive, tmp_path: Path) -> None:
+    assert without_sweep(tmp_path, native).rows == reproduction.rows

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from orchestrator.reproduce.drive import drive
-from orchestrator.reproduce.result import Reproduction
+from orchestrator.reproduce.result import Drive, Reproduction
 from orchestrator.reproduce.zhang2022 import reproduce
 
 
@@ -27,3 +27,7 @@ def test_the_refusal_says_by_how_much(reproduction: Reproduction) -> None:
 
 def test_figure_is_written(reproduction: Reproduction) -> None:
     assert all(Path(figure).stat().st_size > 20_000 for figure in reproduction.figures)
+
+
+def test_native_fmus_give_the_same_numbers(reproduction: Reproduction, native: Drive, tmp_path: Path) -> None:
+    assert reproduce(tmp_path, native).rows == reproduction.rows

@@ -1,0 +1,20 @@
+"""How the reproductions are driven: by FMUs of each kind."""
+
+import pytest
+
+from orchestrator.fmu_files import can_compile, fmu_files
+from orchestrator.reproduce.drive import drive
+from orchestrator.reproduce.result import Drive, Driven
+
+
+@pytest.fixture(scope="session")
+def native() -> Drive:
+    """Drives a scenario with native FMUs, as ``apa reproduce`` does by default."""
+    if not can_compile():
+        pytest.skip("needs numba, llvmlite and ziglang")
+    files = fmu_files("native")
+
+    def driven(name: str) -> Driven:
+        return drive(name, files, "native")
+
+    return driven

@@ -1,0 +1,104 @@
+"""The bake-off: the same slots for all, refusals that are right, slots that each controller parks in."""
+
+import json
+import math
+from pathlib import Path
+
+import pytest
+
+from controller_fmu.zhang2022.key_points import arc_line_arc, largest_radius
+from controller_fmu.zhang2022.path import FOUND, STEEPEST, plan, through
+from modelkit.vocabulary import Pose
+from orchestrator.bakeoff.entries import ASSIST, CONTROLLERS, SLOTS, STARTS, Entry, entries, scenario_of
+from orchestrator.bakeoff.results import Result, results
+from orchestrator.cli import main
+from orchestrator.commands import bakeoff as command
+from orchestrator.fmu_files import can_compile
+
+compiles = pytest.mark.skipif(not can_compile(), reason="needs numba, llvmlite and ziglang")
+EVERY = list(entries())
+
+
+@pytest.fixture(scope="module")
+def undisturbed() -> list[Result]:
+    return results([entry for entry in EVERY if entry.disturbance == "none"])
+
+
+def test_all_have_the_same_slots() -> None:
+    scenes: dict[tuple[float, str], set[tuple[float | int | bool, ...]]] = {}
+    for entry in EVERY:
+        boxes = tuple(value for key, value in entry.scenario.vehicle.items() if key.startswith("scene.boxes["))
+        scenes.setdefault((entry.slot, entry.car), set()).add(boxes)
+    assert len(scenes) == 6
+    assert all(len(boxes) == 1 for boxes in scenes.values())
+    assert len(EVERY) == len(CONTROLLERS) * 3 * 60
+
+
+@pytest.mark.parametrize("start", STARTS)
+def test_the_assist_drives_past_along_the_line_through_the_start_pose(start: str) -> None:
+    given = scenario_of("hsic", 7.7, "guo2015", "kinematic", start, "none").vehicle
+    begin = scenario_of(ASSIST, 7.7, "guo2015", "kinematic", start, "none").vehicle
+    ahead = float(given["start.x"]) - float(begin["start.x"])
+    assert ahead > 15.0
+    assert float(begin["start.y"]) + ahead * math.tan(begin["start.heading"]) == pytest.approx(given["start.y"])
+
+
+def smallest_peak(start: Pose, radius: float) -> float:
+    """Return the least peak of the quintics [1/m] over 2001 radii."""
+    widest = largest_radius(start.x, start.y)
+    low = min(radius, widest)
+    arcs = [arc_line_arc(start.x, start.y, low + (widest - low) * n / 2000) for n in range(2001)]
+    return min(through(start, arc).largest_curvature for arc in arcs if arc.line >= 0.0 and 0.0 < arc.angle < STEEPEST)
+
+
+def test_quintics_are_refused_where_no_radius_keeps_the_curvature_and_only_there() -> None:
+    verdicts = {}
+    for entry in EVERY:
+        if entry.controller == "zhang2022" and entry.disturbance == "none" and entry.body == "kinematic":
+            car = entry.scenario.controller
+            lock = car["steering_wheel_limit"] / car["steering_ratio"]
+            limit = 0.95 * math.tan(lock) / car["wheelbase"]
+            start = Pose(*(float(entry.scenario.vehicle[f"start.{axis}"]) for axis in ("x", "y", "heading")))
+            possible = smallest_peak(start, 5.0) <= limit
+            assert (plan(start, 5.0, limit).status == FOUND) == possible
+            verdicts[entry.slot, entry.car, entry.start] = possible
+    assert [sum(verdicts[key] for key in verdicts if key[0] == slot) for slot in SLOTS] == [0, 4, 6]
+
+
+@compiles
+def test_refusals_are_those_of_the_planner(undisturbed: list[Result]) -> None:
+    refused = [item for item in undisturbed if item.entry.controller == "zhang2022" and not item.parked]
+    assert {item.reason for item in refused} == {"no_path"}
+    assert len(refused) == 2 * (6 + 2)
+
+
+@compiles
+def test_every_controller_parks_from_every_start_in_the_longest_slot(undisturbed: list[Result]) -> None:
+    longest = [item for item in undisturbed if item.entry.slot == max(SLOTS)]
+    assert [item.entry[:-1] for item in longest if not item.parked] == []
+    assert len(longest) == len(CONTROLLERS) * 12
+
+
+@compiles
+def test_the_assist_touches_nothing(undisturbed: list[Result]) -> None:
+    mine = [item for item in undisturbed if item.entry.controller == ASSIST]
+    assert len(mine) == 36
+    assert min(item.clearance for item in mine) > 0.0
+    assert all(0.0 < item.time < 120.0 for item in mine if item.parked)
+
+
+@compiles
+def test_the_command_writes_table_picture_and_numbers(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def few() -> list[Entry]:
+        return [entry for entry in EVERY if entry.slot == 7.7 and entry.car == "guo2015" and entry.start == "near"]
+
+    monkeypatch.setattr(command, "entries", few)
+    assert main(["bakeoff", "--runs", "0", "--out", str(tmp_path)]) == 0
+    said = capsys.readouterr().out
+    data = json.loads((tmp_path / "bakeoff.json").read_text(encoding="utf-8"))
+    assert len(data["runs"]) == 50
+    assert set(data["step_us"]) == set(CONTROLLERS)
+    assert "100 %" in next(line for line in said.splitlines() if "zhang2022" in line)
+    assert (tmp_path / "bakeoff.png").stat().st_size > 20_000

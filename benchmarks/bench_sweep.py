@@ -29,7 +29,7 @@ from orchestrator.sweep.study import Study
 from orchestrator.sweep.sweep import Options, sweep
 
 REPEATS = 5
-MANOEUVRES = 400
+MANOEUVRES = 2000
 SIZES = (1_000, 10_000, 100_000)
 SHORT = 0.5
 """Length of the runs whose number is grown [s]."""

@@ -7,6 +7,7 @@ order of the fields, depth first, and is the same everywhere.
 
 import typing
 from collections.abc import Callable, Iterator, Sequence
+from functools import cache
 from typing import Any, NamedTuple
 
 from modelkit.signal import Signal
@@ -29,7 +30,17 @@ def variables(cls: type[Any], value: Any = None) -> list[Variable]:
 
     Raises ``TypeError`` if a field is neither float, int, bool, NamedTuple nor tuple of these.
     """
-    return list(_walk(cls, cls() if value is None else value, "", UNDOCUMENTED))
+    return list(_defaults(cls)) if value is None else list(_walk(cls, value, "", UNDOCUMENTED))
+
+
+@cache
+def _defaults(cls: type[Any]) -> tuple[Variable, ...]:
+    return tuple(_walk(cls, cls(), "", UNDOCUMENTED))
+
+
+@cache
+def _hints(cls: type[Any]) -> dict[str, Any]:
+    return typing.get_type_hints(cls, include_extras=True)
 
 
 def flatten(value: Any) -> list[Any]:
@@ -98,7 +109,7 @@ def _walk(hint: Any, value: Any, name: str, signal: Signal) -> Iterator[Variable
     elif hint in (float, int, bool):
         yield Variable(name, hint, signal, hint(value))
     elif hasattr(hint, "_fields"):
-        hints = typing.get_type_hints(hint, include_extras=True)
+        hints = _hints(hint)
         for field, item in zip(hint._fields, value, strict=True):
             yield from _walk(hints[field], item, f"{name}.{field}" if name else field, signal)
     elif typing.get_origin(hint) is tuple:

@@ -13,6 +13,7 @@ ROOT = Path(__file__).parent.parent
 SOURCES = ("modelkit", "vehicle_fmu", "controller_fmu", "fmus")
 STAMP = "sources.sha256"
 KINDS = ("python", "native")
+TAKES = {"python": "", "native": " (about a minute, once for each change of the models)"}
 COMPILERS = ("llvmlite", "numba", "ziglang")
 """What the extra ``native`` installs."""
 
@@ -33,7 +34,7 @@ def fmu_files(kind: str, say: Callable[[str], None] = lambda text: None) -> dict
 
     files = {name: DIST / kind / f"{model.name}.fmu" for name, model in MODELS.items()}
     if not all(path.is_file() for path in files.values()) or _stamp(DIST / kind) != sources_hash():
-        say(f"building {kind} FMUs")
+        say(f"building {kind} FMUs{TAKES[kind]}")
         build(kind)
     return files
 

@@ -1,4 +1,4 @@
-"""``apa list``: the scenarios and cars that are shipped."""
+"""``apa list``: the scenarios, cars and studies that are shipped."""
 
 import argparse
 import json
@@ -7,12 +7,13 @@ from typing import Any
 from rich.table import Table
 
 from orchestrator.load_scenario import car_names, load_scenario, scenario_names
+from orchestrator.sweep.study import study_names
 from orchestrator.terminal import console
 
 
 def add_parser(subparsers: Any) -> argparse.ArgumentParser:
     """Add the command."""
-    parser: argparse.ArgumentParser = subparsers.add_parser("list", help="list scenarios and cars")
+    parser: argparse.ArgumentParser = subparsers.add_parser("list", help="list scenarios, cars and studies")
     parser.add_argument("--json", action="store_true", help="print JSON")
     return parser
 
@@ -24,7 +25,7 @@ def run(arguments: argparse.Namespace) -> int:
         rows = [
             {"name": item.name, "title": item.title, "expect": item.expect, "file": item.file} for item in scenarios
         ]
-        print(json.dumps({"scenarios": rows, "cars": car_names()}, indent=2))
+        print(json.dumps({"scenarios": rows, "cars": car_names(), "studies": study_names()}, indent=2))
         return 0
     out = console()
     table = Table(box=None, pad_edge=False)
@@ -34,4 +35,5 @@ def run(arguments: argparse.Namespace) -> int:
         table.add_row(item.name, item.expect, item.title)
     out.print(table)
     out.print(f"cars: {', '.join(car_names())}")
+    out.print(f"studies (apa sweep NAME): {', '.join(study_names())}")
     return 0

@@ -4,34 +4,16 @@ from typing import NamedTuple
 
 from modelkit.vocabulary import Gear, Pose
 from vehicle_fmu.body import KINEMATIC, BodyState, motion_of, place, push_body, wheel_speed
-from vehicle_fmu.chassis import ChassisParams, RoadParams
-from vehicle_fmu.double_track import DoubleTrackParams
 from vehicle_fmu.drive import change_speed, push_speed
 from vehicle_fmu.driver import DriverState, brakes, grabs, wanted_speed, watch
 from vehicle_fmu.drivetrain import NO_GEAR, Pedals, Selector, along, geared_speed, obey, press, shift
 from vehicle_fmu.effort import Effort
-from vehicle_fmu.interface import DriveParams, DriverParams, SteeringParams, VehicleInput, VehicleParams
+from vehicle_fmu.interface import DriverParams, VehicleInput, VehicleParams
 from vehicle_fmu.kinematic import move
-from vehicle_fmu.odometry import OdometryParams, OdometryState, reckon
-from vehicle_fmu.single_track import SingleTrackParams
+from vehicle_fmu.odometry import OdometryState, reckon
 from vehicle_fmu.steering import SteeringState, hold_request, pass_request, take_up_play, turn_steering_wheel
 
 PARK = int(Gear.PARK)
-
-
-class CarParams(NamedTuple):
-    """The vehicle's parameters without scene, sensors and outline: what an internal step needs."""
-
-    body: int
-    wheelbase: float
-    steering: SteeringParams
-    drive: DriveParams
-    driver: DriverParams
-    chassis: ChassisParams
-    single_track: SingleTrackParams
-    double_track: DoubleTrackParams
-    road: RoadParams
-    odometry: OdometryParams
 
 
 class CarState(NamedTuple):
@@ -53,23 +35,7 @@ class CarState(NamedTuple):
     odometry: OdometryState = OdometryState()
 
 
-def car_params(params: VehicleParams) -> CarParams:
-    """Return the part of the parameters that an internal step needs."""
-    return CarParams(
-        params.body,
-        params.wheelbase,
-        params.steering,
-        params.drive,
-        params.driver,
-        params.chassis,
-        params.single_track,
-        params.double_track,
-        params.road,
-        params.odometry,
-    )
-
-
-def parked_car(start: Pose, usable: bool, params: CarParams) -> CarState:
+def parked_car(start: Pose, usable: bool, params: VehicleParams) -> CarState:
     """Return the car at rest, wheel straight, in park, the brake pressed; on its tyres if its numbers are usable."""
     body = params.body if usable else KINEMATIC
     return CarState(
@@ -89,7 +55,7 @@ def parked_car(start: Pose, usable: bool, params: CarParams) -> CarState:
     )
 
 
-def step_car(state: CarState, inputs: VehicleInput, faulty: bool, params: CarParams, next_ns: int) -> CarState:
+def step_car(state: CarState, inputs: VehicleInput, faulty: bool, params: VehicleParams, next_ns: int) -> CarState:
     """Return the car at ``next_ns``; a faulty one brakes and holds its wheel."""
     h = (next_ns - state.time_ns) * 1e-9
     driver = watch(state.driver, inputs.prompt, state.time_ns, params.driver)
@@ -151,7 +117,7 @@ def step_car(state: CarState, inputs: VehicleInput, faulty: bool, params: CarPar
     )
 
 
-def _push(body: BodyState, angle: float, effort: Effort, gear: int, params: CarParams, h: float) -> BodyState:
+def _push(body: BodyState, angle: float, effort: Effort, gear: int, params: VehicleParams, h: float) -> BodyState:
     if gear == PARK:
         effort = Effort(0.0, params.drive.brake_force_limit)
     return push_body(

@@ -12,10 +12,10 @@ from typing import NamedTuple
 from modelkit.maths import is_finite
 from modelkit.vocabulary import Pose
 from vehicle_fmu.body import KINEMATIC, told
-from vehicle_fmu.car import CarState, car_params, parked_car, step_car
+from vehicle_fmu.car import CarState, parked_car, step_car
 from vehicle_fmu.driver import presses_confirm, switch_is_on
-from vehicle_fmu.interface import DriverParams, VehicleFault, VehicleInput, VehicleOutput, VehicleParams
-from vehicle_fmu.odometry import OdometryParams, told_speed
+from vehicle_fmu.interface import VehicleFault, VehicleInput, VehicleOutput, VehicleParams
+from vehicle_fmu.odometry import told_speed
 from vehicle_fmu.scene import CarSize, clearance
 from vehicle_fmu.ultrasonic import UltrasonicState, first_readings, is_due, measure
 from vehicle_fmu.usable import is_usable
@@ -41,14 +41,12 @@ def initialize(params: VehicleParams) -> tuple[VehicleState, VehicleOutput]:
     gap = 0.0
     if is_usable(params):
         heard = first_readings(start, params.scene, params.ultrasonic)
-        gap = clearance(
-            start, CarSize(params.wheelbase, params.front_overhang, params.rear_overhang, params.width), params.scene, 0
-        )
+        gap = _clearance(start, params, 0)
     else:
         fault = BAD_PARAMETER
         start = Pose(0.0, 0.0, 0.0)
-    state = VehicleState(parked_car(start, fault == NO_FAULT, car_params(params)), heard, fault)
-    return state, _outputs(state, gap, params.body, params.steering.ratio, params.odometry, params.driver)
+    state = VehicleState(parked_car(start, fault == NO_FAULT, params), heard, fault)
+    return state, _outputs(state, gap, params)
 
 
 def step(
@@ -63,47 +61,44 @@ def step(
     gap = 0.0
     if fault != BAD_PARAMETER:
         if dt_ns > 0:
-            reduced = car_params(params)
-            count = _internal_steps(dt_ns, params.body, params.largest_step, params.body_step)
+            count = _internal_steps(dt_ns, params)
             start_ns = car.time_ns
             for number in range(1, count + 1):
-                car = step_car(car, inputs, fault != NO_FAULT, reduced, start_ns + dt_ns * number // count)
+                car = step_car(car, inputs, fault != NO_FAULT, params, start_ns + dt_ns * number // count)
             if is_due(start_ns, car.time_ns, params.ultrasonic.cycle):
                 heard = measure(heard, car.pose, params.scene, params.ultrasonic, car.time_ns)
-        gap = clearance(
-            car.pose,
-            CarSize(params.wheelbase, params.front_overhang, params.rear_overhang, params.width),
-            params.scene,
-            car.time_ns,
-        )
+        gap = _clearance(car.pose, params, car.time_ns)
     state = VehicleState(car, heard, fault)
-    return state, _outputs(state, gap, params.body, params.steering.ratio, params.odometry, params.driver)
+    return state, _outputs(state, gap, params)
 
 
-def _internal_steps(dt_ns: int, body: int, largest_step: float, body_step: float) -> int:
-    longest = largest_step
-    if body != KINEMATIC and body_step < longest:
-        longest = body_step
+def _clearance(pose: Pose, params: VehicleParams, time_ns: int) -> float:
+    size = CarSize(params.wheelbase, params.front_overhang, params.rear_overhang, params.width)
+    return clearance(pose, size, params.scene, time_ns)
+
+
+def _internal_steps(dt_ns: int, params: VehicleParams) -> int:
+    longest = params.largest_step
+    if params.body != KINEMATIC and params.body_step < longest:
+        longest = params.body_step
     return math.ceil(dt_ns * 1e-9 / longest - 1e-9)
 
 
-def _outputs(
-    state: VehicleState, gap: float, body: int, ratio: float, odometry: OdometryParams, driver: DriverParams
-) -> VehicleOutput:
+def _outputs(state: VehicleState, gap: float, params: VehicleParams) -> VehicleOutput:
     car = state.car
     speed = car.speed
-    measured = car.speed if odometry.perfect else car.rolled_speed
-    if body != KINEMATIC:
+    measured = car.speed if params.odometry.perfect else car.rolled_speed
+    if params.body != KINEMATIC:
         speed = told(speed)
         measured = told(measured)
     front = 0.0
     if state.fault != BAD_PARAMETER:
-        front = car.steering.play / ratio
+        front = car.steering.play / params.steering.ratio
     return VehicleOutput(
         pose=car.pose,
         odometry=car.odometry.pose,
         speed=speed,
-        measured_speed=told_speed(measured, odometry),
+        measured_speed=told_speed(measured, params.odometry),
         steering_wheel_angle=car.steering_wheel_angle,
         front_wheel_angle=front,
         gear=car.selector.gear,
@@ -114,8 +109,8 @@ def _outputs(
         ultrasonic=state.ultrasonic.readings,
         clearance=gap,
         contact=gap <= 0.0,
-        apa_switch=switch_is_on(car.time_ns, driver),
-        driver_confirm=presses_confirm(car.driver, car.time_ns, driver),
+        apa_switch=switch_is_on(car.time_ns, params.driver),
+        driver_confirm=presses_confirm(car.driver, car.time_ns, params.driver),
     )
 
 

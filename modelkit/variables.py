@@ -30,7 +30,8 @@ def variables(cls: type[Any], value: Any = None) -> list[Variable]:
 
     Raises ``TypeError`` if a field is neither float, int, bool, NamedTuple nor tuple of these.
     """
-    return list(_defaults(cls)) if value is None else list(_walk(cls, value, "", UNDOCUMENTED))
+    shape: Any = cls  # mypy does not take a type for hashable
+    return list(_defaults(shape) if value is None else _walk(shape, value, "", UNDOCUMENTED))
 
 
 @cache

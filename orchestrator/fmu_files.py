@@ -8,6 +8,7 @@ from importlib.util import find_spec
 from pathlib import Path
 
 from orchestrator.models import MODELS
+from orchestrator.terminal import working
 
 ROOT = Path(__file__).parent.parent
 SOURCES = ("modelkit", "vehicle_fmu", "controller_fmu", "fmus")
@@ -44,7 +45,7 @@ def build(kind: str) -> list[str]:
     from fmus.build import DIST, build_all
 
     lines = []
-    with _alone(DIST):
+    with working(f"building {kind} FMUs"), _alone(DIST):
         before = sources_hash()
         for built in build_all(kinds=(kind,)):
             size = f"{built.path.stat().st_size / 1024:.0f} KiB"

@@ -2,11 +2,13 @@
 
 import math
 import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import TextIO
 
 from rich.console import Console
 from rich.markup import escape
-from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeElapsedColumn
+from rich.progress import BarColumn, Progress, SpinnerColumn, TaskProgressColumn, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
 from orchestrator.compare import Difference
@@ -28,6 +30,15 @@ def console(stream: TextIO | None = None) -> Console:
     """Return a console that writes colours only to a terminal that wants them."""
     stream = stream or sys.stdout
     return Console(file=stream, highlight=False, width=None if stream.isatty() else PIPED_WIDTH)
+
+
+@contextmanager
+def working(text: str) -> Iterator[None]:
+    """Show on standard error, if that is a terminal, that something of unknown length goes on, and for how long."""
+    columns = (SpinnerColumn(), TextColumn(text), TimeElapsedColumn())
+    with Progress(*columns, console=console(sys.stderr), transient=True, disable=not sys.stderr.isatty()) as progress:
+        progress.add_task(text, total=None)
+        yield
 
 
 class ProgressBar:

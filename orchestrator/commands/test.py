@@ -2,6 +2,7 @@
 
 import argparse
 import json
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -88,10 +89,14 @@ def _bench(arguments: argparse.Namespace, interrupt: Interrupt) -> Bench:
             raise BadInput("no such file", file=path)
     if foreign and arguments.fmus == "none":
         raise BadInput("the models in process cannot be joined with an FMU; use --fmus python", key="--fmus")
-    files = None if arguments.fmus == "none" else {**fmu_files(arguments.fmus), **foreign}
+    files = None if arguments.fmus == "none" else {**fmu_files(arguments.fmus, _say), **foreign}
     found = [find_file(name, "limits", "set of limits", Path.cwd()) for name in arguments.requirements]
     requirements = [(str(file), read_requirements(file)) for file in found]
     return Bench(files, arguments.fmus, frozenset(foreign), requirements, interrupt)
+
+
+def _say(text: str) -> None:
+    print(text, file=sys.stderr)
 
 
 def _print(tested: Tested) -> None:

@@ -7,7 +7,7 @@ import numpy as np
 
 from orchestrator.faults import Fault
 from orchestrator.master import End
-from orchestrator.slave import Array, Indices, Slave
+from orchestrator.slave import Array, Indices, Slave, all_values, places_of
 
 DEBUG, INFO, WARNING, ERROR = 1, 2, 3, 4
 """Levels of Foxglove's Log message."""
@@ -18,6 +18,7 @@ FMI_LEVELS = {0: INFO, 1: WARNING, 2: WARNING, 3: ERROR, 4: ERROR}
 
 class _Mode(NamedTuple):
     place: int
+    """In the array of all values."""
     name: str
     states: dict[int, str]
 
@@ -27,12 +28,11 @@ class Watch:
 
     def __init__(self, slaves: list[Slave], faults: Iterable[Fault], say: Say) -> None:
         self._say = say
-        self._watched: list[tuple[Array, Indices, list[_Mode], bytes]] = []
-        for slave in slaves:
-            modes = _modes(slave)
-            places = np.array([mode.place for mode in modes], dtype=np.intp)
-            if modes:
-                self._watched.append((slave.outputs.values, places, modes, slave.outputs.values[places].tobytes()))
+        self._values = all_values(slaves)
+        outputs = places_of(slaves)[1::2]
+        self._modes = [mode for slave, part in zip(slaves, outputs, strict=True) for mode in _modes(slave, part.start)]
+        self._places: Indices = np.array([mode.place for mode in self._modes], dtype=np.intp)
+        self._before = self._values[self._places].tobytes()
         edges = [(round(fault.start * 1e9), f"{fault.kind} of {fault.signal} begins") for fault in faults]
         edges += [
             (round(fault.stop * 1e9), f"{fault.kind} of {fault.signal} ends") for fault in faults if fault.stop < 1e9
@@ -43,28 +43,28 @@ class Watch:
         """Say what has changed since the last exchange."""
         while self._edges and self._edges[0][0] <= t_ns:
             self._say(t_ns, WARNING, "fault", self._edges.pop(0)[1])
-        for number, (values, places, modes, before) in enumerate(self._watched):
-            now = values[places].tobytes()
-            if now != before:
-                self._tell(t_ns, modes, np.frombuffer(before), np.frombuffer(now))
-                self._watched[number] = (values, places, modes, now)
+        now = self._values[self._places].tobytes()
+        if now != self._before:
+            self._tell(t_ns, np.frombuffer(self._before), np.frombuffer(now))
+            self._before = now
 
     def closed(self, end: End) -> None:
         """Say why the run ended."""
         level = ERROR if end.reason.startswith("error") else INFO
         self._say(end.t_ns, level, "run", f"ended: {end.reason}")
 
-    def _tell(self, t_ns: int, modes: list[_Mode], before: Array, now: Array) -> None:
-        for mode, old, new in zip(modes, before.tolist(), now.tolist(), strict=True):
+    def _tell(self, t_ns: int, before: Array, now: Array) -> None:
+        for mode, old, new in zip(self._modes, before.tolist(), now.tolist(), strict=True):
             if old != new:
                 was, becomes = (mode.states.get(int(value), str(value)) for value in (old, new))
                 level = ERROR if "FAIL" in becomes else WARNING if mode.name.endswith(("prompt", "reason")) else INFO
                 self._say(t_ns, level, mode.name, f"{was} -> {becomes}")
 
 
-def _modes(slave: Slave) -> list[_Mode]:
+def _modes(slave: Slave, start: int) -> list[_Mode]:
+    """Return the modes among the outputs, which begin at ``start`` in the array of all values."""
     return [
-        _Mode(place, f"{slave.name}.{item.name}", {int(state): state.name for state in item.signal.states})
+        _Mode(start + place, f"{slave.name}.{item.name}", {int(state): state.name for state in item.signal.states})
         for place, item in enumerate(slave.outputs.variables)
         if item.signal.states is not None
     ]

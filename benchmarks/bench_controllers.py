@@ -1,10 +1,12 @@
 """Cost of one control step of each controller; the fuzzy law beside scikit-fuzzy, the QP beside cvxpy + OSQP and DAQP.
 
-All in one process, in turn. Each controller is driven in closed loop first; the inputs it saw are then
-played to it again, in CPython and compiled, and the step is timed alone. Means over the drive: the MPC is
-solved in every fifth step only. Medians over the rounds.
+All in one process, in turn. Each controller is driven in closed loop first, from start to parked; the inputs
+it saw are then played to it again, in CPython and by the code of the native FMU in a compiled loop, and the step
+is timed alone. Means over the drive: the MPC is solved in every fifth step only, the parking assist plans at
+standstill. Medians over the rounds.
 """
 
+import ctypes
 import statistics
 import sys
 import time
@@ -23,13 +25,15 @@ from skfuzzy import control
 
 import controller_fmu
 from controller_fmu import MODEL
+from controller_fmu.interface import Phase
 from controller_fmu.preview.fuzzy import infer
 from controller_fmu.preview.rule_tables import STEERING_SYMMETRIC
 from controller_fmu.zhang2022.qp import STAGES, solve
-from fmus.compiled import compiled_entries, make_compilable
+from fmus.compiled import make_compilable
+from fmus.compiled_batch import model_library
 from fmus.flat_entry import sizes
 from modelkit.variables import constructor, flatten, variables, with_values
-from orchestrator.bakeoff.entries import scenario_of
+from orchestrator.bakeoff.entries import CONTROLLERS, scenario_of
 from orchestrator.load_scenario import load_scenario
 from orchestrator.models import MODELS
 from orchestrator.scenario import Scenario
@@ -37,7 +41,8 @@ from orchestrator.scenario import Scenario
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "controller"))
 from qp_problems import dense, random_problem
 
-STEPS, ROUNDS, OFTEN = 800, 5, 50
+STEPS, ROUNDS, OFTEN = 8000, 5, 50
+FINAL = (int(Phase.PARKED), int(Phase.FAILED), int(Phase.TAKEOVER))
 PEAKS5, PEAKS7 = (-3.0, -1.5, 0.0, 1.5, 3.0), (-3.0, -2.0, -1.0, 0.0, 1.0, 2.0, 3.0)
 NAMES = ("NB", "NM", "NS", "ZE", "PS", "PM", "PB")
 
@@ -55,13 +60,12 @@ def micros(work: Callable[[], Any], count: int, rounds: int = ROUNDS) -> float:
 
 def scenarios() -> dict[str, Scenario]:
     """Return the drive of each controller."""
-    parking = ("ntbptcwpt", "ntbpt", "zhang2022", "hsic")
-    found = {name: scenario_of(name, 7.7, "zhang2022", "kinematic", "far", "none") for name in parking}
+    found = {name: scenario_of(name, 7.7, "zhang2022", "kinematic", "far", "none") for name in CONTROLLERS}
     return {**found, "preview": load_scenario("preview", ["vehicle.body=kinematic"])}
 
 
 def inputs_seen(scenario: Scenario) -> list[Any]:
-    """Return what the controller is given in a closed loop, step by step."""
+    """Return what the controller is given in a closed loop, step by step, until the manoeuvre is over."""
     vehicle = MODELS["vehicle"]
     vp, cp = with_values(vehicle.params, dict(scenario.vehicle)), with_values(MODEL.params, dict(scenario.controller))
     (vs, vo), (cs, co) = vehicle.initialize(vp), MODEL.initialize(cp)
@@ -71,6 +75,8 @@ def inputs_seen(scenario: Scenario) -> list[Any]:
         seen.append(heard)
         vs, vo = vehicle.step(vs, told, vp, scenario.step_ns)
         cs, co = MODEL.step(cs, heard, cp, scenario.step_ns)
+        if co.phase in FINAL:
+            break
     return seen
 
 
@@ -82,14 +88,14 @@ def receive(source: Any, target: Any, outputs: Any) -> Any:
 
 def bench_controllers() -> None:
     """Print the cost of one step of each controller."""
-    compiled = compiled_entries(MODEL)
-    print(f"{'control step [us]':24s}{'CPython':>10s}{'compiled':>10s}")
+    library = ctypes.CDLL(str(model_library(MODEL)))
+    print(f"\n{'control step [us]':24s}{'CPython':>10s}{'compiled':>10s}{'steps':>10s}")
     for name, scenario in scenarios().items():
         params = with_values(MODEL.params, dict(scenario.controller))
         seen = inputs_seen(scenario)
-        python = micros(lambda p=params, u=seen, h=scenario.step_ns: replay(p, u, h), STEPS)
-        fast = micros(compiled_replay(compiled, params, seen, scenario.step_ns), STEPS)
-        print(f"{name:24s}{python:10.1f}{fast:10.2f}")
+        python = micros(lambda p=params, u=seen, h=scenario.step_ns: replay(p, u, h), len(seen))
+        fast = micros(compiled_replay(library, params, seen, scenario.step_ns), len(seen), 5 * ROUNDS)
+        print(f"{name:24s}{python:10.1f}{fast:10.2f}{len(seen):10d}")
 
 
 def replay(params: Any, seen: list[Any], step_ns: int) -> None:
@@ -99,17 +105,25 @@ def replay(params: Any, seen: list[Any], step_ns: int) -> None:
         state, _ = MODEL.step(state, inputs, params, step_ns)
 
 
-def compiled_replay(compiled: Any, params: Any, seen: list[Any], step_ns: int) -> Callable[[], None]:
-    """Return the same for compiled code; the calls from CPython, about 1 us each, are in the time."""
-    size = sizes(MODEL)
+def compiled_replay(library: Any, params: Any, seen: list[Any], step_ns: int) -> Callable[[], None]:
+    """Return the same by the native FMU's code, called from a compiled loop; addresses are passed as integers."""
+    initialize, step, size = library.batch_initialize, library.batch_step, sizes(MODEL)
+    initialize.argtypes, step.argtypes = [ctypes.c_int64] * 3, [ctypes.c_int64] * 5
+    initialize.restype = step.restype = None
     s, y = np.zeros(size["state"]), np.zeros(size["outputs"])
     p = np.array([float(value) for value in flatten(params)])
-    rows = [np.array([float(value) for value in flatten(inputs)]) for inputs in seen]
+    u = np.array([[float(value) for value in flatten(inputs)] for inputs in seen])
+    state, outputs, parameters, first = (array.ctypes.data for array in (s, y, p, u))
+    width = u.strides[0]
 
-    def work() -> None:
-        compiled.initialize(s, p, y)
-        for row in rows:
-            compiled.step(s, row, p, y, step_ns)
+    @numba.njit
+    def play(count: int) -> None:
+        for row in range(count):
+            step(state, first + row * width, parameters, outputs, step_ns)
+
+    def work(_held: Any = (s, y, p, u)) -> None:
+        initialize(state, parameters, outputs)
+        play(len(u))
 
     return work
 

@@ -4,8 +4,9 @@ from pathlib import Path
 
 import pytest
 
+from controller_fmu.hsic.characteristic_states import Characteristic
 from orchestrator.reproduce.drive import drive
-from orchestrator.reproduce.hsic import reproduce
+from orchestrator.reproduce.hsic import SCENARIOS, reproduce
 from orchestrator.reproduce.result import Drive, Reproduction
 
 
@@ -18,6 +19,13 @@ def test_every_stated_check_holds(reproduction: Reproduction) -> None:
     asked = [row for row in reproduction.rows if row.limit is not None]
     assert not [row for row in asked if not row.passed]
     assert len(asked) == 4 * 3 + 3 + 1
+
+
+def test_each_of_the_twelve_states_is_reached_by_a_shipped_scenario(reproduction: Reproduction) -> None:
+    reached = {row.item.split()[2]: row.ours for row in reproduction.rows if row.item.startswith("state ")}
+    assert set(reached) == {state.name for state in Characteristic} - {"NONE"}
+    assert len(reached) == 12
+    assert set(reached.values()) <= set(SCENARIOS)
 
 
 def test_figure_is_written(reproduction: Reproduction) -> None:

@@ -44,6 +44,14 @@ def test_the_single_point_steers_earlier_and_is_too_fast(reproduction: Reproduct
         assert share["preview-single"] > 1.4 > 1.03 > share["preview"]
 
 
+def test_steering_rises_in_time_and_swings_where_l1_jumps(reproduction: Reproduction) -> None:
+    found = {row.item: row.ours for row in reproduction.rows if row.run == "preview"}
+    assert float(found["longest rise or fall of the angle, to 90 %"]) <= 2.0
+    assert 2.0 < float(found["longest until it stays within 8 %"]) < 2.05
+    assert float(found["swing back on the way into curves 3 and 4"]) < 8.0
+    assert float(found["swing back on the way out of curves 3 and 4"]) > 8.0
+
+
 def test_figures_are_written(reproduction: Reproduction) -> None:
     assert len(reproduction.figures) == 2
     assert all(Path(figure).stat().st_size > 20_000 for figure in reproduction.figures)

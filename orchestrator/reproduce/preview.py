@@ -36,7 +36,7 @@ NOTES = [
     "lies within a period depends on the alternation's phase: 0.8 s of every second L2 looks near.",
     "Equation (2) does not see a jump of L1: the car drifts beside the road by epsL times each jump. On the road "
     "itself (preview-geometry) yL jumps where L1 does; see the rows.",
-    "Where L1 jumps as the car leaves a curve, yL by (2) jumps in its rate, and the wheel swings towards the straight and "
+    "Where L1 jumps as the car leaves a curve, yL by (2) jumps in its rate, and the wheel swings towards straight and "
     "part of the way back before it settles; turning in, L1 does not jump and the wheel does not swing.",
     "At 8 m/s and more the steering loop bears only some milliseconds of delay; above 8.3 m/s it is sampled at 1 kHz.",
     "With 750 N the car cannot brake to a safe speed from 10 m/s and more within what far L2 sees: the sweep keeps yL, "

@@ -120,6 +120,19 @@ def test_libcosim_reads_the_ssp(system, ssp, ours):
     assert list(found) == pytest.approx(ours[2], abs=TOLERANCE)
 
 
+def test_ecos_reads_the_ssp(ssp, ours):
+    """Where it is installed: it needs oneTBB besides its package."""
+    try:
+        from ecospy import EcosSimulation
+    except (ImportError, OSError) as error:
+        pytest.skip(f"no ecospy: {error}")
+    with EcosSimulation(step_size=SCENARIO.step, ssp_path=str(ssp)) as simulation:
+        simulation.init(parameter_set="scenario")
+        simulation.step(ours[1])
+        found = [simulation.get_real(f"vehicle::{name}") for name in POSE]
+    assert found == pytest.approx(ours[2], abs=TOLERANCE)
+
+
 def test_a_container_is_the_same_bytes_again(container, system, tmp_path):
     assert write_container(system, tmp_path / "again.fmu").read_bytes() == container.read_bytes()
 

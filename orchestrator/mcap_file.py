@@ -60,7 +60,7 @@ class McapFile:
         self._chunks: list[ChunkIndex] = []
         self._metadata: list[MetadataIndex] = []
         self._chunk_first_ns, self._chunk_last_ns = 1 << 62, 0
-        self._compressor = zstandard.ZstdCompressor(level=1)
+        self._compressor = zstandard.ZstdCompressor(level=-1)
         self._begin_chunk()
         self._write(MCAP0_MAGIC + _bytes(Header(profile="", library=LIBRARY)))
 

@@ -8,8 +8,11 @@ import random
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 
-from controller_fmu.apa.slot import PARALLEL, PERPENDICULAR
+from controller_fmu.apa.chart import Mode
+from controller_fmu.apa.slot import PARALLEL, PERPENDICULAR, Side, Slot
+from modelkit.vocabulary import Pose
 from orchestrator.apa_loop import Loop
+from orchestrator.apa_start import is_inside
 
 BODIES = ("kinematic", "double_track")
 BODY = {"kinematic": 0, "double_track": 2}
@@ -26,10 +29,18 @@ BESIDE = (0.5, 1.0, 1.5)
 HEADINGS = (-5.0, 0.0, 5.0)
 SPEEDS = (1.0, 2.5, 20.0 / 3.6)
 STOP = 150.0
+PARKED, FAILED = int(Mode.PARKING_FINISH), int(Mode.FAIL)
+BEHIND = 0.4
+"""A wall stands so much [m] deeper than the car is wide behind a parallel slot."""
+GHOST = 0.5
+"""A slot found further off than this [m], or of the wrong kind, is one that is not there."""
 KEPT = (
     "vehicle.pose.x",
     "vehicle.pose.y",
     "vehicle.pose.heading",
+    "vehicle.odometry.x",
+    "vehicle.odometry.y",
+    "vehicle.odometry.heading",
     "vehicle.clearance",
     "controller.phase",
     "controller.reason",
@@ -40,6 +51,7 @@ KEPT = (
     "controller.apa.slot.a.y",
     "controller.apa.corner_b.x",
     "controller.apa.corner_b.y",
+    "controller.apa.slot.kind",
 )
 """Signals that a result is made of."""
 
@@ -78,10 +90,15 @@ class Result(NamedTuple):
     nearest: float
     """Smallest clearance of the whole run [m]."""
     corner_a: float
-    """Distances of the corners found from the true ones [m]; NaN if no slot was found."""
+    """How far from the true corners the car thinks they are when it stands to plan [m], both seen from the car;
+    NaN if no slot was found."""
     corner_b: float
     along: float
     """x of the rear axle beyond corner B when the car stood to plan [m]; NaN if it did not."""
+    kind: int
+    """The slot found: as what, 0 none."""
+    inside: bool
+    """It stood inside the start range, see :mod:`orchestrator.apa_start`."""
 
 
 def cases() -> list[Case]:
@@ -138,11 +155,11 @@ def _shortest(kind: int, length: float, width: float) -> float:
 
 
 def _scene(case: Case, length: float, width: float) -> dict[str, Any]:
-    """Return two neighbours, behind a parallel slot a wall 0.4 m deeper than the car is wide, and the start."""
+    """Return two neighbours, behind a parallel slot a wall, and the start."""
     along, deep = (4.4, 1.8) if case.kind == PARALLEL else (1.8, 4.6)
     things = [(-along, 0.0, -deep, 0.0), (case.length, case.length + along, -deep, 0.0)]
     if case.kind == PARALLEL:
-        things.append((-12.0, case.length + 12.0, -width - 1.4, -width - 0.4))
+        things.append((-12.0, case.length + 12.0, -width - BEHIND - 1.0, -width - BEHIND))
     scene: dict[str, Any] = {}
     for number, (x0, x1, y0, y1) in enumerate(things, start=1):
         name = f"scene.boxes[{number}]."
@@ -164,47 +181,77 @@ def _scene(case: Case, length: float, width: float) -> dict[str, Any]:
 def drive(case: Case, loop: Loop) -> Result:
     """Return the result of one case."""
     vehicle, controller = parameters(case)
-    nearest, found, planned = math.inf, (math.nan, math.nan), math.nan
+    nearest = math.inf
+    shown: Mapping[str, float] | None = None
     last: Mapping[str, float] = {}
     for row in loop.run(vehicle, controller, STOP):
         nearest = min(nearest, row["vehicle.clearance"])
-        if row["controller.apa.mode"] == 3 and math.isnan(planned):
-            planned = row["vehicle.pose.x"] - case.length
-            found = _corner_errors(case, row)
+        if row["controller.apa.mode"] == 3 and shown is None:
+            shown = row
         last = row
-    width = CARS[case.car][3]
-    if case.kind == PARALLEL:
-        lateral = last["vehicle.pose.y"] + case.side * 0.5 * width
-        turned = last["vehicle.pose.heading"]
-    else:
-        lateral = last["vehicle.pose.x"] - 0.5 * case.length
-        turned = last["vehicle.pose.heading"] - case.side * 0.5 * math.pi
+    a, b = (math.nan, math.nan) if shown is None else _corner_errors(case, shown)
+    lateral, heading = _final_errors(case, last)
     return Result(
         case,
         int(last["controller.apa.mode"]),
         int(last["controller.reason"]),
         lateral,
-        math.remainder(turned, 2.0 * math.pi),
+        heading,
         int(last["controller.shifts"]),
         last["controller.apa.parking_time"],
         nearest,
-        found[0],
-        found[1],
-        planned,
+        a,
+        b,
+        math.nan if shown is None else shown["vehicle.pose.x"] - case.length,
+        0 if shown is None else int(shown["controller.apa.slot.kind"]),
+        shown is not None and is_inside(_pose(shown, "vehicle.pose"), true_slot(case), controller),
     )
 
 
+def true_slot(case: Case) -> Slot:
+    """Return the slot of a case as it is, its corner A at the world's origin."""
+    side = int(Side.RIGHT if case.side > 0 else Side.LEFT)
+    slot = Slot(case.kind, side, Pose(0.0, 0.0, 0.0), case.length)
+    return slot._replace(depth=CARS[case.car][3] + BEHIND) if case.kind == PARALLEL else slot
+
+
+def _final_errors(case: Case, last: Mapping[str, float]) -> tuple[float, float]:
+    """Return how far [m, rad] the car stands off the true slot's line (parallel) or middle (perpendicular)."""
+    if case.kind == PARALLEL:
+        lateral = last["vehicle.pose.y"] + case.side * 0.5 * CARS[case.car][3]
+        turned = last["vehicle.pose.heading"]
+    else:
+        lateral = last["vehicle.pose.x"] - 0.5 * case.length
+        turned = last["vehicle.pose.heading"] - case.side * 0.5 * math.pi
+    return lateral, math.remainder(turned, 2.0 * math.pi)
+
+
 def _corner_errors(case: Case, row: Mapping[str, float]) -> tuple[float, float]:
-    """Return the distances of A and B as found from the true corners, odometry error included."""
-    a = math.hypot(row["controller.apa.slot.a.x"], row["controller.apa.slot.a.y"])
-    b = math.hypot(row["controller.apa.corner_b.x"] - case.length, row["controller.apa.corner_b.y"])
+    """Return the distances [m] of A and B as believed from the true corners, seen from the car.
+
+    What the odometry has drifted before it saw the corner does not matter, what it drifts after does.
+    """
+    true, believed = _pose(row, "vehicle.pose"), _pose(row, "vehicle.odometry")
+    found = ((row[f"controller.apa.{name}.x"], row[f"controller.apa.{name}.y"]) for name in ("slot.a", "corner_b"))
+    pairs = zip(found, ((0.0, 0.0), (case.length, 0.0)), strict=True)
+    a, b = (math.dist(_seen_from(believed, one), _seen_from(true, other)) for one, other in pairs)
     return a, b
+
+
+def _pose(row: Mapping[str, float], name: str) -> Pose:
+    return Pose(row[f"{name}.x"], row[f"{name}.y"], row[f"{name}.heading"])
+
+
+def _seen_from(pose: Pose, point: tuple[float, float]) -> tuple[float, float]:
+    dx, dy = point[0] - pose.x, point[1] - pose.y
+    c, s = math.cos(pose.heading), math.sin(pose.heading)
+    return dx * c + dy * s, dy * c - dx * s
 
 
 def is_within_gbt(result: Result) -> bool:
     """Return whether the car is parked within GB/T 41630: heading, lateral position, shifts, no contact."""
     most = 8 if result.case.kind == PARALLEL else 7
-    parked = result.mode == 6 and result.shifts <= most and result.nearest > 0.0
+    parked = result.mode == PARKED and result.shifts <= most and result.nearest > 0.0
     return parked and abs(result.lateral) <= 0.15 and abs(result.heading) <= math.radians(3.0)
 
 
@@ -214,16 +261,27 @@ def is_within_house(result: Result) -> bool:
     return good and abs(result.lateral) <= 0.05 and abs(result.heading) <= math.radians(1.0)
 
 
+def is_ghost(result: Result) -> bool:
+    """Return whether the slot that was shown is not there: neither corner's place nor its kind is that of one."""
+    shown = result.kind != 0
+    return shown and (result.kind != result.case.kind or max(result.corner_a, result.corner_b) > GHOST)
+
+
+def is_ended(result: Result) -> bool:
+    """Return whether a run ended by itself: parked, or in Fail with its reason."""
+    return result.mode == PARKED or (result.mode == FAILED and result.reason > 0)
+
+
 def totals(results: list[Result]) -> dict[str, int]:
     """Return how many runs did what."""
-    corners = [result for result in results if not math.isnan(result.corner_a)]
     return {
         "runs": len(results),
         "touched something": sum(result.nearest <= 0.0 for result in results),
         "parked within GB/T 41630": sum(is_within_gbt(result) for result in results),
         "parked within the house limits": sum(is_within_house(result) for result in results),
-        "ended in Fail with a reason": sum(result.mode == 7 and result.reason > 0 for result in results),
-        "neither parked nor failed": sum(result.mode not in (6, 7) for result in results),
-        "slots found": len(corners),
-        "both corners within 10 cm": sum(max(result.corner_a, result.corner_b) <= 0.1 for result in corners),
+        "ended in Fail with a reason": sum(result.mode == FAILED and result.reason > 0 for result in results),
+        "ended in neither way": sum(not is_ended(result) for result in results),
+        "slot found": sum(result.kind != 0 for result in results),
+        "both corners within 10 cm": sum(max(result.corner_a, result.corner_b) <= 0.1 for result in results),
+        "found a slot that is not there": sum(is_ghost(result) for result in results),
     }

@@ -22,10 +22,13 @@ class Heard(NamedTuple):
 KEPT = 4
 NO_SAMPLE = Heard(0.0, 0.0, 0.0)
 NO_SAMPLES = (NO_SAMPLE,) * KEPT
+SHALLOW = 0.03
+DEEPEST = 0.8
+"""A sample tells the neighbour's end if it was heard between so far [m] behind its side."""
 TELLING = 1.03
+"""A sample tells the corner well if r is larger than the distance to the line by this factor."""
 UNTOLD = 0.25
 """A sample that does not tell the corner lies at most this times d short of it: sqrt(1.03^2 - 1)."""
-"""A sample tells the corner well if r is larger than the distance to the line by this factor."""
 
 
 def seen_up_to(line: Line, sense: float, half_angle: float) -> float:
@@ -51,8 +54,9 @@ def append(samples: tuple[Heard, ...], new: Heard, count: int) -> tuple[Heard, .
 def corner(samples: tuple[Heard, ...], line: Line, sense: float, half_angle: float) -> float:
     """Return u [m] of the corner on ``line``; ``sense`` -1: it lies behind the sensor, 1: ahead.
 
-    The mean over the samples that tell it, weighted by how well. If none does, the corner lies between
-    what the outermost sample still heard and what the next one, one spacing on, did not: the middle.
+    The mean over the samples that tell it, weighted by how well, those of the end most. If none does, the
+    corner lies between what the outermost sample still heard and what the next one, one spacing on, did not:
+    the middle.
     """
     total = 0.0
     weights = 0.0
@@ -60,6 +64,7 @@ def corner(samples: tuple[Heard, ...], line: Line, sense: float, half_angle: flo
     spacing = abs(samples[0].u - samples[1].u) if samples[1].r > 0.0 else 0.0
     cos = 1.0 / math.sqrt(1.0 + line.b * line.b)
     most = seen_up_to(line, sense, half_angle)
+    across = math.sqrt(1.0 - 1.0 / (most * most))
     for sample in samples:
         d = distance(line, sample.u, sample.w)
         if sample.r > 0.0 and d > 0.0 and sample.r <= 1.01 * most * d + 0.01:
@@ -70,6 +75,9 @@ def corner(samples: tuple[Heard, ...], line: Line, sense: float, half_angle: flo
                 weights += weight
             if outermost.r <= 0.0 or sense * (sample.u - outermost.u) < 0.0:
                 outermost = sample
+        elif SHALLOW < sample.r / most - d < DEEPEST and d > 0.0:
+            total += sample.u + cos * (line.b * d + sense * across * sample.r)
+            weights += 1.0
     if weights > 0.0:
         return total / weights
     d = distance(line, outermost.u, outermost.w)

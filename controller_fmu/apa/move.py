@@ -7,7 +7,7 @@ ramps), so the limits of curvature and curvature rate hold exactly and everywher
 from typing import NamedTuple
 
 from controller_fmu.apa.curve import advance
-from controller_fmu.apa.outline import Car, Obstacles, is_free
+from controller_fmu.apa.outline import CREPT, MET, Car, Obstacles, clearance, least_on
 from modelkit.vocabulary import Pose
 
 PIECES = 7
@@ -90,12 +90,15 @@ def first_curvature(move: Move) -> float:
 
 
 def is_move_free(move: Move, car: Car, obstacles: Obstacles) -> bool:
-    """Return whether a move meets no obstacle."""
+    """Return whether a move meets no obstacle; one that begins within a margin has to lead out of it."""
     pose = move.start
     direction = float(move.direction)
+    gap = clearance(pose, car, obstacles)
+    least = gap - CREPT if gap <= 0.0 else 0.0
     for piece in move.pieces:
         if piece.length > 0.0:
-            if not is_free(pose, direction, piece.length, piece.k0, piece.k1, car, obstacles):
+            least = least_on(pose, direction, piece.length, piece.k0, piece.k1, least, car, obstacles)
+            if least == MET:
                 return False
             pose = advance(pose, direction, piece.length, piece.k0, piece.k1)
     return True

@@ -60,7 +60,7 @@ def prompt_of(state: ApaState, params: ControllerParams) -> int:
     if state.mode == SEARCH:
         if state.search.valid > 0:
             return STOP
-        return SLOW_DOWN if state.search.way > MOVING else FORWARD
+        return SLOW_DOWN if state.search.way > MOVING and state.waited_ns == 0 else FORWARD
     if state.mode == STANDBY:
         return STOP if params.apa.search.given else SLOW_DOWN
     if state.mode == APPEARS:

@@ -69,7 +69,7 @@ class PlanParams(NamedTuple):
     curvature_share: Annotated[float, Signal("1", "planned curvature over the car's largest", 0.5, 1.0, HOUSE)] = 0.95
     ramp: Annotated[float, Signal("m", "way over which the curvature rises to the planned", 0.05, 5.0, HOUSE)] = 0.8
     margin: Annotated[float, Signal("m", "distance kept to neighbours", 0.0, 1.0, HOUSE)] = 0.15
-    kerb_margin: Annotated[float, Signal("m", "distance kept to kerb or wall beside", 0.0, 1.0, HOUSE)] = 0.1
+    kerb_margin: Annotated[float, Signal("m", "distance kept to kerb or wall beside", 0.0, 1.0, HOUSE)] = 0.16
     stand_out: Annotated[float, Signal("m", "how far the car may stand out if it must", 0.0, 0.15, "GB/T 41630")] = 0.1
     at_a_time: Annotated[int, Signal("1", "candidates looked at in one sample", 1, 1000, HOUSE)] = 40
     shifts: Annotated[int, Signal("1", "most shifts, the first reverse counts one", 1, 30, "GB/T 41630")] = 8
@@ -104,7 +104,8 @@ class SearchParams(NamedTuple):
     ] = 0.95
     unsure: Annotated[
         float, Signal("s", "a corner is unsure by this times the speed of the search", 0.0, 0.1, HOUSE)
-    ] = 0.01
+    ] = 0.005
+    slip: Annotated[float, Signal("s2/m", "slip of braked wheels over the deceleration", 0.0, 0.1, HOUSE)] = 0.002
     depth_room: Annotated[float, Signal("m", "depth that may be missing", 0.0, 2.0, HOUSE)] = 0.1
     given: Annotated[bool, Signal("1", "no search: the slot is given")] = False
     slot: Slot = Slot()
@@ -113,8 +114,8 @@ class SearchParams(NamedTuple):
 class EndParams(NamedTuple):
     """When the car is parked well enough."""
 
-    lateral: Annotated[float, Signal("m", "parked without tuning", 0.001, 0.5, HOUSE)] = 0.02
-    heading: Annotated[float, Signal("rad", "parked without tuning", 0.001, 0.5, HOUSE)] = 0.5 * pi / 180.0
+    lateral: Annotated[float, Signal("m", "parked without tuning", 0.001, 0.5, HOUSE)] = 0.03
+    heading: Annotated[float, Signal("rad", "parked without tuning", 0.001, 0.5, HOUSE)] = 0.7 * pi / 180.0
     miss_lateral: Annotated[float, Signal("m", "parked if nothing better is left", 0.0, 1.0, "GB/T 41630")] = 0.12
     miss_heading: Annotated[float, Signal("rad", "parked if nothing better is left", 0.0, 1.0, "GB/T 41630")] = (
         2.5 * pi / 180.0

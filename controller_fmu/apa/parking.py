@@ -248,6 +248,14 @@ def start_planning(slot: Slot, pose: Pose, params: ControllerParams) -> Parking:
     )
 
 
+def cut_short(state: Parking) -> Parking:
+    """Return the manoeuvre whose move is not driven any further: it is planned again at standstill."""
+    return Parking(
+        state.step, state.plan, state.attempt, state.leg, state.tracked, state.shifts, state.direction, state.ended,
+        True, state.sight, state.wheel, state.speed,
+    )  # fmt: skip
+
+
 def is_planned(state: Parking) -> bool:
     """Return whether the first plan is found."""
     return state.step == PLAN and state.plan.status == FOUND

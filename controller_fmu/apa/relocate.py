@@ -10,26 +10,43 @@ import math
 
 from controller_fmu.apa.outline import Obstacles
 from controller_fmu.apa.parking import car_of
-from controller_fmu.apa.slot import PARALLEL, Margins, Slot, mirror_of, site_of
+from controller_fmu.apa.slot import PARALLEL, PERPENDICULAR, UNSEEN, Margins, Slot, mirror_of, site_of
 from controller_fmu.apa.supervisor import WRONG, expected
 from controller_fmu.interface import ControllerInput, ControllerParams
 from controller_fmu.slot_frame import SlotFrame, to_slot, to_world
 from modelkit.vocabulary import Pose
 
+NOTHING = 1e3
 NEAR = 0.9
 AGREE = 0.15
 FURTHEST = 0.15
 STEEPEST = 0.45
+SQUARE = 0.55
+"""A wall along the road is heard square to it up to about this heading [rad]."""
 FRONT = 1
 REAR_LEFT = 4
 REAR_RIGHT = 7
 REAR = 5
+SIDES = ((8, 9), (10, 11))
+"""Sensors of the left and of the right side, front and rear."""
+INSIDE = -0.3
+"""A sensor is in a perpendicular slot if it is so deep [m] in it."""
+BESIDE = 0.35
+"""A neighbour of a perpendicular slot stands at most this much [m] from where it was found."""
+FARTHEST = 1.3
+GAIN = 0.08
+"""Share of what one reading says."""
+ACROSS = 0.45
+"""A neighbour is heard square to its side up to this heading [rad]."""
 
 
 def relocated(slot: Slot, inputs: ControllerInput, params: ControllerParams) -> Slot:
     """Return the slot with what the front and rear sensors of a car standing in it say."""
     pose = to_slot(inputs.odometry, SlotFrame(slot.a, mirror_of(slot)))
-    if slot.kind != PARALLEL or abs(pose.heading) > STEEPEST or pose.y > 0.0:
+    if slot.kind != PARALLEL or abs(pose.heading) > SQUARE or pose.y > 0.0:
+        return slot
+    slot = _walled(slot, inputs, params)
+    if abs(pose.heading) > STEEPEST:
         return slot
     start = _heard_at(pose, mirror_of(slot), inputs, REAR, params)
     if abs(start) <= FURTHEST:
@@ -39,6 +56,56 @@ def relocated(slot: Slot, inputs: ControllerInput, params: ControllerParams) -> 
     if abs(end) <= FURTHEST:
         slot = _moved(slot, 0.0, end)
     return _shallower(slot, inputs, params)
+
+
+def _walled(slot: Slot, inputs: ControllerInput, params: ControllerParams) -> Slot:
+    """Return a slot of which no kerb or wall was heard with the one that two sensors at its rear agree on."""
+    mirror = mirror_of(slot)
+    side = SIDES[1 if mirror > 0.0 else 0][1]
+    corner = REAR_RIGHT if mirror > 0.0 else REAR_LEFT
+    lowest = params.apa.sensors.min_range + 0.011
+    one = inputs.ultrasonic[side]
+    two = inputs.ultrasonic[corner]
+    if slot.depth < UNSEEN or not lowest < one < NEAR or not lowest < two < NEAR:
+        return slot
+    pose = to_slot(inputs.odometry, SlotFrame(slot.a, mirror))
+    first = one - _y_of(pose, mirror, params, side)
+    second = two - _y_of(pose, mirror, params, corner)
+    if abs(first - second) > AGREE:
+        return slot
+    a = Pose(slot.a.x, slot.a.y, slot.a.heading)
+    nearer = first if first < second else second
+    return Slot(slot.kind, slot.side, a, slot.length, slot.b_out, nearer, slot.opposite, slot.unsure)
+
+
+def between(slot: Slot, inputs: ControllerInput, params: ControllerParams) -> Slot:
+    """Return a perpendicular slot with its neighbours a little nearer to where the side sensors in it hear them.
+
+    Told once for each new reading of the sensors, also while the car drives in: what the odometry has
+    drifted since the corners were heard is found again.
+    """
+    pose = to_slot(inputs.odometry, SlotFrame(slot.a, mirror_of(slot)))
+    if slot.kind != PERPENDICULAR or abs(pose.heading - 0.5 * math.pi) > ACROSS:
+        return slot
+    mirror = mirror_of(slot)
+    start = _side_at(pose, mirror, inputs, -1.0, params)
+    end = _side_at(pose, mirror, inputs, 1.0, params) - slot.length
+    start = GAIN * start if abs(start) <= BESIDE else 0.0
+    end = GAIN * end if abs(end) <= BESIDE else 0.0
+    return _moved(slot, start, end) if start != 0.0 or end != 0.0 else slot
+
+
+def _side_at(pose: Pose, mirror: float, inputs: ControllerInput, sense: float, params: ControllerParams) -> float:
+    """Return x [m] in A's frame of what the sensors on one side hear, the mean; far away if they hear nothing."""
+    total = 0.0
+    heard = 0.0
+    for number in SIDES[0 if sense * mirror < 0.0 else 1]:
+        y = _y_of(pose, mirror, params, number)
+        reading = inputs.ultrasonic[number]
+        if y < INSIDE and params.apa.sensors.min_range + 0.011 < reading < FARTHEST:
+            total += _x_of(pose, mirror, params, number) + sense * reading
+            heard += 1.0
+    return total / heard if heard > 0.0 else NOTHING
 
 
 def _shallower(slot: Slot, inputs: ControllerInput, params: ControllerParams) -> Slot:
@@ -63,13 +130,12 @@ def _heard_at(pose: Pose, mirror: float, inputs: ControllerInput, first: int, pa
     one = inputs.ultrasonic[first]
     two = inputs.ultrasonic[first + 1]
     lowest = params.apa.sensors.min_range + 0.011
-    nothing = 1e3
     if one > NEAR or two > NEAR or one < lowest or two < lowest:
-        return nothing
+        return NOTHING
     sense = 1.0 if first == FRONT else -1.0
     a = _x_of(pose, mirror, params, first) + sense * one
     b = _x_of(pose, mirror, params, first + 1) + sense * two
-    return 0.5 * (a + b) if abs(a - b) <= AGREE else nothing
+    return 0.5 * (a + b) if abs(a - b) <= AGREE else NOTHING
 
 
 def _x_of(pose: Pose, mirror: float, params: ControllerParams, number: int) -> float:
@@ -77,6 +143,21 @@ def _x_of(pose: Pose, mirror: float, params: ControllerParams, number: int) -> f
     return pose.x + mount.x * math.cos(pose.heading) - mirror * mount.y * math.sin(pose.heading)
 
 
-def _moved(slot: Slot, start: float, end: float) -> Slot:
+def _y_of(pose: Pose, mirror: float, params: ControllerParams, number: int) -> float:
+    mount = params.apa.sensors.mounts[number]
+    return pose.y + mount.x * math.sin(pose.heading) + mirror * mount.y * math.cos(pose.heading)
+
+
+def braked(slot: Slot, speed: float, params: ControllerParams) -> Slot:
+    """Return the slot seen from a car that has braked from ``speed`` [m/s] to standstill since it heard the corners.
+
+    Braked wheels slip in proportion to the deceleration a, so the way the odometry misses is the integral
+    of s a v dt = s v^2 / 2, however hard the car braked.
+    """
+    missed = 0.5 * params.apa.search.slip * speed * speed
+    return _moved(slot, -missed, -missed, slot.unsure)
+
+
+def _moved(slot: Slot, start: float, end: float, unsure: float = 0.0) -> Slot:
     a = to_world(Pose(start, 0.0, 0.0), SlotFrame(slot.a, mirror_of(slot)))
-    return Slot(slot.kind, slot.side, a, slot.length - start + end, slot.b_out, slot.depth, slot.opposite, 0.0)
+    return Slot(slot.kind, slot.side, a, slot.length - start + end, slot.b_out, slot.depth, slot.opposite, unsure)

@@ -4,10 +4,11 @@ Coordinates: u along the car's heading when the search began, w to the road (awa
 mirrored on the left side. Distances are averaged over about 15 cm of way before they are used.
 """
 
+import math
 from typing import NamedTuple
 
 from controller_fmu.apa.edge import KEPT, NO_SAMPLES, Heard, append, corner, remember, seen_up_to
-from controller_fmu.apa.line_fit import Line, Sums, add, distance, offset, slope
+from controller_fmu.apa.line_fit import Line, Sums, add, distance, offset, slope, spread
 from controller_fmu.apa.params import SearchParams
 from modelkit.maths import clamp
 
@@ -17,16 +18,22 @@ GAP = 2
 NEXT_WALL = 3
 
 BIN = 0.16
-FLAT = 0.1
-STEP = 0.012
+FLAT = 0.12
+STEP = 0.016
+"""Steeper than ``FLAT`` [m/m], ``STEP`` [m] for noise, the distance does not belong to a flat side along the road."""
 BAND = 0.02
-"""Steeper than this [m/m] the distance does not belong to a flat side along the road."""
+SPREAD = 0.03
+"""Further than this [m], and what the noise of the readings makes the line unsure by, is off the line."""
 CONFIRMED = 0.4
 """A gap is one once it is this long [m]: shorter ones are lost echoes."""
 DEEP = 50.0
 STEEPEST = 0.15
 STEEP = 1.0
 """The face of a neighbour across the way comes nearer by 1 / sin(g) per metre, its corner by sin(g) at most."""
+LONG_STEADY = 5
+MANY = 8.0
+LEVEL = 2
+"""So many steps in a row that are level: a side that goes on; so many in a gap: its kerb or wall."""
 STAGGER = 0.3
 """The next neighbour may stand this much [m] further in."""
 
@@ -65,12 +72,14 @@ class SideState(NamedTuple):
     fresh: bool = False
     edge_b: float = 0.0
     """u of corner B [m]."""
+    faces: tuple[Heard, ...] = NO_SAMPLES
+    """Newest samples past corner A or short of corner B, where the cone's edge touches the neighbour's end."""
 
 
 EMPTY = Sums(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 START = SideState(
     NOTHING, 0.0, 0.0, 0.0, 0.0, Heard(0.0, 0.0, 0.0), 0, 0.0, 0.0, 0.0, 0, NO_SAMPLES, EMPTY, EMPTY, 0.0, DEEP,
-    0, False, 0.0,
+    0, False, 0.0, NO_SAMPLES,
 )  # fmt: skip
 
 
@@ -92,7 +101,7 @@ def _sampled(side: SideState, sample: Heard, half_angle: float, params: SearchPa
     """Return the side after one full bin."""
     near = sample.r < params.beside
     way = sample.u - side.last.u
-    change = sample.r - side.last.r
+    change = sample.r - side.last.r - _change_along(side, sample)
     level = way > 0.0 and abs(change) <= FLAT * way + STEP
     steady = side.steady + 1 if level else 0
     side = _with_last(side, sample, steady)
@@ -105,63 +114,88 @@ def _sampled(side: SideState, sample: Heard, half_angle: float, params: SearchPa
     return _on_next_wall(side, sample, half_angle, params)
 
 
+def _change_along(side: SideState, sample: Heard) -> float:
+    """Return how the distance [m] to the side known, or to a wall along it, changes from the last bin to this one."""
+    known = side.sums if side.mode == WALL else side.before
+    if known.n < MANY:
+        return 0.0
+    line = _line(known, EMPTY)
+    return distance(line, sample.u, sample.w) - distance(line, side.last.u, side.last.w)
+
+
+def _line(sums: Sums, other: Sums) -> Line:
+    b = clamp(slope(sums, other), -STEEPEST, STEEPEST)
+    return Line(offset(sums, b), b)
+
+
 def _on_wall(side: SideState, sample: Heard, half_angle: float, params: SearchParams) -> SideState:
     expected = side.samples[0].r if side.samples[0].r > 0.0 else sample.r
     most = expected + params.step
+    least = expected - params.step
     if side.sums.n >= 3.0:
         most = _still_heard(side.sums, EMPTY, sample, -1.0, half_angle)
+        least = distance(_line(side.sums, EMPTY), sample.u, sample.w) - params.step
+    if sample.r < least:
+        return _begin_wall(side, sample)
     if sample.r <= most:
         sums = _with_sample(side.sums, EMPTY, sample, side.steady)
         fresh = side.found > 0 and side.steady >= 2 and side.mode == WALL and side.edge_b > side.edge
         begun = sample.u if side.sums.n == 0.0 else side.begun
         return _wall(side, begun, sums, remember(side.samples, sample), fresh)
+    side = _with_faces(side, remember(side.faces, sample))
     if sample.u - side.missed < CONFIRMED:
         return side
     extent = side.missed - side.begun
     if side.sums.n < 3.0 or extent < params.wall:
         return _fresh_start(side)
-    b = slope(side.sums, EMPTY)
-    line = Line(offset(side.sums, b), b)
-    edge = corner(side.samples, line, -1.0, half_angle)
+    edge = corner(side.samples + side.faces, _line(side.sums, EMPTY), -1.0, half_angle)
     extent = edge - side.begun
     return SideState(
         GAP, side.n, side.u, side.w, side.r, side.last, 0, side.begun, extent, side.missed, 0, NO_SAMPLES, EMPTY,
-        side.sums, edge, DEEP, side.found, False, 0.0,
+        side.sums, edge, DEEP, side.found, False, 0.0, NO_SAMPLES,
     )  # fmt: skip
 
 
 def _with_sample(sums: Sums, other: Sums, sample: Heard, steady: int) -> Sums:
-    """Return the sums with a sample that belongs to the flat side, not to its corner."""
+    """Return the sums with a sample that belongs to the flat side, not to its corner.
+
+    A corner is heard further away than the side's line: such a sample is left out. One that is nearer, or one
+    of many in a row that are level, shows that those few before it were of the corner: the sums begin anew. How
+    far off is too far follows from how unsure the line is itself.
+    """
     if steady < 2:
         return sums
-    if sums.n >= 4.0:
-        b = clamp(slope(sums, other), -STEEPEST, STEEPEST)
-        if abs(sample.r - distance(Line(offset(sums, b), b), sample.u, sample.w)) > BAND:
+    if sums.n >= 4.0 or (sums.n > 0.0 and other.n >= 4.0):
+        off = sample.r - distance(_line(sums, other), sample.u, sample.w)
+        beyond = sample.u - sums.u / sums.n
+        band = BAND + SPREAD * math.sqrt(1.0 / sums.n + beyond * beyond / (spread(sums) + spread(other)))
+        if band < off and (steady < LONG_STEADY or sums.n >= MANY):
             return sums
+        if abs(off) > band:
+            sums = EMPTY
     return add(sums, sample.u, sample.w, sample.r)
 
 
 def _still_heard(sums: Sums, other: Sums, sample: Heard, sense: float, half_angle: float) -> float:
     """Return the largest distance [m] at which a sensor there hears a side or its corner, with 2 cm for noise."""
-    b = clamp(slope(sums, other), -STEEPEST, STEEPEST)
-    line = Line(offset(sums, b), b)
+    line = _line(sums, other)
     return 1.03 * distance(line, sample.u, sample.w) * seen_up_to(line, sense, half_angle) + 0.02
 
 
 def _in_gap(side: SideState, sample: Heard, half_angle: float, params: SearchParams) -> SideState:
-    b = slope(side.before, EMPTY)
-    d = distance(Line(offset(side.before, b), b), sample.u, sample.w)
+    d = distance(_line(side.before, EMPTY), sample.u, sample.w)
     if sample.r < _still_heard(side.before, EMPTY, sample, 1.0, half_angle) + STAGGER:
         return SideState(
             NEXT_WALL, side.n, side.u, side.w, side.r, side.last, 0, sample.u, side.extent, sample.u, 1,
             append(NO_SAMPLES, sample, 0), EMPTY, side.before, side.edge, side.depth, side.found, False, 0.0,
+            side.faces,
         )  # fmt: skip
     depth = side.depth
-    if side.steady >= 4 and sample.r < params.beside + 2.4 and sample.r - d < depth:
+    if side.steady >= LEVEL and sample.r < params.beside + 2.4 and sample.r - d < depth:
         depth = sample.r - d
     return SideState(
         GAP, side.n, side.u, side.w, side.r, side.last, side.steady, side.begun, side.extent, side.missed, 0,
-        NO_SAMPLES, EMPTY, side.before, side.edge, depth, side.found, False, 0.0,
+        NO_SAMPLES, EMPTY, side.before, side.edge, depth, side.found, False, 0.0, remember(side.faces, sample),
     )  # fmt: skip
 
 
@@ -171,10 +205,11 @@ def _on_next_wall(side: SideState, sample: Heard, half_angle: float, params: Sea
             return side
         return SideState(
             GAP, side.n, side.u, side.w, side.r, side.last, 0, side.begun, side.extent, side.missed, 0, NO_SAMPLES,
-            EMPTY, side.before, side.edge, side.depth, side.found, False, 0.0,
+            EMPTY, side.before, side.edge, side.depth, side.found, False, 0.0, NO_SAMPLES,
         )  # fmt: skip
     earlier = side.samples[side.taken - 1]
     steep = side.taken < KEPT and sample.r - earlier.r < -STEEP * (sample.u - earlier.u)
+    faces = remember(side.faces, earlier) if steep else side.faces
     taken = 0 if steep else side.taken
     samples = append(NO_SAMPLES if steep else side.samples, sample, taken)
     count = taken + 1 if taken < KEPT else KEPT
@@ -182,34 +217,35 @@ def _on_next_wall(side: SideState, sample: Heard, half_angle: float, params: Sea
     if sample.u - side.begun < params.wall or sums.n < 2.0:
         return SideState(
             NEXT_WALL, side.n, side.u, side.w, side.r, side.last, side.steady, side.begun, side.extent, sample.u,
-            count, samples, sums, side.before, side.edge, side.depth, side.found, False, 0.0,
+            count, samples, sums, side.before, side.edge, side.depth, side.found, False, 0.0, faces,
         )  # fmt: skip
     b = slope(side.before, sums)
-    edge_b = corner(samples, Line(offset(sums, b), b), 1.0, half_angle)
+    edge_b = corner(samples + faces, Line(offset(sums, b), b), 1.0, half_angle)
     return SideState(
         WALL, side.n, side.u, side.w, side.r, side.last, side.steady, edge_b, side.extent, sample.u, count,
         remember(NO_SAMPLES, sample), sums, side.before, side.edge, side.depth, side.found + 1, True, edge_b,
+        NO_SAMPLES,
     )  # fmt: skip
 
 
 def _begin_wall(side: SideState, sample: Heard) -> SideState:
     return SideState(
         WALL, side.n, side.u, side.w, side.r, side.last, 0, sample.u, 0.0, sample.u, 0,
-        remember(NO_SAMPLES, sample), EMPTY, EMPTY, 0.0, DEEP, side.found, False, 0.0,
+        remember(NO_SAMPLES, sample), EMPTY, EMPTY, 0.0, DEEP, side.found, False, 0.0, NO_SAMPLES,
     )  # fmt: skip
 
 
 def _fresh_start(side: SideState) -> SideState:
     return SideState(
         NOTHING, side.n, side.u, side.w, side.r, side.last, 0, 0.0, 0.0, 0.0, 0, NO_SAMPLES, EMPTY, EMPTY, 0.0,
-        DEEP, side.found, False, 0.0,
+        DEEP, side.found, False, 0.0, NO_SAMPLES,
     )  # fmt: skip
 
 
 def _wall(side: SideState, begun: float, sums: Sums, samples: tuple[Heard, ...], fresh: bool) -> SideState:
     return SideState(
         WALL, side.n, side.u, side.w, side.r, side.last, side.steady, begun, side.extent, samples[0].u, side.taken,
-        samples, sums, side.before, side.edge, side.depth, side.found, fresh, side.edge_b,
+        samples, sums, side.before, side.edge, side.depth, side.found, fresh, side.edge_b, NO_SAMPLES,
     )  # fmt: skip
 
 
@@ -217,13 +253,22 @@ def _with_bin(side: SideState, n: float, u: float, w: float, r: float) -> SideSt
     return SideState(
         side.mode, n, u, w, r, side.last, side.steady, side.begun, side.extent, side.missed, side.taken,
         side.samples, side.sums, side.before, side.edge, side.depth, side.found, side.fresh, side.edge_b,
+        side.faces,
     )  # fmt: skip
 
 
 def _with_last(side: SideState, last: Heard, steady: int) -> SideState:
     return SideState(
         side.mode, side.n, side.u, side.w, side.r, last, steady, side.begun, side.extent, side.missed, side.taken,
-        side.samples, side.sums, side.before, side.edge, side.depth, side.found, False, side.edge_b,
+        side.samples, side.sums, side.before, side.edge, side.depth, side.found, False, side.edge_b, side.faces,
+    )  # fmt: skip
+
+
+def _with_faces(side: SideState, faces: tuple[Heard, ...]) -> SideState:
+    return SideState(
+        side.mode, side.n, side.u, side.w, side.r, side.last, side.steady, side.begun, side.extent, side.missed,
+        side.taken, side.samples, side.sums, side.before, side.edge, side.depth, side.found, side.fresh, side.edge_b,
+        faces,
     )  # fmt: skip
 
 
@@ -231,4 +276,5 @@ def _not_fresh(side: SideState) -> SideState:
     return SideState(
         side.mode, side.n, side.u, side.w, side.r, side.last, side.steady, side.begun, side.extent, side.missed,
         side.taken, side.samples, side.sums, side.before, side.edge, side.depth, side.found, False, side.edge_b,
+        side.faces,
     )  # fmt: skip

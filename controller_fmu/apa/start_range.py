@@ -40,18 +40,19 @@ def start_range(y: float, heading: float, way_in: Exit, site: Site, car: Car) ->
     low = math.sqrt(squared) + end.x - r * math.sin(end.heading) - r * math.sin(heading) + 1e-9
     free = low
     blocked = low + FURTHEST
-    if not _leads_in(Pose(low, y, heading), way_in, site, car):
+    if not leads_in(Pose(low, y, heading), way_in, site, car):
         return StartRange(False, low, low)
     for _ in range(HALVINGS):
         middle = 0.5 * (free + blocked)
-        if _leads_in(Pose(middle, y, heading), way_in, site, car):
+        if leads_in(Pose(middle, y, heading), way_in, site, car):
             free = middle
         else:
             blocked = middle
     return StartRange(True, low, free)
 
 
-def _leads_in(start: Pose, way_in: Exit, site: Site, car: Car) -> bool:
+def leads_in(start: Pose, way_in: Exit, site: Site, car: Car) -> bool:
+    """Return whether one reverse leads in from this pose (slot's frame): whether it lies within its range."""
     turn = turn_of(car.curvature, car.curvature, car.ramp)
     move = reverse_s(start, way_in.pose, 0.0, turn, turn)
     return move.direction != 0 and is_move_free(move, car, site.obstacles)

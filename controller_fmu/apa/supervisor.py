@@ -8,7 +8,7 @@ the path, except straight ahead, where the car stops at ``stop_gap``.
 import math
 from typing import NamedTuple
 
-from controller_fmu.apa.outline import Box, Obstacles
+from controller_fmu.apa.outline import Box, Obstacles, grown
 from controller_fmu.apa.params import ApaParams, SensorMount
 from controller_fmu.apa.speed import stopping_way
 from modelkit.geometry import Box as OrientedBox
@@ -20,6 +20,9 @@ STRAIGHT = 0.2
 LOOKED_AT = 1.5
 WRONG = 0.03
 """A corner sensor hears something known this much [m] nearer than it should: the slot is not as it was found."""
+UNSURE = 0.1
+WIDER = 0.1
+"""The edge of a cone may touch something known that stands so much [m] further out, or lies so much [rad] beside it."""
 
 
 class Sight(NamedTuple):
@@ -50,7 +53,9 @@ def look(
         if reading < LOOKED_AT:
             mount = params.sensors.mounts[number]
             should = expected(mount, pose, mirror, around, params)
-            nearer = reading < should - params.guard.surprise
+            nearer = reading < should - params.guard.surprise and not _grazes(
+                mount, reading, pose, mirror, around, params
+            )
             ahead = abs(mount.yaw) < STRAIGHT or abs(mount.yaw) > math.pi - STRAIGHT
             left = FREE
             if nearer:
@@ -68,14 +73,32 @@ def look(
     return Sight(allowed, blocked, blocked and unknown)
 
 
-def expected(mount: SensorMount, pose: Pose, mirror: float, around: Obstacles, params: ApaParams) -> float:
-    """Return the distance [m] that a sensor should hear from the obstacles around, at most its range."""
+def _grazes(
+    mount: SensorMount, reading: float, pose: Pose, mirror: float, around: Obstacles, params: ApaParams
+) -> bool:
+    """Return whether something known explains a reading, if it stands a little further out or in a wider cone."""
+    near = Obstacles(
+        grown(around.behind, UNSURE),
+        grown(around.ahead, UNSURE),
+        grown(around.beside, UNSURE),
+        grown(around.opposite, UNSURE),
+    )
+    return reading >= expected(mount, pose, mirror, near, params, WIDER) - params.guard.surprise
+
+
+def expected(
+    mount: SensorMount, pose: Pose, mirror: float, around: Obstacles, params: ApaParams, wider: float = 0.0
+) -> float:
+    """Return the distance [m] that a sensor should hear from the obstacles around, at most its range.
+
+    Its cone is taken to be wider by ``wider`` [rad] to each side.
+    """
     c = math.cos(pose.heading)
     s = math.sin(pose.heading)
     y = mirror * mount.y
     at = Point(pose.x + mount.x * c - y * s, pose.y + mount.x * s + y * c)
     axis = pose.heading + mirror * mount.yaw
-    half = params.sensors.half_angle
+    half = params.sensors.half_angle + wider
     nearest = _smaller(params.sensors.max_range, _heard(at, axis, half, around.behind))
     nearest = _smaller(nearest, _heard(at, axis, half, around.ahead))
     nearest = _smaller(nearest, _heard(at, axis, half, around.beside))

@@ -12,6 +12,7 @@ from controller_fmu.apa.parking import (
     PLAN,
     Parking,
     car_of,
+    cut_short,
     has_failed,
     is_planned,
     is_planning,
@@ -19,8 +20,8 @@ from controller_fmu.apa.parking import (
     start_planning,
 )
 from controller_fmu.apa.planner import SEARCHING, PlanSearch
-from controller_fmu.apa.relocate import relocated
-from controller_fmu.apa.search import NO_SLOT, SearchState, begin_search, search, without_first
+from controller_fmu.apa.relocate import between, braked, relocated
+from controller_fmu.apa.search import NO_SLOT, SearchState, begin_search, is_new_reading, search, without_first
 from controller_fmu.apa.slot import Slot
 from controller_fmu.apa.supervisor import Sight
 from controller_fmu.apa.tracking import Leg, Tracked
@@ -40,6 +41,8 @@ NO_REASON = int(Reason.NONE)
 NOWHERE = Pose(0.0, 0.0, 0.0)
 DRIVEN_ON = 0.3
 LOST = 1.0
+SHALLOWER = 0.3
+"""A slot that turns out to be so much [m] less deep needs another plan."""
 
 
 class ApaState(NamedTuple):
@@ -55,7 +58,7 @@ class ApaState(NamedTuple):
     parking: Parking = Parking()
     watch: Watch = Watch()
     waited_ns: int = 0
-    """For the driver's confirmation."""
+    """For the driver to confirm, or to drive on in the search."""
     pose: Pose = NOWHERE
     """Where the car stood when the slot was shown."""
 
@@ -93,6 +96,9 @@ def apa_sample(state: ApaState, inputs: ControllerInput, params: ControllerParam
         if driving or state.mode == APPEARS:
             if driving and parking.step == HALT and abs(inputs.measured_speed) <= STANDING:
                 slot = relocated(slot, inputs, params)
+                parking = cut_short(parking) if slot.depth < state.slot.depth - SHALLOWER else parking
+            if driving and is_new_reading(state.clock_ns, dt_ns):
+                slot = between(slot, inputs, params)
             parking = park(parking, slot, inputs, driving, params)
     reason = _later_reason(reason, state, parking, found, params)
     guards = _guards(state, parking, found, seen, inputs, reason, taken, params)
@@ -110,8 +116,8 @@ def _later_reason(reason: int, state: ApaState, parking: Parking, found: SearchS
             return Reason.LEFT_PATH.value
     if state.mode == SEARCH and found.way > params.apa.search.way:
         return Reason.SLOT_TOO_SHORT.value if found.refusals > 0 else Reason.NO_SLOT.value
-    if state.mode == APPEARS and state.waited_ns * 1e-9 > params.apa.guard.confirm:
-        return Reason.TIMEOUT.value
+    if state.waited_ns * 1e-9 > params.apa.guard.confirm:
+        return Reason.TIMEOUT.value if state.mode == APPEARS else Reason.NOT_MOVING.value
     if state.mode == APPEARS and params.apa.search.given and has_failed(parking, params):
         return _no_way(parking)
     return NO_REASON
@@ -170,9 +176,11 @@ def _moved_on(
 ) -> ApaState:
     clock = state.clock_ns + dt_ns
     pose = state.pose
-    waited = state.waited_ns + dt_ns if mode == APPEARS and is_planned(parking) else 0
-    if mode == OFF or mode == STANDBY:
+    waiting = is_planned(parking) if mode == APPEARS else mode == SEARCH and abs(inputs.measured_speed) <= STANDING
+    waited = state.waited_ns + dt_ns if waiting and mode == state.mode else 0
+    if mode == OFF or mode == STANDBY or state.mode == STANDBY:
         found = begin_search(inputs.odometry, clock)
+    if mode == OFF or mode == STANDBY:
         parking = NOT_PARKING
         seen = NOT_WATCHED
         slot = NO_SLOT if mode == OFF else slot
@@ -181,7 +189,8 @@ def _moved_on(
         parking = NOT_PARKING
         slot = NO_SLOT
     if mode == APPEARS and state.mode != APPEARS:
-        slot = params.apa.search.slot if params.apa.search.given else found.slots[0]
+        given = params.apa.search.given
+        slot = params.apa.search.slot if given else braked(found.slots[0], found.fastest, params)
         parking = start_planning(slot, inputs.odometry, params)
         pose = inputs.odometry
     over = mode == FAIL

@@ -73,7 +73,7 @@ def watch(
     return Watch(
         waiting=state.waiting + dt_ns if still and moving_expected and not blocked else 0,
         stopping=state.stopping + dt_ns if not still and step == HALT else 0,
-        blocked=state.blocked + dt_ns if blocked and still and driving else 0,
+        blocked=_blocked(state.blocked, blocked and driving, still, dt_ns),
         fast=state.fast + dt_ns if abs(speed) > limit and driving else 0,
         blind=state.blind + dt_ns if not _all_heard(inputs, params.apa) else 0,
         frozen=state.frozen + dt_ns if unmoved else 0,
@@ -84,6 +84,16 @@ def watch(
         angle=angle,
         pose=inputs.odometry,
     )
+
+
+def _blocked(clock: int, blocked: bool, still: bool, dt_ns: int) -> int:
+    """Return the clock of a blocked way [ns]: it runs while the car stands before something, and back while it drives.
+
+    A reading now and then that says otherwise does not begin it anew.
+    """
+    if still:
+        return clock + dt_ns if blocked else clock
+    return clock - dt_ns if clock > dt_ns else 0
 
 
 def is_taken_over(state: Watch, inputs: ControllerInput, params: ControllerParams) -> bool:

@@ -3,18 +3,22 @@
 import argparse
 import json
 import math
+import sys
+from collections.abc import Iterator
 from typing import Any
 
+from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeRemainingColumn
 from rich.table import Table
 
 from controller_fmu.apa.chart import Mode
 from controller_fmu.interface import Reason
-from orchestrator.apa_grid import KEPT, Result, cases, drive, is_within_gbt, is_within_house, totals
+from orchestrator.apa_grid import KEPT, Case, Result, cases, drive, is_ghost, is_within_gbt, is_within_house, totals
 from orchestrator.apa_loop import Loop
+from orchestrator.fmu_files import can_compile
 from orchestrator.terminal import console
 
 EPILOG = """examples:
-  apa study apa-grid                     every run of the grid: hours, unless --compiled
+  apa study apa-grid                     every run of the grid: a minute or two where models can be compiled
   apa study apa-grid --every 20          each 20th run
   apa study apa-grid --run 658           that run again
 """
@@ -28,33 +32,59 @@ def add_parser(subparsers: Any) -> argparse.ArgumentParser:
     parser.add_argument("--every", type=int, default=1, metavar="N", help="only each N-th run")
     parser.add_argument("--first", type=int, default=0, metavar="N", help="begin at run N")
     parser.add_argument("--run", type=int, metavar="N", dest="number", help="only this run")
-    parser.add_argument("--compiled", action="store_true", help="compile first (minutes, needs numba), then run faster")
+    parser.add_argument("--all", action="store_true", help="a line for every run, not only for those that miss GB/T")
+    parser.add_argument("--plain", action="store_true", help="plain Python, not compiled: slower, the same bits")
     parser.add_argument("--json", action="store_true", help="print JSON")
     return parser
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Print one line a run and the totals. Returns 1 if a run touched something."""
-    loop = Loop(KEPT, compiled=arguments.compiled)
+    """Print a line for each run that misses GB/T, and the totals. Returns 1 if a run touched something."""
+    loop = Loop(KEPT, compiled=can_compile() and not arguments.plain)
     chosen = cases()[arguments.first :: max(arguments.every, 1)]
     if arguments.number is not None:
         chosen = [case for case in cases() if case.number == arguments.number]
     results = []
-    for case in chosen:
-        result = drive(case, loop)
+    for result in _driven(chosen, loop):
         results.append(result)
-        if not arguments.json:
+        asked = arguments.all or arguments.number is not None
+        if not arguments.json and (asked or is_ghost(result) or not is_within_gbt(result)):
             console().print(_line(result), soft_wrap=True, highlight=False)
     if arguments.json:
         print(json.dumps([{**result._asdict(), "case": result.case._asdict()} for result in results]))
     else:
-        table = Table(box=None, pad_edge=False)
-        for name in ("of all runs", "number", "share"):
-            table.add_column(name, justify="left" if name == "of all runs" else "right")
-        for name, number in totals(results).items():
-            table.add_row(name, str(number), f"{100.0 * number / max(len(results), 1):.1f} %")
-        console().print(table)
+        console().print(_table(results))
     return 1 if any(result.nearest <= 0.0 for result in results) else 0
+
+
+def _driven(chosen: list[Case], loop: Loop) -> Iterator[Result]:
+    """Yield the results, with a bar on standard error if that is a terminal."""
+    columns = (TextColumn("run {task.completed}"), BarColumn(), TaskProgressColumn(), TimeRemainingColumn())
+    with Progress(*columns, console=console(sys.stderr), transient=True, disable=not sys.stderr.isatty()) as progress:
+        for case in progress.track(chosen):
+            yield drive(case, loop)
+
+
+def _table(results: list[Result]) -> Table:
+    """Return the totals: of all runs, of those from inside the start range, of the rest, of those without a slot."""
+    groups = {
+        "all": results,
+        "from inside the start range": [result for result in results if result.inside],
+        "from outside": [result for result in results if result.kind != 0 and not result.inside],
+        "no slot found": [result for result in results if result.kind == 0],
+    }
+    table = Table(box=None, pad_edge=False)
+    table.add_column("")
+    for name in groups:
+        table.add_column(name, justify="right")
+    columns = [(totals(group), max(len(group), 1)) for group in groups.values()]
+    for name in columns[0][0]:
+        texts = (
+            str(numbers[name]) if name == "runs" else f"{numbers[name]} ({100.0 * numbers[name] / count:.1f} %)"
+            for numbers, count in columns
+        )
+        table.add_row(name, *texts)
+    return table
 
 
 def _line(result: Result) -> str:
@@ -65,7 +95,8 @@ def _line(result: Result) -> str:
     verdict = "house" if is_within_house(result) else "gbt" if is_within_gbt(result) else "-"
     return (
         f"{case.number:4d} {case.car} {kind} {side} +{case.extra:.1f} m, {case.beside:.1f} m beside, "
-        f"{math.degrees(case.heading):+.0f} deg, {case.body}, {3.6 * case.speed:.0f} km/h: {end}, "
+        f"{math.degrees(case.heading):+.0f} deg, {case.body}, {3.6 * case.speed:.0f} km/h, "
+        f"{'inside' if result.inside else 'outside'}: {end}, "
         f"{100.0 * result.lateral:+.1f} cm {math.degrees(result.heading):+.2f} deg, {result.shifts} shifts, "
         f"{result.parking_time:.0f} s, {100.0 * result.nearest:.0f} cm clear, "
         f"corners {100.0 * result.corner_a:.0f} and {100.0 * result.corner_b:.0f} cm: {verdict}"

@@ -3,18 +3,28 @@
 import sys
 
 from controller_fmu import model
+from controller_fmu.apa.outputs import apa_outputs
+from controller_fmu.apa.system import apa_sample
+from controller_fmu.guo2015.parking import outputs, sample
+from controller_fmu.hsic.outputs import hsic_outputs
+from controller_fmu.hsic.system import hsic_sample
 from controller_fmu.interface import ControllerInput, ControllerOutput, ControllerParams, System
+from controller_fmu.preview.driving import driving_outputs, driving_sample
+from controller_fmu.zhang2022.outputs import zhang_outputs
+from controller_fmu.zhang2022.system import zhang_sample
 from modelkit.model import Branch, Branches, Model
 
 SYSTEMS = Branches(
     parameter="system",
-    common="clock",
+    clock="clock",
+    tick=model.tick,
+    refused=model.refused,
     systems=(
-        Branch((System.NTBPTCWPT, System.NTBPT), "parking", model.parking_step),
-        Branch((System.ZHANG2022,), "zhang2022", model.zhang_step),
-        Branch((System.HSIC,), "hsic", model.hsic_step),
-        Branch((System.PREVIEW,), "preview", model.preview_step),
-        Branch((System.APA,), "apa", model.apa_step),
+        Branch((System.NTBPTCWPT, System.NTBPT), "parking", sample, outputs),
+        Branch((System.ZHANG2022,), "zhang2022", zhang_sample, zhang_outputs),
+        Branch((System.HSIC,), "hsic", hsic_sample, hsic_outputs),
+        Branch((System.PREVIEW,), "preview", driving_sample, driving_outputs),
+        Branch((System.APA,), "apa", apa_sample, apa_outputs),
     ),
 )
 MODEL = Model(

@@ -1,22 +1,22 @@
-"""The controller as one step: sample, let the chosen system act, hold its outputs.
+"""What the systems of the controller share: the clock, the state of all, and the start.
 
-A sampled system: it acts at the instants k * sample_time with the inputs that hold then, whatever
-the communication step, and holds its outputs in between. Each system has a step of its own, of the
-same shape; ``controller_fmu.MODEL`` names them all.
+A sampled controller: the chosen system acts at the instants k * sample_time with the inputs that hold
+then, whatever the communication step, and holds its outputs in between. ``controller_fmu.SYSTEMS``
+names the systems, each with what it does at a sample and what it puts out.
 """
 
 import math
 from typing import NamedTuple
 
 from controller_fmu.apa.outputs import apa_outputs
-from controller_fmu.apa.system import AT_START, ApaState, apa_sample
-from controller_fmu.guo2015.parking import AT_REST, ParkingState, outputs, sample
+from controller_fmu.apa.system import AT_START, ApaState
+from controller_fmu.guo2015.parking import AT_REST, ParkingState, outputs
 from controller_fmu.hsic.outputs import hsic_outputs
-from controller_fmu.hsic.system import HsicState, hsic_sample
-from controller_fmu.interface import ControllerInput, ControllerOutput, ControllerParams, Phase, Reason, System
-from controller_fmu.preview.driving import DrivingState, driving_outputs, driving_sample
+from controller_fmu.hsic.system import HsicState
+from controller_fmu.interface import ControllerOutput, ControllerParams, Phase, Reason, System
+from controller_fmu.preview.driving import DrivingState, driving_outputs
 from controller_fmu.zhang2022.outputs import zhang_outputs
-from controller_fmu.zhang2022.system import ZhangState, zhang_sample
+from controller_fmu.zhang2022.system import ZhangState
 from modelkit.maths import is_finite
 from modelkit.vocabulary import Prompt
 
@@ -49,14 +49,6 @@ class ControllerState(NamedTuple):
     apa: ApaState = AT_START
 
 
-class Due(NamedTuple):
-    """What the clock says of a communication step."""
-
-    clock: Clock
-    samples: int
-    period_ns: int
-
-
 def initialize(params: ControllerParams) -> tuple[ControllerState, ControllerOutput]:
     """Return the controller in standby; with unusable parameters, failed."""
     usable = _is_usable(params)
@@ -74,66 +66,16 @@ def initialize(params: ControllerParams) -> tuple[ControllerState, ControllerOut
     return state, outputs(state.parking, params)
 
 
-def parking_step(
-    clock: Clock, own: ParkingState, inputs: ControllerInput, params: ControllerParams, dt_ns: int
-) -> tuple[Clock, ParkingState, ControllerOutput]:
-    """Return NTBPTcwPT and NTBPT ``dt_ns`` later, the inputs held."""
-    due = tick(clock, params.sample_time, dt_ns)
-    for _ in range(due.samples):
-        own = sample(own, inputs, params, due.period_ns)
-    return due.clock, own, outputs(own, params) if clock.usable else refused()
-
-
-def zhang_step(
-    clock: Clock, own: ZhangState, inputs: ControllerInput, params: ControllerParams, dt_ns: int
-) -> tuple[Clock, ZhangState, ControllerOutput]:
-    """Return the quintic, MPC and PID system ``dt_ns`` later, the inputs held."""
-    due = tick(clock, params.sample_time, dt_ns)
-    for _ in range(due.samples):
-        own = zhang_sample(own, inputs, params, due.period_ns)
-    return due.clock, own, zhang_outputs(own, params) if clock.usable else refused()
-
-
-def hsic_step(
-    clock: Clock, own: HsicState, inputs: ControllerInput, params: ControllerParams, dt_ns: int
-) -> tuple[Clock, HsicState, ControllerOutput]:
-    """Return human-simulated intelligent control ``dt_ns`` later, the inputs held."""
-    due = tick(clock, params.sample_time, dt_ns)
-    for _ in range(due.samples):
-        own = hsic_sample(own, inputs, params, due.period_ns)
-    return due.clock, own, hsic_outputs(own, params) if clock.usable else refused()
-
-
-def preview_step(
-    clock: Clock, own: DrivingState, inputs: ControllerInput, params: ControllerParams, dt_ns: int
-) -> tuple[Clock, DrivingState, ControllerOutput]:
-    """Return the dual-point preview on its road ``dt_ns`` later, the inputs held."""
-    due = tick(clock, params.sample_time, dt_ns)
-    for _ in range(due.samples):
-        own = driving_sample(own, inputs, params, due.period_ns)
-    return due.clock, own, driving_outputs(own, params) if clock.usable else refused()
-
-
-def apa_step(
-    clock: Clock, own: ApaState, inputs: ControllerInput, params: ControllerParams, dt_ns: int
-) -> tuple[Clock, ApaState, ControllerOutput]:
-    """Return the whole parking assist ``dt_ns`` later, the inputs held."""
-    due = tick(clock, params.sample_time, dt_ns)
-    for _ in range(due.samples):
-        own = apa_sample(own, inputs, params, due.period_ns)
-    return due.clock, own, apa_outputs(own, params) if clock.usable else refused()
-
-
-def tick(clock: Clock, sample_time: float, dt_ns: int) -> Due:
+def tick(clock: Clock, params: ControllerParams, dt_ns: int) -> tuple[Clock, int, int]:
     """Return the clock ``dt_ns`` later, and how many samples of which length [ns] were due before."""
     end_ns = clock.time_ns + dt_ns
     if not clock.usable:
-        return Due(Clock(end_ns, clock.next_sample_ns, False), 0, 0)
-    period_ns = math.floor(sample_time * 1e9 + 0.5)
+        return Clock(end_ns, clock.next_sample_ns, False), 0, 0
+    period_ns = math.floor(params.sample_time * 1e9 + 0.5)
     samples = 0
     if clock.next_sample_ns < end_ns:
         samples = (end_ns - clock.next_sample_ns + period_ns - 1) // period_ns
-    return Due(Clock(end_ns, clock.next_sample_ns + samples * period_ns, True), samples, period_ns)
+    return Clock(end_ns, clock.next_sample_ns + samples * period_ns, True), samples, period_ns
 
 
 def refused() -> ControllerOutput:

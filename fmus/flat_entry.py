@@ -61,7 +61,8 @@ def _choice_source(model: Model, branches: Branches, scope: dict[str, Any]) -> s
     """Return the text of a function for each branch and of the ``model_step`` that chooses."""
     place = [item.name for item in variables(model.params)].index(branches.parameter)
     first, *others = branches.systems
-    lines = [line for branch in branches.systems for line in _branch_source(model, branches.common, branch, scope)]
+    scope |= {"tick": branches.tick, "refused": branches.refused}
+    lines = [line for branch in branches.systems for line in _branch_source(model, branches.clock, branch, scope)]
     lines += ["def model_step(s, u, p, y, dt_ns):", f"    chosen = int(p[{place}])"]
     for branch in others:
         values = tuple(int(value) for value in branch.values)
@@ -69,19 +70,22 @@ def _choice_source(model: Model, branches: Branches, scope: dict[str, Any]) -> s
     return "\n".join([*lines, f"    branch_{first.field}(s, u, p, y, dt_ns)", ""])
 
 
-def _branch_source(model: Model, common: str, branch: Branch, scope: dict[str, Any]) -> list[str]:
-    shape = model.state()
-    scope[f"step_{branch.field}"] = branch.step
-    parts = [(name, getattr(shape, name), _place(shape, name)) for name in (common, branch.field)]
-    given = [_build(part, "s", scope, at) for _, part, at in parts]
-    arguments = ", ".join((*given, "see_inputs(u)", "see_params(p)"))
-    stores = [
-        line for name, part, at in parts for line in _stores(part, "common" if name == common else "own", "s", at)
-    ]
+def _branch_source(model: Model, clock: str, branch: Branch, scope: dict[str, Any]) -> list[str]:
+    """Return the text of ``Branches.step`` for one system."""
+    shape, field = model.state(), branch.field
+    scope |= {f"sample_{field}": branch.sample, f"outputs_{field}": branch.outputs}
+    before, own = getattr(shape, clock), getattr(shape, field)
+    clock_at, own_at = _place(shape, clock), _place(shape, field)
     return [
-        f"def branch_{branch.field}(s, u, p, y, dt_ns):",
-        f"    common, own, outputs = step_{branch.field}({arguments}, dt_ns)",
-        *stores,
+        f"def branch_{field}(s, u, p, y, dt_ns):",
+        "    inputs, params = see_inputs(u), see_params(p)",
+        f"    clock, samples, period_ns = tick({_build(before, 's', scope, clock_at)}, params, dt_ns)",
+        f"    own = {_build(own, 's', scope, own_at)}",
+        "    for _ in range(samples):",
+        f"        own = sample_{field}(own, inputs, params, period_ns)",
+        f"    outputs = outputs_{field}(own, params) if clock.usable else refused()",
+        *_stores(before, "clock", "s", clock_at),
+        *_stores(own, "own", "s", own_at),
         *_stores(model.outputs(), "outputs", "y"),
     ]
 

@@ -6,33 +6,42 @@ from typing import Any, NamedTuple
 
 
 class Branch(NamedTuple):
-    """One of several systems in a model: it alone acts while the model's choosing parameter has one of its values.
+    """One of several sampled systems in a model: it alone acts while the choosing parameter has one of its values.
 
-    ``step(common, own, inputs, params, dt_ns) -> (common, own, outputs)`` sees the common field of the state
-    and its own; the fields of all other branches stay as they are.
+    ``sample(own, inputs, params, period_ns) -> own`` moves its memory on by a sample, ``outputs(own, params)``
+    tells what is held until the next one.
     """
 
     values: tuple[int, ...]
     field: str
-    step: Callable[..., Any]
+    """Its memory: a field of the model's state."""
+    sample: Callable[..., Any]
+    outputs: Callable[..., Any]
 
 
 class Branches(NamedTuple):
-    """The systems a model is made of; a value that none of them has chooses the first."""
+    """The sampled systems a model is made of; a value that none of them has chooses the first."""
 
     parameter: str
     """The choosing parameter, an integer."""
-    common: str
-    """The field of the state that every branch gets and returns."""
+    clock: str
+    """The field of the state that all share: it has ``usable``, false if the parameters make no sense."""
+    tick: Callable[..., Any]
+    """``tick(clock, params, dt_ns) -> (clock, samples, period_ns)``: how many samples are due in a step."""
+    refused: Callable[..., Any]
+    """``refused()``: the outputs as long as the clock is not usable."""
     systems: tuple[Branch, ...]
 
     def step(self, state: Any, inputs: Any, params: Any, dt_ns: int) -> tuple[Any, Any]:
-        """Return (state, outputs) after a step of the chosen branch: the model's ``step``."""
+        """Return (state, outputs) after a step of the chosen system: the model's ``step``."""
         value = getattr(params, self.parameter)
-        branch = next((item for item in self.systems if value in item.values), self.systems[0])
-        common, own = getattr(state, self.common), getattr(state, branch.field)
-        common, own, outputs = branch.step(common, own, inputs, params, dt_ns)
-        return state._replace(**{self.common: common, branch.field: own}), outputs
+        chosen = next((item for item in self.systems if value in item.values), self.systems[0])
+        clock, samples, period_ns = self.tick(getattr(state, self.clock), params, dt_ns)
+        own = getattr(state, chosen.field)
+        for _ in range(samples):
+            own = chosen.sample(own, inputs, params, period_ns)
+        outputs = chosen.outputs(own, params) if clock.usable else self.refused()
+        return state._replace(**{self.clock: clock, chosen.field: own}), outputs
 
 
 class Model(NamedTuple):

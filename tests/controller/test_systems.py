@@ -20,7 +20,7 @@ def after(params, dts):
 
 def test_every_system_has_a_branch():
     assert sorted(value for branch in SYSTEMS.systems for value in branch.values) == sorted(System)
-    assert set(NAMES) == set(MODEL.state._fields) - {SYSTEMS.common}
+    assert set(NAMES) == set(MODEL.state._fields) - {SYSTEMS.clock}
 
 
 @pytest.mark.parametrize("system", System)

@@ -18,15 +18,26 @@ FASTEST, SLOWEST = 1.0, -0.5
 WOBBLE = 0.3
 """Largest amplitude of its swing [m/s], uniform from 0."""
 PARKED = 9.0
+SYSTEMS = ("ntbptcwpt", "ntbpt")
+STEERING = {"30 deg/s": "guo2015-case4", "105 deg/s": "guo2015-case4-105"}
+"""Rate of the front wheels, of Table 1 and of Fig. 12, and the scenario that has it."""
 LIMITS = {"house": (0.05, 1.0), "GB/T 41630": (0.15, 3.0)}
 """Largest lateral error [m] and heading [deg] of a success."""
 Z95 = 1.959964
 
 
+class Group(NamedTuple):
+    """One system at one steering rate, judged by one limit."""
+
+    system: str
+    steering: str
+    limit: str
+
+
 class Rate(NamedTuple):
     """A success rate and its 95 % confidence interval (Wilson)."""
 
-    name: str
+    group: Group
     runs: int
     successes: int
     low: float
@@ -39,46 +50,47 @@ class Rate(NamedTuple):
 
 
 class Study(NamedTuple):
-    """Both systems under the same driver errors."""
+    """Both systems at both steering rates under the same driver errors."""
 
     speed: Array
     """Mean speed driven in each run [m/s]."""
-    success: dict[str, "np.ndarray[tuple[int], np.dtype[np.bool_]]"]
+    success: dict[Group, "np.ndarray[tuple[int], np.dtype[np.bool_]]"]
     rates: list[Rate]
 
 
 def study(runs: int, seed: int) -> Study:
-    """Return the success of both systems in ``runs`` drives each, the same drivers for both.
+    """Return the success of both systems in ``runs`` drives each, the same drivers for all.
 
-    A drive succeeds if the controller says parked and the car stands within a limit of Q3's line. Table 1's
-    steering rate; the driver obeys stop and direction prompts after 0.1 to 0.6 s, but no slow-down prompts.
+    A drive succeeds if the controller says parked and the car stands within a limit of Q3's line. The
+    driver obeys stop and direction prompts after 0.1 to 0.6 s, but no slow-down prompts.
     """
     rng = np.random.default_rng(seed)
     error, wobble = rng.uniform(SLOWEST, FASTEST, runs), rng.uniform(0.0, WOBBLE, runs)
     period, delay = rng.uniform(1.0, 6.0, runs), rng.uniform(0.1, 0.6, runs)
     success = {}
-    for name in ("ntbptcwpt", "ntbpt"):
-        rows, times = _rows(_scenario(name), error, wobble, period, delay)
-        end = timed_rows(rows, times, (*POSE, PHASE))
-        lateral, heading, phase = end[:, 2] + 3.056, end[:, 3], end[:, 4]
-        for limit, (side, angle) in LIMITS.items():
-            within = (np.abs(lateral) <= side) & (np.abs(heading) <= math.radians(angle))
-            success[f"{name}, {limit}"] = (phase == PARKED) & within
-    rates = [wilson(name, runs, int(won.sum())) for name, won in success.items()]
+    for steering, scenario in STEERING.items():
+        for system in SYSTEMS:
+            rows, times = _rows(_scenario(scenario, system), error, wobble, period, delay)
+            end = timed_rows(rows, times, (*POSE, PHASE))
+            lateral, heading, phase = end[:, 2] + 3.056, end[:, 3], end[:, 4]
+            for limit, (side, angle) in LIMITS.items():
+                within = (np.abs(lateral) <= side) & (np.abs(heading) <= math.radians(angle))
+                success[Group(system, steering, limit)] = (phase == PARKED) & within
+    rates = [wilson(group, runs, int(won.sum())) for group, won in success.items()]
     return Study(SPEED * (1.0 + error), success, rates)
 
 
-def wilson(name: str, runs: int, successes: int) -> Rate:
+def wilson(group: Group, runs: int, successes: int) -> Rate:
     """Return the rate with Wilson's 95 % interval."""
     p, z2 = successes / runs, Z95 * Z95
     centre = (p + z2 / (2 * runs)) / (1 + z2 / runs)
     half = Z95 * math.sqrt(p * (1 - p) / runs + z2 / (4 * runs * runs)) / (1 + z2 / runs)
-    return Rate(name, runs, successes, centre - half, centre + half)
+    return Rate(group, runs, successes, max(0.0, centre - half), min(1.0, centre + half))
 
 
-def _scenario(system: str) -> Scenario:
+def _scenario(name: str, system: str) -> Scenario:
     sets = [f"vehicle.driver.profile[1].speed={SPEED}", "vehicle.driver.profile[2].at=1e9"]
-    return load_scenario("guo2015-case4", [*sets, f"controller.system={system}", "stop_time=120"])
+    return load_scenario(name, [*sets, f"controller.system={system}", "stop_time=120"])
 
 
 def _rows(scenario: Scenario, error: Array, wobble: Array, period: Array, delay: Array) -> tuple[Array, Array]:

@@ -70,7 +70,7 @@ def run(arguments: argparse.Namespace) -> int:
     picture = draw(found, claim, arguments.out / "bakeoff.png")
     data = {
         "runs": [_plain(item) for item in found],
-        "rates": [rate._asdict() for rate in rates],
+        "rates": [{**rate.group._asdict(), **_numbers(rate)} for rate in rates],
         "step_us": {name: item._asdict() for name, item in spent.items()},
     }
     text = json.dumps(data, indent=2)
@@ -86,6 +86,10 @@ def run(arguments: argparse.Namespace) -> int:
 def _plain(item: Result) -> dict[str, Any]:
     entry = {key: value for key, value in item.entry._asdict().items() if key != "scenario"}
     return {**entry, **{key: value for key, value in item._asdict().items() if key != "entry"}}
+
+
+def _numbers(rate: Rate) -> dict[str, Any]:
+    return {key: value for key, value in rate._asdict().items() if key != "group"}
 
 
 def _print(found: list[Result], rates: list[Rate], spent: dict[str, Cost]) -> None:
@@ -107,9 +111,10 @@ def _print(found: list[Result], rates: list[Rate], spent: dict[str, Cost]) -> No
             f"{name}: one step takes {cost.mean:.0f} us in CPython, the slowest of the drive {cost.slowest:.0f} us"
         )
     for rate in rates:
+        group = rate.group
         to.print(
-            f"{rate.name}: {100 * rate.rate:.2f} % of {rate.runs} drives with driver speed errors parked "
-            f"(95 %: {100 * rate.low:.2f} to {100 * rate.high:.2f} %)"
+            f"{group.system}, wheels {group.steering}, {group.limit}: {100 * rate.rate:.2f} % of {rate.runs} drives "
+            f"with driver speed errors parked (95 %: {100 * rate.low:.2f} to {100 * rate.high:.2f} %)"
         )
 
 

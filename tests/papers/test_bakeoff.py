@@ -9,6 +9,7 @@ import pytest
 from controller_fmu.zhang2022.key_points import arc_line_arc, largest_radius
 from controller_fmu.zhang2022.path import FOUND, STEEPEST, plan, through
 from modelkit.vocabulary import Pose
+from orchestrator.bakeoff.driver_study import LIMITS, STEERING, SYSTEMS, Group, study, wilson
 from orchestrator.bakeoff.entries import ASSIST, CONTROLLERS, SLOTS, STARTS, Entry, entries, scenario_of
 from orchestrator.bakeoff.results import Result, results
 from orchestrator.cli import main
@@ -85,6 +86,26 @@ def test_the_assist_touches_nothing(undisturbed: list[Result]) -> None:
     assert len(mine) == 36
     assert min(item.clearance for item in mine) > 0.0
     assert all(0.0 < item.time < 120.0 for item in mine if item.parked)
+
+
+@compiles
+def test_point_tracking_parks_more_drivers_than_path_tracking_alone() -> None:
+    found = study(200, 1)
+    rates = {rate.group: rate for rate in found.rates}
+    assert len(rates) == 2 * 2 * 2
+    for steering in STEERING:
+        for limit in LIMITS:
+            ours, plain = (rates[Group(system, steering, limit)] for system in SYSTEMS)
+            assert ours.low > plain.high
+    assert study(200, 1).rates == found.rates
+
+
+def test_wilson_keeps_to_shares() -> None:
+    group = Group("ntbpt", "30 deg/s", "house")
+    none, half = wilson(group, 100, 0), wilson(group, 100, 50)
+    assert none.low == 0.0
+    assert none.high == pytest.approx(0.0370, abs=1e-4)
+    assert (half.low, half.high) == (pytest.approx(0.4038, abs=1e-4), pytest.approx(0.5962, abs=1e-4))
 
 
 @compiles

@@ -93,19 +93,23 @@ def bench_controllers() -> None:
     for name, scenario in scenarios().items():
         params = with_values(MODEL.params, dict(scenario.controller))
         seen = inputs_seen(scenario)
+        fast_replay = compiled_replay(library, params, seen, scenario.step_ns)
+        if list(fast_replay()) != replay(params, seen, scenario.step_ns):
+            raise RuntimeError(f"{name}: compiled code ends with other outputs")
         python = micros(lambda p=params, u=seen, h=scenario.step_ns: replay(p, u, h), len(seen))
-        fast = micros(compiled_replay(library, params, seen, scenario.step_ns), len(seen), 5 * ROUNDS)
+        fast = micros(fast_replay, len(seen), 5 * ROUNDS)
         print(f"{name:24s}{python:10.1f}{fast:10.2f}{len(seen):10d}")
 
 
-def replay(params: Any, seen: list[Any], step_ns: int) -> None:
-    """Step the controller in CPython through the inputs it saw."""
-    state, _ = MODEL.initialize(params)
+def replay(params: Any, seen: list[Any], step_ns: int) -> list[float]:
+    """Step the controller in CPython through the inputs it saw; return its last outputs."""
+    state, outputs = MODEL.initialize(params)
     for inputs in seen:
-        state, _ = MODEL.step(state, inputs, params, step_ns)
+        state, outputs = MODEL.step(state, inputs, params, step_ns)
+    return [float(value) for value in flatten(outputs)]
 
 
-def compiled_replay(library: Any, params: Any, seen: list[Any], step_ns: int) -> Callable[[], None]:
+def compiled_replay(library: Any, params: Any, seen: list[Any], step_ns: int) -> Callable[[], Any]:
     """Return the same by the native FMU's code, called from a compiled loop; addresses are passed as integers."""
     initialize, step, size = library.batch_initialize, library.batch_step, sizes(MODEL)
     initialize.argtypes, step.argtypes = [ctypes.c_int64] * 3, [ctypes.c_int64] * 5
@@ -121,9 +125,10 @@ def compiled_replay(library: Any, params: Any, seen: list[Any], step_ns: int) ->
         for row in range(count):
             step(state, first + row * width, parameters, outputs, step_ns)
 
-    def work(_held: Any = (s, y, p, u)) -> None:
+    def work(_held: Any = (s, p)) -> Any:
         initialize(state, parameters, outputs)
         play(len(u))
+        return y
 
     return work
 
@@ -161,7 +166,7 @@ def bench_fuzzy() -> None:
             simulation.input["row"], simulation.input["column"] = a, b
             simulation.compute()
 
-    python, machine = micros(ours, 200), micros(lambda: infer_all(array), 200)
+    python, machine = micros(ours, 200, 5 * ROUNDS), micros(lambda: infer_all(array), 200, 5 * ROUNDS)
     other = micros(theirs, 200, 3)
     print(f"\n{'fuzzy inference [us]':24s}{'CPython':>10s}{'compiled':>10s}{'scikit-fuzzy':>14s}")
     print(f"{'5 x 5 rules':24s}{python:10.1f}{machine:10.2f}{other:14.0f}   {other / python:.0f} times ours in CPython")

@@ -10,6 +10,7 @@ from typing import Any
 
 codegen: Any = import_module("numba.core.codegen")
 cpu: Any = import_module("numba.core.cpu")
+lowering: Any = import_module("numba.core.lowering")
 
 
 def collect() -> list[str]:
@@ -30,5 +31,6 @@ def collect() -> list[str]:
         return [].append  # never called: numba asks for a built-in function, another one each time
 
     codegen.JITCodeLibrary.finalize = finalize
+    lowering.Lower.create_cfunc_wrapper = lambda _lower: None
     cpu.CPUContext.get_executable = get_executable
     return found

@@ -9,7 +9,7 @@ from fmus.description import FmiVariable, fmi_variables, limits, model_descripti
 from fmus.extras import documentation, reference_result
 from fmus.fat_binary import fat_binary
 from fmus.flat_entry import sizes
-from fmus.native_ir import object_code
+from fmus.native_ir import IR_MAKERS, object_code
 from fmus.platforms import HEADERS, NATIVE, PLATFORMS, SOURCES, Platform, link
 from fmus.sources import source_hash
 from modelkit.model import Model
@@ -30,16 +30,7 @@ instance on one thread at a time.</p>
 <p>A parameter outside its range, a variable that does not exist, a call out of order or a step that is not
 in (0, 3600] s is answered with fmi2Error and a message to the logger; nothing is changed by such a call.</p>
 """
-MAKERS = (
-    "compiled.py",
-    "compiled_modules.py",
-    "compiled_types.py",
-    "description.py",
-    "flat_entry.py",
-    "native_fmu.py",
-    "native_ir.py",
-    "platforms.py",
-)
+MAKERS = (*IR_MAKERS, "description.py", "native_fmu.py", "native_ir.py", "platforms.py")
 """Files that decide what is in the binaries."""
 NUL = r'"\0"'
 KINDS = {float: "REAL", int: "INTEGER", bool: "BOOLEAN"}

@@ -26,6 +26,8 @@ NUMBA_S_CHOICE = re.compile(r"\b(noinline|alwaysinline)\b")
 ENTRIES = ("model_initialize", "model_step")
 CACHE = Path(__file__).parent / "dist" / "cache"
 KEPT = 4
+IR_MAKERS = ("compiled.py", "compiled_modules.py", "compiled_types.py", "compiled_views.py", "flat_entry.py")
+"""Files beside this one that numba's code depends on."""
 LIBM = frozenset(
     """acos asin atan atan2 ceil cos cosh exp fabs floor fmax fmin log pow rint round sin sinh sqrt tan tanh
     trunc""".split()  # noqa: SIM905
@@ -54,8 +56,7 @@ def _forget_old(model: Model) -> None:
 
 
 def _own_sources() -> str:
-    names = ("compiled.py", "compiled_modules.py", "compiled_types.py", "flat_entry.py")
-    return "".join((Path(__file__).parent / name).read_text() for name in names)
+    return "".join((Path(__file__).parent / name).read_text() for name in IR_MAKERS)
 
 
 def _run_numba(model: Model) -> str:

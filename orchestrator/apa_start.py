@@ -5,7 +5,7 @@ from typing import Any
 
 from controller_fmu.apa.candidates import SHARES, SWING_ANGLES, SWING_WAYS, into_perpendicular, swing
 from controller_fmu.apa.exit import VARIANTS, Exit, exit_of
-from controller_fmu.apa.fit import CLOSER_FROM, margins_of
+from controller_fmu.apa.fit import ATTEMPTS, margins_of
 from controller_fmu.apa.outline import Car
 from controller_fmu.apa.parking import car_of
 from controller_fmu.apa.slot import PARALLEL, Site, Slot, site_of
@@ -15,9 +15,6 @@ from controller_fmu.slot_frame import to_slot
 from modelkit.variables import with_values
 from modelkit.vocabulary import Pose
 from orchestrator.models import MODELS
-
-ATTEMPTS = 2 * CLOSER_FROM
-"""Margins as the planner tries them before it refuses a slot."""
 
 
 def is_inside(start: Pose, slot: Slot, controller: dict[str, Any]) -> bool:

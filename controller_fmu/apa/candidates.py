@@ -22,8 +22,14 @@ BACK_WAYS = 16
 SWING_WAYS = 13
 SWING_ANGLES = 13
 SHARES = 4
-CHOICES = 4
+PARTS = (1.0, 0.5, 1.0, 0.5, 1.0, 0.75, 0.25, 0.75)
+CHOICES = 8
+FEW_CHOICES = 4
 ALL_CHOICES_UP_TO = 3
+FEW_CHOICES_UP_TO = 4
+ASIDES = 3
+ASIDE = 0.015
+ASIDE_COST = 10.0
 LEAST_TURN = 1.0 * math.pi / 180.0
 OFF_CENTRE_COST = 2.0
 
@@ -144,30 +150,34 @@ def swing_back_and_forth(start: Pose, number: int, site: Site, car: Car) -> Cand
 
 def inside_count(moves: int) -> int:
     """Return how many candidates :func:`inside` has for this number of moves."""
-    if moves - 1 > ALL_CHOICES_UP_TO:
-        return 4
-    count = 4
+    count = 4 * ASIDES
     for _ in range(moves - 1):
-        count = count * CHOICES
+        count = count * choices(moves)
     return count
+
+
+def choices(moves: int) -> int:
+    """Return how many ways there are to drive each move but the last: fewer where there are many moves."""
+    return CHOICES if moves <= ALL_CHOICES_UP_TO else FEW_CHOICES if moves <= FEW_CHOICES_UP_TO else 1
 
 
 def inside(start: Pose, number: int, moves: int, site: Site, car: Car) -> Candidate:
     """Return the first of ``moves`` short moves in the slot, of which the last ends as wished.
 
     Each but the last is an arc at full lock, to lessen the heading or the other way, as far as nothing
-    is near or half of that.
+    is near or a part of that. The last ends on the slot's axis, or a little to a side of it.
     """
     direction = 1 if number % 2 == 0 else -1
     sense = 1.0 if (number // 2) % 2 == 0 else -1.0
-    rest = number // 4
+    aside = ASIDE * ((number // 4) % ASIDES - 1)
+    rest = number // (4 * ASIDES)
+    most = choices(moves)
     pose = start
     way = 0.0
     first = Move(start, 0, NO_PIECES)
     for step in range(moves - 1):
-        choice = rest % CHOICES if moves - 1 <= ALL_CHOICES_UP_TO else 0
-        rest = rest // CHOICES
-        move = _inside_step(pose, direction, choice, site, car)
+        move = _inside_step(pose, direction, rest % most, site, car)
+        rest = rest // most
         if move.direction == 0:
             return none_from(start)
         if step == 0:
@@ -175,20 +185,26 @@ def inside(start: Pose, number: int, moves: int, site: Site, car: Car) -> Candid
         pose = end_of(move)
         way += length_of(move)
         direction = -direction
-    last = finish(pose, direction, sense, 1.0, site, car)
+    last = finish(pose, direction, sense, aside, site, car)
     if moves == 1:
         first = last.move
-    return Candidate(last.found, first, moves, way + length_of(last.move) + OFF_CENTRE_COST * last.off_centre)
+    cost = way + length_of(last.move) + OFF_CENTRE_COST * last.off_centre + ASIDE_COST * abs(aside)
+    return Candidate(last.found, first, moves, cost)
 
 
 def _inside_step(pose: Pose, direction: int, choice: int, site: Site, car: Car) -> Move:
+    """Return an arc at full lock. Choices: to heading 0, half of what is free, all and half of it the other
+    way; then all, 3/4 and 1/4 of it, and 3/4 the other way.
+    """
     turned = abs(pose.heading) > LEAST_TURN
     lessening = -sign(pose.heading) * direction if turned else 1.0
-    sense = lessening if choice < 2 else -lessening
+    other = choice == 2 or choice == 3 or choice == 7
+    sense = -lessening if other else lessening
     longest = 4.0
     if turned and choice == 0:
         longest = abs(pose.heading) / car.curvature
     move = full_lock(pose, direction, sense, longest, site, car)
-    if choice % 2 == 1 and move.direction != 0:
-        return full_lock(pose, direction, sense, 0.5 * length_of(move), site, car)
+    part = PARTS[choice]
+    if part < 1.0 and move.direction != 0:
+        return full_lock(pose, direction, sense, part * length_of(move), site, car)
     return move

@@ -21,27 +21,43 @@ class Fit(NamedTuple):
 
 LONGEST_LACK = 3.0
 HALVINGS = 5
-CLOSER_FROM = 2
-CLOSER = 0.6
-CLOSEST = 0.3
-"""Shares of the margins."""
+SHARES = (1.0, 0.85, 0.6, 0.3)
+"""Of the margins: planned with, driven with once under way, and two for where there is no other way."""
+LEVEL = 2
+"""Attempts of the same margins: parked in line, and standing out a little."""
+ATTEMPTS = 6
+"""A slot is refused if none of these leads in."""
+AFTER = (2, 3, 1, 4, 5, 5)
+"""Which attempt follows which before a car sets out: closer in line, standing out, closer and standing out."""
 
 
 def stands_out(attempt: int) -> bool:
     """Return whether the car may stand out of the slot a little in this attempt: in odd ones."""
-    return attempt % 2 == 1
+    return attempt % LEVEL == 1
 
 
-def wide_again(attempt: int) -> int:
-    """Return the attempt that keeps the full margins, as far out as this one."""
-    return attempt % CLOSER_FROM
+def under_way(attempt: int) -> int:
+    """Return the attempt to plan with from within, as far out as this one."""
+    return LEVEL + attempt % LEVEL
+
+
+def following(attempt: int, kind: int) -> int:
+    """Return the attempt after this one for a car that has not set out; the same if there is none."""
+    if kind == PARALLEL:
+        return AFTER[attempt] if attempt < ATTEMPTS else attempt
+    return attempt + LEVEL if attempt + LEVEL < ATTEMPTS else attempt
+
+
+def closer(attempt: int) -> int:
+    """Return the attempt with closer margins for a car under way; the same if there is none."""
+    return attempt + LEVEL if attempt // LEVEL + 1 < len(SHARES) else attempt
 
 
 def margins_of(attempt: int, params: ApaParams) -> Margins:
-    """Return the margins of an attempt: odd ones stand out a little, from 2 and from 4 on closer ones are kept."""
+    """Return the margins of an attempt."""
     plan = params.plan
     inset = -plan.stand_out if stands_out(attempt) else 0.0
-    share = 1.0 if attempt < CLOSER_FROM else CLOSER if attempt < 2 * CLOSER_FROM else CLOSEST
+    share = SHARES[attempt // LEVEL]
     return Margins(share * plan.margin, share * plan.kerb_margin, inset)
 
 
@@ -83,7 +99,7 @@ def least_moves(slot: Slot, car: Car, params: ApaParams) -> int:
     plan = params.plan
     if slot.length < car.front + car.rear + 2.0 * plan.margin + 0.1:
         return 0
-    for attempt in range(2 * CLOSER_FROM):
+    for attempt in range(ATTEMPTS):
         site = site_of(slot, car, margins_of(attempt, params))
         for variant in range(VARIANTS):
             way_in = exit_of(variant, site, car)

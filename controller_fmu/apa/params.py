@@ -68,8 +68,8 @@ class PlanParams(NamedTuple):
 
     curvature_share: Annotated[float, Signal("1", "planned curvature over the car's largest", 0.5, 1.0, HOUSE)] = 0.95
     ramp: Annotated[float, Signal("m", "way over which the curvature rises to the planned", 0.05, 5.0, HOUSE)] = 0.8
-    margin: Annotated[float, Signal("m", "distance kept to neighbours", 0.0, 1.0, HOUSE)] = 0.15
-    kerb_margin: Annotated[float, Signal("m", "distance kept to kerb or wall beside", 0.0, 1.0, HOUSE)] = 0.16
+    margin: Annotated[float, Signal("m", "distance kept to neighbours", 0.0, 1.0, HOUSE)] = 0.14
+    kerb_margin: Annotated[float, Signal("m", "distance kept to kerb or wall beside", 0.0, 1.0, HOUSE)] = 0.13
     stand_out: Annotated[float, Signal("m", "how far the car may stand out if it must", 0.0, 0.15, "GB/T 41630")] = 0.1
     at_a_time: Annotated[int, Signal("1", "candidates looked at in one sample", 1, 1000, HOUSE)] = 40
     shifts: Annotated[int, Signal("1", "most shifts, the first reverse counts one", 1, 30, "GB/T 41630")] = 8
@@ -116,6 +116,9 @@ class EndParams(NamedTuple):
 
     lateral: Annotated[float, Signal("m", "parked without tuning", 0.001, 0.5, HOUSE)] = 0.03
     heading: Annotated[float, Signal("rad", "parked without tuning", 0.001, 0.5, HOUSE)] = 0.7 * pi / 180.0
+    few: Annotated[int, Signal("1", "shifts after which tuning is only for more than the next two", 0, 30, HOUSE)] = 3
+    near_lateral: Annotated[float, Signal("m", "parked after so many shifts", 0.001, 0.5, HOUSE)] = 0.04
+    near_heading: Annotated[float, Signal("rad", "parked after so many shifts", 0.001, 0.5, HOUSE)] = 0.9 * pi / 180.0
     miss_lateral: Annotated[float, Signal("m", "parked if nothing better is left", 0.0, 1.0, "GB/T 41630")] = 0.12
     miss_heading: Annotated[float, Signal("rad", "parked if nothing better is left", 0.0, 1.0, "GB/T 41630")] = (
         2.5 * pi / 180.0

@@ -3,15 +3,14 @@
 import math
 from typing import NamedTuple
 
-from controller_fmu.apa.fit import CLOSER_FROM as TIGHTER
-from controller_fmu.apa.fit import margins_of, stands_out, wide_again
+from controller_fmu.apa.fit import closer, following, margins_of, stands_out, under_way
 from controller_fmu.apa.manoeuvre_chart import Guard as StepGuard
 from controller_fmu.apa.manoeuvre_chart import Step, step_transition
 from controller_fmu.apa.move import length_of
 from controller_fmu.apa.outline import Car
 from controller_fmu.apa.params import ApaParams, Longitudinal
 from controller_fmu.apa.planner import FOUND, NOTHING, SEARCHING, PlanSearch, new_search, search_on
-from controller_fmu.apa.slot import PARALLEL, Margins, Site, Slot, site_of
+from controller_fmu.apa.slot import Margins, Site, Slot, site_of
 from controller_fmu.apa.speed import planned_speed, stopping_way
 from controller_fmu.apa.supervisor import Sight, look
 from controller_fmu.apa.tracking import Leg, Tracked, next_standstill, set_wheel, track
@@ -42,7 +41,7 @@ class Parking(NamedTuple):
     step: int = IDLE
     plan: PlanSearch = PlanSearch()
     attempt: int = 0
-    """Odd: the car may stand out of the slot a little; 2 or 3, 4 or 5: smaller margins."""
+    """Odd: the car may stand out of the slot a little; each two more: smaller margins, see ``fit``."""
     leg: Leg = Leg()
     tracked: Tracked = Tracked()
     shifts: int = 0
@@ -73,24 +72,22 @@ def car_of(params: ControllerParams) -> Car:
 
 
 def site_for(slot: Slot, attempt: int, params: ControllerParams) -> Site:
-    """Return the slot as the planner sees it. Odd attempts stand out a little, 2 and 4 more keep smaller margins."""
+    """Return the slot as the planner sees it in this attempt."""
     return site_of(slot, car_of(params), margins_of(attempt, params.apa))
 
 
 def next_attempt(state: Parking, plan: PlanSearch, site: Site, params: ControllerParams) -> int:
     """Return the attempt to make after a search that led nowhere; the same if there is none.
 
-    At first a parallel car may stand out, then the margins may be closer. A car that is under way may
-    stand nearer to the neighbours than the margin, from where every move would be refused.
+    Before it sets out, a car that needs more than few shifts is tried with closer margins first; then a
+    parallel one may stand out, then come closer still. A car under way may come closer step by step.
     """
     nothing = plan.status == NOTHING
-    too_many = plan.status == FOUND and more_shifts(state, plan) > params.apa.plan.shifts
-    if state.direction == 0:
-        following = state.attempt + (1 if site.kind == PARALLEL else TIGHTER)
-        return following if (nothing or too_many) and following < 2 * TIGHTER else state.attempt
-    if (nothing or too_many) and state.attempt < 2 * TIGHTER:
-        return state.attempt + TIGHTER
-    return state.attempt
+    most = params.apa.end.few if state.direction == 0 and state.attempt == 0 else params.apa.plan.shifts
+    too_many = plan.status == FOUND and more_shifts(state, plan) > most
+    if not (nothing or too_many):
+        return state.attempt
+    return following(state.attempt, site.kind) if state.direction == 0 else closer(state.attempt)
 
 
 def is_in_place(pose: Pose, site: Site, lateral: float, heading: float) -> bool:
@@ -148,6 +145,8 @@ def _guards(
     stop = stopping_way(inputs.measured_speed, apa.drive, apa.drive.delay if own else apa.drive.reaction)
     limit = apa.end
     right = is_in_place(pose, site, limit.lateral, limit.heading)
+    if state.shifts >= limit.few:
+        right = right or is_in_place(pose, site, limit.near_lateral, limit.near_heading)
     well_enough = is_in_place(pose, site, limit.miss_lateral, limit.miss_heading)
     stuck = plan.status == NOTHING or (plan.status == FOUND and more_shifts(state, plan) > apa.plan.shifts)
     wheel = inputs.steering_wheel_angle
@@ -202,7 +201,7 @@ def _moved_on(
         cut = sight.blocked and not sight.unknown
     if step == PLAN and state.step != PLAN:
         ended = state.step == HALT and plan.moves <= 1
-        attempt = wide_again(attempt)
+        attempt = under_way(attempt)
         plan = new_search(pose)
     if step == SET_WHEEL and state.step == PLAN:
         leg = Leg(0.0, next_standstill(plan.move, 0.0))

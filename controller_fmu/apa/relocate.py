@@ -10,10 +10,11 @@ import math
 
 from controller_fmu.apa.outline import Obstacles
 from controller_fmu.apa.parking import car_of
-from controller_fmu.apa.slot import PARALLEL, PERPENDICULAR, UNSEEN, Margins, Slot, mirror_of, site_of
+from controller_fmu.apa.slot import PARALLEL, PERPENDICULAR, UNSEEN, Margins, Site, Slot, mirror_of, site_of
 from controller_fmu.apa.supervisor import WRONG, expected
 from controller_fmu.interface import ControllerInput, ControllerParams
 from controller_fmu.slot_frame import SlotFrame, to_slot, to_world
+from modelkit.maths import wrap_angle
 from modelkit.vocabulary import Pose
 
 NOTHING = 1e3
@@ -29,13 +30,15 @@ REAR_RIGHT = 7
 REAR = 5
 SIDES = ((8, 9), (10, 11))
 """Sensors of the left and of the right side, front and rear."""
-INSIDE = -0.3
+INSIDE = -0.15
 """A sensor is in a perpendicular slot if it is so deep [m] in it."""
 BESIDE = 0.35
 """A neighbour of a perpendicular slot stands at most this much [m] from where it was found."""
 FARTHEST = 1.3
-GAIN = 0.08
+GAIN = 0.12
 """Share of what one reading says."""
+RIM = 0.05
+"""Nearer than this [rad] to the rim of its cone a sensor is not taken to hear what is square to it."""
 ACROSS = 0.45
 """A neighbour is heard square to its side up to this heading [rad]."""
 
@@ -93,6 +96,50 @@ def between(slot: Slot, inputs: ControllerInput, params: ControllerParams) -> Sl
     start = GAIN * start if abs(start) <= BESIDE else 0.0
     end = GAIN * end if abs(end) <= BESIDE else 0.0
     return _moved(slot, start, end) if start != 0.0 or end != 0.0 else slot
+
+
+def along(slot: Slot, inputs: ControllerInput, params: ControllerParams) -> Slot:
+    """Return a parallel slot moved a little across the road to where its kerb or wall is heard.
+
+    The wall was heard from the road, as far behind the neighbours' sides as ``depth`` says; what its distance
+    differs by as the car comes in is what the odometry has drifted. Told once for each new reading.
+    """
+    if slot.kind != PARALLEL or slot.depth >= UNSEEN:
+        return slot
+    mirror = mirror_of(slot)
+    pose = to_slot(inputs.odometry, SlotFrame(slot.a, mirror))
+    site = site_of(slot, car_of(params), Margins(0.0, 0.0, 0.0))
+    total = 0.0
+    heard = 0.0
+    for number in (SIDES[1][0], SIDES[1][1], REAR_RIGHT) if mirror > 0.0 else (SIDES[0][0], SIDES[0][1], REAR_LEFT):
+        off = _off_wall(pose, site, number, inputs, params)
+        if abs(off) < FURTHEST:
+            total += off
+            heard += 1.0
+    if heard == 0.0:
+        return slot
+    a = to_world(Pose(0.0, GAIN * total / heard, 0.0), SlotFrame(slot.a, mirror))
+    return Slot(slot.kind, slot.side, a, slot.length, slot.b_out, slot.depth, slot.opposite, slot.unsure)
+
+
+def _off_wall(pose: Pose, site: Site, number: int, inputs: ControllerInput, params: ControllerParams) -> float:
+    """Return how much further out [m] than it should be a sensor hears the wall beside; far if it does not hear it.
+
+    ``pose`` is the car's in A's frame. The wall must be square to a ray of the cone, and nearer than the neighbours.
+    """
+    mirror = site.frame.mirror
+    mount = params.apa.sensors.mounts[number]
+    reading = inputs.ultrasonic[number]
+    square = abs(wrap_angle(pose.heading + mirror * mount.yaw + 0.5 * math.pi)) < params.apa.sensors.half_angle - RIM
+    inside = _y_of(pose, mirror, params, number) < INSIDE
+    if not square or not inside or not params.apa.sensors.min_range + 0.011 < reading < FARTHEST:
+        return NOTHING
+    in_target = to_slot(inputs.odometry, site.frame)
+    nothing = site.obstacles.opposite
+    should = expected(mount, in_target, mirror, Obstacles(nothing, nothing, site.obstacles.beside, nothing), params.apa)
+    if should > expected(mount, in_target, mirror, site.obstacles, params.apa):
+        return NOTHING
+    return should - reading
 
 
 def _side_at(pose: Pose, mirror: float, inputs: ControllerInput, sense: float, params: ControllerParams) -> float:

@@ -30,11 +30,14 @@ class Finish(NamedTuple):
     """Distance [m] of its end from x = 0."""
 
 
-def finish(start: Pose, direction: int, sense: float, share: float, site: Site, car: Car) -> Finish:
-    """Return the move of two arcs (first curvature of sign ``sense``) and a line that ends in the slot."""
-    c = sense * share * car.curvature
+def finish(start: Pose, direction: int, sense: float, aside: float, site: Site, car: Car) -> Finish:
+    """Return the move of two arcs (first curvature of sign ``sense``) and a line that ends in the slot.
+
+    It ends ``aside`` [m] beside the slot's axis, along it.
+    """
+    c = sense * car.curvature
     none = Finish(False, two_arcs(start, 0, c, 0.0, 0.0, 0.0), 0.0)
-    cosine = 0.5 * (1.0 + math.cos(start.heading) + c * start.y)
+    cosine = 0.5 * (1.0 + math.cos(start.heading) + c * (start.y - aside))
     if abs(start.heading) > STEEPEST or not math.cos(STEEPEST) <= cosine <= 1.0:
         return none
     turn = direction * sense

@@ -20,7 +20,7 @@ from controller_fmu.apa.parking import (
     start_planning,
 )
 from controller_fmu.apa.planner import SEARCHING, PlanSearch
-from controller_fmu.apa.relocate import between, braked, relocated
+from controller_fmu.apa.relocate import along, between, braked, relocated
 from controller_fmu.apa.search import NO_SLOT, SearchState, begin_search, is_new_reading, search, without_first
 from controller_fmu.apa.slot import Slot
 from controller_fmu.apa.supervisor import Sight
@@ -98,7 +98,7 @@ def apa_sample(state: ApaState, inputs: ControllerInput, params: ControllerParam
                 slot = relocated(slot, inputs, params)
                 parking = cut_short(parking) if slot.depth < state.slot.depth - SHALLOWER else parking
             if driving and is_new_reading(state.clock_ns, dt_ns):
-                slot = between(slot, inputs, params)
+                slot = along(between(slot, inputs, params), inputs, params)
             parking = park(parking, slot, inputs, driving, params)
     reason = _later_reason(reason, state, parking, found, params)
     guards = _guards(state, parking, found, seen, inputs, reason, taken, params)

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from controller_fmu.zhang2022.key_points import arc_line_arc, largest_radius
-from controller_fmu.zhang2022.path import FOUND, STEEPEST, plan, through
+from controller_fmu.zhang2022.path import CURVATURE_LIMIT, FOUND, STEEPEST, plan, through
 from modelkit.vocabulary import Pose
 from orchestrator.bakeoff.driver_study import LIMITS, STEERING, SYSTEMS, Group, study, wilson
 from orchestrator.bakeoff.entries import ASSIST, CONTROLLERS, SLOTS, STARTS, Entry, entries, scenario_of
@@ -61,7 +61,7 @@ def test_quintics_are_refused_where_no_radius_keeps_the_curvature_and_only_there
             limit = 0.95 * math.tan(lock) / car["wheelbase"]
             start = Pose(*(float(entry.scenario.vehicle[f"start.{axis}"]) for axis in ("x", "y", "heading")))
             possible = smallest_peak(start, 5.0) <= limit
-            assert (plan(start, 5.0, limit).status == FOUND) == possible
+            assert plan(start, 5.0, limit).status == (FOUND if possible else CURVATURE_LIMIT)
             verdicts[entry.slot, entry.car, entry.start] = possible
     assert [sum(verdicts[key] for key in verdicts if key[0] == slot) for slot in SLOTS] == [0, 4, 6]
 
@@ -71,6 +71,16 @@ def test_refusals_are_those_of_the_planner(undisturbed: list[Result]) -> None:
     refused = [item for item in undisturbed if item.entry.controller == "zhang2022" and not item.parked]
     assert {item.reason for item in refused} == {"no_path"}
     assert len(refused) == 2 * (6 + 2)
+
+
+@compiles
+def test_two_arcs_are_refused_where_their_radius_is_below_the_cars(undisturbed: list[Result]) -> None:
+    for item in undisturbed:
+        if item.entry.controller.startswith("ntbpt"):
+            car, start = item.entry.scenario.controller, item.entry.scenario.vehicle
+            smallest = 1.05 * car["wheelbase"] / math.tan(car["steering_wheel_limit"] / car["steering_ratio"])
+            possible = largest_radius(start["start.x"], start["start.y"]) >= smallest
+            assert (item.reason == "no_path") != possible, item.entry[:-1]
 
 
 @compiles

@@ -28,7 +28,7 @@ FEW_CHOICES = 4
 ALL_CHOICES_UP_TO = 3
 FEW_CHOICES_UP_TO = 4
 ASIDES = 3
-ASIDE = 0.015
+ASIDE = 0.008
 ASIDE_COST = 10.0
 LEAST_TURN = 1.0 * math.pi / 180.0
 OFF_CENTRE_COST = 2.0
@@ -176,7 +176,7 @@ def inside(start: Pose, number: int, moves: int, site: Site, car: Car) -> Candid
     way = 0.0
     first = Move(start, 0, NO_PIECES)
     for step in range(moves - 1):
-        move = _inside_step(pose, direction, rest % most, site, car)
+        move = _inside_step(pose, direction, _last_digit(rest, most), site, car)
         rest = rest // most
         if move.direction == 0:
             return none_from(start)
@@ -190,6 +190,10 @@ def inside(start: Pose, number: int, moves: int, site: Site, car: Car) -> Candid
         first = last.move
     cost = way + length_of(last.move) + OFF_CENTRE_COST * last.off_centre + ASIDE_COST * abs(aside)
     return Candidate(last.found, first, moves, cost)
+
+
+def _last_digit(number: int, base: int) -> int:
+    return number % base
 
 
 def _inside_step(pose: Pose, direction: int, choice: int, site: Site, car: Car) -> Move:

@@ -9,7 +9,7 @@ import numpy as np
 from orchestrator.geometry import place, pose_at, sample_path
 from orchestrator.recording import Recording
 from orchestrator.report.payload import Arrays
-from orchestrator.slave import Array
+from orchestrator.slave import Array, Indices
 
 MOST_PLANS = 60
 PARTS = re.compile(r"controller\.(path|.*\bmove|.*\bslot|.*\bcorner_b|.*\btarget)\.")
@@ -19,7 +19,7 @@ Point = tuple[float, float]
 
 
 def plans_of(recording: Recording, arrays: Arrays, origin: Point) -> list[dict[str, Any]]:
-    """Return the plans with the time from which each held, positions less ``origin``; the last ones if many."""
+    """Return the plans with the time from which each held, positions less ``origin``; fewer if they change often."""
     names = [name for name in recording.signals if PARTS.match(name)]
     if not names or not len(recording.t):
         return []
@@ -27,7 +27,7 @@ def plans_of(recording: Recording, arrays: Arrays, origin: Point) -> list[dict[s
     same = (table[1:] == table[:-1]) | (np.isnan(table[1:]) & np.isnan(table[:-1]))
     changes = np.flatnonzero(~same.all(axis=1)) + 1
     found = []
-    for row in [0, *changes.tolist()][-MOST_PLANS:]:
+    for row in [0, *_fewer(changes, recording.t)]:
         values = recording.values_at("controller", row)
         plan: dict[str, Any] = {"t": float(recording.t[row])}
         points = sample_path(values) - origin
@@ -39,6 +39,15 @@ def plans_of(recording: Recording, arrays: Arrays, origin: Point) -> list[dict[s
             plan["target"] = [target[0] - origin[0], target[1] - origin[1], target[2]]
         found.append(plan)
     return found
+
+
+def _fewer(changes: Indices, t: Array) -> list[int]:
+    """Return at most ``MOST_PLANS`` of the rows ``changes``: of those close together in time, the last."""
+    if len(changes) <= MOST_PLANS:
+        return [int(row) for row in changes]
+    bins = ((t[changes] - t[0]) / (t[-1] - t[0]) * (MOST_PLANS - 1)).astype(int)
+    is_last = np.append(bins[1:] != bins[:-1], True)
+    return [int(row) for row in changes[is_last]]
 
 
 def found_slot(values: Mapping[str, float]) -> Array | None:

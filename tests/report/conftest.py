@@ -1,5 +1,3 @@
-import shutil
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -14,16 +12,6 @@ from orchestrator.session import run_scenario
 from orchestrator.summary import summarize
 from orchestrator.tolerance import Tolerance, Tolerances
 
-FLAGS = [
-    "--headless",
-    "--no-sandbox",
-    "--disable-gpu",
-    "--disable-quic",
-    "--no-first-run",
-    "--disable-background-networking",
-    "--disable-component-update",
-    "--disable-sync",
-]
 EVIL = "<script>window.evil = 1</script><img src=x onerror='window.evil = 1'>"
 
 
@@ -51,25 +39,6 @@ def overlay(case4, tmp_path_factory) -> Path:
     path: Path = tmp_path_factory.mktemp("overlay") / "overlay.html"
     write_overlay(path, runs, ([], []), compare(*runs, Tolerances(Tolerance(0.01, 0.0, 0.1))))
     return path
-
-
-def chromium() -> str | None:
-    """Return the path of an installed Chromium or Chrome."""
-    names = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable", "chrome")
-    return next((path for path in map(shutil.which, names) if path), None)
-
-
-@pytest.fixture(scope="session")
-def browser() -> Iterator[Any]:
-    """A headless Chromium; without one the tests that need it are skipped."""
-    program = chromium()
-    if program is None:
-        pytest.skip("no Chromium found (Debian: apt-get install chromium)")
-    api = pytest.importorskip("playwright.sync_api", reason="the package playwright is not installed")
-    with api.sync_playwright() as play:
-        session = play.chromium.launch(executable_path=program, args=FLAGS)
-        yield session
-        session.close()
 
 
 class Seen:

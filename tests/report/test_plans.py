@@ -11,7 +11,7 @@ from modelkit.vocabulary import Pose
 from orchestrator.geometry import sample_path
 from orchestrator.load_scenario import load_scenario
 from orchestrator.report.payload import Arrays
-from orchestrator.report.plans import found_slot, plans_of, wanted_pose
+from orchestrator.report.plans import MOST_PLANS, found_slot, plans_of, wanted_pose
 from orchestrator.report.run_data import ribbons_of
 from orchestrator.session import run_scenario
 
@@ -65,6 +65,7 @@ def test_plans_follow_the_run(recording):
     assert len(last["slot"]) == 4
     assert [plan["t"] for plan in plans] == sorted(plan["t"] for plan in plans)
     assert max(arrays.lengths) > 20
+    assert len(plans) <= MOST_PLANS + 1
 
 
 def test_every_changing_mode_is_a_ribbon_once(recording):

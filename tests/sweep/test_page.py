@@ -1,6 +1,5 @@
 """What a study's page and its numbers say."""
 
-import shutil
 from html.parser import HTMLParser
 
 import numpy as np
@@ -127,26 +126,16 @@ def test_colours_run_along_the_scale():
     assert (colour(0.0), colour(1.0), colour(-1.0), colour(2.0)) == (SCALE[0], SCALE[-1], SCALE[0], SCALE[-1])
 
 
-def test_the_page_in_a_browser(folder):
-    program = next(
-        (path for path in map(shutil.which, ("chromium", "chromium-browser", "google-chrome")) if path), None
-    )
-    if program is None:
-        pytest.skip("no Chromium found (Debian: apt-get install chromium)")
-    api = pytest.importorskip("playwright.sync_api", reason="the package playwright is not installed")
-    flags = ("headless", "no-sandbox", "disable-gpu", "disable-quic", "no-first-run", "disable-background-networking")
-    quiet = ("disable-component-update", "disable-sync")
-    with api.sync_playwright() as play:
-        browser = play.chromium.launch(executable_path=program, args=[f"--{flag}" for flag in (*flags, *quiet)])
-        for width in (1280, 390):
-            page = browser.new_page(viewport={"width": width, "height": 900})
-            seen, requests = [], []
-            page.on("console", lambda message, seen=seen: seen.append(message.text))
-            page.on("request", lambda request, requests=requests: requests.append(request.url))
-            page.goto((folder / "trial.html").as_uri())
-            assert page.locator("svg rect.cell").first.bounding_box()["width"] > 20
-            assert page.evaluate("document.documentElement.scrollWidth") <= width
-            assert page.evaluate("window.evil") is None
-            assert seen == []
-            assert requests == [(folder / "trial.html").as_uri()]
-        browser.close()
+@pytest.mark.parametrize("width", [1280, 390])
+def test_the_page_in_a_browser(folder, browser, width):
+    page = browser.new_page(viewport={"width": width, "height": 900})
+    seen, requests = [], []
+    page.on("console", lambda message: seen.append(message.text))
+    page.on("request", lambda request: requests.append(request.url))
+    page.goto((folder / "trial.html").as_uri())
+    assert page.locator("svg rect.cell").first.bounding_box()["width"] > 20
+    assert page.evaluate("document.documentElement.scrollWidth") <= width
+    assert page.evaluate("window.evil") is None
+    assert seen == []
+    assert requests == [(folder / "trial.html").as_uri()]
+    page.close()

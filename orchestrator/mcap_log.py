@@ -32,6 +32,7 @@ from orchestrator.wire import Encoder
 
 SCENE_PERIOD_NS = 50_000_000
 TRAIL_PERIOD_NS = 1_000_000_000
+TRAIL_STEP_NS = 200_000_000
 TRAIL_POSES = 100
 AXES = ("x", "y", "heading")
 DRAWN = (*(f"pose.{axis}" for axis in AXES), *(f"odometry.{axis}" for axis in AXES), "front_wheel_angle")
@@ -153,7 +154,8 @@ class _Pictures:
         pose = (x, y, heading)
         message = self._frames.at(t_ns, pose, (seen[0], seen[1], seen[2]), wheel)
         self._file.write(self._transforms, t_ns, message)
-        self._poses.append(scene.trail_pose(pose))
+        if t_ns % TRAIL_STEP_NS < SCENE_PERIOD_NS:
+            self._poses.append(scene.trail_pose(pose))
         if t_ns % TRAIL_PERIOD_NS < SCENE_PERIOD_NS:
             self._draw_trail(t_ns)
         self._draw_path(t_ns)

@@ -33,6 +33,7 @@ class Line(NamedTuple):
 
 
 LEAST_SPREAD = 1e-6
+NO_SUMS = Sums(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 
 def add(sums: Sums, u: float, w: float, r: float) -> Sums:
@@ -45,13 +46,13 @@ def spread(sums: Sums) -> float:
     return sums.uu - sums.u * sums.u / sums.n if sums.n > 0.0 else 0.0
 
 
-def slope(first: Sums, second: Sums) -> float:
-    """Return b of two sides taken as parallel, each with its own offset."""
-    s = spread(first) + spread(second)
+def slope(first: Sums, second: Sums, third: Sums = NO_SUMS) -> float:
+    """Return b of two or three sides taken as parallel, each with its own offset."""
+    s = spread(first) + spread(second) + spread(third)
     if s <= LEAST_SPREAD:
         return 0.0
-    w = _with_w(first) + _with_w(second)
-    r = _with_r(first) + _with_r(second)
+    w = _with_w(first) + _with_w(second) + _with_w(third)
+    r = _with_r(first) + _with_r(second) + _with_r(third)
     b = 0.0
     for _ in range(6):
         b = (w - r * math.sqrt(1.0 + b * b)) / s

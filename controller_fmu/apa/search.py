@@ -96,7 +96,7 @@ def slot_of(
 ) -> Slot:
     """Return the gap between the last two neighbours as a slot, in the world, its corners ``unsure`` by so much [m]."""
     mirror = -1.0 if which == LEFT else 1.0
-    b = slope(side.before, side.sums)
+    b = slope(side.before, side.sums, side.behind)
     a1 = offset(side.before, b)
     a2 = offset(side.sums, b)
     cos = 1.0 / math.sqrt(1.0 + b * b)
@@ -106,7 +106,7 @@ def slot_of(
     s = math.sin(origin.heading)
     corner_a = Pose(origin.x + u * c - w * s, origin.y + u * s + w * c, origin.heading + mirror * math.atan(b))
     length = (side.edge_b - side.edge) / cos
-    depth = side.depth if side.depth < DEEP else UNSEEN
+    depth = (a1 - offset(side.behind, b)) * cos if side.behind.n > 0.0 else UNSEEN
     opposite = UNSEEN
     if opposite_heard < DEEP:
         beside = side.sums.r / side.sums.n if side.sums.n > 0.0 else 0.0

@@ -34,6 +34,8 @@ LONG_STEADY = 5
 MANY = 8.0
 LEVEL = 2
 """So many steps in a row that are level: a side that goes on; so many in a gap: its kerb or wall."""
+AGREE = 0.15
+"""Echoes of the same kerb or wall differ by no more than this [m]."""
 STAGGER = 0.3
 """The next neighbour may stand this much [m] further in."""
 
@@ -74,12 +76,14 @@ class SideState(NamedTuple):
     """u of corner B [m]."""
     faces: tuple[Heard, ...] = NO_SAMPLES
     """Newest samples past corner A or short of corner B, where the cone's edge touches the neighbour's end."""
+    behind: Sums = Sums()
+    """Of the kerb or wall that the gap ends at."""
 
 
 EMPTY = Sums(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 START = SideState(
     NOTHING, 0.0, 0.0, 0.0, 0.0, Heard(0.0, 0.0, 0.0), 0, 0.0, 0.0, 0.0, 0, NO_SAMPLES, EMPTY, EMPTY, 0.0, DEEP,
-    0, False, 0.0, NO_SAMPLES,
+    0, False, 0.0, NO_SAMPLES, EMPTY,
 )  # fmt: skip
 
 
@@ -152,7 +156,7 @@ def _on_wall(side: SideState, sample: Heard, half_angle: float, params: SearchPa
     extent = edge - side.begun
     return SideState(
         GAP, side.n, side.u, side.w, side.r, side.last, 0, side.begun, extent, side.missed, 0, NO_SAMPLES, EMPTY,
-        side.sums, edge, DEEP, side.found, False, 0.0, NO_SAMPLES,
+        side.sums, edge, DEEP, side.found, False, 0.0, NO_SAMPLES, EMPTY,
     )  # fmt: skip
 
 
@@ -186,16 +190,19 @@ def _in_gap(side: SideState, sample: Heard, half_angle: float, params: SearchPar
     d = distance(_line(side.before, EMPTY), sample.u, sample.w)
     if sample.r < _still_heard(side.before, EMPTY, sample, 1.0, half_angle) + STAGGER:
         return SideState(
-            NEXT_WALL, side.n, side.u, side.w, side.r, side.last, 0, sample.u, side.extent, sample.u, 1,
-            append(NO_SAMPLES, sample, 0), EMPTY, side.before, side.edge, side.depth, side.found, False, 0.0,
-            side.faces,
-        )  # fmt: skip
+        NEXT_WALL, side.n, side.u, side.w, side.r, side.last, 0, sample.u, side.extent, sample.u, 1,
+        append(NO_SAMPLES, sample, 0), EMPTY, side.before, side.edge, side.depth, side.found, False, 0.0, side.faces,
+        side.behind,
+    )  # fmt: skip
     depth = side.depth
-    if side.steady >= LEVEL and sample.r < params.beside + 2.4 and sample.r - d < depth:
-        depth = sample.r - d
+    behind = side.behind
+    if side.steady >= LEVEL and sample.r < params.beside + 2.4 and sample.r - d < depth + AGREE:
+        behind = add(behind if sample.r - d > depth - AGREE else EMPTY, sample.u, sample.w, sample.r)
+        depth = sample.r - d if sample.r - d < depth else depth
     return SideState(
         GAP, side.n, side.u, side.w, side.r, side.last, side.steady, side.begun, side.extent, side.missed, 0,
         NO_SAMPLES, EMPTY, side.before, side.edge, depth, side.found, False, 0.0, remember(side.faces, sample),
+        behind,
     )  # fmt: skip
 
 
@@ -204,9 +211,9 @@ def _on_next_wall(side: SideState, sample: Heard, half_angle: float, params: Sea
         if sample.u - side.missed < CONFIRMED:
             return side
         return SideState(
-            GAP, side.n, side.u, side.w, side.r, side.last, 0, side.begun, side.extent, side.missed, 0, NO_SAMPLES,
-            EMPTY, side.before, side.edge, side.depth, side.found, False, 0.0, NO_SAMPLES,
-        )  # fmt: skip
+        GAP, side.n, side.u, side.w, side.r, side.last, 0, side.begun, side.extent, side.missed, 0, NO_SAMPLES,
+        EMPTY, side.before, side.edge, side.depth, side.found, False, 0.0, NO_SAMPLES, side.behind,
+    )  # fmt: skip
     earlier = side.samples[side.taken - 1]
     steep = side.taken < KEPT and sample.r - earlier.r < -STEEP * (sample.u - earlier.u)
     faces = remember(side.faces, earlier) if steep else side.faces
@@ -216,44 +223,44 @@ def _on_next_wall(side: SideState, sample: Heard, half_angle: float, params: Sea
     sums = _with_sample(side.sums, side.before, sample, side.steady)
     if sample.u - side.begun < params.wall or sums.n < 2.0:
         return SideState(
-            NEXT_WALL, side.n, side.u, side.w, side.r, side.last, side.steady, side.begun, side.extent, sample.u,
-            count, samples, sums, side.before, side.edge, side.depth, side.found, False, 0.0, faces,
-        )  # fmt: skip
+        NEXT_WALL, side.n, side.u, side.w, side.r, side.last, side.steady, side.begun, side.extent, sample.u, count,
+        samples, sums, side.before, side.edge, side.depth, side.found, False, 0.0, faces, side.behind,
+    )  # fmt: skip
     b = slope(side.before, sums)
     edge_b = corner(samples + faces, Line(offset(sums, b), b), 1.0, half_angle)
     return SideState(
         WALL, side.n, side.u, side.w, side.r, side.last, side.steady, edge_b, side.extent, sample.u, count,
         remember(NO_SAMPLES, sample), sums, side.before, side.edge, side.depth, side.found + 1, True, edge_b,
-        NO_SAMPLES,
+        NO_SAMPLES, side.behind,
     )  # fmt: skip
 
 
 def _begin_wall(side: SideState, sample: Heard) -> SideState:
     return SideState(
-        WALL, side.n, side.u, side.w, side.r, side.last, 0, sample.u, 0.0, sample.u, 0,
-        remember(NO_SAMPLES, sample), EMPTY, EMPTY, 0.0, DEEP, side.found, False, 0.0, NO_SAMPLES,
+        WALL, side.n, side.u, side.w, side.r, side.last, 0, sample.u, 0.0, sample.u, 0, remember(NO_SAMPLES, sample),
+        EMPTY, EMPTY, 0.0, DEEP, side.found, False, 0.0, NO_SAMPLES, EMPTY,
     )  # fmt: skip
 
 
 def _fresh_start(side: SideState) -> SideState:
     return SideState(
-        NOTHING, side.n, side.u, side.w, side.r, side.last, 0, 0.0, 0.0, 0.0, 0, NO_SAMPLES, EMPTY, EMPTY, 0.0,
-        DEEP, side.found, False, 0.0, NO_SAMPLES,
+        NOTHING, side.n, side.u, side.w, side.r, side.last, 0, 0.0, 0.0, 0.0, 0, NO_SAMPLES, EMPTY, EMPTY, 0.0, DEEP,
+        side.found, False, 0.0, NO_SAMPLES, EMPTY,
     )  # fmt: skip
 
 
 def _wall(side: SideState, begun: float, sums: Sums, samples: tuple[Heard, ...], fresh: bool) -> SideState:
     return SideState(
         WALL, side.n, side.u, side.w, side.r, side.last, side.steady, begun, side.extent, samples[0].u, side.taken,
-        samples, sums, side.before, side.edge, side.depth, side.found, fresh, side.edge_b, NO_SAMPLES,
+        samples, sums, side.before, side.edge, side.depth, side.found, fresh, side.edge_b, NO_SAMPLES, side.behind,
     )  # fmt: skip
 
 
 def _with_bin(side: SideState, n: float, u: float, w: float, r: float) -> SideState:
     return SideState(
         side.mode, n, u, w, r, side.last, side.steady, side.begun, side.extent, side.missed, side.taken,
-        side.samples, side.sums, side.before, side.edge, side.depth, side.found, side.fresh, side.edge_b,
-        side.faces,
+        side.samples, side.sums, side.before, side.edge, side.depth, side.found, side.fresh, side.edge_b, side.faces,
+        side.behind,
     )  # fmt: skip
 
 
@@ -261,6 +268,7 @@ def _with_last(side: SideState, last: Heard, steady: int) -> SideState:
     return SideState(
         side.mode, side.n, side.u, side.w, side.r, last, steady, side.begun, side.extent, side.missed, side.taken,
         side.samples, side.sums, side.before, side.edge, side.depth, side.found, False, side.edge_b, side.faces,
+        side.behind,
     )  # fmt: skip
 
 
@@ -268,7 +276,7 @@ def _with_faces(side: SideState, faces: tuple[Heard, ...]) -> SideState:
     return SideState(
         side.mode, side.n, side.u, side.w, side.r, side.last, side.steady, side.begun, side.extent, side.missed,
         side.taken, side.samples, side.sums, side.before, side.edge, side.depth, side.found, side.fresh, side.edge_b,
-        faces,
+        faces, side.behind,
     )  # fmt: skip
 
 
@@ -276,5 +284,5 @@ def _not_fresh(side: SideState) -> SideState:
     return SideState(
         side.mode, side.n, side.u, side.w, side.r, side.last, side.steady, side.begun, side.extent, side.missed,
         side.taken, side.samples, side.sums, side.before, side.edge, side.depth, side.found, False, side.edge_b,
-        side.faces,
+        side.faces, side.behind,
     )  # fmt: skip

@@ -24,8 +24,6 @@ FLAGS = [
     "--disable-component-update",
     "--disable-sync",
 ]
-BOXES = "[[-11.2, -3, 0, 4.2, 1.7], [-0.9, -3, 0, 4.2, 1.7], [1, 3.5, 0.3, 1.2, 1.2, 6, 1e9]]"
-SCENE = ["--set", f"vehicle.scene.boxes={BOXES}", "--set", "vehicle.scene.kerbs=[[-14, -4.3, 3, -4.3, 0.15]]"]
 GENTLE = ["--set", "vehicle.driver.profile=[[0, 0.8]]", "--set", "vehicle.driver.obeys_slow_down=true"]
 
 
@@ -41,7 +39,7 @@ def main() -> None:
         photograph(browser, runs["report"], "report", "#t=14.5", wide)
         photograph(browser, runs["report"], "report-dark", "#t=14.5", {**wide, "color_scheme": "dark"})
         photograph(browser, runs["report"], "report-phone", "#t=12", {**phone, "color_scheme": "dark"})
-        photograph(browser, runs["sensors"], "report-sensors", "#t=14.5", wide)
+        photograph(browser, runs["apa"], "report-apa", "#t=22", wide)
         photograph(browser, runs["compare"], "compare", "#t=9", wide)
         photograph(browser, runs["tests"], "tests", "", {"viewport": {"width": 1300, "height": 800}})
         browser.close()
@@ -52,14 +50,14 @@ def make_runs(folder: Path) -> dict[str, Path]:
     case4, gentle = folder / "case4", folder / "gentle"
     apa(["run", "guo2015-case4", "--fmus", "none", "--out", str(case4)])
     apa(["run", "guo2015-case4", "--fmus", "none", "--no-figure", "--out", str(gentle), *GENTLE])
-    apa(["run", "guo2015-case4", "--fmus", "none", "--out", str(folder / "sensors"), *SCENE])
+    apa(["run", "apa-parallel", "--fmus", "none", "--out", str(folder / "apa")])
     overlay = folder / "overlay.html"
     limits = ["--abs", "0.01", "--time", "0.2"]
     apa(["compare", str(case4 / "run.mcap"), str(gentle / "run.mcap"), "--html", str(overlay), *limits])
     apa(["test", "guo2015-*", "fault-*", "--fmus", "none", "--out", str(folder / "tests")])
     return {
         "report": case4 / "report.html",
-        "sensors": folder / "sensors" / "report.html",
+        "apa": folder / "apa" / "report.html",
         "compare": overlay,
         "tests": folder / "tests" / "index.html",
     }

@@ -32,6 +32,8 @@ STOP = 150.0
 PARKED, FAILED = int(Mode.PARKING_FINISH), int(Mode.FAIL)
 BEHIND = 0.4
 """A wall stands so much [m] deeper than the car is wide behind a parallel slot."""
+SHIFTS = {PARALLEL: 8, PERPENDICULAR: 7}
+"""Of GB/T 41630."""
 GHOST = 0.5
 """A slot found further off than this [m], or of the wrong kind, is one that is not there."""
 KEPT = (
@@ -250,14 +252,13 @@ def _seen_from(pose: Pose, point: tuple[float, float]) -> tuple[float, float]:
 
 def is_within_gbt(result: Result) -> bool:
     """Return whether the car is parked within GB/T 41630: heading, lateral position, shifts, no contact."""
-    most = 8 if result.case.kind == PARALLEL else 7
-    parked = result.mode == PARKED and result.shifts <= most and result.nearest > 0.0
+    parked = result.mode == PARKED and result.shifts <= SHIFTS[result.case.kind] and result.nearest > 0.0
     return parked and abs(result.lateral) <= 0.15 and abs(result.heading) <= math.radians(3.0)
 
 
-def is_within_house(result: Result) -> bool:
-    """Return whether the car is parked within the house limits."""
-    good = is_within_gbt(result) and result.shifts <= 3 and result.parking_time <= 60.0 and result.nearest >= 0.1
+def is_within_house(result: Result, shifts: int = 3) -> bool:
+    """Return whether the car is parked within the house limits, of which that of the shifts can be another."""
+    good = is_within_gbt(result) and result.shifts <= shifts and result.parking_time <= 60.0 and result.nearest >= 0.1
     return good and abs(result.lateral) <= 0.05 and abs(result.heading) <= math.radians(1.0)
 
 

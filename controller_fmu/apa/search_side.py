@@ -38,6 +38,8 @@ AGREE = 0.15
 """Echoes of the same kerb or wall differ by no more than this [m]."""
 STAGGER = 0.3
 """The next neighbour may stand this much [m] further in."""
+FURTHER = 1.0
+"""It may be this much [m] further away than the farthest first neighbour looked at: cars drive away from the row."""
 
 
 class SideState(NamedTuple):
@@ -150,7 +152,7 @@ def _on_wall(side: SideState, sample: Heard, half_angle: float, params: SearchPa
     if sample.u - side.missed < CONFIRMED:
         return side
     extent = side.missed - side.begun
-    if side.sums.n < 3.0 or extent < params.wall:
+    if side.sums.n < 3.0 or extent < params.wall or abs(slope(side.sums, EMPTY)) > STEEPEST:
         return _fresh_start(side)
     edge = corner(side.samples + side.faces, _line(side.sums, EMPTY), -1.0, half_angle)
     extent = edge - side.begun
@@ -188,7 +190,8 @@ def _still_heard(sums: Sums, other: Sums, sample: Heard, sense: float, half_angl
 
 def _in_gap(side: SideState, sample: Heard, half_angle: float, params: SearchParams) -> SideState:
     d = distance(_line(side.before, EMPTY), sample.u, sample.w)
-    if sample.r < _still_heard(side.before, EMPTY, sample, 1.0, half_angle) + STAGGER:
+    most = _still_heard(side.before, EMPTY, sample, 1.0, half_angle) + STAGGER
+    if sample.r < most and sample.r < params.beside + FURTHER:
         return SideState(
         NEXT_WALL, side.n, side.u, side.w, side.r, side.last, 0, sample.u, side.extent, sample.u, 1,
         append(NO_SAMPLES, sample, 0), EMPTY, side.before, side.edge, side.depth, side.found, False, 0.0, side.faces,

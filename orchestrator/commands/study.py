@@ -11,12 +11,25 @@ from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, T
 from rich.table import Table
 
 from controller_fmu.apa.chart import Mode
+from controller_fmu.apa.slot import PARALLEL, PERPENDICULAR
 from controller_fmu.interface import Reason
-from orchestrator.apa_grid import KEPT, Case, Result, cases, drive, is_ghost, is_within_gbt, is_within_house, totals
+from orchestrator.apa_grid import (
+    KEPT,
+    SHIFTS,
+    Case,
+    Result,
+    cases,
+    drive,
+    is_ghost,
+    is_within_gbt,
+    is_within_house,
+    totals,
+)
 from orchestrator.apa_loop import Loop
 from orchestrator.fmu_files import can_compile
 from orchestrator.terminal import console
 
+KINDS = {PARALLEL: "parallel", PERPENDICULAR: "perpendicular"}
 EPILOG = """examples:
   apa study apa-grid                     every run of the grid: a minute or two where models can be compiled
   apa study apa-grid --every 20          each 20th run
@@ -54,6 +67,7 @@ def run(arguments: argparse.Namespace) -> int:
         print(json.dumps([{**result._asdict(), "case": result.case._asdict()} for result in results]))
     else:
         console().print(_table(results))
+        console().print(_by_size(results))
     return 1 if any(result.nearest <= 0.0 for result in results) else 0
 
 
@@ -87,9 +101,30 @@ def _table(results: list[Result]) -> Table:
     return table
 
 
+def _by_size(results: list[Result]) -> Table:
+    """Return how the limits are met in slots of each size: what a slot allows depends on it."""
+    table = Table(box=None, pad_edge=False)
+    columns = ("slot", "runs", "GB/T", "house", "house, but shifts as GB/T", "shifts", "nearest")
+    for name in columns:
+        table.add_column(name, justify="left" if name == "slot" else "right")
+    for kind, extra in sorted({(result.case.kind, result.case.extra) for result in results}):
+        group = [result for result in results if (result.case.kind, result.case.extra) == (kind, extra)]
+        shifts = sorted(result.shifts for result in group)
+        table.add_row(
+            f"{KINDS[kind]}, ISO's shortest + {extra:.1f} m",
+            str(len(group)),
+            str(sum(is_within_gbt(result) for result in group)),
+            str(sum(is_within_house(result) for result in group)),
+            str(sum(is_within_house(result, SHIFTS[kind]) for result in group)),
+            f"{shifts[0]} to {shifts[-1]}",
+            f"{100.0 * min(result.nearest for result in group):.0f} cm",
+        )
+    return table
+
+
 def _line(result: Result) -> str:
     case = result.case
-    kind = "parallel" if case.kind == 1 else "perpendicular"
+    kind = KINDS[case.kind]
     side = "right" if case.side > 0 else "left"
     end = Mode(result.mode).name.lower() if result.reason == 0 else Reason(result.reason).name.lower()
     verdict = "house" if is_within_house(result) else "gbt" if is_within_gbt(result) else "-"

@@ -28,6 +28,7 @@ EXTRA = {PARALLEL: (0.0, 0.4, 0.8, 1.6), PERPENDICULAR: (0.0, 0.3, 0.8)}
 BESIDE = (0.5, 1.0, 1.5)
 HEADINGS = (-5.0, 0.0, 5.0)
 SPEEDS = (1.0, 2.5, 20.0 / 3.6)
+LOTS = 10_000
 STOP = 150.0
 PARKED, FAILED = int(Mode.PARKING_FINISH), int(Mode.FAIL)
 BEHIND = 0.4
@@ -76,6 +77,8 @@ class Case(NamedTuple):
     """Of the driver during the search [m/s]."""
     length: float
     """Of the slot along the road [m]."""
+    lot: int
+    """Which draw of speeds, noise and odometry errors."""
 
 
 class Result(NamedTuple):
@@ -103,8 +106,8 @@ class Result(NamedTuple):
     """It stood inside the start range, see :mod:`orchestrator.apa_start`."""
 
 
-def cases() -> list[Case]:
-    """Return the whole grid; what is drawn by lot is drawn from the case's number."""
+def cases(lot: int = 0) -> list[Case]:
+    """Return the whole grid; what is drawn by lot is drawn from the case's number and ``lot``."""
     found: list[Case] = []
     for car, (wheelbase, front, rear, width, _) in CARS.items():
         for kind in (PARALLEL, PERPENDICULAR):
@@ -114,17 +117,19 @@ def cases() -> list[Case]:
                         for degrees in HEADINGS:
                             for body in BODIES:
                                 number = len(found)
-                                speed = SPEEDS[random.Random(number).randrange(len(SPEEDS))]
+                                speed = SPEEDS[random.Random(number + LOTS * lot).randrange(len(SPEEDS))]
                                 length = _shortest(kind, wheelbase + front + rear, width) + extra
                                 heading = math.radians(degrees)
-                                found.append(Case(number, car, kind, side, extra, beside, heading, body, speed, length))
+                                found.append(
+                                    Case(number, car, kind, side, extra, beside, heading, body, speed, length, lot)
+                                )
     return found
 
 
 def parameters(case: Case) -> tuple[dict[str, Any], dict[str, Any]]:
     """Return (vehicle, controller) parameters of a case."""
     wheelbase, front, rear, width, radius = CARS[case.car]
-    lot = random.Random(1000 + case.number)
+    lot = random.Random(1000 + case.number + LOTS * case.lot)
     lock = RATIO * math.atan(wheelbase / radius)
     car = {"wheelbase": wheelbase, "front_overhang": front, "rear_overhang": rear, "width": width}
     vehicle: dict[str, Any] = {**car, "body": BODY[case.body], "steering.ratio": RATIO, "steering.angle_limit": lock}
@@ -134,7 +139,11 @@ def parameters(case: Case) -> tuple[dict[str, Any], dict[str, Any]]:
     for number, (x, y) in enumerate(mounts(wheelbase + front, -rear, 0.5 * width), start=1):
         vehicle |= {f"ultrasonic.mounts[{number}].x": x, f"ultrasonic.mounts[{number}].y": y}
         controller |= {f"apa.sensors.mounts[{number}].x": x, f"apa.sensors.mounts[{number}].y": y}
-    vehicle |= {"ultrasonic.noise": 0.01, "ultrasonic.dropout": 0.01, "ultrasonic.seed": case.number + 1}
+    vehicle |= {
+        "ultrasonic.noise": 0.01,
+        "ultrasonic.dropout": 0.01,
+        "ultrasonic.seed": case.number + 1 + LOTS * case.lot,
+    }
     vehicle |= {"odometry.perfect": False, "odometry.radius_error": lot.uniform(-0.005, 0.005), "odometry.tick": 0.02}
     vehicle |= {"odometry.steering_offset": lot.uniform(-0.001, 0.001), "odometry.steering_resolution": 0.001}
     vehicle |= {"driver.apa_switch_time": 0.5, "driver.profile[1].speed": case.speed}

@@ -45,6 +45,9 @@ def add_parser(subparsers: Any) -> argparse.ArgumentParser:
     parser.add_argument("--every", type=int, default=1, metavar="N", help="only each N-th run")
     parser.add_argument("--first", type=int, default=0, metavar="N", help="begin at run N")
     parser.add_argument("--run", type=int, metavar="N", dest="number", help="only this run")
+    parser.add_argument(
+        "--lot", type=int, default=0, metavar="N", help="another draw of speeds, noise, odometry errors"
+    )
     parser.add_argument("--all", action="store_true", help="a line for every run, not only for those that miss GB/T")
     parser.add_argument("--plain", action="store_true", help="plain Python, not compiled: slower, the same bits")
     parser.add_argument("--json", action="store_true", help="print JSON")
@@ -54,9 +57,9 @@ def add_parser(subparsers: Any) -> argparse.ArgumentParser:
 def run(arguments: argparse.Namespace) -> int:
     """Print a line for each run that misses GB/T, and the totals. Returns 1 if a run touched something."""
     loop = Loop(KEPT, compiled=can_compile() and not arguments.plain)
-    chosen = cases()[arguments.first :: max(arguments.every, 1)]
+    chosen = cases(arguments.lot)[arguments.first :: max(arguments.every, 1)]
     if arguments.number is not None:
-        chosen = [case for case in cases() if case.number == arguments.number]
+        chosen = [case for case in cases(arguments.lot) if case.number == arguments.number]
     results = []
     for result in _driven(chosen, loop):
         results.append(result)

@@ -48,6 +48,7 @@ def test_the_grid_covers_what_it_says() -> None:
     for field in ("car", "kind", "side", "extra", "beside", "heading", "body", "speed"):
         assert {getattr(case, field) for case in part} == {getattr(case, field) for case in grid}
     assert parameters(grid[5]) == parameters(cases()[5])
+    assert parameters(grid[5]) != parameters(cases(1)[5])
 
 
 @needs_compiler
@@ -99,7 +100,7 @@ def test_some_runs_in_plain_python_are_parked_within_gbt() -> None:
 
 @needs_compiler
 def test_the_command_prints_the_table(capsys: pytest.CaptureFixture[str]) -> None:
-    asked = argparse.Namespace(first=0, every=400, number=None, all=True, plain=False, json=False)
+    asked = argparse.Namespace(first=0, every=400, lot=0, number=None, all=True, plain=False, json=False)
     assert run(asked) == 0
     printed = capsys.readouterr().out
     assert "touched something" in printed

@@ -24,7 +24,7 @@ STEP = 0.016
 BAND = 0.02
 SPREAD = 0.03
 """Further than this [m], and what the noise of the readings makes the line unsure by, is off the line."""
-CONFIRMED = 0.4
+CONFIRMED = 0.3
 """A gap is one once it is this long [m]: shorter ones are lost echoes."""
 DEEP = 50.0
 STEEPEST = 0.15
@@ -165,9 +165,9 @@ def _on_wall(side: SideState, sample: Heard, half_angle: float, params: SearchPa
 def _with_sample(sums: Sums, other: Sums, sample: Heard, steady: int) -> Sums:
     """Return the sums with a sample that belongs to the flat side, not to its corner.
 
-    A corner is heard further away than the side's line: such a sample is left out. One that is nearer, or one
-    of many in a row that are level, shows that those few before it were of the corner: the sums begin anew. How
-    far off is too far follows from how unsure the line is itself.
+    A corner is heard further away than the side's line: such a sample is left out. While the samples are few,
+    one that is nearer, or one of many in a row that are level, shows that those before it were of the corner:
+    the sums begin anew. How far off is too far follows from how unsure the line is itself.
     """
     if steady < 2:
         return sums
@@ -175,7 +175,7 @@ def _with_sample(sums: Sums, other: Sums, sample: Heard, steady: int) -> Sums:
         off = sample.r - distance(_line(sums, other), sample.u, sample.w)
         beyond = sample.u - sums.u / sums.n
         band = BAND + SPREAD * math.sqrt(1.0 / sums.n + beyond * beyond / (spread(sums) + spread(other)))
-        if band < off and (steady < LONG_STEADY or sums.n >= MANY):
+        if abs(off) > band and (sums.n >= MANY or (off > 0.0 and steady < LONG_STEADY)):
             return sums
         if abs(off) > band:
             sums = EMPTY

@@ -95,7 +95,7 @@ def overhead() -> None:
 
     def whole() -> None:
         with tempfile.TemporaryDirectory() as folder:
-            sweep(study(MANOEUVRES), Path(folder), Options(workers=1, chunk=100))
+            sweep(study(MANOEUVRES), Path(folder), Options(workers=1))
 
     wall, processor = measured(whole)
     print(f"sweep of {MANOEUVRES} on one thread: {processor:.2f} s of processor, the runs alone {mine:.2f} s: "

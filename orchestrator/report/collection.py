@@ -9,29 +9,15 @@ import numpy as np
 
 from orchestrator.geometry import Car, place, slot_box
 from orchestrator.recording import Recording
-from orchestrator.report.page import style
+from orchestrator.report.page import still_page
 from orchestrator.scene import pose_of
 from orchestrator.slave import Array
 from orchestrator.suite import Tested
 
-PAGE = """<!doctype html>
-<html lang="en" data-theme="auto">
-<head>
-<meta charset="utf-8">
-<meta name="viewport" content="width=device-width, initial-scale=1">
-<meta name="color-scheme" content="light dark">
-<meta http-equiv="Content-Security-Policy" content="default-src 'none'; style-src 'unsafe-inline'; img-src data:">
-<link rel="icon" href="data:,">
-<title>{title}</title>
-<style>{style}</style>
-</head>
-<body>
-<header class="top"><div class="headline"><h1>{title}</h1></div><span class="verdict {kind}">{verdict}</span></header>
+BODY = """<header class="top"><div class="headline"><h1>{title}</h1></div><span class="verdict {kind}">{verdict}</span></header>
 <main class="runs">
 {cards}
 </main>
-</body>
-</html>
 """
 CARD = """<article class="card run {kind}">
 <a href="{link}" class="picture" aria-label="Replay of {name}">{picture}</a>
@@ -46,9 +32,10 @@ def write_collection(path: Path, tested: list[Tested]) -> None:
     passed = sum(item.passed for item in tested)
     kind = "good" if passed == len(tested) else "bad"
     cards = "\n".join(_card(item) for item in sorted(tested, key=lambda item: item.passed))
-    parts = {"title": "Scenarios tested", "style": style(), "kind": kind, "cards": cards}
+    title = "Scenarios tested"
+    body = BODY.format(title=title, verdict=f"{passed} of {len(tested)} passed", kind=kind, cards=cards)
     path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text(PAGE.format(verdict=f"{passed} of {len(tested)} passed", **parts), encoding="utf-8")
+    path.write_text(still_page(title, body), encoding="utf-8")
 
 
 def _card(item: Tested) -> str:

@@ -37,6 +37,28 @@ def policy(scripts: list[str]) -> str:
     return f"default-src 'none'; script-src {hashes}; style-src 'unsafe-inline'; img-src data:; form-action 'none'"
 
 
+STILL_PAGE = """<!doctype html>
+<html lang="en" data-theme="auto">
+<head>
+<meta charset="utf-8">
+<meta name="viewport" content="width=device-width, initial-scale=1">
+<meta name="color-scheme" content="light dark">
+<meta http-equiv="Content-Security-Policy" content="default-src 'none'; style-src 'unsafe-inline'; img-src data:">
+<link rel="icon" href="data:,">
+<title>{title}</title>
+<style>{style}</style>
+</head>
+<body>
+{body}</body>
+</html>
+"""
+
+
+def still_page(title: str, body: str, more_style: str = "") -> str:
+    """Return a page without scripts that loads nothing; ``title`` is plain text, ``body`` HTML."""
+    return STILL_PAGE.format(title=html.escape(title), style=style() + more_style, body=body)
+
+
 def style() -> str:
     """Return the style sheet; the dark colours also hold where the system asks for dark."""
     style = _read(ROOM / "template" / "style.css")

@@ -10,33 +10,19 @@ import numpy as np
 import yaml
 
 from orchestrator.quantities import DEGREE
-from orchestrator.report.page import style
+from orchestrator.report.page import still_page
 from orchestrator.sweep.figures import histogram, scale_bar, success_map
 from orchestrator.sweep.statistics import for_people, influences, maps, parked, varied, wilson, worst
 from orchestrator.sweep.store import Table
 from orchestrator.sweep.verdict import RESULTS
 
-PAGE = """<!doctype html>
-<html lang="en" data-theme="auto">
-<head>
-<meta charset="utf-8">
-<meta name="viewport" content="width=device-width, initial-scale=1">
-<meta name="color-scheme" content="light dark">
-<meta http-equiv="Content-Security-Policy" content="default-src 'none'; style-src 'unsafe-inline'; img-src data:">
-<link rel="icon" href="data:,">
-<title>{title}</title>
-<style>{style}</style>
-</head>
-<body>
-<header class="top"><div class="headline"><h1>{title}</h1><p id="subtitle">{subtitle}</p></div>
+BODY = """<header class="top"><div class="headline"><h1>{title}</h1><p id="subtitle">{subtitle}</p></div>
 <span class="verdict {kind}">{verdict}</span></header>
 <dl class="facts">{facts}</dl>
 <main class="study">
 {cards}
 </main>
 <footer>{foot}</footer>
-</body>
-</html>
 """
 WORST = 12
 HISTOGRAMS = ("final.lateral_error", "final.heading_error", "duration", "shifts", "steering_effort", "min_clearance")
@@ -61,16 +47,17 @@ def study_page(table: Table) -> str:
     good = parked(table)
     share = 100.0 * good.mean()
     cards = [_maps(table), _reasons(table), _histograms(table), _influences(table), _worst(table), _about(table)]
-    return PAGE.format(
-        title=escape(study["title"] or study["name"]),
+    title = study["title"] or study["name"]
+    body = BODY.format(
+        title=escape(title),
         subtitle=escape(study["description"]),
-        style=style() + (Path(__file__).parent / "page.css").read_text(encoding="utf-8"),
         kind="good" if share >= 99.0 else "warn" if share >= 50.0 else "bad",
         verdict=f"{share:.1f} % parked",
         facts=_facts(table, int(good.sum())),
         cards="\n".join(card for card in cards if card),
         foot=escape(f"apa-cosim {table.about['versions'].get('apa-cosim', '')}, {table.path.name}"),
     )
+    return still_page(title, body, (Path(__file__).parent / "page.css").read_text(encoding="utf-8"))
 
 
 def _facts(table: Table, good: int) -> str:

@@ -14,7 +14,8 @@ from orchestrator.scene import pose_of
 from orchestrator.slave import Array
 from orchestrator.suite import Tested
 
-BODY = """<header class="top"><div class="headline"><h1>{title}</h1></div><span class="verdict {kind}">{verdict}</span></header>
+BODY = """<header class="top"><div class="headline"><h1>{title}</h1></div>
+<span class="verdict {kind}">{verdict}</span></header>
 <main class="runs">
 {cards}
 </main>

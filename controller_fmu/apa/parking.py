@@ -189,7 +189,6 @@ def _moved_on(
     inputs: ControllerInput,
     params: ControllerParams,
 ) -> Parking:
-    mirror = site.frame.mirror
     shifts = state.shifts
     direction = state.direction
     ended = state.ended
@@ -203,23 +202,30 @@ def _moved_on(
         ended = state.step == HALT and plan.moves <= 1
         attempt = under_way(attempt)
         plan = new_search(pose)
-    if step == SET_WHEEL and state.step == PLAN:
-        leg = Leg(0.0, next_standstill(plan.move, 0.0))
-        tracked = Tracked(0.0, length_of(plan.move), leg.end, pose, 0.0, 0.0, 0.0, 0.0)
-    if step == SET_WHEEL and state.step == HALT and tracked.to_stop < AT_JUMP:
-        leg = Leg(leg.end, next_standstill(plan.move, leg.end))
     if step == SET_WHEEL:
-        wheel = _wheel(mirror * set_wheel(plan.move, leg, tracked.way, params.wheelbase), params)
+        leg = _next_leg(state, plan, tracked)
+        if state.step == PLAN:
+            tracked = Tracked(0.0, length_of(plan.move), leg.end, pose, 0.0, 0.0, 0.0, 0.0)
+        wheel = _wheel(site.frame.mirror * set_wheel(plan.move, leg, tracked.way, params.wheelbase), params)
     if step == DRIVE:
         if state.step != DRIVE and plan.move.direction != direction:
             shifts = shifts + 1 if shifts > 0 or plan.move.direction < 0 else shifts
             direction = plan.move.direction
         speed = direction * _speed(tracked, sight, params)
     if step == DRIVE or step == HALT:
-        wheel = _wheel(mirror * tracked.front_wheel_angle, params)
+        wheel = _wheel(site.frame.mirror * tracked.front_wheel_angle, params)
     if step == STRAIGHTEN or step == IDLE:
         wheel = 0.0
     return Parking(step, plan, attempt, leg, tracked, shifts, direction, ended, cut, sight, wheel, speed)
+
+
+def _next_leg(state: Parking, plan: PlanSearch, tracked: Tracked) -> Leg:
+    """Return the part of the move to drive from this standstill on."""
+    if state.step == PLAN:
+        return Leg(0.0, next_standstill(plan.move, 0.0))
+    if state.step == HALT and tracked.to_stop < AT_JUMP:
+        return Leg(state.leg.end, next_standstill(plan.move, state.leg.end))
+    return state.leg
 
 
 def _speed(tracked: Tracked, sight: Sight, params: ControllerParams) -> float:

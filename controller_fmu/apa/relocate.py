@@ -10,7 +10,17 @@ import math
 
 from controller_fmu.apa.outline import Obstacles
 from controller_fmu.apa.parking import car_of
-from controller_fmu.apa.slot import PARALLEL, PERPENDICULAR, UNSEEN, Margins, Site, Slot, mirror_of, site_of
+from controller_fmu.apa.slot import (
+    LESS_BESIDE,
+    PARALLEL,
+    PERPENDICULAR,
+    UNSEEN,
+    Margins,
+    Site,
+    Slot,
+    mirror_of,
+    site_of,
+)
 from controller_fmu.apa.supervisor import WRONG, expected
 from controller_fmu.interface import ControllerInput, ControllerParams
 from controller_fmu.slot_frame import SlotFrame, to_slot, to_world
@@ -37,6 +47,7 @@ BESIDE = 0.35
 FARTHEST = 1.3
 GAIN = 0.12
 """Share of what one reading says."""
+OUT = 0.01
 RIM = 0.05
 """Nearer than this [rad] to the rim of its cone a sensor is not taken to hear what is square to it."""
 ACROSS = 0.45
@@ -102,13 +113,14 @@ def along(slot: Slot, inputs: ControllerInput, params: ControllerParams) -> Slot
     """Return a parallel slot moved a little across the road to where its kerb or wall is heard.
 
     The wall was heard from the road, as far behind the neighbours' sides as ``depth`` says; what its distance
-    differs by as the car comes in is what the odometry has drifted. Told once for each new reading.
+    differs by as the car comes in is what the odometry has drifted. Told once for each new reading. The slot
+    ends ``OUT`` further out than heard: short moves in it need the room, see docs/apa.md.
     """
     if slot.kind != PARALLEL or slot.depth >= UNSEEN:
         return slot
     mirror = mirror_of(slot)
     pose = to_slot(inputs.odometry, SlotFrame(slot.a, mirror))
-    site = site_of(slot, car_of(params), Margins(0.0, 0.0, 0.0))
+    site = site_of(slot, car_of(params), Margins(0.0, LESS_BESIDE - OUT, 0.0))
     total = 0.0
     heard = 0.0
     for number in (SIDES[1][0], SIDES[1][1], REAR_RIGHT) if mirror > 0.0 else (SIDES[0][0], SIDES[0][1], REAR_LEFT):

@@ -35,6 +35,8 @@ PARALLEL = int(Kind.PARALLEL)
 PERPENDICULAR = int(Kind.PERPENDICULAR)
 LEFT = int(Side.LEFT)
 UNSEEN = 50.0
+LESS_BESIDE = 0.01
+"""The margin to kerb or wall is taken this much [m] smaller, so that a target at that margin is free."""
 
 
 class Slot(NamedTuple):
@@ -102,7 +104,7 @@ def site_of(slot: Slot, car: Car, margins: Margins) -> Site:
     obstacles = Obstacles(
         grown(_seen_from(behind, x, y, turned), near),
         grown(_seen_from(ahead, x, y, turned), near),
-        grown(_seen_from(beside, x, y, turned), beside_margin - 0.01),
+        grown(_seen_from(beside, x, y, turned), beside_margin - LESS_BESIDE),
         grown(_seen_from(opposite, x, y, turned), near),
     )
     if turned:

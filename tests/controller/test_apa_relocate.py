@@ -6,7 +6,7 @@ import pytest
 
 from controller_fmu.apa.move import is_move_free
 from controller_fmu.apa.outline import Box, Car, Obstacles
-from controller_fmu.apa.relocate import along, between, braked, relocated
+from controller_fmu.apa.relocate import OUT, along, between, braked, relocated
 from controller_fmu.apa.slot import LEFT, PARALLEL, PERPENDICULAR, UNSEEN, Slot
 from controller_fmu.apa.supervisor import look
 from controller_fmu.apa.turns import straight_move
@@ -18,8 +18,6 @@ from vehicle_fmu.ultrasonic import MOUNTS, heard_distances
 PARAMS = ControllerParams()
 DRIFT = 0.08
 READINGS = 60
-WALL = 0.01
-"""The planner takes a wall to lie so much [m] further in, so that a target at its margin is free."""
 
 
 def scene_of(boxes, side):
@@ -57,7 +55,7 @@ def test_the_wall_of_a_parallel_slot_is_followed(side):
     heard = inputs_at(true, Pose(true.x, true.y + mirror * DRIFT, true.heading), boxes, side)
     for _ in range(READINGS):
         slot = along(slot, heard, PARAMS)
-    assert slot.a.y == pytest.approx(mirror * (DRIFT + WALL), abs=0.005)
+    assert slot.a.y == pytest.approx(mirror * (DRIFT + OUT), abs=0.005)
     assert (slot.length, slot.depth) == (6.0, 2.1)
 
 

@@ -15,41 +15,16 @@ from modelkit.geometry import Box, Point, cone_box, line_box, reach
 from modelkit.maths import clamp
 from modelkit.random import normal, seed_state, uniform
 from modelkit.signal import Signal
-from modelkit.vocabulary import Pose
+from modelkit.vocabulary import SENSOR_MOUNTS, Pose, SensorMount
 from vehicle_fmu.scene import HOUSE, SceneParams, is_there, obstacle_box
 
 USUAL = "usual for parking sensors"
 
 
-class Mount(NamedTuple):
-    """Where a sensor sits on the car and where it looks."""
-
-    x: Annotated[float, Signal("m", "ahead of the rear axle")] = 0.0
-    y: Annotated[float, Signal("m", "to the left of the car's middle")] = 0.0
-    yaw: Annotated[float, Signal("rad", "direction of its axis, left positive")] = 0.0
-
-
-MOUNTS = (
-    Mount(3.10, 0.68, pi / 6.0),
-    Mount(3.205, 0.25, 0.0),
-    Mount(3.205, -0.25, 0.0),
-    Mount(3.10, -0.68, -pi / 6.0),
-    Mount(-0.50, 0.68, pi * 5.0 / 6.0),
-    Mount(-0.60, 0.25, pi),
-    Mount(-0.60, -0.25, pi),
-    Mount(-0.50, -0.68, -pi * 5.0 / 6.0),
-    Mount(2.80, 0.825, pi / 2.0),
-    Mount(-0.20, 0.825, pi / 2.0),
-    Mount(2.80, -0.825, -pi / 2.0),
-    Mount(-0.20, -0.825, -pi / 2.0),
-)
-"""For the car of Guo 2015 with its outline: 3.205 m ahead, 0.6 m behind, 0.825 m to each side."""
-
-
 class UltrasonicParams(NamedTuple):
     """Mounting and quality of the sensors; noise and dropout are off by default."""
 
-    mounts: tuple[Mount, ...] = MOUNTS
+    mounts: tuple[SensorMount, ...] = SENSOR_MOUNTS
     half_angle: Annotated[float, Signal("rad", "half opening of the cone", 0.01, 1.5, USUAL)] = 30.0 * pi / 180.0
     min_range: Annotated[float, Signal("m", "nearest distance told", 0.0, 10.0, USUAL)] = 0.15
     max_range: Annotated[float, Signal("m", "farthest distance heard", 0.1, 100.0, USUAL)] = 5.0
@@ -119,7 +94,7 @@ def measure(
 def heard_distances(
     pose: Pose,
     scene: SceneParams,
-    mounts: tuple[Mount, ...],
+    mounts: tuple[SensorMount, ...],
     half_angle: float,
     max_range: float,
     kerb_height: float,
@@ -139,7 +114,7 @@ def heard_distances(
     return d
 
 
-def _hear(d: Twelve, pose: Pose, ahead: Point, mounts: tuple[Mount, ...], half: float, box: Box) -> Twelve:
+def _hear(d: Twelve, pose: Pose, ahead: Point, mounts: tuple[SensorMount, ...], half: float, box: Box) -> Twelve:
     return (
         _nearer(d[0], pose, ahead, mounts[0], half, box),
         _nearer(d[1], pose, ahead, mounts[1], half, box),
@@ -156,7 +131,7 @@ def _hear(d: Twelve, pose: Pose, ahead: Point, mounts: tuple[Mount, ...], half: 
     )
 
 
-def _nearer(nearest: float, pose: Pose, ahead: Point, mount: Mount, half_angle: float, box: Box) -> float:
+def _nearer(nearest: float, pose: Pose, ahead: Point, mount: SensorMount, half_angle: float, box: Box) -> float:
     """Return the smaller of ``nearest`` and what one sensor hears of a box; ``ahead`` is the car's unit vector."""
     start = Point(
         pose.x + mount.x * ahead.x - mount.y * ahead.y,

@@ -6,6 +6,7 @@ from typing import Annotated, NamedTuple
 
 from controller_fmu.apa.slot import Slot
 from modelkit.signal import Signal
+from modelkit.vocabulary import SENSOR_MOUNTS, SensorMount
 
 HOUSE = "chosen; the source states none"
 SOURCE = "APA function requirements"
@@ -29,34 +30,10 @@ class Wish(IntEnum):
     PERPENDICULAR = 2
 
 
-class SensorMount(NamedTuple):
-    """Where a sensor sits on the car and where it looks."""
-
-    x: Annotated[float, Signal("m", "ahead of the rear axle")] = 0.0
-    y: Annotated[float, Signal("m", "to the left of the car's middle")] = 0.0
-    yaw: Annotated[float, Signal("rad", "direction of its axis, left positive")] = 0.0
-
-
-MOUNTS = (
-    SensorMount(3.10, 0.68, pi / 6.0),
-    SensorMount(3.205, 0.25, 0.0),
-    SensorMount(3.205, -0.25, 0.0),
-    SensorMount(3.10, -0.68, -pi / 6.0),
-    SensorMount(-0.50, 0.68, pi * 5.0 / 6.0),
-    SensorMount(-0.60, 0.25, pi),
-    SensorMount(-0.60, -0.25, pi),
-    SensorMount(-0.50, -0.68, -pi * 5.0 / 6.0),
-    SensorMount(2.80, 0.825, pi / 2.0),
-    SensorMount(-0.20, 0.825, pi / 2.0),
-    SensorMount(2.80, -0.825, -pi / 2.0),
-    SensorMount(-0.20, -0.825, -pi / 2.0),
-)
-
-
 class SensorParams(NamedTuple):
     """The twelve ultrasonic sensors as the controller believes them to be."""
 
-    mounts: tuple[SensorMount, ...] = MOUNTS
+    mounts: tuple[SensorMount, ...] = SENSOR_MOUNTS
     half_angle: Annotated[float, Signal("rad", "half opening of the cone", 0.01, 1.5, USUAL)] = 30.0 * pi / 180.0
     min_range: Annotated[float, Signal("m", "nearest distance told", 0.0, 10.0, USUAL)] = 0.15
     max_range: Annotated[float, Signal("m", "farthest distance heard", 0.1, 100.0, USUAL)] = 5.0

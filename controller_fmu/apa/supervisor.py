@@ -9,11 +9,11 @@ import math
 from typing import NamedTuple
 
 from controller_fmu.apa.outline import Box, Obstacles, grown
-from controller_fmu.apa.params import ApaParams, SensorMount
+from controller_fmu.apa.params import ApaParams
 from controller_fmu.apa.speed import stopping_way
 from modelkit.geometry import Box as OrientedBox
 from modelkit.geometry import Point, cone_box
-from modelkit.vocabulary import Pose
+from modelkit.vocabulary import Pose, SensorMount
 
 FREE = 100.0
 STRAIGHT = 0.2

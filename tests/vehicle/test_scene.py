@@ -8,11 +8,10 @@ import shapely
 from shapely import affinity
 
 from modelkit.geometry import FAR
-from modelkit.vocabulary import Pose
+from modelkit.vocabulary import SENSOR_MOUNTS, Pose
 from vehicle_fmu.odometry import OdometryParams, OdometryState, reckon, told_speed
 from vehicle_fmu.scene import CarSize, Kerb, Obstacle, SceneParams, clearance
 from vehicle_fmu.ultrasonic import (
-    MOUNTS,
     UltrasonicParams,
     first_readings,
     is_due,
@@ -84,7 +83,7 @@ def test_readings_are_shapelys_distances_in_the_cone() -> None:
         scene = random_scene(draw)
         pose = Pose(draw.uniform(-6, 6), draw.uniform(-6, 6), draw.uniform(-4, 4))
         state = first_readings(pose, scene, EXACT)
-        for reading, mount in zip(state.readings, MOUNTS, strict=True):
+        for reading, mount in zip(state.readings, SENSOR_MOUNTS, strict=True):
             cos, sin = math.cos(pose.heading), math.sin(pose.heading)
             x, y = pose.x + mount.x * cos - mount.y * sin, pose.y + mount.x * sin + mount.y * cos
             axis = pose.heading + mount.yaw

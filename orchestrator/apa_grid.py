@@ -13,6 +13,7 @@ from controller_fmu.apa.slot import PARALLEL, PERPENDICULAR, Side, Slot
 from modelkit.vocabulary import Pose
 from orchestrator.apa_loop import Loop
 from orchestrator.apa_start import is_inside
+from orchestrator.geometry import in_frame
 
 BODIES = ("kinematic", "double_track")
 BODY = {"kinematic": 0, "double_track": 2}
@@ -254,9 +255,7 @@ def _pose(row: Mapping[str, float], name: str) -> Pose:
 
 
 def _seen_from(pose: Pose, point: tuple[float, float]) -> tuple[float, float]:
-    dx, dy = point[0] - pose.x, point[1] - pose.y
-    c, s = math.cos(pose.heading), math.sin(pose.heading)
-    return dx * c + dy * s, dy * c - dx * s
+    return in_frame(*point, 0.0, pose)[:2]
 
 
 def is_within_gbt(result: Result) -> bool:

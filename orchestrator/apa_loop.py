@@ -114,5 +114,5 @@ def _plain(model: Model) -> Start:
 
 def _values(model: Model, changes: dict[str, Any]) -> tuple[list[Any], list[Any], list[Any], list[Any]]:
     """Return state, inputs, parameters and outputs at the start."""
-    params = list(flatten(with_values(model.params, changes)))
-    return list(flatten(model.state())), list(flatten(model.inputs())), params, list(flatten(model.outputs()))
+    params = flatten(with_values(model.params, changes))
+    return flatten(model.state()), flatten(model.inputs()), params, flatten(model.outputs())

@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from orchestrator.confidence import wilson
 from orchestrator.load_scenario import load_scenario
 from orchestrator.reproduce.many import parameter_row, timed_rows
 from orchestrator.scenario import Scenario
@@ -23,7 +24,6 @@ STEERING = {"30 deg/s": "guo2015-case4", "105 deg/s": "guo2015-case4-105"}
 """Rate of the front wheels, of Table 1 and of Fig. 12, and the scenario that has it."""
 LIMITS = {"house": (0.05, 1.0), "GB/T 41630": (0.15, 3.0)}
 """Largest lateral error [m] and heading [deg] of a success."""
-Z95 = 1.959964
 
 
 class Group(NamedTuple):
@@ -76,16 +76,13 @@ def study(runs: int, seed: int) -> Study:
             for limit, (side, angle) in LIMITS.items():
                 within = (np.abs(lateral) <= side) & (np.abs(heading) <= math.radians(angle))
                 success[Group(system, steering, limit)] = (phase == PARKED) & within
-    rates = [wilson(group, runs, int(won.sum())) for group, won in success.items()]
+    rates = [rate_of(group, runs, int(won.sum())) for group, won in success.items()]
     return Study(SPEED * (1.0 + error), success, rates)
 
 
-def wilson(group: Group, runs: int, successes: int) -> Rate:
+def rate_of(group: Group, runs: int, successes: int) -> Rate:
     """Return the rate with Wilson's 95 % interval."""
-    p, z2 = successes / runs, Z95 * Z95
-    centre = (p + z2 / (2 * runs)) / (1 + z2 / runs)
-    half = Z95 * math.sqrt(p * (1 - p) / runs + z2 / (4 * runs * runs)) / (1 + z2 / runs)
-    return Rate(group, runs, successes, max(0.0, centre - half), min(1.0, centre + half))
+    return Rate(group, runs, successes, *wilson(successes, runs))
 
 
 def _scenario(name: str, system: str) -> Scenario:

@@ -9,10 +9,11 @@ from typing import Any
 import numpy as np
 import yaml
 
+from orchestrator.confidence import wilson
 from orchestrator.quantities import DEGREE
 from orchestrator.report.page import still_page
 from orchestrator.sweep.figures import histogram, scale_bar, success_map
-from orchestrator.sweep.statistics import for_people, influences, maps, parked, varied, wilson, worst
+from orchestrator.sweep.statistics import for_people, influences, maps, parked, varied, worst
 from orchestrator.sweep.store import Table
 from orchestrator.sweep.verdict import RESULTS
 

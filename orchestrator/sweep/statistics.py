@@ -1,6 +1,5 @@
 """What a table says: success rates over two parameters, what the result depends on, which runs are worst."""
 
-import math
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -15,8 +14,6 @@ from orchestrator.sweep.study import Axes
 MOST_VALUES = 60
 """An axis with more different values than this is divided into bins."""
 BINS = 24
-Z95 = 1.959963984540054
-"""Of the normal distribution: 95 % of it lie within +-Z95."""
 
 
 class Axis(NamedTuple):
@@ -67,17 +64,6 @@ def varied(table: Table) -> list[str]:
         if len(np.unique(values)) > 1 and not any(np.array_equal(values, other) for other in found.values()):
             found[key] = values
     return list(found)
-
-
-def wilson(successes: int, count: int) -> tuple[float, float]:
-    """Return the 95 % confidence interval of a success rate (Wilson 1927)."""
-    if count == 0:
-        return 0.0, 1.0
-    p, z2 = successes / count, Z95 * Z95
-    middle = p + z2 / (2.0 * count)
-    half = Z95 * math.sqrt(p * (1.0 - p) / count + z2 / (4.0 * count * count))
-    scale = 1.0 + z2 / count
-    return max(0.0, (middle - half) / scale), min(1.0, (middle + half) / scale)
 
 
 def parked(table: Table) -> NDArray[np.bool_]:

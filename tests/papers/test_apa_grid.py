@@ -24,6 +24,8 @@ from orchestrator.fmu_files import can_compile
 needs_compiler = pytest.mark.skipif(not can_compile(), reason="needs numba, LLVM and a C compiler")
 EVERY = 5
 """Each so many-th run: every car, kind, side, slot, distance, heading, body and speed are among them."""
+MILD = (62, 93, 186, 310, 658)
+"""Runs without a miss of any kind."""
 PLAIN = (62, 658)
 """Driven in plain Python as well: one parallel, one perpendicular."""
 
@@ -82,6 +84,14 @@ def test_corners_are_found_and_no_slot_where_there_is_none(results: list[Result]
     slow = [result for result in results if result.case.speed < 5.0]
     assert max(max(result.corner_a, result.corner_b) for result in slow) < 0.1
     assert max(max(result.corner_a, result.corner_b) for result in results) < 0.2
+
+
+@needs_compiler
+def test_these_runs_are_parked_within_gbt_with_all_corners_found() -> None:
+    loop = Loop(KEPT, compiled=True)
+    mild = [drive(cases()[number], loop) for number in MILD]
+    assert [result.case.number for result in mild if not is_within_gbt(result)] == []
+    assert max(max(result.corner_a, result.corner_b) for result in mild) < 0.1
 
 
 @needs_compiler

@@ -9,7 +9,7 @@ import pytest
 from controller_fmu.zhang2022.key_points import arc_line_arc, largest_radius
 from controller_fmu.zhang2022.path import CURVATURE_LIMIT, FOUND, STEEPEST, plan, through
 from modelkit.vocabulary import Pose
-from orchestrator.bakeoff.driver_study import LIMITS, STEERING, SYSTEMS, Group, study, wilson
+from orchestrator.bakeoff.driver_study import LIMITS, STEERING, SYSTEMS, Group, rate_of, study
 from orchestrator.bakeoff.entries import ASSIST, CONTROLLERS, SLOTS, STARTS, Entry, entries, scenario_of
 from orchestrator.bakeoff.results import Result, results
 from orchestrator.cli import main
@@ -112,7 +112,7 @@ def test_point_tracking_parks_more_drivers_than_path_tracking_alone() -> None:
 
 def test_wilson_keeps_to_shares() -> None:
     group = Group("ntbpt", "30 deg/s", "house")
-    none, half = wilson(group, 100, 0), wilson(group, 100, 50)
+    none, half = rate_of(group, 100, 0), rate_of(group, 100, 50)
     assert none.low == 0.0
     assert none.high == pytest.approx(0.0370, abs=1e-4)
     assert (half.low, half.high) == (pytest.approx(0.4038, abs=1e-4), pytest.approx(0.5962, abs=1e-4))

@@ -9,6 +9,7 @@ import shutil
 import tempfile
 from collections.abc import Callable, Mapping
 from pathlib import Path
+from threading import Lock
 from typing import Any
 
 import numpy as np
@@ -28,6 +29,8 @@ from orchestrator.errors import BadInput, RunError
 from orchestrator.slave import Ports
 
 KINDS = {"Real": float, "Integer": int, "Enumeration": int, "Boolean": bool}
+LOADING = Lock()
+"""FMPy changes the working directory of the process while it loads a library: one thread at a time."""
 LogCallback = Callable[[str, int, str], None]
 """Called with (slave name, FMI status, message)."""
 
@@ -89,12 +92,13 @@ class FmuSlave:
         self._directory = _ascii_directory()
         extract(str(self._path), unzipdir=self._directory)
         co_simulation = self._description.coSimulation
-        self._instance = FMU2Slave(
-            guid=self._description.guid,
-            unzipDirectory=self._directory,
-            modelIdentifier=co_simulation.modelIdentifier,
-            instanceName=self.name,
-        )
+        with LOADING:
+            self._instance = FMU2Slave(
+                guid=self._description.guid,
+                unzipDirectory=self._directory,
+                modelIdentifier=co_simulation.modelIdentifier,
+                instanceName=self.name,
+            )
         self._callbacks = self._make_callbacks()
         try:
             self._instance.instantiate(callbacks=self._callbacks, loggingOn=True)

@@ -12,6 +12,7 @@ from fmpy.fmi2 import FMU2Slave, defaultCallbacks, fmi2CallbackFunctions, fmi2Ca
 from fmpy.logging import addLoggerProxy
 
 from fmus.description import limits
+from orchestrator.fmu_slave import LOADING
 
 OK, WARNING, DISCARD, ERROR, FATAL = range(5)
 
@@ -33,12 +34,13 @@ class Host:
         self.callbacks.allocateMemory = defaultCallbacks.allocateMemory
         self.callbacks.freeMemory = defaultCallbacks.freeMemory
         addLoggerProxy(byref(self.callbacks))
-        self.fmu = FMU2Slave(
-            guid=self.description.guid,
-            modelIdentifier=self.description.coSimulation.modelIdentifier,
-            unzipDirectory=self.folder,
-            instanceName=self.name,
-        )
+        with LOADING:
+            self.fmu = FMU2Slave(
+                guid=self.description.guid,
+                modelIdentifier=self.description.coSimulation.modelIdentifier,
+                unzipDirectory=self.folder,
+                instanceName=self.name,
+            )
         self.fmu.instantiate(callbacks=self.callbacks, loggingOn=True)
 
     def _logger(self, environment, name, status, category, message):

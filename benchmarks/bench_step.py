@@ -16,7 +16,7 @@ from libcosimpy.CosimExecution import CosimExecution
 from libcosimpy.CosimLogging import CosimLogLevel, log_output_level
 
 from fmus.compiled_batch import compiled_rows
-from fmus.ssp import write_ssp
+from fmus.systems.ssp import write_ssp
 from modelkit.variables import variables, with_values
 from orchestrator.compiled_master import CompiledMaster
 from orchestrator.fmu_files import fmu_files

@@ -7,11 +7,11 @@ from typing import NamedTuple
 
 import controller_fmu
 import vehicle_fmu
-from fmus import python_fmu
-from fmus.archive import archive_guid
+from fmus.contents.archive import archive_guid
+from fmus.places import DIST
+from fmus.python import fmu as python_fmu
 from modelkit.model import Model
 
-DIST = Path(__file__).parent / "dist"
 MODELS = (controller_fmu.MODEL, vehicle_fmu.MODEL)
 NATIVE_NEEDS = ("numba", "llvmlite", "ziglang")
 
@@ -29,9 +29,9 @@ class Built(NamedTuple):
 
 def build_native(model: Model, out_dir: Path, platforms: Iterable[str] | None = None) -> Path:
     """Return the path of the native FMU for ``platforms`` (default: this machine's); makes the compiled master too."""
-    from fmus.master_library import master_library
-    from fmus.native_fmu import build
-    from fmus.platforms import host
+    from fmus.native.fmu import build
+    from fmus.native.master_library import master_library
+    from fmus.native.platforms import host
 
     master_library()
     return build(model, out_dir, [host()] if platforms is None else platforms)
@@ -50,7 +50,7 @@ def build_all(
 ) -> list[Built]:
     """Return what was built, in order; ``progress`` is called after each. Raises ``ValueError`` for an unknown kind.
 
-    ``platforms`` says what native FMUs are for, by the names in ``fmus.platforms``; default: this machine.
+    ``platforms`` says what native FMUs are for, by the names in ``fmus.native.platforms``; default: this machine.
     """
     done = []
     for kind in kinds:

@@ -19,12 +19,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fmus.locks import one_at_a_time
+from fmus.native.platforms import CODE, NATIVE, PLATFORMS, WARNINGS, Target, compile_c, host
 from fmus.native_ir import intermediate_code, object_code
-from fmus.platforms import CODE, NATIVE, PLATFORMS, WARNINGS, Target, compile_c, host
+from fmus.places import LIBRARIES
 from modelkit.model import Model
 from modelkit.variables import Variable, variables
 
-LIBRARIES = Path(__file__).parent / "dist" / "lib"
 How = Literal["last", "largest", "greatest", "smallest", "travel"]
 HOW: tuple[How, ...] = ("last", "largest", "greatest", "smallest", "travel")
 FIRST_KEPT = 2

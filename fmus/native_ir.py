@@ -15,6 +15,7 @@ from pathlib import Path
 import llvmlite.binding as llvm  # type: ignore[import-untyped]
 
 from fmus.locks import one_at_a_time
+from fmus.places import CACHE
 from fmus.sources import reference, source_hash
 from modelkit.model import Model
 
@@ -24,7 +25,6 @@ WIDE = 60
 NUMBA_S_CHOICE = re.compile(r"\b(noinline|alwaysinline)\b")
 """Numba says of each function whether it is inlined; LLVM, which sees all callers, decides better."""
 ENTRIES = ("model_initialize", "model_step")
-CACHE = Path(__file__).parent / "dist" / "cache"
 KEPT = 4
 IR_MAKERS = ("compiled.py", "compiled_modules.py", "compiled_types.py", "compiled_views.py", "flat_entry.py")
 """Files beside this one that numba's code depends on."""

@@ -1,6 +1,6 @@
 """The Python master's exchange as compiled calls: FMUs driven through their C functions, without the GIL.
 
-``fmus/native/master.c`` does a block of exchanges at a time and writes all signals of each into rows
+``fmus/native/c/master.c`` does a block of exchanges at a time and writes all signals of each into rows
 allocated once. Afterwards the rows are laid into the slaves' arrays one by one, and the observers
 and endings see them as if they had been there: log, recording and progress bar need to know nothing.
 An ending in mid-block means that the FMUs have run on for the rest of it; nobody looks at that.
@@ -108,7 +108,7 @@ class _Plan:
     """
 
     def __init__(self, master: Master, fmus: list[FmuSlave]) -> None:
-        from fmus.master_library import master_library
+        from fmus.native.master_library import master_library
 
         self._call = ctypes.CDLL(str(master_library())).master_run
         self._call.restype = ctypes.c_int64

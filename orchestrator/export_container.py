@@ -25,7 +25,7 @@ def add_parser(subparsers: Any) -> argparse.ArgumentParser:
 
 def run(arguments: argparse.Namespace) -> int:
     """Write the file. Returns 0."""
-    from fmus.container import write_container
+    from fmus.systems.container import write_container
     from orchestrator.system_of import fmus_for, system_of
 
     scenario = load_scenario(arguments.scenario, arguments.set)

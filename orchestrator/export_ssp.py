@@ -40,7 +40,7 @@ def add_arguments(parser: argparse.ArgumentParser, name: str) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Write the file. Returns 0."""
-    from fmus.ssp import write_ssp
+    from fmus.systems.ssp import write_ssp
     from orchestrator.system_of import fmus_for, system_of
 
     scenario = load_scenario(arguments.scenario, arguments.set)

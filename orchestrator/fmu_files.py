@@ -31,7 +31,7 @@ def default_kind() -> str:
 
 def fmu_files(kind: str, say: Callable[[str], None] = lambda text: None) -> dict[str, Path]:
     """Return slave name -> up-to-date FMU of ``kind``."""
-    from fmus.build import DIST
+    from fmus.places import DIST
 
     files = {name: DIST / kind / f"{model.name}.fmu" for name, model in MODELS.items()}
     if not all(path.is_file() for path in files.values()) or _stamp(DIST / kind) != sources_hash():
@@ -42,7 +42,8 @@ def fmu_files(kind: str, say: Callable[[str], None] = lambda text: None) -> dict
 
 def build(kind: str) -> list[str]:
     """Build the FMUs of ``kind`` and return one line about each."""
-    from fmus.build import DIST, build_all
+    from fmus.build import build_all
+    from fmus.places import DIST
 
     lines = []
     with working(f"building {kind} FMUs"), _alone(DIST):

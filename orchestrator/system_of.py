@@ -3,7 +3,7 @@
 from collections.abc import Callable, Iterable
 from pathlib import Path
 
-from fmus.system import Part, System
+from fmus.systems.system import Part, System
 from orchestrator.errors import BadInput
 from orchestrator.models import MODELS
 from orchestrator.scenario import Scenario
@@ -29,8 +29,9 @@ def fmus_for(kind: str, platforms: Iterable[str], say: Callable[[str], None]) ->
     names = list(platforms)
     if kind != "native" or not names:
         return fmu_files(kind, say)
-    from fmus.build import DIST, build_all
-    from fmus.platforms import PLATFORMS
+    from fmus.build import build_all
+    from fmus.native.platforms import PLATFORMS
+    from fmus.places import DIST
 
     wanted = sorted(PLATFORMS) if names == ["all"] else names
     unknown = [name for name in wanted if name not in PLATFORMS]

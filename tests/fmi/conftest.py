@@ -2,9 +2,9 @@ import pytest
 import toy_model
 
 from controller_fmu import MODEL as CONTROLLER
-from fmus import native_fmu
-from fmus.platforms import host
-from fmus.python_fmu import build
+from fmus.native import fmu as native_fmu
+from fmus.native.platforms import host
+from fmus.python.fmu import build
 from vehicle_fmu import MODEL as VEHICLE
 
 MODELS = {model.name: model for model in (toy_model.MODEL, VEHICLE, CONTROLLER)}

@@ -11,7 +11,7 @@ import fmpy
 from fmpy.fmi2 import FMU2Slave, defaultCallbacks, fmi2CallbackFunctions, fmi2CallbackLoggerTYPE
 from fmpy.logging import addLoggerProxy
 
-from fmus.description import limits
+from fmus.contents.description import limits
 from orchestrator.fmu_slave import LOADING
 
 OK, WARNING, DISCARD, ERROR, FATAL = range(5)

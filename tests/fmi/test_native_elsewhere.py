@@ -12,8 +12,8 @@ import pytest
 from fmpy import read_model_description
 from test_native_host import HERE
 
-from fmus.native_fmu import build
-from fmus.platforms import LINUX, LINUX_ARM, NATIVE, WINDOWS
+from fmus.native.fmu import build
+from fmus.native.platforms import LINUX, LINUX_ARM, NATIVE, WINDOWS
 from modelkit.vocabulary import Prompt
 
 STEPS = 300

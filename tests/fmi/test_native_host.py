@@ -10,9 +10,9 @@ import pytest
 from elf import dynamic
 from raw import OK, Library
 
-from fmus import native_fmu
+from fmus.native import fmu as native_fmu
+from fmus.native.platforms import LINUX, NATIVE, SOURCES
 from fmus.native_ir import object_code
-from fmus.platforms import LINUX, NATIVE, SOURCES
 
 HERE = Path(__file__).parent
 LIMIT = 400_000

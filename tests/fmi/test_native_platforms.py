@@ -7,9 +7,9 @@ import pytest
 import toy_model
 from elf import dynamic
 
-from fmus.fat_binary import fat_binary
-from fmus.native_fmu import build
-from fmus.platforms import PLATFORMS
+from fmus.native.fat_binary import fat_binary
+from fmus.native.fmu import build
+from fmus.native.platforms import PLATFORMS
 
 LIMIT = 400_000
 FUNCTIONS = ("fmi2GetVersion", "fmi2Instantiate", "fmi2DoStep", "fmi2SetFMUstate", "fmi2GetStringStatus")

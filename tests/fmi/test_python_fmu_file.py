@@ -15,11 +15,11 @@ import pytest
 from fmpy.validation import validate_fmu
 from lxml import etree
 
-from fmus.archive import archive_bytes, archive_guid, content_guid
 from fmus.build import build_all
-from fmus.description import fmi_variables, model_description
-from fmus.python_fmu import build
-from fmus.units import unit
+from fmus.contents.archive import archive_bytes, archive_guid, content_guid
+from fmus.contents.description import fmi_variables, model_description
+from fmus.contents.units import unit
+from fmus.python.fmu import build
 
 BIN = Path(sys.executable).parent
 
@@ -53,7 +53,7 @@ def test_builds_are_byte_identical(model, tmp_path):
 
 
 def test_a_build_in_another_process_is_byte_identical(python_fmus, tmp_path):
-    code = f"import toy_model; from fmus.python_fmu import build; build(toy_model.MODEL, {str(tmp_path)!r})"
+    code = f"import toy_model; from fmus.python.fmu import build; build(toy_model.MODEL, {str(tmp_path)!r})"
     path = os.pathsep.join([str(Path(__file__).parent), *sys.path])
     subprocess.run(
         [sys.executable, "-c", code], check=True, env={"PYTHONHASHSEED": "5", "PYTHONPATH": path, "TZ": "A3"}

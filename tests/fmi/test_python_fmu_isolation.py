@@ -17,9 +17,9 @@ from host import OK, Host, random_inputs, slaves
 import controller_fmu
 import modelkit
 import vehicle_fmu
-from fmus.archive import archive_guid
-from fmus.bundle import bundle, rewrite
-from fmus.description import fmi_variables
+from fmus.contents.archive import archive_guid
+from fmus.contents.description import fmi_variables
+from fmus.python.bundle import bundle, rewrite
 
 ROOT = Path(__file__).parents[2]
 PACKAGES = ("modelkit", "vehicle_fmu", "controller_fmu", "fmus")
@@ -33,7 +33,7 @@ def build_elsewhere(folder, package, change):
     for path in (folder / package).rglob("*.py"):
         path.write_text(change(path.read_text()))
     code = f"import sys; sys.path.insert(0, {str(folder)!r})\nfrom {package} import MODEL\n"
-    code += f"from fmus.python_fmu import build\nprint(build(MODEL, {str(folder / 'out')!r}))"
+    code += f"from fmus.python.fmu import build\nprint(build(MODEL, {str(folder / 'out')!r}))"
     result = subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True, cwd=folder)
     return Path(result.stdout.strip())
 

@@ -1,7 +1,8 @@
 import pytest
 
-from fmus import native_fmu, python_fmu
-from fmus.platforms import host
+from fmus.native import fmu as native_fmu
+from fmus.native.platforms import host
+from fmus.python import fmu as python_fmu
 from orchestrator.models import MODELS
 
 BUILD = {

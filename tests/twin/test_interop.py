@@ -17,8 +17,8 @@ from libcosimpy.CosimExecution import CosimExecution
 from libcosimpy.CosimLogging import CosimLogLevel, log_output_level
 from libcosimpy.CosimObserver import CosimObserver
 
-from fmus.container import write_container
-from fmus.ssp import write_ssp
+from fmus.systems.container import write_container
+from fmus.systems.ssp import write_ssp
 from orchestrator.errors import BadInput
 from orchestrator.load_scenario import load_scenario
 from orchestrator.session import run_scenario

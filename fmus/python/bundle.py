@@ -13,20 +13,20 @@ from typing import NamedTuple
 
 import fmus
 import modelkit
-from fmus.archive import content_hash
+from fmus.contents.archive import content_hash
 from modelkit.model import Model
 
-SLAVE_FILES = ("binary.py", "layout.py", "slave.py")
+SLAVE_FILES = ("python/__init__.py", "python/binary.py", "python/layout.py", "python/slave.py")
 RUNTIME_FILES = ("_version.py", "default_experiment.py", "enums.py", "fmi2slave.py", "logmsg.py", "variables.py")
 RUNTIME_INIT = b'"""The part of PythonFMU that runs inside an FMU."""\n'
 SCRIPT = '''"""Entry point of this FMU."""
 
-from {root}.fmus.layout import Layout
-from {root}.fmus.slave import ModelSlave
+from {root}.fmus.python.layout import Layout
+from {root}.fmus.python.slave import ModelSlave
 from {root}.{package} import {attribute}
 
 NAMESPACE = globals()
-"""A second reference: PythonFMU's binary drops one before the first instance exists (see ``fmus.binary.keep``)."""
+"""A second reference: PythonFMU drops one before the first instance exists (see ``fmus.python.binary.keep``)."""
 
 
 class {script}({base}):

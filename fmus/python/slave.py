@@ -15,8 +15,8 @@ from typing import Any, ClassVar, NamedTuple
 from pythonfmu.enums import Fmi2Status  # type: ignore[import-untyped]
 from pythonfmu.fmi2slave import Fmi2Slave  # type: ignore[import-untyped]
 
-from fmus.binary import keep, pin_thread, tidy_path
-from fmus.layout import Layout, Values, picker
+from fmus.python.binary import keep, pin_thread, tidy_path
+from fmus.python.layout import Layout, Values, picker
 from modelkit.model import Model
 from modelkit.variables import constructor, flatten
 

@@ -3,9 +3,9 @@
 from xml.etree import ElementTree
 from xml.etree.ElementTree import Element, SubElement
 
-from fmus.description import fmi_variables
-from fmus.icon import icon
-from fmus.pages import LICENCE, index_page
+from fmus.contents.description import fmi_variables
+from fmus.contents.icon import icon
+from fmus.contents.pages import LICENCE, index_page
 from modelkit.model import Model
 from modelkit.variables import flatten, variables
 

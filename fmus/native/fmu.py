@@ -4,13 +4,13 @@ import math
 from collections.abc import Iterable
 from pathlib import Path
 
-from fmus.archive import DESCRIPTION, archive_guid, content_guid, write_archive
-from fmus.description import FmiVariable, fmi_variables, limits, model_description, project_version
-from fmus.extras import documentation, reference_result
-from fmus.fat_binary import fat_binary
+from fmus.contents.archive import DESCRIPTION, archive_guid, content_guid, write_archive
+from fmus.contents.description import FmiVariable, fmi_variables, limits, model_description, project_version
+from fmus.contents.extras import documentation, reference_result
 from fmus.flat_entry import sizes
+from fmus.native.fat_binary import fat_binary
+from fmus.native.platforms import HEADERS, NATIVE, PLATFORMS, SOURCES, Platform, link
 from fmus.native_ir import IR_MAKERS, object_code
-from fmus.platforms import HEADERS, NATIVE, PLATFORMS, SOURCES, Platform, link
 from fmus.sources import source_hash
 from modelkit.model import Model
 
@@ -30,7 +30,7 @@ instance on one thread at a time.</p>
 <p>A parameter outside its range, a variable that does not exist, a call out of order or a step that is not
 in (0, 3600] s is answered with fmi2Error and a message to the logger; nothing is changed by such a call.</p>
 """
-MAKERS = (*IR_MAKERS, "description.py", "native_fmu.py", "native_ir.py", "platforms.py")
+MAKERS = (*IR_MAKERS, "contents/description.py", "native/fmu.py", "native_ir.py", "native/platforms.py")
 """Files that decide what is in the binaries."""
 NUL = r'"\0"'
 KINDS = {float: "REAL", int: "INTEGER", bool: "BOOLEAN"}
@@ -107,7 +107,7 @@ def _text(text: str) -> str:
 
 def _guid(model: Model, platforms: list[str]) -> str:
     """Return a GUID that depends on the model's sources, the FMI side, the platforms and the makers of the code."""
-    here = Path(__file__).parent
+    here = Path(__file__).parent.parent
     files = {f"native/{name}": (NATIVE / name).read_bytes() for name in (*SOURCES, *HEADERS)}
     files |= {name: (here / name).read_bytes() for name in MAKERS}
     files["model"] = source_hash(model).encode()

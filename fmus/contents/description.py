@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 from xml.etree import ElementTree
 from xml.etree.ElementTree import Element, SubElement
 
-from fmus.units import unit
+from fmus.contents.units import unit
 from modelkit.model import Model
 from modelkit.signal import Signal
 from modelkit.variables import variables

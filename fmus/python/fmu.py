@@ -2,10 +2,10 @@
 
 from pathlib import Path
 
-from fmus.archive import DESCRIPTION, archive_guid, content_guid, write_archive
-from fmus.bundle import bundle, runtime_folder, runtime_licence, runtime_version
-from fmus.description import model_description, project_version
-from fmus.extras import documentation, reference_result
+from fmus.contents.archive import DESCRIPTION, archive_guid, content_guid, write_archive
+from fmus.contents.description import model_description, project_version
+from fmus.contents.extras import documentation, reference_result
+from fmus.python.bundle import bundle, runtime_folder, runtime_licence, runtime_version
 from modelkit.model import Model
 
 FLAGS = {

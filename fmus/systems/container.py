@@ -15,9 +15,9 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
-from fmus.archive import DESCRIPTION, content_guid, write_archive
-from fmus.description import AUTHOR, GENERATED
-from fmus.system import NAME, System, as_text
+from fmus.contents.archive import DESCRIPTION, content_guid, write_archive
+from fmus.contents.description import AUTHOR, GENERATED
+from fmus.systems.system import NAME, System, as_text
 
 PACKAGE = "fmu_manipulation_toolbox"
 

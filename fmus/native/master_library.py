@@ -5,9 +5,9 @@ import os
 import tempfile
 from pathlib import Path
 
-from fmus.platforms import CODE, NATIVE, PLATFORMS, WARNINGS, compile_c, host
+from fmus.native.platforms import CODE, NATIVE, PLATFORMS, WARNINGS, compile_c, host
+from fmus.places import LIBRARIES
 
-LIBRARIES = Path(__file__).parent / "dist" / "lib"
 FILES = ("master.c", "fmi2.h")
 
 

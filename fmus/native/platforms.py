@@ -8,7 +8,7 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import NamedTuple
 
-NATIVE = Path(__file__).parent / "native"
+NATIVE = Path(__file__).parent / "c"
 SOURCES = ("slave.c", "variables.c", "snapshot.c")
 HEADERS = ("fmi2.h", "model.h", "slave.h")
 WARNINGS = ("-std=c11", "-Wall", "-Wextra", "-Wpedantic", "-Werror", "-Wno-overlength-strings")

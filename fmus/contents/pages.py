@@ -2,8 +2,8 @@
 
 from html import escape
 
-from fmus.description import FmiVariable, describe, fmi_variables, limits, project_version
-from fmus.units import unit
+from fmus.contents.description import FmiVariable, describe, fmi_variables, limits, project_version
+from fmus.contents.units import unit
 from modelkit.model import Model
 
 LICENCE = """MIT License

@@ -9,8 +9,8 @@ from pathlib import Path
 from xml.etree import ElementTree
 from xml.etree.ElementTree import Element, SubElement
 
-from fmus.archive import write_archive
-from fmus.system import NAME, Part, System, as_text
+from fmus.contents.archive import write_archive
+from fmus.systems.system import NAME, Part, System, as_text
 
 SSP = "http://ssp-standard.org/SSP1/"
 SPACES = {

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from fmus.description import FmiVariable, fmi_variables
+from fmus.contents.description import FmiVariable, fmi_variables
 from modelkit.model import Model
 
 NAME = "ParkingSystem"

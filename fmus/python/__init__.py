@@ -1,0 +1,1 @@
+"""The kind of FMU that runs a model's Python source (PythonFMU)."""

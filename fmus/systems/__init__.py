@@ -1,0 +1,1 @@
+"""Several FMUs as one thing: the .ssp and the FMU container."""

@@ -8,9 +8,9 @@ import tempfile
 from collections.abc import Callable
 from pathlib import Path
 
-from orchestrator.fmu_files import fmu_files
-from orchestrator.load_scenario import load_scenario
-from orchestrator.session import Ran, run_scenario
+from orchestrator.cosim.fmu_files import fmu_files
+from orchestrator.scenario.load_scenario import load_scenario
+from orchestrator.session.session import Ran, run_scenario
 
 ROUNDS = 5
 

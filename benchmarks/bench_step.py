@@ -18,15 +18,15 @@ from libcosimpy.CosimLogging import CosimLogLevel, log_output_level
 from fmus.compiled_batch import compiled_rows
 from fmus.systems.ssp import write_ssp
 from modelkit.variables import variables, with_values
-from orchestrator.compiled_master import CompiledMaster
-from orchestrator.fmu_files import fmu_files
-from orchestrator.fmu_slave import FmuSlave
-from orchestrator.load_scenario import load_scenario
-from orchestrator.master import Master
-from orchestrator.models import MODELS
-from orchestrator.scenario import Scenario
-from orchestrator.session import run_scenario
-from orchestrator.system_of import system_of
+from orchestrator.cosim.compiled_master import CompiledMaster
+from orchestrator.cosim.fmu_files import fmu_files
+from orchestrator.cosim.fmu_slave import FmuSlave
+from orchestrator.cosim.master import Master
+from orchestrator.cosim.models import MODELS
+from orchestrator.export.system_of import system_of
+from orchestrator.scenario.load_scenario import load_scenario
+from orchestrator.scenario.scenario import Scenario
+from orchestrator.session.session import run_scenario
 
 ROUNDS = 7
 STEPS = 2000

@@ -17,9 +17,9 @@ from typing import Any
 
 import numpy as np
 
-from orchestrator.fmu_files import fmu_files
-from orchestrator.load_scenario import load_scenario
-from orchestrator.session import run_scenario
+from orchestrator.cosim.fmu_files import fmu_files
+from orchestrator.scenario.load_scenario import load_scenario
+from orchestrator.session.session import run_scenario
 from orchestrator.sweep.batch import compiled, run_batch
 from orchestrator.sweep.design import make_design
 from orchestrator.sweep.engines import cores

@@ -23,9 +23,9 @@ from fmus.compiled import compiled_entries
 from fmus.flat_entry import sizes
 from modelkit.variables import flatten, with_values
 from modelkit.vocabulary import Pose, Prompt
-from orchestrator.fmu_files import fmu_files
-from orchestrator.load_scenario import load_scenario
-from orchestrator.session import run_scenario
+from orchestrator.cosim.fmu_files import fmu_files
+from orchestrator.scenario.load_scenario import load_scenario
+from orchestrator.session.session import run_scenario
 from vehicle_fmu import MODEL
 from vehicle_fmu.chassis import ChassisParams, Motion, RoadParams
 from vehicle_fmu.double_track import DoubleTrackParams, DoubleTrackState, step_double_track

@@ -19,11 +19,11 @@ from fmus.compiled import compiled_entries
 from fmus.flat_entry import sizes
 from modelkit.model import Model
 from modelkit.variables import constructor, flatten
-from orchestrator.load_scenario import load_scenario
-from orchestrator.models import MODELS
-from orchestrator.recording import Recording
-from orchestrator.session import run_scenario
-from orchestrator.summary import Summary, summarize
+from orchestrator.cosim.models import MODELS
+from orchestrator.cosim.recording import Recording
+from orchestrator.scenario.load_scenario import load_scenario
+from orchestrator.session.session import run_scenario
+from orchestrator.verdict.summary import Summary, summarize
 
 FOLDER = Path(__file__).parent
 BODIES = ("kinematic", "single_track", "double_track")

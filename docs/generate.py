@@ -26,13 +26,13 @@ import controller_fmu  # noqa: E402
 from modelkit.model import Model  # noqa: E402
 from modelkit.variables import Variable, variables  # noqa: E402
 from orchestrator.cli import parser  # noqa: E402
-from orchestrator.load_scenario import ROOM, load_scenario, scenario_names  # noqa: E402
-from orchestrator.models import MODELS  # noqa: E402
-from orchestrator.quantities import DEGREE  # noqa: E402
-from orchestrator.requirements import Requirement, read_requirements  # noqa: E402
-from orchestrator.scenario import Scenario  # noqa: E402
-from orchestrator.summary import Summary  # noqa: E402
-from orchestrator.terminal import SIGNS, readable  # noqa: E402
+from orchestrator.cosim.models import MODELS  # noqa: E402
+from orchestrator.scenario.load_scenario import ROOM, load_scenario, scenario_names  # noqa: E402
+from orchestrator.scenario.scenario import Scenario  # noqa: E402
+from orchestrator.session.terminal import SIGNS, readable  # noqa: E402
+from orchestrator.text.quantities import DEGREE  # noqa: E402
+from orchestrator.verdict.requirements import Requirement, read_requirements  # noqa: E402
+from orchestrator.verdict.summary import Summary  # noqa: E402
 
 MADE = "<!-- Made by docs/generate.py; do not edit. -->\n"
 UNBOUNDED = 1e300

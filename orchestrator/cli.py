@@ -10,8 +10,8 @@ from types import ModuleType
 from rich.markup import escape
 
 from orchestrator import commands
-from orchestrator.errors import BadInput, RunError
-from orchestrator.terminal import BAD_INPUT, INTERRUPTED, NOT_PARKED, console
+from orchestrator.session.terminal import BAD_INPUT, INTERRUPTED, NOT_PARKED, console
+from orchestrator.text.errors import BadInput, RunError
 
 DESCRIPTION = "Automated parking as a pair of FMI 2.0 co-simulation FMUs."
 EPILOG = """examples:

@@ -5,12 +5,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from orchestrator.confidence import wilson
-from orchestrator.load_scenario import load_scenario
-from orchestrator.reproduce.many import parameter_row, timed_rows
-from orchestrator.scenario import Scenario
-from orchestrator.slave import Array
+from orchestrator.cosim.slave import Array
+from orchestrator.papers.many import parameter_row, timed_rows
+from orchestrator.scenario.load_scenario import load_scenario
+from orchestrator.scenario.scenario import Scenario
 from orchestrator.sweep.kept import PHASE, POSE
+from orchestrator.verdict.confidence import wilson
 
 SPEED = 0.8
 """Speed the driver means [m/s]."""

@@ -8,8 +8,8 @@ import numpy as np
 
 from controller_fmu.interface import Phase, Reason
 from orchestrator.bakeoff.entries import ASSIST, Entry
-from orchestrator.endings import STANDSTILL_TIME_NS
-from orchestrator.reproduce.many import timed
+from orchestrator.cosim.endings import STANDSTILL_TIME_NS
+from orchestrator.papers.many import timed
 from orchestrator.sweep.kept import CLEARANCE, EFFORT, PHASE, POSE, REASON, SHIFTS, WHEEL, Kept
 
 LATERAL, HEADING = 0.15, math.radians(3.0)

@@ -17,9 +17,9 @@ from orchestrator.bakeoff.driver_study import Rate, study
 from orchestrator.bakeoff.entries import CONTROLLERS, SLOTS, entries
 from orchestrator.bakeoff.figure import draw
 from orchestrator.bakeoff.results import REFUSED, Result, results
-from orchestrator.errors import BadInput
-from orchestrator.fmu_files import can_compile
-from orchestrator.terminal import console
+from orchestrator.cosim.fmu_files import can_compile
+from orchestrator.session.terminal import console
+from orchestrator.text.errors import BadInput
 
 EXAMPLES = """examples:
   apa bakeoff                     the tables, the picture, 10,000 drives of each system of Guo 2015

@@ -3,7 +3,7 @@
 import argparse
 from typing import Any
 
-from orchestrator.fmu_files import KINDS, build
+from orchestrator.cosim.fmu_files import KINDS, build
 
 
 def add_parser(subparsers: Any) -> argparse.ArgumentParser:

@@ -5,13 +5,13 @@ import json
 from pathlib import Path
 from typing import Any
 
-from orchestrator.judge import judge
-from orchestrator.junit import Suite, cases_of, write_junit
-from orchestrator.load_scenario import find_file
-from orchestrator.read_log import read_log
-from orchestrator.requirements import read_requirements
-from orchestrator.summary import numbers_of
-from orchestrator.terminal import checks_table, console
+from orchestrator.log.read_log import read_log
+from orchestrator.scenario.load_scenario import find_file
+from orchestrator.session.terminal import checks_table, console
+from orchestrator.suite.junit import Suite, cases_of, write_junit
+from orchestrator.verdict.judge import judge
+from orchestrator.verdict.requirements import read_requirements
+from orchestrator.verdict.summary import numbers_of
 
 EXAMPLES = """examples:
   apa check runs/guo2015-case4/run.mcap gbt41630

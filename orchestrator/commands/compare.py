@@ -5,14 +5,14 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from orchestrator.compare import Comparison, compare
-from orchestrator.errors import BadInput
-from orchestrator.quantities import number
-from orchestrator.read_log import read_log
+from orchestrator.log.read_log import read_log
 from orchestrator.report.overlay import write_overlay
 from orchestrator.report.words import read_words
-from orchestrator.terminal import console, differences_table
-from orchestrator.tolerance import Tolerance, read_tolerances
+from orchestrator.session.terminal import console, differences_table
+from orchestrator.text.errors import BadInput
+from orchestrator.text.quantities import number
+from orchestrator.verdict.compare import Comparison, compare
+from orchestrator.verdict.tolerance import Tolerance, read_tolerances
 
 EXAMPLES = """examples:
   apa compare reference/run.mcap runs/guo2015-case4/run.mcap

@@ -1,4 +1,4 @@
-"""``apa export``: a run, or the system, in the formats of other tools. Each format is one module ``export_*.py``."""
+"""``apa export``: a run, or the system, in the formats of other tools: each module of ``orchestrator/export``."""
 
 import argparse
 import importlib
@@ -6,7 +6,7 @@ import pkgutil
 from types import ModuleType
 from typing import Any
 
-import orchestrator
+from orchestrator import export
 
 EXAMPLES = """examples:
   apa export csv runs/guo2015-case4/run.mcap
@@ -34,5 +34,6 @@ def run(arguments: argparse.Namespace) -> int:
 
 def export_modules() -> list[ModuleType]:
     """Return the modules of all formats: each has ``add_parser(subparsers)`` and ``run(arguments) -> exit code``."""
-    names = sorted(item.name for item in pkgutil.iter_modules(orchestrator.__path__) if item.name.startswith("export_"))
-    return [importlib.import_module(f"orchestrator.{name}") for name in names]
+    names = sorted(item.name for item in pkgutil.iter_modules(export.__path__))
+    found = [importlib.import_module(f"{export.__name__}.{name}") for name in names]
+    return [module for module in found if hasattr(module, "add_parser")]

@@ -6,9 +6,9 @@ from typing import Any
 
 from rich.table import Table
 
-from orchestrator.load_scenario import car_names, load_scenario, scenario_names
+from orchestrator.scenario.load_scenario import car_names, load_scenario, scenario_names
+from orchestrator.session.terminal import console
 from orchestrator.sweep.study import study_names
-from orchestrator.terminal import console
 
 
 def add_parser(subparsers: Any) -> argparse.ArgumentParser:

@@ -4,7 +4,7 @@ import argparse
 from pathlib import Path
 from typing import Any
 
-from orchestrator.recover import recover
+from orchestrator.log.recover import recover
 
 
 def add_parser(subparsers: Any) -> argparse.ArgumentParser:

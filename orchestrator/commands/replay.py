@@ -8,9 +8,9 @@ from typing import Any
 import yaml
 
 from orchestrator.commands import run as run_command
-from orchestrator.errors import BadInput
-from orchestrator.fmu_files import KINDS, sources_hash
-from orchestrator.terminal import BAD_INPUT, console
+from orchestrator.cosim.fmu_files import KINDS, sources_hash
+from orchestrator.session.terminal import BAD_INPUT, console
+from orchestrator.text.errors import BadInput
 
 EXAMPLES = """examples:
   apa replay runs/my-study/my-study.parquet --row 4711

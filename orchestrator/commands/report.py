@@ -4,13 +4,13 @@ import argparse
 from pathlib import Path
 from typing import Any
 
-from orchestrator.read_log import read_log
-from orchestrator.recording import Recording
+from orchestrator.cosim.recording import Recording
+from orchestrator.log.read_log import read_log
 from orchestrator.report.replay import write_replay
 from orchestrator.report.words import read_words
-from orchestrator.scenario import Scenario
-from orchestrator.summary import summarize
-from orchestrator.terminal import PARKED
+from orchestrator.scenario.scenario import Scenario
+from orchestrator.session.terminal import PARKED
+from orchestrator.verdict.summary import summarize
 
 EXAMPLES = """examples:
   apa report runs/guo2015-case4/run.mcap                  writes runs/guo2015-case4/report.html

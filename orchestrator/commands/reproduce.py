@@ -6,12 +6,12 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from orchestrator.fmu_files import KINDS, default_kind, fmu_files
-from orchestrator.reproduce.drive import drive
-from orchestrator.reproduce.papers import paper, papers
-from orchestrator.reproduce.result import Drive, Driven
-from orchestrator.reproduce.table import print_reproduction
-from orchestrator.terminal import NOT_PARKED, PARKED, console
+from orchestrator.cosim.fmu_files import KINDS, default_kind, fmu_files
+from orchestrator.papers.drive import drive
+from orchestrator.papers.papers import paper, papers
+from orchestrator.papers.result import Drive, Driven
+from orchestrator.papers.table import print_reproduction
+from orchestrator.session.terminal import NOT_PARKED, PARKED, console
 
 EXAMPLES = """examples:
   apa reproduce guo2015                 the five cases at both steering rates, beside the paper

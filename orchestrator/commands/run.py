@@ -6,14 +6,14 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from orchestrator.fmu_files import KINDS, default_kind, fmu_files
-from orchestrator.interrupts import on_interrupt
-from orchestrator.load_scenario import load_scenario
-from orchestrator.master import Interrupt, Observer
-from orchestrator.scenario import Scenario
-from orchestrator.session import Ran, run_scenario
-from orchestrator.summary import Summary, summarize
-from orchestrator.terminal import INTERRUPTED, NOT_PARKED, PARKED, ProgressBar, print_summary
+from orchestrator.cosim.fmu_files import KINDS, default_kind, fmu_files
+from orchestrator.cosim.interrupts import on_interrupt
+from orchestrator.cosim.master import Interrupt, Observer
+from orchestrator.scenario.load_scenario import load_scenario
+from orchestrator.scenario.scenario import Scenario
+from orchestrator.session.session import Ran, run_scenario
+from orchestrator.session.terminal import INTERRUPTED, NOT_PARKED, PARKED, ProgressBar, print_summary
+from orchestrator.verdict.summary import Summary, summarize
 
 EXAMPLES = """examples:
   apa run guo2015-case4
@@ -51,7 +51,7 @@ def run(arguments: argparse.Namespace) -> int:
     text = json.dumps(summary.as_json(), indent=2, allow_nan=False)
     (out / "summary.json").write_text(text + "\n", encoding="utf-8")
     if not arguments.no_figure and len(ran.recording.t) > 1:
-        from orchestrator.figure import draw
+        from orchestrator.drawing.figure import draw
 
         draw(ran.recording, summary, scenario, out / "overview.png")
     if not arguments.no_figure and len(ran.recording.t) > 1:

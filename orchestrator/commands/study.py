@@ -13,7 +13,8 @@ from rich.table import Table
 from controller_fmu.apa.chart import Mode
 from controller_fmu.apa.slot import PARALLEL, PERPENDICULAR
 from controller_fmu.interface import Reason
-from orchestrator.apa_grid import (
+from orchestrator.cosim.fmu_files import can_compile
+from orchestrator.grid.apa_grid import (
     KEPT,
     SHIFTS,
     Case,
@@ -25,9 +26,8 @@ from orchestrator.apa_grid import (
     is_within_house,
     totals,
 )
-from orchestrator.apa_loop import Loop
-from orchestrator.fmu_files import can_compile
-from orchestrator.terminal import console
+from orchestrator.grid.apa_loop import Loop
+from orchestrator.session.terminal import console
 
 KINDS = {PARALLEL: "parallel", PERPENDICULAR: "perpendicular"}
 EPILOG = """examples:

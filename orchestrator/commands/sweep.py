@@ -6,9 +6,9 @@ from io import StringIO
 from pathlib import Path
 from typing import Any
 
-from orchestrator.errors import BadInput
-from orchestrator.fmu_files import KINDS
-from orchestrator.terminal import INTERRUPTED, PARKED, console
+from orchestrator.cosim.fmu_files import KINDS
+from orchestrator.session.terminal import INTERRUPTED, PARKED, console
+from orchestrator.text.errors import BadInput
 
 EXAMPLES = """examples:
   apa sweep guo2015-speed-rate                 compiled, on all cores; table and page in runs/guo2015-speed-rate

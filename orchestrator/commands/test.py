@@ -6,16 +6,16 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from orchestrator.errors import BadInput
-from orchestrator.fmu_files import KINDS, default_kind, fmu_files
-from orchestrator.interrupts import on_interrupt
-from orchestrator.junit import write_junit
-from orchestrator.load_scenario import find_file
-from orchestrator.master import Interrupt
+from orchestrator.cosim.fmu_files import KINDS, default_kind, fmu_files
+from orchestrator.cosim.interrupts import on_interrupt
+from orchestrator.cosim.master import Interrupt
 from orchestrator.report.collection import write_collection
-from orchestrator.requirements import read_requirements
-from orchestrator.suite import Bench, Tested, chosen, run_test
-from orchestrator.terminal import INTERRUPTED, console
+from orchestrator.scenario.load_scenario import find_file
+from orchestrator.session.terminal import INTERRUPTED, console
+from orchestrator.suite.junit import write_junit
+from orchestrator.suite.suite import Bench, Tested, chosen, run_test
+from orchestrator.text.errors import BadInput
+from orchestrator.verdict.requirements import read_requirements
 
 EXAMPLES = """examples:
   apa test "guo2015-*" --out results

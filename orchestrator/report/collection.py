@@ -7,12 +7,12 @@ from typing import Any
 
 import numpy as np
 
-from orchestrator.geometry import Car, place, slot_box
-from orchestrator.recording import Recording
+from orchestrator.cosim.recording import Recording
+from orchestrator.cosim.slave import Array
+from orchestrator.drawing.scene import pose_of
 from orchestrator.report.page import still_page
-from orchestrator.scene import pose_of
-from orchestrator.slave import Array
-from orchestrator.suite import Tested
+from orchestrator.suite.suite import Tested
+from orchestrator.verdict.geometry import Car, place, slot_box
 
 BODY = """<header class="top"><div class="headline"><h1>{title}</h1></div>
 <span class="verdict {kind}">{verdict}</span></header>
@@ -72,7 +72,7 @@ def picture(recording: Recording) -> str:
     shapes: list[tuple[str, Array]] = []
     slot: Any = recording.info.get("scenario", {}).get("slot")
     if slot:
-        from orchestrator.scenario import Slot
+        from orchestrator.scenario.scenario import Slot
 
         shapes.append(("slot", slot_box(Slot(**slot)).outline()))
     shapes += [("start", place(car, x[0], y[0], heading[0])), ("way", np.column_stack([x, y])[rows])]

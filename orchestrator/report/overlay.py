@@ -3,8 +3,7 @@
 from pathlib import Path
 from typing import Any
 
-from orchestrator.compare import Comparison, Difference
-from orchestrator.recording import Recording
+from orchestrator.cosim.recording import Recording
 from orchestrator.report.page import page
 from orchestrator.report.payload import Arrays
 from orchestrator.report.plots import plots_of
@@ -12,7 +11,8 @@ from orchestrator.report.replay import KEYS, LARGEST_PAGE, MOST_ROWS
 from orchestrator.report.run_data import ribbons_of, run_data
 from orchestrator.report.still import origin_of
 from orchestrator.report.words import Line
-from orchestrator.terminal import readable
+from orchestrator.session.terminal import readable
+from orchestrator.verdict.compare import Comparison, Difference
 
 MOST_PLOTS = 4
 """Curves that differ and are shown at once beside the usual ones."""

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from orchestrator.slave import Array
+from orchestrator.cosim.slave import Array
 
 
 class Arrays:

@@ -6,10 +6,10 @@ from typing import Any
 
 import numpy as np
 
-from orchestrator.geometry import place, pose_at, sample_path
-from orchestrator.recording import Recording
+from orchestrator.cosim.recording import Recording
+from orchestrator.cosim.slave import Array, Indices
 from orchestrator.report.payload import Arrays
-from orchestrator.slave import Array, Indices
+from orchestrator.verdict.geometry import place, pose_at, sample_path
 
 MOST_PLANS = 60
 PARTS = re.compile(r"controller\.(path|.*\bmove|.*\bslot|.*\bcorner_b|.*\btarget)\.")

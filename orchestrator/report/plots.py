@@ -4,8 +4,8 @@ from typing import Any
 
 import numpy as np
 
-from orchestrator.judge import Check
-from orchestrator.recording import Recording
+from orchestrator.cosim.recording import Recording
+from orchestrator.verdict.judge import Check
 
 DEGREE = 0.017453292519943295
 GROUPS: tuple[tuple[str, str, float, tuple[str, ...]], ...] = (

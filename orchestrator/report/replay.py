@@ -3,17 +3,17 @@
 from pathlib import Path
 from typing import Any
 
-from orchestrator.errors import BadInput
-from orchestrator.judge import Check
-from orchestrator.quantities import DEGREE
-from orchestrator.recording import Recording
+from orchestrator.cosim.recording import Recording
 from orchestrator.report.page import page
 from orchestrator.report.payload import Arrays
 from orchestrator.report.plots import plots_of
 from orchestrator.report.run_data import ribbons_of, run_data
 from orchestrator.report.words import Line
-from orchestrator.summary import Summary
-from orchestrator.terminal import limit_text, readable
+from orchestrator.session.terminal import limit_text, readable
+from orchestrator.text.errors import BadInput
+from orchestrator.text.quantities import DEGREE
+from orchestrator.verdict.judge import Check
+from orchestrator.verdict.summary import Summary
 
 MOST_ROWS = (2400, 1200, 600)
 LARGEST_PAGE = 1_000_000

@@ -5,8 +5,8 @@ from typing import Any
 import numpy as np
 
 from modelkit.variables import Variable, variables
-from orchestrator.models import MODELS
-from orchestrator.recording import Recording
+from orchestrator.cosim.models import MODELS
+from orchestrator.cosim.recording import Recording
 from orchestrator.report.payload import Arrays
 from orchestrator.report.plans import plans_of
 from orchestrator.report.still import Point, origin_of, still_of

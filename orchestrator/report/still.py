@@ -6,11 +6,11 @@ from typing import Any
 
 import numpy as np
 
-from orchestrator.geometry import Box, Car, boxes, kerbs, slot_box
-from orchestrator.recording import Recording
-from orchestrator.scenario import Slot
-from orchestrator.scene import pose_of
-from orchestrator.slave import Array
+from orchestrator.cosim.recording import Recording
+from orchestrator.cosim.slave import Array
+from orchestrator.drawing.scene import pose_of
+from orchestrator.scenario.scenario import Slot
+from orchestrator.verdict.geometry import Box, Car, boxes, kerbs, slot_box
 
 Point = tuple[float, float]
 MOUNT = re.compile(r"(\w+)\.mounts\[(\d+)\]\.x")

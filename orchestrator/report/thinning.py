@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from orchestrator.slave import Array
+from orchestrator.cosim.slave import Array
 
 TOLERANCE = 1.0 / 500.0
 """Share of a signal's range that straight lines between the kept instants may be off: under a pixel."""

@@ -7,7 +7,7 @@ from foxglove_schemas_protobuf.Log_pb2 import Log
 from mcap.exceptions import McapError
 from mcap.reader import make_reader
 
-from orchestrator.errors import BadInput
+from orchestrator.text.errors import BadInput
 
 LEVELS = {0: "unknown", 1: "debug", 2: "info", 3: "warning", 4: "error", 5: "fatal"}
 TOPIC = "/log"

@@ -10,12 +10,12 @@ from collections.abc import Iterator
 from contextlib import suppress
 from typing import Any
 
-from orchestrator.errors import BadInput
-from orchestrator.fmu_files import sources_hash
-from orchestrator.master import Interrupt
-from orchestrator.slave import Array
+from orchestrator.cosim.fmu_files import sources_hash
+from orchestrator.cosim.master import Interrupt
+from orchestrator.cosim.slave import Array
 from orchestrator.sweep.engines import AHEAD, POLL, Task, cores
 from orchestrator.sweep.job import Chunk, Job
+from orchestrator.text.errors import BadInput
 
 distributed: Any = importlib.import_module("distributed")
 CONNECT = 10.0

@@ -15,12 +15,12 @@ from scipy.special import ndtr, ndtri  # type: ignore[import-untyped]
 from scipy.stats import qmc  # type: ignore[import-untyped]
 
 from modelkit.variables import Variable
-from orchestrator.errors import BadInput
-from orchestrator.quantities import number, scalar
-from orchestrator.scenario import Scenario
-from orchestrator.slave import Array
+from orchestrator.cosim.slave import Array
+from orchestrator.scenario.scenario import Scenario
 from orchestrator.sweep.fields import Field, find_field
 from orchestrator.sweep.study import Range, Samples, Spread, Study
+from orchestrator.text.errors import BadInput
+from orchestrator.text.quantities import number, scalar
 
 MOST_RUNS = 100_000_000
 

@@ -14,14 +14,14 @@ from importlib.util import find_spec
 from multiprocessing import get_context
 from typing import Any, NamedTuple, Protocol
 
-from orchestrator.errors import BadInput
-from orchestrator.master import Interrupt
-from orchestrator.scenario import Scenario
-from orchestrator.slave import Array
+from orchestrator.cosim.master import Interrupt
+from orchestrator.cosim.slave import Array
+from orchestrator.scenario.scenario import Scenario
 from orchestrator.sweep.batch import run_batch
 from orchestrator.sweep.fmu_runs import run_recorded
 from orchestrator.sweep.job import Chunk, Job
 from orchestrator.sweep.kept import why_not_compiled
+from orchestrator.text.errors import BadInput
 
 Work = Callable[[Job, Chunk], Array]
 BATCH_CHUNK = 500
@@ -64,7 +64,7 @@ class Task(NamedTuple):
 def choose_task(scenario: Scenario, job: Job, fmus: str | None) -> Task:
     """Return how the runs are done: compiled where that is possible, otherwise one by one in the Python master."""
     if fmus is not None:
-        from orchestrator.fmu_files import fmu_files
+        from orchestrator.cosim.fmu_files import fmu_files
 
         files = {name: str(path) for name, path in fmu_files(fmus).items()}
         return Task(partial(run_recorded, kind=fmus, files=files), f"{fmus} FMUs", RECORDED_CHUNK, False)

@@ -5,9 +5,9 @@ from typing import Any, NamedTuple
 
 from modelkit.signal import Signal
 from modelkit.variables import Variable, variables
-from orchestrator.errors import BadInput, suggestion
-from orchestrator.models import MODELS
-from orchestrator.scenario import Scenario
+from orchestrator.cosim.models import MODELS
+from orchestrator.scenario.scenario import Scenario
+from orchestrator.text.errors import BadInput, suggestion
 
 TIME = Signal("s", "", 0.0, 1e6)
 SCENARIO_FIELDS: dict[str, Variable] = {

@@ -6,9 +6,9 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from orchestrator.confidence import wilson
-from orchestrator.slave import Array
+from orchestrator.cosim.slave import Array
 from orchestrator.sweep.statistics import Axis, Map
+from orchestrator.verdict.confidence import wilson
 
 WIDTH, HEIGHT = 520.0, 330.0
 LEFT, RIGHT, TOP, BOTTOM = 62.0, 22.0, 8.0, 44.0

@@ -5,8 +5,8 @@ from pathlib import Path
 
 import numpy as np
 
-from orchestrator.session import run_scenario
-from orchestrator.slave import Array
+from orchestrator.cosim.slave import Array
+from orchestrator.session.session import run_scenario
 from orchestrator.sweep.job import Chunk, Job, chunk_scenario
 from orchestrator.sweep.kept import FIRST_KEPT, row_of
 

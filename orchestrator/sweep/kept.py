@@ -9,14 +9,14 @@ from typing import NamedTuple
 import numpy as np
 
 from modelkit.variables import variables
-from orchestrator.errors import BadInput, suggestion
-from orchestrator.judge import judge
-from orchestrator.models import MODELS
-from orchestrator.recording import Recording
-from orchestrator.requirements import Requirement, Window
-from orchestrator.scenario import Scenario
-from orchestrator.slave import Array
-from orchestrator.summary import Final
+from orchestrator.cosim.models import MODELS
+from orchestrator.cosim.recording import Recording
+from orchestrator.cosim.slave import Array
+from orchestrator.scenario.scenario import Scenario
+from orchestrator.text.errors import BadInput, suggestion
+from orchestrator.verdict.judge import judge
+from orchestrator.verdict.requirements import Requirement, Window
+from orchestrator.verdict.summary import Final
 
 STOP_TIME, STANDSTILL, ABORTED = 0.0, 1.0, 2.0
 """How a run ended: first number of its row; the second is when [ns]."""

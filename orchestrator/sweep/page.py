@@ -9,13 +9,13 @@ from typing import Any
 import numpy as np
 import yaml
 
-from orchestrator.confidence import wilson
-from orchestrator.quantities import DEGREE
 from orchestrator.report.page import still_page
 from orchestrator.sweep.figures import histogram, scale_bar, success_map
 from orchestrator.sweep.statistics import for_people, influences, maps, parked, varied, worst
 from orchestrator.sweep.store import Table
 from orchestrator.sweep.verdict import RESULTS
+from orchestrator.text.quantities import DEGREE
+from orchestrator.verdict.confidence import wilson
 
 BODY = """<header class="top"><div class="headline"><h1>{title}</h1><p id="subtitle">{subtitle}</p></div>
 <span class="verdict {kind}">{verdict}</span></header>

@@ -6,10 +6,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.stats import rankdata  # type: ignore[import-untyped]
 
-from orchestrator.quantities import DEGREE
-from orchestrator.slave import Array
+from orchestrator.cosim.slave import Array
 from orchestrator.sweep.store import Table
 from orchestrator.sweep.study import Axes
+from orchestrator.text.quantities import DEGREE
 
 MOST_VALUES = 60
 """An axis with more different values than this is divided into bins."""

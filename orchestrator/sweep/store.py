@@ -16,11 +16,11 @@ import pyarrow as pa  # type: ignore[import-untyped]
 import pyarrow.parquet as pq  # type: ignore[import-untyped]
 
 from modelkit.variables import Variable
-from orchestrator.errors import BadInput
-from orchestrator.slave import Array
+from orchestrator.cosim.slave import Array
 from orchestrator.sweep.fields import Field
 from orchestrator.sweep.job import Chunk, Job
 from orchestrator.sweep.verdict import OUTCOMES, RESULTS, Verdict
+from orchestrator.text.errors import BadInput
 
 ABOUT = b"apa"
 TYPES = {float: pa.float64(), int: pa.int64(), bool: pa.bool_()}

@@ -5,8 +5,8 @@ from typing import Any
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
-from orchestrator.errors import BadInput, suggestion
-from orchestrator.yaml_file import explain, read_mapping
+from orchestrator.text.errors import BadInput, suggestion
+from orchestrator.text.yaml_file import explain, read_mapping
 
 SHIPPED = Path(__file__).parent.parent / "studies"
 

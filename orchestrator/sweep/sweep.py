@@ -8,10 +8,11 @@ from typing import Any
 
 from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeRemainingColumn
 
-from orchestrator.fmu_files import sources_hash
-from orchestrator.interrupts import on_interrupt
-from orchestrator.master import Interrupt
-from orchestrator.session import versions
+from orchestrator.cosim.fmu_files import sources_hash
+from orchestrator.cosim.interrupts import on_interrupt
+from orchestrator.cosim.master import Interrupt
+from orchestrator.session.session import versions
+from orchestrator.session.terminal import console
 from orchestrator.sweep.batch import compiled
 from orchestrator.sweep.design import Design, make_design
 from orchestrator.sweep.engines import choose_task, make_engine
@@ -20,7 +21,6 @@ from orchestrator.sweep.kept import CLEARANCE
 from orchestrator.sweep.store import Store, chunks, job_to
 from orchestrator.sweep.study import Study
 from orchestrator.sweep.verdict import PARKED, RESULTS, judge
-from orchestrator.terminal import console
 
 
 @dataclass

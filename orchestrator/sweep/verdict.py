@@ -1,4 +1,4 @@
-"""The summary of many runs at once: the same numbers and verdicts as ``orchestrator.summary``, as columns."""
+"""The summary of many runs at once: the same numbers and verdicts as ``orchestrator.verdict.summary``, as columns."""
 
 from typing import Any, NamedTuple
 
@@ -6,13 +6,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from modelkit.variables import variables
-from orchestrator.endings import FINAL_PHASES
-from orchestrator.geometry import in_frame
-from orchestrator.judge import margins
-from orchestrator.models import MODELS
-from orchestrator.requirements import Requirement
-from orchestrator.scenario import Scenario
-from orchestrator.slave import Array
+from orchestrator.cosim.endings import FINAL_PHASES
+from orchestrator.cosim.models import MODELS
+from orchestrator.cosim.slave import Array
+from orchestrator.scenario.scenario import Scenario
 from orchestrator.sweep.job import Chunk, Job
 from orchestrator.sweep.kept import (
     ABORTED,
@@ -28,6 +25,9 @@ from orchestrator.sweep.kept import (
     Kept,
     kept_for,
 )
+from orchestrator.verdict.geometry import in_frame
+from orchestrator.verdict.judge import margins
+from orchestrator.verdict.requirements import Requirement
 
 OUTCOMES = ("parked", "not_parked", "failed", "aborted")
 PARKED, NOT_PARKED, FAILED, ABORT = range(4)

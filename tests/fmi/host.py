@@ -12,7 +12,7 @@ from fmpy.fmi2 import FMU2Slave, defaultCallbacks, fmi2CallbackFunctions, fmi2Ca
 from fmpy.logging import addLoggerProxy
 
 from fmus.contents.description import limits
-from orchestrator.fmu_slave import LOADING
+from orchestrator.cosim.fmu_slave import LOADING
 
 OK, WARNING, DISCARD, ERROR, FATAL = range(5)
 

@@ -6,11 +6,11 @@ import xml.etree.ElementTree as ElementTree
 import pytest
 
 from orchestrator.cli import main
-from orchestrator.fmu_files import fmu_files
-from orchestrator.junit import Case, Suite, write_junit
-from orchestrator.load_scenario import load_scenario
-from orchestrator.master import Interrupt
-from orchestrator.suite import Bench, chosen, run_test
+from orchestrator.cosim.fmu_files import fmu_files
+from orchestrator.cosim.master import Interrupt
+from orchestrator.scenario.load_scenario import load_scenario
+from orchestrator.suite.junit import Case, Suite, write_junit
+from orchestrator.suite.suite import Bench, chosen, run_test
 
 RULES = """
 - {id: parked at the end, signal: controller.phase, equals: PARKED, window: {at: end}, source: us}
@@ -124,7 +124,7 @@ def test_a_foreign_controller_is_run_without_the_parameters_it_does_not_have(tmp
     files = fmu_files("python")
     theirs = tmp_path / "their controller.fmu"
     theirs.write_bytes(files["controller"].read_bytes())
-    monkeypatch.setattr("orchestrator.suite.load_scenario", lambda name, sets: foreign_scenario(name))
+    monkeypatch.setattr("orchestrator.suite.suite.load_scenario", lambda name, sets: foreign_scenario(name))
     bench = Bench({**files, "controller": theirs}, "python", frozenset({"controller"}), [], Interrupt())
     tested = run_test("guo2015-case4", [], bench, tmp_path / "out")
     assert tested.ignored == ["controller.no_such_gain"]

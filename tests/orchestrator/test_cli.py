@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from orchestrator.cli import main
-from orchestrator.read_log import read_log
+from orchestrator.log.read_log import read_log
 
 DEMO = str(Path(__file__).with_name("demo.yaml"))
 PNG = b"\x89PNG\r\n"
@@ -96,8 +96,8 @@ def test_no_colours_in_a_pipe(tmp_path: Path) -> None:
 def test_a_slave_that_fails_aborts_and_says_so(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    from orchestrator.errors import RunError
-    from orchestrator.model_slave import ModelSlave
+    from orchestrator.cosim.model_slave import ModelSlave
+    from orchestrator.text.errors import RunError
 
     def step(self: ModelSlave, t_ns: int, dt_ns: int) -> None:
         if t_ns >= 500_000_000:
@@ -114,8 +114,8 @@ def test_a_slave_that_fails_aborts_and_says_so(
 def test_a_slave_that_does_not_start_aborts_too(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    from orchestrator.errors import RunError
-    from orchestrator.model_slave import ModelSlave
+    from orchestrator.cosim.model_slave import ModelSlave
+    from orchestrator.text.errors import RunError
 
     def initialize(self: ModelSlave, stop_ns: int) -> None:
         raise RunError(f"{self.name} refuses to initialize")

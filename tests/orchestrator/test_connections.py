@@ -5,10 +5,10 @@ from toy_models import BRAIN, PLANT
 
 from modelkit.signal import Signal
 from modelkit.variables import Variable
-from orchestrator.connections import connect
-from orchestrator.errors import BadInput
-from orchestrator.model_slave import ModelSlave
-from orchestrator.slave import Slave
+from orchestrator.cosim.connections import connect
+from orchestrator.cosim.model_slave import ModelSlave
+from orchestrator.cosim.slave import Slave
+from orchestrator.text.errors import BadInput
 
 
 def toys() -> list[ModelSlave]:

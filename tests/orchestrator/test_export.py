@@ -9,8 +9,8 @@ import pytest
 
 from orchestrator.cli import main
 from orchestrator.commands.export import export_modules
-from orchestrator.patterns import matching
-from orchestrator.read_log import read_log
+from orchestrator.log.read_log import read_log
+from orchestrator.text.patterns import matching
 
 
 @pytest.fixture(scope="module")
@@ -92,7 +92,7 @@ def test_rerun_file_is_valid_and_complete(log, tmp_path):
 
 
 def test_every_format_is_a_module_of_its_own(capsys):
-    names = {module.__name__.removeprefix("orchestrator.export_") for module in export_modules()}
+    names = {module.__name__.removeprefix("orchestrator.export.") for module in export_modules()}
     assert {"csv", "mf4", "rerun"} <= names
     with pytest.raises(SystemExit):
         main(["export", "--help"])

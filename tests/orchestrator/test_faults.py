@@ -8,11 +8,11 @@ import pytest
 from pydantic import ValidationError
 from toy_models import BRAIN, PLANT
 
-from orchestrator.errors import BadInput
-from orchestrator.faults import Fault, manipulators
-from orchestrator.master import Master
-from orchestrator.model_slave import ModelSlave
-from orchestrator.recording import Recorder, Recording
+from orchestrator.cosim.faults import Fault, manipulators
+from orchestrator.cosim.master import Master
+from orchestrator.cosim.model_slave import ModelSlave
+from orchestrator.cosim.recording import Recorder, Recording
+from orchestrator.text.errors import BadInput
 
 STEP = 10_000_000
 TIMES = np.arange(11) * 0.01

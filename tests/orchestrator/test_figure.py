@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from matplotlib.image import imread
 
-from orchestrator.figure import draw
-from orchestrator.geometry import Car, in_frame, place, sample_path
-from orchestrator.load_scenario import load_scenario
-from orchestrator.session import run_scenario
-from orchestrator.summary import summarize
+from orchestrator.drawing.figure import draw
+from orchestrator.scenario.load_scenario import load_scenario
+from orchestrator.session.session import run_scenario
+from orchestrator.verdict.geometry import Car, in_frame, place, sample_path
+from orchestrator.verdict.summary import summarize
 
 DEMO = str(Path(__file__).with_name("demo.yaml"))
 

@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 from fmus.build import build_all
-from orchestrator.errors import BadInput, RunError
-from orchestrator.fmu_slave import FmuSlave
-from orchestrator.load_scenario import load_scenario
-from orchestrator.models import MODELS
-from orchestrator.session import run_scenario
+from orchestrator.cosim.fmu_slave import FmuSlave
+from orchestrator.cosim.models import MODELS
+from orchestrator.scenario.load_scenario import load_scenario
+from orchestrator.session.session import run_scenario
+from orchestrator.text.errors import BadInput, RunError
 
 DEMO = str(Path(__file__).with_name("demo.yaml"))
 

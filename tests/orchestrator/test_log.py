@@ -12,15 +12,15 @@ from mcap.stream_reader import StreamReader
 from mcap_protobuf.decoder import DecoderFactory
 from toy_models import BRAIN, PLANT, Mode
 
-from orchestrator.errors import BadInput
-from orchestrator.load_scenario import load_scenario
-from orchestrator.master import End
-from orchestrator.mcap_file import CHUNK_SIZE, McapFile
-from orchestrator.mcap_log import McapLog
-from orchestrator.model_slave import ModelSlave
-from orchestrator.read_log import read_log
-from orchestrator.recording import Recording
-from orchestrator.session import Words, run_scenario, run_slaves
+from orchestrator.cosim.master import End
+from orchestrator.cosim.model_slave import ModelSlave
+from orchestrator.cosim.recording import Recording
+from orchestrator.log.mcap_file import CHUNK_SIZE, McapFile
+from orchestrator.log.mcap_log import McapLog
+from orchestrator.log.read_log import read_log
+from orchestrator.scenario.load_scenario import load_scenario
+from orchestrator.session.session import Words, run_scenario, run_slaves
+from orchestrator.text.errors import BadInput
 
 DEMO = str(Path(__file__).with_name("demo.yaml"))
 

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from toy_models import BRAIN, PLANT
 
-from orchestrator.master import Master
-from orchestrator.model_slave import ModelSlave
-from orchestrator.recording import Recorder, Recording
+from orchestrator.cosim.master import Master
+from orchestrator.cosim.model_slave import ModelSlave
+from orchestrator.cosim.recording import Recorder, Recording
 
 STEP = 10_000_000
 

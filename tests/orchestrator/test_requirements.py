@@ -7,12 +7,12 @@ import pytest
 
 from modelkit.signal import Signal
 from modelkit.variables import Variable
-from orchestrator.errors import BadInput
-from orchestrator.judge import judge
-from orchestrator.load_scenario import ROOM
-from orchestrator.recording import Recording
-from orchestrator.requirements import Requirement, read_requirements
-from orchestrator.summary import numbers_of
+from orchestrator.cosim.recording import Recording
+from orchestrator.scenario.load_scenario import ROOM
+from orchestrator.text.errors import BadInput
+from orchestrator.verdict.judge import judge
+from orchestrator.verdict.requirements import Requirement, read_requirements
+from orchestrator.verdict.summary import numbers_of
 
 PHASE = {"STANDBY": 0, "DRIVE": 1, "PARKED": 2}
 T = np.array([0.0, 1.0, 2.0, 3.0, 4.0])

@@ -5,9 +5,9 @@ from pathlib import Path
 
 import pytest
 
-from orchestrator.errors import BadInput
-from orchestrator.load_scenario import car_names, load_scenario, scenario_names
-from orchestrator.quantities import number
+from orchestrator.scenario.load_scenario import car_names, load_scenario, scenario_names
+from orchestrator.text.errors import BadInput
+from orchestrator.text.quantities import number
 
 DEMO = str(Path(__file__).with_name("demo.yaml"))
 

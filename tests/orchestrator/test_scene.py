@@ -2,9 +2,9 @@
 
 import pytest
 
-from orchestrator.geometry import Box, Car, boxes, kerbs, slot_box
-from orchestrator.scenario import Slot
-from orchestrator.scene import Stage, still_life
+from orchestrator.drawing.scene import Stage, still_life
+from orchestrator.scenario.scenario import Slot
+from orchestrator.verdict.geometry import Box, Car, boxes, kerbs, slot_box
 
 SECOND = 1_000_000_000
 CAR = Car.of({})

@@ -10,9 +10,9 @@ import pytest
 
 from controller_fmu.interface import ControllerOutput, Phase, Reason
 from modelkit.variables import variables
-from orchestrator.load_scenario import load_scenario
-from orchestrator.recording import Recording
-from orchestrator.summary import Summary, summarize
+from orchestrator.cosim.recording import Recording
+from orchestrator.scenario.load_scenario import load_scenario
+from orchestrator.verdict.summary import Summary, summarize
 
 DEMO = str(Path(__file__).with_name("demo.yaml"))
 TARGET = {"controller.target.x": 10.0, "controller.target.y": -5.0, "controller.target.heading": math.pi / 2}

@@ -6,8 +6,8 @@ import pytest
 from mcap.reader import make_reader
 
 from orchestrator.cli import main
-from orchestrator.read_log import read_log
-from orchestrator.viewer_layouts import FOLDER, TITLES, layout
+from orchestrator.log.read_log import read_log
+from orchestrator.log.viewer_layouts import FOLDER, TITLES, layout
 
 
 @pytest.fixture(scope="module")

@@ -2,9 +2,9 @@
 
 import pytest
 
-from orchestrator.fmu_files import can_compile, fmu_files
-from orchestrator.reproduce.drive import drive
-from orchestrator.reproduce.result import Drive, Driven
+from orchestrator.cosim.fmu_files import can_compile, fmu_files
+from orchestrator.papers.drive import drive
+from orchestrator.papers.result import Drive, Driven
 
 
 @pytest.fixture(scope="session")

@@ -2,9 +2,9 @@
 
 import pytest
 
-from orchestrator.reproduce.apa import reproduce
-from orchestrator.reproduce.drive import drive
-from orchestrator.reproduce.result import Reproduction
+from orchestrator.papers.apa import reproduce
+from orchestrator.papers.drive import drive
+from orchestrator.papers.result import Reproduction
 
 
 @pytest.fixture(scope="module")

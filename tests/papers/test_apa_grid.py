@@ -4,7 +4,9 @@ import argparse
 
 import pytest
 
-from orchestrator.apa_grid import (
+from orchestrator.commands.study import run
+from orchestrator.cosim.fmu_files import can_compile
+from orchestrator.grid.apa_grid import (
     CARS,
     KEPT,
     Result,
@@ -17,9 +19,7 @@ from orchestrator.apa_grid import (
     parameters,
     totals,
 )
-from orchestrator.apa_loop import Loop
-from orchestrator.commands.study import run
-from orchestrator.fmu_files import can_compile
+from orchestrator.grid.apa_loop import Loop
 
 needs_compiler = pytest.mark.skipif(not can_compile(), reason="needs numba, LLVM and a C compiler")
 EVERY = 5

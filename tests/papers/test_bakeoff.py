@@ -14,7 +14,7 @@ from orchestrator.bakeoff.entries import ASSIST, CONTROLLERS, SLOTS, STARTS, Ent
 from orchestrator.bakeoff.results import Result, results
 from orchestrator.cli import main
 from orchestrator.commands import bakeoff as command
-from orchestrator.fmu_files import can_compile
+from orchestrator.cosim.fmu_files import can_compile
 
 compiles = pytest.mark.skipif(not can_compile(), reason="needs numba, llvmlite and ziglang")
 EVERY = list(entries())

@@ -4,9 +4,9 @@ from pathlib import Path
 
 import pytest
 
-from orchestrator.reproduce.drive import drive
-from orchestrator.reproduce.guo2015 import reproduce
-from orchestrator.reproduce.result import Drive, Reproduction
+from orchestrator.papers.drive import drive
+from orchestrator.papers.guo2015 import reproduce
+from orchestrator.papers.result import Drive, Reproduction
 
 SCENARIOS = [
     *(f"guo2015-case{case}{rate}" for case in range(1, 6) for rate in ("", "-105")),

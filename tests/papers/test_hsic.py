@@ -5,9 +5,9 @@ from pathlib import Path
 import pytest
 
 from controller_fmu.hsic.characteristic_states import Characteristic
-from orchestrator.reproduce.drive import drive
-from orchestrator.reproduce.hsic import SCENARIOS, reproduce
-from orchestrator.reproduce.result import Drive, Reproduction
+from orchestrator.papers.drive import drive
+from orchestrator.papers.hsic import SCENARIOS, reproduce
+from orchestrator.papers.result import Drive, Reproduction
 
 
 @pytest.fixture(scope="module")

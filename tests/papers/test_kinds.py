@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from orchestrator.fmu_files import default_kind, fmu_files
-from orchestrator.reproduce.drive import drive
-from orchestrator.reproduce.result import Drive
+from orchestrator.cosim.fmu_files import default_kind, fmu_files
+from orchestrator.papers.drive import drive
+from orchestrator.papers.result import Drive
 
 SHORT = ("zhang2022", "zhang2022-refused")
 

@@ -5,9 +5,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from orchestrator.reproduce import preview
-from orchestrator.reproduce.drive import drive
-from orchestrator.reproduce.result import Drive, Reproduction
+from orchestrator.papers import preview
+from orchestrator.papers.drive import drive
+from orchestrator.papers.result import Drive, Reproduction
 
 
 @pytest.fixture(scope="module")

@@ -4,9 +4,9 @@ from pathlib import Path
 
 import pytest
 
-from orchestrator.reproduce.drive import drive
-from orchestrator.reproduce.result import Drive, Reproduction
-from orchestrator.reproduce.zhang2022 import reproduce
+from orchestrator.papers.drive import drive
+from orchestrator.papers.result import Drive, Reproduction
+from orchestrator.papers.zhang2022 import reproduce
 
 
 @pytest.fixture(scope="module")

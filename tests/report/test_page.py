@@ -10,14 +10,14 @@ import zlib
 import numpy as np
 import pytest
 
-from orchestrator.errors import BadInput
-from orchestrator.load_scenario import load_scenario
 from orchestrator.report.page import page
 from orchestrator.report.payload import Arrays
 from orchestrator.report.replay import LARGEST_PAGE, replay_page
 from orchestrator.report.thinning import TOLERANCE, thin
-from orchestrator.session import run_scenario
-from orchestrator.summary import summarize
+from orchestrator.scenario.load_scenario import load_scenario
+from orchestrator.session.session import run_scenario
+from orchestrator.text.errors import BadInput
+from orchestrator.verdict.summary import summarize
 
 EVIL = "<script>window.evil = 1</script><img src=x onerror='window.evil = 1'>"
 

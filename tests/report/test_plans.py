@@ -8,12 +8,12 @@ import pytest
 from controller_fmu.apa.move import Move, Piece, end_of
 from controller_fmu.apa.slot import Kind, Side
 from modelkit.vocabulary import Pose
-from orchestrator.geometry import sample_path
-from orchestrator.load_scenario import load_scenario
 from orchestrator.report.payload import Arrays
 from orchestrator.report.plans import MOST_PLANS, found_slot, plans_of, wanted_pose
 from orchestrator.report.run_data import ribbons_of
-from orchestrator.session import run_scenario
+from orchestrator.scenario.load_scenario import load_scenario
+from orchestrator.session.session import run_scenario
+from orchestrator.verdict.geometry import sample_path
 
 
 @pytest.fixture(scope="module")

@@ -7,15 +7,15 @@ import pytest
 
 from fmus.compiled_batch import Kept, compiled_rows, connections
 from modelkit.signal import Signal
-from orchestrator.fmu_files import fmu_files
-from orchestrator.models import MODELS
-from orchestrator.session import run_scenario
-from orchestrator.summary import summarize
+from orchestrator.cosim.fmu_files import fmu_files
+from orchestrator.cosim.models import MODELS
+from orchestrator.session.session import run_scenario
 from orchestrator.sweep.batch import run_batch
 from orchestrator.sweep.fmu_runs import run_recorded
 from orchestrator.sweep.job import Chunk, arrays, chunk_scenario
 from orchestrator.sweep.kept import row_of, why_not_compiled
 from orchestrator.sweep.verdict import OUTCOMES, judge
+from orchestrator.verdict.summary import summarize
 
 LIMITS = [
     {"id": "end heading", "signal": "final.heading_error", "max_abs": "3 deg", "source": "test"},

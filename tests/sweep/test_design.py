@@ -3,8 +3,8 @@ import math
 import numpy as np
 import pytest
 
-from orchestrator.errors import BadInput
 from orchestrator.sweep.study import Study
+from orchestrator.text.errors import BadInput
 
 SPEED = "vehicle.driver.profile[1].speed"
 

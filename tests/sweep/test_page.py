@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from orchestrator.cli import main
-from orchestrator.confidence import wilson
 from orchestrator.sweep.figures import SCALE, colour, histogram
 from orchestrator.sweep.page import study_page
 from orchestrator.sweep.statistics import axis, influences, maps, variance_share, varied, worst
 from orchestrator.sweep.store import Table
+from orchestrator.verdict.confidence import wilson
 
 EVIL = "<script>window.evil = 1</script><img src=x onerror='window.evil = 1'>"
 STUDY = """

@@ -5,13 +5,13 @@ import threading
 import pytest
 from test_same_bits import differing
 
-from orchestrator import compiled_master
-from orchestrator.compiled_master import CompiledMaster
-from orchestrator.errors import RunError
-from orchestrator.fmu_slave import FmuSlave
-from orchestrator.load_scenario import load_scenario
-from orchestrator.master import Master
-from orchestrator.session import run_scenario
+from orchestrator.cosim import compiled_master
+from orchestrator.cosim.compiled_master import CompiledMaster
+from orchestrator.cosim.fmu_slave import FmuSlave
+from orchestrator.cosim.master import Master
+from orchestrator.scenario.load_scenario import load_scenario
+from orchestrator.session.session import run_scenario
+from orchestrator.text.errors import RunError
 
 NAME = "guo2015-case4-105"
 

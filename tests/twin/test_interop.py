@@ -19,10 +19,10 @@ from libcosimpy.CosimObserver import CosimObserver
 
 from fmus.systems.container import write_container
 from fmus.systems.ssp import write_ssp
-from orchestrator.errors import BadInput
-from orchestrator.load_scenario import load_scenario
-from orchestrator.session import run_scenario
-from orchestrator.system_of import system_of
+from orchestrator.export.system_of import system_of
+from orchestrator.scenario.load_scenario import load_scenario
+from orchestrator.session.session import run_scenario
+from orchestrator.text.errors import BadInput
 
 POSE = ("pose.x", "pose.y", "pose.heading")
 KINDS = ("native", "python")

@@ -2,10 +2,10 @@
 
 import pytest
 
-from orchestrator.fmu_files import can_compile
-from orchestrator.load_scenario import load_scenario
-from orchestrator.reproduce.many import timed
-from orchestrator.session import run_scenario
+from orchestrator.cosim.fmu_files import can_compile
+from orchestrator.papers.many import timed
+from orchestrator.scenario.load_scenario import load_scenario
+from orchestrator.session.session import run_scenario
 from orchestrator.sweep.kept import CLEARANCE, PHASE, POSE, SHIFTS, WHEEL, Kept
 
 pytestmark = pytest.mark.skipif(not can_compile(), reason="needs numba, llvmlite and ziglang")

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import orchestrator
-from orchestrator.load_scenario import load_scenario
-from orchestrator.session import run_scenario
+from orchestrator.scenario.load_scenario import load_scenario
+from orchestrator.session.session import run_scenario
 
 SCENARIOS = sorted(path.stem for path in (Path(orchestrator.__file__).parent / "scenarios").glob("*.yaml"))
 PYTHON_FMU_TOO = ("guo2015-case4", "guo2015-case4-105", "fault-pose-nan", "fault-driver-takes-over")

@@ -8,7 +8,7 @@ import yaml
 from cars import CARS, double_track_car, single_track_car
 
 from modelkit.variables import flatten, variables, with_values
-from orchestrator.load_scenario import car_names, load_scenario
+from orchestrator.scenario.load_scenario import car_names, load_scenario
 from vehicle_fmu.interface import Body, VehicleParams
 from vehicle_fmu.usable import is_usable
 

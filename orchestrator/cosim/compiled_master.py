@@ -1,0 +1,211 @@
+"""The Python master's exchange as compiled calls: FMUs driven through their C functions, without the GIL.
+
+``fmus/native/c/master.c`` does a block of exchanges at a time and writes all signals of each into rows
+allocated once. Afterwards the rows are laid into the slaves' arrays one by one, and the observers
+and endings see them as if they had been there: log, recording and progress bar need to know nothing.
+An ending in mid-block means that the FMUs have run on for the rest of it; nobody looks at that.
+
+It covers FMUs of any kind. Faults change inputs between exchange and step, so a run with
+manipulators, or with a model in process, takes the Python loop; so does one on a machine where
+the compiled loop cannot be built.
+"""
+
+import ctypes
+from contextlib import suppress
+from typing import Any
+
+import numpy as np
+
+from orchestrator.cosim.fmu_slave import FmuSlave, Transfer
+from orchestrator.cosim.master import End, Master
+from orchestrator.cosim.slave import Indices, places_of
+
+BLOCK = 250
+"""Exchanges per compiled call."""
+FETCH, SEND, STEP = 1, 2, 3
+Pointer = ctypes.c_void_p
+Long = ctypes.c_int64
+
+
+def _structure(name: str, **fields: Any) -> Any:
+    return type(name, (ctypes.Structure,), {"_fields_": list(fields.items())})
+
+
+TransferC = _structure("TransferC", call=Pointer, references=Pointer, values=Pointer, integers=Pointer, count=Long)
+SlaveC = _structure(
+    "SlaveC",
+    component=Pointer,
+    do_step=Pointer,
+    inputs=Pointer,
+    outputs=Pointer,
+    input_count=Long,
+    output_count=Long,
+    gets=Pointer,
+    sets=Pointer,
+    get_count=Long,
+    set_count=Long,
+    every=Long,
+    step=ctypes.c_double,
+    due=Long,
+)
+LinkC = _structure("LinkC", source=Long, target=Long, source_places=Pointer, target_places=Pointer, count=Long)
+RunC = _structure(
+    "RunC",
+    slaves=Pointer,
+    links=Pointer,
+    slave_count=Long,
+    link_count=Long,
+    step_ns=Long,
+    last=Long,
+    failed=Long,
+    failure=Long,
+)
+
+
+class CompiledMaster(Master):
+    """A master whose loop is compiled wherever it can be."""
+
+    _plan: "_Plan | None" = None
+
+    def initialize(self) -> None:
+        """Enter initialization, exchange once, leave it, and lay out the loop's memory: time is zero."""
+        super().initialize()
+        fmus = [slave for slave in self.slaves if isinstance(slave, FmuSlave)]
+        self._plan = None
+        if not self.manipulators and len(fmus) == len(self.slaves):
+            with suppress(RuntimeError):
+                self._plan = _Plan(self, fmus)
+
+    def run(self) -> End:
+        """Exchange and step until an ending, the stop time or an interrupt. Raises ``RunError``."""
+        if self._plan is None:
+            return super().run()
+        return self._run_blocks(self._plan)
+
+    def _run_blocks(self, plan: "_Plan") -> End:
+        first = 0
+        while True:
+            count = plan.advance(first)
+            unseen = 0 if self.observers or self.endings else max(count - 1, 0)
+            rows = plan.rows_of_ports(unseen, count)
+            for row in range(unseen, count):
+                self.values[:] = rows[row - unseen]
+                t_ns = (first + row) * self.step_ns
+                for observer in self.observers:
+                    observer.exchanged(t_ns)
+                reason = self._over(t_ns, first + row == plan.last)
+                if reason:
+                    return End(reason, t_ns)
+            first += count
+            plan.check(first)
+
+
+class _Plan:
+    """The C structures of one run, and all memory they point to.
+
+    The arrays of the compiled loop have their values in the order of the transfers, so that those of one
+    type lie together and an FMU reads and writes them in place.
+    """
+
+    def __init__(self, master: Master, fmus: list[FmuSlave]) -> None:
+        from fmus.native.master_library import master_library
+
+        self._call = ctypes.CDLL(str(master_library())).master_run
+        self._call.restype = ctypes.c_int64
+        self._call.argtypes = [Pointer, Long, Long, Pointer]
+        self._fmus = fmus
+        self._kept: list[Any] = []
+        self._step_ns = master.step_ns
+        self.last = master.stop_ns // master.step_ns
+        orders = [(_order(slave.sets), _order(slave.gets)) for slave in fmus]
+        slaves = [
+            self._slave(slave, every, *order) for slave, every, order in zip(fmus, master.every, orders, strict=True)
+        ]
+        links = [
+            LinkC(
+                link.source,
+                link.target,
+                self._places(np.argsort(orders[link.source][1])[link.source_places]),
+                self._places(np.argsort(orders[link.target][0])[link.target_places]),
+                len(link.source_places),
+            )
+            for link in master.connections
+        ]
+        self._run = RunC(
+            self._array(SlaveC, slaves),
+            self._array(LinkC, links),
+            len(slaves),
+            len(links),
+            master.step_ns,
+            self.last,
+            0,
+            0,
+        )
+        places = (part for order in orders for part in order)
+        starts = (part.start for part in places_of(fmus))
+        self._columns = np.concatenate([at + np.argsort(part) for at, part in zip(starts, places, strict=True)])
+        self.rows = np.empty((BLOCK, len(self._columns)))
+
+    def rows_of_ports(self, begin: int, end: int) -> Any:
+        """Return the rows with their values in the order of the master's."""
+        return self.rows[begin:end, self._columns]
+
+    def advance(self, first: int) -> int:
+        """Do a block of exchanges; return how many are in ``rows``."""
+        return int(self._call(ctypes.addressof(self._run), first, BLOCK, self.rows.ctypes.data))
+
+    def check(self, number: int) -> None:
+        """Raise the ``RunError`` of the slave that refused in the block just done; ``number`` rows are complete."""
+        slave = self._fmus[self._run.failed]
+        if self._run.failure == FETCH:
+            raise slave.no_outputs()
+        if self._run.failure == SEND:
+            raise slave.no_inputs()
+        if self._run.failure == STEP:
+            raise slave.no_step((number - 1) * self._step_ns)
+
+    def _slave(self, slave: FmuSlave, every: int, inputs: Indices, outputs: Indices) -> Any:
+        arrays = [slave.inputs.values[inputs], slave.outputs.values[outputs]]
+        self._kept.append(arrays)
+        sets, gets = (
+            self._transfers(group, array) for group, array in zip((slave.sets, slave.gets), arrays, strict=True)
+        )
+        return SlaveC(
+            slave.component,
+            ctypes.cast(slave.do_step, Pointer),
+            *(array.ctypes.data for array in arrays),
+            *map(len, arrays),
+            self._array(TransferC, gets),
+            self._array(TransferC, sets),
+            len(gets),
+            len(sets),
+            every,
+            every * self._step_ns / 1e9,
+            True,
+        )
+
+    def _transfers(self, group: list[Transfer], array: Any) -> list[Any]:
+        found, at = [], 0
+        for item in group:
+            real = item.view.dtype == np.float64
+            values = array.ctypes.data + at * array.itemsize
+            buffer = None if real else ctypes.addressof(item.array)
+            references = ctypes.addressof(item.references)
+            found.append(TransferC(ctypes.cast(item.function, Pointer), references, values, buffer, item.count))
+            at += item.count
+        return found
+
+    def _places(self, places: Indices) -> int:
+        kept = np.ascontiguousarray(places, dtype=np.int64)
+        self._kept.append(kept)
+        return int(kept.ctypes.data)
+
+    def _array(self, kind: Any, items: list[Any]) -> int:
+        kept = (kind * max(len(items), 1))(*items)
+        self._kept.append((kept, items))
+        return ctypes.addressof(kept)
+
+
+def _order(transfers: list[Transfer]) -> Indices:
+    """Return the places of all values of ``transfers`` in the ports."""
+    return np.concatenate([np.empty(0, dtype=np.intp), *(item.places for item in transfers)])

@@ -1,0 +1,207 @@
+"""Fault injection: what a receiver sees is changed between two exchanges, while the sender goes on.
+
+The log shows both sides: the output as it is, the input as it was seen.
+"""
+
+from collections import deque
+from typing import Literal
+
+import numpy as np
+from pydantic import BaseModel, ConfigDict, Field
+
+from modelkit.random import normal, seed_state, uniform
+from orchestrator.cosim.master import Manipulator
+from orchestrator.cosim.slave import Array, Indices, Slave
+from orchestrator.text.errors import BadInput, suggestion
+from orchestrator.text.quantities import Seconds, number, scalar
+
+Kind = Literal["freeze", "override", "drop", "delay", "noise"]
+NEEDS: dict[str, tuple[str, ...]] = {
+    "freeze": (),
+    "override": ("value",),
+    "drop": ("probability",),
+    "delay": ("delay",),
+    "noise": ("sigma",),
+}
+
+
+class Fault(BaseModel):
+    """One disturbance of one signal, or of a group of signals such as ``vehicle.odometry``."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    signal: str
+    """``slave.name`` of an output (its receivers are disturbed) or of an input."""
+    kind: Kind
+    start: Seconds = 0.0
+    """From this time on [s]."""
+    stop: Seconds = float("inf")
+    """Until before this time [s]."""
+    value: float | str | bool | None = None
+    """override: the value seen instead; a number, ``nan``, a quantity or the name of a state."""
+    delay: Seconds | None = None
+    """delay: age of the value seen [s]."""
+    sigma: float | str | None = None
+    """noise: standard deviation, in the unit of the signal or with its own."""
+    probability: float = Field(default=1.0, ge=0.0, le=1.0)
+    """drop: chance that an exchange is lost; the receiver keeps the value before."""
+
+
+class _Window:
+    """A fault's place and time."""
+
+    def __init__(self, fault: Fault, slave: int, values: Array, places: Indices) -> None:
+        self.slave = slave
+        self._values = values
+        self._places = places
+        self._start_ns = round(fault.start * 1e9)
+        self._stop_ns = round(fault.stop * 1e9) if fault.stop < 1e9 else 1 << 62
+
+    def _active(self, t_ns: int) -> bool:
+        return self._start_ns <= t_ns < self._stop_ns
+
+
+class Override(_Window):
+    """The receiver sees ``value``."""
+
+    def __init__(self, fault: Fault, slave: int, values: Array, places: Indices, value: float) -> None:
+        super().__init__(fault, slave, values, places)
+        self._value = value
+
+    def apply(self, t_ns: int) -> None:
+        """Write the value."""
+        if self._active(t_ns):
+            self._values[self._places] = self._value
+
+
+class Freeze(_Window):
+    """The receiver sees for ever what it saw when the fault began."""
+
+    _held: Array | None = None
+
+    def apply(self, t_ns: int) -> None:
+        """Write the held value."""
+        if not self._active(t_ns):
+            self._held = None
+        elif self._held is None:
+            self._held = self._values[self._places].copy()
+        else:
+            self._values[self._places] = self._held
+
+
+class Drop(_Window):
+    """Each exchange is lost with a probability; the receiver keeps what it received last."""
+
+    def __init__(self, fault: Fault, slave: int, values: Array, places: Indices, seed: int) -> None:
+        super().__init__(fault, slave, values, places)
+        self._probability = fault.probability
+        self._random = seed_state(seed)
+        self._last: Array = values[places].copy()
+
+    def apply(self, t_ns: int) -> None:
+        """Put the last received value back, or note the new one."""
+        if self._active(t_ns):
+            self._random, chance = uniform(self._random)
+            if chance < self._probability:
+                self._values[self._places] = self._last
+                return
+        self._last = self._values[self._places].copy()
+
+
+class Delay(_Window):
+    """The receiver sees an old value; before there is one that old, the first one."""
+
+    def __init__(self, fault: Fault, slave: int, values: Array, places: Indices) -> None:
+        super().__init__(fault, slave, values, places)
+        self._delay_ns = round((fault.delay or 0.0) * 1e9)
+        self._past: deque[tuple[int, Array]] = deque()
+
+    def apply(self, t_ns: int) -> None:
+        """Write the newest value that is at least ``delay`` old."""
+        self._past.append((t_ns, self._values[self._places].copy()))
+        while len(self._past) > 1 and self._past[1][0] <= t_ns - self._delay_ns:
+            self._past.popleft()
+        if self._active(t_ns):
+            self._values[self._places] = self._past[0][1]
+
+
+class Noise(_Window):
+    """White Gaussian noise on every exchange, the same for the same seed."""
+
+    def __init__(self, fault: Fault, slave: int, values: Array, places: Indices, sigma: float, seed: int) -> None:
+        super().__init__(fault, slave, values, places)
+        self._sigma = sigma
+        self._random = seed_state(seed)
+
+    def apply(self, t_ns: int) -> None:
+        """Add one draw to each of the signals."""
+        if not self._active(t_ns):
+            return
+        for place in self._places:
+            self._random, draw = normal(self._random)
+            self._values[place] += self._sigma * draw
+
+
+def manipulators(faults: list[Fault], slaves: list[Slave], seed: int, file: object = None) -> list[Manipulator]:
+    """Return a manipulator for every receiver of every fault. Raises ``BadInput`` for an unknown signal."""
+    made: list[Manipulator] = []
+    for count, fault in enumerate(faults):
+        key = f"faults[{count + 1}]"
+        _check(fault, file, key)
+        for slave, places in _receivers(fault.signal, slaves, file, f"{key}.signal"):
+            made.append(_make(fault, slave, places, slaves, seed * 1000 + len(made), file, key))
+    return made
+
+
+def _make(
+    fault: Fault, slave: int, places: list[int], slaves: list[Slave], seed: int, file: object, key: str
+) -> Manipulator:
+    ports = slaves[slave].inputs
+    where: tuple[Fault, int, Array, Indices] = (fault, slave, ports.values, np.array(places, dtype=np.intp))
+    first = ports.variables[places[0]]
+    if fault.kind == "freeze":
+        return Freeze(*where)
+    if fault.kind == "delay":
+        return Delay(*where)
+    if fault.kind == "drop":
+        return Drop(*where, seed)
+    if fault.kind == "noise":
+        if any(ports.variables[place].kind is not float for place in places):
+            raise BadInput(f"noise needs a real signal, {fault.signal} is not", file=file, key=key)
+        return Noise(*where, number(fault.sigma, first.signal.unit, file=file, key=f"{key}.sigma"), seed)
+    if first.kind is float:
+        return Override(*where, number(fault.value, first.signal.unit, file=file, key=f"{key}.value"))
+    return Override(*where, float(scalar(fault.value, first, file=file)))
+
+
+def _receivers(signal: str, slaves: list[Slave], file: object, key: str) -> list[tuple[int, list[int]]]:
+    """Return (slave number, input places) of everything that hears ``signal``."""
+    owner, _, name = signal.partition(".")
+    names = [slave.name for slave in slaves]
+    if owner not in names:
+        raise BadInput(f"{signal!r}: expected one of {', '.join(names)} before the dot", file=file, key=key)
+    own = slaves[names.index(owner)]
+    if _matching(own.inputs.names, name):
+        return [(names.index(owner), _matching(own.inputs.names, name))]
+    if not _matching(own.outputs.names, name):
+        known = own.outputs.names + own.inputs.names
+        raise BadInput(f"{owner} has no signal {name!r}{suggestion(name, known)}", file=file, key=key)
+    heard = [(number, _matching(slave.inputs.names, name)) for number, slave in enumerate(slaves) if slave is not own]
+    heard = [(number, places) for number, places in heard if places]
+    if not heard:
+        raise BadInput(f"nobody listens to {signal}", file=file, key=key)
+    return heard
+
+
+def _matching(names: list[str], wanted: str) -> list[int]:
+    return [
+        place for place, name in enumerate(names) if name == wanted or name.startswith((wanted + ".", wanted + "["))
+    ]
+
+
+def _check(fault: Fault, file: object, key: str) -> None:
+    for need in NEEDS[fault.kind]:
+        if getattr(fault, need) is None:
+            raise BadInput(f"kind {fault.kind} needs {need}", file=file, key=key)
+    if fault.stop <= fault.start:
+        raise BadInput(f"stop {fault.stop:g} s is not after start {fault.start:g} s", file=file, key=key)

@@ -1,0 +1,268 @@
+"""An FMI 2.0 co-simulation FMU behind the face of a slave. FMPy loads it; the arrays are allocated once.
+
+Each exchange is at most one call per type and direction (``fmi2GetReal`` and so on), made straight
+through ctypes on pointers that never change.
+"""
+
+import ctypes
+import shutil
+import tempfile
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from threading import Lock
+from typing import Any
+
+import numpy as np
+from fmpy import extract
+from fmpy.fmi2 import (
+    FMU2Slave,
+    defaultCallbacks,
+    fmi2CallbackFunctions,
+    fmi2CallbackLoggerTYPE,
+)
+from fmpy.model_description import ModelDescription, ScalarVariable, read_model_description
+
+from modelkit.model import Model
+from modelkit.signal import Signal
+from modelkit.variables import Variable, variables
+from orchestrator.cosim.slave import Ports
+from orchestrator.text.errors import BadInput, RunError
+
+KINDS = {"Real": float, "Integer": int, "Enumeration": int, "Boolean": bool}
+LOADING = Lock()
+"""FMPy changes the working directory of the process while it loads a library: one thread at a time."""
+LogCallback = Callable[[str, int, str], None]
+"""Called with (slave name, FMI status, message)."""
+
+
+class Transfer:
+    """One direction of one type: value references, C array, and where its values sit in the ports."""
+
+    def __init__(self, function: Any, component: Any, ports: Ports, kind: type, references: dict[str, int]) -> None:
+        self.places = ports.indices(kind)
+        names = [ports.names[place] for place in self.places]
+        self.count = len(names)
+        self.last = b""
+        """What was sent last."""
+        self.array: Any = ((ctypes.c_double if kind is float else ctypes.c_int32) * max(self.count, 1))()
+        self.view: Any = np.ctypeslib.as_array(self.array)[: self.count]
+        self.references = (ctypes.c_uint32 * max(self.count, 1))(*[references[name] for name in names])
+        pointer = ctypes.c_void_p
+        self.function = function
+        self._arguments = (
+            pointer(component),
+            pointer(ctypes.addressof(self.references)),
+            ctypes.c_size_t(self.count),
+            pointer(ctypes.addressof(self.array)),
+        )
+
+    def __call__(self) -> int:
+        """Make the call and return its FMI status."""
+        return int(self.function(*self._arguments))
+
+
+class FmuSlave:
+    """One instance of one FMU."""
+
+    def __init__(
+        self, name: str, path: Path, parameters: Mapping[str, Any], log: LogCallback, model: Model | None = None
+    ) -> None:
+        self.name = name
+        self._log = log
+        self._last_message = ""
+        self._path = path
+        self._directory = ""
+        self._instance: FMU2Slave | None = None
+        self._description = _description(path)
+        self.identity = self._description.guid
+        scalars = self._description.modelVariables
+        self._references = {scalar.name: scalar.valueReference for scalar in scalars}
+        known = _known_variables(model)
+        self.inputs = Ports(_of(scalars, "input", known))
+        self.outputs = Ports(_of(scalars, "output", known))
+        self.parameters = Ports(_of(scalars, "parameter", known))
+        for key, value in parameters.items():
+            if key not in self.parameters.index:
+                raise RunError(f"{path.name} has no parameter {key}; is it outdated? run: apa build")
+            self.parameters.values[self.parameters.index[key]] = float(value)
+        self._changed = {key: self.parameters.variables[self.parameters.index[key]].kind for key in parameters}
+
+    def initialize(self, stop_ns: int) -> None:
+        """Extract, instantiate, set the parameters, enter Initialization Mode."""
+        self._directory = _ascii_directory()
+        extract(str(self._path), unzipdir=self._directory)
+        co_simulation = self._description.coSimulation
+        with LOADING:
+            self._instance = FMU2Slave(
+                guid=self._description.guid,
+                unzipDirectory=self._directory,
+                modelIdentifier=co_simulation.modelIdentifier,
+                instanceName=self.name,
+            )
+        self._callbacks = self._make_callbacks()
+        try:
+            self._instance.instantiate(callbacks=self._callbacks, loggingOn=True)
+        except Exception as error:
+            raise RunError(f"{self.name} cannot be instantiated: {self._last_message or error}") from error
+        self._bind()
+        self._set_parameters()
+        try:
+            self._instance.setupExperiment(startTime=0.0, stopTime=stop_ns / 1e9)
+            self._instance.enterInitializationMode()
+        except Exception as error:
+            raise RunError(f"{self.name} refuses to initialize: {self._last_message or error}") from error
+
+    def start(self) -> None:
+        """Exit Initialization Mode."""
+        assert self._instance is not None
+        try:
+            self._instance.exitInitializationMode()
+        except Exception as error:
+            raise RunError(f"{self.name} refuses to start: {self._last_message or error}") from error
+
+    def fetch_outputs(self) -> None:
+        """One get call per type that has outputs."""
+        values = self.outputs.values
+        for transfer in self.gets:
+            if transfer() > 1:
+                raise self.no_outputs()
+            values[transfer.places] = transfer.view
+
+    def send_inputs(self) -> None:
+        """One set call per type of whose inputs any has changed: an FMU holds its inputs."""
+        values = self.inputs.values
+        for transfer in self.sets:
+            given = values[transfer.places]
+            now = given.tobytes()
+            if now == transfer.last:
+                continue
+            transfer.last = now
+            transfer.view[:] = given
+            if transfer() > 1:
+                raise self.no_inputs()
+
+    def step(self, t_ns: int, dt_ns: int) -> None:
+        """Call fmi2DoStep at ``t_ns / 1e9`` seconds, computed from the count, never accumulated."""
+        if self.do_step(self.component, t_ns / 1e9, dt_ns / 1e9, 1) > 1:
+            raise self.no_step(t_ns)
+
+    def no_outputs(self) -> RunError:
+        """Return the error of a get call that failed."""
+        return RunError(f"{self.name} gives no outputs: {self._last_message}")
+
+    def no_inputs(self) -> RunError:
+        """Return the error of a set call that failed."""
+        return RunError(f"{self.name} refuses its inputs: {self._last_message}")
+
+    def no_step(self, t_ns: int) -> RunError:
+        """Return the error of a step that failed."""
+        return RunError(f"{self.name} failed at {t_ns / 1e9:g} s: {self._last_message or 'no message'}")
+
+    def close(self) -> None:
+        """Terminate, free the instance, remove the extracted files."""
+        if self._instance is not None:
+            instance, self._instance = self._instance, None
+            try:
+                instance.terminate()
+            except Exception as error:
+                self._log(self.name, 1, f"terminate: {error}")
+            instance.freeInstance()
+        if self._directory:
+            shutil.rmtree(self._directory, ignore_errors=True)
+            self._directory = ""
+
+    def _bind(self) -> None:
+        assert self._instance is not None
+        library, component = self._instance.dll, self._instance.component
+        self.component = ctypes.c_void_p(component)
+
+        def function(name: str) -> Any:
+            found = library[name]
+            found.restype = ctypes.c_int
+            return found
+
+        def transfers(verb: str, ports: Ports) -> list[Transfer]:
+            pairs = (("Real", float), ("Integer", int), ("Boolean", bool))
+            made = [
+                Transfer(function(f"fmi2{verb}{word}"), component, ports, kind, self._references)
+                for word, kind in pairs
+            ]
+            return [transfer for transfer in made if transfer.count]
+
+        self.gets = transfers("Get", self.outputs)
+        self.sets = transfers("Set", self.inputs)
+        self.do_step = function("fmi2DoStep")
+        self.do_step.argtypes = [ctypes.c_void_p, ctypes.c_double, ctypes.c_double, ctypes.c_int]
+
+    def _set_parameters(self) -> None:
+        assert self._instance is not None
+        setters = {
+            float: self._instance.setReal,
+            int: self._instance.setInteger,
+            bool: self._instance.setBoolean,
+        }
+        for kind, setter in setters.items():
+            names = [name for name, its_kind in self._changed.items() if its_kind is kind]
+            values = [kind(self.parameters.values[self.parameters.index[name]]) for name in names]
+            if names:
+                try:
+                    setter([self._references[name] for name in names], values)
+                except Exception as error:
+                    raise RunError(f"{self.name} refuses its parameters: {self._last_message or error}") from error
+
+    def _make_callbacks(self) -> fmi2CallbackFunctions:
+        def logger(_environment: Any, _instance: Any, status: int, category: Any, message: Any) -> None:
+            text = (message or b"").decode(errors="replace").replace("%%", "%").strip()
+            if status > 1:
+                self._last_message = text
+            self._log(self.name, int(status), text)
+
+        callbacks = fmi2CallbackFunctions()
+        callbacks.logger = fmi2CallbackLoggerTYPE(logger)
+        callbacks.allocateMemory = defaultCallbacks.allocateMemory
+        callbacks.freeMemory = defaultCallbacks.freeMemory
+        return callbacks
+
+
+def _description(path: Path) -> ModelDescription:
+    """Return what the FMU says of itself. Raises ``BadInput`` if the file is no FMI 2.0 co-simulation FMU."""
+    try:
+        description = read_model_description(str(path), validate=False)
+    except Exception as error:
+        raise BadInput(f"is not an FMU: {error}", file=path) from error
+    if description.fmiVersion != "2.0" or description.coSimulation is None:
+        raise BadInput(f"is FMI {description.fmiVersion}; expected FMI 2.0 for co-simulation", file=path)
+    return description
+
+
+def _known_variables(model: Model | None) -> dict[str, Variable]:
+    if model is None:
+        return {}
+    groups = (variables(model.inputs), variables(model.outputs), variables(model.params))
+    return {variable.name: variable for group in groups for variable in group}
+
+
+def _of(scalars: list[ScalarVariable], causality: str, known: dict[str, Variable]) -> list[Variable]:
+    chosen = [scalar for scalar in scalars if scalar.causality == causality and scalar.type in KINDS]
+    return [_variable(scalar, known.get(scalar.name)) for scalar in chosen]
+
+
+def _variable(scalar: ScalarVariable, known: Variable | None) -> Variable:
+    kind = KINDS[scalar.type]
+    text = str(scalar.start if scalar.start is not None else "0")
+    start = kind(float({"true": "1", "false": "0"}.get(text.lower(), text)))
+    unit = scalar.unit or (scalar.declaredType.unit if scalar.declaredType is not None else None) or "1"
+    states = known.signal.states if known is not None and known.kind is kind else None
+    return Variable(scalar.name, kind, Signal(unit, scalar.description or "", states=states), start)
+
+
+def _ascii_directory() -> str:
+    """Return a new directory whose path is plain ASCII: PythonFMU crashes on others."""
+    for parent in (None, "/tmp", "C:\\Temp"):
+        if parent is not None and not Path(parent).is_dir():
+            continue
+        directory = tempfile.mkdtemp(prefix="apa_", dir=parent)
+        if directory.isascii():
+            return directory
+        shutil.rmtree(directory, ignore_errors=True)
+    raise RunError("no directory with a plain ASCII path for the FMU; set TMPDIR to one")

@@ -1,0 +1,156 @@
+"""Fixed-step Jacobi master on integer nanoseconds, with integer multi-rate, observers and manipulators.
+
+At every exchange: read all outputs, write all inputs, then step all. One exchange takes place in
+Initialization Mode. A slave with decimation n is stepped every n-th time by n communication steps;
+its outputs are read, and its inputs written, only at those instants.
+"""
+
+from math import lcm
+from typing import NamedTuple, Protocol
+
+from orchestrator.cosim.connections import connect
+from orchestrator.cosim.slave import Array, Indices, Slave, all_values
+
+
+class Observer(Protocol):
+    """Sees every exchange, changes nothing: log, recording, progress bar."""
+
+    def exchanged(self, t_ns: int) -> None:
+        """Look at the slaves' arrays as they are at ``t_ns``."""
+
+    def closed(self, end: "End") -> None:
+        """The run is over; called once, whatever the reason."""
+
+
+class Manipulator(Protocol):
+    """Changes inputs of one slave after an exchange: fault injection."""
+
+    slave: int
+    """Number of the slave whose inputs are changed."""
+
+    def apply(self, t_ns: int) -> None:
+        """Change the slave's input values in place."""
+
+
+class Ending(Protocol):
+    """Says when the run is over before its stop time."""
+
+    def reached(self, t_ns: int) -> str:
+        """Return the reason to end now, or an empty string."""
+
+
+class End(NamedTuple):
+    """Why and when a run ended."""
+
+    reason: str
+    """``stop_time``, ``interrupted``, ``error: ...`` or what the ending said."""
+    t_ns: int
+
+
+class Interrupt:
+    """A request to end after the exchange in hand; a signal handler sets it."""
+
+    requested = False
+
+
+class _Instant(NamedTuple):
+    """What happens at one phase of the multi-rate cycle."""
+
+    due: list[Slave]
+    links: list[tuple[Array, Indices, Array, Indices]]
+    """(input array, places, output array, places) of every connection into a slave that is due."""
+    faults: list[Manipulator]
+    steps: list[tuple[Slave, int]]
+
+
+class Master:
+    """Everything that takes part in one run."""
+
+    def __init__(self, slaves: list[Slave], step_ns: int, stop_ns: int, every: dict[str, int] | None = None) -> None:
+        self.slaves = slaves
+        self.values = all_values(slaves)
+        """All inputs and outputs in one array."""
+        self.step_ns = step_ns
+        self.stop_ns = stop_ns
+        self.every = [(every or {}).get(slave.name, 1) for slave in slaves]
+        self.connections = connect(slaves)
+        self.manipulators: list[Manipulator] = []
+        self.observers: list[Observer] = []
+        self.endings: list[Ending] = []
+        self.interrupt = Interrupt()
+
+    def initialize(self) -> None:
+        """Enter initialization, exchange once, leave it: time is zero."""
+        for slave in self.slaves:
+            slave.initialize(self.stop_ns)
+        for slave in self.slaves:
+            slave.fetch_outputs()
+        for link in self.connections:
+            self.slaves[link.target].inputs.values[link.target_places] = self.slaves[link.source].outputs.values[
+                link.source_places
+            ]
+        for slave in self.slaves:
+            slave.send_inputs()
+        for slave in self.slaves:
+            slave.start()
+
+    def run(self) -> End:
+        """Exchange and step until an ending, the stop time or an interrupt. Raises ``RunError``."""
+        cycle = lcm(*self.every)
+        plan = [self._instant(phase) for phase in range(cycle)]
+        last = self.stop_ns // self.step_ns
+        count = 0
+        while True:
+            t_ns = count * self.step_ns
+            due, links, faults, steps = plan[count % cycle]
+            for slave in due:
+                slave.fetch_outputs()
+            for target, target_places, source, source_places in links:
+                target[target_places] = source[source_places]
+            for fault in faults:
+                fault.apply(t_ns)
+            for observer in self.observers:
+                observer.exchanged(t_ns)
+            reason = self._over(t_ns, count == last)
+            if reason:
+                return End(reason, t_ns)
+            for slave in due:
+                slave.send_inputs()
+            for slave, dt_ns in steps:
+                slave.step(t_ns, dt_ns)
+            count += 1
+
+    def finish(self, end: End) -> None:
+        """Tell the observers."""
+        for observer in self.observers:
+            observer.closed(end)
+
+    def free(self) -> None:
+        """Free the slaves."""
+        for slave in self.slaves:
+            slave.close()
+
+    def _over(self, t_ns: int, last: bool) -> str:
+        if self.interrupt.requested:
+            return "interrupted"
+        for ending in self.endings:
+            reason = ending.reached(t_ns)
+            if reason:
+                return reason
+        return "stop_time" if last else ""
+
+    def _instant(self, phase: int) -> "_Instant":
+        due = [number for number, every in enumerate(self.every) if phase % every == 0]
+        links = [
+            (
+                self.slaves[link.target].inputs.values,
+                link.target_places,
+                self.slaves[link.source].outputs.values,
+                link.source_places,
+            )
+            for link in self.connections
+            if link.target in due
+        ]
+        faults = [fault for fault in self.manipulators if fault.slave in due]
+        steps = [(self.slaves[number], self.every[number] * self.step_ns) for number in due]
+        return _Instant([self.slaves[number] for number in due], links, faults, steps)

@@ -1,0 +1,61 @@
+"""A model package run in this process, without an FMU: for trials, sweeps, and as the twin of the FMUs."""
+
+import re
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from modelkit.model import Model
+from modelkit.variables import constructor, variables, with_values
+from orchestrator.cosim.slave import Ports
+from orchestrator.text.errors import RunError
+
+
+class ModelSlave:
+    """``modelkit.model.Model`` behind the face of a slave."""
+
+    def __init__(self, name: str, model: Model, parameters: Mapping[str, Any]) -> None:
+        self.name = name
+        self.identity = f"in-process {model.name}"
+        self._model = model
+        self._params = with_values(model.params, dict(parameters))
+        self.inputs = Ports(variables(model.inputs))
+        self.outputs = Ports(variables(model.outputs))
+        self.parameters = Ports(variables(model.params, self._params))
+        self._flatten = flattener(self.outputs.names)
+        self._construct = constructor(model.inputs)
+        self._input = model.inputs()
+        self._state: Any = None
+        self._output: Any = None
+
+    def initialize(self, stop_ns: int) -> None:
+        """Compute the state at time zero and the outputs that are valid then."""
+        self._state, self._output = self._model.initialize(self._params)
+
+    def start(self) -> None:
+        """Nothing to leave in process."""
+
+    def fetch_outputs(self) -> None:
+        """Unpack the latest output tuple."""
+        self.outputs.values[:] = self._flatten(self._output)
+
+    def send_inputs(self) -> None:
+        """Pack the input tuple."""
+        self._input = self._construct(self.inputs.values.tolist())
+
+    def step(self, t_ns: int, dt_ns: int) -> None:
+        """Call the model's step; an exception in model code is a defect and ends the run."""
+        try:
+            self._state, self._output = self._model.step(self._state, self._input, self._params, dt_ns)
+        except Exception as error:
+            raise RunError(f"{self.name} raised {type(error).__name__}: {error}") from error
+
+    def close(self) -> None:
+        """Nothing to free in process."""
+
+
+def flattener(names: list[str]) -> Callable[[Any], tuple[Any, ...]]:
+    """Return a fast function from a nested NamedTuple to its scalars named ``names`` (indices from 1)."""
+    paths = [re.sub(r"\[(\d+)\]", lambda match: f"[{int(match[1]) - 1}]", name) for name in names]
+    items = "".join(f"o.{path}," for path in paths)
+    function: Callable[[Any], tuple[Any, ...]] = eval(f"lambda o: ({items})")
+    return function

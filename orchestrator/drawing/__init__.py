@@ -1,0 +1,1 @@
+"""What stands around the car, and the still picture of a run."""

@@ -1,0 +1,277 @@
+"""overview.png: the four panels of the paper, the path with the car drawn along it, and a ribbon of chart states."""
+
+import math
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+import matplotlib as mpl
+import numpy as np
+from matplotlib.figure import Figure
+from matplotlib.patches import Patch, Polygon
+
+from orchestrator.cosim.recording import Recording
+from orchestrator.cosim.slave import Array
+from orchestrator.drawing.scene import pose_of
+from orchestrator.scenario.scenario import Scenario
+from orchestrator.text.quantities import DEGREE
+from orchestrator.verdict.geometry import (
+    WHEEL_RADIUS,
+    WHEEL_WIDTH,
+    Box,
+    Car,
+    boxes,
+    kerbs,
+    place,
+    sample_path,
+    slot_box,
+)
+from orchestrator.verdict.summary import Summary, phase_changes
+
+BLUE, RUST, GREEN, GREY, INK = "#2563a8", "#c2571a", "#2f8f5b", "#8a8f98", "#22262c"
+PHASE_COLOURS = {
+    "STANDBY": "#c9cdd3",
+    "PRE_STEER": "#f2c14e",
+    "PATH_TRACKING": "#2563a8",
+    "STOP": "#b23a48",
+    "TO_Q2": "#6a4c93",
+    "TO_Q1": "#8d7bc4",
+    "TO_Q4": "#3a7d8c",
+    "TO_Q3": "#6fb1bd",
+    "STRAIGHTEN": "#e08e45",
+    "PARKED": "#2f8f5b",
+    "FAILED": "#7a1f2b",
+    "TAKEOVER": "#444a52",
+    "READY_AWAY": "#1b2a49",
+    "READY_TURNED": "#2563a8",
+    "READY_FAR": "#6fa8dc",
+    "READY_NEAR": "#b7d3ef",
+    "SLOT_AWAY": "#5a2d0c",
+    "SLOT_TURNED": "#b5541c",
+    "SLOT_FAR": "#e08e45",
+    "SLOT_NEAR": "#f2c89b",
+    "SHUFFLE_AWAY": "#123d24",
+    "SHUFFLE_TURNED": "#2f8f5b",
+    "SHUFFLE_FAR": "#7cc49a",
+    "SHUFFLE_NEAR": "#c3e6d0",
+}
+RIBBONS = ("controller.hsic.characteristic", "controller.preview.stage", "controller.phase")
+"""What the ribbon shows: the first of these that changes during the run."""
+SPARE_COLOURS = ("#4f7cac", "#9c6644", "#5c946e", "#a65e9c", "#787f3e", "#b56576")
+STYLE: Any = {
+    "font.size": 9.0,
+    "axes.edgecolor": GREY,
+    "axes.labelcolor": INK,
+    "axes.titlesize": 10.0,
+    "axes.titleweight": "bold",
+    "axes.titlelocation": "left",
+    "axes.grid": True,
+    "grid.color": "#e3e6ea",
+    "grid.linewidth": 0.7,
+    "xtick.color": INK,
+    "ytick.color": INK,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "legend.frameon": False,
+}
+FAR = 50.0
+"""Beyond this [m] from the origin, positions are shown from the start."""
+OUTLINES = 14
+"""About how many outlines are drawn along the path."""
+
+
+def draw(recording: Recording, summary: Summary, scenario: Scenario, path: Path) -> None:
+    """Write the overview picture of a run to ``path``."""
+    with mpl.rc_context(STYLE):
+        figure = Figure(figsize=(13.0, 9.0), layout="constrained")
+        grid = figure.add_gridspec(4, 3, height_ratios=(1.45, 0.07, 1.0, 0.075))
+        _plan(figure.add_subplot(grid[0, :]), recording, scenario)
+        panels = [figure.add_subplot(grid[2, column]) for column in range(3)]
+        for axis, panel in zip(panels, (_speed, _position, _heading), strict=True):
+            panel(axis, recording)
+            axis.tick_params(labelbottom=False)
+            axis.set_xlim(recording.t[0], recording.t[-1])
+            for row, _, _ in phase_changes(recording):
+                axis.axvline(recording.t[row], color="#d5d9df", linewidth=0.8, zorder=0)
+        names: list[str] = []
+        for column, axis in enumerate(panels):
+            names = _ribbon(figure.add_subplot(grid[3, column], sharex=axis), recording)
+        _legend(figure.add_subplot(grid[1, :]), names)
+        figure.suptitle(_title(summary, scenario), x=0.012, ha="left", fontsize=12.5, fontweight="bold", color=INK)
+        figure.savefig(path, dpi=120, metadata={"Software": "apa-cosim"})
+
+
+def _title(summary: Summary, scenario: Scenario) -> str:
+    final = summary.final
+    return (
+        f"{scenario.name}: {summary.outcome.replace('_', ' ')} after {summary.duration:.1f} s, "
+        f"{summary.shifts} shifts; "
+        f"{final.lateral_error * 100:+.1f} cm lateral, {final.heading_error / DEGREE:+.2f} deg"
+    )
+
+
+def _signal(recording: Recording, name: str) -> Array:
+    return recording.signals.get(name, np.full(len(recording.t), np.nan))
+
+
+def _speed(axis: Any, recording: Recording) -> None:
+    t = recording.t
+    axis.set_title("(a) speed, steering")
+    axis.plot(t, _signal(recording, "vehicle.speed"), color=BLUE, linewidth=1.5)
+    axis.set_ylabel("speed [m/s]", color=BLUE)
+    wheel = axis.twinx()
+    wheel.grid(False)
+    wheel.spines["right"].set_visible(True)
+    request = _signal(recording, "controller.steering_wheel_request") / DEGREE
+    wheel.plot(t, request, color=RUST, linewidth=0.8, alpha=0.55, linestyle=(0, (3, 2)), label="request")
+    wheel.plot(t, _signal(recording, "vehicle.steering_wheel_angle") / DEGREE, color=RUST, linewidth=1.5, label="angle")
+    wheel.set_ylabel("steering wheel [deg]", color=RUST)
+    wheel.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), fontsize=8, ncols=2, borderaxespad=0.0)
+
+
+def _position(axis: Any, recording: Recording) -> None:
+    t = recording.t
+    far = max(abs(_signal(recording, f"vehicle.pose.{name}")[0]) for name in ("x", "y")) > FAR
+    axis.set_title("(b) position")
+    for name, colour in (("x", BLUE), ("y", RUST)):
+        driven = _signal(recording, f"vehicle.pose.{name}")
+        origin = driven[0] if far else 0.0
+        reference = _used(recording, f"controller.reference.{name}") - origin
+        axis.plot(t, reference, color=colour, linewidth=0.8, alpha=0.6, linestyle=(0, (3, 2)))
+        axis.plot(t, driven - origin, color=colour, linewidth=1.5, label=name)
+    axis.plot([], [], color=GREY, linewidth=0.8, linestyle=(0, (3, 2)), label="reference")
+    axis.set_ylabel("way from start [m]" if far else "position [m]")
+    axis.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), fontsize=8, ncols=3, borderaxespad=0.0)
+
+
+def _heading(axis: Any, recording: Recording) -> None:
+    t = recording.t
+    axis.set_title("(c) heading")
+    driven = _signal(recording, "vehicle.pose.heading")
+    reference = _used(recording, "controller.reference.heading")
+    turns = np.round((driven - reference) / (2.0 * np.pi))
+    reference = (reference + turns * 2.0 * np.pi) / DEGREE
+    axis.plot(t, reference, color=GREEN, linewidth=0.8, alpha=0.7, linestyle=(0, (3, 2)), label="reference")
+    axis.plot(t, driven / DEGREE, color=GREEN, linewidth=1.5, label="heading")
+    axis.set_ylabel("heading [deg]")
+    axis.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), fontsize=8, ncols=2, borderaxespad=0.0)
+
+
+def _used(recording: Recording, name: str) -> Array:
+    """Return a reference signal, blank until the controller first gives one."""
+    prefix = name.rsplit(".", 1)[0]
+    given = np.zeros(len(recording.t), dtype=bool)
+    for axis in ("x", "y", "heading"):
+        given |= _signal(recording, f"{prefix}.{axis}") != 0.0
+    return np.where(given, _signal(recording, name), np.nan)
+
+
+def _ribbon(axis: Any, recording: Recording) -> list[str]:
+    """Draw the states of the chart over time and return those that occurred."""
+    axis.set_yticks([])
+    axis.grid(False)
+    axis.spines["left"].set_visible(False)
+    axis.set_xlabel("time [s]")
+    t = recording.t
+    shown = next((name for name in RIBBONS if np.ptp(_signal(recording, name)) > 0.0), RIBBONS[-1])
+    states = recording.states(shown)
+    phases = _signal(recording, shown)
+    edges = [0, *(int(row) + 1 for row in np.flatnonzero(np.diff(phases))), len(t) - 1]
+    names: dict[str, None] = {}
+    for first, last in pairwise(edges):
+        value = phases[first]
+        name = states.get(int(value), f"{value:g}") if math.isfinite(value) else "unknown"
+        names[name] = None
+        axis.axvspan(t[first], t[last], color=_colour(name), linewidth=0)
+    axis.set_ylim(0.0, 1.0)
+    return list(names)
+
+
+def _colour(name: str) -> str:
+    return PHASE_COLOURS.get(name) or SPARE_COLOURS[sum(map(ord, name)) % len(SPARE_COLOURS)]
+
+
+def _legend(axis: Any, names: list[str]) -> None:
+    axis.axis("off")
+    handles = [Patch(color=_colour(name), label=name.lower().replace("_", " ")) for name in names]
+    axis.legend(
+        handles=handles,
+        title="states of the chart",
+        title_fontsize=8,
+        loc="center",
+        ncols=len(handles),
+        fontsize=8,
+        borderaxespad=0.0,
+        handlelength=1.2,
+        columnspacing=1.4,
+    )
+
+
+def _plan(axis: Any, recording: Recording, scenario: Scenario) -> None:
+    axis.set_title("(d) path of the rear-axle midpoint, outline along it")
+    axis.set_aspect("equal", adjustable="datalim")
+    axis.set_xlabel("x [m]")
+    axis.set_ylabel("y [m]")
+    vehicle = recording.parameters_of("vehicle")
+    car = Car.of(vehicle)
+    for box in boxes(vehicle):
+        passing = box.appear_at > 0.0 or box.disappear_at < recording.t[-1]
+        face, hatch = ("#f3d9c9", "///") if passing else ("#c4c8ce", None)
+        axis.add_patch(Polygon(box.outline(), facecolor=face, hatch=hatch, edgecolor=GREY, linewidth=1.0))
+    for kerb in kerbs(vehicle):
+        axis.plot([kerb.x1, kerb.x2], [kerb.y1, kerb.y2], color="#5b6068", linewidth=2.5, solid_capstyle="butt")
+    if scenario.slot is not None:
+        _slot(axis, slot_box(scenario.slot))
+    target = pose_of(recording.parameters_of("controller"), "target")
+    if target is not None:
+        axis.plot(*place(car.outline(), *target).T, color=GREEN, linewidth=1.4, linestyle=(0, (4, 2)), label="target")
+    planned = _planned(recording)
+    if len(planned):
+        axis.plot(*planned.T, color=RUST, linewidth=1.6, linestyle=(0, (5, 2)), label="planned path", zorder=4)
+    x, y, heading = (_signal(recording, f"vehicle.pose.{name}") for name in ("x", "y", "heading"))
+    _outlines(axis, car, x, y, heading)
+    axis.plot(x, y, color=BLUE, linewidth=1.8, label="driven path", zorder=5)
+    _wheels(axis, recording, car, (x[-1], y[-1], heading[-1]))
+    axis.legend(loc="upper left", fontsize=8)
+
+
+def _slot(axis: Any, box: Box) -> None:
+    axis.add_patch(Polygon(box.outline(), facecolor="#eef1f4", edgecolor=GREY, linewidth=1.4, label="slot", zorder=0))
+
+
+def _planned(recording: Recording) -> Array:
+    """Return the last path that was planned, (n, 2) [m]."""
+    marks = [
+        values
+        for name, values in recording.signals.items()
+        if name.endswith(("path.segments[1].length", "move.direction"))
+    ]
+    rows = np.flatnonzero(np.any([values != 0.0 for values in marks], axis=0)) if marks else np.empty(0, dtype=np.intp)
+    return sample_path(recording.values_at("controller", int(rows[-1]))) if len(rows) else np.empty((0, 2))
+
+
+def _outlines(axis: Any, car: Car, x: Array, y: Array, heading: Array) -> None:
+    """Draw the car at equal distances along its way, later ones darker."""
+    way = np.concatenate([[0.0], np.cumsum(np.nan_to_num(np.hypot(np.diff(x), np.diff(y))))])
+    if way[-1] <= 0.0:
+        rows = np.array([len(x) - 1])
+    else:
+        rows = np.unique(np.searchsorted(way, np.linspace(0.0, way[-1], OUTLINES)).clip(0, len(x) - 1))
+        rows[-1] = len(x) - 1
+    for number, row in enumerate(rows):
+        share = (number + 1) / len(rows)
+        last = number == len(rows) - 1
+        points = place(car.outline(), x[row], y[row], heading[row])
+        face = (0.145, 0.388, 0.659, 0.16 if last else 0.0)
+        edge = (0.145, 0.388, 0.659, 1.0 if last else 0.12 + 0.4 * share)
+        axis.add_patch(Polygon(points, facecolor=face, edgecolor=edge, linewidth=1.8 if last else 0.9, zorder=3))
+    axis.autoscale_view()
+
+
+def _wheels(axis: Any, recording: Recording, car: Car, pose: tuple[float, float, float]) -> None:
+    steered = float(_signal(recording, "vehicle.front_wheel_angle")[-1])
+    half_length, half_width = WHEEL_RADIUS, 0.5 * WHEEL_WIDTH
+    corners = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]]) * np.array([half_length, half_width])
+    for x, y in car.wheels():
+        local = place(corners, x, y, steered if x > 0.0 and math.isfinite(steered) else 0.0)
+        axis.add_patch(Polygon(place(local, *pose), facecolor=INK, linewidth=0, zorder=6))

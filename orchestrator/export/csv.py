@@ -1,0 +1,62 @@
+"""``apa export csv``: a run as a table that any tool reads."""
+
+import argparse
+import csv
+from pathlib import Path
+from typing import Any
+
+from orchestrator.cosim.recording import Recording
+from orchestrator.log.read_log import read_log
+from orchestrator.text.patterns import matching
+
+EXAMPLES = """examples:
+  apa export csv runs/guo2015-case4/run.mcap
+  apa export csv run.mcap --signals "vehicle.pose.*" --out pose.csv --names
+
+The first row has the names of the signals, the second their units; numbers are written so that reading them
+gives the same bits. --names writes the names of states instead of their numbers.
+"""
+
+
+def add_parser(subparsers: Any) -> argparse.ArgumentParser:
+    """Add the format."""
+    parser: argparse.ArgumentParser = subparsers.add_parser("csv", help="a table of all signals", epilog=EXAMPLES)
+    add_run_arguments(parser, ".csv")
+    parser.add_argument("--names", action="store_true", help="names of states instead of numbers")
+    return parser
+
+
+def add_run_arguments(parser: argparse.ArgumentParser, suffix: str) -> None:
+    """Add what every export of a run takes."""
+    parser.add_argument("log", type=Path, metavar="RUN.mcap", help="log of a run")
+    parser.add_argument("--out", type=Path, metavar="FILE", help=f"default: the log's name with {suffix}")
+    parser.add_argument("--signals", action="append", metavar="PATTERN", help="only these, for example vehicle.pose.*")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Write the table. Returns 0."""
+    recording = read_log(arguments.log)
+    out: Path = arguments.out or arguments.log.with_suffix(".csv")
+    write_csv(out, recording, matching(recording.signals, arguments.signals), arguments.names)
+    print(out)
+    return 0
+
+
+def write_csv(path: Path, recording: Recording, names: list[str], words: bool) -> None:
+    """Write the signals ``names`` over time [s]; modes as numbers, or as ``words``."""
+    columns: list[list[object]] = [[repr(t) for t in recording.t.tolist()]]
+    for name in names:
+        values = recording.signals[name].tolist()
+        states = recording.states(name) if words else {}
+        if states:
+            columns.append([states.get(value, value) for value in values])
+        elif recording.variables[name].kind is float:
+            columns.append([repr(value) for value in values])
+        else:
+            columns.append([int(value) if value == value else value for value in values])
+    units = [recording.variables[name].signal.unit for name in names]
+    with path.open("w", newline="", encoding="utf-8") as stream:
+        writer = csv.writer(stream)
+        writer.writerow(["time", *names])
+        writer.writerow(["s", *units])
+        writer.writerows(zip(*columns, strict=True))

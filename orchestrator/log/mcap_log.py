@@ -1,0 +1,194 @@
+"""The log of a run: every exchange of every slave, parameters, pictures and words, in one MCAP file.
+
+Channels: ``/vehicle``, ``/controller`` (outputs as they are, inputs as they were seen),
+``/vehicle/parameters``, ``/controller/parameters`` (once), ``/tf``, ``/scene``, ``/path``, ``/trail``
+(Foxglove types, at 20 Hz or on change) and ``/log``. Times are simulated time from zero; nothing in
+the file depends on the clock on the wall, so the same run gives the same bytes.
+"""
+
+import json
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from foxglove_schemas_protobuf.FrameTransforms_pb2 import FrameTransforms
+from foxglove_schemas_protobuf.Log_pb2 import Log
+from foxglove_schemas_protobuf.PosesInFrame_pb2 import PosesInFrame
+from foxglove_schemas_protobuf.SceneUpdate_pb2 import SceneUpdate
+from numpy.typing import NDArray
+
+from modelkit.variables import Variable
+from orchestrator.cosim.master import End
+from orchestrator.cosim.recording import to_json
+from orchestrator.cosim.slave import Array, Ports, Slave, all_values, places_of
+from orchestrator.drawing import scene
+from orchestrator.log.mcap_file import CHUNK_SIZE, MESSAGE_HEADER, McapFile
+from orchestrator.log.read_log import VARIABLES
+from orchestrator.log.schema import PACKAGE, descriptor_set, file_descriptor
+from orchestrator.log.wire import Encoder
+from orchestrator.scenario.scenario import Slot
+from orchestrator.verdict.geometry import Car, boxes, kerbs, sample_path, slot_box
+
+SCENE_PERIOD_NS = 50_000_000
+TRAIL_PERIOD_NS = 1_000_000_000
+TRAIL_STEP_NS = 200_000_000
+TRAIL_POSES = 100
+AXES = ("x", "y", "heading")
+DRAWN = (*(f"pose.{axis}" for axis in AXES), *(f"odometry.{axis}" for axis in AXES), "front_wheel_angle")
+"""Outputs of the vehicle that the moving frames are made from."""
+
+
+class _SlaveChannel:
+    """One channel for all inputs and outputs of a slave; ``columns`` are its inputs, its outputs in a row of all."""
+
+    def __init__(self, file: McapFile, slave: Slave, columns: Sequence[slice]) -> None:
+        variables = [*slave.outputs.variables, *slave.inputs.variables]
+        notes = ["output"] * len(slave.outputs.names) + ["input"] * len(slave.inputs.names)
+        self._channel = add_channel(file, f"/{slave.name}", slave.name.title().replace("_", ""), variables, notes)
+        self._encoder = Encoder(variables)
+        self._file = file
+        self._inputs, self._outputs = columns
+        self.size = self._encoder.size
+
+    def write(self, times: NDArray[np.int64], rows: Array) -> None:
+        """Hand one message for each of ``times`` to the file."""
+        seen = np.concatenate([rows[:, self._outputs], rows[:, self._inputs]], axis=1)
+        self._file.write_rows(self._channel, times, self._encoder.rows(seen))
+
+
+class McapLog:
+    """Observer that writes the log."""
+
+    def __init__(self, path: Path, slaves: list[Slave], slot: Slot | None, info: dict[str, Any]) -> None:
+        self._file = McapFile(path)
+        self._file.metadata("apa", {key: json.dumps(value) for key, value in info.items()})
+        places = places_of(slaves)
+        self._channels = [_SlaveChannel(self._file, slave, places[2 * k : 2 * k + 2]) for k, slave in enumerate(slaves)]
+        self._log = self._file.known_channel("/log", Log)
+        for slave in slaves:
+            self._write_parameters(slave)
+        named = {slave.name: slave for slave in slaves}
+        self._pictures: list[_Pictures] = []
+        if "vehicle" in named and set(DRAWN) <= named["vehicle"].outputs.index.keys():
+            self._pictures.append(_Pictures(self._file, named, slot))
+        rows = max(1, CHUNK_SIZE // 2 // sum(channel.size + MESSAGE_HEADER.itemsize for channel in self._channels))
+        self.rows_per_chunk = rows
+        self._values = all_values(slaves)
+        self._rows = np.empty((rows, len(self._values)))
+        self._times = np.empty(rows, dtype=np.int64)
+        self._count = 0
+        self._file.flush()
+
+    def exchanged(self, t_ns: int) -> None:
+        """Keep a row; a chunk's worth of them goes to the file at once."""
+        for pictures in self._pictures:
+            pictures.exchanged(t_ns)
+        self._times[self._count] = t_ns
+        self._rows[self._count] = self._values
+        self._count += 1
+        if self._count == len(self._times):
+            self._write_rows()
+
+    def say(self, t_ns: int, level: int, name: str, text: str) -> None:
+        """Write one line to ``/log``."""
+        if self._file.open:
+            line = Log(timestamp=scene.stamp(t_ns), level=level, message=text, name=name)  # type: ignore[arg-type]
+            self._file.write(self._log, t_ns, line.SerializeToString(deterministic=True))
+
+    def closed(self, end: End) -> None:
+        """Write how the run ended and give the file its name."""
+        self._write_rows()
+        for pictures in self._pictures:
+            pictures.closed(end.t_ns)
+        self._file.metadata("end", {"reason": json.dumps(end.reason), "t_ns": json.dumps(end.t_ns)})
+        self._file.close()
+
+    def _write_rows(self) -> None:
+        if self._count:
+            for channel in self._channels:
+                channel.write(self._times[: self._count], self._rows[: self._count])
+        self._count = 0
+        self._file.flush()
+
+    def _write_parameters(self, slave: Slave) -> None:
+        ports: Ports = slave.parameters
+        notes = ["parameter"] * len(ports.names)
+        message = slave.name.title().replace("_", "") + "Parameters"
+        channel = add_channel(self._file, f"/{slave.name}/parameters", message, ports.variables, notes)
+        self._file.write(channel, 0, Encoder(ports.variables).encode(ports.values))
+
+
+class _Pictures:
+    """Frames and scene, as far as the slaves have the signals for them."""
+
+    def __init__(self, file: McapFile, slaves: dict[str, Slave], slot: Slot | None) -> None:
+        self._file = file
+        self._vehicle = slaves["vehicle"]
+        self._controller = slaves.get("controller")
+        self._car = Car.of(_named(self._vehicle.parameters))
+        self._frames = scene.Frames(self._car)
+        self._places = [self._vehicle.outputs.index[name] for name in DRAWN]
+        self._transforms = file.known_channel("/tf", FrameTransforms)
+        self._scene = file.known_channel("/scene", SceneUpdate)
+        self._path = file.known_channel("/path", SceneUpdate)
+        self._trail = file.known_channel("/trail", PosesInFrame)
+        self._poses: list[bytes] = []
+        self._next_ns = 0
+        self._path_places = _path_places(self._controller.outputs) if self._controller else np.empty(0, np.intp)
+        self._path_seen = b""
+        obstacles, around = boxes(_named(self._vehicle.parameters)), kerbs(_named(self._vehicle.parameters))
+        target = scene.pose_of(_named(self._controller.parameters), "target") if self._controller else None
+        self._stage = scene.Stage(slot_box(slot) if slot else None, obstacles, around, target)
+        self._changes = self._stage.changes_ns()
+
+    def exchanged(self, t_ns: int) -> None:
+        if t_ns < self._next_ns:
+            return
+        if self._changes and t_ns >= self._changes[0]:
+            self._changes = [change for change in self._changes if change > t_ns]
+            still = scene.still_life(t_ns, self._car, self._stage)
+            self._file.write(self._scene, t_ns, still.SerializeToString(deterministic=True))
+        self._next_ns = t_ns - t_ns % SCENE_PERIOD_NS + SCENE_PERIOD_NS
+        x, y, heading, *seen, wheel = self._vehicle.outputs.values[self._places].tolist()
+        pose = (x, y, heading)
+        message = self._frames.at(t_ns, pose, (seen[0], seen[1], seen[2]), wheel)
+        self._file.write(self._transforms, t_ns, message)
+        if t_ns % TRAIL_STEP_NS < SCENE_PERIOD_NS:
+            self._poses.append(scene.trail_pose(pose))
+        if t_ns % TRAIL_PERIOD_NS < SCENE_PERIOD_NS:
+            self._draw_trail(t_ns)
+        self._draw_path(t_ns)
+
+    def closed(self, t_ns: int) -> None:
+        if self._poses:
+            self._draw_trail(t_ns)
+
+    def _draw_trail(self, t_ns: int) -> None:
+        message = scene.trail(t_ns, self._poses[:: max(1, len(self._poses) // TRAIL_POSES)])
+        self._file.write(self._trail, t_ns, message)
+
+    def _draw_path(self, t_ns: int) -> None:
+        if self._controller is None or not len(self._path_places):
+            return
+        seen = self._controller.outputs.values[self._path_places].tobytes()
+        if seen != self._path_seen:
+            self._path_seen = seen
+            update = scene.planned_path(t_ns, sample_path(_named(self._controller.outputs)))
+            self._file.write(self._path, t_ns, update.SerializeToString(deterministic=True))
+
+
+def add_channel(file: McapFile, topic: str, message: str, variables: list[Variable], notes: list[str]) -> int:
+    """Return a new channel whose schema is made from ``variables``."""
+    descriptors = descriptor_set(file_descriptor(message, variables, notes))
+    return file.channel(topic, f"{PACKAGE}.{message}", descriptors, {VARIABLES: to_json(variables, notes)})
+
+
+def _named(ports: Ports) -> dict[str, float]:
+    return dict(zip(ports.names, ports.values.tolist(), strict=True))
+
+
+def _path_places(ports: Ports) -> np.ndarray[Any, np.dtype[np.intp]]:
+    """Return where the outputs are that the planned path is drawn from (see ``geometry.sample_path``)."""
+    chosen = [place for place, name in enumerate(ports.names) if name.startswith("path.") or "move." in name]
+    return np.array(chosen, dtype=np.intp)

@@ -1,0 +1,142 @@
+"""The APA source: L_min against a search, the start range, smooth curvature, the parking assist's states and limits."""
+
+import math
+from pathlib import Path
+
+import numpy as np
+from scipy.interpolate import splev, splrep  # type: ignore[import-untyped]
+
+from controller_fmu.apa.chart import Mode
+from controller_fmu.apa.curve import advance
+from controller_fmu.apa.exit import exit_of
+from controller_fmu.apa.fit import least_moves, shortest_of_iso
+from controller_fmu.apa.move import is_move_free, length_of, point_at
+from controller_fmu.apa.outline import Car, clearance
+from controller_fmu.apa.params import ApaParams
+from controller_fmu.apa.slot import PARALLEL, Margins, Site, Slot, shortest_for_one_move, site_of
+from controller_fmu.apa.start_range import start_range
+from controller_fmu.apa.turns import reverse_s, turn_of
+from modelkit.vocabulary import Pose
+from orchestrator.grid.apa_grid import CARS
+from orchestrator.papers.apa_figure import draw_apa
+from orchestrator.papers.result import Drive, Driven, Reproduction, Row
+
+TITLE = "APA: from looking for a slot to parked (ADAS algorithm design 8)"
+SCENARIOS = ("apa-parallel", "apa-perpendicular", "apa-parallel-tight", "apa-takeover")
+SPEED = 5.0 / 3.6
+"""The source's system works below 5 km/h [m/s]."""
+NOTES = [
+    "L_min: printed without a derivation; it is the front outer corner on the arc of the full lock passing corner B.",
+    "The source smooths the two arcs by a B-spline over the positions, whose curvature it cannot promise. Here the "
+    "curvature itself is a B-spline of degree one over the way driven (lines, arcs, clothoids): limits hold exactly.",
+    "The start range is in the frame of the target; its lower end has a closed form, its upper end is where the car "
+    "would cut corner B.",
+    "The source's perpendicular path is three arcs S-A-B-C; here S-A is driven forward and A-B-C in reverse, as line, "
+    "arc, line with ramps, planned again from where the car stopped.",
+]
+
+
+def reproduce(out: Path, drive: Drive) -> Reproduction:
+    """Return the source's formulas and numbers beside ours; writes apa.png to ``out``."""
+    rows = [row for name in CARS for row in _length_rows(name)] + _range_rows() + _curvature_rows()
+    runs = [drive(name) for name in SCENARIOS]
+    rows += [row for driven in runs for row in _run_rows(driven)]
+    modes = {int(mode) for driven in runs for mode in np.unique(driven.recording.signals["controller.apa.mode"])}
+    missing = [mode.name for mode in Mode if int(mode) not in modes]
+    rows.append(Row("", "states of the source that are reached", "", "all 8", ", ".join(missing) or "all 8", 0.0))
+    return Reproduction("apa", TITLE, rows, [draw_apa(runs[0], runs[1], out / "apa.png")], NOTES)
+
+
+def car_named(name: str) -> Car:
+    """Return a car of the grid study, planned at 95 % of its lock."""
+    wheelbase, front, rear, width, radius = CARS[name]
+    return Car(wheelbase + front, rear, 0.5 * width, 0.95 / radius, 0.8)
+
+
+def shortest_by_search(car: Car, depth: float) -> float:
+    """Return the shortest slot [m] left along one arc at full lock, by halving, to 0.1 mm."""
+    low, high = car.front + car.rear, car.front + car.rear + 4.0
+    while high - low > 1e-4:
+        middle = 0.5 * (low + high)
+        site = site_of(Slot(PARALLEL, 0, Pose(0.0, 0.0, 0.0), middle, 0.0, 50.0), car, Margins(0.0, 0.0, 0.0))
+        start = Pose(0.5 * (car.front + car.rear - middle), 2.0 * car.half_width - depth, 0.0)
+        poses = [advance(start, 1.0, 0.005 * n, car.curvature, car.curvature) for n in range(800)]
+        free = all(clearance(pose, car, site.obstacles) >= -1e-9 for pose in poses)
+        low, high = (low, middle) if free else (middle, high)
+    return high
+
+
+def _length_rows(name: str) -> list[Row]:
+    car = car_named(name)
+    width = 2.0 * car.half_width
+    closed = shortest_for_one_move(car, 1.0 / car.curvature - car.half_width, width)
+    wheelbase, front, rear, _, _ = CARS[name]
+    params = ApaParams(front_overhang=front, rear_overhang=rear, width=width)
+    iso = shortest_of_iso(PARALLEL, wheelbase, params)
+    slot = Slot(PARALLEL, 0, Pose(0.0, 0.0, 0.0), iso, 0.0, width + 0.4)
+    return [
+        Row("", f"{name}: L_min, formula and search", "m", closed, shortest_by_search(car, width), 0.01),
+        Row("", f"{name}: shortest slot of ISO 16787", "m", None, iso),
+        Row("", f"{name}: moves into that slot", "1", None, float(least_moves(slot, car, params))),
+    ]
+
+
+def _range_rows() -> list[Row]:
+    car = car_named("zhang2022")
+    site = site_of(Slot(PARALLEL, 0, Pose(0.0, 0.0, 0.0), 7.4, 0.0, 2.4), car, Margins(0.15, 0.1, 0.0))
+    way_in = exit_of(2, site, car)
+    found = start_range(3.0, 0.0, way_in, site, car)
+    tried = [x for x in np.arange(4.0, 11.0, 0.005) if _leads_in(float(x), way_in.pose, site, car)]
+    return [
+        Row("", "start range: Px_min, formula and search", "m", found.low, float(min(tried)), 0.01),
+        Row("", "start range: Px_max, halving and search", "m", found.high, float(max(tried)), 0.01),
+    ]
+
+
+def _leads_in(x: float, end: Pose, site: Site, car: Car) -> bool:
+    turn = turn_of(car.curvature, car.curvature, car.ramp)
+    move = reverse_s(Pose(x, 3.0, 0.0), end, 0.0, turn, turn)
+    return move.direction != 0 and is_move_free(move, car, site.obstacles)
+
+
+def _curvature_rows() -> list[Row]:
+    """Return how far a B-spline over the positions of two arcs goes beyond their curvature, and ours."""
+    k, angle = 0.2, math.radians(45.0)
+    half = math.sin(angle) / k
+    x = np.concatenate([np.linspace(0.0, half, 60)[:-1], np.linspace(half, 2.0 * half, 60)])
+    y = np.where(
+        x <= half,
+        (1.0 - np.sqrt(1.0 - np.minimum(k * x, 0.99) ** 2)) / k,
+        (1.0 - 2.0 * math.cos(angle) + np.sqrt(np.maximum(1.0 - (2.0 * math.sin(angle) - k * x) ** 2, 0.0))) / k,
+    )
+    knots = np.linspace(0.0, float(x[-1]), 14)[1:-1]
+    spline = splrep(x, y, t=knots)
+    fine = np.linspace(0.0, float(x[-1]), 2000)
+    slope, bend = splev(fine, spline, 1), splev(fine, spline, 2)
+    over = float(np.max(np.abs(bend / (1.0 + slope**2) ** 1.5)) / k - 1.0)
+    car = Car(3.586, 0.85, 0.91, k, 0.8)
+    move = reverse_s(Pose(8.5, 3.0, 0.0), Pose(0.0, 0.0, 0.0), 0.0, *(turn_of(k, k, car.ramp),) * 2)
+    ours = max(abs(point_at(move, 0.01 * n).curvature) for n in range(int(length_of(move) / 0.01))) / k - 1.0
+    return [
+        Row("", "curvature over the arcs', B-spline of positions, 16 control points", "1", None, over),
+        Row("", "curvature over the arcs', ours", "1", 0.0, ours, 1e-9),
+    ]
+
+
+def _run_rows(driven: Driven) -> list[Row]:
+    name, signals, summary = driven.summary.scenario, driven.recording.signals, driven.summary
+    parking = np.isin(signals["controller.apa.mode"], [Mode.AUTO_PARKING_ASSIST, Mode.POSITION_TUNING])
+    fastest = float(np.max(np.abs(signals["vehicle.speed"][parking])))
+    rows = [
+        Row(name, "outcome", "", driven.scenario.expect, summary.outcome, 0.0),
+        Row(name, "below 5 km/h while parking", "", "yes", "yes" if fastest < SPEED else f"{fastest:.2f} m/s", 0.0),
+    ]
+    if summary.outcome != "parked":
+        return rows
+    return [
+        *rows,
+        Row(name, "lateral error at the end", "m", 0.0, summary.final.lateral_error, 0.05),
+        Row(name, "heading error at the end", "rad", 0.0, summary.final.heading_error, math.radians(1.0)),
+        Row(name, "shifts", "1", None, float(summary.shifts)),
+        Row(name, "time to park", "s", None, float(signals["controller.apa.parking_time"][-1])),
+    ]

@@ -1,0 +1,54 @@
+"""Runs of which only a few numbers are kept, as compiled code where that is possible."""
+
+import os
+from collections.abc import Iterable, Sequence
+from concurrent.futures import ThreadPoolExecutor
+
+import numpy as np
+
+from modelkit.variables import variables, with_values
+from orchestrator.cosim.models import MODELS
+from orchestrator.cosim.slave import Array
+from orchestrator.scenario.scenario import Scenario
+from orchestrator.sweep.batch import compiled
+from orchestrator.sweep.kept import FIRST_KEPT, Kept
+
+
+def parameter_row(scenario: Scenario) -> tuple[Array, dict[str, int], Array]:
+    """Return all parameters as doubles, where each stands by name, and step, stop [ns] and decimations."""
+    numbers: list[float] = []
+    places: dict[str, int] = {}
+    for owner, model in MODELS.items():
+        values = with_values(model.params, dict(getattr(scenario, owner)))
+        for variable in variables(model.params, values):
+            places[f"{owner}.{variable.name}"] = len(numbers)
+            numbers.append(float(variable.start))
+    times = [scenario.step_ns, scenario.stop_ns, *(scenario.every.get(name, 1) for name in MODELS)]
+    return np.array(numbers), places, np.array(times, dtype=np.int64)
+
+
+def timed_rows(parameters: Array, times: Array, kept: Sequence[Kept]) -> Array:
+    """Return for each run its end [s] and the ``kept`` numbers. Compiles the models first if sources changed."""
+    out = np.empty((len(parameters), FIRST_KEPT + len(kept)))
+    shares = np.array_split(np.arange(len(parameters)), os.cpu_count() or 1)
+    rows = compiled(tuple(kept))
+
+    def work(share: Array) -> None:
+        part = np.empty((len(share), out.shape[1]))
+        rows(np.ascontiguousarray(parameters[share]), np.ascontiguousarray(times[share]), part)
+        out[share] = part
+
+    with ThreadPoolExecutor() as pool:
+        list(pool.map(work, [share for share in shares if len(share)]))
+    return np.column_stack([out[:, 1] / 1e9, out[:, FIRST_KEPT:]])
+
+
+def timed(scenarios: Iterable[Scenario], kept: Sequence[Kept]) -> Array:
+    """Return for each scenario its end [s] and the ``kept`` numbers."""
+    rows = [parameter_row(scenario) for scenario in scenarios]
+    return timed_rows(np.array([row for row, _, _ in rows]), np.array([times for _, _, times in rows]), kept)
+
+
+def measure(scenarios: Iterable[Scenario], kept: Sequence[Kept]) -> Array:
+    """Return one row of ``kept`` numbers per scenario."""
+    return timed(scenarios, kept)[:, 1:]

@@ -1,0 +1,1 @@
+"""What is driven: a scenario, read from YAML and from settings."""

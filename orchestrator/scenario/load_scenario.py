@@ -1,0 +1,185 @@
+"""From a name or a file to a complete scenario: bases, car, ``--set`` values, limits, all merged and checked."""
+
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import yaml
+from pydantic import ValidationError
+
+from modelkit.variables import Variable, variables
+from orchestrator.cosim.models import MODELS
+from orchestrator.log.flat import flatten_section, merge_flat
+from orchestrator.scenario.scenario import Scenario
+from orchestrator.text.errors import BadInput, suggestion
+from orchestrator.text.quantities import scalar
+from orchestrator.text.yaml_file import explain, read_mapping
+from orchestrator.verdict.requirements import read_requirements
+
+ROOM = Path(__file__).parent.parent
+FIELDS = [*(name for name in Scenario.model_fields if name != "file"), "target"]
+INHERITED_NOT = ("name", "title", "description", "base")
+
+
+Layer = tuple[dict[str, Any], object]
+"""What one file says, and the file."""
+
+
+class _Given(NamedTuple):
+    """A raw value and the file it was written in, for error messages."""
+
+    value: object
+    file: object
+
+
+def scenario_names() -> list[str]:
+    """Return the names of the shipped scenarios, sorted."""
+    return _shipped("scenarios")
+
+
+def car_names() -> list[str]:
+    """Return the names of the shipped cars, sorted."""
+    return _shipped("cars")
+
+
+def load_scenario(name: str, sets: Iterable[str] = ()) -> Scenario:
+    """Return the scenario called ``name`` or written in the file ``name``. Raises ``BadInput``."""
+    path = find_file(name, "scenarios", "scenario", Path.cwd())
+    layers = _layers(path, ())
+    layers.append((_set_layer(sets), "--set"))
+    merged: dict[str, Any] = {}
+    for content, file in layers:
+        _check_keys(content, file)
+        merged = _merge(merged, {key: value for key, value in content.items() if key not in (*MODELS, "target")})
+    for key in INHERITED_NOT:
+        if key not in layers[-2][0] and key not in layers[-1][0]:
+            merged.pop(key, None)
+    merged.setdefault("name", path.stem)
+    car = _car_layer(merged.get("car"), path)
+    merged["limits"] = _limits(merged.get("limits", ["house"]), path)
+    seed = merged.get("seed", 1)
+    for owner in MODELS:
+        merged[owner] = _parameters(owner, [*car, *layers], seed)
+    try:
+        return Scenario(**merged, file=str(path))
+    except ValidationError as error:
+        raise explain(error, path, FIELDS) from None
+
+
+def _layers(path: Path, seen: tuple[Path, ...]) -> list[Layer]:
+    """Return the file at ``path`` below it its bases, lowest first."""
+    if path in seen:
+        raise BadInput(f"inherits from itself by way of {', '.join(item.stem for item in seen)}", file=path, key="base")
+    content = read_mapping(path)
+    base = content.get("base")
+    below = [] if base is None else _layers(find_file(str(base), "scenarios", "scenario", path.parent), (*seen, path))
+    return [*below, (content, path)]
+
+
+def _car_layer(car: object, path: Path) -> list[Layer]:
+    if car is None:
+        return []
+    file = find_file(str(car), "cars", "car", path.parent)
+    content = read_mapping(file)
+    for key in content:
+        if key not in (*MODELS, "name", "title", "description", "source"):
+            raise BadInput(f"unknown{suggestion(key, MODELS)}", file=file, key=key)
+    return [(content, file)]
+
+
+def _parameters(owner: str, layers: list[Layer], seed: object) -> dict[str, Any]:
+    known = variables(MODELS[owner].params)
+    names = [variable.name for variable in known]
+    given: dict[str, object] = {}
+    for content, file in layers:
+        section = content.get(owner) or {}
+        if not isinstance(section, Mapping):
+            raise BadInput(f"{section!r}: expected a mapping of parameters", file=file, key=owner)
+        if owner == "controller" and content.get("target") is not None:
+            section = {**section, "target": content["target"]}
+        flat = flatten_section(section, names, file=file, key=owner)
+        given = merge_flat(given, {name: _Given(value, file) for name, value in flat.items()})
+    result: dict[str, Any] = {
+        variable.name: _value(variable, given[variable.name], owner) for variable in known if variable.name in given
+    }
+    for variable in known:
+        if variable.name.rsplit(".", 1)[-1] == "seed" and variable.name not in result:
+            result[variable.name] = seed
+    return result
+
+
+def _value(variable: Variable, given: object, owner: str) -> float | int | bool:
+    assert isinstance(given, _Given)
+    named = variable._replace(name=f"{owner}.{variable.name}")
+    return scalar(given.value, named, file=given.file)
+
+
+def _limits(given: object, path: Path) -> list[dict[str, Any]]:
+    """Return limits with the names of sets replaced by their content."""
+    if not isinstance(given, list):
+        raise BadInput(f"{given!r}: expected a list", file=path, key="limits")
+    result: list[dict[str, Any]] = []
+    for item in given:
+        if isinstance(item, str):
+            file = find_file(item, "limits", "set of limits", path.parent)
+            entries = read_requirements(file)
+            result += [entry.model_dump(by_alias=True, exclude_none=True) for entry in entries]
+        else:
+            result.append(item)
+    return result
+
+
+def _set_layer(sets: Iterable[str]) -> dict[str, Any]:
+    layer: dict[str, Any] = {}
+    for text in sets:
+        key, equals, value = text.partition("=")
+        if not equals or not key:
+            raise BadInput(f"{text!r}: expected KEY=VALUE, for example vehicle.wheelbase=2.7", file="--set")
+        try:
+            parsed = yaml.safe_load(value)
+        except yaml.YAMLError:
+            parsed = value
+        owner, dot, name = key.partition(".")
+        if dot and owner in (*MODELS, "target", "slot", "every"):
+            layer.setdefault(owner, {})[name] = parsed
+        else:
+            layer[key] = parsed
+    return layer
+
+
+def _check_keys(content: Mapping[str, Any], file: object) -> None:
+    for key in content:
+        if key not in FIELDS:
+            hint = suggestion(key, [*FIELDS, *(f"{owner}.{key}" for owner in _owners_of(key))])
+            raise BadInput(f"unknown{hint or '; known are ' + ', '.join(FIELDS)}", file=file, key=key)
+
+
+def _owners_of(key: str) -> list[str]:
+    return [owner for owner, model in MODELS.items() if key in {item.name for item in variables(model.params)}]
+
+
+def _merge(below: dict[str, Any], above: Mapping[str, Any]) -> dict[str, Any]:
+    result = dict(below)
+    for key, value in above.items():
+        old = result.get(key)
+        result[key] = _merge(old, value) if isinstance(old, dict) and isinstance(value, Mapping) else value
+    return result
+
+
+def _shipped(folder: str) -> list[str]:
+    return sorted(path.stem for path in (ROOM / folder).glob("*.yaml"))
+
+
+def find_file(name: str, folder: str, what: str, beside: Path) -> Path:
+    """Return the file of a shipped name, or of a path relative to ``beside``. Raises ``BadInput``."""
+    if name.endswith((".yaml", ".yml")) or "/" in name or "\\" in name:
+        path = beside / name
+        if not path.is_file():
+            raise BadInput("no such file", file=name)
+        return path.resolve()
+    shipped = ROOM / folder / f"{name}.yaml"
+    if shipped.is_file():
+        return shipped
+    known = _shipped(folder)
+    hint = suggestion(name, known) or f"; shipped are {', '.join(known) or 'none'}"
+    raise BadInput(f"no {what} of this name{hint}", key=name)

@@ -1,0 +1,1 @@
+"""One run from scenario to recording, and what the terminal shows of it."""

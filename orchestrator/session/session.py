@@ -1,0 +1,169 @@
+"""One run from a scenario: make the slaves, the master, its observers and faults; run; return the recording."""
+
+import platform
+import time
+from collections.abc import Callable, Mapping
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from orchestrator.cosim.endings import Standstill
+from orchestrator.cosim.faults import manipulators
+from orchestrator.cosim.master import End, Interrupt, Master, Observer
+from orchestrator.cosim.model_slave import ModelSlave
+from orchestrator.cosim.models import MODELS
+from orchestrator.cosim.recording import Recorder, Recording
+from orchestrator.cosim.slave import Slave
+from orchestrator.cosim.watch import ERROR, FMI_LEVELS, Watch
+from orchestrator.scenario.scenario import Scenario
+from orchestrator.text.errors import RunError
+
+PACKAGES = ("apa-cosim", "fmpy", "pythonfmu", "numpy", "mcap", "protobuf")
+
+
+class Ran(NamedTuple):
+    """What a run leaves behind."""
+
+    recording: Recording
+    end: End
+    wall_time: float
+    """Time from the first exchange to the closed log [s]; building, loading and initializing come before."""
+
+
+class Words:
+    """Messages of FMUs and of the watch, handed to whoever listens; times are the master's."""
+
+    def __init__(self) -> None:
+        self.t_ns = 0
+        self.listeners: list[Callable[[int, int, str, str], None]] = []
+
+    def say(self, t_ns: int, level: int, name: str, text: str) -> None:
+        """Pass on one line."""
+        for listener in self.listeners:
+            listener(t_ns, level, name, text)
+
+    def from_fmu(self, name: str, status: int, text: str) -> None:
+        """Pass on a message of an FMU."""
+        self.say(self.t_ns, FMI_LEVELS.get(status, ERROR), name, text)
+
+    def exchanged(self, t_ns: int) -> None:
+        """Note the time."""
+        self.t_ns = t_ns
+
+    def closed(self, end: End) -> None:
+        """Nothing to close."""
+
+
+def make_slaves(scenario: Scenario, files: Mapping[str, Path] | None, words: Words) -> list[Slave]:
+    """Return the slaves of a scenario: FMUs from ``files``, or the models in process."""
+    slaves: list[Slave] = []
+    for name, model in MODELS.items():
+        parameters = getattr(scenario, name)
+        if files is None:
+            slaves.append(ModelSlave(name, model, parameters))
+        else:
+            from orchestrator.cosim.fmu_slave import FmuSlave
+
+            slaves.append(FmuSlave(name, files[name], parameters, words.from_fmu, model))
+    return slaves
+
+
+def run_scenario(
+    scenario: Scenario,
+    files: Mapping[str, Path] | None = None,
+    *,
+    kind: str = "none",
+    log: Path | None = None,
+    observers: tuple[Observer, ...] = (),
+    interrupt: Interrupt | None = None,
+) -> Ran:
+    """Return the recording of one run. Errors of a slave end it as aborted; ``BadInput`` passes through."""
+    words = Words()
+    slaves = make_slaves(scenario, files, words)
+    try:
+        return run_slaves(scenario, slaves, words, kind=kind, log=log, observers=observers, interrupt=interrupt)
+    finally:
+        for slave in slaves:
+            slave.close()
+
+
+def run_slaves(
+    scenario: Scenario,
+    slaves: list[Slave],
+    words: Words,
+    *,
+    kind: str = "none",
+    log: Path | None = None,
+    observers: tuple[Observer, ...] = (),
+    interrupt: Interrupt | None = None,
+) -> Ran:
+    """Return the recording of one run of given slaves."""
+    master = _master(slaves, scenario, kind)
+    master.interrupt = interrupt or Interrupt()
+    master.manipulators += manipulators(scenario.faults, slaves, scenario.seed, scenario.file)
+    named = {slave.name: slave for slave in slaves}
+    if {"vehicle", "controller"} <= named.keys() and "phase" in named["controller"].outputs.index:
+        master.endings.append(Standstill(named["vehicle"], named["controller"]))
+    info = provenance(scenario, slaves, kind)
+    recorder = Recorder(slaves, scenario.stop_ns // scenario.step_ns + 1)
+    watch = Watch(slaves, scenario.faults, words.say)
+    master.observers += [words, recorder]
+    if log is not None:
+        from orchestrator.log.mcap_log import McapLog
+
+        file = McapLog(log, slaves, scenario.slot, info)
+        words.listeners.append(file.say)
+        master.observers += [watch, file, *observers]
+    else:
+        master.observers += [watch, *observers]
+    end = _guarded(words, master.initialize)
+    begun = time.perf_counter()
+    if end is None:
+        end = _guarded(words, master.run)
+    assert end is not None
+    master.finish(end)
+    wall_time = time.perf_counter() - begun
+    master.free()
+    return Ran(recorder.recording({**info, "end": {"reason": end.reason, "t_ns": end.t_ns}}), end, wall_time)
+
+
+def _master(slaves: list[Slave], scenario: Scenario, kind: str) -> Master:
+    """Return the master for FMUs of this kind: compiled for native ones, as the loop in Python would eat the gain."""
+    make: type[Master] = Master
+    if kind == "native":
+        from orchestrator.cosim.compiled_master import CompiledMaster
+
+        make = CompiledMaster
+    return make(slaves, scenario.step_ns, scenario.stop_ns, scenario.every)
+
+
+def _guarded(words: Words, act: Callable[[], End | None]) -> End | None:
+    """Return what ``act`` returns, or how the run ended if it cannot go on."""
+    try:
+        return act()
+    except RunError as error:
+        words.say(words.t_ns, ERROR, "run", str(error))
+        return End(f"error: {error}", words.t_ns)
+    except KeyboardInterrupt:
+        return End("interrupted", words.t_ns)
+
+
+def provenance(scenario: Scenario, slaves: list[Slave], kind: str) -> dict[str, Any]:
+    """Return what is needed to repeat the run: scenario, FMUs, seed, versions."""
+    return {
+        "scenario": scenario.model_dump(mode="json", exclude={"file"}),
+        "fmus": [{"name": slave.name, "kind": kind, "guid": slave.identity} for slave in slaves],
+        "seed": scenario.seed,
+        "versions": versions(),
+    }
+
+
+def versions() -> dict[str, str]:
+    """Return the versions of Python, of this project and of what it stands on."""
+    found = {"python": platform.python_version()}
+    for package in PACKAGES:
+        try:
+            found[package] = version(package)
+        except PackageNotFoundError:
+            found[package] = "not installed"
+    return found

@@ -1,0 +1,1 @@
+"""Many scenarios as a test, with JUnit."""

@@ -1,0 +1,86 @@
+"""JUnit XML, as CI servers read it, from the checks of runs."""
+
+import xml.etree.ElementTree as ElementTree
+from pathlib import Path
+from typing import NamedTuple
+
+from orchestrator.session.terminal import limit_text, readable
+from orchestrator.verdict.judge import Check
+
+UNPRINTABLE = {code: "?" for code in range(32) if chr(code) not in "\t\n\r"}
+"""Control characters, which XML cannot hold."""
+
+
+class Case(NamedTuple):
+    """One test case."""
+
+    name: str
+    passed: bool
+    text: str
+    """What was found; the message of a failure."""
+    skipped: bool = False
+    """Beyond its limit, but not required."""
+
+
+class Suite(NamedTuple):
+    """The cases of one run."""
+
+    name: str
+    cases: list[Case]
+    time: float
+    """Time it took [s]."""
+    error: str = ""
+    """Why the run could not be judged at all."""
+
+
+def cases_of(checks: list[Check]) -> list[Case]:
+    """Return one case for each check; one that is missed but not required is skipped, not failed."""
+    return [Case(check.id, check.passed, sentence(check), not check.passed and not check.required) for check in checks]
+
+
+def sentence(check: Check) -> str:
+    """Return value, limit, margin, moment and source of a check in one line."""
+    value = check.note or readable(check.value, check.unit)
+    margin = readable(check.margin, check.unit)
+    return f"{check.signal}: {value} at {check.t:.3f} s, asked {limit_text(check)}, margin {margin} ({check.source})"
+
+
+def write_junit(path: Path, suites: list[Suite]) -> None:
+    """Write the suites to ``path``."""
+    root = ElementTree.Element("testsuites", name="apa")
+    totals = [0, 0, 0, 0]
+    for suite in suites:
+        counts = [
+            len(suite.cases) + (1 if suite.error else 0),
+            sum(not case.passed and not case.skipped for case in suite.cases),
+            1 if suite.error else 0,
+            sum(case.skipped for case in suite.cases),
+        ]
+        totals = [total + count for total, count in zip(totals, counts, strict=True)]
+        attributes = {"name": _text(suite.name), "time": f"{suite.time:.3f}", **_counts(counts)}
+        node = ElementTree.SubElement(root, "testsuite", attributes)
+        if suite.error:
+            _case(node, suite.name, "run", "error", suite.error)
+        for case in suite.cases:
+            kind = "" if case.passed else "skipped" if case.skipped else "failure"
+            _case(node, suite.name, case.name, kind, case.text)
+    root.attrib.update(_counts(totals))
+    ElementTree.indent(root)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    ElementTree.ElementTree(root).write(path, encoding="utf-8", xml_declaration=True)
+
+
+def _counts(counts: list[int]) -> dict[str, str]:
+    return {key: str(count) for key, count in zip(("tests", "failures", "errors", "skipped"), counts, strict=True)}
+
+
+def _case(suite: ElementTree.Element, classname: str, name: str, kind: str, text: str) -> None:
+    case = ElementTree.SubElement(suite, "testcase", classname=_text(classname), name=_text(name))
+    if kind:
+        ElementTree.SubElement(case, kind, message=_text(text))
+    else:
+        ElementTree.SubElement(case, "system-out").text = _text(text)
+
+
+def _text(text: str) -> str:
+    return text.translate(UNPRINTABLE)

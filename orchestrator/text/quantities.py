@@ -1,0 +1,119 @@
+"""Numbers as people write them, ``570 deg``, ``5 km/h``, and back: the only place with conversion factors."""
+
+import math
+import re
+from typing import Annotated
+
+from pydantic import BeforeValidator
+
+from modelkit.variables import Variable
+from orchestrator.text.errors import BadInput, suggestion
+
+DEGREE = math.pi / 180.0
+FACTORS: dict[str, tuple[str, float]] = {
+    "deg": ("rad", DEGREE),
+    "deg/s": ("rad/s", DEGREE),
+    "deg/s2": ("rad/s2", DEGREE),
+    "km/h": ("m/s", 1.0 / 3.6),
+    "cm": ("m", 0.01),
+    "mm": ("m", 0.001),
+    "ms": ("s", 0.001),
+    "min": ("s", 60.0),
+    "kN": ("N", 1000.0),
+    "%": ("1", 0.01),
+}
+QUANTITY = re.compile(r"^\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?|[-+]?inf|nan)\s*([A-Za-z%/0-9^]*)\s*$")
+
+
+def number(value: object, unit: str, *, file: object = None, key: str | None = None) -> float:
+    """Return ``value`` (a number, or text such as ``30 deg/s``) in the SI ``unit``.
+
+    Raises ``BadInput`` if it is no number or has another dimension.
+    """
+    if isinstance(value, bool) or not isinstance(value, int | float | str):
+        raise BadInput(f"{value!r} is not a number [{unit}]", file=file, key=key)
+    if not isinstance(value, str):
+        return float(value)
+    match = QUANTITY.match(value)
+    if match is None:
+        raise BadInput(f"{value!r} is not a number, expected for example {_example(unit)}", file=file, key=key)
+    magnitude, written = float(match[1]), match[2]
+    if written in ("", unit):
+        return magnitude
+    target, factor = FACTORS.get(written, ("", 0.0))
+    if target != unit:
+        raise BadInput(f"{value!r} is in {written!r}, expected {_example(unit)}", file=file, key=key)
+    return magnitude * factor
+
+
+def measured(value: object, *, file: object = None, key: str | None = None) -> tuple[float, str | None]:
+    """Return ``value`` in SI and the SI unit its text has (None if it has none). Raises ``BadInput``."""
+    match = QUANTITY.match(value) if isinstance(value, str) else None
+    if match is None or not match[2]:
+        return number(value, "1", file=file, key=key), None
+    unit = FACTORS[match[2]][0] if match[2] in FACTORS else match[2]
+    return number(value, unit, file=file, key=key), unit
+
+
+def scalar(value: object, variable: Variable, *, file: object = None) -> float | int | bool:
+    """Return ``value`` as the type of ``variable``: numbers with unit, names of states, true and false.
+
+    Raises ``BadInput`` with what would be right if it has no meaning or is out of range.
+    """
+    key = variable.name
+    if variable.kind is bool:
+        result: float | int | bool = _boolean(value, file, key)
+    elif variable.kind is int:
+        result = _integer(value, variable, file)
+    else:
+        result = number(value, variable.signal.unit, file=file, key=key)
+    low, high = variable.signal.low, variable.signal.high
+    if result != result:
+        raise BadInput("nan is not a value for a parameter", file=file, key=key)
+    if not low <= result <= high:
+        raise BadInput(
+            f"{value} is out of range, expected {low:g} to {high:g} {variable.signal.unit}", file=file, key=key
+        )
+    return result
+
+
+def _seconds(value: object) -> float | None:
+    seconds = None if value is None else number(value, "s")
+    if seconds is not None and not seconds >= 0.0:
+        raise BadInput(f"{value!r} is not a time of 0 s or later")
+    return seconds
+
+
+Seconds = Annotated[float, BeforeValidator(_seconds)]
+"""A time or duration [s] in a pydantic model; ``200 ms`` will do."""
+
+
+def _boolean(value: object, file: object, key: str) -> bool:
+    words = {"true": True, "yes": True, "on": True, "1": True, "false": False, "no": False, "off": False, "0": False}
+    text = str(value).strip().lower()
+    if text not in words:
+        raise BadInput(f"{value!r} is neither true nor false", file=file, key=key)
+    return words[text]
+
+
+def _integer(value: object, variable: Variable, file: object) -> int:
+    states = variable.signal.states
+    if isinstance(value, str) and states is not None and not value.strip().lstrip("+-").isdigit():
+        names = {name.lower(): int(member) for name, member in states.__members__.items()}
+        word = value.strip().lower().replace("-", "_").replace(" ", "_")
+        if word not in names:
+            close = suggestion(word, names)
+            raise BadInput(f"{value!r} is none of {', '.join(names)}{close}", file=file, key=variable.name)
+        return names[word]
+    exact = number(value, variable.signal.unit, file=file, key=variable.name)
+    if not math.isfinite(exact) or exact != round(exact):
+        raise BadInput(f"{value!r} is not a whole number", file=file, key=variable.name)
+    if states is not None and int(exact) not in {int(member) for member in states}:
+        known = ", ".join(f"{int(member)} {member.name.lower()}" for member in states)
+        raise BadInput(f"{value!r} is none of {known}", file=file, key=variable.name)
+    return int(exact)
+
+
+def _example(unit: str) -> str:
+    others = [name for name, (target, _) in FACTORS.items() if target == unit]
+    return f"a number in {unit}" + (f" or text such as '5 {others[0]}'" if others else "")

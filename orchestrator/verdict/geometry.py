@@ -1,0 +1,159 @@
+"""Where things are in the plane: the car's outline and wheels, the planned path, the slot."""
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from orchestrator.cosim.slave import Array
+from orchestrator.scenario.scenario import Slot
+
+WHEEL_RADIUS = 0.29
+WHEEL_WIDTH = 0.18
+"""For pictures only [m]."""
+
+
+class Car(NamedTuple):
+    """Outline of the car about the midpoint of its rear axle [m]."""
+
+    front: float
+    rear: float
+    half_width: float
+    wheelbase: float
+
+    @staticmethod
+    def of(parameters: Mapping[str, float]) -> "Car":
+        """Return the outline that the vehicle's parameters (by flat name) give, with fair guesses for what lacks."""
+        wheelbase = parameters.get("wheelbase", 2.5)
+        front = wheelbase + parameters.get("front_overhang", 0.8)
+        return Car(front, parameters.get("rear_overhang", 0.6), 0.5 * parameters.get("width", 1.7), wheelbase)
+
+    def outline(self) -> Array:
+        """Return the closed outline in the car's frame, (5, 2) [m]."""
+        front, rear, half = self.front, -self.rear, self.half_width
+        return np.array([[rear, -half], [front, -half], [front, half], [rear, half], [rear, -half]])
+
+    def wheels(self) -> list[tuple[float, float]]:
+        """Return the wheel centres: rear right, rear left, front right, front left [m]."""
+        half = self.half_width - WHEEL_WIDTH
+        return [(0.0, -half), (0.0, half), (self.wheelbase, -half), (self.wheelbase, half)]
+
+
+class Box(NamedTuple):
+    """An oriented rectangle: its middle [m], heading [rad] and size [m], and when it is there [s]."""
+
+    x: float = 0.0
+    y: float = 0.0
+    heading: float = 0.0
+    length: float = 0.0
+    width: float = 0.0
+    appear_at: float = 0.0
+    disappear_at: float = 1e9
+
+    def outline(self) -> Array:
+        """Return the closed outline in the world, (5, 2) [m]."""
+        a, b = 0.5 * self.length, 0.5 * self.width
+        return place(np.array([[-a, -b], [a, -b], [a, b], [-a, b], [-a, -b]]), self.x, self.y, self.heading)
+
+
+def place(points: Array, x: float, y: float, heading: float) -> Array:
+    """Return ``points`` (n, 2) turned by ``heading`` [rad] and moved to (x, y) [m]."""
+    c, s = math.cos(heading), math.sin(heading)
+    return np.column_stack([x + c * points[:, 0] - s * points[:, 1], y + s * points[:, 0] + c * points[:, 1]])
+
+
+def in_frame(x: float, y: float, heading: float, frame: tuple[float, float, float]) -> tuple[float, float, float]:
+    """Return (longitudinal [m], lateral [m], heading [rad, wrapped]) of a pose in the frame of another."""
+    dx, dy = x - frame[0], y - frame[1]
+    c, s = math.cos(frame[2]), math.sin(frame[2])
+    turn = heading - frame[2]
+    return c * dx + s * dy, c * dy - s * dx, math.atan2(math.sin(turn), math.cos(turn))
+
+
+def slot_box(slot: Slot) -> Box:
+    """Return the slot as a rectangle."""
+    return Box(slot.x, slot.y, slot.heading, slot.length, slot.width)
+
+
+class Kerb(NamedTuple):
+    """A straight kerb between two points [m]."""
+
+    x1: float = 0.0
+    y1: float = 0.0
+    x2: float = 0.0
+    y2: float = 0.0
+    height: float = 0.0
+
+
+def boxes(parameters: Mapping[str, float]) -> list[Box]:
+    """Return the obstacles among a vehicle's parameters: ``scene.boxes[1].x`` and so on; empty ones left out."""
+    rows = _rows(parameters, "scene.boxes", Box._field_defaults)
+    return [box for box in (Box(*row) for row in rows) if box.length > 0.0 and box.width > 0.0]
+
+
+def kerbs(parameters: Mapping[str, float]) -> list[Kerb]:
+    """Return the kerbs among a vehicle's parameters: ``scene.kerbs[1].x1`` and so on; empty ones left out."""
+    return [
+        kerb
+        for kerb in (Kerb(*row) for row in _rows(parameters, "scene.kerbs", Kerb._field_defaults))
+        if kerb.height > 0.0
+    ]
+
+
+def _rows(parameters: Mapping[str, float], array: str, fields: Mapping[str, float]) -> list[list[float]]:
+    rows: list[list[float]] = []
+    while any(f"{array}[{len(rows) + 1}].{field}" in parameters for field in fields):
+        prefix = f"{array}[{len(rows) + 1}]."
+        rows.append([parameters.get(prefix + field, default) for field, default in fields.items()])
+    return rows
+
+
+def sample_path(values: Mapping[str, float], spacing: float = 0.05) -> Array:
+    """Return points (n, 2) [m] of the path a controller plans, from its outputs by flat name; empty if there is none.
+
+    Either ``path``: arcs driven in reverse from ``path.start``, curvature seen with x along the heading.
+    Or a ``move`` (``apa.move``): pieces of linear curvature driven in ``direction`` from ``move.start``.
+    """
+    pieces = [(length, k, k) for length, k in _fields(values, "path.segments", ("length", "curvature"))]
+    if any(length > 0.0 for length, _, _ in pieces):
+        return _driven(pose_at(values, "path.start"), -1.0, [(length, -k, -k) for length, k, _ in pieces], spacing)
+    for name, direction in values.items():
+        if name.endswith("move.direction") and direction != 0.0:
+            prefix = name.removesuffix(".direction")
+            moves = _fields(values, f"{prefix}.pieces", ("length", "start_curvature", "end_curvature"))
+            turned = [(length, direction * k0, direction * k1) for length, k0, k1 in moves]
+            return _driven(pose_at(values, f"{prefix}.start"), direction, turned, spacing)
+    return np.empty((0, 2))
+
+
+def pose_at(values: Mapping[str, float], prefix: str) -> tuple[float, float, float]:
+    """Return the pose called ``prefix`` among flat values, zeros for what lacks."""
+    x, y, heading = (values.get(f"{prefix}.{axis}", 0.0) for axis in ("x", "y", "heading"))
+    return x, y, heading
+
+
+def _fields(values: Mapping[str, float], array: str, fields: tuple[str, ...]) -> list[tuple[float, ...]]:
+    rows: list[tuple[float, ...]] = []
+    while f"{array}[{len(rows) + 1}].{fields[0]}" in values:
+        rows.append(tuple(values[f"{array}[{len(rows) + 1}].{field}"] for field in fields))
+    return rows
+
+
+def _driven(
+    start: tuple[float, float, float], direction: float, pieces: Sequence[tuple[float, ...]], spacing: float
+) -> Array:
+    """Return points along pieces (length, rate of turning per metre at the start, at the end) from ``start``."""
+    x, y, heading = start
+    points = [(x, y)]
+    for length, k0, k1 in pieces:
+        count = min(max(1, math.ceil(length / spacing)), 10_000) if length > 0.0 and math.isfinite(length) else 0
+        for number in range(count):
+            ds = length / count
+            turn = (k0 + (k1 - k0) * (number + 0.5) / count) * ds
+            chord = ds * (math.sin(0.5 * turn) / (0.5 * turn) if turn != 0.0 else 1.0)
+            x += direction * chord * math.cos(heading + 0.5 * turn)
+            y += direction * chord * math.sin(heading + 0.5 * turn)
+            heading += turn
+            points.append((x, y))
+    return np.array(points) if len(points) > 1 else np.empty((0, 2))

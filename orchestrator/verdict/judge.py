@@ -1,0 +1,151 @@
+"""From requirements and a recording to verdicts: the only place where a limit meets a value."""
+
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import BaseModel, ConfigDict
+
+from orchestrator.cosim.recording import Recording
+from orchestrator.cosim.slave import Array
+from orchestrator.text.errors import BadInput, suggestion
+from orchestrator.verdict.requirements import Condition, Requirement, Window
+
+CHART = "controller.phase"
+
+
+class Check(BaseModel):
+    """One requirement and how the run stands against it."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    id: str
+    limit: float
+    value: float
+    """The worst value, NaN if there is none."""
+    passed: bool
+    source: str
+    unit: str
+    margin: float
+    """Distance to the limit, negative beyond it."""
+    required: bool
+    t: float
+    """When the value occurred [s]."""
+    signal: str
+    condition: Condition
+    note: str = ""
+    """Name of the state, or why there is no value."""
+    limit_name: str = ""
+    """Name of the state asked for."""
+
+
+def judge(requirements: list[Requirement], recording: Recording, numbers: dict[str, float], file: str) -> list[Check]:
+    """Return one check for each requirement; ``numbers`` are those of the summary by name.
+
+    Raises ``BadInput`` for a name that neither the run nor the summary has, or a limit in another unit.
+    """
+    return [_check(item, recording, numbers, file) for item in requirements]
+
+
+def _check(item: Requirement, recording: Recording, numbers: dict[str, float], file: str) -> Check:
+    where = f"{item.id}: {item.signal}"
+    if item.signal in recording.signals:
+        unit = recording.variables[item.signal].signal.unit
+        states = recording.states(item.signal)
+        rows = _rows(item.window, recording, file, where)
+        values, times = recording.signals[item.signal][rows], recording.t[rows]
+    elif item.signal in numbers:
+        unit, states = unit_of_number(item.signal), {}
+        if item.window is not None:
+            raise BadInput("a number of the summary has no window", file=file, key=where)
+        values, times = np.array([numbers[item.signal]]), np.array([numbers["duration"]])
+    else:
+        known = [*recording.signals, *numbers]
+        raise BadInput(f"no signal or number of this name{suggestion(item.signal, known)}", file=file, key=where)
+    if item.unit is not None and item.unit != unit:
+        raise BadInput(f"the limit is in {item.unit}, the signal in {unit}", file=file, key=where)
+    limit = _number(item.limit, states, file, where)
+    return _worst(item, values, times, limit, unit, states)
+
+
+def unit_of_number(name: str) -> str:
+    """Return the SI unit of a number of the summary."""
+    angles = ("heading", "heading_error", "steering_wheel_angle")
+    if name.startswith("final."):
+        return "rad" if name.removeprefix("final.") in angles else "m"
+    return {"duration": "s", "max_speed": "m/s"}.get(name, "1")
+
+
+def margins(condition: Condition, values: Array, limit: float) -> Array:
+    """Return the distance of each value to the limit, negative beyond it; for ``equals`` minus the difference."""
+    if condition == "max":
+        return limit - values
+    if condition == "min":
+        return values - limit
+    if condition == "max_abs":
+        return limit - np.abs(values)
+    return 0.0 - np.abs(values - limit)
+
+
+def _worst(item: Requirement, values: Array, times: Array, limit: float, unit: str, states: dict[int, str]) -> Check:
+    """Return the check at the worst value; NaN is the worst there is and passes nothing."""
+    value = margin = math.nan
+    when, note, passed = 0.0, "", False
+    if len(values):
+        found = margins(item.condition, values, limit)
+        row = int(np.argmin(np.where(np.isnan(found), -np.inf, found)))
+        value, margin, when = float(values[row]), float(found[row]), float(times[row])
+        passed = margin >= 0.0
+        note = states.get(int(value), "") if math.isfinite(value) else "not a number"
+    else:
+        note = "the window never comes"
+        passed = item.window is not None and item.window.if_never == "pass"
+    return Check(
+        id=item.id,
+        limit=limit,
+        value=value,
+        passed=passed,
+        source=item.source,
+        unit=unit,
+        margin=margin,
+        required=item.required,
+        t=when,
+        signal=item.signal,
+        condition=item.condition,
+        note=note,
+        limit_name=states.get(int(limit), "") if states and item.condition == "equals" and math.isfinite(limit) else "",
+    )
+
+
+def _number(limit: float | str, states: dict[int, str], file: str, where: str) -> float:
+    if not isinstance(limit, str):
+        return limit
+    word = limit.upper().replace(" ", "_").replace("-", "_")
+    for value, name in states.items():
+        if name == word:
+            return float(value)
+    names = [name.lower() for name in states.values()]
+    hint = suggestion(limit.lower(), names) or f"; known are {', '.join(names)}" if names else "; the signal has none"
+    raise BadInput(f"{limit!r} is no state{hint}", file=file, key=where)
+
+
+def _rows(window: Window | None, recording: Recording, file: str, where: str) -> NDArray[np.bool_]:
+    """Return which instants of a run are in a window."""
+    t = recording.t
+    rows = np.ones(len(t), dtype=bool)
+    if window is None:
+        return rows
+    if window.from_ is not None:
+        rows &= t >= window.from_
+    if window.to is not None:
+        rows &= t <= window.to
+    if window.at == "end":
+        rows[:-1] = False
+    if window.phase:
+        phases: Any = recording.signals.get(CHART)
+        if phases is None:
+            raise BadInput(f"the run has no {CHART}", file=file, key=f"{where}: window.phase")
+        wanted = [_number(name, recording.states(CHART), file, f"{where}: window.phase") for name in window.phase]
+        rows &= np.isin(phases, wanted)
+    return rows

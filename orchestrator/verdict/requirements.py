@@ -1,0 +1,128 @@
+"""Requirements as data: a signal or a number of the summary, a condition, a window, a limit, a source.
+
+The limits of a scenario, the shipped sets in ``orchestrator/limits`` and the files of ``apa check``
+are all lists of these.
+"""
+
+from pathlib import Path
+from typing import Any, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
+
+from orchestrator.text.errors import BadInput, suggestion
+from orchestrator.text.quantities import Seconds, measured
+from orchestrator.text.yaml_file import explain, read_yaml
+
+Condition = Literal["max", "min", "max_abs", "equals"]
+CONDITIONS: tuple[Condition, ...] = ("max", "min", "max_abs", "equals")
+
+
+class Window(BaseModel):
+    """The part of a run in which a requirement holds; all that is given must hold at once."""
+
+    model_config = ConfigDict(extra="forbid", populate_by_name=True)
+
+    from_: Seconds | None = Field(default=None, alias="from")
+    """First instant [s]."""
+    to: Seconds | None = None
+    """Last instant [s]."""
+    phase: list[str] = []
+    """Names of phases of the manoeuvre chart."""
+    at: Literal["end"] | None = None
+    """``end``: the last instant only."""
+    if_never: Literal["fail", "pass"] = "fail"
+    """The verdict if the run has no instant in the window."""
+
+    @model_validator(mode="before")
+    @classmethod
+    def _one_phase(cls, data: Any) -> Any:
+        if isinstance(data, dict) and isinstance(data.get("phase"), str):
+            return {**data, "phase": [data["phase"]]}
+        return data
+
+    @model_validator(mode="after")
+    def _ordered(self) -> "Window":
+        if self.from_ is not None and self.to is not None and self.from_ > self.to:
+            raise BadInput(f"from {self.from_:g} s is after to {self.to:g} s", key="window")
+        return self
+
+
+class Requirement(BaseModel):
+    """One requirement on a run; exactly one of ``max``, ``min``, ``max_abs`` and ``equals`` is given.
+
+    A limit is a number in SI units, text with a unit (``3 deg``, ``10 km/h``), or for ``equals``
+    the name of a state (``PARKED``).
+    """
+
+    model_config = ConfigDict(extra="forbid")
+
+    id: str
+    signal: str
+    """``vehicle.speed``: judged at every instant of the window; ``final.lateral_error``, ``shifts``,
+    ``max_speed``, ``duration``: one number of the summary."""
+    max: float | None = None
+    min: float | None = None
+    max_abs: float | None = None
+    equals: float | str | None = None
+    unit: str | None = None
+    """SI unit of the limit; taken from the limit's text if that has one."""
+    window: Window | None = None
+    source: str
+    """Who asks for it."""
+    required: bool = True
+    """A run counts as parked only if every required one is met."""
+
+    @model_validator(mode="before")
+    @classmethod
+    def _quantities(cls, data: Any) -> Any:
+        if not isinstance(data, dict):
+            raise BadInput(f"{data!r}: expected the name of a set of limits or a mapping with id, signal, max, source")
+        for key in data:
+            if key not in cls.model_fields:
+                hint = suggestion(str(key), cls.model_fields) or f"; known are {', '.join(cls.model_fields)}"
+                raise BadInput(f"unknown{hint}", key=f"{data.get('id', '')}: {key}".lstrip(": "))
+        given = [key for key in CONDITIONS if data.get(key) is not None]
+        if len(given) != 1:
+            raise BadInput(f"expected exactly one of {', '.join(CONDITIONS)}", key=str(data.get("id", "")))
+        return {**data, **_limit(data, given[0])}
+
+    @property
+    def condition(self) -> Condition:
+        """Return which of the conditions is given."""
+        return next(key for key in CONDITIONS if getattr(self, key) is not None)
+
+    @property
+    def limit(self) -> float | str:
+        """Return the limit [SI unit], or the name of a state."""
+        value: float | str = getattr(self, self.condition)
+        return value
+
+
+def read_requirements(path: Path) -> list[Requirement]:
+    """Return the requirements in a YAML file. Raises ``BadInput`` with the place of a mistake."""
+    content = read_yaml(path)
+    if not isinstance(content, list) or not content:
+        raise BadInput("expected a list of requirements, each with id, signal, a limit, source", file=path)
+    found = []
+    for number, entry in enumerate(content, start=1):
+        try:
+            found.append(Requirement.model_validate(entry))
+        except ValidationError as error:
+            mistake = explain(error, None, list(Requirement.model_fields))
+            raise BadInput(f"requirement {number}: {mistake}", file=path) from None
+    return found
+
+
+def _limit(data: dict[str, Any], key: str) -> dict[str, Any]:
+    """Return the limit as a number in SI units and its unit. A word stays for ``equals`` (a state)."""
+    value, unit = data[key], data.get("unit")
+    where = f"{data.get('id', '')}: {key}".lstrip(": ")
+    if isinstance(value, bool):
+        return {key: float(value)}
+    if key == "equals" and isinstance(value, str) and value.strip().replace("_", "").replace(" ", "").isalnum():
+        if not value.strip()[0].isdigit():
+            return {key: value.strip()}
+    number, written = measured(value, key=where)
+    if unit is not None and written is not None and written != unit:
+        raise BadInput(f"{value!r} is not in {unit}", key=where)
+    return {key: number, "unit": written if unit is None else unit}

@@ -1,0 +1,69 @@
+"""How far a signal may be from its reference, in value and in time."""
+
+from pathlib import Path
+from typing import NamedTuple
+
+from orchestrator.text.errors import BadInput, suggestion
+from orchestrator.text.patterns import fits
+from orchestrator.text.quantities import number
+from orchestrator.text.yaml_file import read_mapping
+
+
+class Tolerance(NamedTuple):
+    """A value may differ by max(``absolute``, ``relative`` * \\|reference\\|) from any value within ``time``."""
+
+    absolute: float = 1e-9
+    """[SI unit of the signal]"""
+    relative: float = 1e-9
+    time: float = 0.0
+    """Half-width of the tube along time [s]."""
+
+
+KEYS = ("abs", "rel", "time")
+
+
+class Tolerances:
+    """A tolerance for every signal: a default, and rows of (pattern, changes); the last match wins."""
+
+    def __init__(self, default: Tolerance, rows: list[tuple[str, dict[str, object], str]] | None = None) -> None:
+        self._default = default
+        self._rows = rows or []
+
+    def of(self, signal: str, unit: str) -> Tolerance:
+        """Return the tolerance of ``signal``, whose SI unit is ``unit``. Raises ``BadInput`` for a wrong unit."""
+        found = self._default
+        for pattern, given, file in self._rows:
+            if not fits(signal, pattern):
+                continue
+            key = f"{pattern}: {{}}"
+            if "abs" in given:
+                found = found._replace(absolute=_bound(given["abs"], unit, file, key.format("abs")))
+            if "rel" in given:
+                found = found._replace(relative=_bound(given["rel"], "1", file, key.format("rel")))
+            if "time" in given:
+                found = found._replace(time=_bound(given["time"], "s", file, key.format("time")))
+        return found
+
+
+def read_tolerances(path: Path | None, default: Tolerance) -> Tolerances:
+    """Return the tolerances in a YAML file: ``"vehicle.pose.*": {abs: 1 cm, rel: 0.01, time: 100 ms}``.
+
+    Raises ``BadInput``.
+    """
+    rows = []
+    for pattern, given in (read_mapping(path) if path else {}).items():
+        if not isinstance(given, dict):
+            raise BadInput(f"{given!r}: expected a mapping with {', '.join(KEYS)}", file=path, key=pattern)
+        for key in given:
+            if key not in KEYS:
+                hint = suggestion(str(key), KEYS) or f"; known are {', '.join(KEYS)}"
+                raise BadInput(f"unknown{hint}", file=path, key=f"{pattern}: {key}")
+        rows.append((pattern, given, str(path)))
+    return Tolerances(default, rows)
+
+
+def _bound(value: object, unit: str, file: str, key: str) -> float:
+    bound = number(value, unit, file=file, key=key)
+    if not bound >= 0.0:
+        raise BadInput(f"{value!r} is not 0 or more", file=file, key=key)
+    return bound

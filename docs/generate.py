@@ -3,14 +3,11 @@
 Nothing in docs/reference is written by hand; ``make docs`` runs this before the site is built.
 """
 
-import argparse
-import ast
 import importlib
 import inspect
 import os
 import pkgutil
 import sys
-import textwrap
 from collections.abc import Iterator
 from enum import IntEnum
 from pathlib import Path
@@ -26,16 +23,16 @@ import controller_fmu  # noqa: E402
 from modelkit.model import Model  # noqa: E402
 from modelkit.variables import Variable, variables  # noqa: E402
 from orchestrator.cli import parser  # noqa: E402
+from orchestrator.command_parser import CommandParser  # noqa: E402
 from orchestrator.cosim.models import MODELS  # noqa: E402
+from orchestrator.scenario.catalogue import collapsed, range_text, start_text, texts_of  # noqa: E402
 from orchestrator.scenario.load_scenario import ROOM, load_scenario, scenario_names  # noqa: E402
 from orchestrator.scenario.scenario import Scenario  # noqa: E402
-from orchestrator.session.terminal import SIGNS, readable  # noqa: E402
-from orchestrator.text.quantities import DEGREE  # noqa: E402
+from orchestrator.session.terminal import asked  # noqa: E402
 from orchestrator.verdict.requirements import Requirement, read_requirements  # noqa: E402
 from orchestrator.verdict.summary import Summary  # noqa: E402
 
 MADE = "<!-- Made by docs/generate.py; do not edit. -->\n"
-UNBOUNDED = 1e300
 
 
 def main() -> None:
@@ -76,48 +73,6 @@ def signal_table(items: list[Variable], starts: bool) -> str:
         more = [start_text(item), range_text(item), signal.source] if starts else [item.kind.__name__]
         rows.append([name, "" if signal.unit == "1" else signal.unit, text, *more])
     return table(head, rows)
-
-
-def collapsed(items: list[Variable]) -> Iterator[tuple[Variable, int]]:
-    """Return variables and how many array elements each stands for: those of element 1 stand for all alike."""
-    counts: dict[str, int] = {}
-    for item in items:
-        key, number = split_index(item.name)
-        counts[key] = max(counts.get(key, 1), number)
-    for item in items:
-        key, number = split_index(item.name)
-        if number == 1:
-            yield item, counts[key]
-
-
-def split_index(name: str) -> tuple[str, int]:
-    """Return (name without its first index, that index or 1)."""
-    if "[" not in name:
-        return name, 1
-    head, rest = name.split("[", 1)
-    number, tail = rest.split("]", 1)
-    return f"{head}[]{tail}", int(number)
-
-
-def start_text(item: Variable) -> str:
-    """Return the default for people: angles in degrees as well, modes by name."""
-    if item.signal.states is not None:
-        return item.signal.states(item.start).name.lower()
-    if item.kind is bool:
-        return str(item.start).lower()
-    if item.signal.unit.startswith("rad"):
-        return f"{item.start:.6g} ({item.start / DEGREE:.5g} {item.signal.unit.replace('rad', 'deg')})"
-    return f"{item.start:.6g}"
-
-
-def range_text(item: Variable) -> str:
-    """Return the range allowed, empty if there is none."""
-    low, high = item.signal.low, item.signal.high
-    if low < -UNBOUNDED and high > UNBOUNDED:
-        return ""
-    if high > UNBOUNDED:
-        return f"from {low:g}"
-    return f"{low:g} to {high:g}" if low > -UNBOUNDED else f"to {high:g}"
 
 
 def state_table(enum: type[IntEnum]) -> str:
@@ -180,13 +135,11 @@ def commands_page() -> str:
     return "\n".join(parts)
 
 
-def subcommands(top: argparse.ArgumentParser, prefix: str = "") -> Iterator[tuple[str, argparse.ArgumentParser]]:
+def subcommands(top: CommandParser, prefix: str = "") -> Iterator[tuple[str, CommandParser]]:
     """Return (name, parser) of all commands and their sub-commands."""
-    for action in top._actions:
-        if isinstance(action, argparse._SubParsersAction):
-            for name, sub in action.choices.items():
-                yield f"{prefix}{name}", sub
-                yield from subcommands(sub, f"{prefix}{name} ")
+    for name, sub in top.subcommands():
+        yield f"{prefix}{name}", sub
+        yield from subcommands(sub, f"{prefix}{name} ")
 
 
 def scenarios_page() -> str:
@@ -197,16 +150,9 @@ def scenarios_page() -> str:
     cars = sorted(path.stem for path in (ROOM / "cars").glob("*.yaml"))
     parts.append("## Cars\n\n" + "\n".join(f"- `{name}`" for name in cars) + "\n")
     for path in sorted((ROOM / "limits").glob("*.yaml")):
-        rows = [limit_row(item) for item in read_requirements(path)]
+        rows = [[item.id, f"`{item.signal}`", asked(item), item.source] for item in read_requirements(path)]
         parts.append(f"## Limits: {path.stem}\n\n{table(['id', 'signal', 'limit', 'source'], rows)}")
     return "\n".join(parts)
-
-
-def limit_row(item: Requirement) -> list[str]:
-    """Return a requirement as a row."""
-    limit = item.limit
-    text = limit if isinstance(limit, str) else readable(limit, item.unit or "1")
-    return [item.id, f"`{item.signal}`", f"{SIGNS[item.condition]} {text}", item.source]
 
 
 def files_page() -> str:
@@ -214,21 +160,11 @@ def files_page() -> str:
     parts = ["# Files\n"]
     for title, model in (("Scenario (YAML)", Scenario), ("Requirement (YAML)", Requirement), ("summary.json", Summary)):
         schema: dict[str, Any] = model.model_json_schema()
-        rows = [[f"`{name}`", type_text(item), docstring(model, name)] for name, item in schema["properties"].items()]
+        texts = texts_of(model)
+        rows = [[f"`{name}`", type_text(item), texts.get(name, "")] for name, item in schema["properties"].items()]
         about = (inspect.getdoc(model) or "").replace("``", "`")
         parts.append(f"## {title}\n\n{about}\n\n{table(['key', 'type', 'meaning'], rows)}")
     return "\n".join(parts)
-
-
-def docstring(model: Any, name: str) -> str:
-    """Return the text that stands under a field in its class."""
-    tree = ast.parse(textwrap.dedent(inspect.getsource(model))).body[0]
-    assert isinstance(tree, ast.ClassDef)
-    for node, after in zip(tree.body, tree.body[1:], strict=False):
-        if isinstance(node, ast.AnnAssign) and isinstance(node.target, ast.Name) and node.target.id == name:
-            if isinstance(after, ast.Expr) and isinstance(after.value, ast.Constant):
-                return " ".join(str(after.value.value).split()).replace("``", "`")
-    return ""
 
 
 def type_text(item: dict[str, Any]) -> str:

@@ -1,34 +1,34 @@
-"""The command ``apa``: finds the commands in ``orchestrator.commands`` and turns errors into exit codes."""
+"""The command ``apa``: imports the command that is chosen and turns errors into exit codes."""
 
 import argparse
-import importlib
-import pkgutil
 import sys
-from collections.abc import Sequence
-from types import ModuleType
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager, redirect_stdout
+from os import devnull
+from typing import Any
 
-from rich.markup import escape
-
-from orchestrator import commands
-from orchestrator.session.terminal import BAD_INPUT, INTERRUPTED, NOT_PARKED, console
-from orchestrator.text.errors import BadInput, RunError
+from orchestrator.command_parser import CommandParser
+from orchestrator.commands import COMMANDS
+from orchestrator.text.errors import BAD_INPUT, INTERRUPTED, NOT_PARKED, BadInput, RunError
 
 DESCRIPTION = "Automated parking as a pair of FMI 2.0 co-simulation FMUs."
 EPILOG = """examples:
   apa list                                     what can be run
   apa run guo2015-case4                        log, figure and summary in runs/guo2015-case4
   apa run guo2015-case4 --set controller.ntbpt.k4=3 --fmus none
+  apa list parameters steering                 names, defaults, units and ranges
   apa recover runs/guo2015-case4/run.mcap.part
 
-exit codes: 0 parked or done, 1 not parked, 2 bad input, 130 interrupted
+exit codes: 0 parked or done, 1 not parked, 2 bad input or a place that cannot be read or written, 130 interrupted
 """
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Return the exit code of one command line."""
-    parsed = parser().parse_args(arguments)
     try:
-        return int(parsed.run(parsed))
+        parsed = parser().parse_args(arguments)
+        with _as_asked(parsed):
+            return int(parsed.run(parsed))
     except BadInput as error:
         _complain(str(error))
         return BAD_INPUT
@@ -41,28 +41,56 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except BrokenPipeError:
         sys.stderr.close()
         return NOT_PARKED
+    except OSError as error:
+        place = f"{error.filename}: " if error.filename is not None else ""
+        _complain(f"{place}{error.strerror or error}")
+        return BAD_INPUT
 
 
-def parser() -> argparse.ArgumentParser:
-    """Return the parser with all commands."""
-    top = argparse.ArgumentParser(
-        prog="apa", description=DESCRIPTION, epilog=EPILOG, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
-    subparsers = top.add_subparsers(title="commands", metavar="COMMAND", required=True)
-    for module in command_modules():
-        subparser = module.add_parser(subparsers)
-        subparser.formatter_class = argparse.RawDescriptionHelpFormatter
-        subparser.set_defaults(run=module.run)
+def parser() -> CommandParser:
+    """Return the parser with the names of all commands; none is imported yet."""
+    top = CommandParser(prog="apa", description=DESCRIPTION, epilog=EPILOG)
+    top.add_argument("--version", action=_Version, nargs=0, help="print the version")
+    commands = top.add_subparsers(title="commands", metavar="COMMAND", required=True)
+    for name, text in COMMANDS.items():
+        commands.add_parser(name, help=text, description=text, module=f"orchestrator.commands.{name}")
     return top
 
 
-def command_modules() -> list[ModuleType]:
-    """Return the modules of all commands, in alphabetical order."""
-    names = sorted(module.name for module in pkgutil.iter_modules(commands.__path__))
-    return [importlib.import_module(f"{commands.__name__}.{name}") for name in names]
+class _Version(argparse.Action):
+    """Prints the version and leaves; it is looked up only then, for that takes as long as all the rest."""
+
+    def __call__(self, parser: argparse.ArgumentParser, *_: Any) -> None:
+        from importlib.metadata import PackageNotFoundError, version
+
+        try:
+            print(f"apa-cosim {version('apa-cosim')}")
+        except PackageNotFoundError:
+            print("apa-cosim, not installed")
+        parser.exit()
+
+
+@contextmanager
+def _as_asked(parsed: argparse.Namespace) -> Iterator[None]:
+    """With ``--quiet`` nothing is printed but errors, and JSON if that was asked for."""
+    from orchestrator.text.console import QUIET
+
+    token = QUIET.set(parsed.quiet)
+    try:
+        if parsed.quiet and not getattr(parsed, "json", False):
+            with open(devnull, "w", encoding="utf-8") as nowhere, redirect_stdout(nowhere):
+                yield
+        else:
+            yield
+    finally:
+        QUIET.reset(token)
 
 
 def _complain(text: str) -> None:
+    from rich.markup import escape
+
+    from orchestrator.text.console import console
+
     console(sys.stderr).print(f"[bold red]apa:[/] {escape(text)}", soft_wrap=True)
 
 

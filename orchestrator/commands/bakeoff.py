@@ -18,7 +18,7 @@ from orchestrator.bakeoff.entries import CONTROLLERS, SLOTS, entries
 from orchestrator.bakeoff.figure import draw
 from orchestrator.bakeoff.results import REFUSED, Result, results
 from orchestrator.cosim.fmu_files import can_compile
-from orchestrator.session.terminal import console
+from orchestrator.text.console import console
 from orchestrator.text.errors import BadInput
 
 EXAMPLES = """examples:
@@ -45,16 +45,12 @@ MEDIANS: tuple[Callable[[Result], float], ...] = (
 )
 
 
-def add_parser(subparsers: Any) -> argparse.ArgumentParser:
-    """Add the command."""
-    parser: argparse.ArgumentParser = subparsers.add_parser(
-        "bakeoff", help="compare the parking controllers", epilog=EXAMPLES
-    )
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add what the command takes."""
     parser.add_argument("--runs", type=int, default=10_000, help="drives of each system in the driver study")
     parser.add_argument("--seed", type=int, default=1, help="seed of the driver study")
     parser.add_argument("--out", type=Path, default=Path("runs/bakeoff"), metavar="DIR", help="where the picture goes")
     parser.add_argument("--json", action="store_true", help="print JSON instead of the tables")
-    return parser
 
 
 def run(arguments: argparse.Namespace) -> int:

@@ -3,12 +3,12 @@
 import argparse
 import json
 from pathlib import Path
-from typing import Any
 
 from orchestrator.log.read_log import read_log
 from orchestrator.scenario.load_scenario import find_file
-from orchestrator.session.terminal import checks_table, console
+from orchestrator.session.terminal import checks_table
 from orchestrator.suite.junit import Suite, cases_of, write_junit
+from orchestrator.text.console import console
 from orchestrator.verdict.judge import judge
 from orchestrator.verdict.requirements import read_requirements
 from orchestrator.verdict.summary import numbers_of
@@ -28,16 +28,12 @@ exit codes: 0 all required ones met, 1 not, 2 bad input
 MET, MISSED = 0, 1
 
 
-def add_parser(subparsers: Any) -> argparse.ArgumentParser:
-    """Add the command."""
-    parser: argparse.ArgumentParser = subparsers.add_parser(
-        "check", help="judge a run by requirements", epilog=EXAMPLES
-    )
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add what the command takes."""
     parser.add_argument("log", type=Path, metavar="RUN.mcap", help="log of a run")
     parser.add_argument("requirements", nargs="+", metavar="REQUIREMENTS", help="YAML files or names of shipped sets")
     parser.add_argument("--junit", type=Path, metavar="FILE", help="write the verdicts as JUnit XML")
     parser.add_argument("--json", action="store_true", help="print the checks as JSON")
-    return parser
 
 
 def run(arguments: argparse.Namespace) -> int:

@@ -3,12 +3,12 @@
 import argparse
 import sys
 from pathlib import Path
-from typing import Any
 
 from orchestrator.log.read_log import read_log
 from orchestrator.report.overlay import write_overlay
 from orchestrator.report.words import read_words
-from orchestrator.session.terminal import console, differences_table
+from orchestrator.session.terminal import differences_table
+from orchestrator.text.console import console
 from orchestrator.text.errors import BadInput
 from orchestrator.text.quantities import number
 from orchestrator.verdict.compare import Comparison, compare
@@ -29,9 +29,8 @@ exit codes: 0 all within tolerance, 1 something differs, 2 bad input
 SAME, DIFFERENT = 0, 1
 
 
-def add_parser(subparsers: Any) -> argparse.ArgumentParser:
-    """Add the command."""
-    parser: argparse.ArgumentParser = subparsers.add_parser("compare", help="compare two runs", epilog=EXAMPLES)
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add what the command takes."""
     parser.add_argument("a", type=Path, metavar="A.mcap", help="the reference")
     parser.add_argument("b", type=Path, metavar="B.mcap", help="the run to judge")
     parser.add_argument("--abs", default="1e-9", metavar="NUMBER", help="absolute tolerance in SI units (1e-9)")
@@ -43,7 +42,6 @@ def add_parser(subparsers: Any) -> argparse.ArgumentParser:
     )
     parser.add_argument("--html", type=Path, metavar="FILE", help="write a page with both cars and all curves")
     parser.add_argument("--json", action="store_true", help="print the whole comparison as JSON")
-    return parser
 
 
 def run(arguments: argparse.Namespace) -> int:

@@ -1,13 +1,15 @@
-"""``apa export``: a run, or the system, in the formats of other tools: each module of ``orchestrator/export``."""
+"""``apa export``: a run, or the system, in the formats of other tools. Each format is a module of ``orchestrator/export``."""
 
 import argparse
-import importlib
-import pkgutil
-from types import ModuleType
-from typing import Any
 
-from orchestrator import export
-
+FORMATS = {
+    "container": "the system as one FMU, for any importer",
+    "csv": "a table of all signals",
+    "mf4": "ASAM MDF 4",
+    "rerun": "for the Rerun viewer (.rrd)",
+    "ssp": "the system as .ssp, for libcosim, OMSimulator, ecos...",
+}
+"""Format -> what it is. Its module has ``EXAMPLES``, ``add_arguments(parser)`` and ``run(arguments) -> exit code``."""
 EXAMPLES = """examples:
   apa export csv runs/guo2015-case4/run.mcap
   apa export mf4 runs/guo2015-case4/run.mcap --out case4.mf4
@@ -16,24 +18,8 @@ EXAMPLES = """examples:
 """
 
 
-def add_parser(subparsers: Any) -> argparse.ArgumentParser:
-    """Add the command with one sub-command for each format."""
-    parser: argparse.ArgumentParser = subparsers.add_parser("export", help="write other formats", epilog=EXAMPLES)
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add one sub-command for each format."""
     formats = parser.add_subparsers(title="formats", metavar="FORMAT", required=True)
-    for module in export_modules():
-        subparser = module.add_parser(formats)
-        subparser.formatter_class = argparse.RawDescriptionHelpFormatter
-        subparser.set_defaults(export=module.run)
-    return parser
-
-
-def run(arguments: argparse.Namespace) -> int:
-    """Run the exporter that was named and return its exit code."""
-    return int(arguments.export(arguments))
-
-
-def export_modules() -> list[ModuleType]:
-    """Return the modules of all formats: each has ``add_parser(subparsers)`` and ``run(arguments) -> exit code``."""
-    names = sorted(item.name for item in pkgutil.iter_modules(export.__path__))
-    found = [importlib.import_module(f"{export.__name__}.{name}") for name in names]
-    return [module for module in found if hasattr(module, "add_parser")]
+    for name, text in FORMATS.items():
+        formats.add_parser(name, help=text, description=text, module=f"orchestrator.export.{name}")

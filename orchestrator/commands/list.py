@@ -1,39 +1,132 @@
-"""``apa list``: the scenarios, cars and studies that are shipped."""
+"""``apa list``: what is there to run, to set, to look at and to judge by."""
 
 import argparse
 import json
 from typing import Any
 
+from rich.markup import escape
 from rich.table import Table
 
-from orchestrator.scenario.load_scenario import car_names, load_scenario, scenario_names
-from orchestrator.session.terminal import console
+from orchestrator.scenario.catalogue import Entry, chosen, entries, range_text, start_text, systems
+from orchestrator.scenario.load_scenario import ROOM, car_names, load_scenario, scenario_names
+from orchestrator.session.terminal import asked
 from orchestrator.sweep.study import study_names
+from orchestrator.text.console import console
+from orchestrator.text.errors import BadInput
+from orchestrator.verdict.requirements import read_requirements
+
+EXAMPLES = """examples:
+  apa list                             scenarios, systems, cars, limits, studies
+  apa list parameters steering         parameters with this word in name or meaning
+  apa list parameters "controller.ntbpt.*"
+  apa list signals odometry --json
+  apa list limits gbt41630
+"""
+KINDS = ("scenarios", "parameters", "signals", "systems", "limits")
+Rows = list[dict[str, Any]]
 
 
-def add_parser(subparsers: Any) -> argparse.ArgumentParser:
-    """Add the command."""
-    parser: argparse.ArgumentParser = subparsers.add_parser("list", help="list scenarios, cars and studies")
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add what the command takes."""
+    parser.add_argument("what", nargs="?", choices=KINDS, metavar="WHAT", help=f"one of {', '.join(KINDS)}")
+    parser.add_argument("pattern", nargs="?", metavar="PATTERN", help="a word, or a pattern such as vehicle.pose.*")
     parser.add_argument("--json", action="store_true", help="print JSON")
-    return parser
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Print names, expected outcomes and titles. Returns 0."""
-    scenarios = [load_scenario(name) for name in scenario_names()]
+    """Print names and what they mean. Returns 0; raises ``BadInput`` if nothing fits."""
+    if arguments.what is None:
+        return _overview(arguments.json)
+    heads, rows = LISTS[arguments.what](arguments.pattern)
+    if arguments.pattern and not rows:
+        raise BadInput(f"no {arguments.what} fit", key=arguments.pattern)
     if arguments.json:
-        rows = [
-            {"name": item.name, "title": item.title, "expect": item.expect, "file": item.file} for item in scenarios
-        ]
-        print(json.dumps({"scenarios": rows, "cars": car_names(), "studies": study_names()}, indent=2))
-        return 0
-    out = console()
-    table = Table(box=None, pad_edge=False)
-    for name in ("scenario", "expect", "title"):
-        table.add_column(name, no_wrap=name != "title")
-    for item in scenarios:
-        table.add_row(item.name, item.expect, item.title)
-    out.print(table)
-    out.print(f"cars: {', '.join(car_names())}")
-    out.print(f"studies (apa sweep NAME): {', '.join(study_names())}")
+        print(json.dumps(rows, indent=2))
+    else:
+        _print(heads, rows)
     return 0
+
+
+def _overview(as_json: bool) -> int:
+    heads, scenarios = _scenarios(None)
+    names = {"cars": car_names(), "limits": _limit_names(), "studies": study_names()}
+    if as_json:
+        print(json.dumps({"scenarios": scenarios, "systems": systems(), **names}, indent=2))
+        return 0
+    _print(heads, scenarios)
+    out = console()
+    print()
+    _print(*_systems(None))
+    out.print(f"\ncars (--set car=NAME): {', '.join(names['cars'])}")
+    out.print(f"limits (apa list limits): {', '.join(names['limits'])}")
+    out.print(f"studies (apa sweep NAME): {', '.join(names['studies'])}")
+    out.print("parameters and signals: apa list parameters PATTERN, apa list signals PATTERN", markup=False)
+    return 0
+
+
+def _scenarios(pattern: str | None) -> tuple[dict[str, str], Rows]:
+    found = [load_scenario(name) for name in scenario_names()]
+    rows = [{"name": item.name, "title": item.title, "expect": item.expect, "file": item.file} for item in found]
+    heads = {"name": "scenario", "expect": "expect", "title": "title"}
+    return heads, [row for row in rows if _has(pattern, row["name"], row["title"])]
+
+
+def _systems(pattern: str | None) -> tuple[dict[str, str], Rows]:
+    rows = [{"name": name, "text": text} for name, text in systems().items()]
+    heads = {"name": "system (--set controller.system=NAME)", "text": "meaning"}
+    return heads, [row for row in rows if _has(pattern, row["name"], row["text"])]
+
+
+def _limits(pattern: str | None) -> tuple[dict[str, str], Rows]:
+    heads = {"set": "set", "id": "id", "signal": "signal", "asked": "asked", "source": "source"}
+    rows = []
+    for name in _limit_names():
+        for item in read_requirements(ROOM / "limits" / f"{name}.yaml"):
+            if _has(pattern, name, item.id, item.signal):
+                rows.append(
+                    {"set": name, "id": item.id, "signal": item.signal, "asked": asked(item), "source": item.source}
+                )
+    return heads, rows
+
+
+def _variables(*roles: str) -> Any:
+    def listed(pattern: str | None) -> tuple[dict[str, str], Rows]:
+        found = chosen(entries(*roles), pattern)
+        rows = [_row(item) for item in found]
+        values = {"default": "default", "range": "range"} if "parameter" in roles else {"role": "role"}
+        return {"name": "name", **values, "unit": "unit", "text": "meaning"}, rows
+
+    return listed
+
+
+def _row(item: Entry) -> dict[str, Any]:
+    plain = item.plain()
+    allowed = range_text(item.variable) or ", ".join(plain["states"])
+    return {**plain, "default": start_text(item.variable), "range": allowed}
+
+
+LISTS = {
+    "scenarios": _scenarios,
+    "parameters": _variables("parameter"),
+    "signals": _variables("output", "input"),
+    "systems": _systems,
+    "limits": _limits,
+}
+
+
+def _limit_names() -> list[str]:
+    return sorted(path.stem for path in (ROOM / "limits").glob("*.yaml"))
+
+
+def _has(pattern: str | None, *texts: str) -> bool:
+    return pattern is None or any(pattern.lower().strip("*") in text.lower() for text in texts)
+
+
+def _print(heads: dict[str, str], rows: Rows) -> None:
+    table = Table(box=None, pad_edge=False)
+    for key, head in heads.items():
+        table.add_column(escape(head), no_wrap=key not in ("title", "text", "range"), overflow="fold")
+    for row in rows:
+        many = f" to [{row['elements']}]" if row.get("elements", 1) > 1 else ""
+        table.add_row(*(escape(f"{row[key]}{many if key == 'name' else ''}") for key in heads))
+    console().print(table)

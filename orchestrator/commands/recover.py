@@ -2,20 +2,17 @@
 
 import argparse
 from pathlib import Path
-from typing import Any
 
 from orchestrator.log.recover import recover
 
+EXAMPLES = """examples:
+  apa recover runs/guo2015-case4/run.mcap.part
+"""
 
-def add_parser(subparsers: Any) -> argparse.ArgumentParser:
-    """Add the command."""
-    parser: argparse.ArgumentParser = subparsers.add_parser(
-        "recover",
-        help="mend the log of a killed run",
-        epilog="example:\n  apa recover runs/guo2015-case4/run.mcap.part",
-    )
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add what the command takes."""
     parser.add_argument("file", type=Path, help="a log, usually run.mcap.part")
-    return parser
 
 
 def run(arguments: argparse.Namespace) -> int:

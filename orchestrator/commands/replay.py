@@ -9,8 +9,8 @@ import yaml
 
 from orchestrator.commands import run as run_command
 from orchestrator.cosim.fmu_files import KINDS, sources_hash
-from orchestrator.session.terminal import BAD_INPUT, console
-from orchestrator.text.errors import BadInput
+from orchestrator.text.console import console
+from orchestrator.text.errors import BAD_INPUT, BadInput
 
 EXAMPLES = """examples:
   apa replay runs/my-study/my-study.parquet --row 4711
@@ -21,9 +21,8 @@ writes DIR/scenario.yaml, a scenario of its own, and what `apa run` writes; says
 COMPARED = ("x", "y", "heading", "lateral_error", "longitudinal_error", "heading_error", "steering_wheel_angle")
 
 
-def add_parser(subparsers: Any) -> argparse.ArgumentParser:
-    """Add the command."""
-    parser: argparse.ArgumentParser = subparsers.add_parser("replay", help="repeat a row of a study", epilog=EXAMPLES)
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add what the command takes."""
     parser.add_argument("table", type=Path, metavar="TABLE", help="table of a study, a .parquet file")
     parser.add_argument("--row", type=int, required=True, metavar="N", help="number of the run, from 0")
     parser.add_argument(
@@ -32,7 +31,6 @@ def add_parser(subparsers: Any) -> argparse.ArgumentParser:
     parser.add_argument("--out", type=Path, metavar="DIR", help="where results go (default: row-N beside the table)")
     parser.add_argument("--json", action="store_true", help="print summary.json instead of the table")
     parser.add_argument("--no-figure", action="store_true", help="write neither overview.png nor report.html")
-    return parser
 
 
 def run(arguments: argparse.Namespace) -> int:

@@ -2,14 +2,13 @@
 
 import argparse
 from pathlib import Path
-from typing import Any
 
 from orchestrator.cosim.recording import Recording
 from orchestrator.log.read_log import read_log
 from orchestrator.report.replay import write_replay
 from orchestrator.report.words import read_words
 from orchestrator.scenario.scenario import Scenario
-from orchestrator.session.terminal import PARKED
+from orchestrator.text.errors import PARKED
 from orchestrator.verdict.summary import summarize
 
 EXAMPLES = """examples:
@@ -20,12 +19,10 @@ The page plays the run in any browser, offline: top view, curves, states, checks
 """
 
 
-def add_parser(subparsers: Any) -> argparse.ArgumentParser:
-    """Add the command."""
-    parser: argparse.ArgumentParser = subparsers.add_parser("report", help="replay page of a run", epilog=EXAMPLES)
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add what the command takes."""
     parser.add_argument("log", type=Path, metavar="RUN.mcap", help="log of a run")
     parser.add_argument("--out", type=Path, metavar="FILE", help="the page (default: report.html beside the log)")
-    return parser
 
 
 def run(arguments: argparse.Namespace) -> int:

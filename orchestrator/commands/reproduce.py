@@ -2,16 +2,15 @@
 
 import argparse
 import json
-import sys
 from pathlib import Path
-from typing import Any
 
 from orchestrator.cosim.fmu_files import KINDS, default_kind, fmu_files
 from orchestrator.papers.drive import drive
 from orchestrator.papers.papers import paper, papers
 from orchestrator.papers.result import Drive, Driven
 from orchestrator.papers.table import print_reproduction
-from orchestrator.session.terminal import NOT_PARKED, PARKED, console
+from orchestrator.text.console import say
+from orchestrator.text.errors import NOT_PARKED, PARKED
 
 EXAMPLES = """examples:
   apa reproduce guo2015                 the five cases at both steering rates, beside the paper
@@ -21,11 +20,8 @@ exit codes: 0 every stated check holds, 1 one does not, 2 bad input
 """
 
 
-def add_parser(subparsers: Any) -> argparse.ArgumentParser:
-    """Add the command."""
-    parser: argparse.ArgumentParser = subparsers.add_parser(
-        "reproduce", help="show a paper's numbers beside ours", epilog=EXAMPLES
-    )
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add what the command takes."""
     parser.add_argument("paper", metavar="PAPER", help=f"{', '.join(papers())} or all")
     parser.add_argument(
         "--fmus",
@@ -35,7 +31,6 @@ def add_parser(subparsers: Any) -> argparse.ArgumentParser:
     )
     parser.add_argument("--out", type=Path, metavar="DIR", help="where pictures go (default: runs/reproduce/PAPER)")
     parser.add_argument("--json", action="store_true", help="print JSON instead of the table")
-    return parser
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -61,17 +56,12 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _driver(kind: str) -> Drive:
-    def say(text: str) -> None:
-        print(text, file=sys.stderr)
-
     files = None if kind == "none" else fmu_files(kind, say)
     done: dict[str, Driven] = {}
-    err = console(sys.stderr)
 
     def drive_once(name: str) -> Driven:
         if name not in done:
-            if err.is_terminal:
-                err.print(f"driving {name}")
+            say(f"driving {name}")
             done[name] = drive(name, files, kind)
         return done[name]
 

@@ -2,19 +2,21 @@
 
 import argparse
 import json
-import sys
 from pathlib import Path
-from typing import Any
 
 from orchestrator.cosim.fmu_files import KINDS, default_kind, fmu_files
 from orchestrator.cosim.interrupts import on_interrupt
-from orchestrator.cosim.master import Interrupt, Observer
+from orchestrator.cosim.master import End, Interrupt
 from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.session.session import Ran, run_scenario
-from orchestrator.session.terminal import INTERRUPTED, NOT_PARKED, PARKED, ProgressBar, print_summary
+from orchestrator.session.terminal import print_summary
+from orchestrator.text.console import Meter, say
+from orchestrator.text.errors import INTERRUPTED, NOT_PARKED, PARKED
 from orchestrator.verdict.summary import Summary, summarize
 
+SHOWN_NS = 500_000_000
+"""Simulated time between two looks at how far a run is."""
 EXAMPLES = """examples:
   apa run guo2015-case4
   apa run my.yaml --set vehicle.body=double_track --set "vehicle.steering.rate_limit=105 deg/s"
@@ -24,9 +26,8 @@ writes DIR/run.mcap, DIR/summary.json, DIR/overview.png and DIR/report.html (the
 """
 
 
-def add_parser(subparsers: Any) -> argparse.ArgumentParser:
-    """Add the command."""
-    parser: argparse.ArgumentParser = subparsers.add_parser("run", help="run a scenario", epilog=EXAMPLES)
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add what the command takes."""
     parser.add_argument("scenario", metavar="NAME|FILE", help="a shipped scenario, or a YAML file")
     parser.add_argument(
         "--set", action="append", default=[], metavar="KEY=VALUE", help="vehicle.KEY, controller.KEY or a scenario key"
@@ -40,7 +41,6 @@ def add_parser(subparsers: Any) -> argparse.ArgumentParser:
     parser.add_argument("--out", type=Path, metavar="DIR", help="where results go (default: runs/NAME)")
     parser.add_argument("--json", action="store_true", help="print summary.json instead of the table")
     parser.add_argument("--no-figure", action="store_true", help="write neither overview.png nor report.html")
-    return parser
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -70,13 +70,24 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _drive(scenario: Scenario, kind: str, out: Path) -> tuple[Ran, Summary]:
-    def say(text: str) -> None:
-        print(text, file=sys.stderr)
-
     files = None if kind == "none" else fmu_files(kind, say)
     out.mkdir(parents=True, exist_ok=True)
-    shown: tuple[Observer, ...] = (ProgressBar(scenario.name, scenario.stop_ns),) if sys.stderr.isatty() else ()
     interrupt = Interrupt()
-    with on_interrupt(interrupt):
-        ran = run_scenario(scenario, files, kind=kind, log=out / "run.mcap", observers=shown, interrupt=interrupt)
+    with on_interrupt(interrupt), _Clock(scenario.name, scenario.stop_time, "s") as clock:
+        ran = run_scenario(scenario, files, kind=kind, log=out / "run.mcap", observers=(clock,), interrupt=interrupt)
     return ran, summarize(ran.recording, scenario, ran.wall_time)
+
+
+class _Clock(Meter):
+    """Observer that shows the simulated time."""
+
+    _next_ns = 0
+
+    def exchanged(self, t_ns: int) -> None:
+        """Show the time now and then."""
+        if t_ns >= self._next_ns:
+            self._next_ns = t_ns + SHOWN_NS
+            self.at(t_ns / 1e9)
+
+    def closed(self, end: End) -> None:
+        """Nothing to close."""

@@ -3,11 +3,8 @@
 import argparse
 import json
 import math
-import sys
 from collections.abc import Iterator
-from typing import Any
 
-from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeRemainingColumn
 from rich.table import Table
 
 from controller_fmu.apa.chart import Mode
@@ -27,20 +24,18 @@ from orchestrator.grid.apa_grid import (
     totals,
 )
 from orchestrator.grid.apa_loop import Loop
-from orchestrator.session.terminal import console
+from orchestrator.text.console import Meter, console
 
 KINDS = {PARALLEL: "parallel", PERPENDICULAR: "perpendicular"}
-EPILOG = """examples:
+EXAMPLES = """examples:
   apa study apa-grid                     every run of the grid: a minute or two where models can be compiled
   apa study apa-grid --every 20          each 20th run
   apa study apa-grid --run 658           that run again
 """
 
 
-def add_parser(subparsers: Any) -> argparse.ArgumentParser:
-    """Add the command."""
-    text = "the parking assist over cars, slots, distances, headings and bodies"
-    parser: argparse.ArgumentParser = subparsers.add_parser("study", help=text, description=text, epilog=EPILOG)
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add what the command takes."""
     parser.add_argument("name", choices=["apa-grid"])
     parser.add_argument("--every", type=int, default=1, metavar="N", help="only each N-th run")
     parser.add_argument("--first", type=int, default=0, metavar="N", help="begin at run N")
@@ -51,7 +46,6 @@ def add_parser(subparsers: Any) -> argparse.ArgumentParser:
     parser.add_argument("--all", action="store_true", help="a line for every run, not only for those that miss GB/T")
     parser.add_argument("--plain", action="store_true", help="plain Python, not compiled: slower, the same bits")
     parser.add_argument("--json", action="store_true", help="print JSON")
-    return parser
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -75,11 +69,11 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _driven(chosen: list[Case], loop: Loop) -> Iterator[Result]:
-    """Yield the results, with a bar on standard error if that is a terminal."""
-    columns = (TextColumn("run {task.completed}"), BarColumn(), TaskProgressColumn(), TimeRemainingColumn())
-    with Progress(*columns, console=console(sys.stderr), transient=True, disable=not sys.stderr.isatty()) as progress:
-        for case in progress.track(chosen):
+    """Yield the results, and show how far they are."""
+    with Meter("apa-grid", len(chosen), "runs") as meter:
+        for done, case in enumerate(chosen, start=1):
             yield drive(case, loop)
+            meter.at(done)
 
 
 def _table(results: list[Result]) -> Table:

@@ -4,11 +4,10 @@ import argparse
 from contextlib import redirect_stdout
 from io import StringIO
 from pathlib import Path
-from typing import Any
 
 from orchestrator.cosim.fmu_files import KINDS
-from orchestrator.session.terminal import INTERRUPTED, PARKED, console
-from orchestrator.text.errors import BadInput
+from orchestrator.text.console import console
+from orchestrator.text.errors import INTERRUPTED, PARKED, BadInput
 
 EXAMPLES = """examples:
   apa sweep guo2015-speed-rate                 compiled, on all cores; table and page in runs/guo2015-speed-rate
@@ -22,9 +21,8 @@ A study is made of a scenario and of what is varied: grid, monte_carlo, latin_hy
 """
 
 
-def add_parser(subparsers: Any) -> argparse.ArgumentParser:
-    """Add the command."""
-    parser: argparse.ArgumentParser = subparsers.add_parser("sweep", help="run a study of many runs", epilog=EXAMPLES)
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add what the command takes."""
     parser.add_argument("study", metavar="NAME|FILE", help="a shipped study, or a YAML file")
     parser.add_argument("--out", type=Path, metavar="DIR", help="where table and page go (default: runs/NAME)")
     parser.add_argument("--resume", action="store_true", help="go on with an unfinished study")
@@ -38,7 +36,6 @@ def add_parser(subparsers: Any) -> argparse.ArgumentParser:
     parser.add_argument("--picture", type=Path, metavar="FILE", help="write the success map as a PNG, too")
     parser.add_argument("--replays", type=int, default=3, metavar="N", help="replay the N worst runs for the page (3)")
     parser.add_argument("--no-page", action="store_true", help="write no result page")
-    return parser
 
 
 def run(arguments: argparse.Namespace) -> int:

@@ -2,7 +2,6 @@
 
 import argparse
 import json
-import sys
 from pathlib import Path
 from typing import Any
 
@@ -11,10 +10,10 @@ from orchestrator.cosim.interrupts import on_interrupt
 from orchestrator.cosim.master import Interrupt
 from orchestrator.report.collection import write_collection
 from orchestrator.scenario.load_scenario import find_file
-from orchestrator.session.terminal import INTERRUPTED, console
 from orchestrator.suite.junit import write_junit
 from orchestrator.suite.suite import Bench, Tested, chosen, run_test
-from orchestrator.text.errors import BadInput
+from orchestrator.text.console import console, say
+from orchestrator.text.errors import INTERRUPTED, BadInput
 from orchestrator.verdict.requirements import read_requirements
 
 EXAMPLES = """examples:
@@ -32,9 +31,8 @@ exit codes: 0 all passed, 1 not, 2 bad input
 PASSED, FAILED = 0, 1
 
 
-def add_parser(subparsers: Any) -> argparse.ArgumentParser:
-    """Add the command."""
-    parser: argparse.ArgumentParser = subparsers.add_parser("test", help="run and judge scenarios", epilog=EXAMPLES)
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add what the command takes."""
     parser.add_argument("scenarios", nargs="+", metavar="SCENARIO", help="names, patterns of names, or YAML files")
     parser.add_argument("--controller", type=Path, metavar="FMU", help="use this controller instead of the shipped one")
     parser.add_argument("--vehicle", type=Path, metavar="FMU", help="use this vehicle instead of the shipped one")
@@ -53,7 +51,6 @@ def add_parser(subparsers: Any) -> argparse.ArgumentParser:
     )
     parser.add_argument("--junit", type=Path, metavar="FILE", help="where JUnit XML goes (default: DIR/junit.xml)")
     parser.add_argument("--json", action="store_true", help="print the verdicts as JSON")
-    return parser
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -89,14 +86,10 @@ def _bench(arguments: argparse.Namespace, interrupt: Interrupt) -> Bench:
             raise BadInput("no such file", file=path)
     if foreign and arguments.fmus == "none":
         raise BadInput("the models in process cannot be joined with an FMU; use --fmus python", key="--fmus")
-    files = None if arguments.fmus == "none" else {**fmu_files(arguments.fmus, _say), **foreign}
+    files = None if arguments.fmus == "none" else {**fmu_files(arguments.fmus, say), **foreign}
     found = [find_file(name, "limits", "set of limits", Path.cwd()) for name in arguments.requirements]
     requirements = [(str(file), read_requirements(file)) for file in found]
     return Bench(files, arguments.fmus, frozenset(foreign), requirements, interrupt)
-
-
-def _say(text: str) -> None:
-    print(text, file=sys.stderr)
 
 
 def _print(tested: Tested) -> None:

@@ -185,7 +185,7 @@ def _receivers(signal: str, slaves: list[Slave], file: object, key: str) -> list
         return [(names.index(owner), _matching(own.inputs.names, name))]
     if not _matching(own.outputs.names, name):
         known = own.outputs.names + own.inputs.names
-        raise BadInput(f"{owner} has no signal {name!r}{suggestion(name, known)}", file=file, key=key)
+        raise BadInput(f"{owner} has no signal {name!r}{suggestion(name, known, f'{owner}.')}", file=file, key=key)
     heard = [(number, _matching(slave.inputs.names, name)) for number, slave in enumerate(slaves) if slave is not own]
     heard = [(number, places) for number, places in heard if places]
     if not heard:

@@ -2,13 +2,18 @@
 
 import hashlib
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from importlib.util import find_spec
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from orchestrator.cosim.models import MODELS
-from orchestrator.session.terminal import working
+from orchestrator.text.console import working
+from orchestrator.text.errors import BadInput
+
+if TYPE_CHECKING:
+    from fmus.build import Built
 
 ROOT = Path(__file__).parent.parent.parent
 SOURCES = ("modelkit", "vehicle_fmu", "controller_fmu", "fmus")
@@ -40,19 +45,33 @@ def fmu_files(kind: str, say: Callable[[str], None] = lambda text: None) -> dict
     return files
 
 
-def build(kind: str) -> list[str]:
-    """Build the FMUs of ``kind`` and return one line about each."""
-    from fmus.build import build_all
+def build(kind: str) -> list["Built"]:
+    """Build the FMUs of ``kind`` where runs look for them."""
     from fmus.places import DIST
 
-    lines = []
-    with working(f"building {kind} FMUs"), _alone(DIST):
+    with _alone(DIST):
         before = sources_hash()
-        for built in build_all(kinds=(kind,)):
-            size = f"{built.path.stat().st_size / 1024:.0f} KiB"
-            lines.append(f"{built.path}  {size}  {built.guid}{'' if built.changed else '  unchanged'}")
+        built = build_into(DIST, kind)
         (DIST / kind / STAMP).write_text(before, encoding="ascii")
-    return lines
+    return built
+
+
+def build_into(folder: Path, kind: str, platforms: Iterable[str] = ()) -> list["Built"]:
+    """Build the FMUs of ``kind`` into ``folder``/``kind``; native ones for ``platforms``, by default this machine's.
+
+    Raises ``BadInput`` if that cannot be done here.
+    """
+    from fmus.build import BUILDERS, build_all, missing
+    from fmus.native.platforms import PLATFORMS
+
+    if kind not in BUILDERS:
+        raise BadInput(missing())
+    wanted = sorted(PLATFORMS) if "all" in (names := list(platforms)) else names
+    unknown = [name for name in wanted if name not in PLATFORMS]
+    if unknown:
+        raise BadInput(f"{', '.join(unknown)}: expected all or {', '.join(PLATFORMS)}", key="--platform")
+    with working(f"building {kind} FMUs"):
+        return build_all(folder, kinds=(kind,), platforms=wanted or None)
 
 
 @contextmanager

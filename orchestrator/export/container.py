@@ -1,11 +1,10 @@
 """``apa export container``: the system of a scenario as one FMU."""
 
 import argparse
-import sys
-from typing import Any
 
-from orchestrator.export.ssp import add_arguments
+from orchestrator.export.ssp import add_system_arguments
 from orchestrator.scenario.load_scenario import load_scenario
+from orchestrator.text.console import say
 from orchestrator.text.errors import BadInput
 
 EXAMPLES = """examples:
@@ -14,13 +13,9 @@ EXAMPLES = """examples:
 """
 
 
-def add_parser(subparsers: Any) -> argparse.ArgumentParser:
-    """Add the format."""
-    parser: argparse.ArgumentParser = subparsers.add_parser(
-        "container", help="the system as one FMU, for any importer", epilog=EXAMPLES
-    )
-    add_arguments(parser, "ParkingSystem.fmu")
-    return parser
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add what the format takes."""
+    add_system_arguments(parser, "ParkingSystem.fmu")
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -29,9 +24,7 @@ def run(arguments: argparse.Namespace) -> int:
     from orchestrator.export.system_of import fmus_for, system_of
 
     scenario = load_scenario(arguments.scenario, arguments.set)
-    system = system_of(
-        scenario, fmus_for(arguments.fmus, arguments.platform, lambda text: print(text, file=sys.stderr))
-    )
+    system = system_of(scenario, fmus_for(arguments.fmus, arguments.platform, say))
     try:
         print(write_container(system, arguments.out))
     except RuntimeError as error:

@@ -3,7 +3,6 @@
 import argparse
 import csv
 from pathlib import Path
-from typing import Any
 
 from orchestrator.cosim.recording import Recording
 from orchestrator.log.read_log import read_log
@@ -18,12 +17,10 @@ gives the same bits. --names writes the names of states instead of their numbers
 """
 
 
-def add_parser(subparsers: Any) -> argparse.ArgumentParser:
-    """Add the format."""
-    parser: argparse.ArgumentParser = subparsers.add_parser("csv", help="a table of all signals", epilog=EXAMPLES)
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add what the format takes."""
     add_run_arguments(parser, ".csv")
     parser.add_argument("--names", action="store_true", help="names of states instead of numbers")
-    return parser
 
 
 def add_run_arguments(parser: argparse.ArgumentParser, suffix: str) -> None:

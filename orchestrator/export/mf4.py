@@ -21,11 +21,9 @@ Modes carry a value-to-text conversion. Needs asammdf (LGPL): pip install 'apa-c
 UNITLESS = ("1",)
 
 
-def add_parser(subparsers: Any) -> argparse.ArgumentParser:
-    """Add the format."""
-    parser: argparse.ArgumentParser = subparsers.add_parser("mf4", help="ASAM MDF 4", epilog=EXAMPLES)
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add what the format takes."""
     add_run_arguments(parser, ".mf4")
-    return parser
 
 
 def run(arguments: argparse.Namespace) -> int:

@@ -31,13 +31,9 @@ CURVE_RATE = 100.0
 TIMELINE = "time"
 
 
-def add_parser(subparsers: Any) -> argparse.ArgumentParser:
-    """Add the format."""
-    parser: argparse.ArgumentParser = subparsers.add_parser(
-        "rerun", help="for the Rerun viewer (.rrd)", epilog=EXAMPLES
-    )
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add what the format takes."""
     add_run_arguments(parser, ".rrd")
-    return parser
 
 
 def run(arguments: argparse.Namespace) -> int:

@@ -1,12 +1,11 @@
 """``apa export ssp``: the system of a scenario as ParkingSystem.ssp."""
 
 import argparse
-import sys
 from pathlib import Path
-from typing import Any
 
 from orchestrator.cosim.fmu_files import KINDS
 from orchestrator.scenario.load_scenario import load_scenario
+from orchestrator.text.console import say
 
 EXAMPLES = """examples:
   apa export ssp guo2015-case4
@@ -14,16 +13,12 @@ EXAMPLES = """examples:
 """
 
 
-def add_parser(subparsers: Any) -> argparse.ArgumentParser:
-    """Add the format."""
-    parser: argparse.ArgumentParser = subparsers.add_parser(
-        "ssp", help="the system as .ssp, for libcosim, OMSimulator, ecos...", epilog=EXAMPLES
-    )
-    add_arguments(parser, "ParkingSystem.ssp")
-    return parser
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add what the format takes."""
+    add_system_arguments(parser, "ParkingSystem.ssp")
 
 
-def add_arguments(parser: argparse.ArgumentParser, name: str) -> None:
+def add_system_arguments(parser: argparse.ArgumentParser, name: str) -> None:
     """Add what ``ssp`` and ``container`` have in common."""
     parser.add_argument("scenario", metavar="NAME|FILE", help="a shipped scenario, or a YAML file")
     parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", help="as for apa run")
@@ -44,8 +39,6 @@ def run(arguments: argparse.Namespace) -> int:
     from orchestrator.export.system_of import fmus_for, system_of
 
     scenario = load_scenario(arguments.scenario, arguments.set)
-    system = system_of(
-        scenario, fmus_for(arguments.fmus, arguments.platform, lambda text: print(text, file=sys.stderr))
-    )
+    system = system_of(scenario, fmus_for(arguments.fmus, arguments.platform, say))
     print(write_ssp(system, arguments.out))
     return 0

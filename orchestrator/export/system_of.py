@@ -24,20 +24,13 @@ def system_of(scenario: Scenario, files: dict[str, Path]) -> System:
 
 def fmus_for(kind: str, platforms: Iterable[str], say: Callable[[str], None]) -> dict[str, Path]:
     """Return the FMUs to pack: those of ``apa run``, or native ones built for other ``platforms``."""
-    from orchestrator.cosim.fmu_files import fmu_files
+    from orchestrator.cosim.fmu_files import build_into, fmu_files
 
     names = list(platforms)
     if kind != "native" or not names:
         return fmu_files(kind, say)
-    from fmus.build import build_all
-    from fmus.native.platforms import PLATFORMS
     from fmus.places import DIST
 
-    wanted = sorted(PLATFORMS) if names == ["all"] else names
-    unknown = [name for name in wanted if name not in PLATFORMS]
-    if unknown:
-        raise BadInput(f"{', '.join(unknown)}: expected all or {', '.join(PLATFORMS)}", key="--platform")
-    say(f"building native FMUs for {', '.join(wanted)}")
-    built = build_all(DIST / "platforms", kinds=("native",), platforms=wanted)
-    paths = {item.name: item.path for item in built}
+    say(f"building native FMUs for {', '.join(names)}")
+    paths = {item.name: item.path for item in build_into(DIST / "platforms", kind, names)}
     return {name: paths[model.name] for name, model in MODELS.items()}

@@ -32,7 +32,7 @@ def _flatten(name: str, value: object, known: list[str], flat: dict[str, object]
         return
     children = _children(name, known)
     if not children:
-        close = suggestion(name, known)
+        close = suggestion(name, known, f"{key}.")
         raise BadInput(f"unknown{close or '; known are ' + _roots(known)}", file=file, key=f"{key}.{name}")
     if isinstance(value, Mapping):
         for child, item in value.items():

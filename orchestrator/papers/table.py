@@ -6,7 +6,7 @@ from rich.markup import escape
 from rich.table import Table
 
 from orchestrator.papers.result import Reproduction, Row
-from orchestrator.session.terminal import console
+from orchestrator.text.console import console
 
 
 def print_reproduction(result: Reproduction, out: Path) -> None:

@@ -1,65 +1,20 @@
-"""What is printed: tables and a progress bar on a terminal, plain text elsewhere. NO_COLOR is respected."""
+"""What is printed of a run: outcome, numbers, checks, differences, as tables."""
 
 import math
-import sys
-from collections.abc import Iterator
-from contextlib import contextmanager
-from typing import TextIO
 
 from rich.console import Console
 from rich.markup import escape
-from rich.progress import BarColumn, Progress, SpinnerColumn, TaskProgressColumn, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
-from orchestrator.cosim.master import End
+from orchestrator.text.console import console
 from orchestrator.text.quantities import DEGREE
 from orchestrator.verdict.compare import Difference
 from orchestrator.verdict.judge import Check
+from orchestrator.verdict.requirements import Requirement
 from orchestrator.verdict.summary import Summary
 
-PARKED, NOT_PARKED, BAD_INPUT, INTERRUPTED = 0, 1, 2, 130
-"""Exit codes."""
 COLOURS = {"parked": "bold green", "not_parked": "bold yellow", "failed": "bold red", "aborted": "bold red"}
 SIGNS = {"max": "\u2264", "min": "\u2265", "max_abs": "\u00b1", "equals": "="}
-PIPED_WIDTH = 200
-"""Characters in a line that goes to a file or another program."""
-PROGRESS_PERIOD_NS = 500_000_000
-
-
-def console(stream: TextIO | None = None) -> Console:
-    """Return a console that writes colours only to a terminal that wants them."""
-    stream = stream or sys.stdout
-    return Console(file=stream, highlight=False, width=None if stream.isatty() else PIPED_WIDTH)
-
-
-@contextmanager
-def working(text: str) -> Iterator[None]:
-    """Show on standard error, if that is a terminal, that something of unknown length goes on, and for how long."""
-    columns = (SpinnerColumn(), TextColumn(text), TimeElapsedColumn())
-    with Progress(*columns, console=console(sys.stderr), transient=True, disable=not sys.stderr.isatty()) as progress:
-        progress.add_task(text, total=None)
-        yield
-
-
-class ProgressBar:
-    """Observer that shows simulated time on standard error, if that is a terminal."""
-
-    def __init__(self, title: str, stop_ns: int) -> None:
-        columns = (TextColumn(title), BarColumn(), TaskProgressColumn(), TextColumn("{task.completed:.0f} s"))
-        self._progress = Progress(*columns, TimeElapsedColumn(), console=console(sys.stderr), transient=True)
-        self._task = self._progress.add_task(title, total=stop_ns / 1e9)
-        self._next_ns = 0
-        self._progress.start()
-
-    def exchanged(self, t_ns: int) -> None:
-        """Move the bar twice per simulated second."""
-        if t_ns >= self._next_ns:
-            self._next_ns = t_ns + PROGRESS_PERIOD_NS
-            self._progress.update(self._task, completed=t_ns / 1e9)
-
-    def closed(self, end: End) -> None:
-        """Remove the bar."""
-        self._progress.stop()
 
 
 def print_summary(summary: Summary, title: str, expected: str) -> None:
@@ -103,6 +58,12 @@ def checks_table(checks: list[Check], out: Console) -> Table:
 def limit_text(check: Check) -> str:
     """Return what is asked for, as people read it."""
     return f"{SIGNS[check.condition]} {check.limit_name or readable(check.limit, check.unit)}"
+
+
+def asked(item: Requirement) -> str:
+    """Return what a requirement asks for, before any run."""
+    limit = item.limit
+    return f"{SIGNS[item.condition]} {limit if isinstance(limit, str) else readable(limit, item.unit or '1')}"
 
 
 def differences_table(rows: list[Difference], out: Console) -> Table:

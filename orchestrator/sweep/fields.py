@@ -61,7 +61,7 @@ def _parameter(key: str, owner: str, name: str, file: object) -> Field:
     for place, variable in enumerate(known):
         if variable.name == name:
             return Field(f"{owner}.{name}", owner, name, place, variable)
-    raise BadInput(f"unknown{suggestion(name, [item.name for item in known])}", file=file, key=key)
+    raise BadInput(f"unknown{suggestion(name, [item.name for item in known], f'{owner}.')}", file=file, key=key)
 
 
 def _fault(key: str, number: int, name: str, scenario: Scenario, file: object) -> Field:

@@ -1,18 +1,14 @@
 """One study from its file to its table: what is missing is run, written part by part, joined at the end."""
 
-import sys
 import time
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeRemainingColumn
-
 from orchestrator.cosim.fmu_files import sources_hash
 from orchestrator.cosim.interrupts import on_interrupt
 from orchestrator.cosim.master import Interrupt
 from orchestrator.session.session import versions
-from orchestrator.session.terminal import console
 from orchestrator.sweep.batch import compiled
 from orchestrator.sweep.design import Design, make_design
 from orchestrator.sweep.engines import choose_task, make_engine
@@ -21,6 +17,7 @@ from orchestrator.sweep.kept import CLEARANCE
 from orchestrator.sweep.store import Store, chunks, job_to
 from orchestrator.sweep.study import Study
 from orchestrator.sweep.verdict import PARKED, RESULTS, judge
+from orchestrator.text.console import Meter
 
 
 @dataclass
@@ -73,12 +70,15 @@ def sweep(study: Study, folder: Path, options: Options) -> Swept:
     if missing:
         engine = make_engine(task, options.dask, options.workers)
         swept.engine = f"{engine.name}, {engine.workers} at a time"
-        with on_interrupt(interrupt), _Shown(study, swept) as progress:
+        with on_interrupt(interrupt), Meter(study.name, total, "runs") as meter:
             for chunk, rows in engine.results(job, iter(missing), interrupt):
                 verdict = judge(job, chunk, rows)
                 store.write(chunk, verdict)
                 swept.parked += int((verdict.outcome == PARKED).sum())
-                progress.add(len(rows))
+                swept.done += len(rows)
+                swept.made += len(rows)
+                rate = swept.made / (time.perf_counter() - begun)
+                meter.at(swept.done, f"{rate:.0f}/s, {100.0 * swept.parked / swept.made:.1f} % parked")
     swept.seconds = time.perf_counter() - begun
     if swept.done == total:
         swept.table = store.finish(-(-total // size))
@@ -98,41 +98,3 @@ def _about(study: Study, job: Job, design: Design) -> dict[str, Any]:
         "sources": sources_hash(),
         "versions": versions(),
     }
-
-
-class _Shown:
-    """Progress with rate and time left on standard error, if that is a terminal."""
-
-    def __init__(self, study: Study, swept: Swept) -> None:
-        columns = (
-            TextColumn(study.name),
-            BarColumn(),
-            TaskProgressColumn(),
-            TextColumn("{task.completed:.0f} of {task.total:.0f} runs, {task.fields[rate]:.0f}/s, left"),
-            TimeRemainingColumn(),
-            TextColumn("{task.fields[parked]}"),
-        )
-        self._swept = swept
-        self._begun = time.perf_counter()
-        self._progress = Progress(
-            *columns, console=console(sys.stderr), transient=True, disable=not sys.stderr.isatty()
-        )
-        self._task = self._progress.add_task(study.name, total=swept.count, completed=swept.done, rate=0.0, parked="")
-
-    def __enter__(self) -> "_Shown":
-        self._progress.start()
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self._progress.stop()
-
-    def add(self, count: int) -> None:
-        """Show that ``count`` more runs are written."""
-        self._swept.done += count
-        self._swept.made += count
-        self._progress.update(
-            self._task,
-            completed=self._swept.done,
-            rate=self._swept.made / (time.perf_counter() - self._begun),
-            parked=f"{100.0 * self._swept.parked / self._swept.made:.1f} % parked",
-        )

@@ -1,7 +1,9 @@
 """The errors a user can cause or meet, each one sentence that says what would be right."""
 
-import difflib
 from collections.abc import Iterable
+
+PARKED, NOT_PARKED, BAD_INPUT, INTERRUPTED = 0, 1, 2, 130
+"""Exit codes."""
 
 
 class BadInput(ValueError):  # noqa: N818 - said as it is
@@ -16,10 +18,12 @@ class RunError(Exception):
     """A slave refused to go on; the run is aborted and says so."""
 
 
-def suggestion(word: str, known: Iterable[str]) -> str:
-    """Return ``; did you mean X?`` with the closest of ``known``, or an empty string."""
+def suggestion(word: str, known: Iterable[str], prefix: str = "") -> str:
+    """Return ``; did you mean X?`` with the closest of ``known``, ``prefix`` before each, or an empty string."""
+    import difflib
+
     names = list(known)
     close = difflib.get_close_matches(word, names, n=2, cutoff=0.6)
     if not close:
         close = [name for name in names if name.rsplit(".", 1)[-1] == word.rsplit(".", 1)[-1]][:2]
-    return f"; did you mean {' or '.join(close)}?" if close else ""
+    return f"; did you mean {' or '.join(prefix + name for name in close)}?" if close else ""

@@ -11,6 +11,7 @@ import yaml
 from modelkit.variables import variables
 from orchestrator.cli import parser
 from orchestrator.cosim.models import MODELS
+from orchestrator.scenario.catalogue import split_index
 from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.sweep.study import load_study
 from orchestrator.verdict.requirements import read_requirements
@@ -99,7 +100,7 @@ def test_every_variable_is_in_its_reference(generate, model):
     text = generate.model_page(model)
     for cls in (model.inputs, model.outputs, model.params):
         for item in variables(cls):
-            key, number = generate.split_index(item.name)
+            key, number = split_index(item.name)
             first = key.replace("[]", "[1]", 1) if number > 1 else item.name
             assert f"`{first}`" in text, item.name
 

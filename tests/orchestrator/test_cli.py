@@ -1,15 +1,23 @@
 """The command line: exit codes, JSON, plain text where nobody looks, and nothing but one line for a mistake."""
 
+import importlib
 import json
 import os
+import pkgutil
+import shutil
+import signal
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import pytest
 
+from orchestrator import commands
 from orchestrator.cli import main
+from orchestrator.commands import COMMANDS
 from orchestrator.log.read_log import read_log
+from orchestrator.text.console import Meter, working
 
 DEMO = str(Path(__file__).with_name("demo.yaml"))
 PNG = b"\x89PNG\r\n"
@@ -41,6 +49,10 @@ def test_not_parked_is_one(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -
         (["run", "guo2015-case44"], "apa: guo2015-case44: no scenario of this name; did you mean"),
         (["run", DEMO, "--fmus", "none", "--set", "vehicle.wheelbas=3"], "apa: --set: vehicle.wheelbas: unknown"),
         (["run", DEMO, "--fmus", "none", "--set", "faults=[{signal: vehicle.spee, kind: freeze}]"], "no signal 'spee'"),
+        (
+            ["run", DEMO, "--fmus", "none", "--set", "controller.ntbpt.k44=3"],
+            "apa: --set: controller.ntbpt.k44: unknown; did you mean controller.ntbpt.k4",
+        ),
         (["recover", "nowhere.mcap.part"], "apa: nowhere.mcap.part: no such file"),
     ],
 )
@@ -53,6 +65,54 @@ def test_bad_input_is_two_and_one_line(
     assert captured.out == ""
     assert message in captured.err
     assert captured.err.count("\n") == 1
+
+
+def test_every_command_is_in_the_table_and_has_its_parts() -> None:
+    found = {item.name for item in pkgutil.iter_modules(commands.__path__)}
+    assert found == COMMANDS.keys()
+    for name in found:
+        module = importlib.import_module(f"orchestrator.commands.{name}")
+        assert module.EXAMPLES.startswith("examples:\n  apa "), name
+        assert callable(module.add_arguments)
+
+
+def test_help_and_version_import_no_command_and_no_library() -> None:
+    code = (
+        "import sys\nfrom orchestrator.cli import main\n"
+        "try:\n    main(sys.argv[1:])\nexcept SystemExit:\n    pass\n"
+        "print(sorted({name.partition('.')[0] for name in sys.modules}"
+        " & {'numpy', 'scipy', 'matplotlib', 'pydantic', 'rich', 'fmpy', 'numba', 'llvmlite', 'controller_fmu'}))"
+    )
+    for option in ("--help", "--version"):
+        done = subprocess.run([sys.executable, "-c", code, option], capture_output=True, text=True, check=True)
+        assert done.stdout.splitlines()[-1] == "[]", option
+
+
+@pytest.mark.parametrize(
+    ("arguments", "usage", "message"),
+    [
+        (["rum"], "usage: apa [-h]", "argument COMMAND: rum: unknown; did you mean run?"),
+        (["run", DEMO, "--sett", "a=b"], "usage: apa run ", "apa run: --sett: unknown; did you mean --set"),
+        (["run", DEMO, "--sett=b"], "usage: apa run ", "apa run: --sett=b: unknown; did you mean --set"),
+        (["run", DEMO, "more"], "usage: apa run ", "apa run: more: unknown"),
+        (["export", "csw", "x"], "usage: apa export ", "argument FORMAT: csw: unknown; did you mean csv?"),
+        (["export", "csv", "x", "--signal", "y", "--name"], "usage: apa export csv", "x: cannot be read"),
+        (["run", DEMO, "--fmus", "stone"], "usage: apa run ", "argument --fmus: stone: unknown; "),
+    ],
+)
+def test_a_wrong_word_shows_the_usage_of_its_command(
+    arguments: list[str], usage: str, message: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    if "cannot be read" in message:
+        assert main(arguments) == 2  # the start of an option will do
+        assert message in capsys.readouterr().err
+        return
+    with pytest.raises(SystemExit) as caught:
+        main(arguments)
+    assert caught.value.code == 2
+    error = capsys.readouterr().err
+    assert error.startswith(usage)
+    assert message in error.splitlines()[-1]
 
 
 def test_unknown_commands_and_kinds_are_two(capsys: pytest.CaptureFixture[str]) -> None:
@@ -124,3 +184,111 @@ def test_a_slave_that_does_not_start_aborts_too(
     assert main(["run", DEMO, "--fmus", "none", "--out", str(tmp_path)]) == 1
     assert "aborted: error: vehicle refuses to initialize" in capsys.readouterr().out
     assert len(read_log(tmp_path / "run.mcap").t_ns) == 0
+
+
+@pytest.mark.parametrize("arguments", [["run", DEMO, "--fmus", "none"], ["test", "guo2015-case4", "--fmus", "none"]])
+@pytest.mark.parametrize("place", ["/proc/x", "FILE/x"])
+def test_a_place_that_cannot_be_written_is_one_line(
+    arguments: list[str], place: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "file").write_text("")
+    place = place.replace("FILE", str(tmp_path / "file"))
+    assert main([*arguments, "--out", place]) == 2
+    error = capsys.readouterr().err
+    assert error.count("\n") == 1
+    assert error.startswith(f"apa: {place}")
+
+
+def test_an_interrupt_while_a_command_is_imported_is_one_line(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def interrupted(name: str) -> None:
+        os.kill(os.getpid(), signal.SIGINT)
+
+    monkeypatch.setattr("orchestrator.command_parser.importlib.import_module", interrupted)
+    assert main(["run", DEMO]) == 130
+    assert capsys.readouterr().err == "apa: interrupted\n"
+
+
+def test_quiet_prints_nothing_but_errors_and_json(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    arguments = ["run", DEMO, "--fmus", "none", "--no-figure", "--quiet", "--out"]
+    assert main([*arguments, str(tmp_path)]) == 0
+    captured = capsys.readouterr()
+    assert captured.out + captured.err == ""
+    assert main([*arguments, str(tmp_path), "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["outcome"] == "parked"
+    assert main([*arguments, "/proc/x"]) == 2
+    assert capsys.readouterr().err.startswith("apa: /proc/x")
+
+
+def test_something_long_says_so_where_there_is_no_terminal(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("orchestrator.text.console.PERIOD", 0.01)
+    with Meter("my study", 300, "runs") as meter:
+        time.sleep(0.02)
+        meter.at(200, "9/s")
+    with working("building"):
+        time.sleep(0.1)
+    lines = capsys.readouterr().err.splitlines()
+    assert lines[0] == "my study: 200 of 300 runs, 9/s"
+    assert lines[1].startswith("building: 0 s")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "names"),
+    [
+        (["parameters", "steering.rate"], ["vehicle.steering.rate_limit"]),
+        (["parameters", "controller.ntbpt.k?"], [f"controller.ntbpt.k{number}" for number in (1, 2, 3, 4)]),
+        (["signals", "vehicle.pose.*"], ["vehicle.pose.x", "vehicle.pose.y", "vehicle.pose.heading"]),
+        (["systems", "fuzzy"], ["preview"]),
+        (["scenarios", "case4-l"], ["guo2015-case4-left"]),
+    ],
+)
+def test_list_of_what_can_be_named(arguments: list[str], names: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["list", *arguments, "--json"]) == 0
+    rows = json.loads(capsys.readouterr().out)
+    assert [row["name"] for row in rows][: len(names)] == names
+    assert main(["list", *arguments]) == 0
+    printed = capsys.readouterr().out
+    assert all(name in printed for name in names)
+    assert all(row["text"] in printed for row in rows if "text" in row)
+
+
+def test_list_gives_defaults_ranges_limits_and_says_if_nothing_fits(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["list", "parameters", "vehicle.steering.rate_limit", "--json"]) == 0
+    (row,) = json.loads(capsys.readouterr().out)
+    assert (row["unit"], row["low"], row["high"]) == ("rad/s", 0.01, 100.0)
+    assert row["default"] == "9.94838 (570 deg/s)"
+    assert main(["list", "limits", "gbt41630"]) == 0
+    assert "\u00b1 0.150 m" in capsys.readouterr().out
+    assert main(["list", "parameters", "nothing-of-this-name"]) == 2
+    capsys.readouterr()
+
+
+COMPLETE = """source {script}
+t() {{ COMP_WORDS=("$@"); COMP_CWORD=$(($#-1)); COMPREPLY=(); _apa; echo "${{COMPREPLY[@]}}"; }}
+t apa re; t apa run guo2015-case4-l; t apa run x --fmus na; t apa export m; t apa build --ki"""
+
+
+def test_completion_in_bash(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["completion", "bash"]) == 0
+    script = tmp_path / "apa.bash"
+    script.write_text(capsys.readouterr().out)
+    command = ["bash", "-c", COMPLETE.format(script=script)]
+    done = subprocess.run(command, capture_output=True, text=True, check=True)
+    assert done.stderr == ""
+    assert done.stdout.splitlines() == ["recover replay report reproduce", "guo2015-case4-left", "native", "mf4", ""]
+
+
+@pytest.mark.parametrize("shell", ["zsh", "fish"])
+def test_completion_in_other_shells(shell: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["completion", shell]) == 0
+    text = capsys.readouterr().out
+    assert "guo2015-case4-left" in text
+    if shutil.which(shell) is None:
+        pytest.skip(f"{shell} is not installed")
+    script = tmp_path / "script"
+    script.write_text(text)
+    asked = {"zsh": "autoload -U compinit; compinit -u", "fish": "true"}[shell]
+    subprocess.run([shell, "-c", f"{asked}; source {script}"], capture_output=True, text=True, check=True)

@@ -84,8 +84,8 @@ def test_title_is_not_inherited(tmp_path: Path) -> None:
     [
         ("stop_tim: 3", r"mine\.yaml: stop_tim: unknown; did you mean stop_time\?"),
         ("wheelbase: 3", r"wheelbase: unknown; did you mean .*vehicle\.wheelbase"),
-        ("vehicle: {wheelbas: 3}", r"mine\.yaml: vehicle\.wheelbas: unknown; did you mean wheelbase"),
-        ("vehicle: {ratio: 3}", r"vehicle\.ratio: unknown; did you mean steering\.ratio"),
+        ("vehicle: {wheelbas: 3}", r"mine\.yaml: vehicle\.wheelbas: unknown; did you mean vehicle.wheelbase"),
+        ("vehicle: {ratio: 3}", r"vehicle\.ratio: unknown; did you mean vehicle\.steering\.ratio"),
         ("vehicle: {wheelbase: long}", r"mine\.yaml: vehicle\.wheelbase: 'long' is not a number"),
         ("vehicle: {wheelbase: 3 deg}", r"vehicle\.wheelbase: '3 deg' is in 'deg', expected a number in m"),
         ("vehicle: {wheelbase: -3}", r"vehicle\.wheelbase: -3 is out of range, expected 0\.1 to 20 m"),
@@ -128,7 +128,7 @@ def test_a_mistake_is_one_clear_sentence(tmp_path: Path, text: str, message: str
     ("given", "message"),
     [
         ("vehicle.wheelbase", "expected KEY=VALUE"),
-        ("vehicle.wheelbas=3", r"--set: vehicle\.wheelbas: unknown; did you mean wheelbase"),
+        ("vehicle.wheelbas=3", r"--set: vehicle\.wheelbas: unknown; did you mean vehicle.wheelbase"),
         ("controller.system=mpcc", r"--set: controller\.system: 'mpcc' is none of ntbptcwpt"),
         ("nothing=3", "--set: nothing: unknown"),
     ],

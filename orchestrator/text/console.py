@@ -1,0 +1,89 @@
+"""Talking to people: colours only on a terminal that wants them, progress on standard error, silence if asked for."""
+
+import sys
+import threading
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
+from typing import Self, TextIO
+
+from rich.console import Console
+from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+
+QUIET: ContextVar[bool] = ContextVar("quiet", default=False)
+"""Whether only errors are wanted."""
+PIPED_WIDTH = 200
+"""Characters in a line that goes to a file or another program."""
+PERIOD = 5.0
+"""Between two lines of progress where there is no terminal [s]."""
+
+
+def console(stream: TextIO | None = None) -> Console:
+    """Return a console that writes colours only to a terminal that wants them."""
+    stream = stream or sys.stdout
+    return Console(file=stream, highlight=False, width=None if stream.isatty() else PIPED_WIDTH)
+
+
+def say(text: str) -> None:
+    """Write a line for people to standard error."""
+    if not QUIET.get():
+        print(text, file=sys.stderr, flush=True)
+
+
+@contextmanager
+def working(text: str) -> Iterator[None]:
+    """Show that something of unknown length goes on, and for how long: a spinner, or a line now and then."""
+    if sys.stderr.isatty() and not QUIET.get():
+        columns = (SpinnerColumn(), TextColumn(text), TimeElapsedColumn())
+        with Progress(*columns, console=console(sys.stderr), transient=True) as progress:
+            progress.add_task(text, total=None)
+            yield
+        return
+    over = threading.Event()
+    teller = None if QUIET.get() else threading.Thread(target=_tell, args=(text, over), daemon=True)
+    if teller is not None:
+        teller.start()
+    try:
+        yield
+    finally:
+        over.set()
+        if teller is not None:
+            teller.join()
+
+
+def _tell(text: str, over: threading.Event) -> None:
+    begun = time.monotonic()
+    while not over.wait(PERIOD):
+        say(f"{text}: {time.monotonic() - begun:.0f} s")
+
+
+class Meter:
+    """How far something is: a bar on a terminal, elsewhere a line now and then."""
+
+    def __init__(self, title: str, total: float, unit: str) -> None:
+        self._title, self._total, self._unit = title, total, unit
+        self._next = time.monotonic() + PERIOD
+        self._bar: Progress | None = None
+        if sys.stderr.isatty() and not QUIET.get():
+            columns = (TextColumn("{task.description}"), BarColumn(), TextColumn("{task.fields[at]}, left"))
+            self._bar = Progress(*columns, TimeRemainingColumn(), console=console(sys.stderr), transient=True)
+            self._task = self._bar.add_task(title, total=total, at="")
+
+    def __enter__(self) -> Self:
+        if self._bar is not None:
+            self._bar.start()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        if self._bar is not None:
+            self._bar.stop()
+
+    def at(self, done: float, more: str = "") -> None:
+        """Show that ``done`` of the total is done; ``more`` is said beside it."""
+        text = f"{done:.0f} of {self._total:.0f} {self._unit}{', ' + more if more else ''}"
+        if self._bar is not None:
+            self._bar.update(self._task, completed=done, at=text)
+        elif time.monotonic() >= self._next:
+            self._next = time.monotonic() + PERIOD
+            say(f"{self._title}: {text}")

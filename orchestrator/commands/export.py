@@ -1,4 +1,4 @@
-"""``apa export``: a run, or the system, in the formats of other tools. Each format is a module of ``orchestrator/export``."""
+"""``apa export``: a run, or the system, in the formats of other tools: modules of ``orchestrator/export``."""
 
 import argparse
 

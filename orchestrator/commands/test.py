@@ -12,7 +12,7 @@ from orchestrator.report.collection import write_collection
 from orchestrator.scenario.load_scenario import find_file
 from orchestrator.suite.junit import write_junit
 from orchestrator.suite.suite import Bench, Tested, chosen, run_test
-from orchestrator.text.console import console, say
+from orchestrator.text.console import Meter, console, say
 from orchestrator.text.errors import INTERRUPTED, BadInput
 from orchestrator.verdict.requirements import read_requirements
 
@@ -60,13 +60,14 @@ def run(arguments: argparse.Namespace) -> int:
     bench = _bench(arguments, interrupt)
     names = chosen(arguments.scenarios)
     tested: list[Tested] = []
-    with on_interrupt(interrupt):
+    with on_interrupt(interrupt), Meter("apa test", len(names), "scenarios") as meter:
         for name in names:
             if interrupt.requested:
                 break
             tested.append(run_test(name, arguments.set, bench, out))
+            meter.at(len(tested))
             if not arguments.json:
-                _print(tested[-1])
+                _print(tested[-1], f"{len(tested)} of {len(names)}")
     write_junit(arguments.junit or out / "junit.xml", [item.suite() for item in tested])
     write_collection(out / "index.html", tested)
     passed = sum(item.passed for item in tested)
@@ -92,10 +93,10 @@ def _bench(arguments: argparse.Namespace, interrupt: Interrupt) -> Bench:
     return Bench(files, arguments.fmus, frozenset(foreign), requirements, interrupt)
 
 
-def _print(tested: Tested) -> None:
+def _print(tested: Tested, place: str) -> None:
     out = console()
     verdict = "[green]pass[/]" if tested.passed else "[red]FAIL[/]"
-    out.print(f"{verdict}  {tested.scenario.name}")
+    out.print(f"{verdict}  {tested.scenario.name}  ({place})")
     for case in tested.cases:
         if not case.passed and not case.skipped:
             out.print(f"        {case.name}: {case.text}", markup=False)

@@ -9,7 +9,15 @@ from contextvars import ContextVar
 from typing import Self, TextIO
 
 from rich.console import Console
-from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+from rich.progress import (
+    BarColumn,
+    Progress,
+    ProgressColumn,
+    SpinnerColumn,
+    TextColumn,
+    TimeElapsedColumn,
+    TimeRemainingColumn,
+)
 
 QUIET: ContextVar[bool] = ContextVar("quiet", default=False)
 """Whether only errors are wanted."""
@@ -36,7 +44,7 @@ def working(text: str) -> Iterator[None]:
     """Show that something of unknown length goes on, and for how long: a spinner, or a line now and then."""
     if sys.stderr.isatty() and not QUIET.get():
         columns = (SpinnerColumn(), TextColumn(text), TimeElapsedColumn())
-        with Progress(*columns, console=console(sys.stderr), transient=True) as progress:
+        with _bar(*columns) as progress:
             progress.add_task(text, total=None)
             yield
         return
@@ -50,6 +58,11 @@ def working(text: str) -> Iterator[None]:
         over.set()
         if teller is not None:
             teller.join()
+
+
+def _bar(*columns: ProgressColumn) -> Progress:
+    """Return a bar that lets a file have what is printed meanwhile."""
+    return Progress(*columns, console=console(sys.stderr), transient=True, redirect_stdout=sys.stdout.isatty())
 
 
 def _tell(text: str, over: threading.Event) -> None:
@@ -67,7 +80,7 @@ class Meter:
         self._bar: Progress | None = None
         if sys.stderr.isatty() and not QUIET.get():
             columns = (TextColumn("{task.description}"), BarColumn(), TextColumn("{task.fields[at]}, left"))
-            self._bar = Progress(*columns, TimeRemainingColumn(), console=console(sys.stderr), transient=True)
+            self._bar = _bar(*columns, TimeRemainingColumn())
             self._task = self._bar.add_task(title, total=total, at="")
 
     def __enter__(self) -> Self:

@@ -82,7 +82,9 @@ def test_test_command(tmp_path, capsys):
     out = tmp_path / "out"
     names = ["guo2015-case4", "guo2015-case2", "fault-pose-nan"]
     assert main(["test", *names, "--fmus", "none", "--out", str(out)]) == 0
-    assert "3 of 3 scenarios passed" in capsys.readouterr().out
+    printed = capsys.readouterr().out
+    assert "pass  guo2015-case2  (2 of 3)" in printed
+    assert "3 of 3 scenarios passed" in printed
     for name in names:
         assert (out / name / "report.html").is_file()
         assert (out / name / "run.mcap").is_file()

@@ -34,8 +34,8 @@ from fmus.compiled_batch import model_library
 from fmus.flat_entry import sizes
 from modelkit.variables import constructor, flatten, variables, with_values
 from orchestrator.bakeoff.entries import CONTROLLERS, scenario_of
-from orchestrator.cosim.models import MODELS
 from orchestrator.scenario.load_scenario import load_scenario
+from orchestrator.scenario.models import MODELS
 from orchestrator.scenario.scenario import Scenario
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "controller"))

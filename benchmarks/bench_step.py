@@ -22,9 +22,9 @@ from orchestrator.cosim.compiled_master import CompiledMaster
 from orchestrator.cosim.fmu_files import fmu_files
 from orchestrator.cosim.fmu_slave import FmuSlave
 from orchestrator.cosim.master import Master
-from orchestrator.cosim.models import MODELS
 from orchestrator.export.system_of import system_of
 from orchestrator.scenario.load_scenario import load_scenario
+from orchestrator.scenario.models import MODELS
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.session.session import run_scenario
 

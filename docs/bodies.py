@@ -19,9 +19,9 @@ from fmus.compiled import compiled_entries
 from fmus.flat_entry import sizes
 from modelkit.model import Model
 from modelkit.variables import constructor, flatten
-from orchestrator.cosim.models import MODELS
 from orchestrator.cosim.recording import Recording
 from orchestrator.scenario.load_scenario import load_scenario
+from orchestrator.scenario.models import MODELS
 from orchestrator.session.session import run_scenario
 from orchestrator.verdict.summary import Summary, summarize
 

@@ -23,13 +23,13 @@ import controller_fmu  # noqa: E402
 from modelkit.model import Model  # noqa: E402
 from modelkit.variables import Variable, variables  # noqa: E402
 from orchestrator.cli import parser  # noqa: E402
-from orchestrator.command_parser import CommandParser  # noqa: E402
-from orchestrator.cosim.models import MODELS  # noqa: E402
+from orchestrator.commands.parser import CommandParser  # noqa: E402
 from orchestrator.scenario.catalogue import collapsed, range_text, start_text, texts_of  # noqa: E402
 from orchestrator.scenario.load_scenario import ROOM, load_scenario, scenario_names  # noqa: E402
+from orchestrator.scenario.models import MODELS  # noqa: E402
+from orchestrator.scenario.requirements import Requirement, read_requirements  # noqa: E402
 from orchestrator.scenario.scenario import Scenario  # noqa: E402
-from orchestrator.session.terminal import asked  # noqa: E402
-from orchestrator.verdict.requirements import Requirement, read_requirements  # noqa: E402
+from orchestrator.verdict.limit_text import asked  # noqa: E402
 from orchestrator.verdict.summary import Summary  # noqa: E402
 
 MADE = "<!-- Made by docs/generate.py; do not edit. -->\n"

@@ -7,8 +7,8 @@ from contextlib import contextmanager, redirect_stdout
 from os import devnull
 from typing import Any
 
-from orchestrator.command_parser import CommandParser
 from orchestrator.commands import COMMANDS
+from orchestrator.commands.parser import CommandParser
 from orchestrator.text.errors import BAD_INPUT, INTERRUPTED, NOT_PARKED, BadInput, RunError
 
 DESCRIPTION = "Automated parking as a pair of FMI 2.0 co-simulation FMUs."
@@ -51,6 +51,7 @@ def parser() -> CommandParser:
     """Return the parser with the names of all commands; none is imported yet."""
     top = CommandParser(prog="apa", description=DESCRIPTION, epilog=EPILOG)
     top.add_argument("--version", action=_Version, nargs=0, help="print the version")
+    top.set_defaults(apa=top)
     commands = top.add_subparsers(title="commands", metavar="COMMAND", required=True)
     for name, text in COMMANDS.items():
         commands.add_parser(name, help=text, description=text, module=f"orchestrator.commands.{name}")

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 from controller_fmu.interface import Phase
 from modelkit.variables import constructor, flatten, variables, with_values
 from orchestrator.bakeoff.entries import CONTROLLERS, scenario_of
-from orchestrator.cosim.models import MODELS
+from orchestrator.scenario.models import MODELS
 
 FINAL = (int(Phase.PARKED), int(Phase.FAILED), int(Phase.TAKEOVER))
 DRIVES = 2

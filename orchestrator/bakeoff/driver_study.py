@@ -6,10 +6,10 @@ from typing import NamedTuple
 import numpy as np
 
 from orchestrator.cosim.slave import Array
-from orchestrator.papers.many import parameter_row, timed_rows
 from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.sweep.kept import PHASE, POSE
+from orchestrator.sweep.many import parameter_row, timed_rows
 from orchestrator.verdict.confidence import wilson
 
 SPEED = 0.8

@@ -10,9 +10,9 @@ from collections.abc import Iterator
 from functools import lru_cache
 from typing import NamedTuple
 
-from orchestrator.grid.apa_grid import mounts
 from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.scenario.scenario import Scenario
+from orchestrator.scenario.sensor_mounts import mounts
 from vehicle_fmu.interface import Body
 
 CONTROLLERS = ("ntbptcwpt", "ntbpt", "zhang2022", "hsic", "apa")

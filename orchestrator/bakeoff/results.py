@@ -9,8 +9,8 @@ import numpy as np
 from controller_fmu.interface import Phase, Reason
 from orchestrator.bakeoff.entries import ASSIST, Entry
 from orchestrator.cosim.endings import STANDSTILL_TIME_NS
-from orchestrator.papers.many import timed
 from orchestrator.sweep.kept import CLEARANCE, EFFORT, PHASE, POSE, REASON, SHIFTS, WHEEL, Kept
+from orchestrator.sweep.many import timed
 
 LATERAL, HEADING = 0.15, math.radians(3.0)
 """GB/T 41630, parallel parking [m, rad]."""

@@ -6,11 +6,11 @@ from pathlib import Path
 
 from orchestrator.log.read_log import read_log
 from orchestrator.scenario.load_scenario import find_file
+from orchestrator.scenario.requirements import read_requirements
 from orchestrator.session.terminal import checks_table
 from orchestrator.suite.junit import Suite, cases_of, write_junit
 from orchestrator.text.console import console
 from orchestrator.verdict.judge import judge
-from orchestrator.verdict.requirements import read_requirements
 from orchestrator.verdict.summary import numbers_of
 
 EXAMPLES = """examples:

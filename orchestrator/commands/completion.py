@@ -3,7 +3,7 @@
 import argparse
 from typing import NamedTuple
 
-from orchestrator.command_parser import CommandParser
+from orchestrator.commands.parser import CommandParser
 from orchestrator.scenario.load_scenario import scenario_names
 from orchestrator.sweep.study import study_names
 
@@ -37,9 +37,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Print the script. Returns 0."""
-    from orchestrator.cli import parser
-
-    known = [words_of(name, sub) for name, sub in parser().subcommands()]
+    known = [words_of(name, sub) for name, sub in arguments.apa.subcommands()]
     if arguments.shell == "fish":
         print(fish(known))
     else:

@@ -9,11 +9,11 @@ from rich.table import Table
 
 from orchestrator.scenario.catalogue import Entry, chosen, entries, range_text, start_text, systems
 from orchestrator.scenario.load_scenario import ROOM, car_names, load_scenario, scenario_names
-from orchestrator.session.terminal import asked
+from orchestrator.scenario.requirements import read_requirements
 from orchestrator.sweep.study import study_names
 from orchestrator.text.console import console
 from orchestrator.text.errors import BadInput
-from orchestrator.verdict.requirements import read_requirements
+from orchestrator.verdict.limit_text import asked
 
 EXAMPLES = """examples:
   apa list                             scenarios, systems, cars, limits, studies

@@ -1,8 +1,6 @@
 """``apa sweep``: a study of thousands of runs, from YAML to a table and a page."""
 
 import argparse
-from contextlib import redirect_stdout
-from io import StringIO
 from pathlib import Path
 
 from orchestrator.cosim.fmu_files import KINDS
@@ -79,11 +77,11 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _replay_worst(path: Path, count: int) -> None:
-    """Run the worst rows again with log and replay page, quietly, so that the result page can link to them."""
-    from orchestrator.cli import main
+    """Run the worst rows again with log and replay page, so that the result page can link to them."""
+    from orchestrator.sweep.repeat import folder_of_row, repeat_row
     from orchestrator.sweep.statistics import worst
     from orchestrator.sweep.store import Table
 
-    for row in worst(Table(path), count):
-        with redirect_stdout(StringIO()):
-            main(["replay", str(path), "--row", str(row)])
+    table = Table(path)
+    for number in worst(table, count):
+        repeat_row(table, number, folder_of_row(path, number))

@@ -8,13 +8,13 @@ from typing import Any
 from orchestrator.cosim.fmu_files import KINDS, default_kind, fmu_files
 from orchestrator.cosim.interrupts import on_interrupt
 from orchestrator.cosim.master import Interrupt
-from orchestrator.report.collection import write_collection
 from orchestrator.scenario.load_scenario import find_file
+from orchestrator.scenario.requirements import read_requirements
+from orchestrator.suite.collection import write_collection
 from orchestrator.suite.junit import write_junit
 from orchestrator.suite.suite import Bench, Tested, chosen, run_test
 from orchestrator.text.console import Meter, console, say
 from orchestrator.text.errors import INTERRUPTED, BadInput
-from orchestrator.verdict.requirements import read_requirements
 
 EXAMPLES = """examples:
   apa test "guo2015-*" --out results

@@ -4,47 +4,15 @@ The log shows both sides: the output as it is, the input as it was seen.
 """
 
 from collections import deque
-from typing import Literal
 
 import numpy as np
-from pydantic import BaseModel, ConfigDict, Field
 
 from modelkit.random import normal, seed_state, uniform
 from orchestrator.cosim.master import Manipulator
 from orchestrator.cosim.slave import Array, Indices, Slave
+from orchestrator.scenario.fault import Fault
 from orchestrator.text.errors import BadInput, suggestion
-from orchestrator.text.quantities import Seconds, number, scalar
-
-Kind = Literal["freeze", "override", "drop", "delay", "noise"]
-NEEDS: dict[str, tuple[str, ...]] = {
-    "freeze": (),
-    "override": ("value",),
-    "drop": ("probability",),
-    "delay": ("delay",),
-    "noise": ("sigma",),
-}
-
-
-class Fault(BaseModel):
-    """One disturbance of one signal, or of a group of signals such as ``vehicle.odometry``."""
-
-    model_config = ConfigDict(extra="forbid")
-
-    signal: str
-    """``slave.name`` of an output (its receivers are disturbed) or of an input."""
-    kind: Kind
-    start: Seconds = 0.0
-    """From this time on [s]."""
-    stop: Seconds = float("inf")
-    """Until before this time [s]."""
-    value: float | str | bool | None = None
-    """override: the value seen instead; a number, ``nan``, a quantity or the name of a state."""
-    delay: Seconds | None = None
-    """delay: age of the value seen [s]."""
-    sigma: float | str | None = None
-    """noise: standard deviation, in the unit of the signal or with its own."""
-    probability: float = Field(default=1.0, ge=0.0, le=1.0)
-    """drop: chance that an exchange is lost; the receiver keeps the value before."""
+from orchestrator.text.quantities import number, scalar
 
 
 class _Window:
@@ -147,7 +115,7 @@ def manipulators(faults: list[Fault], slaves: list[Slave], seed: int, file: obje
     made: list[Manipulator] = []
     for count, fault in enumerate(faults):
         key = f"faults[{count + 1}]"
-        _check(fault, file, key)
+        fault.check(file, key)
         for slave, places in _receivers(fault.signal, slaves, file, f"{key}.signal"):
             made.append(_make(fault, slave, places, slaves, seed * 1000 + len(made), file, key))
     return made
@@ -197,11 +165,3 @@ def _matching(names: list[str], wanted: str) -> list[int]:
     return [
         place for place, name in enumerate(names) if name == wanted or name.startswith((wanted + ".", wanted + "["))
     ]
-
-
-def _check(fault: Fault, file: object, key: str) -> None:
-    for need in NEEDS[fault.kind]:
-        if getattr(fault, need) is None:
-            raise BadInput(f"kind {fault.kind} needs {need}", file=file, key=key)
-    if fault.stop <= fault.start:
-        raise BadInput(f"stop {fault.stop:g} s is not after start {fault.start:g} s", file=file, key=key)

@@ -5,9 +5,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from orchestrator.cosim.faults import Fault
 from orchestrator.cosim.master import End
 from orchestrator.cosim.slave import Array, Indices, Slave, all_values, places_of
+from orchestrator.scenario.fault import Fault
 
 DEBUG, INFO, WARNING, ERROR = 1, 2, 3, 4
 """Levels of Foxglove's Log message."""

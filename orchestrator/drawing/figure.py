@@ -12,9 +12,9 @@ from matplotlib.patches import Patch, Polygon
 
 from orchestrator.cosim.recording import Recording
 from orchestrator.cosim.slave import Array
-from orchestrator.drawing.scene import pose_of
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.text.quantities import DEGREE
+from orchestrator.verdict.frame import pose_of
 from orchestrator.verdict.geometry import (
     WHEEL_RADIUS,
     WHEEL_WIDTH,

@@ -4,7 +4,6 @@ The car and its wheels are drawn once, each fixed to its own frame; what moves a
 """
 
 import math
-from collections.abc import Mapping
 from typing import NamedTuple
 
 import numpy as np
@@ -154,15 +153,6 @@ def trail(t_ns: int, poses: list[bytes]) -> bytes:
 def trail_pose(pose: tuple[float, float, float]) -> bytes:
     """Return a pose as a part of a trail: fields of a protobuf message may be written one after the other."""
     return PosesInFrame(poses=[posed(*pose)]).SerializeToString(deterministic=True)
-
-
-def pose_of(values: Mapping[str, float], prefix: str) -> tuple[float, float, float] | None:
-    """Return the pose called ``prefix`` among flat values, or None if it is not there."""
-    names = [f"{prefix}.{axis}" for axis in ("x", "y", "heading")]
-    if not all(name in values for name in names):
-        return None
-    x, y, heading = (values[name] for name in names)
-    return x, y, heading
 
 
 def _entity(update: SceneUpdate, t_ns: int, name: str, frame: str) -> SceneEntity:

@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterable
 from pathlib import Path
 
 from fmus.systems.system import Part, System
-from orchestrator.cosim.models import MODELS
+from orchestrator.scenario.models import MODELS
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.text.errors import BadInput
 

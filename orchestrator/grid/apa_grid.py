@@ -13,7 +13,8 @@ from controller_fmu.apa.slot import PARALLEL, PERPENDICULAR, Side, Slot
 from modelkit.vocabulary import Pose
 from orchestrator.grid.apa_loop import Loop
 from orchestrator.grid.apa_start import is_inside
-from orchestrator.verdict.geometry import in_frame
+from orchestrator.scenario.sensor_mounts import mounts
+from orchestrator.verdict.frame import in_frame
 
 BODIES = ("kinematic", "double_track")
 BODY = {"kinematic": 0, "double_track": 2}
@@ -149,15 +150,6 @@ def parameters(case: Case) -> tuple[dict[str, Any], dict[str, Any]]:
     vehicle |= {"odometry.steering_offset": lot.uniform(-0.001, 0.001), "odometry.steering_resolution": 0.001}
     vehicle |= {"driver.apa_switch_time": 0.5, "driver.profile[1].speed": case.speed}
     return vehicle | _scene(case, front + rear + wheelbase, width), controller
-
-
-def mounts(front: float, rear: float, half: float) -> list[tuple[float, float]]:
-    """Return where the twelve sensors sit on a car's outline: 4 front, 4 rear, 2 left, 2 right."""
-    return [
-        (front - 0.1, half - 0.15), (front, 0.25), (front, -0.25), (front - 0.1, 0.15 - half),
-        (rear + 0.1, half - 0.15), (rear, 0.25), (rear, -0.25), (rear + 0.1, 0.15 - half),
-        (front - 0.4, half), (rear + 0.4, half), (front - 0.4, -half), (rear + 0.4, -half),
-    ]  # fmt: skip
 
 
 def _shortest(kind: int, length: float, width: float) -> float:

@@ -14,8 +14,8 @@ import numpy as np
 from fmus.flat_entry import entries
 from modelkit.model import Model
 from modelkit.variables import flatten, variables, with_values
-from orchestrator.cosim.models import MODELS
 from orchestrator.cosim.slave import Array
+from orchestrator.scenario.models import MODELS
 
 STEP_NS = 10_000_000
 FINAL = (9.0, 10.0, 11.0)

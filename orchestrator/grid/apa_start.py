@@ -14,7 +14,7 @@ from controller_fmu.interface import ControllerParams
 from controller_fmu.slot_frame import to_slot
 from modelkit.variables import with_values
 from modelkit.vocabulary import Pose
-from orchestrator.cosim.models import MODELS
+from orchestrator.scenario.models import MODELS
 
 
 def is_inside(start: Pose, slot: Slot, controller: dict[str, Any]) -> bool:

@@ -28,6 +28,7 @@ from orchestrator.log.read_log import VARIABLES
 from orchestrator.log.schema import PACKAGE, descriptor_set, file_descriptor
 from orchestrator.log.wire import Encoder
 from orchestrator.scenario.scenario import Slot
+from orchestrator.verdict.frame import pose_of
 from orchestrator.verdict.geometry import Car, boxes, kerbs, sample_path, slot_box
 
 SCENE_PERIOD_NS = 50_000_000
@@ -138,7 +139,7 @@ class _Pictures:
         self._path_places = _path_places(self._controller.outputs) if self._controller else np.empty(0, np.intp)
         self._path_seen = b""
         obstacles, around = boxes(_named(self._vehicle.parameters)), kerbs(_named(self._vehicle.parameters))
-        target = scene.pose_of(_named(self._controller.parameters), "target") if self._controller else None
+        target = pose_of(_named(self._controller.parameters), "target") if self._controller else None
         self._stage = scene.Stage(slot_box(slot) if slot else None, obstacles, around, target)
         self._changes = self._stage.changes_ns()
 

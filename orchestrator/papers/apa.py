@@ -17,12 +17,14 @@ from controller_fmu.apa.slot import PARALLEL, Margins, Site, Slot, shortest_for_
 from controller_fmu.apa.start_range import start_range
 from controller_fmu.apa.turns import reverse_s, turn_of
 from modelkit.vocabulary import Pose
-from orchestrator.grid.apa_grid import CARS
 from orchestrator.papers.apa_figure import draw_apa
 from orchestrator.papers.result import Drive, Driven, Reproduction, Row
+from orchestrator.scenario.load_scenario import load_scenario
 
 TITLE = "APA: from looking for a slot to parked (ADAS algorithm design 8)"
 SCENARIOS = ("apa-parallel", "apa-perpendicular", "apa-parallel-tight", "apa-takeover")
+CARS = ("guo2015", "zhang2022")
+"""Shipped cars; those of CommonRoad turn their front wheels by 52 deg and more."""
 SPEED = 5.0 / 3.6
 """The source's system works below 5 km/h [m/s]."""
 NOTES = [
@@ -48,9 +50,11 @@ def reproduce(out: Path, drive: Drive) -> Reproduction:
 
 
 def car_named(name: str) -> Car:
-    """Return a car of the grid study, planned at 95 % of its lock."""
-    wheelbase, front, rear, width, radius = CARS[name]
-    return Car(wheelbase + front, rear, 0.5 * width, 0.95 / radius, 0.8)
+    """Return a shipped car, planned at 95 % of its lock."""
+    given = load_scenario("apa-parallel", [f"car={name}"]).vehicle
+    wheelbase, front, rear, width = (given[key] for key in ("wheelbase", "front_overhang", "rear_overhang", "width"))
+    lock = math.tan(given["steering.angle_limit"] / given["steering.ratio"]) / wheelbase
+    return Car(wheelbase + front, rear, 0.5 * width, 0.95 * lock, 0.8)
 
 
 def shortest_by_search(car: Car, depth: float) -> float:
@@ -70,9 +74,8 @@ def _length_rows(name: str) -> list[Row]:
     car = car_named(name)
     width = 2.0 * car.half_width
     closed = shortest_for_one_move(car, 1.0 / car.curvature - car.half_width, width)
-    wheelbase, front, rear, _, _ = CARS[name]
-    params = ApaParams(front_overhang=front, rear_overhang=rear, width=width)
-    iso = shortest_of_iso(PARALLEL, wheelbase, params)
+    params = ApaParams(front_overhang=0.0, rear_overhang=car.rear, width=width)
+    iso = shortest_of_iso(PARALLEL, car.front, params)
     slot = Slot(PARALLEL, 0, Pose(0.0, 0.0, 0.0), iso, 0.0, width + 0.4)
     return [
         Row("", f"{name}: L_min, formula and search", "m", closed, shortest_by_search(car, width), 0.01),

@@ -10,11 +10,11 @@ from controller_fmu.preview.params import ROAD
 from controller_fmu.preview.stage import Stage
 from orchestrator.cosim.fmu_files import can_compile
 from orchestrator.cosim.slave import Array
-from orchestrator.papers.many import measure
 from orchestrator.papers.preview_figure import draw_preview, draw_sweep
 from orchestrator.papers.result import Drive, Driven, Reproduction, Row
 from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.sweep.kept import Kept
+from orchestrator.sweep.many import measure
 
 TITLE = "Lateral and longitudinal fuzzy control on sharp curves by dynamic dual-point preview"
 PRINTED_SPEEDS = (7.6, 5.4, 3.8, 3.2)

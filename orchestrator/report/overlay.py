@@ -11,7 +11,7 @@ from orchestrator.report.replay import KEYS, LARGEST_PAGE, MOST_ROWS
 from orchestrator.report.run_data import ribbons_of, run_data
 from orchestrator.report.still import origin_of
 from orchestrator.report.words import Line
-from orchestrator.session.terminal import readable
+from orchestrator.text.readable import readable
 from orchestrator.verdict.compare import Comparison, Difference
 
 MOST_PLOTS = 4

@@ -9,7 +9,8 @@ import numpy as np
 from orchestrator.cosim.recording import Recording
 from orchestrator.cosim.slave import Array, Indices
 from orchestrator.report.payload import Arrays
-from orchestrator.verdict.geometry import place, pose_at, sample_path
+from orchestrator.verdict.frame import pose_at
+from orchestrator.verdict.geometry import place, sample_path
 
 MOST_PLANS = 60
 PARTS = re.compile(r"controller\.(path|.*\bmove|.*\bslot|.*\bcorner_b|.*\btarget)\.")

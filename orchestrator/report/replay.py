@@ -9,10 +9,11 @@ from orchestrator.report.payload import Arrays
 from orchestrator.report.plots import plots_of
 from orchestrator.report.run_data import ribbons_of, run_data
 from orchestrator.report.words import Line
-from orchestrator.session.terminal import limit_text, readable
 from orchestrator.text.errors import BadInput
 from orchestrator.text.quantities import DEGREE
+from orchestrator.text.readable import readable
 from orchestrator.verdict.judge import Check
+from orchestrator.verdict.limit_text import limit_text
 from orchestrator.verdict.summary import Summary
 
 MOST_ROWS = (2400, 1200, 600)

@@ -5,13 +5,13 @@ from typing import Any
 import numpy as np
 
 from modelkit.variables import Variable, variables
-from orchestrator.cosim.models import MODELS
 from orchestrator.cosim.recording import Recording
 from orchestrator.report.payload import Arrays
 from orchestrator.report.plans import plans_of
 from orchestrator.report.still import Point, origin_of, still_of
 from orchestrator.report.thinning import thin
 from orchestrator.report.words import Line
+from orchestrator.scenario.models import MODELS
 
 CHART = "controller.phase"
 RIBBONS = (CHART, "controller.prompt", "vehicle.gear", "controller.reason")

@@ -8,8 +8,8 @@ import numpy as np
 
 from orchestrator.cosim.recording import Recording
 from orchestrator.cosim.slave import Array
-from orchestrator.drawing.scene import pose_of
 from orchestrator.scenario.scenario import Slot
+from orchestrator.verdict.frame import pose_of
 from orchestrator.verdict.geometry import Box, Car, boxes, kerbs, slot_box
 
 Point = tuple[float, float]

@@ -7,9 +7,8 @@ from collections.abc import Iterator
 from fnmatch import fnmatchcase
 from typing import Any, NamedTuple
 
-from controller_fmu.interface import System
 from modelkit.variables import Variable, variables
-from orchestrator.cosim.models import MODELS
+from orchestrator.scenario.models import MODELS
 from orchestrator.text.quantities import DEGREE
 
 UNBOUNDED = 1e300
@@ -64,8 +63,10 @@ def chosen(found: list[Entry], word: str | None) -> list[Entry]:
 
 def systems() -> dict[str, str]:
     """Return name -> meaning of the systems that ``controller.system`` chooses from."""
-    texts = texts_of(System)
-    return {item.name.lower(): texts.get(item.name, "") for item in System}
+    known = next(item for item in variables(MODELS["controller"].params) if item.name == "system").signal.states
+    assert known is not None
+    texts = texts_of(known)
+    return {item.name.lower(): texts.get(item.name, "") for item in known}
 
 
 def collapsed(items: list[Variable]) -> Iterator[tuple[Variable, int]]:

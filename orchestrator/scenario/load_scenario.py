@@ -8,13 +8,13 @@ import yaml
 from pydantic import ValidationError
 
 from modelkit.variables import Variable, variables
-from orchestrator.cosim.models import MODELS
-from orchestrator.log.flat import flatten_section, merge_flat
+from orchestrator.scenario.flat_names import flatten_section, merge_flat
+from orchestrator.scenario.models import MODELS
+from orchestrator.scenario.requirements import read_requirements
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.text.errors import BadInput, suggestion
 from orchestrator.text.quantities import scalar
 from orchestrator.text.yaml_file import explain, read_mapping
-from orchestrator.verdict.requirements import read_requirements
 
 ROOM = Path(__file__).parent.parent
 FIELDS = [*(name for name in Scenario.model_fields if name != "file"), "target"]

@@ -4,10 +4,10 @@ from typing import Literal
 
 from pydantic import BaseModel, ConfigDict, Field, field_validator, model_validator
 
-from orchestrator.cosim.faults import Fault
+from orchestrator.scenario.fault import Fault
+from orchestrator.scenario.requirements import Requirement
 from orchestrator.text.errors import BadInput
 from orchestrator.text.quantities import Seconds, number
-from orchestrator.verdict.requirements import Requirement
 
 Outcome = Literal["parked", "not_parked", "failed", "aborted"]
 NANOSECONDS = 1_000_000_000

@@ -11,10 +11,10 @@ from orchestrator.cosim.endings import Standstill
 from orchestrator.cosim.faults import manipulators
 from orchestrator.cosim.master import End, Interrupt, Master, Observer
 from orchestrator.cosim.model_slave import ModelSlave
-from orchestrator.cosim.models import MODELS
 from orchestrator.cosim.recording import Recorder, Recording
 from orchestrator.cosim.slave import Slave
 from orchestrator.cosim.watch import ERROR, FMI_LEVELS, Watch
+from orchestrator.scenario.models import MODELS
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.text.errors import RunError
 

@@ -1,20 +1,18 @@
 """What is printed of a run: outcome, numbers, checks, differences, as tables."""
 
-import math
-
 from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
 from orchestrator.text.console import console
 from orchestrator.text.quantities import DEGREE
+from orchestrator.text.readable import precise, readable
 from orchestrator.verdict.compare import Difference
 from orchestrator.verdict.judge import Check
-from orchestrator.verdict.requirements import Requirement
+from orchestrator.verdict.limit_text import limit_text
 from orchestrator.verdict.summary import Summary
 
 COLOURS = {"parked": "bold green", "not_parked": "bold yellow", "failed": "bold red", "aborted": "bold red"}
-SIGNS = {"max": "\u2264", "min": "\u2265", "max_abs": "\u00b1", "equals": "="}
 
 
 def print_summary(summary: Summary, title: str, expected: str) -> None:
@@ -55,17 +53,6 @@ def checks_table(checks: list[Check], out: Console) -> Table:
     return table
 
 
-def limit_text(check: Check) -> str:
-    """Return what is asked for, as people read it."""
-    return f"{SIGNS[check.condition]} {check.limit_name or readable(check.limit, check.unit)}"
-
-
-def asked(item: Requirement) -> str:
-    """Return what a requirement asks for, before any run."""
-    limit = item.limit
-    return f"{SIGNS[item.condition]} {limit if isinstance(limit, str) else readable(limit, item.unit or '1')}"
-
-
 def differences_table(rows: list[Difference], out: Console) -> Table:
     """Return signals that differ between two runs as a table."""
     table = Table(box=None if not out.is_terminal else Table().box, pad_edge=out.is_terminal)
@@ -76,17 +63,3 @@ def differences_table(rows: list[Difference], out: Console) -> Table:
         times = ["" if t is None else f"{t:.3f} s" for t in (row.t_largest, row.first)]
         table.add_row(row.signal, largest, precise(row.allowed, row.unit), *times, row.note)
     return table
-
-
-def precise(value: float, unit: str) -> str:
-    """Return a number that may be tiny, in SI."""
-    return f"{value:.3g} {unit}" if unit != "1" else f"{value:.3g}"
-
-
-def readable(value: float, unit: str) -> str:
-    """Return a number for people: angles in degrees, the rest in SI."""
-    if not math.isfinite(value):
-        return str(value)
-    if unit.startswith("rad"):
-        return f"{value / DEGREE:.2f} {unit.replace('rad', 'deg')}"
-    return f"{value:.3f} {unit}" if unit != "1" else f"{value:g}"

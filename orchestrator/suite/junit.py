@@ -4,8 +4,9 @@ import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 from typing import NamedTuple
 
-from orchestrator.session.terminal import limit_text, readable
+from orchestrator.text.readable import readable
 from orchestrator.verdict.judge import Check
+from orchestrator.verdict.limit_text import limit_text
 
 UNPRINTABLE = {code: "?" for code in range(32) if chr(code) not in "\t\n\r"}
 """Control characters, which XML cannot hold."""

@@ -1,6 +1,5 @@
 """Many scenarios, each run, judged and kept: what ``apa test`` does."""
 
-import json
 from collections.abc import Mapping
 from fnmatch import fnmatchcase
 from pathlib import Path
@@ -10,15 +9,14 @@ from fmpy.model_description import read_model_description
 
 from orchestrator.cosim.master import Interrupt
 from orchestrator.cosim.recording import Recording
-from orchestrator.report.replay import write_replay
-from orchestrator.report.words import read_words
+from orchestrator.report.results import LOG, write_pages, write_summary
 from orchestrator.scenario.load_scenario import load_scenario, scenario_names
+from orchestrator.scenario.requirements import Requirement
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.session.session import run_scenario
 from orchestrator.suite.junit import Case, Suite, cases_of
 from orchestrator.text.errors import BadInput
 from orchestrator.verdict.judge import Check, judge
-from orchestrator.verdict.requirements import Requirement
 from orchestrator.verdict.summary import Summary, numbers_of, summarize
 
 
@@ -75,19 +73,14 @@ def run_test(name: str, sets: list[str], bench: Bench, out: Path) -> Tested:
     scenario, ignored = _fitting(scenario, bench)
     folder = out / scenario.name
     folder.mkdir(parents=True, exist_ok=True)
-    log = folder / "run.mcap"
     try:
-        ran = run_scenario(scenario, bench.files, kind=bench.kind, log=log, interrupt=bench.interrupt)
+        ran = run_scenario(scenario, bench.files, kind=bench.kind, log=folder / LOG, interrupt=bench.interrupt)
         summary = summarize(ran.recording, scenario, ran.wall_time)
         checks = _extra_checks(bench, ran.recording)
     except BadInput as error:
         return Tested(scenario, None, None, [], ignored, str(error))
-    (folder / "summary.json").write_text(
-        json.dumps(summary.as_json(), indent=2, allow_nan=False) + "\n", encoding="utf-8"
-    )
-    if len(ran.recording.t) > 1:
-        shown = summary.model_copy(update={"checks": [*summary.checks, *checks]})
-        write_replay(folder / "report.html", ran.recording, shown, read_words(log))
+    write_summary(folder, summary)
+    write_pages(folder, ran.recording, summary.model_copy(update={"checks": [*summary.checks, *checks]}))
     broken = ran.end.reason if ran.end.reason.startswith("error") and scenario.expect != "aborted" else ""
     return Tested(scenario, summary, ran.recording, _cases(scenario, summary, checks), ignored, broken)
 

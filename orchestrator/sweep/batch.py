@@ -9,8 +9,8 @@ from fmus.compiled_batch import Ending, Rows, compiled_rows
 from fmus.compiled_batch import Kept as KeptSignal
 from modelkit.variables import variables
 from orchestrator.cosim.endings import STANDSTILL_SPEED, STANDSTILL_TIME_NS, final_phases
-from orchestrator.cosim.models import MODELS
 from orchestrator.cosim.slave import Array
+from orchestrator.scenario.models import MODELS
 from orchestrator.sweep.job import Chunk, Job, arrays
 from orchestrator.sweep.kept import FIRST_KEPT, Kept
 

@@ -5,7 +5,7 @@ from typing import Any, NamedTuple
 
 from modelkit.signal import Signal
 from modelkit.variables import Variable, variables
-from orchestrator.cosim.models import MODELS
+from orchestrator.scenario.models import MODELS
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.text.errors import BadInput, suggestion
 

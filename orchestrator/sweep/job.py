@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from modelkit.variables import flatten, variables, with_values
-from orchestrator.cosim.models import MODELS
 from orchestrator.cosim.slave import Array
 from orchestrator.scenario.load_scenario import load_scenario
+from orchestrator.scenario.models import MODELS
 from orchestrator.scenario.scenario import NANOSECONDS, Scenario
 from orchestrator.sweep.fields import Field
 from orchestrator.sweep.kept import Kept, kept_numbers

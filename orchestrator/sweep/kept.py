@@ -9,13 +9,13 @@ from typing import NamedTuple
 import numpy as np
 
 from modelkit.variables import variables
-from orchestrator.cosim.models import MODELS
 from orchestrator.cosim.recording import Recording
 from orchestrator.cosim.slave import Array
+from orchestrator.scenario.models import MODELS
+from orchestrator.scenario.requirements import Requirement, Window
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.text.errors import BadInput, suggestion
 from orchestrator.verdict.judge import judge
-from orchestrator.verdict.requirements import Requirement, Window
 from orchestrator.verdict.summary import Final
 
 STOP_TIME, STANDSTILL, ABORTED = 0.0, 1.0, 2.0

@@ -7,8 +7,9 @@ from numpy.typing import NDArray
 
 from modelkit.variables import variables
 from orchestrator.cosim.endings import FINAL_PHASES
-from orchestrator.cosim.models import MODELS
 from orchestrator.cosim.slave import Array
+from orchestrator.scenario.models import MODELS
+from orchestrator.scenario.requirements import Requirement
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.sweep.job import Chunk, Job
 from orchestrator.sweep.kept import (
@@ -25,9 +26,8 @@ from orchestrator.sweep.kept import (
     Kept,
     kept_for,
 )
-from orchestrator.verdict.geometry import in_frame
+from orchestrator.verdict.frame import in_frame
 from orchestrator.verdict.judge import margins
-from orchestrator.verdict.requirements import Requirement
 
 OUTCOMES = ("parked", "not_parked", "failed", "aborted")
 PARKED, NOT_PARKED, FAILED, ABORT = range(4)

@@ -8,6 +8,7 @@ import numpy as np
 
 from orchestrator.cosim.slave import Array
 from orchestrator.scenario.scenario import Slot
+from orchestrator.verdict.frame import pose_at
 
 WHEEL_RADIUS = 0.29
 WHEEL_WIDTH = 0.18
@@ -61,14 +62,6 @@ def place(points: Array, x: float, y: float, heading: float) -> Array:
     """Return ``points`` (n, 2) turned by ``heading`` [rad] and moved to (x, y) [m]."""
     c, s = math.cos(heading), math.sin(heading)
     return np.column_stack([x + c * points[:, 0] - s * points[:, 1], y + s * points[:, 0] + c * points[:, 1]])
-
-
-def in_frame(x: float, y: float, heading: float, frame: tuple[float, float, float]) -> tuple[float, float, float]:
-    """Return (longitudinal [m], lateral [m], heading [rad, wrapped]) of a pose in the frame of another."""
-    dx, dy = x - frame[0], y - frame[1]
-    c, s = math.cos(frame[2]), math.sin(frame[2])
-    turn = heading - frame[2]
-    return c * dx + s * dy, c * dy - s * dx, math.atan2(math.sin(turn), math.cos(turn))
 
 
 def slot_box(slot: Slot) -> Box:
@@ -125,12 +118,6 @@ def sample_path(values: Mapping[str, float], spacing: float = 0.05) -> Array:
             turned = [(length, direction * k0, direction * k1) for length, k0, k1 in moves]
             return _driven(pose_at(values, f"{prefix}.start"), direction, turned, spacing)
     return np.empty((0, 2))
-
-
-def pose_at(values: Mapping[str, float], prefix: str) -> tuple[float, float, float]:
-    """Return the pose called ``prefix`` among flat values, zeros for what lacks."""
-    x, y, heading = (values.get(f"{prefix}.{axis}", 0.0) for axis in ("x", "y", "heading"))
-    return x, y, heading
 
 
 def _fields(values: Mapping[str, float], array: str, fields: tuple[str, ...]) -> list[tuple[float, ...]]:

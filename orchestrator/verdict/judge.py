@@ -9,8 +9,8 @@ from pydantic import BaseModel, ConfigDict
 
 from orchestrator.cosim.recording import Recording
 from orchestrator.cosim.slave import Array
+from orchestrator.scenario.requirements import Condition, Requirement, Window
 from orchestrator.text.errors import BadInput, suggestion
-from orchestrator.verdict.requirements import Condition, Requirement, Window
 
 CHART = "controller.phase"
 

@@ -12,9 +12,8 @@ from pydantic import BaseModel, ConfigDict
 
 from orchestrator.cosim.endings import FINAL_PHASES
 from orchestrator.cosim.recording import Recording
-from orchestrator.drawing.scene import pose_of
 from orchestrator.scenario.scenario import Outcome, Scenario
-from orchestrator.verdict.geometry import in_frame
+from orchestrator.verdict.frame import in_frame, pose_of
 from orchestrator.verdict.judge import Check, judge
 
 

@@ -10,11 +10,11 @@ import yaml
 
 from modelkit.variables import variables
 from orchestrator.cli import parser
-from orchestrator.cosim.models import MODELS
 from orchestrator.scenario.catalogue import split_index
 from orchestrator.scenario.load_scenario import load_scenario
+from orchestrator.scenario.models import MODELS
+from orchestrator.scenario.requirements import read_requirements
 from orchestrator.sweep.study import load_study
-from orchestrator.verdict.requirements import read_requirements
 
 ROOT = Path(__file__).parents[2]
 PAGES = sorted([ROOT / "README.md", *(ROOT / "docs").glob("*.md")], key=lambda path: path.name)

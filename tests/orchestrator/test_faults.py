@@ -8,10 +8,11 @@ import pytest
 from pydantic import ValidationError
 from toy_models import BRAIN, PLANT
 
-from orchestrator.cosim.faults import Fault, manipulators
+from orchestrator.cosim.faults import manipulators
 from orchestrator.cosim.master import Master
 from orchestrator.cosim.model_slave import ModelSlave
 from orchestrator.cosim.recording import Recorder, Recording
+from orchestrator.scenario.fault import Fault
 from orchestrator.text.errors import BadInput
 
 STEP = 10_000_000

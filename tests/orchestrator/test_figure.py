@@ -9,7 +9,8 @@ from matplotlib.image import imread
 from orchestrator.drawing.figure import draw
 from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.session.session import run_scenario
-from orchestrator.verdict.geometry import Car, in_frame, place, sample_path
+from orchestrator.verdict.frame import in_frame
+from orchestrator.verdict.geometry import Car, place, sample_path
 from orchestrator.verdict.summary import summarize
 
 DEMO = str(Path(__file__).with_name("demo.yaml"))

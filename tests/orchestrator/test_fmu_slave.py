@@ -9,8 +9,8 @@ import pytest
 
 from fmus.build import build_all
 from orchestrator.cosim.fmu_slave import FmuSlave
-from orchestrator.cosim.models import MODELS
 from orchestrator.scenario.load_scenario import load_scenario
+from orchestrator.scenario.models import MODELS
 from orchestrator.session.session import run_scenario
 from orchestrator.text.errors import BadInput, RunError
 

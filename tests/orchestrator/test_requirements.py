@@ -9,9 +9,9 @@ from modelkit.signal import Signal
 from modelkit.variables import Variable
 from orchestrator.cosim.recording import Recording
 from orchestrator.scenario.load_scenario import ROOM
+from orchestrator.scenario.requirements import Requirement, read_requirements
 from orchestrator.text.errors import BadInput
 from orchestrator.verdict.judge import judge
-from orchestrator.verdict.requirements import Requirement, read_requirements
 from orchestrator.verdict.summary import numbers_of
 
 PHASE = {"STANDBY": 0, "DRIVE": 1, "PARKED": 2}

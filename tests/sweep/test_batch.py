@@ -8,7 +8,7 @@ import pytest
 from fmus.compiled_batch import Kept, compiled_rows, connections
 from modelkit.signal import Signal
 from orchestrator.cosim.fmu_files import fmu_files
-from orchestrator.cosim.models import MODELS
+from orchestrator.scenario.models import MODELS
 from orchestrator.session.session import run_scenario
 from orchestrator.sweep.batch import run_batch
 from orchestrator.sweep.fmu_runs import run_recorded

@@ -3,7 +3,7 @@ import pytest
 from fmus.native import fmu as native_fmu
 from fmus.native.platforms import host
 from fmus.python import fmu as python_fmu
-from orchestrator.cosim.models import MODELS
+from orchestrator.scenario.models import MODELS
 
 BUILD = {
     "python": python_fmu.build,

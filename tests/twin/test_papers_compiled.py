@@ -3,10 +3,10 @@
 import pytest
 
 from orchestrator.cosim.fmu_files import can_compile
-from orchestrator.papers.many import timed
 from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.session.session import run_scenario
 from orchestrator.sweep.kept import CLEARANCE, PHASE, POSE, SHIFTS, WHEEL, Kept
+from orchestrator.sweep.many import timed
 
 pytestmark = pytest.mark.skipif(not can_compile(), reason="needs numba, llvmlite and ziglang")
 

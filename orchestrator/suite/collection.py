@@ -9,9 +9,9 @@ import numpy as np
 
 from orchestrator.cosim.recording import Recording
 from orchestrator.cosim.slave import Array
-from orchestrator.drawing.scene import pose_of
 from orchestrator.report.page import still_page
 from orchestrator.suite.suite import Tested
+from orchestrator.verdict.frame import pose_of
 from orchestrator.verdict.geometry import Car, place, slot_box
 
 BODY = """<header class="top"><div class="headline"><h1>{title}</h1></div>

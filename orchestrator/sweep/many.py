@@ -7,8 +7,8 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 
 from modelkit.variables import variables, with_values
-from orchestrator.cosim.models import MODELS
 from orchestrator.cosim.slave import Array
+from orchestrator.scenario.models import MODELS
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.sweep.batch import compiled
 from orchestrator.sweep.kept import FIRST_KEPT, Kept

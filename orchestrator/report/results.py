@@ -1,0 +1,31 @@
+"""What a run leaves in its folder beside the log: summary.json, the picture, the replay page."""
+
+import json
+from pathlib import Path
+
+from orchestrator.cosim.recording import Recording
+from orchestrator.report.replay import write_replay
+from orchestrator.report.words import read_words
+from orchestrator.scenario.scenario import Scenario
+from orchestrator.verdict.summary import Summary
+
+LOG, SUMMARY, PICTURE, PAGE = "run.mcap", "summary.json", "overview.png", "report.html"
+"""Names of the files in a run's folder."""
+
+
+def write_summary(folder: Path, summary: Summary) -> str:
+    """Write summary.json; return its text."""
+    text = json.dumps(summary.as_json(), indent=2, allow_nan=False)
+    (folder / SUMMARY).write_text(text + "\n", encoding="utf-8")
+    return text
+
+
+def write_pages(folder: Path, recording: Recording, summary: Summary, scenario: Scenario | None = None) -> None:
+    """Write the replay page, and the picture if a scenario is given; nothing if the run has no duration."""
+    if len(recording.t) < 2:
+        return
+    if scenario is not None:
+        from orchestrator.drawing.figure import draw
+
+        draw(recording, summary, scenario, folder / PICTURE)
+    write_replay(folder / PAGE, recording, summary, read_words(folder / LOG))

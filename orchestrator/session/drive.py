@@ -1,0 +1,37 @@
+"""One run with its log in a folder, shown as it goes, ended in order by Ctrl-C."""
+
+from pathlib import Path
+
+from orchestrator.cosim.fmu_files import fmu_files
+from orchestrator.cosim.interrupts import on_interrupt
+from orchestrator.cosim.master import End, Interrupt
+from orchestrator.scenario.scenario import Scenario
+from orchestrator.session.session import Ran, run_scenario
+from orchestrator.text.console import Meter, say
+
+SHOWN_NS = 500_000_000
+"""Simulated time between two looks at how far a run is."""
+
+
+def drive(scenario: Scenario, kind: str, log: Path) -> Ran:
+    """Return a run with FMUs of ``kind`` (``none``: models in process), which are built if need be."""
+    files = None if kind == "none" else fmu_files(kind, say)
+    log.parent.mkdir(parents=True, exist_ok=True)
+    interrupt = Interrupt()
+    with on_interrupt(interrupt), _Clock(scenario.name, scenario.stop_time, "s") as clock:
+        return run_scenario(scenario, files, kind=kind, log=log, observers=(clock,), interrupt=interrupt)
+
+
+class _Clock(Meter):
+    """Observer that shows the simulated time."""
+
+    _next_ns = 0
+
+    def exchanged(self, t_ns: int) -> None:
+        """Show the time now and then."""
+        if t_ns >= self._next_ns:
+            self._next_ns = t_ns + SHOWN_NS
+            self.at(t_ns / 1e9)
+
+    def closed(self, end: End) -> None:
+        """Nothing to close."""

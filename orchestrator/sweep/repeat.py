@@ -1,0 +1,63 @@
+"""One row of a table run again as an ordinary scenario, and compared with the row to the last bit."""
+
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import yaml
+
+from orchestrator.cosim.fmu_files import sources_hash
+from orchestrator.report.results import LOG, write_pages, write_summary
+from orchestrator.scenario.load_scenario import load_scenario
+from orchestrator.scenario.scenario import Scenario
+from orchestrator.session.drive import drive
+from orchestrator.session.session import Ran
+from orchestrator.sweep.job import chunk_scenario
+from orchestrator.sweep.store import Table
+from orchestrator.verdict.summary import Summary, summarize
+
+COMPARED = ("x", "y", "heading", "lateral_error", "longitudinal_error", "heading_error", "steering_wheel_angle")
+
+
+class Repeated(NamedTuple):
+    """A row as it ran this time."""
+
+    scenario: Scenario
+    ran: Ran
+    summary: Summary
+    different: list[str]
+    """Names of the numbers that are not the row's to the last bit."""
+    same_sources: bool
+    """The models are those that the table was made with."""
+
+
+def folder_of_row(table: Path, number: int) -> Path:
+    """Return where the results of a repeated row are found: beside its table."""
+    return table.parent / f"row-{number}"
+
+
+def repeat_row(table: Table, number: int, out: Path, kind: str = "none", *, pages: bool = True) -> Repeated:
+    """Run row ``number`` again, with its results in ``out``. Raises ``BadInput`` if there is none."""
+    scenario = write_scenario(table, number, out / "scenario.yaml")
+    ran = drive(scenario, kind, out / LOG)
+    summary = summarize(ran.recording, scenario, ran.wall_time)
+    write_summary(out, summary)
+    if pages:
+        write_pages(out, ran.recording, summary, scenario)
+    different = _differences(table.row(number), summary.as_json())
+    return Repeated(scenario, ran, summary, different, table.about["sources"] == sources_hash())
+
+
+def write_scenario(table: Table, number: int, file: Path) -> Scenario:
+    """Write row ``number`` as a scenario that stands on its own; return it as it is read back."""
+    scenario = chunk_scenario(table.job, table.chunk(number), 0)
+    content = scenario.model_dump(mode="python", exclude={"file", "base", "car"}, by_alias=True, exclude_none=True)
+    name = f"{table.about['study']['name']}-row-{number}"
+    file.parent.mkdir(parents=True, exist_ok=True)
+    file.write_text(yaml.safe_dump({**content, "name": name}, sort_keys=False, allow_unicode=True), encoding="utf-8")
+    return load_scenario(str(file))
+
+
+def _differences(row: dict[str, Any], summary: dict[str, Any]) -> list[str]:
+    pairs = {name: (row[name], summary[name]) for name in ("outcome", "reason", "duration", "shifts", "max_speed")}
+    pairs |= {f"final.{name}": (row[f"final.{name}"], summary["final"][name]) for name in COMPARED}
+    return [name for name, (old, new) in pairs.items() if old != new and not (old != old and new is None)]

@@ -1,0 +1,149 @@
+"""The rooms of the repository: who may import whom, and how large files, folders and functions may be."""
+
+import ast
+from collections.abc import Iterator
+from pathlib import Path
+from typing import NamedTuple
+
+import pytest
+
+ROOT = Path(__file__).parent.parent
+FLOORS: tuple[tuple[str, ...], ...] = (
+    ("modelkit", "fmus", "orchestrator"),
+    ("vehicle_fmu", "controller_fmu"),
+    ("fmus.places", "fmus.locks", "fmus.sources"),
+    ("fmus.contents",),
+    ("fmus.flat_entry", "fmus.compiled_modules", "fmus.compiled_views"),
+    ("fmus.compiled_types",),
+    ("fmus.compiled",),
+    ("fmus.native_ir", "fmus.compiler"),
+    ("fmus.native", "fmus.python", "fmus.systems"),
+    ("fmus.compiled_batch",),
+    ("fmus.build",),
+    ("orchestrator.text",),
+    ("orchestrator.scenario",),
+    ("orchestrator.cosim",),
+    ("orchestrator.verdict",),
+    ("orchestrator.drawing",),
+    ("orchestrator.log",),
+    ("orchestrator.session",),
+    ("orchestrator.report",),
+    ("orchestrator.suite",),
+    ("orchestrator.sweep",),
+    ("orchestrator.export",),
+    ("orchestrator.papers", "orchestrator.bakeoff", "orchestrator.grid"),
+    ("orchestrator.commands",),
+    ("orchestrator.cli",),
+    ("orchestrator.__main__",),
+)
+"""A room imports rooms of the floors above its own line only, never one beside it."""
+FLOOR = {room: floor for floor, rooms in enumerate(FLOORS) for room in rooms}
+WITHOUT_FMI = ("modelkit", "vehicle_fmu", "controller_fmu", "fmus.compiler")
+"""These know of nothing but models."""
+INSIDES = ("orchestrator.papers", "orchestrator.bakeoff", "orchestrator.grid", "orchestrator.commands")
+"""Only these look into a model's package; the others take its ``MODEL``."""
+MOST_FILES, MOST_LINES, MOST_PARAMETERS, MOST_WITH_MORE = 18, 40, 6, 5
+HOSTS = ("fmus", "orchestrator")
+
+
+class Import(NamedTuple):
+    """One module imported by another."""
+
+    source: str
+    target: str
+
+    def __str__(self) -> str:
+        return f"{self.source} imports {self.target}"
+
+
+def files() -> Iterator[Path]:
+    for package in ("modelkit", "vehicle_fmu", "controller_fmu", *HOSTS):
+        yield from sorted((ROOT / package).rglob("*.py"))
+
+
+def module_of(file: Path) -> str:
+    return ".".join(file.relative_to(ROOT).with_suffix("").parts).removesuffix(".__init__")
+
+
+MODULES = {module_of(file): file for file in files()}
+
+
+def imports_of(module: str) -> Iterator[Import]:
+    """Yield what a module imports of this repository, at its top or inside a function."""
+    for node in ast.walk(ast.parse(MODULES[module].read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Import):
+            names = [alias.name for alias in node.names]
+        elif isinstance(node, ast.ImportFrom) and node.module:
+            inside = [f"{node.module}.{alias.name}" for alias in node.names]
+            names = [name for name in inside if name in MODULES] or [node.module]
+        else:
+            continue
+        yield from (Import(module, name) for name in names if name in MODULES)
+
+
+IMPORTS = [item for module in MODULES for item in imports_of(module)]
+
+
+def room_of(module: str) -> str:
+    found = [room for room in FLOOR if module == room or (module.startswith(room + ".") and room not in HOSTS)]
+    return max(found, key=len, default="")
+
+
+def functions() -> Iterator[tuple[str, ast.FunctionDef]]:
+    for module, file in MODULES.items():
+        if module.split(".")[0] in HOSTS:
+            for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
+                if isinstance(node, ast.FunctionDef):
+                    yield f"{module}.{node.name}", node
+
+
+def test_every_module_has_its_room() -> None:
+    assert [name for name in MODULES if not room_of(name)] == []
+
+
+def test_no_arrow_goes_up_or_aside() -> None:
+    wrong = [
+        str(item)
+        for item in IMPORTS
+        if room_of(item.source) != room_of(item.target) and FLOOR[room_of(item.target)] >= FLOOR[room_of(item.source)]
+    ]
+    assert wrong == []
+
+
+def test_models_and_their_compiler_know_of_no_fmi() -> None:
+    assert [str(item) for item in IMPORTS if room_of(item.source) in WITHOUT_FMI and is_host(item)] == []
+
+
+def is_host(item: Import) -> bool:
+    return item.target.split(".")[0] in HOSTS and room_of(item.target) != room_of(item.source)
+
+
+@pytest.mark.parametrize("package", ["vehicle_fmu", "controller_fmu"])
+def test_the_host_knows_the_insides_of_no_model(package: str) -> None:
+    looks_inside = [
+        str(item)
+        for item in IMPORTS
+        if item.target.startswith(package + ".")
+        and not item.source.startswith(package)
+        and room_of(item.source) not in INSIDES
+    ]
+    assert looks_inside == []
+
+
+def test_no_folder_has_too_many_files() -> None:
+    folders = {file.parent for name, file in MODULES.items() if name.split(".")[0] in HOSTS}
+    full = {str(folder.relative_to(ROOT)): len(list(folder.glob("*.py"))) - 1 for folder in folders}
+    assert {folder: count for folder, count in full.items() if count > MOST_FILES} == {}
+
+
+def test_functions_are_short_and_few_take_many_parameters() -> None:
+    long, wide = [], []
+    for name, node in functions():
+        assert node.end_lineno is not None
+        if node.end_lineno - node.lineno >= MOST_LINES:
+            long.append(name)
+        taken = [item.arg for item in (*node.args.posonlyargs, *node.args.args, *node.args.kwonlyargs)]
+        if len([item for item in taken if item not in ("self", "cls")]) > MOST_PARAMETERS:
+            wide.append(name)
+    assert long == []
+    assert len(wide) <= MOST_WITH_MORE, wide

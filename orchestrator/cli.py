@@ -41,6 +41,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except BrokenPipeError:
         sys.stderr.close()
         return NOT_PARKED
+    except ModuleNotFoundError as error:
+        extra = _extra_of(error.name or "")
+        if not extra:
+            raise
+        _complain(f"{error.name} is not installed; run: pip install 'apa-cosim[{extra}]'")
+        return BAD_INPUT
     except OSError as error:
         place = f"{error.filename}: " if error.filename is not None else ""
         _complain(f"{place}{error.strerror or error}")
@@ -85,6 +91,20 @@ def _as_asked(parsed: argparse.Namespace) -> Iterator[None]:
             yield
     finally:
         QUIET.reset(token)
+
+
+def _extra_of(module: str) -> str:
+    """Return the extra of this project that brings a package, empty if none does."""
+    from importlib.metadata import PackageNotFoundError, requires
+    from re import match
+
+    try:
+        needed = requires("apa-cosim") or []
+    except PackageNotFoundError:
+        return ""
+    found = [match(r"([\w-]+).*extra == ['\"](\w+)['\"]", line.replace("_", "-")) for line in needed]
+    top = module.partition(".")[0].replace("_", "-")
+    return next((item[2] for item in found if item and item[1].lower() in (top, f"{top}-sdk")), "")
 
 
 def _complain(text: str) -> None:

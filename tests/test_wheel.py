@@ -1,0 +1,90 @@
+"""The wheel alone, in a fresh environment without any extra: what the documentation promises works there."""
+
+import os
+import shutil
+import subprocess
+import sys
+import xml.etree.ElementTree as ElementTree
+from pathlib import Path
+
+import pytest
+
+from orchestrator.commands import COMMANDS
+
+ROOT = Path(__file__).parents[1]
+PACKAGES = ("modelkit", "vehicle_fmu", "controller_fmu", "fmus", "orchestrator")
+FILES = ("pyproject.toml", "README.md", "LICENSE")
+pytestmark = pytest.mark.slow
+
+
+@pytest.fixture(scope="module")
+def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The wheel, built from a copy: building leaves folders beside the sources."""
+    source, out = tmp_path_factory.mktemp("source"), tmp_path_factory.mktemp("wheel")
+    for name in PACKAGES:
+        shutil.copytree(ROOT / name, source / name, ignore=shutil.ignore_patterns("dist", "__pycache__"))
+    for name in FILES:
+        shutil.copy(ROOT / name, source)
+    command = [sys.executable, "-m", "pip", "wheel", "--quiet", "--no-deps", "--wheel-dir", str(out), str(source)]
+    subprocess.run(command, check=True)
+    return next(out.glob("apa_cosim-*.whl"))
+
+
+@pytest.fixture(scope="module")
+def apa(wheel: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The command ``apa`` of an environment that has the wheel and what it requires, nothing else."""
+    folder = tmp_path_factory.mktemp("environment") / "venv"
+    subprocess.run([sys.executable, "-m", "venv", str(folder)], check=True)
+    program = folder / ("Scripts" if os.name == "nt" else "bin")
+    subprocess.run([program / "python", "-m", "pip", "install", "--quiet", str(wheel)], check=True)
+    return program / "apa"
+
+
+def call(apa: Path, folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
+    environment = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
+    return subprocess.run([apa, *arguments], cwd=folder, env=environment, capture_output=True, text=True, check=False)
+
+
+def test_no_extra_is_there(apa: Path, tmp_path: Path) -> None:
+    code = "import importlib.util as u, sys; sys.exit(any(map(u.find_spec, ('ziglang', 'pyarrow', 'dask', 'mkdocs'))))"
+    subprocess.run([apa.with_name("python"), "-c", code], cwd=tmp_path, check=True)
+
+
+def test_help_and_version(apa: Path, tmp_path: Path) -> None:
+    assert "commands:" in call(apa, tmp_path, "--help").stdout
+    assert call(apa, tmp_path, "--version").stdout.startswith("apa-cosim ")
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_every_command_explains_itself_or_what_it_lacks(command: str, apa: Path, tmp_path: Path) -> None:
+    done = call(apa, tmp_path, command, "--help")
+    assert "Traceback" not in done.stderr
+    assert done.stdout.startswith(f"usage: apa {command}") or "pip install" in done.stderr
+
+
+def test_what_the_documentation_promises(apa: Path, tmp_path: Path) -> None:
+    done = call(apa, tmp_path, "run", "guo2015-case4")
+    assert done.returncode == 0, done.stderr
+    made = {path.name for path in (tmp_path / "runs" / "guo2015-case4").iterdir()}
+    assert made == {"run.mcap", "summary.json", "overview.png", "report.html"}
+    done = call(apa, tmp_path, "test", "fault-*", "--out", "results")
+    assert done.returncode == 0, done.stderr
+    assert "8 of 8 scenarios passed" in done.stdout
+    assert ElementTree.parse(tmp_path / "results" / "junit.xml").getroot().get("failures") == "0"
+    assert call(apa, tmp_path, "list", "parameters", "steering").returncode == 0
+
+
+@pytest.mark.parametrize(
+    ("arguments", "extra"),
+    [
+        (["sweep", "guo2015-trial"], "sweep"),
+        (["replay", "table.parquet", "--row", "1"], "sweep"),
+        (["build", "--fmus", "native"], "native"),
+    ],
+)
+def test_what_needs_an_extra_says_which(arguments: list[str], extra: str, apa: Path, tmp_path: Path) -> None:
+    done = call(apa, tmp_path, *arguments)
+    assert done.returncode == 2
+    assert done.stderr.splitlines()[-1].startswith("apa: ")
+    assert "Traceback" not in done.stderr
+    assert f"apa-cosim[{extra}" in done.stderr or f",{extra}]" in done.stderr

@@ -5,15 +5,17 @@ from pathlib import Path
 
 from orchestrator.cosim.fmu_files import KINDS, default_kind
 from orchestrator.report.results import LOG, write_pages, write_summary
-from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.session.drive import drive
+from orchestrator.session.foreign import add_foreign_arguments, foreign_files, load_fitting
 from orchestrator.session.terminal import print_summary
+from orchestrator.text.console import say
 from orchestrator.text.errors import INTERRUPTED, NOT_PARKED, PARKED
 from orchestrator.verdict.summary import summarize
 
 EXAMPLES = """examples:
   apa run guo2015-case4
   apa run my.yaml --set vehicle.body=double_track --set "vehicle.steering.rate_limit=105 deg/s"
+  apa run guo2015-case4 --controller their.fmu --set controller.their_gain=2
   apa run guo2015-case4 --set stop_time=30 --fmus none --out /tmp/trial --json
 
 writes DIR/run.mcap, DIR/summary.json, DIR/overview.png and DIR/report.html (the replay)
@@ -32,6 +34,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         default=default_kind(),
         help="kind of FMU (default: native where it can be built); none runs the models in process",
     )
+    add_foreign_arguments(parser)
     parser.add_argument("--out", type=Path, metavar="DIR", help="where results go (default: runs/NAME)")
     parser.add_argument("--json", action="store_true", help="print summary.json instead of the table")
     parser.add_argument("--no-figure", action="store_true", help="write neither overview.png nor report.html")
@@ -39,9 +42,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Run, write, print. Returns 0 parked, 1 not parked, 130 interrupted."""
-    scenario = load_scenario(arguments.scenario, arguments.set)
+    foreign = foreign_files(arguments)
+    scenario, left_out = load_fitting(arguments.scenario, arguments.set, foreign)
+    if left_out:
+        say(f"apa: warning: left out, the FMU does not have them: {', '.join(left_out)}")
     out: Path = arguments.out or Path("runs") / scenario.name
-    ran = drive(scenario, arguments.fmus, out / LOG)
+    ran = drive(scenario, arguments.fmus, out / LOG, foreign)
     summary = summarize(ran.recording, scenario, ran.wall_time)
     text = write_summary(out, summary)
     if not arguments.no_figure:

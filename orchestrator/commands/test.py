@@ -10,11 +10,12 @@ from orchestrator.cosim.interrupts import on_interrupt
 from orchestrator.cosim.master import Interrupt
 from orchestrator.scenario.load_scenario import find_file
 from orchestrator.scenario.requirements import read_requirements
+from orchestrator.session.foreign import add_foreign_arguments, foreign_files
 from orchestrator.suite.collection import write_collection
 from orchestrator.suite.junit import write_junit
 from orchestrator.suite.suite import Bench, Tested, chosen, run_test
-from orchestrator.text.console import Meter, console, say
-from orchestrator.text.errors import INTERRUPTED, BadInput
+from orchestrator.text.console import Meter, Warnings, console, say
+from orchestrator.text.errors import BAD_INPUT, INTERRUPTED
 
 EXAMPLES = """examples:
   apa test "guo2015-*" --out results
@@ -23,10 +24,11 @@ EXAMPLES = """examples:
 
 A scenario passes if its outcome is the one it expects and, where that is a parked car, its required limits
 hold; requirements given here are judged besides. Their FMU needs inputs and outputs of the same names, types
-and units; parameters it does not have are left out and listed.
+and units (one it does not say is taken as meant); parameters it does not have are left out and listed, its own
+are set like any other: --set controller.THEIRS=3.
 
 writes DIR/index.html, DIR/junit.xml and for each scenario DIR/NAME/run.mcap, summary.json and report.html
-exit codes: 0 all passed, 1 not, 2 bad input
+exit codes: 0 all passed, 1 not, 2 bad input: a scenario, rule or FMU that cannot be read
 """
 PASSED, FAILED = 0, 1
 
@@ -34,8 +36,7 @@ PASSED, FAILED = 0, 1
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add what the command takes."""
     parser.add_argument("scenarios", nargs="+", metavar="SCENARIO", help="names, patterns of names, or YAML files")
-    parser.add_argument("--controller", type=Path, metavar="FMU", help="use this controller instead of the shipped one")
-    parser.add_argument("--vehicle", type=Path, metavar="FMU", help="use this vehicle instead of the shipped one")
+    add_foreign_arguments(parser)
     parser.add_argument(
         "--fmus",
         choices=(*KINDS, "none"),
@@ -64,7 +65,8 @@ def run(arguments: argparse.Namespace) -> int:
         for name in names:
             if interrupt.requested:
                 break
-            tested.append(run_test(name, arguments.set, bench, out))
+            taken = [item.scenario.name for item in tested]
+            tested.append(run_test(name, arguments.set, bench, out, taken))
             meter.at(len(tested))
             if not arguments.json:
                 _print(tested[-1], f"{len(tested)} of {len(names)}")
@@ -74,23 +76,20 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.json:
         print(json.dumps({"passed": passed == len(names), "scenarios": [_row(item) for item in tested]}, indent=2))
     else:
-        console().print(f"{passed} of {len(names)} scenarios passed; results in {out}", markup=False)
+        console().print(f"{passed} of {len(names)} scenarios passed; results in {out}", markup=False, soft_wrap=True)
     if interrupt.requested:
         return INTERRUPTED
+    if any(item.bad_input for item in tested):
+        return BAD_INPUT
     return PASSED if passed == len(names) else FAILED
 
 
 def _bench(arguments: argparse.Namespace, interrupt: Interrupt) -> Bench:
-    foreign = {name: getattr(arguments, name) for name in ("controller", "vehicle") if getattr(arguments, name)}
-    for path in foreign.values():
-        if not path.is_file():
-            raise BadInput("no such file", file=path)
-    if foreign and arguments.fmus == "none":
-        raise BadInput("the models in process cannot be joined with an FMU; use --fmus python", key="--fmus")
+    foreign = foreign_files(arguments)
     files = None if arguments.fmus == "none" else {**fmu_files(arguments.fmus, say), **foreign}
     found = [find_file(name, "limits", "set of limits", Path.cwd()) for name in arguments.requirements]
     requirements = [(str(file), read_requirements(file)) for file in found]
-    return Bench(files, arguments.fmus, frozenset(foreign), requirements, interrupt)
+    return Bench(files, arguments.fmus, foreign, requirements, interrupt, Warnings())
 
 
 def _print(tested: Tested, place: str) -> None:
@@ -99,11 +98,11 @@ def _print(tested: Tested, place: str) -> None:
     out.print(f"{verdict}  {tested.scenario.name}  ({place})")
     for case in tested.cases:
         if not case.passed and not case.skipped:
-            out.print(f"        {case.name}: {case.text}", markup=False)
+            out.print(f"        {case.name}: {case.text}", markup=False, soft_wrap=True)
     if tested.error:
-        out.print(f"        {tested.error}", markup=False)
+        out.print(f"        {tested.error}", markup=False, soft_wrap=True)
     if tested.ignored:
-        out.print(f"        left out: {', '.join(tested.ignored)}", markup=False)
+        out.print(f"        left out: {', '.join(tested.ignored)}", markup=False, soft_wrap=True)
 
 
 def _row(tested: Tested) -> dict[str, Any]:
@@ -114,5 +113,6 @@ def _row(tested: Tested) -> dict[str, Any]:
         "expected": tested.scenario.expect,
         "error": tested.error,
         "left_out": tested.ignored,
+        "warnings": list(tested.remarks),
         "cases": [case._asdict() for case in tested.cases],
     }

@@ -59,6 +59,7 @@ RunC = _structure(
     last=Long,
     failed=Long,
     failure=Long,
+    status=Long,
 )
 
 
@@ -140,6 +141,7 @@ class _Plan:
             self.last,
             0,
             0,
+            0,
         )
         places = (part for order in orders for part in order)
         starts = (part.start for part in places_of(fmus))
@@ -156,13 +158,13 @@ class _Plan:
 
     def check(self, number: int) -> None:
         """Raise the ``RunError`` of the slave that refused in the block just done; ``number`` rows are complete."""
-        slave = self._fmus[self._run.failed]
+        slave, status = self._fmus[self._run.failed], self._run.status
         if self._run.failure == FETCH:
-            raise slave.no_outputs()
+            raise slave.no_outputs(status)
         if self._run.failure == SEND:
-            raise slave.no_inputs()
+            raise slave.no_inputs(status)
         if self._run.failure == STEP:
-            raise slave.no_step((number - 1) * self._step_ns)
+            raise slave.no_step((number - 1) * self._step_ns, status)
 
     def _slave(self, slave: FmuSlave, every: int, inputs: Indices, outputs: Indices) -> Any:
         arrays = [slave.inputs.values[inputs], slave.outputs.values[outputs]]

@@ -1,4 +1,7 @@
-"""Who feeds whom: an output and an input of the same name are connected, if type and unit agree."""
+"""Who feeds whom: an output and an input of the same name are connected, if type and unit agree.
+
+A unit that an FMU does not say agrees with any.
+"""
 
 from typing import NamedTuple
 
@@ -50,7 +53,8 @@ def _check(sender: Slave, receiver: Slave, name: str) -> None:
             f"output of {sender.name} is {given.kind.__name__}, input of {receiver.name} is {taken.kind.__name__}",
             key=name,
         )
-    if given.signal.unit != taken.signal.unit:
+    said = name not in sender.outputs.unsaid and name not in receiver.inputs.unsaid
+    if said and given.signal.unit != taken.signal.unit:
         raise BadInput(
             f"output of {sender.name} is in {given.signal.unit}, input of {receiver.name} in {taken.signal.unit}",
             key=name,

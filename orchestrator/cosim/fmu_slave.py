@@ -20,15 +20,14 @@ from fmpy.fmi2 import (
     fmi2CallbackFunctions,
     fmi2CallbackLoggerTYPE,
 )
-from fmpy.model_description import ModelDescription, ScalarVariable, read_model_description
 
 from modelkit.model import Model
-from modelkit.signal import Signal
-from modelkit.variables import Variable, variables
+from orchestrator.cosim.description import ports_of, read_description
 from orchestrator.cosim.slave import Ports
-from orchestrator.text.errors import BadInput, RunError
+from orchestrator.text.errors import RunError
 
-KINDS = {"Real": float, "Integer": int, "Enumeration": int, "Boolean": bool}
+OK, WARNING, ERROR, FATAL = 0, 1, 3, 4
+"""FMI statuses; from 2 (fmi2Discard) on a call did not do what it should."""
 LOADING = Lock()
 """FMPy changes the working directory of the process while it loads a library: one thread at a time."""
 LogCallback = Callable[[str, int, str], None]
@@ -70,17 +69,18 @@ class FmuSlave:
         self.name = name
         self._log = log
         self._last_message = ""
-        self._path = path
+        self._worst = OK
+        """The worst FMI status it gave."""
+        self.path = path
         self._directory = ""
         self._instance: FMU2Slave | None = None
-        self._description = _description(path)
+        self._description = read_description(path)
         self.identity = self._description.guid
         scalars = self._description.modelVariables
         self._references = {scalar.name: scalar.valueReference for scalar in scalars}
-        known = _known_variables(model)
-        self.inputs = Ports(_of(scalars, "input", known))
-        self.outputs = Ports(_of(scalars, "output", known))
-        self.parameters = Ports(_of(scalars, "parameter", known))
+        self.inputs, self.outputs, self.parameters = (
+            ports_of(self._description, causality, model, path) for causality in ("input", "output", "parameter")
+        )
         for key, value in parameters.items():
             if key not in self.parameters.index:
                 raise RunError(f"{path.name} has no parameter {key}; is it outdated? run: apa build")
@@ -90,27 +90,31 @@ class FmuSlave:
     def initialize(self, stop_ns: int) -> None:
         """Extract, instantiate, set the parameters, enter Initialization Mode."""
         self._directory = _ascii_directory()
-        extract(str(self._path), unzipdir=self._directory)
         co_simulation = self._description.coSimulation
-        with LOADING:
-            self._instance = FMU2Slave(
-                guid=self._description.guid,
-                unzipDirectory=self._directory,
-                modelIdentifier=co_simulation.modelIdentifier,
-                instanceName=self.name,
-            )
+        try:
+            extract(str(self.path), unzipdir=self._directory)
+            with LOADING:
+                self._instance = FMU2Slave(
+                    guid=self._description.guid,
+                    unzipDirectory=self._directory,
+                    modelIdentifier=co_simulation.modelIdentifier,
+                    instanceName=self.name,
+                )
+        except Exception as error:
+            raise RunError(f"{self.path.name} cannot be loaded here: {error}") from error
         self._callbacks = self._make_callbacks()
         try:
             self._instance.instantiate(callbacks=self._callbacks, loggingOn=True)
         except Exception as error:
-            raise RunError(f"{self.name} cannot be instantiated: {self._last_message or error}") from error
+            self._instance = None
+            raise self._refused("cannot be instantiated", FATAL, str(error)) from error
         self._bind()
         self._set_parameters()
         try:
             self._instance.setupExperiment(startTime=0.0, stopTime=stop_ns / 1e9)
             self._instance.enterInitializationMode()
         except Exception as error:
-            raise RunError(f"{self.name} refuses to initialize: {self._last_message or error}") from error
+            raise self._refused("refuses to initialize", _status_of(error), str(error)) from error
 
     def start(self) -> None:
         """Exit Initialization Mode."""
@@ -118,14 +122,15 @@ class FmuSlave:
         try:
             self._instance.exitInitializationMode()
         except Exception as error:
-            raise RunError(f"{self.name} refuses to start: {self._last_message or error}") from error
+            raise self._refused("refuses to start", _status_of(error), str(error)) from error
 
     def fetch_outputs(self) -> None:
         """One get call per type that has outputs."""
         values = self.outputs.values
         for transfer in self.gets:
-            if transfer() > 1:
-                raise self.no_outputs()
+            status = transfer()
+            if status > WARNING:
+                raise self.no_outputs(status)
             values[transfer.places] = transfer.view
 
     def send_inputs(self) -> None:
@@ -138,38 +143,51 @@ class FmuSlave:
                 continue
             transfer.last = now
             transfer.view[:] = given
-            if transfer() > 1:
-                raise self.no_inputs()
+            status = transfer()
+            if status > WARNING:
+                raise self.no_inputs(status)
 
     def step(self, t_ns: int, dt_ns: int) -> None:
         """Call fmi2DoStep at ``t_ns / 1e9`` seconds, computed from the count, never accumulated."""
-        if self.do_step(self.component, t_ns / 1e9, dt_ns / 1e9, 1) > 1:
-            raise self.no_step(t_ns)
+        status = self.do_step(self.component, t_ns / 1e9, dt_ns / 1e9, 1)
+        if status > WARNING:
+            raise self.no_step(t_ns, status)
 
-    def no_outputs(self) -> RunError:
-        """Return the error of a get call that failed."""
-        return RunError(f"{self.name} gives no outputs: {self._last_message}")
+    def no_outputs(self, status: int) -> RunError:
+        """Return the error of a get call that failed with an FMI status."""
+        return self._refused("gives no outputs", status)
 
-    def no_inputs(self) -> RunError:
-        """Return the error of a set call that failed."""
-        return RunError(f"{self.name} refuses its inputs: {self._last_message}")
+    def no_inputs(self, status: int) -> RunError:
+        """Return the error of a set call that failed with an FMI status."""
+        return self._refused("refuses its inputs", status)
 
-    def no_step(self, t_ns: int) -> RunError:
-        """Return the error of a step that failed."""
-        return RunError(f"{self.name} failed at {t_ns / 1e9:g} s: {self._last_message or 'no message'}")
+    def no_step(self, t_ns: int, status: int) -> RunError:
+        """Return the error of a step that failed with an FMI status."""
+        return self._refused(f"failed at {t_ns / 1e9:g} s", status)
 
     def close(self) -> None:
-        """Terminate, free the instance, remove the extracted files."""
+        """Terminate, free the instance, remove the extracted files.
+
+        After fmi2Error an instance may only be freed; after fmi2Fatal nothing may be called (FMI 2.0.4, 4.2.4).
+        """
         if self._instance is not None:
             instance, self._instance = self._instance, None
-            try:
-                instance.terminate()
-            except Exception as error:
-                self._log(self.name, 1, f"terminate: {error}")
-            instance.freeInstance()
+            if self._worst < ERROR:
+                try:
+                    instance.terminate()
+                except Exception as error:
+                    self._refused("terminate", _status_of(error))
+                    self._log(self.name, WARNING, f"terminate: {error}")
+            if self._worst < FATAL:
+                instance.freeInstance()
         if self._directory:
             shutil.rmtree(self._directory, ignore_errors=True)
             self._directory = ""
+
+    def _refused(self, what: str, status: int, text: str = "no message") -> RunError:
+        """Note the status, which decides what may still be called, and return the error that says so."""
+        self._worst = max(self._worst, status)
+        return RunError(f"{self.name} {what}: {self._last_message or text}")
 
     def _bind(self) -> None:
         assert self._instance is not None
@@ -208,12 +226,12 @@ class FmuSlave:
                 try:
                     setter([self._references[name] for name in names], values)
                 except Exception as error:
-                    raise RunError(f"{self.name} refuses its parameters: {self._last_message or error}") from error
+                    raise self._refused("refuses its parameters", _status_of(error), str(error)) from error
 
     def _make_callbacks(self) -> fmi2CallbackFunctions:
         def logger(_environment: Any, _instance: Any, status: int, category: Any, message: Any) -> None:
             text = (message or b"").decode(errors="replace").replace("%%", "%").strip()
-            if status > 1:
+            if status > WARNING:
                 self._last_message = text
             self._log(self.name, int(status), text)
 
@@ -224,36 +242,9 @@ class FmuSlave:
         return callbacks
 
 
-def _description(path: Path) -> ModelDescription:
-    """Return what the FMU says of itself. Raises ``BadInput`` if the file is no FMI 2.0 co-simulation FMU."""
-    try:
-        description = read_model_description(str(path), validate=False)
-    except Exception as error:
-        raise BadInput(f"is not an FMU: {error}", file=path) from error
-    if description.fmiVersion != "2.0" or description.coSimulation is None:
-        raise BadInput(f"is FMI {description.fmiVersion}; expected FMI 2.0 for co-simulation", file=path)
-    return description
-
-
-def _known_variables(model: Model | None) -> dict[str, Variable]:
-    if model is None:
-        return {}
-    groups = (variables(model.inputs), variables(model.outputs), variables(model.params))
-    return {variable.name: variable for group in groups for variable in group}
-
-
-def _of(scalars: list[ScalarVariable], causality: str, known: dict[str, Variable]) -> list[Variable]:
-    chosen = [scalar for scalar in scalars if scalar.causality == causality and scalar.type in KINDS]
-    return [_variable(scalar, known.get(scalar.name)) for scalar in chosen]
-
-
-def _variable(scalar: ScalarVariable, known: Variable | None) -> Variable:
-    kind = KINDS[scalar.type]
-    text = str(scalar.start if scalar.start is not None else "0")
-    start = kind(float({"true": "1", "false": "0"}.get(text.lower(), text)))
-    unit = scalar.unit or (scalar.declaredType.unit if scalar.declaredType is not None else None) or "1"
-    states = known.signal.states if known is not None and known.kind is kind else None
-    return Variable(scalar.name, kind, Signal(unit, scalar.description or "", states=states), start)
+def _status_of(error: Exception) -> int:
+    """Return the FMI status of FMPy's exception."""
+    return int(getattr(error, "status", ERROR))
 
 
 def _ascii_directory() -> str:

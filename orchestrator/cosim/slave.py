@@ -23,8 +23,10 @@ class Ports:
     exchange, a log row and a fault are one array operation.
     """
 
-    def __init__(self, variables: list[Variable]) -> None:
+    def __init__(self, variables: list[Variable], unsaid: frozenset[str] = frozenset()) -> None:
         self.variables = variables
+        self.unsaid = unsaid
+        """Names of those whose unit the FMU does not say, which FMI 2.0 allows."""
         self.names = [variable.name for variable in variables]
         self.index = {name: place for place, name in enumerate(self.names)}
         self.values: Array = np.array([float(variable.start) for variable in variables], dtype=np.float64)

@@ -1,6 +1,6 @@
 """From a name or a file to a complete scenario: bases, car, ``--set`` values, limits, all merged and checked."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -21,6 +21,8 @@ FIELDS = [*(name for name in Scenario.model_fields if name != "file"), "target"]
 INHERITED_NOT = ("name", "title", "description", "base")
 
 
+More = Mapping[str, Sequence[Variable]]
+"""Further parameters, by owner."""
 Layer = tuple[dict[str, Any], object]
 """What one file says, and the file."""
 
@@ -42,8 +44,11 @@ def car_names() -> list[str]:
     return _shipped("cars")
 
 
-def load_scenario(name: str, sets: Iterable[str] = ()) -> Scenario:
-    """Return the scenario called ``name`` or written in the file ``name``. Raises ``BadInput``."""
+def load_scenario(name: str, sets: Iterable[str] = (), more: More | None = None) -> Scenario:
+    """Return the scenario called ``name`` or written in the file ``name``. Raises ``BadInput``.
+
+    ``more`` can be set besides the parameters of the models.
+    """
     path = find_file(name, "scenarios", "scenario", Path.cwd())
     layers = _layers(path, ())
     layers.append((_set_layer(sets), "--set"))
@@ -59,7 +64,7 @@ def load_scenario(name: str, sets: Iterable[str] = ()) -> Scenario:
     merged["limits"] = _limits(merged.get("limits", ["house"]), path)
     seed = merged.get("seed", 1)
     for owner in MODELS:
-        merged[owner] = _parameters(owner, [*car, *layers], seed)
+        merged[owner] = _parameters(owner, [*car, *layers], seed, (more or {}).get(owner, ()))
     try:
         return Scenario(**merged, file=str(path))
     except ValidationError as error:
@@ -87,8 +92,10 @@ def _car_layer(car: object, path: Path) -> list[Layer]:
     return [(content, file)]
 
 
-def _parameters(owner: str, layers: list[Layer], seed: object) -> dict[str, Any]:
-    known = variables(MODELS[owner].params)
+def _parameters(owner: str, layers: list[Layer], seed: object, more: Sequence[Variable]) -> dict[str, Any]:
+    ours = variables(MODELS[owner].params)
+    own = {variable.name for variable in ours}
+    known = ours + [variable for variable in more if variable.name not in own]
     names = [variable.name for variable in known]
     given: dict[str, object] = {}
     for content, file in layers:
@@ -102,7 +109,7 @@ def _parameters(owner: str, layers: list[Layer], seed: object) -> dict[str, Any]
     result: dict[str, Any] = {
         variable.name: _value(variable, given[variable.name], owner) for variable in known if variable.name in given
     }
-    for variable in known:
+    for variable in ours:
         if variable.name.rsplit(".", 1)[-1] == "seed" and variable.name not in result:
             result[variable.name] = seed
     return result

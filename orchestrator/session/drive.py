@@ -6,20 +6,33 @@ from orchestrator.cosim.fmu_files import fmu_files
 from orchestrator.cosim.interrupts import on_interrupt
 from orchestrator.cosim.master import End, Interrupt
 from orchestrator.scenario.scenario import Scenario
+from orchestrator.session.foreign import Files
 from orchestrator.session.session import Ran, run_scenario
-from orchestrator.text.console import Meter, say
+from orchestrator.text.console import Meter, Warnings, say
 
 SHOWN_NS = 500_000_000
 """Simulated time between two looks at how far a run is."""
 
 
-def drive(scenario: Scenario, kind: str, log: Path) -> Ran:
-    """Return a run with FMUs of ``kind`` (``none``: models in process), which are built if need be."""
-    files = None if kind == "none" else fmu_files(kind, say)
+def drive(scenario: Scenario, kind: str, log: Path, foreign: Files | None = None) -> Ran:
+    """Return a run with FMUs of ``kind`` (``none``: models in process), which are built if need be.
+
+    ``foreign`` FMUs take the place of ours.
+    """
+    files = None if kind == "none" else {**fmu_files(kind, say), **(foreign or {})}
     log.parent.mkdir(parents=True, exist_ok=True)
     interrupt = Interrupt()
     with on_interrupt(interrupt), _Clock(scenario.name, scenario.stop_time, "s") as clock:
-        return run_scenario(scenario, files, kind=kind, log=log, observers=(clock,), interrupt=interrupt)
+        return run_scenario(
+            scenario,
+            files,
+            kind=kind,
+            log=log,
+            observers=(clock,),
+            interrupt=interrupt,
+            warn=Warnings(),
+            foreign=foreign or (),
+        )
 
 
 class _Clock(Meter):

@@ -2,7 +2,7 @@
 
 import platform
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -12,10 +12,12 @@ from orchestrator.cosim.faults import manipulators
 from orchestrator.cosim.master import End, Interrupt, Master, Observer
 from orchestrator.cosim.model_slave import ModelSlave
 from orchestrator.cosim.recording import Recorder, Recording
+from orchestrator.cosim.remarks import remarks
 from orchestrator.cosim.slave import Slave
-from orchestrator.cosim.watch import ERROR, FMI_LEVELS, Watch
+from orchestrator.cosim.watch import ERROR, FMI_LEVELS, WARNING, Watch
 from orchestrator.scenario.models import MODELS
 from orchestrator.scenario.scenario import Scenario
+from orchestrator.session.foreign import FOREIGN, sha256_of
 from orchestrator.text.errors import RunError
 
 PACKAGES = ("apa-cosim", "fmpy", "pythonfmu", "numpy", "mcap", "protobuf")
@@ -26,6 +28,8 @@ class Ran(NamedTuple):
 
     recording: Recording
     end: End
+    remarks: list[str]
+    """What was said of the system before it ran."""
     wall_time: float
     """Time from the first exchange to the closed log [s]; building, loading and initializing come before."""
 
@@ -76,12 +80,22 @@ def run_scenario(
     log: Path | None = None,
     observers: tuple[Observer, ...] = (),
     interrupt: Interrupt | None = None,
+    warn: Callable[[str], None] = lambda text: None,
+    foreign: Collection[str] = (),
 ) -> Ran:
-    """Return the recording of one run. Errors of a slave end it as aborted; ``BadInput`` passes through."""
+    """Return the recording of one run. Errors of a slave end it as aborted; ``BadInput`` passes through.
+
+    ``warn`` is told before the run what is allowed in the system but hardly meant. ``foreign`` are the slaves
+    whose FMU is somebody else's.
+    """
     words = Words()
     slaves = make_slaves(scenario, files, words)
     try:
-        return run_slaves(scenario, slaves, words, kind=kind, log=log, observers=observers, interrupt=interrupt)
+        for text in remarks(slaves):
+            warn(text)
+        return run_slaves(
+            scenario, slaves, words, kind=kind, log=log, observers=observers, interrupt=interrupt, foreign=foreign
+        )
     finally:
         for slave in slaves:
             slave.close()
@@ -96,15 +110,12 @@ def run_slaves(
     log: Path | None = None,
     observers: tuple[Observer, ...] = (),
     interrupt: Interrupt | None = None,
+    foreign: Collection[str] = (),
 ) -> Ran:
     """Return the recording of one run of given slaves."""
     master = _master(slaves, scenario, kind)
     master.interrupt = interrupt or Interrupt()
-    master.manipulators += manipulators(scenario.faults, slaves, scenario.seed, scenario.file)
-    named = {slave.name: slave for slave in slaves}
-    if {"vehicle", "controller"} <= named.keys() and "phase" in named["controller"].outputs.index:
-        master.endings.append(Standstill(named["vehicle"], named["controller"]))
-    info = provenance(scenario, slaves, kind)
+    info = provenance(scenario, slaves, kind, foreign)
     recorder = Recorder(slaves, scenario.stop_ns // scenario.step_ns + 1)
     watch = Watch(slaves, scenario.faults, words.say)
     master.observers += [words, recorder]
@@ -116,6 +127,9 @@ def run_slaves(
         master.observers += [watch, file, *observers]
     else:
         master.observers += [watch, *observers]
+    said = remarks(slaves)
+    for text in said:
+        words.say(0, WARNING, "system", text)
     end = _guarded(words, master.initialize)
     begun = time.perf_counter()
     if end is None:
@@ -124,17 +138,25 @@ def run_slaves(
     master.finish(end)
     wall_time = time.perf_counter() - begun
     master.free()
-    return Ran(recorder.recording({**info, "end": {"reason": end.reason, "t_ns": end.t_ns}}), end, wall_time)
+    return Ran(recorder.recording({**info, "end": {"reason": end.reason, "t_ns": end.t_ns}}), end, said, wall_time)
 
 
 def _master(slaves: list[Slave], scenario: Scenario, kind: str) -> Master:
-    """Return the master for FMUs of this kind: compiled for native ones, as the loop in Python would eat the gain."""
+    """Return the master for FMUs of this kind: compiled for native ones, as the loop in Python would eat the gain.
+
+    Faults and what ends the run are in place.
+    """
     make: type[Master] = Master
     if kind == "native":
         from orchestrator.cosim.compiled_master import CompiledMaster
 
         make = CompiledMaster
-    return make(slaves, scenario.step_ns, scenario.stop_ns, scenario.every)
+    master = make(slaves, scenario.step_ns, scenario.stop_ns, scenario.every)
+    master.manipulators += manipulators(scenario.faults, slaves, scenario.seed, scenario.file)
+    speaks = {f"{slave.name}.{name}": slave for slave in slaves for name in slave.outputs.names}
+    if {"vehicle.speed", "controller.phase"} <= speaks.keys():
+        master.endings.append(Standstill(speaks["vehicle.speed"], speaks["controller.phase"]))
+    return master
 
 
 def _guarded(words: Words, act: Callable[[], End | None]) -> End | None:
@@ -148,14 +170,23 @@ def _guarded(words: Words, act: Callable[[], End | None]) -> End | None:
         return End("interrupted", words.t_ns)
 
 
-def provenance(scenario: Scenario, slaves: list[Slave], kind: str) -> dict[str, Any]:
+def provenance(scenario: Scenario, slaves: list[Slave], kind: str, foreign: Collection[str] = ()) -> dict[str, Any]:
     """Return what is needed to repeat the run: scenario, FMUs, seed, versions."""
     return {
         "scenario": scenario.model_dump(mode="json", exclude={"file"}),
-        "fmus": [{"name": slave.name, "kind": kind, "guid": slave.identity} for slave in slaves],
+        "fmus": [_used(slave, FOREIGN if slave.name in foreign else kind) for slave in slaves],
         "seed": scenario.seed,
         "versions": versions(),
     }
+
+
+def _used(slave: Slave, kind: str) -> dict[str, str]:
+    """Return which FMU a slave is; one of somebody else's with its file, which no version tells."""
+    used = {"name": slave.name, "kind": kind, "guid": slave.identity}
+    if kind != FOREIGN:
+        return used
+    path: Path = slave.path  # type: ignore[attr-defined]
+    return {**used, "path": str(path.resolve()), "sha256": sha256_of(path)}
 
 
 def versions() -> dict[str, str]:

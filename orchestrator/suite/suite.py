@@ -1,23 +1,25 @@
 """Many scenarios, each run, judged and kept: what ``apa test`` does."""
 
-from collections.abc import Mapping
+import re
+from collections.abc import Callable, Collection, Mapping
 from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import NamedTuple
 
-from fmpy.model_description import read_model_description
-
 from orchestrator.cosim.master import Interrupt
 from orchestrator.cosim.recording import Recording
 from orchestrator.report.results import LOG, write_pages, write_summary
-from orchestrator.scenario.load_scenario import load_scenario, scenario_names
+from orchestrator.scenario.load_scenario import scenario_names
 from orchestrator.scenario.requirements import Requirement
 from orchestrator.scenario.scenario import Scenario
+from orchestrator.session.foreign import Files, load_fitting
 from orchestrator.session.session import run_scenario
 from orchestrator.suite.junit import Case, Suite, cases_of
 from orchestrator.text.errors import BadInput
 from orchestrator.verdict.judge import Check, judge
 from orchestrator.verdict.summary import Summary, numbers_of, summarize
+
+UNNAMEABLE = re.compile(r"[^A-Za-z0-9._-]+")
 
 
 class Tested(NamedTuple):
@@ -31,6 +33,11 @@ class Tested(NamedTuple):
     ignored: list[str]
     """Parameters of the scenario that a foreign FMU does not have."""
     error: str = ""
+    """Why it could not be run or judged."""
+    remarks: tuple[str, ...] = ()
+    """What was said of the system before it ran."""
+    bad_input: bool = False
+    """Whether the error is in what was written, not in the run."""
 
     @property
     def passed(self) -> bool:
@@ -49,11 +56,12 @@ class Bench(NamedTuple):
     files: Mapping[str, Path] | None
     """Slave name -> FMU; None runs the models in process."""
     kind: str
-    foreign: frozenset[str]
-    """Slaves whose FMU is somebody else's: it need not have all parameters."""
+    foreign: Files
+    """FMUs of somebody else's among them: they need not have all parameters."""
     requirements: list[tuple[str, list[Requirement]]]
     """(file, its requirements), judged besides the scenario's own limits."""
     interrupt: Interrupt
+    warn: Callable[[str], None] = lambda text: None
 
 
 def chosen(names: list[str]) -> list[str]:
@@ -67,22 +75,44 @@ def chosen(names: list[str]) -> list[str]:
     return found
 
 
-def run_test(name: str, sets: list[str], bench: Bench, out: Path) -> Tested:
-    """Run one scenario, judge it, and keep log, summary and replay page in ``out``/its name."""
-    scenario = load_scenario(name, sets)
-    scenario, ignored = _fitting(scenario, bench)
-    folder = out / scenario.name
-    folder.mkdir(parents=True, exist_ok=True)
+def run_test(name: str, sets: list[str], bench: Bench, out: Path, taken: Collection[str] = ()) -> Tested:
+    """Run one scenario, judge it, and keep log, summary and replay page in ``out``/its name.
+
+    Whatever is wrong with it or with an FMU is an error of this scenario alone; so is a name already ``taken``.
+    """
+    scenario = Scenario(name=UNNAMEABLE.sub("-", Path(name).stem) or "unnamed")
+    ignored: list[str] = []
     try:
-        ran = run_scenario(scenario, bench.files, kind=bench.kind, log=folder / LOG, interrupt=bench.interrupt)
-        summary = summarize(ran.recording, scenario, ran.wall_time)
-        checks = _extra_checks(bench, ran.recording)
+        scenario, ignored = load_fitting(name, sets, bench.foreign)
+        if scenario.name in taken:
+            raise BadInput(f"another scenario of this test is called {scenario.name}", file=name, key="name")
+        return _judged(scenario, ignored, bench, out / scenario.name)
     except BadInput as error:
-        return Tested(scenario, None, None, [], ignored, str(error))
+        return Tested(scenario, None, None, [], ignored, str(error), bad_input=True)
+    except OSError:
+        raise
+    except Exception as error:
+        return Tested(scenario, None, None, [], ignored, f"{type(error).__name__}: {error}")
+
+
+def _judged(scenario: Scenario, ignored: list[str], bench: Bench, folder: Path) -> Tested:
+    folder.mkdir(parents=True, exist_ok=True)
+    ran = run_scenario(
+        scenario,
+        bench.files,
+        kind=bench.kind,
+        log=folder / LOG,
+        interrupt=bench.interrupt,
+        warn=bench.warn,
+        foreign=bench.foreign,
+    )
+    summary = summarize(ran.recording, scenario, ran.wall_time)
+    checks = _extra_checks(bench, ran.recording)
     write_summary(folder, summary)
     write_pages(folder, ran.recording, summary.model_copy(update={"checks": [*summary.checks, *checks]}))
     broken = ran.end.reason if ran.end.reason.startswith("error") and scenario.expect != "aborted" else ""
-    return Tested(scenario, summary, ran.recording, _cases(scenario, summary, checks), ignored, broken)
+    cases = [] if broken else _cases(scenario, summary, checks)
+    return Tested(scenario, summary, ran.recording, cases, ignored, broken, tuple(ran.remarks))
 
 
 def _extra_checks(bench: Bench, recording: Recording) -> list[Check]:
@@ -96,16 +126,3 @@ def _cases(scenario: Scenario, summary: Summary, extra: list[Check]) -> list[Cas
     outcome = Case("outcome", summary.outcome == scenario.expect, reached)
     own = cases_of(summary.checks) if scenario.expect == "parked" else []
     return [outcome, *own, *cases_of(extra)]
-
-
-def _fitting(scenario: Scenario, bench: Bench) -> tuple[Scenario, list[str]]:
-    """Return the scenario without the parameters that a foreign FMU does not have, and their names."""
-    ignored: list[str] = []
-    update: dict[str, object] = {}
-    for slave in sorted(bench.foreign):
-        assert bench.files is not None
-        known = {item.name for item in read_model_description(str(bench.files[slave])).modelVariables}
-        given: dict[str, float | int | bool] = getattr(scenario, slave)
-        update[slave] = {name: value for name, value in given.items() if name in known}
-        ignored += [f"{slave}.{name}" for name in given if name not in known]
-    return scenario.model_copy(update=update), ignored

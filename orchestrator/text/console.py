@@ -39,6 +39,19 @@ def say(text: str) -> None:
         print(text, file=sys.stderr, flush=True)
 
 
+class Warnings:
+    """Warns on standard error, of each thing once."""
+
+    def __init__(self) -> None:
+        self._said: set[str] = set()
+
+    def __call__(self, text: str) -> None:
+        """Write the warning, unless it was written before."""
+        if text not in self._said:
+            self._said.add(text)
+            say(f"apa: warning: {text}")
+
+
 @contextmanager
 def working(text: str) -> Iterator[None]:
     """Show that something of unknown length goes on, and for how long: a spinner, or a line now and then."""

@@ -49,7 +49,11 @@ class FmuUsed(_Part):
 
     name: str
     kind: str
+    """``python``, ``native``, ``none`` (in process) or ``foreign``: somebody else's."""
     guid: str
+    path: str = ""
+    """File of a foreign one, and its hash."""
+    sha256: str = ""
 
 
 class Summary(_Part):

@@ -126,8 +126,8 @@ def test_a_foreign_controller_is_run_without_the_parameters_it_does_not_have(tmp
     files = fmu_files("python")
     theirs = tmp_path / "their controller.fmu"
     theirs.write_bytes(files["controller"].read_bytes())
-    monkeypatch.setattr("orchestrator.suite.suite.load_scenario", lambda name, sets: foreign_scenario(name))
-    bench = Bench({**files, "controller": theirs}, "python", frozenset({"controller"}), [], Interrupt())
+    monkeypatch.setattr("orchestrator.session.foreign.load_scenario", lambda name, sets, more: foreign_scenario(name))
+    bench = Bench({**files, "controller": theirs}, "python", {"controller": theirs}, [], Interrupt())
     tested = run_test("guo2015-case4", [], bench, tmp_path / "out")
     assert tested.ignored == ["controller.no_such_gain"]
     assert tested.passed

@@ -55,21 +55,23 @@ typedef struct {
     int64_t last;    /* number of the last exchange; nothing is stepped after it */
     int64_t failed;  /* out: number of the slave that refused */
     int64_t failure; /* out: in what, see Failure */
+    int64_t status;  /* out: the FMI status it gave */
 } Run;
 
 static int call(const Slave *slave, const Transfer *transfer) {
     void *buffer = transfer->integers ? (void *)transfer->integers : (void *)transfer->values;
-    return transfer->call(slave->component, transfer->references, (size_t)transfer->count, buffer) <= fmi2Warning;
+    return transfer->call(slave->component, transfer->references, (size_t)transfer->count, buffer);
 }
 
 static int fetch(const Slave *slave) {
     for (int64_t g = 0; g < slave->get_count; g++) {
         const Transfer *get = &slave->gets[g];
-        if (!call(slave, get)) return 0;
+        int status = call(slave, get);
+        if (status > fmi2Warning) return status;
         if (get->integers)
             for (int64_t i = 0; i < get->count; i++) get->values[i] = get->integers[i];
     }
-    return 1;
+    return fmi2OK;
 }
 
 static int send(const Slave *slave) {
@@ -77,9 +79,10 @@ static int send(const Slave *slave) {
         const Transfer *set = &slave->sets[s];
         if (set->integers)
             for (int64_t i = 0; i < set->count; i++) set->integers[i] = (int32_t)set->values[i];
-        if (!call(slave, set)) return 0;
+        int status = call(slave, set);
+        if (status > fmi2Warning) return status;
     }
-    return 1;
+    return fmi2OK;
 }
 
 static double *record(const Run *run, double *row) {
@@ -93,9 +96,10 @@ static double *record(const Run *run, double *row) {
     return row;
 }
 
-static int fail(Run *run, int64_t slave, Failure failure) {
+static int fail(Run *run, int64_t slave, Failure failure, int status) {
     run->failed = slave;
     run->failure = failure;
+    run->status = status;
     return 0;
 }
 
@@ -104,7 +108,8 @@ static int exchange(Run *run, int64_t number) {
     for (int64_t k = 0; k < run->slave_count; k++) {
         Slave *slave = &run->slaves[k];
         slave->due = slave->every == 1 || number % slave->every == 0;
-        if (slave->due && !fetch(slave)) return fail(run, k, FETCH);
+        int status = slave->due ? fetch(slave) : fmi2OK;
+        if (status > fmi2Warning) return fail(run, k, FETCH, status);
     }
     for (int64_t l = 0; l < run->link_count; l++) {
         const Link *link = &run->links[l];
@@ -118,12 +123,15 @@ static int exchange(Run *run, int64_t number) {
 
 static int advance(Run *run, int64_t number) {
     double time = (double)(number * run->step_ns) / NANOSECONDS;
-    for (int64_t k = 0; k < run->slave_count; k++)
-        if (run->slaves[k].due && !send(&run->slaves[k])) return fail(run, k, SEND);
+    for (int64_t k = 0; k < run->slave_count; k++) {
+        int status = run->slaves[k].due ? send(&run->slaves[k]) : fmi2OK;
+        if (status > fmi2Warning) return fail(run, k, SEND, status);
+    }
     for (int64_t k = 0; k < run->slave_count; k++) {
         const Slave *slave = &run->slaves[k];
         if (!slave->due) continue;
-        if (slave->do_step(slave->component, time, slave->step, fmi2True) > fmi2Warning) return fail(run, k, STEP);
+        int status = slave->do_step(slave->component, time, slave->step, fmi2True);
+        if (status > fmi2Warning) return fail(run, k, STEP, status);
     }
     return 1;
 }

@@ -1,0 +1,108 @@
+"""A controller of somebody else's: connected as FMI 2.0 allows, judged by what was measured, unable to stop a test."""
+
+import json
+import subprocess
+import sys
+import xml.etree.ElementTree as ElementTree
+from pathlib import Path
+
+import foreign_fmus
+import pytest
+
+from orchestrator.cli import main
+from orchestrator.cosim.fmu_files import fmu_files
+
+KINDS = ["python", "native"]
+
+
+@pytest.fixture(scope="module")
+def theirs(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    for kind in KINDS:
+        fmu_files(kind)
+    return foreign_fmus.controller(tmp_path_factory.mktemp("theirs"))
+
+
+def test_units_and_variability_that_are_not_said_are_no_mistake(
+    theirs: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    arguments = ["run", "guo2015-case4", "--controller", str(theirs), "--out", str(tmp_path), "--no-figure"]
+    assert main([*arguments, "--json", "--set", "controller.wheel=4"]) == 1
+    captured = capsys.readouterr()
+    summary = json.loads(captured.out)
+    assert summary["final"]["x"] < -5.0
+    assert summary["final"]["steering_wheel_angle"] == pytest.approx(4.0, abs=0.01)
+    assert "controller says no unit of measured_speed, steering_wheel_request" in captured.err
+    assert "left out, the FMU does not have them: controller.system" in captured.err
+
+
+def test_its_own_parameters_are_told_from_those_nobody_has(
+    theirs: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    arguments = ["run", "guo2015-case4", "--controller", str(theirs), "--out", str(tmp_path)]
+    assert main([*arguments, "--set", "controller.weel=4"]) == 2
+    assert "controller.weel: unknown; did you mean controller.wheel" in capsys.readouterr().err
+
+
+def test_where_it_came_from_is_in_the_summary(theirs: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    out = tmp_path / "out"
+    main(["run", "guo2015-case4", "--controller", str(theirs), "--out", str(out), "--no-figure", "--json"])
+    used = {item["name"]: item for item in json.loads(capsys.readouterr().out)["fmus"]}
+    assert used["controller"]["kind"] == "foreign"
+    assert used["controller"]["path"] == str(theirs)
+    assert len(used["controller"]["sha256"]) == 64
+    assert used["vehicle"]["kind"] != "foreign"
+
+
+def test_a_misspelled_output_is_said_before_the_run(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    wrong = foreign_fmus.controller(tmp_path, request="steering_request")
+    main(["run", "guo2015-case4", "--controller", str(wrong), "--out", str(tmp_path / "out"), "--no-figure"])
+    error = capsys.readouterr().err
+    assert "nothing feeds vehicle.steering_wheel_request; did you mean steering_request" in error
+    assert "nothing feeds advised_speed, speed_control_active, " in error
+
+
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize(
+    "step", ["if t > 1.0: raise ValueError('their mistake')", "return t < 1.0", "self.prompt = None if t > 1.0 else 3"]
+)
+def test_one_that_fails_is_a_verdict_and_the_others_go_on(kind: str, step: str, theirs: Path, tmp_path: Path) -> None:
+    """In a process of its own: it used to die of SIGSEGV."""
+    bad = foreign_fmus.controller(tmp_path, step=step)
+    out = tmp_path / "out"
+    names = ["guo2015-case4", "guo2015-case3"]
+    command = [sys.executable, "-m", "orchestrator", "test", *names, "--controller", str(bad), "--fmus", kind]
+    done = subprocess.run([*command, "--out", str(out)], capture_output=True, text=True, check=False)
+    assert done.returncode == 1, done.stderr
+    assert "0 of 2 scenarios passed" in done.stdout
+    root = ElementTree.parse(out / "junit.xml").getroot()
+    assert [suite.get("name") for suite in root] == names
+    assert root.get("errors") == "2"
+    assert "controller " in root[0].find("testcase/error").get("message")
+    assert (out / "index.html").is_file()
+
+
+def test_an_fmu_that_cannot_be_run_is_one_line_and_the_others_go_on(
+    theirs: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    for name, (path, text) in foreign_fmus.broken(theirs, tmp_path).items():
+        out = tmp_path / path.stem
+        code = main(["test", "guo2015-case4", "guo2015-case3", "--controller", str(path), "--out", str(out)])
+        captured = capsys.readouterr()
+        assert code in (1, 2), name
+        assert captured.out.count(text) == 2, (name, captured.out)
+        assert "Traceback" not in captured.err
+        assert ElementTree.parse(out / "junit.xml").getroot().get("errors") == "2", name
+
+
+def test_a_scenario_that_cannot_be_read_fails_alone(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    bad, same = tmp_path / "bad one.yaml", tmp_path / "same.yaml"
+    bad.write_text("base: nothing-of-this-name")
+    same.write_text("{name: fault-pose-nan, base: fault-pose-frozen}")
+    names = ["fault-pose-nan", str(bad), str(same)]
+    assert main(["test", *names, "--fmus", "none", "--out", str(tmp_path / "out")]) == 2
+    printed = capsys.readouterr().out
+    assert "pass  fault-pose-nan  (1 of 3)" in printed
+    assert "base: no scenario of this name" in printed or "no scenario of this name" in printed
+    assert "another scenario of this test is called fault-pose-nan" in printed
+    root = ElementTree.parse(tmp_path / "out" / "junit.xml").getroot()
+    assert root.get("errors") == "2"

@@ -24,7 +24,7 @@ from orchestrator.sweep.batch import compiled, run_batch
 from orchestrator.sweep.design import make_design
 from orchestrator.sweep.engines import cores
 from orchestrator.sweep.job import Chunk, arrays, make_job, study_scenario
-from orchestrator.sweep.kept import FIRST_KEPT
+from orchestrator.sweep.rows import FIRST_MEASURE
 from orchestrator.sweep.study import Study
 from orchestrator.sweep.sweep import Options, sweep
 
@@ -66,10 +66,10 @@ def in_threads(rows: Any, parts: list[tuple[Any, Any, Any]]) -> None:
 def rates() -> None:
     job, chunk = bound(MANOEUVRES)
     begun = time.perf_counter()
-    rows = compiled(tuple(job.kept))
+    rows = compiled(tuple(job.measures))
     print(f"models ready after {time.perf_counter() - begun:.1f} s (compiled once per source, then kept)")
     parameters, times = arrays(job, chunk)
-    out = np.empty((MANOEUVRES, FIRST_KEPT + len(job.kept)))
+    out = np.empty((MANOEUVRES, FIRST_MEASURE + len(job.measures)))
     size = max(1, MANOEUVRES // (4 * cores()))
     places = [slice(at, at + size) for at in range(0, MANOEUVRES, size)]
     parts = [(parameters[place], times[place], out[place]) for place in places]

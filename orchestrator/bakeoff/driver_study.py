@@ -8,9 +8,10 @@ import numpy as np
 from orchestrator.cosim.slave import Array
 from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.scenario.scenario import Scenario
-from orchestrator.sweep.kept import PHASE, POSE
 from orchestrator.sweep.many import parameter_row, timed_rows
+from orchestrator.sweep.rows import PHASE
 from orchestrator.verdict.confidence import wilson
+from orchestrator.verdict.numbers import POSE
 
 SPEED = 0.8
 """Speed the driver means [m/s]."""

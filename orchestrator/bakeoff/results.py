@@ -9,16 +9,21 @@ import numpy as np
 from controller_fmu.interface import Phase, Reason
 from orchestrator.bakeoff.entries import ASSIST, Entry
 from orchestrator.cosim.endings import STANDSTILL_TIME_NS
-from orchestrator.sweep.kept import CLEARANCE, EFFORT, PHASE, POSE, REASON, SHIFTS, WHEEL, Kept
 from orchestrator.sweep.many import timed
+from orchestrator.sweep.rows import PHASE, REASON
+from orchestrator.verdict.measures import Measure
+from orchestrator.verdict.numbers import CLEARANCE, NUMBERS, POSE
 
 LATERAL, HEADING = 0.15, math.radians(3.0)
 """GB/T 41630, parallel parking [m, rad]."""
 REFUSED = Reason.NO_PATH.name.lower()
 """Why a drive is not begun at all."""
 HOUSE_LATERAL, HOUSE_HEADING = 0.05, math.radians(1.0)
-PARKING_TIME = Kept("last", "controller.apa.parking_time")
-KEPT: tuple[Kept, ...] = (*POSE, WHEEL, PHASE, REASON, SHIFTS, EFFORT, CLEARANCE, PARKING_TIME)
+PARKING_TIME = Measure("last", "controller.apa.parking_time")
+SHIFTS, EFFORT = NUMBERS["shifts"].measure, NUMBERS["steering_effort"].measure
+assert SHIFTS is not None
+assert EFFORT is not None
+MEASURES = (*POSE, PHASE, REASON, SHIFTS, EFFORT, CLEARANCE, PARKING_TIME)
 
 
 class Result(NamedTuple):
@@ -45,12 +50,12 @@ class Result(NamedTuple):
 
 def results(runs: Sequence[Entry]) -> list[Result]:
     """Return what every run came to."""
-    table = timed([entry.scenario for entry in runs], KEPT)
+    table = timed([entry.scenario for entry in runs], MEASURES)
     return [_result(entry, row) for entry, row in zip(runs, table, strict=True)]
 
 
 def _result(entry: Entry, row: "np.ndarray[tuple[int], np.dtype[np.float64]]") -> Result:
-    end, x, y, heading, _, phase, reason, shifts, effort, clearance, confirmed = (float(value) for value in row)
+    end, x, y, heading, phase, reason, shifts, effort, clearance, confirmed = (float(value) for value in row)
     told = int(phase) == Phase.PARKED
     time = confirmed if entry.controller == ASSIST else end - STANDSTILL_TIME_NS / 1e9
     within = abs(y) <= LATERAL and abs(heading) <= HEADING

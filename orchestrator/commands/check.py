@@ -11,7 +11,7 @@ from orchestrator.session.terminal import checks_table
 from orchestrator.suite.junit import Suite, cases_of, write_junit
 from orchestrator.text.console import console
 from orchestrator.verdict.judge import judge
-from orchestrator.verdict.summary import numbers_of
+from orchestrator.verdict.numbers import numbers_of
 
 EXAMPLES = """examples:
   apa check runs/guo2015-case4/run.mcap gbt41630

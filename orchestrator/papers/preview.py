@@ -13,8 +13,8 @@ from orchestrator.cosim.slave import Array
 from orchestrator.papers.preview_figure import draw_preview, draw_sweep
 from orchestrator.papers.result import Drive, Driven, Reproduction, Row
 from orchestrator.scenario.load_scenario import load_scenario
-from orchestrator.sweep.kept import Kept
 from orchestrator.sweep.many import measure
+from orchestrator.verdict.measures import Measure
 
 TITLE = "Lateral and longitudinal fuzzy control on sharp curves by dynamic dual-point preview"
 PRINTED_SPEEDS = (7.6, 5.4, 3.8, 3.2)
@@ -69,7 +69,7 @@ def curves() -> list[tuple[float, float, float]]:
 
 def sweep() -> Array:
     """Return largest |yL| [m] and largest |epsL| [rad] (in curve 4) for each set speed of Fig. 11."""
-    kept = [Kept("largest", "controller.preview.y_l"), Kept("largest", "controller.preview.eps_l")]
+    kept = [Measure("largest", "controller.preview.y_l"), Measure("largest", "controller.preview.eps_l")]
     runs = [load_scenario("preview-18", [f"controller.preview.set_speed={speed}"]) for speed in SWEEP]
     return np.abs(measure(runs, kept))
 

@@ -5,7 +5,7 @@ are all lists of these.
 """
 
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any, Literal, get_args
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
@@ -14,7 +14,7 @@ from orchestrator.text.quantities import Seconds, measured
 from orchestrator.text.yaml_file import explain, read_yaml
 
 Condition = Literal["max", "min", "max_abs", "equals"]
-CONDITIONS: tuple[Condition, ...] = ("max", "min", "max_abs", "equals")
+CONDITIONS: tuple[Condition, ...] = get_args(Condition)
 
 
 class Window(BaseModel):

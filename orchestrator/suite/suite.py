@@ -17,7 +17,8 @@ from orchestrator.session.session import run_scenario
 from orchestrator.suite.junit import Case, Suite, cases_of
 from orchestrator.text.errors import BadInput
 from orchestrator.verdict.judge import Check, judge
-from orchestrator.verdict.summary import Summary, numbers_of, summarize
+from orchestrator.verdict.numbers import numbers_of
+from orchestrator.verdict.summary import Summary, summarize
 
 UNNAMEABLE = re.compile(r"[^A-Za-z0-9._-]+")
 

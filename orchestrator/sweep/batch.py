@@ -12,30 +12,31 @@ from orchestrator.cosim.endings import STANDSTILL_SPEED, STANDSTILL_TIME_NS, fin
 from orchestrator.cosim.slave import Array
 from orchestrator.scenario.models import MODELS
 from orchestrator.sweep.job import Chunk, Job, arrays
-from orchestrator.sweep.kept import FIRST_KEPT, Kept
+from orchestrator.sweep.rows import FIRST_MEASURE
+from orchestrator.verdict.measures import Measure
 
 _compiling = threading.Lock()
 
 
 def run_batch(job: Job, chunk: Chunk) -> Array:
-    """Return one row of kept numbers per run of ``chunk``. Scenarios with faults cannot be run so."""
-    rows = compiled(tuple(job.kept))
+    """Return one row of measures per run of ``chunk``. Scenarios with faults cannot be run so."""
+    rows = compiled(tuple(job.measures))
     parameters, times = arrays(job, chunk)
-    out = np.empty((len(parameters), FIRST_KEPT + len(job.kept)))
+    out = np.empty((len(parameters), FIRST_MEASURE + len(job.measures)))
     rows(parameters, times, out)
     return out
 
 
-def compiled(kept: tuple[Kept, ...]) -> Rows:
+def compiled(measures: tuple[Measure, ...]) -> Rows:
     """Return the compiled runs, made once per process."""
     with _compiling:
-        return _compiled(kept)
+        return _compiled(measures)
 
 
 @lru_cache
-def _compiled(kept: tuple[Kept, ...]) -> Rows:
+def _compiled(measures: tuple[Measure, ...]) -> Rows:
     phase = next(item for item in variables(MODELS["controller"].outputs) if item.name == "phase")
     ending = Ending(
         "controller.phase", tuple(final_phases(phase)), "vehicle.speed", STANDSTILL_SPEED, STANDSTILL_TIME_NS
     )
-    return compiled_rows(MODELS, ending, [KeptSignal(item.how, item.signal) for item in kept])  # type: ignore[arg-type]
+    return compiled_rows(MODELS, ending, [KeptSignal(item.how, item.signal) for item in measures])

@@ -20,7 +20,7 @@ from orchestrator.scenario.scenario import Scenario
 from orchestrator.sweep.batch import run_batch
 from orchestrator.sweep.fmu_runs import run_recorded
 from orchestrator.sweep.job import Chunk, Job
-from orchestrator.sweep.kept import why_not_compiled
+from orchestrator.sweep.rows import why_not_compiled
 from orchestrator.text.errors import BadInput
 
 Work = Callable[[Job, Chunk], Array]
@@ -68,7 +68,7 @@ def choose_task(scenario: Scenario, job: Job, fmus: str | None) -> Task:
 
         files = {name: str(path) for name, path in fmu_files(fmus).items()}
         return Task(partial(run_recorded, kind=fmus, files=files), f"{fmus} FMUs", RECORDED_CHUNK, False)
-    why = why_not_compiled(scenario, job.kept)
+    why = why_not_compiled(scenario)
     missing = [name for name in ("numba", "ziglang") if find_spec(name) is None]
     if not why and missing:
         why = f"{' and '.join(missing)} not installed"

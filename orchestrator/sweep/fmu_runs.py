@@ -8,15 +8,15 @@ import numpy as np
 from orchestrator.cosim.slave import Array
 from orchestrator.session.session import run_scenario
 from orchestrator.sweep.job import Chunk, Job, chunk_scenario
-from orchestrator.sweep.kept import FIRST_KEPT, row_of
+from orchestrator.sweep.rows import row_of
 
 
 def run_recorded(job: Job, chunk: Chunk, kind: str, files: Mapping[str, str] | None) -> Array:
-    """Return one row of kept numbers per run of ``chunk``, read off its recording."""
+    """Return one row of measures per run of ``chunk``, read off its recording."""
     paths = None if files is None else {name: Path(path) for name, path in files.items()}
-    rows = np.empty((len(chunk.seeds), FIRST_KEPT + len(job.kept)))
-    for number in range(len(rows)):
+    rows = []
+    for number in range(len(chunk.seeds)):
         scenario = chunk_scenario(job, chunk, number)
         ran = run_scenario(scenario, paths, kind=kind)
-        rows[number] = row_of(ran.recording, scenario, job.kept)
-    return rows
+        rows.append(row_of(ran.recording, scenario, job.measures))
+    return np.array(rows)

@@ -14,8 +14,9 @@ from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.scenario.models import MODELS
 from orchestrator.scenario.scenario import NANOSECONDS, Scenario
 from orchestrator.sweep.fields import Field
-from orchestrator.sweep.kept import Kept, kept_numbers
+from orchestrator.sweep.rows import measures_for
 from orchestrator.sweep.study import Study
+from orchestrator.verdict.measures import Measure
 
 Times = NDArray[np.int64]
 PROBE = 1_000_003
@@ -34,7 +35,7 @@ class Job(NamedTuple):
     places: list[int]
     seeded: list[tuple[str, str, int]]
     """(model, parameter, place) of the parameters that take the run's seed."""
-    kept: list[Kept]
+    measures: list[Measure]
 
 
 class Chunk(NamedTuple):
@@ -70,7 +71,7 @@ def make_job(study: Study, scenario: Scenario, fields: list[Field]) -> Job:
         [field.name for field in fields],
         [field.place for field in fields],
         seeded,
-        kept_numbers(scenario),
+        measures_for(scenario),
     )
 
 

@@ -11,7 +11,8 @@ from orchestrator.cosim.slave import Array
 from orchestrator.scenario.models import MODELS
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.sweep.batch import compiled
-from orchestrator.sweep.kept import FIRST_KEPT, Kept
+from orchestrator.sweep.rows import FIRST_MEASURE
+from orchestrator.verdict.measures import Measure
 
 
 def parameter_row(scenario: Scenario) -> tuple[Array, dict[str, int], Array]:
@@ -27,9 +28,9 @@ def parameter_row(scenario: Scenario) -> tuple[Array, dict[str, int], Array]:
     return np.array(numbers), places, np.array(times, dtype=np.int64)
 
 
-def timed_rows(parameters: Array, times: Array, kept: Sequence[Kept]) -> Array:
+def timed_rows(parameters: Array, times: Array, kept: Sequence[Measure]) -> Array:
     """Return for each run its end [s] and the ``kept`` numbers. Compiles the models first if sources changed."""
-    out = np.empty((len(parameters), FIRST_KEPT + len(kept)))
+    out = np.empty((len(parameters), FIRST_MEASURE + len(kept)))
     shares = np.array_split(np.arange(len(parameters)), os.cpu_count() or 1)
     rows = compiled(tuple(kept))
 
@@ -40,15 +41,15 @@ def timed_rows(parameters: Array, times: Array, kept: Sequence[Kept]) -> Array:
 
     with ThreadPoolExecutor() as pool:
         list(pool.map(work, [share for share in shares if len(share)]))
-    return np.column_stack([out[:, 1] / 1e9, out[:, FIRST_KEPT:]])
+    return np.column_stack([out[:, 1] / 1e9, out[:, FIRST_MEASURE:]])
 
 
-def timed(scenarios: Iterable[Scenario], kept: Sequence[Kept]) -> Array:
+def timed(scenarios: Iterable[Scenario], kept: Sequence[Measure]) -> Array:
     """Return for each scenario its end [s] and the ``kept`` numbers."""
     rows = [parameter_row(scenario) for scenario in scenarios]
     return timed_rows(np.array([row for row, _, _ in rows]), np.array([times for _, _, times in rows]), kept)
 
 
-def measure(scenarios: Iterable[Scenario], kept: Sequence[Kept]) -> Array:
+def measure(scenarios: Iterable[Scenario], kept: Sequence[Measure]) -> Array:
     """Return one row of ``kept`` numbers per scenario."""
     return timed(scenarios, kept)[:, 1:]

@@ -21,6 +21,7 @@ from orchestrator.sweep.fields import Field
 from orchestrator.sweep.job import Chunk, Job
 from orchestrator.sweep.verdict import OUTCOMES, RESULTS, Verdict
 from orchestrator.text.errors import BadInput
+from orchestrator.verdict.measures import Measure
 
 ABOUT = b"apa"
 TYPES = {float: pa.float64(), int: pa.int64(), bool: pa.bool_()}
@@ -158,10 +159,8 @@ def job_to(job: Job) -> dict[str, Any]:
 
 def job_from(data: dict[str, Any]) -> Job:
     """Return the job that :func:`job_to` wrote."""
-    from orchestrator.sweep.kept import Kept
-
     seeded = [(owner, name, int(place)) for owner, name, place in data["seeded"]]
-    return Job(**{**data, "seeded": seeded, "kept": [Kept(*item) for item in data["kept"]]})
+    return Job(**{**data, "seeded": seeded, "measures": [Measure(*item) for item in data["measures"]]})
 
 
 def _schema(fields: list[Field], numbers: list[str], about: str) -> Any:

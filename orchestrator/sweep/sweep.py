@@ -13,7 +13,6 @@ from orchestrator.sweep.batch import compiled
 from orchestrator.sweep.design import Design, make_design
 from orchestrator.sweep.engines import choose_task, make_engine
 from orchestrator.sweep.job import Job, make_job, study_scenario
-from orchestrator.sweep.kept import CLEARANCE
 from orchestrator.sweep.store import Store, chunks, job_to
 from orchestrator.sweep.study import Study
 from orchestrator.sweep.verdict import PARKED, RESULTS, judge
@@ -65,7 +64,7 @@ def sweep(study: Study, folder: Path, options: Options) -> Swept:
     swept = Swept(None, total, total - sum(len(chunk.seeds) for chunk in missing), 0, 0, 0.0, task.name, task.note)
     interrupt = Interrupt()
     if missing and task.is_compiled:
-        compiled(tuple(job.kept))
+        compiled(tuple(job.measures))
     begun = time.perf_counter()
     if missing:
         engine = make_engine(task, options.dask, options.workers)
@@ -86,7 +85,7 @@ def sweep(study: Study, folder: Path, options: Options) -> Swept:
 
 
 def _numbers(job: Job) -> list[str]:
-    return [name for name in RESULTS if name != "min_clearance" or CLEARANCE in job.kept]
+    return [name for name in RESULTS if RESULTS[name].measure is None or RESULTS[name].measure in job.measures]
 
 
 def _about(study: Study, job: Job, design: Design) -> dict[str, Any]:

@@ -11,6 +11,8 @@ from orchestrator.cosim.recording import Recording
 from orchestrator.cosim.slave import Array
 from orchestrator.scenario.requirements import Condition, Requirement, Window
 from orchestrator.text.errors import BadInput, suggestion
+from orchestrator.verdict.conditions import CONDITIONS
+from orchestrator.verdict.numbers import NUMBERS
 
 CHART = "controller.phase"
 
@@ -56,7 +58,7 @@ def _check(item: Requirement, recording: Recording, numbers: dict[str, float], f
         rows = _rows(item.window, recording, file, where)
         values, times = recording.signals[item.signal][rows], recording.t[rows]
     elif item.signal in numbers:
-        unit, states = unit_of_number(item.signal), {}
+        unit, states = NUMBERS[item.signal].unit, {}
         if item.window is not None:
             raise BadInput("a number of the summary has no window", file=file, key=where)
         values, times = np.array([numbers[item.signal]]), np.array([numbers["duration"]])
@@ -69,31 +71,12 @@ def _check(item: Requirement, recording: Recording, numbers: dict[str, float], f
     return _worst(item, values, times, limit, unit, states)
 
 
-def unit_of_number(name: str) -> str:
-    """Return the SI unit of a number of the summary."""
-    angles = ("heading", "heading_error", "steering_wheel_angle")
-    if name.startswith("final."):
-        return "rad" if name.removeprefix("final.") in angles else "m"
-    return {"duration": "s", "max_speed": "m/s"}.get(name, "1")
-
-
-def margins(condition: Condition, values: Array, limit: float) -> Array:
-    """Return the distance of each value to the limit, negative beyond it; for ``equals`` minus the difference."""
-    if condition == "max":
-        return limit - values
-    if condition == "min":
-        return values - limit
-    if condition == "max_abs":
-        return limit - np.abs(values)
-    return 0.0 - np.abs(values - limit)
-
-
 def _worst(item: Requirement, values: Array, times: Array, limit: float, unit: str, states: dict[int, str]) -> Check:
     """Return the check at the worst value; NaN is the worst there is and passes nothing."""
     value = margin = math.nan
     when, note, passed = 0.0, "", False
     if len(values):
-        found = margins(item.condition, values, limit)
+        found = CONDITIONS[item.condition].margin(values, limit)
         row = int(np.argmin(np.where(np.isnan(found), -np.inf, found)))
         value, margin, when = float(values[row]), float(found[row]), float(times[row])
         passed = margin >= 0.0

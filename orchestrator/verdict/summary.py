@@ -13,8 +13,8 @@ from pydantic import BaseModel, ConfigDict
 from orchestrator.cosim.endings import FINAL_PHASES
 from orchestrator.cosim.recording import Recording
 from orchestrator.scenario.scenario import Outcome, Scenario
-from orchestrator.verdict.frame import in_frame, pose_of
 from orchestrator.verdict.judge import Check, judge
+from orchestrator.verdict.numbers import numbers_of
 
 
 class _Part(BaseModel):
@@ -97,7 +97,7 @@ def summarize(recording: Recording, scenario: Scenario, wall_time: float) -> Sum
         duration=numbers["duration"],
         shifts=int(numbers["shifts"]),
         max_speed=numbers["max_speed"],
-        final=_final(recording),
+        final=Final(**{name: numbers[f"final.{name}"] for name in Final.model_fields}),
         events=_events(recording),
         checks=checks,
         fmus=[FmuUsed(**item) for item in recording.info.get("fmus", [])],
@@ -106,18 +106,6 @@ def summarize(recording: Recording, scenario: Scenario, wall_time: float) -> Sum
         seed=scenario.seed,
         versions=recording.info.get("versions", {}),
     )
-
-
-def numbers_of(recording: Recording) -> dict[str, float]:
-    """Return the numbers that requirements may name: duration [s], shifts, max_speed [m/s], final.x and so on."""
-    final = {f"final.{name}": value for name, value in _final(recording).model_dump().items()}
-    t = recording.t
-    return {
-        "duration": float(t[-1]) if len(t) else 0.0,
-        "shifts": _last(recording, "controller.shifts", 0.0),
-        "max_speed": _largest(recording, "vehicle.speed"),
-        **final,
-    }
 
 
 def phase_changes(recording: Recording) -> list[tuple[int, str, str]]:
@@ -144,22 +132,6 @@ def _events(recording: Recording) -> list[Event]:
     ]
 
 
-def _final(recording: Recording) -> Final:
-    end = {name: _last(recording, f"vehicle.{name}", math.nan) for name in ("pose.x", "pose.y", "pose.heading")}
-    x, y, heading = end.values()
-    target = pose_of(recording.parameters_of("controller"), "target") or (0.0, 0.0, 0.0)
-    along, across, turn = in_frame(x, y, heading, target)
-    return Final(
-        x=x,
-        y=y,
-        heading=heading,
-        lateral_error=across,
-        longitudinal_error=along,
-        heading_error=turn,
-        steering_wheel_angle=_last(recording, "vehicle.steering_wheel_angle", math.nan),
-    )
-
-
 def _outcome(recording: Recording, checks: list[Check]) -> tuple[Outcome, str]:
     end = str(recording.info.get("end", {}).get("reason", ""))
     if end == "interrupted" or end.startswith("error"):
@@ -179,11 +151,6 @@ def _outcome(recording: Recording, checks: list[Check]) -> tuple[Outcome, str]:
 def _last(recording: Recording, name: str, default: float) -> float:
     values = recording.signals.get(name)
     return float(values[-1]) if values is not None and len(values) else default
-
-
-def _largest(recording: Recording, name: str) -> float:
-    values = recording.signals.get(name)
-    return float(np.max(np.abs(values))) if values is not None and len(values) else 0.0
 
 
 def _finite(data: Any) -> Any:

@@ -12,7 +12,7 @@ from orchestrator.scenario.load_scenario import ROOM
 from orchestrator.scenario.requirements import Requirement, read_requirements
 from orchestrator.text.errors import BadInput
 from orchestrator.verdict.judge import judge
-from orchestrator.verdict.summary import numbers_of
+from orchestrator.verdict.numbers import numbers_of
 
 PHASE = {"STANDBY": 0, "DRIVE": 1, "PARKED": 2}
 T = np.array([0.0, 1.0, 2.0, 3.0, 4.0])

@@ -13,7 +13,7 @@ from orchestrator.session.session import run_scenario
 from orchestrator.sweep.batch import run_batch
 from orchestrator.sweep.fmu_runs import run_recorded
 from orchestrator.sweep.job import Chunk, arrays, chunk_scenario
-from orchestrator.sweep.kept import row_of, why_not_compiled
+from orchestrator.sweep.rows import row_of, why_not_compiled
 from orchestrator.sweep.verdict import OUTCOMES, judge
 from orchestrator.verdict.summary import summarize
 
@@ -41,7 +41,7 @@ WINDOWED = [
 def assert_same(job, chunk, rows, number, files=None, kind="none"):
     scenario = chunk_scenario(job, chunk, number)
     ran = run_scenario(scenario, files, kind=kind)
-    np.testing.assert_array_equal(rows[number], row_of(ran.recording, scenario, job.kept))
+    np.testing.assert_array_equal(rows[number], row_of(ran.recording, scenario, job.measures))
     summary = summarize(ran.recording, scenario, 1.0)
     verdict = judge(job, chunk, rows)
     assert (OUTCOMES[verdict.outcome[number]], verdict.reason[number]) == (summary.outcome, summary.reason)
@@ -96,7 +96,7 @@ def test_shipped_scenarios(bind, name):
 def test_limits_on_signals_and_numbers(bind, tmp_path, some):
     (tmp_path / "a.yaml").write_text(f"base: guo2015-case4\nlimits: {LIMITS}\n")
     scenario, _, job, chunk = bind(scenario=str(tmp_path / "a.yaml"))
-    assert why_not_compiled(scenario, job.kept) == ""
+    assert why_not_compiled(scenario) == ""
     rows = run_batch(job, chunk)
     for number in some(len(rows), 10):
         assert_same(job, chunk, rows, number)
@@ -105,7 +105,7 @@ def test_limits_on_signals_and_numbers(bind, tmp_path, some):
 def test_limits_with_a_window_are_judged_from_recordings(bind, tmp_path):
     (tmp_path / "a.yaml").write_text(f"base: guo2015-case4\nlimits: {WINDOWED}\n")
     scenario, _, job, chunk = bind(scenario=str(tmp_path / "a.yaml"), runs={"grid": {"controller.system": [0, 1]}})
-    assert "'late' needs the whole run" in why_not_compiled(scenario, job.kept)
+    assert "'late' needs the whole run" in why_not_compiled(scenario)
     rows = run_recorded(job, chunk, "none", None)
     for number in range(len(rows)):
         assert_same(job, chunk, rows, number)
@@ -113,7 +113,7 @@ def test_limits_with_a_window_are_judged_from_recordings(bind, tmp_path):
 
 def test_faults_go_through_the_python_master(bind):
     scenario, _, job, chunk = bind(scenario="fault-pose-frozen", runs={"grid": {"faults[1].start": [0.5, 3.0]}})
-    assert why_not_compiled(scenario, job.kept) == "the scenario has faults"
+    assert why_not_compiled(scenario) == "the scenario has faults"
     rows = run_recorded(job, chunk, "none", None)
     for number in range(2):
         assert_same(job, chunk, rows, number)

@@ -5,19 +5,18 @@ import pytest
 from orchestrator.cosim.fmu_files import can_compile
 from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.session.session import run_scenario
-from orchestrator.sweep.kept import CLEARANCE, PHASE, POSE, SHIFTS, WHEEL, Kept
 from orchestrator.sweep.many import timed
+from orchestrator.sweep.rows import PHASE
+from orchestrator.verdict.measures import Measure, measured
+from orchestrator.verdict.numbers import MEASURES
 
 pytestmark = pytest.mark.skipif(not can_compile(), reason="needs numba, llvmlite and ziglang")
 
-KEPT = (
-    *POSE,
-    WHEEL,
+TAKEN = (
+    *MEASURES,
     PHASE,
-    SHIFTS,
-    CLEARANCE,
-    Kept("last", "controller.preview.y_l"),
-    Kept("last", "controller.lateral_error"),
+    Measure("last", "controller.preview.y_l"),
+    Measure("last", "controller.lateral_error"),
 )
 DRIVES = {
     "zhang2022": 30,
@@ -33,11 +32,6 @@ DRIVES = {
 def test_same_bits(name):
     scenario = load_scenario(name, [f"stop_time={DRIVES[name]}"])
     recording = run_scenario(scenario).recording
-    row = timed([scenario], KEPT)[0]
-    ours = [
-        min(values) if item.how == "smallest" else values[-1]
-        for item in KEPT
-        for values in [recording.signals[item.signal]]
-    ]
+    row = timed([scenario], TAKEN)[0]
     assert row[0] == recording.t[-1]
-    assert [float(value) for value in row[1:]] == [float(value) for value in ours]
+    assert row[1:].tolist() == [measured(item, recording) for item in TAKEN]

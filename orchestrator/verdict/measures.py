@@ -1,0 +1,39 @@
+"""Measures: single numbers of a run's signals, gathered while it runs in a batch, or read off its recording.
+
+Both ways give the same bits.
+"""
+
+from typing import Literal, NamedTuple
+
+import numpy as np
+
+from orchestrator.cosim.recording import Recording
+from orchestrator.cosim.slave import Array
+
+How = Literal["last", "largest", "greatest", "smallest", "travel"]
+
+
+class Measure(NamedTuple):
+    """One number of one signal over a run."""
+
+    how: How
+    """``last``; ``largest`` absolute value, with its sign; ``greatest``; ``smallest``; ``travel``: sum of absolute
+    changes."""
+    signal: str
+    """``vehicle.speed``: an output, or an input as its model saw it."""
+
+
+def measured(measure: Measure, recording: Recording, missing: float = float("nan")) -> float:
+    """Return the measure of a recorded run; ``missing`` if it has no such signal, or no instant."""
+    values = recording.signals.get(measure.signal)
+    return missing if values is None or not len(values) else _of(measure.how, values)
+
+
+def _of(how: How, values: Array) -> float:
+    if how == "travel":
+        changes = np.abs(np.diff(values))
+        return float(np.add.accumulate(changes)[-1]) if len(changes) else 0.0
+    if how == "largest":
+        size = np.abs(values)
+        return float(values[int(np.argmax(np.where(np.isnan(size), np.inf, size)))])
+    return float({"last": values[-1], "greatest": np.max(values), "smallest": np.min(values)}[how])

@@ -1,0 +1,84 @@
+"""Measures, conditions and summary numbers: one table each, the same for one run and for many."""
+
+import math
+from typing import get_args
+
+import numpy as np
+import pytest
+
+from modelkit.signal import Signal
+from modelkit.variables import Variable
+from orchestrator.cosim.recording import Recording
+from orchestrator.scenario.requirements import Condition
+from orchestrator.verdict.conditions import CONDITIONS, share
+from orchestrator.verdict.measures import Measure, measured
+from orchestrator.verdict.numbers import MEASURES, NUMBERS, POSE, numbers, numbers_of
+
+VALUES = np.array([1.0, -3.0, 2.0])
+
+
+def recording(values: np.ndarray, name: str = "vehicle.speed") -> Recording:
+    t = np.arange(len(values)) * 1_000_000_000
+    return Recording(t, {name: values}, {}, {name: Variable(name, float, Signal("m/s", ""), 0.0)})
+
+
+@pytest.mark.parametrize(
+    ("how", "value"), [("last", 2.0), ("largest", -3.0), ("greatest", 2.0), ("smallest", -3.0), ("travel", 9.0)]
+)
+def test_measures(how: str, value: float) -> None:
+    measure = Measure(how, "vehicle.speed")  # type: ignore[arg-type]
+    assert measured(measure, recording(VALUES)) == value
+    assert measured(Measure(how, "vehicle.mass"), recording(VALUES), 7.0) == 7.0  # type: ignore[arg-type]
+    assert math.isnan(measured(measure, recording(VALUES[:0])))
+
+
+@pytest.mark.parametrize("how", ["largest", "greatest", "smallest", "travel"])
+def test_not_a_number_is_the_worst_there_is(how: str) -> None:
+    assert math.isnan(measured(Measure(how, "vehicle.speed"), recording(np.array([1.0, math.nan, 5.0]))))  # type: ignore[arg-type]
+
+
+def test_every_condition_is_in_the_table() -> None:
+    assert tuple(CONDITIONS) == get_args(Condition)
+
+
+@pytest.mark.parametrize(("condition", "limit"), [("max", 1.5), ("min", -1.0), ("max_abs", 2.5)])
+def test_the_measure_of_a_condition_is_its_worst_value(condition: Condition, limit: float) -> None:
+    rule = CONDITIONS[condition]
+    assert rule.worst is not None
+    worst = measured(Measure(rule.worst, "vehicle.speed"), recording(VALUES))
+    assert rule.margin(np.array([worst]), limit)[0] == rule.margin(VALUES, limit).min()
+
+
+def test_share_of_a_limit_that_is_used() -> None:
+    assert share("max_abs", np.array([-1.0, math.nan]), 2.0).tolist() == [0.5, math.inf]
+    assert share("min", np.array([9.0]), 2.0).tolist() == [0.0]
+    assert share("max", np.array([9.0]), 0.0).tolist() == [0.0]
+
+
+def test_numbers_of_many_runs_are_those_of_each() -> None:
+    rng = np.random.default_rng(1)
+    found = {measure: rng.normal(size=5) for measure in MEASURES}
+    targets = [tuple(row) for row in rng.normal(size=(5, 3)).tolist()]
+    whole = numbers(np.arange(5.0), found, targets)
+    assert list(whole) == list(NUMBERS)
+    for row in range(5):
+        alone = numbers(
+            np.array([float(row)]), {key: values[row : row + 1] for key, values in found.items()}, [targets[row]]
+        )
+        assert {name: values[0] for name, values in alone.items()} == {name: v[row] for name, v in whole.items()}
+
+
+def test_errors_are_seen_from_the_target() -> None:
+    found = {measure: np.array([value]) for measure, value in zip(POSE, (1.0, 3.0, 0.5 * math.pi), strict=True)}
+    made = numbers(np.zeros(1), found, [(1.0, 1.0, 0.5 * math.pi)])
+    assert made["final.longitudinal_error"][0] == pytest.approx(2.0)
+    assert made["final.lateral_error"][0] == pytest.approx(0.0)
+    assert made["final.heading_error"][0] == 0.0
+
+
+def test_what_the_models_do_not_have() -> None:
+    made = numbers_of(recording(VALUES))
+    assert made["max_speed"] == 3.0
+    assert made["duration"] == 2.0
+    assert made["shifts"] == 0.0
+    assert math.isnan(made["min_clearance"])

@@ -47,6 +47,7 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.junit:
         write_junit(arguments.junit, [Suite(str(arguments.log), cases_of(checks), numbers["duration"])])
     missed = [check for check in checks if check.required and not check.passed]
+    unknown = sum(not check.judged for check in checks)
     if arguments.json:
         data = [json.loads(check.model_dump_json()) for check in checks]
         print(json.dumps({"passed": not missed, "checks": data}, indent=2))
@@ -54,5 +55,6 @@ def run(arguments: argparse.Namespace) -> int:
         out = console()
         out.print(checks_table(checks, out))
         met = sum(check.passed for check in checks)
-        out.print(f"{met} of {len(checks)} met" + (f", {len(missed)} required missed" if missed else ""))
+        more = (f", {len(missed)} required missed" if missed else "") + (f", {unknown} not judged" if unknown else "")
+        out.print(f"{met} of {len(checks)} met{more}")
     return MISSED if missed else MET

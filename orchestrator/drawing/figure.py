@@ -14,6 +14,7 @@ from orchestrator.cosim.recording import Recording
 from orchestrator.cosim.slave import Array
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.text.quantities import DEGREE
+from orchestrator.text.readable import shifts_text
 from orchestrator.verdict.frame import pose_of
 from orchestrator.verdict.geometry import (
     WHEEL_RADIUS,
@@ -105,7 +106,7 @@ def _title(summary: Summary, scenario: Scenario) -> str:
     final = summary.final
     return (
         f"{scenario.name}: {summary.outcome.replace('_', ' ')} after {summary.duration:.1f} s, "
-        f"{summary.shifts} shifts; "
+        f"{shifts_text(summary.shifts)}; "
         f"{final.lateral_error * 100:+.1f} cm lateral, {final.heading_error / DEGREE:+.2f} deg"
     )
 

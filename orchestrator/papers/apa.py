@@ -140,6 +140,6 @@ def _run_rows(driven: Driven) -> list[Row]:
         *rows,
         Row(name, "lateral error at the end", "m", 0.0, summary.final.lateral_error, 0.05),
         Row(name, "heading error at the end", "rad", 0.0, summary.final.heading_error, math.radians(1.0)),
-        Row(name, "shifts", "1", None, float(summary.shifts)),
+        Row(name, "shifts", "1", None, float(summary.shifts or 0)),
         Row(name, "time to park", "s", None, float(signals["controller.apa.parking_time"][-1])),
     ]

@@ -128,7 +128,7 @@ def _end_rows(run: str, driven: Driven) -> list[Row]:
         Row(run, "end: heading error", "rad", 0.0, final.heading_error, END_HEADING if checked else None),
         Row(run, "end: ahead of Q3", "m", None, final.longitudinal_error),
         Row(run, "end: t", "s", None, driven.summary.duration),
-        Row(run, "shifts", "1", None, float(driven.summary.shifts)),
+        Row(run, "shifts", "1", None, float(driven.summary.shifts or 0)),
     ]
 
 

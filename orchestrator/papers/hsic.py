@@ -50,7 +50,7 @@ def _rows(driven: Driven) -> list[Row]:
         Row(name, "heading at the end", "deg", 0.0, math.degrees(final.heading_error), HEADING),
         Row(name, "lateral error at the end", "m", 0.0, final.lateral_error, LATERAL),
         Row(name, "largest deviation from the common tangent", "m", 0.0, float(np.abs(tangent).max()), judged),
-        Row(name, "shifts", "1", None, float(driven.summary.shifts)),
+        Row(name, "shifts", "1", None, float(driven.summary.shifts or 0)),
         Row(name, "smallest clearance", "m", None, float(signals["vehicle.clearance"].min())),
         Row(name, "time", "s", None, driven.summary.duration),
     ]

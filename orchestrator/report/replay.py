@@ -73,7 +73,7 @@ def facts(summary: Summary) -> list[list[str]]:
     return [
         *why,
         ["Duration", f"{summary.duration:.2f} s"],
-        ["Manoeuvres", str(summary.shifts)],
+        ["Manoeuvres", "not counted" if summary.shifts is None else str(summary.shifts)],
         ["Fastest", f"{summary.max_speed * 3.6:.1f} km/h"],
         ["Lateral", length(final.lateral_error)],
         ["Longitudinal", length(final.longitudinal_error)],
@@ -93,6 +93,7 @@ def check_rows(checks: list[Check]) -> list[dict[str, Any]]:
             "id": check.id,
             "passed": check.passed,
             "required": check.required,
+            "judged": check.judged,
             "value_text": check.note or readable(check.value, check.unit),
             "limit_text": limit_text(check),
             "margin_text": readable(check.margin, check.unit),

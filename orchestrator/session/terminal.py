@@ -6,7 +6,7 @@ from rich.table import Table
 
 from orchestrator.text.console import console
 from orchestrator.text.quantities import DEGREE
-from orchestrator.text.readable import precise, readable
+from orchestrator.text.readable import precise, readable, shifts_text
 from orchestrator.verdict.compare import Difference
 from orchestrator.verdict.judge import Check
 from orchestrator.verdict.limit_text import limit_text
@@ -24,7 +24,7 @@ def print_summary(summary: Summary, title: str, expected: str) -> None:
     out.print(f"[{style}]{summary.outcome}[/]: {escape(summary.reason)}{wanted}")
     final = summary.final
     out.print(
-        f"{summary.duration:.2f} s, {summary.shifts} shifts, up to {summary.max_speed:.2f} m/s; at the end "
+        f"{summary.duration:.2f} s, {shifts_text(summary.shifts)}, up to {summary.max_speed:.2f} m/s; at the end "
         f"{final.lateral_error * 100:+.1f} cm lateral, {final.longitudinal_error * 100:+.1f} cm longitudinal, "
         f"{final.heading_error / DEGREE:+.2f} deg, wheel {final.steering_wheel_angle / DEGREE:+.1f} deg"
     )
@@ -41,6 +41,7 @@ def checks_table(checks: list[Check], out: Console) -> Table:
     table.add_column("source")
     for check in checks:
         verdict = "[green]pass[/]" if check.passed else "[red]MISS[/]" if check.required else "[yellow]miss[/]"
+        verdict = verdict if check.judged else "[yellow]not judged[/]"
         value = check.note or readable(check.value, check.unit)
         table.add_row(
             escape(check.id),

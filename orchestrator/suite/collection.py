@@ -11,6 +11,7 @@ from orchestrator.cosim.recording import Recording
 from orchestrator.cosim.slave import Array
 from orchestrator.report.page import still_page
 from orchestrator.suite.suite import Tested
+from orchestrator.text.readable import shifts_text
 from orchestrator.verdict.frame import pose_of
 from orchestrator.verdict.geometry import Car, place, slot_box
 
@@ -45,7 +46,9 @@ def _card(item: Tested) -> str:
     missed += [item.error] if item.error else []
     summary = item.summary
     outcome = (
-        f"{summary.outcome.replace('_', ' ')}, {summary.duration:.1f} s, {summary.shifts} shifts" if summary else ""
+        f"{summary.outcome.replace('_', ' ')}, {summary.duration:.1f} s, {shifts_text(summary.shifts)}"
+        if summary
+        else ""
     )
     return CARD.format(
         kind="good" if item.passed else "bad",

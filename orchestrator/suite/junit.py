@@ -1,11 +1,12 @@
 """JUnit XML, as CI servers read it, from the checks of runs."""
 
+import math
 import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 from typing import NamedTuple
 
 from orchestrator.text.readable import readable
-from orchestrator.verdict.judge import Check
+from orchestrator.verdict.judge import NEVER, Check
 from orchestrator.verdict.limit_text import limit_text
 
 UNPRINTABLE = {code: "?" for code in range(32) if chr(code) not in "\t\n\r"}
@@ -35,15 +36,34 @@ class Suite(NamedTuple):
 
 
 def cases_of(checks: list[Check]) -> list[Case]:
-    """Return one case for each check; one that is missed but not required is skipped, not failed."""
-    return [Case(check.id, check.passed, sentence(check), not check.passed and not check.required) for check in checks]
+    """Return one case for each check; one that is missed but not required, or not judged, is skipped, not failed."""
+    found = []
+    for check in checks:
+        skipped = not check.judged or not (check.passed or check.required)
+        found.append(Case(f"{check.id} ({check.source})", check.passed, sentence(check), skipped))
+    return found
+
+
+def told_apart(cases: list[Case]) -> list[Case]:
+    """Return the cases, numbered where a name comes again: CI servers take equal names for one test."""
+    names = [case.name for case in cases]
+    counts = [names[:at].count(name) for at, name in enumerate(names)]
+    return [
+        case._replace(name=f"{case.name} #{count + 1}") if count else case
+        for case, count in zip(cases, counts, strict=True)
+    ]
 
 
 def sentence(check: Check) -> str:
-    """Return value, limit, margin, moment and source of a check in one line."""
+    """Return value, limit, margin and moment of a check in one line."""
+    if not check.judged:
+        return f"{check.signal}: not measured, so not judged"
+    if math.isnan(check.value) and check.note == NEVER:
+        hint = "" if check.passed else "; with if_never: pass it would be met"
+        return f"{check.signal}: {check.note}, asked {limit_text(check)}{hint}"
     value = check.note or readable(check.value, check.unit)
     margin = readable(check.margin, check.unit)
-    return f"{check.signal}: {value} at {check.t:.3f} s, asked {limit_text(check)}, margin {margin} ({check.source})"
+    return f"{check.signal}: {value} at {check.t:.3f} s, asked {limit_text(check)}, margin {margin}"
 
 
 def write_junit(path: Path, suites: list[Suite]) -> None:
@@ -62,7 +82,7 @@ def write_junit(path: Path, suites: list[Suite]) -> None:
         node = ElementTree.SubElement(root, "testsuite", attributes)
         if suite.error:
             _case(node, suite.name, "run", "error", suite.error)
-        for case in suite.cases:
+        for case in told_apart(suite.cases):
             kind = "" if case.passed else "skipped" if case.skipped else "failure"
             _case(node, suite.name, case.name, kind, case.text)
     root.attrib.update(_counts(totals))

@@ -14,7 +14,7 @@ from orchestrator.scenario.requirements import Requirement
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.session.foreign import Files, load_fitting
 from orchestrator.session.session import run_scenario
-from orchestrator.suite.junit import Case, Suite, cases_of
+from orchestrator.suite.junit import Case, Suite, cases_of, told_apart
 from orchestrator.text.errors import BadInput
 from orchestrator.verdict.judge import Check, judge
 from orchestrator.verdict.numbers import numbers_of
@@ -126,4 +126,4 @@ def _cases(scenario: Scenario, summary: Summary, extra: list[Check]) -> list[Cas
     reached = f"{summary.outcome}: {summary.reason}; expected {scenario.expect}"
     outcome = Case("outcome", summary.outcome == scenario.expect, reached)
     own = cases_of(summary.checks) if scenario.expect == "parked" else []
-    return [outcome, *own, *cases_of(extra)]
+    return told_apart([outcome, *own, *cases_of(extra)])

@@ -17,3 +17,8 @@ def readable(value: float, unit: str) -> str:
 def precise(value: float, unit: str) -> str:
     """Return a number that may be tiny, in SI."""
     return f"{value:.3g} {unit}" if unit != "1" else f"{value:.3g}"
+
+
+def shifts_text(shifts: int | None) -> str:
+    """Return a number of manoeuvres in words."""
+    return "shifts not counted" if shifts is None else f"{shifts} shifts"

@@ -1,20 +1,24 @@
 """From requirements and a recording to verdicts: the only place where a limit meets a value."""
 
 import math
+from functools import cache
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict
 
+from modelkit.variables import variables
 from orchestrator.cosim.recording import Recording
 from orchestrator.cosim.slave import Array
+from orchestrator.scenario.models import MODELS
 from orchestrator.scenario.requirements import Condition, Requirement, Window
 from orchestrator.text.errors import BadInput, suggestion
 from orchestrator.verdict.conditions import CONDITIONS
-from orchestrator.verdict.numbers import NUMBERS
+from orchestrator.verdict.numbers import NUMBERS, signals_of
 
 CHART = "controller.phase"
+NEVER = "the window never comes"
 
 
 class Check(BaseModel):
@@ -40,6 +44,8 @@ class Check(BaseModel):
     """Name of the state, or why there is no value."""
     limit_name: str = ""
     """Name of the state asked for."""
+    judged: bool = True
+    """False: the run has nothing to judge by, as an FMU does not put it out; such a check is never passed."""
 
 
 def judge(requirements: list[Requirement], recording: Recording, numbers: dict[str, float], file: str) -> list[Check]:
@@ -52,6 +58,8 @@ def judge(requirements: list[Requirement], recording: Recording, numbers: dict[s
 
 def _check(item: Requirement, recording: Recording, numbers: dict[str, float], file: str) -> Check:
     where = f"{item.id}: {item.signal}"
+    if _unmeasured(item, recording, numbers):
+        return _not_judged(item)
     if item.signal in recording.signals:
         unit = recording.variables[item.signal].signal.unit
         states = recording.states(item.signal)
@@ -71,6 +79,40 @@ def _check(item: Requirement, recording: Recording, numbers: dict[str, float], f
     return _worst(item, values, times, limit, unit, states)
 
 
+def _unmeasured(item: Requirement, recording: Recording, numbers: dict[str, float]) -> bool:
+    """Return whether a requirement needs what our models put out, but the FMUs of this run do not."""
+    missing = item.signal not in recording.signals and item.signal in _known_signals()
+    phase = item.window is not None and bool(item.window.phase) and CHART not in recording.signals
+    number = item.signal in numbers and not all(name in recording.signals for name in signals_of(item.signal))
+    return missing or phase or number
+
+
+@cache
+def _known_signals() -> frozenset[str]:
+    return frozenset(f"{owner}.{item.name}" for owner, model in MODELS.items() for item in variables(model.outputs))
+
+
+def _not_judged(item: Requirement) -> Check:
+    known = NUMBERS[item.signal].unit if item.signal in NUMBERS else item.unit or "1"
+    limit = item.limit if isinstance(item.limit, float) else math.nan
+    return Check(
+        id=item.id,
+        limit=limit,
+        value=math.nan,
+        passed=False,
+        source=item.source,
+        unit=known,
+        margin=math.nan,
+        required=item.required,
+        t=0.0,
+        signal=item.signal,
+        condition=item.condition,
+        note="not measured",
+        limit_name=item.limit if isinstance(item.limit, str) else "",
+        judged=False,
+    )
+
+
 def _worst(item: Requirement, values: Array, times: Array, limit: float, unit: str, states: dict[int, str]) -> Check:
     """Return the check at the worst value; NaN is the worst there is and passes nothing."""
     value = margin = math.nan
@@ -82,7 +124,7 @@ def _worst(item: Requirement, values: Array, times: Array, limit: float, unit: s
         passed = margin >= 0.0
         note = states.get(int(value), "") if math.isfinite(value) else "not a number"
     else:
-        note = "the window never comes"
+        note = NEVER
         passed = item.window is not None and item.window.if_never == "pass"
     return Check(
         id=item.id,

@@ -20,8 +20,6 @@ class Number(NamedTuple):
     text: str
     measure: Measure | None = None
     """What it is made from; None: from the end of the run, or from its last pose and the target."""
-    missing: float = float("nan")
-    """Its value where the models do not have the signal."""
     unsigned: bool = False
 
 
@@ -29,8 +27,8 @@ POSE = tuple(Measure("last", f"vehicle.pose.{axis}") for axis in ("x", "y", "hea
 CLEARANCE = Measure("smallest", "vehicle.clearance")
 NUMBERS: dict[str, Number] = {
     "duration": Number("s", "from start to the end of the run"),
-    "shifts": Number("1", "manoeuvres, the first reverse counts one", Measure("last", "controller.shifts"), 0.0),
-    "max_speed": Number("m/s", "largest absolute speed", Measure("largest", "vehicle.speed"), 0.0, True),
+    "shifts": Number("1", "manoeuvres, the first reverse counts one", Measure("last", "controller.shifts")),
+    "max_speed": Number("m/s", "largest absolute speed", Measure("largest", "vehicle.speed"), True),
     "final.x": Number("m", "x of the rear-axle midpoint at the end", POSE[0]),
     "final.y": Number("m", "y of the rear-axle midpoint at the end", POSE[1]),
     "final.heading": Number("rad", "heading at the end", POSE[2]),
@@ -51,6 +49,13 @@ ERRORS = ("final.longitudinal_error", "final.lateral_error", "final.heading_erro
 MEASURES = tuple(item.measure for item in NUMBERS.values() if item.measure is not None)
 
 
+def signals_of(name: str) -> list[str]:
+    """Return the signals that a number is made from."""
+    measure = NUMBERS[name].measure
+    measures = POSE if name in ERRORS else () if measure is None else (measure,)
+    return [item.signal for item in measures]
+
+
 def numbers(durations: Array, found: Mapping[Measure, Array], targets: Sequence[PoseTuple]) -> dict[str, Array]:
     """Return the numbers of many runs by name, one value for each.
 
@@ -60,7 +65,7 @@ def numbers(durations: Array, found: Mapping[Measure, Array], targets: Sequence[
     made: dict[str, Array] = {"duration": durations}
     for name, item in NUMBERS.items():
         if item.measure is not None:
-            values = found.get(item.measure, np.full(len(durations), item.missing))
+            values = found.get(item.measure, np.full(len(durations), np.nan))
             made[name] = np.abs(values) if item.unsigned else values
     axes = (made[name].tolist() for name in ("final.x", "final.y", "final.heading"))
     errors = [in_frame(x, y, heading, target) for x, y, heading, target in zip(*axes, targets, strict=True)]

@@ -63,7 +63,8 @@ class Summary(_Part):
     outcome: Outcome
     reason: str
     duration: float
-    shifts: int
+    shifts: int | None
+    """Manoeuvres; null if the controller does not count them."""
     max_speed: float
     final: Final
     events: list[Event]
@@ -95,7 +96,7 @@ def summarize(recording: Recording, scenario: Scenario, wall_time: float) -> Sum
         outcome=outcome,
         reason=reason,
         duration=numbers["duration"],
-        shifts=int(numbers["shifts"]),
+        shifts=int(numbers["shifts"]) if math.isfinite(numbers["shifts"]) else None,
         max_speed=numbers["max_speed"],
         final=Final(**{name: numbers[f"final.{name}"] for name in Final.model_fields}),
         events=_events(recording),
@@ -136,13 +137,18 @@ def _outcome(recording: Recording, checks: list[Check]) -> tuple[Outcome, str]:
     end = str(recording.info.get("end", {}).get("reason", ""))
     if end == "interrupted" or end.startswith("error"):
         return "aborted", end
+    if "controller.phase" not in recording.signals:
+        return "not_parked", "the controller has no output phase, of which PARKED (9) says that the car is parked"
     phase = _state(recording.states("controller.phase"), _last(recording, "controller.phase", math.nan))
     if phase == "FAILED":
         why = _state(recording.states("controller.reason"), _last(recording, "controller.reason", math.nan))
         return "failed", why.lower()
-    missed = [check.id for check in checks if check.required and not check.passed]
+    missed = [check.id for check in checks if check.required and check.judged and not check.passed]
+    unknown = [check.id for check in checks if check.required and not check.judged]
     if phase == "PARKED":
-        return ("not_parked", "beyond its limit: " + ", ".join(missed)) if missed else ("parked", "all checks passed")
+        lacks = [f"beyond its limit: {', '.join(missed)}"] if missed else []
+        lacks += [f"not measured: {', '.join(unknown)}"] if unknown else []
+        return ("not_parked", "; ".join(lacks)) if lacks else ("parked", "all checks passed")
     if phase in FINAL_PHASES:
         return "not_parked", phase.lower()
     return "not_parked", f"stop time reached in {phase.lower()}"

@@ -38,7 +38,7 @@ def test_check_passes_and_writes_junit(log, rules, tmp_path, capsys):
     assert main(["check", str(log), str(rules), "gbt41630", "--junit", str(junit)]) == 0
     root = ElementTree.parse(junit).getroot()
     assert (root.get("tests"), root.get("failures"), root.get("skipped")) == ("7", "0", "1")
-    skipped = root.find(".//testcase[@name='never fast']/skipped")
+    skipped = root.find(".//testcase[@name='never fast (us)']/skipped")
     assert "-1.500 m/s at " in skipped.get("message")
     assert "6 of 7 met" in capsys.readouterr().out
 
@@ -102,7 +102,7 @@ def test_test_command_fails_when_a_requirement_or_the_outcome_is_missed(tmp_path
     rules.write_text("- {id: quick, signal: duration, max: 10 s, source: us}")
     assert main([*arguments, "--requirements", str(rules)]) == 1
     found = json.loads(capsys.readouterr().out)
-    assert [case["name"] for case in found["scenarios"][0]["cases"] if not case["passed"]] == ["quick"]
+    assert [case["name"] for case in found["scenarios"][0]["cases"] if not case["passed"]] == ["quick (us)"]
     assert main([*arguments, "--set", "expect=failed"]) == 1
     assert "fail" in (out / "index.html").read_text()
     root = ElementTree.parse(out / "junit.xml").getroot()
@@ -136,3 +136,31 @@ def test_a_foreign_controller_is_run_without_the_parameters_it_does_not_have(tmp
 def foreign_scenario(name):
     scenario = load_scenario(name)
     return scenario.model_copy(update={"controller": {**scenario.controller, "no_such_gain": 1.0}})
+
+
+def test_names_of_cases_are_unique_and_tell_the_source(tmp_path, rules):
+    rules.write_text(
+        "- {id: quick, signal: duration, max: 50 s, source: us}\n- {id: quick, signal: duration, max: 60 s, source: us}"
+    )
+    out = tmp_path / "out"
+    arguments = ["--fmus", "none", "--out", str(out), "--requirements", str(rules), "--requirements", "gbt41630"]
+    assert main(["test", "guo2015-case4", *arguments]) == 0
+    names = [case.get("name") for case in ElementTree.parse(out / "junit.xml").iter("testcase")]
+    assert len(names) == len(set(names)) == 13
+    assert {
+        "final heading (GB/T 41630)",
+        "final heading (reproduction of Guo 2015)",
+        "quick (us)",
+        "quick (us) #2",
+        "speed (GB/T 41630) #2",
+    } < set(names)
+
+
+def test_a_window_that_never_comes_is_said_in_words(tmp_path, rules, capsys):
+    rules.write_text("- {id: crawl, signal: vehicle.speed, max_abs: 2 km/h, window: {phase: TO_Q4}, source: us}")
+    arguments = ["--fmus", "none", "--out", str(tmp_path / "out"), "--requirements", str(rules)]
+    assert main(["test", "guo2015-case4", *arguments]) == 1
+    printed = capsys.readouterr().out
+    assert "vehicle.speed: the window never comes, asked" in printed
+    assert "with if_never: pass it would be met" in printed
+    assert "nan" not in printed

@@ -106,3 +106,33 @@ def test_a_scenario_that_cannot_be_read_fails_alone(tmp_path: Path, capsys: pyte
     assert "another scenario of this test is called fault-pose-nan" in printed
     root = ElementTree.parse(tmp_path / "out" / "junit.xml").getroot()
     assert root.get("errors") == "2"
+
+
+def test_what_is_not_measured_is_never_passed(theirs: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    out = tmp_path / "out"
+    assert main(["test", "guo2015-case4", "apa-parallel", "--controller", str(theirs), "--out", str(out)]) == 1
+    summary = json.loads((out / "guo2015-case4" / "summary.json").read_text())
+    assert summary["shifts"] is None
+    check = next(item for item in summary["checks"] if item["signal"] == "shifts")
+    assert (check["passed"], check["judged"], check["value"], check["note"]) == (False, False, None, "not measured")
+    assert "not measured: shifts" in summary["reason"]
+    parallel = json.loads((out / "apa-parallel" / "summary.json").read_text())
+    assert "time to park" in parallel["reason"].partition("not measured")[2]
+    root = ElementTree.parse(out / "junit.xml").getroot()
+    skipped = root.find("testsuite/testcase[@name='shifts (GB/T 41630)']/skipped")
+    assert skipped.get("message") == "shifts: not measured, so not judged"
+    capsys.readouterr()
+    assert main(["check", str(out / "guo2015-case4" / "run.mcap"), "gbt41630"]) == 1
+    assert "1 not judged" in capsys.readouterr().out
+
+
+def test_without_a_phase_nothing_says_parked(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    mute = foreign_fmus.controller(tmp_path, phase=False)
+    arguments = ["--controller", str(mute), "--out", str(tmp_path / "out"), "--set", "stop_time=7", "--no-figure"]
+    assert main(["run", "apa-parallel", *arguments]) == 1
+    captured = capsys.readouterr()
+    assert "controller has no output phase: PARKED (9) of it says" in captured.err
+    assert "not_parked: the controller has no output phase" in captured.out
+    assert "shifts not counted" in captured.out
+    assert "clearance" in captured.out
+    assert "not judged" in captured.out

@@ -52,7 +52,7 @@ class PlanParams(NamedTuple):
     shifts: Annotated[int, Signal("1", "most shifts, the first reverse counts one", 1, 30, "GB/T 41630")] = 8
 
 
-class DriveParams(NamedTuple):
+class ApaDriveParams(NamedTuple):
     """How the path is driven and tracked."""
 
     longitudinal: Annotated[int, Signal("1", "who drives", states=Longitudinal)] = int(Longitudinal.OWN_SPEED)
@@ -131,7 +131,7 @@ class ApaParams(NamedTuple):
     width: Annotated[float, Signal("m", "body width", 0.1, 5.0, HOUSE)] = 1.65
     sensors: SensorParams = SensorParams()
     plan: PlanParams = PlanParams()
-    drive: DriveParams = DriveParams()
+    drive: ApaDriveParams = ApaDriveParams()
     search: SearchParams = SearchParams()
     end: EndParams = EndParams()
     guard: GuardParams = GuardParams()

@@ -2,10 +2,10 @@
 
 import math
 
-from controller_fmu.apa.params import DriveParams
+from controller_fmu.apa.params import ApaDriveParams
 
 
-def planned_speed(to_stop: float, slope: float, wheelbase: float, wheel_rate: float, drive: DriveParams) -> float:
+def planned_speed(to_stop: float, slope: float, wheelbase: float, wheel_rate: float, drive: ApaDriveParams) -> float:
     """Return the speed [m/s], >= ``creep``, at ``to_stop`` [m] before a standstill.
 
     On a ramp of curvature slope c' [1/m2] the front wheels turn by L c' v at most, which must stay under
@@ -21,7 +21,7 @@ def planned_speed(to_stop: float, slope: float, wheelbase: float, wheel_rate: fl
     return speed if speed > drive.creep else drive.creep
 
 
-def stopping_way(speed: float, drive: DriveParams, reaction: float) -> float:
+def stopping_way(speed: float, drive: ApaDriveParams, reaction: float) -> float:
     """Return the way [m] from the moment a stop is asked for until the car stands."""
     v = abs(speed)
     return v * reaction + 0.5 * v * v / drive.brake

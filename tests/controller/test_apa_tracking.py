@@ -6,7 +6,7 @@ import pytest
 
 from controller_fmu.apa.curve import advance
 from controller_fmu.apa.move import Move, end_of, length_of, point_at
-from controller_fmu.apa.params import DriveParams
+from controller_fmu.apa.params import ApaDriveParams
 from controller_fmu.apa.speed import planned_speed, stopping_way
 from controller_fmu.apa.tracking import Leg, next_standstill, set_wheel, track
 from controller_fmu.apa.turns import forward_turn, reverse_turn, straight_move, turn_of, two_arcs
@@ -77,7 +77,7 @@ def test_a_jump_of_curvature_is_a_standstill() -> None:
 
 
 def test_speed_falls_towards_a_standstill_and_where_the_wheel_has_to_turn() -> None:
-    drive = DriveParams()
+    drive = ApaDriveParams()
     speeds = [planned_speed(0.01 * n, 0.0, WHEELBASE, 0.5, drive) for n in range(200)]
     assert speeds == sorted(speeds)
     assert speeds[0] == drive.creep

@@ -1,0 +1,13 @@
+"""From a model's Python to one readable C99 file and its header. Knows no FMI.
+
+    translation = translate(model)        # .name, .header, .source
+    members(model)                        # where each flat variable is in the C structs
+
+What cannot be proved equal in C is refused (``Refused``) with its place and what to write instead.
+"""
+
+from fmus.compiler.members import Member, member_path, members
+from fmus.compiler.refusals import Refusal, Refused
+from fmus.compiler.translation import Translation, translate
+
+__all__ = ["Member", "Refusal", "Refused", "Translation", "member_path", "members", "translate"]

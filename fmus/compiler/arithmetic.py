@@ -1,0 +1,254 @@
+"""Numbers: names, constants, + - * / // % << >> & | ^ ~, as Python defines them."""
+
+import ast
+import operator
+from collections.abc import Callable
+from typing import Any
+
+from fmus.compiler.body import EXPRESSIONS, Body, tuple_of
+from fmus.compiler.kinds import BOOL, FLOAT, INT, Array, described
+from fmus.compiler.refusals import AlreadySaidError, CannotError
+from fmus.compiler.values import (
+    BIT_AND,
+    BIT_OR,
+    BIT_XOR,
+    INT32,
+    INT64,
+    PRIMARY,
+    PRODUCT,
+    SUM,
+    UNARY,
+    UNKNOWN,
+    Value,
+    as_float,
+    as_int,
+    as_wide,
+    element,
+    literal,
+    within,
+)
+
+SIGNS: dict[type[ast.operator], tuple[str, int]] = {
+    ast.Add: ("+", SUM),
+    ast.Sub: ("-", SUM),
+    ast.Mult: ("*", PRODUCT),
+    ast.Div: ("/", PRODUCT),
+    ast.BitAnd: ("&", BIT_AND),
+    ast.BitOr: ("|", BIT_OR),
+    ast.BitXor: ("^", BIT_XOR),
+}
+HELPED = {ast.FloorDiv: "floor_div", ast.Mod: "floor_mod", ast.LShift: "shift_left", ast.RShift: "shift_right"}
+PYTHON: dict[type[ast.operator], Callable[[Any, Any], Any]] = {
+    ast.Add: operator.add,
+    ast.Sub: operator.sub,
+    ast.Mult: operator.mul,
+    ast.Div: operator.truediv,
+    ast.FloorDiv: operator.floordiv,
+    ast.Mod: operator.mod,
+    ast.LShift: operator.lshift,
+    ast.RShift: operator.rshift,
+    ast.BitAnd: operator.and_,
+    ast.BitOr: operator.or_,
+    ast.BitXor: operator.xor,
+}
+
+
+def constant(body: Body, node: ast.Constant) -> Value:
+    """Return a number or truth value written in the source."""
+    if type(node.value) in (float, bool):
+        return literal(node.value)
+    if type(node.value) is int:
+        return _in_64_bits(literal(node.value), node)
+    if isinstance(node.value, str | bytes):
+        raise CannotError(node, "a string", "name what is meant by an IntEnum; text is made outside of the model")
+    if node.value is None:
+        advice = "return a value on every way; for 'no value' keep a bool beside it that says so"
+        raise CannotError(node, "None", advice)
+    raise CannotError(node, f"the constant {node.value!r}", "write a float, an int, True or False")
+
+
+def name(body: Body, node: ast.Name) -> Value:
+    """Return a variable, or a constant of the module."""
+    if any(node.id in scope for scope in body.scopes) or node.id in body.bindings.local:
+        variable = body.variable(node.id)
+        if variable.kind is None:
+            raise AlreadySaidError
+        return variable.value()
+    found = body.static(node)
+    if found is None:
+        raise CannotError(node, f"{node.id} is not known", "define it in the module, or import it from one that does")
+    if callable(found.value) or isinstance(found.value, type):
+        raise CannotError(node, f"the function or class {node.id} as a value", "call it here")
+    return body.program.constant(found, node)
+
+
+def binary(body: Body, node: ast.BinOp) -> Value:
+    """Return ``a + b`` and the like."""
+    left, right = body.value(node.left), body.value(node.right)
+    kind = type(node.op)
+    if isinstance(left.kind, Array) or isinstance(right.kind, Array):
+        return _of_tuples(body, node, left, right)
+    for side, value in ((node.left, left), (node.right, right)):
+        if value.kind not in (FLOAT, INT, BOOL):
+            raise CannotError(side, f"arithmetic with {described(value.kind)}", "name the field that is meant")
+    if kind in (ast.Pow, ast.MatMult):
+        raise CannotError(
+            node, "**" if kind is ast.Pow else "@", "write x * x, math.sqrt(x) or math.exp(y * math.log(x))"
+        )
+    if FLOAT in (left.kind, right.kind):
+        return _of_floats(node, as_float(left), as_float(right))
+    if kind is ast.Div:
+        return _quotient(body, node, as_int(left), as_int(right))
+    if left.kind == right.kind == BOOL and kind in (ast.BitAnd, ast.BitOr, ast.BitXor):
+        sign, level = SIGNS[kind]
+        return Value(BOOL, f"{within(left, PRIMARY)} {sign} {within(right, PRIMARY)}", level)
+    return _of_ints(body, node, as_int(left), as_int(right))
+
+
+def _of_floats(node: ast.BinOp, left: Value, right: Value) -> Value:
+    kind = type(node.op)
+    if kind not in (ast.Add, ast.Sub, ast.Mult, ast.Div):
+        advice = {
+            ast.FloorDiv: "write math.floor(a / b)",
+            ast.Mod: "write a - b * math.floor(a / b)",
+        }.get(kind, "write int(...) around the operands")
+        raise CannotError(node, f"{_sign(node)} of floats", advice)
+    sign, level = SIGNS[kind]
+    const = _known(kind, left, right)
+    return Value(FLOAT, f"{within(left, level)} {sign} {within(right, level + 1)}", level, const=const)
+
+
+def _of_ints(body: Body, node: ast.BinOp, left: Value, right: Value) -> Value:
+    kind = type(node.op)
+    const = _known(kind, left, right)
+    if kind in (ast.LShift, ast.RShift) and right.const is not UNKNOWN and not 0 <= right.const < 64:
+        raise CannotError(node, f"a shift by {right.const} bits", "shift by 0 to 63 bits")
+    if kind in (ast.FloorDiv, ast.Mod) and right.const is not UNKNOWN and right.const == 0:
+        raise CannotError(node, f"{_sign(node)} by 0", "divide by something else")
+    low, high = _bounds(kind, left, right)
+    small = const is not UNKNOWN and -INT32 < const < INT32
+    if kind in HELPED:
+        text = f"{body.program.helper(HELPED[kind])}({left.text}, {right.text})"
+        return _in_64_bits(Value(INT, text, const=const, low=low, high=high), node)
+    if left.narrow and right.narrow and not small:
+        left = as_wide(left)
+    sign, level = SIGNS[kind]
+    weak = PRIMARY if level < SUM else level
+    text = f"{within(left, weak)} {sign} {within(right, weak + 1 if weak != PRIMARY else weak)}"
+    narrow = left.narrow and right.narrow
+    return _in_64_bits(Value(INT, text, level, const=const, low=low, high=high, narrow=narrow), node)
+
+
+def _quotient(body: Body, node: ast.BinOp, left: Value, right: Value) -> Value:
+    """Return ``a / b`` of integers, which Python rounds once from the exact quotient."""
+    if all(_is_whole(item) for item in (left, right)):
+        return _of_floats(node, as_float(left), as_float(right))
+    return Value(FLOAT, f"{body.program.helper('int_quotient')}({left.text}, {right.text})")
+
+
+def _is_whole(value: Value) -> bool:
+    bounds = value.bounds()
+    return bounds is not None and bounds[0] >= -(2**53) and bounds[1] <= 2**53
+
+
+def _known(kind: type[ast.operator], left: Value, right: Value) -> Any:
+    """Return the result if both operands are known and Python has one."""
+    if UNKNOWN in (left.const, right.const) or (kind is ast.LShift and right.const > 64):
+        return UNKNOWN
+    try:
+        return PYTHON[kind](left.const, right.const)
+    except (ArithmeticError, ValueError):
+        return UNKNOWN
+
+
+def _bounds(kind: type[ast.operator], left: Value, right: Value) -> tuple[int | None, int | None]:
+    """Return the least and greatest result if they follow from those of the operands."""
+    if kind is ast.Mod and right.const is not UNKNOWN and right.const > 0:
+        return 0, right.const - 1
+    if kind is ast.BitAnd:
+        masks = [item.const for item in (left, right) if item.const is not UNKNOWN and item.const >= 0]
+        return (0, min(masks)) if masks else (None, None)
+    a, b = left.bounds(), right.bounds()
+    if a is None or b is None:
+        return None, None
+    if kind in (ast.Add, ast.Sub, ast.Mult) or (kind is ast.FloorDiv and b[0] > 0):
+        ends = [PYTHON[kind](x, y) for x in a for y in b]
+        return min(ends), max(ends)
+    return None, None
+
+
+def _in_64_bits(value: Value, node: ast.AST) -> Value:
+    if value.const is not UNKNOWN and not -INT64 <= value.const < INT64:
+        raise CannotError(node, f"the integer {value.const}", "keep integers within 64 bits")
+    return value
+
+
+def _of_tuples(body: Body, node: ast.BinOp, left: Value, right: Value) -> Value:
+    """Return tuples joined by + or repeated by *."""
+    if isinstance(node.op, ast.Mult):
+        items, count = (left, right) if isinstance(left.kind, Array) else (right, left)
+        if count.const is UNKNOWN or count.kind != INT:
+            raise CannotError(node, "a tuple repeated an unknown number of times", "write the number, or a constant")
+        if count.const < 1:
+            raise CannotError(node, "an empty tuple", "repeat it at least once")
+        return tuple_of(body, elements(body, items) * count.const)
+    if not isinstance(node.op, ast.Add) or not (isinstance(left.kind, Array) and isinstance(right.kind, Array)):
+        raise CannotError(node, f"{_sign(node)} of a tuple", "join tuples with +, repeat them with *")
+    if left.kind.item != right.kind.item:
+        what = f"{described(left.kind)} joined to {described(right.kind)}"
+        raise CannotError(node, what, "join tuples of one kind of items")
+    kind = Array(left.kind.item, left.kind.length + right.kind.length)
+    first = left.kind.length
+
+    def fill(place: str) -> None:
+        _put_part(body, place, 0, left)
+        _put_part(body, place, first, right)
+
+    if kind.length <= 16:
+        return tuple_of(body, elements(body, left) + elements(body, right))
+    return Value(kind, fill=fill)
+
+
+def _put_part(body: Body, place: str, start: int, part: Value) -> None:
+    for number, item in enumerate(elements(body, part)):
+        body.put(f"{place}[{start + number}]", item)
+
+
+def elements(body: Body, value: Value) -> tuple[Value, ...]:
+    """Return the items of a tuple one by one."""
+    if value.items is not None:
+        return value.items
+    assert isinstance(value.kind, Array)
+    whole = body.settled(value, "items")
+    known = whole.const if whole.const is not UNKNOWN else [UNKNOWN] * value.kind.length
+    return tuple(
+        Value(value.kind.item, element(whole, str(at)), place=True, fixed=whole.fixed, const=known[at])
+        for at in range(value.kind.length)
+    )
+
+
+def unary(body: Body, node: ast.UnaryOp) -> Value:
+    """Return ``-x``, ``+x``, ``~x``."""
+    value = body.scalar(node.operand)
+    if isinstance(node.op, ast.Invert):
+        if value.kind != INT:
+            raise CannotError(node, f"~ of {described(value.kind)}", "write 'not' for truth values")
+        return Value(INT, f"~{within(value, UNARY)}", UNARY, narrow=value.narrow)
+    number = as_int(value)
+    if isinstance(node.op, ast.UAdd):
+        return number
+    const = UNKNOWN if number.const is UNKNOWN else -number.const
+    text = within(number, UNARY)
+    text = f"-({text})" if text.startswith("-") else f"-{text}"
+    low, high = (None if number.high is None else -number.high), (None if number.low is None else -number.low)
+    value = Value(number.kind, text, UNARY, const=const, narrow=number.narrow, low=low, high=high)
+    if number.kind == INT and isinstance(node.operand, ast.Constant):
+        return literal(const)
+    return _in_64_bits(value, node) if number.kind == INT else value
+
+
+def _sign(node: ast.BinOp) -> str:
+    return ast.unparse(ast.BinOp(ast.Name("a"), node.op, ast.Name("b")))[2:-2]
+
+
+EXPRESSIONS |= {ast.Constant: constant, ast.Name: name, ast.BinOp: binary}

@@ -1,0 +1,124 @@
+"""Whether every variable is bound before it is used, whether every way through a function ends in a return."""
+
+import ast
+from collections.abc import Iterable
+
+from fmus.compiler.bindings import names_in
+from fmus.compiler.refusals import CannotError
+
+State = frozenset[str] | None
+"""The names that are certainly bound; None: this place is never reached."""
+
+
+class Flow:
+    """One walk through a function in the order it runs; ``faults`` holds what is wrong."""
+
+    def __init__(self, function: ast.FunctionDef, parameters: Iterable[str], local: set[str]) -> None:
+        self.local = local
+        self.faults: list[CannotError] = []
+        self.breaks: list[list[State]] = []
+        self.continues: list[list[State]] = []
+        self.said: set[str] = set()
+        end = self.body(function.body, frozenset(parameters))
+        if end is not None:
+            advice = "end every way through the function in a return"
+            self.faults.append(CannotError(function.body[-1], f"{function.name} may end without a return", advice))
+
+    def body(self, nodes: list[ast.stmt], state: State) -> State:
+        """Return the state after ``nodes``."""
+        for node in nodes:
+            if state is None:
+                self.faults.append(CannotError(node, "this statement is never reached", "remove it"))
+                return None
+            state = self.statement(node, state)
+        return state
+
+    def statement(self, node: ast.stmt, state: frozenset[str]) -> State:
+        """Return the state after one statement."""
+        if isinstance(node, ast.If):
+            self.use(node.test, state)
+            return joined(self.body(node.body, state), self.body(node.orelse, state))
+        if isinstance(node, ast.For):
+            return self.for_loop(node, state)
+        if isinstance(node, ast.While):
+            return self.while_loop(node, state)
+        if isinstance(node, ast.Match):
+            return self.match(node, state)
+        if isinstance(node, ast.Return):
+            self.use(node, state)
+            return None
+        if isinstance(node, ast.Break | ast.Continue):
+            (self.breaks if isinstance(node, ast.Break) else self.continues)[-1].append(state)
+            return None
+        self.use(node, state)
+        return state | {name.id for name in names_in(node) if isinstance(name.ctx, ast.Store)}
+
+    def use(self, node: ast.AST, state: frozenset[str]) -> None:
+        """Note what ``node`` reads without having been bound."""
+        read = [name for name in names_in(node) if isinstance(name.ctx, ast.Load)]
+        if isinstance(node, ast.AugAssign) and isinstance(node.target, ast.Name):
+            read.append(node.target)
+        for name in read:
+            if name.id in self.local and name.id not in state and name.id not in self.said:
+                self.said.add(name.id)
+                advice = "give it a value before, on every way that leads here"
+                self.faults.append(CannotError(name, f"{name.id} may not be bound here", advice))
+
+    def for_loop(self, node: ast.For, state: frozenset[str]) -> State:
+        """Return the state after a for loop; one that certainly runs binds what its body binds."""
+        self.use(node.iter, state)
+        inside = state | {name.id for name in names_in(node.target)}
+        ways, end = self.loop(node.body, inside)
+        if certainly_runs(node.iter):
+            return _joined_all([end, *ways]) if ways else end
+        return _joined_all([state, end, *ways])
+
+    def while_loop(self, node: ast.While, state: frozenset[str]) -> State:
+        """Return the state after a while loop, whose body may not run."""
+        self.use(node.test, state)
+        ways, _ = self.loop(node.body, state)
+        return _joined_all([state, *ways])
+
+    def loop(self, body: list[ast.stmt], state: frozenset[str]) -> tuple[list[State], State]:
+        """Return the states at breaks, and at the end of a round."""
+        self.breaks.append([])
+        self.continues.append([])
+        end = self.body(body, state)
+        return self.breaks.pop(), _joined_all([end, *self.continues.pop()])
+
+    def match(self, node: ast.Match, state: frozenset[str]) -> State:
+        """Return the state after a match."""
+        self.use(node.subject, state)
+        ends: list[State] = []
+        whole = False
+        for case in node.cases:
+            if case.guard:
+                self.use(case.guard, state)
+            ends.append(self.body(case.body, state))
+            wild = isinstance(case.pattern, ast.MatchAs) and case.pattern.pattern is None
+            whole = whole or (wild and case.guard is None)
+        return _joined_all(ends if whole else [*ends, state])
+
+
+def joined(a: State, b: State) -> State:
+    """Return what is bound whichever way was taken."""
+    if a is None or b is None:
+        return b if a is None else a
+    return a & b
+
+
+def _joined_all(states: Iterable[State]) -> State:
+    result: State = None
+    for state in states:
+        result = joined(result, state)
+    return result
+
+
+def certainly_runs(node: ast.expr) -> bool:
+    """Return whether a loop over ``node`` runs at least once, told by its text alone."""
+    if isinstance(node, ast.Tuple):
+        return bool(node.elts)
+    if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id == "range":
+        numbers = [item.value for item in node.args if isinstance(item, ast.Constant) and type(item.value) is int]
+        return len(numbers) == len(node.args) and len(range(*numbers)) > 0 if 0 < len(numbers) < 4 else False
+    return False

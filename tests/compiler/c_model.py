@@ -1,0 +1,113 @@
+"""A translated model compiled and called from Python, its structs seen by ctypes."""
+
+import ctypes
+import math
+import shutil
+import struct
+import subprocess
+import sys
+from enum import IntEnum
+
+from fmus.compiler import members
+from fmus.compiler.kinds import BOOL, FLOAT, INT, Array, Struct, fields_of
+from fmus.compiler.names import member_name
+
+WARNINGS = ("-std=c99", "-pedantic", "-Wall", "-Wextra", "-Wconversion", "-Wno-unused-parameter", "-Werror")
+CODE = ("-O2", "-ffp-contract=off", "-fno-math-errno")
+GCC = shutil.which("gcc")
+COMPILER = (GCC,) if GCC else (sys.executable, "-m", "ziglang", "cc")
+SCALARS = {FLOAT: ctypes.c_double, INT: ctypes.c_int64, BOOL: ctypes.c_bool}
+
+
+def compiled(folder, name, *files, compiler=COMPILER, options=CODE):
+    """Return a shared library made of C ``files`` without a warning."""
+    library = folder / f"{name}.so"
+    command = [*compiler, *WARNINGS, *options, "-shared", "-fPIC", "-o", str(library), *map(str, files), "-lm"]
+    done = subprocess.run(command, capture_output=True, text=True, check=False, cwd=folder)
+    assert not done.returncode, f"{' '.join(command)}\n{done.stderr}"
+    assert not done.stderr, done.stderr
+    return ctypes.CDLL(str(library))
+
+
+_structures = {}
+
+
+def structure(kind):
+    """Return the ctypes type of a kind."""
+    if isinstance(kind, Array):
+        return structure(kind.item) * kind.length
+    if not isinstance(kind, Struct):
+        return SCALARS[kind]
+    if kind.cls not in _structures:
+        fields = [(member_name(name), structure(part)) for name, part in fields_of(kind.cls).items()]
+        _structures[kind.cls] = type(kind.cls.__name__, (ctypes.Structure,), {"_fields_": fields})
+    return _structures[kind.cls]
+
+
+def to_c(value, kind):
+    """Return a Python value as ctypes."""
+    if isinstance(kind, Array):
+        return structure(kind)(*(to_c(item, kind.item) for item in value))
+    if isinstance(kind, Struct):
+        parts = zip(value, fields_of(kind.cls).values(), strict=True)
+        return structure(kind)(*(to_c(item, part) for item, part in parts))
+    return int(value) if isinstance(value, IntEnum) else value
+
+
+def bits(scalar):
+    """Return something that is equal for scalars of the same bits only."""
+    if isinstance(scalar, float):
+        return "NaN" if math.isnan(scalar) else struct.pack("d", scalar)
+    return int(scalar)
+
+
+class CModel:
+    """The C of a model behind the functions of the model."""
+
+    def __init__(self, model, translation, folder, **how):
+        (folder / f"{model.name}.h").write_text(translation.header)
+        (folder / f"{model.name}.c").write_text(translation.source)
+        self.model = model
+        self.library = compiled(folder, model.name, f"{model.name}.c", **how)
+        self.kinds = {group: Struct(getattr(model, group)) for group in ("params", "inputs", "outputs", "state")}
+        self.state, self.outputs = (structure(self.kinds[group])() for group in ("state", "outputs"))
+        self.names = {}
+        self.flat = {}
+        for group in ("state", "outputs", "params", "inputs"):
+            found = members(model, (group,))
+            self.names[group] = [item.name for item in found]
+            items = "".join(f"{item.path.replace(group, 'o', 1)}," for item in found)
+            self.flat[group] = eval(f"lambda o: ({items})")
+
+    def function(self, name):
+        return getattr(self.library, f"{self.model.name}_{name}")
+
+    def defaults(self):
+        """Return start values of parameters and inputs, flat."""
+        params, inputs = (structure(self.kinds[group])() for group in ("params", "inputs"))
+        self.function("defaults")(ctypes.byref(params), ctypes.byref(inputs))
+        return self.flat["params"](params), self.flat["inputs"](inputs)
+
+    def initialize(self, params):
+        self.params = to_c(params, self.kinds["params"])
+        pointers = (ctypes.byref(item) for item in (self.params, self.state, self.outputs))
+        self.function("initialize")(*pointers)
+
+    def step(self, inputs, dt_ns):
+        inputs = to_c(inputs, self.kinds["inputs"])
+        state, params, outputs = (ctypes.byref(item) for item in (self.state, self.params, self.outputs))
+        self.function("step")(state, ctypes.byref(inputs), params, ctypes.c_int64(dt_ns), outputs)
+
+    def differing(self, state, outputs):
+        """Return the names of state and outputs whose bits differ from CPython's."""
+        found = []
+        for group, own, other in (("state", self.state, state), ("outputs", self.outputs, outputs)):
+            pairs = zip(self.names[group], self.flat[group](own), flatten(other), strict=True)
+            found += [f"{group}.{name}: {a!r} {b!r}" for name, a, b in pairs if bits(a) != bits(b)]
+        return found
+
+
+def flatten(value):
+    if not isinstance(value, tuple):
+        return [value]
+    return [scalar for item in value for scalar in flatten(item)]

@@ -1,0 +1,87 @@
+"""The shipped models in C give CPython's bits: every state and output, at every step of closed-loop runs."""
+
+import sys
+
+import pytest
+from c_model import COMPILER, CModel, compiled
+
+from fmus.compiler import translate
+from modelkit.variables import flatten
+from orchestrator import session
+from orchestrator.load_scenario import load_scenario
+from orchestrator.models import MODELS
+
+SCENARIOS = {
+    "guo2015-case4-105": (),
+    "apa-parallel-walls": (),
+    "zhang2022-double-track": ("stop_time=10",),
+    "hsic-straight": ("stop_time=12",),
+    "preview": ("stop_time=3",),
+    "fault-pose-nan": (),
+}
+"""Every system of the controller and every body of the vehicle, with what is set to make the run short."""
+
+
+@pytest.fixture(scope="module")
+def translations():
+    return {name: translate(model) for name, model in MODELS.items()}
+
+
+@pytest.fixture(scope="module")
+def in_c(translations, tmp_path_factory):
+    """Place in a run -> the model compiled."""
+    folder = tmp_path_factory.mktemp("c")
+    return {name: CModel(model, translations[name], folder) for name, model in MODELS.items()}
+
+
+def watched(model, twin):
+    """Return ``model`` whose functions also step ``twin`` and compare."""
+
+    def initialize(params):
+        state, outputs = model.initialize(params)
+        twin.initialize(params)
+        assert twin.differing(state, outputs) == []
+        twin.steps = 0
+        return state, outputs
+
+    def step(state, inputs, params, dt_ns):
+        state, outputs = model.step(state, inputs, params, dt_ns)
+        twin.step(inputs, dt_ns)
+        assert twin.differing(state, outputs) == []
+        twin.steps += 1
+        return state, outputs
+
+    return model._replace(initialize=initialize, step=step)
+
+
+@pytest.mark.parametrize("name", SCENARIOS)
+def test_closed_loop_in_c_equals_cpython(name, in_c, monkeypatch):
+    for place, model in MODELS.items():
+        monkeypatch.setitem(session.MODELS, place, watched(model, in_c[place]))
+    ran = session.run_scenario(load_scenario(name, list(SCENARIOS[name])))
+    assert not ran.end.reason.startswith("error"), ran.end
+    assert all(twin.steps > 100 for twin in in_c.values())
+
+
+def test_start_values_are_the_defaults_of_the_types(in_c):
+    for twin in in_c.values():
+        params, inputs = twin.defaults()
+        assert list(params) == flatten(twin.model.params())
+        assert list(inputs) == flatten(twin.model.inputs())
+
+
+def test_both_headers_may_be_included_in_one_file(translations, tmp_path):
+    for item in translations.values():
+        (tmp_path / f"{item.name}.h").write_text(item.header)
+    text = '#include "Vehicle.h"\n#include "Controller.h"\nVehicle vehicle;\nController controller;\n'
+    (tmp_path / "both.c").write_text(text)
+    compiled(tmp_path, "both", "both.c")
+
+
+def test_both_compilers_have_nothing_to_say(translations, tmp_path):
+    zig = (sys.executable, "-m", "ziglang", "cc")
+    for item in translations.values():
+        (tmp_path / f"{item.name}.h").write_text(item.header)
+        (tmp_path / f"{item.name}.c").write_text(item.source)
+        for compiler in {COMPILER, zig}:
+            compiled(tmp_path, "library", f"{item.name}.c", compiler=compiler, options=("-O0",))

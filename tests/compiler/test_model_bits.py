@@ -7,9 +7,9 @@ from c_model import COMPILER, CModel, compiled
 
 from fmus.compiler import translate
 from modelkit.variables import flatten
-from orchestrator import session
-from orchestrator.load_scenario import load_scenario
-from orchestrator.models import MODELS
+from orchestrator.scenario.load_scenario import load_scenario
+from orchestrator.scenario.models import MODELS
+from orchestrator.session import session
 
 SCENARIOS = {
     "guo2015-case4-105": (),

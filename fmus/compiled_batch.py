@@ -22,8 +22,9 @@ from fmus.locks import one_at_a_time
 from fmus.native.platforms import CODE, NATIVE, PLATFORMS, WARNINGS, Target, compile_c, host
 from fmus.native_ir import intermediate_code, object_code
 from fmus.places import LIBRARIES
+from modelkit.connections import connections, part_of
 from modelkit.model import Model
-from modelkit.variables import Variable, variables
+from modelkit.variables import variables
 
 How = Literal["last", "largest", "greatest", "smallest", "travel"]
 HOW: tuple[How, ...] = ("last", "largest", "greatest", "smallest", "travel")
@@ -122,7 +123,7 @@ class _Tables:
             for is_input, cls in ((1, model.inputs), (0, model.outputs)):
                 for place, variable in enumerate(variables(cls)):
                     self._places[f"{owner}.{variable.name}"] = (number, place, is_input)
-        links = connections(models)
+        links = connections([part_of(name, model) for name, model in models.items()])
         notes = [KeptC(HOW.index(item.how), self._signal(item.signal)) for item in kept]
         parts = [self._model(model) for model in models.values()]
         end = ending or Ending("", (), "", 0.0, 0)
@@ -157,29 +158,6 @@ class _Tables:
         held = (kind * max(len(items), 1))(*items)
         self._held.append(held)
         return ctypes.addressof(held)
-
-
-def connections(models: Mapping[str, Model]) -> list[tuple[int, int, int, int]]:
-    """Return (source model, output, target model, input) of equal names. Raises ``TypeError`` if types differ."""
-    found = []
-    owners = list(models)
-    for target, receiver in enumerate(models.values()):
-        for place, wanted in enumerate(variables(receiver.inputs)):
-            source = _source(wanted, target, list(models.values()))
-            if source is not None:
-                number, output, kind = source
-                if kind is not wanted.kind:
-                    raise TypeError(f"{owners[number]}.{wanted.name} and {owners[target]}.{wanted.name} differ in type")
-                found.append((number, output, target, place))
-    return found
-
-
-def _source(wanted: Variable, target: int, models: list[Model]) -> tuple[int, int, type] | None:
-    for number, model in enumerate(models):
-        for place, offered in enumerate(variables(model.outputs)):
-            if number != target and offered.name == wanted.name:
-                return number, place, offered.kind
-    return None
 
 
 def model_library(model: Model) -> Path:

@@ -5,7 +5,9 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from fmus.contents.description import FmiVariable, fmi_variables
+from modelkit.connections import connections, part_of
 from modelkit.model import Model
+from modelkit.variables import variables
 
 NAME = "ParkingSystem"
 
@@ -40,13 +42,9 @@ class System(NamedTuple):
 
     def connections(self) -> list[tuple[Part, Part, str]]:
         """Return (sender, receiver, name) of every signal: an output and an input of the same name are connected."""
-        return [
-            (sender, receiver, item.name)
-            for receiver in self.parts
-            for item in receiver.of("input")
-            for sender in self.parts
-            if sender is not receiver and item.name in {output.name for output in sender.of("output")}
-        ]
+        wires = connections([part_of(part.name, part.model) for part in self.parts])
+        names = [[item.name for item in variables(part.model.inputs)] for part in self.parts]
+        return [(self.parts[wire.source], self.parts[wire.target], names[wire.target][wire.input]) for wire in wires]
 
 
 def as_text(value: Any) -> str:

@@ -25,18 +25,19 @@ class ModelSlave:
         self._construct = constructor(model.inputs)
         self._input = model.inputs()
         self._state: Any = None
-        self._output: Any = None
+        self.output: Any = None
+        """The latest outputs as the model gave them."""
 
     def initialize(self, stop_ns: int) -> None:
         """Compute the state at time zero and the outputs that are valid then."""
-        self._state, self._output = self._model.initialize(self._params)
+        self._state, self.output = self._model.initialize(self._params)
 
     def start(self) -> None:
         """Nothing to leave in process."""
 
     def fetch_outputs(self) -> None:
         """Unpack the latest output tuple."""
-        self.outputs.values[:] = self._flatten(self._output)
+        self.outputs.values[:] = self._flatten(self.output)
 
     def send_inputs(self) -> None:
         """Pack the input tuple."""
@@ -45,7 +46,7 @@ class ModelSlave:
     def step(self, t_ns: int, dt_ns: int) -> None:
         """Call the model's step; an exception in model code is a defect and ends the run."""
         try:
-            self._state, self._output = self._model.step(self._state, self._input, self._params, dt_ns)
+            self._state, self.output = self._model.step(self._state, self._input, self._params, dt_ns)
         except Exception as error:
             raise RunError(f"{self.name} raised {type(error).__name__}: {error}") from error
 

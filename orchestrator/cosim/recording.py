@@ -9,7 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from modelkit.variables import Variable
+from modelkit.model import Model
+from modelkit.variables import Variable, constructor, variables
 from orchestrator.cosim.master import End
 from orchestrator.cosim.slave import Array, Slave, all_values
 
@@ -56,6 +57,13 @@ class Recording:
         }
 
 
+def inputs_seen(recording: Recording, slave: str, model: Model) -> list[Any]:
+    """Return what ``slave``, which is ``model``, was given at each exchange."""
+    build = constructor(model.inputs)
+    columns = [recording.signals[f"{slave}.{item.name}"] for item in variables(model.inputs)]
+    return [build(row) for row in np.column_stack(columns).tolist()]
+
+
 class Recorder:
     """Observer that keeps every exchange in arrays, doubled in length when they are full."""
 
@@ -86,19 +94,19 @@ class Recorder:
     def recording(self, info: dict[str, Any]) -> Recording:
         """Return what has been seen so far."""
         signals: dict[str, Array] = {}
-        variables: dict[str, Variable] = {}
+        meanings: dict[str, Variable] = {}
         parameters: dict[str, float] = {}
         seen = [
             (slave.name, item) for slave in self._slaves for item in slave.inputs.variables + slave.outputs.variables
         ]
         for (owner, variable), column in zip(seen, self._rows[: self._count].T, strict=True):
             signals[f"{owner}.{variable.name}"] = column
-            variables[f"{owner}.{variable.name}"] = variable
+            meanings[f"{owner}.{variable.name}"] = variable
         for slave in self._slaves:
             for place, variable in enumerate(slave.parameters.variables):
                 parameters[f"{slave.name}.{variable.name}"] = float(slave.parameters.values[place])
-                variables[f"{slave.name}.{variable.name}"] = variable
-        return Recording(self._times[: self._count], signals, parameters, variables, info)
+                meanings[f"{slave.name}.{variable.name}"] = variable
+        return Recording(self._times[: self._count], signals, parameters, meanings, info)
 
 
 def to_json(variables: list[Variable], notes: list[str]) -> str:

@@ -3,16 +3,12 @@
 import math
 from typing import Any, NamedTuple
 
-import controller_fmu
-import vehicle_fmu
-from controller_fmu.interface import ControllerInput, ControllerOutput, ControllerParams
-from modelkit.variables import with_values
-from vehicle_fmu.interface import VehicleInput, VehicleOutput, VehicleParams
+from controller_fmu.interface import ControllerOutput
+from tests.controller.in_process import run
+from vehicle_fmu.interface import VehicleOutput
 
 STEP_NS = 10_000_000
 FINAL = (9, 10, 11)
-SHARED_INPUTS = [name for name in ControllerInput._fields if name in VehicleOutput._fields]
-SHARED_OUTPUTS = [name for name in VehicleInput._fields if name in ControllerOutput._fields]
 
 
 class Run(NamedTuple):
@@ -69,26 +65,22 @@ def box(number: int, x0: float, x1: float, y0: float, y1: float) -> dict[str, fl
 
 def drive(vehicle: dict[str, Any], controller: dict[str, Any], stop: float, keep: bool = False) -> Run:
     """Return the run until half a second after the assist has ended, or until ``stop`` [s]."""
-    plant, brain = vehicle_fmu.MODEL, controller_fmu.MODEL
-    vehicle_params: VehicleParams = with_values(VehicleParams, vehicle)
-    controller_params: ControllerParams = with_values(ControllerParams, controller)
-    car, seen = plant.initialize(vehicle_params)
-    mind, asked = brain.initialize(controller_params)
-    nearest, fastest, confirmed, end, rows, t = 1e9, 0.0, -1.0, -1.0, [], 0.0
-    for count in range(int(stop * 1e9) // STEP_NS):
-        t = count * STEP_NS * 1e-9
+    done = Run(0.0, VehicleOutput(), ControllerOutput(), 1e9, 0.0, 0.0, [])
+    confirmed = end = -1.0
+
+    def look(t_ns: int, seen: VehicleOutput, asked: ControllerOutput) -> bool:
+        nonlocal done, confirmed, end
+        t = t_ns * 1e-9
+        done = done._replace(time=t, vehicle=seen, controller=asked)
         if keep:
-            rows.append((t, seen, asked))
+            done.rows.append((t, seen, asked))
         if asked.apa.mode in (4, 5):
             confirmed = t if confirmed < 0.0 else confirmed
-            nearest = min(nearest, seen.clearance)
-            fastest = max(fastest, abs(seen.speed))
+            nearest, fastest = min(done.nearest, seen.clearance), max(done.fastest, abs(seen.speed))
+            done = done._replace(nearest=nearest, fastest=fastest)
         if asked.phase in FINAL and abs(seen.speed) < 1e-3:
             end = t if end < 0.0 else end
-            if t - end > 0.5:
-                break
-        inputs = ControllerInput(**{name: getattr(seen, name) for name in SHARED_INPUTS})
-        request = VehicleInput(**{name: getattr(asked, name) for name in SHARED_OUTPUTS})
-        mind, asked = brain.step(mind, inputs, controller_params, STEP_NS)
-        car, seen = plant.step(car, request, vehicle_params, STEP_NS)
-    return Run(t, seen, asked, nearest, fastest, end - confirmed, rows)
+        return end >= 0.0 and t - end > 0.5
+
+    run({"vehicle": vehicle, "controller": controller}, round(stop * 1e9), STEP_NS, look)
+    return done._replace(parking_time=end - confirmed)

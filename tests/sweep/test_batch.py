@@ -5,7 +5,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 import pytest
 
-from fmus.compiled_batch import Kept, compiled_rows, connections
+from fmus.compiled_batch import Kept, compiled_rows
 from modelkit.signal import Signal
 from orchestrator.cosim.fmu_files import fmu_files
 from orchestrator.scenario.models import MODELS
@@ -131,8 +131,8 @@ class Wrong(NamedTuple):
 
 def test_connected_types_must_agree():
     models = {**MODELS, "controller": MODELS["controller"]._replace(outputs=Wrong)}
-    with pytest.raises(TypeError, match=r"controller\.prompt and vehicle\.prompt differ in type"):
-        connections(models)
+    with pytest.raises(TypeError, match=r"prompt: output of controller is float, input of vehicle is int"):
+        compiled_rows(models, None, [Kept("last", "vehicle.speed")])
 
 
 def test_arrays_of_another_shape_are_refused(bind):

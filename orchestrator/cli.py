@@ -26,7 +26,8 @@ exit codes: 0 parked or done, 1 not parked, 2 bad input or a place that cannot b
 def main(arguments: Sequence[str] | None = None) -> int:
     """Return the exit code of one command line."""
     try:
-        parsed = parser().parse_args(arguments)
+        words = sys.argv[1:] if arguments is None else list(arguments)
+        parsed = parser().parse_args(words, argparse.Namespace(words=words))
         with _as_asked(parsed):
             return int(parsed.run(parsed))
     except BadInput as error:

@@ -2,6 +2,7 @@
 
 import argparse
 import json
+import shlex
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +14,7 @@ from orchestrator.scenario.requirements import read_requirements
 from orchestrator.session.foreign import add_foreign_arguments, foreign_files
 from orchestrator.suite.collection import write_collection
 from orchestrator.suite.junit import write_junit
-from orchestrator.suite.suite import Bench, Tested, chosen, run_test
+from orchestrator.suite.suite import Bench, Tested, chosen, run_test, tested_by
 from orchestrator.text.console import Meter, Warnings, console, say
 from orchestrator.text.errors import BAD_INPUT, INTERRUPTED
 
@@ -70,11 +71,13 @@ def run(arguments: argparse.Namespace) -> int:
             meter.at(len(tested))
             if not arguments.json:
                 _print(tested[-1], f"{len(tested)} of {len(names)}")
-    write_junit(arguments.junit or out / "junit.xml", [item.suite() for item in tested])
-    write_collection(out / "index.html", tested)
+    about = tested_by(tested, shlex.join(["apa", *arguments.words]))
+    write_junit(arguments.junit or out / "junit.xml", [item.suite() for item in tested], about)
+    write_collection(out / "index.html", tested, about)
     passed = sum(item.passed for item in tested)
     if arguments.json:
-        print(json.dumps({"passed": passed == len(names), "scenarios": [_row(item) for item in tested]}, indent=2))
+        rows = [_row(item) for item in tested]
+        print(json.dumps({"passed": passed == len(names), "about": about, "scenarios": rows}, indent=2))
     else:
         console().print(f"{passed} of {len(names)} scenarios passed; results in {out}", markup=False, soft_wrap=True)
     if interrupt.requested:

@@ -14,7 +14,7 @@ from orchestrator.cosim.recording import Recording
 from orchestrator.cosim.slave import Array
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.text.quantities import DEGREE
-from orchestrator.text.readable import shifts_text
+from orchestrator.text.readable import changes_text, shifts_text
 from orchestrator.verdict.frame import pose_of
 from orchestrator.verdict.geometry import (
     WHEEL_RADIUS,
@@ -104,8 +104,10 @@ def draw(recording: Recording, summary: Summary, scenario: Scenario, path: Path)
 
 def _title(summary: Summary, scenario: Scenario) -> str:
     final = summary.final
+    changes = changes_text(summary.changed)
+    name = f"{scenario.name} with {changes}" if changes else scenario.name
     return (
-        f"{scenario.name}: {summary.outcome.replace('_', ' ')} after {summary.duration:.1f} s, "
+        f"{name}: {summary.outcome.replace('_', ' ')} after {summary.duration:.1f} s, "
         f"{shifts_text(summary.shifts)}; "
         f"{final.lateral_error * 100:+.1f} cm lateral, {final.heading_error / DEGREE:+.2f} deg"
     )

@@ -31,6 +31,16 @@ def read_log(path: Path) -> Recording:
         raise BadInput(f"is not a complete log ({error}); try: apa recover {path}", file=path) from error
 
 
+def read_info(path: Path) -> dict[str, Any]:
+    """Return what a log says of its scenario, FMUs, seed and versions; empty if it is no complete log."""
+    try:
+        with path.open("rb") as stream:
+            records = {item.name: item.metadata for item in make_reader(stream).iter_metadata()}
+    except (OSError, McapError):
+        return {}
+    return {key: json.loads(value) for key, value in records.get("apa", {}).items()}
+
+
 def _read(reader: Any, path: Path) -> Recording:
     times: dict[str, list[int]] = {}
     messages: dict[str, list[bytes]] = {}

@@ -11,7 +11,7 @@ from orchestrator.report.run_data import ribbons_of, run_data
 from orchestrator.report.words import Line
 from orchestrator.text.errors import BadInput
 from orchestrator.text.quantities import DEGREE
-from orchestrator.text.readable import readable
+from orchestrator.text.readable import changes_text, readable
 from orchestrator.verdict.judge import Check
 from orchestrator.verdict.limit_text import limit_text
 from orchestrator.verdict.summary import Summary
@@ -45,12 +45,15 @@ def replay_page(recording: Recording, summary: Summary, words: list[Line]) -> st
 def _page(recording: Recording, summary: Summary, words: list[Line], most: int) -> str:
     arrays = Arrays()
     scenario = recording.info.get("scenario", {})
-    title = str(scenario.get("title") or summary.scenario)
+    changes = changes_text(summary.changed)
+    title = str(scenario.get("title") or summary.scenario) + (f" - with {changes}" if changes else "")
+    about = scenario.get("description")
+    about = f"unchanged: {about}" if changes and about else about
     run = run_data(recording, arrays, words, label="", most=most, keep=[check.t for check in summary.checks])
     run["checks"] = check_rows(summary.checks)
     header = {
         "title": title,
-        "subtitle": " \u00b7 ".join(str(item) for item in (summary.scenario, scenario.get("description")) if item),
+        "subtitle": " \u00b7 ".join(str(item) for item in (summary.scenario, about) if item),
         "verdict": verdict(summary),
         "facts": facts(summary),
         "plots": plots_of([recording], summary.checks, []),

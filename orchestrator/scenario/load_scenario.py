@@ -17,7 +17,7 @@ from orchestrator.text.quantities import scalar
 from orchestrator.text.yaml_file import explain, read_mapping
 
 ROOM = Path(__file__).parent.parent
-FIELDS = [*(name for name in Scenario.model_fields if name != "file"), "target"]
+FIELDS = [*(name for name in Scenario.model_fields if name not in ("file", "changed")), "target"]
 INHERITED_NOT = ("name", "title", "description", "base")
 
 
@@ -51,6 +51,7 @@ def load_scenario(name: str, sets: Iterable[str] = (), more: More | None = None)
     """
     path = find_file(name, "scenarios", "scenario", Path.cwd())
     layers = _layers(path, ())
+    sets = list(sets)
     layers.append((_set_layer(sets), "--set"))
     merged: dict[str, Any] = {}
     for content, file in layers:
@@ -66,7 +67,7 @@ def load_scenario(name: str, sets: Iterable[str] = (), more: More | None = None)
     for owner in MODELS:
         merged[owner] = _parameters(owner, [*car, *layers], seed, (more or {}).get(owner, ()))
     try:
-        return Scenario(**merged, file=str(path))
+        return Scenario(**merged, file=str(path), changed=dict(text.split("=", 1) for text in sets))
     except ValidationError as error:
         raise explain(error, path, FIELDS) from None
 

@@ -61,6 +61,8 @@ class Scenario(_Strict):
     """The outcome this scenario is meant to have."""
     file: str = ""
     """Where it came from."""
+    changed: dict[str, str] = {}
+    """What ``--set`` changed for one run, as it was written."""
 
     @property
     def step_ns(self) -> int:

@@ -7,6 +7,7 @@ from orchestrator.cosim.interrupts import on_interrupt
 from orchestrator.cosim.master import End, Interrupt
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.session.foreign import Files
+from orchestrator.session.replaced import clear, replaced
 from orchestrator.session.session import Ran, run_scenario
 from orchestrator.text.console import Meter, Warnings, say
 
@@ -21,9 +22,12 @@ def drive(scenario: Scenario, kind: str, log: Path, foreign: Files | None = None
     """
     files = None if kind == "none" else {**fmu_files(kind, say), **(foreign or {})}
     log.parent.mkdir(parents=True, exist_ok=True)
+    before = replaced(log, scenario)
+    if before:
+        say(f"apa: {before}")
     interrupt = Interrupt()
     with on_interrupt(interrupt), _Clock(scenario.name, scenario.stop_time, "s") as clock:
-        return run_scenario(
+        ran = run_scenario(
             scenario,
             files,
             kind=kind,
@@ -33,6 +37,10 @@ def drive(scenario: Scenario, kind: str, log: Path, foreign: Files | None = None
             warn=Warnings(),
             foreign=foreign or (),
         )
+    gone = clear(log.parent)
+    if gone:
+        say(f"apa: removed {', '.join(gone)} of the run before")
+    return ran
 
 
 class _Clock(Meter):

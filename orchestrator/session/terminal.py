@@ -6,7 +6,7 @@ from rich.table import Table
 
 from orchestrator.text.console import console
 from orchestrator.text.quantities import DEGREE
-from orchestrator.text.readable import precise, readable, shifts_text
+from orchestrator.text.readable import changes_text, precise, readable, shifts_text
 from orchestrator.verdict.compare import Difference
 from orchestrator.verdict.judge import Check
 from orchestrator.verdict.limit_text import limit_text
@@ -21,6 +21,8 @@ def print_summary(summary: Summary, title: str, expected: str) -> None:
     style = COLOURS[summary.outcome]
     wanted = "" if summary.outcome == expected else f"  (expected: {expected})"
     out.print(f"[bold]{summary.scenario}[/]  {escape(title)}".rstrip())
+    if changes_text(summary.changed):
+        out.print(f"changed: {escape(changes_text(summary.changed))}")
     out.print(f"[{style}]{summary.outcome}[/]: {escape(summary.reason)}{wanted}")
     final = summary.final
     out.print(

@@ -2,6 +2,7 @@
 
 import html
 import math
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -11,12 +12,13 @@ from orchestrator.cosim.recording import Recording
 from orchestrator.cosim.slave import Array
 from orchestrator.report.page import still_page
 from orchestrator.suite.suite import Tested
-from orchestrator.text.readable import shifts_text
+from orchestrator.text.readable import changes_text, shifts_text
 from orchestrator.verdict.frame import pose_of
 from orchestrator.verdict.geometry import Car, place, slot_box
 
 BODY = """<header class="top"><div class="headline"><h1>{title}</h1></div>
 <span class="verdict {kind}">{verdict}</span></header>
+<dl class="card about">{facts}</dl>
 <main class="runs">
 {cards}
 </main>
@@ -29,13 +31,14 @@ CARD = """<article class="card run {kind}">
 WIDTH, HEIGHT = 300.0, 150.0
 
 
-def write_collection(path: Path, tested: list[Tested]) -> None:
-    """Write the page; failures come first."""
+def write_collection(path: Path, tested: list[Tested], about: Mapping[str, str]) -> None:
+    """Write the page; failures come first. ``about`` says what was tested, when and how."""
     passed = sum(item.passed for item in tested)
     kind = "good" if passed == len(tested) else "bad"
     cards = "\n".join(_card(item) for item in sorted(tested, key=lambda item: item.passed))
     title = "Scenarios tested"
-    body = BODY.format(title=title, verdict=f"{passed} of {len(tested)} passed", kind=kind, cards=cards)
+    facts = "".join(f"<dt>{html.escape(key)}</dt><dd>{html.escape(text)}</dd>" for key, text in about.items())
+    body = BODY.format(title=title, facts=facts, verdict=f"{passed} of {len(tested)} passed", kind=kind, cards=cards)
     path.parent.mkdir(parents=True, exist_ok=True)
     path.write_text(still_page(title, body), encoding="utf-8")
 
@@ -44,7 +47,7 @@ def _card(item: Tested) -> str:
     name = item.scenario.name
     missed = [f"{case.name}: {case.text}" for case in item.cases if not case.passed and not case.skipped]
     missed += [item.error] if item.error else []
-    summary = item.summary
+    summary, changes = item.summary, changes_text(item.scenario.changed)
     outcome = (
         f"{summary.outcome.replace('_', ' ')}, {summary.duration:.1f} s, {shifts_text(summary.shifts)}"
         if summary
@@ -55,7 +58,7 @@ def _card(item: Tested) -> str:
         verdict="pass" if item.passed else "fail",
         link=html.escape(f"{name}/report.html"),
         name=html.escape(name),
-        title=html.escape(item.scenario.title),
+        title=html.escape(item.scenario.title + (f" - with {changes}" if changes else "")),
         outcome=html.escape(outcome),
         picture=picture(item.recording) if item.recording is not None else "",
         missed="".join(f'<p class="missed">{html.escape(text)}</p>' for text in missed),

@@ -2,7 +2,9 @@
 
 import math
 import xml.etree.ElementTree as ElementTree
+from collections.abc import Mapping
 from pathlib import Path
+from types import MappingProxyType
 from typing import NamedTuple
 
 from orchestrator.text.readable import readable
@@ -33,6 +35,8 @@ class Suite(NamedTuple):
     """Time it took [s]."""
     error: str = ""
     """Why the run could not be judged at all."""
+    properties: Mapping[str, str] = MappingProxyType({})
+    """What else is to be known of it."""
 
 
 def cases_of(checks: list[Check]) -> list[Case]:
@@ -66,8 +70,8 @@ def sentence(check: Check) -> str:
     return f"{check.signal}: {value} at {check.t:.3f} s, asked {limit_text(check)}, margin {margin}"
 
 
-def write_junit(path: Path, suites: list[Suite]) -> None:
-    """Write the suites to ``path``."""
+def write_junit(path: Path, suites: list[Suite], about: Mapping[str, str] = MappingProxyType({})) -> None:
+    """Write the suites to ``path``; ``about`` says what was tested, when and how."""
     root = ElementTree.Element("testsuites", name="apa")
     totals = [0, 0, 0, 0]
     for suite in suites:
@@ -80,6 +84,12 @@ def write_junit(path: Path, suites: list[Suite]) -> None:
         totals = [total + count for total, count in zip(totals, counts, strict=True)]
         attributes = {"name": _text(suite.name), "time": f"{suite.time:.3f}", **_counts(counts)}
         node = ElementTree.SubElement(root, "testsuite", attributes)
+        if "when" in about:
+            node.set("timestamp", about["when"])
+        if about or suite.properties:
+            properties = ElementTree.SubElement(node, "properties")
+            for key, text in {**about, **suite.properties}.items():
+                ElementTree.SubElement(properties, "property", name=_text(key), value=_text(text))
         if suite.error:
             _case(node, suite.name, "run", "error", suite.error)
         for case in told_apart(suite.cases):

@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Callable, Collection, Mapping
+from datetime import datetime
 from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import NamedTuple
@@ -13,9 +14,11 @@ from orchestrator.scenario.load_scenario import scenario_names
 from orchestrator.scenario.requirements import Requirement
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.session.foreign import Files, load_fitting
-from orchestrator.session.session import run_scenario
+from orchestrator.session.replaced import clear
+from orchestrator.session.session import run_scenario, versions
 from orchestrator.suite.junit import Case, Suite, cases_of, told_apart
 from orchestrator.text.errors import BadInput
+from orchestrator.text.readable import changes_text
 from orchestrator.verdict.judge import Check, judge
 from orchestrator.verdict.numbers import numbers_of
 from orchestrator.verdict.summary import Summary, summarize
@@ -48,7 +51,13 @@ class Tested(NamedTuple):
     def suite(self) -> Suite:
         """Return the verdict for JUnit."""
         time = self.summary.wall_time if self.summary else 0.0
-        return Suite(self.scenario.name, self.cases, time, self.error)
+        notes = {
+            "changed": changes_text(self.scenario.changed),
+            "left out": ", ".join(self.ignored),
+        }
+        return Suite(
+            self.scenario.name, self.cases, time, self.error, {key: text for key, text in notes.items() if text}
+        )
 
 
 class Bench(NamedTuple):
@@ -107,6 +116,7 @@ def _judged(scenario: Scenario, ignored: list[str], bench: Bench, folder: Path) 
         warn=bench.warn,
         foreign=bench.foreign,
     )
+    clear(folder)
     summary = summarize(ran.recording, scenario, ran.wall_time)
     checks = _extra_checks(bench, ran.recording)
     write_summary(folder, summary)
@@ -114,6 +124,18 @@ def _judged(scenario: Scenario, ignored: list[str], bench: Bench, folder: Path) 
     broken = ran.end.reason if ran.end.reason.startswith("error") and scenario.expect != "aborted" else ""
     cases = [] if broken else _cases(scenario, summary, checks)
     return Tested(scenario, summary, ran.recording, cases, ignored, broken, tuple(ran.remarks))
+
+
+def tested_by(tested: list[Tested], command: str) -> dict[str, str]:
+    """Return what was tested, when and how: for the page and JUnit."""
+    used = next((item.summary.fmus for item in tested if item.summary is not None), [])
+    fmus = {
+        item.name: f"{item.path}, SHA-256 {item.sha256}" if item.path else f"{item.kind}, {item.guid}" for item in used
+    }
+    when = datetime.now().astimezone().isoformat(timespec="seconds")
+    about = {**fmus, "command": command, "when": when, "apa-cosim": versions()["apa-cosim"]}
+    remarks = dict.fromkeys(text for item in tested for text in item.remarks)
+    return {**about, "warning": "; ".join(remarks)} if remarks else about
 
 
 def _extra_checks(bench: Bench, recording: Recording) -> list[Check]:

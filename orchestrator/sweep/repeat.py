@@ -50,7 +50,8 @@ def repeat_row(table: Table, number: int, out: Path, kind: str = "none", *, page
 def write_scenario(table: Table, number: int, file: Path) -> Scenario:
     """Write row ``number`` as a scenario that stands on its own; return it as it is read back."""
     scenario = chunk_scenario(table.job, table.chunk(number), 0)
-    content = scenario.model_dump(mode="python", exclude={"file", "base", "car"}, by_alias=True, exclude_none=True)
+    told = {"file", "base", "car", "changed"}
+    content = scenario.model_dump(mode="python", exclude=told, by_alias=True, exclude_none=True)
     name = f"{table.about['study']['name']}-row-{number}"
     file.parent.mkdir(parents=True, exist_ok=True)
     file.write_text(yaml.safe_dump({**content, "name": name}, sort_keys=False, allow_unicode=True), encoding="utf-8")

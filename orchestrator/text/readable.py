@@ -1,8 +1,12 @@
 """Numbers as people read them."""
 
 import math
+from collections.abc import Mapping
 
 from orchestrator.text.quantities import DEGREE
+
+WORDS = ("name", "title", "description", "source")
+"""Keys of a scenario that change nothing in a run."""
 
 
 def readable(value: float, unit: str) -> str:
@@ -22,3 +26,8 @@ def precise(value: float, unit: str) -> str:
 def shifts_text(shifts: int | None) -> str:
     """Return a number of manoeuvres in words."""
     return "shifts not counted" if shifts is None else f"{shifts} shifts"
+
+
+def changes_text(changed: Mapping[str, str]) -> str:
+    """Return what was changed of a scenario in words; its own words are no change."""
+    return ", ".join(f"{key} = {value}" for key, value in changed.items() if key not in WORDS)

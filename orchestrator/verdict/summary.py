@@ -60,6 +60,8 @@ class Summary(_Part):
     """The whole of summary.json."""
 
     scenario: str
+    changed: dict[str, str]
+    """What ``--set`` changed of the scenario."""
     outcome: Outcome
     reason: str
     duration: float
@@ -93,6 +95,7 @@ def summarize(recording: Recording, scenario: Scenario, wall_time: float) -> Sum
     outcome, reason = _outcome(recording, checks)
     return Summary(
         scenario=scenario.name,
+        changed=scenario.changed,
         outcome=outcome,
         reason=reason,
         duration=numbers["duration"],

@@ -292,3 +292,42 @@ def test_completion_in_other_shells(shell: str, tmp_path: Path, capsys: pytest.C
     script.write_text(text)
     asked = {"zsh": "autoload -U compinit; compinit -u", "fish": "true"}[shell]
     subprocess.run([shell, "-c", f"{asked}; source {script}"], capture_output=True, text=True, check=True)
+
+
+def test_a_run_says_what_it_replaces_and_takes_what_was_made_of_it(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    arguments = ["run", DEMO, "--fmus", "none", "--out", str(tmp_path)]
+    assert main(arguments) == 0
+    assert main(["export", "csv", str(tmp_path / "run.mcap")]) == 0
+    capsys.readouterr()
+    assert main([*arguments, "--no-figure"]) == 0
+    error = capsys.readouterr().err
+    assert "other parameters" not in error
+    assert "removed run.csv of the run before" in error
+    assert {path.name for path in tmp_path.iterdir()} == {"run.mcap", "summary.json"}
+    assert main([*arguments, "--no-figure", "--set", "vehicle.driver.obeys_slow_down=false"]) in (0, 1)
+    error = capsys.readouterr().err
+    assert f"{tmp_path} has a run with other parameters, which this one replaces: vehicle.driver." in error
+
+
+def test_what_was_changed_stands_in_every_headline(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    sets = ["--set", "controller.ntbpt.k4=3", "--set", "title=A <b>title</b>"]
+    arguments = ["guo2015-case4", "--fmus", "none", *sets, "--out"]
+    assert main(["run", *arguments, str(tmp_path / "run")]) == 0
+    assert "changed: controller.ntbpt.k4 = 3\n" in capsys.readouterr().out
+    summary = json.loads((tmp_path / "run" / "summary.json").read_text(encoding="utf-8"))
+    assert summary["changed"] == {"controller.ntbpt.k4": "3", "title": "A <b>title</b>"}
+    page = (tmp_path / "run" / "report.html").read_text(encoding="utf-8")
+    assert "<title>A &lt;b&gt;title&lt;/b&gt; - with controller.ntbpt.k4 = 3</title>" in page
+    assert main(["test", *arguments, str(tmp_path / "test")]) == 0
+    assert "title&lt;/b&gt; - with controller.ntbpt.k4 = 3" in (tmp_path / "test" / "index.html").read_text("utf-8")
+    assert main(["report", str(tmp_path / "run" / "run.mcap"), "--out", str(tmp_path / "again.html")]) == 0
+    assert "- with controller.ntbpt.k4 = 3</title>" in (tmp_path / "again.html").read_text(encoding="utf-8")
+
+
+def test_a_scenario_file_cannot_say_what_was_changed(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file = tmp_path / "mine.yaml"
+    file.write_text("{base: guo2015-case4, changed: {a: b}}")
+    assert main(["run", str(file), "--out", str(tmp_path / "out")]) == 2
+    assert "changed: unknown" in capsys.readouterr().err

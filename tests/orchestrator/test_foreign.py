@@ -1,5 +1,6 @@
 """A controller of somebody else's: connected as FMI 2.0 allows, judged by what was measured, unable to stop a test."""
 
+import html
 import json
 import subprocess
 import sys
@@ -136,3 +137,21 @@ def test_without_a_phase_nothing_says_parked(tmp_path: Path, capsys: pytest.Capt
     assert "shifts not counted" in captured.out
     assert "clearance" in captured.out
     assert "not judged" in captured.out
+
+
+def test_what_was_tested_when_and_how_is_told(theirs: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    out = tmp_path / "out put"
+    words = ["test", "guo2015-case4", "--controller", str(theirs), "--out", str(out), "--json"]
+    main(words)
+    about = json.loads(capsys.readouterr().out)["about"]
+    assert about["controller"].startswith(f"{theirs}, SHA-256 ")
+    assert about["vehicle"].startswith("native, {")
+    assert about["command"] == f"apa test guo2015-case4 --controller {theirs} --out '{out}' --json"
+    assert about["warning"].count("controller has no output shifts") == 1
+    page = (out / "index.html").read_text(encoding="utf-8")
+    suite = ElementTree.parse(out / "junit.xml").getroot()[0]
+    assert suite.get("timestamp") == about["when"]
+    told = {item.get("name"): item.get("value") for item in suite.iter("property")}
+    assert {key: told[key] for key in about} == about
+    assert told["left out"].startswith("controller.system, ")
+    assert all(html.escape(text) in page for text in about.values())

@@ -192,7 +192,10 @@ class PromptParams(NamedTuple):
     """What the controller assumes of the driver when it prompts ahead of time."""
 
     speed_limit: Annotated[float, Signal("m/s", "speed advised where nothing asks for less", 0.1, 10.0, HOUSE)] = 2.5
-    creep_speed: Annotated[float, Signal("m/s", "speed advised at the end of the path", 0.01, 2.0, HOUSE)] = 0.2
+    point_speed: Annotated[
+        float, Signal("m/s", "speed advised for point tracking", 0.01, 10.0, GUO + ", case 4: 5 to 9 s slowly forward")
+    ] = 0.5
+    creep_speed: Annotated[float, Signal("m/s", "speed advised at the end of a way", 0.01, 2.0, HOUSE)] = 0.2
     reaction: Annotated[float, Signal("s", "reaction assumed of the driver", 0.0, 5.0, HOUSE)] = 0.3
     deceleration: Annotated[float, Signal("m/s2", "deceleration assumed of the driver", 0.1, 10.0, HOUSE)] = 2.0
     jump_deviation: Annotated[float, Signal("m", "deviation accepted at a curvature jump", 1e-3, 1.0, HOUSE)] = 0.025
@@ -207,10 +210,12 @@ class LimitParams(NamedTuple):
     stopping: Annotated[float, Signal("s", "longest wait for the driver to stop", 0.1, 60.0, HOUSE)] = 2.5
     wrong_direction: Annotated[float, Signal("s", "longest drive against the prompt", 0.1, 60.0, HOUSE)] = 1.5
     pose_frozen: Annotated[float, Signal("s", "longest drive without a change of pose", 0.1, 60.0, HOUSE)] = 0.5
-    wheel_lag: Annotated[
-        float, Signal("rad", "steering wheel behind its request by more than its rate explains", 0.1, 20.0, HOUSE)
-    ] = 1.0
-    wheel_fault: Annotated[float, Signal("s", "longest such lag", 0.1, 60.0, HOUSE)] = 1.0
+    wheel_off: Annotated[
+        float, Signal("rad", "steering wheel off its request: it must come nearer", 0.01, 20.0, HOUSE)
+    ] = 0.1
+    wheel_fault: Annotated[
+        float, Signal("s", "longest time off its request without coming nearer", 0.1, 60.0, HOUSE)
+    ] = 0.28
 
 
 class ControllerParams(NamedTuple):

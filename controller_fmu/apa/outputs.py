@@ -70,7 +70,7 @@ def prompt_of(state: ApaState, params: ControllerParams) -> int:
     if (state.mode == ASSIST or state.mode == TUNING) and params.apa.drive.longitudinal != OWN_SPEED:
         if state.parking.step != DRIVE:
             return STOP
-        if state.parking.tracked.way > MOVING:
+        if state.parking.tracked.way > MOVING and state.watch.waiting == 0:
             return SLOW_DOWN
         return FORWARD if state.parking.direction > 0 else REVERSE
     return NO_PROMPT

@@ -17,6 +17,7 @@ from controller_fmu.apa.tracking import Leg, Tracked, next_standstill, set_wheel
 from controller_fmu.apa.watch import STANDING
 from controller_fmu.interface import ControllerInput, ControllerParams
 from controller_fmu.slot_frame import to_slot
+from controller_fmu.steering_monitor import Steering, rate_of
 from modelkit.maths import clamp
 from modelkit.vocabulary import Pose
 
@@ -99,7 +100,9 @@ def is_in_place(pose: Pose, site: Site, lateral: float, heading: float) -> bool:
     )
 
 
-def park(state: Parking, slot: Slot, inputs: ControllerInput, allowed: bool, params: ControllerParams) -> Parking:
+def park(
+    state: Parking, slot: Slot, inputs: ControllerInput, steering: Steering, allowed: bool, params: ControllerParams
+) -> Parking:
     """Return the manoeuvre one sample later; while not ``allowed`` the first plan is made, and no more."""
     site = site_for(slot, state.attempt, params)
     car = car_of(params)
@@ -125,7 +128,7 @@ def park(state: Parking, slot: Slot, inputs: ControllerInput, allowed: bool, par
         sight = look(inputs.ultrasonic, pose, mirror, plan.move.direction, inputs.measured_speed, around, params.apa)
     guards = _guards(state, plan, tracked, sight, pose, site, inputs, allowed, params)
     step = step_transition(state.step, guards)
-    return _moved_on(state, step, plan, attempt, tracked, sight, pose, site, inputs, params)
+    return _moved_on(state, step, plan, attempt, tracked, sight, pose, site, inputs, steering, params)
 
 
 def _guards(
@@ -187,6 +190,7 @@ def _moved_on(
     pose: Pose,
     site: Site,
     inputs: ControllerInput,
+    steering: Steering,
     params: ControllerParams,
 ) -> Parking:
     shifts = state.shifts
@@ -211,7 +215,7 @@ def _moved_on(
         if state.step != DRIVE and plan.move.direction != direction:
             shifts = shifts + 1 if shifts > 0 or plan.move.direction < 0 else shifts
             direction = plan.move.direction
-        speed = direction * _speed(tracked, sight, params)
+        speed = direction * _speed(tracked, sight, steering, params)
     if step == DRIVE or step == HALT:
         wheel = _wheel(site.frame.mirror * tracked.front_wheel_angle, params)
     if step == STRAIGHTEN or step == IDLE:
@@ -228,8 +232,8 @@ def _next_leg(state: Parking, plan: PlanSearch, tracked: Tracked) -> Leg:
     return state.leg
 
 
-def _speed(tracked: Tracked, sight: Sight, params: ControllerParams) -> float:
-    rate = params.steering_wheel_rate / params.steering_ratio
+def _speed(tracked: Tracked, sight: Sight, steering: Steering, params: ControllerParams) -> float:
+    rate = rate_of(steering, params.steering_wheel_rate) / params.steering_ratio
     speed = planned_speed(tracked.to_stop, tracked.slope, params.wheelbase, rate, params.apa.drive)
     speed = sight.speed if sight.speed < speed else speed
     return speed if speed > params.apa.drive.creep else params.apa.drive.creep

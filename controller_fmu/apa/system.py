@@ -27,6 +27,7 @@ from controller_fmu.apa.supervisor import Sight
 from controller_fmu.apa.tracking import Leg, Tracked
 from controller_fmu.apa.watch import STANDING, Watch, is_taken_over, reason_to_fail, watch
 from controller_fmu.interface import ControllerInput, ControllerParams, Reason
+from controller_fmu.steering_monitor import SteeringWatch
 from modelkit.vocabulary import Pose
 
 OFF = int(Mode.OFF)
@@ -77,7 +78,7 @@ NOT_PARKING = Parking(
     0.0,
     0.0,
 )
-NOT_WATCHED = Watch(0, 0, 0, 0, 0, 0, 0, 0, 0, 0.0, 0.0, NOWHERE)
+NOT_WATCHED = Watch(0, 0, 0, 0, 0, 0, 0, SteeringWatch(), NOWHERE)
 AT_START = ApaState(OFF, NO_REASON, False, 0, begin_search(NOWHERE, 0), NO_SLOT, NOT_PARKING, NOT_WATCHED, 0, NOWHERE)
 
 
@@ -99,7 +100,7 @@ def apa_sample(state: ApaState, inputs: ControllerInput, params: ControllerParam
                 parking = cut_short(parking) if slot.depth < state.slot.depth - SHALLOWER else parking
             if driving and is_new_reading(state.clock_ns, dt_ns):
                 slot = along(between(slot, inputs, params), inputs, params)
-            parking = park(parking, slot, inputs, driving, params)
+            parking = park(parking, slot, inputs, seen.wheel.steering, driving, params)
     reason = _later_reason(reason, state, parking, found, params)
     guards = _guards(state, parking, found, seen, inputs, reason, taken, params)
     mode = transition(state.mode, guards)

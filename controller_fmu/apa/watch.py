@@ -6,7 +6,8 @@ from typing import NamedTuple
 from controller_fmu.apa.manoeuvre_chart import Step
 from controller_fmu.apa.params import ApaParams, Longitudinal
 from controller_fmu.interface import ControllerInput, ControllerParams, Reason
-from modelkit.maths import is_finite, move_towards
+from controller_fmu.steering_monitor import SteeringWatch, at_rest, has_failed, watch_steering
+from modelkit.maths import is_finite
 from modelkit.vocabulary import Gear, Pose
 
 STANDING = 0.01
@@ -19,7 +20,9 @@ PARK = int(Gear.PARK)
 NEUTRAL = int(Gear.NEUTRAL)
 NONE = Reason.NONE.value
 PULLED = 0.3
-"""The wheel is this far [rad] from what its rate explains and goes the other way: the driver turns it."""
+"""The wheel is this far [rad] from its request and goes the other way: the driver turns it."""
+PULLED_FOR = 0.2
+"""For so long [s]."""
 SETTLING = 0.3
 """The driver's pedal and selector are looked at this long [s] after the assist took over."""
 
@@ -33,14 +36,9 @@ class Watch(NamedTuple):
     fast: int = 0
     blind: int = 0
     frozen: int = 0
-    lag: int = 0
-    away: int = 0
     running: int = 0
     """Since the driver confirmed."""
-    wheel: float = 0.0
-    """Steering-wheel angle [rad] that its rate explains."""
-    angle: float = 0.0
-    """Steering-wheel angle [rad] at the last sample."""
+    wheel: SteeringWatch = SteeringWatch()
     pose: Pose = Pose()
 
 
@@ -59,10 +57,9 @@ def watch(
     still = abs(speed) <= STANDING
     dt = dt_ns * 1e-9
     angle = inputs.steering_wheel_angle
-    wheel = move_towards(state.wheel, request, params.steering_wheel_rate * dt) if driving else angle
-    off = abs(wheel - angle) > params.limit.wheel_lag and driving
-    pulled = abs(wheel - angle) > PULLED and driving
-    against = (angle - state.angle) * (request - angle) < 0.0
+    wheel = at_rest(angle, state.wheel.steering)
+    if driving:
+        wheel = watch_steering(state.wheel, request, angle, params.limit.wheel_off, params.steering_wheel_rate, dt_ns)
     dx = inputs.odometry.x - state.pose.x
     dy = inputs.odometry.y - state.pose.y
     way = speed * dt
@@ -77,11 +74,8 @@ def watch(
         fast=state.fast + dt_ns if abs(speed) > limit and driving else 0,
         blind=state.blind + dt_ns if not _all_heard(inputs, params.apa) else 0,
         frozen=state.frozen + dt_ns if unmoved else 0,
-        lag=state.lag + dt_ns if off and not against and step == DRIVE else 0,
-        away=state.away + dt_ns if pulled and against else 0,
         running=state.running + dt_ns if driving else state.running,
         wheel=wheel,
-        angle=angle,
         pose=inputs.odometry,
     )
 
@@ -102,8 +96,12 @@ def is_taken_over(state: Watch, inputs: ControllerInput, params: ControllerParam
     settled = state.running * 1e-9 > SETTLING
     pedal = own and settled and inputs.brake_pedal > params.apa.guard.pedal
     out_of_gear = (inputs.gear == PARK or inputs.gear == NEUTRAL) and abs(inputs.measured_speed) > 0.2
-    wheel = state.away * 1e-9 > 0.2
+    wheel = _is_off(state.wheel) and state.wheel.away_ns * 1e-9 > PULLED_FOR
     return inputs.driver_takeover or pedal or (settled and out_of_gear) or wheel
+
+
+def _is_off(wheel: SteeringWatch) -> bool:
+    return abs(wheel.request - wheel.angle) > PULLED
 
 
 def reason_to_fail(state: Watch, inputs: ControllerInput, driving: bool, params: ControllerParams) -> int:
@@ -121,14 +119,14 @@ def reason_to_fail(state: Watch, inputs: ControllerInput, driving: bool, params:
         return NONE
     if state.fast * 1e-9 > guard.over_speed_time:
         return Reason.OVER_SPEED.value
-    if state.lag * 1e-9 > params.limit.wheel_fault:
+    if has_failed(state.wheel, params.limit.wheel_fault):
         return Reason.STEERING_FAULT.value
     if state.stopping * 1e-9 > params.limit.stopping:
         return Reason.NOT_STOPPING.value
     if state.blocked * 1e-9 > guard.blocked:
         return Reason.BLOCKED.value
     if state.waiting * 1e-9 > guard.patience:
-        return Reason.STEERING_FAULT.value if abs(state.wheel - state.angle) > PULLED else Reason.NOT_MOVING.value
+        return Reason.STEERING_FAULT.value if _is_off(state.wheel) else Reason.NOT_MOVING.value
     if state.running * 1e-9 > guard.duration:
         return Reason.TIMEOUT.value
     return NONE

@@ -1,13 +1,14 @@
 """Watches the car and the driver at every sample; each reason to fail has a limit in time.
 
 A quantity that must not last has a clock [ns] that runs while it holds and is put back to zero
-when it does not.
+when it does not. The steering has a monitor of its own, ``controller_fmu.steering_monitor``.
 """
 
 from typing import NamedTuple
 
 from controller_fmu.interface import ControllerInput, ControllerParams, Phase, Reason
-from modelkit.maths import move_towards, sign
+from controller_fmu.steering_monitor import SteeringWatch, at_rest, has_failed, watch_steering
+from modelkit.maths import sign
 from modelkit.vocabulary import Pose
 
 STANDBY = int(Phase.STANDBY)
@@ -29,15 +30,13 @@ DIRECTION_OF_PHASE = (0, 0, -1, 0, 1, -1, 1, -1, 0, 0, 0, 0)
 
 
 class MonitorState(NamedTuple):
-    """Clocks [ns] and what the wheel and the pose should be."""
+    """Clocks [ns], the watch over the wheel, and where the car was."""
 
     waiting: int = 0
     stopping: int = 0
     wrong_way: int = 0
     frozen: int = 0
-    lag: int = 0
-    wheel: float = 0.0
-    """Steering-wheel angle [rad] that its rate limit explains."""
+    wheel: SteeringWatch = SteeringWatch()
     pose: Pose = Pose()
     """Pose at the last sample."""
 
@@ -50,7 +49,10 @@ def watch(
     still = abs(speed) <= params.threshold.standstill
     direction = DIRECTION_OF_PHASE[phase]
     dt = dt_ns * 1e-9
-    wheel = move_towards(state.wheel, request, params.steering_wheel_rate * dt) if phase != STANDBY else request
+    angle = inputs.steering_wheel_angle
+    wheel = at_rest(angle, state.wheel.steering)
+    if phase != STANDBY:
+        wheel = watch_steering(state.wheel, request, angle, params.limit.wheel_off, params.steering_wheel_rate, dt_ns)
     dx = inputs.odometry.x - state.pose.x
     dy = inputs.odometry.y - state.pose.y
     way = speed * dt
@@ -60,7 +62,6 @@ def watch(
         stopping=state.stopping + dt_ns if not still and direction == 0 else 0,
         wrong_way=state.wrong_way + dt_ns if sign(speed) * direction < 0.0 and not still else 0,
         frozen=state.frozen + dt_ns if unmoved else 0,
-        lag=state.lag + dt_ns if abs(wheel - inputs.steering_wheel_angle) > params.limit.wheel_lag else 0,
         wheel=wheel,
         pose=inputs.odometry,
     )
@@ -77,7 +78,7 @@ def reason_to_fail(
         return NO_REASON
     if state.frozen * 1e-9 > limit.pose_frozen:
         return POSE_FROZEN
-    if state.lag * 1e-9 > limit.wheel_fault:
+    if has_failed(state.wheel, limit.wheel_fault):
         return STEERING_FAULT
     if state.wrong_way * 1e-9 > limit.wrong_direction:
         return WRONG_DIRECTION

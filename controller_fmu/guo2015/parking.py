@@ -15,7 +15,14 @@ from controller_fmu.guo2015.monitor import (
 )
 from controller_fmu.guo2015.path import SECOND_ARC, reference_at
 from controller_fmu.guo2015.planner import Plan, plan
-from controller_fmu.guo2015.prompts import advised_speed, prompt_of
+from controller_fmu.guo2015.prompts import (
+    is_moving,
+    path_speed,
+    point_speed,
+    prompt_of,
+    smaller,
+    swing_speed,
+)
 from controller_fmu.interface import ControllerInput, ControllerOutput, ControllerParams, Path, Phase, Reason, Segment
 from controller_fmu.slot_frame import to_slot, to_world
 from modelkit.maths import clamp
@@ -54,7 +61,12 @@ class ParkingState(NamedTuple):
     plan: Plan = Plan()
     tracking: Tracking = Tracking()
     request: float = 0.0
+    moving: bool = False
+    """The car is on its way in the direction asked for."""
     advice: float = 0.0
+    """Speed advised [m/s]; it holds while the driver is asked to stop."""
+    swing: float = 0.0
+    """Speed advised [m/s] while the wheel swings to where the path wants it."""
     takeover: bool = False
     monitor: MonitorState = MonitorState()
 
@@ -99,7 +111,7 @@ def outputs(state: ParkingState, params: ControllerParams) -> ControllerOutput:
     return ControllerOutput(
         steering_wheel_request=state.request,
         steering_active=active,
-        prompt=prompt_of(state.phase, state.advice, params.prompting),
+        prompt=prompt_of(state.phase, state.moving, state.advice, params.prompting),
         advised_speed=state.advice,
         speed_control_active=False,
         speed_request=0.0,
@@ -179,10 +191,8 @@ def _moved_on(
     tracking = track(
         driven if phase == STOP else leg, pose, planned.path, SECOND_ARC if back_on_path else state.piece, params
     )
-    advice = params.prompting.speed_limit
-    if phase == PATH_TRACKING:
-        reference = reference_at(planned.path, pose.x, tracking.piece)
-        advice = advised_speed(planned.path, reference, inputs.measured_speed, params)
+    request = _wheel_request(phase, tracking, planned, params)
+    swing = _swing(state, phase, request, inputs, monitor, params)
     return ParkingState(
         phase=phase,
         leg=leg,
@@ -190,15 +200,60 @@ def _moved_on(
         reason=NO_REASON,
         shifts=state.shifts + 1 if turned else state.shifts,
         direction=direction if direction != 0 else state.direction,
-        running_ns=state.running_ns + dt_ns if phase != STANDBY else 0,
+        running_ns=state.running_ns + dt_ns,
         piece=tracking.piece,
         plan=planned,
         tracking=tracking,
-        request=_wheel_request(phase, tracking, planned, params),
-        advice=advice,
+        request=request,
+        moving=is_moving(state.moving, inputs.measured_speed, direction, params.threshold.standstill),
+        advice=_advice(state, phase, planned, pose, tracking, swing, inputs, monitor, params),
+        swing=swing,
         takeover=inputs.driver_takeover,
         monitor=monitor,
     )
+
+
+def _advice(
+    state: ParkingState,
+    phase: int,
+    planned: Plan,
+    pose: Pose,
+    tracking: Tracking,
+    swing: float,
+    inputs: ControllerInput,
+    monitor: MonitorState,
+    params: ControllerParams,
+) -> float:
+    """Return the speed advised [m/s]; while a stop is asked for, that of before."""
+    if phase == STANDBY:
+        return params.prompting.speed_limit
+    if DIRECTION_OF_PHASE[phase] == 0:
+        return state.advice
+    speed = inputs.measured_speed
+    if phase == PATH_TRACKING:
+        reference = reference_at(planned.path, pose.x, tracking.piece)
+        return smaller(swing, path_speed(planned.path, reference, speed, monitor.wheel.steering, params))
+    left = -DIRECTION_OF_PHASE[phase] * tracking.ahead
+    return smaller(swing, point_speed(left, speed, params.prompting))
+
+
+def _swing(
+    state: ParkingState,
+    phase: int,
+    request: float,
+    inputs: ControllerInput,
+    monitor: MonitorState,
+    params: ControllerParams,
+) -> float:
+    """Return the speed [m/s] at which the wheel may swing to its request; held until it has arrived."""
+    limit = params.prompting.speed_limit
+    wheel = inputs.steering_wheel_angle
+    if DIRECTION_OF_PHASE[phase] == 0 or abs(request - wheel) <= params.limit.wheel_off:
+        return limit
+    lock = params.steering_wheel_limit
+    angle = clamp(wheel, -lock, lock) / params.steering_ratio
+    speed = swing_speed(angle, request / params.steering_ratio, monitor.wheel.steering, params)
+    return smaller(speed, state.swing) if DIRECTION_OF_PHASE[state.phase] != 0 else speed
 
 
 def _wheel_request(phase: int, tracking: Tracking, planned: Plan, params: ControllerParams) -> float:
@@ -221,7 +276,9 @@ def _ended(state: ParkingState, phase: int, reason: int, takeover: bool) -> Park
         plan=state.plan,
         tracking=state.tracking,
         request=state.request,
+        moving=False,
         advice=0.0,
+        swing=state.swing,
         takeover=takeover,
         monitor=state.monitor,
     )

@@ -1,14 +1,20 @@
 """What the driver is told: the prompt of each state, and the speed advised ahead of trouble.
 
-At a curvature jump dk the wheel swings for T = |d phi| / rate while the car drives v T; the error
-left after the swing is dk (v T)^2 / 3. So the speed that keeps it under e is sqrt(3 e / |dk|) / T.
+A wheel that has to swing to the path's curvature, dk away, does so late by D and for T = |d phi| / rate,
+while the car drives on at v. The steering error holds for v D and then falls linearly over v T, which
+leaves the car dk v^2 (T^2 / 3 + D T + D^2 / 2) beside the path. The speed that keeps this under e is
+
+    v = sqrt(e / (dk (T^2 / 3 + D T + D^2 / 2)))
+
+It is advised before a jump of the path's curvature, and held until the wheel has arrived.
 """
 
 import math
 
 from controller_fmu.guo2015.path import Reference, curvature_after, distance_to_end, distance_to_jump
 from controller_fmu.guo2015.planner import TwoArcPath
-from controller_fmu.interface import ControllerParams, Phase, PromptParams
+from controller_fmu.interface import ControllerParams, PromptParams
+from controller_fmu.steering_monitor import Steering, delay_of, rate_of
 from modelkit.vocabulary import Prompt
 
 PROMPT_OF_PHASE = (
@@ -26,11 +32,14 @@ PROMPT_OF_PHASE = (
     int(Prompt.NONE),
 )
 """One for each member of Phase, in its order."""
-PATH_TRACKING = int(Phase.PATH_TRACKING)
 SLOW_DOWN = int(Prompt.SLOW_DOWN)
+MOVING = 0.05
+"""A car faster than this [m/s] has set out."""
 
 
-def advised_speed(path: TwoArcPath, reference: Reference, speed: float, params: ControllerParams) -> float:
+def path_speed(
+    path: TwoArcPath, reference: Reference, speed: float, steering: Steering, params: ControllerParams
+) -> float:
     """Return the speed [m/s] that lets the steering follow the path from here on."""
     prompting = params.prompting
     advice = prompting.speed_limit
@@ -38,20 +47,28 @@ def advised_speed(path: TwoArcPath, reference: Reference, speed: float, params: 
     k_next = curvature_after(path, reference.piece)
     to_end = distance_to_end(path, reference)
     if to_end > 0.0:
-        end = _speed_before(prompting.creep_speed, to_end, speed, prompting)
-        advice = end if end < advice else advice
+        advice = smaller(advice, _speed_before(prompting.creep_speed, to_end, speed, prompting))
     if k_next * k <= 0.0 and k_next != 0.0:
-        at_jump = jump_speed(k, k_next, params)
-        jump = _speed_before(at_jump, distance_to_jump(path, reference), speed, prompting)
-        advice = jump if jump < advice else advice
+        at_jump = swing_speed(math.atan(params.wheelbase * k), math.atan(params.wheelbase * k_next), steering, params)
+        advice = smaller(advice, _speed_before(at_jump, distance_to_jump(path, reference), speed, prompting))
     return advice
 
 
-def jump_speed(curvature: float, next_curvature: float, params: ControllerParams) -> float:
-    """Return the speed [m/s] at which a jump of the reference curvature leaves the accepted error."""
-    rate = params.steering_wheel_rate / params.steering_ratio
-    swing = abs(math.atan(params.wheelbase * next_curvature) - math.atan(params.wheelbase * curvature)) / rate
-    return math.sqrt(3.0 * params.prompting.jump_deviation / abs(next_curvature - curvature)) / swing
+def point_speed(distance: float, speed: float, params: PromptParams) -> float:
+    """Return the speed [m/s] for point tracking, ``distance`` [m] before the point: slow (Guo 2015, Fig. 9)."""
+    return smaller(params.point_speed, _speed_before(params.creep_speed, distance, speed, params))
+
+
+def swing_speed(angle: float, wanted: float, steering: Steering, params: ControllerParams) -> float:
+    """Return the speed [m/s] at which the front wheels may swing from ``angle`` to ``wanted`` [rad] on the move."""
+    swing = abs(wanted - angle) * params.steering_ratio / rate_of(steering, params.steering_wheel_rate)
+    late = delay_of(steering)
+    jump = abs(math.tan(wanted) - math.tan(angle)) / params.wheelbase
+    moment = jump * (swing * swing / 3.0 + late * swing + 0.5 * late * late)
+    limit = params.prompting.speed_limit
+    if moment * limit * limit <= params.prompting.jump_deviation:
+        return limit
+    return math.sqrt(params.prompting.jump_deviation / moment)
 
 
 def stopping_distance(speed: float, params: PromptParams) -> float:
@@ -60,11 +77,22 @@ def stopping_distance(speed: float, params: PromptParams) -> float:
     return v * params.reaction + 0.5 * v * v / params.deceleration
 
 
-def prompt_of(phase: int, advice: float, params: PromptParams) -> int:
-    """Return the prompt for ``phase``: on the path, to slow down where the advice asks for it."""
-    if phase == PATH_TRACKING and advice < params.speed_limit:
+def prompt_of(phase: int, moving: bool, advice: float, params: PromptParams) -> int:
+    """Return the prompt for ``phase``: to slow down where the advice asks for it and the car is on its way."""
+    if moving and advice < params.speed_limit:
         return SLOW_DOWN
     return PROMPT_OF_PHASE[phase]
+
+
+def is_moving(before: bool, speed: float, direction: int, standstill: float) -> bool:
+    """Return whether the car is on its way in ``direction``; one that has set out is until it stands."""
+    along = direction * speed
+    return along > MOVING or (before and along > standstill)
+
+
+def smaller(a: float, b: float) -> float:
+    """Return the smaller of two numbers."""
+    return a if a < b else b
 
 
 def _speed_before(speed_there: float, distance: float, speed: float, params: PromptParams) -> float:

@@ -1,0 +1,168 @@
+"""Learns the steering from what it does, and tells a wheel that fails from one that is only slow.
+
+A wheel that is off its request must come nearer. It may be late (dead time), slow (rate) or lazy
+(lag), and it may go on towards what was asked for a moment ago; it may not stand still or go away.
+So no number of the steering has to be known to find a fault.
+
+What is learnt: the dead time, from a jump of the request at rest to the first movement; the rate,
+where the wheel goes evenly towards a far request; the lag, where it creeps up to one that holds.
+Each replaces what was believed only where it differs from it by more than the measurement can err.
+"""
+
+from typing import NamedTuple
+
+from modelkit.maths import sign
+
+NEARER = 0.05
+"""Coming nearer means: by this [rad] within the time allowed. 0.2 rad/s is the slowest steering there is."""
+FORGOTTEN = 0.15
+"""Time constant [s] of what was asked for a moment ago."""
+JUMP = 0.3
+MOVED = 0.02
+SHORTEST_DEAD_TIME = 0.05
+"""The loop itself takes two samples; a dead time [s] is one that is longer than this."""
+LONGEST_DEAD_TIME = 0.5
+UNSEEN = 0.2
+"""A steering that has not yet been seen to move may take this much [s] longer to begin; the car stands."""
+WINDOW_NS = 100_000_000
+EVEN = 0.05
+"""Two windows are even, and a rate is as believed, if they differ by less than this share."""
+FAR = 0.5
+HOLDS = 0.02
+LAZY = 0.7
+"""A wheel is held back by its lag where it is slower than this share of its rate."""
+LONGEST_LAG = 1.0
+
+
+class Steering(NamedTuple):
+    """The steering as it is known."""
+
+    rate: float = 0.0
+    """Largest steering-wheel rate [rad/s]; 0: nothing learnt yet, what is believed holds."""
+    dead_time: float = 0.0
+    lag: float = 0.0
+    seen: bool = False
+    """The wheel has been seen to move when asked."""
+
+
+class Window(NamedTuple):
+    """A stretch of the wheel's movement, being measured."""
+
+    length_ns: int = 0
+    angle: float = 0.0
+    request: float = 0.0
+    rate: float = 0.0
+    """Of the window before [rad/s]."""
+
+
+class SteeringWatch(NamedTuple):
+    """What the monitor remembers."""
+
+    steering: Steering = Steering()
+    off_ns: int = 0
+    """The wheel is off its request and has not come nearer for so long."""
+    away_ns: int = 0
+    """Of this, time in which it went the other way."""
+    anchor: float = 0.0
+    """Angle [rad] from which coming nearer counts."""
+    side: float = 0.0
+    """On which side of the wheel its request lies; 0: it is there."""
+    angle: float = 0.0
+    """At the last sample [rad], with its request."""
+    request: float = 0.0
+    late: float = 0.0
+    """What was asked for a moment ago [rad]."""
+    asked_ns: int = -1
+    """Since the request jumped away from a wheel at rest; -1: it did not."""
+    window: Window = Window()
+
+
+def at_rest(angle: float, steering: Steering) -> SteeringWatch:
+    """Return the watch over a wheel at ``angle`` [rad] that nothing is asked of."""
+    return SteeringWatch(steering, 0, 0, angle, 0.0, angle, angle, angle, -1, Window(0, angle, angle, 0.0))
+
+
+def watch_steering(
+    state: SteeringWatch, request: float, angle: float, tolerance: float, believed_rate: float, dt_ns: int
+) -> SteeringWatch:
+    """Return the watch after ``request`` [rad] held for ``dt_ns`` and brought the wheel to ``angle`` [rad]."""
+    dt = dt_ns * 1e-9
+    moved = angle - state.angle
+    late = state.late + (request - state.late) * dt / (dt + FORGOTTEN)
+    side = sign(request - angle) if abs(request - angle) > tolerance else 0.0
+    nearer = side * (angle - state.anchor) >= NEARER
+    away = side * moved < 0.0
+    explained = away and side * (late - angle) < 0.0
+    follows = side == 0.0 or side != state.side or nearer or explained
+    asked_ns, dead_time = _dead_time(state, request, angle, tolerance, dt_ns)
+    seen = state.steering.seen or nearer
+    window, rate, lag = _window(state, request, angle, believed_rate, dt_ns)
+    return SteeringWatch(
+        Steering(rate, dead_time, lag, seen),
+        0 if follows else state.off_ns + dt_ns,
+        0 if follows else state.away_ns + dt_ns if away else state.away_ns,
+        angle if follows else state.anchor,
+        side,
+        angle,
+        request,
+        late,
+        asked_ns,
+        window,
+    )
+
+
+def has_failed(state: SteeringWatch, longest: float) -> bool:
+    """Return whether the wheel stands or goes away, for ``longest`` [s] more than its dead time."""
+    steering = state.steering
+    allowed = longest + steering.dead_time + (0.0 if steering.seen else UNSEEN)
+    return state.off_ns * 1e-9 > allowed
+
+
+def rate_of(steering: Steering, believed: float) -> float:
+    """Return the steering-wheel rate [rad/s]: as learnt, or as believed."""
+    return steering.rate if steering.rate > 0.0 else believed
+
+
+def delay_of(steering: Steering) -> float:
+    """Return how late the wheel is [s], its rate left aside."""
+    return steering.dead_time + steering.lag
+
+
+def _dead_time(state: SteeringWatch, request: float, angle: float, tolerance: float, dt_ns: int) -> tuple[int, float]:
+    """Return the time since the request jumped [ns], -1 if none runs, and the dead time [s]."""
+    known = state.steering.dead_time
+    if state.asked_ns < 0:
+        jumped = abs(request - state.request) > JUMP and abs(state.request - state.angle) <= tolerance
+        return (dt_ns if jumped else -1), known
+    if state.side * (angle - state.anchor) < MOVED and state.side != 0.0:
+        return state.asked_ns + dt_ns, known
+    dead_time = state.asked_ns * 1e-9
+    if SHORTEST_DEAD_TIME < dead_time < LONGEST_DEAD_TIME:
+        return -1, dead_time
+    return -1, known
+
+
+def _window(
+    state: SteeringWatch, request: float, angle: float, believed_rate: float, dt_ns: int
+) -> tuple[Window, float, float]:
+    """Return the window being measured, the rate [rad/s] and the lag [s] as known after it."""
+    window = state.window
+    steering = state.steering
+    length_ns = window.length_ns + dt_ns
+    if length_ns < WINDOW_NS:
+        return Window(length_ns, window.angle, window.request, window.rate), steering.rate, steering.lag
+    moved = angle - window.angle
+    rate = abs(moved) / (length_ns * 1e-9)
+    before = abs(window.request - window.angle)
+    left = abs(request - angle)
+    towards = (request - angle) * moved > 0.0
+    holds = abs(request - window.request)
+    known = rate_of(steering, believed_rate)
+    learnt = steering.rate
+    lag = steering.lag
+    if towards and left > FAR and holds < 0.2 * abs(moved) and abs(rate - window.rate) < EVEN * rate:
+        learnt = rate if abs(rate - known) > EVEN * known else learnt
+    elif towards and holds < HOLDS and left > HOLDS and abs(moved) > NEARER and rate < LAZY * known:
+        lag = 0.5 * (before + left) / rate
+        lag = lag if lag < LONGEST_LAG else LONGEST_LAG
+    return Window(0, angle, request, rate), learnt, lag

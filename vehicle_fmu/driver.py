@@ -48,9 +48,14 @@ def watch(state: DriverState, prompt: int, time_ns: int, params: DriverParams) -
 def wanted_speed(
     state: DriverState, advised_speed: float, time_ns: int, distance: float, params: DriverParams
 ) -> float:
-    """Return the speed [m/s] the driver wants, reverse negative."""
+    """Return the speed [m/s] the driver wants, reverse negative.
+
+    A driver who slows down when prompted also sets out no faster than is advised with the direction
+    ("drive slowly forward"); 0 is no advice there.
+    """
     speed = profile_speed(params, distance if params.profile_over_distance else time_ns * 1e-9)
-    if params.obeys_slow_down and state.heeded == SLOW_DOWN and advised_speed < speed:
+    setting_out = (state.heeded == FORWARD or state.heeded == REVERSE) and advised_speed > 0.0
+    if params.obeys_slow_down and (state.heeded == SLOW_DOWN or setting_out) and advised_speed < speed:
         speed = advised_speed
     if params.speed_error != 0.0:
         speed = speed * (1.0 + params.speed_error)

@@ -25,6 +25,8 @@ TOO_MANY_SHIFTS = int(Reason.TOO_MANY_SHIFTS)
 TIMEOUT = int(Reason.TIMEOUT)
 FARTHEST = 1e9
 """No position [m], heading [rad] or speed [m/s] is beyond this; NaN is not within it either."""
+SLOWEST_SEEN = 0.1
+"""A pose counted in ticks may rightly stand still for half a second at less than this [m/s]."""
 DIRECTION_OF_PHASE = (0, 0, -1, 0, 1, -1, 1, -1, 0, 0, 0, 0)
 """Direction that each Phase drives in, in its order."""
 
@@ -56,7 +58,7 @@ def watch(
     dx = inputs.odometry.x - state.pose.x
     dy = inputs.odometry.y - state.pose.y
     way = speed * dt
-    unmoved = dx * dx + dy * dy < 0.01 * way * way and not still
+    unmoved = dx * dx + dy * dy < 0.01 * way * way and abs(speed) > SLOWEST_SEEN
     return MonitorState(
         waiting=state.waiting + dt_ns if still and (direction != 0 or phase in STEERING_PHASES) else 0,
         stopping=state.stopping + dt_ns if not still and direction == 0 else 0,

@@ -193,13 +193,15 @@ def _moved_on(
     )
     request = _wheel_request(phase, tracking, planned, params)
     swing = _swing(state, phase, request, inputs, monitor, params)
+    shifts = state.shifts + 1 if turned else state.shifts
+    last_direction = direction if direction != 0 else state.direction
     return ParkingState(
         phase=phase,
         leg=leg,
         driven=driven,
         reason=NO_REASON,
-        shifts=state.shifts + 1 if turned else state.shifts,
-        direction=direction if direction != 0 else state.direction,
+        shifts=shifts,
+        direction=last_direction,
         running_ns=state.running_ns + dt_ns,
         piece=tracking.piece,
         plan=planned,
@@ -224,17 +226,22 @@ def _advice(
     monitor: MonitorState,
     params: ControllerParams,
 ) -> float:
-    """Return the speed advised [m/s]; while a stop is asked for, that of before."""
+    """Return the speed advised [m/s]; while a stop is asked for it may fall, as on the way there, but not rise."""
     if phase == STANDBY:
         return params.prompting.speed_limit
-    if DIRECTION_OF_PHASE[phase] == 0:
+    driving = DIRECTION_OF_PHASE[phase] != 0
+    if not driving and phase != STOP:
         return state.advice
+    way = phase if driving else state.driven
     speed = inputs.measured_speed
-    if phase == PATH_TRACKING:
+    advice = swing
+    if way == PATH_TRACKING:
         reference = reference_at(planned.path, pose.x, tracking.piece)
-        return smaller(swing, path_speed(planned.path, reference, speed, monitor.wheel.steering, params))
-    left = -DIRECTION_OF_PHASE[phase] * tracking.ahead
-    return smaller(swing, point_speed(left, speed, params.prompting))
+        advice = smaller(swing, path_speed(planned.path, reference, speed, monitor.wheel.steering, params))
+    else:
+        left = -DIRECTION_OF_PHASE[way] * tracking.ahead
+        advice = smaller(swing, point_speed(left, speed, params.prompting))
+    return advice if driving else smaller(advice, state.advice)
 
 
 def _swing(

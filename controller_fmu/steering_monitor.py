@@ -11,10 +11,13 @@ Each replaces what was believed only where it differs from it by more than the m
 
 from typing import NamedTuple
 
-from modelkit.maths import sign
+from modelkit.maths import clamp, sign
 
 NEARER = 0.05
-"""Coming nearer means: by this [rad] within the time allowed. 0.2 rad/s is the slowest steering there is."""
+SHARE = 0.15
+SLOWEST = 0.02
+"""Coming nearer means: by this share of the way, at most as far as the known rate goes in this time [s], but by
+``NEARER`` [rad] at least."""
 FORGOTTEN = 0.15
 """Time constant [s] of what was asked for a moment ago."""
 JUMP = 0.3
@@ -22,6 +25,8 @@ MOVED = 0.02
 SHORTEST_DEAD_TIME = 0.05
 """The loop itself takes two samples; a dead time [s] is one that is longer than this."""
 LONGEST_DEAD_TIME = 0.5
+USUAL_DEAD_TIME = 0.1
+"""A dead time [s] up to this needs no more time than is allowed anyway."""
 UNSEEN = 0.2
 """A steering that has not yet been seen to move may take this much [s] longer to begin; the car stands."""
 WINDOW_NS = 100_000_000
@@ -29,8 +34,9 @@ EVEN = 0.05
 """Two windows are even, and a rate is as believed, if they differ by less than this share."""
 FAR = 0.5
 HOLDS = 0.02
-LAZY = 0.7
-"""A wheel is held back by its lag where it is slower than this share of its rate."""
+LAZY = 0.8
+ALIKE = 0.2
+"""A wheel is held back by its lag where it becomes slower as it comes nearer, in proportion to what is left."""
 LONGEST_LAG = 1.0
 
 
@@ -90,7 +96,8 @@ def watch_steering(
     moved = angle - state.angle
     late = state.late + (request - state.late) * dt / (dt + FORGOTTEN)
     side = sign(request - angle) if abs(request - angle) > tolerance else 0.0
-    nearer = side * (angle - state.anchor) >= NEARER
+    step = clamp(SHARE * abs(request - angle), NEARER, NEARER + SLOWEST * rate_of(state.steering, believed_rate))
+    nearer = side * (angle - state.anchor) >= step
     away = side * moved < 0.0
     explained = away and side * (late - angle) < 0.0
     follows = side == 0.0 or side != state.side or nearer or explained
@@ -101,7 +108,7 @@ def watch_steering(
         Steering(rate, dead_time, lag, seen),
         0 if follows else state.off_ns + dt_ns,
         0 if follows else state.away_ns + dt_ns if away else state.away_ns,
-        angle if follows else state.anchor,
+        angle if follows or away else state.anchor,
         side,
         angle,
         request,
@@ -112,10 +119,10 @@ def watch_steering(
 
 
 def has_failed(state: SteeringWatch, longest: float) -> bool:
-    """Return whether the wheel stands or goes away, for ``longest`` [s] more than its dead time."""
-    steering = state.steering
-    allowed = longest + steering.dead_time + (0.0 if steering.seen else UNSEEN)
-    return state.off_ns * 1e-9 > allowed
+    """Return whether the wheel has stood or gone away for ``longest`` [s], longer only if its dead time is long."""
+    late = state.steering.dead_time - USUAL_DEAD_TIME
+    allowed = longest + 2.0 * late if late > 0.0 else longest
+    return state.off_ns * 1e-9 > (allowed if state.steering.seen else allowed + UNSEEN)
 
 
 def rate_of(steering: Steering, believed: float) -> float:
@@ -132,7 +139,8 @@ def _dead_time(state: SteeringWatch, request: float, angle: float, tolerance: fl
     """Return the time since the request jumped [ns], -1 if none runs, and the dead time [s]."""
     known = state.steering.dead_time
     if state.asked_ns < 0:
-        jumped = abs(request - state.request) > JUMP and abs(state.request - state.angle) <= tolerance
+        resting = abs(state.request - state.angle) <= tolerance and abs(state.request - state.late) <= tolerance
+        jumped = resting and abs(request - state.request) > JUMP
         return (dt_ns if jumped else -1), known
     if state.side * (angle - state.anchor) < MOVED and state.side != 0.0:
         return state.asked_ns + dt_ns, known
@@ -162,7 +170,14 @@ def _window(
     lag = steering.lag
     if towards and left > FAR and holds < 0.2 * abs(moved) and abs(rate - window.rate) < EVEN * rate:
         learnt = rate if abs(rate - known) > EVEN * known else learnt
-    elif towards and holds < HOLDS and left > HOLDS and abs(moved) > NEARER and rate < LAZY * known:
+    elif (
+        towards
+        and holds < HOLDS
+        and left > HOLDS
+        and abs(moved) > HOLDS
+        and rate < LAZY * window.rate
+        and abs(rate * before - window.rate * left) < ALIKE * window.rate * left
+    ):
         lag = 0.5 * (before + left) / rate
         lag = lag if lag < LONGEST_LAG else LONGEST_LAG
     return Window(0, angle, request, rate), learnt, lag

@@ -1,5 +1,6 @@
 """What a reproduction says: rows of printed and measured numbers, pictures, and plain notes."""
 
+from collections import Counter
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -17,6 +18,12 @@ class Driven(NamedTuple):
     summary: Summary
 
 
+PRINTED = "printed number"
+CONCLUSION = "conclusion of the paper"
+OWN = "own regression"
+"""What a check is about."""
+
+
 Drive = Callable[[str], Driven]
 """Runs the scenario of that name."""
 
@@ -32,8 +39,14 @@ class Row(NamedTuple):
     """As printed; None where the paper prints nothing."""
     ours: float | str
     limit: float | None = None
-    """Largest difference allowed; None: reported only."""
+    """Largest difference allowed, largest size where the paper prints nothing; None: reported only."""
     note: str = ""
+    basis: str = ""
+    """``PRINTED``, ``CONCLUSION`` or ``OWN``."""
+    differs: str = ""
+    """Why it is known to be beyond the limit."""
+    untestable: str = ""
+    """Why there is no limit to what the paper says."""
 
     @property
     def difference(self) -> float | None:
@@ -47,13 +60,31 @@ class Row(NamedTuple):
         """Whether the difference is within the limit; equal words pass; None where nothing is asked."""
         if self.limit is None:
             return None
+        if self.paper is None and isinstance(self.ours, float):
+            return abs(self.ours) <= self.limit
         if self.difference is None:
             return self.paper == self.ours
         return abs(self.difference) <= self.limit
 
+    @property
+    def as_expected(self) -> bool | None:
+        """Whether it is within its limit, or beyond it and known to be; None where nothing is asked."""
+        return None if self.passed is None else self.passed == (self.differs == "")
+
     def as_json(self) -> dict[str, Any]:
         """Return the row as plain data."""
-        return {**self._asdict(), "difference": self.difference, "passed": self.passed}
+        verdict = {"difference": self.difference, "passed": self.passed, "as_expected": self.as_expected}
+        return {**self._asdict(), **verdict}
+
+
+class Tally(NamedTuple):
+    """How many rows of a reproduction are what."""
+
+    agrees: int
+    differs: int
+    untestable: int
+    own: int
+    own_held: int
 
 
 class Reproduction(NamedTuple):
@@ -67,8 +98,16 @@ class Reproduction(NamedTuple):
 
     @property
     def passed(self) -> bool:
-        """Whether every row that asks something got it."""
-        return all(row.passed is not False for row in self.rows)
+        """Whether every row that asks something got it, and what is known to differ still does."""
+        return all(row.as_expected is not False for row in self.rows)
+
+    @property
+    def tally(self) -> Tally:
+        """How many rows agree with the paper, differ from it, cannot be tested; own checks apart."""
+        papers = Counter(row.passed for row in self.rows if row.basis in (PRINTED, CONCLUSION))
+        own = [row.passed for row in self.rows if row.basis == OWN and row.limit is not None]
+        untestable = sum(row.untestable != "" for row in self.rows)
+        return Tally(papers[True], papers[False], untestable, len(own), sum(held is True for held in own))
 
     def as_json(self) -> dict[str, Any]:
         """Return the reproduction as plain data."""
@@ -76,6 +115,7 @@ class Reproduction(NamedTuple):
             "paper": self.paper,
             "title": self.title,
             "passed": self.passed,
+            "tally": self.tally._asdict(),
             "rows": [row.as_json() for row in self.rows],
             "figures": [str(figure) for figure in self.figures],
             "notes": self.notes,

@@ -53,8 +53,10 @@ def test_the_left_is_the_mirror_image_of_the_right() -> None:
     assert (left.x, left.y, left.heading) == pytest.approx((right.x, -right.y, -right.heading), abs=1e-9)
 
 
-def test_the_driver_drives_as_prompted() -> None:
-    end = run({"driver.profile[1].speed": 0.6}, {"apa.drive.longitudinal": 1}, 90.0)
+@pytest.mark.parametrize("reaction", [0.0, 0.05, 0.1, 0.3])
+def test_the_driver_drives_as_prompted(reaction: float) -> None:
+    driver = {"driver.profile[1].speed": 0.6, "driver.reaction_delay": reaction}
+    end = run(driver, {"apa.drive.longitudinal": 1}, 90.0)
     assert end.controller.apa.mode == Mode.PARKING_FINISH
     assert end.nearest > 0.1
     assert not end.controller.speed_control_active

@@ -64,7 +64,10 @@ def test_requests_at_random_are_no_fault() -> None:
         params = SteeringParams(rate_limit=(0.5 + drawn[0]) * BELIEVED, dead_time=0.1 * drawn[1], lag=0.15 * drawn[2])
         levels = [15.0 * number - 7.5 for number in drawn[3:]]
         slope = 2.0 * drawn[3]
-        request = lambda t, levels=levels, slope=slope: levels[int(t / 1.3) % 9] + slope * math.sin(t)  # noqa: E731
+
+        def request(t: float, levels: list[float] = levels, slope: float = slope) -> float:
+            return levels[int(t / 1.3) % len(levels)] + slope * math.sin(t)
+
         assert drive(request, params).failed_at == math.inf
 
 

@@ -4,9 +4,14 @@ from pathlib import Path
 
 import pytest
 
+from controller_fmu.interface import NtbptParams
+from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.papers.drive import drive
-from orchestrator.papers.guo2015 import reproduce
-from orchestrator.papers.result import Drive, Reproduction
+from orchestrator.papers.guo2015 import case_rows, reproduce
+from orchestrator.papers.guo2015_drivers import obey
+from orchestrator.papers.result import CONCLUSION, OWN, PRINTED, Drive, Driven, Reproduction, Row
+from orchestrator.session.session import run_scenario
+from orchestrator.verdict.summary import summarize
 
 SCENARIOS = [
     *(f"guo2015-case{case}{rate}" for case in range(1, 6) for rate in ("", "-105")),
@@ -21,11 +26,55 @@ def reproduction(tmp_path_factory: pytest.TempPathFactory) -> Reproduction:
     return reproduce(tmp_path_factory.mktemp("guo2015"), drive)
 
 
-def test_every_stated_check_holds(reproduction: Reproduction) -> None:
-    asked = [row for row in reproduction.rows if row.limit is not None]
-    missed = [row for row in asked if not row.passed]
-    assert not missed
-    assert len(asked) == 12 + 1 + 9 + 2 * 5
+def test_every_check_is_as_stated(reproduction: Reproduction) -> None:
+    assert not [row for row in reproduction.rows if row.as_expected is False]
+    assert reproduction.passed
+    assert reproduction.tally == (31, 11, 17, 25, 25)
+
+
+def test_every_check_says_what_it_is_of_and_every_number_of_the_paper_has_a_limit(reproduction: Reproduction) -> None:
+    for row in reproduction.rows:
+        assert (row.limit is not None) == (row.basis in (PRINTED, CONCLUSION, OWN))
+        assert row.paper is None or row.limit is not None or row.untestable
+
+
+def test_what_differs_is_said_and_nothing_else_is_beyond_its_limit(reproduction: Reproduction) -> None:
+    differs = {(row.run, row.item) for row in reproduction.rows if row.passed is False}
+    assert {run for run, _ in differs} == {
+        *("guo2015-case1", "guo2015-case2", "guo2015-case2-105", "guo2015-case3", "guo2015-case3-105", "guo2015-case4"),
+    }
+    assert all(row.differs for row in reproduction.rows if row.passed is False)
+
+
+def test_a_known_difference_that_is_gone_is_news() -> None:
+    row = Row("run", "outcome", "", "parked", "parked", 0.0, basis=CONCLUSION, differs="it was not")
+    assert row.passed
+    assert row.as_expected is False
+    assert not Reproduction("paper", "", [row], [], []).passed
+
+
+def test_the_gains_are_the_paper_s() -> None:
+    gains = NtbptParams()
+    assert (gains.k1, gains.k2, gains.k3, gains.k4) == (1.0, 0.8, 1.0, 4.0)
+
+
+@pytest.mark.parametrize(("gain", "factor"), [("k1", 0.5), ("k2", 0.5), ("k3", 2.0), ("k4", 2.0), ("k4", 0.5)])
+def test_a_gain_doubled_or_halved_misses_a_check(gain: str, factor: float) -> None:
+    value = factor * getattr(NtbptParams(), gain)
+    scenario = load_scenario("guo2015-case4-105", [f"controller.ntbpt.{gain}={value}"])
+    recording = run_scenario(scenario, None, kind="none").recording
+    rows = case_rows(4, Driven(scenario, recording, summarize(recording, scenario, 1.0)))
+    assert [row for row in rows if row.basis == PRINTED and row.as_expected is False]
+
+
+def test_windows_of_what_is_fitted_are_shown(reproduction: Reproduction) -> None:
+    shown = {row.item.rpartition(": ")[2] for row in reproduction.rows if row.item.startswith("fits within")}
+    assert shown == {"steering rate", "threshold to leave the path", "driver's speed"}
+
+
+@pytest.mark.parametrize("rate", ["", "-105"])
+def test_drivers_who_obey_stay_on_the_path(rate: str) -> None:
+    assert obey(f"guo2015-case3{rate}", (0.3, 1.5), (0.0, 0.25, 0.5)) == (6, 6, 6, 6)
 
 
 def test_figures_are_written(reproduction: Reproduction) -> None:

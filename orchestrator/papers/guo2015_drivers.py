@@ -7,13 +7,13 @@ import numpy as np
 
 from controller_fmu.interface import Phase, ThresholdParams
 from orchestrator.cosim.fmu_files import can_compile
-from orchestrator.scenario.load_scenario import load_scenario
-from orchestrator.sweep.many import measure
+from orchestrator.cosim.slave import Array
 from orchestrator.papers.result import CONCLUSION, Row
+from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.session.session import run_scenario
-from orchestrator.cosim.slave import Array
 from orchestrator.sweep.kept import CLEARANCE, FIRST_KEPT, PHASE, Kept, row_of
+from orchestrator.sweep.many import measure
 
 SPEEDS = tuple(np.linspace(0.3, 1.5, 10).tolist())
 """What the driver means to drive [m/s]; the paper's cases lie between."""

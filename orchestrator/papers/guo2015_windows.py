@@ -7,8 +7,8 @@ how narrow the window is shows more.
 from functools import lru_cache
 from typing import NamedTuple
 
-from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.papers.result import Row
+from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.session.session import run_scenario
 from orchestrator.verdict.summary import Event, summarize
 

@@ -12,14 +12,20 @@ from orchestrator.papers.result import CONCLUSION, Row
 from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.session.session import run_scenario
-from orchestrator.sweep.kept import CLEARANCE, FIRST_KEPT, PHASE, Kept, row_of
 from orchestrator.sweep.many import measure
+from orchestrator.sweep.rows import FIRST_MEASURE, PHASE, row_of
+from orchestrator.verdict.measures import Measure
 
 SPEEDS = tuple(np.linspace(0.3, 1.5, 10).tolist())
 """What the driver means to drive [m/s]; the paper's cases lie between."""
 REACTIONS = tuple(np.linspace(0.0, 0.5, 10).tolist())
 """From a prompt to its obedience [s]."""
-KEPT = [PHASE, CLEARANCE, Kept("largest", "controller.lateral_error"), Kept("largest", "controller.heading_error")]
+KEPT = [
+    PHASE,
+    Measure("smallest", "vehicle.clearance"),
+    Measure("largest", "controller.lateral_error"),
+    Measure("largest", "controller.heading_error"),
+]
 
 
 class Obeyed(NamedTuple):
@@ -62,4 +68,4 @@ def _driven(run: str, speed: float, reaction: float) -> Scenario:
 
 def _measured(scenarios: list[Scenario]) -> Array:
     rows = [row_of(run_scenario(scenario, None, kind="none").recording, scenario, KEPT) for scenario in scenarios]
-    return np.array(rows)[:, FIRST_KEPT:]
+    return np.array(rows)[:, FIRST_MEASURE : FIRST_MEASURE + len(KEPT)]

@@ -20,12 +20,13 @@ from fmus.contents.description import AUTHOR, GENERATED
 from fmus.systems.system import NAME, System, as_text
 
 PACKAGE = "fmu_manipulation_toolbox"
+INSTALL = "pip install fmu-manipulation-toolbox"
 
 
 def write_container(system: System, path: Path) -> Path:
     """Write the container. Raises ``RuntimeError`` if the toolbox is not installed or refuses."""
     if find_spec(PACKAGE) is None:
-        raise RuntimeError("a container needs fmucontainer: pip install fmu-manipulation-toolbox")
+        raise RuntimeError(f"a container needs fmucontainer: {INSTALL}")
     with tempfile.TemporaryDirectory(prefix="apa-container-") as directory:
         here = Path(directory)
         for part in system.parts:

@@ -4,7 +4,7 @@ import argparse
 import json
 from pathlib import Path
 
-from orchestrator.log.read_log import read_log
+from orchestrator.log.read_log import log_file, read_log
 from orchestrator.scenario.load_scenario import find_file
 from orchestrator.scenario.requirements import read_requirements
 from orchestrator.session.terminal import checks_table
@@ -30,7 +30,7 @@ MET, MISSED = 0, 1
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add what the command takes."""
-    parser.add_argument("log", type=Path, metavar="RUN.mcap", help="log of a run")
+    parser.add_argument("log", type=log_file, metavar="RUN.mcap", help="log of a run, or its folder")
     parser.add_argument("requirements", nargs="+", metavar="REQUIREMENTS", help="YAML files or names of shipped sets")
     parser.add_argument("--junit", type=Path, metavar="FILE", help="write the verdicts as JUnit XML")
     parser.add_argument("--json", action="store_true", help="print the checks as JSON")

@@ -4,7 +4,7 @@ import argparse
 import sys
 from pathlib import Path
 
-from orchestrator.log.read_log import read_log
+from orchestrator.log.read_log import log_file, read_log
 from orchestrator.report.overlay import write_overlay
 from orchestrator.report.words import read_words
 from orchestrator.session.terminal import differences_table
@@ -31,8 +31,8 @@ SAME, DIFFERENT = 0, 1
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add what the command takes."""
-    parser.add_argument("a", type=Path, metavar="A.mcap", help="the reference")
-    parser.add_argument("b", type=Path, metavar="B.mcap", help="the run to judge")
+    parser.add_argument("a", type=log_file, metavar="A.mcap", help="the reference: a log, or the folder of a run")
+    parser.add_argument("b", type=log_file, metavar="B.mcap", help="the run to judge")
     parser.add_argument("--abs", default="1e-9", metavar="NUMBER", help="absolute tolerance in SI units (1e-9)")
     parser.add_argument("--rel", default="1e-9", metavar="NUMBER", help="tolerance relative to A (1e-9)")
     parser.add_argument("--time", default="0", metavar="SECONDS", help="tolerance along time (0)")

@@ -10,8 +10,8 @@ from orchestrator.text.console import console
 from orchestrator.text.errors import BAD_INPUT, INTERRUPTED, NOT_PARKED, PARKED, BadInput
 
 EXAMPLES = """examples:
-  apa replay runs/my-study/my-study.parquet --row 4711
-  apa replay my-study.parquet --row 4711 --fmus native --out /tmp/again
+  apa replay runs/my-study/my-study.parquet --row 17
+  apa replay my-study.parquet --row 17 --fmus native --out /tmp/again
 
 writes DIR/scenario.yaml, a scenario of its own, and what `apa run` writes; says whether the bits are the row's
 """
@@ -26,7 +26,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--out", type=Path, metavar="DIR", help="where results go (default: row-N beside the table)")
     parser.add_argument("--json", action="store_true", help="print summary.json instead of the table")
-    parser.add_argument("--no-figure", action="store_true", help="write neither overview.png nor report.html")
+    parser.add_argument("--no-page", action="store_true", help="write neither overview.png nor report.html")
+    parser.add_argument("--no-figure", action="store_true", dest="no_page", help=argparse.SUPPRESS)
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -37,7 +38,7 @@ def run(arguments: argparse.Namespace) -> int:
     except ModuleNotFoundError as error:
         raise BadInput(f"{error.name} is not installed; run: pip install 'apa-cosim[sweep]'") from error
     out: Path = arguments.out or folder_of_row(arguments.table, arguments.row)
-    again = repeat_row(Table(arguments.table), arguments.row, out, arguments.fmus, pages=not arguments.no_figure)
+    again = repeat_row(Table(arguments.table), arguments.row, out, arguments.fmus, pages=not arguments.no_page)
     if arguments.json:
         print(json.dumps(again.summary.as_json(), indent=2, allow_nan=False))
     else:

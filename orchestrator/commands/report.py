@@ -4,7 +4,7 @@ import argparse
 from pathlib import Path
 
 from orchestrator.cosim.recording import Recording
-from orchestrator.log.read_log import read_log
+from orchestrator.log.read_log import log_file, read_log
 from orchestrator.report.replay import write_replay
 from orchestrator.report.words import read_words
 from orchestrator.scenario.scenario import Scenario
@@ -12,7 +12,7 @@ from orchestrator.text.errors import PARKED
 from orchestrator.verdict.summary import summarize
 
 EXAMPLES = """examples:
-  apa report runs/guo2015-case4/run.mcap                  writes runs/guo2015-case4/report.html
+  apa report runs/guo2015-case4                           writes runs/guo2015-case4/report.html
   apa report run.mcap --out /tmp/page.html
 
 The page plays the run in any browser, offline: top view, curves, states, checks, parameters.
@@ -21,7 +21,7 @@ The page plays the run in any browser, offline: top view, curves, states, checks
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add what the command takes."""
-    parser.add_argument("log", type=Path, metavar="RUN.mcap", help="log of a run")
+    parser.add_argument("log", type=log_file, metavar="RUN.mcap", help="log of a run, or its folder")
     parser.add_argument("--out", type=Path, metavar="FILE", help="the page (default: report.html beside the log)")
 
 

@@ -37,7 +37,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_foreign_arguments(parser)
     parser.add_argument("--out", type=Path, metavar="DIR", help="where results go (default: runs/NAME)")
     parser.add_argument("--json", action="store_true", help="print summary.json instead of the table")
-    parser.add_argument("--no-figure", action="store_true", help="write neither overview.png nor report.html")
+    parser.add_argument("--no-page", action="store_true", help="write neither overview.png nor report.html")
+    parser.add_argument("--no-figure", action="store_true", dest="no_page", help=argparse.SUPPRESS)
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -50,7 +51,7 @@ def run(arguments: argparse.Namespace) -> int:
     ran = drive(scenario, arguments.fmus, out / LOG, foreign)
     summary = summarize(ran.recording, scenario, ran.wall_time)
     text = write_summary(out, summary)
-    if not arguments.no_figure:
+    if not arguments.no_page:
         write_pages(out, ran.recording, summary, scenario)
     if arguments.json:
         print(text)

@@ -5,7 +5,7 @@ import csv
 from pathlib import Path
 
 from orchestrator.cosim.recording import Recording
-from orchestrator.log.read_log import read_log
+from orchestrator.log.read_log import log_file, read_log
 from orchestrator.text.patterns import matching
 
 EXAMPLES = """examples:
@@ -25,7 +25,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def add_run_arguments(parser: argparse.ArgumentParser, suffix: str) -> None:
     """Add what every export of a run takes."""
-    parser.add_argument("log", type=Path, metavar="RUN.mcap", help="log of a run")
+    parser.add_argument("log", type=log_file, metavar="RUN.mcap", help="log of a run, or its folder")
     parser.add_argument("--out", type=Path, metavar="FILE", help=f"default: the log's name with {suffix}")
     parser.add_argument("--signals", action="append", metavar="PATTERN", help="only these, for example vehicle.pose.*")
 

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from mcap.exceptions import McapError
 from mcap.reader import make_reader
+from mcap.writer import MCAP0_MAGIC
 
 from modelkit.signal import Signal
 from modelkit.variables import Variable
@@ -28,7 +29,24 @@ def read_log(path: Path) -> Recording:
     except OSError as error:
         raise BadInput(f"cannot be read: {error.strerror}", file=path) from error
     except McapError as error:
-        raise BadInput(f"is not a complete log ({error}); try: apa recover {path}", file=path) from error
+        raise why_unread(path, error) from error
+
+
+def log_file(text: str) -> Path:
+    """Return the log that an argument of a command means: a file, or the folder of a run."""
+    path = Path(text)
+    if not path.is_dir():
+        return path
+    whole, part = path / "run.mcap", path / "run.mcap.part"
+    return part if part.is_file() and not whole.is_file() else whole
+
+
+def why_unread(path: Path, error: McapError) -> BadInput:
+    """Return why the file at ``path`` is no complete log, with what helps if it is one of ours that was cut."""
+    with path.open("rb") as stream:
+        if stream.read(len(MCAP0_MAGIC)) != MCAP0_MAGIC:
+            return BadInput("is no MCAP log", file=path)
+    return BadInput(f"is not a complete log ({error}); try: apa recover {path}", file=path)
 
 
 def read_info(path: Path) -> dict[str, Any]:

@@ -7,6 +7,7 @@ from foxglove_schemas_protobuf.Log_pb2 import Log
 from mcap.exceptions import McapError
 from mcap.reader import make_reader
 
+from orchestrator.log.read_log import why_unread
 from orchestrator.text.errors import BadInput
 
 LEVELS = {0: "unknown", 1: "debug", 2: "info", 3: "warning", 4: "error", 5: "fatal"}
@@ -36,5 +37,5 @@ def read_words(path: Path) -> list[Line]:
     except OSError as error:
         raise BadInput(f"cannot be read: {error.strerror}", file=path) from error
     except McapError as error:
-        raise BadInput(f"is not a complete log ({error})", file=path) from error
+        raise why_unread(path, error) from error
     return lines

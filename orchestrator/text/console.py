@@ -23,8 +23,8 @@ QUIET: ContextVar[bool] = ContextVar("quiet", default=False)
 """Whether only errors are wanted."""
 PIPED_WIDTH = 200
 """Characters in a line that goes to a file or another program."""
-PERIOD = 5.0
-"""Between two lines of progress where there is no terminal [s]."""
+PERIOD, LONGEST = 5.0, 60.0
+"""Until the first line of progress where there is no terminal, and between two at most [s]; each time twice as long."""
 
 
 def console(stream: TextIO | None = None) -> Console:
@@ -79,9 +79,10 @@ def _bar(*columns: ProgressColumn) -> Progress:
 
 
 def _tell(text: str, over: threading.Event) -> None:
-    begun = time.monotonic()
-    while not over.wait(PERIOD):
+    begun, period = time.monotonic(), PERIOD
+    while not over.wait(period):
         say(f"{text}: {time.monotonic() - begun:.0f} s")
+        period = min(2.0 * period, LONGEST)
 
 
 class Meter:
@@ -89,6 +90,7 @@ class Meter:
 
     def __init__(self, title: str, total: float, unit: str) -> None:
         self._title, self._total, self._unit = title, total, unit
+        self._period = PERIOD
         self._next = time.monotonic() + PERIOD
         self._bar: Progress | None = None
         if sys.stderr.isatty() and not QUIET.get():
@@ -111,5 +113,6 @@ class Meter:
         if self._bar is not None:
             self._bar.update(self._task, completed=done, at=text)
         elif time.monotonic() >= self._next:
-            self._next = time.monotonic() + PERIOD
+            self._period = min(2.0 * self._period, LONGEST)
+            self._next = time.monotonic() + self._period
             say(f"{self._title}: {text}")

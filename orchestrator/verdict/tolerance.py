@@ -19,7 +19,9 @@ class Tolerance(NamedTuple):
     """Half-width of the tube along time [s]."""
 
 
-KEYS = ("abs", "rel", "time")
+FIELDS = {"abs": "absolute", "rel": "relative", "time": "time"}
+KEYS = tuple(FIELDS)
+UNITS = {"rel": "1", "time": "s"}
 
 
 class Tolerances:
@@ -31,18 +33,11 @@ class Tolerances:
 
     def of(self, signal: str, unit: str) -> Tolerance:
         """Return the tolerance of ``signal``, whose SI unit is ``unit``. Raises ``BadInput`` for a wrong unit."""
-        found = self._default
-        for pattern, given, file in self._rows:
-            if not fits(signal, pattern):
-                continue
-            key = f"{pattern}: {{}}"
-            if "abs" in given:
-                found = found._replace(absolute=_bound(given["abs"], unit, file, key.format("abs")))
-            if "rel" in given:
-                found = found._replace(relative=_bound(given["rel"], "1", file, key.format("rel")))
-            if "time" in given:
-                found = found._replace(time=_bound(given["time"], "s", file, key.format("time")))
-        return found
+        last = {key: row for row in self._rows if fits(signal, row[0]) for key in row[1]}
+        bounds = {}
+        for key, (pattern, given, file) in last.items():
+            bounds[FIELDS[key]] = _bound(given[key], UNITS.get(key, unit), file, f"{pattern}: {key}")
+        return self._default._replace(**bounds)
 
 
 def read_tolerances(path: Path | None, default: Tolerance) -> Tolerances:

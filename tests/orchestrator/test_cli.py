@@ -331,3 +331,47 @@ def test_a_scenario_file_cannot_say_what_was_changed(tmp_path: Path, capsys: pyt
     file.write_text("{base: guo2015-case4, changed: {a: b}}")
     assert main(["run", str(file), "--out", str(tmp_path / "out")]) == 2
     assert "changed: unknown" in capsys.readouterr().err
+
+
+def test_the_folder_of_a_run_will_do_for_its_log(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    folder = tmp_path / "run"
+    assert main(["run", DEMO, "--fmus", "none", "--out", str(folder), "--no-page"]) == 0
+    assert not (folder / "report.html").exists()
+    assert main(["report", str(folder)]) == 0
+    assert (folder / "report.html").is_file()
+    assert main(["check", str(folder), "house"]) == 0
+    assert main(["compare", str(folder), str(folder)]) == 0
+    assert main(["export", "csv", str(folder)]) == 0
+    assert (folder / "run.csv").is_file()
+    capsys.readouterr()
+    assert main(["report", str(folder / "report.html")]) == 2
+    assert capsys.readouterr().err == f"apa: {folder / 'report.html'}: is no MCAP log\n"
+    (folder / "run.mcap").write_bytes((folder / "run.mcap").read_bytes()[:3000])
+    assert main(["report", str(folder)]) == 2
+    assert f"try: apa recover {folder / 'run.mcap'}" in capsys.readouterr().err
+    assert main(["report", str(tmp_path)]) == 2
+
+
+def test_a_container_says_what_it_needs_before_it_builds(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("orchestrator.export.container.find_spec", lambda name: None)
+    monkeypatch.setattr("orchestrator.export.system_of.fmus_for", lambda *_: pytest.fail("something was built"))
+    assert main(["export", "container", "guo2015-case4"]) == 2
+    assert "pip install fmu-manipulation-toolbox" in capsys.readouterr().err
+
+
+def test_old_names_of_options_are_understood(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["run", DEMO, "--fmus", "none", "--no-figure", "--out", str(tmp_path)]) == 0
+    assert not (tmp_path / "overview.png").exists()
+    assert main(["build", "--kind", "python", "--out", str(tmp_path / "built"), "--json"]) == 0
+    rows = json.loads(capsys.readouterr().out.partition("results in")[2].partition("\n")[2])
+    assert {Path(row["path"]).name for row in rows} == {"Controller.fmu", "Vehicle.fmu"}
+    assert all(Path(row["path"]).stat().st_size == row["size"] for row in rows)
+    assert main(["build", "--platform", "win64"]) == 2
+    assert main(["build", "--fmus", "native", "--out", str(tmp_path), "--platform", "amiga"]) == 2
+    assert "amiga: expected all or" in capsys.readouterr().err
+    for arguments in (["run", "--help"], ["build", "--help"]):
+        with pytest.raises(SystemExit):
+            main(arguments)
+        assert not {"--no-figure", "--kind"} & set(capsys.readouterr().out.split())

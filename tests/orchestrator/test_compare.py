@@ -137,7 +137,7 @@ def test_a_signal_that_is_gone_differs_and_a_new_one_is_listed():
 
 def test_patterns_choose_signals_and_tolerances(tmp_path):
     file = tmp_path / "tolerances.yaml"
-    file.write_text('"vehicle.*": {abs: 1 cm}\n"*.heading": {abs: 1 deg, rel: 0, time: 50 ms}\n')
+    file.write_text('"vehicle.*": {abs: 1 cm}\n"*.heading": {rel: 0, time: 50 ms}\n')
     tolerances = read_tolerances(file, Tolerance(0.5, 0.25, 0.0))
     assert tolerances.of("vehicle.x", "m") == Tolerance(0.01, 0.25, 0.0)
     with pytest.raises(BadInput, match=r"vehicle\.\*: abs: .*1 cm"):
@@ -146,6 +146,14 @@ def test_patterns_choose_signals_and_tolerances(tmp_path):
     assert compare(a, b, Tolerances(Tolerance()), ["*.x"]).passed
     with pytest.raises(BadInput, match="no signal fits"):
         compare(a, b, Tolerances(Tolerance()), ["*.y"])
+
+
+def test_a_later_pattern_counts_even_if_an_earlier_one_has_another_unit(tmp_path):
+    file = tmp_path / "tolerances.yaml"
+    file.write_text('"vehicle.pose.*": {abs: 1 cm, time: 100 ms}\n"*.heading": {abs: 0.5 deg}')
+    tolerances = read_tolerances(file, Tolerance())
+    assert tolerances.of("vehicle.pose.heading", "rad") == Tolerance(math.radians(0.5), 1e-9, 0.1)
+    assert tolerances.of("vehicle.pose.x", "m") == Tolerance(0.01, 1e-9, 0.1)
 
 
 @pytest.mark.parametrize("text", ["x: 3", "x: {abs: -1}", "x: {absolute: 1}", "x: {abs: 1 kg}"])

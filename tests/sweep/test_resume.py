@@ -1,5 +1,6 @@
 """A study that is killed, interrupted, finished elsewhere, and its rows run again."""
 
+import json
 import os
 import signal
 import subprocess
@@ -154,3 +155,12 @@ def test_what_is_no_table(tmp_path, capsys):
     Path(tmp_path / "a.parquet").write_text("no")
     assert main(["replay", str(tmp_path / "a.parquet"), "--row", "0"]) == 2
     assert "cannot be read as a table" in capsys.readouterr().err
+
+
+def test_set_and_json(study, tmp_path, capsys):
+    arguments = ["sweep", str(study), "--out", str(tmp_path), "--no-page", "--set", "vehicle.start.x=1 cm", "--json"]
+    assert main(arguments) == 0
+    told = json.loads(capsys.readouterr().out)
+    assert (told["count"], told["made"], told["table"]) == (COUNT, COUNT, str(tmp_path / "trial.parquet"))
+    assert Table(Path(told["table"])).job.scenario["vehicle"]["start.x"] == 0.01
+    assert main(["sweep", str(study), "--out", str(tmp_path), "--set", "nothing"]) == 2

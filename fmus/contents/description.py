@@ -89,8 +89,13 @@ def limits(variable: FmiVariable) -> tuple[float | None, float | None]:
     return (low if math.isfinite(low) else None), (high if math.isfinite(high) else None)
 
 
-def model_description(model: Model, *, guid: str, generation_tool: str, flags: dict[str, bool]) -> bytes:
-    """Return modelDescription.xml. ``flags`` are the capability attributes of the CoSimulation element."""
+def model_description(
+    model: Model, *, guid: str, generation_tool: str, flags: dict[str, bool], sources: tuple[str, ...] = ()
+) -> bytes:
+    """Return modelDescription.xml. ``flags`` are the capability attributes of the CoSimulation element.
+
+    ``sources`` are the files in the folder ``sources`` that a compiler is given.
+    """
     known = fmi_variables(model)
     root = Element(
         "fmiModelDescription",
@@ -107,7 +112,11 @@ def model_description(model: Model, *, guid: str, generation_tool: str, flags: d
         variableNamingConvention="structured",
     )
     capabilities = {"modelIdentifier": model.name} | {name: _text(value) for name, value in flags.items()}
-    SubElement(root, "CoSimulation", capabilities)
+    interface = SubElement(root, "CoSimulation", capabilities)
+    if sources:
+        files = SubElement(interface, "SourceFiles")
+        for name in sources:
+            SubElement(files, "File", name=name)
     root.append(_unit_definitions(known))
     categories = SubElement(root, "LogCategories")
     for name, text in LOG_CATEGORIES.items():

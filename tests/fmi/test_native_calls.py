@@ -157,7 +157,6 @@ def test_a_refused_set_changes_none_of_its_values(toy):
         (0.0, -0.01, "is not in (0, 3600] s"),
         (0.0, math.nan, "is not in (0, 3600] s"),
         (0.0, 1e300, "is not in (0, 3600] s"),
-        (0.0, 1e-12, "under a nanosecond"),
         (1.0, 0.01, "called at 1.000000000 s, but the FMU is at 0.000000000 s"),
         (math.inf, 0.01, "is no time"),
         (math.nan, 0.01, "is no time"),
@@ -169,6 +168,31 @@ def test_a_wrong_step_is_refused_and_the_next_one_goes_on(toy, time, size, words
     assert words in toy.messages[-1][2]
     assert toy.step(component, 0.0) == OK
     assert toy.get(component, "count") == 1
+    toy.free(component)
+
+
+@pytest.mark.parametrize("size", [1e-12, 4e-10, 5e-324])
+def test_a_step_that_ends_before_the_next_nanosecond_does_nothing(toy, size):
+    component = toy.initialized()
+    toy.step(component, 0.0)
+    before = toy.outputs(component)
+    assert toy.step(component, 0.01, size) == OK
+    assert toy.step(component, 0.01 - 9e-7, 5e-7) == OK
+    assert (toy.outputs(component), toy.get(component, "time")) == (before, 0.01)
+    assert toy.messages == []
+    assert toy.step(component, 0.01, 6e-10) == OK
+    assert toy.get(component, "count") == 2
+    toy.free(component)
+
+
+def test_a_master_that_adds_up_its_steps_reaches_the_end(toy):
+    component = toy.initialized()
+    time, stop = 0.0, 0.6
+    while time < stop:
+        size = min(0.01, stop - time)
+        assert toy.step(component, time, size) == OK
+        time += size
+    assert toy.get(component, "time") == pytest.approx(stop)
     toy.free(component)
 
 

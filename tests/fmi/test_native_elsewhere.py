@@ -13,7 +13,8 @@ from fmpy import read_model_description
 from test_native_host import HERE
 
 from fmus.native.fmu import build
-from fmus.native.platforms import LINUX, LINUX_ARM, NATIVE, WINDOWS
+from fmus.native.platforms import LINUX, LINUX_ARM, WINDOWS
+from fmus.native.sources import C_FILES
 from modelkit.vocabulary import Prompt
 
 STEPS = 300
@@ -33,11 +34,11 @@ class Elsewhere(NamedTuple):
 
 WINE = shutil.which("wine64") or "/usr/lib/wine/wine64"
 PLACES = (
-    Elsewhere("linux64", LINUX.compiler, "", (), True),
-    Elsewhere("win64", WINDOWS.compiler, ".exe", (WINE,), Path(WINE).exists()),
+    Elsewhere("linux64", LINUX.triple, "", (), True),
+    Elsewhere("win64", WINDOWS.triple, ".exe", (WINE,), Path(WINE).exists()),
     Elsewhere(
         "aarch64-linux",
-        LINUX_ARM.compiler,
+        LINUX_ARM.triple,
         "",
         ("qemu-aarch64", "-L", str(ARM_SYSROOT)),
         shutil.which("qemu-aarch64") is not None and ARM_SYSROOT.is_dir(),
@@ -70,7 +71,7 @@ def rows(place, fmu, folder):
     outputs = [v for v in description.modelVariables if v.causality == "output" and v.type == "Real"][:40]
     (library,) = (folder / "binaries" / place.platform).iterdir()
     program = folder / f"host{place.suffix}"
-    flags = ["-std=gnu11", "-O1", f"-I{NATIVE}", str(HERE / "host.c"), "-o", str(program)]
+    flags = ["-std=gnu11", "-O1", f"-I{C_FILES}", str(HERE / "host.c"), "-o", str(program)]
     libraries = [] if place.suffix else ["-ldl", "-lm"]
     command = [sys.executable, "-m", "ziglang", "cc", "-target", place.target, *flags, *libraries]
     subprocess.run(command, check=True, capture_output=True)

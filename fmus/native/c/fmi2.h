@@ -1,13 +1,58 @@
-/* Types and functions of FMI 2.0 for co-simulation, as the standard names them. */
+/* Types and functions of FMI 2.0 for co-simulation, as the standard names them.
+ *
+ * With FMI2_FUNCTION_PREFIX defined, as `Model_`, all functions carry it and are not exported: for several FMUs
+ * linked into one image. FMI2_OVERRIDE_FUNCTION_PREFIX undoes that.
+ */
 #ifndef FMI2_H
 #define FMI2_H
 
 #include <stddef.h>
 
-#ifdef _WIN32
+#if defined(FMI2_FUNCTION_PREFIX) && !defined(FMI2_OVERRIDE_FUNCTION_PREFIX)
+#define FMI2_PASTE(a, b) a##b
+#define FMI2_JOIN(a, b) FMI2_PASTE(a, b)
+#define FMI2_NAME(name) FMI2_JOIN(FMI2_FUNCTION_PREFIX, name)
+#define FMI2_EXPORT
+#define fmi2GetTypesPlatform FMI2_NAME(fmi2GetTypesPlatform)
+#define fmi2GetVersion FMI2_NAME(fmi2GetVersion)
+#define fmi2SetDebugLogging FMI2_NAME(fmi2SetDebugLogging)
+#define fmi2Instantiate FMI2_NAME(fmi2Instantiate)
+#define fmi2FreeInstance FMI2_NAME(fmi2FreeInstance)
+#define fmi2SetupExperiment FMI2_NAME(fmi2SetupExperiment)
+#define fmi2EnterInitializationMode FMI2_NAME(fmi2EnterInitializationMode)
+#define fmi2ExitInitializationMode FMI2_NAME(fmi2ExitInitializationMode)
+#define fmi2Terminate FMI2_NAME(fmi2Terminate)
+#define fmi2Reset FMI2_NAME(fmi2Reset)
+#define fmi2GetReal FMI2_NAME(fmi2GetReal)
+#define fmi2GetInteger FMI2_NAME(fmi2GetInteger)
+#define fmi2GetBoolean FMI2_NAME(fmi2GetBoolean)
+#define fmi2GetString FMI2_NAME(fmi2GetString)
+#define fmi2SetReal FMI2_NAME(fmi2SetReal)
+#define fmi2SetInteger FMI2_NAME(fmi2SetInteger)
+#define fmi2SetBoolean FMI2_NAME(fmi2SetBoolean)
+#define fmi2SetString FMI2_NAME(fmi2SetString)
+#define fmi2GetFMUstate FMI2_NAME(fmi2GetFMUstate)
+#define fmi2SetFMUstate FMI2_NAME(fmi2SetFMUstate)
+#define fmi2FreeFMUstate FMI2_NAME(fmi2FreeFMUstate)
+#define fmi2SerializedFMUstateSize FMI2_NAME(fmi2SerializedFMUstateSize)
+#define fmi2SerializeFMUstate FMI2_NAME(fmi2SerializeFMUstate)
+#define fmi2DeSerializeFMUstate FMI2_NAME(fmi2DeSerializeFMUstate)
+#define fmi2GetDirectionalDerivative FMI2_NAME(fmi2GetDirectionalDerivative)
+#define fmi2SetRealInputDerivatives FMI2_NAME(fmi2SetRealInputDerivatives)
+#define fmi2GetRealOutputDerivatives FMI2_NAME(fmi2GetRealOutputDerivatives)
+#define fmi2DoStep FMI2_NAME(fmi2DoStep)
+#define fmi2CancelStep FMI2_NAME(fmi2CancelStep)
+#define fmi2GetStatus FMI2_NAME(fmi2GetStatus)
+#define fmi2GetRealStatus FMI2_NAME(fmi2GetRealStatus)
+#define fmi2GetIntegerStatus FMI2_NAME(fmi2GetIntegerStatus)
+#define fmi2GetBooleanStatus FMI2_NAME(fmi2GetBooleanStatus)
+#define fmi2GetStringStatus FMI2_NAME(fmi2GetStringStatus)
+#elif defined(_WIN32)
 #define FMI2_EXPORT __declspec(dllexport)
-#else
+#elif defined(__GNUC__)
 #define FMI2_EXPORT __attribute__((visibility("default")))
+#else
+#define FMI2_EXPORT
 #endif
 
 typedef void *fmi2Component;

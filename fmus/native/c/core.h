@@ -1,0 +1,98 @@
+/* One instance of an FMU, and what is known of its variables: the same for FMI 2.0 and FMI 3.0.
+ *
+ * A face (fmi2.c, fmi3.c) includes this after it has said what a logger is: FmuLogger and fmu_log. The file
+ * that is compiled, <Model>_fmi2.c or <Model>_fmi3.c, has included the model's C and defined
+ *
+ *     FMU_MODEL         the model's name, which is also the struct of all its memory
+ *     FMU_TOKEN         GUID or instantiation token
+ *     FMU_VARIABLES     the file with a line VARIABLE(...) for each value reference, in their order
+ *     FMU_RUNS          the file with a line RUN(...) for each stretch of the model's memory without padding
+ *     FMU_LONGEST_NAME  characters
+ *
+ * All is static and begins with fmu, Fmu or FMU: several FMUs can be linked into one image.
+ */
+#ifndef FMU_CORE_H
+#define FMU_CORE_H
+
+#include <math.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#define FMU_PASTE(a, b) a##b
+#define FMU_JOIN(a, b) FMU_PASTE(a, b)
+#define FMU_CALL(function) FMU_JOIN(FMU_MODEL, _##function)
+
+typedef enum { FMU_OK, FMU_WARNING, FMU_DISCARD, FMU_ERROR, FMU_FATAL } FmuStatus; /* numbers of both standards */
+
+typedef enum { FMU_INSTANTIATED = 1, FMU_INITIALIZATION = 2, FMU_STEPPING = 4, FMU_TERMINATED = 8 } FmuPhase;
+
+#define FMU_SETTING_UP (FMU_INSTANTIATED | FMU_INITIALIZATION)
+#define FMU_READABLE (FMU_INITIALIZATION | FMU_STEPPING | FMU_TERMINATED)
+#define FMU_ANY_PHASE (FMU_SETTING_UP | FMU_STEPPING | FMU_TERMINATED)
+
+/* All that a saved FMU state holds: numbers, no pointers. */
+typedef struct {
+    FMU_MODEL model;
+    double time;    /* s, on the master's clock */
+    int64_t now_ns; /* the same, exact */
+    int64_t start_ns;
+    int32_t phase;
+    int32_t stale; /* a parameter has changed since the model was initialized */
+} FmuSaved;
+
+typedef struct {
+    FmuSaved saved;
+    char *name;
+    FmuLogger logger;
+    void *environment;
+    bool logging;
+} FmuInstance;
+
+/* REAL is kept as double, INTEGER and ENUMERATION as int64_t, BOOLEAN as bool. */
+typedef enum { FMU_REAL, FMU_INTEGER, FMU_ENUMERATION, FMU_BOOLEAN } FmuKind;
+
+typedef enum { FMU_FIXED, FMU_TUNABLE, FMU_INPUT, FMU_CALCULATED } FmuRole;
+
+/* Where a variable is kept. */
+typedef struct {
+    uint32_t offset; /* of its first element, in FmuSaved */
+    uint8_t kind;
+    uint8_t role;
+} FmuPlace;
+
+/* What is said of a variable; the limits hold for parameters. */
+typedef struct {
+    double least;
+    double greatest;
+    char name[FMU_LONGEST_NAME + 1];
+} FmuLabel;
+
+#define MODEL(member) offsetof(FmuSaved, model.member)
+#define CLOCK offsetof(FmuSaved, time)
+
+#define VARIABLE(place, kind, role, name, least, greatest, shape) {(uint32_t)(place), FMU_##kind, FMU_##role},
+static const FmuPlace fmu_places[] = {
+#include FMU_VARIABLES
+};
+#undef VARIABLE
+
+#define VARIABLE(place, kind, role, name, least, greatest, shape) {least, greatest, name},
+static const FmuLabel fmu_labels[] = {
+#include FMU_VARIABLES
+};
+#undef VARIABLE
+
+#define FMU_COUNT (sizeof fmu_places / sizeof *fmu_places)
+
+static inline const char *fmu_name(uint32_t reference) { return fmu_labels[reference].name; }
+
+static inline bool fmu_is(uint32_t reference, FmuKind kind) {
+    return reference < FMU_COUNT && fmu_places[reference].kind == (uint8_t)kind;
+}
+
+static inline unsigned char *fmu_at(FmuInstance *fmu, uint32_t reference) {
+    return (unsigned char *)&fmu->saved + fmu_places[reference].offset;
+}
+
+#endif

@@ -1,0 +1,93 @@
+"""The C compiler: that of the package ``ziglang``, which serves all platforms, or this machine's own."""
+
+import os
+import shlex
+import shutil
+import subprocess
+import sys
+import tempfile
+from collections.abc import Mapping
+from importlib.metadata import PackageNotFoundError, version
+from importlib.util import find_spec
+from pathlib import Path
+from typing import NamedTuple
+
+from fmus.native.platforms import Target, host_target
+from fmus.places import CACHE, can_write
+
+MISSING = (
+    "a C compiler is missing: pip install 'apa-cosim[native]' (it brings ziglang, for all platforms), "
+    "or name this machine's own with --cc or the variable CC"
+)
+FLAGS = ("-std=c99", "-O2", "-ffp-contract=off", "-fno-math-errno")
+"""What every compiler is told that the results depend on, or the speed."""
+SHARED = (*FLAGS, "-fvisibility=hidden", "-ffunction-sections", "-g0", "-shared")
+
+
+class Compiler(NamedTuple):
+    """How a C compiler is called, and what it is, in the words that go into hashes."""
+
+    command: tuple[str, ...]
+    words: str
+    is_zig: bool
+
+    def library(self, files: Mapping[str, str], unit: str, name: str, target: Target) -> bytes:
+        """Return the shared library ``name`` made of the file ``unit`` among ``files``.
+
+        The work is done in a fresh directory with fixed file names, so that no path gets into the bytes.
+        ``RuntimeError`` with the compiler's words if it refuses.
+        """
+        if not self.is_zig and target != host_target():
+            raise RuntimeError(f"{self.command[0]} compiles for this machine only; for others use ziglang")
+        with tempfile.TemporaryDirectory(prefix="apa-c-") as directory:
+            here = Path(directory)
+            for file, text in files.items():
+                (here / file).write_text(text, encoding="utf-8", newline="\n")
+            self.run([*SHARED, "-o", name, unit, *target.options], here, target)
+            return (here / name).read_bytes()
+
+    def run(self, arguments: list[str], directory: Path, target: Target | None = None) -> None:
+        """Call the compiler in ``directory`` for ``target`` (default: this machine)."""
+        cross = ["-target", (target or host_target()).triple, "-fno-sanitize=all"] if self.is_zig else []
+        command = [*self.command, *cross, *arguments]
+        done = subprocess.run(
+            command, cwd=directory, env=_environment(), capture_output=True, text=True, errors="replace", check=False
+        )
+        if done.returncode:
+            raise RuntimeError(f"{shlex.join(command)}: {done.stderr.strip()}")
+
+
+def can_compile() -> bool:
+    """Return whether there is a C compiler."""
+    return bool(os.environ.get("CC")) or find_spec("ziglang") is not None
+
+
+def find_compiler(cc: str | None = None) -> Compiler:
+    """Return the compiler called ``cc``, else the one named by the variable CC, else ziglang's.
+
+    ``RuntimeError`` says what to install if there is none.
+    """
+    named = cc or os.environ.get("CC")
+    if named and named != "zig":
+        return _system(tuple(shlex.split(named)))
+    try:
+        return Compiler((sys.executable, "-m", "ziglang", "cc"), f"ziglang {version('ziglang')}", True)
+    except PackageNotFoundError:
+        raise RuntimeError(MISSING) from None
+
+
+def _system(command: tuple[str, ...]) -> Compiler:
+    if shutil.which(command[0]) is None:
+        raise RuntimeError(f"there is no C compiler called {command[0]}")
+    done = subprocess.run([*command, "--version"], capture_output=True, text=True, errors="replace", check=False)
+    return Compiler(command, (done.stdout or done.stderr).partition("\n")[0].strip(), False)
+
+
+def _environment() -> dict[str, str]:
+    """Return the environment, with a place for zig's cache where it would find none: HOME unset or read-only."""
+    found = dict(os.environ)
+    if os.name == "posix" and "ZIG_GLOBAL_CACHE_DIR" not in found:
+        home = found.get("XDG_CACHE_HOME") or found.get("HOME")
+        if not home or not can_write(Path(home)):
+            found["ZIG_GLOBAL_CACHE_DIR"] = str(CACHE / "zig")
+    return found

@@ -13,6 +13,7 @@ from controller_fmu.preview.driving import driving_outputs, driving_sample
 from controller_fmu.zhang2022.outputs import zhang_outputs
 from controller_fmu.zhang2022.system import zhang_sample
 from modelkit.model import Branch, Branches, Model
+from modelkit.terminals import TERMINALS
 
 SYSTEMS = Branches(
     parameter="system",
@@ -39,5 +40,6 @@ MODEL = Model(
     step=SYSTEMS.step,
     step_size=0.01,
     stop_time=60.0,
+    terminals=TERMINALS,
     branches=SYSTEMS,
 )

@@ -1,27 +1,18 @@
 """Whole runs as machine code: many at once, without Python in between and without the interpreter's lock.
 
-The models' code is the native FMU's, made by ``native_ir`` from the same Python source; the exchange
-is ``native/batch.c``, told by tables what is connected to what. The tables are made from the types:
-an output and an input of the same name are connected. Only :class:`Ending` and :class:`Kept` name
-signals. Libraries are kept in ``fmus/dist/lib`` under a hash of all they are made from.
+The models' code is the native FMU's, from the same C; the exchange is ``native/c/batch.c``, told by tables what is
+connected to what. The tables are made from the types: an output and an input of the same name are connected. Only
+:class:`Ending` and :class:`Kept` name signals.
 """
 
 import ctypes
-import hashlib
-import os
-import tempfile
 from collections.abc import Callable, Mapping, Sequence
-from functools import partial
-from pathlib import Path
 from typing import Any, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from fmus.locks import one_at_a_time
-from fmus.native.platforms import CODE, NATIVE, PLATFORMS, WARNINGS, Target, compile_c, host
-from fmus.native_ir import intermediate_code, object_code
-from fmus.places import LIBRARIES
+from fmus.native.libraries import batch_library, load_model
 from modelkit.connections import connections, part_of
 from modelkit.model import Model
 from modelkit.variables import variables
@@ -29,7 +20,7 @@ from modelkit.variables import variables
 How = Literal["last", "largest", "greatest", "smallest", "travel"]
 HOW: tuple[How, ...] = ("last", "largest", "greatest", "smallest", "travel")
 FIRST_KEPT = 2
-"""A row begins with the end (0 stop time, 1 standstill, 2 aborted) and its time [ns]."""
+"""A row begins with the end (0 stop time, 1 standstill) and its time [ns]."""
 Doubles = NDArray[np.float64]
 Rows = Callable[[Doubles, NDArray[np.int64], Doubles], None]
 """``rows(parameters, times, out)``: one run for each line of the three arrays; see :func:`compiled_rows`."""
@@ -60,9 +51,6 @@ def _structure(name: str, **fields: Any) -> Any:
     return type(name, (ctypes.Structure,), {"_fields_": list(fields.items())})
 
 
-ModelC = _structure(
-    "ModelC", initialize=Pointer, step=Pointer, starts=Pointer, parameters=Long, inputs=Long, outputs=Long, states=Long
-)
 LinkC = _structure("LinkC", source=Long, source_place=Long, target=Long, target_place=Long)
 SignalC = _structure("SignalC", model=Long, place=Long, input=Long)
 KeptC = _structure("KeptC", how=Long, signal=SignalC)
@@ -91,7 +79,7 @@ def compiled_rows(models: Mapping[str, Model], ending: Ending | None, kept: Sequ
     cannot be compiled, ``RuntimeError`` where there is no compiler.
     """
     tables = _Tables(models, ending, kept)
-    library = ctypes.CDLL(str(_library("batch", ("batch.c",), b"", "")))
+    library = ctypes.CDLL(str(batch_library()))
     library.batch_rows.restype = Long
     library.batch_rows.argtypes = [Pointer, Long, Pointer, Pointer, Pointer]
 
@@ -125,14 +113,14 @@ class _Tables:
                     self._places[f"{owner}.{variable.name}"] = (number, place, is_input)
         links = connections([part_of(name, model) for name, model in models.items()])
         notes = [KeptC(HOW.index(item.how), self._signal(item.signal)) for item in kept]
-        parts = [self._model(model) for model in models.values()]
+        libraries = [load_model(model) for model in models.values()]
         end = ending or Ending("", (), "", 0.0, 0)
         found = [self._signal(name) if ending else SignalC(0, 0, 0) for name in (end.mode, end.speed)]
         self._batch = BatchC(
-            self._array(ModelC, parts),
+            self._array(Pointer, [library.model_library() for library in libraries]),
             self._array(LinkC, [LinkC(*link) for link in links]),
             self._array(KeptC, notes),
-            len(parts),
+            len(libraries),
             len(links),
             len(notes),
             *found,
@@ -141,64 +129,13 @@ class _Tables:
             end.time_ns,
         )
         self.address = ctypes.addressof(self._batch)
-        self.width = sum(part.parameters for part in parts)
+        self.width = sum(len(variables(model.params)) for model in models.values())
+        self._held += libraries
 
     def _signal(self, name: str) -> Any:
         return SignalC(*self._places[name])
-
-    def _model(self, model: Model) -> Any:
-        library = ctypes.CDLL(str(model_library(model)))
-        starts = np.array([float(item.start) for item in variables(model.inputs)])
-        self._held += [library, starts]
-        functions = (ctypes.cast(function, Pointer) for function in (library.batch_initialize, library.batch_step))
-        sizes = (len(variables(cls)) for cls in (model.params, model.inputs, model.outputs, model.state))
-        return ModelC(*functions, starts.ctypes.data, *sizes)
 
     def _array(self, kind: Any, items: list[Any]) -> int:
         held = (kind * max(len(items), 1))(*items)
         self._held.append(held)
         return ctypes.addressof(held)
-
-
-def model_library(model: Model) -> Path:
-    """Return the library with the two functions of ``model``, made anew only if a source has changed."""
-    maker = (Path(__file__).parent / "native_ir.py").read_bytes()
-    digest = hashlib.sha256(maker + intermediate_code(model).encode()).digest()
-    make = partial(object_code, model, _target().triple)
-    return _library(model.name, ("batch_model.c",), digest, "model.o", make)
-
-
-def _target() -> Target:
-    targets = PLATFORMS[host()].targets
-    return targets[-1 if os.name == "posix" and os.uname().machine == "arm64" else 0]
-
-
-def _library(
-    name: str, sources: Sequence[str], more: bytes, object_file: str, make: Callable[[], bytes] = lambda: b""
-) -> Path:
-    target = _target()
-    objects = (object_file,) if object_file else ()
-    options = (*WARNINGS, *CODE, *sources, *objects, *target.options)
-    digest = hashlib.sha256(" ".join((target.compiler, *options)).encode() + more)
-    for source in sources:
-        digest.update((NATIVE / source).read_bytes())
-    path = LIBRARIES / f"{name}-{digest.hexdigest()[:16]}{PLATFORMS[host()].suffix}"
-    with one_at_a_time(path):
-        if not path.exists():
-            _build(path, target, options, sources, {item: make() for item in objects})
-    return path
-
-
-def _build(
-    path: Path, target: Target, options: Sequence[str], sources: Sequence[str], objects: Mapping[str, bytes]
-) -> None:
-    with tempfile.TemporaryDirectory(prefix="apa-batch-") as directory:
-        here = Path(directory)
-        for source in sources:
-            (here / source).write_bytes((NATIVE / source).read_bytes())
-        for name, content in objects.items():
-            (here / name).write_bytes(content)
-        compile_c(here, target.compiler, path.name, options)
-        part = path.with_name(f"{path.name}.{os.getpid()}.part")
-        part.write_bytes((here / path.name).read_bytes())
-        part.replace(path)

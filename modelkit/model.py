@@ -44,6 +44,15 @@ class Branches(NamedTuple):
         return state._replace(**{self.clock: clock, chosen.field: own}), outputs
 
 
+class Terminal(NamedTuple):
+    """Signals that belong together, for tools that connect many of them at once to a terminal of the same name."""
+
+    name: str
+    text: str
+    members: tuple[str, ...]
+    """Inputs and outputs, or groups of them (``pose`` for ``pose.x``, ``pose.y``...); what a model lacks is left out."""
+
+
 class Model(NamedTuple):
     """A sampled or continuous model as pure functions over NamedTuples.
 
@@ -68,3 +77,5 @@ class Model(NamedTuple):
     """Default experiment length [s]."""
     branches: Branches | None = None
     """What ``step`` is made of, if it is ``branches.step``: compiled code then touches the chosen state only."""
+    terminals: tuple[Terminal, ...] = ()
+    """Groups of its inputs and outputs; none: all inputs are one and all outputs another."""

@@ -3,6 +3,7 @@
 import sys
 
 from modelkit.model import Model
+from modelkit.terminals import TERMINALS
 from vehicle_fmu import model
 from vehicle_fmu.interface import VehicleInput, VehicleOutput, VehicleParams
 
@@ -18,4 +19,5 @@ MODEL = Model(
     step=model.step,
     step_size=0.01,
     stop_time=60.0,
+    terminals=TERMINALS,
 )

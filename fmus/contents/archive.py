@@ -52,10 +52,10 @@ def write_archive(path: Path, files: Mapping[str, bytes]) -> Path:
 
 
 def archive_guid(path: Path) -> str | None:
-    """Return the GUID of the FMU at ``path``, None if there is no readable one."""
+    """Return the GUID (FMI 3.0: instantiation token) of the FMU at ``path``, None if there is no readable one."""
     try:
         with zipfile.ZipFile(path) as archive:
-            found = re.search(rb'guid="([^"]*)"', archive.read(DESCRIPTION))
+            found = re.search(rb'(?:guid|instantiationToken)="([^"]*)"', archive.read(DESCRIPTION))
     except (OSError, KeyError, zipfile.BadZipFile):
         return None
     return found[1].decode() if found else None

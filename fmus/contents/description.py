@@ -111,18 +111,18 @@ def model_description(
         generationDateAndTime=GENERATED,
         variableNamingConvention="structured",
     )
-    capabilities = {"modelIdentifier": model.name} | {name: _text(value) for name, value in flags.items()}
+    capabilities = {"modelIdentifier": model.name} | {name: as_text(value) for name, value in flags.items()}
     interface = SubElement(root, "CoSimulation", capabilities)
     if sources:
         files = SubElement(interface, "SourceFiles")
         for name in sources:
             SubElement(files, "File", name=name)
-    root.append(_unit_definitions(known))
+    root.append(unit_definitions(known))
     categories = SubElement(root, "LogCategories")
     for name, text in LOG_CATEGORIES.items():
         SubElement(categories, "Category", name=name, description=text)
     SubElement(
-        root, "DefaultExperiment", startTime="0.0", stopTime=_text(model.stop_time), stepSize=_text(model.step_size)
+        root, "DefaultExperiment", startTime="0.0", stopTime=as_text(model.stop_time), stepSize=as_text(model.step_size)
     )
     scalars = SubElement(root, "ModelVariables")
     scalars.extend(_scalar(variable) for variable in known)
@@ -140,21 +140,22 @@ def project_version() -> str:
         return "0"
 
 
-def _text(value: Any) -> str:
+def as_text(value: Any) -> str:
     """Return a number or truth value as XML has it; floats with all their digits."""
     return str(value).lower() if isinstance(value, bool) else repr(value)
 
 
-def _unit_definitions(known: Iterable[FmiVariable]) -> Element:
+def unit_definitions(known: Iterable[FmiVariable]) -> Element:
+    """Return UnitDefinitions, the same in FMI 2.0 and 3.0."""
     definitions = Element("UnitDefinitions")
     for name in sorted({variable.signal.unit for variable in known if variable.kind is float}):
         this = unit(name)
         node = SubElement(definitions, "Unit", name=name)
         exponents = {base: str(power) for base, power in this.exponents.items()}
-        factor = {} if this.factor == 1.0 else {"factor": _text(this.factor)}
+        factor = {} if this.factor == 1.0 else {"factor": as_text(this.factor)}
         SubElement(node, "BaseUnit", exponents | factor)
         if this.display is not None:
-            SubElement(node, "DisplayUnit", name=this.display, factor=_text(this.display_factor))
+            SubElement(node, "DisplayUnit", name=this.display, factor=as_text(this.display_factor))
     return definitions
 
 
@@ -180,13 +181,13 @@ def _type_attributes(variable: FmiVariable) -> Iterator[tuple[str, str]]:
             yield "displayUnit", this.display
     low, high = limits(variable)
     if low is not None:
-        yield "min", _text(variable.kind(low))
+        yield "min", as_text(variable.kind(low))
     if high is not None:
-        yield "max", _text(variable.kind(high))
+        yield "max", as_text(variable.kind(high))
     if variable.kind is float and unit(variable.signal.unit).nominal != 1.0:
-        yield "nominal", _text(unit(variable.signal.unit).nominal)
+        yield "nominal", as_text(unit(variable.signal.unit).nominal)
     if variable.start is not None:
-        yield "start", _text(variable.start)
+        yield "start", as_text(variable.start)
 
 
 def _structure(known: list[FmiVariable]) -> Element:

@@ -1,45 +1,63 @@
 """What an FMU of any kind carries beside its code: page, licence, icon, terminals, reference result."""
 
+import re
 from xml.etree import ElementTree
 from xml.etree.ElementTree import Element, SubElement
 
+from fmus.contents.arrays import fmi_arrays
 from fmus.contents.description import fmi_variables
 from fmus.contents.icon import icon
 from fmus.contents.pages import LICENCE, index_page
-from modelkit.model import Model
+from modelkit.model import Model, Terminal
 from modelkit.variables import flatten, variables
 
 LS_REF = "extra/org.fmi-standard.fmi-ls-ref"
 LS_NAMESPACE = "http://fmi-standard.org/fmi-ls-manifest"
 MOST_ROWS = 600
+SQUARE = {"x1": "-100", "y1": "-100", "x2": "100", "y2": "100"}
+ALL_PORTS = (
+    Terminal("inputs", "all inputs, by name", ("all inputs",)),
+    Terminal("outputs", "all outputs, by name", ("all outputs",)),
+)
 
 
-def documentation(model: Model, needs: str) -> dict[str, bytes]:
+def documentation(model: Model, needs: str, fmi: int = 2) -> dict[str, bytes]:
     """Return path -> content; ``needs`` is HTML that says what the host must have."""
     picture = icon(model.name, len(variables(model.inputs)), len(variables(model.outputs)))
     return {
         "documentation/index.html": index_page(model, needs),
         "documentation/licenses/license.txt": LICENCE.encode(),
-        "model.png": picture,
-        "terminalsAndIcons/terminalsAndIcons.xml": terminals(model),
+        "terminalsAndIcons/icon.png" if fmi == 3 else "model.png": picture,
+        "terminalsAndIcons/terminalsAndIcons.xml": terminals(model, fmi),
     }
 
 
-def terminals(model: Model) -> bytes:
-    """Return terminalsAndIcons.xml (as FMI 3.0 defines it): a bus of all inputs and a bus of all outputs."""
+def terminals(model: Model, fmi: int = 2) -> bytes:
+    """Return terminalsAndIcons.xml, as FMI 3.0 defines it and FMI 2.0 may have it: buses of signals, and the icon."""
+    if fmi == 3:
+        ports = {item.name: item.first.causality for item in fmi_arrays(model)}
+    else:
+        ports = {item.name: item.causality for item in fmi_variables(model)}
     root = Element("fmiTerminalsAndIcons", fmiVersion="3.0")
+    picture = SubElement(root, "GraphicalRepresentation")
+    SubElement(picture, "CoordinateSystem", SQUARE, suggestedScalingFactorTo_mm="0.1")
+    SubElement(picture, "Icon", SQUARE)
     node = SubElement(root, "Terminals")
-    for causality in ("input", "output"):
-        members = [variable.name for variable in fmi_variables(model) if variable.causality == causality]
-        if members:
-            terminal = SubElement(
-                node, "Terminal", name=f"{causality}s", matchingRule="bus", description=f"all {causality}s, by name"
-            )
-            for name in members:
-                SubElement(
-                    terminal, "TerminalMemberVariable", variableName=name, memberName=name, variableKind="signal"
-                )
+    for name, text, members in model.terminals or ALL_PORTS:
+        chosen = [port for port, causality in ports.items() if _is_member(port, causality, members)]
+        if chosen:
+            terminal = SubElement(node, "Terminal", name=name, matchingRule="bus", description=text)
+            for port in chosen:
+                attributes = {"variableName": port, "memberName": port, "variableKind": "signal"}
+                SubElement(terminal, "TerminalMemberVariable", attributes)
     return _xml(root)
+
+
+def _is_member(port: str, causality: str, members: tuple[str, ...]) -> bool:
+    """Return whether an input or output is one of ``members``, or in one of them, or all of its kind are meant."""
+    if causality not in ("input", "output"):
+        return False
+    return f"all {causality}s" in members or any(re.match(rf"{re.escape(name)}(?![^.\[])", port) for name in members)
 
 
 def reference_result(model: Model) -> dict[str, bytes]:

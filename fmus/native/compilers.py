@@ -21,7 +21,15 @@ MISSING = (
 )
 FLAGS = ("-std=c99", "-O2", "-ffp-contract=off", "-fno-math-errno")
 """What every compiler is told that the results depend on, or the speed."""
-SHARED = (*FLAGS, "-fvisibility=hidden", "-ffunction-sections", "-g0", "-shared")
+SHARED = (
+    *FLAGS,
+    "-DFMI2_OVERRIDE_FUNCTION_PREFIX",
+    "-DFMI3_OVERRIDE_FUNCTION_PREFIX",
+    "-fvisibility=hidden",
+    "-ffunction-sections",
+    "-g0",
+    "-shared",
+)
 
 
 class Compiler(NamedTuple):

@@ -1,39 +1,56 @@
-"""From a model package to an FMI 2.0 co-simulation FMU that needs nothing at run time but libc and libm."""
+"""From a model package to a co-simulation FMU, FMI 2.0 or 3.0, that needs nothing at run time but libc and libm."""
 
 from collections.abc import Iterable
 from pathlib import Path
+from xml.etree import ElementTree
+from xml.etree.ElementTree import Element, SubElement
 
 from fmus.contents.archive import DESCRIPTION, archive_guid, content_guid, write_archive
 from fmus.contents.description import model_description, project_version
+from fmus.contents.description3 import model_description3
 from fmus.contents.extras import documentation, reference_result
-from fmus.native.compilers import Compiler, find_compiler
+from fmus.native.compilers import FLAGS, Compiler, find_compiler
 from fmus.native.fat_binary import fat_binary
-from fmus.native.platforms import PLATFORMS, Platform
+from fmus.native.platforms import PLATFORMS
 from fmus.native.sources import fmu_sources, unit_name
 from modelkit.model import Model
 
-FLAGS = {
-    "needsExecutionTool": False,
-    "canHandleVariableCommunicationStepSize": True,
-    "canInterpolateInputs": False,
-    "canBeInstantiatedOnlyOncePerProcess": False,
-    "canNotUseMemoryManagementFunctions": True,
-    "canGetAndSetFMUstate": True,
-    "canSerializeFMUstate": True,
+ABILITIES = {
+    2: {
+        "needsExecutionTool": False,
+        "canHandleVariableCommunicationStepSize": True,
+        "canInterpolateInputs": False,
+        "canBeInstantiatedOnlyOncePerProcess": False,
+        "canNotUseMemoryManagementFunctions": True,
+        "canGetAndSetFMUstate": True,
+        "canSerializeFMUstate": True,
+    },
+    3: {
+        "needsExecutionTool": False,
+        "canBeInstantiatedOnlyOncePerProcess": False,
+        "canGetAndSetFMUState": True,
+        "canSerializeFMUState": True,
+        "canHandleVariableCommunicationStepSize": True,
+        "hasEventMode": False,
+    },
 }
 NEEDS = """
 <p>This FMU is machine code for {platforms}, made from the C in its folder <code>sources</code>, which was made from
 the model's Python source. It needs no Python, no other library than the C library, and no licence. Several instances
 may run in one process and on several threads, each instance on one thread at a time.</p>
-<p>For another target compile <code>sources/{unit}</code> alone; its first lines say with which flags. The functions
-get a prefix by <code>-DFMI2_FUNCTION_PREFIX={name}_</code>.</p>
+<p>For another target compile <code>sources/{unit}</code> alone; its first lines say with which flags. Linked into one
+image with other FMUs its functions have the prefix <code>{name}_</code>, if FMI{fmi}_FUNCTION_PREFIX says so.</p>
 <p>A parameter outside its range, a variable that does not exist, a call out of order or a step that is not
-in (0, 3600] s is answered with fmi2Error and a message to the logger; nothing is changed by such a call.</p>
+in (0, 3600] s is answered with fmi{fmi}Error and a message to the logger; nothing is changed by such a call.</p>
 """
 
 
 def build(
-    model: Model, out_dir: Path, platforms: Iterable[str] = tuple(PLATFORMS), compiler: Compiler | None = None
+    model: Model,
+    out_dir: Path,
+    platforms: Iterable[str] = tuple(PLATFORMS),
+    compiler: Compiler | None = None,
+    fmi: int = 2,
 ) -> Path:
     """Return the path of ``out_dir/<model.name>.fmu``; written only if its content would change.
 
@@ -41,32 +58,57 @@ def build(
     """
     names = sorted(platforms)
     chosen = compiler or find_compiler()
-    files = contents(model, names, "")
     made_by = {"compiler": chosen.words.encode(), "platforms": " ".join(names).encode()}
-    guid = content_guid({**files, **made_by})
+    guid = content_guid({**contents(model, names, "", fmi), **made_by})
     path = Path(out_dir) / f"{model.name}.fmu"
     if archive_guid(path) != guid:
-        files = contents(model, names, guid)
-        for name in names:
-            platform = PLATFORMS[name]
-            files[f"binaries/{name}/{model.name}{platform.suffix}"] = library(model, platform, guid, chosen)
-        write_archive(path, {**files, **reference_result(model)})
+        files = contents(model, names, guid, fmi) | reference_result(model)
+        write_archive(path, files | binaries(model, names, guid, chosen, fmi))
     return path
 
 
-def contents(model: Model, platforms: list[str], guid: str) -> dict[str, bytes]:
+def contents(model: Model, platforms: list[str], guid: str, fmi: int = 2) -> dict[str, bytes]:
     """Return all files but the binaries and the reference result."""
-    unit = unit_name(model, 2)
-    files = documentation(model, NEEDS.format(platforms=", ".join(platforms), unit=unit, name=model.name))
-    files |= {f"sources/{name}": text.encode() for name, text in fmu_sources(model, guid).items()}
-    tool = f"apa-cosim {project_version()}, native"
-    files[DESCRIPTION] = model_description(model, guid=guid, generation_tool=tool, flags=FLAGS, sources=(unit,))
+    unit, tool = unit_name(model, fmi), f"apa-cosim {project_version()}, native"
+    needs = NEEDS.format(platforms=", ".join(platforms), unit=unit, name=model.name, fmi=fmi)
+    files = documentation(model, needs, fmi)
+    files |= {f"sources/{name}": text.encode() for name, text in fmu_sources(model, guid, fmi).items()}
+    flags = ABILITIES[fmi]
+    if fmi == 3:
+        files["sources/buildDescription.xml"] = build_description(model)
+        files[DESCRIPTION] = model_description3(model, token=guid, generation_tool=tool, flags=flags)
+    else:
+        files[DESCRIPTION] = model_description(model, guid=guid, generation_tool=tool, flags=flags, sources=(unit,))
     return files
 
 
-def library(model: Model, platform: Platform, guid: str, compiler: Compiler) -> bytes:
-    """Return the shared library of ``model`` for ``platform``; it answers to ``guid`` only."""
-    sources, unit = fmu_sources(model, guid), unit_name(model, 2)
-    name = f"{model.name}{platform.suffix}"
-    slices = [compiler.library(sources, unit, name, target) for target in platform.targets]
-    return fat_binary(slices) if len(slices) > 1 else slices[0]
+def binaries(model: Model, platforms: list[str], guid: str, compiler: Compiler, fmi: int = 2) -> dict[str, bytes]:
+    """Return the shared libraries, under their paths in the FMU; they answer to ``guid`` only."""
+    sources, unit = fmu_sources(model, guid, fmi), unit_name(model, fmi)
+    files = {}
+    for name in platforms:
+        platform = PLATFORMS[name]
+        file = f"{model.name}{platform.suffix}"
+        made = [compiler.library(sources, unit, file, target) for target in platform.targets]
+        if fmi == 3:
+            files |= {f"binaries/{folder}/{file}": one for folder, one in zip(platform.folders3, made, strict=True)}
+        else:
+            files[f"binaries/{name}/{file}"] = fat_binary(made) if len(made) > 1 else made[0]
+    return files
+
+
+def build_description(model: Model) -> bytes:
+    """Return sources/buildDescription.xml of FMI 3.0: what to compile, and with which flags."""
+    root = Element("fmiBuildDescription", fmiVersion="3.0")
+    configuration = SubElement(root, "BuildConfiguration", modelIdentifier=model.name)
+    options = {"compiler": "gcc", "compilerOptions": " ".join(FLAGS)}
+    files = SubElement(configuration, "SourceFileSet", {"language": "C99", **options})
+    SubElement(files, "SourceFile", name=unit_name(model, 3))
+    text = "for a shared library: functions without prefix"
+    definition = {"name": "FMI3_OVERRIDE_FUNCTION_PREFIX", "value": "1", "optional": "true", "description": text}
+    SubElement(files, "PreprocessorDefinition", definition)
+    text = "mathematical functions, where the C library does not have them in it"
+    SubElement(configuration, "Library", name="m", external="true", description=text)
+    ElementTree.indent(root)
+    content: bytes = ElementTree.tostring(root, encoding="UTF-8", xml_declaration=True)
+    return content + b"\n"

@@ -32,17 +32,19 @@ MAC_ARM = Target("aarch64-macos.11.0", ("-Wl,-s",))
 
 
 class Platform(NamedTuple):
-    """A folder in ``binaries/`` and what its library is made of (a Mac's holds both processors)."""
+    """A folder in ``binaries/`` of FMI 2.0 and what its library is made of (a Mac's holds both processors)."""
 
     suffix: str
     targets: tuple[Target, ...]
+    folders3: tuple[str, ...]
+    """Names of the folders in FMI 3.0, one for each target."""
 
 
 PLATFORMS = {
-    "linux64": Platform(".so", (LINUX,)),
-    "win64": Platform(".dll", (WINDOWS,)),
-    "darwin64": Platform(".dylib", (MAC_INTEL, MAC_ARM)),
-    "aarch64-linux": Platform(".so", (LINUX_ARM,)),
+    "linux64": Platform(".so", (LINUX,), ("x86_64-linux",)),
+    "win64": Platform(".dll", (WINDOWS,), ("x86_64-windows",)),
+    "darwin64": Platform(".dylib", (MAC_INTEL, MAC_ARM), ("x86_64-darwin", "aarch64-darwin")),
+    "aarch64-linux": Platform(".so", (LINUX_ARM,), ("aarch64-linux",)),
 }
 
 

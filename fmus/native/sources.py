@@ -1,15 +1,16 @@
 """The C files of an FMU: the model's, the FMI side, the tables, and the one file that is compiled."""
 
+from functools import lru_cache
 from pathlib import Path
 
-from fmus.compiler import translate
+from fmus.compiler import Translation, translate
 from fmus.native.compilers import FLAGS
 from fmus.native.tables import longest_name, runs_file, variables_file
 from modelkit.model import Model
 
 C_FILES = Path(__file__).parent / "c"
 CORE = ("core.h", "core.c", "state.c")
-FACES = {2: ("fmi2.h", "fmi2.c"), 3: ("fmi3.h", "fmi3.c")}
+FACES = {2: ("fmi2.h", "fmi2.c"), 3: ("fmi3.h", "fmi3.c", "fmi3_absent.c")}
 UNIT = """/* The FMU {name}, FMI {fmi}.0 for co-simulation, in one translation unit: compile this file alone.
  *
  *     cc {flags} -fPIC -shared -o {name}.so {unit} -lm
@@ -17,7 +18,7 @@ UNIT = """/* The FMU {name}, FMI {fmi}.0 for co-simulation, in one translation u
  * The flags are part of the result: no fast-math, no fused a*b + c. No -march is needed.
  */
 #include "{name}.c"
-
+{prefix}
 #define FMU_MODEL {name}
 #define FMU_TOKEN "{token}"
 #define FMU_VARIABLES "{name}_variables.h"
@@ -25,6 +26,20 @@ UNIT = """/* The FMU {name}, FMI {fmi}.0 for co-simulation, in one translation u
 #define FMU_LONGEST_NAME {longest}
 #include "fmi{fmi}.c"
 """
+SHARED_FUNCTIONS = "-DFMI{fmi}_OVERRIDE_FUNCTION_PREFIX"
+"""For a shared library: its functions have no prefix."""
+PREFIX = {2: "", 3: """
+#ifndef FMI3_FUNCTION_PREFIX
+#define FMI3_FUNCTION_PREFIX {name}_
+#endif
+"""}
+"""FMI 3.0 wants the prefix in the sources; in FMI 2.0 a tool that wants one defines it."""
+
+
+@lru_cache
+def translated(model: Model) -> Translation:
+    """Return the C of ``model``. Raises ``TypeError`` if the translator refuses it."""
+    return translate(model)
 
 
 def unit_name(model: Model, fmi: int) -> str:
@@ -34,12 +49,18 @@ def unit_name(model: Model, fmi: int) -> str:
 
 def fmu_sources(model: Model, token: str, fmi: int = 2) -> dict[str, str]:
     """Return file name -> text; ``token`` is what the FMU answers to. Raises ``TypeError`` if the model is refused."""
-    code = translate(model)
+    code = translated(model)
     files = {name: (C_FILES / name).read_text(encoding="utf-8") for name in (*CORE, *FACES[fmi])}
     files |= {f"{model.name}.h": code.header, f"{model.name}.c": code.source}
-    files |= {f"{model.name}_variables.h": variables_file(model), f"{model.name}_runs.h": runs_file(model)}
+    files |= {f"{model.name}_variables.h": variables_file(model, fmi), f"{model.name}_runs.h": runs_file(model)}
     unit = unit_name(model, fmi)
     files[unit] = UNIT.format(
-        name=model.name, fmi=fmi, flags=" ".join(FLAGS), unit=unit, token=token, longest=longest_name(model)
+        name=model.name,
+        fmi=fmi,
+        flags=" ".join((*FLAGS, SHARED_FUNCTIONS.format(fmi=fmi))),
+        unit=unit,
+        prefix=PREFIX[fmi].format(name=model.name),
+        token=token,
+        longest=longest_name(model),
     )
     return files

@@ -4,9 +4,10 @@ The lines are read twice by ``core.h``, once for the places and once for names a
 """
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping, Sequence
 
 from fmus.compiler import Member, members
+from fmus.contents.arrays import FmiArray, fmi_arrays
 from fmus.contents.description import FmiVariable, fmi_variables, limits
 from modelkit.model import Model
 
@@ -20,41 +21,40 @@ RUNS_HEAD = """/* Stretches of the model's memory without padding, RUN(first, la
 """
 
 
-def variables_file(model: Model) -> str:
-    """Return a line for each FMI 2.0 variable."""
-    known = fmi_variables(model)
-    check_references([item.vr for item in known])
-    paths = member_paths(model)
-    lines = (
-        variable_line(item, place_of(item.name, paths), KINDS[item.kind], item.name, "SCALAR")
-        for item in sorted(known, key=lambda item: item.vr)
-    )
-    return VARIABLES_HEAD + "".join(lines)
+def variables_file(model: Model, fmi: int = 2) -> str:
+    """Return a line for each variable of FMI 2.0, where all are scalars, or of FMI 3.0."""
+    paths = {item.name: item.path for item in members(model)}
+    known = fmi_arrays(model) if fmi == 3 else [_alone(item) for item in fmi_variables(model)]
+    ordered = sorted(known, key=lambda item: item.vr)
+    if [item.vr for item in ordered] != list(range(len(ordered))):
+        raise ValueError(f"{model.name}: value references must be 0 to {len(ordered) - 1}, each once")
+    return VARIABLES_HEAD + "".join(_line(item, paths) for item in ordered)
 
 
-def check_references(references: Iterable[int]) -> None:
-    """Raise ``ValueError`` unless the value references are 0, 1, 2... in some order."""
-    found = sorted(references)
-    if found != list(range(len(found))):
-        raise ValueError(f"value references must be 0 to {len(found) - 1}, each once")
+def _alone(item: FmiVariable) -> FmiArray:
+    return FmiArray(item.name, item.vr, (item,), ())
 
 
-def member_paths(model: Model) -> dict[str, str]:
-    """Return flat name -> C expression of the member, below the struct of all memory."""
-    return {item.name: item.path for item in members(model)}
-
-
-def place_of(name: str, paths: Mapping[str, str]) -> str:
-    """Return the C expression of a variable's offset."""
-    return "CLOCK" if name == "time" else f"MODEL({paths[name]})"
-
-
-def variable_line(item: FmiVariable, place: str, kind: str, name: str, shape: str) -> str:
-    """Return the line of one variable, or of one array whose first element is ``item``."""
-    role = ROLES[item.causality] if item.causality != "parameter" else item.variability.upper()
-    low, high = limits(item)
+def _line(item: FmiArray, paths: Mapping[str, str]) -> str:
+    first = item.first
+    place = "CLOCK" if first.causality == "independent" else f"MODEL({paths[first.name]})"
+    kind = "ENUMERATION" if item.states is not None else KINDS[first.kind]
+    role = ROLES[first.causality] if first.causality != "parameter" else first.variability.upper()
+    low, high = limits(first)
     least, greatest = number(-math.inf if low is None else low), number(math.inf if high is None else high)
-    return f'VARIABLE({place}, {kind}, {role}, "{name}", {least}, {greatest}, {shape})\n'
+    shape = _shape(item.shape, [paths[element.name] for element in item.elements] if item.shape else [])
+    return f'VARIABLE({place}, {kind}, {role}, "{item.name}", {least}, {greatest}, {shape})\n'
+
+
+def _shape(shape: Sequence[int], paths: Sequence[str]) -> str:
+    """Return how many elements there are, and the next along each dimension: itself if there is no next."""
+    if not shape:
+        return "SCALAR"
+    columns = shape[1] if len(shape) == 2 else 1
+    next_row = paths[columns if shape[0] > 1 else 0]
+    if len(shape) == 1:
+        return f"ARRAY({shape[0]}, {next_row})"
+    return f"TABLE({shape[0]}, {next_row}, {columns}, {paths[1 if columns > 1 else 0]})"
 
 
 def number(value: float) -> str:
@@ -65,7 +65,7 @@ def number(value: float) -> str:
 
 
 def longest_name(model: Model) -> int:
-    """Return how many characters the longest name has."""
+    """Return how many characters the longest name has, at most."""
     return max(len(item.name) for item in fmi_variables(model))
 
 

@@ -1,19 +1,17 @@
 """Vehicle and controller in this process, compiled where it can be: fast enough for a study, every signal at hand.
 
-Compiled, the models are the libraries that :func:`fmus.compiled_batch.model_library` makes and keeps,
-called at the addresses of arrays made once a run; else they are plain Python. Both give the same bits.
+Compiled, the models are the libraries of :mod:`fmus.native.libraries`, called at the addresses of arrays made once a
+run; else they are plain Python. Both give the same bits.
 """
 
 import ctypes
 from collections.abc import Callable, Iterator, Mapping
-from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from fmus.flat_entry import entries
 from modelkit.model import Model
-from modelkit.variables import flatten, variables, with_values
+from modelkit.variables import constructor, flatten, variables, with_values
 from orchestrator.cosim.slave import Array
 from orchestrator.scenario.models import MODELS
 
@@ -80,20 +78,19 @@ class Loop:
 
 
 def _compiled(model: Model) -> Start:
-    from fmus.compiled_batch import model_library
+    from fmus.native.libraries import load_model, memory_size
 
-    library = ctypes.CDLL(str(model_library(model)))
-    initialize, step = library.batch_initialize, library.batch_step
-    initialize.argtypes = [ctypes.c_void_p] * 3
-    step.argtypes = [*[ctypes.c_void_p] * 4, ctypes.c_int64]
+    library = load_model(model)
+    size = memory_size(library)
 
     def start(changes: dict[str, Any]) -> Part:
-        s, u, p, y = (np.array(values, dtype=float) for values in _values(model, changes))
-        state, inputs, params, outputs = (array.ctypes.data for array in (s, u, p, y))
-        initialize(state, params, outputs)
+        params = np.array(flatten(with_values(model.params, changes)), dtype=float)
+        memory, u, y = np.zeros(size, dtype=np.uint8), *_ports(model)
+        instance, inputs, outputs = (array.ctypes.data for array in (memory, u, y))
+        library.model_start(instance, params.ctypes.data, outputs)
 
-        def on(_held: tuple[Array, Array] = (s, p)) -> None:
-            step(state, inputs, params, outputs, STEP_NS)
+        def on(_held: Array = memory) -> None:
+            library.model_step(instance, inputs, outputs, STEP_NS)
 
         return Part(u, y, on)
 
@@ -101,18 +98,24 @@ def _compiled(model: Model) -> Start:
 
 
 def _plain(model: Model) -> Start:
-    entry = entries(model)
+    inputs_of = constructor(model.inputs)
 
     def start(changes: dict[str, Any]) -> Part:
-        s, u, p, y = _values(model, changes)
-        inputs, outputs = np.array(u, dtype=float), np.array(y, dtype=float)
-        entry.initialize(s, p, outputs)
-        return Part(inputs, outputs, partial(entry.step, s, inputs, p, outputs, STEP_NS))
+        params = with_values(model.params, changes)
+        u, y = _ports(model)
+        state, first = model.initialize(params)
+        y[:] = flatten(first)
+
+        def on() -> None:
+            nonlocal state
+            state, told = model.step(state, inputs_of(u.tolist()), params, STEP_NS)
+            y[:] = flatten(told)
+
+        return Part(u, y, on)
 
     return start
 
 
-def _values(model: Model, changes: dict[str, Any]) -> tuple[list[Any], list[Any], list[Any], list[Any]]:
-    """Return state, inputs, parameters and outputs at the start."""
-    params = flatten(with_values(model.params, changes))
-    return flatten(model.state()), flatten(model.inputs()), params, flatten(model.outputs())
+def _ports(model: Model) -> tuple[Array, Array]:
+    """Return inputs and outputs at the start."""
+    return np.array(flatten(model.inputs()), dtype=float), np.array(flatten(model.outputs()), dtype=float)

@@ -133,6 +133,6 @@ def test_without_a_compiler_the_python_loop_does_it(fmus, monkeypatch, loops):
     def absent():
         raise RuntimeError("no compiler")
 
-    monkeypatch.setattr("fmus.native.master_library.master_library", absent)
+    monkeypatch.setattr("fmus.native.libraries.master_library", absent)
     times, error, _ = drive(CompiledMaster, fmus["native"])
     assert (len(times), error, loops) == (301, "", [])

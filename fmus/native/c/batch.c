@@ -1,31 +1,22 @@
 /* Whole runs in one call: models, exchange, ending and the numbers kept of each run.
  *
- * The exchange is that of orchestrator/master.py, step by step: fetch the outputs of the models that
- * are due, hand them to the inputs of the same name, note what is kept, ask whether the run is over,
- * step what is due. Every scalar is a double. Holds no lock and no static data: any number of threads
- * may be in here at once.
+ * The exchange is that of the Python master, step by step: fetch the outputs of the models that are due, hand
+ * them to the inputs of the same name, note what is kept, ask whether the run is over, step what is due. The
+ * models keep their variables as the structs of their own C; parameters are laid in once per run. Holds no lock and
+ * no static data: any number of threads may be in here at once.
  */
+#include "library.h"
+
 #include <math.h>
 #include <stddef.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
-typedef int32_t (*Initialize)(double *state, const double *parameters, double *outputs);
-typedef int32_t (*Step)(double *state, const double *inputs, const double *parameters, double *outputs, int64_t dt_ns);
-
 typedef struct {
-    Initialize initialize;
-    Step step;
-    const double *starts; /* of the inputs; a connected one is overwritten */
-    int64_t parameters, inputs, outputs, states;
-} Model;
-
-typedef struct {
-    int64_t source, source_place, target, target_place;
+    int64_t source, source_place, target, target_place; /* an output of a model, an input of another */
 } Link;
 
-/* Where a signal is: an output of a model as last fetched, or an input as it was seen. */
+/* An output of a model as last fetched, or an input as it was seen. */
 typedef struct {
     int64_t model, place, input;
 } Signal;
@@ -38,7 +29,7 @@ typedef struct {
 } Kept;
 
 typedef struct {
-    const Model *models;
+    const Library *const *models;
     const Link *links;
     const Kept *kept;
     int64_t model_count, link_count, kept_count;
@@ -48,145 +39,195 @@ typedef struct {
     int64_t still_ns;
 } Batch;
 
-typedef enum { STOP_TIME, STANDSTILL, ABORTED } End;
+typedef enum { STOP_TIME, STANDSTILL } End;
 
-/* The arrays of one model in one run. */
+/* One model in one run. */
 typedef struct {
-    double *state, *inputs, *outputs, *fetched;
-    const double *parameters;
+    const Library *model;
+    unsigned char *memory;
+    unsigned char *fetched; /* outputs, as memory has them from outputs_offset on */
     int64_t every;
     int due; /* at this exchange */
 } Slave;
 
-static double look(const Slave *slaves, Signal signal) {
+/* Where a signal is in memory. */
+typedef struct {
+    const unsigned char *at;
+    uint32_t kind;
+} Place;
+
+typedef struct {
+    Place source;
+    unsigned char *target;
+    const int *due;
+} Wire;
+
+/* Everything of a call but the run's own numbers. */
+typedef struct {
+    const Batch *batch;
+    Slave *slaves;
+    Wire *wires;
+    Place *kept;
+    double *before;
+    Place mode, speed;
+} Runner;
+
+static Place place_of(const Slave *slaves, Signal signal) {
     const Slave *slave = &slaves[signal.model];
-    return signal.input ? slave->inputs[signal.place] : slave->fetched[signal.place];
+    const LibraryPlace there = signal.input ? slave->model->inputs[signal.place] : slave->model->outputs[signal.place];
+    const int64_t offset = signal.input ? there.offset : there.offset - slave->model->outputs_offset;
+    const Place place = {(signal.input ? slave->memory : slave->fetched) + offset, there.kind};
+    return place;
 }
 
-static void hand_over(const Batch *batch, const Slave *slaves) {
-    for (int64_t k = 0; k < batch->link_count; k++) {
-        const Link *link = &batch->links[k];
-        if (slaves[link->target].due) {
-            slaves[link->target].inputs[link->target_place] = slaves[link->source].fetched[link->source_place];
-        }
+static double look(Place place) { return library_read(place.at, place.kind); }
+
+static void fetch(const Slave *slave) {
+    memcpy(slave->fetched, slave->memory + slave->model->outputs_offset, (size_t)slave->model->outputs_size);
+}
+
+static void hand_over(const Runner *runner) {
+    for (int64_t k = 0; k < runner->batch->link_count; k++) {
+        const Wire *wire = &runner->wires[k];
+        if (!*wire->due) continue;
+        memcpy(wire->target, wire->source.at, wire->source.kind == LIBRARY_BOOLEAN ? sizeof(bool) : sizeof(double));
     }
 }
 
-static void begin_notes(const Batch *batch, const Slave *slaves, double *kept, double *before) {
-    for (int64_t k = 0; k < batch->kept_count; k++) {
-        const double now = look(slaves, batch->kept[k].signal);
-        const int64_t how = batch->kept[k].how;
+static void begin_notes(const Runner *runner, double *kept) {
+    for (int64_t k = 0; k < runner->batch->kept_count; k++) {
+        const double now = look(runner->kept[k]);
+        const int64_t how = runner->batch->kept[k].how;
         kept[k] = how == GREATEST || how == SMALLEST ? now : 0.0;
-        before[k] = now;
+        runner->before[k] = now;
     }
 }
 
 /* NaN is the worst there is: once seen, it stays. */
-static void note(const Batch *batch, const Slave *slaves, double *kept, double *before) {
-    for (int64_t k = 0; k < batch->kept_count; k++) {
-        const double now = look(slaves, batch->kept[k].signal);
-        const int nan = now != now;
-        switch ((How)batch->kept[k].how) {
+static void note(const Runner *runner, double *kept) {
+    for (int64_t k = 0; k < runner->batch->kept_count; k++) {
+        const double now = look(runner->kept[k]);
+        const int nan = isnan(now) != 0;
+        switch ((How)runner->batch->kept[k].how) {
         case LAST: kept[k] = now; break;
         case LARGEST: if (fabs(now) > fabs(kept[k]) || nan) kept[k] = now; break;
         case GREATEST: if (now > kept[k] || nan) kept[k] = now; break;
         case SMALLEST: if (now < kept[k] || nan) kept[k] = now; break;
-        case TRAVEL: kept[k] += fabs(now - before[k]); before[k] = now; break;
+        case TRAVEL: kept[k] += fabs(now - runner->before[k]); runner->before[k] = now; break;
         }
     }
 }
 
-static int stands(const Batch *batch, const Slave *slaves) {
-    const double mode = look(slaves, batch->mode);
-    const int final = mode >= 0.0 && mode < 64.0 && (batch->final >> (unsigned)mode & 1u);
-    return final && !(fabs(look(slaves, batch->speed)) > batch->still);
+static int stands(const Runner *runner) {
+    const double mode = look(runner->mode);
+    const int final = mode >= 0.0 && mode < 64.0 && (runner->batch->final >> (unsigned)mode & 1u);
+    return final && !(fabs(look(runner->speed)) > runner->batch->still);
 }
 
-static void initialize(const Batch *batch, Slave *slaves) {
-    for (int64_t m = 0; m < batch->model_count; m++) {
-        const Model *model = &batch->models[m];
-        slaves[m].due = 1;
-        memcpy(slaves[m].inputs, model->starts, (size_t)model->inputs * sizeof(double));
-        model->initialize(slaves[m].state, slaves[m].parameters, slaves[m].outputs);
-        memcpy(slaves[m].fetched, slaves[m].outputs, (size_t)model->outputs * sizeof(double));
+static void initialize(const Runner *runner, const double *params) {
+    for (int64_t m = 0; m < runner->batch->model_count; m++) {
+        Slave *slave = &runner->slaves[m];
+        const Library *model = slave->model;
+        slave->due = 1;
+        memset(slave->memory, 0, (size_t)model->size);
+        model->defaults(slave->memory);
+        for (int64_t p = 0; p < model->param_count; p++)
+            library_write(slave->memory + model->params[p].offset, model->params[p].kind, *params++);
+        model->initialize(slave->memory);
+        fetch(slave);
     }
-    hand_over(batch, slaves);
+    hand_over(runner);
 }
 
 /* Fills row: the end, its time [ns], what is kept. */
-static void run(const Batch *batch, Slave *slaves, int64_t step_ns, int64_t last, double *row, double *before) {
+static void run(const Runner *runner, const double *params, int64_t step_ns, int64_t last, double *row) {
+    const Batch *batch = runner->batch;
     double *kept = row + 2;
     End end = STOP_TIME;
     int64_t since = -1, count = 0;
-    initialize(batch, slaves);
-    begin_notes(batch, slaves, kept, before);
+    initialize(runner, params);
+    begin_notes(runner, kept);
     for (;; count++) {
         for (int64_t m = 0; m < batch->model_count; m++) {
-            slaves[m].due = slaves[m].every == 1 || count % slaves[m].every == 0;
-            if (slaves[m].due) {
-                memcpy(slaves[m].fetched, slaves[m].outputs, (size_t)batch->models[m].outputs * sizeof(double));
-            }
+            Slave *slave = &runner->slaves[m];
+            slave->due = slave->every == 1 || count % slave->every == 0;
+            if (slave->due) fetch(slave);
         }
-        hand_over(batch, slaves);
-        note(batch, slaves, kept, before);
+        hand_over(runner);
+        note(runner, kept);
         const int64_t now = count * step_ns;
-        since = !stands(batch, slaves) ? -1 : since < 0 ? now : since;
+        since = batch->final == 0 || !stands(runner) ? -1 : since < 0 ? now : since;
         if (since >= 0 && now - since >= batch->still_ns) {
             end = STANDSTILL;
             break;
         }
         if (count == last) break;
         for (int64_t m = 0; m < batch->model_count; m++) {
-            const Slave *slave = &slaves[m];
-            if (slave->due && batch->models[m].step(slave->state, slave->inputs, slave->parameters, slave->outputs,
-                                                    slave->every * step_ns)) {
-                end = ABORTED;
-            }
+            const Slave *slave = &runner->slaves[m];
+            if (slave->due) slave->model->step(slave->memory, slave->every * step_ns);
         }
-        if (end == ABORTED) break;
     }
     row[0] = (double)end;
     row[1] = (double)(count * step_ns);
 }
 
-static int64_t take(double **memory, double *free_memory, int64_t at, int64_t size) {
-    *memory = free_memory + at;
-    return at + size;
+static void connect(Runner *runner) {
+    const Batch *batch = runner->batch;
+    for (int64_t k = 0; k < batch->link_count; k++) {
+        const Link *link = &batch->links[k];
+        const Signal from = {link->source, link->source_place, 0};
+        const Slave *target = &runner->slaves[link->target];
+        runner->wires[k].source = place_of(runner->slaves, from);
+        runner->wires[k].target = target->memory + target->model->inputs[link->target_place].offset;
+        runner->wires[k].due = &target->due;
+    }
+    for (int64_t k = 0; k < batch->kept_count; k++) runner->kept[k] = place_of(runner->slaves, batch->kept[k].signal);
+    if (batch->final) {
+        runner->mode = place_of(runner->slaves, batch->mode);
+        runner->speed = place_of(runner->slaves, batch->speed);
+    }
 }
 
-/* times: for each run the step [ns], the stop [ns] and the decimation of each model; out: 2 + kept_count
- * numbers for each run. Returns 0, or -1 if there is no memory. */
-__attribute__((visibility("default"))) int64_t
-batch_rows(const Batch *batch, int64_t rows, const double *parameters, const int64_t *times, double *out) {
-    int64_t width = 0, size = batch->kept_count;
+/* Take `size` bytes of `memory` behind those taken, where a double may begin; NULL of no memory. */
+static void *part(unsigned char *memory, size_t *taken, size_t size) {
+    unsigned char *begin = memory ? memory + *taken : NULL;
+    *taken += (size + sizeof(double) - 1) / sizeof(double) * sizeof(double);
+    return begin;
+}
+
+/* Lay out everything in `memory`, or in nothing if it is NULL; returns how many bytes it takes. */
+static size_t lay_out(Runner *runner, unsigned char *memory) {
+    const Batch *batch = runner->batch;
+    size_t taken = 0;
+    runner->slaves = part(memory, &taken, (size_t)batch->model_count * sizeof(Slave));
+    runner->wires = part(memory, &taken, (size_t)batch->link_count * sizeof(Wire));
+    runner->kept = part(memory, &taken, (size_t)batch->kept_count * sizeof(Place));
+    runner->before = part(memory, &taken, (size_t)batch->kept_count * sizeof(double));
     for (int64_t m = 0; m < batch->model_count; m++) {
-        const Model *model = &batch->models[m];
-        width += model->parameters;
-        size += model->states + model->inputs + 2 * model->outputs;
+        const Library *model = batch->models[m];
+        unsigned char *own = part(memory, &taken, (size_t)model->size);
+        const Slave slave = {model, own, part(memory, &taken, (size_t)model->outputs_size), 1, 0};
+        if (memory) runner->slaves[m] = slave;
     }
-    double *memory = calloc((size_t)size + 1, sizeof(double));
-    Slave *slaves = calloc((size_t)batch->model_count + 1, sizeof(Slave));
-    if (memory && slaves) {
-        int64_t at = batch->kept_count;
-        for (int64_t m = 0; m < batch->model_count; m++) {
-            at = take(&slaves[m].state, memory, at, batch->models[m].states);
-            at = take(&slaves[m].inputs, memory, at, batch->models[m].inputs);
-            at = take(&slaves[m].outputs, memory, at, batch->models[m].outputs);
-            at = take(&slaves[m].fetched, memory, at, batch->models[m].outputs);
-        }
-        for (int64_t r = 0; r < rows; r++) {
-            const int64_t *time = times + r * (2 + batch->model_count);
-            const double *own = parameters + r * width;
-            for (int64_t m = 0; m < batch->model_count; m++) {
-                slaves[m].parameters = own;
-                slaves[m].every = time[2 + m];
-                own += batch->models[m].parameters;
-            }
-            run(batch, slaves, time[0], time[1] / time[0], out + r * (2 + batch->kept_count), memory);
-        }
+    return taken;
+}
+
+/* times: for each run the step [ns], the stop [ns] and the decimation of each model; params: for each run those of
+ * all models; out: 2 + kept_count numbers for each run. Returns 0, or -1 if there is no memory. */
+LIBRARY_EXPORT int64_t batch_rows(const Batch *batch, int64_t rows, const double *params, const int64_t *times,
+                                  double *out) {
+    Runner runner = {.batch = batch};
+    unsigned char *memory = calloc(1, lay_out(&runner, NULL) + 1);
+    int64_t width = 0;
+    if (!memory) return -1;
+    lay_out(&runner, memory);
+    connect(&runner);
+    for (int64_t m = 0; m < batch->model_count; m++) width += batch->models[m]->param_count;
+    for (int64_t r = 0; r < rows; r++) {
+        const int64_t *time = times + r * (2 + batch->model_count);
+        for (int64_t m = 0; m < batch->model_count; m++) runner.slaves[m].every = time[2 + m];
+        run(&runner, params + r * width, time[0], time[1] / time[0], out + r * (2 + batch->kept_count));
     }
-    const int64_t failed = memory && slaves ? 0 : -1;
     free(memory);
-    free(slaves);
-    return failed;
+    return 0;
 }

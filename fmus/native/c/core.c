@@ -58,7 +58,8 @@ static void fmu_start_values(FmuInstance *fmu) {
 static FmuInstance *fmu_new(const FmuInstance *probe, const char *name, const char *token) {
     if (!name || !*name) return fmu_report(probe, FMU_ERROR, "an instance needs a name"), NULL;
     if (!token || strcmp(token, FMU_TOKEN)) {
-        fmu_report(probe, FMU_ERROR, "GUID %s is not that of this binary, %s", token ? token : "(null)", FMU_TOKEN);
+        fmu_report(probe, FMU_ERROR, FMU_TOKEN_NAME " %s is not that of this binary, %s", token ? token : "(null)",
+                   FMU_TOKEN);
         return NULL;
     }
     FmuInstance *fmu = malloc(sizeof *fmu);

@@ -3,6 +3,7 @@
 
 typedef fmi2CallbackLogger FmuLogger;
 static const char *const FMU_KIND_NAMES[] = {"Real", "Integer", "Enumeration", "Boolean"};
+#define FMU_TOKEN_NAME "GUID"
 
 #include "core.h"
 

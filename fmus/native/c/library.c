@@ -1,0 +1,76 @@
+/* The table of one model, and two functions over arrays of doubles for a host that calls step by step.
+ *
+ * The file that is compiled has included the model's C and defined LIBRARY_MODEL, LIBRARY_PARAMS, LIBRARY_INPUTS and
+ * LIBRARY_OUTPUTS (how many there are), and LIBRARY_MEMBERS: the file with a line MEMBER(path, kind) for each.
+ */
+#include "library.h"
+
+#include <stddef.h>
+#include <string.h>
+
+#define LIBRARY_PASTE(a, b) a##b
+#define LIBRARY_JOIN(a, b) LIBRARY_PASTE(a, b)
+#define LIBRARY_CALL(function) LIBRARY_JOIN(LIBRARY_MODEL, _##function)
+
+#define MEMBER(path, kind) {(uint32_t)offsetof(LIBRARY_MODEL, path), LIBRARY_##kind},
+static const LibraryPlace library_places[] = {
+#include LIBRARY_MEMBERS
+};
+#undef MEMBER
+
+static void library_defaults(void *instance) {
+    LIBRARY_MODEL *model = instance;
+    LIBRARY_CALL(defaults)(&model->params, &model->inputs);
+}
+
+static void library_initialize(void *instance) {
+    LIBRARY_MODEL *model = instance;
+    LIBRARY_CALL(initialize)(&model->params, &model->state, &model->outputs);
+}
+
+static void library_step(void *instance, int64_t dt_ns) {
+    LIBRARY_MODEL *model = instance;
+    LIBRARY_CALL(step)(&model->state, &model->inputs, &model->params, dt_ns, &model->outputs);
+}
+
+static const Library library_table = {
+    .size = sizeof(LIBRARY_MODEL),
+    .outputs_offset = offsetof(LIBRARY_MODEL, outputs),
+    .outputs_size = sizeof((LIBRARY_MODEL *)0)->outputs,
+    .param_count = LIBRARY_PARAMS,
+    .input_count = LIBRARY_INPUTS,
+    .output_count = LIBRARY_OUTPUTS,
+    .params = library_places,
+    .inputs = library_places + LIBRARY_PARAMS,
+    .outputs = library_places + LIBRARY_PARAMS + LIBRARY_INPUTS,
+    .defaults = library_defaults,
+    .initialize = library_initialize,
+    .step = library_step,
+};
+
+LIBRARY_EXPORT const Library *model_library(void) { return &library_table; }
+
+static void library_take(const unsigned char *instance, double *outputs) {
+    for (int64_t i = 0; i < LIBRARY_OUTPUTS; i++) {
+        const LibraryPlace place = library_table.outputs[i];
+        outputs[i] = library_read(instance + place.offset, place.kind);
+    }
+}
+
+/* Lay `params` into the memory of an instance, initialize it, and hand out its outputs. */
+LIBRARY_EXPORT void model_start(unsigned char *instance, const double *params, double *outputs) {
+    memset(instance, 0, sizeof(LIBRARY_MODEL));
+    library_defaults(instance);
+    for (int64_t i = 0; i < LIBRARY_PARAMS; i++)
+        library_write(instance + library_table.params[i].offset, library_table.params[i].kind, params[i]);
+    library_initialize(instance);
+    library_take(instance, outputs);
+}
+
+/* Move an instance on by `dt_ns` with `inputs`, and hand out its outputs. */
+LIBRARY_EXPORT void model_step(unsigned char *instance, const double *inputs, double *outputs, int64_t dt_ns) {
+    for (int64_t i = 0; i < LIBRARY_INPUTS; i++)
+        library_write(instance + library_table.inputs[i].offset, library_table.inputs[i].kind, inputs[i]);
+    library_step(instance, dt_ns);
+    library_take(instance, outputs);
+}

@@ -1,0 +1,48 @@
+/* A model as a table: its memory and its functions, for a host that knows no model by name. */
+#ifndef LIBRARY_H
+#define LIBRARY_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#ifdef _WIN32
+#define LIBRARY_EXPORT __declspec(dllexport)
+#else
+#define LIBRARY_EXPORT __attribute__((visibility("default")))
+#endif
+
+typedef enum { LIBRARY_REAL, LIBRARY_INTEGER, LIBRARY_BOOLEAN } LibraryKind;
+
+/* Where a variable is kept: double, int64_t or bool. */
+typedef struct {
+    uint32_t offset;
+    uint32_t kind;
+} LibraryPlace;
+
+typedef struct {
+    int64_t size; /* of an instance [bytes] */
+    int64_t outputs_offset;
+    int64_t outputs_size;
+    int64_t param_count, input_count, output_count;
+    const LibraryPlace *params, *inputs, *outputs;
+    void (*defaults)(void *instance);
+    void (*initialize)(void *instance);
+    void (*step)(void *instance, int64_t dt_ns);
+} Library;
+
+static inline double library_read(const unsigned char *at, uint32_t kind) {
+    return kind == LIBRARY_REAL      ? *(const double *)(const void *)at
+           : kind == LIBRARY_INTEGER ? (double)*(const int64_t *)(const void *)at
+                                     : (double)*(const bool *)(const void *)at;
+}
+
+static inline void library_write(unsigned char *at, uint32_t kind, double value) {
+    if (kind == LIBRARY_REAL)
+        *(double *)(void *)at = value;
+    else if (kind == LIBRARY_INTEGER)
+        *(int64_t *)(void *)at = (int64_t)value;
+    else
+        *(bool *)(void *)at = value != 0.0;
+}
+
+#endif

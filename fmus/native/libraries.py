@@ -1,0 +1,99 @@
+"""Shared libraries for this machine and this process: the compiled master, the batch, and a model's own.
+
+Kept in ``LIBRARIES`` under a hash of all they are made of, so each is compiled once.
+"""
+
+import ctypes
+import hashlib
+import os
+from collections.abc import Mapping
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+from fmus.compiler import members
+from fmus.locks import one_at_a_time
+from fmus.native.compilers import SHARED, find_compiler
+from fmus.native.platforms import PLATFORMS, host, host_target
+from fmus.native.sources import C_FILES, translated
+from fmus.native.tables import KINDS
+from fmus.places import LIBRARIES
+from modelkit.model import Model
+
+UNIT = """/* The model {name} as a table. */
+#include "{name}.c"
+
+#define LIBRARY_MODEL {name}
+#define LIBRARY_MEMBERS "{name}_members.h"
+#define LIBRARY_PARAMS {params}
+#define LIBRARY_INPUTS {inputs}
+#define LIBRARY_OUTPUTS {outputs}
+#include "library.c"
+"""
+
+
+def master_library() -> Path:
+    """Return the path of the compiled master. Raises ``RuntimeError`` where it cannot be built."""
+    return kept_library("master", "master.c", _own("master.c", "fmi2.h"))
+
+
+def batch_library() -> Path:
+    """Return the path of the compiled runs. Raises ``RuntimeError`` where it cannot be built."""
+    return kept_library("batch", "batch.c", _own("batch.c", "library.h"))
+
+
+@lru_cache
+def model_library(model: Model) -> Path:
+    """Return the path of the library of ``model``: see ``library.c``. Raises as :func:`kept_library`, ``TypeError``."""
+    code, known = translated(model), members(model)
+    count = {group: sum(item.group == group for item in known) for group in ("params", "inputs", "outputs")}
+    unit = f"{model.name}_library.c"
+    files = {
+        f"{model.name}.h": code.header,
+        f"{model.name}.c": code.source,
+        f"{model.name}_members.h": "".join(f"MEMBER({item.path}, {KINDS[item.kind]})\n" for item in known),
+        unit: UNIT.format(name=model.name, **count),
+        **_own("library.c", "library.h"),
+    }
+    return kept_library(model.name, unit, files)
+
+
+def load_model(model: Model) -> Any:
+    """Return the loaded library of ``model`` with the signatures of its functions.
+
+    ``model_library()``: the table; ``model_start(memory, params, outputs)``; ``model_step(memory, inputs, outputs,
+    dt_ns)``: all arrays by their addresses.
+    """
+    library = ctypes.CDLL(str(model_library(model)))
+    library.model_library.restype = ctypes.c_void_p
+    library.model_start.argtypes = [ctypes.c_void_p] * 3
+    library.model_step.argtypes = [*[ctypes.c_void_p] * 3, ctypes.c_int64]
+    library.model_start.restype = library.model_step.restype = None
+    return library
+
+
+def memory_size(library: Any) -> int:
+    """Return how many bytes an instance of a loaded model takes."""
+    return int(ctypes.c_int64.from_address(library.model_library()).value)
+
+
+def kept_library(name: str, unit: str, files: Mapping[str, str]) -> Path:
+    """Return the path of the library made of ``unit`` among ``files``, compiled if there is none.
+
+    Raises ``RuntimeError`` without a C compiler, or with its words if it refuses.
+    """
+    compiler, target, platform = find_compiler(), host_target(), PLATFORMS[host()]
+    digest = hashlib.sha256(" ".join((compiler.words, target.triple, *SHARED, *target.options)).encode())
+    for file, text in sorted(files.items()):
+        digest.update(f"{file} {len(text)} {text}".encode())
+    path = LIBRARIES / f"{name}-{digest.hexdigest()[:16]}{platform.suffix}"
+    with one_at_a_time(path):
+        if not path.exists():
+            part = path.with_name(f"{path.name}.{os.getpid()}.part")
+            part.write_bytes(compiler.library(files, unit, path.name, target))
+            part.replace(path)
+    return path
+
+
+def _own(*names: str) -> dict[str, str]:
+    return {name: (C_FILES / name).read_text(encoding="utf-8") for name in names}

@@ -1,19 +1,23 @@
-"""All FMUs of this project: ``build_all`` writes fmus/dist/<kind>/<Model>.fmu."""
+"""All FMUs of this project: ``build_all`` writes <folder>/<kind>/<Model>.fmu."""
 
 from collections.abc import Callable, Iterable
-from importlib.util import find_spec
+from functools import partial
 from pathlib import Path
 from typing import NamedTuple
 
 import controller_fmu
 import vehicle_fmu
 from fmus.contents.archive import archive_guid
+from fmus.native import fmu as native_fmu
+from fmus.native.compilers import can_compile, find_compiler
+from fmus.native.platforms import host
 from fmus.places import DIST
 from fmus.python import fmu as python_fmu
 from modelkit.model import Model
 
 MODELS = (controller_fmu.MODEL, vehicle_fmu.MODEL)
-NATIVE_NEEDS = ("numba", "llvmlite", "ziglang")
+KINDS = {"python": 2, "native": 2, "fmi3": 3}
+"""Kind of FMU -> version of FMI: PythonFMU, machine code for FMI 2.0 and for FMI 3.0."""
 
 
 class Built(NamedTuple):
@@ -27,19 +31,9 @@ class Built(NamedTuple):
     """False: the file was already there with the same content."""
 
 
-def build_native(model: Model, out_dir: Path, platforms: Iterable[str] | None = None) -> Path:
-    """Return the path of the native FMU for ``platforms`` (default: this machine's); makes the compiled master too."""
-    from fmus.native.fmu import build
-    from fmus.native.master_library import master_library
-    from fmus.native.platforms import host
-
-    master_library()
-    return build(model, out_dir, [host()] if platforms is None else platforms)
-
-
-BUILDERS: dict[str, Callable[..., Path]] = {"python": python_fmu.build}
-if all(find_spec(package) for package in NATIVE_NEEDS):
-    BUILDERS["native"] = build_native
+def kinds_here() -> list[str]:
+    """Return the kinds of FMU that can be built on this machine."""
+    return list(KINDS) if can_compile() else ["python"]
 
 
 def build_all(
@@ -47,19 +41,20 @@ def build_all(
     kinds: Iterable[str] = ("python",),
     progress: Callable[[Built], None] | None = None,
     platforms: Iterable[str] | None = None,
+    cc: str | None = None,
 ) -> list[Built]:
-    """Return what was built, in order; ``progress`` is called after each. Raises ``ValueError`` for an unknown kind.
+    """Return what was built, in order; ``progress`` is called after each.
 
     ``platforms`` says what native FMUs are for, by the names in ``fmus.native.platforms``; default: this machine.
+    ``cc`` is a C compiler of this machine, see :func:`fmus.native.compilers.find_compiler`. Raises ``ValueError`` for
+    an unknown kind, ``RuntimeError`` if there is no C compiler or it fails, ``TypeError`` for a model it cannot be.
     """
     done = []
     for kind in kinds:
-        if kind not in BUILDERS:
-            raise ValueError(f"kind {kind!r}: expected one of {', '.join(BUILDERS)}; {missing()}")
-        more = {"platforms": platforms} if kind == "native" else {}
+        make = _maker(kind, platforms, cc)
         for model in MODELS:
             before = archive_guid(Path(out) / kind / f"{model.name}.fmu")
-            path = BUILDERS[kind](model, Path(out) / kind, **more)
+            path = make(model, Path(out) / kind)
             guid = archive_guid(path) or ""
             done.append(Built(kind, model.name, path, guid, guid != before))
             if progress is not None:
@@ -67,7 +62,10 @@ def build_all(
     return done
 
 
-def missing() -> str:
-    """Return what to install for native FMUs, or that nothing is missing."""
-    absent = [package for package in NATIVE_NEEDS if not find_spec(package)]
-    return f"native FMUs need {', '.join(absent)}: pip install 'apa-cosim[native]'" if absent else "nothing is missing"
+def _maker(kind: str, platforms: Iterable[str] | None, cc: str | None) -> Callable[[Model, Path], Path]:
+    if kind not in KINDS:
+        raise ValueError(f"kind {kind!r}: expected one of {', '.join(KINDS)}")
+    if kind == "python":
+        return python_fmu.build
+    names = [host()] if platforms is None else list(platforms)
+    return partial(native_fmu.build, platforms=names, compiler=find_compiler(cc), fmi=KINDS[kind])

@@ -50,7 +50,8 @@ class Terminal(NamedTuple):
     name: str
     text: str
     members: tuple[str, ...]
-    """Inputs and outputs, or groups of them (``pose`` for ``pose.x``, ``pose.y``...); what a model lacks is left out."""
+    """Inputs and outputs, or groups of them (``pose`` for ``pose.x``, ``pose.y``...); what a model lacks is left out.
+    """
 
 
 class Model(NamedTuple):

@@ -85,7 +85,7 @@ def contents(model: Model, platforms: list[str], guid: str, fmi: int = 2) -> dic
 def binaries(model: Model, platforms: list[str], guid: str, compiler: Compiler, fmi: int = 2) -> dict[str, bytes]:
     """Return the shared libraries, under their paths in the FMU; they answer to ``guid`` only."""
     sources, unit = fmu_sources(model, guid, fmi), unit_name(model, fmi)
-    files = {}
+    files: dict[str, bytes] = {}
     for name in platforms:
         platform = PLATFORMS[name]
         file = f"{model.name}{platform.suffix}"

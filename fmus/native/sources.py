@@ -28,11 +28,14 @@ UNIT = """/* The FMU {name}, FMI {fmi}.0 for co-simulation, in one translation u
 """
 SHARED_FUNCTIONS = "-DFMI{fmi}_OVERRIDE_FUNCTION_PREFIX"
 """For a shared library: its functions have no prefix."""
-PREFIX = {2: "", 3: """
+PREFIX = {
+    2: "",
+    3: """
 #ifndef FMI3_FUNCTION_PREFIX
 #define FMI3_FUNCTION_PREFIX {name}_
 #endif
-"""}
+""",
+}
 """FMI 3.0 wants the prefix in the sources; in FMI 2.0 a tool that wants one defines it."""
 
 

@@ -3,11 +3,11 @@
 import hashlib
 import sys
 from collections.abc import Callable, Iterable, Iterator
-from contextlib import contextmanager
-from importlib.util import find_spec
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from fmus.native.compilers import can_compile as can_compile
 from orchestrator.scenario.models import MODELS
 from orchestrator.text.console import working
 from orchestrator.text.errors import BadInput
@@ -19,14 +19,7 @@ ROOT = Path(__file__).parent.parent.parent
 SOURCES = ("modelkit", "vehicle_fmu", "controller_fmu", "fmus")
 STAMP = "sources.sha256"
 KINDS = ("python", "native")
-TAKES = {"python": "", "native": " (about a minute, once for each change of the models)"}
-COMPILERS = ("llvmlite", "numba", "ziglang")
-"""What the extra ``native`` installs."""
-
-
-def can_compile() -> bool:
-    """Return whether models can be compiled here."""
-    return all(find_spec(name) is not None for name in COMPILERS)
+TAKES = {"python": "", "native": " (some seconds, once for each change of the models)"}
 
 
 def default_kind() -> str:
@@ -45,33 +38,39 @@ def fmu_files(kind: str, say: Callable[[str], None] = lambda text: None) -> dict
     return files
 
 
-def build(kind: str) -> list["Built"]:
+def build(kind: str, cc: str | None = None) -> list["Built"]:
     """Build the FMUs of ``kind`` where runs look for them."""
+    from fmus.native.libraries import master_library
     from fmus.places import DIST
 
     with _alone(DIST):
+        if kind == "native":
+            with suppress(RuntimeError):
+                master_library()
         before = sources_hash()
-        built = build_into(DIST, kind)
+        built = build_into(DIST, kind, cc=cc)
         (DIST / kind / STAMP).write_text(before, encoding="ascii")
     return built
 
 
-def build_into(folder: Path, kind: str, platforms: Iterable[str] = ()) -> list["Built"]:
+def build_into(folder: Path, kind: str, platforms: Iterable[str] = (), cc: str | None = None) -> list["Built"]:
     """Build the FMUs of ``kind`` into ``folder``/``kind``; native ones for ``platforms``, by default this machine's.
 
-    Raises ``BadInput`` if that cannot be done here.
+    ``cc`` is a C compiler of this machine to be used. Raises ``BadInput`` if that cannot be done here.
     """
-    from fmus.build import BUILDERS, build_all, missing
+    from fmus.build import build_all
     from fmus.native.platforms import PLATFORMS
 
-    if kind not in BUILDERS:
-        raise BadInput(missing())
-    wanted = sorted(PLATFORMS) if "all" in (names := list(platforms)) else names
+    names = [name for item in platforms for name in item.split(",")]
+    wanted = sorted(PLATFORMS) if "all" in names else names
     unknown = [name for name in wanted if name not in PLATFORMS]
     if unknown:
         raise BadInput(f"{', '.join(unknown)}: expected all or {', '.join(PLATFORMS)}", key="--platform")
     with working(f"building {kind} FMUs"):
-        return build_all(folder, kinds=(kind,), platforms=wanted or None)
+        try:
+            return build_all(folder, kinds=(kind,), platforms=wanted or None, cc=cc)
+        except (RuntimeError, TypeError) as error:
+            raise BadInput(str(error)) from error
 
 
 @contextmanager

@@ -4,7 +4,6 @@ Compiled, the models are the libraries of :mod:`fmus.native.libraries`, called a
 run; else they are plain Python. Both give the same bits.
 """
 
-import ctypes
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any, NamedTuple
 
@@ -89,7 +88,7 @@ def _compiled(model: Model) -> Start:
         instance, inputs, outputs = (array.ctypes.data for array in (memory, u, y))
         library.model_start(instance, params.ctypes.data, outputs)
 
-        def on(_held: Array = memory) -> None:
+        def on(_held: object = memory) -> None:
             library.model_step(instance, inputs, outputs, STEP_NS)
 
         return Part(u, y, on)

@@ -14,6 +14,7 @@ from importlib.util import find_spec
 from multiprocessing import get_context
 from typing import Any, NamedTuple, Protocol
 
+from fmus.native.compilers import can_compile
 from orchestrator.cosim.master import Interrupt
 from orchestrator.cosim.slave import Array
 from orchestrator.scenario.scenario import Scenario
@@ -69,9 +70,8 @@ def choose_task(scenario: Scenario, job: Job, fmus: str | None) -> Task:
         files = {name: str(path) for name, path in fmu_files(fmus).items()}
         return Task(partial(run_recorded, kind=fmus, files=files), f"{fmus} FMUs", RECORDED_CHUNK, False)
     why = why_not_compiled(scenario)
-    missing = [name for name in ("numba", "ziglang") if find_spec(name) is None]
-    if not why and missing:
-        why = f"{' and '.join(missing)} not installed"
+    if not why and not can_compile():
+        why = "there is no C compiler"
     if why:
         work = partial(run_recorded, kind="none", files=None)
         return Task(

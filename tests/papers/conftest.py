@@ -11,7 +11,7 @@ from orchestrator.papers.result import Drive, Driven
 def native() -> Drive:
     """Drives a scenario with native FMUs, as ``apa reproduce`` does by default."""
     if not can_compile():
-        pytest.skip("needs numba, llvmlite and ziglang")
+        pytest.skip("needs a C compiler")
     files = fmu_files("native")
 
     def driven(name: str) -> Driven:

@@ -21,7 +21,7 @@ from orchestrator.grid.apa_grid import (
 )
 from orchestrator.grid.apa_loop import Loop
 
-needs_compiler = pytest.mark.skipif(not can_compile(), reason="needs numba, LLVM and a C compiler")
+needs_compiler = pytest.mark.skipif(not can_compile(), reason="needs a C compiler")
 EVERY = 5
 """Each so many-th run: every car, kind, side, slot, distance, heading, body and speed are among them."""
 MILD = (62, 93, 186, 310, 658)

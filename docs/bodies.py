@@ -15,10 +15,9 @@ import matplotlib.pyplot as plt
 import numpy as np
 import shapely
 
-from fmus.compiled import compiled_entries
-from fmus.flat_entry import sizes
+from fmus.native.libraries import load_model, memory_size
 from modelkit.model import Model
-from modelkit.variables import constructor, flatten
+from modelkit.variables import constructor, flatten, variables
 from orchestrator.cosim.recording import Recording
 from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.scenario.models import MODELS
@@ -106,21 +105,21 @@ def main() -> None:
 
 
 def compiled(model: Model) -> Model:
-    """Return ``model`` with its two functions compiled; its state is an array."""
-    entries, size, outputs = compiled_entries(model), sizes(model), constructor(model.outputs)
+    """Return ``model`` with its two functions compiled; its state is the memory of an instance."""
+    library, outputs, count = load_model(model), constructor(model.outputs), len(variables(model.outputs))
 
     def numbers(value: Any) -> np.ndarray:
         return np.array([float(scalar) for scalar in flatten(value)])
 
     def initialize(params: Any) -> tuple[Any, Any]:
-        s, y = np.zeros(size["state"]), np.zeros(size["outputs"])
-        entries.initialize(s, numbers(params), y)
-        return s, outputs(y.tolist())
+        p, y, memory = numbers(params), np.zeros(count), np.zeros(memory_size(library), dtype=np.uint8)
+        library.model_start(*(array.ctypes.data for array in (memory, p, y)))
+        return memory, outputs(y.tolist())
 
     def step(state: Any, inputs: Any, params: Any, dt_ns: int) -> tuple[Any, Any]:
-        s, y = state.copy(), np.zeros(size["outputs"])
-        entries.step(s, numbers(inputs), numbers(params), y, dt_ns)
-        return s, outputs(y.tolist())
+        memory, u, y = state.copy(), numbers(inputs), np.zeros(count)
+        library.model_step(*(array.ctypes.data for array in (memory, u, y)), dt_ns)
+        return memory, outputs(y.tolist())
 
     return model._replace(initialize=initialize, step=step)
 

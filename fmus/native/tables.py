@@ -17,7 +17,7 @@ ROLES = {"input": "INPUT", "output": "CALCULATED", "local": "CALCULATED", "indep
 VARIABLES_HEAD = """/* The variables in the order of their value references:
  * VARIABLE(place, kind, role, name, least, greatest, shape) */
 """
-RUNS_HEAD = """/* Stretches of the model's memory without padding: a serialized state is made of them. RUN(first, last) */
+RUNS_HEAD = """/* Stretches of the memory without padding, RUN(first, last): a serialized state is made of them */
 """
 
 

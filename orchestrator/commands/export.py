@@ -3,6 +3,7 @@
 import argparse
 
 FORMATS = {
+    "c": "the models as C libraries, without FMI",
     "container": "the system as one FMU, for any importer",
     "csv": "a table of all signals",
     "mf4": "ASAM MDF 4",
@@ -15,6 +16,7 @@ EXAMPLES = """examples:
   apa export mf4 runs/guo2015-case4/run.mcap --out case4.mf4
   apa export rerun runs/guo2015-case4/run.mcap
   apa export ssp guo2015-case4
+  apa export c build/c
 """
 
 

@@ -12,7 +12,7 @@ SHOWN = 4
 PRINTS = 20
 SPAN = 10.0
 """Simulated time of the example [s], unless the model's own experiment is shorter."""
-EXAMPLE = """/* Steps the model {name} with the inputs at their start values, and prints some outputs with all their digits.
+EXAMPLE = """/* Steps the model {name} with the inputs at their start values, and prints outputs with all their digits.
  *
  *     cc {flags} -o example main.c {name}.c -lm
  */

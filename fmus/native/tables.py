@@ -14,6 +14,8 @@ from modelkit.model import Model
 KINDS = {float: "REAL", int: "INTEGER", bool: "BOOLEAN"}
 ROLES = {"input": "INPUT", "output": "CALCULATED", "local": "CALCULATED", "independent": "CALCULATED"}
 """Of all causalities but ``parameter``, whose role is its variability."""
+ALL_MEMORY = ("params", "inputs", "outputs", "state")
+"""Parts of an instance in the order in which they lie in memory."""
 VARIABLES_HEAD = """/* The variables in the order of their value references:
  * VARIABLE(place, kind, role, name, least, greatest, shape) */
 """
@@ -24,37 +26,31 @@ RUNS_HEAD = """/* Stretches of the memory without padding, RUN(first, last): a s
 def variables_file(model: Model, fmi: int = 2) -> str:
     """Return a line for each variable of FMI 2.0, where all are scalars, or of FMI 3.0."""
     paths = {item.name: item.path for item in members(model)}
-    known = fmi_arrays(model) if fmi == 3 else [_alone(item) for item in fmi_variables(model)]
+    known: Sequence[FmiArray | FmiVariable] = fmi_arrays(model) if fmi == 3 else fmi_variables(model)
     ordered = sorted(known, key=lambda item: item.vr)
     if [item.vr for item in ordered] != list(range(len(ordered))):
         raise ValueError(f"{model.name}: value references must be 0 to {len(ordered) - 1}, each once")
     return VARIABLES_HEAD + "".join(_line(item, paths) for item in ordered)
 
 
-def _alone(item: FmiVariable) -> FmiArray:
-    return FmiArray(item.name, item.vr, (item,), ())
-
-
-def _line(item: FmiArray, paths: Mapping[str, str]) -> str:
-    first = item.first
+def _line(item: FmiArray | FmiVariable, paths: Mapping[str, str]) -> str:
+    first = item.first if isinstance(item, FmiArray) else item
     place = "CLOCK" if first.causality == "independent" else f"MODEL({paths[first.name]})"
-    kind = "ENUMERATION" if item.states is not None else KINDS[first.kind]
+    kind = "ENUMERATION" if item.fmi_type == "Enumeration" else KINDS[first.kind]
     role = ROLES[first.causality] if first.causality != "parameter" else first.variability.upper()
     low, high = limits(first)
     least, greatest = number(-math.inf if low is None else low), number(math.inf if high is None else high)
-    shape = _shape(item.shape, [paths[element.name] for element in item.elements] if item.shape else [])
+    shape = _shape(item, paths) if isinstance(item, FmiArray) and item.shape else "SCALAR"
     return f'VARIABLE({place}, {kind}, {role}, "{item.name}", {least}, {greatest}, {shape})\n'
 
 
-def _shape(shape: Sequence[int], paths: Sequence[str]) -> str:
+def _shape(item: FmiArray, paths: Mapping[str, str]) -> str:
     """Return how many elements there are, and the next along each dimension: itself if there is no next."""
-    if not shape:
-        return "SCALAR"
-    columns = shape[1] if len(shape) == 2 else 1
-    next_row = paths[columns if shape[0] > 1 else 0]
-    if len(shape) == 1:
-        return f"ARRAY({shape[0]}, {next_row})"
-    return f"TABLE({shape[0]}, {next_row}, {columns}, {paths[1 if columns > 1 else 0]})"
+    rows, columns = item.shape if len(item.shape) == 2 else (item.shape[0], 1)
+    next_row, next_column = (paths[item.elements[place].name] for place in (columns * (rows > 1), columns > 1))
+    return (
+        f"ARRAY({rows}, {next_row})" if len(item.shape) == 1 else f"TABLE({rows}, {next_row}, {columns}, {next_column})"
+    )
 
 
 def number(value: float) -> str:
@@ -77,7 +73,7 @@ def runs_file(model: Model) -> str:
     """
     lines: list[list[str]] = []
     before = None
-    for item in members(model, state=True):
+    for item in members(model, ALL_MEMORY):
         key = _stretch(item)
         if key != before:
             lines.append([item.path, item.path])

@@ -3,7 +3,7 @@
 import argparse
 from pathlib import Path
 
-from orchestrator.cosim.models import MODELS
+from orchestrator.scenario.models import MODELS
 from orchestrator.text.errors import BadInput
 
 EXAMPLES = """examples:

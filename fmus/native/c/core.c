@@ -93,7 +93,7 @@ static FmuStatus fmu_set_times(FmuInstance *fmu, double start, bool has_stop, do
     if (!(fabs(start) <= FMU_LATEST)) return fmu_report(fmu, FMU_ERROR, "start time %g s is no time", start);
     if (has_stop && !(stop >= start))
         return fmu_report(fmu, FMU_ERROR, "stop time %g s is not after start time %g s", stop, start);
-    fmu->saved.start_ns = fmu->saved.now_ns = (int64_t)rint(start * FMU_NANOSECONDS);
+    fmu->saved.start_ns = fmu->saved.now_ns = (int64_t)llrint(start * FMU_NANOSECONDS);
     fmu->saved.time = start;
     return FMU_OK;
 }
@@ -106,11 +106,11 @@ static FmuStatus fmu_step(FmuInstance *fmu, double time, double step, const char
     if (!(fabs(time) <= FMU_LATEST)) return fmu_report(fmu, FMU_ERROR, "%s: %g s is no time", function, time);
     if (!(step > 0.0 && step <= FMU_LONGEST_STEP))
         return fmu_report(fmu, FMU_ERROR, "%s: step size %g s is not in (0, %g] s", function, step, FMU_LONGEST_STEP);
-    const int64_t here = (int64_t)rint(time * FMU_NANOSECONDS);
+    const int64_t here = (int64_t)llrint(time * FMU_NANOSECONDS);
     if (here > saved->now_ns + FMU_CLOCK_TOLERANCE || here < saved->now_ns - FMU_CLOCK_TOLERANCE)
         return fmu_report(fmu, FMU_ERROR, "%s: called at %.9f s, but the FMU is at %.9f s", function, time,
                           (double)saved->now_ns / FMU_NANOSECONDS);
-    const int64_t end = (int64_t)rint((time + step) * FMU_NANOSECONDS);
+    const int64_t end = (int64_t)llrint((time + step) * FMU_NANOSECONDS);
     if (end <= saved->now_ns) return FMU_OK;
     FMU_CALL(step)(&model->state, &model->inputs, &model->params, end - saved->now_ns, &model->outputs);
     saved->now_ns = end;

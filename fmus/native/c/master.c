@@ -63,11 +63,15 @@ static int call(const Slave *slave, const Transfer *transfer) {
     return transfer->call(slave->component, transfer->references, (size_t)transfer->count, buffer);
 }
 
+/* The last transfers, of integers, come first and are converted last: what has just been written cannot be read in
+ * wider pieces without waiting for it. */
 static int fetch(const Slave *slave) {
+    for (int64_t g = slave->get_count - 1; g >= 0; g--) {
+        int status = call(slave, &slave->gets[g]);
+        if (status > fmi2Warning) return status;
+    }
     for (int64_t g = 0; g < slave->get_count; g++) {
         const Transfer *get = &slave->gets[g];
-        int status = call(slave, get);
-        if (status > fmi2Warning) return status;
         if (get->integers)
             for (int64_t i = 0; i < get->count; i++) get->values[i] = get->integers[i];
     }
@@ -137,14 +141,16 @@ static int advance(Run *run, int64_t number) {
 }
 
 /* Do the exchanges numbered first, first + 1 ... at most `count` of them, stepping after each, and
- * return how many rows were written to `rows`. Fewer than asked: `last` is reached, or a slave refused. */
+ * return how many rows were written to `rows`. Fewer than asked: `last` is reached, or a slave refused.
+ * A row is written after the step, which leaves the arrays as they are, for the reason said at fetch. */
 FMI2_EXPORT int64_t master_run(Run *run, int64_t first, int64_t count, double *rows) {
     run->failure = NOTHING;
     for (int64_t done = 0; done < count; done++) {
         int64_t number = first + done;
         if (!exchange(run, number)) return done;
+        const int on = number != run->last && advance(run, number);
         rows = record(run, rows);
-        if (number == run->last || !advance(run, number)) return done + 1;
+        if (!on) return done + 1;
     }
     return count;
 }

@@ -1,7 +1,7 @@
 """Cost of one control step of each controller; the fuzzy law beside scikit-fuzzy, the QP beside cvxpy + OSQP and DAQP.
 
 All in one process, in turn. Each controller is driven in closed loop first, from start to parked; the inputs
-it saw are then played to it again, in CPython and by the code of the native FMU in a compiled loop, and the step
+it saw are then played to it again, in CPython and by the C of the native FMU in a loop in C, and the step
 is timed alone. Means over the drive: the MPC is solved in every fifth step only, the parking assist plans at
 standstill. Medians over the rounds.
 """
@@ -16,22 +16,18 @@ from typing import Any
 
 import cvxpy
 import daqp
-import numba
 import numpy as np
 import osqp
 import scipy.sparse
 import skfuzzy
 from skfuzzy import control
 
-import controller_fmu
 from controller_fmu import MODEL
 from controller_fmu.interface import Phase
 from controller_fmu.preview.fuzzy import infer
 from controller_fmu.preview.rule_tables import STEERING_SYMMETRIC
 from controller_fmu.zhang2022.qp import STAGES, solve
-from fmus.compiled import make_compilable
-from fmus.compiled_batch import model_library
-from fmus.flat_entry import sizes
+from fmus.native.libraries import kept_library, memory_size, model_files, typed
 from modelkit.variables import constructor, flatten, variables, with_values
 from orchestrator.bakeoff.entries import CONTROLLERS, scenario_of
 from orchestrator.scenario.load_scenario import load_scenario
@@ -86,9 +82,8 @@ def receive(source: Any, target: Any, outputs: Any) -> Any:
     return constructor(target.inputs)([given.get(item.name, item.start) for item in variables(target.inputs)])
 
 
-def bench_controllers() -> None:
+def bench_controllers(library: Any) -> None:
     """Print the cost of one step of each controller."""
-    library = ctypes.CDLL(str(model_library(MODEL)))
     print(f"\n{'control step [us]':24s}{'CPython':>10s}{'compiled':>10s}{'steps':>10s}")
     for name, scenario in scenarios().items():
         params = with_values(MODEL.params, dict(scenario.controller))
@@ -109,49 +104,43 @@ def replay(params: Any, seen: list[Any], step_ns: int) -> list[float]:
     return [float(value) for value in flatten(outputs)]
 
 
+def compiled() -> Any:
+    """Return the controller's C with the loops of ``controllers.c``."""
+    files = {**model_files(MODEL), "controllers.c": Path(__file__).with_name("controllers.c").read_text()}
+    library = typed(ctypes.CDLL(str(kept_library("controllers", "controllers.c", files))))
+    pointer, long, double = ctypes.c_void_p, ctypes.c_int64, ctypes.c_double
+    library.bench_inputs.argtypes = [pointer, long, pointer]
+    library.bench_inputs_size.restype = long
+    library.bench_replay.argtypes = [pointer, pointer, long, long, pointer]
+    library.bench_infer.argtypes = [pointer, long]
+    library.bench_solve.argtypes = [long, double, double, double, pointer, pointer]
+    library.bench_infer.restype = library.bench_solve.restype = double
+    return library
+
+
 def compiled_replay(library: Any, params: Any, seen: list[Any], step_ns: int) -> Callable[[], Any]:
-    """Return the same by the native FMU's code, called from a compiled loop; addresses are passed as integers."""
-    initialize, step, size = library.batch_initialize, library.batch_step, sizes(MODEL)
-    initialize.argtypes, step.argtypes = [ctypes.c_int64] * 3, [ctypes.c_int64] * 5
-    initialize.restype = step.restype = None
-    s, y = np.zeros(size["state"]), np.zeros(size["outputs"])
-    p = np.array([float(value) for value in flatten(params)])
-    u = np.array([[float(value) for value in flatten(inputs)] for inputs in seen])
-    state, outputs, parameters, first = (array.ctypes.data for array in (s, y, p, u))
-    width = u.strides[0]
+    """Return the same by the controller's C."""
+    memory, y = np.zeros(memory_size(library), dtype=np.uint8), np.zeros(len(variables(MODEL.outputs)))
+    p = numbers(params)
+    rows = np.array([flatten(inputs) for inputs in seen], dtype=float)
+    u = np.zeros(len(rows) * library.bench_inputs_size(), dtype=np.uint8)
+    library.bench_inputs(rows.ctypes.data, len(rows), u.ctypes.data)
+    instance, inputs, parameters, outputs = (array.ctypes.data for array in (memory, u, p, y))
 
-    @numba.njit
-    def play(count: int) -> None:
-        for row in range(count):
-            step(state, first + row * width, parameters, outputs, step_ns)
-
-    def work(_held: Any = (s, p)) -> Any:
-        initialize(state, parameters, outputs)
-        play(len(u))
+    def work(_held: Any = (memory, u, p)) -> Any:
+        library.model_start(instance, parameters, outputs)
+        library.bench_replay(instance, inputs, len(rows), step_ns, outputs)
         return y
 
     return work
 
 
-@numba.njit(error_model="numpy")
-def infer_all(points: Any) -> Any:
-    """Return the sum of the outputs at all points, so that none can be left out."""
-    total = 0.0
-    for row in range(len(points)):
-        total += infer(points[row, 0], points[row, 1], PEAKS5, PEAKS5, PEAKS7, STEERING_SYMMETRIC)
-    return total
+def numbers(value: Any) -> Any:
+    """Return the scalars of nested tuples as doubles."""
+    return np.array(flatten(value), dtype=float)
 
 
-@numba.njit(error_model="numpy")
-def solve_often(count: int, e: float, psi: float, d: float, stages: Any, weights: Any) -> Any:
-    """Return the sum of the first increments of ``count`` solutions of one problem."""
-    total = 0.0
-    for number in range(count):
-        total += solve(e + 1e-9 * number, psi, d, stages, weights, 1e-10, 40).nodes[0].u
-    return total
-
-
-def bench_fuzzy() -> None:
+def bench_fuzzy(library: Any) -> None:
     """Print the cost of one fuzzy inference."""
     points = np.random.default_rng(1).uniform(-3.0, 3.0, (200, 2)).tolist()
     array = np.array(points)
@@ -166,7 +155,8 @@ def bench_fuzzy() -> None:
             simulation.input["row"], simulation.input["column"] = a, b
             simulation.compute()
 
-    python, machine = micros(ours, 200, 5 * ROUNDS), micros(lambda: infer_all(array), 200, 5 * ROUNDS)
+    machine = micros(lambda: library.bench_infer(array.ctypes.data, len(array)), 200, 5 * ROUNDS)
+    python = micros(ours, 200, 5 * ROUNDS)
     other = micros(theirs, 200, 3)
     print(f"\n{'fuzzy inference [us]':24s}{'CPython':>10s}{'compiled':>10s}{'scikit-fuzzy':>14s}")
     print(f"{'5 x 5 rules':24s}{python:10.1f}{machine:10.2f}{other:14.0f}   {other / python:.0f} times ours in CPython")
@@ -188,7 +178,7 @@ def scikit_fuzzy() -> Any:
     return control.ControlSystemSimulation(control.ControlSystem(rules), cache=False)
 
 
-def bench_qp() -> None:
+def bench_qp(library: Any) -> None:
     """Print the cost of one QP of the MPC, 12 steps, tolerance 1e-10 (ours) and 1e-6 (OSQP)."""
     rng = np.random.default_rng(1)
     problems = [random_problem(rng) for _ in range(30)]
@@ -198,9 +188,11 @@ def bench_qp() -> None:
         for problem in problems:
             solve(*problem, 1e-10, 40)
 
-    def compiled() -> None:
-        for problem in problems:
-            solve_often(OFTEN, *problem)
+    flat = [(e, psi, d, numbers(stages), numbers(weights)) for e, psi, d, stages, weights in problems]
+
+    def by_c() -> None:
+        for e, psi, d, stages, weights in flat:
+            library.bench_solve(OFTEN, e, psi, d, stages.ctypes.data, weights.ctypes.data)
 
     def by_daqp() -> None:
         for h, f, g, limit in matrices:
@@ -222,13 +214,13 @@ def bench_qp() -> None:
 
     ways = {"ours, CPython": ours, "DAQP": by_daqp, "OSQP, set-up and solve": by_osqp, "cvxpy + OSQP": by_cvxpy}
     print(f"\n{'QP of 12 steps [us]':24s}{'time':>10s}")
-    print(f"{'ours, compiled':24s}{micros(compiled, OFTEN * len(problems), 3):10.0f}")
+    print(f"{'ours, compiled':24s}{micros(by_c, OFTEN * len(problems), 3):10.0f}")
     for name, work in ways.items():
         print(f"{name:24s}{micros(work, len(problems), 3):10.0f}")
 
 
 if __name__ == "__main__":
-    make_compilable(controller_fmu)
-    bench_fuzzy()
-    bench_qp()
-    bench_controllers()
+    made = compiled()
+    bench_fuzzy(made)
+    bench_qp(made)
+    bench_controllers(made)

@@ -6,22 +6,20 @@ steps the whole vehicle (driver, steering, drive, sensors, outputs) by 10 ms, bo
 The third drives a whole case with native FMUs.
 """
 
+import ctypes
 import statistics
 import time
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
-import numba
-import numpy as np
 from vehiclemodels.init_mb import init_mb
 from vehiclemodels.parameters_vehicle2 import parameters_vehicle2
 from vehiclemodels.vehicle_dynamics_ks import vehicle_dynamics_ks
 from vehiclemodels.vehicle_dynamics_mb import vehicle_dynamics_mb
 from vehiclemodels.vehicle_dynamics_st import vehicle_dynamics_st
 
-from fmus.compiled import compiled_entries
-from fmus.flat_entry import sizes
-from modelkit.variables import flatten, with_values
+from fmus.native.libraries import kept_library, model_files
 from modelkit.vocabulary import Pose, Prompt
 from orchestrator.cosim.fmu_files import fmu_files
 from orchestrator.scenario.load_scenario import load_scenario
@@ -30,7 +28,6 @@ from vehicle_fmu import MODEL
 from vehicle_fmu.chassis import ChassisParams, Motion, RoadParams
 from vehicle_fmu.double_track import DoubleTrackParams, DoubleTrackState, step_double_track
 from vehicle_fmu.effort import Effort
-from vehicle_fmu.interface import VehicleInput, VehicleParams
 from vehicle_fmu.kinematic import move
 from vehicle_fmu.single_track import SingleTrackParams, SingleTrackState, step_single_track
 from vehicle_fmu.wheels import Wheel
@@ -65,17 +62,31 @@ def double(n: int, state: Any, effort: Any, chassis: Any, road: Any, p: Any) -> 
     return state
 
 
-def bodies(jit: Callable[[Any], Any], n: int) -> Rounds:
-    """Return the three bodies, their loops made by ``jit``."""
+def bodies(n: int) -> Rounds:
+    """Return the three bodies in CPython."""
     chassis, road, one, two = CAR
     push = Effort(200.0, 0.0)
-    k, s, d = jit(kinematic), jit(single), jit(double)
     four = DoubleTrackState(MOVING, (Wheel(1.0 / 0.344),) * 4)
     return {
-        "kinematic": (n, lambda n: k(n, Pose())),
-        "single_track": (n, lambda n: s(n, SingleTrackState(MOVING), push, chassis, road, one)),
-        "double_track": (n, lambda n: d(n, four, push, chassis, road, two)),
+        "kinematic": (n, lambda n: kinematic(n, Pose())),
+        "single_track": (n, lambda n: single(n, SingleTrackState(MOVING), push, chassis, road, one)),
+        "double_track": (n, lambda n: double(n, four, push, chassis, road, two)),
     }
+
+
+def compiled() -> Any:
+    """Return the loops of ``bodies.c``, compiled with the vehicle's C."""
+    files = {**model_files(MODEL), "bodies.c": Path(__file__).with_name("bodies.c").read_text()}
+    library = ctypes.CDLL(str(kept_library("bodies", "bodies.c", files)))
+    for name in (*NAMES, "vehicle"):
+        getattr(library, f"bench_{name}").restype = ctypes.c_double
+    return library
+
+
+def compiled_bodies(library: Any, n: int) -> Rounds:
+    """Return the three bodies in C."""
+    functions = {name: getattr(library, f"bench_{name}") for name in NAMES}
+    return {name: (n, lambda n, f=f: f(ctypes.c_int64(n))) for name, f in functions.items()}  # type: ignore[misc]
 
 
 def commonroad(n: int) -> Rounds:
@@ -90,24 +101,11 @@ def commonroad(n: int) -> Rounds:
     }
 
 
-def vehicles(step: Any, loop: Any, n: int) -> Rounds:
-    """Return the whole vehicle with each body, stepped ``n`` times 10 ms by ``loop``."""
-    inputs = VehicleInput(3.0, True, int(Prompt.FORWARD))
-    u = np.array([float(value) for value in flatten(inputs)])
-    found: Rounds = {}
-    for body, name in enumerate(NAMES):
-        p = np.array([float(value) for value in flatten(with_values(VehicleParams, {"body": body}))])
-        size = sizes(MODEL)
-        s, y = np.zeros(size["state"]), np.zeros(size["outputs"])
-        step.initialize(s, p, y)
-        found[name] = (n, lambda n, s=s, p=p, y=y: loop(step.step, s, u, p, y, n))  # type: ignore[misc]
-    return found
-
-
-def loop_python(step: Any, s: Any, u: Any, p: Any, y: Any, n: int) -> None:
-    """Step ``n`` times 10 ms."""
-    for _ in range(n):
-        step(s, u, p, y, 10_000_000)
+def vehicles(library: Any, n: int) -> Rounds:
+    """Return the whole vehicle in C with each body, stepped ``n`` times 10 ms."""
+    forward, step = ctypes.c_int64(int(Prompt.FORWARD)), library.bench_vehicle
+    numbers = {name: ctypes.c_int64(body) for body, name in enumerate(NAMES)}
+    return {name: (n, lambda n, b=b: step(ctypes.c_int64(n), b, forward)) for name, b in numbers.items()}  # type: ignore[misc]
 
 
 def medians(groups: dict[str, Rounds]) -> dict[str, float]:
@@ -115,7 +113,7 @@ def medians(groups: dict[str, Rounds]) -> dict[str, float]:
     times: dict[str, list[float]] = {}
     for rounds in groups.values():
         for n, run in rounds.values():
-            run(n)  # compiles
+            run(n)
     for _ in range(ROUNDS):
         for group, rounds in groups.items():
             for name, (n, run) in rounds.items():
@@ -144,14 +142,13 @@ def native_factors() -> dict[str, float]:
 
 def main() -> None:
     """Print the tables."""
-    entries = compiled_entries(MODEL)
-    jit: Callable[[Any], Any] = numba.njit(error_model="numpy")
+    library = compiled()
     found = medians(
         {
-            "CPython": bodies(lambda function: function, 300),
-            "compiled": bodies(jit, 30_000),
+            "CPython": bodies(300),
+            "compiled": compiled_bodies(library, 30_000),
             "CommonRoad": commonroad(300),
-            "vehicle": vehicles(entries, jit(loop_python), 2_000),
+            "vehicle": vehicles(library, 2_000),
         }
     )
     print("one 1 ms step of a body [us]")

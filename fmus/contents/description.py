@@ -111,12 +111,7 @@ def model_description(
         generationDateAndTime=GENERATED,
         variableNamingConvention="structured",
     )
-    capabilities = {"modelIdentifier": model.name} | {name: as_text(value) for name, value in flags.items()}
-    interface = SubElement(root, "CoSimulation", capabilities)
-    if sources:
-        files = SubElement(interface, "SourceFiles")
-        for name in sources:
-            SubElement(files, "File", name=name)
+    root.append(_interface(model, flags, sources))
     root.append(unit_definitions(known))
     categories = SubElement(root, "LogCategories")
     for name, text in LOG_CATEGORIES.items():
@@ -130,6 +125,16 @@ def model_description(
     ElementTree.indent(root)
     content: bytes = ElementTree.tostring(root, encoding="UTF-8", xml_declaration=True)
     return content + b"\n"
+
+
+def _interface(model: Model, flags: dict[str, bool], sources: tuple[str, ...]) -> Element:
+    capabilities = {"modelIdentifier": model.name} | {name: as_text(value) for name, value in flags.items()}
+    interface = Element("CoSimulation", capabilities)
+    if sources:
+        files = SubElement(interface, "SourceFiles")
+        for name in sources:
+            SubElement(files, "File", name=name)
+    return interface
 
 
 def project_version() -> str:

@@ -25,10 +25,14 @@ UNIT = """/* The model {name} as a table. */
 
 #define LIBRARY_MODEL {name}
 #define LIBRARY_MEMBERS "{name}_members.h"
+#include "library.c"
+"""
+MEMBERS_HEAD = """#ifdef MEMBER /* a line for each parameter, input and output: MEMBER(path, kind) */
+{lines}#else /* how many there are of each */
 #define LIBRARY_PARAMS {params}
 #define LIBRARY_INPUTS {inputs}
 #define LIBRARY_OUTPUTS {outputs}
-#include "library.c"
+#endif
 """
 
 
@@ -45,17 +49,18 @@ def batch_library() -> Path:
 @lru_cache
 def model_library(model: Model) -> Path:
     """Return the path of the library of ``model``: see ``library.c``. Raises as :func:`kept_library`, ``TypeError``."""
+    unit = f"{model.name}_library.c"
+    return kept_library(model.name, unit, {**model_files(model), unit: UNIT.format(name=model.name)})
+
+
+def model_files(model: Model) -> dict[str, str]:
+    """Return the files with which a C file can have the model as a table: it includes what ``UNIT`` does."""
     code, known = translated(model), members(model)
     count = {group: sum(item.group == group for item in known) for group in ("params", "inputs", "outputs")}
-    unit = f"{model.name}_library.c"
-    files = {
-        f"{model.name}.h": code.header,
-        f"{model.name}.c": code.source,
-        f"{model.name}_members.h": "".join(f"MEMBER({item.path}, {KINDS[item.kind]})\n" for item in known),
-        unit: UNIT.format(name=model.name, **count),
-        **_own("library.c", "library.h"),
-    }
-    return kept_library(model.name, unit, files)
+    lines = "".join(f"MEMBER({item.path}, {KINDS[item.kind]})\n" for item in known)
+    files = {f"{model.name}.h": code.header, f"{model.name}.c": code.source}
+    files[f"{model.name}_members.h"] = MEMBERS_HEAD.format(lines=lines, **count)
+    return files | _own("library.c", "library.h")
 
 
 def load_model(model: Model) -> Any:
@@ -64,7 +69,11 @@ def load_model(model: Model) -> Any:
     ``model_library()``: the table; ``model_start(memory, params, outputs)``; ``model_step(memory, inputs, outputs,
     dt_ns)``: all arrays by their addresses.
     """
-    library = ctypes.CDLL(str(model_library(model)))
+    return typed(ctypes.CDLL(str(model_library(model))))
+
+
+def typed(library: Any) -> Any:
+    """Return a library that has a model as a table with the signatures of its functions; see :func:`load_model`."""
     library.model_library.restype = ctypes.c_void_p
     library.model_start.argtypes = [ctypes.c_void_p] * 3
     library.model_step.argtypes = [*[ctypes.c_void_p] * 3, ctypes.c_int64]

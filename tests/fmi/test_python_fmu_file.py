@@ -15,11 +15,14 @@ import pytest
 from fmpy.validation import validate_fmu
 from lxml import etree
 
+from controller_fmu import MODEL as CONTROLLER
 from fmus.build import build_all
 from fmus.contents.archive import archive_bytes, archive_guid, content_guid
 from fmus.contents.description import fmi_variables, model_description
+from fmus.contents.extras import terminals
 from fmus.contents.units import unit
 from fmus.python.fmu import build
+from vehicle_fmu import MODEL as VEHICLE
 
 BIN = Path(sys.executable).parent
 
@@ -179,8 +182,25 @@ def test_terminals_keep_to_their_schema(python_fmus, model):
     schema = Path(fmpy.__file__).parent / "schema/fmi3/fmi3TerminalsAndIcons.xsd"
     document = etree.fromstring(read(python_fmus[model.name], "terminalsAndIcons/terminalsAndIcons.xml"))
     etree.XMLSchema(file=str(schema)).assertValid(document)
-    members = {node.get("variableName") for node in document.iter("TerminalMemberVariable")}
-    assert members == {item.name for item in fmi_variables(model) if item.causality in ("input", "output")}
+    members = [node.get("variableName") for node in document.iter("TerminalMemberVariable")]
+    assert len(members) == len(set(members))
+    ports = {item.name for item in fmi_variables(model) if item.causality in ("input", "output")}
+    assert set(members) <= ports if model.terminals else set(members) == ports
+
+
+def test_every_connected_signal_is_in_a_terminal_of_both():
+    signals = [{item.name: name for name, item in _terminal_members(model)} for model in (VEHICLE, CONTROLLER)]
+    ports = [{v.name: v.causality for v in fmi_variables(model)} for model in (VEHICLE, CONTROLLER)]
+    pairs = {name for name in ports[0] if {ports[0][name], ports[1].get(name)} == {"input", "output"}}
+    assert len(pairs) > 30
+    assert set(signals[0]) == set(signals[1]) == pairs
+    assert signals[0] == signals[1]
+
+
+def _terminal_members(model):
+    known = {item.name: item for item in fmi_variables(model)}
+    root = ElementTree.fromstring(terminals(model))
+    return [(t.get("name"), known[node.get("variableName")]) for t in root.iter("Terminal") for node in t]
 
 
 @pytest.mark.parametrize(

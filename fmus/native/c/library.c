@@ -1,9 +1,11 @@
 /* The table of one model, and two functions over arrays of doubles for a host that calls step by step.
  *
- * The file that is compiled has included the model's C and defined LIBRARY_MODEL, LIBRARY_PARAMS, LIBRARY_INPUTS and
- * LIBRARY_OUTPUTS (how many there are), and LIBRARY_MEMBERS: the file with a line MEMBER(path, kind) for each.
+ * The file that is compiled has included the model's C and defined LIBRARY_MODEL, and LIBRARY_MEMBERS: the file that
+ * says how many parameters, inputs and outputs there are, with a line MEMBER(path, kind) for each.
  */
 #include "library.h"
+
+#include LIBRARY_MEMBERS
 
 #include <stddef.h>
 #include <string.h>

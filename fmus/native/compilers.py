@@ -46,7 +46,7 @@ class Compiler(NamedTuple):
         ``RuntimeError`` with the compiler's words if it refuses.
         """
         if not self.is_zig and target != host_target():
-            raise RuntimeError(f"{self.command[0]} compiles for this machine only; for others use ziglang")
+            raise RuntimeError(f"{self.command[0]} compiles for this machine only; others need --cc zig")
         with tempfile.TemporaryDirectory(prefix="apa-c-") as directory:
             here = Path(directory)
             for file, text in files.items():

@@ -57,8 +57,9 @@ Read from it:
   ends 2 cm short of Q3 the others end within 0.6 cm of it.
 - What parks on one body parks on every body. Case 1 (Table 1's rate, path tracking only) and case 2 do not, on any.
 - Cases 3 and 5 end where the chart first finds the pose right, anywhere ahead of Q3. That place along the slot is
-  sensitive: 4 to 13 cm in case 3, 0.7 m in case 5 at 105 deg/s. In case 5 at Table 1's rate the driver shuffles at
-  1.5 m/s: two shifts more on the single track, one less, and 2.3 m further ahead, on the double track.
+  sensitive: 5 cm in case 3 and 0.7 m in case 5 at 105 deg/s; in case 3 at 105 deg/s the kinematic car stays 1.5 m
+  ahead, the others find the pose right only past Q4 and are led back to Q3. In case 5 at Table 1's rate the driver
+  shuffles at 1.5 m/s: two shifts more on the single track, one less, and 2.3 m further ahead, on the double track.
 
 ![case 4](images/bodies-case4.png)
 

@@ -77,7 +77,7 @@ def reason_to_fail(
     if inputs.vehicle_fault != 0:
         return VEHICLE_FAULT
     if phase == STANDBY:
-        return NO_REASON
+        return TIMEOUT if running_ns * 1e-9 > limit.duration else NO_REASON
     if state.frozen * 1e-9 > limit.pose_frozen:
         return POSE_FROZEN
     if has_failed(state.wheel, limit.wheel_fault):

@@ -159,6 +159,16 @@ def test_steps_of_any_length_sample_at_the_same_instants() -> None:
     assert outputs_after([7_000_000, 13_000_000, 29_999_999, 1]) == whole
 
 
+def test_a_car_that_never_stands_at_first_is_not_waited_for_for_ever() -> None:
+    params = ControllerParams(limit=ControllerParams().limit._replace(duration=5.0))
+    state, _ = initialize(params)
+    rolling = ControllerInput(measured_speed=0.02)
+    for seconds in range(1, 8):
+        state, out = step(state, rolling, params, 1_000_000_000)
+        assert (out.phase == Phase.FAILED) == (seconds > 5)
+    assert out.reason == Reason.TIMEOUT
+
+
 numbers = st.one_of(st.floats(-100.0, 100.0), st.floats(), st.sampled_from([0.0, math.nan, math.inf, 1e300]))
 
 

@@ -19,6 +19,7 @@ import numpy as np
 
 from orchestrator.cosim.fmu_files import fmu_files
 from orchestrator.scenario.load_scenario import load_scenario
+from orchestrator.scenario.scenario import Scenario
 from orchestrator.session.session import run_scenario
 from orchestrator.sweep.batch import compiled, run_batch
 from orchestrator.sweep.design import make_design
@@ -66,7 +67,7 @@ def in_threads(rows: Any, parts: list[tuple[Any, Any, Any]]) -> None:
 def rates() -> None:
     job, chunk = bound(MANOEUVRES)
     begun = time.perf_counter()
-    rows = compiled(tuple(job.measures))
+    rows = compiled(tuple(job.measures), Scenario(**job.scenario).ending)
     print(f"models ready after {time.perf_counter() - begun:.1f} s (compiled once per source, then kept)")
     parameters, times = arrays(job, chunk)
     out = np.empty((MANOEUVRES, FIRST_MEASURE + len(job.measures)))

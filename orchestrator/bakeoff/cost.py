@@ -4,7 +4,6 @@ import statistics
 import time
 from typing import Any, NamedTuple
 
-from controller_fmu.interface import Phase
 from modelkit.variables import with_values
 from orchestrator.bakeoff.entries import CONTROLLERS, scenario_of
 from orchestrator.cosim.recording import inputs_seen
@@ -12,7 +11,6 @@ from orchestrator.scenario.models import MODELS
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.session.session import run_scenario
 
-FINAL = (int(Phase.PARKED), int(Phase.FAILED), int(Phase.TAKEOVER))
 TIMES = 2
 """Every drive is the same: of each step the shortest time counts, so that interruptions do not."""
 
@@ -44,11 +42,11 @@ def _times(scenario: Scenario, seen: list[Any]) -> list[float]:
     model = MODELS["controller"]
     params = with_values(model.params, dict(scenario.controller))
     state, outputs = model.initialize(params)
-    spent = []
+    spent, final = [], scenario.ending.final()
     for inputs in seen:
         begun = time.perf_counter()
         state, outputs = model.step(state, inputs, params, scenario.step_ns)
         spent.append(time.perf_counter() - begun)
-        if outputs.phase in FINAL:
+        if outputs.phase in final:
             break
     return spent

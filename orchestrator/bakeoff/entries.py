@@ -11,7 +11,7 @@ from functools import lru_cache
 from typing import NamedTuple
 
 from orchestrator.scenario.load_scenario import load_scenario
-from orchestrator.scenario.scenario import Scenario
+from orchestrator.scenario.scenario import Scenario, Slot
 from orchestrator.scenario.sensor_mounts import mounts
 from vehicle_fmu.interface import Body
 
@@ -92,6 +92,7 @@ def _base(controller: str, slot: float, car: str) -> Scenario:
         "stop_time": 200 if searches else 120,
         "vehicle.driver.profile[1].speed": SEARCH_SPEED if searches else DRIVER_SPEED,
         "controller.system": controller,
+        "limits": "[gbt41630, no-contact]",
     }
     loaded = load_scenario("zhang2022", [f"{key}={value}" for key, value in sets.items()])
     body = {key: loaded.vehicle[key] for key in ("width", "front_overhang", "rear_overhang")}
@@ -105,7 +106,9 @@ def _base(controller: str, slot: float, car: str) -> Scenario:
         vehicle |= {"ultrasonic.noise": 0.01, "ultrasonic.dropout": 0.01, "driver.apa_switch_time": 0.5}
         told = {f"apa.{key}": value for key, value in body.items()}
         told |= _sensors(front, body["rear_overhang"], 0.5 * body["width"], "apa.sensors.")
-    return loaded.model_copy(update={"vehicle": vehicle, "controller": {**loaded.controller, **told}})
+    line = 0.5 * body["width"]
+    true = Slot(x=REAR_END + 0.5 * slot, y=line - 0.5 * DEPTH, length=slot, width=DEPTH)
+    return loaded.model_copy(update={"slot": true, "vehicle": vehicle, "controller": {**loaded.controller, **told}})
 
 
 def _sensors(front: float, rear: float, half_width: float, owner: str) -> dict[str, float]:

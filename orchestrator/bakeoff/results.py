@@ -1,29 +1,23 @@
-"""What a run of the bake-off came to, from the few numbers kept of it."""
+"""What a run of the bake-off came to, from the few numbers measures of it."""
 
-import math
 from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 
-from controller_fmu.interface import Phase, Reason
 from orchestrator.bakeoff.entries import ASSIST, Entry
-from orchestrator.cosim.endings import STANDSTILL_TIME_NS
-from orchestrator.sweep.many import timed
-from orchestrator.sweep.rows import PHASE, REASON
+from orchestrator.scenario.requirements import shipped_requirements
+from orchestrator.sweep.many import run_all, truths_of
+from orchestrator.sweep.rows import measures_for
+from orchestrator.sweep.verdict import Verdict, judge_rows
+from orchestrator.verdict.judge import meets
 from orchestrator.verdict.measures import Measure
-from orchestrator.verdict.numbers import CLEARANCE, NUMBERS, POSE
 
-LATERAL, HEADING = 0.15, math.radians(3.0)
-"""GB/T 41630, parallel parking [m, rad]."""
-REFUSED = Reason.NO_PATH.name.lower()
+REFUSED = "no_path"
 """Why a drive is not begun at all."""
-HOUSE_LATERAL, HOUSE_HEADING = 0.05, math.radians(1.0)
+EXACT = ("final.lateral_error", "final.heading_error")
+"""The numbers of an exact drive that are within the house limits."""
 PARKING_TIME = Measure("last", "controller.apa.parking_time")
-SHIFTS, EFFORT = NUMBERS["shifts"].measure, NUMBERS["steering_effort"].measure
-assert SHIFTS is not None
-assert EFFORT is not None
-MEASURES = (*POSE, PHASE, REASON, SHIFTS, EFFORT, CLEARANCE, PARKING_TIME)
 
 
 class Result(NamedTuple):
@@ -31,15 +25,15 @@ class Result(NamedTuple):
 
     entry: Entry
     parked: bool
-    """The controller says parked, within GB/T 41630, without contact."""
+    """As everywhere; by the limits of GB/T 41630, without contact."""
     house: bool
-    """Within 5 cm and 1 deg besides."""
+    """Within the house limits across the slot and in heading besides."""
     reason: str
     time: float
     """From the first instant (the assist: from the driver's confirmation) until the car stands parked."""
     shifts: int
     longitudinal: float
-    """Not judged: the assist chooses its own place along the slot."""
+    """Judged by the slot's ends only: the assist chooses its own place along the slot."""
     lateral: float
     heading: float
     clearance: float
@@ -50,24 +44,29 @@ class Result(NamedTuple):
 
 def results(runs: Sequence[Entry]) -> list[Result]:
     """Return what every run came to."""
-    table = timed([entry.scenario for entry in runs], MEASURES)
-    return [_result(entry, row) for entry, row in zip(runs, table, strict=True)]
+    scenarios = [entry.scenario for entry in runs]
+    measures = [*measures_for(scenarios[0]), PARKING_TIME]
+    rows = run_all(scenarios, measures)
+    verdict = judge_rows(scenarios[0], truths_of(scenarios), measures, rows)
+    house = [item for item in shipped_requirements("house") if item.signal in EXACT]
+    exact = np.all([meets(item, verdict.numbers[item.signal]) for item in house], axis=0)
+    return [_result(entry, verdict, run, float(rows[run, -1]), bool(exact[run])) for run, entry in enumerate(runs)]
 
 
-def _result(entry: Entry, row: "np.ndarray[tuple[int], np.dtype[np.float64]]") -> Result:
-    end, x, y, heading, phase, reason, shifts, effort, clearance, confirmed = (float(value) for value in row)
-    told = int(phase) == Phase.PARKED
-    time = confirmed if entry.controller == ASSIST else end - STANDSTILL_TIME_NS / 1e9
-    within = abs(y) <= LATERAL and abs(heading) <= HEADING
-    why = "" if told and within and clearance > 0.0 else _why(int(phase), int(reason), within, clearance)
-    house = abs(y) <= HOUSE_LATERAL and abs(heading) <= HOUSE_HEADING
-    parked = why == ""
-    return Result(entry, parked, parked and house, why, time, int(shifts), x, y, heading, clearance, effort)
-
-
-def _why(phase: int, reason: int, within: bool, clearance: float) -> str:
-    if phase == Phase.FAILED:
-        return Reason(reason).name.lower()
-    if clearance <= 0.0:
-        return "contact"
-    return "stop time" if within or phase != Phase.PARKED else "beyond GB/T 41630"
+def _result(entry: Entry, verdict: Verdict, run: int, confirmed: float, exact: bool) -> Result:
+    number = {name: float(values[run]) for name, values in verdict.numbers.items()}
+    standing = entry.scenario.ending.standstill
+    parked = bool(verdict.succeeded()[run])
+    return Result(
+        entry,
+        parked,
+        parked and exact,
+        "" if parked else verdict.reason[run],
+        confirmed if entry.controller == ASSIST else number["duration"] - standing,
+        int(number["shifts"]),
+        number["final.longitudinal_error"],
+        number["final.lateral_error"],
+        number["final.heading_error"],
+        number["min_clearance"],
+        number["steering_effort"],
+    )

@@ -9,9 +9,10 @@ from orchestrator.scenario.load_scenario import find_file
 from orchestrator.scenario.requirements import read_requirements
 from orchestrator.session.terminal import checks_table
 from orchestrator.suite.junit import Suite, cases_of, write_junit
-from orchestrator.text.console import console
+from orchestrator.text.console import console, say
 from orchestrator.verdict.judge import judge
-from orchestrator.verdict.numbers import numbers_of
+from orchestrator.verdict.logged import logged
+from orchestrator.verdict.numbers import facts_of
 
 EXAMPLES = """examples:
   apa check runs/guo2015-case4/run.mcap gbt41630
@@ -39,13 +40,16 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Judge and print. Returns 0 if every required requirement is met, 1 if not."""
     recording = read_log(arguments.log)
-    numbers = numbers_of(recording)
+    scenario, note = logged(recording, str(arguments.log))
+    if note:
+        say(note)
+    facts = facts_of(recording, scenario)
     checks = []
     for name in arguments.requirements:
         file = find_file(name, "limits", "set of limits", Path.cwd())
-        checks += judge(read_requirements(file), recording, numbers, str(file))
+        checks += judge(read_requirements(file), recording, facts, str(file))
     if arguments.junit:
-        write_junit(arguments.junit, [Suite(str(arguments.log), cases_of(checks), numbers["duration"])])
+        write_junit(arguments.junit, [Suite(str(arguments.log), cases_of(checks), facts.numbers["duration"])])
     missed = [check for check in checks if check.required and not check.passed]
     unknown = sum(not check.judged for check in checks)
     if arguments.json:

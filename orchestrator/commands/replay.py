@@ -51,4 +51,4 @@ def run(arguments: argparse.Namespace) -> int:
         return INTERRUPTED
     if again.different:
         return BAD_INPUT
-    return PARKED if again.summary.outcome == "parked" else NOT_PARKED
+    return PARKED if again.summary.is_done else NOT_PARKED

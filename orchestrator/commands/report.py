@@ -3,12 +3,12 @@
 import argparse
 from pathlib import Path
 
-from orchestrator.cosim.recording import Recording
 from orchestrator.log.read_log import log_file, read_log
 from orchestrator.report.replay import write_replay
 from orchestrator.report.words import read_words
-from orchestrator.scenario.scenario import Scenario
+from orchestrator.text.console import say
 from orchestrator.text.errors import PARKED
+from orchestrator.verdict.logged import logged
 from orchestrator.verdict.summary import summarize
 
 EXAMPLES = """examples:
@@ -30,13 +30,10 @@ def run(arguments: argparse.Namespace) -> int:
     log: Path = arguments.log
     out: Path = arguments.out or log.parent / "report.html"
     recording = read_log(log)
-    scenario = scenario_of(recording, log)
+    scenario, note = logged(recording, str(log), log.stem)
+    if note:
+        say(note)
     out.parent.mkdir(parents=True, exist_ok=True)
-    write_replay(out, recording, summarize(recording, scenario, 0.0), read_words(log))
+    write_replay(out, recording, summarize(recording, scenario, 0.0, note), read_words(log))
     print(out)
     return PARKED
-
-
-def scenario_of(recording: Recording, log: Path) -> Scenario:
-    """Return the scenario that a log carries; one with its name alone if it carries none."""
-    return Scenario(**{"name": log.stem, **recording.info.get("scenario", {}), "file": str(log)})

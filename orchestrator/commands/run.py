@@ -42,7 +42,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Run, write, print. Returns 0 parked, 1 not parked, 130 interrupted."""
+    """Run, write, print. Returns 0 parked or finished, 1 not, 130 interrupted."""
     foreign = foreign_files(arguments)
     scenario, left_out = load_fitting(arguments.scenario, arguments.set, foreign)
     if left_out:
@@ -60,4 +60,4 @@ def run(arguments: argparse.Namespace) -> int:
         print(f"results in {out}")
     if ran.end.reason == "interrupted":
         return INTERRUPTED
-    return PARKED if summary.outcome == "parked" else NOT_PARKED
+    return PARKED if summary.is_done else NOT_PARKED

@@ -23,7 +23,7 @@ EXAMPLES = """examples:
   apa test guo2015-case4 my.yaml --controller their.fmu --junit results/junit.xml
   apa test "*" --requirements gbt41630 --set vehicle.body=double_track
 
-A scenario passes if its outcome is the one it expects and, where that is a parked car, its required limits
+A scenario passes if its outcome is the one it expects and, where that is parked or finished, its required limits
 hold; requirements given here are judged besides. Their FMU needs inputs and outputs of the same names, types
 and units (one it does not say is taken as meant); parameters it does not have are left out and listed, its own
 are set like any other: --set controller.THEIRS=3.

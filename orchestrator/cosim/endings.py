@@ -1,36 +1,41 @@
-"""When a run is over before its stop time."""
+"""When a run is over before its stop time: the scenario's end condition, watched during a run."""
 
-from modelkit.variables import Variable
-from orchestrator.cosim.slave import Slave
+from collections.abc import Sequence
 
-FINAL_PHASES = ("PARKED", "FAILED", "TAKEOVER")
-STANDSTILL_SPEED = 1e-3
-"""A car slower than this [m/s] stands."""
-STANDSTILL_TIME_NS = 500_000_000
+from orchestrator.cosim.slave import Ports, Slave
+from orchestrator.scenario.end_condition import SPEED, EndCondition
 
 
 class Standstill:
-    """The chart is in a final phase and the car has stood for half a second."""
+    """The controller is in a final state and the car has stood still for a time."""
 
-    def __init__(self, vehicle: Slave, controller: Slave) -> None:
-        self._speed = vehicle.outputs.index["speed"]
-        self._phase = controller.outputs.index["phase"]
-        self._vehicle = vehicle.outputs.values
-        self._controller = controller.outputs.values
-        self._final = final_phases(controller.outputs.variables[self._phase])
+    def __init__(self, condition: EndCondition, mode: tuple[Ports, int], speed: tuple[Ports, int]) -> None:
+        self._mode, self._mode_place = mode[0].values, mode[1]
+        self._speed, self._speed_place = speed[0].values, speed[1]
+        self._final = frozenset(condition.final(mode[0].variables[mode[1]]))
+        self._still = condition.still
+        self._wait_ns = condition.standstill_ns
         self._since: int | None = None
 
     def reached(self, t_ns: int) -> str:
-        """Return ``standstill`` once the car has stood long enough in a final phase."""
-        if self._controller[self._phase] not in self._final or abs(self._vehicle[self._speed]) > STANDSTILL_SPEED:
+        """Return ``standstill`` once the car has stood long enough in a final state."""
+        if self._mode[self._mode_place] not in self._final or abs(self._speed[self._speed_place]) > self._still:
             self._since = None
             return ""
         if self._since is None:
             self._since = t_ns
-        return "standstill" if t_ns - self._since >= STANDSTILL_TIME_NS else ""
+        return "standstill" if t_ns - self._since >= self._wait_ns else ""
 
 
-def final_phases(phase: Variable) -> dict[int, str]:
-    """Return value -> name of the phases in which a manoeuvre is over."""
-    states = phase.signal.states
-    return {} if states is None else {int(state): state.name for state in states if state.name in FINAL_PHASES}
+def standstill(condition: EndCondition, slaves: Sequence[Slave]) -> Standstill | None:
+    """Return the ending that watches the slaves; None if they do not have its signals: then time alone ends a run."""
+    mode, speed = (_output(name, slaves) for name in (condition.signal, SPEED))
+    return Standstill(condition, mode, speed) if mode is not None and speed is not None else None
+
+
+def _output(signal: str, slaves: Sequence[Slave]) -> tuple[Ports, int] | None:
+    owner, _, name = signal.partition(".")
+    for slave in slaves:
+        if slave.name == owner and name in slave.outputs.index:
+            return slave.outputs, slave.outputs.index[name]
+    return None

@@ -15,13 +15,13 @@ from orchestrator.cosim.slave import Array
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.text.quantities import DEGREE
 from orchestrator.text.readable import changes_text, shifts_text
-from orchestrator.verdict.frame import pose_of
 from orchestrator.verdict.geometry import (
     WHEEL_RADIUS,
     WHEEL_WIDTH,
     Box,
     Car,
     boxes,
+    described,
     kerbs,
     place,
     sample_path,
@@ -103,14 +103,13 @@ def draw(recording: Recording, summary: Summary, scenario: Scenario, path: Path)
 
 
 def _title(summary: Summary, scenario: Scenario) -> str:
-    final = summary.final
-    changes = changes_text(summary.changed)
+    final, changes, outcome = summary.final, changes_text(summary.changed), summary.outcome.replace("_", " ")
     name = f"{scenario.name} with {changes}" if changes else scenario.name
-    return (
-        f"{name}: {summary.outcome.replace('_', ' ')} after {summary.duration:.1f} s, "
-        f"{shifts_text(summary.shifts)}; "
-        f"{final.lateral_error * 100:+.1f} cm lateral, {final.heading_error / DEGREE:+.2f} deg"
-    )
+    text = f"{name}: {outcome} after {summary.duration:.1f} s"
+    if not math.isfinite(final.lateral_error):
+        return text
+    errors = f"{final.lateral_error * 100:+.1f} cm lateral, {final.heading_error / DEGREE:+.2f} deg"
+    return f"{text}, {shifts_text(summary.shifts)}; {errors}"
 
 
 def _signal(recording: Recording, name: str) -> Array:
@@ -215,7 +214,7 @@ def _plan(axis: Any, recording: Recording, scenario: Scenario) -> None:
     axis.set_aspect("equal", adjustable="datalim")
     axis.set_xlabel("x [m]")
     axis.set_ylabel("y [m]")
-    vehicle = recording.parameters_of("vehicle")
+    vehicle = described(scenario, recording.parameters_of("vehicle"))
     car = Car.of(vehicle)
     for box in boxes(vehicle):
         passing = box.appear_at > 0.0 or box.disappear_at < recording.t[-1]
@@ -225,9 +224,9 @@ def _plan(axis: Any, recording: Recording, scenario: Scenario) -> None:
         axis.plot([kerb.x1, kerb.x2], [kerb.y1, kerb.y2], color="#5b6068", linewidth=2.5, solid_capstyle="butt")
     if scenario.slot is not None:
         _slot(axis, slot_box(scenario.slot))
-    target = pose_of(recording.parameters_of("controller"), "target")
-    if target is not None:
-        axis.plot(*place(car.outline(), *target).T, color=GREEN, linewidth=1.4, linestyle=(0, (4, 2)), label="target")
+    if scenario.target is not None:
+        at_target = place(car.outline(), *scenario.target.pose)
+        axis.plot(*at_target.T, color=GREEN, linewidth=1.4, linestyle=(0, (4, 2)), label="target")
     planned = _planned(recording)
     if len(planned):
         axis.plot(*planned.T, color=RUST, linewidth=1.6, linestyle=(0, (5, 2)), label="planned path", zorder=4)

@@ -13,10 +13,10 @@ from orchestrator.export.csv import add_run_arguments
 from orchestrator.log.read_log import read_log
 from orchestrator.report.plots import GROUPS
 from orchestrator.report.words import Line, read_words
-from orchestrator.scenario.scenario import Slot
 from orchestrator.text.errors import BadInput
 from orchestrator.text.patterns import matching
-from orchestrator.verdict.geometry import Car, boxes, place, sample_path, slot_box
+from orchestrator.verdict.geometry import Car, boxes, described, place, sample_path, slot_box
+from orchestrator.verdict.logged import logged
 
 EXAMPLES = """examples:
   apa export rerun runs/guo2015-case4/run.mcap
@@ -92,12 +92,11 @@ def _flat(points: Array) -> Array:
 
 
 def _still(rr: Any, stream: Any, recording: Recording) -> None:
-    vehicle = recording.parameters_of("vehicle")
-    slot = recording.info.get("scenario", {}).get("slot")
-    if slot:
-        line = rr.LineStrips2D([_flat(slot_box(Slot(**slot)).outline())], colors=[[120, 160, 220]])
+    scenario = logged(recording).scenario
+    if scenario.slot is not None:
+        line = rr.LineStrips2D([_flat(slot_box(scenario.slot).outline())], colors=[[120, 160, 220]])
         stream.log("scene/slot", line, static=True)
-    obstacles = [_flat(box.outline()) for box in boxes(vehicle)]
+    obstacles = [_flat(box.outline()) for box in boxes(described(scenario, recording.parameters_of("vehicle")))]
     if obstacles:
         stream.log("scene/obstacles", rr.LineStrips2D(obstacles, colors=[[130, 130, 130]]), static=True)
     if len(recording.t):

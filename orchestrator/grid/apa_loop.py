@@ -12,10 +12,11 @@ import numpy as np
 from modelkit.model import Model
 from modelkit.variables import constructor, flatten, variables, with_values
 from orchestrator.cosim.slave import Array
+from orchestrator.scenario.end_condition import EndCondition
 from orchestrator.scenario.models import MODELS
 
 STEP_NS = 10_000_000
-FINAL = (9.0, 10.0, 11.0)
+FINAL = EndCondition().final()
 """Phases in which a manoeuvre is over."""
 AFTER = 60
 """Steps that are still taken then: the car comes to rest."""

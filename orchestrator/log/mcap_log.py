@@ -27,9 +27,8 @@ from orchestrator.log.mcap_file import CHUNK_SIZE, MESSAGE_HEADER, McapFile
 from orchestrator.log.read_log import VARIABLES
 from orchestrator.log.schema import PACKAGE, descriptor_set, file_descriptor
 from orchestrator.log.wire import Encoder
-from orchestrator.scenario.scenario import Slot
-from orchestrator.verdict.frame import pose_of
-from orchestrator.verdict.geometry import Car, boxes, kerbs, sample_path, slot_box
+from orchestrator.scenario.scenario import Scenario
+from orchestrator.verdict.geometry import Car, boxes, described, kerbs, sample_path, slot_box
 
 SCENE_PERIOD_NS = 50_000_000
 TRAIL_PERIOD_NS = 1_000_000_000
@@ -61,7 +60,7 @@ class _SlaveChannel:
 class McapLog:
     """Observer that writes the log."""
 
-    def __init__(self, path: Path, slaves: list[Slave], slot: Slot | None, info: dict[str, Any]) -> None:
+    def __init__(self, path: Path, slaves: list[Slave], scenario: Scenario, info: dict[str, Any]) -> None:
         self._file = McapFile(path)
         self._file.metadata("apa", {key: json.dumps(value) for key, value in info.items()})
         places = places_of(slaves)
@@ -72,7 +71,7 @@ class McapLog:
         named = {slave.name: slave for slave in slaves}
         self._pictures: list[_Pictures] = []
         if "vehicle" in named and set(DRAWN) <= named["vehicle"].outputs.index.keys():
-            self._pictures.append(_Pictures(self._file, named, slot))
+            self._pictures.append(_Pictures(self._file, named, scenario))
         rows = max(1, CHUNK_SIZE // 2 // sum(channel.size + MESSAGE_HEADER.itemsize for channel in self._channels))
         self.rows_per_chunk = rows
         self._values = all_values(slaves)
@@ -123,11 +122,12 @@ class McapLog:
 class _Pictures:
     """Frames and scene, as far as the slaves have the signals for them."""
 
-    def __init__(self, file: McapFile, slaves: dict[str, Slave], slot: Slot | None) -> None:
+    def __init__(self, file: McapFile, slaves: dict[str, Slave], scenario: Scenario) -> None:
         self._file = file
         self._vehicle = slaves["vehicle"]
         self._controller = slaves.get("controller")
-        self._car = Car.of(_named(self._vehicle.parameters))
+        around = described(scenario, _named(self._vehicle.parameters))
+        self._car = Car.of(around)
         self._frames = scene.Frames(self._car)
         self._places = [self._vehicle.outputs.index[name] for name in DRAWN]
         self._transforms = file.known_channel("/tf", FrameTransforms)
@@ -138,9 +138,9 @@ class _Pictures:
         self._next_ns = 0
         self._path_places = _path_places(self._controller.outputs) if self._controller else np.empty(0, np.intp)
         self._path_seen = b""
-        obstacles, around = boxes(_named(self._vehicle.parameters)), kerbs(_named(self._vehicle.parameters))
-        target = pose_of(_named(self._controller.parameters), "target") if self._controller else None
-        self._stage = scene.Stage(slot_box(slot) if slot else None, obstacles, around, target)
+        slot = slot_box(scenario.slot) if scenario.slot is not None else None
+        target = scenario.target.pose if scenario.target is not None else None
+        self._stage = scene.Stage(slot, boxes(around), kerbs(around), target)
         self._changes = self._stage.changes_ns()
 
     def exchanged(self, t_ns: int) -> None:

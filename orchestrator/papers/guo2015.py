@@ -49,8 +49,6 @@ ENDS = {
 }
 """Largest heading error at the end [deg], a little over what is reached."""
 END_LATERAL = 0.015
-PARKED_LATERAL, PARKED_HEADING = 0.15, math.radians(3.0)
-"""GB/T 41630."""
 RATES = "Table 1's 30 deg/s and the poses of Fig. 12 cannot both hold; at 105 deg/s they do"
 ABOUT = "the speed is 'about 1.5 m/s'; case 4, the same drive until there, prints 3.59 s"
 WAVE = "the wave that the swing at the tangent point leaves has not died out on the 4 m behind it"
@@ -61,7 +59,8 @@ NOTES = [
     "The printed 3.59 s fits 0.79 s of turning the wheel at 30 deg/s before a start at full speed; "
     "at 105 deg/s the wheel is set 0.56 s earlier, so times lie that much earlier.",
     "Drivers who obey: 0.3 to 1.5 m/s, reaction 0 to 0.5 s, the controller assumes 0.3 s.",
-    "Where along the slot the car stops is reported only: the paper's case 5 stops short of Q3 too.",
+    "The paper shows no limit along the slot, and its case 5 stops short of Q3 too: what it calls a success is judged "
+    "without one. Our own outcome, which asks for 50 cm of Q3, stands beside it.",
 ]
 
 
@@ -112,19 +111,22 @@ def case_rows(case: int, driven: Driven) -> list[Row]:
         rows += _case_4_rows(run, driven, fast)
     if case == 5:
         rows += _case_5_rows(run, driven)
-    return [*rows, _outcome_row(case, run, driven), *_end_rows(run, driven)]
+    return [*rows, *_outcome_rows(case, run, driven), *_end_rows(run, driven)]
 
 
-def _outcome_row(case: int, run: str, driven: Driven) -> Row:
+def _outcome_rows(case: int, run: str, driven: Driven) -> list[Row]:
+    """Return what the paper calls the end, wherever along the slot, and what it is called here."""
+    summary = driven.summary
+    ours = summary.outcome if summary.is_done else f"{summary.outcome}: {summary.reason}"
+    here = Row(run, "outcome by our limits, along the slot too", "", None, ours)
     if case == 2:
-        final = driven.summary.final
-        saved = abs(final.lateral_error) <= PARKED_LATERAL and abs(final.heading_error) <= PARKED_HEADING
+        saved = all(check.passed for check in summary.checks if check.source == "GB/T 41630")
         known = FAST if run.endswith("-105") else ""
         ours = "within GB/T 41630" if saved else "failed"
-        return Row(run, "outcome", "", "failed", ours, 0.0, basis=CONCLUSION, differs=known)
+        return [Row(run, "outcome", "", "failed", ours, 0.0, basis=CONCLUSION, differs=known), here]
     basis = OWN if run.endswith("cwpt") else CONCLUSION
     known = SLOW if run == "guo2015-case1" else ""
-    return Row(run, "outcome", "", "parked", driven.summary.outcome, 0.0, basis=basis, differs=known)
+    return [Row(run, "outcome", "", "parked", driven.in_line(), 0.0, basis=basis, differs=known), here]
 
 
 def _case_3_rows(run: str, driven: Driven) -> list[Row]:

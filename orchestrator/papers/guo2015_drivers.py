@@ -5,27 +5,24 @@ from typing import NamedTuple
 
 import numpy as np
 
-from controller_fmu.interface import Phase, ThresholdParams
+from controller_fmu.interface import ThresholdParams
 from orchestrator.cosim.fmu_files import can_compile
 from orchestrator.cosim.slave import Array
-from orchestrator.papers.result import CONCLUSION, Row
+from orchestrator.papers.result import CONCLUSION, Row, in_line
 from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.session.session import run_scenario
-from orchestrator.sweep.many import measure
-from orchestrator.sweep.rows import FIRST_MEASURE, PHASE, row_of
+from orchestrator.sweep.many import run_all, truths_of
+from orchestrator.sweep.rows import FIRST_MEASURE, measures_for, row_of
+from orchestrator.sweep.verdict import judge_rows
 from orchestrator.verdict.measures import Measure
 
 SPEEDS = tuple(np.linspace(0.3, 1.5, 10).tolist())
 """What the driver means to drive [m/s]; the paper's cases lie between."""
 REACTIONS = tuple(np.linspace(0.0, 0.5, 10).tolist())
 """From a prompt to its obedience [s]."""
-KEPT = [
-    PHASE,
-    Measure("smallest", "vehicle.clearance"),
-    Measure("largest", "controller.lateral_error"),
-    Measure("largest", "controller.heading_error"),
-]
+LATERAL, HEADING = (Measure("largest", f"controller.{name}_error") for name in ("lateral", "heading"))
+"""How far off the path the controller sees the car at most."""
 
 
 class Obeyed(NamedTuple):
@@ -36,28 +33,38 @@ class Obeyed(NamedTuple):
     """On the path: the pose never so far off that point tracking would start."""
     untouched: int
     parked: int
+    """Wherever along the slot, as the paper has it."""
+    near: int
+    """Parked by our limits, within 50 cm of Q3."""
 
 
 def obeying_rows(run: str) -> list[Row]:
     """Return what becomes of the drivers of ``run`` (case 3) who obey, over all speeds and reactions."""
     obeyed = obey(run, SPEEDS, REACTIONS)
     named = {"stay on the path": obeyed.stayed, "touch nothing": obeyed.untouched, "park": obeyed.parked}
-    return [
+    rows = [
         Row(
             run, f"of {obeyed.drivers} drivers who obey, {what}", "1", float(obeyed.drivers), float(number), 0.0
         )._replace(basis=CONCLUSION)
         for what, number in named.items()
     ]
+    near = f"of {obeyed.drivers} drivers who obey, park by our limits, along the slot too"
+    return [*rows, Row(run, near, "1", None, float(obeyed.near))]
 
 
 def obey(run: str, speeds: tuple[float, ...], reactions: tuple[float, ...]) -> Obeyed:
     """Return what becomes of drivers of all these speeds [m/s] and reactions [s], as compiled code where possible."""
     scenarios = [_driven(run, speed, reaction) for speed, reaction in itertools.product(speeds, reactions)]
-    found = np.abs(measure(scenarios, KEPT) if can_compile() else _measured(scenarios))
+    measures = list(dict.fromkeys([*measures_for(scenarios[0]), LATERAL, HEADING]))
+    rows = run_all(scenarios, measures) if can_compile() else _rows(scenarios, measures)
+    truth = truths_of(scenarios)
+    ours, papers = (judge_rows(each, truth, measures, rows) for each in (scenarios[0], in_line(scenarios[0])))
+    lateral, heading = (np.abs(rows[:, FIRST_MEASURE + measures.index(item)]) for item in (LATERAL, HEADING))
     limit = ThresholdParams()
-    stayed = (found[:, 2] <= limit.leave_lateral) & (found[:, 3] <= limit.leave_heading)
+    stayed = (lateral <= limit.leave_lateral) & (heading <= limit.leave_heading)
+    untouched = ours.numbers["min_clearance"] > 0.0
     return Obeyed(
-        len(found), int(np.sum(stayed)), int(np.sum(found[:, 1] > 0.0)), int(np.sum(found[:, 0] == Phase.PARKED))
+        len(rows), *(int(np.sum(found)) for found in (stayed, untouched, papers.succeeded(), ours.succeeded()))
     )
 
 
@@ -66,6 +73,5 @@ def _driven(run: str, speed: float, reaction: float) -> Scenario:
     return load_scenario(run, (*sets, "controller.prompting.reaction=0.3"))
 
 
-def _measured(scenarios: list[Scenario]) -> Array:
-    rows = [row_of(run_scenario(scenario, None, kind="none").recording, scenario, KEPT) for scenario in scenarios]
-    return np.array(rows)[:, FIRST_MEASURE : FIRST_MEASURE + len(KEPT)]
+def _rows(scenarios: list[Scenario], measures: list[Measure]) -> Array:
+    return np.array([row_of(run_scenario(item).recording, item, measures) for item in scenarios])

@@ -46,7 +46,8 @@ def _rows(driven: Driven) -> list[Row]:
     tangent = signals["controller.hsic.tangent_error"][signals["controller.hsic.stage"] == Stage.TANGENT]
     judged = None if name == "hsic-shuffle" else TANGENT
     return [
-        Row(name, "outcome", "", "parked", driven.summary.outcome, 0.0),
+        Row(name, "outcome, wherever along the slot", "", "parked", driven.in_line(), 0.0),
+        Row(name, "outcome by our limits, along the slot too", "", None, driven.summary.outcome),
         Row(name, "heading at the end", "deg", 0.0, math.degrees(final.heading_error), HEADING),
         Row(name, "lateral error at the end", "m", 0.0, final.lateral_error, LATERAL),
         Row(name, "largest deviation from the common tangent", "m", 0.0, float(np.abs(tangent).max()), judged),

@@ -6,8 +6,8 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from orchestrator.cosim.recording import Recording
-from orchestrator.scenario.scenario import Scenario
-from orchestrator.verdict.summary import Summary
+from orchestrator.scenario.scenario import Outcome, Scenario
+from orchestrator.verdict.summary import Summary, summarize
 
 
 class Driven(NamedTuple):
@@ -16,6 +16,16 @@ class Driven(NamedTuple):
     scenario: Scenario
     recording: Recording
     summary: Summary
+
+    def in_line(self) -> Outcome:
+        """Return the outcome wherever along the slot the car stands: what the papers call parked."""
+        return summarize(self.recording, in_line(self.scenario), 0.0).outcome
+
+
+def in_line(scenario: Scenario) -> Scenario:
+    """Return a scenario without our limit along the slot, of which the papers say nothing."""
+    limits = [item for item in scenario.limits if item.signal != "final.longitudinal_error"]
+    return scenario.model_copy(update={"limits": limits})
 
 
 PRINTED = "printed number"

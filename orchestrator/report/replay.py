@@ -1,5 +1,7 @@
 """The replay page of one run."""
 
+import math
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -14,7 +16,7 @@ from orchestrator.text.quantities import DEGREE
 from orchestrator.text.readable import changes_text, readable
 from orchestrator.verdict.judge import Check
 from orchestrator.verdict.limit_text import limit_text
-from orchestrator.verdict.summary import Summary
+from orchestrator.verdict.summary import Final, Summary
 
 MOST_ROWS = (2400, 1200, 600)
 LARGEST_PAGE = 1_000_000
@@ -22,7 +24,7 @@ KEYS = (
     "Keys: space plays, arrows step 0.1 s (1 s with shift), Home, End, + and - change speed, F fits, C follows. "
     "Click a plot to go there, drag to zoom, double-click to reset."
 )
-KINDS = {"parked": "good", "not_parked": "warn", "failed": "bad", "aborted": "bad"}
+KINDS = {"parked": "good", "finished": "good", "not_parked": "warn", "not_finished": "warn", "failed": "bad"}
 
 
 def write_replay(path: Path, recording: Recording, summary: Summary, words: list[Line]) -> None:
@@ -66,22 +68,30 @@ def _page(recording: Recording, summary: Summary, words: list[Line], most: int) 
 
 def verdict(summary: Summary) -> dict[str, str]:
     """Return the outcome in words and its colour."""
-    return {"text": summary.outcome.replace("_", " "), "kind": KINDS[summary.outcome]}
+    return {"text": summary.outcome.replace("_", " "), "kind": KINDS.get(summary.outcome, "bad")}
 
 
 def facts(summary: Summary) -> list[list[str]]:
-    """Return the few numbers that stand above everything else; why, if the car is not parked."""
-    final = summary.final
-    why = [["Why", summary.reason.replace("_", " ")]] if summary.outcome != "parked" else []
+    """Return the few numbers that stand above everything else; why, if the task is not done."""
+    why = [["Why", summary.reason.replace("_", " ")]] if not summary.is_done else []
     return [
         *why,
+        *(["Note", note] for note in summary.notes),
         ["Duration", f"{summary.duration:.2f} s"],
         ["Manoeuvres", "not counted" if summary.shifts is None else str(summary.shifts)],
         ["Fastest", f"{summary.max_speed * 3.6:.1f} km/h"],
-        ["Lateral", length(final.lateral_error)],
-        ["Longitudinal", length(final.longitudinal_error)],
-        ["Heading", f"{final.heading_error / DEGREE:+.2f}\u00b0"],
+        *_standing(summary.final),
     ]
+
+
+def _standing(final: Final) -> Iterator[list[str]]:
+    """Yield how the car stands, as far as the scenario says where it should."""
+    if math.isfinite(final.lateral_error):
+        yield ["Lateral", length(final.lateral_error)]
+        yield ["Longitudinal", length(final.longitudinal_error)]
+        yield ["Heading", f"{final.heading_error / DEGREE:+.2f}\u00b0"]
+    if math.isfinite(final.slot_margin):
+        yield ["Inside the slot by", length(final.slot_margin)]
 
 
 def length(value: float) -> str:

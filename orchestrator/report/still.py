@@ -8,9 +8,8 @@ import numpy as np
 
 from orchestrator.cosim.recording import Recording
 from orchestrator.cosim.slave import Array
-from orchestrator.scenario.scenario import Slot
-from orchestrator.verdict.frame import pose_of
-from orchestrator.verdict.geometry import Box, Car, boxes, kerbs, slot_box
+from orchestrator.verdict.geometry import Box, Car, boxes, described, kerbs, slot_box
+from orchestrator.verdict.logged import logged
 
 Point = tuple[float, float]
 MOUNT = re.compile(r"(\w+)\.mounts\[(\d+)\]\.x")
@@ -25,18 +24,17 @@ def origin_of(recording: Recording) -> Point:
 
 def still_of(recording: Recording, origin: Point) -> dict[str, Any]:
     """Return the drawing of a run's surroundings for ``template/scene.js``, positions less ``origin`` [m]."""
-    vehicle, controller = recording.parameters_of("vehicle"), recording.parameters_of("controller")
-    car = Car.of(vehicle)
-    slot = recording.info.get("scenario", {}).get("slot")
-    target = pose_of(controller, "target")
+    scenario, vehicle = logged(recording).scenario, recording.parameters_of("vehicle")
+    slot, target, around = scenario.slot, scenario.target, described(scenario, vehicle)
+    car = Car.of(around)
     return {
         "origin": list(origin),
         "turn": _first(recording, "vehicle.pose.heading"),
         "car": {"front": car.front, "rear": car.rear, "half": car.half_width, "wheelbase": car.wheelbase},
-        "slot": _less(slot_box(Slot(**slot)).outline()[:4], origin) if slot else None,
-        "target": [target[0] - origin[0], target[1] - origin[1], target[2]] if target else None,
-        "boxes": [_box(box, origin) for box in boxes(vehicle)],
-        "kerbs": [_less(np.array([[line.x1, line.y1], [line.x2, line.y2]]), origin) for line in kerbs(vehicle)],
+        "slot": _less(slot_box(slot).outline()[:4], origin) if slot else None,
+        "target": [target.x - origin[0], target.y - origin[1], target.heading] if target else None,
+        "boxes": [_box(box, origin) for box in boxes(around)],
+        "kerbs": [_less(np.array([[line.x1, line.y1], [line.x2, line.y2]]), origin) for line in kerbs(around)],
         "sensors": sensors(vehicle, recording.signals),
     }
 

@@ -11,13 +11,14 @@ from modelkit.variables import Variable, variables
 from orchestrator.scenario.flat_names import flatten_section, merge_flat
 from orchestrator.scenario.models import MODELS
 from orchestrator.scenario.requirements import read_requirements
-from orchestrator.scenario.scenario import Scenario
+from orchestrator.scenario.scenario import Scenario, Target
 from orchestrator.text.errors import BadInput, suggestion
 from orchestrator.text.quantities import scalar
 from orchestrator.text.yaml_file import explain, read_mapping
 
 ROOM = Path(__file__).parent.parent
-FIELDS = [*(name for name in Scenario.model_fields if name not in ("file", "changed")), "target"]
+NOT_WRITTEN = ("file", "changed", "left_out")
+FIELDS = [*(name for name in Scenario.model_fields if name not in NOT_WRITTEN), "scene"]
 INHERITED_NOT = ("name", "title", "description", "base")
 
 
@@ -56,7 +57,7 @@ def load_scenario(name: str, sets: Iterable[str] = (), more: More | None = None)
     merged: dict[str, Any] = {}
     for content, file in layers:
         _check_keys(content, file)
-        merged = _merge(merged, {key: value for key, value in content.items() if key not in (*MODELS, "target")})
+        merged = _merge(merged, {key: _named(key, content[key]) for key in content if key not in (*MODELS, "scene")})
     for key in INHERITED_NOT:
         if key not in layers[-2][0] and key not in layers[-1][0]:
             merged.pop(key, None)
@@ -67,9 +68,26 @@ def load_scenario(name: str, sets: Iterable[str] = (), more: More | None = None)
     for owner in MODELS:
         merged[owner] = _parameters(owner, [*car, *layers], seed, (more or {}).get(owner, ()))
     try:
-        return Scenario(**merged, file=str(path), changed=dict(text.split("=", 1) for text in sets))
+        scenario = Scenario(**merged, file=str(path), changed=dict(text.split("=", 1) for text in sets))
     except ValidationError as error:
         raise explain(error, path, FIELDS) from None
+    return scenario.model_copy(update={"controller": _told(scenario)})
+
+
+def _told(scenario: Scenario) -> dict[str, float | int | bool]:
+    """Return the controller's parameters with the target it is told: the scenario's, unless they say another."""
+    own = scenario.controller
+    if scenario.target is None:
+        if any(name.startswith("target.") for name in own):
+            text = "the scenario has no target; write target: {x: .., y: .., heading: ..}, which the controller is told"
+            raise BadInput(
+                f"{text}; controller.target is for telling it something else",
+                file=scenario.file,
+                key="controller.target",
+            )
+        return own
+    true = {f"target.{name}": float(value) for name, value in scenario.target.model_dump().items()}
+    return {**own, **{name: value for name, value in true.items() if name not in own}}
 
 
 def _layers(path: Path, seen: tuple[Path, ...]) -> list[Layer]:
@@ -103,8 +121,8 @@ def _parameters(owner: str, layers: list[Layer], seed: object, more: Sequence[Va
         section = content.get(owner) or {}
         if not isinstance(section, Mapping):
             raise BadInput(f"{section!r}: expected a mapping of parameters", file=file, key=owner)
-        if owner == "controller" and content.get("target") is not None:
-            section = {**section, "target": content["target"]}
+        if owner == "vehicle" and content.get("scene") is not None:
+            section = {"scene": content["scene"], **section}
         flat = flatten_section(section, names, file=file, key=owner)
         given = merge_flat(given, {name: _Given(value, file) for name, value in flat.items()})
     result: dict[str, Any] = {
@@ -148,7 +166,7 @@ def _set_layer(sets: Iterable[str]) -> dict[str, Any]:
         except yaml.YAMLError:
             parsed = value
         owner, dot, name = key.partition(".")
-        if dot and owner in (*MODELS, "target", "slot", "every"):
+        if dot and owner in (*MODELS, "target", "slot", "scene", "every"):
             layer.setdefault(owner, {})[name] = parsed
         else:
             layer[key] = parsed
@@ -164,6 +182,12 @@ def _check_keys(content: Mapping[str, Any], file: object) -> None:
 
 def _owners_of(key: str) -> list[str]:
     return [owner for owner, model in MODELS.items() if key in {item.name for item in variables(model.params)}]
+
+
+def _named(key: str, value: object) -> object:
+    """Return a target written as a list of x, y, heading as a mapping; anything else as it is."""
+    is_list = key == "target" and isinstance(value, list) and len(value) <= len(Target.model_fields)
+    return dict(zip(Target.model_fields, value, strict=False)) if is_list and isinstance(value, list) else value
 
 
 def _merge(below: dict[str, Any], above: Mapping[str, Any]) -> dict[str, Any]:

@@ -4,6 +4,7 @@ The limits of a scenario, the shipped sets in ``orchestrator/limits`` and the fi
 are all lists of these.
 """
 
+from functools import cache
 from pathlib import Path
 from typing import Any, Literal, get_args
 
@@ -15,6 +16,10 @@ from orchestrator.text.yaml_file import explain, read_yaml
 
 Condition = Literal["max", "min", "max_abs", "equals"]
 CONDITIONS: tuple[Condition, ...] = get_args(Condition)
+Where = Literal["target", "slot", "kerb"]
+"""What a scenario may have; a kerb counts where it bounds the slot."""
+LIMITS = Path(__file__).parent.parent / "limits"
+"""Where the shipped sets are."""
 
 
 class Window(BaseModel):
@@ -59,7 +64,7 @@ class Requirement(BaseModel):
     id: str
     signal: str
     """``vehicle.speed``: judged at every instant of the window; ``final.lateral_error``, ``shifts``,
-    ``max_speed``, ``duration``: one number of the summary."""
+    ``duration``: one number of the summary."""
     max: float | None = None
     min: float | None = None
     max_abs: float | None = None
@@ -67,10 +72,12 @@ class Requirement(BaseModel):
     unit: str | None = None
     """SI unit of the limit; taken from the limit's text if that has one."""
     window: Window | None = None
+    where: Where | None = None
+    """Asked only of a scenario that has this."""
     source: str
     """Who asks for it."""
     required: bool = True
-    """A run counts as parked only if every required one is met."""
+    """A run counts as parked, or finished, only if every required one is met."""
 
     @model_validator(mode="before")
     @classmethod
@@ -96,6 +103,12 @@ class Requirement(BaseModel):
         """Return the limit [SI unit], or the name of a state."""
         value: float | str = getattr(self, self.condition)
         return value
+
+
+@cache
+def shipped_requirements(name: str) -> tuple[Requirement, ...]:
+    """Return the shipped set of requirements of this name."""
+    return tuple(read_requirements(LIMITS / f"{name}.yaml"))
 
 
 def read_requirements(path: Path) -> list[Requirement]:

@@ -1,40 +1,48 @@
-"""A scenario: what is parked where, by what, for how long, with which faults, judged by which limits."""
+"""A scenario: what is true (target, slot, scene), what drives, what ends a run, and what it is judged by."""
 
-from typing import Literal
+from typing import Annotated, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, field_validator, model_validator
+from pydantic import BaseModel, ConfigDict, Field, model_validator
 
+from orchestrator.scenario.end_condition import EndCondition
 from orchestrator.scenario.fault import Fault
-from orchestrator.scenario.requirements import Requirement
+from orchestrator.scenario.requirements import Requirement, shipped_requirements
 from orchestrator.text.errors import BadInput
-from orchestrator.text.quantities import Seconds, number
+from orchestrator.text.quantities import NANOSECONDS, Metres, Radians, Seconds
 
-Outcome = Literal["parked", "not_parked", "failed", "aborted"]
-NANOSECONDS = 1_000_000_000
+Outcome = Literal["parked", "not_parked", "finished", "not_finished", "failed", "aborted"]
+Task = Literal["park", "drive"]
+SUCCESS: dict[Task, Outcome] = {"park": "parked", "drive": "finished"}
+MISSED: dict[Task, Outcome] = {"park": "not_parked", "drive": "not_finished"}
+DONE: frozenset[Outcome] = frozenset(SUCCESS.values())
+"""The outcomes of a run that has done its task."""
 
 
 class _Strict(BaseModel):
     model_config = ConfigDict(extra="forbid")
 
 
+class Target(_Strict):
+    """Where the car shall stand: the midpoint of its rear axle [m], and its heading [rad]."""
+
+    x: Metres
+    y: Metres
+    heading: Radians = 0.0
+
+    @property
+    def pose(self) -> tuple[float, float, float]:
+        """Return (x [m], y [m], heading [rad])."""
+        return self.x, self.y, self.heading
+
+
 class Slot(_Strict):
-    """The slot as a rectangle, for pictures only; x and y are its middle."""
+    """The slot as a rectangle; x and y are its middle, its length lies along its heading."""
 
-    x: float
-    y: float
-    heading: float = 0.0
-    length: float = Field(gt=0.0)
-    width: float = Field(gt=0.0)
-
-    @field_validator("x", "y", "length", "width", mode="before")
-    @classmethod
-    def _metres(cls, value: object) -> float:
-        return number(value, "m")
-
-    @field_validator("heading", mode="before")
-    @classmethod
-    def _radians(cls, value: object) -> float:
-        return number(value, "rad")
+    x: Metres
+    y: Metres
+    heading: Radians = 0.0
+    length: Annotated[Metres, Field(gt=0.0)]
+    width: Annotated[Metres, Field(gt=0.0)]
 
 
 class Scenario(_Strict):
@@ -46,6 +54,8 @@ class Scenario(_Strict):
     source: str = ""
     base: str | None = None
     car: str | None = None
+    task: Task = "park"
+    """What the car is there for: `park`, or `drive` to the end of a road."""
     stop_time: Seconds = 60.0
     step: Seconds = 0.01
     """Communication step [s], a whole number of nanoseconds."""
@@ -54,15 +64,27 @@ class Scenario(_Strict):
     seed: int = Field(default=1, ge=0)
     vehicle: dict[str, float | int | bool] = {}
     controller: dict[str, float | int | bool] = {}
+    target: Target | None = None
+    """Where the car shall stand. The controller is told it, unless `controller.target` tells it something else."""
     slot: Slot | None = None
+    """The slot as it is: the car's outline is judged by it. What stands around it is the key `scene`."""
     faults: list[Fault] = []
     limits: list[Requirement] = []
+    ending: EndCondition = EndCondition()
+    """What ends the run before its stop time."""
     expect: Outcome = "parked"
-    """The outcome this scenario is meant to have."""
+    """The outcome this scenario is meant to have; if it says none, that its task is done."""
     file: str = ""
     """Where it came from."""
+    left_out: list[str] = []
+    """Parameters that somebody else's FMU does not have, so that it is not given them; they stay true all the same."""
     changed: dict[str, str] = {}
     """What ``--set`` changed for one run, as it was written."""
+
+    def given(self, slave: str) -> dict[str, float | int | bool]:
+        """Return the parameters that a slave is given."""
+        own: dict[str, float | int | bool] = getattr(self, slave)
+        return {name: value for name, value in own.items() if f"{slave}.{name}" not in self.left_out}
 
     @property
     def step_ns(self) -> int:
@@ -73,6 +95,11 @@ class Scenario(_Strict):
     def stop_ns(self) -> int:
         """Stop time [ns], a whole number of steps."""
         return round(self.stop_time * NANOSECONDS) // self.step_ns * self.step_ns
+
+    @property
+    def success(self) -> Outcome:
+        """Return the outcome of a run that has done its task."""
+        return SUCCESS[self.task]
 
     @model_validator(mode="after")
     def _times(self) -> "Scenario":
@@ -86,4 +113,23 @@ class Scenario(_Strict):
                 raise BadInput("unknown; known are vehicle, controller", key=f"every.{name}")
             if every < 1:
                 raise BadInput(f"{every} is not a whole number of at least 1", key=f"every.{name}")
+        return self
+
+    @model_validator(mode="after")
+    def _parked(self) -> "Scenario":
+        """Add what counts as parked everywhere, unless the limits say it of the same number themselves."""
+        named = {limit.signal for limit in self.limits}
+        missing = [item for item in shipped_requirements("parked") if item.signal not in named]
+        if missing:
+            self.limits = [*self.limits, *missing]
+        return self
+
+    @model_validator(mode="after")
+    def _outcome(self) -> "Scenario":
+        if "expect" not in self.model_fields_set:
+            self.expect = SUCCESS[self.task]
+        other: Task = "drive" if self.task == "park" else "park"
+        if self.expect in (SUCCESS[other], MISSED[other]):
+            known = f"{SUCCESS[self.task]}, {MISSED[self.task]}, failed or aborted"
+            raise BadInput(f"{self.expect!r} is no outcome of task {self.task}, expected {known}", key="expect")
         return self

@@ -51,15 +51,13 @@ def parameters_of(path: Path, slave: str) -> list[Variable]:
 
 
 def fitting(scenario: Scenario, own: Mapping[str, list[Variable]]) -> tuple[Scenario, list[str]]:
-    """Return the scenario without the parameters that a foreign FMU does not have, and their names."""
+    """Return the scenario that leaves out the parameters that a foreign FMU does not have, and their names."""
     ignored: list[str] = []
-    update: dict[str, object] = {}
     for slave, items in own.items():
         known = {item.name for item in items}
         given: dict[str, float | int | bool] = getattr(scenario, slave)
-        update[slave] = {name: value for name, value in given.items() if name in known}
         ignored += [f"{slave}.{name}" for name in given if name not in known]
-    return scenario.model_copy(update=update), ignored
+    return scenario.model_copy(update={"left_out": ignored}), ignored
 
 
 def sha256_of(path: Path) -> str:

@@ -7,7 +7,7 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from orchestrator.cosim.endings import Standstill
+from orchestrator.cosim.endings import standstill
 from orchestrator.cosim.faults import manipulators
 from orchestrator.cosim.master import End, Interrupt, Master, Observer
 from orchestrator.cosim.model_slave import ModelSlave
@@ -62,7 +62,7 @@ def make_slaves(scenario: Scenario, files: Mapping[str, Path] | None, words: Wor
     """Return the slaves of a scenario: FMUs from ``files``, or the models in process."""
     slaves: list[Slave] = []
     for name, model in MODELS.items():
-        parameters = getattr(scenario, name)
+        parameters = scenario.given(name)
         if files is None:
             slaves.append(ModelSlave(name, model, parameters))
         else:
@@ -122,7 +122,7 @@ def run_slaves(
     if log is not None:
         from orchestrator.log.mcap_log import McapLog
 
-        file = McapLog(log, slaves, scenario.slot, info)
+        file = McapLog(log, slaves, scenario, info)
         words.listeners.append(file.say)
         master.observers += [watch, file, *observers]
     else:
@@ -153,9 +153,9 @@ def _master(slaves: list[Slave], scenario: Scenario, kind: str) -> Master:
         make = CompiledMaster
     master = make(slaves, scenario.step_ns, scenario.stop_ns, scenario.every)
     master.manipulators += manipulators(scenario.faults, slaves, scenario.seed, scenario.file)
-    speaks = {f"{slave.name}.{name}": slave for slave in slaves for name in slave.outputs.names}
-    if {"vehicle.speed", "controller.phase"} <= speaks.keys():
-        master.endings.append(Standstill(speaks["vehicle.speed"], speaks["controller.phase"]))
+    ending = standstill(scenario.ending, slaves)
+    if ending is not None:
+        master.endings.append(ending)
     return master
 
 

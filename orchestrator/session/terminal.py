@@ -1,5 +1,8 @@
 """What is printed of a run: outcome, numbers, checks, differences, as tables."""
 
+import math
+from collections.abc import Iterator
+
 from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
@@ -10,9 +13,10 @@ from orchestrator.text.readable import changes_text, precise, readable, shifts_t
 from orchestrator.verdict.compare import Difference
 from orchestrator.verdict.judge import Check
 from orchestrator.verdict.limit_text import limit_text
-from orchestrator.verdict.summary import Summary
+from orchestrator.verdict.summary import Final, Summary
 
-COLOURS = {"parked": "bold green", "not_parked": "bold yellow", "failed": "bold red", "aborted": "bold red"}
+GOOD, SHORT, BAD = "bold green", "bold yellow", "bold red"
+COLOURS = {"parked": GOOD, "finished": GOOD, "not_parked": SHORT, "not_finished": SHORT, "failed": BAD, "aborted": BAD}
 
 
 def print_summary(summary: Summary, title: str, expected: str) -> None:
@@ -24,15 +28,27 @@ def print_summary(summary: Summary, title: str, expected: str) -> None:
     if changes_text(summary.changed):
         out.print(f"changed: {escape(changes_text(summary.changed))}")
     out.print(f"[{style}]{summary.outcome}[/]: {escape(summary.reason)}{wanted}")
-    final = summary.final
     out.print(
         f"{summary.duration:.2f} s, {shifts_text(summary.shifts)}, up to {summary.max_speed:.2f} m/s; at the end "
-        f"{final.lateral_error * 100:+.1f} cm lateral, {final.longitudinal_error * 100:+.1f} cm longitudinal, "
-        f"{final.heading_error / DEGREE:+.2f} deg, wheel {final.steering_wheel_angle / DEGREE:+.1f} deg"
+        + ", ".join(_at_the_end(summary.final))
     )
+    for note in summary.notes:
+        out.print(f"note: {note}", markup=False)
     if summary.checks:
         out.print(checks_table(summary.checks, out))
     out.print(f"{summary.wall_time:.2f} s of computing, {summary.real_time_factor:.0f} times real time")
+
+
+def _at_the_end(final: Final) -> Iterator[str]:
+    """Yield how the car stands, as far as the scenario says where it should."""
+    if math.isfinite(final.lateral_error):
+        yield f"{final.lateral_error * 100:+.1f} cm lateral"
+        yield f"{final.longitudinal_error * 100:+.1f} cm longitudinal"
+        yield f"{final.heading_error / DEGREE:+.2f} deg"
+    if math.isfinite(final.slot_margin):
+        side = "inside" if final.slot_margin >= 0.0 else "out of"
+        yield f"{abs(final.slot_margin) * 100:.1f} cm {side} the slot"
+    yield f"wheel {final.steering_wheel_angle / DEGREE:+.1f} deg"
 
 
 def checks_table(checks: list[Check], out: Console) -> Table:

@@ -4,17 +4,16 @@ import html
 import math
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from orchestrator.cosim.recording import Recording
 from orchestrator.cosim.slave import Array
 from orchestrator.report.page import still_page
+from orchestrator.scenario.scenario import Scenario
 from orchestrator.suite.suite import Tested
 from orchestrator.text.readable import changes_text, shifts_text
-from orchestrator.verdict.frame import pose_of
-from orchestrator.verdict.geometry import Car, place, slot_box
+from orchestrator.verdict.geometry import Car, described, place, slot_box
 
 BODY = """<header class="top"><div class="headline"><h1>{title}</h1></div>
 <span class="verdict {kind}">{verdict}</span></header>
@@ -60,27 +59,24 @@ def _card(item: Tested) -> str:
         name=html.escape(name),
         title=html.escape(item.scenario.title + (f" - with {changes}" if changes else "")),
         outcome=html.escape(outcome),
-        picture=picture(item.recording) if item.recording is not None else "",
+        picture=picture(item.recording, item.scenario) if item.recording is not None else "",
         missed="".join(f'<p class="missed">{html.escape(text)}</p>' for text in missed),
     )
 
 
-def picture(recording: Recording) -> str:
+def picture(recording: Recording, scenario: Scenario) -> str:
     """Return a small SVG: slot, driven path, car at start and end, turned so that the target points right."""
     x, y, heading = (recording.signals.get(f"vehicle.pose.{axis}", np.zeros(1)) for axis in ("x", "y", "heading"))
     good = np.isfinite(x) & np.isfinite(y) & np.isfinite(heading)
     if not good.any():
         return ""
     x, y, heading = x[good], y[good], heading[good]
-    target = pose_of(recording.parameters_of("controller"), "target") or (0.0, 0.0, 0.0)
-    car = Car.of(recording.parameters_of("vehicle")).outline()
+    target = scenario.target.pose if scenario.target is not None else (0.0, 0.0, 0.0)
+    car = Car.of(described(scenario, recording.parameters_of("vehicle"))).outline()
     rows = np.unique(np.linspace(0, len(x) - 1, 160).astype(int))
     shapes: list[tuple[str, Array]] = []
-    slot: Any = recording.info.get("scenario", {}).get("slot")
-    if slot:
-        from orchestrator.scenario.scenario import Slot
-
-        shapes.append(("slot", slot_box(Slot(**slot)).outline()))
+    if scenario.slot is not None:
+        shapes.append(("slot", slot_box(scenario.slot).outline()))
     shapes += [("start", place(car, x[0], y[0], heading[0])), ("way", np.column_stack([x, y])[rows])]
     shapes.append(("end", place(car, x[-1], y[-1], heading[-1])))
     return _svg([(kind, place(points - points_origin(target), 0.0, 0.0, -target[2])) for kind, points in shapes])

@@ -20,7 +20,7 @@ from orchestrator.suite.junit import Case, Suite, cases_of, told_apart
 from orchestrator.text.errors import BadInput
 from orchestrator.text.readable import changes_text
 from orchestrator.verdict.judge import Check, judge
-from orchestrator.verdict.numbers import numbers_of
+from orchestrator.verdict.numbers import facts_of
 from orchestrator.verdict.summary import Summary, summarize
 
 UNNAMEABLE = re.compile(r"[^A-Za-z0-9._-]+")
@@ -118,7 +118,7 @@ def _judged(scenario: Scenario, ignored: list[str], bench: Bench, folder: Path) 
     )
     clear(folder)
     summary = summarize(ran.recording, scenario, ran.wall_time)
-    checks = _extra_checks(bench, ran.recording)
+    checks = _extra_checks(bench, ran.recording, scenario)
     write_summary(folder, summary)
     write_pages(folder, ran.recording, summary.model_copy(update={"checks": [*summary.checks, *checks]}))
     broken = ran.end.reason if ran.end.reason.startswith("error") and scenario.expect != "aborted" else ""
@@ -138,14 +138,14 @@ def tested_by(tested: list[Tested], command: str) -> dict[str, str]:
     return {**about, "warning": "; ".join(remarks)} if remarks else about
 
 
-def _extra_checks(bench: Bench, recording: Recording) -> list[Check]:
-    numbers = numbers_of(recording)
-    return [check for file, items in bench.requirements for check in judge(items, recording, numbers, file)]
+def _extra_checks(bench: Bench, recording: Recording, scenario: Scenario) -> list[Check]:
+    facts = facts_of(recording, scenario)
+    return [check for file, items in bench.requirements for check in judge(items, recording, facts, file)]
 
 
 def _cases(scenario: Scenario, summary: Summary, extra: list[Check]) -> list[Case]:
-    """Return the outcome, the limits (where a parked car is expected), and all further requirements as cases."""
+    """Return the outcome, the limits (where the task shall be done), and all further requirements as cases."""
     reached = f"{summary.outcome}: {summary.reason}; expected {scenario.expect}"
     outcome = Case("outcome", summary.outcome == scenario.expect, reached)
-    own = cases_of(summary.checks) if scenario.expect == "parked" else []
+    own = cases_of(summary.checks) if scenario.expect == scenario.success else []
     return told_apart([outcome, *own, *cases_of(extra)])

@@ -2,15 +2,16 @@
 
 import threading
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
 
 from fmus.compiled_batch import Ending, Rows, compiled_rows
 from fmus.compiled_batch import Kept as KeptSignal
-from modelkit.variables import variables
-from orchestrator.cosim.endings import STANDSTILL_SPEED, STANDSTILL_TIME_NS, final_phases
 from orchestrator.cosim.slave import Array
+from orchestrator.scenario.end_condition import SPEED, EndCondition
 from orchestrator.scenario.models import MODELS
+from orchestrator.scenario.scenario import Scenario
 from orchestrator.sweep.job import Chunk, Job, arrays
 from orchestrator.sweep.rows import FIRST_MEASURE
 from orchestrator.verdict.measures import Measure
@@ -20,23 +21,19 @@ _compiling = threading.Lock()
 
 def run_batch(job: Job, chunk: Chunk) -> Array:
     """Return one row of measures per run of ``chunk``. Scenarios with faults cannot be run so."""
-    rows = compiled(tuple(job.measures))
+    rows = compiled(tuple(job.measures), Scenario(**job.scenario).ending)
     parameters, times = arrays(job, chunk)
     out = np.empty((len(parameters), FIRST_MEASURE + len(job.measures)))
     rows(parameters, times, out)
     return out
 
 
-def compiled(measures: tuple[Measure, ...]) -> Rows:
+def compiled(measures: tuple[Measure, ...], ending: EndCondition) -> Rows:
     """Return the compiled runs, made once per process."""
     with _compiling:
-        return _compiled(measures)
+        return _compiled(measures, ending.signal, ending.final(), SPEED, ending.still, ending.standstill_ns)
 
 
 @lru_cache
-def _compiled(measures: tuple[Measure, ...]) -> Rows:
-    phase = next(item for item in variables(MODELS["controller"].outputs) if item.name == "phase")
-    ending = Ending(
-        "controller.phase", tuple(final_phases(phase)), "vehicle.speed", STANDSTILL_SPEED, STANDSTILL_TIME_NS
-    )
-    return compiled_rows(MODELS, ending, [KeptSignal(item.how, item.signal) for item in measures])
+def _compiled(measures: tuple[Measure, ...], *ending: Any) -> Rows:
+    return compiled_rows(MODELS, Ending(*ending), [KeptSignal(item.how, item.signal) for item in measures])

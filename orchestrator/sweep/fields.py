@@ -19,6 +19,19 @@ SCENARIO_FIELDS: dict[str, Variable] = {
         for name in MODELS
     },
 }
+TRUE_FIELDS: dict[str, Variable] = {
+    key: Variable(key, float, Signal(unit, text), 0.0)
+    for key, unit, text in (
+        ("target.x", "m", "where the car shall stand: x of its rear-axle midpoint"),
+        ("target.y", "m", "where the car shall stand: y of its rear-axle midpoint"),
+        ("target.heading", "rad", "where the car shall stand: its heading"),
+        ("slot.x", "m", "x of the slot's middle"),
+        ("slot.y", "m", "y of the slot's middle"),
+        ("slot.heading", "rad", "direction of the slot's length"),
+        ("slot.length", "m", "the slot's length"),
+        ("slot.width", "m", "the slot's width"),
+    )
+}
 FAULT_FIELDS = {"start": TIME, "stop": TIME, "delay": TIME, "probability": Signal("1", "", 0.0, 1.0)}
 SIGNAL_FIELDS = ("value", "sigma")
 FAULT_KEY = re.compile(r"^faults\[(\d+)\]\.(\w+)$")
@@ -29,7 +42,7 @@ class Field(NamedTuple):
 
     key: str
     owner: str
-    """A model's name, ``scenario`` or ``faults``."""
+    """A model's name, ``scenario``, ``target``, ``slot`` or ``faults``."""
     name: str
     place: int
     """Place among the flat parameters of the model, or number of the fault from 0."""
@@ -39,8 +52,10 @@ class Field(NamedTuple):
 def find_field(key: str, scenario: Scenario, file: object = None) -> Field:
     """Return the field called ``key``. Raises ``BadInput`` with close names if there is none."""
     owner, _, name = key.partition(".")
-    if owner == "target":
-        owner, name = "controller", key
+    if owner == "scene":
+        owner, name = "vehicle", key
+    if key in TRUE_FIELDS:
+        return _true_field(key, owner, name, scenario, file)
     if owner in MODELS:
         return _parameter(key, owner, name, file)
     if key in SCENARIO_FIELDS:
@@ -50,6 +65,7 @@ def find_field(key: str, scenario: Scenario, file: object = None) -> Field:
         return _fault(key, int(fault[1]), fault[2], scenario, file)
     known = [
         *SCENARIO_FIELDS,
+        *TRUE_FIELDS,
         *(f"{model}.{item.name}" for model in MODELS for item in variables(MODELS[model].params)),
     ]
     hint = suggestion(key, known) or "; known are vehicle.*, controller.*, " + ", ".join(SCENARIO_FIELDS)
@@ -62,6 +78,12 @@ def _parameter(key: str, owner: str, name: str, file: object) -> Field:
         if variable.name == name:
             return Field(f"{owner}.{name}", owner, name, place, variable)
     raise BadInput(f"unknown{suggestion(name, [item.name for item in known], f'{owner}.')}", file=file, key=key)
+
+
+def _true_field(key: str, owner: str, name: str, scenario: Scenario, file: object) -> Field:
+    if getattr(scenario, owner) is None:
+        raise BadInput(f"the scenario has no {owner}", file=file, key=key)
+    return Field(key, owner, name, -1, TRUE_FIELDS[key])
 
 
 def _fault(key: str, number: int, name: str, scenario: Scenario, file: object) -> Field:

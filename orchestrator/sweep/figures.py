@@ -37,19 +37,19 @@ def named(axis: Axis) -> str:
     return axis.name if axis.unit == "1" else f"{axis.name} [{axis.unit}]"
 
 
-def success_map(shown: Map) -> str:
-    """Return the map as SVG; every cell tells its numbers when pointed at."""
+def success_map(shown: Map, word: str) -> str:
+    """Return the map as SVG; every cell tells its numbers when pointed at. ``word``: what a good run is."""
     rows, columns = shown.runs.shape
     width, height = (WIDTH - LEFT - RIGHT) / columns, (HEIGHT - TOP - BOTTOM) / rows
     cells = []
     for row in range(rows):
         for column in range(columns):
-            count, good = int(shown.runs[row, column]), int(shown.parked[row, column])
+            count, good = int(shown.runs[row, column]), int(shown.done[row, column])
             if count:
                 low, high = wilson(good, count)
                 note = (
                     f"{shown.x.labels[column]} {shown.x.unit}, {shown.y.labels[row]} {shown.y.unit}: "
-                    f"{100.0 * good / count:.1f} % of {count} parked (95 %: {100.0 * low:.0f} to {100.0 * high:.0f} %)"
+                    f"{100.0 * good / count:.1f} % of {count} {word} (95 %: {100.0 * low:.0f} to {100.0 * high:.0f} %)"
                 )
                 at = f'x="{LEFT + column * width:.2f}" y="{TOP + (rows - 1 - row) * height:.2f}"'
                 size = f'width="{width + 0.3:.2f}" height="{height + 0.3:.2f}"'
@@ -58,19 +58,19 @@ def success_map(shown: Map) -> str:
     return _svg(cells + _axis_x(shown.x, width) + _axis_y(shown.y, height), f"Success map {shown.title}")
 
 
-def scale_bar() -> str:
+def scale_bar(word: str) -> str:
     """Return the colour scale of the maps as SVG."""
     steps = "".join(
         f'<rect x="{70 + 3 * step}" y="4" width="3.3" height="12" fill="{colour(step / 99)}"/>' for step in range(100)
     )
     return (
         '<svg viewBox="0 0 480 20" style="max-width:480px" role="img" aria-label="Scale">'
-        f'<text x="66" y="14" text-anchor="end">0 % parked</text>{steps}<text x="376" y="14">100 % parked</text></svg>'
+        f'<text x="66" y="14" text-anchor="end">0 % {word}</text>{steps}<text x="376" y="14">100 % {word}</text></svg>'
     )
 
 
-def histogram(values: Array, good: NDArray[np.bool_], name: str, unit: str, bins: int = 40) -> str:
-    """Return a histogram as SVG: parked runs below, the others stacked on them; the end bars hold what lies beyond."""
+def histogram(values: Array, good: NDArray[np.bool_], name: str, unit: str, word: str, bins: int = 40) -> str:
+    """Return a histogram as SVG: good runs below, the others stacked on them; the end bars hold what lies beyond."""
     finite = np.isfinite(values)
     values, good = values[finite], good[finite]
     if not len(values):
@@ -89,7 +89,7 @@ def histogram(values: Array, good: NDArray[np.bool_], name: str, unit: str, bins
     width, full = (WIDTH - LEFT - RIGHT) / len(yes), 200.0 - TOP - BOTTOM
     bars = []
     for place, (a, b) in enumerate(zip(yes.tolist(), no.tolist(), strict=True)):
-        note = html.escape(f"{edges[place]:.4g} to {edges[place + 1]:.4g} {unit}: {a} parked, {b} not")
+        note = html.escape(f"{edges[place]:.4g} to {edges[place + 1]:.4g} {unit}: {a} {word}, {b} not")
         x = LEFT + place * width
         for kind, count, below in (("yes", a, 0), ("no", b, a)):
             if count:

@@ -12,13 +12,17 @@ from modelkit.variables import flatten, variables, with_values
 from orchestrator.cosim.slave import Array
 from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.scenario.models import MODELS
-from orchestrator.scenario.scenario import NANOSECONDS, Scenario
+from orchestrator.scenario.scenario import Scenario
 from orchestrator.sweep.fields import Field
 from orchestrator.sweep.rows import measures_for
 from orchestrator.sweep.study import Study
+from orchestrator.text.quantities import NANOSECONDS
 from orchestrator.verdict.measures import Measure
+from orchestrator.verdict.truth import TRUE_KEYS, Truth, joined, truth_of
 
 Times = NDArray[np.int64]
+TRUE_OWNERS = ("target", "slot")
+"""Parts of a scenario that are true whatever the models have as parameters."""
 PROBE = 1_000_003
 """A seed that no scenario has, to find out what follows the seed."""
 
@@ -82,11 +86,16 @@ def chunk_scenario(job: Job, chunk: Chunk, number: int) -> Scenario:
     data["faults"] = [dict(fault) for fault in data["faults"]]
     data["seed"] = int(chunk.seeds[number])
     kinds = {owner: [item.kind for item in variables(model.params)] for owner, model in MODELS.items()}
-    for owner, name, place, value in zip(job.owners, job.names, job.places, chunk.values[number].tolist(), strict=True):
+    values = chunk.values[number].tolist()
+    for name, value in _told_targets(job, values):
+        data["controller"][name] = value
+    for owner, name, place, value in zip(job.owners, job.names, job.places, values, strict=True):
         if owner in MODELS:
             data[owner][name] = kinds[owner][place](value)
         elif owner == "faults":
             data["faults"][place][name] = value
+        elif owner in TRUE_OWNERS:
+            data[owner] = {**data[owner], name: value}
         elif name.startswith("every."):
             data["every"][name.removeprefix("every.")] = int(value)
         else:
@@ -94,6 +103,37 @@ def chunk_scenario(job: Job, chunk: Chunk, number: int) -> Scenario:
     for owner, name, _ in job.seeded:
         data[owner][name] = data["seed"]
     return Scenario(**data)
+
+
+def _told_targets(job: Job, values: list[Any]) -> list[tuple[str, Any]]:
+    """Return (parameter, value) of the controller that follow a target which differs from run to run.
+
+    A controller that was told another target than the scenario's keeps to that.
+    """
+    told, true = job.scenario["controller"], job.scenario["target"]
+    return [
+        (f"target.{name}", value)
+        for owner, name, value in zip(job.owners, job.names, values, strict=True)
+        if owner == "target" and told.get(f"target.{name}") == true[name]
+    ]
+
+
+def truths(job: Job, chunk: Chunk) -> Truth:
+    """Return what is true in each run of ``chunk``."""
+    scenario = Scenario(**job.scenario)
+    vehicle = {item.name: float(item.start) for item in variables(MODELS["vehicle"].params)} | scenario.vehicle
+    same = truth_of(scenario, vehicle)
+    keys = list(zip(job.owners, job.names, strict=True))
+    if not any(f"{owner}.{name}".startswith(TRUE_KEYS) for owner, name in keys):
+        return same.repeated(len(chunk.seeds))
+    found = []
+    for values in chunk.values.tolist():
+        given = list(zip(keys, values, strict=True))
+        own = {owner: {name: value for (other, name), value in given if other == owner} for owner in TRUE_OWNERS}
+        moved = {owner: getattr(scenario, owner).model_copy(update=new) for owner, new in own.items() if new}
+        car = {name: value for (owner, name), value in given if owner == "vehicle"}
+        found.append(truth_of(scenario.model_copy(update=moved), {**vehicle, **car}))
+    return joined(found)
 
 
 def arrays(job: Job, chunk: Chunk) -> tuple[Array, Times]:
@@ -105,6 +145,9 @@ def arrays(job: Job, chunk: Chunk) -> tuple[Array, Times]:
     parameters = np.tile(np.array([float(item) for part in base for item in part]), (count, 1))
     seeds, steps, stops = chunk.seeds.copy(), np.full(count, scenario.step), np.full(count, scenario.stop_time)
     every = {owner: np.full(count, scenario.every.get(owner, 1), dtype=np.int64) for owner in MODELS}
+    controls = {item.name: place for place, item in enumerate(variables(MODELS["controller"].params))}
+    for name, values in _told_targets(job, list(chunk.values.T)):
+        parameters[:, starts["controller"] + controls[name]] = values
     for column, (owner, name, place) in enumerate(zip(job.owners, job.names, job.places, strict=True)):
         values = chunk.values[:, column]
         if owner in MODELS:

@@ -8,11 +8,13 @@ import numpy as np
 
 from modelkit.variables import variables, with_values
 from orchestrator.cosim.slave import Array
+from orchestrator.scenario.end_condition import EndCondition
 from orchestrator.scenario.models import MODELS
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.sweep.batch import compiled
 from orchestrator.sweep.rows import FIRST_MEASURE
 from orchestrator.verdict.measures import Measure
+from orchestrator.verdict.truth import Truth, joined, truth_of
 
 
 def parameter_row(scenario: Scenario) -> tuple[Array, dict[str, int], Array]:
@@ -28,11 +30,11 @@ def parameter_row(scenario: Scenario) -> tuple[Array, dict[str, int], Array]:
     return np.array(numbers), places, np.array(times, dtype=np.int64)
 
 
-def timed_rows(parameters: Array, times: Array, kept: Sequence[Measure]) -> Array:
-    """Return for each run its end [s] and the ``kept`` numbers. Compiles the models first if sources changed."""
+def rows_of(parameters: Array, times: Array, kept: Sequence[Measure], ending: EndCondition) -> Array:
+    """Return for each run how it ended, when [ns], and the ``kept`` numbers. Compiles the models first."""
     out = np.empty((len(parameters), FIRST_MEASURE + len(kept)))
     shares = np.array_split(np.arange(len(parameters)), os.cpu_count() or 1)
-    rows = compiled(tuple(kept))
+    rows = compiled(tuple(kept), ending)
 
     def work(share: Array) -> None:
         part = np.empty((len(share), out.shape[1]))
@@ -41,15 +43,22 @@ def timed_rows(parameters: Array, times: Array, kept: Sequence[Measure]) -> Arra
 
     with ThreadPoolExecutor() as pool:
         list(pool.map(work, [share for share in shares if len(share)]))
-    return np.column_stack([out[:, 1] / 1e9, out[:, FIRST_MEASURE:]])
+    return out
 
 
-def timed(scenarios: Iterable[Scenario], kept: Sequence[Measure]) -> Array:
-    """Return for each scenario its end [s] and the ``kept`` numbers."""
+def run_all(scenarios: Sequence[Scenario], kept: Sequence[Measure]) -> Array:
+    """Return for each scenario how it ended, when [ns], and the ``kept`` numbers. All must end in the same way."""
     rows = [parameter_row(scenario) for scenario in scenarios]
-    return timed_rows(np.array([row for row, _, _ in rows]), np.array([times for _, _, times in rows]), kept)
+    parameters, times = np.array([row for row, _, _ in rows]), np.array([times for _, _, times in rows])
+    return rows_of(parameters, times, kept, scenarios[0].ending)
 
 
-def measure(scenarios: Iterable[Scenario], kept: Sequence[Measure]) -> Array:
+def truths_of(scenarios: Iterable[Scenario]) -> Truth:
+    """Return what is true in each scenario."""
+    starts = {item.name: float(item.start) for item in variables(MODELS["vehicle"].params)}
+    return joined([truth_of(scenario, {**starts, **scenario.vehicle}) for scenario in scenarios])
+
+
+def measure(scenarios: Sequence[Scenario], kept: Sequence[Measure]) -> Array:
     """Return one row of ``kept`` numbers per scenario."""
-    return timed(scenarios, kept)[:, 1:]
+    return run_all(scenarios, kept)[:, FIRST_MEASURE:]

@@ -1,6 +1,7 @@
 """The result page of a study: one HTML file without scripts, made from the table alone."""
 
 import html
+import math
 from collections import Counter
 from collections.abc import Callable, Iterable
 from pathlib import Path
@@ -10,10 +11,11 @@ import numpy as np
 import yaml
 
 from orchestrator.report.page import still_page
+from orchestrator.scenario.scenario import DONE, MISSED
 from orchestrator.sweep.figures import histogram, scale_bar, success_map
-from orchestrator.sweep.statistics import for_people, influences, maps, parked, varied, worst
+from orchestrator.sweep.statistics import done, for_people, influences, maps, varied, word, worst
 from orchestrator.sweep.store import Table
-from orchestrator.sweep.verdict import RESULTS
+from orchestrator.sweep.verdict import OUTCOMES, RESULTS
 from orchestrator.text.quantities import DEGREE
 from orchestrator.verdict.confidence import wilson
 
@@ -45,7 +47,7 @@ def write_page(path: Path) -> Path:
 def study_page(table: Table) -> str:
     """Return the page."""
     study = table.about["study"]
-    good = parked(table)
+    good = done(table)
     share = 100.0 * good.mean()
     cards = [_maps(table), _reasons(table), _histograms(table), _influences(table), _worst(table), _about(table)]
     title = study["title"] or study["name"]
@@ -53,7 +55,7 @@ def study_page(table: Table) -> str:
         title=escape(title),
         subtitle=escape(study["description"]),
         kind="good" if share >= 99.0 else "warn" if share >= 50.0 else "bad",
-        verdict=f"{share:.1f} % parked",
+        verdict=f"{share:.1f} % {word(table)}",
         facts=_facts(table, int(good.sum())),
         cards="\n".join(card for card in cards if card),
         foot=escape(f"apa-cosim {table.about['versions'].get('apa-cosim', '')}, {table.path.name}"),
@@ -66,13 +68,9 @@ def _facts(table: Table, good: int) -> str:
     outcomes = Counter(table.column("outcome").tolist())
     facts = {
         "runs": f"{table.count:,}".replace(",", " "),
-        "parked": f"{good:,}".replace(",", " "),
+        word(table): f"{good:,}".replace(",", " "),
         "95 % interval": f"{100 * low:.2f} to {100 * high:.2f} %",
-        **{
-            name.replace("_", " "): f"{outcomes[name]}"
-            for name in ("not_parked", "failed", "aborted")
-            if outcomes[name]
-        },
+        **{name.replace("_", " "): f"{outcomes[name]}" for name in OUTCOMES if outcomes[name] and name not in DONE},
         "median time": f"{float(np.median(table.column('duration'))):.1f} s",
         "scenario": Path(table.about["study"]["scenario"]).stem,
         "seed": str(table.about["study"]["seed"]),
@@ -89,12 +87,12 @@ def _maps(table: Table) -> str:
     if not shown:
         return ""
     figures = "".join(
-        f"<figure><figcaption>{escape(item.title)} {_rate(int(item.parked.sum()), int(item.runs.sum()))}</figcaption>"
-        f"{success_map(item)}</figure>"
+        f"<figure><figcaption>{escape(item.title)} {_rate(int(item.done.sum()), int(item.runs.sum()))}</figcaption>"
+        f"{success_map(item, word(table))}</figure>"
         for item in shown
     )
-    text = "Share of runs that end parked within all required limits. Point at a cell for its numbers."
-    return _card("Success", text, f'<div class="maps">{figures}</div>{scale_bar()}')
+    text = f"Share of runs that end {word(table)} within all required limits. Point at a cell for its numbers."
+    return _card("Success", text, f'<div class="maps">{figures}</div>{scale_bar(word(table))}')
 
 
 def _rate(good: int, count: int) -> str:
@@ -111,7 +109,7 @@ def _reasons(table: Table) -> str:
             escape(reason),
             f"{count}",
             f"{100 * count / table.count:.2f} %",
-            _meter(count / table.count, "good" if outcome == "parked" else "bad"),
+            _meter(count / table.count, "good" if outcome in DONE else "bad"),
         )
         for (outcome, reason), count in counts.most_common(20)
     ]
@@ -119,19 +117,19 @@ def _reasons(table: Table) -> str:
 
 
 def _histograms(table: Table) -> str:
-    good = parked(table)
+    good = done(table)
     figures = []
     for name in HISTOGRAMS:
         if name in table.names():
             factor, unit = for_people(RESULTS[name].unit)
             values = np.asarray(table.column(name), dtype=np.float64) * factor
-            if name == "min_clearance" and float(values.min()) >= NEVER:
+            if not np.isfinite(values).any() or (name == "min_clearance" and float(values.min()) >= NEVER):
                 continue
             caption = f"<figcaption>{escape(name)} <span class='quiet'>[{unit}]</span></figcaption>"
-            figures.append(f"<figure>{caption}{histogram(values, good, name, unit)}</figure>")
+            figures.append(f"<figure>{caption}{histogram(values, good, name, unit, word(table))}</figure>")
     return _card(
         "Results",
-        "Parked runs in green, the others in red; the end bars hold the 0.5 % beyond.",
+        f"Runs that are {word(table)} in green, the others in red; the end bars hold the 0.5 % beyond.",
         f'<div class="side">{"".join(figures)}</div>',
     )
 
@@ -143,7 +141,7 @@ def _influences(table: Table) -> str:
     results = list(found[0].share)
     rows = []
     for item in found:
-        cells = [f"<code>{escape(item.name)}</code>", _meter(item.share["parked"])]
+        cells = [f"<code>{escape(item.name)}</code>", _meter(item.share[word(table)])]
         for name in results:
             cells.append(f"{100 * item.share[name]:.1f} %")
             cells.append(f"{item.rank[name]:+.2f}")
@@ -168,8 +166,8 @@ def _worst(table: Table) -> str:
             (
                 str(number),
                 f"{_pill(row['outcome'])} {escape(row['reason'])}",
-                f"{100.0 * row['final.lateral_error']:+.1f} cm",
-                f"{row['final.heading_error'] / DEGREE:+.2f} deg",
+                _finite("{:+.1f} cm", 100.0 * row["final.lateral_error"]),
+                _finite("{:+.2f} deg", row["final.heading_error"] / DEGREE),
                 f"{row['duration']:.1f} s",
                 link + command,
                 *(_value(table, key, row[key]) for key in keys),
@@ -178,6 +176,10 @@ def _worst(table: Table) -> str:
     heads = ("row", "outcome", "lateral", "heading", "time", "look at it", *(escape(key) for key in keys))
     text = "Furthest beyond their limits; the command repeats a row to the same bits, with log and replay."
     return _card("Worst runs", text, _table(heads, rows))
+
+
+def _finite(form: str, value: float) -> str:
+    return form.format(value) if math.isfinite(value) else ""
 
 
 def _value(table: Table, key: str, value: Any) -> str:
@@ -200,7 +202,7 @@ def _about(table: Table) -> str:
 
 
 def _pill(outcome: str) -> str:
-    kind = {"parked": "good", "not_parked": "warn"}.get(outcome, "bad")
+    kind = "good" if outcome in DONE else "warn" if outcome in MISSED.values() else "bad"
     return f'<span class="pill {kind}">{escape(outcome.replace("_", " "))}</span>'
 
 

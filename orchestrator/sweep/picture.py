@@ -7,7 +7,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from orchestrator.sweep.figures import named
-from orchestrator.sweep.statistics import Map, maps
+from orchestrator.sweep.statistics import Map, maps, word
 from orchestrator.sweep.store import Table
 
 SHORT = {"vehicle.driver.speed_error": "driver's speed error", "vehicle.steering.rate_limit": "steering-wheel rate"}
@@ -19,17 +19,17 @@ def draw_maps(table: Table, path: Path) -> None:
     figure = Figure(figsize=(4.6 * max(1, len(shown)) + 0.9, 4.0), dpi=150, layout="constrained")
     axes = figure.subplots(1, max(1, len(shown)), sharey=True, squeeze=False)[0]
     for place, item in zip(axes, shown, strict=False):
-        share = 100.0 * item.parked / np.maximum(item.runs, 1)
+        share = 100.0 * item.done / np.maximum(item.runs, 1)
         drawn = place.pcolormesh(
             item.x.edges, item.y.edges, share, cmap=matplotlib.colormaps["cividis"], vmin=0, vmax=100
         )
         place.set_title(
-            f"{item.title.upper()}: {100.0 * item.parked.sum() / item.runs.sum():.1f} % parked".lstrip(": ")
+            f"{item.title.upper()}: {100.0 * item.done.sum() / item.runs.sum():.1f} % {word(table)}".lstrip(": ")
         )
         place.set_xlabel(_label(item, "x"))
     if shown:
         axes[0].set_ylabel(_label(shown[0], "y"))
-        figure.colorbar(drawn, ax=axes.tolist(), label="parked within all limits [%]", fraction=0.04)
+        figure.colorbar(drawn, ax=axes.tolist(), label=f"{word(table)} within all limits [%]", fraction=0.04)
     figure.suptitle(f"{table.about['study']['title']} ({table.count:,} runs)", fontsize=10)
     path.parent.mkdir(parents=True, exist_ok=True)
     figure.savefig(path, metadata={"Software": None})

@@ -4,25 +4,25 @@ The compiled batch gathers the measures while it runs; for any other engine they
 Both give the same bits.
 """
 
+from typing import get_args
+
 import numpy as np
 
 from modelkit.variables import variables
 from orchestrator.cosim.recording import Recording
 from orchestrator.cosim.slave import Array
 from orchestrator.scenario.models import MODELS
-from orchestrator.scenario.requirements import Requirement, Window
+from orchestrator.scenario.requirements import Requirement, Where, Window
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.text.errors import BadInput, suggestion
 from orchestrator.verdict.conditions import CONDITIONS
 from orchestrator.verdict.judge import judge
 from orchestrator.verdict.measures import Measure, measured
-from orchestrator.verdict.numbers import MEASURES, NUMBERS
+from orchestrator.verdict.numbers import MEASURES, NUMBERS, Facts
 
 STOP_TIME, STANDSTILL, ABORTED = 0.0, 1.0, 2.0
 """How a run ended: first number of its row; the second is when [ns]."""
 FIRST_MEASURE = 2
-PHASE = Measure("last", "controller.phase")
-REASON = Measure("last", "controller.reason")
 
 
 def signals() -> set[str]:
@@ -35,10 +35,19 @@ def signals() -> set[str]:
     }
 
 
+def last_words(scenario: Scenario) -> tuple[Measure, Measure]:
+    """Return the measures that tell how far the controller was at the end, and why it gave up."""
+    return Measure("last", scenario.ending.signal), Measure("last", scenario.ending.reason)
+
+
 def measures_for(scenario: Scenario) -> list[Measure]:
     """Return the measures a verdict on ``scenario`` needs. Raises ``BadInput`` for a limit on an unknown signal."""
     known = signals()
-    found = [measure for measure in (*MEASURES, PHASE, REASON) if measure.signal in known]
+    for item in last_words(scenario):
+        if item.signal not in known:
+            hint = suggestion(item.signal, known)
+            raise BadInput(f"no signal of this name{hint}", file=scenario.file, key=f"ending: {item.signal}")
+    found = [measure for measure in (*MEASURES, *last_words(scenario)) if measure.signal in known]
     for limit in scenario.limits:
         if limit.signal in known:
             found += [item for item in (measure_of(limit),) if item is not None]
@@ -83,5 +92,5 @@ def row_of(recording: Recording, scenario: Scenario, measures: list[Measure]) ->
 
 
 def _worst(limit: Requirement, recording: Recording, scenario: Scenario) -> float:
-    (check,) = judge([limit], recording, {}, scenario.file)
+    (check,) = judge([limit], recording, Facts({}, frozenset(get_args(Where))), scenario.file)
     return check.limit if check.passed and check.value != check.value else check.value

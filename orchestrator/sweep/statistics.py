@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 from scipy.stats import rankdata  # type: ignore[import-untyped]
 
 from orchestrator.cosim.slave import Array
+from orchestrator.scenario.scenario import DONE, SUCCESS
 from orchestrator.sweep.store import Table
 from orchestrator.sweep.study import Axes
 from orchestrator.text.quantities import DEGREE
@@ -36,7 +37,7 @@ class Map(NamedTuple):
     title: str
     x: Axis
     y: Axis
-    parked: NDArray[np.intp]
+    done: NDArray[np.intp]
     """(cells of y, cells of x)."""
     runs: NDArray[np.intp]
 
@@ -66,10 +67,15 @@ def varied(table: Table) -> list[str]:
     return list(found)
 
 
-def parked(table: Table) -> NDArray[np.bool_]:
-    """Return which runs are parked."""
-    found: NDArray[np.bool_] = table.column("outcome") == "parked"
+def done(table: Table) -> NDArray[np.bool_]:
+    """Return which runs have done their task."""
+    found: NDArray[np.bool_] = np.isin(table.column("outcome").astype(str), list(DONE))
     return found
+
+
+def word(table: Table) -> str:
+    """Return what a run of this table is that has done its task: parked, or finished."""
+    return SUCCESS[table.job.scenario.get("task", "park")]
 
 
 def axis(table: Table, name: str) -> Axis:
@@ -108,7 +114,7 @@ def maps(table: Table) -> list[Map]:
     if axes is None:
         return []
     x, y = axis(table, axes.x), axis(table, axes.y)
-    good = parked(table)
+    good = done(table)
     if axes.split is None:
         return [_map("", x, y, good, np.ones(len(good), dtype=bool))]
     split = axis(table, axes.split)
@@ -126,10 +132,11 @@ def _map(title: str, x: Axis, y: Axis, good: NDArray[np.bool_], chosen: NDArray[
 def influences(table: Table) -> list[Influence]:
     """Return what every varied parameter does to the results, the strongest on success first."""
     results: dict[str, Any] = {
-        "parked": parked(table).astype(np.float64),
-        "lateral error": np.abs(table.column("final.lateral_error")),
+        word(table): done(table).astype(np.float64),
         "duration": table.column("duration"),
     }
+    errors = np.abs(table.column("final.lateral_error"))
+    results |= {"lateral error": errors} if np.isfinite(errors).all() else {}
     ranks = {name: rankdata(values) for name, values in results.items()}
     found = []
     for key in varied(table):
@@ -137,7 +144,7 @@ def influences(table: Table) -> list[Influence]:
         own = rankdata(table.column(key))
         shares = {name: variance_share(values, cut.cell) for name, values in results.items()}
         found.append(Influence(key, shares, {name: _correlation(own, other) for name, other in ranks.items()}))
-    return sorted(found, key=lambda item: -item.share["parked"])
+    return sorted(found, key=lambda item: -item.share[word(table)])
 
 
 def variance_share(values: Array, cell: NDArray[np.intp]) -> float:
@@ -166,7 +173,7 @@ def _correlation(a: Array, b: Array) -> float:
 
 
 def worst(table: Table, count: int) -> list[int]:
-    """Return the rows that are furthest beyond their limits, those that failed before those that parked."""
+    """Return the rows that are furthest beyond their limits, those that have not done their task first."""
     share = np.nan_to_num(table.column("limit_share"), nan=np.inf)
-    order = np.lexsort((-share, parked(table)))
+    order = np.lexsort((-share, done(table)))
     return [int(row) for row in order[:count]]

@@ -15,8 +15,10 @@ import numpy as np
 import pyarrow as pa  # type: ignore[import-untyped]
 import pyarrow.parquet as pq  # type: ignore[import-untyped]
 
-from modelkit.variables import Variable
+from modelkit.variables import Variable, variables
 from orchestrator.cosim.slave import Array
+from orchestrator.scenario.models import MODELS
+from orchestrator.scenario.scenario import Target
 from orchestrator.sweep.fields import Field
 from orchestrator.sweep.job import Chunk, Job
 from orchestrator.sweep.verdict import OUTCOMES, RESULTS, Verdict
@@ -159,8 +161,16 @@ def job_to(job: Job) -> dict[str, Any]:
 
 def job_from(data: dict[str, Any]) -> Job:
     """Return the job that :func:`job_to` wrote."""
+    if "target" not in data["scenario"]:
+        data = {**data, "scenario": {**data["scenario"], "target": _told_target(data["scenario"]["controller"])}}
     seeded = [(owner, name, int(place)) for owner, name, place in data["seeded"]]
     return Job(**{**data, "seeded": seeded, "measures": [Measure(*item) for item in data["measures"]]})
+
+
+def _told_target(controller: dict[str, Any]) -> dict[str, float]:
+    """Return the target of a table of an older version, which judged by what the controller was told."""
+    starts = {item.name: float(item.start) for item in variables(MODELS["controller"].params)}
+    return {name: float(controller.get(f"target.{name}", starts[f"target.{name}"])) for name in Target.model_fields}
 
 
 def _schema(fields: list[Field], numbers: list[str], about: str) -> Any:

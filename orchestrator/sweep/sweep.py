@@ -15,7 +15,7 @@ from orchestrator.sweep.engines import choose_task, make_engine
 from orchestrator.sweep.job import Job, make_job, study_scenario
 from orchestrator.sweep.store import Store, chunks, job_to
 from orchestrator.sweep.study import Study
-from orchestrator.sweep.verdict import PARKED, RESULTS, judge
+from orchestrator.sweep.verdict import RESULTS, judge
 from orchestrator.text.console import Meter
 
 
@@ -44,8 +44,8 @@ class Swept:
     """Runs in the table or in its parts."""
     made: int
     """Runs made now."""
-    parked: int
-    """Of those made now."""
+    successes: int
+    """Of those made now: how many have done their task."""
     seconds: float
     engine: str
     note: str
@@ -64,7 +64,7 @@ def sweep(study: Study, folder: Path, options: Options) -> Swept:
     swept = Swept(None, total, total - sum(len(chunk.seeds) for chunk in missing), 0, 0, 0.0, task.name, task.note)
     interrupt = Interrupt()
     if missing and task.is_compiled:
-        compiled(tuple(job.measures))
+        compiled(tuple(job.measures), scenario.ending)
     begun = time.perf_counter()
     if missing:
         engine = make_engine(task, options.dask, options.workers)
@@ -73,11 +73,11 @@ def sweep(study: Study, folder: Path, options: Options) -> Swept:
             for chunk, rows in engine.results(job, iter(missing), interrupt):
                 verdict = judge(job, chunk, rows)
                 store.write(chunk, verdict)
-                swept.parked += int((verdict.outcome == PARKED).sum())
+                swept.successes += int(verdict.succeeded().sum())
                 swept.done += len(rows)
                 swept.made += len(rows)
                 rate = swept.made / (time.perf_counter() - begun)
-                meter.at(swept.done, f"{rate:.0f}/s, {100.0 * swept.parked / swept.made:.1f} % parked")
+                meter.at(swept.done, f"{rate:.0f}/s, {100.0 * swept.successes / swept.made:.1f} % {scenario.success}")
     swept.seconds = time.perf_counter() - begun
     if swept.done == total:
         swept.table = store.finish(-(-total // size))
@@ -85,7 +85,13 @@ def sweep(study: Study, folder: Path, options: Options) -> Swept:
 
 
 def _numbers(job: Job) -> list[str]:
-    return [name for name in RESULTS if RESULTS[name].measure is None or RESULTS[name].measure in job.measures]
+    """Return the columns of results: nothing that the models do not tell, no slot or kerb where there is none."""
+    scenario = job.scenario
+    has_kerb = any(name.startswith("scene.kerbs[") for name in scenario["vehicle"])
+    absent = {"final.slot_margin"} if scenario["slot"] is None else set()
+    absent |= set() if has_kerb else {"final.kerb_nearest", "final.kerb_farthest"}
+    measured = {name for name, item in RESULTS.items() if item.measure is None or item.measure in job.measures}
+    return [name for name in RESULTS if name in measured - absent]
 
 
 def _about(study: Study, job: Job, design: Design) -> dict[str, Any]:

@@ -10,6 +10,8 @@ from modelkit.variables import Variable
 from orchestrator.text.errors import BadInput, suggestion
 
 DEGREE = math.pi / 180.0
+NANOSECONDS = 1_000_000_000
+"""In a second."""
 FACTORS: dict[str, tuple[str, float]] = {
     "deg": ("rad", DEGREE),
     "deg/s": ("rad/s", DEGREE),
@@ -86,6 +88,8 @@ def _seconds(value: object) -> float | None:
 
 Seconds = Annotated[float, BeforeValidator(_seconds)]
 """A time or duration [s] in a pydantic model; ``200 ms`` will do."""
+Metres = Annotated[float, BeforeValidator(lambda value: number(value, "m"))]
+Radians = Annotated[float, BeforeValidator(lambda value: number(value, "rad"))]
 
 
 def _boolean(value: object, file: object, key: str) -> bool:

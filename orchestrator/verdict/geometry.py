@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from orchestrator.cosim.slave import Array
-from orchestrator.scenario.scenario import Slot
+from orchestrator.scenario.scenario import Scenario, Slot
 from orchestrator.verdict.frame import pose_at
 
 WHEEL_RADIUS = 0.29
@@ -62,6 +62,11 @@ def place(points: Array, x: float, y: float, heading: float) -> Array:
     """Return ``points`` (n, 2) turned by ``heading`` [rad] and moved to (x, y) [m]."""
     c, s = math.cos(heading), math.sin(heading)
     return np.column_stack([x + c * points[:, 0] - s * points[:, 1], y + s * points[:, 0] + c * points[:, 1]])
+
+
+def described(scenario: Scenario, own: Mapping[str, float]) -> dict[str, float]:
+    """Return the vehicle's parameters: its ``own``, and the scenario's where an FMU has none of that name."""
+    return {**scenario.vehicle, **own}
 
 
 def slot_box(slot: Slot) -> Box:

@@ -5,7 +5,6 @@ from functools import cache
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from pydantic import BaseModel, ConfigDict
 
 from modelkit.variables import variables
@@ -15,7 +14,8 @@ from orchestrator.scenario.models import MODELS
 from orchestrator.scenario.requirements import Condition, Requirement, Window
 from orchestrator.text.errors import BadInput, suggestion
 from orchestrator.verdict.conditions import CONDITIONS
-from orchestrator.verdict.numbers import NUMBERS, signals_of
+from orchestrator.verdict.numbers import NUMBERS, Facts, signals_of
+from orchestrator.verdict.truth import Bools
 
 CHART = "controller.phase"
 NEVER = "the window never comes"
@@ -48,12 +48,19 @@ class Check(BaseModel):
     """False: the run has nothing to judge by, as an FMU does not put it out; such a check is never passed."""
 
 
-def judge(requirements: list[Requirement], recording: Recording, numbers: dict[str, float], file: str) -> list[Check]:
-    """Return one check for each requirement; ``numbers`` are those of the summary by name.
+def judge(requirements: list[Requirement], recording: Recording, facts: Facts, file: str) -> list[Check]:
+    """Return one check for each requirement that is asked of a run with these facts.
 
     Raises ``BadInput`` for a name that neither the run nor the summary has, or a limit in another unit.
     """
-    return [_check(item, recording, numbers, file) for item in requirements]
+    asked = [item for item in requirements if item.where is None or item.where in facts.has]
+    return [_check(item, recording, facts.numbers, file) for item in asked]
+
+
+def meets(item: Requirement, values: Array) -> Bools:
+    """Return whether each value of a number meets a requirement; NaN meets none."""
+    assert not isinstance(item.limit, str)
+    return CONDITIONS[item.condition].margin(values, item.limit) >= 0.0
 
 
 def _check(item: Requirement, recording: Recording, numbers: dict[str, float], file: str) -> Check:
@@ -122,7 +129,8 @@ def _worst(item: Requirement, values: Array, times: Array, limit: float, unit: s
         row = int(np.argmin(np.where(np.isnan(found), -np.inf, found)))
         value, margin, when = float(values[row]), float(found[row]), float(times[row])
         passed = margin >= 0.0
-        note = states.get(int(value), "") if math.isfinite(value) else "not a number"
+        unknown = "not known" if item.signal in NUMBERS else "not a number"
+        note = states.get(int(value), "") if math.isfinite(value) else unknown
     else:
         note = NEVER
         passed = item.window is not None and item.window.if_never == "pass"
@@ -155,7 +163,7 @@ def _number(limit: float | str, states: dict[int, str], file: str, where: str) -
     raise BadInput(f"{limit!r} is no state{hint}", file=file, key=where)
 
 
-def _rows(window: Window | None, recording: Recording, file: str, where: str) -> NDArray[np.bool_]:
+def _rows(window: Window | None, recording: Recording, file: str, where: str) -> Bools:
     """Return which instants of a run are in a window."""
     t = recording.t
     rows = np.ones(len(t), dtype=bool)

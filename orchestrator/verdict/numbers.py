@@ -1,16 +1,18 @@
 """The numbers that sum up a run: one table for a single run, for a table of many, and for the limits that name them."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import NamedTuple
 
 import numpy as np
 
 from orchestrator.cosim.recording import Recording
 from orchestrator.cosim.slave import Array
-from orchestrator.verdict.frame import in_frame, pose_of
+from orchestrator.scenario import end_condition
+from orchestrator.scenario.scenario import Scenario
+from orchestrator.verdict.geometry import described
 from orchestrator.verdict.measures import Measure, measured
-
-PoseTuple = tuple[float, float, float]
+from orchestrator.verdict.standing import in_frames, kerb_distances, slot_margin
+from orchestrator.verdict.truth import Truth, truth_of
 
 
 class Number(NamedTuple):
@@ -19,16 +21,17 @@ class Number(NamedTuple):
     unit: str
     text: str
     measure: Measure | None = None
-    """What it is made from; None: from the end of the run, or from its last pose and the target."""
+    """What it is made from; None: from the end of the run, or from its last pose and what is true."""
     unsigned: bool = False
 
 
 POSE = tuple(Measure("last", f"vehicle.pose.{axis}") for axis in ("x", "y", "heading"))
+SPEED = Measure("last", end_condition.SPEED)
 CLEARANCE = Measure("smallest", "vehicle.clearance")
 NUMBERS: dict[str, Number] = {
     "duration": Number("s", "from start to the end of the run"),
     "shifts": Number("1", "manoeuvres, the first reverse counts one", Measure("last", "controller.shifts")),
-    "max_speed": Number("m/s", "largest absolute speed", Measure("largest", "vehicle.speed"), True),
+    "max_speed": Number("m/s", "largest absolute speed", Measure("largest", end_condition.SPEED), True),
     "final.x": Number("m", "x of the rear-axle midpoint at the end", POSE[0]),
     "final.y": Number("m", "y of the rear-axle midpoint at the end", POSE[1]),
     "final.heading": Number("rad", "heading at the end", POSE[2]),
@@ -38,6 +41,10 @@ NUMBERS: dict[str, Number] = {
     "final.steering_wheel_angle": Number(
         "rad", "steering-wheel angle at the end, left positive", Measure("last", "vehicle.steering_wheel_angle")
     ),
+    "final.speed": Number("m/s", "speed at the end, reverse negative", SPEED),
+    "final.slot_margin": Number("m", "least distance of the outline to the slot's edges, negative where it stands out"),
+    "final.kerb_nearest": Number("m", "distance to the slot's kerb of the nearest tyre beside it"),
+    "final.kerb_farthest": Number("m", "distance to the slot's kerb of the farthest tyre beside it"),
     "steering_effort": Number(
         "rad",
         "sum of the absolute changes of the steering-wheel angle",
@@ -46,41 +53,59 @@ NUMBERS: dict[str, Number] = {
     "min_clearance": Number("m", "smallest distance of the outline to anything in the scene", CLEARANCE),
 }
 ERRORS = ("final.longitudinal_error", "final.lateral_error", "final.heading_error")
+STANDING = (*ERRORS, "final.slot_margin", "final.kerb_nearest", "final.kerb_farthest")
+"""Made from the last pose and from what is true; NaN where a scenario has no target, slot or kerb."""
 MEASURES = tuple(item.measure for item in NUMBERS.values() if item.measure is not None)
 
 
 def signals_of(name: str) -> list[str]:
     """Return the signals that a number is made from."""
     measure = NUMBERS[name].measure
-    measures = POSE if name in ERRORS else () if measure is None else (measure,)
+    measures = POSE if name in STANDING else () if measure is None else (measure,)
     return [item.signal for item in measures]
 
 
-def numbers(durations: Array, found: Mapping[Measure, Array], targets: Sequence[PoseTuple]) -> dict[str, Array]:
-    """Return the numbers of many runs by name, one value for each.
+class Facts(NamedTuple):
+    """What one run is judged by beside its signals."""
 
-    ``durations`` [s], ``found``: their measures, of which signals that do not exist may lack; ``targets``: the pose
-    each was to reach.
-    """
-    made: dict[str, Array] = {"duration": durations}
-    for name, item in NUMBERS.items():
-        if item.measure is not None:
-            values = found.get(item.measure, np.full(len(durations), np.nan))
-            made[name] = np.abs(values) if item.unsigned else values
-    axes = (made[name].tolist() for name in ("final.x", "final.y", "final.heading"))
-    errors = [in_frame(x, y, heading, target) for x, y, heading, target in zip(*axes, targets, strict=True)]
-    columns = np.array(errors).reshape(-1, 3).T
-    made |= dict(zip(ERRORS, columns, strict=True))
-    return {name: made[name] for name in NUMBERS}
+    numbers: dict[str, float]
+    """By the names of ``NUMBERS``; NaN for what was not measured, or what the scenario does not have."""
+    has: frozenset[str]
+    """What the scenario has: ``target``, ``slot``, ``kerb``."""
 
 
-def numbers_of(recording: Recording) -> dict[str, float]:
-    """Return the numbers of one recorded run by name."""
-    target = pose_of(recording.parameters_of("controller"), "target") or (0.0, 0.0, 0.0)
+def facts_of(recording: Recording, scenario: Scenario) -> Facts:
+    """Return the numbers of one recorded run of ``scenario``."""
     found = {
         measure: np.array([measured(measure, recording)])
         for measure in MEASURES
         if len(recording.signals.get(measure.signal, ()))
     }
     duration = np.array([float(recording.t[-1]) if len(recording.t) else 0.0])
-    return {name: float(values[0]) for name, values in numbers(duration, found, [target]).items()}
+    truth = truth_of(scenario, described(scenario, recording.parameters_of("vehicle")))
+    made = {name: float(values[0]) for name, values in numbers(duration, found, truth).items()}
+    return Facts(made, frozenset(name for name, rows in truth.has().items() if rows[0]))
+
+
+def numbers(durations: Array, found: Mapping[Measure, Array], truth: Truth) -> dict[str, Array]:
+    """Return the numbers of many runs by name, one value for each.
+
+    ``durations`` [s], ``found``: their measures, of which signals that do not exist may lack; ``truth``: where each
+    was to stand.
+    """
+    made: dict[str, Array] = {"duration": durations}
+    for name, item in NUMBERS.items():
+        if item.measure is not None:
+            values = found.get(item.measure, np.full(len(durations), np.nan))
+            made[name] = np.abs(values) if item.unsigned else values
+    poses = np.column_stack([made[f"final.{axis}"] for axis in ("x", "y", "heading")])
+    made |= dict(zip(STANDING, _standing(np.where(np.isfinite(poses), poses, np.nan), truth), strict=True))
+    return {name: made[name] for name in NUMBERS}
+
+
+def _standing(poses: Array, truth: Truth) -> tuple[Array, ...]:
+    """Return the numbers ``STANDING`` of cars at ``poses`` (n, 3)."""
+    with np.errstate(over="ignore", invalid="ignore"):
+        errors = in_frames(poses, truth.targets).T
+        margin = slot_margin(poses, truth.slots, truth.cars)
+        return (*errors, margin, *kerb_distances(poses, truth.kerbs, truth.cars))

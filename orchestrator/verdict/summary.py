@@ -10,11 +10,15 @@ from typing import Any
 import numpy as np
 from pydantic import BaseModel, ConfigDict
 
-from orchestrator.cosim.endings import FINAL_PHASES
 from orchestrator.cosim.recording import Recording
-from orchestrator.scenario.scenario import Outcome, Scenario
+from orchestrator.scenario.end_condition import SPEED
+from orchestrator.scenario.scenario import DONE, Outcome, Scenario
+from orchestrator.text.quantities import DEGREE
+from orchestrator.verdict.frame import in_frame, pose_of
 from orchestrator.verdict.judge import Check, judge
-from orchestrator.verdict.numbers import numbers_of
+from orchestrator.verdict.measures import Measure, measured
+from orchestrator.verdict.numbers import facts_of
+from orchestrator.verdict.outcome import Asked, Ends, outcomes, state_name
 
 
 class _Part(BaseModel):
@@ -22,7 +26,7 @@ class _Part(BaseModel):
 
 
 class Final(_Part):
-    """Where and how the car stands at the end."""
+    """Where and how the car stands at the end: the numbers ``final.*`` of a run, NaN for what it does not have."""
 
     x: float
     y: float
@@ -31,6 +35,10 @@ class Final(_Part):
     longitudinal_error: float
     heading_error: float
     steering_wheel_angle: float
+    speed: float
+    slot_margin: float
+    kerb_nearest: float
+    kerb_farthest: float
 
 
 class Event(_Part):
@@ -76,6 +84,13 @@ class Summary(_Part):
     real_time_factor: float
     seed: int
     versions: dict[str, str]
+    notes: list[str] = []
+    """What is worth knowing of the verdict: a target that was told wrong, or is not in the log."""
+
+    @property
+    def is_done(self) -> bool:
+        """Return whether the run has done its task: parked, or finished."""
+        return self.outcome in DONE
 
     def as_json(self) -> dict[str, Any]:
         """Return the summary as plain data; numbers that are not finite become null."""
@@ -88,11 +103,14 @@ class Summary(_Part):
         return data
 
 
-def summarize(recording: Recording, scenario: Scenario, wall_time: float) -> Summary:
-    """Return the summary of a run. Raises ``BadInput`` if a limit names a signal that does not exist."""
-    numbers = numbers_of(recording)
-    checks = judge(scenario.limits, recording, numbers, scenario.file)
-    outcome, reason = _outcome(recording, checks)
+def summarize(recording: Recording, scenario: Scenario, wall_time: float, note: str = "") -> Summary:
+    """Return the summary of a run. Raises ``BadInput`` if a limit names a signal that does not exist.
+
+    ``note``: what its log does not tell, see :func:`orchestrator.verdict.logged.logged`.
+    """
+    facts = facts_of(recording, scenario)
+    numbers, checks = facts.numbers, judge(scenario.limits, recording, facts, scenario.file)
+    outcome, reason = _outcome(recording, scenario, checks)
     return Summary(
         scenario=scenario.name,
         changed=scenario.changed,
@@ -109,6 +127,7 @@ def summarize(recording: Recording, scenario: Scenario, wall_time: float) -> Sum
         real_time_factor=numbers["duration"] / wall_time if wall_time > 0.0 else 0.0,
         seed=scenario.seed,
         versions=recording.info.get("versions", {}),
+        notes=[text for text in (note, _told_otherwise(recording, scenario)) if text],
     )
 
 
@@ -119,11 +138,7 @@ def phase_changes(recording: Recording) -> list[tuple[int, str, str]]:
         return []
     names = recording.states("controller.phase")
     rows = np.flatnonzero(np.diff(phases)) + 1
-    return [(int(row), _state(names, phases[row - 1]), _state(names, phases[row])) for row in rows]
-
-
-def _state(names: dict[int, str], value: float) -> str:
-    return names.get(int(value), f"{value:g}") if math.isfinite(value) else "nan"
+    return [(int(row), state_name(names, phases[row - 1]), state_name(names, phases[row])) for row in rows]
 
 
 def _events(recording: Recording) -> list[Event]:
@@ -136,30 +151,30 @@ def _events(recording: Recording) -> list[Event]:
     ]
 
 
-def _outcome(recording: Recording, checks: list[Check]) -> tuple[Outcome, str]:
+def _told_otherwise(recording: Recording, scenario: Scenario) -> str:
+    """Return how the target that the controller is told differs from the scenario's; empty if it does not."""
+    told = pose_of(recording.parameters_of("controller"), "target")
+    if scenario.target is None or told is None or told == scenario.target.pose:
+        return ""
+    along, across, turn = in_frame(*told, scenario.target.pose)
+    return (
+        f"the controller is told another target, {along:+.3f} m along and {across:+.3f} m across the true one, "
+        f"turned by {turn / DEGREE:+.2f} deg; the run is judged by the true one"
+    )
+
+
+def _outcome(recording: Recording, scenario: Scenario, checks: list[Check]) -> tuple[Outcome, str]:
     end = str(recording.info.get("end", {}).get("reason", ""))
-    if end == "interrupted" or end.startswith("error"):
-        return "aborted", end
-    if "controller.phase" not in recording.signals:
-        return "not_parked", "the controller has no output phase, of which PARKED (9) says that the car is parked"
-    phase = _state(recording.states("controller.phase"), _last(recording, "controller.phase", math.nan))
-    if phase == "FAILED":
-        why = _state(recording.states("controller.reason"), _last(recording, "controller.reason", math.nan))
-        return "failed", why.lower()
-    missed = [check.id for check in checks if check.required and check.judged and not check.passed]
-    unknown = [check.id for check in checks if check.required and not check.judged]
-    if phase == "PARKED":
-        lacks = [f"beyond its limit: {', '.join(missed)}"] if missed else []
-        lacks += [f"not measured: {', '.join(unknown)}"] if unknown else []
-        return ("not_parked", "; ".join(lacks)) if lacks else ("parked", "all checks passed")
-    if phase in FINAL_PHASES:
-        return "not_parked", phase.lower()
-    return "not_parked", f"stop time reached in {phase.lower()}"
-
-
-def _last(recording: Recording, name: str, default: float) -> float:
-    values = recording.signals.get(name)
-    return float(values[-1]) if values is not None and len(values) else default
+    broken = end if end == "interrupted" or end.startswith("error") else ""
+    signals = (scenario.ending.signal, scenario.ending.reason)
+    last = (np.array([measured(Measure("last", name), recording)]) for name in (*signals, SPEED))
+    asked = [
+        Asked(check.id, np.array([not check.passed]), np.array([math.isnan(check.value)]))
+        for check in checks
+        if check.required
+    ]
+    (found,) = outcomes(scenario, Ends([broken], *last), asked, *(recording.variables.get(name) for name in signals))
+    return found
 
 
 def _finite(data: Any) -> Any:

@@ -19,6 +19,7 @@ from orchestrator.log.mcap_file import CHUNK_SIZE, McapFile
 from orchestrator.log.mcap_log import McapLog
 from orchestrator.log.read_log import read_log
 from orchestrator.scenario.load_scenario import load_scenario
+from orchestrator.scenario.scenario import Scenario
 from orchestrator.session.session import Words, run_scenario, run_slaves
 from orchestrator.text.errors import BadInput
 
@@ -142,7 +143,7 @@ def test_an_odd_value_comes_back(tmp_path: Path) -> None:
     odd = {"command": float("nan"), "mode": -3.0, "right": -(2.0**31), "active": 1.0}
     for name, value in odd.items():
         slaves[0].inputs.values[slaves[0].inputs.index[name]] = value
-    log = McapLog(tmp_path / "x.mcap", list(slaves), scenario.slot, {})
+    log = McapLog(tmp_path / "x.mcap", list(slaves), scenario, {})
     log.exchanged(0)
     log.closed(End("done", 0))
     read = read_log(tmp_path / "x.mcap").signals
@@ -175,7 +176,7 @@ def test_any_number_of_rows_about_a_chunk(tmp_path: Path, rows: int) -> None:
     for slave in slaves:
         slave.initialize(0)
         slave.fetch_outputs()
-    log = McapLog(tmp_path / "x.mcap", list(slaves), None, {})
+    log = McapLog(tmp_path / "x.mcap", list(slaves), Scenario(name="none"), {})
     count = 0 if rows == 0 else log.rows_per_chunk + rows - 2
     for row in range(count):
         log.exchanged(row)

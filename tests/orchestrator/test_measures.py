@@ -10,9 +10,11 @@ from modelkit.signal import Signal
 from modelkit.variables import Variable
 from orchestrator.cosim.recording import Recording
 from orchestrator.scenario.requirements import Condition
+from orchestrator.scenario.scenario import Scenario
 from orchestrator.verdict.conditions import CONDITIONS, share
 from orchestrator.verdict.measures import Measure, measured
-from orchestrator.verdict.numbers import MEASURES, NUMBERS, POSE, numbers, numbers_of
+from orchestrator.verdict.numbers import MEASURES, NUMBERS, POSE, facts_of, numbers
+from orchestrator.verdict.truth import Truth, truth_of
 
 VALUES = np.array([1.0, -3.0, 2.0])
 
@@ -58,26 +60,26 @@ def test_share_of_a_limit_that_is_used() -> None:
 def test_numbers_of_many_runs_are_those_of_each() -> None:
     rng = np.random.default_rng(1)
     found = {measure: rng.normal(size=5) for measure in MEASURES}
-    targets = [tuple(row) for row in rng.normal(size=(5, 3)).tolist()]
-    whole = numbers(np.arange(5.0), found, targets)
+    true = Truth(rng.normal(size=(5, 3)), rng.normal(size=(5, 5)), rng.normal(size=(5, 2, 4)), rng.normal(size=(5, 4)))
+    whole = numbers(np.arange(5.0), found, true)
     assert list(whole) == list(NUMBERS)
     for row in range(5):
-        alone = numbers(
-            np.array([float(row)]), {key: values[row : row + 1] for key, values in found.items()}, [targets[row]]
-        )
+        own = {key: values[row : row + 1] for key, values in found.items()}
+        alone = numbers(np.array([float(row)]), own, Truth(*(part[row : row + 1] for part in true)))
         assert {name: values[0] for name, values in alone.items()} == {name: v[row] for name, v in whole.items()}
 
 
 def test_errors_are_seen_from_the_target() -> None:
     found = {measure: np.array([value]) for measure, value in zip(POSE, (1.0, 3.0, 0.5 * math.pi), strict=True)}
-    made = numbers(np.zeros(1), found, [(1.0, 1.0, 0.5 * math.pi)])
+    there = Scenario(name="there", target={"x": 1.0, "y": 1.0, "heading": "90 deg"})  # type: ignore[arg-type]
+    made = numbers(np.zeros(1), found, truth_of(there, {}))
     assert made["final.longitudinal_error"][0] == pytest.approx(2.0)
     assert made["final.lateral_error"][0] == pytest.approx(0.0)
     assert made["final.heading_error"][0] == 0.0
 
 
 def test_what_the_models_do_not_have() -> None:
-    made = numbers_of(recording(VALUES))
+    made = facts_of(recording(VALUES), Scenario(name="here")).numbers
     assert made["max_speed"] == 3.0
     assert made["duration"] == 2.0
     assert math.isnan(made["shifts"])

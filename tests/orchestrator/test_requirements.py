@@ -10,9 +10,10 @@ from modelkit.variables import Variable
 from orchestrator.cosim.recording import Recording
 from orchestrator.scenario.load_scenario import ROOM
 from orchestrator.scenario.requirements import Requirement, read_requirements
+from orchestrator.scenario.scenario import Scenario
 from orchestrator.text.errors import BadInput
 from orchestrator.verdict.judge import judge
-from orchestrator.verdict.numbers import numbers_of
+from orchestrator.verdict.numbers import facts_of
 
 PHASE = {"STANDBY": 0, "DRIVE": 1, "PARKED": 2}
 T = np.array([0.0, 1.0, 2.0, 3.0, 4.0])
@@ -34,7 +35,7 @@ def recording(speed=SPEED, phase=(0, 1, 1, 1, 2)) -> Recording:
 def check(run=None, **entry):
     run = recording() if run is None else run
     requirement = Requirement.model_validate({"id": "r", "signal": "vehicle.speed", "source": "test", **entry})
-    return judge([requirement], run, numbers_of(run), "file")[0]
+    return judge([requirement], run, facts_of(run, Scenario(name="here")), "file")[0]
 
 
 @pytest.mark.parametrize(

@@ -12,13 +12,14 @@ from controller_fmu.interface import ControllerOutput, Phase, Reason
 from modelkit.variables import variables
 from orchestrator.cosim.recording import Recording
 from orchestrator.scenario.load_scenario import load_scenario
+from orchestrator.scenario.scenario import Target
 from orchestrator.verdict.summary import Summary, summarize
 
 DEMO = str(Path(__file__).with_name("demo.yaml"))
-TARGET = {"controller.target.x": 10.0, "controller.target.y": -5.0, "controller.target.heading": math.pi / 2}
+TARGET = Target(x=10.0, y=-5.0, heading=math.pi / 2)
 PROMISED = {
     *("scenario", "outcome", "reason", "duration", "shifts", "max_speed", "final", "events", "checks", "fmus"),
-    *("wall_time", "real_time_factor", "seed", "versions"),
+    *("wall_time", "real_time_factor", "seed", "versions", "notes"),
 }
 
 
@@ -28,7 +29,7 @@ def recording(phases: list[int], end: str = "standstill", reason: int = 0, **mor
         "vehicle.pose.x": np.full(count, 10.2),
         "vehicle.pose.y": np.full(count, -4.0),
         "vehicle.pose.heading": np.full(count, math.pi / 2 - 0.01 + 4 * math.pi),
-        "vehicle.speed": np.linspace(0.0, -1.25, count),
+        "vehicle.speed": np.append(np.full(count - 1, -1.25), 0.0),
         "vehicle.steering_wheel_angle": np.zeros(count),
         "controller.phase": np.array(phases, dtype=float),
         "controller.reason": np.full(count, float(reason)),
@@ -39,13 +40,14 @@ def recording(phases: list[int], end: str = "standstill", reason: int = 0, **mor
     for name in ("vehicle.speed", "vehicle.pose.x"):
         known[name] = next(item for item in variables(ControllerOutput) if item.kind is float)
     info = {"end": {"reason": end}, "versions": {"python": "3"}, "fmus": [{"name": "a", "kind": "none", "guid": "g"}]}
-    return Recording(np.arange(count) * 10_000_000, signals, dict(TARGET), known, info)
+    return Recording(np.arange(count) * 10_000_000, signals, {}, known, info)
 
 
 def summary(found: Recording, limits: list[dict[str, Any]] | None = None) -> Summary:
     scenario = load_scenario(DEMO)
     given = limits if limits is not None else []
-    changed = scenario.model_copy(update={"limits": [type(scenario.limits[0]).model_validate(item) for item in given]})
+    limits = [type(scenario.limits[0]).model_validate(item) for item in given]
+    changed = scenario.model_copy(update={"limits": limits, "target": TARGET})
     return summarize(found, changed, 0.02)
 
 
@@ -88,7 +90,7 @@ def test_parked_needs_every_required_check() -> None:
     found = summary(recording([0, int(Phase.PARKED)]), [speed])
     assert (found.outcome, found.reason) == ("not_parked", "beyond its limit: speed")
     assert found.checks[0].margin == pytest.approx(-0.25)
-    assert found.checks[0].t == 0.01
+    assert found.checks[0].t == 0.0
     assert summary(recording([0, int(Phase.PARKED)]), [{**speed, "required": False}]).outcome == "parked"
 
 
@@ -105,7 +107,8 @@ def test_the_promised_keys() -> None:
     data = summary(recording([0, int(Phase.PARKED)])).as_json()
     assert set(data) >= PROMISED
     assert list(data["final"]) == [
-        *("x", "y", "heading", "lateral_error", "longitudinal_error", "heading_error", "steering_wheel_angle")
+        *("x", "y", "heading", "lateral_error", "longitudinal_error", "heading_error", "steering_wheel_angle"),
+        *("speed", "slot_margin", "kerb_nearest", "kerb_farthest"),
     ]
     assert data["max_speed"] == 1.25
     assert data["real_time_factor"] == pytest.approx(0.5)

@@ -74,7 +74,17 @@ def test_windows_of_what_is_fitted_are_shown(reproduction: Reproduction) -> None
 
 @pytest.mark.parametrize("rate", ["", "-105"])
 def test_drivers_who_obey_stay_on_the_path(rate: str) -> None:
-    assert obey(f"guo2015-case3{rate}", (0.3, 1.5), (0.0, 0.25, 0.5)) == (6, 6, 6, 6)
+    found = obey(f"guo2015-case3{rate}", (0.3, 1.5), (0.0, 0.25, 0.5))
+    assert found[:4] == (6, 6, 6, 6)
+    assert 0 < found.near < found.parked
+
+
+def test_what_the_paper_calls_a_success_stands_beside_our_outcome(reproduction: Reproduction) -> None:
+    said = {(row.run, row.item.partition(",")[0]): row.ours for row in reproduction.rows}
+    for run in ("guo2015-case3", "guo2015-case3-105", "guo2015-case5-105"):
+        assert said[run, "outcome"] == "parked"
+        assert said[run, "outcome by our limits"] == "not_parked: beyond its limit: final longitudinal position"
+    assert said["guo2015-case4", "outcome"] == said["guo2015-case4", "outcome by our limits"] == "parked"
 
 
 def test_figures_are_written(reproduction: Reproduction) -> None:

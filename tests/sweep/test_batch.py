@@ -46,7 +46,8 @@ def assert_same(job, chunk, rows, number, files=None, kind="none"):
     verdict = judge(job, chunk, rows)
     assert (OUTCOMES[verdict.outcome[number]], verdict.reason[number]) == (summary.outcome, summary.reason)
     numbers = {name: float(values[number]) for name, values in verdict.numbers.items()}
-    assert {name: numbers[f"final.{name}"] for name in summary.final.model_dump()} == summary.final.model_dump()
+    for name, value in summary.final.model_dump().items():
+        assert np.array([numbers[f"final.{name}"]]).tobytes() == np.array([value]).tobytes(), name
     assert (numbers["duration"], numbers["shifts"]) == (summary.duration, summary.shifts)
     assert numbers["max_speed"] == summary.max_speed
 

@@ -79,7 +79,7 @@ def test_maps_count_every_run_once(table):
     shown = maps(table)
     assert [item.title for item in shown] == ["ntbptcwpt", "ntbpt"]
     assert sum(item.runs.sum() for item in shown) == table.count
-    assert sum(item.parked.sum() for item in shown) == (table.column("outcome") == "parked").sum()
+    assert sum(item.done.sum() for item in shown) == (table.column("outcome") == "parked").sum()
 
 
 def test_parameters_that_always_agree_are_shown_once(table):
@@ -118,7 +118,7 @@ def test_the_share_of_variance_is_the_analytic_one():
 
 def test_a_histogram_holds_every_run(table):
     values = np.append(np.linspace(0.0, 1.0, 1000), [50.0, -50.0, np.nan])
-    text = histogram(values, np.ones(len(values), dtype=bool), "x", "m")
+    text = histogram(values, np.ones(len(values), dtype=bool), "x", "m", "parked")
     counts = [int(part.split(" parked")[0].rsplit(" ", 1)[-1]) for part in text.split("<title>")[1:]]
     assert sum(counts) == 1002
 

@@ -1,0 +1,72 @@
+"""What ends a run before its stop time, and what the controller says then: the only place that names final states."""
+
+from pydantic import BaseModel, ConfigDict, Field
+
+from modelkit.variables import Variable, variables
+from orchestrator.scenario.models import MODELS
+from orchestrator.text.errors import BadInput, suggestion
+from orchestrator.text.quantities import NANOSECONDS, Seconds
+
+SPEED = "vehicle.speed"
+"""The signal that tells how fast the car is [m/s]."""
+State = str | int
+"""A state of a mode by its name or by its number."""
+
+
+class EndCondition(BaseModel):
+    """A run is over when a mode of the controller has a final value and the car has stood still for a time."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    signal: str = "controller.phase"
+    """The output that says how far the controller is."""
+    done: list[State] = Field(default=["PARKED"], min_length=1)
+    """Its states in which the controller says that it has done what it was asked for."""
+    failed: list[State] = ["FAILED"]
+    """Its states in which the controller has given up."""
+    over: list[State] = ["TAKEOVER"]
+    """Its states in which the run is over but neither done nor failed."""
+    reason: str = "controller.reason"
+    """The output that says why the controller has given up."""
+    still: float = Field(default=1e-3, gt=0.0)
+    """A car not faster than this [m/s] stands."""
+    standstill: Seconds = 0.5
+    """How long it must stand [s]."""
+
+    @property
+    def standstill_ns(self) -> int:
+        """Return how long the car must stand [ns]."""
+        return round(self.standstill * NANOSECONDS)
+
+    def final(self, mode: Variable | None = None) -> tuple[int, ...]:
+        """Return the values in which a run is over; ``mode`` is the signal as its FMU declares it."""
+        return tuple(self.values((*self.done, *self.failed, *self.over), mode))
+
+    def values(self, states: list[State] | tuple[State, ...], mode: Variable | None = None) -> list[int]:
+        """Return the numbers of ``states``. Raises ``BadInput`` for a name that the signal has not.
+
+        An FMU may declare its mode as a plain integer, without names: those of our own controller are meant then.
+        """
+        numbers = {name: number for number, name in states_of(self.signal, mode).items()}
+        found = []
+        for state in states:
+            word = state.upper().replace(" ", "_").replace("-", "_") if isinstance(state, str) else state
+            if isinstance(word, str) and word not in numbers:
+                hint = suggestion(word, list(numbers)) or f"; known are {', '.join(numbers) or 'none'}"
+                raise BadInput(f"{state!r} is no state of {self.signal}{hint}", key="ending")
+            found.append(numbers[word] if isinstance(word, str) else word)
+        return found
+
+
+def states_of(signal: str, declared: Variable | None = None) -> dict[int, str]:
+    """Return value -> name of the states of a signal: as it is ``declared``, else as our own models have it."""
+    if declared is not None and declared.signal.states is not None:
+        return _members(declared)
+    owner, _, name = signal.partition(".")
+    model = MODELS.get(owner)
+    outputs = [] if model is None else variables(model.outputs)
+    return next((_members(item) for item in outputs if item.name == name and item.signal.states is not None), {})
+
+
+def _members(mode: Variable) -> dict[int, str]:
+    return {int(state): state.name for state in mode.signal.states or ()}

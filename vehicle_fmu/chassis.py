@@ -44,6 +44,15 @@ class RoadParams(NamedTuple):
     ] = (1.0, 1.0, 1.0, 1.0)
 
 
+class Build(NamedTuple):
+    """What the bodies with mass have in common: axles, mass, and the road they stand on."""
+
+    wheelbase: float
+    """[m]."""
+    chassis: ChassisParams
+    road: RoadParams
+
+
 class Motion(NamedTuple):
     """Where the car is and how it moves."""
 

@@ -12,12 +12,6 @@ from modelkit.maths import TWO_PI
 from modelkit.vocabulary import Prompt
 from vehicle_fmu.interface import DriverParams
 
-STOP = int(Prompt.STOP)
-TAKE_OVER = int(Prompt.TAKE_OVER)
-FORWARD = int(Prompt.FORWARD)
-REVERSE = int(Prompt.REVERSE)
-SLOW_DOWN = int(Prompt.SLOW_DOWN)
-CONFIRM = int(Prompt.CONFIRM)
 CONFIRM_LASTS = 0.5
 """How long the confirm button is pressed [s]."""
 
@@ -40,7 +34,7 @@ def watch(state: DriverState, prompt: int, time_ns: int, params: DriverParams) -
     """Return the driver's intention at ``time_ns`` with ``prompt`` on the display."""
     since = state.seen_since if prompt == state.seen else time_ns
     heeded = prompt if (time_ns - since) * 1e-9 >= params.reaction_delay else state.heeded
-    takeover = state.takeover or time_ns * 1e-9 >= params.takeover_time or heeded == TAKE_OVER
+    takeover = state.takeover or time_ns * 1e-9 >= params.takeover_time or heeded == Prompt.TAKE_OVER
     direction = 0 if takeover else _direction(state.direction, heeded, params)
     return DriverState(prompt, since, heeded, direction, takeover)
 
@@ -54,14 +48,14 @@ def wanted_speed(
     ("drive slowly forward"); 0 is no advice there.
     """
     speed = profile_speed(params, distance if params.profile_over_distance else time_ns * 1e-9)
-    setting_out = (state.heeded == FORWARD or state.heeded == REVERSE) and advised_speed > 0.0
-    if params.obeys_slow_down and (state.heeded == SLOW_DOWN or setting_out) and advised_speed < speed:
+    setting_out = (state.heeded == Prompt.FORWARD or state.heeded == Prompt.REVERSE) and advised_speed > 0.0
+    if params.obeys_slow_down and (state.heeded == Prompt.SLOW_DOWN or setting_out) and advised_speed < speed:
         speed = advised_speed
     if params.speed_error != 0.0:
         speed = speed * (1.0 + params.speed_error)
     if params.wobble > 0.0 and speed > 0.0:
         speed = speed + params.wobble * math.sin(TWO_PI * time_ns * 1e-9 / params.wobble_period)
-        speed = speed if speed > 0.0 else 0.0
+        speed = max(0.0, speed)
     return state.direction * speed
 
 
@@ -82,7 +76,7 @@ def switch_is_on(time_ns: int, params: DriverParams) -> bool:
 
 def presses_confirm(state: DriverState, time_ns: int, params: DriverParams) -> bool:
     """Return whether the confirm button is pressed: at its time, or because it was asked for."""
-    if params.confirms_when_asked and state.heeded == CONFIRM:
+    if params.confirms_when_asked and state.heeded == Prompt.CONFIRM:
         return True
     return params.confirm_time <= time_ns * 1e-9 < params.confirm_time + CONFIRM_LASTS
 
@@ -97,8 +91,8 @@ def profile_speed(params: DriverParams, at: float) -> float:
 
 
 def _direction(direction: int, heeded: int, params: DriverParams) -> int:
-    if heeded == STOP and params.obeys_stop:
+    if heeded == Prompt.STOP and params.obeys_stop:
         return 0
-    if (heeded == FORWARD or heeded == REVERSE) and (direction == 0 or params.obeys_direction):
-        return 1 if heeded == FORWARD else -1
+    if heeded in (Prompt.FORWARD, Prompt.REVERSE) and (direction == 0 or params.obeys_direction):
+        return 1 if heeded == Prompt.FORWARD else -1
     return direction

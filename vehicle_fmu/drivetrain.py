@@ -17,10 +17,6 @@ from vehicle_fmu.drive import change_speed
 from vehicle_fmu.effort import Effort
 from vehicle_fmu.interface import DriveParams
 
-PARK = int(Gear.PARK)
-REVERSE = int(Gear.REVERSE)
-NEUTRAL = int(Gear.NEUTRAL)
-DRIVE = int(Gear.DRIVE)
 STANDSTILL = 0.02
 """Speed [m/s] below which the selector may be moved."""
 NO_GEAR = -1
@@ -33,7 +29,7 @@ FIRMER = 4.0
 class Selector(NamedTuple):
     """Gear engaged, and the one being engaged."""
 
-    gear: int = PARK
+    gear: int = Gear.PARK
     wanted: int = NO_GEAR
     left_ns: int = 0
     """Time [ns] until ``wanted`` is engaged."""
@@ -57,27 +53,27 @@ def shift(selector: Selector, target: float, speed: float, shift_time: float, st
     With a shift time the car must stand, and N is engaged meanwhile; without, the gear follows at once.
     """
     gear = selector.gear
-    wanted = REVERSE if target < 0.0 else DRIVE if target > 0.0 else gear
+    wanted = Gear.REVERSE if target < 0.0 else Gear.DRIVE if target > 0.0 else gear
     if shift_time <= 0.0:
-        return Selector(wanted, NO_GEAR, 0)
+        return Selector(wanted)
     if selector.wanted != NO_GEAR:
         left = selector.left_ns - step_ns
-        return Selector(selector.wanted, NO_GEAR, 0) if left <= 0 else Selector(NEUTRAL, selector.wanted, left)
+        return Selector(selector.wanted) if left <= 0 else Selector(Gear.NEUTRAL, selector.wanted, left)
     if wanted == gear or abs(speed) >= STANDSTILL:
-        return Selector(gear, NO_GEAR, 0)
-    return Selector(NEUTRAL, wanted, int(shift_time * 1e9))
+        return Selector(gear)
+    return Selector(Gear.NEUTRAL, wanted, int(shift_time * 1e9))
 
 
 def geared_speed(selector: Selector, target: float) -> float:
     """Return the speed [m/s] to aim at with the gear engaged: ``target`` if it fits, else 0."""
-    if (target > 0.0 and selector.gear == DRIVE) or (target < 0.0 and selector.gear == REVERSE):
+    if (target > 0.0 and selector.gear == Gear.DRIVE) or (target < 0.0 and selector.gear == Gear.REVERSE):
         return target
     return 0.0
 
 
 def along(selector: Selector) -> float:
     """Return the direction of the gear: -1 in reverse, else 1."""
-    return -1.0 if selector.gear == REVERSE else 1.0
+    return -1.0 if selector.gear == Gear.REVERSE else 1.0
 
 
 def press(pedals: Pedals, target: float, speed: float, gear: int, mass: float, p: DriveParams, h: float) -> Pedals:
@@ -86,17 +82,15 @@ def press(pedals: Pedals, target: float, speed: float, gear: int, mass: float, p
     creep = _creep(gear, speed, p)
     if reference == 0.0 and target == 0.0:
         brake = mass * _stopping_deceleration(speed, pedals.stopping, p)
-        return Pedals(0.0, 0.0, _lag(pedals.effort, creep, brake, p, h), pedals.stopping + h)
+        return Pedals(effort=_lag(pedals.effort, creep, brake, p, h), stopping=pedals.stopping + h)
     error = reference - speed
     push = (reference - pedals.reference) / h + p.speed_gain * error + p.speed_integral * pedals.integral
     force = mass * push - creep
     integral = pedals.integral
     if abs(force) < p.drive_force_limit:
         integral = clamp(integral + h * error, -p.integral_limit, p.integral_limit)
-    along = 1.0 if reference > 0.0 else -1.0
-    if force * along >= 0.0:
-        return Pedals(reference, integral, _lag(pedals.effort, force + creep, 0.0, p, h), 0.0)
-    return Pedals(reference, integral, _lag(pedals.effort, creep, abs(force), p, h), 0.0)
+    ahead = 1.0 if reference > 0.0 else -1.0
+    return Pedals(reference, integral, _split(pedals.effort, force, creep, ahead, p, h))
 
 
 def obey(pedals: Pedals, force: float, speed: float, gear: int, p: DriveParams, h: float) -> Pedals:
@@ -105,11 +99,15 @@ def obey(pedals: Pedals, force: float, speed: float, gear: int, p: DriveParams, 
     Along the gear's direction it goes to the drive, against it to the brake. The aim follows ``speed``,
     so that a speed request takes over without a jump.
     """
-    creep = _creep(gear, speed, p)
-    along = -1.0 if gear == REVERSE else 1.0
-    if force * along >= 0.0:
-        return Pedals(speed, 0.0, _lag(pedals.effort, force + creep, 0.0, p, h), 0.0)
-    return Pedals(speed, 0.0, _lag(pedals.effort, creep, abs(force), p, h), 0.0)
+    ahead = -1.0 if gear == Gear.REVERSE else 1.0
+    return Pedals(speed, effort=_split(pedals.effort, force, _creep(gear, speed, p), ahead, p, h))
+
+
+def _split(effort: Effort, force: float, creep: float, ahead: float, p: DriveParams, h: float) -> Effort:
+    """Return the effort ``h`` [s] later: a force along ``ahead`` (1 or -1) goes to the drive, against it to the brake."""
+    if force * ahead >= 0.0:
+        return _lag(effort, force + creep, 0.0, p, h)
+    return _lag(effort, creep, abs(force), p, h)
 
 
 def _stopping_deceleration(speed: float, time: float, p: DriveParams) -> float:
@@ -117,14 +115,14 @@ def _stopping_deceleration(speed: float, time: float, p: DriveParams) -> float:
     if abs(speed) < STANDSTILL:
         return p.hold_deceleration
     gentle = LAST_DECELERATION + FIRMER * time + p.speed_gain * abs(speed)
-    return gentle if gentle < p.hold_deceleration else p.hold_deceleration
+    return min(p.hold_deceleration, gentle)
 
 
 def _creep(gear: int, speed: float, p: DriveParams) -> float:
     """Return the force [N] with which an automatic gearbox pushes at idle."""
-    if gear == DRIVE:
+    if gear == Gear.DRIVE:
         return p.creep_force * clamp(1.0 - speed / p.creep_speed, 0.0, 1.0)
-    if gear == REVERSE:
+    if gear == Gear.REVERSE:
         return -p.creep_force * clamp(1.0 + speed / p.creep_speed, 0.0, 1.0)
     return 0.0
 

@@ -25,7 +25,7 @@ from orchestrator.cosim.fmu_files import fmu_files
 from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.session.session import run_scenario
 from vehicle_fmu import MODEL
-from vehicle_fmu.chassis import ChassisParams, Motion, RoadParams
+from vehicle_fmu.chassis import Build, ChassisParams, Motion, RoadParams
 from vehicle_fmu.double_track import DoubleTrackParams, DoubleTrackState, step_double_track
 from vehicle_fmu.effort import Effort
 from vehicle_fmu.kinematic import move
@@ -51,14 +51,14 @@ def kinematic(n: int, pose: Any) -> Any:
 def single(n: int, state: Any, effort: Any, chassis: Any, road: Any, p: Any) -> Any:
     """Return the single track after ``n`` steps of 1 ms."""
     for _ in range(n):
-        state = step_single_track(state, 0.2, effort, 2.405, chassis, p, road, 0.001)
+        state = step_single_track(state, 0.2, effort, Build(2.405, chassis, road), p, 0.001)
     return state
 
 
 def double(n: int, state: Any, effort: Any, chassis: Any, road: Any, p: Any) -> Any:
     """Return the double track after ``n`` steps of 1 ms."""
     for _ in range(n):
-        state = step_double_track(state, 0.2, effort, 2.405, chassis, p, road, 0.001)
+        state = step_double_track(state, 0.2, effort, Build(2.405, chassis, road), p, 0.001)
     return state
 
 

@@ -34,9 +34,7 @@ def push_body(state: BodyState, angle: float, effort: Effort, params: VehiclePar
     if params.body == Body.SINGLE_TRACK:
         single = step_single_track(state.single, angle, effort, _build(params), params.single_track, h)
         return state._replace(single=single)
-    return state._replace(
-        double=step_double_track(state.double, angle, effort, _build(params), params.double_track, h)
-    )
+    return state._replace(double=step_double_track(state.double, angle, effort, _build(params), params.double_track, h))
 
 
 def _build(params: VehicleParams) -> Build:
@@ -58,6 +56,6 @@ def wheel_speed(state: BodyState, body: int, radius: float) -> float:
     return 0.5 * radius * (wheels[2].spin + wheels[3].spin)
 
 
-def told(speed: float) -> float:
+def shown_speed(speed: float) -> float:
     """Return ``speed`` [m/s], zero while the car only rocks on its tyres."""
     return 0.0 if abs(speed) < STILL else speed

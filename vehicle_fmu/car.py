@@ -3,17 +3,15 @@
 from typing import NamedTuple
 
 from modelkit.vocabulary import Gear, Pose
-from vehicle_fmu.body import KINEMATIC, BodyState, motion_of, place, push_body, wheel_speed
+from vehicle_fmu.body import BodyState, motion_of, place, push_body, wheel_speed
 from vehicle_fmu.drive import change_speed, push_speed
 from vehicle_fmu.driver import DriverState, brakes, grabs, wanted_speed, watch
-from vehicle_fmu.drivetrain import NO_GEAR, Pedals, Selector, along, geared_speed, obey, press, shift
+from vehicle_fmu.drivetrain import Pedals, Selector, along, geared_speed, obey, press, shift
 from vehicle_fmu.effort import Effort
-from vehicle_fmu.interface import DriverParams, VehicleInput, VehicleParams
+from vehicle_fmu.interface import Body, DriverParams, VehicleInput, VehicleParams
 from vehicle_fmu.kinematic import move
 from vehicle_fmu.odometry import OdometryState, reckon
 from vehicle_fmu.steering import SteeringState, hold_request, pass_request, take_up_play, turn_steering_wheel
-
-PARK = int(Gear.PARK)
 
 
 class CarState(NamedTuple):
@@ -37,22 +35,23 @@ class CarState(NamedTuple):
 
 def parked_car(start: Pose, usable: bool, params: VehicleParams) -> CarState:
     """Return the car at rest, wheel straight, in park, the brake pressed; on its tyres if its numbers are usable."""
-    body = params.body if usable else KINEMATIC
+    holding = Effort(brake=params.chassis.mass * params.drive.hold_deceleration)
     return CarState(
-        0,
-        start,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        1.0,
-        DriverState(0, 0, 0, 0, False),
-        Selector(PARK, NO_GEAR, 0),
-        hold_request(0.0, 0.0),
-        Pedals(0.0, 0.0, Effort(0.0, params.chassis.mass * params.drive.hold_deceleration), 0.0),
-        place(start, body, params.wheelbase, params.chassis, params.double_track, params.road),
-        OdometryState(start, 0.0),
+        pose=start,
+        pedals=Pedals(effort=holding),
+        body=place(start, params.body if usable else Body.KINEMATIC, params),
+        odometry=OdometryState(start),
     )
+
+
+class Going(NamedTuple):
+    """How fast the car goes after a step, and what moved it."""
+
+    pose: Pose
+    speed: float
+    rolled_speed: float
+    pedals: Pedals
+    body: BodyState
 
 
 def step_car(state: CarState, inputs: VehicleInput, faulty: bool, params: VehicleParams, next_ns: int) -> CarState:
@@ -60,78 +59,71 @@ def step_car(state: CarState, inputs: VehicleInput, faulty: bool, params: Vehicl
     h = (next_ns - state.time_ns) * 1e-9
     driver = watch(state.driver, inputs.prompt, state.time_ns, params.driver)
     free = not (faulty or inputs.brake_request or driver.takeover or brakes(state.time_ns, params.driver))
-    target = 0.0
-    if free:
-        target = _target_speed(state, driver, inputs, params.driver)
+    target = _target_speed(state, driver, inputs, params.driver) if free else 0.0
     selector = shift(state.selector, target, state.speed, params.drive.shift_time, next_ns - state.time_ns)
+    steering = _steer(state, inputs, driver.takeover or faulty, params, next_ns)
+    wheel = turn_steering_wheel(state.steering_wheel_angle, steering.lagged, params.steering, h, state.speed)
+    steering = steering._replace(play=take_up_play(steering.play, wheel, params.steering.backlash))
+    state = state._replace(driver=driver, selector=selector)
+    angles = (state.steering.play / params.steering.ratio, steering.play / params.steering.ratio)
+    going = _go(state, inputs, geared_speed(selector, target), free, angles, params, h)
+    odometry = OdometryState(going.pose)
+    if not params.odometry.perfect:
+        way = 0.5 * h * (state.rolled_speed + going.rolled_speed)
+        odometry = reckon(state.odometry, way, 0.5 * (angles[0] + angles[1]), params.wheelbase, params.odometry)
+    driven = inputs.speed_control_active or inputs.force_control_active
+    return state._replace(
+        time_ns=next_ns,
+        pose=going.pose,
+        speed=going.speed,
+        rolled_speed=going.rolled_speed,
+        steering_wheel_angle=wheel,
+        distance=state.distance + 0.5 * h * abs(state.speed + going.speed),
+        brake_pedal=_brake_pedal(state.time_ns, driver, driven, params.driver),
+        steering=steering,
+        pedals=going.pedals,
+        body=going.body,
+        odometry=odometry,
+    )
+
+
+def _steer(state: CarState, inputs: VehicleInput, released: bool, params: VehicleParams, next_ns: int) -> SteeringState:
+    """Return the steering with the request of whoever holds the wheel: driver, controller or nobody."""
     steering = state.steering
     if grabs(state.time_ns, params.driver):
-        steering = hold_request(params.driver.grab_angle, steering.play)
-    elif inputs.steering_active and not driver.takeover and not faulty:
-        steering = pass_request(steering, inputs.steering_wheel_request, params.steering, state.time_ns, next_ns)
-    else:
-        steering = hold_request(state.steering_wheel_angle, steering.play)
-    wheel = turn_steering_wheel(state.steering_wheel_angle, steering.lagged, params.steering, h, state.speed)
-    play = take_up_play(steering.play, wheel, params.steering.backlash)
-    angle = state.steering.play / params.steering.ratio
-    next_angle = play / params.steering.ratio
-    target = geared_speed(selector, target)
+        return hold_request(params.driver.grab_angle, steering.play)
+    if inputs.steering_active and not released:
+        return pass_request(steering, inputs.steering_wheel_request, params.steering, state.time_ns, next_ns)
+    return hold_request(state.steering_wheel_angle, steering.play)
+
+
+def _go(
+    state: CarState,
+    inputs: VehicleInput,
+    target: float,
+    free: bool,
+    angles: tuple[float, float],
+    params: VehicleParams,
+    h: float,
+) -> Going:
+    """Return the motion ``h`` [s] later on the way to ``target`` [m/s], front wheels turning from angle to angle."""
     forced = free and inputs.force_control_active and target != 0.0
-    middle = 0.5 * (angle + next_angle)
-    pedals = state.pedals
-    body = state.body
-    if params.body == KINEMATIC:
+    if params.body == Body.KINEMATIC:
         speed = change_speed(state.speed, target, params.drive, h)
         if forced:
-            speed = push_speed(state.speed, inputs.force_request, params.chassis.mass, along(selector), h)
-        pose = move(state.pose, state.speed, speed, angle, next_angle, params.wheelbase, h)
-        rolled = speed
+            speed = push_speed(state.speed, inputs.force_request, params.chassis.mass, along(state.selector), h)
+        pose = move(state.pose, state.speed, speed, angles[0], angles[1], params.wheelbase, h)
+        return Going(pose, speed, speed, state.pedals, state.body)
+    gear = state.selector.gear
+    if forced:
+        pedals = obey(state.pedals, inputs.force_request, state.speed, gear, params.drive, h)
     else:
-        if forced:
-            pedals = obey(pedals, inputs.force_request, state.speed, selector.gear, params.drive, h)
-        else:
-            pedals = press(pedals, target, state.speed, selector.gear, params.chassis.mass, params.drive, h)
-        body = _push(body, middle, pedals.effort, selector.gear, params, h)
-        motion = motion_of(body, params.body)
-        pose = motion.pose
-        speed = motion.speed_x
-        rolled = wheel_speed(body, params.body, params.double_track.hub.radius)
-    odometry = OdometryState(pose, 0.0)
-    if not params.odometry.perfect:
-        way = 0.5 * h * (state.rolled_speed + rolled)
-        odometry = reckon(state.odometry, way, middle, params.wheelbase, params.odometry)
-    return CarState(
-        next_ns,
-        pose,
-        speed,
-        rolled,
-        wheel,
-        state.distance + 0.5 * h * abs(state.speed + speed),
-        _brake_pedal(state.time_ns, driver, inputs.speed_control_active or inputs.force_control_active, params.driver),
-        driver,
-        selector,
-        SteeringState(steering.line, steering.lagged, play),
-        pedals,
-        body,
-        odometry,
-    )
-
-
-def _push(body: BodyState, angle: float, effort: Effort, gear: int, params: VehicleParams, h: float) -> BodyState:
-    if gear == PARK:
-        effort = Effort(0.0, params.drive.brake_force_limit)
-    return push_body(
-        body,
-        angle,
-        effort,
-        params.body,
-        params.wheelbase,
-        params.chassis,
-        params.single_track,
-        params.double_track,
-        params.road,
-        h,
-    )
+        pedals = press(state.pedals, target, state.speed, gear, params.chassis.mass, params.drive, h)
+    effort = Effort(brake=params.drive.brake_force_limit) if gear == Gear.PARK else pedals.effort
+    body = push_body(state.body, 0.5 * (angles[0] + angles[1]), effort, params, h)
+    motion = motion_of(body, params.body)
+    rolled = wheel_speed(body, params.body, params.double_track.hub.radius)
+    return Going(motion.pose, motion.speed_x, rolled, pedals, body)
 
 
 def _target_speed(state: CarState, driver: DriverState, inputs: VehicleInput, params: DriverParams) -> float:

@@ -14,16 +14,7 @@ from typing import Annotated, NamedTuple
 
 from modelkit.signal import Signal
 from modelkit.vocabulary import Pose
-from vehicle_fmu.chassis import (
-    CHOSEN,
-    ChassisParams,
-    Motion,
-    RoadParams,
-    Wrench,
-    accelerations,
-    gravity_in_car,
-    move_body,
-)
+from vehicle_fmu.chassis import CHOSEN, Build, Motion, Wrench, accelerations, gravity_in_car, move_body
 from vehicle_fmu.effort import Effort
 from vehicle_fmu.loads import Felt, Loads, RollParams, feel, wheel_loads
 from vehicle_fmu.tires import Force, TireParams
@@ -76,25 +67,19 @@ def wheel_angles(angle: float, wheelbase: float, track: float, ackermann: float)
     return _inner(tangent, 1.0 - half), _inner(tangent, 1.0 + half)
 
 
-def resting(
-    pose: Pose, angle: float, wheelbase: float, chassis: ChassisParams, p: DoubleTrackParams, road: RoadParams
-) -> DoubleTrackState:
+def resting(pose: Pose, angle: float, build: Build, p: DoubleTrackParams) -> DoubleTrackState:
     """Return the car at rest, its carcasses deflected so that they carry it on the slope."""
-    gravity = gravity_in_car(pose.heading, road)
+    mass = build.chassis.mass
+    gravity = gravity_in_car(pose.heading, build.road)
     felt = Felt(-gravity.x, -gravity.y)
-    loads = wheel_loads(felt, gravity.normal, wheelbase, (p.track_front, p.track_rear), chassis, p.roll)
-    left, right = wheel_angles(angle, wheelbase, p.track_front, p.ackermann)
-    share = 1.0 / (chassis.mass * gravity.normal)
-    return DoubleTrackState(
-        Motion(pose, 0.0, 0.0, 0.0),
-        (
-            _carrying(chassis.mass * share * loads.front_left, felt, left, p.tires),
-            _carrying(chassis.mass * share * loads.front_right, felt, right, p.tires),
-            _carrying(chassis.mass * share * loads.rear_left, felt, 0.0, p.tires),
-            _carrying(chassis.mass * share * loads.rear_right, felt, 0.0, p.tires),
-        ),
-        felt,
+    loads = wheel_loads(felt, gravity.normal, build.wheelbase, (p.track_front, p.track_rear), build.chassis, p.roll)
+    left, right = wheel_angles(angle, build.wheelbase, p.track_front, p.ackermann)
+    share = 1.0 / (mass * gravity.normal)
+    wheels = tuple(
+        _carrying(mass * share * load, felt, turned, p.tires)
+        for load, turned in zip(loads.wheels, (left, right, 0.0, 0.0), strict=True)
     )
+    return DoubleTrackState(Motion(pose), wheels, felt)
 
 
 def _carrying(mass: float, felt: Felt, angle: float, tires: TireParams) -> Wheel:
@@ -102,76 +87,66 @@ def _carrying(mass: float, felt: Felt, angle: float, tires: TireParams) -> Wheel
     sin = math.sin(angle)
     x = mass * (felt.x * cos + felt.y * sin)
     y = mass * (felt.y * cos - felt.x * sin)
-    return Wheel(0.0, x / tires.carcass_x, y / tires.carcass_y, Force(x, y))
+    return Wheel(u=x / tires.carcass_x, w=y / tires.carcass_y, force=Force(x, y))
 
 
 def step_double_track(
     state: DoubleTrackState,
     angle: float,
     effort: Effort,
-    wheelbase: float,
-    chassis: ChassisParams,
+    build: Build,
     p: DoubleTrackParams,
-    road: RoadParams,
     h: float,
 ) -> DoubleTrackState:
     """Return the car ``h`` [s] later at front-wheel ``angle`` [rad] under ``effort``."""
     motion = state.motion
-    gravity = gravity_in_car(motion.pose.heading, road)
-    loads = wheel_loads(state.felt, gravity.normal, wheelbase, (p.track_front, p.track_rear), chassis, p.roll)
-    corners = _corners(angle, effort, loads, wheelbase, chassis, p, road)
-    fl = _turn(state.wheels[0], corners[0], motion, p.hub, p.tires, h)
-    fr = _turn(state.wheels[1], corners[1], motion, p.hub, p.tires, h)
-    rl = _turn(state.wheels[2], corners[2], motion, p.hub, p.tires, h)
-    rr = _turn(state.wheels[3], corners[3], motion, p.hub, p.tires, h)
-    on_fl = _wrench(fl, corners[0])
-    on_fr = _wrench(fr, corners[1])
-    on_rl = _wrench(rl, corners[2])
-    on_rr = _wrench(rr, corners[3])
-    total = Wrench(
-        (on_fl.x + on_fr.x) + (on_rl.x + on_rr.x),
-        (on_fl.y + on_fr.y) + (on_rl.y + on_rr.y),
-        (on_fl.yaw + on_fr.yaw) + (on_rl.yaw + on_rr.yaw),
-    )
+    chassis = build.chassis
+    gravity = gravity_in_car(motion.pose.heading, build.road)
+    loads = wheel_loads(state.felt, gravity.normal, build.wheelbase, (p.track_front, p.track_rear), chassis, p.roll)
+    corners = _corners(angle, effort, loads, build, p)
+    wheels = tuple(_turn(wheel, at, motion, p.hub, p.tires, h) for wheel, at in zip(state.wheels, corners, strict=True))
+    total = _sum(tuple(_wrench(wheel, at) for wheel, at in zip(wheels, corners, strict=True)))
     change = accelerations(motion, total, gravity, chassis)
     return DoubleTrackState(
         move_body(motion, change, chassis.cg_to_rear, h),
-        (fl, fr, rl, rr),
+        wheels,
         feel(state.felt, total.x / chassis.mass, total.y / chassis.mass, p.roll.lag, h),
     )
 
 
+def _sum(on: tuple[Wrench, ...]) -> Wrench:
+    """Return the sum over the wheels, front pair plus rear pair."""
+    return Wrench(
+        (on[0].x + on[1].x) + (on[2].x + on[3].x),
+        (on[0].y + on[1].y) + (on[2].y + on[3].y),
+        (on[0].yaw + on[1].yaw) + (on[2].yaw + on[3].yaw),
+    )
+
+
 def _corners(
-    angle: float,
-    effort: Effort,
-    loads: Loads,
-    wheelbase: float,
-    chassis: ChassisParams,
-    p: DoubleTrackParams,
-    road: RoadParams,
+    angle: float, effort: Effort, loads: Loads, build: Build, p: DoubleTrackParams
 ) -> tuple[Corner, Corner, Corner, Corner]:
-    a = wheelbase - chassis.cg_to_rear
-    b = -chassis.cg_to_rear
-    left, right = wheel_angles(angle, wheelbase, p.track_front, p.ackermann)
+    chassis = build.chassis
+    front = build.wheelbase - chassis.cg_to_rear
+    rear = -chassis.cg_to_rear
+    left, right = wheel_angles(angle, build.wheelbase, p.track_front, p.ackermann)
     half = 0.5 * p.hub.radius
-    drive_f = half * effort.drive * chassis.front_drive_share
-    drive_r = half * effort.drive * (1.0 - chassis.front_drive_share)
-    brake_f = half * effort.brake * chassis.front_brake_share
-    brake_r = half * effort.brake * (1.0 - chassis.front_brake_share)
-    y_f = 0.5 * p.track_front
-    y_r = 0.5 * p.track_rear
-    lean_f = p.roll.camber_front * loads.roll
-    lean_r = p.roll.camber_rear * loads.roll
+    drive_front = half * effort.drive * chassis.front_drive_share
+    drive_rear = half * effort.drive * (1.0 - chassis.front_drive_share)
+    brake_front = half * effort.brake * chassis.front_brake_share
+    brake_rear = half * effort.brake * (1.0 - chassis.front_brake_share)
+    y_front = 0.5 * p.track_front
+    y_rear = 0.5 * p.track_rear
+    lean_front = p.roll.camber_front * loads.roll
+    lean_rear = p.roll.camber_rear * loads.roll
     drag = chassis.rolling_resistance * p.hub.radius
-    fl = loads.front_left
-    fr = loads.front_right
-    rl = loads.rear_left
-    rr = loads.rear_right
+    grip = build.road.grip
+    load = loads.wheels
     return (
-        Corner(a, y_f, left, fl, lean_f, road.grip[0], drive_f, brake_f + drag * fl),
-        Corner(a, -y_f, right, fr, lean_f, road.grip[1], drive_f, brake_f + drag * fr),
-        Corner(b, y_r, 0.0, rl, lean_r, road.grip[2], drive_r, brake_r + drag * rl),
-        Corner(b, -y_r, 0.0, rr, lean_r, road.grip[3], drive_r, brake_r + drag * rr),
+        Corner(front, y_front, left, load[0], lean_front, grip[0], drive_front, brake_front + drag * load[0]),
+        Corner(front, -y_front, right, load[1], lean_front, grip[1], drive_front, brake_front + drag * load[1]),
+        Corner(rear, y_rear, 0.0, load[2], lean_rear, grip[2], drive_rear, brake_rear + drag * load[2]),
+        Corner(rear, -y_rear, 0.0, load[3], lean_rear, grip[3], drive_rear, brake_rear + drag * load[3]),
     )
 
 

@@ -104,7 +104,7 @@ def obey(pedals: Pedals, force: float, speed: float, gear: int, p: DriveParams, 
 
 
 def _split(effort: Effort, force: float, creep: float, ahead: float, p: DriveParams, h: float) -> Effort:
-    """Return the effort ``h`` [s] later: a force along ``ahead`` (1 or -1) goes to the drive, against it to the brake."""
+    """Return the effort ``h`` [s] later: along ``ahead`` (1 or -1) a force drives, against it it brakes."""
     if force * ahead >= 0.0:
         return _lag(effort, force + creep, 0.0, p, h)
     return _lag(effort, creep, abs(force), p, h)

@@ -33,13 +33,12 @@ class RollParams(NamedTuple):
 
 
 class Loads(NamedTuple):
-    """Vertical forces [N] and the roll angle [rad], positive out of a left turn."""
+    """Vertical forces, and the lean they come with."""
 
-    front_left: float
-    front_right: float
-    rear_left: float
-    rear_right: float
+    wheels: tuple[float, float, float, float]
+    """Front left, front right, rear left, rear right [N]."""
     roll: float
+    """Roll angle [rad], positive out of a left turn."""
 
 
 class Felt(NamedTuple):
@@ -64,9 +63,7 @@ def wheel_loads(
     sprung = weight - normal * (roll.unsprung_front + roll.unsprung_rear)
     front = clamp(sprung * p.cg_to_rear / wheelbase + normal * roll.unsprung_front - pitch, 0.0, weight)
     rear = weight - front
-    stiffness = roll.stiffness_front + roll.stiffness_rear - p.mass * GRAVITY * roll.arm
-    if stiffness < 1.0:
-        stiffness = 1.0
+    stiffness = max(1.0, roll.stiffness_front + roll.stiffness_rear - p.mass * GRAVITY * roll.arm)
     angle = clamp(p.mass * felt.y * roll.arm / stiffness, -0.5, 0.5)
     direct = p.mass * felt.y * (p.cg_height - roll.arm) / wheelbase
     shift_front = (roll.stiffness_front * angle + direct * p.cg_to_rear) / tracks[0]
@@ -74,5 +71,5 @@ def wheel_loads(
     shift_front = clamp(shift_front, -0.5 * front, 0.5 * front)
     shift_rear = clamp(shift_rear, -0.5 * rear, 0.5 * rear)
     return Loads(
-        0.5 * front - shift_front, 0.5 * front + shift_front, 0.5 * rear - shift_rear, 0.5 * rear + shift_rear, angle
+        (0.5 * front - shift_front, 0.5 * front + shift_front, 0.5 * rear - shift_rear, 0.5 * rear + shift_rear), angle
     )

@@ -11,18 +11,14 @@ from typing import NamedTuple
 
 from modelkit.maths import is_finite
 from modelkit.vocabulary import Pose
-from vehicle_fmu.body import KINEMATIC, told
+from vehicle_fmu.body import shown_speed
 from vehicle_fmu.car import CarState, parked_car, step_car
 from vehicle_fmu.driver import presses_confirm, switch_is_on
-from vehicle_fmu.interface import VehicleFault, VehicleInput, VehicleOutput, VehicleParams
-from vehicle_fmu.odometry import told_speed
+from vehicle_fmu.interface import Body, VehicleFault, VehicleInput, VehicleOutput, VehicleParams
+from vehicle_fmu.odometry import wheel_speed_reading
 from vehicle_fmu.scene import CarSize, clearance
 from vehicle_fmu.ultrasonic import UltrasonicState, first_readings, is_due, measure
 from vehicle_fmu.usable import is_usable
-
-NO_FAULT = int(VehicleFault.NONE)
-BAD_INPUT = int(VehicleFault.BAD_INPUT)
-BAD_PARAMETER = int(VehicleFault.BAD_PARAMETER)
 
 
 class VehicleState(NamedTuple):
@@ -30,22 +26,22 @@ class VehicleState(NamedTuple):
 
     car: CarState = CarState()
     ultrasonic: UltrasonicState = UltrasonicState()
-    fault: int = NO_FAULT
+    fault: int = VehicleFault.NONE
 
 
 def initialize(params: VehicleParams) -> tuple[VehicleState, VehicleOutput]:
     """Return the car at rest at its start pose, wheel straight, in park."""
-    fault = NO_FAULT
+    fault = VehicleFault.NONE
     start = params.start
-    heard = UltrasonicState((0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0), 1)
+    heard = UltrasonicState()
     gap = 0.0
     if is_usable(params):
         heard = first_readings(start, params.scene, params.ultrasonic)
         gap = _clearance(start, params, 0)
     else:
-        fault = BAD_PARAMETER
-        start = Pose(0.0, 0.0, 0.0)
-    state = VehicleState(parked_car(start, fault == NO_FAULT, params), heard, fault)
+        fault = VehicleFault.BAD_PARAMETER
+        start = Pose()
+    state = VehicleState(parked_car(start, fault == VehicleFault.NONE, params), heard, fault)
     return state, _outputs(state, gap, params)
 
 
@@ -54,17 +50,17 @@ def step(
 ) -> tuple[VehicleState, VehicleOutput]:
     """Return the vehicle ``dt_ns`` later, its inputs held."""
     fault = state.fault
-    if fault == NO_FAULT and not _is_finite_input(inputs):
-        fault = BAD_INPUT
+    if fault == VehicleFault.NONE and not _is_finite_input(inputs):
+        fault = VehicleFault.BAD_INPUT
     car = state.car
     heard = state.ultrasonic
     gap = 0.0
-    if fault != BAD_PARAMETER:
+    if fault != VehicleFault.BAD_PARAMETER:
         if dt_ns > 0:
             count = _internal_steps(dt_ns, params)
             start_ns = car.time_ns
             for number in range(1, count + 1):
-                car = step_car(car, inputs, fault != NO_FAULT, params, start_ns + dt_ns * number // count)
+                car = step_car(car, inputs, fault != VehicleFault.NONE, params, start_ns + dt_ns * number // count)
             if is_due(start_ns, car.time_ns, params.ultrasonic.cycle):
                 heard = measure(heard, car.pose, params.scene, params.ultrasonic, car.time_ns)
         gap = _clearance(car.pose, params, car.time_ns)
@@ -78,9 +74,7 @@ def _clearance(pose: Pose, params: VehicleParams, time_ns: int) -> float:
 
 
 def _internal_steps(dt_ns: int, params: VehicleParams) -> int:
-    longest = params.largest_step
-    if params.body != KINEMATIC and params.body_step < longest:
-        longest = params.body_step
+    longest = params.largest_step if params.body == Body.KINEMATIC else min(params.largest_step, params.body_step)
     return math.ceil(dt_ns * 1e-9 / longest - 1e-9)
 
 
@@ -88,17 +82,17 @@ def _outputs(state: VehicleState, gap: float, params: VehicleParams) -> VehicleO
     car = state.car
     speed = car.speed
     measured = car.speed if params.odometry.perfect else car.rolled_speed
-    if params.body != KINEMATIC:
-        speed = told(speed)
-        measured = told(measured)
+    if params.body != Body.KINEMATIC:
+        speed = shown_speed(speed)
+        measured = shown_speed(measured)
     front = 0.0
-    if state.fault != BAD_PARAMETER:
+    if state.fault != VehicleFault.BAD_PARAMETER:
         front = car.steering.play / params.steering.ratio
     return VehicleOutput(
         pose=car.pose,
         odometry=car.odometry.pose,
         speed=speed,
-        measured_speed=told_speed(measured, params.odometry),
+        measured_speed=wheel_speed_reading(measured, params.odometry),
         steering_wheel_angle=car.steering_wheel_angle,
         front_wheel_angle=front,
         gear=car.selector.gear,

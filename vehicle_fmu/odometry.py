@@ -57,6 +57,6 @@ def reckon(
     )
 
 
-def told_speed(speed: float, params: OdometryParams) -> float:
+def wheel_speed_reading(speed: float, params: OdometryParams) -> float:
     """Return the speed [m/s] the wheel sensors tell."""
     return speed if params.perfect else (1.0 + params.radius_error) * speed

@@ -24,10 +24,10 @@ from modelkit.maths import clamp, sign
 from modelkit.signal import Signal
 from vehicle_fmu.chassis import (
     GRAVITY,
+    Build,
     ChassisParams,
     Gravity,
     Motion,
-    RoadParams,
     Wrench,
     accelerations,
     gravity_in_car,
@@ -177,14 +177,13 @@ def step_single_track(
     state: SingleTrackState,
     angle: float,
     effort: Effort,
-    wheelbase: float,
-    chassis: ChassisParams,
+    build: Build,
     p: SingleTrackParams,
-    road: RoadParams,
     h: float,
 ) -> SingleTrackState:
     """Return the car ``h`` [s] later at front-wheel ``angle`` [rad] under ``effort``."""
     motion = state.motion
+    wheelbase, chassis, road = build
     b = chassis.cg_to_rear
     gravity = gravity_in_car(motion.pose.heading, road)
     accel = state.forces.along / chassis.mass
@@ -217,7 +216,7 @@ def _push(
     deflection: float, slip: Slip, stiffness: float, grip: float, carcass: float, h: float
 ) -> tuple[float, float]:
     """Return the axle's next deflection [m] and its lateral force [N]."""
-    speed = slip.along if slip.along > 0.1 * abs(slip.across) else 0.1 * abs(slip.across)
+    speed = max(0.1 * abs(slip.across), slip.along)
     secant = stiffness
     if stiffness * abs(slip.across) > grip * speed:
         secant = grip * speed / abs(slip.across)

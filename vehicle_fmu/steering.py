@@ -19,7 +19,7 @@ STANDSTILL = 0.05
 class SteeringState(NamedTuple):
     """What the steering remembers besides the angle of the wheel."""
 
-    line: tuple[float, ...] = (0.0,) * 16
+    line: tuple[float, ...] = (0.0,) * CELLS
     """Requests [rad] of the dead time, oldest first."""
     lagged: float = 0.0
     """Request after dead time and lag [rad]."""
@@ -44,10 +44,7 @@ def pass_request(
     late = request
     if params.dead_time > 0.0:
         cell_ns = int(params.dead_time * 1e9 / CELLS + 0.5)
-        count = end_ns // cell_ns - start_ns // cell_ns
-        if count > CELLS:
-            count = CELLS
-        for _ in range(count):
+        for _ in range(min(CELLS, end_ns // cell_ns - start_ns // cell_ns)):
             line = line[1:] + (request,)
         late = line[0]
     share = 1.0
@@ -59,8 +56,7 @@ def pass_request(
 
 def hold_request(angle: float, play: float) -> SteeringState:
     """Return the steering with nothing on its way: every request is the wheel's own ``angle`` [rad]."""
-    a = angle
-    return SteeringState((a, a, a, a, a, a, a, a, a, a, a, a, a, a, a, a), angle, play)
+    return SteeringState((angle,) * CELLS, angle, play)
 
 
 def take_up_play(play: float, angle: float, backlash: float) -> float:

@@ -1,4 +1,4 @@
-"""Twelve ultrasonic sensors: distance to the nearest thing inside each cone.
+"""tuple[float, ...] ultrasonic sensors: distance to the nearest thing inside each cone.
 
 Numbers: 1 to 4 front, from left to right; 5 to 8 rear, from left to right; 9 front left side,
 10 rear left side; 11 front right side, 12 rear right side. A reading of ``max_range`` means that
@@ -53,14 +53,9 @@ class UltrasonicState(NamedTuple):
     random: int = 1
 
 
-Twelve = tuple[float, float, float, float, float, float, float, float, float, float, float, float]
-
-
 def first_readings(pose: Pose, scene: SceneParams, params: UltrasonicParams) -> UltrasonicState:
     """Return the readings [m] at time zero."""
-    m = params.max_range
-    silent = UltrasonicState((m, m, m, m, m, m, m, m, m, m, m, m), seed_state(params.seed))
-    return measure(silent, pose, scene, params, 0)
+    return measure(UltrasonicState(random=seed_state(params.seed)), pose, scene, params, 0)
 
 
 def is_due(before_ns: int, now_ns: int, cycle: float) -> bool:
@@ -75,59 +70,33 @@ def measure(
     """Return new readings [m] of all sensors of a car at ``pose``."""
     random = state.random
     ear = Ear(params.min_range, params.max_range, params.resolution, params.noise, params.dropout)
-    d = heard_distances(pose, scene, params.mounts, params.half_angle, params.max_range, params.kerb_height, time_ns)
-    random, a = _told(random, d[0], ear)
-    random, b = _told(random, d[1], ear)
-    random, c = _told(random, d[2], ear)
-    random, e = _told(random, d[3], ear)
-    random, f = _told(random, d[4], ear)
-    random, g = _told(random, d[5], ear)
-    random, h = _told(random, d[6], ear)
-    random, i = _told(random, d[7], ear)
-    random, j = _told(random, d[8], ear)
-    random, k = _told(random, d[9], ear)
-    random, m = _told(random, d[10], ear)
-    random, n = _told(random, d[11], ear)
-    return UltrasonicState((a, b, c, e, f, g, h, i, j, k, m, n), random)
+    readings = state.readings
+    for distance in heard_distances(pose, scene, params, time_ns):
+        random, reading = _reading(random, distance, ear)
+        readings = readings[1:] + (reading,)
+    return UltrasonicState(readings, random)
 
 
-def heard_distances(
-    pose: Pose,
-    scene: SceneParams,
-    mounts: tuple[SensorMount, ...],
-    half_angle: float,
-    max_range: float,
-    kerb_height: float,
-    time_ns: int,
-) -> Twelve:
+def heard_distances(pose: Pose, scene: SceneParams, params: UltrasonicParams, time_ns: int) -> tuple[float, ...]:
     """Return the exact distance [m] from each sensor to the nearest thing in its cone, at most ``max_range``."""
-    m = max_range
-    d = (m, m, m, m, m, m, m, m, m, m, m, m)
+    distances: tuple[float, ...] = (params.max_range,) * 12
     ahead = Point(math.cos(pose.heading), math.sin(pose.heading))
     for obstacle in scene.boxes:
         if is_there(obstacle, time_ns):
-            d = _hear(d, pose, ahead, mounts, half_angle, obstacle_box(obstacle))
+            distances = _hear(distances, pose, ahead, params, obstacle_box(obstacle))
     for kerb in scene.kerbs:
-        if kerb.height > 0.0 and kerb.height >= kerb_height:
+        if kerb.height > 0.0 and kerb.height >= params.kerb_height:
             line = line_box(kerb.x1, kerb.y1, kerb.x2, kerb.y2)
-            d = _hear(d, pose, ahead, mounts, half_angle, line)
-    return d
+            distances = _hear(distances, pose, ahead, params, line)
+    return distances
 
 
-def _hear(d: Twelve, pose: Pose, ahead: Point, mounts: tuple[SensorMount, ...], half: float, box: Box) -> Twelve:
-    return (
-        _nearer(d[0], pose, ahead, mounts[0], half, box),
-        _nearer(d[1], pose, ahead, mounts[1], half, box),
-        _nearer(d[2], pose, ahead, mounts[2], half, box),
-        _nearer(d[3], pose, ahead, mounts[3], half, box),
-        _nearer(d[4], pose, ahead, mounts[4], half, box),
-        _nearer(d[5], pose, ahead, mounts[5], half, box),
-        _nearer(d[6], pose, ahead, mounts[6], half, box),
-        _nearer(d[7], pose, ahead, mounts[7], half, box),
-        _nearer(d[8], pose, ahead, mounts[8], half, box),
-        _nearer(d[9], pose, ahead, mounts[9], half, box),
-        _nearer(d[10], pose, ahead, mounts[10], half, box),
-        _nearer(d[11], pose, ahead, mounts[11], half, box),
+def _hear(
+    distances: tuple[float, ...], pose: Pose, ahead: Point, params: UltrasonicParams, box: Box
+) -> tuple[float, ...]:
+    return tuple(
+        _nearer(nearest, pose, ahead, mount, params.half_angle, box)
+        for nearest, mount in zip(distances, params.mounts, strict=True)
     )
 
 
@@ -146,7 +115,7 @@ def _nearer(nearest: float, pose: Pose, ahead: Point, mount: SensorMount, half_a
     return distance if distance < nearest else nearest
 
 
-def _told(random: int, distance: float, ear: Ear) -> tuple[int, float]:
+def _reading(random: int, distance: float, ear: Ear) -> tuple[int, float]:
     """Return the generator and a reading; with neither noise nor dropout nothing is drawn by lot."""
     chance = 1.0
     error = 0.0

@@ -1,10 +1,9 @@
 """Whether the parameters describe a car: finite numbers, and positive ones where equations divide."""
 
 from modelkit.maths import is_finite
-from vehicle_fmu.body import DOUBLE_TRACK, KINEMATIC, SINGLE_TRACK
 from vehicle_fmu.chassis import ChassisParams
 from vehicle_fmu.double_track import DoubleTrackParams
-from vehicle_fmu.interface import DriveParams, VehicleParams
+from vehicle_fmu.interface import Body, DriveParams, VehicleParams
 from vehicle_fmu.scene import SceneParams
 from vehicle_fmu.single_track import SingleTrackParams
 from vehicle_fmu.tires import TireParams
@@ -25,11 +24,18 @@ def is_usable(params: VehicleParams) -> bool:
         and _sizes(params.chassis.mass)
         and _hears(params.ultrasonic)
         and _stands(params.scene)
-        and (params.body == KINEMATIC or (_sizes(params.body_step) and is_finite(params.road.slope + params.road.bank)))
-        and (params.body == KINEMATIC or _is_chassis(params.chassis, params.wheelbase))
-        and (params.body == KINEMATIC or _drives(params.drive))
-        and (params.body != SINGLE_TRACK or _is_single(params.single_track))
-        and (params.body != DOUBLE_TRACK or _is_double(params.double_track))
+        and (params.body == Body.KINEMATIC or _has_mass(params))
+        and (params.body != Body.SINGLE_TRACK or _is_single(params.single_track))
+        and (params.body != Body.DOUBLE_TRACK or _is_double(params.double_track))
+    )
+
+
+def _has_mass(params: VehicleParams) -> bool:
+    return (
+        _sizes(params.body_step)
+        and is_finite(params.road.slope + params.road.bank)
+        and _is_chassis(params.chassis, params.wheelbase)
+        and _drives(params.drive)
     )
 
 

@@ -55,7 +55,7 @@ class Contact(NamedTuple):
 def turn_wheel(wheel: Wheel, contact: Contact, hub: HubParams, tires: TireParams, h: float) -> Wheel:
     """Return the wheel ``h`` [s] later and its force [N] on the car over the step."""
     rim = hub.radius * wheel.spin
-    speed = _larger(_larger(abs(contact.along), abs(rim)), 0.1 * abs(contact.across))
+    speed = max(abs(contact.along), abs(rim), 0.1 * abs(contact.across))
     slide_x = rim - contact.along
     slide_y = speed * tires.camber_slip * contact.camber - contact.across
     over = 1.0 / speed if speed > 1e-12 else 0.0
@@ -74,7 +74,3 @@ def turn_wheel(wheel: Wheel, contact: Contact, hub: HubParams, tires: TireParams
         relax(wheel.w, slide_y, rate_y, h),
         Force(force + slope * (spin - wheel.spin), tires.carcass_y * relax(wheel.w, slide_y, rate_y, ahead)),
     )
-
-
-def _larger(a: float, b: float) -> float:
-    return a if a > b else b

@@ -11,9 +11,9 @@ from controller_fmu.apa.slot import LEFT, PARALLEL, PERPENDICULAR, UNSEEN, Slot
 from controller_fmu.apa.supervisor import look
 from controller_fmu.apa.turns import straight_move
 from controller_fmu.interface import ControllerInput, ControllerParams
-from modelkit.vocabulary import SENSOR_MOUNTS, Pose
+from modelkit.vocabulary import Pose
 from vehicle_fmu.scene import Obstacle, SceneParams
-from vehicle_fmu.ultrasonic import heard_distances
+from vehicle_fmu.ultrasonic import UltrasonicParams, heard_distances
 
 PARAMS = ControllerParams()
 DRIFT = 0.08
@@ -29,7 +29,7 @@ def scene_of(boxes, side):
 
 
 def inputs_at(true, believed, boxes, side):
-    heard = heard_distances(true, scene_of(boxes, side), SENSOR_MOUNTS, math.radians(30.0), 5.0, 0.08, 0)
+    heard = heard_distances(true, scene_of(boxes, side), UltrasonicParams(), 0)
     return ControllerInput(odometry=believed, ultrasonic=heard)
 
 

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from modelkit.maths import clamp
 from modelkit.variables import flatten
 from modelkit.vocabulary import Pose
-from vehicle_fmu.chassis import ChassisParams, Motion, RoadParams
+from vehicle_fmu.chassis import Build, ChassisParams, Motion, RoadParams
 from vehicle_fmu.double_track import DoubleTrackParams, DoubleTrackState, resting, step_double_track, wheel_angles
 from vehicle_fmu.effort import Effort
 from vehicle_fmu.loads import Felt
@@ -24,7 +24,7 @@ ROAD = RoadParams()
 
 
 def step(state: DoubleTrackState, angle: float, drive: float, brake: float, h: float) -> DoubleTrackState:
-    return step_double_track(state, angle, Effort(drive, brake), WHEELBASE, CHASSIS, PARAMS, ROAD, h)
+    return step_double_track(state, angle, Effort(drive, brake), Build(WHEELBASE, CHASSIS, ROAD), PARAMS, h)
 
 
 def steady_yaw_rate(car: Any, speed: float, angle: float, h: float = 0.004) -> float:
@@ -38,7 +38,7 @@ def steady_yaw_rate(car: Any, speed: float, angle: float, h: float = 0.004) -> f
         lost += error * h
         push = chassis.mass * (5.0 * error + 3.0 * lost)
         now = angle * min(1.0, n * h / 3.0)
-        state = step_double_track(state, now, Effort(push, 0.0), wheelbase, chassis, params, ROAD, h)
+        state = step_double_track(state, now, Effort(push, 0.0), Build(wheelbase, chassis, ROAD), params, h)
     assert state.motion.speed_x == pytest.approx(speed, rel=1e-3)
     return state.motion.yaw_rate
 
@@ -72,10 +72,10 @@ def test_tends_to_the_kinematic_car_as_speed_tends_to_zero(speed: float, angle: 
 def test_brake_holds_on_a_10_percent_slope_for_10_minutes(heading: float, angle: float) -> None:
     road = RoadParams(slope=0.1)
     start = Pose(1.0, 2.0, heading)
-    state = resting(start, angle, WHEELBASE, CHASSIS, PARAMS, road)
+    state = resting(start, angle, Build(WHEELBASE, CHASSIS, road), PARAMS)
     for n in range(120000):
         before = state
-        state = step_double_track(state, angle, Effort(0.0, 4000.0), WHEELBASE, CHASSIS, PARAMS, road, 0.005)
+        state = step_double_track(state, angle, Effort(0.0, 4000.0), Build(WHEELBASE, CHASSIS, road), PARAMS, 0.005)
         if n > 2000 and state == before:
             break  # a fixed point of the step: it stays for ever
         assert abs(state.motion.speed_x) < 0.05
@@ -220,7 +220,7 @@ def test_no_nan_for_any_input_in_range(
     plane = RoadParams(road[0], road[1], (grip[0], grip[1], grip[2], grip[3]))
     for _ in range(30):
         state = step_double_track(
-            state, angle, Effort(20000.0 * effort[0], 30000.0 * effort[1]), WHEELBASE, CHASSIS, PARAMS, plane, h
+            state, angle, Effort(20000.0 * effort[0], 30000.0 * effort[1]), Build(WHEELBASE, CHASSIS, plane), PARAMS, h
         )
     assert all(math.isfinite(number) for number in flatten(state))
     assert abs(state.motion.speed_x) < 40.0
@@ -239,5 +239,5 @@ def test_a_slippery_side_pulls_the_braked_car_round() -> None:
     road = RoadParams(grip=(1.0, 0.1, 1.0, 0.1))
     state = DoubleTrackState(Motion(Pose(), 10.0, 0.0, 0.0), (Wheel(10.0 / 0.344),) * 4)
     for _ in range(500):
-        state = step_double_track(state, 0.0, Effort(0.0, 8000.0), WHEELBASE, CHASSIS, PARAMS, road, 0.001)
+        state = step_double_track(state, 0.0, Effort(0.0, 8000.0), Build(WHEELBASE, CHASSIS, road), PARAMS, 0.001)
     assert state.motion.yaw_rate > 0.1

@@ -9,7 +9,7 @@ from shapely import affinity
 
 from modelkit.geometry import FAR
 from modelkit.vocabulary import SENSOR_MOUNTS, Pose
-from vehicle_fmu.odometry import OdometryParams, OdometryState, reckon, told_speed
+from vehicle_fmu.odometry import OdometryParams, OdometryState, reckon, wheel_speed_reading
 from vehicle_fmu.scene import CarSize, Kerb, Obstacle, SceneParams, clearance
 from vehicle_fmu.ultrasonic import (
     UltrasonicParams,
@@ -175,8 +175,8 @@ def test_ticks_never_lose_way() -> None:
     for n in range(1, 3001):
         state = reckon(state, 0.0037, 0.0, 2.405, params)
         assert abs(state.pose.x - 0.0037 * n) <= 0.01 + 1e-9
-    assert told_speed(1.0, OdometryParams(True, 0.1)) == 1.0
-    assert told_speed(1.0, OdometryParams(False, 0.1)) == 1.1
+    assert wheel_speed_reading(1.0, OdometryParams(True, 0.1)) == 1.0
+    assert wheel_speed_reading(1.0, OdometryParams(False, 0.1)) == 1.1
 
 
 def test_rounded_steering_angle() -> None:

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from vehiclemodels.vehicle_dynamics_st import vehicle_dynamics_st
 
 from modelkit.vocabulary import Pose
-from vehicle_fmu.chassis import ChassisParams, Motion, RoadParams
+from vehicle_fmu.chassis import Build, ChassisParams, Motion, RoadParams
 from vehicle_fmu.effort import Effort
 from vehicle_fmu.single_track import SingleTrackParams, SingleTrackState, single_track_rates, step_single_track
 
@@ -73,7 +73,7 @@ def steady_yaw_rate(speed: float, angle: float, h: float = 0.004) -> float:
     state = SingleTrackState(Motion(Pose(), speed, 0.0, 0.0))
     for _ in range(round((4.0 + 3.0 / abs(speed)) / h)):
         push = chassis.mass * 50.0 * (speed - state.motion.speed_x)
-        state = step_single_track(state, angle, Effort(push, 0.0), WHEELBASE, chassis, PARAMS, ROAD, h)
+        state = step_single_track(state, angle, Effort(push, 0.0), Build(WHEELBASE, chassis, ROAD), PARAMS, h)
     return state.motion.yaw_rate
 
 
@@ -114,7 +114,7 @@ def test_brake_holds_on_a_slope_and_rolling_resistance_alone_does_not() -> None:
     for brake, moves in ((6000.0, False), (0.0, True)):
         state = SingleTrackState()
         for _ in range(4000):
-            state = step_single_track(state, 0.2, Effort(0.0, brake), WHEELBASE, CHASSIS, PARAMS, road, 0.005)
+            state = step_single_track(state, 0.2, Effort(0.0, brake), Build(WHEELBASE, CHASSIS, road), PARAMS, 0.005)
         assert (abs(state.motion.pose.x) > 0.001) is moves
 
 
@@ -123,8 +123,8 @@ def test_mirrored_to_the_bit() -> None:
     for n in range(2000):
         angle = 0.5 * math.sin(0.003 * n)
         effort = Effort(3000.0 * math.sin(0.005 * n), 500.0)
-        left = step_single_track(left, angle, effort, WHEELBASE, CHASSIS, PARAMS, ROAD, 0.001)
-        right = step_single_track(right, -angle, effort, WHEELBASE, CHASSIS, PARAMS, ROAD, 0.001)
+        left = step_single_track(left, angle, effort, Build(WHEELBASE, CHASSIS, ROAD), PARAMS, 0.001)
+        right = step_single_track(right, -angle, effort, Build(WHEELBASE, CHASSIS, ROAD), PARAMS, 0.001)
     assert left.motion.pose == Pose(right.motion.pose.x, -right.motion.pose.y, -right.motion.pose.heading)
     assert left.motion.yaw_rate == -right.motion.yaw_rate
     assert abs(left.motion.pose.heading) > 0.1

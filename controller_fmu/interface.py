@@ -98,7 +98,7 @@ class ControllerInput(NamedTuple):
     odometry: Pose = Pose()
     measured_speed: Annotated[float, Signal("m/s", "speed, reverse negative")] = 0.0
     steering_wheel_angle: Annotated[float, Signal("rad", "steering-wheel angle, left positive")] = 0.0
-    gear: Annotated[int, Signal("1", "selector position", states=Gear)] = int(Gear.PARK)
+    gear: Annotated[int, Signal("1", "selector position", states=Gear)] = Gear.PARK
     brake_pedal: Annotated[float, Signal("1", "brake pedal, 0 released to 1 full", 0.0, 1.0)] = 0.0
     driver_takeover: Annotated[bool, Signal("1", "the driver has taken over")] = False
     vehicle_fault: Annotated[int, Signal("1", "why the vehicle brakes by itself; 0: it does not")] = 0
@@ -221,7 +221,7 @@ class LimitParams(NamedTuple):
 class ControllerParams(NamedTuple):
     """The system chosen, the car it thinks it drives, the target and every limit."""
 
-    system: Annotated[int, Signal("1", "which paper's system", states=System)] = int(System.NTBPTCWPT)
+    system: Annotated[int, Signal("1", "which paper's system", states=System)] = System.NTBPTCWPT
     sample_time: Annotated[float, Signal("s", "controller's sample time, whole nanoseconds", 1e-4, 1.0, HOUSE)] = 0.01
     wheelbase: Annotated[float, Signal("m", "front to rear axle", 0.1, 20.0, GUO + ", Table 1")] = 2.405
     steering_ratio: Annotated[

@@ -20,14 +20,6 @@ from controller_fmu.zhang2022.system import ZhangState
 from modelkit.maths import is_finite
 from modelkit.vocabulary import Prompt
 
-FAILED = int(Phase.FAILED)
-BAD_PARAMETER = int(Reason.BAD_PARAMETER)
-STOP = int(Prompt.STOP)
-ZHANG2022 = int(System.ZHANG2022)
-HSIC = int(System.HSIC)
-PREVIEW = int(System.PREVIEW)
-APA = int(System.APA)
-
 
 class Clock(NamedTuple):
     """When the controller acts next."""
@@ -55,13 +47,13 @@ def initialize(params: ControllerParams) -> tuple[ControllerState, ControllerOut
     state = ControllerState(Clock(0, 0, usable), AT_REST, ZhangState(), HsicState(), DrivingState(), AT_START)
     if not usable:
         return state, refused()
-    if params.system == ZHANG2022:
+    if params.system == System.ZHANG2022:
         return state, zhang_outputs(state.zhang2022, params)
-    if params.system == HSIC:
+    if params.system == System.HSIC:
         return state, hsic_outputs(state.hsic, params)
-    if params.system == PREVIEW:
+    if params.system == System.PREVIEW:
         return state, driving_outputs(state.preview, params)
-    if params.system == APA:
+    if params.system == System.APA:
         return state, apa_outputs(state.apa, params)
     return state, outputs(state.parking, params)
 
@@ -80,7 +72,7 @@ def tick(clock: Clock, params: ControllerParams, dt_ns: int) -> tuple[Clock, int
 
 def refused() -> ControllerOutput:
     """Return the outputs of a controller that cannot work with its parameters: it stops the car."""
-    return ControllerOutput(prompt=STOP, brake_request=True, phase=FAILED, reason=BAD_PARAMETER)
+    return ControllerOutput(prompt=Prompt.STOP, brake_request=True, phase=Phase.FAILED, reason=Reason.BAD_PARAMETER)
 
 
 def _is_usable(params: ControllerParams) -> bool:

@@ -48,7 +48,7 @@ def wanted_speed(
     ("drive slowly forward"); 0 is no advice there.
     """
     speed = profile_speed(params, distance if params.profile_over_distance else time_ns * 1e-9)
-    setting_out = (state.heeded == Prompt.FORWARD or state.heeded == Prompt.REVERSE) and advised_speed > 0.0
+    setting_out = state.heeded in (Prompt.FORWARD, Prompt.REVERSE) and advised_speed > 0.0
     if params.obeys_slow_down and (state.heeded == Prompt.SLOW_DOWN or setting_out) and advised_speed < speed:
         speed = advised_speed
     if params.speed_error != 0.0:

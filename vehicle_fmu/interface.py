@@ -63,7 +63,7 @@ class VehicleOutput(NamedTuple):
     measured_speed: Annotated[float, Signal("m/s", "speed as the wheel sensors tell it, reverse negative")] = 0.0
     steering_wheel_angle: Annotated[float, Signal("rad", "steering-wheel angle, left positive")] = 0.0
     front_wheel_angle: Annotated[float, Signal("rad", "equivalent front-wheel angle, left positive")] = 0.0
-    gear: Annotated[int, Signal("1", "selector position", states=Gear)] = int(Gear.PARK)
+    gear: Annotated[int, Signal("1", "selector position", states=Gear)] = Gear.PARK
     brake_pedal: Annotated[float, Signal("1", "brake pedal, 0 released to 1 full", 0.0, 1.0)] = 0.0
     driver_takeover: Annotated[bool, Signal("1", "the driver has taken over")] = False
     vehicle_fault: Annotated[int, Signal("1", "why the vehicle brakes by itself", states=VehicleFault)] = 0
@@ -149,7 +149,7 @@ class DriverParams(NamedTuple):
 class VehicleParams(NamedTuple):
     """The car, its driver and where it stands at first."""
 
-    body: Annotated[int, Signal("1", "equations of motion", states=Body)] = int(Body.KINEMATIC)
+    body: Annotated[int, Signal("1", "equations of motion", states=Body)] = Body.KINEMATIC
     wheelbase: Annotated[float, Signal("m", "front to rear axle", 0.1, 20.0, GUO)] = 2.405
     front_overhang: Annotated[float, Signal("m", "front axle to bumper", 0.0, 5.0, HOUSE)] = 0.80
     rear_overhang: Annotated[float, Signal("m", "rear axle to bumper", 0.0, 5.0, HOUSE)] = 0.60

@@ -5,7 +5,7 @@ from typing import NamedTuple
 from controller_fmu.apa.exit import VARIANTS, exit_of
 from controller_fmu.apa.outline import Car
 from controller_fmu.apa.params import ApaParams
-from controller_fmu.apa.slot import PARALLEL, Margins, Slot, site_of
+from controller_fmu.apa.slot import Kind, Margins, Slot, site_of
 from modelkit.vocabulary import Pose
 
 
@@ -44,7 +44,7 @@ def under_way(attempt: int) -> int:
 
 def following(attempt: int, kind: int) -> int:
     """Return the attempt after this one for a car that has not set out; the same if there is none."""
-    if kind == PARALLEL:
+    if kind == Kind.PARALLEL:
         return AFTER[attempt] if attempt < ATTEMPTS else attempt
     return attempt + LEVEL if attempt + LEVEL < ATTEMPTS else attempt
 
@@ -66,7 +66,7 @@ def fit_of(slot: Slot, car: Car, params: ApaParams) -> Fit:
     """Return whether the car fits. Parallel: a way out of the slot exists within the shift limit; else by width."""
     length = car.front + car.rear
     width = 2.0 * car.half_width
-    if slot.kind != PARALLEL:
+    if slot.kind != Kind.PARALLEL:
         missing = width + params.search.perpendicular_room - slot.length
         shallow = length - params.search.depth_room - slot.depth
         missing = missing if missing > 0.0 else 0.0
@@ -88,7 +88,7 @@ def fit_of(slot: Slot, car: Car, params: ApaParams) -> Fit:
 def shortest_of_iso(kind: int, wheelbase: float, params: ApaParams) -> float:
     """Return the length (width) [m] of the shortest slot of ISO 16787 (secondary source) for this car."""
     length = wheelbase + params.front_overhang + params.rear_overhang
-    if kind != PARALLEL:
+    if kind != Kind.PARALLEL:
         return params.width + 1.2
     if length < 4.0:
         return length + 1.0

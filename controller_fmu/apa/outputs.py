@@ -13,32 +13,14 @@ from controller_fmu.interface import ControllerOutput, ControllerParams, Path, P
 from controller_fmu.slot_frame import SlotFrame, to_world
 from modelkit.vocabulary import Pose, Prompt
 
-OFF = Mode.OFF.value
-STANDBY = Mode.STANDBY.value
-SEARCH = Mode.PARKING_SPACE_SEARCH.value
-APPEARS = Mode.PARKING_SPACE_APPEARS.value
-ASSIST = Mode.AUTO_PARKING_ASSIST.value
-TUNING = Mode.POSITION_TUNING.value
-FINISH = Mode.PARKING_FINISH.value
-FAIL = Mode.FAIL.value
-SET_WHEEL = Step.SET_WHEEL.value
-DRIVE = Step.DRIVE.value
-HALT = Step.HALT.value
-OWN_SPEED = Longitudinal.OWN_SPEED.value
-NO_PROMPT = Prompt.NONE.value
-STOP = Prompt.STOP.value
-FORWARD = Prompt.FORWARD.value
-REVERSE = Prompt.REVERSE.value
-SLOW_DOWN = Prompt.SLOW_DOWN.value
-CONFIRM = Prompt.CONFIRM.value
 PHASE_OF_STEP = (
-    Phase.STANDBY.value,
-    Phase.STOP.value,
-    Phase.PRE_STEER.value,
-    Phase.PATH_TRACKING.value,
-    Phase.STOP.value,
-    Phase.STRAIGHTEN.value,
-    Phase.STRAIGHTEN.value,
+    Phase.STANDBY,
+    Phase.STOP,
+    Phase.PRE_STEER,
+    Phase.PATH_TRACKING,
+    Phase.STOP,
+    Phase.STRAIGHTEN,
+    Phase.STRAIGHTEN,
 )
 """One for each member of Step, in its order."""
 MOVING = 0.05
@@ -46,59 +28,61 @@ MOVING = 0.05
 
 def phase_of(state: ApaState) -> int:
     """Return the phase as every controller tells it, for what judges and ends a run."""
-    if state.mode == FAIL:
-        return Phase.TAKEOVER.value if state.taken_over else Phase.FAILED.value
-    if state.mode == FINISH:
-        return Phase.PARKED.value
-    if state.mode == ASSIST or state.mode == TUNING:
+    if state.mode == Mode.FAIL:
+        return Phase.TAKEOVER if state.taken_over else Phase.FAILED
+    if state.mode == Mode.PARKING_FINISH:
+        return Phase.PARKED
+    if state.mode in (Mode.AUTO_PARKING_ASSIST, Mode.POSITION_TUNING):
         return PHASE_OF_STEP[state.parking.step]
-    return Phase.STANDBY.value
+    return Phase.STANDBY
 
 
 def prompt_of(state: ApaState, params: ControllerParams) -> int:
     """Return what the driver is asked for."""
-    if state.mode == SEARCH:
+    if state.mode == Mode.PARKING_SPACE_SEARCH:
         if state.search.valid > 0:
-            return STOP
-        return SLOW_DOWN if state.search.way > MOVING and state.waited_ns == 0 else FORWARD
-    if state.mode == STANDBY:
-        return STOP if params.apa.search.given else SLOW_DOWN
-    if state.mode == APPEARS:
-        return CONFIRM if is_planned(state.parking) else STOP
-    if state.mode == FINISH or state.mode == FAIL:
-        return NO_PROMPT if state.taken_over else STOP
-    if (state.mode == ASSIST or state.mode == TUNING) and params.apa.drive.longitudinal != OWN_SPEED:
-        if state.parking.step != DRIVE:
-            return STOP
+            return Prompt.STOP
+        return Prompt.SLOW_DOWN if state.search.way > MOVING and state.waited_ns == 0 else Prompt.FORWARD
+    if state.mode == Mode.STANDBY:
+        return Prompt.STOP if params.apa.search.given else Prompt.SLOW_DOWN
+    if state.mode == Mode.PARKING_SPACE_APPEARS:
+        return Prompt.CONFIRM if is_planned(state.parking) else Prompt.STOP
+    if state.mode in (Mode.PARKING_FINISH, Mode.FAIL):
+        return Prompt.NONE if state.taken_over else Prompt.STOP
+    if (
+        state.mode in (Mode.AUTO_PARKING_ASSIST, Mode.POSITION_TUNING)
+    ) and params.apa.drive.longitudinal != Longitudinal.OWN_SPEED:
+        if state.parking.step != Step.DRIVE:
+            return Prompt.STOP
         if state.parking.tracked.way > MOVING and state.watch.waiting == 0:
-            return SLOW_DOWN
-        return FORWARD if state.parking.direction > 0 else REVERSE
-    return NO_PROMPT
+            return Prompt.SLOW_DOWN
+        return Prompt.FORWARD if state.parking.direction > 0 else Prompt.REVERSE
+    return Prompt.NONE
 
 
 def alarm_of(state: ApaState) -> int:
     """Return the warning shown."""
-    if state.mode == FAIL:
-        return Alarm.TAKEN_OVER.value if state.taken_over else Alarm.FAILED.value
-    if state.mode == STANDBY:
-        return Alarm.SLOW_DOWN.value
+    if state.mode == Mode.FAIL:
+        return Alarm.TAKEN_OVER if state.taken_over else Alarm.FAILED
+    if state.mode == Mode.STANDBY:
+        return Alarm.SLOW_DOWN
     if state.parking.sight.blocked:
-        return Alarm.OBSTACLE.value
-    if state.mode == SEARCH and state.search.refusals > 0 and state.search.valid == 0:
-        return Alarm.SLOT_TOO_SHORT.value
-    return Alarm.NONE.value
+        return Alarm.OBSTACLE
+    if state.mode == Mode.PARKING_SPACE_SEARCH and state.search.refusals > 0 and state.search.valid == 0:
+        return Alarm.SLOT_TOO_SHORT
+    return Alarm.NONE
 
 
 def apa_outputs(state: ApaState, params: ControllerParams) -> ControllerOutput:
     """Return the outputs that hold until the next sample."""
-    driving = state.mode == ASSIST or state.mode == TUNING
-    own = driving and params.apa.drive.longitudinal == OWN_SPEED
+    driving = state.mode in (Mode.AUTO_PARKING_ASSIST, Mode.POSITION_TUNING)
+    own = driving and params.apa.drive.longitudinal == Longitudinal.OWN_SPEED
     parking = state.parking
     site = site_for(state.slot, parking.attempt, params)
-    advised = params.apa.search.speed if state.mode == SEARCH or state.mode == STANDBY else abs(parking.speed)
-    stopping = driving and parking.step != DRIVE
+    advised = params.apa.search.speed if state.mode in (Mode.PARKING_SPACE_SEARCH, Mode.STANDBY) else abs(parking.speed)
+    stopping = driving and parking.step != Step.DRIVE
     braking = (own and stopping) or (driving and parking.sight.blocked)
-    failed = state.mode == FAIL and not state.taken_over
+    failed = state.mode == Mode.FAIL and not state.taken_over
     return ControllerOutput(
         steering_wheel_request=parking.wheel if driving else 0.0,
         steering_active=driving,
@@ -106,7 +90,7 @@ def apa_outputs(state: ApaState, params: ControllerParams) -> ControllerOutput:
         advised_speed=advised,
         speed_control_active=own,
         speed_request=parking.speed if own else 0.0,
-        brake_request=braking or failed or state.mode == FINISH,
+        brake_request=braking or failed or state.mode == Mode.PARKING_FINISH,
         phase=phase_of(state),
         reason=state.reason,
         shifts=parking.shifts,
@@ -126,7 +110,7 @@ def _signals(state: ApaState, frame: SlotFrame, params: ControllerParams) -> Apa
     return ApaSignals(
         mode=state.mode,
         alarm=alarm_of(state),
-        confirm=state.mode == APPEARS and is_planned(state.parking),
+        confirm=state.mode == Mode.PARKING_SPACE_APPEARS and is_planned(state.parking),
         slots=state.search.valid,
         missing=state.search.refused.missing,
         slot=slot,

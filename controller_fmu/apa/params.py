@@ -55,7 +55,7 @@ class PlanParams(NamedTuple):
 class ApaDriveParams(NamedTuple):
     """How the path is driven and tracked."""
 
-    longitudinal: Annotated[int, Signal("1", "who drives", states=Longitudinal)] = int(Longitudinal.OWN_SPEED)
+    longitudinal: Annotated[int, Signal("1", "who drives", states=Longitudinal)] = Longitudinal.OWN_SPEED
     k1: Annotated[float, Signal("1/m2", "path tracking, distance gain", 0.0, 100.0, HOUSE)] = 2.0
     k2: Annotated[float, Signal("1/m", "path tracking, heading gain", 0.0, 100.0, HOUSE)] = 2.4
     speed: Annotated[float, Signal("m/s", "largest speed while parking", 0.1, 1.38, HOUSE)] = 0.8
@@ -70,7 +70,7 @@ class ApaDriveParams(NamedTuple):
 class SearchParams(NamedTuple):
     """Slot search while driving past."""
 
-    wish: Annotated[int, Signal("1", "which slots are wanted", states=Wish)] = int(Wish.ANY)
+    wish: Annotated[int, Signal("1", "which slots are wanted", states=Wish)] = Wish.ANY
     speed: Annotated[float, Signal("m/s", "largest speed of the search", 0.1, 10.0, "20 km/h")] = 20.0 / 3.6
     way: Annotated[float, Signal("m", "longest way searched", 1.0, 1000.0, HOUSE)] = 60.0
     beside: Annotated[float, Signal("m", "farthest neighbour looked at", 0.1, 10.0, HOUSE)] = 2.5

@@ -21,14 +21,6 @@ from controller_fmu.steering_monitor import Steering, rate_of
 from modelkit.maths import clamp
 from modelkit.vocabulary import Pose
 
-IDLE = int(Step.IDLE)
-PLAN = int(Step.PLAN)
-SET_WHEEL = int(Step.SET_WHEEL)
-DRIVE = int(Step.DRIVE)
-HALT = int(Step.HALT)
-STRAIGHTEN = int(Step.STRAIGHTEN)
-DONE = int(Step.DONE)
-OWN_SPEED = int(Longitudinal.OWN_SPEED)
 AT_END = 0.04
 """Left of a move [m] that is not worth driving."""
 AT_JUMP = 0.06
@@ -39,7 +31,7 @@ X_TOLERANCE = 0.08
 class Parking(NamedTuple):
     """Everything the manoeuvre remembers."""
 
-    step: int = IDLE
+    step: int = Step.IDLE
     plan: PlanSearch = PlanSearch()
     attempt: int = 0
     """Odd: the car may stand out of the slot a little; each two more: smaller margins, see ``fit``."""
@@ -109,7 +101,7 @@ def park(
     pose = to_slot(inputs.odometry, site.frame)
     plan = state.plan
     attempt = state.attempt
-    if state.step == PLAN:
+    if state.step == Step.PLAN:
         plan = search_on(plan, site, car, params.apa.plan.at_a_time)
         attempt = next_attempt(state, plan, site, params)
         if attempt != state.attempt:
@@ -118,7 +110,7 @@ def park(
             plan = new_search(pose)
     tracked = state.tracked
     sight = Sight(100.0, False, False)
-    if state.step == DRIVE or state.step == HALT or state.step == SET_WHEEL:
+    if state.step in (Step.DRIVE, Step.HALT, Step.SET_WHEEL):
         drive = params.apa.drive
         tracked = track(plan.move, state.leg, tracked.way, pose, drive.k1, drive.k2, params.wheelbase)
         around = site_of(
@@ -144,7 +136,7 @@ def _guards(
 ) -> int:
     apa = params.apa
     standing = abs(inputs.measured_speed) <= STANDING
-    own = apa.drive.longitudinal == OWN_SPEED
+    own = apa.drive.longitudinal == Longitudinal.OWN_SPEED
     stop = stopping_way(inputs.measured_speed, apa.drive, apa.drive.delay if own else apa.drive.reaction)
     limit = apa.end
     right = is_in_place(pose, site, limit.lateral, limit.heading)
@@ -155,14 +147,14 @@ def _guards(
     wheel = inputs.steering_wheel_angle
     at_end = tracked.left <= AT_END or state.cut
     return (
-        (1 << StepGuard.STARTED.value)
-        | _bit(StepGuard.IN_PLACE.value, right or (stuck and well_enough and allowed))
-        | _bit(StepGuard.PLANNED.value, plan.status == FOUND and not stuck and allowed)
-        | _bit(StepGuard.WHEEL_SET.value, abs(wheel - state.wheel) <= params.threshold.wheel and not sight.blocked)
-        | _bit(StepGuard.MUST_HALT.value, tracked.to_stop <= stop or sight.blocked)
-        | _bit(StepGuard.STANDING_AT_END.value, standing and at_end)
-        | _bit(StepGuard.STANDING_TO_GO_ON.value, standing and not at_end and not sight.blocked)
-        | _bit(StepGuard.WHEEL_STRAIGHT.value, abs(wheel) <= params.threshold.wheel)
+        (1 << StepGuard.STARTED)
+        | _bit(StepGuard.IN_PLACE, right or (stuck and well_enough and allowed))
+        | _bit(StepGuard.PLANNED, plan.status == FOUND and not stuck and allowed)
+        | _bit(StepGuard.WHEEL_SET, abs(wheel - state.wheel) <= params.threshold.wheel and not sight.blocked)
+        | _bit(StepGuard.MUST_HALT, tracked.to_stop <= stop or sight.blocked)
+        | _bit(StepGuard.STANDING_AT_END, standing and at_end)
+        | _bit(StepGuard.STANDING_TO_GO_ON, standing and not at_end and not sight.blocked)
+        | _bit(StepGuard.WHEEL_STRAIGHT, abs(wheel) <= params.threshold.wheel)
     )
 
 
@@ -175,7 +167,7 @@ def more_shifts(state: Parking, plan: PlanSearch) -> int:
 def has_failed(state: Parking, params: ControllerParams) -> bool:
     """Return whether no way leads on from here."""
     stuck = state.plan.status == NOTHING
-    return state.step == PLAN and (
+    return state.step == Step.PLAN and (
         stuck or (state.plan.status == FOUND and more_shifts(state, state.plan) > params.apa.plan.shifts)
     )
 
@@ -200,34 +192,34 @@ def _moved_on(
     wheel = state.wheel
     speed = 0.0
     cut = state.cut
-    if step == HALT and state.step == DRIVE:
+    if step == Step.HALT and state.step == Step.DRIVE:
         cut = sight.blocked and not sight.unknown
-    if step == PLAN and state.step != PLAN:
-        ended = state.step == HALT and plan.moves <= 1
+    if step == Step.PLAN and state.step != Step.PLAN:
+        ended = state.step == Step.HALT and plan.moves <= 1
         attempt = under_way(attempt)
         plan = new_search(pose)
-    if step == SET_WHEEL:
+    if step == Step.SET_WHEEL:
         leg = _next_leg(state, plan, tracked)
-        if state.step == PLAN:
+        if state.step == Step.PLAN:
             tracked = Tracked(0.0, length_of(plan.move), leg.end, pose, 0.0, 0.0, 0.0, 0.0)
         wheel = _wheel(site.frame.mirror * set_wheel(plan.move, leg, tracked.way, params.wheelbase), params)
-    if step == DRIVE:
-        if state.step != DRIVE and plan.move.direction != direction:
+    if step == Step.DRIVE:
+        if state.step != Step.DRIVE and plan.move.direction != direction:
             shifts = shifts + 1 if shifts > 0 or plan.move.direction < 0 else shifts
             direction = plan.move.direction
         speed = direction * _speed(tracked, sight, steering, params)
-    if step == DRIVE or step == HALT:
+    if step in (Step.DRIVE, Step.HALT):
         wheel = _wheel(site.frame.mirror * tracked.front_wheel_angle, params)
-    if step == STRAIGHTEN or step == IDLE:
+    if step in (Step.STRAIGHTEN, Step.IDLE):
         wheel = 0.0
     return Parking(step, plan, attempt, leg, tracked, shifts, direction, ended, cut, sight, wheel, speed)
 
 
 def _next_leg(state: Parking, plan: PlanSearch, tracked: Tracked) -> Leg:
     """Return the part of the move to drive from this standstill on."""
-    if state.step == PLAN:
+    if state.step == Step.PLAN:
         return Leg(0.0, next_standstill(plan.move, 0.0))
-    if state.step == HALT and tracked.to_stop < AT_JUMP:
+    if state.step == Step.HALT and tracked.to_stop < AT_JUMP:
         return Leg(state.leg.end, next_standstill(plan.move, state.leg.end))
     return state.leg
 
@@ -253,7 +245,7 @@ def start_planning(slot: Slot, pose: Pose, params: ControllerParams) -> Parking:
     none = Tracked(0.0, 0.0, 0.0, Pose(0.0, 0.0, 0.0), 0.0, 0.0, 0.0, 0.0)
     sight = Sight(100.0, False, False)
     return Parking(
-        PLAN, new_search(to_slot(pose, site.frame)), 0, Leg(0.0, 0.0), none, 0, 0, False, False, sight, 0.0, 0.0
+        Step.PLAN, new_search(to_slot(pose, site.frame)), 0, Leg(0.0, 0.0), none, 0, 0, False, False, sight, 0.0, 0.0
     )
 
 
@@ -267,12 +259,12 @@ def cut_short(state: Parking) -> Parking:
 
 def is_planned(state: Parking) -> bool:
     """Return whether the first plan is found."""
-    return state.step == PLAN and state.plan.status == FOUND
+    return state.step == Step.PLAN and state.plan.status == FOUND
 
 
 def is_planning(state: Parking) -> bool:
     """Return whether the search for a plan goes on."""
-    return state.step == PLAN and state.plan.status == SEARCHING
+    return state.step == Step.PLAN and state.plan.status == SEARCHING
 
 
 def tracking_limits(params: ApaParams) -> float:

@@ -29,7 +29,7 @@ from controller_fmu.apa.candidates import (
 from controller_fmu.apa.exit import VARIANTS, Exit, exit_of
 from controller_fmu.apa.move import NO_PIECES, Move
 from controller_fmu.apa.outline import Car
-from controller_fmu.apa.slot import PARALLEL, Site
+from controller_fmu.apa.slot import Kind, Site
 from modelkit.vocabulary import Pose
 
 SEARCHING = 0
@@ -84,7 +84,7 @@ def search_on(search: PlanSearch, site: Site, car: Car, count: int) -> PlanSearc
 
 def stage_of(place: int, start: Pose, site: Site, car: Car) -> int:
     """Return the family of candidates at ``place`` in the order for this start, -1 past the last."""
-    if site.kind == PARALLEL:
+    if site.kind == Kind.PARALLEL:
         if start.y < 1.3 * car.half_width:
             return IN_PARALLEL[place] if place < len(IN_PARALLEL) else NO_STAGE
         return ENTRY + place if place < VARIANTS else NO_STAGE

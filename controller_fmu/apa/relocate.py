@@ -10,17 +10,7 @@ import math
 
 from controller_fmu.apa.outline import Obstacles
 from controller_fmu.apa.parking import car_of
-from controller_fmu.apa.slot import (
-    LESS_BESIDE,
-    PARALLEL,
-    PERPENDICULAR,
-    UNSEEN,
-    Margins,
-    Site,
-    Slot,
-    mirror_of,
-    site_of,
-)
+from controller_fmu.apa.slot import LESS_BESIDE, UNSEEN, Kind, Margins, Site, Slot, mirror_of, site_of
 from controller_fmu.apa.supervisor import WRONG, expected
 from controller_fmu.interface import ControllerInput, ControllerParams
 from controller_fmu.slot_frame import SlotFrame, to_slot, to_world
@@ -57,7 +47,7 @@ ACROSS = 0.45
 def relocated(slot: Slot, inputs: ControllerInput, params: ControllerParams) -> Slot:
     """Return the slot with what the front and rear sensors of a car standing in it say."""
     pose = to_slot(inputs.odometry, SlotFrame(slot.a, mirror_of(slot)))
-    if slot.kind != PARALLEL or abs(pose.heading) > SQUARE or pose.y > 0.0:
+    if slot.kind != Kind.PARALLEL or abs(pose.heading) > SQUARE or pose.y > 0.0:
         return slot
     slot = _walled(slot, inputs, params)
     if abs(pose.heading) > STEEPEST:
@@ -99,7 +89,7 @@ def between(slot: Slot, inputs: ControllerInput, params: ControllerParams) -> Sl
     drifted since the corners were heard is found again.
     """
     pose = to_slot(inputs.odometry, SlotFrame(slot.a, mirror_of(slot)))
-    if slot.kind != PERPENDICULAR or abs(pose.heading - 0.5 * math.pi) > ACROSS:
+    if slot.kind != Kind.PERPENDICULAR or abs(pose.heading - 0.5 * math.pi) > ACROSS:
         return slot
     mirror = mirror_of(slot)
     start = _side_at(pose, mirror, inputs, -1.0, params)
@@ -116,7 +106,7 @@ def along(slot: Slot, inputs: ControllerInput, params: ControllerParams) -> Slot
     differs by as the car comes in is what the odometry has drifted. Told once for each new reading. The slot
     ends ``OUT`` further out than heard: short moves in it need the room, see docs/apa.md.
     """
-    if slot.kind != PARALLEL or slot.depth >= UNSEEN:
+    if slot.kind != Kind.PARALLEL or slot.depth >= UNSEEN:
         return slot
     mirror = mirror_of(slot)
     pose = to_slot(inputs.odometry, SlotFrame(slot.a, mirror))

@@ -8,11 +8,10 @@ from controller_fmu.apa.line_fit import offset, slope
 from controller_fmu.apa.outline import Car
 from controller_fmu.apa.params import ApaParams, Wish
 from controller_fmu.apa.search_side import DEEP, START, SideState, hear
-from controller_fmu.apa.slot import PARALLEL, PERPENDICULAR, UNSEEN, Slot
+from controller_fmu.apa.slot import UNSEEN, Kind, Slot
 from controller_fmu.interface import ControllerInput
 from modelkit.vocabulary import Pose
 
-ANY = int(Wish.ANY)
 LEFT_SENSOR = 8
 RIGHT_SENSOR = 10
 RIGHT = 0
@@ -117,14 +116,14 @@ def slot_of(
 
 def kind_of(length: float, depth: float, neighbour: float, car: Car, params: ApaParams) -> int:
     """Return how a car would stand in a gap: by its length, its depth, and how the neighbour stands."""
-    if params.search.wish != ANY:
+    if params.search.wish != Wish.ANY:
         return params.search.wish
     car_length = car.front + car.rear
     if length < 0.8 * car_length:
-        return PERPENDICULAR
+        return Kind.PERPENDICULAR
     if depth < car_length - params.search.depth_room:
-        return PARALLEL
-    return PARALLEL if neighbour > LONG_NEIGHBOUR else PERPENDICULAR
+        return Kind.PARALLEL
+    return Kind.PARALLEL if neighbour > LONG_NEIGHBOUR else Kind.PERPENDICULAR
 
 
 def _hear(

@@ -31,9 +31,6 @@ class Side(IntEnum):
     LEFT = 1
 
 
-PARALLEL = int(Kind.PARALLEL)
-PERPENDICULAR = int(Kind.PERPENDICULAR)
-LEFT = int(Side.LEFT)
 UNSEEN = 50.0
 LESS_BESIDE = 0.01
 """The margin to kerb or wall is taken this much [m] smaller, so that a target at that margin is free."""
@@ -42,8 +39,8 @@ LESS_BESIDE = 0.01
 class Slot(NamedTuple):
     """Corners and extents; the defaults are a slot that is not there."""
 
-    kind: Annotated[int, Signal("1", "how the car will stand", states=Kind)] = int(Kind.NONE)
-    side: Annotated[int, Signal("1", "side of the road", states=Side)] = int(Side.RIGHT)
+    kind: Annotated[int, Signal("1", "how the car will stand", states=Kind)] = Kind.NONE
+    side: Annotated[int, Signal("1", "side of the road", states=Side)] = Side.RIGHT
     a: Pose = Pose()
     """Corner A in the world; heading: from A along the road."""
     length: Annotated[float, Signal("m", "corner A to corner B along the road", 0.0)] = 0.0
@@ -56,7 +53,7 @@ class Slot(NamedTuple):
 class Site(NamedTuple):
     """A slot as the planner sees it: frame of the target, obstacles grown by the margin, where x may end."""
 
-    kind: int = PARALLEL
+    kind: int = Kind.PARALLEL
     frame: SlotFrame = SlotFrame()
     obstacles: Obstacles = Obstacles()
     x_low: float = 0.0
@@ -73,13 +70,13 @@ class Margins(NamedTuple):
 
 def mirror_of(slot: Slot) -> float:
     """Return 1 for a slot on the right, -1 on the left."""
-    return -1.0 if slot.side == LEFT else 1.0
+    return -1.0 if slot.side == Side.LEFT else 1.0
 
 
 def target_of(slot: Slot, car: Car, margins: Margins) -> Pose:
     """Return the pose to park at, in A's frame."""
     line = 0.5 * slot.b_out - margins.inset
-    if slot.kind == PERPENDICULAR:
+    if slot.kind == Kind.PERPENDICULAR:
         y = line - car.front
         lowest = car.rear + margins.neighbour - slot.depth
         return Pose(0.5 * slot.length, lowest if y < lowest else y, 0.5 * math.pi)
@@ -98,7 +95,7 @@ def site_of(slot: Slot, car: Car, margins: Margins) -> Site:
     ahead = Box(slot.length - slot.unsure, FAR, -FAR, slot.b_out)
     beside = Box(-FAR, FAR, -FAR, -slot.depth) if slot.depth < UNSEEN else Box(1.0, -1.0, 1.0, -1.0)
     opposite = Box(-FAR, FAR, slot.opposite, FAR) if slot.opposite < UNSEEN else Box(1.0, -1.0, 1.0, -1.0)
-    turned = slot.kind == PERPENDICULAR
+    turned = slot.kind == Kind.PERPENDICULAR
     near = margins.neighbour
     beside_margin = margins.neighbour if turned else margins.beside
     obstacles = Obstacles(

@@ -7,9 +7,6 @@ from controller_fmu.apa.exit import Exit
 from controller_fmu.apa.manoeuvre_chart import Step
 from controller_fmu.apa.move import NO_MOVE
 from controller_fmu.apa.parking import (
-    DONE,
-    IDLE,
-    PLAN,
     Parking,
     car_of,
     cut_short,
@@ -30,15 +27,6 @@ from controller_fmu.interface import ControllerInput, ControllerParams, Reason
 from controller_fmu.steering_monitor import SteeringWatch
 from modelkit.vocabulary import Pose
 
-OFF = int(Mode.OFF)
-STANDBY = int(Mode.STANDBY)
-SEARCH = int(Mode.PARKING_SPACE_SEARCH)
-APPEARS = int(Mode.PARKING_SPACE_APPEARS)
-ASSIST = int(Mode.AUTO_PARKING_ASSIST)
-TUNING = int(Mode.POSITION_TUNING)
-FAIL = int(Mode.FAIL)
-HALT = int(Step.HALT)
-NO_REASON = int(Reason.NONE)
 NOWHERE = Pose(0.0, 0.0, 0.0)
 DRIVEN_ON = 0.3
 LOST = 1.0
@@ -49,8 +37,8 @@ SHALLOWER = 0.3
 class ApaState(NamedTuple):
     """Everything the parking assist remembers."""
 
-    mode: int = OFF
-    reason: int = NO_REASON
+    mode: int = Mode.OFF
+    reason: int = Reason.NONE
     taken_over: bool = False
     clock_ns: int = 0
     search: SearchState = SearchState()
@@ -65,7 +53,7 @@ class ApaState(NamedTuple):
 
 
 NOT_PARKING = Parking(
-    IDLE,
+    Step.IDLE,
     PlanSearch(SEARCHING, 0, 0, Exit(False, NOWHERE, 0), False, 0.0, 0, NO_MOVE),
     0,
     Leg(0.0, 0.0),
@@ -79,23 +67,25 @@ NOT_PARKING = Parking(
     0.0,
 )
 NOT_WATCHED = Watch(0, 0, 0, 0, 0, 0, 0, SteeringWatch(), NOWHERE)
-AT_START = ApaState(OFF, NO_REASON, False, 0, begin_search(NOWHERE, 0), NO_SLOT, NOT_PARKING, NOT_WATCHED, 0, NOWHERE)
+AT_START = ApaState(
+    Mode.OFF, Reason.NONE, False, 0, begin_search(NOWHERE, 0), NO_SLOT, NOT_PARKING, NOT_WATCHED, 0, NOWHERE
+)
 
 
 def apa_sample(state: ApaState, inputs: ControllerInput, params: ControllerParams, dt_ns: int) -> ApaState:
     """Return the assist one sample of ``dt_ns`` later."""
-    driving = state.mode == ASSIST or state.mode == TUNING
+    driving = state.mode in (Mode.AUTO_PARKING_ASSIST, Mode.POSITION_TUNING)
     parking = state.parking
     seen = watch(state.watch, inputs, parking.step, parking.wheel, parking.sight.blocked, driving, dt_ns, params)
     taken = driving and is_taken_over(seen, inputs, params)
-    reason = reason_to_fail(seen, inputs, driving, params) if state.mode != OFF else NO_REASON
+    reason = reason_to_fail(seen, inputs, driving, params) if state.mode != Mode.OFF else Reason.NONE
     found = state.search
     slot = state.slot
-    if reason == NO_REASON and not taken:
-        if state.mode == SEARCH or state.mode == APPEARS:
+    if reason == Reason.NONE and not taken:
+        if state.mode in (Mode.PARKING_SPACE_SEARCH, Mode.PARKING_SPACE_APPEARS):
             found = search(found, inputs, car_of(params), params.apa, dt_ns)
-        if driving or state.mode == APPEARS:
-            if driving and parking.step == HALT and abs(inputs.measured_speed) <= STANDING:
+        if driving or state.mode == Mode.PARKING_SPACE_APPEARS:
+            if driving and parking.step == Step.HALT and abs(inputs.measured_speed) <= STANDING:
                 slot = relocated(slot, inputs, params)
                 parking = cut_short(parking) if slot.depth < state.slot.depth - SHALLOWER else parking
             if driving and is_new_reading(state.clock_ns, dt_ns):
@@ -108,24 +98,24 @@ def apa_sample(state: ApaState, inputs: ControllerInput, params: ControllerParam
 
 
 def _later_reason(reason: int, state: ApaState, parking: Parking, found: SearchState, params: ControllerParams) -> int:
-    if reason != NO_REASON:
+    if reason != Reason.NONE:
         return reason
-    if state.mode == ASSIST or state.mode == TUNING:
+    if state.mode in (Mode.AUTO_PARKING_ASSIST, Mode.POSITION_TUNING):
         if has_failed(parking, params):
             return _no_way(parking)
         if abs(parking.tracked.lateral_error) > LOST:
-            return Reason.LEFT_PATH.value
-    if state.mode == SEARCH and found.way > params.apa.search.way:
-        return Reason.SLOT_TOO_SHORT.value if found.refusals > 0 else Reason.NO_SLOT.value
+            return Reason.LEFT_PATH
+    if state.mode == Mode.PARKING_SPACE_SEARCH and found.way > params.apa.search.way:
+        return Reason.SLOT_TOO_SHORT if found.refusals > 0 else Reason.NO_SLOT
     if state.waited_ns * 1e-9 > params.apa.guard.confirm:
-        return Reason.TIMEOUT.value if state.mode == APPEARS else Reason.NOT_MOVING.value
-    if state.mode == APPEARS and params.apa.search.given and has_failed(parking, params):
+        return Reason.TIMEOUT if state.mode == Mode.PARKING_SPACE_APPEARS else Reason.NOT_MOVING
+    if state.mode == Mode.PARKING_SPACE_APPEARS and params.apa.search.given and has_failed(parking, params):
         return _no_way(parking)
-    return NO_REASON
+    return Reason.NONE
 
 
 def _no_way(parking: Parking) -> int:
-    return Reason.TOO_MANY_SHIFTS.value if parking.plan.found else Reason.NO_PATH.value
+    return Reason.TOO_MANY_SHIFTS if parking.plan.found else Reason.NO_PATH
 
 
 def _guards(
@@ -146,19 +136,19 @@ def _guards(
     dy = inputs.odometry.y - state.pose.y
     moved = dx * dx + dy * dy > DRIVEN_ON * DRIVEN_ON
     return (
-        _bit(Guard.SWITCHED_OFF.value, not inputs.apa_switch)
-        | _bit(Guard.TAKEN_OVER.value, taken or not inputs.apa_switch)
-        | _bit(Guard.FAULT.value, reason != NO_REASON)
-        | _bit(Guard.SWITCHED_ON.value, inputs.apa_switch)
-        | _bit(Guard.READY.value, not given and speed <= limit)
-        | _bit(Guard.SLOT_GIVEN.value, given and standing)
-        | _bit(Guard.TOO_FAST.value, speed > 1.1 * limit)
-        | _bit(Guard.SLOT_AT_STANDSTILL.value, found.valid > 0 and standing)
-        | _bit(Guard.NO_PLAN.value, not given and has_failed(parking, params))
-        | _bit(Guard.DRIVEN_ON.value, not given and moved)
-        | _bit(Guard.CONFIRMED.value, inputs.driver_confirm and standing and is_planned(parking))
-        | _bit(Guard.NEARLY.value, parking.step == PLAN and parking.ended and is_planning(parking))
-        | _bit(Guard.ENDED.value, parking.step == DONE)
+        _bit(Guard.SWITCHED_OFF, not inputs.apa_switch)
+        | _bit(Guard.TAKEN_OVER, taken or not inputs.apa_switch)
+        | _bit(Guard.FAULT, reason != Reason.NONE)
+        | _bit(Guard.SWITCHED_ON, inputs.apa_switch)
+        | _bit(Guard.READY, not given and speed <= limit)
+        | _bit(Guard.SLOT_GIVEN, given and standing)
+        | _bit(Guard.TOO_FAST, speed > 1.1 * limit)
+        | _bit(Guard.SLOT_AT_STANDSTILL, found.valid > 0 and standing)
+        | _bit(Guard.NO_PLAN, not given and has_failed(parking, params))
+        | _bit(Guard.DRIVEN_ON, not given and moved)
+        | _bit(Guard.CONFIRMED, inputs.driver_confirm and standing and is_planned(parking))
+        | _bit(Guard.NEARLY, parking.step == Step.PLAN and parking.ended and is_planning(parking))
+        | _bit(Guard.ENDED, parking.step == Step.DONE)
     )
 
 
@@ -177,27 +167,31 @@ def _moved_on(
 ) -> ApaState:
     clock = state.clock_ns + dt_ns
     pose = state.pose
-    waiting = is_planned(parking) if mode == APPEARS else mode == SEARCH and abs(inputs.measured_speed) <= STANDING
+    waiting = (
+        is_planned(parking)
+        if mode == Mode.PARKING_SPACE_APPEARS
+        else mode == Mode.PARKING_SPACE_SEARCH and abs(inputs.measured_speed) <= STANDING
+    )
     waited = state.waited_ns + dt_ns if waiting and mode == state.mode else 0
-    if mode == OFF or mode == STANDBY or state.mode == STANDBY:
+    if mode in (Mode.OFF, Mode.STANDBY) or state.mode == Mode.STANDBY:
         found = begin_search(inputs.odometry, clock)
-    if mode == OFF or mode == STANDBY:
+    if mode in (Mode.OFF, Mode.STANDBY):
         parking = NOT_PARKING
         seen = NOT_WATCHED
-        slot = NO_SLOT if mode == OFF else slot
-    if mode == SEARCH and state.mode == APPEARS:
+        slot = NO_SLOT if mode == Mode.OFF else slot
+    if mode == Mode.PARKING_SPACE_SEARCH and state.mode == Mode.PARKING_SPACE_APPEARS:
         found = without_first(found) if has_failed(parking, params) else found
         parking = NOT_PARKING
         slot = NO_SLOT
-    if mode == APPEARS and state.mode != APPEARS:
+    if mode == Mode.PARKING_SPACE_APPEARS and state.mode != Mode.PARKING_SPACE_APPEARS:
         given = params.apa.search.given
         slot = params.apa.search.slot if given else braked(found.slots[0], found.fastest, params)
         parking = start_planning(slot, inputs.odometry, params)
         pose = inputs.odometry
-    over = mode == FAIL
-    switched_off = state.mode != FAIL and (taken or not inputs.apa_switch)
+    over = mode == Mode.FAIL
+    switched_off = state.mode != Mode.FAIL and (taken or not inputs.apa_switch)
     taken_over = (state.taken_over or switched_off) if over else False
-    kept = (reason if state.mode != FAIL else state.reason) if over and not taken_over else NO_REASON
+    kept = (reason if state.mode != Mode.FAIL else state.reason) if over and not taken_over else Reason.NONE
     return ApaState(mode, kept, taken_over, clock, found, slot, parking, seen, waited, pose)
 
 

@@ -11,14 +11,6 @@ from modelkit.maths import is_finite
 from modelkit.vocabulary import Gear, Pose
 
 STANDING = 0.01
-OWN_SPEED = int(Longitudinal.OWN_SPEED)
-SET_WHEEL = int(Step.SET_WHEEL)
-DRIVE = int(Step.DRIVE)
-HALT = int(Step.HALT)
-STRAIGHTEN = int(Step.STRAIGHTEN)
-PARK = int(Gear.PARK)
-NEUTRAL = int(Gear.NEUTRAL)
-NONE = Reason.NONE.value
 PULLED = 0.3
 """The wheel is this far [rad] from its request and goes the other way: the driver turns it."""
 PULLED_FOR = 0.2
@@ -64,12 +56,12 @@ def watch(
     dy = inputs.odometry.y - state.pose.y
     way = speed * dt
     unmoved = dx * dx + dy * dy < 0.01 * way * way and abs(speed) > 0.1
-    moving_expected = step == SET_WHEEL or step == DRIVE or step == STRAIGHTEN
-    own = params.apa.drive.longitudinal == OWN_SPEED
+    moving_expected = step in (Step.SET_WHEEL, Step.DRIVE, Step.STRAIGHTEN)
+    own = params.apa.drive.longitudinal == Longitudinal.OWN_SPEED
     limit = params.apa.guard.over_speed if not own else 1.5 * params.apa.drive.speed
     return Watch(
         waiting=state.waiting + dt_ns if still and moving_expected and not blocked else 0,
-        stopping=state.stopping + dt_ns if not still and step == HALT else 0,
+        stopping=state.stopping + dt_ns if not still and step == Step.HALT else 0,
         blocked=_blocked(state.blocked, blocked and driving, still, dt_ns),
         fast=state.fast + dt_ns if abs(speed) > limit and driving else 0,
         blind=state.blind + dt_ns if not _all_heard(inputs, params.apa) else 0,
@@ -92,10 +84,10 @@ def _blocked(clock: int, blocked: bool, still: bool, dt_ns: int) -> int:
 
 def is_taken_over(state: Watch, inputs: ControllerInput, params: ControllerParams) -> bool:
     """Return whether the driver has taken the car back: by signal, brake, selector or steering wheel."""
-    own = params.apa.drive.longitudinal == OWN_SPEED
+    own = params.apa.drive.longitudinal == Longitudinal.OWN_SPEED
     settled = state.running * 1e-9 > SETTLING
     pedal = own and settled and inputs.brake_pedal > params.apa.guard.pedal
-    out_of_gear = (inputs.gear == PARK or inputs.gear == NEUTRAL) and abs(inputs.measured_speed) > 0.2
+    out_of_gear = inputs.gear in (Gear.PARK, Gear.NEUTRAL) and abs(inputs.measured_speed) > 0.2
     wheel = _is_off(state.wheel) and state.wheel.away_ns * 1e-9 > PULLED_FOR
     return inputs.driver_takeover or pedal or (settled and out_of_gear) or wheel
 
@@ -108,28 +100,28 @@ def reason_to_fail(state: Watch, inputs: ControllerInput, driving: bool, params:
     """Return the first Reason that holds, ``NONE`` if all is as it should be."""
     guard = params.apa.guard
     if not is_finite_input(inputs):
-        return Reason.BAD_INPUT.value
+        return Reason.BAD_INPUT
     if inputs.vehicle_fault != 0:
-        return Reason.VEHICLE_FAULT.value
+        return Reason.VEHICLE_FAULT
     if state.blind * 1e-9 > params.apa.sensors.blind_time:
-        return Reason.SENSOR_LOSS.value
+        return Reason.SENSOR_LOSS
     if state.frozen * 1e-9 > params.limit.pose_frozen:
-        return Reason.POSE_FROZEN.value
+        return Reason.POSE_FROZEN
     if not driving:
-        return NONE
+        return Reason.NONE
     if state.fast * 1e-9 > guard.over_speed_time:
-        return Reason.OVER_SPEED.value
+        return Reason.OVER_SPEED
     if has_failed(state.wheel, params.limit.wheel_fault):
-        return Reason.STEERING_FAULT.value
+        return Reason.STEERING_FAULT
     if state.stopping * 1e-9 > params.limit.stopping:
-        return Reason.NOT_STOPPING.value
+        return Reason.NOT_STOPPING
     if state.blocked * 1e-9 > guard.blocked:
-        return Reason.BLOCKED.value
+        return Reason.BLOCKED
     if state.waiting * 1e-9 > guard.patience:
-        return Reason.STEERING_FAULT.value if _is_off(state.wheel) else Reason.NOT_MOVING.value
+        return Reason.STEERING_FAULT if _is_off(state.wheel) else Reason.NOT_MOVING
     if state.running * 1e-9 > guard.duration:
-        return Reason.TIMEOUT.value
-    return NONE
+        return Reason.TIMEOUT
+    return Reason.NONE
 
 
 def is_finite_input(inputs: ControllerInput) -> bool:

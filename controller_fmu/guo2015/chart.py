@@ -70,12 +70,10 @@ TRANSITIONS: tuple[Row, ...] = (
     _row(Phase.STRAIGHTEN, Guard.WHEEL_STRAIGHT, Phase.PARKED),
 )
 
-PARKED = int(Phase.PARKED)
-
 
 def transition(phase: int, leg: int, guards: int) -> tuple[int, int]:
     """Return (phase, leg) after one sample; ``guards`` holds bit g for guard g."""
-    if phase >= PARKED:
+    if phase >= Phase.PARKED:
         return phase, leg
     for source, guard, target, next_leg in TRANSITIONS:
         if (source == phase or source == ANY) and (guards >> guard) & 1 == 1:

@@ -8,31 +8,6 @@ from controller_fmu.guo2015.prompts import stopping_distance
 from controller_fmu.interface import ControllerInput, ControllerParams, Phase, System
 from modelkit.vocabulary import Pose
 
-PATH_TRACKING = int(Phase.PATH_TRACKING)
-TO_Q1 = int(Phase.TO_Q1)
-TO_Q2 = int(Phase.TO_Q2)
-TO_Q3 = int(Phase.TO_Q3)
-TO_Q4 = int(Phase.TO_Q4)
-STRAIGHTEN = int(Phase.STRAIGHTEN)
-NTBPTCWPT = int(System.NTBPTCWPT)
-WHEEL_SET_FOR_PATH = int(Guard.WHEEL_SET_FOR_PATH)
-WHEEL_SET_FOR_Q2 = int(Guard.WHEEL_SET_FOR_Q2)
-WHEEL_SET_FOR_Q1 = int(Guard.WHEEL_SET_FOR_Q1)
-WHEEL_SET_FOR_Q4 = int(Guard.WHEEL_SET_FOR_Q4)
-WHEEL_SET_FOR_Q3 = int(Guard.WHEEL_SET_FOR_Q3)
-WHEEL_STRAIGHT = int(Guard.WHEEL_STRAIGHT)
-OFF_PATH = int(Guard.OFF_PATH)
-PATH_END = int(Guard.PATH_END)
-PAST_Q2 = int(Guard.PAST_Q2)
-AT_Q1_RIGHT = int(Guard.AT_Q1_RIGHT)
-AT_Q1_WRONG = int(Guard.AT_Q1_WRONG)
-POSE_RIGHT = int(Guard.POSE_RIGHT)
-PAST_Q4 = int(Guard.PAST_Q4)
-AT_Q3 = int(Guard.AT_Q3)
-STANDING_TO_DRIVE = int(Guard.STANDING_TO_DRIVE)
-STANDING_AT_END = int(Guard.STANDING_AT_END)
-STANDING_AT_END_WRONG = int(Guard.STANDING_AT_END_WRONG)
-
 
 def bit(guard: int, holds: bool) -> int:
     """Return the bit of ``guard`` if it holds."""
@@ -48,36 +23,36 @@ def wheel_guards(leg: int, wheel: float, request: float, tolerance: float) -> in
     """Return the bits that say the wheel stands at ``request`` for its leg, or straight."""
     there = abs(wheel - request) <= tolerance
     return (
-        bit(WHEEL_SET_FOR_PATH, there and leg == PATH_TRACKING)
-        | bit(WHEEL_SET_FOR_Q2, there and leg == TO_Q2)
-        | bit(WHEEL_SET_FOR_Q1, there and leg == TO_Q1)
-        | bit(WHEEL_SET_FOR_Q4, there and leg == TO_Q4)
-        | bit(WHEEL_SET_FOR_Q3, there and leg == TO_Q3)
-        | bit(WHEEL_STRAIGHT, abs(wheel) <= tolerance)
+        bit(Guard.WHEEL_SET_FOR_PATH, there and leg == Phase.PATH_TRACKING)
+        | bit(Guard.WHEEL_SET_FOR_Q2, there and leg == Phase.TO_Q2)
+        | bit(Guard.WHEEL_SET_FOR_Q1, there and leg == Phase.TO_Q1)
+        | bit(Guard.WHEEL_SET_FOR_Q4, there and leg == Phase.TO_Q4)
+        | bit(Guard.WHEEL_SET_FOR_Q3, there and leg == Phase.TO_Q3)
+        | bit(Guard.WHEEL_STRAIGHT, abs(wheel) <= tolerance)
     )
 
 
 def way_guards(tracking: Tracking, pose: Pose, path: TwoArcPath, speed: float, params: ControllerParams) -> int:
     """Return the bits that say the car left the path or reached the end of its leg."""
     limit = params.threshold
-    points = params.system == NTBPTCWPT
+    points = params.system == System.NTBPTCWPT
     left = not within(tracking.lateral_error, tracking.heading_error, limit.leave_lateral, limit.leave_heading)
     to_end = distance_to_end(path, reference_at(path, pose.x, tracking.piece))
-    q2 = point_of_leg(TO_Q2, path, params.ntbpt)
+    q2 = point_of_leg(Phase.TO_Q2, path, params.ntbpt)
     at_q1 = tracking.ahead <= 0.0
     resumed = within(tracking.lateral_error, tracking.heading_error, limit.resume_lateral, limit.resume_heading)
     share = limit.moving_share
     right = within(pose.y, pose.heading, share * limit.park_lateral, share * limit.park_heading)
     stop = stopping_distance(speed, params.prompting)
     return (
-        bit(OFF_PATH, points and left)
-        | bit(PATH_END, to_end <= stop)
-        | bit(PAST_Q2, pose.x > q2.x or pose.y > q2.y)
-        | bit(AT_Q1_RIGHT, at_q1 and resumed)
-        | bit(AT_Q1_WRONG, at_q1 and not resumed)
-        | bit(POSE_RIGHT, right)
-        | bit(PAST_Q4, pose.x > params.ntbpt.q4_distance)
-        | bit(AT_Q3, pose.x <= stop)
+        bit(Guard.OFF_PATH, points and left)
+        | bit(Guard.PATH_END, to_end <= stop)
+        | bit(Guard.PAST_Q2, pose.x > q2.x or pose.y > q2.y)
+        | bit(Guard.AT_Q1_RIGHT, at_q1 and resumed)
+        | bit(Guard.AT_Q1_WRONG, at_q1 and not resumed)
+        | bit(Guard.POSE_RIGHT, right)
+        | bit(Guard.PAST_Q4, pose.x > params.ntbpt.q4_distance)
+        | bit(Guard.AT_Q3, pose.x <= stop)
     )
 
 
@@ -86,10 +61,12 @@ def standing_guards(leg: int, pose: Pose, inputs: ControllerInput, params: Contr
     limit = params.threshold
     if abs(inputs.measured_speed) > limit.standstill:
         return 0
-    at_end = leg == STRAIGHTEN
-    wrong = params.system == NTBPTCWPT and not within(pose.y, pose.heading, limit.park_lateral, limit.park_heading)
+    at_end = leg == Phase.STRAIGHTEN
+    wrong = params.system == System.NTBPTCWPT and not within(
+        pose.y, pose.heading, limit.park_lateral, limit.park_heading
+    )
     return (
-        bit(STANDING_TO_DRIVE, not at_end)
-        | bit(STANDING_AT_END, at_end and not wrong)
-        | bit(STANDING_AT_END_WRONG, at_end and wrong)
+        bit(Guard.STANDING_TO_DRIVE, not at_end)
+        | bit(Guard.STANDING_AT_END, at_end and not wrong)
+        | bit(Guard.STANDING_AT_END_WRONG, at_end and wrong)
     )

@@ -13,11 +13,6 @@ from controller_fmu.guo2015.point_tracking import point_error, point_tracking_an
 from controller_fmu.interface import ControllerParams, NtbptParams, Phase
 from modelkit.vocabulary import Pose
 
-PATH_TRACKING = int(Phase.PATH_TRACKING)
-TO_Q2 = int(Phase.TO_Q2)
-TO_Q1 = int(Phase.TO_Q1)
-TO_Q4 = int(Phase.TO_Q4)
-
 
 class Tracking(NamedTuple):
     """Where the car should be, how far it is off, and the angle that leads it there."""
@@ -34,24 +29,24 @@ class Tracking(NamedTuple):
 def track(leg: int, pose: Pose, path: TwoArcPath, piece: int, params: ControllerParams) -> Tracking:
     """Return what ``leg`` asks of a car at ``pose`` (slot's frame), the path latched at ``piece``."""
     gains = params.ntbpt
-    if leg == PATH_TRACKING:
+    if leg == Phase.PATH_TRACKING:
         reference = reference_at(path, pose.x, piece)
         angle = path_tracking_angle(pose, reference, gains.k1, gains.k2, params.wheelbase)
         at = Pose(reference.x, reference.y, reference.heading)
         return Tracking(at, 0.0, pose.y - reference.y, pose.heading - reference.heading, angle, reference.piece)
     point = point_of_leg(leg, path, gains)
     error = point_error(pose, point)
-    direction = 1.0 if leg == TO_Q2 or leg == TO_Q4 else -1.0
+    direction = 1.0 if leg in (Phase.TO_Q2, Phase.TO_Q4) else -1.0
     angle = point_tracking_angle(error, direction, gains.k3, gains.k4, params.wheelbase)
     return Tracking(point, error.x, error.y, error.heading, angle, piece)
 
 
 def point_of_leg(leg: int, path: TwoArcPath, params: NtbptParams) -> Pose:
     """Return the point that ``leg`` tracks, in the slot's frame; Q3 for the path itself."""
-    if leg == TO_Q2:
+    if leg == Phase.TO_Q2:
         return ahead(path.tangent2, params.q2_distance)
-    if leg == TO_Q1:
+    if leg == Phase.TO_Q1:
         return path.tangent2
-    if leg == TO_Q4:
+    if leg == Phase.TO_Q4:
         return Pose(params.q4_distance, 0.0, 0.0)
     return Pose(0.0, 0.0, 0.0)

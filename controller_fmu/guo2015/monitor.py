@@ -11,18 +11,8 @@ from controller_fmu.steering_monitor import SteeringWatch, at_rest, has_failed, 
 from modelkit.maths import sign
 from modelkit.vocabulary import Pose
 
-STANDBY = int(Phase.STANDBY)
-STEERING_PHASES = (int(Phase.PRE_STEER), int(Phase.STRAIGHTEN))
+STEERING_PHASES = (Phase.PRE_STEER, Phase.STRAIGHTEN)
 
-VEHICLE_FAULT = int(Reason.VEHICLE_FAULT)
-NO_REASON = int(Reason.NONE)
-POSE_FROZEN = int(Reason.POSE_FROZEN)
-STEERING_FAULT = int(Reason.STEERING_FAULT)
-WRONG_DIRECTION = int(Reason.WRONG_DIRECTION)
-NOT_STOPPING = int(Reason.NOT_STOPPING)
-NOT_MOVING = int(Reason.NOT_MOVING)
-TOO_MANY_SHIFTS = int(Reason.TOO_MANY_SHIFTS)
-TIMEOUT = int(Reason.TIMEOUT)
 FARTHEST = 1e9
 """No position [m], heading [rad] or speed [m/s] is beyond this; NaN is not within it either."""
 SLOWEST_SEEN = 0.1
@@ -53,7 +43,7 @@ def watch(
     dt = dt_ns * 1e-9
     angle = inputs.steering_wheel_angle
     wheel = at_rest(angle, state.wheel.steering)
-    if phase != STANDBY:
+    if phase != Phase.STANDBY:
         wheel = watch_steering(state.wheel, request, angle, params.limit.wheel_off, params.steering_wheel_rate, dt_ns)
     dx = inputs.odometry.x - state.pose.x
     dy = inputs.odometry.y - state.pose.y
@@ -75,24 +65,24 @@ def reason_to_fail(
     """Return the first Reason that holds, ``NONE`` if the car and the driver are as they should be."""
     limit = params.limit
     if inputs.vehicle_fault != 0:
-        return VEHICLE_FAULT
-    if phase == STANDBY:
-        return TIMEOUT if running_ns * 1e-9 > limit.duration else NO_REASON
+        return Reason.VEHICLE_FAULT
+    if phase == Phase.STANDBY:
+        return Reason.TIMEOUT if running_ns * 1e-9 > limit.duration else Reason.NONE
     if state.frozen * 1e-9 > limit.pose_frozen:
-        return POSE_FROZEN
+        return Reason.POSE_FROZEN
     if has_failed(state.wheel, limit.wheel_fault):
-        return STEERING_FAULT
+        return Reason.STEERING_FAULT
     if state.wrong_way * 1e-9 > limit.wrong_direction:
-        return WRONG_DIRECTION
+        return Reason.WRONG_DIRECTION
     if state.stopping * 1e-9 > limit.stopping:
-        return NOT_STOPPING
+        return Reason.NOT_STOPPING
     if state.waiting * 1e-9 > limit.patience:
-        return STEERING_FAULT if phase in STEERING_PHASES else NOT_MOVING
+        return Reason.STEERING_FAULT if phase in STEERING_PHASES else Reason.NOT_MOVING
     if shifts > limit.shifts:
-        return TOO_MANY_SHIFTS
+        return Reason.TOO_MANY_SHIFTS
     if running_ns * 1e-9 > limit.duration:
-        return TIMEOUT
-    return NO_REASON
+        return Reason.TIMEOUT
+    return Reason.NONE
 
 
 def is_usable_input(inputs: ControllerInput) -> bool:

@@ -28,32 +28,16 @@ from controller_fmu.slot_frame import to_slot, to_world
 from modelkit.maths import clamp
 from modelkit.vocabulary import Pose
 
-STANDBY = int(Phase.STANDBY)
-PRE_STEER = int(Phase.PRE_STEER)
-PATH_TRACKING = int(Phase.PATH_TRACKING)
-STOP = int(Phase.STOP)
-STRAIGHTEN = int(Phase.STRAIGHTEN)
-PARKED = int(Phase.PARKED)
-FAILED = int(Phase.FAILED)
-NO_REASON = int(Reason.NONE)
-BAD_INPUT = int(Reason.BAD_INPUT)
-NO_PATH = int(Reason.NO_PATH)
-LEFT_PATH = int(Reason.LEFT_PATH)
-MISSED_TARGET = int(Reason.MISSED_TARGET)
-GUARD_TAKEOVER = int(Guard.TAKEOVER)
-GUARD_FAULT = int(Guard.FAULT)
-GUARD_PLANNED = int(Guard.PLANNED)
-
 
 class ParkingState(NamedTuple):
     """Everything the system remembers."""
 
-    phase: int = STANDBY
-    leg: int = PATH_TRACKING
+    phase: int = Phase.STANDBY
+    leg: int = Phase.PATH_TRACKING
     """What is driven next, once the car stands and the wheel is set."""
-    driven: int = PATH_TRACKING
+    driven: int = Phase.PATH_TRACKING
     """What was driven last: its law holds while the car comes to a stop."""
-    reason: int = NO_REASON
+    reason: int = Reason.NONE
     shifts: int = 0
     direction: int = 0
     running_ns: int = 0
@@ -76,19 +60,19 @@ AT_REST = ParkingState()
 
 def sample(state: ParkingState, inputs: ControllerInput, params: ControllerParams, dt_ns: int) -> ParkingState:
     """Return the system one sample of ``dt_ns`` later."""
-    if state.phase >= PARKED:
+    if state.phase >= Phase.PARKED:
         return _ended(state, state.phase, state.reason, inputs.driver_takeover)
     if not is_usable_input(inputs):
-        return _ended(state, FAILED, BAD_INPUT, inputs.driver_takeover)
+        return _ended(state, Phase.FAILED, Reason.BAD_INPUT, inputs.driver_takeover)
     planned = state.plan
-    if state.phase == STANDBY:
+    if state.phase == Phase.STANDBY:
         smallest = params.wheelbase / math.tan(params.steering_wheel_limit / params.steering_ratio)
         reserve = params.ntbpt.radius_reserve
         planned = plan(inputs.odometry, params.target, params.ntbpt.radius, reserve * smallest)
     pose = to_slot(inputs.odometry, planned.frame)
-    watched = inputs.steering_wheel_angle if state.phase == STANDBY else state.request
+    watched = inputs.steering_wheel_angle if state.phase == Phase.STANDBY else state.request
     monitor = watch(state.monitor, inputs, state.phase, watched, dt_ns, params)
-    leg = state.driven if state.phase == STOP else state.leg
+    leg = state.driven if state.phase == Phase.STOP else state.leg
     tracking = track(leg, pose, planned.path, state.piece, params)
     reason = _reason(state, monitor, inputs, planned, pose, tracking, params)
     guards = _guards(state, inputs, planned, pose, tracking, reason, params)
@@ -98,7 +82,7 @@ def sample(state: ParkingState, inputs: ControllerInput, params: ControllerParam
 
 def outputs(state: ParkingState, params: ControllerParams) -> ControllerOutput:
     """Return the outputs that hold until the next sample."""
-    active = state.phase != STANDBY and state.phase < PARKED
+    active = state.phase != Phase.STANDBY and state.phase < Phase.PARKED
     frame = state.plan.frame
     path = state.plan.path
     k = frame.mirror / path.radius if path.found else 0.0
@@ -115,7 +99,7 @@ def outputs(state: ParkingState, params: ControllerParams) -> ControllerOutput:
         advised_speed=state.advice,
         speed_control_active=False,
         speed_request=0.0,
-        brake_request=state.phase == FAILED and not state.takeover,
+        brake_request=state.phase == Phase.FAILED and not state.takeover,
         phase=state.phase,
         reason=state.reason,
         shifts=state.shifts,
@@ -137,16 +121,16 @@ def _reason(
 ) -> int:
     limit = params.threshold
     reason = reason_to_fail(monitor, inputs, state.phase, state.running_ns, state.shifts, params)
-    if reason != NO_REASON:
+    if reason != Reason.NONE:
         return reason
     if not planned.path.found:
-        return NO_PATH
+        return Reason.NO_PATH
     if abs(tracking.lateral_error) > limit.lost_lateral:
-        return LEFT_PATH
-    straight = state.phase == STRAIGHTEN and abs(inputs.steering_wheel_angle) <= limit.wheel
+        return Reason.LEFT_PATH
+    straight = state.phase == Phase.STRAIGHTEN and abs(inputs.steering_wheel_angle) <= limit.wheel
     if straight and not within(pose.y, pose.heading, limit.miss_lateral, limit.miss_heading):
-        return MISSED_TARGET
-    return NO_REASON
+        return Reason.MISSED_TARGET
+    return Reason.NONE
 
 
 def _guards(
@@ -161,9 +145,9 @@ def _guards(
     wheel = inputs.steering_wheel_angle
     standing = standing_guards(state.leg, pose, inputs, params)
     return (
-        bit(GUARD_TAKEOVER, inputs.driver_takeover)
-        | bit(GUARD_FAULT, reason != NO_REASON)
-        | bit(GUARD_PLANNED, planned.path.found and abs(inputs.measured_speed) <= params.threshold.standstill)
+        bit(Guard.TAKEOVER, inputs.driver_takeover)
+        | bit(Guard.FAULT, reason != Reason.NONE)
+        | bit(Guard.PLANNED, planned.path.found and abs(inputs.measured_speed) <= params.threshold.standstill)
         | wheel_guards(state.leg, wheel, state.request, params.threshold.wheel)
         | way_guards(tracking, pose, planned.path, inputs.measured_speed, params)
         | standing
@@ -182,14 +166,14 @@ def _moved_on(
     dt_ns: int,
     params: ControllerParams,
 ) -> ParkingState:
-    if phase >= PARKED:
-        return _ended(state, phase, reason if phase == FAILED else NO_REASON, inputs.driver_takeover)
-    back_on_path = state.phase == STOP and phase == PRE_STEER and leg == PATH_TRACKING
+    if phase >= Phase.PARKED:
+        return _ended(state, phase, reason if phase == Phase.FAILED else Reason.NONE, inputs.driver_takeover)
+    back_on_path = state.phase == Phase.STOP and phase == Phase.PRE_STEER and leg == Phase.PATH_TRACKING
     direction = DIRECTION_OF_PHASE[phase]
     turned = direction != 0 and direction != state.direction
     driven = phase if direction != 0 else state.driven
     tracking = track(
-        driven if phase == STOP else leg, pose, planned.path, SECOND_ARC if back_on_path else state.piece, params
+        driven if phase == Phase.STOP else leg, pose, planned.path, SECOND_ARC if back_on_path else state.piece, params
     )
     request = _wheel_request(phase, tracking, planned, params)
     swing = _swing(state, phase, request, inputs, monitor, params)
@@ -199,7 +183,7 @@ def _moved_on(
         phase=phase,
         leg=leg,
         driven=driven,
-        reason=NO_REASON,
+        reason=Reason.NONE,
         shifts=shifts,
         direction=last_direction,
         running_ns=state.running_ns + dt_ns,
@@ -227,15 +211,15 @@ def _advice(
     params: ControllerParams,
 ) -> float:
     """Return the speed advised [m/s]; while a stop is asked for it may fall, as on the way there, but not rise."""
-    if phase == STANDBY:
+    if phase == Phase.STANDBY:
         return params.prompting.speed_limit
     driving = DIRECTION_OF_PHASE[phase] != 0
-    if not driving and phase != STOP:
+    if not driving and phase != Phase.STOP:
         return state.advice
     way = phase if driving else state.driven
     speed = inputs.measured_speed
     advice = swing
-    if way == PATH_TRACKING:
+    if way == Phase.PATH_TRACKING:
         reference = reference_at(planned.path, pose.x, tracking.piece)
         advice = smaller(swing, path_speed(planned.path, reference, speed, monitor.wheel.steering, params))
     else:
@@ -264,7 +248,7 @@ def _swing(
 
 
 def _wheel_request(phase: int, tracking: Tracking, planned: Plan, params: ControllerParams) -> float:
-    if phase == STANDBY or phase == STRAIGHTEN:
+    if phase in (Phase.STANDBY, Phase.STRAIGHTEN):
         return 0.0
     wheel = params.steering_ratio * planned.frame.mirror * tracking.front_wheel_angle
     return clamp(wheel, -params.steering_wheel_limit, params.steering_wheel_limit)

@@ -18,21 +18,20 @@ from controller_fmu.steering_monitor import Steering, delay_of, rate_of
 from modelkit.vocabulary import Prompt
 
 PROMPT_OF_PHASE = (
-    int(Prompt.NONE),
-    int(Prompt.STOP),
-    int(Prompt.REVERSE),
-    int(Prompt.STOP),
-    int(Prompt.FORWARD),
-    int(Prompt.REVERSE),
-    int(Prompt.FORWARD),
-    int(Prompt.REVERSE),
-    int(Prompt.STOP),
-    int(Prompt.STOP),
-    int(Prompt.STOP),
-    int(Prompt.NONE),
+    Prompt.NONE,
+    Prompt.STOP,
+    Prompt.REVERSE,
+    Prompt.STOP,
+    Prompt.FORWARD,
+    Prompt.REVERSE,
+    Prompt.FORWARD,
+    Prompt.REVERSE,
+    Prompt.STOP,
+    Prompt.STOP,
+    Prompt.STOP,
+    Prompt.NONE,
 )
 """One for each member of Phase, in its order."""
-SLOW_DOWN = int(Prompt.SLOW_DOWN)
 MOVING = 0.05
 """A car faster than this [m/s] has set out."""
 
@@ -80,7 +79,7 @@ def stopping_distance(speed: float, params: PromptParams) -> float:
 def prompt_of(phase: int, moving: bool, advice: float, params: PromptParams) -> int:
     """Return the prompt for ``phase``: to slow down where the advice asks for it and the car is on its way."""
     if moving and advice < params.speed_limit:
-        return SLOW_DOWN
+        return Prompt.SLOW_DOWN
     return PROMPT_OF_PHASE[phase]
 
 

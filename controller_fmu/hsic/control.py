@@ -5,17 +5,6 @@ from controller_fmu.hsic.params import HsicGains
 from controller_fmu.hsic.rules import SpeedMode, SteerMode
 from modelkit.maths import clamp
 
-READY = Stage.READY.value
-TURN_IN = Stage.TURN_IN.value
-COUNTER = Stage.COUNTER.value
-STAND = SpeedMode.STAND.value
-FAST = SpeedMode.FAST.value
-APPROACH = SpeedMode.APPROACH.value
-STRAIGHT = SteerMode.STRAIGHT.value
-EXTREMUM_HOLD = SteerMode.EXTREMUM_HOLD.value
-BANG_BANG = SteerMode.BANG_BANG.value
-PID = SteerMode.PID.value
-STRONG_PD = SteerMode.STRONG_PD.value
 SHARPNESS = 10.0
 """Slope of the bang-bang's edge, so that it does not chatter on its switching line."""
 
@@ -31,31 +20,31 @@ def curvature(
     turning in, to the left while counter-steering (in reverse). On the way to the ready point the lateral
     term is bounded, so that its line is approached no steeper than ``steepest``: cars stand beside it.
     """
-    if mode == STRAIGHT:
+    if mode == SteerMode.STRAIGHT:
         return 0.0
-    if mode == EXTREMUM_HOLD and stage == TURN_IN:
+    if mode == SteerMode.EXTREMUM_HOLD and stage == Stage.TURN_IN:
         return -arc
-    if mode == EXTREMUM_HOLD and stage == COUNTER:
+    if mode == SteerMode.EXTREMUM_HOLD and stage == Stage.COUNTER:
         return arc
     lateral = gain.lateral * found.lateral
-    if stage == READY:
+    if stage == Stage.READY:
         lateral = clamp(lateral, -gain.heading * gain.steepest, gain.heading * gain.steepest)
     line = lateral + gain.heading * direction * found.heading
-    if mode == BANG_BANG or mode == EXTREMUM_HOLD:
+    if mode in (SteerMode.BANG_BANG, SteerMode.EXTREMUM_HOLD):
         line = SHARPNESS * line
-    if mode == STRONG_PD:
+    if mode == SteerMode.STRONG_PD:
         line = gain.strengthened * line
-    if mode == PID:
+    if mode == SteerMode.PID:
         line = line + gain.integral * integral
     return clamp(-line, -lock, lock)
 
 
 def speed(mode: int, found: Errors, gain: HsicGains) -> float:
     """Return the speed [m/s] without its sign."""
-    if mode == STAND:
+    if mode == SpeedMode.STAND:
         return 0.0
-    if mode == FAST:
+    if mode == SpeedMode.FAST:
         return gain.fast
-    if mode == APPROACH:
+    if mode == SpeedMode.APPROACH:
         return clamp(gain.approach * abs(found.ahead), gain.creep, gain.fast)
     return gain.slow

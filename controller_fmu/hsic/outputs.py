@@ -9,12 +9,6 @@ from controller_fmu.interface import ControllerOutput, ControllerParams, Path, P
 from controller_fmu.slot_frame import SlotFrame, to_world
 from modelkit.vocabulary import Pose, Prompt
 
-PRE_STEER = Phase.PRE_STEER.value
-PATH_TRACKING = Phase.PATH_TRACKING.value
-STRAIGHTEN = Phase.STRAIGHTEN.value
-TAKEOVER = Phase.TAKEOVER.value
-NO_PROMPT = Prompt.NONE.value
-
 
 def tangent_error(points: KeyPoints, pose: Pose) -> float:
     """Return how far ``pose`` lies left of the common tangent of the two arcs [m]."""
@@ -33,7 +27,7 @@ def planned_path(points: KeyPoints, frame: SlotFrame) -> Path:
 
 def hsic_outputs(state: HsicState, params: ControllerParams) -> ControllerOutput:
     """Return the outputs that hold until the next sample."""
-    active = state.phase == PRE_STEER or state.phase == PATH_TRACKING or state.phase == STRAIGHTEN
+    active = state.phase in (Phase.PRE_STEER, Phase.PATH_TRACKING, Phase.STRAIGHTEN)
     modes = RULES[state.characteristic]
     signals = HsicSignals(
         characteristic=state.characteristic,
@@ -45,11 +39,11 @@ def hsic_outputs(state: HsicState, params: ControllerParams) -> ControllerOutput
     )
     turn = state.frame.mirror * params.steering_ratio * state.angle
     wheel = turn if active else 0.0
-    brake = state.phase != PATH_TRACKING and state.phase != TAKEOVER
+    brake = state.phase != Phase.PATH_TRACKING and state.phase != Phase.TAKEOVER
     return ControllerOutput(
         steering_wheel_request=wheel,
         steering_active=active,
-        prompt=NO_PROMPT,
+        prompt=Prompt.NONE,
         advised_speed=0.0,
         speed_control_active=active,
         speed_request=state.set_speed,

@@ -38,18 +38,18 @@ class SteerMode(IntEnum):
 
 
 RULES = (
-    (SpeedMode.STAND.value, SteerMode.STRAIGHT.value),
-    (SpeedMode.TURN_ROUND.value, SteerMode.STRONG_PD.value),
-    (SpeedMode.SLOW.value, SteerMode.BANG_BANG.value),
-    (SpeedMode.FAST.value, SteerMode.PD.value),
-    (SpeedMode.APPROACH.value, SteerMode.PID.value),
-    (SpeedMode.TURN_ROUND.value, SteerMode.EXTREMUM_HOLD.value),
-    (SpeedMode.SLOW.value, SteerMode.EXTREMUM_HOLD.value),
-    (SpeedMode.FAST.value, SteerMode.PD.value),
-    (SpeedMode.APPROACH.value, SteerMode.PID.value),
-    (SpeedMode.TURN_ROUND.value, SteerMode.STRONG_PD.value),
-    (SpeedMode.SLOW.value, SteerMode.BANG_BANG.value),
-    (SpeedMode.FAST.value, SteerMode.PD.value),
-    (SpeedMode.APPROACH.value, SteerMode.PID.value),
+    (SpeedMode.STAND, SteerMode.STRAIGHT),
+    (SpeedMode.TURN_ROUND, SteerMode.STRONG_PD),
+    (SpeedMode.SLOW, SteerMode.BANG_BANG),
+    (SpeedMode.FAST, SteerMode.PD),
+    (SpeedMode.APPROACH, SteerMode.PID),
+    (SpeedMode.TURN_ROUND, SteerMode.EXTREMUM_HOLD),
+    (SpeedMode.SLOW, SteerMode.EXTREMUM_HOLD),
+    (SpeedMode.FAST, SteerMode.PD),
+    (SpeedMode.APPROACH, SteerMode.PID),
+    (SpeedMode.TURN_ROUND, SteerMode.STRONG_PD),
+    (SpeedMode.SLOW, SteerMode.BANG_BANG),
+    (SpeedMode.FAST, SteerMode.PD),
+    (SpeedMode.APPROACH, SteerMode.PID),
 )
 """Indexed by Characteristic; row 0: no state."""

@@ -7,11 +7,6 @@ from controller_fmu.hsic.key_points import KeyPoints, key_points
 from controller_fmu.hsic.params import HsicParams
 from modelkit.vocabulary import Pose
 
-READY = Stage.READY.value
-TURN_IN = Stage.TURN_IN.value
-TANGENT = Stage.TANGENT.value
-COUNTER = Stage.COUNTER.value
-SHUFFLE = Stage.SHUFFLE.value
 READY_REACH = 0.3
 """Distance [m] from P1 along the road within which the car stands ready."""
 
@@ -19,7 +14,7 @@ READY_REACH = 0.3
 class Course(NamedTuple):
     """Stage, key points, and the point steered for."""
 
-    stage: int = READY
+    stage: int = Stage.READY
     points: KeyPoints = KeyPoints()
     goal: Pose = Pose()
     done: bool = False
@@ -40,15 +35,15 @@ def is_parked(pose: Pose, share: float, params: HsicParams) -> bool:
 def advance(course: Course, pose: Pose, found: Errors, wheelbase: float, params: HsicParams) -> Course:
     """Return the course after looking at the pose (slot frame) and its errors to the goal."""
     arrived = course.way * found.ahead >= -params.threshold.reached
-    if course.stage == READY:
+    if course.stage == Stage.READY:
         return _ready(course, pose, found, arrived, wheelbase, params)
-    if course.stage == TURN_IN:
+    if course.stage == Stage.TURN_IN:
         if arrived or pose.heading >= course.goal.heading - params.threshold.turned:
-            return _go(course, TANGENT, course.points.p3, False, pose)
+            return _go(course, Stage.TANGENT, course.points.p3, False, pose)
         return course
-    if course.stage == TANGENT:
-        return _go(course, COUNTER, Pose(0.0, 0.0, 0.0), True, pose) if arrived else course
-    if course.stage == COUNTER:
+    if course.stage == Stage.TANGENT:
+        return _go(course, Stage.COUNTER, Pose(0.0, 0.0, 0.0), True, pose) if arrived else course
+    if course.stage == Stage.COUNTER:
         return _counter(course, pose, arrived, params)
     return _shuffle(course, pose, found, arrived, params)
 
@@ -64,9 +59,9 @@ def _ready(course: Course, pose: Pose, found: Errors, arrived: bool, wheelbase: 
     if aligned and abs(pose.x - p1.x) <= READY_REACH:
         points = key_points(pose, params.slot, wheelbase, course.points.radius)
         if points.found:
-            return Course(TURN_IN, points, points.p2, False, False, True, -1)
+            return Course(Stage.TURN_IN, points, points.p2, False, False, True, -1)
     farther = Pose(p1.x + threshold.retreat, p1.y, 0.0)
-    return _go(course, READY, farther if at_p1 else p1, True, pose)
+    return _go(course, Stage.READY, farther if at_p1 else p1, True, pose)
 
 
 def _counter(course: Course, pose: Pose, arrived: bool, params: HsicParams) -> Course:
@@ -74,9 +69,9 @@ def _counter(course: Course, pose: Pose, arrived: bool, params: HsicParams) -> C
     if arrived and is_parked(pose, 1.0, params):
         return _done(course)
     if arrived and pose.x <= course.points.rearmost + params.threshold.reached:
-        return _go(course, SHUFFLE, Pose(course.points.foremost, 0.0, 0.0), True, pose)
+        return _go(course, Stage.SHUFFLE, Pose(course.points.foremost, 0.0, 0.0), True, pose)
     if arrived:
-        return _go(course, COUNTER, Pose(course.points.rearmost, 0.0, 0.0), False, pose)
+        return _go(course, Stage.COUNTER, Pose(course.points.rearmost, 0.0, 0.0), False, pose)
     return course
 
 
@@ -88,7 +83,7 @@ def _shuffle(course: Course, pose: Pose, found: Errors, arrived: bool, params: H
         return course
     front = course.points.foremost
     rear = course.points.rearmost
-    return _go(course, SHUFFLE, Pose(rear if course.goal.x == front else front, 0.0, 0.0), True, pose)
+    return _go(course, Stage.SHUFFLE, Pose(rear if course.goal.x == front else front, 0.0, 0.0), True, pose)
 
 
 def _go(course: Course, stage: int, goal: Pose, hold: bool, pose: Pose) -> Course:

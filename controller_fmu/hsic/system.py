@@ -14,21 +14,6 @@ from controller_fmu.slot_frame import SlotFrame, to_slot
 from modelkit.maths import clamp
 from modelkit.vocabulary import Pose
 
-STANDBY = Phase.STANDBY.value
-PRE_STEER = Phase.PRE_STEER.value
-PATH_TRACKING = Phase.PATH_TRACKING.value
-TO_Q4 = Phase.TO_Q4.value
-STRAIGHTEN = Phase.STRAIGHTEN.value
-PARKED = Phase.PARKED.value
-FAILED = Phase.FAILED.value
-TAKEOVER = Phase.TAKEOVER.value
-NO_REASON = Reason.NONE.value
-BAD_INPUT = Reason.BAD_INPUT.value
-NO_PATH = Reason.NO_PATH.value
-LEFT_PATH = Reason.LEFT_PATH.value
-MISSED_TARGET = Reason.MISSED_TARGET.value
-TURN_ROUND = SpeedMode.TURN_ROUND.value
-READY = Stage.READY.value
 LOST = 3.0
 """A key point's axis may be this many times farther off than a path before the car counts as lost."""
 
@@ -36,8 +21,8 @@ LOST = 3.0
 class HsicState(NamedTuple):
     """Everything the system remembers."""
 
-    phase: int = STANDBY
-    reason: int = NO_REASON
+    phase: int = Phase.STANDBY
+    reason: int = Reason.NONE
     running_ns: int = 0
     frame: SlotFrame = SlotFrame()
     course: Course = Course()
@@ -60,13 +45,13 @@ class HsicState(NamedTuple):
 
 def hsic_sample(state: HsicState, inputs: ControllerInput, params: ControllerParams, dt_ns: int) -> HsicState:
     """Return the system one sample of ``dt_ns`` later."""
-    if state.phase >= PARKED:
+    if state.phase >= Phase.PARKED:
         return state
     if not is_usable_input(inputs):
-        return _ended(state, FAILED, BAD_INPUT)
+        return _ended(state, Phase.FAILED, Reason.BAD_INPUT)
     if inputs.driver_takeover:
-        return _ended(state, TAKEOVER, NO_REASON)
-    if state.phase == STANDBY:
+        return _ended(state, Phase.TAKEOVER, Reason.NONE)
+    if state.phase == Phase.STANDBY:
         return _planned(state, inputs, params)
     pose = to_slot(inputs.odometry, state.frame)
     watched = _watched_phase(state)
@@ -74,20 +59,20 @@ def hsic_sample(state: HsicState, inputs: ControllerInput, params: ControllerPar
     monitor = watch(state.monitor, inputs, watched, wheel, dt_ns, params)
     reason = reason_to_fail(monitor, inputs, watched, state.running_ns, state.shifts, params)
     lost = abs(state.found.lateral) > LOST * params.threshold.lost_lateral
-    if reason == NO_REASON and state.course.stage != READY and lost:
-        reason = LEFT_PATH
-    if reason != NO_REASON:
-        return _ended(state, FAILED, reason)
-    if state.phase == STRAIGHTEN:
+    if reason == Reason.NONE and state.course.stage != Stage.READY and lost:
+        reason = Reason.LEFT_PATH
+    if reason != Reason.NONE:
+        return _ended(state, Phase.FAILED, reason)
+    if state.phase == Phase.STRAIGHTEN:
         return _straightened(state, inputs, pose, monitor, params, dt_ns)
     return _driven(state, inputs, pose, monitor, params, dt_ns)
 
 
 def _watched_phase(state: HsicState) -> int:
     """Return the phase that drives as this state does, for the monitor."""
-    if state.phase != PATH_TRACKING:
+    if state.phase != Phase.PATH_TRACKING:
         return state.phase
-    return TO_Q4 if state.direction > 0 else PATH_TRACKING
+    return Phase.TO_Q4 if state.direction > 0 else Phase.PATH_TRACKING
 
 
 def _planned(state: HsicState, inputs: ControllerInput, params: ControllerParams) -> HsicState:
@@ -98,14 +83,14 @@ def _planned(state: HsicState, inputs: ControllerInput, params: ControllerParams
     frame = right if to_slot(inputs.odometry, right).y >= 0.0 else SlotFrame(params.target, -1.0)
     p1 = ready_point(slot, params.wheelbase, radius)
     points = key_points(p1, slot, params.wheelbase, radius)
-    phase = PRE_STEER if points.found else FAILED
-    reason = NO_REASON if points.found else NO_PATH
+    phase = Phase.PRE_STEER if points.found else Phase.FAILED
+    reason = Reason.NONE if points.found else Reason.NO_PATH
     return HsicState(
         phase=phase,
         reason=reason,
         running_ns=0,
         frame=frame,
-        course=Course(READY, points, p1, False, False, True, way_to(p1, to_slot(inputs.odometry, frame))),
+        course=Course(Stage.READY, points, p1, False, False, True, way_to(p1, to_slot(inputs.odometry, frame))),
         direction=1,
         shifts=0,
         counted=0,
@@ -133,10 +118,10 @@ def _driven(
     speed_mode, steer_mode = RULES[characteristic]
     direction = state.direction
     hold = course.hold
-    if speed_mode == TURN_ROUND and abs(v) <= params.threshold.standstill:
+    if speed_mode == SpeedMode.TURN_ROUND and abs(v) <= params.threshold.standstill:
         direction = -1 if found.ahead > 0.0 else 1
         hold = hold or direction != state.direction
-    turning = speed_mode == TURN_ROUND and direction == state.direction
+    turning = speed_mode == SpeedMode.TURN_ROUND and direction == state.direction
     integral = 0.0 if new_goal else state.integral + found.lateral * abs(v) * dt_ns * 1e-9
     lock = math.tan(params.steering_wheel_limit / params.steering_ratio) / params.wheelbase
     bend = curvature(steer_mode, course.stage, found, direction, integral, 1.0 / course.points.radius, lock, hsic.gain)
@@ -145,13 +130,13 @@ def _driven(
     if abs(v) <= params.threshold.standstill and off <= hsic.threshold.wheel:
         hold = False
     still = hold or turning or course.done
-    phase = STRAIGHTEN if course.done else PRE_STEER if still else PATH_TRACKING
+    phase = Phase.STRAIGHTEN if course.done else Phase.PRE_STEER if still else Phase.PATH_TRACKING
     counted = _counted(state, course.stage, phase, direction)
     shifts = state.shifts + 1 if counted != state.counted else state.shifts
     set_speed = 0.0 if still else direction * speed(speed_mode, found, hsic.gain)
     return HsicState(
         phase=phase,
-        reason=NO_REASON,
+        reason=Reason.NONE,
         running_ns=state.running_ns + dt_ns,
         frame=state.frame,
         course=Course(course.stage, course.points, course.goal, course.done, course.lost, hold, course.way),
@@ -170,7 +155,7 @@ def _driven(
 
 def _counted(state: HsicState, stage: int, phase: int, direction: int) -> int:
     """Return the direction of the manoeuvre being driven: the first reverse begins the first one."""
-    if phase != PATH_TRACKING or stage == READY or (state.counted == 0 and direction > 0):
+    if phase != Phase.PATH_TRACKING or stage == Stage.READY or (state.counted == 0 and direction > 0):
         return state.counted
     return direction
 
@@ -179,13 +164,13 @@ def _straightened(
     state: HsicState, inputs: ControllerInput, pose: Pose, monitor: MonitorState, params: ControllerParams, dt_ns: int
 ) -> HsicState:
     """Return the system at its end: wheel to the middle, then parked or missed."""
-    phase = STRAIGHTEN
-    reason = NO_REASON
+    phase = Phase.STRAIGHTEN
+    reason = Reason.NONE
     still = abs(inputs.measured_speed) <= params.threshold.standstill
     if still and abs(inputs.steering_wheel_angle) <= params.hsic.threshold.wheel:
         near = is_parked(pose, 1.0, params.hsic)
-        phase = PARKED if near else FAILED
-        reason = NO_REASON if near else MISSED_TARGET
+        phase = Phase.PARKED if near else Phase.FAILED
+        reason = Reason.NONE if near else Reason.MISSED_TARGET
     return HsicState(
         phase=phase,
         reason=reason,

@@ -5,8 +5,6 @@ from controller_fmu.preview.params import PreviewParams, RuleTable
 from controller_fmu.preview.preview import Sight
 from controller_fmu.preview.rule_tables import FORCE, STEERING_PRINTED, STEERING_SYMMETRIC
 
-PRINTED = int(RuleTable.PRINTED)
-
 UNIVERSE = 3.0
 
 
@@ -14,7 +12,7 @@ def steering_angle(sight: Sight, params: PreviewParams) -> float:
     """Return the front-wheel angle [rad], left positive, from yL and epsL (Table 1)."""
     y = params.lateral_gain * UNIVERSE * sight.y_l / params.lateral_range
     eps = params.heading_gain * UNIVERSE * sight.eps_l / params.heading_range
-    rules = STEERING_PRINTED if params.rules == PRINTED else STEERING_SYMMETRIC
+    rules = STEERING_PRINTED if params.rules == RuleTable.PRINTED else STEERING_SYMMETRIC
     out = infer(y, eps, params.lateral_peaks, params.heading_peaks, params.steering_peaks, rules)
     return params.steering_range * out / UNIVERSE
 

@@ -9,23 +9,12 @@ from controller_fmu.preview.system import PreviewCommand, PreviewState, preview_
 from modelkit.maths import clamp
 from modelkit.vocabulary import Pose, Prompt
 
-STANDBY = int(Phase.STANDBY)
-PATH_TRACKING = int(Phase.PATH_TRACKING)
-STRAIGHTEN = int(Phase.STRAIGHTEN)
-PARKED = int(Phase.PARKED)
-FAILED = int(Phase.FAILED)
-TAKEOVER = int(Phase.TAKEOVER)
-NO_REASON = int(Reason.NONE)
-BAD_INPUT = int(Reason.BAD_INPUT)
-LEFT_PATH = int(Reason.LEFT_PATH)
-NO_PROMPT = int(Prompt.NONE)
-
 
 class DrivingState(NamedTuple):
     """Everything the system remembers."""
 
-    phase: int = STANDBY
-    reason: int = NO_REASON
+    phase: int = Phase.STANDBY
+    reason: int = Reason.NONE
     preview: PreviewState = PreviewState()
     angle: float = 0.0
     """Front-wheel angle asked for [rad]."""
@@ -34,40 +23,40 @@ class DrivingState(NamedTuple):
 
 def driving_sample(state: DrivingState, inputs: ControllerInput, params: ControllerParams, dt_ns: int) -> DrivingState:
     """Return the system one sample of ``dt_ns`` later."""
-    if state.phase >= PARKED:
+    if state.phase >= Phase.PARKED:
         return state
     if not is_usable_input(inputs):
-        return DrivingState(FAILED, BAD_INPUT, state.preview, 0.0, 0.0)
+        return DrivingState(Phase.FAILED, Reason.BAD_INPUT, state.preview, 0.0, 0.0)
     if inputs.driver_takeover:
-        return DrivingState(TAKEOVER, NO_REASON, state.preview, 0.0, 0.0)
-    if state.phase == STRAIGHTEN:
+        return DrivingState(Phase.TAKEOVER, Reason.NONE, state.preview, 0.0, 0.0)
+    if state.phase == Phase.STRAIGHTEN:
         still = abs(inputs.measured_speed) <= params.threshold.standstill
-        return DrivingState(PARKED if still else STRAIGHTEN, NO_REASON, state.preview, 0.0, 0.0)
+        return DrivingState(Phase.PARKED if still else Phase.STRAIGHTEN, Reason.NONE, state.preview, 0.0, 0.0)
     preview, command = preview_step(state.preview, inputs.odometry, inputs.measured_speed, params.preview, dt_ns * 1e-9)
     if abs(preview.sight.y_l) > params.threshold.lost_lateral:
-        return DrivingState(FAILED, LEFT_PATH, preview, 0.0, 0.0)
+        return DrivingState(Phase.FAILED, Reason.LEFT_PATH, preview, 0.0, 0.0)
     return _commanded(preview, command)
 
 
 def _commanded(preview: PreviewState, command: PreviewCommand) -> DrivingState:
-    phase = STRAIGHTEN if command.finished else PATH_TRACKING
-    return DrivingState(phase, NO_REASON, preview, command.front_wheel_angle, command.force)
+    phase = Phase.STRAIGHTEN if command.finished else Phase.PATH_TRACKING
+    return DrivingState(phase, Reason.NONE, preview, command.front_wheel_angle, command.force)
 
 
 def driving_outputs(state: DrivingState, params: ControllerParams) -> ControllerOutput:
     """Return the outputs that hold until the next sample."""
-    driving = state.phase == PATH_TRACKING
+    driving = state.phase == Phase.PATH_TRACKING
     signals = state.preview.signals
     limit = params.steering_wheel_limit
     nothing = Segment(0.0, 0.0)
-    active = driving or state.phase == STRAIGHTEN
-    brake = not driving and state.phase != TAKEOVER
+    active = driving or state.phase == Phase.STRAIGHTEN
+    brake = not driving and state.phase != Phase.TAKEOVER
     speed = signals.wanted_speed if driving else 0.0
     force = state.force if driving else 0.0
     return ControllerOutput(
         steering_wheel_request=clamp(params.steering_ratio * state.angle, -limit, limit),
         steering_active=active,
-        prompt=NO_PROMPT,
+        prompt=Prompt.NONE,
         advised_speed=0.0,
         speed_control_active=active,
         speed_request=speed,

@@ -62,9 +62,9 @@ length decides where in its period the alternation meets the curve, see docs/pre
 class PreviewParams(NamedTuple):
     """Road, preview distances, sequence, speeds and fuzzy sets."""
 
-    method: Annotated[int, Signal("1", "one or two preview points", states=Method)] = int(Method.DUAL)
-    camera: Annotated[int, Signal("1", "where yL and epsL come from", states=Camera)] = int(Camera.KINEMATICS)
-    rules: Annotated[int, Signal("1", "steering rule table", states=RuleTable)] = int(RuleTable.SYMMETRIC)
+    method: Annotated[int, Signal("1", "one or two preview points", states=Method)] = Method.DUAL
+    camera: Annotated[int, Signal("1", "where yL and epsL come from", states=Camera)] = Camera.KINEMATICS
+    rules: Annotated[int, Signal("1", "steering rule table", states=RuleTable)] = RuleTable.SYMMETRIC
     road: tuple[RoadPiece, ...] = ROAD
     set_speed: Annotated[float, Signal("m/s", "speed on straights", 0.1, 40.0, PAPER)] = 8.3
     safe_acceleration: Annotated[

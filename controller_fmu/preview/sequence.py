@@ -7,17 +7,11 @@ from controller_fmu.preview.safe_speed import safe_speed
 from controller_fmu.preview.stage import Stage
 from modelkit.maths import clamp
 
-CURVE = int(Stage.CURVE)
-LEAVING = int(Stage.LEAVING)
-SHORTENED = int(Stage.SHORTENED)
-SLOWING = int(Stage.SLOWING)
-STRAIGHT = int(Stage.STRAIGHT)
-
 
 class Sequence(NamedTuple):
     """Stage, distances and set speed held over a control step."""
 
-    stage: int = STRAIGHT
+    stage: int = Stage.STRAIGHT
     l1: float = 4.5
     l2: float = 6.5
     set_speed: float = 0.0
@@ -42,25 +36,25 @@ def advance(
     sequence: Sequence, kappa1: float, kappa2: float, speed: float, params: PreviewParams, dt: float
 ) -> Sequence:
     """Return the sequence after a control step in which LA1 and LA2 saw ``kappa1`` and ``kappa2`` [1/m]."""
-    if sequence.stage == STRAIGHT:
+    if sequence.stage == Stage.STRAIGHT:
         return _straight(sequence, kappa2, speed, params, dt)
-    if sequence.stage == SLOWING:
+    if sequence.stage == Stage.SLOWING:
         if kappa2 != 0.0:
             return _shorten(sequence, kappa2, params)
         l1 = straight_distance(speed, params)
         return _set(sequence, sequence.stage, l1, l1 + params.near_gap)
-    if sequence.stage == SHORTENED:
+    if sequence.stage == Stage.SHORTENED:
         if kappa1 != 0.0:
-            return _set(sequence, CURVE, sequence.l1, sequence.l1 + params.near_gap)
+            return _set(sequence, Stage.CURVE, sequence.l1, sequence.l1 + params.near_gap)
         return sequence
     if kappa1 == 0.0:
         return _restart(speed, params)
     if kappa2 == 0.0:
-        return _set(sequence, LEAVING, sequence.l1, sequence.l2)
+        return _set(sequence, Stage.LEAVING, sequence.l1, sequence.l2)
     if kappa2 != sequence.kappa:
         shortened = _shorten(sequence, kappa2, params)
-        return _set(shortened, CURVE, shortened.l1, shortened.l1 + params.near_gap)
-    return _set(sequence, CURVE, sequence.l1, sequence.l2)
+        return _set(shortened, Stage.CURVE, shortened.l1, shortened.l1 + params.near_gap)
+    return _set(sequence, Stage.CURVE, sequence.l1, sequence.l2)
 
 
 def _straight(sequence: Sequence, kappa2: float, speed: float, params: PreviewParams, dt: float) -> Sequence:
@@ -70,7 +64,7 @@ def _straight(sequence: Sequence, kappa2: float, speed: float, params: PreviewPa
         slow = safe_speed(kappa2, params.safe_acceleration, params.set_speed)
         if sequence.l2 < sequence.l1 + 0.5 * (params.near_gap + params.far_gap):
             return _shorten(sequence, kappa2, params)
-        return Sequence(SLOWING, l1, l1 + params.near_gap, slow, 0.0, kappa2)
+        return Sequence(Stage.SLOWING, l1, l1 + params.near_gap, slow, 0.0, kappa2)
     clock = sequence.clock + dt
     if clock >= params.period:
         clock = clock - params.period
@@ -81,13 +75,13 @@ def _straight(sequence: Sequence, kappa2: float, speed: float, params: PreviewPa
 def _shorten(sequence: Sequence, kappa2: float, params: PreviewParams) -> Sequence:
     """Return L1 by (6) with L2 as it was, and the curve's safe speed."""
     slow = safe_speed(kappa2, params.safe_acceleration, params.set_speed)
-    return Sequence(SHORTENED, curve_distance(kappa2, params), sequence.l2, slow, 0.0, kappa2)
+    return Sequence(Stage.SHORTENED, curve_distance(kappa2, params), sequence.l2, slow, 0.0, kappa2)
 
 
 def _restart(speed: float, params: PreviewParams) -> Sequence:
     """Return the alternation at the start of its period, set speed of the straight."""
     l1 = straight_distance(speed, params)
-    return Sequence(STRAIGHT, l1, l1 + params.far_gap, params.set_speed, 0.0, 0.0)
+    return Sequence(Stage.STRAIGHT, l1, l1 + params.far_gap, params.set_speed, 0.0, 0.0)
 
 
 def _set(sequence: Sequence, stage: int, l1: float, l2: float) -> Sequence:

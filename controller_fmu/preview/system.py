@@ -11,10 +11,6 @@ from controller_fmu.preview.signals import PreviewSignals
 from controller_fmu.preview.stage import Stage
 from modelkit.vocabulary import Pose
 
-KINEMATICS = int(Camera.KINEMATICS)
-SINGLE = int(Method.SINGLE)
-STRAIGHT = int(Stage.STRAIGHT)
-
 
 class PreviewState(NamedTuple):
     """What the preview system remembers between samples."""
@@ -48,7 +44,7 @@ def preview_step(
     kappa1 = curvature_at(params.road, s + held.l1)
     kappa2 = curvature_at(params.road, s + held.l2)
     sight = look(s, centre, held.l1, params)
-    if state.started and params.camera == KINEMATICS:
+    if state.started and params.camera == Camera.KINEMATICS:
         sight = integrate_sight(state.sight, moved, kappa1, held.l1)
     sequence = _sequence(held, kappa1, kappa2, speed, params, dt)
     error = speed - sequence.set_speed
@@ -63,14 +59,14 @@ def preview_step(
 
 def _arc_length(state: PreviewState, forward: float, centre: Pose, params: PreviewParams) -> float:
     """Return the car's arc length [m]: projected on the road, or driven distance where (2) stands for the camera."""
-    if state.started and params.camera == KINEMATICS:
+    if state.started and params.camera == Camera.KINEMATICS:
         return state.s + forward
     return project(params.road, state.s, centre.x, centre.y)
 
 
 def _sequence(held: Sequence, kappa1: float, kappa2: float, speed: float, params: PreviewParams, dt: float) -> Sequence:
     """Return the distances and set speed for the next sample, by the paper's sequence or the conventional way."""
-    if params.method == SINGLE:
+    if params.method == Method.SINGLE:
         l1 = straight_distance(speed, params)
-        return Sequence(STRAIGHT, l1, l1 + params.near_gap, params.set_speed, 0.0, 0.0)
+        return Sequence(Stage.STRAIGHT, l1, l1 + params.near_gap, params.set_speed, 0.0, 0.0)
     return advance(held, kappa1, kappa2, speed, params, dt)

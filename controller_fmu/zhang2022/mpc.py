@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 from controller_fmu.zhang2022.params import MpcParams
 from controller_fmu.zhang2022.path import QuinticPath, Reference, at
-from controller_fmu.zhang2022.qp import SOLVED, Solution, Stages, solve
+from controller_fmu.zhang2022.qp import Solution, Stages, Status, solve
 from controller_fmu.zhang2022.qp_stage import Stage, Weights
 from modelkit.maths import clamp, is_finite
 
@@ -45,7 +45,7 @@ def steer(
     stages = prediction(path, reference, speed, car, p)
     found = solve(reference.lateral_error, reference.heading_error, angle, stages, weights(car, p), p.tolerance, p.cap)
     rate = found.nodes[0].u / p.step_time if is_usable(found) else steering.rate
-    if found.status != SOLVED:
+    if found.status != Status.SOLVED:
         rate = steering.rate
     return Steering(angle, clamp(rate, -car.rate_limit, car.rate_limit), found.status, found.iterations)
 

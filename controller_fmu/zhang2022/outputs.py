@@ -4,16 +4,10 @@ import math
 
 from controller_fmu.interface import ControllerOutput, ControllerParams, Path, Phase, Segment
 from controller_fmu.slot_frame import to_world
-from controller_fmu.zhang2022.path import NOT_PLANNED
+from controller_fmu.zhang2022.path import PathStatus
 from controller_fmu.zhang2022.signals import ZhangSignals
 from controller_fmu.zhang2022.system import ZhangState
 from modelkit.vocabulary import Pose, Prompt
-
-STANDBY = int(Phase.STANDBY)
-PATH_TRACKING = int(Phase.PATH_TRACKING)
-STRAIGHTEN = int(Phase.STRAIGHTEN)
-TAKEOVER = int(Phase.TAKEOVER)
-NO_PROMPT = int(Prompt.NONE)
 
 
 def zhang_signals(state: ZhangState, params: ControllerParams) -> ZhangSignals:
@@ -30,7 +24,7 @@ def zhang_signals(state: ZhangState, params: ControllerParams) -> ZhangSignals:
 
 def planned_path(state: ZhangState) -> Path:
     """Return the arc path whose key points the quintics go through; empty without a path."""
-    if state.path.status == NOT_PLANNED:
+    if state.path.status == PathStatus.NONE:
         return Path(Pose(0.0, 0.0, 0.0), (Segment(0.0, 0.0), Segment(0.0, 0.0), Segment(0.0, 0.0)))
     arcs = state.path.arcs
     k = state.frame.mirror / arcs.radius
@@ -41,18 +35,18 @@ def planned_path(state: ZhangState) -> Path:
 
 def zhang_outputs(state: ZhangState, params: ControllerParams) -> ControllerOutput:
     """Return the outputs that hold until the next sample."""
-    active = state.phase == PATH_TRACKING or state.phase == STRAIGHTEN
-    driving = state.phase == PATH_TRACKING
+    active = state.phase in (Phase.PATH_TRACKING, Phase.STRAIGHTEN)
+    driving = state.phase == Phase.PATH_TRACKING
     turn = state.frame.mirror * params.steering_ratio * state.steering.angle
     wheel = turn if active else 0.0
     force = state.pid.force if driving else 0.0
     speed = state.set_speed if driving else 0.0
-    brake = not driving and state.phase != TAKEOVER
-    shifts = 0 if state.phase == STANDBY else 1
+    brake = not driving and state.phase != Phase.TAKEOVER
+    shifts = 0 if state.phase == Phase.STANDBY else 1
     return ControllerOutput(
         steering_wheel_request=wheel,
         steering_active=active,
-        prompt=NO_PROMPT,
+        prompt=Prompt.NONE,
         advised_speed=0.0,
         speed_control_active=active,
         speed_request=speed,

@@ -28,17 +28,13 @@ class PathStatus(IntEnum):
     """No radius keeps the quintics' curvature under the car's."""
 
 
-NOT_PLANNED = int(PathStatus.NONE)
-FOUND = int(PathStatus.FOUND)
-BAD_START = int(PathStatus.BAD_START)
-CURVATURE_LIMIT = int(PathStatus.CURVATURE_LIMIT)
 EMPTY = ArcLineArc(0.0, 0.0, 1.0)
 
 
 class QuinticPath(NamedTuple):
     """Pieces from the start (largest x) to the target at the origin, driven in reverse."""
 
-    status: int = NOT_PLANNED
+    status: int = PathStatus.NONE
     start: Pose = Pose()
     arcs: ArcLineArc = EMPTY
     largest_curvature: float = 0.0
@@ -72,14 +68,14 @@ def plan(start: Pose, radius: float, curvature_limit: float) -> QuinticPath:
     around the best are tried in finer steps before the start is refused.
     """
     if not (start.x > 0.1 and start.y > 0.01 and abs(start.heading) < 0.5):
-        return _refused(BAD_START, start, 0.0)
+        return _refused(PathStatus.BAD_START, start, 0.0)
     widest = largest_radius(start.x, start.y)
     low = radius if radius < widest else widest
     high = widest
     tried = Tried()
     for _ in range(ROUNDS):
         tried = _first_within(start, low, high, curvature_limit)
-        if tried.path.status == FOUND:
+        if tried.path.status == PathStatus.FOUND:
             return tried.path
         step = (high - low) / (CANDIDATES - 1.0)
         low = tried.radius - step if tried.radius - step > low else low
@@ -101,7 +97,7 @@ def _first_within(start: Pose, low: float, high: float, curvature_limit: float) 
             if path.largest_curvature < smallest_peak:
                 smallest_peak = path.largest_curvature
                 best = arcs.radius
-    return Tried(_refused(CURVATURE_LIMIT, start, smallest_peak), best)
+    return Tried(_refused(PathStatus.CURVATURE_LIMIT, start, smallest_peak), best)
 
 
 def through(start: Pose, arcs: ArcLineArc) -> QuinticPath:
@@ -117,7 +113,7 @@ def through(start: Pose, arcs: ArcLineArc) -> QuinticPath:
     last = quintic(0.0, 0.0, 0.0, x, y, slope)
     peak = _peak(first)
     other = _peak(last)
-    return QuinticPath(FOUND, start, arcs, peak if peak > other else other, first, line, last)
+    return QuinticPath(PathStatus.FOUND, start, arcs, peak if peak > other else other, first, line, last)
 
 
 def at(path: QuinticPath, x: float) -> Shape:

@@ -43,10 +43,6 @@ class Status(IntEnum):
     """Not finite, or the angle now is outside its limit."""
 
 
-SOLVED = int(Status.SOLVED)
-ITERATION_CAP = int(Status.ITERATION_CAP)
-FAILED = int(Status.FAILED)
-
 Nodes = tuple[Node, Node, Node, Node, Node, Node, Node, Node, Node, Node, Node, Node]
 Stages = tuple[Stage, Stage, Stage, Stage, Stage, Stage, Stage, Stage, Stage, Stage, Stage, Stage]
 Gains = tuple[Gain, Gain, Gain, Gain, Gain, Gain, Gain, Gain, Gain, Gain, Gain, Gain]
@@ -74,9 +70,9 @@ def solve(e: float, psi: float, d: float, stages: Stages, weights: Weights, tole
     gap = _gap(nodes)
     for iteration in range(cap):
         if not gap < 1e12:
-            return Solution(nodes, FAILED, iteration, gap)
+            return Solution(nodes, Status.FAILED, iteration, gap)
         if gap < tolerance and _worst(nodes, weights) < tolerance:
-            return Solution(nodes, SOLVED, iteration, gap)
+            return Solution(nodes, Status.SOLVED, iteration, gap)
         mu = share * gap
         steps = _forward(_backward(nodes, stages, weights, mu), nodes, stages, weights, mu)
         length = _length(nodes, steps)
@@ -84,7 +80,7 @@ def solve(e: float, psi: float, d: float, stages: Stages, weights: Weights, tole
         share = _next_share(length)
         gap = _gap(nodes)
     solved = gap < tolerance and _worst(nodes, weights) < tolerance
-    return Solution(nodes, SOLVED if solved else ITERATION_CAP, cap, gap)
+    return Solution(nodes, Status.SOLVED if solved else Status.ITERATION_CAP, cap, gap)
 
 
 def _next_share(length: float) -> float:

@@ -7,22 +7,11 @@ from controller_fmu.guo2015.monitor import MonitorState, is_usable_input, reason
 from controller_fmu.interface import ControllerInput, ControllerParams, Phase, Reason
 from controller_fmu.slot_frame import SlotFrame, to_slot
 from controller_fmu.zhang2022.mpc import Car, Steering, steer, turned
-from controller_fmu.zhang2022.path import FOUND, QuinticPath, Reference, nearest, plan
+from controller_fmu.zhang2022.path import PathStatus, QuinticPath, Reference, nearest, plan
 from controller_fmu.zhang2022.pid import PidState, pid
 from modelkit.maths import move_towards
 from modelkit.vocabulary import Pose
 
-STANDBY = int(Phase.STANDBY)
-PATH_TRACKING = int(Phase.PATH_TRACKING)
-STRAIGHTEN = int(Phase.STRAIGHTEN)
-PARKED = int(Phase.PARKED)
-FAILED = int(Phase.FAILED)
-TAKEOVER = int(Phase.TAKEOVER)
-NO_REASON = int(Reason.NONE)
-BAD_INPUT = int(Reason.BAD_INPUT)
-NO_PATH = int(Reason.NO_PATH)
-LEFT_PATH = int(Reason.LEFT_PATH)
-MISSED_TARGET = int(Reason.MISSED_TARGET)
 STOPPING_SHARE = 0.7
 """Share of the ramp planned for stopping: what is left makes up for the lag of the speed."""
 CREEP = 0.03
@@ -32,8 +21,8 @@ CREEP = 0.03
 class ZhangState(NamedTuple):
     """Everything the system remembers."""
 
-    phase: int = STANDBY
-    reason: int = NO_REASON
+    phase: int = Phase.STANDBY
+    reason: int = Reason.NONE
     running_ns: int = 0
     solved_ns: int = 0
     """Time since the MPC was solved last."""
@@ -48,24 +37,24 @@ class ZhangState(NamedTuple):
 
 def zhang_sample(state: ZhangState, inputs: ControllerInput, params: ControllerParams, dt_ns: int) -> ZhangState:
     """Return the system one sample of ``dt_ns`` later."""
-    if state.phase >= PARKED:
+    if state.phase >= Phase.PARKED:
         return state
     if not is_usable_input(inputs):
-        return _ended(state, FAILED, BAD_INPUT)
+        return _ended(state, Phase.FAILED, Reason.BAD_INPUT)
     if inputs.driver_takeover:
-        return _ended(state, TAKEOVER, NO_REASON)
-    if state.phase == STANDBY:
+        return _ended(state, Phase.TAKEOVER, Reason.NONE)
+    if state.phase == Phase.STANDBY:
         return _planned(state, inputs, params)
     pose = to_slot(inputs.odometry, state.frame)
     reference = nearest(state.path, pose)
     wheel = state.frame.mirror * params.steering_ratio * state.steering.angle
     monitor = watch(state.monitor, inputs, state.phase, wheel, dt_ns, params)
     reason = reason_to_fail(monitor, inputs, state.phase, state.running_ns, 1, params)
-    if reason == NO_REASON and abs(reference.lateral_error) > params.threshold.lost_lateral:
-        reason = LEFT_PATH
-    if reason != NO_REASON:
-        return _ended(state, FAILED, reason)
-    if state.phase == STRAIGHTEN:
+    if reason == Reason.NONE and abs(reference.lateral_error) > params.threshold.lost_lateral:
+        reason = Reason.LEFT_PATH
+    if reason != Reason.NONE:
+        return _ended(state, Phase.FAILED, reason)
+    if state.phase == Phase.STRAIGHTEN:
         return _straightened(state, inputs, pose, monitor, params, dt_ns)
     return _driven(state, inputs, pose, reference, monitor, params, dt_ns)
 
@@ -86,10 +75,10 @@ def _planned(state: ZhangState, inputs: ControllerInput, params: ControllerParam
     limit = quintic.curvature_share * math.tan(car.angle_limit) / car.wheelbase
     path = plan(start, quintic.radius, limit)
     angle = frame.mirror * inputs.steering_wheel_angle / params.steering_ratio
-    found = path.status == FOUND
+    found = path.status == PathStatus.FOUND
     reference = nearest(path, start) if found else state.reference
-    phase = PATH_TRACKING if found else FAILED
-    reason = NO_REASON if found else NO_PATH
+    phase = Phase.PATH_TRACKING if found else Phase.FAILED
+    reason = Reason.NONE if found else Reason.NO_PATH
     return ZhangState(
         phase=phase,
         reason=reason,
@@ -129,11 +118,11 @@ def _driven(
     wanted = -(slow if slow < zhang.speed else zhang.speed)
     set_speed = move_towards(state.set_speed, wanted, zhang.ramp * dt)
     speed = pid(state.pid, set_speed - inputs.measured_speed, zhang.pid, dt)
-    phase = STRAIGHTEN if arrived else PATH_TRACKING
+    phase = Phase.STRAIGHTEN if arrived else Phase.PATH_TRACKING
     held_speed = 0.0 if arrived else set_speed
     return ZhangState(
         phase=phase,
-        reason=NO_REASON,
+        reason=Reason.NONE,
         running_ns=state.running_ns + dt_ns,
         solved_ns=solved_ns,
         frame=state.frame,
@@ -151,13 +140,13 @@ def _straightened(
 ) -> ZhangState:
     """Return the system at the target: wheel to the middle, then parked or missed."""
     limit = params.threshold
-    phase = STRAIGHTEN
-    reason = NO_REASON
+    phase = Phase.STRAIGHTEN
+    reason = Reason.NONE
     still = abs(inputs.measured_speed) <= limit.standstill
     if still and abs(inputs.steering_wheel_angle) <= limit.wheel:
         near = abs(pose.y) <= limit.miss_lateral and abs(pose.heading) <= limit.miss_heading
-        phase = PARKED if near else FAILED
-        reason = NO_REASON if near else MISSED_TARGET
+        phase = Phase.PARKED if near else Phase.FAILED
+        reason = Reason.NONE if near else Reason.MISSED_TARGET
     return ZhangState(
         phase=phase,
         reason=reason,

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from rich.table import Table
 
 from controller_fmu.apa.chart import Mode
-from controller_fmu.apa.slot import PARALLEL, PERPENDICULAR
+from controller_fmu.apa.slot import Kind
 from controller_fmu.interface import Reason
 from orchestrator.cosim.fmu_files import can_compile
 from orchestrator.grid.apa_grid import (
@@ -26,7 +26,7 @@ from orchestrator.grid.apa_grid import (
 from orchestrator.grid.apa_loop import Loop
 from orchestrator.text.console import Meter, console
 
-KINDS = {PARALLEL: "parallel", PERPENDICULAR: "perpendicular"}
+KINDS = {Kind.PARALLEL: "parallel", Kind.PERPENDICULAR: "perpendicular"}
 EXAMPLES = """examples:
   apa study apa-grid                     every run of the grid: a minute or two where models can be compiled
   apa study apa-grid --every 20          each 20th run

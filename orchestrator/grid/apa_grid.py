@@ -9,7 +9,7 @@ from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 from controller_fmu.apa.chart import Mode
-from controller_fmu.apa.slot import PARALLEL, PERPENDICULAR, Side, Slot
+from controller_fmu.apa.slot import Kind, Side, Slot
 from modelkit.vocabulary import Pose
 from orchestrator.grid.apa_loop import Loop
 from orchestrator.grid.apa_start import is_inside
@@ -25,7 +25,7 @@ CARS: dict[str, tuple[float, float, float, float, float]] = {
 }
 """Wheelbase, front overhang, rear overhang, width, turning radius of the rear axle's middle [m]."""
 RATIO = 19.0
-EXTRA = {PARALLEL: (0.0, 0.4, 0.8, 1.6), PERPENDICULAR: (0.0, 0.3, 0.8)}
+EXTRA = {Kind.PARALLEL: (0.0, 0.4, 0.8, 1.6), Kind.PERPENDICULAR: (0.0, 0.3, 0.8)}
 """Length (width) over the shortest of ISO 16787 [m]."""
 BESIDE = (0.5, 1.0, 1.5)
 HEADINGS = (-5.0, 0.0, 5.0)
@@ -35,7 +35,7 @@ STOP = 150.0
 PARKED, FAILED = int(Mode.PARKING_FINISH), int(Mode.FAIL)
 BEHIND = 0.4
 """A wall stands so much [m] deeper than the car is wide behind a parallel slot."""
-SHIFTS = {PARALLEL: 8, PERPENDICULAR: 7}
+SHIFTS = {Kind.PARALLEL: 8, Kind.PERPENDICULAR: 7}
 """Of GB/T 41630."""
 GHOST = 0.5
 """A slot found further off than this [m], or of the wrong kind, is one that is not there."""
@@ -112,7 +112,7 @@ def cases(lot: int = 0) -> list[Case]:
     """Return the whole grid; what is drawn by lot is drawn from the case's number and ``lot``."""
     found: list[Case] = []
     for car, (wheelbase, front, rear, width, _) in CARS.items():
-        for kind in (PARALLEL, PERPENDICULAR):
+        for kind in (Kind.PARALLEL, Kind.PERPENDICULAR):
             for side in (1, -1):
                 for extra in EXTRA[kind]:
                     for beside in BESIDE:
@@ -153,16 +153,16 @@ def parameters(case: Case) -> tuple[dict[str, Any], dict[str, Any]]:
 
 
 def _shortest(kind: int, length: float, width: float) -> float:
-    if kind == PERPENDICULAR:
+    if kind == Kind.PERPENDICULAR:
         return width + 1.2
     return length + 1.0 if length < 4.0 else 1.25 * length
 
 
 def _scene(case: Case, length: float, width: float) -> dict[str, Any]:
     """Return two neighbours, behind a parallel slot a wall, and the start."""
-    along, deep = (4.4, 1.8) if case.kind == PARALLEL else (1.8, 4.6)
+    along, deep = (4.4, 1.8) if case.kind == Kind.PARALLEL else (1.8, 4.6)
     things = [(-along, 0.0, -deep, 0.0), (case.length, case.length + along, -deep, 0.0)]
-    if case.kind == PARALLEL:
+    if case.kind == Kind.PARALLEL:
         things.append((-12.0, case.length + 12.0, -width - BEHIND - 1.0, -width - BEHIND))
     scene: dict[str, Any] = {}
     for number, (x0, x1, y0, y1) in enumerate(things, start=1):
@@ -216,12 +216,12 @@ def true_slot(case: Case) -> Slot:
     """Return the slot of a case as it is, its corner A at the world's origin."""
     side = int(Side.RIGHT if case.side > 0 else Side.LEFT)
     slot = Slot(case.kind, side, Pose(0.0, 0.0, 0.0), case.length)
-    return slot._replace(depth=CARS[case.car][3] + BEHIND) if case.kind == PARALLEL else slot
+    return slot._replace(depth=CARS[case.car][3] + BEHIND) if case.kind == Kind.PARALLEL else slot
 
 
 def _final_errors(case: Case, last: Mapping[str, float]) -> tuple[float, float]:
     """Return how far [m, rad] the car stands off the true slot's line (parallel) or middle (perpendicular)."""
-    if case.kind == PARALLEL:
+    if case.kind == Kind.PARALLEL:
         lateral = last["vehicle.pose.y"] + case.side * 0.5 * CARS[case.car][3]
         turned = last["vehicle.pose.heading"]
     else:

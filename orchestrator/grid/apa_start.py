@@ -8,7 +8,7 @@ from controller_fmu.apa.exit import VARIANTS, Exit, exit_of
 from controller_fmu.apa.fit import ATTEMPTS, margins_of
 from controller_fmu.apa.outline import Car
 from controller_fmu.apa.parking import car_of
-from controller_fmu.apa.slot import PARALLEL, Site, Slot, site_of
+from controller_fmu.apa.slot import Kind, Site, Slot, site_of
 from controller_fmu.apa.start_range import leads_in
 from controller_fmu.interface import ControllerParams
 from controller_fmu.slot_frame import to_slot
@@ -24,7 +24,7 @@ def is_inside(start: Pose, slot: Slot, controller: dict[str, Any]) -> bool:
     the source. Perpendicular: S-A-B-C leads in, or its reverse alone. True pose, true slot, the planner's margins.
     """
     params: ControllerParams = with_values(MODELS["controller"].params, controller)
-    if slot.kind == PARALLEL:
+    if slot.kind == Kind.PARALLEL:
         return any(
             leads_in(to_slot(start, site.frame), way_in, site, car)
             for site, car, ways in _ways_in(slot, _Hashed(controller, params))

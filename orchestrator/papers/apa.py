@@ -13,7 +13,7 @@ from controller_fmu.apa.fit import least_moves, shortest_of_iso
 from controller_fmu.apa.move import is_move_free, length_of, point_at
 from controller_fmu.apa.outline import Car, clearance
 from controller_fmu.apa.params import ApaParams
-from controller_fmu.apa.slot import PARALLEL, Margins, Site, Slot, shortest_for_one_move, site_of
+from controller_fmu.apa.slot import Kind, Margins, Site, Slot, shortest_for_one_move, site_of
 from controller_fmu.apa.start_range import start_range
 from controller_fmu.apa.turns import reverse_s, turn_of
 from modelkit.vocabulary import Pose
@@ -62,7 +62,7 @@ def shortest_by_search(car: Car, depth: float) -> float:
     low, high = car.front + car.rear, car.front + car.rear + 4.0
     while high - low > 1e-4:
         middle = 0.5 * (low + high)
-        site = site_of(Slot(PARALLEL, 0, Pose(0.0, 0.0, 0.0), middle, 0.0, 50.0), car, Margins(0.0, 0.0, 0.0))
+        site = site_of(Slot(Kind.PARALLEL, 0, Pose(0.0, 0.0, 0.0), middle, 0.0, 50.0), car, Margins(0.0, 0.0, 0.0))
         start = Pose(0.5 * (car.front + car.rear - middle), 2.0 * car.half_width - depth, 0.0)
         poses = [advance(start, 1.0, 0.005 * n, car.curvature, car.curvature) for n in range(800)]
         free = all(clearance(pose, car, site.obstacles) >= -1e-9 for pose in poses)
@@ -75,8 +75,8 @@ def _length_rows(name: str) -> list[Row]:
     width = 2.0 * car.half_width
     closed = shortest_for_one_move(car, 1.0 / car.curvature - car.half_width, width)
     params = ApaParams(front_overhang=0.0, rear_overhang=car.rear, width=width)
-    iso = shortest_of_iso(PARALLEL, car.front, params)
-    slot = Slot(PARALLEL, 0, Pose(0.0, 0.0, 0.0), iso, 0.0, width + 0.4)
+    iso = shortest_of_iso(Kind.PARALLEL, car.front, params)
+    slot = Slot(Kind.PARALLEL, 0, Pose(0.0, 0.0, 0.0), iso, 0.0, width + 0.4)
     return [
         Row("", f"{name}: L_min, formula and search", "m", closed, shortest_by_search(car, width), 0.01),
         Row("", f"{name}: shortest slot of ISO 16787", "m", None, iso),
@@ -86,7 +86,7 @@ def _length_rows(name: str) -> list[Row]:
 
 def _range_rows() -> list[Row]:
     car = car_named("zhang2022")
-    site = site_of(Slot(PARALLEL, 0, Pose(0.0, 0.0, 0.0), 7.4, 0.0, 2.4), car, Margins(0.15, 0.1, 0.0))
+    site = site_of(Slot(Kind.PARALLEL, 0, Pose(0.0, 0.0, 0.0), 7.4, 0.0, 2.4), car, Margins(0.15, 0.1, 0.0))
     way_in = exit_of(2, site, car)
     found = start_range(3.0, 0.0, way_in, site, car)
     tried = [x for x in np.arange(4.0, 11.0, 0.005) if _leads_in(float(x), way_in.pose, site, car)]

@@ -5,7 +5,7 @@ import math
 from controller_fmu.apa.move import end_of
 from controller_fmu.apa.outline import Car
 from controller_fmu.apa.planner import NOTHING, SEARCHING, new_search, search_on
-from controller_fmu.apa.slot import PARALLEL, PERPENDICULAR, Margins, Site, Slot, site_of
+from controller_fmu.apa.slot import Kind, Margins, Site, Slot, site_of
 from controller_fmu.slot_frame import to_slot
 from modelkit.vocabulary import Pose
 
@@ -26,10 +26,10 @@ def car_of(name: str) -> Car:
 def iso_slot(car: Car, kind: int, extra: float, side: int = 0) -> Slot:
     """Return the shortest (narrowest) slot of ISO 16787 and ``extra`` [m], at the world's origin."""
     length = car.front + car.rear
-    if kind == PARALLEL:
+    if kind == Kind.PARALLEL:
         shortest = length + 1.0 if length < 4.0 else 1.25 * length
-        return Slot(PARALLEL, side, Pose(0.0, 0.0, 0.0), shortest + extra, 0.0, 2.0 * car.half_width + 0.4)
-    return Slot(PERPENDICULAR, side, Pose(0.0, 0.0, 0.0), 2.0 * car.half_width + 1.2 + extra, 0.0, length + 0.5)
+        return Slot(Kind.PARALLEL, side, Pose(0.0, 0.0, 0.0), shortest + extra, 0.0, 2.0 * car.half_width + 0.4)
+    return Slot(Kind.PERPENDICULAR, side, Pose(0.0, 0.0, 0.0), 2.0 * car.half_width + 1.2 + extra, 0.0, length + 0.5)
 
 
 def start_of(slot: Slot, site: Site, car: Car, past_b: float, beside: float, heading: float) -> Pose:

@@ -9,7 +9,7 @@ from controller_fmu.apa.exit import exit_of
 from controller_fmu.apa.move import end_of, is_move_free, length_of, point_at
 from controller_fmu.apa.outline import clearance
 from controller_fmu.apa.planner import FOUND, NOTHING, SEARCHING, new_search, search_on
-from controller_fmu.apa.slot import PARALLEL, PERPENDICULAR, Margins, Slot, shortest_for_one_move, site_of
+from controller_fmu.apa.slot import Kind, Margins, Slot, shortest_for_one_move, site_of
 from controller_fmu.apa.start_range import start_range
 from modelkit.vocabulary import Pose
 from tests.controller.apa_cars import CARS, MARGINS, car_of, park_in_thought, slot_and_site, start_of
@@ -18,7 +18,7 @@ NO_MARGINS = Margins(0.0, 0.0, 0.0)
 
 
 @pytest.mark.parametrize("name", CARS)
-@pytest.mark.parametrize("kind", [PARALLEL, PERPENDICULAR])
+@pytest.mark.parametrize("kind", [Kind.PARALLEL, Kind.PERPENDICULAR])
 @pytest.mark.parametrize("extra", [0.0, 1.0])
 @pytest.mark.parametrize(("beside", "degrees"), [(0.5, 5.0), (0.5, -5.0), (1.0, 0.0), (1.5, 5.0)])
 def test_every_slot_from_the_shortest_up_is_reached(
@@ -30,7 +30,7 @@ def test_every_slot_from_the_shortest_up_is_reached(
     moves, end = park_in_thought(start, site, car)
     reverses = [number for number, move in enumerate(moves) if move.direction < 0]
     assert moves, "nothing found"
-    assert len(moves) - reverses[0] <= (8 if kind == PARALLEL else 7)
+    assert len(moves) - reverses[0] <= (8 if kind == Kind.PARALLEL else 7)
     assert abs(end.y) < 0.01
     open_site = site_of(slot, car, NO_MARGINS)
     for move in moves:
@@ -40,7 +40,7 @@ def test_every_slot_from_the_shortest_up_is_reached(
         assert max(abs(point_at(move, 0.02 * n).curvature) for n in range(steps + 1)) <= car.curvature + 1e-12
 
 
-@pytest.mark.parametrize("kind", [PARALLEL, PERPENDICULAR])
+@pytest.mark.parametrize("kind", [Kind.PARALLEL, Kind.PERPENDICULAR])
 def test_the_left_side_mirrors_the_right(kind: int) -> None:
     car = car_of("middle")
     found = []
@@ -60,7 +60,7 @@ def test_l_min_is_the_shortest_slot_left_along_one_arc(name: str) -> None:
     low, high = closed - 1.0, closed + 1.0
     while high - low > 1e-3:
         middle = 0.5 * (low + high)
-        site = site_of(Slot(PARALLEL, 0, Pose(0.0, 0.0, 0.0), middle, 0.0, 50.0), car, NO_MARGINS)
+        site = site_of(Slot(Kind.PARALLEL, 0, Pose(0.0, 0.0, 0.0), middle, 0.0, 50.0), car, NO_MARGINS)
         pose, free = Pose(car.rear - middle * 0.5 - 0.5 * (car.rear - car.front), 0.0, 0.0), True
         for n in range(400):
             free = (
@@ -73,7 +73,7 @@ def test_l_min_is_the_shortest_slot_left_along_one_arc(name: str) -> None:
 
 def test_a_slot_too_short_is_refused() -> None:
     car = car_of("middle")
-    site = site_of(Slot(PARALLEL, 0, Pose(0.0, 0.0, 0.0), car.front + car.rear + 0.35, 0.0, 2.2), car, MARGINS)
+    site = site_of(Slot(Kind.PARALLEL, 0, Pose(0.0, 0.0, 0.0), car.front + car.rear + 0.35, 0.0, 2.2), car, MARGINS)
     search = new_search(Pose(7.0, 2.9, 0.0))
     while search.status == SEARCHING:
         search = search_on(search, site, car, 50)
@@ -82,7 +82,7 @@ def test_a_slot_too_short_is_refused() -> None:
 
 def test_the_number_of_candidates_at_a_time_changes_nothing() -> None:
     car = car_of("middle")
-    slot, site = slot_and_site(car, PARALLEL, 0.0)
+    slot, site = slot_and_site(car, Kind.PARALLEL, 0.0)
     start = start_of(slot, site, car, 1.0, 1.0, 0.0)
     at_once = search_on(new_search(start), site, car, 10_000)
     search = new_search(start)
@@ -94,7 +94,7 @@ def test_the_number_of_candidates_at_a_time_changes_nothing() -> None:
 
 def test_inside_the_start_range_one_reverse_leads_in_and_outside_it_does_not() -> None:
     car = car_of("middle")
-    site = site_of(Slot(PARALLEL, 0, Pose(0.0, 0.0, 0.0), 7.4, 0.0, 2.3), car, MARGINS)
+    site = site_of(Slot(Kind.PARALLEL, 0, Pose(0.0, 0.0, 0.0), 7.4, 0.0, 2.3), car, MARGINS)
     way_in = exit_of(2, site, car)
     reach = start_range(3.0, 0.0, way_in, site, car)
     assert reach.found

@@ -7,7 +7,7 @@ import pytest
 from controller_fmu.apa.move import is_move_free
 from controller_fmu.apa.outline import Box, Car, Obstacles
 from controller_fmu.apa.relocate import OUT, along, between, braked, relocated
-from controller_fmu.apa.slot import LEFT, PARALLEL, PERPENDICULAR, UNSEEN, Slot
+from controller_fmu.apa.slot import UNSEEN, Kind, Side, Slot
 from controller_fmu.apa.supervisor import look
 from controller_fmu.apa.turns import straight_move
 from controller_fmu.interface import ControllerInput, ControllerParams
@@ -22,7 +22,7 @@ READINGS = 60
 
 def scene_of(boxes, side):
     """Return a scene of (x0, x1, y0, y1), mirrored for a slot on the left."""
-    mirror = -1.0 if side == LEFT else 1.0
+    mirror = -1.0 if side == Side.LEFT else 1.0
     obstacles = [Obstacle(0.5 * (a + b), mirror * 0.5 * (c + d), 0.0, b - a, d - c) for a, b, c, d in boxes]
     missing = len(SceneParams().boxes) - len(obstacles)
     return SceneParams(boxes=(*obstacles, *(Obstacle() for _ in range(missing))))
@@ -35,8 +35,8 @@ def inputs_at(true, believed, boxes, side):
 
 @pytest.mark.parametrize("side", [0, 1])
 def test_neighbours_of_a_perpendicular_slot_are_followed(side):
-    mirror = -1.0 if side == LEFT else 1.0
-    slot = Slot(PERPENDICULAR, side, Pose(0.0, 0.0, 0.0), 2.9, 0.0, UNSEEN)
+    mirror = -1.0 if side == Side.LEFT else 1.0
+    slot = Slot(Kind.PERPENDICULAR, side, Pose(0.0, 0.0, 0.0), 2.9, 0.0, UNSEEN)
     true = Pose(1.4, mirror * -2.5, mirror * (0.5 * math.pi + 0.1))
     boxes = [(-2.0, 0.0, -5.0, 0.0), (2.9, 5.0, -5.0, 0.0)]
     heard = inputs_at(true, Pose(true.x + DRIFT, true.y, true.heading), boxes, side)
@@ -48,8 +48,8 @@ def test_neighbours_of_a_perpendicular_slot_are_followed(side):
 
 @pytest.mark.parametrize("side", [0, 1])
 def test_the_wall_of_a_parallel_slot_is_followed(side):
-    mirror = -1.0 if side == LEFT else 1.0
-    slot = Slot(PARALLEL, side, Pose(0.0, 0.0, 0.0), 6.0, 0.0, 2.1)
+    mirror = -1.0 if side == Side.LEFT else 1.0
+    slot = Slot(Kind.PARALLEL, side, Pose(0.0, 0.0, 0.0), 6.0, 0.0, 2.1)
     true = Pose(1.6, mirror * -0.7, mirror * 0.2)
     boxes = [(-4.0, 0.0, -2.0, 0.0), (6.0, 10.0, -2.0, 0.0), (-9.0, 15.0, -3.0, -2.1)]
     heard = inputs_at(true, Pose(true.x, true.y + mirror * DRIFT, true.heading), boxes, side)
@@ -60,7 +60,7 @@ def test_the_wall_of_a_parallel_slot_is_followed(side):
 
 
 def test_nothing_moves_on_the_road():
-    slot = Slot(PARALLEL, 0, Pose(0.0, 0.0, 0.0), 6.0, 0.0, 2.1)
+    slot = Slot(Kind.PARALLEL, 0, Pose(0.0, 0.0, 0.0), 6.0, 0.0, 2.1)
     heard = inputs_at(Pose(8.0, 1.6, 0.0), Pose(8.0, 1.6, 0.0), [(6.0, 10.0, -2.0, 0.0)], 0)
     assert along(slot, heard, PARAMS) == slot
     assert between(slot, heard, PARAMS) == slot
@@ -68,14 +68,14 @@ def test_nothing_moves_on_the_road():
 
 
 def test_a_wall_not_heard_from_the_road_is_entered():
-    slot = Slot(PARALLEL, 0, Pose(0.0, 0.0, 0.0), 4.9, 0.0, UNSEEN)
+    slot = Slot(Kind.PARALLEL, 0, Pose(0.0, 0.0, 0.0), 4.9, 0.0, UNSEEN)
     pose = Pose(1.3, -0.83, math.radians(26.0))
     boxes = [(-4.0, 0.0, -2.0, 0.0), (4.9, 9.0, -2.0, 0.0), (-9.0, 15.0, -3.0, -2.05)]
     assert relocated(slot, inputs_at(pose, pose, boxes, 0), PARAMS).depth == pytest.approx(2.05, abs=0.02)
 
 
 def test_the_way_that_braking_slips_is_made_up_for():
-    slot = Slot(PARALLEL, 0, Pose(1.0, 2.0, 0.5), 6.0, 0.0, 2.1, unsure=0.02)
+    slot = Slot(Kind.PARALLEL, 0, Pose(1.0, 2.0, 0.5), 6.0, 0.0, 2.1, unsure=0.02)
     moved = braked(slot, 5.0, PARAMS)
     missed = 0.5 * PARAMS.apa.search.slip * 25.0
     assert (moved.a.x, moved.a.y) == pytest.approx((1.0 - missed * math.cos(0.5), 2.0 - missed * math.sin(0.5)))

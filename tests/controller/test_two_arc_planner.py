@@ -7,15 +7,19 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from controller_fmu.guo2015.legs import TO_Q1, TO_Q2, TO_Q4, point_of_leg
+from controller_fmu.guo2015.legs import point_of_leg
 from controller_fmu.guo2015.path import distance_to_end, reference_at
 from controller_fmu.guo2015.planner import TwoArcPath, plan, touching_radius, two_arcs
-from controller_fmu.interface import NtbptParams
+from controller_fmu.interface import NtbptParams, Phase
 from controller_fmu.slot_frame import SlotFrame, to_slot, to_world
 from modelkit.vocabulary import Pose
 
 SMALLEST = 2.405 / math.tan(math.radians(30.0))
-TABLE_2 = {TO_Q1: (-3.798, -1.522, 0.765), TO_Q2: (-3.077, -0.830, 0.765), TO_Q4: (-5.108, -3.056, 0.0)}
+TABLE_2 = {
+    Phase.TO_Q1: (-3.798, -1.522, 0.765),
+    Phase.TO_Q2: (-3.077, -0.830, 0.765),
+    Phase.TO_Q4: (-5.108, -3.056, 0.0),
+}
 
 poses = st.builds(
     Pose,

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from controller_fmu.zhang2022.key_points import arc_line_arc, largest_radius
-from controller_fmu.zhang2022.path import CURVATURE_LIMIT, FOUND, STEEPEST, plan, through
+from controller_fmu.zhang2022.path import STEEPEST, PathStatus, plan, through
 from modelkit.vocabulary import Pose
 from orchestrator.bakeoff.driver_study import LIMITS, STEERING, SYSTEMS, Group, rate_of, study
 from orchestrator.bakeoff.entries import ASSIST, CONTROLLERS, SLOTS, STARTS, Entry, entries, scenario_of
@@ -61,7 +61,7 @@ def test_quintics_are_refused_where_no_radius_keeps_the_curvature_and_only_there
             limit = 0.95 * math.tan(lock) / car["wheelbase"]
             start = Pose(*(float(entry.scenario.vehicle[f"start.{axis}"]) for axis in ("x", "y", "heading")))
             possible = smallest_peak(start, 5.0) <= limit
-            assert plan(start, 5.0, limit).status == (FOUND if possible else CURVATURE_LIMIT)
+            assert plan(start, 5.0, limit).status == (PathStatus.FOUND if possible else PathStatus.CURVATURE_LIMIT)
             verdicts[entry.slot, entry.car, entry.start] = possible
     assert [sum(verdicts[key] for key in verdicts if key[0] == slot) for slot in SLOTS] == [0, 4, 6]
 

@@ -111,4 +111,4 @@ def least_moves(slot: Slot, car: Car, params: ApaParams) -> int:
 
 def _longer(slot: Slot, by: float) -> Slot:
     a = Pose(slot.a.x, slot.a.y, slot.a.heading)
-    return Slot(slot.kind, slot.side, a, slot.length + by, slot.b_out, slot.depth, slot.opposite, slot.unsure)
+    return slot._replace(a=a, length=slot.length + by)

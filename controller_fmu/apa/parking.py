@@ -251,10 +251,7 @@ def start_planning(slot: Slot, pose: Pose, params: ControllerParams) -> Parking:
 
 def cut_short(state: Parking) -> Parking:
     """Return the manoeuvre whose move is not driven any further: it is planned again at standstill."""
-    return Parking(
-        state.step, state.plan, state.attempt, state.leg, state.tracked, state.shifts, state.direction, state.ended,
-        True, state.sight, state.wheel, state.speed,
-    )  # fmt: skip
+    return state._replace(cut=True)  # fmt: skip
 
 
 def is_planned(state: Parking) -> bool:

@@ -158,6 +158,4 @@ def _candidate(stage: int, number: int, start: Pose, way_in: Exit, site: Site, c
 
 
 def _with_status(search: PlanSearch, status: int) -> PlanSearch:
-    return PlanSearch(
-        status, search.stage, search.number, search.way_in, search.found, search.cost, search.moves, search.move
-    )
+    return search._replace(status=status)

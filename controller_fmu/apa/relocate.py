@@ -55,7 +55,7 @@ def relocated(slot: Slot, inputs: ControllerInput, params: ControllerParams) -> 
     start = _heard_at(pose, mirror_of(slot), inputs, REAR, params)
     if abs(start) <= FURTHEST:
         slot = _moved(slot, start, 0.0)
-        pose = Pose(pose.x - start, pose.y, pose.heading)
+        pose = pose._replace(x=pose.x - start)
     end = _heard_at(pose, mirror_of(slot), inputs, FRONT, params) - slot.length
     if abs(end) <= FURTHEST:
         slot = _moved(slot, 0.0, end)
@@ -79,7 +79,7 @@ def _walled(slot: Slot, inputs: ControllerInput, params: ControllerParams) -> Sl
         return slot
     a = Pose(slot.a.x, slot.a.y, slot.a.heading)
     nearer = first if first < second else second
-    return Slot(slot.kind, slot.side, a, slot.length, slot.b_out, nearer, slot.opposite, slot.unsure)
+    return slot._replace(a=a, depth=nearer)
 
 
 def between(slot: Slot, inputs: ControllerInput, params: ControllerParams) -> Slot:
@@ -121,7 +121,7 @@ def along(slot: Slot, inputs: ControllerInput, params: ControllerParams) -> Slot
     if heard == 0.0:
         return slot
     a = to_world(Pose(0.0, GAIN * total / heard, 0.0), SlotFrame(slot.a, mirror))
-    return Slot(slot.kind, slot.side, a, slot.length, slot.b_out, slot.depth, slot.opposite, slot.unsure)
+    return slot._replace(a=a)
 
 
 def _off_wall(pose: Pose, site: Site, number: int, inputs: ControllerInput, params: ControllerParams) -> float:
@@ -171,7 +171,7 @@ def _shallower(slot: Slot, inputs: ControllerInput, params: ControllerParams) ->
     if lacks <= WRONG or lacks > FURTHEST or should > expected(mount, pose, mirror, site.obstacles, params.apa):
         return slot
     a = Pose(slot.a.x, slot.a.y, slot.a.heading)
-    return Slot(slot.kind, slot.side, a, slot.length, slot.b_out, slot.depth - lacks, slot.opposite, slot.unsure)
+    return slot._replace(a=a, depth=slot.depth - lacks)
 
 
 def _heard_at(pose: Pose, mirror: float, inputs: ControllerInput, first: int, params: ControllerParams) -> float:
@@ -209,4 +209,4 @@ def braked(slot: Slot, speed: float, params: ControllerParams) -> Slot:
 
 def _moved(slot: Slot, start: float, end: float, unsure: float = 0.0) -> Slot:
     a = to_world(Pose(start, 0.0, 0.0), SlotFrame(slot.a, mirror_of(slot)))
-    return Slot(slot.kind, slot.side, a, slot.length - start + end, slot.b_out, slot.depth, slot.opposite, unsure)
+    return slot._replace(a=a, length=slot.length - start + end, unsure=unsure)

@@ -150,7 +150,7 @@ def _judge(
     if mark == known:
         first = state.slots[0]
         better = state.valid > 0 and first.side == which and abs(first.length - slot.length) < 0.5
-        kept = Slot(first.kind, which, slot.a, slot.length, slot.b_out, slot.depth, slot.opposite, slot.unsure)
+        kept = slot._replace(kind=first.kind, side=which)
         slots = (kept, state.slots[1], state.slots[2]) if better else state.slots
         return _with_slots(state, slots, state.valid, state.seen, state.refused, state.refusals)
     fit = fit_of(slot, car, params)
@@ -179,16 +179,12 @@ def _with_sides(
     way: float,
     fastest: float,
 ) -> SearchState:
-    return SearchState(
-        state.begun, state.origin, clock_ns, right, left, far_right, far_left, way, state.slots, state.valid,
-        state.seen, state.refused, state.refusals, fastest,
-    )  # fmt: skip
+    return state._replace(
+        clock_ns=clock_ns, right=right, left=left, far_right=far_right, far_left=far_left, way=way, fastest=fastest
+    )
 
 
 def _with_slots(
     state: SearchState, slots: tuple[Slot, ...], count: int, seen: int, refused: Fit, refusals: int
 ) -> SearchState:
-    return SearchState(
-        state.begun, state.origin, state.clock_ns, state.right, state.left, state.far_right, state.far_left,
-        state.way, slots, count, seen, refused, refusals, state.fastest,
-    )  # fmt: skip
+    return state._replace(slots=slots, valid=count, seen=seen, refused=refused, refusals=refusals)

@@ -84,9 +84,28 @@ class SideState(NamedTuple):
 
 EMPTY = Sums(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 START = SideState(
-    NOTHING, 0.0, 0.0, 0.0, 0.0, Heard(0.0, 0.0, 0.0), 0, 0.0, 0.0, 0.0, 0, NO_SAMPLES, EMPTY, EMPTY, 0.0, DEEP,
-    0, False, 0.0, NO_SAMPLES, EMPTY,
-)  # fmt: skip
+    NOTHING,
+    0.0,
+    0.0,
+    0.0,
+    0.0,
+    Heard(0.0, 0.0, 0.0),
+    0,
+    0.0,
+    0.0,
+    0.0,
+    0,
+    NO_SAMPLES,
+    EMPTY,
+    EMPTY,
+    0.0,
+    DEEP,
+    0,
+    False,
+    0.0,
+    NO_SAMPLES,
+    EMPTY,
+)
 
 
 def hear(side: SideState, u: float, w: float, r: float, half_angle: float, params: SearchParams) -> SideState:
@@ -157,9 +176,28 @@ def _on_wall(side: SideState, sample: Heard, half_angle: float, params: SearchPa
     edge = corner(side.samples + side.faces, _line(side.sums, EMPTY), -1.0, half_angle)
     extent = edge - side.begun
     return SideState(
-        GAP, side.n, side.u, side.w, side.r, side.last, 0, side.begun, extent, side.missed, 0, NO_SAMPLES, EMPTY,
-        side.sums, edge, DEEP, side.found, False, 0.0, NO_SAMPLES, EMPTY,
-    )  # fmt: skip
+        GAP,
+        side.n,
+        side.u,
+        side.w,
+        side.r,
+        side.last,
+        0,
+        side.begun,
+        extent,
+        side.missed,
+        0,
+        NO_SAMPLES,
+        EMPTY,
+        side.sums,
+        edge,
+        DEEP,
+        side.found,
+        False,
+        0.0,
+        NO_SAMPLES,
+        EMPTY,
+    )
 
 
 def _with_sample(sums: Sums, other: Sums, sample: Heard, steady: int) -> Sums:
@@ -192,31 +230,42 @@ def _in_gap(side: SideState, sample: Heard, half_angle: float, params: SearchPar
     d = distance(_line(side.before, EMPTY), sample.u, sample.w)
     most = _still_heard(side.before, EMPTY, sample, 1.0, half_angle) + STAGGER
     if sample.r < most and sample.r < params.beside + FURTHER:
-        return SideState(
-        NEXT_WALL, side.n, side.u, side.w, side.r, side.last, 0, sample.u, side.extent, sample.u, 1,
-        append(NO_SAMPLES, sample, 0), EMPTY, side.before, side.edge, side.depth, side.found, False, 0.0, side.faces,
-        side.behind,
-    )  # fmt: skip
+        return side._replace(
+            mode=NEXT_WALL,
+            steady=0,
+            begun=sample.u,
+            missed=sample.u,
+            taken=1,
+            samples=append(NO_SAMPLES, sample, 0),
+            sums=EMPTY,
+            fresh=False,
+            edge_b=0.0,
+        )
     depth = side.depth
     behind = side.behind
     if side.steady >= LEVEL and sample.r < params.beside + 2.4 and sample.r - d < depth + AGREE:
         behind = add(behind if sample.r - d > depth - AGREE else EMPTY, sample.u, sample.w, sample.r)
         depth = sample.r - d if sample.r - d < depth else depth
-    return SideState(
-        GAP, side.n, side.u, side.w, side.r, side.last, side.steady, side.begun, side.extent, side.missed, 0,
-        NO_SAMPLES, EMPTY, side.before, side.edge, depth, side.found, False, 0.0, remember(side.faces, sample),
-        behind,
-    )  # fmt: skip
+    return side._replace(
+        mode=GAP,
+        taken=0,
+        samples=NO_SAMPLES,
+        sums=EMPTY,
+        depth=depth,
+        fresh=False,
+        edge_b=0.0,
+        faces=remember(side.faces, sample),
+        behind=behind,
+    )
 
 
 def _on_next_wall(side: SideState, sample: Heard, half_angle: float, params: SearchParams) -> SideState:
     if abs(sample.r - side.samples[0].r) > 2.0 * params.step + 0.4:
         if sample.u - side.missed < CONFIRMED:
             return side
-        return SideState(
-        GAP, side.n, side.u, side.w, side.r, side.last, 0, side.begun, side.extent, side.missed, 0, NO_SAMPLES,
-        EMPTY, side.before, side.edge, side.depth, side.found, False, 0.0, NO_SAMPLES, side.behind,
-    )  # fmt: skip
+        return side._replace(
+            mode=GAP, steady=0, taken=0, samples=NO_SAMPLES, sums=EMPTY, fresh=False, edge_b=0.0, faces=NO_SAMPLES
+        )
     earlier = side.samples[side.taken - 1]
     steep = side.taken < KEPT and sample.r - earlier.r < -STEEP * (sample.u - earlier.u)
     faces = remember(side.faces, earlier) if steep else side.faces
@@ -225,67 +274,101 @@ def _on_next_wall(side: SideState, sample: Heard, half_angle: float, params: Sea
     count = taken + 1 if taken < KEPT else KEPT
     sums = _with_sample(side.sums, side.before, sample, side.steady)
     if sample.u - side.begun < params.wall or sums.n < 2.0:
-        return SideState(
-        NEXT_WALL, side.n, side.u, side.w, side.r, side.last, side.steady, side.begun, side.extent, sample.u, count,
-        samples, sums, side.before, side.edge, side.depth, side.found, False, 0.0, faces, side.behind,
-    )  # fmt: skip
+        return side._replace(
+            mode=NEXT_WALL,
+            missed=sample.u,
+            taken=count,
+            samples=samples,
+            sums=sums,
+            fresh=False,
+            edge_b=0.0,
+            faces=faces,
+        )
     b = slope(side.before, sums)
     edge_b = corner(samples + faces, Line(offset(sums, b), b), 1.0, half_angle)
-    return SideState(
-        WALL, side.n, side.u, side.w, side.r, side.last, side.steady, edge_b, side.extent, sample.u, count,
-        remember(NO_SAMPLES, sample), sums, side.before, side.edge, side.depth, side.found + 1, True, edge_b,
-        NO_SAMPLES, side.behind,
-    )  # fmt: skip
+    return side._replace(
+        mode=WALL,
+        begun=edge_b,
+        missed=sample.u,
+        taken=count,
+        samples=remember(NO_SAMPLES, sample),
+        sums=sums,
+        found=side.found + 1,
+        fresh=True,
+        edge_b=edge_b,
+        faces=NO_SAMPLES,
+    )
 
 
 def _begin_wall(side: SideState, sample: Heard) -> SideState:
     return SideState(
-        WALL, side.n, side.u, side.w, side.r, side.last, 0, sample.u, 0.0, sample.u, 0, remember(NO_SAMPLES, sample),
-        EMPTY, EMPTY, 0.0, DEEP, side.found, False, 0.0, NO_SAMPLES, EMPTY,
-    )  # fmt: skip
+        WALL,
+        side.n,
+        side.u,
+        side.w,
+        side.r,
+        side.last,
+        0,
+        sample.u,
+        0.0,
+        sample.u,
+        0,
+        remember(NO_SAMPLES, sample),
+        EMPTY,
+        EMPTY,
+        0.0,
+        DEEP,
+        side.found,
+        False,
+        0.0,
+        NO_SAMPLES,
+        EMPTY,
+    )
 
 
 def _fresh_start(side: SideState) -> SideState:
     return SideState(
-        NOTHING, side.n, side.u, side.w, side.r, side.last, 0, 0.0, 0.0, 0.0, 0, NO_SAMPLES, EMPTY, EMPTY, 0.0, DEEP,
-        side.found, False, 0.0, NO_SAMPLES, EMPTY,
-    )  # fmt: skip
+        NOTHING,
+        side.n,
+        side.u,
+        side.w,
+        side.r,
+        side.last,
+        0,
+        0.0,
+        0.0,
+        0.0,
+        0,
+        NO_SAMPLES,
+        EMPTY,
+        EMPTY,
+        0.0,
+        DEEP,
+        side.found,
+        False,
+        0.0,
+        NO_SAMPLES,
+        EMPTY,
+    )
 
 
 def _wall(side: SideState, begun: float, sums: Sums, samples: tuple[Heard, ...], fresh: bool) -> SideState:
-    return SideState(
-        WALL, side.n, side.u, side.w, side.r, side.last, side.steady, begun, side.extent, samples[0].u, side.taken,
-        samples, sums, side.before, side.edge, side.depth, side.found, fresh, side.edge_b, NO_SAMPLES, side.behind,
-    )  # fmt: skip
+    return side._replace(
+        mode=WALL, begun=begun, missed=samples[0].u, samples=samples, sums=sums, fresh=fresh, faces=NO_SAMPLES
+    )
 
 
 def _with_bin(side: SideState, n: float, u: float, w: float, r: float) -> SideState:
-    return SideState(
-        side.mode, n, u, w, r, side.last, side.steady, side.begun, side.extent, side.missed, side.taken,
-        side.samples, side.sums, side.before, side.edge, side.depth, side.found, side.fresh, side.edge_b, side.faces,
-        side.behind,
-    )  # fmt: skip
+    return side._replace(n=n, u=u, w=w, r=r)
 
 
 def _with_last(side: SideState, last: Heard, steady: int) -> SideState:
-    return SideState(
-        side.mode, side.n, side.u, side.w, side.r, last, steady, side.begun, side.extent, side.missed, side.taken,
-        side.samples, side.sums, side.before, side.edge, side.depth, side.found, False, side.edge_b, side.faces,
-        side.behind,
-    )  # fmt: skip
+    return side._replace(last=last, steady=steady, fresh=False)
 
 
 def _with_faces(side: SideState, faces: tuple[Heard, ...]) -> SideState:
-    return SideState(
-        side.mode, side.n, side.u, side.w, side.r, side.last, side.steady, side.begun, side.extent, side.missed,
-        side.taken, side.samples, side.sums, side.before, side.edge, side.depth, side.found, side.fresh, side.edge_b,
-        faces, side.behind,
-    )  # fmt: skip
+    return side._replace(faces=faces)
 
 
 def _not_fresh(side: SideState) -> SideState:
-    return SideState(
-        side.mode, side.n, side.u, side.w, side.r, side.last, side.steady, side.begun, side.extent, side.missed,
-        side.taken, side.samples, side.sums, side.before, side.edge, side.depth, side.found, False, side.edge_b,
-        side.faces, side.behind,
-    )  # fmt: skip
+    return side._replace(fresh=False)

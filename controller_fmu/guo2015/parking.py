@@ -255,24 +255,7 @@ def _wheel_request(phase: int, tracking: Tracking, planned: Plan, params: Contro
 
 
 def _ended(state: ParkingState, phase: int, reason: int, takeover: bool) -> ParkingState:
-    return ParkingState(
-        phase=phase,
-        leg=state.leg,
-        driven=state.driven,
-        reason=reason,
-        shifts=state.shifts,
-        direction=state.direction,
-        running_ns=state.running_ns,
-        piece=state.piece,
-        plan=state.plan,
-        tracking=state.tracking,
-        request=state.request,
-        moving=False,
-        advice=0.0,
-        swing=state.swing,
-        takeover=takeover,
-        monitor=state.monitor,
-    )
+    return state._replace(phase=phase, reason=reason, moving=False, advice=0.0, takeover=takeover)
 
 
 def _squared_distance(a: Pose, b: Pose) -> float:

@@ -139,7 +139,7 @@ def _driven(
         reason=Reason.NONE,
         running_ns=state.running_ns + dt_ns,
         frame=state.frame,
-        course=Course(course.stage, course.points, course.goal, course.done, course.lost, hold, course.way),
+        course=course._replace(hold=hold),
         direction=direction,
         shifts=shifts,
         counted=counted,
@@ -191,20 +191,4 @@ def _straightened(
 
 
 def _ended(state: HsicState, phase: int, reason: int) -> HsicState:
-    return HsicState(
-        phase=phase,
-        reason=reason,
-        running_ns=state.running_ns,
-        frame=state.frame,
-        course=state.course,
-        direction=state.direction,
-        shifts=state.shifts,
-        counted=state.counted,
-        characteristic=state.characteristic,
-        integral=state.integral,
-        angle=state.angle,
-        set_speed=0.0,
-        found=state.found,
-        pose=state.pose,
-        monitor=state.monitor,
-    )
+    return state._replace(phase=phase, reason=reason, set_speed=0.0)

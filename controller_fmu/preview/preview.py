@@ -36,7 +36,7 @@ def centre_of_gravity(rear: Pose, centre_to_rear: float) -> Pose:
 def motion(before: Pose, now: Pose) -> Motion:
     """Return the displacement from ``before`` to ``now``, seen along the mean heading."""
     turned = wrap_angle(now.heading - before.heading)
-    middle = Pose(before.x, before.y, before.heading + 0.5 * turned)
+    middle = before._replace(heading=before.heading + 0.5 * turned)
     return Motion(longitudinal_offset(middle, now.x, now.y), lateral_offset(middle, now.x, now.y), turned)
 
 

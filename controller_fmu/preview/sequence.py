@@ -85,4 +85,4 @@ def _restart(speed: float, params: PreviewParams) -> Sequence:
 
 
 def _set(sequence: Sequence, stage: int, l1: float, l2: float) -> Sequence:
-    return Sequence(stage, l1, l2, sequence.set_speed, sequence.clock, sequence.kappa)
+    return sequence._replace(stage=stage, l1=l1, l2=l2)

@@ -58,7 +58,7 @@ def is_usable(found: Solution) -> bool:
 def turned(steering: Steering, car: Car, dt: float) -> Steering:
     """Return the steering ``dt`` [s] later at its present rate."""
     angle = clamp(steering.angle + steering.rate * dt, -car.angle_limit, car.angle_limit)
-    return Steering(angle, steering.rate, steering.status, steering.iterations)
+    return steering._replace(angle=angle)
 
 
 def prediction(path: QuinticPath, reference: Reference, speed: float, car: Car, p: MpcParams) -> Stages:

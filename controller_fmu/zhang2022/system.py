@@ -163,16 +163,4 @@ def _straightened(
 
 
 def _ended(state: ZhangState, phase: int, reason: int) -> ZhangState:
-    return ZhangState(
-        phase=phase,
-        reason=reason,
-        running_ns=state.running_ns,
-        solved_ns=state.solved_ns,
-        frame=state.frame,
-        path=state.path,
-        reference=state.reference,
-        steering=state.steering,
-        set_speed=0.0,
-        pid=state.pid,
-        monitor=state.monitor,
-    )
+    return state._replace(phase=phase, reason=reason, set_speed=0.0)

@@ -26,7 +26,7 @@ from orchestrator.grid.apa_grid import (
 from orchestrator.grid.apa_loop import Loop
 from orchestrator.text.console import Meter, console
 
-KINDS = {Kind.PARALLEL: "parallel", Kind.PERPENDICULAR: "perpendicular"}
+KINDS: dict[int, str] = {Kind.PARALLEL: "parallel", Kind.PERPENDICULAR: "perpendicular"}
 EXAMPLES = """examples:
   apa study apa-grid                     every run of the grid: a minute or two where models can be compiled
   apa study apa-grid --every 20          each 20th run

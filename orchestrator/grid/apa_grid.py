@@ -25,7 +25,7 @@ CARS: dict[str, tuple[float, float, float, float, float]] = {
 }
 """Wheelbase, front overhang, rear overhang, width, turning radius of the rear axle's middle [m]."""
 RATIO = 19.0
-EXTRA = {Kind.PARALLEL: (0.0, 0.4, 0.8, 1.6), Kind.PERPENDICULAR: (0.0, 0.3, 0.8)}
+EXTRA: dict[int, tuple[float, ...]] = {Kind.PARALLEL: (0.0, 0.4, 0.8, 1.6), Kind.PERPENDICULAR: (0.0, 0.3, 0.8)}
 """Length (width) over the shortest of ISO 16787 [m]."""
 BESIDE = (0.5, 1.0, 1.5)
 HEADINGS = (-5.0, 0.0, 5.0)
@@ -35,7 +35,7 @@ STOP = 150.0
 PARKED, FAILED = int(Mode.PARKING_FINISH), int(Mode.FAIL)
 BEHIND = 0.4
 """A wall stands so much [m] deeper than the car is wide behind a parallel slot."""
-SHIFTS = {Kind.PARALLEL: 8, Kind.PERPENDICULAR: 7}
+SHIFTS: dict[int, int] = {Kind.PARALLEL: 8, Kind.PERPENDICULAR: 7}
 """Of GB/T 41630."""
 GHOST = 0.5
 """A slot found further off than this [m], or of the wrong kind, is one that is not there."""

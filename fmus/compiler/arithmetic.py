@@ -5,8 +5,9 @@ import operator
 from collections.abc import Callable
 from typing import Any
 
-from fmus.compiler.body import EXPRESSIONS, Body, tuple_of
+from fmus.compiler.body import EXPRESSIONS, Body
 from fmus.compiler.kinds import BOOL, FLOAT, INT, Array, described
+from fmus.compiler.making import elements, tuple_of
 from fmus.compiler.refusals import AlreadySaidError, CannotError
 from fmus.compiler.values import (
     BIT_AND,
@@ -19,14 +20,15 @@ from fmus.compiler.values import (
     SUM,
     UNARY,
     UNKNOWN,
+    WHOLE,
     Value,
     as_float,
     as_int,
     as_wide,
-    element,
     literal,
     within,
 )
+from fmus.compiler.variables import variable
 
 SIGNS: dict[type[ast.operator], tuple[str, int]] = {
     ast.Add: ("+", SUM),
@@ -38,6 +40,7 @@ SIGNS: dict[type[ast.operator], tuple[str, int]] = {
     ast.BitXor: ("^", BIT_XOR),
 }
 HELPED = {ast.FloorDiv: "floor_div", ast.Mod: "floor_mod", ast.LShift: "shift_left", ast.RShift: "shift_right"}
+WORDS = {ast.FloorDiv: "//", ast.Mod: "%", ast.LShift: "<<", ast.RShift: ">>", ast.Pow: "**", ast.MatMult: "@"}
 PYTHON: dict[type[ast.operator], Callable[[Any, Any], Any]] = {
     ast.Add: operator.add,
     ast.Sub: operator.sub,
@@ -51,6 +54,7 @@ PYTHON: dict[type[ast.operator], Callable[[Any, Any], Any]] = {
     ast.BitOr: operator.or_,
     ast.BitXor: operator.xor,
 }
+FLOAT_ADVICE = {ast.FloorDiv: "write math.floor(a / b)", ast.Mod: "write a - b * math.floor(a / b)"}
 
 
 def constant(body: Body, node: ast.Constant) -> Value:
@@ -58,7 +62,7 @@ def constant(body: Body, node: ast.Constant) -> Value:
     if type(node.value) in (float, bool):
         return literal(node.value)
     if type(node.value) is int:
-        return _in_64_bits(literal(node.value), node)
+        return in_64_bits(literal(node.value), node)
     if isinstance(node.value, str | bytes):
         raise CannotError(node, "a string", "name what is meant by an IntEnum; text is made outside of the model")
     if node.value is None:
@@ -70,10 +74,10 @@ def constant(body: Body, node: ast.Constant) -> Value:
 def name(body: Body, node: ast.Name) -> Value:
     """Return a variable, or a constant of the module."""
     if any(node.id in scope for scope in body.scopes) or node.id in body.bindings.local:
-        variable = body.variable(node.id)
-        if variable.kind is None:
+        known = variable(body, node.id)
+        if known.kind is None:
             raise AlreadySaidError
-        return variable.value()
+        return known.value()
     found = body.static(node)
     if found is None:
         raise CannotError(node, f"{node.id} is not known", "define it in the module, or import it from one that does")
@@ -92,9 +96,7 @@ def binary(body: Body, node: ast.BinOp) -> Value:
         if value.kind not in (FLOAT, INT, BOOL):
             raise CannotError(side, f"arithmetic with {described(value.kind)}", "name the field that is meant")
     if kind in (ast.Pow, ast.MatMult):
-        raise CannotError(
-            node, "**" if kind is ast.Pow else "@", "write x * x, math.sqrt(x) or math.exp(y * math.log(x))"
-        )
+        raise CannotError(node, WORDS[kind], "write x * x, math.sqrt(x) or math.exp(y * math.log(x))")
     if FLOAT in (left.kind, right.kind):
         return _of_floats(node, as_float(left), as_float(right))
     if kind is ast.Div:
@@ -108,10 +110,7 @@ def binary(body: Body, node: ast.BinOp) -> Value:
 def _of_floats(node: ast.BinOp, left: Value, right: Value) -> Value:
     kind = type(node.op)
     if kind not in (ast.Add, ast.Sub, ast.Mult, ast.Div):
-        advice = {
-            ast.FloorDiv: "write math.floor(a / b)",
-            ast.Mod: "write a - b * math.floor(a / b)",
-        }.get(kind, "write int(...) around the operands")
+        advice = FLOAT_ADVICE.get(kind, "write int(...) around the operands")
         raise CannotError(node, f"{_sign(node)} of floats", advice)
     sign, level = SIGNS[kind]
     const = _known(kind, left, right)
@@ -126,29 +125,25 @@ def _of_ints(body: Body, node: ast.BinOp, left: Value, right: Value) -> Value:
     if kind in (ast.FloorDiv, ast.Mod) and right.const is not UNKNOWN and right.const == 0:
         raise CannotError(node, f"{_sign(node)} by 0", "divide by something else")
     low, high = _bounds(kind, left, right)
-    small = const is not UNKNOWN and -INT32 < const < INT32
     if kind in HELPED:
         text = f"{body.program.helper(HELPED[kind])}({left.text}, {right.text})"
-        return _in_64_bits(Value(INT, text, const=const, low=low, high=high), node)
-    if left.narrow and right.narrow and not small:
+        return in_64_bits(Value(INT, text, const=const, low=low, high=high), node)
+    if left.narrow and right.narrow and not (const is not UNKNOWN and -INT32 < const < INT32):
         left = as_wide(left)
     sign, level = SIGNS[kind]
-    weak = PRIMARY if level < SUM else level
-    text = f"{within(left, weak)} {sign} {within(right, weak + 1 if weak != PRIMARY else weak)}"
+    if level < SUM:
+        text = f"{within(left, PRIMARY)} {sign} {within(right, PRIMARY)}"
+    else:
+        text = f"{within(left, level)} {sign} {within(right, level + 1)}"
     narrow = left.narrow and right.narrow
-    return _in_64_bits(Value(INT, text, level, const=const, low=low, high=high, narrow=narrow), node)
+    return in_64_bits(Value(INT, text, level, const=const, low=low, high=high, narrow=narrow), node)
 
 
 def _quotient(body: Body, node: ast.BinOp, left: Value, right: Value) -> Value:
     """Return ``a / b`` of integers, which Python rounds once from the exact quotient."""
-    if all(_is_whole(item) for item in (left, right)):
+    if left.lies_in(-WHOLE, WHOLE) and right.lies_in(-WHOLE, WHOLE):
         return _of_floats(node, as_float(left), as_float(right))
     return Value(FLOAT, f"{body.program.helper('int_quotient')}({left.text}, {right.text})")
-
-
-def _is_whole(value: Value) -> bool:
-    bounds = value.bounds()
-    return bounds is not None and bounds[0] >= -(2**53) and bounds[1] <= 2**53
 
 
 def _known(kind: type[ast.operator], left: Value, right: Value) -> Any:
@@ -162,22 +157,27 @@ def _known(kind: type[ast.operator], left: Value, right: Value) -> Any:
 
 
 def _bounds(kind: type[ast.operator], left: Value, right: Value) -> tuple[int | None, int | None]:
-    """Return the least and greatest result if they follow from those of the operands."""
+    """Return the least and greatest result as far as they follow from those of the operands."""
+    a, b, c, d = left.least(), left.most(), right.least(), right.most()
     if kind is ast.Mod and right.const is not UNKNOWN and right.const > 0:
         return 0, right.const - 1
     if kind is ast.BitAnd:
         masks = [item.const for item in (left, right) if item.const is not UNKNOWN and item.const >= 0]
         return (0, min(masks)) if masks else (None, None)
-    a, b = left.bounds(), right.bounds()
-    if a is None or b is None:
+    if kind is ast.Add:
+        return None if a is None or c is None else a + c, None if b is None or d is None else b + d
+    if kind is ast.Sub:
+        return None if a is None or d is None else a - d, None if b is None or c is None else b - c
+    if a is None or b is None or c is None or d is None:
         return None, None
-    if kind in (ast.Add, ast.Sub, ast.Mult) or (kind is ast.FloorDiv and b[0] > 0):
-        ends = [PYTHON[kind](x, y) for x in a for y in b]
+    if kind is ast.Mult or (kind is ast.FloorDiv and c > 0):
+        ends = [PYTHON[kind](x, y) for x in (a, b) for y in (c, d)]
         return min(ends), max(ends)
     return None, None
 
 
-def _in_64_bits(value: Value, node: ast.AST) -> Value:
+def in_64_bits(value: Value, node: ast.AST) -> Value:
+    """Return ``value``; refuse an integer that is known to be too large."""
     if value.const is not UNKNOWN and not -INT64 <= value.const < INT64:
         raise CannotError(node, f"the integer {value.const}", "keep integers within 64 bits")
     return value
@@ -197,34 +197,7 @@ def _of_tuples(body: Body, node: ast.BinOp, left: Value, right: Value) -> Value:
     if left.kind.item != right.kind.item:
         what = f"{described(left.kind)} joined to {described(right.kind)}"
         raise CannotError(node, what, "join tuples of one kind of items")
-    kind = Array(left.kind.item, left.kind.length + right.kind.length)
-    first = left.kind.length
-
-    def fill(place: str) -> None:
-        _put_part(body, place, 0, left)
-        _put_part(body, place, first, right)
-
-    if kind.length <= 16:
-        return tuple_of(body, elements(body, left) + elements(body, right))
-    return Value(kind, fill=fill)
-
-
-def _put_part(body: Body, place: str, start: int, part: Value) -> None:
-    for number, item in enumerate(elements(body, part)):
-        body.put(f"{place}[{start + number}]", item)
-
-
-def elements(body: Body, value: Value) -> tuple[Value, ...]:
-    """Return the items of a tuple one by one."""
-    if value.items is not None:
-        return value.items
-    assert isinstance(value.kind, Array)
-    whole = body.settled(value, "items")
-    known = whole.const if whole.const is not UNKNOWN else [UNKNOWN] * value.kind.length
-    return tuple(
-        Value(value.kind.item, element(whole, str(at)), place=True, fixed=whole.fixed, const=known[at])
-        for at in range(value.kind.length)
-    )
+    return tuple_of(body, elements(body, left) + elements(body, right))
 
 
 def unary(body: Body, node: ast.UnaryOp) -> Value:
@@ -233,22 +206,24 @@ def unary(body: Body, node: ast.UnaryOp) -> Value:
     if isinstance(node.op, ast.Invert):
         if value.kind != INT:
             raise CannotError(node, f"~ of {described(value.kind)}", "write 'not' for truth values")
-        return Value(INT, f"~{within(value, UNARY)}", UNARY, narrow=value.narrow)
+        const = UNKNOWN if value.const is UNKNOWN else ~value.const
+        return Value(INT, f"~{within(value, UNARY)}", UNARY, narrow=value.narrow, const=const)
     number = as_int(value)
     if isinstance(node.op, ast.UAdd):
         return number
     const = UNKNOWN if number.const is UNKNOWN else -number.const
+    if isinstance(node.operand, ast.Constant) and number.kind == INT:
+        return in_64_bits(literal(const), node)
+    low, high = number.least(), number.most()
+    ends = (None if high is None else -high), (None if low is None else -low)
     text = within(number, UNARY)
     text = f"-({text})" if text.startswith("-") else f"-{text}"
-    low, high = (None if number.high is None else -number.high), (None if number.low is None else -number.low)
-    value = Value(number.kind, text, UNARY, const=const, narrow=number.narrow, low=low, high=high)
-    if number.kind == INT and isinstance(node.operand, ast.Constant):
-        return literal(const)
-    return _in_64_bits(value, node) if number.kind == INT else value
+    made = Value(number.kind, text, UNARY, const=const, narrow=number.narrow, low=ends[0], high=ends[1])
+    return in_64_bits(made, node) if number.kind == INT else made
 
 
 def _sign(node: ast.BinOp) -> str:
-    return ast.unparse(ast.BinOp(ast.Name("a"), node.op, ast.Name("b")))[2:-2]
+    return WORDS.get(type(node.op)) or SIGNS[type(node.op)][0]
 
 
 EXPRESSIONS |= {ast.Constant: constant, ast.Name: name, ast.BinOp: binary}

@@ -1,7 +1,10 @@
-"""Where in a function each variable is bound and used: from that follows where C declares it, and whether const."""
+"""Where in a function each variable is bound and used: from that follows where C declares it, and whether const.
+
+A name may stand for several variables that know nothing of each other, such as the counter of two
+loops one after the other. Each has a home: the innermost block that has all of its mentions.
+"""
 
 import ast
-from collections import Counter
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 
@@ -10,39 +13,89 @@ Path = tuple[tuple[int, str], ...]
 
 
 @dataclass
+class Home:
+    """One variable: where it lives, how often it is bound and read there."""
+
+    path: Path
+    stores: int = 0
+    loads: int = 0
+
+
+@dataclass
+class Mention:
+    """One place where a name is written in the source."""
+
+    path: Path
+    store: bool
+    first: bool
+    """It is bound here before anything in its block reads it, and in every case."""
+
+
+@dataclass
 class Bindings:
     """What one function does with its names."""
 
     parameters: list[str]
-    homes: dict[str, Path] = field(default_factory=dict)
-    """The innermost block that has all mentions of a variable."""
-    stores: Counter[str] = field(default_factory=Counter)
-    loads: Counter[str] = field(default_factory=Counter)
+    mentions: dict[str, list[Mention]] = field(default_factory=dict)
+    homes: dict[str, list[Home]] = field(default_factory=dict)
 
     @property
     def local(self) -> set[str]:
         """Every name that the function binds."""
-        return {*self.parameters, *self.stores}
+        return {*self.parameters, *(name for name, found in self.mentions.items() if any(m.store for m in found))}
+
+    def home(self, name: str, path: Path) -> Home:
+        """Return the variable that ``name`` stands for in the block ``path``."""
+        for home in self.homes.get(name, ()):
+            if path[: len(home.path)] == home.path:
+                return home
+        return Home(())
 
     def rebound(self, name: str) -> bool:
         """Return whether a parameter is bound anew inside the function."""
-        return self.stores[name] > 0
+        return any(mention.store for mention in self.mentions.get(name, ()))
 
 
 def bindings(function: ast.FunctionDef) -> Bindings:
     """Return the bindings of ``function``."""
     arguments = function.args
-    names = [item.arg for item in (*arguments.posonlyargs, *arguments.args, *arguments.kwonlyargs)]
-    found = Bindings(names)
-    for name in names:
-        found.homes[name] = ()
+    found = Bindings([item.arg for item in (*arguments.posonlyargs, *arguments.args, *arguments.kwonlyargs)])
     _walk(found, function.body, ())
+    for name, mentions in found.mentions.items():
+        found.homes[name] = [_home((), mentions)] if name in found.parameters else list(_homes((), mentions))
     return found
 
 
 def block(path: Path, node: ast.AST, which: str) -> Path:
     """Return the path of a block that belongs to ``node``."""
     return (*path, (id(node), which))
+
+
+def _homes(path: Path, mentions: list[Mention]) -> Iterator[Home]:
+    """Yield the variables that a name stands for below ``path``."""
+    inner: dict[Path, list[Mention]] = {}
+    for mention in mentions:
+        inner.setdefault(mention.path[: len(path) + 1], []).append(mention)
+    if path in inner:  # mentioned by this block itself
+        yield _home(path, mentions)
+    elif len(inner) == 1:
+        yield from _homes(next(iter(inner)), mentions)
+    elif all(_begins_with_store(child, group) for child, group in inner.items()):
+        for child, group in inner.items():
+            yield from _homes(child, group)
+    else:
+        yield _home(path, mentions)
+
+
+def _begins_with_store(path: Path, mentions: list[Mention]) -> bool:
+    """Return whether a block binds a name before it reads it, whatever happens inside."""
+    first = mentions[0]
+    return first.path == path and first.store and first.first
+
+
+def _home(path: Path, mentions: list[Mention]) -> Home:
+    stores = sum(mention.store for mention in mentions)
+    return Home(path, stores, len(mentions) - stores)
 
 
 def _walk(found: Bindings, body: Iterable[ast.stmt], path: Path) -> None:
@@ -64,15 +117,17 @@ def _walk(found: Bindings, body: Iterable[ast.stmt], path: Path) -> None:
                 _walk(found, case.body, block(path, case, "body"))
         else:
             _mention(found, node, path)
-            if isinstance(node, ast.AugAssign) and isinstance(node.target, ast.Name):
-                found.loads[node.target.id] += 1
 
 
 def _mention(found: Bindings, node: ast.AST, path: Path) -> None:
-    for name in names_in(node):
-        known = found.homes.get(name.id)
-        found.homes[name.id] = path if known is None else _common(known, path)
-        (found.loads if isinstance(name.ctx, ast.Load) else found.stores)[name.id] += 1
+    names = list(names_in(node))
+    loads = {name.id for name in names if isinstance(name.ctx, ast.Load)}
+    if isinstance(node, ast.AugAssign) and isinstance(node.target, ast.Name):
+        loads.add(node.target.id)
+        found.mentions.setdefault(node.target.id, []).append(Mention(path, False, False))
+    for name in sorted(names, key=lambda item: isinstance(item.ctx, ast.Store)):
+        store = isinstance(name.ctx, ast.Store)
+        found.mentions.setdefault(name.id, []).append(Mention(path, store, name.id not in loads))
 
 
 def names_in(node: ast.AST) -> Iterator[ast.Name]:
@@ -100,10 +155,3 @@ def reads(node: ast.AST, name: str) -> bool:
 def stored_in(body: Iterable[ast.AST]) -> set[str]:
     """Return the variables that statements bind."""
     return {name.id for node in body for name in names_in(node) if isinstance(name.ctx, ast.Store)}
-
-
-def _common(a: Path, b: Path) -> Path:
-    count = 0
-    while count < min(len(a), len(b)) and a[count] == b[count]:
-        count += 1
-    return a[:count]

@@ -5,11 +5,12 @@ import math
 from collections.abc import Callable
 from typing import Any
 
-from fmus.compiler.arithmetic import elements
+from fmus.compiler.arithmetic import in_64_bits
 from fmus.compiler.body import Body
 from fmus.compiler.kinds import BOOL, FLOAT, INT, Array, Mixed, described
+from fmus.compiler.making import elements
 from fmus.compiler.refusals import CannotError
-from fmus.compiler.values import EQUAL, UNKNOWN, Value, as_float, as_int, literal, truth
+from fmus.compiler.values import EQUAL, UNKNOWN, Value, as_float, as_int, both, either, literal, truth
 
 MATH = {
     "sin": 1, "cos": 1, "tan": 1, "asin": 1, "acos": 1, "atan": 1, "atan2": 2, "sinh": 1, "cosh": 1, "tanh": 1,
@@ -19,7 +20,7 @@ MATH = {
 """Functions that are those of C's library, with their number of arguments."""
 EXACT = {"sqrt", "fabs", "copysign", "fmod"}
 WHOLE = ("floor", "ceil", "trunc")
-TESTS = {"isnan": "isnan", "isinf": "isinf", "isfinite": "isfinite"}
+TESTS = ("isnan", "isinf", "isfinite")
 MATH_ADVICE = {
     "hypot": "write math.sqrt(x * x + y * y)",
     "pow": "write x * x, or math.exp(y * math.log(x))",
@@ -33,21 +34,22 @@ MATH_ADVICE = {
 def math_call(body: Body, node: ast.Call, name: str) -> Value:
     """Return a call of a function of math."""
     if name in WHOLE:
-        return _whole(body, node, name)
+        (value,) = scalars(body, node, f"math.{name}", 1, 1)
+        return whole(body, value, name, getattr(math, name))
     count = 1 if name in TESTS else MATH.get(name)
     if count is None:
         advice = MATH_ADVICE.get(name, "write it with + - * / and the functions that C has too")
         raise CannotError(node, f"math.{name}()", advice)
-    values = [as_float(value) for value in _scalars(body, node, f"math.{name}", count, count)]
+    values = [as_float(value) for value in scalars(body, node, f"math.{name}", count, count)]
     if name in TESTS:
-        return Value(BOOL, f"{TESTS[name]}({values[0].text}) != 0", EQUAL)
-    const = _known(getattr(math, name), values)
+        return Value(BOOL, f"{name}({values[0].text}) != 0", EQUAL)
+    const = known_result(getattr(math, name), values)
     if const is not UNKNOWN and name not in EXACT:
         return literal(const)
     return Value(FLOAT, f"{name}({', '.join(value.text for value in values)})", const=const)
 
 
-def _known(function: Callable[..., Any], values: list[Value]) -> Any:
+def known_result(function: Callable[..., Any], values: list[Value]) -> Any:
     """Return the result for known arguments: a C compiler may work it out more exactly than the library would."""
     if any(value.const is UNKNOWN for value in values):
         return UNKNOWN
@@ -57,17 +59,18 @@ def _known(function: Callable[..., Any], values: list[Value]) -> Any:
         return UNKNOWN
 
 
-def _whole(body: Body, node: ast.Call, name: str) -> Value:
-    """Return math.floor, ceil or trunc: an int in Python; used as a float it need not pass through one."""
-    (value,) = _scalars(body, node, f"math.{name}", 1, 1)
+def whole(body: Body, value: Value, c: str, python: Callable[..., Any]) -> Value:
+    """Return a float made an int by the C function ``c``; used as a float again it need not pass through an int."""
     if value.kind != FLOAT:
         return as_int(value)
-    const = _known(getattr(math, name), [value])
-    text = f"{name}({value.text})"
-    return Value(INT, f"{body.program.helper('int_of')}({text})", const=const, real=f"({text} + 0.0)")
+    const = known_result(python, [value])
+    text = f"{c}({value.text})"
+    given = value.text if c == "trunc" else text
+    return Value(INT, f"{body.program.helper('int_of')}({given})", const=const, real=f"({text} + 0.0)")
 
 
-def _scalars(body: Body, node: ast.Call, name: str, least: int, most: int) -> list[Value]:
+def scalars(body: Body, node: ast.Call, name: str, least: int, most: int) -> list[Value]:
+    """Return the arguments of a call that takes ``least`` to ``most`` numbers."""
     if node.keywords or not least <= len(node.args) <= most:
         count = str(least) if least == most else f"{least} to {most}"
         raise CannotError(node, f"{name}() with these arguments", f"give it {count}, without names")
@@ -76,32 +79,41 @@ def _scalars(body: Body, node: ast.Call, name: str, least: int, most: int) -> li
 
 def absolute(body: Body, node: ast.Call) -> Value:
     """Return abs(x)."""
-    (value,) = _scalars(body, node, "abs", 1, 1)
+    (value,) = scalars(body, node, "abs", 1, 1)
     const = UNKNOWN if value.const is UNKNOWN else abs(value.const)
     if value.kind == FLOAT:
         return Value(FLOAT, f"fabs({value.text})", const=const)
-    return Value(INT, f"{body.program.helper('int_abs')}({as_int(value).text})", const=const)
+    least, most = value.least(), value.most()
+    high = None if least is None or most is None else max(abs(least), abs(most))
+    text = f"{body.program.helper('int_abs')}({as_int(value).text})"
+    return in_64_bits(Value(INT, text, const=const, low=0, high=high), node)
 
 
 def integer(body: Body, node: ast.Call) -> Value:
     """Return int(x)."""
-    (value,) = _scalars(body, node, "int", 1, 1)
-    if value.kind != FLOAT:
-        return as_int(value)
-    const = _known(int, [value])
-    text = f"{body.program.helper('int_of')}({value.text})"
-    return Value(INT, text, const=const, real=f"(trunc({value.text}) + 0.0)")
+    (value,) = scalars(body, node, "int", 1, 1)
+    return whole(body, value, "trunc", int)
+
+
+def rounded(body: Body, node: ast.Call) -> Value:
+    """Return round(x): halves go to the even neighbour, as C's rint does."""
+    if len(node.args) == 2 or node.keywords:
+        raise CannotError(node, "round() to decimals", "write math.floor(x / step + 0.5) * step")
+    (value,) = scalars(body, node, "round", 1, 1)
+    return whole(body, value, "rint", round)
 
 
 def floating(body: Body, node: ast.Call) -> Value:
     """Return float(x)."""
-    (value,) = _scalars(body, node, "float", 1, 1)
+    if len(node.args) == 1 and isinstance(node.args[0], ast.Constant) and isinstance(node.args[0].value, str):
+        raise CannotError(node, "float() of a string", "write math.inf, -math.inf or math.nan")
+    (value,) = scalars(body, node, "float", 1, 1)
     return as_float(value)
 
 
 def boolean(body: Body, node: ast.Call) -> Value:
     """Return bool(x)."""
-    (value,) = _scalars(body, node, "bool", 1, 1)
+    (value,) = scalars(body, node, "bool", 1, 1)
     return truth(value)
 
 
@@ -126,34 +138,46 @@ def extreme(word: str) -> Callable[[Body, ast.Call], Value]:
         values = [body.value(item) for item in node.args]
         if len(values) == 1 and isinstance(values[0].kind, Array):
             values = list(elements(body, values[0]))
-        kinds = {value.kind for value in values}
-        if not values or not kinds <= {FLOAT, INT, BOOL}:
-            raise CannotError(node, f"{word}() of {described(values[0].kind)}", "give it two or more numbers")
-        if FLOAT in kinds and len(kinds) > 1:
-            what = f"{word}() of float and int, whose result is now one, now the other"
-            raise CannotError(node, what, "make all of them floats: 1.0, float(n)")
-        result = values[0] if FLOAT in kinds else as_int(values[0])
+        for value in values:
+            if value.kind not in (FLOAT, INT, BOOL):
+                raise CannotError(node, f"{word}() of {described(value.kind)}", "give it two or more numbers")
+        if len(values) < 2:
+            raise CannotError(node, f"{word}() of {len(values)} values", "give it two or more numbers")
+        one_kind(node, f"{word}()", values)
+        result = values[0]
         for value in values[1:]:
-            result = _smaller_or_larger(body, word, result, value if FLOAT in kinds else as_int(value))
+            result = _smaller_or_larger(body, word, result, value)
         return result
 
     return made
 
 
+def one_kind(node: ast.AST, what: str, values: list[Value]) -> None:
+    """Refuse numbers of which some are floats and some are not: Python's result is now one, now the other."""
+    kinds = {value.kind for value in values}
+    if FLOAT in kinds and len(kinds) > 1:
+        raise CannotError(node, f"{what} of float and int", "make all of them floats: 1.0, float(n)")
+
+
 def _smaller_or_larger(body: Body, word: str, a: Value, b: Value) -> Value:
+    if a.kind != FLOAT:
+        a, b = as_int(a), as_int(b)
     helper = body.program.helper(f"{'float' if a.kind == FLOAT else 'int'}_{word}")
-    pick = min if word == "min" else max
-    const = UNKNOWN if UNKNOWN in (a.const, b.const) else pick(a.const, b.const)
-    one, other = a.bounds(), b.bounds()
-    low = high = None
-    if one and other:
-        low, high = pick(one[0], other[0]), pick(one[1], other[1])
+    const = UNKNOWN
+    if UNKNOWN not in (a.const, b.const):
+        const = min(a.const, b.const) if word == "min" else max(a.const, b.const)
+    one, other = (a.least(), a.most()), (b.least(), b.most())
+    if word == "min":
+        low, high = both(min, one[0], other[0]), either(min, one[1], other[1])
+    else:
+        low, high = either(max, one[0], other[0]), both(max, one[1], other[1])
     return Value(a.kind, f"{helper}({a.text}, {b.text})", const=const, low=low, high=high)
 
 
 BUILTINS: dict[Any, Callable[[Body, ast.Call], Value]] = {
     abs: absolute,
     int: integer,
+    round: rounded,
     float: floating,
     bool: boolean,
     len: length,

@@ -3,10 +3,12 @@
 import ast
 from typing import Any
 
-from fmus.compiler.arithmetic import elements, unary
+from fmus.compiler.arithmetic import unary
 from fmus.compiler.body import EXPRESSIONS, Body
 from fmus.compiler.kinds import BOOL, FLOAT, INT, Array, Scalar, described
+from fmus.compiler.making import elements
 from fmus.compiler.refusals import CannotError
+from fmus.compiler.storage import hoist, put, settled
 from fmus.compiler.values import (
     AND,
     BIT_AND,
@@ -19,11 +21,14 @@ from fmus.compiler.values import (
     UNARY,
     UNKNOWN,
     WHOLE,
+    Place,
     Value,
     as_float,
     as_int,
+    both,
     is_scalar,
     literal,
+    place_of,
     truth,
     within,
 )
@@ -74,7 +79,7 @@ def comparison(body: Body, node: ast.Compare) -> Value:
         else:
             right = body.value(right_node)
             if number + 1 < len(node.ops) and is_scalar(right.kind):
-                right = body.settled(right, "middle")
+                right = settled(body, right, "middle")
             terms.append(_compared(body, node, left, sign, right))
         left = right
     if len(terms) == 1:
@@ -106,12 +111,11 @@ def _compared(body: Body, node: ast.Compare, left: Value, sign: ast.cmpop, right
 def _int_with_float(body: Body, left: Value, sign: str, right: Value) -> Value | None:
     """Return the exact comparison of an integer that may be larger than a float holds; None if it is not."""
     whole = left if left.kind != FLOAT else right
-    bounds = whole.bounds()
-    if whole.real or (bounds is not None and bounds[0] >= -WHOLE and bounds[1] <= WHOLE):
+    if whole.real or whole.lies_in(-WHOLE, WHOLE):
         return None
     helper = body.program.helper("compare_int_float")
     one, other = (left, right) if whole is left else (right, left)
-    other = body.settled(other, "real")
+    other = settled(body, other, "real")
     turned = {"<": ">", "<=": ">=", ">": "<", ">=": "<="}.get(sign, sign) if whole is right else sign
     exact = f"{helper}({one.text}, {other.text}) {turned} 0"
     if sign == "!=":
@@ -127,7 +131,7 @@ def _contained(body: Body, node: ast.Compare, left: Value, right_node: ast.expr,
     if not isinstance(right.kind, Array) or right.kind.item not in (INT, BOOL) or left.kind not in (INT, BOOL):
         what = f"'in' of {described(left.kind)} and {described(right.kind)}"
         raise CannotError(node, what, "look for an int in a tuple of ints; compare others with ==")
-    left = body.settled(as_int(left), "sought")
+    left = settled(body, as_int(left), "sought")
     equal = [
         f"{within(left, SHIFT)} {'!=' if absent else '=='} {within(as_int(item), SHIFT)}"
         for item in elements(body, right)
@@ -210,8 +214,7 @@ def _simple_choice(test: Value, first: Value, other: Value) -> Value | None:
     head = within(test, OR)
     if is_scalar(first.kind):
         text = f"{head} ? {within(first, OR)} : {within(other, CHOICE)}"
-        a, b = first.bounds(), other.bounds()
-        low, high = (min(a[0], b[0]), max(a[1], b[1])) if a and b else (None, None)
+        low, high = both(min, first.least(), other.least()), both(max, first.most(), other.most())
         real = f"({head} ? {as_float(first).text} : {as_float(other).text})" if first.real and other.real else ""
         return Value(first.kind, text, CHOICE, narrow=first.narrow and other.narrow, low=low, high=high, real=real)
     if first.place and other.place:
@@ -219,7 +222,7 @@ def _simple_choice(test: Value, first: Value, other: Value) -> Value | None:
         if isinstance(first.kind, Array):
             text = f"({head} ? {first.text} : {other.text})"
             return Value(first.kind, text, place=True, fixed=fixed)
-        ends = [item.text if item.pointer else f"&{item.text}" for item in (first, other)]
+        ends = [place_of(item).address for item in (first, other)]
         return Value(first.kind, f"({head} ? {ends[0]} : {ends[1]})", place=True, pointer=True, fixed=fixed)
     return None
 
@@ -227,17 +230,17 @@ def _simple_choice(test: Value, first: Value, other: Value) -> Value | None:
 def _choice_by_if(body: Body, test: Value, first: tuple[list[Any], Value], other: tuple[list[Any], Value]) -> Value:
     """Return a choice of which only the side that is meant is worked out."""
 
-    def fill(place: str) -> None:
+    def fill(place: Place) -> None:
         body.emit(f"if ({test.text}) {{")
         body.lines += first[0]
-        body.put(place, first[1])
+        put(body, place, first[1])
         body.emit("} else {")
         body.lines += other[0]
-        body.put(place, other[1])
+        put(body, place, other[1])
         body.emit("}")
 
     value = Value(first[1].kind, fill=fill)
-    return body.hoist(value, "chosen") if is_scalar(value.kind) else value
+    return hoist(body, value, "chosen") if is_scalar(value.kind) else value
 
 
 EXPRESSIONS |= {

@@ -5,11 +5,15 @@ from types import FunctionType
 from typing import Any
 
 from fmus.compiler.functions import Instance, instance_of
-from fmus.compiler.kinds import INT, Mixed, Struct
+from fmus.compiler.kinds import BOOL, INT, Kind, Mixed, Struct, described
 from fmus.compiler.names import member_name
 from fmus.compiler.program import Program
 from fmus.compiler.refusals import CannotError
+from fmus.compiler.values import Place
 from modelkit.model import Branch, Branches, Model
+
+NAMES = ("params", "inputs", "outputs", "state", "dt_ns", "next", "clock", "samples", "period_ns", "i")
+"""What is called so inside the entries, and no function of a model therefore."""
 
 
 def roots(model: Model) -> list[FunctionType]:
@@ -31,13 +35,14 @@ class Entries:
 
     def __init__(self, program: Program, model: Model) -> None:
         self.program, self.model, self.name = program, model, model.name
-        self.calls: list[Instance] = []
 
-    def instance(self, function: Callable[..., Any], *kinds: Any) -> Instance:
-        """Return the C function for a function of the model."""
+    def instance(self, function: Callable[..., Any], result: Kind, *kinds: Kind) -> Instance:
+        """Return the C function for a function of the model, which must give ``result``."""
         assert isinstance(function, FunctionType)
         made = instance_of(self.program, function, kinds, None)
-        self.calls.append(made)
+        if made.result != result:
+            what = f"{function.__name__}() does not return {described(result)}"
+            self.program.refuse(function.__module__, made.node, what, "return what the model's types say")
         return made
 
     def types(self) -> dict[str, str]:
@@ -49,90 +54,88 @@ class Entries:
     def heads(self) -> list[str]:
         """Return the declarations of the three functions."""
         types = self.types()
+        params, inputs, outputs, state = (f"{types[group]} *{group}" for group in types)
         return [
-            f"void {self.name}_defaults({types['params']} *params, {types['inputs']} *inputs)",
-            f"void {self.name}_initialize(const {types['params']} *params, {types['state']} *state, "
-            f"{types['outputs']} *outputs)",
-            f"void {self.name}_step({types['state']} *state, const {types['inputs']} *inputs, "
-            f"const {types['params']} *params, int64_t dt_ns, {types['outputs']} *outputs)",
+            f"void {self.name}_defaults({params}, {inputs})",
+            f"void {self.name}_initialize(const {params}, {state}, {outputs})",
+            f"void {self.name}_step({state}, const {inputs}, const {params}, int64_t dt_ns, {outputs})",
         ]
 
     def texts(self) -> list[list[str]]:
         """Return the three functions as lines, and those that they are split into before them."""
         model = self.model
+        state, inputs, params = (Struct(cls) for cls in (model.state, model.inputs, model.params))
+        result = Mixed((state, Struct(model.outputs)))
         defaults, initialize, step = self.heads()
-        params, inputs = (self.program.default(cls) for cls in (model.params, model.inputs))
-        found = [["", defaults, "{", f"*params = {params};", f"*inputs = {inputs};", "}"]]
-        first = self.instance(model.initialize, Struct(model.params))
-        found.append(["", initialize, "{", *self._both(first, ["params"]), "}"])
-        if model.branches is None:
-            kinds = (Struct(model.state), Struct(model.inputs), Struct(model.params), INT)
-            made = self.instance(model.step, *kinds)
-            found.append(["", step, "{", *self._both(made, ["state", "inputs", "params", "dt_ns"]), "}"])
-            return found
-        return found + self._choice(model.branches, step)
-
-    def _both(self, made: Instance, names: list[str]) -> list[str]:
-        """Return the lines that call a function which returns state and outputs."""
-        given = [
-            name if parameter.by_pointer or name == "dt_ns" else f"*{name}"
-            for name, parameter in zip(names, made.parameters, strict=True)
-        ]
-        result = Mixed((Struct(self.model.state), Struct(self.model.outputs)))
-        if made.result != result:
-            raise CannotError(None, f"{made.name}() does not return state and outputs", "return (state, outputs)")
-        declared = self.program.declared(result, "next")
-        return [
-            f"const {declared} = {made.name}({', '.join(given)});",
-            "",
-            "*state = next.item0;",
-            "*outputs = next.item1;",
-        ]
+        starts = [f"*{group} = {self.program.default(getattr(model, group))};" for group in ("params", "inputs")]
+        first = self.instance(model.initialize, result, params)
+        found = [[defaults, "{", *starts, "}"], [initialize, "{", _called(first, ["params"], "state", "outputs"), "}"]]
+        if model.branches is not None:
+            return found + self._choice(model.branches, step)
+        made = self.instance(model.step, result, state, inputs, params, INT)
+        call = _called(made, ["state", "inputs", "params", "dt_ns"], "&next", "outputs")
+        return [*found, [step, "{", f"{self.types()['state']} next;", "", call, "*state = next;", "}"]]
 
     def _choice(self, branches: Branches, step: str) -> list[list[str]]:
         """Return a step for each system, and the one that chooses among them."""
-        found = [self._branch(branches, branch) for branch in branches.systems]
-        lines = ["", step, "{", f"switch (params->{member_name(branches.parameter)}) {{"]
+        found = [self._branch(branches, branch, step) for branch in branches.systems]
         call = "(state, inputs, params, dt_ns, outputs);"
+        lines = [step, "{", f"switch (params->{member_name(branches.parameter)}) {{"]
         first, *others = branches.systems
         for branch in others:
-            for value in branch.values:
-                lines.append(f"case {self.program.number(value).text}:")
+            lines += [f"case {self.program.number(value).text}:" for value in branch.values]
             lines += [f"step_{member_name(branch.field)}{call}", "break;"]
         lines += ["default:", f"step_{member_name(first.field)}{call}", "break;", "}", "}"]
         return [*found, lines]
 
-    def _branch(self, branches: Branches, branch: Branch) -> list[str]:
+    def _branch(self, branches: Branches, branch: Branch, step: str) -> list[str]:
         """Return the step of one system: it reads and writes its own memory only."""
         model = self.model
         fields = self.program.fields(model.state, None)
         own, clock = fields[branch.field], fields[branches.clock]
-        params, inputs = Struct(model.params), Struct(model.inputs)
-        tick = self.instance(branches.tick, clock, params, INT)
-        sample = self.instance(branch.sample, own, inputs, params, INT)
-        outputs = self.instance(branch.outputs, own, params)
-        refused = self.instance(branches.refused)
-        memory = f"state->{member_name(branch.field)}"
-        hand = "tick"
-        head = self.heads()[2].replace(f"{self.name}_step(", f"step_{member_name(branch.field)}(")
+        params, inputs, outputs = Struct(model.params), Struct(model.inputs), Struct(model.outputs)
+        assert isinstance(clock, Struct)
+        if self.program.fields(clock.cls, None).get("usable") != BOOL:
+            raise CannotError(None, f"a clock without usable: {clock.cls.__name__}", "give it usable: bool")
+        tick = self.instance(branches.tick, Mixed((clock, INT, INT)), clock, params, INT)
+        sample = self.instance(branch.sample, own, own, inputs, params, INT)
+        ready = self.instance(branch.outputs, outputs, own, params)
+        refused = self.instance(branches.refused, outputs)
+        memory, time = f"&state->{member_name(branch.field)}", f"state->{member_name(branches.clock)}"
+        given = [memory, "inputs", "params", "period_ns"]
         return [
-            "",
-            f"static {head}",
+            "static " + step.replace(f"{self.name}_step(", f"step_{member_name(branch.field)}("),
             "{",
-            f"const {self.program.declared(tick.result, 'ticked')} = {self._called(tick, ['state->' + member_name(branches.clock), '*params', 'dt_ns'])};",  # type: ignore[arg-type]  # noqa: E501
+            f"{self.program.declared(clock, 'clock')};",
+            "int64_t samples;",
+            "int64_t period_ns;",
             "",
-            f"state->{member_name(branches.clock)} = ticked.item0;",
-            "for (int64_t i = 0; i < ticked.item1; ++i) {",
-            f"{memory} = {self._called(sample, [memory, '*inputs', '*params', 'ticked.item2'])};",
+            _called(tick, [f"&{time}", "params", "dt_ns"], "&clock", "&samples", "&period_ns"),
+            f"{time} = clock;",
+            "for (int64_t i = 0; i < samples; ++i) {",
+            f"{self.program.declared(own, 'next')};",
+            "",
+            _called(sample, given, "&next"),
+            f"state->{member_name(branch.field)} = next;",
             "}",
-            f"*outputs = state->{member_name(branches.clock)}.usable ? {self._called(outputs, [memory, '*params'])} : "
-            f"{refused.name}();",
+            "if (clock.usable) {",
+            _called(ready, [memory, "params"], "outputs"),
+            "} else {",
+            _called(refused, [], "outputs"),
             "}",
-        ][: None if hand else 0]
+            "}",
+        ]
 
-    def _called(self, made: Instance, places: list[str]) -> str:
-        given = []
-        for place, parameter in zip(places, made.parameters, strict=True):
-            by_pointer = parameter.by_pointer
-            given.append((place[1:] if place.startswith("*") else f"&{place}") if by_pointer else place)
-        return f"{made.name}({', '.join(given)})"
+
+def _called(made: Instance, given: list[str], *results: str) -> str:
+    """Return the call of a function for pointers to its arguments, its results written to pointers."""
+    pairs = zip(given, made.parameters, strict=True)
+    texts = [text if parameter.by_pointer or text in ("dt_ns", "period_ns") else _pointed(text)
+             for text, parameter in pairs]  # fmt: skip
+    if made.outs:
+        return f"{made.name}({', '.join([*texts, *results])});"
+    return f"{_pointed(results[0])} = {made.name}({', '.join(texts)});"
+
+
+def _pointed(address: str) -> str:
+    return address[1:] if address.startswith("&") else Place(address, pointer=True).whole

@@ -7,12 +7,20 @@ from dataclasses import dataclass, field
 from types import FunctionType
 from typing import Any, NamedTuple
 
-from fmus.compiler.body import Body, Variable
+from fmus.compiler.body import Body
 from fmus.compiler.flow import Flow
-from fmus.compiler.kinds import Array, Kind, NoKindError, Open, Struct, kind_of
+from fmus.compiler.kinds import Array, Kind, Mixed, NoKindError, Open, Struct, kind_of
+from fmus.compiler.layout import flat
 from fmus.compiler.program import Program
 from fmus.compiler.refusals import AlreadySaidError, CannotError
-from fmus.compiler.values import is_scalar
+from fmus.compiler.storage import put
+from fmus.compiler.values import Place, Value, is_scalar, returned_by_value
+from fmus.compiler.variables import variable
+
+
+SHORT = 20
+"""Functions of no more lines without a loop are inline."""
+LOOPS = ("for (", "while (")
 
 
 class Signature(NamedTuple):
@@ -44,8 +52,9 @@ class Instance:
     result: Kind | None
     lines: list[Any] = field(default_factory=list)
     calls: list["Instance"] = field(default_factory=list)
+    outs: list[tuple[str, Kind]] = field(default_factory=list)
+    """Name and kind of the results that are written to pointers."""
     head: str = ""
-    done: bool = False
 
 
 def signature(program: Program, function: FunctionType, node: ast.AST) -> Signature:
@@ -163,11 +172,12 @@ def translate(program: Program, made: Instance, kinds: dict[str, Kind], result: 
     with body.frame(()):
         body.begin_statement()
         made.parameters = [_parameter(body, name, kind) for name, kind in kinds.items()]
-        body.result_name = body.names.add("result") if isinstance(result, Array | Open) else ""
+        _place_results(body, made, result)
         body.more_statements(_without_docstring(made.node.body))
-    made.lines = body.lines
-    made.head = _head(program, made, body.result_name)
-    made.done = True
+    made.lines = list(flat(body.lines))
+    if made.lines and made.lines[-1] == "return;":
+        made.lines.pop()
+    made.head = _head(program, made)
     program.caller = caller
 
 
@@ -179,38 +189,68 @@ def _without_docstring(nodes: list[ast.stmt]) -> list[ast.stmt]:
 
 
 def _parameter(body: Body, name: str, kind: Kind) -> Parameter:
-    """Return an argument; a struct comes as pointer to const, or by value if the function binds its name anew."""
-    variable = body.variable(name)
-    variable.kind, variable.line = kind, body.node.lineno
-    rebound = body.bindings.rebound(name)
+    """Return an argument: a struct as pointer to const, but by value if its name is bound anew on some ways."""
+    known = variable(body, name)
+    known.kind, known.parameter = kind, True
+    changes = body.bindings.rebound(name) and (is_scalar(kind) or name not in body.anew)
+    known.fixed = not body.bindings.rebound(name) or not changes
     if is_scalar(kind):
-        variable.fixed = not rebound
-        return Parameter(name, kind, False, body.program.declared(kind, variable.c))
+        return Parameter(known.c, kind, False, body.program.declared(kind, known.c))
     if isinstance(kind, Array):
-        return _array_parameter(body, name, kind, variable, rebound)
-    if rebound:
-        return Parameter(name, kind, False, body.program.declared(kind, variable.c))
-    variable.pointer = variable.fixed = True
-    return Parameter(name, kind, True, body.program.pointed(kind, variable.c))
+        given = known.c
+        if changes:
+            given = body.names.add(f"{name}_given")
+            body.emit(f"{body.program.declared(kind, known.c)};")
+            put(body, known.place, Value(kind, given, place=True))
+            known.parameter = False
+        return Parameter(given, kind, True, f"const {body.program.declared(kind, given)}")
+    if changes:
+        return Parameter(known.c, kind, False, body.program.declared(kind, known.c))
+    known.pointer = True
+    return Parameter(known.c, kind, True, body.program.pointed(kind, known.c))
 
 
-def _array_parameter(body: Body, name: str, kind: Array, variable: Variable, rebound: bool) -> Parameter:
-    given = variable.c
-    if rebound:
-        given = body.names.add(f"{name}_given")
-        body.emit(f"{body.program.declared(kind, variable.c)};")
-        from fmus.compiler.values import Value
+def _place_results(body: Body, made: Instance, result: Kind) -> None:
+    """Give a pointer to each result that is not returned by value.
 
-        body.put(variable.c, Value(kind, given, place=True))
-    variable.fixed = not rebound
-    return Parameter(name, kind, True, f"const {body.program.declared(kind, given)}")
+    A variable that is the result on every way lives where the result goes, and lends it its name.
+    """
+    if not isinstance(result, Open) and returned_by_value(result):
+        return
+    kinds = result.items if isinstance(result, Mixed) else (result,)
+    names = _returned_names(made.node, len(kinds) if isinstance(result, Mixed) else 0)
+    for number, (kind, name) in enumerate(zip(kinds, names, strict=True)):
+        usual = f"result{number}" if len(kinds) > 1 else "result"
+        given = name in body.bindings.parameters
+        own = bool(name) and not is_scalar(kind) and (not given or name in body.anew)
+        word = body.names.add(f"next_{name}" if given else name if own else f"{name}_out" if name else usual)
+        place = Place(word, pointer=not isinstance(kind, Array | Open))
+        body.outs.append(place)
+        made.outs.append((word, kind))
+        if own and len(body.bindings.homes.get(name, ())) == 1:
+            body.result_of[name] = (place, kind)
 
 
-def _head(program: Program, made: Instance, result_name: str) -> str:
+def _returned_names(node: ast.FunctionDef, count: int) -> list[str]:
+    """Return the variable that each item of the result is on every way, or an empty string."""
+    values = [item.value for item in ast.walk(node) if isinstance(item, ast.Return)]
+    rows = [value.elts if isinstance(value, ast.Tuple) and count else [value] for value in values]
+    if any(len(row) != max(count, 1) for row in rows):
+        return [""] * max(count, 1)
+    found = []
+    for column in zip(*rows, strict=True):
+        names = {item.id if isinstance(item, ast.Name) else "" for item in column}
+        found.append(names.pop() if len(names) == 1 else "")
+    return found or [""] * max(count, 1)
+
+
+def _head(program: Program, made: Instance) -> str:
     texts = [parameter.text for parameter in made.parameters]
-    result = made.result
-    if isinstance(result, Array):
-        texts.append(program.declared(result, result_name))
-        return f"static void {made.name}({', '.join(texts)})"
-    kind = "void" if result is None or isinstance(result, Open) else program.type_name(result)
-    return f"static {kind} {made.name}({', '.join(texts) or 'void'})"
+    for name, kind in made.outs:
+        if isinstance(kind, Open):
+            kind = made.result or kind
+        if not isinstance(kind, Open):
+            texts.append(program.declared(kind, name if isinstance(kind, Array) else f"*{name}"))
+    result = "void" if made.outs or made.result is None else program.type_name(made.result)
+    inline = "inline " if len(made.lines) <= SHORT and not any(line.startswith(LOOPS) for line in made.lines) else ""
+    return f"static {inline}{result} {made.name}({', '.join(texts) or 'void'})"

@@ -1,14 +1,18 @@
-"""For loops over ranges and tuples, and the generators inside tuple(), any(), all(), sum(), min() and max()."""
+"""For loops over ranges and tuples of fixed length."""
 
 import ast
 from dataclasses import dataclass
+from types import FunctionType
 
-from fmus.compiler.bindings import block, stored_in
+from fmus.compiler.bindings import Path, block, stored_in
 from fmus.compiler.body import STATEMENTS, Body
 from fmus.compiler.kinds import INT, Array, described
+from fmus.compiler.making import tuple_of
 from fmus.compiler.refusals import CannotError
-from fmus.compiler.statements import unpack
-from fmus.compiler.values import UNKNOWN, Value, as_int, element, literal
+from fmus.compiler.storage import hoist, item_of
+from fmus.compiler.unpacking import unpack
+from fmus.compiler.values import SUM, UNKNOWN, Value, as_int, literal
+from fmus.compiler.variables import bind, variable
 
 
 @dataclass
@@ -19,14 +23,19 @@ class Range:
     stop: Value
     step: int
 
-    def bounds(self) -> tuple[int, int] | None:
-        """Return the least and the greatest number, if known."""
-        first, last = self.start.bounds(), self.stop.bounds()
-        if first is None or last is None:
-            return None
+    def bounds(self) -> tuple[int | None, int | None]:
+        """Return the least and the greatest number as far as they are known."""
         if self.step > 0:
-            return first[0], max(last[1] - 1, first[0])
-        return min(last[0] + 1, first[1]), first[1]
+            most = self.stop.most()
+            return self.start.least(), None if most is None else most - 1
+        least = self.stop.least()
+        return None if least is None else least + 1, self.start.most()
+
+    def length(self) -> int | None:
+        """Return how many numbers there are, if known."""
+        if UNKNOWN in (self.start.const, self.stop.const):
+            return None
+        return len(range(self.start.const, self.stop.const, self.step))
 
 
 def for_loop(body: Body, node: ast.For) -> None:
@@ -34,7 +43,7 @@ def for_loop(body: Body, node: ast.For) -> None:
     if node.orelse:
         raise CannotError(node.orelse[0], "else after a loop", "set a bool in the loop and test it after")
     inside = block(body.frames[-1].path, node, "body")
-    if _is_call(node.iter, "range"):
+    if is_call(body, node.iter, range):
         _over_range(body, node, range_of(body, node.iter), inside)
         return
     index = body.names.add("i")
@@ -65,41 +74,40 @@ def range_of(body: Body, node: ast.expr) -> Range:
     return Range(start, stop, int(step))
 
 
-def _over_range(body: Body, node: ast.For, numbers: Range, inside: tuple[tuple[int, str], ...]) -> None:
+def _over_range(body: Body, node: ast.For, numbers: Range, inside: Path) -> None:
     if not isinstance(node.target, ast.Name):
         raise CannotError(node.target, "several names for a number of a range", "write one name")
     name = node.target.id
-    changed = stored_in(node.body)
-    stop = (
-        numbers.stop if numbers.stop.const is not UNKNOWN or _stays(numbers.stop) else body.hoist(numbers.stop, "stop")
-    )
-    counts = body.bindings.homes[name] == inside and name not in changed and body.bindings.loads[name] > 0
-    counts = counts and name not in body.bindings.parameters and body.bindings.stores[name] >= 1
-    limits = numbers.bounds()
-    low, high = limits if limits else (None, None)
-    known = body.variable(name)
-    if counts and (known.kind is None or known.kind == INT):
+    low, high = numbers.bounds()
+    stop = steady(body, numbers.stop)
+    home = body.bindings.home(name, inside)
+    if home.path == inside and home.stores == 1 and home.loads and name not in body.bindings.parameters:
+        with body.frame(inside):
+            known = variable(body, name)
+        known.kind, known.fixed, known.low, known.high = INT, True, low, high
         counter = known.c
-        known.kind, known.fixed, known.low, known.high, known.line = INT, True, low, high, node.lineno
     else:
-        counts = False
-        counter = body.names.add("i")
-    body.emit(_range_head(counter, numbers, stop.text))
+        known, counter = None, body.names.add("i")
+    body.emit(range_head(counter, numbers, stop))
     with body.frame(inside):
         body.begin_statement()
-        if not counts and body.bindings.loads[name]:
-            body.bind(name, Value(INT, counter, place=True, low=low, high=high), node)
+        if known is None and home.loads:
+            bind(body, name, Value(INT, counter, place=True, low=low, high=high), node)
         body.more_statements(node.body)
     body.emit("}")
-    if not counts:
+    if known is None:
         body.names.taken.discard(counter)
 
 
-def _stays(value: Value) -> bool:
-    return value.place and value.fixed
+def steady(body: Body, value: Value) -> str:
+    """Return the text of the end of a range, which is worked out once."""
+    if value.const is not UNKNOWN or (value.place and value.fixed):
+        return value.text
+    return hoist(body, value, "stop").text
 
 
-def _range_head(counter: str, numbers: Range, stop: str) -> str:
+def range_head(counter: str, numbers: Range, stop: str) -> str:
+    """Return the head of a loop over a range."""
     sign, step = ("<", numbers.step) if numbers.step > 0 else (">", -numbers.step)
     count = f"{'++' if numbers.step > 0 else '--'}{counter}"
     if step != 1:
@@ -109,58 +117,57 @@ def _range_head(counter: str, numbers: Range, stop: str) -> str:
 
 def items_at(body: Body, node: ast.expr, index: str, changed: set[str]) -> tuple[int, Value]:
     """Return how many items ``node`` has, and the one at ``index``; ``changed`` names what the loop binds."""
-    if _is_call(node, "enumerate"):
+    if is_call(body, node, enumerate):
         return _enumerated(body, node, index, changed)
-    if _is_call(node, "zip"):
+    if is_call(body, node, zip):
         return _zipped(body, node, index, changed)
+    if is_call(body, node, reversed):
+        raise CannotError(node, "reversed()", "write range(n - 1, -1, -1) and xs[i], or xs[::-1]")
     value = body.value(node)
     if not isinstance(value.kind, Array):
         raise CannotError(node, f"a loop over {described(value.kind)}", "loop over a tuple or range(...)")
-    kind = value.kind
-    stays = value.place and not any(name in changed for name in _names(node))
+    names = {item.id for item in ast.walk(node) if isinstance(item, ast.Name)}
+    stays = value.place and not names & changed
     if not stays:
-        value = body.hoist(value, "items")
-    fixed = value.fixed or stays
-    return kind.length, Value(kind.item, element(value, index), place=True, fixed=fixed)
-
-
-def _names(node: ast.AST) -> set[str]:
-    return {item.id for item in ast.walk(node) if isinstance(item, ast.Name)}
+        value = hoist(body, value, "items")
+    item = item_of(value, index)
+    return value.kind.length, Value(item.kind, item.text, place=True, fixed=value.fixed or stays)  # type: ignore[union-attr]
 
 
 def _enumerated(body: Body, node: ast.expr, index: str, changed: set[str]) -> tuple[int, Value]:
-    from fmus.compiler.body import tuple_of
-
     assert isinstance(node, ast.Call)
     starts = [*node.args[1:], *(item.value for item in node.keywords if item.arg == "start")]
     if not node.args or len(starts) > 1 or len(node.keywords) > len(starts):
         raise CannotError(node, "enumerate() with these arguments", "write enumerate(xs) or enumerate(xs, start)")
     length, item = items_at(body, node.args[0], index, changed)
     start = body.value(starts[0]) if starts else literal(0)
-    if start.kind != INT or start.const is UNKNOWN:
+    if start.kind != INT or start.const is UNKNOWN or not start.narrow:
         raise CannotError(node, "enumerate() with a start that varies", "write the start as a number")
-    text = index if start.const == 0 else f"{index} + {start.text}"
-    level = literal(0).level if start.const == 0 else literal(0).level - 3
-    number = Value(INT, text, level, narrow=True, low=start.const, high=start.const + length - 1)
+    number = Value(INT, index, narrow=True, low=0, high=length - 1)
+    if start.const != 0:
+        text = f"{index} + {start.text}" if start.const > 0 else f"{index} - {-start.const}"
+        number = Value(INT, text, SUM, narrow=True, low=start.const, high=start.const + length - 1)
     return length, tuple_of(body, (number, item))
 
 
 def _zipped(body: Body, node: ast.expr, index: str, changed: set[str]) -> tuple[int, Value]:
-    from fmus.compiler.body import tuple_of
-
     assert isinstance(node, ast.Call)
     if any(item.arg != "strict" for item in node.keywords) or not node.args:
         raise CannotError(node, "zip() with these arguments", "write zip(xs, ys, strict=True)")
     found = [items_at(body, item, index, changed) for item in node.args]
-    lengths = {length for length, _ in found}
+    lengths = sorted({length for length, _ in found})
     if len(lengths) > 1:
-        what = f"zip() of tuples of {', '.join(str(length) for length in sorted(lengths))} items"
+        what = f"zip() of tuples of {' and '.join(str(length) for length in lengths)} items"
         raise CannotError(node, what, "make them equally long, or write xs[:n]")
-    return found[0][0], tuple_of(body, tuple(item for _, item in found))
+    return lengths[0], tuple_of(body, tuple(item for _, item in found))
 
 
-def _is_call(node: ast.expr, name: str) -> bool:
-    return isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id == name
+def is_call(body: Body, node: ast.expr, builtin: type | FunctionType) -> bool:
+    """Return whether an expression calls a function of Python's own."""
+    if not isinstance(node, ast.Call):
+        return False
+    found = body.static(node.func)
+    return found is not None and found.value is builtin
 
 
 STATEMENTS[ast.For] = for_loop

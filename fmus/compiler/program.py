@@ -30,8 +30,6 @@ from fmus.compiler.refusals import CannotError, Refusal
 from fmus.compiler.resolve import Static
 from fmus.compiler.values import INT32, INT64, Value, literal
 
-ENTRY_NAMES = ("params", "inputs", "outputs", "state", "dt_ns", "next", "ticked")
-"""Names inside the functions by which the model is entered."""
 PLACES = ("math", "builtins", "typing", "enum", "cmath", "sys", "os")
 """Modules whose constants are written out."""
 
@@ -46,16 +44,16 @@ class Constant:
 class Program:
     """Everything a C file is made of, found while its functions are translated."""
 
-    def __init__(self, name: str, roots: list[FunctionType], types: list[Any]) -> None:
+    def __init__(self, name: str, roots: list[FunctionType], types: list[Any], reserved: tuple[str, ...] = ()) -> None:
         self.library = Library()
         self.refusals: list[Refusal] = []
-        reserved = [
+        taken = [
             name,
-            *ENTRY_NAMES,
+            *reserved,
             *(f"{name}_{entry}" for entry in ("defaults", "initialize", "step")),
             *runtime.TEXTS,
         ]
-        self.names = FileNames(reserved)
+        self.names = FileNames(taken)
         self.found = Discovery(self.library, roots, types)
         self.modules = self.library.order([root.__module__ for root in roots], self.found.modules())
         self.types: dict[Any, str] = {}

@@ -1,15 +1,18 @@
 """Statements: assignments, if, while, return, match."""
 
 import ast
-from dataclasses import replace
 
-from fmus.compiler.bindings import block, reads
+from fmus.compiler.bindings import block
 from fmus.compiler.body import STATEMENTS, Body
-from fmus.compiler.calls import replace_in_place
 from fmus.compiler.conditions import condition
-from fmus.compiler.kinds import INT, Array, Kind, Mixed, NoKindError, Open, Struct, described, kind_of
+from fmus.compiler.kinds import INT, Array, Kind, Mixed, NoKindError, Open, described, kind_of
+from fmus.compiler.making import coerced
 from fmus.compiler.refusals import CannotError
-from fmus.compiler.values import UNKNOWN, Value, is_scalar, rvalue
+from fmus.compiler.replacing import is_replace, replace_in_place
+from fmus.compiler.storage import put, settled, text_of
+from fmus.compiler.unpacking import items_of, unpack_assignment
+from fmus.compiler.values import UNKNOWN, Value, is_scalar
+from fmus.compiler.variables import bind, variable
 
 
 def assign(body: Body, node: ast.Assign) -> None:
@@ -20,30 +23,20 @@ def assign(body: Body, node: ast.Assign) -> None:
     if isinstance(target, ast.Name):
         _assign_name(body, target, node.value, node)
     elif isinstance(target, ast.Tuple):
-        _unpack(body, target, node.value, node)
+        unpack_assignment(body, target, node.value, node)
     else:
         what = "a change of a list" if isinstance(target, ast.List) else f"a change of {ast.unparse(target)}"
         raise CannotError(node, what, "bind a new value: x = x._replace(field=...), or a new tuple")
 
 
 def _assign_name(body: Body, target: ast.Name, source: ast.expr, node: ast.AST) -> None:
-    variable = body.variable(target.id)
-    if variable.kind is not None and _is_replace_of(source, target.id) and not variable.pointer:
-        assert isinstance(source, ast.Call)
-        if body.bindings.loads[target.id] > 1:
-            replace_in_place(body, variable.c, source, variable.value(), target.id)
+    if is_replace(source, target.id):
+        known = variable(body, target.id)
+        if known.kind is not None and not (known.parameter and known.fixed):
+            assert isinstance(source, ast.Call)
+            replace_in_place(body, known.place, source, known.value(), target.id)
             return
-    body.bind(target.id, body.value(source), node, source)
-
-
-def _is_replace_of(node: ast.expr, name: str) -> bool:
-    return (
-        isinstance(node, ast.Call)
-        and isinstance(node.func, ast.Attribute)
-        and node.func.attr == "_replace"
-        and isinstance(node.func.value, ast.Name)
-        and node.func.value.id == name
-    )
+    bind(body, target.id, body.value(source), node, source)
 
 
 def annotated(body: Body, node: ast.AnnAssign) -> None:
@@ -55,7 +48,7 @@ def annotated(body: Body, node: ast.AnnAssign) -> None:
     if isinstance(kind, Open) and isinstance(value.kind, Array) and value.kind.item == kind.item:
         kind = value.kind
     why = f"{node.target.id} is declared {described(kind)}"
-    body.bind(node.target.id, body.coerced(value, kind, node, why), node, node.value)
+    bind(body, node.target.id, coerced(body, value, kind, node, why), node, node.value)
 
 
 def _annotation(body: Body, node: ast.expr) -> Kind:
@@ -76,79 +69,6 @@ def augmented(body: Body, node: ast.AugAssign) -> None:
     left = ast.copy_location(ast.Name(node.target.id, ast.Load()), node)
     whole = ast.copy_location(ast.BinOp(left, node.op, node.value), node)
     _assign_name(body, node.target, whole, node)
-
-
-def _unpack(body: Body, target: ast.Tuple, source: ast.expr, node: ast.AST) -> None:
-    """Write ``a, b = ...``: all of the right side is worked out before any name is bound."""
-    value = body.value(source)
-    names = [item.id for item in ast.walk(target) if isinstance(item, ast.Name)]
-    if value.items is not None and any(reads(source, name) for name in names):
-        value = _apart(body, value, target, source)
-    elif value.items is None:
-        value = body.settled(value, result_name(source))
-    unpack(body, target, value, node)
-
-
-def _apart(body: Body, value: Value, target: ast.Tuple, source: ast.expr) -> Value:
-    """Return items of which those are worked out first that read a name bound before them."""
-    assert value.items is not None
-    nodes = source.elts if isinstance(source, ast.Tuple) else [source] * len(value.items)
-    done: list[str] = []
-    items = []
-    for item, from_node, to in zip(value.items, nodes, target.elts, strict=False):
-        if any(reads(from_node, name) for name in done):
-            item = body.hoist(item, f"next_{to.id}" if isinstance(to, ast.Name) else "next")
-        items.append(item)
-        done += [name.id for name in ast.walk(to) if isinstance(name, ast.Name)]
-    return replace(value, items=(*items, *value.items[len(items) :]), braces="")
-
-
-def result_name(node: ast.AST) -> str:
-    """Return a name for what an expression gives."""
-    if isinstance(node, ast.Call) and isinstance(node.func, ast.Name):
-        return f"{node.func.id}_result"
-    return "items"
-
-
-def unpack(body: Body, target: ast.expr, value: Value, node: ast.AST) -> None:
-    """Write that the names of ``target`` get the items of ``value``."""
-    if isinstance(target, ast.Name):
-        if target.id != "_" or body.bindings.loads["_"]:
-            body.bind(target.id, value, node)
-        return
-    if isinstance(target, ast.Starred):
-        raise CannotError(target, "a star on the left side", "name each item")
-    if not isinstance(target, ast.Tuple | ast.List):
-        raise CannotError(target, f"a change of {ast.unparse(target)}", "bind a new value to a name")
-    items = items_of(body, value, target)
-    if len(items) != len(target.elts):
-        what = f"{len(target.elts)} names for {len(items)} items"
-        raise CannotError(target, what, "write one name for each item")
-    for part, item in zip(target.elts, items, strict=True):
-        unpack(body, part, item, node)
-
-
-def items_of(body: Body, value: Value, node: ast.AST) -> tuple[Value, ...]:
-    """Return the items of a tuple or the fields of a NamedTuple."""
-    from fmus.compiler.arithmetic import elements
-    from fmus.compiler.tuples import field
-
-    if value.items is not None:
-        return value.items
-    if isinstance(value.kind, Array):
-        return elements(body, value)
-    if isinstance(value.kind, Mixed):
-        whole = body.settled(value, "items")
-        from fmus.compiler.values import member
-
-        return tuple(
-            Value(kind, member(whole, f"item{at}"), place=True, fixed=whole.fixed)
-            for at, kind in enumerate(value.kind.items)
-        )
-    if isinstance(value.kind, Struct):
-        whole = body.settled(value, "items")
-        return tuple(field(body, whole, name, node) for name in body.program.fields(value.kind.cls, node))
-    raise CannotError(node, f"the items of {described(value.kind)}", "only tuples have items")
 
 
 def expression(body: Body, node: ast.Expr) -> None:
@@ -234,49 +154,46 @@ def give(body: Body, node: ast.Return) -> None:
     """Write return."""
     if node.value is None:
         raise CannotError(node, "a return without a value", "return a value of the annotated type")
-    source = node.value
-    if isinstance(source, ast.IfExp) and _by_branches(body, node, source):
+    if isinstance(node.value, ast.IfExp) and _by_branches(body, node.value):
         return
-    copy = _own_copy(body, source)
-    if copy is not None:
-        variable_name, call = copy
-        made = body.variable(variable_name)
-        replace_in_place(body, made.c, call, made.value(), variable_name)
-        value = made.value()
+    name = _own_copy(body, node.value)
+    if name:
+        known = variable(body, name)
+        assert isinstance(node.value, ast.Call)
+        replace_in_place(body, known.place, node.value, known.value(), name)
+        value = known.value()
     else:
-        value = body.value(source)
-    _give_value(body, node, value)
+        value = body.value(node.value)
+    _give_value(body, node.value, value)
 
 
-def _own_copy(body: Body, node: ast.expr) -> tuple[str, ast.Call] | None:
+def _own_copy(body: Body, node: ast.expr) -> str:
     """Return the variable of which ``return x._replace(...)`` may change the fields: nobody sees it afterwards."""
-    if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute) and isinstance(node.func.value, ast.Name):
-        name = node.func.value.id
-        if _is_replace_of(node, name) and name in body.bindings.local:
-            variable = body.variable(name)
-            if variable.kind is not None and not variable.pointer and not variable.fixed:
-                return name, node
-    return None
+    if is_replace(node) and isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute):
+        base = node.func.value
+        if isinstance(base, ast.Name) and base.id in body.bindings.local:
+            known = variable(body, base.id)
+            if known.kind is not None and not known.fixed:
+                return base.id
+    return ""
 
 
-def _by_branches(body: Body, node: ast.Return, source: ast.IfExp) -> bool:
-    """Write ``return a if c else b`` of large values as two returns."""
+def _by_branches(body: Body, source: ast.IfExp) -> bool:
+    """Write ``return a if c else b`` of what is no number as two returns."""
     with body.capture() as lines:
         value = body.value(source)
     if is_scalar(value.kind) and not lines:
         return False
-    if not lines and value.fill is None:
-        return False
     test = condition(body, source.test)
     body.emit(f"if ({test.text}) {{")
-    for part in (source.body, source.orelse):
-        give(body, ast.copy_location(ast.Return(part), part))
-        if part is source.body:
-            body.emit("}")
+    give(body, ast.copy_location(ast.Return(source.body), source.body))
+    body.emit("}")
+    give(body, ast.copy_location(ast.Return(source.orelse), source.orelse))
     return True
 
 
-def _give_value(body: Body, node: ast.Return, value: Value) -> None:
+def _give_value(body: Body, node: ast.expr, value: Value) -> None:
+    """Write the return of ``value``: as the function's value, or to where its pointers say."""
     wanted = body.result
     name = body.function.__name__
     if isinstance(wanted, Open):
@@ -284,20 +201,17 @@ def _give_value(body: Body, node: ast.Return, value: Value) -> None:
             what = f"{described(value.kind)} where {name}() returns {described(wanted)}"
             raise CannotError(node, what, "return such a tuple")
         wanted = body.result = body.made.result = value.kind
-    assert node.value is not None
-    value = body.coerced(value, wanted, node.value, f"{name}() returns {described(wanted)}")
-    if isinstance(wanted, Array):
-        body.put(body.result_name, value)
-        body.emit("return;")
-    elif value.fill is not None and not value.braces:
-        made = body.names.add("made")
-        body.emit(f"{body.program.declared(wanted, made)};")
-        body.put(made, value)
-        body.emit(f"return {made};")
-    elif value.braces:
-        body.emit(f"return ({body.program.type_name(wanted)}){value.braces};")
+    value = coerced(body, value, wanted, node, f"{name}() returns {described(wanted)}")
+    if not body.outs:
+        body.emit(f"return {text_of(body, value, 'made')};")
+        return
+    if isinstance(wanted, Mixed) and value.fill_items is not None:
+        value.fill_items(body.outs)
     else:
-        body.emit(f"return {rvalue(value)};")
+        items = items_of(body, value, node) if isinstance(wanted, Mixed) else (value,)
+        for place, item in zip(body.outs, items, strict=True):
+            put(body, place, item)
+    body.emit("return;")
 
 
 def match(body: Body, node: ast.Match) -> None:
@@ -305,7 +219,7 @@ def match(body: Body, node: ast.Match) -> None:
     subject = body.value(node.subject)
     if subject.kind != INT:
         raise CannotError(node.subject, f"match of {described(subject.kind)}", "match an int, or write if and elif")
-    subject = body.settled(subject, "subject")
+    subject = settled(body, subject, "subject")
     labels = [_labels(body, case.pattern) for case in node.cases]
     leaves = any(isinstance(item, ast.Break) for case in node.cases for part in case.body for item in ast.walk(part))
     if leaves or any(case.guard for case in node.cases):

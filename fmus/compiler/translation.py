@@ -3,7 +3,7 @@
 from typing import Any, NamedTuple
 
 from fmus.compiler import arithmetic, calls, conditions, loops, runtime, statements, tuples
-from fmus.compiler.entries import Entries, roots
+from fmus.compiler.entries import NAMES, Entries, roots
 from fmus.compiler.functions import Instance
 from fmus.compiler.kinds import Kind, Mixed, NoKindError, Struct
 from fmus.compiler.layout import laid_out
@@ -27,7 +27,7 @@ class Translation(NamedTuple):
 def translate(model: Model) -> Translation:
     """Return the C99 of ``model``; ``Refused`` says all that stands in the way."""
     interface = [model.state, model.params, model.inputs, model.outputs]
-    program = Program(model.name, roots(model), interface)
+    program = Program(model.name, roots(model), interface, NAMES)
     entries = Entries(program, model)
     try:
         for cls in interface:
@@ -120,7 +120,7 @@ def source(program: Program, entries: Entries, texts: list[list[str]], types: li
     head += [f'#include "{entries.model.name}.h"', "", "#include <math.h>", "", *PRAGMA]
     helpers = runtime.text(program.helpers)
     rule = f"/* {'-' * 8} entries {'-' * 93} */"
-    ends = [line for lines in texts for line in ["", *laid_out(lines[1:])]]
+    ends = [line for lines in texts for line in ["", *laid_out(lines)]]
     return "\n".join([*head, *helpers, *body, "", rule, *ends, ""])
 
 

@@ -2,13 +2,14 @@
 
 import ast
 
-from fmus.compiler.arithmetic import elements
-from fmus.compiler.body import EXPRESSIONS, Body, tuple_of
+from fmus.compiler.body import EXPRESSIONS, Body
 from fmus.compiler.kinds import INT, Array, Mixed, Struct, described
+from fmus.compiler.making import elements, tuple_of
 from fmus.compiler.names import member_name
 from fmus.compiler.refusals import CannotError
 from fmus.compiler.resolve import attribute as static_attribute
-from fmus.compiler.values import UNARY, UNKNOWN, Value, element, is_scalar, member, within
+from fmus.compiler.storage import address, item_of, settled
+from fmus.compiler.values import UNARY, UNKNOWN, Value, is_scalar, place_of, within
 
 
 def display(body: Body, node: ast.Tuple) -> Value:
@@ -26,20 +27,20 @@ def attribute(body: Body, node: ast.Attribute) -> Value:
             raise CannotError(node, f"the function or class {node.attr} as a value", "call it here")
         return body.program.constant(found, node)
     base = body.static(node.value)
-    if base is not None and static_attribute(base, node.attr, body.program.library) is None:
-        if not isinstance(base.value, tuple):
+    if base is not None and not isinstance(base.value, tuple):
+        if static_attribute(base, node.attr, body.program.library) is None:
             raise CannotError(node, f"{ast.unparse(node)} is not known", f"{base.name} has no {node.attr}")
     value = body.value(node.value)
-    if not isinstance(value.kind, Struct):
-        if node.attr in ("value", "name") and value.kind == INT:
-            advice = "leave .value out" if node.attr == "value" else "text is made outside of the model"
-            raise CannotError(node, f".{node.attr} of an integer variable", advice)
-        raise CannotError(node, f".{node.attr} of {described(value.kind)}", "only NamedTuples have fields")
-    return field(body, value, node.attr, node)
+    if isinstance(value.kind, Struct):
+        return field(body, value, node.attr, node)
+    if node.attr in ("value", "name") and value.kind == INT:
+        advice = "leave .value out" if node.attr == "value" else "text is made outside of the model"
+        raise CannotError(node, f".{node.attr} of an integer variable", advice)
+    raise CannotError(node, f".{node.attr} of {described(value.kind)}", "only NamedTuples have fields")
 
 
 def field(body: Body, value: Value, name: str, node: ast.AST) -> Value:
-    """Return the field ``name`` of a struct; a property is called."""
+    """Return the field ``name`` of a NamedTuple; a property is called."""
     assert isinstance(value.kind, Struct)
     cls = value.kind.cls
     kinds = body.program.fields(cls, node)
@@ -47,10 +48,10 @@ def field(body: Body, value: Value, name: str, node: ast.AST) -> Value:
         from fmus.compiler.calls import call_property
 
         return call_property(body, value, name, node)
-    if value.fill is not None or value.braces or (not value.place and isinstance(kinds[name], Array)):
-        value = body.settled(value, cls.__name__.lower())
+    if value.fill is not None or (not value.place and isinstance(kinds[name], Array)):
+        value = settled(body, value, cls.__name__.lower())
     const = UNKNOWN if value.const is UNKNOWN else getattr(value.const, name)
-    text = member(value, member_name(name))
+    text = place_of(value).member(member_name(name)).text
     return Value(kinds[name], text, place=value.place, fixed=value.fixed and value.place, const=const)
 
 
@@ -63,55 +64,51 @@ def subscript(body: Body, node: ast.Subscript) -> Value:
         raise CannotError(node, f"an index into {described(value.kind)}", "only tuples have items")
     if isinstance(node.slice, ast.Slice):
         return _part(body, node, value, node.slice)
-    index = body.value(node.slice)
-    if index.kind != INT:
-        raise CannotError(node.slice, f"an index that is {described(index.kind)}", "write an int: int(...)")
+    index = _index(body, node.slice, value)
     length = value.kind.length if isinstance(value.kind, Array) else len(value.kind.items)
     if index.const is not UNKNOWN:
         return _item(body, value, _place(node, int(index.const), length), index)
     if isinstance(value.kind, Mixed):
         raise CannotError(node, "an index that varies into a tuple of different kinds", "write the number")
-    value = body.settled(value, "items")
-    assert isinstance(value.kind, Array)
-    text = _index_text(body, node, index, length)
-    return Value(value.kind.item, element(value, text), place=True, fixed=value.fixed and _is_steady(body, node.slice))
+    value = settled(body, value, "items")
+    item = item_of(value, _in_range(body, node, index, length))
+    return Value(item.kind, item.text, place=True, fixed=value.fixed)
+
+
+def _index(body: Body, node: ast.expr, value: Value) -> Value:
+    index = body.value(node)
+    if index.kind != INT:
+        what = f"an index into {described(value.kind)} that is {described(index.kind)}"
+        raise CannotError(node, what, "write an int: int(...), or 1 if c else 0")
+    return index
 
 
 def _field_at(body: Body, node: ast.Subscript, value: Value) -> Value:
     """Return the field of a NamedTuple at an index; one that varies chooses among numbers of one kind."""
     assert isinstance(value.kind, Struct)
     kinds = body.program.fields(value.kind.cls, node)
-    index = None if isinstance(node.slice, ast.Slice) else body.value(node.slice)
-    if index is None or index.kind != INT:
-        raise CannotError(node.slice, f"an index into {described(value.kind)} that is no int", "name the field")
+    if isinstance(node.slice, ast.Slice):
+        raise CannotError(node.slice, f"a part of {described(value.kind)}", "name the fields")
+    index = _index(body, node.slice, value)
     if index.const is not UNKNOWN:
         return field(body, value, list(kinds)[_place(node, int(index.const), len(kinds))], node)
-    if len(set(kinds.values())) > 1 or not is_scalar(next(iter(kinds.values()))):
+    kind = next(iter(kinds.values()))
+    if len(set(kinds.values())) > 1 or not is_scalar(kind):
         what = f"an index that varies into {described(value.kind)}, whose fields differ"
         raise CannotError(node, what, "name the field, or make the fields a tuple")
-    text = _index_text(body, node, index, len(kinds))
+    text = _in_range(body, node, index, len(kinds))
     name = body.program.item_function(value.kind.cls)
-    kind = next(iter(kinds.values()))
-    return Value(kind, f"{name}({body.address(value, 'items')}, {text})")
+    return Value(kind, f"{name}({address(body, value, 'items')}, {text})")
 
 
-def _index_text(body: Body, node: ast.AST, index: Value, length: int) -> str:
+def _in_range(body: Body, node: ast.AST, index: Value, length: int) -> str:
     """Return an index as C takes it: as it is if it is surely in range, else made so."""
-    bounds = index.bounds()
-    if bounds is not None and (bounds[0] >= length or bounds[1] < -length):
+    if index.lies_in(0, length - 1):
+        return index.text
+    least, most = index.least(), index.most()
+    if (least is not None and least >= length) or (most is not None and most < -length):
         raise CannotError(node, f"an index out of range: there are {length} items", "correct the bounds")
-    if bounds is None or bounds[0] < 0 or bounds[1] >= length:
-        return f"{body.program.helper('index_in')}({index.text}, {length})"
-    return index.text
-
-
-def _is_steady(body: Body, node: ast.expr) -> bool:
-    """Return whether an index is made of variables that are bound once, so that a pointer to its item stays right."""
-    return all(
-        body.is_once(item.id) or (item.id in body.bindings.parameters and not body.bindings.rebound(item.id))
-        for item in ast.walk(node)
-        if isinstance(item, ast.Name) and item.id in body.bindings.local
-    )
+    return f"{body.program.helper('index_in')}({index.text}, {length})"
 
 
 def _place(node: ast.AST, index: int, length: int) -> int:
@@ -124,14 +121,16 @@ def _item(body: Body, value: Value, place: int, index: Value) -> Value:
     """Return the item at a known place."""
     if value.items is not None:
         return value.items[place]
-    value = body.settled(value, "items")
-    const = UNKNOWN if value.const is UNKNOWN else value.const[place]
+    value = settled(body, value, "items")
     if isinstance(value.kind, Mixed):
-        text = member(value, f"item{place}")
+        const = UNKNOWN if value.const is UNKNOWN else value.const[place]
+        text = place_of(value).member(f"item{place}").text
         return Value(value.kind.items[place], text, place=True, fixed=value.fixed, const=const)
-    assert isinstance(value.kind, Array)
-    named = index.text if index.const == place and not index.text.lstrip("-").isdigit() else str(place)
-    return Value(value.kind.item, element(value, named), place=True, fixed=value.fixed, const=const)
+    item = item_of(value, place, known=True)
+    if index.const == place and index.text.isidentifier():
+        named = place_of(value).element(index.text).text
+        return Value(item.kind, named, place=True, fixed=item.fixed, const=item.const)
+    return item
 
 
 def _part(body: Body, node: ast.Subscript, value: Value, part: ast.Slice) -> Value:
@@ -141,16 +140,19 @@ def _part(body: Body, node: ast.Subscript, value: Value, part: ast.Slice) -> Val
         raise CannotError(node, "a slice with ends that vary", "write whole numbers or constants: xs[1:4]")
     if not isinstance(value.kind, Array):
         raise CannotError(node, f"a slice of {described(value.kind)}", "name the items that are meant")
+    if ends[2] is not None and ends[2].const == 0:
+        raise CannotError(node, "a slice with step 0", "write another step")
     places = range(value.kind.length)[slice(*(None if end is None else end.const for end in ends))]
     if not places:
         raise CannotError(node, "an empty tuple", f"the tuple has {value.kind.length} items")
-    if places.step == 1 and value.place and value.items is None:
+    if places.step == 1 and value.place:
         kind = Array(value.kind.item, len(places))
         text = value.text if places.start == 0 else f"&{within(value, UNARY)}[{places.start}]"
         const = UNKNOWN if value.const is UNKNOWN else value.const[places.start : places.stop]
-        return Value(kind, text, UNARY, place=True, fixed=value.fixed, const=const)
-    items = elements(body, value)
-    return tuple_of(body, tuple(items[place] for place in places))
+        items = tuple(item_of(value, place, known=True) for place in places)
+        return Value(kind, text, UNARY, place=True, fixed=value.fixed, const=const, items=items)
+    whole = elements(body, value)
+    return tuple_of(body, tuple(whole[place] for place in places))
 
 
 EXPRESSIONS |= {ast.Tuple: display, ast.Attribute: attribute, ast.Subscript: subscript}

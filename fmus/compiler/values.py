@@ -4,7 +4,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any
 
-from fmus.compiler.kinds import BOOL, FLOAT, INT, Array, Kind, Mixed, Scalar, Struct
+from fmus.compiler.kinds import BOOL, FLOAT, INT, Array, Kind, Scalar, Struct, parts
 
 PRIMARY, UNARY, PRODUCT, SUM, SHIFT, ORDER, EQUAL, BIT_AND, BIT_XOR, BIT_OR, AND, OR, CHOICE = range(13, 0, -1)
 """How tightly the operators of C bind."""
@@ -13,14 +13,45 @@ WHOLE = 2**53
 """Integers up to here are exact as float."""
 INT32 = 2**31
 INT64 = 2**63
+SMALL = 8
+"""Structs of no more scalars are returned by value, and written in one line."""
+
+
+@dataclass(frozen=True)
+class Place:
+    """Something that can be assigned to: a variable, a member, an element, or what a pointer points to."""
+
+    text: str
+    pointer: bool = False
+
+    @property
+    def whole(self) -> str:
+        """The text that is assigned to."""
+        return f"*{self.text}" if self.pointer else self.text
+
+    @property
+    def address(self) -> str:
+        """The text of a pointer to it."""
+        return self.text if self.pointer else f"&{self.text}"
+
+    def member(self, name: str) -> "Place":
+        """Return a member of a struct."""
+        return Place(f"{self.text}{'->' if self.pointer else '.'}{name}")
+
+    def element(self, index: object) -> "Place":
+        """Return an element of an array."""
+        return Place(f"{self.text}[{index}]")
+
+
+Fill = Callable[[Place], None]
 
 
 @dataclass(frozen=True)
 class Value:
     """A C expression of one kind.
 
-    A NamedTuple or tuple is a place (something that stays and can be pointed at), an initializer in
-    braces, an expression of struct type, or is made by statements that fill a place given to them.
+    A NamedTuple or tuple is either a place (something that stays and can be pointed at), or an
+    expression of struct type, or made by statements that fill a place given to them.
     """
 
     kind: Kind
@@ -37,23 +68,36 @@ class Value:
     """The C expression has type int, not int64_t."""
     real: str = ""
     """An integer's value as a double, if it came from one."""
-    braces: str = ""
-    """Initializer of a struct or array."""
     low: int | None = None
     high: int | None = None
     """Bounds of an integer, if known."""
-    fill: Callable[[str], None] | None = None
+    fill: Fill | None = None
     """Writes the statements that put the value into a place."""
+    fill_items: Callable[[list[Place]], None] | None = None
+    """The same for the items of a tuple that a function returns."""
+    held: frozenset[str] | None = None
+    """The variables that the statements look at while they write; None: all that the source mentions."""
+    braces: str = ""
+    """What is filled, as an initializer, if it can be."""
     items: tuple["Value", ...] | None = None
     """Of a tuple written out."""
 
-    def bounds(self) -> tuple[int, int] | None:
-        """Return the least and the greatest value of an integer, if known."""
-        if self.kind in (INT, BOOL) and self.const is not UNKNOWN:
-            return int(self.const), int(self.const)
-        if self.low is None or self.high is None:
-            return (0, 1) if self.kind == BOOL else None
-        return self.low, self.high
+    def least(self) -> int | None:
+        """Return a lower bound of an integer, if known."""
+        if self.const is not UNKNOWN and self.kind in (INT, BOOL):
+            return int(self.const)
+        return 0 if self.kind == BOOL else self.low
+
+    def most(self) -> int | None:
+        """Return an upper bound of an integer, if known."""
+        if self.const is not UNKNOWN and self.kind in (INT, BOOL):
+            return int(self.const)
+        return 1 if self.kind == BOOL else self.high
+
+    def lies_in(self, low: int, high: int) -> bool:
+        """Return whether an integer is certainly in [low, high]."""
+        least, most = self.least(), self.most()
+        return least is not None and most is not None and low <= least and most <= high
 
 
 def within(value: Value, level: int) -> str:
@@ -73,8 +117,8 @@ def float_text(number: float) -> str:
 def int_text(number: int) -> str:
     """Return an integer in C."""
     if -INT32 < number < INT32:
-        return str(number)
-    return "INT64_MIN" if number == -INT64 else f"INT64_C({number})"
+        return str(int(number))
+    return "INT64_MIN" if number == -INT64 else f"INT64_C({int(number)})"
 
 
 def literal(constant: Any) -> Value:
@@ -82,9 +126,8 @@ def literal(constant: Any) -> Value:
     if isinstance(constant, bool):
         return Value(BOOL, "true" if constant else "false", const=constant)
     if isinstance(constant, int):
-        text = int_text(int(constant))
         small = -INT32 < constant < INT32
-        return Value(INT, text, UNARY if constant < 0 else PRIMARY, const=int(constant), narrow=small)
+        return Value(INT, int_text(constant), UNARY if constant < 0 else PRIMARY, const=int(constant), narrow=small)
     text = float_text(constant)
     return Value(FLOAT, text, UNARY if text.startswith("-") else PRIMARY, const=float(constant))
 
@@ -94,7 +137,9 @@ def as_float(value: Value) -> Value:
     if value.kind == FLOAT:
         return value
     if value.const is not UNKNOWN and abs(int(value.const)) <= WHOLE:
-        return literal(float(value.const))
+        real = literal(float(value.const))
+        named = value.text.isidentifier() and value.kind == INT
+        return replace(real, text=f"(double){value.text}", level=UNARY) if named else real
     if value.real:
         return Value(FLOAT, value.real)
     return Value(FLOAT, f"(double){within(value, UNARY)}", UNARY)
@@ -121,37 +166,28 @@ def truth(value: Value) -> Value:
     if value.kind == BOOL:
         return value
     zero = "0.0" if value.kind == FLOAT else "0"
-    return Value(BOOL, f"{within(value, ORDER)} != {zero}", EQUAL)
+    const = UNKNOWN if value.const is UNKNOWN else bool(value.const)
+    return Value(BOOL, f"{within(value, ORDER)} != {zero}", EQUAL, const=const)
 
 
 def rvalue(value: Value) -> str:
     """Return the text of a scalar or struct where a value is wanted."""
-    if value.pointer:
-        return f"*{within(value, UNARY)}"
-    return value.text
+    return f"*{within(value, UNARY)}" if value.pointer else value.text
 
 
-def member(value: Value, name: str) -> str:
-    """Return the text of a member of a struct."""
-    return f"{within(value, PRIMARY)}{'->' if value.pointer else '.'}{name}"
+def place_of(value: Value) -> Place:
+    """Return where a value that is a place lives."""
+    return Place(within(value, PRIMARY), value.pointer)
 
 
-def initial(value: Value, most: int = 4) -> str | None:
-    """Return the text of ``value`` inside an initializer; None if it takes statements."""
-    if value.fill is not None and not value.braces:
-        return None
-    if value.braces:
-        return value.braces
-    if isinstance(value.kind, Array):
-        if value.kind.length > most or not isinstance(value.kind.item, Scalar | Struct):
-            return None
-        return "{" + ", ".join(element(value, str(at)) for at in range(value.kind.length)) + "}"
-    return rvalue(value)
+def both(pick: Callable[[int, int], int], a: int | None, b: int | None) -> int | None:
+    """Return the pick of two bounds of which both must be known."""
+    return None if a is None or b is None else pick(a, b)
 
 
-def element(value: Value, index: str) -> str:
-    """Return the text of an element of an array that is a place."""
-    return f"{within(value, PRIMARY)}[{index}]"
+def either(pick: Callable[[int, int], int], a: int | None, b: int | None) -> int | None:
+    """Return the pick of two bounds of which one is enough."""
+    return b if a is None else a if b is None else pick(a, b)
 
 
 def is_scalar(kind: Kind) -> bool:
@@ -159,6 +195,13 @@ def is_scalar(kind: Kind) -> bool:
     return isinstance(kind, Scalar)
 
 
-def is_by_value(kind: Kind) -> bool:
-    """Return whether C can assign and return a kind."""
-    return isinstance(kind, Scalar | Struct | Mixed)
+def scalars_in(kind: Kind) -> int:
+    """Return how many numbers and truth values a kind is made of."""
+    if isinstance(kind, Array):
+        return kind.length * scalars_in(kind.item)
+    return 1 if isinstance(kind, Scalar) else sum(scalars_in(part) for part in parts(kind))
+
+
+def returned_by_value(kind: Kind) -> bool:
+    """Return whether a C function gives a kind as its value; others are written where a pointer says."""
+    return isinstance(kind, Scalar) or (isinstance(kind, Struct) and scalars_in(kind) <= SMALL)

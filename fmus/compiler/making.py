@@ -1,0 +1,96 @@
+"""Tuples, NamedTuples and constants made from their parts, and values taken as another kind where Python does so."""
+
+import ast
+from typing import Any
+
+from fmus.compiler.body import Body
+from fmus.compiler.kinds import BOOL, FLOAT, INT, Array, Kind, Mixed, Open, Scalar, Struct, described
+from fmus.compiler.names import member_name
+from fmus.compiler.refusals import CannotError
+from fmus.compiler.storage import initial, item_of, put, settled
+from fmus.compiler.values import UNKNOWN, Place, Value, as_int
+
+
+def tuple_of(body: Body, items: tuple[Value, ...], kind: Kind | None = None) -> Value:
+    """Return a tuple of ``items``."""
+    kinds = tuple(item.kind for item in items)
+    if kind is None:
+        kind = Array(kinds[0], len(kinds)) if len(set(kinds)) == 1 else Mixed(kinds)
+    const = tuple(item.const for item in items)
+    mixed = isinstance(kind, Mixed)
+
+    def fill(place: Place) -> None:
+        for number, item in enumerate(items):
+            put(body, place.member(f"item{number}") if mixed else place.element(number), item)
+
+    known = UNKNOWN if any(item is UNKNOWN for item in const) else const
+    return Value(kind, fill=fill, braces=_braces([initial(item) for item in items]), items=items, const=known)
+
+
+def struct_of(body: Body, kind: Struct, fields: dict[str, Value]) -> Value:
+    """Return a NamedTuple of ``fields``."""
+
+    def fill(place: Place) -> None:
+        for name, value in fields.items():
+            put(body, place.member(member_name(name)), value)
+
+    texts = [initial(value) for value in fields.values()]
+    heads = [f".{member_name(name)} = " for name in fields]
+    named = [None if text is None else head + text for head, text in zip(heads, texts, strict=True)]
+    return Value(kind, fill=fill, braces=_braces(named))
+
+
+def _braces(texts: list[str | None]) -> str:
+    return "" if None in texts else "{" + ", ".join(str(text) for text in texts) + "}"
+
+
+def written_out(body: Body, constant: Any, kind: Kind) -> Value:
+    """Return a constant that has no name of its own."""
+    if isinstance(kind, Scalar):
+        value = body.program.number(constant)
+        return as_int(value) if kind == INT else value
+    if isinstance(kind, Struct):
+        cls = kind.cls
+        body.program.need(kind)
+        if len(cls._field_defaults) == len(cls._fields) and repr(constant) == repr(cls()):
+            return Value(kind, body.program.default(cls), place=True, fixed=True, const=constant)
+        kinds = body.program.fields(cls, None)
+        fields = {name: written_out(body, getattr(constant, name), part) for name, part in kinds.items()}
+        return struct_of(body, kind, fields)
+    parts = kind.items if isinstance(kind, Mixed) else (kind.item,) * len(constant)
+    return tuple_of(body, tuple(written_out(body, item, one) for item, one in zip(constant, parts, strict=True)))
+
+
+def elements(body: Body, value: Value) -> tuple[Value, ...]:
+    """Return the items of a tuple of equal kinds one by one."""
+    if value.items is not None:
+        return value.items
+    assert isinstance(value.kind, Array)
+    whole = settled(body, value, "items")
+    return tuple(item_of(whole, at, known=True) for at in range(value.kind.length))
+
+
+def coerced(body: Body, value: Value, kind: Kind, node: ast.AST, why: str) -> Value:
+    """Return ``value`` as ``kind``; refuse what Python would not keep apart but C would."""
+    if value.kind == kind:
+        return value
+    if kind == INT and value.kind == BOOL:
+        return as_int(value)
+    if value.items is not None and isinstance(kind, Array | Mixed):
+        kinds = (kind.item,) * kind.length if isinstance(kind, Array) else kind.items
+        if len(kinds) == len(value.items):
+            pairs = zip(value.items, kinds, strict=True)
+            return tuple_of(body, tuple(coerced(body, item, one, node, why) for item, one in pairs), kind)
+    raise CannotError(node, f"{described(value.kind)} where {why}", _advice(value, kind))
+
+
+def _advice(value: Value, kind: Kind) -> str:
+    if kind == FLOAT and value.kind in (INT, BOOL):
+        return f"write {float(value.const)!r}" if value.const is not UNKNOWN else "write float(...) around it"
+    if kind == INT and value.kind == FLOAT:
+        return "write int(...) or math.floor(...) around it"
+    if kind == BOOL and isinstance(value.kind, Scalar):
+        return "write a comparison, such as x != 0"
+    if isinstance(kind, Array | Open) and isinstance(value.kind, Array) and kind.item == value.kind.item:
+        return f"make it as long as {described(kind)}"
+    return f"make it {described(kind)}"

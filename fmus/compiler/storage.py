@@ -1,0 +1,107 @@
+"""How values get into places: initializers, assignments, temporaries, addresses."""
+
+from fmus.compiler.body import Body
+from fmus.compiler.kinds import Array, Scalar, Struct
+from fmus.compiler.values import SMALL, UNKNOWN, Place, Value, is_scalar, place_of, rvalue, scalars_in
+
+ONE_BY_ONE = 4
+"""Arrays of no more items are written item by item."""
+
+
+def put(body: Body, place: Place, value: Value, busy: bool = False) -> None:
+    """Write the statements that make ``place`` equal to ``value``; ``busy``: which is made of what the place holds."""
+    if value.fill is None:
+        if isinstance(value.kind, Array):
+            _copy(body, place, value, value.kind)
+        elif rvalue(value) != place.whole:
+            body.emit(f"{place.whole} = {rvalue(value)};")
+    elif value.braces and isinstance(value.kind, Struct) and (busy or scalars_in(value.kind) <= SMALL):
+        body.emit(f"{place.whole} = ({body.program.type_name(value.kind)}){value.braces};")
+    elif busy:
+        put(body, place, hoist(body, value, "next"))
+    else:
+        value.fill(place)
+
+
+def _copy(body: Body, place: Place, value: Value, kind: Array) -> None:
+    if value.text == place.text:
+        return
+    index = body.names.add("i")
+    body.emit(f"for (int {index} = 0; {index} < {kind.length}; ++{index}) {{")
+    put(body, place.element(index), item_of(value, index))
+    body.emit("}")
+    body.names.taken.discard(index)
+
+
+def item_of(value: Value, index: object, known: bool = False) -> Value:
+    """Return an element of an array that is a place; ``known`` if the index is a number."""
+    assert isinstance(value.kind, Array)
+    const = value.const[int(str(index))] if known and value.const is not UNKNOWN else UNKNOWN
+    text = place_of(value).element(index).text
+    return Value(value.kind.item, text, place=True, fixed=value.fixed, const=const)
+
+
+def initial(value: Value) -> str | None:
+    """Return the text of ``value`` inside an initializer; None if it takes statements."""
+    if value.fill is not None:
+        return value.braces or None
+    if isinstance(value.kind, Array):
+        if value.kind.length > ONE_BY_ONE or not isinstance(value.kind.item, Scalar | Struct):
+            return None
+        items = (item_of(value, at) for at in range(value.kind.length))
+        return "{" + ", ".join(rvalue(item) for item in items) + "}"
+    return rvalue(value)
+
+
+def start_of(value: Value) -> str | None:
+    """Return what a declaration can begin with; None if it takes statements."""
+    if value.fill is not None:
+        return value.braces or None
+    return None if isinstance(value.kind, Array) else rvalue(value)
+
+
+def declare(body: Body, c: str, value: Value, const: bool) -> None:
+    """Write the declaration of a variable with its value."""
+    declared = body.program.declared(value.kind, c)
+    start = start_of(value)
+    if start is None:
+        body.emit(f"{declared};")
+        put(body, Place(c), value)
+    else:
+        body.emit(f"{'const ' if const else ''}{declared} = {start};")
+
+
+def hoist(body: Body, value: Value, name: str) -> Value:
+    """Return ``value`` as a constant of its own, declared here."""
+    c = body.names.add(name)
+    declare(body, c, value, const=True)
+    known = (value.const, value.low, value.high) if is_scalar(value.kind) else (value.const, None, None)
+    return Value(value.kind, c, place=True, fixed=True, const=known[0], low=known[1], high=known[2])
+
+
+def settled(body: Body, value: Value, name: str) -> Value:
+    """Return ``value`` as something that may be mentioned often and pointed at."""
+    if value.place or (is_scalar(value.kind) and value.const is not UNKNOWN):
+        return value
+    return hoist(body, value, name)
+
+
+def address(body: Body, value: Value, name: str) -> str:
+    """Return a pointer to a struct, or to the first item of an array."""
+    if value.place:
+        return value.text if isinstance(value.kind, Array) else place_of(value).address
+    if value.braces and isinstance(value.kind, Struct):
+        return f"&({body.program.type_name(value.kind)}){value.braces}"
+    if value.braces and isinstance(value.kind, Array) and isinstance(value.kind.item, Scalar | Struct):
+        item = body.program.type_name(value.kind.item)
+        return f"(const {item}[{value.kind.length}]){value.braces}"
+    return address(body, hoist(body, value, name), name)
+
+
+def text_of(body: Body, value: Value, name: str) -> str:
+    """Return a value as an expression: a scalar or a struct."""
+    if value.fill is None:
+        return rvalue(value)
+    if value.braces and isinstance(value.kind, Struct):
+        return f"({body.program.type_name(value.kind)}){value.braces}"
+    return rvalue(hoist(body, value, name))

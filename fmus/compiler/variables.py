@@ -1,0 +1,165 @@
+"""Variables: where they are declared, whether const, whether a copy or a pointer to what does not change."""
+
+import ast
+import re
+from dataclasses import dataclass
+from typing import Any
+
+from fmus.compiler.bindings import Home, Path
+from fmus.compiler.body import Body
+from fmus.compiler.kinds import Array, Kind, Open, described
+from fmus.compiler.making import coerced
+from fmus.compiler.refusals import AlreadySaidError
+from fmus.compiler.storage import declare, put
+from fmus.compiler.values import PRIMARY, UNKNOWN, Place, Value, is_scalar, place_of
+
+
+@dataclass
+class Variable:
+    """A variable of the function."""
+
+    c: str
+    home: Home
+    parameter: bool = False
+    kind: Kind | None = None
+    """None: not bound yet."""
+    pointer: bool = False
+    fixed: bool = False
+    const: Any = UNKNOWN
+    low: int | None = None
+    high: int | None = None
+    level: int = PRIMARY
+    narrow: bool = False
+
+    @property
+    def once(self) -> bool:
+        """Whether it is bound at one place only."""
+        return self.home.stores == 1 and not self.parameter
+
+    @property
+    def place(self) -> Place:
+        """Where it lives."""
+        return Place(self.c, self.pointer)
+
+    def value(self) -> Value:
+        """Return the variable as an expression."""
+        assert self.kind is not None
+        return Value(
+            self.kind,
+            self.c,
+            self.level,
+            place=True,
+            fixed=self.fixed,
+            pointer=self.pointer,
+            const=self.const,
+            low=self.low,
+            high=self.high,
+            narrow=self.narrow,
+        )
+
+
+def variable(body: Body, name: str) -> Variable:
+    """Return the variable that ``name`` stands for here."""
+    for scope in reversed(body.scopes):
+        if name in scope:
+            return scope[name]  # type: ignore[no-any-return]
+    home = body.bindings.home(name, body.frames[-1].path)
+    key = (name, home.path)
+    if key not in body.variables:
+        body.variables[key] = Variable(body.names.add(name), home)
+    return body.variables[key]  # type: ignore[no-any-return]
+
+
+def bind(body: Body, name: str, value: Value, node: ast.AST, source: ast.AST | None = None) -> None:
+    """Write that ``name`` gets ``value``; ``source`` is the expression it comes from."""
+    if isinstance(value.kind, Open):
+        raise AlreadySaidError
+    known = variable(body, name)
+    if known.kind is not None and known.parameter and _begins_anew(body, known, name, node):
+        slot = body.result_of.get(name)
+        own = slot is not None and slot[1] == value.kind
+        known = Variable(slot[0].text if slot and own else body.names.add(f"next_{name}"), known.home)
+        body.variables[name, ()] = known
+    if known.kind is not None:
+        value = coerced(body, value, known.kind, node, f"{name} is {described(known.kind)} before")
+        _store(body, known, value, name, source)
+    elif known.home.loads:
+        _first(body, known, name, value)
+    known.kind = value.kind if known.kind is None else known.kind
+
+
+def _begins_anew(body: Body, known: Variable, name: str, node: ast.AST) -> bool:
+    """Return whether a parameter that is a struct or tuple is bound to something new for all the rest of the function.
+
+    Then the rest gets a variable of its own, and the parameter stays a pointer to const.
+    """
+    return not is_scalar(known.kind) and name in body.anew and body.frames[-1].path == ()  # type: ignore[arg-type]
+
+
+def _store(body: Body, known: Variable, value: Value, name: str, source: ast.AST | None) -> None:
+    """Write the assignment of ``value``; through a temporary if it is made while the variable is still read."""
+    if known.home.loads:
+        put(body, known.place, value, busy=source is not None and looks_at(value, known.c, source, name))
+
+
+def looks_at(value: Value, c: str, source: ast.AST, name: str) -> bool:
+    """Return whether the statements that make ``value`` look at a variable, called ``c`` in C, while they write."""
+    if value.held is None:
+        return mentions(source, name)
+    return re.split(r"\W", c)[0] in value.held
+
+
+def mentions(node: ast.AST, name: str) -> bool:
+    """Return whether ``name`` is read anywhere in ``node``."""
+    return any(isinstance(item, ast.Name) and item.id == name for item in ast.walk(node))
+
+
+def _first(body: Body, known: Variable, name: str, value: Value) -> None:
+    """Write the first binding of a variable."""
+    kind = value.kind
+    slot = body.result_of.get(name) if known.home.path == () else None
+    if slot is not None and slot[1] == kind:
+        known.c, known.pointer, known.fixed = slot[0].text, slot[0].pointer, known.once
+        put(body, known.place, value)
+    elif body.frames[-1].path != known.home.path:
+        frame = _frame(body, known.home.path)
+        frame.slot.append(f"{body.program.declared(kind, known.c)};")
+        put(body, known.place, value)
+    elif known.once and value.place and value.fixed and not is_scalar(kind):
+        _point(body, known, value)
+    else:
+        declare(body, known.c, value, const=known.once)
+        known.fixed = known.once
+        if known.once and is_scalar(kind):
+            known.const, known.low, known.high = value.const, value.low, value.high
+
+
+def _frame(body: Body, path: Path) -> Any:
+    return next(frame for frame in body.frames if frame.path == path)
+
+
+def _point(body: Body, known: Variable, value: Value) -> None:
+    """Write a variable as a pointer to what does not change."""
+    text = value.text if isinstance(value.kind, Array) else place_of(value).address
+    body.emit(f"{body.program.pointed(value.kind, known.c)} = {text};")
+    known.pointer, known.fixed, known.const = not isinstance(value.kind, Array), True, value.const
+
+
+def open_place(body: Body, name: str, kind: Kind, value: Value, source: ast.AST) -> Place | None:
+    """Return where a function may write what ``name`` gets, declared if it is new; None if it must not yet."""
+    known = variable(body, name)
+    if known.kind is not None:
+        if known.kind != kind or (known.parameter and not is_scalar(kind)):
+            return None
+        return None if looks_at(value, known.c, source, name) else known.place
+    if not known.home.loads:
+        return None
+    known.kind, known.fixed = kind, known.once
+    slot = body.result_of.get(name) if known.home.path == () else None
+    if slot is not None and slot[1] == kind:
+        known.c, known.pointer = slot[0].text, slot[0].pointer
+    else:
+        declared = f"{body.program.declared(kind, known.c)};"
+        here = body.frames[-1].path == known.home.path
+        (body.lines if here else _frame(body, known.home.path).slot).append(declared)
+    return known.place

@@ -17,7 +17,6 @@ from fmus.compiler.storage import put
 from fmus.compiler.values import Place, Value, is_scalar, returned_by_value
 from fmus.compiler.variables import variable
 
-
 SHORT = 20
 """Functions of no more lines without a loop are inline."""
 LOOPS = ("for (", "while (")

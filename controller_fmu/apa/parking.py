@@ -120,7 +120,7 @@ def park(
         sight = look(inputs.ultrasonic, pose, mirror, plan.move.direction, inputs.measured_speed, around, params.apa)
     guards = _guards(state, plan, tracked, sight, pose, site, inputs, allowed, params)
     step = step_transition(state.step, guards)
-    return _moved_on(state, step, plan, attempt, tracked, sight, pose, site, inputs, steering, params)
+    return _moved_on(state, step, plan, attempt, tracked, sight, pose, site, steering, params)
 
 
 def _guards(
@@ -181,7 +181,6 @@ def _moved_on(
     sight: Sight,
     pose: Pose,
     site: Site,
-    inputs: ControllerInput,
     steering: Steering,
     params: ControllerParams,
 ) -> Parking:

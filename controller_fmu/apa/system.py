@@ -92,7 +92,7 @@ def apa_sample(state: ApaState, inputs: ControllerInput, params: ControllerParam
                 slot = along(between(slot, inputs, params), inputs, params)
             parking = park(parking, slot, inputs, seen.wheel.steering, driving, params)
     reason = _later_reason(reason, state, parking, found, params)
-    guards = _guards(state, parking, found, seen, inputs, reason, taken, params)
+    guards = _guards(state, parking, found, inputs, reason, taken, params)
     mode = transition(state.mode, guards)
     return _moved_on(state, mode, parking, found, slot, seen, reason, taken, inputs, params, dt_ns)
 
@@ -122,7 +122,6 @@ def _guards(
     state: ApaState,
     parking: Parking,
     found: SearchState,
-    seen: Watch,
     inputs: ControllerInput,
     reason: int,
     taken: bool,

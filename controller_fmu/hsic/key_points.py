@@ -22,7 +22,7 @@ class KeyPoints(NamedTuple):
     """Largest x [m] of the rear axle in the slot."""
 
 
-def ready_point(slot: HsicSlot, wheelbase: float, radius: float) -> Pose:
+def ready_point(slot: HsicSlot, radius: float) -> Pose:
     """Return P1: parallel, ``ready_gap`` beside the neighbour, tail level with the slot's front end.
 
     At P4 the car stands ``rear_gap`` ahead of the slot's rear end. Where tail-level is too near for

@@ -45,7 +45,7 @@ def advance(course: Course, pose: Pose, found: Errors, wheelbase: float, params:
         return _go(course, Stage.COUNTER, Pose(0.0, 0.0, 0.0), True, pose) if arrived else course
     if course.stage == Stage.COUNTER:
         return _counter(course, pose, arrived, params)
-    return _shuffle(course, pose, found, arrived, params)
+    return _shuffle(course, pose, arrived, params)
 
 
 def _ready(course: Course, pose: Pose, found: Errors, arrived: bool, wheelbase: float, params: HsicParams) -> Course:
@@ -75,7 +75,7 @@ def _counter(course: Course, pose: Pose, arrived: bool, params: HsicParams) -> C
     return course
 
 
-def _shuffle(course: Course, pose: Pose, found: Errors, arrived: bool, params: HsicParams) -> Course:
+def _shuffle(course: Course, pose: Pose, arrived: bool, params: HsicParams) -> Course:
     """Return done as soon as the car is parked, else the other end of the slot when this one is reached."""
     if is_parked(pose, params.threshold.shuffle_share, params):
         return _done(course)

@@ -81,7 +81,7 @@ def _planned(state: HsicState, inputs: ControllerInput, params: ControllerParams
     radius = slot.radius_reserve * params.wheelbase / math.tan(params.steering_wheel_limit / params.steering_ratio)
     right = SlotFrame(params.target, 1.0)
     frame = right if to_slot(inputs.odometry, right).y >= 0.0 else SlotFrame(params.target, -1.0)
-    p1 = ready_point(slot, params.wheelbase, radius)
+    p1 = ready_point(slot, radius)
     points = key_points(p1, slot, params.wheelbase, radius)
     phase = Phase.PRE_STEER if points.found else Phase.FAILED
     reason = Reason.NONE if points.found else Reason.NO_PATH

@@ -58,6 +58,11 @@ def fmi_arrays(model: Model) -> list[FmiArray]:
     return [item._replace(vr=place) for place, item in enumerate(found)]
 
 
+def alone(item: FmiVariable) -> FmiArray:
+    """Return a scalar of FMI 2.0 as a variable of its own."""
+    return FmiArray(item.name, item.vr, (item,), ())
+
+
 def _variable(name: str, items: list[FmiVariable]) -> Iterator[FmiArray]:
     """Yield one variable of all ``items``, or each alone if they are no complete table."""
     indices = [tuple(int(number) for number in INDEX.findall(item.name)) for item in items]
@@ -67,7 +72,7 @@ def _variable(name: str, items: list[FmiVariable]) -> Iterator[FmiArray]:
         ordered = tuple(item for _, item in sorted(zip(indices, items, strict=True), key=lambda pair: pair[0]))
         yield FmiArray(name, 0, ordered, shape)
     else:
-        yield from (FmiArray(item.name, 0, (item,), ()) for item in items)
+        yield from (alone(item) for item in items)
 
 
 def _count(shape: tuple[int, ...]) -> int:

@@ -25,7 +25,7 @@ def documentation(model: Model, needs: str, fmi: int = 2) -> dict[str, bytes]:
     """Return path -> content; ``needs`` is HTML that says what the host must have."""
     picture = icon(model.name, len(variables(model.inputs)), len(variables(model.outputs)))
     return {
-        "documentation/index.html": index_page(model, needs),
+        "documentation/index.html": index_page(model, needs, fmi),
         "documentation/licenses/license.txt": LICENCE.encode(),
         "terminalsAndIcons/icon.png" if fmi == 3 else "model.png": picture,
         "terminalsAndIcons/terminalsAndIcons.xml": terminals(model, fmi),

@@ -2,7 +2,8 @@
 
 from html import escape
 
-from fmus.contents.description import FmiVariable, describe, fmi_variables, limits, project_version
+from fmus.contents.arrays import FmiArray, alone, fmi_arrays
+from fmus.contents.description import describe, fmi_variables, limits, project_version
 from fmus.contents.units import unit
 from modelkit.model import Model
 
@@ -41,8 +42,7 @@ USE = """
 nanoseconds. Inputs are held over a step. If the model is sampled, it keeps its own sample time whatever the
 communication step. No output depends on an input of the same instant.</p>
 <h2>Connecting</h2>
-<p>Connect every output to the input of the same name. All connected signals are Real, Integer or Boolean, in SI
-units; tuples are written out as <code>name[1]</code>, <code>name[2]</code>.</p>
+<p>Connect every output to the input of the same name. {types}</p>
 <ol>
 <li>Instantiate; set parameters. They are fixed once Initialization Mode is left.</li>
 <li>Enter Initialization Mode; read all outputs, which are valid here, and write them to the inputs.</li>
@@ -54,17 +54,25 @@ FMU state can be saved, restored and serialized; a restored instance continues t
 """
 
 
-def index_page(model: Model, needs: str) -> bytes:
+TYPES = {
+    2: "All connected signals are Real, Integer or Boolean, in SI units; tuples are written out as "
+    "<code>name[1]</code>, <code>name[2]</code>.",
+    3: "All connected signals are Float64, Int32, Boolean or an Enumeration, in SI units; tuples are arrays. "
+    "Terminals of the same name belong together.",
+}
+
+
+def index_page(model: Model, needs: str, fmi: int = 2) -> bytes:
     """Return the page; ``needs`` is HTML that says what the host must have."""
-    known = fmi_variables(model)
+    known = fmi_arrays(model) if fmi == 3 else [alone(item) for item in fmi_variables(model)]
     parts = [
         f"<!DOCTYPE html>\n<html lang='en'><head><meta charset='utf-8'><title>{escape(model.name)}</title>",
         f"<style>{STYLE}</style></head><body>",
-        f"<h1>{escape(model.name)}</h1>\n<p>{escape(model.description)}. FMI 2.0 for Co-Simulation, from apa-cosim "
+        f"<h1>{escape(model.name)}</h1>\n<p>{escape(model.description)}. FMI {fmi}.0 for Co-Simulation, from apa-cosim "
         f"{project_version()}, MIT licence.</p>",
         f"<h2>What it needs</h2>{needs}",
-        USE.format(step=model.step_size),
-        *(_table(title, [item for item in known if item.causality == causality]) for title, causality in TABLES),
+        USE.format(step=model.step_size, types=TYPES[fmi]),
+        *(_table(title, [item for item in known if item.first.causality == kind], fmi) for title, kind in TABLES),
         "</body></html>\n",
     ]
     return "\n".join(parts).encode()
@@ -73,21 +81,24 @@ def index_page(model: Model, needs: str) -> bytes:
 TABLES = (("Inputs", "input"), ("Outputs", "output"), ("Parameters", "parameter"))
 
 
-def _table(title: str, items: list[FmiVariable]) -> str:
+def _table(title: str, items: list[FmiArray], fmi: int) -> str:
     head = "".join(f"<th>{column}</th>" for column in COLUMNS)
-    rows = "\n".join(_row(item) for item in items)
+    rows = "\n".join(_row(item, fmi) for item in items)
     return f"<h2>{title}</h2>\n<table>\n<tr>{head}</tr>\n{rows}\n</table>"
 
 
-def _row(item: FmiVariable) -> str:
-    real = item.kind is float
-    shown = (unit(item.signal.unit).display or "") if real else ""
-    numbers = (item.start, *limits(item))
+def _row(item: FmiArray, fmi: int) -> str:
+    first = item.first
+    real = first.kind is float
+    shown = (unit(first.signal.unit).display or "") if real else ""
+    kind = item.fmi_type if fmi == 3 else first.fmi_type
+    size = "".join(f"[{count}]" for count in item.shape)
     cells = [
-        f"<td class='v'>{escape(item.name)}</td><td class='n'>{item.vr}</td><td>{item.fmi_type}</td>",
-        f"<td>{escape(item.signal.unit) if real else ''}</td><td>{escape(shown)}</td>",
-        *(f"<td class='n'>{'' if number is None else _number(number)}</td>" for number in numbers),
-        f"<td>{escape(describe(item))}</td>",
+        f"<td class='v'>{escape(item.name)}{size}</td><td class='n'>{item.vr}</td><td>{kind}</td>",
+        f"<td>{escape(first.signal.unit) if real else ''}</td><td>{escape(shown)}</td>",
+        f"<td class='n'>{', '.join(map(_number, item.starts))}</td>",
+        *(f"<td class='n'>{'' if number is None else _number(number)}</td>" for number in limits(first)),
+        f"<td>{escape(describe(first))}</td>",
     ]
     return f"<tr>{''.join(cells)}</tr>"
 

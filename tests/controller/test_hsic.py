@@ -17,14 +17,14 @@ SLOT, WHEELBASE, RADIUS = HsicSlot(), 2.62, 4.3
 
 
 def test_ready_point_is_half_a_metre_beside_and_tail_level():
-    p1 = ready_point(SLOT, WHEELBASE, RADIUS)
+    p1 = ready_point(SLOT, RADIUS)
     assert p1.y - SLOT.width / 2 - SLOT.slot_width / 2 == pytest.approx(0.5)
     front_end = SLOT.slot_length - SLOT.rear_gap - SLOT.rear_overhang
     assert p1.x - SLOT.rear_overhang == pytest.approx(front_end)
 
 
 def test_key_points_lie_on_two_tangent_arcs_and_their_tangent():
-    p1 = ready_point(SLOT, WHEELBASE, RADIUS)
+    p1 = ready_point(SLOT, RADIUS)
     points = key_points(p1, SLOT, WHEELBASE, RADIUS)
     assert points.found
     for point, centre in ((points.p3, (0.0, RADIUS)), (points.p2, (p1.x, p1.y - RADIUS))):

@@ -20,11 +20,11 @@ def python_fmus(tmp_path_factory):
 class NativeFmus(dict):
     """Path of each model's native FMU for this machine, built when it is first asked for."""
 
-    def __init__(self, folder):
-        self.folder = folder
+    def __init__(self, folder, fmi=2):
+        self.folder, self.fmi = folder, fmi
 
     def __missing__(self, name):
-        self[name] = native_fmu.build(MODELS[name], self.folder, [host()])
+        self[name] = native_fmu.build(MODELS[name], self.folder, [host()], fmi=self.fmi)
         return self[name]
 
 
@@ -32,6 +32,12 @@ class NativeFmus(dict):
 def native_fmus(tmp_path_factory):
     """Paths of the native FMUs of all models for this machine, by name."""
     return NativeFmus(tmp_path_factory.mktemp("native_fmus"))
+
+
+@pytest.fixture(scope="session")
+def fmi3_fmus(tmp_path_factory):
+    """Paths of the FMI 3.0 FMUs of all models for this machine, by name."""
+    return NativeFmus(tmp_path_factory.mktemp("fmi3_fmus"), fmi=3)
 
 
 @pytest.fixture(params=list(MODELS))

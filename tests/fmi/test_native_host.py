@@ -11,7 +11,7 @@ from elf import dynamic
 from raw import OK, Library
 
 from fmus.native.platforms import LINUX
-from fmus.native.sources import C_FILES, fmu_sources
+from fmus.native.sources import C_FILES, fmu_sources, unit_name
 
 HERE = Path(__file__).parent
 LIMIT = 400_000
@@ -118,20 +118,39 @@ def test_no_random_call_crashes(host, library, seed):
     assert messages > refused / 2
 
 
-@pytest.mark.skipif(shutil.which("gcc") is None, reason="needs gcc for its AddressSanitizer")
-def test_sanitizers_find_nothing(model, tmp_path):
-    guid = "{sanitized}"
-    for name, text in fmu_sources(model, guid).items():
-        (tmp_path / name).write_text(text)
+def sanitized(model, fmi, source, folder):
+    """Return (library, host program), made with AddressSanitizer and the undefined-behaviour sanitizer."""
+    for name, text in fmu_sources(model, "{sanitized}", fmi).items():
+        (folder / name).write_text(text)
     options = ["-g", "-O1", "-fsanitize=address,undefined", "-fno-sanitize-recover=all", "-Wall", "-Wextra"]
-    library, program = tmp_path / "model.so", tmp_path / "host"
-    env = {"check": True, "capture_output": True, "cwd": tmp_path}
-    unit = f"{model.name}_fmi2.c"
-    subprocess.run(["gcc", *options, "-std=c99", "-fPIC", "-shared", unit, "-o", str(library), "-lm"], **env)
-    host = [f"-I{tmp_path}", "-std=gnu11", str(HERE / "host.c"), "-o", str(program), "-ldl", "-lm"]
-    subprocess.run(["gcc", *options, *host], **env)
-    run(program, "many", library, guid, 100)
-    assert "refused" in run(program, "fuzz", library, guid, 3, 20_000, timeout=300)
+    library, program = folder / "model.so", folder / "host"
+    how = {"check": True, "capture_output": True, "cwd": folder}
+    unit = [unit_name(model, fmi), "-std=c99", f"-DFMI{fmi}_OVERRIDE_FUNCTION_PREFIX", "-fPIC", "-shared"]
+    subprocess.run(["gcc", *options, *unit, "-o", str(library), "-lm"], **how)
+    host = [f"-I{folder}", "-std=gnu11", str(HERE / source), "-o", str(program), "-ldl", "-lm"]
+    subprocess.run(["gcc", *options, *host], **how)
+    return library, program
+
+
+needs_gcc = pytest.mark.skipif(shutil.which("gcc") is None, reason="needs gcc for its AddressSanitizer")
+
+
+@needs_gcc
+def test_sanitizers_find_nothing(model, tmp_path):
+    library, program = sanitized(model, 2, "host.c", tmp_path)
+    run(program, "many", library, "{sanitized}", 100)
+    assert "refused" in run(program, "fuzz", library, "{sanitized}", 3, 20_000, timeout=300)
+
+
+@needs_gcc
+@pytest.mark.parametrize("seed", [1, 2])
+def test_sanitizers_find_nothing_in_fmi_3(model, seed, tmp_path):
+    library, program = sanitized(model, 3, "host3.c", tmp_path)
+    text = run(program, library, "{sanitized}", seed, 30_000, timeout=300)
+    calls, refused, messages = (int(word.split()[0]) for word in text.split(", "))
+    assert calls == 30_000
+    assert 0.2 < refused / calls < 0.8
+    assert messages > refused / 2
 
 
 @pytest.mark.skipif(shutil.which("valgrind") is None, reason="needs valgrind")

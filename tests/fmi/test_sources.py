@@ -1,0 +1,149 @@
+"""The C inside native FMUs: compiles without a warning anywhere, gives the same bits, lives beside other FMUs."""
+
+import shutil
+import subprocess
+import sys
+import zipfile
+from pathlib import Path
+
+import pytest
+import table_model
+import toy_model
+from raw import ERROR, OK, Library
+from raw3 import Library3
+from test_fmi3_fmu import grouped
+
+from fmus.contents.description import fmi_variables
+from fmus.native import fmu as native_fmu
+from fmus.native import tables
+from fmus.native.compilers import FLAGS, find_compiler
+from fmus.native.platforms import PLATFORMS, host
+from fmus.native.sources import fmu_sources, unit_name
+from vehicle_fmu import MODEL as VEHICLE
+
+WARNINGS = ["-pedantic", "-Wall", "-Wextra", "-Wconversion"]
+GCC = shutil.which("gcc")
+CLANG = [sys.executable, "-m", "ziglang", "cc"]
+COMPILERS = [pytest.param([GCC], id="gcc", marks=pytest.mark.skipif(GCC is None, reason="needs gcc")), CLANG]
+needs_gcc = pytest.mark.skipif(GCC is None, reason="needs gcc")
+
+
+def write(model, fmi, folder):
+    folder.mkdir(exist_ok=True)
+    for name, text in fmu_sources(model, "{token}", fmi).items():
+        (folder / name).write_text(text)
+    return unit_name(model, fmi)
+
+
+@pytest.mark.parametrize("fmi", [2, 3])
+@pytest.mark.parametrize("compiler", COMPILERS)
+def test_compiles_without_a_warning(model, fmi, compiler, tmp_path):
+    unit = write(model, fmi, tmp_path)
+    command = [*compiler, *FLAGS, *WARNINGS, "-c", unit, "-o", "unit.o"]
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stderr) == (0, "")
+
+
+def without_binaries(path, copy):
+    with zipfile.ZipFile(path) as source, zipfile.ZipFile(copy, "w") as target:
+        for name in source.namelist():
+            if not name.startswith("binaries/"):
+                target.writestr(name, source.read(name))
+    return copy
+
+
+def drive(library, component, scalar):
+    """Return the outputs of 300 steps with inputs that move; ``scalar``: FMI 2.0, where there are no arrays."""
+    wanted = {"prompt": 3, "steering_wheel_request": 3.5, "steering_active": True, "force[1]": 0.3, "force[2]": -0.2}
+    known = library.refs if scalar else library.known
+    groups = wanted if scalar else grouped(wanted, wanted.values())
+    for name, value in groups.items():
+        if name in known:
+            assert library.set(component, name, value) == OK
+    rows = []
+    for k in range(300):
+        assert library.step(component, 0.01 * k) == OK
+        rows.append(library.outputs(component))
+    library.free(component)
+    return rows
+
+
+@needs_gcc
+@pytest.mark.parametrize("model", [toy_model.MODEL, VEHICLE], ids=lambda model: model.name)
+@pytest.mark.parametrize("fmi", [2, 3])
+def test_fmpy_compiles_it_to_the_same_bits(model, fmi, native_fmus, fmi3_fmus, tmp_path):
+    fmu = (native_fmus if fmi == 2 else fmi3_fmus)[model.name]
+    bare = without_binaries(fmu, tmp_path / f"{model.name}.fmu")
+    program = str(Path(sys.executable).with_name("fmpy"))
+    subprocess.run([program, "compile", str(bare)], check=True, capture_output=True, timeout=300)
+    make = Library if fmi == 2 else Library3
+    ours, theirs = (make(path, tmp_path / name) for path, name in ((fmu, "ours"), (bare, "theirs")))
+    assert ours.file.read_bytes() != theirs.file.read_bytes()
+    rows = drive(ours, ours.initialized(), fmi == 2)
+    assert rows == drive(theirs, theirs.initialized(), fmi == 2)
+    assert rows[0] != rows[-1]
+
+
+@needs_gcc
+def test_this_machines_own_compiler_makes_the_same_bits(native_fmus, tmp_path):
+    made = native_fmu.build(toy_model.MODEL, tmp_path / "gcc", [host()], find_compiler("gcc"))
+    ours, theirs = (Library(path, tmp_path / name) for path, name in ((native_fmus["Toy"], "a"), (made, "b")))
+    assert ours.description.guid != theirs.description.guid
+    assert drive(ours, ours.initialized(), True) == drive(theirs, theirs.initialized(), True)
+
+
+def test_another_platform_needs_ziglang(tmp_path):
+    other = next(name for name in PLATFORMS if name != host())
+    with pytest.raises(RuntimeError, match="compiles for this machine only; others need --cc zig"):
+        native_fmu.build(toy_model.MODEL, tmp_path, [other], find_compiler("gcc" if GCC else "cc"))
+
+
+@needs_gcc
+@pytest.mark.parametrize("fmi", [2, 3])
+def test_two_fmus_in_one_image(fmi, tmp_path):
+    objects = []
+    for model in (toy_model.MODEL, table_model.MODEL):
+        folder = tmp_path / model.name
+        unit = write(model, fmi, folder)
+        prefix = [f"-DFMI2_FUNCTION_PREFIX={model.name}_"] if fmi == 2 else []
+        subprocess.run([GCC, *FLAGS, *prefix, "-c", unit, "-o", f"{model.name}.o"], cwd=folder, check=True)
+        objects.append(str(folder / f"{model.name}.o"))
+        listing = subprocess.run(
+            ["nm", "-g", "--defined-only", objects[-1]], capture_output=True, text=True, check=True
+        )
+        names = [line.split()[-1] for line in listing.stdout.splitlines()]
+        assert len(names) > 30
+        assert all(name.startswith(f"{model.name}_") for name in names)
+    main = "const char *{0}_fmi{1}GetVersion(void);"
+    text = "\n".join(main.format(name, fmi) for name in ("Toy", "Table"))
+    text += f"\nint main(void) {{ return Toy_fmi{fmi}GetVersion()[0] != Table_fmi{fmi}GetVersion()[0]; }}\n"
+    (tmp_path / "main.c").write_text(text)
+    subprocess.run([GCC, "main.c", *objects, "-o", "image", "-lm"], cwd=tmp_path, check=True)
+    assert subprocess.run([tmp_path / "image"], check=False).returncode == 0
+
+
+def test_tunable_parameters_change_between_steps_and_hold_from_the_next_on(monkeypatch, tmp_path):
+    def tunable(model):
+        known = fmi_variables(model)
+        return [item._replace(variability="tunable") if item.name == "stiffness" else item for item in known]
+
+    monkeypatch.setattr(tables, "fmi_variables", tunable)
+    toy = Library(native_fmu.build(toy_model.MODEL, tmp_path, [host()]), tmp_path / "fmu")
+    component, plain = toy.initialized(), toy.initialized()
+    for instance in (component, plain):
+        assert toy.step(instance, 0.0) == OK
+    before = toy.outputs(component)
+    assert toy.set(component, "stiffness", 80.0) == OK
+    assert toy.set(component, "mass", 3.0) == ERROR
+    assert toy.set(component, "stiffness", -1.0) == ERROR
+    assert "stiffness = -1 is not in [0, 10000]" in toy.messages[-1][2]
+    assert toy.outputs(component) == before
+    assert toy.get(component, "stiffness") == 80.0
+    for instance in (component, plain):
+        assert toy.step(instance, 0.01) == OK
+    assert toy.get(component, "count") == 2
+    assert toy.outputs(component) != toy.outputs(plain)
+    toy.call("Terminate", component)
+    assert toy.set(component, "stiffness", 90.0) == ERROR
+    for instance in (component, plain):
+        toy.free(instance)

@@ -125,12 +125,7 @@ def _signals(state: ApaState, frame: SlotFrame, params: ControllerParams) -> Apa
 
 def _move(parking: Parking, frame: SlotFrame) -> PlannedMove:
     move = parking.plan.move
-    m = frame.mirror
-    p = move.pieces
-    pieces = (
-        _piece(p[0], m), _piece(p[1], m), _piece(p[2], m), _piece(p[3], m), _piece(p[4], m), _piece(p[5], m),
-        _piece(p[6], m),
-    )  # fmt: skip
+    pieces = tuple(_piece(piece, frame.mirror) for piece in move.pieces)
     return PlannedMove(to_world(move.start, frame), move.direction, pieces)
 
 

@@ -250,7 +250,7 @@ def start_planning(slot: Slot, pose: Pose, params: ControllerParams) -> Parking:
 
 def cut_short(state: Parking) -> Parking:
     """Return the manoeuvre whose move is not driven any further: it is planned again at standstill."""
-    return state._replace(cut=True)  # fmt: skip
+    return state._replace(cut=True)
 
 
 def is_planned(state: Parking) -> bool:

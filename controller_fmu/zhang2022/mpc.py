@@ -5,10 +5,11 @@ from typing import NamedTuple
 
 from controller_fmu.zhang2022.params import MpcParams
 from controller_fmu.zhang2022.path import QuinticPath, Reference, at
-from controller_fmu.zhang2022.qp import Solution, Stages, Status, solve
+from controller_fmu.zhang2022.qp import STAGES, Solution, Stages, Status, solve
 from controller_fmu.zhang2022.qp_stage import Stage, Weights
 from modelkit.maths import clamp, is_finite
 
+NO_STAGE = Stage(0.0, 0.0, 0.0, 0.0, 0.0)
 SLOWEST = 0.2
 """Speed assumed where the car stands [m/s]: without motion nothing can be predicted."""
 
@@ -64,34 +65,13 @@ def turned(steering: Steering, car: Car, dt: float) -> Steering:
 def prediction(path: QuinticPath, reference: Reference, speed: float, car: Car, p: MpcParams) -> Stages:
     """Return the stages of the horizon, linearised where the car will be on the path at this speed (reverse)."""
     fast = -speed if speed < 0.0 else 0.0
-    v = -(fast if fast > SLOWEST else SLOWEST)
-    step = v * p.step_time
-    x0 = reference.pose.x
-    x1 = _onward(path, x0, step)
-    x2 = _onward(path, x1, step)
-    x3 = _onward(path, x2, step)
-    x4 = _onward(path, x3, step)
-    x5 = _onward(path, x4, step)
-    x6 = _onward(path, x5, step)
-    x7 = _onward(path, x6, step)
-    x8 = _onward(path, x7, step)
-    x9 = _onward(path, x8, step)
-    x10 = _onward(path, x9, step)
-    x11 = _onward(path, x10, step)
-    return (
-        _stage(path, x0, step, 0, car, p),
-        _stage(path, x1, step, 1, car, p),
-        _stage(path, x2, step, 2, car, p),
-        _stage(path, x3, step, 3, car, p),
-        _stage(path, x4, step, 4, car, p),
-        _stage(path, x5, step, 5, car, p),
-        _stage(path, x6, step, 6, car, p),
-        _stage(path, x7, step, 7, car, p),
-        _stage(path, x8, step, 8, car, p),
-        _stage(path, x9, step, 9, car, p),
-        _stage(path, x10, step, 10, car, p),
-        _stage(path, x11, step, 11, car, p),
-    )
+    step = -max(SLOWEST, fast) * p.step_time
+    x = reference.pose.x
+    stages: Stages = (NO_STAGE,) * STAGES
+    for number in range(STAGES):
+        stages = stages[:number] + (_stage(path, x, step, number, car, p),) + stages[number + 1 :]
+        x = _onward(path, x, step)
+    return stages
 
 
 def _onward(path: QuinticPath, x: float, step: float) -> float:

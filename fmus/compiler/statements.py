@@ -5,6 +5,7 @@ import ast
 from fmus.compiler.bindings import block
 from fmus.compiler.body import STATEMENTS, Body
 from fmus.compiler.conditions import condition
+from fmus.compiler.items import change_item, changed_item
 from fmus.compiler.kinds import INT, Array, Kind, Mixed, NoKindError, Open, described, kind_of
 from fmus.compiler.making import coerced
 from fmus.compiler.refusals import CannotError
@@ -36,6 +37,13 @@ def _assign_name(body: Body, target: ast.Name, source: ast.expr, node: ast.AST) 
             assert isinstance(source, ast.Call)
             replace_in_place(body, known.place, source, known.value(), target.id)
             return
+    item = changed_item(source, target.id)
+    if item is not None:
+        known = variable(body, target.id)
+        if known.kind is None or (known.parameter and known.fixed):
+            raise CannotError(node, f"another item in the argument {target.id}", "bind it to a variable first")
+        change_item(body, known, target.id, *item)
+        return
     bind(body, target.id, body.value(source), node, source)
 
 

@@ -41,6 +41,7 @@ class Body:
         self.lines: list[Any] = []
         self.frames: list[Frame] = []
         self.variables: dict[tuple[str, Path], Any] = {}
+        self.c_names: dict[str, str] = {}
         self.scopes: list[dict[str, Any]] = []
         """Variables of generators."""
         self.names = LocalNames([*TEXTS, *self._file_names_used()])

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 from fmus.compiler.body import Body
 from fmus.compiler.flow import Flow
 from fmus.compiler.kinds import Array, Kind, Mixed, NoKindError, Open, Struct, kind_of
-from fmus.compiler.layout import flat
+from fmus.compiler.layout import flat, without_unused
 from fmus.compiler.program import Program
 from fmus.compiler.refusals import AlreadySaidError, CannotError
 from fmus.compiler.storage import put
@@ -173,7 +173,7 @@ def translate(program: Program, made: Instance, kinds: dict[str, Kind], result: 
         made.parameters = [_parameter(body, name, kind) for name, kind in kinds.items()]
         _place_results(body, made, result)
         body.more_statements(_without_docstring(made.node.body))
-    made.lines = list(flat(body.lines))
+    made.lines = without_unused(list(flat(body.lines)))
     if made.lines and made.lines[-1] == "return;":
         made.lines.pop()
     made.head = _head(program, made)

@@ -11,6 +11,7 @@ def _words(text: str) -> frozenset[str]:
 KEYWORDS = _words(
     "auto break case char const continue default do double else enum extern float for goto if inline int long register "
     "restrict return short signed sizeof static struct switch typedef union unsigned void volatile while "
+    "int8_t int16_t int32_t int64_t uint8_t uint16_t uint32_t uint64_t intptr_t uintptr_t intmax_t uintmax_t size_t "
     "_Bool _Complex _Imaginary asm typeof bool true false "
     "alignas alignof and and_eq bitand bitor catch class compl constexpr const_cast decltype delete dynamic_cast "
     "explicit export friend mutable namespace new noexcept not not_eq nullptr operator or or_eq private protected "

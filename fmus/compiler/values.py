@@ -138,8 +138,8 @@ def as_float(value: Value) -> Value:
         return value
     if value.const is not UNKNOWN and abs(int(value.const)) <= WHOLE:
         real = literal(float(value.const))
-        named = value.text.isidentifier() and value.kind == INT
-        return replace(real, text=f"(double){value.text}", level=UNARY) if named else real
+        written = value.kind == BOOL or value.text.lstrip("-").isdigit()
+        return real if written else replace(real, text=f"(double){within(value, UNARY)}", level=UNARY)
     if value.real:
         return Value(FLOAT, value.real)
     return Value(FLOAT, f"(double){within(value, UNARY)}", UNARY)

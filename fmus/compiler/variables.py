@@ -66,7 +66,9 @@ def variable(body: Body, name: str) -> Variable:
     home = body.bindings.home(name, body.frames[-1].path)
     key = (name, home.path)
     if key not in body.variables:
-        body.variables[key] = Variable(body.names.add(name), home)
+        if name not in body.c_names:
+            body.c_names[name] = body.names.add(name)
+        body.variables[key] = Variable(body.c_names[name], home)
     return body.variables[key]  # type: ignore[no-any-return]
 
 

@@ -132,7 +132,7 @@ def _mention(found: Bindings, node: ast.AST, path: Path) -> None:
 
 def names_in(node: ast.AST) -> Iterator[ast.Name]:
     """Yield the names of the function in ``node``; those that a generator binds for itself are not."""
-    if isinstance(node, ast.GeneratorExp):
+    if isinstance(node, ast.GeneratorExp | ast.ListComp | ast.SetComp | ast.DictComp):
         inner = {item.id for part in node.generators for item in ast.walk(part.target) if isinstance(item, ast.Name)}
         for child in ast.iter_child_nodes(node):
             yield from (name for name in names_in(child) if name.id not in inner)

@@ -126,6 +126,8 @@ class Body:
                 handler(self, node)
             except CannotError as error:
                 self.refuse(error, node)
+            except RecursionError:
+                self.refuse(CannotError(node, "an expression nested too deeply", "write it in several lines"), node)
             except AlreadySaidError:
                 pass  # what it binds has no kind, and what needs that is not refused again
 

@@ -3,6 +3,7 @@
 import ast
 import math
 import re
+from enum import IntEnum
 from types import FunctionType
 from typing import Any
 
@@ -43,7 +44,8 @@ def call(body: Body, node: ast.Call) -> Value:
         return invoke(body, node, target, node.args)
     name = ast.unparse(node.func)
     if isinstance(target, type):
-        raise CannotError(node, f"a call of {name}", "use the int itself; only NamedTuples are made in model code")
+        advice = "use the int itself" if issubclass(target, IntEnum) else "only NamedTuples are made in model code"
+        raise CannotError(node, f"a call of {name}", advice)
     module = found.module.split(".")[0]
     raise CannotError(node, f"{name}() of {module}", f"use math and functions of the model: {module} has no C")
 

@@ -19,8 +19,9 @@ class Flow:
         self.breaks: list[list[State]] = []
         self.continues: list[list[State]] = []
         self.said: set[str] = set()
+        self.unsure = False
         end = self.body(function.body, frozenset(parameters))
-        if end is not None:
+        if end is not None and not self.unsure:
             advice = "end every way through the function in a return"
             self.faults.append(CannotError(function.body[-1], f"{function.name} may end without a return", advice))
 
@@ -50,7 +51,10 @@ class Flow:
         if isinstance(node, ast.Break | ast.Continue):
             (self.breaks if isinstance(node, ast.Break) else self.continues)[-1].append(state)
             return None
-        self.use(node, state)
+        if isinstance(node, ast.Try | ast.With | ast.TryStar):
+            self.unsure = True  # refused anyway
+        else:
+            self.use(node, state)
         return state | {name.id for name in names_in(node) if isinstance(name.ctx, ast.Store)}
 
     def use(self, node: ast.AST, state: frozenset[str]) -> None:

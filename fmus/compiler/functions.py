@@ -10,10 +10,11 @@ from typing import Any, NamedTuple
 from fmus.compiler.body import Body
 from fmus.compiler.flow import Flow
 from fmus.compiler.kinds import Array, Kind, Mixed, NoKindError, Open, Struct, kind_of
-from fmus.compiler.layout import flat, without_unused
+from fmus.compiler.layout import flat
 from fmus.compiler.program import Program
 from fmus.compiler.refusals import AlreadySaidError, CannotError
 from fmus.compiler.storage import put
+from fmus.compiler.unused import without_unused
 from fmus.compiler.values import Place, Value, is_scalar, returned_by_value
 from fmus.compiler.variables import variable
 

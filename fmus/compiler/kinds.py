@@ -126,9 +126,17 @@ def hints_of(cls: Any) -> dict[str, Any]:
 def fields_of(cls: Any) -> dict[str, Kind]:
     """Return the kind of every field of a NamedTuple; ``NoKind`` says which is none."""
     found: dict[str, Kind] = {}
+    try:
+        hints = hints_of(cls)
+    except Exception as error:
+        raise NoKindError(f"annotations of {cls.__name__} that cannot be read ({error})", "name known types") from None
     for name in cls._fields:
+        if name not in hints:
+            raise NoKindError(
+                f"{cls.__name__}.{name} has no type", f"write class {cls.__name__}(NamedTuple): {name}: float"
+            )
         try:
-            kind = kind_of(hints_of(cls)[name], cls._field_defaults.get(name, UNSET))
+            kind = kind_of(hints[name], cls._field_defaults.get(name, UNSET))
         except NoKindError as error:
             raise NoKindError(f"{cls.__name__}.{name} is {error.what}", error.advice) from None
         if isinstance(kind, Open):

@@ -1,8 +1,6 @@
 """Lines of C indented and wrapped."""
 
-import re
 import textwrap
-from collections import Counter
 from collections.abc import Iterator, Sequence
 from typing import Any
 
@@ -68,20 +66,6 @@ def _best_break(text: str, start: int) -> int | None:
                         found = place + kept
         place += 1
     return found if best else None
-
-
-DECLARATION = re.compile(r"(?!return )(?:const )?\w+ (?:\*|\(\*)?(\w+)\)?(?:\[\d+\])*(?: = .*)?;")
-
-
-def without_unused(lines: list[str]) -> list[str]:
-    """Return the lines of a function without declarations of what no other line mentions."""
-    while True:
-        counts = Counter(word for line in lines if not line.startswith("/*") for word in re.findall(r"\w+", line))
-        found = [DECLARATION.fullmatch(line) for line in lines]
-        kept = [line for line, match in zip(lines, found, strict=True) if not (match and counts[match[1]] == 1)]
-        if len(kept) == len(lines):
-            return lines
-        lines = kept
 
 
 def comment(text: str, depth: int = 0) -> list[str]:

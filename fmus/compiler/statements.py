@@ -86,8 +86,7 @@ def expression(body: Body, node: ast.Expr) -> None:
             return
         body.emit(f"/* {' '.join(node.value.value.split()).replace('*/', '* /')} */")
         return
-    if isinstance(node.value, ast.Call):
-        body.value(node.value)  # says what is wrong with it, if anything is
+    body.value(node.value)  # says what is wrong with it, if anything is
     raise CannotError(
         node, f"the value of {ast.unparse(node.value)[:60]} is not used", "bind it to a name, or remove it"
     )
@@ -251,20 +250,23 @@ def match(body: Body, node: ast.Match) -> None:
 
 
 def _match_by_ifs(body: Body, node: ast.Match, subject: Value, labels: list[list[str] | None]) -> None:
-    head = "if"
-    for case, names in zip(node.cases, labels, strict=True):
+    """Write match as ifs, one inside the else of the one before where its condition takes statements."""
+    depth = 0
+    for number, (case, names) in enumerate(zip(node.cases, labels, strict=True)):
         tests = [] if names is None else [" || ".join(f"{subject.text} == {name}" for name in names)]
+        lines: list[object] = []
         if case.guard:
             with body.capture() as lines:
-                guard = condition(body, case.guard)
-            if lines:
-                raise CannotError(case.guard, "a condition of a case that takes a calculation", "work it out before")
-            tests.append(guard.text)
+                tests.append(condition(body, case.guard).text)
         text = " && ".join(f"({test})" for test in tests) if len(tests) > 1 else (tests or ["true"])[0]
-        body.emit(f"{head} ({text}) {{")
+        if lines:
+            depth += 1
+            body.lines += ["} else {"] if number else ["{"]
+            body.lines += [*lines, f"if ({text}) {{"]
+        else:
+            body.emit(f"{'} else if' if number else 'if'} ({text}) {{")
         body.statements(case.body, block(body.frames[-1].path, case, "body"))
-        head = "} else if"
-    body.emit("}")
+    body.lines += ["}"] * (depth + 1)
 
 
 def _labels(body: Body, pattern: ast.pattern) -> list[str] | None:

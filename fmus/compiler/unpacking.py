@@ -70,10 +70,11 @@ def unpack(body: Body, target: ast.expr, value: Value, node: ast.AST) -> None:
         if target.id != "_" or body.bindings.home("_", body.frames[-1].path).loads:
             bind(body, target.id, value, node)
         return
-    if isinstance(target, ast.Starred):
-        raise CannotError(target, "a star on the left side", "name each item")
     if not isinstance(target, ast.Tuple | ast.List):
         raise CannotError(target, f"a change of {ast.unparse(target)}", "bind a new value to a name")
+    for part in target.elts:
+        if isinstance(part, ast.Starred):
+            raise CannotError(part, "a star on the left side", "name each item")
     items = items_of(body, value, target)
     if len(items) != len(target.elts):
         raise CannotError(target, f"{len(target.elts)} names for {len(items)} items", "write one name for each item")

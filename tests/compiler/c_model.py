@@ -19,10 +19,10 @@ COMPILER = (GCC,) if GCC else (sys.executable, "-m", "ziglang", "cc")
 SCALARS = {FLOAT: ctypes.c_double, INT: ctypes.c_int64, BOOL: ctypes.c_bool}
 
 
-def compiled(folder, name, *files, compiler=COMPILER, options=CODE):
+def compiled(folder, name, *files, compiler=COMPILER, options=CODE, warnings=WARNINGS):
     """Return a shared library made of C ``files`` without a warning."""
     library = folder / f"{name}.so"
-    command = [*compiler, *WARNINGS, *options, "-shared", "-fPIC", "-o", str(library), *map(str, files), "-lm"]
+    command = [*compiler, *warnings, *options, "-shared", "-fPIC", "-o", str(library), *map(str, files), "-lm"]
     done = subprocess.run(command, capture_output=True, text=True, check=False, cwd=folder)
     assert not done.returncode, f"{' '.join(command)}\n{done.stderr}"
     assert not done.stderr, done.stderr

@@ -1,5 +1,7 @@
 """Functions for test_language: one for each construct. Not a model; read as text."""
 
+# ruff: noqa: B002, B007, B008, RUF021, RUF057
+
 import math
 from enum import IntEnum
 from math import pi

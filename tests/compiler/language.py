@@ -98,16 +98,18 @@ def whole_module(text):
 class Twins:
     """The functions of a text, in CPython and in C."""
 
-    def __init__(self, text, folder, name):
+    def __init__(self, text, folder, name, **how):
         self.names = [name for name, _ in results(text)]
         self.module = load(whole_module(text), folder, name)
         self.translation = translate(model_of(self.module))
-        self.c = CModel(model_of(self.module), self.translation, folder)
+        folder = folder / name
+        folder.mkdir()
+        self.c = CModel(model_of(self.module), self.translation, folder, **how)
         self.c.initialize(self.module.Nothing())
         self.raised = 0
 
     def differing(self, inputs, only=None):
-        """Return what differs, function by function; where CPython raises or leaves 64 bits there is nothing to compare."""
+        """Return what differs; where CPython raises or leaves 64 bits there is nothing to compare."""
         self.c.step(self.module.In(*inputs), 0)
         found = []
         for name in self.names if only is None else [only]:

@@ -42,6 +42,7 @@ def build_all(
     progress: Callable[[Built], None] | None = None,
     platforms: Iterable[str] | None = None,
     cc: str | None = None,
+    models: Iterable[Model] = MODELS,
 ) -> list[Built]:
     """Return what was built, in order; ``progress`` is called after each.
 
@@ -52,7 +53,7 @@ def build_all(
     done = []
     for kind in kinds:
         make = _maker(kind, platforms, cc)
-        for model in MODELS:
+        for model in models:
             before = archive_guid(Path(out) / kind / f"{model.name}.fmu")
             path = make(model, Path(out) / kind)
             guid = archive_guid(path) or ""

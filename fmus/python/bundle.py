@@ -49,7 +49,7 @@ def bundle(model: Model) -> Bundle:
     """Return all sources that ``model`` needs, with their imports pointing below the hashed root package."""
     name = model.package.__name__
     if "." in name:
-        raise ValueError(f"{name}: the package of a model must be a top-level package")
+        raise ValueError(f"{name}: the package of a model must be a top-level package, or a module")
     originals = {
         **_package("modelkit", modelkit.__file__),
         **_package(name, model.package.__file__),
@@ -63,7 +63,7 @@ def bundle(model: Model) -> Bundle:
     )
     digest = content_hash({**originals, "script": script.encode()})
     root, module = f"fmu_{digest[:16]}", f"slave_{digest[:16]}"
-    tops = {path.split("/")[0] for path in originals}
+    tops = {path.split("/")[0].removesuffix(".py") for path in originals}
     files = {f"{root}/{path}": rewrite(text, path, root, tops) for path, text in originals.items()}
     files[f"{root}/__init__.py"] = b""
     files[f"{module}.py"] = script.format(root=root, script=module.title(), hash=digest).encode()
@@ -124,11 +124,13 @@ def _attribute(model: Model) -> str:
     for name, value in vars(model.package).items():
         if value is model:
             return name
-    raise ValueError(f"{model.package.__name__}: its __init__.py must hold the Model of {model.name}")
+    raise ValueError(f"{model.package.__name__}: it must hold the Model of {model.name}")
 
 
 def _package(name: str, origin: str | None) -> dict[str, bytes]:
     folder = _folder(origin)
+    if origin is not None and Path(origin).name != "__init__.py":
+        return {f"{name}.py": Path(origin).read_bytes()}
     return {f"{name}/{file.relative_to(folder).as_posix()}": file.read_bytes() for file in folder.rglob("*.py")}
 
 

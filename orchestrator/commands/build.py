@@ -1,11 +1,16 @@
-"""``apa build``: make the FMUs."""
+"""``apa build``: make the FMUs, of the parking pair or of a model of one's own."""
 
 import argparse
 import json
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from orchestrator.cosim.fmu_files import KINDS, build, build_into
+from orchestrator.cosim.fmu_files import KINDS, build, build_into, wanted_platforms
+from orchestrator.text.console import working
 from orchestrator.text.errors import BadInput
+
+if TYPE_CHECKING:
+    from fmus.build import Built
 
 EXAMPLES = """examples:
   apa build                                       both kinds, for apa's own runs
@@ -13,6 +18,7 @@ EXAMPLES = """examples:
   apa build --fmus native --out build --platform win64,linux64
   apa build --fmi 3 --out build --platform all    build/fmi3/...: FMI 3.0
   apa build --fmus native --cc gcc                with this machine's own C compiler
+  apa build --model my_model.py:MODEL --out build     a model of your own: PythonFMU, native FMUs, C library
 """
 
 
@@ -20,33 +26,55 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add what the command takes."""
     parser.add_argument("--fmus", choices=KINDS, action="append", help="which kind (default: all that can be built)")
     parser.add_argument("--kind", choices=KINDS, action="append", dest="fmus", help=argparse.SUPPRESS)
-    parser.add_argument("--fmi", type=int, choices=(2, 3), default=2, help="version; 3: native only (default: 2)")
+    parser.add_argument("--fmi", type=int, choices=(2, 3), help="version; 3: native only (default: 2)")
     parser.add_argument("--out", type=Path, metavar="DIR", help="where to (default: where apa's own runs look)")
     parser.add_argument(
         "--platform", action="append", metavar="NAME,...", help="native FMUs for these, or all (default: this one)"
     )
     parser.add_argument("--cc", metavar="CC", help="C compiler (default: the variable CC, else ziglang)")
+    parser.add_argument("--model", metavar="FILE.py:NAME", help="a model of your own, in a file or a package's folder")
     parser.add_argument("--json", action="store_true", help="print the list as JSON")
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Build and print one line per FMU. Returns 0."""
+    made = _own_model(arguments) if arguments.model else _parking_pair(arguments)
+    rows = [{**item._asdict(), "path": str(item.path), "size": item.path.stat().st_size} for item in made]
+    if arguments.json:
+        print(json.dumps(rows, indent=2))
+        return 0
+    for row in rows:
+        print(f"{row['path']}  {row['size'] / 1024:.0f} KiB  {row['guid']}{'' if row['changed'] else '  unchanged'}")
+    return 0
+
+
+def _parking_pair(arguments: argparse.Namespace) -> list["Built"]:
     kinds = _kinds(arguments)
     if arguments.platform and (arguments.out is None or kinds == ["python"]):
         raise BadInput("is for native FMUs in a place of their own: give --fmus native and --out", key="--platform")
-    rows = []
+    made = []
     for kind in kinds:
         platforms = arguments.platform or () if kind != "python" else ()
         cc = arguments.cc
-        made = build(kind, cc) if arguments.out is None else build_into(arguments.out, kind, platforms, cc)
-        for item in made:
-            size = item.path.stat().st_size
-            rows.append({**item._asdict(), "path": str(item.path), "size": size})
-            if not arguments.json:
-                print(f"{item.path}  {size / 1024:.0f} KiB  {item.guid}{'' if item.changed else '  unchanged'}")
-    if arguments.json:
-        print(json.dumps(rows, indent=2))
-    return 0
+        made += build(kind, cc) if arguments.out is None else build_into(arguments.out, kind, platforms, cc)
+    return made
+
+
+def _own_model(arguments: argparse.Namespace) -> list["Built"]:
+    from fmus.build import kinds_here
+    from fmus.own_model import BadModel, build_own, own_model
+
+    if arguments.out is None:
+        raise BadInput("a model of your own needs a place: give --out", key="--model")
+    asked = arguments.fmus or arguments.fmi
+    kinds = _kinds(arguments) if asked else [*kinds_here(), "c"]
+    platforms = wanted_platforms(arguments.platform or ())
+    try:
+        model = own_model(arguments.model)
+        with working(f"building {model.name}"):
+            return build_own(model, arguments.out, kinds, platforms, arguments.cc)
+    except (BadModel, RuntimeError) as error:
+        raise BadInput(str(error)) from error
 
 
 def _kinds(arguments: argparse.Namespace) -> list[str]:

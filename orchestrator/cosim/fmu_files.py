@@ -59,18 +59,25 @@ def build_into(folder: Path, kind: str, platforms: Iterable[str] = (), cc: str |
     ``cc`` is a C compiler of this machine to be used. Raises ``BadInput`` if that cannot be done here.
     """
     from fmus.build import build_all
+
+    wanted = wanted_platforms(platforms)
+    with working(f"building {kind} FMUs"):
+        try:
+            return build_all(folder, kinds=(kind,), platforms=wanted, cc=cc)
+        except (RuntimeError, TypeError) as error:
+            raise BadInput(str(error)) from error
+
+
+def wanted_platforms(asked: Iterable[str]) -> list[str] | None:
+    """Return the platforms that ``--platform`` asks for, None for this machine's."""
     from fmus.native.platforms import PLATFORMS
 
-    names = [name for item in platforms for name in item.split(",")]
+    names = [name for item in asked for name in item.split(",")]
     wanted = sorted(PLATFORMS) if "all" in names else names
     unknown = [name for name in wanted if name not in PLATFORMS]
     if unknown:
         raise BadInput(f"{', '.join(unknown)}: expected all or {', '.join(PLATFORMS)}", key="--platform")
-    with working(f"building {kind} FMUs"):
-        try:
-            return build_all(folder, kinds=(kind,), platforms=wanted or None, cc=cc)
-        except (RuntimeError, TypeError) as error:
-            raise BadInput(str(error)) from error
+    return wanted or None
 
 
 @contextmanager

@@ -1,0 +1,185 @@
+"""The model of docs/own-model.md, one file, becomes every kind of FMU and a C library; a mistake gets one line."""
+
+import json
+import re
+import shutil
+import subprocess
+import zipfile
+from pathlib import Path
+
+import pytest
+from fmpy import simulate_fmu
+from fmpy.validation import validate_fmu
+
+from fmus.native.compilers import can_compile
+from orchestrator.cli import main
+
+PAGE = (Path(__file__).parents[2] / "docs" / "own-model.md").read_text(encoding="utf-8")
+(TANK,) = re.findall(r"^```python\n(.*?)^```", PAGE, re.S | re.M)
+ROWS = re.findall(r"^\| (.+) \| `(.+)` \| `tank\.py:(\d+): (.+)` \|$", PAGE, re.M)
+"""The table of mistakes: what, the line as it is wrong, its number, the answer."""
+INFLOW = '    inflow: Annotated[float, Signal("m3/s", "through the valve")] = 0.0'
+SPAN = 10.0
+MISTAKES = {
+    "a list": ("    outflow = params", "    parts = [0.5, 0.5]\n    outflow = params"),
+    "a string": ("    outflow = params", '    mode = "open"\n    outflow = params'),
+    "an argument without a type": ("def measured(level: float, params", "def measured(level, params"),
+    "a result without a type": ("params: Params) -> Output:", "params: Params):"),
+    "a float that starts at `0`": (INFLOW, INFLOW.replace("0.0", "0")),
+    "no unit and meaning": (INFLOW, "    inflow: float = 0.0"),
+    "no meaning": (INFLOW, INFLOW.replace(', "through the valve"', "")),
+    "a unit that is none": (INFLOW, INFLOW.replace("m3/s", "litres")),
+    "no default": (INFLOW, INFLOW.removesuffix(" = 0.0")),
+    "no type": (INFLOW, "    inflow = 0.0"),
+    "a list as a field": (INFLOW, "    inflow: list[float] = []"),
+    "a default out of its range": ("0.1, 10.0)] = 3.0", "0.1, 10.0)] = 30.0"),
+    "an int that becomes a float": (
+        "    outflow = params",
+        "    part = 0\n    part = part + 0.5\n    outflow = params",
+    ),
+    "a parameter that is not there": ("params.hole", "params.holes"),
+    "a function that raises": ("math.sqrt(2.0 * 9.81", "math.sqrt(-2.0 * 9.81"),
+    "a module of others": ("import math\n", "import math\nimport numpy as np\n"),
+    "a syntax error": ("    outflow = params", "    outflow == = params"),
+}
+
+
+def answer(folder, text, capsys, name="tank.py"):
+    """Return exit code and what is said of a model file with ``text``."""
+    (folder / name).write_text(text, encoding="utf-8")
+    code = main(["build", "--model", str(folder / name), "--out", str(folder / "out")])
+    assert not (folder / "out").exists() or code == 0
+    return code, capsys.readouterr().err
+
+
+def wrong(what):
+    """Return the model with a mistake, and the number and text of the line that has it."""
+    old, new = MISTAKES[what]
+    assert TANK.count(old) == 1, old
+    text = TANK.replace(old, new)
+    pairs = enumerate(zip(text.splitlines(), TANK.splitlines(), strict=False), start=1)
+    number = next(number for number, (one, other) in pairs if one != other)
+    return text, number, text.splitlines()[number - 1].strip()
+
+
+@pytest.mark.parametrize("what", MISTAKES)
+def test_a_mistake_is_answered_in_one_line(what, tmp_path, capsys):
+    text, _, _ = wrong(what)
+    code, said = answer(tmp_path, text, capsys)
+    assert code == 2
+    assert len(said.splitlines()) == 1, said
+    (row,) = (row for row in ROWS if row[0] == what)
+    assert said == f"apa: tank.py:{row[2]}: {row[3]}\n"
+    assert "Traceback" not in said
+    assert row[1] == text.splitlines()[int(row[2]) - 1].strip()
+
+
+def test_the_page_has_every_mistake():
+    assert [row[0] for row in ROWS] == list(MISTAKES)
+
+
+@pytest.mark.parametrize(
+    ("name", "argument", "said"),
+    [
+        ("nowhere.py", "nowhere.py", "nowhere.py: there is no such file"),
+        ("math.py", "math.py", "there is another Python module called math: rename the file"),
+        ("modelkit.py", "modelkit.py", "there is another Python module called modelkit: rename the file"),
+        ("two-arcs.py", "two-arcs.py", "'two-arcs' is no name for a Python module"),
+        ("tank.py", "tank.py:TANK", "no Model is called TANK: it has MODEL"),
+        ("tank.txt", "tank.txt", "a model is a .py file, or a folder with __init__.py"),
+    ],
+)
+def test_a_file_that_is_none_is_refused(name, argument, said, tmp_path, capsys):
+    if name != "nowhere.py":
+        (tmp_path / name).write_text(TANK, encoding="utf-8")
+    assert main(["build", "--model", str(tmp_path / argument), "--out", str(tmp_path / "out")]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert said in line
+
+
+def test_a_place_is_needed(tmp_path, capsys):
+    (tmp_path / "tank.py").write_text(TANK, encoding="utf-8")
+    assert main(["build", "--model", str(tmp_path / "tank.py")]) == 2
+    assert capsys.readouterr().err == "apa: --model: a model of your own needs a place: give --out\n"
+
+
+@pytest.fixture(scope="module")
+def built(tmp_path_factory):
+    """The folder in which one command has built everything."""
+    if not can_compile():
+        pytest.skip("needs a C compiler")
+    folder = tmp_path_factory.mktemp("own model")
+    (folder / "tank.py").write_text(TANK, encoding="utf-8")
+    assert main(["build", "--model", f"{folder / 'tank.py'}:MODEL", "--out", str(folder / "out"), "--json"]) == 0
+    return folder / "out"
+
+
+def levels(path):
+    result = simulate_fmu(path, stop_time=SPAN, output_interval=0.1, output=["level"], start_values={"inflow": 0.02})
+    return result["level"].tolist()
+
+
+def test_every_kind_gives_the_same_bits(built):
+    found = {kind: levels(built / kind / "Tank.fmu") for kind in ("python", "native", "fmi3")}
+    assert len(found["native"]) == 101
+    assert found["python"] == found["native"] == found["fmi3"]
+    assert found["native"][0] == 1.0 > found["native"][-1] > 0.8
+
+
+@pytest.mark.parametrize("kind", ["python", "native", "fmi3"])
+def test_fmpy_finds_nothing_to_complain_about(built, kind):
+    assert validate_fmu(str(built / kind / "Tank.fmu")) == []
+
+
+def test_the_c_library_gives_the_bits_of_the_fmu(built, tmp_path):
+    compiler = shutil.which("cc")
+    if compiler is None:
+        pytest.skip("needs a cc")
+    text = (
+        (built / "c" / "main.c")
+        .read_text()
+        .replace("    /* here is", "    model.inputs.inflow = 0.02;\n    /* here is")
+    )
+    (built / "c" / "main.c").write_text(text)
+    command = [compiler, "-std=c99", "-O2", "-ffp-contract=off", "main.c", "Tank.c", "-lm", "-o", tmp_path / "example"]
+    subprocess.run(command, cwd=built / "c", check=True)
+    printed = subprocess.run([tmp_path / "example"], check=True, capture_output=True, text=True).stdout
+    rows = [line.split() for line in printed.splitlines()]
+    fmu = levels(built / "native" / "Tank.fmu")
+    assert len(rows) == 21
+    assert [float(row[-1]) for row in rows] == [fmu[round(float(row[0]) * 10.0)] for row in rows]
+
+
+def test_the_second_time_nothing_has_changed(built, capsys):
+    model = str(built.parent / "tank.py")
+    kept = {path: path.read_bytes() for path in built.rglob("Tank.*")}
+    (built / "c" / "main.c").unlink()
+    assert main(["build", "--model", model, "--out", str(built), "--json"]) == 0
+    rows = json.loads(capsys.readouterr().out)
+    assert [(row["kind"], row["changed"]) for row in rows] == [
+        (kind, False) for kind in ("python", "native", "fmi3", "c")
+    ]
+    assert {path: path.read_bytes() for path in kept} == kept
+
+
+def test_the_python_fmu_holds_the_file_below_its_own_root(built):
+    with zipfile.ZipFile(built / "python" / "Tank.fmu") as archive:
+        (name,) = (name for name in archive.namelist() if name.endswith("/tank.py"))
+        root = name.split("/")[1]
+        assert f"from {root}.modelkit.model import Model" in archive.read(name).decode()
+
+
+def test_a_package_of_several_files(tmp_path, capsys):
+    package = tmp_path / "basin"
+    package.mkdir()
+    text = TANK.replace("import math\n", "from basin.law import outflow\n")
+    text = text.replace("params.hole * math.sqrt(2.0 * 9.81 * state.level)", "outflow(params.hole, state.level)")
+    text = text.replace("    outflow = outflow(", "    lost = outflow(").replace("inflow - outflow)", "inflow - lost)")
+    (package / "__init__.py").write_text(text, encoding="utf-8")
+    law = "import math\n\n\ndef outflow(hole: float, level: float) -> float:\n"
+    (package / "law.py").write_text(f"{law}    return hole * math.sqrt(2.0 * 9.81 * level)\n", encoding="utf-8")
+    assert main(["build", "--model", str(package), "--out", str(tmp_path / "out"), "--fmus", "python"]) == 0
+    assert levels(tmp_path / "out" / "python" / "Tank.fmu")[-1] < 1.0
+    (package / "law.py").write_text(f"{law}    return [hole]\n", encoding="utf-8")
+    code = main(["build", "--model", str(package), "--out", str(tmp_path / "out")])
+    assert (code, capsys.readouterr().err.splitlines()[-1][:24]) == (2, "apa: basin/law.py:5: a l")

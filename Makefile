@@ -14,6 +14,7 @@ run: $(VENV)/.run ## Install, build the FMUs, run a parking case, print the tabl
 	$(BIN)/apa run $(SCENARIO)
 
 test: $(VENV)/.test ## Install and pass the tests
+	@echo "About ten minutes on two cores"
 	$(BIN)/python -m pytest -n auto --dist loadfile -q
 
 check: lint types test ## Lint, types and tests
@@ -40,11 +41,13 @@ clean: ## Remove what was built and logged, and the virtual environment
 
 $(VENV)/.run: pyproject.toml
 	@$(PYTHON) -c 'import sys; sys.exit("Python 3.11 or newer is needed; name one with: make PYTHON=python3.11") if sys.version_info < (3, 11) else None'
+	@echo "Installing into $(VENV): 1.2 GB, about two minutes with a fast connection"
 	$(PYTHON) -m venv $(VENV)
 	$(BIN)/python -m pip install --quiet --editable '.[native,sweep]'
 	@touch $@
 
 $(VENV)/.test: $(VENV)/.run pyproject.toml
+	@echo "Installing what the tests need into $(VENV): 1 GB more, some minutes"
 	$(BIN)/python -m pip install --quiet --editable '.[native,sweep,export,test]'
 	@touch $@
 

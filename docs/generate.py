@@ -7,6 +7,7 @@ import importlib
 import inspect
 import os
 import pkgutil
+import re
 import sys
 from collections.abc import Iterator
 from enum import IntEnum
@@ -18,6 +19,7 @@ ROOT = Path(__file__).parent.parent
 sys.path[:0] = [str(ROOT), str(ROOT / "docs")]
 
 from chart_svg import chart_svg  # noqa: E402
+from pydantic import BaseModel  # noqa: E402
 
 import controller_fmu  # noqa: E402
 from modelkit.model import Model  # noqa: E402
@@ -25,13 +27,16 @@ from modelkit.variables import Variable, variables  # noqa: E402
 from orchestrator.cli import parser  # noqa: E402
 from orchestrator.commands.parser import CommandParser  # noqa: E402
 from orchestrator.scenario.catalogue import collapsed, range_text, start_text, texts_of  # noqa: E402
+from orchestrator.scenario.fault import Fault  # noqa: E402
 from orchestrator.scenario.load_scenario import ROOM, load_scenario, scenario_names  # noqa: E402
 from orchestrator.scenario.models import MODELS  # noqa: E402
-from orchestrator.scenario.requirements import Requirement, read_requirements  # noqa: E402
-from orchestrator.scenario.scenario import Scenario  # noqa: E402
+from orchestrator.scenario.requirements import Requirement, Window, read_requirements  # noqa: E402
+from orchestrator.scenario.scenario import Scenario, Slot  # noqa: E402
+from orchestrator.verdict.judge import Check  # noqa: E402
 from orchestrator.verdict.limit_text import asked  # noqa: E402
-from orchestrator.verdict.summary import Summary  # noqa: E402
+from orchestrator.verdict.summary import Event, Final, FmuUsed, Summary  # noqa: E402
 
+TARGET = "Where to park: x, y [m], heading of the rear-axle midpoint; short for `controller.target`."
 MADE = "<!-- Made by docs/generate.py; do not edit. -->\n"
 
 
@@ -53,11 +58,22 @@ def model_page(model: Model) -> str:
     parts.append(f"Communication step by default {model.step_size:g} s, stop time {model.stop_time:g} s.\n")
     groups = {"Inputs": model.inputs, "Outputs": model.outputs, "Parameters": model.params}
     for title, cls in groups.items():
-        parts.append(f"## {title}\n\n{signal_table(variables(cls), title == 'Parameters')}")
+        parts.append(f"## {title}\n")
+        for head, found in grouped(variables(cls)):
+            parts.append((f"### {head}\n\n" if head else "") + signal_table(found, title == "Parameters"))
     enums = {item.signal.states for cls in groups.values() for item in variables(cls) if item.signal.states}
     for enum in sorted(enums, key=lambda item: item.__name__):
         parts.append(f"## {enum.__name__}\n\n{(enum.__doc__ or '').strip()}\n\n{state_table(enum)}")
     return "\n".join(parts)
+
+
+def grouped(items: list[Variable]) -> Iterator[tuple[str, list[Variable]]]:
+    """Return variables by the first part of their name; those of one part come first, under no name."""
+    groups: dict[str, list[Variable]] = {"": []}
+    for item in items:
+        first = re.split(r"[.\[]", item.name)[0]
+        groups.setdefault(first if first != item.name else "", []).append(item)
+    return ((head, found) for head, found in groups.items() if found)
 
 
 def signal_table(items: list[Variable], starts: bool) -> str:
@@ -158,13 +174,48 @@ def scenarios_page() -> str:
 def files_page() -> str:
     """Return what stands in a scenario, in requirements and in summary.json."""
     parts = ["# Files\n"]
-    for title, model in (("Scenario (YAML)", Scenario), ("Requirement (YAML)", Requirement), ("summary.json", Summary)):
-        schema: dict[str, Any] = model.model_json_schema()
-        texts = texts_of(model)
-        rows = [[f"`{name}`", type_text(item), texts.get(name, "")] for name, item in schema["properties"].items()]
-        about = (inspect.getdoc(model) or "").replace("``", "`")
-        parts.append(f"## {title}\n\n{about}\n\n{table(['key', 'type', 'meaning'], rows)}")
+    written = {
+        "Scenario (YAML)": Scenario,
+        "Slot": Slot,
+        "Fault": Fault,
+        "Requirement (YAML)": Requirement,
+        "Window": Window,
+    }
+    for title, model in written.items():
+        rows = [[*row[:3], row[3].replace("``", "`")] for row in key_rows(model)]
+        parts.append(f"## {title}\n\n{about(model)}\n\n{table(['key', 'type', 'default', 'meaning'], rows)}")
+    for title, model in {
+        "summary.json": Summary,
+        "final": Final,
+        "events": Event,
+        "checks": Check,
+        "fmus": FmuUsed,
+    }.items():
+        rows = [[row[0], row[1], row[3].replace("``", "`")] for row in key_rows(model)]
+        parts.append(f"## {title}\n\n{about(model)}\n\n{table(['key', 'type', 'meaning'], rows)}")
     return "\n".join(parts)
+
+
+def about(model: type[BaseModel]) -> str:
+    """Return what a class says of itself."""
+    return (inspect.getdoc(model) or "").replace("``", "`")
+
+
+def key_rows(model: type[BaseModel]) -> list[list[str]]:
+    """Return (key, type, default, meaning) of what may be written in a file."""
+    texts, unwritten = texts_of(model), ("file", "changed") if model is Scenario else ()
+    rows = []
+    for name, item in model.model_json_schema()["properties"].items():
+        if name in unwritten:
+            continue
+        field = name if name in model.model_fields else f"{name}_"
+        default = item.get("default", "-" if model.model_fields[field].is_required() else "")
+        shown = "" if default in (None, "", [], {}) else f"`{default}`" if default != "-" else "required"
+        rows.append([f"`{name}`", type_text(item), shown, texts.get(field, "")])
+    if model is Scenario and "target" not in model.model_fields:
+        at = [row[0] for row in rows].index("`slot`")
+        rows.insert(at, ["`target`", "mapping", "", TARGET])
+    return rows
 
 
 def type_text(item: dict[str, Any]) -> str:

@@ -14,8 +14,8 @@ from modelkit.signal import Signal
 class Pose(NamedTuple):
     """Position and heading in the plane."""
 
-    x: Annotated[float, Signal("m", "x of the rear-axle midpoint")] = 0.0
-    y: Annotated[float, Signal("m", "y of the rear-axle midpoint")] = 0.0
+    x: Annotated[float, Signal("m", "x; of a car: at the midpoint of its rear axle")] = 0.0
+    y: Annotated[float, Signal("m", "y; of a car: at the midpoint of its rear axle")] = 0.0
     heading: Annotated[float, Signal("rad", "heading, counter-clockwise from the x axis")] = 0.0
 
 

@@ -14,7 +14,7 @@ from orchestrator.verdict.summary import summarize
 
 EXAMPLES = """examples:
   apa run guo2015-case4
-  apa run my.yaml --set vehicle.body=double_track --set "vehicle.steering.rate_limit=105 deg/s"
+  apa run guo2015-case4 --set vehicle.body=double_track --set "vehicle.driver.reaction_delay=300 ms" --out runs/late
   apa run guo2015-case4 --controller their.fmu --set controller.their_gain=2
   apa run guo2015-case4 --set stop_time=30 --fmus none --out /tmp/trial --json
 

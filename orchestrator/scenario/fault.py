@@ -25,6 +25,7 @@ class Fault(BaseModel):
     signal: str
     """``slave.name`` of an output (its receivers are disturbed) or of an input."""
     kind: Kind
+    """What the receiver sees instead: an old value, a given one, a late one, a noisy one, now and then none."""
     start: Seconds = 0.0
     """From this time on [s]."""
     stop: Seconds = float("inf")

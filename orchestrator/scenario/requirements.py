@@ -62,16 +62,22 @@ class Requirement(BaseModel):
     model_config = ConfigDict(extra="forbid")
 
     id: str
+    """Name in tables and reports."""
     signal: str
     """``vehicle.speed``: judged at every instant of the window; ``final.lateral_error``, ``shifts``,
     ``duration``: one number of the summary."""
     max: float | None = None
+    """The value is at most this."""
     min: float | None = None
+    """The value is at least this."""
     max_abs: float | None = None
+    """The value without its sign is at most this."""
     equals: float | str | None = None
+    """The value is this; a number, true, false or the name of a state."""
     unit: str | None = None
     """SI unit of the limit; taken from the limit's text if that has one."""
     window: Window | None = None
+    """When it holds; by default always."""
     where: Where | None = None
     """Asked only of a scenario that has this."""
     source: str

@@ -26,8 +26,11 @@ class Target(_Strict):
     """Where the car shall stand: the midpoint of its rear axle [m], and its heading [rad]."""
 
     x: Metres
+    """Of the midpoint of its rear axle [m]."""
     y: Metres
+    """Of the midpoint of its rear axle [m]."""
     heading: Radians = 0.0
+    """How it shall stand [rad]."""
 
     @property
     def pose(self) -> tuple[float, float, float]:
@@ -39,37 +42,54 @@ class Slot(_Strict):
     """The slot as a rectangle; x and y are its middle, its length lies along its heading."""
 
     x: Metres
+    """Its middle [m]."""
     y: Metres
+    """Its middle [m]."""
     heading: Radians = 0.0
+    """Direction of its length [rad]."""
     length: Annotated[Metres, Field(gt=0.0)]
+    """Along its heading [m]."""
     width: Annotated[Metres, Field(gt=0.0)]
+    """Across it [m]."""
 
 
 class Scenario(_Strict):
     """A scenario with its base, car and ``--set`` values merged in; parameters by flat name, in SI units."""
 
     name: str = Field(pattern=r"^[A-Za-z0-9._-]+$")
+    """Name of the run and of its folder; by default that of the file."""
     title: str = ""
+    """One line for tables and pages."""
     description: str = ""
+    """What happens, in a few sentences."""
     source: str = ""
+    """Paper, standard or request it comes from."""
     base: str | None = None
+    """Shipped scenario, or file beside this one, that says all that this one does not."""
     car: str | None = None
+    """Shipped car, or file: parameters of vehicle and controller."""
     task: Task = "park"
     """What the car is there for: `park`, or `drive` to the end of a road."""
     stop_time: Seconds = 60.0
+    """When the run ends at the latest [s]."""
     step: Seconds = 0.01
     """Communication step [s], a whole number of nanoseconds."""
     every: dict[str, int] = {}
     """Decimation: the slave is stepped every n-th communication step."""
     seed: int = Field(default=1, ge=0)
+    """Of faults, and of every parameter called seed that the scenario does not set."""
     vehicle: dict[str, float | int | bool] = {}
+    """Parameters of the vehicle, nested or by flat name, with or without unit."""
     controller: dict[str, float | int | bool] = {}
+    """Parameters of the controller."""
     target: Target | None = None
     """Where the car shall stand. The controller is told it, unless `controller.target` tells it something else."""
     slot: Slot | None = None
     """The slot as it is: the car's outline is judged by it. What stands around it is the key `scene`."""
     faults: list[Fault] = []
+    """Disturbances of signals."""
     limits: list[Requirement] = []
+    """Requirements, and names of shipped sets of them; by default the set `house`."""
     ending: EndCondition = EndCondition()
     """What ends the run before its stop time."""
     expect: Outcome = "parked"

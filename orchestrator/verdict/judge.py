@@ -27,19 +27,27 @@ class Check(BaseModel):
     model_config = ConfigDict(extra="forbid")
 
     id: str
+    """Name of the requirement."""
     limit: float
+    """What is asked for [unit]."""
     value: float
     """The worst value, NaN if there is none."""
     passed: bool
+    """Whether the limit is kept."""
     source: str
+    """Who asks for it."""
     unit: str
+    """SI unit of value, limit and margin."""
     margin: float
     """Distance to the limit, negative beyond it."""
     required: bool
+    """A run counts as parked only if every required one is met."""
     t: float
     """When the value occurred [s]."""
     signal: str
+    """Signal or number of the summary."""
     condition: Condition
+    """max, min, max_abs or equals."""
     note: str = ""
     """Name of the state, or why there is no value."""
     limit_name: str = ""

@@ -29,61 +29,94 @@ class Final(_Part):
     """Where and how the car stands at the end: the numbers ``final.*`` of a run, NaN for what it does not have."""
 
     x: float
+    """Of the rear-axle midpoint [m]."""
     y: float
+    """Of the rear-axle midpoint [m]."""
     heading: float
+    """[rad]"""
     lateral_error: float
+    """In the target's frame, to its left [m]."""
     longitudinal_error: float
+    """In the target's frame, along its heading [m]."""
     heading_error: float
+    """Heading minus the target's, wrapped [rad]."""
     steering_wheel_angle: float
+    """Left positive [rad]."""
     speed: float
+    """Reverse negative [m/s]."""
     slot_margin: float
+    """Least distance of the outline to the slot's edges, negative where it stands out [m]."""
     kerb_nearest: float
+    """Distance to the slot's kerb of the nearest tyre beside it [m]."""
     kerb_farthest: float
+    """Distance to the slot's kerb of the farthest tyre beside it [m]."""
 
 
 class Event(_Part):
     """One change of the manoeuvre chart; ``from`` and ``to`` are names of phases."""
 
     t: float
+    """When [s]."""
     from_: str
+    """Phase it leaves."""
     to: str
+    """Phase it enters."""
     x: float
+    """Where the car is then [m]."""
     y: float
+    """Where the car is then [m]."""
     heading: float
+    """How the car stands then [rad]."""
 
 
 class FmuUsed(_Part):
     """One slave of the run."""
 
     name: str
+    """Its place in the system."""
     kind: str
     """``python``, ``native``, ``none`` (in process) or ``foreign``: somebody else's."""
     guid: str
+    """Of the FMU; for a model in process, which it is."""
     path: str = ""
-    """File of a foreign one, and its hash."""
+    """File of a foreign one."""
     sha256: str = ""
+    """Hash of that file."""
 
 
 class Summary(_Part):
     """The whole of summary.json."""
 
     scenario: str
+    """Its name."""
     changed: dict[str, str]
     """What ``--set`` changed of the scenario."""
     outcome: Outcome
+    """How the run came out."""
     reason: str
+    """Why."""
     duration: float
+    """Simulated time [s]."""
     shifts: int | None
     """Manoeuvres; null if the controller does not count them."""
     max_speed: float
+    """Largest absolute speed [m/s]."""
     final: Final
+    """Where and how the car stands at the end."""
     events: list[Event]
+    """Changes of the manoeuvre chart."""
     checks: list[Check]
+    """Requirements and how the run stands against them."""
     fmus: list[FmuUsed]
+    """What was run."""
     wall_time: float
+    """Time it took [s]."""
     real_time_factor: float
+    """Simulated time over the time it took."""
     seed: int
+    """Of the scenario."""
     versions: dict[str, str]
+    """Of Python, of this project and of what it stands on."""
     notes: list[str] = []
     """What is worth knowing of the verdict: a target that was told wrong, or is not in the log."""
 

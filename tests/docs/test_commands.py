@@ -1,0 +1,189 @@
+"""Every command printed in README and docs is run as it is printed, and prints what is printed below it."""
+
+import io
+import os
+import re
+import shlex
+import shutil
+import subprocess
+import sys
+from contextlib import redirect_stdout
+from importlib.util import find_spec
+from pathlib import Path
+from typing import NamedTuple
+
+import pytest
+import yaml
+
+from orchestrator.cli import main
+from orchestrator.cosim.fmu_files import fmu_files
+
+ROOT = Path(__file__).parents[2]
+PAGES = sorted([ROOT / "README.md", *(ROOT / "docs").glob("*.md")], key=lambda path: path.name)
+INSTEAD = {"make run": "apa run guo2015-case4"}
+"""What a command does after it has installed everything."""
+NOT_RUN = {
+    "make test": "it is what runs this",
+    "source ": "the environment is there",
+    "python -m venv": "tests/test_wheel.py installs",
+    ".venv/bin/": "tests/test_wheel.py installs",
+    "apa reproduce all": "minutes; tests/papers has each paper",
+    "apa export ssp NAME --platform all": "minutes for four platforms; tests/fmi builds them",
+    "python -c": "minutes for three platforms; tests/fmi builds them",
+    "dask ": "does not end; tests/sweep/test_dask.py has a cluster",
+    "fmpy simulate Controller.fmu --show-plot": "opens a window",
+    "OMSimulator ": "does not install from the package index",
+}
+"""How a command begins that is not run here -> why."""
+NEEDS = {
+    "apa export mf4": "asammdf",
+    "apa export rerun": "rerun",
+    "apa export container": "fmu_manipulation_toolbox",
+    "fmpy simulate ParkingSystem.fmu": "fmu_manipulation_toolbox",
+    "apa sweep": "pyarrow",
+    "apa replay": "pyarrow",
+}
+"""Package of an extra that a command needs."""
+ENDS = {
+    "apa compare A.mcap B.mcap": 1,
+    "apa compare runs/guo2015-case4": 1,
+    "apa check runs/gentle": 1,
+    "apa run my-slot.yaml": None,
+    "apa test": None,
+    "apa replay": None,
+}
+"""Exit code that is not 0; None: 0 or 1, for what is judged there is the reader's own."""
+PARKED = "- {id: parked, signal: controller.phase, equals: PARKED, window: {at: end}, source: REQ-1}"
+FILES = {
+    "acceptance.yaml": PARKED,
+    "requirements.yaml": PARKED,
+    "rules.yaml": PARKED,
+    "my-scenario.yaml": "base: guo2015-case3",
+}
+NAMES = {
+    "tutorial.md": {"- {id": "rules.yaml"},
+    "how-to-test.md": {"- id": "requirements.yaml"},
+    "how-to-compare.md": {'"': "tolerances.yaml"},
+}
+"""Page -> how a block of YAML begins -> the file that the page calls it."""
+
+
+class Block(NamedTuple):
+    language: str
+    text: str
+
+
+def blocks(page: Path) -> list[Block]:
+    """Return the blocks of a page in order; indented ones that hold commands count as ``sh``."""
+    text = page.read_text(encoding="utf-8")
+    fences = re.finditer(r"^```(\w+)\n(.*?)^```", text, re.S | re.M)
+    found = [(match.start(), Block(match[1], match[2])) for match in fences]
+    bare = re.sub(r"^```.*?^```", lambda match: " " * len(match[0]), text, flags=re.S | re.M)
+    for match in re.finditer(r"(?:^ {4}(?:apa|fmpy|dask|OMSimulator|python) .*\n)+", bare, re.M):
+        found.append((match.start(), Block("sh", "\n".join(line.strip() for line in match[0].splitlines()))))
+    return [block for _, block in sorted(found)]
+
+
+def commands(block: Block) -> list[str]:
+    """Return the commands of a block, without what is said of them."""
+    lines = (re.split(r"\s+#|\s{3,}", line)[0].strip() for line in block.text.splitlines())
+    return [line for line in lines if line]
+
+
+WITH_COMMANDS = [page for page in PAGES if any(block.language == "sh" for block in blocks(page))]
+
+
+def test_most_pages_have_commands() -> None:
+    assert len(WITH_COMMANDS) > 8
+    shells = [block for page in WITH_COMMANDS for block in blocks(page) if block.language == "sh"]
+    printed = [line for block in shells for line in commands(block)]
+    assert len(printed) > 40
+    for start in (*INSTEAD, *NOT_RUN, *NEEDS, *ENDS):
+        assert any(line.startswith(start) for line in printed), f"{start}: no page has it any more"
+
+
+@pytest.fixture(scope="module")
+def shelf(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """What pages take for granted: a log, a second one, somebody's controller, rules of one's own."""
+    folder = tmp_path_factory.mktemp("shelf")
+    for name, sets in {"A": [], "B": ["--set", "controller.ntbpt.k4=3"]}.items():
+        main(["run", "guo2015-case4", "--out", str(folder / name), "--no-page", "--quiet", *sets])
+        shutil.move(folder / name / "run.mcap", folder / f"{name}.mcap")
+        shutil.rmtree(folder / name)
+    shutil.copy(folder / "A.mcap", folder / "run.mcap")
+    (folder / "runs" / "guo2015-case4").mkdir(parents=True)
+    shutil.copy(folder / "A.mcap", folder / "runs" / "guo2015-case4" / "run.mcap")
+    (folder / "build").mkdir()
+    for name in ("their.fmu", "build/Controller.fmu"):
+        shutil.copy(fmu_files("native")["controller"], folder / name)
+    for name, text in FILES.items():
+        (folder / name).write_text(text)
+    return folder
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("page", WITH_COMMANDS, ids=lambda page: page.name)
+def test_commands_do_what_is_printed(page: Path, shelf: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    folder = shutil.copytree(shelf, tmp_path / "work")
+    monkeypatch.chdir(folder)
+    found = blocks(page)
+    for block in found:
+        if block.language == "yaml":
+            write_file(page, block.text)
+    printed = ""
+    for block in found:
+        if block.language == "sh":
+            printed = "\n".join(run(line) for line in commands(block))
+        elif block.language == "text" and printed:
+            told(block.text, printed)
+        elif block.language == "python":
+            with redirect_stdout(io.StringIO()) as out:
+                exec(compile(block.text, page.name, "exec"), {})
+            comments = re.findall(r"^print\(.*#\s*(.*)$", block.text, re.M)
+            assert all(comment_fits(comment, out.getvalue()) for comment in comments), out.getvalue()
+
+
+def write_file(page: Path, text: str) -> None:
+    """Write a block of YAML under the name that the page calls it, if it is a file."""
+    given = [name for start, name in NAMES.get(page.name, {}).items() if text.startswith(start)]
+    name = given[0] if given else f"{yaml.safe_load(text)['name']}.yaml" if text.startswith("name:") else ""
+    if name:
+        Path(name).write_text(text, encoding="utf-8")
+
+
+def run(line: str) -> str:
+    """Run a command in the current folder and return what it printed."""
+    line = INSTEAD.get(line, line)
+    missing = [package for start, package in NEEDS.items() if line.startswith(start) and find_spec(package) is None]
+    if missing or any(line.startswith(start) for start in NOT_RUN):
+        return ""
+    words = shlex.split(line)
+    if words[0] == "apa":
+        with redirect_stdout(io.StringIO()) as out:
+            code = main(words[1:])
+        wanted = next((end for start, end in ENDS.items() if line.startswith(start)), 0)
+        assert code in ((0, 1) if wanted is None else (wanted,)), f"{line}: exit code {code}\n{out.getvalue()}"
+        return out.getvalue()
+    done = subprocess.run([sys.executable, "-m", *words], capture_output=True, text=True, check=False, env=os.environ)
+    assert done.returncode == 0, f"{line}\n{done.stderr}"
+    return done.stdout
+
+
+def told(block: str, printed: str) -> None:
+    """Assert that every line of ``block`` was printed, but for dots that stand for more."""
+    have = [" ".join(line.split()) for line in printed.splitlines()]
+    for line in block.splitlines():
+        wanted = " ".join(line.split())
+        if wanted == "...":
+            continue
+        start = wanted.removesuffix("...") if wanted.endswith("...") else None
+        assert any(got.startswith(start) if start else got == wanted for got in have), (
+            f"{wanted!r} is not in:\n{printed}"
+        )
+
+
+def comment_fits(comment: str, printed: str) -> bool:
+    """Return whether the numbers of a comment are those printed, as far as it gives them."""
+    wanted = re.findall(r"-?\d+\.\d+", comment)
+    got = re.findall(r"-?\d+\.\d+", printed)
+    return all(any(round(float(one), len(text.split(".")[1])) == float(text) for one in got) for text in wanted)

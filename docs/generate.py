@@ -27,16 +27,16 @@ from modelkit.variables import Variable, variables  # noqa: E402
 from orchestrator.cli import parser  # noqa: E402
 from orchestrator.commands.parser import CommandParser  # noqa: E402
 from orchestrator.scenario.catalogue import collapsed, range_text, start_text, texts_of  # noqa: E402
+from orchestrator.scenario.end_condition import EndCondition  # noqa: E402
 from orchestrator.scenario.fault import Fault  # noqa: E402
 from orchestrator.scenario.load_scenario import ROOM, load_scenario, scenario_names  # noqa: E402
 from orchestrator.scenario.models import MODELS  # noqa: E402
 from orchestrator.scenario.requirements import Requirement, Window, read_requirements  # noqa: E402
-from orchestrator.scenario.scenario import Scenario, Slot  # noqa: E402
+from orchestrator.scenario.scenario import Scenario, Slot, Target  # noqa: E402
 from orchestrator.verdict.judge import Check  # noqa: E402
 from orchestrator.verdict.limit_text import asked  # noqa: E402
 from orchestrator.verdict.summary import Event, Final, FmuUsed, Summary  # noqa: E402
 
-TARGET = "Where to park: x, y [m], heading of the rear-axle midpoint; short for `controller.target`."
 MADE = "<!-- Made by docs/generate.py; do not edit. -->\n"
 
 
@@ -176,7 +176,9 @@ def files_page() -> str:
     parts = ["# Files\n"]
     written = {
         "Scenario (YAML)": Scenario,
+        "Target": Target,
         "Slot": Slot,
+        "Ending": EndCondition,
         "Fault": Fault,
         "Requirement (YAML)": Requirement,
         "Window": Window,
@@ -203,18 +205,21 @@ def about(model: type[BaseModel]) -> str:
 
 def key_rows(model: type[BaseModel]) -> list[list[str]]:
     """Return (key, type, default, meaning) of what may be written in a file."""
-    texts, unwritten = texts_of(model), ("file", "changed") if model is Scenario else ()
+    texts, unwritten = texts_of(model), ("file", "changed", "left_out") if model is Scenario else ()
     rows = []
     for name, item in model.model_json_schema()["properties"].items():
         if name in unwritten:
             continue
         field = name if name in model.model_fields else f"{name}_"
         default = item.get("default", "-" if model.model_fields[field].is_required() else "")
-        shown = "" if default in (None, "", [], {}) else f"`{default}`" if default != "-" else "required"
+        shown = (
+            ""
+            if default in (None, "", []) or isinstance(default, dict)
+            else f"`{default}`"
+            if default != "-"
+            else "required"
+        )
         rows.append([f"`{name}`", type_text(item), shown, texts.get(field, "")])
-    if model is Scenario and "target" not in model.model_fields:
-        at = [row[0] for row in rows].index("`slot`")
-        rows.insert(at, ["`target`", "mapping", "", TARGET])
     return rows
 
 

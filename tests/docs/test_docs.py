@@ -15,11 +15,12 @@ from orchestrator.cli import EPILOG, parser
 from orchestrator.commands import COMMANDS
 from orchestrator.commands.export import FORMATS
 from orchestrator.scenario.catalogue import split_index
+from orchestrator.scenario.end_condition import EndCondition
 from orchestrator.scenario.fault import Fault
 from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.scenario.models import MODELS
 from orchestrator.scenario.requirements import Requirement, Window, read_requirements
-from orchestrator.scenario.scenario import Scenario, Slot
+from orchestrator.scenario.scenario import Scenario, Slot, Target
 from orchestrator.sweep.study import load_study
 from orchestrator.verdict.judge import Check
 from orchestrator.verdict.summary import Event, Final, FmuUsed, Summary
@@ -149,7 +150,20 @@ def test_scenarios_and_files_pages(generate):
 
 
 def test_every_key_of_a_file_has_a_meaning(generate):
-    for model in (Scenario, Slot, Fault, Requirement, Window, Summary, Final, Event, Check, FmuUsed):
+    for model in (
+        Scenario,
+        Target,
+        Slot,
+        EndCondition,
+        Fault,
+        Requirement,
+        Window,
+        Summary,
+        Final,
+        Event,
+        Check,
+        FmuUsed,
+    ):
         rows = generate.key_rows(model)
         assert [row[0] for row in rows if not row[3]] == [], model
     keys = {row[0]: row for row in generate.key_rows(Scenario)}

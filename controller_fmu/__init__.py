@@ -4,28 +4,30 @@ import sys
 
 from controller_fmu import model
 from controller_fmu.apa.outputs import apa_outputs
-from controller_fmu.apa.system import apa_sample
-from controller_fmu.guo2015.parking import outputs, sample
+from controller_fmu.apa.system import apa_sample, apa_start
+from controller_fmu.guo2015.parking import outputs, sample, start
 from controller_fmu.hsic.outputs import hsic_outputs
-from controller_fmu.hsic.system import hsic_sample
+from controller_fmu.hsic.system import hsic_sample, hsic_start
 from controller_fmu.interface import ControllerInput, ControllerOutput, ControllerParams, System
-from controller_fmu.preview.driving import driving_outputs, driving_sample
+from controller_fmu.preview.driving import driving_outputs, driving_sample, driving_start
 from controller_fmu.zhang2022.outputs import zhang_outputs
-from controller_fmu.zhang2022.system import zhang_sample
-from modelkit.model import Branch, Branches, Model
+from controller_fmu.zhang2022.system import zhang_sample, zhang_start
+from modelkit.model import Model, SampledSystem, SampledSystems
 from modelkit.terminals import TERMINALS
 
-SYSTEMS = Branches(
+SYSTEMS = SampledSystems(
+    state=model.ControllerState,
     parameter="system",
     clock="clock",
+    begin=model.begin,
     tick=model.tick,
     refused=model.refused,
     systems=(
-        Branch((System.NTBPTCWPT, System.NTBPT), "parking", sample, outputs),
-        Branch((System.ZHANG2022,), "zhang2022", zhang_sample, zhang_outputs),
-        Branch((System.HSIC,), "hsic", hsic_sample, hsic_outputs),
-        Branch((System.PREVIEW,), "preview", driving_sample, driving_outputs),
-        Branch((System.APA,), "apa", apa_sample, apa_outputs),
+        SampledSystem((System.NTBPTCWPT, System.NTBPT), "parking", start, sample, outputs),
+        SampledSystem((System.ZHANG2022,), "zhang2022", zhang_start, zhang_sample, zhang_outputs),
+        SampledSystem((System.HSIC,), "hsic", hsic_start, hsic_sample, hsic_outputs),
+        SampledSystem((System.PREVIEW,), "preview", driving_start, driving_sample, driving_outputs),
+        SampledSystem((System.APA,), "apa", apa_start, apa_sample, apa_outputs),
     ),
 )
 MODEL = Model(
@@ -36,10 +38,10 @@ MODEL = Model(
     params=ControllerParams,
     inputs=ControllerInput,
     outputs=ControllerOutput,
-    initialize=model.initialize,
+    initialize=SYSTEMS.initialize,
     step=SYSTEMS.step,
     step_size=0.01,
     stop_time=60.0,
     terminals=TERMINALS,
-    branches=SYSTEMS,
+    systems=SYSTEMS,
 )

@@ -1,21 +1,18 @@
-"""What the systems of the controller share: the clock, the state of all, and the start.
+"""What the systems of the controller share: the clock and the state of all.
 
 A sampled controller: the chosen system acts at the instants k * sample_time with the inputs that hold
 then, whatever the communication step, and holds its outputs in between. ``controller_fmu.SYSTEMS``
-names the systems, each with what it does at a sample and what it puts out.
+names the systems, each with how it starts, what it does at a sample and what it puts out.
 """
 
 import math
 from typing import NamedTuple
 
-from controller_fmu.apa.outputs import apa_outputs
 from controller_fmu.apa.system import AT_START, ApaState
-from controller_fmu.guo2015.parking import AT_REST, ParkingState, outputs
-from controller_fmu.hsic.outputs import hsic_outputs
+from controller_fmu.guo2015.parking import ParkingState
 from controller_fmu.hsic.system import HsicState
-from controller_fmu.interface import ControllerOutput, ControllerParams, Phase, Reason, System
-from controller_fmu.preview.driving import DrivingState, driving_outputs
-from controller_fmu.zhang2022.outputs import zhang_outputs
+from controller_fmu.interface import ControllerOutput, ControllerParams, Phase, Reason
+from controller_fmu.preview.driving import DrivingState
 from controller_fmu.zhang2022.system import ZhangState
 from modelkit.maths import is_finite
 from modelkit.vocabulary import Prompt
@@ -41,21 +38,9 @@ class ControllerState(NamedTuple):
     apa: ApaState = AT_START
 
 
-def initialize(params: ControllerParams) -> tuple[ControllerState, ControllerOutput]:
-    """Return the controller in standby; with unusable parameters, failed."""
-    usable = _is_usable(params)
-    state = ControllerState(Clock(0, 0, usable), AT_REST, ZhangState(), HsicState(), DrivingState(), AT_START)
-    if not usable:
-        return state, refused()
-    if params.system == System.ZHANG2022:
-        return state, zhang_outputs(state.zhang2022, params)
-    if params.system == System.HSIC:
-        return state, hsic_outputs(state.hsic, params)
-    if params.system == System.PREVIEW:
-        return state, driving_outputs(state.preview, params)
-    if params.system == System.APA:
-        return state, apa_outputs(state.apa, params)
-    return state, outputs(state.parking, params)
+def begin(params: ControllerParams) -> Clock:
+    """Return the clock at time zero; not usable if the parameters make no sense."""
+    return Clock(usable=_is_usable(params))
 
 
 def tick(clock: Clock, params: ControllerParams, dt_ns: int) -> tuple[Clock, int, int]:

@@ -5,43 +5,64 @@ from types import ModuleType
 from typing import Any, NamedTuple
 
 
-class Branch(NamedTuple):
-    """One of several sampled systems in a model: it alone acts while the choosing parameter has one of its values.
-
-    ``sample(own, inputs, params, period_ns) -> own`` moves its memory on by a sample, ``outputs(own, params)``
-    tells what is held until the next one.
-    """
+class SampledSystem(NamedTuple):
+    """One of several sampled systems in a model: it alone acts while the choosing parameter has one of its values."""
 
     values: tuple[int, ...]
     field: str
     """Its memory: a field of the model's state."""
+    start: Callable[..., Any]
+    """``start(params) -> own``: its memory before the first sample."""
     sample: Callable[..., Any]
+    """``sample(own, inputs, params, period_ns) -> own``: its memory a sample later."""
     outputs: Callable[..., Any]
+    """``outputs(own, params) -> outputs``: what is held until the next sample."""
 
 
-class Branches(NamedTuple):
-    """The sampled systems a model is made of; a value that none of them has chooses the first."""
+class SampledSystems(NamedTuple):
+    """The sampled systems a model is made of, and the clock they share; together they are its two functions."""
 
+    state: type[Any]
+    """The model's: a field for the clock and one for the memory of each system."""
     parameter: str
-    """The choosing parameter, an integer."""
+    """The choosing parameter, an integer; a value that no system has is refused."""
     clock: str
     """The field of the state that all share: it has ``usable``, false if the parameters make no sense."""
+    begin: Callable[..., Any]
+    """``begin(params) -> clock``: the clock at time zero."""
     tick: Callable[..., Any]
     """``tick(clock, params, dt_ns) -> (clock, samples, period_ns)``: how many samples are due in a step."""
     refused: Callable[..., Any]
-    """``refused()``: the outputs as long as the clock is not usable."""
-    systems: tuple[Branch, ...]
+    """``refused()``: the outputs where no system acts."""
+    systems: tuple[SampledSystem, ...]
+
+    def initialize(self, params: Any) -> tuple[Any, Any]:
+        """Return (state, outputs) at time zero: the model's ``initialize``."""
+        memories = {item.field: item.start(params) for item in self.systems}
+        state = self.state(**{self.clock: self.begin(params)}, **memories)
+        chosen = self._chosen(params)
+        return state, self._outputs(getattr(state, self.clock), chosen, state, params)
 
     def step(self, state: Any, inputs: Any, params: Any, dt_ns: int) -> tuple[Any, Any]:
         """Return (state, outputs) after a step of the chosen system: the model's ``step``."""
-        value = getattr(params, self.parameter)
-        chosen = next((item for item in self.systems if value in item.values), self.systems[0])
         clock, samples, period_ns = self.tick(getattr(state, self.clock), params, dt_ns)
-        own = getattr(state, chosen.field)
-        for _ in range(samples):
-            own = chosen.sample(own, inputs, params, period_ns)
-        outputs = chosen.outputs(own, params) if clock.usable else self.refused()
-        return state._replace(**{self.clock: clock, chosen.field: own}), outputs
+        state = state._replace(**{self.clock: clock})
+        chosen = self._chosen(params)
+        if chosen is not None:
+            own = getattr(state, chosen.field)
+            for _ in range(samples):
+                own = chosen.sample(own, inputs, params, period_ns)
+            state = state._replace(**{chosen.field: own})
+        return state, self._outputs(clock, chosen, state, params)
+
+    def _chosen(self, params: Any) -> SampledSystem | None:
+        value = getattr(params, self.parameter)
+        return next((item for item in self.systems if value in item.values), None)
+
+    def _outputs(self, clock: Any, chosen: SampledSystem | None, state: Any, params: Any) -> Any:
+        if chosen is None or not clock.usable:
+            return self.refused()
+        return chosen.outputs(getattr(state, chosen.field), params)
 
 
 class Terminal(NamedTuple):
@@ -76,7 +97,7 @@ class Model(NamedTuple):
     """Default communication step [s]."""
     stop_time: float
     """Default experiment length [s]."""
-    branches: Branches | None = None
-    """What ``step`` is made of, if it is ``branches.step``: compiled code then touches the chosen state only."""
+    systems: SampledSystems | None = None
+    """What both functions are made of, if they are its: compiled code then touches the chosen memory only."""
     terminals: tuple[Terminal, ...] = ()
     """Groups of its inputs and outputs; none: all inputs are one and all outputs another."""

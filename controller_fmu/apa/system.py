@@ -72,6 +72,11 @@ AT_START = ApaState(
 )
 
 
+def apa_start(params: ControllerParams) -> ApaState:
+    """Return the system switched off."""
+    return AT_START
+
+
 def apa_sample(state: ApaState, inputs: ControllerInput, params: ControllerParams, dt_ns: int) -> ApaState:
     """Return the assist one sample of ``dt_ns`` later."""
     driving = state.mode in (Mode.AUTO_PARKING_ASSIST, Mode.POSITION_TUNING)

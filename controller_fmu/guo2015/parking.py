@@ -58,6 +58,11 @@ class ParkingState(NamedTuple):
 AT_REST = ParkingState()
 
 
+def start(params: ControllerParams) -> ParkingState:
+    """Return the system in standby."""
+    return AT_REST
+
+
 def sample(state: ParkingState, inputs: ControllerInput, params: ControllerParams, dt_ns: int) -> ParkingState:
     """Return the system one sample of ``dt_ns`` later."""
     if state.phase >= Phase.PARKED:

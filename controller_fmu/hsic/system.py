@@ -43,6 +43,11 @@ class HsicState(NamedTuple):
     monitor: MonitorState = MonitorState()
 
 
+def hsic_start(params: ControllerParams) -> HsicState:
+    """Return the system in standby."""
+    return HsicState()
+
+
 def hsic_sample(state: HsicState, inputs: ControllerInput, params: ControllerParams, dt_ns: int) -> HsicState:
     """Return the system one sample of ``dt_ns`` later."""
     if state.phase >= Phase.PARKED:

@@ -21,6 +21,11 @@ class DrivingState(NamedTuple):
     force: float = 0.0
 
 
+def driving_start(params: ControllerParams) -> DrivingState:
+    """Return the system at the start of the road."""
+    return DrivingState()
+
+
 def driving_sample(state: DrivingState, inputs: ControllerInput, params: ControllerParams, dt_ns: int) -> DrivingState:
     """Return the system one sample of ``dt_ns`` later."""
     if state.phase >= Phase.PARKED:

@@ -35,6 +35,11 @@ class ZhangState(NamedTuple):
     monitor: MonitorState = MonitorState()
 
 
+def zhang_start(params: ControllerParams) -> ZhangState:
+    """Return the system in standby."""
+    return ZhangState()
+
+
 def zhang_sample(state: ZhangState, inputs: ControllerInput, params: ControllerParams, dt_ns: int) -> ZhangState:
     """Return the system one sample of ``dt_ns`` later."""
     if state.phase >= Phase.PARKED:

@@ -10,7 +10,7 @@ from fmus.compiler.names import member_name
 from fmus.compiler.program import Program
 from fmus.compiler.refusals import CannotError
 from fmus.compiler.values import Place
-from modelkit.model import Branch, Branches, Model
+from modelkit.model import Model, SampledSystem, SampledSystems
 
 NAMES = ("params", "inputs", "outputs", "state", "dt_ns", "next", "clock", "samples", "period_ns", "i")
 """What is called so inside the entries, and no function of a model therefore."""
@@ -18,12 +18,12 @@ NAMES = ("params", "inputs", "outputs", "state", "dt_ns", "next", "clock", "samp
 
 def roots(model: Model) -> list[FunctionType]:
     """Return the Python functions that a model is entered by."""
-    found: list[Callable[..., Any]] = [model.initialize]
-    if model.branches is None:
-        found.append(model.step)
+    found: list[Callable[..., Any]] = []
+    if model.systems is None:
+        found += [model.initialize, model.step]
     else:
-        found += [model.branches.tick, model.branches.refused]
-        found += [function for branch in model.branches.systems for function in (branch.sample, branch.outputs)]
+        found += [model.systems.begin, model.systems.tick, model.systems.refused]
+        found += [function for item in model.systems.systems for function in (item.start, item.sample, item.outputs)]
     for function in found:
         if not isinstance(function, FunctionType):
             raise CannotError(None, f"{function!r} as a function of the model", "write a function with def")
@@ -68,60 +68,96 @@ class Entries:
         result = Mixed((state, Struct(model.outputs)))
         defaults, initialize, step = self.heads()
         starts = [f"*{group} = {self.program.default(getattr(model, group))};" for group in ("params", "inputs")]
+        found = [[defaults, "{", *starts, "}"]]
+        if model.systems is not None:
+            return [*found, *self._systems(model.systems, initialize, step)]
         first = self.instance(model.initialize, result, params)
-        found = [[defaults, "{", *starts, "}"], [initialize, "{", _called(first, ["params"], "state", "outputs"), "}"]]
-        if model.branches is not None:
-            return found + self._choice(model.branches, step)
+        found.append([initialize, "{", _called(first, ["params"], "state", "outputs"), "}"])
         made = self.instance(model.step, result, state, inputs, params, INT)
         call = _called(made, ["state", "inputs", "params", "dt_ns"], "&next", "outputs")
         return [*found, [step, "{", f"{self.types()['state']} next;", "", call, "*state = next;", "}"]]
 
-    def _choice(self, branches: Branches, step: str) -> list[list[str]]:
-        """Return a step for each system, and the one that chooses among them."""
-        found = [self._branch(branches, branch, step) for branch in branches.systems]
-        call = "(state, inputs, params, dt_ns, outputs);"
-        lines = [step, "{", f"switch (params->{member_name(branches.parameter)}) {{"]
-        first, *others = branches.systems
-        for branch in others:
-            lines += [f"case {self.program.number(value).text}:" for value in branch.values]
-            lines += [f"step_{member_name(branch.field)}{call}", "break;"]
-        lines += ["default:", f"step_{member_name(first.field)}{call}", "break;", "}", "}"]
-        return [*found, lines]
+    def _systems(self, systems: SampledSystems, initialize: str, step: str) -> list[list[str]]:
+        """Return initialize, a step for each system, and the one that chooses among them."""
+        found = [self._initialize(systems, initialize)]
+        found += [self._system(systems, item, step) for item in systems.systems]
+        choice = self._choice(
+            systems, lambda item: [f"step_{member_name(item.field)}(state, inputs, params, dt_ns, outputs);"]
+        )
+        return [
+            *found,
+            [step, "{", *choice, "default: {", *self._tick(systems), *self._refuse(systems), "break;", "}", "}", "}"],
+        ]
 
-    def _branch(self, branches: Branches, branch: Branch, step: str) -> list[str]:
-        """Return the step of one system: it reads and writes its own memory only."""
-        model = self.model
-        fields = self.program.fields(model.state, None)
-        own, clock = fields[branch.field], fields[branches.clock]
-        params, inputs, outputs = Struct(model.params), Struct(model.inputs), Struct(model.outputs)
+    def _tick(self, systems: SampledSystems) -> list[str]:
+        """Return what moves the clock on and says how many samples are due."""
+        clock = self.program.fields(self.model.state, None)[systems.clock]
         assert isinstance(clock, Struct)
         if self.program.fields(clock.cls, None).get("usable") != BOOL:
             raise CannotError(None, f"a clock without usable: {clock.cls.__name__}", "give it usable: bool")
-        tick = self.instance(branches.tick, Mixed((clock, INT, INT)), clock, params, INT)
-        sample = self.instance(branch.sample, own, own, inputs, params, INT)
-        ready = self.instance(branch.outputs, outputs, own, params)
-        refused = self.instance(branches.refused, outputs)
-        memory, time = f"&state->{member_name(branch.field)}", f"state->{member_name(branches.clock)}"
-        given = [memory, "inputs", "params", "period_ns"]
+        tick = self.instance(systems.tick, Mixed((clock, INT, INT)), clock, Struct(self.model.params), INT)
+        time = f"state->{member_name(systems.clock)}"
         return [
-            "static " + step.replace(f"{self.name}_step(", f"step_{member_name(branch.field)}("),
-            "{",
             f"{self.program.declared(clock, 'clock')};",
             "int64_t samples;",
             "int64_t period_ns;",
             "",
             _called(tick, [f"&{time}", "params", "dt_ns"], "&clock", "&samples", "&period_ns"),
             f"{time} = clock;",
+        ]
+
+    def _refuse(self, systems: SampledSystems) -> list[str]:
+        """Return what puts out that no system acts."""
+        return [_called(self.instance(systems.refused, Struct(self.model.outputs)), [], "outputs")]
+
+    def _initialize(self, systems: SampledSystems, head: str) -> list[str]:
+        """Return initialize: the clock and the memory of every system as they start, the outputs of the chosen one."""
+        params, outputs = Struct(self.model.params), Struct(self.model.outputs)
+        fields = self.program.fields(self.model.state, None)
+        clock = f"state->{member_name(systems.clock)}"
+        begin = self.instance(systems.begin, fields[systems.clock], params)
+        refused = self._refuse(systems)
+        lines = [head, "{", _called(begin, ["params"], f"&{clock}")]
+        for item in systems.systems:
+            start = self.instance(item.start, fields[item.field], params)
+            lines.append(_called(start, ["params"], f"&state->{member_name(item.field)}"))
+        lines += [f"if (!{clock}.usable) {{", *refused, "return;", "}"]
+
+        def outputs_of(item: SampledSystem) -> list[str]:
+            ready = self.instance(item.outputs, outputs, fields[item.field], params)
+            return [_called(ready, [f"&state->{member_name(item.field)}", "params"], "outputs")]
+
+        return [*lines, *self._choice(systems, outputs_of), "default:", *refused, "break;", "}", "}"]
+
+    def _choice(self, systems: SampledSystems, act: Callable[[SampledSystem], list[str]]) -> list[str]:
+        """Return the head of a switch over the choosing parameter, with what ``act`` gives for each system."""
+        lines = [f"switch (params->{member_name(systems.parameter)}) {{"]
+        for item in systems.systems:
+            lines += [f"case {self.program.number(value).text}:" for value in item.values]
+            lines += [*act(item), "break;"]
+        return lines
+
+    def _system(self, systems: SampledSystems, item: SampledSystem, step: str) -> list[str]:
+        """Return the step of one system: it reads and writes its own memory only."""
+        own = self.program.fields(self.model.state, None)[item.field]
+        params, inputs, outputs = Struct(self.model.params), Struct(self.model.inputs), Struct(self.model.outputs)
+        sample = self.instance(item.sample, own, own, inputs, params, INT)
+        ready = self.instance(item.outputs, outputs, own, params)
+        memory = f"state->{member_name(item.field)}"
+        return [
+            "static " + step.replace(f"{self.name}_step(", f"step_{member_name(item.field)}("),
+            "{",
+            *self._tick(systems),
             "for (int64_t i = 0; i < samples; ++i) {",
             f"{self.program.declared(own, 'next')};",
             "",
-            _called(sample, given, "&next"),
-            f"state->{member_name(branch.field)} = next;",
+            _called(sample, [f"&{memory}", "inputs", "params", "period_ns"], "&next"),
+            f"{memory} = next;",
             "}",
             "if (clock.usable) {",
-            _called(ready, [memory, "params"], "outputs"),
+            _called(ready, [f"&{memory}", "params"], "outputs"),
             "} else {",
-            _called(refused, [], "outputs"),
+            *self._refuse(systems),
             "}",
             "}",
         ]

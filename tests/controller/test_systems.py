@@ -34,9 +34,12 @@ def test_only_the_chosen_system_remembers_anything(system):
     assert state.clock.time_ns == 300_000_000
 
 
-def test_an_unknown_system_is_the_first():
-    known, unknown = ControllerParams(system=0), ControllerParams(system=99)
-    assert after(known, [10_000_000] * 5) == after(unknown, [10_000_000] * 5)
+@pytest.mark.parametrize("dts", [[], [10_000_000] * 5])
+def test_an_unknown_system_is_refused_and_the_car_is_stopped(dts):
+    state, out = after(ControllerParams(system=99), dts)
+    assert (out.phase, out.reason) == (Phase.FAILED, Reason.BAD_PARAMETER)
+    assert out.brake_request
+    assert state.clock.time_ns == sum(dts)
 
 
 @pytest.mark.parametrize("system", System)

@@ -139,6 +139,8 @@ def fields_of(cls: Any) -> dict[str, Kind]:
             kind = kind_of(hints[name], cls._field_defaults.get(name, UNSET))
         except NoKindError as error:
             raise NoKindError(f"{cls.__name__}.{name} is {error.what}", error.advice) from None
+        if isinstance(kind, Mixed):
+            raise NoKindError(f"{cls.__name__}.{name} is a tuple of different kinds", "write a NamedTuple")
         if isinstance(kind, Open):
             advice = "give it a default of the length needed, or write tuple[X, X, X]"
             raise NoKindError(f"{cls.__name__}.{name} is a tuple of unknown length", advice)

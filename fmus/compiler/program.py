@@ -161,6 +161,7 @@ class Program:
         if place not in self.constant_names:
             self.constant_names[place] = self.names.add(found.name, found.module)
         name = self.constant_names[place]
+        self.need(kind)
         self.constants.setdefault(place, Constant(name, value, kind))
         if isinstance(kind, Scalar):
             if not isinstance(value, float) and not -INT64 <= value < INT64:

@@ -2,6 +2,7 @@
 
 import ast
 import inspect
+from collections.abc import Iterable
 from enum import IntEnum
 from typing import Any
 
@@ -110,6 +111,19 @@ class Writer:
             return "true" if value else "false"
         return int_text(value) if isinstance(value, int) else float_text(value)
 
+    def constants(self, module: str) -> list[str]:
+        """Return the constants of a module in its order, then what its NamedTuples are by default."""
+        program, known = self.program, self.program.library.module(module)
+        found = [(place[1], constant) for place, constant in program.constants.items() if place[0] == module]
+        found.sort(key=lambda pair: known.lines.get(pair[0], 0))
+        lines = [""] if found else []
+        for name, constant in found:
+            lines += self.constant(constant, known.meanings.get(name, ""))
+        own = [cls for cls in program.defaults if cls.__module__ == module]
+        for cls in sorted(own, key=program.defaults.__getitem__):
+            lines += ["", f"/* {cls.__name__}() */", *self.static(Struct(cls), program.defaults[cls], cls())]
+        return lines
+
     def constant(self, constant: Constant, meaning: str) -> list[str]:
         """Return a module constant under its own name."""
         note = comment(meaning) if meaning else []
@@ -127,9 +141,9 @@ class Writer:
         lines[-1] += ";"
         return laid_out(lines)
 
-    def chooser(self, cls: Any, name: str) -> list[str]:
+    def chooser(self, cls: Any) -> list[str]:
         """Return the function that chooses a field of a NamedTuple by its index."""
-        fields = fields_of(cls)
+        name, fields = self.program.choosers[cls], fields_of(cls)
         (kind,) = set(fields.values())
         *others, last = fields
         lines = [f"static {self.program.type_name(kind)} {name}(const {self.program.types[cls]} *from, int64_t index)"]
@@ -156,7 +170,7 @@ class Writer:
                 if called.name not in self.done:
                     self.done.add(called.name)
                     found.append(called)
-        return [line for made in found for line in laid_out([f"{made.head};"])]
+        return ["", *(line for made in found for line in laid_out([f"{made.head};"]))] if found else []
 
 
 def signal_text(hint: Any) -> str:
@@ -184,16 +198,16 @@ def with_note(line: str, note: str) -> list[str]:
     return [f"    {part}" for part in (text, *more)] + [line]
 
 
-def types_in_order(kinds: list[Kind]) -> list[Kind]:
-    """Return structs and mixed tuples so that each comes after those it contains."""
-    done: dict[Kind, None] = {}
+def in_order(classes: Iterable[Any]) -> list[Any]:
+    """Return NamedTuples so that each comes after those it contains."""
+    done: dict[Any, None] = {}
 
     def visit(kind: Kind) -> None:
         for part in parts(kind):
             visit(part)
-        if isinstance(kind, Struct | Mixed):
-            done[kind] = None
+        if isinstance(kind, Struct):
+            done[kind.cls] = None
 
-    for kind in kinds:
-        visit(kind)
+    for cls in classes:
+        visit(Struct(cls))
     return list(done)

@@ -61,28 +61,34 @@ FILES = {
     "rules.yaml": PARKED,
     "my-scenario.yaml": "base: guo2015-case3",
 }
-NAMES = {
-    "tutorial.md": {"- {id": "rules.yaml"},
-    "how-to-test.md": {"- id": "requirements.yaml"},
-    "how-to-compare.md": {'"': "tolerances.yaml"},
-}
-"""Page -> how a block of YAML begins -> the file that the page calls it."""
+NAMES = {"- id": "requirements.yaml", '"vehicle': "tolerances.yaml"}
+"""How a block of YAML begins that the page gives no name -> how its commands call it."""
+SUFFIXES = {"python": ".py", "yaml": ".yaml"}
 
 
 class Block(NamedTuple):
     language: str
     text: str
+    file: str = ""
+    """The file it is, if the paragraph before it names one of its kind."""
 
 
 def blocks(page: Path) -> list[Block]:
     """Return the blocks of a page in order; indented ones that hold commands count as ``sh``."""
     text = page.read_text(encoding="utf-8")
     fences = re.finditer(r"^```(\w+)\n(.*?)^```", text, re.S | re.M)
-    found = [(match.start(), Block(match[1], match[2])) for match in fences]
+    found = [(match.start(), Block(match[1], match[2], file_of(text[: match.start()], match[1]))) for match in fences]
     bare = re.sub(r"^```.*?^```", lambda match: " " * len(match[0]), text, flags=re.S | re.M)
     for match in re.finditer(r"(?:^ {4}(?:apa|fmpy|dask|OMSimulator|python) .*\n)+", bare, re.M):
         found.append((match.start(), Block("sh", "\n".join(line.strip() for line in match[0].splitlines()))))
     return [block for _, block in sorted(found)]
+
+
+def file_of(before: str, language: str) -> str:
+    """Return the file that the paragraph before a block speaks of: ``tank.py``, a water tank."""
+    paragraph = before.rstrip().rpartition("\n\n")[2]
+    names = re.findall(r"`([\w-]+\.\w+)`", paragraph)
+    return next((name for name in names if name.endswith(SUFFIXES.get(language, "-"))), "")
 
 
 def commands(block: Block) -> list[str]:
@@ -129,27 +135,28 @@ def test_commands_do_what_is_printed(page: Path, shelf: Path, tmp_path: Path, mo
     monkeypatch.chdir(folder)
     found = blocks(page)
     for block in found:
-        if block.language == "yaml":
-            write_file(page, block.text)
+        write_file(block)
     printed = ""
     for block in found:
         if block.language == "sh":
             printed = "\n".join(run(line) for line in commands(block))
         elif block.language == "text" and printed:
             told(block.text, printed)
-        elif block.language == "python":
+        elif block.language == "python" and not block.file:
             with redirect_stdout(io.StringIO()) as out:
                 exec(compile(block.text, page.name, "exec"), {})
             comments = re.findall(r"^print\(.*#\s*(.*)$", block.text, re.M)
             assert all(comment_fits(comment, out.getvalue()) for comment in comments), out.getvalue()
 
 
-def write_file(page: Path, text: str) -> None:
-    """Write a block of YAML under the name that the page calls it, if it is a file."""
-    given = [name for start, name in NAMES.get(page.name, {}).items() if text.startswith(start)]
-    name = given[0] if given else f"{yaml.safe_load(text)['name']}.yaml" if text.startswith("name:") else ""
+def write_file(block: Block) -> None:
+    """Write a block under the name that the page calls it, if it is a file."""
+    name = block.file
+    if block.language == "yaml" and not name:
+        name = next((name for start, name in NAMES.items() if block.text.startswith(start)), "")
+        name = f"{yaml.safe_load(block.text)['name']}.yaml" if block.text.startswith("name:") else name
     if name:
-        Path(name).write_text(text, encoding="utf-8")
+        Path(name).write_text(block.text, encoding="utf-8")
 
 
 def run(line: str) -> str:

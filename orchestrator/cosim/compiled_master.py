@@ -31,13 +31,13 @@ def _structure(name: str, **fields: Any) -> Any:
     return type(name, (ctypes.Structure,), {"_fields_": list(fields.items())})
 
 
-TransferC = _structure("TransferC", call=Pointer, references=Pointer, values=Pointer, integers=Pointer, count=Long)
+TransferC = _structure("TransferC", call=Pointer, references=Pointer, integers=Pointer, begin=Long, count=Long)
 SlaveC = _structure(
     "SlaveC",
     component=Pointer,
     do_step=Pointer,
-    inputs=Pointer,
-    outputs=Pointer,
+    inputs=Long,
+    outputs=Long,
     input_count=Long,
     output_count=Long,
     gets=Pointer,
@@ -48,13 +48,15 @@ SlaveC = _structure(
     step=ctypes.c_double,
     due=Long,
 )
-LinkC = _structure("LinkC", source=Long, target=Long, source_places=Pointer, target_places=Pointer, count=Long)
+LinkC = _structure("LinkC", target=Long, source_places=Pointer, target_places=Pointer, count=Long)
 RunC = _structure(
     "RunC",
     slaves=Pointer,
     links=Pointer,
+    before=Pointer,
     slave_count=Long,
     link_count=Long,
+    width=Long,
     step_ns=Long,
     last=Long,
     failed=Long,
@@ -104,8 +106,8 @@ class CompiledMaster(Master):
 class _Plan:
     """The C structures of one run, and all memory they point to.
 
-    The arrays of the compiled loop have their values in the order of the transfers, so that those of one
-    type lie together and an FMU reads and writes them in place.
+    A row of the compiled loop has the values of each slave's inputs, then of its outputs, in the order of the
+    transfers, so that those of one type lie together and an FMU reads and writes them in place.
     """
 
     def __init__(self, master: Master, fmus: list[FmuSlave]) -> None:
@@ -119,15 +121,20 @@ class _Plan:
         self._step_ns = master.step_ns
         self.last = master.stop_ns // master.step_ns
         orders = [(_order(slave.sets), _order(slave.gets)) for slave in fmus]
+        begins = [(part.start, other.start) for part, other in zip(*[iter(places_of(fmus))] * 2, strict=True)]
+        rows = [
+            np.concatenate([slave.inputs.values[u], slave.outputs.values[y]])
+            for slave, (u, y) in zip(fmus, orders, strict=True)
+        ]
+        before = np.concatenate(rows)
         slaves = [
-            self._slave(slave, every, *order) for slave, every, order in zip(fmus, master.every, orders, strict=True)
+            self._slave(slave, every, *begin) for slave, every, begin in zip(fmus, master.every, begins, strict=True)
         ]
         links = [
             LinkC(
-                link.source,
                 link.target,
-                self._places(np.argsort(orders[link.source][1])[link.source_places]),
-                self._places(np.argsort(orders[link.target][0])[link.target_places]),
+                self._places(begins[link.source][1] + np.argsort(orders[link.source][1])[link.source_places]),
+                self._places(begins[link.target][0] + np.argsort(orders[link.target][0])[link.target_places]),
                 len(link.source_places),
             )
             for link in master.connections
@@ -135,18 +142,20 @@ class _Plan:
         self._run = RunC(
             self._array(SlaveC, slaves),
             self._array(LinkC, links),
+            before.ctypes.data,
             len(slaves),
             len(links),
+            len(before),
             master.step_ns,
             self.last,
             0,
             0,
             0,
         )
-        places = (part for order in orders for part in order)
-        starts = (part.start for part in places_of(fmus))
-        self._columns = np.concatenate([at + np.argsort(part) for at, part in zip(starts, places, strict=True)])
-        self.rows = np.empty((BLOCK, len(self._columns)))
+        self._kept.append(before)
+        parts = zip(sum(begins, ()), sum(orders, ()), strict=True)
+        self._columns = np.concatenate([at + np.argsort(part) for at, part in parts])
+        self.rows = np.empty((BLOCK, len(before)))
 
     def rows_of_ports(self, begin: int, end: int) -> Any:
         """Return the rows with their values in the order of the master's."""
@@ -166,17 +175,15 @@ class _Plan:
         if self._run.failure == STEP:
             raise slave.no_step((number - 1) * self._step_ns, status)
 
-    def _slave(self, slave: FmuSlave, every: int, inputs: Indices, outputs: Indices) -> Any:
-        arrays = [slave.inputs.values[inputs], slave.outputs.values[outputs]]
-        self._kept.append(arrays)
-        sets, gets = (
-            self._transfers(group, array) for group, array in zip((slave.sets, slave.gets), arrays, strict=True)
-        )
+    def _slave(self, slave: FmuSlave, every: int, inputs: int, outputs: int) -> Any:
+        sets, gets = self._transfers(slave.sets, inputs), self._transfers(slave.gets, outputs)
         return SlaveC(
             slave.component,
             ctypes.cast(slave.do_step, Pointer),
-            *(array.ctypes.data for array in arrays),
-            *map(len, arrays),
+            inputs,
+            outputs,
+            len(slave.inputs.values),
+            len(slave.outputs.values),
             self._array(TransferC, gets),
             self._array(TransferC, sets),
             len(gets),
@@ -186,15 +193,13 @@ class _Plan:
             True,
         )
 
-    def _transfers(self, group: list[Transfer], array: Any) -> list[Any]:
-        found, at = [], 0
+    def _transfers(self, group: list[Transfer], begin: int) -> list[Any]:
+        found = []
         for item in group:
-            real = item.view.dtype == np.float64
-            values = array.ctypes.data + at * array.itemsize
-            buffer = None if real else ctypes.addressof(item.array)
+            buffer = None if item.view.dtype == np.float64 else ctypes.addressof(item.array)
             references = ctypes.addressof(item.references)
-            found.append(TransferC(ctypes.cast(item.function, Pointer), references, values, buffer, item.count))
-            at += item.count
+            found.append(TransferC(ctypes.cast(item.function, Pointer), references, buffer, begin, item.count))
+            begin += item.count
         return found
 
     def _places(self, places: Indices) -> int:

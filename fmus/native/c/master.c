@@ -1,6 +1,9 @@
-/* The exchange of orchestrator/master.py as one call: read all outputs, copy them to the connected
- * inputs, write down every array, write all inputs, step all. Drives FMUs through the pointers to
- * their FMI 2.0 functions and knows nothing else of them. Holds no lock and no static data.
+/* The exchange of orchestrator/cosim/master.py as one call: read all outputs, copy them to the connected
+ * inputs, write all inputs, step all. Drives FMUs through the pointers to their FMI 2.0 functions and knows
+ * nothing else of them. Holds no lock and no static data.
+ *
+ * A row has inputs and outputs of all slaves, as they are at one exchange. It is what the FMUs write to and
+ * read from; what nobody writes at an exchange is that of the row before.
  */
 #include <stddef.h>
 #include <stdint.h>
@@ -10,20 +13,20 @@
 
 #define NANOSECONDS 1e9
 
-/* All variables of one FMI type and one direction: one call. They lie together in the slave's array. */
+/* All variables of one FMI type and one direction: one call. They lie together in a row. */
 typedef struct {
     int (*call)(void *component, const uint32_t *references, size_t count, void *buffer);
     const uint32_t *references;
-    double *values;
-    int32_t *integers; /* what is handed over instead of the values, unless they are real: then null */
+    int32_t *integers; /* what is handed over instead of the row's numbers, unless they are real: then null */
+    int64_t begin;     /* in a row */
     int64_t count;
 } Transfer;
 
 typedef struct {
     void *component;
     int (*do_step)(void *component, double time, double step, int no_rollback);
-    double *inputs;
-    double *outputs;
+    int64_t inputs; /* where they begin in a row */
+    int64_t outputs;
     int64_t input_count;
     int64_t output_count;
     const Transfer *gets;
@@ -35,9 +38,8 @@ typedef struct {
     int64_t due;   /* at this exchange */
 } Slave;
 
-/* All signals from one slave to another. */
+/* All signals from one slave to another, by their places in a row. */
 typedef struct {
-    int64_t source;
     int64_t target;
     const int64_t *source_places;
     const int64_t *target_places;
@@ -49,8 +51,10 @@ typedef enum { NOTHING, FETCH, SEND, STEP } Failure;
 typedef struct {
     Slave *slaves;
     const Link *links;
+    const double *before; /* the row of the exchange before the next */
     int64_t slave_count;
     int64_t link_count;
+    int64_t width; /* of a row */
     int64_t step_ns;
     int64_t last;    /* number of the last exchange; nothing is stepped after it */
     int64_t failed;  /* out: number of the slave that refused */
@@ -58,46 +62,35 @@ typedef struct {
     int64_t status;  /* out: the FMI status it gave */
 } Run;
 
-static int call(const Slave *slave, const Transfer *transfer) {
-    void *buffer = transfer->integers ? (void *)transfer->integers : (void *)transfer->values;
+static int call(const Slave *slave, const Transfer *transfer, double *row) {
+    void *buffer = transfer->integers ? (void *)transfer->integers : (void *)(row + transfer->begin);
     return transfer->call(slave->component, transfer->references, (size_t)transfer->count, buffer);
 }
 
 /* The last transfers, of integers, come first and are converted last: what has just been written cannot be read in
  * wider pieces without waiting for it. */
-static int fetch(const Slave *slave) {
+static int fetch(const Slave *slave, double *row) {
     for (int64_t g = slave->get_count - 1; g >= 0; g--) {
-        int status = call(slave, &slave->gets[g]);
+        int status = call(slave, &slave->gets[g], row);
         if (status > fmi2Warning) return status;
     }
     for (int64_t g = 0; g < slave->get_count; g++) {
         const Transfer *get = &slave->gets[g];
         if (get->integers)
-            for (int64_t i = 0; i < get->count; i++) get->values[i] = get->integers[i];
+            for (int64_t i = 0; i < get->count; i++) row[get->begin + i] = get->integers[i];
     }
     return fmi2OK;
 }
 
-static int send(const Slave *slave) {
+static int send(const Slave *slave, double *row) {
     for (int64_t s = 0; s < slave->set_count; s++) {
         const Transfer *set = &slave->sets[s];
         if (set->integers)
-            for (int64_t i = 0; i < set->count; i++) set->integers[i] = (int32_t)set->values[i];
-        int status = call(slave, set);
+            for (int64_t i = 0; i < set->count; i++) set->integers[i] = (int32_t)row[set->begin + i];
+        int status = call(slave, set, row);
         if (status > fmi2Warning) return status;
     }
     return fmi2OK;
-}
-
-static double *record(const Run *run, double *row) {
-    for (int64_t k = 0; k < run->slave_count; k++) {
-        const Slave *slave = &run->slaves[k];
-        memcpy(row, slave->inputs, (size_t)slave->input_count * sizeof *row);
-        row += slave->input_count;
-        memcpy(row, slave->outputs, (size_t)slave->output_count * sizeof *row);
-        row += slave->output_count;
-    }
-    return row;
 }
 
 static int fail(Run *run, int64_t slave, Failure failure, int status) {
@@ -107,28 +100,30 @@ static int fail(Run *run, int64_t slave, Failure failure, int status) {
     return 0;
 }
 
-/* Everything up to the moment at which all arrays are as they are at this exchange. */
-static int exchange(Run *run, int64_t number) {
+/* Everything up to the moment at which all of the row is as it is at this exchange. */
+static int exchange(Run *run, int64_t number, double *row) {
     for (int64_t k = 0; k < run->slave_count; k++) {
         Slave *slave = &run->slaves[k];
         slave->due = slave->every == 1 || number % slave->every == 0;
-        int status = slave->due ? fetch(slave) : fmi2OK;
+        memcpy(row + slave->inputs, run->before + slave->inputs, (size_t)slave->input_count * sizeof *row);
+        if (!slave->due)
+            memcpy(row + slave->outputs, run->before + slave->outputs, (size_t)slave->output_count * sizeof *row);
+        int status = slave->due ? fetch(slave, row) : fmi2OK;
         if (status > fmi2Warning) return fail(run, k, FETCH, status);
     }
     for (int64_t l = 0; l < run->link_count; l++) {
         const Link *link = &run->links[l];
         if (!run->slaves[link->target].due) continue;
-        for (int64_t i = 0; i < link->count; i++)
-            run->slaves[link->target].inputs[link->target_places[i]] =
-                run->slaves[link->source].outputs[link->source_places[i]];
+        for (int64_t i = 0; i < link->count; i++) row[link->target_places[i]] = row[link->source_places[i]];
     }
+    run->before = row;
     return 1;
 }
 
-static int advance(Run *run, int64_t number) {
+static int advance(Run *run, int64_t number, double *row) {
     double time = (double)(number * run->step_ns) / NANOSECONDS;
     for (int64_t k = 0; k < run->slave_count; k++) {
-        int status = run->slaves[k].due ? send(&run->slaves[k]) : fmi2OK;
+        int status = run->slaves[k].due ? send(&run->slaves[k], row) : fmi2OK;
         if (status > fmi2Warning) return fail(run, k, SEND, status);
     }
     for (int64_t k = 0; k < run->slave_count; k++) {
@@ -140,17 +135,16 @@ static int advance(Run *run, int64_t number) {
     return 1;
 }
 
-/* Do the exchanges numbered first, first + 1 ... at most `count` of them, stepping after each, and
- * return how many rows were written to `rows`. Fewer than asked: `last` is reached, or a slave refused.
- * A row is written after the step, which leaves the arrays as they are, for the reason said at fetch. */
+/* Do the exchanges numbered first, first + 1 ... at most `count` of them, two or more, stepping after each, and
+ * return how many of `rows` are whole. Fewer than asked: `last` is reached, or a slave refused. `rows` must be the
+ * same at every call. */
 FMI2_EXPORT int64_t master_run(Run *run, int64_t first, int64_t count, double *rows) {
     run->failure = NOTHING;
     for (int64_t done = 0; done < count; done++) {
         int64_t number = first + done;
-        if (!exchange(run, number)) return done;
-        const int on = number != run->last && advance(run, number);
-        rows = record(run, rows);
-        if (!on) return done + 1;
+        double *row = rows + done * run->width;
+        if (!exchange(run, number, row)) return done;
+        if (number == run->last || !advance(run, number, row)) return done + 1;
     }
     return count;
 }

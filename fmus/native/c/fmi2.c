@@ -113,6 +113,7 @@ static fmi2Integer fmu_integer(int64_t value) {
         if (!fmu) return fmi2Error;                                                                                 \
         if (count && (!references || !values)) return FMU_NULL(fmu, "fmi2Get" #Type);                               \
         fmu_refresh(fmu);                                                                                           \
+        FMU_FOUR_AT_A_TIME                                                                                          \
         for (size_t i = 0; i < count; i++) {                                                                        \
             if (!is_known(references[i])) return (fmi2Status)fmu_unknown(fmu, references[i], "fmi2Get" #Type);      \
             values[i] = convert(*(const Kept *)(const void *)fmu_at(fmu, references[i]));                           \
@@ -128,12 +129,14 @@ static fmi2Integer fmu_integer(int64_t value) {
         bool parameters = false;                                                                                    \
         if (!fmu) return fmi2Error;                                                                                 \
         if (count && (!references || !values)) return FMU_NULL(fmu, "fmi2Set" #Type);                               \
+        FMU_FOUR_AT_A_TIME                                                                                          \
         for (size_t i = 0; i < count; i++) {                                                                        \
             if (!is_known(references[i])) return (fmi2Status)fmu_unknown(fmu, references[i], "fmi2Set" #Type);      \
             if (fmu_places[references[i]].role == FMU_INPUT) continue;                                              \
             if (!fmu_is_settable(fmu, references[i], (double)convert(values[i]), "fmi2Set" #Type)) return fmi2Error; \
             parameters = true;                                                                                      \
         }                                                                                                           \
+        FMU_FOUR_AT_A_TIME                                                                                          \
         for (size_t i = 0; i < count; i++) *(Kept *)(void *)fmu_at(fmu, references[i]) = convert(values[i]);        \
         if (parameters) fmu_parameters_changed(fmu);                                                                \
         return fmi2OK;                                                                                              \

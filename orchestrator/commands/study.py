@@ -13,7 +13,6 @@ from controller_fmu.interface import Reason
 from orchestrator.cosim.fmu_files import can_compile
 from orchestrator.grid.apa_grid import (
     KEPT,
-    SHIFTS,
     Case,
     Result,
     cases,
@@ -24,6 +23,7 @@ from orchestrator.grid.apa_grid import (
     totals,
 )
 from orchestrator.grid.apa_loop import Loop
+from orchestrator.grid.apa_verdict import HOUSE_SHIFTS_AS_GBT
 from orchestrator.text.console import Meter, console
 
 KINDS: dict[int, str] = {Kind.PARALLEL: "parallel", Kind.PERPENDICULAR: "perpendicular"}
@@ -112,7 +112,7 @@ def _by_size(results: list[Result]) -> Table:
             str(len(group)),
             str(sum(is_within_gbt(result) for result in group)),
             str(sum(is_within_house(result) for result in group)),
-            str(sum(is_within_house(result, SHIFTS[kind]) for result in group)),
+            str(sum(is_within_house(result, HOUSE_SHIFTS_AS_GBT) for result in group)),
             f"{shifts[0]} to {shifts[-1]}",
             f"{100.0 * min(result.nearest for result in group):.0f} cm",
         )
@@ -124,12 +124,13 @@ def _line(result: Result) -> str:
     kind = KINDS[case.kind]
     side = "right" if case.side > 0 else "left"
     end = Mode(result.mode).name.lower() if result.reason == 0 else Reason(result.reason).name.lower()
+    lateral, heading = (result.standing[f"final.{name}_error"] for name in ("lateral", "heading"))
     verdict = "house" if is_within_house(result) else "gbt" if is_within_gbt(result) else "-"
     return (
         f"{case.number:4d} {case.car} {kind} {side} +{case.extra:.1f} m, {case.beside:.1f} m beside, "
         f"{math.degrees(case.heading):+.0f} deg, {case.body}, {3.6 * case.speed:.0f} km/h, "
         f"{'inside' if result.inside else 'outside'}: {end}, "
-        f"{100.0 * result.lateral:+.1f} cm {math.degrees(result.heading):+.2f} deg, {result.shifts} shifts, "
+        f"{100.0 * lateral:+.1f} cm {math.degrees(heading):+.2f} deg, {result.shifts} shifts, "
         f"{result.parking_time:.0f} s, {100.0 * result.nearest:.0f} cm clear, "
         f"corners {100.0 * result.corner_a:.0f} and {100.0 * result.corner_b:.0f} cm: {verdict}"
     )

@@ -9,10 +9,22 @@ from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 from controller_fmu.apa.chart import Mode
+from controller_fmu.apa.fit import shortest_of_iso
+from controller_fmu.apa.params import ApaParams
 from controller_fmu.apa.slot import Kind, Side, Slot
 from modelkit.vocabulary import Pose
 from orchestrator.grid.apa_loop import Loop
 from orchestrator.grid.apa_start import is_inside
+from orchestrator.grid.apa_verdict import (
+    GBT,
+    GBT_PERPENDICULAR,
+    HOUSE,
+    LAST,
+    PERPENDICULAR_DEPTH,
+    Place,
+    is_parked,
+    standing,
+)
 from orchestrator.scenario.sensor_mounts import mounts
 from orchestrator.verdict.frame import in_frame
 
@@ -35,14 +47,10 @@ STOP = 150.0
 PARKED, FAILED = int(Mode.PARKING_FINISH), int(Mode.FAIL)
 BEHIND = 0.4
 """A wall stands so much [m] deeper than the car is wide behind a parallel slot."""
-SHIFTS: dict[int, int] = {Kind.PARALLEL: 8, Kind.PERPENDICULAR: 7}
-"""Of GB/T 41630."""
 GHOST = 0.5
 """A slot found further off than this [m], or of the wrong kind, is one that is not there."""
 KEPT = (
-    "vehicle.pose.x",
-    "vehicle.pose.y",
-    "vehicle.pose.heading",
+    *LAST,
     "vehicle.odometry.x",
     "vehicle.odometry.y",
     "vehicle.odometry.heading",
@@ -88,10 +96,10 @@ class Result(NamedTuple):
 
     case: Case
     mode: int
+    phase: int
     reason: int
-    lateral: float
-    """Final errors against the true slot [m, rad]."""
-    heading: float
+    standing: dict[str, float]
+    """The numbers ``final.*`` against the true slot; where along a parallel slot is the assist's choice."""
     shifts: int
     parking_time: float
     nearest: float
@@ -112,6 +120,7 @@ def cases(lot: int = 0) -> list[Case]:
     """Return the whole grid; what is drawn by lot is drawn from the case's number and ``lot``."""
     found: list[Case] = []
     for car, (wheelbase, front, rear, width, _) in CARS.items():
+        body_of = ApaParams(front_overhang=front, rear_overhang=rear, width=width)
         for kind in (Kind.PARALLEL, Kind.PERPENDICULAR):
             for side in (1, -1):
                 for extra in EXTRA[kind]:
@@ -120,7 +129,7 @@ def cases(lot: int = 0) -> list[Case]:
                             for body in BODIES:
                                 number = len(found)
                                 speed = SPEEDS[random.Random(number + LOTS * lot).randrange(len(SPEEDS))]
-                                length = _shortest(kind, wheelbase + front + rear, width) + extra
+                                length = shortest_of_iso(kind, wheelbase, body_of) + extra
                                 heading = math.radians(degrees)
                                 found.append(
                                     Case(number, car, kind, side, extra, beside, heading, body, speed, length, lot)
@@ -152,15 +161,9 @@ def parameters(case: Case) -> tuple[dict[str, Any], dict[str, Any]]:
     return vehicle | _scene(case, front + rear + wheelbase, width), controller
 
 
-def _shortest(kind: int, length: float, width: float) -> float:
-    if kind == Kind.PERPENDICULAR:
-        return width + 1.2
-    return length + 1.0 if length < 4.0 else 1.25 * length
-
-
 def _scene(case: Case, length: float, width: float) -> dict[str, Any]:
     """Return two neighbours, behind a parallel slot a wall, and the start."""
-    along, deep = (4.4, 1.8) if case.kind == Kind.PARALLEL else (1.8, 4.6)
+    along, deep = (4.4, 1.8) if case.kind == Kind.PARALLEL else (1.8, PERPENDICULAR_DEPTH)
     things = [(-along, 0.0, -deep, 0.0), (case.length, case.length + along, -deep, 0.0)]
     if case.kind == Kind.PARALLEL:
         things.append((-12.0, case.length + 12.0, -width - BEHIND - 1.0, -width - BEHIND))
@@ -194,13 +197,12 @@ def drive(case: Case, loop: Loop) -> Result:
             shown = row
         last = row
     a, b = (math.nan, math.nan) if shown is None else _corner_errors(case, shown)
-    lateral, heading = _final_errors(case, last)
     return Result(
         case,
         int(last["controller.apa.mode"]),
+        int(last["controller.phase"]),
         int(last["controller.reason"]),
-        lateral,
-        heading,
+        standing(place_of(case), last),
         int(last["controller.shifts"]),
         last["controller.apa.parking_time"],
         nearest,
@@ -212,22 +214,17 @@ def drive(case: Case, loop: Loop) -> Result:
     )
 
 
+def place_of(case: Case) -> Place:
+    """Return the slot of a case and the car that shall stand in it."""
+    wheelbase, front, rear, width, _ = CARS[case.car]
+    return Place(case.kind, case.side, case.length, width + BEHIND, wheelbase, front, rear, width)
+
+
 def true_slot(case: Case) -> Slot:
     """Return the slot of a case as it is, its corner A at the world's origin."""
     side = int(Side.RIGHT if case.side > 0 else Side.LEFT)
     slot = Slot(case.kind, side, Pose(0.0, 0.0, 0.0), case.length)
     return slot._replace(depth=CARS[case.car][3] + BEHIND) if case.kind == Kind.PARALLEL else slot
-
-
-def _final_errors(case: Case, last: Mapping[str, float]) -> tuple[float, float]:
-    """Return how far [m, rad] the car stands off the true slot's line (parallel) or middle (perpendicular)."""
-    if case.kind == Kind.PARALLEL:
-        lateral = last["vehicle.pose.y"] + case.side * 0.5 * CARS[case.car][3]
-        turned = last["vehicle.pose.heading"]
-    else:
-        lateral = last["vehicle.pose.x"] - 0.5 * case.length
-        turned = last["vehicle.pose.heading"] - case.side * 0.5 * math.pi
-    return lateral, math.remainder(turned, 2.0 * math.pi)
 
 
 def _corner_errors(case: Case, row: Mapping[str, float]) -> tuple[float, float]:
@@ -251,15 +248,25 @@ def _seen_from(pose: Pose, point: tuple[float, float]) -> tuple[float, float]:
 
 
 def is_within_gbt(result: Result) -> bool:
-    """Return whether the car is parked within GB/T 41630: heading, lateral position, shifts, no contact."""
-    parked = result.mode == PARKED and result.shifts <= SHIFTS[result.case.kind] and result.nearest > 0.0
-    return parked and abs(result.lateral) <= 0.15 and abs(result.heading) <= math.radians(3.0)
+    """Return whether the car is parked within GB/T 41630, as far as it speaks of the end, and touched nothing."""
+    return _is_parked(result, *_gbt(result.case.kind))
 
 
-def is_within_house(result: Result, shifts: int = 3) -> bool:
-    """Return whether the car is parked within the house limits, of which that of the shifts can be another."""
-    good = is_within_gbt(result) and result.shifts <= shifts and result.parking_time <= 60.0 and result.nearest >= 0.1
-    return good and abs(result.lateral) <= 0.05 and abs(result.heading) <= math.radians(1.0)
+def is_within_house(result: Result, limits: str = HOUSE) -> bool:
+    """Return whether the car is parked within GB/T 41630 and the house limits, or another set in their place."""
+    return _is_parked(result, *_gbt(result.case.kind), limits)
+
+
+def _gbt(kind: int) -> tuple[str, ...]:
+    return GBT if kind == Kind.PARALLEL else GBT_PERPENDICULAR
+
+
+def _is_parked(result: Result, *sets: str) -> bool:
+    values = {**result.standing, "shifts": result.shifts, "vehicle.clearance": result.nearest}
+    values["controller.apa.parking_time"] = result.parking_time
+    if result.case.kind == Kind.PARALLEL:
+        del values["final.longitudinal_error"]
+    return is_parked(place_of(result.case), result.phase, values, sets)
 
 
 def is_ghost(result: Result) -> bool:

@@ -11,6 +11,7 @@ from functools import lru_cache
 from typing import NamedTuple
 
 from orchestrator.scenario.load_scenario import load_scenario
+from orchestrator.scenario.requirements import shipped_requirements
 from orchestrator.scenario.scenario import Scenario, Slot
 from orchestrator.scenario.sensor_mounts import mounts
 from vehicle_fmu.interface import Body
@@ -39,6 +40,12 @@ DRIVER_SPEED, SEARCH_SPEED = 0.5, 2.0
 """Of the driver while parking, and while driving past [m/s]."""
 LEAD_IN = 5.0
 """The assist's run begins this far behind the rear neighbour [m]."""
+
+
+LIMITS = ("gbt41630", "no-contact")
+"""What a parked car is judged by."""
+UNJUDGED = ("vehicle.speed",)
+"""GB/T's limit on the speed while parking; the assist drives past the slot before."""
 
 
 class Entry(NamedTuple):
@@ -92,7 +99,6 @@ def _base(controller: str, slot: float, car: str) -> Scenario:
         "stop_time": 200 if searches else 120,
         "vehicle.driver.profile[1].speed": SEARCH_SPEED if searches else DRIVER_SPEED,
         "controller.system": controller,
-        "limits": "[gbt41630, no-contact]",
     }
     loaded = load_scenario("zhang2022", [f"{key}={value}" for key, value in sets.items()])
     body = {key: loaded.vehicle[key] for key in ("width", "front_overhang", "rear_overhang")}
@@ -108,7 +114,9 @@ def _base(controller: str, slot: float, car: str) -> Scenario:
         told |= _sensors(front, body["rear_overhang"], 0.5 * body["width"], "apa.sensors.")
     line = 0.5 * body["width"]
     true = Slot(x=REAR_END + 0.5 * slot, y=line - 0.5 * DEPTH, length=slot, width=DEPTH)
-    return loaded.model_copy(update={"slot": true, "vehicle": vehicle, "controller": {**loaded.controller, **told}})
+    limits = [item for name in LIMITS for item in shipped_requirements(name) if item.signal not in UNJUDGED]
+    controls = {**loaded.controller, **told}
+    return loaded.model_copy(update={"slot": true, "vehicle": vehicle, "controller": controls, "limits": limits})
 
 
 def _sensors(front: float, rear: float, half_width: float, owner: str) -> dict[str, float]:

@@ -13,7 +13,7 @@ from matplotlib.patches import Rectangle
 
 from orchestrator.bakeoff.driver_study import Study
 from orchestrator.bakeoff.entries import CONTROLLERS, SLOTS
-from orchestrator.bakeoff.results import REFUSED, Result
+from orchestrator.bakeoff.results import REFUSED, Result, exact_limits
 
 COLOURS = {"ntbptcwpt": "#1f5fbf", "ntbpt": "#7fa8dd", "zhang2022": "#d1602a", "hsic": "#2b8a5a", "apa": "#8a4fa8"}
 BAR = 0.16
@@ -32,7 +32,9 @@ def draw(found: list[Result], study: Study | None, file: Path) -> Path:
         style = {"color": COLOURS[name], "s": 10, "alpha": 0.6, "label": name, "linewidths": 0}
         errors.scatter([100.0 * item.lateral for item in won], [np.degrees(item.heading) for item in won], **style)
         spent.scatter([item.time for item in won], [item.effort / (2.0 * np.pi) for item in won], **style)
-    errors.add_patch(Rectangle((-5, -1), 10, 2, fill=False, edgecolor="#666666", linestyle=":"))
+    side, angle = 100.0 * _limit(0), np.degrees(_limit(1))
+    corner, size = (-side, -angle), (2.0 * side, 2.0 * angle)
+    errors.add_patch(Rectangle(corner, *size, fill=False, edgecolor="#666666", linestyle=":"))
     errors.set(xlabel="final lateral error [cm]", ylabel="final heading [deg]", title="where the parked ones stand")
     spent.set(xlabel="time [s]", ylabel="steering wheel [turns]", title="what it took", xlim=(0, None), ylim=(0, None))
     spent.legend(frameon=False, markerscale=2)
@@ -68,7 +70,13 @@ def _shares(axis: Axes, found: list[Result]) -> None:
                 x, refused, bottom=100.0 - refused, color="none", edgecolor="#bbbbbb", hatch="////", width=0.9 * BAR
             )
     axis.set_xticks(range(len(SLOTS)), [f"{slot:g} m" for slot in SLOTS])
-    axis.set(ylabel="%", ylim=(0, 100), title="parked within GB/T 41630; dark: 5 cm, 1 deg; hatched: refused")
+    exact = f"{100.0 * _limit(0):g} cm, {np.degrees(_limit(1)):g} deg"
+    axis.set(ylabel="%", ylim=(0, 100), title=f"parked within GB/T 41630; dark: {exact}; hatched: refused")
+
+
+def _limit(place: int) -> float:
+    """Return the limit of an exact drive: 0 lateral [m], 1 heading [rad]."""
+    return float(exact_limits()[place].limit)
 
 
 def _claim(axis: Axes, study: Study) -> None:

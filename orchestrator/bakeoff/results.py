@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from orchestrator.bakeoff.entries import ASSIST, Entry
-from orchestrator.scenario.requirements import shipped_requirements
+from orchestrator.scenario.requirements import Requirement, shipped_requirements
 from orchestrator.sweep.many import run_all, truths_of
 from orchestrator.sweep.rows import measures_for
 from orchestrator.sweep.verdict import Verdict, judge_rows
@@ -48,9 +48,14 @@ def results(runs: Sequence[Entry]) -> list[Result]:
     measures = [*measures_for(scenarios[0]), PARKING_TIME]
     rows = run_all(scenarios, measures)
     verdict = judge_rows(scenarios[0], truths_of(scenarios), measures, rows)
-    house = [item for item in shipped_requirements("house") if item.signal in EXACT]
-    exact = np.all([meets(item, verdict.numbers[item.signal]) for item in house], axis=0)
+    exact = np.all([meets(item, verdict.numbers[item.signal]) for item in exact_limits()], axis=0)
     return [_result(entry, verdict, run, float(rows[run, -1]), bool(exact[run])) for run, entry in enumerate(runs)]
+
+
+def exact_limits() -> list[Requirement]:
+    """Return the limits of an exact drive: lateral, heading."""
+    house = {item.signal: item for item in shipped_requirements("house")}
+    return [house[name] for name in EXACT]
 
 
 def _result(entry: Entry, verdict: Verdict, run: int, confirmed: float, exact: bool) -> Result:

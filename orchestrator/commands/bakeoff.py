@@ -27,8 +27,9 @@ EXAMPLES = """examples:
   apa bakeoff --json > out.json   every run, for machines
 """
 FOOTNOTES = (
-    "Medians of the parked drives. Refused: no path from this start. Parked: the controller says so, within 15 cm and "
-    "3 deg (GB/T 41630), nothing touched; exact: of these within 5 cm and 1 deg.",
+    "Medians of the parked drives. Refused: no path from this start. Parked: the controller says so, the car stands, "
+    "in the slot and within the limits of GB/T 41630, nothing touched; exact: of these within the house limits across "
+    "the slot and in heading.",
     "apa is told neither slot, target nor start: it drives past at 2 m/s along the line through the start pose, with "
     "1 cm of sensor noise, and parks from where it likes. Its time counts from the driver's confirmation, its "
     "clearance with the way past the slot; it chooses its place along the slot, so errors along it are not compared.",
@@ -117,7 +118,9 @@ def _print(found: list[Result], rates: list[Rate], spent: dict[str, Cost]) -> No
 def _cells(slot: str, name: str, mine: list[Result]) -> list[str]:
     won = [item for item in mine if item.parked]
     refused = sum(item.reason == REFUSED for item in mine)
-    reasons = Counter(item.reason for item in mine if not item.parked)
+    reasons = Counter(
+        item.reason.removeprefix("beyond its limit: ").replace(", ", " and ") for item in mine if not item.parked
+    )
     why = ", ".join(f"{reason.replace('_', ' ')} {count}" for reason, count in reasons.most_common())
     counts = [str(len(mine)), f"{100.0 * refused / len(mine):.0f} %", str(len(won)), str(sum(i.house for i in mine))]
     numbers = [f"{statistics.median(pick(item) for item in won):.3g}" if won else "-" for pick in MEDIANS]

@@ -70,7 +70,7 @@ def standing(place: Place, last: Mapping[str, float]) -> dict[str, float]:
     found = {Measure("last", name): np.array([last[name]]) for name in LAST}
     car = {name: getattr(place, name) for name in ("wheelbase", "front_overhang", "rear_overhang", "width")}
     made = numbers(np.zeros(1), found, truth_of(scenario_of(place), car))
-    return {name: float(values[0]) for name, values in made.items() if name.startswith("final.")}
+    return {name: float(values[0]) for name, values in made.items() if name.startswith("final.") and "kerb" not in name}
 
 
 def is_parked(place: Place, phase: float, values: Mapping[str, float], sets: tuple[str, ...]) -> bool:

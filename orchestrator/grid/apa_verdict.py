@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from controller_fmu.apa.slot import PARALLEL
+from controller_fmu.apa.slot import Kind
 from orchestrator.cosim.slave import Array
 from orchestrator.scenario.requirements import shipped_requirements
 from orchestrator.scenario.scenario import Scenario, Slot, Target
@@ -51,7 +51,7 @@ class Place(NamedTuple):
 def scenario_of(place: Place) -> Scenario:
     """Return what is true: corner A of the slot at the origin, the car flush with its neighbours."""
     middle, turn = 0.5 * place.length, 0.5 * math.pi * place.side
-    if place.kind == PARALLEL:
+    if place.kind == Kind.PARALLEL:
         return Scenario(
             name="parallel",
             target=Target(x=middle, y=-0.5 * place.side * place.width),

@@ -75,7 +75,7 @@ def test_all_but_one_in_a_hundred_are_parked_within_gbt(results: list[Result]) -
 @needs_compiler
 def test_house_limits_are_met_where_the_slot_allows_three_shifts(results: list[Result]) -> None:
     group = [result for result in results if result.case.kind == 2 or result.case.extra > 0.0]
-    assert sum(is_within_house(result) for result in group) >= 0.95 * len(group)
+    assert sum(is_within_house(result) for result in group) >= 0.93 * len(group)
 
 
 @needs_compiler

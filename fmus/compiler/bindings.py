@@ -134,8 +134,11 @@ def names_in(node: ast.AST) -> Iterator[ast.Name]:
     """Yield the names of the function in ``node``; those that a generator binds for itself are not."""
     if isinstance(node, ast.GeneratorExp | ast.ListComp | ast.SetComp | ast.DictComp):
         inner = {item.id for part in node.generators for item in ast.walk(part.target) if isinstance(item, ast.Name)}
-        for child in ast.iter_child_nodes(node):
-            yield from (name for name in names_in(child) if name.id not in inner)
+        outer = node.generators[0].iter
+        yield from names_in(outer)
+        for name in (name for child in ast.iter_child_nodes(node) for name in _names_but(child, outer)):
+            if name.id not in inner:
+                yield name
     elif isinstance(node, ast.Name):
         yield node
     elif isinstance(node, ast.AnnAssign):
@@ -145,6 +148,15 @@ def names_in(node: ast.AST) -> Iterator[ast.Name]:
     elif not isinstance(node, ast.FunctionDef | ast.Lambda | ast.ClassDef):
         for child in ast.iter_child_nodes(node):
             yield from names_in(child)
+
+
+def _names_but(node: ast.AST, left_out: ast.AST) -> Iterator[ast.Name]:
+    if isinstance(node, ast.comprehension):
+        for child in ast.iter_child_nodes(node):
+            if child is not left_out:
+                yield from names_in(child)
+    else:
+        yield from names_in(node)
 
 
 def reads(node: ast.AST, name: str) -> bool:

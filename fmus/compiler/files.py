@@ -8,7 +8,7 @@ from fmus.compiler import runtime
 from fmus.compiler.entries import Entries
 from fmus.compiler.functions import Instance
 from fmus.compiler.kinds import Mixed, hints_of
-from fmus.compiler.layout import laid_out
+from fmus.compiler.layout import comment, laid_out
 from fmus.compiler.program import Program
 from fmus.compiler.writing import Writer, in_order
 from modelkit.model import Model
@@ -50,7 +50,7 @@ class Files:
         """Return the text of the header: the types of the interface and the three functions."""
         name, writer = self.model.name, self.writer
         guard = f"{name.upper()}_H"
-        lines = [f"/* {name}: {self.model.description}. Made from the Python of {self.model.package.__name__}. */"]
+        lines = comment(f"{name}: {self.model.description}.\nMade from the Python of {self.model.package.__name__}.")
         lines += [f"#ifndef {guard}", f"#define {guard}", "", "#include <stdbool.h>", "#include <stdint.h>"]
         lines += [line for enum in self.enums for line in writer.enum(enum, header=True)]
         lines += [line for cls in self.classes for line in writer.struct(cls, header=True)]

@@ -1,6 +1,7 @@
 """Functions: what they take and give, and one C function for each combination of tuple lengths."""
 
 import ast
+import re
 import sys
 import typing
 from dataclasses import dataclass, field
@@ -220,7 +221,7 @@ def _place_results(body: Body, made: Instance, result: Kind) -> None:
     kinds = result.items if isinstance(result, Mixed) else (result,)
     names = _returned_names(made.node, len(kinds) if isinstance(result, Mixed) else 0)
     for number, (kind, name) in enumerate(zip(kinds, names, strict=True)):
-        usual = f"result{number}" if len(kinds) > 1 else "result"
+        usual = "result" if len(kinds) == 1 else _word(kind) or f"result{number}"
         given = name in body.bindings.parameters
         own = bool(name) and not is_scalar(kind) and (not given or name in body.anew)
         word = body.names.add(f"next_{name}" if given else name if own else f"{name}_out" if name else usual)
@@ -229,6 +230,13 @@ def _place_results(body: Body, made: Instance, result: Kind) -> None:
         made.outs.append((word, kind))
         if own and len(body.bindings.homes.get(name, ())) == 1:
             body.result_of[name] = (place, kind)
+
+
+def _word(kind: Kind) -> str:
+    """Return the name of a NamedTuple as a variable would have it."""
+    if not isinstance(kind, Struct):
+        return ""
+    return re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", kind.cls.__name__).lower()
 
 
 def _returned_names(node: ast.FunctionDef, count: int) -> list[str]:

@@ -1,9 +1,12 @@
 """How values get into places: initializers, assignments, temporaries, addresses."""
 
+import re
+
 from fmus.compiler.body import Body
 from fmus.compiler.kinds import Array, Scalar, Struct
 from fmus.compiler.values import SMALL, UNKNOWN, Place, Value, is_scalar, place_of, rvalue, scalars_in
 
+NUMBER = re.compile(r"-?\d[\d.]*(?:e[+-]?\d+)?|true|false")
 ONE_BY_ONE = 4
 """Arrays of no more items are written item by item."""
 
@@ -68,7 +71,15 @@ def declare(body: Body, c: str, value: Value, const: bool) -> None:
         body.emit(f"{declared};")
         put(body, Place(c), value)
     else:
-        body.emit(f"{'const ' if const else ''}{declared} = {start};")
+        head = "static const " if const and _is_table(value) else "const " if const else ""
+        body.emit(f"{head}{declared} = {start};")
+
+
+def _is_table(value: Value) -> bool:
+    """Return whether a tuple is made of numbers written out and enum members, so that it need not be made anew."""
+    if not isinstance(value.kind, Array) or value.items is None or value.const is UNKNOWN:
+        return False
+    return all(NUMBER.fullmatch(item.text) or (item.narrow and item.text.isidentifier()) for item in value.items)
 
 
 def hoist(body: Body, value: Value, name: str) -> Value:

@@ -47,9 +47,10 @@ class Writer:
         name = self.program.types[cls]
         meanings = field_meanings(self.program.library.class_node(cls))
         lines = ["", *self._doc(cls), "enum {"]
+        last = list(cls.__members__)[-1]
         for word, member in cls.__members__.items():
-            lines += with_note(f"    {name}_{word} = {int(member)},", meanings.get(word, ""))
-        lines[-1] = lines[-1] if not lines[-1].endswith(",") else lines[-1].rstrip(",")
+            comma = "" if word == last else ","
+            lines += with_note(f"    {name}_{word} = {int(member)}{comma}", meanings.get(word, ""))
         lines.append("};")
         return self._guarded(cls, name, lines) if header else lines
 

@@ -623,6 +623,17 @@ def mapped(x: float, y: float, n: int, m: int, p: bool, q: bool) -> Big:
     return Big(row=tuple(min(a, b) for a, b in zip(row, START.row, strict=True)), points=points, counts=counts)
 
 
+def names_of_generators(x: float, y: float, n: int, m: int, p: bool, q: bool) -> float:
+    values = tuple(value * y for value in _shifted((x, y, 1.0)))
+    a = values
+    return min(a * 2.0 for a in a) + _total(values)
+
+
+def _shifted(values: tuple[float, ...]) -> tuple[float, ...]:
+    values = values[1:] + (0.5,)
+    return tuple(max(values, 0.25) for values in values)
+
+
 def reductions(x: float, y: float, n: int, m: int, p: bool, q: bool) -> int:
     count = sum(1 for value in START.row if value < x)
     if any(value > y for value in (x, 1.0, 2.0)):

@@ -41,7 +41,8 @@ def apa(wheel: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def call(apa: Path, folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
-    environment = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
+    environment = {name: value for name, value in os.environ.items() if name not in ("PYTHONPATH", "APA_DIST")}
+    environment["XDG_CACHE_HOME"] = str(folder / "cache")
     return subprocess.run([apa, *arguments], cwd=folder, env=environment, capture_output=True, text=True, check=False)
 
 
@@ -56,13 +57,19 @@ def test_help_and_version(apa: Path, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("command", COMMANDS)
-def test_every_command_explains_itself_or_what_it_lacks(command: str, apa: Path, tmp_path: Path) -> None:
+def test_every_command_explains_itself(command: str, apa: Path, tmp_path: Path) -> None:
     done = call(apa, tmp_path, command, "--help")
-    assert "Traceback" not in done.stderr
-    assert done.stdout.startswith(f"usage: apa {command}") or "pip install" in done.stderr
+    assert done.stdout.startswith(f"usage: apa {command}"), done.stderr
+
+
+def installed(apa: Path) -> set[str]:
+    """Return the files of the environment but for what Python compiles."""
+    found = (path for path in apa.parents[1].rglob("*") if path.is_file() and path.suffix != ".pyc")
+    return {str(path) for path in found}
 
 
 def test_what_the_documentation_promises(apa: Path, tmp_path: Path) -> None:
+    before = installed(apa)
     done = call(apa, tmp_path, "run", "guo2015-case4")
     assert done.returncode == 0, done.stderr
     made = {path.name for path in (tmp_path / "runs" / "guo2015-case4").iterdir()}
@@ -72,6 +79,11 @@ def test_what_the_documentation_promises(apa: Path, tmp_path: Path) -> None:
     assert "8 of 8 scenarios passed" in done.stdout
     assert ElementTree.parse(tmp_path / "results" / "junit.xml").getroot().get("failures") == "0"
     assert call(apa, tmp_path, "list", "parameters", "steering").returncode == 0
+    done = call(apa, tmp_path, "build", "--out", "built")
+    assert done.returncode == 0, done.stderr
+    assert (tmp_path / "built" / "python" / "Controller.fmu").is_file()
+    assert installed(apa) == before
+    assert (tmp_path / "cache").is_dir()
 
 
 @pytest.mark.parametrize(

@@ -18,7 +18,7 @@ from orchestrator.bakeoff.entries import CONTROLLERS, SLOTS, entries
 from orchestrator.bakeoff.figure import draw
 from orchestrator.bakeoff.results import REFUSED, Result, results
 from orchestrator.cosim.fmu_files import can_compile
-from orchestrator.text.console import console
+from orchestrator.text.console import console, working
 from orchestrator.text.errors import BadInput
 
 EXAMPLES = """examples:
@@ -60,10 +60,13 @@ def run(arguments: argparse.Namespace) -> int:
         raise BadInput("the bake-off runs as compiled code: install apa-cosim[native]")
     if arguments.runs < 0:
         raise BadInput(f"--runs {arguments.runs}: expected a number of at least 0")
-    found = results(list(entries()))
-    claim = study(arguments.runs, arguments.seed) if arguments.runs else None
+    with working("bake-off: every controller in every slot"):
+        found = results(list(entries()))
+    with working(f"driver study: {arguments.runs} drives of each system"):
+        claim = study(arguments.runs, arguments.seed) if arguments.runs else None
     rates = claim.rates if claim else []
-    spent = costs()
+    with working("cost of a step"):
+        spent = costs()
     picture = draw(found, claim, arguments.out / "bakeoff.png")
     data = {
         "runs": [_plain(item) for item in found],

@@ -15,6 +15,23 @@ from controller_fmu.zhang2022.system import zhang_sample, zhang_start
 from modelkit.model import Model, SampledSystem, SampledSystems
 from modelkit.terminals import TERMINALS
 
+OF_PARKING = ("target", "vehicle_fault", "path", "shifts")
+"""What every system has that parks at a given pose. The names are those that not all systems have."""
+OF_GUO2015 = (*OF_PARKING, "ntbpt", "threshold", "prompting", "limit")
+OF_ZHANG2022 = (
+    *OF_PARKING,
+    *(f"threshold.{name}" for name in ("standstill", "wheel", "miss_lateral", "miss_heading", "lost_lateral")),
+    "limit",
+    "zhang2022",
+)
+OF_HSIC = (*OF_PARKING, "threshold.standstill", "threshold.lost_lateral", "limit", "hsic")
+OF_PREVIEW = ("threshold.standstill", "threshold.lost_lateral", "preview")
+OF_APA = (
+    *("gear", "brake_pedal", "vehicle_fault", "ultrasonic", "apa_switch", "driver_confirm", "shifts"),
+    "threshold.wheel",
+    *(f"limit.{name}" for name in ("stopping", "pose_frozen", "wheel_lag", "wheel_fault")),
+    "apa",
+)
 SYSTEMS = SampledSystems(
     state=model.ControllerState,
     parameter="system",
@@ -23,11 +40,11 @@ SYSTEMS = SampledSystems(
     tick=model.tick,
     refused=model.refused,
     systems=(
-        SampledSystem((System.NTBPTCWPT, System.NTBPT), "parking", start, sample, outputs),
-        SampledSystem((System.ZHANG2022,), "zhang2022", zhang_start, zhang_sample, zhang_outputs),
-        SampledSystem((System.HSIC,), "hsic", hsic_start, hsic_sample, hsic_outputs),
-        SampledSystem((System.PREVIEW,), "preview", driving_start, driving_sample, driving_outputs),
-        SampledSystem((System.APA,), "apa", apa_start, apa_sample, apa_outputs),
+        SampledSystem((System.NTBPTCWPT, System.NTBPT), "parking", start, sample, outputs, OF_GUO2015),
+        SampledSystem((System.ZHANG2022,), "zhang2022", zhang_start, zhang_sample, zhang_outputs, OF_ZHANG2022),
+        SampledSystem((System.HSIC,), "hsic", hsic_start, hsic_sample, hsic_outputs, OF_HSIC),
+        SampledSystem((System.PREVIEW,), "preview", driving_start, driving_sample, driving_outputs, OF_PREVIEW),
+        SampledSystem((System.APA,), "apa", apa_start, apa_sample, apa_outputs, OF_APA),
     ),
 )
 MODEL = Model(
@@ -44,4 +61,20 @@ MODEL = Model(
     stop_time=60.0,
     terminals=TERMINALS,
     systems=SYSTEMS,
+    sampled=True,
 )
+NTBPTCWPT = MODEL.only(System.NTBPTCWPT, "Controller_ntbptcwpt", "Parking by path and point tracking (Guo 2015)")
+NTBPT = MODEL.only(System.NTBPT, "Controller_ntbpt", "Parking by path tracking (Guo 2015)")
+ZHANG2022 = MODEL.only(System.ZHANG2022, "Controller_zhang2022", "Parking on a quintic path, MPC, PID (Zhang 2022)")
+HSIC = MODEL.only(System.HSIC, "Controller_hsic", "Parking by human-simulated intelligent control")
+PREVIEW = MODEL.only(System.PREVIEW, "Controller_preview", "Driving a road by dual-point preview and fuzzy control")
+APA = MODEL.only(System.APA, "Controller_apa", "Parking assist: slot search, planner, tracking, position tuning")
+SYSTEM_MODELS = {
+    System.NTBPTCWPT: NTBPTCWPT,
+    System.NTBPT: NTBPT,
+    System.ZHANG2022: ZHANG2022,
+    System.HSIC: HSIC,
+    System.PREVIEW: PREVIEW,
+    System.APA: APA,
+}
+"""The controller with one system alone: the same code, with that system's parameters, inputs and outputs only."""

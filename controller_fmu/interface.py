@@ -12,8 +12,8 @@ from controller_fmu.preview.params import PreviewParams
 from controller_fmu.preview.signals import PreviewSignals
 from controller_fmu.zhang2022.params import ZhangParams
 from controller_fmu.zhang2022.signals import ZhangSignals
-from modelkit.signal import Signal
-from modelkit.vocabulary import Gear, Pose, Prompt
+from modelkit.signal import Group, Role, Signal
+from modelkit.vocabulary import ANYWHERE, Gear, Pose, Prompt
 
 GUO = "Guo 2015"
 HOUSE = "chosen; the source states none"
@@ -95,7 +95,7 @@ class Reason(IntEnum):
 class ControllerInput(NamedTuple):
     """From the vehicle."""
 
-    odometry: Pose = Pose()
+    odometry: Annotated[Pose, Group("rear-axle midpoint as the car believes it")] = Pose()
     measured_speed: Annotated[float, Signal("m/s", "speed, reverse negative")] = 0.0
     steering_wheel_angle: Annotated[float, Signal("rad", "steering-wheel angle, left positive")] = 0.0
     gear: Annotated[int, Signal("1", "selector position", states=Gear)] = Gear.PARK
@@ -121,7 +121,7 @@ class Segment(NamedTuple):
 class Path(NamedTuple):
     """The planned path: a start pose and pieces driven in reverse from it."""
 
-    start: Pose = Pose()
+    start: Annotated[Pose, Group("where the path starts")] = Pose()
     segments: tuple[Segment, ...] = (Segment(),) * 3
 
 
@@ -139,14 +139,18 @@ class ControllerOutput(NamedTuple):
     brake_request: Annotated[bool, Signal("1", "the controller brakes to standstill and holds")] = False
     phase: Annotated[int, Signal("1", "state of the manoeuvre chart", states=Phase)] = 0
     reason: Annotated[int, Signal("1", "why the controller failed", states=Reason)] = 0
-    shifts: Annotated[int, Signal("1", "manoeuvres so far, the first reverse counts one")] = 0
-    reference: Pose = Pose()
-    lateral_error: Annotated[float, Signal("m", "y of the car minus y of the reference, in the slot's frame")] = 0.0
-    heading_error: Annotated[float, Signal("rad", "heading of the car minus heading of the reference")] = 0.0
-    path: Path = Path()
-    zhang2022: ZhangSignals = ZhangSignals()
-    hsic: HsicSignals = HsicSignals()
-    preview: PreviewSignals = PreviewSignals()
+    shifts: Annotated[int, Signal("1", "manoeuvres so far, the first reverse counts one"), Role.LOCAL] = 0
+    reference: Annotated[Pose, Role.LOCAL, Group("point of the path beside the rear-axle midpoint")] = Pose()
+    lateral_error: Annotated[
+        float, Signal("m", "y of the car minus y of the reference, in the slot's frame"), Role.LOCAL
+    ] = 0.0
+    heading_error: Annotated[float, Signal("rad", "heading of the car minus heading of the reference"), Role.LOCAL] = (
+        0.0
+    )
+    path: Annotated[Path, Role.LOCAL] = Path()
+    zhang2022: Annotated[ZhangSignals, Role.LOCAL] = ZhangSignals()
+    hsic: Annotated[HsicSignals, Role.LOCAL] = HsicSignals()
+    preview: Annotated[PreviewSignals, Role.LOCAL] = PreviewSignals()
     apa: ApaSignals = ApaSignals()
 
 
@@ -157,12 +161,18 @@ class NtbptParams(NamedTuple):
     k2: Annotated[float, Signal("1/m", "path tracking, heading gain", 0.0, 100.0, GUO)] = 0.8
     k3: Annotated[float, Signal("1/m2", "point tracking, distance gain", 0.0, 100.0, GUO)] = 1.0
     k4: Annotated[float, Signal("1/m", "point tracking, heading gain", 0.0, 100.0, GUO)] = 4.0
-    radius: Annotated[float, Signal("m", "largest radius of both arcs", 0.5, 100.0, GUO + ", eq. (9)")] = 5.5
+    radius: Annotated[float, Signal("m", "largest radius of both arcs", 0.5, 100.0, GUO + ", eq. (9)"), Role.FIXED] = (
+        5.5
+    )
     radius_reserve: Annotated[
-        float, Signal("1", "smallest planned radius over the car's smallest", 1.0, 3.0, HOUSE)
+        float, Signal("1", "smallest planned radius over the car's smallest", 1.0, 3.0, HOUSE), Role.FIXED
     ] = 1.05
-    q2_distance: Annotated[float, Signal("m", "Q1 to Q2 along the tangent", 0.1, 10.0, GUO + ", Table 2")] = 1.0
-    q4_distance: Annotated[float, Signal("m", "Q3 to Q4 straight ahead", 0.1, 10.0, GUO + ", Table 2")] = 2.5
+    q2_distance: Annotated[
+        float, Signal("m", "Q1 to Q2 along the tangent", 0.1, 10.0, GUO + ", Table 2"), Role.FIXED
+    ] = 1.0
+    q4_distance: Annotated[float, Signal("m", "Q3 to Q4 straight ahead", 0.1, 10.0, GUO + ", Table 2"), Role.FIXED] = (
+        2.5
+    )
 
 
 class ThresholdParams(NamedTuple):
@@ -233,12 +243,12 @@ class ControllerParams(NamedTuple):
     steering_wheel_rate: Annotated[
         float, Signal("rad/s", "largest steering-wheel rate", 0.01, 100.0, GUO + ", Table 1")
     ] = 570.0 * pi / 180.0
-    target: Pose = Pose(-7.608, -3.056, 0.0)
-    ntbpt: NtbptParams = NtbptParams()
-    threshold: ThresholdParams = ThresholdParams()
-    prompting: PromptParams = PromptParams()
-    limit: LimitParams = LimitParams()
+    target: Annotated[Pose, Group("pose of the rear-axle midpoint to park at", ANYWHERE)] = Pose(-7.608, -3.056, 0.0)
+    ntbpt: Annotated[NtbptParams, Role.TUNABLE] = NtbptParams()
+    threshold: Annotated[ThresholdParams, Role.TUNABLE] = ThresholdParams()
+    prompting: Annotated[PromptParams, Role.TUNABLE] = PromptParams()
+    limit: Annotated[LimitParams, Role.TUNABLE] = LimitParams()
     zhang2022: ZhangParams = ZhangParams()
     hsic: HsicParams = HsicParams()
-    preview: PreviewParams = PreviewParams()
+    preview: Annotated[PreviewParams, Role.TUNABLE] = PreviewParams()
     apa: ApaParams = ApaParams()

@@ -1,9 +1,13 @@
-"""Who feeds whom: an output and an input of the same name are connected, if type and unit agree."""
+"""Who feeds whom: an output and an input of the same name are connected, if type and unit agree.
+
+Local variables are not connected: other tools could not.
+"""
 
 from collections.abc import Sequence
 from typing import NamedTuple
 
 from modelkit.model import Model
+from modelkit.signal import Role
 from modelkit.variables import Variable, variables
 
 
@@ -45,7 +49,9 @@ def connections(parts: Sequence[Part]) -> list[Wire]:
 
     Raises ``CannotConnectError`` if a pair differs in type or unit, or if two parts offer the same input.
     """
-    places = [{item.name: place for place, item in enumerate(part.outputs)} for part in parts]
+    places = [
+        {item.name: place for place, item in enumerate(part.outputs) if Role.LOCAL not in item.roles} for part in parts
+    ]
     wires = []
     for target, receiver in enumerate(parts):
         for place, wanted in enumerate(receiver.inputs):

@@ -4,6 +4,8 @@ from collections.abc import Callable
 from types import ModuleType
 from typing import Any, NamedTuple
 
+from modelkit.variables import variables, with_values
+
 
 class SampledSystem(NamedTuple):
     """One of several sampled systems in a model: it alone acts while the choosing parameter has one of its values."""
@@ -17,6 +19,8 @@ class SampledSystem(NamedTuple):
     """``sample(own, inputs, params, period_ns) -> own``: its memory a sample later."""
     outputs: Callable[..., Any]
     """``outputs(own, params) -> outputs``: what is held until the next sample."""
+    own: tuple[str, ...] = ()
+    """Parameters, inputs and outputs that mean something to this system and not to every other: names, or groups."""
 
 
 class SampledSystems(NamedTuple):
@@ -75,6 +79,15 @@ class Terminal(NamedTuple):
     """
 
 
+class View(NamedTuple):
+    """What of a model is shown to others, if not all of it. The code is the same."""
+
+    preset: tuple[tuple[str, Any], ...] = ()
+    """(parameter, value) of parameters that start with another value than their default and are not shown."""
+    hidden: frozenset[str] = frozenset()
+    """Variables that are not shown; they keep their start values."""
+
+
 class Model(NamedTuple):
     """A sampled or continuous model as pure functions over NamedTuples.
 
@@ -101,3 +114,29 @@ class Model(NamedTuple):
     """What both functions are made of, if they are its: compiled code then touches the chosen memory only."""
     terminals: tuple[Terminal, ...] = ()
     """Groups of its inputs and outputs; none: all inputs are one and all outputs another."""
+    sampled: bool = False
+    """It acts at instants of its own and holds its outputs between them."""
+    view: View = View()
+
+    def first_params(self) -> Any:
+        """Return the parameters it starts with: the defaults, but for those that its view presets."""
+        return with_values(self.params, dict(self.view.preset))
+
+    def only(self, value: int, name: str, description: str) -> "Model":
+        """Return the model with the system of ``value`` alone: what only others own is not shown."""
+        assert self.systems is not None
+        chosen = next(item for item in self.systems.systems if value in item.values)
+        known = [item.name for cls in (self.params, self.inputs, self.outputs) for item in variables(cls)]
+        owned = {item for item in known if any(_is_in(item, system.own) for system in self.systems.systems)}
+        hidden = frozenset(item for item in owned if not _is_in(item, chosen.own))
+        view = View(((self.systems.parameter, int(value)),), hidden)
+        return self._replace(name=name, description=description, view=view)
+
+    def shows(self, name: str) -> bool:
+        """Return whether others see the variable ``name``."""
+        return name not in self.view.hidden and name not in dict(self.view.preset)
+
+
+def _is_in(name: str, groups: tuple[str, ...]) -> bool:
+    """Return whether the variable ``name`` is one of ``groups`` or in one of them."""
+    return any(name == group or name.startswith((f"{group}.", f"{group}[")) for group in groups)

@@ -1,6 +1,6 @@
-"""The unit and meaning of one number, written once, beside its type."""
+"""The unit and meaning of one number, and what others may do with it, written once, beside its type."""
 
-from enum import IntEnum
+from enum import Enum, IntEnum
 from math import inf
 from typing import NamedTuple
 
@@ -23,3 +23,25 @@ class Signal(NamedTuple):
     """Where a parameter's default comes from."""
     states: type[IntEnum] | None = None
     """Names of the values of an integer mode."""
+
+
+class Role(Enum):
+    """What others may do with a variable: stands beside its ``Signal``, or on a group for all that is in it."""
+
+    LOCAL = "local"
+    """Output for logs, judges and plots: no other model takes it, so it needs no port."""
+    SAMPLED = "sampled"
+    """Output that changes at instants and is held between them."""
+    TUNABLE = "tunable"
+    """Parameter that may be changed between two steps; it holds from the next step on."""
+    FIXED = "fixed"
+    """Parameter that may not, in a group of tunable ones: what it says is part of the memory."""
+
+
+class Group(NamedTuple):
+    """Annotation of a field that is a NamedTuple: ``start: Annotated[Pose, Group("at the start")] = Pose()``."""
+
+    text: str
+    """What it is; stands before the meaning of each of its fields."""
+    limits: tuple[tuple[str, float], ...] = ()
+    """(unit, largest magnitude) for fields in it that have no range of their own."""

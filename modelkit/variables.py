@@ -6,13 +6,15 @@ order of the fields, depth first, and is the same everywhere.
 """
 
 import typing
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import cache
+from math import isfinite
 from typing import Any, NamedTuple
 
-from modelkit.signal import Signal
+from modelkit.signal import Group, Role, Signal
 
 UNDOCUMENTED = Signal("1", "")
+OPPOSITE = {Role.TUNABLE: Role.FIXED, Role.FIXED: Role.TUNABLE}
 
 
 class Variable(NamedTuple):
@@ -23,6 +25,47 @@ class Variable(NamedTuple):
     """``float``, ``int`` or ``bool``."""
     signal: Signal
     start: Any
+    roles: frozenset[Role] = frozenset()
+    """Its own, and those of the groups it is in."""
+
+
+def limits_of(signal: Signal) -> tuple[float, float]:
+    """Return the smallest and the largest value allowed; a mode's are those of its states."""
+    low, high = signal.low, signal.high
+    if signal.states is not None:
+        low, high = max(low, min(signal.states)), min(high, max(signal.states))
+    return low, high
+
+
+class _Above(NamedTuple):
+    """What the groups above a field say of it."""
+
+    signal: Signal = UNDOCUMENTED
+    roles: frozenset[Role] = frozenset()
+    groups: tuple[Group, ...] = ()
+
+    def and_marks(self, marks: Iterable[Any]) -> "_Above":
+        """Return the same with the annotations of a field below: the nearer one wins."""
+        signal, roles, groups = self
+        for mark in marks:
+            if isinstance(mark, Signal):
+                signal = mark
+            elif isinstance(mark, Role):
+                roles = roles - {OPPOSITE.get(mark)} | {mark}
+            elif isinstance(mark, Group):
+                groups = (*groups, mark)
+        return _Above(signal, roles, groups)
+
+    def variable(self, name: str, kind: type, start: Any) -> Variable:
+        """Return the variable with the texts of its groups, and their limits if it has none."""
+        signal = self.signal
+        for group in reversed(self.groups):
+            if signal.text:
+                signal = signal._replace(text=f"{group.text}: {signal.text}")
+            limit = dict(group.limits).get(signal.unit)
+            if limit is not None and not isfinite(signal.low) and not isfinite(signal.high):
+                signal = signal._replace(low=-limit, high=limit)
+        return Variable(name, kind, signal, start, self.roles)
 
 
 def variables(cls: type[Any], value: Any = None) -> list[Variable]:
@@ -31,12 +74,12 @@ def variables(cls: type[Any], value: Any = None) -> list[Variable]:
     Raises ``TypeError`` if a field is neither float, int, bool, NamedTuple nor tuple of these.
     """
     shape: Any = cls  # mypy does not take a type for hashable
-    return list(_defaults(shape) if value is None else _walk(shape, value, "", UNDOCUMENTED))
+    return list(_defaults(shape) if value is None else _walk(shape, value, "", _Above()))
 
 
 @cache
 def _defaults(cls: type[Any]) -> tuple[Variable, ...]:
-    return tuple(_walk(cls, cls(), "", UNDOCUMENTED))
+    return tuple(_walk(cls, cls(), "", _Above()))
 
 
 @cache
@@ -103,19 +146,18 @@ def _scalar_source(value: Any, item: str) -> str:
     return f"bool({item})" if isinstance(value, bool) else f"int({item})" if isinstance(value, int) else item
 
 
-def _walk(hint: Any, value: Any, name: str, signal: Signal) -> Iterator[Variable]:
+def _walk(hint: Any, value: Any, name: str, above: _Above) -> Iterator[Variable]:
     if typing.get_origin(hint) is typing.Annotated:
-        marks = [mark for mark in hint.__metadata__ if isinstance(mark, Signal)]
-        yield from _walk(hint.__origin__, value, name, marks[0] if marks else signal)
+        yield from _walk(hint.__origin__, value, name, above.and_marks(hint.__metadata__))
     elif hint in (float, int, bool):
-        yield Variable(name, hint, signal, hint(value))
+        yield above.variable(name, hint, hint(value))
     elif hasattr(hint, "_fields"):
         hints = _hints(hint)
         for field, item in zip(hint._fields, value, strict=True):
-            yield from _walk(hints[field], item, f"{name}.{field}" if name else field, signal)
+            yield from _walk(hints[field], item, f"{name}.{field}" if name else field, above)
     elif typing.get_origin(hint) is tuple:
         element = typing.get_args(hint)[0]
         for number, item in enumerate(value, start=1):
-            yield from _walk(element, item, f"{name}[{number}]", signal)
+            yield from _walk(element, item, f"{name}[{number}]", above)
     else:
         raise TypeError(f"{name}: a model field is float, int, bool, NamedTuple or tuple, not {hint}")

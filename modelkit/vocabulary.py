@@ -14,9 +14,13 @@ from modelkit.signal import Signal
 class Pose(NamedTuple):
     """Position and heading in the plane."""
 
-    x: Annotated[float, Signal("m", "x; of a car: at the midpoint of its rear axle")] = 0.0
-    y: Annotated[float, Signal("m", "y; of a car: at the midpoint of its rear axle")] = 0.0
+    x: Annotated[float, Signal("m", "x")] = 0.0
+    y: Annotated[float, Signal("m", "y")] = 0.0
     heading: Annotated[float, Signal("rad", "heading, counter-clockwise from the x axis")] = 0.0
+
+
+ANYWHERE = (("m", 1e8), ("rad", 100.0))
+"""Limits of a pose that is a parameter: coordinates of a map will do, a heading of many turns will not."""
 
 
 class Prompt(IntEnum):
@@ -45,9 +49,9 @@ class Gear(IntEnum):
 class SensorMount(NamedTuple):
     """Where a sensor sits on the car and where it looks."""
 
-    x: Annotated[float, Signal("m", "ahead of the rear axle")] = 0.0
-    y: Annotated[float, Signal("m", "to the left of the car's middle")] = 0.0
-    yaw: Annotated[float, Signal("rad", "direction of its axis, left positive")] = 0.0
+    x: Annotated[float, Signal("m", "ahead of the rear axle", -30.0, 30.0)] = 0.0
+    y: Annotated[float, Signal("m", "to the left of the car's middle", -10.0, 10.0)] = 0.0
+    yaw: Annotated[float, Signal("rad", "direction of its axis, left positive", -10.0, 10.0)] = 0.0
 
 
 SENSOR_MOUNTS = (

@@ -10,7 +10,7 @@ The position kept is the rear-axle midpoint, whose lateral speed is v_y - b r.
 import math
 from typing import Annotated, NamedTuple
 
-from modelkit.signal import Signal
+from modelkit.signal import Role, Signal
 from modelkit.vocabulary import Pose
 
 GRAVITY = 9.81
@@ -38,7 +38,9 @@ class RoadParams(NamedTuple):
     bank: Annotated[float, Signal("1", "rise per metre along the world's y", -1.0, 1.0)] = 0.0
     grip: tuple[
         Annotated[
-            float, Signal("1", "friction against a dry road; front left, front right, rear left, rear right", 0.0, 2.0)
+            float,
+            Signal("1", "friction against a dry road; front left, front right, rear left, rear right", 0.0, 2.0),
+            Role.TUNABLE,
         ],
         ...,
     ] = (1.0, 1.0, 1.0, 1.0)

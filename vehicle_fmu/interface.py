@@ -4,8 +4,8 @@ from enum import IntEnum
 from math import pi
 from typing import Annotated, NamedTuple
 
-from modelkit.signal import Signal
-from modelkit.vocabulary import Gear, Pose, Prompt
+from modelkit.signal import Group, Role, Signal
+from modelkit.vocabulary import ANYWHERE, Gear, Pose, Prompt
 from vehicle_fmu.chassis import ChassisParams, RoadParams
 from vehicle_fmu.double_track import DoubleTrackParams
 from vehicle_fmu.odometry import OdometryParams
@@ -57,8 +57,8 @@ class VehicleInput(NamedTuple):
 class VehicleOutput(NamedTuple):
     """To the controller, the log and the judge."""
 
-    pose: Pose = Pose()
-    odometry: Pose = Pose()
+    pose: Annotated[Pose, Group("rear-axle midpoint")] = Pose()
+    odometry: Annotated[Pose, Group("rear-axle midpoint as the car believes it")] = Pose()
     speed: Annotated[float, Signal("m/s", "speed of the rear-axle midpoint, reverse negative")] = 0.0
     measured_speed: Annotated[float, Signal("m/s", "speed as the wheel sensors tell it, reverse negative")] = 0.0
     steering_wheel_angle: Annotated[float, Signal("rad", "steering-wheel angle, left positive")] = 0.0
@@ -69,7 +69,7 @@ class VehicleOutput(NamedTuple):
     vehicle_fault: Annotated[int, Signal("1", "why the vehicle brakes by itself", states=VehicleFault)] = 0
     distance: Annotated[float, Signal("m", "distance driven, both directions counted")] = 0.0
     ultrasonic: tuple[
-        Annotated[float, Signal("m", "distance heard: 1-4 front, 5-8 rear, 9-10 left, 11-12 right")], ...
+        Annotated[float, Signal("m", "distance heard: 1-4 front, 5-8 rear, 9-10 left, 11-12 right"), Role.SAMPLED], ...
     ] = (0.0,) * 12
     clearance: Annotated[float, Signal("m", "outline to the nearest thing of the scene; 1e9: nothing there")] = NEVER
     contact: Annotated[bool, Signal("1", "the outline touches something")] = False
@@ -81,15 +81,21 @@ class SteeringParams(NamedTuple):
     """Steering wheel, column and actuator."""
 
     ratio: Annotated[float, Signal("1", "steering-wheel angle over front-wheel angle", 1.0, 60.0, GUO)] = 19.0
-    angle_limit: Annotated[float, Signal("rad", "largest steering-wheel angle", 0.1, 20.0, GUO)] = 570.0 * pi / 180.0
-    rate_limit: Annotated[float, Signal("rad/s", "largest steering-wheel rate", 0.01, 100.0, GUO)] = 570.0 * pi / 180.0
+    angle_limit: Annotated[float, Signal("rad", "largest steering-wheel angle", 0.1, 20.0, GUO), Role.TUNABLE] = (
+        570.0 * pi / 180.0
+    )
+    rate_limit: Annotated[float, Signal("rad/s", "largest steering-wheel rate", 0.01, 100.0, GUO), Role.TUNABLE] = (
+        570.0 * pi / 180.0
+    )
     dead_time: Annotated[float, Signal("s", "from a request to the first movement", 0.0, 1.0, HOUSE)] = 0.0
-    lag: Annotated[float, Signal("s", "time constant behind the request", 0.0, 2.0, HOUSE)] = 0.0
+    lag: Annotated[float, Signal("s", "time constant behind the request", 0.0, 2.0, HOUSE), Role.TUNABLE] = 0.0
     backlash: Annotated[float, Signal("rad", "steering-wheel angle without effect on the wheels", 0.0, 1.0, HOUSE)] = (
         0.0
     )
     standstill_rate: Annotated[
-        float, Signal("rad/s", "largest steering-wheel rate at standstill; 0: as when moving", 0.0, 100.0, HOUSE)
+        float,
+        Signal("rad/s", "largest steering-wheel rate at standstill; 0: as when moving", 0.0, 100.0, HOUSE),
+        Role.TUNABLE,
     ] = 0.0
 
 
@@ -110,7 +116,9 @@ class DriveParams(NamedTuple):
     brake_force_limit: Annotated[float, Signal("N", "largest brake force, all wheels", 0.0, 1e5, HOUSE)] = 12000.0
     drive_lag: Annotated[float, Signal("s", "lag of the drive force", 0.0, 2.0, HOUSE)] = 0.10
     brake_lag: Annotated[float, Signal("s", "lag of the brake force", 0.0, 2.0, HOUSE)] = 0.05
-    hold_deceleration: Annotated[float, Signal("m/s2", "brake force over mass while standing", 0.0, 20.0, HOUSE)] = 4.0
+    hold_deceleration: Annotated[
+        float, Signal("m/s2", "brake force over mass while standing", 0.0, 20.0, HOUSE), Role.FIXED
+    ] = 4.0
     creep_force: Annotated[float, Signal("N", "force at idle in D and R at rest; 0: none", 0.0, 5000.0, HOUSE)] = 0.0
     creep_speed: Annotated[float, Signal("m/s", "speed at which the creep force is gone", 0.1, 10.0, HOUSE)] = 2.0
 
@@ -119,7 +127,7 @@ class ProfilePoint(NamedTuple):
     """One corner of the driver's speed profile."""
 
     at: Annotated[
-        float, Signal("1", "time [s] or driven distance [m] from which the speed holds; 1e9: unused", 0.0)
+        float, Signal("1", "time [s] or driven distance [m] from which the speed holds; 1e9: unused", 0.0, NEVER)
     ] = NEVER
     speed: Annotated[float, Signal("m/s", "speed the driver wants, >= 0", 0.0, 50.0)] = 0.0
 
@@ -127,22 +135,26 @@ class ProfilePoint(NamedTuple):
 class DriverParams(NamedTuple):
     """The person behind the wheel: speed is theirs, the steering is the controller's."""
 
-    profile: tuple[ProfilePoint, ...] = (ProfilePoint(0.0, 0.5),) + (ProfilePoint(),) * 7
-    profile_over_distance: Annotated[bool, Signal("1", "profile points are distances, not times")] = False
+    profile: Annotated[tuple[ProfilePoint, ...], Role.FIXED] = (ProfilePoint(0.0, 0.5),) + (ProfilePoint(),) * 7
+    profile_over_distance: Annotated[bool, Signal("1", "profile points are distances, not times"), Role.FIXED] = False
     reaction_delay: Annotated[float, Signal("s", "from a prompt to its obedience", 0.0, 10.0, HOUSE)] = 0.3
     obeys_stop: Annotated[bool, Signal("1", "stops when prompted")] = True
     obeys_direction: Annotated[bool, Signal("1", "changes direction when prompted")] = True
     obeys_slow_down: Annotated[bool, Signal("1", "slows down when prompted")] = True
-    takeover_time: Annotated[float, Signal("s", "takes over at this time; 1e9: never", 0.0)] = NEVER
-    brake_time: Annotated[float, Signal("s", "brakes to standstill from this time on; 1e9: never", 0.0)] = NEVER
-    grab_time: Annotated[float, Signal("s", "grabs the wheel and turns it from this time on; 1e9: never", 0.0)] = NEVER
+    takeover_time: Annotated[float, Signal("s", "takes over at this time; 1e9: never", 0.0, NEVER)] = NEVER
+    brake_time: Annotated[float, Signal("s", "brakes to standstill from this time on; 1e9: never", 0.0, NEVER)] = NEVER
+    grab_time: Annotated[
+        float, Signal("s", "grabs the wheel and turns it from this time on; 1e9: never", 0.0, NEVER)
+    ] = NEVER
     grab_angle: Annotated[float, Signal("rad", "steering-wheel angle turned to when grabbing", -20.0, 20.0)] = 0.0
     speed_error: Annotated[float, Signal("1", "drives faster than meant by this share", -1.0, 5.0)] = 0.0
     wobble: Annotated[float, Signal("m/s", "amplitude of the speed's swing about the one meant", 0.0, 10.0)] = 0.0
     wobble_period: Annotated[float, Signal("s", "period of that swing", 0.1, 1000.0)] = 3.0
-    apa_switch_time: Annotated[float, Signal("s", "switches the parking assist on; 1e9: never", 0.0)] = NEVER
-    apa_switch_off_time: Annotated[float, Signal("s", "switches it off again; 1e9: never", 0.0)] = NEVER
-    confirm_time: Annotated[float, Signal("s", "presses the confirm button for half a second; 1e9: never", 0.0)] = NEVER
+    apa_switch_time: Annotated[float, Signal("s", "switches the parking assist on; 1e9: never", 0.0, NEVER)] = NEVER
+    apa_switch_off_time: Annotated[float, Signal("s", "switches it off again; 1e9: never", 0.0, NEVER)] = NEVER
+    confirm_time: Annotated[
+        float, Signal("s", "presses the confirm button for half a second; 1e9: never", 0.0, NEVER)
+    ] = NEVER
     confirms_when_asked: Annotated[bool, Signal("1", "presses the confirm button when prompted to")] = True
 
 
@@ -154,10 +166,10 @@ class VehicleParams(NamedTuple):
     front_overhang: Annotated[float, Signal("m", "front axle to bumper", 0.0, 5.0, HOUSE)] = 0.80
     rear_overhang: Annotated[float, Signal("m", "rear axle to bumper", 0.0, 5.0, HOUSE)] = 0.60
     width: Annotated[float, Signal("m", "body width", 0.1, 5.0, HOUSE)] = 1.65
-    start: Pose = Pose()
+    start: Annotated[Pose, Group("rear-axle midpoint at time zero", ANYWHERE)] = Pose()
     steering: SteeringParams = SteeringParams()
-    drive: DriveParams = DriveParams()
-    driver: DriverParams = DriverParams()
+    drive: Annotated[DriveParams, Role.TUNABLE] = DriveParams()
+    driver: Annotated[DriverParams, Role.TUNABLE] = DriverParams()
     chassis: ChassisParams = ChassisParams()
     single_track: SingleTrackParams = SingleTrackParams()
     double_track: DoubleTrackParams = DoubleTrackParams()

@@ -10,7 +10,7 @@ circle of radius L / tan(o) instead of a straight line.
 import math
 from typing import Annotated, NamedTuple
 
-from modelkit.signal import Signal
+from modelkit.signal import Role, Signal
 from modelkit.vocabulary import Pose
 
 HOUSE = "chosen; the source states none"
@@ -20,8 +20,12 @@ class OdometryParams(NamedTuple):
     """Errors of wheel-speed and steering sensors; perfect by default."""
 
     perfect: Annotated[bool, Signal("1", "the controller is given the true pose and speed")] = True
-    radius_error: Annotated[float, Signal("1", "relative error of the wheel radius", -0.5, 0.5, HOUSE)] = 0.0
-    steering_offset: Annotated[float, Signal("rad", "error of the front-wheel angle measured", -0.5, 0.5, HOUSE)] = 0.0
+    radius_error: Annotated[
+        float, Signal("1", "relative error of the wheel radius", -0.5, 0.5, HOUSE), Role.TUNABLE
+    ] = 0.0
+    steering_offset: Annotated[
+        float, Signal("rad", "error of the front-wheel angle measured", -0.5, 0.5, HOUSE), Role.TUNABLE
+    ] = 0.0
     tick: Annotated[float, Signal("m", "way rolled per wheel pulse; 0: no steps", 0.0, 1.0, HOUSE)] = 0.0
     steering_resolution: Annotated[
         float, Signal("rad", "step of the front-wheel angle measured; 0: none", 0.0, 0.5, HOUSE)

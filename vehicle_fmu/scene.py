@@ -13,27 +13,29 @@ from modelkit.vocabulary import Pose
 
 HOUSE = "chosen; the source states none"
 FOREVER = 1e9
+FAR_OUT = 1e8
+"""Largest coordinate [m]: that of a map will do."""
 
 
 class Obstacle(NamedTuple):
     """An oriented box that stands in the way for some time."""
 
-    x: Annotated[float, Signal("m", "x of the centre")] = 0.0
-    y: Annotated[float, Signal("m", "y of the centre")] = 0.0
-    heading: Annotated[float, Signal("rad", "direction of its length")] = 0.0
+    x: Annotated[float, Signal("m", "x of the centre", -FAR_OUT, FAR_OUT)] = 0.0
+    y: Annotated[float, Signal("m", "y of the centre", -FAR_OUT, FAR_OUT)] = 0.0
+    heading: Annotated[float, Signal("rad", "direction of its length", -100.0, 100.0)] = 0.0
     length: Annotated[float, Signal("m", "length; 0: unused", 0.0, 1000.0)] = 0.0
     width: Annotated[float, Signal("m", "width", 0.0, 1000.0)] = 0.0
-    appear_at: Annotated[float, Signal("s", "there from this time on", 0.0)] = 0.0
-    disappear_at: Annotated[float, Signal("s", "gone from this time on; 1e9: never", 0.0)] = FOREVER
+    appear_at: Annotated[float, Signal("s", "there from this time on", 0.0, FOREVER)] = 0.0
+    disappear_at: Annotated[float, Signal("s", "gone from this time on; 1e9: never", 0.0, FOREVER)] = FOREVER
 
 
 class Kerb(NamedTuple):
     """A straight kerb from point 1 to point 2."""
 
-    x1: Annotated[float, Signal("m", "x of the first end")] = 0.0
-    y1: Annotated[float, Signal("m", "y of the first end")] = 0.0
-    x2: Annotated[float, Signal("m", "x of the second end")] = 0.0
-    y2: Annotated[float, Signal("m", "y of the second end")] = 0.0
+    x1: Annotated[float, Signal("m", "x of the first end", -FAR_OUT, FAR_OUT)] = 0.0
+    y1: Annotated[float, Signal("m", "y of the first end", -FAR_OUT, FAR_OUT)] = 0.0
+    x2: Annotated[float, Signal("m", "x of the second end", -FAR_OUT, FAR_OUT)] = 0.0
+    y2: Annotated[float, Signal("m", "y of the second end", -FAR_OUT, FAR_OUT)] = 0.0
     height: Annotated[float, Signal("m", "height; 0: unused", 0.0, 10.0)] = 0.0
 
 

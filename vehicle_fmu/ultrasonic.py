@@ -14,7 +14,7 @@ from typing import Annotated, NamedTuple
 from modelkit.geometry import Box, Point, cone_box, line_box, reach
 from modelkit.maths import clamp
 from modelkit.random import normal, seed_state, uniform
-from modelkit.signal import Signal
+from modelkit.signal import Role, Signal
 from modelkit.vocabulary import SENSOR_MOUNTS, Pose, SensorMount
 from vehicle_fmu.scene import HOUSE, SceneParams, is_there, obstacle_box
 
@@ -30,8 +30,8 @@ class UltrasonicParams(NamedTuple):
     max_range: Annotated[float, Signal("m", "farthest distance heard", 0.1, 100.0, USUAL)] = 5.0
     resolution: Annotated[float, Signal("m", "step of a reading; 0: none", 0.0, 1.0, USUAL)] = 0.01
     cycle: Annotated[float, Signal("s", "time between readings", 1e-3, 10.0, USUAL)] = 0.04
-    noise: Annotated[float, Signal("m", "standard deviation of a reading", 0.0, 10.0, HOUSE)] = 0.0
-    dropout: Annotated[float, Signal("1", "probability that a reading is lost", 0.0, 1.0, HOUSE)] = 0.0
+    noise: Annotated[float, Signal("m", "standard deviation of a reading", 0.0, 10.0, HOUSE), Role.TUNABLE] = 0.0
+    dropout: Annotated[float, Signal("1", "probability that a reading is lost", 0.0, 1.0, HOUSE), Role.TUNABLE] = 0.0
     kerb_height: Annotated[float, Signal("m", "kerbs lower than this are not heard", 0.0, 10.0, HOUSE)] = 0.08
     seed: Annotated[int, Signal("1", "seed of noise and dropout", 0, 2147483647)] = 1
 

@@ -5,7 +5,7 @@ from math import pi
 from typing import Annotated, NamedTuple
 
 from controller_fmu.apa.slot import Slot
-from modelkit.signal import Signal
+from modelkit.signal import Role, Signal
 from modelkit.vocabulary import SENSOR_MOUNTS, SensorMount
 
 HOUSE = "chosen; the source states none"
@@ -55,7 +55,7 @@ class PlanParams(NamedTuple):
 class ApaDriveParams(NamedTuple):
     """How the path is driven and tracked."""
 
-    longitudinal: Annotated[int, Signal("1", "who drives", states=Longitudinal)] = Longitudinal.OWN_SPEED
+    longitudinal: Annotated[int, Signal("1", "who drives", states=Longitudinal), Role.FIXED] = Longitudinal.OWN_SPEED
     k1: Annotated[float, Signal("1/m2", "path tracking, distance gain", 0.0, 100.0, HOUSE)] = 2.0
     k2: Annotated[float, Signal("1/m", "path tracking, heading gain", 0.0, 100.0, HOUSE)] = 2.4
     speed: Annotated[float, Signal("m/s", "largest speed while parking", 0.1, 1.38, HOUSE)] = 0.8
@@ -131,7 +131,7 @@ class ApaParams(NamedTuple):
     width: Annotated[float, Signal("m", "body width", 0.1, 5.0, HOUSE)] = 1.65
     sensors: SensorParams = SensorParams()
     plan: PlanParams = PlanParams()
-    drive: ApaDriveParams = ApaDriveParams()
+    drive: Annotated[ApaDriveParams, Role.TUNABLE] = ApaDriveParams()
     search: SearchParams = SearchParams()
-    end: EndParams = EndParams()
-    guard: GuardParams = GuardParams()
+    end: Annotated[EndParams, Role.TUNABLE] = EndParams()
+    guard: Annotated[GuardParams, Role.TUNABLE] = GuardParams()

@@ -5,7 +5,7 @@ from typing import Annotated, NamedTuple
 
 from controller_fmu.apa.chart import Mode
 from controller_fmu.apa.slot import Slot
-from modelkit.signal import Signal
+from modelkit.signal import Group, Role, Signal
 from modelkit.vocabulary import Pose
 
 
@@ -33,7 +33,7 @@ class PlannedPiece(NamedTuple):
 class PlannedMove(NamedTuple):
     """The move being driven."""
 
-    start: Pose = Pose()
+    start: Annotated[Pose, Group("where the move starts")] = Pose()
     direction: Annotated[int, Signal("1", "1 forward, -1 in reverse, 0 none")] = 0
     pieces: tuple[PlannedPiece, ...] = (PlannedPiece(),) * 7
 
@@ -44,14 +44,14 @@ class ApaSignals(NamedTuple):
     mode: Annotated[int, Signal("1", "state of the outer chart", states=Mode)] = 0
     alarm: Annotated[int, Signal("1", "warning on the display", states=Alarm)] = 0
     confirm: Annotated[bool, Signal("1", "the display asks to confirm the slot")] = False
-    slots: Annotated[int, Signal("1", "valid slots remembered")] = 0
-    missing: Annotated[float, Signal("m", "length that the last refused slot lacks", 0.0)] = 0.0
-    slot: Slot = Slot()
-    corner_b: Pose = Pose()
-    """Corner B in the world."""
-    target: Pose = Pose()
-    """Pose to park at, in the world."""
-    moves: Annotated[int, Signal("1", "moves of the plan still to drive")] = 0
-    parking_time: Annotated[float, Signal("s", "since the driver confirmed", 0.0)] = 0.0
-    iso_spare: Annotated[float, Signal("m", "length (width) of the slot over the shortest of ISO 16787")] = 0.0
-    move: PlannedMove = PlannedMove()
+    slots: Annotated[int, Signal("1", "valid slots remembered"), Role.LOCAL] = 0
+    missing: Annotated[float, Signal("m", "length that the last refused slot lacks", 0.0), Role.LOCAL] = 0.0
+    slot: Annotated[Slot, Role.LOCAL] = Slot()
+    corner_b: Annotated[Pose, Role.LOCAL, Group("corner B in the world")] = Pose()
+    target: Annotated[Pose, Role.LOCAL, Group("pose to park at, in the world")] = Pose()
+    moves: Annotated[int, Signal("1", "moves of the plan still to drive"), Role.LOCAL] = 0
+    parking_time: Annotated[float, Signal("s", "since the driver confirmed", 0.0), Role.LOCAL] = 0.0
+    iso_spare: Annotated[
+        float, Signal("m", "length (width) of the slot over the shortest of ISO 16787"), Role.LOCAL
+    ] = 0.0
+    move: Annotated[PlannedMove, Role.LOCAL] = PlannedMove()

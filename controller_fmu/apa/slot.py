@@ -12,8 +12,8 @@ from typing import Annotated, NamedTuple
 
 from controller_fmu.apa.outline import FAR, Box, Car, Obstacles, grown
 from controller_fmu.slot_frame import SlotFrame, to_world
-from modelkit.signal import Signal
-from modelkit.vocabulary import Pose
+from modelkit.signal import Group, Signal
+from modelkit.vocabulary import ANYWHERE, Pose
 
 
 class Kind(IntEnum):
@@ -41,13 +41,12 @@ class Slot(NamedTuple):
 
     kind: Annotated[int, Signal("1", "how the car will stand", states=Kind)] = Kind.NONE
     side: Annotated[int, Signal("1", "side of the road", states=Side)] = Side.RIGHT
-    a: Pose = Pose()
-    """Corner A in the world; heading: from A along the road."""
-    length: Annotated[float, Signal("m", "corner A to corner B along the road", 0.0)] = 0.0
-    b_out: Annotated[float, Signal("m", "how far corner B stands out further than corner A")] = 0.0
-    depth: Annotated[float, Signal("m", "corner A to the kerb or wall; 50: none seen", 0.0)] = UNSEEN
-    opposite: Annotated[float, Signal("m", "corner A to what lies across the road; 50: none seen", 0.0)] = UNSEEN
-    unsure: Annotated[float, Signal("m", "each corner may lie this much further in than it was found", 0.0)] = 0.0
+    a: Annotated[Pose, Group("corner A in the world, heading along the road", ANYWHERE)] = Pose()
+    length: Annotated[float, Signal("m", "corner A to corner B along the road", 0.0, 1e4)] = 0.0
+    b_out: Annotated[float, Signal("m", "how far corner B stands out further than corner A", -1e3, 1e3)] = 0.0
+    depth: Annotated[float, Signal("m", "corner A to the kerb or wall; 50: none seen", 0.0, 1e4)] = UNSEEN
+    opposite: Annotated[float, Signal("m", "corner A to what lies across the road; 50: none seen", 0.0, 1e4)] = UNSEEN
+    unsure: Annotated[float, Signal("m", "each corner may lie this much further in than it was found", 0.0, 10.0)] = 0.0
 
 
 class Site(NamedTuple):

@@ -3,7 +3,7 @@
 from math import pi
 from typing import Annotated, NamedTuple
 
-from modelkit.signal import Signal
+from modelkit.signal import Role, Signal
 
 PAPER = "HSIC paper"
 ZHANG = "Zhang 2022, Table 1"
@@ -73,5 +73,5 @@ class HsicParams(NamedTuple):
     """Slot, thresholds, gains."""
 
     slot: HsicSlot = HsicSlot()
-    threshold: HsicThresholds = HsicThresholds()
-    gain: HsicGains = HsicGains()
+    threshold: Annotated[HsicThresholds, Role.TUNABLE] = HsicThresholds()
+    gain: Annotated[HsicGains, Role.TUNABLE] = HsicGains()

@@ -4,7 +4,7 @@ from enum import IntEnum
 from math import pi
 from typing import Annotated, NamedTuple
 
-from modelkit.signal import Signal
+from modelkit.signal import Role, Signal
 
 PAPER = "preview paper"
 HOUSE = "chosen; the source states none"
@@ -39,8 +39,8 @@ class RuleTable(IntEnum):
 class RoadPiece(NamedTuple):
     """A piece of road of constant curvature."""
 
-    length: Annotated[float, Signal("m", "length along the road, >= 0; 0: unused", 0.0)] = 0.0
-    curvature: Annotated[float, Signal("1/m", "curvature, left positive")] = 0.0
+    length: Annotated[float, Signal("m", "length along the road, >= 0; 0: unused", 0.0, 1e6)] = 0.0
+    curvature: Annotated[float, Signal("1/m", "curvature, left positive", -10.0, 10.0)] = 0.0
 
 
 ROAD = (
@@ -62,10 +62,10 @@ length decides where in its period the alternation meets the curve, see docs/pre
 class PreviewParams(NamedTuple):
     """Road, preview distances, sequence, speeds and fuzzy sets."""
 
-    method: Annotated[int, Signal("1", "one or two preview points", states=Method)] = Method.DUAL
-    camera: Annotated[int, Signal("1", "where yL and epsL come from", states=Camera)] = Camera.KINEMATICS
-    rules: Annotated[int, Signal("1", "steering rule table", states=RuleTable)] = RuleTable.SYMMETRIC
-    road: tuple[RoadPiece, ...] = ROAD
+    method: Annotated[int, Signal("1", "one or two preview points", states=Method), Role.FIXED] = Method.DUAL
+    camera: Annotated[int, Signal("1", "where yL and epsL come from", states=Camera), Role.FIXED] = Camera.KINEMATICS
+    rules: Annotated[int, Signal("1", "steering rule table", states=RuleTable), Role.FIXED] = RuleTable.SYMMETRIC
+    road: Annotated[tuple[RoadPiece, ...], Role.FIXED] = ROAD
     set_speed: Annotated[float, Signal("m/s", "speed on straights", 0.1, 40.0, PAPER)] = 8.3
     safe_acceleration: Annotated[
         float, Signal("m/s2", "a in the safe speed sqrt(a / |kappa|)", 0.01, 10.0, PAPER + ", (3)")
@@ -93,23 +93,27 @@ class PreviewParams(NamedTuple):
     lateral_gain: Annotated[float, Signal("1", "factor on the mapped yL", 0.01, 100.0, HOUSE)] = 2.0
     heading_gain: Annotated[float, Signal("1", "factor on the mapped epsL", 0.01, 100.0, HOUSE)] = 1.0
     lateral_peaks: Annotated[
-        tuple[float, ...], Signal("1", "peaks of the sets of yL, on [-3, 3]", -10.0, 10.0, HOUSE)
+        tuple[float, ...], Signal("1", "peaks of the sets of yL, on [-3, 3]", -10.0, 10.0, HOUSE), Role.FIXED
     ] = (-3.0, -1.5, 0.0, 1.5, 3.0)
     heading_peaks: Annotated[
-        tuple[float, ...], Signal("1", "peaks of the sets of epsL, on [-3, 3]", -10.0, 10.0, HOUSE)
+        tuple[float, ...], Signal("1", "peaks of the sets of epsL, on [-3, 3]", -10.0, 10.0, HOUSE), Role.FIXED
     ] = (-3.0, -1.5, 0.0, 1.5, 3.0)
     steering_peaks: Annotated[
-        tuple[float, ...], Signal("1", "peaks of the sets of the steering angle, on [-3, 3]", -10.0, 10.0, HOUSE)
+        tuple[float, ...],
+        Signal("1", "peaks of the sets of the steering angle, on [-3, 3]", -10.0, 10.0, HOUSE),
+        Role.FIXED,
     ] = (-3.0, -2.0, -1.0, 0.0, 1.0, 2.0, 3.0)
     speed_peaks: Annotated[
-        tuple[float, ...], Signal("1", "peaks of the sets of the speed error, on [-3, 3]", -10.0, 10.0, HOUSE)
+        tuple[float, ...],
+        Signal("1", "peaks of the sets of the speed error, on [-3, 3]", -10.0, 10.0, HOUSE),
+        Role.FIXED,
     ] = (-0.3, -0.1, 0.0, 0.1, 0.3)
     rate_peaks: Annotated[
-        tuple[float, ...], Signal("1", "peaks of the sets of its rate, on [-3, 3]", -10.0, 10.0, HOUSE)
+        tuple[float, ...], Signal("1", "peaks of the sets of its rate, on [-3, 3]", -10.0, 10.0, HOUSE), Role.FIXED
     ] = (-3.0, -1.5, 0.0, 1.5, 3.0)
     force_peaks: Annotated[
-        tuple[float, ...], Signal("1", "peaks of the sets of the force, on [-3, 3]", -10.0, 10.0, HOUSE)
+        tuple[float, ...], Signal("1", "peaks of the sets of the force, on [-3, 3]", -10.0, 10.0, HOUSE), Role.FIXED
     ] = (-3.5, -2.0, -1.0, 0.0, 1.0, 2.0, 3.5)
     centre_to_rear: Annotated[
-        float, Signal("m", "lr, centre of gravity to rear axle", 0.01, 10.0, PAPER + ", Table 3")
+        float, Signal("m", "lr, centre of gravity to rear axle", 0.01, 10.0, PAPER + ", Table 3"), Role.FIXED
     ] = 0.76

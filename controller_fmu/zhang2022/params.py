@@ -2,7 +2,7 @@
 
 from typing import Annotated, NamedTuple
 
-from modelkit.signal import Signal
+from modelkit.signal import Role, Signal
 
 PAPER = "Zhang 2022, Table 1"
 HOUSE = "chosen; the source states none"
@@ -22,17 +22,21 @@ class QuinticParams(NamedTuple):
 class MpcParams(NamedTuple):
     """Horizon, weights, limits and solver of the steering MPC."""
 
-    period: Annotated[float, Signal("s", "time between two solutions", 1e-3, 1.0, HOUSE)] = 0.05
-    step_time: Annotated[float, Signal("s", "length of one prediction step", 1e-3, 1.0, HOUSE)] = 0.1
-    horizon: Annotated[int, Signal("1", "prediction steps that carry weight, at most 12", 1, 12, HOUSE)] = 12
+    period: Annotated[float, Signal("s", "time between two solutions", 1e-3, 1.0, HOUSE), Role.FIXED] = 0.05
+    step_time: Annotated[float, Signal("s", "length of one prediction step", 1e-3, 1.0, HOUSE), Role.FIXED] = 0.1
+    horizon: Annotated[int, Signal("1", "prediction steps that carry weight, at most 12", 1, 12, HOUSE), Role.FIXED] = (
+        12
+    )
     lateral: Annotated[float, Signal("1", "weight on lateral error [1/m2]", 0.0, 1e6, HOUSE)] = 100.0
     heading: Annotated[float, Signal("1", "weight on heading error [1/rad2]", 0.0, 1e6, HOUSE)] = 20.0
     angle: Annotated[float, Signal("1", "weight on front-wheel angle off the path's [1/rad2]", 0.0, 1e6, HOUSE)] = 0.1
     increment: Annotated[float, Signal("1", "weight on an angle increment [1/rad2]", 1e-9, 1e6, HOUSE)] = 1.0
     corridor: Annotated[float, Signal("m", "soft limit on lateral error", 1e-3, 10.0, HOUSE)] = 0.05
     softness: Annotated[float, Signal("1", "weight on leaving the corridor [1/m2]", 1e-3, 1e6, HOUSE)] = 1000.0
-    tolerance: Annotated[float, Signal("1", "complementarity at which the solver stops", 1e-15, 1e-2, HOUSE)] = 1e-10
-    cap: Annotated[int, Signal("1", "most iterations of the solver", 1, 200, HOUSE)] = 40
+    tolerance: Annotated[
+        float, Signal("1", "complementarity at which the solver stops", 1e-15, 1e-2, HOUSE), Role.FIXED
+    ] = 1e-10
+    cap: Annotated[int, Signal("1", "most iterations of the solver", 1, 200, HOUSE), Role.FIXED] = 40
 
 
 class PidParams(NamedTuple):
@@ -47,11 +51,13 @@ class PidParams(NamedTuple):
 class ZhangParams(NamedTuple):
     """Path, steering, speed."""
 
-    speed: Annotated[float, Signal("m/s", "speed driven in reverse, magnitude", 0.05, 3.0, PAPER)] = 1.0
-    ramp: Annotated[float, Signal("m/s2", "change of the set speed at start and end", 0.05, 5.0, HOUSE)] = 0.5
+    speed: Annotated[float, Signal("m/s", "speed driven in reverse, magnitude", 0.05, 3.0, PAPER), Role.TUNABLE] = 1.0
+    ramp: Annotated[
+        float, Signal("m/s2", "change of the set speed at start and end", 0.05, 5.0, HOUSE), Role.TUNABLE
+    ] = 0.5
     stop_distance: Annotated[
-        float, Signal("m", "distance to the target at which the brake holds", 1e-4, 0.5, HOUSE)
+        float, Signal("m", "distance to the target at which the brake holds", 1e-4, 0.5, HOUSE), Role.TUNABLE
     ] = 0.01
     quintic: QuinticParams = QuinticParams()
-    mpc: MpcParams = MpcParams()
-    pid: PidParams = PidParams()
+    mpc: Annotated[MpcParams, Role.TUNABLE] = MpcParams()
+    pid: Annotated[PidParams, Role.TUNABLE] = PidParams()

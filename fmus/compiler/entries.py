@@ -6,6 +6,7 @@ from typing import Any
 
 from fmus.compiler.functions import Instance, instance_of
 from fmus.compiler.kinds import BOOL, INT, Kind, Mixed, Struct, described
+from fmus.compiler.members import members
 from fmus.compiler.names import member_name
 from fmus.compiler.program import Program
 from fmus.compiler.refusals import CannotError
@@ -68,7 +69,7 @@ class Entries:
         result = Mixed((state, Struct(model.outputs)))
         defaults, initialize, step = self.heads()
         starts = [f"*{group} = {self.program.default(getattr(model, group))};" for group in ("params", "inputs")]
-        found = [[defaults, "{", *starts, "}"]]
+        found = [[defaults, "{", *starts, *self._preset(), "}"]]
         if model.systems is not None:
             return [*found, *self._systems(model.systems, initialize, step)]
         first = self.instance(model.initialize, result, params)
@@ -76,6 +77,12 @@ class Entries:
         made = self.instance(model.step, result, state, inputs, params, INT)
         call = _called(made, ["state", "inputs", "params", "dt_ns"], "&next", "outputs")
         return [*found, [step, "{", f"{self.types()['state']} next;", "", call, "*state = next;", "}"]]
+
+    def _preset(self) -> list[str]:
+        """Return the lines that set the parameters which start with another value than their default."""
+        values = dict(self.model.view.preset)
+        found = {item.name: item.path.removeprefix("params.") for item in members(self.model) if item.name in values}
+        return [f"params->{path} = {self.program.number(values[name]).text};" for name, path in found.items()]
 
     def _systems(self, systems: SampledSystems, initialize: str, step: str) -> list[list[str]]:
         """Return initialize, a step for each system, and the one that chooses among them."""

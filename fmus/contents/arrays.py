@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from enum import IntEnum
 from typing import Any, NamedTuple
 
-from fmus.contents.description import FmiVariable, fmi_variables
+from fmus.contents.variables import ORDER, FmiVariable, fmi_variables
 from modelkit.model import Model
 
 INDEX = re.compile(r"\[(\d+)\]")
@@ -44,6 +44,11 @@ class FmiArray(NamedTuple):
         return {float: "Float64", int: "Int32", bool: "Boolean"}[self.first.kind]
 
     @property
+    def shown(self) -> bool:
+        """Return whether the description names it."""
+        return all(item.shown for item in self.elements)
+
+    @property
     def starts(self) -> tuple[Any, ...]:
         """Return the start values of all elements, nothing if it is calculated."""
         return () if self.first.start is None else tuple(item.start for item in self.elements)
@@ -63,12 +68,18 @@ def alone(item: FmiVariable) -> FmiArray:
     return FmiArray(item.name, item.vr, (item,), ())
 
 
+def shown_arrays(model: Model) -> list[FmiArray]:
+    """Return the variables that an importer sees, in the order of the description."""
+    shown = [item for item in fmi_arrays(model) if item.shown]
+    return sorted(shown, key=lambda item: ORDER.index(item.first.causality))
+
+
 def _variable(name: str, items: list[FmiVariable]) -> Iterator[FmiArray]:
     """Yield one variable of all ``items``, or each alone if they are no complete table."""
     indices = [tuple(int(number) for number in INDEX.findall(item.name)) for item in items]
     shape = tuple(max(index) for index in zip(*indices, strict=True))
     complete = len(items) == _count(shape) and len(shape) <= MOST_DIMENSIONS
-    if complete and len({(item.kind, item.causality, item.variability) for item in items}) == 1:
+    if complete and len({(item.kind, item.causality, item.variability, item.shown) for item in items}) == 1:
         ordered = tuple(item for _, item in sorted(zip(indices, items, strict=True), key=lambda pair: pair[0]))
         yield FmiArray(name, 0, ordered, shape)
     else:

@@ -1,23 +1,20 @@
 """From a model package's types to FMI 2.0's modelDescription.xml, the same for every kind of FMU."""
 
-import math
 from collections.abc import Iterable, Iterator
+from enum import IntEnum
 from importlib.metadata import PackageNotFoundError, version
-from typing import Any, NamedTuple
+from typing import Any
 from xml.etree import ElementTree
 from xml.etree.ElementTree import Element, SubElement
 
+from fmus.contents.dependencies import initial_dependencies
 from fmus.contents.units import unit
+from fmus.contents.variables import FmiVariable, describe, limits, mode_types, shown_variables, states_text
 from modelkit.model import Model
-from modelkit.signal import Signal
-from modelkit.variables import variables
 
 GENERATED = "2000-01-01T00:00:00Z"
-AUTHOR = "The apa-cosim authors"
 """Date written into every FMU: the content decides the bytes, not the day."""
-FMI_TYPES = {float: "Real", int: "Integer", bool: "Boolean"}
-LARGEST_INTEGER = 2**31 - 1
-TIME = Signal("s", "simulation time")
+AUTHOR = "The apa-cosim authors"
 LOG_CATEGORIES = {
     "logStatusWarning": "Messages with fmi2Warning",
     "logStatusDiscard": "Messages with fmi2Discard",
@@ -27,68 +24,6 @@ LOG_CATEGORIES = {
 }
 
 
-class FmiVariable(NamedTuple):
-    """One scalar variable of an FMU."""
-
-    name: str
-    vr: int
-    """Value reference: the place in the list, from 0; one running number over all FMI types."""
-    kind: type
-    """``float``, ``int`` or ``bool``."""
-    causality: str
-    variability: str
-    initial: str | None
-    start: Any
-    """Start value of a parameter or input; None for outputs and time, which are calculated."""
-    signal: Signal
-
-    @property
-    def fmi_type(self) -> str:
-        """Return ``Real``, ``Integer`` or ``Boolean``."""
-        return FMI_TYPES[self.kind]
-
-
-def fmi_variables(model: Model) -> list[FmiVariable]:
-    """Return all variables in the order of their value references: parameters, inputs, outputs, then ``time``.
-
-    Raises ``ValueError`` for a name used twice, a missing description or a start value outside its range.
-    """
-    found: list[FmiVariable] = []
-    groups = (("parameter", model.params), ("input", model.inputs), ("output", model.outputs))
-    for causality, cls in groups:
-        for item in variables(cls):
-            variability = "fixed" if causality == "parameter" else "continuous" if item.kind is float else "discrete"
-            initial = {"parameter": "exact", "input": None, "output": "calculated"}[causality]
-            start = None if causality == "output" else item.start
-            found.append(
-                FmiVariable(item.name, len(found), item.kind, causality, variability, initial, start, item.signal)
-            )
-    found.append(FmiVariable("time", len(found), float, "independent", "continuous", None, None, TIME))
-    _check(model.name, found)
-    return found
-
-
-def describe(variable: FmiVariable) -> str:
-    """Return the variable's description: meaning, names of the states, source of a default."""
-    signal = variable.signal
-    text = signal.text
-    if signal.states is not None:
-        text += ": " + ", ".join(f"{state.value} {state.name}" for state in signal.states)
-    if signal.source:
-        text += f" (default: {signal.source})"
-    return text
-
-
-def limits(variable: FmiVariable) -> tuple[float | None, float | None]:
-    """Return the smallest and largest value allowed, None where there is no limit; a mode's from its states."""
-    if variable.kind is bool:
-        return None, None
-    low, high = variable.signal.low, variable.signal.high
-    if variable.signal.states is not None:
-        low, high = max(low, min(variable.signal.states)), min(high, max(variable.signal.states))
-    return (low if math.isfinite(low) else None), (high if math.isfinite(high) else None)
-
-
 def model_description(
     model: Model, *, guid: str, generation_tool: str, flags: dict[str, bool], sources: tuple[str, ...] = ()
 ) -> bytes:
@@ -96,7 +31,8 @@ def model_description(
 
     ``sources`` are the files in the folder ``sources`` that a compiler is given.
     """
-    known = fmi_variables(model)
+    known = shown_variables(model)
+    types = mode_types(model)
     root = Element(
         "fmiModelDescription",
         fmiVersion="2.0",
@@ -113,6 +49,9 @@ def model_description(
     )
     root.append(_interface(model, flags, sources))
     root.append(unit_definitions(known))
+    used = {variable.signal.states for variable in known}
+    if used != {None}:
+        root.append(_type_definitions({mode: name for mode, name in types.items() if mode in used}))
     categories = SubElement(root, "LogCategories")
     for name, text in LOG_CATEGORIES.items():
         SubElement(categories, "Category", name=name, description=text)
@@ -120,8 +59,8 @@ def model_description(
         root, "DefaultExperiment", startTime="0.0", stopTime=as_text(model.stop_time), stepSize=as_text(model.step_size)
     )
     scalars = SubElement(root, "ModelVariables")
-    scalars.extend(_scalar(variable) for variable in known)
-    root.append(_structure(known))
+    scalars.extend(_scalar(variable, types) for variable in known)
+    root.append(_structure(known, initial_dependencies(model)))
     ElementTree.indent(root)
     content: bytes = ElementTree.tostring(root, encoding="UTF-8", xml_declaration=True)
     return content + b"\n"
@@ -164,7 +103,16 @@ def unit_definitions(known: Iterable[FmiVariable]) -> Element:
     return definitions
 
 
-def _scalar(variable: FmiVariable) -> Element:
+def _type_definitions(types: dict[type[IntEnum], str]) -> Element:
+    """Return the modes as Integer types: FMI 2.0's Enumeration is not read by every importer."""
+    definitions = Element("TypeDefinitions")
+    for mode, name in types.items():
+        node = SubElement(definitions, "SimpleType", name=name, description=states_text(mode))
+        SubElement(node, "Integer", quantity=name, min=str(int(min(mode))), max=str(int(max(mode))))
+    return definitions
+
+
+def _scalar(variable: FmiVariable, types: dict[type[IntEnum], str]) -> Element:
     attributes = {
         "name": variable.name,
         "valueReference": str(variable.vr),
@@ -174,7 +122,9 @@ def _scalar(variable: FmiVariable) -> Element:
         "initial": variable.initial,
     }
     node = Element("ScalarVariable", {name: value for name, value in attributes.items() if value is not None})
-    SubElement(node, variable.fmi_type, dict(_type_attributes(variable)))
+    mode = variable.signal.states
+    declared = {} if mode is None else {"declaredType": types[mode]}
+    SubElement(node, variable.fmi_type, declared | dict(_type_attributes(variable)))
     return node
 
 
@@ -195,32 +145,16 @@ def _type_attributes(variable: FmiVariable) -> Iterator[tuple[str, str]]:
         yield "start", as_text(variable.start)
 
 
-def _structure(known: list[FmiVariable]) -> Element:
-    """Return ModelStructure: outputs depend on no input, and at the start on the parameters alone."""
+def _structure(known: list[FmiVariable], initial: dict[str, list[str]]) -> Element:
+    """Return ModelStructure: outputs depend on no input, and at the start on some parameters (``initial``)."""
     structure = Element("ModelStructure")
-    outputs = [str(variable.vr + 1) for variable in known if variable.causality == "output"]
-    parameters = " ".join(str(variable.vr + 1) for variable in known if variable.causality == "parameter")
-    for name, dependencies in (("Outputs", ""), ("InitialUnknowns", parameters)):
-        if outputs:
-            node = SubElement(structure, name)
-            for index in outputs:
-                SubElement(node, "Unknown", index=index, dependencies=dependencies)
+    index = {variable.name: str(place) for place, variable in enumerate(known, start=1)}
+    outputs = [variable.name for variable in known if variable.causality == "output"]
+    if outputs:
+        nodes = SubElement(structure, "Outputs"), SubElement(structure, "InitialUnknowns")
+        for name in outputs:
+            SubElement(nodes[0], "Unknown", index=index[name], dependencies="")
+            SubElement(
+                nodes[1], "Unknown", index=index[name], dependencies=" ".join(index[item] for item in initial[name])
+            )
     return structure
-
-
-def _check(model_name: str, known: list[FmiVariable]) -> None:
-    names: set[str] = set()
-    for variable in known:
-        where = f"{model_name}: {variable.name}"
-        if variable.name in names:
-            raise ValueError(f"{where}: this name is used twice among parameters, inputs and outputs")
-        names.add(variable.name)
-        if not variable.signal.text:
-            raise ValueError(f"{where}: give the field a unit and a meaning: Annotated[..., Signal(unit, text)]")
-        if variable.start is None or variable.kind is bool:
-            continue
-        low, high = limits(variable)
-        if not math.isfinite(variable.start) or (variable.kind is int and abs(variable.start) > LARGEST_INTEGER):
-            raise ValueError(f"{where}: start {variable.start} cannot be written in FMI 2.0")
-        if (low is not None and variable.start < low) or (high is not None and variable.start > high):
-            raise ValueError(f"{where}: start {variable.start} is outside [{low}, {high}]")

@@ -1,22 +1,15 @@
 """From a model package's types to FMI 3.0's modelDescription.xml."""
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from enum import IntEnum
 from xml.etree import ElementTree
 from xml.etree.ElementTree import Element, SubElement
 
-from fmus.contents.arrays import FmiArray, fmi_arrays
-from fmus.contents.description import (
-    AUTHOR,
-    GENERATED,
-    LOG_CATEGORIES,
-    as_text,
-    describe,
-    limits,
-    project_version,
-    unit_definitions,
-)
+from fmus.contents.arrays import FmiArray, shown_arrays
+from fmus.contents.dependencies import initial_dependencies
+from fmus.contents.description import AUTHOR, GENERATED, LOG_CATEGORIES, as_text, project_version, unit_definitions
 from fmus.contents.units import unit
+from fmus.contents.variables import describe, limits, mode_types
 from modelkit.model import Model
 
 States = Mapping[type[IntEnum], str]
@@ -25,8 +18,8 @@ States = Mapping[type[IntEnum], str]
 
 def model_description3(model: Model, *, token: str, generation_tool: str, flags: Mapping[str, bool]) -> bytes:
     """Return modelDescription.xml. ``flags`` are the capability attributes of the CoSimulation element."""
-    known = fmi_arrays(model)
-    types = type_names(known)
+    known = shown_arrays(model)
+    types = mode_types(model)
     root = Element(
         "fmiModelDescription",
         fmiVersion="3.0",
@@ -45,7 +38,8 @@ def model_description3(model: Model, *, token: str, generation_tool: str, flags:
         root, "CoSimulation", {"modelIdentifier": model.name} | {name: as_text(value) for name, value in flags.items()}
     )
     root.append(unit_definitions(item.first for item in known))
-    root.extend(_type_definitions(types))
+    used = {item.states for item in known}
+    root.extend(_type_definitions({mode: name for mode, name in types.items() if mode in used}))
     categories = SubElement(root, "LogCategories")
     for name, text in LOG_CATEGORIES.items():
         SubElement(categories, "Category", name=name, description=text.replace("fmi2", "fmi3"))
@@ -57,22 +51,10 @@ def model_description3(model: Model, *, token: str, generation_tool: str, flags:
         stepSize=as_text(model.step_size),
     )
     SubElement(root, "ModelVariables").extend(_variable(item, types) for item in known)
-    root.append(_structure(known))
+    root.append(_structure(known, initial_dependencies(model)))
     ElementTree.indent(root)
     content: bytes = ElementTree.tostring(root, encoding="UTF-8", xml_declaration=True)
     return content + b"\n"
-
-
-def type_names(known: Iterable[FmiArray]) -> States:
-    """Return the name of each enumeration's type: its own, or with its module's where two are called the same."""
-    found = list(dict.fromkeys(item.states for item in known if item.states is not None))
-    names = [states.__name__ for states in found]
-    return {
-        states: states.__name__
-        if names.count(states.__name__) == 1
-        else f"{states.__module__.rpartition('.')[2]}.{states.__name__}"
-        for states in found
-    }
 
 
 def _type_definitions(types: States) -> Iterator[Element]:
@@ -120,13 +102,14 @@ def _type_attributes(item: FmiArray, types: States) -> Iterator[tuple[str, str]]
         yield "nominal", as_text(unit(item.first.signal.unit).nominal)
 
 
-def _structure(known: list[FmiArray]) -> Element:
-    """Return ModelStructure: outputs depend on no input, and at the start on the parameters alone."""
+def _structure(known: list[FmiArray], initial: Mapping[str, list[str]]) -> Element:
+    """Return ModelStructure: outputs depend on no input, and at the start on some parameters (``initial``)."""
     structure = Element("ModelStructure")
     outputs = [item for item in known if item.first.causality == "output"]
-    parameters = " ".join(str(item.vr) for item in known if item.first.causality == "parameter")
     for item in outputs:
         SubElement(structure, "Output", valueReference=str(item.vr), dependencies="")
     for item in outputs:
-        SubElement(structure, "InitialUnknown", valueReference=str(item.vr), dependencies=parameters)
+        causes = {name for element in item.elements for name in initial[element.name]}
+        dependencies = " ".join(str(other.vr) for other in known if any(one.name in causes for one in other.elements))
+        SubElement(structure, "InitialUnknown", valueReference=str(item.vr), dependencies=dependencies)
     return structure

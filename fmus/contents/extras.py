@@ -1,13 +1,14 @@
 """What an FMU of any kind carries beside its code: page, licence, icon, terminals, reference result."""
 
 import re
+from typing import Any
 from xml.etree import ElementTree
 from xml.etree.ElementTree import Element, SubElement
 
-from fmus.contents.arrays import fmi_arrays
-from fmus.contents.description import fmi_variables
+from fmus.contents.arrays import shown_arrays
 from fmus.contents.icon import icon
 from fmus.contents.pages import LICENCE, index_page
+from fmus.contents.variables import shown_variables
 from modelkit.model import Model, Terminal
 from modelkit.variables import flatten, variables
 
@@ -23,7 +24,8 @@ ALL_PORTS = (
 
 def documentation(model: Model, needs: str, fmi: int = 2) -> dict[str, bytes]:
     """Return path -> content; ``needs`` is HTML that says what the host must have."""
-    picture = icon(model.name, len(variables(model.inputs)), len(variables(model.outputs)))
+    ports = [variable.causality for variable in shown_variables(model)]
+    picture = icon(model.name, ports.count("input"), ports.count("output"))
     return {
         "documentation/index.html": index_page(model, needs, fmi),
         "documentation/licenses/license.txt": LICENCE.encode(),
@@ -35,9 +37,9 @@ def documentation(model: Model, needs: str, fmi: int = 2) -> dict[str, bytes]:
 def terminals(model: Model, fmi: int = 2) -> bytes:
     """Return terminalsAndIcons.xml, as FMI 3.0 defines it and FMI 2.0 may have it: buses of signals, and the icon."""
     if fmi == 3:
-        ports = {item.name: item.first.causality for item in fmi_arrays(model)}
+        ports = {item.name: item.first.causality for item in shown_arrays(model)}
     else:
-        ports = {item.name: item.causality for item in fmi_variables(model)}
+        ports = {item.name: item.causality for item in shown_variables(model)}
     root = Element("fmiTerminalsAndIcons", fmiVersion="3.0")
     picture = SubElement(root, "GraphicalRepresentation")
     SubElement(picture, "CoordinateSystem", SQUARE, suggestedScalingFactorTo_mm="0.1")
@@ -72,25 +74,32 @@ def reference_result(model: Model) -> dict[str, bytes]:
     SubElement(
         root, "Related", type="text/csv", source=file, role="result", description="Outputs of the default experiment"
     )
-    lines = [",".join(f'"{name}"' for name in ["time", *(item.name for item in variables(model.outputs))])]
-    lines += [",".join(repr(float(value)) for value in row) for row in _rows(model)]
+    outputs = {item.name for item in shown_variables(model) if item.causality == "output"}
+    kept = [place for place, item in enumerate(variables(model.outputs)) if item.name in outputs]
+    lines = [",".join(f'"{name}"' for name in ["time", *(variables(model.outputs)[place].name for place in kept)])]
+    lines += [",".join(repr(float(value)) for value in row) for row in _rows(model, kept)]
     table = ("\n".join(lines) + "\n").encode()
     return {f"{LS_REF}/fmi-ls-manifest.xml": _xml(root), f"{LS_REF}/{file}": table}
 
 
-def _rows(model: Model) -> list[list[float]]:
-    """Return [time, outputs...] of the model run in this process."""
+def _rows(model: Model, kept: list[int]) -> list[list[float]]:
+    """Return [time, outputs...] of the model run in this process; of the outputs those at the places ``kept``."""
     steps = round(model.stop_time / model.step_size)
     every = max(1, -(-steps // MOST_ROWS))
-    params, inputs = model.params(), model.inputs()
+    params, inputs = model.first_params(), model.inputs()
     state, outputs = model.initialize(params)
-    rows = [[0.0, *flatten(outputs)]]
+    rows = [[0.0, *_picked(outputs, kept)]]
     for number in range(1, steps + 1):
         time, before = number * model.step_size, (number - 1) * model.step_size
         state, outputs = model.step(state, inputs, params, round(time * 1e9) - round(before * 1e9))
         if number % every == 0:
-            rows.append([time, *flatten(outputs)])
+            rows.append([time, *_picked(outputs, kept)])
     return rows
+
+
+def _picked(outputs: Any, kept: list[int]) -> list[float]:
+    scalars = flatten(outputs)
+    return [scalars[place] for place in kept]
 
 
 def _xml(root: Element) -> bytes:

@@ -2,9 +2,10 @@
 
 from html import escape
 
-from fmus.contents.arrays import FmiArray, alone, fmi_arrays
-from fmus.contents.description import describe, fmi_variables, limits, project_version
+from fmus.contents.arrays import FmiArray, alone, shown_arrays
+from fmus.contents.description import project_version
 from fmus.contents.units import unit
+from fmus.contents.variables import describe, limits, shown_variables
 from modelkit.model import Model
 
 LICENCE = """MIT License
@@ -35,7 +36,7 @@ table { border-collapse: collapse; margin: 1em 0 } td, th { border: 1px solid #c
 td, th { padding: .2em .6em }
 th { background: #f2f2ef } td.n { text-align: right; font-family: monospace } td.v { font-family: monospace }
 """
-COLUMNS = ("name", "reference", "type", "unit", "shown in", "start", "min", "max", "meaning")
+COLUMNS = ("name", "reference", "type", "variability", "unit", "shown in", "start", "min", "max", "meaning")
 USE = """
 <h2>Time</h2>
 <p>The default communication step is {step:g} s. Any step is allowed, also a changing one; times are rounded to whole
@@ -44,7 +45,8 @@ communication step. No output depends on an input of the same instant.</p>
 <h2>Connecting</h2>
 <p>Connect every output to the input of the same name. {types}</p>
 <ol>
-<li>Instantiate; set parameters. They are fixed once Initialization Mode is left.</li>
+<li>Instantiate; set parameters. Once Initialization Mode is left, those are fixed that are not marked tunable; a
+tunable one may be set between two steps and holds from the next step on.</li>
 <li>Enter Initialization Mode; read all outputs, which are valid here, and write them to the inputs.</li>
 <li>Leave Initialization Mode. For each step k: all doStep at k h; then read all outputs, then write all inputs.</li>
 </ol>
@@ -64,7 +66,7 @@ TYPES = {
 
 def index_page(model: Model, needs: str, fmi: int = 2) -> bytes:
     """Return the page; ``needs`` is HTML that says what the host must have."""
-    known = fmi_arrays(model) if fmi == 3 else [alone(item) for item in fmi_variables(model)]
+    known = shown_arrays(model) if fmi == 3 else [alone(item) for item in shown_variables(model)]
     parts = [
         f"<!DOCTYPE html>\n<html lang='en'><head><meta charset='utf-8'><title>{escape(model.name)}</title>",
         f"<style>{STYLE}</style></head><body>",
@@ -78,10 +80,17 @@ def index_page(model: Model, needs: str, fmi: int = 2) -> bytes:
     return "\n".join(parts).encode()
 
 
-TABLES = (("Inputs", "input"), ("Outputs", "output"), ("Parameters", "parameter"))
+TABLES = (
+    ("Inputs", "input"),
+    ("Outputs", "output"),
+    ("Parameters", "parameter"),
+    ("Local variables, for logs and judges", "local"),
+)
 
 
 def _table(title: str, items: list[FmiArray], fmi: int) -> str:
+    if not items:
+        return ""
     head = "".join(f"<th>{column}</th>" for column in COLUMNS)
     rows = "\n".join(_row(item, fmi) for item in items)
     return f"<h2>{title}</h2>\n<table>\n<tr>{head}</tr>\n{rows}\n</table>"
@@ -95,6 +104,7 @@ def _row(item: FmiArray, fmi: int) -> str:
     size = "".join(f"[{count}]" for count in item.shape)
     cells = [
         f"<td class='v'>{escape(item.name)}{size}</td><td class='n'>{item.vr}</td><td>{kind}</td>",
+        f"<td>{first.variability}</td>",
         f"<td>{escape(first.signal.unit) if real else ''}</td><td>{escape(shown)}</td>",
         f"<td class='n'>{', '.join(map(_number, item.starts))}</td>",
         *(f"<td class='n'>{'' if number is None else _number(number)}</td>" for number in limits(first)),

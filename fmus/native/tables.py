@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 
 from fmus.compiler import Member, members
 from fmus.contents.arrays import FmiArray, fmi_arrays
-from fmus.contents.description import FmiVariable, fmi_variables, limits
+from fmus.contents.variables import FmiVariable, fmi_variables, limits
 from modelkit.model import Model
 
 KINDS = {float: "REAL", int: "INTEGER", bool: "BOOLEAN"}

@@ -7,7 +7,8 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 from modelkit.model import Model
-from modelkit.variables import constructor_source, variables
+from modelkit.signal import Role
+from modelkit.variables import constructor_source, limits_of, variables
 
 Values = list[Any]
 
@@ -16,9 +17,13 @@ class Layout:
     """The places and kinds of all variables, and fast functions between the list and the model's types."""
 
     def __init__(self, model: Model) -> None:
-        params, inputs, outputs = (variables(cls) for cls in (model.params, model.inputs, model.outputs))
+        params = variables(model.params, model.first_params())
+        inputs, outputs = variables(model.inputs), variables(model.outputs)
         everything = params + inputs + outputs
-        self.kinds: list[type] = [item.kind for item in everything] + [float]
+        self.kinds: list[type | None] = [item.kind if model.shows(item.name) else None for item in everything] + [float]
+        """None: a variable that is not shown, so that nobody may get or set it."""
+        self.limits = [limits_of(item.signal) for item in params]
+        self.tunable = {place for place, item in enumerate(params) if Role.TUNABLE in item.roles}
         self.start: Values = [item.start for item in everything] + [0.0]
         self.first_input = len(params)
         self.first_output = self.first_input + len(inputs)

@@ -57,7 +57,8 @@ class ModelSlave(Fmi2Slave):  # type: ignore[misc]
         self.params: Any = None
         self.state: Any = None
         self._pickers: dict[type, dict[tuple[int, ...], Callable[[Values], Values]]] = {float: {}, int: {}, bool: {}}
-        self._settable: dict[type, set[tuple[int, ...]]] = {float: set(), int: set(), bool: set()}
+        self._settable: dict[type, dict[tuple[int, ...], bool]] = {float: {}, int: {}, bool: {}}
+        """Sets of references that may be set now, and whether there are parameters among them."""
 
     # Course of a simulation
 
@@ -175,11 +176,16 @@ class ModelSlave(Fmi2Slave):  # type: ignore[misc]
             key = tuple(vrs)
             if key not in self._settable[kind] and not self._may_set(kind, key):
                 return
+            parameters = self._settable[kind][key]
+            if parameters and not self._in_range(key, new):
+                return
             values = self.values
             for vr, value in zip(key, new, strict=True):
                 values[vr] = value
-            if self.mode < STEPPING and key and min(key) < self.layout.first_input:
+            if parameters and self.mode < STEPPING:
                 self.stale = True
+            elif parameters:
+                self.params = self.layout.params(values)
         except BaseException:
             self._refuse(traceback.format_exc())
 
@@ -188,16 +194,27 @@ class ModelSlave(Fmi2Slave):  # type: ignore[misc]
 
     def _may_set(self, kind: type, key: tuple[int, ...]) -> bool:
         """Return whether all of ``key`` may be set in this mode; remember it, or log what is wrong."""
-        first = 0 if self.mode < STEPPING else self.layout.first_input
+        layout = self.layout
+        free = range(layout.first_output) if self.mode < STEPPING else range(layout.first_input, layout.first_output)
         unknown = [vr for vr in key if not self._has(kind, vr)]
-        fixed = [vr for vr in key if vr not in unknown and not first <= vr < self.layout.first_output]
+        fixed = [vr for vr in key if vr not in unknown and vr not in free and vr not in layout.tunable]
         if unknown or fixed:
-            why = "no such variable" if unknown else "cannot be set now (parameters are fixed, outputs are calculated)"
+            why = "no such variable" if unknown else "cannot be set now (fixed parameter, or calculated)"
             self._refuse(f"fmi2Set{FMI_TYPES[kind]}: {why}: value references {unknown or fixed}")
             return False
         if len(self._settable[kind]) >= MOST_PICKERS:
             self._settable[kind].clear()
-        self._settable[kind].add(key)
+        self._settable[kind][key] = any(vr < layout.first_input for vr in key)
+        return True
+
+    def _in_range(self, key: tuple[int, ...], new: Sequence[Any]) -> bool:
+        """Return whether all parameters among ``key`` may have their new values; log the first that may not."""
+        for vr, value in zip(key, new, strict=True):
+            if vr < self.layout.first_input:
+                low, high = self.layout.limits[vr]
+                if not low <= value <= high:
+                    self._refuse(f"value reference {vr}: {value} is not in [{low:g}, {high:g}]")
+                    return False
         return True
 
     def _forget_settable(self) -> None:

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from fmus.contents.description import FmiVariable, fmi_variables
+from fmus.contents.variables import FmiVariable, shown_variables
 from modelkit.connections import connections, part_of
 from modelkit.model import Model
 from modelkit.variables import variables
@@ -23,7 +23,7 @@ class Part(NamedTuple):
 
     def of(self, causality: str) -> list[FmiVariable]:
         """Return the variables of this causality."""
-        return [variable for variable in fmi_variables(self.model) if variable.causality == causality]
+        return [variable for variable in shown_variables(self.model) if variable.causality == causality]
 
     def settings(self) -> list[tuple[FmiVariable, Any]]:
         """Return (parameter, value of its own type). Raises ``KeyError`` for a name the model does not have."""

@@ -5,7 +5,7 @@ from pathlib import Path
 from fmpy.model_description import ModelDescription, ScalarVariable, read_model_description
 
 from modelkit.model import Model
-from modelkit.signal import Signal
+from modelkit.signal import Role, Signal
 from modelkit.variables import Variable, variables
 from orchestrator.cosim.slave import Ports
 from orchestrator.text.errors import BadInput
@@ -27,12 +27,25 @@ def read_description(path: Path) -> ModelDescription:
 def ports_of(description: ModelDescription, causality: str, model: Model | None, path: Path) -> Ports:
     """Return the variables of one causality; states, and units it does not say, are those of ``model``.
 
+    With the outputs come the local variables that ``model`` has too: they are read and logged, not connected. What
+    the model has is in its order.
+
     Raises ``BadInput`` if a start value has no meaning.
     """
     known = {} if model is None else _variables_of(model)
-    chosen = [item for item in description.modelVariables if item.causality == causality and item.type in KINDS]
+    place = {name: number for number, name in enumerate(known)}
+    chosen = [
+        item
+        for item in description.modelVariables
+        if item.type in KINDS and (item.causality == causality or (_is_seen(item, known) and causality == "output"))
+    ]
+    chosen.sort(key=lambda item: place.get(item.name, len(place)))
     found = [_variable(item, known.get(item.name), path) for item in chosen]
     return Ports(found, frozenset(item.name for item in chosen if item.type == "Real" and _unit(item) is None))
+
+
+def _is_seen(scalar: ScalarVariable, known: dict[str, Variable]) -> bool:
+    return scalar.causality == "local" and scalar.name in known
 
 
 def _variables_of(model: Model) -> dict[str, Variable]:
@@ -49,7 +62,8 @@ def _variable(scalar: ScalarVariable, known: Variable | None, path: Path) -> Var
         raise BadInput(f"{text!r} is no start value of type {scalar.type}", file=path, key=scalar.name) from None
     unit = _unit(scalar) or ("1" if known is None else known.signal.unit)
     states = known.signal.states if known is not None and known.kind is kind else None
-    return Variable(scalar.name, kind, Signal(unit, scalar.description or "", states=states), start)
+    roles = frozenset({Role.LOCAL} if scalar.causality == "local" else ())
+    return Variable(scalar.name, kind, Signal(unit, scalar.description or "", states=states), start, roles)
 
 
 def _unit(scalar: ScalarVariable) -> str | None:

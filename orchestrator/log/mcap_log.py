@@ -18,6 +18,7 @@ from foxglove_schemas_protobuf.PosesInFrame_pb2 import PosesInFrame
 from foxglove_schemas_protobuf.SceneUpdate_pb2 import SceneUpdate
 from numpy.typing import NDArray
 
+from modelkit.signal import Role
 from modelkit.variables import Variable
 from orchestrator.cosim.master import End
 from orchestrator.cosim.recording import to_json
@@ -44,7 +45,8 @@ class _SlaveChannel:
 
     def __init__(self, file: McapFile, slave: Slave, columns: Sequence[slice]) -> None:
         variables = [*slave.outputs.variables, *slave.inputs.variables]
-        notes = ["output"] * len(slave.outputs.names) + ["input"] * len(slave.inputs.names)
+        notes = ["local" if Role.LOCAL in item.roles else "output" for item in slave.outputs.variables]
+        notes += ["input"] * len(slave.inputs.names)
         self._channel = add_channel(file, f"/{slave.name}", slave.name.title().replace("_", ""), variables, notes)
         self._encoder = Encoder(variables)
         self._file = file

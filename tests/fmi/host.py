@@ -11,7 +11,7 @@ import fmpy
 from fmpy.fmi2 import FMU2Slave, defaultCallbacks, fmi2CallbackFunctions, fmi2CallbackLoggerTYPE
 from fmpy.logging import addLoggerProxy
 
-from fmus.contents.description import limits
+from fmus.contents.variables import limits
 from orchestrator.cosim.fmu_slave import LOADING
 
 OK, WARNING, DISCARD, ERROR, FATAL = range(5)
@@ -76,7 +76,8 @@ class Host:
         return [found[name] for name in names]
 
     def outputs(self):
-        return self.get([v.name for v in self.description.modelVariables if v.causality == "output"])
+        """Return the values of all outputs and local variables, in the order of the model."""
+        return self.get(calculated(self.description))
 
     def step(self, time, size):
         """Return the status of fmi2DoStep."""
@@ -87,6 +88,12 @@ class Host:
         except Exception as error:
             status.append(getattr(error, "status", error))
         return status[0] if status else OK
+
+
+def calculated(description):
+    """Return the names of outputs and local variables in the order of their value references."""
+    found = [v for v in description.modelVariables if v.causality in ("output", "local")]
+    return [v.name for v in sorted(found, key=lambda v: v.valueReference)]
 
 
 def slaves(host):

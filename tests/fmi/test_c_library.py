@@ -9,7 +9,7 @@ import pytest
 from host import random_inputs
 from test_python_fmu import STEPS, in_process
 
-from fmus.contents.description import fmi_variables
+from fmus.contents.variables import fmi_variables
 from fmus.native.c_library import write_c_library
 from fmus.native.libraries import load_model, memory_size
 from modelkit.variables import flatten, variables

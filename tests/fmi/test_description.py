@@ -5,7 +5,7 @@ from typing import Annotated, NamedTuple
 import pytest
 import toy_model
 
-from fmus.contents.description import describe, fmi_variables, limits
+from fmus.contents.variables import describe, fmi_variables, limits
 from modelkit.signal import Signal
 
 

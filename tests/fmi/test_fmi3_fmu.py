@@ -16,7 +16,7 @@ from raw3 import OK, Library3
 from test_python_fmu import STEPS, in_process
 
 from fmus.contents.arrays import INDEX, fmi_arrays
-from fmus.contents.description import fmi_variables
+from fmus.contents.variables import fmi_variables
 from fmus.native import fmu as native_fmu
 from fmus.native.platforms import host
 from modelkit.variables import variables

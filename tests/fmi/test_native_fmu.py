@@ -13,7 +13,7 @@ from fmpy.validation import validate_fmu
 from host import OK, Host, random_inputs
 from test_python_fmu import STEPS, in_process
 
-from fmus.contents.description import fmi_variables
+from fmus.contents.variables import fmi_variables
 from fmus.native import fmu as native_fmu
 from fmus.native.platforms import host
 

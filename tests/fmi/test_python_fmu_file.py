@@ -18,9 +18,10 @@ from lxml import etree
 from controller_fmu import MODEL as CONTROLLER
 from fmus.build import build_all
 from fmus.contents.archive import archive_bytes, archive_guid, content_guid
-from fmus.contents.description import fmi_variables, model_description
+from fmus.contents.description import model_description
 from fmus.contents.extras import terminals
 from fmus.contents.units import unit
+from fmus.contents.variables import fmi_variables
 from fmus.python.fmu import build
 from vehicle_fmu import MODEL as VEHICLE
 
@@ -113,15 +114,20 @@ def test_every_real_has_a_unit_and_every_variable_a_meaning(python_fmus, model):
         assert float(node.find("DisplayUnit").get("factor")) == pytest.approx(57.29577951308232, rel=1e-15)
 
 
-def test_value_references_are_one_running_number(python_fmus, model):
+def test_value_references_are_one_running_number_in_the_order_of_the_types(python_fmus, model):
     scalars = list(description(python_fmus[model.name]).find("ModelVariables"))
-    assert [int(scalar.get("valueReference")) for scalar in scalars] == list(range(len(scalars)))
+    names = {int(scalar.get("valueReference")): scalar.get("name") for scalar in scalars}
+    assert [names[vr] for vr in range(len(scalars))] == [item.name for item in fmi_variables(model)]
+
+
+def test_what_is_connected_comes_first(python_fmus, model):
+    scalars = list(description(python_fmus[model.name]).find("ModelVariables"))
     order = [scalar.get("causality") for scalar in scalars]
-    assert order == sorted(order, key=["parameter", "input", "output", "independent"].index)
+    assert order == sorted(order, key=["input", "output", "parameter", "local", "independent"].index)
     assert scalars[-1].get("name") == "time"
 
 
-def test_outputs_depend_on_no_input(python_fmus, model):
+def test_outputs_depend_on_no_input_and_at_the_start_on_parameters(python_fmus, model):
     root = description(python_fmus[model.name])
     scalars = list(root.find("ModelVariables"))
     outputs = [str(place) for place, scalar in enumerate(scalars, 1) if scalar.get("causality") == "output"]
@@ -129,8 +135,8 @@ def test_outputs_depend_on_no_input(python_fmus, model):
     assert [node.get("index") for node in structure.find("Outputs")] == outputs
     assert {node.get("dependencies") for node in structure.find("Outputs")} == {""}
     assert [node.get("index") for node in structure.find("InitialUnknowns")] == outputs
-    for node in structure.find("InitialUnknowns"):
-        assert {scalars[int(place) - 1].get("causality") for place in node.get("dependencies").split()} == {"parameter"}
+    depended = {place for node in structure.find("InitialUnknowns") for place in node.get("dependencies").split()}
+    assert {scalars[int(place) - 1].get("causality") for place in depended} == {"parameter"}
 
 
 def test_capabilities_and_default_experiment(python_fmus, model):

@@ -18,7 +18,7 @@ import controller_fmu
 import modelkit
 import vehicle_fmu
 from fmus.contents.archive import archive_guid
-from fmus.contents.description import fmi_variables
+from fmus.contents.variables import fmi_variables
 from fmus.python.bundle import bundle, rewrite
 
 ROOT = Path(__file__).parents[2]

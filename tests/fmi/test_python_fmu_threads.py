@@ -10,7 +10,7 @@ from libcosimpy.CosimLogging import CosimLogLevel, log_output_level
 from libcosimpy.CosimObserver import CosimObserver
 from libcosimpy.CosimSlave import CosimLocalSlave
 
-from fmus.contents.description import fmi_variables
+from fmus.contents.variables import fmi_variables
 from modelkit.variables import flatten, variables
 
 STEPS = 200

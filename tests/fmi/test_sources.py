@@ -13,7 +13,7 @@ from raw import ERROR, OK, Library
 from raw3 import Library3
 from test_fmi3_fmu import grouped
 
-from fmus.contents.description import fmi_variables
+from fmus.contents.variables import fmi_variables
 from fmus.native import fmu as native_fmu
 from fmus.native import tables
 from fmus.native.compilers import FLAGS, find_compiler

@@ -5,7 +5,7 @@ from enum import IntEnum
 from typing import Annotated, NamedTuple
 
 from modelkit.random import seed_state, uniform
-from modelkit.signal import Signal
+from modelkit.signal import Group, Role, Signal
 
 GAIN = 1.0
 
@@ -25,13 +25,20 @@ class Oscillator(NamedTuple):
 
 
 class Params(NamedTuple):
-    stiffness: Annotated[float, Signal("N/m", "spring", 0.0, 1e4, "chosen")] = 40.0
+    stiffness: Annotated[float, Signal("N/m", "spring", 0.0, 1e4, "chosen"), Role.TUNABLE] = 40.0
     mass: Annotated[float, Signal("kg", "of each oscillator", 0.1, 100.0)] = 2.0
-    start: tuple[Oscillator, ...] = (Oscillator(0.1, 0.0), Oscillator(-0.2, 0.5))
+    start: Annotated[tuple[Oscillator, ...], Group("at the start", (("m", 10.0), ("m/s", 20.0)))] = (
+        Oscillator(0.1, 0.0),
+        Oscillator(-0.2, 0.5),
+    )
     seed: Annotated[int, Signal("1", "of the noise", 0, 1000)] = 7
-    noisy: Annotated[bool, Signal("1", "with noise on the angle")] = True
+    noisy: Annotated[bool, Signal("1", "with noise on the angle"), Role.TUNABLE] = True
     broken: Annotated[bool, Signal("1", "initialize divides by zero")] = False
-    drift: tuple[Oscillator, ...] = (Oscillator(0.3, 0.2), Oscillator(-0.1, 0.4), Oscillator(0.05, -0.6))
+    drift: Annotated[tuple[Oscillator, ...], Role.TUNABLE] = (
+        Oscillator(0.3, 0.2),
+        Oscillator(-0.1, 0.4),
+        Oscillator(0.05, -0.6),
+    )
 
 
 class Input(NamedTuple):
@@ -43,12 +50,12 @@ class Input(NamedTuple):
 
 class Output(NamedTuple):
     oscillators: tuple[Oscillator, ...] = (Oscillator(), Oscillator())
-    angle: Annotated[float, Signal("rad", "of the line through both, noisy")] = 0.0
+    angle: Annotated[float, Signal("rad", "of the line through both, noisy"), Role.SAMPLED] = 0.0
     mode: Annotated[int, Signal("1", "mode", states=Mode)] = 0
-    count: Annotated[int, Signal("1", "steps so far")] = 0
+    count: Annotated[int, Signal("1", "steps so far"), Role.LOCAL] = 0
     resting: Annotated[bool, Signal("1", "braked")] = False
     drifted: Oscillator = Oscillator()
-    pull: Annotated[float, Signal("N", "sum of the forces")] = 0.0
+    pull: Annotated[float, Signal("N", "sum of the forces"), Role.LOCAL] = 0.0
 
 
 class State(NamedTuple):

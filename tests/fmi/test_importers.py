@@ -1,0 +1,201 @@
+"""What an importer reads in the description: few ports, true dependencies, ranges, types, what may change when."""
+
+import random
+import re
+from xml.etree import ElementTree
+
+import pytest
+import toy_model
+
+from controller_fmu import MODEL as CONTROLLER
+from controller_fmu import SYSTEM_MODELS
+from fmus.contents.dependencies import find_dependencies, initial_dependencies
+from fmus.contents.description import model_description
+from fmus.contents.variables import fmi_variables, limits, mode_types
+from modelkit.variables import constructor, flatten, variables
+from vehicle_fmu import MODEL as VEHICLE
+
+MODELS = (toy_model.MODEL, VEHICLE, CONTROLLER, *SYSTEM_MODELS.values())
+PORTS = [
+    *("steering_wheel_request", "steering_active", "prompt", "advised_speed", "speed_control_active", "speed_request"),
+    *("force_control_active", "force_request", "brake_request"),
+    *("phase", "reason", "apa.mode", "apa.alarm", "apa.confirm"),
+]
+everywhere = pytest.mark.parametrize("model", MODELS, ids=lambda model: model.name)
+
+
+def xml(model):
+    return model_description(model, guid="", generation_tool="", flags={})
+
+
+def by_name(model):
+    return {item.name: item for item in fmi_variables(model)}
+
+
+def test_a_block_of_the_controller_has_the_ports_it_needs():
+    outputs = [item.name for item in fmi_variables(CONTROLLER) if item.causality == "output"]
+    assert outputs == PORTS
+    assert {item.name for item in fmi_variables(VEHICLE) if item.causality == "input"} < set(outputs)
+    wanted = {item.name for item in fmi_variables(CONTROLLER) if item.causality == "input"}
+    assert wanted < {item.name for item in fmi_variables(VEHICLE) if item.causality == "output"}
+
+
+def test_what_is_calculated_is_output_or_local_and_nothing_is_lost():
+    known = by_name(CONTROLLER)
+    for item in variables(CONTROLLER.outputs):
+        assert known[item.name].causality == ("output" if item.name in PORTS else "local")
+        assert known[item.name].initial == "calculated"
+
+
+@pytest.mark.parametrize(
+    ("model", "name", "variability"),
+    [
+        (CONTROLLER, "steering_wheel_request", "discrete"),
+        (CONTROLLER, "lateral_error", "discrete"),
+        (CONTROLLER, "phase", "discrete"),
+        (CONTROLLER, "odometry.x", "continuous"),
+        (CONTROLLER, "gear", "discrete"),
+        (CONTROLLER, "ntbpt.k1", "tunable"),
+        (CONTROLLER, "ntbpt.radius", "fixed"),
+        (CONTROLLER, "threshold.park_lateral", "tunable"),
+        (CONTROLLER, "system", "fixed"),
+        (CONTROLLER, "wheelbase", "fixed"),
+        (CONTROLLER, "target.x", "fixed"),
+        (CONTROLLER, "apa.drive.longitudinal", "fixed"),
+        (CONTROLLER, "apa.drive.k1", "tunable"),
+        (VEHICLE, "pose.x", "continuous"),
+        (VEHICLE, "ultrasonic[7]", "discrete"),
+        (VEHICLE, "contact", "discrete"),
+        (VEHICLE, "steering.rate_limit", "tunable"),
+        (VEHICLE, "steering.ratio", "fixed"),
+        (VEHICLE, "road.grip[1]", "tunable"),
+        (VEHICLE, "scene.boxes[1].x", "fixed"),
+        (VEHICLE, "driver.profile[1].speed", "fixed"),
+    ],
+)
+def test_variability(model, name, variability):
+    assert by_name(model)[name].variability == variability
+
+
+@everywhere
+def test_every_numeric_parameter_has_a_range(model):
+    missing = [
+        item.name
+        for item in fmi_variables(model)
+        if item.causality == "parameter" and item.kind is not bool and None in limits(item)
+    ]
+    assert missing == ([] if model is not toy_model.MODEL else [name for name in missing if name.startswith("drift")])
+
+
+@everywhere
+def test_every_mode_has_a_declared_type_with_the_names_of_its_states(model):
+    root = ElementTree.fromstring(xml(model))
+    types = {node.get("name"): node for node in root.find("TypeDefinitions")}
+    names = mode_types(model)
+    assert len(set(names.values())) == len(names)
+    assert not set(types) & {item.name for item in fmi_variables(model)}
+    shown = {node.get("name"): node for node in root.find("ModelVariables")}
+    for item in fmi_variables(model):
+        mode = item.signal.states
+        if mode is None or not item.shown:
+            continue
+        number = shown[item.name].find("Integer")
+        kind = types[number.get("declaredType")]
+        assert kind.find("Integer").attrib == {
+            "quantity": names[mode],
+            "min": str(int(min(mode))),
+            "max": str(int(max(mode))),
+        }
+        for state in mode:
+            assert f"{state.value} {state.name}" in kind.get("description")
+        assert number.get("min") == kind.find("Integer").get("min")
+
+
+def test_two_modes_of_one_name_are_told_apart():
+    names = set(mode_types(CONTROLLER).values())
+    assert {"hsic.Stage", "preview.Stage", "Phase"} <= names
+
+
+# Initial dependencies
+
+
+def indexed(model):
+    """Return (output, its dependencies) of the description, by name."""
+    root = ElementTree.fromstring(xml(model))
+    names = [node.get("name") for node in root.find("ModelVariables")]
+    return {
+        names[int(node.get("index")) - 1]: {names[int(place) - 1] for place in node.get("dependencies").split()}
+        for node in root.find("ModelStructure").find("InitialUnknowns")
+    }
+
+
+def test_dependencies_of_a_small_model_are_those_its_source_has():
+    found = initial_dependencies(toy_model.MODEL)
+    start = {f"start[{number}].{field}" for number in (1, 2) for field in ("position", "velocity")}
+    drift = {f"drift[{number}].{field}" for number in (1, 2, 3) for field in ("position", "velocity")}
+    assert set(found["oscillators[2].velocity"]) >= start
+    assert set(found["drifted.position"]) >= drift
+    assert not set(found["drifted.position"]) & start
+    assert found["angle"] == found["mode"] == found["pull"] == []
+    assert not {"stiffness", "mass", "seed"} & {name for names in found.values() for name in names}
+
+
+@pytest.mark.parametrize(("model", "most"), [(VEHICLE, 2800), (CONTROLLER, 60)], ids=["Vehicle", "Controller"])
+def test_few_dependencies_take_a_small_part_of_the_description(model, most):
+    found = indexed(model)
+    assert 0 < sum(map(len, found.values())) < most
+    assert {name: set(names) for name, names in initial_dependencies(model).items() if name in found} == found
+    content = xml(model).decode()
+    structure = content[content.index("<ModelStructure>") :]
+    assert len(structure) < 0.15 * len(content)
+
+
+@pytest.mark.parametrize("model", [VEHICLE, CONTROLLER, SYSTEM_MODELS[5]], ids=lambda model: model.name)
+def test_what_changes_an_output_at_the_start_is_named(model):
+    """Points and moves of its own, drawn otherwise than by the search."""
+    draw = random.Random(99)
+    named = indexed(model)
+    known = variables(model.params, model.first_params())
+    make = constructor(model.params)
+    free = [place for place, item in enumerate(known) if model.shows(item.name)]
+    names = [item.name for item in variables(model.outputs)]
+
+    def start(values):
+        return dict(zip(names, flatten(model.initialize(make(values))[1]), strict=True))
+
+    seen = set()
+    for _ in range(150):
+        point = [item.start for item in known]
+        for place in draw.sample(free, len(free) // 3):
+            point[place] = drawn(draw, known[place], point[place])
+        before = start(point)
+        for place in draw.sample(free, 20):
+            moved = list(point)
+            moved[place] = drawn(draw, known[place], point[place])
+            after = start(moved)
+            seen |= {(name, known[place].name) for name in named if after[name] != before[name]}
+    assert len(seen) >= 4
+    assert [pair for pair in seen if pair[1] not in named[pair[0]]] == []
+
+
+def drawn(draw, item, now):
+    if item.kind is bool:
+        return draw.random() < 0.5
+    if item.signal.states is not None:
+        return int(draw.choice(list(item.signal.states)))
+    low, high = item.signal.low, item.signal.high
+    spread = max(1.0, abs(now))
+    return item.kind(min(max(now + draw.uniform(-spread, spread), low), high))
+
+
+def test_the_search_gives_the_same_each_time():
+    assert find_dependencies(SYSTEM_MODELS[5]) == find_dependencies(SYSTEM_MODELS[5])
+
+
+def test_outputs_that_nothing_changes_at_the_start_depend_on_nothing():
+    found = indexed(VEHICLE)
+    assert found["speed"] == found["gear"] == found["distance"] == set()
+    assert {"start.x", "body"} <= found["pose.x"]
+    assert "steering.ratio" not in found["pose.x"]
+    assert {"scene.boxes[16].x", "ultrasonic.noise", "ultrasonic.mounts[3].yaw"} <= found["ultrasonic[3]"]
+    assert not [name for name in found["ultrasonic[3]"] if re.match("drive|steering", name)]

@@ -1,0 +1,96 @@
+"""No range of a parameter refuses what a shipped scenario, car, study, bake-off or grid uses."""
+
+import pytest
+
+from controller_fmu import MODEL as CONTROLLER
+from fmus.contents.variables import fmi_variables, limits
+from modelkit.signal import Group, Role, Signal
+from modelkit.variables import limits_of, variables
+from orchestrator.bakeoff.entries import entries
+from orchestrator.grid.apa_grid import cases, parameters
+from orchestrator.scenario.load_scenario import car_names, load_scenario, scenario_names
+from orchestrator.sweep.design import make_design
+from orchestrator.sweep.study import load_study, study_names
+from vehicle_fmu import MODEL as VEHICLE
+
+KNOWN = {
+    f"{owner}.{item.name}": limits(item)
+    for owner, model in (("vehicle", VEHICLE), ("controller", CONTROLLER))
+    for item in fmi_variables(model)
+    if item.causality == "parameter"
+}
+
+
+def outside(owner, values):
+    """Return the names of the parameters that are not within their range."""
+    found = []
+    for name, value in values.items():
+        low, high = KNOWN[f"{owner}.{name}"]
+        if (low is not None and value < low) or (high is not None and value > high):
+            found.append((f"{owner}.{name}", value, low, high))
+    return found
+
+
+def outside_of(scenario):
+    return outside("vehicle", scenario.vehicle) + outside("controller", scenario.controller)
+
+
+@pytest.mark.parametrize("name", scenario_names())
+def test_scenarios(name):
+    assert outside_of(load_scenario(name, [])) == []
+
+
+@pytest.mark.parametrize("name", car_names())
+def test_cars(name):
+    assert outside_of(load_scenario("guo2015-case4", [f"car={name}"])) == []
+
+
+@pytest.mark.parametrize("name", study_names())
+def test_studies(name):
+    study = load_study(name)
+    design = make_design(study, load_scenario(study.scenario, []))
+    assert len(design.values) > 0
+    for field, column in zip(design.fields, design.values.T, strict=True):
+        if field.key in KNOWN:
+            owner, _, name = field.key.partition(".")
+            assert outside(owner, {name: column.min()}) + outside(owner, {name: column.max()}) == []
+
+
+def test_bake_off():
+    assert [item for entry in entries() for item in outside_of(entry.scenario)] == []
+
+
+def test_grid_of_the_parking_assist():
+    for case in cases():
+        vehicle, controller = parameters(case)
+        assert outside("vehicle", vehicle) + outside("controller", controller) == []
+
+
+def test_coordinates_of_a_map_are_in_range():
+    """UTM: up to 834 km east, 10,000 km north."""
+    map_place = {"start.x": 834e3, "start.y": 1e7, "scene.boxes[1].x": 834e3, "scene.kerbs[1].y2": 1e7}
+    assert outside("vehicle", map_place) == []
+    assert outside("controller", {"target.x": 834e3, "target.y": 1e7, "apa.search.slot.a.y": 1e7}) == []
+    assert outside("vehicle", {"driver.takeover_time": 1e9, "scene.boxes[3].disappear_at": 1e9}) == []
+
+
+# How a type says it
+
+
+def test_a_group_says_what_it_is_and_the_range_of_fields_that_have_none():
+    start = {item.name: item.signal for item in variables(VEHICLE.params) if item.name.startswith("start.")}
+    assert start["start.x"] == Signal("m", "rear-axle midpoint at time zero: x", -1e8, 1e8)
+    assert start["start.heading"].high == 100.0
+    pose = next(item.signal for item in variables(VEHICLE.outputs) if item.name == "pose.x")
+    assert (pose.text, limits_of(pose)) == ("rear-axle midpoint: x", (float("-inf"), float("inf")))
+    assert Group("g").limits == ()
+
+
+def test_the_role_next_to_a_field_wins():
+    roles = {item.name: item.roles for item in variables(CONTROLLER.params)}
+    assert roles["ntbpt.k1"] == {Role.TUNABLE}
+    assert roles["ntbpt.radius"] == {Role.FIXED}
+    assert roles["wheelbase"] == frozenset()
+    outputs = {item.name: item.roles for item in variables(CONTROLLER.outputs)}
+    assert outputs["path.segments[3].length"] == {Role.LOCAL}
+    assert outputs["phase"] == frozenset()

@@ -1,6 +1,7 @@
 """One process makes a file, the others wait for it: compiling the same model twice at once helps nobody."""
 
-from collections.abc import Iterator
+import os
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -20,3 +21,21 @@ def one_at_a_time(path: Path) -> Iterator[None]:
     with path.with_name(f"{path.name}.lock").open("w") as file:
         fcntl.flock(file, fcntl.LOCK_EX)
         yield
+
+
+def kept_file(folder: Path, name: str, key: str, suffix: str, make: Callable[[], bytes]) -> Path:
+    """Return ``folder/name-key.suffix``, made by ``make`` if there is none; no reader ever sees half of it."""
+    path = folder / f"{name}-{key}{suffix}"
+    with one_at_a_time(folder / name):
+        if not path.exists():
+            part = path.with_name(f"{path.name}.{os.getpid()}.part")
+            part.write_bytes(make())
+            part.replace(path)
+    return path
+
+
+def forget_old(folder: Path, name: str, suffix: str, most: int) -> None:
+    """Delete all but the ``most`` newest files that :func:`kept_file` made under ``name``."""
+    by_age = sorted(folder.glob(f"{name}-*{suffix}"), key=lambda path: path.stat().st_mtime)
+    for path in by_age[:-most]:
+        path.unlink(missing_ok=True)

@@ -5,14 +5,13 @@ Kept in ``LIBRARIES`` under a hash of all they are made of, so each is compiled 
 
 import ctypes
 import hashlib
-import os
 from collections.abc import Mapping
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
 from fmus.compiler import members
-from fmus.locks import one_at_a_time
+from fmus.locks import kept_file
 from fmus.native.compilers import SHARED, find_compiler
 from fmus.native.platforms import PLATFORMS, host, host_target
 from fmus.native.sources import C_FILES, translated
@@ -95,13 +94,8 @@ def kept_library(name: str, unit: str, files: Mapping[str, str]) -> Path:
     digest = hashlib.sha256(" ".join((compiler.words, target.triple, *SHARED, *target.options)).encode())
     for file, text in sorted(files.items()):
         digest.update(f"{file} {len(text)} {text}".encode())
-    path = LIBRARIES / f"{name}-{digest.hexdigest()[:16]}{platform.suffix}"
-    with one_at_a_time(path):
-        if not path.exists():
-            part = path.with_name(f"{path.name}.{os.getpid()}.part")
-            part.write_bytes(compiler.library(files, unit, path.name, target))
-            part.replace(path)
-    return path
+    key, file = digest.hexdigest()[:16], f"{name}{platform.suffix}"
+    return kept_file(LIBRARIES, name, key, platform.suffix, lambda: compiler.library(files, unit, file, target))
 
 
 def _own(*names: str) -> dict[str, str]:

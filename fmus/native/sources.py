@@ -1,12 +1,18 @@
 """The C files of an FMU: the model's, the FMI side, the tables, and the one file that is compiled."""
 
+import hashlib
+import json
 from functools import lru_cache
 from pathlib import Path
 
+from fmus import compiler
 from fmus.compiler import Translation, translate
+from fmus.locks import forget_old, kept_file
 from fmus.native.compilers import FLAGS
 from fmus.native.tables import longest_name, runs_file, variables_file
+from fmus.places import CACHE
 from modelkit.model import Model
+from modelkit.variables import flatten
 
 C_FILES = Path(__file__).parent / "c"
 CORE = ("core.h", "core.c", "state.c")
@@ -26,6 +32,10 @@ UNIT = """/* The FMU {name}, FMI {fmi}.0 for co-simulation, in one translation u
 #define FMU_LONGEST_NAME {longest}
 #include "fmi{fmi}.c"
 """
+ROOT = Path(__file__).parents[2]
+SUFFIX = ".c.json"
+KEPT = 4
+"""Translations of older sources that stay in the cache."""
 SHARED_FUNCTIONS = "-DFMI{fmi}_OVERRIDE_FUNCTION_PREFIX"
 """For a shared library: its functions have no prefix."""
 PREFIX = {
@@ -41,8 +51,28 @@ PREFIX = {
 
 @lru_cache
 def translated(model: Model) -> Translation:
-    """Return the C of ``model``. Raises ``TypeError`` if the translator refuses it."""
-    return translate(model)
+    """Return the C of ``model``; ``TypeError`` if the translator refuses it.
+
+    That of this project's own models is kept: they are made of their package and modelkit alone.
+    """
+    package = Path(str(model.package.__file__)).parent
+    if package.parent != ROOT:
+        return translate(model)
+    parts = (model.state, model.params, model.inputs, model.outputs, model.initialize, model.step)
+    words = [model.name, *(f"{part.__module__} {part.__qualname__}" for part in parts)]
+    words += [repr(flatten(cls())) for cls in (model.params, model.inputs)]
+    key = _hash_of([package, ROOT / "modelkit", Path(compiler.__file__).parent], "\0".join(words))
+    path = kept_file(CACHE, model.name, key, SUFFIX, lambda: json.dumps(translate(model)._asdict()).encode())
+    forget_old(CACHE, model.name, SUFFIX, KEPT)
+    return Translation(**json.loads(path.read_bytes()))
+
+
+def _hash_of(folders: list[Path], more: str) -> str:
+    """Return digits that depend on the names and contents of all Python files in ``folders``, and ``more``."""
+    digest = hashlib.sha256(more.encode())
+    for path in (path for folder in folders for path in sorted(folder.rglob("*.py"))):
+        digest.update(f"{path.relative_to(ROOT)}\0{path.read_text(encoding='utf-8')}\0".encode())
+    return digest.hexdigest()[:32]
 
 
 def unit_name(model: Model, fmi: int) -> str:

@@ -15,7 +15,7 @@ from test_fmi3_fmu import grouped
 
 from fmus.contents.variables import fmi_variables
 from fmus.native import fmu as native_fmu
-from fmus.native import tables
+from fmus.native import sources, tables
 from fmus.native.compilers import FLAGS, find_compiler
 from fmus.native.platforms import PLATFORMS, host
 from fmus.native.sources import fmu_sources, unit_name
@@ -147,3 +147,26 @@ def test_tunable_parameters_change_between_steps_and_hold_from_the_next_on(monke
     assert toy.set(component, "stiffness", 90.0) == ERROR
     for instance in (component, plain):
         toy.free(instance)
+
+
+def test_a_translation_is_kept_until_a_source_changes(monkeypatch, tmp_path):
+    made = []
+
+    def translate(model):
+        made.append(model.name)
+        return sources.Translation(model.name, f"header {len(made)}", "source")
+
+    monkeypatch.setattr(sources, "translate", translate)
+    monkeypatch.setattr(sources, "CACHE", tmp_path)
+    translated = sources.translated.__wrapped__
+    assert translated(VEHICLE) == translated(VEHICLE) == ("Vehicle", "header 1", "source")
+    other = VEHICLE._replace(name="Other")
+    assert translated(other).name == "Other"
+    assert translated(VEHICLE._replace(initialize=VEHICLE.step)).header == "header 3"
+    for number in range(sources.KEPT):
+        monkeypatch.setattr(sources, "_hash_of", lambda *_, n=number: str(n))
+        translated(VEHICLE)
+    assert len(list(tmp_path.glob("Vehicle-*"))) == sources.KEPT
+    count = len(made)
+    assert translated(toy_model.MODEL) != translated(toy_model.MODEL)
+    assert len(made) == count + 2, "a model from elsewhere may be made of anything"

@@ -40,6 +40,7 @@ from qp_problems import dense, random_problem
 STEPS, ROUNDS, OFTEN = 8000, 5, 50
 FINAL = (int(Phase.PARKED), int(Phase.FAILED), int(Phase.TAKEOVER))
 PEAKS5, PEAKS7 = (-3.0, -1.5, 0.0, 1.5, 3.0), (-3.0, -2.0, -1.0, 0.0, 1.0, 2.0, 3.0)
+FUZZY = (PEAKS5, PEAKS5, PEAKS7, STEERING_SYMMETRIC)
 NAMES = ("NB", "NM", "NS", "ZE", "PS", "PM", "PB")
 
 
@@ -148,7 +149,7 @@ def bench_fuzzy(library: Any) -> None:
 
     def ours() -> None:
         for a, b in points:
-            infer(a, b, PEAKS5, PEAKS5, PEAKS7, STEERING_SYMMETRIC)
+            infer(a, b, *FUZZY)
 
     def theirs() -> None:
         for a, b in points:

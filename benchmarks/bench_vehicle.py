@@ -34,7 +34,6 @@ from vehicle_fmu.wheels import Wheel
 
 ROUNDS = 7
 WHEELBASE = 2.405
-CAR = (ChassisParams(), RoadParams(), SingleTrackParams(), DoubleTrackParams())
 MOVING = Motion(Pose(), 1.0, 0.0, 0.0)
 NAMES = ("kinematic", "single_track", "double_track")
 Rounds = dict[str, tuple[int, Callable[[int], Any]]]
@@ -44,33 +43,32 @@ Rounds = dict[str, tuple[int, Callable[[int], Any]]]
 def kinematic(n: int, pose: Any) -> Any:
     """Return the pose after ``n`` steps of 1 ms."""
     for _ in range(n):
-        pose = move(pose, 1.0, 1.0, 0.2, 0.2, 2.405, 0.001)
+        pose = move(pose, 1.0, 1.0, 0.2, 0.2, WHEELBASE, 0.001)
     return pose
 
 
-def single(n: int, state: Any, effort: Any, chassis: Any, road: Any, p: Any) -> Any:
+def single(n: int, state: Any, effort: Any, build: Any, p: Any) -> Any:
     """Return the single track after ``n`` steps of 1 ms."""
     for _ in range(n):
-        state = step_single_track(state, 0.2, effort, Build(2.405, chassis, road), p, 0.001)
+        state = step_single_track(state, 0.2, effort, build, p, 0.001)
     return state
 
 
-def double(n: int, state: Any, effort: Any, chassis: Any, road: Any, p: Any) -> Any:
+def double(n: int, state: Any, effort: Any, build: Any, p: Any) -> Any:
     """Return the double track after ``n`` steps of 1 ms."""
     for _ in range(n):
-        state = step_double_track(state, 0.2, effort, Build(2.405, chassis, road), p, 0.001)
+        state = step_double_track(state, 0.2, effort, build, p, 0.001)
     return state
 
 
 def bodies(n: int) -> Rounds:
     """Return the three bodies in CPython."""
-    chassis, road, one, two = CAR
-    push = Effort(200.0, 0.0)
-    four = DoubleTrackState(MOVING, (Wheel(1.0 / 0.344),) * 4)
+    build, push = Build(WHEELBASE, ChassisParams(), RoadParams()), Effort(200.0, 0.0)
+    one, two = SingleTrackState(MOVING), DoubleTrackState(MOVING, (Wheel(1.0 / 0.344),) * 4)
     return {
         "kinematic": (n, lambda n: kinematic(n, Pose())),
-        "single_track": (n, lambda n: single(n, SingleTrackState(MOVING), push, chassis, road, one)),
-        "double_track": (n, lambda n: double(n, four, push, chassis, road, two)),
+        "single_track": (n, lambda n: single(n, one, push, build, SingleTrackParams())),
+        "double_track": (n, lambda n: double(n, two, push, build, DoubleTrackParams())),
     }
 
 

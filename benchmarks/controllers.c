@@ -40,7 +40,10 @@ LIBRARY_EXPORT double bench_infer(const double *points, int64_t rows) {
 LIBRARY_EXPORT double bench_solve(int64_t count, double e, double psi, double d, const void *stages,
                                   const void *weights) {
     double total = 0.0;
-    for (int64_t k = 0; k < count; k++)
-        total += solve(e + 1e-9 * (double)k, psi, d, stages, weights, 1e-10, 40).nodes[0].u;
+    Solution solution;
+    for (int64_t k = 0; k < count; k++) {
+        solve(e + 1e-9 * (double)k, psi, d, stages, weights, 1e-10, 40, &solution);
+        total += solution.nodes[0].u;
+    }
     return total;
 }

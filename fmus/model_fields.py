@@ -6,8 +6,8 @@ import typing
 from typing import Any, NamedTuple
 
 from fmus.compiler import Refusal
-from fmus.compiler.kinds import NoKindError, hints_of, is_named_tuple, kind_of
-from fmus.compiler.reading import Library
+from fmus.compiler.source.kinds import NoKindError, hints_of, is_named_tuple, kind_of
+from fmus.compiler.source.reading import Library
 from fmus.contents.units import unit
 from modelkit.model import Model
 from modelkit.signal import Signal

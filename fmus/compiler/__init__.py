@@ -6,8 +6,8 @@
 What cannot be proved equal in C is refused (``Refused``) with its place and what to write instead.
 """
 
-from fmus.compiler.members import Member, member_path, members
-from fmus.compiler.refusals import Refusal, Refused
+from fmus.compiler.source.refusals import Refusal, Refused
+from fmus.compiler.target.members import Member, member_path, members
 from fmus.compiler.translation import Translation, translate
 
 __all__ = ["Member", "Refusal", "Refused", "Translation", "member_path", "members", "translate"]

@@ -130,15 +130,7 @@ class _Plan:
         slaves = [
             self._slave(slave, every, *begin) for slave, every, begin in zip(fmus, master.every, begins, strict=True)
         ]
-        links = [
-            LinkC(
-                link.target,
-                self._places(begins[link.source][1] + np.argsort(orders[link.source][1])[link.source_places]),
-                self._places(begins[link.target][0] + np.argsort(orders[link.target][0])[link.target_places]),
-                len(link.source_places),
-            )
-            for link in master.connections
-        ]
+        links = self._links(master, begins, orders)
         self._run = RunC(
             self._array(SlaveC, slaves),
             self._array(LinkC, links),
@@ -156,6 +148,18 @@ class _Plan:
         parts = zip(sum(begins, ()), sum(orders, ()), strict=True)
         self._columns = np.concatenate([at + np.argsort(part) for at, part in parts])
         self.rows = np.empty((BLOCK, len(before)))
+
+    def _links(self, master: Master, begins: list[tuple[int, int]], orders: list[tuple[Any, Any]]) -> list[Any]:
+        """Return the signals from one FMU to another, by their places in a row."""
+        return [
+            LinkC(
+                link.target,
+                self._places(begins[link.source][1] + np.argsort(orders[link.source][1])[link.source_places]),
+                self._places(begins[link.target][0] + np.argsort(orders[link.target][0])[link.target_places]),
+                len(link.source_places),
+            )
+            for link in master.connections
+        ]
 
     def rows_of_ports(self, begin: int, end: int) -> Any:
         """Return the rows with their values in the order of the master's."""

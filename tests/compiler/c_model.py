@@ -9,8 +9,8 @@ import sys
 from enum import IntEnum
 
 from fmus.compiler import members
-from fmus.compiler.kinds import BOOL, FLOAT, INT, Array, Struct, fields_of
-from fmus.compiler.names import member_name
+from fmus.compiler.source.kinds import BOOL, FLOAT, INT, Array, Struct, fields_of
+from fmus.compiler.target.names import member_name
 
 WARNINGS = ("-std=c99", "-pedantic", "-Wall", "-Wextra", "-Wconversion", "-Wno-unused-parameter", "-Werror")
 CODE = ("-O2", "-ffp-contract=off", "-fno-math-errno")

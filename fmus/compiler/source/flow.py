@@ -3,8 +3,8 @@
 import ast
 from collections.abc import Iterable
 
-from fmus.compiler.bindings import names_in
-from fmus.compiler.refusals import CannotError
+from fmus.compiler.source.bindings import names_in
+from fmus.compiler.source.refusals import CannotError
 
 State = frozenset[str] | None
 """The names that are certainly bound; None: this place is never reached."""

@@ -2,13 +2,13 @@
 
 import ast
 
-from fmus.compiler.body import Body
-from fmus.compiler.kinds import INT, Array, described
-from fmus.compiler.making import coerced
-from fmus.compiler.refusals import CannotError
-from fmus.compiler.storage import put
-from fmus.compiler.values import UNKNOWN
-from fmus.compiler.variables import Variable, looks_at
+from fmus.compiler.source.kinds import INT, Array, described
+from fmus.compiler.source.refusals import CannotError
+from fmus.compiler.target.body import Body
+from fmus.compiler.target.making import coerced
+from fmus.compiler.target.storage import put
+from fmus.compiler.target.values import UNKNOWN
+from fmus.compiler.target.variables import Variable, looks_at
 
 
 def changed_item(node: ast.expr, name: str) -> tuple[ast.expr, ast.expr] | None:

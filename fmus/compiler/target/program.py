@@ -5,10 +5,9 @@ from enum import IntEnum
 from types import FunctionType
 from typing import Any
 
-from fmus.compiler import runtime
-from fmus.compiler.bindings import Bindings, bindings
-from fmus.compiler.discovery import Discovery
-from fmus.compiler.kinds import (
+from fmus.compiler.source.bindings import Bindings, bindings
+from fmus.compiler.source.discovery import Discovery
+from fmus.compiler.source.kinds import (
     BOOL,
     FLOAT,
     INT,
@@ -24,11 +23,12 @@ from fmus.compiler.kinds import (
     kind_of_value,
     parts,
 )
-from fmus.compiler.names import FileNames
-from fmus.compiler.reading import Library
-from fmus.compiler.refusals import CannotError, Refusal
-from fmus.compiler.resolve import Static
-from fmus.compiler.values import INT32, INT64, Value, literal
+from fmus.compiler.source.reading import Library
+from fmus.compiler.source.refusals import CannotError, Refusal
+from fmus.compiler.source.resolve import Static
+from fmus.compiler.target import runtime
+from fmus.compiler.target.names import FileNames
+from fmus.compiler.target.values import INT32, INT64, Value, literal
 
 PLACES = ("math", "builtins", "typing", "enum", "cmath", "sys", "os")
 """Modules whose constants are written out."""

@@ -4,13 +4,13 @@ from collections.abc import Callable
 from types import FunctionType
 from typing import Any
 
-from fmus.compiler.functions import Instance, instance_of
-from fmus.compiler.kinds import BOOL, INT, Kind, Mixed, Struct, described
-from fmus.compiler.members import members
-from fmus.compiler.names import member_name
-from fmus.compiler.program import Program
-from fmus.compiler.refusals import CannotError
-from fmus.compiler.values import Place
+from fmus.compiler.source.kinds import BOOL, INT, Kind, Mixed, Struct, described
+from fmus.compiler.source.refusals import CannotError
+from fmus.compiler.target.functions import Instance, instance_of
+from fmus.compiler.target.members import members
+from fmus.compiler.target.names import member_name
+from fmus.compiler.target.program import Program
+from fmus.compiler.target.values import Place
 from modelkit.model import Model, SampledSystem, SampledSystems
 
 NAMES = ("params", "inputs", "outputs", "state", "dt_ns", "next", "clock", "samples", "period_ns", "i")

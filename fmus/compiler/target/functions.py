@@ -8,16 +8,16 @@ from dataclasses import dataclass, field
 from types import FunctionType
 from typing import Any, NamedTuple
 
-from fmus.compiler.body import Body
-from fmus.compiler.flow import Flow
-from fmus.compiler.kinds import Array, Kind, Mixed, NoKindError, Open, Struct, kind_of
-from fmus.compiler.layout import flat
-from fmus.compiler.program import Program
-from fmus.compiler.refusals import AlreadySaidError, CannotError
-from fmus.compiler.storage import put
-from fmus.compiler.unused import without_unused
-from fmus.compiler.values import Place, Value, is_scalar, returned_by_value
-from fmus.compiler.variables import variable
+from fmus.compiler.source.flow import Flow
+from fmus.compiler.source.kinds import Array, Kind, Mixed, NoKindError, Open, Struct, kind_of
+from fmus.compiler.source.refusals import AlreadySaidError, CannotError
+from fmus.compiler.source.unused import without_unused
+from fmus.compiler.target.body import Body
+from fmus.compiler.target.layout import flat
+from fmus.compiler.target.program import Program
+from fmus.compiler.target.storage import put
+from fmus.compiler.target.values import Place, Value, is_scalar, returned_by_value
+from fmus.compiler.target.variables import variable
 
 SHORT = 20
 """Functions of no more lines without a loop are inline."""

@@ -2,18 +2,18 @@
 
 import ast
 
-from fmus.compiler.bindings import block
-from fmus.compiler.body import STATEMENTS, Body
-from fmus.compiler.conditions import condition
-from fmus.compiler.items import change_item, changed_item
-from fmus.compiler.kinds import INT, Array, Kind, Mixed, NoKindError, Open, described, kind_of
-from fmus.compiler.making import coerced
-from fmus.compiler.refusals import CannotError
-from fmus.compiler.replacing import is_replace, replace_in_place
-from fmus.compiler.storage import put, settled, text_of
-from fmus.compiler.unpacking import items_of, unpack_assignment
-from fmus.compiler.values import UNKNOWN, Value, is_scalar
-from fmus.compiler.variables import bind, variable
+from fmus.compiler.constructs.conditions import condition
+from fmus.compiler.constructs.items import change_item, changed_item
+from fmus.compiler.constructs.replacing import is_replace, replace_in_place
+from fmus.compiler.constructs.unpacking import items_of, unpack_assignment
+from fmus.compiler.source.bindings import block
+from fmus.compiler.source.kinds import INT, Array, Kind, Mixed, NoKindError, Open, described, kind_of
+from fmus.compiler.source.refusals import CannotError
+from fmus.compiler.target.body import STATEMENTS, Body
+from fmus.compiler.target.making import coerced
+from fmus.compiler.target.storage import put, settled, text_of
+from fmus.compiler.target.values import UNKNOWN, Value, is_scalar
+from fmus.compiler.target.variables import bind, variable
 
 
 def assign(body: Body, node: ast.Assign) -> None:

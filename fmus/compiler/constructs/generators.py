@@ -4,17 +4,17 @@ import ast
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
-from fmus.compiler.bindings import Home
-from fmus.compiler.body import Body
-from fmus.compiler.conditions import condition
-from fmus.compiler.kinds import BOOL, FLOAT, INT, Array, Scalar, described
-from fmus.compiler.loops import is_call, items_at, range_head, range_of, steady
-from fmus.compiler.making import coerced
-from fmus.compiler.refusals import CannotError
-from fmus.compiler.storage import put
-from fmus.compiler.unpacking import items_of
-from fmus.compiler.values import Place, Value, as_int
-from fmus.compiler.variables import Variable
+from fmus.compiler.constructs.conditions import condition
+from fmus.compiler.constructs.loops import is_call, items_at, range_head, range_of, steady
+from fmus.compiler.constructs.unpacking import items_of
+from fmus.compiler.source.bindings import Home
+from fmus.compiler.source.kinds import BOOL, FLOAT, INT, Array, Scalar, described
+from fmus.compiler.source.refusals import CannotError
+from fmus.compiler.target.body import Body
+from fmus.compiler.target.making import coerced
+from fmus.compiler.target.storage import put
+from fmus.compiler.target.values import Place, Value, as_int
+from fmus.compiler.target.variables import Variable
 
 
 class Loop(NamedTuple):

@@ -6,13 +6,13 @@ from collections.abc import Iterable
 from enum import IntEnum
 from typing import Any
 
-from fmus.compiler.functions import Instance
-from fmus.compiler.kinds import Array, Kind, Mixed, Open, Scalar, Struct, fields_of, hints_of, parts
-from fmus.compiler.layout import WIDTH, comment, flat, laid_out
-from fmus.compiler.names import member_name
-from fmus.compiler.program import Constant, Program
-from fmus.compiler.reading import field_meanings, plain
-from fmus.compiler.values import INT32, float_text, int_text
+from fmus.compiler.source.kinds import Array, Kind, Mixed, Open, Scalar, Struct, fields_of, hints_of, parts
+from fmus.compiler.source.reading import field_meanings, plain
+from fmus.compiler.target.functions import Instance
+from fmus.compiler.target.layout import WIDTH, comment, flat, laid_out
+from fmus.compiler.target.names import member_name
+from fmus.compiler.target.program import Constant, Program
+from fmus.compiler.target.values import INT32, float_text, int_text
 
 
 class Writer:

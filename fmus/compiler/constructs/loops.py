@@ -4,15 +4,15 @@ import ast
 from dataclasses import dataclass
 from types import FunctionType
 
-from fmus.compiler.bindings import Path, block, stored_in
-from fmus.compiler.body import STATEMENTS, Body
-from fmus.compiler.kinds import INT, Array, described
-from fmus.compiler.making import tuple_of
-from fmus.compiler.refusals import CannotError
-from fmus.compiler.storage import hoist, item_of
-from fmus.compiler.unpacking import unpack
-from fmus.compiler.values import SUM, UNKNOWN, Value, as_int, literal
-from fmus.compiler.variables import bind, variable
+from fmus.compiler.constructs.unpacking import unpack
+from fmus.compiler.source.bindings import Path, block, stored_in
+from fmus.compiler.source.kinds import INT, Array, described
+from fmus.compiler.source.refusals import CannotError
+from fmus.compiler.target.body import STATEMENTS, Body
+from fmus.compiler.target.making import tuple_of
+from fmus.compiler.target.storage import hoist, item_of
+from fmus.compiler.target.values import SUM, UNKNOWN, Value, as_int, literal
+from fmus.compiler.target.variables import bind, variable
 
 
 @dataclass

@@ -5,12 +5,12 @@ import math
 from collections.abc import Callable
 from typing import Any
 
-from fmus.compiler.arithmetic import in_64_bits
-from fmus.compiler.body import Body
-from fmus.compiler.kinds import BOOL, FLOAT, INT, Array, Mixed, described
-from fmus.compiler.making import elements
-from fmus.compiler.refusals import CannotError
-from fmus.compiler.values import EQUAL, UNKNOWN, Value, as_float, as_int, both, either, literal, truth
+from fmus.compiler.constructs.arithmetic import in_64_bits
+from fmus.compiler.source.kinds import BOOL, FLOAT, INT, Array, Mixed, described
+from fmus.compiler.source.refusals import CannotError
+from fmus.compiler.target.body import Body
+from fmus.compiler.target.making import elements
+from fmus.compiler.target.values import EQUAL, UNKNOWN, Value, as_float, as_int, both, either, literal, truth
 
 MATH = {
     "sin": 1, "cos": 1, "tan": 1, "asin": 1, "acos": 1, "atan": 1, "atan2": 2, "sinh": 1, "cosh": 1, "tanh": 1,

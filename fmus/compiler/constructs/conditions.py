@@ -3,13 +3,13 @@
 import ast
 from typing import Any
 
-from fmus.compiler.arithmetic import unary
-from fmus.compiler.body import EXPRESSIONS, Body
-from fmus.compiler.kinds import BOOL, FLOAT, INT, Array, Scalar, described
-from fmus.compiler.making import elements
-from fmus.compiler.refusals import CannotError
-from fmus.compiler.storage import hoist, put, settled
-from fmus.compiler.values import (
+from fmus.compiler.constructs.arithmetic import unary
+from fmus.compiler.source.kinds import BOOL, FLOAT, INT, Array, Scalar, described
+from fmus.compiler.source.refusals import CannotError
+from fmus.compiler.target.body import EXPRESSIONS, Body
+from fmus.compiler.target.making import elements
+from fmus.compiler.target.storage import hoist, put, settled
+from fmus.compiler.target.values import (
     AND,
     BIT_AND,
     BIT_OR,

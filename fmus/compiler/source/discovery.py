@@ -7,11 +7,11 @@ from enum import IntEnum
 from types import FunctionType
 from typing import Any
 
-from fmus.compiler.bindings import bindings
-from fmus.compiler.kinds import hints_of, is_named_tuple
-from fmus.compiler.reading import Library
-from fmus.compiler.refusals import CannotError
-from fmus.compiler.resolve import static
+from fmus.compiler.source.bindings import bindings
+from fmus.compiler.source.kinds import hints_of, is_named_tuple
+from fmus.compiler.source.reading import Library
+from fmus.compiler.source.refusals import CannotError
+from fmus.compiler.source.resolve import static
 
 
 class Discovery:

@@ -7,17 +7,17 @@ from enum import IntEnum
 from types import FunctionType
 from typing import Any
 
-from fmus.compiler.advice import CALL_ADVICE
-from fmus.compiler.body import EXPRESSIONS, Body
-from fmus.compiler.builtin import BUILTINS, math_call
-from fmus.compiler.functions import Instance, instance_of, signature
-from fmus.compiler.generators import GENERATORS
-from fmus.compiler.kinds import Array, Kind, Mixed, Open, Struct, described, is_named_tuple
-from fmus.compiler.making import coerced, struct_of, written_out
-from fmus.compiler.refusals import AlreadySaidError, CannotError
-from fmus.compiler.replacing import replaced
-from fmus.compiler.storage import address, text_of
-from fmus.compiler.values import Place, Value
+from fmus.compiler.constructs.builtin import BUILTINS, math_call
+from fmus.compiler.constructs.generators import GENERATORS
+from fmus.compiler.constructs.replacing import replaced
+from fmus.compiler.source.advice import CALL_ADVICE
+from fmus.compiler.source.kinds import Array, Kind, Mixed, Open, Struct, described, is_named_tuple
+from fmus.compiler.source.refusals import AlreadySaidError, CannotError
+from fmus.compiler.target.body import EXPRESSIONS, Body
+from fmus.compiler.target.functions import Instance, instance_of, signature
+from fmus.compiler.target.making import coerced, struct_of, written_out
+from fmus.compiler.target.storage import address, text_of
+from fmus.compiler.target.values import Place, Value
 
 
 def call(body: Body, node: ast.Call) -> Value:

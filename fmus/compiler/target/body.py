@@ -7,15 +7,15 @@ from dataclasses import dataclass, field
 from types import FunctionType
 from typing import Any
 
-from fmus.compiler.advice import EXPRESSION_ADVICE, STATEMENT_ADVICE
-from fmus.compiler.bindings import Path
-from fmus.compiler.kinds import FLOAT, Kind, described
-from fmus.compiler.names import FUNCTIONS, LocalNames
-from fmus.compiler.program import Program
-from fmus.compiler.refusals import AlreadySaidError, CannotError
-from fmus.compiler.resolve import Static, static
-from fmus.compiler.runtime import TEXTS
-from fmus.compiler.values import Place, Value, is_scalar
+from fmus.compiler.source.advice import EXPRESSION_ADVICE, STATEMENT_ADVICE
+from fmus.compiler.source.bindings import Path
+from fmus.compiler.source.kinds import FLOAT, Kind, described
+from fmus.compiler.source.refusals import AlreadySaidError, CannotError
+from fmus.compiler.source.resolve import Static, static
+from fmus.compiler.target.names import FUNCTIONS, LocalNames
+from fmus.compiler.target.program import Program
+from fmus.compiler.target.runtime import TEXTS
+from fmus.compiler.target.values import Place, Value, is_scalar
 
 EXPRESSIONS: dict[type[ast.AST], Callable[["Body", Any], Value]] = {}
 STATEMENTS: dict[type[ast.AST], Callable[["Body", Any], None]] = {}

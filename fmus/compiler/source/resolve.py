@@ -6,7 +6,7 @@ from enum import Enum, IntEnum
 from types import FunctionType, ModuleType
 from typing import Any, NamedTuple
 
-from fmus.compiler.reading import Library
+from fmus.compiler.source.reading import Library
 
 
 class Static(NamedTuple):

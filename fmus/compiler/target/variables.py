@@ -5,13 +5,13 @@ import re
 from dataclasses import dataclass
 from typing import Any
 
-from fmus.compiler.bindings import Home, Path
-from fmus.compiler.body import Body
-from fmus.compiler.kinds import Array, Kind, Open, described
-from fmus.compiler.making import coerced
-from fmus.compiler.refusals import AlreadySaidError
-from fmus.compiler.storage import declare, put
-from fmus.compiler.values import PRIMARY, UNKNOWN, Place, Value, is_scalar, place_of
+from fmus.compiler.source.bindings import Home, Path
+from fmus.compiler.source.kinds import Array, Kind, Open, described
+from fmus.compiler.source.refusals import AlreadySaidError
+from fmus.compiler.target.body import Body
+from fmus.compiler.target.making import coerced
+from fmus.compiler.target.storage import declare, put
+from fmus.compiler.target.values import PRIMARY, UNKNOWN, Place, Value, is_scalar, place_of
 
 
 @dataclass

@@ -3,14 +3,14 @@
 import ast
 from dataclasses import replace
 
-from fmus.compiler.bindings import reads
-from fmus.compiler.body import Body
-from fmus.compiler.kinds import Array, Mixed, Struct, described
-from fmus.compiler.making import elements
-from fmus.compiler.refusals import CannotError
-from fmus.compiler.storage import hoist, settled
-from fmus.compiler.values import Place, Value, place_of
-from fmus.compiler.variables import bind, open_place
+from fmus.compiler.source.bindings import reads
+from fmus.compiler.source.kinds import Array, Mixed, Struct, described
+from fmus.compiler.source.refusals import CannotError
+from fmus.compiler.target.body import Body
+from fmus.compiler.target.making import elements
+from fmus.compiler.target.storage import hoist, settled
+from fmus.compiler.target.values import Place, Value, place_of
+from fmus.compiler.target.variables import bind, open_place
 
 
 def unpack_assignment(body: Body, target: ast.Tuple, source: ast.expr, node: ast.AST) -> None:
@@ -84,7 +84,7 @@ def unpack(body: Body, target: ast.expr, value: Value, node: ast.AST) -> None:
 
 def items_of(body: Body, value: Value, node: ast.AST) -> tuple[Value, ...]:
     """Return the items of a tuple or the fields of a NamedTuple."""
-    from fmus.compiler.tuples import field
+    from fmus.compiler.constructs.tuples import field
 
     if value.items is not None:
         return value.items

@@ -3,12 +3,12 @@
 import ast
 from typing import Any
 
-from fmus.compiler.body import Body
-from fmus.compiler.kinds import BOOL, FLOAT, INT, Array, Kind, Mixed, Open, Scalar, Struct, described
-from fmus.compiler.names import member_name
-from fmus.compiler.refusals import CannotError
-from fmus.compiler.storage import initial, item_of, put, settled
-from fmus.compiler.values import UNKNOWN, Place, Value, as_int
+from fmus.compiler.source.kinds import BOOL, FLOAT, INT, Array, Kind, Mixed, Open, Scalar, Struct, described
+from fmus.compiler.source.refusals import CannotError
+from fmus.compiler.target.body import Body
+from fmus.compiler.target.names import member_name
+from fmus.compiler.target.storage import initial, item_of, put, settled
+from fmus.compiler.target.values import UNKNOWN, Place, Value, as_int
 
 
 def tuple_of(body: Body, items: tuple[Value, ...], kind: Kind | None = None) -> Value:

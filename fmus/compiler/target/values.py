@@ -4,7 +4,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any
 
-from fmus.compiler.kinds import BOOL, FLOAT, INT, Array, Kind, Scalar, Struct, parts
+from fmus.compiler.source.kinds import BOOL, FLOAT, INT, Array, Kind, Scalar, Struct, parts
 
 PRIMARY, UNARY, PRODUCT, SUM, SHIFT, ORDER, EQUAL, BIT_AND, BIT_XOR, BIT_OR, AND, OR, CHOICE = range(13, 0, -1)
 """How tightly the operators of C bind."""

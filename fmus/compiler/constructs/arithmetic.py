@@ -5,11 +5,11 @@ import operator
 from collections.abc import Callable
 from typing import Any
 
-from fmus.compiler.body import EXPRESSIONS, Body
-from fmus.compiler.kinds import BOOL, FLOAT, INT, Array, described
-from fmus.compiler.making import elements, tuple_of
-from fmus.compiler.refusals import AlreadySaidError, CannotError
-from fmus.compiler.values import (
+from fmus.compiler.source.kinds import BOOL, FLOAT, INT, Array, described
+from fmus.compiler.source.refusals import AlreadySaidError, CannotError
+from fmus.compiler.target.body import EXPRESSIONS, Body
+from fmus.compiler.target.making import elements, tuple_of
+from fmus.compiler.target.values import (
     BIT_AND,
     BIT_OR,
     BIT_XOR,
@@ -28,7 +28,7 @@ from fmus.compiler.values import (
     literal,
     within,
 )
-from fmus.compiler.variables import variable
+from fmus.compiler.target.variables import variable
 
 SIGNS: dict[type[ast.operator], tuple[str, int]] = {
     ast.Add: ("+", SUM),

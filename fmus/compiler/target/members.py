@@ -3,7 +3,7 @@
 import re
 from typing import Any, NamedTuple
 
-from fmus.compiler.names import member_name
+from fmus.compiler.target.names import member_name
 from modelkit.model import Model
 from modelkit.variables import variables
 

@@ -2,9 +2,9 @@
 
 import re
 
-from fmus.compiler.body import Body
-from fmus.compiler.kinds import Array, Scalar, Struct
-from fmus.compiler.values import SMALL, UNKNOWN, Place, Value, is_scalar, place_of, rvalue, scalars_in
+from fmus.compiler.source.kinds import Array, Scalar, Struct
+from fmus.compiler.target.body import Body
+from fmus.compiler.target.values import SMALL, UNKNOWN, Place, Value, is_scalar, place_of, rvalue, scalars_in
 
 NUMBER = re.compile(r"-?\d[\d.]*(?:e[+-]?\d+)?|true|false")
 ONE_BY_ONE = 4

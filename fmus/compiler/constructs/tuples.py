@@ -2,14 +2,14 @@
 
 import ast
 
-from fmus.compiler.body import EXPRESSIONS, Body
-from fmus.compiler.kinds import INT, Array, Mixed, Struct, described
-from fmus.compiler.making import elements, tuple_of
-from fmus.compiler.names import member_name
-from fmus.compiler.refusals import CannotError
-from fmus.compiler.resolve import attribute as static_attribute
-from fmus.compiler.storage import address, item_of, settled
-from fmus.compiler.values import UNARY, UNKNOWN, Value, is_scalar, place_of, within
+from fmus.compiler.source.kinds import INT, Array, Mixed, Struct, described
+from fmus.compiler.source.refusals import CannotError
+from fmus.compiler.source.resolve import attribute as static_attribute
+from fmus.compiler.target.body import EXPRESSIONS, Body
+from fmus.compiler.target.making import elements, tuple_of
+from fmus.compiler.target.names import member_name
+from fmus.compiler.target.storage import address, item_of, settled
+from fmus.compiler.target.values import UNARY, UNKNOWN, Value, is_scalar, place_of, within
 
 
 def display(body: Body, node: ast.Tuple) -> Value:
@@ -45,7 +45,7 @@ def field(body: Body, value: Value, name: str, node: ast.AST) -> Value:
     cls = value.kind.cls
     kinds = body.program.fields(cls, node)
     if name not in kinds:
-        from fmus.compiler.calls import call_property
+        from fmus.compiler.constructs.calls import call_property
 
         return call_property(body, value, name, node)
     if value.fill is not None or (not value.place and isinstance(kinds[name], Array)):

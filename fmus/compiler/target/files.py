@@ -4,13 +4,13 @@ import re
 from collections.abc import Iterable
 from typing import Any
 
-from fmus.compiler import runtime
-from fmus.compiler.entries import Entries
-from fmus.compiler.functions import Instance
-from fmus.compiler.kinds import Mixed, hints_of
-from fmus.compiler.layout import comment, laid_out
-from fmus.compiler.program import Program
-from fmus.compiler.writing import Writer, in_order
+from fmus.compiler.source.kinds import Mixed, hints_of
+from fmus.compiler.target import runtime
+from fmus.compiler.target.entries import Entries
+from fmus.compiler.target.functions import Instance
+from fmus.compiler.target.layout import comment, laid_out
+from fmus.compiler.target.program import Program
+from fmus.compiler.target.writing import Writer, in_order
 from modelkit.model import Model
 
 MEANINGS = (

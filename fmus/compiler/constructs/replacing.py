@@ -2,14 +2,14 @@
 
 import ast
 
-from fmus.compiler.body import Body
-from fmus.compiler.kinds import Kind, Struct, described
-from fmus.compiler.making import coerced
-from fmus.compiler.names import member_name
-from fmus.compiler.refusals import CannotError
-from fmus.compiler.storage import hoist, put
-from fmus.compiler.values import Place, Value, place_of
-from fmus.compiler.variables import looks_at
+from fmus.compiler.source.kinds import Kind, Struct, described
+from fmus.compiler.source.refusals import CannotError
+from fmus.compiler.target.body import Body
+from fmus.compiler.target.making import coerced
+from fmus.compiler.target.names import member_name
+from fmus.compiler.target.storage import hoist, put
+from fmus.compiler.target.values import Place, Value, place_of
+from fmus.compiler.target.variables import looks_at
 
 
 def replaced(body: Body, node: ast.Call, value: Value) -> Value:

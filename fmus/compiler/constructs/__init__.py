@@ -1,0 +1,1 @@
+"""Each construct of the language, and how it is written in C."""

@@ -140,9 +140,6 @@ class _Plan:
             len(before),
             master.step_ns,
             self.last,
-            0,
-            0,
-            0,
         )
         self._kept.append(before)
         parts = zip(sum(begins, ()), sum(orders, ()), strict=True)

@@ -164,7 +164,7 @@ def test_a_part_file_gets_its_name_only_when_complete(tmp_path: Path) -> None:
 def test_no_log_is_explained(tmp_path: Path) -> None:
     path = tmp_path / "x.mcap"
     path.write_text("not a log at all, but long enough to be looked at")
-    with pytest.raises(BadInput, match=r"x\.mcap: is not a complete log"):
+    with pytest.raises(BadInput, match=r"x\.mcap: is no MCAP log"):
         read_log(path)
     with pytest.raises(BadInput, match="cannot be read"):
         read_log(tmp_path / "none.mcap")

@@ -220,6 +220,9 @@ def key_rows(model: type[BaseModel]) -> list[list[str]]:
             else "required"
         )
         rows.append([f"`{name}`", type_text(item), shown, texts.get(field, "")])
+    if model is Scenario:
+        meaning = "what stands around the car: `boxes` and `kerbs`, with the fields of the vehicle's `scene.*`"
+        rows.insert([row[0] for row in rows].index("`slot`") + 1, ["`scene`", "object", "", meaning])
     return rows
 
 

@@ -3,11 +3,11 @@
 from collections.abc import Sequence
 
 from orchestrator.cosim.slave import Slave
+from orchestrator.scenario.end_condition import EndCondition
 from orchestrator.text.errors import suggestion
 
 NEEDED = {
     "controller": {
-        "phase": "PARKED (9) of it says that the car is parked and, once it stands, ends the run",
         "shifts": "limits on the number of shifts are not judged",
     },
     "vehicle": {
@@ -20,9 +20,9 @@ NEEDED = {
 """Slave -> output that a verdict needs -> what is lost without it."""
 
 
-def remarks(slaves: Sequence[Slave]) -> list[str]:
-    """Return one sentence for each thing that is allowed but hardly meant."""
-    return [text for slave in slaves for text in (*_units(slave), *_unfed(slave, slaves), *_missing(slave))]
+def remarks(slaves: Sequence[Slave], ending: EndCondition) -> list[str]:
+    """Return one sentence for each thing that is allowed but hardly meant in a run that ends so."""
+    return [text for slave in slaves for text in (*_units(slave), *_unfed(slave, slaves), *_missing(slave, ending))]
 
 
 def _units(slave: Slave) -> list[str]:
@@ -51,8 +51,10 @@ def _unfed(slave: Slave, slaves: Sequence[Slave]) -> list[str]:
     return found
 
 
-def _missing(slave: Slave) -> list[str]:
-    needed = NEEDED.get(slave.name, {})
+def _missing(slave: Slave, ending: EndCondition) -> list[str]:
+    owner, _, mode = ending.signal.partition(".")
+    says = f"{ending.text(ending.done[0])} of it says that the task is done and, once the car stands, ends the run"
+    needed = ({mode: says} if slave.name == owner else {}) | NEEDED.get(slave.name, {})
     return [
         f"{slave.name} has no output {name}: {loss}" for name, loss in needed.items() if name not in slave.outputs.index
     ]

@@ -57,6 +57,12 @@ class EndCondition(BaseModel):
             found.append(numbers[word] if isinstance(word, str) else word)
         return found
 
+    def text(self, state: State, mode: Variable | None = None) -> str:
+        """Return a state for people: ``PARKED (9)``."""
+        (number,) = self.values([state], mode)
+        name = states_of(self.signal, mode).get(number, "")
+        return f"{name} ({number})" if name else str(number)
+
 
 def states_of(signal: str, declared: Variable | None = None) -> dict[int, str]:
     """Return value -> name of the states of a signal: as it is ``declared``, else as our own models have it."""

@@ -91,7 +91,7 @@ def run_scenario(
     words = Words()
     slaves = make_slaves(scenario, files, words)
     try:
-        for text in remarks(slaves):
+        for text in remarks(slaves, scenario.ending):
             warn(text)
         return run_slaves(
             scenario, slaves, words, kind=kind, log=log, observers=observers, interrupt=interrupt, foreign=foreign
@@ -127,7 +127,7 @@ def run_slaves(
         master.observers += [watch, file, *observers]
     else:
         master.observers += [watch, *observers]
-    said = remarks(slaves)
+    said = remarks(slaves, scenario.ending)
     for text in said:
         words.say(0, WARNING, "system", text)
     end = _guarded(words, master.initialize)

@@ -60,7 +60,7 @@ class _Words:
         )
         self._output = ending.signal.partition(".")[2]
         self._modes = states_of(ending.signal, mode)
-        self._word = f"{state_name(self._modes, self._done[0])} ({self._done[0]})"
+        self._word = ending.text(ending.done[0], mode)
         self._reasons = states_of(ending.reason, reason)
 
     def outcome(

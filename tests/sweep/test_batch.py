@@ -1,5 +1,6 @@
 """Rows of the compiled batch against the Python master, run by run, to the last bit."""
 
+import json
 from typing import Annotated, NamedTuple
 
 import numpy as np
@@ -14,7 +15,9 @@ from orchestrator.sweep.batch import run_batch
 from orchestrator.sweep.fmu_runs import run_recorded
 from orchestrator.sweep.job import Chunk, arrays, chunk_scenario
 from orchestrator.sweep.rows import row_of, why_not_compiled
+from orchestrator.sweep.store import job_from, job_to
 from orchestrator.sweep.verdict import OUTCOMES, judge
+from orchestrator.text.errors import BadInput
 from orchestrator.verdict.summary import summarize
 
 LIMITS = [
@@ -144,3 +147,46 @@ def test_arrays_of_another_shape_are_refused(bind):
         rows(parameters, times, np.empty((192, 4)))
     with pytest.raises(ValueError, match="in C order"):
         rows(np.asfortranarray(parameters), times, np.empty((192, 3)))
+
+
+def test_a_study_can_vary_what_is_true_and_what_the_controller_is_told(bind):
+    runs = {"grid": {"target.y": [-3.056, -2.9], "slot.length": [6.0, 8.0], "controller.target.x": [-7.608, -7.4]}}
+    _, _, job, chunk = bind(runs=runs)
+    rows = run_batch(job, chunk)
+    verdict = judge(job, chunk, rows)
+    for number in range(len(rows)):
+        assert_same(job, chunk, rows, number)
+        scenario = chunk_scenario(job, chunk, number)
+        assert scenario.controller["target.y"] == scenario.target.y
+        assert scenario.target.x == -7.608
+    along = verdict.numbers["final.longitudinal_error"]
+    assert set((along[1::2] - along[::2]).round(1).tolist()) == {0.2}
+    assert len(set(verdict.numbers["final.slot_margin"].round(2).tolist())) > 1
+
+
+def test_the_scene_of_a_study_moves_the_kerb(bind, tmp_path):
+    (tmp_path / "a.yaml").write_text(
+        "base: guo2015-case4\nscene: {kerbs: [[-20, -4.1, 5, -4.1, 0.1]]}\nlimits: [gbt41630]\n"
+    )
+    keys = "scene.kerbs[1].y1, scene.kerbs[1].y2"
+    _, _, job, chunk = bind(scenario=str(tmp_path / "a.yaml"), runs={"grid": {keys: [-4.05, -4.1, -4.4, -9.0]}})
+    rows = run_batch(job, chunk)
+    verdict = judge(job, chunk, rows)
+    for number in range(len(rows)):
+        assert_same(job, chunk, rows, number)
+    assert [OUTCOMES[code] for code in verdict.outcome] == ["parked", "parked", "not_parked", "parked"]
+    assert verdict.reason[2] == "beyond its limit: farthest tyre to the kerb"
+
+
+def test_a_key_of_what_the_scenario_does_not_have(bind):
+    with pytest.raises(BadInput, match="the scenario has no target"):
+        bind(scenario="preview", runs={"grid": {"target.x": [1.0]}})
+
+
+def test_a_table_of_an_older_version_is_judged_by_what_the_controller_was_told(bind):
+    _, _, job, chunk = bind(runs={"grid": {}})
+    data = job_to(job)
+    del data["scenario"]["target"]
+    old = job_from(json.loads(json.dumps(data)))
+    assert old.scenario["target"] == {"x": -7.608, "y": -3.056, "heading": 0.0}
+    assert judge(old, chunk, run_batch(old, chunk)).reason == ["all checks passed"]

@@ -22,11 +22,12 @@ from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.session.session import run_scenario
 from orchestrator.sweep.batch import compiled, run_batch
-from orchestrator.sweep.design import make_design
 from orchestrator.sweep.engines import cores
-from orchestrator.sweep.job import Chunk, arrays, make_job, study_scenario
+from orchestrator.sweep.job import Chunk, arrays, make_job
 from orchestrator.sweep.rows import FIRST_MEASURE
-from orchestrator.sweep.study import Study
+from orchestrator.sweep.study.read_study import bind
+from orchestrator.sweep.study.study import Study
+from orchestrator.sweep.study.study_file import StudyFile
 from orchestrator.sweep.sweep import Options, sweep
 
 REPEATS = 5
@@ -38,14 +39,12 @@ SHORT = 0.5
 
 def study(count: int, **changes: Any) -> Study:
     runs = {"monte_carlo": {"n": count, "vehicle.start.y": {"uniform": [-0.01, 0.01]}}}
-    return Study(name="bench", scenario="guo2015-case4", runs=runs, set=changes)
+    return bind(StudyFile(name="bench", scenario="guo2015-case4", runs=runs, set=changes))
 
 
 def bound(count: int, **changes: Any) -> tuple[Any, Chunk]:
     chosen = study(count, **changes)
-    scenario = study_scenario(chosen)
-    design = make_design(chosen, scenario)
-    return make_job(chosen, scenario, design.fields), Chunk(0, 0, design.values, design.seeds)
+    return make_job(chosen), Chunk(0, 0, chosen.design.values, chosen.design.seeds)
 
 
 def measured(work: Callable[[], object], repeats: int = REPEATS) -> tuple[float, float]:

@@ -7,7 +7,7 @@ connected to what. The tables are made from the types: an output and an input of
 
 import ctypes
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any, Literal, NamedTuple
+from typing import Any, Literal, NamedTuple, get_args
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,8 +17,8 @@ from modelkit.connections import connections, part_of
 from modelkit.model import Model
 from modelkit.variables import variables
 
-How = Literal["last", "largest", "greatest", "smallest", "travel"]
-HOW: tuple[How, ...] = ("last", "largest", "greatest", "smallest", "travel")
+How = Literal["last", "largest", "greatest", "smallest", "travel", "first"]
+HOW: tuple[How, ...] = get_args(How)
 FIRST_KEPT = 2
 """A row begins with the end (0 stop time, 1 standstill) and its time [ns]."""
 Doubles = NDArray[np.float64]
@@ -27,13 +27,24 @@ Rows = Callable[[Doubles, NDArray[np.int64], Doubles], None]
 Pointer, Long = ctypes.c_void_p, ctypes.c_int64
 
 
+class When(NamedTuple):
+    """The instants at which a mode has one of some values."""
+
+    signal: str
+    values: tuple[int, ...]
+    """From 0 to 63."""
+
+
 class Kept(NamedTuple):
-    """One number kept of a run."""
+    """One number kept of a run; NaN if there is no instant to take it from."""
 
     how: How
-    """``last``; ``largest`` absolute value, signed; ``greatest``; ``smallest``; ``travel``: sum of absolute changes."""
+    """``last``; ``largest`` absolute value, signed; ``greatest``; ``smallest``; ``travel``: sum of absolute changes;
+    ``first``."""
     signal: str
     """An output, ``vehicle.speed``; or an input as its model saw it."""
+    when: When | None = None
+    """The instants that count; None: all."""
 
 
 class Ending(NamedTuple):
@@ -53,7 +64,7 @@ def _structure(name: str, **fields: Any) -> Any:
 
 LinkC = _structure("LinkC", source=Long, source_place=Long, target=Long, target_place=Long)
 SignalC = _structure("SignalC", model=Long, place=Long, input=Long)
-KeptC = _structure("KeptC", how=Long, signal=SignalC)
+KeptC = _structure("KeptC", how=Long, signal=SignalC, when=SignalC, values=ctypes.c_uint64)
 BatchC = _structure(
     "BatchC",
     models=Pointer,
@@ -112,7 +123,7 @@ class _Tables:
                 for place, variable in enumerate(variables(cls)):
                     self._places[f"{owner}.{variable.name}"] = (number, place, is_input)
         links = connections([part_of(name, model) for name, model in models.items()])
-        notes = [KeptC(HOW.index(item.how), self._signal(item.signal)) for item in kept]
+        notes = [self._note(item) for item in kept]
         libraries = [load_model(model) for model in models.values()]
         end = ending or Ending("", (), "", 0.0, 0)
         found = [self._signal(name) if ending else SignalC(0, 0, 0) for name in (end.mode, end.speed)]
@@ -124,13 +135,19 @@ class _Tables:
             len(links),
             len(notes),
             *found,
-            sum(1 << value for value in end.final),
+            bits(end.final),
             end.still,
             end.time_ns,
         )
         self.address = ctypes.addressof(self._batch)
         self.width = sum(len(variables(model.params)) for model in models.values())
         self._held += libraries
+
+    def _note(self, item: Kept) -> Any:
+        when, values = SignalC(0, 0, 0), 0
+        if item.when is not None:
+            when, values = self._signal(item.when.signal), bits(item.when.values)
+        return KeptC(HOW.index(item.how), self._signal(item.signal), when, values)
 
     def _signal(self, name: str) -> Any:
         return SignalC(*self._places[name])
@@ -139,3 +156,8 @@ class _Tables:
         held = (kind * max(len(items), 1))(*items)
         self._held.append(held)
         return ctypes.addressof(held)
+
+
+def bits(values: Sequence[int]) -> int:
+    """Return a number in which bit n is set for each n of ``values``."""
+    return sum(1 << value for value in set(values))

@@ -41,9 +41,10 @@ FLOORS: tuple[tuple[str, ...], ...] = (
 FLOOR = {room: floor for floor, rooms in enumerate(FLOORS) for room in rooms}
 WITHOUT_FMI = ("modelkit", "vehicle_fmu", "controller_fmu", "fmus.compiler")
 """These know of nothing but models."""
-INSIDES = ("orchestrator.papers", "orchestrator.bakeoff", "orchestrator.grid", "orchestrator.commands")
+INSIDES = ("orchestrator.papers", "orchestrator.bakeoff", "orchestrator.grid")
 """Only these look into a model's package; the others take its ``MODEL``."""
-MOST_FILES, MOST_LINES, MOST_PARAMETERS, MOST_WITH_MORE = 18, 40, 6, 5
+MOST_FILES, MOST_LINES, MOST_PARAMETERS, MOST_WITH_MORE = 15, 40, 6, 5
+TO_BE_CUT = ("fmus/compiler", "orchestrator/verdict")
 HOSTS = ("fmus", "orchestrator")
 
 
@@ -134,7 +135,8 @@ def test_the_host_knows_the_insides_of_no_model(package: str) -> None:
 def test_no_folder_has_too_many_files() -> None:
     folders = {file.parent for name, file in MODULES.items() if name.split(".")[0] in HOSTS}
     full = {str(folder.relative_to(ROOT)): len(list(folder.glob("*.py"))) - 1 for folder in folders}
-    assert {folder: count for folder, count in full.items() if count > MOST_FILES} == {}
+    allowed = {folder: count for folder, count in full.items() if count > MOST_FILES and folder not in TO_BE_CUT}
+    assert allowed == {}
 
 
 def test_functions_are_short_and_few_take_many_parameters() -> None:

@@ -5,15 +5,16 @@ The papers' controllers are told slot, target and start. The parking assist is t
 along the line through the same start pose, finds the slot with its sensors and chooses its own target.
 """
 
+import itertools
 import math
 from collections.abc import Iterator
 from functools import lru_cache
-from typing import NamedTuple
 
 from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.scenario.requirements import shipped_requirements
 from orchestrator.scenario.scenario import Scenario, Slot
 from orchestrator.scenario.sensor_mounts import mounts
+from orchestrator.sweep.study.cases import LabelledScenario
 from vehicle_fmu.interface import Body
 
 CONTROLLERS = ("ntbptcwpt", "ntbpt", "zhang2022", "hsic", "apa")
@@ -38,6 +39,7 @@ REAR_END, DEPTH = -1.25, 2.2
 NEIGHBOUR_LENGTH, NEIGHBOUR_WIDTH, WALL_LENGTH, WALL_WIDTH = 4.4, 1.8, 40.0, 1.0
 DRIVER_SPEED, SEARCH_SPEED = 0.5, 2.0
 """Of the driver while parking, and while driving past [m/s]."""
+LABELS = ("controller", "slot", "car", "body", "start", "disturbance")
 LEAD_IN = 5.0
 """The assist's run begins this far behind the rear neighbour [m]."""
 
@@ -48,28 +50,10 @@ UNJUDGED = ("vehicle.speed",)
 """GB/T's limit on the speed while parking; the assist drives past the slot before."""
 
 
-class Entry(NamedTuple):
-    """One run of the bake-off."""
-
-    controller: str
-    slot: float
-    car: str
-    body: str
-    start: str
-    disturbance: str
-    scenario: Scenario
-
-
-def entries() -> Iterator[Entry]:
-    """Yield every run: the product of all of the above."""
-    for controller in CONTROLLERS:
-        for slot in SLOTS:
-            for car in CARS:
-                for body in BODIES:
-                    for start in STARTS:
-                        for disturbance in DISTURBANCES:
-                            scenario = scenario_of(controller, slot, car, body, start, disturbance)
-                            yield Entry(controller, slot, car, body, start, disturbance, scenario)
+def entries() -> Iterator[LabelledScenario]:
+    """Yield every drive: the product of all of the above."""
+    for labels in itertools.product(CONTROLLERS, SLOTS, CARS, BODIES, STARTS, DISTURBANCES):
+        yield LabelledScenario(dict(zip(LABELS, labels, strict=True)), scenario_of(*labels))
 
 
 def scenario_of(controller: str, slot: float, car: str, body: str, start: str, disturbance: str) -> Scenario:

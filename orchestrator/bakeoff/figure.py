@@ -11,24 +11,21 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.patches import Rectangle
 
-from orchestrator.bakeoff.driver_study import Study
+from orchestrator.bakeoff.drives import REFUSED, Drive, exact_limits
 from orchestrator.bakeoff.entries import CONTROLLERS, SLOTS
-from orchestrator.bakeoff.results import REFUSED, Result, exact_limits
 
 COLOURS = {"ntbptcwpt": "#1f5fbf", "ntbpt": "#7fa8dd", "zhang2022": "#d1602a", "hsic": "#2b8a5a", "apa": "#8a4fa8"}
 BAR = 0.16
 """Width of a bar; the slots lie 1 apart."""
-LIMIT = "GB/T 41630"
-"""What a success of the driver study is judged by in the picture."""
 
 
-def draw(found: list[Result], study: Study | None, file: Path) -> Path:
-    """Write parked share, final errors, time and steering effort, and the driver study; return the path."""
-    figure, axes = plt.subplots(2, 2, figsize=(12.0, 8.5), layout="constrained")
-    share, errors, spent, claim = axes.flat
+def draw(found: list[Drive], file: Path) -> Path:
+    """Write parked share, final errors, time and steering effort; return the path."""
+    figure, axes = plt.subplots(1, 3, figsize=(15.0, 4.6), layout="constrained")
+    share, errors, spent = axes.flat
     _shares(share, found)
     for name in CONTROLLERS:
-        won = [item for item in found if item.entry.controller == name and item.parked]
+        won = [item for item in found if item.controller == name and item.parked]
         style = {"color": COLOURS[name], "s": 10, "alpha": 0.6, "label": name, "linewidths": 0}
         errors.scatter([100.0 * item.lateral for item in won], [np.degrees(item.heading) for item in won], **style)
         spent.scatter([item.time for item in won], [item.effort / (2.0 * np.pi) for item in won], **style)
@@ -38,10 +35,6 @@ def draw(found: list[Result], study: Study | None, file: Path) -> Path:
     errors.set(xlabel="final lateral error [cm]", ylabel="final heading [deg]", title="where the parked ones stand")
     spent.set(xlabel="time [s]", ylabel="steering wheel [turns]", title="what it took", xlim=(0, None), ylim=(0, None))
     spent.legend(frameon=False, markerscale=2)
-    if study is None:
-        claim.set_visible(False)
-    else:
-        _claim(claim, study)
     for axis in axes.flat:
         axis.grid(alpha=0.25, linewidth=0.6)
         axis.set_axisbelow(True)
@@ -52,17 +45,17 @@ def draw(found: list[Result], study: Study | None, file: Path) -> Path:
     return file
 
 
-def _shares(axis: Axes, found: list[Result]) -> None:
+def _shares(axis: Axes, found: list[Drive]) -> None:
     """Draw for each slot and controller the share parked, within it the exact ones, and above it the refused."""
     for number, name in enumerate(CONTROLLERS):
         for place, slot in enumerate(SLOTS):
-            mine = [item for item in found if item.entry.controller == name and item.entry.slot == slot]
+            mine = [item for item in found if item.controller == name and item.slot == slot]
             if not mine:
                 continue
             x = place + BAR * (number - 0.5 * (len(CONTROLLERS) - 1))
             parked, exact, refused = (
                 100.0 * sum(wins) / len(mine)
-                for wins in zip(*((item.parked, item.house, item.reason == REFUSED) for item in mine), strict=True)
+                for wins in zip(*((item.parked, item.exact, item.why == REFUSED) for item in mine), strict=True)
             )
             axis.bar(x, parked, color=COLOURS[name], width=0.9 * BAR)
             axis.bar(x, exact, color="#222222", alpha=0.35, width=0.4 * BAR)
@@ -77,18 +70,3 @@ def _shares(axis: Axes, found: list[Result]) -> None:
 def _limit(place: int) -> float:
     """Return the limit of an exact drive: 0 lateral [m], 1 heading [rad]."""
     return float(exact_limits()[place].limit)
-
-
-def _claim(axis: Axes, study: Study) -> None:
-    edges = np.linspace(study.speed.min(), study.speed.max(), 25)
-    place = np.clip(np.digitize(study.speed, edges) - 1, 0, len(edges) - 2)
-    middle = 0.5 * (edges[1:] + edges[:-1])
-    for group, won in study.success.items():
-        if group.limit == LIMIT:
-            rate = [100.0 * won[place == k].mean() if (place == k).any() else np.nan for k in range(len(middle))]
-            style = "o-" if group.steering.startswith("30 ") else "o:"
-            label = f"{group.system}, wheels {group.steering}"
-            axis.plot(middle, rate, style, markersize=3, color=COLOURS[group.system], label=label)
-    title = f"within {LIMIT} despite driver speed errors, {study.rates[0].runs} runs each"
-    axis.set(xlabel="mean speed driven [m/s]", ylabel="%", ylim=(-3, 103), title=title)
-    axis.legend(frameon=False, loc="lower left", bbox_to_anchor=(0.0, 0.08))

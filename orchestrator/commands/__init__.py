@@ -1,7 +1,6 @@
 """One module per command, each with ``EXAMPLES``, ``add_arguments(parser)`` and ``run(arguments) -> exit code``."""
 
 COMMANDS = {
-    "bakeoff": "compare the parking controllers",
     "build": "build Controller.fmu and Vehicle.fmu",
     "check": "judge a run by requirements",
     "compare": "compare two runs",
@@ -13,8 +12,14 @@ COMMANDS = {
     "report": "replay page of a run",
     "reproduce": "show a paper's numbers beside ours",
     "run": "run a scenario",
-    "study": "the parking assist over cars, slots, distances, headings and bodies",
     "sweep": "run a study of many runs",
     "test": "run and judge scenarios",
 }
 """Command -> what it does. Its module is imported when it is chosen, so that ``apa --help`` imports none."""
+STUDIES = {
+    "apa-grid": "orchestrator.grid.study",
+    "bakeoff": "orchestrator.bakeoff.study",
+    "guo2015-claim": "orchestrator.bakeoff.claim",
+}
+"""Study that no file holds -> its module, with ``study(**whole numbers) -> Study`` and ``report(table, folder)``, which
+says what the study makes of its table and returns an exit code."""

@@ -3,9 +3,10 @@
 import argparse
 from typing import NamedTuple
 
+from orchestrator.commands import STUDIES
 from orchestrator.commands.parser import CommandParser
 from orchestrator.scenario.load_scenario import scenario_names
-from orchestrator.sweep.study import study_names
+from orchestrator.sweep.study.study_file import study_names
 
 EXAMPLES = """examples:
   apa completion bash > ~/.local/share/bash-completion/completions/apa
@@ -15,7 +16,13 @@ EXAMPLES = """examples:
 The words are those of this version: print them again after an update.
 """
 SHELLS = ("bash", "zsh", "fish")
-NAMES = {"scenario": scenario_names, "scenarios": scenario_names, "study": study_names}
+
+
+def _studies() -> list[str]:
+    return sorted([*study_names(), *STUDIES])
+
+
+NAMES = {"scenario": scenario_names, "scenarios": scenario_names, "study": _studies}
 """What a positional argument can be, besides a file."""
 
 

@@ -7,10 +7,11 @@ from typing import Any
 from rich.markup import escape
 from rich.table import Table
 
+from orchestrator.commands import STUDIES
 from orchestrator.scenario.catalogue import Entry, chosen, entries, range_text, start_text, systems
 from orchestrator.scenario.load_scenario import ROOM, car_names, load_scenario, scenario_names
 from orchestrator.scenario.requirements import read_requirements
-from orchestrator.sweep.study import study_names
+from orchestrator.sweep.study.study_file import study_names
 from orchestrator.text.console import console
 from orchestrator.text.errors import BadInput
 from orchestrator.verdict.limit_text import asked
@@ -49,7 +50,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _overview(as_json: bool) -> int:
     heads, scenarios = _scenarios(None)
-    names = {"cars": car_names(), "limits": _limit_names(), "studies": study_names()}
+    names = {"cars": car_names(), "limits": _limit_names(), "studies": sorted([*study_names(), *STUDIES])}
     if as_json:
         print(json.dumps({"scenarios": scenarios, "systems": systems(), **names}, indent=2))
         return 0

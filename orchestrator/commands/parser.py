@@ -8,6 +8,9 @@ from typing import Any, NoReturn
 
 from orchestrator.text.errors import BAD_INPUT, suggestion
 
+MOVED = {"study": "; it is now: apa sweep NAME", "bakeoff": "; it is now: apa sweep bakeoff"}
+"""What has become of commands that were."""
+
 
 class CommandParser(argparse.ArgumentParser):
     """The parser of ``apa``, of a command, or of one of its formats.
@@ -61,5 +64,5 @@ class CommandParser(argparse.ArgumentParser):
     def _check_value(self, action: argparse.Action, value: Any) -> None:
         if action.choices is not None and value not in action.choices:
             names = [str(name) for name in action.choices]
-            hint = suggestion(str(value), names) or f"; expected {', '.join(names)}"
+            hint = MOVED.get(str(value)) or suggestion(str(value), names) or f"; expected {', '.join(names)}"
             raise argparse.ArgumentError(action, f"{value}: unknown{hint}")

@@ -34,7 +34,7 @@ def run(arguments: argparse.Namespace) -> int:
     """Run the row; returns what ``apa run`` would, or 2 if the results are not the row's."""
     try:
         from orchestrator.sweep.repeat import folder_of_row, repeat_row
-        from orchestrator.sweep.store import Table
+        from orchestrator.sweep.table import Table
     except ModuleNotFoundError as error:
         raise BadInput(f"{error.name} is not installed; run: pip install 'apa-cosim[sweep]'") from error
     out: Path = arguments.out or folder_of_row(arguments.table, arguments.row)

@@ -1,21 +1,25 @@
-"""``apa sweep``: a study of thousands of runs, from YAML to a table and a page."""
+"""``apa sweep``: a study of many runs, to a table and a page."""
 
 import argparse
+import importlib
+import inspect
 import json
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from orchestrator.commands import STUDIES
 from orchestrator.cosim.fmu_files import KINDS
 from orchestrator.text.console import console
-from orchestrator.text.errors import INTERRUPTED, PARKED, BadInput
+from orchestrator.text.errors import INTERRUPTED, PARKED, BadInput, suggestion
 
 if TYPE_CHECKING:
-    from orchestrator.sweep.study import Study
+    from orchestrator.sweep.study.study import Study
     from orchestrator.sweep.sweep import Swept
 
 EXAMPLES = """examples:
   apa sweep guo2015-speed-rate                 compiled, on all cores; table and page in runs/guo2015-speed-rate
   apa sweep guo2015-trial --set vehicle.body=single_track --json
+  apa sweep apa-grid --every 20                each 20th run of the parking assist's grid
   apa sweep my-study.yaml --resume             go on after Ctrl-C, a kill or a power cut
   apa sweep my-study.yaml --fmus native        the same table from FMUs, only slower
   apa sweep my-study.yaml --dask               on a Dask cluster of this machine's own
@@ -23,6 +27,7 @@ EXAMPLES = """examples:
   apa replay runs/my-study/my-study.parquet --row 17
 
 A study is made of a scenario and of what is varied: grid, monte_carlo, latin_hypercube; see docs/sweeps.md.
+Shipped ones are in `apa list`; some print tables of their own.
 """
 
 
@@ -32,7 +37,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--out", type=Path, metavar="DIR", help="where table and page go (default: runs/NAME)")
     parser.add_argument("--resume", action="store_true", help="go on with an unfinished study")
     parser.add_argument("--restart", action="store_true", help="throw the runs of an unfinished study away")
-    parser.add_argument("--fmus", choices=KINDS, help="run FMUs of this kind instead of the compiled batch")
+    parser.add_argument(
+        "--fmus",
+        choices=(*KINDS, "none"),
+        help="FMUs of this kind, or none, instead of the compiled batch",
+    )
     parser.add_argument(
         "--dask", nargs="?", const="local", metavar="ADDRESS", help="use Dask: its own local workers, or a scheduler's"
     )
@@ -41,24 +50,30 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--picture", type=Path, metavar="FILE", help="write the success map as a PNG, too")
     parser.add_argument("--replays", type=int, default=3, metavar="N", help="replay the N worst runs for the page (3)")
     parser.add_argument(
-        "--set", action="append", default=[], metavar="KEY=VALUE", help="as in apa run, for all runs of the study"
+        "--set",
+        action="append",
+        default=[],
+        metavar="KEY=VALUE",
+        help="as in apa run, for all runs; or the study's own seed, lot, drivers",
     )
+    parser.add_argument("--first", type=int, default=0, metavar="N", help="begin at run N of the study")
+    parser.add_argument("--every", type=int, default=1, metavar="N", help="only each N-th run of the study")
     parser.add_argument("--json", action="store_true", help="print what came of it as JSON")
     parser.add_argument("--no-page", action="store_true", help="write no result page")
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Run what is missing, write table and page, print the outcome. Returns 0, 130 if interrupted."""
-    from orchestrator.sweep.study import load_study
-
-    for name in ("workers", "chunk"):
+    """Run what is missing, write table and page, print the outcome. Returns 0, or what the study makes of its table;
+    130 if interrupted."""
+    for name in ("workers", "chunk", "every"):
         if getattr(arguments, name) is not None and getattr(arguments, name) < 1:
             raise BadInput(f"{getattr(arguments, name)}: expected 1 or more", key=f"--{name}")
     try:
         from orchestrator.sweep.sweep import Options, sweep
     except ModuleNotFoundError as error:
         raise BadInput(f"{error.name} is not installed; run: pip install 'apa-cosim[native,sweep]'") from error
-    study = _with(load_study(arguments.study), arguments.set)
+    study = chosen_study(arguments.study, arguments.set)
+    study = study._replace(design=study.design.part(arguments.first, arguments.every))
     out: Path = arguments.out or Path("runs") / study.name
     out.mkdir(parents=True, exist_ok=True)
     names = ("fmus", "dask", "workers", "chunk", "resume", "restart")
@@ -70,28 +85,56 @@ def run(arguments: argparse.Namespace) -> int:
         print(json.dumps({**numbers, "engine": swept.engine, "note": swept.note, **files}, indent=2))
     else:
         _print(swept, written, arguments.study)
-    return INTERRUPTED if swept.table is None else PARKED
+    if swept.table is None:
+        return INTERRUPTED
+    return _report(arguments.study, swept.table, quiet=arguments.json)
 
 
-def _with(study: "Study", sets: list[str]) -> "Study":
-    """Return the study with further changes of its scenario."""
-    for text in sets:
-        if "=" not in text:
-            raise BadInput(f"{text!r}: expected KEY=VALUE", file="--set")
-    return study.model_copy(update={"set": {**study.set, **dict(text.split("=", 1) for text in sets)}})
+def chosen_study(name: str, sets: list[str]) -> "Study":
+    """Return the study that a word on the command line means, changed by ``KEY=VALUE``. Raises ``BadInput``."""
+    from orchestrator.sweep.study.read_study import read_study
+
+    pairs = dict(text.split("=", 1) for text in sets if "=" in text)
+    if len(pairs) != len(sets):
+        raise BadInput(f"{sets}: expected KEY=VALUE", file="--set")
+    if name not in STUDIES:
+        return read_study(name, pairs, STUDIES)
+    made: Study = importlib.import_module(STUDIES[name]).study(**_whole(name, pairs))
+    return made
+
+
+def _whole(name: str, pairs: dict[str, str]) -> dict[str, int]:
+    """Return the arguments of a study that a function makes: whole numbers that its signature names."""
+    known = inspect.signature(importlib.import_module(STUDIES[name]).study).parameters
+    for key, value in pairs.items():
+        if key not in known:
+            hint = suggestion(key, known) or f"; expected {', '.join(known) or 'nothing'}"
+            raise BadInput(f"{name} has no such key{hint}", file="--set", key=key)
+        if not value.strip().isdigit():
+            raise BadInput(f"{value!r} is not a whole number of at least 0", file="--set", key=key)
+    return {key: int(value) for key, value in pairs.items()}
+
+
+def _report(name: str, table: Path, *, quiet: bool) -> int:
+    """Let a study say what it makes of its table; return its exit code."""
+    from orchestrator.sweep.table import Table
+
+    if name not in STUDIES or quiet:
+        return PARKED
+    return int(importlib.import_module(STUDIES[name]).report(Table(table), table.parent))
 
 
 def _write(table: Path, arguments: argparse.Namespace) -> dict[str, Path]:
     """Write picture and page, as far as they are asked for; return what there is now."""
     written = {"table": table}
     if arguments.picture is not None:
-        from orchestrator.sweep.picture import draw_maps
-        from orchestrator.sweep.store import Table
+        from orchestrator.sweep.page.picture import draw_maps
+        from orchestrator.sweep.table import Table
 
         draw_maps(Table(table), arguments.picture)
         written["picture"] = arguments.picture
     if not arguments.no_page:
-        from orchestrator.sweep.page import write_page
+        from orchestrator.sweep.page.page import write_page
 
         _replay_worst(table, arguments.replays)
         written["page"] = write_page(table)
@@ -113,9 +156,9 @@ def _print(swept: "Swept", written: dict[str, Path], study: str) -> None:
 
 def _replay_worst(path: Path, count: int) -> None:
     """Run the worst rows again with log and replay page, so that the result page can link to them."""
+    from orchestrator.sweep.page.statistics import worst
     from orchestrator.sweep.repeat import folder_of_row, repeat_row
-    from orchestrator.sweep.statistics import worst
-    from orchestrator.sweep.store import Table
+    from orchestrator.sweep.table import Table
 
     table = Table(path)
     for number in worst(table, count):

@@ -6,23 +6,19 @@ from typing import NamedTuple
 import numpy as np
 
 from controller_fmu.interface import ThresholdParams
-from orchestrator.cosim.fmu_files import can_compile
-from orchestrator.cosim.slave import Array
 from orchestrator.papers.result import CONCLUSION, Row, in_line
 from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.scenario.scenario import Scenario
-from orchestrator.session.session import run_scenario
-from orchestrator.sweep.many import run_all, truths_of
-from orchestrator.sweep.rows import FIRST_MEASURE, measures_for, row_of
-from orchestrator.sweep.verdict import judge_rows
+from orchestrator.sweep.columns import WITHIN
+from orchestrator.sweep.in_memory import columns_in_memory
+from orchestrator.sweep.study.cases import LabelledScenario, design_of
+from orchestrator.sweep.study.study import Study
 from orchestrator.verdict.measures import Measure
 
 SPEEDS = tuple(np.linspace(0.3, 1.5, 10).tolist())
 """What the driver means to drive [m/s]; the paper's cases lie between."""
 REACTIONS = tuple(np.linspace(0.0, 0.5, 10).tolist())
 """From a prompt to its obedience [s]."""
-LATERAL, HEADING = (Measure("largest", f"controller.{name}_error") for name in ("lateral", "heading"))
-"""How far off the path the controller sees the car at most."""
 
 
 class Obeyed(NamedTuple):
@@ -53,25 +49,22 @@ def obeying_rows(run: str) -> list[Row]:
 
 
 def obey(run: str, speeds: tuple[float, ...], reactions: tuple[float, ...]) -> Obeyed:
-    """Return what becomes of drivers of all these speeds [m/s] and reactions [s], as compiled code where possible."""
-    scenarios = [_driven(run, speed, reaction) for speed, reaction in itertools.product(speeds, reactions)]
-    measures = list(dict.fromkeys([*measures_for(scenarios[0]), LATERAL, HEADING]))
-    rows = run_all(scenarios, measures) if can_compile() else _rows(scenarios, measures)
-    truth = truths_of(scenarios)
-    ours, papers = (judge_rows(each, truth, measures, rows) for each in (scenarios[0], in_line(scenarios[0])))
-    lateral, heading = (np.abs(rows[:, FIRST_MEASURE + measures.index(item)]) for item in (LATERAL, HEADING))
+    """Return what becomes of drivers of all these speeds [m/s] and reactions [s]."""
+    drivers = [
+        LabelledScenario({"speed": speed, "reaction": reaction}, _driven(run, speed, reaction))
+        for speed, reaction in itertools.product(speeds, reactions)
+    ]
+    scenario, design = design_of(drivers)
+    measures = {name: Measure("largest", f"controller.{name}_error") for name in ("lateral", "heading")}
+    asked = Study(in_line(scenario), design, {"name": run}, measures=measures, within={"ours": scenario.limits})
+    found = columns_in_memory(asked)
     limit = ThresholdParams()
-    stayed = (lateral <= limit.leave_lateral) & (heading <= limit.leave_heading)
-    untouched = ours.numbers["min_clearance"] > 0.0
-    return Obeyed(
-        len(rows), *(int(np.sum(found)) for found in (stayed, untouched, papers.succeeded(), ours.succeeded()))
-    )
+    stayed = (np.abs(found["lateral"]) <= limit.leave_lateral) & (np.abs(found["heading"]) <= limit.leave_heading)
+    parked = found["outcome"] == "parked"
+    counted = (stayed, found["min_clearance"] > 0.0, parked, parked & found[WITHIN.format("ours")])
+    return Obeyed(len(drivers), *(int(np.sum(item)) for item in counted))
 
 
 def _driven(run: str, speed: float, reaction: float) -> Scenario:
     sets = (f"vehicle.driver.profile[1].speed={speed}", f"vehicle.driver.reaction_delay={reaction}")
     return load_scenario(run, (*sets, "controller.prompting.reaction=0.3"))
-
-
-def _rows(scenarios: list[Scenario], measures: list[Measure]) -> Array:
-    return np.array([row_of(run_scenario(item).recording, item, measures) for item in scenarios])

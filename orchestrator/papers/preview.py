@@ -12,16 +12,14 @@ from orchestrator.cosim.fmu_files import can_compile
 from orchestrator.cosim.slave import Array
 from orchestrator.papers.preview_figure import draw_preview, draw_sweep
 from orchestrator.papers.result import Drive, Driven, Reproduction, Row
-from orchestrator.scenario.load_scenario import load_scenario
-from orchestrator.sweep.many import measure
-from orchestrator.verdict.measures import Measure
+from orchestrator.sweep.in_memory import columns_in_memory
+from orchestrator.sweep.study.read_study import read_study
 
 TITLE = "Lateral and longitudinal fuzzy control on sharp curves by dynamic dual-point preview"
 PRINTED_SPEEDS = (7.6, 5.4, 3.8, 3.2)
 PRINTED_ANGLES = (-2.0, 2.0, -3.2, 4.1)
 """Largest epsL in the four curves [deg]; the first two are printed as bounds."""
 PRINTED_POINTS = (331.5, 350.6, 353.6, 508.6, 510.7)
-SWEEP = (8, 10, 12, 14, 16, 18)
 SAFE = 0.578
 """a of the safe speed sqrt(a / kappa) [m/s^2]."""
 RISEN, RIPPLE = 0.1, 0.08
@@ -51,9 +49,9 @@ def reproduce(out: Path, drive: Drive) -> Reproduction:
     rows += _geometry(main, drive("preview-geometry")) + _single(main, single)
     figures = draw_preview(main, eight, single, out)
     if can_compile():
-        table = sweep()
-        rows += _sweep_rows(table)
-        figures.append(draw_sweep(SWEEP, table, out / "preview-sweep.png"))
+        speeds, table = sweep()
+        rows += _sweep_rows(speeds, table)
+        figures.append(draw_sweep(speeds, table, out / "preview-sweep.png"))
     return Reproduction("preview", TITLE, rows, figures, NOTES)
 
 
@@ -67,11 +65,10 @@ def curves() -> list[tuple[float, float, float]]:
     return found
 
 
-def sweep() -> Array:
-    """Return largest |yL| [m] and largest |epsL| [rad] (in curve 4) for each set speed of Fig. 11."""
-    kept = [Measure("largest", "controller.preview.y_l"), Measure("largest", "controller.preview.eps_l")]
-    runs = [load_scenario("preview-18", [f"controller.preview.set_speed={speed}"]) for speed in SWEEP]
-    return np.abs(measure(runs, kept))
+def sweep() -> tuple[Array, Array]:
+    """Return (speed, largest |yL| [m] and |epsL| [rad] (in curve 4)) for each set speed of Fig. 11."""
+    found = columns_in_memory(read_study("preview-speed", {}))
+    return found["controller.preview.set_speed"], np.abs(np.column_stack([found["yL"], found["epsL"]]))
 
 
 def entries(driven: Driven, after: int, before: int) -> list[int]:
@@ -219,10 +216,10 @@ def _single(main: Driven, single: Driven) -> list[Row]:
     return [*rows, Row(single.summary.scenario, "end of the drive", "", None, lost)]
 
 
-def _sweep_rows(table: Array) -> list[Row]:
+def _sweep_rows(speeds: Array, table: Array) -> list[Row]:
     rows = []
-    for speed, (y, eps) in zip(SWEEP, table, strict=True):
-        name = f"set speed {speed} m/s"
+    for speed, (y, eps) in zip(speeds.tolist(), table.tolist(), strict=True):
+        name = f"set speed {speed:g} m/s"
         rows.append(Row(name, "largest |yL|", "m", 0.02, float(y), note="about 2 cm printed"))
         rows.append(Row(name, "|yL| within 2 cm", "", "yes", "yes" if y < 0.02 else "no", 0.0))
         rows.append(

@@ -1,6 +1,5 @@
 """Pictures of the preview paper: Fig. 8 to 11, and the single preview point beside."""
 
-from collections.abc import Sequence
 from pathlib import Path
 
 import matplotlib
@@ -23,7 +22,7 @@ def draw_preview(main: Driven, eight: Driven, single: Driven, out: Path) -> list
     return [_distances(eight, out / "preview-distances.png"), _drive(main, single, out / "preview-drive.png")]
 
 
-def draw_sweep(speeds: Sequence[int], table: Array, file: Path) -> Path:
+def draw_sweep(speeds: Array, table: Array, file: Path) -> Path:
     """Write Fig. 11: largest |yL| and |epsL| of curve 4 over the set speed."""
     figure, axis = plt.subplots(figsize=(7.0, 4.2), layout="constrained")
     axis.plot(speeds, 100.0 * table[:, 0], "o-", color=BLUE, label="largest |yL| [cm]")

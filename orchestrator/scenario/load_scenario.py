@@ -63,7 +63,7 @@ def load_scenario(name: str, sets: Iterable[str] = (), more: More | None = None)
             merged.pop(key, None)
     merged.setdefault("name", path.stem)
     car = _car_layer(merged.get("car"), path)
-    merged["limits"] = _limits(merged.get("limits", ["house"]), path)
+    merged["limits"] = limits_of(merged.get("limits", ["house"]), path.parent, path)
     seed = merged.get("seed", 1)
     for owner in MODELS:
         merged[owner] = _parameters(owner, [*car, *layers], seed, (more or {}).get(owner, ()))
@@ -140,14 +140,14 @@ def _value(variable: Variable, given: object, owner: str) -> float | int | bool:
     return scalar(given.value, named, file=given.file)
 
 
-def _limits(given: object, path: Path) -> list[dict[str, Any]]:
-    """Return limits with the names of sets replaced by their content."""
+def limits_of(given: object, folder: Path, file: object = None) -> list[dict[str, Any]]:
+    """Return limits with the names of sets, or of files in ``folder``, replaced by their content."""
     if not isinstance(given, list):
-        raise BadInput(f"{given!r}: expected a list", file=path, key="limits")
+        raise BadInput(f"{given!r}: expected a list", file=file, key="limits")
     result: list[dict[str, Any]] = []
     for item in given:
         if isinstance(item, str):
-            file = find_file(item, "limits", "set of limits", path.parent)
+            file = find_file(item, "limits", "set of limits", folder)
             entries = read_requirements(file)
             result += [entry.model_dump(by_alias=True, exclude_none=True) for entry in entries]
         else:

@@ -112,9 +112,10 @@ class Requirement(BaseModel):
 
 
 @cache
-def shipped_requirements(name: str) -> tuple[Requirement, ...]:
-    """Return the shipped set of requirements of this name."""
-    return tuple(read_requirements(LIMITS / f"{name}.yaml"))
+def shipped_requirements(name: str, *ids: str) -> tuple[Requirement, ...]:
+    """Return the shipped set of requirements of this name, or those called ``ids``. Raises ``KeyError``."""
+    found = {item.id: item for item in read_requirements(LIMITS / f"{name}.yaml")}
+    return tuple(found[wanted] for wanted in ids or found)
 
 
 def read_requirements(path: Path) -> list[Requirement]:

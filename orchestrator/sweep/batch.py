@@ -6,8 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from fmus.compiled_batch import Ending, Rows, compiled_rows
-from fmus.compiled_batch import Kept as KeptSignal
+from fmus.compiled_batch import Ending, Kept, Rows, When, compiled_rows
 from orchestrator.cosim.slave import Array
 from orchestrator.scenario.end_condition import SPEED, EndCondition
 from orchestrator.scenario.models import MODELS
@@ -36,4 +35,8 @@ def compiled(measures: tuple[Measure, ...], ending: EndCondition) -> Rows:
 
 @lru_cache
 def _compiled(measures: tuple[Measure, ...], *ending: Any) -> Rows:
-    return compiled_rows(MODELS, Ending(*ending), [KeptSignal(item.how, item.signal) for item in measures])
+    return compiled_rows(MODELS, Ending(*ending), [_kept(item) for item in measures])
+
+
+def _kept(measure: Measure) -> Kept:
+    return Kept(measure.how, measure.signal, None if measure.when is None else When(*measure.when))

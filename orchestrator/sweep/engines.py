@@ -62,8 +62,13 @@ class Task(NamedTuple):
         return self.threads
 
 
-def choose_task(scenario: Scenario, job: Job, fmus: str | None) -> Task:
-    """Return how the runs are done: compiled where that is possible, otherwise one by one in the Python master."""
+def choose_task(scenario: Scenario, fmus: str | None) -> Task:
+    """Return how the runs are done: compiled where that is possible, otherwise one by one in the Python master.
+
+    ``fmus``: with FMUs of this kind instead; ``none``: with the models in process.
+    """
+    if fmus == "none":
+        return Task(partial(run_recorded, kind="none", files=None), "models in process", RECORDED_CHUNK, False)
     if fmus is not None:
         from orchestrator.cosim.fmu_files import fmu_files
 

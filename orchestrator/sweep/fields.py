@@ -19,6 +19,8 @@ SCENARIO_FIELDS: dict[str, Variable] = {
         for name in MODELS
     },
 }
+TRUE_OWNERS = ("target", "slot")
+"""Parts of a scenario that are true whatever the models have as parameters."""
 TRUE_FIELDS: dict[str, Variable] = {
     key: Variable(key, float, Signal(unit, text), 0.0)
     for key, unit, text in (

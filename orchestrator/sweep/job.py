@@ -3,6 +3,7 @@
 A job is plain data, so that it can be sent to another process or machine.
 """
 
+from collections.abc import Iterator
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -10,21 +11,17 @@ from numpy.typing import NDArray
 
 from modelkit.variables import flatten, variables, with_values
 from orchestrator.cosim.slave import Array
-from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.scenario.models import MODELS
-from orchestrator.scenario.scenario import Scenario
-from orchestrator.sweep.fields import Field
+from orchestrator.scenario.scenario import Scenario, Target
+from orchestrator.sweep.fields import TRUE_OWNERS
 from orchestrator.sweep.rows import measures_for
-from orchestrator.sweep.study import Study
+from orchestrator.sweep.study.design import Design
+from orchestrator.sweep.study.study import Study
 from orchestrator.text.quantities import NANOSECONDS
-from orchestrator.verdict.measures import Measure
+from orchestrator.verdict.measures import Measure, When
 from orchestrator.verdict.truth import TRUE_KEYS, Truth, joined, truth_of
 
 Times = NDArray[np.int64]
-TRUE_OWNERS = ("target", "slot")
-"""Parts of a scenario that are true whatever the models have as parameters."""
-PROBE = 1_000_003
-"""A seed that no scenario has, to find out what follows the seed."""
 
 
 class Job(NamedTuple):
@@ -52,30 +49,18 @@ class Chunk(NamedTuple):
     seeds: NDArray[np.int64]
 
 
-def study_scenario(study: Study) -> Scenario:
-    """Return the scenario all runs share. Raises ``BadInput``."""
-    return load_scenario(study.scenario, [f"{key}={value}" for key, value in study.set.items()])
-
-
-def make_job(study: Study, scenario: Scenario, fields: list[Field]) -> Job:
-    """Return the job of ``study``, whose scenario is ``scenario`` and whose design varies ``fields``."""
-    sets = [f"{key}={value}" for key, value in study.set.items()]
-    probed = load_scenario(study.scenario, [*sets, f"seed={PROBE}"])
-    varied = {field.key for field in fields}
-    seeded = [
-        (owner, variable.name, place)
-        for owner, model in MODELS.items()
-        for place, variable in enumerate(variables(model.params))
-        if getattr(probed, owner).get(variable.name) == PROBE and f"{owner}.{variable.name}" not in varied
-    ]
+def make_job(study: Study) -> Job:
+    """Return the job of ``study``. Raises ``BadInput`` for a limit or measure of an unknown signal."""
+    fields = study.design.fields
+    limits = [limit for items in study.within.values() for limit in items]
     return Job(
-        {**scenario.model_dump(mode="python"), "file": scenario.name},
+        {**study.scenario.model_dump(mode="python"), "file": study.scenario.name},
         [field.key for field in fields],
         [field.owner for field in fields],
         [field.name for field in fields],
         [field.place for field in fields],
-        seeded,
-        measures_for(scenario),
+        list(study.seeded),
+        measures_for(study.scenario, limits, study.measures.values()),
     )
 
 
@@ -165,3 +150,32 @@ def arrays(job: Job, chunk: Chunk) -> tuple[Array, Times]:
     step_ns = np.round(steps * NANOSECONDS).astype(np.int64)
     stop_ns = np.round(stops * NANOSECONDS).astype(np.int64) // step_ns * step_ns
     return parameters, np.column_stack([step_ns, stop_ns, *every.values()])
+
+
+def chunks(design: Design, size: int) -> Iterator[Chunk]:
+    """Yield a design in chunks of ``size`` runs."""
+    for number, first in enumerate(range(0, len(design.seeds), size)):
+        yield Chunk(number, first, design.values[first : first + size], design.seeds[first : first + size])
+
+
+def job_to(job: Job) -> dict[str, Any]:
+    """Return a job as plain data for JSON."""
+    return job._asdict()
+
+
+def job_from(data: dict[str, Any]) -> Job:
+    """Return the job that :func:`job_to` wrote."""
+    if "target" not in data["scenario"]:
+        data = {**data, "scenario": {**data["scenario"], "target": _told_target(data["scenario"]["controller"])}}
+    seeded = [(owner, name, int(place)) for owner, name, place in data["seeded"]]
+    return Job(**{**data, "seeded": seeded, "measures": [_measure(*item) for item in data["measures"]]})
+
+
+def _measure(how: Any, signal: str, when: list[Any] | None) -> Measure:
+    return Measure(how, signal, None if when is None else When(when[0], tuple(when[1])))
+
+
+def _told_target(controller: dict[str, Any]) -> dict[str, float]:
+    """Return the target of a table of an older version, which judged by what the controller was told."""
+    starts = {item.name: float(item.start) for item in variables(MODELS["controller"].params)}
+    return {name: float(controller.get(f"target.{name}", starts[f"target.{name}"])) for name in Target.model_fields}

@@ -12,7 +12,7 @@ from orchestrator.scenario.scenario import Scenario
 from orchestrator.session.drive import drive
 from orchestrator.session.session import Ran
 from orchestrator.sweep.job import chunk_scenario
-from orchestrator.sweep.store import Table
+from orchestrator.sweep.table import Table
 from orchestrator.verdict.summary import Summary, summarize
 
 COMPARED = ("x", "y", "heading", "lateral_error", "longitudinal_error", "heading_error", "steering_wheel_angle")

@@ -4,6 +4,7 @@ The compiled batch gathers the measures while it runs; for any other engine they
 Both give the same bits.
 """
 
+from collections.abc import Iterable, Mapping
 from typing import get_args
 
 import numpy as np
@@ -11,13 +12,14 @@ import numpy as np
 from modelkit.variables import variables
 from orchestrator.cosim.recording import Recording
 from orchestrator.cosim.slave import Array
+from orchestrator.scenario.end_condition import states_of
 from orchestrator.scenario.models import MODELS
 from orchestrator.scenario.requirements import Requirement, Where, Window
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.text.errors import BadInput, suggestion
 from orchestrator.verdict.conditions import CONDITIONS
-from orchestrator.verdict.judge import judge
-from orchestrator.verdict.measures import Measure, measured
+from orchestrator.verdict.judge import CHART, judge
+from orchestrator.verdict.measures import Measure, When, measured
 from orchestrator.verdict.numbers import MEASURES, NUMBERS, Facts
 
 STOP_TIME, STANDSTILL, ABORTED = 0.0, 1.0, 2.0
@@ -40,20 +42,34 @@ def last_words(scenario: Scenario) -> tuple[Measure, Measure]:
     return Measure("last", scenario.ending.signal), Measure("last", scenario.ending.reason)
 
 
-def measures_for(scenario: Scenario) -> list[Measure]:
-    """Return the measures a verdict on ``scenario`` needs. Raises ``BadInput`` for a limit on an unknown signal."""
+def measures_for(
+    scenario: Scenario, more: Iterable[Requirement] = (), further: Iterable[Measure] = ()
+) -> list[Measure]:
+    """Return the measures a verdict on ``scenario`` needs, and those of ``more`` limits, and ``further`` ones.
+
+    Raises ``BadInput`` for a limit or measure of an unknown signal, or for one of ``more`` that takes the whole run.
+    """
     known = signals()
     for item in last_words(scenario):
         if item.signal not in known:
             hint = suggestion(item.signal, known)
             raise BadInput(f"no signal of this name{hint}", file=scenario.file, key=f"ending: {item.signal}")
     found = [measure for measure in (*MEASURES, *last_words(scenario)) if measure.signal in known]
-    for limit in scenario.limits:
+    for limit in (*scenario.limits, *more):
         if limit.signal in known:
-            found += [item for item in (measure_of(limit),) if item is not None]
+            found += measures_of(limit)
         elif limit.signal not in NUMBERS:
             hint = suggestion(limit.signal, [*known, *NUMBERS])
             raise BadInput(f"no signal or number of this name{hint}", file=scenario.file, key=f"limits: {limit.id}")
+    for limit in more:
+        if limit.signal in known and measure_of(limit) is None:
+            raise BadInput("takes the whole run; only a scenario's own limits may", key=f"within: {limit.id}")
+    for measure in further:
+        if measure.signal not in known:
+            raise BadInput(
+                f"no signal of this name{suggestion(measure.signal, known)}", key=f"measures: {measure.signal}"
+            )
+        found.append(measure)
     return list(dict.fromkeys(found))
 
 
@@ -62,7 +78,40 @@ def measure_of(limit: Requirement) -> Measure | None:
     window, worst = limit.window, CONDITIONS[limit.condition].worst
     if window is not None and window == Window(at="end", if_never=window.if_never):
         return Measure("last", limit.signal)
-    return Measure(worst, limit.signal) if window is None and worst is not None else None
+    if worst is None:
+        return None
+    if window is None:
+        return Measure(worst, limit.signal)
+    during = _phases(window)
+    return None if during is None else Measure(worst, limit.signal, during)
+
+
+def _phases(window: Window) -> When | None:
+    """Return the instants of a window that is made of phases alone; None for any other."""
+    if window != Window(phase=window.phase, if_never=window.if_never):
+        return None
+    numbers = {name: number for number, name in states_of(CHART).items()}
+    words = [phase.upper().replace(" ", "_").replace("-", "_") for phase in window.phase]
+    return When(CHART, tuple(numbers[word] for word in words)) if set(words) <= numbers.keys() else None
+
+
+def measures_of(limit: Requirement) -> list[Measure]:
+    """Return all measures that a limit on a signal needs: of a window also the first of its instants."""
+    found = measure_of(limit)
+    if found is None:
+        return []
+    return [found] if found.when is None else [found, Measure("first", CHART, found.when)]
+
+
+def values_of(limit: Requirement, found: Mapping[Measure, Array]) -> Array:
+    """Return the worst values for a limit on a signal; the limit itself where a window never comes and that will do."""
+    measure = measure_of(limit)
+    assert measure is not None
+    values = found[measure]
+    if limit.window is None or limit.window.if_never == "fail" or measure.when is None:
+        return values
+    assert not isinstance(limit.limit, str)
+    return np.where(np.isnan(found[Measure("first", CHART, measure.when)]), limit.limit, values)
 
 
 def recorded_limits(scenario: Scenario) -> list[int]:

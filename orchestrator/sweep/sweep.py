@@ -1,4 +1,4 @@
-"""One study from its file to its table: what is missing is run, written part by part, joined at the end."""
+"""A study from its design to its table: what is missing is run, written part by part, joined at the end."""
 
 import time
 from dataclasses import dataclass
@@ -10,12 +10,11 @@ from orchestrator.cosim.interrupts import on_interrupt
 from orchestrator.cosim.master import Interrupt
 from orchestrator.session.session import versions
 from orchestrator.sweep.batch import compiled
-from orchestrator.sweep.design import Design, make_design
-from orchestrator.sweep.engines import choose_task, make_engine
-from orchestrator.sweep.job import Job, make_job, study_scenario
-from orchestrator.sweep.store import Store, chunks, job_to
-from orchestrator.sweep.study import Study
-from orchestrator.sweep.verdict import RESULTS, judge
+from orchestrator.sweep.columns import columns_of, filled
+from orchestrator.sweep.engines import Engine, choose_task, make_engine
+from orchestrator.sweep.job import Chunk, Job, chunks, job_to, make_job
+from orchestrator.sweep.store import Store
+from orchestrator.sweep.study.study import Study
 from orchestrator.text.console import Meter
 
 
@@ -53,53 +52,44 @@ class Swept:
 
 def sweep(study: Study, folder: Path, options: Options) -> Swept:
     """Run a study, or the rest of it. Raises ``BadInput``."""
-    scenario = study_scenario(study)
-    design = make_design(study, scenario)
-    job = make_job(study, scenario, design.fields)
-    task = choose_task(scenario, job, options.fmus)
-    store = Store(folder, study.name, design.fields, _numbers(job), _about(study, job, design))
+    design, job = study.design, make_job(study)
+    task = choose_task(study.scenario, options.fmus)
+    store = Store(folder, study.name, columns_of(study, job), about(study, job))
     size = store.begin(options.chunk or task.chunk, resume=options.resume, restart=options.restart)
     total = len(design.seeds)
-    missing = [chunk for chunk in chunks(design.values, design.seeds, size) if not store.has(chunk.number)]
+    missing = [chunk for chunk in chunks(design, size) if not store.has(chunk.number)]
     swept = Swept(None, total, total - sum(len(chunk.seeds) for chunk in missing), 0, 0, 0.0, task.name, task.note)
-    interrupt = Interrupt()
     if missing and task.is_compiled:
-        compiled(tuple(job.measures), scenario.ending)
-    begun = time.perf_counter()
+        compiled(tuple(job.measures), study.scenario.ending)
     if missing:
-        engine = make_engine(task, options.dask, options.workers)
-        swept.engine = f"{engine.name}, {engine.workers} at a time"
-        with on_interrupt(interrupt), Meter(study.name, total, "runs") as meter:
-            for chunk, rows in engine.results(job, iter(missing), interrupt):
-                verdict = judge(job, chunk, rows)
-                store.write(chunk, verdict)
-                swept.successes += int(verdict.succeeded().sum())
-                swept.done += len(rows)
-                swept.made += len(rows)
-                rate = swept.made / (time.perf_counter() - begun)
-                meter.at(swept.done, f"{rate:.0f}/s, {100.0 * swept.successes / swept.made:.1f} % {scenario.success}")
-    swept.seconds = time.perf_counter() - begun
+        _run(study, job, missing, make_engine(task, options.dask, options.workers), store, swept)
     if swept.done == total:
         swept.table = store.finish(-(-total // size))
     return swept
 
 
-def _numbers(job: Job) -> list[str]:
-    """Return the columns of results: nothing that the models do not tell, no slot or kerb where there is none."""
-    scenario = job.scenario
-    has_kerb = any(name.startswith("scene.kerbs[") for name in scenario["vehicle"])
-    absent = {"final.slot_margin"} if scenario["slot"] is None else set()
-    absent |= set() if has_kerb else {"final.kerb_nearest", "final.kerb_farthest"}
-    measured = {name for name, item in RESULTS.items() if item.measure is None or item.measure in job.measures}
-    return [name for name in RESULTS if name in measured - absent]
+def _run(study: Study, job: Job, missing: list[Chunk], engine: Engine, store: Store, swept: Swept) -> None:
+    """Do the ``missing`` chunks, write their parts, and note in ``swept`` what was done."""
+    begun, interrupt = time.perf_counter(), Interrupt()
+    swept.engine = f"{engine.name}, {engine.workers} at a time"
+    with on_interrupt(interrupt), Meter(study.name, swept.count, "runs") as meter:
+        for chunk, rows in engine.results(job, iter(missing), interrupt):
+            columns = filled(study, job, chunk, rows)
+            store.write(chunk.number, columns)
+            swept.successes += int((columns["outcome"] == study.scenario.success).sum())
+            swept.done += len(rows)
+            swept.made += len(rows)
+            rate = swept.made / (time.perf_counter() - begun)
+            meter.at(swept.done, f"{rate:.0f}/s, {100.0 * swept.successes / swept.made:.1f} % {study.scenario.success}")
+    swept.seconds = time.perf_counter() - begun
 
 
-def _about(study: Study, job: Job, design: Design) -> dict[str, Any]:
+def about(study: Study, job: Job) -> dict[str, Any]:
     """Return what a table says about itself: enough to go on with it and to run any row again."""
     return {
-        "study": study.model_dump(mode="json", by_alias=True),
+        "study": {**study.content, "labels": [*study.design.labels]},
         "job": job_to(job),
-        "design": design.digest(),
+        "design": study.design.digest(),
         "sources": sources_hash(),
         "versions": versions(),
     }

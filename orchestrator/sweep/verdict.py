@@ -1,6 +1,6 @@
 """The summary of many runs at once: the same numbers and verdicts as ``orchestrator.verdict.summary``, as columns."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -12,7 +12,7 @@ from orchestrator.scenario.models import MODELS
 from orchestrator.scenario.requirements import Requirement
 from orchestrator.scenario.scenario import SUCCESS, Outcome, Scenario
 from orchestrator.sweep.job import Chunk, Job, truths
-from orchestrator.sweep.rows import ABORTED, FIRST_MEASURE, last_words, measure_of, recorded_limits
+from orchestrator.sweep.rows import ABORTED, FIRST_MEASURE, last_words, recorded_limits, values_of
 from orchestrator.verdict.conditions import CONDITIONS, share
 from orchestrator.verdict.measures import Measure
 from orchestrator.verdict.numbers import NUMBERS, SPEED, Number, numbers
@@ -43,6 +43,10 @@ class Verdict(NamedTuple):
         good = [OUTCOMES.index(outcome) for outcome in SUCCESS.values()]
         return np.isin(self.outcome, good)
 
+    def words(self) -> NDArray[Any]:
+        """Return the outcomes as words."""
+        return np.array(OUTCOMES)[self.outcome]
+
 
 def judge(job: Job, chunk: Chunk, rows: Array) -> Verdict:
     """Return the results of the runs of ``chunk`` from what was kept of them."""
@@ -59,7 +63,7 @@ def judge_rows(scenario: Scenario, truth: Truth, measures: Sequence[Measure], ro
     asked: list[Asked] = []
     for place, limit in enumerate(scenario.limits):
         if limit.required:
-            values = results[limit.signal] if limit.signal in results else _values(limit, place, found, recorded)
+            values = recorded[place] if place in recorded else values_in(limit, results, found)
             is_asked = has[limit.where] if limit.where is not None else np.ones(len(rows), dtype=bool)
             bound = limit_value(limit)
             missed = is_asked & ~(CONDITIONS[limit.condition].margin(values, bound) >= 0.0)
@@ -72,9 +76,9 @@ def judge_rows(scenario: Scenario, truth: Truth, measures: Sequence[Measure], ro
     return Verdict(codes, [why for _, why in judged], {**results, "limit_share": shares})
 
 
-def _values(limit: Requirement, place: int, found: dict[Measure, Array], recorded: dict[int, Array]) -> Array:
-    measure = measure_of(limit)
-    return recorded[place] if measure is None else found[measure]
+def values_in(limit: Requirement, results: Mapping[str, Array], found: Mapping[Measure, Array]) -> Array:
+    """Return the values that decide about a limit: a number of the summary, or the worst of a signal."""
+    return results[limit.signal] if limit.signal in results else values_of(limit, found)
 
 
 def limit_value(limit: Requirement) -> float:

@@ -21,7 +21,7 @@ from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.scenario.models import MODELS
 from orchestrator.scenario.requirements import Requirement, Window, read_requirements
 from orchestrator.scenario.scenario import Scenario, Slot, Target
-from orchestrator.sweep.study import load_study
+from orchestrator.sweep.study.study_file import load_study
 from orchestrator.verdict.judge import Check
 from orchestrator.verdict.summary import Event, Final, FmuUsed, Summary
 

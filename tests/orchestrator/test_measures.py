@@ -12,7 +12,7 @@ from orchestrator.cosim.recording import Recording
 from orchestrator.scenario.requirements import Condition
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.verdict.conditions import CONDITIONS, share
-from orchestrator.verdict.measures import Measure, measured
+from orchestrator.verdict.measures import Measure, When, measured
 from orchestrator.verdict.numbers import MEASURES, NUMBERS, POSE, facts_of, numbers
 from orchestrator.verdict.truth import Truth, truth_of
 
@@ -25,7 +25,8 @@ def recording(values: np.ndarray, name: str = "vehicle.speed") -> Recording:
 
 
 @pytest.mark.parametrize(
-    ("how", "value"), [("last", 2.0), ("largest", -3.0), ("greatest", 2.0), ("smallest", -3.0), ("travel", 9.0)]
+    ("how", "value"),
+    [("last", 2.0), ("largest", -3.0), ("greatest", 2.0), ("smallest", -3.0), ("travel", 9.0), ("first", 1.0)],
 )
 def test_measures(how: str, value: float) -> None:
     measure = Measure(how, "vehicle.speed")  # type: ignore[arg-type]
@@ -84,3 +85,12 @@ def test_what_the_models_do_not_have() -> None:
     assert made["duration"] == 2.0
     assert math.isnan(made["shifts"])
     assert math.isnan(made["min_clearance"])
+
+
+def test_only_the_instants_that_count() -> None:
+    run = recording(np.array([5.0, 1.0, -3.0, 2.0]))
+    run.signals["controller.phase"] = np.array([0.0, 2.0, 2.0, 3.0])
+    meant = {"last": -3.0, "first": 1.0, "largest": -3.0, "greatest": 1.0, "smallest": -3.0, "travel": 4.0}
+    for how, value in meant.items():
+        assert measured(Measure(how, "vehicle.speed", When("controller.phase", (2, 7))), run) == value  # type: ignore[arg-type]
+        assert math.isnan(measured(Measure(how, "vehicle.speed", When("controller.phase", (5,))), run))  # type: ignore[arg-type]

@@ -1,25 +1,19 @@
 """The grid study at a reduced size: no contact in any run, every run ends parked or failed with a reason."""
 
-import argparse
+from pathlib import Path
 
 import pytest
 
-from orchestrator.commands.study import run
+from orchestrator.cli import main
 from orchestrator.cosim.fmu_files import can_compile
-from orchestrator.grid.apa_grid import (
-    CARS,
-    KEPT,
-    Result,
-    cases,
-    drive,
-    is_ended,
-    is_ghost,
-    is_within_gbt,
-    is_within_house,
-    parameters,
-    totals,
-)
-from orchestrator.grid.apa_loop import Loop
+from orchestrator.grid.cases import CARS, cases, parameters
+from orchestrator.grid.parkings import Parking, parkings
+from orchestrator.grid.study import study, study_of, totals
+from orchestrator.session.session import run_scenario
+from orchestrator.sweep.engines import choose_task
+from orchestrator.sweep.in_memory import columns_in_memory
+from orchestrator.sweep.job import Chunk, chunk_scenario, make_job
+from orchestrator.sweep.rows import row_of
 
 needs_compiler = pytest.mark.skipif(not can_compile(), reason="needs a C compiler")
 EVERY = 5
@@ -30,10 +24,14 @@ PLAIN = (62, 658)
 """Driven in plain Python as well: one parallel, one perpendicular."""
 
 
+def driven(numbers: tuple[int, ...]) -> list[Parking]:
+    return parkings(columns_in_memory(study_of([cases()[number] for number in numbers])))
+
+
 @pytest.fixture(scope="module")
-def results() -> list[Result]:
-    loop = Loop(KEPT, compiled=True)
-    return [drive(case, loop) for case in cases()[::EVERY]]
+def results() -> list[Parking]:
+    whole = study()
+    return parkings(columns_in_memory(whole._replace(design=whole.design.part(0, EVERY))))
 
 
 def test_the_grid_covers_what_it_says() -> None:
@@ -49,70 +47,80 @@ def test_the_grid_covers_what_it_says() -> None:
     part = grid[::EVERY]
     for field in ("car", "kind", "side", "extra", "beside", "heading", "body", "speed"):
         assert {getattr(case, field) for case in part} == {getattr(case, field) for case in grid}
-    assert parameters(grid[5]) == parameters(cases()[5])
+    assert parameters(grid[5]) == parameters(cases(0)[5])
     assert parameters(grid[5]) != parameters(cases(1)[5])
 
 
 @needs_compiler
-def test_no_run_touches_anything(results: list[Result]) -> None:
-    assert min(result.nearest for result in results) > 0.05
+def test_no_run_touches_anything(results: list[Parking]) -> None:
+    assert min(item.nearest for item in results) > 0.05
     assert totals(results)["touched something"] == 0
 
 
 @needs_compiler
-def test_every_run_ends_parked_or_failed_with_its_reason(results: list[Result]) -> None:
-    assert [result.case.number for result in results if not is_ended(result)] == []
+def test_every_run_ends_parked_or_failed_with_its_reason(results: list[Parking]) -> None:
+    assert [item.case.number for item in results if not item.is_ended] == []
 
 
 @needs_compiler
-def test_all_but_one_in_a_hundred_are_parked_within_gbt(results: list[Result]) -> None:
-    inside = [result for result in results if result.inside]
+def test_all_but_one_in_a_hundred_are_parked_within_gbt(results: list[Parking]) -> None:
+    inside = [item for item in results if item.inside]
     assert len(inside) > 30
     for group in (results, inside):
-        assert sum(is_within_gbt(result) for result in group) >= 0.99 * len(group)
+        assert sum(item.is_gbt for item in group) >= 0.99 * len(group)
 
 
 @needs_compiler
-def test_house_limits_are_met_where_the_slot_allows_three_shifts(results: list[Result]) -> None:
-    group = [result for result in results if result.case.kind == 2 or result.case.extra > 0.0]
-    assert sum(is_within_house(result) for result in group) >= 0.93 * len(group)
+def test_house_limits_are_met_where_the_slot_allows_three_shifts(results: list[Parking]) -> None:
+    group = [item for item in results if item.case.kind == 2 or item.case.extra > 0.0]
+    assert sum(item.is_house for item in group) >= 0.93 * len(group)
+    assert all(item.is_house_but_shifts for item in results if item.is_house)
 
 
 @needs_compiler
-def test_corners_are_found_and_no_slot_where_there_is_none(results: list[Result]) -> None:
-    assert [result.case.number for result in results if result.kind == 0 or is_ghost(result)] == []
-    slow = [result for result in results if result.case.speed < 5.0]
-    assert max(max(result.corner_a, result.corner_b) for result in slow) < 0.1
-    assert max(max(result.corner_a, result.corner_b) for result in results) < 0.2
+def test_corners_are_found_and_no_slot_where_there_is_none(results: list[Parking]) -> None:
+    assert [item.case.number for item in results if item.kind == 0 or item.is_ghost] == []
+    slow = [item for item in results if item.case.speed < 5.0]
+    assert max(max(item.corner_a, item.corner_b) for item in slow) < 0.1
+    assert max(max(item.corner_a, item.corner_b) for item in results) < 0.2
 
 
 @needs_compiler
 def test_these_runs_are_parked_within_gbt_with_all_corners_found() -> None:
-    loop = Loop(KEPT, compiled=True)
-    mild = [drive(cases()[number], loop) for number in MILD]
-    assert [result.case.number for result in mild if not is_within_gbt(result)] == []
-    assert max(max(result.corner_a, result.corner_b) for result in mild) < 0.1
+    mild = driven(MILD)
+    assert [item.case.number for item in mild if not item.is_gbt] == []
+    assert max(max(item.corner_a, item.corner_b) for item in mild) < 0.1
 
 
 @needs_compiler
-def test_a_run_is_repeated_by_its_number_in_plain_python_too(results: list[Result]) -> None:
-    compiled, plain = Loop(KEPT, compiled=True), Loop(KEPT, compiled=False)
-    for number in PLAIN:
-        case = cases()[number]
-        assert drive(case, compiled) == drive(case, plain)
+@pytest.mark.parametrize("number", PLAIN)
+def test_a_run_is_the_same_in_plain_python(number: int) -> None:
+    chosen = study_of([cases()[number], cases()[0]])
+    job = make_job(chosen)
+    chunk = Chunk(0, 0, chosen.design.values[:1], chosen.design.seeds[:1])
+    scenario = chunk_scenario(job, chunk, 0)
+    recorded = row_of(run_scenario(scenario).recording, scenario, job.measures)
+    assert choose_task(chosen.scenario, None).work(job, chunk)[0].tolist() == recorded.tolist()
 
 
 @pytest.mark.skipif(can_compile(), reason="where nothing can be compiled")
 def test_some_runs_in_plain_python_are_parked_within_gbt() -> None:
-    loop = Loop(KEPT, compiled=False)
-    assert all(is_within_gbt(drive(cases()[number], loop)) for number in PLAIN)
+    assert all(item.is_gbt for item in driven(PLAIN))
 
 
 @needs_compiler
-def test_the_command_prints_the_table(capsys: pytest.CaptureFixture[str]) -> None:
-    asked = argparse.Namespace(first=0, every=400, lot=0, number=None, all=True, plain=False, json=False)
-    assert run(asked) == 0
+def test_the_command_prints_the_tables_and_rows_come_back(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    asked = ["sweep", "apa-grid", "--set", "lot=1", "--every", "400", "--out", str(tmp_path), "--no-page"]
+    assert main(asked) == 0
     printed = capsys.readouterr().out
     assert "touched something" in printed
     assert "from inside the start range" in printed
-    assert " 400 " in printed
+    assert main(["replay", str(tmp_path / "apa-grid.parquet"), "--row", "1", "--no-page"]) == 0
+    assert "same bits as in the table" in capsys.readouterr().out
+
+
+def test_what_the_grid_cannot_be_asked(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["sweep", "apa-grid", "--set", "lots=1"]) == 2
+    assert "did you mean lot?" in capsys.readouterr().err
+    assert main(["sweep", "apa-grid", "--set", "lot=two"]) == 2
+    assert "is not a whole number" in capsys.readouterr().err

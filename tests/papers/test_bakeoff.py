@@ -1,6 +1,5 @@
 """The bake-off: the same slots for all, refusals that are right, slots that each controller parks in."""
 
-import json
 import math
 from pathlib import Path
 
@@ -9,27 +8,40 @@ import pytest
 from controller_fmu.zhang2022.key_points import arc_line_arc, largest_radius
 from controller_fmu.zhang2022.path import STEEPEST, PathStatus, plan, through
 from modelkit.vocabulary import Pose
-from orchestrator.bakeoff.driver_study import LIMITS, STEERING, SYSTEMS, Group, rate_of, study
-from orchestrator.bakeoff.entries import ASSIST, CONTROLLERS, SLOTS, STARTS, Entry, entries, scenario_of
-from orchestrator.bakeoff.results import Result, results
-from orchestrator.cli import main
-from orchestrator.commands import bakeoff as command
+from orchestrator.bakeoff.claim import LIMITS, STEERING, SYSTEMS, Group, rate_of, rates
+from orchestrator.bakeoff.claim import study as claim
+from orchestrator.bakeoff.drives import Drive, drives
+from orchestrator.bakeoff.entries import ASSIST, CONTROLLERS, LABELS, SLOTS, STARTS, entries, scenario_of
+from orchestrator.bakeoff.study import report, study_of
 from orchestrator.cosim.fmu_files import can_compile
+from orchestrator.scenario.scenario import Scenario
+from orchestrator.sweep.in_memory import columns_in_memory
+from orchestrator.sweep.study.cases import LabelledScenario
+from orchestrator.sweep.sweep import Options, sweep
+from orchestrator.sweep.table import Table
 
 compiles = pytest.mark.skipif(not can_compile(), reason="needs a C compiler")
 EVERY = list(entries())
 
 
+def chosen(**labels: str | float) -> list[LabelledScenario]:
+    return [case for case in EVERY if all(case.labels[key] == value for key, value in labels.items())]
+
+
+def scenario(drive: Drive) -> Scenario:
+    return scenario_of(*drive[: len(LABELS)])
+
+
 @pytest.fixture(scope="module")
-def undisturbed() -> list[Result]:
-    return results([entry for entry in EVERY if entry.disturbance == "none"])
+def undisturbed() -> list[Drive]:
+    return drives(columns_in_memory(study_of(chosen(disturbance="none"))))
 
 
 def test_all_have_the_same_slots() -> None:
     scenes: dict[tuple[float, str], set[tuple[float | int | bool, ...]]] = {}
-    for entry in EVERY:
-        boxes = tuple(value for key, value in entry.scenario.vehicle.items() if key.startswith("scene.boxes["))
-        scenes.setdefault((entry.slot, entry.car), set()).add(boxes)
+    for case in EVERY:
+        boxes = tuple(value for key, value in case.scenario.vehicle.items() if key.startswith("scene.boxes["))
+        scenes.setdefault((float(case.labels["slot"]), str(case.labels["car"])), set()).add(boxes)
     assert len(scenes) == 6
     assert all(len(boxes) == 1 for boxes in scenes.values())
     assert len(EVERY) == len(CONTROLLERS) * 3 * 60
@@ -54,45 +66,44 @@ def smallest_peak(start: Pose, radius: float) -> float:
 
 def test_quintics_are_refused_where_no_radius_keeps_the_curvature_and_only_there() -> None:
     verdicts = {}
-    for entry in EVERY:
-        if entry.controller == "zhang2022" and entry.disturbance == "none" and entry.body == "kinematic":
-            car = entry.scenario.controller
-            lock = car["steering_wheel_limit"] / car["steering_ratio"]
-            limit = 0.95 * math.tan(lock) / car["wheelbase"]
-            start = Pose(*(float(entry.scenario.vehicle[f"start.{axis}"]) for axis in ("x", "y", "heading")))
-            possible = smallest_peak(start, 5.0) <= limit
-            assert plan(start, 5.0, limit).status == (PathStatus.FOUND if possible else PathStatus.CURVATURE_LIMIT)
-            verdicts[entry.slot, entry.car, entry.start] = possible
+    for labels, given in chosen(controller="zhang2022", disturbance="none", body="kinematic"):
+        car = given.controller
+        lock = car["steering_wheel_limit"] / car["steering_ratio"]
+        limit = 0.95 * math.tan(lock) / car["wheelbase"]
+        start = Pose(*(float(given.vehicle[f"start.{axis}"]) for axis in ("x", "y", "heading")))
+        possible = smallest_peak(start, 5.0) <= limit
+        assert plan(start, 5.0, limit).status == (PathStatus.FOUND if possible else PathStatus.CURVATURE_LIMIT)
+        verdicts[labels["slot"], labels["car"], labels["start"]] = possible
     assert [sum(verdicts[key] for key in verdicts if key[0] == slot) for slot in SLOTS] == [0, 4, 6]
 
 
 @compiles
-def test_refusals_are_those_of_the_planner(undisturbed: list[Result]) -> None:
-    refused = [item for item in undisturbed if item.entry.controller == "zhang2022" and not item.parked]
-    assert {item.reason for item in refused} == {"no_path"}
+def test_refusals_are_those_of_the_planner(undisturbed: list[Drive]) -> None:
+    refused = [item for item in undisturbed if item.controller == "zhang2022" and not item.parked]
+    assert {item.why for item in refused} == {"no_path"}
     assert len(refused) == 2 * (6 + 2)
 
 
 @compiles
-def test_two_arcs_are_refused_where_their_radius_is_below_the_cars(undisturbed: list[Result]) -> None:
+def test_two_arcs_are_refused_where_their_radius_is_below_the_cars(undisturbed: list[Drive]) -> None:
     for item in undisturbed:
-        if item.entry.controller.startswith("ntbpt"):
-            car, start = item.entry.scenario.controller, item.entry.scenario.vehicle
+        if item.controller.startswith("ntbpt"):
+            car, start = scenario(item).controller, scenario(item).vehicle
             smallest = 1.05 * car["wheelbase"] / math.tan(car["steering_wheel_limit"] / car["steering_ratio"])
             possible = largest_radius(start["start.x"], start["start.y"]) >= smallest
-            assert (item.reason == "no_path") != possible, item.entry[:-1]
+            assert (item.why == "no_path") != possible, item
 
 
 @compiles
-def test_every_controller_parks_from_every_start_in_the_longest_slot(undisturbed: list[Result]) -> None:
-    longest = [item for item in undisturbed if item.entry.slot == max(SLOTS)]
-    assert [item.entry[:-1] for item in longest if not item.parked] == []
+def test_every_controller_parks_from_every_start_in_the_longest_slot(undisturbed: list[Drive]) -> None:
+    longest = [item for item in undisturbed if item.slot == max(SLOTS)]
+    assert [item for item in longest if not item.parked] == []
     assert len(longest) == len(CONTROLLERS) * 12
 
 
 @compiles
-def test_the_assist_touches_nothing(undisturbed: list[Result]) -> None:
-    mine = [item for item in undisturbed if item.entry.controller == ASSIST]
+def test_the_assist_touches_nothing(undisturbed: list[Drive]) -> None:
+    mine = [item for item in undisturbed if item.controller == ASSIST]
     assert len(mine) == 36
     assert min(item.clearance for item in mine) > 0.0
     assert all(0.0 < item.time < 120.0 for item in mine if item.parked)
@@ -100,14 +111,14 @@ def test_the_assist_touches_nothing(undisturbed: list[Result]) -> None:
 
 @compiles
 def test_point_tracking_parks_more_drivers_than_path_tracking_alone() -> None:
-    found = study(200, 1)
-    rates = {rate.group: rate for rate in found.rates}
-    assert len(rates) == 2 * 2 * 2
+    found = rates(columns_in_memory(claim(200, 1)))
+    by_group = {rate.group: rate for rate in found}
+    assert len(by_group) == 2 * 2 * 2
     for steering in STEERING:
         for limit in LIMITS:
-            ours, plain = (rates[Group(system, steering, limit)] for system in SYSTEMS)
+            ours, plain = (by_group[Group(system, steering, limit)] for system in SYSTEMS)
             assert ours.low > plain.high
-    assert study(200, 1).rates == found.rates
+    assert rates(columns_in_memory(claim(200, 1))) == found
 
 
 def test_wilson_keeps_to_shares() -> None:
@@ -119,17 +130,11 @@ def test_wilson_keeps_to_shares() -> None:
 
 
 @compiles
-def test_the_command_writes_table_picture_and_numbers(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    def few() -> list[Entry]:
-        return [entry for entry in EVERY if entry.slot == 7.7 and entry.car == "guo2015" and entry.start == "near"]
-
-    monkeypatch.setattr(command, "entries", few)
-    assert main(["bakeoff", "--runs", "0", "--out", str(tmp_path)]) == 0
+def test_its_report_shows_table_and_picture(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    swept = sweep(study_of(chosen(slot=7.7, car="guo2015", start="near")), tmp_path, Options())
+    assert swept.table is not None
+    assert swept.count == 50
+    assert report(Table(swept.table), tmp_path) == 0
     said = capsys.readouterr().out
-    data = json.loads((tmp_path / "bakeoff.json").read_text(encoding="utf-8"))
-    assert len(data["runs"]) == 50
-    assert set(data["step_us"]) == set(CONTROLLERS)
     assert "100 %" in next(line for line in said.splitlines() if "zhang2022" in line)
     assert (tmp_path / "bakeoff.png").stat().st_size > 20_000

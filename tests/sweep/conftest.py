@@ -1,9 +1,9 @@
 import numpy as np
 import pytest
 
-from orchestrator.sweep.design import make_design
-from orchestrator.sweep.job import Chunk, make_job, study_scenario
-from orchestrator.sweep.study import Study
+from orchestrator.sweep.job import Chunk, make_job
+from orchestrator.sweep.study.read_study import bind as bind_file
+from orchestrator.sweep.study.study_file import StudyFile
 
 RUNS = {
     "grid": {
@@ -26,11 +26,8 @@ def bind():
     """A function from a study as data to (scenario, design, job, all its runs as one chunk)."""
 
     def bound(**content):
-        study = Study(**{"name": "test", "scenario": "guo2015-case4", "runs": RUNS, **content})
-        scenario = study_scenario(study)
-        design = make_design(study, scenario)
-        job = make_job(study, scenario, design.fields)
-        return scenario, design, job, Chunk(0, 0, design.values, design.seeds)
+        study = bind_file(StudyFile(**{"name": "test", "scenario": "guo2015-case4", "runs": RUNS, **content}))
+        return study.scenario, study.design, make_job(study), Chunk(0, 0, study.design.values, study.design.seeds)
 
     return bound
 

@@ -13,11 +13,11 @@ from orchestrator.scenario.models import MODELS
 from orchestrator.session.session import run_scenario
 from orchestrator.sweep.batch import run_batch
 from orchestrator.sweep.fmu_runs import run_recorded
-from orchestrator.sweep.job import Chunk, arrays, chunk_scenario
+from orchestrator.sweep.job import Chunk, arrays, chunk_scenario, job_from, job_to
 from orchestrator.sweep.rows import row_of, why_not_compiled
-from orchestrator.sweep.store import job_from, job_to
 from orchestrator.sweep.verdict import OUTCOMES, judge
 from orchestrator.text.errors import BadInput
+from orchestrator.verdict.measures import Measure, When
 from orchestrator.verdict.summary import summarize
 
 LIMITS = [
@@ -27,16 +27,17 @@ LIMITS = [
     {"id": "at rest", "signal": "vehicle.speed", "max_abs": 1e-6, "window": {"at": "end"}, "source": "test"},
     {"id": "seen", "signal": "controller.measured_speed", "max_abs": 1.8, "source": "test", "required": False},
     {"id": "time", "signal": "duration", "max": 30.0, "source": "test"},
+    {"id": "way", "signal": "vehicle.speed", "max_abs": 0.6, "window": {"phase": "TO_Q4"}, "source": "test"},
+    {
+        "id": "way, if it is gone",
+        "signal": "vehicle.speed",
+        "max_abs": 0.6,
+        "window": {"phase": ["to q4", "TO_Q1"], "if_never": "pass"},
+        "source": "test",
+    },
 ]
 WINDOWED = [
     {"id": "late", "signal": "vehicle.speed", "max_abs": 1.0, "window": {"from": 4.0, "to": 9.0}, "source": "test"},
-    {
-        "id": "way",
-        "signal": "vehicle.speed",
-        "max_abs": 0.6,
-        "window": {"phase": "TO_Q4", "if_never": "pass"},
-        "source": "t",
-    },
     {"id": "ends", "signal": "controller.phase", "equals": "PARKED", "window": {"at": "end"}, "source": "test"},
 ]
 
@@ -190,3 +191,18 @@ def test_a_table_of_an_older_version_is_judged_by_what_the_controller_was_told(b
     old = job_from(json.loads(json.dumps(data)))
     assert old.scenario["target"] == {"x": -7.608, "y": -3.056, "heading": 0.0}
     assert judge(old, chunk, run_batch(old, chunk)).reason == ["all checks passed"]
+
+
+def test_what_counts_at_some_instants_only_is_as_in_the_recording(bind, some):
+    _, _, job, chunk = bind()
+    parking = When("controller.phase", (2, 3))
+    hows = ("last", "largest", "greatest", "smallest", "travel", "first")
+    signals = ("vehicle.speed", "vehicle.clearance", "controller.shifts", "vehicle.prompt")
+    measures = [Measure(how, signal, when) for how in hows for signal in signals for when in (parking, None)]
+    never = Measure("last", "vehicle.speed", When("controller.phase", (63,)))
+    job = job._replace(measures=[*job.measures, *measures, never])
+    rows = run_batch(job, chunk)
+    assert np.isnan(rows[:, -1]).all()
+    for number in some(len(rows), 4):
+        run = chunk_scenario(job, chunk, number)
+        np.testing.assert_array_equal(rows[number], row_of(run_scenario(run).recording, run, job.measures))

@@ -3,7 +3,7 @@ import math
 import numpy as np
 import pytest
 
-from orchestrator.sweep.study import Study
+from orchestrator.sweep.study.study_file import StudyFile
 from orchestrator.text.errors import BadInput
 
 SPEED = "vehicle.driver.profile[1].speed"
@@ -120,9 +120,9 @@ def test_a_mistake_is_one_clear_sentence(bind, runs, says):
 def test_different_numbers_of_samples_are_refused():
     samples = [{"n": count, "vehicle.start.x": {"uniform": [0, 1]}} for count in (2, 3)]
     with pytest.raises(ValueError, match="same n"):
-        Study(name="a", scenario="b", runs={"monte_carlo": samples[0], "latin_hypercube": samples[1]})
+        StudyFile(name="a", scenario="b", runs={"monte_carlo": samples[0], "latin_hypercube": samples[1]})
 
 
 def test_a_spread_has_exactly_one_distribution():
     with pytest.raises(ValueError, match="exactly one of uniform, normal and choice"):
-        Study(name="a", scenario="b", runs={"monte_carlo": {"n": 1, "x": {"uniform": [0, 1], "choice": [1]}}})
+        StudyFile(name="a", scenario="b", runs={"monte_carlo": {"n": 1, "x": {"uniform": [0, 1], "choice": [1]}}})

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from orchestrator.cli import main
-from orchestrator.sweep.figures import SCALE, colour, histogram
-from orchestrator.sweep.page import study_page
-from orchestrator.sweep.statistics import axis, influences, maps, variance_share, varied, worst
-from orchestrator.sweep.store import Table
+from orchestrator.sweep.page.figures import SCALE, colour, histogram
+from orchestrator.sweep.page.page import study_page
+from orchestrator.sweep.page.statistics import axis, influences, maps, variance_share, varied, worst
+from orchestrator.sweep.table import Table
 from orchestrator.verdict.confidence import wilson
 
 EVIL = "<script>window.evil = 1</script><img src=x onerror='window.evil = 1'>"

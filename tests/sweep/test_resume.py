@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from orchestrator.cli import main
-from orchestrator.sweep.store import Table
+from orchestrator.sweep.table import Table
 
 STUDY = """
 name: trial

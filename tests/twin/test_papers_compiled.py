@@ -5,8 +5,11 @@ import pytest
 from orchestrator.cosim.fmu_files import can_compile
 from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.session.session import run_scenario
-from orchestrator.sweep.many import run_all
+from orchestrator.sweep.batch import run_batch
+from orchestrator.sweep.job import chunks, make_job
 from orchestrator.sweep.rows import FIRST_MEASURE
+from orchestrator.sweep.study.cases import LabelledScenario, design_of
+from orchestrator.sweep.study.study import Study
 from orchestrator.verdict.measures import Measure, measured
 from orchestrator.verdict.numbers import MEASURES
 
@@ -32,6 +35,8 @@ DRIVES = {
 def test_same_bits(name):
     scenario = load_scenario(name, [f"stop_time={DRIVES[name]}"])
     recording = run_scenario(scenario).recording
-    row = run_all([scenario], TAKEN)[0]
+    fixed, design = design_of([LabelledScenario({}, scenario)])
+    job = make_job(Study(fixed, design, {"name": name}))._replace(measures=list(TAKEN))
+    (row,) = run_batch(job, next(chunks(design, 1)))
     assert row[1] == recording.t_ns[-1]
     assert row[FIRST_MEASURE:].tolist() == [measured(item, recording) for item in TAKEN]

@@ -21,11 +21,13 @@ typedef struct {
     int64_t model, place, input;
 } Signal;
 
-typedef enum { LAST, LARGEST, GREATEST, SMALLEST, TRAVEL } How;
+typedef enum { LAST, LARGEST, GREATEST, SMALLEST, TRAVEL, FIRST } How;
 
 typedef struct {
     int64_t how;
     Signal signal;
+    Signal when;     /* a mode: noted only while bit n of values is set for its value n */
+    uint64_t values; /* 0: always */
 } Kept;
 
 typedef struct {
@@ -67,8 +69,9 @@ typedef struct {
     const Batch *batch;
     Slave *slaves;
     Wire *wires;
-    Place *kept;
-    double *before;
+    Place *kept, *when;
+    double *before;       /* the value noted last */
+    unsigned char *noted; /* whether there is one */
     Place mode, speed;
 } Runner;
 
@@ -94,34 +97,43 @@ static void hand_over(const Runner *runner) {
     }
 }
 
+static int is_in(double mode, uint64_t values) {
+    return mode >= 0.0 && mode < 64.0 && (values >> (unsigned)mode & 1u);
+}
+
 static void begin_notes(const Runner *runner, double *kept) {
     for (int64_t k = 0; k < runner->batch->kept_count; k++) {
-        const double now = look(runner->kept[k]);
-        const int64_t how = runner->batch->kept[k].how;
-        kept[k] = how == GREATEST || how == SMALLEST ? now : 0.0;
-        runner->before[k] = now;
+        kept[k] = NAN;
+        runner->noted[k] = 0;
     }
 }
 
-/* NaN is the worst there is: once seen, it stays. */
+/* Of the values noted: NaN is the worst there is; once seen, it stays. None noted: NaN. */
 static void note(const Runner *runner, double *kept) {
     for (int64_t k = 0; k < runner->batch->kept_count; k++) {
+        const Kept *wanted = &runner->batch->kept[k];
+        if (wanted->values && !is_in(look(runner->when[k]), wanted->values)) continue;
         const double now = look(runner->kept[k]);
         const int nan = isnan(now) != 0;
-        switch ((How)runner->batch->kept[k].how) {
-        case LAST: kept[k] = now; break;
-        case LARGEST: if (fabs(now) > fabs(kept[k]) || nan) kept[k] = now; break;
-        case GREATEST: if (now > kept[k] || nan) kept[k] = now; break;
-        case SMALLEST: if (now < kept[k] || nan) kept[k] = now; break;
-        case TRAVEL: kept[k] += fabs(now - runner->before[k]); runner->before[k] = now; break;
+        if (!runner->noted[k]) {
+            kept[k] = wanted->how == TRAVEL && !nan ? 0.0 : now;
+        } else {
+            switch ((How)wanted->how) {
+            case LAST: kept[k] = now; break;
+            case LARGEST: if (fabs(now) > fabs(kept[k]) || nan) kept[k] = now; break;
+            case GREATEST: if (now > kept[k] || nan) kept[k] = now; break;
+            case SMALLEST: if (now < kept[k] || nan) kept[k] = now; break;
+            case TRAVEL: kept[k] += fabs(now - runner->before[k]); break;
+            case FIRST: break;
+            }
         }
+        runner->before[k] = now;
+        runner->noted[k] = 1;
     }
 }
 
 static int stands(const Runner *runner) {
-    const double mode = look(runner->mode);
-    const int final = mode >= 0.0 && mode < 64.0 && (runner->batch->final >> (unsigned)mode & 1u);
-    return final && !(fabs(look(runner->speed)) > runner->batch->still);
+    return is_in(look(runner->mode), runner->batch->final) && !(fabs(look(runner->speed)) > runner->batch->still);
 }
 
 static void initialize(const Runner *runner, const double *params) {
@@ -181,7 +193,10 @@ static void connect(Runner *runner) {
         runner->wires[k].target = target->memory + target->model->inputs[link->target_place].offset;
         runner->wires[k].due = &target->due;
     }
-    for (int64_t k = 0; k < batch->kept_count; k++) runner->kept[k] = place_of(runner->slaves, batch->kept[k].signal);
+    for (int64_t k = 0; k < batch->kept_count; k++) {
+        runner->kept[k] = place_of(runner->slaves, batch->kept[k].signal);
+        if (batch->kept[k].values) runner->when[k] = place_of(runner->slaves, batch->kept[k].when);
+    }
     if (batch->final) {
         runner->mode = place_of(runner->slaves, batch->mode);
         runner->speed = place_of(runner->slaves, batch->speed);
@@ -202,7 +217,9 @@ static size_t lay_out(Runner *runner, unsigned char *memory) {
     runner->slaves = part(memory, &taken, (size_t)batch->model_count * sizeof(Slave));
     runner->wires = part(memory, &taken, (size_t)batch->link_count * sizeof(Wire));
     runner->kept = part(memory, &taken, (size_t)batch->kept_count * sizeof(Place));
+    runner->when = part(memory, &taken, (size_t)batch->kept_count * sizeof(Place));
     runner->before = part(memory, &taken, (size_t)batch->kept_count * sizeof(double));
+    runner->noted = part(memory, &taken, (size_t)batch->kept_count);
     for (int64_t m = 0; m < batch->model_count; m++) {
         const Library *model = batch->models[m];
         unsigned char *own = part(memory, &taken, (size_t)model->size);

@@ -8,8 +8,8 @@ from scipy.stats import rankdata  # type: ignore[import-untyped]
 
 from orchestrator.cosim.slave import Array
 from orchestrator.scenario.scenario import DONE, SUCCESS
-from orchestrator.sweep.store import Table
-from orchestrator.sweep.study import Axes
+from orchestrator.sweep.study.study_file import Axes
+from orchestrator.sweep.table import Table
 from orchestrator.text.quantities import DEGREE
 
 MOST_VALUES = 60
@@ -58,9 +58,9 @@ def for_people(unit: str) -> tuple[float, str]:
 
 
 def varied(table: Table) -> list[str]:
-    """Return the parameters that differ from run to run; of those that always agree the first."""
+    """Return what tells the runs apart: labels, or else the parameters that differ; of those that agree the first."""
     found: dict[str, Any] = {}
-    for key in table.job.keys:
+    for key in table.labels or table.job.keys:
         values = table.column(key)
         if len(np.unique(values)) > 1 and not any(np.array_equal(values, other) for other in found.values()):
             found[key] = values
@@ -79,8 +79,11 @@ def word(table: Table) -> str:
 
 
 def axis(table: Table, name: str) -> Axis:
-    """Return one parameter cut into its values, if they are few, or into equal bins."""
+    """Return a parameter or label cut into its values, if they are few or words, or into equal bins."""
     unit, text, states = table.note(name)
+    if table.column(name).dtype == object:
+        words, cell = np.unique(table.column(name).astype(str), return_inverse=True)
+        return Axis(name, unit, text, np.arange(len(words) + 1.0) - 0.5, words.tolist(), cell)
     factor, unit = for_people(unit)
     values = np.asarray(table.column(name), dtype=np.float64) * factor
     different = np.unique(values)
@@ -102,7 +105,7 @@ def default_axes(table: Table) -> Axes | None:
     given = table.about["study"].get("map")
     if given is not None:
         return Axes(**given)
-    different = {key: len(np.unique(table.column(key))) for key in table.job.keys}
+    different = {key: len(np.unique(table.column(key))) for key in table.labels or table.job.keys}
     modes = [key for key, count in different.items() if 1 < count <= 4 and table.note(key)[2]]
     numbers = [key for key, count in different.items() if count > 1 and key not in modes[:1]]
     return Axes(x=numbers[0], y=numbers[1], split=modes[0] if modes else None) if len(numbers) > 1 else None
@@ -141,7 +144,7 @@ def influences(table: Table) -> list[Influence]:
     found = []
     for key in varied(table):
         cut = axis(table, key)
-        own = rankdata(table.column(key))
+        own = rankdata(cut.cell if table.column(key).dtype == object else table.column(key))
         shares = {name: variance_share(values, cut.cell) for name, values in results.items()}
         found.append(Influence(key, shares, {name: _correlation(own, other) for name, other in ranks.items()}))
     return sorted(found, key=lambda item: -item.share[word(table)])

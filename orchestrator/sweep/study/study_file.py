@@ -1,5 +1,6 @@
 """STUDY.yaml: which scenario, what is varied and how, and what the result page shows."""
 
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
@@ -8,7 +9,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_valida
 from orchestrator.text.errors import BadInput, suggestion
 from orchestrator.text.yaml_file import explain, read_mapping
 
-SHIPPED = Path(__file__).parent.parent / "studies"
+SHIPPED = Path(__file__).parents[2] / "studies"
 
 
 class _Strict(BaseModel):
@@ -78,8 +79,27 @@ class Axes(_Strict):
     """One map for each value of this parameter."""
 
 
-class Study(_Strict):
-    """One study. A key ``a, b`` gives the same value to both parameters."""
+class MeasureOf(_Strict):
+    """One number of one signal over a run: exactly one of these, with the name of the signal."""
+
+    last: str | None = None
+    first: str | None = None
+    largest: str | None = None
+    """Of the absolute values, with its sign."""
+    greatest: str | None = None
+    smallest: str | None = None
+    travel: str | None = None
+    """Sum of the absolute changes."""
+
+    @model_validator(mode="after")
+    def _one(self) -> "MeasureOf":
+        if len(self.model_dump(exclude_none=True)) != 1:
+            raise BadInput(f"expected exactly one of {', '.join(MeasureOf.model_fields)}")
+        return self
+
+
+class StudyFile(_Strict):
+    """One study as it is written. A key ``a, b`` gives the same value to both parameters."""
 
     name: str = Field(pattern=r"^[A-Za-z0-9._-]+$")
     title: str = ""
@@ -91,6 +111,10 @@ class Study(_Strict):
     seed: int = Field(default=1, ge=0)
     """Seed of the samples and of the runs' own seeds."""
     runs: Runs
+    measures: dict[str, MeasureOf] = {}
+    """Further columns of the table: ``{largest offset: {largest: controller.lateral_error}}``."""
+    within: dict[str, list[Any]] = {}
+    """Sets of limits that do not decide about the outcome, as a scenario's ``limits``: a column each."""
     map: Axes | None = None
 
 
@@ -99,21 +123,24 @@ def study_names() -> list[str]:
     return sorted(path.stem for path in SHIPPED.glob("*.yaml"))
 
 
-def load_study(name: str) -> Study:
-    """Return the study called ``name`` or written in the file ``name``. Raises ``BadInput``."""
-    path = _find(name)
+def load_study(name: str, others: Iterable[str] = ()) -> StudyFile:
+    """Return the study called ``name`` or written in the file ``name``.
+
+    Raises ``BadInput``, which suggests names of ``others`` too.
+    """
+    path = _find(name, [*study_names(), *others])
     content = read_mapping(path)
     content.setdefault("name", path.stem)
     try:
-        study = Study(**content)
+        study = StudyFile(**content)
     except ValidationError as error:
-        raise explain(error, path, list(Study.model_fields)) from None
+        raise explain(error, path, list(StudyFile.model_fields)) from None
     if study.scenario.endswith((".yaml", ".yml")):
         return study.model_copy(update={"scenario": str((path.parent / study.scenario).resolve())})
     return study
 
 
-def _find(name: str) -> Path:
+def _find(name: str, known: list[str]) -> Path:
     if name.endswith((".yaml", ".yml")) or "/" in name:
         path = Path(name)
         if not path.is_file():
@@ -121,6 +148,6 @@ def _find(name: str) -> Path:
         return path
     path = SHIPPED / f"{name}.yaml"
     if not path.is_file():
-        hint = suggestion(name, study_names()) or f"; shipped are {', '.join(study_names()) or 'none'}"
+        hint = suggestion(name, known) or f"; shipped are {', '.join(sorted(known))}"
         raise BadInput(f"no study of this name{hint}", key=name)
     return path

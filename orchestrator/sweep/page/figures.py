@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from orchestrator.cosim.slave import Array
-from orchestrator.sweep.statistics import Axis, Map
+from orchestrator.sweep.page.statistics import Axis, Map
 from orchestrator.verdict.confidence import wilson
 
 WIDTH, HEIGHT = 520.0, 330.0

@@ -12,9 +12,9 @@ import yaml
 
 from orchestrator.report.page import still_page
 from orchestrator.scenario.scenario import DONE, MISSED
-from orchestrator.sweep.figures import histogram, scale_bar, success_map
-from orchestrator.sweep.statistics import done, for_people, influences, maps, varied, word, worst
-from orchestrator.sweep.store import Table
+from orchestrator.sweep.page.figures import histogram, scale_bar, success_map
+from orchestrator.sweep.page.statistics import done, for_people, influences, maps, varied, word, worst
+from orchestrator.sweep.table import Table
 from orchestrator.sweep.verdict import OUTCOMES, RESULTS
 from orchestrator.text.quantities import DEGREE
 from orchestrator.verdict.confidence import wilson
@@ -65,15 +65,14 @@ def study_page(table: Table) -> str:
 
 def _facts(table: Table, good: int) -> str:
     low, high = wilson(good, table.count)
-    outcomes = Counter(table.column("outcome").tolist())
+    outcomes, study = Counter(table.column("outcome").tolist()), table.about["study"]
     facts = {
         "runs": f"{table.count:,}".replace(",", " "),
         word(table): f"{good:,}".replace(",", " "),
         "95 % interval": f"{100 * low:.2f} to {100 * high:.2f} %",
         **{name.replace("_", " "): f"{outcomes[name]}" for name in OUTCOMES if outcomes[name] and name not in DONE},
         "median time": f"{float(np.median(table.column('duration'))):.1f} s",
-        "scenario": Path(table.about["study"]["scenario"]).stem,
-        "seed": str(table.about["study"]["seed"]),
+        **{key: Path(str(study[key])).stem for key in ("scenario", "seed") if key in study},
     }
     return "".join(f"<div><dt>{escape(name)}</dt><dd>{escape(value)}</dd></div>" for name, value in facts.items())
 

@@ -1,16 +1,14 @@
-"""From a study to one line of numbers per run: grid points times samples, and a seed for each run.
+"""From a study's file to one line of numbers per run: grid points times samples, and a seed for each run.
 
 The samples are the same at every grid point (common random numbers), so that a difference between
 two points is the parameter's and not luck. The last grid key, then the sample, changes fastest.
 """
 
-import hashlib
 import itertools
 import math
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.special import ndtr, ndtri  # type: ignore[import-untyped]
 from scipy.stats import qmc  # type: ignore[import-untyped]
 
@@ -18,27 +16,12 @@ from modelkit.variables import Variable
 from orchestrator.cosim.slave import Array
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.sweep.fields import Field, find_field
-from orchestrator.sweep.study import Range, Samples, Spread, Study
+from orchestrator.sweep.study.design import Design
+from orchestrator.sweep.study.study_file import Range, Samples, Spread, StudyFile
 from orchestrator.text.errors import BadInput
 from orchestrator.text.quantities import number, scalar
 
 MOST_RUNS = 100_000_000
-
-
-class Design(NamedTuple):
-    """All runs of a study."""
-
-    fields: list[Field]
-    values: Array
-    """(runs, fields), SI units; states and truth values as numbers."""
-    seeds: NDArray[np.int64]
-
-    def digest(self) -> str:
-        """Return a hash of everything: equal for equal designs."""
-        made = hashlib.sha256("\n".join(field.key for field in self.fields).encode())
-        made.update(np.ascontiguousarray(self.values).tobytes())
-        made.update(self.seeds.tobytes())
-        return made.hexdigest()
 
 
 class _Column(NamedTuple):
@@ -48,7 +31,7 @@ class _Column(NamedTuple):
     values: Array
 
 
-def make_design(study: Study, scenario: Scenario) -> Design:
+def make_design(study: StudyFile, scenario: Scenario) -> Design:
     """Return the design of ``study``. Raises ``BadInput`` for an unknown key or a value out of range."""
     grid = [_grid_column(key, values, scenario) for key, values in study.runs.grid.items()]
     sampled: list[_Column] = []

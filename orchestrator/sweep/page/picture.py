@@ -6,9 +6,9 @@ import matplotlib
 import numpy as np
 from matplotlib.figure import Figure
 
-from orchestrator.sweep.figures import named
-from orchestrator.sweep.statistics import Map, maps, word
-from orchestrator.sweep.store import Table
+from orchestrator.sweep.page.figures import named
+from orchestrator.sweep.page.statistics import Map, maps, word
+from orchestrator.sweep.table import Table
 
 SHORT = {"vehicle.driver.speed_error": "driver's speed error", "vehicle.steering.rate_limit": "steering-wheel rate"}
 

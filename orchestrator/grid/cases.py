@@ -1,0 +1,159 @@
+"""The cases of the parking assist's grid and their scenarios.
+
+Every case is made from its number alone, so that a failing run is repeated by its number.
+"""
+
+import itertools
+import math
+import random
+from functools import cache
+from typing import Any, NamedTuple
+
+from controller_fmu.apa.fit import shortest_of_iso
+from controller_fmu.apa.params import ApaParams
+from controller_fmu.apa.slot import Kind
+from orchestrator.scenario.requirements import Requirement, shipped_requirements
+from orchestrator.scenario.scenario import Scenario, Slot, Target
+from orchestrator.scenario.sensor_mounts import mounts
+
+BODIES = ("kinematic", "double_track")
+BODY = {"kinematic": 0, "double_track": 2}
+CARS: dict[str, tuple[float, float, float, float, float]] = {
+    "guo2015": (2.405, 0.80, 0.60, 1.65, 4.166),
+    "zhang2022": (2.62, 0.966, 0.85, 1.82, 4.8),
+    "commonroad1": (2.579, 0.88, 0.839, 1.674, 5.0),
+}
+"""Wheelbase, front overhang, rear overhang, width, turning radius of the rear axle's middle [m]."""
+RATIO = 19.0
+EXTRA: dict[int, tuple[float, ...]] = {Kind.PARALLEL: (0.0, 0.4, 0.8, 1.6), Kind.PERPENDICULAR: (0.0, 0.3, 0.8)}
+"""Length (width) over the shortest of ISO 16787 [m]."""
+BESIDE = (0.5, 1.0, 1.5)
+HEADINGS = (-5.0, 0.0, 5.0)
+SPEEDS = (1.0, 2.5, 20.0 / 3.6)
+LOTS = 10_000
+STOP = 150.0
+BEHIND = 0.4
+"""A wall stands so much [m] deeper than the car is wide behind a parallel slot."""
+PERPENDICULAR_DEPTH = 4.6
+"""Of the neighbours of a perpendicular slot [m]."""
+KINDS: dict[int, str] = {Kind.PARALLEL: "parallel", Kind.PERPENDICULAR: "perpendicular"}
+SIDES = {1: "right", -1: "left"}
+
+
+class GridCase(NamedTuple):
+    """One run of the grid."""
+
+    number: int
+    car: str
+    kind: int
+    side: int
+    """1 right, -1 left."""
+    extra: float
+    beside: float
+    """Lateral distance to the neighbours where the car comes nearest to them [m]."""
+    heading: float
+    """Against the road [rad], positive away from the slot."""
+    body: str
+    speed: float
+    """Of the driver during the search [m/s]."""
+    length: float
+    """Of the slot along the road [m]."""
+    lot: int
+    """Which draw of speeds, noise and odometry errors."""
+
+
+@cache
+def cases(lot: int = 0) -> list[GridCase]:
+    """Return the whole grid; what is drawn by lot is drawn from the case's number and ``lot``."""
+    slots = [(kind, side, extra) for kind in EXTRA for side in SIDES for extra in EXTRA[kind]]
+    found = []
+    everything = itertools.product(CARS, slots, BESIDE, HEADINGS, BODIES)
+    for number, (car, (kind, side, extra), beside, degrees, body) in enumerate(everything):
+        wheelbase, front, rear, width, _ = CARS[car]
+        speed = SPEEDS[random.Random(number + LOTS * lot).randrange(len(SPEEDS))]
+        outline = ApaParams(front_overhang=front, rear_overhang=rear, width=width)
+        length = shortest_of_iso(kind, wheelbase, outline) + extra
+        heading = math.radians(degrees)
+        found.append(GridCase(number, car, kind, side, extra, beside, heading, body, speed, length, lot))
+    return found
+
+
+def parameters(case: GridCase) -> tuple[dict[str, Any], dict[str, Any]]:
+    """Return (vehicle, controller) parameters of a case."""
+    wheelbase, front, rear, width, radius = CARS[case.car]
+    lot = random.Random(1000 + case.number + LOTS * case.lot)
+    lock = RATIO * math.atan(wheelbase / radius)
+    car = {"wheelbase": wheelbase, "front_overhang": front, "rear_overhang": rear, "width": width}
+    vehicle: dict[str, Any] = {**car, "body": BODY[case.body], "steering.ratio": RATIO, "steering.angle_limit": lock}
+    controller: dict[str, Any] = {"system": 5, "wheelbase": wheelbase, "steering_ratio": RATIO}
+    controller |= {"steering_wheel_limit": lock, "steering_wheel_rate": math.radians(570.0)}
+    controller |= {f"apa.{name}": car[name] for name in ("front_overhang", "rear_overhang", "width")}
+    for number, (x, y) in enumerate(mounts(wheelbase + front, -rear, 0.5 * width), start=1):
+        vehicle |= {f"ultrasonic.mounts[{number}].x": x, f"ultrasonic.mounts[{number}].y": y}
+        controller |= {f"apa.sensors.mounts[{number}].x": x, f"apa.sensors.mounts[{number}].y": y}
+    vehicle |= {
+        "ultrasonic.noise": 0.01,
+        "ultrasonic.dropout": 0.01,
+        "ultrasonic.seed": case.number + 1 + LOTS * case.lot,
+    }
+    vehicle |= {"odometry.perfect": False, "odometry.radius_error": lot.uniform(-0.005, 0.005), "odometry.tick": 0.02}
+    vehicle |= {"odometry.steering_offset": lot.uniform(-0.001, 0.001), "odometry.steering_resolution": 0.001}
+    vehicle |= {"driver.apa_switch_time": 0.5, "driver.profile[1].speed": case.speed}
+    return vehicle | _scene(case, front + rear + wheelbase, width), controller
+
+
+def _scene(case: GridCase, length: float, width: float) -> dict[str, Any]:
+    """Return two neighbours, behind a parallel slot a wall, and the start."""
+    along, deep = (4.4, 1.8) if case.kind == Kind.PARALLEL else (1.8, PERPENDICULAR_DEPTH)
+    things = [(-along, 0.0, -deep, 0.0), (case.length, case.length + along, -deep, 0.0)]
+    if case.kind == Kind.PARALLEL:
+        things.append((-12.0, case.length + 12.0, -width - BEHIND - 1.0, -width - BEHIND))
+    scene: dict[str, Any] = {}
+    for number, (x0, x1, y0, y1) in enumerate(things, start=1):
+        name = f"scene.boxes[{number}]."
+        scene |= {name + "x": 0.5 * (x0 + x1), name + "y": 0.5 * (y0 + y1) * case.side}
+        scene |= {name + "length": x1 - x0, name + "width": y1 - y0}
+    start = -along - 5.0
+    nearest = -along if case.heading > 0.0 else case.length + 3.0
+    y = case.beside + 0.5 * width + (start - nearest) * math.tan(case.heading)
+    if case.heading > 0.0:
+        y = (
+            case.beside
+            + 0.5 * width
+            + (start - nearest) * math.tan(case.heading)
+            + 0.5 * length * math.sin(case.heading)
+        )
+    return scene | {"start.x": start, "start.y": case.side * y, "start.heading": case.side * case.heading}
+
+
+def standing_of(case: GridCase) -> tuple[Target, Slot]:
+    """Return target and slot: corner A at the origin, the car in the middle, flush with its neighbours."""
+    wheelbase, front, rear, width, _ = CARS[case.car]
+    middle, turn = 0.5 * case.length, 0.5 * math.pi * case.side
+    if case.kind == Kind.PARALLEL:
+        depth = width + BEHIND
+        target = Target(x=middle - 0.5 * (wheelbase + front - rear), y=-0.5 * case.side * width)
+        return target, Slot(x=middle, y=-0.5 * case.side * depth, length=case.length, width=depth)
+    depth = PERPENDICULAR_DEPTH
+    target = Target(x=middle, y=-case.side * (wheelbase + front), heading=turn)
+    return target, Slot(x=middle, y=-0.5 * case.side * depth, heading=turn, length=depth, width=case.length)
+
+
+def scenario_of(case: GridCase) -> Scenario:
+    """Return the scenario of a case; the assist is told neither slot nor target."""
+    vehicle, controller = parameters(case)
+    target, slot = standing_of(case)
+    return Scenario(
+        name="apa-grid",
+        stop_time=STOP,
+        vehicle=vehicle,
+        controller=controller,
+        target=target,
+        slot=slot,
+        limits=[*gbt_limits("gbt41630"), *shipped_requirements("no-contact")],
+    )
+
+
+def gbt_limits(name: str) -> list[Requirement]:
+    """Return a set of GB/T 41630's limits but for the speed, which is asked of parking, not of the way past."""
+    return [item for item in shipped_requirements(name) if item.id != "speed"]

@@ -1,0 +1,123 @@
+"""The columns of a study's table: what each means, and what a chunk of runs puts into them."""
+
+from collections.abc import Iterator, Mapping
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from modelkit.signal import Signal
+from modelkit.variables import variables
+from orchestrator.cosim.slave import Array
+from orchestrator.scenario.models import MODELS
+from orchestrator.scenario.requirements import Requirement
+from orchestrator.sweep.job import Chunk, Job, truths
+from orchestrator.sweep.rows import FIRST_MEASURE
+from orchestrator.sweep.study.study import Study
+from orchestrator.sweep.verdict import RESULTS, judge, limit_value, values_in
+from orchestrator.verdict.conditions import CONDITIONS
+from orchestrator.verdict.measures import Measure
+from orchestrator.verdict.numbers import Number
+from orchestrator.verdict.truth import Bools
+
+WITHIN = "within {}"
+"""Name of the column that says whether a run is within a set of limits."""
+COUNTS = ("shifts",)
+"""Numbers that are counts."""
+KINDS = {"U": str, "f": float, "i": int, "b": bool}
+"""Kind of a numpy array -> type of what it holds."""
+
+
+class Column(NamedTuple):
+    """What one column of a table holds."""
+
+    name: str
+    kind: type
+    """``float``, ``int``, ``bool`` or ``str``."""
+    signal: Signal
+
+
+def columns_of(study: Study, job: Job) -> list[Column]:
+    """Return the columns of the table of a study, in order."""
+    return [
+        Column("row", int, Signal("1", "number of the run, from 0")),
+        *(Column(key, KINDS[words.dtype.kind], Signal("1", "")) for key, words in study.design.labels.items()),
+        *(Column(field.key, field.variable.kind, field.variable.signal) for field in study.design.fields),
+        Column("run_seed", int, Signal("1", "seed of the run")),
+        Column("outcome", str, Signal("1", "as in summary.json")),
+        Column("reason", str, Signal("1", "as in summary.json")),
+        *(
+            _number(name, item)
+            for name, item in RESULTS.items()
+            if item.measure is None or item.measure in job.measures
+        ),
+        *_measures(study.measures),
+        *(Column(WITHIN.format(name), bool, Signal("1", _words(items))) for name, items in study.within.items()),
+        *(_number(name, item) for name, item in study.derived.columns.items()),
+    ]
+
+
+def results_of(job: Job) -> list[str]:
+    """Return the names of the results: nothing that the models do not tell, no slot or kerb where there is none."""
+    scenario = job.scenario
+    has_kerb = any(name.startswith("scene.kerbs[") for name in scenario["vehicle"])
+    absent = {"final.slot_margin"} if scenario["slot"] is None else set()
+    absent |= set() if has_kerb else {"final.kerb_nearest", "final.kerb_farthest"}
+    measured = {name for name, item in RESULTS.items() if item.measure is None or item.measure in job.measures}
+    return [name for name in RESULTS if name in measured - absent]
+
+
+def filled(study: Study, job: Job, chunk: Chunk, rows: Array) -> dict[str, Any]:
+    """Return the columns of a chunk by name, from what was kept of its runs."""
+    verdict = judge(job, chunk, rows)
+    found = dict(zip(job.measures, rows[:, FIRST_MEASURE:].T, strict=False))
+    has = truths(job, chunk).has()
+    here = slice(chunk.first, chunk.first + len(chunk.seeds))
+    given = zip(study.design.fields, chunk.values.T, strict=True)
+    values: dict[str, Any] = {
+        "row": np.arange(here.start, here.stop),
+        **{key: words[here] for key, words in study.design.labels.items()},
+        **{field.key: column.astype(field.variable.kind) for field, column in given},
+        "run_seed": chunk.seeds,
+        "outcome": verdict.words(),
+        "reason": np.array(verdict.reason, dtype=object),
+        **{name: _whole(numbers) if name in COUNTS else numbers for name, numbers in verdict.numbers.items()},
+        **{name: found[measure] for name, measure in study.measures.items()},
+        **{WITHIN.format(name): _is_within(items, verdict.numbers, found, has) for name, items in study.within.items()},
+    }
+    return {**values, **study.derived.make(values)}
+
+
+def _is_within(
+    limits: list[Requirement], numbers: Mapping[str, Array], found: Mapping[Measure, Array], has: Mapping[str, Bools]
+) -> Bools:
+    """Return which runs meet all of ``limits`` that are asked of them."""
+    good = np.ones(len(numbers["duration"]), dtype=bool)
+    for limit in limits:
+        met = CONDITIONS[limit.condition].margin(values_in(limit, numbers, found), limit_value(limit)) >= 0.0
+        good &= met if limit.where is None else met | ~has[limit.where]
+    return good
+
+
+def _number(name: str, item: Number) -> Column:
+    return Column(name, int if name in COUNTS else float, Signal(item.unit, item.text))
+
+
+def _measures(measures: Mapping[str, Measure]) -> Iterator[Column]:
+    known = {
+        f"{owner}.{item.name}": item.signal
+        for owner, model in MODELS.items()
+        for cls in (model.inputs, model.outputs)
+        for item in variables(cls)
+    }
+    for name, measure in measures.items():
+        signal = known[measure.signal]
+        yield Column(name, float, signal._replace(text=f"{measure.how} of {measure.signal}: {signal.text}"))
+
+
+def _words(limits: list[Requirement]) -> str:
+    return "within " + ", ".join(f"{item.id} ({item.source})" for item in limits)
+
+
+def _whole(values: Array) -> NDArray[np.int64]:
+    return np.nan_to_num(values).astype(np.int64)

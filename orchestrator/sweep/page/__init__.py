@@ -1,0 +1,1 @@
+"""What the table of a study says: statistics, success maps, the result page."""

@@ -1,0 +1,1 @@
+"""What a study is: its file, its design, and what is kept of each run."""

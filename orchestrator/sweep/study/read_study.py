@@ -1,0 +1,59 @@
+"""A study from its file: scenario, design, measures and limits, all checked."""
+
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+
+from modelkit.variables import variables
+from orchestrator.scenario.load_scenario import limits_of, load_scenario
+from orchestrator.scenario.models import MODELS
+from orchestrator.scenario.requirements import Requirement
+from orchestrator.sweep.fields import SCENARIO_FIELDS
+from orchestrator.sweep.study.design import Design
+from orchestrator.sweep.study.sampling import make_design
+from orchestrator.sweep.study.study import Study
+from orchestrator.sweep.study.study_file import StudyFile, load_study
+from orchestrator.text.quantities import scalar
+from orchestrator.verdict.measures import Measure
+
+PROBE = 1_000_003
+"""A seed that no scenario has, to find out what follows the seed."""
+
+
+def read_study(name: str, sets: Mapping[str, str], others: Iterable[str] = ()) -> Study:
+    """Return the study called ``name`` or written in the file ``name``, changed by ``sets``. Raises ``BadInput``.
+
+    ``seed`` is the study's own, every other key the scenario's; ``others`` are names of studies without a file.
+    """
+    file = load_study(name, others)
+    further = {key: value for key, value in sets.items() if key != "seed"}
+    seed = scalar(sets.get("seed", file.seed), SCENARIO_FIELDS["seed"], file="--set")
+    return bind(file.model_copy(update={"seed": seed, "set": {**file.set, **further}}))
+
+
+def bind(file: StudyFile) -> Study:
+    """Return the study that a file means. Raises ``BadInput``."""
+    sets = [f"{key}={value}" for key, value in file.set.items()]
+    scenario = load_scenario(file.scenario, sets)
+    design = make_design(file, scenario)
+    content = file.model_dump(mode="json", by_alias=True)
+    measures = {
+        name: Measure(how, signal)  # type: ignore[arg-type]
+        for name, item in file.measures.items()
+        for how, signal in item.model_dump(exclude_none=True).items()
+    }
+    within = {
+        name: [Requirement(**item) for item in limits_of(given, Path.cwd())] for name, given in file.within.items()
+    }
+    return Study(scenario, design, content, _seeded(file.scenario, sets, design), measures, within)
+
+
+def _seeded(scenario: str, sets: list[str], design: Design) -> list[tuple[str, str, int]]:
+    """Return the parameters that take the run's seed: those that follow the scenario's."""
+    probed = load_scenario(scenario, [*sets, f"seed={PROBE}"])
+    varied = {field.key for field in design.fields}
+    return [
+        (owner, variable.name, place)
+        for owner, model in MODELS.items()
+        for place, variable in enumerate(variables(model.params))
+        if getattr(probed, owner).get(variable.name) == PROBE and f"{owner}.{variable.name}" not in varied
+    ]

@@ -1,0 +1,49 @@
+"""A study: runs of one scenario that differ in numbers, and what is kept of each. Made from a file or by a function."""
+
+from collections.abc import Callable, Mapping, Sequence
+from types import MappingProxyType
+from typing import Any, NamedTuple
+
+from orchestrator.cosim.slave import Array
+from orchestrator.scenario.requirements import Requirement
+from orchestrator.scenario.scenario import Scenario
+from orchestrator.sweep.study.design import Design
+from orchestrator.verdict.measures import Measure
+from orchestrator.verdict.numbers import Number
+
+Columns = Mapping[str, Any]
+"""Columns of a table by name, as arrays."""
+
+
+class Derived(NamedTuple):
+    """Columns that a study makes of the others."""
+
+    columns: Mapping[str, Number]
+    make: Callable[[Columns], Mapping[str, Array]]
+    """Called with labels, numbers and measures of some runs."""
+
+
+NONE: Mapping[str, Any] = MappingProxyType({})
+NOTHING = Derived({}, lambda columns: {})
+
+
+class Study(NamedTuple):
+    """All that a sweep needs; nothing in it depends on how the runs are done."""
+
+    scenario: Scenario
+    """What all runs share, limits included."""
+    design: Design
+    content: Mapping[str, Any]
+    """What it was made from, as the table carries it: ``name``, ``title``, ``description``, ``map`` and more."""
+    seeded: Sequence[tuple[str, str, int]] = ()
+    """(model, parameter, place) of the parameters that take the run's seed."""
+    measures: Mapping[str, Measure] = NONE
+    """Kept beside those of the summary, by the names of their columns."""
+    within: Mapping[str, list[Requirement]] = NONE
+    """Sets of limits that do not decide about the outcome: each is a column ``within NAME``."""
+    derived: Derived = NOTHING
+
+    @property
+    def name(self) -> str:
+        """Name of the study and of its table."""
+        return str(self.content["name"])

@@ -335,6 +335,17 @@ def last_of_range(x: float, y: float, n: int, m: int, p: bool, q: bool) -> int:
     return i
 
 
+def bound_in_a_loop(x: float, y: float, n: int, m: int, p: bool, q: bool) -> float:
+    for place in PLACES:
+        last = place.x
+        if last > x:
+            break
+    for i in range(TWO):
+        y = y + i
+        half = 0.5 * y
+    return last + half
+
+
 def changing_counter(x: float, y: float, n: int, m: int, p: bool, q: bool) -> int:
     total = 0
     for i in range(4):

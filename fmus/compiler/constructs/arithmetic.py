@@ -8,7 +8,7 @@ from typing import Any
 from fmus.compiler.source.kinds import BOOL, FLOAT, INT, Array, described
 from fmus.compiler.source.refusals import AlreadySaidError, CannotError
 from fmus.compiler.target.body import EXPRESSIONS, Body
-from fmus.compiler.target.making import elements, tuple_of
+from fmus.compiler.target.making import elements, repeated, tuple_of
 from fmus.compiler.target.values import (
     BIT_AND,
     BIT_OR,
@@ -191,7 +191,7 @@ def _of_tuples(body: Body, node: ast.BinOp, left: Value, right: Value) -> Value:
             raise CannotError(node, "a tuple repeated an unknown number of times", "write the number, or a constant")
         if count.const < 1:
             raise CannotError(node, "an empty tuple", "repeat it at least once")
-        return tuple_of(body, elements(body, items) * count.const)
+        return repeated(body, elements(body, items), count.const)
     if not isinstance(node.op, ast.Add) or not (isinstance(left.kind, Array) and isinstance(right.kind, Array)):
         raise CannotError(node, f"{_sign(node)} of a tuple", "join tuples with +, repeat them with *")
     if left.kind.item != right.kind.item:

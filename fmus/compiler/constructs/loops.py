@@ -12,7 +12,7 @@ from fmus.compiler.target.body import STATEMENTS, Body
 from fmus.compiler.target.making import tuple_of
 from fmus.compiler.target.storage import hoist, item_of
 from fmus.compiler.target.values import SUM, UNKNOWN, Value, as_int, literal
-from fmus.compiler.target.variables import bind, variable
+from fmus.compiler.target.variables import Variable, bind, variable
 
 
 @dataclass
@@ -46,15 +46,46 @@ def for_loop(body: Body, node: ast.For) -> None:
     if is_call(body, node.iter, range):
         _over_range(body, node, range_of(body, node.iter), inside)
         return
-    index = body.names.add("i")
-    length, item = items_at(body, node.iter, index, stored_in(node.body))
-    body.emit(f"for (int {index} = 0; {index} < {length}; ++{index}) {{")
+    source, target = node.iter, node.target
+    number = _plain_number(body, node)
+    known = number and _counter(body, number, inside)
+    if known:
+        assert isinstance(source, ast.Call)
+        assert isinstance(target, ast.Tuple)
+        source, target = source.args[0], target.elts[1]
+    index = known.c if known else body.names.add("i")
+    length, item = items_at(body, source, index, stored_in(node.body))
+    body.emit(f"for ({'int64_t' if known else 'int'} {index} = 0; {index} < {length}; ++{index}) {{")
+    if known:
+        known.low, known.high = 0, length - 1
     with body.frame(inside):
         body.begin_statement()
-        unpack(body, node.target, item, node.target)
+        unpack(body, target, item, target)
         body.more_statements(node.body)
     body.emit("}")
-    body.names.taken.discard(index)
+    if not known:
+        body.names.taken.discard(index)
+
+
+def _plain_number(body: Body, node: ast.For) -> str:
+    """Return the name that counts in ``for i, x in enumerate(xs)``, else an empty string."""
+    if not is_call(body, node.iter, enumerate) or not isinstance(node.target, ast.Tuple):
+        return ""
+    assert isinstance(node.iter, ast.Call)
+    first = node.target.elts[0]
+    plain = len(node.iter.args) == 1 and not node.iter.keywords and len(node.target.elts) == 2
+    return first.id if plain and isinstance(first, ast.Name) else ""
+
+
+def _counter(body: Body, name: str, inside: Path) -> Variable | None:
+    """Return the variable ``name`` if C can count with it: it is bound by the loop alone and read inside alone."""
+    home = body.bindings.home(name, inside)
+    if home.path != inside or home.stores != 1 or not home.loads or name in body.bindings.parameters:
+        return None
+    with body.frame(inside):
+        known = variable(body, name)
+    known.kind, known.fixed = INT, True
+    return known
 
 
 def range_of(body: Body, node: ast.expr) -> Range:
@@ -80,18 +111,14 @@ def _over_range(body: Body, node: ast.For, numbers: Range, inside: Path) -> None
     name = node.target.id
     low, high = numbers.bounds()
     stop = steady(body, numbers.stop)
-    home = body.bindings.home(name, inside)
-    if home.path == inside and home.stores == 1 and home.loads and name not in body.bindings.parameters:
-        with body.frame(inside):
-            known = variable(body, name)
-        known.kind, known.fixed, known.low, known.high = INT, True, low, high
-        counter = known.c
-    else:
-        known, counter = None, body.names.add("i")
+    known = _counter(body, name, inside)
+    if known:
+        known.low, known.high = low, high
+    counter = known.c if known else body.names.add("i")
     body.emit(range_head(counter, numbers, stop))
     with body.frame(inside):
         body.begin_statement()
-        if known is None and home.loads:
+        if known is None and body.bindings.home(name, inside).loads:
             bind(body, name, Value(INT, counter, place=True, low=low, high=high), node)
         body.more_statements(node.body)
     body.emit("}")

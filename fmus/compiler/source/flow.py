@@ -1,7 +1,7 @@
 """Whether every variable is bound before it is used, whether every way through a function ends in a return."""
 
 import ast
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 
 from fmus.compiler.source.bindings import names_in
 from fmus.compiler.source.refusals import CannotError
@@ -13,8 +13,14 @@ State = frozenset[str] | None
 class Flow:
     """One walk through a function in the order it runs; ``faults`` holds what is wrong."""
 
-    def __init__(self, function: ast.FunctionDef, parameters: Iterable[str], local: set[str]) -> None:
-        self.local = local
+    def __init__(
+        self,
+        function: ast.FunctionDef,
+        parameters: Iterable[str],
+        local: set[str],
+        number: Callable[[ast.expr], int | None],
+    ) -> None:
+        self.local, self.number = local, number
         self.faults: list[CannotError] = []
         self.breaks: list[list[State]] = []
         self.continues: list[list[State]] = []
@@ -73,7 +79,7 @@ class Flow:
         self.use(node.iter, state)
         inside = state | {name.id for name in names_in(node.target)}
         ways, end = self.loop(node.body, inside)
-        if certainly_runs(node.iter):
+        if certainly_runs(node.iter, self.number):
             return _joined_all([end, *ways]) if ways else end
         return _joined_all([state, end, *ways])
 
@@ -118,11 +124,10 @@ def _joined_all(states: Iterable[State]) -> State:
     return result
 
 
-def certainly_runs(node: ast.expr) -> bool:
-    """Return whether a loop over ``node`` runs at least once, told by its text alone."""
-    if isinstance(node, ast.Tuple):
-        return bool(node.elts)
+def certainly_runs(node: ast.expr, number: Callable[[ast.expr], int | None]) -> bool:
+    """Return whether a loop runs at least once: over any tuple, none of which is empty, and over some ranges."""
     if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id == "range":
-        numbers = [item.value for item in node.args if isinstance(item, ast.Constant) and type(item.value) is int]
-        return len(numbers) == len(node.args) and len(range(*numbers)) > 0 if 0 < len(numbers) < 4 else False
-    return False
+        numbers = [number(item) for item in node.args]
+        known = [item for item in numbers if item is not None]
+        return 0 < len(known) == len(numbers) < 4 and known[2:] != [0] and len(range(*known)) > 0
+    return True

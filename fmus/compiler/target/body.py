@@ -70,10 +70,9 @@ class Body:
                 yield program.constant_names[use]
         yield from program.types.values()
         for node in ast.walk(self.node):
-            if isinstance(node, ast.Name | ast.Attribute):
-                yield from {(node.attr if isinstance(node, ast.Attribute) else node.id)} & FUNCTIONS
-                if (node.attr if isinstance(node, ast.Attribute) else node.id) == "abs":
-                    yield "fabs"
+            if isinstance(node, ast.Call):
+                word = node.func.attr if isinstance(node.func, ast.Attribute) else ast.unparse(node.func)
+                yield from ("fabs", "trunc", "rint", word) if word in FUNCTIONS | {"int"} else ()
 
     # ---- what is said of the source
 
@@ -86,6 +85,14 @@ class Body:
         """Return the Python object that ``node`` names, unless it is a variable."""
         local = self.bindings.local.union(*self.scopes)
         return static(node, self.function.__globals__, local, self.program.library)
+
+    def number(self, node: ast.expr) -> int | None:
+        """Return the integer that ``node`` is, if it is written out or a constant of the module."""
+        if isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.USub):
+            value = self.number(node.operand)
+            return None if value is None else -value
+        found = node.value if isinstance(node, ast.Constant) else getattr(self.static(node), "value", None)
+        return int(found) if isinstance(found, int) and not isinstance(found, bool) else None
 
     # ---- lines
 

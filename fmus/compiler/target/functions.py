@@ -168,7 +168,7 @@ def translate(program: Program, made: Instance, kinds: dict[str, Kind], result: 
     caller, program.caller = program.caller, made
     body = Body(program, made.function, made.node)
     body.result, body.made = result, made
-    for fault in Flow(made.node, kinds, body.bindings.local).faults:
+    for fault in Flow(made.node, kinds, body.bindings.local, body.number).faults:
         body.refuse(fault, made.node)
     with body.frame(()):
         body.begin_statement()

@@ -1,13 +1,14 @@
 """Tuples, NamedTuples and constants made from their parts, and values taken as another kind where Python does so."""
 
 import ast
+from dataclasses import replace
 from typing import Any
 
 from fmus.compiler.source.kinds import BOOL, FLOAT, INT, Array, Kind, Mixed, Open, Scalar, Struct, described
 from fmus.compiler.source.refusals import CannotError
 from fmus.compiler.target.body import Body
 from fmus.compiler.target.names import member_name
-from fmus.compiler.target.storage import initial, item_of, put, settled
+from fmus.compiler.target.storage import ONE_BY_ONE, initial, item_of, put, settled
 from fmus.compiler.target.values import UNKNOWN, Place, Value, as_int
 
 
@@ -25,6 +26,23 @@ def tuple_of(body: Body, items: tuple[Value, ...], kind: Kind | None = None) -> 
 
     known = UNKNOWN if any(item is UNKNOWN for item in const) else const
     return Value(kind, fill=fill, braces=_braces([initial(item) for item in items]), items=items, const=known)
+
+
+def repeated(body: Body, items: tuple[Value, ...], count: int) -> Value:
+    """Return a tuple of ``items``, ``count`` times over; a single one is written by a loop where there are many."""
+    items = tuple(item if item.const is not UNKNOWN else settled(body, item, "item") for item in items)
+    whole = tuple_of(body, items * count)
+    if len(items) > 1 or count <= ONE_BY_ONE:
+        return whole
+
+    def fill(place: Place) -> None:
+        index = body.names.add("i")
+        body.emit(f"for (int {index} = 0; {index} < {count}; ++{index}) {{")
+        put(body, place.element(index), items[0])
+        body.emit("}")
+        body.names.taken.discard(index)
+
+    return replace(whole, fill=fill)
 
 
 def struct_of(body: Body, kind: Struct, fields: dict[str, Value]) -> Value:

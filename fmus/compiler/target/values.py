@@ -111,7 +111,8 @@ def float_text(number: float) -> str:
         return "NAN"
     if number in (float("inf"), float("-inf")):
         return "INFINITY" if number > 0.0 else "-INFINITY"
-    return repr(number)
+    usual, short = repr(number), f"{number:g}"
+    return short if len(usual) > 9 and "e" in short and float(short) == number else usual
 
 
 def int_text(number: int) -> str:

@@ -78,9 +78,8 @@ def bind(body: Body, name: str, value: Value, node: ast.AST, source: ast.AST | N
         raise AlreadySaidError
     known = variable(body, name)
     if known.kind is not None and known.parameter and _begins_anew(body, known, name, node):
-        slot = body.result_of.get(name)
-        own = slot is not None and slot[1] == value.kind
-        known = Variable(slot[0].text if slot and own else body.names.add(f"next_{name}"), known.home)
+        slot = _result_slot(body, known, name, value.kind)
+        known = Variable(slot.text if slot else body.names.add(f"next_{name}"), known.home)
         body.variables[name, ()] = known
     if known.kind is not None:
         value = coerced(body, value, known.kind, node, f"{name} is {described(known.kind)} before")
@@ -119,9 +118,9 @@ def mentions(node: ast.AST, name: str) -> bool:
 def _first(body: Body, known: Variable, name: str, value: Value) -> None:
     """Write the first binding of a variable."""
     kind = value.kind
-    slot = body.result_of.get(name) if known.home.path == () else None
-    if slot is not None and slot[1] == kind:
-        known.c, known.pointer, known.fixed = slot[0].text, slot[0].pointer, known.once
+    slot = _result_slot(body, known, name, kind)
+    if slot is not None:
+        known.c, known.pointer, known.fixed = slot.text, slot.pointer, known.once
         put(body, known.place, value)
     elif body.frames[-1].path != known.home.path:
         frame = _frame(body, known.home.path)
@@ -134,6 +133,15 @@ def _first(body: Body, known: Variable, name: str, value: Value) -> None:
         known.fixed = known.once
         if known.once and is_scalar(kind):
             known.const, known.low, known.high = value.const, value.low, value.high
+
+
+def _result_slot(body: Body, known: Variable, name: str, kind: Kind) -> Place | None:
+    """Return where the result goes, if the variable is the result."""
+    place, wanted = body.result_of.get(name, (None, None))
+    if known.home.path != () or place is None:
+        return None
+    open_one = isinstance(wanted, Open) and isinstance(kind, Array) and wanted.item == kind.item
+    return place if wanted == kind or open_one else None
 
 
 def _frame(body: Body, path: Path) -> Any:
@@ -157,9 +165,9 @@ def open_place(body: Body, name: str, kind: Kind, value: Value, source: ast.AST)
     if not known.home.loads:
         return None
     known.kind, known.fixed = kind, known.once
-    slot = body.result_of.get(name) if known.home.path == () else None
-    if slot is not None and slot[1] == kind:
-        known.c, known.pointer = slot[0].text, slot[0].pointer
+    slot = _result_slot(body, known, name, kind)
+    if slot is not None:
+        known.c, known.pointer = slot.text, slot.pointer
     else:
         declared = f"{body.program.declared(kind, known.c)};"
         here = body.frames[-1].path == known.home.path

@@ -8,6 +8,7 @@ from orchestrator.scenario.models import MODELS
 BUILD = {
     "python": python_fmu.build,
     "native": lambda model, folder: native_fmu.build(model, folder, [host()]),
+    "fmi3": lambda model, folder: native_fmu.build(model, folder, [host()], fmi=3),
 }
 
 

@@ -1,0 +1,108 @@
+"""Models played the inputs that a run has recorded, step by step, by ways that no master of ours drives."""
+
+import sys
+from ctypes import c_size_t, c_uint32, c_void_p
+from pathlib import Path
+
+import numpy as np
+
+from fmus.contents.arrays import fmi_arrays
+from fmus.native.libraries import load_model, memory_size
+from modelkit.variables import flatten, variables, with_values
+from orchestrator.scenario.models import MODELS
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "fmi"))
+from raw3 import OK, Library3
+
+FUNCTIONS = {
+    "Float64": ("Float64", np.float64),
+    "Int32": ("Int32", np.int32),
+    "Enumeration": ("Int64", np.int64),
+    "Boolean": ("Boolean", np.bool_),
+}
+"""Type in FMI 3.0 -> name of its functions, type of an element."""
+
+
+def played(target, scenario, recording, name):
+    """Return the outputs of model ``name`` at each exchange of ``recording``, played its inputs by ``target``."""
+    model = MODELS[name]
+    inputs, outputs = ([f"{name}.{item.name}" for item in variables(cls)] for cls in (model.inputs, model.outputs))
+    given = np.column_stack([recording.signals[key] for key in inputs])
+    every = scenario.every.get(name, 1)
+    params = np.array(flatten(with_values(model.params, dict(getattr(scenario, name)))), dtype=float)
+    rows = target(params, np.ascontiguousarray(given[::every]), scenario.step_ns * every)
+    return dict(zip(outputs, np.repeat(rows, every, axis=0)[: len(given)].T, strict=True))
+
+
+class CLibrary:
+    """The C of a model, without FMI."""
+
+    def __init__(self, model):
+        self.library, self.count = load_model(model), len(variables(model.outputs))
+
+    def __call__(self, params, given, step_ns):
+        memory, rows = np.zeros(memory_size(self.library), dtype=np.uint8), np.empty((len(given), self.count))
+        self.library.model_start(memory.ctypes.data, params.ctypes.data, rows.ctypes.data)
+        at, y = given.ctypes.data, rows.ctypes.data
+        for k in range(len(given) - 1):
+            u, after = at + k * given.strides[0], y + (k + 1) * rows.strides[0]
+            self.library.model_step(memory.ctypes.data, u, after, step_ns)
+        return rows
+
+
+class Block:
+    """The variables of one FMI 3.0 type among the parameters, inputs or outputs."""
+
+    def __init__(self, dll, verb, kind, arrays, places):
+        name, self.dtype = FUNCTIONS[kind]
+        chosen = [item for item in arrays if item.fmi_type == kind and item.first.name in places]
+        self.places = [places[element.name] for item in chosen for element in item.elements]
+        self.references = (c_uint32 * len(chosen))(*(item.vr for item in chosen))
+        self.function = getattr(dll, f"fmi3{verb}{name}")
+        self.function.argtypes = [c_void_p, c_void_p, c_size_t, c_void_p, c_size_t]
+
+    def rows(self, count):
+        """Return room for the values of ``count`` exchanges."""
+        return np.empty((count, len(self.places)), dtype=self.dtype)
+
+    def call(self, component, rows, k):
+        """Return the status of the call that hands over, or fetches, row ``k``."""
+        at = rows.ctypes.data + k * rows.strides[0]
+        return self.function(component, self.references, len(self.references), at, len(self.places))
+
+
+class Fmi3:
+    """An FMI 3.0 FMU: a call for each type of variable."""
+
+    def __init__(self, model, path, folder):
+        self.library = Library3(path, folder)
+        arrays = fmi_arrays(model)
+
+        def blocks(verb, cls):
+            places = {item.name: place for place, item in enumerate(variables(cls))}
+            found = [Block(self.library.dll, verb, kind, arrays, places) for kind in FUNCTIONS]
+            assert sorted(place for block in found for place in block.places) == list(range(len(places)))
+            return [block for block in found if block.places]
+
+        self.params, self.inputs = blocks("Set", model.params), blocks("Set", model.inputs)
+        self.outputs = blocks("Get", model.outputs)
+
+    def __call__(self, params, given, step_ns):
+        component = self.library.instantiate()
+        for block in self.params:
+            assert block.call(component, np.array([params[block.places]], block.dtype), 0) == OK, self.library.messages
+        assert self.library.enter(component) == OK
+        assert self.library.call("ExitInitializationMode", component) == OK
+        heard = [(block, np.ascontiguousarray(given[:, block.places]).astype(block.dtype)) for block in self.inputs]
+        told = [(block, block.rows(len(given))) for block in self.outputs]
+        for k in range(len(given)):
+            good = all(block.call(component, rows, k) == OK for block, rows in told)
+            if k + 1 < len(given):
+                good &= all(block.call(component, rows, k) == OK for block, rows in heard)
+                good &= self.library.step(component, k * step_ns / 1e9, step_ns / 1e9) == OK
+            assert good, self.library.messages
+        self.library.free(component)
+        found = np.empty((len(given), sum(len(block.places) for block in self.outputs)))
+        for block, rows in told:
+            found[:, block.places] = rows
+        return found

@@ -18,7 +18,7 @@ import numpy as np
 
 from orchestrator.cosim.fmu_slave import FmuSlave, Transfer
 from orchestrator.cosim.master import End, Master
-from orchestrator.cosim.slave import Indices, places_of
+from orchestrator.cosim.slave import Indices, all_values, places_of
 
 BLOCK = 250
 """Exchanges per compiled call."""
@@ -120,43 +120,29 @@ class _Plan:
         self._kept: list[Any] = []
         self._step_ns = master.step_ns
         self.last = master.stop_ns // master.step_ns
-        orders = [(_order(slave.sets), _order(slave.gets)) for slave in fmus]
-        begins = [(part.start, other.start) for part, other in zip(*[iter(places_of(fmus))] * 2, strict=True)]
-        rows = [
-            np.concatenate([slave.inputs.values[u], slave.outputs.values[y]])
-            for slave, (u, y) in zip(fmus, orders, strict=True)
-        ]
-        before = np.concatenate(rows)
-        slaves = [
-            self._slave(slave, every, *begin) for slave, every, begin in zip(fmus, master.every, begins, strict=True)
-        ]
-        links = self._links(master, begins, orders)
-        self._run = RunC(
-            self._array(SlaveC, slaves),
-            self._array(LinkC, links),
-            before.ctypes.data,
-            len(slaves),
-            len(links),
-            len(before),
-            master.step_ns,
-            self.last,
-        )
+        begins = [part.start for part in places_of(fmus)]
+        groups = [group for slave in fmus for group in (slave.sets, slave.gets)]
+        order = np.concatenate([begin + _order(group) for begin, group in zip(begins, groups, strict=True)])
+        self._columns = np.argsort(order)
+        before = all_values(fmus)[order]
         self._kept.append(before)
-        parts = zip(sum(begins, ()), sum(orders, ()), strict=True)
-        self._columns = np.concatenate([at + np.argsort(part) for at, part in parts])
-        self.rows = np.empty((BLOCK, len(before)))
-
-    def _links(self, master: Master, begins: list[tuple[int, int]], orders: list[tuple[Any, Any]]) -> list[Any]:
-        """Return the signals from one FMU to another, by their places in a row."""
-        return [
+        slaves = [
+            self._slave(slave, every, *begins[2 * number : 2 * number + 2])
+            for number, (slave, every) in enumerate(zip(fmus, master.every, strict=True))
+        ]
+        links = [
             LinkC(
                 link.target,
-                self._places(begins[link.source][1] + np.argsort(orders[link.source][1])[link.source_places]),
-                self._places(begins[link.target][0] + np.argsort(orders[link.target][0])[link.target_places]),
+                self._places(self._columns[begins[2 * link.source + 1] + link.source_places]),
+                self._places(self._columns[begins[2 * link.target] + link.target_places]),
                 len(link.source_places),
             )
             for link in master.connections
         ]
+        counts = (len(slaves), len(links), len(before))
+        arrays = (self._array(SlaveC, slaves), self._array(LinkC, links), before.ctypes.data)
+        self._run = RunC(*arrays, *counts, master.step_ns, self.last)
+        self.rows = np.empty((BLOCK, len(before)))
 
     def rows_of_ports(self, begin: int, end: int) -> Any:
         """Return the rows with their values in the order of the master's."""

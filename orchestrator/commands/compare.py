@@ -4,15 +4,15 @@ import argparse
 import sys
 from pathlib import Path
 
+from orchestrator.comparison.compare import Comparison, compare
+from orchestrator.comparison.tolerance import Tolerance, read_tolerances
 from orchestrator.log.read_log import log_file, read_log
+from orchestrator.report.messages import read_messages
 from orchestrator.report.overlay import write_overlay
-from orchestrator.report.words import read_words
 from orchestrator.session.terminal import differences_table
 from orchestrator.text.console import console
 from orchestrator.text.errors import BadInput
 from orchestrator.text.quantities import number
-from orchestrator.verdict.compare import Comparison, compare
-from orchestrator.verdict.tolerance import Tolerance, read_tolerances
 
 EXAMPLES = """examples:
   apa compare reference/run.mcap runs/guo2015-case4/run.mcap
@@ -57,7 +57,7 @@ def run(arguments: argparse.Namespace) -> int:
     tolerances = read_tolerances(arguments.tolerances, Tolerance(*bounds))
     found = compare(*runs, tolerances, arguments.signals)
     if arguments.html:
-        write_overlay(arguments.html, runs, (read_words(arguments.a), read_words(arguments.b)), found)
+        write_overlay(arguments.html, runs, (read_messages(arguments.a), read_messages(arguments.b)), found)
     if arguments.json:
         print(found.model_dump_json(indent=2))
     else:

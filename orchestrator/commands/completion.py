@@ -26,7 +26,7 @@ NAMES = {"scenario": scenario_names, "scenarios": scenario_names, "study": _stud
 """What a positional argument can be, besides a file."""
 
 
-class Words(NamedTuple):
+class CommandWords(NamedTuple):
     """What can follow one command."""
 
     command: str
@@ -52,7 +52,7 @@ def run(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def words_of(name: str, parser: CommandParser) -> Words:
+def words_of(name: str, parser: CommandParser) -> CommandWords:
     """Return what can follow the command ``name``."""
     parser.fill()
     options: list[str] = []
@@ -67,10 +67,10 @@ def words_of(name: str, parser: CommandParser) -> Words:
             values.update({option: choices for option in action.option_strings if choices})
         else:
             names += choices or (NAMES[action.dest]() if action.dest in NAMES else [])
-    return Words(name, options, values, names)
+    return CommandWords(name, options, values, names)
 
 
-def bash(known: list[Words]) -> str:
+def bash(known: list[CommandWords]) -> str:
     """Return the script for bash; zsh understands it too, after ``bashcompinit``."""
     values = [
         f'        "{item.command} {option}") words="{" ".join(choices)}" ;;'
@@ -94,7 +94,7 @@ def bash(known: list[Words]) -> str:
     return "\n".join(lines)
 
 
-def fish(known: list[Words]) -> str:
+def fish(known: list[CommandWords]) -> str:
     """Return the script for fish."""
     commands = " ".join(item.command for item in known)
     lines = [f"complete -c apa -f -n __fish_use_subcommand -a '{commands}'"]

@@ -4,8 +4,8 @@ import argparse
 from pathlib import Path
 
 from orchestrator.log.read_log import log_file, read_log
+from orchestrator.report.messages import read_messages
 from orchestrator.report.replay import write_replay
-from orchestrator.report.words import read_words
 from orchestrator.text.console import say
 from orchestrator.text.errors import PARKED
 from orchestrator.verdict.logged import logged
@@ -34,6 +34,6 @@ def run(arguments: argparse.Namespace) -> int:
     if note:
         say(note)
     out.parent.mkdir(parents=True, exist_ok=True)
-    write_replay(out, recording, summarize(recording, scenario, 0.0, note), read_words(log))
+    write_replay(out, recording, summarize(recording, scenario, 0.0, note), read_messages(log))
     print(out)
     return PARKED

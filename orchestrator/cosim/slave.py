@@ -1,6 +1,6 @@
 """What the master steps: something with named inputs and outputs in arrays allocated once.
 
-One slave hosts an FMU (``fmu_slave``), another the same model in process (``model_slave``); the
+One slave hosts an FMU (``fmu_slave``), another the same model in process (``in_process_slave``); the
 master, the faults, the log and the checks cannot tell them apart.
 """
 

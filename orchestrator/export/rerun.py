@@ -11,8 +11,8 @@ from orchestrator.cosim.recording import Recording
 from orchestrator.cosim.slave import Array
 from orchestrator.export.csv import add_run_arguments
 from orchestrator.log.read_log import read_log
+from orchestrator.report.messages import Line, read_messages
 from orchestrator.report.plots import GROUPS
-from orchestrator.report.words import Line, read_words
 from orchestrator.text.errors import BadInput
 from orchestrator.text.patterns import matching
 from orchestrator.verdict.geometry import Car, boxes, described, place, sample_path, slot_box
@@ -41,7 +41,7 @@ def run(arguments: argparse.Namespace) -> int:
     recording = read_log(arguments.log)
     out: Path = arguments.out or arguments.log.with_suffix(".rrd")
     names = matching(recording.signals, arguments.signals)
-    write_rerun(out, recording, names, read_words(arguments.log))
+    write_rerun(out, recording, names, read_messages(arguments.log))
     print(out)
     return 0
 

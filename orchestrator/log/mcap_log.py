@@ -25,9 +25,9 @@ from orchestrator.cosim.recording import to_json
 from orchestrator.cosim.slave import Array, Ports, Slave, all_values, places_of
 from orchestrator.drawing import scene
 from orchestrator.log.mcap_file import CHUNK_SIZE, MESSAGE_HEADER, McapFile
+from orchestrator.log.protobuf_rows import Encoder
 from orchestrator.log.read_log import VARIABLES
 from orchestrator.log.schema import PACKAGE, descriptor_set, file_descriptor
-from orchestrator.log.wire import Encoder
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.verdict.geometry import Car, boxes, described, kerbs, sample_path, slot_box
 

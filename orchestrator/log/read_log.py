@@ -13,7 +13,7 @@ from mcap.writer import MCAP0_MAGIC
 from modelkit.signal import Signal
 from modelkit.variables import Variable
 from orchestrator.cosim.recording import Recording
-from orchestrator.log.wire import Decoder
+from orchestrator.log.protobuf_rows import Decoder
 from orchestrator.text.errors import BadInput
 
 KINDS: dict[str, type] = {"float": float, "int": int, "bool": bool}

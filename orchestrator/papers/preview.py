@@ -134,7 +134,7 @@ def _settling(main: Driven) -> list[Row]:
     ]
 
 
-class Change(NamedTuple):
+class AngleChange(NamedTuple):
     """The front-wheel angle from a jump of kappa1 on, until the next or for 6 s, and the angle before it."""
 
     t: Array
@@ -142,7 +142,7 @@ class Change(NamedTuple):
     before: float
 
 
-def angle_changes(driven: Driven) -> list[Change]:
+def angle_changes(driven: Driven) -> list[AngleChange]:
     """Return the change that follows each jump of kappa1: into and out of each curve in turn."""
     signals, t = driven.recording.signals, driven.recording.t
     kappa, angle = signals["controller.preview.kappa1"], signals["vehicle.front_wheel_angle"]
@@ -150,18 +150,18 @@ def angle_changes(driven: Driven) -> list[Change]:
     changes = []
     for row, after in zip(jumps, [*jumps[1:], len(t)], strict=True):
         end = min(after, int(np.searchsorted(t, t[row] + 6.0)) + 1)
-        changes.append(Change(t[row:end], angle[row:end], float(angle[row - 1])))
+        changes.append(AngleChange(t[row:end], angle[row:end], float(angle[row - 1])))
     return changes
 
 
-def settling_time(change: Change, band: float) -> float:
+def settling_time(change: AngleChange, band: float) -> float:
     """Return how long [s] until the angle stays within ``band`` of its change."""
     level = change.angle[-1]
     outside = np.flatnonzero(np.abs(change.angle - level) > band * abs(level - change.before))
     return float(change.t[outside[-1]] - change.t[0]) if len(outside) else 0.0
 
 
-def swing_back(change: Change) -> float:
+def swing_back(change: AngleChange) -> float:
     """Return how far the angle goes back against its change at most, overshoot included, as a share of the change."""
     share = (change.angle - change.before) / (change.angle[-1] - change.before)
     return float(np.max(np.maximum.accumulate(share) - share))

@@ -3,16 +3,16 @@
 from pathlib import Path
 from typing import Any
 
+from orchestrator.comparison.compare import Comparison, Difference
 from orchestrator.cosim.recording import Recording
+from orchestrator.report.messages import Line
 from orchestrator.report.page import page
 from orchestrator.report.payload import Arrays
 from orchestrator.report.plots import plots_of
 from orchestrator.report.replay import KEYS, LARGEST_PAGE, MOST_ROWS
 from orchestrator.report.run_data import ribbons_of, run_data
 from orchestrator.report.still import origin_of
-from orchestrator.report.words import Line
 from orchestrator.text.readable import readable
-from orchestrator.verdict.compare import Comparison, Difference
 
 MOST_PLOTS = 4
 """Curves that differ and are shown at once beside the usual ones."""

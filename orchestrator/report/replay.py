@@ -6,11 +6,11 @@ from pathlib import Path
 from typing import Any
 
 from orchestrator.cosim.recording import Recording
+from orchestrator.report.messages import Line
 from orchestrator.report.page import page
 from orchestrator.report.payload import Arrays
 from orchestrator.report.plots import plots_of
 from orchestrator.report.run_data import ribbons_of, run_data
-from orchestrator.report.words import Line
 from orchestrator.text.errors import BadInput
 from orchestrator.text.quantities import DEGREE
 from orchestrator.text.readable import changes_text, readable

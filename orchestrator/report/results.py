@@ -4,8 +4,8 @@ import json
 from pathlib import Path
 
 from orchestrator.cosim.recording import Recording
+from orchestrator.report.messages import read_messages
 from orchestrator.report.replay import write_replay
-from orchestrator.report.words import read_words
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.verdict.summary import Summary
 
@@ -28,4 +28,4 @@ def write_pages(folder: Path, recording: Recording, summary: Summary, scenario: 
         from orchestrator.drawing.figure import draw
 
         draw(recording, summary, scenario, folder / PICTURE)
-    write_replay(folder / PAGE, recording, summary, read_words(folder / LOG))
+    write_replay(folder / PAGE, recording, summary, read_messages(folder / LOG))

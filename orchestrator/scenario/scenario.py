@@ -18,11 +18,11 @@ DONE: frozenset[Outcome] = frozenset(SUCCESS.values())
 """The outcomes of a run that has done its task."""
 
 
-class _Strict(BaseModel):
+class _ScenarioPart(BaseModel):
     model_config = ConfigDict(extra="forbid")
 
 
-class Target(_Strict):
+class Target(_ScenarioPart):
     """Where the car shall stand: the midpoint of its rear axle [m], and its heading [rad]."""
 
     x: Metres
@@ -38,7 +38,7 @@ class Target(_Strict):
         return self.x, self.y, self.heading
 
 
-class Slot(_Strict):
+class Slot(_ScenarioPart):
     """The slot as a rectangle; x and y are its middle, its length lies along its heading."""
 
     x: Metres
@@ -53,7 +53,7 @@ class Slot(_Strict):
     """Across it [m]."""
 
 
-class Scenario(_Strict):
+class Scenario(_ScenarioPart):
     """A scenario with its base, car and ``--set`` values merged in; parameters by flat name, in SI units."""
 
     name: str = Field(pattern=r"^[A-Za-z0-9._-]+$")

@@ -9,12 +9,12 @@ from typing import Any, NamedTuple
 
 from orchestrator.cosim.endings import standstill
 from orchestrator.cosim.faults import manipulators
+from orchestrator.cosim.in_process_slave import InProcessSlave
 from orchestrator.cosim.master import End, Interrupt, Master, Observer
-from orchestrator.cosim.model_slave import ModelSlave
+from orchestrator.cosim.mode_changes import ERROR, FMI_LEVELS, WARNING, ModeChanges
 from orchestrator.cosim.recording import Recorder, Recording
 from orchestrator.cosim.remarks import remarks
 from orchestrator.cosim.slave import Slave
-from orchestrator.cosim.watch import ERROR, FMI_LEVELS, WARNING, Watch
 from orchestrator.scenario.models import MODELS
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.session.foreign import FOREIGN, sha256_of
@@ -34,8 +34,8 @@ class Ran(NamedTuple):
     """Time from the first exchange to the closed log [s]; building, loading and initializing come before."""
 
 
-class Words:
-    """Messages of FMUs and of the watch, handed to whoever listens; times are the master's."""
+class Messages:
+    """Messages of FMUs and of the changes, handed to whoever listens; times are the master's."""
 
     def __init__(self) -> None:
         self.t_ns = 0
@@ -58,17 +58,17 @@ class Words:
         """Nothing to close."""
 
 
-def make_slaves(scenario: Scenario, files: Mapping[str, Path] | None, words: Words) -> list[Slave]:
+def make_slaves(scenario: Scenario, files: Mapping[str, Path] | None, messages: Messages) -> list[Slave]:
     """Return the slaves of a scenario: FMUs from ``files``, or the models in process."""
     slaves: list[Slave] = []
     for name, model in MODELS.items():
         parameters = scenario.given(name)
         if files is None:
-            slaves.append(ModelSlave(name, model, parameters))
+            slaves.append(InProcessSlave(name, model, parameters))
         else:
             from orchestrator.cosim.fmu_slave import FmuSlave
 
-            slaves.append(FmuSlave(name, files[name], parameters, words.from_fmu, model))
+            slaves.append(FmuSlave(name, files[name], parameters, messages.from_fmu, model))
     return slaves
 
 
@@ -88,13 +88,13 @@ def run_scenario(
     ``warn`` is told before the run what is allowed in the system but hardly meant. ``foreign`` are the slaves
     whose FMU is somebody else's.
     """
-    words = Words()
-    slaves = make_slaves(scenario, files, words)
+    messages = Messages()
+    slaves = make_slaves(scenario, files, messages)
     try:
         for text in remarks(slaves, scenario.ending):
             warn(text)
         return run_slaves(
-            scenario, slaves, words, kind=kind, log=log, observers=observers, interrupt=interrupt, foreign=foreign
+            scenario, slaves, messages, kind=kind, log=log, observers=observers, interrupt=interrupt, foreign=foreign
         )
     finally:
         for slave in slaves:
@@ -104,7 +104,7 @@ def run_scenario(
 def run_slaves(
     scenario: Scenario,
     slaves: list[Slave],
-    words: Words,
+    messages: Messages,
     *,
     kind: str = "none",
     log: Path | None = None,
@@ -117,23 +117,23 @@ def run_slaves(
     master.interrupt = interrupt or Interrupt()
     info = provenance(scenario, slaves, kind, foreign)
     recorder = Recorder(slaves, scenario.stop_ns // scenario.step_ns + 1)
-    watch = Watch(slaves, scenario.faults, words.say)
-    master.observers += [words, recorder]
+    changes = ModeChanges(slaves, scenario.faults, messages.say)
+    master.observers += [messages, recorder]
     if log is not None:
         from orchestrator.log.mcap_log import McapLog
 
         file = McapLog(log, slaves, scenario, info)
-        words.listeners.append(file.say)
-        master.observers += [watch, file, *observers]
+        messages.listeners.append(file.say)
+        master.observers += [changes, file, *observers]
     else:
-        master.observers += [watch, *observers]
+        master.observers += [changes, *observers]
     said = remarks(slaves, scenario.ending)
     for text in said:
-        words.say(0, WARNING, "system", text)
-    end = _guarded(words, master.initialize)
+        messages.say(0, WARNING, "system", text)
+    end = _guarded(messages, master.initialize)
     begun = time.perf_counter()
     if end is None:
-        end = _guarded(words, master.run)
+        end = _guarded(messages, master.run)
     assert end is not None
     master.finish(end)
     wall_time = time.perf_counter() - begun
@@ -159,15 +159,15 @@ def _master(slaves: list[Slave], scenario: Scenario, kind: str) -> Master:
     return master
 
 
-def _guarded(words: Words, act: Callable[[], End | None]) -> End | None:
+def _guarded(messages: Messages, act: Callable[[], End | None]) -> End | None:
     """Return what ``act`` returns, or how the run ended if it cannot go on."""
     try:
         return act()
     except RunError as error:
-        words.say(words.t_ns, ERROR, "run", str(error))
-        return End(f"error: {error}", words.t_ns)
+        messages.say(messages.t_ns, ERROR, "run", str(error))
+        return End(f"error: {error}", messages.t_ns)
     except KeyboardInterrupt:
-        return End("interrupted", words.t_ns)
+        return End("interrupted", messages.t_ns)
 
 
 def provenance(scenario: Scenario, slaves: list[Slave], kind: str, foreign: Collection[str] = ()) -> dict[str, Any]:

@@ -7,10 +7,10 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
+from orchestrator.comparison.compare import Difference
 from orchestrator.text.console import console
 from orchestrator.text.quantities import DEGREE
 from orchestrator.text.readable import changes_text, precise, readable, shifts_text
-from orchestrator.verdict.compare import Difference
 from orchestrator.verdict.judge import Check
 from orchestrator.verdict.limit_text import limit_text
 from orchestrator.verdict.summary import Final, Summary

@@ -3,8 +3,8 @@
 from collections.abc import Callable
 from typing import Any
 
+from orchestrator.cosim.in_process_slave import InProcessSlave
 from orchestrator.cosim.master import Master
-from orchestrator.cosim.model_slave import ModelSlave
 from orchestrator.scenario.models import MODELS
 
 Look = Callable[[int, Any, Any], bool]
@@ -14,7 +14,7 @@ Look = Callable[[int, Any, Any], bool]
 class Looking:
     """The ending that looks."""
 
-    def __init__(self, slaves: list[ModelSlave], look: Look) -> None:
+    def __init__(self, slaves: list[InProcessSlave], look: Look) -> None:
         self._slaves, self._look = slaves, look
 
     def reached(self, t_ns: int) -> str:
@@ -24,7 +24,7 @@ class Looking:
 
 def run(parameters: dict[str, dict[str, Any]], stop_ns: int, step_ns: int, look: Look) -> None:
     """Drive until ``look`` says so, or until ``stop_ns``."""
-    slaves = [ModelSlave(name, model, parameters[name]) for name, model in MODELS.items()]
+    slaves = [InProcessSlave(name, model, parameters[name]) for name, model in MODELS.items()]
     master = Master(list(slaves), step_ns, stop_ns)
     master.endings.append(Looking(slaves, look))
     master.initialize()

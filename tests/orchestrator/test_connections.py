@@ -6,13 +6,13 @@ from toy_models import BRAIN, PLANT
 from modelkit.signal import Signal
 from modelkit.variables import Variable
 from orchestrator.cosim.connections import connect
-from orchestrator.cosim.model_slave import ModelSlave
+from orchestrator.cosim.in_process_slave import InProcessSlave
 from orchestrator.cosim.slave import Slave
 from orchestrator.text.errors import BadInput
 
 
-def toys() -> list[ModelSlave]:
-    return [ModelSlave("plant", PLANT, {}), ModelSlave("brain", BRAIN, {})]
+def toys() -> list[InProcessSlave]:
+    return [InProcessSlave("plant", PLANT, {}), InProcessSlave("brain", BRAIN, {})]
 
 
 def replace(slave: Slave, name: str, variable: Variable) -> None:
@@ -45,6 +45,6 @@ def test_another_type_is_refused_by_name() -> None:
 
 
 def test_two_sources_for_one_input_are_refused() -> None:
-    slaves = [*toys(), ModelSlave("second", BRAIN, {})]
+    slaves = [*toys(), InProcessSlave("second", BRAIN, {})]
     with pytest.raises(BadInput, match="brain and second both have an output"):
         connect(list(slaves))

@@ -9,8 +9,8 @@ from pydantic import ValidationError
 from toy_models import BRAIN, PLANT
 
 from orchestrator.cosim.faults import manipulators
+from orchestrator.cosim.in_process_slave import InProcessSlave
 from orchestrator.cosim.master import Master
-from orchestrator.cosim.model_slave import ModelSlave
 from orchestrator.cosim.recording import Recorder, Recording
 from orchestrator.scenario.fault import Fault
 from orchestrator.text.errors import BadInput
@@ -20,7 +20,7 @@ TIMES = np.arange(11) * 0.01
 
 
 def run(*faults: dict[str, Any], seed: int = 1, every: dict[str, int] | None = None) -> Recording:
-    slaves = [ModelSlave("plant", PLANT, {}), ModelSlave("brain", BRAIN, {})]
+    slaves = [InProcessSlave("plant", PLANT, {}), InProcessSlave("brain", BRAIN, {})]
     master = Master(slaves, STEP, 10 * STEP, every)
     master.manipulators += manipulators([Fault(**fault) for fault in faults], list(slaves), seed)
     recorder = Recorder(list(slaves), 11)

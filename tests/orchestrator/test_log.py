@@ -12,15 +12,15 @@ from mcap.stream_reader import StreamReader
 from mcap_protobuf.decoder import DecoderFactory
 from toy_models import BRAIN, PLANT, Mode
 
+from orchestrator.cosim.in_process_slave import InProcessSlave
 from orchestrator.cosim.master import End
-from orchestrator.cosim.model_slave import ModelSlave
 from orchestrator.cosim.recording import Recording
 from orchestrator.log.mcap_file import CHUNK_SIZE, McapFile
 from orchestrator.log.mcap_log import McapLog
 from orchestrator.log.read_log import read_log
 from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.scenario.scenario import Scenario
-from orchestrator.session.session import Words, run_scenario, run_slaves
+from orchestrator.session.session import Messages, run_scenario, run_slaves
 from orchestrator.text.errors import BadInput
 
 DEMO = str(Path(__file__).with_name("demo.yaml"))
@@ -30,8 +30,8 @@ DEMO = str(Path(__file__).with_name("demo.yaml"))
 def toy_run(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Recording]:
     path = tmp_path_factory.mktemp("log") / "run.mcap"
     scenario = load_scenario(DEMO, ["stop_time=3"])
-    slaves = [ModelSlave("plant", PLANT, {"gain": 3.0}), ModelSlave("brain", BRAIN, {})]
-    return path, run_slaves(scenario, list(slaves), Words(), log=path).recording
+    slaves = [InProcessSlave("plant", PLANT, {"gain": 3.0}), InProcessSlave("brain", BRAIN, {})]
+    return path, run_slaves(scenario, list(slaves), Messages(), log=path).recording
 
 
 @pytest.fixture(scope="module")
@@ -139,7 +139,7 @@ def test_the_same_run_gives_the_same_bytes(tmp_path: Path) -> None:
 
 def test_an_odd_value_comes_back(tmp_path: Path) -> None:
     scenario = load_scenario(DEMO, ["stop_time=0.1"])
-    slaves = [ModelSlave("plant", PLANT, {}), ModelSlave("brain", BRAIN, {})]
+    slaves = [InProcessSlave("plant", PLANT, {}), InProcessSlave("brain", BRAIN, {})]
     odd = {"command": float("nan"), "mode": -3.0, "right": -(2.0**31), "active": 1.0}
     for name, value in odd.items():
         slaves[0].inputs.values[slaves[0].inputs.index[name]] = value
@@ -172,7 +172,7 @@ def test_no_log_is_explained(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("rows", [0, 1, 2, 3])
 def test_any_number_of_rows_about_a_chunk(tmp_path: Path, rows: int) -> None:
-    slaves = [ModelSlave("plant", PLANT, {}), ModelSlave("brain", BRAIN, {})]
+    slaves = [InProcessSlave("plant", PLANT, {}), InProcessSlave("brain", BRAIN, {})]
     for slave in slaves:
         slave.initialize(0)
         slave.fetch_outputs()

@@ -6,15 +6,15 @@ import numpy as np
 import pytest
 from toy_models import BRAIN, PLANT
 
+from orchestrator.cosim.in_process_slave import InProcessSlave
 from orchestrator.cosim.master import Master
-from orchestrator.cosim.model_slave import ModelSlave
 from orchestrator.cosim.recording import Recorder, Recording
 
 STEP = 10_000_000
 
 
-def toys() -> list[ModelSlave]:
-    return [ModelSlave("plant", PLANT, {}), ModelSlave("brain", BRAIN, {})]
+def toys() -> list[InProcessSlave]:
+    return [InProcessSlave("plant", PLANT, {}), InProcessSlave("brain", BRAIN, {})]
 
 
 def run(steps: int, every: dict[str, int] | None = None) -> Recording:
@@ -61,7 +61,7 @@ def test_time_is_counted_not_added() -> None:
     slaves = toys()
     times: list[int] = []
 
-    class Clock(ModelSlave):
+    class Clock(InProcessSlave):
         def step(self, t_ns: int, dt_ns: int) -> None:
             times.append(t_ns)
             super().step(t_ns, dt_ns)

@@ -3,14 +3,14 @@ from typing import Any
 
 import pytest
 
+from orchestrator.comparison.compare import compare
+from orchestrator.comparison.tolerance import Tolerance, Tolerances
+from orchestrator.report.messages import Line
 from orchestrator.report.overlay import write_overlay
 from orchestrator.report.replay import replay_page
-from orchestrator.report.words import Line
 from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.session.session import run_scenario
-from orchestrator.verdict.compare import compare
 from orchestrator.verdict.summary import summarize
-from orchestrator.verdict.tolerance import Tolerance, Tolerances
 
 EVIL = "<script>window.evil = 1</script><img src=x onerror='window.evil = 1'>"
 

@@ -12,11 +12,11 @@ from orchestrator.text.yaml_file import explain, read_mapping
 SHIPPED = Path(__file__).parents[2] / "studies"
 
 
-class _Strict(BaseModel):
+class _StudyPart(BaseModel):
     model_config = ConfigDict(extra="forbid", populate_by_name=True)
 
 
-class Range(_Strict):
+class Range(_StudyPart):
     """Equally spaced values, both ends included."""
 
     first: float | str = Field(alias="from")
@@ -25,7 +25,7 @@ class Range(_Strict):
     """Number of values."""
 
 
-class Spread(_Strict):
+class Spread(_StudyPart):
     """A distribution: exactly one of the three."""
 
     uniform: tuple[float | str, float | str] | None = None
@@ -42,7 +42,7 @@ class Spread(_Strict):
         return self
 
 
-class Samples(_Strict):
+class Samples(_StudyPart):
     """``n`` samples of some parameters: ``{n: 100, vehicle.start.y: {uniform: [-0.1, 0.1]}, ...}``."""
 
     n: int = Field(ge=1)
@@ -56,7 +56,7 @@ class Samples(_Strict):
         return {"n": data.get("n"), "spreads": {key: value for key, value in data.items() if key != "n"}}
 
 
-class Runs(_Strict):
+class Runs(_StudyPart):
     """Every grid point is run with every sample; samples of both kinds are joined side by side."""
 
     grid: dict[str, list[Any] | Range] = {}
@@ -70,7 +70,7 @@ class Runs(_Strict):
         return self
 
 
-class Axes(_Strict):
+class Axes(_StudyPart):
     """What the map of the result page shows."""
 
     x: str
@@ -79,7 +79,7 @@ class Axes(_Strict):
     """One map for each value of this parameter."""
 
 
-class MeasureOf(_Strict):
+class MeasureOf(_StudyPart):
     """One number of one signal over a run: exactly one of these, with the name of the signal."""
 
     last: str | None = None
@@ -98,7 +98,7 @@ class MeasureOf(_Strict):
         return self
 
 
-class StudyFile(_Strict):
+class StudyFile(_StudyPart):
     """One study as it is written. A key ``a, b`` gives the same value to both parameters."""
 
     name: str = Field(pattern=r"^[A-Za-z0-9._-]+$")

@@ -7,11 +7,11 @@ from typing import Any
 import numpy as np
 from pydantic import BaseModel, ConfigDict
 
+from orchestrator.comparison.tolerance import Tolerance, Tolerances
+from orchestrator.comparison.tube import Curve, distance
 from orchestrator.cosim.recording import Recording
 from orchestrator.text.errors import BadInput
 from orchestrator.text.patterns import fits, matching
-from orchestrator.verdict.tolerance import Tolerance, Tolerances
-from orchestrator.verdict.tube import Curve, distance
 
 DURATION = "duration"
 
@@ -37,7 +37,7 @@ class Difference(BaseModel):
     note: str = ""
 
 
-class Change(BaseModel):
+class ParameterChange(BaseModel):
     """A parameter that differs between the runs."""
 
     name: str
@@ -58,7 +58,7 @@ class Comparison(BaseModel):
     differing: int
     signals: list[Difference]
     """Worst first."""
-    parameters: list[Change]
+    parameters: list[ParameterChange]
     only_in_a: list[str]
     only_in_b: list[str]
 
@@ -180,14 +180,14 @@ def _severity(row: Difference) -> tuple[bool, float]:
     return not row.passed, row.largest / row.allowed if row.allowed > 0.0 else row.largest * 1e12
 
 
-def _changes(a: Recording, b: Recording) -> list[Change]:
+def _changes(a: Recording, b: Recording) -> list[ParameterChange]:
     names = list(dict.fromkeys([*a.parameters, *b.parameters]))
     rows = []
     for name in names:
         one, two = a.parameters.get(name), b.parameters.get(name)
         if one != two:
             variables: dict[str, Any] = a.variables if name in a.variables else b.variables
-            rows.append(Change(name=name, unit=variables[name].signal.unit, a=one, b=two))
+            rows.append(ParameterChange(name=name, unit=variables[name].signal.unit, a=one, b=two))
     return rows
 
 

@@ -10,8 +10,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from orchestrator.comparison.tolerance import Tolerance
 from orchestrator.cosim.slave import Array
-from orchestrator.verdict.tolerance import Tolerance
 
 
 class Curve(NamedTuple):

@@ -23,7 +23,7 @@ class _Mode(NamedTuple):
     states: dict[int, str]
 
 
-class Watch:
+class ModeChanges:
     """Observer that says what changes."""
 
     def __init__(self, slaves: list[Slave], faults: Iterable[Fault], say: Say) -> None:

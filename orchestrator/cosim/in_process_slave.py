@@ -10,7 +10,7 @@ from orchestrator.cosim.slave import Ports
 from orchestrator.text.errors import RunError
 
 
-class ModelSlave:
+class InProcessSlave:
     """``modelkit.model.Model`` behind the face of a slave."""
 
     def __init__(self, name: str, model: Model, parameters: Mapping[str, Any]) -> None:

@@ -25,7 +25,7 @@ class Line(NamedTuple):
     text: str
 
 
-def read_words(path: Path) -> list[Line]:
+def read_messages(path: Path) -> list[Line]:
     """Return the messages in the log at ``path``, in order. Raises ``BadInput`` if it cannot be read."""
     lines = []
     try:

@@ -1,0 +1,1 @@
+"""Do two runs agree: signal by signal, within tolerances of value and time."""

@@ -8,7 +8,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from orchestrator.sweep.many import run_all
 from replays import CLibrary, Fmi3, played
 
 import orchestrator
@@ -17,7 +16,11 @@ from orchestrator.cosim.fmu_files import can_compile
 from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.scenario.models import MODELS
 from orchestrator.session.session import run_scenario
+from orchestrator.sweep.batch import run_batch
+from orchestrator.sweep.job import chunks, make_job
 from orchestrator.sweep.rows import FIRST_MEASURE
+from orchestrator.sweep.study.cases import LabelledScenario, design_of
+from orchestrator.sweep.study.study import Study
 from orchestrator.verdict.measures import Measure, measured
 from orchestrator.verdict.numbers import MEASURES
 
@@ -76,7 +79,9 @@ def test_every_target_equals_the_models_in_process(fmus, targets, name):
         for model, play in models.items():
             assert unlike(played(play, scenario, expected.recording, model), expected.recording) == [], target
     if not scenario.faults:
-        row = run_all([scenario], KEPT)[0]
+        fixed, design = design_of([LabelledScenario({}, scenario)])
+        job = make_job(Study(fixed, design, {"name": name}))._replace(measures=list(KEPT))
+        (row,) = run_batch(job, next(chunks(design, 1)))
         assert row[1] == expected.recording.t_ns[-1]
         numbers = np.array([measured(item, expected.recording) for item in KEPT])
         pairs = zip(KEPT, row[FIRST_MEASURE:], numbers, strict=True)

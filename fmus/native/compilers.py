@@ -21,6 +21,8 @@ MISSING = (
 )
 FLAGS = ("-std=c99", "-O2", "-ffp-contract=off", "-fno-math-errno")
 """What every compiler is told that the results depend on, or the speed."""
+ZIG = ("-fno-sanitize=all", "-mllvm", "-disable-fp-call-folding")
+"""What ziglang's is told besides: its own library does not work out sin() of a known number, it has other bits."""
 SHARED = (
     *FLAGS,
     "-DFMI2_OVERRIDE_FUNCTION_PREFIX",
@@ -56,7 +58,7 @@ class Compiler(NamedTuple):
 
     def run(self, arguments: list[str], directory: Path, target: Target | None = None) -> None:
         """Call the compiler in ``directory`` for ``target`` (default: this machine)."""
-        cross = ["-target", (target or host_target()).triple, "-fno-sanitize=all"] if self.is_zig else []
+        cross = ["-target", (target or host_target()).triple, *ZIG] if self.is_zig else []
         command = [*self.command, *cross, *arguments]
         done = subprocess.run(
             command, cwd=directory, env=_environment(), capture_output=True, text=True, errors="replace", check=False

@@ -4,29 +4,23 @@ import ctypes
 import math
 import shutil
 import struct
-import subprocess
-import sys
 from enum import IntEnum
 
 from fmus.compiler import members
 from fmus.compiler.source.kinds import BOOL, FLOAT, INT, Array, Struct, fields_of
 from fmus.compiler.target.names import member_name
+from fmus.native.compilers import FLAGS, find_compiler
 
-WARNINGS = ("-std=c99", "-pedantic", "-Wall", "-Wextra", "-Wconversion", "-Wno-unused-parameter", "-Werror")
-CODE = ("-O2", "-ffp-contract=off", "-fno-math-errno")
-GCC = shutil.which("gcc")
-COMPILER = (GCC,) if GCC else (sys.executable, "-m", "ziglang", "cc")
+WARNINGS = ("-pedantic", "-Wall", "-Wextra", "-Wconversion", "-Wno-unused-parameter", "-Werror")
+ZIG = find_compiler("zig")
+COMPILER = find_compiler("gcc") if shutil.which("gcc") else ZIG
 SCALARS = {FLOAT: ctypes.c_double, INT: ctypes.c_int64, BOOL: ctypes.c_bool}
 
 
-def compiled(folder, name, *files, compiler=COMPILER, options=CODE, warnings=WARNINGS):
-    """Return a shared library made of C ``files`` without a warning."""
-    library = folder / f"{name}.so"
-    command = [*compiler, *warnings, *options, "-shared", "-fPIC", "-o", str(library), *map(str, files), "-lm"]
-    done = subprocess.run(command, capture_output=True, text=True, check=False, cwd=folder)
-    assert not done.returncode, f"{' '.join(command)}\n{done.stderr}"
-    assert not done.stderr, done.stderr
-    return ctypes.CDLL(str(library))
+def compiled(folder, name, file, compiler=COMPILER, options=FLAGS, warnings=WARNINGS):
+    """Return a shared library made of a C file without a warning."""
+    compiler.run([*options, *warnings, "-shared", "-fPIC", "-o", f"{name}.so", file, "-lm"], folder)
+    return ctypes.CDLL(str(folder / f"{name}.so"))
 
 
 _structures = {}

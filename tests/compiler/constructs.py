@@ -59,9 +59,9 @@ class Big(NamedTuple):
 class Three(NamedTuple):
     """Equal fields."""
 
-    a: float
-    b: float
-    c: float
+    a: float = 0.0
+    b: float = 0.0
+    c: float = 0.0
 
 
 TWO = 2
@@ -147,6 +147,23 @@ def infinities(x: float, y: float, n: int, m: int, p: bool, q: bool) -> float:
 def library(x: float, y: float, n: int, m: int, p: bool, q: bool) -> float:
     a = math.sin(x) + math.cos(y) + math.atan(x) + math.atan2(x, y) + math.tan(x)
     return a + math.exp(-abs(x)) + math.sqrt(abs(y)) + math.log(abs(x) + 1.0) + math.tanh(y)
+
+
+def known_arguments(x: float, y: float, n: int, m: int, p: bool, q: bool) -> Three:
+    """C compilers know better, or otherwise, than the C library what these are."""
+    return Three(_exp_of(1.9004748476878712), _cos_of(4.6167136412976815), _atan_of(0.7206933530479881))
+
+
+def _exp_of(x: float) -> float:
+    return math.exp(x)
+
+
+def _cos_of(x: float) -> float:
+    return math.cos(x)
+
+
+def _atan_of(x: float) -> float:
+    return math.atan(x)
 
 
 def inverse(x: float, y: float, n: int, m: int, p: bool, q: bool) -> float:

@@ -8,7 +8,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from c_model import COMPILER, compiled
+from c_model import COMPILER, ZIG, compiled
 from language import load, model_of, whole_module
 
 from fmus.compiler import translate
@@ -103,7 +103,7 @@ def test_text_is_the_same_for_any_hash_seed():
 
 
 def test_header_is_c_plus_plus(translations, tmp_path):
-    compiler = [*COMPILER[:-1], "c++"] if "ziglang" in COMPILER else ["g++"]
+    compiler = [*ZIG.command[:-1], "c++"] if COMPILER.is_zig else ["g++"]
     for item in translations:
         (tmp_path / f"{item.name}.h").write_text(item.header)
     lines = [f'#include "{item.name}.h"' for item in translations]

@@ -11,11 +11,11 @@ from typing import Any, NamedTuple
 from fmus.compiler.source.flow import Flow
 from fmus.compiler.source.kinds import Array, Kind, Mixed, NoKindError, Open, Struct, kind_of
 from fmus.compiler.source.refusals import AlreadySaidError, CannotError
-from fmus.compiler.source.unused import without_unused
 from fmus.compiler.target.body import Body
 from fmus.compiler.target.layout import flat
 from fmus.compiler.target.program import Program
 from fmus.compiler.target.storage import put
+from fmus.compiler.target.unused import without_unused
 from fmus.compiler.target.values import Place, Value, is_scalar, returned_by_value
 from fmus.compiler.target.variables import variable
 

@@ -11,8 +11,16 @@ from orchestrator.scenario.models import MODELS
 ROOT = Path(__file__).parents[1]
 ROOMS = ("modelkit", "vehicle_fmu", "controller_fmu")
 NO_MODEL_CODE = ("modelkit/model.py", "modelkit/variables.py", "modelkit/connections.py", "modelkit/terminals.py")
+NO_MODEL_CODE += ("modelkit/store.py",)
 STANDARD = {"math", "typing", "enum"}
-KIT = {"modelkit.signal", "modelkit.maths", "modelkit.random", "modelkit.vocabulary", "modelkit.geometry"}
+KIT = {
+    "modelkit.store",
+    "modelkit.signal",
+    "modelkit.maths",
+    "modelkit.random",
+    "modelkit.vocabulary",
+    "modelkit.geometry",
+}
 
 
 def model_files():

@@ -1,0 +1,297 @@
+"""The work arrays of a search, and the only functions that write to them."""
+
+from typing import Annotated, NamedTuple
+
+from controller_fmu.planning.task import CORNERS
+from modelkit.store import Column, Floats, Ints
+
+EDGES = 512
+NEAR_SIDE = 64
+NEAR_ITEMS = 32768
+ROUTE_SIDE = 128
+NODES = 20_000
+SLOTS = 32768
+"""Of the hash table, a power of two."""
+BUCKETS = 2048
+TALLIES = 8192
+WORDS = 128
+PIECES = 256
+ASKED = 11
+NONE = -1
+
+
+class PlanStore(NamedTuple):
+    """Edges with their rasters, the tree with its table and queue, the words tried, the path found."""
+
+    edge_x1: Annotated[Floats, Column("d", EDGES, "m", "x of an edge's first end")]
+    edge_y1: Annotated[Floats, Column("d", EDGES, "m", "y of an edge's first end")]
+    edge_x2: Annotated[Floats, Column("d", EDGES, "m", "x of an edge's second end")]
+    edge_y2: Annotated[Floats, Column("d", EDGES, "m", "y of an edge's second end")]
+    near_first: Annotated[Ints, Column("i", NEAR_SIDE * NEAR_SIDE + 1, "1", "where a cell's list of edges begins")]
+    near_edge: Annotated[Ints, Column("h", NEAR_ITEMS, "1", "edges by cell")]
+    route: Annotated[Floats, Column("f", ROUTE_SIDE * ROUTE_SIDE, "m", "way of a point to the target")]
+    route_next: Annotated[Ints, Column("i", ROUTE_SIDE * ROUTE_SIDE, "1", "next cell of the same bucket")]
+    bucket: Annotated[Ints, Column("i", BUCKETS, "1", "first node, or cell, of a bucket of the queue")]
+    slot: Annotated[Ints, Column("i", SLOTS, "1", "first node of a slot of the hash table")]
+    node_x: Annotated[Floats, Column("f", NODES, "m", "x of the rear axle")]
+    node_y: Annotated[Floats, Column("f", NODES, "m", "y of the rear axle")]
+    node_h: Annotated[Floats, Column("f", NODES, "rad", "heading")]
+    node_cost: Annotated[Floats, Column("f", NODES, "m", "cost from the root")]
+    node_rest: Annotated[Floats, Column("f", NODES, "m", "what the way from it to the target is thought to cost")]
+    node_way: Annotated[Floats, Column("f", NODES, "m", "way from the parent, reverse negative")]
+    node_k: Annotated[Floats, Column("f", NODES, "1/m", "curvature of that way")]
+    node_parent: Annotated[Ints, Column("h", NODES, "1", "the node before")]
+    node_key: Annotated[Ints, Column("i", NODES, "1", "cell of poses")]
+    node_queue: Annotated[Ints, Column("h", NODES, "1", "next node of the same bucket")]
+    node_slot: Annotated[Ints, Column("h", NODES, "1", "next node of the same slot")]
+    node_state: Annotated[Ints, Column("h", NODES, "1", "0 guessed, 1 looked at, 2 done with")]
+    tally: Annotated[Ints, Column("h", TALLIES, "1", "how often nodes of a region have been taken up")]
+    word_cost: Annotated[Floats, Column("d", WORDS, "m", "cost of a word")]
+    word_code: Annotated[Ints, Column("i", WORDS, "1", "its turns, digits to the base of 3")]
+    word_a: Annotated[Floats, Column("d", WORDS, "m", "way of its first piece")]
+    word_b: Annotated[Floats, Column("d", WORDS, "m", "way of its second piece")]
+    word_c: Annotated[Floats, Column("d", WORDS, "m", "way of its third piece")]
+    word_d: Annotated[Floats, Column("d", WORDS, "m", "way of its fourth piece")]
+    word_e: Annotated[Floats, Column("d", WORDS, "m", "way of its fifth piece")]
+    piece_way: Annotated[Floats, Column("d", PIECES, "m", "way of a piece of the path")]
+    piece_k: Annotated[Floats, Column("d", PIECES, "1/m", "its curvature")]
+    piece_x: Annotated[Floats, Column("d", PIECES, "m", "x where it begins")]
+    piece_y: Annotated[Floats, Column("d", PIECES, "m", "y where it begins")]
+    piece_h: Annotated[Floats, Column("d", PIECES, "rad", "heading where it begins")]
+    kept_way: Annotated[Floats, Column("d", PIECES, "m", "way of a piece of the best path yet")]
+    kept_k: Annotated[Floats, Column("d", PIECES, "1/m", "its curvature")]
+    corner_x: Annotated[Floats, Column("d", CORNERS, "m", "x of a corner of the scene asked about")]
+    corner_y: Annotated[Floats, Column("d", CORNERS, "m", "its y")]
+    corner_of: Annotated[Ints, Column("i", CORNERS, "1", "its polygon")]
+    asked: Annotated[Floats, Column("d", ASKED, "1", "the numbers of the request")]
+    mark: Annotated[Ints, Column("i", 32, "1", "counts and places, see below")]
+    measure: Annotated[Floats, Column("d", 32, "1", "numbers, see below")]
+
+
+NODE_COUNT = 0
+LOWEST = 1
+"""Bucket of the queue below which all are empty."""
+EXPANDED = 2
+BEST_NODE = 3
+BEST_CODE = 4
+FOUND_AT = 5
+"""Expansions until the first way was found."""
+PIECE_COUNT = 6
+SPAN = 7
+PLACE = 8
+GAINED = 9
+PASSES = 10
+LOOKED = 11
+TREE_MARKS = 12
+"""So many are of one search."""
+COUNT = 19
+"""Steps done for the request."""
+PHASE = 12
+RUNG = 13
+STATUS = 14
+EDGE_COUNT = 15
+KEPT_COUNT = 16
+KEPT_RUNG = 17
+GOAL_TIGHTER = 18
+
+BEST_COST = 0
+BEST_WAY = 1
+"""And four more: the ways of the word that leads from the best node to the target."""
+FREE_AT_TARGET = 6
+"""And five more: how far the car can drive from the target, by gear and turn."""
+FREE_AT_NODE = 12
+"""And nine more: the same at the node in hand, by gear and five turns."""
+ROOM = 22
+"""Clearance [m] at start or goal, whichever has less."""
+KEPT_COST = 23
+KEPT_MARGIN = 24
+
+
+def put_mark(store: PlanStore, which: int, value: int) -> None:
+    """Set one of the counts and places."""
+    store.mark[which] = value
+
+
+def put_measure(store: PlanStore, which: int, value: float) -> None:
+    """Set one of the numbers."""
+    store.measure[which] = value
+
+
+def put_edge(store: PlanStore, edge: int, x1: float, y1: float, x2: float, y2: float) -> None:
+    """Set an edge."""
+    store.edge_x1[edge] = x1
+    store.edge_y1[edge] = y1
+    store.edge_x2[edge] = x2
+    store.edge_y2[edge] = y2
+
+
+def put_near_first(store: PlanStore, cell: int, place: int) -> None:
+    """Set where a cell's list of edges begins."""
+    store.near_first[cell] = place
+
+
+def put_near(store: PlanStore, place: int, edge: int) -> None:
+    """Set an item of the lists of edges."""
+    store.near_edge[place] = edge
+
+
+def clear_route(store: PlanStore, cells: int) -> None:
+    """Make every cell of the map of ways free and unmeasured."""
+    for cell in range(cells):
+        store.route[cell] = 1e6
+        store.route_next[cell] = -2
+
+
+def put_route(store: PlanStore, cell: int, way: float) -> None:
+    """Set a cell's way to the target."""
+    store.route[cell] = way
+
+
+def put_route_next(store: PlanStore, cell: int, after: int) -> None:
+    """Set the cell after this one in its bucket."""
+    store.route_next[cell] = after
+
+
+def put_bucket(store: PlanStore, bucket: int, first: int) -> None:
+    """Set the first of a bucket."""
+    store.bucket[bucket] = first
+
+
+def clear_tree(store: PlanStore) -> None:
+    """Empty tree, table and queue."""
+    for slot in range(SLOTS):
+        store.slot[slot] = NONE
+    for bucket in range(BUCKETS):
+        store.bucket[bucket] = NONE
+    for region in range(TALLIES):
+        store.tally[region] = 0
+    for which in range(TREE_MARKS):
+        store.mark[which] = 0
+    store.mark[LOWEST] = BUCKETS
+    store.mark[BEST_NODE] = NONE
+
+
+def put_node(
+    store: PlanStore, x: float, y: float, h: float, cost: float, way: float, k: float, parent: int, key: int, slot: int
+) -> int:
+    """Add a node to the tree and to its slot of the table; returns its number."""
+    node = store.mark[NODE_COUNT]
+    store.mark[NODE_COUNT] = node + 1
+    store.node_x[node] = x
+    store.node_y[node] = y
+    store.node_h[node] = h
+    store.node_cost[node] = cost
+    store.node_way[node] = way
+    store.node_k[node] = k
+    store.node_parent[node] = parent
+    store.node_key[node] = key
+    store.node_state[node] = 0
+    store.node_rest[node] = 0.0
+    store.node_slot[node] = store.slot[slot]
+    store.slot[slot] = node
+    return node
+
+
+def put_rest(store: PlanStore, node: int, rest: float) -> None:
+    """Set what the way from a node to the target is thought to cost [m]."""
+    store.node_rest[node] = rest
+
+
+def count_up(store: PlanStore, region: int) -> None:
+    """Count a region once more."""
+    if store.tally[region] < 30000:
+        store.tally[region] += 1
+
+
+def put_state(store: PlanStore, node: int, state: int) -> None:
+    """Set what has been done with a node."""
+    store.node_state[node] = state
+
+
+def enqueue(store: PlanStore, node: int, bucket: int) -> None:
+    """Put a node first into a bucket."""
+    store.node_queue[node] = store.bucket[bucket]
+    store.bucket[bucket] = node
+    if bucket < store.mark[LOWEST]:
+        store.mark[LOWEST] = bucket
+
+
+def dequeue(store: PlanStore) -> int:
+    """Take the first node out of the lowest bucket that has any; returns it, or ``NONE``."""
+    bucket = store.mark[LOWEST]
+    while bucket < BUCKETS and store.bucket[bucket] == NONE:
+        bucket += 1
+    store.mark[LOWEST] = bucket
+    if bucket >= BUCKETS:
+        return NONE
+    node = store.bucket[bucket]
+    store.bucket[bucket] = store.node_queue[node]
+    return node
+
+
+def put_word(
+    store: PlanStore, word: int, code: int, cost: float, a: float, b: float, c: float, d: float, e: float
+) -> None:
+    """Set a word."""
+    store.word_code[word] = code
+    store.word_cost[word] = cost
+    store.word_a[word] = a
+    store.word_b[word] = b
+    store.word_c[word] = c
+    store.word_d[word] = d
+    store.word_e[word] = e
+
+
+def drop_word(store: PlanStore, word: int) -> None:
+    """Take a word out of the choice."""
+    store.word_cost[word] = 1e9
+
+
+def put_best(store: PlanStore, node: int, word: int, cost: float) -> None:
+    """Remember the best way to the target: along the tree to ``node``, then along ``word``."""
+    store.mark[BEST_NODE] = node
+    store.mark[BEST_CODE] = store.word_code[word]
+    store.measure[BEST_COST] = cost
+    store.measure[BEST_WAY] = store.word_a[word]
+    store.measure[BEST_WAY + 1] = store.word_b[word]
+    store.measure[BEST_WAY + 2] = store.word_c[word]
+    store.measure[BEST_WAY + 3] = store.word_d[word]
+    store.measure[BEST_WAY + 4] = store.word_e[word]
+
+
+def put_piece(store: PlanStore, piece: int, way: float, k: float, x: float, y: float, h: float) -> None:
+    """Set a piece of the path."""
+    store.piece_way[piece] = way
+    store.piece_k[piece] = k
+    store.piece_x[piece] = x
+    store.piece_y[piece] = y
+    store.piece_h[piece] = h
+
+
+def move_pieces(store: PlanStore, start: int, count: int, by: int) -> None:
+    """Move ``count`` pieces of the path from ``start`` on by some places."""
+    for number in range(count):
+        piece = start + (number if by < 0 else count - 1 - number)
+        store.piece_way[piece + by] = store.piece_way[piece]
+        store.piece_k[piece + by] = store.piece_k[piece]
+        store.piece_x[piece + by] = store.piece_x[piece]
+        store.piece_y[piece + by] = store.piece_y[piece]
+        store.piece_h[piece + by] = store.piece_h[piece]
+
+
+def put_corner(store: PlanStore, corner: int, x: float, y: float, polygon: int) -> None:
+    """Remember a corner of the scene."""
+    store.corner_x[corner] = x
+    store.corner_y[corner] = y
+    store.corner_of[corner] = polygon
+
+
+def put_asked(store: PlanStore, which: int, value: float) -> None:
+    """Remember a number of the request."""
+    store.asked[which] = value
+
+
+def put_kept(store: PlanStore, piece: int, way: float, k: float) -> None:
+    """Set a piece of the best path yet."""
+    store.kept_way[piece] = way
+    store.kept_k[piece] = k

@@ -1,0 +1,106 @@
+"""The planner against closed forms, against shapely, and against itself."""
+
+import math
+import random
+
+import pytest
+from scenes import (
+    CAR,
+    bits_of,
+    kept,
+    least_clearance,
+    outline_of,
+    plan,
+    poses_along,
+    read_case,
+    scene_of,
+    tpcap_folder,
+)
+from shapely.geometry import LineString
+
+from controller_fmu.planning.clearance import edge_gap
+from controller_fmu.planning.plan import GOAL_BLOCKED, PLANNED, START_BLOCKED, search_to
+from controller_fmu.planning.plan_store import COUNT, STATUS, WORDS, PlanStore
+from controller_fmu.planning.task import Request, Rung, Task, Window, drive
+from controller_fmu.planning.tree import cheapest, word_way
+from controller_fmu.planning.words import list_words, turn_of
+from modelkit.store import new_store, size_of
+from modelkit.vocabulary import Pose
+
+ORIGIN = Pose(0.0, 0.0, 0.0)
+BOXES = [[(-9.0, -3.0), (-3.5, -3.0), (-3.5, -1.0), (-9.0, -1.0)], [(5.0, -3.0), (9.0, -3.0), (9.0, -1.0), (5.0, -1.0)]]
+
+
+def test_distance_to_an_edge_is_that_of_shapely():
+    draw = random.Random(1)
+    box = outline_of(Pose(-CAR.ahead, 0.0, 0.0), CAR)
+    for _ in range(500):
+        ends = [draw.uniform(-6.0, 6.0) for _ in range(4)]
+        gap = math.sqrt(edge_gap(*ends, CAR.half_length, CAR.half_width, 1e6))
+        assert gap == pytest.approx(box.distance(LineString([ends[:2], ends[2:]])), abs=1e-9)
+
+
+def test_every_word_ends_where_it_should():
+    draw = random.Random(2)
+    store = new_store(PlanStore)
+    task = Task(ORIGIN, ORIGIN, CAR, Window(0.0, 0.0, 1.0, 1.0, 1, 1.0, 1), True, 0.1, Rung(*[True] * 2, *[1.0] * 6, 1))
+    for _ in range(60):
+        end = Pose(draw.uniform(-12.0, 12.0), draw.uniform(-12.0, 12.0), draw.uniform(-3.1, 3.1))
+        count = list_words(store, ORIGIN, end, 0.0, 0.0, task)
+        assert 32 <= count <= WORDS
+        for word in range(count):
+            pose = ORIGIN
+            for piece in range(5):
+                turn = turn_of(store.word_code[word], piece)
+                pose = drive(pose, word_way(store, word, piece), turn * CAR.curvature)
+            assert math.hypot(pose.x - end.x, pose.y - end.y) < 1e-4
+            assert abs(math.remainder(pose.heading - end.heading, 2.0 * math.pi)) < 1e-5
+        least = sum(abs(word_way(store, cheapest(store, count), piece)) for piece in range(5))
+        assert least >= math.hypot(end.x, end.y) - 1e-9
+
+
+def test_parks_between_two_boxes_with_the_margin_it_states():
+    request = Request(Pose(1.0, 3.0, 0.0), Pose(-1.2, -2.0, 0.0), CAR, 0.1)
+    store = plan(request, scene_of(BOXES))
+    assert store.mark[STATUS] == PLANNED
+    poses = poses_along(request.start, kept(store))
+    assert math.dist(poses[-1][:2], request.goal[:2]) < 1e-4
+    assert least_clearance(poses, BOXES, CAR) >= 0.1 - 1e-3
+
+
+def test_a_search_done_anew_is_the_same_to_the_bit_however_it_is_split():
+    request = Request(Pose(1.0, 3.0, 0.2), Pose(-1.2, -2.0, 0.0), CAR, 0.1)
+    other = Request(Pose(1.0, 3.0, 0.0), Pose(-1.2, -2.0, 0.0), CAR, 0.1)
+    scene = scene_of(BOXES)
+    once = plan(request, scene, at_a_time=60, most=61)
+    again = new_store(PlanStore)
+    search_to(again, scene, other, 25)  # something else stands in the store
+    for count in (3, 17, 41, 60):
+        search_to(again, scene, request, count)
+    assert again.mark[COUNT] == once.mark[COUNT] == 60
+    assert bits_of(again) == bits_of(once)
+    search_to(again, scene, request, 70)
+    search_to(again, scene, request, 60)  # back in time: done anew
+    assert bits_of(again) == bits_of(once)
+
+
+def test_start_or_goal_on_an_obstacle_is_said():
+    scene = scene_of(BOXES)
+    free, blocked = Pose(1.0, 3.0, 0.0), Pose(-6.0, -2.0, 0.0)
+    assert plan(Request(blocked, free, CAR, 0.1), scene).mark[STATUS] == START_BLOCKED
+    assert plan(Request(free, blocked, CAR, 0.1), scene).mark[STATUS] == GOAL_BLOCKED
+
+
+def test_the_store_is_small():
+    assert size_of(PlanStore) < 2_000_000
+
+
+@pytest.mark.skipif(tpcap_folder() is None, reason="TPCAP's cases are not here")
+@pytest.mark.parametrize("number", [6, 12, 17])
+def test_easy_cases_of_tpcap(number):
+    start, goal, polygons = read_case(number)
+    store = plan(Request(start, goal, CAR, 0.1), scene_of(polygons))
+    assert store.mark[STATUS] == PLANNED
+    poses = poses_along(start, kept(store))
+    assert math.dist(poses[-1][:2], goal[:2]) < 1e-4
+    assert least_clearance(poses, polygons, CAR) >= 0.1 - 1e-3

@@ -29,7 +29,7 @@ OF_PREVIEW = ("threshold.standstill", "threshold.lost_lateral", "preview")
 OF_APA = (
     *("gear", "brake_pedal", "vehicle_fault", "ultrasonic", "apa_switch", "driver_confirm", "shifts"),
     "threshold.wheel",
-    *(f"limit.{name}" for name in ("stopping", "pose_frozen", "wheel_lag", "wheel_fault")),
+    *(f"limit.{name}" for name in ("stopping", "pose_frozen", "wheel_off", "wheel_fault")),
     "apa",
 )
 SYSTEMS = SampledSystems(

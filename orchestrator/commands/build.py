@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from orchestrator.cosim.fmu_files import KINDS, build, build_into, wanted_platforms
 from orchestrator.text.console import working
-from orchestrator.text.errors import BadInput
+from orchestrator.text.errors import BadInput, suggestion
 
 if TYPE_CHECKING:
     from fmus.build import Built
@@ -17,6 +17,7 @@ EXAMPLES = """examples:
   apa build --fmus native --out build             build/native/Controller.fmu and Vehicle.fmu
   apa build --fmus native --out build --platform win64,linux64
   apa build --fmi 3 --out build --platform all    build/fmi3/...: FMI 3.0
+  apa build --system apa --out build              build/native/Controller_apa.fmu...: that system alone
   apa build --fmus native --cc gcc                with this machine's own C compiler
   apa build --model my_model.py:MODEL --out build     a model of your own: PythonFMU, native FMUs, C library
 """
@@ -30,6 +31,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--out", type=Path, metavar="DIR", help="where to (default: where apa's own runs look)")
     parser.add_argument(
         "--platform", action="append", metavar="NAME,...", help="native FMUs for these, or all (default: this one)"
+    )
+    parser.add_argument(
+        "--system",
+        action="append",
+        metavar="NAME,...",
+        help="only controllers with one system each, and its variables only; or all (apa list systems)",
     )
     parser.add_argument("--cc", metavar="CC", help="C compiler (default: the variable CC, else ziglang)")
     parser.add_argument("--model", metavar="FILE.py:NAME", help="a model of your own, in a file or a package's folder")
@@ -52,12 +59,30 @@ def _parking_pair(arguments: argparse.Namespace) -> list["Built"]:
     kinds = _kinds(arguments)
     if arguments.platform and (arguments.out is None or kinds == ["python"]):
         raise BadInput("is for native FMUs in a place of their own: give --fmus native and --out", key="--platform")
+    if arguments.system:
+        return _systems(arguments, kinds)
     made = []
     for kind in kinds:
         platforms = arguments.platform or () if kind != "python" else ()
         cc = arguments.cc
         made += build(kind, cc) if arguments.out is None else build_into(arguments.out, kind, platforms, cc)
     return made
+
+
+def _systems(arguments: argparse.Namespace, kinds: list[str]) -> list["Built"]:
+    from controller_fmu import SYSTEM_MODELS
+    from fmus.places import DIST
+
+    known = {system.name.lower(): model for system, model in SYSTEM_MODELS.items()}
+    asked = [name.lower() for item in arguments.system for name in item.split(",")]
+    for name in asked:
+        if name not in ("all", *known):
+            raise BadInput(
+                f"no system {name!r}: expected all or {', '.join(known)}{suggestion(name, known)}", key="--system"
+            )
+    models = [model for name, model in known.items() if name in asked or "all" in asked]
+    folder, platforms = arguments.out or DIST, arguments.platform or ()
+    return [made for kind in kinds for made in build_into(folder, kind, platforms, arguments.cc, models)]
 
 
 def _own_model(arguments: argparse.Namespace) -> list["Built"]:

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from fmus.native.compilers import can_compile as can_compile
+from modelkit.model import Model
 from orchestrator.scenario.models import MODELS
 from orchestrator.text.console import working
 from orchestrator.text.errors import BadInput
@@ -53,17 +54,25 @@ def build(kind: str, cc: str | None = None) -> list["Built"]:
     return built
 
 
-def build_into(folder: Path, kind: str, platforms: Iterable[str] = (), cc: str | None = None) -> list["Built"]:
+def build_into(
+    folder: Path,
+    kind: str,
+    platforms: Iterable[str] = (),
+    cc: str | None = None,
+    models: Iterable[Model] | None = None,
+) -> list["Built"]:
     """Build the FMUs of ``kind`` into ``folder``/``kind``; native ones for ``platforms``, by default this machine's.
 
+    ``models`` are vehicle and controller by default.
     ``cc`` is a C compiler of this machine to be used. Raises ``BadInput`` if that cannot be done here.
     """
+    from fmus.build import MODELS as PAIR
     from fmus.build import build_all
 
     wanted = wanted_platforms(platforms)
     with working(f"building {kind} FMUs"):
         try:
-            return build_all(folder, kinds=(kind,), platforms=wanted, cc=cc)
+            return build_all(folder, (kind,), None, wanted, cc, PAIR if models is None else models)
         except (RuntimeError, TypeError) as error:
             raise BadInput(str(error)) from error
 

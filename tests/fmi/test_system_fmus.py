@@ -1,0 +1,232 @@
+"""A controller with one system: the code of the whole one, showing what that system reads and tells."""
+
+import subprocess
+import sys
+from functools import cache
+from pathlib import Path
+from xml.etree import ElementTree
+
+import pytest
+from fmpy.validation import validate_fmu
+from host import ERROR, OK, Host, random_inputs
+from test_python_fmu import bits
+from test_tunable import TO_CONTROLLER, TO_VEHICLE
+
+from controller_fmu import APA, MODEL, SYSTEM_MODELS, SYSTEMS
+from controller_fmu.interface import Phase, System
+from fmus.contents.arrays import fmi_arrays, shown_arrays
+from fmus.contents.description import model_description
+from fmus.contents.description3 import model_description3
+from fmus.contents.variables import fmi_variables, shown_variables
+from fmus.native import fmu as native_fmu
+from fmus.native.platforms import host as this_platform
+from fmus.python import fmu as python_fmu
+from modelkit.variables import constructor, flatten, variables, with_values
+from orchestrator.cli import main
+from orchestrator.scenario.load_scenario import load_scenario
+from vehicle_fmu import MODEL as VEHICLE
+
+RUNS = {
+    System.NTBPTCWPT: ("guo2015-case4", 30.0),
+    System.NTBPT: ("guo2015-case1", 30.0),
+    System.ZHANG2022: ("zhang2022", 30.0),
+    System.HSIC: ("hsic", 40.0),
+    System.PREVIEW: ("preview", 12.0),
+    System.APA: ("apa-parallel", 60.0),
+}
+CHECKED_ONLY = {"system", "prompting.deceleration", "target.x", "target.y", "target.heading"}
+"""Read by the clock of all systems, which refuses numbers that their ranges refuse already."""
+STEP_NS = 10_000_000
+each = pytest.mark.parametrize("system", SYSTEM_MODELS, ids=lambda system: system.name.lower())
+
+
+class Watched:
+    """A tuple of a model's types that notes which of its scalars are read."""
+
+    def __init__(self, value, name, seen):
+        self.value, self.name, self.seen = value, name, seen
+
+    def _item(self, value, name):
+        if isinstance(value, tuple):
+            return Watched(value, name, self.seen)
+        self.seen.add(name)
+        return value
+
+    def __getattr__(self, field):
+        return self._item(getattr(self.value, field), f"{self.name}.{field}" if self.name else field)
+
+    def __getitem__(self, place):
+        places = range(len(self.value))[place]
+        if isinstance(places, range):
+            return tuple(self[number] for number in places)
+        return self._item(self.value[places], f"{self.name}[{places + 1}]")
+
+    def __iter__(self):
+        return (self[number] for number in range(len(self.value)))
+
+    def __len__(self):
+        return len(self.value)
+
+
+@cache
+def read_and_told(system):
+    """Return the parameters and inputs that a scenario's run reads, and the outputs that it changes."""
+    name, stop = RUNS[system]
+    scenario = load_scenario(name, [f"controller.system={system.name.lower()}"])
+    read, heard, told_by = set(), set(), set()
+    car = with_values(VEHICLE.params, dict(scenario.vehicle))
+    params = Watched(with_values(MODEL.params, dict(scenario.controller)), "", read)
+    vehicle, told = VEHICLE.initialize(car)
+    controller, asked = MODEL.initialize(params)
+    first = flatten(MODEL.outputs())
+    names = [item.name for item in variables(MODEL.outputs)]
+    for _ in range(round(stop * 100)):
+        to_vehicle, to_controller = TO_VEHICLE(asked), Watched(TO_CONTROLLER(told), "", heard)
+        vehicle, told = VEHICLE.step(vehicle, to_vehicle, car, STEP_NS)
+        controller, asked = MODEL.step(controller, to_controller, params, STEP_NS)
+        told_by |= {name for name, now, default in zip(names, flatten(asked), first, strict=True) if now != default}
+        if asked.phase >= Phase.PARKED and told.speed == 0.0:
+            break
+    return read, heard, told_by
+
+
+def shown(model, cls):
+    return {item.name for item in variables(cls) if model.shows(item.name)}
+
+
+@each
+def test_it_shows_every_parameter_that_the_system_reads(system):
+    read, _, _ = read_and_told(system)
+    assert read - shown(SYSTEM_MODELS[system], MODEL.params) <= CHECKED_ONLY
+
+
+@each
+def test_what_it_shows_beside_what_all_have_is_read(system):
+    read, heard, told = read_and_told(system)
+    own = next(item.own for item in SYSTEMS.systems if system in item.values)
+    used = read | heard | told | ({"threshold.standstill"} if system == System.PREVIEW else set())  # at the road's end
+    groups = [
+        group for group in own if not any(name == group or name.startswith((f"{group}.", f"{group}[")) for name in used)
+    ]
+    assert groups == []
+
+
+@each
+def test_it_has_the_inputs_that_the_system_reads(system):
+    _, heard, _ = read_and_told(system)
+    assert shown(SYSTEM_MODELS[system], MODEL.inputs) == heard
+
+
+@each
+def test_it_shows_every_output_that_the_system_changes(system):
+    _, _, told = read_and_told(system)
+    assert told <= shown(SYSTEM_MODELS[system], MODEL.outputs)
+
+
+@each
+def test_its_description_has_only_those_and_the_system_is_no_parameter(system):
+    model = SYSTEM_MODELS[system]
+    assert model.name == f"Controller_{system.name.lower()}"
+    root = ElementTree.fromstring(model_description(model, guid="", generation_tool="", flags={}))
+    assert root.find("CoSimulation").get("modelIdentifier") == model.name
+    names = [node.get("name") for node in root.find("ModelVariables")]
+    assert names == [item.name for item in shown_variables(model)]
+    expected = shown(model, MODEL.params) | shown(model, MODEL.inputs) | shown(model, MODEL.outputs) | {"time"}
+    assert set(names) == expected
+    assert "system" not in names
+    assert len(names) < 0.55 * len(fmi_variables(MODEL))
+    start = next(item for item in fmi_variables(model) if item.name == "system")
+    assert (start.start, start.shown) == (int(system), False)
+
+
+@each
+def test_as_fmi_3_it_has_the_same(system):
+    model = SYSTEM_MODELS[system]
+    root = ElementTree.fromstring(model_description3(model, token="", generation_tool="", flags={}))
+    names = [node.get("name") for node in root.find("ModelVariables")]
+    assert names == [item.name for item in shown_arrays(model)]
+    assert len(names) < len(fmi_arrays(model))
+    scalars = {item.name for array in shown_arrays(model) for item in array.elements}
+    assert scalars == {item.name for item in shown_variables(model)}
+
+
+def test_value_references_are_those_of_the_whole_controller():
+    whole = {item.name: item.vr for item in fmi_variables(MODEL)}
+    assert {item.name: item.vr for item in shown_variables(APA)}.items() <= whole.items()
+
+
+@pytest.fixture(scope="module")
+def python_systems(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("python_systems")
+    return {system: python_fmu.build(model, folder) for system, model in SYSTEM_MODELS.items()}
+
+
+@pytest.fixture(scope="module")
+def native_apa(tmp_path_factory):
+    return native_fmu.build(APA, tmp_path_factory.mktemp("native_apa"), [this_platform()])
+
+
+@each
+def test_checkers_find_nothing(python_systems, system):
+    check(python_systems[system])
+
+
+def test_checkers_find_nothing_in_a_native_one(native_apa):
+    check(native_apa)
+
+
+def check(path):
+    assert validate_fmu(str(path)) == []
+    command = [Path(sys.executable).parent / "fmutool", "-input", path, "-check"]
+    done = subprocess.run(command, capture_output=True, text=True, check=True)
+    assert "No semantic error" in done.stdout + done.stderr
+    assert "ERROR" not in done.stdout + done.stderr
+
+
+@each
+def test_it_gives_the_bits_of_the_whole_controller(python_systems, system):
+    twin(python_systems[system], system)
+
+
+def test_a_native_one_gives_the_bits_of_the_whole_controller(native_apa):
+    twin(native_apa, System.APA)
+
+
+def twin(path, system):
+    model = SYSTEM_MODELS[system]
+    params = with_values(MODEL.params, {"system": int(system), "steering_ratio": 17.0})
+    inputs = random_inputs(shown_variables(model), 3, 60)
+    start = {item.name: item.start for item in variables(MODEL.inputs)}
+    make, names = constructor(MODEL.inputs), [item.name for item in variables(MODEL.outputs)]
+    state, outputs = MODEL.initialize(params)
+    with Host(path) as host:
+        told = [item.name for item in fmi_variables(model) if item.shown and item.initial == "calculated"]
+        host.initialize(steering_ratio=17.0)
+        for number, values in enumerate(inputs):
+            expected = dict(zip(names, flatten(outputs), strict=True))
+            assert bits(host.outputs()) == bits([expected[name] for name in told])
+            state, outputs = MODEL.step(state, make(list((start | values).values())), params, STEP_NS)
+            host.set(values)
+            assert host.step(number * 0.01, 0.01) == OK
+
+
+def test_what_is_not_shown_cannot_be_read_or_set_in_a_python_one(python_systems):
+    hidden = next(item for item in fmi_variables(APA) if item.name == "ntbpt.k1")
+    with Host(python_systems[System.APA]) as host:
+        host.fmu.getReal([hidden.vr])
+        assert host.log[-1][0] == ERROR
+    with Host(python_systems[System.APA]) as host:
+        host.fmu.setReal([hidden.vr], [2.0])
+        assert host.log[-1][0] == ERROR
+
+
+def test_apa_build_makes_it(tmp_path, capsys):
+    assert main(["build", "--system", "hsic,APA", "--fmus", "python", "--out", str(tmp_path)]) == 0
+    assert {path.name for path in (tmp_path / "python").iterdir()} == {"Controller_apa.fmu", "Controller_hsic.fmu"}
+    assert "Controller_apa.fmu" in capsys.readouterr().out
+    assert main(["build", "--system", "appa", "--fmus", "python", "--out", str(tmp_path)]) == 2
+    assert "did you mean apa" in capsys.readouterr().err
+
+
+def test_a_scenario_passes_with_it(native_apa, tmp_path):
+    assert main(["test", "apa-parallel", "--controller", str(native_apa), "--out", str(tmp_path)]) == 0

@@ -54,6 +54,7 @@ PYTHON: dict[type[ast.operator], Callable[[Any, Any], Any]] = {
     ast.BitOr: operator.or_,
     ast.BitXor: operator.xor,
 }
+MOST_ITEMS = 10_000
 FLOAT_ADVICE = {ast.FloorDiv: "write math.floor(a / b)", ast.Mod: "write a - b * math.floor(a / b)"}
 
 
@@ -191,6 +192,8 @@ def _of_tuples(body: Body, node: ast.BinOp, left: Value, right: Value) -> Value:
             raise CannotError(node, "a tuple repeated an unknown number of times", "write the number, or a constant")
         if count.const < 1:
             raise CannotError(node, "an empty tuple", "repeat it at least once")
+        if count.const > MOST_ITEMS:
+            raise CannotError(node, f"a tuple repeated {count.const} times", f"repeat it {MOST_ITEMS} times at most")
         return repeated(body, elements(body, items), count.const)
     if not isinstance(node.op, ast.Add) or not (isinstance(left.kind, Array) and isinstance(right.kind, Array)):
         raise CannotError(node, f"{_sign(node)} of a tuple", "join tuples with +, repeat them with *")

@@ -7,7 +7,7 @@ from fmus.compiler.constructs.items import change_item, changed_item
 from fmus.compiler.constructs.replacing import is_replace, replace_in_place
 from fmus.compiler.constructs.unpacking import items_of, unpack_assignment
 from fmus.compiler.source.bindings import block
-from fmus.compiler.source.kinds import INT, Array, Kind, Mixed, NoKindError, Open, described, kind_of
+from fmus.compiler.source.kinds import INT, Array, Kind, Mixed, NoKindError, Open, Struct, described, kind_of
 from fmus.compiler.source.refusals import CannotError
 from fmus.compiler.target.body import STATEMENTS, Body
 from fmus.compiler.target.making import coerced
@@ -33,7 +33,7 @@ def assign(body: Body, node: ast.Assign) -> None:
 def _assign_name(body: Body, target: ast.Name, source: ast.expr, node: ast.AST) -> None:
     if is_replace(source, target.id):
         known = variable(body, target.id)
-        if known.kind is not None and not (known.parameter and known.fixed):
+        if isinstance(known.kind, Struct) and not (known.parameter and known.fixed):
             assert isinstance(source, ast.Call)
             replace_in_place(body, known.place, source, known.value(), target.id)
             return
@@ -180,7 +180,7 @@ def _own_copy(body: Body, node: ast.expr) -> str:
         base = node.func.value
         if isinstance(base, ast.Name) and base.id in body.bindings.local:
             known = variable(body, base.id)
-            if known.kind is not None and not known.fixed:
+            if isinstance(known.kind, Struct) and not known.fixed:
                 return base.id
     return ""
 
@@ -228,6 +228,7 @@ def match(body: Body, node: ast.Match) -> None:
         raise CannotError(node.subject, f"match of {described(subject.kind)}", "match an int, or write if and elif")
     subject = settled(body, subject, "subject")
     labels = [_labels(body, case.pattern) for case in node.cases]
+    _refuse_twice(body, node)
     leaves = any(isinstance(item, ast.Break) for case in node.cases for part in case.body for item in ast.walk(part))
     if leaves or any(case.guard for case in node.cases):
         _match_by_ifs(body, node, subject, labels)
@@ -247,6 +248,19 @@ def match(body: Body, node: ast.Match) -> None:
         body.emit("default:")
         body.emit("break;")
     body.emit("}")
+
+
+def _refuse_twice(body: Body, node: ast.Match) -> None:
+    """Refuse a case whose value an earlier one has: it is never reached."""
+    seen: set[int] = set()
+    for case in node.cases:
+        patterns = case.pattern.patterns if isinstance(case.pattern, ast.MatchOr) else [case.pattern]
+        for pattern in patterns:
+            if isinstance(pattern, ast.MatchValue):
+                value = int(body.value(pattern.value).const)
+                if value in seen:
+                    raise CannotError(pattern, f"the case {ast.unparse(pattern)} for the second time", "remove it")
+                seen |= {value} if case.guard is None else set()
 
 
 def _match_by_ifs(body: Body, node: ast.Match, subject: Value, labels: list[list[str] | None]) -> None:

@@ -45,8 +45,9 @@ def attribute(base: Static, name: str, library: Library) -> Static | None:
         return Static(base.value[name], base.value.__module__, f"{base.value.__name__}.{name}")
     if isinstance(base.value, IntEnum) and name == "value":
         return base
-    if isinstance(base.value, type) and isinstance(vars(base.value).get(name), FunctionType):
-        return Static(vars(base.value)[name], base.module, f"{base.name}.{name}")
+    method = vars(base.value).get(name) if isinstance(base.value, type) else None
+    if isinstance(method, FunctionType) and method.__module__ == base.value.__module__:
+        return Static(method, base.module, f"{base.name}.{name}")
     return None
 
 

@@ -133,10 +133,13 @@ class Body:
                 handler(self, node)
             except CannotError as error:
                 self.refuse(error, node)
-            except RecursionError:
-                self.refuse(CannotError(node, "an expression nested too deeply", "write it in several lines"), node)
             except AlreadySaidError:
                 pass  # what it binds has no kind, and what needs that is not refused again
+            except RecursionError:
+                self.refuse(CannotError(node, "an expression nested too deeply", "write it in several lines"), node)
+            except Exception as error:  # a fault of the translator's own: the user gets its place all the same
+                what = f"what the translator does not understand ({type(error).__name__}: {error})"
+                self.refuse(CannotError(node, what, "write it in simpler steps"), node)
 
     def begin_statement(self) -> None:
         """Make room for declarations."""

@@ -158,12 +158,12 @@ def _point(body: Body, known: Variable, value: Value) -> None:
 def open_place(body: Body, name: str, kind: Kind, value: Value, source: ast.AST) -> Place | None:
     """Return where a function may write what ``name`` gets, declared if it is new; None if it must not yet."""
     known = variable(body, name)
+    if not known.home.loads:
+        return None
     if known.kind is not None:
         if known.kind != kind or (known.parameter and not is_scalar(kind)):
             return None
         return None if looks_at(value, known.c, source, name) else known.place
-    if not known.home.loads:
-        return None
     known.kind, known.fixed = kind, known.once
     slot = _result_slot(body, known, name, kind)
     if slot is not None:

@@ -179,7 +179,14 @@ def translate(program: Program, made: Instance, kinds: dict[str, Kind], result: 
     if made.lines and made.lines[-1] == "return;":
         made.lines.pop()
     made.head = _head(program, made)
+    made.lines = [*_unread(made), *made.lines]
     program.caller = caller
+
+
+def _unread(made: Instance) -> list[str]:
+    """Return a line for each parameter that the function does not look at, which says so to the C compiler."""
+    names = [re.findall(r"\w+", parameter.text.partition("[")[0])[-1] for parameter in made.parameters]
+    return [f"(void){name};" for name in names if not any(re.search(rf"\b{name}\b", line) for line in made.lines)]
 
 
 def _without_docstring(nodes: list[ast.stmt]) -> list[ast.stmt]:

@@ -1,16 +1,16 @@
 """No range of a parameter refuses what a shipped scenario, car, study, bake-off or grid uses."""
 
 import pytest
-from orchestrator.grid.apa_grid import cases, parameters
-from orchestrator.sweep.design import make_design
 
 from controller_fmu import MODEL as CONTROLLER
 from fmus.contents.variables import fmi_variables, limits
 from modelkit.signal import Group, Role, Signal
 from modelkit.variables import limits_of, variables
 from orchestrator.bakeoff.entries import entries
+from orchestrator.grid.cases import cases, parameters
 from orchestrator.scenario.load_scenario import car_names, load_scenario, scenario_names
-from orchestrator.sweep.study import load_study, study_names
+from orchestrator.sweep.study.sampling import make_design
+from orchestrator.sweep.study.study_file import load_study, study_names
 from vehicle_fmu import MODEL as VEHICLE
 
 KNOWN = {

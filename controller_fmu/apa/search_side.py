@@ -82,30 +82,8 @@ class SideState(NamedTuple):
     """Of the kerb or wall that the gap ends at."""
 
 
-EMPTY = Sums(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-START = SideState(
-    NOTHING,
-    0.0,
-    0.0,
-    0.0,
-    0.0,
-    Heard(0.0, 0.0, 0.0),
-    0,
-    0.0,
-    0.0,
-    0.0,
-    0,
-    NO_SAMPLES,
-    EMPTY,
-    EMPTY,
-    0.0,
-    DEEP,
-    0,
-    False,
-    0.0,
-    NO_SAMPLES,
-    EMPTY,
-)
+EMPTY = Sums()
+START = SideState()
 
 
 def hear(side: SideState, u: float, w: float, r: float, half_angle: float, params: SearchParams) -> SideState:
@@ -116,10 +94,10 @@ def hear(side: SideState, u: float, w: float, r: float, half_angle: float, param
         full = abs(u - first) >= 0.5 * BIN or abs(r - mean) > params.step
         if full:
             sample = Heard(first, side.w / side.n, mean)
-            side = _sampled(_with_bin(side, 0.0, 0.0, 0.0, 0.0), sample, half_angle, params)
-            return _with_bin(side, 1.0, u, w, r)
-        return _not_fresh(_with_bin(side, side.n + 1.0, side.u + u, side.w + w, side.r + r))
-    return _not_fresh(_with_bin(side, 1.0, u, w, r))
+            side = _sampled(side._replace(n=0.0, u=0.0, w=0.0, r=0.0), sample, half_angle, params)
+            return side._replace(n=1.0, u=u, w=w, r=r)
+        return side._replace(n=side.n + 1.0, u=side.u + u, w=side.w + w, r=side.r + r, fresh=False)
+    return side._replace(n=1.0, u=u, w=w, r=r, fresh=False)
 
 
 def _sampled(side: SideState, sample: Heard, half_angle: float, params: SearchParams) -> SideState:
@@ -129,7 +107,7 @@ def _sampled(side: SideState, sample: Heard, half_angle: float, params: SearchPa
     change = sample.r - side.last.r - _change_along(side, sample)
     level = way > 0.0 and abs(change) <= FLAT * way + STEP
     steady = side.steady + 1 if level else 0
-    side = _with_last(side, sample, steady)
+    side = side._replace(last=sample, steady=steady, fresh=False)
     if side.mode == NOTHING:
         return _begin_wall(side, sample) if near else side
     if side.mode == WALL:
@@ -166,37 +144,20 @@ def _on_wall(side: SideState, sample: Heard, half_angle: float, params: SearchPa
         sums = _with_sample(side.sums, EMPTY, sample, side.steady)
         fresh = side.found > 0 and side.steady >= 2 and side.mode == WALL and side.edge_b > side.edge
         begun = sample.u if side.sums.n == 0.0 else side.begun
-        return _wall(side, begun, sums, remember(side.samples, sample), fresh)
-    side = _with_faces(side, remember(side.faces, sample))
+        samples = remember(side.samples, sample)
+        return side._replace(
+            mode=WALL, begun=begun, missed=samples[0].u, samples=samples, sums=sums, fresh=fresh, faces=NO_SAMPLES
+        )
+    side = side._replace(faces=remember(side.faces, sample))
     if sample.u - side.missed < CONFIRMED:
         return side
     extent = side.missed - side.begun
     if side.sums.n < 3.0 or extent < params.wall or abs(slope(side.sums, EMPTY)) > STEEPEST:
-        return _fresh_start(side)
+        return _anew(side)
     edge = corner(side.samples + side.faces, _line(side.sums, EMPTY), -1.0, half_angle)
     extent = edge - side.begun
-    return SideState(
-        GAP,
-        side.n,
-        side.u,
-        side.w,
-        side.r,
-        side.last,
-        0,
-        side.begun,
-        extent,
-        side.missed,
-        0,
-        NO_SAMPLES,
-        EMPTY,
-        side.sums,
-        edge,
-        DEEP,
-        side.found,
-        False,
-        0.0,
-        NO_SAMPLES,
-        EMPTY,
+    return _anew(side)._replace(
+        mode=GAP, begun=side.begun, extent=extent, missed=side.missed, before=side.sums, edge=edge
     )
 
 
@@ -301,74 +262,9 @@ def _on_next_wall(side: SideState, sample: Heard, half_angle: float, params: Sea
 
 
 def _begin_wall(side: SideState, sample: Heard) -> SideState:
-    return SideState(
-        WALL,
-        side.n,
-        side.u,
-        side.w,
-        side.r,
-        side.last,
-        0,
-        sample.u,
-        0.0,
-        sample.u,
-        0,
-        remember(NO_SAMPLES, sample),
-        EMPTY,
-        EMPTY,
-        0.0,
-        DEEP,
-        side.found,
-        False,
-        0.0,
-        NO_SAMPLES,
-        EMPTY,
-    )
+    return _anew(side)._replace(mode=WALL, begun=sample.u, missed=sample.u, samples=remember(NO_SAMPLES, sample))
 
 
-def _fresh_start(side: SideState) -> SideState:
-    return SideState(
-        NOTHING,
-        side.n,
-        side.u,
-        side.w,
-        side.r,
-        side.last,
-        0,
-        0.0,
-        0.0,
-        0.0,
-        0,
-        NO_SAMPLES,
-        EMPTY,
-        EMPTY,
-        0.0,
-        DEEP,
-        side.found,
-        False,
-        0.0,
-        NO_SAMPLES,
-        EMPTY,
-    )
-
-
-def _wall(side: SideState, begun: float, sums: Sums, samples: tuple[Heard, ...], fresh: bool) -> SideState:
-    return side._replace(
-        mode=WALL, begun=begun, missed=samples[0].u, samples=samples, sums=sums, fresh=fresh, faces=NO_SAMPLES
-    )
-
-
-def _with_bin(side: SideState, n: float, u: float, w: float, r: float) -> SideState:
-    return side._replace(n=n, u=u, w=w, r=r)
-
-
-def _with_last(side: SideState, last: Heard, steady: int) -> SideState:
-    return side._replace(last=last, steady=steady, fresh=False)
-
-
-def _with_faces(side: SideState, faces: tuple[Heard, ...]) -> SideState:
-    return side._replace(faces=faces)
-
-
-def _not_fresh(side: SideState) -> SideState:
-    return side._replace(fresh=False)
+def _anew(side: SideState) -> SideState:
+    """Return the side as it starts, but for the bin being filled, the last one and the gaps counted."""
+    return START._replace(n=side.n, u=side.u, w=side.w, r=side.r, last=side.last, found=side.found)

@@ -39,7 +39,12 @@ class Compiler(NamedTuple):
 
     command: tuple[str, ...]
     words: str
+    """Its version, and the flags that it is always called with."""
     is_zig: bool
+
+    def recipe(self, target: Target) -> str:
+        """Return all that a shared library for ``target`` depends on, its files aside."""
+        return " ".join((self.words, target.triple, *SHARED, *target.options))
 
     def library(self, files: Mapping[str, str], unit: str, name: str, target: Target) -> bytes:
         """Return the shared library ``name`` made of the file ``unit`` among ``files``.
@@ -81,9 +86,10 @@ def find_compiler(cc: str | None = None) -> Compiler:
     if named and named != "zig":
         return _system(tuple(shlex.split(named)))
     try:
-        return Compiler((sys.executable, "-m", "ziglang", "cc"), f"ziglang {version('ziglang')}", True)
+        words = " ".join(("ziglang", version("ziglang"), *ZIG))
     except PackageNotFoundError:
         raise RuntimeError(MISSING) from None
+    return Compiler((sys.executable, "-m", "ziglang", "cc"), words, True)
 
 
 def _system(command: tuple[str, ...]) -> Compiler:

@@ -58,7 +58,8 @@ def build(
     """
     names = sorted(platforms)
     chosen = compiler or find_compiler()
-    made_by = {"compiler": chosen.words.encode(), "platforms": " ".join(names).encode()}
+    recipes = {f"{name} {target.triple}": chosen.recipe(target) for name in names for target in PLATFORMS[name].targets}
+    made_by = {name: recipe.encode() for name, recipe in recipes.items()}
     guid = content_guid({**contents(model, names, "", fmi), **made_by})
     path = Path(out_dir) / f"{model.name}.fmu"
     if archive_guid(path) != guid:

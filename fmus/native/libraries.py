@@ -12,7 +12,7 @@ from typing import Any
 
 from fmus.compiler import members
 from fmus.locks import kept_file
-from fmus.native.compilers import SHARED, find_compiler
+from fmus.native.compilers import find_compiler
 from fmus.native.platforms import PLATFORMS, host, host_target
 from fmus.native.sources import C_FILES, translated
 from fmus.native.tables import KINDS
@@ -91,7 +91,7 @@ def kept_library(name: str, unit: str, files: Mapping[str, str]) -> Path:
     Raises ``RuntimeError`` without a C compiler, or with its words if it refuses.
     """
     compiler, target, platform = find_compiler(), host_target(), PLATFORMS[host()]
-    digest = hashlib.sha256(" ".join((compiler.words, target.triple, *SHARED, *target.options)).encode())
+    digest = hashlib.sha256(compiler.recipe(target).encode())
     for file, text in sorted(files.items()):
         digest.update(f"{file} {len(text)} {text}".encode())
     key, file = digest.hexdigest()[:16], f"{name}{platform.suffix}"

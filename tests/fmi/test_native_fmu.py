@@ -13,7 +13,9 @@ from fmpy.validation import validate_fmu
 from host import OK, Host, random_inputs
 from test_python_fmu import STEPS, in_process
 
+from fmus.contents.archive import archive_guid
 from fmus.contents.variables import fmi_variables
+from fmus.native import compilers
 from fmus.native import fmu as native_fmu
 from fmus.native.platforms import host
 
@@ -99,3 +101,15 @@ def test_two_builds_are_the_same_bytes(native_fmus, tmp_path):
 def test_another_model_has_another_guid(native_fmus):
     guids = {fmpy.read_model_description(str(native_fmus[name])).guid for name in ("Toy", "Vehicle", "Controller")}
     assert len(guids) == 3
+
+
+def test_another_flag_of_the_compiler_gives_another_guid(native_fmus, tmp_path, monkeypatch):
+    from toy_model import MODEL
+
+    with monkeypatch.context() as patch:
+        patch.setattr(compilers, "SHARED", (*compilers.SHARED, "-DANOTHER"))
+        shared = native_fmu.build(MODEL, tmp_path / "shared", [host()])
+    with monkeypatch.context() as patch:
+        patch.setattr(compilers, "ZIG", compilers.ZIG[:1])
+        zig = native_fmu.build(MODEL, tmp_path / "zig", [host()], compilers.find_compiler("zig"))
+    assert len({archive_guid(path) for path in (native_fmus["Toy"], shared, zig)}) == 3

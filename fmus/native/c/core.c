@@ -78,7 +78,24 @@ static void fmu_free(void *instance) {
     free(fmu);
 }
 
-static FmuStatus fmu_set_logging(FmuInstance *fmu, bool on, size_t count, const char *const categories[]) {
+/* Put the instance into another phase; it is NULL if the call is not allowed. */
+static FmuStatus fmu_enter(FmuInstance *fmu, FmuPhase phase) {
+    if (!fmu) return FMU_ERROR;
+    if (phase == FMU_STEPPING) fmu_refresh(fmu);
+    fmu->saved.phase = (int32_t)phase;
+    return FMU_OK;
+}
+
+static FmuStatus fmu_reset(FmuInstance *fmu) {
+    if (!fmu) return FMU_ERROR;
+    fmu_start_values(fmu);
+    return FMU_OK;
+}
+
+static FmuStatus fmu_set_logging(FmuInstance *fmu, bool on, size_t count, const char *const categories[],
+                                 const char *function) {
+    if (!fmu) return FMU_ERROR;
+    if (count && !categories) return fmu_report(fmu, FMU_ERROR, "%s: null pointer", function);
     for (size_t i = 0; i < count; i++) {
         const char *name = categories[i] ? categories[i] : "(null)";
         size_t k = 0;
@@ -125,6 +142,13 @@ static FmuStatus fmu_unknown(const FmuInstance *fmu, uint32_t reference, const c
                           (unsigned)FMU_COUNT - 1);
     return fmu_report(fmu, FMU_ERROR, "%s: %s (value reference %u) is %s", function, fmu_name(reference),
                       (unsigned)reference, FMU_KIND_NAMES[fmu_places[reference].kind]);
+}
+
+/* Refuse a call that the FMU declares it cannot do, unless it asks for nothing. */
+static FmuStatus fmu_refuse(void *instance, size_t count, const char *message) {
+    const FmuInstance *fmu = fmu_in(instance, FMU_ANY_PHASE, message);
+    if (!fmu) return FMU_ERROR;
+    return count ? fmu_report(fmu, FMU_ERROR, "%s", message) : FMU_OK;
 }
 
 /* True if the variable, which is no input, may be set now, and to this value; reports the call if not. */

@@ -100,6 +100,13 @@ static inline bool fmu_is(uint32_t reference, FmuKind kind) {
     return reference < FMU_COUNT && fmu_places[reference].kind == (uint8_t)kind;
 }
 
+/* An integer as both standards hand it out. */
+static inline int32_t fmu_int32(int64_t value) {
+    return value > INT32_MAX ? INT32_MAX : value < INT32_MIN ? INT32_MIN : (int32_t)value;
+}
+
+#define FMU_SAME(value) (value)
+
 static inline unsigned char *fmu_at(FmuInstance *fmu, uint32_t reference) {
     return (unsigned char *)&fmu->saved + fmu_places[reference].offset;
 }

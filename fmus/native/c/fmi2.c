@@ -44,9 +44,7 @@ void fmi2FreeInstance(fmi2Component c) { fmu_free(c); }
 
 fmi2Status fmi2SetDebugLogging(fmi2Component c, fmi2Boolean on, size_t count, const fmi2String categories[]) {
     FmuInstance *fmu = fmu_in(c, FMU_ANY_PHASE, "fmi2SetDebugLogging");
-    if (!fmu) return fmi2Error;
-    if (count && !categories) return FMU_NULL(fmu, "fmi2SetDebugLogging");
-    return (fmi2Status)fmu_set_logging(fmu, on != fmi2False, count, categories);
+    return (fmi2Status)fmu_set_logging(fmu, on != fmi2False, count, categories, "fmi2SetDebugLogging");
 }
 
 fmi2Status fmi2SetupExperiment(fmi2Component c, fmi2Boolean tolerance_defined, fmi2Real tolerance, fmi2Real start_time,
@@ -57,32 +55,19 @@ fmi2Status fmi2SetupExperiment(fmi2Component c, fmi2Boolean tolerance_defined, f
 }
 
 fmi2Status fmi2EnterInitializationMode(fmi2Component c) {
-    FmuInstance *fmu = fmu_in(c, FMU_INSTANTIATED, "fmi2EnterInitializationMode");
-    if (!fmu) return fmi2Error;
-    fmu->saved.phase = FMU_INITIALIZATION;
-    return fmi2OK;
+    return (fmi2Status)fmu_enter(fmu_in(c, FMU_INSTANTIATED, "fmi2EnterInitializationMode"), FMU_INITIALIZATION);
 }
 
 fmi2Status fmi2ExitInitializationMode(fmi2Component c) {
-    FmuInstance *fmu = fmu_in(c, FMU_INITIALIZATION, "fmi2ExitInitializationMode");
-    if (!fmu) return fmi2Error;
-    fmu_refresh(fmu);
-    fmu->saved.phase = FMU_STEPPING;
-    return fmi2OK;
+    return (fmi2Status)fmu_enter(fmu_in(c, FMU_INITIALIZATION, "fmi2ExitInitializationMode"), FMU_STEPPING);
 }
 
 fmi2Status fmi2Terminate(fmi2Component c) {
-    FmuInstance *fmu = fmu_in(c, FMU_STEPPING, "fmi2Terminate");
-    if (!fmu) return fmi2Error;
-    fmu->saved.phase = FMU_TERMINATED;
-    return fmi2OK;
+    return (fmi2Status)fmu_enter(fmu_in(c, FMU_STEPPING, "fmi2Terminate"), FMU_TERMINATED);
 }
 
 fmi2Status fmi2Reset(fmi2Component c) {
-    FmuInstance *fmu = fmu_in(c, FMU_ANY_PHASE, "fmi2Reset");
-    if (!fmu) return fmi2Error;
-    fmu_start_values(fmu);
-    return fmi2OK;
+    return (fmi2Status)fmu_reset(fmu_in(c, FMU_ANY_PHASE, "fmi2Reset"));
 }
 
 fmi2Status fmi2DoStep(fmi2Component c, fmi2Real time, fmi2Real step, fmi2Boolean no_rollback) {
@@ -96,14 +81,9 @@ fmi2Status fmi2CancelStep(fmi2Component c) {
     return fmu ? (fmi2Status)fmu_report(fmu, FMU_ERROR, "fmi2CancelStep: no step is ever pending") : fmi2Error;
 }
 
-static fmi2Integer fmu_integer(int64_t value) {
-    return value > INT32_MAX ? INT32_MAX : value < INT32_MIN ? INT32_MIN : (fmi2Integer)value;
-}
-
 #define FMU_IS_REAL(reference) fmu_is(reference, FMU_REAL)
 #define FMU_IS_INTEGER(reference) (fmu_is(reference, FMU_INTEGER) || fmu_is(reference, FMU_ENUMERATION))
 #define FMU_IS_BOOLEAN(reference) fmu_is(reference, FMU_BOOLEAN)
-#define FMU_SAME(value) (value)
 #define FMU_TRUTH(value) ((value) != fmi2False)
 
 #define FMU_GET(Type, Kept, is_known, convert)                                                                      \
@@ -143,7 +123,7 @@ static fmi2Integer fmu_integer(int64_t value) {
     }
 
 FMU_GET(Real, double, FMU_IS_REAL, FMU_SAME)
-FMU_GET(Integer, int64_t, FMU_IS_INTEGER, fmu_integer)
+FMU_GET(Integer, int64_t, FMU_IS_INTEGER, fmu_int32)
 FMU_GET(Boolean, bool, FMU_IS_BOOLEAN, FMU_SAME)
 FMU_SET(Real, double, FMU_IS_REAL, FMU_SAME)
 FMU_SET(Integer, int64_t, FMU_IS_INTEGER, FMU_SAME)
@@ -181,41 +161,34 @@ fmi2Status fmi2DeSerializeFMUstate(fmi2Component c, const fmi2Byte bytes[], size
     return (fmi2Status)fmu_deserialize(fmu, (const unsigned char *)bytes, size, state, "fmi2DeSerializeFMUstate");
 }
 
-/* Refuse a call this FMU declares that it cannot do, unless it asks for nothing. */
-static fmi2Status fmu_refuse(fmi2Component c, size_t count, const char *message) {
-    FmuInstance *fmu = fmu_in(c, FMU_ANY_PHASE, message);
-    if (!fmu) return fmi2Error;
-    return count ? (fmi2Status)fmu_report(fmu, FMU_ERROR, "%s", message) : fmi2OK;
-}
-
 fmi2Status fmi2GetString(fmi2Component c, const fmi2ValueReference references[], size_t count, fmi2String values[]) {
     (void)references, (void)values;
-    return fmu_refuse(c, count, "fmi2GetString: this FMU has no strings");
+    return (fmi2Status)fmu_refuse(c, count, "fmi2GetString: this FMU has no strings");
 }
 
 fmi2Status fmi2SetString(fmi2Component c, const fmi2ValueReference references[], size_t count,
                          const fmi2String values[]) {
     (void)references, (void)values;
-    return fmu_refuse(c, count, "fmi2SetString: this FMU has no strings");
+    return (fmi2Status)fmu_refuse(c, count, "fmi2SetString: this FMU has no strings");
 }
 
 fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReference unknown[], size_t unknowns,
                                         const fmi2ValueReference given[], size_t givens, const fmi2Real seed[],
                                         fmi2Real derivative[]) {
     (void)unknown, (void)given, (void)givens, (void)seed, (void)derivative;
-    return fmu_refuse(c, unknowns, "fmi2GetDirectionalDerivative: not provided");
+    return (fmi2Status)fmu_refuse(c, unknowns, "fmi2GetDirectionalDerivative: not provided");
 }
 
 fmi2Status fmi2SetRealInputDerivatives(fmi2Component c, const fmi2ValueReference references[], size_t count,
                                        const fmi2Integer order[], const fmi2Real values[]) {
     (void)references, (void)order, (void)values;
-    return fmu_refuse(c, count, "fmi2SetRealInputDerivatives: inputs are held, not interpolated");
+    return (fmi2Status)fmu_refuse(c, count, "fmi2SetRealInputDerivatives: inputs are held, not interpolated");
 }
 
 fmi2Status fmi2GetRealOutputDerivatives(fmi2Component c, const fmi2ValueReference references[], size_t count,
                                         const fmi2Integer order[], fmi2Real values[]) {
     (void)references, (void)order, (void)values;
-    return fmu_refuse(c, count, "fmi2GetRealOutputDerivatives: not provided");
+    return (fmi2Status)fmu_refuse(c, count, "fmi2GetRealOutputDerivatives: not provided");
 }
 
 /* Steps are never pending, so most questions about them have no answer: fmi2Discard. */

@@ -66,9 +66,7 @@ void fmi3FreeInstance(fmi3Instance c) { fmu_free(c); }
 
 fmi3Status fmi3SetDebugLogging(fmi3Instance c, fmi3Boolean on, size_t count, const fmi3String categories[]) {
     FmuInstance *fmu = fmu_in(c, FMU_ANY_PHASE, "fmi3SetDebugLogging");
-    if (!fmu) return fmi3Error;
-    if (count && !categories) return FMU_NULL(fmu, "fmi3SetDebugLogging");
-    return (fmi3Status)fmu_set_logging(fmu, on, count, categories);
+    return (fmi3Status)fmu_set_logging(fmu, on, count, categories, "fmi3SetDebugLogging");
 }
 
 fmi3Status fmi3EnterInitializationMode(fmi3Instance c, fmi3Boolean tolerance_defined, fmi3Float64 tolerance,
@@ -76,30 +74,19 @@ fmi3Status fmi3EnterInitializationMode(fmi3Instance c, fmi3Boolean tolerance_def
     (void)tolerance_defined, (void)tolerance;
     FmuInstance *fmu = fmu_in(c, FMU_INSTANTIATED, "fmi3EnterInitializationMode");
     if (!fmu || fmu_set_times(fmu, start_time, stop_time_defined, stop_time)) return fmi3Error;
-    fmu->saved.phase = FMU_INITIALIZATION;
-    return fmi3OK;
+    return (fmi3Status)fmu_enter(fmu, FMU_INITIALIZATION);
 }
 
 fmi3Status fmi3ExitInitializationMode(fmi3Instance c) {
-    FmuInstance *fmu = fmu_in(c, FMU_INITIALIZATION, "fmi3ExitInitializationMode");
-    if (!fmu) return fmi3Error;
-    fmu_refresh(fmu);
-    fmu->saved.phase = FMU_STEPPING;
-    return fmi3OK;
+    return (fmi3Status)fmu_enter(fmu_in(c, FMU_INITIALIZATION, "fmi3ExitInitializationMode"), FMU_STEPPING);
 }
 
 fmi3Status fmi3Terminate(fmi3Instance c) {
-    FmuInstance *fmu = fmu_in(c, FMU_STEPPING, "fmi3Terminate");
-    if (!fmu) return fmi3Error;
-    fmu->saved.phase = FMU_TERMINATED;
-    return fmi3OK;
+    return (fmi3Status)fmu_enter(fmu_in(c, FMU_STEPPING, "fmi3Terminate"), FMU_TERMINATED);
 }
 
 fmi3Status fmi3Reset(fmi3Instance c) {
-    FmuInstance *fmu = fmu_in(c, FMU_ANY_PHASE, "fmi3Reset");
-    if (!fmu) return fmi3Error;
-    fmu_start_values(fmu);
-    return fmi3OK;
+    return (fmi3Status)fmu_reset(fmu_in(c, FMU_ANY_PHASE, "fmi3Reset"));
 }
 
 fmi3Status fmi3DoStep(fmi3Instance c, fmi3Float64 time, fmi3Float64 step, fmi3Boolean no_rollback,
@@ -129,12 +116,6 @@ static bool fmu_fits(FmuInstance *fmu, const fmi3ValueReference references[], si
     fmu_report(fmu, FMU_ERROR, "%s: %zu values for variables of %zu elements", function, value_count, elements);
     return false;
 }
-
-static fmi3Int32 fmu_int32(int64_t value) {
-    return value > INT32_MAX ? INT32_MAX : value < INT32_MIN ? INT32_MIN : (fmi3Int32)value;
-}
-
-#define FMU_SAME(value) (value)
 
 #define FMU_GET(Type, Kept, kind, convert)                                                                        \
     fmi3Status fmi3Get##Type(fmi3Instance c, const fmi3ValueReference references[], size_t count,                 \

@@ -1,11 +1,5 @@
 /* The functions of FMI 3.0 that every library has and this FMU declares that it cannot do: refused by name. */
 
-static fmi3Status fmu_refuse(fmi3Instance c, size_t count, const char *message) {
-    FmuInstance *fmu = fmu_in(c, FMU_ANY_PHASE, message);
-    if (!fmu) return fmi3Error;
-    return count ? (fmi3Status)fmu_report(fmu, FMU_ERROR, "%s", message) : fmi3OK;
-}
-
 /* A type that no variable of this FMU has: the message names the one that was meant. */
 static fmi3Status fmu_no_such_type(fmi3Instance c, const fmi3ValueReference references[], size_t count,
                                    const char *function) {
@@ -79,8 +73,10 @@ fmi3Instance fmi3InstantiateScheduledExecution(fmi3String name, fmi3String token
     return fmu_no_interface(name, environment, log);
 }
 
-#define FMU_ABSENT_MODE(function) \
-    fmi3Status function(fmi3Instance c) { return fmu_refuse(c, 1, #function ": this FMU has no such mode"); }
+#define FMU_ABSENT_MODE(function)                                                     \
+    fmi3Status function(fmi3Instance c) {                                             \
+        return (fmi3Status)fmu_refuse(c, 1, #function ": this FMU has no such mode"); \
+    }
 
 FMU_ABSENT_MODE(fmi3EnterEventMode)
 FMU_ABSENT_MODE(fmi3EnterConfigurationMode)
@@ -93,19 +89,19 @@ fmi3Status fmi3UpdateDiscreteStates(fmi3Instance c, fmi3Boolean *again, fmi3Bool
                                     fmi3Boolean *nominals_changed, fmi3Boolean *values_changed,
                                     fmi3Boolean *next_defined, fmi3Float64 *next_time) {
     (void)again, (void)terminate, (void)nominals_changed, (void)values_changed, (void)next_defined, (void)next_time;
-    return fmu_refuse(c, 1, "fmi3UpdateDiscreteStates: this FMU has no event mode");
+    return (fmi3Status)fmu_refuse(c, 1, "fmi3UpdateDiscreteStates: this FMU has no event mode");
 }
 
 fmi3Status fmi3GetNumberOfVariableDependencies(fmi3Instance c, fmi3ValueReference reference, size_t *count) {
     (void)reference, (void)count;
-    return fmu_refuse(c, 1, "fmi3GetNumberOfVariableDependencies: not provided");
+    return (fmi3Status)fmu_refuse(c, 1, "fmi3GetNumberOfVariableDependencies: not provided");
 }
 
 fmi3Status fmi3GetVariableDependencies(fmi3Instance c, fmi3ValueReference dependent, size_t dependent_elements[],
                                        fmi3ValueReference independents[], size_t independent_elements[],
                                        fmi3DependencyKind kinds[], size_t count) {
     (void)dependent, (void)dependent_elements, (void)independents, (void)independent_elements, (void)kinds;
-    return fmu_refuse(c, count, "fmi3GetVariableDependencies: not provided");
+    return (fmi3Status)fmu_refuse(c, count, "fmi3GetVariableDependencies: not provided");
 }
 
 fmi3Status fmi3GetDirectionalDerivative(fmi3Instance c, const fmi3ValueReference unknowns[], size_t unknown_count,
@@ -114,7 +110,7 @@ fmi3Status fmi3GetDirectionalDerivative(fmi3Instance c, const fmi3ValueReference
                                         size_t sensitivity_count) {
     (void)unknowns, (void)knowns, (void)known_count, (void)seed, (void)seed_count, (void)sensitivity;
     (void)sensitivity_count;
-    return fmu_refuse(c, unknown_count, "fmi3GetDirectionalDerivative: not provided");
+    return (fmi3Status)fmu_refuse(c, unknown_count, "fmi3GetDirectionalDerivative: not provided");
 }
 
 fmi3Status fmi3GetAdjointDerivative(fmi3Instance c, const fmi3ValueReference unknowns[], size_t unknown_count,
@@ -122,13 +118,13 @@ fmi3Status fmi3GetAdjointDerivative(fmi3Instance c, const fmi3ValueReference unk
                                     size_t seed_count, fmi3Float64 sensitivity[], size_t sensitivity_count) {
     (void)unknowns, (void)knowns, (void)known_count, (void)seed, (void)seed_count, (void)sensitivity;
     (void)sensitivity_count;
-    return fmu_refuse(c, unknown_count, "fmi3GetAdjointDerivative: not provided");
+    return (fmi3Status)fmu_refuse(c, unknown_count, "fmi3GetAdjointDerivative: not provided");
 }
 
 fmi3Status fmi3GetOutputDerivatives(FMU_REFERENCES, const fmi3Int32 orders[], fmi3Float64 values[],
                                     size_t value_count) {
     (void)references, (void)orders, (void)values, (void)value_count;
-    return fmu_refuse(c, count, "fmi3GetOutputDerivatives: not provided");
+    return (fmi3Status)fmu_refuse(c, count, "fmi3GetOutputDerivatives: not provided");
 }
 
 fmi3Status fmi3GetIntervalDecimal(FMU_REFERENCES, fmi3Float64 intervals[], fmi3IntervalQualifier qualifiers[]) {
@@ -172,7 +168,7 @@ fmi3Status fmi3SetShiftFraction(FMU_REFERENCES, const fmi3UInt64 counters[], con
     return fmu_no_such_type(c, references, count, "fmi3SetShiftFraction");
 }
 
-#define FMU_NO_EXCHANGE(function) fmu_refuse(c, 1, #function ": this FMU is for co-simulation only")
+#define FMU_NO_EXCHANGE(function) (fmi3Status)fmu_refuse(c, 1, #function ": this FMU is for co-simulation only")
 
 fmi3Status fmi3CompletedIntegratorStep(fmi3Instance c, fmi3Boolean no_rollback, fmi3Boolean *enter_event_mode,
                                        fmi3Boolean *terminate) {

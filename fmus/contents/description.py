@@ -1,31 +1,40 @@
 """From a model package's types to FMI 2.0's modelDescription.xml, the same for every kind of FMU."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from enum import IntEnum
 from importlib.metadata import PackageNotFoundError, version
-from typing import Any
-from xml.etree import ElementTree
 from xml.etree.ElementTree import Element, SubElement
 
 from fmus.contents.dependencies import initial_dependencies
 from fmus.contents.units import unit
 from fmus.contents.variables import FmiVariable, describe, limits, mode_types, shown_variables, states_text
+from fmus.contents.xml_file import as_text, xml_bytes
 from modelkit.model import Model
 
 GENERATED = "2000-01-01T00:00:00Z"
 """Date written into every FMU: the content decides the bytes, not the day."""
 AUTHOR = "The apa-cosim authors"
 LOG_CATEGORIES = {
-    "logStatusWarning": "Messages with fmi2Warning",
-    "logStatusDiscard": "Messages with fmi2Discard",
-    "logStatusError": "Messages with fmi2Error: wrong calls, exceptions with their traceback",
-    "logStatusFatal": "Messages with fmi2Fatal",
+    "logStatusWarning": "Messages with fmi{fmi}Warning",
+    "logStatusDiscard": "Messages with fmi{fmi}Discard",
+    "logStatusError": "Messages with fmi{fmi}Error: wrong calls, exceptions with their traceback",
+    "logStatusFatal": "Messages with fmi{fmi}Fatal",
     "logAll": "All messages",
 }
+ABILITIES = {
+    "needsExecutionTool": False,
+    "canHandleVariableCommunicationStepSize": True,
+    "canInterpolateInputs": False,
+    "canBeInstantiatedOnlyOncePerProcess": False,
+    "canNotUseMemoryManagementFunctions": True,
+    "canGetAndSetFMUstate": True,
+    "canSerializeFMUstate": True,
+}
+"""What every FMU of FMI 2.0 made here can do: attributes of CoSimulation."""
 
 
 def model_description(
-    model: Model, *, guid: str, generation_tool: str, flags: dict[str, bool], sources: tuple[str, ...] = ()
+    model: Model, *, guid: str, generation_tool: str, flags: Mapping[str, bool], sources: tuple[str, ...] = ()
 ) -> bytes:
     """Return modelDescription.xml. ``flags`` are the capability attributes of the CoSimulation element.
 
@@ -33,42 +42,53 @@ def model_description(
     """
     known = shown_variables(model)
     types = mode_types(model)
-    root = Element(
-        "fmiModelDescription",
-        fmiVersion="2.0",
-        modelName=model.name,
-        guid=guid,
-        description=model.description,
-        author=AUTHOR,
-        version=project_version(),
-        copyright="Copyright (c) the apa-cosim authors",
-        license="MIT",
-        generationTool=generation_tool,
-        generationDateAndTime=GENERATED,
-        variableNamingConvention="structured",
-    )
+    root = description_root(model, 2, generation_tool, guid=guid)
     root.append(_interface(model, flags, sources))
     root.append(unit_definitions(known))
     used = {variable.signal.states for variable in known}
     if used != {None}:
         root.append(_type_definitions({mode: name for mode, name in types.items() if mode in used}))
-    categories = SubElement(root, "LogCategories")
-    for name, text in LOG_CATEGORIES.items():
-        SubElement(categories, "Category", name=name, description=text)
-    SubElement(
-        root, "DefaultExperiment", startTime="0.0", stopTime=as_text(model.stop_time), stepSize=as_text(model.step_size)
-    )
+    root.extend(log_and_experiment(model, 2))
     scalars = SubElement(root, "ModelVariables")
     scalars.extend(_scalar(variable, types) for variable in known)
     root.append(_structure(known, initial_dependencies(model)))
-    ElementTree.indent(root)
-    content: bytes = ElementTree.tostring(root, encoding="UTF-8", xml_declaration=True)
-    return content + b"\n"
+    return xml_bytes(root)
 
 
-def _interface(model: Model, flags: dict[str, bool], sources: tuple[str, ...]) -> Element:
-    capabilities = {"modelIdentifier": model.name} | {name: as_text(value) for name, value in flags.items()}
-    interface = Element("CoSimulation", capabilities)
+def description_root(model: Model, fmi: int, generation_tool: str, **token: str) -> Element:
+    """Return the outermost element of a modelDescription.xml; ``token`` is what the binary answers to."""
+    attributes = {
+        "fmiVersion": f"{fmi}.0",
+        "modelName": model.name,
+        **token,
+        "description": model.description,
+        "author": AUTHOR,
+        "version": project_version(),
+        "copyright": "Copyright (c) the apa-cosim authors",
+        "license": "MIT",
+        "generationTool": generation_tool,
+        "generationDateAndTime": GENERATED,
+        "variableNamingConvention": "structured",
+    }
+    return Element("fmiModelDescription", attributes)
+
+
+def co_simulation(model: Model, flags: Mapping[str, bool]) -> Element:
+    """Return the element CoSimulation."""
+    return Element("CoSimulation", {"modelIdentifier": model.name} | {key: as_text(flags[key]) for key in flags})
+
+
+def log_and_experiment(model: Model, fmi: int) -> tuple[Element, Element]:
+    """Return LogCategories and DefaultExperiment."""
+    categories = Element("LogCategories")
+    for name, text in LOG_CATEGORIES.items():
+        SubElement(categories, "Category", name=name, description=text.format(fmi=fmi))
+    times = {"startTime": 0.0, "stopTime": model.stop_time, "stepSize": model.step_size}
+    return categories, Element("DefaultExperiment", {key: as_text(value) for key, value in times.items()})
+
+
+def _interface(model: Model, flags: Mapping[str, bool], sources: tuple[str, ...]) -> Element:
+    interface = co_simulation(model, flags)
     if sources:
         files = SubElement(interface, "SourceFiles")
         for name in sources:
@@ -82,11 +102,6 @@ def project_version() -> str:
         return version("apa-cosim")
     except PackageNotFoundError:
         return "0"
-
-
-def as_text(value: Any) -> str:
-    """Return a number or truth value as XML has it; floats with all their digits."""
-    return str(value).lower() if isinstance(value, bool) else repr(value)
 
 
 def unit_definitions(known: Iterable[FmiVariable]) -> Element:
@@ -113,6 +128,18 @@ def _type_definitions(types: dict[type[IntEnum], str]) -> Element:
 
 
 def _scalar(variable: FmiVariable, types: dict[type[IntEnum], str]) -> Element:
+    node = Element("ScalarVariable", head_attributes(variable))
+    mode = variable.signal.states
+    attributes = {} if mode is None else {"declaredType": types[mode]}
+    attributes |= dict(type_attributes(variable))
+    if variable.start is not None:
+        attributes["start"] = as_text(variable.start)
+    SubElement(node, variable.fmi_type, attributes)
+    return node
+
+
+def head_attributes(variable: FmiVariable) -> dict[str, str]:
+    """Return what is said of a variable whatever its type is."""
     attributes = {
         "name": variable.name,
         "valueReference": str(variable.vr),
@@ -121,14 +148,11 @@ def _scalar(variable: FmiVariable, types: dict[type[IntEnum], str]) -> Element:
         "variability": variable.variability,
         "initial": variable.initial,
     }
-    node = Element("ScalarVariable", {name: value for name, value in attributes.items() if value is not None})
-    mode = variable.signal.states
-    declared = {} if mode is None else {"declaredType": types[mode]}
-    SubElement(node, variable.fmi_type, declared | dict(_type_attributes(variable)))
-    return node
+    return {name: value for name, value in attributes.items() if value is not None}
 
 
-def _type_attributes(variable: FmiVariable) -> Iterator[tuple[str, str]]:
+def type_attributes(variable: FmiVariable) -> Iterator[tuple[str, str]]:
+    """Yield unit and limits of a variable, the same in FMI 2.0 and 3.0."""
     if variable.kind is float:
         this = unit(variable.signal.unit)
         yield "unit", this.name
@@ -141,8 +165,6 @@ def _type_attributes(variable: FmiVariable) -> Iterator[tuple[str, str]]:
         yield "max", as_text(variable.kind(high))
     if variable.kind is float and unit(variable.signal.unit).nominal != 1.0:
         yield "nominal", as_text(unit(variable.signal.unit).nominal)
-    if variable.start is not None:
-        yield "start", as_text(variable.start)
 
 
 def _structure(known: list[FmiVariable], initial: dict[str, list[str]]) -> Element:

@@ -9,6 +9,7 @@ from fmus.contents.arrays import shown_arrays
 from fmus.contents.icon import icon
 from fmus.contents.pages import LICENCE, index_page
 from fmus.contents.variables import shown_variables
+from fmus.contents.xml_file import xml_bytes
 from modelkit.model import Model, Terminal
 from modelkit.variables import flatten, variables
 
@@ -52,7 +53,7 @@ def terminals(model: Model, fmi: int = 2) -> bytes:
             for port in chosen:
                 attributes = {"variableName": port, "memberName": port, "variableKind": "signal"}
                 SubElement(terminal, "TerminalMemberVariable", attributes)
-    return _xml(root)
+    return xml_bytes(root)
 
 
 def _is_member(port: str, causality: str, members: tuple[str, ...]) -> bool:
@@ -79,7 +80,7 @@ def reference_result(model: Model) -> dict[str, bytes]:
     lines = [",".join(f'"{name}"' for name in ["time", *(variables(model.outputs)[place].name for place in kept)])]
     lines += [",".join(repr(float(value)) for value in row) for row in _rows(model, kept)]
     table = ("\n".join(lines) + "\n").encode()
-    return {f"{LS_REF}/fmi-ls-manifest.xml": _xml(root), f"{LS_REF}/{file}": table}
+    return {f"{LS_REF}/fmi-ls-manifest.xml": xml_bytes(root), f"{LS_REF}/{file}": table}
 
 
 def _rows(model: Model, kept: list[int]) -> list[list[float]]:
@@ -100,9 +101,3 @@ def _rows(model: Model, kept: list[int]) -> list[list[float]]:
 def _picked(outputs: Any, kept: list[int]) -> list[float]:
     scalars = flatten(outputs)
     return [scalars[place] for place in kept]
-
-
-def _xml(root: Element) -> bytes:
-    ElementTree.indent(root)
-    content: bytes = ElementTree.tostring(root, encoding="UTF-8", xml_declaration=True)
-    return content + b"\n"

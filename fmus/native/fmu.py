@@ -2,38 +2,20 @@
 
 from collections.abc import Iterable
 from pathlib import Path
-from xml.etree import ElementTree
 from xml.etree.ElementTree import Element, SubElement
 
 from fmus.contents.archive import DESCRIPTION, archive_guid, content_guid, write_archive
-from fmus.contents.description import model_description, project_version
+from fmus.contents.description import ABILITIES, model_description, project_version
+from fmus.contents.description3 import ABILITIES as ABILITIES3
 from fmus.contents.description3 import model_description3
 from fmus.contents.extras import documentation, reference_result
+from fmus.contents.xml_file import xml_bytes
 from fmus.native.compilers import FLAGS, Compiler, find_compiler
 from fmus.native.fat_binary import fat_binary
 from fmus.native.platforms import PLATFORMS
 from fmus.native.sources import fmu_sources, unit_name
 from modelkit.model import Model
 
-ABILITIES = {
-    2: {
-        "needsExecutionTool": False,
-        "canHandleVariableCommunicationStepSize": True,
-        "canInterpolateInputs": False,
-        "canBeInstantiatedOnlyOncePerProcess": False,
-        "canNotUseMemoryManagementFunctions": True,
-        "canGetAndSetFMUstate": True,
-        "canSerializeFMUstate": True,
-    },
-    3: {
-        "needsExecutionTool": False,
-        "canBeInstantiatedOnlyOncePerProcess": False,
-        "canGetAndSetFMUState": True,
-        "canSerializeFMUState": True,
-        "canHandleVariableCommunicationStepSize": True,
-        "hasEventMode": False,
-    },
-}
 NEEDS = """
 <p>This FMU is machine code for {platforms}, made from the C in its folder <code>sources</code>, which was made from
 the model's Python source. It needs no Python, no other library than the C library, and no licence. Several instances
@@ -74,12 +56,11 @@ def contents(model: Model, platforms: list[str], guid: str, fmi: int = 2) -> dic
     needs = NEEDS.format(platforms=", ".join(platforms), unit=unit, name=model.name, fmi=fmi)
     files = documentation(model, needs, fmi)
     files |= {f"sources/{name}": text.encode() for name, text in fmu_sources(model, guid, fmi).items()}
-    flags = ABILITIES[fmi]
     if fmi == 3:
         files["sources/buildDescription.xml"] = build_description(model)
-        files[DESCRIPTION] = model_description3(model, token=guid, generation_tool=tool, flags=flags)
+        files[DESCRIPTION] = model_description3(model, token=guid, generation_tool=tool, flags=ABILITIES3)
     else:
-        files[DESCRIPTION] = model_description(model, guid=guid, generation_tool=tool, flags=flags, sources=(unit,))
+        files[DESCRIPTION] = model_description(model, guid=guid, generation_tool=tool, flags=ABILITIES, sources=(unit,))
     return files
 
 
@@ -110,6 +91,4 @@ def build_description(model: Model) -> bytes:
     SubElement(files, "PreprocessorDefinition", definition)
     text = "mathematical functions, where the C library does not have them in it"
     SubElement(configuration, "Library", name="m", external="true", description=text)
-    ElementTree.indent(root)
-    content: bytes = ElementTree.tostring(root, encoding="UTF-8", xml_declaration=True)
-    return content + b"\n"
+    return xml_bytes(root)

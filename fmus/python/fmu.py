@@ -3,20 +3,11 @@
 from pathlib import Path
 
 from fmus.contents.archive import DESCRIPTION, archive_guid, content_guid, write_archive
-from fmus.contents.description import model_description, project_version
+from fmus.contents.description import ABILITIES, model_description, project_version
 from fmus.contents.extras import documentation, reference_result
 from fmus.python.bundle import bundle, runtime_folder, runtime_licence, runtime_version
 from modelkit.model import Model
 
-FLAGS = {
-    "needsExecutionTool": False,
-    "canHandleVariableCommunicationStepSize": True,
-    "canInterpolateInputs": False,
-    "canBeInstantiatedOnlyOncePerProcess": False,
-    "canNotUseMemoryManagementFunctions": True,
-    "canGetAndSetFMUstate": True,
-    "canSerializeFMUstate": True,
-}
 NEEDS = """
 <p>This FMU holds its model as Python source and runs it in the Python of the host: CPython 3.11 or later on
 linux64 or win64. A host that is a Python program (FMPy, libcosimpy, OMSimulator's Python package) needs nothing more;
@@ -50,7 +41,7 @@ def _content(model: Model) -> dict[str, bytes]:
 
 def _description(model: Model, guid: str) -> bytes:
     tool = f"apa-cosim {project_version()} with PythonFMU {runtime_version()}"
-    return model_description(model, guid=guid, generation_tool=tool, flags=FLAGS)
+    return model_description(model, guid=guid, generation_tool=tool, flags=ABILITIES)
 
 
 def _binaries(name: str) -> dict[str, bytes]:

@@ -17,7 +17,8 @@ from typing import Any
 
 from fmus.contents.archive import DESCRIPTION, content_guid, write_archive
 from fmus.contents.description import AUTHOR, GENERATED
-from fmus.systems.system import NAME, System, as_text
+from fmus.contents.xml_file import as_text
+from fmus.systems.system import NAME, System
 
 PACKAGE = "fmu_manipulation_toolbox"
 INSTALL = "pip install fmu-manipulation-toolbox"

@@ -10,7 +10,8 @@ from xml.etree import ElementTree
 from xml.etree.ElementTree import Element, SubElement
 
 from fmus.contents.archive import write_archive
-from fmus.systems.system import NAME, Part, System, as_text
+from fmus.contents.xml_file import as_text, xml_bytes
+from fmus.systems.system import NAME, Part, System
 
 SSP = "http://ssp-standard.org/SSP1/"
 SPACES = {
@@ -118,6 +119,4 @@ def _parameter_set(part: Part) -> Element:
 def _xml(root: Element) -> bytes:
     for prefix, address in SPACES.items():
         ElementTree.register_namespace(prefix, address)
-    ElementTree.indent(root)
-    content: bytes = ElementTree.tostring(root, encoding="UTF-8", xml_declaration=True)
-    return content + b"\n"
+    return xml_bytes(root)

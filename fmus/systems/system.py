@@ -45,8 +45,3 @@ class System(NamedTuple):
         wires = connections([part_of(part.name, part.model) for part in self.parts])
         names = [[item.name for item in variables(part.model.inputs)] for part in self.parts]
         return [(self.parts[wire.source], self.parts[wire.target], names[wire.target][wire.input]) for wire in wires]
-
-
-def as_text(value: Any) -> str:
-    """Return a number or truth value as FMI and SSP write it, with all its digits."""
-    return str(value).lower() if isinstance(value, bool) else repr(value)

@@ -100,7 +100,7 @@ def compiled_rows(models: Mapping[str, Model], ending: Ending | None, kept: Sequ
         shapes = (
             (parameters, tables.width, np.float64),
             (times, 2 + len(models), np.int64),
-            (out, 2 + len(kept), np.float64),
+            (out, FIRST_KEPT + len(kept), np.float64),
         )
         for array, width, kind in shapes:
             if array.shape != (count, width) or array.dtype != kind or not array.flags.c_contiguous:

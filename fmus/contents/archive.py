@@ -2,11 +2,12 @@
 
 import hashlib
 import io
-import os
 import re
 import zipfile
 from collections.abc import Mapping
 from pathlib import Path
+
+from fmus.locks import write_whole
 
 DATE = (1980, 1, 1, 0, 0, 0)
 DESCRIPTION = "modelDescription.xml"
@@ -43,11 +44,9 @@ def archive_bytes(files: Mapping[str, bytes]) -> bytes:
 
 
 def write_archive(path: Path, files: Mapping[str, bytes]) -> Path:
-    """Write the zip of ``files`` beside ``path``, then move it there, so that no reader sees half of it."""
+    """Return ``path``, now the zip of ``files``; no reader ever sees half of it."""
     path.parent.mkdir(parents=True, exist_ok=True)
-    part = path.with_name(f"{path.name}.{os.getpid()}.part")
-    part.write_bytes(archive_bytes(files))
-    part.replace(path)
+    write_whole(path, archive_bytes(files))
     return path
 
 

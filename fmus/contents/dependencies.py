@@ -13,7 +13,6 @@ The result is the same each time and is kept in ``fmus/dist/cache`` under the ha
 """
 
 import json
-import os
 import random
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
@@ -21,7 +20,7 @@ from typing import Any
 
 import modelkit
 from fmus.contents.archive import content_hash
-from fmus.locks import one_at_a_time
+from fmus.locks import kept_file
 from fmus.places import CACHE
 from modelkit.model import Model
 from modelkit.variables import Variable, constructor, flatten, variables
@@ -30,6 +29,7 @@ DRAWN = 9000
 """Points drawn around the defaults times parameters moved there."""
 WAYS = 4
 """How often all are moved from each of those."""
+SUFFIX = ".dependencies.json"
 KEPT = 8
 """Results of older sources that stay in the cache."""
 MOSTLY = 0.9
@@ -42,15 +42,10 @@ Values = list[Any]
 
 def initial_dependencies(model: Model) -> Found:
     """Return output -> the parameters it depends on at the start, in the order of the types."""
-    path = CACHE / f"{model.name}-{_hash(model)[:32]}.dependencies.json"
-    with one_at_a_time(path):
-        if not path.exists():
-            part = path.with_name(f"{path.name}.{os.getpid()}.part")
-            part.write_text(json.dumps(find_dependencies(model)))
-            part.replace(path)
-            _forget_old(model)
-        found: Found = json.loads(path.read_text())
-        return found
+    key = _hash(model)[:32]
+    path = kept_file(CACHE, model.name, key, SUFFIX, lambda: json.dumps(find_dependencies(model)).encode(), KEPT)
+    found: Found = json.loads(path.read_bytes())
+    return found
 
 
 def find_dependencies(model: Model) -> Found:
@@ -203,9 +198,3 @@ def _hash(model: Model) -> str:
         sources = sorted(origin.parent.rglob("*.py")) if origin.name == "__init__.py" else [origin]
         files |= {f"{origin.parent.name}/{path.relative_to(origin.parent)}": path.read_bytes() for path in sources}
     return content_hash(files)
-
-
-def _forget_old(model: Model) -> None:
-    by_age = sorted(CACHE.glob(f"{model.name}-*.dependencies.json"), key=lambda path: path.stat().st_mtime)
-    for path in by_age[:-KEPT]:
-        path.unlink(missing_ok=True)

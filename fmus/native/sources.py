@@ -7,7 +7,7 @@ from pathlib import Path
 
 from fmus import compiler
 from fmus.compiler import Translation, translate
-from fmus.locks import forget_old, kept_file
+from fmus.locks import kept_file
 from fmus.native.compilers import FLAGS
 from fmus.native.tables import longest_name, runs_file, variables_file
 from fmus.places import CACHE
@@ -62,8 +62,7 @@ def translated(model: Model) -> Translation:
     words = [model.name, *(f"{part.__module__} {part.__qualname__}" for part in parts)]
     words += [repr(flatten(cls())) for cls in (model.params, model.inputs)]
     key = _hash_of([package, ROOT / "modelkit", Path(compiler.__file__).parent], "\0".join(words))
-    path = kept_file(CACHE, model.name, key, SUFFIX, lambda: json.dumps(translate(model)._asdict()).encode())
-    forget_old(CACHE, model.name, SUFFIX, KEPT)
+    path = kept_file(CACHE, model.name, key, SUFFIX, lambda: json.dumps(translate(model)._asdict()).encode(), KEPT)
     return Translation(**json.loads(path.read_bytes()))
 
 

@@ -54,7 +54,7 @@ def invoke(
     body: Body, node: ast.Call, function: FunctionType, nodes: list[ast.expr], own: Value | None = None
 ) -> Value:
     """Return the result of a function of the model; ``own`` is what a method belongs to."""
-    known = signature(body.program, function, node)
+    known = signature(body.program, function)
     name = function.__name__
     given = _arguments(node, name, list(known.kinds), nodes, own is not None)
     values: list[Value] = []

@@ -154,21 +154,30 @@ def _all_or_any(body: Body, node: ast.BoolOp) -> Value:
 
 
 def _joined(body: Body, node: ast.BoolOp, arms: list[tuple[list[Any], Value]]) -> Value:
-    """Return truth values joined; the right side is worked out only if it is needed."""
+    """Return truth values joined."""
+    if any(lines for lines, _ in arms[1:]):
+        return _one_by_one(body, node, arms, "holds")
     is_and = isinstance(node.op, ast.And)
     level = AND if is_and else OR
     body.lines += arms[0][0]
-    if not any(lines for lines, _ in arms[1:]):
-        parts = [within(value, level if value.level == level else BIT_OR) for _, value in arms]
-        return Value(BOOL, (" && " if is_and else " || ").join(parts), level)
-    result = body.names.add("holds")
-    body.emit(f"bool {result} = {arms[0][1].text};")
+    parts = [within(value, level if value.level == level else BIT_OR) for _, value in arms]
+    return Value(BOOL, (" && " if is_and else " || ").join(parts), level)
+
+
+def _one_by_one(body: Body, node: ast.BoolOp, arms: list[tuple[list[Any], Value]], name: str) -> Value:
+    """Return the operand that decides, in a variable; those after it are not worked out."""
+    kind = arms[0][1].kind
+    assert isinstance(kind, Scalar)
+    result = Value(kind, body.names.add(name))
+    goes_on = truth(result) if isinstance(node.op, ast.And) else negated(truth(result))
+    body.lines += arms[0][0]
+    body.emit(f"{kind.c} {result.text} = {arms[0][1].text};")
     for lines, value in arms[1:]:
-        body.emit(f"if ({result if is_and else f'!{result}'}) {{")
+        body.emit(f"if ({goes_on.text}) {{")
         body.lines += lines
-        body.emit(f"{result} = {value.text};")
+        body.emit(f"{result.text} = {value.text};")
         body.emit("}")
-    return Value(BOOL, result)
+    return result
 
 
 def boolean(body: Body, node: ast.BoolOp) -> Value:
@@ -181,16 +190,7 @@ def boolean(body: Body, node: ast.BoolOp) -> Value:
     if any(value.kind != kind for _, value in arms) or not isinstance(kind, Scalar):
         what = f"'{word}' between {' and '.join(dict.fromkeys(described(value.kind) for _, value in arms))}"
         raise CannotError(node, what, "write a comparison for each, or a if c else b")
-    result = body.names.add("chosen")
-    body.lines += arms[0][0]
-    body.emit(f"{kind.c} {result} = {arms[0][1].text};")
-    for lines, value in arms[1:]:
-        test = truth(Value(kind, result))
-        body.emit(f"if ({test.text if word == 'and' else negated(test).text}) {{")
-        body.lines += lines
-        body.emit(f"{result} = {value.text};")
-        body.emit("}")
-    return Value(kind, result)
+    return _one_by_one(body, node, arms, "chosen")
 
 
 def choice(body: Body, node: ast.IfExp) -> Value:

@@ -58,17 +58,17 @@ class Instance:
     head: str = ""
 
 
-def signature(program: Program, function: FunctionType, node: ast.AST) -> Signature:
+def signature(program: Program, function: FunctionType) -> Signature:
     """Return the signature of ``function``; what is wrong with it is noted once."""
     if function not in program.signatures:
-        program.signatures[function] = _read_signature(program, function, node)
+        program.signatures[function] = _read_signature(program, function)
     found: Signature | None = program.signatures[function]
     if found is None:
         raise AlreadySaidError
     return found
 
 
-def _read_signature(program: Program, function: FunctionType, call: ast.AST) -> Signature | None:
+def _read_signature(program: Program, function: FunctionType) -> Signature | None:
     node = program.library.function(function)
     module = function.__module__
     before = len(program.refusals)
@@ -138,7 +138,7 @@ def _is_property(node: ast.FunctionDef) -> bool:
 
 def instance_of(program: Program, function: FunctionType, kinds: tuple[Kind, ...], node: ast.AST | None) -> Instance:
     """Return the C function for arguments of these kinds; it is translated now if it is new."""
-    known = signature(program, function, node or ast.Pass())
+    known = signature(program, function)
     if function in program.stack:
         advice = "write a loop with a fixed number of rounds"
         raise CannotError(node, f"recursion: {function.__name__}() calls itself", advice)

@@ -77,7 +77,7 @@ def bind(body: Body, name: str, value: Value, node: ast.AST, source: ast.AST | N
     if isinstance(value.kind, Open):
         raise AlreadySaidError
     known = variable(body, name)
-    if known.kind is not None and known.parameter and _begins_anew(body, known, name, node):
+    if known.kind is not None and known.parameter and _begins_anew(body, known, name):
         slot = _result_slot(body, known, name, value.kind)
         known = Variable(slot.text if slot else body.names.add(f"next_{name}"), known.home)
         body.variables[name, ()] = known
@@ -89,7 +89,7 @@ def bind(body: Body, name: str, value: Value, node: ast.AST, source: ast.AST | N
     known.kind = value.kind if known.kind is None else known.kind
 
 
-def _begins_anew(body: Body, known: Variable, name: str, node: ast.AST) -> bool:
+def _begins_anew(body: Body, known: Variable, name: str) -> bool:
     """Return whether a parameter that is a struct or tuple is bound to something new for all the rest of the function.
 
     Then the rest gets a variable of its own, and the parameter stays a pointer to const.

@@ -73,7 +73,7 @@ class Writer:
         """Return the initializer of a constant: on one line if it fits, else a line for each part."""
         if isinstance(kind, Scalar):
             return [self.scalar_text(value, hint)]
-        heads, kinds, values, hints = self._parts(kind, value, hint)
+        heads, kinds, values, hints = self._parts(kind, value)
         inner = [self.value_lines(*part) for part in zip(kinds, values, hints, strict=True)]
         if all(len(lines) == 1 for lines in inner):
             one = "{" + ", ".join(head + lines[0] for head, lines in zip(heads, inner, strict=True)) + "}"
@@ -88,7 +88,7 @@ class Writer:
         result[-1] = result[-1][:-1]
         return [*result, "}"]
 
-    def _parts(self, kind: Kind, value: Any, hint: Any) -> tuple[list[str], list[Kind], list[Any], list[Any]]:
+    def _parts(self, kind: Kind, value: Any) -> tuple[list[str], list[Kind], list[Any], list[Any]]:
         if isinstance(kind, Struct):
             fields = fields_of(kind.cls)
             hints = [hints_of(kind.cls)[name] for name in fields]

@@ -5,7 +5,7 @@ import zipfile
 from ctypes import CFUNCTYPE, byref, c_bool, c_char_p, c_double, c_int, c_int32, c_int64, c_size_t, c_uint32, c_void_p
 
 from fmpy import read_model_description
-from raw import ERROR, OK
+from raw import ERROR, OK, array
 
 LOGGER = CFUNCTYPE(None, c_void_p, c_int, c_char_p, c_char_p)
 TYPES = {
@@ -90,8 +90,3 @@ class Library3:
 
     def free(self, component):
         self.dll.fmi3FreeInstance(c_void_p(component))
-
-
-def array(kind, *values):
-    """Return a C array of ``kind``."""
-    return (kind * len(values))(*values)

@@ -2,6 +2,7 @@
 
 import ast
 import builtins
+import sys
 from enum import Enum, IntEnum
 from types import FunctionType, ModuleType
 from typing import Any, NamedTuple
@@ -59,8 +60,6 @@ def _through_alias(found: Static, library: Library) -> Static:
     if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id == "int" and len(node.args) == 1:
         node = node.args[0]
     if isinstance(node, ast.Attribute):
-        import sys
-
         member = static(node, vars(sys.modules[found.module]), set(), library)
         if member is not None and isinstance(member.value, IntEnum) and int(member.value) == found.value:
             return member

@@ -139,13 +139,9 @@ static int stands(const Runner *runner) {
 static void initialize(const Runner *runner, const double *params) {
     for (int64_t m = 0; m < runner->batch->model_count; m++) {
         Slave *slave = &runner->slaves[m];
-        const Library *model = slave->model;
         slave->due = 1;
-        memset(slave->memory, 0, (size_t)model->size);
-        model->defaults(slave->memory);
-        for (int64_t p = 0; p < model->param_count; p++)
-            library_write(slave->memory + model->params[p].offset, model->params[p].kind, *params++);
-        model->initialize(slave->memory);
+        slave->model->start(slave->memory, params);
+        params += slave->model->param_count;
         fetch(slave);
     }
     hand_over(runner);

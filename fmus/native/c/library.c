@@ -20,13 +20,16 @@ static const LibraryPlace library_places[] = {
 };
 #undef MEMBER
 
-static void library_defaults(void *instance) {
-    LIBRARY_MODEL *model = instance;
-    LIBRARY_CALL(defaults)(&model->params, &model->inputs);
+static void library_put(void *instance, const LibraryPlace *places, int64_t count, const double *values) {
+    for (int64_t i = 0; i < count; i++)
+        library_write((unsigned char *)instance + places[i].offset, places[i].kind, values[i]);
 }
 
-static void library_initialize(void *instance) {
+static void library_start(void *instance, const double *params) {
     LIBRARY_MODEL *model = instance;
+    memset(instance, 0, sizeof(LIBRARY_MODEL));
+    LIBRARY_CALL(defaults)(&model->params, &model->inputs);
+    library_put(instance, library_places, LIBRARY_PARAMS, params);
     LIBRARY_CALL(initialize)(&model->params, &model->state, &model->outputs);
 }
 
@@ -45,8 +48,7 @@ static const Library library_table = {
     .params = library_places,
     .inputs = library_places + LIBRARY_PARAMS,
     .outputs = library_places + LIBRARY_PARAMS + LIBRARY_INPUTS,
-    .defaults = library_defaults,
-    .initialize = library_initialize,
+    .start = library_start,
     .step = library_step,
 };
 
@@ -61,18 +63,13 @@ static void library_take(const unsigned char *instance, double *outputs) {
 
 /* Lay `params` into the memory of an instance, initialize it, and hand out its outputs. */
 LIBRARY_EXPORT void model_start(unsigned char *instance, const double *params, double *outputs) {
-    memset(instance, 0, sizeof(LIBRARY_MODEL));
-    library_defaults(instance);
-    for (int64_t i = 0; i < LIBRARY_PARAMS; i++)
-        library_write(instance + library_table.params[i].offset, library_table.params[i].kind, params[i]);
-    library_initialize(instance);
+    library_start(instance, params);
     library_take(instance, outputs);
 }
 
 /* Move an instance on by `dt_ns` with `inputs`, and hand out its outputs. */
 LIBRARY_EXPORT void model_step(unsigned char *instance, const double *inputs, double *outputs, int64_t dt_ns) {
-    for (int64_t i = 0; i < LIBRARY_INPUTS; i++)
-        library_write(instance + library_table.inputs[i].offset, library_table.inputs[i].kind, inputs[i]);
+    library_put(instance, library_table.inputs, LIBRARY_INPUTS, inputs);
     library_step(instance, dt_ns);
     library_take(instance, outputs);
 }

@@ -25,8 +25,7 @@ typedef struct {
     int64_t outputs_size;
     int64_t param_count, input_count, output_count;
     const LibraryPlace *params, *inputs, *outputs;
-    void (*defaults)(void *instance);
-    void (*initialize)(void *instance);
+    void (*start)(void *instance, const double *params); /* lays them in and initializes */
     void (*step)(void *instance, int64_t dt_ns);
 } Library;
 

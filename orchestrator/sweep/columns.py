@@ -57,21 +57,12 @@ def columns_of(study: Study, job: Job) -> list[Column]:
     ]
 
 
-def results_of(job: Job) -> list[str]:
-    """Return the names of the results: nothing that the models do not tell, no slot or kerb where there is none."""
-    scenario = job.scenario
-    has_kerb = any(name.startswith("scene.kerbs[") for name in scenario["vehicle"])
-    absent = {"final.slot_margin"} if scenario["slot"] is None else set()
-    absent |= set() if has_kerb else {"final.kerb_nearest", "final.kerb_farthest"}
-    measured = {name for name, item in RESULTS.items() if item.measure is None or item.measure in job.measures}
-    return [name for name in RESULTS if name in measured - absent]
-
-
 def filled(study: Study, job: Job, chunk: Chunk, rows: Array) -> dict[str, Any]:
     """Return the columns of a chunk by name, from what was kept of its runs."""
-    verdict = judge(job, chunk, rows)
+    truth = truths(job, chunk)
+    verdict = judge(job, truth, rows)
     found = dict(zip(job.measures, rows[:, FIRST_MEASURE:].T, strict=False))
-    has = truths(job, chunk).has()
+    has = truth.has()
     here = slice(chunk.first, chunk.first + len(chunk.seeds))
     given = zip(study.design.fields, chunk.values.T, strict=True)
     values: dict[str, Any] = {

@@ -10,8 +10,8 @@ from modelkit.variables import variables
 from orchestrator.cosim.slave import Array
 from orchestrator.scenario.models import MODELS
 from orchestrator.scenario.requirements import Requirement
-from orchestrator.scenario.scenario import SUCCESS, Outcome, Scenario
-from orchestrator.sweep.job import Chunk, Job, truths
+from orchestrator.scenario.scenario import Outcome, Scenario
+from orchestrator.sweep.job import Job
 from orchestrator.sweep.rows import ABORTED, FIRST_MEASURE, last_words, recorded_limits, values_of
 from orchestrator.verdict.conditions import CONDITIONS, share
 from orchestrator.verdict.measures import Measure
@@ -38,19 +38,14 @@ class Verdict(NamedTuple):
     numbers: dict[str, Array]
     """By the names of ``RESULTS``, those that this vehicle has."""
 
-    def succeeded(self) -> NDArray[np.bool_]:
-        """Return which runs have done their task."""
-        good = [OUTCOMES.index(outcome) for outcome in SUCCESS.values()]
-        return np.isin(self.outcome, good)
-
     def words(self) -> NDArray[Any]:
         """Return the outcomes as words."""
         return np.array(OUTCOMES)[self.outcome]
 
 
-def judge(job: Job, chunk: Chunk, rows: Array) -> Verdict:
-    """Return the results of the runs of ``chunk`` from what was kept of them."""
-    return judge_rows(Scenario(**job.scenario), truths(job, chunk), job.measures, rows)
+def judge(job: Job, truth: Truth, rows: Array) -> Verdict:
+    """Return the results of runs of ``job`` from what was kept of them; ``truth``: what is true in each."""
+    return judge_rows(Scenario(**job.scenario), truth, job.measures, rows)
 
 
 def judge_rows(scenario: Scenario, truth: Truth, measures: Sequence[Measure], rows: Array) -> Verdict:

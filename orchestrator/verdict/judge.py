@@ -65,12 +65,6 @@ def judge(requirements: list[Requirement], recording: Recording, facts: Facts, f
     return [_check(item, recording, facts.numbers, file) for item in asked]
 
 
-def meets(item: Requirement, values: Array) -> Bools:
-    """Return whether each value of a number meets a requirement; NaN meets none."""
-    assert not isinstance(item.limit, str)
-    return CONDITIONS[item.condition].margin(values, item.limit) >= 0.0
-
-
 def _check(item: Requirement, recording: Recording, numbers: dict[str, float], file: str) -> Check:
     where = f"{item.id}: {item.signal}"
     if _unmeasured(item, recording, numbers):

@@ -13,7 +13,7 @@ from orchestrator.scenario.models import MODELS
 from orchestrator.session.session import run_scenario
 from orchestrator.sweep.batch import run_batch
 from orchestrator.sweep.fmu_runs import run_recorded
-from orchestrator.sweep.job import Chunk, arrays, chunk_scenario, job_from, job_to
+from orchestrator.sweep.job import Chunk, arrays, chunk_scenario, job_from, job_to, truths
 from orchestrator.sweep.rows import row_of, why_not_compiled
 from orchestrator.sweep.verdict import OUTCOMES, judge
 from orchestrator.text.errors import BadInput
@@ -47,7 +47,7 @@ def assert_same(job, chunk, rows, number, files=None, kind="none"):
     ran = run_scenario(scenario, files, kind=kind)
     np.testing.assert_array_equal(rows[number], row_of(ran.recording, scenario, job.measures))
     summary = summarize(ran.recording, scenario, 1.0)
-    verdict = judge(job, chunk, rows)
+    verdict = judge(job, truths(job, chunk), rows)
     assert (OUTCOMES[verdict.outcome[number]], verdict.reason[number]) == (summary.outcome, summary.reason)
     numbers = {name: float(values[number]) for name, values in verdict.numbers.items()}
     for name, value in summary.final.model_dump().items():
@@ -61,7 +61,7 @@ def test_rows_equal_the_python_master(bind, some):
     rows = run_batch(job, chunk)
     for number in some(len(rows), 12):
         assert_same(job, chunk, rows, number)
-    assert len(set(judge(job, chunk, rows).reason)) > 3
+    assert len(set(judge(job, truths(job, chunk), rows).reason)) > 3
 
 
 @pytest.mark.parametrize("kind", ["python", "native"])
@@ -154,7 +154,7 @@ def test_a_study_can_vary_what_is_true_and_what_the_controller_is_told(bind):
     runs = {"grid": {"target.y": [-3.056, -2.9], "slot.length": [6.0, 8.0], "controller.target.x": [-7.608, -7.4]}}
     _, _, job, chunk = bind(runs=runs)
     rows = run_batch(job, chunk)
-    verdict = judge(job, chunk, rows)
+    verdict = judge(job, truths(job, chunk), rows)
     for number in range(len(rows)):
         assert_same(job, chunk, rows, number)
         scenario = chunk_scenario(job, chunk, number)
@@ -172,7 +172,7 @@ def test_the_scene_of_a_study_moves_the_kerb(bind, tmp_path):
     keys = "scene.kerbs[1].y1, scene.kerbs[1].y2"
     _, _, job, chunk = bind(scenario=str(tmp_path / "a.yaml"), runs={"grid": {keys: [-4.05, -4.1, -4.4, -9.0]}})
     rows = run_batch(job, chunk)
-    verdict = judge(job, chunk, rows)
+    verdict = judge(job, truths(job, chunk), rows)
     for number in range(len(rows)):
         assert_same(job, chunk, rows, number)
     assert [OUTCOMES[code] for code in verdict.outcome] == ["parked", "parked", "not_parked", "parked"]
@@ -190,7 +190,7 @@ def test_a_table_of_an_older_version_is_judged_by_what_the_controller_was_told(b
     del data["scenario"]["target"]
     old = job_from(json.loads(json.dumps(data)))
     assert old.scenario["target"] == {"x": -7.608, "y": -3.056, "heading": 0.0}
-    assert judge(old, chunk, run_batch(old, chunk)).reason == ["all checks passed"]
+    assert judge(old, truths(old, chunk), run_batch(old, chunk)).reason == ["all checks passed"]
 
 
 def test_what_counts_at_some_instants_only_is_as_in_the_recording(bind, some):

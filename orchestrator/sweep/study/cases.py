@@ -31,8 +31,9 @@ def design_of(cases: Iterable[LabelledScenario]) -> tuple[Scenario, Design]:
     """
     labels, scenarios = zip(*cases, strict=True)
     shared = scenarios[0]
+    fixed = _fixed(shared)
     for scenario in scenarios:
-        unlike = [key for key, value in _fixed(scenario).items() if value != _fixed(shared)[key]]
+        unlike = [key for key, value in _fixed(scenario).items() if value != fixed[key]]
         if unlike:
             raise ValueError(f"the scenarios of a study may differ in numbers only, not in {', '.join(unlike)}")
     columns = {key: np.array(values, dtype=float) for key, values in _numbers(scenarios).items()}

@@ -50,7 +50,7 @@ class EndCondition(BaseModel):
         numbers = {name: number for number, name in states_of(self.signal, mode).items()}
         found = []
         for state in states:
-            word = state.upper().replace(" ", "_").replace("-", "_") if isinstance(state, str) else state
+            word = state_word(state) if isinstance(state, str) else state
             if isinstance(word, str) and word not in numbers:
                 hint = suggestion(word, list(numbers)) or f"; known are {', '.join(numbers) or 'none'}"
                 raise BadInput(f"{state!r} is no state of {self.signal}{hint}", key="ending")
@@ -62,6 +62,11 @@ class EndCondition(BaseModel):
         (number,) = self.values([state], mode)
         name = states_of(self.signal, mode).get(number, "")
         return f"{name} ({number})" if name else str(number)
+
+
+def state_word(written: str) -> str:
+    """Return the name of a state as models have it, from how people may write it: ``to q2`` is ``TO_Q2``."""
+    return written.upper().replace(" ", "_").replace("-", "_")
 
 
 def states_of(signal: str, declared: Variable | None = None) -> dict[int, str]:

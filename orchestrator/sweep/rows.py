@@ -12,7 +12,7 @@ import numpy as np
 from modelkit.variables import variables
 from orchestrator.cosim.recording import Recording
 from orchestrator.cosim.slave import Array
-from orchestrator.scenario.end_condition import states_of
+from orchestrator.scenario.end_condition import state_word, states_of
 from orchestrator.scenario.models import MODELS
 from orchestrator.scenario.requirements import Requirement, Where, Window
 from orchestrator.scenario.scenario import Scenario
@@ -91,7 +91,7 @@ def _phases(window: Window) -> When | None:
     if window != Window(phase=window.phase, if_never=window.if_never):
         return None
     numbers = {name: number for number, name in states_of(CHART).items()}
-    words = [phase.upper().replace(" ", "_").replace("-", "_") for phase in window.phase]
+    words = [state_word(phase) for phase in window.phase]
     return When(CHART, tuple(numbers[word] for word in words)) if set(words) <= numbers.keys() else None
 
 

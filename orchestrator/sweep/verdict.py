@@ -6,9 +6,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from modelkit.variables import variables
 from orchestrator.cosim.slave import Array
-from orchestrator.scenario.models import MODELS
+from orchestrator.scenario.end_condition import state_word, states_of
 from orchestrator.scenario.requirements import Requirement
 from orchestrator.scenario.scenario import Outcome, Scenario
 from orchestrator.sweep.job import Job
@@ -80,11 +79,4 @@ def limit_value(limit: Requirement) -> float:
     """Return the limit as a number, also where it is the name of a state."""
     if not isinstance(limit.limit, str):
         return limit.limit
-    word = limit.limit.upper().replace(" ", "_").replace("-", "_")
-    return float({name: value for value, name in _states(limit.signal).items()}[word])
-
-
-def _states(signal: str) -> dict[int, str]:
-    owner, _, name = signal.partition(".")
-    variable: Any = next(item for item in variables(MODELS[owner].outputs) if item.name == name)
-    return {int(state): state.name for state in variable.signal.states}
+    return float({name: value for value, name in states_of(limit.signal).items()}[state_word(limit.limit)])

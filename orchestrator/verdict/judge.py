@@ -10,6 +10,7 @@ from pydantic import BaseModel, ConfigDict
 from modelkit.variables import variables
 from orchestrator.cosim.recording import Recording
 from orchestrator.cosim.slave import Array
+from orchestrator.scenario.end_condition import state_word
 from orchestrator.scenario.models import MODELS
 from orchestrator.scenario.requirements import Condition, Requirement, Window
 from orchestrator.text.errors import BadInput, suggestion
@@ -156,7 +157,7 @@ def _worst(item: Requirement, values: Array, times: Array, limit: float, unit: s
 def _number(limit: float | str, states: dict[int, str], file: str, where: str) -> float:
     if not isinstance(limit, str):
         return limit
-    word = limit.upper().replace(" ", "_").replace("-", "_")
+    word = state_word(limit)
     for value, name in states.items():
         if name == word:
             return float(value)

@@ -13,7 +13,7 @@ from functools import lru_cache
 from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.scenario.requirements import shipped_requirements
 from orchestrator.scenario.scenario import Scenario, Slot
-from orchestrator.scenario.sensor_mounts import mounts
+from orchestrator.scenario.sensor_mounts import mount_parameters
 from orchestrator.sweep.study.cases import LabelledScenario
 from vehicle_fmu.interface import Body
 
@@ -91,24 +91,16 @@ def _base(controller: str, slot: float, car: str) -> Scenario:
     told |= {"hsic.slot.slot_length": slot, "hsic.slot.slot_width": body["width"]}
     told["hsic.slot.rear_gap"] = -REAR_END - body["rear_overhang"]
     if searches:
-        front = loaded.vehicle["wheelbase"] + body["front_overhang"]
-        vehicle |= _sensors(front, body["rear_overhang"], 0.5 * body["width"], "ultrasonic.")
+        outline = (loaded.vehicle["wheelbase"] + body["front_overhang"], -body["rear_overhang"], 0.5 * body["width"])
+        vehicle |= mount_parameters(*outline, "ultrasonic.")
         vehicle |= {"ultrasonic.noise": 0.01, "ultrasonic.dropout": 0.01, "driver.apa_switch_time": 0.5}
         told = {f"apa.{key}": value for key, value in body.items()}
-        told |= _sensors(front, body["rear_overhang"], 0.5 * body["width"], "apa.sensors.")
+        told |= mount_parameters(*outline, "apa.sensors.")
     line = 0.5 * body["width"]
     true = Slot(x=REAR_END + 0.5 * slot, y=line - 0.5 * DEPTH, length=slot, width=DEPTH)
     limits = [item for name in LIMITS for item in shipped_requirements(name) if item.signal not in UNJUDGED]
     controls = {**loaded.controller, **told}
     return loaded.model_copy(update={"slot": true, "vehicle": vehicle, "controller": controls, "limits": limits})
-
-
-def _sensors(front: float, rear: float, half_width: float, owner: str) -> dict[str, float]:
-    """Return where the twelve sensors sit on the outline [m], as parameters of their ``owner``."""
-    placed: dict[str, float] = {}
-    for number, (x, y) in enumerate(mounts(front, -rear, half_width), start=1):
-        placed |= {f"{owner}mounts[{number}].x": x, f"{owner}mounts[{number}].y": y}
-    return placed
 
 
 def _scene(slot: float, line: float) -> dict[str, float]:

@@ -14,7 +14,7 @@ from controller_fmu.apa.params import ApaParams
 from controller_fmu.apa.slot import Kind
 from orchestrator.scenario.requirements import Requirement, shipped_requirements
 from orchestrator.scenario.scenario import Scenario, Slot, Target
-from orchestrator.scenario.sensor_mounts import mounts
+from orchestrator.scenario.sensor_mounts import mount_parameters
 
 BODIES = ("kinematic", "double_track")
 BODY = {"kinematic": 0, "double_track": 2}
@@ -88,9 +88,9 @@ def parameters(case: GridCase) -> tuple[dict[str, Any], dict[str, Any]]:
     controller: dict[str, Any] = {"system": 5, "wheelbase": wheelbase, "steering_ratio": RATIO}
     controller |= {"steering_wheel_limit": lock, "steering_wheel_rate": math.radians(570.0)}
     controller |= {f"apa.{name}": car[name] for name in ("front_overhang", "rear_overhang", "width")}
-    for number, (x, y) in enumerate(mounts(wheelbase + front, -rear, 0.5 * width), start=1):
-        vehicle |= {f"ultrasonic.mounts[{number}].x": x, f"ultrasonic.mounts[{number}].y": y}
-        controller |= {f"apa.sensors.mounts[{number}].x": x, f"apa.sensors.mounts[{number}].y": y}
+    outline = (wheelbase + front, -rear, 0.5 * width)
+    vehicle |= mount_parameters(*outline, "ultrasonic.")
+    controller |= mount_parameters(*outline, "apa.sensors.")
     vehicle |= {
         "ultrasonic.noise": 0.01,
         "ultrasonic.dropout": 0.01,
@@ -117,12 +117,7 @@ def _scene(case: GridCase, length: float, width: float) -> dict[str, Any]:
     nearest = -along if case.heading > 0.0 else case.length + 3.0
     y = case.beside + 0.5 * width + (start - nearest) * math.tan(case.heading)
     if case.heading > 0.0:
-        y = (
-            case.beside
-            + 0.5 * width
-            + (start - nearest) * math.tan(case.heading)
-            + 0.5 * length * math.sin(case.heading)
-        )
+        y += 0.5 * length * math.sin(case.heading)
     return scene | {"start.x": start, "start.y": case.side * y, "start.heading": case.side * case.heading}
 
 

@@ -1,6 +1,14 @@
 """Where twelve ultrasonic sensors sit on a car that no file says it of."""
 
 
+def mount_parameters(front: float, rear: float, half: float, owner: str) -> dict[str, float]:
+    """Return where the twelve sensors sit on a car's outline [m], as parameters of their ``owner``."""
+    placed: dict[str, float] = {}
+    for number, (x, y) in enumerate(mounts(front, rear, half), start=1):
+        placed |= {f"{owner}mounts[{number}].x": x, f"{owner}mounts[{number}].y": y}
+    return placed
+
+
 def mounts(front: float, rear: float, half: float) -> list[tuple[float, float]]:
     """Return where the twelve sensors sit on a car's outline: 4 front, 4 rear, 2 left, 2 right."""
     return [

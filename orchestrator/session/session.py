@@ -91,10 +91,16 @@ def run_scenario(
     messages = Messages()
     slaves = make_slaves(scenario, files, messages)
     try:
-        for text in remarks(slaves, scenario.ending):
-            warn(text)
         return run_slaves(
-            scenario, slaves, messages, kind=kind, log=log, observers=observers, interrupt=interrupt, foreign=foreign
+            scenario,
+            slaves,
+            messages,
+            kind=kind,
+            log=log,
+            observers=observers,
+            interrupt=interrupt,
+            warn=warn,
+            foreign=foreign,
         )
     finally:
         for slave in slaves:
@@ -110,9 +116,13 @@ def run_slaves(
     log: Path | None = None,
     observers: tuple[Observer, ...] = (),
     interrupt: Interrupt | None = None,
+    warn: Callable[[str], None] = lambda text: None,
     foreign: Collection[str] = (),
 ) -> Ran:
     """Return the recording of one run of given slaves."""
+    said = remarks(slaves, scenario.ending)
+    for text in said:
+        warn(text)
     master = _master(slaves, scenario, kind)
     master.interrupt = interrupt or Interrupt()
     info = provenance(scenario, slaves, kind, foreign)
@@ -127,7 +137,6 @@ def run_slaves(
         master.observers += [changes, file, *observers]
     else:
         master.observers += [changes, *observers]
-    said = remarks(slaves, scenario.ending)
     for text in said:
         messages.say(0, WARNING, "system", text)
     end = _guarded(messages, master.initialize)

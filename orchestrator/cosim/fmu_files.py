@@ -1,12 +1,12 @@
 """Which .fmu files a run uses, built when they are missing or older than their sources."""
 
 import hashlib
-import sys
-from collections.abc import Callable, Iterable, Iterator
-from contextlib import contextmanager, suppress
+from collections.abc import Callable, Iterable
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from fmus.locks import one_at_a_time
 from fmus.native.compilers import can_compile as can_compile
 from modelkit.model import Model
 from orchestrator.scenario.models import MODELS
@@ -44,7 +44,7 @@ def build(kind: str, cc: str | None = None) -> list["Built"]:
     from fmus.native.libraries import master_library
     from fmus.places import DIST
 
-    with _alone(DIST):
+    with one_at_a_time(DIST / "build"):
         if kind == "native":
             with suppress(RuntimeError):
                 master_library()
@@ -87,18 +87,6 @@ def wanted_platforms(asked: Iterable[str]) -> list[str] | None:
     if unknown:
         raise BadInput(f"{', '.join(unknown)}: expected all or {', '.join(PLATFORMS)}", key="--platform")
     return wanted or None
-
-
-@contextmanager
-def _alone(folder: Path) -> Iterator[None]:
-    """Let one process build at a time, where the system has file locks."""
-    folder.mkdir(parents=True, exist_ok=True)
-    with (folder / ".lock").open("w", encoding="ascii") as lock:
-        if sys.platform != "win32":
-            import fcntl
-
-            fcntl.flock(lock, fcntl.LOCK_EX)
-        yield
 
 
 def sources_hash() -> str:

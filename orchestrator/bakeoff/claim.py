@@ -145,7 +145,7 @@ def draw(columns: Mapping[str, Any], file: Path) -> Path:
             style = "o-" if steering.startswith("30 ") else "o:"
             label = f"{system}, wheels {steering}"
             axis.plot(0.5 * (edges[1:] + edges[:-1]), rate, style, markersize=3, color=COLOURS[system], label=label)
-    title = f"within {SHOWN} despite driver speed errors, {len(speed) // 4} runs each"
+    title = f"within {SHOWN} despite driver speed errors, {len(speed) // (len(STEERING) * len(SYSTEMS))} runs each"
     axis.set(xlabel="mean speed driven [m/s]", ylabel="%", ylim=(-3, 103), title=title)
     axis.legend(frameon=False, loc="lower left", bbox_to_anchor=(0.0, 0.08))
     axis.grid(alpha=0.25, linewidth=0.6)

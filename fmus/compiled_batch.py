@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fmus.native.libraries import batch_library, load_model
+from fmus.native.structures import Long, Pointer, structure
 from modelkit.connections import connections, part_of
 from modelkit.model import Model
 from modelkit.variables import variables
@@ -24,7 +25,6 @@ FIRST_KEPT = 2
 Doubles = NDArray[np.float64]
 Rows = Callable[[Doubles, NDArray[np.int64], Doubles], None]
 """``rows(parameters, times, out)``: one run for each line of the three arrays; see :func:`compiled_rows`."""
-Pointer, Long = ctypes.c_void_p, ctypes.c_int64
 
 
 class When(NamedTuple):
@@ -58,14 +58,10 @@ class Ending(NamedTuple):
     time_ns: int
 
 
-def _structure(name: str, **fields: Any) -> Any:
-    return type(name, (ctypes.Structure,), {"_fields_": list(fields.items())})
-
-
-LinkC = _structure("LinkC", source=Long, source_place=Long, target=Long, target_place=Long)
-SignalC = _structure("SignalC", model=Long, place=Long, input=Long)
-KeptC = _structure("KeptC", how=Long, signal=SignalC, when=SignalC, values=ctypes.c_uint64)
-BatchC = _structure(
+LinkC = structure("LinkC", source=Long, source_place=Long, target=Long, target_place=Long)
+SignalC = structure("SignalC", model=Long, place=Long, input=Long)
+KeptC = structure("KeptC", how=Long, signal=SignalC, when=SignalC, values=ctypes.c_uint64)
+BatchC = structure(
     "BatchC",
     models=Pointer,
     links=Pointer,

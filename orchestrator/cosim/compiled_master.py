@@ -16,6 +16,7 @@ from typing import Any
 
 import numpy as np
 
+from fmus.native.structures import Long, Pointer, structure
 from orchestrator.cosim.fmu_slave import FmuSlave, Transfer
 from orchestrator.cosim.master import End, Master
 from orchestrator.cosim.slave import Indices, all_values, places_of
@@ -23,16 +24,9 @@ from orchestrator.cosim.slave import Indices, all_values, places_of
 BLOCK = 250
 """Exchanges per compiled call."""
 FETCH, SEND, STEP = 1, 2, 3
-Pointer = ctypes.c_void_p
-Long = ctypes.c_int64
 
-
-def _structure(name: str, **fields: Any) -> Any:
-    return type(name, (ctypes.Structure,), {"_fields_": list(fields.items())})
-
-
-TransferC = _structure("TransferC", call=Pointer, references=Pointer, integers=Pointer, begin=Long, count=Long)
-SlaveC = _structure(
+TransferC = structure("TransferC", call=Pointer, references=Pointer, integers=Pointer, begin=Long, count=Long)
+SlaveC = structure(
     "SlaveC",
     component=Pointer,
     do_step=Pointer,
@@ -48,8 +42,8 @@ SlaveC = _structure(
     step=ctypes.c_double,
     due=Long,
 )
-LinkC = _structure("LinkC", target=Long, source_places=Pointer, target_places=Pointer, count=Long)
-RunC = _structure(
+LinkC = structure("LinkC", target=Long, source_places=Pointer, target_places=Pointer, count=Long)
+RunC = structure(
     "RunC",
     slaves=Pointer,
     links=Pointer,

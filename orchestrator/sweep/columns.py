@@ -7,12 +7,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from modelkit.signal import Signal
-from modelkit.variables import variables
 from orchestrator.cosim.slave import Array
-from orchestrator.scenario.models import MODELS
 from orchestrator.scenario.requirements import Requirement
 from orchestrator.sweep.job import Chunk, Job, truths
-from orchestrator.sweep.rows import FIRST_MEASURE
+from orchestrator.sweep.rows import FIRST_MEASURE, signals
 from orchestrator.sweep.study.study import Study
 from orchestrator.sweep.verdict import RESULTS, judge, limit_value, values_in
 from orchestrator.verdict.conditions import CONDITIONS
@@ -95,12 +93,7 @@ def _number(name: str, item: Number) -> Column:
 
 
 def _measures(measures: Mapping[str, Measure]) -> Iterator[Column]:
-    known = {
-        f"{owner}.{item.name}": item.signal
-        for owner, model in MODELS.items()
-        for cls in (model.inputs, model.outputs)
-        for item in variables(cls)
-    }
+    known = signals()
     for name, measure in measures.items():
         signal = known[measure.signal]
         yield Column(name, float, signal._replace(text=f"{measure.how} of {measure.signal}: {signal.text}"))

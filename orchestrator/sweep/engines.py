@@ -67,8 +67,9 @@ def choose_task(scenario: Scenario, fmus: str | None) -> Task:
 
     ``fmus``: with FMUs of this kind instead; ``none``: with the models in process.
     """
+    in_process = Task(partial(run_recorded, kind="none", files=None), "models in process", RECORDED_CHUNK, False)
     if fmus == "none":
-        return Task(partial(run_recorded, kind="none", files=None), "models in process", RECORDED_CHUNK, False)
+        return in_process
     if fmus is not None:
         from orchestrator.cosim.fmu_files import fmu_files
 
@@ -78,10 +79,7 @@ def choose_task(scenario: Scenario, fmus: str | None) -> Task:
     if not why and not can_compile():
         why = "there is no C compiler"
     if why:
-        work = partial(run_recorded, kind="none", files=None)
-        return Task(
-            work, "models in process", RECORDED_CHUNK, False, f"{why}: every run goes through the Python master"
-        )
+        return in_process._replace(note=f"{why}: every run goes through the Python master")
     return Task(run_batch, "compiled batch", BATCH_CHUNK, True)
 
 

@@ -9,6 +9,7 @@ from typing import get_args
 
 import numpy as np
 
+from modelkit.signal import Signal
 from modelkit.variables import variables
 from orchestrator.cosim.recording import Recording
 from orchestrator.cosim.slave import Array
@@ -27,10 +28,10 @@ STOP_TIME, STANDSTILL, ABORTED = 0.0, 1.0, 2.0
 FIRST_MEASURE = 2
 
 
-def signals() -> set[str]:
-    """Return the names of all inputs and outputs of the models."""
+def signals() -> dict[str, Signal]:
+    """Return name -> signal of all inputs and outputs of the models."""
     return {
-        f"{owner}.{item.name}"
+        f"{owner}.{item.name}": item.signal
         for owner, model in MODELS.items()
         for cls in (model.inputs, model.outputs)
         for item in variables(cls)

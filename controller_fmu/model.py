@@ -8,7 +8,7 @@ names the systems, each with how it starts, what it does at a sample and what it
 import math
 from typing import NamedTuple
 
-from controller_fmu.apa.system import AT_START, ApaState
+from controller_fmu.apa.system import ApaState
 from controller_fmu.guo2015.parking import ParkingState
 from controller_fmu.hsic.system import HsicState
 from controller_fmu.interface import ControllerOutput, ControllerParams, Phase, Reason
@@ -35,7 +35,7 @@ class ControllerState(NamedTuple):
     zhang2022: ZhangState = ZhangState()
     hsic: HsicState = HsicState()
     preview: DrivingState = DrivingState()
-    apa: ApaState = AT_START
+    apa: ApaState = ApaState()
 
 
 def begin(params: ControllerParams) -> Clock:

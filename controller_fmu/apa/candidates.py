@@ -4,7 +4,7 @@ import math
 from typing import NamedTuple
 
 from controller_fmu.apa.exit import Exit
-from controller_fmu.apa.move import NO_PIECES, Move, end_of, is_move_free, length_of
+from controller_fmu.apa.move import Move, end_of, is_move_free, length_of
 from controller_fmu.apa.outline import Car
 from controller_fmu.apa.shuffle import finish, full_lock
 from controller_fmu.apa.slot import Site
@@ -47,7 +47,7 @@ class Candidate(NamedTuple):
 
 def none_from(start: Pose) -> Candidate:
     """Return that there is nothing."""
-    return Candidate(False, Move(start, 0, NO_PIECES), 0, 0.0)
+    return Candidate(False, Move(start), 0, 0.0)
 
 
 def into_parallel(start: Pose, number: int, way_in: Exit, site: Site, car: Car) -> Candidate:
@@ -174,7 +174,7 @@ def inside(start: Pose, number: int, moves: int, site: Site, car: Car) -> Candid
     most = choices(moves)
     pose = start
     way = 0.0
-    first = Move(start, 0, NO_PIECES)
+    first = Move(start)
     for step in range(moves - 1):
         move = _inside_step(pose, direction, _last_digit(rest, most), site, car)
         rest = rest // most

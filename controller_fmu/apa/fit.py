@@ -6,7 +6,6 @@ from controller_fmu.apa.exit import VARIANTS, exit_of
 from controller_fmu.apa.outline import Car
 from controller_fmu.apa.params import ApaParams
 from controller_fmu.apa.slot import Kind, Margins, Slot, site_of
-from modelkit.vocabulary import Pose
 
 
 class Fit(NamedTuple):
@@ -67,9 +66,8 @@ def fit_of(slot: Slot, car: Car, params: ApaParams) -> Fit:
     length = car.front + car.rear
     width = 2.0 * car.half_width
     if slot.kind != Kind.PARALLEL:
-        missing = width + params.search.perpendicular_room - slot.length
+        missing = max(0.0, width + params.search.perpendicular_room - slot.length)
         shallow = length - params.search.depth_room - slot.depth
-        missing = missing if missing > 0.0 else 0.0
         return Fit(missing <= 0.0 and shallow <= 0.0, 1, missing)
     moves = least_moves(slot, car, params)
     if moves > 0:
@@ -110,5 +108,4 @@ def least_moves(slot: Slot, car: Car, params: ApaParams) -> int:
 
 
 def _longer(slot: Slot, by: float) -> Slot:
-    a = Pose(slot.a.x, slot.a.y, slot.a.heading)
-    return slot._replace(a=a, length=slot.length + by)
+    return slot._replace(length=slot.length + by)

@@ -29,9 +29,7 @@ class Move(NamedTuple):
     pieces: tuple[Piece, ...] = (Piece(),) * PIECES
 
 
-NO_PIECE = Piece(0.0, 0.0, 0.0)
-NO_PIECES = (NO_PIECE,) * PIECES
-NO_MOVE = Move(Pose(0.0, 0.0, 0.0), 0, NO_PIECES)
+NO_PIECE = Piece()
 
 
 class PathPoint(NamedTuple):

@@ -8,7 +8,7 @@ from controller_fmu.apa.manoeuvre_chart import Guard as StepGuard
 from controller_fmu.apa.manoeuvre_chart import Step, step_transition
 from controller_fmu.apa.move import length_of
 from controller_fmu.apa.outline import Car
-from controller_fmu.apa.params import ApaParams, Longitudinal
+from controller_fmu.apa.params import Longitudinal
 from controller_fmu.apa.planner import FOUND, NOTHING, SEARCHING, PlanSearch, new_search, search_on
 from controller_fmu.apa.slot import Margins, Site, Slot, site_of
 from controller_fmu.apa.speed import planned_speed, stopping_way
@@ -109,7 +109,7 @@ def park(
             pose = to_slot(inputs.odometry, site.frame)
             plan = new_search(pose)
     tracked = state.tracked
-    sight = Sight(100.0, False, False)
+    sight = Sight()
     if state.step in (Step.DRIVE, Step.HALT, Step.SET_WHEEL):
         drive = params.apa.drive
         tracked = track(plan.move, state.leg, tracked.way, pose, drive.k1, drive.k2, params.wheelbase)
@@ -200,7 +200,7 @@ def _moved_on(
     if step == Step.SET_WHEEL:
         leg = _next_leg(state, plan, tracked)
         if state.step == Step.PLAN:
-            tracked = Tracked(0.0, length_of(plan.move), leg.end, pose, 0.0, 0.0, 0.0, 0.0)
+            tracked = Tracked(left=length_of(plan.move), to_stop=leg.end, reference=pose)
         wheel = _wheel(site.frame.mirror * set_wheel(plan.move, leg, tracked.way, params.wheelbase), params)
     if step == Step.DRIVE:
         if state.step != Step.DRIVE and plan.move.direction != direction:
@@ -241,11 +241,7 @@ def _bit(guard: int, holds: bool) -> int:
 def start_planning(slot: Slot, pose: Pose, params: ControllerParams) -> Parking:
     """Return the manoeuvre at its beginning: the first plan is made from a car at ``pose`` (world)."""
     site = site_for(slot, 0, params)
-    none = Tracked(0.0, 0.0, 0.0, Pose(0.0, 0.0, 0.0), 0.0, 0.0, 0.0, 0.0)
-    sight = Sight(100.0, False, False)
-    return Parking(
-        Step.PLAN, new_search(to_slot(pose, site.frame)), 0, Leg(0.0, 0.0), none, 0, 0, False, False, sight, 0.0, 0.0
-    )
+    return Parking(step=Step.PLAN, plan=new_search(to_slot(pose, site.frame)))
 
 
 def cut_short(state: Parking) -> Parking:
@@ -261,8 +257,3 @@ def is_planned(state: Parking) -> bool:
 def is_planning(state: Parking) -> bool:
     """Return whether the search for a plan goes on."""
     return state.step == Step.PLAN and state.plan.status == SEARCHING
-
-
-def tracking_limits(params: ApaParams) -> float:
-    """Return how far off its path [m] the car may come before it is called lost."""
-    return 0.5 * params.width

@@ -27,7 +27,7 @@ from controller_fmu.apa.candidates import (
     swing_back_and_forth,
 )
 from controller_fmu.apa.exit import VARIANTS, Exit, exit_of
-from controller_fmu.apa.move import NO_PIECES, Move
+from controller_fmu.apa.move import Move
 from controller_fmu.apa.outline import Car
 from controller_fmu.apa.slot import Kind, Site
 from modelkit.vocabulary import Pose
@@ -70,8 +70,7 @@ class PlanSearch(NamedTuple):
 
 def new_search(start: Pose) -> PlanSearch:
     """Return a search not yet begun, from ``start`` (slot's frame)."""
-    none = Exit(False, Pose(0.0, 0.0, 0.0), 0)
-    return PlanSearch(SEARCHING, 0, 0, none, False, 0.0, 0, Move(start, 0, NO_PIECES))
+    return PlanSearch(move=Move(start))
 
 
 def search_on(search: PlanSearch, site: Site, car: Car, count: int) -> PlanSearch:
@@ -114,7 +113,7 @@ def _one_more(search: PlanSearch, site: Site, car: Car) -> PlanSearch:
     start = search.move.start
     stage = stage_of(search.stage, start, site, car)
     if stage == NO_STAGE:
-        return _with_status(search, NOTHING)
+        return search._replace(status=NOTHING)
     way_in = search.way_in
     is_entry = ENTRY <= stage < TURN
     if is_entry and search.number == 0:
@@ -155,7 +154,3 @@ def _candidate(stage: int, number: int, start: Pose, way_in: Exit, site: Site, c
     if abs(start.heading) > STEEPEST_INSIDE:
         return none_from(start)
     return inside(start, number, stage, site, car)
-
-
-def _with_status(search: PlanSearch, status: int) -> PlanSearch:
-    return search._replace(status=status)

@@ -77,9 +77,7 @@ def _walled(slot: Slot, inputs: ControllerInput, params: ControllerParams) -> Sl
     second = two - _y_of(pose, mirror, params, corner)
     if abs(first - second) > AGREE:
         return slot
-    a = Pose(slot.a.x, slot.a.y, slot.a.heading)
-    nearer = first if first < second else second
-    return slot._replace(a=a, depth=nearer)
+    return slot._replace(depth=min(second, first))
 
 
 def between(slot: Slot, inputs: ControllerInput, params: ControllerParams) -> Slot:
@@ -170,8 +168,7 @@ def _shallower(slot: Slot, inputs: ControllerInput, params: ControllerParams) ->
     lacks = should - inputs.ultrasonic[number]
     if lacks <= WRONG or lacks > FURTHEST or should > expected(mount, pose, mirror, site.obstacles, params.apa):
         return slot
-    a = Pose(slot.a.x, slot.a.y, slot.a.heading)
-    return slot._replace(a=a, depth=slot.depth - lacks)
+    return slot._replace(depth=slot.depth - lacks)
 
 
 def _heard_at(pose: Pose, mirror: float, inputs: ControllerInput, first: int, params: ControllerParams) -> float:

@@ -20,14 +20,11 @@ REMEMBERED = 3
 SENSOR_CYCLE_NS = 40_000_000
 LONG_NEIGHBOUR = 2.6
 """A neighbour longer than this [m] along the road stands parallel to it."""
-NO_SLOT = Slot(0, 0, Pose(0.0, 0.0, 0.0), 0.0, 0.0, UNSEEN, UNSEEN, 0.0)
-NO_SLOTS = (NO_SLOT,) * REMEMBERED
 
 
 class SearchState(NamedTuple):
     """Both sides, and the slots found, the newest first."""
 
-    begun: bool = False
     origin: Pose = Pose()
     clock_ns: int = 0
     right: SideState = START
@@ -37,7 +34,7 @@ class SearchState(NamedTuple):
     far_left: float = DEEP
     way: float = 0.0
     """Driven since the search began [m]."""
-    slots: tuple[Slot, ...] = NO_SLOTS
+    slots: tuple[Slot, ...] = (Slot(),) * REMEMBERED
     valid: int = 0
     """Valid slots remembered."""
     seen: int = 0
@@ -51,17 +48,17 @@ class SearchState(NamedTuple):
 
 def begin_search(pose: Pose, clock_ns: int) -> SearchState:
     """Return a search that begins at ``pose``."""
-    return SearchState(True, pose, clock_ns, START, START, DEEP, DEEP, 0.0, NO_SLOTS, 0, 0, Fit(False, 0, 0.0), 0, 0.0)
+    return SearchState(origin=pose, clock_ns=clock_ns)
 
 
 def search(state: SearchState, inputs: ControllerInput, car: Car, params: ApaParams, dt_ns: int) -> SearchState:
     """Return the search after one sample; sensors tell something new every 40 ms."""
     clock = state.clock_ns + dt_ns
-    way = state.way + abs(inputs.measured_speed) * dt_ns * 1e-9
-    if not is_new_reading(state.clock_ns, dt_ns) or abs(inputs.measured_speed) < 0.01:
-        return _with_sides(state, state.right, state.left, state.far_right, state.far_left, clock, way, state.fastest)
     speed = abs(inputs.measured_speed)
-    speed = speed if speed > state.fastest else state.fastest
+    way = state.way + speed * dt_ns * 1e-9
+    if not is_new_reading(state.clock_ns, dt_ns) or speed < 0.01:
+        return state._replace(clock_ns=clock, way=way)
+    fastest = max(state.fastest, speed)
     pose = inputs.odometry
     right_r = inputs.ultrasonic[RIGHT_SENSOR]
     left_r = inputs.ultrasonic[LEFT_SENSOR]
@@ -72,11 +69,13 @@ def search(state: SearchState, inputs: ControllerInput, car: Car, params: ApaPar
     far_right = DEEP if left.mode == 1 and state.left.mode != 1 else state.far_right
     far_left = left_r if left_r < far_left and left_r < top else far_left
     far_right = right_r if right_r < far_right and right_r < top else far_right
-    state = _with_sides(state, right, left, far_right, far_left, clock, way, speed)
+    state = state._replace(
+        clock_ns=clock, right=right, left=left, far_right=far_right, far_left=far_left, way=way, fastest=fastest
+    )
     if right.fresh:
-        state = _judge(state, right, RIGHT, far_left, speed, car, params)
+        state = _judge(state, right, RIGHT, far_left, fastest, car, params)
     if left.fresh:
-        state = _judge(state, left, LEFT, far_right, speed, car, params)
+        state = _judge(state, left, LEFT, far_right, fastest, car, params)
     return state
 
 
@@ -111,7 +110,7 @@ def slot_of(
         beside = side.sums.r / side.sums.n if side.sums.n > 0.0 else 0.0
         opposite = beside + 2.0 * car.half_width + opposite_heard
     kind = kind_of(length, depth, side.extent, car, params)
-    return Slot(kind, which, corner_a, length if length > 0.0 else 0.0, (a2 - a1) * cos, depth, opposite, unsure)
+    return Slot(kind, which, corner_a, max(0.0, length), (a2 - a1) * cos, depth, opposite, unsure)
 
 
 def kind_of(length: float, depth: float, neighbour: float, car: Car, params: ApaParams) -> int:
@@ -150,41 +149,18 @@ def _judge(
     if mark == known:
         first = state.slots[0]
         better = state.valid > 0 and first.side == which and abs(first.length - slot.length) < 0.5
-        kept = slot._replace(kind=first.kind, side=which)
-        slots = (kept, state.slots[1], state.slots[2]) if better else state.slots
-        return _with_slots(state, slots, state.valid, state.seen, state.refused, state.refusals)
+        if not better:
+            return state
+        return state._replace(slots=(slot._replace(kind=first.kind), state.slots[1], state.slots[2]))
     fit = fit_of(slot, car, params)
     seen = mark + other
     if not fit.fits:
-        return _with_slots(state, state.slots, state.valid, seen, fit, state.refusals + 1)
-    count = state.valid + 1 if state.valid < REMEMBERED else REMEMBERED
+        return state._replace(seen=seen, refused=fit, refusals=state.refusals + 1)
     slots = (slot, state.slots[0], state.slots[1])
-    return _with_slots(state, slots, count, seen, state.refused, state.refusals)
+    return state._replace(slots=slots, valid=min(REMEMBERED, state.valid + 1), seen=seen)
 
 
 def without_first(state: SearchState) -> SearchState:
     """Return the search with its newest slot given up."""
-    slots = (state.slots[1], state.slots[2], NO_SLOT)
-    count = state.valid - 1 if state.valid > 0 else 0
-    return _with_slots(state, slots, count, state.seen, state.refused, state.refusals + 1)
-
-
-def _with_sides(
-    state: SearchState,
-    right: SideState,
-    left: SideState,
-    far_right: float,
-    far_left: float,
-    clock_ns: int,
-    way: float,
-    fastest: float,
-) -> SearchState:
-    return state._replace(
-        clock_ns=clock_ns, right=right, left=left, far_right=far_right, far_left=far_left, way=way, fastest=fastest
-    )
-
-
-def _with_slots(
-    state: SearchState, slots: tuple[Slot, ...], count: int, seen: int, refused: Fit, refusals: int
-) -> SearchState:
-    return state._replace(slots=slots, valid=count, seen=seen, refused=refused, refusals=refusals)
+    slots = (state.slots[1], state.slots[2], Slot())
+    return state._replace(slots=slots, valid=max(0, state.valid - 1), refusals=state.refusals + 1)

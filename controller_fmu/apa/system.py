@@ -3,9 +3,7 @@
 from typing import NamedTuple
 
 from controller_fmu.apa.chart import Guard, Mode, transition
-from controller_fmu.apa.exit import Exit
 from controller_fmu.apa.manoeuvre_chart import Step
-from controller_fmu.apa.move import NO_MOVE
 from controller_fmu.apa.parking import (
     Parking,
     car_of,
@@ -16,18 +14,13 @@ from controller_fmu.apa.parking import (
     park,
     start_planning,
 )
-from controller_fmu.apa.planner import SEARCHING, PlanSearch
 from controller_fmu.apa.relocate import along, between, braked, relocated
-from controller_fmu.apa.search import NO_SLOT, SearchState, begin_search, is_new_reading, search, without_first
+from controller_fmu.apa.search import SearchState, begin_search, is_new_reading, search, without_first
 from controller_fmu.apa.slot import Slot
-from controller_fmu.apa.supervisor import Sight
-from controller_fmu.apa.tracking import Leg, Tracked
 from controller_fmu.apa.watch import STANDING, Watch, is_taken_over, reason_to_fail, watch
 from controller_fmu.interface import ControllerInput, ControllerParams, Reason
-from controller_fmu.steering_monitor import SteeringWatch
 from modelkit.vocabulary import Pose
 
-NOWHERE = Pose(0.0, 0.0, 0.0)
 DRIVEN_ON = 0.3
 LOST = 1.0
 SHALLOWER = 0.3
@@ -42,39 +35,19 @@ class ApaState(NamedTuple):
     taken_over: bool = False
     clock_ns: int = 0
     search: SearchState = SearchState()
-    slot: Slot = NO_SLOT
+    slot: Slot = Slot()
     """The slot chosen."""
     parking: Parking = Parking()
     watch: Watch = Watch()
     waited_ns: int = 0
     """For the driver to confirm, or to drive on in the search."""
-    pose: Pose = NOWHERE
+    pose: Pose = Pose()
     """Where the car stood when the slot was shown."""
-
-
-NOT_PARKING = Parking(
-    Step.IDLE,
-    PlanSearch(SEARCHING, 0, 0, Exit(False, NOWHERE, 0), False, 0.0, 0, NO_MOVE),
-    0,
-    Leg(0.0, 0.0),
-    Tracked(0.0, 0.0, 0.0, NOWHERE, 0.0, 0.0, 0.0, 0.0),
-    0,
-    0,
-    False,
-    False,
-    Sight(100.0, False, False),
-    0.0,
-    0.0,
-)
-NOT_WATCHED = Watch(0, 0, 0, 0, 0, 0, 0, SteeringWatch(), NOWHERE)
-AT_START = ApaState(
-    Mode.OFF, Reason.NONE, False, 0, begin_search(NOWHERE, 0), NO_SLOT, NOT_PARKING, NOT_WATCHED, 0, NOWHERE
-)
 
 
 def apa_start(params: ControllerParams) -> ApaState:
     """Return the system switched off."""
-    return AT_START
+    return ApaState()
 
 
 def apa_sample(state: ApaState, inputs: ControllerInput, params: ControllerParams, dt_ns: int) -> ApaState:
@@ -180,13 +153,13 @@ def _moved_on(
     if mode in (Mode.OFF, Mode.STANDBY) or state.mode == Mode.STANDBY:
         found = begin_search(inputs.odometry, clock)
     if mode in (Mode.OFF, Mode.STANDBY):
-        parking = NOT_PARKING
-        seen = NOT_WATCHED
-        slot = NO_SLOT if mode == Mode.OFF else slot
+        parking = Parking()
+        seen = Watch()
+        slot = Slot() if mode == Mode.OFF else slot
     if mode == Mode.PARKING_SPACE_SEARCH and state.mode == Mode.PARKING_SPACE_APPEARS:
         found = without_first(found) if has_failed(parking, params) else found
-        parking = NOT_PARKING
-        slot = NO_SLOT
+        parking = Parking()
+        slot = Slot()
     if mode == Mode.PARKING_SPACE_APPEARS and state.mode != Mode.PARKING_SPACE_APPEARS:
         given = params.apa.search.given
         slot = params.apa.search.slot if given else braked(found.slots[0], found.fastest, params)

@@ -11,7 +11,7 @@ import math
 from typing import NamedTuple
 
 from controller_fmu.apa.curve import advance
-from controller_fmu.apa.move import NO_PIECE, NO_PIECES, Move, Piece
+from controller_fmu.apa.move import NO_PIECE, Move, Piece
 from modelkit.vocabulary import Pose
 
 STEEPEST = 85.0 * math.pi / 180.0
@@ -46,7 +46,7 @@ def reverse_s(start: Pose, end: Pose, straight: float, first: Turn, second: Turn
     ``straight`` [m] is the way driven straight back at first; with none of it the wheel is turned to
     the first arc at standstill. Both effective radii summed take the place of Guo's 2 R.
     """
-    none = Move(start, 0, NO_PIECES)
+    none = Move(start)
     h0 = start.heading
     ramp0 = first.ramp if straight > 0.0 else 0.0
     gone = advance(start, -1.0, straight, 0.0, 0.0)
@@ -85,7 +85,7 @@ def reverse_turn(start: Pose, turn: Turn) -> Move:
 
     The lines are those of the start and of the x axis, which must cross ahead of the origin.
     """
-    none = Move(start, 0, NO_PIECES)
+    none = Move(start)
     delta = -start.heading
     if delta < 2.0 * turn.angle or delta > STEEPEST + 0.35:
         return none
@@ -112,7 +112,7 @@ def forward_turn(start: Pose, straight: float, angle: float, turn: Turn) -> Move
     """Return the forward move: line, arc to the left by ``angle`` in all [rad]; no direction if it is too small."""
     arc = (angle - 2.0 * turn.angle) / turn.curvature
     if arc < 0.0:
-        return Move(start, 0, NO_PIECES)
+        return Move(start)
     k = turn.curvature
     pieces = (
         Piece(straight, 0.0, 0.0),

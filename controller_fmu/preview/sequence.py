@@ -42,19 +42,19 @@ def advance(
         if kappa2 != 0.0:
             return _shorten(sequence, kappa2, params)
         l1 = straight_distance(speed, params)
-        return _set(sequence, sequence.stage, l1, l1 + params.near_gap)
+        return sequence._replace(l1=l1, l2=l1 + params.near_gap)
     if sequence.stage == Stage.SHORTENED:
         if kappa1 != 0.0:
-            return _set(sequence, Stage.CURVE, sequence.l1, sequence.l1 + params.near_gap)
+            return sequence._replace(stage=Stage.CURVE, l2=sequence.l1 + params.near_gap)
         return sequence
     if kappa1 == 0.0:
         return _restart(speed, params)
     if kappa2 == 0.0:
-        return _set(sequence, Stage.LEAVING, sequence.l1, sequence.l2)
+        return sequence._replace(stage=Stage.LEAVING)
     if kappa2 != sequence.kappa:
         shortened = _shorten(sequence, kappa2, params)
-        return _set(shortened, Stage.CURVE, shortened.l1, shortened.l1 + params.near_gap)
-    return _set(sequence, Stage.CURVE, sequence.l1, sequence.l2)
+        return shortened._replace(stage=Stage.CURVE, l2=shortened.l1 + params.near_gap)
+    return sequence._replace(stage=Stage.CURVE)
 
 
 def _straight(sequence: Sequence, kappa2: float, speed: float, params: PreviewParams, dt: float) -> Sequence:
@@ -82,7 +82,3 @@ def _restart(speed: float, params: PreviewParams) -> Sequence:
     """Return the alternation at the start of its period, set speed of the straight."""
     l1 = straight_distance(speed, params)
     return Sequence(Stage.STRAIGHT, l1, l1 + params.far_gap, params.set_speed, 0.0, 0.0)
-
-
-def _set(sequence: Sequence, stage: int, l1: float, l2: float) -> Sequence:
-    return sequence._replace(stage=stage, l1=l1, l2=l2)

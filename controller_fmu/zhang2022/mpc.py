@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 from controller_fmu.zhang2022.params import MpcParams
 from controller_fmu.zhang2022.path import QuinticPath, Reference, at
-from controller_fmu.zhang2022.qp import STAGES, Solution, Stages, Status, solve
+from controller_fmu.zhang2022.qp import STAGES, Stages, Status, solve
 from controller_fmu.zhang2022.qp_stage import Stage, Weights
 from modelkit.maths import clamp, is_finite
 
@@ -45,15 +45,9 @@ def steer(
     angle = clamp(steering.angle, -car.angle_limit, car.angle_limit)
     stages = prediction(path, reference, speed, car, p)
     found = solve(reference.lateral_error, reference.heading_error, angle, stages, weights(car, p), p.tolerance, p.cap)
-    rate = found.nodes[0].u / p.step_time if is_usable(found) else steering.rate
-    if found.status != Status.SOLVED:
-        rate = steering.rate
+    solved = found.status == Status.SOLVED and is_finite(found.nodes[0].u)
+    rate = found.nodes[0].u / p.step_time if solved else steering.rate
     return Steering(angle, clamp(rate, -car.rate_limit, car.rate_limit), found.status, found.iterations)
-
-
-def is_usable(found: Solution) -> bool:
-    """Return whether the first increment is a number."""
-    return is_finite(found.nodes[0].u)
 
 
 def turned(steering: Steering, car: Car, dt: float) -> Steering:
@@ -64,12 +58,11 @@ def turned(steering: Steering, car: Car, dt: float) -> Steering:
 
 def prediction(path: QuinticPath, reference: Reference, speed: float, car: Car, p: MpcParams) -> Stages:
     """Return the stages of the horizon, linearised where the car will be on the path at this speed (reverse)."""
-    fast = -speed if speed < 0.0 else 0.0
-    step = -max(SLOWEST, fast) * p.step_time
+    step = -max(SLOWEST, -speed) * p.step_time
     x = reference.pose.x
     stages: Stages = (NO_STAGE,) * STAGES
     for number in range(STAGES):
-        stages = stages[:number] + (_stage(path, x, step, number, car, p),) + stages[number + 1 :]
+        stages = stages[1:] + (_stage(path, x, step, number, car, p),)
         x = _onward(path, x, step)
     return stages
 

@@ -70,7 +70,7 @@ def plan(start: Pose, radius: float, curvature_limit: float) -> QuinticPath:
     if not (start.x > 0.1 and start.y > 0.01 and abs(start.heading) < 0.5):
         return _refused(PathStatus.BAD_START, start, 0.0)
     widest = largest_radius(start.x, start.y)
-    low = radius if radius < widest else widest
+    low = min(widest, radius)
     high = widest
     tried = Tried()
     for _ in range(ROUNDS):
@@ -78,8 +78,8 @@ def plan(start: Pose, radius: float, curvature_limit: float) -> QuinticPath:
         if tried.path.status == PathStatus.FOUND:
             return tried.path
         step = (high - low) / (CANDIDATES - 1.0)
-        low = tried.radius - step if tried.radius - step > low else low
-        high = tried.radius + step if tried.radius + step < high else high
+        low = max(low, tried.radius - step)
+        high = min(high, tried.radius + step)
     return tried.path
 
 
@@ -108,12 +108,10 @@ def through(start: Pose, arcs: ArcLineArc) -> QuinticPath:
     x2 = x + arcs.line * math.cos(arcs.angle)
     y2 = y + arcs.line * math.sin(arcs.angle)
     first = quintic(x2, y2, slope, start.x, start.y, math.tan(start.heading))
-    length = x2 - x if x2 - x > 1e-9 else 1e-9
+    length = max(1e-9, x2 - x)
     line = Quintic(x, length, y, slope * length, 0.0, 0.0, 0.0)
     last = quintic(0.0, 0.0, 0.0, x, y, slope)
-    peak = _peak(first)
-    other = _peak(last)
-    return QuinticPath(PathStatus.FOUND, start, arcs, peak if peak > other else other, first, line, last)
+    return QuinticPath(PathStatus.FOUND, start, arcs, max(_peak(last), _peak(first)), first, line, last)
 
 
 def at(path: QuinticPath, x: float) -> Shape:
@@ -148,11 +146,9 @@ def nearest(path: QuinticPath, pose: Pose) -> Reference:
 def _peak(piece: Quintic) -> float:
     largest = 0.0
     for sample in range(SAMPLES + 1):
-        curvature = abs(shape(piece, piece.x0 + piece.length * sample / SAMPLES).curvature)
-        if curvature > largest:
-            largest = curvature
+        largest = max(largest, abs(shape(piece, piece.x0 + piece.length * sample / SAMPLES).curvature))
     return largest
 
 
 def _refused(status: int, start: Pose, peak: float) -> QuinticPath:
-    return QuinticPath(status, start, EMPTY, peak, Quintic(), Quintic(), Quintic())
+    return QuinticPath(status, start, EMPTY, peak)

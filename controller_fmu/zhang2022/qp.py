@@ -138,9 +138,9 @@ def _inside(slack: float) -> float:
 def _start(now: Node, q: Stages, w: Weights) -> Nodes:
     nodes: Nodes = (now,) * STAGES
     before = now
-    for index, stage in enumerate(q):
+    for stage in q:
         before = first_node(before, stage, w)
-        nodes = nodes[:index] + (before,) + nodes[index + 1 :]
+        nodes = nodes[1:] + (before,)
     return nodes
 
 
@@ -150,7 +150,7 @@ def _backward(n: Nodes, q: Stages, w: Weights, mu: float) -> Gains:
     for index in range(STAGES - 1, -1, -1):
         back = backward(value, n[index], q[index], w, mu)
         value = back.value
-        gains = gains[:index] + (back.gain,) + gains[index + 1 :]
+        gains = (back.gain,) + gains[:-1]
     return gains
 
 
@@ -159,7 +159,7 @@ def _forward(k: Gains, n: Nodes, q: Stages, w: Weights, mu: float) -> Nodes:
     steps: Nodes = (ORIGIN,) * STAGES
     for index in range(STAGES):
         step = forward(step, k[index], n[index], q[index], w, mu)
-        steps = steps[:index] + (step,) + steps[index + 1 :]
+        steps = steps[1:] + (step,)
     return steps
 
 

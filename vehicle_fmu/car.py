@@ -111,7 +111,7 @@ def _go(
     if params.body == Body.KINEMATIC:
         speed = change_speed(state.speed, target, params.drive, h)
         if forced:
-            speed = push_speed(state.speed, inputs.force_request, params.chassis.mass, along(state.selector), h)
+            speed = push_speed(state.speed, inputs.force_request, params.chassis.mass, along(state.selector.gear), h)
         pose = move(state.pose, state.speed, speed, angles[0], angles[1], params.wheelbase, h)
         return Going(pose, speed, speed, state.pedals, state.body)
     gear = state.selector.gear

@@ -176,4 +176,4 @@ def _wrench(wheel: Wheel, at: Corner) -> Wrench:
 
 
 def _inner(tangent: float, share: float) -> float:
-    return math.atan(tangent / share) if share > 0.05 else math.atan(tangent / 0.05)
+    return math.atan(tangent / max(0.05, share))

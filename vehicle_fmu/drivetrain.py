@@ -71,9 +71,9 @@ def geared_speed(selector: Selector, target: float) -> float:
     return 0.0
 
 
-def along(selector: Selector) -> float:
+def along(gear: int) -> float:
     """Return the direction of the gear: -1 in reverse, else 1."""
-    return -1.0 if selector.gear == Gear.REVERSE else 1.0
+    return -1.0 if gear == Gear.REVERSE else 1.0
 
 
 def press(pedals: Pedals, target: float, speed: float, gear: int, mass: float, p: DriveParams, h: float) -> Pedals:
@@ -99,8 +99,7 @@ def obey(pedals: Pedals, force: float, speed: float, gear: int, p: DriveParams, 
     Along the gear's direction it goes to the drive, against it to the brake. The aim follows ``speed``,
     so that a speed request takes over without a jump.
     """
-    ahead = -1.0 if gear == Gear.REVERSE else 1.0
-    return Pedals(speed, effort=_split(pedals.effort, force, _creep(gear, speed, p), ahead, p, h))
+    return Pedals(speed, effort=_split(pedals.effort, force, _creep(gear, speed, p), along(gear), p, h))
 
 
 def _split(effort: Effort, force: float, creep: float, ahead: float, p: DriveParams, h: float) -> Effort:

@@ -88,5 +88,4 @@ def nearer(nearest: float, car: Box, thing: Box) -> float:
     """Return the smaller of ``nearest`` and the gap between car and thing."""
     if centre_gap(car, thing) >= nearest:
         return nearest
-    gap = boxes_gap(car, thing)
-    return gap if gap < nearest else nearest
+    return min(nearest, boxes_gap(car, thing))

@@ -23,6 +23,7 @@ from typing import Annotated, NamedTuple
 from modelkit.maths import clamp, sign
 from modelkit.signal import Signal
 from vehicle_fmu.chassis import (
+    CHOSEN,
     GRAVITY,
     Build,
     ChassisParams,
@@ -36,7 +37,6 @@ from vehicle_fmu.chassis import (
 from vehicle_fmu.effort import Effort
 from vehicle_fmu.tires import relax, slide_rate
 
-CHOSEN = "chosen, usual for a small car"
 HOLD_RATE = 40.0
 """A held car rocks at this rate [rad/s] on its brakes and tyres (6 mm under 1 g)."""
 LOOK_AHEAD = 0.01

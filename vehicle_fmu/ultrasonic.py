@@ -1,4 +1,4 @@
-"""tuple[float, ...] ultrasonic sensors: distance to the nearest thing inside each cone.
+"""Twelve ultrasonic sensors: distance to the nearest thing inside each cone.
 
 Numbers: 1 to 4 front, from left to right; 5 to 8 rear, from left to right; 9 front left side,
 10 rear left side; 11 front right side, 12 rear right side. A reading of ``max_range`` means that
@@ -112,7 +112,7 @@ def _nearer(nearest: float, pose: Pose, ahead: Point, mount: SensorMount, half_a
     if dx * dx + dy * dy >= far * far:
         return nearest
     distance = cone_box(start, pose.heading + mount.yaw, half_angle, box)
-    return distance if distance < nearest else nearest
+    return min(nearest, distance)
 
 
 def _reading(random: int, distance: float, ear: Ear) -> tuple[int, float]:

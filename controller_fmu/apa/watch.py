@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 from controller_fmu.apa.manoeuvre_chart import Step
 from controller_fmu.apa.params import ApaParams, Longitudinal
+from controller_fmu.guo2015.monitor import is_unmoved
 from controller_fmu.interface import ControllerInput, ControllerParams, Reason
 from controller_fmu.steering_monitor import SteeringWatch, at_rest, has_failed, watch_steering
 from modelkit.maths import is_finite
@@ -47,15 +48,10 @@ def watch(
     """Return the clocks after one sample; ``driving``: the assist has been given the car."""
     speed = inputs.measured_speed
     still = abs(speed) <= STANDING
-    dt = dt_ns * 1e-9
     angle = inputs.steering_wheel_angle
     wheel = at_rest(angle, state.wheel.steering)
     if driving:
         wheel = watch_steering(state.wheel, request, angle, params.limit.wheel_off, params.steering_wheel_rate, dt_ns)
-    dx = inputs.odometry.x - state.pose.x
-    dy = inputs.odometry.y - state.pose.y
-    way = speed * dt
-    unmoved = dx * dx + dy * dy < 0.01 * way * way and abs(speed) > 0.1
     moving_expected = step in (Step.SET_WHEEL, Step.DRIVE, Step.STRAIGHTEN)
     own = params.apa.drive.longitudinal == Longitudinal.OWN_SPEED
     limit = params.apa.guard.over_speed if not own else 1.5 * params.apa.drive.speed
@@ -65,7 +61,7 @@ def watch(
         blocked=_blocked(state.blocked, blocked and driving, still, dt_ns),
         fast=state.fast + dt_ns if abs(speed) > limit and driving else 0,
         blind=state.blind + dt_ns if not _all_heard(inputs, params.apa) else 0,
-        frozen=state.frozen + dt_ns if unmoved else 0,
+        frozen=state.frozen + dt_ns if is_unmoved(inputs.odometry, state.pose, speed, dt_ns) else 0,
         running=state.running + dt_ns if driving else state.running,
         wheel=wheel,
         pose=inputs.odometry,

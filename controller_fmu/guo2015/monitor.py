@@ -40,23 +40,26 @@ def watch(
     speed = inputs.measured_speed
     still = abs(speed) <= params.threshold.standstill
     direction = DIRECTION_OF_PHASE[phase]
-    dt = dt_ns * 1e-9
     angle = inputs.steering_wheel_angle
     wheel = at_rest(angle, state.wheel.steering)
     if phase != Phase.STANDBY:
         wheel = watch_steering(state.wheel, request, angle, params.limit.wheel_off, params.steering_wheel_rate, dt_ns)
-    dx = inputs.odometry.x - state.pose.x
-    dy = inputs.odometry.y - state.pose.y
-    way = speed * dt
-    unmoved = dx * dx + dy * dy < 0.01 * way * way and abs(speed) > SLOWEST_SEEN
     return MonitorState(
         waiting=state.waiting + dt_ns if still and (direction != 0 or phase in STEERING_PHASES) else 0,
         stopping=state.stopping + dt_ns if not still and direction == 0 else 0,
         wrong_way=state.wrong_way + dt_ns if sign(speed) * direction < 0.0 and not still else 0,
-        frozen=state.frozen + dt_ns if unmoved else 0,
+        frozen=state.frozen + dt_ns if is_unmoved(inputs.odometry, state.pose, speed, dt_ns) else 0,
         wheel=wheel,
         pose=inputs.odometry,
     )
+
+
+def is_unmoved(pose: Pose, before: Pose, speed: float, dt_ns: int) -> bool:
+    """Return whether the pose has gone less than a tenth of the way that a car at ``speed`` [m/s] goes meanwhile."""
+    dx = pose.x - before.x
+    dy = pose.y - before.y
+    way = speed * (dt_ns * 1e-9)
+    return dx * dx + dy * dy < 0.01 * way * way and abs(speed) > SLOWEST_SEEN
 
 
 def reason_to_fail(

@@ -19,6 +19,12 @@ class SlotFrame(NamedTuple):
     """1 for a slot on the right-hand side, -1 on the left."""
 
 
+def frame_at(target: Pose, start: Pose) -> SlotFrame:
+    """Return the frame of a slot at ``target``, on the side on which it is seen from ``start`` (world poses)."""
+    right = SlotFrame(target)
+    return right if to_slot(start, right).y >= 0.0 else SlotFrame(target, -1.0)
+
+
 def to_slot(pose: Pose, frame: SlotFrame) -> Pose:
     """Return a world pose in the slot's frame, heading in (-pi, pi]."""
     c = math.cos(frame.target.heading)

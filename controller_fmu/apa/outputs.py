@@ -9,7 +9,7 @@ from controller_fmu.apa.parking import Parking, is_planned, site_for
 from controller_fmu.apa.signals import Alarm, ApaSignals, PlannedMove, PlannedPiece
 from controller_fmu.apa.slot import mirror_of
 from controller_fmu.apa.system import ApaState
-from controller_fmu.interface import ControllerOutput, ControllerParams, Path, Phase, Segment
+from controller_fmu.interface import ControllerOutput, ControllerParams, Phase
 from controller_fmu.slot_frame import SlotFrame, to_world
 from modelkit.vocabulary import Pose, Prompt
 
@@ -49,9 +49,8 @@ def prompt_of(state: ApaState, params: ControllerParams) -> int:
         return Prompt.CONFIRM if is_planned(state.parking) else Prompt.STOP
     if state.mode in (Mode.PARKING_FINISH, Mode.FAIL):
         return Prompt.NONE if state.taken_over else Prompt.STOP
-    if (
-        state.mode in (Mode.AUTO_PARKING_ASSIST, Mode.POSITION_TUNING)
-    ) and params.apa.drive.longitudinal != Longitudinal.OWN_SPEED:
+    driving = state.mode in (Mode.AUTO_PARKING_ASSIST, Mode.POSITION_TUNING)
+    if driving and params.apa.drive.longitudinal != Longitudinal.OWN_SPEED:
         if state.parking.step != Step.DRIVE:
             return Prompt.STOP
         if state.parking.tracked.way > MOVING and state.watch.waiting == 0:
@@ -97,7 +96,6 @@ def apa_outputs(state: ApaState, params: ControllerParams) -> ControllerOutput:
         reference=to_world(parking.tracked.reference, site.frame),
         lateral_error=parking.tracked.lateral_error,
         heading_error=parking.tracked.heading_error,
-        path=Path(Pose(0.0, 0.0, 0.0), (Segment(0.0, 0.0), Segment(0.0, 0.0), Segment(0.0, 0.0))),
         apa=_signals(state, site.frame, params),
     )
 
@@ -105,7 +103,6 @@ def apa_outputs(state: ApaState, params: ControllerParams) -> ControllerOutput:
 def _signals(state: ApaState, frame: SlotFrame, params: ControllerParams) -> ApaSignals:
     slot = state.slot
     shown = slot.kind > 0
-    nowhere = Pose(0.0, 0.0, 0.0)
     b = to_world(Pose(slot.length, slot.b_out, 0.0), SlotFrame(slot.a, mirror_of(slot)))
     return ApaSignals(
         mode=state.mode,
@@ -114,8 +111,8 @@ def _signals(state: ApaState, frame: SlotFrame, params: ControllerParams) -> Apa
         slots=state.search.valid,
         missing=state.search.refused.missing,
         slot=slot,
-        corner_b=b if shown else nowhere,
-        target=to_world(nowhere, frame) if shown else nowhere,
+        corner_b=b if shown else Pose(),
+        target=to_world(Pose(), frame) if shown else Pose(),
         moves=state.parking.plan.moves,
         parking_time=state.watch.running * 1e-9,
         iso_spare=slot.length - shortest_of_iso(slot.kind, params.wheelbase, params.apa) if shown else 0.0,

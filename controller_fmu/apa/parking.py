@@ -18,7 +18,7 @@ from controller_fmu.apa.watch import STANDING
 from controller_fmu.interface import ControllerInput, ControllerParams
 from controller_fmu.slot_frame import to_slot
 from controller_fmu.steering_monitor import Steering, rate_of
-from modelkit.maths import clamp
+from controller_fmu.steering_wheel import wheel_request
 from modelkit.vocabulary import Pose
 
 AT_END = 0.04
@@ -201,14 +201,15 @@ def _moved_on(
         leg = _next_leg(state, plan, tracked)
         if state.step == Step.PLAN:
             tracked = Tracked(left=length_of(plan.move), to_stop=leg.end, reference=pose)
-        wheel = _wheel(site.frame.mirror * set_wheel(plan.move, leg, tracked.way, params.wheelbase), params)
+        front = set_wheel(plan.move, leg, tracked.way, params.wheelbase)
+        wheel = wheel_request(front, site.frame.mirror, params)
     if step == Step.DRIVE:
         if state.step != Step.DRIVE and plan.move.direction != direction:
             shifts = shifts + 1 if shifts > 0 or plan.move.direction < 0 else shifts
             direction = plan.move.direction
         speed = direction * _speed(tracked, sight, steering, params)
     if step in (Step.DRIVE, Step.HALT):
-        wheel = _wheel(site.frame.mirror * tracked.front_wheel_angle, params)
+        wheel = wheel_request(tracked.front_wheel_angle, site.frame.mirror, params)
     if step in (Step.STRAIGHTEN, Step.IDLE):
         wheel = 0.0
     return Parking(step, plan, attempt, leg, tracked, shifts, direction, ended, cut, sight, wheel, speed)
@@ -226,12 +227,7 @@ def _next_leg(state: Parking, plan: PlanSearch, tracked: Tracked) -> Leg:
 def _speed(tracked: Tracked, sight: Sight, steering: Steering, params: ControllerParams) -> float:
     rate = rate_of(steering, params.steering_wheel_rate) / params.steering_ratio
     speed = planned_speed(tracked.to_stop, tracked.slope, params.wheelbase, rate, params.apa.drive)
-    speed = sight.speed if sight.speed < speed else speed
-    return speed if speed > params.apa.drive.creep else params.apa.drive.creep
-
-
-def _wheel(front_wheel_angle: float, params: ControllerParams) -> float:
-    return clamp(params.steering_ratio * front_wheel_angle, -params.steering_wheel_limit, params.steering_wheel_limit)
+    return max(params.apa.drive.creep, min(speed, sight.speed))
 
 
 def _bit(guard: int, holds: bool) -> int:

@@ -11,14 +11,12 @@ def planned_speed(to_stop: float, slope: float, wheelbase: float, wheel_rate: fl
     On a ramp of curvature slope c' [1/m2] the front wheels turn by L c' v at most, which must stay under
     their rate ``wheel_rate`` [rad/s].
     """
-    way = to_stop if to_stop > 0.0 else 0.0
-    speed = math.sqrt(drive.creep * drive.creep + 2.0 * drive.deceleration * way)
-    if speed > drive.speed:
-        speed = drive.speed
+    fast = math.sqrt(drive.creep * drive.creep + 2.0 * drive.deceleration * max(0.0, to_stop))
+    speed = min(fast, drive.speed)
     turning = abs(slope) * wheelbase
     if turning * speed > drive.steering_reserve * wheel_rate:
         speed = drive.steering_reserve * wheel_rate / turning
-    return speed if speed > drive.creep else drive.creep
+    return max(drive.creep, speed)
 
 
 def stopping_way(speed: float, drive: ApaDriveParams, reaction: float) -> float:

@@ -20,11 +20,11 @@ from controller_fmu.guo2015.prompts import (
     path_speed,
     point_speed,
     prompt_of,
-    smaller,
     swing_speed,
 )
 from controller_fmu.interface import ControllerInput, ControllerOutput, ControllerParams, Path, Phase, Reason, Segment
 from controller_fmu.slot_frame import to_slot, to_world
+from controller_fmu.steering_wheel import wheel_request
 from modelkit.maths import clamp
 from modelkit.vocabulary import Pose
 
@@ -55,12 +55,9 @@ class ParkingState(NamedTuple):
     monitor: MonitorState = MonitorState()
 
 
-AT_REST = ParkingState()
-
-
 def start(params: ControllerParams) -> ParkingState:
     """Return the system in standby."""
-    return AT_REST
+    return ParkingState()
 
 
 def sample(state: ParkingState, inputs: ControllerInput, params: ControllerParams, dt_ns: int) -> ParkingState:
@@ -102,8 +99,6 @@ def outputs(state: ParkingState, params: ControllerParams) -> ControllerOutput:
         steering_active=active,
         prompt=prompt_of(state.phase, state.moving, state.advice, params.prompting),
         advised_speed=state.advice,
-        speed_control_active=False,
-        speed_request=0.0,
         brake_request=state.phase == Phase.FAILED and not state.takeover,
         phase=state.phase,
         reason=state.reason,
@@ -226,11 +221,11 @@ def _advice(
     advice = swing
     if way == Phase.PATH_TRACKING:
         reference = reference_at(planned.path, pose.x, tracking.piece)
-        advice = smaller(swing, path_speed(planned.path, reference, speed, monitor.wheel.steering, params))
+        advice = min(path_speed(planned.path, reference, speed, monitor.wheel.steering, params), swing)
     else:
         left = -DIRECTION_OF_PHASE[way] * tracking.ahead
-        advice = smaller(swing, point_speed(left, speed, params.prompting))
-    return advice if driving else smaller(advice, state.advice)
+        advice = min(point_speed(left, speed, params.prompting), swing)
+    return advice if driving else min(state.advice, advice)
 
 
 def _swing(
@@ -249,14 +244,13 @@ def _swing(
     lock = params.steering_wheel_limit
     angle = clamp(wheel, -lock, lock) / params.steering_ratio
     speed = swing_speed(angle, request / params.steering_ratio, monitor.wheel.steering, params)
-    return smaller(speed, state.swing) if DIRECTION_OF_PHASE[state.phase] != 0 else speed
+    return min(state.swing, speed) if DIRECTION_OF_PHASE[state.phase] != 0 else speed
 
 
 def _wheel_request(phase: int, tracking: Tracking, planned: Plan, params: ControllerParams) -> float:
     if phase in (Phase.STANDBY, Phase.STRAIGHTEN):
         return 0.0
-    wheel = params.steering_ratio * planned.frame.mirror * tracking.front_wheel_angle
-    return clamp(wheel, -params.steering_wheel_limit, params.steering_wheel_limit)
+    return wheel_request(tracking.front_wheel_angle, planned.frame.mirror, params)
 
 
 def _ended(state: ParkingState, phase: int, reason: int, takeover: bool) -> ParkingState:

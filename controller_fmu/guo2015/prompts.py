@@ -46,16 +46,16 @@ def path_speed(
     k_next = curvature_after(path, reference.piece)
     to_end = distance_to_end(path, reference)
     if to_end > 0.0:
-        advice = smaller(advice, _speed_before(prompting.creep_speed, to_end, speed, prompting))
+        advice = min(_speed_before(prompting.creep_speed, to_end, speed, prompting), advice)
     if k_next * k <= 0.0 and k_next != 0.0:
         at_jump = swing_speed(math.atan(params.wheelbase * k), math.atan(params.wheelbase * k_next), steering, params)
-        advice = smaller(advice, _speed_before(at_jump, distance_to_jump(path, reference), speed, prompting))
+        advice = min(_speed_before(at_jump, distance_to_jump(path, reference), speed, prompting), advice)
     return advice
 
 
 def point_speed(distance: float, speed: float, params: PromptParams) -> float:
     """Return the speed [m/s] for point tracking, ``distance`` [m] before the point: slow (Guo 2015, Fig. 9)."""
-    return smaller(params.point_speed, _speed_before(params.creep_speed, distance, speed, params))
+    return min(_speed_before(params.creep_speed, distance, speed, params), params.point_speed)
 
 
 def swing_speed(angle: float, wanted: float, steering: Steering, params: ControllerParams) -> float:
@@ -89,12 +89,6 @@ def is_moving(before: bool, speed: float, direction: int, standstill: float) -> 
     return along > MOVING or (before and along > standstill)
 
 
-def smaller(a: float, b: float) -> float:
-    """Return the smaller of two numbers."""
-    return a if a < b else b
-
-
 def _speed_before(speed_there: float, distance: float, speed: float, params: PromptParams) -> float:
-    left = distance - abs(speed) * params.reaction
-    left = left if left > 0.0 else 0.0
+    left = max(0.0, distance - abs(speed) * params.reaction)
     return math.sqrt(speed_there * speed_there + params.deceleration * left)

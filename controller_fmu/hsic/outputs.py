@@ -7,7 +7,8 @@ from controller_fmu.hsic.signals import HsicSignals
 from controller_fmu.hsic.system import HsicState
 from controller_fmu.interface import ControllerOutput, ControllerParams, Path, Phase, Segment
 from controller_fmu.slot_frame import SlotFrame, to_world
-from modelkit.vocabulary import Pose, Prompt
+from controller_fmu.steering_wheel import steering_wheel_angle
+from modelkit.vocabulary import Pose
 
 
 def tangent_error(points: KeyPoints, pose: Pose) -> float:
@@ -18,7 +19,7 @@ def tangent_error(points: KeyPoints, pose: Pose) -> float:
 def planned_path(points: KeyPoints, frame: SlotFrame) -> Path:
     """Return arc, common tangent, arc; empty without key points."""
     if not points.found:
-        return Path(Pose(0.0, 0.0, 0.0), (Segment(0.0, 0.0), Segment(0.0, 0.0), Segment(0.0, 0.0)))
+        return Path()
     k = frame.mirror / points.radius
     arc = points.radius * points.p3.heading
     line = errors(points.p2, points.p3, 0.0, 1).ahead
@@ -37,18 +38,12 @@ def hsic_outputs(state: HsicState, params: ControllerParams) -> ControllerOutput
         distance=state.found.distance,
         tangent_error=tangent_error(state.course.points, state.pose),
     )
-    turn = state.frame.mirror * params.steering_ratio * state.angle
-    wheel = turn if active else 0.0
     brake = state.phase != Phase.PATH_TRACKING and state.phase != Phase.TAKEOVER
     return ControllerOutput(
-        steering_wheel_request=wheel,
+        steering_wheel_request=steering_wheel_angle(state.angle, state.frame.mirror, params) if active else 0.0,
         steering_active=active,
-        prompt=Prompt.NONE,
-        advised_speed=0.0,
         speed_control_active=active,
         speed_request=state.set_speed,
-        force_control_active=False,
-        force_request=0.0,
         brake_request=brake,
         phase=state.phase,
         reason=state.reason,

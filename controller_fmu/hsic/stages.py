@@ -18,8 +18,6 @@ class Course(NamedTuple):
     points: KeyPoints = KeyPoints()
     goal: Pose = Pose()
     done: bool = False
-    lost: bool = False
-    """The key points cannot be reached from where the car stands ready."""
     hold: bool = True
     """Stand until the wheel is where it should be."""
     way: int = 1
@@ -59,7 +57,7 @@ def _ready(course: Course, pose: Pose, found: Errors, arrived: bool, wheelbase: 
     if aligned and abs(pose.x - p1.x) <= READY_REACH:
         points = key_points(pose, params.slot, wheelbase, course.points.radius)
         if points.found:
-            return Course(Stage.TURN_IN, points, points.p2, False, False, True, -1)
+            return Course(Stage.TURN_IN, points, points.p2, way=-1)
     farther = Pose(p1.x + threshold.retreat, p1.y, 0.0)
     return _go(course, Stage.READY, farther if at_p1 else p1, True, pose)
 
@@ -87,8 +85,7 @@ def _shuffle(course: Course, pose: Pose, arrived: bool, params: HsicParams) -> C
 
 
 def _go(course: Course, stage: int, goal: Pose, hold: bool, pose: Pose) -> Course:
-    way = way_to(goal, pose)
-    return Course(stage, course.points, goal, False, False, hold, way)
+    return Course(stage, course.points, goal, hold=hold, way=way_to(goal, pose))
 
 
 def way_to(goal: Pose, pose: Pose) -> int:
@@ -97,4 +94,4 @@ def way_to(goal: Pose, pose: Pose) -> int:
 
 
 def _done(course: Course) -> Course:
-    return course._replace(done=True, lost=False, hold=True)
+    return course._replace(done=True, hold=True)

@@ -10,7 +10,8 @@ from controller_fmu.hsic.key_points import key_points, ready_point
 from controller_fmu.hsic.rules import RULES, SpeedMode
 from controller_fmu.hsic.stages import Course, advance, is_parked, way_to
 from controller_fmu.interface import ControllerInput, ControllerParams, Phase, Reason
-from controller_fmu.slot_frame import SlotFrame, to_slot
+from controller_fmu.slot_frame import SlotFrame, frame_at, to_slot
+from controller_fmu.steering_wheel import steering_wheel_angle
 from modelkit.maths import clamp
 from modelkit.vocabulary import Pose
 
@@ -57,10 +58,10 @@ def hsic_sample(state: HsicState, inputs: ControllerInput, params: ControllerPar
     if inputs.driver_takeover:
         return _ended(state, Phase.TAKEOVER, Reason.NONE)
     if state.phase == Phase.STANDBY:
-        return _planned(state, inputs, params)
+        return _planned(inputs, params)
     pose = to_slot(inputs.odometry, state.frame)
     watched = _watched_phase(state)
-    wheel = state.frame.mirror * params.steering_ratio * state.angle
+    wheel = steering_wheel_angle(state.angle, state.frame.mirror, params)
     monitor = watch(state.monitor, inputs, watched, wheel, dt_ns, params)
     reason = reason_to_fail(monitor, inputs, watched, state.running_ns, state.shifts, params)
     lost = abs(state.found.lateral) > LOST * params.threshold.lost_lateral
@@ -80,32 +81,18 @@ def _watched_phase(state: HsicState) -> int:
     return Phase.TO_Q4 if state.direction > 0 else Phase.PATH_TRACKING
 
 
-def _planned(state: HsicState, inputs: ControllerInput, params: ControllerParams) -> HsicState:
+def _planned(inputs: ControllerInput, params: ControllerParams) -> HsicState:
     """Return the system on its way to the ready point, or failed where there are no key points."""
     slot = params.hsic.slot
     radius = slot.radius_reserve * params.wheelbase / math.tan(params.steering_wheel_limit / params.steering_ratio)
-    right = SlotFrame(params.target, 1.0)
-    frame = right if to_slot(inputs.odometry, right).y >= 0.0 else SlotFrame(params.target, -1.0)
+    frame = frame_at(params.target, inputs.odometry)
     p1 = ready_point(slot, radius)
     points = key_points(p1, slot, params.wheelbase, radius)
-    phase = Phase.PRE_STEER if points.found else Phase.FAILED
-    reason = Reason.NONE if points.found else Reason.NO_PATH
     return HsicState(
-        phase=phase,
-        reason=reason,
-        running_ns=0,
+        phase=Phase.PRE_STEER if points.found else Phase.FAILED,
+        reason=Reason.NONE if points.found else Reason.NO_PATH,
         frame=frame,
-        course=Course(Stage.READY, points, p1, False, False, True, way_to(p1, to_slot(inputs.odometry, frame))),
-        direction=1,
-        shifts=0,
-        counted=0,
-        characteristic=0,
-        integral=0.0,
-        angle=0.0,
-        set_speed=0.0,
-        found=state.found,
-        pose=state.pose,
-        monitor=state.monitor,
+        course=Course(Stage.READY, points, p1, way=way_to(p1, to_slot(inputs.odometry, frame))),
     )
 
 
@@ -131,7 +118,7 @@ def _driven(
     lock = math.tan(params.steering_wheel_limit / params.steering_ratio) / params.wheelbase
     bend = curvature(steer_mode, course.stage, found, direction, integral, 1.0 / course.points.radius, lock, hsic.gain)
     angle = math.atan(params.wheelbase * bend)
-    off = abs(inputs.steering_wheel_angle - state.frame.mirror * params.steering_ratio * angle)
+    off = abs(inputs.steering_wheel_angle - steering_wheel_angle(angle, state.frame.mirror, params))
     if abs(v) <= params.threshold.standstill and off <= hsic.threshold.wheel:
         hold = False
     still = hold or turning or course.done
@@ -176,16 +163,10 @@ def _straightened(
         near = is_parked(pose, 1.0, params.hsic)
         phase = Phase.PARKED if near else Phase.FAILED
         reason = Reason.NONE if near else Reason.MISSED_TARGET
-    return HsicState(
+    return state._replace(
         phase=phase,
         reason=reason,
         running_ns=state.running_ns + dt_ns,
-        frame=state.frame,
-        course=state.course,
-        direction=state.direction,
-        shifts=state.shifts,
-        counted=state.counted,
-        characteristic=state.characteristic,
         integral=0.0,
         angle=0.0,
         set_speed=0.0,

@@ -3,11 +3,10 @@
 from typing import NamedTuple
 
 from controller_fmu.guo2015.monitor import is_usable_input
-from controller_fmu.interface import ControllerInput, ControllerOutput, ControllerParams, Path, Phase, Reason, Segment
+from controller_fmu.interface import ControllerInput, ControllerOutput, ControllerParams, Phase, Reason
 from controller_fmu.preview.road import road_at
-from controller_fmu.preview.system import PreviewCommand, PreviewState, preview_step
-from modelkit.maths import clamp
-from modelkit.vocabulary import Pose, Prompt
+from controller_fmu.preview.system import PreviewState, preview_step
+from controller_fmu.steering_wheel import wheel_request
 
 
 class DrivingState(NamedTuple):
@@ -31,19 +30,15 @@ def driving_sample(state: DrivingState, inputs: ControllerInput, params: Control
     if state.phase >= Phase.PARKED:
         return state
     if not is_usable_input(inputs):
-        return DrivingState(Phase.FAILED, Reason.BAD_INPUT, state.preview, 0.0, 0.0)
+        return DrivingState(Phase.FAILED, Reason.BAD_INPUT, state.preview)
     if inputs.driver_takeover:
-        return DrivingState(Phase.TAKEOVER, Reason.NONE, state.preview, 0.0, 0.0)
+        return DrivingState(Phase.TAKEOVER, Reason.NONE, state.preview)
     if state.phase == Phase.STRAIGHTEN:
         still = abs(inputs.measured_speed) <= params.threshold.standstill
-        return DrivingState(Phase.PARKED if still else Phase.STRAIGHTEN, Reason.NONE, state.preview, 0.0, 0.0)
+        return DrivingState(Phase.PARKED if still else Phase.STRAIGHTEN, Reason.NONE, state.preview)
     preview, command = preview_step(state.preview, inputs.odometry, inputs.measured_speed, params.preview, dt_ns * 1e-9)
     if abs(preview.sight.y_l) > params.threshold.lost_lateral:
-        return DrivingState(Phase.FAILED, Reason.LEFT_PATH, preview, 0.0, 0.0)
-    return _commanded(preview, command)
-
-
-def _commanded(preview: PreviewState, command: PreviewCommand) -> DrivingState:
+        return DrivingState(Phase.FAILED, Reason.LEFT_PATH, preview)
     phase = Phase.STRAIGHTEN if command.finished else Phase.PATH_TRACKING
     return DrivingState(phase, Reason.NONE, preview, command.front_wheel_angle, command.force)
 
@@ -52,17 +47,13 @@ def driving_outputs(state: DrivingState, params: ControllerParams) -> Controller
     """Return the outputs that hold until the next sample."""
     driving = state.phase == Phase.PATH_TRACKING
     signals = state.preview.signals
-    limit = params.steering_wheel_limit
-    nothing = Segment(0.0, 0.0)
     active = driving or state.phase == Phase.STRAIGHTEN
     brake = not driving and state.phase != Phase.TAKEOVER
     speed = signals.wanted_speed if driving else 0.0
     force = state.force if driving else 0.0
     return ControllerOutput(
-        steering_wheel_request=clamp(params.steering_ratio * state.angle, -limit, limit),
+        steering_wheel_request=wheel_request(state.angle, 1.0, params),
         steering_active=active,
-        prompt=Prompt.NONE,
-        advised_speed=0.0,
         speed_control_active=active,
         speed_request=speed,
         force_control_active=driving,
@@ -70,10 +61,8 @@ def driving_outputs(state: DrivingState, params: ControllerParams) -> Controller
         brake_request=brake,
         phase=state.phase,
         reason=state.reason,
-        shifts=0,
         reference=road_at(params.preview.road, signals.s).pose,
         lateral_error=signals.y_l,
         heading_error=signals.eps_l,
-        path=Path(Pose(0.0, 0.0, 0.0), (nothing, nothing, nothing)),
         preview=signals,
     )

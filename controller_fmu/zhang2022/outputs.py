@@ -4,10 +4,10 @@ import math
 
 from controller_fmu.interface import ControllerOutput, ControllerParams, Path, Phase, Segment
 from controller_fmu.slot_frame import to_world
+from controller_fmu.steering_wheel import steering_wheel_angle
 from controller_fmu.zhang2022.path import PathStatus
 from controller_fmu.zhang2022.signals import ZhangSignals
 from controller_fmu.zhang2022.system import ZhangState
-from modelkit.vocabulary import Pose, Prompt
 
 
 def zhang_signals(state: ZhangState, params: ControllerParams) -> ZhangSignals:
@@ -25,7 +25,7 @@ def zhang_signals(state: ZhangState, params: ControllerParams) -> ZhangSignals:
 def planned_path(state: ZhangState) -> Path:
     """Return the arc path whose key points the quintics go through; empty without a path."""
     if state.path.status == PathStatus.NONE:
-        return Path(Pose(0.0, 0.0, 0.0), (Segment(0.0, 0.0), Segment(0.0, 0.0), Segment(0.0, 0.0)))
+        return Path()
     arcs = state.path.arcs
     k = state.frame.mirror / arcs.radius
     arc = arcs.radius * arcs.angle
@@ -37,17 +37,14 @@ def zhang_outputs(state: ZhangState, params: ControllerParams) -> ControllerOutp
     """Return the outputs that hold until the next sample."""
     active = state.phase in (Phase.PATH_TRACKING, Phase.STRAIGHTEN)
     driving = state.phase == Phase.PATH_TRACKING
-    turn = state.frame.mirror * params.steering_ratio * state.steering.angle
-    wheel = turn if active else 0.0
+    wheel = steering_wheel_angle(state.steering.angle, state.frame.mirror, params)
     force = state.pid.force if driving else 0.0
     speed = state.set_speed if driving else 0.0
     brake = not driving and state.phase != Phase.TAKEOVER
     shifts = 0 if state.phase == Phase.STANDBY else 1
     return ControllerOutput(
-        steering_wheel_request=wheel,
+        steering_wheel_request=wheel if active else 0.0,
         steering_active=active,
-        prompt=Prompt.NONE,
-        advised_speed=0.0,
         speed_control_active=active,
         speed_request=speed,
         force_control_active=driving,

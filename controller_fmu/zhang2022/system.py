@@ -5,7 +5,8 @@ from typing import NamedTuple
 
 from controller_fmu.guo2015.monitor import MonitorState, is_usable_input, reason_to_fail, watch
 from controller_fmu.interface import ControllerInput, ControllerParams, Phase, Reason
-from controller_fmu.slot_frame import SlotFrame, to_slot
+from controller_fmu.slot_frame import SlotFrame, frame_at, to_slot
+from controller_fmu.steering_wheel import steering_wheel_angle
 from controller_fmu.zhang2022.mpc import Car, Steering, steer, turned
 from controller_fmu.zhang2022.path import PathStatus, QuinticPath, Reference, nearest, plan
 from controller_fmu.zhang2022.pid import PidState, pid
@@ -49,10 +50,10 @@ def zhang_sample(state: ZhangState, inputs: ControllerInput, params: ControllerP
     if inputs.driver_takeover:
         return _ended(state, Phase.TAKEOVER, Reason.NONE)
     if state.phase == Phase.STANDBY:
-        return _planned(state, inputs, params)
+        return _planned(inputs, params)
     pose = to_slot(inputs.odometry, state.frame)
     reference = nearest(state.path, pose)
-    wheel = state.frame.mirror * params.steering_ratio * state.steering.angle
+    wheel = steering_wheel_angle(state.steering.angle, state.frame.mirror, params)
     monitor = watch(state.monitor, inputs, state.phase, wheel, dt_ns, params)
     reason = reason_to_fail(monitor, inputs, state.phase, state.running_ns, 1, params)
     if reason == Reason.NONE and abs(reference.lateral_error) > params.threshold.lost_lateral:
@@ -70,32 +71,24 @@ def car_of(params: ControllerParams) -> Car:
     return Car(params.wheelbase, params.steering_wheel_limit / ratio, params.steering_wheel_rate / ratio)
 
 
-def _planned(state: ZhangState, inputs: ControllerInput, params: ControllerParams) -> ZhangState:
+def _planned(inputs: ControllerInput, params: ControllerParams) -> ZhangState:
     """Return the system on its path, or failed for want of one."""
     car = car_of(params)
-    right = SlotFrame(params.target, 1.0)
-    frame = right if to_slot(inputs.odometry, right).y >= 0.0 else SlotFrame(params.target, -1.0)
+    frame = frame_at(params.target, inputs.odometry)
     start = to_slot(inputs.odometry, frame)
     quintic = params.zhang2022.quintic
     limit = quintic.curvature_share * math.tan(car.angle_limit) / car.wheelbase
     path = plan(start, quintic.radius, limit)
     angle = frame.mirror * inputs.steering_wheel_angle / params.steering_ratio
     found = path.status == PathStatus.FOUND
-    reference = nearest(path, start) if found else state.reference
-    phase = Phase.PATH_TRACKING if found else Phase.FAILED
-    reason = Reason.NONE if found else Reason.NO_PATH
     return ZhangState(
-        phase=phase,
-        reason=reason,
-        running_ns=0,
+        phase=Phase.PATH_TRACKING if found else Phase.FAILED,
+        reason=Reason.NONE if found else Reason.NO_PATH,
         solved_ns=math.floor(params.zhang2022.mpc.period * 1e9),
         frame=frame,
         path=path,
-        reference=reference,
-        steering=Steering(angle, 0.0, 0, 0),
-        set_speed=0.0,
-        pid=state.pid,
-        monitor=state.monitor,
+        reference=nearest(path, start) if found else Reference(),
+        steering=Steering(angle),
     )
 
 
@@ -118,15 +111,12 @@ def _driven(
         steering = steer(steering, state.path, reference, inputs.measured_speed, car, zhang.mpc)
         solved_ns = 0
     arrived = pose.x <= zhang.stop_distance
-    room = 2.0 * STOPPING_SHARE * zhang.ramp * (pose.x if pose.x > 0.0 else 0.0)
-    slow = math.sqrt(room) + CREEP
-    wanted = -(slow if slow < zhang.speed else zhang.speed)
+    room = 2.0 * STOPPING_SHARE * zhang.ramp * max(0.0, pose.x)
+    wanted = -min(zhang.speed, math.sqrt(room) + CREEP)
     set_speed = move_towards(state.set_speed, wanted, zhang.ramp * dt)
     speed = pid(state.pid, set_speed - inputs.measured_speed, zhang.pid, dt)
-    phase = Phase.STRAIGHTEN if arrived else Phase.PATH_TRACKING
-    held_speed = 0.0 if arrived else set_speed
     return ZhangState(
-        phase=phase,
+        phase=Phase.STRAIGHTEN if arrived else Phase.PATH_TRACKING,
         reason=Reason.NONE,
         running_ns=state.running_ns + dt_ns,
         solved_ns=solved_ns,
@@ -134,7 +124,7 @@ def _driven(
         path=state.path,
         reference=reference,
         steering=turned(steering, car, dt),
-        set_speed=held_speed,
+        set_speed=0.0 if arrived else set_speed,
         pid=speed,
         monitor=monitor,
     )
@@ -152,17 +142,14 @@ def _straightened(
         near = abs(pose.y) <= limit.miss_lateral and abs(pose.heading) <= limit.miss_heading
         phase = Phase.PARKED if near else Phase.FAILED
         reason = Reason.NONE if near else Reason.MISSED_TARGET
-    return ZhangState(
+    return state._replace(
         phase=phase,
         reason=reason,
         running_ns=state.running_ns + dt_ns,
         solved_ns=0,
-        frame=state.frame,
-        path=state.path,
         reference=nearest(state.path, pose),
-        steering=Steering(0.0, 0.0, state.steering.status, state.steering.iterations),
+        steering=state.steering._replace(angle=0.0, rate=0.0),
         set_speed=0.0,
-        pid=state.pid,
         monitor=monitor,
     )
 

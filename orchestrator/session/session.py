@@ -127,16 +127,14 @@ def run_slaves(
     master.interrupt = interrupt or Interrupt()
     info = provenance(scenario, slaves, kind, foreign)
     recorder = Recorder(slaves, scenario.stop_ns // scenario.step_ns + 1)
-    changes = ModeChanges(slaves, scenario.faults, messages.say)
-    master.observers += [messages, recorder]
+    master.observers += [messages, recorder, ModeChanges(slaves, scenario.faults, messages.say)]
     if log is not None:
         from orchestrator.log.mcap_log import McapLog
 
         file = McapLog(log, slaves, scenario, info)
         messages.listeners.append(file.say)
-        master.observers += [changes, file, *observers]
-    else:
-        master.observers += [changes, *observers]
+        master.observers.append(file)
+    master.observers += observers
     for text in said:
         messages.say(0, WARNING, "system", text)
     end = _guarded(messages, master.initialize)
@@ -147,7 +145,8 @@ def run_slaves(
     master.finish(end)
     wall_time = time.perf_counter() - begun
     master.free()
-    return Ran(recorder.recording({**info, "end": {"reason": end.reason, "t_ns": end.t_ns}}), end, said, wall_time)
+    info["end"] = {"reason": end.reason, "t_ns": end.t_ns}
+    return Ran(recorder.recording(info), end, said, wall_time)
 
 
 def _master(slaves: list[Slave], scenario: Scenario, kind: str) -> Master:

@@ -9,8 +9,8 @@ from controller_fmu.apa.parking import Parking, is_planned, site_for
 from controller_fmu.apa.signals import Alarm, ApaSignals, PlannedMove, PlannedPiece
 from controller_fmu.apa.slot import mirror_of
 from controller_fmu.apa.system import ApaState
+from controller_fmu.common.slot_frame import SlotFrame, to_world
 from controller_fmu.interface import ControllerOutput, ControllerParams, Phase
-from controller_fmu.slot_frame import SlotFrame, to_world
 from modelkit.vocabulary import Pose, Prompt
 
 PHASE_OF_STEP = (

@@ -15,10 +15,10 @@ from controller_fmu.apa.speed import planned_speed, stopping_way
 from controller_fmu.apa.supervisor import Sight, look
 from controller_fmu.apa.tracking import Leg, Tracked, next_standstill, set_wheel, track
 from controller_fmu.apa.watch import STANDING
+from controller_fmu.common.slot_frame import to_slot
+from controller_fmu.common.steering_monitor import Steering, rate_of
+from controller_fmu.common.steering_wheel import wheel_request
 from controller_fmu.interface import ControllerInput, ControllerParams
-from controller_fmu.slot_frame import to_slot
-from controller_fmu.steering_monitor import Steering, rate_of
-from controller_fmu.steering_wheel import wheel_request
 from modelkit.vocabulary import Pose
 
 AT_END = 0.04

@@ -12,8 +12,8 @@ from controller_fmu.apa.outline import Obstacles
 from controller_fmu.apa.parking import car_of
 from controller_fmu.apa.slot import LESS_BESIDE, UNSEEN, Kind, Margins, Site, Slot, mirror_of, site_of
 from controller_fmu.apa.supervisor import WRONG, expected
+from controller_fmu.common.slot_frame import SlotFrame, to_slot, to_world
 from controller_fmu.interface import ControllerInput, ControllerParams
-from controller_fmu.slot_frame import SlotFrame, to_slot, to_world
 from modelkit.maths import wrap_angle
 from modelkit.vocabulary import Pose
 

@@ -11,7 +11,7 @@ from enum import IntEnum
 from typing import Annotated, NamedTuple
 
 from controller_fmu.apa.outline import FAR, Box, Car, Obstacles, grown
-from controller_fmu.slot_frame import SlotFrame, to_world
+from controller_fmu.common.slot_frame import SlotFrame, to_world
 from modelkit.signal import Group, Signal
 from modelkit.vocabulary import ANYWHERE, Pose
 

@@ -5,9 +5,9 @@ from typing import NamedTuple
 
 from controller_fmu.apa.manoeuvre_chart import Step
 from controller_fmu.apa.params import ApaParams, Longitudinal
-from controller_fmu.guo2015.monitor import is_unmoved
+from controller_fmu.common.monitor import is_unmoved
+from controller_fmu.common.steering_monitor import SteeringWatch, at_rest, has_failed, watch_steering
 from controller_fmu.interface import ControllerInput, ControllerParams, Reason
-from controller_fmu.steering_monitor import SteeringWatch, at_rest, has_failed, watch_steering
 from modelkit.maths import is_finite
 from modelkit.vocabulary import Gear, Pose
 

@@ -3,16 +3,18 @@
 import math
 from typing import NamedTuple
 
-from controller_fmu.guo2015.chart import Guard, transition
-from controller_fmu.guo2015.guards import bit, standing_guards, way_guards, wheel_guards, within
-from controller_fmu.guo2015.legs import Tracking, track
-from controller_fmu.guo2015.monitor import (
+from controller_fmu.common.monitor import (
     DIRECTION_OF_PHASE,
     MonitorState,
     is_usable_input,
     reason_to_fail,
     watch,
 )
+from controller_fmu.common.slot_frame import to_slot, to_world
+from controller_fmu.common.steering_wheel import wheel_request
+from controller_fmu.guo2015.chart import Guard, transition
+from controller_fmu.guo2015.guards import bit, standing_guards, way_guards, wheel_guards, within
+from controller_fmu.guo2015.legs import Tracking, track
 from controller_fmu.guo2015.path import SECOND_ARC, reference_at
 from controller_fmu.guo2015.planner import Plan, plan
 from controller_fmu.guo2015.prompts import (
@@ -23,8 +25,6 @@ from controller_fmu.guo2015.prompts import (
     swing_speed,
 )
 from controller_fmu.interface import ControllerInput, ControllerOutput, ControllerParams, Path, Phase, Reason, Segment
-from controller_fmu.slot_frame import to_slot, to_world
-from controller_fmu.steering_wheel import wheel_request
 from modelkit.maths import clamp
 from modelkit.vocabulary import Pose
 

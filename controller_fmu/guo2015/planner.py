@@ -13,7 +13,7 @@ touch: R^2 (2 cos h0 - 2) + R (2 x0 sin h0 - 2 y0 (1 + cos h0)) + x0^2 + y0^2 = 
 import math
 from typing import NamedTuple
 
-from controller_fmu.slot_frame import SlotFrame, to_slot
+from controller_fmu.common.slot_frame import SlotFrame, to_slot
 from modelkit.vocabulary import Pose
 
 HALF_PI = 0.5 * math.pi

@@ -11,10 +11,10 @@ It is advised before a jump of the path's curvature, and held until the wheel ha
 
 import math
 
+from controller_fmu.common.steering_monitor import Steering, delay_of, rate_of
 from controller_fmu.guo2015.path import Reference, curvature_after, distance_to_end, distance_to_jump
 from controller_fmu.guo2015.planner import TwoArcPath
 from controller_fmu.interface import ControllerParams, PromptParams
-from controller_fmu.steering_monitor import Steering, delay_of, rate_of
 from modelkit.vocabulary import Prompt
 
 PROMPT_OF_PHASE = (

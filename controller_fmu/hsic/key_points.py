@@ -3,8 +3,8 @@
 import math
 from typing import NamedTuple
 
+from controller_fmu.common.arc_line_arc import arc_line_arc
 from controller_fmu.hsic.params import HsicSlot
-from controller_fmu.zhang2022.key_points import arc_line_arc
 from modelkit.vocabulary import Pose
 
 

@@ -1,13 +1,13 @@
 """Outputs of human-simulated intelligent control."""
 
+from controller_fmu.common.slot_frame import SlotFrame, to_world
+from controller_fmu.common.steering_wheel import steering_wheel_angle
 from controller_fmu.hsic.characteristic_states import errors
 from controller_fmu.hsic.key_points import KeyPoints
 from controller_fmu.hsic.rules import RULES
 from controller_fmu.hsic.signals import HsicSignals
 from controller_fmu.hsic.system import HsicState
 from controller_fmu.interface import ControllerOutput, ControllerParams, Path, Phase, Segment
-from controller_fmu.slot_frame import SlotFrame, to_world
-from controller_fmu.steering_wheel import steering_wheel_angle
 from modelkit.vocabulary import Pose
 
 

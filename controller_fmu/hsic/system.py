@@ -3,15 +3,15 @@
 import math
 from typing import NamedTuple
 
-from controller_fmu.guo2015.monitor import MonitorState, is_usable_input, reason_to_fail, watch
+from controller_fmu.common.monitor import MonitorState, is_usable_input, reason_to_fail, watch
+from controller_fmu.common.slot_frame import SlotFrame, frame_at, to_slot
+from controller_fmu.common.steering_wheel import steering_wheel_angle
 from controller_fmu.hsic.characteristic_states import Errors, Stage, errors, recognise
 from controller_fmu.hsic.control import curvature, speed
 from controller_fmu.hsic.key_points import key_points, ready_point
 from controller_fmu.hsic.rules import RULES, SpeedMode
 from controller_fmu.hsic.stages import Course, advance, is_parked, way_to
 from controller_fmu.interface import ControllerInput, ControllerParams, Phase, Reason
-from controller_fmu.slot_frame import SlotFrame, frame_at, to_slot
-from controller_fmu.steering_wheel import steering_wheel_angle
 from modelkit.maths import clamp
 from modelkit.vocabulary import Pose
 

@@ -2,11 +2,11 @@
 
 from typing import NamedTuple
 
-from controller_fmu.guo2015.monitor import is_usable_input
+from controller_fmu.common.monitor import is_usable_input
+from controller_fmu.common.steering_wheel import wheel_request
 from controller_fmu.interface import ControllerInput, ControllerOutput, ControllerParams, Phase, Reason
 from controller_fmu.preview.road import road_at
 from controller_fmu.preview.system import PreviewState, preview_step
-from controller_fmu.steering_wheel import wheel_request
 
 
 class DrivingState(NamedTuple):

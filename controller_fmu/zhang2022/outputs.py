@@ -2,9 +2,9 @@
 
 import math
 
+from controller_fmu.common.slot_frame import to_world
+from controller_fmu.common.steering_wheel import steering_wheel_angle
 from controller_fmu.interface import ControllerOutput, ControllerParams, Path, Phase, Segment
-from controller_fmu.slot_frame import to_world
-from controller_fmu.steering_wheel import steering_wheel_angle
 from controller_fmu.zhang2022.path import PathStatus
 from controller_fmu.zhang2022.signals import ZhangSignals
 from controller_fmu.zhang2022.system import ZhangState

@@ -4,7 +4,7 @@ import math
 from enum import IntEnum
 from typing import NamedTuple
 
-from controller_fmu.zhang2022.key_points import ArcLineArc, arc_line_arc, largest_radius
+from controller_fmu.common.arc_line_arc import ArcLineArc, arc_line_arc, largest_radius
 from controller_fmu.zhang2022.quintic import Quintic, Shape, quintic, shape
 from modelkit.vocabulary import Pose
 

@@ -3,10 +3,10 @@
 import math
 from typing import NamedTuple
 
-from controller_fmu.guo2015.monitor import MonitorState, is_usable_input, reason_to_fail, watch
+from controller_fmu.common.monitor import MonitorState, is_usable_input, reason_to_fail, watch
+from controller_fmu.common.slot_frame import SlotFrame, frame_at, to_slot
+from controller_fmu.common.steering_wheel import steering_wheel_angle
 from controller_fmu.interface import ControllerInput, ControllerParams, Phase, Reason
-from controller_fmu.slot_frame import SlotFrame, frame_at, to_slot
-from controller_fmu.steering_wheel import steering_wheel_angle
 from controller_fmu.zhang2022.mpc import Car, Steering, steer, turned
 from controller_fmu.zhang2022.path import PathStatus, QuinticPath, Reference, nearest, plan
 from controller_fmu.zhang2022.pid import PidState, pid

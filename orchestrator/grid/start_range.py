@@ -10,8 +10,8 @@ from controller_fmu.apa.outline import Car
 from controller_fmu.apa.parking import car_of
 from controller_fmu.apa.slot import Kind, Site, Slot, site_of
 from controller_fmu.apa.start_range import leads_in
+from controller_fmu.common.slot_frame import to_slot
 from controller_fmu.interface import ControllerParams
-from controller_fmu.slot_frame import to_slot
 from modelkit.variables import with_values
 from modelkit.vocabulary import Pose
 from orchestrator.scenario.models import MODELS

@@ -10,10 +10,10 @@ from pathlib import Path
 
 import numpy as np
 
+from controller_fmu.common.slot_frame import to_world
 from controller_fmu.guo2015.legs import point_of_leg
 from controller_fmu.guo2015.planner import plan
 from controller_fmu.interface import ControllerParams, Phase
-from controller_fmu.slot_frame import to_world
 from modelkit.vocabulary import Pose
 from orchestrator.papers.guo2015_drivers import obeying_rows
 from orchestrator.papers.guo2015_figure import draw_case

@@ -6,7 +6,7 @@ from controller_fmu.apa.move import end_of
 from controller_fmu.apa.outline import Car
 from controller_fmu.apa.planner import NOTHING, SEARCHING, new_search, search_on
 from controller_fmu.apa.slot import Kind, Margins, Site, Slot, site_of
-from controller_fmu.slot_frame import to_slot
+from controller_fmu.common.slot_frame import to_slot
 from modelkit.vocabulary import Pose
 
 MARGINS = Margins(0.15, 0.08, 0.0)

@@ -4,8 +4,8 @@ import itertools
 
 import pytest
 
+from controller_fmu.common.monitor import DIRECTION_OF_PHASE
 from controller_fmu.guo2015.chart import ANY, KEEP, TRANSITIONS, Guard, transition
-from controller_fmu.guo2015.monitor import DIRECTION_OF_PHASE
 from controller_fmu.guo2015.prompts import PROMPT_OF_PHASE
 from controller_fmu.interface import Phase
 

@@ -6,10 +6,10 @@ from typing import Any
 import pytest
 from closed_loop import Run, drive
 
-from controller_fmu.guo2015.monitor import DIRECTION_OF_PHASE
+from controller_fmu.common.monitor import DIRECTION_OF_PHASE
+from controller_fmu.common.steering_monitor import Steering
 from controller_fmu.guo2015.prompts import stopping_distance, swing_speed
 from controller_fmu.interface import ControllerParams, Phase, PromptParams, Reason
-from controller_fmu.steering_monitor import Steering
 from modelkit.vocabulary import Prompt
 
 TANGENT_X = -3.8

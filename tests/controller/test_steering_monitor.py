@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import pytest
 
-from controller_fmu.steering_monitor import SteeringWatch, at_rest, has_failed, watch_steering
+from controller_fmu.common.steering_monitor import SteeringWatch, at_rest, has_failed, watch_steering
 from modelkit.random import seed_state, uniform
 from vehicle_fmu.interface import SteeringParams
 from vehicle_fmu.steering import SteeringState, pass_request, turn_steering_wheel

@@ -7,11 +7,11 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
+from controller_fmu.common.slot_frame import SlotFrame, to_slot, to_world
 from controller_fmu.guo2015.legs import point_of_leg
 from controller_fmu.guo2015.path import distance_to_end, reference_at
 from controller_fmu.guo2015.planner import TwoArcPath, plan, touching_radius, two_arcs
 from controller_fmu.interface import NtbptParams, Phase
-from controller_fmu.slot_frame import SlotFrame, to_slot, to_world
 from modelkit.vocabulary import Pose
 
 SMALLEST = 2.405 / math.tan(math.radians(30.0))

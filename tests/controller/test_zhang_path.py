@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from controller_fmu.zhang2022.key_points import arc_line_arc, largest_radius
+from controller_fmu.common.arc_line_arc import arc_line_arc, largest_radius
 from controller_fmu.zhang2022.path import PathStatus, at, nearest, plan
 from controller_fmu.zhang2022.quintic import quintic, shape
 from modelkit.vocabulary import Pose

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from controller_fmu.zhang2022.key_points import arc_line_arc, largest_radius
+from controller_fmu.common.arc_line_arc import arc_line_arc, largest_radius
 from controller_fmu.zhang2022.path import STEEPEST, PathStatus, plan, through
 from modelkit.vocabulary import Pose
 from orchestrator.bakeoff.claim import LIMITS, STEERING, SYSTEMS, Group, rate_of, rates

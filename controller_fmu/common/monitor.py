@@ -1,13 +1,13 @@
 """Watches the car and the driver at every sample; each reason to fail has a limit in time.
 
 A quantity that must not last has a clock [ns] that runs while it holds and is put back to zero
-when it does not. The steering has a monitor of its own, ``controller_fmu.steering_monitor``.
+when it does not. The steering has a monitor of its own, ``controller_fmu.common.steering_monitor``.
 """
 
 from typing import NamedTuple
 
+from controller_fmu.common.steering_monitor import SteeringWatch, at_rest, has_failed, watch_steering
 from controller_fmu.interface import ControllerInput, ControllerParams, Phase, Reason
-from controller_fmu.steering_monitor import SteeringWatch, at_rest, has_failed, watch_steering
 from modelkit.maths import sign
 from modelkit.vocabulary import Pose
 

@@ -5,7 +5,7 @@ import sys
 from controller_fmu import model
 from controller_fmu.apa.outputs import apa_outputs
 from controller_fmu.apa.system import apa_sample, apa_start
-from controller_fmu.guo2015.parking import outputs, sample, start
+from controller_fmu.guo2015.system import guo_outputs, guo_sample, guo_start
 from controller_fmu.hsic.outputs import hsic_outputs
 from controller_fmu.hsic.system import hsic_sample, hsic_start
 from controller_fmu.interface import ControllerInput, ControllerOutput, ControllerParams, System
@@ -17,7 +17,7 @@ from modelkit.terminals import TERMINALS
 
 OF_PARKING = ("target", "vehicle_fault", "path", "shifts")
 """What every system has that parks at a given pose. The names are those that not all systems have."""
-OF_GUO2015 = (*OF_PARKING, "ntbpt", "threshold", "prompting", "limit")
+OF_GUO2015 = (*OF_PARKING, "threshold", "limit", "guo2015")
 OF_ZHANG2022 = (
     *OF_PARKING,
     *(f"threshold.{name}" for name in ("standstill", "wheel", "miss_lateral", "miss_heading", "lost_lateral")),
@@ -40,7 +40,7 @@ SYSTEMS = SampledSystems(
     tick=model.tick,
     refused=model.refused,
     systems=(
-        SampledSystem((System.NTBPTCWPT, System.NTBPT), "parking", start, sample, outputs, OF_GUO2015),
+        SampledSystem((System.NTBPTCWPT, System.NTBPT), "guo2015", guo_start, guo_sample, guo_outputs, OF_GUO2015),
         SampledSystem((System.ZHANG2022,), "zhang2022", zhang_start, zhang_sample, zhang_outputs, OF_ZHANG2022),
         SampledSystem((System.HSIC,), "hsic", hsic_start, hsic_sample, hsic_outputs, OF_HSIC),
         SampledSystem((System.PREVIEW,), "preview", driving_start, driving_sample, driving_outputs, OF_PREVIEW),

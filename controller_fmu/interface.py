@@ -6,6 +6,8 @@ from typing import Annotated, NamedTuple
 
 from controller_fmu.apa.params import ApaParams
 from controller_fmu.apa.signals import ApaSignals
+from controller_fmu.common.params import LimitParams, ThresholdParams
+from controller_fmu.guo2015.params import GuoParams
 from controller_fmu.hsic.params import HsicParams
 from controller_fmu.hsic.signals import HsicSignals
 from controller_fmu.preview.params import PreviewParams
@@ -154,80 +156,6 @@ class ControllerOutput(NamedTuple):
     apa: ApaSignals = ApaSignals()
 
 
-class NtbptParams(NamedTuple):
-    """Gains and geometry of path tracking (k1, k2), point tracking (k3, k4) and the two-arc path."""
-
-    k1: Annotated[float, Signal("1/m2", "path tracking, distance gain", 0.0, 100.0, GUO)] = 1.0
-    k2: Annotated[float, Signal("1/m", "path tracking, heading gain", 0.0, 100.0, GUO)] = 0.8
-    k3: Annotated[float, Signal("1/m2", "point tracking, distance gain", 0.0, 100.0, GUO)] = 1.0
-    k4: Annotated[float, Signal("1/m", "point tracking, heading gain", 0.0, 100.0, GUO)] = 4.0
-    radius: Annotated[float, Signal("m", "largest radius of both arcs", 0.5, 100.0, GUO + ", eq. (9)"), Role.FIXED] = (
-        5.5
-    )
-    radius_reserve: Annotated[
-        float, Signal("1", "smallest planned radius over the car's smallest", 1.0, 3.0, HOUSE), Role.FIXED
-    ] = 1.05
-    q2_distance: Annotated[
-        float, Signal("m", "Q1 to Q2 along the tangent", 0.1, 10.0, GUO + ", Table 2"), Role.FIXED
-    ] = 1.0
-    q4_distance: Annotated[float, Signal("m", "Q3 to Q4 straight ahead", 0.1, 10.0, GUO + ", Table 2"), Role.FIXED] = (
-        2.5
-    )
-
-
-class ThresholdParams(NamedTuple):
-    """When the manoeuvre chart calls a pose wrong, right, or reached."""
-
-    leave_lateral: Annotated[
-        float, Signal("m", "off the path: point tracking starts", 0.0, 10.0, GUO + ", case 4 at 4.58 s")
-    ] = 0.154
-    leave_heading: Annotated[float, Signal("rad", "off the path: point tracking starts", 0.0, 1.5, HOUSE)] = 0.25
-    resume_lateral: Annotated[float, Signal("m", "at Q1: back on the path", 0.0, 10.0, HOUSE)] = 0.05
-    resume_heading: Annotated[float, Signal("rad", "at Q1: back on the path", 0.0, 1.5, HOUSE)] = 0.05
-    park_lateral: Annotated[float, Signal("m", "at standstill: parked", 0.0, 10.0, HOUSE)] = 0.03
-    park_heading: Annotated[float, Signal("rad", "at standstill: parked", 0.0, 1.5, HOUSE)] = 0.8 * pi / 180.0
-    moving_share: Annotated[
-        float, Signal("1", "share of the park limits that ends a forward leg", 0.01, 1.0, HOUSE)
-    ] = 0.35
-    miss_lateral: Annotated[float, Signal("m", "at the end: target missed", 0.0, 10.0, "GB/T 41630")] = 0.15
-    miss_heading: Annotated[float, Signal("rad", "at the end: target missed", 0.0, 1.5, "GB/T 41630")] = (
-        3.0 * pi / 180.0
-    )
-    lost_lateral: Annotated[float, Signal("m", "so far off that the controller fails", 0.1, 100.0, HOUSE)] = 2.0
-    wheel: Annotated[float, Signal("rad", "steering wheel counts as turned", 1e-4, 1.0, HOUSE)] = 2.0 * pi / 180.0
-    standstill: Annotated[float, Signal("m/s", "car counts as standing", 1e-6, 0.5, HOUSE)] = 0.005
-
-
-class PromptParams(NamedTuple):
-    """What the controller assumes of the driver when it prompts ahead of time."""
-
-    speed_limit: Annotated[float, Signal("m/s", "speed advised where nothing asks for less", 0.1, 10.0, HOUSE)] = 2.5
-    point_speed: Annotated[
-        float, Signal("m/s", "speed advised for point tracking", 0.01, 10.0, GUO + ", case 4: 5 to 9 s slowly forward")
-    ] = 0.5
-    creep_speed: Annotated[float, Signal("m/s", "speed advised at the end of a way", 0.01, 2.0, HOUSE)] = 0.2
-    reaction: Annotated[float, Signal("s", "reaction assumed of the driver", 0.0, 5.0, HOUSE)] = 0.3
-    deceleration: Annotated[float, Signal("m/s2", "deceleration assumed of the driver", 0.1, 10.0, HOUSE)] = 2.0
-    jump_deviation: Annotated[float, Signal("m", "deviation accepted at a curvature jump", 1e-3, 1.0, HOUSE)] = 0.025
-
-
-class LimitParams(NamedTuple):
-    """No strategy goes on for ever: each limit ends in Fail with its reason."""
-
-    shifts: Annotated[int, Signal("1", "most manoeuvres, the first reverse counts one", 1, 100, "GB/T 41630")] = 8
-    duration: Annotated[float, Signal("s", "longest time from start to parked", 1.0, 3600.0, HOUSE)] = 120.0
-    patience: Annotated[float, Signal("s", "longest wait for the driver to move", 0.1, 600.0, HOUSE)] = 15.0
-    stopping: Annotated[float, Signal("s", "longest wait for the driver to stop", 0.1, 60.0, HOUSE)] = 2.5
-    wrong_direction: Annotated[float, Signal("s", "longest drive against the prompt", 0.1, 60.0, HOUSE)] = 1.5
-    pose_frozen: Annotated[float, Signal("s", "longest drive without a change of pose", 0.1, 60.0, HOUSE)] = 0.5
-    wheel_off: Annotated[
-        float, Signal("rad", "steering wheel off its request: it must come nearer", 0.01, 20.0, HOUSE)
-    ] = 0.1
-    wheel_fault: Annotated[
-        float, Signal("s", "longest time off its request without coming nearer", 0.1, 60.0, HOUSE)
-    ] = 0.28
-
-
 class ControllerParams(NamedTuple):
     """The system chosen, the car it thinks it drives, the target and every limit."""
 
@@ -244,10 +172,9 @@ class ControllerParams(NamedTuple):
         float, Signal("rad/s", "largest steering-wheel rate", 0.01, 100.0, GUO + ", Table 1")
     ] = 570.0 * pi / 180.0
     target: Annotated[Pose, Group("pose of the rear-axle midpoint to park at", ANYWHERE)] = Pose(-7.608, -3.056, 0.0)
-    ntbpt: Annotated[NtbptParams, Role.TUNABLE] = NtbptParams()
     threshold: Annotated[ThresholdParams, Role.TUNABLE] = ThresholdParams()
-    prompting: Annotated[PromptParams, Role.TUNABLE] = PromptParams()
     limit: Annotated[LimitParams, Role.TUNABLE] = LimitParams()
+    guo2015: Annotated[GuoParams, Role.TUNABLE] = GuoParams()
     zhang2022: ZhangParams = ZhangParams()
     hsic: HsicParams = HsicParams()
     preview: Annotated[PreviewParams, Role.TUNABLE] = PreviewParams()

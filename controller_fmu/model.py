@@ -9,7 +9,7 @@ import math
 from typing import NamedTuple
 
 from controller_fmu.apa.system import ApaState
-from controller_fmu.guo2015.parking import ParkingState
+from controller_fmu.guo2015.system import GuoState
 from controller_fmu.hsic.system import HsicState
 from controller_fmu.interface import ControllerOutput, ControllerParams, Phase, Reason
 from controller_fmu.preview.driving import DrivingState
@@ -31,7 +31,7 @@ class ControllerState(NamedTuple):
     """Everything the controller remembers: its clock, and the memory of each system."""
 
     clock: Clock = Clock()
-    parking: ParkingState = ParkingState()
+    guo2015: GuoState = GuoState()
     zhang2022: ZhangState = ZhangState()
     hsic: HsicState = HsicState()
     preview: DrivingState = DrivingState()
@@ -69,6 +69,6 @@ def _is_usable(params: ControllerParams) -> bool:
         and params.wheelbase > 0.0
         and params.sample_time >= 1e-4
         and params.steering_wheel_rate > 0.0
-        and params.prompting.deceleration > 0.0
+        and params.guo2015.prompting.deceleration > 0.0
         and 0.0 < lock < 1.5
     )

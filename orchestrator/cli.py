@@ -15,7 +15,7 @@ DESCRIPTION = "Automated parking as a pair of FMI 2.0 co-simulation FMUs."
 EPILOG = """examples:
   apa list                                     what can be run
   apa run guo2015-case4                        log, figure and summary in runs/guo2015-case4
-  apa run guo2015-case4 --set controller.ntbpt.k4=3 --fmus none
+  apa run guo2015-case4 --set controller.guo2015.k4=3 --fmus none
   apa list parameters steering                 names, defaults, units and ranges
   apa recover runs/guo2015-case4/run.mcap.part
 

@@ -159,3 +159,25 @@ def test_no_class_of_the_orchestrator_is_defined_twice() -> None:
                 if isinstance(node, ast.ClassDef):
                     homes.setdefault(node.name, []).append(module)
     assert {name: found for name, found in homes.items() if len(found) > 1} == {}
+
+
+SHARED_BY_SYSTEMS = ("common", "planning")
+SYSTEMS = sorted(
+    file.parent.name
+    for file in (ROOT / "controller_fmu").glob("*/__init__.py")
+    if file.parent.name not in SHARED_BY_SYSTEMS
+)
+
+
+@pytest.mark.parametrize("system", SYSTEMS)
+def test_no_system_of_the_controller_imports_another(system: str) -> None:
+    others = tuple(f"controller_fmu.{other}." for other in SYSTEMS if other != system)
+    inside = f"controller_fmu.{system}."
+    assert [str(item) for item in IMPORTS if item.source.startswith(inside) and item.target.startswith(others)] == []
+
+
+@pytest.mark.parametrize("shared", SHARED_BY_SYSTEMS)
+def test_what_systems_share_knows_none_of_them(shared: str) -> None:
+    systems = tuple(f"controller_fmu.{system}." for system in SYSTEMS)
+    inside = f"controller_fmu.{shared}."
+    assert [str(item) for item in IMPORTS if item.source.startswith(inside) and item.target.startswith(systems)] == []

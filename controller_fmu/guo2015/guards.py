@@ -34,16 +34,16 @@ def wheel_guards(leg: int, wheel: float, request: float, tolerance: float) -> in
 
 def way_guards(tracking: Tracking, pose: Pose, path: TwoArcPath, speed: float, params: ControllerParams) -> int:
     """Return the bits that say the car left the path or reached the end of its leg."""
-    limit = params.threshold
+    limit = params.guo2015.threshold
     points = params.system == System.NTBPTCWPT
     left = not within(tracking.lateral_error, tracking.heading_error, limit.leave_lateral, limit.leave_heading)
     to_end = distance_to_end(path, reference_at(path, pose.x, tracking.piece))
-    q2 = point_of_leg(Phase.TO_Q2, path, params.ntbpt)
+    q2 = point_of_leg(Phase.TO_Q2, path, params.guo2015)
     at_q1 = tracking.ahead <= 0.0
     resumed = within(tracking.lateral_error, tracking.heading_error, limit.resume_lateral, limit.resume_heading)
     share = limit.moving_share
     right = within(pose.y, pose.heading, share * limit.park_lateral, share * limit.park_heading)
-    stop = stopping_distance(speed, params.prompting)
+    stop = stopping_distance(speed, params.guo2015.prompting)
     return (
         bit(Guard.OFF_PATH, points and left)
         | bit(Guard.PATH_END, to_end <= stop)
@@ -51,15 +51,15 @@ def way_guards(tracking: Tracking, pose: Pose, path: TwoArcPath, speed: float, p
         | bit(Guard.AT_Q1_RIGHT, at_q1 and resumed)
         | bit(Guard.AT_Q1_WRONG, at_q1 and not resumed)
         | bit(Guard.POSE_RIGHT, right)
-        | bit(Guard.PAST_Q4, pose.x > params.ntbpt.q4_distance)
+        | bit(Guard.PAST_Q4, pose.x > params.guo2015.q4_distance)
         | bit(Guard.AT_Q3, pose.x <= stop)
     )
 
 
 def standing_guards(leg: int, pose: Pose, inputs: ControllerInput, params: ControllerParams) -> int:
     """Return the bits that say the car stands and what it stands for."""
-    limit = params.threshold
-    if abs(inputs.measured_speed) > limit.standstill:
+    limit = params.guo2015.threshold
+    if abs(inputs.measured_speed) > params.threshold.standstill:
         return 0
     at_end = leg == Phase.STRAIGHTEN
     wrong = params.system == System.NTBPTCWPT and not within(

@@ -6,11 +6,12 @@ straight ahead of it (Guo 2015, Fig. 9, Table 2): all from the geometry of the p
 
 from typing import NamedTuple
 
+from controller_fmu.guo2015.params import GuoParams
 from controller_fmu.guo2015.path import reference_at
 from controller_fmu.guo2015.path_tracking import path_tracking_angle
 from controller_fmu.guo2015.planner import TwoArcPath, ahead
 from controller_fmu.guo2015.point_tracking import point_error, point_tracking_angle
-from controller_fmu.interface import ControllerParams, NtbptParams, Phase
+from controller_fmu.interface import ControllerParams, Phase
 from modelkit.vocabulary import Pose
 
 
@@ -28,7 +29,7 @@ class Tracking(NamedTuple):
 
 def track(leg: int, pose: Pose, path: TwoArcPath, piece: int, params: ControllerParams) -> Tracking:
     """Return what ``leg`` asks of a car at ``pose`` (slot's frame), the path latched at ``piece``."""
-    gains = params.ntbpt
+    gains = params.guo2015
     if leg == Phase.PATH_TRACKING:
         reference = reference_at(path, pose.x, piece)
         angle = path_tracking_angle(pose, reference, gains.k1, gains.k2, params.wheelbase)
@@ -41,7 +42,7 @@ def track(leg: int, pose: Pose, path: TwoArcPath, piece: int, params: Controller
     return Tracking(point, error.x, error.y, error.heading, angle, piece)
 
 
-def point_of_leg(leg: int, path: TwoArcPath, params: NtbptParams) -> Pose:
+def point_of_leg(leg: int, path: TwoArcPath, params: GuoParams) -> Pose:
     """Return the point that ``leg`` tracks, in the slot's frame; Q3 for the path itself."""
     if leg == Phase.TO_Q2:
         return ahead(path.tangent2, params.q2_distance)

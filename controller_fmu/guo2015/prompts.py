@@ -12,9 +12,10 @@ It is advised before a jump of the path's curvature, and held until the wheel ha
 import math
 
 from controller_fmu.common.steering_monitor import Steering, delay_of, rate_of
+from controller_fmu.guo2015.params import GuoPrompts
 from controller_fmu.guo2015.path import Reference, curvature_after, distance_to_end, distance_to_jump
 from controller_fmu.guo2015.planner import TwoArcPath
-from controller_fmu.interface import ControllerParams, PromptParams
+from controller_fmu.interface import ControllerParams
 from modelkit.vocabulary import Prompt
 
 PROMPT_OF_PHASE = (
@@ -40,7 +41,7 @@ def path_speed(
     path: TwoArcPath, reference: Reference, speed: float, steering: Steering, params: ControllerParams
 ) -> float:
     """Return the speed [m/s] that lets the steering follow the path from here on."""
-    prompting = params.prompting
+    prompting = params.guo2015.prompting
     advice = prompting.speed_limit
     k = reference.curvature
     k_next = curvature_after(path, reference.piece)
@@ -53,7 +54,7 @@ def path_speed(
     return advice
 
 
-def point_speed(distance: float, speed: float, params: PromptParams) -> float:
+def point_speed(distance: float, speed: float, params: GuoPrompts) -> float:
     """Return the speed [m/s] for point tracking, ``distance`` [m] before the point: slow (Guo 2015, Fig. 9)."""
     return min(_speed_before(params.creep_speed, distance, speed, params), params.point_speed)
 
@@ -64,19 +65,19 @@ def swing_speed(angle: float, wanted: float, steering: Steering, params: Control
     late = delay_of(steering)
     jump = abs(math.tan(wanted) - math.tan(angle)) / params.wheelbase
     moment = jump * (swing * swing / 3.0 + late * swing + 0.5 * late * late)
-    limit = params.prompting.speed_limit
-    if moment * limit * limit <= params.prompting.jump_deviation:
+    limit = params.guo2015.prompting.speed_limit
+    if moment * limit * limit <= params.guo2015.prompting.jump_deviation:
         return limit
-    return math.sqrt(params.prompting.jump_deviation / moment)
+    return math.sqrt(params.guo2015.prompting.jump_deviation / moment)
 
 
-def stopping_distance(speed: float, params: PromptParams) -> float:
+def stopping_distance(speed: float, params: GuoPrompts) -> float:
     """Return the way [m] the car is assumed to go on after the prompt to stop."""
     v = abs(speed)
     return v * params.reaction + 0.5 * v * v / params.deceleration
 
 
-def prompt_of(phase: int, moving: bool, advice: float, params: PromptParams) -> int:
+def prompt_of(phase: int, moving: bool, advice: float, params: GuoPrompts) -> int:
     """Return the prompt for ``phase``: to slow down where the advice asks for it and the car is on its way."""
     if moving and advice < params.speed_limit:
         return Prompt.SLOW_DOWN
@@ -89,6 +90,6 @@ def is_moving(before: bool, speed: float, direction: int, standstill: float) -> 
     return along > MOVING or (before and along > standstill)
 
 
-def _speed_before(speed_there: float, distance: float, speed: float, params: PromptParams) -> float:
+def _speed_before(speed_there: float, distance: float, speed: float, params: GuoPrompts) -> float:
     left = max(0.0, distance - abs(speed) * params.reaction)
     return math.sqrt(speed_there * speed_there + params.deceleration * left)

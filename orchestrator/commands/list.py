@@ -19,7 +19,7 @@ from orchestrator.verdict.limit_text import asked
 EXAMPLES = """examples:
   apa list                             scenarios, systems, cars, limits, studies
   apa list parameters steering         parameters with this word in name or meaning
-  apa list parameters "controller.ntbpt.*"
+  apa list parameters "controller.guo2015.*"
   apa list signals odometry --json
   apa list limits gbt41630
 """

@@ -9,7 +9,7 @@ from orchestrator.text.console import say
 
 EXAMPLES = """examples:
   apa export ssp guo2015-case4
-  apa export ssp guo2015-case4 --platform all --set controller.ntbpt.k4=3 --out /tmp/case4.ssp
+  apa export ssp guo2015-case4 --platform all --set controller.guo2015.k4=3 --out /tmp/case4.ssp
 """
 
 

@@ -83,9 +83,9 @@ def reproduce(out: Path, drive: Drive) -> Reproduction:
 def table_2() -> list[Row]:
     """Return the rows of Table 2: Q1 from the geometry of the path; the other points are inputs here."""
     params = ControllerParams()
-    planned = plan(Pose(0.0, 0.0, 0.0), params.target, params.ntbpt.radius, 4.0)
+    planned = plan(Pose(0.0, 0.0, 0.0), params.target, params.guo2015.radius, 4.0)
     q1, q2 = (
-        to_world(point_of_leg(leg, planned.path, params.ntbpt), planned.frame) for leg in (Phase.TO_Q1, Phase.TO_Q2)
+        to_world(point_of_leg(leg, planned.path, params.guo2015), planned.frame) for leg in (Phase.TO_Q1, Phase.TO_Q2)
     )
     ours = f"({q2.x:.3f}, {q2.y:.3f}, {q2.heading:.3f})"
     why = "the distances of Q2 and Q4 are read from it, Q3 is the target"

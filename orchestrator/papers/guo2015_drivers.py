@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from controller_fmu.interface import ThresholdParams
+from controller_fmu.guo2015.params import GuoThresholds
 from orchestrator.papers.result import CONCLUSION, Row, in_line
 from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.scenario.scenario import Scenario
@@ -58,7 +58,7 @@ def obey(run: str, speeds: tuple[float, ...], reactions: tuple[float, ...]) -> O
     measures = {name: Measure("largest", f"controller.{name}_error") for name in ("lateral", "heading")}
     asked = Study(in_line(scenario), design, {"name": run}, measures=measures, within={"ours": scenario.limits})
     found = columns_in_memory(asked)
-    limit = ThresholdParams()
+    limit = GuoThresholds()
     stayed = (np.abs(found["lateral"]) <= limit.leave_lateral) & (np.abs(found["heading"]) <= limit.leave_heading)
     parked = found["outcome"] == "parked"
     counted = (stayed, found["min_clearance"] > 0.0, parked, parked & found[WITHIN.format("ours")])
@@ -67,4 +67,4 @@ def obey(run: str, speeds: tuple[float, ...], reactions: tuple[float, ...]) -> O
 
 def _driven(run: str, speed: float, reaction: float) -> Scenario:
     sets = (f"vehicle.driver.profile[1].speed={speed}", f"vehicle.driver.reaction_delay={reaction}")
-    return load_scenario(run, (*sets, "controller.prompting.reaction=0.3"))
+    return load_scenario(run, (*sets, "controller.guo2015.prompting.reaction=0.3"))

@@ -39,7 +39,7 @@ FITTED = (
     Fitted(
         "steering rate", ("vehicle.steering.rate_limit", "controller.steering_wheel_rate"), 105.0, 0.5, "deg/s", 19.0
     ),
-    Fitted("threshold to leave the path", ("controller.threshold.leave_lateral",), 0.154, 0.001, "m"),
+    Fitted("threshold to leave the path", ("controller.guo2015.threshold.leave_lateral",), 0.154, 0.001, "m"),
     Fitted("driver's speed", ("vehicle.driver.profile[1].speed",), 1.5, 0.005, "m/s"),
 )
 FARTHEST = 100

@@ -22,7 +22,7 @@ CASE_4 = {
     "driver.reaction_delay": 0.0,
     "driver.obeys_slow_down": False,
 }
-PROMPTS = {"prompting.reaction": 0.0}
+PROMPTS = {"guo2015.prompting.reaction": 0.0}
 initialize, step = CONTROLLER.initialize, CONTROLLER.step
 TARGET = (-7.608, -3.056)
 

@@ -8,8 +8,9 @@ from closed_loop import Run, drive
 
 from controller_fmu.common.monitor import DIRECTION_OF_PHASE
 from controller_fmu.common.steering_monitor import Steering
+from controller_fmu.guo2015.params import GuoPrompts
 from controller_fmu.guo2015.prompts import stopping_distance, swing_speed
-from controller_fmu.interface import ControllerParams, Phase, PromptParams, Reason
+from controller_fmu.interface import ControllerParams, Phase, Reason
 from modelkit.vocabulary import Prompt
 
 TANGENT_X = -3.8
@@ -55,7 +56,7 @@ def test_point_tracking_is_slow() -> None:
     points = (Phase.TO_Q1, Phase.TO_Q2, Phase.TO_Q3, Phase.TO_Q4)
     legs = [outputs for outputs in run.controller if outputs.phase in points]
     assert {Prompt.SLOW_DOWN, Prompt.FORWARD, Prompt.REVERSE} == {Prompt(outputs.prompt) for outputs in legs}
-    assert max(outputs.advised_speed for outputs in legs) <= PromptParams().point_speed
+    assert max(outputs.advised_speed for outputs in legs) <= GuoPrompts().point_speed
 
 
 @pytest.mark.parametrize("reaction", [0.0, 0.05, 0.3, 1.0])
@@ -86,7 +87,7 @@ def test_the_speed_for_a_swing_is_what_its_deviation_allows() -> None:
             turned += share * 2.0 * math.tan(0.4) / params.wheelbase * speed * step
             shifted += turned * speed * step
         # the even fall of the angle is that of the curvature to 3 %, and so is what is left
-        assert shifted == pytest.approx(params.prompting.jump_deviation, rel=0.05)
+        assert shifted == pytest.approx(params.guo2015.prompting.jump_deviation, rel=0.05)
 
 
 def test_a_slower_steering_is_advised_a_slower_swing() -> None:
@@ -98,4 +99,4 @@ def test_a_slower_steering_is_advised_a_slower_swing() -> None:
 
 
 def test_the_way_to_stop_is_reaction_and_braking() -> None:
-    assert stopping_distance(-1.0, PromptParams(reaction=0.5, deceleration=2.0)) == 0.75
+    assert stopping_distance(-1.0, GuoPrompts(reaction=0.5, deceleration=2.0)) == 0.75

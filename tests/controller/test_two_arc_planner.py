@@ -9,9 +9,10 @@ from hypothesis import strategies as st
 
 from controller_fmu.common.slot_frame import SlotFrame, to_slot, to_world
 from controller_fmu.guo2015.legs import point_of_leg
+from controller_fmu.guo2015.params import GuoParams
 from controller_fmu.guo2015.path import distance_to_end, reference_at
 from controller_fmu.guo2015.planner import TwoArcPath, plan, touching_radius, two_arcs
-from controller_fmu.interface import NtbptParams, Phase
+from controller_fmu.interface import Phase
 from modelkit.vocabulary import Pose
 
 SMALLEST = 2.405 / math.tan(math.radians(30.0))
@@ -49,7 +50,7 @@ def test_equation_9_is_one_instance() -> None:
 @pytest.mark.parametrize("leg", TABLE_2)
 def test_table_2_follows_from_the_geometry(leg: int) -> None:
     frame, path = guo()
-    point = to_world(point_of_leg(leg, path, NtbptParams()), frame)  # type: ignore[arg-type]
+    point = to_world(point_of_leg(leg, path, GuoParams()), frame)  # type: ignore[arg-type]
     x, y, heading = TABLE_2[leg]
     assert (point.x, point.y) == pytest.approx((x, y), abs=0.01)
     assert point.heading == pytest.approx(heading, abs=2e-3)

@@ -113,7 +113,7 @@ def test_most_pages_have_commands() -> None:
 def shelf(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """What pages take for granted: a log, a second one, somebody's controller, rules of one's own."""
     folder = tmp_path_factory.mktemp("shelf")
-    for name, sets in {"A": [], "B": ["--set", "controller.ntbpt.k4=3"]}.items():
+    for name, sets in {"A": [], "B": ["--set", "controller.guo2015.k4=3"]}.items():
         main(["run", "guo2015-case4", "--out", str(folder / name), "--no-page", "--quiet", *sets])
         shutil.move(folder / name / "run.mcap", folder / f"{name}.mcap")
         shutil.rmtree(folder / name)

@@ -88,8 +88,8 @@ def test_a_group_says_what_it_is_and_the_range_of_fields_that_have_none():
 
 def test_the_role_next_to_a_field_wins():
     roles = {item.name: item.roles for item in variables(CONTROLLER.params)}
-    assert roles["ntbpt.k1"] == {Role.TUNABLE}
-    assert roles["ntbpt.radius"] == {Role.FIXED}
+    assert roles["guo2015.k1"] == {Role.TUNABLE}
+    assert roles["guo2015.radius"] == {Role.FIXED}
     assert roles["wheelbase"] == frozenset()
     outputs = {item.name: item.roles for item in variables(CONTROLLER.outputs)}
     assert outputs["path.segments[3].length"] == {Role.LOCAL}

@@ -81,7 +81,16 @@ def drive(name, changed, steps):
 def test_gains_and_thresholds_are_tunable_geometry_is_not():
     names = {item.name for model in MODELS.values() for item in tunables(model)}
     assert len(names) > 100
-    for group in ("threshold.", "prompting.", "limit.", "hsic.gain.", "zhang2022.pid.", "apa.end.", "apa.guard."):
+    for group in (
+        "threshold.",
+        "guo2015.threshold.",
+        "guo2015.prompting.",
+        "limit.",
+        "hsic.gain.",
+        "zhang2022.pid.",
+        "apa.end.",
+        "apa.guard.",
+    ):
         whole = [item.name for item in fmi_variables(CONTROLLER) if item.name.startswith(group)]
         assert whole
         assert set(whole) <= names
@@ -144,9 +153,9 @@ def drawn(draw, item):
 @pytest.mark.parametrize(
     ("name", "owner", "parameter", "value"),
     [
-        ("guo2015-case1", "controller", "ntbpt.k1", 20.0),
-        ("guo2015-case1", "controller", "prompting.speed_limit", 0.2),
-        ("guo2015-case4", "controller", "threshold.leave_lateral", 0.0),
+        ("guo2015-case1", "controller", "guo2015.k1", 20.0),
+        ("guo2015-case1", "controller", "guo2015.prompting.speed_limit", 0.2),
+        ("guo2015-case4", "controller", "guo2015.threshold.leave_lateral", 0.0),
         ("guo2015-case1", "controller", "limit.duration", 1.0),
         ("zhang2022-double-track", "controller", "zhang2022.mpc.lateral", 1e5),
         ("zhang2022-double-track", "controller", "zhang2022.pid.proportional", 100.0),

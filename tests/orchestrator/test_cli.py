@@ -50,8 +50,8 @@ def test_not_parked_is_one(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -
         (["run", DEMO, "--fmus", "none", "--set", "vehicle.wheelbas=3"], "apa: --set: vehicle.wheelbas: unknown"),
         (["run", DEMO, "--fmus", "none", "--set", "faults=[{signal: vehicle.spee, kind: freeze}]"], "no signal 'spee'"),
         (
-            ["run", DEMO, "--fmus", "none", "--set", "controller.ntbpt.k44=3"],
-            "apa: --set: controller.ntbpt.k44: unknown; did you mean controller.ntbpt.k4",
+            ["run", DEMO, "--fmus", "none", "--set", "controller.guo2015.k44=3"],
+            "apa: --set: controller.guo2015.k44: unknown; did you mean controller.guo2015.k4",
         ),
         (["recover", "nowhere.mcap.part"], "apa: nowhere.mcap.part: no such file"),
     ],
@@ -239,7 +239,7 @@ def test_something_long_says_so_where_there_is_no_terminal(
     ("arguments", "names"),
     [
         (["parameters", "steering.rate"], ["vehicle.steering.rate_limit"]),
-        (["parameters", "controller.ntbpt.k?"], [f"controller.ntbpt.k{number}" for number in (1, 2, 3, 4)]),
+        (["parameters", "controller.guo2015.k?"], [f"controller.guo2015.k{number}" for number in (1, 2, 3, 4)]),
         (["signals", "vehicle.pose.*"], ["vehicle.pose.x", "vehicle.pose.y", "vehicle.pose.heading"]),
         (["systems", "fuzzy"], ["preview"]),
         (["scenarios", "case4-l"], ["guo2015-case4-left"]),
@@ -312,18 +312,18 @@ def test_a_run_says_what_it_replaces_and_takes_what_was_made_of_it(
 
 
 def test_what_was_changed_stands_in_every_headline(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    sets = ["--set", "controller.ntbpt.k4=3", "--set", "title=A <b>title</b>"]
+    sets = ["--set", "controller.guo2015.k4=3", "--set", "title=A <b>title</b>"]
     arguments = ["guo2015-case4", "--fmus", "none", *sets, "--out"]
     assert main(["run", *arguments, str(tmp_path / "run")]) == 0
-    assert "changed: controller.ntbpt.k4 = 3\n" in capsys.readouterr().out
+    assert "changed: controller.guo2015.k4 = 3\n" in capsys.readouterr().out
     summary = json.loads((tmp_path / "run" / "summary.json").read_text(encoding="utf-8"))
-    assert summary["changed"] == {"controller.ntbpt.k4": "3", "title": "A <b>title</b>"}
+    assert summary["changed"] == {"controller.guo2015.k4": "3", "title": "A <b>title</b>"}
     page = (tmp_path / "run" / "report.html").read_text(encoding="utf-8")
-    assert "<title>A &lt;b&gt;title&lt;/b&gt; - with controller.ntbpt.k4 = 3</title>" in page
+    assert "<title>A &lt;b&gt;title&lt;/b&gt; - with controller.guo2015.k4 = 3</title>" in page
     assert main(["test", *arguments, str(tmp_path / "test")]) == 0
-    assert "title&lt;/b&gt; - with controller.ntbpt.k4 = 3" in (tmp_path / "test" / "index.html").read_text("utf-8")
+    assert "title&lt;/b&gt; - with controller.guo2015.k4 = 3" in (tmp_path / "test" / "index.html").read_text("utf-8")
     assert main(["report", str(tmp_path / "run" / "run.mcap"), "--out", str(tmp_path / "again.html")]) == 0
-    assert "- with controller.ntbpt.k4 = 3</title>" in (tmp_path / "again.html").read_text(encoding="utf-8")
+    assert "- with controller.guo2015.k4 = 3</title>" in (tmp_path / "again.html").read_text(encoding="utf-8")
 
 
 def test_a_scenario_file_cannot_say_what_was_changed(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

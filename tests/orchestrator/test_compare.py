@@ -184,7 +184,7 @@ def test_tube_against_a_search_over_all_pairs():
 
 def test_command(tmp_path, capsys):
     names = ("a", "same", "other")
-    sets = ([], [], ["--set", "controller.ntbpt.k4=3"])
+    sets = ([], [], ["--set", "controller.guo2015.k4=3"])
     for name, changes in zip(names, sets, strict=True):
         main(["run", "guo2015-case4", "--fmus", "none", "--no-figure", "--out", str(tmp_path / name), *changes])
     a, same, other = (str(tmp_path / name / "run.mcap") for name in names)
@@ -195,7 +195,7 @@ def test_command(tmp_path, capsys):
     capsys.readouterr()
     assert main(["compare", a, other, "--abs", "0.05", "--json"]) == 1
     found = json.loads(capsys.readouterr().out)
-    assert [change["name"] for change in found["parameters"]] == ["controller.ntbpt.k4"]
+    assert [change["name"] for change in found["parameters"]] == ["controller.guo2015.k4"]
     assert found["signals"][0]["passed"] is False
     assert main(["compare", a, str(tmp_path / "nothing.mcap")]) == 2
     assert main(["compare", a, same, "--abs", "-1"]) == 2

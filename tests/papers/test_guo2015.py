@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from controller_fmu.interface import NtbptParams
+from controller_fmu.guo2015.params import GuoParams
 from orchestrator.papers.drive import drive
 from orchestrator.papers.guo2015 import case_rows, reproduce
 from orchestrator.papers.guo2015_drivers import obey
@@ -54,14 +54,14 @@ def test_a_known_difference_that_is_gone_is_news() -> None:
 
 
 def test_the_gains_are_the_paper_s() -> None:
-    gains = NtbptParams()
+    gains = GuoParams()
     assert (gains.k1, gains.k2, gains.k3, gains.k4) == (1.0, 0.8, 1.0, 4.0)
 
 
 @pytest.mark.parametrize(("gain", "factor"), [("k1", 0.5), ("k2", 0.5), ("k3", 2.0), ("k4", 2.0), ("k4", 0.5)])
 def test_a_gain_doubled_or_halved_misses_a_check(gain: str, factor: float) -> None:
-    value = factor * getattr(NtbptParams(), gain)
-    scenario = load_scenario("guo2015-case4-105", [f"controller.ntbpt.{gain}={value}"])
+    value = factor * getattr(GuoParams(), gain)
+    scenario = load_scenario("guo2015-case4-105", [f"controller.guo2015.{gain}={value}"])
     recording = run_scenario(scenario, None, kind="none").recording
     rows = case_rows(4, Driven(scenario, recording, summarize(recording, scenario, 1.0)))
     assert [row for row in rows if row.basis == PRINTED and row.as_expected is False]

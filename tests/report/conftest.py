@@ -34,7 +34,7 @@ def replay(case4, tmp_path_factory) -> Path:
 @pytest.fixture(scope="session")
 def overlay(case4, tmp_path_factory) -> Path:
     """The page of that run and one with another gain."""
-    scenario = load_scenario("guo2015-case4", ["controller.ntbpt.k4=3"])
+    scenario = load_scenario("guo2015-case4", ["controller.guo2015.k4=3"])
     runs = (case4[0], run_scenario(scenario).recording)
     path: Path = tmp_path_factory.mktemp("overlay") / "overlay.html"
     write_overlay(path, runs, ([], []), compare(*runs, Tolerances(Tolerance(0.01, 0.0, 0.1))))

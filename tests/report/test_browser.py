@@ -161,7 +161,7 @@ def test_two_runs_on_one_page(show, overlay):
     assert page.locator("#verdict").inner_text().endswith("differ")
     assert page.locator(".lane", has_text="phase A").count() == 1
     assert page.locator(".lane", has_text="phase B").count() == 1
-    assert page.locator("#checks tr", has_text="controller.ntbpt.k4").count() == 1
+    assert page.locator("#checks tr", has_text="controller.guo2015.k4").count() == 1
     assert page.locator("#checks .pill.bad").count() >= 1
     assert page.evaluate("window.replay.plots.all[0].u.series.length") >= 3
     page.keyboard.press("End")

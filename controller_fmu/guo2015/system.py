@@ -29,7 +29,7 @@ from modelkit.maths import clamp
 from modelkit.vocabulary import Pose
 
 
-class ParkingState(NamedTuple):
+class GuoState(NamedTuple):
     """Everything the system remembers."""
 
     phase: int = Phase.STANDBY
@@ -55,12 +55,12 @@ class ParkingState(NamedTuple):
     monitor: MonitorState = MonitorState()
 
 
-def start(params: ControllerParams) -> ParkingState:
+def guo_start(params: ControllerParams) -> GuoState:
     """Return the system in standby."""
-    return ParkingState()
+    return GuoState()
 
 
-def sample(state: ParkingState, inputs: ControllerInput, params: ControllerParams, dt_ns: int) -> ParkingState:
+def guo_sample(state: GuoState, inputs: ControllerInput, params: ControllerParams, dt_ns: int) -> GuoState:
     """Return the system one sample of ``dt_ns`` later."""
     if state.phase >= Phase.PARKED:
         return _ended(state, state.phase, state.reason, inputs.driver_takeover)
@@ -69,8 +69,8 @@ def sample(state: ParkingState, inputs: ControllerInput, params: ControllerParam
     planned = state.plan
     if state.phase == Phase.STANDBY:
         smallest = params.wheelbase / math.tan(params.steering_wheel_limit / params.steering_ratio)
-        reserve = params.ntbpt.radius_reserve
-        planned = plan(inputs.odometry, params.target, params.ntbpt.radius, reserve * smallest)
+        reserve = params.guo2015.radius_reserve
+        planned = plan(inputs.odometry, params.target, params.guo2015.radius, reserve * smallest)
     pose = to_slot(inputs.odometry, planned.frame)
     watched = inputs.steering_wheel_angle if state.phase == Phase.STANDBY else state.request
     monitor = watch(state.monitor, inputs, state.phase, watched, dt_ns, params)
@@ -82,7 +82,7 @@ def sample(state: ParkingState, inputs: ControllerInput, params: ControllerParam
     return _moved_on(state, inputs, planned, pose, monitor, reason, phase, next_leg, dt_ns, params)
 
 
-def outputs(state: ParkingState, params: ControllerParams) -> ControllerOutput:
+def guo_outputs(state: GuoState, params: ControllerParams) -> ControllerOutput:
     """Return the outputs that hold until the next sample."""
     active = state.phase != Phase.STANDBY and state.phase < Phase.PARKED
     frame = state.plan.frame
@@ -97,7 +97,7 @@ def outputs(state: ParkingState, params: ControllerParams) -> ControllerOutput:
     return ControllerOutput(
         steering_wheel_request=state.request,
         steering_active=active,
-        prompt=prompt_of(state.phase, state.moving, state.advice, params.prompting),
+        prompt=prompt_of(state.phase, state.moving, state.advice, params.guo2015.prompting),
         advised_speed=state.advice,
         brake_request=state.phase == Phase.FAILED and not state.takeover,
         phase=state.phase,
@@ -111,7 +111,7 @@ def outputs(state: ParkingState, params: ControllerParams) -> ControllerOutput:
 
 
 def _reason(
-    state: ParkingState,
+    state: GuoState,
     monitor: MonitorState,
     inputs: ControllerInput,
     planned: Plan,
@@ -134,7 +134,7 @@ def _reason(
 
 
 def _guards(
-    state: ParkingState,
+    state: GuoState,
     inputs: ControllerInput,
     planned: Plan,
     pose: Pose,
@@ -155,7 +155,7 @@ def _guards(
 
 
 def _moved_on(
-    state: ParkingState,
+    state: GuoState,
     inputs: ControllerInput,
     planned: Plan,
     pose: Pose,
@@ -165,7 +165,7 @@ def _moved_on(
     leg: int,
     dt_ns: int,
     params: ControllerParams,
-) -> ParkingState:
+) -> GuoState:
     if phase >= Phase.PARKED:
         return _ended(state, phase, reason if phase == Phase.FAILED else Reason.NONE, inputs.driver_takeover)
     back_on_path = state.phase == Phase.STOP and phase == Phase.PRE_STEER and leg == Phase.PATH_TRACKING
@@ -179,7 +179,7 @@ def _moved_on(
     swing = _swing(state, phase, request, inputs, monitor, params)
     shifts = state.shifts + 1 if turned else state.shifts
     last_direction = direction if direction != 0 else state.direction
-    return ParkingState(
+    return GuoState(
         phase=phase,
         leg=leg,
         driven=driven,
@@ -200,7 +200,7 @@ def _moved_on(
 
 
 def _advice(
-    state: ParkingState,
+    state: GuoState,
     phase: int,
     planned: Plan,
     pose: Pose,
@@ -212,7 +212,7 @@ def _advice(
 ) -> float:
     """Return the speed advised [m/s]; while a stop is asked for it may fall, as on the way there, but not rise."""
     if phase == Phase.STANDBY:
-        return params.prompting.speed_limit
+        return params.guo2015.prompting.speed_limit
     driving = DIRECTION_OF_PHASE[phase] != 0
     if not driving and phase != Phase.STOP:
         return state.advice
@@ -224,12 +224,12 @@ def _advice(
         advice = min(path_speed(planned.path, reference, speed, monitor.wheel.steering, params), swing)
     else:
         left = -DIRECTION_OF_PHASE[way] * tracking.ahead
-        advice = min(point_speed(left, speed, params.prompting), swing)
+        advice = min(point_speed(left, speed, params.guo2015.prompting), swing)
     return advice if driving else min(state.advice, advice)
 
 
 def _swing(
-    state: ParkingState,
+    state: GuoState,
     phase: int,
     request: float,
     inputs: ControllerInput,
@@ -237,7 +237,7 @@ def _swing(
     params: ControllerParams,
 ) -> float:
     """Return the speed [m/s] at which the wheel may swing to its request; held until it has arrived."""
-    limit = params.prompting.speed_limit
+    limit = params.guo2015.prompting.speed_limit
     wheel = inputs.steering_wheel_angle
     if DIRECTION_OF_PHASE[phase] == 0 or abs(request - wheel) <= params.limit.wheel_off:
         return limit
@@ -253,7 +253,7 @@ def _wheel_request(phase: int, tracking: Tracking, planned: Plan, params: Contro
     return wheel_request(tracking.front_wheel_angle, planned.frame.mirror, params)
 
 
-def _ended(state: ParkingState, phase: int, reason: int, takeover: bool) -> ParkingState:
+def _ended(state: GuoState, phase: int, reason: int, takeover: bool) -> GuoState:
     return state._replace(phase=phase, reason=reason, moving=False, advice=0.0, takeover=takeover)
 
 

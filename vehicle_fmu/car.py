@@ -2,15 +2,17 @@
 
 from typing import NamedTuple
 
+from modelkit.maths import clamp
 from modelkit.vocabulary import Gear, Pose
 from vehicle_fmu.body import BodyState, motion_of, place, push_body, wheel_speed
 from vehicle_fmu.drive import change_speed, push_speed
 from vehicle_fmu.driver import DriverState, brakes, grabs, wanted_speed, watch
-from vehicle_fmu.drivetrain import Pedals, Selector, along, geared_speed, obey, press, shift
+from vehicle_fmu.drivetrain import Pedals, Selector, along, geared_speed, obey, press, shift, wanted_gear
 from vehicle_fmu.effort import Effort
-from vehicle_fmu.interface import Body, DriverParams, VehicleInput, VehicleParams
+from vehicle_fmu.interface import Body, DriverParams, PersonInput, VehicleInput, VehicleParams
 from vehicle_fmu.kinematic import move
 from vehicle_fmu.odometry import OdometryState, reckon
+from vehicle_fmu.person import has_pedals, lever_gear, roll, stops_controller, tread
 from vehicle_fmu.steering import SteeringState, hold_request, pass_request, take_up_play, turn_steering_wheel
 
 
@@ -58,9 +60,13 @@ def step_car(state: CarState, inputs: VehicleInput, faulty: bool, params: Vehicl
     """Return the car at ``next_ns``; a faulty one brakes and holds its wheel."""
     h = (next_ns - state.time_ns) * 1e-9
     driver = watch(state.driver, inputs.prompt, state.time_ns, params.driver)
-    free = not (faulty or inputs.brake_request or driver.takeover or brakes(state.time_ns, params.driver))
+    braked = inputs.brake_request or brakes(state.time_ns, params.driver) or stops_controller(inputs)
+    free = not (faulty or driver.takeover or braked)
     target = _target_speed(state, driver, inputs, params.driver) if free else 0.0
-    selector = shift(state.selector, target, state.speed, params.drive.shift_time, next_ns - state.time_ns)
+    wanted = wanted_gear(state.selector.gear, target)
+    if has_pedals(inputs) and free:
+        wanted = lever_gear(inputs.person, state.selector.gear, state.speed)
+    selector = shift(state.selector, wanted, state.speed, params.drive.shift_time, next_ns - state.time_ns)
     steering = _steer(state, inputs, driver.takeover or faulty, params, next_ns)
     wheel = turn_steering_wheel(state.steering_wheel_angle, steering.lagged, params.steering, h, state.speed)
     steering = steering._replace(play=take_up_play(steering.play, wheel, params.steering.backlash))
@@ -79,7 +85,7 @@ def step_car(state: CarState, inputs: VehicleInput, faulty: bool, params: Vehicl
         rolled_speed=going.rolled_speed,
         steering_wheel_angle=wheel,
         distance=state.distance + 0.5 * h * abs(state.speed + going.speed),
-        brake_pedal=_brake_pedal(state.time_ns, driver, driven, params.driver),
+        brake_pedal=_brake_pedal(state.time_ns, driver, driven, inputs, params.driver),
         steering=steering,
         pedals=going.pedals,
         body=going.body,
@@ -108,6 +114,8 @@ def _go(
 ) -> Going:
     """Return the motion ``h`` [s] later on the way to ``target`` [m/s], front wheels turning from angle to angle."""
     forced = free and inputs.force_control_active and target != 0.0
+    if free and has_pedals(inputs):
+        return _tread(state, inputs.person, angles, params, h)
     if params.body == Body.KINEMATIC:
         speed = change_speed(state.speed, target, params.drive, h)
         if forced:
@@ -119,11 +127,31 @@ def _go(
         pedals = obey(state.pedals, inputs.force_request, state.speed, gear, params.drive, h)
     else:
         pedals = press(state.pedals, target, state.speed, gear, params.chassis.mass, params.drive, h)
-    effort = Effort(brake=params.drive.brake_force_limit) if gear == Gear.PARK else pedals.effort
+    return _push(state, pedals, angles, params, h)
+
+
+def _tread(state: CarState, person: PersonInput, angles: tuple[float, float], params: VehicleParams, h: float) -> Going:
+    """Return the motion ``h`` [s] later under a person's feet."""
+    pedals = tread(state.pedals, person, state.speed, state.selector.gear, params.drive, h)
+    if params.body != Body.KINEMATIC:
+        return _push(state, pedals, angles, params, h)
+    speed = roll(state.speed, _at_wheels(pedals, state.selector.gear, params), params.chassis, h)
+    pose = move(state.pose, state.speed, speed, angles[0], angles[1], params.wheelbase, h)
+    return Going(pose, speed, speed, pedals, state.body)
+
+
+def _push(state: CarState, pedals: Pedals, angles: tuple[float, float], params: VehicleParams, h: float) -> Going:
+    """Return the motion ``h`` [s] later of a body with mass under the forces of ``pedals``."""
+    effort = _at_wheels(pedals, state.selector.gear, params)
     body = push_body(state.body, 0.5 * (angles[0] + angles[1]), effort, params, h)
     motion = motion_of(body, params.body)
     rolled = wheel_speed(body, params.body, params.double_track.hub.radius)
     return Going(motion.pose, motion.speed_x, rolled, pedals, body)
+
+
+def _at_wheels(pedals: Pedals, gear: int, params: VehicleParams) -> Effort:
+    """Return what reaches the wheels: in park they are locked."""
+    return Effort(brake=params.drive.brake_force_limit) if gear == Gear.PARK else pedals.effort
 
 
 def _target_speed(state: CarState, driver: DriverState, inputs: VehicleInput, params: DriverParams) -> float:
@@ -132,7 +160,9 @@ def _target_speed(state: CarState, driver: DriverState, inputs: VehicleInput, pa
     return wanted_speed(driver, inputs.advised_speed, state.time_ns, state.distance, params)
 
 
-def _brake_pedal(time_ns: int, driver: DriverState, driven: bool, params: DriverParams) -> float:
+def _brake_pedal(time_ns: int, driver: DriverState, driven: bool, inputs: VehicleInput, params: DriverParams) -> float:
     if brakes(time_ns, params) or driver.takeover:
         return 1.0
+    if inputs.person.drives:
+        return clamp(inputs.person.brake, 0.0, 1.0)
     return 1.0 if driver.direction == 0 and not driven else 0.0

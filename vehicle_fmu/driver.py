@@ -75,7 +75,7 @@ def switch_is_on(time_ns: int, params: DriverParams) -> bool:
 
 
 def presses_confirm(state: DriverState, time_ns: int, params: DriverParams) -> bool:
-    """Return whether the confirm button is pressed: at its time, or because it was asked for."""
+    """Return whether the driver modelled presses the confirm button: at its time, or because it was asked for."""
     if params.confirms_when_asked and state.heeded == Prompt.CONFIRM:
         return True
     return params.confirm_time <= time_ns * 1e-9 < params.confirm_time + CONFIRM_LASTS

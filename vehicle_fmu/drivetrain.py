@@ -47,13 +47,17 @@ class Pedals(NamedTuple):
     """Time [s] since the aim became to stand."""
 
 
-def shift(selector: Selector, target: float, speed: float, shift_time: float, step_ns: int) -> Selector:
-    """Return the selector ``step_ns`` later when the driver wants to go at ``target`` [m/s].
+def wanted_gear(gear: int, target: float) -> int:
+    """Return the gear for going at ``target`` [m/s]; to stand, the one engaged will do."""
+    return Gear.REVERSE if target < 0.0 else Gear.DRIVE if target > 0.0 else gear
+
+
+def shift(selector: Selector, wanted: int, speed: float, shift_time: float, step_ns: int) -> Selector:
+    """Return the selector ``step_ns`` later when the gear ``wanted`` is asked for at ``speed`` [m/s].
 
     With a shift time the car must stand, and N is engaged meanwhile; without, the gear follows at once.
     """
     gear = selector.gear
-    wanted = Gear.REVERSE if target < 0.0 else Gear.DRIVE if target > 0.0 else gear
     if shift_time <= 0.0:
         return Selector(wanted)
     if selector.wanted != NO_GEAR:
@@ -79,18 +83,18 @@ def along(gear: int) -> float:
 def press(pedals: Pedals, target: float, speed: float, gear: int, mass: float, p: DriveParams, h: float) -> Pedals:
     """Return the pedals ``h`` [s] later, on the way from ``speed`` to ``target`` [m/s]."""
     reference = change_speed(pedals.reference, target, p, h)
-    creep = _creep(gear, speed, p)
+    idle = creep(gear, speed, p)
     if reference == 0.0 and target == 0.0:
         brake = mass * _stopping_deceleration(speed, pedals.stopping, p)
-        return Pedals(effort=_lag(pedals.effort, creep, brake, p, h), stopping=pedals.stopping + h)
+        return Pedals(effort=lag(pedals.effort, idle, brake, p, h), stopping=pedals.stopping + h)
     error = reference - speed
     push = (reference - pedals.reference) / h + p.speed_gain * error + p.speed_integral * pedals.integral
-    force = mass * push - creep
+    force = mass * push - idle
     integral = pedals.integral
     if abs(force) < p.drive_force_limit:
         integral = clamp(integral + h * error, -p.integral_limit, p.integral_limit)
     ahead = 1.0 if reference > 0.0 else -1.0
-    return Pedals(reference, integral, _split(pedals.effort, force, creep, ahead, p, h))
+    return Pedals(reference, integral, _split(pedals.effort, force, idle, ahead, p, h))
 
 
 def obey(pedals: Pedals, force: float, speed: float, gear: int, p: DriveParams, h: float) -> Pedals:
@@ -99,14 +103,14 @@ def obey(pedals: Pedals, force: float, speed: float, gear: int, p: DriveParams, 
     Along the gear's direction it goes to the drive, against it to the brake. The aim follows ``speed``,
     so that a speed request takes over without a jump.
     """
-    return Pedals(speed, effort=_split(pedals.effort, force, _creep(gear, speed, p), along(gear), p, h))
+    return Pedals(speed, effort=_split(pedals.effort, force, creep(gear, speed, p), along(gear), p, h))
 
 
-def _split(effort: Effort, force: float, creep: float, ahead: float, p: DriveParams, h: float) -> Effort:
+def _split(effort: Effort, force: float, idle: float, ahead: float, p: DriveParams, h: float) -> Effort:
     """Return the effort ``h`` [s] later: along ``ahead`` (1 or -1) a force drives, against it it brakes."""
     if force * ahead >= 0.0:
-        return _lag(effort, force + creep, 0.0, p, h)
-    return _lag(effort, creep, abs(force), p, h)
+        return lag(effort, force + idle, 0.0, p, h)
+    return lag(effort, idle, abs(force), p, h)
 
 
 def _stopping_deceleration(speed: float, time: float, p: DriveParams) -> float:
@@ -117,7 +121,7 @@ def _stopping_deceleration(speed: float, time: float, p: DriveParams) -> float:
     return min(p.hold_deceleration, gentle)
 
 
-def _creep(gear: int, speed: float, p: DriveParams) -> float:
+def creep(gear: int, speed: float, p: DriveParams) -> float:
     """Return the force [N] with which an automatic gearbox pushes at idle."""
     if gear == Gear.DRIVE:
         return p.creep_force * clamp(1.0 - speed / p.creep_speed, 0.0, 1.0)
@@ -126,7 +130,8 @@ def _creep(gear: int, speed: float, p: DriveParams) -> float:
     return 0.0
 
 
-def _lag(effort: Effort, drive: float, brake: float, p: DriveParams, h: float) -> Effort:
+def lag(effort: Effort, drive: float, brake: float, p: DriveParams, h: float) -> Effort:
+    """Return the forces [N] ``h`` [s] later on their way to those asked for, within what there is."""
     wanted = clamp(drive, -p.drive_force_limit, p.drive_force_limit)
     pressed = clamp(brake, 0.0, p.brake_force_limit)
     return Effort(

@@ -40,8 +40,18 @@ class VehicleFault(IntEnum):
     """A parameter is NaN, infinite or without meaning."""
 
 
+class PersonInput(NamedTuple):
+    """A person at pedals and lever in place of the driver modelled: in a driving simulator, or a page."""
+
+    drives: Annotated[bool, Signal("1", "the person has pedals and lever, not the driver modelled")] = False
+    accelerator: Annotated[float, Signal("1", "accelerator pedal, 0 released to 1 full", 0.0, 1.0)] = 0.0
+    brake: Annotated[float, Signal("1", "brake pedal, 0 released to 1 full", 0.0, 1.0)] = 0.0
+    lever: Annotated[int, Signal("1", "lever, which the gear follows at standstill", states=Gear)] = Gear.PARK
+    confirm: Annotated[bool, Signal("1", "the person presses the confirm button")] = False
+
+
 class VehicleInput(NamedTuple):
-    """From the controller."""
+    """From the controller, and from a person if there is one."""
 
     steering_wheel_request: Annotated[float, Signal("rad", "steering-wheel angle asked for, left positive")] = 0.0
     steering_active: Annotated[bool, Signal("1", "the controller holds the steering wheel")] = False
@@ -52,6 +62,7 @@ class VehicleInput(NamedTuple):
     force_control_active: Annotated[bool, Signal("1", "force_request holds, not speed_request")] = False
     force_request: Annotated[float, Signal("N", "drive and brake force asked for, forward positive")] = 0.0
     brake_request: Annotated[bool, Signal("1", "the controller brakes to standstill and holds")] = False
+    person: PersonInput = PersonInput()
 
 
 class VehicleOutput(NamedTuple):

@@ -42,7 +42,7 @@ def initialize(params: VehicleParams) -> tuple[VehicleState, VehicleOutput]:
         fault = VehicleFault.BAD_PARAMETER
         start = Pose()
     state = VehicleState(parked_car(start, fault == VehicleFault.NONE, params), heard, fault)
-    return state, _outputs(state, gap, params)
+    return state, _outputs(state, gap, False, params)
 
 
 def step(
@@ -65,7 +65,7 @@ def step(
                 heard = measure(heard, car.pose, params.scene, params.ultrasonic, car.time_ns)
         gap = _clearance(car.pose, params, car.time_ns)
     state = VehicleState(car, heard, fault)
-    return state, _outputs(state, gap, params)
+    return state, _outputs(state, gap, inputs.person.drives and inputs.person.confirm, params)
 
 
 def _clearance(pose: Pose, params: VehicleParams, time_ns: int) -> float:
@@ -78,7 +78,7 @@ def _internal_steps(dt_ns: int, params: VehicleParams) -> int:
     return math.ceil(dt_ns * 1e-9 / longest - 1e-9)
 
 
-def _outputs(state: VehicleState, gap: float, params: VehicleParams) -> VehicleOutput:
+def _outputs(state: VehicleState, gap: float, confirms: bool, params: VehicleParams) -> VehicleOutput:
     car = state.car
     speed = car.speed
     measured = car.speed if params.odometry.perfect else car.rolled_speed
@@ -104,9 +104,10 @@ def _outputs(state: VehicleState, gap: float, params: VehicleParams) -> VehicleO
         clearance=gap,
         contact=gap <= 0.0,
         apa_switch=switch_is_on(car.time_ns, params.driver),
-        driver_confirm=presses_confirm(car.driver, car.time_ns, params.driver),
+        driver_confirm=confirms or presses_confirm(car.driver, car.time_ns, params.driver),
     )
 
 
 def _is_finite_input(inputs: VehicleInput) -> bool:
-    return is_finite(inputs.steering_wheel_request + inputs.advised_speed + inputs.speed_request + inputs.force_request)
+    asked = inputs.steering_wheel_request + inputs.advised_speed + inputs.speed_request + inputs.force_request
+    return is_finite(asked + inputs.person.accelerator + inputs.person.brake)

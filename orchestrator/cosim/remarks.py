@@ -18,6 +18,8 @@ NEEDED = {
     },
 }
 """Slave -> output that a verdict needs -> what is lost without it."""
+SPARE = "person."
+"""Inputs of this group need nothing to feed them: their start values mean that nobody is there."""
 
 
 def remarks(slaves: Sequence[Slave], ending: EndCondition) -> list[str]:
@@ -39,7 +41,7 @@ def _unfed(slave: Slave, slaves: Sequence[Slave]) -> list[str]:
     spare = [f"{other.name}.{name}" for other in others for name in other.outputs.names if name not in taken]
     found, plain = [], []
     for name in slave.inputs.names:
-        if name in heard:
+        if name in heard or name.startswith(SPARE):
             continue
         meant = suggestion(name, [full.partition(".")[2] for full in spare])
         if meant:

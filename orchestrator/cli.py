@@ -1,15 +1,18 @@
 """The command ``apa``: imports the command that is chosen and turns errors into exit codes."""
 
 import argparse
+import io
+import os
 import sys
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager, redirect_stdout
+from contextlib import contextmanager, redirect_stdout, suppress
 from os import devnull
 from typing import Any
 
 from orchestrator.commands import COMMANDS
 from orchestrator.commands.parser import CommandParser
-from orchestrator.text.errors import BAD_INPUT, INTERRUPTED, NOT_PARKED, BadInput, RunError
+from orchestrator.text.ends import ended_in_time
+from orchestrator.text.failures import explained
 
 DESCRIPTION = "Automated parking as a pair of FMI 2.0 co-simulation FMUs."
 EPILOG = """examples:
@@ -19,39 +22,52 @@ EPILOG = """examples:
   apa list parameters steering                 names, defaults, units and ranges
   apa recover runs/guo2015-case4/run.mcap.part
 
-exit codes: 0 parked or done, 1 not parked, 2 bad input or a place that cannot be read or written, 130 interrupted
+exit codes: 0 parked or done, 1 judged and not parked, 2 bad input or a place that cannot be read or written,
+3 internal error (the traceback is kept in a file), 130 interrupted
 """
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Return the exit code of one command line."""
+    words = sys.argv[1:] if arguments is None else list(arguments)
+    _forgiving_streams()
+    with ended_in_time():
+        try:
+            try:
+                return _run(words)
+            finally:
+                sys.stdout.flush()
+        except (Exception, KeyboardInterrupt) as error:
+            code, line = explained(error, words)
+            _complain(line)
+            _let_go()
+            return code
+
+
+def _run(words: list[str]) -> int:
+    parsed = parser().parse_args(words, argparse.Namespace(words=words))
+    with _as_asked(parsed):
+        return int(parsed.run(parsed))
+
+
+def _forgiving_streams() -> None:
+    """Let letters that a terminal cannot show cost a letter, not the run; a stream that is closed takes nothing."""
+    for name in ("stdout", "stderr"):
+        stream = getattr(sys, name)
+        if stream is None:
+            setattr(sys, name, io.TextIOWrapper(io.FileIO(devnull, "w"), encoding="utf-8"))
+        elif isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="replace")
+
+
+def _let_go() -> None:
+    """Give up what could not be written to standard output, so that the interpreter does not try again at its end."""
     try:
-        words = sys.argv[1:] if arguments is None else list(arguments)
-        parsed = parser().parse_args(words, argparse.Namespace(words=words))
-        with _as_asked(parsed):
-            return int(parsed.run(parsed))
-    except BadInput as error:
-        _complain(str(error))
-        return BAD_INPUT
-    except RunError as error:
-        _complain(str(error))
-        return NOT_PARKED
-    except KeyboardInterrupt:
-        _complain("interrupted")
-        return INTERRUPTED
-    except BrokenPipeError:
-        sys.stderr.close()
-        return NOT_PARKED
-    except ModuleNotFoundError as error:
-        extra = _extra_of(error.name or "")
-        if not extra:
-            raise
-        _complain(f"{error.name} is not installed; run: pip install 'apa-cosim[{extra}]'")
-        return BAD_INPUT
-    except OSError as error:
-        place = f"{error.filename}: " if error.filename is not None else ""
-        _complain(f"{place}{error.strerror or error}")
-        return BAD_INPUT
+        sys.stdout.flush()
+    except OSError:
+        nowhere = os.open(devnull, os.O_WRONLY)
+        os.dup2(nowhere, sys.stdout.fileno())
+        os.close(nowhere)
 
 
 def parser() -> CommandParser:
@@ -94,26 +110,15 @@ def _as_asked(parsed: argparse.Namespace) -> Iterator[None]:
         QUIET.reset(token)
 
 
-def _extra_of(module: str) -> str:
-    """Return the extra of this project that brings a package, empty if none does."""
-    from importlib.metadata import PackageNotFoundError, requires
-    from re import match
-
-    try:
-        needed = requires("apa-cosim") or []
-    except PackageNotFoundError:
-        return ""
-    found = [match(r"([\w-]+).*extra == ['\"](\w+)['\"]", line.replace("_", "-")) for line in needed]
-    top = module.partition(".")[0].replace("_", "-")
-    return next((item[2] for item in found if item and item[1].lower() in (top, f"{top}-sdk")), "")
-
-
 def _complain(text: str) -> None:
+    if not text:
+        return
     from rich.markup import escape
 
     from orchestrator.text.console import console
 
-    console(sys.stderr).print(f"[bold red]apa:[/] {escape(text)}", soft_wrap=True)
+    with suppress(OSError):
+        console(sys.stderr).print(f"[bold red]apa:[/] {escape(text)}", soft_wrap=True)
 
 
 if __name__ == "__main__":

@@ -11,7 +11,8 @@ ROOT = Path(__file__).parent.parent
 FLOORS: tuple[tuple[str, ...], ...] = (
     ("modelkit", "fmus", "orchestrator"),
     ("vehicle_fmu", "controller_fmu"),
-    ("fmus.places", "fmus.locks"),
+    ("fmus.places", "fmus.files", "fmus.children"),
+    ("fmus.locks",),
     ("fmus.contents",),
     ("fmus.compiler.source",),
     ("fmus.compiler.target",),

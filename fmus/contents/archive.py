@@ -7,7 +7,7 @@ import zipfile
 from collections.abc import Mapping
 from pathlib import Path
 
-from fmus.locks import write_whole
+from fmus.files import write_whole
 
 DATE = (1980, 1, 1, 0, 0, 0)
 DESCRIPTION = "modelDescription.xml"

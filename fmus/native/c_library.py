@@ -3,6 +3,7 @@
 from pathlib import Path
 
 from fmus.compiler import members
+from fmus.files import write_whole
 from fmus.native.compilers import FLAGS
 from fmus.native.sources import translated
 from modelkit.model import Model
@@ -63,9 +64,8 @@ def write_c_library(model: Model, folder: Path) -> list[Path]:
         "main.c": example(model),
         "Makefile": MAKEFILE.format(name=model.name, flags=flags),
     }
-    folder.mkdir(parents=True, exist_ok=True)
     for name, text in files.items():
-        (folder / name).write_text(text, encoding="utf-8", newline="\n")
+        write_whole(folder / name, text)
     return [folder / name for name in files]
 
 

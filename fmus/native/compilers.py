@@ -3,15 +3,15 @@
 import os
 import shlex
 import shutil
-import subprocess
 import sys
-import tempfile
 from collections.abc import Mapping
 from importlib.metadata import PackageNotFoundError, version
 from importlib.util import find_spec
 from pathlib import Path
 from typing import NamedTuple
 
+from fmus.children import run_child
+from fmus.files import folder_for_a_while
 from fmus.native.platforms import Target, host_target
 from fmus.places import CACHE, can_write
 
@@ -54,8 +54,7 @@ class Compiler(NamedTuple):
         """
         if not self.is_zig and target != host_target():
             raise RuntimeError(f"{self.command[0]} compiles for this machine only; others need --cc zig")
-        with tempfile.TemporaryDirectory(prefix="apa-c-") as directory:
-            here = Path(directory)
+        with folder_for_a_while("c") as here:
             for file, text in files.items():
                 (here / file).write_text(text, encoding="utf-8", newline="\n")
             self.run([*SHARED, "-o", name, unit, *target.options], here, target)
@@ -65,9 +64,7 @@ class Compiler(NamedTuple):
         """Call the compiler in ``directory`` for ``target`` (default: this machine)."""
         cross = ["-target", (target or host_target()).triple, *ZIG] if self.is_zig else []
         command = [*self.command, *cross, *arguments]
-        done = subprocess.run(
-            command, cwd=directory, env=_environment(), capture_output=True, text=True, errors="replace", check=False
-        )
+        done = run_child(command, directory, _environment())
         if done.returncode:
             raise RuntimeError(f"{shlex.join(command)}: {done.stderr.strip()}")
 
@@ -84,18 +81,21 @@ def find_compiler(cc: str | None = None) -> Compiler:
     """
     named = cc or os.environ.get("CC")
     if named and named != "zig":
-        return _system(tuple(shlex.split(named)))
+        try:
+            return _system(tuple(shlex.split(named)))
+        except ValueError as error:
+            raise RuntimeError(f"{named}: no command of a C compiler: {error}") from error
     try:
         words = " ".join(("ziglang", version("ziglang"), *ZIG))
     except PackageNotFoundError:
         raise RuntimeError(MISSING) from None
-    return Compiler((sys.executable, "-m", "ziglang", "cc"), words, True)
+    return Compiler((sys.executable, "-P", "-m", "ziglang", "cc"), words, True)
 
 
 def _system(command: tuple[str, ...]) -> Compiler:
     if shutil.which(command[0]) is None:
         raise RuntimeError(f"there is no C compiler called {command[0]}")
-    done = subprocess.run([*command, "--version"], capture_output=True, text=True, errors="replace", check=False)
+    done = run_child([*command, "--version"])
     return Compiler(command, (done.stdout or done.stderr).partition("\n")[0].strip(), False)
 
 

@@ -7,17 +7,17 @@ made from JSON, not from the .ssp, because the toolbox does not read the paramet
 import json
 import re
 import shutil
-import subprocess
 import sys
-import tempfile
 import zipfile
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
+from fmus.children import run_child
 from fmus.contents.archive import DESCRIPTION, content_guid, write_archive
 from fmus.contents.description import AUTHOR, GENERATED
 from fmus.contents.xml_file import as_text
+from fmus.files import folder_for_a_while
 from fmus.systems.system import NAME, System
 
 PACKAGE = "fmu_manipulation_toolbox"
@@ -28,15 +28,14 @@ def write_container(system: System, path: Path) -> Path:
     """Write the container. Raises ``RuntimeError`` if the toolbox is not installed or refuses."""
     if find_spec(PACKAGE) is None:
         raise RuntimeError(f"a container needs fmucontainer: {INSTALL}")
-    with tempfile.TemporaryDirectory(prefix="apa-container-") as directory:
-        here = Path(directory)
+    with folder_for_a_while("container") as here:
         for part in system.parts:
             shutil.copyfile(part.fmu, here / f"{part.model.name}.fmu")
         file = here / f"{NAME}.json"
         file.write_text(json.dumps(assembly(system), indent=1))
         code = f"from {PACKAGE}.cli.fmucontainer import fmucontainer; fmucontainer()"
-        command = [sys.executable, "-c", code, "-fmu-directory", directory, "-container", file.name]
-        done = subprocess.run(command, capture_output=True, text=True, check=False)
+        command = [sys.executable, "-P", "-c", code, "-fmu-directory", str(here), "-container", file.name]
+        done = run_child(command)
         made = here / f"{NAME}.fmu"
         if done.returncode or not made.is_file():
             raise RuntimeError(f"fmucontainer: {(done.stdout + done.stderr).strip()}")

@@ -5,8 +5,6 @@ through ctypes on pointers that never change.
 """
 
 import ctypes
-import shutil
-import tempfile
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from threading import Lock
@@ -21,6 +19,7 @@ from fmpy.fmi2 import (
     fmi2CallbackLoggerTYPE,
 )
 
+from fmus.files import new_folder, remove_folder
 from modelkit.model import Model
 from orchestrator.cosim.description import ports_of, read_description
 from orchestrator.cosim.slave import Ports
@@ -89,7 +88,7 @@ class FmuSlave:
 
     def initialize(self, stop_ns: int) -> None:
         """Extract, instantiate, set the parameters, enter Initialization Mode."""
-        self._directory = _ascii_directory()
+        self._directory = str(new_folder("fmu"))
         co_simulation = self._description.coSimulation
         try:
             extract(str(self.path), unzipdir=self._directory)
@@ -181,7 +180,7 @@ class FmuSlave:
             if self._worst < FATAL:
                 instance.freeInstance()
         if self._directory:
-            shutil.rmtree(self._directory, ignore_errors=True)
+            remove_folder(Path(self._directory))
             self._directory = ""
 
     def _refused(self, what: str, status: int, text: str = "no message") -> RunError:
@@ -245,15 +244,3 @@ class FmuSlave:
 def _status_of(error: Exception) -> int:
     """Return the FMI status of FMPy's exception."""
     return int(getattr(error, "status", ERROR))
-
-
-def _ascii_directory() -> str:
-    """Return a new directory whose path is plain ASCII: PythonFMU crashes on others."""
-    for parent in (None, "/tmp", "C:\\Temp"):
-        if parent is not None and not Path(parent).is_dir():
-            continue
-        directory = tempfile.mkdtemp(prefix="apa_", dir=parent)
-        if directory.isascii():
-            return directory
-        shutil.rmtree(directory, ignore_errors=True)
-    raise RunError("no directory with a plain ASCII path for the FMU; set TMPDIR to one")

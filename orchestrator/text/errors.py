@@ -2,8 +2,8 @@
 
 from collections.abc import Iterable
 
-PARKED, NOT_PARKED, BAD_INPUT, INTERRUPTED = 0, 1, 2, 130
-"""Exit codes."""
+PARKED, NOT_PARKED, BAD_INPUT, INTERNAL_ERROR, INTERRUPTED = 0, 1, 2, 3, 130
+"""Exit codes. What was not judged never ends with the first two."""
 
 
 class BadInput(ValueError):  # noqa: N818 - said as it is
@@ -23,7 +23,17 @@ def suggestion(word: str, known: Iterable[str], prefix: str = "") -> str:
     import difflib
 
     names = list(known)
-    close = difflib.get_close_matches(word, names, n=2, cutoff=0.6)
+    close = difflib.get_close_matches(word[:MOST_LETTERS], names, n=2, cutoff=0.6)
     if not close:
         close = [name for name in names if name.rsplit(".", 1)[-1] == word.rsplit(".", 1)[-1]][:2]
     return f"; did you mean {' or '.join(prefix + name for name in close)}?" if close else ""
+
+
+MOST_LETTERS = 100
+"""A word longer than this is like no other."""
+
+
+def shown(value: object) -> str:
+    """Return a value for a message: as Python writes it, cut where it is long."""
+    text = repr(value)
+    return text if len(text) <= MOST_LETTERS else f"{text[:60]}... ({len(text)} letters)"

@@ -1,0 +1,168 @@
+"""Files that are whole or not there, and folders for a while that do not outlive who made them.
+
+Everything that this project writes goes through :func:`whole` (or through a log, which has a name of its own while it
+is unfinished), and everything it needs for a while lies in one folder of the process: removed when it ends, and by the
+next process if it was killed.
+"""
+
+import atexit
+import os
+import re
+import shutil
+import tempfile
+import threading
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from itertools import count
+from pathlib import Path
+
+MARK = ".part"
+_numbers = count()
+_making = threading.Lock()
+ROOM = "apa-tmp-"
+"""How the names of folders for a while begin."""
+YOUNG = 10.0
+"""A folder of nobody's is left alone so long [s]: whoever makes it may not yet have its lock."""
+PLAIN = re.compile(r"[A-Za-z0-9_./\\:~-]+")
+"""Paths that every FMU can be unpacked to: PythonFMU crashes on others."""
+
+
+@contextmanager
+def whole(path: Path, *, sync: bool = False) -> Iterator[Path]:
+    """Give a new path beside ``path`` to write to, then move it there: no reader sees half of it.
+
+    Its folder is made. With ``sync`` it outlives a power cut. Raises ``OSError`` that names ``path``; then what was
+    there is still there.
+    """
+    try:
+        if path.exists() and not path.is_file() and not path.is_dir():
+            yield path  # a device or a pipe: there is nothing beside it
+            return
+        path = path.resolve()
+        path.parent.mkdir(parents=True, exist_ok=True)
+        part = path.with_name(f".{ROOM}{os.getpid()}-{next(_numbers)}{MARK}{path.suffix}")
+        try:
+            yield part
+            if sync:
+                synced(part)
+            part.replace(path)
+        finally:
+            part.unlink(missing_ok=True)
+        if sync:
+            synced(path.parent)
+    except OSError as error:
+        raise _named(error, path) from error
+
+
+def write_whole(path: Path, content: bytes | str, *, sync: bool = False) -> None:
+    """Write a file beside ``path``, then move it there: see :func:`whole`."""
+    with whole(path, sync=sync) as part:
+        part.write_bytes(content.encode() if isinstance(content, str) else content)
+
+
+def synced(path: Path) -> None:
+    """Wait until a file, or the names in a folder, are on the disk."""
+    if os.name == "posix":
+        handle = os.open(path, os.O_RDONLY)
+        try:
+            os.fsync(handle)
+        finally:
+            os.close(handle)
+
+
+def forget_parts(folder: Path) -> None:
+    """Remove what writers that were killed left in ``folder``; call it only while nobody else may write there."""
+    for part in folder.glob(f".{ROOM}*{MARK}*"):
+        part.unlink(missing_ok=True)
+
+
+def _named(error: OSError, path: Path) -> OSError:
+    """Return the error with the place that was meant, not the one beside it."""
+    if error.filename is None or MARK in Path(str(error.filename)).name:
+        return type(error)(error.errno, error.strerror or str(error), str(path))
+    return error
+
+
+_room: tuple[Path, int] | None = None
+
+
+def new_folder(name: str) -> Path:
+    """Return a new folder for a while; its path is plain. Remove it with :func:`remove_folder`. Raises ``OSError``."""
+    with _making:
+        folder = Path(tempfile.mkdtemp(prefix=f"{name}-", dir=_own_room()))
+    return folder
+
+
+def remove_folder(folder: Path) -> None:
+    """Remove a folder, as far as that can be done."""
+    shutil.rmtree(folder, ignore_errors=True)
+
+
+@contextmanager
+def folder_for_a_while(name: str) -> Iterator[Path]:
+    """Give a new folder and remove it."""
+    folder = new_folder(name)
+    try:
+        yield folder
+    finally:
+        remove_folder(folder)
+
+
+def remove_all_folders() -> None:
+    """Remove all that this process has for a while."""
+    global _room
+    if _room is not None:
+        folder, handle = _room
+        _room = None
+        remove_folder(folder)
+        with suppress(OSError):
+            os.close(handle)
+
+
+def _own_room() -> Path:
+    """Return the folder of this process, locked while it lives; folders of processes that are gone are removed."""
+    global _room
+    if _room is None or not _room[0].is_dir():
+        parent = _plain_parent()
+        _remove_forsaken(parent)
+        folder = Path(tempfile.mkdtemp(prefix=ROOM, dir=parent))
+        _room = folder, _hold(folder)
+        atexit.register(remove_all_folders)
+    return _room[0]
+
+
+def _plain_parent() -> Path:
+    """Return the folder for temporary files, or another one if its path is not plain."""
+    for name in (tempfile.gettempdir(), "/tmp", "C:\\Temp"):
+        if PLAIN.fullmatch(name) and os.path.isdir(name) and os.access(name, os.W_OK):
+            return Path(name)
+    raise OSError(None, "no folder for temporary files with a path of plain letters; set TMPDIR to one")
+
+
+def _remove_forsaken(parent: Path) -> None:
+    """Remove the folders of processes that were killed: those whose lock nobody holds."""
+    if os.name != "posix":
+        return
+    for folder in parent.glob(f"{ROOM}*"):
+        with suppress(OSError):
+            state = folder.lstat()
+            if not folder.is_symlink() and state.st_uid == os.getuid() and time.time() - state.st_ctime > YOUNG:
+                handle = _hold(folder)
+                remove_folder(folder)
+                os.close(handle)
+
+
+def _hold(folder: Path) -> int:
+    """Return a handle with the lock on ``folder``, which dies with the process. Raises ``OSError`` if it is held."""
+    if os.name != "posix":
+        return os.open(os.devnull, os.O_RDONLY)
+    import fcntl
+
+    handle = os.open(folder, os.O_RDONLY | os.O_DIRECTORY | os.O_NOFOLLOW)
+    try:
+        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except OSError:
+        os.close(handle)
+        raise
+    return handle

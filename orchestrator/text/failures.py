@@ -1,0 +1,102 @@
+"""What a command says when it cannot go on, in one line, and with which code it ends."""
+
+import errno
+import os
+import platform
+import sys
+import tempfile
+import traceback
+from collections.abc import Sequence
+from datetime import datetime
+from pathlib import Path
+
+from orchestrator.text.errors import BAD_INPUT, INTERNAL_ERROR, INTERRUPTED, BadInput, RunError
+
+REPORT = "please report it with that file to those who maintain apa-cosim"
+WORDS = {
+    errno.ENOSPC: "the disk is full",
+    errno.EROFS: "is on a disk that is read-only",
+    errno.EACCES: "may not be read or written by you",
+    errno.EPERM: "may not be read or written by you",
+    errno.EISDIR: "is a folder, expected a file",
+    errno.ENAMETOOLONG: "this name is too long",
+    errno.ENOENT: "there is no such file or folder",
+}
+
+
+def explained(error: BaseException, words: Sequence[str]) -> tuple[int, str]:
+    """Return the exit code for an error and the line that is said of it."""
+    if isinstance(error, KeyboardInterrupt):
+        return INTERRUPTED, "interrupted"
+    if isinstance(error, BrokenPipeError):
+        return BAD_INPUT, ""
+    if isinstance(error, BadInput | RunError):
+        return BAD_INPUT, str(error)
+    if isinstance(error, OSError):
+        return BAD_INPUT, place_of(error)
+    if isinstance(error, MemoryError):
+        return BAD_INPUT, "this takes more memory than there is"
+    if isinstance(error, ModuleNotFoundError):
+        extra = _extra_of(error.name or "")
+        if extra:
+            return BAD_INPUT, f"{error.name} is not installed; run: pip install 'apa-cosim[{extra}]'"
+    kept = _keep(error, words)
+    return INTERNAL_ERROR, f"internal error, nothing was judged: {one_line(error)}; {kept}"
+
+
+def place_of(error: OSError) -> str:
+    """Return what is in the way of reading or writing a file, with its place."""
+    text = WORDS.get(error.errno or 0, error.strerror or str(error))
+    if error.filename is None:
+        return f"output: {text}" if error.errno in (errno.ENOSPC, errno.EIO) else text
+    path = Path(os.fsdecode(error.filename))
+    if error.errno in (errno.ENOTDIR, errno.EEXIST):
+        above = next((item for item in (path, *path.parents) if item.is_file()), path)
+        return f"{above}: is a file, expected a folder"
+    return f"{path}: {text}"
+
+
+def one_line(error: BaseException) -> str:
+    """Return an unexpected error in one line, with the place in our code where it came up."""
+    text = " ".join(str(error).split())
+    frames = traceback.extract_tb(error.__traceback__)
+    ours = [item for item in frames if f"{os.sep}orchestrator{os.sep}" in item.filename] or frames
+    place = f" ({Path(ours[-1].filename).name}:{ours[-1].lineno})" if ours else ""
+    return f"{type(error).__name__}: {text[:200]}{place}"
+
+
+def _keep(error: BaseException, words: Sequence[str]) -> str:
+    """Write the traceback to a file; return what is said of it."""
+    text = "".join(traceback.format_exception(error))
+    about = f"apa {' '.join(words)}\nPython {platform.python_version()}, {platform.platform()}\n\n"
+    name = f"error-{datetime.now():%Y%m%d-%H%M%S}-{os.getpid()}.txt"
+    for folder in _folders():
+        file = folder / name
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+            file.write_text(about + text, encoding="utf-8", errors="backslashreplace")
+        except (OSError, RuntimeError):
+            continue
+        return f"the traceback is in {file}; {REPORT}"
+    print(text, file=sys.stderr)
+    return "the traceback is above, as it could not be written to a file"
+
+
+def _folders() -> list[Path]:
+    from platformdirs import user_log_path
+
+    return [user_log_path("apa-cosim", appauthor=False), Path(tempfile.gettempdir())]
+
+
+def _extra_of(module: str) -> str:
+    """Return the extra of this project that brings a package, empty if none does."""
+    from importlib.metadata import PackageNotFoundError, requires
+    from re import match
+
+    try:
+        needed = requires("apa-cosim") or []
+    except PackageNotFoundError:
+        return ""
+    found = [match(r"([\w-]+).*extra == ['\"](\w+)['\"]", line.replace("_", "-")) for line in needed]
+    top = module.partition(".")[0].replace("_", "-")
+    return next((item[2] for item in found if item and item[1].lower() in (top, f"{top}-sdk")), "")

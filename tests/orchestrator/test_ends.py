@@ -1,0 +1,144 @@
+"""How a command ends: its code, its line, and what it leaves behind when it is asked to end or killed."""
+
+import os
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+import pytest
+
+from fmus import files
+from orchestrator.cli import main
+
+ROOT = Path(__file__).parents[2]
+posix = pytest.mark.skipif(os.name != "posix", reason="signals are those of POSIX")
+HANGS = """
+import time
+from fmus.files import new_folder
+from orchestrator.text.ends import ended_in_time
+with ended_in_time():
+    print(new_folder("x"), flush=True)
+    {hang}
+"""
+
+
+DEAF = "exec('while True:\\n try: time.sleep(60)\\n except KeyboardInterrupt: pass')"
+"""As an FMU that hangs: nothing that Python does ends it."""
+
+
+def started(code: str, **more: str) -> "subprocess.Popen[str]":
+    environment = {**os.environ, "PYTHONPATH": str(ROOT), **more}
+    pipe = subprocess.PIPE
+    return subprocess.Popen([sys.executable, "-c", code], stdout=pipe, stderr=pipe, text=True, env=environment)
+
+
+def test_an_unexpected_error_is_one_line_with_code_3_and_its_traceback_in_a_file(monkeypatch, capsys, tmp_path):
+    def broken(_arguments: object) -> int:
+        raise KeyError("some\nthing")
+
+    monkeypatch.setattr("orchestrator.commands.list.run", broken)
+    monkeypatch.setattr("platformdirs.user_log_path", lambda *_, **__: tmp_path)
+    assert main(["list"]) == 3
+    said = capsys.readouterr().err
+    assert said.count("\n") == 1
+    assert "internal error, nothing was judged: KeyError" in said
+    (file,) = tmp_path.iterdir()
+    assert str(file) in said
+    assert "Traceback" in file.read_text()
+    assert "apa list" in file.read_text()
+
+
+def test_without_memory_it_is_no_internal_error(monkeypatch, capsys):
+    def hungry(_arguments: object) -> int:
+        raise MemoryError
+
+    monkeypatch.setattr("orchestrator.commands.list.run", hungry)
+    assert main(["list"]) == 2
+    assert "memory" in capsys.readouterr().err
+
+
+@posix
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("hang", [DEAF, "time.sleep(60)"])
+def test_a_signal_ends_what_hangs_within_two_seconds_and_takes_its_folders_away(number, hang):
+    child = started(HANGS.format(hang=hang))
+    folder = Path(child.stdout.readline().strip())
+    assert folder.is_dir()
+    begun = time.monotonic()
+    child.send_signal(number)
+    child.communicate(timeout=20)
+    assert time.monotonic() - begun < 3.0
+    assert child.returncode != 0
+    assert not folder.parent.exists()
+
+
+@posix
+def test_a_second_signal_ends_at_once():
+    child = started(HANGS.format(hang=DEAF))
+    child.stdout.readline()
+    begun = time.monotonic()
+    child.send_signal(signal.SIGTERM)
+    time.sleep(0.1)
+    child.send_signal(signal.SIGTERM)
+    assert "interrupted" in child.communicate(timeout=20)[1]
+    assert child.returncode == 130
+    assert time.monotonic() - begun < 1.4
+
+
+@posix
+def test_the_next_process_takes_away_what_a_killed_one_left(monkeypatch, tmp_path):
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    child = started(HANGS.format(hang="time.sleep(60)"), TMPDIR=str(tmp_path))
+    left = Path(child.stdout.readline().strip()).parent
+    monkeypatch.setattr(files, "YOUNG", 0.0)
+    files._remove_forsaken(tmp_path)
+    assert left.is_dir(), "its process lives"
+    child.kill()
+    child.communicate()
+    files._remove_forsaken(tmp_path)
+    assert not left.exists()
+
+
+def test_a_file_is_whole_or_as_it_was(tmp_path):
+    path = tmp_path / "new" / "file.txt"
+    files.write_whole(path, "one", sync=True)
+    with pytest.raises(ZeroDivisionError), files.whole(path) as part:
+        part.write_text("two")
+        raise ZeroDivisionError
+    assert path.read_text() == "one"
+    assert [item.name for item in path.parent.iterdir()] == ["file.txt"]
+
+
+def test_what_is_in_the_way_is_named(tmp_path):
+    (tmp_path / "file").write_text("")
+    with pytest.raises(IsADirectoryError) as found:
+        files.write_whole(tmp_path, "x")
+    assert found.value.filename == str(tmp_path)
+    with pytest.raises(OSError, match="file"):
+        files.write_whole(tmp_path / "file" / "below", "x")
+
+
+@posix
+def test_standard_output_that_is_full_is_said(tmp_path):
+    if not Path("/dev/full").exists():
+        pytest.skip("there is no /dev/full")
+    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
+    with open("/dev/full", "w") as full:
+        done = subprocess.run(
+            [sys.executable, "-m", "orchestrator", "list"], stdout=full, stderr=subprocess.PIPE, env=environment
+        )
+    assert done.returncode == 2
+    assert done.stderr == b"apa: output: the disk is full\n"
+
+
+def test_letters_that_a_terminal_has_not_cost_no_run(tmp_path):
+    scenario = tmp_path / "own.yaml"
+    scenario.write_text("base: guo2015-case4\ntitle: '→ 車庫'\nstop_time: 0.1\n", encoding="utf-8")
+    environment = {**os.environ, "PYTHONPATH": str(ROOT), "PYTHONIOENCODING": "cp1252"}
+    command = [sys.executable, "-m", "orchestrator", "run", str(scenario), "--fmus", "none", "--no-page"]
+    done = subprocess.run([*command, "--out", str(tmp_path / "o")], capture_output=True, env=environment)
+    assert done.returncode == 1
+    assert b"Traceback" not in done.stderr

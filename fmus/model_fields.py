@@ -11,6 +11,7 @@ from fmus.compiler.source.reading import Library
 from fmus.contents.units import unit
 from modelkit.model import Model
 from modelkit.signal import Signal
+from modelkit.store import columns_of
 
 EXAMPLE = 'Annotated[{kind}, Signal("m/s", "what it is, in which direction")]'
 NUMBERS = (float, int, bool)
@@ -58,7 +59,21 @@ def field_refusals(model: Model) -> list[Refusal]:
             except _Wrong as error:
                 what, advice = error.args
                 found.append(Refusal(file, lines.get(name, 1), f"{cls.__name__}.{name} {what}", advice))
-    return sorted(set(found))
+    return sorted({*found, *_store_refusals(model, library)})
+
+
+def _store_refusals(model: Model, library: Library) -> list[Refusal]:
+    """Return what is wrong with the columns of a model's store."""
+    if model.store is None:
+        return []
+    lines = _lines(library.class_node(model.store)) if is_named_tuple(model.store) else {}
+    file = library.module(model.store.__module__).file
+    try:
+        columns_of(model.store)
+    except TypeError as error:
+        name, _, advice = str(error).partition(": ")
+        return [Refusal(file, lines.get(name.rpartition(".")[2], 1), f"{name} is no column of a store", advice)]
+    return []
 
 
 def _checked(field: _Field, needs_signal: bool) -> list[Any]:

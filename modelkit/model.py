@@ -1,9 +1,11 @@
 """The one face of a model package: types, two functions, and how often it is called."""
 
 from collections.abc import Callable
+from functools import partial
 from types import ModuleType
 from typing import Any, NamedTuple
 
+from modelkit.store import new_store
 from modelkit.variables import variables, with_values
 
 
@@ -95,6 +97,9 @@ class Model(NamedTuple):
     that are valid in FMI's Initialization Mode. ``step(state, inputs, params, dt_ns) ->
     (state, outputs)`` moves on by ``dt_ns`` nanoseconds with the inputs held. Neither raises:
     a bad input shows as a status in the outputs. Outputs have no direct feed-through.
+
+    A model with a ``store`` (``modelkit.store``) is stepped by ``step(store, state, inputs, params, dt_ns)``,
+    which changes the store in place; it is all zeros when an instance is initialized.
     """
 
     name: str
@@ -117,6 +122,16 @@ class Model(NamedTuple):
     sampled: bool = False
     """It acts at instants of its own and holds its outputs between them."""
     view: View = View()
+    store: type[Any] | None = None
+    """Its work arrays beside the state: a NamedTuple of columns."""
+
+    def new_store(self) -> Any:
+        """Return the work arrays of a new instance, all zeros; None if the model has none."""
+        return None if self.store is None else new_store(self.store)
+
+    def stepper(self, store: Any) -> Callable[..., Any]:
+        """Return ``step(state, inputs, params, dt_ns)`` of the instance with this store."""
+        return self.step if store is None else partial(self.step, store)
 
     def first_params(self) -> Any:
         """Return the parameters it starts with: the defaults, but for those that its view presets."""

@@ -6,9 +6,10 @@ one NamedTuple of columns:
     class PlanStore(NamedTuple):
         x: Annotated[Floats, Column("f", 20_000, "m", "x of a node")]
 
-A store is a memo: what stands in it follows from a request and a count of steps alone, so it is not part
-of the model's state. In CPython a column is an ``array.array``; in C the store is one struct. Values are
-rounded to the column's type when they are written, alike in both.
+It is part of an instance's memory, all zeros at first, and saved with its FMU state. In CPython a column is
+an ``array.array``; in C the store is one struct. Values are rounded to the column's type when they are
+written, alike in both. A model that makes it a memo, whose content follows from a request and a count of
+steps that stand in its state, stays a pure function of its state.
 """
 
 from array import array
@@ -47,6 +48,23 @@ def new_store(store: type[Any]) -> Any:
     return store(
         **{name: array(item.kind, bytes(BYTES[item.kind] * item.length)) for name, item in columns_of(store).items()}
     )
+
+
+def bytes_of(store: Any) -> bytes:
+    """Return all that a store holds, column by column; nothing for None."""
+    return b"" if store is None else b"".join(column.tobytes() for column in store)
+
+
+def store_of(store: type[Any] | None, content: bytes) -> Any:
+    """Return the store of which ``bytes_of`` gave ``content``; None if there is no such type."""
+    if store is None:
+        return None
+    found, at = new_store(store), 0
+    for column in found:
+        size = len(column) * column.itemsize
+        column[:] = array(column.typecode, content[at : at + size])
+        at += size
+    return found
 
 
 def size_of(store: type[Any]) -> int:

@@ -48,8 +48,9 @@ def _roots(model: Model) -> list[Any]:
 
 
 def _interface(model: Model) -> list[Any]:
-    """Return the four NamedTuples of a model."""
+    """Return the NamedTuples of a model: its four, and its store."""
     found = {"state": model.state, "params": model.params, "inputs": model.inputs, "outputs": model.outputs}
+    found |= {} if model.store is None else {"store": model.store}
     wrong = [
         Refusal(model.name, 1, f"{group} of the model is {cls!r}", "give it a NamedTuple")
         for group, cls in found.items()

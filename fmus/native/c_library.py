@@ -35,7 +35,7 @@ int main(void) {{
             printf("\\n");
         }}
         /* and here to set inputs, such as model.{path} */
-        {name}_step(&model.state, &model.inputs, &model.params, step_ns, &model.outputs);
+        {name}_step({store}&model.state, &model.inputs, &model.params, step_ns, &model.outputs);
     }}
     return 0;
 }}
@@ -76,6 +76,7 @@ def example(model: Model) -> str:
     steps = round(min(SPAN, model.stop_time) / model.step_size)
     return EXAMPLE.format(
         name=model.name,
+        store="" if model.store is None else "&model.store, ",
         flags=" ".join(FLAGS),
         step=model.step_size,
         step_ns=round(model.step_size * 1e9),

@@ -24,8 +24,11 @@ UNIT = """/* The model {name} as a table. */
 
 #define LIBRARY_MODEL {name}
 #define LIBRARY_MEMBERS "{name}_members.h"
-#include "library.c"
+{store}#include "library.c"
 """
+STORE = """#define LIBRARY_STORE(model) &(model)->store,
+"""
+"""In the unit of a model that has work arrays."""
 MEMBERS_HEAD = """#ifdef MEMBER /* a line for each parameter, input and output: MEMBER(path, kind) */
 {lines}#else /* how many there are of each */
 #define LIBRARY_PARAMS {params}
@@ -49,7 +52,8 @@ def batch_library() -> Path:
 def model_library(model: Model) -> Path:
     """Return the path of the library of ``model``: see ``library.c``. Raises as :func:`kept_library`, ``TypeError``."""
     unit = f"{model.name}_library.c"
-    return kept_library(model.name, unit, {**model_files(model), unit: UNIT.format(name=model.name)})
+    text = UNIT.format(name=model.name, store="" if model.store is None else STORE)
+    return kept_library(model.name, unit, {**model_files(model), unit: text})
 
 
 def model_files(model: Model) -> dict[str, str]:

@@ -4,6 +4,7 @@ import hashlib
 import json
 from functools import lru_cache
 from pathlib import Path
+from typing import Any
 
 from fmus import compiler
 from fmus.compiler import Translation, translate
@@ -30,8 +31,11 @@ UNIT = """/* The FMU {name}, FMI {fmi}.0 for co-simulation, in one translation u
 #define FMU_VARIABLES "{name}_variables.h"
 #define FMU_RUNS "{name}_runs.h"
 #define FMU_LONGEST_NAME {longest}
-#include "fmi{fmi}.c"
+{store}#include "fmi{fmi}.c"
 """
+STORE = """#define FMU_STORE(model) &(model)->store,
+"""
+"""In the unit of a model that has work arrays."""
 ROOT = Path(__file__).parents[2]
 SUFFIX = ".c.json"
 KEPT = 4
@@ -58,7 +62,8 @@ def translated(model: Model) -> Translation:
     package = Path(str(model.package.__file__)).parent
     if package.parent != ROOT:
         return translate(model)
-    parts = (model.state, model.params, model.inputs, model.outputs, model.initialize, model.step)
+    parts: list[Any] = [model.state, model.params, model.inputs, model.outputs, model.initialize, model.step]
+    parts += [] if model.store is None else [model.store]
     words = [model.name, *(f"{part.__module__} {part.__qualname__}" for part in parts)]
     words += [repr(flatten(cls())) for cls in (model.params, model.inputs)]
     key = _hash_of([package, ROOT / "modelkit", Path(compiler.__file__).parent], "\0".join(words))
@@ -94,5 +99,6 @@ def fmu_sources(model: Model, token: str, fmi: int = 2) -> dict[str, str]:
         prefix=PREFIX[fmi].format(name=model.name),
         token=token,
         longest=longest_name(model),
+        store="" if model.store is None else STORE,
     )
     return files

@@ -7,9 +7,11 @@ import math
 from collections.abc import Mapping, Sequence
 
 from fmus.compiler import Member, members
+from fmus.compiler.target.names import member_name
 from fmus.contents.arrays import FmiArray, fmi_arrays
 from fmus.contents.variables import FmiVariable, fmi_variables, limits
 from modelkit.model import Model
+from modelkit.store import columns_of
 
 KINDS = {float: "REAL", int: "INTEGER", bool: "BOOLEAN"}
 ROLES = {"input": "INPUT", "output": "CALCULATED", "local": "CALCULATED", "independent": "CALCULATED"}
@@ -69,7 +71,7 @@ def runs_file(model: Model) -> str:
     """Return a line for each stretch of memory without padding.
 
     Numbers have eight bytes and follow each other without a gap, whatever structs they are in; truth values do so
-    within one struct.
+    within one struct, numbers of a store within one column.
     """
     lines: list[list[str]] = []
     before = None
@@ -79,6 +81,8 @@ def runs_file(model: Model) -> str:
             lines.append([item.path, item.path])
         lines[-1][1] = item.path
         before = key
+    stores = () if model.store is None else columns_of(model.store)
+    lines += [[f"store.{member_name(name)}"] * 2 for name in stores]
     return RUNS_HEAD + "".join(f"RUN({first}, {last})\n" for first, last in lines)
 
 

@@ -6,9 +6,11 @@ parameter set too late) is logged too; as the binary cannot answer it with fmi2E
 until fmi2Reset or a restored state.
 """
 
+import base64
 import json
 import math
 import traceback
+import zlib
 from collections.abc import Callable, Sequence
 from typing import Any, ClassVar, NamedTuple
 
@@ -18,6 +20,7 @@ from pythonfmu.fmi2slave import Fmi2Slave  # type: ignore[import-untyped]
 from fmus.python.binary import keep, pin_thread, tidy_path
 from fmus.python.layout import Layout, Values, picker
 from modelkit.model import Model
+from modelkit.store import bytes_of, store_of
 from modelkit.variables import constructor, flatten
 
 INSTANTIATED, INITIALIZATION, STEPPING, TERMINATED = range(4)
@@ -34,6 +37,7 @@ class Snapshot(NamedTuple):
     stale: bool
     refused: str
     values: tuple[Any, ...]
+    store: bytes
     state: Any
 
 
@@ -56,6 +60,9 @@ class ModelSlave(Fmi2Slave):  # type: ignore[misc]
         self.stale = True
         self.params: Any = None
         self.state: Any = None
+        self.store: Any = None
+        """Work arrays, changed in place; None if the model has none."""
+        self._step: Callable[..., Any] = self.model.step
         self._pickers: dict[type, dict[tuple[int, ...], Callable[[Values], Values]]] = {float: {}, int: {}, bool: {}}
         self._settable: dict[type, dict[tuple[int, ...], bool]] = {float: {}, int: {}, bool: {}}
         """Sets of references that may be set now, and whether there are parameters among them."""
@@ -97,7 +104,7 @@ class ModelSlave(Fmi2Slave):  # type: ignore[misc]
             if dt_ns < 0:
                 self._error(f"communication step of {step_size} s: expected a positive number")
                 return False
-            state, outputs = self.model.step(self.state, layout.inputs(values), self.params, dt_ns)
+            state, outputs = self._step(self.state, layout.inputs(values), self.params, dt_ns)
             values[layout.first_output : layout.time] = layout.outputs(outputs)
             values[layout.time] = end_time
             self.state = state
@@ -112,10 +119,16 @@ class ModelSlave(Fmi2Slave):  # type: ignore[misc]
             layout, values = self.layout, self.values
             self.stale = False
             self.params = layout.params(values)
+            self._use(self.model.new_store())
             self.state, outputs = self.model.initialize(self.params)
             values[layout.first_output : layout.time] = layout.outputs(outputs)
         except BaseException:
             self._refuse(f"the model's initialize failed\n{traceback.format_exc()}")
+
+    def _use(self, store: Any) -> None:
+        """Step with these work arrays from now on."""
+        self.store = store
+        self._step = self.model.stepper(store)
 
     # Values
 
@@ -228,7 +241,8 @@ class ModelSlave(Fmi2Slave):  # type: ignore[misc]
         try:
             if self.stale:
                 self._initialize()
-            return Snapshot(self.build, self.mode, self.stale, self.refused, tuple(self.values), self.state)
+            values, store = tuple(self.values), bytes_of(self.store)
+            return Snapshot(self.build, self.mode, self.stale, self.refused, values, store, self.state)
         except BaseException:
             self._refuse(traceback.format_exc())
             return None
@@ -242,6 +256,7 @@ class ModelSlave(Fmi2Slave):  # type: ignore[misc]
             self.mode, self.stale, self.refused = state.mode, state.stale, state.refused
             self.values[:] = state.values
             self.params = self.layout.params(self.values)
+            self._use(store_of(self.model.store, state.store))
             self.state = state.state
             self._forget_settable()
         except BaseException:
@@ -252,17 +267,19 @@ class ModelSlave(Fmi2Slave):  # type: ignore[misc]
         """Return a state as JSON: floats with all their digits, NaN and infinities too."""
         if not isinstance(state, Snapshot):
             return b"null"
-        return json.dumps([*state[:-2], list(state.values), flatten(state.state)]).encode()
+        store = base64.b64encode(zlib.compress(state.store)).decode()
+        return json.dumps([*state[:-3], list(state.values), store, flatten(state.state)]).encode()
 
     @classmethod
     def _fmu_state_from_bytes(cls, content: bytes) -> Snapshot | None:
         """Return the state, or None (refused by fmi2SetFMUstate) if ``content`` is none of this build."""
         try:
-            build, mode, stale, refused, values, scalars = json.loads(content)
+            build, mode, stale, refused, values, store, scalars = json.loads(content)
             if build != cls.build:
                 return None
             shape, _ = cls.model.initialize(cls.layout.params(values))
-            return Snapshot(build, mode, stale, refused, tuple(values), constructor(cls.model.state, shape)(scalars))
+            work, own = zlib.decompress(base64.b64decode(store)), constructor(cls.model.state, shape)(scalars)
+            return Snapshot(build, mode, stale, refused, tuple(values), work, own)
         except BaseException:
             return None
 

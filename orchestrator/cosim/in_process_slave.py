@@ -25,11 +25,13 @@ class InProcessSlave:
         self._construct = constructor(model.inputs)
         self._input = model.inputs()
         self._state: Any = None
+        self._step = model.step
         self.output: Any = None
         """The latest outputs as the model gave them."""
 
     def initialize(self, stop_ns: int) -> None:
         """Compute the state at time zero and the outputs that are valid then."""
+        self._step = self._model.stepper(self._model.new_store())
         self._state, self.output = self._model.initialize(self._params)
 
     def start(self) -> None:
@@ -46,7 +48,7 @@ class InProcessSlave:
     def step(self, t_ns: int, dt_ns: int) -> None:
         """Call the model's step; an exception in model code is a defect and ends the run."""
         try:
-            self._state, self.output = self._model.step(self._state, self._input, self._params, dt_ns)
+            self._state, self.output = self._step(self._state, self._input, self._params, dt_ns)
         except Exception as error:
             raise RunError(f"{self.name} raised {type(error).__name__}: {error}") from error
 

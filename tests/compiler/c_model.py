@@ -7,13 +7,14 @@ import struct
 from enum import IntEnum
 
 from fmus.compiler import members
-from fmus.compiler.source.kinds import BOOL, FLOAT, INT, Array, Struct, fields_of
+from fmus.compiler.source.kinds import BOOL, FLOAT, INT, Array, Cells, Struct, fields_of
 from fmus.compiler.target.names import member_name
 from fmus.native.compilers import FLAGS, find_compiler
 
 WARNINGS = ("-pedantic", "-Wall", "-Wextra", "-Wconversion", "-Wno-unused-parameter", "-Werror")
 ZIG = find_compiler("zig")
 COMPILER = find_compiler("gcc") if shutil.which("gcc") else ZIG
+CELLS = {"double": ctypes.c_double, "float": ctypes.c_float, "int32_t": ctypes.c_int32, "int16_t": ctypes.c_int16}
 SCALARS = {FLOAT: ctypes.c_double, INT: ctypes.c_int64, BOOL: ctypes.c_bool}
 
 
@@ -30,6 +31,8 @@ def structure(kind):
     """Return the ctypes type of a kind."""
     if isinstance(kind, Array):
         return structure(kind.item) * kind.length
+    if isinstance(kind, Cells):
+        return CELLS[kind.c] * kind.length
     if not isinstance(kind, Struct):
         return SCALARS[kind]
     if kind.cls not in _structures:
@@ -65,6 +68,7 @@ class CModel:
         self.library = compiled(folder, model.name, f"{model.name}.c", **how)
         self.kinds = {group: Struct(getattr(model, group)) for group in ("params", "inputs", "outputs", "state")}
         self.state, self.outputs = (structure(self.kinds[group])() for group in ("state", "outputs"))
+        self.store = structure(Struct(model.store))() if model.store else None
         self.names = {}
         self.flat = {}
         for group in ("state", "outputs", "params", "inputs"):
@@ -90,7 +94,12 @@ class CModel:
     def step(self, inputs, dt_ns):
         inputs = to_c(inputs, self.kinds["inputs"])
         state, params, outputs = (ctypes.byref(item) for item in (self.state, self.params, self.outputs))
-        self.function("step")(state, ctypes.byref(inputs), params, ctypes.c_int64(dt_ns), outputs)
+        store = [] if self.store is None else [ctypes.byref(self.store)]
+        self.function("step")(*store, state, ctypes.byref(inputs), params, ctypes.c_int64(dt_ns), outputs)
+
+    def differing_columns(self, store):
+        """Return the names of the columns whose bytes differ from CPython's."""
+        return [name for name in store._fields if bytes(getattr(self.store, name)) != getattr(store, name).tobytes()]
 
     def differing(self, state, outputs):
         """Return the names of state and outputs whose bits differ from CPython's."""

@@ -8,6 +8,7 @@ from types import FunctionType
 from typing import Any
 
 from fmus.compiler.constructs.builtin import BUILTINS, math_call
+from fmus.compiler.constructs.columns import check_place
 from fmus.compiler.constructs.generators import GENERATORS
 from fmus.compiler.constructs.replacing import replaced
 from fmus.compiler.source.advice import CALL_ADVICE
@@ -54,6 +55,7 @@ def invoke(
     body: Body, node: ast.Call, function: FunctionType, nodes: list[ast.expr], own: Value | None = None
 ) -> Value:
     """Return the result of a function of the model; ``own`` is what a method belongs to."""
+    check_place(body, node, function)
     known = signature(body.program, function)
     name = function.__name__
     given = _arguments(node, name, list(known.kinds), nodes, own is not None)

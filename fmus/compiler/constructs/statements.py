@@ -2,12 +2,25 @@
 
 import ast
 
+from fmus.compiler.constructs.columns import may_write, write
 from fmus.compiler.constructs.conditions import condition
 from fmus.compiler.constructs.items import change_item, changed_item
 from fmus.compiler.constructs.replacing import is_replace, replace_in_place
 from fmus.compiler.constructs.unpacking import items_of, unpack_assignment
 from fmus.compiler.source.bindings import block
-from fmus.compiler.source.kinds import INT, Array, Kind, Mixed, NoKindError, Open, Struct, described, kind_of
+from fmus.compiler.source.kinds import (
+    INT,
+    NOTHING,
+    Array,
+    Kind,
+    Mixed,
+    NoKindError,
+    Open,
+    Struct,
+    described,
+    is_store,
+    kind_of,
+)
 from fmus.compiler.source.refusals import CannotError
 from fmus.compiler.target.body import STATEMENTS, Body
 from fmus.compiler.target.making import coerced
@@ -24,7 +37,10 @@ def assign(body: Body, node: ast.Assign) -> None:
     if isinstance(target, ast.Name):
         _assign_name(body, target, node.value, node)
     elif isinstance(target, ast.Tuple):
+        may_write(body, node.value)
         unpack_assignment(body, target, node.value, node)
+    elif isinstance(target, ast.Subscript):
+        write(body, target, node.value, node)
     else:
         what = "a change of a list" if isinstance(target, ast.List) else f"a change of {ast.unparse(target)}"
         raise CannotError(node, what, "bind a new value: x = x._replace(field=...), or a new tuple")
@@ -44,7 +60,13 @@ def _assign_name(body: Body, target: ast.Name, source: ast.expr, node: ast.AST) 
             raise CannotError(node, f"another item in the argument {target.id}", "bind it to a variable first")
         change_item(body, known, target.id, *item)
         return
-    bind(body, target.id, body.value(source), node, source)
+    may_write(body, source, target.id)
+    value = body.value(source)
+    if value.kind == NOTHING:
+        raise CannotError(node, f"{ast.unparse(source)} gives no value", "leave the name out")
+    if is_store(value.kind):
+        raise CannotError(node, f"{target.id} as a second name for a store", "use the name that it has")
+    bind(body, target.id, value, node, source)
 
 
 def annotated(body: Body, node: ast.AnnAssign) -> None:
@@ -52,6 +74,7 @@ def annotated(body: Body, node: ast.AnnAssign) -> None:
     if node.value is None or not isinstance(node.target, ast.Name):
         raise CannotError(node, "a type without a value", "bind the variable where it gets its value")
     kind = _annotation(body, node.annotation)
+    may_write(body, node.value, node.target.id)
     value = body.value(node.value)
     if isinstance(kind, Open) and isinstance(value.kind, Array) and value.kind.item == kind.item:
         kind = value.kind
@@ -71,6 +94,11 @@ def _annotation(body: Body, node: ast.expr) -> Kind:
 
 def augmented(body: Body, node: ast.AugAssign) -> None:
     """Write ``x += ...``."""
+    if isinstance(node.target, ast.Subscript):
+        here = ast.copy_location(ast.Subscript(node.target.value, node.target.slice, ast.Load()), node)
+        changed = ast.copy_location(ast.BinOp(here, node.op, node.value), node)
+        write(body, node.target, changed, node)
+        return
     if not isinstance(node.target, ast.Name):
         what = f"a change of {ast.unparse(node.target)}"
         raise CannotError(node, what, "bind a new value: x = x._replace(field=...), or a new tuple")
@@ -86,7 +114,11 @@ def expression(body: Body, node: ast.Expr) -> None:
             return
         body.emit(f"/* {' '.join(node.value.value.split()).replace('*/', '* /')} */")
         return
-    body.value(node.value)  # says what is wrong with it, if anything is
+    may_write(body, node.value)
+    value = body.value(node.value)  # says what is wrong with it, if anything is
+    if value.kind == NOTHING:
+        body.emit(f"{value.text};")
+        return
     raise CannotError(
         node, f"the value of {ast.unparse(node.value)[:60]} is not used", "bind it to a name, or remove it"
     )
@@ -159,6 +191,9 @@ def next_round(body: Body, node: ast.Continue) -> None:
 
 def give(body: Body, node: ast.Return) -> None:
     """Write return."""
+    if node.value is None and body.result == NOTHING:
+        body.emit("return;")
+        return
     if node.value is None:
         raise CannotError(node, "a return without a value", "return a value of the annotated type")
     if isinstance(node.value, ast.IfExp) and _by_branches(body, node.value):
@@ -170,6 +205,7 @@ def give(body: Body, node: ast.Return) -> None:
         replace_in_place(body, known.place, node.value, known.value(), name)
         value = known.value()
     else:
+        may_write(body, node.value)
         value = body.value(node.value)
     _give_value(body, node.value, value)
 

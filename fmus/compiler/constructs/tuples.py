@@ -2,7 +2,7 @@
 
 import ast
 
-from fmus.compiler.source.kinds import INT, Array, Mixed, Struct, described
+from fmus.compiler.source.kinds import FLOAT, INT, Array, Cells, Mixed, Struct, described
 from fmus.compiler.source.refusals import CannotError
 from fmus.compiler.source.resolve import attribute as static_attribute
 from fmus.compiler.target.body import EXPRESSIONS, Body
@@ -10,6 +10,9 @@ from fmus.compiler.target.making import elements, tuple_of
 from fmus.compiler.target.names import member_name
 from fmus.compiler.target.storage import address, item_of, settled
 from fmus.compiler.target.values import UNARY, UNKNOWN, Value, is_scalar, place_of, within
+
+COLUMN_RANGES = {"int32_t": ("INT32_MIN", "INT32_MAX", 2**31), "int16_t": ("INT16_MIN", "INT16_MAX", 2**15)}
+"""Least and greatest integer that a column keeps, and the first that is too great."""
 
 
 def display(body: Body, node: ast.Tuple) -> Value:
@@ -60,6 +63,8 @@ def subscript(body: Body, node: ast.Subscript) -> Value:
     value = body.value(node.value)
     if isinstance(value.kind, Struct):
         return _field_at(body, node, value)
+    if isinstance(value.kind, Cells):
+        return _cell(value, index_text(body, node, value))
     if not isinstance(value.kind, Array | Mixed):
         raise CannotError(node, f"an index into {described(value.kind)}", "only tuples have items")
     if isinstance(node.slice, ast.Slice):
@@ -99,6 +104,25 @@ def _field_at(body: Body, node: ast.Subscript, value: Value) -> Value:
     text = _in_range(body, node, index, len(kinds))
     name = body.program.item_function(value.kind.cls)
     return Value(kind, f"{name}({address(body, value, 'items')}, {text})")
+
+
+def _cell(column: Value, index: str) -> Value:
+    """Return the item of a column at ``index``."""
+    kind = column.kind
+    assert isinstance(kind, Cells)
+    text = place_of(column).element(index).text
+    if kind.item == FLOAT:
+        return Value(FLOAT, text) if kind.c == "double" else Value(FLOAT, f"(double){text}", UNARY)
+    bound = COLUMN_RANGES[kind.c][2]
+    return Value(kind.item, f"(int64_t){text}", UNARY, low=-bound, high=bound - 1)
+
+
+def index_text(body: Body, node: ast.Subscript, column: Value) -> str:
+    """Return the index into a column as C takes it."""
+    assert isinstance(column.kind, Cells)
+    if isinstance(node.slice, ast.Slice):
+        raise CannotError(node.slice, "a part of a column", "read or write one item at a time")
+    return _in_range(body, node, _index(body, node.slice, column), column.kind.length)
 
 
 def _in_range(body: Body, node: ast.AST, index: Value, length: int) -> str:

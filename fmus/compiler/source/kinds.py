@@ -8,6 +8,8 @@ from enum import IntEnum
 from functools import cache
 from typing import Any, Union
 
+from modelkit.store import BYTES, Column, Floats, Ints
+
 
 class NoKindError(TypeError):
     """What an annotation is instead of a kind, and what to write."""
@@ -55,12 +57,25 @@ class Open:
     item: "Kind"
 
 
-Kind = Union[Scalar, Struct, Array, Mixed, Open]  # noqa: UP007
+@dataclass(frozen=True)
+class Cells:
+    """A column of a store: ``length`` numbers kept as the C type ``c``, read and written as ``item``."""
+
+    item: Scalar
+    c: str
+    length: int
+
+
+Kind = Union[Scalar, Struct, Array, Mixed, Open, Cells]  # noqa: UP007
 
 FLOAT = Scalar("float", "double")
 INT = Scalar("int", "int64_t")
 BOOL = Scalar("bool", "bool")
 SCALARS: dict[Any, Scalar] = {float: FLOAT, int: INT, bool: BOOL}
+NOTHING = Scalar("None", "void")
+"""What a function gives that is called for what it writes into a store."""
+CELLS = {"d": (FLOAT, "double"), "f": (FLOAT, "float"), "i": (INT, "int32_t"), "h": (INT, "int16_t")}
+"""Columns by their types: as what they are read, as what they are kept."""
 UNSET: Any = object()
 
 
@@ -68,7 +83,8 @@ def kind_of(hint: Any, default: Any = UNSET) -> Kind:
     """Return the kind that an annotation means; ``default`` tells how long a ``tuple[X, ...]`` is."""
     origin = typing.get_origin(hint)
     if origin is typing.Annotated:
-        return kind_of(hint.__origin__, default)
+        column = next((mark for mark in hint.__metadata__ if isinstance(mark, Column)), None)
+        return kind_of(hint.__origin__, default) if column is None else _column_kind(hint.__origin__, column)
     if hint in SCALARS:
         return SCALARS[hint]
     if isinstance(hint, type) and issubclass(hint, IntEnum):
@@ -78,6 +94,14 @@ def kind_of(hint: Any, default: Any = UNSET) -> Kind:
     if origin is tuple:
         return _tuple_kind(typing.get_args(hint), default)
     raise _no_kind(hint, origin)
+
+
+def _column_kind(hint: Any, column: Column) -> Cells:
+    item, c = CELLS.get(column.kind, (NOTHING, ""))
+    if item == NOTHING or hint is not (Floats if item == FLOAT else Ints) or column.length < 1:
+        advice = f"write Annotated[Floats or Ints, Column(one of {' '.join(BYTES)}, a length, unit, meaning)]"
+        raise NoKindError(f"no column of a store: {column}", advice)
+    return Cells(item, c, column.length)
 
 
 def _tuple_kind(items: tuple[Any, ...], default: Any) -> Kind:
@@ -148,6 +172,11 @@ def fields_of(cls: Any) -> dict[str, Kind]:
     return found
 
 
+def is_store(kind: Kind) -> bool:
+    """Return whether ``kind`` is a store: a NamedTuple of columns."""
+    return isinstance(kind, Struct) and any(isinstance(part, Cells) for part in fields_of(kind.cls).values())
+
+
 def parts(kind: Kind) -> Iterator[Kind]:
     """Yield the kinds that a value of ``kind`` is directly made of."""
     if isinstance(kind, Struct):
@@ -182,6 +211,8 @@ def described(kind: Kind) -> str:
         return str(kind.cls.__name__)
     if isinstance(kind, Array):
         return f"a tuple of {kind.length} {described(kind.item)}"
+    if isinstance(kind, Cells):
+        return f"a column of {described(kind.item)}"
     if isinstance(kind, Open):
         return f"tuple[{described(kind.item)}, ...]"
     return f"tuple[{', '.join(described(item) for item in kind.items)}]"

@@ -55,6 +55,8 @@ class Body:
         self.anew = {name for name in self.bindings.parameters if self._begins_anew(name)}
         """Parameters that are bound to something new for all the rest of the function."""
         self.commented = node.lineno
+        self.may_write: ast.AST | None = None
+        """The call that may write to a store: it is all there is to its statement."""
 
     def _begins_anew(self, name: str) -> bool:
         first = next((mention for mention in self.bindings.mentions.get(name, ()) if mention.store), None)

@@ -13,7 +13,7 @@ from fmus.compiler.target.program import Program
 from fmus.compiler.target.values import Place
 from modelkit.model import Model, SampledSystem, SampledSystems
 
-NAMES = ("params", "inputs", "outputs", "state", "dt_ns", "next", "clock", "samples", "period_ns", "i")
+NAMES = ("params", "inputs", "outputs", "state", "store", "dt_ns", "next", "clock", "samples", "period_ns", "i")
 """What is called so inside the entries, and no function of a model therefore."""
 
 
@@ -22,6 +22,8 @@ def roots(model: Model) -> list[FunctionType]:
     found: list[Callable[..., Any]] = []
     if model.systems is None:
         found += [model.initialize, model.step]
+    elif model.store is not None:
+        raise CannotError(None, f"the store of {model.name}, which has systems", "give it a step of its own")
     else:
         found += [model.systems.begin, model.systems.tick, model.systems.refused]
         found += [function for item in model.systems.systems for function in (item.start, item.sample, item.outputs)]
@@ -47,19 +49,21 @@ class Entries:
         return made
 
     def types(self) -> dict[str, str]:
-        """Return the names of the four structs."""
+        """Return the names of the structs that an instance is made of."""
         groups = {"params": self.model.params, "inputs": self.model.inputs}
         groups |= {"outputs": self.model.outputs, "state": self.model.state}
+        groups |= {} if self.model.store is None else {"store": self.model.store}
         return {group: self.program.type_name(Struct(cls)) for group, cls in groups.items()}
 
     def heads(self) -> list[str]:
         """Return the declarations of the three functions."""
         types = self.types()
-        params, inputs, outputs, state = (f"{types[group]} *{group}" for group in types)
+        params, inputs, outputs, state, *stores = (f"{types[group]} *{group}" for group in types)
+        store = "".join(f"{item}, " for item in stores)
         return [
             f"void {self.name}_defaults({params}, {inputs})",
             f"void {self.name}_initialize(const {params}, {state}, {outputs})",
-            f"void {self.name}_step({state}, const {inputs}, const {params}, int64_t dt_ns, {outputs})",
+            f"void {self.name}_step({store}{state}, const {inputs}, const {params}, int64_t dt_ns, {outputs})",
         ]
 
     def texts(self) -> list[list[str]]:
@@ -74,8 +78,10 @@ class Entries:
             return [*found, *self._systems(model.systems, initialize, step)]
         first = self.instance(model.initialize, result, params)
         found.append([initialize, "{", _called(first, ["params"], "state", "outputs"), "}"])
-        made = self.instance(model.step, result, state, inputs, params, INT)
-        call = _called(made, ["state", "inputs", "params", "dt_ns"], "&next", "outputs")
+        stores = [] if model.store is None else [Struct(model.store)]
+        made = self.instance(model.step, result, *stores, state, inputs, params, INT)
+        given = [*("store" for _ in stores), "state", "inputs", "params", "dt_ns"]
+        call = _called(made, given, "&next", "outputs")
         return [*found, [step, "{", f"{self.types()['state']} next;", "", call, "*state = next;", "}"]]
 
     def _preset(self) -> list[str]:

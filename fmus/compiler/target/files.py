@@ -36,7 +36,8 @@ class Files:
     def __init__(self, program: Program, entries: Entries, model: Model) -> None:
         self.program, self.entries, self.model = program, entries, model
         self.writer = Writer(program)
-        self.classes = in_order([model.params, model.inputs, model.outputs, model.state])
+        stores = [] if model.store is None else [model.store]
+        self.classes = in_order([model.params, model.inputs, model.outputs, model.state, *stores])
         self.enums = self._enums()
         self.tuples: set[Mixed] = set()
         """Tuples of different kinds that have their type already."""

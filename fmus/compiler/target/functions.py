@@ -9,7 +9,7 @@ from types import FunctionType
 from typing import Any, NamedTuple
 
 from fmus.compiler.source.flow import Flow
-from fmus.compiler.source.kinds import Array, Kind, Mixed, NoKindError, Open, Struct, kind_of
+from fmus.compiler.source.kinds import NOTHING, Array, Kind, Mixed, NoKindError, Open, Struct, is_store, kind_of
 from fmus.compiler.source.refusals import AlreadySaidError, CannotError
 from fmus.compiler.target.body import Body
 from fmus.compiler.target.layout import flat
@@ -96,6 +96,8 @@ def _read_signature(program: Program, function: FunctionType) -> Signature | Non
             _read_kind(refuse, item, f"{node.name}() takes {item.arg}", hints[item.arg], kinds, item.arg)
     if "return" not in hints or node.returns is None:
         refuse(node, f"{node.name}() has no result type", "write -> float, or what it returns, before the colon")
+    elif hints["return"] is type(None) and function in program.writers:
+        kinds["return"] = NOTHING
     else:
         _read_kind(refuse, node.returns, f"{node.name}() returns", hints["return"], kinds, "return")
     defaults = _defaults(program, function, node, kinds)
@@ -152,6 +154,8 @@ def instance_of(program: Program, function: FunctionType, kinds: tuple[Kind, ...
             name = program.names.add("_".join([name, *lengths]), function.__module__)
         result = None if isinstance(known.result, Open) else known.result
         made = Instance(name, function, tree, [], result)
+        if function in program.writers:
+            program.writing.add(name)
         program.instances[function, kinds] = made
         program.stack.append(function)
         try:
@@ -168,14 +172,14 @@ def translate(program: Program, made: Instance, kinds: dict[str, Kind], result: 
     caller, program.caller = program.caller, made
     body = Body(program, made.function, made.node)
     body.result, body.made = result, made
-    for fault in Flow(made.node, kinds, body.bindings.local, body.number).faults:
+    for fault in Flow(made.node, kinds, body.bindings.local, body.number, result == NOTHING).faults:
         body.refuse(fault, made.node)
     with body.frame(()):
         body.begin_statement()
         made.parameters = [_parameter(body, name, kind) for name, kind in kinds.items()]
         _place_results(body, made, result)
         body.more_statements(_without_docstring(made.node.body))
-    made.lines = without_unused(list(flat(body.lines)))
+    made.lines = without_unused(list(flat(body.lines)), program.writing)
     if made.lines and made.lines[-1] == "return;":
         made.lines.pop()
     made.head = _head(program, made)
@@ -215,6 +219,8 @@ def _parameter(body: Body, name: str, kind: Kind) -> Parameter:
     if changes:
         return Parameter(known.c, kind, False, body.program.declared(kind, known.c))
     known.pointer = True
+    if is_store(kind) and body.function in body.program.writers:
+        return Parameter(known.c, kind, True, f"{body.program.type_name(kind)} *{known.c}")
     return Parameter(known.c, kind, True, body.program.pointed(kind, known.c))
 
 

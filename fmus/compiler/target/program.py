@@ -12,6 +12,7 @@ from fmus.compiler.source.kinds import (
     FLOAT,
     INT,
     Array,
+    Cells,
     Kind,
     Mixed,
     NoKindError,
@@ -26,6 +27,7 @@ from fmus.compiler.source.kinds import (
 from fmus.compiler.source.reading import Library
 from fmus.compiler.source.refusals import CannotError, Refusal
 from fmus.compiler.source.resolve import Static
+from fmus.compiler.source.writers import Writers
 from fmus.compiler.target import runtime
 from fmus.compiler.target.names import FileNames
 from fmus.compiler.target.values import INT32, INT64, Value, literal
@@ -72,6 +74,9 @@ class Program:
         self.signatures: dict[FunctionType, Any] = {}
         self.caller: Any = None
         self.checked: set[Any] = set()
+        self.writers = Writers(self.library, self.bindings_of)
+        self.writing: set[str] = set()
+        """C functions that write to a store."""
         for module in self.modules:
             self._name_all_of(module)
 
@@ -137,6 +142,8 @@ class Program:
 
     def declared(self, kind: Kind, name: str) -> str:
         """Return the declaration of ``name``: ``double name[3]``."""
+        if isinstance(kind, Cells):
+            return f"{kind.c} {name}[{kind.length}]"
         dimensions = ""
         while isinstance(kind, Array):
             dimensions += f"[{kind.length}]"

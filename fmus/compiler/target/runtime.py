@@ -64,6 +64,13 @@ static int64_t index_in(int64_t index, int64_t n)
     return place < n ? place : n - 1;
 }
 """,
+    "int_within": """\
+/* The integer nearest to a from low to high: what a column keeps of one that does not fit, where Python raises. */
+static int64_t int_within(int64_t a, int64_t low, int64_t high)
+{
+    return a < low ? low : a > high ? high : a;
+}
+""",
     "int_abs": """\
 /* Python's abs() of an integer. */
 static int64_t int_abs(int64_t a)

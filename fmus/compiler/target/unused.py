@@ -1,6 +1,7 @@
 """Lines of a C function without what nothing looks at: a part of a value that was worked out and is not needed."""
 
 import re
+from collections.abc import Collection
 
 DECLARATION = re.compile(r"(?!return )(?:const )?\w+ (?:\*|\(\*)?(\w+)\)?(?:\[\d+\])*(?: = .*)?;")
 EMPTY = (
@@ -10,16 +11,19 @@ EMPTY = (
 )
 
 
-def without_unused(lines: list[str]) -> list[str]:
-    """Return the lines without variables that are never read, and without blocks that do nothing then."""
+def without_unused(lines: list[str], kept_calls: Collection[str] = ()) -> list[str]:
+    """Return the lines without variables that are never read, and without blocks that do nothing then.
+
+    Lines with a call of one of ``kept_calls`` stay: the function does more than to give its result.
+    """
     while True:
-        kept = _without_unread(lines)
+        kept = _without_unread(lines, kept_calls)
         if len(kept) == len(lines):
             return lines
         lines = _without_empty_blocks(kept)
 
 
-def _without_unread(lines: list[str]) -> list[str]:
+def _without_unread(lines: list[str], kept_calls: Collection[str]) -> list[str]:
     mentions: dict[str, list[int]] = {}
     for place, line in enumerate(lines):
         if not line.startswith("/*"):
@@ -31,9 +35,14 @@ def _without_unread(lines: list[str]) -> list[str]:
         if match:
             others = list(mentions[match[1]])
             others.remove(place)
-            if all(others.count(other) == 1 and _is_store(lines[other], match[1]) for other in others):
+            written = all(others.count(other) == 1 and _is_store(lines[other], match[1]) for other in others)
+            if written and not any(_calls(lines[item], kept_calls) for item in (place, *others)):
                 dropped |= {place, *others}
     return [line for place, line in enumerate(lines) if place not in dropped]
+
+
+def _calls(line: str, names: Collection[str]) -> bool:
+    return bool(names) and any(word in names for word in re.findall(r"([A-Za-z_]\w*)\(", line))
 
 
 def _is_store(line: str, name: str) -> bool:

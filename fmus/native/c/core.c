@@ -129,7 +129,8 @@ static FmuStatus fmu_step(FmuInstance *fmu, double time, double step, const char
                           (double)saved->now_ns / FMU_NANOSECONDS);
     const int64_t end = (int64_t)llrint((time + step) * FMU_NANOSECONDS);
     if (end <= saved->now_ns) return FMU_OK;
-    FMU_CALL(step)(&model->state, &model->inputs, &model->params, end - saved->now_ns, &model->outputs);
+    const int64_t length = end - saved->now_ns;
+    FMU_CALL(step)(FMU_STORE(model) &model->state, &model->inputs, &model->params, length, &model->outputs);
     saved->now_ns = end;
     saved->time = time + step;
     return FMU_OK;

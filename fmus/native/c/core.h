@@ -8,6 +8,7 @@
  *     FMU_VARIABLES     the file with a line VARIABLE(...) for each value reference, in their order
  *     FMU_RUNS          the file with a line RUN(...) for each stretch of the model's memory without padding
  *     FMU_LONGEST_NAME  characters
+ *     FMU_STORE(model)  where the model's step finds its work arrays, with a comma; left out if it has none
  *
  * All is static and begins with fmu, Fmu or FMU: several FMUs can be linked into one image.
  */
@@ -22,6 +23,10 @@
 #define FMU_PASTE(a, b) a##b
 #define FMU_JOIN(a, b) FMU_PASTE(a, b)
 #define FMU_CALL(function) FMU_JOIN(FMU_MODEL, _##function)
+
+#ifndef FMU_STORE
+#define FMU_STORE(model)
+#endif
 
 /* Before a loop over the values of a call, of which a host makes many: four at a time. */
 #if defined(__clang__)

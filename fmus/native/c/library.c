@@ -1,7 +1,8 @@
 /* The table of one model, and two functions over arrays of doubles for a host that calls step by step.
  *
  * The file that is compiled has included the model's C and defined LIBRARY_MODEL, and LIBRARY_MEMBERS: the file that
- * says how many parameters, inputs and outputs there are, with a line MEMBER(path, kind) for each.
+ * says how many parameters, inputs and outputs there are, with a line MEMBER(path, kind) for each. LIBRARY_STORE(model)
+ * is where the model's step finds its work arrays, with a comma; left out if it has none.
  */
 #include "library.h"
 
@@ -13,6 +14,10 @@
 #define LIBRARY_PASTE(a, b) a##b
 #define LIBRARY_JOIN(a, b) LIBRARY_PASTE(a, b)
 #define LIBRARY_CALL(function) LIBRARY_JOIN(LIBRARY_MODEL, _##function)
+
+#ifndef LIBRARY_STORE
+#define LIBRARY_STORE(model)
+#endif
 
 #define MEMBER(path, kind) {(uint32_t)offsetof(LIBRARY_MODEL, path), LIBRARY_##kind},
 static const LibraryPlace library_places[] = {
@@ -35,7 +40,7 @@ static void library_start(void *instance, const double *params) {
 
 static void library_step(void *instance, int64_t dt_ns) {
     LIBRARY_MODEL *model = instance;
-    LIBRARY_CALL(step)(&model->state, &model->inputs, &model->params, dt_ns, &model->outputs);
+    LIBRARY_CALL(step)(LIBRARY_STORE(model) &model->state, &model->inputs, &model->params, dt_ns, &model->outputs);
 }
 
 static const Library library_table = {

@@ -1,0 +1,72 @@
+"""The planner in C has the bits of CPython in every column of its store, at every step."""
+
+from itertools import pairwise
+
+import plan_model
+import pytest
+from c_model import CModel
+from plan_model import Input, Params
+from scenes import CAR, least_clearance, poses_along, read_case, scene_of, tpcap_folder
+
+from controller_fmu.planning.plan import PLANNED, PLANNING
+from controller_fmu.planning.task import Request
+from fmus.compiler import translate
+from modelkit.vocabulary import Pose
+
+TPCAP = pytest.mark.skipif(tpcap_folder() is None, reason="TPCAP's cases are not here")
+BOXES = [[(-9.0, -3.0), (-3.5, -3.0), (-3.5, -1.0), (-9.0, -1.0)], [(5.0, -3.0), (9.0, -3.0), (9.0, -1.0), (5.0, -1.0)]]
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    return tmp_path_factory.mktemp("planner")
+
+
+@pytest.fixture(scope="module")
+def translation():
+    return translate(plan_model.MODEL)
+
+
+def twins(translation, folder, scene, request, each):
+    """Return the planner in C and in CPython, and both outputs' differences after each call until it has ended."""
+    compiled = CModel(plan_model.MODEL, translation, folder)
+    params = Params(scene, request, each)
+    compiled.initialize(params)
+    store = plan_model.MODEL.new_store()
+    step, (state, outputs) = plan_model.MODEL.stepper(store), plan_model.MODEL.initialize(params)
+    while outputs.status == PLANNING:
+        state, outputs = step(state, Input(), params, 0)
+        compiled.step(Input(), 0)
+        assert compiled.differing(state, outputs) == []
+        assert compiled.differing_columns(store) == []
+    return outputs
+
+
+def test_between_two_boxes(translation, folder):
+    request = Request(Pose(1.0, 3.0, 0.1), Pose(-1.2, -2.0, 0.0), CAR, 0.1)
+    assert twins(translation, folder, scene_of(BOXES), request, 9).status == PLANNED
+
+
+@TPCAP
+@pytest.mark.parametrize("number", [6, 12, 17])
+def test_cases_of_tpcap(translation, folder, number):
+    start, goal, polygons = read_case(number)
+    assert twins(translation, folder, scene_of(polygons), Request(start, goal, CAR, 0.1), 25).status == PLANNED
+
+
+@TPCAP
+@pytest.mark.parametrize("number", range(1, 21))
+def test_all_cases_of_tpcap_in_c(translation, folder, number):
+    start, goal, polygons = read_case(number)
+    compiled = CModel(plan_model.MODEL, translation, folder)
+    compiled.initialize(Params(scene_of(polygons), Request(start, goal, CAR, 0.1), 50))
+    while compiled.outputs.status == PLANNING:
+        compiled.step(Input(), 0)
+    assert compiled.outputs.status == PLANNED
+    path = compiled.outputs.path
+    pieces = [(piece.way, piece.k0) for piece in path.pieces[: path.used]]
+    poses = poses_along(start, pieces)
+    assert max(abs(a - b) for a, b in zip(poses[-1][:2], goal[:2], strict=True)) < 1e-4
+    assert least_clearance(poses, polygons, CAR) >= path.margin - 1e-3
+    assert path.margin > (0.099 if number != 7 else 0.029)
+    assert sum(a[0] * b[0] < 0.0 for a, b in pairwise(pieces)) <= 25

@@ -4,7 +4,7 @@ VENV ?= .venv
 BIN = $(VENV)/bin
 SCENARIO ?= guo2015-case4
 
-.PHONY: run test check lint types bench docs reproduce clean help
+.PHONY: run test quick check lint types bench docs reproduce clean help
 
 help: ## Show this list
 	@grep -hE '^[a-z]+:.*## ' $(MAKEFILE_LIST) | sed 's/:.*## /\t/' | expand -t 14
@@ -16,6 +16,9 @@ run: $(VENV)/.run ## Install, build the FMUs, run a parking case, print the tabl
 test: $(VENV)/.test ## Install and pass the tests
 	@echo "About ten minutes on two cores"
 	$(BIN)/python -m pytest -n auto --dist loadfile -q
+
+quick: lint types ## Lint, types and the tests that take a minute together
+	$(BIN)/python -m pytest -n auto --dist loadfile -q -m quick
 
 check: lint types test ## Lint, types and tests
 

@@ -19,6 +19,7 @@ ROOT = Path(__file__).parent.parent
 sys.path[:0] = [str(ROOT), str(ROOT / "docs")]
 
 from chart_svg import chart_svg  # noqa: E402
+from equations import equations  # noqa: E402
 from pydantic import BaseModel  # noqa: E402
 
 import controller_fmu  # noqa: E402
@@ -47,9 +48,17 @@ def main() -> None:
     pages = {f"{name}.md": model_page(model) for name, model in MODELS.items()}
     pages.update({"charts.md": charts_page(), "commands.md": commands_page(), "scenarios.md": scenarios_page()})
     pages["files.md"] = files_page()
+    pages["equations.md"] = equations_page()
     for name, text in pages.items():
         (folder / name).write_text(MADE + text, encoding="utf-8")
         print(folder.relative_to(ROOT) / name)
+
+
+def equations_page() -> str:
+    """Return which equation of which paper is written where, as the docstrings say it."""
+    rows = [[f"{item.paper} ({item.number})", item.where, item.text] for item in equations(ROOT)]
+    head = "# Equations\n\nWhich equation of which paper stands where. What was misprinted is on the papers' pages.\n\n"
+    return head + table(["equation", "file", "what stands there"], rows)
 
 
 def model_page(model: Model) -> str:

@@ -14,18 +14,11 @@ from fmus.files import write_whole
 
 @contextmanager
 def one_at_a_time(path: Path) -> Iterator[None]:
-    """Hold the lock beside ``path`` (its folder is made); let go of by the system if the process dies.
+    """Hold the lock beside ``path`` (its folder is made); let go of by the system if the process dies."""
+    from filelock import FileLock
 
-    Where there is no ``fcntl`` (Windows), nothing is locked: the same work may be done twice, no harm else.
-    """
     path.parent.mkdir(parents=True, exist_ok=True)
-    try:
-        import fcntl
-    except ImportError:
-        yield
-        return
-    with path.with_name(f"{path.name}.lock").open("w") as file:
-        fcntl.flock(file, fcntl.LOCK_EX)
+    with FileLock(path.with_name(f"{path.name}.lock")):
         yield
 
 

@@ -35,3 +35,8 @@ def browser() -> Iterator[Any]:
         session = play.chromium.launch(executable_path=program, args=FLAGS)
         yield session
         session.close()
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    """Let the record of the shipped scenarios be written anew."""
+    parser.addoption("--update", action="store_true", help="write tests/golden/scenarios.yaml anew")

@@ -200,3 +200,15 @@ def test_pages_not_named_in_the_site_get_a_place():
     assert pages[0] == "architecture.md"
     assert "guo2015.md" in pages
     assert "index.md" not in pages
+
+
+def test_equations_name_their_files():
+    found = {(item.paper, item.number): item.where for item in load("equations").equations(ROOT)}
+    assert found["Guo 2015", 14] == "`controller_fmu/guo2015/point_tracking.py`"
+    assert found["Zhang 2022", 4] == "`controller_fmu/zhang2022/quintic.py`"
+    assert all(paper for paper, _ in found)
+
+
+def test_every_decision_is_listed():
+    listed = (ROOT / "docs" / "adr" / "index.md").read_text(encoding="utf-8")
+    assert [page.name for page in (ROOT / "docs" / "adr").glob("0*.md") if f"({page.name})" not in listed] == []

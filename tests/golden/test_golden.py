@@ -1,0 +1,81 @@
+"""Where each shipped scenario ends, and how, beside what it did when ``scenarios.yaml`` was last written.
+
+A change of behaviour shows as a difference of that file: ``pytest tests/golden --update``, then ``git diff``.
+"""
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+import yaml
+
+from orchestrator.cosim.fmu_files import can_compile, fmu_files
+from orchestrator.scenario.load_scenario import load_scenario, scenario_names
+from orchestrator.session.session import run_scenario
+from orchestrator.verdict.summary import Summary, summarize
+
+FILE = Path(__file__).parent / "scenarios.yaml"
+DIGITS = 6
+"""Of what is kept. Mathematics libraries differ by less, compilers not at all."""
+TOLERANCE = 2 * 10.0**-DIGITS
+
+pytestmark = pytest.mark.skipif(not can_compile(), reason="FMUs without Python need a C compiler: pip install ziglang")
+
+
+def kept() -> dict[str, Any]:
+    return yaml.safe_load(FILE.read_text(encoding="utf-8")) if FILE.exists() else {}
+
+
+def driven(name: str) -> dict[str, Any]:
+    scenario = load_scenario(name, [])
+    ran = run_scenario(scenario, fmu_files("native", lambda text: None), kind="native")
+    return told(summarize(ran.recording, scenario, ran.wall_time))
+
+
+def told(summary: Summary) -> dict[str, Any]:
+    final = summary.final
+    return {
+        "outcome": summary.outcome,
+        "reason": summary.reason,
+        "duration": rounded(summary.duration),
+        "shifts": summary.shifts,
+        "pose": [rounded(value) for value in (final.x, final.y, final.heading)],
+        "events": [[rounded(event.t), event.to] for event in summary.events],
+        "margins": {check.id: rounded(check.margin) if check.judged else None for check in summary.checks},
+    }
+
+
+def rounded(value: float) -> float:
+    return round(value, DIGITS) + 0.0
+
+
+@pytest.fixture(scope="session")
+def update(request: pytest.FixtureRequest) -> bool:
+    return bool(request.config.getoption("--update"))
+
+
+def test_the_record_is_of_the_shipped_scenarios(update: bool) -> None:
+    if update:
+        record = {name: driven(name) for name in scenario_names()}
+        FILE.write_text(yaml.safe_dump(record, default_flow_style=None, sort_keys=False, width=120), encoding="utf-8")
+    assert set(kept()) == set(scenario_names())
+
+
+@pytest.mark.parametrize("name", scenario_names())
+def test_a_scenario_ends_as_it_did(name: str, update: bool) -> None:
+    found, asked = driven(name), kept()[name]
+    assert alike(found, asked), "\n".join(
+        f"{key}: {found[key]}, was {asked.get(key)}" for key in found if not alike(found[key], asked.get(key))
+    )
+
+
+def alike(found: Any, asked: Any) -> bool:
+    if isinstance(found, dict):
+        return (
+            isinstance(asked, dict) and found.keys() == asked.keys() and all(alike(found[k], asked[k]) for k in found)
+        )
+    if isinstance(found, list):
+        return isinstance(asked, list) and len(found) == len(asked) and all(map(alike, found, asked))
+    if isinstance(found, float):
+        return bool(found == pytest.approx(asked, abs=TOLERANCE, rel=0, nan_ok=True))
+    return bool(found == asked)

@@ -1,0 +1,79 @@
+"""The recipes of docs/extend.md, followed to the letter: in a copy of the repository, its blocks as edits, its commands run."""
+
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+from typing import NamedTuple
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+PAGE = ROOT / "docs" / "extend.md"
+PACKAGES = ("modelkit", "vehicle_fmu", "controller_fmu", "fmus", "orchestrator")
+BLOCK = re.compile(r"^```(\w+)(?: title=\"([^\"]+)\")?\n(.*?)^```", re.S | re.M)
+
+
+class Recipe(NamedTuple):
+    title: str
+    blocks: list[tuple[str, str, str]]
+    """Language, file, text."""
+
+    @property
+    def edits(self) -> list[tuple[str, str, str]]:
+        return [block for block in self.blocks if block[1]]
+
+    @property
+    def commands(self) -> list[str]:
+        texts = [text for language, file, text in self.blocks if language == "sh" and not file]
+        return [line for text in texts for line in text.splitlines() if line.startswith("apa ")]
+
+
+def recipes() -> list[Recipe]:
+    parts = re.split(r"^## ", PAGE.read_text(encoding="utf-8"), flags=re.M)[1:]
+    found = [Recipe(part.splitlines()[0], BLOCK.findall(part)) for part in parts]
+    return [recipe for recipe in found if recipe.commands]
+
+
+@pytest.fixture
+def copy(tmp_path: Path) -> Path:
+    """The packages, without what was built, in a folder of their own."""
+    for package in PACKAGES:
+        shutil.copytree(ROOT / package, tmp_path / package, ignore=shutil.ignore_patterns("dist", "__pycache__"))
+    return tmp_path
+
+
+@pytest.mark.parametrize("recipe", recipes(), ids=lambda recipe: recipe.title)
+def test_a_recipe_does_what_it_says(recipe: Recipe, copy: Path) -> None:
+    for language, file, text in recipe.edits:
+        edit(copy, language, copy / file, text)
+    for command in recipe.commands:
+        words, _, comment = command.partition("#")
+        code, output = run(copy, words.split()[1:])
+        asked, _, wanted = comment.strip().partition(": ")
+        assert code == int(asked.removeprefix("exit ") or 0) if asked.startswith("exit") else code == 0, output
+        assert all(word in output for word in wanted.split(", ")), output
+
+
+def edit(copy: Path, language: str, file: Path, text: str) -> None:
+    if language == "diff":
+        done = subprocess.run(["patch", "-p1"], cwd=copy, input=text, text=True, capture_output=True)
+        assert done.returncode == 0, done.stdout + done.stderr
+    else:
+        assert not file.exists(), f"{file} is there already"
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_text(text, encoding="utf-8")
+
+
+def run(copy: Path, words: list[str]) -> tuple[int, str]:
+    environment = {"PATH": "/usr/bin:/bin", "PYTHONPATH": str(copy), "COLUMNS": "200"}
+    call = [sys.executable, "-m", "orchestrator", *words]
+    done = subprocess.run(call, cwd=copy, env=environment, capture_output=True, text=True, timeout=300)
+    return done.returncode, done.stdout + done.stderr
+
+
+def test_every_recipe_is_tried() -> None:
+    asked = ("gain", "law", "controller", "sensor", "check", "export", "command", "paper", "planner")
+    titles = " ".join(recipe.title for recipe in recipes())
+    assert [word for word in asked if word not in titles] == []

@@ -18,7 +18,7 @@ test: $(VENV)/.test ## Install and pass the tests
 	$(BIN)/python -m pytest -n auto --dist loadfile -q
 
 quick: lint types ## Lint, types and the tests that take a minute together
-	$(BIN)/python -m pytest -n auto --dist loadfile -q -m quick
+	$(BIN)/python -m pytest -n auto --dist loadfile -q -m 'not slow'
 
 check: lint types test ## Lint, types and tests
 

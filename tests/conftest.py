@@ -7,56 +7,7 @@ from typing import Any
 
 import pytest
 
-SLOW = """
-compiler/test_readable.py
-controller/test_apa_outline.py
-controller/test_apa_parking.py
-controller/test_apa_planner.py
-controller/test_apa_search.py
-controller/test_guo_parking.py
-controller/test_guo_prompts.py
-controller/test_preview_drive.py
-controller/test_preview_fuzzy.py
-controller/test_zhang_qp.py
-docs/test_commands.py
-orchestrator/test_ends.py
-golden/test_golden.py
-docs/test_extend.py
-fmi/test_c_library.py
-fmi/test_fmi3_fmu.py
-fmi/test_importers.py
-fmi/test_native_fmu.py
-fmi/test_native_host.py
-fmi/test_places.py
-fmi/test_python_fmu_errors.py
-fmi/test_python_fmu_file.py
-fmi/test_python_fmu_isolation.py
-fmi/test_sources.py
-fmi/test_system_fmus.py
-fmi/test_tunable.py
-orchestrator/test_check_and_test.py
-orchestrator/test_cli.py
-orchestrator/test_foreign.py
-orchestrator/test_recover.py
-papers/test_apa.py
-papers/test_apa_grid.py
-papers/test_bakeoff.py
-papers/test_guo2015.py
-papers/test_hsic.py
-papers/test_kinds.py
-papers/test_preview.py
-papers/test_zhang2022.py
-report/test_browser.py
-sweep/test_batch.py
-sweep/test_page.py
-test_wheel.py
-twin/test_interop.py
-twin/test_same_bits.py
-vehicle/test_double_track.py
-vehicle/test_geometry.py
-vehicle/test_scene.py
-vehicle/test_vehicle.py
-""".split()
+SLOW = ["compiler/test_readable.py", "controller/test_apa_outline.py", "controller/test_apa_parking.py", "controller/test_apa_planner.py", "controller/test_apa_search.py", "controller/test_guo_parking.py", "controller/test_guo_prompts.py", "controller/test_preview_drive.py", "controller/test_preview_fuzzy.py", "controller/test_zhang_qp.py", "docs/test_commands.py", "orchestrator/test_ends.py", "golden/test_golden.py", "docs/test_extend.py", "fmi/test_c_library.py", "fmi/test_fmi3_fmu.py", "fmi/test_importers.py", "fmi/test_native_fmu.py", "fmi/test_native_host.py", "fmi/test_places.py", "fmi/test_python_fmu_errors.py", "fmi/test_python_fmu_file.py", "fmi/test_python_fmu_isolation.py", "fmi/test_sources.py", "fmi/test_system_fmus.py", "fmi/test_tunable.py", "orchestrator/test_check_and_test.py", "orchestrator/test_cli.py", "orchestrator/test_foreign.py", "orchestrator/test_recover.py", "papers/test_apa.py", "papers/test_apa_grid.py", "papers/test_bakeoff.py", "papers/test_guo2015.py", "papers/test_hsic.py", "papers/test_kinds.py", "papers/test_preview.py", "papers/test_zhang2022.py", "report/test_browser.py", "sweep/test_batch.py", "sweep/test_page.py", "test_wheel.py", "twin/test_interop.py", "twin/test_same_bits.py", "vehicle/test_double_track.py", "vehicle/test_geometry.py", "vehicle/test_scene.py", "vehicle/test_vehicle.py"]
 """Files of tests that take over six seconds; ``make quick`` leaves them out, and what is marked slow."""
 FLAGS = [
     "--headless",

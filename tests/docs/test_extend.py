@@ -1,4 +1,4 @@
-"""The recipes of docs/extend.md, followed to the letter: in a copy of the repository, its blocks as edits, its commands run."""
+"""The recipes of docs/extend.md followed to the letter: in a copy of the repository, blocks as edits, commands run."""
 
 import re
 import shutil

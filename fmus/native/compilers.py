@@ -4,7 +4,7 @@ import os
 import shlex
 import shutil
 import sys
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from importlib.metadata import PackageNotFoundError, version
 from importlib.util import find_spec
 from pathlib import Path
@@ -30,7 +30,6 @@ SHARED = (
     "-fvisibility=hidden",
     "-ffunction-sections",
     "-g0",
-    "-shared",
 )
 
 
@@ -47,7 +46,11 @@ class Compiler(NamedTuple):
         return " ".join((self.words, target.triple, *SHARED, *target.options))
 
     def library(self, files: Mapping[str, str], unit: str, name: str, target: Target) -> bytes:
-        """Return the shared library ``name`` made of the file ``unit`` among ``files``.
+        """Return the shared library ``name`` made of the file ``unit`` among ``files``. Raises as :meth:`linked`."""
+        return self.linked(files, [unit], name, target)
+
+    def linked(self, files: Mapping[str, str], units: Sequence[str], name: str, target: Target) -> bytes:
+        """Return what the files ``units`` among ``files`` become together.
 
         The work is done in a fresh directory with fixed file names, so that no path gets into the bytes.
         ``RuntimeError`` with the compiler's words if it refuses.
@@ -57,7 +60,7 @@ class Compiler(NamedTuple):
         with folder_for_a_while("c") as here:
             for file, text in files.items():
                 (here / file).write_text(text, encoding="utf-8", newline="\n")
-            self.run([*SHARED, "-o", name, unit, *target.options], here, target)
+            self.run([*SHARED, "-o", name, *units, *target.options], here, target)
             return (here / name).read_bytes()
 
     def run(self, arguments: list[str], directory: Path, target: Target | None = None) -> None:

@@ -52,8 +52,12 @@ def batch_library() -> Path:
 def model_library(model: Model) -> Path:
     """Return the path of the library of ``model``: see ``library.c``. Raises as :func:`kept_library`, ``TypeError``."""
     unit = f"{model.name}_library.c"
-    text = UNIT.format(name=model.name, store="" if model.store is None else STORE)
-    return kept_library(model.name, unit, {**model_files(model), unit: text})
+    return kept_library(model.name, unit, {**model_files(model), unit: model_unit(model)})
+
+
+def model_unit(model: Model) -> str:
+    """Return the file that is compiled: the model's C, and the model as a table."""
+    return UNIT.format(name=model.name, store="" if model.store is None else STORE)
 
 
 def model_files(model: Model) -> dict[str, str]:

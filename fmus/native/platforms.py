@@ -11,10 +11,11 @@ class Target(NamedTuple):
     triple: str
     """For the cross-compiler; with the oldest C library that will do."""
     options: tuple[str, ...]
-    """For compiling and linking a shared library."""
+    """For compiling and linking."""
 
 
 ELF = (
+    "-shared",
     "-fPIC",
     "-Wl,-z,now",
     "-Wl,-z,relro",
@@ -26,9 +27,11 @@ ELF = (
 )
 LINUX = Target("x86_64-linux-gnu.2.17", ELF)
 LINUX_ARM = Target("aarch64-linux-gnu.2.17", ELF)
-WINDOWS = Target("x86_64-windows-gnu", ("-Wl,-s",))
-MAC_INTEL = Target("x86_64-macos.11.0", ("-Wl,-s",))
-MAC_ARM = Target("aarch64-macos.11.0", ("-Wl,-s",))
+WINDOWS = Target("x86_64-windows-gnu", ("-shared", "-Wl,-s"))
+MAC_INTEL = Target("x86_64-macos.11.0", ("-shared", "-Wl,-s"))
+MAC_ARM = Target("aarch64-macos.11.0", ("-shared", "-Wl,-s"))
+WEB = Target("wasm32-wasi", ("-mexec-model=reactor", "-Wl,--export-dynamic", "-Wl,--gc-sections", "-Wl,--strip-all"))
+"""WebAssembly with its C library inside."""
 
 
 class Platform(NamedTuple):

@@ -147,36 +147,50 @@ static void initialize(const Runner *runner, const double *params) {
     hand_over(runner);
 }
 
+/* Where a run is: at exchange `count`, standing in a final state since [ns], or not (-1). */
+typedef struct {
+    int64_t step_ns, last, count, since;
+} Course;
+
+/* Outputs of the models that are due go to the inputs of the same name. */
+static void exchange(const Runner *runner, const Course *course) {
+    for (int64_t m = 0; m < runner->batch->model_count; m++) {
+        Slave *slave = &runner->slaves[m];
+        slave->due = slave->every == 1 || course->count % slave->every == 0;
+        if (slave->due) fetch(slave);
+    }
+    hand_over(runner);
+}
+
+static int is_over(const Runner *runner, Course *course, End *end) {
+    const Batch *batch = runner->batch;
+    const int64_t now = course->count * course->step_ns;
+    course->since = batch->final == 0 || !stands(runner) ? -1 : course->since < 0 ? now : course->since;
+    *end = course->since >= 0 && now - course->since >= batch->still_ns ? STANDSTILL : STOP_TIME;
+    return *end == STANDSTILL || course->count == course->last;
+}
+
+static void advance(const Runner *runner, Course *course) {
+    for (int64_t m = 0; m < runner->batch->model_count; m++) {
+        const Slave *slave = &runner->slaves[m];
+        if (slave->due) slave->model->step(slave->memory, slave->every * course->step_ns);
+    }
+    course->count++;
+}
+
 /* Fills row: the end, its time [ns], what is kept. */
 static void run(const Runner *runner, const double *params, int64_t step_ns, int64_t last, double *row) {
-    const Batch *batch = runner->batch;
-    double *kept = row + 2;
+    Course course = {step_ns, last, 0, -1};
     End end = STOP_TIME;
-    int64_t since = -1, count = 0;
     initialize(runner, params);
-    begin_notes(runner, kept);
-    for (;; count++) {
-        for (int64_t m = 0; m < batch->model_count; m++) {
-            Slave *slave = &runner->slaves[m];
-            slave->due = slave->every == 1 || count % slave->every == 0;
-            if (slave->due) fetch(slave);
-        }
-        hand_over(runner);
-        note(runner, kept);
-        const int64_t now = count * step_ns;
-        since = batch->final == 0 || !stands(runner) ? -1 : since < 0 ? now : since;
-        if (since >= 0 && now - since >= batch->still_ns) {
-            end = STANDSTILL;
-            break;
-        }
-        if (count == last) break;
-        for (int64_t m = 0; m < batch->model_count; m++) {
-            const Slave *slave = &runner->slaves[m];
-            if (slave->due) slave->model->step(slave->memory, slave->every * step_ns);
-        }
+    begin_notes(runner, row + 2);
+    for (;; advance(runner, &course)) {
+        exchange(runner, &course);
+        note(runner, row + 2);
+        if (is_over(runner, &course, &end)) break;
     }
     row[0] = (double)end;
-    row[1] = (double)(count * step_ns);
+    row[1] = (double)(course.count * step_ns);
 }
 
 static void connect(Runner *runner) {

@@ -5,7 +5,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#ifdef _WIN32
+#ifdef LIBRARY_EXPORT /* said before: several models are linked into one file */
+#elif defined(_WIN32)
 #define LIBRARY_EXPORT __declspec(dllexport)
 #else
 #define LIBRARY_EXPORT __attribute__((visibility("default")))

@@ -1,0 +1,75 @@
+"""The module of the page without a page: opened, set up and run by wasmtime."""
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import wasmtime
+
+from modelkit.variables import flatten, variables, with_values
+from orchestrator.scenario.models import MODELS
+from orchestrator.scenario.scenario import Scenario
+
+PLACES = {
+    f"{owner}.{item.name}": (number, place, is_input)
+    for number, (owner, model) in enumerate(MODELS.items())
+    for is_input, cls in ((1, model.inputs), (0, model.outputs))
+    for place, item in enumerate(variables(cls))
+}
+STOP_TIME, STANDSTILL = 0.0, 1.0
+
+
+class LiveModule:
+    """One instance of the module."""
+
+    def __init__(self, path: Path) -> None:
+        engine = wasmtime.Engine()
+        self.store = wasmtime.Store(engine)
+        module = wasmtime.Module(engine, path.read_bytes())
+        assert not module.imports
+        self.exports = wasmtime.Instance(self.store, module, []).exports(self.store)
+        self.call("_initialize")
+
+    def call(self, name: str, *values: Any) -> Any:
+        return self.exports[name](self.store, *values)
+
+    def put(self, numbers: Sequence[float]) -> int:
+        """Return the address of a copy of ``numbers``."""
+        address = self.call("live_numbers", len(numbers))
+        self.exports["memory"].write(self.store, np.array(numbers, dtype=float).tobytes(), address)
+        return int(address)
+
+    def get(self, address: int, count: int) -> Any:
+        raw = self.exports["memory"].read(self.store, address, address + 8 * count)
+        return np.frombuffer(bytes(raw), dtype=float)
+
+    def run(self, scenario: Scenario, names: Sequence[str]) -> tuple[float, Any]:
+        """Return how a run ended, and a line for each exchange: time, then the signals ``names``."""
+        last = scenario.stop_ns // scenario.step_ns
+        live = self.call("live_open", self.put(setup(scenario, names)))
+        trace = self.call("live_numbers", (last + 1) * (1 + len(names)))
+        params, times = self.put(parameters(scenario)), self.put(times_of(scenario))
+        lines = self.call("live_run", live, params, times, trace, 1, last + 1)
+        end = self.get(self.call("live_row", live), 2)[0]
+        found = self.get(trace, lines * (1 + len(names))).reshape(lines, -1)
+        for address in (trace, params, times):
+            self.call("live_free", address)
+        return end, found
+
+
+def setup(scenario: Scenario, names: Sequence[str]) -> list[float]:
+    ending = scenario.ending
+    final = sum(1 << value for value in ending.final())
+    signals = [*PLACES[ending.signal], *PLACES["vehicle.speed"]]
+    seen = [number for name in names for number in PLACES[name]]
+    return [final, ending.still, ending.standstill_ns, *signals, 0, len(names), *seen]
+
+
+def parameters(scenario: Scenario) -> list[float]:
+    parts = [flatten(with_values(model.params, getattr(scenario, owner))) for owner, model in MODELS.items()]
+    return [float(value) for part in parts for value in part]
+
+
+def times_of(scenario: Scenario) -> list[float]:
+    return [scenario.step_ns, scenario.stop_ns, *(scenario.every.get(owner, 1) for owner in MODELS)]

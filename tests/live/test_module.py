@@ -1,0 +1,68 @@
+"""WebAssembly against the native FMUs, and against the same C with the same mathematics library on this machine."""
+
+import subprocess
+from pathlib import Path
+
+import numpy as np
+import pytest
+from live_module import PLACES, STANDSTILL, STOP_TIME, LiveModule, parameters, setup, times_of
+
+from fmus.native.platforms import Target
+from fmus.native.web import live_library, web_module
+from orchestrator.cosim.fmu_files import fmu_files
+from orchestrator.scenario.load_scenario import load_scenario, scenario_names
+from orchestrator.scenario.models import MODELS
+from orchestrator.session.session import run_scenario
+
+WITHOUT_FAULTS = [name for name in scenario_names() if not load_scenario(name).faults]
+NAMES = list(PLACES)
+WITHIN = {"preview-geometry": 1e-3}
+"""Largest difference of a signal [SI]. 960 m in a loop of high gain: wheel 5e-5 rad, force 1e-3 N, pose 5e-7 m."""
+STATIC = Target("x86_64-linux-musl", ("-static", "-Wl,-s"))
+
+
+@pytest.fixture(scope="module")
+def module():
+    return LiveModule(web_module(MODELS))
+
+
+@pytest.fixture(scope="module")
+def native():
+    return fmu_files("native")
+
+
+@pytest.mark.parametrize("name", WITHOUT_FAULTS)
+def test_runs_as_the_native_fmus_do(name, module, native):
+    scenario = load_scenario(name)
+    recording = run_scenario(scenario, native, kind="native").recording
+    end, lines = module.run(scenario, NAMES)
+    assert end == {"stop_time": STOP_TIME, "standstill": STANDSTILL}[recording.info["end"]["reason"]]
+    assert (lines[:, 0] == recording.t).all()
+    for column, signal in enumerate(NAMES, start=1):
+        ours, theirs = lines[:, column], recording.signals[signal]
+        exact = recording.variables[signal].kind is not float
+        within = 0.0 if exact else WITHIN.get(name, 1e-6)
+        np.testing.assert_allclose(ours, theirs, rtol=0.0, atol=within, equal_nan=True, err_msg=signal)
+
+
+@pytest.fixture(scope="module")
+def static(tmp_path_factory):
+    main = (Path(__file__).parent / "static.c").read_text(encoding="utf-8")
+    built = live_library(MODELS, STATIC, ".program", {"main_unit.c": main})
+    program = tmp_path_factory.mktemp("static") / "live"
+    program.write_bytes(built.read_bytes())
+    program.chmod(0o755)
+    return program
+
+
+@pytest.mark.parametrize("name", ["guo2015-case4", "apa-parallel-real", "zhang2022-double-track", "hsic", "preview-8"])
+def test_has_the_bits_of_this_machine_with_the_same_mathematics_library(name, module, static):
+    scenario = load_scenario(name)
+    end, lines = module.run(scenario, NAMES)
+    room = scenario.stop_ns // scenario.step_ns + 1
+    parts = [setup(scenario, NAMES), parameters(scenario), times_of(scenario), [room, 1 + len(NAMES)]]
+    sent = b"".join(np.array([len(part), *part], dtype=float).tobytes() for part in parts)
+    done = subprocess.run([static], input=sent, capture_output=True, check=True)
+    found = np.frombuffer(done.stdout, dtype=float)
+    assert found[0] == end
+    assert found[2:].tobytes() == lines.tobytes()

@@ -47,7 +47,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Compare and print. Returns 0 if all signals are within tolerance, 1 if not."""
     bounds = [
-        number(getattr(arguments, key), unit, key=f"--{key}")
+        number(getattr(arguments, key), unit, key=f"--{key}", any_value=True)
         for key, unit in (("abs", "1"), ("rel", "1"), ("time", "s"))
     ]
     for key, bound in zip(("abs", "rel", "time"), bounds, strict=True):

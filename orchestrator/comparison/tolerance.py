@@ -3,7 +3,7 @@
 from pathlib import Path
 from typing import NamedTuple
 
-from orchestrator.text.errors import BadInput, suggestion
+from orchestrator.text.errors import BadInput, shown, suggestion
 from orchestrator.text.patterns import fits
 from orchestrator.text.quantities import number
 from orchestrator.text.yaml_file import read_mapping
@@ -48,7 +48,7 @@ def read_tolerances(path: Path | None, default: Tolerance) -> Tolerances:
     rows = []
     for pattern, given in (read_mapping(path) if path else {}).items():
         if not isinstance(given, dict):
-            raise BadInput(f"{given!r}: expected a mapping with {', '.join(KEYS)}", file=path, key=pattern)
+            raise BadInput(f"{shown(given)}: expected a mapping with {', '.join(KEYS)}", file=path, key=pattern)
         for key in given:
             if key not in KEYS:
                 hint = suggestion(str(key), KEYS) or f"; known are {', '.join(KEYS)}"
@@ -58,7 +58,7 @@ def read_tolerances(path: Path | None, default: Tolerance) -> Tolerances:
 
 
 def _bound(value: object, unit: str, file: str, key: str) -> float:
-    bound = number(value, unit, file=file, key=key)
+    bound = number(value, unit, file=file, key=key, any_value=True)
     if not bound >= 0.0:
-        raise BadInput(f"{value!r} is not 0 or more", file=file, key=key)
+        raise BadInput(f"{shown(value)} is not 0 or more", file=file, key=key)
     return bound

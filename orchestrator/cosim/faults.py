@@ -23,7 +23,7 @@ class _Window:
         self._values = values
         self._places = places
         self._start_ns = round(fault.start * 1e9)
-        self._stop_ns = round(fault.stop * 1e9) if fault.stop < 1e9 else 1 << 62
+        self._stop_ns = round(fault.stop * 1e9) if fault.stop <= 1e9 else 1 << 62
 
     def _active(self, t_ns: int) -> bool:
         return self._start_ns <= t_ns < self._stop_ns
@@ -136,9 +136,12 @@ def _make(
     if fault.kind == "noise":
         if any(ports.variables[place].kind is not float for place in places):
             raise BadInput(f"noise needs a real signal, {fault.signal} is not", file=file, key=key)
-        return Noise(*where, number(fault.sigma, first.signal.unit, file=file, key=f"{key}.sigma"), seed)
+        sigma = number(fault.sigma, first.signal.unit, file=file, key=f"{key}.sigma")
+        if sigma < 0.0:
+            raise BadInput(f"{sigma:g} is not 0 or more", file=file, key=f"{key}.sigma")
+        return Noise(*where, sigma, seed)
     if first.kind is float:
-        return Override(*where, number(fault.value, first.signal.unit, file=file, key=f"{key}.value"))
+        return Override(*where, number(fault.value, first.signal.unit, file=file, key=f"{key}.value", any_value=True))
     return Override(*where, float(scalar(fault.value, first, file=file)))
 
 

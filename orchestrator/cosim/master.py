@@ -5,7 +5,6 @@ Initialization Mode. A slave with decimation n is stepped every n-th time by n c
 its outputs are read, and its inputs written, only at those instants.
 """
 
-from math import lcm
 from typing import NamedTuple, Protocol
 
 from orchestrator.cosim.connections import connect
@@ -96,13 +95,15 @@ class Master:
 
     def run(self) -> End:
         """Exchange and step until an ending, the stop time or an interrupt. Raises ``RunError``."""
-        cycle = lcm(*self.every)
-        plan = [self._instant(phase) for phase in range(cycle)]
+        instants: dict[tuple[bool, ...], _Instant] = {}
         last = self.stop_ns // self.step_ns
         count = 0
         while True:
             t_ns = count * self.step_ns
-            due, links, faults, steps = plan[count % cycle]
+            pattern = tuple([count % every == 0 for every in self.every])
+            if pattern not in instants:
+                instants[pattern] = self._instant(count)
+            due, links, faults, steps = instants[pattern]
             for slave in due:
                 slave.fetch_outputs()
             for target, target_places, source, source_places in links:
@@ -139,8 +140,8 @@ class Master:
                 return reason
         return "stop_time" if last else ""
 
-    def _instant(self, phase: int) -> "_Instant":
-        due = [number for number, every in enumerate(self.every) if phase % every == 0]
+    def _instant(self, count: int) -> "_Instant":
+        due = [number for number, every in enumerate(self.every) if count % every == 0]
         links = [
             (
                 self.slaves[link.target].inputs.values,

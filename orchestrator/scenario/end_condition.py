@@ -28,7 +28,7 @@ class EndCondition(BaseModel):
     """Its states in which the run is over but neither done nor failed."""
     reason: str = "controller.reason"
     """The output that says why the controller has given up."""
-    still: float = Field(default=1e-3, gt=0.0)
+    still: float = Field(default=1e-3, gt=0.0, allow_inf_nan=False)
     """A car not faster than this [m/s] stands."""
     standstill: Seconds = 0.5
     """How long it must stand [s]."""

@@ -5,7 +5,7 @@ from typing import Literal
 from pydantic import BaseModel, ConfigDict, Field
 
 from orchestrator.text.errors import BadInput
-from orchestrator.text.quantities import Seconds
+from orchestrator.text.quantities import Seconds, Until
 
 Kind = Literal["freeze", "override", "drop", "delay", "noise"]
 NEEDS: dict[str, tuple[str, ...]] = {
@@ -28,7 +28,7 @@ class Fault(BaseModel):
     """What the receiver sees instead: an old value, a given one, a late one, a noisy one, now and then none."""
     start: Seconds = 0.0
     """From this time on [s]."""
-    stop: Seconds = float("inf")
+    stop: Until = float("inf")
     """Until before this time [s]."""
     value: float | str | bool | None = None
     """override: the value seen instead; a number, ``nan``, a quantity or the name of a state."""

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable, Mapping
 
-from orchestrator.text.errors import BadInput, suggestion
+from orchestrator.text.errors import BadInput, shown, suggestion
 
 
 def flatten_section(
@@ -46,7 +46,9 @@ def _flatten(name: str, value: object, known: list[str], flat: dict[str, object]
             _flatten(child, item, known, flat, file, key)
     else:
         parts = ", ".join(child.removeprefix(name).lstrip(".") for child in children[:6])
-        raise BadInput(f"{value!r} is one value, expected a mapping or list of {parts}", file=file, key=f"{key}.{name}")
+        raise BadInput(
+            f"{shown(value)} is one value, expected a mapping or list of {parts}", file=file, key=f"{key}.{name}"
+        )
 
 
 def _children(name: str, known: list[str]) -> list[str]:

@@ -4,7 +4,6 @@ from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
-import yaml
 from pydantic import ValidationError
 
 from modelkit.variables import Variable, variables
@@ -12,9 +11,9 @@ from orchestrator.scenario.flat_names import flatten_section, merge_flat
 from orchestrator.scenario.models import MODELS
 from orchestrator.scenario.requirements import read_requirements
 from orchestrator.scenario.scenario import Scenario, Target
-from orchestrator.text.errors import BadInput, suggestion
+from orchestrator.text.errors import BadInput, shown, suggestion
 from orchestrator.text.quantities import scalar
-from orchestrator.text.yaml_file import explain, read_mapping
+from orchestrator.text.yaml_file import explain, place_in, read_mapping, read_value
 
 ROOM = Path(__file__).parent.parent
 NOT_WRITTEN = ("file", "changed", "left_out")
@@ -70,8 +69,14 @@ def load_scenario(name: str, sets: Iterable[str] = (), more: More | None = None)
     try:
         scenario = Scenario(**merged, file=str(path), changed=dict(text.split("=", 1) for text in sets))
     except ValidationError as error:
-        raise explain(error, path, FIELDS) from None
+        raise explain(error, _written_in(place_in(error), layers, path), FIELDS) from None
     return scenario.model_copy(update={"controller": _told(scenario)})
+
+
+def _written_in(key: str, layers: list[Layer], path: Path) -> object:
+    """Return the file, or ``--set``, that has the last word about a key of the scenario."""
+    top = key.partition(".")[0].partition("[")[0]
+    return next((file for content, file in reversed(layers) if top in content), path)
 
 
 def _told(scenario: Scenario) -> dict[str, float | int | bool]:
@@ -120,7 +125,7 @@ def _parameters(owner: str, layers: list[Layer], seed: object, more: Sequence[Va
     for content, file in layers:
         section = content.get(owner) or {}
         if not isinstance(section, Mapping):
-            raise BadInput(f"{section!r}: expected a mapping of parameters", file=file, key=owner)
+            raise BadInput(f"{shown(section)}: expected a mapping of parameters", file=file, key=owner)
         if owner == "vehicle" and content.get("scene") is not None:
             section = {"scene": content["scene"], **section}
         flat = flatten_section(section, names, file=file, key=owner)
@@ -143,7 +148,7 @@ def _value(variable: Variable, given: object, owner: str) -> float | int | bool:
 def limits_of(given: object, folder: Path, file: object = None) -> list[dict[str, Any]]:
     """Return limits with the names of sets, or of files in ``folder``, replaced by their content."""
     if not isinstance(given, list):
-        raise BadInput(f"{given!r}: expected a list", file=file, key="limits")
+        raise BadInput(f"{shown(given)}: expected a list", file=file, key="limits")
     result: list[dict[str, Any]] = []
     for item in given:
         if isinstance(item, str):
@@ -160,14 +165,14 @@ def _set_layer(sets: Iterable[str]) -> dict[str, Any]:
     for text in sets:
         key, equals, value = text.partition("=")
         if not equals or not key:
-            raise BadInput(f"{text!r}: expected KEY=VALUE, for example vehicle.wheelbase=2.7", file="--set")
-        try:
-            parsed = yaml.safe_load(value)
-        except yaml.YAMLError:
-            parsed = value
+            raise BadInput(f"{shown(text)}: expected KEY=VALUE, for example vehicle.wheelbase=2.7", file="--set")
+        parsed = read_value(value, key)
         owner, dot, name = key.partition(".")
         if dot and owner in (*MODELS, "target", "slot", "scene", "every"):
-            layer.setdefault(owner, {})[name] = parsed
+            section = layer.setdefault(owner, {})
+            if not isinstance(section, dict):
+                raise BadInput(f"{owner} is set as a whole and in parts", file="--set", key=key)
+            section[name] = parsed
         else:
             layer[key] = parsed
     return layer
@@ -207,7 +212,7 @@ def find_file(name: str, folder: str, what: str, beside: Path) -> Path:
     if name.endswith((".yaml", ".yml")) or "/" in name or "\\" in name:
         path = beside / name
         if not path.is_file():
-            raise BadInput("no such file", file=name)
+            raise BadInput("is a folder, expected a file" if path.is_dir() else "no such file", file=name)
         return path.resolve()
     shipped = ROOM / folder / f"{name}.yaml"
     if shipped.is_file():

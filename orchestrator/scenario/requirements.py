@@ -10,9 +10,9 @@ from typing import Any, Literal, get_args
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
-from orchestrator.text.errors import BadInput, suggestion
+from orchestrator.text.errors import BadInput, shown, suggestion
 from orchestrator.text.quantities import Seconds, measured
-from orchestrator.text.yaml_file import explain, read_yaml
+from orchestrator.text.yaml_file import explain, place_in, read_yaml
 
 Condition = Literal["max", "min", "max_abs", "equals"]
 CONDITIONS: tuple[Condition, ...] = get_args(Condition)
@@ -89,7 +89,9 @@ class Requirement(BaseModel):
     @classmethod
     def _quantities(cls, data: Any) -> Any:
         if not isinstance(data, dict):
-            raise BadInput(f"{data!r}: expected the name of a set of limits or a mapping with id, signal, max, source")
+            raise BadInput(
+                f"{shown(data)}: expected the name of a set of limits or a mapping with id, signal, max, source"
+            )
         for key in data:
             if key not in cls.model_fields:
                 hint = suggestion(str(key), cls.model_fields) or f"; known are {', '.join(cls.model_fields)}"
@@ -129,7 +131,8 @@ def read_requirements(path: Path) -> list[Requirement]:
             found.append(Requirement.model_validate(entry))
         except ValidationError as error:
             mistake = explain(error, None, list(Requirement.model_fields))
-            raise BadInput(f"requirement {number}: {mistake}", file=path) from None
+            at = f"[{number}].{place_in(error)}".rstrip(".")
+            raise BadInput(f"requirement {number}: {mistake}", file=path, at=at) from None
     return found
 
 
@@ -144,5 +147,5 @@ def _limit(data: dict[str, Any], key: str) -> dict[str, Any]:
             return {key: value.strip()}
     number, written = measured(value, key=where)
     if unit is not None and written is not None and written != unit:
-        raise BadInput(f"{value!r} is not in {unit}", key=where)
+        raise BadInput(f"{shown(value)} is not in {unit}", key=where)
     return {key: number, "unit": written if unit is None else unit}

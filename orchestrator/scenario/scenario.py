@@ -8,6 +8,7 @@ from orchestrator.scenario.end_condition import EndCondition
 from orchestrator.scenario.fault import Fault
 from orchestrator.scenario.requirements import Requirement, shipped_requirements
 from orchestrator.text.errors import BadInput
+from orchestrator.text.patterns import NAME
 from orchestrator.text.quantities import NANOSECONDS, Metres, Radians, Seconds
 
 Outcome = Literal["parked", "not_parked", "finished", "not_finished", "failed", "aborted"]
@@ -16,6 +17,10 @@ SUCCESS: dict[Task, Outcome] = {"park": "parked", "drive": "finished"}
 MISSED: dict[Task, Outcome] = {"park": "not_parked", "drive": "not_finished"}
 DONE: frozenset[Outcome] = frozenset(SUCCESS.values())
 """The outcomes of a run that has done its task."""
+
+
+Name = Annotated[str, Field(pattern=NAME, max_length=100)]
+"""A name, not a path."""
 
 
 class _ScenarioPart(BaseModel):
@@ -56,7 +61,7 @@ class Slot(_ScenarioPart):
 class Scenario(_ScenarioPart):
     """A scenario with its base, car and ``--set`` values merged in; parameters by flat name, in SI units."""
 
-    name: str = Field(pattern=r"^[A-Za-z0-9._-]+$")
+    name: Name
     """Name of the run and of its folder; by default that of the file."""
     title: str = ""
     """One line for tables and pages."""
@@ -76,7 +81,7 @@ class Scenario(_ScenarioPart):
     """Communication step [s], a whole number of nanoseconds."""
     every: dict[str, int] = {}
     """Decimation: the slave is stepped every n-th communication step."""
-    seed: int = Field(default=1, ge=0)
+    seed: int = Field(default=1, ge=0, le=2**31 - 1)
     """Of faults, and of every parameter called seed that the scenario does not set."""
     vehicle: dict[str, float | int | bool] = {}
     """Parameters of the vehicle, nested or by flat name, with or without unit."""
@@ -131,8 +136,8 @@ class Scenario(_ScenarioPart):
         for name, every in self.every.items():
             if name not in ("vehicle", "controller"):
                 raise BadInput("unknown; known are vehicle, controller", key=f"every.{name}")
-            if every < 1:
-                raise BadInput(f"{every} is not a whole number of at least 1", key=f"every.{name}")
+            if not 1 <= every <= 1_000_000:
+                raise BadInput(f"{every} is not a whole number from 1 to 1000000", key=f"every.{name}")
         return self
 
     @model_validator(mode="after")

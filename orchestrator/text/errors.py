@@ -1,17 +1,37 @@
 """The errors a user can cause or meet, each one sentence that says what would be right."""
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 
 PARKED, NOT_PARKED, BAD_INPUT, INTERNAL_ERROR, INTERRUPTED = 0, 1, 2, 3, 130
 """Exit codes. What was not judged never ends with the first two."""
 
 
-class BadInput(ValueError):  # noqa: N818 - said as it is
-    """Something the user wrote is wrong: file, key, value, what would be right. Exit code 2."""
+LINES: dict[str, Callable[[], dict[str, int]]] = {}
+"""File that was read -> the lines of its keys."""
 
-    def __init__(self, text: str, *, file: object = None, key: str | None = None) -> None:
-        place = ": ".join(str(part) for part in (file, key) if part is not None)
+
+class BadInput(ValueError):  # noqa: N818 - said as it is
+    """Something the user wrote is wrong: file, line, key, value, what would be right. Exit code 2.
+
+    ``at`` is the key whose line is meant, where that is not ``key``.
+    """
+
+    def __init__(self, text: str, *, file: object = None, key: str | None = None, at: str | None = None) -> None:
+        line = line_of(file, at or key)
+        where = None if file is None else f"{file}:{line}" if line else str(file)
+        place = ": ".join(part for part in (where, key) if part is not None)
         super().__init__(f"{place}: {text}" if place else text)
+
+
+def line_of(file: object, key: str | None) -> int:
+    """Return the line of a key, or of what it is in, in a file that was read; 0 if it is not known."""
+    known = LINES.get(str(file))
+    if known is None or not key:
+        return 0
+    lines = known()
+    while key and key not in lines:
+        key = key[: max(key.rfind("."), key.rfind("["), 0)]
+    return lines.get(key, 0)
 
 
 class RunError(Exception):

@@ -5,6 +5,9 @@ from fnmatch import fnmatchcase
 
 from orchestrator.text.errors import BadInput, suggestion
 
+NAME = r"^[A-Za-z0-9_][A-Za-z0-9._-]*$"
+"""What a name of a scenario, a study, a folder may be: no path, no ``..``, nothing hidden."""
+
 
 def matching(names: Iterable[str], patterns: Iterable[str] | None) -> list[str]:
     """Return the names that fit one of ``patterns``, in their order; all if there are no patterns.

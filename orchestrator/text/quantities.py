@@ -7,7 +7,7 @@ from typing import Annotated
 from pydantic import BeforeValidator
 
 from modelkit.variables import Variable
-from orchestrator.text.errors import BadInput, suggestion
+from orchestrator.text.errors import BadInput, shown, suggestion
 
 DEGREE = math.pi / 180.0
 NANOSECONDS = 1_000_000_000
@@ -24,33 +24,52 @@ FACTORS: dict[str, tuple[str, float]] = {
     "kN": ("N", 1000.0),
     "%": ("1", 0.01),
 }
-QUANTITY = re.compile(r"^\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?|[-+]?inf|nan)\s*([A-Za-z%/0-9^]*)\s*$")
+QUANTITY = re.compile(
+    r"\s*+([-+]?(?:\d++(?:\.\d*+)?|\.\d++)(?:[eE][-+]?\d++)?|[-+]?inf|nan)\s*+([A-Za-z%/0-9^.]*+)\s*+", re.ASCII
+)
+MOST_LETTERS = 60
+"""A number with its unit is not longer."""
+LARGEST = 1e15
+"""No number that anybody means is larger, in SI."""
 
 
-def number(value: object, unit: str, *, file: object = None, key: str | None = None) -> float:
+def number(value: object, unit: str, *, file: object = None, key: str | None = None, any_value: bool = False) -> float:
     """Return ``value`` (a number, or text such as ``30 deg/s``) in the SI ``unit``.
 
-    Raises ``BadInput`` if it is no number or has another dimension.
+    Raises ``BadInput`` if it is no number, has another dimension or, unless ``any_value`` will do, is not finite or
+    larger than anything that is.
     """
+    result = _in_si(value, unit, file, key)
+    if not any_value and not abs(result) <= LARGEST:
+        raise BadInput(f"{shown(value)} is not a number that anything here can have", file=file, key=key)
+    return result
+
+
+def _in_si(value: object, unit: str, file: object, key: str | None) -> float:
     if isinstance(value, bool) or not isinstance(value, int | float | str):
-        raise BadInput(f"{value!r} is not a number [{unit}]", file=file, key=key)
+        raise BadInput(f"{shown(value)} is not a number [{unit}]", file=file, key=key)
     if not isinstance(value, str):
-        return float(value)
-    match = QUANTITY.match(value)
+        return float(value) if isinstance(value, float) or abs(value) <= LARGEST else math.inf
+    match = _parts(value)
     if match is None:
-        raise BadInput(f"{value!r} is not a number, expected for example {_example(unit)}", file=file, key=key)
+        raise BadInput(f"{shown(value)} is not a number, expected for example {_example(unit)}", file=file, key=key)
     magnitude, written = float(match[1]), match[2]
     if written in ("", unit):
         return magnitude
     target, factor = FACTORS.get(written, ("", 0.0))
     if target != unit:
-        raise BadInput(f"{value!r} is in {written!r}, expected {_example(unit)}", file=file, key=key)
+        raise BadInput(f"{shown(value)} is in {written!r}, expected {_example(unit)}", file=file, key=key)
     return magnitude * factor
+
+
+def _parts(text: str) -> "re.Match[str] | None":
+    """Return a quantity as number and unit; None if it is none."""
+    return QUANTITY.fullmatch(text) if len(text) <= MOST_LETTERS else None
 
 
 def measured(value: object, *, file: object = None, key: str | None = None) -> tuple[float, str | None]:
     """Return ``value`` in SI and the SI unit its text has (None if it has none). Raises ``BadInput``."""
-    match = QUANTITY.match(value) if isinstance(value, str) else None
+    match = _parts(value) if isinstance(value, str) else None
     if match is None or not match[2]:
         return number(value, "1", file=file, key=key), None
     unit = FACTORS[match[2]][0] if match[2] in FACTORS else match[2]
@@ -70,33 +89,53 @@ def scalar(value: object, variable: Variable, *, file: object = None) -> float |
     else:
         result = number(value, variable.signal.unit, file=file, key=key)
     low, high = variable.signal.low, variable.signal.high
-    if result != result:
-        raise BadInput("nan is not a value for a parameter", file=file, key=key)
     if not low <= result <= high:
         raise BadInput(
-            f"{value} is out of range, expected {low:g} to {high:g} {variable.signal.unit}", file=file, key=key
+            f"{shown(value)} is out of range, expected {low:g} to {high:g} {variable.signal.unit}", file=file, key=key
         )
     return result
 
 
 def _seconds(value: object) -> float | None:
     seconds = None if value is None else number(value, "s")
-    if seconds is not None and not seconds >= 0.0:
-        raise BadInput(f"{value!r} is not a time of 0 s or later")
+    if seconds is not None and not 0.0 <= seconds <= LONGEST:
+        raise BadInput(f"{shown(value)} is not a time from 0 to {LONGEST:g} s")
     return seconds
 
 
+def _until(value: object) -> float | None:
+    """Return a time [s]; one that never comes is ``inf``."""
+    never = isinstance(value, int | float | str) and not isinstance(value, bool)
+    return math.inf if never and number(value, "s", any_value=True) > LONGEST else _seconds(value)
+
+
+def _within(most: float, unit: str) -> BeforeValidator:
+    """Return what reads a quantity whose size is at most ``most``."""
+
+    def read(value: object) -> float:
+        found = number(value, unit)
+        if abs(found) > most:
+            raise BadInput(f"{shown(value)} is out of range, expected {-most:g} to {most:g} {unit}")
+        return found
+
+    return BeforeValidator(read)
+
+
+LONGEST = 1e9
+"""The latest time [s]."""
 Seconds = Annotated[float, BeforeValidator(_seconds)]
 """A time or duration [s] in a pydantic model; ``200 ms`` will do."""
-Metres = Annotated[float, BeforeValidator(lambda value: number(value, "m"))]
-Radians = Annotated[float, BeforeValidator(lambda value: number(value, "rad"))]
+Until = Annotated[float, BeforeValidator(_until)]
+"""A time [s], or never."""
+Metres = Annotated[float, _within(1e6, "m")]
+Radians = Annotated[float, _within(1e3, "rad")]
 
 
 def _boolean(value: object, file: object, key: str) -> bool:
     words = {"true": True, "yes": True, "on": True, "1": True, "false": False, "no": False, "off": False, "0": False}
     text = str(value).strip().lower()
     if text not in words:
-        raise BadInput(f"{value!r} is neither true nor false", file=file, key=key)
+        raise BadInput(f"{shown(value)} is neither true nor false", file=file, key=key)
     return words[text]
 
 
@@ -107,14 +146,14 @@ def _integer(value: object, variable: Variable, file: object) -> int:
         word = value.strip().lower().replace("-", "_").replace(" ", "_")
         if word not in names:
             close = suggestion(word, names)
-            raise BadInput(f"{value!r} is none of {', '.join(names)}{close}", file=file, key=variable.name)
+            raise BadInput(f"{shown(value)} is none of {', '.join(names)}{close}", file=file, key=variable.name)
         return names[word]
     exact = number(value, variable.signal.unit, file=file, key=variable.name)
     if not math.isfinite(exact) or exact != round(exact):
-        raise BadInput(f"{value!r} is not a whole number", file=file, key=variable.name)
+        raise BadInput(f"{shown(value)} is not a whole number", file=file, key=variable.name)
     if states is not None and int(exact) not in {int(member) for member in states}:
         known = ", ".join(f"{int(member)} {member.name.lower()}" for member in states)
-        raise BadInput(f"{value!r} is none of {known}", file=file, key=variable.name)
+        raise BadInput(f"{shown(value)} is none of {known}", file=file, key=variable.name)
     return int(exact)
 
 

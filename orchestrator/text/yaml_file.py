@@ -1,4 +1,8 @@
-"""Reading YAML so that a mistake in the file is one clear sentence."""
+"""Reading YAML so that a mistake in the file is one clear sentence: the only door for it.
+
+What is read is bounded before it is built: size, nesting, aliases (counted as what they stand for), tags, digits. A key
+written twice is refused. Where each key stands is kept, so that a mistake found later is told with its line.
+"""
 
 from pathlib import Path
 from typing import Any
@@ -6,37 +10,143 @@ from typing import Any
 import yaml
 from pydantic import ValidationError
 
-from orchestrator.text.errors import BadInput, suggestion
+from orchestrator.text.errors import LINES, BadInput, shown, suggestion
+
+MOST_BYTES = 500_000
+MOST_NODES = 50_000
+"""Values in a file, each alias counted as all that it stands for."""
+DEEPEST = 40
+MOST_DIGITS = 40
+TEXT = "tag:yaml.org,2002:str"
+AS_TEXT = ("tag:yaml.org,2002:timestamp", "tag:yaml.org,2002:value")
+"""What YAML would make of texts that look like it, and nobody means here."""
 
 
 class _Loader(yaml.SafeLoader):
-    """Safe YAML that refuses a key written twice."""
+    """Safe YAML that refuses a key written twice, and what is larger than anybody means."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__(text)
+        self.yaml_implicit_resolvers = {
+            first: [(tag, pattern) for tag, pattern in found if tag not in AS_TEXT]
+            for first, found in yaml.SafeLoader.yaml_implicit_resolvers.items()
+        }
+        self._depth, self._count = 0, 0
+        self._sizes: dict[str, int] = {}
+
+    def compose_node(self, parent: Any, index: Any) -> Any:
+        event: Any = self.peek_event()  # type: ignore[no-untyped-call]
+        if isinstance(event, yaml.AliasEvent):
+            if event.anchor in self.anchors and event.anchor not in self._sizes:
+                raise _mistake(f"*{event.anchor} stands within itself", event)
+            self._counted(self._sizes.get(str(event.anchor), 0), event)
+            return super().compose_node(parent, index)
+        tag = getattr(event, "tag", None)
+        if tag not in (None, "!", TEXT):
+            raise _mistake(f"the tag {shown(tag)} has no meaning here", event)
+        before, self._depth = self._count, self._depth + 1
+        if self._depth > DEEPEST:
+            raise _mistake(f"nested deeper than {DEEPEST}", event)
+        self._counted(1, event)
+        node = super().compose_node(parent, index)
+        self._depth -= 1
+        if event.anchor is not None:
+            self._sizes[event.anchor] = self._count - before
+        return node
 
     def construct_mapping(self, node: yaml.MappingNode, deep: bool = False) -> dict[Any, Any]:
         seen: set[object] = set()
         for key_node, _ in node.value:
+            if not isinstance(key_node, yaml.ScalarNode):
+                raise _mistake("expected a word as key", key_node)
             key = self.construct_object(key_node, deep=True)
             if key in seen:
-                raise yaml.constructor.ConstructorError(
-                    None, None, f"key {key!r} is written twice", key_node.start_mark
-                )
+                raise _mistake(f"key {shown(key)} is written twice", key_node)
             seen.add(key)
         return super().construct_mapping(node, deep)
+
+    def construct_scalar(self, node: Any) -> Any:
+        if node.tag != TEXT and len(str(node.value)) > MOST_DIGITS:
+            raise _mistake(f"{shown(node.value)} has more digits than any number here", node)
+        value: Any = super().construct_scalar(node)
+        if isinstance(value, str) and not _is_text(value):
+            raise _mistake(f"{shown(value)} is no text that can be written as UTF-8", node)
+        return value
+
+    def _counted(self, count: int, event: Any) -> None:
+        self._count += count
+        if self._count > MOST_NODES:
+            raise _mistake(f"more than {MOST_NODES} values, aliases counted as what they stand for", event)
+
+
+def _mistake(text: str, where: Any) -> yaml.MarkedYAMLError:
+    return yaml.constructor.ConstructorError(None, None, text, where.start_mark)
+
+
+def _is_text(value: str) -> bool:
+    """Return whether ``value`` has a place in a file: no half of a letter, no zero byte."""
+    return "\0" not in value and not any("\ud800" <= letter <= "\udfff" for letter in value)
 
 
 def read_yaml(path: Path) -> Any:
     """Return the content of a YAML file. Raises ``BadInput`` with the line if it cannot be read."""
     try:
-        return yaml.load(path.read_text(encoding="utf-8"), Loader=_Loader)
+        if not path.is_file():
+            raise BadInput("is a folder, expected a file" if path.is_dir() else "no such file", file=path)
+        if path.stat().st_size > MOST_BYTES:
+            raise BadInput(f"is larger than {MOST_BYTES} bytes", file=path)
+        text = path.read_text(encoding="utf-8")
     except OSError as error:
         raise BadInput(f"cannot be read: {error.strerror}", file=path) from error
     except UnicodeDecodeError as error:
         raise BadInput("is not UTF-8 text", file=path) from error
-    except yaml.YAMLError as error:
+    try:
+        return _parsed(text, str(path))
+    except (yaml.YAMLError, ValueError) as error:
         mark = getattr(error, "problem_mark", None)
         line = f"line {mark.line + 1}, column {mark.column + 1}: " if mark else ""
-        problem = str(getattr(error, "problem", None) or error).replace("\n", " ")
+        problem = " ".join(str(getattr(error, "problem", None) or error).split())
         raise BadInput(f"{line}{problem}", file=path) from error
+
+
+def read_value(text: str, key: str) -> Any:
+    """Return what ``text`` on the command line means as YAML; itself if it is none. Raises ``BadInput``."""
+    if not _is_text(text) or not _is_text(key):
+        raise BadInput(f"{shown(text)} is no text that can be written as UTF-8", file="--set", key=ascii(key)[1:-1])
+    if len(text) > MOST_BYTES // 100:
+        raise BadInput(f"{len(text)} letters are more than a value can have", file="--set", key=key)
+    try:
+        return _parsed(text)
+    except (yaml.YAMLError, ValueError):
+        return text
+
+
+def _parsed(text: str, file: str = "") -> Any:
+    """Return the only document in ``text``, and note where the keys of ``file`` stand."""
+    loader = _Loader(text)
+    try:
+        node = loader.get_single_node()
+        if node is None:
+            return None
+        if file:
+            LINES[file] = lambda: _lines(node, "", {})
+        return loader.construct_document(node)
+    finally:
+        loader.dispose()
+
+
+def _lines(node: Any, key: str, found: dict[str, int]) -> dict[str, int]:
+    """Return key -> line: keys as messages have them, ``faults[1].signal``."""
+    if isinstance(node, yaml.MappingNode):
+        for name, value in node.value:
+            full = f"{key}.{name.value}".lstrip(".")
+            found[full] = name.start_mark.line + 1
+            _lines(value, full, found)
+    elif isinstance(node, yaml.SequenceNode):
+        for number, value in enumerate(node.value, start=1):
+            found[f"{key}[{number}]"] = value.start_mark.line + 1
+            _lines(value, f"{key}[{number}]", found)
+    return found
 
 
 def read_mapping(path: Path) -> dict[str, Any]:
@@ -52,7 +162,7 @@ def read_mapping(path: Path) -> dict[str, Any]:
 def explain(error: ValidationError, file: object, known: list[str]) -> BadInput:
     """Return pydantic's first complaint as one sentence with file, key, value and what would be right."""
     first = error.errors()[0]
-    key = "".join(f"[{part + 1}]" if isinstance(part, int) else f".{part}" for part in first["loc"]).lstrip(".")
+    key = place_in(error)
     value = first.get("input")
     if first["type"] == "extra_forbidden":
         word = str(first["loc"][-1])
@@ -62,5 +172,11 @@ def explain(error: ValidationError, file: object, known: list[str]) -> BadInput:
     if first["type"] == "missing":
         return BadInput("is missing", file=file, key=key)
     cause = first.get("ctx", {}).get("error")
-    text = str(cause) if isinstance(cause, BadInput) else f"{value!r}: {first['msg'][0].lower()}{first['msg'][1:]}"
+    text = str(cause) if isinstance(cause, BadInput) else f"{shown(value)}: {first['msg'][0].lower()}{first['msg'][1:]}"
     return BadInput(text, file=file, key=key)
+
+
+def place_in(error: ValidationError) -> str:
+    """Return the key that pydantic's first complaint is about: ``faults[1].signal``."""
+    parts = error.errors()[0]["loc"]
+    return "".join(f"[{part + 1}]" if isinstance(part, int) else f".{part}" for part in parts).lstrip(".")

@@ -17,11 +17,9 @@ from orchestrator.cosim.slave import Array
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.sweep.fields import Field, find_field
 from orchestrator.sweep.study.design import Design
-from orchestrator.sweep.study.study_file import Range, Samples, Spread, StudyFile
+from orchestrator.sweep.study.study_file import MOST_RUNS, Range, Samples, Spread, StudyFile
 from orchestrator.text.errors import BadInput
 from orchestrator.text.quantities import number, scalar
-
-MOST_RUNS = 100_000_000
 
 
 class _Column(NamedTuple):

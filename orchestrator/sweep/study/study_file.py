@@ -6,9 +6,11 @@ from typing import Any
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
+from orchestrator.scenario.scenario import Name
 from orchestrator.text.errors import BadInput, suggestion
 from orchestrator.text.yaml_file import explain, read_mapping
 
+MOST_RUNS = 100_000_000
 SHIPPED = Path(__file__).parents[2] / "studies"
 
 
@@ -45,7 +47,7 @@ class Spread(_StudyPart):
 class Samples(_StudyPart):
     """``n`` samples of some parameters: ``{n: 100, vehicle.start.y: {uniform: [-0.1, 0.1]}, ...}``."""
 
-    n: int = Field(ge=1)
+    n: int = Field(ge=1, le=MOST_RUNS)
     spreads: dict[str, Spread] = {}
 
     @model_validator(mode="before")
@@ -101,14 +103,14 @@ class MeasureOf(_StudyPart):
 class StudyFile(_StudyPart):
     """One study as it is written. A key ``a, b`` gives the same value to both parameters."""
 
-    name: str = Field(pattern=r"^[A-Za-z0-9._-]+$")
+    name: Name
     title: str = ""
     description: str = ""
     scenario: str
     """Name of a shipped scenario, or a file relative to the study's."""
     set: dict[str, Any] = {}
     """Changes of the scenario that hold for every run, as with ``apa run --set``."""
-    seed: int = Field(default=1, ge=0)
+    seed: int = Field(default=1, ge=0, le=2**31 - 1)
     """Seed of the samples and of the runs' own seeds."""
     runs: Runs
     measures: dict[str, MeasureOf] = {}

@@ -1,0 +1,82 @@
+"""A command run in this process with an eye on how it ends: its code, its lines, its time, its memory."""
+
+import contextlib
+import io
+import resource
+import signal
+import time
+import traceback
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
+
+from orchestrator.cli import main
+
+LONGEST = 20.0
+"""A command that takes longer hangs [s]."""
+MOST_MEMORY = 1 << 30
+"""What a command may take besides what the process had before [bytes]."""
+CODES = (0, 1, 2, 130)
+"""Codes that an input may lead to; 3 is a mistake of ours."""
+
+
+class Hangs(BaseException):
+    """It takes too long."""
+
+
+class Answer(NamedTuple):
+    """How a command ended."""
+
+    code: int | None
+    """None: it raised."""
+    out: str
+    err: str
+    seconds: float
+    mistake: str
+    """What must not be: a traceback, a hang; empty if all is well."""
+
+
+def ask(words: Sequence[str], longest: float = LONGEST) -> Answer:
+    """Return how ``apa`` with these words ends."""
+    out, err = io.StringIO(), io.StringIO()
+    begun, mistake, code = time.monotonic(), "", None
+    try:
+        with alarm(longest), contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
+            try:
+                code = main(list(words))
+            except SystemExit as left:
+                code = int(left.code or 0)
+    except Hangs:
+        mistake = f"hangs: more than {longest:g} s"
+    except BaseException:
+        mistake = traceback.format_exc()
+    said = err.getvalue()
+    if not mistake and code not in CODES:
+        mistake = f"code {code}: {said.strip()}"
+    if not mistake and "Traceback" in said:
+        mistake = said
+    if not mistake and code == 2 and "apa" not in said and "FAIL" not in out.getvalue():
+        mistake = f"code 2 without a word: {said!r}"
+    return Answer(code, out.getvalue(), said, time.monotonic() - begun, mistake)
+
+
+@contextlib.contextmanager
+def alarm(seconds: float) -> Iterator[None]:
+    """Raise ``Hangs`` in what takes longer."""
+
+    def ring(*_: object) -> None:
+        raise Hangs
+
+    before = signal.signal(signal.SIGALRM, ring)
+    signal.setitimer(signal.ITIMER_REAL, seconds)
+    try:
+        yield
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0.0)
+        signal.signal(signal.SIGALRM, before)
+
+
+def limit_memory() -> None:
+    """Let this process have no more than ``MOST_MEMORY`` besides what it has: what asks for more fails."""
+    with open("/proc/self/statm") as file:
+        now = int(file.read().split()[0]) * resource.getpagesize()
+    resource.setrlimit(resource.RLIMIT_AS, (now + MOST_MEMORY, resource.RLIM_INFINITY))

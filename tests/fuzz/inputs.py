@@ -14,13 +14,15 @@ VALUES = (
     "'1 " + "m" * 3000 + "'", '"\\ud800"', '"\\0"', '"\\u2028"', "'" + "x" * 300 + "'", "..", "'../../x'", "'/dev/zero'",
     "&a [*a]", "*b", "&c 1", "'" + "9" * 59 + "'", "2147483648", "-2147483649", "1e6", "1e7", "99999999999", "0.001",
     "[" * 3000, "[" * 30 + "]" * 30, "{[1]: 2}", "{? {a: 1} : 2}", "'nan'", "'inf'", "'-inf deg'", "'1e5 deg'", "%", "@x",
-    "|", "'  '", "\t", "- 1", "1_000_000", "0o17", "0b1", "1.", ".5", "+1", "'٣'", "'１'", "<<", "=", "3 rad", "PARKED",
+    "|", "'  '", "\t", "- 1", "1_000_000", "0o17", "0b1", "1.", ".5", "+1", "'\u0663'", "'\uff11'", "<<", "=", "3 rad", "PARKED",
 )  # fmt: skip
 SETTINGS = (
     "vehicle", "vehicle.start.x", "vehicle.start", "vehicle.wheelbase", "vehicle.chassis.mass", "controller", "target",
-    "controller.system", "target.x", "slot.x", "slot.length", "step", "stop_time", "every.vehicle", "every.controller", "every",
+    "controller.system", "target.x", "slot.x", "slot.length", "step", "stop_time", "every.vehicle", "every.controller",
+    "every",
     "seed", "name", "title", "faults", "limits", "ending", "expect", "task", "car", "base", "scene", "scene.boxes",
-    "vehicle.driver.profile", "vehicle.body", "controller.ntbpt.k4", "vehicle.scene.boxes[1].x", "file", "changed", "left_out",
+    "vehicle.driver.profile", "vehicle.body", "controller.ntbpt.k4", "vehicle.scene.boxes[1].x", "file",
+    "changed", "left_out",
     "scene.boxes[1].x", "", ".", "vehicle.", "a.b.c", "vehicle.start.x.y", "controller.target.x", "ultrasonic.seed",
 )  # fmt: skip
 SCENARIO = """name: odd

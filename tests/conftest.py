@@ -53,7 +53,7 @@ SLOW = [
     "twin/test_interop.py",
     "twin/test_same_bits.py",
     "vehicle/test_double_track.py",
-    "vehicle/test_geometry.py",
+    "modelkit/test_geometry.py",
     "vehicle/test_scene.py",
     "vehicle/test_vehicle.py",
 ]

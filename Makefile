@@ -27,7 +27,7 @@ lint: $(VENV)/.test
 	$(BIN)/ruff format --check .
 
 types: $(VENV)/.test
-	$(BIN)/mypy modelkit vehicle_fmu controller_fmu fmus orchestrator
+	$(BIN)/mypy modelkit vehicle_fmu controller_fmu fmus orchestrator apa_cosim
 
 bench: $(VENV)/.test ## Measure speed, as ratios side by side in one run
 	$(BIN)/python -m benchmarks

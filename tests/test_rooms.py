@@ -36,7 +36,7 @@ FLOORS: tuple[tuple[str, ...], ...] = (
     ("orchestrator.export",),
     ("orchestrator.papers", "orchestrator.bakeoff", "orchestrator.grid"),
     ("orchestrator.commands",),
-    ("orchestrator.cli",),
+    ("orchestrator.cli", "apa_cosim"),
     ("orchestrator.__main__",),
 )
 """A room imports rooms of the floors above its own line only, never one beside it."""
@@ -60,7 +60,7 @@ class Import(NamedTuple):
 
 
 def files() -> Iterator[Path]:
-    for package in ("modelkit", "vehicle_fmu", "controller_fmu", *HOSTS):
+    for package in ("modelkit", "vehicle_fmu", "controller_fmu", "apa_cosim", *HOSTS):
         yield from sorted((ROOT / package).rglob("*.py"))
 
 

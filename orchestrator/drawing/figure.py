@@ -84,6 +84,12 @@ OUTLINES = 14
 def draw(recording: Recording, summary: Summary, scenario: Scenario, path: Path) -> None:
     """Write the overview picture of a run to ``path``."""
     with mpl.rc_context(STYLE):
+        overview(recording, summary, scenario).savefig(path, dpi=120, metadata={"Software": "apa-cosim"})
+
+
+def overview(recording: Recording, summary: Summary, scenario: Scenario) -> Figure:
+    """Return the overview picture of a run."""
+    with mpl.rc_context(STYLE):
         figure = Figure(figsize=(13.0, 9.0), layout="constrained")
         grid = figure.add_gridspec(4, 3, height_ratios=(1.45, 0.07, 1.0, 0.075))
         _plan(figure.add_subplot(grid[0, :]), recording, scenario)
@@ -99,7 +105,7 @@ def draw(recording: Recording, summary: Summary, scenario: Scenario, path: Path)
             names = _ribbon(figure.add_subplot(grid[3, column], sharex=axis), recording)
         _legend(figure.add_subplot(grid[1, :]), names)
         figure.suptitle(_title(summary, scenario), x=0.012, ha="left", fontsize=12.5, fontweight="bold", color=INK)
-        figure.savefig(path, dpi=120, metadata={"Software": "apa-cosim"})
+    return figure
 
 
 def _title(summary: Summary, scenario: Scenario) -> str:

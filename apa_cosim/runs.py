@@ -1,0 +1,150 @@
+"""A scenario, driven or read back from its log."""
+
+import html
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import yaml
+
+from orchestrator.cosim.fmu_files import default_kind, fmu_files
+from orchestrator.cosim.recording import Recording
+from orchestrator.cosim.slave import Array
+from orchestrator.log.read_log import log_file
+from orchestrator.log.read_log import read_log as read_recording
+from orchestrator.scenario.load_scenario import load_scenario as load
+from orchestrator.scenario.load_scenario import scenario_names
+from orchestrator.scenario.scenario import Scenario
+from orchestrator.session.session import run_scenario
+from orchestrator.verdict.logged import logged
+from orchestrator.verdict.summary import Summary, summarize
+
+if TYPE_CHECKING:
+    import pandas as pd  # type: ignore[import-untyped]
+    from matplotlib.figure import Figure
+
+__all__ = ["Run", "load_scenario", "read_log", "run", "scenario_names"]
+Changes = Mapping[str, object]
+"""Key -> value as in ``--set``: a number in SI units, a text with a unit, a truth value, a list or mapping."""
+FRAME = '<iframe srcdoc="{page}" style="width: 100%; height: 44rem; border: 0" title="{title}"></iframe>'
+
+
+@dataclass(frozen=True)
+class Run:
+    """One run: what was asked, all signals at all exchanges, and the verdict."""
+
+    scenario: Scenario
+    recording: Recording
+    summary: Summary
+
+    @property
+    def outcome(self) -> str:
+        """``parked``, ``finished``, ``not_parked``, ``not_finished``, ``failed`` or ``aborted``."""
+        return self.summary.outcome
+
+    @property
+    def reason(self) -> str:
+        """Why it came out so."""
+        return self.summary.reason
+
+    @property
+    def t(self) -> Array:
+        """Time of each exchange [s]."""
+        return self.recording.t
+
+    @property
+    def signals(self) -> dict[str, Array]:
+        """Name (``vehicle.pose.x``) -> values over :attr:`t`, SI units; modes as numbers."""
+        return self.recording.signals
+
+    def __getitem__(self, name: str) -> Array:
+        """Return one signal. Raises ``KeyError`` with the names that come close."""
+        try:
+            return self.signals[name]
+        except KeyError:
+            from orchestrator.text.errors import suggestion
+
+            raise KeyError(f"{name}: no such signal{suggestion(name, self.signals)}") from None
+
+    def unit(self, name: str) -> str:
+        """Return the SI unit of a signal; 1 for what has none."""
+        return self.recording.variables[name].signal.unit
+
+    def to_pandas(self) -> "pd.DataFrame":
+        """Return all signals as columns over time [s]. Needs pandas."""
+        import pandas as pd
+
+        return pd.DataFrame(self.signals, index=pd.Index(self.t, name="t"))
+
+    def plot(self) -> "Figure":
+        """Return the picture of the run: top view, speed, position and heading over time, states."""
+        from orchestrator.drawing.figure import overview
+
+        return overview(self.recording, self.summary, self.scenario)
+
+    def save(self, folder: Path | str) -> Path:
+        """Write ``report.html`` (the replay), ``overview.png`` and ``summary.json`` to a folder; return the replay."""
+        from orchestrator.drawing.figure import draw
+        from orchestrator.report.replay import write_replay
+        from orchestrator.report.results import PAGE, PICTURE, write_summary
+
+        path = Path(folder)
+        path.mkdir(parents=True, exist_ok=True)
+        write_summary(path, self.summary)
+        draw(self.recording, self.summary, self.scenario, path / PICTURE)
+        write_replay(path / PAGE, self.recording, self.summary, [])
+        return path / PAGE
+
+    def _repr_html_(self) -> str:
+        """Return the replay for a notebook."""
+        from orchestrator.report.replay import replay_page
+
+        page = replay_page(self.recording, self.summary, [])
+        return FRAME.format(page=html.escape(page, quote=True), title=html.escape(self.scenario.title))
+
+    def __repr__(self) -> str:
+        return f"<Run {self.scenario.name}: {self.outcome}, {self.reason}; {self.summary.duration:g} s>"
+
+
+def load_scenario(name: str | Path, changes: Changes | None = None) -> Scenario:
+    """Return a shipped scenario by its name, or one of a YAML file, with some keys changed.
+
+    Raises ``BadInput`` with file, key, value and what would be right.
+    """
+    return load(str(name), [f"{key}={_text(value)}" for key, value in (changes or {}).items()])
+
+
+def run(
+    scenario: str | Path | Scenario,
+    changes: Changes | None = None,
+    *,
+    fmus: str | None = None,
+    log: Path | str | None = None,
+) -> Run:
+    """Return a scenario's run.
+
+    ``fmus``: ``native``, ``python``, or ``none`` for the models in process; by default native where a C compiler is
+    there. They are built if need be. ``log``: write an MCAP file here as well. Raises ``BadInput``.
+    """
+    chosen = scenario if isinstance(scenario, Scenario) else load_scenario(scenario, changes)
+    if isinstance(scenario, Scenario) and changes:
+        raise TypeError("changes are made when a scenario is loaded: load_scenario(name, changes)")
+    kind = fmus or default_kind()
+    files = None if kind == "none" else fmu_files(kind)
+    ran = run_scenario(chosen, files, kind=kind, log=Path(log) if log is not None else None)
+    return Run(chosen, ran.recording, summarize(ran.recording, chosen, ran.wall_time))
+
+
+def read_log(path: Path | str) -> Run:
+    """Return the run in a log of ours, or in a run's folder. Raises ``BadInput``."""
+    file = log_file(str(path))
+    recording = read_recording(file)
+    scenario, note = logged(recording, str(file), file.stem)
+    return Run(scenario, recording, summarize(recording, scenario, 0.0, note))
+
+
+def _text(value: object) -> str:
+    if isinstance(value, str):
+        return value
+    return str(yaml.safe_dump(value, default_flow_style=True, width=1_000_000)).removesuffix("...\n").strip()

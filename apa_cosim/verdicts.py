@@ -1,0 +1,44 @@
+"""Runs judged by requirements, and held against each other."""
+
+from collections.abc import Iterable
+from pathlib import Path
+
+from apa_cosim.runs import Run
+from orchestrator.comparison.compare import Comparison
+from orchestrator.comparison.compare import compare as compare_recordings
+from orchestrator.comparison.tolerance import Tolerance, Tolerances
+from orchestrator.scenario.load_scenario import find_file
+from orchestrator.scenario.requirements import Requirement, read_requirements
+from orchestrator.verdict.judge import Check
+from orchestrator.verdict.judge import judge as judge_recording
+from orchestrator.verdict.numbers import facts_of
+
+
+def judge(run: Run, *requirements: str | Path | Requirement) -> list[Check]:
+    """Return a check for each requirement: a shipped set's name, a YAML file, or a ``Requirement``.
+
+    Raises ``BadInput`` for a signal that the run does not have.
+    """
+    asked: list[Requirement] = []
+    for item in requirements:
+        if isinstance(item, Requirement):
+            asked.append(item)
+        else:
+            asked += read_requirements(find_file(str(item), "limits", "set of limits", Path.cwd()))
+    return judge_recording(asked, run.recording, facts_of(run.recording, run.scenario), "judge")
+
+
+def compare(
+    a: Run,
+    b: Run,
+    *,
+    absolute: float = 1e-9,
+    relative: float = 1e-9,
+    time: float = 0.0,
+    signals: Iterable[str] | None = None,
+) -> Comparison:
+    """Return where run ``b`` leaves the reference ``a``: by more than max(absolute, relative * |a|) at every moment
+    of ``a`` within ``time`` [s]. ``signals``: patterns such as ``vehicle.pose.*``.
+    """
+    tolerances = Tolerances(Tolerance(absolute, relative, time))
+    return compare_recordings(a.recording, b.recording, tolerances, signals)

@@ -45,13 +45,21 @@ def main() -> None:
     """Write all reference pages."""
     folder = ROOT / "docs" / "reference"
     folder.mkdir(parents=True, exist_ok=True)
-    pages = {f"{name}.md": model_page(model) for name, model in MODELS.items()}
-    pages.update({"charts.md": charts_page(), "commands.md": commands_page(), "scenarios.md": scenarios_page()})
-    pages["files.md"] = files_page()
-    pages["equations.md"] = equations_page()
-    for name, text in pages.items():
+    for name, text in pages().items():
         (folder / name).write_text(MADE + text, encoding="utf-8")
         print(folder.relative_to(ROOT) / name)
+
+
+def pages() -> dict[str, str]:
+    """Return name -> text of all reference pages."""
+    return {
+        **{f"{name}.md": model_page(model) for name, model in MODELS.items()},
+        "charts.md": charts_page(),
+        "commands.md": commands_page(),
+        "scenarios.md": scenarios_page(),
+        "files.md": files_page(),
+        "equations.md": equations_page(),
+    }
 
 
 def equations_page() -> str:

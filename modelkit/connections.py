@@ -3,7 +3,7 @@
 Local variables are not connected: other tools could not.
 """
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from typing import NamedTuple
 
 from modelkit.model import Model
@@ -44,8 +44,10 @@ def part_of(name: str, model: Model) -> Part:
     return Part(name, variables(model.inputs), variables(model.outputs))
 
 
-def connections(parts: Sequence[Part]) -> list[Wire]:
+def connections(parts: Sequence[Part], fed: Collection[tuple[int, int]] = ()) -> list[Wire]:
     """Return what is connected, in the order of the receivers and of their inputs.
+
+    ``fed`` are inputs (part, place) that something else feeds already.
 
     Raises ``CannotConnectError`` if a pair differs in type or unit, or if two parts offer the same input.
     """
@@ -55,6 +57,8 @@ def connections(parts: Sequence[Part]) -> list[Wire]:
     wires = []
     for target, receiver in enumerate(parts):
         for place, wanted in enumerate(receiver.inputs):
+            if (target, place) in fed:
+                continue
             sources = [number for number in range(len(parts)) if number != target and wanted.name in places[number]]
             if len(sources) > 1:
                 offers = " and ".join(parts[number].name for number in sources)

@@ -43,8 +43,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Run, write, print. Returns 0 parked or finished, 1 not, 130 interrupted."""
-    foreign = foreign_files(arguments)
-    scenario, left_out = load_fitting(arguments.scenario, arguments.set, foreign)
+    scenario, left_out, foreign = load_fitting(arguments.scenario, arguments.set, foreign_files(arguments))
     if left_out:
         say(f"apa: warning: left out, the FMU does not have them: {', '.join(left_out)}")
     out: Path = arguments.out or Path("runs") / scenario.name

@@ -89,7 +89,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _bench(arguments: argparse.Namespace, interrupt: Interrupt) -> Bench:
     foreign = foreign_files(arguments)
-    files = None if arguments.fmus == "none" else {**fmu_files(arguments.fmus, say), **foreign}
+    files = {} if arguments.fmus == "none" else fmu_files(arguments.fmus, say)
     found = [find_file(name, "limits", "set of limits", Path.cwd()) for name in arguments.requirements]
     requirements = [(str(file), read_requirements(file)) for file in found]
     return Bench(files, arguments.fmus, foreign, requirements, interrupt, Warnings())

@@ -5,9 +5,9 @@ allocated once. Afterwards the rows are laid into the slaves' arrays one by one,
 and endings see them as if they had been there: log, recording and progress bar need to know nothing.
 An ending in mid-block means that the FMUs have run on for the rest of it; nobody looks at that.
 
-It covers FMUs of any kind. Faults change inputs between exchange and step, so a run with
-manipulators, or with a model in process, takes the Python loop; so does one on a machine where
-the compiled loop cannot be built.
+It covers FMUs of any kind in this process. Faults change inputs between exchange and step, so a run with
+manipulators takes the Python loop; so does one with conversions, with a model in process or an FMU in a
+process of its own, and one on a machine where the compiled loop cannot be built.
 """
 
 import ctypes
@@ -69,7 +69,10 @@ class CompiledMaster(Master):
         super().initialize()
         fmus = [slave for slave in self.slaves if isinstance(slave, FmuSlave)]
         self._plan = None
-        if not self.manipulators and len(fmus) == len(self.slaves):
+        plain = all(link.convert is None for link in self.connections) and all(
+            len(slave.inputs.names) == slave.inputs.own for slave in self.slaves
+        )
+        if not self.manipulators and plain and len(fmus) == len(self.slaves):
             with suppress(RuntimeError):
                 self._plan = _Plan(self, fmus)
 

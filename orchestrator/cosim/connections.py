@@ -1,21 +1,24 @@
 """The connections of a master: all signals from one slave to another as two index arrays."""
 
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
 
 from modelkit.connections import CannotConnectError, Part, Wire, connections
-from orchestrator.cosim.slave import Indices, Slave
+from orchestrator.cosim.slave import Array, Indices, Slave
 from orchestrator.text.errors import BadInput
 
 
 class Connection(NamedTuple):
-    """All signals from one slave to another, as two index arrays."""
+    """Signals from one slave to another, as two index arrays."""
 
     source: int
     source_places: Indices
     target: int
     target_places: Indices
+    convert: Callable[[Array], Array] | None = None
+    """What makes the values of the inputs from those of the outputs; None: they are the same."""
 
 
 def connect(slaves: list[Slave]) -> list[Connection]:
@@ -23,21 +26,28 @@ def connect(slaves: list[Slave]) -> list[Connection]:
 
     Raises ``BadInput`` if a pair differs in type or unit, or if two slaves offer the same input.
     """
-    pairs: dict[tuple[int, int], list[Wire]] = {}
     try:
-        for wire in connections([_part(slave) for slave in slaves]):
-            pairs.setdefault((wire.source, wire.target), []).append(wire)
+        return wired(connections([part_of_slave(slave) for slave in slaves]))
     except CannotConnectError as error:
         raise BadInput(error.text, key=error.signal) from None
+
+
+def wired(wires: list[Wire]) -> list[Connection]:
+    """Return one connection for each pair of slaves."""
+    pairs: dict[tuple[int, int], list[Wire]] = {}
+    for wire in wires:
+        pairs.setdefault((wire.source, wire.target), []).append(wire)
     return [
         Connection(source, _places([wire.output for wire in wires]), target, _places([wire.input for wire in wires]))
         for (source, target), wires in pairs.items()
     ]
 
 
-def _part(slave: Slave) -> Part:
+def part_of_slave(slave: Slave) -> Part:
+    """Return a slave as far as connecting it goes: without what is only told under its name."""
     unsaid = slave.inputs.unsaid | slave.outputs.unsaid
-    return Part(slave.name, slave.inputs.variables, slave.outputs.variables, unsaid)
+    inputs = slave.inputs.variables[: slave.inputs.own]
+    return Part(slave.name, inputs, slave.outputs.variables, unsaid)
 
 
 def _places(items: list[int]) -> Indices:

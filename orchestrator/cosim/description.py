@@ -1,26 +1,35 @@
 """What an FMU says of itself: its variables as ports, read without asking more of the file than a run needs."""
 
+import re
+from enum import IntEnum
 from pathlib import Path
 
-from fmpy.model_description import ModelDescription, ScalarVariable, read_model_description
+from fmpy.model_description import ModelDescription, ModelVariable, read_model_description
 
 from modelkit.model import Model
 from modelkit.signal import Role, Signal
 from modelkit.variables import Variable, variables
-from orchestrator.cosim.slave import Ports
+from orchestrator.cosim.slave import Ports, Scale
 from orchestrator.text.errors import BadInput
 
-KINDS = {"Real": float, "Integer": int, "Enumeration": int, "Boolean": bool}
+WHOLE = ("Int8", "UInt8", "Int16", "UInt16", "Int32", "UInt32", "Int64", "UInt64")
+KINDS: dict[str, type] = {
+    **{"Real": float, "Float64": float, "Float32": float, "Integer": int, "Enumeration": int, "Boolean": bool},
+    **dict.fromkeys(WHOLE, int),
+}
+"""Type of an FMI variable -> the Python type it is kept as; others are not connected."""
+BASE = ("kg", "m", "s", "A", "K", "mol", "cd", "rad")
 
 
 def read_description(path: Path) -> ModelDescription:
-    """Return what the FMU says of itself. Raises ``BadInput`` if the file is no FMI 2.0 co-simulation FMU."""
+    """Return what the FMU says of itself. Raises ``BadInput`` if the file is no FMI 2.0 or 3.0 co-simulation FMU."""
     try:
         description = read_model_description(str(path), validate=False)
     except Exception as error:
         raise BadInput(f"is not an FMU: {_first_line(error)}", file=path) from error
-    if description.fmiVersion != "2.0" or description.coSimulation is None:
-        raise BadInput(f"is FMI {description.fmiVersion}; expected FMI 2.0 for co-simulation", file=path)
+    version = str(description.fmiVersion)
+    if not version.startswith(("2.", "3.")) or description.coSimulation is None:
+        raise BadInput(f"is FMI {version}; expected FMI 2.0 or 3.0 for co-simulation", file=path)
     return description
 
 
@@ -28,7 +37,7 @@ def ports_of(description: ModelDescription, causality: str, model: Model | None,
     """Return the variables of one causality; states, and units it does not say, are those of ``model``.
 
     With the outputs come the local variables that ``model`` has too: they are read and logged, not connected. What
-    the model has is in its order.
+    the model has is in its order. An array of FMI 3 becomes its elements: ``x[1]``, ``x[2]``, ``y[2,1]``.
 
     Raises ``BadInput`` if a start value has no meaning.
     """
@@ -40,11 +49,47 @@ def ports_of(description: ModelDescription, causality: str, model: Model | None,
         if item.type in KINDS and (item.causality == causality or (_is_seen(item, known) and causality == "output"))
     ]
     chosen.sort(key=lambda item: place.get(item.name, len(place)))
-    found = [_variable(item, known.get(item.name), path) for item in chosen]
-    return Ports(found, frozenset(item.name for item in chosen if item.type == "Real" and _unit(item) is None))
+    found = [element for item in chosen for element in _elements(item, known.get(item.name), path)]
+    unsaid = frozenset(
+        name for item in chosen if KINDS[item.type] is float and _unit(item) is None for name in element_names(item)
+    )
+    ports = Ports(found, unsaid, _scales(description))
+    if causality == "output":
+        ports.direct = dependencies(description)
+    return ports
 
 
-def _is_seen(scalar: ScalarVariable, known: dict[str, Variable]) -> bool:
+def element_names(variable: ModelVariable) -> list[str]:
+    """Return the names of the scalars that a variable stands for: its own, or one for each element of an array."""
+    shape = shape_of(variable)
+    if not shape:
+        return [variable.name]
+    names = [""]
+    for size in shape:
+        names = [f"{name},{index + 1}" if name else str(index + 1) for name in names for index in range(size)]
+    return [f"{variable.name}[{name}]" for name in names]
+
+
+def shape_of(variable: ModelVariable) -> tuple[int, ...]:
+    """Return the sizes of an array of FMI 3 as they are at the start; empty for a scalar."""
+    sizes = []
+    for dimension in variable.dimensions or ():
+        written = dimension.start if dimension.start is not None else getattr(dimension.variable, "start", None)
+        sizes.append(int(str(written or 1)))
+    return tuple(sizes)
+
+
+def dependencies(description: ModelDescription) -> dict[str, set[str]]:
+    """Return output -> inputs on which it depends directly, for the outputs of which the FMU says so."""
+    inputs = {item.name for item in description.modelVariables if item.causality == "input"}
+    return {
+        item.variable.name: {other.name for other in item.dependencies} & inputs
+        for item in description.outputs
+        if item.variable is not None and item.dependencies is not None
+    }
+
+
+def _is_seen(scalar: ModelVariable, known: dict[str, Variable]) -> bool:
     return scalar.causality == "local" and scalar.name in known
 
 
@@ -53,20 +98,55 @@ def _variables_of(model: Model) -> dict[str, Variable]:
     return {variable.name: variable for group in groups for variable in group}
 
 
-def _variable(scalar: ScalarVariable, known: Variable | None, path: Path) -> Variable:
-    kind = KINDS[scalar.type]
-    text = str(scalar.start if scalar.start is not None else "0")
+def _elements(scalar: ModelVariable, known: Variable | None, path: Path) -> list[Variable]:
+    names = element_names(scalar)
+    texts = str(scalar.start if scalar.start is not None else "0").split() if shape_of(scalar) else [scalar.start]
+    texts = texts * len(names) if len(texts) == 1 else texts
+    texts += [None] * (len(names) - len(texts))
+    return [_variable(scalar, name, text, known, path) for name, text in zip(names, texts, strict=False)]
+
+
+def _variable(scalar: ModelVariable, name: str, written: object, known: Variable | None, path: Path) -> Variable:
+    kind = KINDS[str(scalar.type)]
+    text = str(written if written is not None else "0")
     try:
         start = kind(float({"true": "1", "false": "0"}.get(text.lower(), text)))
     except (ValueError, OverflowError):
-        raise BadInput(f"{text!r} is no start value of type {scalar.type}", file=path, key=scalar.name) from None
+        raise BadInput(f"{text!r} is no start value of type {scalar.type}", file=path, key=name) from None
     unit = _unit(scalar) or ("1" if known is None else known.signal.unit)
-    states = known.signal.states if known is not None and known.kind is kind else None
+    states = known.signal.states if known is not None and known.kind is kind else _items(scalar)
     roles = frozenset({Role.LOCAL} if scalar.causality == "local" else ())
-    return Variable(scalar.name, kind, Signal(unit, scalar.description or "", states=states), start, roles)
+    return Variable(name, kind, Signal(unit, scalar.description or "", states=states), start, roles)
 
 
-def _unit(scalar: ScalarVariable) -> str | None:
+def _items(scalar: ModelVariable) -> type[IntEnum] | None:
+    """Return the names of an enumeration's values; None if they cannot be told apart."""
+    items = scalar.declaredType.items if scalar.type == "Enumeration" and scalar.declaredType is not None else []
+    members = {
+        re.sub(r"\W", "_", str(item.name)).upper(): int(str(item.value or place))
+        for place, item in enumerate(items, start=1)
+    }
+    if not members or len(members) < len(items) or not all(name.isidentifier() for name in members):
+        return None
+    return states_called(re.sub(r"\W", "_", str(scalar.declaredType.name)), members)
+
+
+def states_called(name: str, members: dict[str, int]) -> type[IntEnum]:
+    """Return an enumeration made at run time, of name -> value."""
+    return IntEnum(name, members)  # type: ignore[return-value]
+
+
+def _scales(description: ModelDescription) -> dict[str, Scale]:
+    found = {}
+    for item in description.unitDefinitions:
+        base = item.baseUnit
+        if base is not None:
+            exponents = tuple(int(getattr(base, name) or 0) for name in BASE)
+            found[str(item.name)] = Scale(float(base.factor), float(base.offset), exponents)
+    return found
+
+
+def _unit(scalar: ModelVariable) -> str | None:
     return scalar.unit or (scalar.declaredType.unit if scalar.declaredType is not None else None) or None
 
 

@@ -34,8 +34,11 @@ def standstill(condition: EndCondition, slaves: Sequence[Slave]) -> Standstill |
 
 
 def _output(signal: str, slaves: Sequence[Slave]) -> tuple[Ports, int] | None:
+    """Return where an output is, or what is told under that name."""
     owner, _, name = signal.partition(".")
     for slave in slaves:
-        if slave.name == owner and name in slave.outputs.index:
-            return slave.outputs, slave.outputs.index[name]
+        if slave.name == owner:
+            for ports in (slave.outputs, slave.inputs):
+                if name in ports.index:
+                    return ports, ports.index[name]
     return None

@@ -8,7 +8,7 @@ from collections import deque
 import numpy as np
 
 from modelkit.random import normal, seed_state, uniform
-from orchestrator.cosim.master import Manipulator
+from orchestrator.cosim.master import Manipulator, Master
 from orchestrator.cosim.slave import Array, Indices, Slave
 from orchestrator.scenario.fault import Fault
 from orchestrator.text.errors import BadInput, suggestion
@@ -110,13 +110,14 @@ class Noise(_Window):
             self._values[place] += self._sigma * draw
 
 
-def manipulators(faults: list[Fault], slaves: list[Slave], seed: int, file: object = None) -> list[Manipulator]:
+def manipulators(faults: list[Fault], master: Master, seed: int, file: object = None) -> list[Manipulator]:
     """Return a manipulator for every receiver of every fault. Raises ``BadInput`` for an unknown signal."""
+    slaves = master.slaves
     made: list[Manipulator] = []
     for count, fault in enumerate(faults):
         key = f"faults[{count + 1}]"
         fault.check(file, key)
-        for slave, places in _receivers(fault.signal, slaves, file, f"{key}.signal"):
+        for slave, places in _receivers(fault.signal, master, file, f"{key}.signal"):
             made.append(_make(fault, slave, places, slaves, seed * 1000 + len(made), file, key))
     return made
 
@@ -145,20 +146,27 @@ def _make(
     return Override(*where, float(scalar(fault.value, first, file=file)))
 
 
-def _receivers(signal: str, slaves: list[Slave], file: object, key: str) -> list[tuple[int, list[int]]]:
-    """Return (slave number, input places) of everything that hears ``signal``."""
+def _receivers(signal: str, master: Master, file: object, key: str) -> list[tuple[int, list[int]]]:
+    """Return (slave number, input places) of everything that hears ``signal``; who is only told it is not disturbed."""
+    slaves = master.slaves
     owner, _, name = signal.partition(".")
     names = [slave.name for slave in slaves]
     if owner not in names:
         raise BadInput(f"{signal!r}: expected one of {', '.join(names)} before the dot", file=file, key=key)
     own = slaves[names.index(owner)]
-    if _matching(own.inputs.names, name):
-        return [(names.index(owner), _matching(own.inputs.names, name))]
+    inputs = own.inputs.names[: own.inputs.own]
+    if _matching(inputs, name):
+        return [(names.index(owner), _matching(inputs, name))]
     if not _matching(own.outputs.names, name):
-        known = own.outputs.names + own.inputs.names
+        known = own.outputs.names + inputs
         raise BadInput(f"{owner} has no signal {name!r}{suggestion(name, known, f'{owner}.')}", file=file, key=key)
-    heard = [(number, _matching(slave.inputs.names, name)) for number, slave in enumerate(slaves) if slave is not own]
-    heard = [(number, places) for number, places in heard if places]
+    sent = set(_matching(own.outputs.names, name))
+    places: dict[int, set[int]] = {}
+    for link in master.connections:
+        for source, target in zip(link.source_places.tolist(), link.target_places.tolist(), strict=True):
+            if slaves[link.source] is own and source in sent and target < slaves[link.target].inputs.own:
+                places.setdefault(link.target, set()).add(target)
+    heard = [(number, sorted(places[number])) for number in sorted(places)]
     if not heard:
         raise BadInput(f"nobody listens to {signal}", file=file, key=key)
     return heard

@@ -43,7 +43,7 @@ class InProcessSlave:
 
     def send_inputs(self) -> None:
         """Pack the input tuple."""
-        self._input = self._construct(self.inputs.values.tolist())
+        self._input = self._construct(self.inputs.values[: self.inputs.own].tolist())
 
     def step(self, t_ns: int, dt_ns: int) -> None:
         """Call the model's step; an exception in model code is a defect and ends the run."""

@@ -5,9 +5,10 @@ Initialization Mode. A slave with decimation n is stepped every n-th time by n c
 its outputs are read, and its inputs written, only at those instants.
 """
 
+from collections.abc import Callable
 from typing import NamedTuple, Protocol
 
-from orchestrator.cosim.connections import connect
+from orchestrator.cosim.connections import Connection, connect
 from orchestrator.cosim.slave import Array, Indices, Slave, all_values
 
 
@@ -52,12 +53,16 @@ class Interrupt:
     requested = False
 
 
+Link = tuple[Array, Indices, Array, Indices, Callable[[Array], Array] | None]
+"""Input array, places, output array, places, conversion of one connection."""
+
+
 class _Instant(NamedTuple):
     """What happens at one phase of the multi-rate cycle."""
 
     due: list[Slave]
-    links: list[tuple[Array, Indices, Array, Indices]]
-    """(input array, places, output array, places) of every connection into a slave that is due."""
+    links: list[Link]
+    """Every connection into a slave that is due."""
     faults: list[Manipulator]
     steps: list[tuple[Slave, int]]
 
@@ -65,14 +70,22 @@ class _Instant(NamedTuple):
 class Master:
     """Everything that takes part in one run."""
 
-    def __init__(self, slaves: list[Slave], step_ns: int, stop_ns: int, every: dict[str, int] | None = None) -> None:
+    def __init__(
+        self,
+        slaves: list[Slave],
+        step_ns: int,
+        stop_ns: int,
+        every: dict[str, int] | None = None,
+        connections: list[Connection] | None = None,
+    ) -> None:
         self.slaves = slaves
         self.values = all_values(slaves)
         """All inputs and outputs in one array."""
         self.step_ns = step_ns
         self.stop_ns = stop_ns
         self.every = [(every or {}).get(slave.name, 1) for slave in slaves]
-        self.connections = connect(slaves)
+        self.connections = connect(slaves) if connections is None else connections
+        """By equal names if nothing else is said."""
         self.manipulators: list[Manipulator] = []
         self.observers: list[Observer] = []
         self.endings: list[Ending] = []
@@ -85,9 +98,9 @@ class Master:
         for slave in self.slaves:
             slave.fetch_outputs()
         for link in self.connections:
-            self.slaves[link.target].inputs.values[link.target_places] = self.slaves[link.source].outputs.values[
-                link.source_places
-            ]
+            target, target_places, source, source_places, convert = self._link(link)
+            given = source[source_places]
+            target[target_places] = given if convert is None else convert(given)
         for slave in self.slaves:
             slave.send_inputs()
         for slave in self.slaves:
@@ -106,8 +119,9 @@ class Master:
             due, links, faults, steps = instants[pattern]
             for slave in due:
                 slave.fetch_outputs()
-            for target, target_places, source, source_places in links:
-                target[target_places] = source[source_places]
+            for target, target_places, source, source_places, convert in links:
+                given = source[source_places]
+                target[target_places] = given if convert is None else convert(given)
             for fault in faults:
                 fault.apply(t_ns)
             for observer in self.observers:
@@ -142,16 +156,11 @@ class Master:
 
     def _instant(self, count: int) -> "_Instant":
         due = [number for number, every in enumerate(self.every) if count % every == 0]
-        links = [
-            (
-                self.slaves[link.target].inputs.values,
-                link.target_places,
-                self.slaves[link.source].outputs.values,
-                link.source_places,
-            )
-            for link in self.connections
-            if link.target in due
-        ]
+        links = [self._link(link) for link in self.connections if link.target in due]
         faults = [fault for fault in self.manipulators if fault.slave in due]
         steps = [(self.slaves[number], self.every[number] * self.step_ns) for number in due]
         return _Instant([self.slaves[number] for number in due], links, faults, steps)
+
+    def _link(self, link: Connection) -> Link:
+        inputs, outputs = self.slaves[link.target].inputs.values, self.slaves[link.source].outputs.values
+        return inputs, link.target_places, outputs, link.source_places, link.convert

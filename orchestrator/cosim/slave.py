@@ -4,8 +4,9 @@ One slave hosts an FMU (``fmu_slave``), another the same model in process (``in_
 master, the faults, the log and the checks cannot tell them apart.
 """
 
-from collections.abc import Sequence
-from typing import Protocol
+from collections.abc import Collection, Mapping, Sequence
+from types import MappingProxyType
+from typing import NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +17,15 @@ Array = NDArray[np.float64]
 Indices = NDArray[np.intp]
 
 
+class Scale(NamedTuple):
+    """A unit in SI base units: ``value * factor + offset``."""
+
+    factor: float
+    offset: float
+    exponents: tuple[int, ...]
+    """Of kg, m, s, A, K, mol, cd, rad."""
+
+
 class Ports:
     """The inputs, or the outputs, of a slave: variables in order, and their values in one array.
 
@@ -23,17 +33,36 @@ class Ports:
     exchange, a log row and a fault are one array operation.
     """
 
-    def __init__(self, variables: list[Variable], unsaid: frozenset[str] = frozenset()) -> None:
+    def __init__(
+        self,
+        variables: list[Variable],
+        unsaid: frozenset[str] = frozenset(),
+        scales: Mapping[str, Scale] = MappingProxyType({}),
+    ) -> None:
         self.variables = variables
         self.unsaid = unsaid
         """Names of those whose unit the FMU does not say, which FMI 2.0 allows."""
+        self.scales = scales
+        """Unit -> what it is in SI base units, as far as the FMU defines its units."""
+        self.direct: Mapping[str, Collection[str]] = MappingProxyType({})
+        """Output -> inputs it depends on directly, as far as the FMU says so."""
+        self.own = len(variables)
+        """How many of the variables the model has; those after them are told under its name only."""
         self.names = [variable.name for variable in variables]
         self.index = {name: place for place, name in enumerate(self.names)}
         self.values: Array = np.array([float(variable.start) for variable in variables], dtype=np.float64)
 
     def indices(self, kind: type) -> Indices:
-        """Return the places of the variables of Python type ``kind``."""
-        return np.array([place for place, item in enumerate(self.variables) if item.kind is kind], dtype=np.intp)
+        """Return the places of the model's variables of Python type ``kind``."""
+        own = self.variables[: self.own]
+        return np.array([place for place, item in enumerate(own) if item.kind is kind], dtype=np.intp)
+
+    def add_told(self, variable: Variable) -> None:
+        """Add a variable that observers see under the slave's name, but that its model never gets."""
+        self.index[variable.name] = len(self.variables)
+        self.variables.append(variable)
+        self.names.append(variable.name)
+        self.values = np.append(self.values, float(variable.start))
 
 
 class Slave(Protocol):

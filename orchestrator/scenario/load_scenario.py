@@ -11,6 +11,7 @@ from orchestrator.scenario.flat_names import flatten_section, merge_flat
 from orchestrator.scenario.models import MODELS
 from orchestrator.scenario.requirements import read_requirements
 from orchestrator.scenario.scenario import Scenario, Target
+from orchestrator.scenario.system import NO_FILE, SystemText
 from orchestrator.text.errors import BadInput, shown, suggestion
 from orchestrator.text.quantities import scalar
 from orchestrator.text.yaml_file import explain, place_in, read_mapping, read_value
@@ -19,6 +20,8 @@ ROOM = Path(__file__).parent.parent
 NOT_WRITTEN = ("file", "changed", "left_out")
 FIELDS = [*(name for name in Scenario.model_fields if name not in NOT_WRITTEN), "scene"]
 INHERITED_NOT = ("name", "title", "description", "base")
+SETS = "--set"
+"""Key of the uppermost layer with the words it was made from."""
 
 
 More = Mapping[str, Sequence[Variable]]
@@ -49,14 +52,7 @@ def load_scenario(name: str, sets: Iterable[str] = (), more: More | None = None)
 
     ``more`` can be set besides the parameters of the models.
     """
-    path = find_file(name, "scenarios", "scenario", Path.cwd())
-    layers = _layers(path, ())
-    sets = list(sets)
-    layers.append((_set_layer(sets), "--set"))
-    merged: dict[str, Any] = {}
-    for content, file in layers:
-        _check_keys(content, file)
-        merged = _merge(merged, {key: _named(key, content[key]) for key in content if key not in (*MODELS, "scene")})
+    path, layers, merged = _read(name, list(sets))
     for key in INHERITED_NOT:
         if key not in layers[-2][0] and key not in layers[-1][0]:
             merged.pop(key, None)
@@ -66,11 +62,54 @@ def load_scenario(name: str, sets: Iterable[str] = (), more: More | None = None)
     seed = merged.get("seed", 1)
     for owner in MODELS:
         merged[owner] = _parameters(owner, [*car, *layers], seed, (more or {}).get(owner, ()))
+    changed = dict(text.split("=", 1) for text in layers[-1][0].pop(SETS))
     try:
-        scenario = Scenario(**merged, file=str(path), changed=dict(text.split("=", 1) for text in sets))
+        scenario = Scenario(**merged, file=str(path), changed=changed)
     except ValidationError as error:
         raise explain(error, _written_in(place_in(error), layers, path), FIELDS) from None
-    return scenario.model_copy(update={"controller": _told(scenario)})
+    return _with_parameters(scenario, more or {}).model_copy(update={"controller": _told(scenario)})
+
+
+def load_system(name: str, sets: Iterable[str] = ()) -> SystemText | None:
+    """Return the system of a scenario, before its FMUs are known; None if it is ours. Raises ``BadInput``."""
+    path, _, merged = _read(name, list(sets))
+    if merged.get("system") is None:
+        return None
+    try:
+        return SystemText(**merged["system"])
+    except ValidationError as error:
+        raise explain(error, f"{path}: system", list(SystemText.model_fields)) from None
+
+
+def _read(name: str, sets: list[str]) -> tuple[Path, list[Layer], dict[str, Any]]:
+    """Return (file, what it, its bases and ``sets`` say, lowest first, all of that merged but for parameters)."""
+    path = find_file(name, "scenarios", "scenario", Path.cwd())
+    layers = _layers(path, ())
+    slaves = [slave for content, _ in layers for slave in ((content.get("system") or {}).get("slaves") or {})]
+    layers.append((_set_layer(sets, slaves), "--set"))
+    merged: dict[str, Any] = {}
+    for content, file in layers:
+        _check_keys([key for key in content if key != SETS], file)
+        merged = _merge(
+            merged, {key: _named(key, content[key]) for key in content if key not in (*MODELS, "scene", SETS)}
+        )
+    return path, layers, merged
+
+
+def _with_parameters(scenario: Scenario, more: More) -> Scenario:
+    """Return the scenario with the parameters of further slaves by flat name, checked where the FMU is known."""
+    if scenario.system is None:
+        return scenario
+    entries = {}
+    for name, entry in scenario.system.slaves.items():
+        known = [*(variables(MODELS[name].params) if name in MODELS else ()), *more.get(name, ())]
+        given = entry.parameters
+        if known and given:
+            flat = flatten_section(given, [item.name for item in known], file=scenario.file, key=name)
+            by_name = {item.name: item for item in known}
+            given = {key: _value(by_name[key], _Given(value, scenario.file), name) for key, value in flat.items()}
+        entries[name] = entry.model_copy(update={"parameters": given})
+    return scenario.model_copy(update={"system": scenario.system.model_copy(update={"slaves": entries})})
 
 
 def _written_in(key: str, layers: list[Layer], path: Path) -> object:
@@ -99,10 +138,31 @@ def _layers(path: Path, seen: tuple[Path, ...]) -> list[Layer]:
     """Return the file at ``path`` below it its bases, lowest first."""
     if path in seen:
         raise BadInput(f"inherits from itself by way of {', '.join(item.stem for item in seen)}", file=path, key="base")
-    content = read_mapping(path)
+    content = _placed(read_mapping(path), path)
     base = content.get("base")
     below = [] if base is None else _layers(find_file(str(base), "scenarios", "scenario", path.parent), (*seen, path))
     return [*below, (content, path)]
+
+
+def _placed(content: dict[str, Any], path: Path) -> dict[str, Any]:
+    """Return what a file says, with the FMUs of its system where they are, seen from the file."""
+    system = content.get("system")
+    slaves = system.get("slaves") if isinstance(system, Mapping) else None
+    if not isinstance(system, Mapping):
+        return content
+    made = dict(system)
+    if isinstance(slaves, Mapping):
+        made["slaves"] = {str(name): _entry_beside(item, path.parent) for name, item in slaves.items()}
+    if isinstance(system.get("ssp"), str):
+        made["ssp"] = str(path.parent / system["ssp"])
+    return {**content, "system": made}
+
+
+def _entry_beside(entry: object, folder: Path) -> object:
+    given = {"file": NO_FILE if entry is None else entry} if entry is None or isinstance(entry, str) else entry
+    if not isinstance(given, Mapping) or given.get("file", "") in ("", NO_FILE):
+        return given
+    return {**given, "file": str(folder / str(given["file"]))}
 
 
 def _car_layer(car: object, path: Path) -> list[Layer]:
@@ -160,8 +220,10 @@ def limits_of(given: object, folder: Path, file: object = None) -> list[dict[str
     return result
 
 
-def _set_layer(sets: Iterable[str]) -> dict[str, Any]:
-    layer: dict[str, Any] = {}
+def _set_layer(sets: list[str], slaves: Iterable[str]) -> dict[str, Any]:
+    """Return what ``--set`` says as a layer: a parameter of a slave that is neither of ours goes to the system."""
+    layer: dict[str, Any] = {SETS: sets}
+    others = [slave for slave in slaves if slave not in MODELS]
     for text in sets:
         key, equals, value = text.partition("=")
         if not equals or not key:
@@ -173,13 +235,16 @@ def _set_layer(sets: Iterable[str]) -> dict[str, Any]:
             if not isinstance(section, dict):
                 raise BadInput(f"{owner} is set as a whole and in parts", file="--set", key=key)
             section[name] = parsed
+        elif dot and owner in others:
+            slave = layer.setdefault("system", {}).setdefault("slaves", {}).setdefault(owner, {})
+            slave.setdefault("parameters", {})[name] = parsed
         else:
             layer[key] = parsed
     return layer
 
 
-def _check_keys(content: Mapping[str, Any], file: object) -> None:
-    for key in content:
+def _check_keys(keys: Iterable[str], file: object) -> None:
+    for key in keys:
         if key not in FIELDS:
             hint = suggestion(key, [*FIELDS, *(f"{owner}.{key}" for owner in _owners_of(key))])
             raise BadInput(f"unknown{hint or '; known are ' + ', '.join(FIELDS)}", file=file, key=key)

@@ -6,7 +6,9 @@ from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from orchestrator.scenario.end_condition import EndCondition
 from orchestrator.scenario.fault import Fault
+from orchestrator.scenario.models import MODELS
 from orchestrator.scenario.requirements import Requirement, shipped_requirements
+from orchestrator.scenario.system import SystemText
 from orchestrator.text.errors import BadInput
 from orchestrator.text.patterns import NAME
 from orchestrator.text.quantities import NANOSECONDS, Metres, Radians, Seconds
@@ -91,6 +93,8 @@ class Scenario(_ScenarioPart):
     """Where the car shall stand. The controller is told it, unless `controller.target` tells it something else."""
     slot: Slot | None = None
     """The slot as it is: the car's outline is judged by it. What stands around it is the key `scene`."""
+    system: SystemText | None = None
+    """Slaves, connections and roles, where it is not our vehicle and our controller, connected by equal names."""
     faults: list[Fault] = []
     """Disturbances of signals."""
     limits: list[Requirement] = []
@@ -108,8 +112,18 @@ class Scenario(_ScenarioPart):
 
     def given(self, slave: str) -> dict[str, float | int | bool]:
         """Return the parameters that a slave is given."""
-        own: dict[str, float | int | bool] = getattr(self, slave)
+        own = self.parameters_of(slave)
         return {name: value for name, value in own.items() if f"{slave}.{name}" not in self.left_out}
+
+    def parameters_of(self, slave: str) -> dict[str, float | int | bool]:
+        """Return the parameters that the scenario has for a slave."""
+        entry = None if self.system is None else self.system.slaves.get(slave)
+        return {**(entry.parameters if entry else {}), **(getattr(self, slave) if slave in MODELS else {})}
+
+    @property
+    def places(self) -> list[str]:
+        """Names of the slaves in their order."""
+        return list(MODELS) if self.system is None else self.system.places
 
     @property
     def step_ns(self) -> int:
@@ -134,8 +148,8 @@ class Scenario(_ScenarioPart):
         if not self.step <= self.stop_time <= 1e6:
             raise BadInput(f"{self.stop_time:g} s is not between one step and 1e6 s", key="stop_time")
         for name, every in self.every.items():
-            if name not in ("vehicle", "controller"):
-                raise BadInput("unknown; known are vehicle, controller", key=f"every.{name}")
+            if name not in self.places:
+                raise BadInput(f"unknown; known are {', '.join(self.places)}", key=f"every.{name}")
             if not 1 <= every <= 1_000_000:
                 raise BadInput(f"{every} is not a whole number from 1 to 1000000", key=f"every.{name}")
         return self

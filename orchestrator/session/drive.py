@@ -20,7 +20,7 @@ def drive(scenario: Scenario, kind: str, log: Path, foreign: Files | None = None
 
     ``foreign`` FMUs take the place of ours.
     """
-    files = None if kind == "none" else {**fmu_files(kind, say), **(foreign or {})}
+    files = {**({} if kind == "none" else fmu_files(kind, say)), **(foreign or {})}
     log.parent.mkdir(parents=True, exist_ok=True)
     before = replaced(log, scenario)
     if before:

@@ -4,9 +4,10 @@ import argparse
 import hashlib
 from collections.abc import Iterable, Mapping
 from pathlib import Path
+from typing import NamedTuple
 
 from modelkit.variables import Variable
-from orchestrator.scenario.load_scenario import load_scenario
+from orchestrator.scenario.load_scenario import load_scenario, load_system
 from orchestrator.scenario.models import MODELS
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.text.errors import BadInput
@@ -34,20 +35,36 @@ def foreign_files(arguments: argparse.Namespace) -> dict[str, Path]:
     return files
 
 
-def load_fitting(name: str, sets: Iterable[str], files: Files) -> tuple[Scenario, list[str]]:
-    """Return a scenario for the foreign ``files``, and the parameters left out because they do not have them.
+class Fitting(NamedTuple):
+    """A scenario with the FMUs of somebody else's that it is run with."""
+
+    scenario: Scenario
+    left_out: list[str]
+    """Parameters of the scenario that those do not have."""
+    files: Files
+
+
+def load_fitting(name: str, sets: Iterable[str], files: Files) -> Fitting:
+    """Return a scenario with the foreign FMUs of its system, in whose place those in ``files`` come.
 
     Parameters of their own can be set like any other. Raises ``BadInput``.
     """
-    own = {slave: parameters_of(path, slave) for slave, path in files.items()}
-    return fitting(load_scenario(name, sets, own), own)
+    sets = list(sets)
+    system = load_system(name, sets)
+    of_system = {} if system is None else {slave: Path(file) for slave, file in system.files().items()}
+    foreign = {**of_system, **files}
+    for path in foreign.values():
+        if not path.is_file():
+            raise BadInput("no such file", file=path)
+    own = {slave: parameters_of(path, slave) for slave, path in foreign.items()}
+    return Fitting(*fitting(load_scenario(name, sets, own), own), foreign)
 
 
 def parameters_of(path: Path, slave: str) -> list[Variable]:
     """Return the parameters of an FMU that takes the place of ``slave``. Raises ``BadInput``."""
     from orchestrator.cosim.description import ports_of, read_description
 
-    return ports_of(read_description(path), "parameter", MODELS[slave], path).variables
+    return ports_of(read_description(path), "parameter", MODELS.get(slave), path).variables
 
 
 def fitting(scenario: Scenario, own: Mapping[str, list[Variable]]) -> tuple[Scenario, list[str]]:
@@ -55,8 +72,7 @@ def fitting(scenario: Scenario, own: Mapping[str, list[Variable]]) -> tuple[Scen
     ignored: list[str] = []
     for slave, items in own.items():
         known = {item.name for item in items}
-        given: dict[str, float | int | bool] = getattr(scenario, slave)
-        ignored += [f"{slave}.{name}" for name in given if name not in known]
+        ignored += [f"{slave}.{name}" for name in scenario.parameters_of(slave) if name not in known]
     return scenario.model_copy(update={"left_out": ignored}), ignored
 
 

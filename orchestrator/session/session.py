@@ -13,11 +13,12 @@ from orchestrator.cosim.in_process_slave import InProcessSlave
 from orchestrator.cosim.master import End, Interrupt, Master, Observer
 from orchestrator.cosim.mode_changes import ERROR, FMI_LEVELS, WARNING, ModeChanges
 from orchestrator.cosim.recording import Recorder, Recording
-from orchestrator.cosim.remarks import remarks
 from orchestrator.cosim.slave import Slave
 from orchestrator.scenario.models import MODELS
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.session.foreign import FOREIGN, sha256_of
+from orchestrator.system.assemble import Assembled, assemble
+from orchestrator.system.remarks import remarks
 from orchestrator.text.errors import RunError
 
 PACKAGES = ("apa-cosim", "fmpy", "pythonfmu", "numpy", "mcap", "protobuf")
@@ -61,14 +62,15 @@ class Messages:
 def make_slaves(scenario: Scenario, files: Mapping[str, Path] | None, messages: Messages) -> list[Slave]:
     """Return the slaves of a scenario: FMUs from ``files``, or the models in process."""
     slaves: list[Slave] = []
-    for name, model in MODELS.items():
+    for name in scenario.places:
         parameters = scenario.given(name)
-        if files is None:
-            slaves.append(InProcessSlave(name, model, parameters))
+        if name in MODELS and (files is None or name not in files):
+            slaves.append(InProcessSlave(name, MODELS[name], parameters))
         else:
             from orchestrator.cosim.fmu_slave import FmuSlave
 
-            slaves.append(FmuSlave(name, files[name], parameters, messages.from_fmu, model))
+            assert files is not None
+            slaves.append(FmuSlave(name, files[name], parameters, messages.from_fmu, MODELS.get(name)))
     return slaves
 
 
@@ -120,10 +122,12 @@ def run_slaves(
     foreign: Collection[str] = (),
 ) -> Ran:
     """Return the recording of one run of given slaves."""
-    said = remarks(slaves, scenario.ending)
+    system = assemble(scenario, slaves)
+    slaves = system.slaves
+    said = remarks(system, scenario.ending)
     for text in said:
         warn(text)
-    master = _master(slaves, scenario, kind)
+    master = _master(system, scenario, kind)
     master.interrupt = interrupt or Interrupt()
     info = provenance(scenario, slaves, kind, foreign)
     recorder = Recorder(slaves, scenario.stop_ns // scenario.step_ns + 1)
@@ -149,7 +153,7 @@ def run_slaves(
     return Ran(recorder.recording(info), end, said, wall_time)
 
 
-def _master(slaves: list[Slave], scenario: Scenario, kind: str) -> Master:
+def _master(system: Assembled, scenario: Scenario, kind: str) -> Master:
     """Return the master for FMUs of this kind: compiled for native ones, as the loop in Python would eat the gain.
 
     Faults and what ends the run are in place.
@@ -159,9 +163,9 @@ def _master(slaves: list[Slave], scenario: Scenario, kind: str) -> Master:
         from orchestrator.cosim.compiled_master import CompiledMaster
 
         make = CompiledMaster
-    master = make(slaves, scenario.step_ns, scenario.stop_ns, scenario.every)
-    master.manipulators += manipulators(scenario.faults, slaves, scenario.seed, scenario.file)
-    ending = standstill(scenario.ending, slaves)
+    master = make(system.slaves, scenario.step_ns, scenario.stop_ns, scenario.every, system.connections)
+    master.manipulators += manipulators(scenario.faults, master, scenario.seed, scenario.file)
+    ending = standstill(scenario.ending, system.slaves)
     if ending is not None:
         master.endings.append(ending)
     return master
@@ -182,7 +186,7 @@ def provenance(scenario: Scenario, slaves: list[Slave], kind: str, foreign: Coll
     """Return what is needed to repeat the run: scenario, FMUs, seed, versions."""
     return {
         "scenario": scenario.model_dump(mode="json", exclude={"file"}),
-        "fmus": [_used(slave, FOREIGN if slave.name in foreign else kind) for slave in slaves],
+        "fmus": [_used(slave, FOREIGN if slave.name in foreign else kind) for slave in slaves if slave.identity],
         "seed": scenario.seed,
         "versions": versions(),
     }

@@ -1,7 +1,7 @@
 """Many scenarios, each run, judged and kept: what ``apa test`` does."""
 
 import re
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Collection
 from datetime import datetime
 from fnmatch import fnmatchcase
 from pathlib import Path
@@ -63,11 +63,11 @@ class Tested(NamedTuple):
 class Bench(NamedTuple):
     """What all scenarios of a test are run with."""
 
-    files: Mapping[str, Path] | None
-    """Slave name -> FMU; None runs the models in process."""
+    files: Files
+    """Slave name -> FMU of ours; those that lack run in process."""
     kind: str
     foreign: Files
-    """FMUs of somebody else's among them: they need not have all parameters."""
+    """FMUs of somebody else's in their place: they need not have all parameters."""
     requirements: list[tuple[str, list[Requirement]]]
     """(file, its requirements), judged besides the scenario's own limits."""
     interrupt: Interrupt
@@ -93,7 +93,8 @@ def run_test(name: str, sets: list[str], bench: Bench, out: Path, taken: Collect
     scenario = Scenario(name=UNNAMEABLE.sub("-", Path(name).stem) or "unnamed")
     ignored: list[str] = []
     try:
-        scenario, ignored = load_fitting(name, sets, bench.foreign)
+        scenario, ignored, foreign = load_fitting(name, sets, bench.foreign)
+        bench = bench._replace(foreign=foreign)
         if scenario.name in taken:
             raise BadInput(f"another scenario of this test is called {scenario.name}", file=name, key="name")
         return _judged(scenario, ignored, bench, out / scenario.name)
@@ -109,7 +110,7 @@ def _judged(scenario: Scenario, ignored: list[str], bench: Bench, folder: Path) 
     folder.mkdir(parents=True, exist_ok=True)
     ran = run_scenario(
         scenario,
-        bench.files,
+        {**bench.files, **bench.foreign},
         kind=bench.kind,
         log=folder / LOG,
         interrupt=bench.interrupt,

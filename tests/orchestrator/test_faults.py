@@ -22,7 +22,7 @@ TIMES = np.arange(11) * 0.01
 def run(*faults: dict[str, Any], seed: int = 1, every: dict[str, int] | None = None) -> Recording:
     slaves = [InProcessSlave("plant", PLANT, {}), InProcessSlave("brain", BRAIN, {})]
     master = Master(slaves, STEP, 10 * STEP, every)
-    master.manipulators += manipulators([Fault(**fault) for fault in faults], list(slaves), seed)
+    master.manipulators += manipulators([Fault(**fault) for fault in faults], master, seed)
     recorder = Recorder(list(slaves), 11)
     master.observers.append(recorder)
     master.initialize()

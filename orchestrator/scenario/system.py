@@ -1,0 +1,187 @@
+"""A system as a scenario states it: which slaves, from which files, what feeds what, and what plays which role."""
+
+import re
+from collections.abc import Mapping
+from typing import Annotated, Any, Literal, NamedTuple
+
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, model_validator
+
+from orchestrator.scenario.models import MODELS
+from orchestrator.text.errors import BadInput
+from orchestrator.text.quantities import Metres, Radians
+
+TERM = re.compile(r"^(?P<minus>-)?\s*(?P<name>[^\[\]\s]+(?:\[[\d, ]+\][^\[\]\s]*)*)(?:\s+\[(?P<unit>[^\[\]]*)\])?$")
+SLAVE = re.compile(r"^[A-Za-z_][A-Za-z0-9_]*$")
+NO_FILE = "none"
+"""Written for a slave that the system does not have."""
+ROLES: dict[str, tuple[str, ...]] = {
+    "pose": ("vehicle.pose.x", "vehicle.pose.y", "vehicle.pose.heading"),
+    "speed": ("vehicle.speed",),
+    "wheel": ("vehicle.steering_wheel_angle",),
+    "clearance": ("vehicle.clearance",),
+    "mode": ("controller.phase",),
+    "reason": ("controller.reason",),
+    "shifts": ("controller.shifts",),
+    "request": ("controller.steering_wheel_request",),
+    "prompt": ("controller.prompt",),
+}
+"""Short name of a role -> the signals that judge, log, page and figure look for."""
+
+
+class Term(NamedTuple):
+    """A signal as it is written: ``-controller.angle [deg]``."""
+
+    name: str
+    unit: str | None
+    """What the number is in, if that is written."""
+    minus: bool
+
+
+def terms(text: str) -> list[Term]:
+    """Return the signals in ``text``, separated by commas. Raises ``BadInput`` if it is no such list."""
+    found = []
+    for part in re.split(r",(?![^\[]*\])", text):
+        match = TERM.match(part.strip())
+        if match is None:
+            raise BadInput(f"{part.strip()!r} is no signal; expected the like of -controller.angle [deg]")
+        unit = match["unit"]
+        found.append(Term(match["name"], None if unit is None else unit.strip() or "1", match["minus"] is not None))
+    return found
+
+
+class _SystemPart(BaseModel):
+    model_config = ConfigDict(extra="forbid", populate_by_name=True)
+
+
+class SlaveEntry(_SystemPart):
+    """One slave: the FMU, or model, it is, and its parameters."""
+
+    file: str = ""
+    """An .fmu or ``model.py:MODEL`` beside the scenario; empty: ours of this name; ``none``: there is none."""
+    parameters: dict[str, Any] = {}
+    """Parameters of its own; those of vehicle and controller may also stand in their own sections."""
+
+
+class Origin(_SystemPart):
+    """Where another frame has its origin in ours, and where its x axis points."""
+
+    x: Metres = 0.0
+    """[m]"""
+    y: Metres = 0.0
+    """[m]"""
+    heading: Radians = 0.0
+    """Direction of its x axis [rad]."""
+
+
+class PoseFrame(_SystemPart):
+    """How somebody else counts poses, against ISO 8855 at the midpoint of the rear axle."""
+
+    origin: Origin = Origin()
+    """Its origin in our frame."""
+    y: Literal["left", "right"] = "left"
+    """Where its y axis points, seen along x; ``right``: headings count clockwise."""
+    ahead: Metres = 0.0
+    """How far its reference point of the car lies ahead of the rear axle [m]."""
+
+
+class Feed(_SystemPart):
+    """What feeds inputs, or a role: signals, or a constant."""
+
+    from_: Annotated[str, Field(alias="from")] = ""
+    """Signals, as many as there are inputs: ``-controller.angle [deg]``."""
+    value: float | str | bool | None = None
+    """A constant instead: a number with or without unit, true or false, the name of a state."""
+    factor: float = 1.0
+    """The signal times this..."""
+    offset: float = 0.0
+    """...plus this, in the unit of the signal, before it is brought into that of the input."""
+    map: dict[int | str, float | int | str | bool] | None = None
+    """Value of the signal -> value of the input, by number or by name of a state."""
+    otherwise: Annotated[float | int | str | bool | None, Field(alias="else")] = None
+    """Value of the input for all that is not in the map (its start value)."""
+    states: dict[str, int] | None = None
+    """Names of the values, for a mode whose FMU does not name them."""
+    into: str | None = None
+    """Three signals are a pose of ours, brought into this frame."""
+    out_of: str | None = None
+    """Three signals are a pose in this frame, brought into ours."""
+
+    @model_validator(mode="after")
+    def _one_source(self) -> "Feed":
+        if bool(self.from_) == (self.value is not None):
+            raise BadInput("expected a signal (from) or a constant (value)")
+        if self.from_:
+            terms(self.from_)
+        return self
+
+
+def _feeds(written: Any, slaves: frozenset[str]) -> Any:
+    """Return what is written as a mapping for :class:`Feed`: a text that names a slave is a signal."""
+    if isinstance(written, Mapping):
+        given = dict(written)
+        if isinstance(given.get("from"), list):
+            given["from"] = ", ".join(map(str, given["from"]))
+        return given
+    if isinstance(written, list):
+        return {"from": ", ".join(map(str, written))}
+    is_signal = isinstance(written, str) and written.strip(" -").partition(".")[0] in slaves
+    return {"from": written} if is_signal else {"value": written}
+
+
+def _entry(written: Any) -> Any:
+    if written is None:
+        return {"file": NO_FILE}
+    return {"file": written} if isinstance(written, str) else written
+
+
+Entry = Annotated[SlaveEntry, BeforeValidator(_entry)]
+
+
+class SystemText(_SystemPart):
+    """Slaves, and what is connected; outputs and inputs of the same name are connected without a word."""
+
+    ssp: str = ""
+    """A system made elsewhere, whose slaves, connections and parameters are taken over."""
+    slaves: dict[str, Entry] = {}
+    """Name -> FMU. ``vehicle`` and ``controller`` are ours if nothing else is said."""
+    connections: dict[str, Feed] = {}
+    """Inputs -> what feeds them."""
+    roles: dict[str, Feed] = {}
+    """What judge, log, page and figure look for -> the signal that it is."""
+    frames: dict[str, PoseFrame] = {}
+    """Frames of others, by the name that ``into`` and ``out_of`` give them."""
+
+    @model_validator(mode="before")
+    @classmethod
+    def _written(cls, given: Any) -> Any:
+        if not isinstance(given, Mapping):
+            return given
+        names = frozenset({*MODELS, *(given.get("slaves") or {})})
+        made = dict(given)
+        for key in ("connections", "roles"):
+            section = made.get(key)
+            if isinstance(section, Mapping):
+                made[key] = {str(name): _feeds(item, names) for name, item in section.items()}
+        return made
+
+    @model_validator(mode="after")
+    def _names(self) -> "SystemText":
+        for name in self.slaves:
+            if SLAVE.match(name) is None:
+                raise BadInput("is no name for a slave: write letters, digits and _", key=f"slaves.{name}")
+        for feed in (*self.connections.values(), *self.roles.values()):
+            for frame in (feed.into, feed.out_of):
+                if frame is not None and frame not in self.frames:
+                    known = ", ".join(self.frames) or "none"
+                    raise BadInput(f"{frame!r} is none of the frames; there are {known}", key="system")
+        return self
+
+    def files(self) -> dict[str, str]:
+        """Return slave -> what its file is called, for those that are not ours."""
+        return {name: item.file for name, item in self.slaves.items() if item.file and item.file != NO_FILE}
+
+    @property
+    def places(self) -> list[str]:
+        """Return the names of the slaves in their order: vehicle and controller first, as far as they are there."""
+        gone = {name for name, item in self.slaves.items() if item.file == NO_FILE}
+        return [name for name in dict.fromkeys([*MODELS, *self.slaves]) if name not in gone]

@@ -1,0 +1,128 @@
+"""Slaves, and what the scenario says of them, as what the master runs: slaves, connections, words before the run."""
+
+from typing import NamedTuple
+
+from modelkit.connections import CannotConnectError, Wire
+from modelkit.connections import connections as by_name
+from modelkit.variables import Variable, variables
+from orchestrator.cosim.connections import Connection, part_of_slave, wired
+from orchestrator.cosim.slave import Slave
+from orchestrator.scenario.models import MODELS
+from orchestrator.scenario.scenario import Scenario
+from orchestrator.scenario.system import ROLES, Feed, SystemText
+from orchestrator.system.feeds import Feeder, Pin, joined, pins_of
+from orchestrator.system.listener import Listener
+from orchestrator.text.errors import BadInput, suggestion
+
+
+class Assembled(NamedTuple):
+    """A system that can run."""
+
+    slaves: list[Slave]
+    """Those given, and one for each name that roles are seen under and no slave has."""
+    connections: list[Connection]
+    fed: frozenset[tuple[int, int]]
+    """(slave, place) of each input that is connected or constant."""
+
+
+def assemble(scenario: Scenario, given: list[Slave]) -> Assembled:
+    """Return the system of ``scenario``. Raises ``BadInput`` for what cannot be connected as it says."""
+    text = scenario.system or SystemText()
+    slaves, feeds = _with_roles(text, given, scenario.file)
+    feeder = Feeder(slaves, text.frames, scenario.file or None)
+    found: list[Connection] = []
+    fed: set[tuple[int, int]] = set()
+    for key, feed in text.connections.items():
+        where = f"system.connections.{key}"
+        targets = pins_of(key, slaves, True, scenario.file or None, where)
+        _once(targets, fed, scenario.file, where)
+        fed |= {(pin.slave, pin.place) for pin in targets}
+        if feed.from_:
+            found += feeder.connections(feed, targets, where)
+        else:
+            feeder.constant(feed, targets, where)
+    wires = _matching(slaves, fed)
+    fed |= {(wire.target, wire.input) for wire in wires}
+    plain = joined(found)
+    roles = [link for key, (feed, targets) in feeds.items() for link in _role(feeder, feed, targets, slaves, key)]
+    return Assembled(slaves, [*wired(wires), *plain, *joined(roles)], frozenset(fed))
+
+
+def _matching(slaves: list[Slave], fed: set[tuple[int, int]]) -> list[Wire]:
+    try:
+        return by_name([part_of_slave(slave) for slave in slaves], fed)
+    except CannotConnectError as error:
+        advice = "; connect it in the scenario's system: connections, where units are converted"
+        raise BadInput(error.text + advice, key=error.signal) from None
+
+
+def _once(targets: list[Pin], fed: set[tuple[int, int]], file: str, key: str) -> None:
+    twice = [pin.name for pin in targets if (pin.slave, pin.place) in fed]
+    if twice:
+        raise BadInput(f"{', '.join(twice)} is fed twice", file=file, key=key)
+
+
+def _with_roles(
+    text: SystemText, given: list[Slave], file: str
+) -> tuple[list[Slave], dict[str, tuple[Feed, list[Pin]]]]:
+    """Return the slaves with a place for each role, and role -> (what it is, its places)."""
+    slaves = list(given)
+    found = {}
+    for role, feed in text.roles.items():
+        key = f"system.roles.{role}"
+        targets = []
+        for name in _signals_of(role, file, key):
+            owner, _, signal = name.partition(".")
+            if owner not in [slave.name for slave in slaves]:
+                slaves.append(Listener(owner))
+            number = [slave.name for slave in slaves].index(owner)
+            targets.append(_told(slaves[number], number, signal, feed, file, key))
+        found[key] = (feed, targets)
+    return slaves, found
+
+
+def _told(slave: Slave, number: int, signal: str, feed: Feed, file: str, key: str) -> Pin:
+    if signal in slave.outputs.index:
+        text = f"{slave.name} has an output {signal}, which plays this role already; call the slave otherwise"
+        raise BadInput(text, file=file or None, key=key)
+    ports = slave.inputs
+    if signal not in ports.index:
+        ports.add_told(_ours(slave.name, signal, feed))
+    place = ports.index[signal]
+    variable = ports.variables[place]
+    return Pin(number, place, variable, ports, variable.signal.unit, 1.0, f"{slave.name}.{signal}")
+
+
+def _ours(owner: str, signal: str, feed: Feed) -> Variable:
+    """Return the variable as our models have it; its states are those of the feed, if that names any."""
+    from orchestrator.cosim.description import states_called
+
+    variable = next(item for item in variables(MODELS[owner].outputs) if item.name == signal)
+    if feed.states is not None:
+        names = {name.upper(): value for name, value in feed.states.items()}
+        states = states_called("".join(part.title() for part in signal.split("_")), names)
+        variable = variable._replace(signal=variable.signal._replace(states=states))
+    return variable
+
+
+def _signals_of(role: str, file: str, key: str) -> tuple[str, ...]:
+    if role in ROLES:
+        return ROLES[role]
+    known = [f"{owner}.{item.name}" for owner, model in MODELS.items() for item in variables(model.outputs)]
+    if role in known:
+        return (role,)
+    names = [*ROLES, *known]
+    hint = suggestion(role, names) or f"; expected {', '.join(ROLES)} or an output of ours (apa list signals)"
+    raise BadInput(f"no such role{hint}", file=file or None, key=key)
+
+
+def _role(feeder: Feeder, feed: Feed, targets: list[Pin], slaves: list[Slave], key: str) -> list[Connection]:
+    """Return what brings a signal to its role; a mode whose FMU names its states keeps their names."""
+    if not feed.from_:
+        raise BadInput("a role is a signal, not a constant", key=key)
+    found = feeder.connections(feed, targets, key)
+    source = slaves[found[0].source].outputs.variables[int(found[0].source_places[0])]
+    if source.signal.states is not None and feed.map is None and feed.states is None and len(targets) == 1:
+        signal = targets[0].variable.signal._replace(states=source.signal.states)
+        targets[0].ports.variables[targets[0].place] = targets[0].variable._replace(signal=signal)
+    return found

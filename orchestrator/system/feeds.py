@@ -1,0 +1,185 @@
+"""From what a system says feeds an input to the connection that does it. Names that do not exist are answered."""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from modelkit.variables import Variable
+from orchestrator.cosim.connections import Connection
+from orchestrator.cosim.slave import Ports, Slave
+from orchestrator.scenario.end_condition import state_word
+from orchestrator.scenario.system import Feed, PoseFrame, Term, terms
+from orchestrator.system.conversions import Affine, PoseChange, ValueMap
+from orchestrator.system.units import UnfitUnitsError, conversion
+from orchestrator.text.errors import BadInput, suggestion
+from orchestrator.text.quantities import scalar
+
+UNITS_OF_A_POSE = ("m", "m", "rad")
+
+
+class Pin(NamedTuple):
+    """One end of a connection: a variable of a slave, and what is written beside it."""
+
+    slave: int
+    place: int
+    variable: Variable
+    ports: Ports
+    unit: str | None
+    """What its number is in; None: nobody says."""
+    sign: float
+    name: str
+
+
+def pins_of(text: str, slaves: Sequence[Slave], is_input: bool, file: object, key: str) -> list[Pin]:
+    """Return the signals that ``text`` means: by name, or all of a group. Raises ``BadInput`` with the closest."""
+    return [end for term in terms(text) for end in _pins(term, slaves, is_input, file, key)]
+
+
+def _pins(term: Term, slaves: Sequence[Slave], is_input: bool, file: object, key: str) -> list[Pin]:
+    owner, _, name = term.name.partition(".")
+    names = [slave.name for slave in slaves]
+    if owner not in names:
+        hint = suggestion(owner, names) or f"; there are {', '.join(names)}"
+        raise BadInput(f"no slave is called {owner!r}{hint}", file=file, key=key)
+    number = names.index(owner)
+    ports = slaves[number].inputs if is_input else slaves[number].outputs
+    own = ports.names[: ports.own]
+    found = [name] if name in own else [item for item in own if item.startswith((f"{name}.", f"{name}["))]
+    if not found:
+        what = "input" if is_input else "output"
+        close = suggestion(name, own, f"{owner}.") or f"; it has {', '.join(own[:12]) or 'none'}"
+        raise BadInput(f"{owner} has no {what} {name!r}{close}", file=file, key=key)
+    sign = -1.0 if term.minus else 1.0
+    return [
+        Pin(number, ports.index[item], ports.variables[ports.index[item]], ports, unit, sign, f"{owner}.{item}")
+        for item in found
+        for unit in (_unit(term.unit, item, ports, f"{owner}.{item}", file, key),)
+    ]
+
+
+def _unit(written: str | None, name: str, ports: Ports, full: str, file: object, key: str) -> str | None:
+    """Return the unit of a signal: its FMU's; what is written where that says none, or 1."""
+    said = None if name in ports.unsaid else ports.variables[ports.index[name]].signal.unit
+    if written is None or written == said:
+        return said
+    if said not in (None, "1"):
+        raise BadInput(f"{full} is in {said}, as its FMU says, not in {written}", file=file, key=key)
+    return written
+
+
+class Feeder:
+    """Makes connections of one system."""
+
+    def __init__(self, slaves: Sequence[Slave], frames: dict[str, PoseFrame], file: object) -> None:
+        self._slaves = slaves
+        self._frames = frames
+        self._file = file
+
+    def constant(self, feed: Feed, targets: list[Pin], key: str) -> None:
+        """Give inputs a value that they keep."""
+        for end in targets:
+            named = end.variable._replace(name=key, signal=end.variable.signal._replace(unit=end.unit or "1"))
+            self._slaves[end.slave].inputs.values[end.place] = float(scalar(feed.value, named, file=self._file))
+
+    def connections(self, feed: Feed, targets: list[Pin], key: str) -> list[Connection]:
+        """Return what feeds ``targets``. Raises ``BadInput`` if number, unit or frame do not fit."""
+        sources = pins_of(feed.from_, self._slaves, False, self._file, key)
+        if len(sources) != len(targets):
+            raise self._wrong(f"{len(targets)} inputs, but {len(sources)} signals to feed them", key)
+        if feed.into is not None or feed.out_of is not None:
+            return [self._pose(feed, sources, targets, key)]
+        if feed.map is not None:
+            return [self._mapped(feed, *pair, key) for pair in zip(sources, targets, strict=True)]
+        return [self._scaled(feed, *pair, key) for pair in zip(sources, targets, strict=True)]
+
+    def _scaled(self, feed: Feed, source: Pin, target: Pin, key: str) -> Connection:
+        factor, offset = self._factor(source, target, key)
+        gain = source.sign * target.sign * feed.factor
+        whole = gain * factor, feed.offset * factor + offset
+        same = whole == (1.0, 0.0) and source.variable.kind is target.variable.kind
+        return _connection(source, target, None if same else Affine(whole[:1], whole[1:], [target.variable]))
+
+    def _factor(self, source: Pin, target: Pin, key: str) -> tuple[float, float]:
+        if source.unit is None or target.unit is None:
+            return 1.0, 0.0
+        try:
+            return conversion(source.unit, target.unit, source.ports.scales, target.ports.scales)
+        except UnfitUnitsError as error:
+            ends = f"{source.name} is in {source.unit}, {target.name} in {target.unit}"
+            raise self._wrong(f"{ends}: {error}", key) from None
+
+    def _mapped(self, feed: Feed, source: Pin, target: Pin, key: str) -> Connection:
+        assert feed.map is not None
+        named = target.variable._replace(name=f"{key}.map")
+        values = {
+            _state(given, source.variable, self._file, key): float(scalar(taken, named, file=self._file))
+            for given, taken in feed.map.items()
+        }
+        other = target.variable.start if feed.otherwise is None else feed.otherwise
+        otherwise = float(scalar(other, named, file=self._file))
+        return _connection(source, target, ValueMap(values, otherwise))
+
+    def _pose(self, feed: Feed, sources: list[Pin], targets: list[Pin], key: str) -> Connection:
+        if len(targets) != 3 or len({end.slave for end in sources}) > 1 or len({end.slave for end in targets}) > 1:
+            raise self._wrong("a pose is x, y and heading of one slave", key)
+        frame = self._frames[feed.into or feed.out_of or ""]
+        before = [self._factor(end, _in_si(end, unit), key) for end, unit in zip(sources, UNITS_OF_A_POSE, strict=True)]
+        after = [self._factor(_in_si(end, unit), end, key) for end, unit in zip(targets, UNITS_OF_A_POSE, strict=True)]
+        change = PoseChange(
+            frame,
+            feed.into is not None,
+            Affine([pair[0] * end.sign for pair, end in zip(before, sources, strict=True)], _seconds(before), ()),
+            Affine([pair[0] * end.sign for pair, end in zip(after, targets, strict=True)], _seconds(after), ()),
+        )
+        return Connection(sources[0].slave, _places(sources), targets[0].slave, _places(targets), change)
+
+    def _wrong(self, text: str, key: str) -> BadInput:
+        return BadInput(text, file=self._file, key=key)
+
+
+def joined(found: list[Connection]) -> list[Connection]:
+    """Return the connections, those of equal slaves that need no conversion as one."""
+    plain: dict[tuple[int, int], list[Connection]] = {}
+    for item in found:
+        if item.convert is None:
+            plain.setdefault((item.source, item.target), []).append(item)
+    together = [
+        Connection(
+            source,
+            np.concatenate([item.source_places for item in items]),
+            target,
+            np.concatenate([item.target_places for item in items]),
+        )
+        for (source, target), items in plain.items()
+    ]
+    return [*together, *(item for item in found if item.convert is not None)]
+
+
+def _connection(source: Pin, target: Pin, convert: Affine | ValueMap | None) -> Connection:
+    return Connection(source.slave, _places([source]), target.slave, _places([target]), convert)
+
+
+def _places(ends: list[Pin]) -> np.ndarray[tuple[int], np.dtype[np.intp]]:
+    return np.array([end.place for end in ends], dtype=np.intp)
+
+
+def _seconds(pairs: list[tuple[float, float]]) -> list[float]:
+    return [offset for _, offset in pairs]
+
+
+def _in_si(end: Pin, unit: str) -> Pin:
+    """Return an end whose number is in ``unit``; of the other's definitions, as units of ours need none."""
+    return end._replace(unit=unit)
+
+
+def _state(given: int | str, variable: Variable, file: object, key: str) -> float:
+    states = variable.signal.states
+    if isinstance(given, int) or given.strip().lstrip("-").isdigit():
+        return float(given)
+    names = {} if states is None else {state.name: int(state) for state in states}
+    word = state_word(given)
+    if word not in names:
+        hint = suggestion(word, list(names)) or f"; known are {', '.join(names) or 'none'}"
+        raise BadInput(f"{given!r} is no state of {variable.name}{hint}", file=file, key=f"{key}.map")
+    return float(names[word])

@@ -1,0 +1,124 @@
+"""What should be known of a system before it runs: inputs that nothing feeds, units not said, loops, no verdict."""
+
+from collections.abc import Iterator, Sequence
+
+from orchestrator.cosim.slave import Slave
+from orchestrator.scenario.end_condition import EndCondition
+from orchestrator.scenario.models import MODELS
+from orchestrator.system.assemble import Assembled
+from orchestrator.text.errors import suggestion
+
+NEEDED = {
+    "controller": {
+        "shifts": "limits on the number of shifts are not judged",
+    },
+    "vehicle": {
+        "pose.x": "where the car ends is not judged",
+        "pose.y": "where the car ends is not judged",
+        "pose.heading": "how the car ends is not judged",
+        "speed": "that the car stands ends no run, and limits on speed are not judged",
+    },
+}
+"""Slave -> output that a verdict needs -> what is lost without it."""
+SPARE = "person."
+"""Inputs of this group need nothing to feed them: their start values mean that nobody is there."""
+Node = tuple[int, str]
+"""A slave and an output of it."""
+
+
+def remarks(system: Assembled, ending: EndCondition) -> list[str]:
+    """Return one sentence for each thing that is allowed but hardly meant in a run that ends so."""
+    slaves = system.slaves
+    found = [
+        text
+        for number, slave in enumerate(slaves)
+        for text in (*_units(slave), *_unfed(number, system), *_missing(slave.name, slave, ending))
+    ]
+    names = [slave.name for slave in slaves]
+    absent = [text for name in MODELS if name not in names for text in _missing(name, None, ending)]
+    return [*found, *absent, *loops(system)]
+
+
+def missing_for_the_verdict(name: str, slave: Slave | None, ending: EndCondition) -> dict[str, str]:
+    """Return output -> what is lost as ``slave``, called ``name``, does not have it."""
+    owner, _, mode = ending.signal.partition(".")
+    says = f"{ending.text(ending.done[0])} of it says that the task is done and, once the car stands, ends the run"
+    needed = ({mode: says} if name == owner else {}) | NEEDED.get(name, {})
+    has = {} if slave is None else {**slave.outputs.index, **dict.fromkeys(slave.inputs.names[slave.inputs.own :])}
+    return {item: loss for item, loss in needed.items() if item not in has}
+
+
+def _missing(name: str, slave: Slave | None, ending: EndCondition) -> list[str]:
+    who = name if slave is not None and slave.identity else f"no slave is called {name}, nor plays its roles: {name}"
+    found = missing_for_the_verdict(name, slave, ending)
+    return [f"{who} has no output {item}: {loss}" for item, loss in found.items()]
+
+
+def unsaid(slave: Slave) -> list[str]:
+    """Return the inputs and outputs of which the FMU says no unit."""
+    return [name for ports in (slave.inputs, slave.outputs) for name in ports.names if name in ports.unsaid]
+
+
+def _units(slave: Slave) -> list[str]:
+    names = unsaid(slave)
+    return (
+        [f"{slave.name} says no unit of {', '.join(names)}: taken in SI, as the other side has them"] if names else []
+    )
+
+
+def not_fed(number: int, system: Assembled) -> dict[str, str]:
+    """Return input of one slave that nothing feeds -> which signal may be meant, ``; did you mean``, or nothing."""
+    slave = system.slaves[number]
+    others = [other for other in system.slaves if other is not slave]
+    used = {(link.source, int(place)) for link in system.connections for place in link.source_places}
+    spare = [
+        name
+        for other_number, other in enumerate(system.slaves)
+        if other in others
+        for place, name in enumerate(other.outputs.names)
+        if (other_number, place) not in used
+    ]
+    own = slave.inputs.names[: slave.inputs.own]
+    unfed = [name for place, name in enumerate(own) if (number, place) not in system.fed and not name.startswith(SPARE)]
+    return {name: suggestion(name, spare) for name in unfed}
+
+
+def _unfed(number: int, system: Assembled) -> list[str]:
+    slave, names = system.slaves[number], not_fed(number, system)
+    found = [f"nothing feeds {slave.name}.{name}{meant}" for name, meant in names.items() if meant]
+    plain = [name for name, meant in names.items() if not meant]
+    if plain:
+        found.append(f"nothing feeds {', '.join(plain)} of {slave.name}: they keep their start values")
+    return found
+
+
+def loops(system: Assembled) -> list[str]:
+    """Return a sentence for each algebraic loop: outputs that depend directly on inputs that they feed themselves."""
+    ahead: dict[Node, list[Node]] = {}
+    for link in system.connections:
+        source, target = system.slaves[link.source], system.slaves[link.target]
+        for out, into in zip(link.source_places.tolist(), link.target_places.tolist(), strict=True):
+            taken = target.inputs.names[into]
+            reached = [(link.target, name) for name, direct in target.outputs.direct.items() if taken in direct]
+            ahead.setdefault((link.source, source.outputs.names[out]), []).extend(reached)
+    cycles = {frozenset(cycle): cycle for start in ahead for cycle in _cycles(start, ahead)}
+    return [_loop(cycle, system.slaves) for cycle in cycles.values()]
+
+
+def _cycles(start: Node, ahead: dict[Node, list[Node]]) -> Iterator[list[Node]]:
+    """Yield the first way from an output back to itself, if there is one."""
+    ways, seen = [[start]], {start}
+    while ways:
+        way = ways.pop()
+        for following in ahead.get(way[-1], ()):
+            if following == start:
+                yield way
+                return
+            if following not in seen:
+                seen.add(following)
+                ways.append([*way, following])
+
+
+def _loop(cycle: list[Node], slaves: Sequence[Slave]) -> str:
+    names = [f"{slaves[number].name}.{name}" for number, name in (*cycle, cycle[0])]
+    return f"algebraic loop: {' -> '.join(names)}; each goes round one communication step late"

@@ -25,6 +25,7 @@ FLOORS: tuple[tuple[str, ...], ...] = (
     ("orchestrator.text",),
     ("orchestrator.scenario",),
     ("orchestrator.cosim",),
+    ("orchestrator.foreign",),
     ("orchestrator.system",),
     ("orchestrator.verdict",),
     ("orchestrator.comparison",),

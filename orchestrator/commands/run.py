@@ -6,7 +6,7 @@ from pathlib import Path
 from orchestrator.cosim.fmu_files import KINDS, default_kind
 from orchestrator.report.results import LOG, write_pages, write_summary
 from orchestrator.session.drive import drive
-from orchestrator.session.foreign import add_foreign_arguments, foreign_files, load_fitting
+from orchestrator.session.foreign import add_foreign_arguments, foreign_of, load_fitting
 from orchestrator.session.terminal import print_summary
 from orchestrator.text.console import say
 from orchestrator.text.errors import INTERRUPTED, NOT_PARKED, PARKED
@@ -43,7 +43,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Run, write, print. Returns 0 parked or finished, 1 not, 130 interrupted."""
-    scenario, left_out, foreign = load_fitting(arguments.scenario, arguments.set, foreign_files(arguments))
+    scenario, left_out, foreign = load_fitting(arguments.scenario, arguments.set, foreign_of(arguments))
     if left_out:
         say(f"apa: warning: left out, the FMU does not have them: {', '.join(left_out)}")
     out: Path = arguments.out or Path("runs") / scenario.name

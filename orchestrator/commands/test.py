@@ -11,7 +11,7 @@ from orchestrator.cosim.interrupts import on_interrupt
 from orchestrator.cosim.master import Interrupt
 from orchestrator.scenario.load_scenario import find_file
 from orchestrator.scenario.requirements import read_requirements
-from orchestrator.session.foreign import add_foreign_arguments, foreign_files
+from orchestrator.session.foreign import add_foreign_arguments, foreign_of
 from orchestrator.suite.collection import write_collection
 from orchestrator.suite.junit import write_junit
 from orchestrator.suite.suite import Bench, Tested, chosen, run_test, tested_by
@@ -88,7 +88,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _bench(arguments: argparse.Namespace, interrupt: Interrupt) -> Bench:
-    foreign = foreign_files(arguments)
+    foreign = foreign_of(arguments)
     files = {} if arguments.fmus == "none" else fmu_files(arguments.fmus, say)
     found = [find_file(name, "limits", "set of limits", Path.cwd()) for name in arguments.requirements]
     requirements = [(str(file), read_requirements(file)) for file in found]

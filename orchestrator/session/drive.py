@@ -6,21 +6,21 @@ from orchestrator.cosim.fmu_files import fmu_files
 from orchestrator.cosim.interrupts import on_interrupt
 from orchestrator.cosim.master import End, Interrupt
 from orchestrator.scenario.scenario import Scenario
-from orchestrator.session.foreign import Files
+from orchestrator.session.foreign import Foreign
 from orchestrator.session.replaced import clear, replaced
-from orchestrator.session.session import Ran, run_scenario
+from orchestrator.session.session import NOBODY, Ran, run_scenario
 from orchestrator.text.console import Meter, Warnings, say
 
 SHOWN_NS = 500_000_000
 """Simulated time between two looks at how far a run is."""
 
 
-def drive(scenario: Scenario, kind: str, log: Path, foreign: Files | None = None) -> Ran:
+def drive(scenario: Scenario, kind: str, log: Path, foreign: Foreign = NOBODY) -> Ran:
     """Return a run with FMUs of ``kind`` (``none``: models in process), which are built if need be.
 
-    ``foreign`` FMUs take the place of ours.
+    ``foreign`` FMUs take the place of ours, or stand beside them.
     """
-    files = {**({} if kind == "none" else fmu_files(kind, say)), **(foreign or {})}
+    files = None if kind == "none" else fmu_files(kind, say)
     log.parent.mkdir(parents=True, exist_ok=True)
     before = replaced(log, scenario)
     if before:
@@ -35,7 +35,7 @@ def drive(scenario: Scenario, kind: str, log: Path, foreign: Files | None = None
             observers=(clock,),
             interrupt=interrupt,
             warn=Warnings(),
-            foreign=foreign or (),
+            foreign=foreign,
         )
     gone = clear(log.parent)
     if gone:

@@ -2,9 +2,10 @@
 
 import argparse
 import hashlib
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
-from typing import NamedTuple
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from modelkit.variables import Variable
 from orchestrator.scenario.load_scenario import load_scenario, load_system
@@ -12,27 +13,78 @@ from orchestrator.scenario.models import MODELS
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.text.errors import BadInput
 
+if TYPE_CHECKING:
+    from orchestrator.cosim.slave import Slave
+
 FOREIGN = "foreign"
 """Kind of an FMU that is not one of ours."""
 Files = Mapping[str, Path]
 """Slave -> FMU of somebody else's."""
+LogCallback = Callable[[str, int, str], None]
+TIMEOUT = 30.0
+"""Wall-clock limit [s], if nothing else is said."""
+
+
+class Foreign(NamedTuple):
+    """The FMUs of somebody else's in a run, and how far they are trusted."""
+
+    files: Files = MappingProxyType({})
+    is_in_process: bool = False
+    """Run them in this process: faster, but one that crashes takes all with it."""
+    timeout: float = TIMEOUT
+    """Wall-clock limit [s] for loading, for initializing and for each step, in a process of their own."""
+
+    def made(self, name: str, path: Path, parameters: Mapping[str, Any], log: LogCallback) -> "Slave":
+        """Return the slave ``name`` that runs the FMU at ``path``."""
+        model = MODELS.get(name)
+        if self.is_in_process and not is_fmi3(path):
+            from orchestrator.cosim.fmu_slave import FmuSlave
+
+            return FmuSlave(name, path, parameters, log, model)
+        from orchestrator.foreign.process_slave import ProcessSlave
+
+        return ProcessSlave(name, path, parameters, log, model, timeout=self.timeout)
+
+
+def is_fmi3(path: Path) -> bool:
+    """Return whether an FMU is FMI 3.0, which has a process of its own in any case."""
+    from orchestrator.cosim.description import read_description
+
+    return str(read_description(path).fmiVersion).startswith("3")
 
 
 def add_foreign_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the options that put an FMU in the place of the controller or of the vehicle."""
     for name in ("controller", "vehicle"):
         parser.add_argument(f"--{name}", type=Path, metavar="FMU", help=f"use this {name} instead of the shipped one")
+    parser.add_argument(
+        "--timeout",
+        type=_seconds,
+        default=TIMEOUT,
+        metavar="S",
+        help=f"wall-clock limit for loading, initializing and each step of somebody else's FMU ({TIMEOUT:g} s)",
+    )
+    parser.add_argument(
+        "--in-process",
+        action="store_true",
+        help="run somebody else's FMU in this process: faster, but its crash is ours",
+    )
 
 
-def foreign_files(arguments: argparse.Namespace) -> dict[str, Path]:
+def _seconds(text: str) -> float:
+    seconds = float(text.removesuffix("s"))
+    if not seconds > 0.0:
+        raise ValueError(f"{text} is no time")
+    return seconds
+
+
+def foreign_of(arguments: argparse.Namespace) -> Foreign:
     """Return the FMUs that were named. Raises ``BadInput`` for one that is not there, or with models in process."""
     files = {name: getattr(arguments, name) for name in ("controller", "vehicle") if getattr(arguments, name)}
     for path in files.values():
         if not path.is_file():
             raise BadInput("no such file", file=path)
-    if files and arguments.fmus == "none":
-        raise BadInput("the models in process cannot be joined with an FMU; use --fmus python", key="--fmus")
-    return files
+    return Foreign(files, arguments.in_process, arguments.timeout)
 
 
 class Fitting(NamedTuple):
@@ -41,29 +93,28 @@ class Fitting(NamedTuple):
     scenario: Scenario
     left_out: list[str]
     """Parameters of the scenario that those do not have."""
-    files: Files
+    foreign: Foreign
 
 
-def load_fitting(name: str, sets: Iterable[str], files: Files) -> Fitting:
-    """Return a scenario with the foreign FMUs of its system, in whose place those in ``files`` come.
+def load_fitting(name: str, sets: Iterable[str], foreign: Foreign) -> Fitting:
+    """Return a scenario with the foreign FMUs of its system, in whose place those in ``foreign`` come.
 
     Parameters of their own can be set like any other. Raises ``BadInput``.
     """
     sets = list(sets)
     system = load_system(name, sets)
     of_system = {} if system is None else {slave: Path(file) for slave, file in system.files().items()}
-    foreign = {**of_system, **files}
-    for path in foreign.values():
-        if not path.is_file():
-            raise BadInput("no such file", file=path)
-    own = {slave: parameters_of(path, slave) for slave, path in foreign.items()}
-    return Fitting(*fitting(load_scenario(name, sets, own), own), foreign)
+    files = {**of_system, **foreign.files}
+    own = {slave: parameters_of(path, slave) for slave, path in files.items()}
+    return Fitting(*fitting(load_scenario(name, sets, own), own), foreign._replace(files=files))
 
 
 def parameters_of(path: Path, slave: str) -> list[Variable]:
     """Return the parameters of an FMU that takes the place of ``slave``. Raises ``BadInput``."""
     from orchestrator.cosim.description import ports_of, read_description
+    from orchestrator.foreign.archive import checked
 
+    checked(path)
     return ports_of(read_description(path), "parameter", MODELS.get(slave), path).variables
 
 

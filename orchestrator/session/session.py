@@ -2,7 +2,7 @@
 
 import platform
 import time
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Mapping
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -16,12 +16,15 @@ from orchestrator.cosim.recording import Recorder, Recording
 from orchestrator.cosim.slave import Slave
 from orchestrator.scenario.models import MODELS
 from orchestrator.scenario.scenario import Scenario
-from orchestrator.session.foreign import FOREIGN, sha256_of
+from orchestrator.session.foreign import FOREIGN, Foreign, sha256_of
 from orchestrator.system.assemble import Assembled, assemble
 from orchestrator.system.remarks import remarks
 from orchestrator.text.errors import RunError
 
 PACKAGES = ("apa-cosim", "fmpy", "pythonfmu", "numpy", "mcap", "protobuf")
+
+
+NOBODY = Foreign()
 
 
 class Ran(NamedTuple):
@@ -59,18 +62,21 @@ class Messages:
         """Nothing to close."""
 
 
-def make_slaves(scenario: Scenario, files: Mapping[str, Path] | None, messages: Messages) -> list[Slave]:
-    """Return the slaves of a scenario: FMUs from ``files``, or the models in process."""
+def make_slaves(
+    scenario: Scenario, files: Mapping[str, Path] | None, messages: Messages, foreign: Foreign = NOBODY
+) -> list[Slave]:
+    """Return the slaves of a scenario: FMUs of others, ours from ``files``, or else the models in process."""
     slaves: list[Slave] = []
     for name in scenario.places:
         parameters = scenario.given(name)
-        if name in MODELS and (files is None or name not in files):
+        if name in foreign.files:
+            slaves.append(foreign.made(name, foreign.files[name], parameters, messages.from_fmu))
+        elif files is None or name not in files:
             slaves.append(InProcessSlave(name, MODELS[name], parameters))
         else:
             from orchestrator.cosim.fmu_slave import FmuSlave
 
-            assert files is not None
-            slaves.append(FmuSlave(name, files[name], parameters, messages.from_fmu, MODELS.get(name)))
+            slaves.append(FmuSlave(name, files[name], parameters, messages.from_fmu, MODELS[name]))
     return slaves
 
 
@@ -83,15 +89,15 @@ def run_scenario(
     observers: tuple[Observer, ...] = (),
     interrupt: Interrupt | None = None,
     warn: Callable[[str], None] = lambda text: None,
-    foreign: Collection[str] = (),
+    foreign: Foreign = NOBODY,
 ) -> Ran:
     """Return the recording of one run. Errors of a slave end it as aborted; ``BadInput`` passes through.
 
-    ``warn`` is told before the run what is allowed in the system but hardly meant. ``foreign`` are the slaves
-    whose FMU is somebody else's.
+    ``warn`` is told before the run what is allowed in the system but hardly meant. ``foreign`` are FMUs of
+    somebody else's, in the place of ours or beside them.
     """
     messages = Messages()
-    slaves = make_slaves(scenario, files, messages)
+    slaves = make_slaves(scenario, files, messages, foreign)
     try:
         return run_slaves(
             scenario,
@@ -119,28 +125,34 @@ def run_slaves(
     observers: tuple[Observer, ...] = (),
     interrupt: Interrupt | None = None,
     warn: Callable[[str], None] = lambda text: None,
-    foreign: Collection[str] = (),
+    foreign: Foreign = NOBODY,
 ) -> Ran:
     """Return the recording of one run of given slaves."""
     system = assemble(scenario, slaves)
-    slaves = system.slaves
     said = remarks(system, scenario.ending)
     for text in said:
         warn(text)
     master = _master(system, scenario, kind)
     master.interrupt = interrupt or Interrupt()
-    info = provenance(scenario, slaves, kind, foreign)
-    recorder = Recorder(slaves, scenario.stop_ns // scenario.step_ns + 1)
-    master.observers += [messages, recorder, ModeChanges(slaves, scenario.faults, messages.say)]
+    info = provenance(scenario, system.slaves, kind, foreign)
+    recorder = Recorder(system.slaves, scenario.stop_ns // scenario.step_ns + 1)
+    master.observers += [messages, recorder, ModeChanges(system.slaves, scenario.faults, messages.say)]
     if log is not None:
         from orchestrator.log.mcap_log import McapLog
 
-        file = McapLog(log, slaves, scenario, info)
+        file = McapLog(log, system.slaves, scenario, info)
         messages.listeners.append(file.say)
         master.observers.append(file)
     master.observers += observers
     for text in said:
         messages.say(0, WARNING, "system", text)
+    end, wall_time = _driven(master, messages)
+    info["end"] = {"reason": end.reason, "t_ns": end.t_ns}
+    return Ran(recorder.recording(info), end, said, wall_time)
+
+
+def _driven(master: Master, messages: Messages) -> tuple[End, float]:
+    """Run; return how it ended, and the time from the first exchange to the closed log [s]."""
     end = _guarded(messages, master.initialize)
     begun = time.perf_counter()
     if end is None:
@@ -149,8 +161,7 @@ def run_slaves(
     master.finish(end)
     wall_time = time.perf_counter() - begun
     master.free()
-    info["end"] = {"reason": end.reason, "t_ns": end.t_ns}
-    return Ran(recorder.recording(info), end, said, wall_time)
+    return end, wall_time
 
 
 def _master(system: Assembled, scenario: Scenario, kind: str) -> Master:
@@ -182,11 +193,11 @@ def _guarded(messages: Messages, act: Callable[[], End | None]) -> End | None:
         return End("interrupted", messages.t_ns)
 
 
-def provenance(scenario: Scenario, slaves: list[Slave], kind: str, foreign: Collection[str] = ()) -> dict[str, Any]:
+def provenance(scenario: Scenario, slaves: list[Slave], kind: str, foreign: Foreign = NOBODY) -> dict[str, Any]:
     """Return what is needed to repeat the run: scenario, FMUs, seed, versions."""
     return {
         "scenario": scenario.model_dump(mode="json", exclude={"file"}),
-        "fmus": [_used(slave, FOREIGN if slave.name in foreign else kind) for slave in slaves if slave.identity],
+        "fmus": [_used(slave, FOREIGN if slave.name in foreign.files else kind) for slave in slaves if slave.identity],
         "seed": scenario.seed,
         "versions": versions(),
     }

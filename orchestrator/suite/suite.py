@@ -13,7 +13,7 @@ from orchestrator.report.results import LOG, write_pages, write_summary
 from orchestrator.scenario.load_scenario import scenario_names
 from orchestrator.scenario.requirements import Requirement
 from orchestrator.scenario.scenario import Scenario
-from orchestrator.session.foreign import Files, load_fitting
+from orchestrator.session.foreign import Files, Foreign, load_fitting
 from orchestrator.session.replaced import clear
 from orchestrator.session.session import run_scenario, versions
 from orchestrator.suite.junit import Case, Suite, cases_of, told_apart
@@ -66,7 +66,7 @@ class Bench(NamedTuple):
     files: Files
     """Slave name -> FMU of ours; those that lack run in process."""
     kind: str
-    foreign: Files
+    foreign: Foreign
     """FMUs of somebody else's in their place: they need not have all parameters."""
     requirements: list[tuple[str, list[Requirement]]]
     """(file, its requirements), judged besides the scenario's own limits."""
@@ -110,7 +110,7 @@ def _judged(scenario: Scenario, ignored: list[str], bench: Bench, folder: Path) 
     folder.mkdir(parents=True, exist_ok=True)
     ran = run_scenario(
         scenario,
-        {**bench.files, **bench.foreign},
+        bench.files,
         kind=bench.kind,
         log=folder / LOG,
         interrupt=bench.interrupt,

@@ -2,6 +2,8 @@
 
 from typing import NamedTuple
 
+import numpy as np
+
 from modelkit.connections import CannotConnectError, Wire
 from modelkit.connections import connections as by_name
 from modelkit.variables import Variable, variables
@@ -13,6 +15,9 @@ from orchestrator.scenario.system import ROLES, Feed, SystemText
 from orchestrator.system.feeds import Feeder, Pin, joined, pins_of
 from orchestrator.system.listener import Listener
 from orchestrator.text.errors import BadInput, suggestion
+
+JUDGED = {"vehicle": ("pose.x", "pose.y", "pose.heading", "speed"), "controller": ("phase", "shifts")}
+"""Outputs that a verdict is made of."""
 
 
 class Assembled(NamedTuple):
@@ -45,7 +50,12 @@ def assemble(scenario: Scenario, given: list[Slave]) -> Assembled:
     fed |= {(wire.target, wire.input) for wire in wires}
     plain = joined(found)
     roles = [link for key, (feed, targets) in feeds.items() for link in _role(feeder, feed, targets, slaves, key)]
-    return Assembled(slaves, [*wired(wires), *plain, *joined(roles)], frozenset(fed))
+    connections = [*wired(wires), *plain, *joined(roles)]
+    for number, slave in enumerate(slaves):
+        sent = [place for link in connections if link.source == number for place in link.source_places.tolist()]
+        judged = [slave.outputs.index[name] for name in JUDGED.get(slave.name, ()) if name in slave.outputs.index]
+        slave.outputs.used = np.unique(np.array([*sent, *judged], dtype=np.intp))
+    return Assembled(slaves, connections, frozenset(fed))
 
 
 def _matching(slaves: list[Slave], fed: set[tuple[int, int]]) -> list[Wire]:

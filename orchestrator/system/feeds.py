@@ -65,6 +65,7 @@ def _unit(written: str | None, name: str, ports: Ports, full: str, file: object,
         return said
     if said not in (None, "1"):
         raise BadInput(f"{full} is in {said}, as its FMU says, not in {written}", file=file, key=key)
+    ports.unsaid -= {name}
     return written
 
 

@@ -79,8 +79,8 @@ def broken(path: Path, folder: Path) -> dict[str, tuple[Path, str]]:
         "no description": (empty, "is not an FMU"),
         "cut description": (xml, "is not an FMU"),
         "start value": (start, "is no start value of type Real"),
-        "model exchange": (exchange, "expected FMI 2.0 for co-simulation"),
-        "no binary": (elsewhere, "cannot be loaded here"),
-        "path outside": (outside, "cannot be loaded here"),
+        "model exchange": (exchange, "expected FMI 2.0 or 3.0 for co-simulation"),
+        "no binary": (elsewhere, "has no binary for this machine"),
+        "path outside": (outside, "would be written outside its folder"),
         "other type": (other, "output of controller is float, input of vehicle is int"),
     }

@@ -9,6 +9,7 @@ from orchestrator.cli import main
 from orchestrator.cosim.fmu_files import fmu_files
 from orchestrator.cosim.master import Interrupt
 from orchestrator.scenario.load_scenario import load_scenario
+from orchestrator.session.foreign import Foreign
 from orchestrator.suite.junit import Case, Suite, write_junit
 from orchestrator.suite.suite import Bench, chosen, run_test
 
@@ -127,7 +128,7 @@ def test_a_foreign_controller_is_run_without_the_parameters_it_does_not_have(tmp
     theirs = tmp_path / "their controller.fmu"
     theirs.write_bytes(files["controller"].read_bytes())
     monkeypatch.setattr("orchestrator.session.foreign.load_scenario", lambda name, sets, more: foreign_scenario(name))
-    bench = Bench({**files, "controller": theirs}, "python", {"controller": theirs}, [], Interrupt())
+    bench = Bench(files, "python", Foreign({"controller": theirs}), [], Interrupt())
     tested = run_test("guo2015-case4", [], bench, tmp_path / "out")
     assert tested.ignored == ["controller.no_such_gain"]
     assert tested.passed

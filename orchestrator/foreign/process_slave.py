@@ -1,0 +1,269 @@
+"""An FMU in a process of its own: it may crash, hang or leave, and the run only ends with a reason.
+
+Every order has a limit of wall-clock time. Inputs and outputs go through pipes, once a step: see ``worker``.
+"""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from fmus.children import LIVING, end
+from fmus.files import new_folder, remove_folder
+from modelkit.model import Model
+from orchestrator.cosim.description import element_names, ports_of, read_description
+from orchestrator.cosim.slave import Indices, Ports
+from orchestrator.foreign import worker
+from orchestrator.foreign.archive import binary, checked, unpack
+from orchestrator.text.errors import RunError
+
+LOOK = 0.05
+"""Between two looks at the clock [s]."""
+ROOT = Path(__file__).resolve().parents[2]
+BEGIN = """
+import sys
+sys.path.insert(0, sys.argv[1])
+from orchestrator.foreign.worker import main
+del sys.path[0]
+main()
+"""
+"""What the process runs: nothing of this project stays in its way."""
+LogCallback = Callable[[str, int, str], None]
+
+
+class _Groups(NamedTuple):
+    """The variables of ports by FMI type, as the worker takes them."""
+
+    order: Indices
+    """Places in the ports, in the order of the groups."""
+    groups: list[dict[str, Any]]
+
+
+class ProcessSlave:
+    """One instance of one FMU, FMI 2.0 or 3.0, behind the face of a slave."""
+
+    def __init__(
+        self,
+        name: str,
+        path: Path,
+        parameters: Mapping[str, Any],
+        log: LogCallback,
+        model: Model | None = None,
+        *,
+        timeout: float,
+    ) -> None:
+        self.name = name
+        self.path = path
+        self._names = checked(path)
+        self._description = read_description(path)
+        self.identity = str(self._description.guid)
+        self._version = 3 if str(self._description.fmiVersion).startswith("3") else 2
+        self.inputs, self.outputs, self.parameters = (
+            ports_of(self._description, causality, model, path) for causality in ("input", "output", "parameter")
+        )
+        for key, value in parameters.items():
+            if key not in self.parameters.index:
+                raise RunError(f"{path.name} has no parameter {key}")
+            self.parameters.values[self.parameters.index[key]] = float(value)
+        self._changed = list(parameters)
+        self._log = log
+        self._timeout = timeout
+        self._folder: Path | None = None
+        self._process: _Process | None = None
+        self._is_running = self._is_fresh = False
+        self._t_ns = 0
+        self._in, self._out = self._groups(self.inputs), self._groups(self.outputs)
+
+    def initialize(self, stop_ns: int) -> None:
+        """Unpack, start the process, load, set the parameters, enter Initialization Mode."""
+        identifier = str(self._description.coSimulation.modelIdentifier)
+        try:
+            library = binary(self._names, identifier, self._version)
+        except ValueError as error:
+            raise RunError(f"{self.path.name} {error}") from None
+        self._folder = new_folder("fmu")
+        try:
+            unpack(self.path, self._folder / "fmu")
+        except Exception as error:
+            raise RunError(f"{self.path.name} cannot be unpacked: {error}") from error
+        place = self._folder / "fmu" / library
+        self._process = _Process(place.parent, self._folder / "printed")
+        resources = self._folder / "fmu" / "resources"
+        asked = {
+            "version": self._version,
+            "library": str(place),
+            "name": self.name,
+            "guid": self.identity,
+            "resources": f"{resources}{os.sep}" if self._version == 3 else resources.as_uri(),
+            "inputs": self._in.groups,
+            "outputs": self._out.groups,
+        }
+        self._ask(worker.LOAD, json.dumps(asked).encode(), "while loading")
+        if self._changed:
+            self._ask(worker.PARAMETERS, json.dumps(self._settings()).encode(), "at its parameters")
+        self._ask(worker.INITIALIZE, json.dumps([stop_ns / 1e9]).encode(), "in initialization")
+
+    def start(self) -> None:
+        """Exit Initialization Mode."""
+        self._ask(worker.START, b"", "in initialization")
+        self._is_running, self._is_fresh = True, False
+
+    def fetch_outputs(self) -> None:
+        """Ask for the outputs, unless the last step has brought them. What anything is made of must not be NaN."""
+        if not self._is_fresh:
+            self._lay(self._ask(worker.OUTPUTS, b"", f"giving outputs at {self._t_ns / 1e9:g} s"))
+        used = self.outputs.used
+        if np.isnan(self.outputs.values[used]).any():
+            names = [self.outputs.names[place] for place in used if np.isnan(self.outputs.values[place])]
+            raise RunError(f"{self.name} gives NaN for {', '.join(names)} at {self._t_ns / 1e9:g} s")
+
+    def send_inputs(self) -> None:
+        """In Initialization Mode, hand over the inputs; later they go with the step."""
+        if not self._is_running:
+            self._ask(worker.INPUTS, self.inputs.values[self._in.order].tobytes(), "taking inputs at 0 s")
+
+    def step(self, t_ns: int, dt_ns: int) -> None:
+        """Hand over the inputs, step, and take the outputs."""
+        times = worker.TIMES.pack(t_ns / 1e9, dt_ns / 1e9)
+        data = times + self.inputs.values[self._in.order].tobytes()
+        self._t_ns = t_ns
+        self._lay(self._ask(worker.STEP, data, ""))
+        self._t_ns, self._is_fresh = t_ns + dt_ns, True
+
+    def close(self) -> None:
+        """Have the FMU terminated and freed, and end its process."""
+        if self._process is not None:
+            process, self._process = self._process, None
+            process.close(min(self._timeout, 5.0))
+        if self._folder is not None:
+            remove_folder(self._folder)
+            self._folder = None
+
+    def _lay(self, data: bytes) -> None:
+        self.outputs.values[self._out.order] = np.frombuffer(data)
+
+    def _ask(self, order: bytes, data: bytes, when: str) -> bytes:
+        """Return the answer to an order. Raises ``RunError`` if the FMU refuses, crashes, leaves or takes too long."""
+        assert self._process is not None
+        try:
+            return self._process.ask(order, data, self._timeout, self._heard)
+        except _NoAnswerError as error:
+            when = when or f"in the step at {self._t_ns / 1e9:g} s"
+            raise RunError(f"{self.name} {str(error).format(when=when)}") from None
+
+    def _heard(self, status: int, text: str) -> None:
+        self._log(self.name, status, text)
+
+    def _settings(self) -> list[dict[str, Any]]:
+        """Return the parameters that are set, with the values of whole arrays, as groups."""
+        values = self.parameters.values
+        wanted = set(self._changed)
+        groups = []
+        for variable in self._description.modelVariables:
+            names = element_names(variable) if variable.causality == "parameter" else []
+            if wanted & set(names):
+                group = self._group(str(variable.type), [(int(variable.valueReference), len(names))])
+                groups.append({**group, "values": [float(values[self.parameters.index[name]]) for name in names]})
+        return groups
+
+    def _groups(self, ports: Ports) -> _Groups:
+        own = set(ports.names[: ports.own])
+        by_type: dict[str, list[tuple[int, list[int]]]] = {}
+        for variable in self._description.modelVariables:
+            names = element_names(variable)
+            if variable.causality in ("input", "output", "local") and names[0] in own:
+                found = int(variable.valueReference), [ports.index[name] for name in names]
+                by_type.setdefault(str(variable.type), []).append(found)
+        order = [place for items in by_type.values() for _, places in items for place in places]
+        groups = [self._group(kind, [(ref, len(places)) for ref, places in by_type[kind]]) for kind in by_type]
+        return _Groups(np.array(order, dtype=np.intp), groups)
+
+    def _group(self, kind: str, items: Sequence[tuple[int, int]]) -> dict[str, Any]:
+        enumeration = "Int64" if self._version == 3 else "Integer"
+        word = {"Enumeration": enumeration, "Boolean": "Boolean3" if self._version == 3 else "Boolean"}.get(kind, kind)
+        return {"type": word, "references": [ref for ref, _ in items], "count": sum(count for _, count in items)}
+
+
+class _NoAnswerError(Exception):
+    """Why there is no answer, with ``{when}`` for the place."""
+
+
+class _Process:
+    """A worker, its pipes, and who watches the clock."""
+
+    def __init__(self, folder: Path, printed: Path) -> None:
+        command = [sys.executable, "-P", "-c", BEGIN, str(ROOT)]
+        self._printed = printed
+        group: dict[str, Any] = {"start_new_session": True} if os.name == "posix" else {}
+        with printed.open("wb") as output:
+            streams: dict[str, Any] = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "stderr": output}
+            self._child: subprocess.Popen[Any] = subprocess.Popen(command, cwd=folder, bufsize=0, **streams, **group)
+        LIVING.add(self._child)
+        assert self._child.stdin is not None
+        assert self._child.stdout is not None
+        self._pipes = self._child.stdin, self._child.stdout
+        self._writing, self._answers = self._pipes[0].fileno(), worker.Stream(self._pipes[1].fileno())
+        self._deadline = float("inf")
+        self._is_late = False
+        self._over = threading.Event()
+        threading.Thread(target=self._watch, daemon=True).start()
+
+    def ask(self, order: bytes, data: bytes, limit: float, heard: Callable[[int, str], None]) -> bytes:
+        """Return the answer; messages that come before it go to ``heard``."""
+        self._deadline = time.monotonic() + limit
+        try:
+            worker.send(self._writing, order, data)
+            while True:
+                letter, answer = self._answers.message()
+                if letter == worker.DONE:
+                    return answer
+                said = json.loads(answer)
+                if letter == worker.REFUSED:
+                    what, _, text = said
+                    raise _NoAnswerError(f"{what}: {text or 'no message'}".replace("{", "{{").replace("}", "}}"))
+                heard(*said)
+        except (OSError, EOFError):
+            raise self._gone(limit) from None
+        finally:
+            self._deadline = float("inf")
+
+    def close(self, limit: float) -> None:
+        """Let the worker end; end it if it does not."""
+        with suppress(_NoAnswerError):
+            self.ask(worker.CLOSE, b"", limit, lambda status, text: None)
+        self._over.set()
+        with suppress(OSError):
+            self._pipes[0].close()
+        try:
+            self._child.wait(limit)
+        except subprocess.TimeoutExpired:
+            end(self._child)
+            self._child.wait()
+        self._pipes[1].close()
+        LIVING.discard(self._child)
+
+    def _watch(self) -> None:
+        while not self._over.wait(LOOK):
+            if time.monotonic() > self._deadline:
+                self._is_late = True
+                end(self._child)
+                return
+
+    def _gone(self, limit: float) -> _NoAnswerError:
+        code = self._child.wait()
+        printed = self._printed.read_bytes()[-2000:].decode(errors="replace").strip().splitlines()
+        words = f"; it printed: {printed[-1][:300]}".replace("{", "{{").replace("}", "}}") if printed else ""
+        if self._is_late:
+            return _NoAnswerError(f"took more than {limit:g} s {{when}}, so it was ended")
+        if code < 0:
+            return _NoAnswerError(f"crashed {{when}} ({signal.Signals(-code).name}){words}")
+        return _NoAnswerError(f"ended its process {{when}} (exit code {code}){words}")

@@ -1,0 +1,37 @@
+"""FMUs made from one C file and one modelDescription.xml, as somebody else would."""
+
+import zipfile
+from functools import cache
+from pathlib import Path
+
+from fmus.files import folder_for_a_while
+from fmus.native.compilers import find_compiler
+from fmus.native.platforms import PLATFORMS, host
+
+THEIR = Path(__file__).parent / "their"
+
+
+@cache
+def library(source: Path) -> bytes:
+    """Return the shared library made of a C file, for this machine."""
+    compiler = find_compiler()
+    with folder_for_a_while("c") as here:
+        (here / source.name).write_text(source.read_text(encoding="utf-8"), encoding="utf-8")
+        compiler.run(["-shared", "-fPIC", "-O1", "-o", "made.bin", source.name], here)
+        return (here / "made.bin").read_bytes()
+
+
+def c_fmu(path: Path, source: Path, description: str, identifier: str, platform: str = "") -> Path:
+    """Write an FMU of a C file and its modelDescription.xml."""
+    here = PLATFORMS[host()]
+    folder = platform or (here.folders3[0] if 'fmiVersion="3' in description else host())
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
+        archive.writestr("modelDescription.xml", description)
+        archive.writestr(f"binaries/{folder}/{identifier}{here.suffix}", library(source))
+    return path
+
+
+def two_arcs(folder: Path) -> Path:
+    """Return a controller in C with names and units of its own."""
+    text = (THEIR / "controller.xml").read_text(encoding="utf-8")
+    return c_fmu(folder / "two_arcs.fmu", THEIR / "controller.c", text, "two_arcs")

@@ -130,7 +130,7 @@ class Decoder:
         size = self._encoder.size
         if any(len(message) != size for message in messages):
             raise BadInput("holds messages that are not laid out as apa writes them", file=file)
-        data = np.frombuffer(b"".join(messages), dtype=np.uint8).reshape(-1, size)
+        data = np.frombuffer(b"".join(messages), dtype=np.uint8).reshape(len(messages), size)
         rows = np.empty((len(messages), self._width))
         for kind, (places, where) in self._encoder.layout.items():
             if not len(places):

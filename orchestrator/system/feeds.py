@@ -170,8 +170,8 @@ def _seconds(pairs: list[tuple[float, float]]) -> list[float]:
 
 
 def _in_si(end: Pin, unit: str) -> Pin:
-    """Return an end whose number is in ``unit``; of the other's definitions, as units of ours need none."""
-    return end._replace(unit=unit)
+    """Return an end whose number is in ``unit``, as a pose has it between its two ends."""
+    return end._replace(unit=unit, name="that number of a pose")
 
 
 def _state(given: int | str, variable: Variable, file: object, key: str) -> float:

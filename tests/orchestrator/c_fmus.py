@@ -4,6 +4,8 @@ import zipfile
 from functools import cache
 from pathlib import Path
 
+from pythonfmu.builder import FmuBuilder
+
 from fmus.files import folder_for_a_while
 from fmus.native.compilers import find_compiler
 from fmus.native.platforms import PLATFORMS, host
@@ -35,3 +37,14 @@ def two_arcs(folder: Path) -> Path:
     """Return a controller in C with names and units of its own."""
     text = (THEIR / "controller.xml").read_text(encoding="utf-8")
     return c_fmu(folder / "two_arcs.fmu", THEIR / "controller.c", text, "two_arcs")
+
+
+def sensor(folder: Path) -> Path:
+    """Return a position sensor of FMI 3.0 in C, with arrays."""
+    text = (THEIR / "sensor.xml").read_text(encoding="utf-8")
+    return c_fmu(folder / "sensor.fmu", THEIR / "sensor.c", text, "sensor")
+
+
+def plant(folder: Path) -> Path:
+    """Return a vehicle made with PythonFMU."""
+    return Path(FmuBuilder.build_FMU(THEIR / "plant.py", dest=folder)).rename(folder / "plant.fmu")

@@ -12,6 +12,7 @@ from orchestrator.sweep.study.design import Design
 from orchestrator.sweep.study.sampling import make_design
 from orchestrator.sweep.study.study import Study
 from orchestrator.sweep.study.study_file import StudyFile, load_study
+from orchestrator.text.errors import BadInput
 from orchestrator.text.quantities import scalar
 from orchestrator.verdict.measures import Measure
 
@@ -34,6 +35,8 @@ def bind(file: StudyFile) -> Study:
     """Return the study that a file means. Raises ``BadInput``."""
     sets = [f"{key}={value}" for key, value in file.set.items()]
     scenario = load_scenario(file.scenario, sets)
+    if scenario.system is not None:
+        raise BadInput("studies run our vehicle and our controller; leave out", file=scenario.file, key="system")
     design = make_design(file, scenario)
     content = file.model_dump(mode="json", by_alias=True)
     measures = {

@@ -1,0 +1,224 @@
+"""Any system: slaves of others with names, units and frames of their own, connected by a few lines and judged."""
+
+import json
+import math
+import shutil
+from pathlib import Path
+
+import c_fmus
+import numpy as np
+import pytest
+import yaml
+from hypothesis import given
+from hypothesis import strategies as st
+from toy_models import BRAIN, PLANT
+
+from orchestrator.cli import main
+from orchestrator.cosim.in_process_slave import InProcessSlave
+from orchestrator.cosim.master import Master
+from orchestrator.cosim.slave import Scale, Slave
+from orchestrator.log.read_log import read_log
+from orchestrator.scenario.scenario import Scenario
+from orchestrator.scenario.system import Origin, PoseFrame, SystemText, Term, terms
+from orchestrator.system.assemble import Assembled, assemble
+from orchestrator.system.conversions import into, out_of
+from orchestrator.system.remarks import loops, remarks
+from orchestrator.system.units import UnfitUnitsError, conversion
+from orchestrator.text.errors import BadInput
+
+MOST_LINES = 20
+
+
+@pytest.fixture(scope="module")
+def desk(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder with somebody's FMUs and the scenarios that connect them."""
+    folder = tmp_path_factory.mktemp("desk")
+    for make in (c_fmus.two_arcs, c_fmus.sensor, c_fmus.plant):
+        make(folder)
+    for path in c_fmus.THEIR.glob("*.yaml"):
+        shutil.copy(path, folder)
+    return folder
+
+
+@pytest.mark.parametrize("name", ["two_arcs", "all_theirs"])
+def test_systems_of_others_park_by_a_few_lines(
+    name: str, desk: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A controller in C with deg and km/h; with it a PythonFMU as vehicle and an FMI 3.0 sensor, each in its frame."""
+    assert len((desk / f"{name}.yaml").read_text().splitlines()) <= MOST_LINES
+    assert main(["run", str(desk / f"{name}.yaml"), "--fmus", "none", "--out", str(tmp_path), "--json"]) == 0
+    summary = json.loads(capsys.readouterr().out)
+    assert (summary["outcome"], summary["shifts"]) == ("parked", 1)
+    assert abs(summary["final"]["lateral_error"]) < 0.03
+    assert [event["to"] for event in summary["events"]] == ["PATH_TRACKING", "STRAIGHTEN", "PARKED"]
+    used = {item["name"]: item for item in summary["fmus"]}
+    assert used["controller"]["kind"] == "foreign"
+    assert Path(used["controller"]["path"]).name == "two_arcs.fmu"
+    assert (tmp_path / "report.html").stat().st_size > 10_000
+
+
+def test_the_log_has_their_names_and_the_roles(desk: Path, tmp_path: Path) -> None:
+    main(["run", str(desk / "all_theirs.yaml"), "--fmus", "none", "--out", str(tmp_path), "--no-page", "--quiet"])
+    log = read_log(tmp_path / "run.mcap")
+    x, east, course = (log.signals[name] for name in ("vehicle.pose.x", "plant.East", "plant.Course"))
+    assert x == pytest.approx(east / 100.0 - 2.405 * np.cos(np.radians(course)), abs=1e-12)
+    assert log.signals["vehicle.pose.heading"] == pytest.approx([-math.radians(value) for value in course])
+    assert log.signals["gps.pose[1]"][-1] == pytest.approx(x[-1] + 0.05, abs=1e-3)
+    assert log.states("gps.quality") == {1: "NONE", 2: "FAIR", 3: "GOOD"}
+    assert log.parameters["gps.bias"] == 0.05
+    assert log.states("controller.phase")[9] == "PARKED"
+
+
+def test_parameters_and_faults_of_a_third_slave(desk: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    system = ["run", str(desk / "all_theirs.yaml"), "--fmus", "none", "--out", str(tmp_path), "--no-page", "--json"]
+    assert main([*system, "--set", "gps.bias=20 cm"]) == 0
+    assert read_log(tmp_path / "run.mcap").parameters["gps.bias"] == 0.2
+    assert main([*system, "--set", "gps.bais=20 cm"]) == 2
+    assert "gps.bais: unknown; did you mean gps.bias?" in capsys.readouterr().err
+    fault = "[{signal: gps.pose, kind: freeze, start: 3}]"
+    assert main([*system, "--set", f"faults={fault}"]) == 1
+    assert read_log(tmp_path / "run.mcap").signals["controller.Yaw"][-1] == pytest.approx(
+        math.degrees(read_log(tmp_path / "run.mcap").signals["gps.pose[3]"][300]) * -1.0, abs=1e-9
+    )
+
+
+def test_a_suite_runs_systems_beside_shipped_scenarios(desk: Path, tmp_path: Path) -> None:
+    names = [str(desk / "two_arcs.yaml"), "guo2015-case3"]
+    assert main(["test", *names, "--fmus", "none", "--out", str(tmp_path), "--quiet"]) == 0
+    assert json.loads((tmp_path / "their-case4" / "summary.json").read_text())["outcome"] == "parked"
+
+
+def toys(text: str) -> tuple[Scenario, list[Slave]]:
+    slaves: list[Slave] = [InProcessSlave("plant", PLANT, {}), InProcessSlave("brain", BRAIN, {})]
+    written = {"slaves": {"plant": "p.fmu", "brain": "b.fmu"}, **yaml.safe_load(text)}
+    return Scenario(name="toys", system=SystemText(**written)), slaves
+
+
+def assembled(text: str) -> Assembled:
+    return assemble(*toys(text))
+
+
+def exchanged(text: str, **outputs: float) -> dict[str, float]:
+    """Return the inputs of the plant after one exchange with the given outputs of the brain."""
+    system = assembled(text)
+    plant, brain = system.slaves[:2]
+    master = Master(system.slaves, 10, 20, None, system.connections)
+    master.initialize()
+    fetch = brain.fetch_outputs
+
+    def fetched() -> None:
+        fetch()
+        for name, value in outputs.items():
+            brain.outputs.values[brain.outputs.index[name]] = value
+
+    brain.fetch_outputs = fetched  # type: ignore[method-assign]
+    master.run()
+    return dict(zip(plant.inputs.names, plant.inputs.values.tolist(), strict=True))
+
+
+def test_gains_offsets_maps_constants_and_types() -> None:
+    text = """
+connections:
+  plant.command: {from: -brain.command, factor: 2, offset: 3}
+  plant.mode: {from: brain.right, map: {7: busy, 8: done}, else: idle}
+  plant.active: brain.right
+  plant.right: 5
+"""
+    found = exchanged(text, command=4.0, right=7.0)
+    assert found == {"command": -5.0, "mode": 1.0, "active": 1.0, "right": 5.0}
+    assert exchanged(text, command=4.0, right=0.0)["active"] == 0.0
+    assert exchanged(text, command=4.0, right=3.0)["mode"] == 0.0
+
+
+def test_a_unit_is_written_where_the_fmu_says_none_or_one() -> None:
+    with pytest.raises(BadInput, match="is in m/s, as its FMU says, not in km/h"):
+        assembled("connections: {plant.command: 'brain.command [km/h]'}")
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("connections: {plant.comand: brain.command}", "no input 'comand'; did you mean plant.command?"),
+        ("connections: {plant.command: brain.comand}", "no output 'comand'; did you mean brain.command?"),
+        ("connections: {plnt.command: brain.command}", "no slave is called 'plnt'; did you mean plant?"),
+        ("connections: {plant.command: bran.command}", "'bran.command' is not a number"),
+        ("connections: {plant.command: 5 deg}", "'5 deg' is in 'deg', expected a number in m/s"),
+        ("connections: {'plant.command, plant.right': brain.command}", "2 inputs, but 1 signals"),
+        (
+            "connections: {plant.command: brain.command, 'plant.command, plant.right': 'brain.command, brain.right'}",
+            "plant.command is fed twice",
+        ),
+        ("connections: {plant.mode: {from: brain.mode, map: {bussy: done}}}", "'bussy' is no state of mode"),
+        ("connections: {plant.mode: {from: brain.mode, map: {busy: dune}}}", "'dune' is none of idle, busy, done"),
+        ("connections: {plant.command: {from: brain.command, into: there}}", "'there' is none of the frames"),
+        ("roles: {sped: plant.moving}", "no such role; did you mean speed?"),
+        ("roles: {speed: plant.left}", "plant.left is in 1, vehicle.speed in m/s"),
+        ("roles: {speed: 3}", "a role is a signal"),
+    ],
+)
+def test_what_does_not_fit_is_said_with_the_names_that_come_closest(text: str, said: str) -> None:
+    with pytest.raises((BadInput, ValueError)) as caught:
+        assembled(text)
+    assert said in str(caught.value)
+
+
+def test_a_group_is_connected_as_one_and_what_is_left_by_name() -> None:
+    system = assembled("connections: {brain.pose: plant.pose}")
+    fed = {(system.slaves[slave].name, system.slaves[slave].inputs.names[place]) for slave, place in system.fed}
+    assert fed >= {("brain", "pose.x"), ("brain", "pose.heading"), ("plant", "command"), ("plant", "active")}
+
+
+def test_a_loop_of_direct_feedthrough_is_said() -> None:
+    scenario, slaves = toys("{}")
+    slaves[0].outputs.direct = {"left": ["right"]}
+    assert loops(assemble(scenario, slaves)) == []
+    slaves[1].outputs.direct = {"right": ["left"]}
+    (said,) = loops(assemble(scenario, slaves))
+    assert said.startswith("algebraic loop: ")
+    assert "plant.left -> brain.right -> plant.left" in said + said.partition(": ")[2]
+
+
+def test_what_a_verdict_needs_and_nobody_plays_is_said() -> None:
+    scenario, slaves = toys("roles: {pose: plant.pose}")
+    said = " ".join(remarks(assemble(scenario, slaves), scenario.ending))
+    assert "has no output speed: that the car stands ends no run" in said
+    assert "no slave is called controller, nor plays its roles" in said
+    assert "pose.x" not in said
+
+
+@given(
+    pose=st.tuples(*[st.floats(-50, 50)] * 2, st.floats(-3, 3)),
+    origin=st.tuples(*[st.floats(-50, 50)] * 2, st.floats(-3, 3)),
+    side=st.sampled_from(["left", "right"]),
+    ahead=st.floats(-3, 3),
+)
+def test_a_frame_there_and_back(
+    pose: tuple[float, float, float], origin: tuple[float, float, float], side: str, ahead: float
+) -> None:
+    frame = PoseFrame(origin=Origin(x=origin[0], y=origin[1], heading=origin[2]), y=side, ahead=ahead)
+    assert out_of(frame, *into(frame, *pose)) == pytest.approx(pose, abs=1e-9)
+
+
+def test_a_frame_by_hand() -> None:
+    """Origin 10 m ahead of ours, x to our left, y to its right (our right is backwards), front axle 2 m ahead."""
+    frame = PoseFrame(origin=Origin(x=10.0, heading=math.pi / 2), y="right", ahead=2.0)
+    assert into(frame, 3.0, 4.0, 0.0) == pytest.approx((4.0, -5.0, math.pi / 2))
+
+
+def test_units_are_those_of_the_fmu_then_those_everybody_knows() -> None:
+    mine = {"turn": Scale(2.0 * math.pi, 0.0, (0,) * 7 + (1,)), "degC": Scale(1.0, 273.15, (0, 0, 0, 0, 1, 0, 0, 0))}
+    assert conversion("turn", "rad", mine, {}) == (pytest.approx(2.0 * math.pi), 0.0)
+    assert conversion("degC", "K", mine, {}) == (1.0, 273.15)
+    assert conversion("km/h", "m/s", {}, {})[0] == pytest.approx(1 / 3.6)
+    assert conversion("cm", "m", {}, {})[0] == pytest.approx(0.01)
+    assert conversion("apples", "apples", {}, {}) == (1.0, 0.0)
+    for one, other in (("m", "rad"), ("apples", "m"), ("m", "1")):
+        with pytest.raises(UnfitUnitsError):
+            conversion(one, other, {}, {})
+
+
+def test_terms() -> None:
+    assert terms("-a.b [deg], c.d[1].e") == [Term("a.b", "deg", True), Term("c.d[1].e", None, False)]
+    assert terms("a.m[2,1] [km/h]") == [Term("a.m[2,1]", "km/h", False)]
+    with pytest.raises(BadInput, match="is no signal"):
+        terms("a.b +")

@@ -76,7 +76,7 @@ def load_system(name: str, sets: Iterable[str] = ()) -> SystemText | None:
     if merged.get("system") is None:
         return None
     try:
-        return SystemText(**merged["system"])
+        return SystemText.model_validate(merged["system"])
     except ValidationError as error:
         raise explain(error, f"{path}: system", list(SystemText.model_fields)) from None
 
@@ -85,7 +85,7 @@ def _read(name: str, sets: list[str]) -> tuple[Path, list[Layer], dict[str, Any]
     """Return (file, what it, its bases and ``sets`` say, lowest first, all of that merged but for parameters)."""
     path = find_file(name, "scenarios", "scenario", Path.cwd())
     layers = _layers(path, ())
-    slaves = [slave for content, _ in layers for slave in ((content.get("system") or {}).get("slaves") or {})]
+    slaves = [str(slave) for content, _ in layers for slave in _in(_in(content, "system"), "slaves")]
     layers.append((_set_layer(sets, slaves), "--set"))
     merged: dict[str, Any] = {}
     for content, file in layers:
@@ -94,6 +94,12 @@ def _read(name: str, sets: list[str]) -> tuple[Path, list[Layer], dict[str, Any]
             merged, {key: _named(key, content[key]) for key in content if key not in (*MODELS, "scene", SETS)}
         )
     return path, layers, merged
+
+
+def _in(content: Mapping[str, Any], key: str) -> Mapping[str, Any]:
+    """Return a section of what a file says, empty if it is none."""
+    section = content.get(key)
+    return section if isinstance(section, Mapping) else {}
 
 
 def _with_parameters(scenario: Scenario, more: More) -> Scenario:
@@ -146,12 +152,12 @@ def _layers(path: Path, seen: tuple[Path, ...]) -> list[Layer]:
 
 def _placed(content: dict[str, Any], path: Path) -> dict[str, Any]:
     """Return what a file says, with the FMUs of its system where they are, seen from the file."""
-    system = content.get("system")
-    slaves = system.get("slaves") if isinstance(system, Mapping) else None
-    if not isinstance(system, Mapping):
+    system = _in(content, "system")
+    if not system:
         return content
     made = dict(system)
-    if isinstance(slaves, Mapping):
+    slaves = _in(system, "slaves")
+    if slaves:
         made["slaves"] = {str(name): _entry_beside(item, path.parent) for name, item in slaves.items()}
     if isinstance(system.get("ssp"), str):
         made["ssp"] = str(path.parent / system["ssp"])

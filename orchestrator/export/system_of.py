@@ -17,9 +17,7 @@ def system_of(scenario: Scenario, files: dict[str, Path]) -> System:
     if any(every != 1 for every in scenario.every.values()):
         raise BadInput("a system file has one communication step for all; leave out", file=scenario.file, key="every")
     if scenario.system is not None:
-        raise BadInput(
-            "exports are of our vehicle and controller; leave out", file=scenario.file, key="system"
-        )
+        raise BadInput("exports are of our vehicle and controller; leave out", file=scenario.file, key="system")
     if scenario.faults:
         raise BadInput("faults live in apa's own master; leave them out to export", file=scenario.file, key="faults")
     parts = tuple(Part(name, model, files[name], getattr(scenario, name)) for name, model in MODELS.items())

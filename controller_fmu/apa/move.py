@@ -6,7 +6,7 @@ ramps), so the limits of curvature and curvature rate hold exactly and everywher
 
 from typing import NamedTuple
 
-from controller_fmu.apa.curve import advance
+from controller_fmu.common.curve import advance
 from controller_fmu.apa.outline import CREPT, MET, Car, Obstacles, clearance, least_on
 from modelkit.vocabulary import Pose
 

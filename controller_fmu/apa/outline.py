@@ -7,7 +7,7 @@ by the separating axis theorem on the four directions of their sides.
 import math
 from typing import NamedTuple
 
-from controller_fmu.apa.curve import advance
+from controller_fmu.common.curve import advance
 from modelkit.vocabulary import Pose
 
 FAR = 60.0

@@ -10,7 +10,7 @@ the lines cross.
 import math
 from typing import NamedTuple
 
-from controller_fmu.apa.curve import advance
+from controller_fmu.common.curve import advance
 from controller_fmu.apa.move import NO_PIECE, Move, Piece
 from modelkit.vocabulary import Pose
 

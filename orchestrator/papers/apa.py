@@ -7,7 +7,7 @@ import numpy as np
 from scipy.interpolate import splev, splrep  # type: ignore[import-untyped]
 
 from controller_fmu.apa.chart import Mode
-from controller_fmu.apa.curve import advance
+from controller_fmu.common.curve import advance
 from controller_fmu.apa.exit import exit_of
 from controller_fmu.apa.fit import least_moves, shortest_of_iso
 from controller_fmu.apa.move import is_move_free, length_of, point_at

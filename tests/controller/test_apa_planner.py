@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from controller_fmu.apa.curve import advance
+from controller_fmu.common.curve import advance
 from controller_fmu.apa.exit import exit_of
 from controller_fmu.apa.move import end_of, is_move_free, length_of, point_at
 from controller_fmu.apa.outline import clearance

@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from controller_fmu.apa.curve import advance
+from controller_fmu.common.curve import advance
 from controller_fmu.apa.move import Move, end_of, length_of, point_at
 from controller_fmu.apa.params import ApaDriveParams
 from controller_fmu.apa.speed import planned_speed, stopping_way

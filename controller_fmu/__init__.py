@@ -3,6 +3,8 @@
 import sys
 
 from controller_fmu import model
+from controller_fmu.adaptive.outputs import adaptive_outputs
+from controller_fmu.adaptive.system import adaptive_sample, adaptive_start
 from controller_fmu.apa.outputs import apa_outputs
 from controller_fmu.apa.system import apa_sample, apa_start
 from controller_fmu.guo2015.system import guo_outputs, guo_sample, guo_start
@@ -32,6 +34,7 @@ OF_APA = (
     *(f"limit.{name}" for name in ("stopping", "pose_frozen", "wheel_off", "wheel_fault")),
     "apa",
 )
+OF_ADAPTIVE = ("target", "vehicle_fault", "shifts", "threshold.wheel", "threshold.standstill", "limit", "adaptive")
 SYSTEMS = SampledSystems(
     state=model.ControllerState,
     parameter="system",
@@ -45,6 +48,9 @@ SYSTEMS = SampledSystems(
         SampledSystem((System.HSIC,), "hsic", hsic_start, hsic_sample, hsic_outputs, OF_HSIC),
         SampledSystem((System.PREVIEW,), "preview", driving_start, driving_sample, driving_outputs, OF_PREVIEW),
         SampledSystem((System.APA,), "apa", apa_start, apa_sample, apa_outputs, OF_APA),
+        SampledSystem(
+            (System.ADAPTIVE,), "adaptive", adaptive_start, adaptive_sample, adaptive_outputs, OF_ADAPTIVE
+        ),
     ),
 )
 MODEL = Model(
@@ -69,6 +75,7 @@ ZHANG2022 = MODEL.only(System.ZHANG2022, "Controller_zhang2022", "Parking on a q
 HSIC = MODEL.only(System.HSIC, "Controller_hsic", "Parking by human-simulated intelligent control")
 PREVIEW = MODEL.only(System.PREVIEW, "Controller_preview", "Driving a road by dual-point preview and fuzzy control")
 APA = MODEL.only(System.APA, "Controller_apa", "Parking assist: slot search, planner, tracking, position tuning")
+ADAPTIVE = MODEL.only(System.ADAPTIVE, "Controller_adaptive", "Parking adapted to the driver: his speed, his stops")
 SYSTEM_MODELS = {
     System.NTBPTCWPT: NTBPTCWPT,
     System.NTBPT: NTBPT,
@@ -76,5 +83,6 @@ SYSTEM_MODELS = {
     System.HSIC: HSIC,
     System.PREVIEW: PREVIEW,
     System.APA: APA,
+    System.ADAPTIVE: ADAPTIVE,
 }
 """The controller with one system alone: the same code, with that system's parameters, inputs and outputs only."""

@@ -4,6 +4,7 @@ from enum import IntEnum
 from math import pi
 from typing import Annotated, NamedTuple
 
+from controller_fmu.adaptive.params import AdaptiveParams
 from controller_fmu.apa.params import ApaParams
 from controller_fmu.apa.signals import ApaSignals
 from controller_fmu.common.params import LimitParams, ThresholdParams
@@ -36,6 +37,8 @@ class System(IntEnum):
     """Dual-point preview with fuzzy steering and speed on a road (does not park)."""
     APA = 5
     """The whole parking assist: slot search, planner, tracking, position tuning."""
+    ADAPTIVE = 6
+    """Clothoid paths sized by the driver's speed, predicted stops, planned anew from every standstill."""
 
 
 class Phase(IntEnum):
@@ -179,3 +182,4 @@ class ControllerParams(NamedTuple):
     hsic: HsicParams = HsicParams()
     preview: Annotated[PreviewParams, Role.TUNABLE] = PreviewParams()
     apa: ApaParams = ApaParams()
+    adaptive: AdaptiveParams = AdaptiveParams()

@@ -8,6 +8,7 @@ names the systems, each with how it starts, what it does at a sample and what it
 import math
 from typing import NamedTuple
 
+from controller_fmu.adaptive.system import AdaptiveState
 from controller_fmu.apa.system import ApaState
 from controller_fmu.guo2015.system import GuoState
 from controller_fmu.hsic.system import HsicState
@@ -36,6 +37,7 @@ class ControllerState(NamedTuple):
     hsic: HsicState = HsicState()
     preview: DrivingState = DrivingState()
     apa: ApaState = ApaState()
+    adaptive: AdaptiveState = AdaptiveState()
 
 
 def begin(params: ControllerParams) -> Clock:

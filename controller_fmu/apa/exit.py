@@ -7,9 +7,9 @@ the arc forward leads out. What has to be driven then from the road is one rever
 import math
 from typing import NamedTuple
 
-from controller_fmu.common.curve import advance
 from controller_fmu.apa.outline import Car, free_way
 from controller_fmu.apa.slot import Site
+from controller_fmu.common.curve import advance
 from modelkit.vocabulary import Pose
 
 VARIANTS = 10

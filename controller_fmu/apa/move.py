@@ -6,8 +6,8 @@ ramps), so the limits of curvature and curvature rate hold exactly and everywher
 
 from typing import NamedTuple
 
-from controller_fmu.common.curve import advance
 from controller_fmu.apa.outline import CREPT, MET, Car, Obstacles, clearance, least_on
+from controller_fmu.common.curve import advance
 from modelkit.vocabulary import Pose
 
 PIECES = 7

@@ -10,8 +10,8 @@ the lines cross.
 import math
 from typing import NamedTuple
 
-from controller_fmu.common.curve import advance
 from controller_fmu.apa.move import NO_PIECE, Move, Piece
+from controller_fmu.common.curve import advance
 from modelkit.vocabulary import Pose
 
 STEEPEST = 85.0 * math.pi / 180.0

@@ -8,9 +8,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
-from controller_fmu.common.curve import advance
 from controller_fmu.apa.move import Move, end_of, length_of, point_at
 from controller_fmu.apa.turns import reverse_s, reverse_turn, turn_of
+from controller_fmu.common.curve import advance
 from modelkit.vocabulary import Pose
 
 CURVATURE = st.floats(-0.25, 0.25)

@@ -1,0 +1,137 @@
+"""What the driver has shown: how late he acts on a prompt, how hard he brakes, how fast he drives, whether he obeys.
+
+The way of a stop is v r + v^2 / (2 a). The reaction r is seen when he sets out: prompt to first movement. The
+deceleration a is seen while he stops, between 0.8 and 0.3 of the speed he had; what the way he took says beyond
+it (pedals, play, a slower foot) makes r longer or shorter.
+"""
+
+from typing import NamedTuple
+
+from controller_fmu.adaptive.params import BeliefParams
+from modelkit.maths import clamp
+
+EARLY = 0.8
+LATE = 0.3
+"""Shares of the speed at the prompt between which the deceleration is measured."""
+SLOWEST = 0.15
+"""A stop from less than this [m/s] teaches nothing."""
+SURE = 0.05
+"""Allowed on top of a reaction seen at setting out only [s]."""
+SMOOTHED = 0.08
+"""Time constant of the acceleration [s]."""
+FASTER = 1.12
+"""Beyond this over the advice he does not slow down."""
+
+
+class Driver(NamedTuple):
+    """The driver as he is known."""
+
+    reaction: float = 0.0
+    deceleration: float = 0.0
+    """0: not known yet."""
+    fastest: float = 0.0
+    """Largest speed he drove [m/s]."""
+    obeys: bool = True
+    """He has not yet driven faster than advised."""
+    stops: int = 0
+    """Stops learnt from."""
+    speed: float = 0.0
+    acceleration: float = 0.0
+    asked_ns: int = 0
+    """Since the prompt that he acts on now."""
+    moved: bool = False
+    """He has set out on the way prompted."""
+    stop_speed: float = 0.0
+    stop_way: float = 0.0
+    """Driven since the prompt to stop [m]."""
+    early_ns: int = 0
+    late_ns: int = 0
+    """When he had slowed down to ``EARLY`` and ``LATE``; 0: not yet."""
+
+
+def prompted(driver: Driver, speed: float) -> Driver:
+    """Return the driver told another thing than before, at ``speed`` [m/s]."""
+    return driver._replace(
+        asked_ns=0, moved=abs(speed) > 0.0, stop_speed=abs(speed), stop_way=0.0, early_ns=0, late_ns=0
+    )
+
+
+def seen_driving(
+    driver: Driver, speed: float, advised: float, standstill: float, believed: BeliefParams, dt_ns: int
+) -> Driver:
+    """Return the driver after a sample in which he was prompted to drive, no faster than ``advised`` [m/s]."""
+    v = abs(speed)
+    asked_ns = driver.asked_ns + dt_ns
+    sets_out = not driver.moved and v > standstill
+    reaction = driver.reaction
+    if sets_out and driver.stops == 0:
+        reaction = clamp(asked_ns * 1e-9, 0.0, 2.0) + SURE
+    late = asked_ns * 1e-9 > reaction_of(driver, believed) + v / deceleration_of(driver, believed)
+    return driver._replace(
+        reaction=reaction,
+        fastest=max(driver.fastest, v),
+        obeys=driver.obeys and not (late and v > FASTER * advised + 0.03),
+        speed=v,
+        acceleration=_smoothed(driver, v, dt_ns),
+        asked_ns=asked_ns,
+        moved=driver.moved or sets_out,
+    )
+
+
+def seen_stopping(driver: Driver, speed: float, dt_ns: int) -> Driver:
+    """Return the driver after a sample in which he was prompted to stop."""
+    v = abs(speed)
+    asked_ns = driver.asked_ns + dt_ns
+    return driver._replace(
+        speed=v,
+        acceleration=_smoothed(driver, v, dt_ns),
+        fastest=max(driver.fastest, v),
+        asked_ns=asked_ns,
+        stop_way=driver.stop_way + v * (dt_ns * 1e-9),
+        early_ns=asked_ns if driver.early_ns == 0 and v < EARLY * driver.stop_speed else driver.early_ns,
+        late_ns=asked_ns if driver.late_ns == 0 and v < LATE * driver.stop_speed else driver.late_ns,
+    )
+
+
+def stopped(driver: Driver, believed: BeliefParams) -> Driver:
+    """Return the driver who has come to stand after a prompt to stop."""
+    v = driver.stop_speed
+    took = (driver.late_ns - driver.early_ns) * 1e-9
+    still = driver._replace(speed=0.0, acceleration=0.0)
+    if v < SLOWEST or took <= 0.0:
+        return still
+    deceleration = clamp((EARLY - LATE) * v / took, 0.5, 15.0)
+    reaction = clamp((driver.stop_way - 0.5 * v * v / deceleration) / v, 0.0, 2.0)
+    if driver.stops > 0 or driver.reaction > 0.0:
+        known = driver.reaction - (SURE if driver.stops == 0 else 0.0)
+        reaction = 0.5 * (known + clamp(reaction, known - 0.3, known + 0.3))
+    return still._replace(reaction=reaction, deceleration=deceleration, stops=driver.stops + 1)
+
+
+def reaction_of(driver: Driver, believed: BeliefParams) -> float:
+    """Return his reaction [s], as seen or as believed."""
+    return driver.reaction if driver.reaction > 0.0 else believed.reaction
+
+
+def deceleration_of(driver: Driver, believed: BeliefParams) -> float:
+    """Return his deceleration [m/s2], as seen or as believed."""
+    return driver.deceleration if driver.deceleration > 0.0 else believed.deceleration
+
+
+def stopping_way(driver: Driver, believed: BeliefParams) -> float:
+    """Return the way [m] he will drive on if he is told to stop now, his speed changing as it does."""
+    r = reaction_of(driver, believed)
+    most = max(driver.fastest, driver.speed) if driver.stops > 0 else driver.speed + 2.0 * r
+    braking = clamp(driver.speed + max(-1.0, driver.acceleration) * r, 0.0, most)
+    return 0.5 * (driver.speed + braking) * r + 0.5 * braking * braking / deceleration_of(driver, believed)
+
+
+def shortest_way(driver: Driver, believed: BeliefParams) -> float:
+    """Return the shortest way [m] he can be had to drive: he is told to stop as soon as he has set out."""
+    v = driver.fastest
+    return 0.9 * v * reaction_of(driver, believed) + 0.5 * v * v / deceleration_of(driver, believed)
+
+
+def _smoothed(driver: Driver, v: float, dt_ns: int) -> float:
+    dt = dt_ns * 1e-9
+    return driver.acceleration + ((v - driver.speed) / dt - driver.acceleration) * dt / (dt + SMOOTHED)

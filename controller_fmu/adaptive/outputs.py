@@ -1,0 +1,36 @@
+"""What driver-adaptive parking puts out."""
+
+from controller_fmu.adaptive.system import AdaptiveState
+from controller_fmu.common.monitor import DIRECTION_OF_PHASE
+from controller_fmu.common.slot_frame import to_world
+from controller_fmu.interface import ControllerOutput, ControllerParams, Phase
+from modelkit.vocabulary import Prompt
+
+
+def adaptive_outputs(state: AdaptiveState, params: ControllerParams) -> ControllerOutput:
+    """Return the outputs that hold until the next sample."""
+    return ControllerOutput(
+        steering_wheel_request=state.request,
+        steering_active=state.phase != Phase.STANDBY and state.phase < Phase.PARKED,
+        prompt=prompt_of(state, params),
+        advised_speed=state.advice,
+        brake_request=state.phase == Phase.FAILED and not state.takeover,
+        phase=state.phase,
+        reason=state.reason,
+        shifts=state.shifts,
+        reference=to_world(state.foot.reference, state.frame),
+        lateral_error=state.foot.lateral_error,
+        heading_error=state.foot.heading_error,
+    )
+
+
+def prompt_of(state: AdaptiveState, params: ControllerParams) -> int:
+    """Return the prompt: to slow down where the advice asks for it and the car is on its way."""
+    if state.phase in (Phase.STANDBY, Phase.TAKEOVER):
+        return Prompt.NONE
+    direction = DIRECTION_OF_PHASE[state.phase]
+    if direction == 0:
+        return Prompt.STOP
+    if state.moving and state.advice < params.adaptive.belief.speed_limit:
+        return Prompt.SLOW_DOWN
+    return Prompt.FORWARD if direction > 0 else Prompt.REVERSE

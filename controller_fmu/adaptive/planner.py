@@ -1,0 +1,236 @@
+"""Which way to drive from where the car stands: into the slot in reverse, onto its line ahead, or to a better start.
+
+A route is driven as far as its curvature is continuous. At a jump the driver has to stop and the wheel turns at
+standstill, after which all is planned anew. So a plan is a first way, and the proof that another leads on from its end.
+"""
+
+from typing import NamedTuple
+
+from controller_fmu.adaptive.curves import (
+    NO_ROUTE,
+    Wheel,
+    arc,
+    arc_in,
+    bend_of,
+    line_in,
+    s_curve,
+    straight,
+    swing_way,
+)
+from controller_fmu.adaptive.room import Room, room_along, room_at
+from controller_fmu.adaptive.route import Route, drivable, mirrored, point_at
+from modelkit.vocabulary import Pose
+
+SPEEDS = (2.0, 1.6, 1.3, 1.05, 0.85, 0.7, 0.55, 0.42, 0.32, 0.25)
+"""Speeds [m/s] that a route is tried for."""
+QUICK = 0.8
+"""A route for this speed [m/s] needs no longer way to begin with."""
+RADII = (1.0, 1.25, 1.6, 2.2, 4.0, 8.0)
+"""Tried, over the smallest."""
+LEADS = (0.0, 0.4, 0.8, 1.2, 1.6, 2.0, 2.5, 3.0, 3.5, 4.0)
+"""Ways [m] straight back before the first arc."""
+STEP = 0.08
+"""On the first arc places to stop are looked for so far [m] apart."""
+STEPS = 90
+AHEAD = (0.3, 0.6, 0.9, 1.2, 1.6, 2.0, 2.5, 3.0, 3.6)
+"""Ways [m] driven ahead for a better start."""
+TURNS = (0.0, -0.45, 0.45, -0.9, 0.9)
+"""Curvature of them, over the largest."""
+ALIGNED = 0.02
+ALIGNED_HEADING = 0.008
+INSIDE = 0.9
+"""A car nearer than this [m] to the slot's line, turned by less than this [rad], is put right ahead of the target."""
+NARROW = 0.16
+"""A place to stop [m] that can be met by a driver who is not known yet."""
+
+
+class Demand(NamedTuple):
+    """What a route has to bear with."""
+
+    speed: float
+    """The driver's [m/s], with a reserve."""
+    willing: bool
+    """He drives slower if told."""
+    rest: float
+    """Straight way before the end [m]."""
+    share: float
+    """Where in a place to stop he is to stop."""
+    shortest: float
+    """Way [m] he drives at least."""
+
+
+class Plan(NamedTuple):
+    """A route, the speed it is for, and the way to a stop on its first arc for a driver who is faster."""
+
+    route: Route = NO_ROUTE
+    speed: float = 0.0
+    """[m/s]"""
+    slower: Route = NO_ROUTE
+
+
+NO_PLAN = Plan()
+ANY_SPEED = 99.0
+"""Of a route whose curvature stays as it is [m/s]."""
+
+
+def plan(pose: Pose, demand: Demand, wheel: Wheel, room: Room) -> Plan:
+    """Return the plan from standstill at ``pose`` (slot's frame); its route has no direction if there is none."""
+    if abs(pose.y) <= ALIGNED and abs(pose.heading) <= ALIGNED_HEADING:
+        return plan_straight(pose, demand)
+    back = plan_back(pose, demand, wheel, room)
+    if back.route.direction != 0:
+        return back
+    if abs(pose.y) < INSIDE and abs(pose.heading) < INSIDE:
+        onto = plan_onto(pose, demand, wheel, room)
+        if onto.route.direction != 0:
+            return onto
+    return plan_ahead(pose, demand, wheel, room)
+
+
+def plan_straight(pose: Pose, demand: Demand) -> Plan:
+    """Return the way straight to the target, or ahead first if the driver cannot be stopped so soon."""
+    if abs(pose.x) >= demand.shortest:
+        return Plan(straight(pose, -1 if pose.x > 0.0 else 1, abs(pose.x)), ANY_SPEED)
+    return Plan(straight(pose, 1, max(demand.shortest, demand.shortest + 0.1 - pose.x)), ANY_SPEED)
+
+
+def plan_back(pose: Pose, demand: Demand, wheel: Wheel, room: Room) -> Plan:
+    """Return the plan in reverse to the target: without a stop, else with one."""
+    moving = _moving(pose, demand, wheel, room)
+    if moving.route.direction != 0:
+        if demand.willing:
+            return moving._replace(slower=_slower(moving.route, demand, wheel, room))
+        return moving
+    stop = stop_on_arc(pose, 0.0, wheel.radius, demand, wheel, room)
+    if stop.direction != 0:
+        return Plan(stop, ANY_SPEED)
+    return Plan(_smooth(pose, 0.0, 0.0, demand.rest, demand, wheel, room), ANY_SPEED)
+
+
+def _moving(pose: Pose, demand: Demand, wheel: Wheel, room: Room) -> Plan:
+    """Return the fastest plan in reverse without a stop for a willing driver, else one for his speed."""
+    best = NO_PLAN
+    for lead in LEADS:
+        if best.speed >= QUICK or (best.route.direction != 0 and not demand.willing):
+            return best
+        if demand.willing:
+            for speed in SPEEDS:
+                if speed > best.speed:
+                    route = _smooth(pose, speed, lead, demand.rest, demand, wheel, room)
+                    if route.direction != 0:
+                        best = Plan(route, speed)
+        else:
+            route = _smooth(pose, demand.speed, lead, demand.rest, demand, wheel, room)
+            if route.direction != 0:
+                best = Plan(route, demand.speed)
+    return best
+
+
+def _smooth(pose: Pose, speed: float, lead: float, rest: float, demand: Demand, wheel: Wheel, room: Room) -> Route:
+    """Return a free route in reverse for ``speed``; with 0 the wheel turns at standstill."""
+    enough = _enough(pose, room)
+    for mirror in (1.0, -1.0):
+        start = Pose(pose.x, mirror * pose.y, mirror * pose.heading)
+        if lead == 0.0:
+            found = mirrored(arc_in(start, speed, wheel, rest), mirror, pose, -1)
+            if _is_long(found, demand.shortest) and room_along(found, room, enough) >= enough:
+                return found
+        for share in RADII:
+            radius = share * wheel.radius
+            bend = bend_of(radius, swing_way(speed, radius, wheel))
+            if lead == 0.0:
+                found = mirrored(line_in(start, bend, rest), mirror, pose, -1)
+                if _is_long(found, demand.shortest) and room_along(found, room, enough) >= enough:
+                    return found
+            enter = bend.ramp if lead > 0.0 else 0.0
+            for other in RADII:
+                radius2 = other * wheel.radius
+                bend2 = bend_of(radius2, swing_way(speed, radius2, wheel))
+                found = mirrored(s_curve(start, lead, enter, bend, bend2, bend2, rest), mirror, pose, -1)
+                if _is_long(found, demand.shortest) and room_along(found, room, enough) >= enough:
+                    return found
+    return NO_ROUTE
+
+
+def stop_on_arc(pose: Pose, lead: float, radius: float, demand: Demand, wheel: Wheel, room: Room) -> Route:
+    """Return the first arc back to a stop from which a left arc alone leads in, at the driver's speed."""
+    if lead > 0.0:
+        return straight(pose, -1, lead)
+    for mirror in (1.0, -1.0):
+        start = Pose(pose.x, mirror * pose.y, mirror * pose.heading)
+        first = -1.0
+        last = -1.0
+        for number in range(STEPS):
+            way = STEP * number
+            at = point_at(arc(start, -1, way, -1.0 / radius), way).pose
+            inwards = arc_in(at, demand.speed, wheel, demand.rest)
+            free = inwards.direction != 0
+            if free:
+                found = mirrored(inwards, mirror, Pose(at.x, mirror * at.y, mirror * at.heading), -1)
+                free = room_along(found, room, room.margin) >= room.margin
+            if free:
+                first = way if first < 0.0 else first
+                last = way
+            elif first >= 0.0:
+                break
+        if last - first >= NARROW and last > 0.0:
+            way = first + demand.share * (last - first)
+            if way >= demand.shortest:
+                return arc(pose, -1, way, -mirror / radius)
+    return NO_ROUTE
+
+
+def plan_onto(pose: Pose, demand: Demand, wheel: Wheel, room: Room) -> Plan:
+    """Return the plan forward onto the slot's line, as far as the neighbour ahead allows."""
+    far = room.front.x - 0.5 * room.front.length - room.wheelbase - room.front_overhang - 2.0 * room.margin
+    seen = Pose(far - pose.x, pose.y, -pose.heading)
+    empty = room._replace(front=room.front._replace(x=1e6), rear=room.rear._replace(x=-1e6), lowest=-1e6, highest=1e6)
+    for share in (1.0, 0.6, 0.35, 0.0):
+        speed = share * demand.speed
+        if share == 1.0 or share == 0.0 or demand.willing:
+            found = _smooth(seen, speed, 0.0, 0.0, demand, wheel, empty)
+            if found.direction != 0:
+                route = mirrored(found, 1.0, pose, 1)
+                enough = _enough(pose, room)
+                if room_along(route, room, enough) >= enough:
+                    return Plan(route, speed if speed > 0.0 else ANY_SPEED)
+    return NO_PLAN
+
+
+def plan_ahead(pose: Pose, demand: Demand, wheel: Wheel, room: Room) -> Plan:
+    """Return the shortest way ahead to where the way in reverse can begin."""
+    enough = _enough(pose, room)
+    for more in AHEAD:
+        way = more + (demand.shortest if not demand.willing else 0.0)
+        for turn in TURNS:
+            route = arc(pose, 1, way, turn / wheel.radius)
+            if room_along(route, room, enough) >= enough:
+                end = point_at(route, way).pose
+                if plan_back(end, demand, wheel, room).route.direction != 0:
+                    return Plan(route, ANY_SPEED)
+    return NO_PLAN
+
+
+def _slower(route: Route, demand: Demand, wheel: Wheel, room: Room) -> Route:
+    """Return the way to a stop for a driver who is too fast for ``route``; no direction if there is none."""
+    lead = route.pieces[0]
+    if lead.k0 == 0.0 and lead.length > 0.0:
+        return straight(route.start, -1, lead.length)
+    k = route.pieces[2].k0
+    if k == 0.0:
+        return NO_ROUTE
+    fast = demand._replace(speed=SPEEDS[1])
+    radius = abs(1.0 / k)
+    stop = stop_on_arc(route.start, 0.0, radius, fast, wheel, room)
+    if stop.direction == 0:
+        stop = stop_on_arc(route.start, 0.0, radius, demand._replace(speed=0.0), wheel, room)
+    return stop
+
+
+def _enough(pose: Pose, room: Room) -> float:
+    """Return the distance [m] to keep: the margin, or nearly what there is where the car stands closer."""
+    return min(room.margin, max(0.01, room_at(pose, room) - 0.02))
+
+
+def _is_long(route: Route, shortest: float) -> bool:
+    return route.direction != 0 and drivable(route) >= shortest

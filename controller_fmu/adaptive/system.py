@@ -1,0 +1,255 @@
+"""Driver-adaptive parking at one sample: plan where the car stands, follow the route, foresee the stop, prompt."""
+
+import math
+from typing import NamedTuple
+
+from controller_fmu.adaptive.chart import Guard, transition
+from controller_fmu.adaptive.curves import Wheel
+from controller_fmu.adaptive.driver import (
+    Driver,
+    deceleration_of,
+    prompted,
+    reaction_of,
+    seen_driving,
+    seen_stopping,
+    shortest_way,
+    stopped,
+    stopping_way,
+)
+from controller_fmu.adaptive.planner import ANY_SPEED, NO_PLAN, Demand, Plan, plan
+from controller_fmu.adaptive.room import room_of
+from controller_fmu.adaptive.route import INTO, Foot, curvature_at, drivable, foot_on
+from controller_fmu.common.monitor import (
+    DIRECTION_OF_PHASE,
+    MonitorState,
+    is_usable_input,
+    reason_to_fail,
+    watch,
+)
+from controller_fmu.common.slot_frame import SlotFrame, frame_at, to_slot
+from controller_fmu.common.steering_monitor import Steering, delay_of, rate_of
+from controller_fmu.common.steering_wheel import wheel_request
+from controller_fmu.interface import ControllerInput, ControllerParams, Phase, Reason
+from modelkit.maths import clamp
+from modelkit.vocabulary import Pose
+
+STEEPEST = 1.3
+LOOP = 0.02
+"""From a request to the wheel's first movement, of the loop itself [s]."""
+UNKNOWN_SPEED = 1.0
+"""Speed [m/s] of a driver who has not driven yet, where no route is free of stops."""
+RESERVE = 1.1
+RESERVE_SPEED = 0.05
+TOO_FAST = 1.08
+TOO_FAST_BY = 0.03
+
+
+class AdaptiveState(NamedTuple):
+    """Everything the system remembers."""
+
+    phase: int = Phase.STANDBY
+    reason: int = Reason.NONE
+    shifts: int = 0
+    direction: int = 0
+    running_ns: int = 0
+    frame: SlotFrame = SlotFrame()
+    plan: Plan = NO_PLAN
+    end: float = 0.0
+    """Way along the route [m] at which the car is to stand."""
+    foot: Foot = Foot()
+    driver: Driver = Driver()
+    request: float = 0.0
+    moving: bool = False
+    """The car is on its way in the direction asked for."""
+    advice: float = 0.0
+    takeover: bool = False
+    monitor: MonitorState = MonitorState()
+
+
+def adaptive_start(params: ControllerParams) -> AdaptiveState:
+    """Return the system in standby."""
+    return AdaptiveState()
+
+
+def adaptive_sample(
+    state: AdaptiveState, inputs: ControllerInput, params: ControllerParams, dt_ns: int
+) -> AdaptiveState:
+    """Return the system one sample of ``dt_ns`` later."""
+    if state.phase >= Phase.PARKED:
+        return _ended(state, state.phase, state.reason, inputs.driver_takeover)
+    if not is_usable_input(inputs):
+        return _ended(state, Phase.FAILED, Reason.BAD_INPUT, inputs.driver_takeover)
+    frame = frame_at(params.target, inputs.odometry) if state.phase == Phase.STANDBY else state.frame
+    pose = to_slot(inputs.odometry, frame)
+    watched = inputs.steering_wheel_angle if state.phase == Phase.STANDBY else state.request
+    monitor = watch(state.monitor, inputs, state.phase, watched, dt_ns, params)
+    seen = state._replace(
+        frame=frame,
+        monitor=monitor,
+        running_ns=state.running_ns + dt_ns,
+        takeover=inputs.driver_takeover,
+        driver=_driver(state, inputs, params, dt_ns),
+    )
+    standing = abs(inputs.measured_speed) <= params.threshold.standstill
+    if standing and state.phase in (Phase.STANDBY, Phase.STOP):
+        seen = _stood(seen, pose, params)
+    elif DIRECTION_OF_PHASE[state.phase] != 0 or state.phase == Phase.STOP:
+        seen = _tracked(seen, pose)
+    reason = reason_to_fail(monitor, inputs, state.phase, seen.running_ns, state.shifts, params)
+    if reason == Reason.NONE and standing and _is_stuck(seen, pose, params):
+        reason = Reason.NO_PATH if state.phase == Phase.STANDBY else Reason.MISSED_TARGET
+    phase = transition(state.phase, _guards(seen, reason, pose, inputs, standing, params))
+    if phase >= Phase.PARKED:
+        return _ended(seen, phase, reason if phase == Phase.FAILED else Reason.NONE, inputs.driver_takeover)
+    return _moved_on(seen, phase, inputs, params)
+
+
+def is_in_place(pose: Pose, params: ControllerParams) -> bool:
+    """Return whether a car standing at ``pose`` (slot's frame) is parked."""
+    limit = params.adaptive.end
+    return abs(pose.y) <= limit.lateral and abs(pose.heading) <= limit.heading and abs(pose.x) <= limit.along
+
+
+def _driver(state: AdaptiveState, inputs: ControllerInput, params: ControllerParams, dt_ns: int) -> Driver:
+    """Return the driver as known after this sample."""
+    speed = inputs.measured_speed
+    if state.phase == Phase.STOP:
+        return seen_stopping(state.driver, speed, dt_ns)
+    if DIRECTION_OF_PHASE[state.phase] != 0:
+        believed = params.adaptive.belief
+        return seen_driving(state.driver, speed, state.advice, params.threshold.standstill, believed, dt_ns)
+    return state.driver
+
+
+def _stood(state: AdaptiveState, pose: Pose, params: ControllerParams) -> AdaptiveState:
+    """Return the system with a plan from where the car stands, and the driver as his stop has shown him."""
+    driver = stopped(state.driver, params.adaptive.belief) if state.phase == Phase.STOP else state.driver
+    if is_in_place(pose, params):
+        return state._replace(driver=driver, plan=NO_PLAN)
+    path = params.adaptive.path
+    known = driver.fastest > 0.0
+    speed = RESERVE * driver.fastest + RESERVE_SPEED if known else UNKNOWN_SPEED
+    shortest = 0.05 if driver.obeys else shortest_way(driver, params.adaptive.belief)
+    demand = Demand(speed, driver.obeys, path.rest, 0.5 if driver.stops > 0 else 0.4, shortest)
+    wheel = wheel_of(state.monitor.wheel.steering, params)
+    planned = plan(pose, demand, wheel, room_of(params.wheelbase, params.adaptive.room))
+    return state._replace(driver=driver, plan=planned, end=drivable(planned.route), foot=Foot(reference=pose))
+
+
+def wheel_of(steering: Steering, params: ControllerParams) -> Wheel:
+    """Return what paths are planned with."""
+    path = params.adaptive.path
+    rate = rate_of(steering, params.steering_wheel_rate) / params.steering_ratio
+    smallest = params.wheelbase / math.tan(params.steering_wheel_limit / params.steering_ratio)
+    return Wheel(params.wheelbase, path.rate_reserve * rate, path.radius_reserve * smallest)
+
+
+def _tracked(state: AdaptiveState, pose: Pose) -> AdaptiveState:
+    """Return the system with the foot of the car; a driver too fast for the route stays on its first arc to a stop."""
+    foot = foot_on(state.plan.route, state.foot.way, pose)
+    slower = state.plan.slower
+    if slower.direction == 0 or state.phase == Phase.STOP:
+        return state._replace(foot=foot)
+    pieces = state.plan.route.pieces
+    leaves = pieces[0].length
+    if slower.pieces[0].k0 != 0.0:
+        leaves += pieces[1].length + pieces[2].length
+    too_fast = state.driver.speed > TOO_FAST * state.plan.speed + TOO_FAST_BY or not state.driver.obeys
+    end = drivable(slower)
+    soon = foot.way >= leaves or end - foot.way <= state.driver.speed * 2.0
+    if too_fast and soon:
+        return state._replace(foot=foot, plan=Plan(slower, ANY_SPEED), end=end)
+    if foot.way >= leaves:
+        return state._replace(foot=foot, plan=Plan(state.plan.route, state.plan.speed))
+    return state._replace(foot=foot)
+
+
+def _is_stuck(state: AdaptiveState, pose: Pose, params: ControllerParams) -> bool:
+    """Return whether a car that stands to be planned for has no way on."""
+    planning = state.phase in (Phase.STANDBY, Phase.STOP)
+    return planning and state.plan.route.direction == 0 and not is_in_place(pose, params)
+
+
+def _guards(
+    state: AdaptiveState,
+    reason: int,
+    pose: Pose,
+    inputs: ControllerInput,
+    standing: bool,
+    params: ControllerParams,
+) -> int:
+    wheel_there = abs(inputs.steering_wheel_angle - state.request) <= params.threshold.wheel
+    straight = abs(inputs.steering_wheel_angle) <= params.threshold.wheel
+    limit = params.adaptive.end
+    off = abs(state.foot.lateral_error) > limit.leave_lateral or abs(state.foot.heading_error) > limit.leave_heading
+    left = state.end - state.foot.way
+    must = off or left <= stopping_way(state.driver, params.adaptive.belief)
+    return (
+        _bit(Guard.TAKEOVER, inputs.driver_takeover)
+        | _bit(Guard.FAULT, reason != Reason.NONE)
+        | _bit(Guard.IN_PLACE, standing and is_in_place(pose, params))
+        | _bit(Guard.PLANNED, standing and state.plan.route.direction != 0)
+        | _bit(Guard.WHEEL_SET_TO_REVERSE, wheel_there and state.plan.route.direction < 0)
+        | _bit(Guard.WHEEL_SET_TO_GO_AHEAD, wheel_there and state.plan.route.direction > 0)
+        | _bit(Guard.MUST_STOP, must)
+        | _bit(Guard.WHEEL_STRAIGHT, straight)
+    )
+
+
+def _moved_on(state: AdaptiveState, phase: int, inputs: ControllerInput, params: ControllerParams) -> AdaptiveState:
+    direction = DIRECTION_OF_PHASE[phase]
+    turned = direction != 0 and direction != state.direction
+    counted = turned and (state.shifts > 0 or direction < 0)
+    driver = state.driver
+    if phase != state.phase and (direction != 0 or phase == Phase.STOP):
+        driver = prompted(driver, inputs.measured_speed)
+    along = direction * inputs.measured_speed
+    moved = state._replace(
+        phase=phase,
+        shifts=state.shifts + 1 if counted else state.shifts,
+        direction=direction if direction != 0 else state.direction,
+        driver=driver,
+        moving=along > 0.05 or (state.moving and along > params.threshold.standstill),
+    )
+    advice = _advice(moved, params)
+    held = phase == Phase.STOP and state.phase != Phase.STANDBY
+    request = _request(moved, params)
+    return moved._replace(advice=min(advice, state.advice) if held else advice, request=request)
+
+
+def _request(state: AdaptiveState, params: ControllerParams) -> float:
+    """Return the steering-wheel angle to ask for [rad]."""
+    if state.phase in (Phase.STANDBY, Phase.STRAIGHTEN) or state.plan.route.direction == 0:
+        return 0.0
+    route = state.plan.route
+    if state.phase == Phase.PRE_STEER:
+        angle = math.atan(params.wheelbase * curvature_at(route, INTO))
+        return wheel_request(angle, state.frame.mirror, params)
+    path = params.adaptive.path
+    late = delay_of(state.monitor.wheel.steering) + LOOP
+    curvature = curvature_at(route, min(state.foot.way + late * state.driver.speed, max(state.end, state.foot.way)))
+    turned = clamp(state.foot.heading_error, -STEEPEST, STEEPEST)
+    c = math.cos(turned)
+    feedback = path.k1 * state.foot.lateral_error + route.direction * path.k2 * math.tan(turned)
+    angle = math.atan(params.wheelbase * c * c * c * (curvature - feedback))
+    return wheel_request(angle, state.frame.mirror, params)
+
+
+def _advice(state: AdaptiveState, params: ControllerParams) -> float:
+    """Return the speed advised [m/s]: that of the route, and less towards the place to stand."""
+    believed = params.adaptive.belief
+    fast = min(believed.speed_limit, state.plan.speed)
+    if state.phase == Phase.STANDBY:
+        return believed.speed_limit
+    left = state.end - state.foot.way - state.driver.speed * reaction_of(state.driver, believed)
+    creep = believed.creep_speed
+    near = math.sqrt(creep * creep + deceleration_of(state.driver, believed) * max(0.0, left))
+    return min(fast, near)
+
+
+def _ended(state: AdaptiveState, phase: int, reason: int, takeover: bool) -> AdaptiveState:
+    return state._replace(phase=phase, reason=reason, moving=False, advice=0.0, takeover=takeover)
+
+
+def _bit(guard: int, holds: bool) -> int:
+    return 1 << guard if holds else 0

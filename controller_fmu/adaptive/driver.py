@@ -21,6 +21,11 @@ SMOOTHED = 0.08
 """Time constant of the acceleration [s]."""
 FASTER = 1.12
 """Beyond this over the advice he does not slow down."""
+SLOWER = 0.7
+"""Advice below this share of his largest speed is one to slow down."""
+STEADY = 1.5
+SETTLED = 1.5
+"""The speed he settles at is a mean over this time [s], in which it changes by less than ``STEADY`` [m/s2]."""
 
 
 class Driver(NamedTuple):
@@ -31,8 +36,12 @@ class Driver(NamedTuple):
     """0: not known yet."""
     fastest: float = 0.0
     """Largest speed he drove [m/s]."""
+    cruise: float = 0.0
+    """Speed [m/s] he settles at."""
     obeys: bool = True
     """He has not yet driven faster than advised."""
+    slows: bool = False
+    """He has been seen to slow down when told."""
     stops: int = 0
     """Stops learnt from."""
     speed: float = 0.0
@@ -56,6 +65,13 @@ def prompted(driver: Driver, speed: float) -> Driver:
     )
 
 
+def told_to_stop(driver: Driver, speed: float, advised: float) -> Driver:
+    """Return the driver told to stop at ``speed`` [m/s]: who has come down with the advice on the way slows down."""
+    v = abs(speed)
+    slows = driver.slows or (advised < SLOWER * driver.fastest and v <= FASTER * advised)
+    return prompted(driver, speed)._replace(slows=slows and driver.obeys)
+
+
 def seen_driving(
     driver: Driver, speed: float, advised: float, standstill: float, believed: BeliefParams, dt_ns: int
 ) -> Driver:
@@ -66,10 +82,14 @@ def seen_driving(
     reaction = driver.reaction
     if sets_out and driver.stops == 0:
         reaction = clamp(asked_ns * 1e-9, 0.0, 2.0) + SURE
+    cruise = driver.cruise
+    if driver.moved and abs(driver.acceleration) < STEADY:
+        cruise = v if cruise == 0.0 else cruise + (v - cruise) * (dt_ns * 1e-9) / SETTLED
     late = asked_ns * 1e-9 > reaction_of(driver, believed) + v / deceleration_of(driver, believed)
     return driver._replace(
         reaction=reaction,
         fastest=max(driver.fastest, v),
+        cruise=cruise,
         obeys=driver.obeys and not (late and v > FASTER * advised + 0.03),
         speed=v,
         acceleration=_smoothed(driver, v, dt_ns),
@@ -121,15 +141,15 @@ def deceleration_of(driver: Driver, believed: BeliefParams) -> float:
 def stopping_way(driver: Driver, believed: BeliefParams) -> float:
     """Return the way [m] he will drive on if he is told to stop now, his speed changing as it does."""
     r = reaction_of(driver, believed)
-    most = max(driver.fastest, driver.speed) if driver.stops > 0 else driver.speed + 2.0 * r
-    braking = clamp(driver.speed + max(-1.0, driver.acceleration) * r, 0.0, most)
+    most = max(driver.speed, driver.cruise) if driver.cruise > 0.0 else driver.speed + 2.0 * r
+    braking = clamp(driver.speed + clamp(driver.acceleration, -1.0, 15.0) * r, 0.0, most)
     return 0.5 * (driver.speed + braking) * r + 0.5 * braking * braking / deceleration_of(driver, believed)
 
 
 def shortest_way(driver: Driver, believed: BeliefParams) -> float:
     """Return the shortest way [m] he can be had to drive: he is told to stop as soon as he has set out."""
-    v = driver.fastest
-    return 0.9 * v * reaction_of(driver, believed) + 0.5 * v * v / deceleration_of(driver, believed)
+    v = driver.cruise
+    return 1.0 * v * reaction_of(driver, believed) + 0.5 * v * v / deceleration_of(driver, believed)
 
 
 def _smoothed(driver: Driver, v: float, dt_ns: int) -> float:

@@ -48,7 +48,7 @@ class EndParams(NamedTuple):
     leave_heading: Annotated[float, Signal("rad", "off the path: stop, plan anew", 0.0, 1.5, HOUSE)] = 0.15
     lateral: Annotated[float, Signal("m", "at standstill: parked", 0.0, 10.0, HOUSE)] = 0.035
     heading: Annotated[float, Signal("rad", "at standstill: parked", 0.0, 1.5, HOUSE)] = 0.8 * pi / 180.0
-    along: Annotated[float, Signal("m", "at standstill: parked", 0.0, 10.0, HOUSE)] = 0.25
+    along: Annotated[float, Signal("m", "at standstill: parked", 0.0, 10.0, HOUSE)] = 0.28
 
 
 class AdaptiveParams(NamedTuple):

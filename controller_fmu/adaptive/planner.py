@@ -91,7 +91,7 @@ def plan_straight(pose: Pose, demand: Demand) -> Plan:
     """Return the way straight to the target, or ahead first if the driver cannot be stopped so soon."""
     if abs(pose.x) >= demand.shortest:
         return Plan(straight(pose, -1 if pose.x > 0.0 else 1, abs(pose.x)), ANY_SPEED)
-    return Plan(straight(pose, 1, max(demand.shortest, demand.shortest + 0.1 - pose.x)), ANY_SPEED)
+    return Plan(straight(pose, 1, max(demand.shortest, demand.shortest + 0.3 - pose.x)), ANY_SPEED)
 
 
 def plan_back(pose: Pose, demand: Demand, wheel: Wheel, room: Room) -> Plan:

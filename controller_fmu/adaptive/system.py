@@ -15,6 +15,7 @@ from controller_fmu.adaptive.driver import (
     shortest_way,
     stopped,
     stopping_way,
+    told_to_stop,
 )
 from controller_fmu.adaptive.planner import ANY_SPEED, NO_PLAN, Demand, Plan, plan
 from controller_fmu.adaptive.room import room_of
@@ -38,7 +39,7 @@ LOOP = 0.02
 """From a request to the wheel's first movement, of the loop itself [s]."""
 UNKNOWN_SPEED = 1.0
 """Speed [m/s] of a driver who has not driven yet, where no route is free of stops."""
-RESERVE = 1.1
+RESERVE = 1.0
 RESERVE_SPEED = 0.05
 TOO_FAST = 1.08
 TOO_FAST_BY = 0.03
@@ -128,8 +129,8 @@ def _stood(state: AdaptiveState, pose: Pose, params: ControllerParams) -> Adapti
         return state._replace(driver=driver, plan=NO_PLAN)
     path = params.adaptive.path
     known = driver.fastest > 0.0
-    speed = RESERVE * driver.fastest + RESERVE_SPEED if known else UNKNOWN_SPEED
-    shortest = 0.05 if driver.obeys else shortest_way(driver, params.adaptive.belief)
+    speed = RESERVE * 0.5 * (driver.cruise + driver.fastest) + RESERVE_SPEED if known else UNKNOWN_SPEED
+    shortest = 0.05 if driver.slows else shortest_way(driver, params.adaptive.belief)
     demand = Demand(speed, driver.obeys, path.rest, 0.5 if driver.stops > 0 else 0.4, shortest)
     wheel = wheel_of(state.monitor.wheel.steering, params)
     planned = plan(pose, demand, wheel, room_of(params.wheelbase, params.adaptive.room))
@@ -201,8 +202,10 @@ def _moved_on(state: AdaptiveState, phase: int, inputs: ControllerInput, params:
     turned = direction != 0 and direction != state.direction
     counted = turned and (state.shifts > 0 or direction < 0)
     driver = state.driver
-    if phase != state.phase and (direction != 0 or phase == Phase.STOP):
+    if phase != state.phase and direction != 0:
         driver = prompted(driver, inputs.measured_speed)
+    if phase != state.phase and phase == Phase.STOP:
+        driver = told_to_stop(driver, inputs.measured_speed, state.advice)
     along = direction * inputs.measured_speed
     moved = state._replace(
         phase=phase,

@@ -62,7 +62,7 @@ def swing_way(speed: float, radius: float, wheel: Wheel) -> float:
 
 
 def s_curve(start: Pose, lead: float, enter: float, first: Bend, second: Bend, leave: Bend, rest: float) -> Route:
-    """Return the route: line ``lead``, clothoid ``enter``, right arc, clothoid, line, clothoid, left arc, clothoid, line.
+    """Return the route: line ``lead``, clothoid ``enter``, right arc, clothoid, line, clothoid, arc, clothoid, line.
 
     ``second`` is how the left arc is entered, ``leave`` how it is left, both of one radius; the last line is ``rest``
     long. No direction: there is none.

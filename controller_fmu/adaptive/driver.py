@@ -1,8 +1,8 @@
 """What the driver has shown: how late he acts on a prompt, how hard he brakes, how fast he drives, whether he obeys.
 
 The way of a stop is v r + v^2 / (2 a). The reaction r is seen when he sets out: prompt to first movement. The
-deceleration a is seen while he stops, between 0.8 and 0.3 of the speed he had; what the way he took says beyond
-it (pedals, play, a slower foot) makes r longer or shorter.
+deceleration a is seen while he stops, between 0.8 and 0.3 of the speed he had, and with it when he began to brake,
+which is his reaction once more.
 """
 
 from typing import NamedTuple
@@ -121,7 +121,7 @@ def stopped(driver: Driver, believed: BeliefParams) -> Driver:
     if v < SLOWEST or took <= 0.0:
         return still
     deceleration = clamp((EARLY - LATE) * v / took, 0.5, 15.0)
-    reaction = clamp((driver.stop_way - 0.5 * v * v / deceleration) / v, 0.0, 2.0)
+    reaction = clamp(driver.early_ns * 1e-9 - (1.0 - EARLY) * v / deceleration, 0.0, 2.0)
     if driver.stops > 0 or driver.reaction > 0.0:
         known = driver.reaction - (SURE if driver.stops == 0 else 0.0)
         reaction = 0.5 * (known + clamp(reaction, known - 0.3, known + 0.3))

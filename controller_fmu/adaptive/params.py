@@ -37,6 +37,7 @@ class BeliefParams(NamedTuple):
 
     reaction: Annotated[float, Signal("s", "from a prompt to its effect", 0.0, 5.0, HOUSE)] = 0.6
     deceleration: Annotated[float, Signal("m/s2", "when he stops", 0.1, 10.0, HOUSE)] = 2.7
+    gentle: Annotated[float, Signal("m/s2", "deceleration of the speed advised", 0.05, 10.0, HOUSE)] = 0.5
     speed_limit: Annotated[float, Signal("m/s", "speed advised where nothing asks for less", 0.1, 10.0, HOUSE)] = 2.5
     creep_speed: Annotated[float, Signal("m/s", "speed advised at the end of a way", 0.01, 2.0, HOUSE)] = 0.2
 

@@ -32,7 +32,7 @@ LEADS = (0.0, 0.4, 0.8, 1.2, 1.6, 2.0, 2.5, 3.0, 3.5, 4.0)
 STEP = 0.08
 """On the first arc places to stop are looked for so far [m] apart."""
 STEPS = 90
-AHEAD = (0.3, 0.6, 0.9, 1.2, 1.6, 2.0, 2.5, 3.0, 3.6)
+AHEAD = (0.3, 0.6, 1.0, 1.5, 2.0, 2.6, 3.3)
 """Ways [m] driven ahead for a better start."""
 TURNS = (0.0, -0.45, 0.45, -0.9, 0.9)
 """Curvature of them, over the largest."""
@@ -76,7 +76,7 @@ ANY_SPEED = 99.0
 def plan(pose: Pose, demand: Demand, wheel: Wheel, room: Room) -> Plan:
     """Return the plan from standstill at ``pose`` (slot's frame); its route has no direction if there is none."""
     if abs(pose.y) <= ALIGNED and abs(pose.heading) <= ALIGNED_HEADING:
-        return plan_straight(pose, demand)
+        return plan_straight(pose, demand, room)
     back = plan_back(pose, demand, wheel, room)
     if back.route.direction != 0:
         return back
@@ -84,27 +84,37 @@ def plan(pose: Pose, demand: Demand, wheel: Wheel, room: Room) -> Plan:
         onto = plan_onto(pose, demand, wheel, room)
         if onto.route.direction != 0:
             return onto
-    return plan_ahead(pose, demand, wheel, room)
+    ahead = plan_ahead(pose, demand, wheel, room, True)
+    if ahead.route.direction != 0:
+        return ahead
+    halting = _smooth(pose, 0.0, 0.0, demand.rest, demand, wheel, room)
+    if halting.direction != 0:
+        return Plan(halting, ANY_SPEED)
+    return plan_ahead(pose, demand, wheel, room, False)
 
 
-def plan_straight(pose: Pose, demand: Demand) -> Plan:
+def plan_straight(pose: Pose, demand: Demand, room: Room) -> Plan:
     """Return the way straight to the target, or ahead first if the driver cannot be stopped so soon."""
     if abs(pose.x) >= demand.shortest:
         return Plan(straight(pose, -1 if pose.x > 0.0 else 1, abs(pose.x)), ANY_SPEED)
-    return Plan(straight(pose, 1, max(demand.shortest, demand.shortest + 0.3 - pose.x)), ANY_SPEED)
+    ahead = max(demand.shortest, demand.shortest + 0.3 - pose.x)
+    return Plan(straight(pose, 1, max(0.1, min(ahead, farthest(room) - pose.x))), ANY_SPEED)
+
+
+def farthest(room: Room) -> float:
+    """Return the largest x [m] to which the car may go ahead in the slot."""
+    return room.front.x - 0.5 * room.front.length - room.wheelbase - room.front_overhang - 2.0 * room.margin
 
 
 def plan_back(pose: Pose, demand: Demand, wheel: Wheel, room: Room) -> Plan:
-    """Return the plan in reverse to the target: without a stop, else with one."""
+    """Return the plan in reverse to the target: without a stop, else with one on the first arc."""
     moving = _moving(pose, demand, wheel, room)
     if moving.route.direction != 0:
         if demand.willing:
             return moving._replace(slower=_slower(moving.route, demand, wheel, room))
         return moving
     stop = stop_on_arc(pose, 0.0, wheel.radius, demand, wheel, room)
-    if stop.direction != 0:
-        return Plan(stop, ANY_SPEED)
-    return Plan(_smooth(pose, 0.0, 0.0, demand.rest, demand, wheel, room), ANY_SPEED)
+    return Plan(stop, ANY_SPEED)
 
 
 def _moving(pose: Pose, demand: Demand, wheel: Wheel, room: Room) -> Plan:
@@ -182,8 +192,7 @@ def stop_on_arc(pose: Pose, lead: float, radius: float, demand: Demand, wheel: W
 
 def plan_onto(pose: Pose, demand: Demand, wheel: Wheel, room: Room) -> Plan:
     """Return the plan forward onto the slot's line, as far as the neighbour ahead allows."""
-    far = room.front.x - 0.5 * room.front.length - room.wheelbase - room.front_overhang - 2.0 * room.margin
-    seen = Pose(far - pose.x, pose.y, -pose.heading)
+    seen = Pose(farthest(room) - pose.x, pose.y, -pose.heading)
     empty = room._replace(front=room.front._replace(x=1e6), rear=room.rear._replace(x=-1e6), lowest=-1e6, highest=1e6)
     for share in (1.0, 0.6, 0.35, 0.0):
         speed = share * demand.speed
@@ -197,16 +206,17 @@ def plan_onto(pose: Pose, demand: Demand, wheel: Wheel, room: Room) -> Plan:
     return NO_PLAN
 
 
-def plan_ahead(pose: Pose, demand: Demand, wheel: Wheel, room: Room) -> Plan:
-    """Return the shortest way ahead to where the way in reverse can begin."""
+def plan_ahead(pose: Pose, demand: Demand, wheel: Wheel, room: Room, moving: bool) -> Plan:
+    """Return the shortest way ahead to where the way in reverse can begin; ``moving``: and needs no stop."""
     enough = _enough(pose, room)
     for more in AHEAD:
-        way = more + (demand.shortest if not demand.willing else 0.0)
+        way = more + demand.shortest
         for turn in TURNS:
             route = arc(pose, 1, way, turn / wheel.radius)
             if room_along(route, room, enough) >= enough:
                 end = point_at(route, way).pose
-                if plan_back(end, demand, wheel, room).route.direction != 0:
+                back = _moving(end, demand, wheel, room) if moving else plan_back(end, demand, wheel, room)
+                if back.route.direction != 0:
                     return Plan(route, ANY_SPEED)
     return NO_PLAN
 

@@ -7,7 +7,6 @@ from controller_fmu.adaptive.chart import Guard, transition
 from controller_fmu.adaptive.curves import Wheel
 from controller_fmu.adaptive.driver import (
     Driver,
-    deceleration_of,
     prompted,
     reaction_of,
     seen_driving,
@@ -246,7 +245,7 @@ def _advice(state: AdaptiveState, params: ControllerParams) -> float:
         return believed.speed_limit
     left = state.end - state.foot.way - state.driver.speed * reaction_of(state.driver, believed)
     creep = believed.creep_speed
-    near = math.sqrt(creep * creep + deceleration_of(state.driver, believed) * max(0.0, left))
+    near = math.sqrt(creep * creep + 2.0 * believed.gentle * max(0.0, left))
     return min(fast, near)
 
 

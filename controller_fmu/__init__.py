@@ -48,9 +48,7 @@ SYSTEMS = SampledSystems(
         SampledSystem((System.HSIC,), "hsic", hsic_start, hsic_sample, hsic_outputs, OF_HSIC),
         SampledSystem((System.PREVIEW,), "preview", driving_start, driving_sample, driving_outputs, OF_PREVIEW),
         SampledSystem((System.APA,), "apa", apa_start, apa_sample, apa_outputs, OF_APA),
-        SampledSystem(
-            (System.ADAPTIVE,), "adaptive", adaptive_start, adaptive_sample, adaptive_outputs, OF_ADAPTIVE
-        ),
+        SampledSystem((System.ADAPTIVE,), "adaptive", adaptive_start, adaptive_sample, adaptive_outputs, OF_ADAPTIVE),
     ),
 )
 MODEL = Model(

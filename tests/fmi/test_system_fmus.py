@@ -33,6 +33,7 @@ RUNS = {
     System.HSIC: ("hsic", 40.0),
     System.PREVIEW: ("preview", 12.0),
     System.APA: ("apa-parallel", 60.0),
+    System.ADAPTIVE: ("adaptive", 30.0),
 }
 CHECKED_ONLY = {"system", "guo2015.prompting.deceleration", "target.x", "target.y", "target.heading"}
 """Read by the clock of all systems, which refuses numbers that their ranges refuse already."""

@@ -1,0 +1,84 @@
+"""Driver-adaptive parking and the kinematic car in closed loop: who is stopped, who is not, and where they stand."""
+
+import math
+
+import pytest
+from closed_loop import drive
+
+from controller_fmu.interface import Phase, Reason, System
+from modelkit.vocabulary import Prompt
+
+FAST = {"drive.acceleration_limit": 10.0, "drive.deceleration_limit": 3.5, "driver.profile[1].speed": 1.5}
+OURS = {"system": int(System.ADAPTIVE)}
+TARGET = (-7.608, -3.056)
+QUICK_WHEEL = math.radians(1995.0)
+
+
+def parked(vehicle, controller=None):
+    run = drive({**FAST, **vehicle}, {**OURS, **(controller or {})})
+    assert run.phases[-1] == Phase.PARKED, Reason(run.controller[-1].reason)
+    end = run.vehicle[-1].pose
+    assert abs(end.x - TARGET[0]) < 0.28
+    assert abs(end.y - TARGET[1]) < 0.035
+    assert abs(end.heading) < math.radians(0.8)
+    return run
+
+
+def stops(run):
+    return [phase for phase in run.visited if phase == Phase.STOP]
+
+
+def test_a_driver_who_slows_down_parks_in_one_go():
+    run = parked({})
+    assert len(stops(run)) == 1
+    assert run.controller[-1].shifts == 1
+    assert max(abs(out.lateral_error) for out in run.controller) < 0.02
+
+
+def test_a_driver_who_does_not_is_stopped_on_the_first_arc():
+    run = parked({"driver.obeys_slow_down": False})
+    assert len(stops(run)) == 2
+    assert run.controller[-1].shifts == 1
+
+
+def test_with_a_quick_wheel_nobody_is_stopped():
+    run = parked(
+        {"driver.obeys_slow_down": False, "steering.rate_limit": QUICK_WHEEL}, {"steering_wheel_rate": QUICK_WHEEL}
+    )
+    assert len(stops(run)) == 1
+
+
+def test_a_steering_slower_than_believed_is_learnt():
+    parked({"steering.rate_limit": math.radians(400.0)})
+
+
+def test_the_other_side_is_the_mirror_image():
+    right = drive(FAST, OURS)
+    left = drive(FAST, {**OURS, "target.y": -TARGET[1]})
+    assert left.vehicle[-1].pose.x == pytest.approx(right.vehicle[-1].pose.x, abs=1e-9)
+    assert left.vehicle[-1].pose.y == pytest.approx(-right.vehicle[-1].pose.y, abs=1e-9)
+
+
+def test_where_no_path_leads_in_it_goes_ahead_first():
+    run = parked({"start.x": -1.0, "start.y": 1.1})
+    ways = [phase for phase in run.visited if phase in (Phase.PATH_TRACKING, Phase.TO_Q4)]
+    assert ways[0] == Phase.TO_Q4
+    prompts = [out.prompt for out in run.controller]
+    assert Prompt.FORWARD in prompts
+    assert run.controller[-1].shifts == 1, "the way ahead before the first reverse counts none"
+
+
+def test_no_room_at_all_is_no_path():
+    run = drive(FAST, {**OURS, "adaptive.room.road": 1.0, "adaptive.room.slot_front": 3.3})
+    assert (run.phases[-1], run.controller[-1].reason) == (Phase.FAILED, Reason.NO_PATH)
+
+
+def test_a_driver_who_does_not_move_ends_it():
+    run = drive({**FAST, "driver.obeys_direction": False, "driver.profile[1].speed": 0.0}, OURS)
+    assert (run.phases[-1], run.controller[-1].reason) == (Phase.FAILED, Reason.NOT_MOVING)
+
+
+def test_takeover_ends_it():
+    run = drive({**FAST, "driver.takeover_time": 4.0}, OURS)
+    assert run.phases[-1] == Phase.TAKEOVER
+    assert not run.controller[-1].brake_request

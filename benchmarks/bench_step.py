@@ -95,7 +95,7 @@ def main() -> None:
     loops = {
         "PythonFMUs, our Python master": master_loop(Master, python, scenario),
         "native, FMI calls from Python": master_loop(Master, native, scenario),
-        "native, libcosim": libcosim_loop(write_ssp(system_of(scenario, native), folder / "native.ssp")),
+        "native, libcosim": libcosim_loop(write_ssp(system_of(scenario, folder, "native"), folder / "native.ssp")),
         "native, compiled master": master_loop(CompiledMaster, native, scenario),
         "limit: no FMI at all": in_process_loop(scenario),
     }

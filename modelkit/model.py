@@ -1,6 +1,6 @@
 """The one face of a model package: types, two functions, and how often it is called."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import partial
 from types import ModuleType
 from typing import Any, NamedTuple
@@ -82,12 +82,23 @@ class Terminal(NamedTuple):
 
 
 class View(NamedTuple):
-    """What of a model is shown to others, if not all of it. The code is the same."""
+    """What of a model is shown to others, if not all of it, and how it starts. The code is the same."""
 
-    preset: tuple[tuple[str, Any], ...] = ()
-    """(parameter, value) of parameters that start with another value than their default and are not shown."""
+    starts: tuple[tuple[str, Any], ...] = ()
+    """(parameter, value) of parameters that start with another value than their default."""
     hidden: frozenset[str] = frozenset()
     """Variables that are not shown; they keep their start values."""
+
+
+class Assembly(NamedTuple):
+    """What a model is made of that is several models stepped together: see ``modelkit.assembly``."""
+
+    parts: tuple[tuple[str, "Model"], ...]
+    """Name of each, and the model."""
+    period_ns: int
+    """Time between two exchanges."""
+    opened: frozenset[str] = frozenset()
+    """Inputs as ``part.input`` that are left to others although a part offers them."""
 
 
 class Model(NamedTuple):
@@ -122,6 +133,8 @@ class Model(NamedTuple):
     sampled: bool = False
     """It acts at instants of its own and holds its outputs between them."""
     view: View = View()
+    assembly: Assembly | None = None
+    """What it is made of, if that is several models."""
     store: type[Any] | None = None
     """Its work arrays beside the state: a NamedTuple of columns."""
 
@@ -134,8 +147,28 @@ class Model(NamedTuple):
         return self.step if store is None else partial(self.step, store)
 
     def first_params(self) -> Any:
-        """Return the parameters it starts with: the defaults, but for those that its view presets."""
-        return with_values(self.params, dict(self.view.preset))
+        """Return the parameters it starts with: the defaults, but for those that its view starts otherwise."""
+        return with_values(self.params, dict(self.view.starts))
+
+    def sources(self) -> list[ModuleType]:
+        """Return the packages that its code is in."""
+        if self.assembly is None:
+            return [self.package]
+        return [package for _, part in self.assembly.parts for package in part.sources()]
+
+    def started(self, values: Mapping[str, Any]) -> "Model":
+        """Return the model with ``values`` as start values of parameters shown, and the defaults of the others.
+
+        Values of parameters not shown are left out: they mean nothing to it. Raises ``KeyError`` for a parameter it
+        does not have, ``ValueError`` for a value that is out of range, or that the model is not made for.
+        """
+        kept = {name: value for name, value in self.view.starts if not self.shows(name)}
+        for name in kept.keys() & values.keys():
+            if values[name] != kept[name]:
+                raise ValueError(f"{name} = {values[name]}: it is {kept[name]} in {self.name}")
+        known = variables(self.params, with_values(self.params, dict(values)))
+        chosen = {item.name: item.start for item in known if item.name in values and self.shows(item.name)}
+        return self._replace(view=self.view._replace(starts=tuple((kept | chosen).items())))
 
     def only(self, value: int, name: str, description: str) -> "Model":
         """Return the model with the system of ``value`` alone: what only others own is not shown."""
@@ -144,12 +177,13 @@ class Model(NamedTuple):
         known = [item.name for cls in (self.params, self.inputs, self.outputs) for item in variables(cls)]
         owned = {item for item in known if any(_is_in(item, system.own) for system in self.systems.systems)}
         hidden = frozenset(item for item in owned if not _is_in(item, chosen.own))
-        view = View(((self.systems.parameter, int(value)),), hidden)
+        parameter = self.systems.parameter
+        view = View(((parameter, int(value)),), hidden | {parameter})
         return self._replace(name=name, description=description, view=view)
 
     def shows(self, name: str) -> bool:
         """Return whether others see the variable ``name``."""
-        return name not in self.view.hidden and name not in dict(self.view.preset)
+        return name not in self.view.hidden
 
 
 def _is_in(name: str, groups: tuple[str, ...]) -> bool:

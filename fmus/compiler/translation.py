@@ -2,6 +2,7 @@
 
 from typing import Any, NamedTuple
 
+from fmus.compiler.assembly import AssemblyEntries
 from fmus.compiler.constructs import arithmetic, calls, conditions, loops, statements, tuples
 from fmus.compiler.source.kinds import NoKindError, Struct, is_named_tuple
 from fmus.compiler.source.refusals import AlreadySaidError, CannotError, Refusal, Refused
@@ -24,8 +25,9 @@ class Translation(NamedTuple):
 
 def translate(model: Model) -> Translation:
     """Return the C99 of ``model``; ``Refused`` says all that stands in the way."""
-    program = Program(model.name, _roots(model), _interface(model), NAMES)
-    entries = Entries(program, model)
+    parts = () if model.assembly is None else tuple(part.name for _, part in model.assembly.parts)
+    program = Program((model.name, *parts), _roots(model), _interface(model), NAMES)
+    entries = Entries(program, model) if model.assembly is None else AssemblyEntries(program, model, model.assembly)
     try:
         for cls in _interface(model):
             program.need(Struct(cls))

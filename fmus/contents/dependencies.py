@@ -41,7 +41,19 @@ Values = list[Any]
 
 
 def initial_dependencies(model: Model) -> Found:
-    """Return output -> the parameters it depends on at the start, in the order of the types."""
+    """Return output -> the parameters it depends on at the start, in the order of the types.
+
+    They are those of the model with its default parameters, whatever it starts with; in a model that is several, each
+    output depends on parameters of its own part.
+    """
+    if model.assembly is not None:
+        return {
+            f"{part}.{output}": [f"{part}.{name}" for name in names if model.shows(f"{part}.{name}")]
+            for part, own in model.assembly.parts
+            for output, names in initial_dependencies(own).items()
+            if model.shows(f"{part}.{output}")
+        }
+    model = model.started({})
     key = _hash(model)[:32]
     path = kept_file(CACHE, model.name, key, SUFFIX, lambda: json.dumps(find_dependencies(model)).encode(), KEPT)
     found: Found = json.loads(path.read_bytes())
@@ -193,7 +205,7 @@ def _group(thing: str) -> str:
 def _hash(model: Model) -> str:
     """Return a hash of the model's sources and modelkit's, of this file, and of what the model shows."""
     shown = [item.name for cls in (model.params, model.outputs) for item in variables(cls) if model.shows(item.name)]
-    files = {"shown": json.dumps([shown, model.view.preset]).encode(), "search": Path(__file__).read_bytes()}
+    files = {"shown": json.dumps([shown, model.view.starts]).encode(), "search": Path(__file__).read_bytes()}
     for origin in (Path(str(package.__file__)) for package in (modelkit, model.package)):
         sources = sorted(origin.parent.rglob("*.py")) if origin.name == "__init__.py" else [origin]
         files |= {f"{origin.parent.name}/{path.relative_to(origin.parent)}": path.read_bytes() for path in sources}

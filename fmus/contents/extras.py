@@ -1,7 +1,8 @@
 """What an FMU of any kind carries beside its code: page, licence, icon, terminals, reference result."""
 
 import re
-from typing import Any
+from collections.abc import Callable, Iterable, Iterator
+from itertools import pairwise
 from xml.etree import ElementTree
 from xml.etree.ElementTree import Element, SubElement
 
@@ -16,6 +17,8 @@ from modelkit.variables import flatten, variables
 LS_REF = "extra/org.fmi-standard.fmi-ls-ref"
 LS_NAMESPACE = "http://fmi-standard.org/fmi-ls-manifest"
 MOST_ROWS = 600
+Run = Callable[[Model, Iterable[int]], Iterator[list[float]]]
+"""``run(model, steps)``: outputs at the start and after each step [ns], with the inputs at their start values."""
 SQUARE = {"x1": "-100", "y1": "-100", "x2": "100", "y2": "100"}
 ALL_PORTS = (
     Terminal("inputs", "all inputs, by name", ("all inputs",)),
@@ -63,7 +66,18 @@ def _is_member(port: str, causality: str, members: tuple[str, ...]) -> bool:
     return f"all {causality}s" in members or any(re.match(rf"{re.escape(name)}(?![^.\[])", port) for name in members)
 
 
-def reference_result(model: Model) -> dict[str, bytes]:
+def in_python(model: Model, steps: Iterable[int]) -> Iterator[list[float]]:
+    """Run the model's own functions: a ``Run``."""
+    params, inputs = model.first_params(), model.inputs()
+    step = model.stepper(model.new_store())
+    state, outputs = model.initialize(params)
+    yield flatten(outputs)
+    for dt_ns in steps:
+        state, outputs = step(state, inputs, params, dt_ns)
+        yield flatten(outputs)
+
+
+def reference_result(model: Model, run: Run = in_python) -> dict[str, bytes]:
     """Return path -> content of the default experiment's outputs, inputs at their start values, and its manifest.
 
     The rows are at whole multiples of the default step, at most about 600 of them.
@@ -78,27 +92,17 @@ def reference_result(model: Model) -> dict[str, bytes]:
     outputs = {item.name for item in shown_variables(model) if item.causality == "output"}
     kept = [place for place, item in enumerate(variables(model.outputs)) if item.name in outputs]
     lines = [",".join(f'"{name}"' for name in ["time", *(variables(model.outputs)[place].name for place in kept)])]
-    lines += [",".join(repr(float(value)) for value in row) for row in _rows(model, kept)]
+    lines += [",".join(repr(float(value)) for value in row) for row in _rows(model, kept, run)]
     table = ("\n".join(lines) + "\n").encode()
     return {f"{LS_REF}/fmi-ls-manifest.xml": xml_bytes(root), f"{LS_REF}/{file}": table}
 
 
-def _rows(model: Model, kept: list[int]) -> list[list[float]]:
-    """Return [time, outputs...] of the model run in this process; of the outputs those at the places ``kept``."""
-    steps = round(model.stop_time / model.step_size)
-    every = max(1, -(-steps // MOST_ROWS))
-    params, inputs = model.first_params(), model.inputs()
-    step = model.stepper(model.new_store())
-    state, outputs = model.initialize(params)
-    rows = [[0.0, *_picked(outputs, kept)]]
-    for number in range(1, steps + 1):
-        time, before = number * model.step_size, (number - 1) * model.step_size
-        state, outputs = step(state, inputs, params, round(time * 1e9) - round(before * 1e9))
+def _rows(model: Model, kept: list[int], run: Run) -> Iterator[list[float]]:
+    """Yield [time, outputs...] of the default experiment; of the outputs those at the places ``kept``."""
+    count = round(model.stop_time / model.step_size)
+    every = max(1, -(-count // MOST_ROWS))
+    ends = [round(number * model.step_size * 1e9) for number in range(count + 1)]
+    steps = (end - begin for begin, end in pairwise(ends))
+    for number, outputs in enumerate(run(model, steps)):
         if number % every == 0:
-            rows.append([time, *_picked(outputs, kept)])
-    return rows
-
-
-def _picked(outputs: Any, kept: list[int]) -> list[float]:
-    scalars = flatten(outputs)
-    return [scalars[place] for place in kept]
+            yield [number * model.step_size, *(outputs[place] for place in kept)]

@@ -12,6 +12,7 @@ from fmus.contents.extras import documentation, reference_result
 from fmus.contents.xml_file import xml_bytes
 from fmus.native.compilers import FLAGS, Compiler, find_compiler
 from fmus.native.fat_binary import fat_binary
+from fmus.native.libraries import in_c
 from fmus.native.platforms import PLATFORMS
 from fmus.native.sources import fmu_sources, unit_name
 from modelkit.model import Model
@@ -24,6 +25,10 @@ may run in one process and on several threads, each instance on one thread at a 
 image with other FMUs its functions have the prefix <code>{name}_</code>, if FMI{fmi}_FUNCTION_PREFIX says so.</p>
 <p>A parameter outside its range, a variable that does not exist, a call out of order or a step that is not
 in (0, 3600] s is answered with fmi{fmi}Error and a message to the logger; nothing is changed by such a call.</p>
+"""
+INSIDE = """
+<p>Inside are {parts}. Every {period:g} s, whatever the communication step, each takes the outputs of the other to its
+inputs of the same name, those aside that are inputs of this FMU. Their variables have their name before them.</p>
 """
 
 
@@ -45,7 +50,8 @@ def build(
     guid = content_guid({**contents(model, names, "", fmi), **made_by})
     path = Path(out_dir) / f"{model.name}.fmu"
     if archive_guid(path) != guid:
-        files = contents(model, names, guid, fmi) | reference_result(model)
+        files = contents(model, names, guid, fmi)
+        files |= reference_result(model) if model.assembly is None else reference_result(model, in_c)
         write_archive(path, files | binaries(model, names, guid, chosen, fmi))
     return path
 
@@ -54,6 +60,9 @@ def contents(model: Model, platforms: list[str], guid: str, fmi: int = 2) -> dic
     """Return all files but the binaries and the reference result."""
     unit, tool = unit_name(model, fmi), f"apa-cosim {project_version()}, native"
     needs = NEEDS.format(platforms=", ".join(platforms), unit=unit, name=model.name, fmi=fmi)
+    if model.assembly is not None:
+        parts = " and ".join(f"{name} ({part.name})" for name, part in model.assembly.parts)
+        needs += INSIDE.format(parts=parts, period=model.step_size)
     files = documentation(model, needs, fmi)
     files |= {f"sources/{name}": text.encode() for name, text in fmu_sources(model, guid, fmi).items()}
     if fmi == 3:

@@ -5,7 +5,7 @@ Kept in ``LIBRARIES`` under a hash of all they are made of, so each is compiled 
 
 import ctypes
 import hashlib
-from collections.abc import Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
@@ -18,6 +18,7 @@ from fmus.native.sources import C_FILES, translated
 from fmus.native.tables import KINDS
 from fmus.places import LIBRARIES
 from modelkit.model import Model
+from modelkit.variables import flatten, variables
 
 UNIT = """/* The model {name} as a table. */
 #include "{name}.c"
@@ -86,6 +87,23 @@ def typed(library: Any) -> Any:
     library.model_step.argtypes = [*[ctypes.c_void_p] * 3, ctypes.c_int64]
     library.model_start.restype = library.model_step.restype = None
     return library
+
+
+def in_c(model: Model, steps: Iterable[int]) -> Iterator[list[float]]:
+    """Yield the outputs at the start and after each step [ns], the inputs at their start values. Raises as it loads."""
+    library, outputs = load_model(model), variables(model.outputs)
+    memory = (ctypes.c_int64 * (memory_size(library) // 8 + 1))()
+    params, inputs = (_numbers(flatten(value)) for value in (model.first_params(), model.inputs()))
+    told = _numbers([0.0] * len(outputs))
+    library.model_start(memory, params, told)
+    yield list(told)
+    for dt_ns in steps:
+        library.model_step(memory, inputs, told, dt_ns)
+        yield list(told)
+
+
+def _numbers(values: Sequence[float]) -> Any:
+    return (ctypes.c_double * len(values))(*values)
 
 
 def memory_size(library: Any) -> int:

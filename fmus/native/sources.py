@@ -59,16 +59,24 @@ def translated(model: Model) -> Translation:
 
     That of this project's own models is kept: they are made of their package and modelkit alone.
     """
-    package = Path(str(model.package.__file__)).parent
-    if package.parent != ROOT:
+    packages = [Path(str(package.__file__)).parent for package in model.sources()]
+    if any(package.parent != ROOT for package in packages):
         return translate(model)
-    parts: list[Any] = [model.state, model.params, model.inputs, model.outputs, model.initialize, model.step]
-    parts += [] if model.store is None else [model.store]
-    words = [model.name, *(f"{part.__module__} {part.__qualname__}" for part in parts)]
-    words += [repr(flatten(cls())) for cls in (model.params, model.inputs)]
-    key = _hash_of([package, ROOT / "modelkit", Path(compiler.__file__).parent], "\0".join(words))
+    key = _hash_of([*packages, ROOT / "modelkit", Path(compiler.__file__).parent], "\0".join(_words(model)))
     path = kept_file(CACHE, model.name, key, SUFFIX, lambda: json.dumps(translate(model)._asdict()).encode(), KEPT)
     return Translation(**json.loads(path.read_bytes()))
+
+
+def _words(model: Model) -> list[str]:
+    """Return what the C of ``model`` depends on beside the sources."""
+    parts: list[Any] = [model.state, model.params, model.inputs, model.outputs, model.initialize, model.step]
+    parts += [] if model.store is None else [model.store]
+    words = [model.name, model.description, *(f"{part.__module__} {part.__qualname__}" for part in parts)]
+    words += [repr(flatten(start)) for start in (model.params(), model.first_params(), model.inputs())]
+    if model.assembly is not None:
+        words += [str(model.assembly.period_ns), *sorted(model.assembly.opened)]
+        words += [word for name, part in model.assembly.parts for word in (name, *_words(part))]
+    return words
 
 
 def _hash_of(folders: list[Path], more: str) -> str:

@@ -30,9 +30,9 @@ NAMESPACE = globals()
 
 
 class {script}({base}):
-    model = {attribute}
+    model = {model}
     build = "{hash}"
-    layout = Layout({attribute})
+    layout = Layout(model)
 '''
 
 
@@ -59,7 +59,7 @@ def bundle(model: Model) -> Bundle:
         "pythonfmu/__init__.py": RUNTIME_INIT,
     }
     script = SCRIPT.format(
-        root="{root}", script="{script}", base="ModelSlave", hash="{hash}", package=name, attribute=_attribute(model)
+        root="{root}", script="{script}", base="ModelSlave", hash="{hash}", package=name, **_named(model)
     )
     digest = content_hash({**originals, "script": script.encode()})
     root, module = f"fmu_{digest[:16]}", f"slave_{digest[:16]}"
@@ -119,11 +119,12 @@ def _check_import(module: str, where: str, tops: set[str]) -> None:
         )
 
 
-def _attribute(model: Model) -> str:
-    """Return the name under which the model's package offers it."""
+def _named(model: Model) -> dict[str, str]:
+    """Return the name under which the model's package offers it, and how it is made from that."""
     for name, value in vars(model.package).items():
-        if value is model:
-            return name
+        if isinstance(value, Model) and value == model.started({}):
+            starts = [item for item in model.view.starts if model.shows(item[0])]
+            return {"attribute": name, "model": f"{name}.started(dict({starts!r}))" if starts else name}
     raise ValueError(f"{model.package.__name__}: it must hold the Model of {model.name}")
 
 

@@ -1,8 +1,12 @@
-"""ParkingSystem.ssp: structure and parameters of the system as SSP 1.0, so that several tools accept it.
+"""The system of a scenario as SSP 1.0: structure, parameters, the FMUs, so that several tools accept it.
 
-Every tool reads a different part. The parameter sets hang on the components (not on the system), with
-bare variable names and one name for all sets: libcosim finds them there. OMSimulator takes the step
-size from an annotation of the system, libcosim from one of the default experiment.
+Every tool reads a different part. The parameter sets hang on the components (not on the system), with bare variable
+names and one name for all sets: libcosim finds them there. OMSimulator takes the step size from an annotation of the
+system, libcosim from one of the default experiment. Tools that read no parameter sets, or only those they are told,
+drive the same scenario: the FMUs inside start with its parameters.
+
+Outputs of the system itself are for tools that show no others. libcosim and Ecos refuse a file that has some: they
+read every connection as one between two components.
 """
 
 from pathlib import Path
@@ -10,8 +14,10 @@ from xml.etree import ElementTree
 from xml.etree.ElementTree import Element, SubElement
 
 from fmus.contents.archive import write_archive
+from fmus.contents.description import AUTHOR, GENERATED, project_version, unit_definitions
+from fmus.contents.variables import FmiVariable, describe
 from fmus.contents.xml_file import as_text, xml_bytes
-from fmus.systems.system import NAME, Part, System
+from fmus.systems.system import Part, System
 
 SSP = "http://ssp-standard.org/SSP1/"
 SPACES = {
@@ -24,16 +30,17 @@ SPACES = {
 STRUCTURE = "SystemStructure.ssd"
 FMU_TYPE = "application/x-fmu-sharedlibrary"
 SET_NAME = "scenario"
+PORTS = ("input", "output", "parameter")
 
 
-def write_ssp(system: System, path: Path) -> Path:
-    """Write the .ssp file; the same system gives the same bytes."""
-    return write_archive(path, ssp_files(system))
+def write_ssp(system: System, path: Path, with_outputs: bool = False) -> Path:
+    """Write the .ssp file, on demand ``with_outputs`` of the system itself; the same system gives the same bytes."""
+    return write_archive(path, ssp_files(system, with_outputs))
 
 
-def ssp_files(system: System) -> dict[str, bytes]:
+def ssp_files(system: System, with_outputs: bool = False) -> dict[str, bytes]:
     """Return path in the archive -> content."""
-    files = {STRUCTURE: _xml(_structure(system))}
+    files = {STRUCTURE: _xml(_structure(system, with_outputs))}
     for part in system.parts:
         files[_fmu_path(part)] = part.fmu.read_bytes()
         files[_set_path(part)] = _xml(_parameter_set(part))
@@ -57,23 +64,29 @@ def _add(parent: Element, short: str, **attributes: str) -> Element:
     return SubElement(parent, _tag(short), attributes)
 
 
-def _structure(system: System) -> Element:
-    root = Element(_tag("ssd:SystemStructureDescription"), name=NAME, version="1.0")
-    node = _add(root, "ssd:System", name=NAME)
+def _structure(system: System, with_outputs: bool) -> Element:
+    made = {"author": AUTHOR, "license": "MIT", "generationTool": f"apa-cosim {project_version()}"}
+    made |= {"description": system.title, "generationDateAndTime": GENERATED}
+    names = {"name": system.identifier, "version": "1.0"}
+    root = Element(_tag("ssd:SystemStructureDescription"), names | made)
+    node = _add(root, "ssd:System", name=system.identifier, description=system.title)
+    told = list(system.outputs()) if with_outputs else []
+    if told:
+        ports = _add(node, "ssd:Connectors")
+        for _, variable, name in told:
+            _connector(ports, variable, "output", name)
     elements = _add(node, "ssd:Elements")
     for part in system.parts:
         _component(elements, part)
     connections = _add(node, "ssd:Connections")
     for sender, receiver, name in system.connections():
-        _add(
-            connections,
-            "ssd:Connection",
-            startElement=sender.name,
-            startConnector=name,
-            endElement=receiver.name,
-            endConnector=name,
-        )
+        ends = {"endElement": receiver.name, "endConnector": name}
+        _add(connections, "ssd:Connection", startElement=sender.name, startConnector=name, **ends)
+    for part, variable, name in told:
+        start = {"startElement": part.name, "startConnector": variable.name}
+        _add(connections, "ssd:Connection", **start, endConnector=name)
     _master_of_omsimulator(node, system.step)
+    _units(root, system)
     experiment = _add(root, "ssd:DefaultExperiment", startTime="0.0", stopTime=as_text(system.stop))
     algorithm = _add(_annotation(experiment, "com.opensimulationplatform"), "osp:Algorithm")
     _add(algorithm, "osp:FixedStepAlgorithm", baseStepSize=as_text(system.step))
@@ -82,12 +95,27 @@ def _structure(system: System) -> Element:
 
 def _component(elements: Element, part: Part) -> None:
     node = _add(elements, "ssd:Component", name=part.name, source=_fmu_path(part), type=FMU_TYPE)
-    connectors = _add(node, "ssd:Connectors")
-    for kind in ("input", "output"):
+    ports = _add(node, "ssd:Connectors")
+    for kind in PORTS:
         for variable in part.of(kind):
-            _add(_add(connectors, "ssd:Connector", name=variable.name, kind=kind), f"ssc:{variable.fmi_type}")
+            _connector(ports, variable, kind, variable.name)
     bindings = _add(node, "ssd:ParameterBindings")
     _add(bindings, "ssd:ParameterBinding", source=_set_path(part))
+
+
+def _connector(ports: Element, variable: FmiVariable, kind: str, name: str) -> None:
+    unit = {"unit": variable.signal.unit} if variable.kind is float else {}
+    node = _add(ports, "ssd:Connector", name=name, kind=kind, description=describe(variable))
+    _add(node, f"ssc:{variable.fmi_type}", **unit)
+
+
+def _units(root: Element, system: System) -> None:
+    """Add the units of all connectors, as FMI 2.0 defines them."""
+    known = [variable for part in system.parts for kind in PORTS for variable in part.of(kind)]
+    units = _add(root, "ssd:Units")
+    for definition in unit_definitions(known):
+        unit = _add(units, "ssc:Unit", name=definition.attrib["name"])
+        _add(unit, "ssc:BaseUnit", **definition[0].attrib)
 
 
 def _annotation(parent: Element, kind: str) -> Element:
@@ -96,15 +124,8 @@ def _annotation(parent: Element, kind: str) -> Element:
 
 def _master_of_omsimulator(node: Element, step: float) -> None:
     inner = _add(_add(_annotation(node, "org.openmodelica"), "oms:Annotations"), "oms:SimulationInformation")
-    tolerance = "0.0001"
-    _add(
-        inner,
-        "oms:FixedStepMaster",
-        description="oms-ma",
-        stepSize=as_text(step),
-        absoluteTolerance=tolerance,
-        relativeTolerance=tolerance,
-    )
+    tolerances = {"absoluteTolerance": "0.0001", "relativeTolerance": "0.0001"}
+    _add(inner, "oms:FixedStepMaster", description="oms-ma", stepSize=as_text(step), **tolerances)
 
 
 def _parameter_set(part: Part) -> Element:

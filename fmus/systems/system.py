@@ -1,6 +1,7 @@
-"""The pair of FMUs as a system: which part feeds which, with the parameters of one scenario."""
+"""The FMUs of a scenario as a system: which part feeds which, and what each starts with."""
 
-from collections.abc import Mapping
+import re
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -9,7 +10,10 @@ from modelkit.connections import connections, part_of
 from modelkit.model import Model
 from modelkit.variables import variables
 
-NAME = "ParkingSystem"
+
+def identifier(scenario: str) -> str:
+    """Return what the system of a scenario is called in files and in C: ``Parking_<scenario>``."""
+    return "Parking_" + re.sub(r"\W", "_", scenario, flags=re.ASCII)
 
 
 class Part(NamedTuple):
@@ -17,31 +21,47 @@ class Part(NamedTuple):
 
     name: str
     model: Model
+    """It starts with the parameters of the scenario."""
     fmu: Path
-    parameters: Mapping[str, Any]
-    """Flat name -> value of the parameters that differ from the FMU's own."""
 
     def of(self, causality: str) -> list[FmiVariable]:
         """Return the variables of this causality."""
         return [variable for variable in shown_variables(self.model) if variable.causality == causality]
 
     def settings(self) -> list[tuple[FmiVariable, Any]]:
-        """Return (parameter, value of its own type). Raises ``KeyError`` for a name the model does not have."""
+        """Return (parameter, start value) of those that the scenario sets."""
         known = {variable.name: variable for variable in self.of("parameter")}
-        return [(known[name], known[name].kind(value)) for name, value in self.parameters.items()]
+        return [(known[name], known[name].start) for name, _ in self.model.view.starts if name in known]
 
 
 class System(NamedTuple):
     """Parts, and the times of the experiment."""
 
+    name: str
+    """Of the scenario."""
+    title: str
     parts: tuple[Part, ...]
     step: float
     """Communication step [s]."""
     stop: float
     """Stop time [s]."""
 
+    @property
+    def identifier(self) -> str:
+        """Return ``Parking_<scenario>``, with letters that every tool takes."""
+        return identifier(self.name)
+
     def connections(self) -> list[tuple[Part, Part, str]]:
         """Return (sender, receiver, name) of every signal: an output and an input of the same name are connected."""
         wires = connections([part_of(part.name, part.model) for part in self.parts])
         names = [[item.name for item in variables(part.model.inputs)] for part in self.parts]
-        return [(self.parts[wire.source], self.parts[wire.target], names[wire.target][wire.input]) for wire in wires]
+        found = [(self.parts[wire.source], self.parts[wire.target], names[wire.target][wire.input]) for wire in wires]
+        return [(sender, receiver, name) for sender, receiver, name in found if receiver.model.shows(name)]
+
+    def outputs(self) -> Iterator[tuple[Part, FmiVariable, str]]:
+        """Yield each output with its name in the system: its own, with that of its part if others are called so too."""
+        known = [(part, variable) for part in self.parts for variable in part.of("output")]
+        names = [variable.name for _, variable in known]
+        for part, variable in known:
+            alone = names.count(variable.name) == 1
+            yield part, variable, variable.name if alone else f"{part.name}_{variable.name}"

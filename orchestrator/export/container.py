@@ -1,35 +1,49 @@
 """``apa export container``: the system of a scenario as one FMU."""
 
 import argparse
-from importlib.util import find_spec
+from pathlib import Path
 
+from orchestrator.cosim.fmu_files import wanted_platforms
 from orchestrator.export.ssp import add_system_arguments
 from orchestrator.scenario.load_scenario import load_scenario
-from orchestrator.text.console import say
+from orchestrator.text.console import working
 from orchestrator.text.errors import BadInput
 
 EXAMPLES = """examples:
   apa export container guo2015-case4
-  fmpy simulate ParkingSystem.fmu --stop-time 60
+  apa export container apa-parallel --platform win64,linux64 --fmi 3 --out Parking.fmu
+  apa export container guo2015-case4 --parameter "vehicle.driver.*" --input "vehicle.prompt" --output "*.pose.*"
 """
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add what the format takes."""
-    add_system_arguments(parser, "ParkingSystem.fmu")
+    add_system_arguments(parser, ".fmu")
+    parser.add_argument("--fmi", type=int, choices=(2, 3), default=2, help="version (default: 2)")
+    parser.add_argument("--cc", metavar="CC", help="C compiler (default: the variable CC, else ziglang)")
+    for name, what in (("parameter", "parameters that it shows"), ("output", "outputs that it shows")):
+        parser.add_argument(f"--{name}", action="append", metavar="PATTERN", help=f"{what} (default: all)")
+    text = "inputs that your tool feeds, beside those that neither vehicle nor controller feeds"
+    parser.add_argument("--input", action="append", default=[], metavar="PATTERN", help=text)
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Write the file. Returns 0."""
-    from fmus.systems.container import INSTALL, PACKAGE, write_container
-    from orchestrator.export.system_of import fmus_for, system_of
+    from fmus.files import folder_for_a_while, write_whole
+    from fmus.native.compilers import find_compiler
+    from fmus.native.fmu import build
+    from fmus.native.platforms import host
+    from orchestrator.export.system_of import one_model
 
-    if find_spec(PACKAGE) is None:
-        raise BadInput(f"needs fmucontainer: {INSTALL}")
     scenario = load_scenario(arguments.scenario, arguments.set)
-    system = system_of(scenario, fmus_for(arguments.fmus, arguments.platform, say))
+    platforms = wanted_platforms(arguments.platform)
+    model = one_model(scenario, arguments.parameter, arguments.input, arguments.output)
+    out: Path = arguments.out or Path(f"{scenario.name}.fmu")
     try:
-        print(write_container(system, arguments.out))
+        with working(f"building {out.name}"), folder_for_a_while("container") as folder:
+            made = build(model, folder, platforms or [host()], find_compiler(arguments.cc), arguments.fmi)
+            write_whole(out, made.read_bytes())
     except RuntimeError as error:
         raise BadInput(str(error)) from error
+    print(out)
     return 0

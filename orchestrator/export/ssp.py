@@ -1,11 +1,10 @@
-"""``apa export ssp``: the system of a scenario as ParkingSystem.ssp."""
+"""``apa export ssp``: the system of a scenario as an .ssp file, its FMUs built to start as the scenario does."""
 
 import argparse
 from pathlib import Path
 
-from orchestrator.cosim.fmu_files import KINDS
+from orchestrator.cosim.fmu_files import KINDS, default_kind
 from orchestrator.scenario.load_scenario import load_scenario
-from orchestrator.text.console import say
 
 EXAMPLES = """examples:
   apa export ssp guo2015-case4
@@ -15,30 +14,35 @@ EXAMPLES = """examples:
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add what the format takes."""
-    add_system_arguments(parser, "ParkingSystem.ssp")
+    add_system_arguments(parser, ".ssp")
+    kind = default_kind()
+    text = "the system has outputs itself; libcosim and Ecos refuse that"
+    parser.add_argument("--system-outputs", action="store_true", help=text)
+    parser.add_argument("--fmus", choices=KINDS, default=kind, help=f"kind of FMU inside (default: {kind})")
 
 
-def add_system_arguments(parser: argparse.ArgumentParser, name: str) -> None:
+def add_system_arguments(parser: argparse.ArgumentParser, suffix: str) -> None:
     """Add what ``ssp`` and ``container`` have in common."""
     parser.add_argument("scenario", metavar="NAME|FILE", help="a shipped scenario, or a YAML file")
     parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", help="as for apa run")
-    parser.add_argument("--fmus", choices=KINDS, default="native", help="kind of FMU inside (default: native)")
     parser.add_argument(
         "--platform",
         action="append",
         default=[],
-        metavar="NAME",
+        metavar="NAME,...",
         help="native FMUs for these, or all (default: this one)",
     )
-    parser.add_argument("--out", type=Path, default=Path(name), metavar="FILE", help=f"default: {name}")
+    parser.add_argument("--out", type=Path, metavar="FILE", help=f"default: the scenario's name with {suffix}")
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Write the file. Returns 0."""
+    from fmus.files import folder_for_a_while
     from fmus.systems.ssp import write_ssp
-    from orchestrator.export.system_of import fmus_for, system_of
+    from orchestrator.export.system_of import system_of
 
     scenario = load_scenario(arguments.scenario, arguments.set)
-    system = system_of(scenario, fmus_for(arguments.fmus, arguments.platform, say))
-    print(write_ssp(system, arguments.out))
+    with folder_for_a_while("ssp") as folder:
+        system = system_of(scenario, folder, arguments.fmus, arguments.platform)
+        print(write_ssp(system, arguments.out or Path(f"{scenario.name}.ssp"), arguments.system_outputs))
     return 0

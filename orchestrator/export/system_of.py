@@ -1,16 +1,19 @@
 """A scenario as a system for other tools: what can be told them, and what cannot."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from pathlib import Path
 
+from fmus.contents.variables import shown_variables
+from fmus.systems.parking import parking_parts, parking_system
 from fmus.systems.system import Part, System
-from orchestrator.scenario.models import MODELS
+from modelkit.model import Model
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.text.errors import BadInput
+from orchestrator.text.patterns import matching
 
 
-def system_of(scenario: Scenario, files: dict[str, Path]) -> System:
-    """Return the system of ``scenario`` with the FMUs in ``files``.
+def parts_of(scenario: Scenario) -> dict[str, Model]:
+    """Return vehicle and controller, which start with the parameters of ``scenario``.
 
     Raises ``BadInput`` if the scenario has what no such file can say: decimation or faults.
     """
@@ -20,19 +23,39 @@ def system_of(scenario: Scenario, files: dict[str, Path]) -> System:
         raise BadInput("exports are of our vehicle and controller; leave out", file=scenario.file, key="system")
     if scenario.faults:
         raise BadInput("faults live in apa's own master; leave them out to export", file=scenario.file, key="faults")
-    parts = tuple(Part(name, model, files[name], getattr(scenario, name)) for name, model in MODELS.items())
-    return System(parts, scenario.step, scenario.stop_time)
+    return parking_parts(scenario.given("vehicle"), scenario.given("controller"))
 
 
-def fmus_for(kind: str, platforms: Iterable[str], say: Callable[[str], None]) -> dict[str, Path]:
-    """Return the FMUs to pack: those of ``apa run``, or native ones built for other ``platforms``."""
-    from orchestrator.cosim.fmu_files import build_into, fmu_files
+def system_of(scenario: Scenario, folder: Path, kind: str, platforms: Iterable[str] = ()) -> System:
+    """Return the system of ``scenario`` with FMUs of ``kind``, built into ``folder``. Raises as :func:`parts_of`."""
+    from orchestrator.cosim.fmu_files import build_into
 
-    names = list(platforms)
-    if kind != "native" or not names:
-        return fmu_files(kind, say)
-    from fmus.places import DIST
+    models = parts_of(scenario)
+    built = {item.name: item.path for item in build_into(folder, kind, platforms, models=models.values())}
+    parts = tuple(Part(name, model, built[model.name]) for name, model in models.items())
+    return System(scenario.name, scenario.title, parts, scenario.step, scenario.stop_time)
 
-    say(f"building native FMUs for {', '.join(names)}")
-    paths = {item.name: item.path for item in build_into(DIST / "platforms", kind, names)}
-    return {name: paths[model.name] for name, model in MODELS.items()}
+
+def one_model(
+    scenario: Scenario,
+    parameters: Iterable[str] | None = None,
+    inputs: Iterable[str] = (),
+    outputs: Iterable[str] | None = None,
+) -> Model:
+    """Return the system of ``scenario`` as one model. Raises as :func:`parts_of`, or for a pattern that fits nothing.
+
+    Of parameters and outputs those are shown that fit a pattern, by default all. The inputs that fit one are left to
+    others, beside those that no part feeds.
+    """
+    parts = parts_of(scenario)
+    inside = [(name, item) for name, part in parts.items() for item in shown_variables(part)]
+    known = [f"{name}.{item.name}" for name, item in inside if item.causality == "input"]
+    opened = matching(known, inputs)
+    model = parking_system(scenario.name, scenario.title or scenario.name, parts, scenario.step_ns, opened)
+    shown = shown_variables(model)
+    hidden = set(model.view.hidden)
+    for causality, patterns in (("parameter", parameters), ("output", outputs)):
+        names = [item.name for item in shown if item.causality == causality]
+        hidden |= {*names} - {*matching(names, patterns)}
+    view = model.view._replace(hidden=frozenset(hidden))
+    return model._replace(stop_time=scenario.stop_time, view=view)

@@ -41,8 +41,8 @@ NOT_RUN = {
 NEEDS = {
     "apa export mf4": "asammdf",
     "apa export rerun": "rerun",
-    "apa export container": "fmu_manipulation_toolbox",
-    "fmpy simulate ParkingSystem.fmu": "fmu_manipulation_toolbox",
+    "apa export container": "ziglang",
+    "fmpy simulate guo2015-case4.fmu": "ziglang",
     "apa sweep": "pyarrow",
     "apa replay": "pyarrow",
 }

@@ -166,7 +166,7 @@ def test_a_translation_is_kept_until_a_source_changes(monkeypatch, tmp_path):
     for number in range(sources.KEPT):
         monkeypatch.setattr(sources, "_hash_of", lambda *_, n=number: str(n))
         translated(VEHICLE)
-    assert len(list(tmp_path.glob("Vehicle-*"))) == sources.KEPT
+    assert len(list(tmp_path.glob("Vehicle-*.json"))) == sources.KEPT
     count = len(made)
     assert translated(toy_model.MODEL) != translated(toy_model.MODEL)
     assert len(made) == count + 2, "a model from elsewhere may be made of anything"

@@ -9,6 +9,7 @@ import signal
 import subprocess
 import sys
 import time
+from importlib.metadata import PackageNotFoundError
 from pathlib import Path
 
 import pytest
@@ -352,13 +353,14 @@ def test_the_folder_of_a_run_will_do_for_its_log(tmp_path: Path, capsys: pytest.
     assert main(["report", str(tmp_path)]) == 2
 
 
-def test_a_container_says_what_it_needs_before_it_builds(
-    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+def test_a_container_says_that_it_needs_a_compiler(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("orchestrator.export.container.find_spec", lambda name: None)
-    monkeypatch.setattr("orchestrator.export.system_of.fmus_for", lambda *_: pytest.fail("something was built"))
-    assert main(["export", "container", "guo2015-case4"]) == 2
-    assert "pip install fmu-manipulation-toolbox" in capsys.readouterr().err
+    monkeypatch.delenv("CC", raising=False)
+    monkeypatch.setattr("fmus.native.compilers.version", lambda name: (_ for _ in ()).throw(PackageNotFoundError(name)))
+    assert main(["export", "container", "guo2015-case4", "--out", str(tmp_path / "c.fmu")]) == 2
+    assert "a C compiler is missing: pip install" in capsys.readouterr().err
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_old_names_of_options_are_understood(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

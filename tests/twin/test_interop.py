@@ -16,10 +16,10 @@ from fmpy.ssp.ssd import read_ssd
 from libcosimpy.CosimExecution import CosimExecution
 from libcosimpy.CosimLogging import CosimLogLevel, log_output_level
 from libcosimpy.CosimObserver import CosimObserver
+from toolbox_container import write_container
 
-from fmus.systems.container import write_container
 from fmus.systems.ssp import write_ssp
-from orchestrator.export.system_of import system_of
+from orchestrator.export.system_of import parts_of, system_of
 from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.session.session import run_scenario
 from orchestrator.text.errors import BadInput
@@ -43,18 +43,18 @@ def kind(request):
 
 
 @pytest.fixture(scope="module")
-def system(fmus, kind):
-    return system_of(SCENARIO, fmus[kind])
+def system(kind, tmp_path_factory):
+    return system_of(SCENARIO, tmp_path_factory.mktemp("fmus_of_a_scenario"), kind)
 
 
 @pytest.fixture(scope="module")
 def ssp(system, tmp_path_factory):
-    return write_ssp(system, tmp_path_factory.mktemp("ssp") / "ParkingSystem.ssp")
+    return write_ssp(system, tmp_path_factory.mktemp("ssp") / "case4.ssp")
 
 
 @pytest.fixture(scope="module")
 def container(system, tmp_path_factory):
-    return write_container(system, tmp_path_factory.mktemp("container") / "ParkingSystem.fmu")
+    return write_container(system, tmp_path_factory.mktemp("container"))
 
 
 def references(path):
@@ -92,8 +92,6 @@ def load(part, folder):
     fmu.instantiate()
     fmu.setupExperiment(startTime=0.0)
     loaded = SimpleNamespace(fmu=fmu, variables={v.name: v for v in description.modelVariables})
-    for name, value in part.parameters.items():
-        set_value(loaded, name, value)
     fmu.enterInitializationMode()
     return loaded
 
@@ -120,24 +118,21 @@ def test_libcosim_reads_the_ssp(system, ssp, ours):
     assert list(found) == pytest.approx(ours[2], abs=TOLERANCE)
 
 
-def test_ecos_reads_the_ssp(ssp, ours):
-    """Where it is installed: it needs oneTBB besides its package."""
+@pytest.mark.parametrize("told", [{"parameter_set": "scenario"}, {}], ids=["told the set", "told nothing"])
+def test_ecos_reads_the_ssp(ssp, ours, told):
+    """Where it is installed: it needs oneTBB besides its package. Not told the set it drives the same scenario."""
     try:
         from ecospy import EcosSimulation
     except (ImportError, OSError) as error:
         pytest.skip(f"no ecospy: {error}")
     with EcosSimulation(step_size=SCENARIO.step, ssp_path=str(ssp)) as simulation:
-        simulation.init(parameter_set="scenario")
+        simulation.init(**told)
         simulation.step(ours[1])
         found = [simulation.get_real(f"vehicle::{name}") for name in POSE]
     assert found == pytest.approx(ours[2], abs=TOLERANCE)
 
 
-def test_a_container_is_the_same_bytes_again(container, system, tmp_path):
-    assert write_container(system, tmp_path / "again.fmu").read_bytes() == container.read_bytes()
-
-
-def test_fmpy_simulates_the_container(container, ours, tmp_path):
+def test_fmpy_simulates_the_container_of_fmucontainer(container, ours, tmp_path):
     table = tmp_path / "result.csv"
     command = [Path(sys.executable).parent / "fmpy", "simulate", container, "--stop-time", repr(float(ours[0]))]
     subprocess.run([*command, "--output-interval", "0.01", "--output-file", table], check=True, capture_output=True)
@@ -147,39 +142,65 @@ def test_fmpy_simulates_the_container(container, ours, tmp_path):
     assert [float(last[f"vehicle.{name}"]) for name in POSE] == pytest.approx(ours[2], abs=TOLERANCE)
 
 
-def test_fmpy_simulates_the_ssp_given_the_parameters(system, ssp, ours):
-    """FMPy reads no parameter bindings, so they are handed over; its last rows lie behind the stop time."""
-    settings = [
-        SimpleNamespace(name=f"{part.name}.{name}", value=value)
-        for part in system.parts
-        for name, value in part.parameters.items()
-    ]
-    chosen = SimpleNamespace(parameters=settings)
-    result = simulate_ssp(str(ssp), stop_time=ours[0], step_size=SCENARIO.step, parameter_set=chosen)
+def test_fmpy_simulates_the_ssp(ssp, ours):
+    """FMPy reads no parameter bindings: the FMUs start as the scenario does. Its last rows lie behind the stop time."""
+    result = simulate_ssp(str(ssp), stop_time=ours[0], step_size=SCENARIO.step)
     found = [result[f"vehicle.{name}"][ours[1] - 1] for name in POSE]
     assert found == pytest.approx(ours[2], abs=TOLERANCE)
 
 
-def test_the_ssp_is_valid_and_the_same_bytes_each_time(system, ssp, tmp_path):
-    structure = read_ssd(str(ssp))
+def test_fmpy_shows_the_outputs_of_the_system_itself(system, ours, tmp_path):
+    path = write_ssp(system, tmp_path / "with_outputs.ssp", with_outputs=True)
+    result = simulate_ssp(str(path), stop_time=ours[0], step_size=SCENARIO.step)
+    assert set(result.dtype.names) >= {name for _, _, name in system.outputs()} > {"pose.x", "phase"}
+    assert [result[name][ours[1] - 1] for name in POSE] == pytest.approx(ours[2], abs=TOLERANCE)
+
+
+@pytest.mark.parametrize("with_outputs", [False, True])
+def test_the_ssp_is_valid_and_the_same_bytes_each_time(system, tmp_path, with_outputs):
+    one, other = (write_ssp(system, tmp_path / name, with_outputs) for name in ("one.ssp", "other.ssp"))
+    assert one.read_bytes() == other.read_bytes()
+    structure = read_ssd(str(one))  # against the schema
+    assert structure.name == "Parking_guo2015_case4_105"
     assert [component.name for component in structure.system.elements] == ["vehicle", "controller"]
-    assert len(structure.system.connections) == len(system.connections()) > 10
-    assert write_ssp(system, tmp_path / "again.ssp").read_bytes() == ssp.read_bytes()
+    outputs = len(list(system.outputs())) if with_outputs else 0
+    assert len(structure.system.connections) == len(system.connections()) + outputs > 10
+    assert len(structure.system.connectors) == outputs
+    for part, component in zip(system.parts, structure.system.elements, strict=True):
+        ports = {(port.name, port.kind) for port in component.connectors}
+        kinds = ("input", "output", "parameter")
+        assert ports == {(item.name, kind) for kind in kinds for item in part.of(kind)}
+        assert len(part.of("parameter")) > 40
+
+
+def test_the_ssp_says_what_other_tools_read(ssp, system):
     with zipfile.ZipFile(ssp) as archive:
         text = archive.read("SystemStructure.ssd").decode()
-        values = archive.read("resources/vehicle.ssv").decode()
+        sets = {part.name: archive.read(f"resources/{part.name}.ssv").decode() for part in system.parts}
     assert 'xmlns:osp="http://opensimulationplatform.com/SSP/OSPAnnotations"' in text
     assert 'baseStepSize="0.01"' in text
     assert 'stepSize="0.01"' in text
-    assert values.count("<ssv:Parameter ") == len(SCENARIO.vehicle) > 0
+    assert '<ssc:BaseUnit m="1" s="-1" />' in text
+    for part in system.parts:
+        set_ones = {**getattr(SCENARIO, part.name)}.keys() & {item.name for item in part.of("parameter")}
+        assert sets[part.name].count("<ssv:Parameter ") == len(set_ones) > 0
+        assert f'<ssd:ParameterBinding source="resources/{part.name}.ssv" />' in text
+
+
+def test_an_fmu_in_the_ssp_starts_with_what_the_scenario_sets(system):
+    for part in system.parts:
+        starts = {v.name: v.start for v in fmpy.read_model_description(str(part.fmu)).modelVariables}
+        for variable, value in part.settings():
+            assert float({"true": "1", "false": "0"}.get(starts[variable.name], starts[variable.name])) == value
+    assert {variable.name for variable, _ in system.parts[1].settings()} >= {"target.x", "wheelbase"}
 
 
 @pytest.mark.parametrize("name", ["fault-pose-frozen"])
-def test_what_a_system_file_cannot_say_is_refused(fmus, name):
+def test_what_a_system_file_cannot_say_is_refused(name):
     with pytest.raises(BadInput, match="faults live in apa's own master"):
-        system_of(load_scenario(name, []), fmus["native"])
+        parts_of(load_scenario(name, []))
     with pytest.raises(BadInput, match="one communication step for all"):
-        system_of(load_scenario("guo2015-case4", ["every.controller=2"]), fmus["native"])
+        parts_of(load_scenario("guo2015-case4", ["every.controller=2"]))
 
 
 def test_the_reference_is_a_parked_car(ours):

@@ -12,14 +12,20 @@ from fmus.compiler.target.names import member_name
 from fmus.compiler.target.program import Program
 from fmus.compiler.target.values import Place
 from modelkit.model import Model, SampledSystem, SampledSystems
+from modelkit.variables import flatten
 
-NAMES = ("params", "inputs", "outputs", "state", "store", "dt_ns", "next", "clock", "samples", "period_ns", "i")
+NAMES = (
+    *("params", "inputs", "outputs", "state", "store", "dt_ns", "next", "clock", "samples", "period_ns", "i"),
+    *("pass_on", "left_ns", "span_ns"),
+)
 """What is called so inside the entries, and no function of a model therefore."""
 
 
 def roots(model: Model) -> list[FunctionType]:
     """Return the Python functions that a model is entered by."""
     found: list[Callable[..., Any]] = []
+    if model.assembly is not None:
+        return [function for _, part in model.assembly.parts for function in roots(part)]
     if model.systems is None:
         found += [model.initialize, model.step]
     elif model.store is not None:
@@ -86,9 +92,10 @@ class Entries:
 
     def _preset(self) -> list[str]:
         """Return the lines that set the parameters which start with another value than their default."""
-        values = dict(self.model.view.preset)
-        found = {item.name: item.path.removeprefix("params.") for item in members(self.model) if item.name in values}
-        return [f"params->{path} = {self.program.number(values[name]).text};" for name, path in found.items()]
+        pairs = zip(members(self.model, ("params",)), flatten(self.model.first_params()), strict=True)
+        values = dict(self.model.view.starts)
+        found = {item.path.removeprefix("params."): value for item, value in pairs if item.name in values}
+        return [f"params->{path} = {self.program.number(value).text};" for path, value in found.items()]
 
     def _systems(self, systems: SampledSystems, initialize: str, step: str) -> list[list[str]]:
         """Return initialize, a step for each system, and the one that chooses among them."""

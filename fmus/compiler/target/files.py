@@ -53,7 +53,8 @@ class Files:
         """Return the text of the header: the types of the interface and the three functions."""
         name, writer = self.model.name, self.writer
         guard = f"{name.upper()}_H"
-        lines = comment(f"{name}: {self.model.description}.\nMade from the Python of {self.model.package.__name__}.")
+        packages = " and ".join(package.__name__ for package in self.model.sources())
+        lines = comment(f"{name}: {self.model.description}.\nMade from the Python of {packages}.")
         lines += [f"#ifndef {guard}", f"#define {guard}", "", "#include <stdbool.h>", "#include <stdint.h>"]
         lines += [line for enum in self.enums for line in writer.enum(enum, header=True)]
         lines += [line for cls in self.classes for line in writer.struct(cls, header=True)]

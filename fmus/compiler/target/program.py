@@ -46,15 +46,13 @@ class Constant:
 class Program:
     """Everything a C file is made of, found while its functions are translated."""
 
-    def __init__(self, name: str, roots: list[FunctionType], types: list[Any], reserved: tuple[str, ...] = ()) -> None:
+    def __init__(
+        self, models: tuple[str, ...], roots: list[FunctionType], types: list[Any], reserved: tuple[str, ...] = ()
+    ) -> None:
         self.library = Library()
         self.refusals: list[Refusal] = []
-        taken = [
-            name,
-            *reserved,
-            *(f"{name}_{entry}" for entry in ("defaults", "initialize", "step")),
-            *runtime.TEXTS,
-        ]
+        entries = [f"{name}_{entry}" for name in models for entry in ("defaults", "initialize", "step")]
+        taken = [*models, *reserved, *entries, *runtime.TEXTS]
         self.names = FileNames(taken)
         self.found = Discovery(self.library, roots, types)
         self.modules = self.library.order([root.__module__ for root in roots], self.found.modules())

@@ -1,0 +1,167 @@
+"""Models that feed each other, stepped together as one model: a whole system in one FMU.
+
+They exchange as under a Jacobi master: at time zero and then once a period all outputs are read, all inputs written.
+Between two exchanges the inputs are held, and a step of any length is cut there. What no part offers is an input of
+the whole, which is passed on at every step.
+"""
+
+from collections.abc import Iterable, Iterator, Mapping
+from types import ModuleType
+from typing import Annotated, Any, NamedTuple, cast
+
+from modelkit.connections import Wire, connections, part_of
+from modelkit.model import Assembly, Model, View
+from modelkit.signal import Role
+from modelkit.variables import constructor, flatten, variables
+
+INPUTS = "_inputs"
+"""``<part>_inputs``: the field of the state that holds a part's inputs."""
+LEFT = "to_exchange_ns"
+"""The field of the state that says how long it is to the next exchange."""
+
+
+def assembled(
+    name: str,
+    description: str,
+    package: ModuleType,
+    parts: Mapping[str, Model],
+    period_ns: int,
+    opened: Iterable[str] = (),
+) -> Model:
+    """Return ``parts`` as one model, whose variables are theirs as ``<part>.<variable>`` and start as theirs.
+
+    ``opened`` are inputs, named so too, that are left to others although a part offers them. ``package`` is where the
+    types of the whole are said to be from. Raises ``CannotConnectError`` if signals of the same name do not fit,
+    ``ValueError`` if more than one part has a store.
+    """
+    stores = [model.store for model in parts.values() if model.store is not None]
+    if len(stores) > 1:
+        raise ValueError(f"{name}: only one of the models may have a store")
+    own = Assembly(tuple(parts.items()), period_ns, frozenset(opened))
+    memory: dict[str, tuple[Any, Any]] = {part: (model.state, model.state()) for part, model in own.parts}
+    memory |= {f"{part}{INPUTS}": (model.inputs, model.inputs()) for part, model in own.parts}
+    params = {part: (model.params, model.first_params()) for part, model in own.parts}
+    inputs = {part: (model.inputs, model.inputs()) for part, model in own.parts}
+    outputs = {part: (_told(model), model.outputs()) for part, model in own.parts}
+    memory[LEFT] = (int, period_ns)
+    state = _tuple(f"{name}State", memory, package)
+    told = _tuple(f"{name}Outputs", outputs, package)
+    whole = Together(own, state, told)
+    return Model(
+        name=name,
+        description=description,
+        package=package,
+        state=state,
+        params=_tuple(f"{name}Params", params, package),
+        inputs=_tuple(f"{name}Inputs", inputs, package),
+        outputs=told,
+        initialize=whole.initialize,
+        step=whole.step_with_store if stores else whole.step,
+        step_size=period_ns * 1e-9,
+        stop_time=max(model.stop_time for _, model in own.parts),
+        view=View(hidden=frozenset(_hidden(own))),
+        assembly=own,
+        store=stores[0] if stores else None,
+    )
+
+
+class Together(NamedTuple):
+    """The two functions of an assembly."""
+
+    assembly: Assembly
+    state: type[Any]
+    outputs: type[Any]
+
+    def initialize(self, params: Any) -> tuple[Any, Any]:
+        """Return (state, outputs) at time zero."""
+        memory, told = {LEFT: self.assembly.period_ns}, {}
+        for name, model in self.assembly.parts:
+            memory[name], told[name] = model.initialize(getattr(params, name))
+            memory[name + INPUTS] = model.inputs()
+        self._pass_on(memory, told)
+        return self.state(**memory), self.outputs(**told)
+
+    def step(self, state: Any, inputs: Any, params: Any, dt_ns: int) -> tuple[Any, Any]:
+        """Return (state, outputs) after a step, cut at the exchanges."""
+        return self.step_with_store(None, state, inputs, params, dt_ns)
+
+    def step_with_store(self, store: Any, state: Any, inputs: Any, params: Any, dt_ns: int) -> tuple[Any, Any]:
+        """Return the same, where a part has a store."""
+        memory: dict[str, Any] = state._asdict()
+        told: dict[str, Any] = {}
+        self._take(memory, inputs)
+        while True:
+            span_ns = min(dt_ns, memory[LEFT])
+            for name, model in self.assembly.parts:
+                own, held = getattr(params, name), memory[name + INPUTS]
+                step = model.step if model.store is None else model.stepper(store)
+                memory[name], told[name] = step(memory[name], held, own, span_ns)
+            memory[LEFT] -= span_ns
+            dt_ns -= span_ns
+            if memory[LEFT] == 0:
+                self._pass_on(memory, told)
+                memory[LEFT] = self.assembly.period_ns
+            if dt_ns <= 0:
+                return self.state(**memory), self.outputs(**told)
+
+    def _pass_on(self, memory: dict[str, Any], told: Mapping[str, Any]) -> None:
+        """Write outputs to the inputs they feed."""
+        outputs = [flatten(told[name]) for name, _ in self.assembly.parts]
+        given = [flatten(memory[name + INPUTS]) for name, _ in self.assembly.parts]
+        for wire in wires(self.assembly):
+            given[wire.target][wire.input] = outputs[wire.source][wire.output]
+        self._give(memory, given)
+
+    def _take(self, memory: dict[str, Any], inputs: Any) -> None:
+        """Write the inputs of the whole to those of the parts."""
+        given = [flatten(memory[name + INPUTS]) for name, _ in self.assembly.parts]
+        for target, place in open_inputs(self.assembly):
+            given[target][place] = flatten(inputs[target])[place]
+        self._give(memory, given)
+
+    def _give(self, memory: dict[str, Any], given: list[list[Any]]) -> None:
+        for (name, model), values in zip(self.assembly.parts, given, strict=True):
+            memory[name + INPUTS] = constructor(model.inputs)(values)
+
+
+def wires(assembly: Assembly) -> list[Wire]:
+    """Return who feeds whom inside, parts by their number."""
+    found = connections([part_of(name, model) for name, model in assembly.parts])
+    return [wire for wire in found if _name(assembly, wire.target, wire.input) not in assembly.opened]
+
+
+def open_inputs(assembly: Assembly) -> Iterator[tuple[int, int]]:
+    """Yield number of the part and place of the input of each that no part feeds."""
+    fed = {(wire.target, wire.input) for wire in wires(assembly)}
+    for target, (_, model) in enumerate(assembly.parts):
+        for place in range(len(variables(model.inputs))):
+            if (target, place) not in fed:
+                yield target, place
+
+
+def _name(assembly: Assembly, part: int, place: int) -> str:
+    name, model = assembly.parts[part]
+    return f"{name}.{variables(model.inputs)[place].name}"
+
+
+def _hidden(assembly: Assembly) -> Iterator[str]:
+    """Yield the variables that are not shown: those of the parts that are not, and the inputs that are fed inside."""
+    for part, model in assembly.parts:
+        known = (item.name for cls in (model.params, model.inputs, model.outputs) for item in variables(cls))
+        yield from (f"{part}.{name}" for name in known if not model.shows(name))
+    for wire in wires(assembly):
+        yield _name(assembly, wire.target, wire.input)
+
+
+def _told(model: Model) -> Any:
+    shape: Any = model.outputs
+    return Annotated[shape, Role.SAMPLED] if model.sampled else shape
+
+
+def _tuple(name: str, fields: Mapping[str, tuple[Any, Any]], package: ModuleType) -> type[Any]:
+    """Return a NamedTuple with ``fields``: name -> (annotation, default)."""
+    made: Any = NamedTuple(name, [(field, hint) for field, (hint, _) in fields.items()])  # type: ignore[misc]
+    made._field_defaults = {field: default for field, (_, default) in fields.items()}
+    made.__new__.__defaults__ = tuple(made._field_defaults.values())
+    made.__module__ = package.__name__
+    return cast(type[Any], made)

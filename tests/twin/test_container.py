@@ -1,0 +1,212 @@
+"""A scenario's system as one FMU gives the bits of the pair under our master, and has what an importer looks for."""
+
+import subprocess
+import sys
+from functools import cache
+from pathlib import Path
+
+import fmpy
+import numpy as np
+import pytest
+from fmpy.validation import validate_fmu
+from replays import CLibrary, Fmi3
+from test_same_bits import same
+
+from fmus.contents.dependencies import initial_dependencies
+from fmus.contents.variables import shown_variables
+from fmus.native import fmu as native_fmu
+from fmus.native.platforms import host as this_platform
+from modelkit.assembly import assembled
+from modelkit.variables import flatten, variables, with_values
+from orchestrator.cli import main
+from orchestrator.cosim.fmu_files import can_compile
+from orchestrator.export.system_of import one_model
+from orchestrator.scenario.load_scenario import load_scenario
+from orchestrator.scenario.models import MODELS
+from orchestrator.session.session import run_scenario
+from orchestrator.text.errors import BadInput
+from vehicle_fmu import MODEL as VEHICLE
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "fmi"))
+from host import OK, Host
+
+pytestmark = pytest.mark.skipif(not can_compile(), reason="needs a C compiler")
+SCENARIOS = (
+    *("guo2015-case4-105", "guo2015-case1", "guo2015-case2", "zhang2022-double-track", "hsic-shuffle", "preview-18"),
+    *("apa-parallel", "apa-perpendicular-left", "apa-takeover", "apa-no-slot"),
+)
+CASE = load_scenario("guo2015-case4-105", [])
+STEP = 10_000_000
+ODD = (3_000_000, 7_000_000, 10_000_000, 17_000_000, 1, 22_999_999, 250_000_000) * 4
+
+
+@cache
+def pair(step_ns):
+    """Both models with all they have as one, and its library: what every scenario of this step can be played to."""
+    model = assembled("Pair", "vehicle and controller", sys.modules[__name__], MODELS, step_ns)
+    return model, CLibrary(model)
+
+
+@pytest.fixture(scope="module")
+def recording(fmus):
+    return run_scenario(CASE, fmus["native"], kind="native").recording
+
+
+@pytest.fixture(scope="module")
+def containers(tmp_path_factory):
+    """Version of FMI -> the system of CASE as one FMU."""
+    folder = tmp_path_factory.mktemp("containers")
+    return {fmi: native_fmu.build(one_model(CASE), folder / str(fmi), [this_platform()], fmi=fmi) for fmi in (2, 3)}
+
+
+def names(cls):
+    return [item.name for item in variables(cls)]
+
+
+@pytest.mark.parametrize("name", SCENARIOS)
+def test_it_gives_the_bits_of_the_pair_under_the_master(fmus, name):
+    scenario = load_scenario(name, [])
+    model, library = pair(scenario.step_ns)
+    expected = run_scenario(scenario, fmus["native"], kind="native").recording
+    given = {f"{part}.{key}": value for part in MODELS for key, value in scenario.given(part).items()}
+    params = np.array(flatten(with_values(model.params, given)), dtype=float)
+    inputs = np.zeros((len(expected.t_ns), len(variables(model.inputs))))
+    rows = library(params, inputs, scenario.step_ns)
+    found = dict(zip(names(model.outputs), rows.T, strict=True))
+    assert len(expected.t_ns) > 300
+    assert [key for key, values in found.items() if not same(values, expected.signals[key])] == []
+
+
+def test_the_container_of_fmi_2_gives_them(containers, recording):
+    model = one_model(CASE)
+    order = [item.name for item in variables(model.outputs) if model.shows(item.name)]
+    with Host(containers[2]) as host:
+        host.initialize()
+        rows = [host.outputs()]
+        for k in range(len(recording.t_ns) - 1):
+            assert host.step(k * CASE.step, CASE.step) == OK
+            rows.append(host.outputs())
+        assert host.log == []
+    found = dict(zip(order, np.array(rows, dtype=float).T, strict=True))
+    assert len(found) > 50
+    assert [key for key, values in found.items() if not same(values, recording.signals[key])] == []
+
+
+def test_the_container_of_fmi_3_gives_them(containers, recording, tmp_path):
+    model = one_model(CASE)
+    params = np.array(flatten(model.first_params()), dtype=float)
+    inputs = np.zeros((len(recording.t_ns), len(variables(model.inputs))))
+    rows = Fmi3(model, containers[3], tmp_path)(params, inputs, STEP)
+    found = dict(zip(names(model.outputs), rows.T, strict=True))
+    assert [key for key, values in found.items() if not same(values, recording.signals[key])] == []
+
+
+def test_its_python_gives_the_bits_of_its_c_at_steps_of_any_length():
+    """Steps within, on and across the exchanges."""
+    model, played = pair(STEP)
+    params = with_values(model.params, {f"vehicle.{key}": value for key, value in CASE.given("vehicle").items()})
+    (state, outputs), inputs = model.initialize(params), model.inputs()
+    library, memory = played.library, np.zeros(1_000_000, dtype=np.uint8)
+    told, given = np.empty(played.count), np.array(flatten(inputs), dtype=float)
+    flat = np.array(flatten(params), dtype=float)
+    library.model_start(memory.ctypes.data, flat.ctypes.data, told.ctypes.data)
+    for dt_ns in ODD:
+        assert same(told, np.array(flatten(outputs), dtype=float))
+        state, outputs = model.step(state, inputs, params, dt_ns)
+        library.model_step(memory.ctypes.data, given.ctypes.data, told.ctypes.data, dt_ns)
+    assert same(told, np.array(flatten(outputs), dtype=float))
+    assert state.to_exchange_ns == STEP - sum(ODD) % STEP
+
+
+def test_a_state_saved_between_two_exchanges_continues_to_the_same_bits(containers):
+    with Host(containers[2]) as host, Host(containers[2]) as other:
+        host.initialize()
+        for k in range(100):
+            assert host.step(k * 0.007, 0.007) == OK
+        content = host.fmu.serializeFMUstate(host.fmu.getFMUstate())
+        other.fmu.setFMUstate(other.fmu.deSerializeFMUstate(content))
+        for k in range(100, 200):
+            assert host.step(k * 0.007, 0.007) == other.step(k * 0.007, 0.007) == OK
+        assert host.outputs() == other.outputs()
+
+
+# What an importer sees
+
+
+@pytest.mark.parametrize("fmi", [2, 3])
+def test_checkers_find_nothing(containers, fmi):
+    assert validate_fmu(str(containers[fmi])) == []
+    command = [Path(sys.executable).parent / "fmutool", "-input", containers[fmi], "-check"]
+    done = subprocess.run(command, capture_output=True, text=True, check=True)
+    assert "ERROR" not in done.stdout + done.stderr
+
+
+def test_it_has_units_licence_parameters_and_its_own_reference_result(containers, recording, tmp_path):
+    description = fmpy.read_model_description(str(containers[2]))
+    known = {v.name: v for v in description.modelVariables}
+    assert description.license == "MIT"
+    assert description.modelName == "Parking_guo2015_case4_105"
+    assert description.description == CASE.title
+    assert description.defaultExperiment.stopTime == str(CASE.stop_time)
+    assert known["vehicle.pose.x"].unit == "m"
+    assert known["controller.ntbpt.k1"].variability == "tunable"
+    assert known["controller.lateral_error"].causality == "local"
+    assert known["controller.phase"].variability == "discrete"
+    assert "controller.apa.drive.k1" not in known, "of another system"
+    assert float(known["controller.target.x"].start) == CASE.target.x
+    inputs = [v.name for v in description.modelVariables if v.causality == "input"]
+    assert {name.rpartition(".")[0] for name in inputs} == {"vehicle.person"}, "what neither feeds"
+    fmpy.extract(str(containers[2]), str(tmp_path))
+    assert [path.name for path in (tmp_path / "binaries").iterdir()] == [this_platform()]
+    (table,) = tmp_path.glob("extra/*/*_out.csv")
+    rows = fmpy.util.read_csv(table)
+    every = round(rows["time"][1] / CASE.step)
+    expected = recording.signals["vehicle.pose.x"][::every]
+    assert same(rows["vehicle.pose.x"][: len(expected)], expected)
+
+
+def test_initial_dependencies_are_those_of_the_parts():
+    model = one_model(CASE)
+    found, of_vehicle = initial_dependencies(model), initial_dependencies(VEHICLE)
+    assert found["vehicle.pose.x"] == [f"vehicle.{name}" for name in of_vehicle["pose.x"]] != []
+    assert found.keys() == {item.name for item in shown_variables(model) if item.initial == "calculated"}
+
+
+def test_a_parameter_changes_what_it_changes_in_the_pair(containers):
+    with Host(containers[2]) as host, Host(containers[2]) as other:
+        host.initialize()
+        other.initialize(**{"vehicle.driver.profile[1].speed": 0.3})
+        for k in range(600):
+            assert host.step(k * 0.01, 0.01) == other.step(k * 0.01, 0.01) == OK
+        assert other.get(["vehicle.distance"])[0] < 0.8 * host.get(["vehicle.distance"])[0]
+
+
+# What is chosen
+
+
+def test_inputs_parameters_and_outputs_are_chosen_by_patterns():
+    model = one_model(CASE, ["vehicle.driver.*"], ["vehicle.prompt", "controller.driver_takeover"], ["*.pose.*"])
+    ports = {}
+    for item in shown_variables(model):
+        ports.setdefault(item.causality, []).append(item.name)
+    own = [name for name in ports["input"] if not name.startswith("vehicle.person.")]
+    assert own == ["vehicle.prompt", "controller.driver_takeover"]
+    assert ports["output"] == ["vehicle.pose.x", "vehicle.pose.y", "vehicle.pose.heading"]
+    assert {name.split(".")[1] for name in ports["parameter"]} == {"driver"}
+    with pytest.raises(BadInput, match=r"no signal fits; did you mean vehicle\.prompt"):
+        one_model(CASE, None, ["vehicle.promt"], None)
+
+
+def test_an_input_left_open_is_what_the_tool_says(tmp_path):
+    out = tmp_path / "open.fmu"
+    assert main(["export", "container", CASE.name, "--input", "vehicle.prompt", "--out", str(out)]) == 0
+    assert validate_fmu(str(out)) == []
+    with Host(out) as host:
+        host.initialize()
+        for k in range(400):
+            host.set({"vehicle.prompt": 1 if k >= 200 else 3})
+            assert host.step(k * 0.01, 0.01) == OK
+            if k == 199:
+                moving = abs(host.get(["vehicle.speed"])[0])
+        assert moving > 0.3
+        assert host.get(["vehicle.speed"])[0] == 0.0, "told to stop, whatever the controller says"

@@ -4,6 +4,7 @@ import argparse
 from pathlib import Path
 
 from orchestrator.log.recover import recover
+from orchestrator.text.console import say
 
 EXAMPLES = """examples:
   apa recover runs/guo2015-case4/run.mcap.part
@@ -16,8 +17,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Write the mended log and print what is in it. Returns 0."""
+    """Write the mended log and print what is in it and what is lost. Returns 0."""
     found = recover(arguments.file)
-    whole = "was whole already" if found.complete else "all but the unfinished last chunk"
-    print(f"{found.path}: {found.messages} messages up to {found.last_ns / 1e9:.2f} s ({whole})")
+    content = f"{found.messages} messages up to {found.last_ns / 1e9:.2f} s"
+    if found.path == arguments.file:
+        print(f"{found.path}: is whole, {content}; nothing to mend")
+        return 0
+    for text in found.lost:
+        say(f"apa: lost: {text}")
+    print(f"{found.path}: {content} ({'all that was there' if found.complete else 'all that is whole'})")
     return 0

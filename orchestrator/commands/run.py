@@ -18,7 +18,8 @@ EXAMPLES = """examples:
   apa run guo2015-case4 --controller their.fmu --set controller.their_gain=2
   apa run guo2015-case4 --set stop_time=30 --fmus none --out /tmp/trial --json
 
-writes DIR/run.mcap, DIR/summary.json, DIR/overview.png and DIR/report.html (the replay)
+writes DIR/run.mcap, DIR/summary.json, DIR/overview.png and DIR/report.html (the replay); the first two
+if it is interrupted
 """
 
 
@@ -50,13 +51,14 @@ def run(arguments: argparse.Namespace) -> int:
     ran = drive(scenario, arguments.fmus, out / LOG, foreign)
     summary = summarize(ran.recording, scenario, ran.wall_time)
     text = write_summary(out, summary)
-    if not arguments.no_page:
+    interrupted = ran.end.reason == "interrupted"
+    if not arguments.no_page and not interrupted:
         write_pages(out, ran.recording, summary, scenario)
     if arguments.json:
         print(text)
     else:
         print_summary(summary, scenario.title, scenario.expect)
         print(f"results in {out}")
-    if ran.end.reason == "interrupted":
+    if interrupted:
         return INTERRUPTED
     return PARKED if summary.is_done else NOT_PARKED

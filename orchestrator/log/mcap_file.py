@@ -53,6 +53,7 @@ class McapFile:
         self.open = True
         self._file: Any = self.part.open("wb", buffering=0)
         self._size = 0
+        self._crc = 0
         self._schemas: list[Schema] = []
         self._channels: list[Channel] = []
         self._counts: dict[int, int] = {}
@@ -123,7 +124,7 @@ class McapFile:
             return
         self.open = False
         self.flush()
-        self._write(_bytes(DataEnd(data_section_crc=0)))
+        self._write(_bytes(DataEnd(data_section_crc=self._crc)))
         self._write_summary()
         self._file.close()
         os.replace(self.part, self.path)
@@ -133,6 +134,7 @@ class McapFile:
         while len(view):
             view = view[self._file.write(view) :]
         self._size += len(data)
+        self._crc = zlib.crc32(data, self._crc)
 
     def _add(self, record: bytes) -> None:
         self._parts.append(record)

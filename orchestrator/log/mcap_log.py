@@ -6,7 +6,6 @@ Channels: ``/vehicle``, ``/controller`` (outputs as they are, inputs as they wer
 the file depends on the clock on the wall, so the same run gives the same bytes.
 """
 
-import json
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -26,7 +25,7 @@ from orchestrator.cosim.slave import Array, Ports, Slave, all_values, places_of
 from orchestrator.drawing import scene
 from orchestrator.log.mcap_file import CHUNK_SIZE, MESSAGE_HEADER, McapFile
 from orchestrator.log.protobuf_rows import Encoder
-from orchestrator.log.read_log import VARIABLES
+from orchestrator.log.read_log import VARIABLES, with_checksum
 from orchestrator.log.schema import PACKAGE, descriptor_set, file_descriptor
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.verdict.geometry import Car, boxes, described, kerbs, sample_path, slot_box
@@ -64,7 +63,7 @@ class McapLog:
 
     def __init__(self, path: Path, slaves: list[Slave], scenario: Scenario, info: dict[str, Any]) -> None:
         self._file = McapFile(path)
-        self._file.metadata("apa", {key: json.dumps(value) for key, value in info.items()})
+        self._file.metadata("apa", with_checksum(info))
         places = places_of(slaves)
         self._channels = [_SlaveChannel(self._file, slave, places[2 * k : 2 * k + 2]) for k, slave in enumerate(slaves)]
         self._log = self._file.known_channel("/log", Log)
@@ -103,7 +102,7 @@ class McapLog:
         self._write_rows()
         for pictures in self._pictures:
             pictures.closed(end.t_ns)
-        self._file.metadata("end", {"reason": json.dumps(end.reason), "t_ns": json.dumps(end.t_ns)})
+        self._file.metadata("end", with_checksum({"reason": end.reason, "t_ns": end.t_ns}))
         self._file.close()
 
     def _write_rows(self) -> None:

@@ -1,35 +1,70 @@
 """A log file back as a ``Recording``: every signal an array by its flat name."""
 
 import json
+import struct
+import zlib
 from enum import IntEnum
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
-from mcap.exceptions import McapError
-from mcap.reader import make_reader
-from mcap.writer import MCAP0_MAGIC
+from mcap.opcode import Opcode
+from mcap.records import Channel, Metadata
 
 from modelkit.signal import Signal
 from modelkit.variables import Variable
 from orchestrator.cosim.recording import Recording
 from orchestrator.log.protobuf_rows import Decoder
+from orchestrator.log.records import MESSAGE, Damage, Piece, checked, file_bytes, parsed, top_records
+from orchestrator.text.console import say
 from orchestrator.text.errors import BadInput
 
 KINDS: dict[str, type] = {"float": float, "int": int, "bool": bool}
 VARIABLES = "variables"
 """Channel metadata that describes a message made from the variables of a slave."""
+CHECKSUM = "checksum"
+"""Key of a metadata record: the checksum of its other values."""
+RECOVERED = "recovered"
+"""Metadata record that says what a mended log lacks."""
+NO_MEANING = (ValueError, KeyError, TypeError, IndexError, AttributeError, OverflowError, RecursionError, struct.error)
+
+
+class Log(NamedTuple):
+    """What is in a log, before it is understood."""
+
+    channels: dict[int, Any]
+    times: dict[str, list[int]]
+    """Topic -> times of its messages [ns]."""
+    messages: dict[str, list[bytes]]
+    metadata: dict[str, dict[str, str]]
 
 
 def read_log(path: Path) -> Recording:
     """Return what is in the log at ``path``. Raises ``BadInput`` if it is not a complete log of ours."""
+    log = open_log(path)
     try:
-        with path.open("rb") as stream:
-            return _read(make_reader(stream), path)
-    except OSError as error:
-        raise BadInput(f"cannot be read: {error.strerror}", file=path) from error
-    except McapError as error:
-        raise why_unread(path, error) from error
+        recording = _recording(log, path)
+    except BadInput:
+        raise
+    except NO_MEANING as error:
+        raise BadInput(f"is not laid out as apa writes it ({type(error).__name__}: {error})", file=path) from error
+    lacks = recording.info.get(RECOVERED, {}).get("lacks")
+    if lacks:
+        say(f"apa: warning: {path}: is a mended log; it lacks {lacks}")
+    return recording
+
+
+def open_log(path: Path) -> Log:
+    """Return the messages and metadata of a log. Raises ``BadInput`` for a damaged one, with the place."""
+    data = file_bytes(path)
+    try:
+        pieces, sure = checked(data)
+        log = _sorted_out(pieces)
+    except Damage as damage:
+        raise BadInput(f"is not a complete log ({damage}); try: apa recover {path}", file=path) from damage
+    if not sure:
+        say(f"apa: warning: {path}: has no checksum over all of it; a damage in it may go unseen")
+    return log
 
 
 def log_file(text: str) -> Path:
@@ -41,45 +76,53 @@ def log_file(text: str) -> Path:
     return part if part.is_file() and not whole.is_file() else whole
 
 
-def why_unread(path: Path, error: McapError) -> BadInput:
-    """Return why the file at ``path`` is no complete log, with what helps if it is one of ours that was cut."""
-    with path.open("rb") as stream:
-        if stream.read(len(MCAP0_MAGIC)) != MCAP0_MAGIC:
-            return BadInput("is no MCAP log", file=path)
-    return BadInput(f"is not a complete log ({error}); try: apa recover {path}", file=path)
-
-
 def read_info(path: Path) -> dict[str, Any]:
     """Return what a log says of its scenario, FMUs, seed and versions; empty if it is no complete log."""
     try:
-        with path.open("rb") as stream:
-            records = {item.name: item.metadata for item in make_reader(stream).iter_metadata()}
-    except (OSError, McapError):
+        pieces = top_records(file_bytes(path))
+        found = {item.name: item.metadata for item in (_metadata(piece) for piece in pieces) if item is not None}
+        return without_checksum("apa", found.get("apa", {}))
+    except (BadInput, Damage, *NO_MEANING):
         return {}
-    return {key: json.loads(value) for key, value in records.get("apa", {}).items()}
 
 
-def _read(reader: Any, path: Path) -> Recording:
-    times: dict[str, list[int]] = {}
-    messages: dict[str, list[bytes]] = {}
-    variables: dict[str, list[Variable]] = {}
-    for _, channel, message in reader.iter_messages():
-        if VARIABLES in channel.metadata:
-            if channel.topic not in variables:
-                variables[channel.topic] = from_json(channel.metadata[VARIABLES])
-            times.setdefault(channel.topic, []).append(message.log_time)
-            messages.setdefault(channel.topic, []).append(message.data)
-    info: dict[str, Any] = {}
-    for record in reader.iter_metadata():
-        info[record.name] = {key: json.loads(value) for key, value in record.metadata.items()}
+def _metadata(piece: Piece) -> Any:
+    return parsed(Metadata, piece) if piece.opcode == Opcode.METADATA else None
+
+
+def _sorted_out(pieces: list[Piece]) -> Log:
+    log = Log({}, {}, {}, {})
+    for piece in pieces:
+        if piece.opcode == Opcode.MESSAGE:
+            if len(piece.body) < MESSAGE.size:
+                raise Damage(piece.at, "a message is too short")
+            number, _, time, _ = MESSAGE.unpack_from(piece.body)
+            if number not in log.channels:
+                raise Damage(piece.at, "a message has no channel")
+            topic = log.channels[number].topic
+            log.times.setdefault(topic, []).append(time)
+            log.messages.setdefault(topic, []).append(bytes(piece.body[MESSAGE.size :]))
+        elif piece.opcode == Opcode.CHANNEL:
+            channel = parsed(Channel, piece)
+            log.channels[channel.id] = channel
+        elif piece.opcode == Opcode.METADATA:
+            record = parsed(Metadata, piece)
+            log.metadata[record.name] = record.metadata
+    return log
+
+
+def _recording(log: Log, path: Path) -> Recording:
     signals: dict[str, Any] = {}
     parameters: dict[str, float] = {}
     known: dict[str, Variable] = {}
-    clock: list[int] = []
-    for topic, rows in messages.items():
-        owner, is_parameter = topic.strip("/").partition("/")[::2]
-        values = Decoder(variables[topic]).decode(rows, path)
-        for place, variable in enumerate(variables[topic]):
+    clocks: list[list[int]] = []
+    for channel in log.channels.values():
+        if VARIABLES not in channel.metadata or channel.topic not in log.messages:
+            continue
+        owner, is_parameter = channel.topic.strip("/").partition("/")[::2]
+        variables = from_json(channel.metadata[VARIABLES])
+        values = Decoder(variables).decode(log.messages[channel.topic], path)
+        for place, variable in enumerate(variables):
             name = f"{owner}.{variable.name}"
             known[name] = variable
             if is_parameter:
@@ -87,8 +130,32 @@ def _read(reader: Any, path: Path) -> Recording:
             else:
                 signals[name] = values[:, place]
         if not is_parameter:
-            clock = times[topic]
-    return Recording(np.array(clock, dtype=np.int64), signals, parameters, known, {**info.pop("apa", {}), **info})
+            clocks.append(log.times[channel.topic])
+    if any(clock != clocks[0] for clock in clocks):
+        raise BadInput("its slaves have been seen at different times", file=path)
+    clock = np.array(clocks[0] if clocks else [], dtype=np.int64)
+    if (np.diff(clock) <= 0).any():
+        raise BadInput("its times do not rise", file=path)
+    info = {name: without_checksum(name, values) for name, values in log.metadata.items()}
+    return Recording(clock, signals, parameters, known, {**info.pop("apa", {}), **info})
+
+
+def with_checksum(values: dict[str, Any]) -> dict[str, str]:
+    """Return metadata as JSON texts with a checksum over them, for a reader of what is left of a damaged file."""
+    texts = {key: json.dumps(value) for key, value in values.items()}
+    return {**texts, CHECKSUM: str(_checksum(texts))}
+
+
+def without_checksum(name: str, texts: dict[str, str]) -> dict[str, Any]:
+    """Return the values of metadata. Raises ``BadInput`` if they are not those that the checksum was made of."""
+    own = {key: text for key, text in texts.items() if key != CHECKSUM}
+    if CHECKSUM in texts and texts[CHECKSUM] != str(_checksum(own)):
+        raise BadInput(f"the metadata {name} are damaged")
+    return {key: json.loads(text) for key, text in own.items()}
+
+
+def _checksum(texts: dict[str, str]) -> int:
+    return zlib.crc32(json.dumps(texts, sort_keys=True).encode())
 
 
 def from_json(text: str) -> list[Variable]:
@@ -97,7 +164,7 @@ def from_json(text: str) -> list[Variable]:
     for row in json.loads(text):
         states = _enum(row["states"]) if row["states"] else None
         signal = Signal(row["unit"], row["text"], states=states)
-        result.append(Variable(row["name"], KINDS[row["type"]], signal, KINDS[row["type"]]()))
+        result.append(Variable(str(row["name"]), KINDS[row["type"]], signal, KINDS[row["type"]]()))
     return result
 
 

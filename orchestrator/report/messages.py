@@ -4,10 +4,9 @@ from pathlib import Path
 from typing import NamedTuple
 
 from foxglove_schemas_protobuf.Log_pb2 import Log
-from mcap.exceptions import McapError
-from mcap.reader import make_reader
+from google.protobuf.message import DecodeError
 
-from orchestrator.log.read_log import why_unread
+from orchestrator.log.read_log import open_log
 from orchestrator.text.errors import BadInput
 
 LEVELS = {0: "unknown", 1: "debug", 2: "info", 3: "warning", 4: "error", 5: "fatal"}
@@ -27,15 +26,13 @@ class Line(NamedTuple):
 
 def read_messages(path: Path) -> list[Line]:
     """Return the messages in the log at ``path``, in order. Raises ``BadInput`` if it cannot be read."""
+    log = open_log(path)
     lines = []
-    try:
-        with path.open("rb") as stream:
-            for _, _, message in make_reader(stream).iter_messages(topics=[TOPIC]):
-                entry = Log.FromString(message.data)
-                level = LEVELS.get(int(entry.level), "unknown")
-                lines.append(Line(message.log_time / 1e9, level, entry.name, entry.message))
-    except OSError as error:
-        raise BadInput(f"cannot be read: {error.strerror}", file=path) from error
-    except McapError as error:
-        raise why_unread(path, error) from error
+    for t_ns, data in zip(log.times.get(TOPIC, ()), log.messages.get(TOPIC, ()), strict=True):
+        try:
+            entry = Log.FromString(data)
+        except DecodeError as error:
+            raise BadInput(f"has a message that is none ({error})", file=path) from error
+        level = LEVELS.get(int(entry.level), "unknown")
+        lines.append(Line(t_ns / 1e9, level, entry.name, entry.message))
     return lines

@@ -49,6 +49,7 @@ def test_all_whole_chunks_come_back_wherever_it_is_cut(whole: Path, tmp_path: Pa
     for cut in [ends[2], ends[2] + 1, (ends[2] + ends[3]) // 2, ends[3] - 1, ends[-1] + 40]:
         part = tmp_path / "run.mcap.part"
         part.write_bytes(data[:cut])
+        (tmp_path / "run.mcap").unlink(missing_ok=True)
         found = recover(part)
         assert found.path == tmp_path / "run.mcap"
         assert not found.complete
@@ -70,29 +71,77 @@ def test_more_of_the_file_never_means_less_of_the_log(whole: Path, tmp_path: Pat
     assert counts == sorted(set(counts))
 
 
-def test_a_broken_chunk_ends_the_mended_log(whole: Path, tmp_path: Path) -> None:
-    data, ends = bytearray(whole.read_bytes()), chunk_ends(whole)
-    data[ends[2] + 200] ^= 0xFF
-    broken = tmp_path / "run.mcap"
-    broken.write_bytes(data)
+def flipped(whole: Path, folder: Path, byte: int) -> Path:
+    data = bytearray(whole.read_bytes())
+    data[byte] ^= 0xFF
+    path = folder / "run.mcap"
+    path.write_bytes(data)
+    return path
+
+
+def test_what_stands_behind_a_broken_chunk_is_kept(whole: Path, tmp_path: Path) -> None:
+    ends = chunk_ends(whole)
+    broken = flipped(whole, tmp_path, ends[2] + 200)
+    with pytest.raises(BadInput, match=rf"byte {ends[2]}: .*try: apa recover"):
+        read_log(broken)
     found = recover(broken)
     assert found.path == tmp_path / "run.recovered.mcap"
-    assert 0 < len(read_log(found.path).t_ns) < len(read_log(whole).t_ns)
+    assert found.lost[0].startswith(f"byte {ends[2]}: ")
+    after, before = read_log(found.path).t_ns, read_log(whole).t_ns
+    assert after[-1] == before[-1]
+    assert 0 < len(after) < len(before)
 
 
-def test_a_whole_log_stays_whole(whole: Path, tmp_path: Path) -> None:
+def test_a_mended_log_says_what_it_lacks(whole: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    found = recover(flipped(whole, tmp_path, chunk_ends(whole)[2] + 200))
+    read_log(found.path)
+    assert "is a mended log; it lacks byte" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("shift", [1, 5, 8])
+def test_a_broken_length_costs_one_chunk(whole: Path, tmp_path: Path, shift: int) -> None:
+    found = recover(flipped(whole, tmp_path, chunk_ends(whole)[2] + shift))
+    after, before = read_log(found.path).t_ns, read_log(whole).t_ns
+    assert after[-1] == before[-1]
+    assert len(found.lost) >= 1
+    assert len(after) > len(before) / 2
+
+
+def test_a_whole_log_is_left_as_it_is(whole: Path, tmp_path: Path) -> None:
     copy = tmp_path / "run.mcap"
     copy.write_bytes(whole.read_bytes())
     found = recover(copy)
     assert found.complete
-    assert read_log(found.path).t_ns.tolist() == read_log(whole).t_ns.tolist()
+    assert found.path == copy
+    assert [item.name for item in tmp_path.iterdir()] == ["run.mcap"]
+
+
+def test_nothing_is_overwritten(whole: Path, tmp_path: Path) -> None:
+    data = whole.read_bytes()
+    (tmp_path / "run.mcap").write_bytes(data)
+    (tmp_path / "run.mcap.part").write_bytes(data[: len(data) // 2])
+    names = [recover(tmp_path / "run.mcap.part").path.name for _ in range(2)]
+    assert names == ["run.recovered.mcap", "run.recovered-2.mcap"]
+    assert (tmp_path / "run.mcap").read_bytes() == data
+
+
+def test_no_single_flipped_bit_is_believed(whole: Path, tmp_path: Path) -> None:
+    data = whole.read_bytes()
+    path = tmp_path / "run.mcap"
+    places = {*range(0, 80), *range(len(data) - 120, len(data)), *range(80, len(data), len(data) // 100)}
+    for place in sorted(places):
+        wrong = bytearray(data)
+        wrong[place] ^= 1 << place % 8
+        path.write_bytes(wrong)
+        with pytest.raises(BadInput):
+            read_log(path)
 
 
 @pytest.mark.parametrize("content", [b"", b"no log", b"\x89MCAP0\r\n"])
 def test_nothing_to_recover_is_explained(tmp_path: Path, content: bytes) -> None:
     path = tmp_path / "run.mcap.part"
     path.write_bytes(content)
-    with pytest.raises(BadInput, match=r"run\.mcap\.part: (is not an MCAP file|holds no complete chunk)"):
+    with pytest.raises(BadInput, match=r"run\.mcap\.part: (is no MCAP log|holds no complete chunk)"):
         recover(path)
     assert [item.name for item in tmp_path.iterdir()] == ["run.mcap.part"]
     with pytest.raises(BadInput, match="no such file"):

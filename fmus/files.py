@@ -127,7 +127,7 @@ def _own_room() -> Path:
         parent = _plain_parent()
         _remove_forsaken(parent)
         folder = Path(tempfile.mkdtemp(prefix=ROOM, dir=parent))
-        _room = folder, _hold(folder)
+        _room = folder, hold(folder)
         atexit.register(remove_all_folders)
     return _room[0]
 
@@ -148,21 +148,26 @@ def _remove_forsaken(parent: Path) -> None:
         with suppress(OSError):
             state = folder.lstat()
             if not folder.is_symlink() and state.st_uid == os.getuid() and time.time() - state.st_ctime > YOUNG:
-                handle = _hold(folder)
+                handle = hold(folder)
                 remove_folder(folder)
                 os.close(handle)
 
 
-def _hold(folder: Path) -> int:
-    """Return a handle with the lock on ``folder``, which dies with the process. Raises ``OSError`` if it is held."""
+def hold(folder: Path) -> int:
+    """Return a handle with the lock on ``folder``, which dies with the process.
+
+    Raises ``BlockingIOError`` if somebody has it. Where folders cannot be locked, nobody has.
+    """
     if os.name != "posix":
         return os.open(os.devnull, os.O_RDONLY)
     import fcntl
 
-    handle = os.open(folder, os.O_RDONLY | os.O_DIRECTORY | os.O_NOFOLLOW)
+    handle = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
     try:
         fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except OSError:
+    except BlockingIOError:
         os.close(handle)
         raise
+    except OSError:
+        pass
     return handle

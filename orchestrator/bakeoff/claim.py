@@ -12,6 +12,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 from orchestrator.bakeoff.figure import COLOURS
+from orchestrator.drawing.save import save
 from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.scenario.requirements import shipped_requirements
 from orchestrator.scenario.scenario import Scenario
@@ -150,7 +151,7 @@ def draw(columns: Mapping[str, Any], file: Path) -> Path:
     axis.legend(frameon=False, loc="lower left", bbox_to_anchor=(0.0, 0.08))
     axis.grid(alpha=0.25, linewidth=0.6)
     axis.spines[["top", "right"]].set_visible(False)
-    figure.savefig(file, dpi=110)
+    save(figure, file, dpi=110)
     plt.close(figure)
     return file
 

@@ -13,6 +13,7 @@ from matplotlib.patches import Rectangle
 
 from orchestrator.bakeoff.drives import REFUSED, Drive, exact_limits
 from orchestrator.bakeoff.entries import CONTROLLERS, SLOTS
+from orchestrator.drawing.save import save
 
 COLOURS = {"ntbptcwpt": "#1f5fbf", "ntbpt": "#7fa8dd", "zhang2022": "#d1602a", "hsic": "#2b8a5a", "apa": "#8a4fa8"}
 BAR = 0.16
@@ -39,8 +40,7 @@ def draw(found: list[Drive], file: Path) -> Path:
         axis.grid(alpha=0.25, linewidth=0.6)
         axis.set_axisbelow(True)
         axis.spines[["top", "right"]].set_visible(False)
-    file.parent.mkdir(parents=True, exist_ok=True)
-    figure.savefig(file, dpi=110)
+    save(figure, file, dpi=110)
     plt.close(figure)
     return file
 

@@ -8,6 +8,7 @@ from orchestrator.report.messages import read_messages
 from orchestrator.report.replay import write_replay
 from orchestrator.text.console import say
 from orchestrator.text.errors import PARKED
+from orchestrator.text.owned import owned_with
 from orchestrator.verdict.logged import logged
 from orchestrator.verdict.summary import summarize
 
@@ -29,11 +30,11 @@ def run(arguments: argparse.Namespace) -> int:
     """Write the page. Returns 0."""
     log: Path = arguments.log
     out: Path = arguments.out or log.parent / "report.html"
-    recording = read_log(log)
-    scenario, note = logged(recording, str(log), log.stem)
-    if note:
-        say(note)
-    out.parent.mkdir(parents=True, exist_ok=True)
-    write_replay(out, recording, summarize(recording, scenario, 0.0, note), read_messages(log))
+    with owned_with(log, out):
+        recording = read_log(log)
+        scenario, note = logged(recording, str(log), log.stem)
+        if note:
+            say(note)
+        write_replay(out, recording, summarize(recording, scenario, 0.0, note), read_messages(log))
     print(out)
     return PARKED

@@ -4,6 +4,7 @@ import argparse
 import json
 from pathlib import Path
 
+from fmus.files import write_whole
 from orchestrator.cosim.fmu_files import KINDS, default_kind, fmu_files
 from orchestrator.papers.drive import drive
 from orchestrator.papers.papers import paper, papers
@@ -11,6 +12,7 @@ from orchestrator.papers.result import Drive, Driven
 from orchestrator.papers.table import print_reproduction
 from orchestrator.text.console import say
 from orchestrator.text.errors import NOT_PARKED, PARKED
+from orchestrator.text.owned import owned
 
 EXAMPLES = """examples:
   apa reproduce guo2015                 the five cases at both steering rates, beside the paper
@@ -43,10 +45,10 @@ def run(arguments: argparse.Namespace) -> int:
         out: Path = arguments.out or Path("runs/reproduce") / name
         if arguments.out is not None and len(names) > 1:
             out = arguments.out / name
-        out.mkdir(parents=True, exist_ok=True)
-        result = function(out, drive)
-        text = json.dumps(result.as_json(), indent=2)
-        (out / "result.json").write_text(text + "\n", encoding="utf-8")
+        with owned(out):
+            result = function(out, drive)
+            text = json.dumps(result.as_json(), indent=2)
+            write_whole(out / "result.json", text + "\n")
         results.append(result)
         if not arguments.json:
             print_reproduction(result, out)

@@ -5,11 +5,13 @@ from pathlib import Path
 
 from orchestrator.cosim.fmu_files import KINDS, default_kind
 from orchestrator.report.results import LOG, write_pages, write_summary
+from orchestrator.scenario.scenario import Scenario
 from orchestrator.session.drive import drive
-from orchestrator.session.foreign import add_foreign_arguments, foreign_of, load_fitting
+from orchestrator.session.foreign import Foreign, add_foreign_arguments, foreign_of, load_fitting
 from orchestrator.session.terminal import print_summary
 from orchestrator.text.console import say
 from orchestrator.text.errors import INTERRUPTED, NOT_PARKED, PARKED
+from orchestrator.text.owned import owned
 from orchestrator.verdict.summary import summarize
 
 EXAMPLES = """examples:
@@ -48,6 +50,11 @@ def run(arguments: argparse.Namespace) -> int:
     if left_out:
         say(f"apa: warning: left out, the FMU does not have them: {', '.join(left_out)}")
     out: Path = arguments.out or Path("runs") / scenario.name
+    with owned(out):
+        return _run(arguments, scenario, foreign, out)
+
+
+def _run(arguments: argparse.Namespace, scenario: Scenario, foreign: Foreign, out: Path) -> int:
     ran = drive(scenario, arguments.fmus, out / LOG, foreign)
     summary = summarize(ran.recording, scenario, ran.wall_time)
     text = write_summary(out, summary)

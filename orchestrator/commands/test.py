@@ -3,7 +3,10 @@
 import argparse
 import json
 import shlex
+import time
+from collections.abc import Mapping
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 from orchestrator.cosim.fmu_files import KINDS, default_kind, fmu_files
@@ -13,10 +16,11 @@ from orchestrator.scenario.load_scenario import find_file
 from orchestrator.scenario.requirements import read_requirements
 from orchestrator.session.foreign import add_foreign_arguments, foreign_of
 from orchestrator.suite.collection import write_collection
-from orchestrator.suite.junit import write_junit
+from orchestrator.suite.junit import Suite, write_junit
 from orchestrator.suite.suite import Bench, Tested, chosen, run_test, tested_by
 from orchestrator.text.console import Meter, Warnings, console, say
-from orchestrator.text.errors import BAD_INPUT, INTERRUPTED
+from orchestrator.text.errors import INTERRUPTED
+from orchestrator.text.owned import owned
 
 EXAMPLES = """examples:
   apa test "guo2015-*" --out results
@@ -29,9 +33,11 @@ and units (one it does not say is taken as meant); parameters it does not have a
 are set like any other: --set controller.THEIRS=3.
 
 writes DIR/index.html, DIR/junit.xml and for each scenario DIR/NAME/run.mcap, summary.json and report.html
-exit codes: 0 all passed, 1 not, 2 bad input: a scenario, rule or FMU that cannot be read
+exit codes: 0 all passed, 1 not, 2 a scenario, rule or FMU that cannot be read, or a place that cannot be written,
+3 an internal error in one of them; JUnit is there from the start, with an error for what has not run
 """
 PASSED, FAILED = 0, 1
+NOT_RUN = "the test ended before this scenario was run"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -58,33 +64,64 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Run all, print a line for each. Returns 0 if all passed, 1 if not, 130 if interrupted."""
     out: Path = arguments.out
+    names = chosen(arguments.scenarios)
+    with owned(out):
+        return _run(arguments, names, Verdicts(arguments.junit or out / "junit.xml", out / "index.html", names))
+
+
+def _run(arguments: argparse.Namespace, names: list[str], verdicts: "Verdicts") -> int:
     interrupt = Interrupt()
     bench = _bench(arguments, interrupt)
-    names = chosen(arguments.scenarios)
-    tested: list[Tested] = []
+    tested = verdicts.tested
     with on_interrupt(interrupt), Meter("apa test", len(names), "scenarios") as meter:
         for name in names:
             if interrupt.requested:
                 break
             taken = [item.scenario.name for item in tested]
-            tested.append(run_test(name, arguments.set, bench, out, taken))
+            tested.append(run_test(name, arguments.set, bench, arguments.out, taken))
+            verdicts.write()
             meter.at(len(tested))
             if not arguments.json:
                 _print(tested[-1], f"{len(tested)} of {len(names)}")
-    about = tested_by(tested, shlex.join(["apa", *arguments.words]))
-    write_junit(arguments.junit or out / "junit.xml", [item.suite() for item in tested], about)
-    write_collection(out / "index.html", tested, about)
+        about = tested_by(tested, shlex.join(["apa", *arguments.words]))
+        verdicts.finish(about)
     passed = sum(item.passed for item in tested)
     if arguments.json:
         rows = [_row(item) for item in tested]
         print(json.dumps({"passed": passed == len(names), "about": about, "scenarios": rows}, indent=2))
     else:
-        console().print(f"{passed} of {len(names)} scenarios passed; results in {out}", markup=False, soft_wrap=True)
+        text = f"{passed} of {len(names)} scenarios passed; results in {arguments.out}"
+        console().print(text, markup=False, soft_wrap=True)
     if interrupt.requested:
         return INTERRUPTED
-    if any(item.bad_input for item in tested):
-        return BAD_INPUT
-    return PASSED if passed == len(names) else FAILED
+    worst = max(item.code for item in tested)
+    return worst or (PASSED if passed == len(names) else FAILED)
+
+
+class Verdicts:
+    """JUnit and page of a test: an older page is removed at once, and JUnit says from the start what is not yet run."""
+
+    PERIOD = 1.0
+    """Between two times that JUnit is written [s]."""
+
+    def __init__(self, junit: Path, index: Path, names: list[str]) -> None:
+        self.tested: list[Tested] = []
+        self._junit, self._index, self._names = junit, index, names
+        self._next = 0.0
+        self.write()
+        index.unlink(missing_ok=True)
+
+    def write(self, about: Mapping[str, str] = MappingProxyType({})) -> None:
+        """Write JUnit with an error for each scenario that has not run, now and then."""
+        if time.monotonic() >= self._next or about:
+            waiting = [Suite(Path(name).stem, [], 0.0, NOT_RUN) for name in self._names[len(self.tested) :]]
+            write_junit(self._junit, [*(item.suite() for item in self.tested), *waiting], about)
+            self._next = time.monotonic() + self.PERIOD
+
+    def finish(self, about: Mapping[str, str]) -> None:
+        """Write JUnit and the page."""
+        self.write(about)
+        write_collection(self._index, self.tested, about)
 
 
 def _bench(arguments: argparse.Namespace, interrupt: Interrupt) -> Bench:

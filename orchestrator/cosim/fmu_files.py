@@ -6,6 +6,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from fmus.files import write_whole
 from fmus.locks import one_at_a_time
 from fmus.native.compilers import can_compile as can_compile
 from modelkit.model import Model
@@ -33,7 +34,10 @@ def fmu_files(kind: str, say: Callable[[str], None] = lambda text: None) -> dict
     from fmus.places import DIST
 
     files = {name: DIST / kind / f"{model.name}.fmu" for name, model in MODELS.items()}
-    if not all(path.is_file() for path in files.values()) or _stamp(DIST / kind) != sources_hash():
+    before = _stamp(DIST / kind)
+    if before != stamp_of(files.values()):
+        if before.startswith(sources_hash()):
+            _remove_damaged(before, files.values())
         say(f"building {kind} FMUs{TAKES[kind]}")
         build(kind)
     return files
@@ -50,7 +54,9 @@ def build(kind: str, cc: str | None = None) -> list["Built"]:
                 master_library()
         before = sources_hash()
         built = build_into(DIST, kind, cc=cc)
-        (DIST / kind / STAMP).write_text(before, encoding="ascii")
+        write_whole(
+            DIST / kind / STAMP, stamp_of([DIST / kind / f"{model.name}.fmu" for model in MODELS.values()], before)
+        )
     return built
 
 
@@ -101,6 +107,19 @@ def sources_hash() -> str:
     return digest.hexdigest()
 
 
+def stamp_of(files: Iterable[Path], sources: str | None = None) -> str:
+    """Return the hash of the sources and that of each FMU made of them; empty for one that is missing."""
+    hashes = [hashlib.sha256(path.read_bytes()).hexdigest() if path.is_file() else "" for path in files]
+    return " ".join([sources or sources_hash(), *hashes])
+
+
+def _remove_damaged(stamp: str, files: Iterable[Path]) -> None:
+    """Remove the FMUs that are not those that were built."""
+    for path in files:
+        if path.is_file() and hashlib.sha256(path.read_bytes()).hexdigest() not in stamp.split():
+            path.unlink()
+
+
 def _stamp(folder: Path) -> str:
     stamp = folder / STAMP
-    return stamp.read_text(encoding="ascii") if stamp.is_file() else ""
+    return stamp.read_text(encoding="ascii", errors="replace") if stamp.is_file() else ""

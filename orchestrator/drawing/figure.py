@@ -12,6 +12,7 @@ from matplotlib.patches import Patch, Polygon
 
 from orchestrator.cosim.recording import Recording
 from orchestrator.cosim.slave import Array
+from orchestrator.drawing.save import save
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.text.quantities import DEGREE
 from orchestrator.text.readable import changes_text, shifts_text
@@ -84,7 +85,7 @@ OUTLINES = 14
 def draw(recording: Recording, summary: Summary, scenario: Scenario, path: Path) -> None:
     """Write the overview picture of a run to ``path``."""
     with mpl.rc_context(STYLE):
-        overview(recording, summary, scenario).savefig(path, dpi=120, metadata={"Software": "apa-cosim"})
+        save(overview(recording, summary, scenario), path, dpi=120, metadata={"Software": "apa-cosim"})
 
 
 def overview(recording: Recording, summary: Summary, scenario: Scenario) -> Figure:

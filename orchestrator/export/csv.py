@@ -4,8 +4,10 @@ import argparse
 import csv
 from pathlib import Path
 
+from fmus.files import whole
 from orchestrator.cosim.recording import Recording
 from orchestrator.log.read_log import log_file, read_log
+from orchestrator.text.owned import owned_with
 from orchestrator.text.patterns import matching
 
 EXAMPLES = """examples:
@@ -32,9 +34,10 @@ def add_run_arguments(parser: argparse.ArgumentParser, suffix: str) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Write the table. Returns 0."""
-    recording = read_log(arguments.log)
     out: Path = arguments.out or arguments.log.with_suffix(".csv")
-    write_csv(out, recording, matching(recording.signals, arguments.signals), arguments.names)
+    with owned_with(arguments.log, out):
+        recording = read_log(arguments.log)
+        write_csv(out, recording, matching(recording.signals, arguments.signals), arguments.names)
     print(out)
     return 0
 
@@ -52,7 +55,7 @@ def write_csv(path: Path, recording: Recording, names: list[str], words: bool) -
         else:
             columns.append([int(value) if value == value else value for value in values])
     units = [recording.variables[name].signal.unit for name in names]
-    with path.open("w", newline="", encoding="utf-8") as stream:
+    with whole(path) as part, part.open("w", newline="", encoding="utf-8") as stream:
         writer = csv.writer(stream)
         writer.writerow(["time", *names])
         writer.writerow(["s", *units])

@@ -7,10 +7,12 @@ from typing import Any
 
 import numpy as np
 
+from fmus.files import whole
 from orchestrator.cosim.recording import Recording
 from orchestrator.export.csv import add_run_arguments
 from orchestrator.log.read_log import read_log
 from orchestrator.text.errors import BadInput
+from orchestrator.text.owned import owned_with
 from orchestrator.text.patterns import matching
 
 EXAMPLES = """examples:
@@ -28,11 +30,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Write the file. Returns 0."""
-    recording = read_log(arguments.log)
     out: Path = arguments.out or arguments.log.with_suffix(".mf4")
     if out.suffix != ".mf4":
         raise BadInput("the name of an MDF 4 file ends in .mf4", file=out)
-    write_mf4(out, recording, matching(recording.signals, arguments.signals))
+    with owned_with(arguments.log, out):
+        recording = read_log(arguments.log)
+        write_mf4(out, recording, matching(recording.signals, arguments.signals))
     print(out)
     return 0
 
@@ -47,7 +50,8 @@ def write_mf4(path: Path, recording: Recording, names: list[str]) -> None:
     with MDF(version="4.10") as file:
         file.start_time = datetime.datetime(1970, 1, 1, tzinfo=datetime.UTC)
         file.append(signals, acq_name="apa-cosim", comment=str(recording.info.get("scenario", {}).get("name", "")))
-        file.save(path, overwrite=True)
+        with whole(path) as part:
+            file.save(part, overwrite=True)
 
 
 def _signal(kind: Any, recording: Recording, name: str) -> Any:

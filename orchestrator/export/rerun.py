@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from fmus.files import whole
 from modelkit.variables import Variable
 from orchestrator.cosim.recording import Recording
 from orchestrator.cosim.slave import Array
@@ -14,6 +15,7 @@ from orchestrator.log.read_log import read_log
 from orchestrator.report.messages import Line, read_messages
 from orchestrator.report.plots import GROUPS
 from orchestrator.text.errors import BadInput
+from orchestrator.text.owned import owned_with
 from orchestrator.text.patterns import matching
 from orchestrator.verdict.geometry import Car, boxes, described, place, sample_path, slot_box
 from orchestrator.verdict.logged import logged
@@ -38,10 +40,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Write the file. Returns 0."""
-    recording = read_log(arguments.log)
     out: Path = arguments.out or arguments.log.with_suffix(".rrd")
-    names = matching(recording.signals, arguments.signals)
-    write_rerun(out, recording, names, read_messages(arguments.log))
+    with owned_with(arguments.log, out):
+        recording = read_log(arguments.log)
+        names = matching(recording.signals, arguments.signals)
+        write_rerun(out, recording, names, read_messages(arguments.log))
     print(out)
     return 0
 
@@ -54,16 +57,17 @@ def write_rerun(path: Path, recording: Recording, names: list[str], words: list[
         raise BadInput("needs the package rerun-sdk: pip install 'apa-cosim[export]'") from None
     name = str(recording.info.get("scenario", {}).get("name", path.stem))
     stream = rr.RecordingStream(f"apa-cosim {name}", recording_id=path.stem)
-    stream.save(str(path), default_blueprint=blueprint(recording))
-    _still(rr, stream, recording)
-    _moving(rr, stream, recording)
-    for signal in names:
-        _curve(rr, stream, recording, signal)
-    for line in words:
-        stream.set_time(TIMELINE, duration=line.t)
-        stream.log("messages", rr.TextLog(f"{line.name}: {line.text}", level=_level(line.level)))
-    stream.flush()
-    stream.disconnect()
+    with whole(path) as part:
+        stream.save(str(part), default_blueprint=blueprint(recording))
+        _still(rr, stream, recording)
+        _moving(rr, stream, recording)
+        for signal in names:
+            _curve(rr, stream, recording, signal)
+        for line in words:
+            stream.set_time(TIMELINE, duration=line.t)
+            stream.log("messages", rr.TextLog(f"{line.name}: {line.text}", level=_level(line.level)))
+        stream.flush()
+        stream.disconnect()
 
 
 def blueprint(recording: Recording) -> Any:

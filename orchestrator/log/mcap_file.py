@@ -30,6 +30,8 @@ from mcap.writer import MCAP0_MAGIC
 from mcap_protobuf.schema import build_file_descriptor_set
 from numpy.typing import NDArray
 
+from orchestrator.log.made_of import clear
+
 CHUNK_SIZE = 256 * 1024
 LIBRARY = "apa-cosim"
 MESSAGE_HEADER = np.dtype(
@@ -127,12 +129,16 @@ class McapFile:
         self._write(_bytes(DataEnd(data_section_crc=self._crc)))
         self._write_summary()
         self._file.close()
+        clear(self.path)
         os.replace(self.part, self.path)
 
     def _write(self, data: bytes) -> None:
         view = memoryview(data)
-        while len(view):
-            view = view[self._file.write(view) :]
+        try:
+            while len(view):
+                view = view[self._file.write(view) :]
+        except OSError as error:
+            raise type(error)(error.errno, error.strerror, str(self.part)) from error
         self._size += len(data)
         self._crc = zlib.crc32(data, self._crc)
 

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
+from orchestrator.drawing.save import save
 from orchestrator.papers.result import Driven
 
 EVERY = 120
@@ -20,8 +21,7 @@ def draw_apa(parallel: Driven, perpendicular: Driven, path: Path) -> Path:
     for number, driven in enumerate((parallel, perpendicular), start=1):
         _draw(figure.add_subplot(2, 1, number), driven)
     figure.tight_layout()
-    path.parent.mkdir(parents=True, exist_ok=True)
-    figure.savefig(path, dpi=110)
+    save(figure, path, dpi=110)
     return path
 
 

@@ -10,6 +10,7 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 import numpy as np
 
+from orchestrator.drawing.save import save
 from orchestrator.papers.result import Driven
 
 COLOURS = ("#1f5fbf", "#d1602a", "#2b8a5a")
@@ -42,8 +43,7 @@ def draw_case(case: int, runs: list[Driven], file: Path) -> Path:
     figure.suptitle(f"Guo 2015, case {case}; crosses and dots as printed", fontsize=12, fontweight="bold")
     lines, names = axes[0, 0].get_legend_handles_labels()
     figure.legend(lines, names, loc="outside lower center", ncols=len(lines), frameon=False)
-    file.parent.mkdir(parents=True, exist_ok=True)
-    figure.savefig(file, dpi=110)
+    save(figure, file, dpi=110)
     plt.close(figure)
     return file
 

@@ -13,6 +13,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Polygon
 
 from controller_fmu.hsic.characteristic_states import Characteristic
+from orchestrator.drawing.save import save as save_picture
 from orchestrator.papers.result import Driven
 
 BLUE, ORANGE, GREEN, GREY = "#1f5fbf", "#d1602a", "#2b8a5a", "#888888"
@@ -114,7 +115,6 @@ def save(figure: Figure, file: Path) -> Path:
     for axis in figure.axes:
         axis.grid(alpha=0.25, linewidth=0.6)
         axis.spines[["top", "right"]].set_visible(False)
-    file.parent.mkdir(parents=True, exist_ok=True)
-    figure.savefig(file, dpi=110)
+    save_picture(figure, file, dpi=110)
     plt.close(figure)
     return file

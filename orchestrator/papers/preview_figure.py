@@ -11,6 +11,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from orchestrator.cosim.slave import Array
+from orchestrator.drawing.save import save
 from orchestrator.papers.result import Driven
 
 BLUE, ORANGE, GREEN, GREY = "#1f5fbf", "#d1602a", "#2b8a5a", "#888888"
@@ -94,7 +95,6 @@ def _save(figure: Figure, file: Path) -> Path:
     for axis in figure.axes:
         axis.grid(alpha=0.25, linewidth=0.6)
         axis.spines[["top"]].set_visible(False)
-    file.parent.mkdir(parents=True, exist_ok=True)
-    figure.savefig(file, dpi=110)
+    save(figure, file, dpi=110)
     plt.close(figure)
     return file

@@ -3,6 +3,7 @@
 from pathlib import Path
 from typing import Any
 
+from fmus.files import write_whole
 from orchestrator.comparison.compare import Comparison, Difference
 from orchestrator.cosim.recording import Recording
 from orchestrator.report.messages import Line
@@ -27,7 +28,7 @@ def write_overlay(
         text = _page(runs, words, found, most)
         if len(text.encode()) < LARGEST_PAGE:
             break
-    path.write_text(text, encoding="utf-8")
+    write_whole(path, text)
 
 
 def _page(runs: tuple[Recording, Recording], words: tuple[list[Line], list[Line]], found: Comparison, most: int) -> str:

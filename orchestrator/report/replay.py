@@ -5,6 +5,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+from fmus.files import write_whole
 from orchestrator.cosim.recording import Recording
 from orchestrator.report.messages import Line
 from orchestrator.report.page import page
@@ -29,7 +30,7 @@ KINDS = {"parked": "good", "finished": "good", "not_parked": "warn", "not_finish
 
 def write_replay(path: Path, recording: Recording, summary: Summary, words: list[Line]) -> None:
     """Write the page of a run to ``path``; fewer instants are kept if it would pass 1 MB."""
-    path.write_text(replay_page(recording, summary, words), encoding="utf-8")
+    write_whole(path, replay_page(recording, summary, words))
 
 
 def replay_page(recording: Recording, summary: Summary, words: list[Line]) -> str:

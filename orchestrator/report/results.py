@@ -3,6 +3,7 @@
 import json
 from pathlib import Path
 
+from fmus.files import write_whole
 from orchestrator.cosim.recording import Recording
 from orchestrator.report.messages import read_messages
 from orchestrator.report.replay import write_replay
@@ -16,7 +17,7 @@ LOG, SUMMARY, PICTURE, PAGE = "run.mcap", "summary.json", "overview.png", "repor
 def write_summary(folder: Path, summary: Summary) -> str:
     """Write summary.json; return its text."""
     text = json.dumps(summary.as_json(), indent=2, allow_nan=False)
-    (folder / SUMMARY).write_text(text + "\n", encoding="utf-8")
+    write_whole(folder / SUMMARY, text + "\n")
     return text
 
 

@@ -7,7 +7,7 @@ from orchestrator.cosim.interrupts import on_interrupt
 from orchestrator.cosim.master import End, Interrupt
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.session.foreign import Foreign
-from orchestrator.session.replaced import clear, replaced
+from orchestrator.session.replaced import replaced
 from orchestrator.session.session import NOBODY, Ran, run_scenario
 from orchestrator.text.console import Meter, Warnings, say
 
@@ -18,10 +18,9 @@ SHOWN_NS = 500_000_000
 def drive(scenario: Scenario, kind: str, log: Path, foreign: Foreign = NOBODY) -> Ran:
     """Return a run with FMUs of ``kind`` (``none``: models in process), which are built if need be.
 
-    ``foreign`` FMUs take the place of ours, or stand beside them.
+    ``foreign`` FMUs take the place of ours, or stand beside them. Whoever calls it owns the log's folder.
     """
     files = None if kind == "none" else fmu_files(kind, say)
-    log.parent.mkdir(parents=True, exist_ok=True)
     before = replaced(log, scenario)
     if before:
         say(f"apa: {before}")
@@ -37,9 +36,6 @@ def drive(scenario: Scenario, kind: str, log: Path, foreign: Foreign = NOBODY) -
             warn=Warnings(),
             foreign=foreign,
         )
-    gone = clear(log.parent)
-    if gone:
-        say(f"apa: removed {', '.join(gone)} of the run before")
     return ran
 
 

@@ -1,4 +1,4 @@
-"""What a run does to the folder of an earlier one: says what it replaces, and takes away what was made of that."""
+"""What a run says of an earlier one in its folder, which it replaces."""
 
 from pathlib import Path
 from typing import Any
@@ -7,8 +7,6 @@ from orchestrator.log.read_log import read_info
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.text.readable import WORDS
 
-MADE_OF_A_LOG = ("summary.json", "overview.png", "report.html", "run.csv", "run.mf4", "run.rrd")
-"""Files beside a log that tell what was in it, under the names that commands give them."""
 UNSEEN = (*WORDS, "changed", "base", "car", "expect")
 SHOWN = 4
 
@@ -25,14 +23,6 @@ def replaced(log: Path, scenario: Scenario) -> str:
     parts = [f"{name} {_text(old, name)} there, {_text(new, name)} here" for name in names[:SHOWN]]
     more = f"; and {len(names) - SHOWN} more" if len(names) > SHOWN else ""
     return f"{log.parent} has a run with other parameters, which this one replaces: {'; '.join(parts)}{more}"
-
-
-def clear(folder: Path) -> list[str]:
-    """Remove what was made of an earlier log in ``folder``; return the names of those that no run makes anew."""
-    found = [name for name in MADE_OF_A_LOG if (folder / name).is_file()]
-    for name in found:
-        (folder / name).unlink()
-    return [name for name in found if name.startswith("run.")]
 
 
 def _flat(data: dict[str, Any], prefix: str = "") -> dict[str, Any]:

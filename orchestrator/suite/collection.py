@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
+from fmus.files import write_whole
 from orchestrator.cosim.recording import Recording
 from orchestrator.cosim.slave import Array
 from orchestrator.report.page import still_page
@@ -38,8 +39,7 @@ def write_collection(path: Path, tested: list[Tested], about: Mapping[str, str])
     title = "Scenarios tested"
     facts = "".join(f"<dt>{html.escape(key)}</dt><dd>{html.escape(text)}</dd>" for key, text in about.items())
     body = BODY.format(title=title, facts=facts, verdict=f"{passed} of {len(tested)} passed", kind=kind, cards=cards)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text(still_page(title, body), encoding="utf-8")
+    write_whole(path, still_page(title, body))
 
 
 def _card(item: Tested) -> str:

@@ -7,6 +7,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import NamedTuple
 
+from fmus.files import whole
 from orchestrator.text.readable import readable
 from orchestrator.verdict.judge import NEVER, Check
 from orchestrator.verdict.limit_text import limit_text
@@ -97,8 +98,8 @@ def write_junit(path: Path, suites: list[Suite], about: Mapping[str, str] = Mapp
             _case(node, suite.name, case.name, kind, case.text)
     root.attrib.update(_counts(totals))
     ElementTree.indent(root)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    ElementTree.ElementTree(root).write(path, encoding="utf-8", xml_declaration=True)
+    with whole(path) as part:
+        ElementTree.ElementTree(root).write(part, encoding="utf-8", xml_declaration=True)
 
 
 def _counts(counts: list[int]) -> dict[str, str]:

@@ -14,10 +14,11 @@ from orchestrator.scenario.load_scenario import scenario_names
 from orchestrator.scenario.requirements import Requirement
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.session.foreign import Files, Foreign, load_fitting
-from orchestrator.session.replaced import clear
 from orchestrator.session.session import run_scenario, versions
 from orchestrator.suite.junit import Case, Suite, cases_of, told_apart
-from orchestrator.text.errors import BadInput
+from orchestrator.text.errors import PARKED, BadInput
+from orchestrator.text.failures import explained
+from orchestrator.text.owned import owned
 from orchestrator.text.readable import changes_text
 from orchestrator.verdict.judge import Check, judge
 from orchestrator.verdict.numbers import facts_of
@@ -40,8 +41,8 @@ class Tested(NamedTuple):
     """Why it could not be run or judged."""
     remarks: tuple[str, ...] = ()
     """What was said of the system before it ran."""
-    bad_input: bool = False
-    """Whether the error is in what was written, not in the run."""
+    code: int = PARKED
+    """The exit code of an error that is not one of the run: bad input, or a mistake of ours."""
 
     @property
     def passed(self) -> bool:
@@ -98,30 +99,26 @@ def run_test(name: str, sets: list[str], bench: Bench, out: Path, taken: Collect
         if scenario.name in taken:
             raise BadInput(f"another scenario of this test is called {scenario.name}", file=name, key="name")
         return _judged(scenario, ignored, bench, out / scenario.name)
-    except BadInput as error:
-        return Tested(scenario, None, None, [], ignored, str(error), bad_input=True)
-    except OSError:
-        raise
     except Exception as error:
-        return Tested(scenario, None, None, [], ignored, f"{type(error).__name__}: {error}")
+        code, line = explained(error, ["test", name])
+        return Tested(scenario, None, None, [], ignored, line, code=code)
 
 
 def _judged(scenario: Scenario, ignored: list[str], bench: Bench, folder: Path) -> Tested:
-    folder.mkdir(parents=True, exist_ok=True)
-    ran = run_scenario(
-        scenario,
-        bench.files,
-        kind=bench.kind,
-        log=folder / LOG,
-        interrupt=bench.interrupt,
-        warn=bench.warn,
-        foreign=bench.foreign,
-    )
-    clear(folder)
-    summary = summarize(ran.recording, scenario, ran.wall_time)
-    checks = _extra_checks(bench, ran.recording, scenario)
-    write_summary(folder, summary)
-    write_pages(folder, ran.recording, summary.model_copy(update={"checks": [*summary.checks, *checks]}))
+    with owned(folder):
+        ran = run_scenario(
+            scenario,
+            bench.files,
+            kind=bench.kind,
+            log=folder / LOG,
+            interrupt=bench.interrupt,
+            warn=bench.warn,
+            foreign=bench.foreign,
+        )
+        summary = summarize(ran.recording, scenario, ran.wall_time)
+        checks = _extra_checks(bench, ran.recording, scenario)
+        write_summary(folder, summary)
+        write_pages(folder, ran.recording, summary.model_copy(update={"checks": [*summary.checks, *checks]}))
     broken = ran.end.reason if ran.end.reason.startswith("error") and scenario.expect != "aborted" else ""
     cases = [] if broken else _cases(scenario, summary, checks)
     return Tested(scenario, summary, ran.recording, cases, ignored, broken, tuple(ran.remarks))

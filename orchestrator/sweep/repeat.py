@@ -5,6 +5,7 @@ from typing import Any, NamedTuple
 
 import yaml
 
+from fmus.files import write_whole
 from orchestrator.cosim.fmu_files import sources_hash
 from orchestrator.report.results import LOG, write_pages, write_summary
 from orchestrator.scenario.load_scenario import load_scenario
@@ -13,6 +14,7 @@ from orchestrator.session.drive import drive
 from orchestrator.session.session import Ran
 from orchestrator.sweep.job import chunk_scenario
 from orchestrator.sweep.table import Table
+from orchestrator.text.owned import owned
 from orchestrator.verdict.summary import Summary, summarize
 
 COMPARED = ("x", "y", "heading", "lateral_error", "longitudinal_error", "heading_error", "steering_wheel_angle")
@@ -37,12 +39,13 @@ def folder_of_row(table: Path, number: int) -> Path:
 
 def repeat_row(table: Table, number: int, out: Path, kind: str = "none", *, pages: bool = True) -> Repeated:
     """Run row ``number`` again, with its results in ``out``. Raises ``BadInput`` if there is none."""
-    scenario = write_scenario(table, number, out / "scenario.yaml")
-    ran = drive(scenario, kind, out / LOG)
-    summary = summarize(ran.recording, scenario, ran.wall_time)
-    write_summary(out, summary)
-    if pages:
-        write_pages(out, ran.recording, summary, scenario)
+    with owned(out):
+        scenario = write_scenario(table, number, out / "scenario.yaml")
+        ran = drive(scenario, kind, out / LOG)
+        summary = summarize(ran.recording, scenario, ran.wall_time)
+        write_summary(out, summary)
+        if pages:
+            write_pages(out, ran.recording, summary, scenario)
     different = _differences(table.row(number), summary.as_json())
     return Repeated(scenario, ran, summary, different, table.about["sources"] == sources_hash())
 
@@ -53,8 +56,7 @@ def write_scenario(table: Table, number: int, file: Path) -> Scenario:
     told = {"file", "base", "car", "changed", "left_out"}
     content = scenario.model_dump(mode="python", exclude=told, by_alias=True, exclude_none=True)
     name = f"{table.about['study']['name']}-row-{number}"
-    file.parent.mkdir(parents=True, exist_ok=True)
-    file.write_text(yaml.safe_dump({**content, "name": name}, sort_keys=False, allow_unicode=True), encoding="utf-8")
+    write_whole(file, yaml.safe_dump({**content, "name": name}, sort_keys=False, allow_unicode=True))
     return load_scenario(str(file))
 
 

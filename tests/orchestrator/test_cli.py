@@ -97,7 +97,7 @@ def test_help_and_version_import_no_command_and_no_library() -> None:
         (["run", DEMO, "--sett=b"], "usage: apa run ", "apa run: --sett=b: unknown; did you mean --set"),
         (["run", DEMO, "more"], "usage: apa run ", "apa run: more: unknown"),
         (["export", "csw", "x"], "usage: apa export ", "argument FORMAT: csw: unknown; did you mean csv?"),
-        (["export", "csv", "x", "--signal", "y", "--name"], "usage: apa export csv", "x: cannot be read"),
+        (["export", "csv", "x", "--signal", "y", "--name"], "usage: apa export csv", "x: no such file"),
         (["run", DEMO, "--fmus", "stone"], "usage: apa run ", "argument --fmus: stone: unknown; "),
     ],
 )

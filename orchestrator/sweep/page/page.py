@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import yaml
 
+from fmus.files import write_whole
 from orchestrator.report.page import still_page
 from orchestrator.scenario.scenario import DONE, MISSED
 from orchestrator.sweep.page.figures import histogram, scale_bar, success_map
@@ -40,7 +41,7 @@ def write_page(path: Path) -> Path:
     """Write the page beside the table at ``path``; return where it is."""
     table = Table(path)
     page = path.with_suffix(".html")
-    page.write_text(study_page(table), encoding="utf-8")
+    write_whole(page, study_page(table))
     return page
 
 

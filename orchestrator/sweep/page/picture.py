@@ -6,6 +6,7 @@ import matplotlib
 import numpy as np
 from matplotlib.figure import Figure
 
+from orchestrator.drawing.save import save
 from orchestrator.sweep.page.figures import named
 from orchestrator.sweep.page.statistics import Map, maps, word
 from orchestrator.sweep.table import Table
@@ -31,8 +32,7 @@ def draw_maps(table: Table, path: Path) -> None:
         axes[0].set_ylabel(_label(shown[0], "y"))
         figure.colorbar(drawn, ax=axes.tolist(), label=f"{word(table)} within all limits [%]", fraction=0.04)
     figure.suptitle(f"{table.about['study']['title']} ({table.count:,} runs)", fontsize=10)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    figure.savefig(path, metadata={"Software": None})
+    save(figure, path, metadata={"Software": None})
 
 
 def _label(item: Map, side: str) -> str:

@@ -104,7 +104,7 @@ def test_help_and_version_import_no_command_and_no_library() -> None:
 def test_a_wrong_word_shows_the_usage_of_its_command(
     arguments: list[str], usage: str, message: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    if "cannot be read" in message:
+    if "no such file" in message:
         assert main(arguments) == 2  # the start of an option will do
         assert message in capsys.readouterr().err
         return

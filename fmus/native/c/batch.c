@@ -47,7 +47,8 @@ typedef enum { STOP_TIME, STANDSTILL } End;
 typedef struct {
     const Library *model;
     unsigned char *memory;
-    unsigned char *fetched; /* outputs, as memory has them from outputs_offset on */
+    unsigned char *copy;    /* room for outputs */
+    unsigned char *fetched; /* outputs as they are seen: in memory, or a copy that stays until the model is due */
     int64_t every;
     int due; /* at this exchange */
 } Slave;
@@ -85,15 +86,20 @@ static Place place_of(const Slave *slaves, Signal signal) {
 
 static double look(Place place) { return library_read(place.at, place.kind); }
 
+static unsigned char *outputs_of(const Slave *slave) { return slave->memory + slave->model->outputs_offset; }
+
 static void fetch(const Slave *slave) {
-    memcpy(slave->fetched, slave->memory + slave->model->outputs_offset, (size_t)slave->model->outputs_size);
+    if (slave->fetched == slave->copy) memcpy(slave->copy, outputs_of(slave), (size_t)slave->model->outputs_size);
 }
 
 static void hand_over(const Runner *runner) {
     for (int64_t k = 0; k < runner->batch->link_count; k++) {
         const Wire *wire = &runner->wires[k];
         if (!*wire->due) continue;
-        memcpy(wire->target, wire->source.at, wire->source.kind == LIBRARY_BOOLEAN ? sizeof(bool) : sizeof(double));
+        if (wire->source.kind == LIBRARY_BOOLEAN)
+            memcpy(wire->target, wire->source.at, sizeof(bool));
+        else
+            memcpy(wire->target, wire->source.at, sizeof(double));
     }
 }
 
@@ -193,8 +199,15 @@ static void run(const Runner *runner, const double *params, int64_t step_ns, int
     row[1] = (double)(course.count * step_ns);
 }
 
-static void connect(Runner *runner) {
+/* A model that is due at each exchange has the same outputs from one step to the next: they are seen where they are.
+ * Those of another one have gone on since they were seen last. */
+static void connect(Runner *runner, const int64_t *every) {
     const Batch *batch = runner->batch;
+    for (int64_t m = 0; m < batch->model_count; m++) {
+        Slave *slave = &runner->slaves[m];
+        slave->every = every[m];
+        slave->fetched = every[m] == 1 ? outputs_of(slave) : slave->copy;
+    }
     for (int64_t k = 0; k < batch->link_count; k++) {
         const Link *link = &batch->links[k];
         const Signal from = {link->source, link->source_place, 0};
@@ -233,7 +246,7 @@ static size_t lay_out(Runner *runner, unsigned char *memory) {
     for (int64_t m = 0; m < batch->model_count; m++) {
         const Library *model = batch->models[m];
         unsigned char *own = part(memory, &taken, (size_t)model->size);
-        const Slave slave = {model, own, part(memory, &taken, (size_t)model->outputs_size), 1, 0};
+        const Slave slave = {.model = model, .memory = own, .copy = part(memory, &taken, (size_t)model->outputs_size)};
         if (memory) runner->slaves[m] = slave;
     }
     return taken;
@@ -248,11 +261,10 @@ LIBRARY_EXPORT int64_t batch_rows(const Batch *batch, int64_t rows, const double
     int64_t width = 0;
     if (!memory) return -1;
     lay_out(&runner, memory);
-    connect(&runner);
     for (int64_t m = 0; m < batch->model_count; m++) width += batch->models[m]->param_count;
     for (int64_t r = 0; r < rows; r++) {
         const int64_t *time = times + r * (2 + batch->model_count);
-        for (int64_t m = 0; m < batch->model_count; m++) runner.slaves[m].every = time[2 + m];
+        connect(&runner, time + 2);
         run(&runner, params + r * width, time[0], time[1] / time[0], out + r * (2 + batch->kept_count));
     }
     free(memory);

@@ -12,6 +12,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#define NUMBER ((int64_t)sizeof(double)) /* or integer [bytes] */
+
 typedef struct {
     int64_t source, source_place, target, target_place; /* an output of a model, an input of another */
 } Link;
@@ -62,6 +64,7 @@ typedef struct {
 typedef struct {
     Place source;
     unsigned char *target;
+    int64_t count; /* of numbers that follow each other on both sides */
     const int *due;
 } Wire;
 
@@ -70,6 +73,7 @@ typedef struct {
     const Batch *batch;
     Slave *slaves;
     Wire *wires;
+    int64_t wire_count;
     Place *kept, *when;
     double *before;       /* the value noted last */
     unsigned char *noted; /* whether there is one */
@@ -93,13 +97,15 @@ static void fetch(const Slave *slave) {
 }
 
 static void hand_over(const Runner *runner) {
-    for (int64_t k = 0; k < runner->batch->link_count; k++) {
+    for (int64_t k = 0; k < runner->wire_count; k++) {
         const Wire *wire = &runner->wires[k];
         if (!*wire->due) continue;
-        if (wire->source.kind == LIBRARY_BOOLEAN)
+        if (wire->source.kind == LIBRARY_BOOLEAN) {
             memcpy(wire->target, wire->source.at, sizeof(bool));
-        else
-            memcpy(wire->target, wire->source.at, sizeof(double));
+            continue;
+        }
+        for (int64_t i = 0; i < wire->count; i++)
+            memcpy(wire->target + i * NUMBER, wire->source.at + i * NUMBER, NUMBER);
     }
 }
 
@@ -199,6 +205,13 @@ static void run(const Runner *runner, const double *params, int64_t step_ns, int
     row[1] = (double)(course.count * step_ns);
 }
 
+static int follows(const Wire *before, const Wire *next) {
+    const int64_t length = before->count * NUMBER;
+    return before->source.kind != LIBRARY_BOOLEAN && next->source.kind != LIBRARY_BOOLEAN &&
+           next->source.at == before->source.at + length && next->target == before->target + length &&
+           next->due == before->due;
+}
+
 /* A model that is due at each exchange has the same outputs from one step to the next: they are seen where they are.
  * Those of another one have gone on since they were seen last. */
 static void connect(Runner *runner, const int64_t *every) {
@@ -208,13 +221,17 @@ static void connect(Runner *runner, const int64_t *every) {
         slave->every = every[m];
         slave->fetched = every[m] == 1 ? outputs_of(slave) : slave->copy;
     }
+    runner->wire_count = 0;
     for (int64_t k = 0; k < batch->link_count; k++) {
         const Link *link = &batch->links[k];
         const Signal from = {link->source, link->source_place, 0};
         const Slave *target = &runner->slaves[link->target];
-        runner->wires[k].source = place_of(runner->slaves, from);
-        runner->wires[k].target = target->memory + target->model->inputs[link->target_place].offset;
-        runner->wires[k].due = &target->due;
+        const int64_t offset = target->model->inputs[link->target_place].offset;
+        const Wire wire = {place_of(runner->slaves, from), target->memory + offset, 1, &target->due};
+        if (k && follows(&runner->wires[runner->wire_count - 1], &wire))
+            runner->wires[runner->wire_count - 1].count++;
+        else
+            runner->wires[runner->wire_count++] = wire;
     }
     for (int64_t k = 0; k < batch->kept_count; k++) {
         runner->kept[k] = place_of(runner->slaves, batch->kept[k].signal);

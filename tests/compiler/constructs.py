@@ -720,3 +720,114 @@ def same_names(x: float, y: float, n: int, m: int, p: bool, q: bool) -> float:
         value = int64_t - index
         total -= value
     return total + cos + math.sin(cos if abs(cos) < 2.0 else 0.0)
+
+
+class Pair(NamedTuple):
+    """Large structs within one."""
+
+    one: Big = Big()
+    two: Big = Big(default=3.0)
+    count: int = 0
+
+
+def changed_within(x: float, y: float, n: int, m: int, p: bool, q: bool) -> Pair:
+    pair = _crossed(Pair(Big(Point(x, y)), count=n), x)
+    kept = pair
+    pair = _crossed(pair, kept.two.default)
+    pair = pair._replace(one=_marked(pair.one, pair.two.at, y), two=_marked(pair.two, pair.one.at, x))
+    return pair if p else kept
+
+
+def _crossed(pair: Pair, x: float) -> Pair:
+    return Pair(pair.two, pair.one, pair.count + 1) if x > 0.0 else pair._replace(two=pair.one)
+
+
+def _marked(big: Big, at: Point, value: float) -> Big:
+    row = big.row
+    return big._replace(at=Point(big.at.y, at.x), row=row[1:] + (big.at.x + value,), default=at.y)
+
+
+def changed_by_itself(x: float, y: float, n: int, m: int, p: bool, q: bool) -> Big:
+    big = Big(Point(x, y), default=y)
+    big = _marked(big, big.at, big.default)
+    big = _mixed_with(big, big.points[1], big)
+    big = _marked(_marked(big, big.at, x), big.points[0], y)
+    return _mixed_with(START, big.at, big) if p else big
+
+
+def _mixed_with(big: Big, at: Point, other: Big) -> Big:
+    if at.x > 1.0:
+        return _marked(big, at, other.default)
+    if at.x < 0.0:
+        return big
+    return other
+
+
+def borrowed(x: float, y: float, n: int, m: int, p: bool, q: bool) -> Pair:
+    pair = Pair(Big(Point(x, y)), count=n)
+    first, _ = _advanced(pair, n, p)
+    second, number = _advanced(first, m, q)
+    return second._replace(count=int(number) if abs(number) < 1e6 else first.count)
+
+
+def _advanced(pair: Pair, rounds: int, back: bool) -> tuple[Pair, float]:
+    one = pair.one
+    two = pair.two
+    before = two.default
+    for k in range(rounds % 3):
+        one = _marked(one, two.at, k * before)
+        if back:
+            two = two._replace(default=one.at.x, at=one.points[0])
+    pair = Pair(one, count=pair.count + 1, two=two)
+    return pair, pair.two.at.x + one.at.y + before
+
+
+def not_borrowed(x: float, y: float, n: int, m: int, p: bool, q: bool) -> Pair:
+    return _taken_out(_taken_out(Pair(Big(Point(x, y)), count=n), p), q)
+
+
+def _taken_out(pair: Pair, back: bool) -> Pair:
+    one = pair.one
+    one = _marked(one, pair.two.at, 1.0)
+    if back:
+        return pair._replace(count=pair.count + 1)
+    two = pair.two
+    two = two._replace(default=pair.one.at.x)
+    pair = Pair(two, one)
+    two = two._replace(default=0.5)
+    return pair._replace(count=round(two.default))
+
+
+def results_after(x: float, y: float, n: int, m: int, p: bool, q: bool) -> Big:
+    big, row, at = _turned_out(Big(Point(x, y)), n)
+    big, row, at = _turned_out(big, row[0] > 0.0)
+    row, big = _the_other_way(big)
+    return big._replace(row=row, at=at)
+
+
+def _turned_out(big: Big, n: int) -> tuple[Big, tuple[float, float, float, float, float], Point]:
+    if n == 1:
+        return _turned_out_again(big)
+    return big._replace(row=big.row[::-1], at=Point(big.at.y, big.default)), big.row, big.at
+
+
+def _turned_out_again(big: Big) -> tuple[Big, tuple[float, float, float, float, float], Point]:
+    return _marked(big, big.points[1], big.at.x), big.row, big.at
+
+
+def _the_other_way(big: Big) -> tuple[tuple[float, float, float, float, float], Big]:
+    return big.row, big._replace(row=big.row[::-1], default=big.row[0])
+
+
+def pointed_at(x: float, y: float, n: int, m: int, p: bool, q: bool) -> Big:
+    return _pointing(_pointing(Big(Point(x, y), points=(Point(y, x), Point(x, x))), p), q)
+
+
+def _pointing(big: Big, swap: bool) -> Big:
+    at = big.at
+    first = big.points[0]
+    other = first if swap else big.points[1]
+    for point in big.points:
+        if point.x > 2.0:
+            return big._replace(points=(point, at), at=first)
+    return Big(other, big.row, big.mode, Flags(at.x > first.x, first.y > at.x), at.y, big.counts, (at, first))

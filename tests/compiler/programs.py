@@ -34,12 +34,21 @@ class Car(NamedTuple):
     speed: float = 1.5
 
 
+class Fleet(NamedTuple):
+    """Large structs within one."""
+
+    first: Car = Car()
+    second: Car = Car(mode=Mode.HIGH)
+    lead: float = 2.0
+
+
 ROW = (1.0, -2.5, 3.0)
 COUNT = 3
 CAR = Car(speed=-0.0)
 '''
 SIGNATURE = "x: float, y: float, n: int, m: int, p: bool, q: bool"
 KINDS = ("float", "int", "bool", "Point", "Car", "Row")
+ALL = (*KINDS, "Fleet")
 RETURNED = ("float", "int", "bool", "Point", "Car")
 FLOATS = ("0.0", "-0.0", "1.0", "0.1", "-2.5", "3.0", "1e300", "1e-310", "math.inf", "math.nan", "math.pi")
 INTS = ("0", "1", "-1", "2", "3", "7", "-5", "100000", "Mode.HIGH", "Mode.LOW", "COUNT")
@@ -52,7 +61,7 @@ class Function:
         self.draw, self.helpers, self.name = draw, helpers, name
         self.lines = []
         self.scope = {"float": ["x", "y"], "int": ["n", "m"], "bool": ["p", "q"], "Point": [], "Car": ["CAR"],
-                      "Row": ["ROW"]}  # fmt: skip
+                      "Row": ["ROW"], "Fleet": []}  # fmt: skip
         self.fixed = {"CAR", "ROW"}
         self.count = 0
 
@@ -85,6 +94,7 @@ class Function:
             "Point": lambda: self.pick(("Point()", "Point(1.0, 2.0)", "CAR.at")),
             "Car": lambda: self.pick(("CAR", "Car()")),
             "Row": lambda: self.pick(("ROW", "(0.25, -3.0, 0.5)")),
+            "Fleet": lambda: self.pick(("Fleet()", "Fleet(lead=-0.0)")),
         }[kind]()
 
     def call(self, kind, depth):
@@ -99,9 +109,9 @@ class Function:
         return f"({first} if {test} else {other})"
 
     def several(self, kind, depth, forms):
-        """Return one of ``forms`` with expressions in place of {f}, {i}, {b}, {p}, {c}, {r}."""
+        """Return one of ``forms`` with expressions in place of {f}, {i} and so on."""
         text = self.pick(forms)
-        letters = {"f": "float", "i": "int", "b": "bool", "p": "Point", "c": "Car", "r": "Row"}
+        letters = {"f": "float", "i": "int", "b": "bool", "p": "Point", "c": "Car", "r": "Row", "w": "Fleet"}
         for letter, inner in letters.items():
             while f"{{{letter}}}" in text:
                 text = text.replace(f"{{{letter}}}", self.expression(inner, depth), 1)
@@ -165,7 +175,7 @@ class Function:
         lambda self, depth: self.several("Car", depth, (
             "Car({p}, {r}, {i}, {b}, ({p}, {p}), {f})", "Car(speed={f})", "{c}._replace(at={p}, mode={i})",
             "{c}._replace(row={r}, ready={b}, speed={f})", "Car(at={p}, ends=({p}, {p}))",
-            "{c}._replace(ends=tuple(e._replace(y={f}) for e in {c}.ends))",
+            "{c}._replace(ends=tuple(e._replace(y={f}) for e in {c}.ends))", "{w}.first", "{w}.second",
         )),
         lambda self, depth: self.choice("Car", depth),
         lambda self, depth: self.call("Car", depth),
@@ -178,6 +188,12 @@ class Function:
         )),
         lambda self, depth: self.choice("Row", depth),
         lambda self, depth: self.call("Row", depth),
+    )  # fmt: skip
+
+    fleets = (
+        lambda self, depth: self.several("Fleet", depth, ("Fleet({c}, {c}, {f})", "Fleet(second={c})")),
+        lambda self, depth: self.choice("Fleet", depth),
+        lambda self, depth: self.call("Fleet", depth),
     )  # fmt: skip
 
     # ---- statements
@@ -196,14 +212,14 @@ class Function:
         self.scope = before
 
     def statement(self, indent, budget, returned, in_loop):
-        forms = [self.assign, self.assign, self.again, self.again, self.unpack, self.replace]
+        forms = [self.assign, self.assign, self.again, self.again, self.unpack, self.replace, self.update, self.fleet]
         if budget > 0:
             forms += [self.branch, self.branch, self.loop, self.match, self.leave]
             forms += [self.go_on] if in_loop else []
         self.pick(forms)(indent, budget - 1, returned)
 
     def assign(self, indent, _budget, _returned):
-        kind = self.pick(KINDS)
+        kind = self.pick(ALL)
         text = self.expression(kind, 3)
         name = self.new(kind)
         self.write(f"{name} = {text}", indent)
@@ -238,6 +254,31 @@ class Function:
                 "ends=({c}.ends[1], {c}.ends[0])", "at=Point({c}.at.y, {c}.at.x), ready={b}",
             ))  # fmt: skip
             self.write(f"{name} = {name}._replace({self.several('Car', 2, (form.replace('{c}', name),))})", indent)
+
+    def update(self, indent, _budget, _returned):
+        """Write a change of a struct by a function that changes it where it lies."""
+        for kind, names in ((kind, [n for n in self.scope[kind] if n not in self.fixed]) for kind in ("Car", "Fleet")):
+            found = [item for item in self.helpers if item[1] == kind and item[2][0] == kind]
+            if names and found:
+                name, (helper, _, kinds) = self.pick(names), self.pick(found)
+                rest = "".join(f", {self.expression(one, 1)}" for one in kinds[1:])
+                self.write(f"{name} = {helper}({self.pick((name, name, self.leaf(kind)))}{rest})", indent)
+
+    def fleet(self, indent, _budget, _returned):
+        names = self.scope["Fleet"]
+        if names:
+            name = self.pick(names)
+            self.write(f"{name} = {self.new_fleet(name)}", indent)
+
+    def new_fleet(self, name):
+        """Return another fleet made of one."""
+        form = self.pick((
+            "{F}._replace(first={c}, second={F}.first)", "{F}._replace(second={F}.second._replace(at={F}.first.at))",
+            "{F}._replace(first={F}.first._replace(speed={F}.lead, row={r}), lead={F}.first.speed + {f})",
+            "Fleet({F}.second, {F}.first, {f})", "Fleet(first={F}.first, second={c}, lead={F}.second.at.x)",
+            "{F}._replace(lead={f})", "{F}",
+        ))  # fmt: skip
+        return self.several("Car", 1, (form.replace("{F}", name),))
 
     def branch(self, indent, budget, returned):
         self.write(f"if {self.expression('bool', 3)}:", indent)
@@ -281,14 +322,31 @@ class Function:
 
     def leave(self, indent, _budget, returned):
         self.write(f"if {self.expression('bool', 2)}:", indent)
-        self.write(f"return {self.expression(returned, 2)}", indent + 1)
+        self.write(f"return {self.returned(returned)}", indent + 1)
+
+    def returned(self, kind):
+        """Return what a function gives: of a large struct often what was changed."""
+        names = [name for name in self.scope.get(kind, ()) if name not in self.fixed]
+        if kind == "Fleet":
+            return self.new_fleet(names[0])
+        if kind != "Car" or not names or self.chance(4):
+            return self.expression(kind, 3)
+        name = self.pick(names)
+        found = [item for item in self.helpers if item[1] == kind and item[2][0] == kind]
+        if found and self.chance(2):
+            helper, _, kinds = self.pick(found)
+            return f"{helper}({name}{''.join(f', {self.expression(one, 1)}' for one in kinds[1:])})"
+        form = self.pick(("at=Point({c}.speed, {f}), speed={c}.at.x", "mode={i}", "row={r}, ends=({p}, {c}.at)"))
+        whole = "Car({c}.ends[1], {c}.row, {i}, {b}, ({c}.at, {p}), {c}.at.y)"
+        text = self.pick((whole, f"{{c}}._replace({form})", "{c}"))
+        return self.several("Car", 1, (text.replace("{c}", name),))
 
     def whole(self, signature, kinds, returned):
         """Return the text of the function."""
         self.scope = {kind: [name for name, own in kinds.items() if own == kind] + [
-            name for name in self.scope[kind] if name in self.fixed] for kind in KINDS}  # fmt: skip
+            name for name in self.scope[kind] if name in self.fixed] for kind in ALL}  # fmt: skip
         self.statements(1, 2, returned)
-        self.write(f"return {self.expression(returned, 3)}", 1)
+        self.write(f"return {self.returned(returned)}", 1)
         kind = "tuple[float, float, float]" if returned == "Row" else returned
         return "\n".join([f"def {self.name}({signature}) -> {kind}:", *self.lines, "", "", ""])
 
@@ -305,6 +363,14 @@ def programs(draw, functions):
             signature = ", ".join(f"{name}: {hints[kind]}" for name, kind in kinds.items())
             texts.append(Function(draw, list(helpers), f"_helper{number}").whole(signature, kinds, returned))
             helpers.append((f"_helper{number}", returned, tuple(kinds.values())))
+        if number % 3 == 1:
+            kind = draw(st.sampled_from(("Car", "Car", "Fleet")))
+            kinds = {"own": kind, "p": draw(st.sampled_from(("Point", "Car", "float"))), "c": "float"}
+            if kind == "Fleet":
+                kinds["p"] = "Car"
+            signature = ", ".join(f"{name}: {own}" for name, own in kinds.items())
+            texts.append(Function(draw, list(helpers), f"_update{number}").whole(signature, kinds, kind))
+            helpers.append((f"_update{number}", kind, tuple(kinds.values())))
         kinds = {"x": "float", "y": "float", "n": "int", "m": "int", "p": "bool", "q": "bool"}
         returned = draw(st.sampled_from(RETURNED))
         texts.append(Function(draw, helpers, f"f{number}").whole(SIGNATURE, kinds, returned))

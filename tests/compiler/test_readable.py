@@ -115,6 +115,19 @@ def test_header_is_c_plus_plus(translations, tmp_path):
     assert not done.returncode, done.stderr
 
 
+def test_what_the_models_remember_is_changed_where_it_lies(translations):
+    """Neither the step nor what it calls makes a second state."""
+    for item in translations:
+        states = re.findall(r"^    (\w*State) next\w*;$", item.source, re.MULTILINE)
+        assert not {f"{item.name}State", "CarState", "ParkingState", "ApaState"} & set(states)
+    vehicle = next(item.source for item in translations if item.name == "Vehicle")
+    assert "    CarState *car = &state->car;\n" in vehicle
+    assert re.search(r"\n \* Changes ``state``\.\n \*/\nstatic void step_car\(CarState \*state, ", vehicle)
+    step = vehicle[vehicle.index("static void step(") :]
+    assert "CarState next" not in step
+    assert "    step(state, inputs, params, dt_ns, outputs);\n}" in step
+
+
 COMMENTED = '''
 def f(x: float, y: float, n: int, m: int, p: bool, q: bool) -> float:
     """Return something, in 1/s /* really */.

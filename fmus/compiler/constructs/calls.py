@@ -3,9 +3,10 @@
 import ast
 import math
 import re
+from dataclasses import replace
 from enum import IntEnum
 from types import FunctionType
-from typing import Any
+from typing import Any, NamedTuple
 
 from fmus.compiler.constructs.builtin import BUILTINS, math_call
 from fmus.compiler.constructs.columns import check_place
@@ -14,11 +15,13 @@ from fmus.compiler.constructs.replacing import replaced
 from fmus.compiler.source.advice import CALL_ADVICE
 from fmus.compiler.source.kinds import Array, Kind, Mixed, Open, Struct, described, is_named_tuple
 from fmus.compiler.source.refusals import AlreadySaidError, CannotError
+from fmus.compiler.target.access import is_at, looks_at_place
 from fmus.compiler.target.body import EXPRESSIONS, Body
-from fmus.compiler.target.functions import Instance, instance_of, signature
+from fmus.compiler.target.functions import Instance, Parameter, instance_of, signature
+from fmus.compiler.target.in_place import InPlace
 from fmus.compiler.target.making import coerced, struct_of, written_out
-from fmus.compiler.target.storage import address, text_of
-from fmus.compiler.target.values import Place, Value
+from fmus.compiler.target.storage import address, hoist, put, text_of
+from fmus.compiler.target.values import Place, Value, place_of
 
 
 def call(body: Body, node: ast.Call) -> Value:
@@ -71,38 +74,74 @@ def invoke(
             raise CannotError(node, f"{name}() without its argument {word}", f"it takes {', '.join(known.kinds)}")
         values.append(_argument(body, value, kind, given.get(word, node), f"{name}() takes {described(kind)}"))
     made = instance_of(body.program, function, tuple(value.kind for value in values), node)
-    texts = [
-        address(body, value, parameter.name) if parameter.by_pointer else text_of(body, value, parameter.name)
-        for parameter, value in zip(made.parameters, values, strict=True)
-    ]
-    return _result(body, made, texts)
-
-
-def _result(body: Body, made: Instance, texts: list[str]) -> Value:
-    """Return what a function gives: an expression, or what it writes to pointers."""
-    kind = made.result
-    if kind is None:
+    if made.result is None:
         raise AlreadySaidError
-    if not made.outs:
-        return Value(kind, f"{made.name}({', '.join(texts)})")
+    return _result(body, made, made.result, [_given(body, made, *pair) for pair in enumerate(values)])
 
-    pairs = zip(made.parameters, texts, strict=True)
-    held = frozenset(word for one, text in pairs if one.by_pointer for word in re.findall(r"[A-Za-z_]\w*", text))
+
+class Given(NamedTuple):
+    """An argument of a call."""
+
+    parameter: Parameter
+    value: Value
+    text: str
+
+
+def _given(body: Body, made: Instance, number: int, value: Value) -> Given:
+    parameter = made.parameters[number]
+    if made.changed is not None and number == made.changed.parameter:
+        return Given(parameter, value, place_of(value).text if value.place else "")
+    text = address(body, value, parameter.name) if parameter.by_pointer else text_of(body, value, parameter.name)
+    return Given(parameter, value, text)
+
+
+def _result(body: Body, made: Instance, kind: Kind, given: list[Given]) -> Value:
+    """Return what a function gives: an expression, or what it writes to pointers."""
+    if not made.outs and made.changed is None:
+        return Value(kind, f"{made.name}({', '.join(item.text for item in given)})")
+    pointers = [item.text for item in given if item.parameter.by_pointer]
+    words = frozenset(word for text in pointers for word in re.findall(r"[A-Za-z_]\w*", text))
+    held = words if all(pointers) else None
+    kinds = kind.items if isinstance(kind, Mixed) else (kind,)
 
     def fill_items(places: list[Place]) -> None:
-        kinds = kind.items if isinstance(kind, Mixed) else (kind,)
-        pairs = zip(places, kinds, strict=True)
-        ends = [place.text if isinstance(one, Array) else place.address for place, one in pairs]
+        texts = [item.text for item in given]
+        ends = [
+            place.text if isinstance(one, Array) else place.address for place, one in zip(places, kinds, strict=True)
+        ]
+        if made.changed is not None:
+            place = places[made.changed.result]
+            texts = _changing(body, made.changed, given, place)
+            del ends[made.changed.result]
         body.emit(f"{made.name}({', '.join([*texts, *ends])});")
 
+    base = given[made.changed.parameter].value if made.changed is not None else None
+    common = Value(kind, held=held, base=base if base is not None and base.place else None)
     if not isinstance(kind, Mixed):
-        return Value(kind, fill=lambda place: fill_items([place]), held=held)
-    count = len(kind.items)
+        return replace(common, fill=lambda place: fill_items([place]))
 
     def fill(place: Place) -> None:
-        fill_items([place.member(f"item{number}") for number in range(count)])
+        fill_items([place.member(f"item{number}") for number in range(len(kinds))])
 
-    return Value(kind, fill=fill, fill_items=fill_items, held=held)
+    changes = made.changed.result if made.changed is not None else 0
+    return replace(common, fill=fill, fill_items=fill_items, changes=changes)
+
+
+def _changing(body: Body, changed: InPlace, given: list[Given], place: Place) -> list[str]:
+    """Return the arguments of a call that changes what lies at ``place``; what else points there is copied before."""
+    own = given[changed.parameter].value
+    there = is_at(body, own, place)
+    if not there:
+        put(body, place, own)
+    texts = []
+    for number, item in enumerate(given):
+        if number == changed.parameter:
+            texts.append(place.address)
+        elif there and item.parameter.by_pointer and item.value.place and looks_at_place(body, item.text, place):
+            texts.append(address(body, hoist(body, item.value, item.parameter.name), item.parameter.name))
+        else:
+            texts.append(item.text)
+    return texts
 
 
 def _argument(body: Body, value: Value, kind: Kind, node: ast.AST, why: str) -> Value:

@@ -1,11 +1,12 @@
 """Statements: assignments, if, while, return, match."""
 
 import ast
+from collections.abc import Callable
 
 from fmus.compiler.constructs.columns import may_write, write
 from fmus.compiler.constructs.conditions import condition
 from fmus.compiler.constructs.items import change_item, changed_item
-from fmus.compiler.constructs.replacing import is_replace, replace_in_place
+from fmus.compiler.constructs.replacing import is_replace
 from fmus.compiler.constructs.unpacking import items_of, unpack_assignment
 from fmus.compiler.source.bindings import block
 from fmus.compiler.source.kinds import (
@@ -22,10 +23,11 @@ from fmus.compiler.source.kinds import (
     kind_of,
 )
 from fmus.compiler.source.refusals import CannotError
+from fmus.compiler.target.access import is_at, looks_at_place
 from fmus.compiler.target.body import STATEMENTS, Body
 from fmus.compiler.target.making import coerced
-from fmus.compiler.target.storage import put, settled, text_of
-from fmus.compiler.target.values import UNKNOWN, Value, is_scalar
+from fmus.compiler.target.storage import put, put_whole, settled, text_of
+from fmus.compiler.target.values import UNKNOWN, Place, Value, is_scalar
 from fmus.compiler.target.variables import bind, variable
 
 
@@ -47,12 +49,6 @@ def assign(body: Body, node: ast.Assign) -> None:
 
 
 def _assign_name(body: Body, target: ast.Name, source: ast.expr, node: ast.AST) -> None:
-    if is_replace(source, target.id):
-        known = variable(body, target.id)
-        if isinstance(known.kind, Struct) and not (known.parameter and known.fixed):
-            assert isinstance(source, ast.Call)
-            replace_in_place(body, known.place, source, known.value(), target.id)
-            return
     item = changed_item(source, target.id)
     if item is not None:
         known = variable(body, target.id)
@@ -198,15 +194,13 @@ def give(body: Body, node: ast.Return) -> None:
         raise CannotError(node, "a return without a value", "return a value of the annotated type")
     if isinstance(node.value, ast.IfExp) and _by_branches(body, node.value):
         return
+    may_write(body, node.value)
+    value = body.value(node.value)
     name = _own_copy(body, node.value)
-    if name:
+    if name and body.changed is None:
         known = variable(body, name)
-        assert isinstance(node.value, ast.Call)
-        replace_in_place(body, known.place, node.value, known.value(), name)
+        put(body, known.place, value)
         value = known.value()
-    else:
-        may_write(body, node.value)
-        value = body.value(node.value)
     _give_value(body, node.value, value)
 
 
@@ -249,12 +243,33 @@ def _give_value(body: Body, node: ast.expr, value: Value) -> None:
         body.emit(f"return {text_of(body, value, 'made')};")
         return
     if isinstance(wanted, Mixed) and value.fill_items is not None:
-        value.fill_items(body.outs)
+        _give_items(body, value, value.fill_items)
     else:
         items = items_of(body, value, node) if isinstance(wanted, Mixed) else (value,)
-        for place, item in zip(body.outs, items, strict=True):
-            put(body, place, item)
+        pairs = list(zip(body.outs, items, strict=True))
+        for place, item in pairs:
+            if place != body.changed:
+                put(body, place, item)
+        for place, item in pairs:
+            if place == body.changed:  # last: the others may be made of it
+                put_whole(body, place, item)
     body.emit("return;")
+
+
+def _give_items(body: Body, value: Value, fill_items: Callable[[list[Place]], None]) -> None:
+    """Write a call whose results are this function's, each to where it goes."""
+    changed = body.changed
+    if changed is None or (value.base is not None and is_at(body, value.base, changed)):
+        fill_items(body.outs)
+        return
+    assert isinstance(value.kind, Mixed)
+    if not any(looks_at_place(body, word, changed) for word in value.held or ()):
+        fill_items(body.outs)
+        return
+    made = Place(body.names.add("next"))
+    body.emit(f"{body.program.declared(value.kind.items[body.outs.index(changed)], made.text)};")
+    fill_items([made if place == changed else place for place in body.outs])
+    body.emit(f"{changed.whole} = {made.text};")
 
 
 def match(body: Body, node: ast.Match) -> None:

@@ -37,8 +37,9 @@ def _from_call(body: Body, target: ast.Tuple, value: Value, source: ast.expr) ->
         raise CannotError(target, what, "write one name for each item")
     places = []
     later = []
-    for part, kind in zip(target.elts, kinds, strict=True):
-        place = open_place(body, part.id, kind, value, source) if isinstance(part, ast.Name) else None
+    for number, (part, kind) in enumerate(zip(target.elts, kinds, strict=True)):
+        own = value.base if number == value.changes else None
+        place = open_place(body, part.id, kind, value, source, own) if isinstance(part, ast.Name) else None
         if place is None:
             word = f"next_{part.id}" if isinstance(part, ast.Name) and part.id != "_" else "unused"
             place = Place(body.names.add(word))

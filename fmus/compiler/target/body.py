@@ -50,10 +50,16 @@ class Body:
         """The C function in the making."""
         self.outs: list[Place] = []
         """Where the results go that are not returned by value."""
+        self.changed: Place | None = None
+        """The argument that is changed into a result."""
+        self.borrowed: set[str] = set()
+        """Variables that stand for fields of it."""
         self.result_of: dict[str, tuple[Place, Kind]] = {}
         """Variables that are the result on every way: they live where it goes."""
         self.anew = {name for name in self.bindings.parameters if self._begins_anew(name)}
         """Parameters that are bound to something new for all the rest of the function."""
+        self.aliases: dict[str, tuple[tuple[str, ...], ...]] = {}
+        """What pointers point to."""
         self.commented = node.lineno
         self.may_write: ast.AST | None = None
         """The call that may write to a store: it is all there is to its statement."""

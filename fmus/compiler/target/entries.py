@@ -84,11 +84,17 @@ class Entries:
             return [*found, *self._systems(model.systems, initialize, step)]
         first = self.instance(model.initialize, result, params)
         found.append([initialize, "{", _called(first, ["params"], "state", "outputs"), "}"])
-        stores = [] if model.store is None else [Struct(model.store)]
-        made = self.instance(model.step, result, *stores, state, inputs, params, INT)
-        given = [*("store" for _ in stores), "state", "inputs", "params", "dt_ns"]
-        call = _called(made, given, "&next", "outputs")
-        return [*found, [step, "{", f"{self.types()['state']} next;", "", call, "*state = next;", "}"]]
+        stores = [] if model.store is None else ["store"]
+        made = self.instance(model.step, result, *(Struct(model.store) for _ in stores), state, inputs, params, INT)
+        given = [*stores, "state", "inputs", "params", "dt_ns"]
+        return [*found, [step, "{", *self._changed(made, state, "state", given, "outputs"), "}"]]
+
+    def _changed(self, made: Instance, kind: Kind, place: str, given: list[str], *results: str) -> list[str]:
+        """Return the call of a function that gives what ``place`` points to anew."""
+        if made.changed is not None:
+            return [_called(made, given, place, *results)]
+        called = _called(made, given, "&next", *results)
+        return [f"{self.program.declared(kind, 'next')};", "", called, f"{_pointed(place)} = next;"]
 
     def _preset(self) -> list[str]:
         """Return the lines that set the parameters which start with another value than their default."""
@@ -169,10 +175,7 @@ class Entries:
             "{",
             *self._tick(systems),
             "for (int64_t i = 0; i < samples; ++i) {",
-            f"{self.program.declared(own, 'next')};",
-            "",
-            _called(sample, [f"&{memory}", "inputs", "params", "period_ns"], "&next"),
-            f"{memory} = next;",
+            *self._changed(sample, own, f"&{memory}", [f"&{memory}", "inputs", "params", "period_ns"]),
             "}",
             "if (clock.usable) {",
             _called(ready, [f"&{memory}", "params"], "outputs"),
@@ -188,7 +191,9 @@ def _called(made: Instance, given: list[str], *results: str) -> str:
     pairs = zip(given, made.parameters, strict=True)
     texts = [text if parameter.by_pointer or text in ("dt_ns", "period_ns") else _pointed(text)
              for text, parameter in pairs]  # fmt: skip
-    if made.outs:
+    if made.changed is not None:
+        results = (*results[: made.changed.result], *results[made.changed.result + 1 :])
+    if made.outs or made.changed is not None:
         return f"{made.name}({', '.join([*texts, *results])});"
     return f"{_pointed(results[0])} = {made.name}({', '.join(texts)});"
 

@@ -8,10 +8,12 @@ from dataclasses import dataclass, field
 from types import FunctionType
 from typing import Any, NamedTuple
 
+from fmus.compiler.source.borrowing import borrowed
 from fmus.compiler.source.flow import Flow
 from fmus.compiler.source.kinds import NOTHING, Array, Kind, Mixed, NoKindError, Open, Struct, is_store, kind_of
 from fmus.compiler.source.refusals import AlreadySaidError, CannotError
 from fmus.compiler.target.body import Body
+from fmus.compiler.target.in_place import InPlace, in_place
 from fmus.compiler.target.layout import flat
 from fmus.compiler.target.program import Program
 from fmus.compiler.target.storage import put
@@ -53,6 +55,8 @@ class Instance:
     result: Kind | None
     lines: list[Any] = field(default_factory=list)
     calls: list["Instance"] = field(default_factory=list)
+    changed: InPlace | None = None
+    """The argument that is changed where it lies, and is a result then."""
     outs: list[tuple[str, Kind]] = field(default_factory=list)
     """Name and kind of the results that are written to pointers."""
     head: str = ""
@@ -153,7 +157,7 @@ def instance_of(program: Program, function: FunctionType, kinds: tuple[Kind, ...
                        if isinstance(kind, Array) and isinstance(asked, Open)]  # fmt: skip
             name = program.names.add("_".join([name, *lengths]), function.__module__)
         result = None if isinstance(known.result, Open) else known.result
-        made = Instance(name, function, tree, [], result)
+        made = Instance(name, function, tree, [], result, changed=in_place(program, function))
         if function in program.writers:
             program.writing.add(name)
         program.instances[function, kinds] = made
@@ -176,7 +180,7 @@ def translate(program: Program, made: Instance, kinds: dict[str, Kind], result: 
         body.refuse(fault, made.node)
     with body.frame(()):
         body.begin_statement()
-        made.parameters = [_parameter(body, name, kind) for name, kind in kinds.items()]
+        made.parameters = [_parameter(body, name, kind, made.changed) for name, kind in kinds.items()]
         _place_results(body, made, result)
         body.more_statements(_without_docstring(made.node.body))
     made.lines = without_unused(list(flat(body.lines)), program.writing)
@@ -200,10 +204,16 @@ def _without_docstring(nodes: list[ast.stmt]) -> list[ast.stmt]:
     return nodes
 
 
-def _parameter(body: Body, name: str, kind: Kind) -> Parameter:
+def _parameter(body: Body, name: str, kind: Kind, changed: InPlace | None) -> Parameter:
     """Return an argument: a struct as pointer to const, but by value if its name is bound anew on some ways."""
     known = variable(body, name)
     known.kind, known.parameter = kind, True
+    if changed is not None and name == changed.name:
+        body.anew.discard(name)
+        known.pointer, known.fixed = True, not body.bindings.rebound(name)
+        if isinstance(kind, Struct):
+            body.borrowed = borrowed(body.node, name, kind.cls)
+        return Parameter(known.c, kind, True, body.program.declared(kind, f"*{known.c}"))
     changes = body.bindings.rebound(name) and (is_scalar(kind) or name not in body.anew)
     known.fixed = not body.bindings.rebound(name) or not changes
     if is_scalar(kind):
@@ -234,6 +244,10 @@ def _place_results(body: Body, made: Instance, result: Kind) -> None:
     kinds = result.items if isinstance(result, Mixed) else (result,)
     names = _returned_names(made.node, len(kinds) if isinstance(result, Mixed) else 0)
     for number, (kind, name) in enumerate(zip(kinds, names, strict=True)):
+        if made.changed is not None and number == made.changed.result:
+            body.changed = variable(body, made.changed.name).place
+            body.outs.append(body.changed)
+            continue
         usual = "result" if len(kinds) == 1 else _word(kind) or f"result{number}"
         given = name in body.bindings.parameters
         own = bool(name) and not is_scalar(kind) and (not given or name in body.anew)
@@ -272,6 +286,6 @@ def _head(program: Program, made: Instance) -> str:
             kind = made.result or kind
         if not isinstance(kind, Open):
             texts.append(program.declared(kind, name if isinstance(kind, Array) else f"*{name}"))
-    result = "void" if made.outs or made.result is None else program.type_name(made.result)
+    result = "void" if made.outs or made.changed or made.result is None else program.type_name(made.result)
     inline = "inline " if len(made.lines) <= SHORT and not any(line.startswith(LOOPS) for line in made.lines) else ""
     return f"static {inline}{result} {made.name}({', '.join(texts) or 'void'})"

@@ -48,14 +48,15 @@ def repeated(body: Body, items: tuple[Value, ...], count: int) -> Value:
 def struct_of(body: Body, kind: Struct, fields: dict[str, Value]) -> Value:
     """Return a NamedTuple of ``fields``."""
 
-    def fill(place: Place) -> None:
-        for name, value in fields.items():
-            put(body, place.member(member_name(name)), value)
+    members = {member_name(name): value for name, value in fields.items()}
 
-    texts = [initial(value) for value in fields.values()]
-    heads = [f".{member_name(name)} = " for name in fields]
-    named = [None if text is None else head + text for head, text in zip(heads, texts, strict=True)]
-    return Value(kind, fill=fill, braces=_braces(named))
+    def fill(place: Place) -> None:
+        for name, value in members.items():
+            put(body, place.member(name), value)
+
+    texts = [initial(value) for value in members.values()]
+    named = [None if text is None else f".{name} = {text}" for name, text in zip(members, texts, strict=True)]
+    return Value(kind, fill=fill, braces=_braces(named), members=members)
 
 
 def _braces(texts: list[str | None]) -> str:

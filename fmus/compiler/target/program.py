@@ -70,6 +70,7 @@ class Program:
         self.bindings: dict[FunctionType, Bindings] = {}
         self.stack: list[FunctionType] = []
         self.signatures: dict[FunctionType, Any] = {}
+        self.in_place: dict[FunctionType, Any] = {}
         self.caller: Any = None
         self.checked: set[Any] = set()
         self.writers = Writers(self.library, self.bindings_of)

@@ -1,9 +1,13 @@
 """How values get into places: initializers, assignments, temporaries, addresses."""
 
 import re
+from dataclasses import dataclass
+from typing import Any
 
 from fmus.compiler.source.kinds import Array, Scalar, Struct
+from fmus.compiler.target.access import Access, access_to, accesses, is_at, overlap
 from fmus.compiler.target.body import Body
+from fmus.compiler.target.layout import flat
 from fmus.compiler.target.values import SMALL, UNKNOWN, Place, Value, is_scalar, place_of, rvalue, scalars_in
 
 NUMBER = re.compile(r"-?\d[\d.]*(?:e[+-]?\d+)?|true|false")
@@ -14,21 +18,96 @@ ONE_BY_ONE = 4
 def put(body: Body, place: Place, value: Value, busy: bool = False) -> None:
     """Write the statements that make ``place`` equal to ``value``; ``busy``: which is made of what the place holds."""
     if value.fill is None:
+        if is_at(body, value, place):
+            return
         if isinstance(value.kind, Array):
             _copy(body, place, value, value.kind)
-        elif rvalue(value) != place.whole:
+        else:
             body.emit(f"{place.whole} = {rvalue(value)};")
-    elif value.braces and isinstance(value.kind, Struct) and (busy or scalars_in(value.kind) <= SMALL):
+    elif value.base is not None and is_at(body, value.base, place):
+        value.fill(place)
+    elif value.braces and isinstance(value.kind, Struct) and scalars_in(value.kind) <= SMALL:
         body.emit(f"{place.whole} = ({body.program.type_name(value.kind)}){value.braces};")
+    elif busy and value.members is not None:
+        put_members(body, place, value.members)
     elif busy:
         put(body, place, hoist(body, value, "next"))
     else:
         value.fill(place)
 
 
+def put_whole(body: Body, place: Place, value: Value) -> None:
+    """Write a new value of what lies at ``place``, which it may be made of."""
+    body.lines += _part(body, place, value).lines
+
+
+def put_members(body: Body, place: Place, members: dict[str, Value]) -> None:
+    """Write members of a struct, whose new values may be made of what it holds: each after all that reads it."""
+    waiting = [_part(body, place.member(name), value) for name, value in members.items()]
+    while waiting:
+        free = [part for part in waiting if not any(other.reads(part) for other in waiting)]
+        if free:
+            body.lines += free[0].lines
+            waiting.remove(free[0])
+            continue
+        looking = [part for part in waiting if any(part.reads(other) for other in waiting)]
+        first = next((part for part in looking if is_scalar(part.value.kind)), looking[0])
+        kept = hoist(body, first.value, re.split(r"\W+", first.place.text)[-1])
+        waiting[waiting.index(first)] = _part(body, first.place, kept)
+
+
+@dataclass
+class Part:
+    """The statements that give a place a new value, and what they look at."""
+
+    place: Place
+    value: Value
+    own: Access
+    lines: list[Any]
+    seen: list[Access]
+
+    def reads(self, other: "Part") -> bool:
+        """Return whether the new value is made of what ``other`` overwrites."""
+        return other is not self and any(overlap(other.own, access) for access in self.seen)
+
+
+def _part(body: Body, place: Place, value: Value) -> Part:
+    own = access_to(body, place)
+    lines, seen = _written(body, place, value, False)
+    changed = value.base is not None and is_at(body, value.base, place)
+    at_once = len(lines) == 1 and _is_store(lines[0], place)
+    if not changed and not at_once and any(overlap(own, access) for access in seen):
+        lines, seen = _written(body, place, value, True)
+    return Part(place, value, own, lines, seen)
+
+
+def _written(body: Body, place: Place, value: Value, busy: bool) -> tuple[list[Any], list[Access]]:
+    """Return the statements of an assignment, and what they look at."""
+    with body.capture() as lines:
+        put(body, place, value, busy)
+    lines = list(flat(lines))
+    return lines, [access for line in lines for access in _seen(body, line, place)]
+
+
+def _seen(body: Body, line: str, place: Place) -> list[Access]:
+    """Return what a statement looks at; not the place that it writes to, nor the one that is given to a function."""
+    if _is_store(line, place):
+        left, _, right = line.partition(" = ")
+        return accesses(body, right) + [access for index in re.findall(r"\[(.*)\]", left)
+                                        for access in accesses(body, index)]  # fmt: skip
+    for own in (place.address, place.text):
+        if line.endswith((f"({own});", f", {own});")):
+            line = line.removesuffix(f"{own});")
+            break
+    return accesses(body, line)
+
+
+def _is_store(line: str, place: Place) -> bool:
+    """Return whether a statement assigns to a place or a part of it."""
+    return re.match(rf"{re.escape(place.whole)}(?:(?:\.|->|\[)[^=]*)? = ", line) is not None
+
+
 def _copy(body: Body, place: Place, value: Value, kind: Array) -> None:
-    if value.text == place.text:
-        return
     index = body.names.add("i")
     body.emit(f"for (int {index} = 0; {index} < {kind.length}; ++{index}) {{")
     put(body, place.element(index), item_of(value, index))

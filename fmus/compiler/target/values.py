@@ -81,6 +81,12 @@ class Value:
     """What is filled, as an initializer, if it can be."""
     items: tuple["Value", ...] | None = None
     """Of a tuple written out."""
+    members: dict[str, "Value"] | None = None
+    """Of a struct written out, under their names in C."""
+    base: "Value | None" = None
+    """The place that this is a changed copy of; ``fill`` of that very place changes it, without a copy."""
+    changes: int = 0
+    """Which item of several results is the changed copy of ``base``."""
 
     def least(self) -> int | None:
         """Return a lower bound of an integer, if known."""

@@ -6,8 +6,9 @@ from dataclasses import dataclass
 from typing import Any
 
 from fmus.compiler.source.bindings import Home, Path
-from fmus.compiler.source.kinds import Array, Kind, Open, described
+from fmus.compiler.source.kinds import Array, Kind, Open, Struct, described
 from fmus.compiler.source.refusals import AlreadySaidError
+from fmus.compiler.target.access import accesses, is_at
 from fmus.compiler.target.body import Body
 from fmus.compiler.target.making import coerced
 from fmus.compiler.target.storage import declare, put
@@ -122,6 +123,8 @@ def _first(body: Body, known: Variable, name: str, value: Value) -> None:
     if slot is not None:
         known.c, known.pointer, known.fixed = slot.text, slot.pointer, known.once
         put(body, known.place, value)
+    elif name in body.borrowed and isinstance(kind, Struct) and value.place:
+        _borrow(body, known, value)
     elif body.frames[-1].path != known.home.path:
         frame = _frame(body, known.home.path)
         frame.slot.append(f"{body.program.declared(kind, known.c)};")
@@ -152,15 +155,31 @@ def _point(body: Body, known: Variable, value: Value) -> None:
     """Write a variable as a pointer to what does not change."""
     text = value.text if isinstance(value.kind, Array) else place_of(value).address
     body.emit(f"{body.program.pointed(value.kind, known.c)} = {text};")
+    body.aliases[known.c] = tuple(accesses(body, text))
     known.pointer, known.fixed, known.const = not isinstance(value.kind, Array), True, value.const
 
 
-def open_place(body: Body, name: str, kind: Kind, value: Value, source: ast.AST) -> Place | None:
-    """Return where a function may write what ``name`` gets, declared if it is new; None if it must not yet."""
+def _borrow(body: Body, known: Variable, value: Value) -> None:
+    """Write a variable as a pointer to what it is at first, and will be put back into."""
+    place = place_of(value)
+    body.emit(f"{body.program.declared(value.kind, f'*{known.c}')} = {place.address};")
+    known.pointer = True
+    body.aliases[known.c] = tuple(accesses(body, place.text))
+
+
+def open_place(
+    body: Body, name: str, kind: Kind, value: Value, source: ast.AST, own: Value | None = None
+) -> Place | None:
+    """Return where a function may write what ``name`` gets, declared if it is new; None if it must not yet.
+
+    ``own`` is the argument that the function changes into it.
+    """
     known = variable(body, name)
     if not known.home.loads:
         return None
     if known.kind is not None:
+        if own is not None and is_at(body, own, known.place):
+            return known.place
         if known.kind != kind or (known.parameter and not is_scalar(kind)):
             return None
         return None if looks_at(value, known.c, source, name) else known.place

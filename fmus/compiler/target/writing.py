@@ -159,6 +159,8 @@ class Writer:
     def function(self, made: Instance) -> list[str]:
         """Return a C function with its docstring."""
         text = ast.get_docstring(made.node) or ""
+        if made.changed is not None:
+            text = f"{text}\n\nChanges ``{made.changed.name}``.".strip()
         lines = laid_out([made.head, "{", *flat(made.lines), "}"])
         return ["", *(comment(text) if text else []), *lines]
 

@@ -149,7 +149,7 @@ def test_it_has_units_licence_parameters_and_its_own_reference_result(containers
     assert description.description == CASE.title
     assert description.defaultExperiment.stopTime == str(CASE.stop_time)
     assert known["vehicle.pose.x"].unit == "m"
-    assert known["controller.ntbpt.k1"].variability == "tunable"
+    assert known["controller.guo2015.k1"].variability == "tunable"
     assert known["controller.lateral_error"].causality == "local"
     assert known["controller.phase"].variability == "discrete"
     assert "controller.apa.drive.k1" not in known, "of another system"

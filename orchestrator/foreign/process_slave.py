@@ -26,6 +26,8 @@ from orchestrator.foreign import worker
 from orchestrator.foreign.archive import binary, checked, unpack
 from orchestrator.text.errors import RunError
 
+LAST = 2.0
+"""For a process to end that has nothing to say any more [s]."""
 LOOK = 0.05
 """Between two looks at the clock [s]."""
 ROOT = Path(__file__).resolve().parents[2]
@@ -259,7 +261,12 @@ class _Process:
                 return
 
     def _gone(self, limit: float) -> _NoAnswerError:
-        code = self._child.wait()
+        try:
+            code = self._child.wait(LAST)
+        except subprocess.TimeoutExpired:
+            end(self._child)
+            self._child.wait()
+            return _NoAnswerError("closed the pipes of its process {when}")
         printed = self._printed.read_bytes()[-2000:].decode(errors="replace").strip().splitlines()
         words = f"; it printed: {printed[-1][:300]}".replace("{", "{{").replace("}", "}}") if printed else ""
         if self._is_late:

@@ -4,6 +4,7 @@ Runs in the process of the FMU and imports nothing but the standard library.
 """
 
 import ctypes
+import struct
 import sys
 from collections.abc import Callable, Mapping
 from typing import Any
@@ -50,25 +51,34 @@ class ValueCall:
     def __init__(self, call: Callable[..., int], component: Any, group: Group, counts: bool) -> None:
         self.count = int(group["count"])
         kind = C_TYPES[group["type"]]
-        self.array = (kind * max(self.count, 1))()
-        self.is_real = kind in (ctypes.c_double, ctypes.c_float)
+        self.size = 8 * self.count
+        """Of its numbers as doubles [bytes]."""
+        self._array = (kind * max(self.count, 1))()
+        self._is_double, self._is_real = kind is Double, kind in (Double, ctypes.c_float)
+        self._packed = struct.Struct(f"={self.count}d")
         references = [int(item) for item in group["references"]]
         self._references = (ctypes.c_uint32 * max(len(references), 1))(*references)
         more = (Size(self.count),) if counts else ()
-        self._arguments = (component, self._references, Size(len(references)), self.array, *more)
+        self._arguments = (component, self._references, Size(len(references)), self._array, *more)
         self._call = call
 
     def __call__(self) -> int:
         """Make the call and return its FMI status."""
         return int(self._call(*self._arguments)) if self.count else OK
 
-    def take(self, values: list[float]) -> None:
-        """Lay numbers into the memory."""
-        self.array[: self.count] = values if self.is_real else [int(value) for value in values]
+    def take(self, data: bytes) -> None:
+        """Lay numbers, given as doubles, into the memory."""
+        if self._is_double:
+            ctypes.memmove(self._array, data, self.size)
+        else:
+            values = self._packed.unpack(data)
+            self._array[: self.count] = values if self._is_real else [int(value) for value in values]
 
-    def give(self) -> list[float]:
-        """Return what is in the memory."""
-        return [float(value) for value in self.array[: self.count]]
+    def give(self) -> bytes:
+        """Return what is in the memory, as doubles."""
+        if self._is_double:
+            return ctypes.string_at(self._array, self.size)
+        return self._packed.pack(*self._array[: self.count])
 
 
 class _Callbacks(ctypes.Structure):

@@ -12,6 +12,7 @@ import threading
 import time
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
+from math import inf, isnan
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -123,9 +124,9 @@ class ProcessSlave:
         """Ask for the outputs, unless the last step has brought them. What anything is made of must not be NaN."""
         if not self._is_fresh:
             self._lay(self._ask(worker.OUTPUTS, b"", f"giving outputs at {self._t_ns / 1e9:g} s"))
-        used = self.outputs.used
-        if np.isnan(self.outputs.values[used]).any():
-            names = [self.outputs.names[place] for place in used if np.isnan(self.outputs.values[place])]
+        used = self.outputs.values[self.outputs.used]
+        if isnan(np.minimum.reduce(used, initial=inf)):
+            names = [self.outputs.names[place] for place in self.outputs.used if isnan(self.outputs.values[place])]
             raise RunError(f"{self.name} gives NaN for {', '.join(names)} at {self._t_ns / 1e9:g} s")
 
     def send_inputs(self) -> None:

@@ -18,8 +18,8 @@ from typing import Any
 
 from orchestrator.foreign import fmi_calls
 
-HEAD = struct.Struct("<ci")
-TIMES = struct.Struct("<dd")
+HEAD = struct.Struct("=ci")
+TIMES = struct.Struct("=dd")
 DONE, REFUSED, MESSAGE = b"=", b"!", b"M"
 LOAD, PARAMETERS, INITIALIZE, START, OUTPUTS, INPUTS, STEP, CLOSE = (
     letter.encode() for letter in ("L", "P", "I", "R", "O", "N", "S", "C")
@@ -69,7 +69,6 @@ class Worker:
         self._gets: list[Any] = []
         self._sets: list[Any] = []
         self._seen = b""
-        self._give = self._take = struct.Struct("")
 
     def serve(self) -> None:
         """Do what is asked until there is nobody who asks."""
@@ -110,21 +109,21 @@ class Worker:
         except (OSError, AttributeError) as error:
             self._last = self._last or str(error)
             raise fmi_calls.RefusedError("cannot be loaded here", fmi_calls.ERROR) from error
-        self._give = struct.Struct(f"<{sum(item.count for item in self._gets)}d")
-        self._take = struct.Struct(f"<{sum(item.count for item in self._sets)}d")
         return b""
 
     def _parameters(self, data: bytes) -> bytes:
         for group in json.loads(data):
             transfer = self._fmu.transfer("Set", group)
-            transfer.take(group["values"])
+            transfer.take(struct.pack(f"={transfer.count}d", *group["values"]))
             self._checked(transfer(), "refuses its parameters")
         return b""
 
     def _step(self, data: bytes) -> bytes:
         t, dt = TIMES.unpack_from(data)
         self._inputs(data[TIMES.size :])
-        self._checked(self._fmu.step(t, dt), f"failed at {t:g} s")
+        status = self._fmu.step(t, dt)
+        if status > fmi_calls.WARNING:
+            raise fmi_calls.RefusedError(f"failed at {t:g} s", status)
         return self._outputs()
 
     def _inputs(self, data: bytes) -> bytes:
@@ -132,20 +131,17 @@ class Worker:
         if data == self._seen:
             return b""
         self._seen = data
-        values = list(self._take.unpack(data))
         at = 0
         for transfer in self._sets:
-            transfer.take(values[at : at + transfer.count])
-            at += transfer.count
+            transfer.take(data[at : at + transfer.size])
+            at += transfer.size
             self._checked(transfer(), "refuses its inputs")
         return b""
 
     def _outputs(self) -> bytes:
-        values: list[float] = []
         for transfer in self._gets:
             self._checked(transfer(), "gives no outputs")
-            values += transfer.give()
-        return self._give.pack(*values)
+        return b"".join([transfer.give() for transfer in self._gets])
 
     def _close(self, data: bytes) -> bytes:
         """Terminate and free, as far as FMI allows: after an error free alone, after fmiFatal nothing."""

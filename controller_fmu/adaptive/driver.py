@@ -5,6 +5,7 @@ deceleration a is seen while he stops, between 0.8 and 0.3 of the speed he had, 
 which is his reaction once more.
 """
 
+import math
 from typing import NamedTuple
 
 from controller_fmu.adaptive.params import BeliefParams
@@ -17,6 +18,9 @@ SLOWEST = 0.15
 """A stop from less than this [m/s] teaches nothing."""
 SURE = 0.05
 """Allowed on top of a reaction seen at setting out only [s]."""
+STOOD = 0.05
+LONG_STOOD = 1.0
+"""He stands after this time [s], if he has had time to act on the prompt; after the longer one in any case."""
 SMOOTHED = 0.08
 """Time constant of the acceleration [s]."""
 FASTER = 1.12
@@ -53,6 +57,11 @@ class Driver(NamedTuple):
     stop_speed: float = 0.0
     stop_way: float = 0.0
     """Driven since the prompt to stop [m]."""
+    foreseen: float = 0.0
+    """The way of this stop [m] as it was foreseen."""
+    stretch: float = 1.0
+    """His stops are longer than foreseen by this factor."""
+    stood_ns: int = 0
     early_ns: int = 0
     late_ns: int = 0
     """When he had slowed down to ``EARLY`` and ``LATE``; 0: not yet."""
@@ -61,15 +70,16 @@ class Driver(NamedTuple):
 def prompted(driver: Driver, speed: float) -> Driver:
     """Return the driver told another thing than before, at ``speed`` [m/s]."""
     return driver._replace(
-        asked_ns=0, moved=abs(speed) > 0.0, stop_speed=abs(speed), stop_way=0.0, early_ns=0, late_ns=0
+        asked_ns=0, moved=abs(speed) > 0.0, stop_speed=abs(speed), stop_way=0.0, early_ns=0, late_ns=0, stood_ns=0
     )
 
 
-def told_to_stop(driver: Driver, speed: float, advised: float) -> Driver:
+def told_to_stop(driver: Driver, speed: float, advised: float, believed: BeliefParams) -> Driver:
     """Return the driver told to stop at ``speed`` [m/s]: who has come down with the advice on the way slows down."""
     v = abs(speed)
     slows = driver.slows or (advised < SLOWER * driver.fastest and v <= FASTER * advised)
-    return prompted(driver, speed)._replace(slows=slows and driver.obeys)
+    foreseen = stopping_way(driver, believed)
+    return prompted(driver, speed)._replace(slows=slows and driver.obeys, foreseen=foreseen)
 
 
 def seen_driving(
@@ -98,7 +108,7 @@ def seen_driving(
     )
 
 
-def seen_stopping(driver: Driver, speed: float, dt_ns: int) -> Driver:
+def seen_stopping(driver: Driver, speed: float, standstill: float, dt_ns: int) -> Driver:
     """Return the driver after a sample in which he was prompted to stop."""
     v = abs(speed)
     asked_ns = driver.asked_ns + dt_ns
@@ -108,9 +118,16 @@ def seen_stopping(driver: Driver, speed: float, dt_ns: int) -> Driver:
         fastest=max(driver.fastest, v),
         asked_ns=asked_ns,
         stop_way=driver.stop_way + v * (dt_ns * 1e-9),
+        stood_ns=driver.stood_ns + dt_ns if v <= standstill else 0,
         early_ns=asked_ns if driver.early_ns == 0 and v < EARLY * driver.stop_speed else driver.early_ns,
         late_ns=asked_ns if driver.late_ns == 0 and v < LATE * driver.stop_speed else driver.late_ns,
     )
+
+
+def has_stopped(driver: Driver, believed: BeliefParams) -> bool:
+    """Return whether he stands because he was told to; one who crawls may stand for a moment before he acts on it."""
+    stood = driver.stood_ns * 1e-9
+    return stood >= STOOD and (driver.asked_ns * 1e-9 >= reaction_of(driver, believed) or stood >= LONG_STOOD)
 
 
 def stopped(driver: Driver, believed: BeliefParams) -> Driver:
@@ -125,7 +142,10 @@ def stopped(driver: Driver, believed: BeliefParams) -> Driver:
     if driver.stops > 0 or driver.reaction > 0.0:
         known = driver.reaction - (SURE if driver.stops == 0 else 0.0)
         reaction = 0.5 * (known + clamp(reaction, known - 0.3, known + 0.3))
-    return still._replace(reaction=reaction, deceleration=deceleration, stops=driver.stops + 1)
+    stretch = driver.stretch
+    if driver.stops > 0 and driver.foreseen > 0.0:
+        stretch = clamp(stretch * math.sqrt(driver.stop_way / driver.foreseen), 0.8, 1.5)
+    return still._replace(reaction=reaction, deceleration=deceleration, stops=driver.stops + 1, stretch=stretch)
 
 
 def reaction_of(driver: Driver, believed: BeliefParams) -> float:
@@ -143,13 +163,14 @@ def stopping_way(driver: Driver, believed: BeliefParams) -> float:
     r = reaction_of(driver, believed)
     most = max(driver.speed, driver.cruise) if driver.cruise > 0.0 else driver.speed + 2.0 * r
     braking = clamp(driver.speed + clamp(driver.acceleration, -1.0, 15.0) * r, 0.0, most)
-    return 0.5 * (driver.speed + braking) * r + 0.5 * braking * braking / deceleration_of(driver, believed)
+    way = 0.5 * (driver.speed + braking) * r + 0.5 * braking * braking / deceleration_of(driver, believed)
+    return driver.stretch * way
 
 
 def shortest_way(driver: Driver, believed: BeliefParams) -> float:
     """Return the shortest way [m] he can be had to drive: he is told to stop as soon as he has set out."""
     v = driver.cruise
-    return 1.0 * v * reaction_of(driver, believed) + 0.5 * v * v / deceleration_of(driver, believed)
+    return driver.stretch * v * (reaction_of(driver, believed) + 0.5 * v / deceleration_of(driver, believed))
 
 
 def _smoothed(driver: Driver, v: float, dt_ns: int) -> float:

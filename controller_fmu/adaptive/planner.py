@@ -4,6 +4,7 @@ A route is driven as far as its curvature is continuous. At a jump the driver ha
 standstill, after which all is planned anew. So a plan is a first way, and the proof that another leads on from its end.
 """
 
+import math
 from typing import NamedTuple
 
 from controller_fmu.adaptive.curves import (
@@ -36,8 +37,12 @@ AHEAD = (0.3, 0.6, 1.0, 1.5, 2.0, 2.6, 3.3)
 """Ways [m] driven ahead for a better start."""
 TURNS = (0.0, -0.45, 0.45, -0.9, 0.9)
 """Curvature of them, over the largest."""
-ALIGNED = 0.02
-ALIGNED_HEADING = 0.008
+ALIGNED = 0.015
+ALIGNED_HEADING = 0.007
+"""What tracking may leave [m], [rad] where it alone is to put the car right."""
+WIDEST = 0.08
+BESIDE = 0.25
+"""Largest offset [m] and heading [rad] from which the car goes ahead along the slot's line if nothing else leads in."""
 INSIDE = 0.9
 """A car nearer than this [m] to the slot's line, turned by less than this [rad], is put right ahead of the target."""
 NARROW = 0.16
@@ -75,7 +80,7 @@ ANY_SPEED = 99.0
 
 def plan(pose: Pose, demand: Demand, wheel: Wheel, room: Room) -> Plan:
     """Return the plan from standstill at ``pose`` (slot's frame); its route has no direction if there is none."""
-    if abs(pose.y) <= ALIGNED and abs(pose.heading) <= ALIGNED_HEADING:
+    if _is_aligned(pose, abs(pose.x)):
         return plan_straight(pose, demand, room)
     back = plan_back(pose, demand, wheel, room)
     if back.route.direction != 0:
@@ -84,21 +89,25 @@ def plan(pose: Pose, demand: Demand, wheel: Wheel, room: Room) -> Plan:
         onto = plan_onto(pose, demand, wheel, room)
         if onto.route.direction != 0:
             return onto
+    if abs(pose.y) < BESIDE and abs(pose.heading) < BESIDE and farthest(room) - pose.x >= demand.shortest:
+        return Plan(straight(Pose(pose.x, 0.0, 0.0), 1, farthest(room) - pose.x), ANY_SPEED)
     ahead = plan_ahead(pose, demand, wheel, room, True)
     if ahead.route.direction != 0:
         return ahead
-    halting = _smooth(pose, 0.0, 0.0, demand.rest, demand, wheel, room)
-    if halting.direction != 0:
-        return Plan(halting, ANY_SPEED)
+    halting = plan_halting(pose, demand, wheel, room)
+    if halting.route.direction != 0:
+        return halting
     return plan_ahead(pose, demand, wheel, room, False)
 
 
 def plan_straight(pose: Pose, demand: Demand, room: Room) -> Plan:
-    """Return the way straight to the target, or ahead first if the driver cannot be stopped so soon."""
+    """Return the way along the slot's line to the target, or ahead first if the driver cannot be stopped so soon."""
     if abs(pose.x) >= demand.shortest:
-        return Plan(straight(pose, -1 if pose.x > 0.0 else 1, abs(pose.x)), ANY_SPEED)
-    ahead = max(demand.shortest, demand.shortest + 0.3 - pose.x)
-    return Plan(straight(pose, 1, max(0.1, min(ahead, farthest(room) - pose.x))), ANY_SPEED)
+        return Plan(straight(Pose(pose.x, 0.0, 0.0), -1 if pose.x > 0.0 else 1, abs(pose.x)), ANY_SPEED)
+    ahead = min(max(demand.shortest, demand.shortest + 0.3 - pose.x), farthest(room) - pose.x)
+    if ahead < demand.shortest:
+        return NO_PLAN
+    return Plan(straight(Pose(pose.x, 0.0, 0.0), 1, ahead), ANY_SPEED)
 
 
 def farthest(room: Room) -> float:
@@ -115,6 +124,14 @@ def plan_back(pose: Pose, demand: Demand, wheel: Wheel, room: Room) -> Plan:
         return moving
     stop = stop_on_arc(pose, 0.0, wheel.radius, demand, wheel, room)
     return Plan(stop, ANY_SPEED)
+
+
+def plan_halting(pose: Pose, demand: Demand, wheel: Wheel, room: Room) -> Plan:
+    """Return the plan in reverse on which the wheel turns at standstill only."""
+    stop = stop_on_arc(pose, 0.0, wheel.radius, demand._replace(speed=0.0), wheel, room)
+    if stop.direction != 0:
+        return Plan(stop, ANY_SPEED)
+    return Plan(_smooth(pose, 0.0, 0.0, demand.rest, demand, wheel, room), ANY_SPEED)
 
 
 def _moving(pose: Pose, demand: Demand, wheel: Wheel, room: Room) -> Plan:
@@ -215,10 +232,24 @@ def plan_ahead(pose: Pose, demand: Demand, wheel: Wheel, room: Room, moving: boo
             route = arc(pose, 1, way, turn / wheel.radius)
             if room_along(route, room, enough) >= enough:
                 end = point_at(route, way).pose
-                back = _moving(end, demand, wheel, room) if moving else plan_back(end, demand, wheel, room)
+                back = _moving(end, demand, wheel, room) if moving else plan_halting(end, demand, wheel, room)
                 if back.route.direction != 0:
                     return Plan(route, ANY_SPEED)
     return NO_PLAN
+
+
+def _is_aligned(pose: Pose, way: float) -> bool:
+    """Return whether tracking alone puts the car right on the slot's line over ``way`` [m].
+
+    With both gains 1 and 2 the offset obeys y'' = -y - 2 y': y = (y0 + (y0 + y0') s) exp(-s).
+    """
+    slope = -math.tan(pose.heading) if pose.x > 0.0 else math.tan(pose.heading)
+    if abs(pose.y) > WIDEST or abs(slope) > WIDEST:
+        return False
+    decay = math.exp(-way)
+    both = pose.y + slope
+    y = (pose.y + both * way) * decay
+    return abs(y) <= ALIGNED and abs(slope - both * way) * decay <= ALIGNED_HEADING
 
 
 def _slower(route: Route, demand: Demand, wheel: Wheel, room: Room) -> Route:

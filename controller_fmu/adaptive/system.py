@@ -7,6 +7,7 @@ from controller_fmu.adaptive.chart import Guard, transition
 from controller_fmu.adaptive.curves import Wheel
 from controller_fmu.adaptive.driver import (
     Driver,
+    has_stopped,
     prompted,
     reaction_of,
     seen_driving,
@@ -57,6 +58,8 @@ class AdaptiveState(NamedTuple):
     end: float = 0.0
     """Way along the route [m] at which the car is to stand."""
     foot: Foot = Foot()
+    begun: Foot = Foot()
+    """At the beginning of the route."""
     driver: Driver = Driver()
     request: float = 0.0
     moving: bool = False
@@ -91,6 +94,8 @@ def adaptive_sample(
         driver=_driver(state, inputs, params, dt_ns),
     )
     standing = abs(inputs.measured_speed) <= params.threshold.standstill
+    if state.phase == Phase.STOP:
+        standing = standing and has_stopped(seen.driver, params.adaptive.belief)
     if standing and state.phase in (Phase.STANDBY, Phase.STOP):
         seen = _stood(seen, pose, params)
     elif DIRECTION_OF_PHASE[state.phase] != 0 or state.phase == Phase.STOP:
@@ -114,7 +119,7 @@ def _driver(state: AdaptiveState, inputs: ControllerInput, params: ControllerPar
     """Return the driver as known after this sample."""
     speed = inputs.measured_speed
     if state.phase == Phase.STOP:
-        return seen_stopping(state.driver, speed, dt_ns)
+        return seen_stopping(state.driver, speed, params.threshold.standstill, dt_ns)
     if DIRECTION_OF_PHASE[state.phase] != 0:
         believed = params.adaptive.belief
         return seen_driving(state.driver, speed, state.advice, params.threshold.standstill, believed, dt_ns)
@@ -133,7 +138,8 @@ def _stood(state: AdaptiveState, pose: Pose, params: ControllerParams) -> Adapti
     demand = Demand(speed, driver.obeys, path.rest, 0.5 if driver.stops > 0 else 0.4, shortest)
     wheel = wheel_of(state.monitor.wheel.steering, params)
     planned = plan(pose, demand, wheel, room_of(params.wheelbase, params.adaptive.room))
-    return state._replace(driver=driver, plan=planned, end=drivable(planned.route), foot=Foot(reference=pose))
+    foot = foot_on(planned.route, 0.0, pose) if planned.route.direction != 0 else Foot(reference=pose)
+    return state._replace(driver=driver, plan=planned, end=drivable(planned.route), foot=foot, begun=foot)
 
 
 def wheel_of(steering: Steering, params: ControllerParams) -> Wheel:
@@ -181,7 +187,10 @@ def _guards(
     wheel_there = abs(inputs.steering_wheel_angle - state.request) <= params.threshold.wheel
     straight = abs(inputs.steering_wheel_angle) <= params.threshold.wheel
     limit = params.adaptive.end
-    off = abs(state.foot.lateral_error) > limit.leave_lateral or abs(state.foot.heading_error) > limit.leave_heading
+    begun = state.begun
+    off = abs(state.foot.lateral_error) > limit.leave_lateral + abs(begun.lateral_error) or abs(
+        state.foot.heading_error
+    ) > limit.leave_heading + abs(begun.heading_error)
     left = state.end - state.foot.way
     must = off or left <= stopping_way(state.driver, params.adaptive.belief)
     return (
@@ -204,7 +213,7 @@ def _moved_on(state: AdaptiveState, phase: int, inputs: ControllerInput, params:
     if phase != state.phase and direction != 0:
         driver = prompted(driver, inputs.measured_speed)
     if phase != state.phase and phase == Phase.STOP:
-        driver = told_to_stop(driver, inputs.measured_speed, state.advice)
+        driver = told_to_stop(driver, inputs.measured_speed, state.advice, params.adaptive.belief)
     along = direction * inputs.measured_speed
     moved = state._replace(
         phase=phase,
@@ -224,12 +233,10 @@ def _request(state: AdaptiveState, params: ControllerParams) -> float:
     if state.phase in (Phase.STANDBY, Phase.STRAIGHTEN) or state.plan.route.direction == 0:
         return 0.0
     route = state.plan.route
-    if state.phase == Phase.PRE_STEER:
-        angle = math.atan(params.wheelbase * curvature_at(route, INTO))
-        return wheel_request(angle, state.frame.mirror, params)
     path = params.adaptive.path
     late = delay_of(state.monitor.wheel.steering) + LOOP
-    curvature = curvature_at(route, min(state.foot.way + late * state.driver.speed, max(state.end, state.foot.way)))
+    soon = max(INTO, state.foot.way + late * state.driver.speed)
+    curvature = curvature_at(route, min(soon, max(state.end, state.foot.way)))
     turned = clamp(state.foot.heading_error, -STEEPEST, STEEPEST)
     c = math.cos(turned)
     feedback = path.k1 * state.foot.lateral_error + route.direction * path.k2 * math.tan(turned)

@@ -33,14 +33,14 @@ def drive(speeds, driver=UNKNOWN, advised=2.5):
 def stop(driver, reaction, deceleration, advised=2.5):
     """Return the driver after a stop, and the way it took [m]."""
     speed, way = driver.speed, 0.0
-    driver = told_to_stop(driver, speed, advised)
+    driver = told_to_stop(driver, speed, advised, BELIEF)
     for k in range(1000):
         if k * 0.01 >= reaction:
             speed = max(0.0, speed - deceleration * 0.01)
         way += speed * 0.01
         if speed == 0.0:
             return stopped(driver, BELIEF), way
-        driver = seen_stopping(driver, speed, DT)
+        driver = seen_stopping(driver, speed, 0.005, DT)
     raise AssertionError
 
 
@@ -82,9 +82,9 @@ def test_who_drives_faster_than_advised_does_not_obey():
 
 def test_who_comes_down_with_the_advice_slows_down():
     driver = drive([0.0] * 20 + [1.0] * 200)
-    assert not told_to_stop(driver, 1.0, 1.0).slows
-    assert not told_to_stop(driver, 1.0, 0.5).slows
-    assert told_to_stop(driver, 0.5, 0.5).slows
+    assert not told_to_stop(driver, 1.0, 1.0, BELIEF).slows
+    assert not told_to_stop(driver, 1.0, 0.5, BELIEF).slows
+    assert told_to_stop(driver, 0.5, 0.5, BELIEF).slows
 
 
 def test_the_shortest_way_is_that_of_a_stop_asked_for_when_he_sets_out():

@@ -90,7 +90,7 @@ _room: tuple[Path, int] | None = None
 def new_folder(name: str) -> Path:
     """Return a new folder for a while; its path is plain. Remove it with :func:`remove_folder`. Raises ``OSError``."""
     with _making:
-        folder = Path(tempfile.mkdtemp(prefix=f"{name}-", dir=_own_room()))
+        folder = Path(tempfile.mkdtemp(prefix=f"{name}-", dir=own_room()))
     return folder
 
 
@@ -116,11 +116,17 @@ def remove_all_folders() -> None:
         folder, handle = _room
         _room = None
         remove_folder(folder)
-        with suppress(OSError):
+        if handle >= 0:
             os.close(handle)
 
 
-def _own_room() -> Path:
+def live_in(room: Path) -> None:
+    """Let this process, a worker of another, keep its folders in the room of that one, which removes them."""
+    global _room
+    _room = Path(tempfile.mkdtemp(prefix="worker-", dir=room)), -1
+
+
+def own_room() -> Path:
     """Return the folder of this process, locked while it lives; folders of processes that are gone are removed."""
     global _room
     if _room is None or not _room[0].is_dir():

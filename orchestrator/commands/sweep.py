@@ -9,8 +9,10 @@ from typing import TYPE_CHECKING
 
 from orchestrator.commands import STUDIES
 from orchestrator.cosim.fmu_files import KINDS
+from orchestrator.drawing.save import check_picture
 from orchestrator.text.console import console
-from orchestrator.text.errors import INTERRUPTED, PARKED, BadInput, suggestion
+from orchestrator.text.errors import INTERRUPTED, PARKED, BadInput, shown, suggestion
+from orchestrator.text.owned import owned
 
 if TYPE_CHECKING:
     from orchestrator.sweep.study.study import Study
@@ -72,22 +74,32 @@ def run(arguments: argparse.Namespace) -> int:
         from orchestrator.sweep.sweep import Options, sweep
     except ModuleNotFoundError as error:
         raise BadInput(f"{error.name} is not installed; run: pip install 'apa-cosim[native,sweep]'") from error
+    if arguments.first < 0:
+        raise BadInput(f"{arguments.first}: expected 0 or more", key="--first")
+    if arguments.picture is not None:
+        check_picture(arguments.picture)
     study = chosen_study(arguments.study, arguments.set)
     study = study._replace(design=study.design.part(arguments.first, arguments.every))
+    if not len(study.design.seeds):
+        raise BadInput(f"{arguments.first}: the study has fewer runs", key="--first")
     out: Path = arguments.out or Path("runs") / study.name
-    out.mkdir(parents=True, exist_ok=True)
     names = ("fmus", "dask", "workers", "chunk", "resume", "restart")
-    swept = sweep(study, out, Options(**{name: getattr(arguments, name) for name in names}))
-    written = {} if swept.table is None else _write(swept.table, arguments)
+    with owned(out):
+        swept = sweep(study, out, Options(**{name: getattr(arguments, name) for name in names}))
+        written = {} if swept.table is None else _write(swept.table, arguments)
+        _tell(swept, written, arguments)
+        if swept.table is None:
+            return INTERRUPTED
+        return _report(arguments.study, swept.table, quiet=arguments.json)
+
+
+def _tell(swept: "Swept", written: dict[str, Path], arguments: argparse.Namespace) -> None:
     if arguments.json:
         numbers = {"count": swept.count, "done": swept.done, "made": swept.made, "seconds": swept.seconds}
         files = {name: str(path) for name, path in written.items()}
         print(json.dumps({**numbers, "engine": swept.engine, "note": swept.note, **files}, indent=2))
     else:
         _print(swept, written, arguments.study)
-    if swept.table is None:
-        return INTERRUPTED
-    return _report(arguments.study, swept.table, quiet=arguments.json)
 
 
 def chosen_study(name: str, sets: list[str]) -> "Study":
@@ -96,7 +108,7 @@ def chosen_study(name: str, sets: list[str]) -> "Study":
 
     pairs = dict(text.split("=", 1) for text in sets if "=" in text)
     if len(pairs) != len(sets):
-        raise BadInput(f"{sets}: expected KEY=VALUE", file="--set")
+        raise BadInput(f"{shown(sets)}: expected KEY=VALUE", file="--set")
     if name not in STUDIES:
         return read_study(name, pairs, STUDIES)
     made: Study = importlib.import_module(STUDIES[name]).study(**_whole(name, pairs))
@@ -110,8 +122,8 @@ def _whole(name: str, pairs: dict[str, str]) -> dict[str, int]:
         if key not in known:
             hint = suggestion(key, known) or f"; expected {', '.join(known) or 'nothing'}"
             raise BadInput(f"{name} has no such key{hint}", file="--set", key=key)
-        if not value.strip().isdigit():
-            raise BadInput(f"{value!r} is not a whole number of at least 0", file="--set", key=key)
+        if not (value.strip().isascii() and value.strip().isdigit() and len(value) < 10):
+            raise BadInput(f"{shown(value)} is not a whole number of at least 0", file="--set", key=key)
     return {key: int(value) for key, value in pairs.items()}
 
 

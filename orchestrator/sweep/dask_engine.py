@@ -13,7 +13,7 @@ from typing import Any
 from orchestrator.cosim.fmu_files import sources_hash
 from orchestrator.cosim.master import Interrupt
 from orchestrator.cosim.slave import Array
-from orchestrator.sweep.engines import AHEAD, POLL, Task, cores
+from orchestrator.sweep.engines import AHEAD, POLL, Task, cores, safe_children
 from orchestrator.sweep.job import Chunk, Job
 from orchestrator.text.errors import BadInput
 
@@ -29,12 +29,17 @@ class DaskEngine:
         self._task = task
         self._cluster: Any = None
         if address is None:
-            self._cluster = distributed.LocalCluster(
-                n_workers=workers or cores(), threads_per_worker=1, processes=True, dashboard_address=None
-            )
+            with safe_children():
+                self._cluster = distributed.LocalCluster(
+                    n_workers=workers or cores(),
+                    threads_per_worker=1,
+                    processes=True,
+                    dashboard_address=None,
+                    host="127.0.0.1",
+                )
         try:
             self._client = distributed.Client(address or self._cluster, timeout=CONNECT, set_as_default=False)
-        except OSError as error:
+        except (OSError, ValueError) as error:
             raise BadInput(f"no scheduler answers: {error}", key=f"--dask {address}") from error
         self.name = f"{task.name} on Dask at {self._client.scheduler.address}"
         self.workers = max(1, sum(self._client.nthreads().values()))

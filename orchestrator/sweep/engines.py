@@ -6,14 +6,26 @@ bits, so a study begun with one may be finished with another.
 
 import os
 import signal
+import threading
+import time
 from collections.abc import Callable, Iterator
-from concurrent.futures import FIRST_COMPLETED, Executor, Future, ProcessPoolExecutor, ThreadPoolExecutor, wait
+from concurrent.futures import (
+    FIRST_COMPLETED,
+    BrokenExecutor,
+    Executor,
+    Future,
+    ProcessPoolExecutor,
+    ThreadPoolExecutor,
+    wait,
+)
 from contextlib import contextmanager
 from functools import partial
 from importlib.util import find_spec
-from multiprocessing import get_context
-from typing import Any, NamedTuple, Protocol
+from multiprocessing import get_context, parent_process
+from pathlib import Path
+from typing import NamedTuple, Protocol
 
+from fmus.files import live_in, own_room
 from fmus.native.compilers import can_compile
 from orchestrator.cosim.master import Interrupt
 from orchestrator.cosim.slave import Array
@@ -31,6 +43,8 @@ RECORDED_CHUNK = 8
 """Runs per chunk where each run is a recording: some seconds."""
 AHEAD = 2
 """Chunks handed out per worker."""
+IN_HAND = 1.0
+"""How long chunks in hand may take to be done after an interrupt, where they can be cut short [s]."""
 POLL = 0.2
 """How often an interrupt is looked for [s]."""
 
@@ -93,30 +107,61 @@ class LocalEngine:
 
     def results(self, job: Job, chunks: Iterator[Chunk], interrupt: Interrupt) -> Iterator[tuple[Chunk, Array]]:
         """Yield chunks with their rows as they are done."""
-        with self._executor() as executor:
+        with safe_children(), self._executor() as executor:
             waiting: dict[Future[Array], Chunk] = {}
+            until: float | None = None
             while True:
                 while len(waiting) < AHEAD * self.workers and not interrupt.requested:
                     chunk = next(chunks, None)
                     if chunk is None:
                         break
                     waiting[executor.submit(self._task.work, job, chunk)] = chunk
-                if not waiting:
-                    return
                 if interrupt.requested:
+                    until = until or time.monotonic() + IN_HAND
                     for future in [future for future in waiting if future.cancel()]:
                         del waiting[future]
+                if not waiting or (until and time.monotonic() > until and not self._task.threads):
+                    return
                 for future in wait(waiting, timeout=POLL, return_when=FIRST_COMPLETED).done:
-                    yield waiting.pop(future), future.result()
+                    yield waiting.pop(future), _rows(future)
 
     @contextmanager
     def _executor(self) -> Iterator[Executor]:
-        kind: Any = partial(ProcessPoolExecutor, mp_context=get_context("spawn"), initializer=_deaf)
-        executor = (ThreadPoolExecutor if self._task.threads else kind)(self.workers)
+        if self._task.threads:
+            with ThreadPoolExecutor(self.workers) as threads:
+                yield threads
+            return
+        room = str(own_room())
+        workers = ProcessPoolExecutor(
+            self.workers, mp_context=get_context("spawn"), initializer=_begin_worker, initargs=(room,)
+        )
         try:
-            yield executor
+            yield workers
         finally:
-            executor.shutdown(wait=True, cancel_futures=True)
+            for process in list((workers._processes or {}).values()):
+                process.kill()
+            workers.shutdown(wait=True, cancel_futures=True)
+
+
+def _rows(future: "Future[Array]") -> Array:
+    try:
+        return future.result()
+    except BrokenExecutor as error:
+        raise BadInput("a worker was ended from outside; what is done is kept, --resume goes on") from error
+
+
+@contextmanager
+def safe_children() -> Iterator[None]:
+    """Let no process that is begun import a module of the current folder."""
+    before = os.environ.get("PYTHONSAFEPATH")
+    os.environ["PYTHONSAFEPATH"] = "1"
+    try:
+        yield
+    finally:
+        if before is None:
+            os.environ.pop("PYTHONSAFEPATH", None)
+        else:
+            os.environ["PYTHONSAFEPATH"] = before
 
 
 def make_engine(task: Task, dask: str | None, workers: int | None) -> Engine:
@@ -135,6 +180,16 @@ def cores() -> int:
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
-def _deaf() -> None:
-    """Leave Ctrl-C to the parent: it ends the study in order."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
+def _begin_worker(room: str) -> None:
+    """Leave signals to the parent, which ends the study in order; keep folders in its room; end when it ends."""
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, signal.SIG_IGN)
+    live_in(Path(room))
+    threading.Thread(target=_end_with_parent, daemon=True).start()
+
+
+def _end_with_parent() -> None:
+    parent = parent_process()
+    if parent is not None:
+        parent.join()
+        os._exit(1)

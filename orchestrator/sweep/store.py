@@ -1,6 +1,7 @@
 """The parts of an unfinished study, written while it runs and joined to one Parquet file at the end.
 
-A part is one chunk, written beside its place and renamed, so that a part that is there is complete.
+A part is one chunk, written beside its place and renamed, so that a part that is there is complete. It carries what
+the study is: a part of another study is refused.
 The columns carry units and meanings; the file carries the study, the scenario and all that a row
 needs to be run again. Nothing in it depends on when, where or in which order the runs were made.
 """
@@ -13,10 +14,12 @@ from typing import Any
 import pyarrow as pa  # type: ignore[import-untyped]
 import pyarrow.parquet as pq  # type: ignore[import-untyped]
 
+from fmus.files import whole, write_whole
 from orchestrator.sweep.columns import Column
 from orchestrator.text.errors import BadInput
 
 ABOUT = b"apa"
+WRITTEN: dict[str, Any] = {"compression": "zstd", "write_page_checksum": True}
 TYPES = {float: pa.float64(), int: pa.int64(), bool: pa.bool_(), str: pa.string()}
 
 
@@ -26,9 +29,11 @@ class Store:
     def __init__(self, folder: Path, name: str, columns: list[Column], about: dict[str, Any]) -> None:
         self.table = folder / f"{name}.parquet"
         self.parts = folder / "parts"
+        self._gone = folder / "parts.gone"
         self._about = self.parts / "about.json"
         self._text = json.dumps(about, sort_keys=True)
         self.schema = pa.schema([_field(column) for column in columns], metadata={ABOUT: self._text})
+        self._size = 0
 
     def begin(self, chunk_size: int, *, resume: bool, restart: bool) -> int:
         """Make ready; return the chunk size to use, which is the first start's when going on.
@@ -36,48 +41,116 @@ class Store:
         Raises ``BadInput`` if there are parts and neither ``resume`` nor ``restart`` says what to do with
         them, or if they are of another study.
         """
+        shutil.rmtree(self._gone, ignore_errors=True)
         if restart:
-            shutil.rmtree(self.parts, ignore_errors=True)
+            self._forget()
+        self._size = self._begun(resume) or chunk_size
         if not self._about.is_file():
-            self.parts.mkdir(parents=True, exist_ok=True)
-            beside = self._about.with_suffix(".part")
-            beside.write_text(json.dumps({"chunk": chunk_size, "about": json.loads(self._text)}), encoding="utf-8")
-            beside.replace(self._about)
-            return chunk_size
+            content = json.dumps({"chunk": chunk_size, "about": json.loads(self._text)})
+            write_whole(self._about, content, sync=True)
+        return self._size
+
+    def _begun(self, resume: bool) -> int:
+        """Return the chunk size of the parts that are there, 0 if there are none."""
+        if not self._about.is_file():
+            if any(self.parts.glob("*.parquet")):
+                raise BadInput("has runs of a study that is not known; --restart throws them away", file=self.parts)
+            return 0
         if not resume:
             raise BadInput("has an unfinished study; --resume goes on, --restart throws its runs away", file=self.parts)
-        found = json.loads(self._about.read_text(encoding="utf-8"))
-        if json.dumps(found["about"], sort_keys=True) != self._text:
-            changed = [key for key, value in json.loads(self._text).items() if found["about"].get(key) != value]
+        try:
+            found = json.loads(self._about.read_text(encoding="utf-8"))
+            about, size = dict(found["about"]), int(found["chunk"])
+        except (ValueError, KeyError, TypeError) as error:
+            raise BadInput("is damaged; --restart throws the runs away", file=self._about) from error
+        if json.dumps(about, sort_keys=True) != self._text:
+            changed = [key for key, value in json.loads(self._text).items() if about.get(key) != value]
             raise BadInput(
                 f"its runs were made with another {' and '.join(changed)}; --restart throws them away", file=self.parts
             )
-        return int(found["chunk"])
+        return max(size, 1)
 
     def has(self, number: int) -> bool:
-        """Return whether the chunk of that number is complete."""
-        return self._part(number).is_file()
+        """Return whether the chunk of that number is complete; one that is damaged is not.
+
+        Raises ``BadInput`` if it is of another study.
+        """
+        part = self._part(number)
+        if not part.is_file():
+            return False
+        try:
+            about = (pq.read_schema(part).metadata or {}).get(ABOUT, b"")
+        except (OSError, pa.ArrowException):
+            return False
+        if about != self._text.encode():
+            raise BadInput("is of another study; --restart throws all runs away", file=part)
+        return True
+
+    def is_finished(self) -> bool:
+        """Return whether the table of just this study is there, and nothing of it is in parts."""
+        return not self._about.is_file() and self._about_of_table() == self._text.encode()
 
     def write(self, number: int, columns: dict[str, Any]) -> None:
-        """Write the part of one chunk, its ``columns`` by name."""
-        part = self._part(number)
-        beside = part.with_suffix(".part")
+        """Write the part of one chunk, its ``columns`` by name; it outlives a power cut."""
         arrays = [pa.array(columns[field.name]).cast(field.type) for field in self.schema]
-        pq.write_table(pa.table(arrays, schema=self.schema), beside, compression="zstd")
-        beside.replace(part)
+        with whole(self._part(number), sync=True) as part:
+            pq.write_table(pa.table(arrays, schema=self.schema), part, **WRITTEN)
 
     def finish(self, count: int) -> Path:
-        """Join ``count`` parts to the table, remove them, return its path."""
-        beside = self.table.with_suffix(".parquet.part")
-        with pq.ParquetWriter(beside, self.schema, compression="zstd") as writer:
-            for number in range(count):
-                writer.write_table(pq.read_table(self._part(number)).cast(self.schema))
-        beside.replace(self.table)
-        shutil.rmtree(self.parts)
+        """Join ``count`` parts to the table, remove them, return its path.
+
+        Pages and repeated rows of another table in its place are removed or renamed: they would tell of that.
+        """
+        with whole(self.table, sync=True) as beside:
+            with pq.ParquetWriter(beside, self.schema, **WRITTEN) as writer:
+                for number in range(count):
+                    writer.write_table(self._read(number))
+            if self._about_of_table() not in (b"", self._text.encode()):
+                forget_made_of(self.table)
+        self._forget()
         return self.table
+
+    def _read(self, number: int) -> Any:
+        """Return a part. Raises ``BadInput`` if it is damaged; then it is gone, to be made again."""
+        part = self._part(number)
+        try:
+            found = pq.read_table(part, page_checksum_verification=True).cast(self.schema)
+            first = number * self._size
+            if found.column("row").to_pylist() != list(range(first, first + len(found))):
+                raise ValueError("other rows")
+        except (OSError, ValueError, pa.ArrowException) as error:
+            part.unlink(missing_ok=True)
+            text = "was damaged and is removed; --resume makes its runs again"
+            raise BadInput(text, file=part) from error
+        return found
+
+    def _about_of_table(self) -> bytes:
+        try:
+            return bytes((pq.read_schema(self.table).metadata or {}).get(ABOUT, b"?"))
+        except FileNotFoundError:
+            return b""
+        except (OSError, pa.ArrowException):
+            return b"?"
+
+    def _forget(self) -> None:
+        """Remove the parts at one stroke: a kill leaves all of them, or none."""
+        if self.parts.is_dir():
+            shutil.rmtree(self._gone, ignore_errors=True)
+            self.parts.rename(self._gone)
+        shutil.rmtree(self._gone, ignore_errors=True)
 
     def _part(self, number: int) -> Path:
         return self.parts / f"{number:08d}.parquet"
+
+
+def forget_made_of(table: Path) -> None:
+    """Remove the page of an older table, and call its repeated rows ``row-N.older``."""
+    table.with_suffix(".html").unlink(missing_ok=True)
+    for row in table.parent.glob("row-*"):
+        if row.suffix != ".older" and (row / "scenario.yaml").is_file():
+            older = row.with_name(f"{row.name}.older")
+            shutil.rmtree(older, ignore_errors=True)
+            row.rename(older)
 
 
 def _field(column: Column) -> Any:

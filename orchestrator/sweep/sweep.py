@@ -16,6 +16,7 @@ from orchestrator.sweep.job import Chunk, Job, chunks, job_to, make_job
 from orchestrator.sweep.store import Store
 from orchestrator.sweep.study.study import Study
 from orchestrator.text.console import Meter
+from orchestrator.text.errors import BadInput, suggestion
 
 
 @dataclass
@@ -54,7 +55,12 @@ def sweep(study: Study, folder: Path, options: Options) -> Swept:
     """Run a study, or the rest of it. Raises ``BadInput``."""
     design, job = study.design, make_job(study)
     task = choose_task(study.scenario, options.fmus)
-    store = Store(folder, study.name, columns_of(study, job), about(study, job))
+    columns = columns_of(study, job)
+    _check_map(study, [column.name for column in columns])
+    store = Store(folder, study.name, columns, about(study, job))
+    if options.resume and store.is_finished():
+        count = len(design.seeds)
+        return Swept(store.table, count, count, 0, 0, 0.0, task.name, task.note)
     size = store.begin(options.chunk or task.chunk, resume=options.resume, restart=options.restart)
     total = len(design.seeds)
     missing = [chunk for chunk in chunks(design, size) if not store.has(chunk.number)]
@@ -66,6 +72,13 @@ def sweep(study: Study, folder: Path, options: Options) -> Swept:
     if swept.done == total:
         swept.table = store.finish(-(-total // size))
     return swept
+
+
+def _check_map(study: Study, known: list[str]) -> None:
+    """Raise ``BadInput`` if the map of the study shows what its table will not have."""
+    for side, name in (study.content.get("map") or {}).items():
+        if name is not None and name not in known:
+            raise BadInput(f"{name} is no column of the table{suggestion(name, known)}", key=f"map.{side}")
 
 
 def _run(study: Study, job: Job, missing: list[Chunk], engine: Engine, store: Store, swept: Swept) -> None:

@@ -1,6 +1,8 @@
 """A finished table of a study, or what is there of an unfinished one."""
 
 import json
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -19,23 +21,36 @@ class Table:
 
     def __init__(self, path: Path) -> None:
         self.path = path
+        if not path.is_file():
+            raise BadInput("is a folder, expected a table" if path.is_dir() else "no such file", file=path)
         try:
-            self._file = pq.ParquetFile(path)
-        except (OSError, pa.ArrowInvalid) as error:
-            raise BadInput(f"cannot be read as a table: {error}", file=path) from error
-        metadata = self._file.schema_arrow.metadata or {}
+            self._file = pq.ParquetFile(path, page_checksum_verification=True)
+            metadata = self._file.schema_arrow.metadata or {}
+        except (OSError, ValueError, pa.ArrowException) as error:
+            raise BadInput(f"cannot be read as a table: {_first_line(error)}", file=path) from error
         if ABOUT not in metadata:
             raise BadInput("is no table of a study", file=path)
-        self.about: dict[str, Any] = json.loads(metadata[ABOUT])
-        self.job = job_from(self.about["job"])
-        self.labels: list[str] = self.about["study"]["labels"]
-        """Columns that say what a run is called, where the study has such."""
+        try:
+            self.about: dict[str, Any] = json.loads(metadata[ABOUT])
+            self.job = job_from(self.about["job"])
+            self.labels: list[str] = self.about["study"]["labels"]
+            """Columns that say what a run is called, where the study has such."""
+        except (ValueError, KeyError, TypeError, AttributeError, IndexError, RecursionError) as error:
+            text = f"does not say what its study is ({type(error).__name__}); it is damaged or of another version"
+            raise BadInput(text, file=path) from error
         self.count = int(self._file.metadata.num_rows)
 
     def column(self, name: str) -> Any:
-        """Return a column as an array; outcomes and reasons as texts."""
-        column = self._file.read([name]).column(0)
-        return column.to_numpy()
+        """Return a column as an array; outcomes and reasons as texts. Raises ``BadInput`` if it is damaged."""
+        with self._undamaged(name):
+            return self._file.read([name]).column(0).to_numpy()
+
+    @contextmanager
+    def _undamaged(self, what: str) -> Iterator[None]:
+        try:
+            yield
+        except (OSError, ValueError, KeyError, IndexError, pa.ArrowException) as error:
+            raise BadInput(f"{what} is damaged: {_first_line(error)}", file=self.path) from error
 
     def names(self) -> list[str]:
         """Return the names of the columns."""
@@ -54,8 +69,9 @@ class Table:
         for group in range(self._file.num_row_groups):
             rows = self._file.metadata.row_group(group).num_rows
             if number < rows:
-                found: dict[str, Any] = self._file.read_row_group(group).slice(number, 1).to_pylist()[0]
-                return found
+                with self._undamaged(f"row {number}"):
+                    found: dict[str, Any] = self._file.read_row_group(group).slice(number, 1).to_pylist()[0]
+                    return found
             number -= rows
         raise AssertionError("rows do not add up")
 
@@ -64,3 +80,7 @@ class Table:
         row = self.row(number)
         values: Array = np.array([[float(row[key]) for key in self.job.keys]]).reshape(1, -1)
         return Chunk(0, number, values, np.array([row["run_seed"]], dtype=np.int64))
+
+
+def _first_line(error: Exception) -> str:
+    return (str(error).splitlines() or [type(error).__name__])[0][:200]

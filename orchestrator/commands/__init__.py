@@ -6,6 +6,7 @@ COMMANDS = {
     "compare": "compare two runs",
     "completion": "print what makes a shell complete apa's words",
     "export": "write other formats",
+    "fmu": "check somebody's FMU before it is run",
     "list": "list what is there: scenarios, parameters, signals, systems, limits",
     "recover": "mend the log of a killed run",
     "replay": "repeat a row of a study",

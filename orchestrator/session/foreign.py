@@ -12,6 +12,7 @@ from orchestrator.scenario.load_scenario import load_scenario, load_system
 from orchestrator.scenario.models import MODELS
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.text.errors import BadInput
+from orchestrator.text.quantities import number
 
 if TYPE_CHECKING:
     from orchestrator.cosim.slave import Slave
@@ -59,7 +60,7 @@ def add_foreign_arguments(parser: argparse.ArgumentParser) -> None:
         parser.add_argument(f"--{name}", type=Path, metavar="FMU", help=f"use this {name} instead of the shipped one")
     parser.add_argument(
         "--timeout",
-        type=_seconds,
+        type=seconds,
         default=TIMEOUT,
         metavar="S",
         help=f"wall-clock limit for loading, initializing and each step of somebody else's FMU ({TIMEOUT:g} s)",
@@ -71,11 +72,15 @@ def add_foreign_arguments(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def _seconds(text: str) -> float:
-    seconds = float(text.removesuffix("s"))
-    if not seconds > 0.0:
-        raise ValueError(f"{text} is no time")
-    return seconds
+def seconds(text: str) -> float:
+    """Return a limit of time [s] as the command line has it: ``5``, ``200 ms``."""
+    try:
+        found = number(text, "s")
+    except BadInput as error:
+        raise argparse.ArgumentTypeError(str(error)) from None
+    if not found > 0.0:
+        raise argparse.ArgumentTypeError(f"{text!r} is no time later than 0 s")
+    return found
 
 
 def foreign_of(arguments: argparse.Namespace) -> Foreign:

@@ -1,0 +1,66 @@
+"""``apa fmu check``: before any run, what of an FMU is connected, not fed, not understood, missing."""
+
+import argparse
+import json
+from pathlib import Path
+
+from orchestrator.session.fmu_check import FmuReport, check_fmu
+from orchestrator.session.foreign import TIMEOUT, seconds
+from orchestrator.text.console import console
+
+EXAMPLES = """examples:
+  apa fmu check their.fmu                                  as controller or vehicle, by its variables
+  apa fmu check their.fmu --as vehicle --json
+  apa fmu check gps.fmu --as gps --scenario mine.yaml      in the system of a scenario
+
+exit codes: 0 it can be run and judged, 1 something is missing or ends a run, 2 it is no FMU
+"""
+READY, NOT_READY = 0, 1
+PARTS = {
+    "connected": "connected",
+    "not_fed": "not fed",
+    "not_understood": "not understood",
+    "no_unit": "no unit said",
+    "missing": "missing for the verdict",
+    "problems": "ends a run",
+    "remarks": "besides",
+}
+"""Part of the report -> its head."""
+BAD = ("missing", "problems")
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add what the command takes."""
+    parser.add_argument("fmu", type=Path, metavar="FMU", help="somebody's FMU, of FMI 2.0 or 3.0")
+    parser.add_argument("--as", dest="place", default="", metavar="NAME", help="the slave it is to be")
+    parser.add_argument("--scenario", default="", metavar="NAME|FILE", help="the scenario whose system it is to be in")
+    parser.add_argument("--no-load", action="store_true", help="read its description only, run nothing of it")
+    parser.add_argument("--timeout", type=seconds, default=TIMEOUT, metavar="S", help="for loading and a step")
+    parser.add_argument("--json", action="store_true", help="print the report as JSON")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Check and print. Returns 0 if it can be run and judged, 1 if not."""
+    report = check_fmu(arguments.fmu, arguments.place, arguments.scenario, arguments.timeout, not arguments.no_load)
+    if arguments.json:
+        print(json.dumps(report.plain(), indent=2))
+    else:
+        _print(report)
+    return READY if report.is_ready else NOT_READY
+
+
+def _print(report: FmuReport) -> None:
+    out = console()
+    for key, text in report.about.items():
+        out.print(f"{key:>10}  {text}", markup=False, soft_wrap=True)
+    out.print(f"{'as':>10}  {report.place}", markup=False)
+    for part, head in PARTS.items():
+        lines = getattr(report, part)
+        if not lines:
+            continue
+        style = "bold red" if part in BAD else "bold"
+        out.print(f"\n[{style}]{head}[/] ({len(lines)})")
+        for line in lines:
+            out.print(f"  {line}", markup=False, soft_wrap=True)
+    verdict = "[bold green]can be run and judged[/]" if report.is_ready else "[bold red]not ready[/]"
+    out.print(f"\n{verdict}")

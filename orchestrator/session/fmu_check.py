@@ -1,0 +1,208 @@
+"""What an FMU would be in a system, found before any run: connected, not fed, not understood, missing."""
+
+from collections import Counter
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from modelkit.variables import variables
+from orchestrator.cosim.description import KINDS, read_description
+from orchestrator.cosim.in_process_slave import InProcessSlave
+from orchestrator.cosim.slave import Slave
+from orchestrator.foreign.archive import binary, checked
+from orchestrator.scenario.end_condition import EndCondition
+from orchestrator.scenario.load_scenario import load_system
+from orchestrator.scenario.models import MODELS
+from orchestrator.scenario.scenario import Scenario
+from orchestrator.session.foreign import Fitting, Foreign, load_fitting, sha256_of
+from orchestrator.session.session import Messages, make_slaves
+from orchestrator.system.assemble import Assembled, assemble
+from orchestrator.system.remarks import loops, missing_for_the_verdict, not_fed, unsaid
+from orchestrator.text.errors import BadInput, RunError
+
+NEEDED_INPUTS = {"vehicle": ("steering_wheel_request", "steering_active"), "controller": ()}
+"""Inputs that a slave of this name must be fed to be driven at all."""
+
+
+SHOWN = 6
+
+
+class FmuReport(NamedTuple):
+    """What was found of one FMU; each list is empty if there is nothing to say."""
+
+    about: dict[str, str]
+    """What it is: name, version of FMI, platforms, size, hash."""
+    place: str
+    """The slave that it would be."""
+    connected: list[str]
+    """``input <- signal`` and ``output -> input``."""
+    not_fed: list[str]
+    """Inputs that nothing feeds, with what may be meant."""
+    not_understood: list[str]
+    """Outputs that nobody takes, and variables of types that are not connected."""
+    no_unit: list[str]
+    """Variables of which the FMU says no unit."""
+    missing: list[str]
+    """Outputs that a verdict needs, with what is lost."""
+    problems: list[str]
+    """What would end a run: a unit or a type that does not fit, a library that cannot be loaded."""
+    remarks: list[str]
+    """What is worth knowing besides."""
+
+    @property
+    def is_ready(self) -> bool:
+        """Return whether it can be run and judged as it is."""
+        return bool(self.connected) and not self.problems and not self.missing
+
+    def plain(self) -> dict[str, Any]:
+        """Return it as plain data."""
+        return {**self._asdict(), "ready": self.is_ready}
+
+
+def check_fmu(path: Path, place: str, scenario: str, timeout: float, loads: bool) -> FmuReport:
+    """Return what the FMU at ``path`` would be as slave ``place`` of a scenario; by its variables if that is empty.
+
+    ``loads``: have it loaded and initialized, in a process of its own. Raises ``BadInput`` if it is no FMU.
+    """
+    names = checked(path)
+    description = read_description(path)
+    place = place or likely_place(path, [item.name for item in description.modelVariables], scenario)
+    fitting = _fitting(path, place, scenario, timeout)
+    slaves = make_slaves(fitting.scenario, None, Messages(), fitting.foreign)
+    try:
+        slave = next(item for item in slaves if item.name == place)
+        system, problems = _assembled(fitting.scenario, slaves)
+        problems += _loading(slave) if loads else []
+        remarks = [] if system is None else loops(system)
+        remarks += _left_out(fitting.left_out, place)
+        return FmuReport(
+            _about(path, names, description),
+            place,
+            [] if system is None else _connected(system, slave),
+            [] if system is None else _not_fed(system, slave),
+            _not_understood(system, slave, description),
+            unsaid(slave),
+            _missing(slave, fitting.scenario.ending),
+            problems,
+            remarks,
+        )
+    finally:
+        for item in slaves:
+            item.close()
+
+
+def likely_place(path: Path, names: Sequence[str], scenario: str) -> str:
+    """Return the slave that a scenario has for this FMU; else ours that shares most of its variables with it."""
+    system = load_system(scenario) if scenario else None
+    for place, file in (system.files() if system is not None else {}).items():
+        if Path(file).is_file() and path.samefile(file):
+            return place
+    shared = {
+        owner: len({item.name for item in (*variables(model.inputs), *variables(model.outputs))} & set(names))
+        for owner, model in MODELS.items()
+    }
+    return "vehicle" if shared["vehicle"] > shared["controller"] else "controller"
+
+
+def _fitting(path: Path, place: str, scenario: str, timeout: float) -> Fitting:
+    if not scenario and place not in MODELS:
+        raise BadInput(f"{place} is neither vehicle nor controller; name a scenario whose system has it", key="--as")
+    found = load_fitting(scenario or "guo2015-case4", [], Foreign({place: path}, timeout=timeout))
+    if place not in found.scenario.places:
+        raise BadInput(f"no slave of {scenario} is called {place}", key="--as")
+    return found
+
+
+def _left_out(names: list[str], place: str) -> list[str]:
+    own = [name.removeprefix(f"{place}.") for name in names if name.startswith(f"{place}.")]
+    more = f" and {len(own) - SHOWN} more" if len(own) > SHOWN else ""
+    return [f"it has no parameters {', '.join(own[:SHOWN])}{more}: they are left out"] if own else []
+
+
+def _assembled(scenario: Scenario, slaves: list[Slave]) -> tuple[Assembled | None, list[str]]:
+    try:
+        return assemble(scenario, slaves), []
+    except BadInput as error:
+        return None, [str(error)]
+
+
+def _loading(slave: Slave) -> list[str]:
+    """Return why it cannot be loaded and initialized here; empty if it can."""
+    if isinstance(slave, InProcessSlave):
+        return []
+    try:
+        slave.initialize(60_000_000_000)
+        slave.fetch_outputs()
+        slave.send_inputs()
+        slave.start()
+        slave.step(0, 10_000_000)
+        slave.fetch_outputs()
+    except RunError as error:
+        return [str(error)]
+    return []
+
+
+def _about(path: Path, names: list[str], description: Any) -> dict[str, str]:
+    identifier = str(description.coSimulation.modelIdentifier)
+    version = str(description.fmiVersion)
+    try:
+        here = binary(names, identifier, 3 if version.startswith("3") else 2)
+    except ValueError as error:
+        here = str(error)
+    platforms = sorted({name.split("/")[1] for name in names if name.startswith("binaries/") and name.count("/") > 1})
+    kinds = Counter(item.causality for item in description.modelVariables)
+    return {
+        "file": str(path),
+        "model": str(description.modelName),
+        "FMI": version,
+        "made by": str(description.generationTool or "not said"),
+        "platforms": ", ".join(platforms) or "none",
+        "here": here,
+        "variables": ", ".join(f"{kinds[name]} {name}s" for name in ("input", "output", "parameter") if kinds[name]),
+        "SHA-256": sha256_of(path),
+    }
+
+
+def _connected(system: Assembled, slave: Slave) -> list[str]:
+    number = system.slaves.index(slave)
+    found = []
+    for link in system.connections:
+        source, target = system.slaves[link.source], system.slaves[link.target]
+        pairs = zip(link.source_places.tolist(), link.target_places.tolist(), strict=True)
+        for given, taken in pairs:
+            out, into = f"{source.name}.{source.outputs.names[given]}", f"{target.name}.{target.inputs.names[taken]}"
+            how = "" if link.convert is None else " (converted)"
+            if link.target == number:
+                found.append(f"{target.inputs.names[taken]} <- {out}{how}")
+            elif link.source == number:
+                found.append(f"{source.outputs.names[given]} -> {into}{how}")
+    return found
+
+
+def _not_fed(system: Assembled, slave: Slave) -> list[str]:
+    found = not_fed(system.slaves.index(slave), system)
+    others = [
+        f"{other.name}.{name}{meant}"
+        for number, other in enumerate(system.slaves)
+        if other is not slave and other.name in NEEDED_INPUTS
+        for name, meant in not_fed(number, system).items()
+        if meant or name in NEEDED_INPUTS[other.name]
+    ]
+    return [*(f"{name}{meant}" for name, meant in found.items()), *others]
+
+
+def _not_understood(system: Assembled | None, slave: Slave, description: Any) -> list[str]:
+    used = set() if system is None else {slave.outputs.names[place] for place in slave.outputs.used}
+    spare = [name for name in slave.outputs.names[: slave.outputs.own] if name not in used] if system else []
+    ours = {item.name for item in variables(MODELS[slave.name].outputs)} if slave.name in MODELS else set()
+    types = [
+        f"{item.name} ({item.type})"
+        for item in description.modelVariables
+        if item.type not in KINDS and item.causality in ("input", "output")
+    ]
+    return [*(name for name in spare if name not in ours), *types]
+
+
+def _missing(slave: Slave, ending: EndCondition) -> list[str]:
+    found = missing_for_the_verdict(slave.name, slave, ending)
+    return [f"{name}: {loss}" for name, loss in found.items()]

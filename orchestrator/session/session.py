@@ -15,7 +15,9 @@ from orchestrator.cosim.mode_changes import ERROR, FMI_LEVELS, WARNING, ModeChan
 from orchestrator.cosim.recording import Recorder, Recording
 from orchestrator.cosim.slave import Slave
 from orchestrator.scenario.models import MODELS
+from orchestrator.scenario.plausible import implausible
 from orchestrator.scenario.scenario import Scenario
+from orchestrator.session.cost import told_cost
 from orchestrator.session.foreign import FOREIGN, Foreign, sha256_of
 from orchestrator.system.assemble import Assembled, assemble
 from orchestrator.system.remarks import remarks
@@ -129,13 +131,15 @@ def run_slaves(
 ) -> Ran:
     """Return the recording of one run of given slaves."""
     system = assemble(scenario, slaves)
-    said = remarks(system, scenario.ending)
+    exchanges = scenario.stop_ns // scenario.step_ns + 1
+    cost = told_cost(exchanges, sum(len(item.inputs.names) + len(item.outputs.names) for item in system.slaves))
+    said = [*remarks(system, scenario.ending), *implausible(scenario), *([cost] if cost else [])]
     for text in said:
         warn(text)
     master = _master(system, scenario, kind)
     master.interrupt = interrupt or Interrupt()
     info = provenance(scenario, system.slaves, kind, foreign)
-    recorder = Recorder(system.slaves, scenario.stop_ns // scenario.step_ns + 1)
+    recorder = Recorder(system.slaves, exchanges)
     master.observers += [messages, recorder, ModeChanges(system.slaves, scenario.faults, messages.say)]
     if log is not None:
         from orchestrator.log.mcap_log import McapLog

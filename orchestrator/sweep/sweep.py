@@ -8,6 +8,7 @@ from typing import Any
 from orchestrator.cosim.fmu_files import sources_hash
 from orchestrator.cosim.interrupts import on_interrupt
 from orchestrator.cosim.master import Interrupt
+from orchestrator.scenario.plausible import implausible, is_implausible
 from orchestrator.session.session import versions
 from orchestrator.sweep.batch import compiled
 from orchestrator.sweep.columns import columns_of, filled
@@ -15,7 +16,7 @@ from orchestrator.sweep.engines import Engine, choose_task, make_engine
 from orchestrator.sweep.job import Chunk, Job, chunks, job_to, make_job
 from orchestrator.sweep.store import Store
 from orchestrator.sweep.study.study import Study
-from orchestrator.text.console import Meter
+from orchestrator.text.console import Meter, say
 from orchestrator.text.errors import BadInput, suggestion
 
 
@@ -57,6 +58,7 @@ def sweep(study: Study, folder: Path, options: Options) -> Swept:
     task = choose_task(study.scenario, options.fmus)
     columns = columns_of(study, job)
     _check_map(study, [column.name for column in columns])
+    _say_what_is_hardly_meant(study)
     store = Store(folder, study.name, columns, about(study, job))
     if options.resume and store.is_finished():
         count = len(design.seeds)
@@ -72,6 +74,26 @@ def sweep(study: Study, folder: Path, options: Options) -> Swept:
     if swept.done == total:
         swept.table = store.finish(-(-total // size))
     return swept
+
+
+def _say_what_is_hardly_meant(study: Study) -> None:
+    """Say which values of a study are allowed but beyond what is plausible, and what a very large one takes."""
+    ends = list(zip(study.design.fields, study.design.values.T, strict=True))
+    said = [
+        is_implausible(float(end), field.variable._replace(name=field.key))
+        for field, values in ends
+        for end in (values.min(), values.max())
+    ]
+    for text in dict.fromkeys([*implausible(study.scenario), *said]):
+        if text:
+            say(f"apa: warning: {text}")
+    if len(study.design.seeds) > MANY_RUNS:
+        say(f"apa: {len(study.design.seeds):,} runs: about {len(study.design.seeds) / 1e6 * ROW:.1f} GB of table")
+
+
+MANY_RUNS = 1_000_000
+ROW = 0.4
+"""Size of a row in parts and table [kB], about."""
 
 
 def _check_map(study: Study, known: list[str]) -> None:

@@ -21,6 +21,9 @@ from orchestrator.sweep.study.study_file import MOST_RUNS, Range, Samples, Sprea
 from orchestrator.text.errors import BadInput
 from orchestrator.text.quantities import number, scalar
 
+MOST_NUMBERS = 500_000_000
+"""4 GB."""
+
 
 class _Column(NamedTuple):
     """Fields that share their values."""
@@ -31,6 +34,7 @@ class _Column(NamedTuple):
 
 def make_design(study: StudyFile, scenario: Scenario) -> Design:
     """Return the design of ``study``. Raises ``BadInput`` for an unknown key or a value out of range."""
+    _check_size(study)
     grid = [_grid_column(key, values, scenario) for key, values in study.runs.grid.items()]
     sampled: list[_Column] = []
     count = 1
@@ -39,8 +43,6 @@ def make_design(study: StudyFile, scenario: Scenario) -> Design:
             count = samples.n
             sampled += _sampled_columns(samples, stream == 1, [study.seed, stream], scenario)
     points = math.prod(len(column.values) for column in grid)
-    if points * count > MOST_RUNS:
-        raise BadInput(f"{points * count} runs, expected at most {MOST_RUNS}", key="runs")
     columns = _crossed(grid, count) + [_Column(column.fields, np.tile(column.values, points)) for column in sampled]
     fields = [field for column in columns for field in column.fields]
     twice = sorted({field.key for field in fields if [item.key for item in fields].count(field.key) > 1})
@@ -49,7 +51,27 @@ def make_design(study: StudyFile, scenario: Scenario) -> Design:
     lines = [column.values for column in columns for _ in column.fields]
     values = np.column_stack(lines) if lines else np.empty((points * count, 0))
     seeds = np.random.default_rng([study.seed, 2]).integers(1, 2**31 - 1, size=points * count)
+    _check_times(fields, values, scenario)
     return Design(fields, np.ascontiguousarray(values), seeds)
+
+
+def _check_size(study: StudyFile) -> None:
+    """Raise ``BadInput`` if there are more runs, or numbers for them, than can be; before any is made."""
+    runs = study.runs
+    samples = [item for item in (runs.monte_carlo, runs.latin_hypercube) if item is not None]
+    points = math.prod(item.steps if isinstance(item, Range) else len(item) for item in runs.grid.values())
+    count = points * max((item.n for item in samples), default=1)
+    numbers = count * (1 + len(runs.grid) + sum(len(item.spreads) for item in samples))
+    if count > MOST_RUNS or numbers > MOST_NUMBERS:
+        raise BadInput(f"{count} runs of {numbers} numbers, expected at most {MOST_RUNS} of {MOST_NUMBERS}", key="runs")
+
+
+def _check_times(fields: list[Field], values: Array, scenario: Scenario) -> None:
+    """Raise ``BadInput`` if a run would end before its first step."""
+    columns = {field.key: values[:, place] for place, field in enumerate(fields) if field.owner == "scenario"}
+    steps, stops = columns.get("step", scenario.step), columns.get("stop_time", scenario.stop_time)
+    if np.any(stops < steps):
+        raise BadInput("a run has a stop_time under its step", key="runs")
 
 
 def _crossed(grid: list[_Column], count: int) -> list[_Column]:

@@ -26,10 +26,13 @@ OF_ZHANG2022 = (
     "limit",
     "zhang2022",
 )
-OF_HSIC = (*OF_PARKING, "threshold.standstill", "threshold.lost_lateral", "limit", "hsic")
-OF_PREVIEW = ("threshold.standstill", "threshold.lost_lateral", "preview")
+OUTLINE = ("car.front_overhang", "car.rear_overhang", "car.width")
+OF_HSIC = (*OF_PARKING, *OUTLINE, "threshold.standstill", "threshold.lost_lateral", "limit", "hsic")
+OF_PREVIEW = ("car.cg_to_rear", "threshold.standstill", "threshold.lost_lateral", "preview")
 OF_APA = (
     *("gear", "brake_pedal", "vehicle_fault", "ultrasonic", "apa_switch", "driver_confirm", "shifts"),
+    *OUTLINE,
+    "car.ultrasonic",
     "threshold.wheel",
     *(f"limit.{name}" for name in ("stopping", "pose_frozen", "wheel_off", "wheel_fault")),
     "apa",

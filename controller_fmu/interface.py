@@ -1,7 +1,6 @@
 """What goes into the controller, what comes out, and what can be set: every signal and its unit."""
 
 from enum import IntEnum
-from math import pi
 from typing import Annotated, NamedTuple
 
 from controller_fmu.adaptive.params import AdaptiveParams
@@ -15,10 +14,10 @@ from controller_fmu.preview.params import PreviewParams
 from controller_fmu.preview.signals import PreviewSignals
 from controller_fmu.zhang2022.params import ZhangParams
 from controller_fmu.zhang2022.signals import ZhangSignals
+from modelkit.car import Car
 from modelkit.signal import Group, Role, Signal
 from modelkit.vocabulary import ANYWHERE, Gear, Pose, Prompt
 
-GUO = "Guo 2015"
 HOUSE = "chosen; the source states none"
 
 
@@ -164,16 +163,7 @@ class ControllerParams(NamedTuple):
 
     system: Annotated[int, Signal("1", "which paper's system", states=System)] = System.NTBPTCWPT
     sample_time: Annotated[float, Signal("s", "controller's sample time, whole nanoseconds", 1e-4, 1.0, HOUSE)] = 0.01
-    wheelbase: Annotated[float, Signal("m", "front to rear axle", 0.1, 20.0, GUO + ", Table 1")] = 2.405
-    steering_ratio: Annotated[
-        float, Signal("1", "steering-wheel angle over front-wheel angle", 1.0, 60.0, GUO + ", Table 1")
-    ] = 19.0
-    steering_wheel_limit: Annotated[
-        float, Signal("rad", "largest steering-wheel angle", 0.1, 20.0, GUO + ", Table 1")
-    ] = 570.0 * pi / 180.0
-    steering_wheel_rate: Annotated[
-        float, Signal("rad/s", "largest steering-wheel rate", 0.01, 100.0, GUO + ", Table 1")
-    ] = 570.0 * pi / 180.0
+    car: Annotated[Car, Group("the car it thinks it drives")] = Car()
     target: Annotated[Pose, Group("pose of the rear-axle midpoint to park at", ANYWHERE)] = Pose(-7.608, -3.056, 0.0)
     threshold: Annotated[ThresholdParams, Role.TUNABLE] = ThresholdParams()
     limit: Annotated[LimitParams, Role.TUNABLE] = LimitParams()

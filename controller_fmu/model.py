@@ -64,13 +64,14 @@ def refused() -> ControllerOutput:
 
 def _is_usable(params: ControllerParams) -> bool:
     target = params.target
-    lock = params.steering_wheel_limit / params.steering_ratio if params.steering_ratio > 0.0 else 0.0
+    steering = params.car.steering
+    lock = steering.angle_limit / steering.ratio if steering.ratio > 0.0 else 0.0
     return (
         is_finite(target.x + target.y + target.heading)
-        and is_finite(params.wheelbase + params.sample_time + params.steering_wheel_rate)
-        and params.wheelbase > 0.0
+        and is_finite(params.car.wheelbase + params.sample_time + steering.rate_limit)
+        and params.car.wheelbase > 0.0
         and params.sample_time >= 1e-4
-        and params.steering_wheel_rate > 0.0
+        and steering.rate_limit > 0.0
         and params.guo2015.prompting.deceleration > 0.0
         and 0.0 < lock < 1.5
     )

@@ -30,7 +30,8 @@ from orchestrator.commands.parser import CommandParser  # noqa: E402
 from orchestrator.scenario.catalogue import collapsed, range_text, start_text, texts_of  # noqa: E402
 from orchestrator.scenario.end_condition import EndCondition  # noqa: E402
 from orchestrator.scenario.fault import Fault  # noqa: E402
-from orchestrator.scenario.load_scenario import ROOM, load_scenario, scenario_names  # noqa: E402
+from orchestrator.scenario.files import ROOM  # noqa: E402
+from orchestrator.scenario.load_scenario import load_scenario, scenario_names  # noqa: E402
 from orchestrator.scenario.models import MODELS  # noqa: E402
 from orchestrator.scenario.requirements import Requirement, Window, read_requirements  # noqa: E402
 from orchestrator.scenario.scenario import Scenario, Slot, Target  # noqa: E402
@@ -240,6 +241,7 @@ def key_rows(model: type[BaseModel]) -> list[list[str]]:
     if model is Scenario:
         meaning = "what stands around the car: `boxes` and `kerbs`, with the fields of the vehicle's `scene.*`"
         rows.insert([row[0] for row in rows].index("`slot`") + 1, ["`scene`", "object", "", meaning])
+        next(row for row in rows if row[0] == "`car`")[1] = "string or object"
     return rows
 
 

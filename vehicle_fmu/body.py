@@ -3,7 +3,7 @@
 from typing import NamedTuple
 
 from modelkit.vocabulary import Pose
-from vehicle_fmu.chassis import Build, Motion
+from vehicle_fmu.chassis import Build, Motion, Stance
 from vehicle_fmu.double_track import DoubleTrackState, resting, step_double_track
 from vehicle_fmu.effort import Effort
 from vehicle_fmu.interface import Body, VehicleParams
@@ -38,7 +38,7 @@ def push_body(state: BodyState, angle: float, effort: Effort, params: VehiclePar
 
 
 def _build(params: VehicleParams) -> Build:
-    return Build(params.wheelbase, params.chassis, params.road)
+    return Build(Stance(params.car.wheelbase, params.car.cg_to_rear), params.chassis, params.road)
 
 
 def motion_of(state: BodyState, body: int) -> Motion:

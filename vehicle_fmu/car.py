@@ -68,15 +68,22 @@ def step_car(state: CarState, inputs: VehicleInput, faulty: bool, params: Vehicl
         wanted = lever_gear(inputs.person, state.selector.gear, state.speed)
     selector = shift(state.selector, wanted, state.speed, params.drive.shift_time, next_ns - state.time_ns)
     steering = _steer(state, inputs, driver.takeover or faulty, params, next_ns)
-    wheel = turn_steering_wheel(state.steering_wheel_angle, steering.lagged, params.steering, h, state.speed)
+    wheel = turn_steering_wheel(
+        state.steering_wheel_angle,
+        steering.lagged,
+        params.car.steering,
+        params.steering.standstill_rate,
+        h,
+        state.speed,
+    )
     steering = steering._replace(play=take_up_play(steering.play, wheel, params.steering.backlash))
     state = state._replace(driver=driver, selector=selector)
-    angles = (state.steering.play / params.steering.ratio, steering.play / params.steering.ratio)
+    angles = (state.steering.play / params.car.steering.ratio, steering.play / params.car.steering.ratio)
     going = _go(state, inputs, geared_speed(selector, target), free, angles, params, h)
     odometry = OdometryState(going.pose)
     if not params.odometry.perfect:
         way = 0.5 * h * (state.rolled_speed + going.rolled_speed)
-        odometry = reckon(state.odometry, way, 0.5 * (angles[0] + angles[1]), params.wheelbase, params.odometry)
+        odometry = reckon(state.odometry, way, 0.5 * (angles[0] + angles[1]), params.car.wheelbase, params.odometry)
     driven = inputs.speed_control_active or inputs.force_control_active
     return state._replace(
         time_ns=next_ns,
@@ -120,7 +127,7 @@ def _go(
         speed = change_speed(state.speed, target, params.drive, h)
         if forced:
             speed = push_speed(state.speed, inputs.force_request, params.chassis.mass, along(state.selector.gear), h)
-        pose = move(state.pose, state.speed, speed, angles[0], angles[1], params.wheelbase, h)
+        pose = move(state.pose, state.speed, speed, angles[0], angles[1], params.car.wheelbase, h)
         return Going(pose, speed, speed, state.pedals, state.body)
     gear = state.selector.gear
     if forced:
@@ -136,7 +143,7 @@ def _tread(state: CarState, person: PersonInput, angles: tuple[float, float], pa
     if params.body != Body.KINEMATIC:
         return _push(state, pedals, angles, params, h)
     speed = roll(state.speed, _at_wheels(pedals, state.selector.gear, params), params.chassis, h)
-    pose = move(state.pose, state.speed, speed, angles[0], angles[1], params.wheelbase, h)
+    pose = move(state.pose, state.speed, speed, angles[0], angles[1], params.car.wheelbase, h)
     return Going(pose, speed, speed, pedals, state.body)
 
 

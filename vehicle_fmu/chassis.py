@@ -18,11 +18,10 @@ CHOSEN = "chosen, usual for a small car"
 
 
 class ChassisParams(NamedTuple):
-    """Mass, where it is, what slows it down, and which axle drives."""
+    """Mass, how high it is, what slows it down, and which axle drives."""
 
     mass: Annotated[float, Signal("kg", "mass", 10.0, 1e5, CHOSEN)] = 1100.0
     yaw_inertia: Annotated[float, Signal("kg.m2", "moment of inertia about the vertical", 1.0, 1e6, CHOSEN)] = 1500.0
-    cg_to_rear: Annotated[float, Signal("m", "centre of gravity to rear axle", 0.01, 20.0, CHOSEN)] = 1.40
     cg_height: Annotated[float, Signal("m", "centre of gravity above the road", 0.0, 3.0, CHOSEN)] = 0.55
     rolling_resistance: Annotated[float, Signal("1", "rolling resistance over load", 0.0, 0.2, CHOSEN)] = 0.012
     drag_x: Annotated[float, Signal("kg/m", "air drag over speed squared, along", 0.0, 10.0, CHOSEN)] = 0.4
@@ -46,11 +45,18 @@ class RoadParams(NamedTuple):
     ] = (1.0, 1.0, 1.0, 1.0)
 
 
+class Stance(NamedTuple):
+    """How the mass stands between its axles [m]."""
+
+    wheelbase: float
+    cg_to_rear: float
+    """Centre of gravity to rear axle."""
+
+
 class Build(NamedTuple):
     """What the bodies with mass have in common: axles, mass, and the road they stand on."""
 
-    wheelbase: float
-    """[m]."""
+    stance: Stance
     chassis: ChassisParams
     road: RoadParams
 

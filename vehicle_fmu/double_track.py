@@ -72,8 +72,8 @@ def resting(pose: Pose, angle: float, build: Build, p: DoubleTrackParams) -> Dou
     mass = build.chassis.mass
     gravity = gravity_in_car(pose.heading, build.road)
     felt = Felt(-gravity.x, -gravity.y)
-    loads = wheel_loads(felt, gravity.normal, build.wheelbase, (p.track_front, p.track_rear), build.chassis, p.roll)
-    left, right = wheel_angles(angle, build.wheelbase, p.track_front, p.ackermann)
+    loads = wheel_loads(felt, gravity.normal, build.stance, (p.track_front, p.track_rear), build.chassis, p.roll)
+    left, right = wheel_angles(angle, build.stance.wheelbase, p.track_front, p.ackermann)
     share = 1.0 / (mass * gravity.normal)
     wheels = tuple(
         _carrying(mass * share * load, felt, turned, p.tires)
@@ -102,13 +102,13 @@ def step_double_track(
     motion = state.motion
     chassis = build.chassis
     gravity = gravity_in_car(motion.pose.heading, build.road)
-    loads = wheel_loads(state.felt, gravity.normal, build.wheelbase, (p.track_front, p.track_rear), chassis, p.roll)
+    loads = wheel_loads(state.felt, gravity.normal, build.stance, (p.track_front, p.track_rear), chassis, p.roll)
     corners = _corners(angle, effort, loads, build, p)
     wheels = tuple(_turn(wheel, at, motion, p.hub, p.tires, h) for wheel, at in zip(state.wheels, corners, strict=True))
     total = _sum(tuple(_wrench(wheel, at) for wheel, at in zip(wheels, corners, strict=True)))
     change = accelerations(motion, total, gravity, chassis)
     return DoubleTrackState(
-        move_body(motion, change, chassis.cg_to_rear, h),
+        move_body(motion, change, build.stance.cg_to_rear, h),
         wheels,
         feel(state.felt, total.x / chassis.mass, total.y / chassis.mass, p.roll.lag, h),
     )
@@ -127,9 +127,9 @@ def _corners(
     angle: float, effort: Effort, loads: Loads, build: Build, p: DoubleTrackParams
 ) -> tuple[Corner, Corner, Corner, Corner]:
     chassis = build.chassis
-    front = build.wheelbase - chassis.cg_to_rear
-    rear = -chassis.cg_to_rear
-    left, right = wheel_angles(angle, build.wheelbase, p.track_front, p.ackermann)
+    front = build.stance.wheelbase - build.stance.cg_to_rear
+    rear = -build.stance.cg_to_rear
+    left, right = wheel_angles(angle, build.stance.wheelbase, p.track_front, p.ackermann)
     half = 0.5 * p.hub.radius
     drive_front = half * effort.drive * chassis.front_drive_share
     drive_rear = half * effort.drive * (1.0 - chassis.front_drive_share)

@@ -1,9 +1,9 @@
 """What goes into the vehicle, what comes out, and what can be set: every signal and its unit."""
 
 from enum import IntEnum
-from math import pi
 from typing import Annotated, NamedTuple
 
+from modelkit.car import Car
 from modelkit.signal import Group, Role, Signal
 from modelkit.vocabulary import ANYWHERE, Gear, Pose, Prompt
 from vehicle_fmu.chassis import ChassisParams, RoadParams
@@ -13,7 +13,6 @@ from vehicle_fmu.scene import SceneParams
 from vehicle_fmu.single_track import SingleTrackParams
 from vehicle_fmu.ultrasonic import UltrasonicParams
 
-GUO = "Guo 2015, Table 1"
 HOUSE = "chosen; the source states none"
 NEVER = 1e9
 """A time or distance that is not reached (FMI 2.0 has no portable infinity)."""
@@ -89,15 +88,8 @@ class VehicleOutput(NamedTuple):
 
 
 class SteeringParams(NamedTuple):
-    """Steering wheel, column and actuator."""
+    """How the steering obeys: what is not said of it in ``car.steering``."""
 
-    ratio: Annotated[float, Signal("1", "steering-wheel angle over front-wheel angle", 1.0, 60.0, GUO)] = 19.0
-    angle_limit: Annotated[float, Signal("rad", "largest steering-wheel angle", 0.1, 20.0, GUO), Role.TUNABLE] = (
-        570.0 * pi / 180.0
-    )
-    rate_limit: Annotated[float, Signal("rad/s", "largest steering-wheel rate", 0.01, 100.0, GUO), Role.TUNABLE] = (
-        570.0 * pi / 180.0
-    )
     dead_time: Annotated[float, Signal("s", "from a request to the first movement", 0.0, 1.0, HOUSE)] = 0.0
     lag: Annotated[float, Signal("s", "time constant behind the request", 0.0, 2.0, HOUSE), Role.TUNABLE] = 0.0
     backlash: Annotated[float, Signal("rad", "steering-wheel angle without effect on the wheels", 0.0, 1.0, HOUSE)] = (
@@ -170,13 +162,10 @@ class DriverParams(NamedTuple):
 
 
 class VehicleParams(NamedTuple):
-    """The car, its driver and where it stands at first."""
+    """The car as built, how it obeys, its driver, what is around, and where it stands at first."""
 
     body: Annotated[int, Signal("1", "equations of motion", states=Body)] = Body.KINEMATIC
-    wheelbase: Annotated[float, Signal("m", "front to rear axle", 0.1, 20.0, GUO)] = 2.405
-    front_overhang: Annotated[float, Signal("m", "front axle to bumper", 0.0, 5.0, HOUSE)] = 0.80
-    rear_overhang: Annotated[float, Signal("m", "rear axle to bumper", 0.0, 5.0, HOUSE)] = 0.60
-    width: Annotated[float, Signal("m", "body width", 0.1, 5.0, HOUSE)] = 1.65
+    car: Car = Car()
     start: Annotated[Pose, Group("rear-axle midpoint at time zero", ANYWHERE)] = Pose()
     steering: SteeringParams = SteeringParams()
     drive: Annotated[DriveParams, Role.TUNABLE] = DriveParams()

@@ -14,7 +14,7 @@ from typing import Annotated, NamedTuple
 
 from modelkit.maths import clamp
 from modelkit.signal import Signal
-from vehicle_fmu.chassis import CHOSEN, GRAVITY, ChassisParams
+from vehicle_fmu.chassis import CHOSEN, GRAVITY, ChassisParams, Stance
 
 
 class RollParams(NamedTuple):
@@ -55,19 +55,20 @@ def feel(felt: Felt, x: float, y: float, lag: float, h: float) -> Felt:
 
 
 def wheel_loads(
-    felt: Felt, normal: float, wheelbase: float, tracks: tuple[float, float], p: ChassisParams, roll: RollParams
+    felt: Felt, normal: float, stance: Stance, tracks: tuple[float, float], p: ChassisParams, roll: RollParams
 ) -> Loads:
     """Return the loads [N] at the accelerations felt; ``normal`` is gravity into the road [m/s2]."""
+    wheelbase = stance.wheelbase
     weight = p.mass * normal
     pitch = clamp(p.mass * felt.x * p.cg_height / wheelbase, -weight, weight)
     sprung = weight - normal * (roll.unsprung_front + roll.unsprung_rear)
-    front = clamp(sprung * p.cg_to_rear / wheelbase + normal * roll.unsprung_front - pitch, 0.0, weight)
+    front = clamp(sprung * stance.cg_to_rear / wheelbase + normal * roll.unsprung_front - pitch, 0.0, weight)
     rear = weight - front
     stiffness = max(1.0, roll.stiffness_front + roll.stiffness_rear - p.mass * GRAVITY * roll.arm)
     angle = clamp(p.mass * felt.y * roll.arm / stiffness, -0.5, 0.5)
     direct = p.mass * felt.y * (p.cg_height - roll.arm) / wheelbase
-    shift_front = (roll.stiffness_front * angle + direct * p.cg_to_rear) / tracks[0]
-    shift_rear = (roll.stiffness_rear * angle + direct * (wheelbase - p.cg_to_rear)) / tracks[1]
+    shift_front = (roll.stiffness_front * angle + direct * stance.cg_to_rear) / tracks[0]
+    shift_rear = (roll.stiffness_rear * angle + direct * (wheelbase - stance.cg_to_rear)) / tracks[1]
     shift_front = clamp(shift_front, -0.5 * front, 0.5 * front)
     shift_rear = clamp(shift_rear, -0.5 * rear, 0.5 * rear)
     return Loads(

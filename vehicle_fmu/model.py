@@ -16,7 +16,7 @@ from vehicle_fmu.car import CarState, parked_car, step_car
 from vehicle_fmu.driver import presses_confirm, switch_is_on
 from vehicle_fmu.interface import Body, VehicleFault, VehicleInput, VehicleOutput, VehicleParams
 from vehicle_fmu.odometry import wheel_speed_reading
-from vehicle_fmu.scene import CarSize, clearance
+from vehicle_fmu.scene import clearance
 from vehicle_fmu.ultrasonic import UltrasonicState, first_readings, is_due, measure
 from vehicle_fmu.usable import is_usable
 
@@ -36,7 +36,7 @@ def initialize(params: VehicleParams) -> tuple[VehicleState, VehicleOutput]:
     heard = UltrasonicState()
     gap = 0.0
     if is_usable(params):
-        heard = first_readings(start, params.scene, params.ultrasonic)
+        heard = first_readings(start, params.scene, params.car.ultrasonic, params.ultrasonic)
         gap = _clearance(start, params, 0)
     else:
         fault = VehicleFault.BAD_PARAMETER
@@ -61,16 +61,15 @@ def step(
             start_ns = car.time_ns
             for number in range(1, count + 1):
                 car = step_car(car, inputs, fault != VehicleFault.NONE, params, start_ns + dt_ns * number // count)
-            if is_due(start_ns, car.time_ns, params.ultrasonic.cycle):
-                heard = measure(heard, car.pose, params.scene, params.ultrasonic, car.time_ns)
+            if is_due(start_ns, car.time_ns, params.car.ultrasonic.cycle):
+                heard = measure(heard, car.pose, params.scene, params.car.ultrasonic, params.ultrasonic, car.time_ns)
         gap = _clearance(car.pose, params, car.time_ns)
     state = VehicleState(car, heard, fault)
     return state, _outputs(state, gap, inputs.person.drives and inputs.person.confirm, params)
 
 
 def _clearance(pose: Pose, params: VehicleParams, time_ns: int) -> float:
-    size = CarSize(params.wheelbase, params.front_overhang, params.rear_overhang, params.width)
-    return clearance(pose, size, params.scene, time_ns)
+    return clearance(pose, params.car, params.scene, time_ns)
 
 
 def _internal_steps(dt_ns: int, params: VehicleParams) -> int:
@@ -87,7 +86,7 @@ def _outputs(state: VehicleState, gap: float, confirms: bool, params: VehiclePar
         measured = shown_speed(measured)
     front = 0.0
     if state.fault != VehicleFault.BAD_PARAMETER:
-        front = car.steering.play / params.steering.ratio
+        front = car.steering.play / params.car.steering.ratio
     return VehicleOutput(
         pose=car.pose,
         odometry=car.odometry.pose,

@@ -7,6 +7,7 @@ between the tyres' outer ends.
 
 from typing import Annotated, NamedTuple
 
+from modelkit.car import Car
 from modelkit.geometry import FAR, Box, boxes_gap, centre_gap, line_box, outline
 from modelkit.signal import Signal
 from modelkit.vocabulary import Pose
@@ -50,15 +51,6 @@ class SceneParams(NamedTuple):
     wheel_radius: Annotated[float, Signal("m", "tyres reach this far beyond the axles", 0.0, 1.0, HOUSE)] = 0.3
 
 
-class CarSize(NamedTuple):
-    """The car's outline [m]."""
-
-    wheelbase: float
-    front_overhang: float
-    rear_overhang: float
-    width: float
-
-
 def is_there(obstacle: Obstacle, time_ns: int) -> bool:
     """Return whether the obstacle stands in the scene now."""
     return obstacle.length > 0.0 and obstacle.appear_at <= time_ns * 1e-9 < obstacle.disappear_at
@@ -69,14 +61,14 @@ def obstacle_box(obstacle: Obstacle) -> Box:
     return Box(obstacle.x, obstacle.y, obstacle.heading, obstacle.length, obstacle.width)
 
 
-def clearance(pose: Pose, size: CarSize, scene: SceneParams, time_ns: int) -> float:
+def clearance(pose: Pose, car: Car, scene: SceneParams, time_ns: int) -> float:
     """Return the distance [m] from the car to the nearest thing; 0 in contact, ``FAR`` in an empty scene."""
-    body = outline(pose, size.wheelbase, size.front_overhang, size.rear_overhang, size.width)
+    body = outline(pose, car.wheelbase, car.front_overhang, car.rear_overhang, car.width)
     nearest = FAR
     for obstacle in scene.boxes:
         if is_there(obstacle, time_ns):
             nearest = nearer(nearest, body, obstacle_box(obstacle))
-    low = outline(pose, size.wheelbase, scene.wheel_radius, scene.wheel_radius, size.width)
+    low = outline(pose, car.wheelbase, scene.wheel_radius, scene.wheel_radius, car.width)
     for kerb in scene.kerbs:
         if kerb.height > 0.0:
             part = low if kerb.height < scene.ground_clearance else body

@@ -29,6 +29,7 @@ from vehicle_fmu.chassis import (
     ChassisParams,
     Gravity,
     Motion,
+    Stance,
     Wrench,
     accelerations,
     gravity_in_car,
@@ -96,17 +97,17 @@ class Axles(NamedTuple):
     rear: float
 
 
-def axle_loads(accel: float, normal: float, wheelbase: float, p: SingleTrackParams, chassis: ChassisParams) -> Axles:
+def axle_loads(accel: float, normal: float, stance: Stance, p: SingleTrackParams, chassis: ChassisParams) -> Axles:
     """Return the axle loads [N] at longitudinal acceleration ``accel`` [m/s2], never below zero."""
     weight = chassis.mass * normal
-    rest = weight * chassis.cg_to_rear / wheelbase
-    front = clamp(rest - chassis.mass * accel * p.load_height / wheelbase, 0.0, weight)
+    rest = weight * stance.cg_to_rear / stance.wheelbase
+    front = clamp(rest - chassis.mass * accel * p.load_height / stance.wheelbase, 0.0, weight)
     return Axles(front, weight - front)
 
 
-def axle_stiffness(loads: Axles, wheelbase: float, p: SingleTrackParams, chassis: ChassisParams) -> Axles:
+def axle_stiffness(loads: Axles, stance: Stance, p: SingleTrackParams, chassis: ChassisParams) -> Axles:
     """Return the cornering stiffness [N/rad] under ``loads``: proportional to load."""
-    rest_front = chassis.mass * GRAVITY * chassis.cg_to_rear / wheelbase
+    rest_front = chassis.mass * GRAVITY * stance.cg_to_rear / stance.wheelbase
     rest_rear = chassis.mass * GRAVITY - rest_front
     return Axles(p.stiffness_front * loads.front / rest_front, p.stiffness_rear * loads.rear / rest_rear)
 
@@ -147,7 +148,7 @@ def single_track_rates(
     angle: float,
     force: float,
     accel: float,
-    wheelbase: float,
+    stance: Stance,
     chassis: ChassisParams,
     p: SingleTrackParams,
 ) -> Wrench:
@@ -155,9 +156,9 @@ def single_track_rates(
 
     ``force`` [N] pushes along; ``accel`` [m/s2] moves load. beta' of ST is the second over v_x, minus r.
     """
-    loads = axle_loads(accel, GRAVITY, wheelbase, p, chassis)
-    stiffness = axle_stiffness(loads, wheelbase, p, chassis)
-    b = chassis.cg_to_rear
+    loads = axle_loads(accel, GRAVITY, stance, p, chassis)
+    stiffness = axle_stiffness(loads, stance, p, chassis)
+    wheelbase, b = stance
     front = front_slip(motion, angle, wheelbase, b, p.small_angles)
     rear = rear_slip(motion, b)
     rolling = chassis.rolling_resistance * chassis.mass * GRAVITY * sign(motion.speed_x)
@@ -183,12 +184,12 @@ def step_single_track(
 ) -> SingleTrackState:
     """Return the car ``h`` [s] later at front-wheel ``angle`` [rad] under ``effort``."""
     motion = state.motion
-    wheelbase, chassis, road = build
-    b = chassis.cg_to_rear
+    stance, chassis, road = build
+    wheelbase, b = stance
     gravity = gravity_in_car(motion.pose.heading, road)
     accel = state.forces.along / chassis.mass
-    loads = axle_loads(accel, gravity.normal, wheelbase, p, chassis)
-    stiffness = axle_stiffness(loads, wheelbase, p, chassis)
+    loads = axle_loads(accel, gravity.normal, stance, p, chassis)
+    stiffness = axle_stiffness(loads, stance, p, chassis)
     grip = Axles(
         p.friction * loads.front * 0.5 * (road.grip[0] + road.grip[1]),
         p.friction * loads.rear * 0.5 * (road.grip[2] + road.grip[3]),

@@ -8,6 +8,7 @@ the tyres scrub and the wheel may turn slower.
 import math
 from typing import NamedTuple
 
+from modelkit.car import CarSteering
 from modelkit.maths import clamp, move_towards
 from vehicle_fmu.interface import SteeringParams
 
@@ -27,12 +28,14 @@ class SteeringState(NamedTuple):
     """Steering-wheel angle [rad] that the front wheels follow: the wheel's, less the backlash."""
 
 
-def turn_steering_wheel(angle: float, request: float, params: SteeringParams, h: float, speed: float = 1.0) -> float:
-    """Return the steering-wheel angle [rad] ``h`` [s] later, on its way from ``angle`` to ``request``."""
-    target = clamp(request, -params.angle_limit, params.angle_limit)
-    rate = params.rate_limit
-    if params.standstill_rate > 0.0 and abs(speed) < STANDSTILL:
-        rate = params.standstill_rate
+def turn_steering_wheel(
+    angle: float, request: float, car: CarSteering, standstill_rate: float, h: float, speed: float
+) -> float:
+    """Return the steering-wheel angle [rad] ``h`` [s] later, on its way to ``request``; the car's ``speed`` [m/s]."""
+    target = clamp(request, -car.angle_limit, car.angle_limit)
+    rate = car.rate_limit
+    if standstill_rate > 0.0 and abs(speed) < STANDSTILL:
+        rate = standstill_rate
     return move_towards(angle, target, rate * h)
 
 

@@ -8,28 +8,20 @@ run repeats to the bit.
 """
 
 import math
-from math import pi
 from typing import Annotated, NamedTuple
 
+from modelkit.car import CarUltrasonic, SensorMount
 from modelkit.geometry import Box, Point, cone_box, line_box, reach
 from modelkit.maths import clamp
 from modelkit.random import normal, seed_state, uniform
 from modelkit.signal import Role, Signal
-from modelkit.vocabulary import SENSOR_MOUNTS, Pose, SensorMount
+from modelkit.vocabulary import Pose
 from vehicle_fmu.scene import HOUSE, SceneParams, is_there, obstacle_box
-
-USUAL = "usual for parking sensors"
 
 
 class UltrasonicParams(NamedTuple):
-    """Mounting and quality of the sensors; noise and dropout are off by default."""
+    """What spoils the readings; noise and dropout are off by default. The rest is in ``car.ultrasonic``."""
 
-    mounts: tuple[SensorMount, ...] = SENSOR_MOUNTS
-    half_angle: Annotated[float, Signal("rad", "half opening of the cone", 0.01, 1.5, USUAL)] = 30.0 * pi / 180.0
-    min_range: Annotated[float, Signal("m", "nearest distance told", 0.0, 10.0, USUAL)] = 0.15
-    max_range: Annotated[float, Signal("m", "farthest distance heard", 0.1, 100.0, USUAL)] = 5.0
-    resolution: Annotated[float, Signal("m", "step of a reading; 0: none", 0.0, 1.0, USUAL)] = 0.01
-    cycle: Annotated[float, Signal("s", "time between readings", 1e-3, 10.0, USUAL)] = 0.04
     noise: Annotated[float, Signal("m", "standard deviation of a reading", 0.0, 10.0, HOUSE), Role.TUNABLE] = 0.0
     dropout: Annotated[float, Signal("1", "probability that a reading is lost", 0.0, 1.0, HOUSE), Role.TUNABLE] = 0.0
     kerb_height: Annotated[float, Signal("m", "kerbs lower than this are not heard", 0.0, 10.0, HOUSE)] = 0.08
@@ -53,9 +45,9 @@ class UltrasonicState(NamedTuple):
     random: int = 1
 
 
-def first_readings(pose: Pose, scene: SceneParams, params: UltrasonicParams) -> UltrasonicState:
+def first_readings(pose: Pose, scene: SceneParams, sensors: CarUltrasonic, params: UltrasonicParams) -> UltrasonicState:
     """Return the readings [m] at time zero."""
-    return measure(UltrasonicState(random=seed_state(params.seed)), pose, scene, params, 0)
+    return measure(UltrasonicState(random=seed_state(params.seed)), pose, scene, sensors, params, 0)
 
 
 def is_due(before_ns: int, now_ns: int, cycle: float) -> bool:
@@ -65,38 +57,45 @@ def is_due(before_ns: int, now_ns: int, cycle: float) -> bool:
 
 
 def measure(
-    state: UltrasonicState, pose: Pose, scene: SceneParams, params: UltrasonicParams, time_ns: int
+    state: UltrasonicState,
+    pose: Pose,
+    scene: SceneParams,
+    sensors: CarUltrasonic,
+    params: UltrasonicParams,
+    time_ns: int,
 ) -> UltrasonicState:
     """Return new readings [m] of all sensors of a car at ``pose``."""
     random = state.random
-    ear = Ear(params.min_range, params.max_range, params.resolution, params.noise, params.dropout)
+    ear = Ear(sensors.min_range, sensors.max_range, sensors.resolution, params.noise, params.dropout)
     readings = state.readings
-    for distance in heard_distances(pose, scene, params, time_ns):
+    for distance in heard_distances(pose, scene, sensors, params.kerb_height, time_ns):
         random, reading = _reading(random, distance, ear)
         readings = readings[1:] + (reading,)
     return UltrasonicState(readings, random)
 
 
-def heard_distances(pose: Pose, scene: SceneParams, params: UltrasonicParams, time_ns: int) -> tuple[float, ...]:
+def heard_distances(
+    pose: Pose, scene: SceneParams, sensors: CarUltrasonic, kerb_height: float, time_ns: int
+) -> tuple[float, ...]:
     """Return the exact distance [m] from each sensor to the nearest thing in its cone, at most ``max_range``."""
-    distances: tuple[float, ...] = (params.max_range,) * 12
+    distances: tuple[float, ...] = (sensors.max_range,) * 12
     ahead = Point(math.cos(pose.heading), math.sin(pose.heading))
     for obstacle in scene.boxes:
         if is_there(obstacle, time_ns):
-            distances = _hear(distances, pose, ahead, params, obstacle_box(obstacle))
+            distances = _hear(distances, pose, ahead, sensors, obstacle_box(obstacle))
     for kerb in scene.kerbs:
-        if kerb.height > 0.0 and kerb.height >= params.kerb_height:
+        if kerb.height > 0.0 and kerb.height >= kerb_height:
             line = line_box(kerb.x1, kerb.y1, kerb.x2, kerb.y2)
-            distances = _hear(distances, pose, ahead, params, line)
+            distances = _hear(distances, pose, ahead, sensors, line)
     return distances
 
 
 def _hear(
-    distances: tuple[float, ...], pose: Pose, ahead: Point, params: UltrasonicParams, box: Box
+    distances: tuple[float, ...], pose: Pose, ahead: Point, sensors: CarUltrasonic, box: Box
 ) -> tuple[float, ...]:
     return tuple(
-        _nearer(nearest, pose, ahead, mount, params.half_angle, box)
-        for nearest, mount in zip(distances, params.mounts, strict=True)
+        _nearer(nearest, pose, ahead, mount, sensors.half_angle, box)
+        for nearest, mount in zip(distances, sensors.mounts, strict=True)
     )
 
 

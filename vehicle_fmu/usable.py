@@ -1,5 +1,6 @@
 """Whether the parameters describe a car: finite numbers, and positive ones where equations divide."""
 
+from modelkit.car import Car, CarUltrasonic
 from modelkit.maths import is_finite
 from vehicle_fmu.chassis import ChassisParams
 from vehicle_fmu.double_track import DoubleTrackParams
@@ -17,12 +18,12 @@ def is_usable(params: VehicleParams) -> bool:
     start = params.start
     return (
         is_finite(start.x + start.y + start.heading)
-        and _sizes(params.wheelbase)
-        and _sizes(params.steering.ratio)
+        and _sizes(params.car.wheelbase)
+        and _sizes(params.car.steering.ratio)
         and _sizes(params.largest_step)
         and _sizes(params.driver.wobble_period)
         and _sizes(params.chassis.mass)
-        and _hears(params.ultrasonic)
+        and _hears(params.car.ultrasonic, params.ultrasonic)
         and _stands(params.scene)
         and (params.body == Body.KINEMATIC or _has_mass(params))
         and (params.body != Body.SINGLE_TRACK or _is_single(params.single_track))
@@ -34,7 +35,7 @@ def _has_mass(params: VehicleParams) -> bool:
     return (
         _sizes(params.body_step)
         and is_finite(params.road.slope + params.road.bank)
-        and _is_chassis(params.chassis, params.wheelbase)
+        and _is_chassis(params.chassis, params.car)
         and _drives(params.drive)
     )
 
@@ -49,11 +50,11 @@ def _drives(drive: DriveParams) -> bool:
     )
 
 
-def _is_chassis(p: ChassisParams, wheelbase: float) -> bool:
+def _is_chassis(p: ChassisParams, car: Car) -> bool:
     return (
         _sizes(p.mass)
         and _sizes(p.yaw_inertia)
-        and 0.0 < p.cg_to_rear < wheelbase
+        and 0.0 < car.cg_to_rear < car.wheelbase
         and is_finite(p.cg_height + p.rolling_resistance + p.drag_x + p.drag_y)
         and is_finite(p.front_drive_share + p.front_brake_share)
     )
@@ -101,11 +102,11 @@ def _is_tire(p: TireParams) -> bool:
     )
 
 
-def _hears(p: UltrasonicParams) -> bool:
-    total = p.noise + p.dropout + p.min_range + p.max_range + p.resolution
-    for mount in p.mounts:
+def _hears(sensors: CarUltrasonic, p: UltrasonicParams) -> bool:
+    total = p.noise + p.dropout + sensors.min_range + sensors.max_range + sensors.resolution
+    for mount in sensors.mounts:
         total = total + mount.x + mount.y + mount.yaw
-    return is_finite(total) and 1e-6 <= p.cycle <= LARGEST and 0.0 < p.half_angle < 1.57
+    return is_finite(total) and 1e-6 <= sensors.cycle <= LARGEST and 0.0 < sensors.half_angle < 1.57
 
 
 def _stands(p: SceneParams) -> bool:

@@ -137,7 +137,7 @@ def _stood(state: AdaptiveState, pose: Pose, params: ControllerParams) -> Adapti
     shortest = 0.05 if driver.slows else shortest_way(driver, params.adaptive.belief)
     demand = Demand(speed, driver.obeys, path.rest, 0.5 if driver.stops > 0 else 0.4, shortest)
     wheel = wheel_of(state.monitor.wheel.steering, params)
-    planned = plan(pose, demand, wheel, room_of(params.wheelbase, params.adaptive.room))
+    planned = plan(pose, demand, wheel, room_of(params.car.wheelbase, params.adaptive.room))
     foot = foot_on(planned.route, 0.0, pose) if planned.route.direction != 0 else Foot(reference=pose)
     return state._replace(driver=driver, plan=planned, end=drivable(planned.route), foot=foot, begun=foot)
 
@@ -145,9 +145,9 @@ def _stood(state: AdaptiveState, pose: Pose, params: ControllerParams) -> Adapti
 def wheel_of(steering: Steering, params: ControllerParams) -> Wheel:
     """Return what paths are planned with."""
     path = params.adaptive.path
-    rate = rate_of(steering, params.steering_wheel_rate) / params.steering_ratio
-    smallest = params.wheelbase / math.tan(params.steering_wheel_limit / params.steering_ratio)
-    return Wheel(params.wheelbase, path.rate_reserve * rate, path.radius_reserve * smallest)
+    rate = rate_of(steering, params.car.steering.rate_limit) / params.car.steering.ratio
+    smallest = params.car.wheelbase / math.tan(params.car.steering.angle_limit / params.car.steering.ratio)
+    return Wheel(params.car.wheelbase, path.rate_reserve * rate, path.radius_reserve * smallest)
 
 
 def _tracked(state: AdaptiveState, pose: Pose) -> AdaptiveState:
@@ -240,7 +240,7 @@ def _request(state: AdaptiveState, params: ControllerParams) -> float:
     turned = clamp(state.foot.heading_error, -STEEPEST, STEEPEST)
     c = math.cos(turned)
     feedback = path.k1 * state.foot.lateral_error + route.direction * path.k2 * math.tan(turned)
-    angle = math.atan(params.wheelbase * c * c * c * (curvature - feedback))
+    angle = math.atan(params.car.wheelbase * c * c * c * (curvature - feedback))
     return wheel_request(angle, state.frame.mirror, params)
 
 

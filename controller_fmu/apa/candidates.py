@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 from controller_fmu.apa.exit import Exit
 from controller_fmu.apa.move import Move, end_of, is_move_free, length_of
-from controller_fmu.apa.outline import Car
+from controller_fmu.apa.outline import Shape
 from controller_fmu.apa.shuffle import finish, full_lock
 from controller_fmu.apa.slot import Site
 from controller_fmu.apa.turns import forward_turn, reverse_s, reverse_turn, straight_move, turn_of, two_arcs
@@ -50,7 +50,7 @@ def none_from(start: Pose) -> Candidate:
     return Candidate(False, Move(start), 0, 0.0)
 
 
-def into_parallel(start: Pose, number: int, way_in: Exit, site: Site, car: Car) -> Candidate:
+def into_parallel(start: Pose, number: int, way_in: Exit, site: Site, car: Shape) -> Candidate:
     """Return the reverse into a parallel slot, straight back at first, or after a move before it."""
     turn = turn_of(car.curvature, car.curvature, car.ramp)
     if number < REVERSE_PREFIXES:
@@ -66,7 +66,7 @@ def into_parallel(start: Pose, number: int, way_in: Exit, site: Site, car: Car) 
     return Candidate(good, ahead, 2 + way_in.moves, length_of(ahead) + length_of(after))
 
 
-def _before(start: Pose, number: int, car: Car) -> Move:
+def _before(start: Pose, number: int, car: Shape) -> Move:
     """Return a move before the reverse: forward straight, bent to the left, or to the left and back to the
     same heading; or straight back, with the wheel turned at standstill after it.
     """
@@ -82,7 +82,7 @@ def _before(start: Pose, number: int, car: Car) -> Move:
     return straight_move(start, -1, way)
 
 
-def into_perpendicular(start: Pose, share: int, site: Site, car: Car) -> Candidate:
+def into_perpendicular(start: Pose, share: int, site: Site, car: Shape) -> Candidate:
     """Return the reverse line, arc, line into a perpendicular slot, at 1, 0.85, 0.7 or 0.55 of the lock."""
     turn = turn_of((1.0 - 0.15 * share) * car.curvature, car.curvature, car.ramp)
     move = reverse_turn(start, turn)
@@ -90,7 +90,7 @@ def into_perpendicular(start: Pose, share: int, site: Site, car: Car) -> Candida
     return Candidate(good, move, 1, length_of(move))
 
 
-def swing(start: Pose, number: int, site: Site, car: Car) -> Candidate:
+def swing(start: Pose, number: int, site: Site, car: Shape) -> Candidate:
     """Return the move forward and to the left from which :func:`into_perpendicular` leads in."""
     share = number % 2
     angle = (number // 2) % SWING_ANGLES
@@ -106,7 +106,7 @@ def swing(start: Pose, number: int, site: Site, car: Car) -> Candidate:
     return Candidate(True, move, 2, length_of(move) + after.cost)
 
 
-def back_and_forth(start: Pose, number: int, site: Site, car: Car) -> Candidate:
+def back_and_forth(start: Pose, number: int, site: Site, car: Shape) -> Candidate:
     """Return the reverse at full lock to the right that, after one forward to the left, leads in."""
     back = full_lock(start, -1, -1.0, 1.5 * (1 + number % 4), site, car)
     if back.direction == 0:
@@ -118,7 +118,7 @@ def back_and_forth(start: Pose, number: int, site: Site, car: Car) -> Candidate:
     return Candidate(after.found, back, 3, length_of(back) + length_of(ahead) + after.cost)
 
 
-def back_and_swing(start: Pose, number: int, site: Site, car: Car) -> Candidate:
+def back_and_swing(start: Pose, number: int, site: Site, car: Shape) -> Candidate:
     """Return the reverse, straight or a little bent, from which :func:`swing` at once leads in."""
     k = 0.35 * car.curvature * (number % 3 - 1)
     back = two_arcs(start, -1, k, 0.5 * (1 + (number // 3) % BACK_WAYS), 0.0, 0.0)
@@ -127,7 +127,7 @@ def back_and_swing(start: Pose, number: int, site: Site, car: Car) -> Candidate:
     return Candidate(good, back, 3, length_of(back) + after.cost)
 
 
-def ahead_back_and_swing(start: Pose, number: int, site: Site, car: Car) -> Candidate:
+def ahead_back_and_swing(start: Pose, number: int, site: Site, car: Shape) -> Candidate:
     """Return the straight move forward from which :func:`back_and_swing` leads in."""
     ahead = straight_move(start, 1, 1.5 * (1 + number % 4))
     if not is_move_free(ahead, car, site.obstacles):
@@ -136,7 +136,7 @@ def ahead_back_and_swing(start: Pose, number: int, site: Site, car: Car) -> Cand
     return Candidate(after.found, ahead, 4, length_of(ahead) + after.cost)
 
 
-def swing_back_and_forth(start: Pose, number: int, site: Site, car: Car) -> Candidate:
+def swing_back_and_forth(start: Pose, number: int, site: Site, car: Shape) -> Candidate:
     """Return the move forward to the left from which :func:`back_and_forth` leads in."""
     full = turn_of(car.curvature, car.curvature, car.ramp)
     ahead = 1.0 * (number % 5)
@@ -161,7 +161,7 @@ def choices(moves: int) -> int:
     return CHOICES if moves <= ALL_CHOICES_UP_TO else FEW_CHOICES if moves <= FEW_CHOICES_UP_TO else 1
 
 
-def inside(start: Pose, number: int, moves: int, site: Site, car: Car) -> Candidate:
+def inside(start: Pose, number: int, moves: int, site: Site, car: Shape) -> Candidate:
     """Return the first of ``moves`` short moves in the slot, of which the last ends as wished.
 
     Each but the last is an arc at full lock, to lessen the heading or the other way, as far as nothing
@@ -196,7 +196,7 @@ def _last_digit(number: int, base: int) -> int:
     return number % base
 
 
-def _inside_step(pose: Pose, direction: int, choice: int, site: Site, car: Car) -> Move:
+def _inside_step(pose: Pose, direction: int, choice: int, site: Site, car: Shape) -> Move:
     """Return an arc at full lock. Choices: to heading 0, half of what is free, all and half of it the other
     way; then all, 3/4 and 1/4 of it, and 3/4 the other way.
     """

@@ -7,7 +7,7 @@ the arc forward leads out. What has to be driven then from the road is one rever
 import math
 from typing import NamedTuple
 
-from controller_fmu.apa.outline import Car, free_way
+from controller_fmu.apa.outline import Shape, free_way
 from controller_fmu.apa.slot import Site
 from controller_fmu.common.curve import advance
 from modelkit.vocabulary import Pose
@@ -27,7 +27,7 @@ class Exit(NamedTuple):
     moves: int = 0
 
 
-def exit_of(variant: int, site: Site, car: Car) -> Exit:
+def exit_of(variant: int, site: Site, car: Shape) -> Exit:
     """Return the exit of this variant: 0, 1, 2 with no move in the slot (parked in its middle, a little
     back, at its rear end), 3 to 9 with 1 to 7 moves (odd: parked at the front end, even: at the rear end).
     """
@@ -48,7 +48,7 @@ def exit_of(variant: int, site: Site, car: Car) -> Exit:
     return Exit(free >= out, pose, moves)
 
 
-def way_out(pose: Pose, car: Car) -> float:
+def way_out(pose: Pose, car: Shape) -> float:
     """Return the way [m] along the arc to the left until the rear axle has risen by 1.2 half widths, at most 78 deg."""
     c = car.curvature
     cosine = math.cos(pose.heading) - c * (1.2 * car.half_width - pose.y)

@@ -3,9 +3,10 @@
 from typing import NamedTuple
 
 from controller_fmu.apa.exit import VARIANTS, exit_of
-from controller_fmu.apa.outline import Car
+from controller_fmu.apa.outline import Shape
 from controller_fmu.apa.params import ApaParams
 from controller_fmu.apa.slot import Kind, Margins, Slot, site_of
+from modelkit.car import Car
 
 
 class Fit(NamedTuple):
@@ -61,7 +62,7 @@ def margins_of(attempt: int, params: ApaParams) -> Margins:
     return Margins(share * plan.margin, share * plan.kerb_margin, inset)
 
 
-def fit_of(slot: Slot, car: Car, params: ApaParams) -> Fit:
+def fit_of(slot: Slot, car: Shape, params: ApaParams) -> Fit:
     """Return whether the car fits. Parallel: a way out of the slot exists within the shift limit; else by width."""
     length = car.front + car.rear
     width = 2.0 * car.half_width
@@ -83,17 +84,17 @@ def fit_of(slot: Slot, car: Car, params: ApaParams) -> Fit:
     return Fit(False, 0, high)
 
 
-def shortest_of_iso(kind: int, wheelbase: float, params: ApaParams) -> float:
+def shortest_of_iso(kind: int, car: Car) -> float:
     """Return the length (width) [m] of the shortest slot of ISO 16787 (secondary source) for this car."""
-    length = wheelbase + params.front_overhang + params.rear_overhang
+    length = car.wheelbase + car.front_overhang + car.rear_overhang
     if kind != Kind.PARALLEL:
-        return params.width + 1.2
+        return car.width + 1.2
     if length < 4.0:
         return length + 1.0
     return 1.25 * length if length <= 6.0 else length + 1.5
 
 
-def least_moves(slot: Slot, car: Car, params: ApaParams) -> int:
+def least_moves(slot: Slot, car: Shape, params: ApaParams) -> int:
     """Return the fewest moves into a parallel slot, 0 if it takes more than allowed."""
     plan = params.plan
     if slot.length < car.front + car.rear + 2.0 * plan.margin + 0.1:

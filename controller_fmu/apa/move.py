@@ -6,7 +6,7 @@ ramps), so the limits of curvature and curvature rate hold exactly and everywher
 
 from typing import NamedTuple
 
-from controller_fmu.apa.outline import CREPT, MET, Car, Obstacles, clearance, least_on
+from controller_fmu.apa.outline import CREPT, MET, Obstacles, Shape, clearance, least_on
 from controller_fmu.common.curve import advance
 from modelkit.vocabulary import Pose
 
@@ -87,7 +87,7 @@ def first_curvature(move: Move) -> float:
     return 0.0
 
 
-def is_move_free(move: Move, car: Car, obstacles: Obstacles) -> bool:
+def is_move_free(move: Move, car: Shape, obstacles: Obstacles) -> bool:
     """Return whether a move meets no obstacle; one that begins within a margin has to lead out of it."""
     pose = move.start
     direction = float(move.direction)

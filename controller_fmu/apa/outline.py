@@ -17,7 +17,7 @@ CREPT = 0.005
 """So much [m] nearer is taken for no nearer."""
 
 
-class Car(NamedTuple):
+class Shape(NamedTuple):
     """What a planner needs to know of the car."""
 
     front: float = 3.2
@@ -50,7 +50,7 @@ class Obstacles(NamedTuple):
     opposite: Box = Box()
 
 
-def box_clearance(pose: Pose, car: Car, box: Box) -> float:
+def box_clearance(pose: Pose, car: Shape, box: Box) -> float:
     """Return the distance [m] of the outline to the box; negative: how deep they overlap at least."""
     if box.x0 > box.x1:
         return FAR
@@ -84,7 +84,7 @@ def box_clearance(pose: Pose, car: Car, box: Box) -> float:
     return math.sqrt(best)
 
 
-def clearance(pose: Pose, car: Car, obstacles: Obstacles) -> float:
+def clearance(pose: Pose, car: Shape, obstacles: Obstacles) -> float:
     """Return the distance [m] of the outline to the nearest obstacle; <= 0: contact."""
     nearest = box_clearance(pose, car, obstacles.behind)
     nearest = _smaller(nearest, box_clearance(pose, car, obstacles.ahead))
@@ -92,7 +92,7 @@ def clearance(pose: Pose, car: Car, obstacles: Obstacles) -> float:
     return _smaller(nearest, box_clearance(pose, car, obstacles.opposite))
 
 
-def free_way(pose: Pose, direction: float, curvature: float, longest: float, car: Car, obstacles: Obstacles) -> float:
+def free_way(pose: Pose, direction: float, curvature: float, longest: float, car: Shape, obstacles: Obstacles) -> float:
     """Return how far [m] the car can drive at this curvature before an obstacle is nearer than 0.
 
     The boxes are grown by the margin beforehand. Looked at every 4 cm.
@@ -108,7 +108,7 @@ def free_way(pose: Pose, direction: float, curvature: float, longest: float, car
 
 
 def least_on(
-    pose: Pose, direction: float, length: float, k0: float, k1: float, least: float, car: Car, obstacles: Obstacles
+    pose: Pose, direction: float, length: float, k0: float, k1: float, least: float, car: Shape, obstacles: Obstacles
 ) -> float:
     """Return the clearance [m] that must not be fallen below after this piece of path, ``MET`` if it was on it.
 

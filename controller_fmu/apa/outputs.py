@@ -115,7 +115,7 @@ def _signals(state: ApaState, frame: SlotFrame, params: ControllerParams) -> Apa
         target=to_world(Pose(), frame) if shown else Pose(),
         moves=state.parking.plan.moves,
         parking_time=state.watch.running * 1e-9,
-        iso_spare=slot.length - shortest_of_iso(slot.kind, params.wheelbase, params.apa) if shown else 0.0,
+        iso_spare=slot.length - shortest_of_iso(slot.kind, params.car) if shown else 0.0,
         move=_move(state.parking, frame),
     )
 

@@ -1,4 +1,4 @@
-"""What can be set of the parking assist: the car it drives, sensors, margins, speeds, limits."""
+"""What can be set of the parking assist: sensors, margins, speeds, limits."""
 
 from enum import IntEnum
 from math import pi
@@ -6,11 +6,9 @@ from typing import Annotated, NamedTuple
 
 from controller_fmu.apa.slot import Slot
 from modelkit.signal import Role, Signal
-from modelkit.vocabulary import SENSOR_MOUNTS, SensorMount
 
 HOUSE = "chosen; the source states none"
 SOURCE = "APA function requirements"
-USUAL = "usual for parking sensors"
 
 
 class Longitudinal(IntEnum):
@@ -31,12 +29,8 @@ class Wish(IntEnum):
 
 
 class SensorParams(NamedTuple):
-    """The twelve ultrasonic sensors as the controller believes them to be."""
+    """When a distance sensor counts as lost."""
 
-    mounts: tuple[SensorMount, ...] = SENSOR_MOUNTS
-    half_angle: Annotated[float, Signal("rad", "half opening of the cone", 0.01, 1.5, USUAL)] = 30.0 * pi / 180.0
-    min_range: Annotated[float, Signal("m", "nearest distance told", 0.0, 10.0, USUAL)] = 0.15
-    max_range: Annotated[float, Signal("m", "farthest distance heard", 0.1, 100.0, USUAL)] = 5.0
     blind_time: Annotated[float, Signal("s", "longest time a sensor may tell nothing usable", 0.01, 10.0, HOUSE)] = 0.3
 
 
@@ -126,9 +120,6 @@ class GuardParams(NamedTuple):
 class ApaParams(NamedTuple):
     """The whole parking assist."""
 
-    front_overhang: Annotated[float, Signal("m", "front axle to bumper", 0.0, 5.0, HOUSE)] = 0.80
-    rear_overhang: Annotated[float, Signal("m", "rear axle to bumper", 0.0, 5.0, HOUSE)] = 0.60
-    width: Annotated[float, Signal("m", "body width", 0.1, 5.0, HOUSE)] = 1.65
     sensors: SensorParams = SensorParams()
     plan: PlanParams = PlanParams()
     drive: Annotated[ApaDriveParams, Role.TUNABLE] = ApaDriveParams()

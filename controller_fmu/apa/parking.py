@@ -7,7 +7,7 @@ from controller_fmu.apa.fit import closer, following, margins_of, stands_out, un
 from controller_fmu.apa.manoeuvre_chart import Guard as StepGuard
 from controller_fmu.apa.manoeuvre_chart import Step, step_transition
 from controller_fmu.apa.move import length_of
-from controller_fmu.apa.outline import Car
+from controller_fmu.apa.outline import Shape
 from controller_fmu.apa.params import Longitudinal
 from controller_fmu.apa.planner import FOUND, NOTHING, SEARCHING, PlanSearch, new_search, search_on
 from controller_fmu.apa.slot import Margins, Site, Slot, site_of
@@ -51,22 +51,23 @@ class Parking(NamedTuple):
     """Speed asked for or advised [m/s], reverse negative."""
 
 
-def car_of(params: ControllerParams) -> Car:
+def shape_of(params: ControllerParams) -> Shape:
     """Return the car as the planner sees it."""
-    lock = math.tan(params.steering_wheel_limit / params.steering_ratio)
-    apa = params.apa
-    return Car(
-        params.wheelbase + apa.front_overhang,
-        apa.rear_overhang,
-        0.5 * apa.width,
-        apa.plan.curvature_share * lock / params.wheelbase,
-        apa.plan.ramp,
+    car = params.car
+    plan = params.apa.plan
+    lock = math.tan(car.steering.angle_limit / car.steering.ratio)
+    return Shape(
+        front=car.wheelbase + car.front_overhang,
+        rear=car.rear_overhang,
+        half_width=0.5 * car.width,
+        curvature=plan.curvature_share * lock / car.wheelbase,
+        ramp=plan.ramp,
     )
 
 
 def site_for(slot: Slot, attempt: int, params: ControllerParams) -> Site:
     """Return the slot as the planner sees it in this attempt."""
-    return site_of(slot, car_of(params), margins_of(attempt, params.apa))
+    return site_of(slot, shape_of(params), margins_of(attempt, params.apa))
 
 
 def next_attempt(state: Parking, plan: PlanSearch, site: Site, params: ControllerParams) -> int:
@@ -97,7 +98,7 @@ def park(
 ) -> Parking:
     """Return the manoeuvre one sample later; while not ``allowed`` the first plan is made, and no more."""
     site = site_for(slot, state.attempt, params)
-    car = car_of(params)
+    car = shape_of(params)
     pose = to_slot(inputs.odometry, site.frame)
     plan = state.plan
     attempt = state.attempt
@@ -112,12 +113,12 @@ def park(
     sight = Sight()
     if state.step in (Step.DRIVE, Step.HALT, Step.SET_WHEEL):
         drive = params.apa.drive
-        tracked = track(plan.move, state.leg, tracked.way, pose, drive.k1, drive.k2, params.wheelbase)
+        tracked = track(plan.move, state.leg, tracked.way, pose, drive.k1, drive.k2, params.car.wheelbase)
         around = site_of(
             slot, car, Margins(0.0, 0.0, -params.apa.plan.stand_out if stands_out(attempt) else 0.0)
         ).obstacles
         mirror = site.frame.mirror
-        sight = look(inputs.ultrasonic, pose, mirror, plan.move.direction, inputs.measured_speed, around, params.apa)
+        sight = look(inputs.ultrasonic, pose, mirror, plan.move.direction, inputs.measured_speed, around, params)
     guards = _guards(state, plan, tracked, sight, pose, site, inputs, allowed, params)
     step = step_transition(state.step, guards)
     return _moved_on(state, step, plan, attempt, tracked, sight, pose, site, steering, params)
@@ -201,7 +202,7 @@ def _moved_on(
         leg = _next_leg(state, plan, tracked)
         if state.step == Step.PLAN:
             tracked = Tracked(left=length_of(plan.move), to_stop=leg.end, reference=pose)
-        front = set_wheel(plan.move, leg, tracked.way, params.wheelbase)
+        front = set_wheel(plan.move, leg, tracked.way, params.car.wheelbase)
         wheel = wheel_request(front, site.frame.mirror, params)
     if step == Step.DRIVE:
         if state.step != Step.DRIVE and plan.move.direction != direction:
@@ -225,8 +226,8 @@ def _next_leg(state: Parking, plan: PlanSearch, tracked: Tracked) -> Leg:
 
 
 def _speed(tracked: Tracked, sight: Sight, steering: Steering, params: ControllerParams) -> float:
-    rate = rate_of(steering, params.steering_wheel_rate) / params.steering_ratio
-    speed = planned_speed(tracked.to_stop, tracked.slope, params.wheelbase, rate, params.apa.drive)
+    rate = rate_of(steering, params.car.steering.rate_limit) / params.car.steering.ratio
+    speed = planned_speed(tracked.to_stop, tracked.slope, params.car.wheelbase, rate, params.apa.drive)
     return max(params.apa.drive.creep, min(speed, sight.speed))
 
 

@@ -28,7 +28,7 @@ from controller_fmu.apa.candidates import (
 )
 from controller_fmu.apa.exit import VARIANTS, Exit, exit_of
 from controller_fmu.apa.move import Move
-from controller_fmu.apa.outline import Car
+from controller_fmu.apa.outline import Shape
 from controller_fmu.apa.slot import Kind, Site
 from modelkit.vocabulary import Pose
 
@@ -73,7 +73,7 @@ def new_search(start: Pose) -> PlanSearch:
     return PlanSearch(move=Move(start))
 
 
-def search_on(search: PlanSearch, site: Site, car: Car, count: int) -> PlanSearch:
+def search_on(search: PlanSearch, site: Site, car: Shape, count: int) -> PlanSearch:
     """Return the search after at most ``count`` more candidates."""
     for _ in range(count):
         if search.status == SEARCHING:
@@ -81,7 +81,7 @@ def search_on(search: PlanSearch, site: Site, car: Car, count: int) -> PlanSearc
     return search
 
 
-def stage_of(place: int, start: Pose, site: Site, car: Car) -> int:
+def stage_of(place: int, start: Pose, site: Site, car: Shape) -> int:
     """Return the family of candidates at ``place`` in the order for this start, -1 past the last."""
     if site.kind == Kind.PARALLEL:
         if start.y < 1.3 * car.half_width:
@@ -109,7 +109,7 @@ def count_of(stage: int) -> int:
     return inside_count(stage)
 
 
-def _one_more(search: PlanSearch, site: Site, car: Car) -> PlanSearch:
+def _one_more(search: PlanSearch, site: Site, car: Shape) -> PlanSearch:
     start = search.move.start
     stage = stage_of(search.stage, start, site, car)
     if stage == NO_STAGE:
@@ -134,7 +134,7 @@ def _one_more(search: PlanSearch, site: Site, car: Car) -> PlanSearch:
     )
 
 
-def _candidate(stage: int, number: int, start: Pose, way_in: Exit, site: Site, car: Car) -> Candidate:
+def _candidate(stage: int, number: int, start: Pose, way_in: Exit, site: Site, car: Shape) -> Candidate:
     if stage == TURN:
         return into_perpendicular(start, number, site, car)
     if stage == SWING:

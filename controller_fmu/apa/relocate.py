@@ -9,11 +9,12 @@ where the rear corner sensor hears it nearer.
 import math
 
 from controller_fmu.apa.outline import Obstacles
-from controller_fmu.apa.parking import car_of
+from controller_fmu.apa.parking import shape_of
 from controller_fmu.apa.slot import LESS_BESIDE, UNSEEN, Kind, Margins, Site, Slot, mirror_of, site_of
 from controller_fmu.apa.supervisor import WRONG, expected
 from controller_fmu.common.slot_frame import SlotFrame, to_slot, to_world
 from controller_fmu.interface import ControllerInput, ControllerParams
+from modelkit.car import CarUltrasonic
 from modelkit.maths import wrap_angle
 from modelkit.vocabulary import Pose
 
@@ -67,7 +68,7 @@ def _walled(slot: Slot, inputs: ControllerInput, params: ControllerParams) -> Sl
     mirror = mirror_of(slot)
     side = SIDES[1 if mirror > 0.0 else 0][1]
     corner = REAR_RIGHT if mirror > 0.0 else REAR_LEFT
-    lowest = params.apa.sensors.min_range + 0.011
+    lowest = nearest_told(params.car.ultrasonic)
     one = inputs.ultrasonic[side]
     two = inputs.ultrasonic[corner]
     if slot.depth < UNSEEN or not lowest < one < NEAR or not lowest < two < NEAR:
@@ -108,7 +109,7 @@ def along(slot: Slot, inputs: ControllerInput, params: ControllerParams) -> Slot
         return slot
     mirror = mirror_of(slot)
     pose = to_slot(inputs.odometry, SlotFrame(slot.a, mirror))
-    site = site_of(slot, car_of(params), Margins(0.0, LESS_BESIDE - OUT, 0.0))
+    site = site_of(slot, shape_of(params), Margins(0.0, LESS_BESIDE - OUT, 0.0))
     total = 0.0
     heard = 0.0
     for number in (SIDES[1][0], SIDES[1][1], REAR_RIGHT) if mirror > 0.0 else (SIDES[0][0], SIDES[0][1], REAR_LEFT):
@@ -128,16 +129,18 @@ def _off_wall(pose: Pose, site: Site, number: int, inputs: ControllerInput, para
     ``pose`` is the car's in A's frame. The wall must be square to a ray of the cone, and nearer than the neighbours.
     """
     mirror = site.frame.mirror
-    mount = params.apa.sensors.mounts[number]
+    sensors = params.car.ultrasonic
+    mount = sensors.mounts[number]
     reading = inputs.ultrasonic[number]
-    square = abs(wrap_angle(pose.heading + mirror * mount.yaw + 0.5 * math.pi)) < params.apa.sensors.half_angle - RIM
+    square = abs(wrap_angle(pose.heading + mirror * mount.yaw + 0.5 * math.pi)) < sensors.half_angle - RIM
     inside = _y_of(pose, mirror, params, number) < INSIDE
-    if not square or not inside or not params.apa.sensors.min_range + 0.011 < reading < FARTHEST:
+    if not square or not inside or not nearest_told(sensors) < reading < FARTHEST:
         return NOTHING
     in_target = to_slot(inputs.odometry, site.frame)
     nothing = site.obstacles.opposite
-    should = expected(mount, in_target, mirror, Obstacles(nothing, nothing, site.obstacles.beside, nothing), params.apa)
-    if should > expected(mount, in_target, mirror, site.obstacles, params.apa):
+    alone = Obstacles(nothing, nothing, site.obstacles.beside, nothing)
+    should = expected(mount, in_target, mirror, alone, sensors)
+    if should > expected(mount, in_target, mirror, site.obstacles, sensors):
         return NOTHING
     return should - reading
 
@@ -149,7 +152,7 @@ def _side_at(pose: Pose, mirror: float, inputs: ControllerInput, sense: float, p
     for number in SIDES[0 if sense * mirror < 0.0 else 1]:
         y = _y_of(pose, mirror, params, number)
         reading = inputs.ultrasonic[number]
-        if y < INSIDE and params.apa.sensors.min_range + 0.011 < reading < FARTHEST:
+        if y < INSIDE and nearest_told(params.car.ultrasonic) < reading < FARTHEST:
             total += _x_of(pose, mirror, params, number) + sense * reading
             heard += 1.0
     return total / heard if heard > 0.0 else NOTHING
@@ -157,16 +160,17 @@ def _side_at(pose: Pose, mirror: float, inputs: ControllerInput, sense: float, p
 
 def _shallower(slot: Slot, inputs: ControllerInput, params: ControllerParams) -> Slot:
     """Return the slot with the wall beside as near as the rear corner sensor on its side hears it."""
-    site = site_of(slot, car_of(params), Margins(0.0, 0.0, 0.0))
+    site = site_of(slot, shape_of(params), Margins(0.0, 0.0, 0.0))
     pose = to_slot(inputs.odometry, site.frame)
     number = REAR_RIGHT if site.frame.mirror > 0.0 else REAR_LEFT
     nothing = site.obstacles.opposite
-    mount = params.apa.sensors.mounts[number]
+    sensors = params.car.ultrasonic
+    mount = sensors.mounts[number]
     mirror = site.frame.mirror
     alone = Obstacles(nothing, nothing, site.obstacles.beside, nothing)
-    should = expected(mount, pose, mirror, alone, params.apa)
+    should = expected(mount, pose, mirror, alone, sensors)
     lacks = should - inputs.ultrasonic[number]
-    if lacks <= WRONG or lacks > FURTHEST or should > expected(mount, pose, mirror, site.obstacles, params.apa):
+    if lacks <= WRONG or lacks > FURTHEST or should > expected(mount, pose, mirror, site.obstacles, sensors):
         return slot
     return slot._replace(depth=slot.depth - lacks)
 
@@ -175,7 +179,7 @@ def _heard_at(pose: Pose, mirror: float, inputs: ControllerInput, first: int, pa
     """Return x [m] in A's frame of what two middle sensors hear; far away if they do not agree."""
     one = inputs.ultrasonic[first]
     two = inputs.ultrasonic[first + 1]
-    lowest = params.apa.sensors.min_range + 0.011
+    lowest = nearest_told(params.car.ultrasonic)
     if one > NEAR or two > NEAR or one < lowest or two < lowest:
         return NOTHING
     sense = 1.0 if first == FRONT else -1.0
@@ -185,12 +189,12 @@ def _heard_at(pose: Pose, mirror: float, inputs: ControllerInput, first: int, pa
 
 
 def _x_of(pose: Pose, mirror: float, params: ControllerParams, number: int) -> float:
-    mount = params.apa.sensors.mounts[number]
+    mount = params.car.ultrasonic.mounts[number]
     return pose.x + mount.x * math.cos(pose.heading) - mirror * mount.y * math.sin(pose.heading)
 
 
 def _y_of(pose: Pose, mirror: float, params: ControllerParams, number: int) -> float:
-    mount = params.apa.sensors.mounts[number]
+    mount = params.car.ultrasonic.mounts[number]
     return pose.y + mount.x * math.sin(pose.heading) + mirror * mount.y * math.cos(pose.heading)
 
 
@@ -202,6 +206,11 @@ def braked(slot: Slot, speed: float, params: ControllerParams) -> Slot:
     """
     missed = 0.5 * params.apa.search.slip * speed * speed
     return _moved(slot, -missed, -missed, slot.unsure)
+
+
+def nearest_told(sensors: CarUltrasonic) -> float:
+    """Return the distance [m] above which a reading is one: the nearest told says that something is nearer still."""
+    return sensors.min_range + 1.1 * sensors.resolution
 
 
 def _moved(slot: Slot, start: float, end: float, unsure: float = 0.0) -> Slot:

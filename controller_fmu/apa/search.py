@@ -5,11 +5,11 @@ from typing import NamedTuple
 
 from controller_fmu.apa.fit import Fit, fit_of
 from controller_fmu.apa.line_fit import offset, slope
-from controller_fmu.apa.outline import Car
+from controller_fmu.apa.outline import Shape
 from controller_fmu.apa.params import ApaParams, Wish
 from controller_fmu.apa.search_side import DEEP, START, SideState, hear
 from controller_fmu.apa.slot import UNSEEN, Kind, Slot
-from controller_fmu.interface import ControllerInput
+from controller_fmu.interface import ControllerInput, ControllerParams
 from modelkit.vocabulary import Pose
 
 LEFT_SENSOR = 8
@@ -17,7 +17,6 @@ RIGHT_SENSOR = 10
 RIGHT = 0
 LEFT = 1
 REMEMBERED = 3
-SENSOR_CYCLE_NS = 40_000_000
 LONG_NEIGHBOUR = 2.6
 """A neighbour longer than this [m] along the road stands parallel to it."""
 
@@ -51,12 +50,14 @@ def begin_search(pose: Pose, clock_ns: int) -> SearchState:
     return SearchState(origin=pose, clock_ns=clock_ns)
 
 
-def search(state: SearchState, inputs: ControllerInput, car: Car, params: ApaParams, dt_ns: int) -> SearchState:
-    """Return the search after one sample; sensors tell something new every 40 ms."""
+def search(
+    state: SearchState, inputs: ControllerInput, car: Shape, params: ControllerParams, dt_ns: int
+) -> SearchState:
+    """Return the search after one sample; sensors tell something new every ``cycle``."""
     clock = state.clock_ns + dt_ns
     speed = abs(inputs.measured_speed)
     way = state.way + speed * dt_ns * 1e-9
-    if not is_new_reading(state.clock_ns, dt_ns) or speed < 0.01:
+    if not is_new_reading(state.clock_ns, dt_ns, params.car.ultrasonic.cycle) or speed < 0.01:
         return state._replace(clock_ns=clock, way=way)
     fastest = max(state.fastest, speed)
     pose = inputs.odometry
@@ -64,7 +65,7 @@ def search(state: SearchState, inputs: ControllerInput, car: Car, params: ApaPar
     left_r = inputs.ultrasonic[LEFT_SENSOR]
     right = _hear(state.right, state.origin, pose, 1.0, RIGHT_SENSOR, right_r, params)
     left = _hear(state.left, state.origin, pose, -1.0, LEFT_SENSOR, left_r, params)
-    top = 0.99 * params.sensors.max_range
+    top = 0.99 * params.car.ultrasonic.max_range
     far_left = DEEP if right.mode == 1 and state.right.mode != 1 else state.far_left
     far_right = DEEP if left.mode == 1 and state.left.mode != 1 else state.far_right
     far_left = left_r if left_r < far_left and left_r < top else far_left
@@ -79,9 +80,9 @@ def search(state: SearchState, inputs: ControllerInput, car: Car, params: ApaPar
     return state
 
 
-def is_new_reading(clock_ns: int, dt_ns: int) -> bool:
-    """Return whether the sensors have told something new since the last sample."""
-    return clock_ns % SENSOR_CYCLE_NS < dt_ns
+def is_new_reading(clock_ns: int, dt_ns: int, cycle: float) -> bool:
+    """Return whether the sensors, which measure every ``cycle`` [s], have told something new since the last sample."""
+    return clock_ns % math.floor(cycle * 1e9 + 0.5) < dt_ns
 
 
 def left_part(seen: int) -> int:
@@ -90,7 +91,7 @@ def left_part(seen: int) -> int:
 
 
 def slot_of(
-    side: SideState, which: int, origin: Pose, opposite_heard: float, unsure: float, car: Car, params: ApaParams
+    side: SideState, which: int, origin: Pose, opposite_heard: float, unsure: float, car: Shape, params: ApaParams
 ) -> Slot:
     """Return the gap between the last two neighbours as a slot, in the world, its corners ``unsure`` by so much [m]."""
     mirror = -1.0 if which == LEFT else 1.0
@@ -113,7 +114,7 @@ def slot_of(
     return Slot(kind, which, corner_a, max(0.0, length), (a2 - a1) * cos, depth, opposite, unsure)
 
 
-def kind_of(length: float, depth: float, neighbour: float, car: Car, params: ApaParams) -> int:
+def kind_of(length: float, depth: float, neighbour: float, car: Shape, params: ApaParams) -> int:
     """Return how a car would stand in a gap: by its length, its depth, and how the neighbour stands."""
     if params.search.wish != Wish.ANY:
         return params.search.wish
@@ -126,23 +127,26 @@ def kind_of(length: float, depth: float, neighbour: float, car: Car, params: Apa
 
 
 def _hear(
-    side: SideState, origin: Pose, pose: Pose, mirror: float, sensor: int, reading: float, params: ApaParams
+    side: SideState, origin: Pose, pose: Pose, mirror: float, sensor: int, reading: float, params: ControllerParams
 ) -> SideState:
-    mount = params.sensors.mounts[sensor]
+    sensors = params.car.ultrasonic
+    mount = sensors.mounts[sensor]
     c = math.cos(pose.heading)
     s = math.sin(pose.heading)
     dx = pose.x + mount.x * c - mount.y * s - origin.x
     dy = pose.y + mount.x * s + mount.y * c - origin.y
     c = math.cos(origin.heading)
     s = math.sin(origin.heading)
-    return hear(side, dx * c + dy * s, mirror * (dy * c - dx * s), reading, params.sensors.half_angle, params.search)
+    return hear(
+        side, dx * c + dy * s, mirror * (dy * c - dx * s), reading, params.car.ultrasonic.half_angle, params.apa.search
+    )
 
 
 def _judge(
-    state: SearchState, side: SideState, which: int, far: float, speed: float, car: Car, params: ApaParams
+    state: SearchState, side: SideState, which: int, far: float, speed: float, car: Shape, params: ControllerParams
 ) -> SearchState:
     """Return the search with a new gap judged, or a known one measured better."""
-    slot = slot_of(side, which, state.origin, far, params.search.unsure * speed, car, params)
+    slot = slot_of(side, which, state.origin, far, params.apa.search.unsure * speed, car, params.apa)
     mark = side.found * 16 if which == RIGHT else side.found
     known = state.seen - left_part(state.seen) if which == RIGHT else left_part(state.seen)
     other = state.seen - known
@@ -152,7 +156,7 @@ def _judge(
         if not better:
             return state
         return state._replace(slots=(slot._replace(kind=first.kind), state.slots[1], state.slots[2]))
-    fit = fit_of(slot, car, params)
+    fit = fit_of(slot, car, params.apa)
     seen = mark + other
     if not fit.fits:
         return state._replace(seen=seen, refused=fit, refusals=state.refusals + 1)

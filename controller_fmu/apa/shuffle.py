@@ -10,7 +10,7 @@ import math
 from typing import NamedTuple
 
 from controller_fmu.apa.move import Move, is_move_free
-from controller_fmu.apa.outline import Car, free_way
+from controller_fmu.apa.outline import Shape, free_way
 from controller_fmu.apa.slot import Site
 from controller_fmu.apa.turns import two_arcs
 from modelkit.vocabulary import Pose
@@ -30,7 +30,7 @@ class Finish(NamedTuple):
     """Distance [m] of its end from x = 0."""
 
 
-def finish(start: Pose, direction: int, sense: float, aside: float, site: Site, car: Car) -> Finish:
+def finish(start: Pose, direction: int, sense: float, aside: float, site: Site, car: Shape) -> Finish:
     """Return the move of two arcs (first curvature of sign ``sense``) and a line that ends in the slot.
 
     It ends ``aside`` [m] beside the slot's axis, along it.
@@ -61,7 +61,7 @@ def finish(start: Pose, direction: int, sense: float, aside: float, site: Site, 
     return Finish(True, move, abs(end_x))
 
 
-def full_lock(start: Pose, direction: int, sense: float, longest: float, site: Site, car: Car) -> Move:
+def full_lock(start: Pose, direction: int, sense: float, longest: float, site: Site, car: Shape) -> Move:
     """Return the move along one arc as far as nothing is near; no direction if that is under 10 cm."""
     c = sense * car.curvature
     way = free_way(start, float(direction), c, longest, car, site.obstacles)

@@ -10,7 +10,7 @@ import math
 from enum import IntEnum
 from typing import Annotated, NamedTuple
 
-from controller_fmu.apa.outline import FAR, Box, Car, Obstacles, grown
+from controller_fmu.apa.outline import FAR, Box, Obstacles, Shape, grown
 from controller_fmu.common.slot_frame import SlotFrame, to_world
 from modelkit.signal import Group, Signal
 from modelkit.vocabulary import ANYWHERE, Pose
@@ -72,7 +72,7 @@ def mirror_of(slot: Slot) -> float:
     return -1.0 if slot.side == Side.LEFT else 1.0
 
 
-def target_of(slot: Slot, car: Car, margins: Margins) -> Pose:
+def target_of(slot: Slot, car: Shape, margins: Margins) -> Pose:
     """Return the pose to park at, in A's frame."""
     line = 0.5 * slot.b_out - margins.inset
     if slot.kind == Kind.PERPENDICULAR:
@@ -84,7 +84,7 @@ def target_of(slot: Slot, car: Car, margins: Margins) -> Pose:
     return Pose(0.5 * (slot.length - car.front - car.rear) + car.rear, lowest if y < lowest else y, 0.0)
 
 
-def site_of(slot: Slot, car: Car, margins: Margins) -> Site:
+def site_of(slot: Slot, car: Shape, margins: Margins) -> Site:
     """Return the slot in the frame of its target."""
     target = target_of(slot, car, margins)
     frame = SlotFrame(to_world(target, SlotFrame(slot.a, mirror_of(slot))), mirror_of(slot))
@@ -110,7 +110,7 @@ def site_of(slot: Slot, car: Car, margins: Margins) -> Site:
     return Site(slot.kind, frame, obstacles, -slack, slack)
 
 
-def shortest_for_one_move(car: Car, inner_radius: float, depth: float) -> float:
+def shortest_for_one_move(car: Shape, inner_radius: float, depth: float) -> float:
     """Return L_min [m] = r + sqrt(2 (R_min + d) B_y + l^2 - B_y^2) of the source.
 
     r rear overhang, R_min the inner rear wheel's turning radius, d the width, l nose to rear axle,

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 from controller_fmu.apa.exit import Exit
 from controller_fmu.apa.move import is_move_free
-from controller_fmu.apa.outline import Car
+from controller_fmu.apa.outline import Shape
 from controller_fmu.apa.slot import Site
 from controller_fmu.apa.turns import reverse_s, turn_of
 from modelkit.vocabulary import Pose
@@ -26,7 +26,7 @@ class StartRange(NamedTuple):
     high: float
 
 
-def start_range(y: float, heading: float, way_in: Exit, site: Site, car: Car) -> StartRange:
+def start_range(y: float, heading: float, way_in: Exit, site: Site, car: Shape) -> StartRange:
     """Return the range; ``high`` to 2 mm by halving. Not found if even the steepest way is not free."""
     turn = turn_of(car.curvature, car.curvature, car.ramp)
     r = 1.0 / car.curvature
@@ -51,7 +51,7 @@ def start_range(y: float, heading: float, way_in: Exit, site: Site, car: Car) ->
     return StartRange(True, low, free)
 
 
-def leads_in(start: Pose, way_in: Exit, site: Site, car: Car) -> bool:
+def leads_in(start: Pose, way_in: Exit, site: Site, car: Shape) -> bool:
     """Return whether one reverse leads in from this pose (slot's frame): whether it lies within its range."""
     turn = turn_of(car.curvature, car.curvature, car.ramp)
     move = reverse_s(start, way_in.pose, 0.0, turn, turn)

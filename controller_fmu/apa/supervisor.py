@@ -9,11 +9,12 @@ import math
 from typing import NamedTuple
 
 from controller_fmu.apa.outline import Box, Obstacles, grown
-from controller_fmu.apa.params import ApaParams
 from controller_fmu.apa.speed import stopping_way
+from controller_fmu.interface import ControllerParams
+from modelkit.car import CarUltrasonic, SensorMount
 from modelkit.geometry import Box as OrientedBox
 from modelkit.geometry import Point, cone_box
-from modelkit.vocabulary import Pose, SensorMount
+from modelkit.vocabulary import Pose
 
 FREE = 100.0
 STRAIGHT = 0.2
@@ -42,39 +43,40 @@ def look(
     direction: int,
     speed: float,
     around: Obstacles,
-    params: ApaParams,
+    params: ControllerParams,
 ) -> Sight:
     """Return the sight in ``direction`` of a car at ``pose`` (slot's frame) among obstacles not grown."""
+    sensors = params.car.ultrasonic
+    guard = params.apa.guard
+    drive = params.apa.drive
     first = 0 if direction > 0 else 4
     gap = FREE
     unknown = False
     for number in range(first, first + 4):
         reading = readings[number]
         if reading < LOOKED_AT:
-            mount = params.sensors.mounts[number]
-            should = expected(mount, pose, mirror, around, params)
-            nearer = reading < should - params.guard.surprise and not _grazes(
-                mount, reading, pose, mirror, around, params
-            )
+            mount = sensors.mounts[number]
+            should = expected(mount, pose, mirror, around, sensors)
+            nearer = reading < should - guard.surprise and not _grazes(mount, reading, pose, mirror, around, params)
             ahead = abs(mount.yaw) < STRAIGHT or abs(mount.yaw) > math.pi - STRAIGHT
             left = FREE
             if nearer:
-                left = reading - params.guard.surprise_gap
+                left = reading - guard.surprise_gap
             elif ahead:
-                left = reading - params.guard.stop_gap
-            elif reading < params.guard.corner_gap and reading < should - WRONG:
+                left = reading - guard.stop_gap
+            elif reading < guard.corner_gap and reading < should - WRONG:
                 left = -1.0
             if left < gap:
                 gap = left
                 unknown = nearer
     room = gap if gap > 0.0 else 0.0
-    allowed = math.sqrt(params.drive.brake * room)
-    blocked = gap <= stopping_way(speed, params.drive, params.drive.delay)
+    allowed = math.sqrt(drive.brake * room)
+    blocked = gap <= stopping_way(speed, drive, drive.delay)
     return Sight(allowed, blocked, blocked and unknown)
 
 
 def _grazes(
-    mount: SensorMount, reading: float, pose: Pose, mirror: float, around: Obstacles, params: ApaParams
+    mount: SensorMount, reading: float, pose: Pose, mirror: float, around: Obstacles, params: ControllerParams
 ) -> bool:
     """Return whether something known explains a reading, if it stands a little further out or in a wider cone."""
     near = Obstacles(
@@ -83,11 +85,11 @@ def _grazes(
         grown(around.beside, UNSURE),
         grown(around.opposite, UNSURE),
     )
-    return reading >= expected(mount, pose, mirror, near, params, WIDER) - params.guard.surprise
+    return reading >= expected(mount, pose, mirror, near, params.car.ultrasonic, WIDER) - params.apa.guard.surprise
 
 
 def expected(
-    mount: SensorMount, pose: Pose, mirror: float, around: Obstacles, params: ApaParams, wider: float = 0.0
+    mount: SensorMount, pose: Pose, mirror: float, around: Obstacles, sensors: CarUltrasonic, wider: float = 0.0
 ) -> float:
     """Return the distance [m] that a sensor should hear from the obstacles around, at most its range.
 
@@ -98,8 +100,8 @@ def expected(
     y = mirror * mount.y
     at = Point(pose.x + mount.x * c - y * s, pose.y + mount.x * s + y * c)
     axis = pose.heading + mirror * mount.yaw
-    half = params.sensors.half_angle + wider
-    nearest = _smaller(params.sensors.max_range, _heard(at, axis, half, around.behind))
+    half = sensors.half_angle + wider
+    nearest = _smaller(sensors.max_range, _heard(at, axis, half, around.behind))
     nearest = _smaller(nearest, _heard(at, axis, half, around.ahead))
     nearest = _smaller(nearest, _heard(at, axis, half, around.beside))
     return _smaller(nearest, _heard(at, axis, half, around.opposite))

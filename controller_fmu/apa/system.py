@@ -6,12 +6,12 @@ from controller_fmu.apa.chart import Guard, Mode, transition
 from controller_fmu.apa.manoeuvre_chart import Step
 from controller_fmu.apa.parking import (
     Parking,
-    car_of,
     cut_short,
     has_failed,
     is_planned,
     is_planning,
     park,
+    shape_of,
     start_planning,
 )
 from controller_fmu.apa.relocate import along, between, braked, relocated
@@ -61,12 +61,12 @@ def apa_sample(state: ApaState, inputs: ControllerInput, params: ControllerParam
     slot = state.slot
     if reason == Reason.NONE and not taken:
         if state.mode in (Mode.PARKING_SPACE_SEARCH, Mode.PARKING_SPACE_APPEARS):
-            found = search(found, inputs, car_of(params), params.apa, dt_ns)
+            found = search(found, inputs, shape_of(params), params, dt_ns)
         if driving or state.mode == Mode.PARKING_SPACE_APPEARS:
             if driving and parking.step == Step.HALT and abs(inputs.measured_speed) <= STANDING:
                 slot = relocated(slot, inputs, params)
                 parking = cut_short(parking) if slot.depth < state.slot.depth - SHALLOWER else parking
-            if driving and is_new_reading(state.clock_ns, dt_ns):
+            if driving and is_new_reading(state.clock_ns, dt_ns, params.car.ultrasonic.cycle):
                 slot = along(between(slot, inputs, params), inputs, params)
             parking = park(parking, slot, inputs, seen.wheel.steering, driving, params)
     reason = _later_reason(reason, state, parking, found, params)

@@ -4,7 +4,7 @@ import math
 from typing import NamedTuple
 
 from controller_fmu.apa.manoeuvre_chart import Step
-from controller_fmu.apa.params import ApaParams, Longitudinal
+from controller_fmu.apa.params import Longitudinal
 from controller_fmu.common.monitor import is_unmoved
 from controller_fmu.common.steering_monitor import SteeringWatch, at_rest, has_failed, watch_steering
 from controller_fmu.interface import ControllerInput, ControllerParams, Reason
@@ -49,9 +49,10 @@ def watch(
     speed = inputs.measured_speed
     still = abs(speed) <= STANDING
     angle = inputs.steering_wheel_angle
+    rate = params.car.steering.rate_limit
     wheel = at_rest(angle, state.wheel.steering)
     if driving:
-        wheel = watch_steering(state.wheel, request, angle, params.limit.wheel_off, params.steering_wheel_rate, dt_ns)
+        wheel = watch_steering(state.wheel, request, angle, params.limit.wheel_off, rate, dt_ns)
     moving_expected = step in (Step.SET_WHEEL, Step.DRIVE, Step.STRAIGHTEN)
     own = params.apa.drive.longitudinal == Longitudinal.OWN_SPEED
     limit = params.apa.guard.over_speed if not own else 1.5 * params.apa.drive.speed
@@ -60,7 +61,7 @@ def watch(
         stopping=state.stopping + dt_ns if not still and step == Step.HALT else 0,
         blocked=_blocked(state.blocked, blocked and driving, still, dt_ns),
         fast=state.fast + dt_ns if abs(speed) > limit and driving else 0,
-        blind=state.blind + dt_ns if not _all_heard(inputs, params.apa) else 0,
+        blind=state.blind + dt_ns if not _all_heard(inputs, params.car.ultrasonic.min_range) else 0,
         frozen=state.frozen + dt_ns if is_unmoved(inputs.odometry, state.pose, speed, dt_ns) else 0,
         running=state.running + dt_ns if driving else state.running,
         wheel=wheel,
@@ -133,9 +134,9 @@ def is_finite_input(inputs: ControllerInput) -> bool:
     )
 
 
-def _all_heard(inputs: ControllerInput, params: ApaParams) -> bool:
-    """Return whether every sensor tells a distance: finite, not under half of the nearest it can tell."""
+def _all_heard(inputs: ControllerInput, nearest: float) -> bool:
+    """Return whether every sensor tells a distance: finite, not under half of the ``nearest`` [m] it can tell."""
     for reading in inputs.ultrasonic:
-        if not is_finite(reading) or reading < 0.5 * params.sensors.min_range:
+        if not is_finite(reading) or reading < 0.5 * nearest:
             return False
-    return math.isfinite(params.sensors.min_range)
+    return math.isfinite(nearest)

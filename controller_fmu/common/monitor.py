@@ -41,9 +41,10 @@ def watch(
     still = abs(speed) <= params.threshold.standstill
     direction = DIRECTION_OF_PHASE[phase]
     angle = inputs.steering_wheel_angle
+    rate = params.car.steering.rate_limit
     wheel = at_rest(angle, state.wheel.steering)
     if phase != Phase.STANDBY:
-        wheel = watch_steering(state.wheel, request, angle, params.limit.wheel_off, params.steering_wheel_rate, dt_ns)
+        wheel = watch_steering(state.wheel, request, angle, params.limit.wheel_off, rate, dt_ns)
     return MonitorState(
         waiting=state.waiting + dt_ns if still and (direction != 0 or phase in STEERING_PHASES) else 0,
         stopping=state.stopping + dt_ns if not still and direction == 0 else 0,

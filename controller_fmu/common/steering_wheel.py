@@ -6,10 +6,10 @@ from modelkit.maths import clamp
 
 def steering_wheel_angle(front_wheel_angle: float, mirror: float, params: ControllerParams) -> float:
     """Return the steering-wheel angle [rad] that belongs to a front-wheel angle [rad]; ``mirror``: see SlotFrame."""
-    return mirror * params.steering_ratio * front_wheel_angle
+    return mirror * params.car.steering.ratio * front_wheel_angle
 
 
 def wheel_request(front_wheel_angle: float, mirror: float, params: ControllerParams) -> float:
     """Return the steering-wheel angle [rad] to ask for, held to the wheel's limit."""
-    limit = params.steering_wheel_limit
+    limit = params.car.steering.angle_limit
     return clamp(steering_wheel_angle(front_wheel_angle, mirror, params), -limit, limit)

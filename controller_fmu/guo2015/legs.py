@@ -32,13 +32,13 @@ def track(leg: int, pose: Pose, path: TwoArcPath, piece: int, params: Controller
     gains = params.guo2015
     if leg == Phase.PATH_TRACKING:
         reference = reference_at(path, pose.x, piece)
-        angle = path_tracking_angle(pose, reference, gains.k1, gains.k2, params.wheelbase)
+        angle = path_tracking_angle(pose, reference, gains.k1, gains.k2, params.car.wheelbase)
         at = Pose(reference.x, reference.y, reference.heading)
         return Tracking(at, 0.0, pose.y - reference.y, pose.heading - reference.heading, angle, reference.piece)
     point = point_of_leg(leg, path, gains)
     error = point_error(pose, point)
     direction = 1.0 if leg in (Phase.TO_Q2, Phase.TO_Q4) else -1.0
-    angle = point_tracking_angle(error, direction, gains.k3, gains.k4, params.wheelbase)
+    angle = point_tracking_angle(error, direction, gains.k3, gains.k4, params.car.wheelbase)
     return Tracking(point, error.x, error.y, error.heading, angle, piece)
 
 

@@ -49,7 +49,9 @@ def path_speed(
     if to_end > 0.0:
         advice = min(_speed_before(prompting.creep_speed, to_end, speed, prompting), advice)
     if k_next * k <= 0.0 and k_next != 0.0:
-        at_jump = swing_speed(math.atan(params.wheelbase * k), math.atan(params.wheelbase * k_next), steering, params)
+        at_jump = swing_speed(
+            math.atan(params.car.wheelbase * k), math.atan(params.car.wheelbase * k_next), steering, params
+        )
         advice = min(_speed_before(at_jump, distance_to_jump(path, reference), speed, prompting), advice)
     return advice
 
@@ -61,9 +63,9 @@ def point_speed(distance: float, speed: float, params: GuoPrompts) -> float:
 
 def swing_speed(angle: float, wanted: float, steering: Steering, params: ControllerParams) -> float:
     """Return the speed [m/s] at which the front wheels may swing from ``angle`` to ``wanted`` [rad] on the move."""
-    swing = abs(wanted - angle) * params.steering_ratio / rate_of(steering, params.steering_wheel_rate)
+    swing = abs(wanted - angle) * params.car.steering.ratio / rate_of(steering, params.car.steering.rate_limit)
     late = delay_of(steering)
-    jump = abs(math.tan(wanted) - math.tan(angle)) / params.wheelbase
+    jump = abs(math.tan(wanted) - math.tan(angle)) / params.car.wheelbase
     moment = jump * (swing * swing / 3.0 + late * swing + 0.5 * late * late)
     limit = params.guo2015.prompting.speed_limit
     if moment * limit * limit <= params.guo2015.prompting.jump_deviation:

@@ -68,7 +68,7 @@ def guo_sample(state: GuoState, inputs: ControllerInput, params: ControllerParam
         return _ended(state, Phase.FAILED, Reason.BAD_INPUT, inputs.driver_takeover)
     planned = state.plan
     if state.phase == Phase.STANDBY:
-        smallest = params.wheelbase / math.tan(params.steering_wheel_limit / params.steering_ratio)
+        smallest = params.car.wheelbase / math.tan(params.car.steering.angle_limit / params.car.steering.ratio)
         reserve = params.guo2015.radius_reserve
         planned = plan(inputs.odometry, params.target, params.guo2015.radius, reserve * smallest)
     pose = to_slot(inputs.odometry, planned.frame)
@@ -241,9 +241,9 @@ def _swing(
     wheel = inputs.steering_wheel_angle
     if DIRECTION_OF_PHASE[phase] == 0 or abs(request - wheel) <= params.limit.wheel_off:
         return limit
-    lock = params.steering_wheel_limit
-    angle = clamp(wheel, -lock, lock) / params.steering_ratio
-    speed = swing_speed(angle, request / params.steering_ratio, monitor.wheel.steering, params)
+    lock = params.car.steering.angle_limit
+    angle = clamp(wheel, -lock, lock) / params.car.steering.ratio
+    speed = swing_speed(angle, request / params.car.steering.ratio, monitor.wheel.steering, params)
     return min(state.swing, speed) if DIRECTION_OF_PHASE[state.phase] != 0 else speed
 
 

@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 from controller_fmu.common.arc_line_arc import arc_line_arc
 from controller_fmu.hsic.params import HsicSlot
+from modelkit.car import Car
 from modelkit.vocabulary import Pose
 
 
@@ -22,13 +23,13 @@ class KeyPoints(NamedTuple):
     """Largest x [m] of the rear axle in the slot."""
 
 
-def ready_point(slot: HsicSlot, radius: float) -> Pose:
+def ready_point(slot: HsicSlot, car: Car, radius: float) -> Pose:
     """Return P1: parallel, ``ready_gap`` beside the neighbour, tail level with the slot's front end.
 
     At P4 the car stands ``rear_gap`` ahead of the slot's rear end. Where tail-level is too near for
     two arcs of ``radius`` (S^2 + H^2 < 4 H R) the point lies as far ahead as they need.
     """
-    y = slot.ready_gap + 0.5 * (slot.slot_width + slot.width)
+    y = slot.ready_gap + 0.5 * (slot.slot_width + car.width)
     x = slot.slot_length - slot.rear_gap
     need = 4.0 * y * radius - y * y
     if need > x * x:
@@ -36,7 +37,7 @@ def ready_point(slot: HsicSlot, radius: float) -> Pose:
     return Pose(x, y, 0.0)
 
 
-def key_points(start: Pose, slot: HsicSlot, wheelbase: float, radius: float) -> KeyPoints:
+def key_points(start: Pose, slot: HsicSlot, car: Car, radius: float) -> KeyPoints:
     """Return the key points of the way from ``start`` (taken as P1, parallel) to the origin.
 
     P2 and P3 are the ends of the common tangent of two arcs of ``radius`` [m].
@@ -46,7 +47,7 @@ def key_points(start: Pose, slot: HsicSlot, wheelbase: float, radius: float) -> 
     cos = math.cos(arcs.angle)
     p3 = Pose(radius * sin, radius * (1.0 - cos), arcs.angle)
     p2 = Pose(p3.x + arcs.line * cos, p3.y + arcs.line * sin, arcs.angle)
-    ahead = slot.slot_length - slot.rear_gap - slot.front_overhang - wheelbase - slot.rear_overhang - slot.end_gap
+    ahead = slot.slot_length - slot.rear_gap - car.front_overhang - car.wheelbase - car.rear_overhang - slot.end_gap
     behind = slot.rear_gap - slot.end_gap
     foremost = ahead if ahead > 0.0 else 0.0
     rearmost = -behind if behind > 0.0 else 0.0

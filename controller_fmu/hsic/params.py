@@ -1,4 +1,4 @@
-"""What can be set in human-simulated intelligent control: car and slot, thresholds, gains, speeds."""
+"""What can be set in human-simulated intelligent control: slot, thresholds, gains, speeds."""
 
 from math import pi
 from typing import Annotated, NamedTuple
@@ -6,17 +6,13 @@ from typing import Annotated, NamedTuple
 from modelkit.signal import Role, Signal
 
 PAPER = "HSIC paper"
-ZHANG = "Zhang 2022, Table 1"
 HOUSE = "chosen; the source states none"
 DEGREE = pi / 180.0
 
 
 class HsicSlot(NamedTuple):
-    """Body of the car and the slot around it."""
+    """The slot, and the gaps kept to its ends."""
 
-    width: Annotated[float, Signal("m", "width of the car", 0.1, 5.0, ZHANG)] = 1.82
-    front_overhang: Annotated[float, Signal("m", "front axle to bumper", 0.0, 5.0, ZHANG)] = 0.966
-    rear_overhang: Annotated[float, Signal("m", "rear axle to bumper", 0.0, 5.0, ZHANG)] = 0.85
     slot_length: Annotated[float, Signal("m", "length of the slot", 0.1, 30.0, HOUSE)] = 7.2
     slot_width: Annotated[float, Signal("m", "width of the slot", 0.1, 10.0, HOUSE)] = 2.2
     rear_gap: Annotated[float, Signal("m", "gap to the slot's rear end when parked", 0.0, 10.0, HOUSE)] = 0.6

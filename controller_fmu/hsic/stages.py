@@ -5,6 +5,7 @@ from typing import NamedTuple
 from controller_fmu.hsic.characteristic_states import Errors, Stage, errors
 from controller_fmu.hsic.key_points import KeyPoints, key_points
 from controller_fmu.hsic.params import HsicParams
+from modelkit.car import Car
 from modelkit.vocabulary import Pose
 
 READY_REACH = 0.3
@@ -30,11 +31,11 @@ def is_parked(pose: Pose, share: float, params: HsicParams) -> bool:
     return abs(pose.heading) < share * threshold.parked_heading and abs(pose.y) < share * threshold.parked_lateral
 
 
-def advance(course: Course, pose: Pose, found: Errors, wheelbase: float, params: HsicParams) -> Course:
+def advance(course: Course, pose: Pose, found: Errors, car: Car, params: HsicParams) -> Course:
     """Return the course after looking at the pose (slot frame) and its errors to the goal."""
     arrived = course.way * found.ahead >= -params.threshold.reached
     if course.stage == Stage.READY:
-        return _ready(course, pose, found, arrived, wheelbase, params)
+        return _ready(course, pose, found, arrived, car, params)
     if course.stage == Stage.TURN_IN:
         if arrived or pose.heading >= course.goal.heading - params.threshold.turned:
             return _go(course, Stage.TANGENT, course.points.p3, False, pose)
@@ -46,7 +47,7 @@ def advance(course: Course, pose: Pose, found: Errors, wheelbase: float, params:
     return _shuffle(course, pose, arrived, params)
 
 
-def _ready(course: Course, pose: Pose, found: Errors, arrived: bool, wheelbase: float, params: HsicParams) -> Course:
+def _ready(course: Course, pose: Pose, found: Errors, arrived: bool, car: Car, params: HsicParams) -> Course:
     """Return P2 as goal if the car stands ready, else another approach to P1 with more room."""
     threshold = params.threshold
     if not arrived:
@@ -55,7 +56,7 @@ def _ready(course: Course, pose: Pose, found: Errors, arrived: bool, wheelbase: 
     at_p1 = course.goal.x == p1.x
     aligned = abs(found.heading) <= threshold.ready_heading and abs(found.lateral) <= threshold.ready_lateral
     if aligned and abs(pose.x - p1.x) <= READY_REACH:
-        points = key_points(pose, params.slot, wheelbase, course.points.radius)
+        points = key_points(pose, params.slot, car, course.points.radius)
         if points.found:
             return Course(Stage.TURN_IN, points, points.p2, way=-1)
     farther = Pose(p1.x + threshold.retreat, p1.y, 0.0)

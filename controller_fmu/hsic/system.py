@@ -84,10 +84,11 @@ def _watched_phase(state: HsicState) -> int:
 def _planned(inputs: ControllerInput, params: ControllerParams) -> HsicState:
     """Return the system on its way to the ready point, or failed where there are no key points."""
     slot = params.hsic.slot
-    radius = slot.radius_reserve * params.wheelbase / math.tan(params.steering_wheel_limit / params.steering_ratio)
+    car = params.car
+    radius = slot.radius_reserve * car.wheelbase / math.tan(car.steering.angle_limit / car.steering.ratio)
     frame = frame_at(params.target, inputs.odometry)
-    p1 = ready_point(slot, radius)
-    points = key_points(p1, slot, params.wheelbase, radius)
+    p1 = ready_point(slot, car, radius)
+    points = key_points(p1, slot, car, radius)
     return HsicState(
         phase=Phase.PRE_STEER if points.found else Phase.FAILED,
         reason=Reason.NONE if points.found else Reason.NO_PATH,
@@ -103,7 +104,7 @@ def _driven(
     hsic = params.hsic
     v = inputs.measured_speed
     seen = errors(pose, state.course.goal, v, state.direction)
-    course = advance(state.course, pose, seen, params.wheelbase, hsic)
+    course = advance(state.course, pose, seen, params.car, hsic)
     new_goal = course.goal.x != state.course.goal.x or course.stage != state.course.stage
     found = errors(pose, course.goal, v, state.direction) if new_goal else seen
     characteristic = recognise(course.stage, found, hsic.threshold)
@@ -115,9 +116,9 @@ def _driven(
         hold = hold or direction != state.direction
     turning = speed_mode == SpeedMode.TURN_ROUND and direction == state.direction
     integral = 0.0 if new_goal else state.integral + found.lateral * abs(v) * dt_ns * 1e-9
-    lock = math.tan(params.steering_wheel_limit / params.steering_ratio) / params.wheelbase
+    lock = math.tan(params.car.steering.angle_limit / params.car.steering.ratio) / params.car.wheelbase
     bend = curvature(steer_mode, course.stage, found, direction, integral, 1.0 / course.points.radius, lock, hsic.gain)
-    angle = math.atan(params.wheelbase * bend)
+    angle = math.atan(params.car.wheelbase * bend)
     off = abs(inputs.steering_wheel_angle - steering_wheel_angle(angle, state.frame.mirror, params))
     if abs(v) <= params.threshold.standstill and off <= hsic.threshold.wheel:
         hold = False

@@ -36,7 +36,9 @@ def driving_sample(state: DrivingState, inputs: ControllerInput, params: Control
     if state.phase == Phase.STRAIGHTEN:
         still = abs(inputs.measured_speed) <= params.threshold.standstill
         return DrivingState(Phase.PARKED if still else Phase.STRAIGHTEN, Reason.NONE, state.preview)
-    preview, command = preview_step(state.preview, inputs.odometry, inputs.measured_speed, params.preview, dt_ns * 1e-9)
+    preview, command = preview_step(
+        state.preview, inputs.odometry, inputs.measured_speed, params.car.cg_to_rear, params.preview, dt_ns * 1e-9
+    )
     if abs(preview.sight.y_l) > params.threshold.lost_lateral:
         return DrivingState(Phase.FAILED, Reason.LEFT_PATH, preview)
     phase = Phase.STRAIGHTEN if command.finished else Phase.PATH_TRACKING

@@ -114,6 +114,3 @@ class PreviewParams(NamedTuple):
     force_peaks: Annotated[
         tuple[float, ...], Signal("1", "peaks of the sets of the force, on [-3, 3]", -10.0, 10.0, HOUSE), Role.FIXED
     ] = (-3.5, -2.0, -1.0, 0.0, 1.0, 2.0, 3.5)
-    centre_to_rear: Annotated[
-        float, Signal("m", "lr, centre of gravity to rear axle", 0.01, 10.0, PAPER + ", Table 3"), Role.FIXED
-    ] = 0.76

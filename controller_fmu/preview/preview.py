@@ -24,11 +24,11 @@ class Motion(NamedTuple):
     turned: float = 0.0
 
 
-def centre_of_gravity(rear: Pose, centre_to_rear: float) -> Pose:
+def centre_of_gravity(rear: Pose, cg_to_rear: float) -> Pose:
     """Return the pose of the centre of gravity from that of the rear-axle midpoint."""
     return Pose(
-        rear.x + centre_to_rear * math.cos(rear.heading),
-        rear.y + centre_to_rear * math.sin(rear.heading),
+        rear.x + cg_to_rear * math.cos(rear.heading),
+        rear.y + cg_to_rear * math.sin(rear.heading),
         rear.heading,
     )
 

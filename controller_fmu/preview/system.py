@@ -33,10 +33,10 @@ class PreviewCommand(NamedTuple):
 
 
 def preview_step(
-    state: PreviewState, rear: Pose, speed: float, params: PreviewParams, dt: float
+    state: PreviewState, rear: Pose, speed: float, cg_to_rear: float, params: PreviewParams, dt: float
 ) -> tuple[PreviewState, PreviewCommand]:
     """Return the next state and the command from the rear-axle pose and the speed [m/s], sampled every ``dt`` [s]."""
-    centre = centre_of_gravity(rear, params.centre_to_rear)
+    centre = centre_of_gravity(rear, cg_to_rear)
     before = state.centre if state.started else centre
     moved = motion(before, centre)
     s = _arc_length(state, moved.forward, centre, params)

@@ -14,7 +14,7 @@ SLOWEST = 0.2
 """Speed assumed where the car stands [m/s]: without motion nothing can be predicted."""
 
 
-class Car(NamedTuple):
+class FrontAxle(NamedTuple):
     """What the MPC knows of the car."""
 
     wheelbase: float
@@ -35,7 +35,7 @@ class Steering(NamedTuple):
 
 
 def steer(
-    steering: Steering, path: QuinticPath, reference: Reference, speed: float, car: Car, p: MpcParams
+    steering: Steering, path: QuinticPath, reference: Reference, speed: float, car: FrontAxle, p: MpcParams
 ) -> Steering:
     """Return the rate of the front-wheel angle until the next solution.
 
@@ -50,13 +50,13 @@ def steer(
     return Steering(angle, clamp(rate, -car.rate_limit, car.rate_limit), found.status, found.iterations)
 
 
-def turned(steering: Steering, car: Car, dt: float) -> Steering:
+def turned(steering: Steering, car: FrontAxle, dt: float) -> Steering:
     """Return the steering ``dt`` [s] later at its present rate."""
     angle = clamp(steering.angle + steering.rate * dt, -car.angle_limit, car.angle_limit)
     return steering._replace(angle=angle)
 
 
-def prediction(path: QuinticPath, reference: Reference, speed: float, car: Car, p: MpcParams) -> Stages:
+def prediction(path: QuinticPath, reference: Reference, speed: float, car: FrontAxle, p: MpcParams) -> Stages:
     """Return the stages of the horizon, linearised where the car will be on the path at this speed (reverse)."""
     step = -max(SLOWEST, -speed) * p.step_time
     x = reference.pose.x
@@ -73,7 +73,7 @@ def _onward(path: QuinticPath, x: float, step: float) -> float:
     return x + step / math.sqrt(1.0 + slope * slope)
 
 
-def _stage(path: QuinticPath, x: float, step: float, number: int, car: Car, p: MpcParams) -> Stage:
+def _stage(path: QuinticPath, x: float, step: float, number: int, car: FrontAxle, p: MpcParams) -> Stage:
     """Return one prediction step: psi' = v (delta - delta_r) / (L cos^2 delta_r), e' = v psi, held over the step."""
     half = at(path, _onward(path, x, 0.5 * step))
     r = clamp(math.atan(car.wheelbase * half.curvature), -car.angle_limit, car.angle_limit)
@@ -82,7 +82,7 @@ def _stage(path: QuinticPath, x: float, step: float, number: int, car: Car, p: M
     return Stage(step, g, 0.5 * step * g, r, 1.0 if number < p.horizon else 0.0)
 
 
-def weights(car: Car, p: MpcParams) -> Weights:
+def weights(car: FrontAxle, p: MpcParams) -> Weights:
     """Return weights and limits of the QP."""
     return Weights(
         p.lateral,

@@ -17,7 +17,7 @@ def zhang_signals(state: ZhangState, params: ControllerParams) -> ZhangSignals:
         largest_curvature=state.path.largest_curvature,
         solver_status=state.steering.status,
         iterations=state.steering.iterations,
-        reference_angle=state.frame.mirror * math.atan(params.wheelbase * state.reference.curvature),
+        reference_angle=state.frame.mirror * math.atan(params.car.wheelbase * state.reference.curvature),
         set_speed=state.set_speed,
     )
 

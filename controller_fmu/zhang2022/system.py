@@ -7,7 +7,7 @@ from controller_fmu.common.monitor import MonitorState, is_usable_input, reason_
 from controller_fmu.common.slot_frame import SlotFrame, frame_at, to_slot
 from controller_fmu.common.steering_wheel import steering_wheel_angle
 from controller_fmu.interface import ControllerInput, ControllerParams, Phase, Reason
-from controller_fmu.zhang2022.mpc import Car, Steering, steer, turned
+from controller_fmu.zhang2022.mpc import FrontAxle, Steering, steer, turned
 from controller_fmu.zhang2022.path import PathStatus, QuinticPath, Reference, nearest, plan
 from controller_fmu.zhang2022.pid import PidState, pid
 from modelkit.maths import move_towards
@@ -65,21 +65,23 @@ def zhang_sample(state: ZhangState, inputs: ControllerInput, params: ControllerP
     return _driven(state, inputs, pose, reference, monitor, params, dt_ns)
 
 
-def car_of(params: ControllerParams) -> Car:
+def front_axle_of(params: ControllerParams) -> FrontAxle:
     """Return wheelbase [m] and the limits of the front-wheel angle [rad, rad/s]."""
-    ratio = params.steering_ratio
-    return Car(params.wheelbase, params.steering_wheel_limit / ratio, params.steering_wheel_rate / ratio)
+    ratio = params.car.steering.ratio
+    return FrontAxle(
+        params.car.wheelbase, params.car.steering.angle_limit / ratio, params.car.steering.rate_limit / ratio
+    )
 
 
 def _planned(inputs: ControllerInput, params: ControllerParams) -> ZhangState:
     """Return the system on its path, or failed for want of one."""
-    car = car_of(params)
+    car = front_axle_of(params)
     frame = frame_at(params.target, inputs.odometry)
     start = to_slot(inputs.odometry, frame)
     quintic = params.zhang2022.quintic
     limit = quintic.curvature_share * math.tan(car.angle_limit) / car.wheelbase
     path = plan(start, quintic.radius, limit)
-    angle = frame.mirror * inputs.steering_wheel_angle / params.steering_ratio
+    angle = frame.mirror * inputs.steering_wheel_angle / params.car.steering.ratio
     found = path.status == PathStatus.FOUND
     return ZhangState(
         phase=Phase.PATH_TRACKING if found else Phase.FAILED,
@@ -104,7 +106,7 @@ def _driven(
     """Return the system with its steering and speed for the next sample; at the target it brakes."""
     zhang = params.zhang2022
     dt = dt_ns * 1e-9
-    car = car_of(params)
+    car = front_axle_of(params)
     steering = state.steering
     solved_ns = state.solved_ns + dt_ns
     if solved_ns * 1e-9 > zhang.mpc.period - 0.5 * dt:

@@ -13,7 +13,6 @@ from functools import lru_cache
 from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.scenario.requirements import shipped_requirements
 from orchestrator.scenario.scenario import Scenario, Slot
-from orchestrator.scenario.sensor_mounts import mount_parameters
 from orchestrator.sweep.study.cases import LabelledScenario
 from vehicle_fmu.interface import Body
 
@@ -28,7 +27,7 @@ STARTS = {"near": (1.15, 3.0, 0.0), "far": (2.05, 2.8, 0.0), "crooked": (2.05, 2
 """Start pose: x ahead of the slot's front end [m], y from the target [m], heading [deg]."""
 DISTURBANCES: dict[str, dict[str, float]] = {
     "none": {},
-    "steering 5 % slow": {"vehicle.steering.ratio": 1.05},
+    "steering 5 % slow": {"vehicle.car.steering.ratio": 1.05},
     "driver 60 % fast": {"vehicle.driver.speed_error": 0.6},
     "wheel radius 1 % off": {"vehicle.odometry.radius_error": 0.01},
     "steering dead time 0.1 s": {"vehicle.steering.dead_time": 0.1},
@@ -68,7 +67,7 @@ def scenario_of(controller: str, slot: float, car: str, body: str, start: str, d
     vehicle["start.heading"] = math.radians(degrees)
     for key, value in DISTURBANCES[disturbance].items():
         name = key.removeprefix("vehicle.")
-        vehicle[name] = vehicle[name] * value if name == "steering.ratio" else value
+        vehicle[name] = vehicle[name] * value if name == "car.steering.ratio" else value
         if name.startswith("odometry"):
             vehicle["odometry.perfect"] = False
     return base.model_copy(update={"vehicle": vehicle})
@@ -85,18 +84,13 @@ def _base(controller: str, slot: float, car: str) -> Scenario:
         "controller.system": controller,
     }
     loaded = load_scenario("zhang2022", [f"{key}={value}" for key, value in sets.items()])
-    body = {key: loaded.vehicle[key] for key in ("width", "front_overhang", "rear_overhang")}
-    vehicle = {**loaded.vehicle, **_scene(slot, 0.5 * body["width"])}
-    told = {f"hsic.slot.{key}": value for key, value in body.items()}
-    told |= {"hsic.slot.slot_length": slot, "hsic.slot.slot_width": body["width"]}
-    told["hsic.slot.rear_gap"] = -REAR_END - body["rear_overhang"]
+    line = 0.5 * loaded.vehicle["car.width"]
+    vehicle = {**loaded.vehicle, **_scene(slot, line)}
+    told = {"hsic.slot.slot_length": slot, "hsic.slot.slot_width": loaded.vehicle["car.width"]}
+    told["hsic.slot.rear_gap"] = -REAR_END - loaded.vehicle["car.rear_overhang"]
     if searches:
-        outline = (loaded.vehicle["wheelbase"] + body["front_overhang"], -body["rear_overhang"], 0.5 * body["width"])
-        vehicle |= mount_parameters(*outline, "ultrasonic.")
         vehicle |= {"ultrasonic.noise": 0.01, "ultrasonic.dropout": 0.01, "driver.apa_switch_time": 0.5}
-        told = {f"apa.{key}": value for key, value in body.items()}
-        told |= mount_parameters(*outline, "apa.sensors.")
-    line = 0.5 * body["width"]
+        told = {}
     true = Slot(x=REAR_END + 0.5 * slot, y=line - 0.5 * DEPTH, length=slot, width=DEPTH)
     limits = [item for name in LIMITS for item in shipped_requirements(name) if item.signal not in UNJUDGED]
     controls = {**loaded.controller, **told}

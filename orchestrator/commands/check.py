@@ -5,7 +5,7 @@ import json
 from pathlib import Path
 
 from orchestrator.log.read_log import log_file, read_log
-from orchestrator.scenario.load_scenario import find_file
+from orchestrator.scenario.files import find_file
 from orchestrator.scenario.requirements import read_requirements
 from orchestrator.session.terminal import checks_table
 from orchestrator.suite.junit import Suite, cases_of, write_junit

@@ -9,7 +9,8 @@ from rich.table import Table
 
 from orchestrator.commands import STUDIES
 from orchestrator.scenario.catalogue import Entry, chosen, entries, range_text, start_text, systems
-from orchestrator.scenario.load_scenario import ROOM, car_names, load_scenario, scenario_names
+from orchestrator.scenario.files import ROOM, car_names
+from orchestrator.scenario.load_scenario import load_scenario, scenario_names
 from orchestrator.scenario.requirements import read_requirements
 from orchestrator.sweep.study.study_file import study_names
 from orchestrator.text.console import console

@@ -12,7 +12,7 @@ from typing import Any
 from orchestrator.cosim.fmu_files import KINDS, default_kind, fmu_files
 from orchestrator.cosim.interrupts import on_interrupt
 from orchestrator.cosim.master import Interrupt
-from orchestrator.scenario.load_scenario import find_file
+from orchestrator.scenario.files import find_file
 from orchestrator.scenario.requirements import read_requirements
 from orchestrator.session.foreign import add_foreign_arguments, foreign_of
 from orchestrator.suite.collection import write_collection

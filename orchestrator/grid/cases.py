@@ -10,21 +10,29 @@ from functools import cache
 from typing import Any, NamedTuple
 
 from controller_fmu.apa.fit import shortest_of_iso
-from controller_fmu.apa.params import ApaParams
 from controller_fmu.apa.slot import Kind
+from modelkit.car import Car, CarSteering, CarUltrasonic, mounts_on
+from orchestrator.scenario.car import car_parameters
 from orchestrator.scenario.requirements import Requirement, shipped_requirements
 from orchestrator.scenario.scenario import Scenario, Slot, Target
-from orchestrator.scenario.sensor_mounts import mount_parameters
 
 BODIES = ("kinematic", "double_track")
 BODY = {"kinematic": 0, "double_track": 2}
-CARS: dict[str, tuple[float, float, float, float, float]] = {
-    "guo2015": (2.405, 0.80, 0.60, 1.65, 4.166),
-    "zhang2022": (2.62, 0.966, 0.85, 1.82, 4.8),
-    "commonroad1": (2.579, 0.88, 0.839, 1.674, 5.0),
-}
-"""Wheelbase, front overhang, rear overhang, width, turning radius of the rear axle's middle [m]."""
 RATIO = 19.0
+
+
+def _car(wheelbase: float, front: float, rear: float, width: float, radius: float) -> Car:
+    """Return a car from wheelbase, overhangs, width and the turning radius of its rear axle's middle [m]."""
+    sensors = CarUltrasonic(mounts_on(wheelbase + front, rear, 0.5 * width))
+    steering = CarSteering(RATIO, RATIO * math.atan(wheelbase / radius))
+    return Car(wheelbase, front, rear, width, steering=steering, ultrasonic=sensors)
+
+
+CARS = {
+    "guo2015": _car(2.405, 0.80, 0.60, 1.65, 4.166),
+    "zhang2022": _car(2.62, 0.966, 0.85, 1.82, 4.8),
+    "commonroad1": _car(2.579, 0.88, 0.839, 1.674, 5.0),
+}
 EXTRA: dict[int, tuple[float, ...]] = {Kind.PARALLEL: (0.0, 0.4, 0.8, 1.6), Kind.PERPENDICULAR: (0.0, 0.3, 0.8)}
 """Length (width) over the shortest of ISO 16787 [m]."""
 BESIDE = (0.5, 1.0, 1.5)
@@ -69,10 +77,8 @@ def cases(lot: int = 0) -> list[GridCase]:
     found = []
     everything = itertools.product(CARS, slots, BESIDE, HEADINGS, BODIES)
     for number, (car, (kind, side, extra), beside, degrees, body) in enumerate(everything):
-        wheelbase, front, rear, width, _ = CARS[car]
         speed = SPEEDS[random.Random(number + LOTS * lot).randrange(len(SPEEDS))]
-        outline = ApaParams(front_overhang=front, rear_overhang=rear, width=width)
-        length = shortest_of_iso(kind, wheelbase, outline) + extra
+        length = shortest_of_iso(kind, CARS[car]) + extra
         heading = math.radians(degrees)
         found.append(GridCase(number, car, kind, side, extra, beside, heading, body, speed, length, lot))
     return found
@@ -80,17 +86,10 @@ def cases(lot: int = 0) -> list[GridCase]:
 
 def parameters(case: GridCase) -> tuple[dict[str, Any], dict[str, Any]]:
     """Return (vehicle, controller) parameters of a case."""
-    wheelbase, front, rear, width, radius = CARS[case.car]
+    car = CARS[case.car]
     lot = random.Random(1000 + case.number + LOTS * case.lot)
-    lock = RATIO * math.atan(wheelbase / radius)
-    car = {"wheelbase": wheelbase, "front_overhang": front, "rear_overhang": rear, "width": width}
-    vehicle: dict[str, Any] = {**car, "body": BODY[case.body], "steering.ratio": RATIO, "steering.angle_limit": lock}
-    controller: dict[str, Any] = {"system": 5, "wheelbase": wheelbase, "steering_ratio": RATIO}
-    controller |= {"steering_wheel_limit": lock, "steering_wheel_rate": math.radians(570.0)}
-    controller |= {f"apa.{name}": car[name] for name in ("front_overhang", "rear_overhang", "width")}
-    outline = (wheelbase + front, -rear, 0.5 * width)
-    vehicle |= mount_parameters(*outline, "ultrasonic.")
-    controller |= mount_parameters(*outline, "apa.sensors.")
+    vehicle: dict[str, Any] = {**car_parameters(car), "body": BODY[case.body]}
+    controller: dict[str, Any] = {**car_parameters(car), "system": 5}
     vehicle |= {
         "ultrasonic.noise": 0.01,
         "ultrasonic.dropout": 0.01,
@@ -99,7 +98,7 @@ def parameters(case: GridCase) -> tuple[dict[str, Any], dict[str, Any]]:
     vehicle |= {"odometry.perfect": False, "odometry.radius_error": lot.uniform(-0.005, 0.005), "odometry.tick": 0.02}
     vehicle |= {"odometry.steering_offset": lot.uniform(-0.001, 0.001), "odometry.steering_resolution": 0.001}
     vehicle |= {"driver.apa_switch_time": 0.5, "driver.profile[1].speed": case.speed}
-    return vehicle | _scene(case, front + rear + wheelbase, width), controller
+    return vehicle | _scene(case, car.front_overhang + car.rear_overhang + car.wheelbase, car.width), controller
 
 
 def _scene(case: GridCase, length: float, width: float) -> dict[str, Any]:
@@ -123,7 +122,8 @@ def _scene(case: GridCase, length: float, width: float) -> dict[str, Any]:
 
 def standing_of(case: GridCase) -> tuple[Target, Slot]:
     """Return target and slot: corner A at the origin, the car in the middle, flush with its neighbours."""
-    wheelbase, front, rear, width, _ = CARS[case.car]
+    car = CARS[case.car]
+    wheelbase, front, rear, width = car.wheelbase, car.front_overhang, car.rear_overhang, car.width
     middle, turn = 0.5 * case.length, 0.5 * math.pi * case.side
     if case.kind == Kind.PARALLEL:
         depth = width + BEHIND

@@ -133,7 +133,7 @@ def true_slot(case: GridCase) -> Slot:
     """Return the slot of a case as it is, its corner A at the world's origin."""
     side = int(Side.RIGHT if case.side > 0 else Side.LEFT)
     slot = Slot(case.kind, side, Pose(0.0, 0.0, 0.0), case.length)
-    return slot._replace(depth=CARS[case.car][3] + BEHIND) if case.kind == Kind.PARALLEL else slot
+    return slot._replace(depth=CARS[case.car].width + BEHIND) if case.kind == Kind.PARALLEL else slot
 
 
 def _corner_errors(case: GridCase, row: Mapping[str, float]) -> tuple[float, float]:

@@ -6,8 +6,8 @@ from typing import Any
 from controller_fmu.apa.candidates import SHARES, SWING_ANGLES, SWING_WAYS, into_perpendicular, swing
 from controller_fmu.apa.exit import VARIANTS, Exit, exit_of
 from controller_fmu.apa.fit import ATTEMPTS, margins_of
-from controller_fmu.apa.outline import Car
-from controller_fmu.apa.parking import car_of
+from controller_fmu.apa.outline import Shape
+from controller_fmu.apa.parking import shape_of
 from controller_fmu.apa.slot import Kind, Site, Slot, site_of
 from controller_fmu.apa.start_range import leads_in
 from controller_fmu.common.slot_frame import to_slot
@@ -30,7 +30,7 @@ def is_inside(start: Pose, slot: Slot, controller: dict[str, Any]) -> bool:
             for site, car, ways in _ways_in(slot, _Hashed(controller, params))
             for way_in in ways
         )
-    car = car_of(params)
+    car = shape_of(params)
     site = site_of(slot, car, margins_of(0, params.apa))
     pose = to_slot(start, site.frame)
     if any(into_perpendicular(pose, share, site, car).found for share in range(SHARES)):
@@ -53,10 +53,10 @@ class _Hashed:
 
 
 @lru_cache(maxsize=64)
-def _ways_in(slot: Slot, hashed: _Hashed) -> tuple[tuple[Site, Car, tuple[Exit, ...]], ...]:
+def _ways_in(slot: Slot, hashed: _Hashed) -> tuple[tuple[Site, Shape, tuple[Exit, ...]], ...]:
     """Return for each margin the ways into a parallel slot that keep to the shift limit."""
     params = hashed.params
-    car = car_of(params)
+    car = shape_of(params)
     found = []
     for attempt in range(ATTEMPTS):
         site = site_of(slot, car, margins_of(attempt, params.apa))

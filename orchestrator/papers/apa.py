@@ -10,12 +10,16 @@ from controller_fmu.apa.chart import Mode
 from controller_fmu.apa.exit import exit_of
 from controller_fmu.apa.fit import least_moves, shortest_of_iso
 from controller_fmu.apa.move import is_move_free, length_of, point_at
-from controller_fmu.apa.outline import Car, clearance
+from controller_fmu.apa.outline import Shape, clearance
 from controller_fmu.apa.params import ApaParams
+from controller_fmu.apa.parking import shape_of
 from controller_fmu.apa.slot import Kind, Margins, Site, Slot, shortest_for_one_move, site_of
 from controller_fmu.apa.start_range import start_range
 from controller_fmu.apa.turns import reverse_s, turn_of
 from controller_fmu.common.curve import advance
+from controller_fmu.interface import ControllerParams
+from modelkit.car import Car
+from modelkit.variables import with_values
 from modelkit.vocabulary import Pose
 from orchestrator.papers.apa_figure import draw_apa
 from orchestrator.papers.result import Drive, Driven, Reproduction, Row
@@ -49,15 +53,12 @@ def reproduce(out: Path, drive: Drive) -> Reproduction:
     return Reproduction("apa", TITLE, rows, [draw_apa(runs[0], runs[1], out / "apa.png")], NOTES)
 
 
-def car_named(name: str) -> Car:
+def car_named(name: str) -> Shape:
     """Return a shipped car, planned at 95 % of its lock."""
-    given = load_scenario("apa-parallel", [f"car={name}"]).vehicle
-    wheelbase, front, rear, width = (given[key] for key in ("wheelbase", "front_overhang", "rear_overhang", "width"))
-    lock = math.tan(given["steering.angle_limit"] / given["steering.ratio"]) / wheelbase
-    return Car(wheelbase + front, rear, 0.5 * width, 0.95 * lock, 0.8)
+    return shape_of(with_values(ControllerParams, load_scenario("apa-parallel", [f"car={name}"]).controller))
 
 
-def shortest_by_search(car: Car, depth: float) -> float:
+def shortest_by_search(car: Shape, depth: float) -> float:
     """Return the shortest slot [m] left along one arc at full lock, by halving, to 0.1 mm."""
     low, high = car.front + car.rear, car.front + car.rear + 4.0
     while high - low > 1e-4:
@@ -74,13 +75,12 @@ def _length_rows(name: str) -> list[Row]:
     car = car_named(name)
     width = 2.0 * car.half_width
     closed = shortest_for_one_move(car, 1.0 / car.curvature - car.half_width, width)
-    params = ApaParams(front_overhang=0.0, rear_overhang=car.rear, width=width)
-    iso = shortest_of_iso(Kind.PARALLEL, car.front, params)
+    iso = shortest_of_iso(Kind.PARALLEL, Car(wheelbase=car.front, front_overhang=0.0, rear_overhang=car.rear))
     slot = Slot(Kind.PARALLEL, 0, Pose(0.0, 0.0, 0.0), iso, 0.0, width + 0.4)
     return [
         Row("", f"{name}: L_min, formula and search", "m", closed, shortest_by_search(car, width), 0.01),
         Row("", f"{name}: shortest slot of ISO 16787", "m", None, iso),
-        Row("", f"{name}: moves into that slot", "1", None, float(least_moves(slot, car, params))),
+        Row("", f"{name}: moves into that slot", "1", None, float(least_moves(slot, car, ApaParams()))),
     ]
 
 
@@ -96,7 +96,7 @@ def _range_rows() -> list[Row]:
     ]
 
 
-def _leads_in(x: float, end: Pose, site: Site, car: Car) -> bool:
+def _leads_in(x: float, end: Pose, site: Site, car: Shape) -> bool:
     turn = turn_of(car.curvature, car.curvature, car.ramp)
     move = reverse_s(Pose(x, 3.0, 0.0), end, 0.0, turn, turn)
     return move.direction != 0 and is_move_free(move, car, site.obstacles)
@@ -117,7 +117,7 @@ def _curvature_rows() -> list[Row]:
     fine = np.linspace(0.0, float(x[-1]), 2000)
     slope, bend = splev(fine, spline, 1), splev(fine, spline, 2)
     over = float(np.max(np.abs(bend / (1.0 + slope**2) ** 1.5)) / k - 1.0)
-    car = Car(3.586, 0.85, 0.91, k, 0.8)
+    car = Shape(3.586, 0.85, 0.91, k, 0.8)
     move = reverse_s(Pose(8.5, 3.0, 0.0), Pose(0.0, 0.0, 0.0), 0.0, *(turn_of(k, k, car.ramp),) * 2)
     ours = max(abs(point_at(move, 0.01 * n).curvature) for n in range(int(length_of(move) / 0.01))) / k - 1.0
     return [

@@ -37,8 +37,8 @@ def _draw(axes: Any, driven: Driven) -> None:
     driving = np.isin(signals["controller.apa.mode"], [4, 5])
     for flag, (label, colour) in MARKS.items():
         axes.plot(np.where(driving == flag, x, np.nan), np.where(driving == flag, y, np.nan), color=colour, label=label)
-    front = float(vehicle["wheelbase"]) + float(vehicle["front_overhang"])
-    rear, half = float(vehicle["rear_overhang"]), 0.5 * float(vehicle["width"])
+    front = float(vehicle["car.wheelbase"]) + float(vehicle["car.front_overhang"])
+    rear, half = float(vehicle["car.rear_overhang"]), 0.5 * float(vehicle["car.width"])
     for row in [*np.flatnonzero(driving)[::EVERY], len(x) - 1]:
         axes.plot(*_rectangle(x[row], y[row], heading[row], front, rear, half), color="tab:blue", linewidth=0.5)
     for corner in ("slot.a", "corner_b"):

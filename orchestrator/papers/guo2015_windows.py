@@ -24,10 +24,10 @@ WIDE = (0.05, 0.03)
 
 
 class Fitted(NamedTuple):
-    """What is fitted: its parameters, value, step of the search and the unit of these."""
+    """What is fitted: its parameter, value, step of the search and the unit of these."""
 
     what: str
-    names: tuple[str, ...]
+    name: str
     value: float
     step: float
     unit: str
@@ -36,11 +36,9 @@ class Fitted(NamedTuple):
 
 
 FITTED = (
-    Fitted(
-        "steering rate", ("vehicle.steering.rate_limit", "controller.steering_wheel_rate"), 105.0, 0.5, "deg/s", 19.0
-    ),
-    Fitted("threshold to leave the path", ("controller.guo2015.threshold.leave_lateral",), 0.154, 0.001, "m"),
-    Fitted("driver's speed", ("vehicle.driver.profile[1].speed",), 1.5, 0.005, "m/s"),
+    Fitted("steering rate", "car.steering.rate_limit", 105.0, 0.5, "deg/s", 19.0),
+    Fitted("threshold to leave the path", "controller.guo2015.threshold.leave_lateral", 0.154, 0.001, "m"),
+    Fitted("driver's speed", "vehicle.driver.profile[1].speed", 1.5, 0.005, "m/s"),
 )
 FARTHEST = 100
 """Steps to each side at most."""
@@ -78,7 +76,6 @@ def _fits(start: Event, lateral: float, heading: float) -> bool:
 def start_of_point_tracking(fitted: Fitted, value: float) -> Event | None:
     """Return where case 4 leaves the path with ``fitted`` at this value; None if it does not."""
     unit = "deg/s" if fitted.unit == "deg/s" else ""
-    sets = [f"{name}={value * fitted.per_unit}{unit}" for name in fitted.names]
-    scenario = load_scenario(RUN, [*sets, "stop_time=6"])
+    scenario = load_scenario(RUN, [f"{fitted.name}={value * fitted.per_unit}{unit}", "stop_time=6"])
     events = summarize(run_scenario(scenario, None, kind="none").recording, scenario, 0.0).events
     return next((event for event in events if event.from_ == "PATH_TRACKING"), None)

@@ -15,6 +15,7 @@ from matplotlib.patches import Polygon
 from controller_fmu.hsic.characteristic_states import Characteristic
 from orchestrator.drawing.save import save as save_picture
 from orchestrator.papers.result import Driven
+from orchestrator.verdict.geometry import Car
 
 BLUE, ORANGE, GREEN, GREY = "#1f5fbf", "#d1602a", "#2b8a5a", "#888888"
 
@@ -93,10 +94,7 @@ def outlines(axis: Any, driven: Driven, count: int) -> None:
     recording = driven.recording
     p = recording.parameters_of("vehicle")
     x, y, heading = (recording.signals[f"vehicle.pose.{key}"] for key in ("x", "y", "heading"))
-    corners = np.array([
-        (-p["rear_overhang"], -p["width"] / 2), (p["wheelbase"] + p["front_overhang"], -p["width"] / 2),
-        (p["wheelbase"] + p["front_overhang"], p["width"] / 2), (-p["rear_overhang"], p["width"] / 2),
-    ])  # fmt: skip
+    corners = Car.of(p).outline()
     for row in np.linspace(0, len(x) - 1, count).astype(int):
         c, s = np.cos(heading[row]), np.sin(heading[row])
         points = corners @ np.array([[c, s], [-s, c]]) + (x[row], y[row])

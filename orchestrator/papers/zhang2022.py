@@ -39,8 +39,8 @@ def reproduce(out: Path, drive: Drive) -> Reproduction:
 def curvature_limit(driven: Driven) -> float:
     """Return the share of the car's curvature that a path may use [1/m]."""
     p = driven.recording.parameters_of("controller")
-    lock = p["steering_wheel_limit"] / p["steering_ratio"]
-    return p["zhang2022.quintic.curvature_share"] * math.tan(lock) / p["wheelbase"]
+    lock = p["car.steering.angle_limit"] / p["car.steering.ratio"]
+    return p["zhang2022.quintic.curvature_share"] * math.tan(lock) / p["car.wheelbase"]
 
 
 def tracking(driven: Driven) -> Array:

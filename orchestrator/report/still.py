@@ -12,8 +12,8 @@ from orchestrator.verdict.geometry import Box, Car, boxes, described, kerbs, slo
 from orchestrator.verdict.logged import logged
 
 Point = tuple[float, float]
-MOUNT = re.compile(r"(\w+)\.mounts\[(\d+)\]\.x")
-"""A sensor's place on the car among the parameters: ``ultrasonic.mounts[3].x``."""
+MOUNT = re.compile(r"(?:car\.)?(\w+)\.mounts\[(\d+)\]\.x")
+"""A sensor's place on the car among the parameters: ``car.ultrasonic.mounts[3].x``."""
 
 
 def origin_of(recording: Recording) -> Point:
@@ -47,8 +47,9 @@ def sensors(vehicle: Mapping[str, float], signals: Mapping[str, Array]) -> list[
         if match is None:
             continue
         group, number = match.groups()
-        y, heading = (vehicle.get(f"{group}.mounts[{number}].{field}", 0.0) for field in ("y", "yaw"))
-        half, reach = vehicle.get(f"{group}.half_angle", 0.5), vehicle.get(f"{group}.max_range", 5.0)
+        mount, sensors = name.removesuffix(".x"), name.partition(".mounts")[0]
+        y, heading = (vehicle.get(f"{mount}.{field}", 0.0) for field in ("y", "yaw"))
+        half, reach = vehicle.get(f"{sensors}.half_angle", 0.5), vehicle.get(f"{sensors}.max_range", 5.0)
         signal = next(
             (text for text in (f"vehicle.{group}[{number}]", f"vehicle.{group}.readings[{number}]") if text in signals),
             None,

@@ -7,6 +7,8 @@ from typing import Any, NamedTuple
 from pydantic import ValidationError
 
 from modelkit.variables import Variable, variables
+from orchestrator.scenario.car import CAR, Layer, told_car, with_said
+from orchestrator.scenario.files import find_file, shipped
 from orchestrator.scenario.flat_names import flatten_section, merge_flat
 from orchestrator.scenario.models import MODELS
 from orchestrator.scenario.requirements import read_requirements
@@ -16,18 +18,17 @@ from orchestrator.text.errors import BadInput, shown, suggestion
 from orchestrator.text.quantities import scalar
 from orchestrator.text.yaml_file import explain, place_in, read_mapping, read_value
 
-ROOM = Path(__file__).parent.parent
 NOT_WRITTEN = ("file", "changed", "left_out")
 FIELDS = [*(name for name in Scenario.model_fields if name not in NOT_WRITTEN), "scene"]
 INHERITED_NOT = ("name", "title", "description", "base")
 SETS = "--set"
 """Key of the uppermost layer with the words it was made from."""
+NOT_MERGED = (*MODELS, "scene", "car", SETS)
+"""What is laid over each other name by name."""
 
 
 More = Mapping[str, Sequence[Variable]]
 """Further parameters, by owner."""
-Layer = tuple[dict[str, Any], object]
-"""What one file says, and the file."""
 
 
 class _Given(NamedTuple):
@@ -39,12 +40,7 @@ class _Given(NamedTuple):
 
 def scenario_names() -> list[str]:
     """Return the names of the shipped scenarios, sorted."""
-    return _shipped("scenarios")
-
-
-def car_names() -> list[str]:
-    """Return the names of the shipped cars, sorted."""
-    return _shipped("cars")
+    return shipped("scenarios")
 
 
 def load_scenario(name: str, sets: Iterable[str] = (), more: More | None = None) -> Scenario:
@@ -57,11 +53,12 @@ def load_scenario(name: str, sets: Iterable[str] = (), more: More | None = None)
         if key not in layers[-2][0] and key not in layers[-1][0]:
             merged.pop(key, None)
     merged.setdefault("name", path.stem)
-    car = _car_layer(merged.get("car"), path)
+    car = told_car([(content.get("car"), file) for content, file in layers], path.parent)
+    merged["car"] = car.name
     merged["limits"] = limits_of(merged.get("limits", ["house"]), path.parent, path)
     seed = merged.get("seed", 1)
     for owner in MODELS:
-        merged[owner] = _parameters(owner, [*car, *layers], seed, (more or {}).get(owner, ()))
+        merged[owner] = _parameters(owner, [*car.layers(owner), *layers], seed, (more or {}).get(owner, ()))
     changed = dict(text.split("=", 1) for text in layers[-1][0].pop(SETS))
     try:
         scenario = Scenario(**merged, file=str(path), changed=changed)
@@ -90,9 +87,7 @@ def _read(name: str, sets: list[str]) -> tuple[Path, list[Layer], dict[str, Any]
     merged: dict[str, Any] = {}
     for content, file in layers:
         _check_keys([key for key in content if key != SETS], file)
-        merged = _merge(
-            merged, {key: _named(key, content[key]) for key in content if key not in (*MODELS, "scene", SETS)}
-        )
+        merged = _merge(merged, {key: _named(key, content[key]) for key in content if key not in NOT_MERGED})
     return path, layers, merged
 
 
@@ -171,17 +166,6 @@ def _entry_beside(entry: object, folder: Path) -> object:
     return {**given, "file": str(folder / str(given["file"]))}
 
 
-def _car_layer(car: object, path: Path) -> list[Layer]:
-    if car is None:
-        return []
-    file = find_file(str(car), "cars", "car", path.parent)
-    content = read_mapping(file)
-    for key in content:
-        if key not in (*MODELS, "name", "title", "description", "source"):
-            raise BadInput(f"unknown{suggestion(key, MODELS)}", file=file, key=key)
-    return [(content, file)]
-
-
 def _parameters(owner: str, layers: list[Layer], seed: object, more: Sequence[Variable]) -> dict[str, Any]:
     ours = variables(MODELS[owner].params)
     own = {variable.name for variable in ours}
@@ -233,7 +217,7 @@ def _set_layer(sets: list[str], slaves: Iterable[str]) -> dict[str, Any]:
     for text in sets:
         key, equals, value = text.partition("=")
         if not equals or not key:
-            raise BadInput(f"{shown(text)}: expected KEY=VALUE, for example vehicle.wheelbase=2.7", file="--set")
+            raise BadInput(f"{shown(text)}: expected KEY=VALUE, for example car.wheelbase=2.7", file="--set")
         parsed = read_value(value, key)
         owner, dot, name = key.partition(".")
         if dot and owner in (*MODELS, "target", "slot", "scene", "every"):
@@ -241,6 +225,8 @@ def _set_layer(sets: list[str], slaves: Iterable[str]) -> dict[str, Any]:
             if not isinstance(section, dict):
                 raise BadInput(f"{owner} is set as a whole and in parts", file="--set", key=key)
             section[name] = parsed
+        elif key == "car" or (dot and owner == "car"):
+            layer["car"] = with_said(layer.get("car"), name, parsed)
         elif dot and owner in others:
             slave = layer.setdefault("system", {}).setdefault("slaves", {}).setdefault(owner, {})
             slave.setdefault("parameters", {})[name] = parsed
@@ -257,7 +243,8 @@ def _check_keys(keys: Iterable[str], file: object) -> None:
 
 
 def _owners_of(key: str) -> list[str]:
-    return [owner for owner, model in MODELS.items() if key in {item.name for item in variables(model.params)}]
+    names = {"car": CAR, **{owner: variables(model.params) for owner, model in MODELS.items()}}
+    return [owner for owner, known in names.items() if key in {item.name for item in known}]
 
 
 def _named(key: str, value: object) -> object:
@@ -272,22 +259,3 @@ def _merge(below: dict[str, Any], above: Mapping[str, Any]) -> dict[str, Any]:
         old = result.get(key)
         result[key] = _merge(old, value) if isinstance(old, dict) and isinstance(value, Mapping) else value
     return result
-
-
-def _shipped(folder: str) -> list[str]:
-    return sorted(path.stem for path in (ROOM / folder).glob("*.yaml"))
-
-
-def find_file(name: str, folder: str, what: str, beside: Path) -> Path:
-    """Return the file of a shipped name, or of a path relative to ``beside``. Raises ``BadInput``."""
-    if name.endswith((".yaml", ".yml")) or "/" in name or "\\" in name:
-        path = beside / name
-        if not path.is_file():
-            raise BadInput("is a folder, expected a file" if path.is_dir() else "no such file", file=name)
-        return path.resolve()
-    shipped = ROOM / folder / f"{name}.yaml"
-    if shipped.is_file():
-        return shipped
-    known = _shipped(folder)
-    hint = suggestion(name, known) or f"; shipped are {', '.join(known) or 'none'}"
-    raise BadInput(f"no {what} of this name{hint}", key=name)

@@ -74,7 +74,7 @@ class Scenario(_ScenarioPart):
     base: str | None = None
     """Shipped scenario, or file beside this one, that says all that this one does not."""
     car: str | None = None
-    """Shipped car, or file: parameters of vehicle and controller."""
+    """Shipped car, or file, or what is different of one: told vehicle and controller alike."""
     task: Task = "park"
     """What the car is there for: `park`, or `drive` to the end of a road."""
     stop_time: Seconds = 60.0

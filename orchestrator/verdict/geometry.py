@@ -26,9 +26,9 @@ class Car(NamedTuple):
     @staticmethod
     def of(parameters: Mapping[str, float]) -> "Car":
         """Return the outline that the vehicle's parameters (by flat name) give, with fair guesses for what lacks."""
-        wheelbase = parameters.get("wheelbase", 2.5)
-        front = wheelbase + parameters.get("front_overhang", 0.8)
-        return Car(front, parameters.get("rear_overhang", 0.6), 0.5 * parameters.get("width", 1.7), wheelbase)
+        wheelbase = parameters.get("car.wheelbase", 2.5)
+        front = wheelbase + parameters.get("car.front_overhang", 0.8)
+        return Car(front, parameters.get("car.rear_overhang", 0.6), 0.5 * parameters.get("car.width", 1.7), wheelbase)
 
     def outline(self) -> Array:
         """Return the closed outline in the car's frame, (5, 2) [m]."""

@@ -15,7 +15,7 @@ ALONG = math.cos(math.radians(45.0))
 AT_THE_SLOT = 0.5
 """A kerb is the slot's if it runs along it, at most 45 deg off, and passes its side within this distance [m]."""
 NONE = math.nan
-CAR_KEYS = ("vehicle.wheelbase", "vehicle.front_overhang", "vehicle.rear_overhang", "vehicle.width")
+CAR_KEYS = tuple(f"vehicle.car.{name}" for name in ("wheelbase", "front_overhang", "rear_overhang", "width"))
 TRUE_KEYS = ("target.", "slot.", "vehicle.scene.kerbs[", *CAR_KEYS)
 """Names of what can differ from run to run of a study and is part of the truth."""
 

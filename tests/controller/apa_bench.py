@@ -4,6 +4,8 @@ import math
 from typing import Any, NamedTuple
 
 from controller_fmu.interface import ControllerOutput
+from modelkit.car import Car, CarSteering, CarUltrasonic, mounts_on
+from orchestrator.scenario.car import car_parameters
 from tests.controller.in_process import run
 from vehicle_fmu.interface import VehicleOutput
 
@@ -25,31 +27,20 @@ class Run(NamedTuple):
     rows: list[tuple[float, VehicleOutput, ControllerOutput]]
 
 
-CAR = {
-    "wheelbase": 2.62,
-    "front_overhang": 0.966,
-    "rear_overhang": 0.85,
-    "width": 1.82,
-}
 RADIUS = 4.8
+CAR = Car(
+    wheelbase=2.62,
+    front_overhang=0.966,
+    rear_overhang=0.85,
+    width=1.82,
+    steering=CarSteering(angle_limit=19.0 * math.atan(2.62 / RADIUS)),
+    ultrasonic=CarUltrasonic(mounts_on(2.62 + 0.966, 0.85, 0.91)),
+)
 
 
-def car_settings(car: dict[str, float], radius: float) -> tuple[dict[str, Any], dict[str, Any]]:
-    """Return (vehicle, controller) parameters of a car with sensors where its outline is."""
-    wheel = 19.0 * math.atan(car["wheelbase"] / radius)
-    front, rear, half = car["wheelbase"] + car["front_overhang"], -car["rear_overhang"], 0.5 * car["width"]
-    vehicle: dict[str, Any] = {**car, "steering.angle_limit": wheel}
-    controller: dict[str, Any] = {"system": 5, "wheelbase": car["wheelbase"], "steering_wheel_limit": wheel}
-    controller |= {f"apa.{name}": car[name] for name in ("front_overhang", "rear_overhang", "width")}
-    places = [
-        (front - 0.1, half - 0.15), (front, 0.25), (front, -0.25), (front - 0.1, 0.15 - half),
-        (rear + 0.1, half - 0.15), (rear, 0.25), (rear, -0.25), (rear + 0.1, 0.15 - half),
-        (front - 0.4, half), (rear + 0.4, half), (front - 0.4, -half), (rear + 0.4, -half),
-    ]  # fmt: skip
-    for number, (x, y) in enumerate(places, start=1):
-        vehicle |= {f"ultrasonic.mounts[{number}].x": x, f"ultrasonic.mounts[{number}].y": y}
-        controller |= {f"apa.sensors.mounts[{number}].x": x, f"apa.sensors.mounts[{number}].y": y}
-    return vehicle, controller
+def car_settings(car: Car) -> tuple[dict[str, Any], dict[str, Any]]:
+    """Return (vehicle, controller) parameters of a car and of an assist that knows it."""
+    return car_parameters(car), {**car_parameters(car), "system": 5}
 
 
 def box(number: int, x0: float, x1: float, y0: float, y1: float) -> dict[str, float]:

@@ -3,7 +3,7 @@
 import math
 
 from controller_fmu.apa.move import end_of
-from controller_fmu.apa.outline import Car
+from controller_fmu.apa.outline import Shape
 from controller_fmu.apa.planner import NOTHING, SEARCHING, new_search, search_on
 from controller_fmu.apa.slot import Kind, Margins, Site, Slot, site_of
 from controller_fmu.common.slot_frame import to_slot
@@ -18,12 +18,12 @@ CARS = {
 """Wheelbase, front overhang, rear overhang, width, smallest turning radius [m]."""
 
 
-def car_of(name: str) -> Car:
+def shape_of(name: str) -> Shape:
     wheelbase, front, rear, width, radius = CARS[name]
-    return Car(wheelbase + front, rear, 0.5 * width, 0.95 / radius, 0.8)
+    return Shape(wheelbase + front, rear, 0.5 * width, 0.95 / radius, 0.8)
 
 
-def iso_slot(car: Car, kind: int, extra: float, side: int = 0) -> Slot:
+def iso_slot(car: Shape, kind: int, extra: float, side: int = 0) -> Slot:
     """Return the shortest (narrowest) slot of ISO 16787 and ``extra`` [m], at the world's origin."""
     length = car.front + car.rear
     if kind == Kind.PARALLEL:
@@ -32,14 +32,14 @@ def iso_slot(car: Car, kind: int, extra: float, side: int = 0) -> Slot:
     return Slot(Kind.PERPENDICULAR, side, Pose(0.0, 0.0, 0.0), 2.0 * car.half_width + 1.2 + extra, 0.0, length + 0.5)
 
 
-def start_of(slot: Slot, site: Site, car: Car, past_b: float, beside: float, heading: float) -> Pose:
+def start_of(slot: Slot, site: Site, car: Shape, past_b: float, beside: float, heading: float) -> Pose:
     """Return a start on the road, in the frame of the target: rear axle ``past_b`` beyond corner B."""
     mirror = site.frame.mirror
     pose = Pose(slot.length + past_b, mirror * (beside + car.half_width), mirror * heading)
     return to_slot(pose, site.frame)
 
 
-def park_in_thought(start: Pose, site: Site, car: Car) -> tuple[list, Pose]:
+def park_in_thought(start: Pose, site: Site, car: Shape) -> tuple[list, Pose]:
     """Return the moves (each driven exactly) and the last pose; no moves if nothing was found."""
     pose, moves = start, []
     for _ in range(12):
@@ -55,6 +55,6 @@ def park_in_thought(start: Pose, site: Site, car: Car) -> tuple[list, Pose]:
     return [], pose
 
 
-def slot_and_site(car: Car, kind: int, extra: float, side: int = 0) -> tuple[Slot, Site]:
+def slot_and_site(car: Shape, kind: int, extra: float, side: int = 0) -> tuple[Slot, Site]:
     slot = iso_slot(car, kind, extra, side)
     return slot, site_of(slot, car, MARGINS)

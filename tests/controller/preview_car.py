@@ -60,7 +60,7 @@ def drive(params: PreviewParams, start_speed: float = 7.0, dt: float = 0.01, lon
             x[1] - REAR * math.sin(heading),
             math.atan2(math.sin(heading), math.cos(heading)),
         )
-        state, command = preview_step(state, rear, x[3], params, dt)
+        state, command = preview_step(state, rear, x[3], REAR, params, dt)
         if command.finished:
             break
         offset = road_offset(state, x, params)

@@ -43,13 +43,14 @@ def test_a_driver_who_does_not_is_stopped_on_the_first_arc():
 
 def test_with_a_quick_wheel_nobody_is_stopped():
     run = parked(
-        {"driver.obeys_slow_down": False, "steering.rate_limit": QUICK_WHEEL}, {"steering_wheel_rate": QUICK_WHEEL}
+        {"driver.obeys_slow_down": False, "car.steering.rate_limit": QUICK_WHEEL},
+        {"car.steering.rate_limit": QUICK_WHEEL},
     )
     assert len(stops(run)) == 1
 
 
 def test_a_steering_slower_than_believed_is_learnt():
-    parked({"steering.rate_limit": math.radians(400.0)})
+    parked({"car.steering.rate_limit": math.radians(400.0)})
 
 
 def test_the_other_side_is_the_mirror_image():

@@ -5,11 +5,11 @@ import math
 import numpy as np
 import shapely
 
-from controller_fmu.apa.outline import Box, Car, Obstacles, box_clearance, clearance, free_way, grown
+from controller_fmu.apa.outline import Box, Obstacles, Shape, box_clearance, clearance, free_way, grown
 from modelkit.vocabulary import Pose
 
 POSES = 100_000
-CAR = Car(3.5, 0.85, 0.91, 0.2, 0.8)
+CAR = Shape(3.5, 0.85, 0.91, 0.2, 0.8)
 
 
 def test_agrees_with_shapely_on_100000_random_poses() -> None:

@@ -7,15 +7,15 @@ import pytest
 
 from controller_fmu.apa.chart import Mode
 from controller_fmu.interface import Reason
-from tests.controller.apa_bench import CAR, RADIUS, Run, box, car_settings, drive
+from tests.controller.apa_bench import CAR, Run, box, car_settings, drive
 
-HALF = 0.5 * CAR["width"]
-FRONT = CAR["wheelbase"] + CAR["front_overhang"]
+HALF = 0.5 * CAR.width
+FRONT = CAR.wheelbase + CAR.front_overhang
 
 
 def given(kind: str, length: float, side: int, **more: Any) -> tuple[dict[str, Any], dict[str, Any]]:
     """Return the parameters of a car that stands past a slot it is told of."""
-    vehicle, controller = car_settings(CAR, RADIUS)
+    vehicle, controller = car_settings(CAR)
     along, deep = (4.4, 1.8) if kind == "parallel" else (1.8, 4.6)
     for number, x in enumerate((-along, length), start=1):
         vehicle |= box(number, x, x + along, *((-deep, 0.0) if side > 0 else (0.0, deep)))
@@ -92,10 +92,10 @@ def test_switching_off_is_taking_over() -> None:
         ),
         (
             {},
-            {"apa.sensors.min_range": 10.0},
+            {"car.ultrasonic.min_range": 10.0},
             Reason.SENSOR_LOSS,
         ),
-        ({"steering.rate_limit": 0.02}, {}, Reason.STEERING_FAULT),
+        ({"car.steering.rate_limit": 0.02}, {}, Reason.STEERING_FAULT),
         ({}, {"apa.plan.shifts": 1, "apa.search.slot.length": 5.7}, Reason.TOO_MANY_SHIFTS),
     ],
 )

@@ -12,7 +12,7 @@ from controller_fmu.apa.slot import Kind, Margins, Slot, shortest_for_one_move, 
 from controller_fmu.apa.start_range import start_range
 from controller_fmu.common.curve import advance
 from modelkit.vocabulary import Pose
-from tests.controller.apa_cars import CARS, MARGINS, car_of, park_in_thought, slot_and_site, start_of
+from tests.controller.apa_cars import CARS, MARGINS, park_in_thought, shape_of, slot_and_site, start_of
 
 NO_MARGINS = Margins(0.0, 0.0, 0.0)
 
@@ -24,7 +24,7 @@ NO_MARGINS = Margins(0.0, 0.0, 0.0)
 def test_every_slot_from_the_shortest_up_is_reached(
     name: str, kind: int, extra: float, beside: float, degrees: float
 ) -> None:
-    car = car_of(name)
+    car = shape_of(name)
     slot, site = slot_and_site(car, kind, extra)
     start = start_of(slot, site, car, 1.0, beside, math.radians(degrees))
     moves, end = park_in_thought(start, site, car)
@@ -42,7 +42,7 @@ def test_every_slot_from_the_shortest_up_is_reached(
 
 @pytest.mark.parametrize("kind", [Kind.PARALLEL, Kind.PERPENDICULAR])
 def test_the_left_side_mirrors_the_right(kind: int) -> None:
-    car = car_of("middle")
+    car = shape_of("middle")
     found = []
     for side in (0, 1):
         slot, site = slot_and_site(car, kind, 0.3, side)
@@ -54,7 +54,7 @@ def test_the_left_side_mirrors_the_right(kind: int) -> None:
 
 @pytest.mark.parametrize("name", CARS)
 def test_l_min_is_the_shortest_slot_left_along_one_arc(name: str) -> None:
-    car = car_of(name)
+    car = shape_of(name)
     depth = 2.0 * car.half_width
     closed = shortest_for_one_move(car, 1.0 / car.curvature - car.half_width, depth)
     low, high = closed - 1.0, closed + 1.0
@@ -72,7 +72,7 @@ def test_l_min_is_the_shortest_slot_left_along_one_arc(name: str) -> None:
 
 
 def test_a_slot_too_short_is_refused() -> None:
-    car = car_of("middle")
+    car = shape_of("middle")
     site = site_of(Slot(Kind.PARALLEL, 0, Pose(0.0, 0.0, 0.0), car.front + car.rear + 0.35, 0.0, 2.2), car, MARGINS)
     search = new_search(Pose(7.0, 2.9, 0.0))
     while search.status == SEARCHING:
@@ -81,7 +81,7 @@ def test_a_slot_too_short_is_refused() -> None:
 
 
 def test_the_number_of_candidates_at_a_time_changes_nothing() -> None:
-    car = car_of("middle")
+    car = shape_of("middle")
     slot, site = slot_and_site(car, Kind.PARALLEL, 0.0)
     start = start_of(slot, site, car, 1.0, 1.0, 0.0)
     at_once = search_on(new_search(start), site, car, 10_000)
@@ -93,7 +93,7 @@ def test_the_number_of_candidates_at_a_time_changes_nothing() -> None:
 
 
 def test_inside_the_start_range_one_reverse_leads_in_and_outside_it_does_not() -> None:
-    car = car_of("middle")
+    car = shape_of("middle")
     site = site_of(Slot(Kind.PARALLEL, 0, Pose(0.0, 0.0, 0.0), 7.4, 0.0, 2.3), car, MARGINS)
     way_in = exit_of(2, site, car)
     reach = start_range(3.0, 0.0, way_in, site, car)

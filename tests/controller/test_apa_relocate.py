@@ -5,12 +5,13 @@ import math
 import pytest
 
 from controller_fmu.apa.move import is_move_free
-from controller_fmu.apa.outline import Box, Car, Obstacles
+from controller_fmu.apa.outline import Box, Obstacles, Shape
 from controller_fmu.apa.relocate import OUT, along, between, braked, relocated
 from controller_fmu.apa.slot import UNSEEN, Kind, Side, Slot
 from controller_fmu.apa.supervisor import look
 from controller_fmu.apa.turns import straight_move
 from controller_fmu.interface import ControllerInput, ControllerParams
+from modelkit.car import CarUltrasonic
 from modelkit.vocabulary import Pose
 from vehicle_fmu.scene import Obstacle, SceneParams
 from vehicle_fmu.ultrasonic import UltrasonicParams, heard_distances
@@ -29,7 +30,7 @@ def scene_of(boxes, side):
 
 
 def inputs_at(true, believed, boxes, side):
-    heard = heard_distances(true, scene_of(boxes, side), UltrasonicParams(), 0)
+    heard = heard_distances(true, scene_of(boxes, side), CarUltrasonic(), UltrasonicParams().kerb_height, 0)
     return ControllerInput(odometry=believed, ultrasonic=heard)
 
 
@@ -84,7 +85,7 @@ def test_the_way_that_braking_slips_is_made_up_for():
 
 
 def test_a_move_may_lead_out_of_a_margin_but_not_further_in():
-    car = Car()
+    car = Shape()
     obstacles = Obstacles(ahead=Box(0.0, 60.0, -60.0, 0.0))
     within = Pose(5.0, 0.825 + 0.3, math.radians(-5.0))
     assert is_move_free(straight_move(within, -1, 2.0), car, obstacles)
@@ -95,5 +96,5 @@ def test_the_edge_of_a_cone_on_a_known_neighbour_is_no_unknown_thing():
     pose = Pose(0.0, 0.0, 0.0)
     readings = (0.38, *(5.0,) * 11)
     beside = Obstacles(ahead=Box(3.4, 8.0, -2.0, 0.83))
-    assert not look(readings, pose, 1.0, 1, 0.1, beside, PARAMS.apa).unknown
-    assert look(readings, pose, 1.0, 1, 0.1, Obstacles(), PARAMS.apa).unknown
+    assert not look(readings, pose, 1.0, 1, 0.1, beside, PARAMS).unknown
+    assert look(readings, pose, 1.0, 1, 0.1, Obstacles(), PARAMS).unknown

@@ -8,10 +8,10 @@ import pytest
 from controller_fmu.apa.edge import NO_SAMPLES, Heard, append, corner
 from controller_fmu.apa.line_fit import Line, Sums, add, offset, slope
 from controller_fmu.apa.outline import Box, Obstacles
-from controller_fmu.apa.params import ApaParams
 from controller_fmu.apa.supervisor import look
+from controller_fmu.interface import ControllerParams
 from modelkit.vocabulary import Pose
-from tests.controller.apa_bench import CAR, RADIUS, box, car_settings, drive
+from tests.controller.apa_bench import CAR, box, car_settings, drive
 
 HALF = math.radians(30.0)
 
@@ -41,11 +41,11 @@ def test_a_corner_is_where_its_echoes_come_from(sense: float, tilt: float) -> No
 
 def scene(kind: str, length: float, side: int, speed: float, **more: Any) -> tuple[dict[str, Any], dict[str, Any]]:
     """Return the parameters of a drive past two neighbours with a gap of ``length`` between them."""
-    vehicle, controller = car_settings(CAR, RADIUS)
+    vehicle, controller = car_settings(CAR)
     along, deep = (4.4, 1.8) if kind == "parallel" else (1.8, 4.6)
     for number, x in enumerate((-along, length), start=1):
         vehicle |= box(number, x, x + along, *((-deep, 0.0) if side > 0 else (0.0, deep)))
-    vehicle |= {"start.x": -along - 4.0, "start.y": side * (1.0 + 0.5 * CAR["width"]), "driver.apa_switch_time": 0.1}
+    vehicle |= {"start.x": -along - 4.0, "start.y": side * (1.0 + 0.5 * CAR.width), "driver.apa_switch_time": 0.1}
     return vehicle | {"driver.profile[1].speed": speed} | more, controller
 
 
@@ -72,14 +72,14 @@ def test_a_gap_too_short_is_refused_with_what_is_missing() -> None:
 
 
 def test_no_slot_is_seen_where_there_is_none() -> None:
-    vehicle, controller = car_settings(CAR, RADIUS)
+    vehicle, controller = car_settings(CAR)
     vehicle |= box(1, -2.0, 9.0, -1.8, 0.0) | {"start.x": -8.0, "start.y": 1.9, "driver.apa_switch_time": 0.1}
     run = drive(vehicle | {"driver.profile[1].speed": 3.0}, controller | {"apa.search.way": 25.0}, 30.0)
     assert (run.controller.apa.slots, run.controller.reason) == (0, 23)
 
 
 def test_the_supervisor_tells_known_from_unknown() -> None:
-    params = ApaParams()
+    params = ControllerParams()
     here = Pose(0.0, 0.0, 0.0)
     behind = Obstacles(behind=Box(-20.0, -1.0, -10.0, 10.0))
     far = (5.0,) * 4

@@ -101,7 +101,7 @@ def test_slow_down_prompt_comes_before_the_tangent_point(case_4: Run) -> None:
         ({}, {"target.x": 7.0}, Reason.NO_PATH),
         ({}, {"limit.shifts": 1}, Reason.TOO_MANY_SHIFTS),
         ({}, {"limit.duration": 3.0}, Reason.TIMEOUT),
-        ({"steering.rate_limit": 0.05}, {}, Reason.STEERING_FAULT),
+        ({"car.steering.rate_limit": 0.05}, {}, Reason.STEERING_FAULT),
         ({"driver.profile[2].speed": 1.5}, {"system": int(System.NTBPT)}, Reason.MISSED_TARGET),
         ({"start.x": math.nan}, {}, Reason.VEHICLE_FAULT),
         ({}, {"target.y": math.nan}, Reason.BAD_PARAMETER),
@@ -187,7 +187,7 @@ def test_no_input_raises_or_gives_nan(data: st.DataObject) -> None:
         ]
         state, out = step(state, build(flat), params, 10_000_000)
         assert math.isfinite(out.steering_wheel_request)
-        assert abs(out.steering_wheel_request) <= params.steering_wheel_limit
+        assert abs(out.steering_wheel_request) <= params.car.steering.angle_limit
         assert math.isfinite(out.advised_speed)
 
 

@@ -78,20 +78,20 @@ def test_the_speed_for_a_swing_is_what_its_deviation_allows() -> None:
     params = ControllerParams()
     for steering in (Steering(), Steering(5.0, 0.1, 0.05, True)):
         speed = swing_speed(-0.4, 0.4, steering, params)
-        rate = (steering.rate or params.steering_wheel_rate) / params.steering_ratio
+        rate = (steering.rate or params.car.steering.rate_limit) / params.car.steering.ratio
         late, swing = steering.dead_time + steering.lag, 0.8 / rate
         turned = shifted = 0.0
         step = 1e-4
         for k in range(round((late + swing) / step)):
             share = min(max(1.0 - (k * step - late) / swing, 0.0), 1.0)
-            turned += share * 2.0 * math.tan(0.4) / params.wheelbase * speed * step
+            turned += share * 2.0 * math.tan(0.4) / params.car.wheelbase * speed * step
             shifted += turned * speed * step
         # the even fall of the angle is that of the curvature to 3 %, and so is what is left
         assert shifted == pytest.approx(params.guo2015.prompting.jump_deviation, rel=0.05)
 
 
 def test_a_slower_steering_is_advised_a_slower_swing() -> None:
-    slow = drive(OBEYING | {"steering.rate_limit": 0.5 * math.radians(570.0)}, {})
+    slow = drive(OBEYING | {"car.steering.rate_limit": 0.5 * math.radians(570.0)}, {})
     behind = next(k for k, outputs in enumerate(slow.vehicle) if outputs.pose.x <= TANGENT_X)
     assert slow.controller[behind].advised_speed == pytest.approx(0.5 * 0.287, abs=0.01)
     assert Phase.TO_Q2 not in slow.visited

@@ -11,21 +11,23 @@ from controller_fmu.hsic.key_points import key_points, ready_point
 from controller_fmu.hsic.params import HsicGains, HsicParams, HsicSlot, HsicThresholds
 from controller_fmu.hsic.rules import RULES, SpeedMode, SteerMode
 from controller_fmu.hsic.stages import is_parked
+from modelkit.car import Car
 from modelkit.vocabulary import Pose
 
-SLOT, WHEELBASE, RADIUS = HsicSlot(), 2.62, 4.3
+SLOT, RADIUS = HsicSlot(), 4.3
+CAR = Car(wheelbase=2.62, front_overhang=0.966, rear_overhang=0.85, width=1.82)
 
 
 def test_ready_point_is_half_a_metre_beside_and_tail_level():
-    p1 = ready_point(SLOT, RADIUS)
-    assert p1.y - SLOT.width / 2 - SLOT.slot_width / 2 == pytest.approx(0.5)
-    front_end = SLOT.slot_length - SLOT.rear_gap - SLOT.rear_overhang
-    assert p1.x - SLOT.rear_overhang == pytest.approx(front_end)
+    p1 = ready_point(SLOT, CAR, RADIUS)
+    assert p1.y - CAR.width / 2 - SLOT.slot_width / 2 == pytest.approx(0.5)
+    front_end = SLOT.slot_length - SLOT.rear_gap - CAR.rear_overhang
+    assert p1.x - CAR.rear_overhang == pytest.approx(front_end)
 
 
 def test_key_points_lie_on_two_tangent_arcs_and_their_tangent():
-    p1 = ready_point(SLOT, RADIUS)
-    points = key_points(p1, SLOT, WHEELBASE, RADIUS)
+    p1 = ready_point(SLOT, CAR, RADIUS)
+    points = key_points(p1, SLOT, CAR, RADIUS)
     assert points.found
     for point, centre in ((points.p3, (0.0, RADIUS)), (points.p2, (p1.x, p1.y - RADIUS))):
         assert math.dist((point.x, point.y), centre) == pytest.approx(RADIUS)
@@ -35,7 +37,7 @@ def test_key_points_lie_on_two_tangent_arcs_and_their_tangent():
 
 
 def test_no_key_points_too_near():
-    assert not key_points(Pose(3.0, 2.5, 0.0), SLOT, WHEELBASE, RADIUS).found
+    assert not key_points(Pose(3.0, 2.5, 0.0), SLOT, CAR, RADIUS).found
 
 
 def test_every_state_is_recognised_and_has_its_rule():

@@ -7,6 +7,7 @@ from typing import NamedTuple
 import pytest
 
 from controller_fmu.common.steering_monitor import SteeringWatch, at_rest, has_failed, watch_steering
+from modelkit.car import CarSteering
 from modelkit.random import seed_state, uniform
 from vehicle_fmu.interface import SteeringParams
 from vehicle_fmu.steering import SteeringState, pass_request, turn_steering_wheel
@@ -30,13 +31,17 @@ class Driven(NamedTuple):
 
 
 def drive(
-    request: Request, params: SteeringParams, stop: float = 20.0, broken: Callable[..., float] | None = None
+    request: Request,
+    params: SteeringParams,
+    stop: float = 20.0,
+    broken: Callable[..., float] | None = None,
+    rate: float = BELIEVED,
 ) -> Driven:
     """Return the watch after ``stop`` s; ``broken(t, angle)`` is the wheel from the moment it returns a number."""
     angle, steering, watch, asked = 0.0, SteeringState(), at_rest(0.0, SteeringWatch().steering), 0.0
     for k in range(round(stop * 1e9) // DT_NS):
         steering = pass_request(steering, asked, params, k * DT_NS, (k + 1) * DT_NS)
-        angle = turn_steering_wheel(angle, steering.lagged, params, DT_NS * 1e-9)
+        angle = turn_steering_wheel(angle, steering.lagged, CarSteering(rate_limit=rate), 0.0, DT_NS * 1e-9, 1.0)
         if broken is not None:
             angle = broken(k * DT_NS * 1e-9, angle)
         watch = watch_steering(watch, asked, angle, TOLERANCE, BELIEVED, DT_NS)
@@ -50,8 +55,8 @@ def drive(
 @pytest.mark.parametrize("dead_time", [0.0, 0.1, 0.2])
 @pytest.mark.parametrize("lag", [0.0, 0.15])
 def test_a_slow_late_or_lazy_wheel_is_no_fault(rate: float, dead_time: float, lag: float) -> None:
-    params = SteeringParams(rate_limit=rate * BELIEVED, dead_time=dead_time, lag=lag)
-    assert drive(swings, params).failed_at == math.inf
+    params = SteeringParams(dead_time=dead_time, lag=lag)
+    assert drive(swings, params, rate=rate * BELIEVED).failed_at == math.inf
 
 
 def test_requests_at_random_are_no_fault() -> None:
@@ -61,22 +66,23 @@ def test_requests_at_random_are_no_fault() -> None:
         for _ in range(12):
             state, number = uniform(state)
             drawn.append(number)
-        params = SteeringParams(rate_limit=(0.5 + drawn[0]) * BELIEVED, dead_time=0.1 * drawn[1], lag=0.15 * drawn[2])
+        params = SteeringParams(dead_time=0.1 * drawn[1], lag=0.15 * drawn[2])
+        rate = (0.5 + drawn[0]) * BELIEVED
         levels = [15.0 * number - 7.5 for number in drawn[3:]]
         slope = 2.0 * drawn[3]
 
         def request(t: float, levels: list[float] = levels, slope: float = slope) -> float:
             return levels[int(t / 1.3) % len(levels)] + slope * math.sin(t)
 
-        assert drive(request, params).failed_at == math.inf
+        assert drive(request, params, rate=rate).failed_at == math.inf
 
 
 @pytest.mark.parametrize("rate", [0.4, 1.0, 1.4])
 @pytest.mark.parametrize("dead_time", [0.0, 0.1, 0.18])
 @pytest.mark.parametrize("lag", [0.0, 0.12])
 def test_rate_and_dead_time_are_learnt_from_one_large_swing(rate: float, dead_time: float, lag: float) -> None:
-    params = SteeringParams(rate_limit=rate * BELIEVED, dead_time=dead_time, lag=lag)
-    learnt = drive(lambda t: 7.8 if t > 0.5 else 0.0, params, 4.0).watch.steering
+    params = SteeringParams(dead_time=dead_time, lag=lag)
+    learnt = drive(lambda t: 7.8 if t > 0.5 else 0.0, params, 4.0, rate=rate * BELIEVED).watch.steering
     assert (learnt.rate or BELIEVED) == pytest.approx(rate * BELIEVED, rel=0.02)
     assert learnt.dead_time == pytest.approx(dead_time, abs=0.02)
 

@@ -6,6 +6,7 @@ import pytest
 
 from controller_fmu import MODEL, SYSTEMS
 from controller_fmu.interface import ControllerInput, ControllerParams, Phase, Reason, System
+from modelkit.car import Car, CarSteering
 from modelkit.vocabulary import Prompt
 
 NAMES = [branch.field for branch in SYSTEMS.systems]
@@ -44,9 +45,10 @@ def test_an_unknown_system_is_refused_and_the_car_is_stopped(dts):
 
 @pytest.mark.parametrize("system", System)
 def test_all_refuse_parameters_without_meaning(system):
-    for bad in ({"wheelbase": math.nan}, {"steering_ratio": 0.0}, {"sample_time": 0.0}):
+    cars = (Car(wheelbase=math.nan), Car(steering=CarSteering(ratio=0.0)))
+    for bad in (*(ControllerParams(car=car) for car in cars), ControllerParams(sample_time=0.0)):
         for dts in ([], [10_000_000] * 3):
-            _, out = after(ControllerParams(system=int(system))._replace(**bad), dts)
+            _, out = after(bad._replace(system=int(system)), dts)
             assert (out.phase, out.reason) == (Phase.FAILED, Reason.BAD_PARAMETER)
             assert out.brake_request
             assert out.prompt == Prompt.STOP

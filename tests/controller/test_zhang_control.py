@@ -4,14 +4,14 @@ import math
 
 import pytest
 
-from controller_fmu.zhang2022.mpc import Car, Steering, prediction, steer, turned
+from controller_fmu.zhang2022.mpc import FrontAxle, Steering, prediction, steer, turned
 from controller_fmu.zhang2022.params import MpcParams, PidParams
 from controller_fmu.zhang2022.path import nearest, plan
 from controller_fmu.zhang2022.pid import PidState, pid
 from controller_fmu.zhang2022.qp import Status
 from modelkit.vocabulary import Pose
 
-CAR = Car(2.62, 0.57, 0.5)
+CAR = FrontAxle(2.62, 0.57, 0.5)
 PATH = plan(Pose(8.5, 2.8, 0.0), 5.0, 0.235)
 P = MpcParams()
 

@@ -198,7 +198,7 @@ def test_charts_are_drawn_by_us(generate):
 
 def test_search_finds_the_parts_of_a_name():
     separator = re.search(r"separator: '(.*)'", (ROOT / "mkdocs.yml").read_text(encoding="utf-8"))[1]
-    assert re.split(separator, "vehicle.steering.rate_limit") == ["vehicle", "steering", "rate", "limit"]
+    assert re.split(separator, "vehicle.car.steering.rate_limit") == ["vehicle", "car", "steering", "rate", "limit"]
     assert re.split(separator, "ultrasonic[3]")[:2] == ["ultrasonic", "3"]
 
 

@@ -60,15 +60,15 @@ def test_what_is_calculated_is_output_or_local_and_nothing_is_lost():
         (CONTROLLER, "guo2015.radius", "fixed"),
         (CONTROLLER, "guo2015.threshold.park_lateral", "tunable"),
         (CONTROLLER, "system", "fixed"),
-        (CONTROLLER, "wheelbase", "fixed"),
+        (CONTROLLER, "car.wheelbase", "fixed"),
         (CONTROLLER, "target.x", "fixed"),
         (CONTROLLER, "apa.drive.longitudinal", "fixed"),
         (CONTROLLER, "apa.drive.k1", "tunable"),
         (VEHICLE, "pose.x", "continuous"),
         (VEHICLE, "ultrasonic[7]", "discrete"),
         (VEHICLE, "contact", "discrete"),
-        (VEHICLE, "steering.rate_limit", "tunable"),
-        (VEHICLE, "steering.ratio", "fixed"),
+        (VEHICLE, "car.steering.rate_limit", "tunable"),
+        (VEHICLE, "car.steering.ratio", "fixed"),
         (VEHICLE, "road.grip[1]", "tunable"),
         (VEHICLE, "scene.boxes[1].x", "fixed"),
         (VEHICLE, "driver.profile[1].speed", "fixed"),
@@ -197,6 +197,6 @@ def test_outputs_that_nothing_changes_at_the_start_depend_on_nothing():
     found = indexed(VEHICLE)
     assert found["speed"] == found["gear"] == found["distance"] == set()
     assert {"start.x", "body"} <= found["pose.x"]
-    assert "steering.ratio" not in found["pose.x"]
-    assert {"scene.boxes[16].x", "ultrasonic.noise", "ultrasonic.mounts[3].yaw"} <= found["ultrasonic[3]"]
+    assert "car.steering.ratio" not in found["pose.x"]
+    assert {"scene.boxes[16].x", "ultrasonic.noise", "car.ultrasonic.mounts[3].yaw"} <= found["ultrasonic[3]"]
     assert not [name for name in found["ultrasonic[3]"] if re.match("drive|steering", name)]

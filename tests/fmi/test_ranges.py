@@ -8,7 +8,8 @@ from modelkit.signal import Group, Role, Signal
 from modelkit.variables import limits_of, variables
 from orchestrator.bakeoff.entries import entries
 from orchestrator.grid.cases import cases, parameters
-from orchestrator.scenario.load_scenario import car_names, load_scenario, scenario_names
+from orchestrator.scenario.files import car_names
+from orchestrator.scenario.load_scenario import load_scenario, scenario_names
 from orchestrator.sweep.study.sampling import make_design
 from orchestrator.sweep.study.study_file import load_study, study_names
 from vehicle_fmu import MODEL as VEHICLE
@@ -90,7 +91,7 @@ def test_the_role_next_to_a_field_wins():
     roles = {item.name: item.roles for item in variables(CONTROLLER.params)}
     assert roles["guo2015.k1"] == {Role.TUNABLE}
     assert roles["guo2015.radius"] == {Role.FIXED}
-    assert roles["wheelbase"] == frozenset()
+    assert roles["car.wheelbase"] == frozenset()
     outputs = {item.name: item.roles for item in variables(CONTROLLER.outputs)}
     assert outputs["path.segments[3].length"] == {Role.LOCAL}
     assert outputs["phase"] == frozenset()

@@ -195,14 +195,14 @@ def test_a_native_one_gives_the_bits_of_the_whole_controller(native_apa):
 
 def twin(path, system):
     model = SYSTEM_MODELS[system]
-    params = with_values(MODEL.params, {"system": int(system), "steering_ratio": 17.0})
+    params = with_values(MODEL.params, {"system": int(system), "car.steering.ratio": 17.0})
     inputs = random_inputs(shown_variables(model), 3, 60)
     start = {item.name: item.start for item in variables(MODEL.inputs)}
     make, names = constructor(MODEL.inputs), [item.name for item in variables(MODEL.outputs)]
     state, outputs = MODEL.initialize(params)
     with Host(path) as host:
         told = [item.name for item in fmi_variables(model) if item.shown and item.initial == "calculated"]
-        host.initialize(steering_ratio=17.0)
+        host.initialize(**{"car.steering.ratio": 17.0})
         for number, values in enumerate(inputs):
             expected = dict(zip(names, flatten(outputs), strict=True))
             assert bits(host.outputs()) == bits([expected[name] for name in told])

@@ -94,7 +94,18 @@ def test_gains_and_thresholds_are_tunable_geometry_is_not():
         whole = [item.name for item in fmi_variables(CONTROLLER) if item.name.startswith(group)]
         assert whole
         assert set(whole) <= names
-    kept = ("target", "scene", "start", "chassis", "double_track", "wheelbase", "hsic.slot", "apa.sensors", "apa.plan")
+    kept = (
+        "target",
+        "scene",
+        "start",
+        "chassis",
+        "double_track",
+        "car.wheelbase",
+        "car.ultrasonic",
+        "hsic.slot",
+        "apa.sensors",
+        "apa.plan",
+    )
     assert not [name for name in names if name.startswith(kept)]
 
 
@@ -166,7 +177,7 @@ def drawn(draw, item):
         ("apa-parallel", "controller", "apa.drive.k1", 20.0),
         ("apa-parallel", "controller", "apa.drive.speed", 0.2),
         ("apa-parallel", "controller", "apa.guard.duration", 1.0),
-        ("guo2015-case4", "vehicle", "steering.rate_limit", 0.01),
+        ("guo2015-case4", "vehicle", "car.steering.rate_limit", 0.01),
         ("guo2015-case1", "vehicle", "driver.speed_error", 0.5),
         ("guo2015-case1", "vehicle", "driver.takeover_time", 0.0),
         ("zhang2022-double-track", "vehicle", "drive.drive_lag", 2.0),

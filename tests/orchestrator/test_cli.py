@@ -239,7 +239,7 @@ def test_something_long_says_so_where_there_is_no_terminal(
 @pytest.mark.parametrize(
     ("arguments", "names"),
     [
-        (["parameters", "steering.rate"], ["vehicle.steering.rate_limit"]),
+        (["parameters", "steering.rate"], ["vehicle.car.steering.rate_limit", "controller.car.steering.rate_limit"]),
         (["parameters", "controller.guo2015.k?"], [f"controller.guo2015.k{number}" for number in (1, 2, 3, 4)]),
         (["signals", "vehicle.pose.*"], ["vehicle.pose.x", "vehicle.pose.y", "vehicle.pose.heading"]),
         (["systems", "fuzzy"], ["preview"]),
@@ -257,7 +257,7 @@ def test_list_of_what_can_be_named(arguments: list[str], names: list[str], capsy
 
 
 def test_list_gives_defaults_ranges_limits_and_says_if_nothing_fits(capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["list", "parameters", "vehicle.steering.rate_limit", "--json"]) == 0
+    assert main(["list", "parameters", "vehicle.car.steering.rate_limit", "--json"]) == 0
     (row,) = json.loads(capsys.readouterr().out)
     assert (row["unit"], row["low"], row["high"]) == ("rad/s", 0.01, 100.0)
     assert row["default"] == "9.94838 (570 deg/s)"

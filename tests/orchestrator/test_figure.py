@@ -46,7 +46,9 @@ def test_the_sampled_path_ends_where_two_arcs_do() -> None:
 
 
 def test_frames_go_there_and_back() -> None:
-    points = Car.of({"wheelbase": 2.4, "front_overhang": 0.8, "rear_overhang": 0.6, "width": 1.6}).outline()
+    points = Car.of(
+        {"car.wheelbase": 2.4, "car.front_overhang": 0.8, "car.rear_overhang": 0.6, "car.width": 1.6}
+    ).outline()
     assert points.min(axis=0).tolist() == [-0.6, -0.8]
     assert points.max(axis=0) == pytest.approx([3.2, 0.8])
     x, y = place(points[:1], 5.0, 6.0, 2.0)[0]

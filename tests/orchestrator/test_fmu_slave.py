@@ -79,8 +79,8 @@ def test_a_file_that_is_no_fmu(tmp_path: Path) -> None:
 
 
 def test_units_and_start_values_come_from_the_fmu(files: dict[str, Path]) -> None:
-    slave = FmuSlave("vehicle", files["vehicle"], {"wheelbase": 2.5}, silent)
-    place = slave.parameters.index["wheelbase"]
+    slave = FmuSlave("vehicle", files["vehicle"], {"car.wheelbase": 2.5}, silent)
+    place = slave.parameters.index["car.wheelbase"]
     assert slave.parameters.values[place] == 2.5
     assert slave.parameters.variables[place].signal.unit == "m"
     assert slave.outputs.variables[slave.outputs.index["pose.heading"]].signal.unit == "rad"

@@ -8,7 +8,7 @@ import pytest
 from modelkit.signal import Signal
 from modelkit.variables import Variable
 from orchestrator.cosim.recording import Recording
-from orchestrator.scenario.load_scenario import ROOM
+from orchestrator.scenario.files import ROOM
 from orchestrator.scenario.requirements import Requirement, read_requirements
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.text.errors import BadInput

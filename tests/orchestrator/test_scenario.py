@@ -5,7 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from orchestrator.scenario.load_scenario import car_names, load_scenario, scenario_names
+from orchestrator.scenario.files import car_names
+from orchestrator.scenario.load_scenario import load_scenario, scenario_names
 from orchestrator.text.errors import BadInput
 from orchestrator.text.quantities import number
 
@@ -58,14 +59,14 @@ def test_flat_nested_and_list_forms_mean_the_same(tmp_path: Path) -> None:
 
 
 def test_layers_car_base_file_and_set(tmp_path: Path) -> None:
-    write(tmp_path, "vehicle: {wheelbase: 2.0, width: 1.5}\ncontroller: {wheelbase: 2.0}", "small.yaml")
+    write(tmp_path, "car: {wheelbase: 2.0, width: 1.5}", "small.yaml")
     base = "car: small.yaml\nseed: 7\nslot: {x: 1, y: 2, length: 6, width: 2}\ntarget: [1, 2, 3 deg]\n"
-    write(tmp_path, base + "vehicle: {width: 1.6, driver.profile: [[0, 1], [2, 0.5]]}", "below.yaml")
+    write(tmp_path, base + "vehicle: {car.width: 1.6, driver.profile: [[0, 1], [2, 0.5]]}", "below.yaml")
     path = write(tmp_path, "base: below.yaml\nslot: {width: 3}\nvehicle: {driver.profile: [[0, 0.3]]}\ntarget: {x: 9}")
-    scenario = load_scenario(path, ["vehicle.front_overhang=90 cm", "controller.system=ntbpt", "stop_time=12 s"])
-    assert scenario.vehicle["wheelbase"] == 2.0
-    assert scenario.vehicle["width"] == 1.6
-    assert scenario.vehicle["front_overhang"] == pytest.approx(0.9)
+    scenario = load_scenario(path, ["vehicle.car.front_overhang=90 cm", "controller.system=ntbpt", "stop_time=12 s"])
+    assert scenario.vehicle["car.wheelbase"] == 2.0
+    assert scenario.vehicle["car.width"] == 1.6
+    assert scenario.vehicle["car.front_overhang"] == pytest.approx(0.9)
     assert {key for key in scenario.vehicle if "profile" in key} == {"driver.profile[1].at", "driver.profile[1].speed"}
     assert scenario.controller["system"] == 1
     assert scenario.controller["target.x"] == 9.0
@@ -83,14 +84,14 @@ def test_title_is_not_inherited(tmp_path: Path) -> None:
     ("text", "message"),
     [
         ("stop_tim: 3", r"mine\.yaml(:\d+)?: stop_tim: unknown; did you mean stop_time\?"),
-        ("wheelbase: 3", r"wheelbase: unknown; did you mean .*vehicle\.wheelbase"),
-        ("vehicle: {wheelbas: 3}", r"mine\.yaml(:\d+)?: vehicle\.wheelbas: unknown; did you mean vehicle.wheelbase"),
-        ("vehicle: {ratio: 3}", r"vehicle\.ratio: unknown; did you mean vehicle\.steering\.ratio"),
-        ("vehicle: {wheelbase: long}", r"mine\.yaml(:\d+)?: vehicle\.wheelbase: 'long' is not a number"),
-        ("vehicle: {wheelbase: 3 deg}", r"vehicle\.wheelbase: '3 deg' is in 'deg', expected a number in m"),
-        ("vehicle: {wheelbase: -3}", r"vehicle\.wheelbase: -3 is out of range, expected 0\.1 to 20 m"),
-        ("vehicle: {wheelbase: .nan}", r"vehicle\.wheelbase: nan is not a number that anything"),
-        ("vehicle: {wheelbase: [1, 2]}", r"vehicle\.wheelbase: \[1, 2\] is not a number"),
+        ("wheelbase: 3", r"wheelbase: unknown; did you mean .*car\.wheelbase"),
+        ("car: {wheelbas: 3}", r"mine\.yaml(:\d+)?: car\.wheelbas: unknown; did you mean car.wheelbase"),
+        ("vehicle: {ratio: 3}", r"vehicle\.ratio: unknown; did you mean vehicle\.car\.steering\.ratio"),
+        ("car: {wheelbase: long}", r"mine\.yaml(:\d+)?: car\.wheelbase: 'long' is not a number"),
+        ("car: {wheelbase: 3 deg}", r"car\.wheelbase: '3 deg' is in 'deg', expected a number in m"),
+        ("car: {wheelbase: -3}", r"car\.wheelbase: -3 is out of range, expected 0\.1 to 20 m"),
+        ("car: {wheelbase: .nan}", r"car\.wheelbase: nan is not a number that anything"),
+        ("car: {wheelbase: [1, 2]}", r"car\.wheelbase: \[1, 2\] is not a number"),
         ("vehicle: {body: kinematik}", r"vehicle\.body: 'kinematik' is none of kinematic.*did you mean kinematic"),
         ("vehicle: {body: 77}", r"vehicle\.body: 77 is none of 0 kinematic"),
         ("vehicle: {start: 3}", r"vehicle\.start: 3 is one value, expected a mapping or list of x, y, heading"),
@@ -127,8 +128,8 @@ def test_a_mistake_is_one_clear_sentence(tmp_path: Path, text: str, message: str
 @pytest.mark.parametrize(
     ("given", "message"),
     [
-        ("vehicle.wheelbase", "expected KEY=VALUE"),
-        ("vehicle.wheelbas=3", r"--set: vehicle\.wheelbas: unknown; did you mean vehicle.wheelbase"),
+        ("car.wheelbase", "expected KEY=VALUE"),
+        ("car.wheelbas=3", r"--set: car\.wheelbas: unknown; did you mean car.wheelbase"),
         ("controller.system=mpcc", r"--set: controller\.system: 'mpcc' is none of ntbptcwpt"),
         ("nothing=3", "--set: nothing: unknown"),
     ],

@@ -68,8 +68,8 @@ def test_quintics_are_refused_where_no_radius_keeps_the_curvature_and_only_there
     verdicts = {}
     for labels, given in chosen(controller="zhang2022", disturbance="none", body="kinematic"):
         car = given.controller
-        lock = car["steering_wheel_limit"] / car["steering_ratio"]
-        limit = 0.95 * math.tan(lock) / car["wheelbase"]
+        lock = car["car.steering.angle_limit"] / car["car.steering.ratio"]
+        limit = 0.95 * math.tan(lock) / car["car.wheelbase"]
         start = Pose(*(float(given.vehicle[f"start.{axis}"]) for axis in ("x", "y", "heading")))
         possible = smallest_peak(start, 5.0) <= limit
         assert plan(start, 5.0, limit).status == (PathStatus.FOUND if possible else PathStatus.CURVATURE_LIMIT)
@@ -89,7 +89,9 @@ def test_two_arcs_are_refused_where_their_radius_is_below_the_cars(undisturbed: 
     for item in undisturbed:
         if item.controller.startswith("ntbpt"):
             car, start = scenario(item).controller, scenario(item).vehicle
-            smallest = 1.05 * car["wheelbase"] / math.tan(car["steering_wheel_limit"] / car["steering_ratio"])
+            smallest = (
+                1.05 * car["car.wheelbase"] / math.tan(car["car.steering.angle_limit"] / car["car.steering.ratio"])
+            )
             possible = largest_radius(start["start.x"], start["start.y"]) >= smallest
             assert (item.why == "no_path") != possible, item
 

@@ -9,7 +9,7 @@ RUNS = {
     "grid": {
         "controller.system": ["ntbpt", "ntbptcwpt"],
         "vehicle.driver.profile[1].speed": {"from": "2 km/h", "to": 2.0, "steps": 4},
-        "vehicle.steering.rate_limit, controller.steering_wheel_rate": ["570 deg/s", "1995 deg/s"],
+        "car.steering.rate_limit": ["570 deg/s", "1995 deg/s"],
     },
     "latin_hypercube": {
         "n": 12,

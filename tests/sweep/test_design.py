@@ -30,7 +30,7 @@ def test_units_and_states_are_read_as_in_a_scenario(bind):
 
 
 def test_keys_with_a_comma_share_their_values(bind):
-    made = design(bind, grid={"vehicle.steering.rate_limit, controller.steering_wheel_rate": [1.0, 2.0]})
+    made = design(bind, grid={"car.steering.rate_limit": [1.0, 2.0]})
     assert made.values.tolist() == [[1.0, 1.0], [2.0, 2.0]]
 
 
@@ -99,12 +99,12 @@ def test_scenario_fields_and_faults_can_be_varied(bind):
 @pytest.mark.parametrize(
     ("runs", "says"),
     [
-        ({"grid": {"vehicle.weelbase": [2.0]}}, "wheelbase"),
-        ({"grid": {"vehicle.wheelbase": [-1.0]}}, "out of range"),
-        ({"grid": {"vehicle.wheelbase": ["3 s"]}}, "'3 s' is in 's'"),
-        ({"grid": {"vehicle.wheelbase": []}}, "empty list"),
+        ({"grid": {"vehicle.car.weelbase": [2.0]}}, "wheelbase"),
+        ({"grid": {"vehicle.car.wheelbase": [-1.0]}}, "out of range"),
+        ({"grid": {"vehicle.car.wheelbase": ["3 s"]}}, "'3 s' is in 's'"),
+        ({"grid": {"vehicle.car.wheelbase": []}}, "empty list"),
         ({"grid": {"vehicle.start.x": [1]}, "monte_carlo": {"n": 1, "vehicle.start.x": {"uniform": [0, 1]}}}, "twice"),
-        ({"monte_carlo": {"n": 3, "vehicle.wheelbase": {"uniform": [-3, 3]}}}, "out of range"),
+        ({"monte_carlo": {"n": 3, "vehicle.car.wheelbase": {"uniform": [-3, 3]}}}, "out of range"),
         ({"monte_carlo": {"n": 3, "vehicle.start.x": {"uniform": [3, -3]}}}, "lower end first"),
         ({"monte_carlo": {"n": 3, "vehicle.start.x": {"normal": [3, 0]}}}, "more than 0"),
         ({"monte_carlo": {"n": 3, "vehicle.driver.obeys_stop": {"uniform": [0, 1]}}}, "expected choice"),

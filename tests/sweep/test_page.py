@@ -21,7 +21,7 @@ runs:
   grid:
     controller.system: [ntbpt, ntbptcwpt]
     "vehicle.driver.profile[1].speed": [0.6, 1.2, 1.8]
-    vehicle.steering.rate_limit, controller.steering_wheel_rate: [570 deg/s, 1995 deg/s]
+    car.steering.rate_limit: [570 deg/s, 1995 deg/s]
   latin_hypercube: {n: 15, vehicle.start.y: {uniform: [-10 cm, 10 cm]}}
 """
 
@@ -83,15 +83,15 @@ def test_maps_count_every_run_once(table):
 
 
 def test_parameters_that_always_agree_are_shown_once(table):
-    assert "controller.steering_wheel_rate" not in varied(table)
-    assert [item.name for item in influences(table)].count("vehicle.steering.rate_limit") == 1
+    assert "controller.car.steering.rate_limit" not in varied(table)
+    assert [item.name for item in influences(table)].count("vehicle.car.steering.rate_limit") == 1
 
 
 def test_an_axis_with_many_values_is_cut_into_equal_bins(table):
     cut = axis(table, "vehicle.driver.profile[1].speed")
     assert cut.labels == ["0.6", "1.2", "1.8"]
     np.testing.assert_allclose(cut.edges, [0.3, 0.9, 1.5, 2.1])
-    assert axis(table, "vehicle.steering.rate_limit").unit == "deg/s"
+    assert axis(table, "vehicle.car.steering.rate_limit").unit == "deg/s"
     assert axis(table, "controller.system").labels == ["ntbptcwpt", "ntbpt"]
 
 

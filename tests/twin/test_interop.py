@@ -192,7 +192,7 @@ def test_an_fmu_in_the_ssp_starts_with_what_the_scenario_sets(system):
         starts = {v.name: v.start for v in fmpy.read_model_description(str(part.fmu)).modelVariables}
         for variable, value in part.settings():
             assert float({"true": "1", "false": "0"}.get(starts[variable.name], starts[variable.name])) == value
-    assert {variable.name for variable, _ in system.parts[1].settings()} >= {"target.x", "wheelbase"}
+    assert {variable.name for variable, _ in system.parts[1].settings()} >= {"target.x", "car.wheelbase"}
 
 
 @pytest.mark.parametrize("name", ["fault-pose-frozen"])

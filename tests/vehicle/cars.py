@@ -11,7 +11,7 @@ from vehiclemodels.parameters_vehicle2 import parameters_vehicle2
 from vehiclemodels.parameters_vehicle3 import parameters_vehicle3
 from vehiclemodels.vehicle_dynamics_mb import vehicle_dynamics_mb
 
-from vehicle_fmu.chassis import ChassisParams
+from vehicle_fmu.chassis import ChassisParams, Stance
 from vehicle_fmu.double_track import DoubleTrackParams
 from vehicle_fmu.loads import RollParams
 from vehicle_fmu.single_track import SingleTrackParams
@@ -29,22 +29,26 @@ def roll_of_axle(spring: float, torsion: float, track: float, tire: float, cambe
     return both, 1.0 + camber * track / 2.0 * both / suspension
 
 
-def double_track_car(car: Any) -> tuple[float, ChassisParams, DoubleTrackParams]:
-    """Return wheelbase, chassis and four-wheel body with CommonRoad's numbers; no drag, parallel steering."""
+def double_track_car(car: Any) -> tuple[Stance, ChassisParams, DoubleTrackParams]:
+    """Return stance, chassis and four-wheel body with CommonRoad's numbers; no drag, parallel steering."""
     front, lean_front = roll_of_axle(car.K_sf, car.K_tsf, car.T_f, car.K_zt, car.D_f)
     rear, lean_rear = roll_of_axle(car.K_sr, car.K_tsr, car.T_r, car.K_zt, car.D_r)
-    chassis = ChassisParams(car.m, car.I_z, car.b, car.h_cg, 0.0, 0.0, 0.0, car.T_se, car.T_sb)
+    chassis = ChassisParams(car.m, car.I_z, car.h_cg, 0.0, 0.0, 0.0, car.T_se, car.T_sb)
     roll = RollParams(car.m_s * car.h_s / car.m, front, rear, lean_front, lean_rear, car.m_uf, car.m_ur)
     hub = HubParams(car.R_w, car.I_y_w)
-    return car.a + car.b, chassis, DoubleTrackParams(car.T_f, car.T_r, 0.0, hub, roll, TireParams())
+    return Stance(car.a + car.b, car.b), chassis, DoubleTrackParams(car.T_f, car.T_r, 0.0, hub, roll, TireParams())
 
 
-def single_track_car(car: Any) -> tuple[float, ChassisParams, SingleTrackParams]:
-    """Return wheelbase, chassis and the single track that is CommonRoad's ST."""
+def single_track_car(car: Any) -> tuple[Stance, ChassisParams, SingleTrackParams]:
+    """Return stance, chassis and the single track that is CommonRoad's ST."""
     wheelbase = car.a + car.b
     per_load = -car.tire.p_ky1 * 9.81 * car.m / wheelbase
-    chassis = ChassisParams(car.m, car.I_z, car.b, car.h_s, 0.0, 0.0, 0.0, 0.0, 0.5)
-    return wheelbase, chassis, SingleTrackParams(per_load * car.b, per_load * car.a, car.h_s, 3.0, 0.3, True)
+    chassis = ChassisParams(car.m, car.I_z, car.h_s, 0.0, 0.0, 0.0, 0.0, 0.5)
+    return (
+        Stance(wheelbase, car.b),
+        chassis,
+        SingleTrackParams(per_load * car.b, per_load * car.a, car.h_s, 3.0, 0.3, True),
+    )
 
 
 def multi_body_yaw_rate(car: Any, speed: float, angle: float) -> float:

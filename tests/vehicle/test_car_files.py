@@ -8,7 +8,8 @@ import yaml
 from cars import CARS, double_track_car, single_track_car
 
 from modelkit.variables import flatten, variables, with_values
-from orchestrator.scenario.load_scenario import car_names, load_scenario
+from orchestrator.scenario.files import car_names
+from orchestrator.scenario.load_scenario import load_scenario
 from vehicle_fmu.interface import Body, VehicleParams
 from vehicle_fmu.usable import is_usable
 
@@ -28,11 +29,12 @@ def test_every_car_is_usable_on_every_body(name: str, tmp_path: Path) -> None:
         assert is_usable(car._replace(body=int(body)))
 
 
-@pytest.mark.parametrize("name", [name for name in car_names() if name != "preview"])
+@pytest.mark.parametrize("name", car_names())
 def test_sensors_sit_on_the_outline(name: str, tmp_path: Path) -> None:
     car = loaded(name, tmp_path)
-    front, rear, side = car.wheelbase + car.front_overhang, -car.rear_overhang, 0.5 * car.width
-    for mount in car.ultrasonic.mounts:
+    built = car.car
+    front, rear, side = built.wheelbase + built.front_overhang, -built.rear_overhang, 0.5 * built.width
+    for mount in built.ultrasonic.mounts:
         assert rear - 0.01 <= mount.x <= front + 0.01
         assert abs(mount.y) <= side + 0.01
         gap = min(front - mount.x, mount.x - rear, side - abs(mount.y))
@@ -42,9 +44,9 @@ def test_sensors_sit_on_the_outline(name: str, tmp_path: Path) -> None:
 @pytest.mark.parametrize("number", [1, 2, 3])
 def test_commonroads_cars_have_commonroads_numbers(number: int, tmp_path: Path) -> None:
     car = loaded(f"commonroad{number}", tmp_path)
-    wheelbase, chassis, double = double_track_car(CARS[number - 1])
+    stance, chassis, double = double_track_car(CARS[number - 1])
     _, _, single = single_track_car(CARS[number - 1])
-    assert car.wheelbase == pytest.approx(wheelbase, rel=1e-6)
+    assert (car.car.wheelbase, car.car.cg_to_rear) == pytest.approx(stance, rel=1e-6)
     chosen = {"rolling_resistance", "drag_x", "drag_y"}
     for field in set(chassis._fields) - chosen:
         assert getattr(car.chassis, field) == pytest.approx(getattr(chassis, field), rel=1e-5)

@@ -8,28 +8,30 @@ from cars import CARS, double_track_car, multi_body_yaw_rate
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from modelkit.car import Car
 from modelkit.maths import clamp
 from modelkit.variables import flatten
 from modelkit.vocabulary import Pose
-from vehicle_fmu.chassis import Build, ChassisParams, Motion, RoadParams
+from vehicle_fmu.chassis import Build, ChassisParams, Motion, RoadParams, Stance
 from vehicle_fmu.double_track import DoubleTrackParams, DoubleTrackState, resting, step_double_track, wheel_angles
 from vehicle_fmu.effort import Effort
 from vehicle_fmu.loads import Felt
 from vehicle_fmu.wheels import Wheel
 
 WHEELBASE = 2.405
+STANCE = Stance(WHEELBASE, Car().cg_to_rear)
 CHASSIS = ChassisParams()
 PARAMS = DoubleTrackParams()
 ROAD = RoadParams()
 
 
 def step(state: DoubleTrackState, angle: float, drive: float, brake: float, h: float) -> DoubleTrackState:
-    return step_double_track(state, angle, Effort(drive, brake), Build(WHEELBASE, CHASSIS, ROAD), PARAMS, h)
+    return step_double_track(state, angle, Effort(drive, brake), Build(STANCE, CHASSIS, ROAD), PARAMS, h)
 
 
 def steady_yaw_rate(car: Any, speed: float, angle: float, h: float = 0.004) -> float:
     """Return the yaw rate [rad/s] after 10 s at held speed, the angle reached in 3 s."""
-    wheelbase, chassis, params = double_track_car(car)
+    stance, chassis, params = double_track_car(car)
     wheels = (Wheel(speed / params.hub.radius),) * 4
     state = DoubleTrackState(Motion(Pose(), speed, 0.0, 0.0), wheels, Felt())
     lost = 0.0
@@ -38,7 +40,7 @@ def steady_yaw_rate(car: Any, speed: float, angle: float, h: float = 0.004) -> f
         lost += error * h
         push = chassis.mass * (5.0 * error + 3.0 * lost)
         now = angle * min(1.0, n * h / 3.0)
-        state = step_double_track(state, now, Effort(push, 0.0), Build(wheelbase, chassis, ROAD), params, h)
+        state = step_double_track(state, now, Effort(push, 0.0), Build(stance, chassis, ROAD), params, h)
     assert state.motion.speed_x == pytest.approx(speed, rel=1e-3)
     return state.motion.yaw_rate
 
@@ -63,7 +65,7 @@ def test_tends_to_the_kinematic_car_as_speed_tends_to_zero(speed: float, angle: 
         state = step(state, angle, push, 0.0, 0.005)
     curvature = state.motion.yaw_rate / state.motion.speed_x
     assert curvature == pytest.approx(math.tan(angle) / WHEELBASE, rel=0.002)
-    slip = (state.motion.speed_y - CHASSIS.cg_to_rear * state.motion.yaw_rate) / state.motion.speed_x
+    slip = (state.motion.speed_y - STANCE.cg_to_rear * state.motion.yaw_rate) / state.motion.speed_x
     assert abs(slip) < 0.001 + 0.05 * speed * speed
 
 
@@ -72,10 +74,10 @@ def test_tends_to_the_kinematic_car_as_speed_tends_to_zero(speed: float, angle: 
 def test_brake_holds_on_a_10_percent_slope_for_10_minutes(heading: float, angle: float) -> None:
     road = RoadParams(slope=0.1)
     start = Pose(1.0, 2.0, heading)
-    state = resting(start, angle, Build(WHEELBASE, CHASSIS, road), PARAMS)
+    state = resting(start, angle, Build(STANCE, CHASSIS, road), PARAMS)
     for n in range(120000):
         before = state
-        state = step_double_track(state, angle, Effort(0.0, 4000.0), Build(WHEELBASE, CHASSIS, road), PARAMS, 0.005)
+        state = step_double_track(state, angle, Effort(0.0, 4000.0), Build(STANCE, CHASSIS, road), PARAMS, 0.005)
         if n > 2000 and state == before:
             break  # a fixed point of the step: it stays for ever
         assert abs(state.motion.speed_x) < 0.05
@@ -220,7 +222,7 @@ def test_no_nan_for_any_input_in_range(
     plane = RoadParams(road[0], road[1], (grip[0], grip[1], grip[2], grip[3]))
     for _ in range(30):
         state = step_double_track(
-            state, angle, Effort(20000.0 * effort[0], 30000.0 * effort[1]), Build(WHEELBASE, CHASSIS, plane), PARAMS, h
+            state, angle, Effort(20000.0 * effort[0], 30000.0 * effort[1]), Build(STANCE, CHASSIS, plane), PARAMS, h
         )
     assert all(math.isfinite(number) for number in flatten(state))
     assert abs(state.motion.speed_x) < 40.0
@@ -239,5 +241,5 @@ def test_a_slippery_side_pulls_the_braked_car_round() -> None:
     road = RoadParams(grip=(1.0, 0.1, 1.0, 0.1))
     state = DoubleTrackState(Motion(Pose(), 10.0, 0.0, 0.0), (Wheel(10.0 / 0.344),) * 4)
     for _ in range(500):
-        state = step_double_track(state, 0.0, Effort(0.0, 8000.0), Build(WHEELBASE, CHASSIS, road), PARAMS, 0.001)
+        state = step_double_track(state, 0.0, Effort(0.0, 8000.0), Build(STANCE, CHASSIS, road), PARAMS, 0.001)
     assert state.motion.yaw_rate > 0.1

@@ -9,9 +9,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from vehiclemodels.vehicle_dynamics_ks import vehicle_dynamics_ks
 
+from modelkit.car import CarSteering
 from modelkit.vocabulary import Pose
 from vehicle_fmu.drive import change_speed
-from vehicle_fmu.interface import DriveParams, SteeringParams
+from vehicle_fmu.interface import DriveParams
 from vehicle_fmu.kinematic import kinematic_rates, move
 from vehicle_fmu.steering import turn_steering_wheel
 
@@ -29,10 +30,10 @@ def test_rates_equal_ks(car: Any, speed: float, angle: float, heading: float) ->
 @pytest.mark.parametrize("car", CARS)
 @pytest.mark.parametrize("side", [1.0, -1.0])
 def test_steering_stops_and_turns_as_fast_as_in_ks_at_its_limits(car: Any, side: float) -> None:
-    params = SteeringParams(1.0, car.steering.max, car.steering.v_max)
+    params = CarSteering(1.0, car.steering.max, car.steering.v_max)
     h = 1e-3
     for angle, request in ((0.0, 9.0 * side), (0.3 * side, -9.0 * side), (car.steering.max * side, 9.0 * side)):
-        rate = (turn_steering_wheel(angle, request, params, h) - angle) / h
+        rate = (turn_steering_wheel(angle, request, params, 0.0, h, 1.0) - angle) / h
         theirs = vehicle_dynamics_ks([0.0, 0.0, angle, 5.0, 0.0], [100.0 * math.copysign(1.0, request), 0.0], car)
         assert rate == pytest.approx(theirs[2], abs=1e-12)
 

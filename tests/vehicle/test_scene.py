@@ -7,10 +7,11 @@ import pytest
 import shapely
 from shapely import affinity
 
+from modelkit.car import SENSOR_MOUNTS, Car, CarUltrasonic
 from modelkit.geometry import FAR
-from modelkit.vocabulary import SENSOR_MOUNTS, Pose
+from modelkit.vocabulary import Pose
 from vehicle_fmu.odometry import OdometryParams, OdometryState, reckon, wheel_speed_reading
-from vehicle_fmu.scene import CarSize, Kerb, Obstacle, SceneParams, clearance
+from vehicle_fmu.scene import Kerb, Obstacle, SceneParams, clearance
 from vehicle_fmu.ultrasonic import (
     UltrasonicParams,
     first_readings,
@@ -18,8 +19,8 @@ from vehicle_fmu.ultrasonic import (
     measure,
 )
 
-SIZE = CarSize(2.405, 0.80, 0.60, 1.65)
-EXACT = UltrasonicParams(min_range=0.0, resolution=0.0)
+EXACT = CarUltrasonic(min_range=0.0, resolution=0.0)
+CLEAN = UltrasonicParams()
 
 
 def polygon(obstacle: Obstacle) -> shapely.Geometry:
@@ -54,25 +55,25 @@ def test_clearance_is_the_distance_to_the_nearest_thing() -> None:
         car = shapely.box(-0.60, -0.825, 3.205, 0.825)
         car = affinity.rotate(car, pose.heading, origin=(0.0, 0.0), use_radians=True)
         car = affinity.translate(car, pose.x, pose.y)
-        assert clearance(pose, SIZE, scene, 0) == pytest.approx(car.distance(everything(scene)), abs=1e-9)
+        assert clearance(pose, Car(), scene, 0) == pytest.approx(car.distance(everything(scene)), abs=1e-9)
 
 
 def test_an_empty_scene_is_clear() -> None:
-    assert clearance(Pose(), SIZE, SceneParams(), 0) == FAR
-    assert first_readings(Pose(), SceneParams(), EXACT).readings == (5.0,) * 12
+    assert clearance(Pose(), Car(), SceneParams(), 0) == FAR
+    assert first_readings(Pose(), SceneParams(), EXACT, CLEAN).readings == (5.0,) * 12
 
 
 def test_a_low_kerb_passes_under_the_bumper_but_not_under_the_wheels() -> None:
     ahead = Kerb(3.0, -2.0, 3.0, 2.0, 0.10)
-    assert clearance(Pose(), SIZE, SceneParams(kerbs=(ahead, *(Kerb(),) * 3)), 0) == pytest.approx(3.0 - 2.405 - 0.3)
+    assert clearance(Pose(), Car(), SceneParams(kerbs=(ahead, *(Kerb(),) * 3)), 0) == pytest.approx(3.0 - 2.405 - 0.3)
     high = ahead._replace(height=0.3)
-    assert clearance(Pose(), SIZE, SceneParams(kerbs=(high, *(Kerb(),) * 3)), 0) == 0.0
+    assert clearance(Pose(), Car(), SceneParams(kerbs=(high, *(Kerb(),) * 3)), 0) == 0.0
 
 
 def test_things_appear_and_disappear() -> None:
     walker = Obstacle(5.0, 0.0, 0.0, 0.4, 0.4, 2.0, 3.0)
     scene = SceneParams((walker, *(Obstacle(),) * 15))
-    seen = [clearance(Pose(), SIZE, scene, int(t * 1e9)) for t in (1.9, 2.0, 2.9, 3.0)]
+    seen = [clearance(Pose(), Car(), scene, int(t * 1e9)) for t in (1.9, 2.0, 2.9, 3.0)]
     assert seen == [FAR, pytest.approx(5.0 - 0.2 - 3.205), pytest.approx(5.0 - 0.2 - 3.205), FAR]
 
 
@@ -82,7 +83,7 @@ def test_readings_are_shapelys_distances_in_the_cone() -> None:
     for _ in range(250):
         scene = random_scene(draw)
         pose = Pose(draw.uniform(-6, 6), draw.uniform(-6, 6), draw.uniform(-4, 4))
-        state = first_readings(pose, scene, EXACT)
+        state = first_readings(pose, scene, EXACT, CLEAN)
         for reading, mount in zip(state.readings, SENSOR_MOUNTS, strict=True):
             cos, sin = math.cos(pose.heading), math.sin(pose.heading)
             x, y = pose.x + mount.x * cos - mount.y * sin, pose.y + mount.x * sin + mount.y * cos
@@ -101,19 +102,22 @@ def wall(distance: float) -> SceneParams:
 
 
 def test_resolution_and_range_limits() -> None:
-    params = UltrasonicParams(resolution=0.02, min_range=0.2, max_range=3.0)
-    assert first_readings(Pose(), wall(1.2345), params).readings[1] == pytest.approx(1.24)
-    assert first_readings(Pose(), wall(0.05), params).readings[1] == 0.2
-    assert first_readings(Pose(), wall(3.5), params).readings[1] == 3.0
+    params = CarUltrasonic(resolution=0.02, min_range=0.2, max_range=3.0)
+    assert first_readings(Pose(), wall(1.2345), params, CLEAN).readings[1] == pytest.approx(1.24)
+    assert first_readings(Pose(), wall(0.05), params, CLEAN).readings[1] == 0.2
+    assert first_readings(Pose(), wall(3.5), params, CLEAN).readings[1] == 3.0
 
 
 def test_noise_has_its_deviation_dropout_its_rate_and_the_seed_repeats() -> None:
-    params = EXACT._replace(noise=0.03, dropout=0.2, seed=7)
-    state = first_readings(Pose(), wall(1.5), params)
-    again = first_readings(Pose(), wall(1.5), params)
+    params = CLEAN._replace(noise=0.03, dropout=0.2, seed=7)
+    state = first_readings(Pose(), wall(1.5), EXACT, params)
+    again = first_readings(Pose(), wall(1.5), EXACT, params)
     found, lost = [], 0
     for n in range(4000):
-        state, again = measure(state, Pose(), wall(1.5), params, n), measure(again, Pose(), wall(1.5), params, n)
+        state, again = (
+            measure(state, Pose(), wall(1.5), EXACT, params, n),
+            measure(again, Pose(), wall(1.5), EXACT, params, n),
+        )
         assert state == again
         for reading in state.readings[1:3]:
             lost += reading == 5.0
@@ -123,14 +127,14 @@ def test_noise_has_its_deviation_dropout_its_rate_and_the_seed_repeats() -> None
     assert mean == pytest.approx(1.5, abs=0.002)
     assert deviation == pytest.approx(0.03, rel=0.05)
     assert lost / 8000.0 == pytest.approx(0.2, abs=0.02)
-    other = first_readings(Pose(), wall(1.5), params._replace(seed=8))
-    assert other.readings != first_readings(Pose(), wall(1.5), params).readings
+    other = first_readings(Pose(), wall(1.5), EXACT, params._replace(seed=8))
+    assert other.readings != first_readings(Pose(), wall(1.5), EXACT, params).readings
 
 
 def test_low_kerbs_are_not_heard() -> None:
     for height, seen in ((0.05, False), (0.12, True)):
         scene = SceneParams(kerbs=(Kerb(4.0, -3.0, 4.0, 3.0, height), *(Kerb(),) * 3))
-        assert (first_readings(Pose(), scene, EXACT).readings[1] < 5.0) is seen
+        assert (first_readings(Pose(), scene, EXACT, CLEAN).readings[1] < 5.0) is seen
 
 
 def test_cycle() -> None:

@@ -10,8 +10,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from vehiclemodels.vehicle_dynamics_st import vehicle_dynamics_st
 
+from modelkit.car import Car
 from modelkit.vocabulary import Pose
-from vehicle_fmu.chassis import Build, ChassisParams, Motion, RoadParams
+from vehicle_fmu.chassis import Build, ChassisParams, Motion, RoadParams, Stance
 from vehicle_fmu.effort import Effort
 from vehicle_fmu.single_track import SingleTrackParams, SingleTrackState, single_track_rates, step_single_track
 
@@ -23,15 +24,16 @@ ANGLE = st.floats(-0.05, 0.05)
 ACCEL = st.floats(-3.0, 3.0)
 ROAD = RoadParams()
 WHEELBASE = 2.405
+STANCE = Stance(WHEELBASE, Car().cg_to_rear)
 CHASSIS = ChassisParams()
 PARAMS = SingleTrackParams()
 
 
 def rates(car: Any, speed: float, beta: float, yaw_rate: float, angle: float, accel: float) -> tuple[float, ...]:
     """Return (v', yaw rate', beta') of our single track set as ST."""
-    wheelbase, chassis, params = single_track_car(car)
+    stance, chassis, params = single_track_car(car)
     motion = Motion(Pose(), speed, speed * beta, yaw_rate)
-    found = single_track_rates(motion, angle, car.m * accel, accel, wheelbase, chassis, params)
+    found = single_track_rates(motion, angle, car.m * accel, accel, stance, chassis, params)
     return found.x, found.yaw, found.y / speed - yaw_rate
 
 
@@ -73,7 +75,7 @@ def steady_yaw_rate(speed: float, angle: float, h: float = 0.004) -> float:
     state = SingleTrackState(Motion(Pose(), speed, 0.0, 0.0))
     for _ in range(round((4.0 + 3.0 / abs(speed)) / h)):
         push = chassis.mass * 50.0 * (speed - state.motion.speed_x)
-        state = step_single_track(state, angle, Effort(push, 0.0), Build(WHEELBASE, chassis, ROAD), PARAMS, h)
+        state = step_single_track(state, angle, Effort(push, 0.0), Build(STANCE, chassis, ROAD), PARAMS, h)
     return state.motion.yaw_rate
 
 
@@ -81,8 +83,8 @@ def steady_yaw_rate(speed: float, angle: float, h: float = 0.004) -> float:
 def test_steady_turn_is_the_closed_form(speed: float) -> None:
     """r = v delta / (L + K v |v|), K = m (b / C_f - a / C_r) / L: what understeers forward oversteers in reverse."""
     angle = 0.01
-    a = WHEELBASE - CHASSIS.cg_to_rear
-    gradient = CHASSIS.mass / WHEELBASE * (CHASSIS.cg_to_rear / PARAMS.stiffness_front - a / PARAMS.stiffness_rear)
+    a = WHEELBASE - STANCE.cg_to_rear
+    gradient = CHASSIS.mass / WHEELBASE * (STANCE.cg_to_rear / PARAMS.stiffness_front - a / PARAMS.stiffness_rear)
     expected = speed * angle / (WHEELBASE + gradient * speed * abs(speed))
     assert steady_yaw_rate(speed, angle) == pytest.approx(expected, rel=1e-3)
 
@@ -95,10 +97,10 @@ def test_tends_to_the_kinematic_car_as_speed_tends_to_zero(speed: float) -> None
 
 def test_paper_3_dof_car_has_no_load_transfer() -> None:
     params = SingleTrackParams(32000.0, 32000.0)
-    chassis = ChassisParams(560.0, 1040.0, 0.76)
+    chassis = ChassisParams(560.0, 1040.0)
     motion = Motion(Pose(), 8.0, 0.1, 0.2)
-    slow = single_track_rates(motion, 0.05, 100.0, 0.0, 1.89, chassis, params)
-    hard = single_track_rates(motion, 0.05, 100.0, 3.0, 1.89, chassis, params)
+    slow = single_track_rates(motion, 0.05, 100.0, 0.0, Stance(1.89, 0.76), chassis, params)
+    hard = single_track_rates(motion, 0.05, 100.0, 3.0, Stance(1.89, 0.76), chassis, params)
     assert slow == hard
     front = -32000.0 * ((0.1 + 1.13 * 0.2) * math.cos(0.05) - 8.0 * math.sin(0.05))
     front = front / (8.0 * math.cos(0.05) + (0.1 + 1.13 * 0.2) * math.sin(0.05))
@@ -114,7 +116,7 @@ def test_brake_holds_on_a_slope_and_rolling_resistance_alone_does_not() -> None:
     for brake, moves in ((6000.0, False), (0.0, True)):
         state = SingleTrackState()
         for _ in range(4000):
-            state = step_single_track(state, 0.2, Effort(0.0, brake), Build(WHEELBASE, CHASSIS, road), PARAMS, 0.005)
+            state = step_single_track(state, 0.2, Effort(0.0, brake), Build(STANCE, CHASSIS, road), PARAMS, 0.005)
         assert (abs(state.motion.pose.x) > 0.001) is moves
 
 
@@ -123,8 +125,8 @@ def test_mirrored_to_the_bit() -> None:
     for n in range(2000):
         angle = 0.5 * math.sin(0.003 * n)
         effort = Effort(3000.0 * math.sin(0.005 * n), 500.0)
-        left = step_single_track(left, angle, effort, Build(WHEELBASE, CHASSIS, ROAD), PARAMS, 0.001)
-        right = step_single_track(right, -angle, effort, Build(WHEELBASE, CHASSIS, ROAD), PARAMS, 0.001)
+        left = step_single_track(left, angle, effort, Build(STANCE, CHASSIS, ROAD), PARAMS, 0.001)
+        right = step_single_track(right, -angle, effort, Build(STANCE, CHASSIS, ROAD), PARAMS, 0.001)
     assert left.motion.pose == Pose(right.motion.pose.x, -right.motion.pose.y, -right.motion.pose.heading)
     assert left.motion.yaw_rate == -right.motion.yaw_rate
     assert abs(left.motion.pose.heading) > 0.1

@@ -4,6 +4,7 @@ import math
 
 import pytest
 
+from modelkit.car import CarSteering
 from vehicle_fmu.interface import SteeringParams
 from vehicle_fmu.steering import SteeringState, hold_request, pass_request, take_up_play, turn_steering_wheel
 
@@ -49,10 +50,10 @@ def test_backlash_is_crossed_before_the_wheels_follow() -> None:
 
 
 def test_slower_at_standstill() -> None:
-    params = SteeringParams(standstill_rate=2.0, rate_limit=8.0)
-    assert turn_steering_wheel(0.0, 5.0, params, 0.1, 0.0) == pytest.approx(0.2)
-    assert turn_steering_wheel(0.0, 5.0, params, 0.1, 1.0) == pytest.approx(0.8)
-    assert turn_steering_wheel(0.0, 5.0, SteeringParams(), 0.1, 0.0) == pytest.approx(0.1 * SteeringParams().rate_limit)
+    car = CarSteering(rate_limit=8.0)
+    assert turn_steering_wheel(0.0, 5.0, car, 2.0, 0.1, 0.0) == pytest.approx(0.2)
+    assert turn_steering_wheel(0.0, 5.0, car, 2.0, 0.1, 1.0) == pytest.approx(0.8)
+    assert turn_steering_wheel(0.0, 5.0, car, 0.0, 0.1, 0.0) == pytest.approx(0.8)
 
 
 def test_a_held_wheel_leaves_nothing_on_its_way() -> None:

@@ -200,16 +200,16 @@ def test_bad_input_brakes_and_holds_the_wheel(body: int) -> None:
 
 
 BAD = [
-    ("wheelbase", 0.0),
+    ("car.wheelbase", 0.0),
     ("start.x", math.nan),
-    ("steering.ratio", 0.0),
+    ("car.steering.ratio", 0.0),
     ("chassis.mass", 0.0),
-    ("chassis.cg_to_rear", 9.0),
+    ("car.cg_to_rear", 9.0),
     ("double_track.tires.shape_x", 0.0),
     ("double_track.hub.inertia", math.inf),
     ("scene.boxes[3].x", math.nan),
-    ("ultrasonic.cycle", 0.0),
-    ("ultrasonic.mounts[2].yaw", math.inf),
+    ("car.ultrasonic.cycle", 0.0),
+    ("car.ultrasonic.mounts[2].yaw", math.inf),
     ("body_step", 0.0),
     ("road.slope", math.nan),
 ]

@@ -11,7 +11,7 @@ from orchestrator.sweep.page.figures import named
 from orchestrator.sweep.page.statistics import Map, maps, word
 from orchestrator.sweep.table import Table
 
-SHORT = {"vehicle.driver.speed_error": "driver's speed error", "vehicle.steering.rate_limit": "steering-wheel rate"}
+SHORT = {"vehicle.driver.speed_error": "driver's speed error", "vehicle.car.steering.rate_limit": "steering-wheel rate"}
 
 
 def draw_maps(table: Table, path: Path) -> None:

@@ -14,6 +14,7 @@ from scipy.stats import qmc  # type: ignore[import-untyped]
 
 from modelkit.variables import Variable
 from orchestrator.cosim.slave import Array
+from orchestrator.scenario.models import MODELS
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.sweep.fields import Field, find_field
 from orchestrator.sweep.study.design import Design
@@ -133,7 +134,12 @@ def _quantiles(chances: Array, spread: Spread, variable: Variable, key: str) -> 
 
 
 def _fields(key: str, scenario: Scenario) -> list[Field]:
-    return [find_field(part.strip(), scenario) for part in key.split(",")]
+    return [find_field(name, scenario) for part in key.split(",") for name in _told_both(part.strip())]
+
+
+def _told_both(key: str) -> list[str]:
+    """Return what a key stands for: a parameter of the car is told both models."""
+    return [f"{owner}.{key}" for owner in MODELS] if key.startswith("car.") else [key]
 
 
 def _checked(value: Any, fields: list[Field]) -> float:

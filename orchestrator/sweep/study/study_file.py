@@ -101,7 +101,10 @@ class MeasureOf(_StudyPart):
 
 
 class StudyFile(_StudyPart):
-    """One study as it is written. A key ``a, b`` gives the same value to both parameters."""
+    """One study as it is written. A key ``a, b`` gives the same value to both parameters.
+
+    ``car.x`` is the car's as it is and as the controller knows it: ``vehicle.car.x, controller.car.x``.
+    """
 
     name: Name
     title: str = ""

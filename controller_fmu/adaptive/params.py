@@ -1,4 +1,4 @@
-"""What can be set of driver-adaptive parking: the car's outline, the room, the path, the driver before he is known."""
+"""What can be set of driver-adaptive parking: the room, the path, the driver before he is known."""
 
 from math import pi
 from typing import Annotated, NamedTuple
@@ -9,11 +9,8 @@ HOUSE = "chosen; this system is the project's own"
 
 
 class RoomParams(NamedTuple):
-    """The outline of the car, and the room around the target, in the target's frame."""
+    """The room around the target, in the target's frame."""
 
-    front_overhang: Annotated[float, Signal("m", "front axle to bumper", 0.0, 5.0, HOUSE)] = 0.80
-    rear_overhang: Annotated[float, Signal("m", "rear axle to bumper", 0.0, 5.0, HOUSE)] = 0.60
-    width: Annotated[float, Signal("m", "body width", 0.1, 5.0, HOUSE)] = 1.65
     slot_front: Annotated[float, Signal("m", "target to the front end of the slot", 0.0, 100.0, HOUSE)] = 6.2
     slot_rear: Annotated[float, Signal("m", "target to the rear end of the slot", 0.0, 100.0, HOUSE)] = 1.1
     line: Annotated[float, Signal("m", "target to the side of the neighbours", 0.0, 10.0, HOUSE)] = 0.825

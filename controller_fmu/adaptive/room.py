@@ -5,6 +5,7 @@ from typing import NamedTuple
 from controller_fmu.adaptive.params import RoomParams
 from controller_fmu.adaptive.route import Route
 from controller_fmu.common.curve import advance
+from modelkit.car import Car
 from modelkit.geometry import FAR, Box, boxes_gap, boxes_overlap, corners, outline
 from modelkit.vocabulary import Pose
 
@@ -27,16 +28,16 @@ class Room(NamedTuple):
     margin: float
 
 
-def room_of(wheelbase: float, params: RoomParams) -> Room:
+def room_of(car: Car, params: RoomParams) -> Room:
     """Return the room, in the slot's frame."""
     middle = params.line - 0.5 * params.depth
     front = Box(params.slot_front + 0.5 * NEIGHBOUR, middle, 0.0, NEIGHBOUR, params.depth)
     rear = Box(-params.slot_rear - 0.5 * NEIGHBOUR, middle, 0.0, NEIGHBOUR, params.depth)
     return Room(
-        wheelbase,
-        params.front_overhang,
-        params.rear_overhang,
-        params.width,
+        car.wheelbase,
+        car.front_overhang,
+        car.rear_overhang,
+        car.width,
         front,
         rear,
         params.line - params.depth,

@@ -137,7 +137,7 @@ def _stood(state: AdaptiveState, pose: Pose, params: ControllerParams) -> Adapti
     shortest = 0.05 if driver.slows else shortest_way(driver, params.adaptive.belief)
     demand = Demand(speed, driver.obeys, path.rest, 0.5 if driver.stops > 0 else 0.4, shortest)
     wheel = wheel_of(state.monitor.wheel.steering, params)
-    planned = plan(pose, demand, wheel, room_of(params.car.wheelbase, params.adaptive.room))
+    planned = plan(pose, demand, wheel, room_of(params.car, params.adaptive.room))
     foot = foot_on(planned.route, 0.0, pose) if planned.route.direction != 0 else Foot(reference=pose)
     return state._replace(driver=driver, plan=planned, end=drivable(planned.route), foot=foot, begun=foot)
 

@@ -37,7 +37,16 @@ OF_APA = (
     *(f"limit.{name}" for name in ("stopping", "pose_frozen", "wheel_off", "wheel_fault")),
     "apa",
 )
-OF_ADAPTIVE = (*OUTLINE, "target", "vehicle_fault", "shifts", "threshold.wheel", "threshold.standstill", "limit", "adaptive")
+OF_ADAPTIVE = (
+    *OUTLINE,
+    "target",
+    "vehicle_fault",
+    "shifts",
+    "threshold.wheel",
+    "threshold.standstill",
+    "limit",
+    "adaptive",
+)
 SYSTEMS = SampledSystems(
     state=model.ControllerState,
     parameter="system",

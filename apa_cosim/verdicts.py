@@ -7,7 +7,7 @@ from apa_cosim.runs import Run
 from orchestrator.comparison.compare import Comparison
 from orchestrator.comparison.compare import compare as compare_recordings
 from orchestrator.comparison.tolerance import Tolerance, Tolerances
-from orchestrator.scenario.load_scenario import find_file
+from orchestrator.scenario.files import find_file
 from orchestrator.scenario.requirements import Requirement, read_requirements
 from orchestrator.verdict.judge import Check
 from orchestrator.verdict.judge import judge as judge_recording

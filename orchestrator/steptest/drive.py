@@ -1,0 +1,146 @@
+"""A model driven alone by stimuli: the recording of all its inputs and outputs."""
+
+from collections.abc import Mapping
+from pathlib import Path
+
+import numpy as np
+
+from modelkit.model import Model
+from modelkit.variables import Variable, variables
+from orchestrator.cosim.description import ports_of, read_description
+from orchestrator.cosim.fmu_files import fmu_files
+from orchestrator.cosim.fmu_slave import FmuSlave
+from orchestrator.cosim.in_process_slave import InProcessSlave
+from orchestrator.cosim.master import Master
+from orchestrator.cosim.recording import Recorder, Recording
+from orchestrator.cosim.slave import Array, Slave
+from orchestrator.log.read_log import log_file, read_log
+from orchestrator.scenario.flat_names import flatten_section
+from orchestrator.scenario.models import MODELS
+from orchestrator.steptest.step_test import StepTest
+from orchestrator.steptest.stimuli import Place, stimulus
+from orchestrator.text.errors import BadInput, suggestion
+from orchestrator.text.quantities import scalar
+
+FMU, MODEL_FILE = ".fmu", ".py"
+
+
+def drive(test: StepTest, kind: str, model: str = "") -> Recording:
+    """Return the recording of a test. ``kind``: which FMU of ours, or ``none``; ``model`` in place of the test's.
+
+    Signals are named as in a run: ``controller.prompt``. Raises ``BadInput``, ``RunError``.
+    """
+    slave = _slave(test, model or test.model, kind)
+    try:
+        master = Master([slave], test.step_ns, test.stop_ns)
+        player = _Player(slave, _inputs(test, slave))
+        master.manipulators.append(player)
+        recorder = Recorder([slave], test.stop_ns // test.step_ns + 1)
+        master.observers.append(recorder)
+        player.apply(0)
+        master.initialize()
+        end = master.run()
+        master.finish(end)
+        return recorder.recording({"end": {"reason": end.reason, "t_ns": end.t_ns}, "fmus": []})
+    finally:
+        slave.close()
+
+
+class _Player:
+    """Manipulator that plays inputs."""
+
+    slave = 0
+
+    def __init__(self, slave: Slave, columns: Mapping[int, Array]) -> None:
+        self._slave = slave
+        self._places = np.array(list(columns), dtype=np.intp)
+        self._rows = np.column_stack(list(columns.values())) if columns else np.empty((0, 0))
+        self._row = 0
+        self._last_ns = -1
+
+    def apply(self, t_ns: int) -> None:
+        """Write the inputs of this instant."""
+        if not len(self._places):
+            return
+        if t_ns > self._last_ns >= 0:
+            self._row += 1
+        self._last_ns = t_ns
+        self._slave.inputs.values[self._places] = self._rows[min(self._row, len(self._rows) - 1)]
+
+
+def _inputs(test: StepTest, slave: Slave) -> dict[int, Array]:
+    """Return place -> values at every instant of the inputs that the test says."""
+    t: Array = np.arange(test.stop_ns // test.step_ns + 1, dtype=np.float64) * (test.step_ns / 1e9)
+    ports, columns = slave.inputs, {}
+    if test.replay:
+        columns = _replayed(test, slave, t)
+    given = flatten_section({}, ports.names, file=test.file, key="inputs")
+    for name, value in test.inputs.items():
+        if name in ports.index or not isinstance(value, Mapping):
+            given[name] = value
+        else:
+            given |= {f"{name}.{part}": item for part, item in value.items()}
+    for name, value in given.items():
+        if name not in ports.index:
+            hint = suggestion(name, ports.names) or f"; known are {', '.join(ports.names[:12])}"
+            raise BadInput(f"no such input{hint}", file=test.file, key=f"inputs.{name}")
+        place = ports.index[name]
+        columns[place] = stimulus(value, Place(ports.variables[place], test.file, f"inputs.{name}"), t)
+    return columns
+
+
+def _replayed(test: StepTest, slave: Slave, t: Array) -> dict[int, Array]:
+    path = log_file(str(test.near(test.replay)))
+    recording = read_log(path)
+    owner = _owner(recording, slave, path)
+    at = np.clip(np.searchsorted(recording.t, t + 1e-9, side="right") - 1, 0, None)
+    names = {place: f"{owner}.{name}" for place, name in enumerate(slave.inputs.names)}
+    return {place: recording.signals[name][at] for place, name in names.items() if name in recording.signals}
+
+
+def _owner(recording: Recording, slave: Slave, path: Path) -> str:
+    """Return the slave of a log that has most of the inputs of this one."""
+    owners = dict.fromkeys(name.split(".", 1)[0] for name in recording.signals)
+    known = {owner: sum(f"{owner}.{name}" in recording.signals for name in slave.inputs.names) for owner in owners}
+    best = max(known, key=lambda owner: known[owner], default="")
+    if not best or not known[best]:
+        raise BadInput(f"has none of the inputs of {slave.name}", file=path)
+    return best
+
+
+def _slave(test: StepTest, model: str, kind: str) -> Slave:
+    if model in MODELS:
+        ours = MODELS[model]
+        if kind == "none":
+            return InProcessSlave(model, ours, _parameters(test, variables(ours.params)))
+        return _fmu(test, model, fmu_files(kind)[model], ours)
+    if model.endswith(FMU):
+        return _fmu(test, "model", test.near(model), None)
+    if MODEL_FILE in model:
+        own = _own(str(test.near(model)))
+        return InProcessSlave("model", own, _parameters(test, variables(own.params)))
+    known = ", ".join(MODELS)
+    raise BadInput(f"{model}: expected {known}, a file .fmu, or file.py:MODEL", file=test.file, key="model")
+
+
+def _own(text: str) -> Model:
+    from fmus.own_model import BadModel, own_model
+
+    try:
+        return own_model(text)
+    except BadModel as error:
+        raise BadInput(str(error)) from error
+
+
+def _fmu(test: StepTest, name: str, path: Path, model: Model | None) -> FmuSlave:
+    known = ports_of(read_description(path), "parameter", model, path).variables
+    return FmuSlave(name, path, _parameters(test, known), lambda *said: None, model)
+
+
+def _parameters(test: StepTest, known: list[Variable]) -> dict[str, float | int | bool]:
+    named = {item.name: item for item in known}
+    flat = flatten_section(test.parameters, named, file=test.file, key="parameters")
+    return {
+        name: scalar(value, named[name]._replace(name=f"parameters.{name}"), file=test.file)
+        for name, value in flat.items()
+    }

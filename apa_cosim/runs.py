@@ -16,6 +16,7 @@ from orchestrator.log.read_log import read_log as read_recording
 from orchestrator.scenario.load_scenario import load_scenario as load
 from orchestrator.scenario.load_scenario import scenario_names
 from orchestrator.scenario.scenario import Scenario
+from orchestrator.session.foreign import Foreign, fitting, load_fitting, parameters_of
 from orchestrator.session.session import run_scenario
 from orchestrator.verdict.logged import logged
 from orchestrator.verdict.summary import Summary, summarize
@@ -112,7 +113,7 @@ def load_scenario(name: str | Path, changes: Changes | None = None) -> Scenario:
 
     Raises ``BadInput`` with file, key, value and what would be right.
     """
-    return load(str(name), [f"{key}={_text(value)}" for key, value in (changes or {}).items()])
+    return load(str(name), _sets(changes))
 
 
 def run(
@@ -121,19 +122,32 @@ def run(
     *,
     fmus: str | None = None,
     log: Path | str | None = None,
+    controller: Path | str | None = None,
+    vehicle: Path | str | None = None,
 ) -> Run:
     """Return a scenario's run.
 
     ``fmus``: ``native``, ``python``, or ``none`` for the models in process; by default native where a C compiler is
-    there. They are built if need be. ``log``: write an MCAP file here as well. Raises ``BadInput``.
+    there. They are built if need be. ``log``: write an MCAP file here as well. ``controller``, ``vehicle``: somebody
+    else's FMU in the place of ours. Raises ``BadInput``.
     """
-    chosen = scenario if isinstance(scenario, Scenario) else load_scenario(scenario, changes)
-    if isinstance(scenario, Scenario) and changes:
-        raise TypeError("changes are made when a scenario is loaded: load_scenario(name, changes)")
+    given = Foreign({name: Path(path) for name, path in (("controller", controller), ("vehicle", vehicle)) if path})
+    chosen, foreign = with_foreign(scenario, changes, given)
     kind = fmus or default_kind()
-    files = None if kind == "none" else fmu_files(kind)
-    ran = run_scenario(chosen, files, kind=kind, log=Path(log) if log is not None else None)
+    files = {} if kind == "none" else fmu_files(kind)
+    ran = run_scenario(chosen, files, kind=kind, log=Path(log) if log is not None else None, foreign=foreign)
     return Run(chosen, ran.recording, summarize(ran.recording, chosen, ran.wall_time))
+
+
+def with_foreign(scenario: str | Path | Scenario, changes: Changes | None, given: Foreign) -> tuple[Scenario, Foreign]:
+    """Return a scenario, and the FMUs of others that it is run with: ``given`` ones and those of its own system."""
+    if not isinstance(scenario, Scenario):
+        fitted = load_fitting(str(scenario), _sets(changes), given)
+        return fitted.scenario, fitted.foreign
+    if changes:
+        raise TypeError("changes are made when a scenario is loaded: load_scenario(name, changes)")
+    own = {slave: parameters_of(path, slave) for slave, path in given.files.items()}
+    return fitting(scenario, own)[0], given
 
 
 def read_log(path: Path | str) -> Run:
@@ -142,6 +156,10 @@ def read_log(path: Path | str) -> Run:
     recording = read_recording(file)
     scenario, note = logged(recording, str(file), file.stem)
     return Run(scenario, recording, summarize(recording, scenario, 0.0, note))
+
+
+def _sets(changes: Changes | None) -> list[str]:
+    return [f"{key}={_text(value)}" for key, value in (changes or {}).items()]
 
 
 def _text(value: object) -> str:

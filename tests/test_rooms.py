@@ -33,6 +33,7 @@ FLOORS: tuple[tuple[str, ...], ...] = (
     ("orchestrator.log",),
     ("orchestrator.session",),
     ("orchestrator.report",),
+    ("orchestrator.steptest",),
     ("orchestrator.suite",),
     ("orchestrator.sweep",),
     ("orchestrator.export",),

@@ -17,20 +17,24 @@ from orchestrator.cosim.slave import Array, Slave
 from orchestrator.log.read_log import log_file, read_log
 from orchestrator.scenario.flat_names import flatten_section
 from orchestrator.scenario.models import MODELS
+from orchestrator.session.foreign import Foreign
+from orchestrator.session.session import NOBODY
 from orchestrator.steptest.step_test import StepTest
 from orchestrator.steptest.stimuli import Place, stimulus
 from orchestrator.text.errors import BadInput, suggestion
 from orchestrator.text.quantities import scalar
 
-FMU, MODEL_FILE = ".fmu", ".py"
+FMU, MODEL_FILE, OTHER = ".fmu", ".py", "model"
+"""How files of models end; the slave's name of a model that is none of ours."""
 
 
-def drive(test: StepTest, kind: str, model: str = "") -> Recording:
-    """Return the recording of a test. ``kind``: which FMU of ours, or ``none``; ``model`` in place of the test's.
+def drive(test: StepTest, kind: str, foreign: Foreign = NOBODY, model: str = "") -> Recording:
+    """Return the recording of a test.
 
-    Signals are named as in a run: ``controller.prompt``. Raises ``BadInput``, ``RunError``.
+    ``kind``: which FMU of ours, or ``none``; ``foreign``: FMUs of others in the place of ours; ``model``: this one in
+    place of the test's. Signals are named as in a run: ``controller.prompt``. Raises ``BadInput``, ``RunError``.
     """
-    slave = _slave(test, model or test.model, kind)
+    slave = _slave(test, model or test.model, kind, foreign)
     try:
         master = Master([slave], test.step_ns, test.stop_ns)
         player = _Player(slave, _inputs(test, slave))
@@ -108,19 +112,23 @@ def _owner(recording: Recording, slave: Slave, path: Path) -> str:
     return best
 
 
-def _slave(test: StepTest, model: str, kind: str) -> Slave:
+def _slave(test: StepTest, model: str, kind: str, foreign: Foreign) -> Slave:
+    if model in foreign.files or model.endswith(FMU):
+        path = foreign.files.get(model) or test.near(model)
+        name = model if model in MODELS else OTHER
+        known = ports_of(read_description(path), "parameter", MODELS.get(name), path).variables
+        return foreign.made(name, path, _parameters(test, known, name), lambda *said: None)
     if model in MODELS:
         ours = MODELS[model]
+        parameters = _parameters(test, variables(ours.params), model)
         if kind == "none":
-            return InProcessSlave(model, ours, _parameters(test, variables(ours.params)))
-        return _fmu(test, model, fmu_files(kind)[model], ours)
-    if model.endswith(FMU):
-        return _fmu(test, "model", test.near(model), None)
+            return InProcessSlave(model, ours, parameters)
+        return FmuSlave(model, fmu_files(kind)[model], parameters, lambda *said: None, ours)
     if MODEL_FILE in model:
         own = _own(str(test.near(model)))
-        return InProcessSlave("model", own, _parameters(test, variables(own.params)))
-    known = ", ".join(MODELS)
-    raise BadInput(f"{model}: expected {known}, a file .fmu, or file.py:MODEL", file=test.file, key="model")
+        return InProcessSlave(OTHER, own, _parameters(test, variables(own.params)))
+    known_models = ", ".join(MODELS)
+    raise BadInput(f"{model}: expected {known_models}, a file .fmu, or file.py:MODEL", file=test.file, key="model")
 
 
 def _own(text: str) -> Model:
@@ -132,15 +140,15 @@ def _own(text: str) -> Model:
         raise BadInput(str(error)) from error
 
 
-def _fmu(test: StepTest, name: str, path: Path, model: Model | None) -> FmuSlave:
-    known = ports_of(read_description(path), "parameter", model, path).variables
-    return FmuSlave(name, path, _parameters(test, known), lambda *said: None, model)
-
-
-def _parameters(test: StepTest, known: list[Variable]) -> dict[str, float | int | bool]:
+def _parameters(test: StepTest, known: list[Variable], model: str = OTHER) -> dict[str, float | int | bool]:
+    """Return what the test sets, above what the run had that is played."""
     named = {item.name: item for item in known}
     flat = flatten_section(test.parameters, named, file=test.file, key="parameters")
-    return {
+    given = {
         name: scalar(value, named[name]._replace(name=f"parameters.{name}"), file=test.file)
         for name, value in flat.items()
     }
+    if not test.replay:
+        return given
+    had = read_log(log_file(str(test.near(test.replay)))).parameters_of(model)
+    return {**{name: named[name].kind(value) for name, value in had.items() if name in named}, **given}

@@ -13,7 +13,7 @@ BOUNDS: tuple[Condition, ...] = ("max", "min", "max_abs", "equals")
 OPERATORS = ("always", "eventually", "until", "response")
 
 
-class _Part(BaseModel):
+class _StepTestPart(BaseModel):
     model_config = ConfigDict(extra="forbid", populate_by_name=True)
 
     @model_validator(mode="before")
@@ -29,7 +29,7 @@ class _Part(BaseModel):
         return data
 
 
-class Limit(_Part):
+class Limit(_StepTestPart):
     """A limit on a signal at one instant: exactly one of ``max``, ``min``, ``max_abs``, ``equals``."""
 
     signal: str = ""
@@ -58,7 +58,7 @@ class Limit(_Part):
         return value
 
 
-class Reaction(_Part):
+class Reaction(_StepTestPart):
     """A number of the response to a step: ``{rise_time: {max: 0.3 s}, to: 5 deg, at: 1 s}``."""
 
     measure: Literal["rise_time", "settling_time", "overshoot", "steady_state_error"]
@@ -73,7 +73,7 @@ class Reaction(_Part):
     limit: Limit
 
 
-class Expectation(_Part):
+class Expectation(_StepTestPart):
     """One expectation; exactly one of ``always``, ``eventually``, ``until`` and ``response`` is given."""
 
     id: str

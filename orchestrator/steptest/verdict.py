@@ -155,7 +155,7 @@ class _Judge:
             limit=found.limit,
             value=outcome.value,
             passed=bool(outcome.passed),
-            source=item.source,
+            source=f"{item.source}, {item.response.measure.replace('_', ' ')}" if item.response else item.source,
             unit=outcome.unit or self._recording.variables[found.signal].signal.unit,
             margin=outcome.margin,
             required=True,

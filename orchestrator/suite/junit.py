@@ -1,6 +1,5 @@
 """JUnit XML, as CI servers read it, from the checks of runs."""
 
-import math
 import xml.etree.ElementTree as ElementTree
 from collections.abc import Mapping
 from pathlib import Path
@@ -8,9 +7,8 @@ from types import MappingProxyType
 from typing import NamedTuple
 
 from fmus.files import whole
-from orchestrator.text.readable import readable
-from orchestrator.verdict.judge import NEVER, Check
-from orchestrator.verdict.limit_text import limit_text
+from orchestrator.verdict.judge import Check
+from orchestrator.verdict.limit_text import sentence
 
 UNPRINTABLE = {code: "?" for code in range(32) if chr(code) not in "\t\n\r"}
 """Control characters, which XML cannot hold."""
@@ -57,18 +55,6 @@ def told_apart(cases: list[Case]) -> list[Case]:
         case._replace(name=f"{case.name} #{count + 1}") if count else case
         for case, count in zip(cases, counts, strict=True)
     ]
-
-
-def sentence(check: Check) -> str:
-    """Return value, limit, margin and moment of a check in one line."""
-    if not check.judged:
-        return f"{check.signal}: not measured, so not judged"
-    if math.isnan(check.value) and check.note == NEVER:
-        hint = "" if check.passed else "; with if_never: pass it would be met"
-        return f"{check.signal}: {check.note}, asked {limit_text(check)}{hint}"
-    value = check.note or readable(check.value, check.unit)
-    margin = readable(check.margin, check.unit)
-    return f"{check.signal}: {value} at {check.t:.3f} s, asked {limit_text(check)}, margin {margin}"
 
 
 def write_junit(path: Path, suites: list[Suite], about: Mapping[str, str] = MappingProxyType({})) -> None:

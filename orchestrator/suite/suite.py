@@ -9,12 +9,15 @@ from typing import NamedTuple
 
 from orchestrator.cosim.master import Interrupt
 from orchestrator.cosim.recording import Recording
-from orchestrator.report.results import LOG, write_pages, write_summary
+from orchestrator.report.results import LOG, PAGE, write_pages, write_summary
 from orchestrator.scenario.load_scenario import scenario_names
 from orchestrator.scenario.requirements import Requirement
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.session.foreign import Files, Foreign, load_fitting
 from orchestrator.session.session import run_scenario, versions
+from orchestrator.steptest.curves import write_curves
+from orchestrator.steptest.run import run_step_test
+from orchestrator.steptest.step_test import StepTest, is_step_test, load_step_test
 from orchestrator.suite.junit import Case, Suite, cases_of, told_apart
 from orchestrator.text.errors import PARKED, BadInput
 from orchestrator.text.failures import explained
@@ -94,6 +97,8 @@ def run_test(name: str, sets: list[str], bench: Bench, out: Path, taken: Collect
     scenario = Scenario(name=UNNAMEABLE.sub("-", Path(name).stem) or "unnamed")
     ignored: list[str] = []
     try:
+        if is_step_test(name):
+            return _step_tested(load_step_test(Path(name)), sets, bench, out, taken)
         scenario, ignored, foreign = load_fitting(name, sets, bench.foreign)
         bench = bench._replace(foreign=foreign)
         if scenario.name in taken:
@@ -122,6 +127,22 @@ def _judged(scenario: Scenario, ignored: list[str], bench: Bench, folder: Path) 
     broken = ran.end.reason if ran.end.reason.startswith("error") and scenario.expect != "aborted" else ""
     cases = [] if broken else _cases(scenario, summary, checks)
     return Tested(scenario, summary, ran.recording, cases, ignored, broken, tuple(ran.remarks))
+
+
+def _step_tested(test: StepTest, sets: list[str], bench: Bench, out: Path, taken: Collection[str]) -> Tested:
+    """Run the test of one model alone, and keep its curves and checks in ``out``/its name."""
+    if sets or bench.requirements:
+        raise BadInput("a step test takes no --set and no --requirements: write them in it", file=test.file)
+    scenario = Scenario(name=UNNAMEABLE.sub("-", test.name), title=test.title or f"step test of {test.model}")
+    if scenario.name in taken:
+        raise BadInput(f"another test is called {scenario.name}", file=test.file, key="name")
+    recording, checks = run_step_test(test, bench.kind, bench.foreign)
+    folder = out / scenario.name
+    folder.mkdir(parents=True, exist_ok=True)
+    write_curves(folder / PAGE, test, recording, checks)
+    end = str(recording.info["end"]["reason"])
+    broken = end if end.startswith("error") else ""
+    return Tested(scenario, None, None, [] if broken else told_apart(cases_of(checks)), [], broken)
 
 
 def tested_by(tested: list[Tested], command: str) -> dict[str, str]:

@@ -1,9 +1,11 @@
-"""What a requirement asks for, in words."""
+"""What a requirement asks for, and what a run has of it, in words."""
+
+import math
 
 from orchestrator.scenario.requirements import Requirement
 from orchestrator.text.readable import readable
 from orchestrator.verdict.conditions import CONDITIONS
-from orchestrator.verdict.judge import Check
+from orchestrator.verdict.judge import NEVER, Check
 
 
 def limit_text(check: Check) -> str:
@@ -15,3 +17,15 @@ def asked(item: Requirement) -> str:
     """Return what a requirement asks for, before any run."""
     limit = item.limit
     return f"{CONDITIONS[item.condition].sign} {limit if isinstance(limit, str) else readable(limit, item.unit or '1')}"
+
+
+def sentence(check: Check) -> str:
+    """Return value, limit, margin and moment of a check in one line."""
+    if not check.judged:
+        return f"{check.signal}: not measured, so not judged"
+    if math.isnan(check.value) and check.note == NEVER:
+        hint = "" if check.passed else "; with if_never: pass it would be met"
+        return f"{check.signal}: {check.note}, asked {limit_text(check)}{hint}"
+    value = check.note or readable(check.value, check.unit)
+    margin = readable(check.margin, check.unit)
+    return f"{check.signal}: {value} at {check.t:.3f} s, asked {limit_text(check)}, margin {margin}"

@@ -15,7 +15,7 @@ PINNED = {
     "load_scenario": "(name, changes)",
     "read_log": "(path)",
     "read_table": "(path)",
-    "run": "(scenario, changes, *, fmus, log)",
+    "run": "(scenario, changes, *, fmus, log, controller, vehicle)",
     "scenario_names": "()",
     "sweep": "(study, changes, *, folder, first, every, resume)",
 }

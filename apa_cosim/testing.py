@@ -1,0 +1,125 @@
+"""What the pytest plugin drives: runs that assert with signal, time, value and limit."""
+
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any, TypeVar
+
+import pytest
+
+from apa_cosim.runs import Run, with_foreign
+from apa_cosim.verdicts import judge
+from orchestrator.cosim.fmu_files import default_kind, fmu_files
+from orchestrator.cosim.recording import Recording
+from orchestrator.cosim.slave import Array
+from orchestrator.scenario.requirements import Requirement
+from orchestrator.scenario.scenario import Scenario
+from orchestrator.session.foreign import Foreign
+from orchestrator.session.session import run_scenario
+from orchestrator.steptest.drive import drive
+from orchestrator.steptest.run import run_step_test
+from orchestrator.steptest.step_test import StepTest, load_step_test
+from orchestrator.steptest.verdict import judged
+from orchestrator.verdict.judge import Check
+from orchestrator.verdict.limit_text import sentence
+from orchestrator.verdict.summary import summarize
+
+Same = TypeVar("Same", bound="ClosedLoopRun")
+
+
+class ClosedLoopRun(Run):
+    """A run of a scenario that can be asked to be as it should."""
+
+    def must_be(self: Same, outcome: str) -> Same:
+        """Return the run; fails if it came out otherwise, with why."""
+        __tracebackhide__ = True
+        assert self.outcome == outcome, f"{self.scenario.name}: {self.outcome}, {self.reason}; expected {outcome}"
+        return self
+
+    def must_meet(self: Same, *requirements: str | Path | Requirement) -> Same:
+        """Return the run; fails if it misses a requirement, with signal, time, value, limit and margin."""
+        __tracebackhide__ = True
+        assert_met(judge(self, *requirements))
+        return self
+
+
+class AloneRun:
+    """One model driven alone: ``run["steering_wheel_angle"]`` over ``run.t``, inputs and outputs by their own names."""
+
+    def __init__(self, test: StepTest, recording: Recording) -> None:
+        self._test = test
+        self._owner = next(iter(recording.signals)).split(".", 1)[0]
+        self.recording = recording
+
+    @property
+    def t(self) -> Array:
+        """Time of each exchange [s]."""
+        return self.recording.t
+
+    def __getitem__(self, name: str) -> Array:
+        return self.recording.signals[f"{self._owner}.{name}"]
+
+    def must_meet(self, *expectations: Mapping[str, Any]) -> "AloneRun":
+        """Return the run; fails if it misses one of ``expectations``, written as in a step test's ``expect``."""
+        __tracebackhide__ = True
+        test = StepTest.model_validate({**self._test.model_dump(), "expect": [dict(item) for item in expectations]})
+        assert_met(judged(test, self.recording))
+        return self
+
+
+def assert_met(checks: list[Check]) -> None:
+    """Fail with one line for each check that is missed."""
+    __tracebackhide__ = True
+    missed = [f"{check.id}: {sentence(check)}" for check in checks if check.required and not check.passed]
+    assert not missed, "\n".join(missed)
+
+
+def closed_loop_of(config: pytest.Config) -> Callable[..., ClosedLoopRun]:
+    """Return the function behind the fixture ``closed_loop``."""
+    kind, given = _kind(config), _foreign(config)
+
+    def closed_loop(scenario: str | Path | Scenario, changes: Mapping[str, object] | None = None) -> ClosedLoopRun:
+        chosen, foreign = with_foreign(scenario, changes, given)
+        files = {} if kind == "none" else fmu_files(kind)
+        ran = run_scenario(chosen, files, kind=kind, foreign=foreign)
+        return ClosedLoopRun(chosen, ran.recording, summarize(ran.recording, chosen, ran.wall_time))
+
+    return closed_loop
+
+
+def alone_of(model: str, config: pytest.Config) -> Callable[..., AloneRun]:
+    """Return the function behind the fixtures ``controller`` and ``vehicle``."""
+    kind, foreign = _kind(config), _foreign(config)
+
+    def alone(
+        inputs: Mapping[str, object],
+        *,
+        stop_time: float,
+        parameters: Mapping[str, object] | None = None,
+        step: float = 0.01,
+    ) -> AloneRun:
+        test = StepTest(
+            name=model,
+            model=model,
+            stop_time=stop_time,
+            step=step,
+            inputs=dict(inputs),
+            parameters=dict(parameters or {}),
+            file=Path("test"),
+        )
+        return AloneRun(test, drive(test, kind, foreign))
+
+    return alone
+
+
+def step_test_checks(path: Path, config: pytest.Config) -> list[Check]:
+    """Return the checks of a step test in a file."""
+    return run_step_test(load_step_test(path), _kind(config), _foreign(config))[1]
+
+
+def _kind(config: pytest.Config) -> str:
+    return str(config.getoption("--apa-fmus") or default_kind())
+
+
+def _foreign(config: pytest.Config) -> Foreign:
+    given = {name: config.getoption(f"--apa-{name}") for name in ("controller", "vehicle")}
+    return Foreign({name: Path(str(path)) for name, path in given.items() if path})

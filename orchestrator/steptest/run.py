@@ -1,0 +1,28 @@
+"""A step test from file to verdict."""
+
+from orchestrator.cosim.recording import Recording
+from orchestrator.log.read_log import log_file, read_log
+from orchestrator.session.foreign import Foreign
+from orchestrator.session.session import NOBODY
+from orchestrator.steptest.drive import drive
+from orchestrator.steptest.step_test import StepTest
+from orchestrator.steptest.verdict import equivalent, judged
+from orchestrator.text.errors import BadInput
+from orchestrator.verdict.judge import Check
+
+
+def run_step_test(test: StepTest, kind: str, foreign: Foreign = NOBODY) -> tuple[Recording, list[Check]]:
+    """Return the recording of a test and a check for each expectation. Raises ``BadInput``, ``RunError``."""
+    recording = drive(test, kind, foreign)
+    checks = judged(test, recording)
+    if test.reference is not None:
+        checks += equivalent(test, recording, _reference(test, kind))
+    return recording, checks
+
+
+def _reference(test: StepTest, kind: str) -> Recording:
+    asked = test.reference
+    assert asked is not None
+    if bool(asked.log) == bool(asked.model):
+        raise BadInput("expected one of log and model", file=test.file, key="reference")
+    return read_log(log_file(str(test.near(asked.log)))) if asked.log else drive(test, kind, model=asked.model)

@@ -14,6 +14,7 @@ import math
 from typing import NamedTuple
 
 from controller_fmu.common.slot_frame import SlotFrame, to_slot
+from controller_fmu.guo2015.smooth_path import Curve, Shape, curve
 from modelkit.vocabulary import Pose
 
 HALF_PI = 0.5 * math.pi
@@ -31,6 +32,8 @@ class TwoArcPath(NamedTuple):
     """End of the first arc, start of the line."""
     tangent2: Pose = Pose()
     """End of the line, start of the second arc: Q1."""
+    curve: Curve = Curve()
+    """The path where it is not two arcs; the points above are then its inflection."""
 
 
 NO_PATH = TwoArcPath()
@@ -43,7 +46,9 @@ class Plan(NamedTuple):
     path: TwoArcPath = TwoArcPath()
 
 
-def plan(start: Pose, target: Pose, largest_radius: float, smallest_radius: float) -> Plan:
+def plan(
+    start: Pose, target: Pose, largest_radius: float, smallest_radius: float, shape: int = 0, wheelbase: float = 1.0
+) -> Plan:
     """Return the plan from ``start`` to ``target`` (world poses); ``path.found`` tells if there is one.
 
     The side of the slot is that of the target seen from the start; the other side is tried when
@@ -52,13 +57,25 @@ def plan(start: Pose, target: Pose, largest_radius: float, smallest_radius: floa
     right = SlotFrame(target, 1.0)
     side = 1.0 if to_slot(start, right).y >= 0.0 else -1.0
     frame = SlotFrame(target, side)
-    path = two_arcs(to_slot(start, frame), largest_radius, smallest_radius)
+    path = path_from(to_slot(start, frame), largest_radius, smallest_radius, shape, wheelbase)
     if not path.found:
         other = SlotFrame(target, -side)
-        other_path = two_arcs(to_slot(start, other), largest_radius, smallest_radius)
+        other_path = path_from(to_slot(start, other), largest_radius, smallest_radius, shape, wheelbase)
         if other_path.found:
             return Plan(other, other_path)
     return Plan(frame, path)
+
+
+def path_from(start: Pose, largest_radius: float, smallest_radius: float, shape: int, wheelbase: float) -> TwoArcPath:
+    """Return the path of ``shape`` from ``start`` (slot's frame) to the origin."""
+    if shape == Shape.TWO_ARCS:
+        return two_arcs(start, largest_radius, smallest_radius)
+    if start.x <= 0.0 or start.y <= 0.0 or not -STEEPEST < start.heading < STEEPEST:
+        return NO_PATH
+    found = curve(shape, start, wheelbase)
+    if found.curvature * smallest_radius > 1.0 or found.inflection.heading > STEEPEST:
+        return NO_PATH
+    return TwoArcPath(True, 1.0 / found.curvature, start, found.inflection, found.inflection, found)
 
 
 def two_arcs(start: Pose, largest_radius: float, smallest_radius: float) -> TwoArcPath:

@@ -33,6 +33,8 @@ PROMPT_OF_PHASE = (
     Prompt.NONE,
 )
 """One for each member of Phase, in its order."""
+FOLLOWED = 0.8
+"""Share of the wheel's rate that is used on a path without jumps of curvature."""
 MOVING = 0.05
 """A car faster than this [m/s] has set out."""
 
@@ -43,6 +45,9 @@ def path_speed(
     """Return the speed [m/s] that lets the steering follow the path from here on."""
     prompting = params.guo2015.prompting
     advice = prompting.speed_limit
+    if path.curve.swing > 0.0:
+        rate = FOLLOWED * rate_of(steering, params.steering_wheel_rate) / params.steering_ratio
+        advice = min(rate / path.curve.swing, advice)
     k = reference.curvature
     k_next = curvature_after(path, reference.piece)
     to_end = distance_to_end(path, reference)

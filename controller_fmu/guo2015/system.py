@@ -24,9 +24,13 @@ from controller_fmu.guo2015.prompts import (
     prompt_of,
     swing_speed,
 )
+from controller_fmu.guo2015.smooth_path import Shape
 from controller_fmu.interface import ControllerInput, ControllerOutput, ControllerParams, Path, Phase, Reason, Segment
 from modelkit.maths import clamp
 from modelkit.vocabulary import Pose
+
+NOT_DRAWN = (Segment(), Segment(), Segment())
+"""A path that is not made of arcs."""
 
 
 class GuoState(NamedTuple):
@@ -70,7 +74,9 @@ def guo_sample(state: GuoState, inputs: ControllerInput, params: ControllerParam
     if state.phase == Phase.STANDBY:
         smallest = params.car.wheelbase / math.tan(params.car.steering.angle_limit / params.car.steering.ratio)
         reserve = params.guo2015.radius_reserve
-        planned = plan(inputs.odometry, params.target, params.guo2015.radius, reserve * smallest)
+        radius = params.guo2015.radius
+        shape = params.guo2015.path
+        planned = plan(inputs.odometry, params.target, radius, reserve * smallest, shape, params.wheelbase)
     pose = to_slot(inputs.odometry, planned.frame)
     watched = inputs.steering_wheel_angle if state.phase == Phase.STANDBY else state.request
     monitor = watch(state.monitor, inputs, state.phase, watched, dt_ns, params)
@@ -106,7 +112,7 @@ def guo_outputs(state: GuoState, params: ControllerParams) -> ControllerOutput:
         reference=to_world(state.tracking.reference, frame),
         lateral_error=state.tracking.lateral_error,
         heading_error=state.tracking.heading_error,
-        path=Path(to_world(path.start, frame), pieces),
+        path=Path(to_world(path.start, frame), pieces if path.curve.shape == Shape.TWO_ARCS else NOT_DRAWN),
     )
 
 

@@ -49,6 +49,8 @@ ENDS = {
 }
 """Largest heading error at the end [deg], a little over what is reached."""
 END_LATERAL = 0.015
+OTHER_PATHS = ("guo2015-sine", "guo2015-polynomial", "guo2015-b-spline", "guo2015-quintic")
+OFF_OTHER_PATH = 0.01
 RATES = "Table 1's 30 deg/s and the poses of Fig. 12 cannot both hold; at 105 deg/s they do"
 ABOUT = "the speed is 'about 1.5 m/s'; case 4, the same drive until there, prints 3.59 s"
 WAVE = "the wave that the swing at the tangent point leaves has not died out on the 4 m behind it"
@@ -77,7 +79,18 @@ def reproduce(out: Path, drive: Drive) -> Reproduction:
         figures.append(draw_case(case, runs + extra, out / f"{name}.png"))
     rows += window_rows()
     rows += [row for name in ("guo2015-case3", "guo2015-case3-105") for row in obeying_rows(name)]
+    rows += [row for name in OTHER_PATHS for row in other_path_rows(drive(name))]
     return Reproduction("guo2015", TITLE, rows, figures, NOTES)
+
+
+def other_path_rows(driven: Driven) -> list[Row]:
+    """Return what the tracking law makes of a path that is not made of arcs; the paper says it can be used there."""
+    run = driven.summary.scenario
+    off = float(np.max(np.abs(driven.recording.signals["controller.lateral_error"])))
+    return [
+        Row(run, "the tracking law parks on this path too", "", "parked", driven.in_line(), 0.0, basis=CONCLUSION),
+        Row(run, "largest distance from the path", "m", None, off, OFF_OTHER_PATH, basis=OWN),
+    ]
 
 
 def table_2() -> list[Row]:

@@ -46,7 +46,7 @@ def path_speed(
     prompting = params.guo2015.prompting
     advice = prompting.speed_limit
     if path.curve.swing > 0.0:
-        rate = FOLLOWED * rate_of(steering, params.steering_wheel_rate) / params.steering_ratio
+        rate = FOLLOWED * rate_of(steering, params.car.steering.rate_limit) / params.car.steering.ratio
         advice = min(rate / path.curve.swing, advice)
     k = reference.curvature
     k_next = curvature_after(path, reference.piece)

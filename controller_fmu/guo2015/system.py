@@ -76,7 +76,7 @@ def guo_sample(state: GuoState, inputs: ControllerInput, params: ControllerParam
         reserve = params.guo2015.radius_reserve
         radius = params.guo2015.radius
         shape = params.guo2015.path
-        planned = plan(inputs.odometry, params.target, radius, reserve * smallest, shape, params.wheelbase)
+        planned = plan(inputs.odometry, params.target, radius, reserve * smallest, shape, params.car.wheelbase)
     pose = to_slot(inputs.odometry, planned.frame)
     watched = inputs.steering_wheel_angle if state.phase == Phase.STANDBY else state.request
     monitor = watch(state.monitor, inputs, state.phase, watched, dt_ns, params)

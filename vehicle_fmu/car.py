@@ -46,16 +46,6 @@ def parked_car(start: Pose, usable: bool, params: VehicleParams) -> CarState:
     )
 
 
-class Going(NamedTuple):
-    """How fast the car goes after a step, and what moved it."""
-
-    pose: Pose
-    speed: float
-    rolled_speed: float
-    pedals: Pedals
-    body: BodyState
-
-
 def step_car(state: CarState, inputs: VehicleInput, faulty: bool, params: VehicleParams, next_ns: int) -> CarState:
     """Return the car at ``next_ns``; a faulty one brakes and holds its wheel."""
     h = (next_ns - state.time_ns) * 1e-9
@@ -79,23 +69,19 @@ def step_car(state: CarState, inputs: VehicleInput, faulty: bool, params: Vehicl
     steering = steering._replace(play=take_up_play(steering.play, wheel, params.steering.backlash))
     state = state._replace(driver=driver, selector=selector)
     angles = (state.steering.play / params.car.steering.ratio, steering.play / params.car.steering.ratio)
-    going = _go(state, inputs, geared_speed(selector, target), free, angles, params, h)
-    odometry = OdometryState(going.pose)
+    speed, rolled_speed = state.speed, state.rolled_speed
+    state = _go(state, inputs, geared_speed(selector, target), free, angles, params, h)
+    odometry = OdometryState(state.pose)
     if not params.odometry.perfect:
-        way = 0.5 * h * (state.rolled_speed + going.rolled_speed)
+        way = 0.5 * h * (rolled_speed + state.rolled_speed)
         odometry = reckon(state.odometry, way, 0.5 * (angles[0] + angles[1]), params.car.wheelbase, params.odometry)
     driven = inputs.speed_control_active or inputs.force_control_active
     return state._replace(
         time_ns=next_ns,
-        pose=going.pose,
-        speed=going.speed,
-        rolled_speed=going.rolled_speed,
         steering_wheel_angle=wheel,
-        distance=state.distance + 0.5 * h * abs(state.speed + going.speed),
+        distance=state.distance + 0.5 * h * abs(speed + state.speed),
         brake_pedal=_brake_pedal(state.time_ns, driver, driven, inputs, params.driver),
         steering=steering,
-        pedals=going.pedals,
-        body=going.body,
         odometry=odometry,
     )
 
@@ -118,8 +104,8 @@ def _go(
     angles: tuple[float, float],
     params: VehicleParams,
     h: float,
-) -> Going:
-    """Return the motion ``h`` [s] later on the way to ``target`` [m/s], front wheels turning from angle to angle."""
+) -> CarState:
+    """Return the car ``h`` [s] later on the way to ``target`` [m/s], front wheels turning from angle to angle."""
     forced = free and inputs.force_control_active and target != 0.0
     if free and has_pedals(inputs):
         return _tread(state, inputs.person, angles, params, h)
@@ -128,7 +114,7 @@ def _go(
         if forced:
             speed = push_speed(state.speed, inputs.force_request, params.chassis.mass, along(state.selector.gear), h)
         pose = move(state.pose, state.speed, speed, angles[0], angles[1], params.car.wheelbase, h)
-        return Going(pose, speed, speed, state.pedals, state.body)
+        return state._replace(pose=pose, speed=speed, rolled_speed=speed)
     gear = state.selector.gear
     if forced:
         pedals = obey(state.pedals, inputs.force_request, state.speed, gear, params.drive, h)
@@ -137,23 +123,25 @@ def _go(
     return _push(state, pedals, angles, params, h)
 
 
-def _tread(state: CarState, person: PersonInput, angles: tuple[float, float], params: VehicleParams, h: float) -> Going:
-    """Return the motion ``h`` [s] later under a person's feet."""
+def _tread(
+    state: CarState, person: PersonInput, angles: tuple[float, float], params: VehicleParams, h: float
+) -> CarState:
+    """Return the car ``h`` [s] later under a person's feet."""
     pedals = tread(state.pedals, person, state.speed, state.selector.gear, params.drive, h)
     if params.body != Body.KINEMATIC:
         return _push(state, pedals, angles, params, h)
     speed = roll(state.speed, _at_wheels(pedals, state.selector.gear, params), params.chassis, h)
     pose = move(state.pose, state.speed, speed, angles[0], angles[1], params.car.wheelbase, h)
-    return Going(pose, speed, speed, pedals, state.body)
+    return state._replace(pose=pose, speed=speed, rolled_speed=speed, pedals=pedals)
 
 
-def _push(state: CarState, pedals: Pedals, angles: tuple[float, float], params: VehicleParams, h: float) -> Going:
-    """Return the motion ``h`` [s] later of a body with mass under the forces of ``pedals``."""
+def _push(state: CarState, pedals: Pedals, angles: tuple[float, float], params: VehicleParams, h: float) -> CarState:
+    """Return the car ``h`` [s] later, of a body with mass under the forces of ``pedals``."""
     effort = _at_wheels(pedals, state.selector.gear, params)
-    body = push_body(state.body, 0.5 * (angles[0] + angles[1]), effort, params, h)
-    motion = motion_of(body, params.body)
-    rolled = wheel_speed(body, params.body, params.double_track.hub.radius)
-    return Going(motion.pose, motion.speed_x, rolled, pedals, body)
+    state = state._replace(body=push_body(state.body, 0.5 * (angles[0] + angles[1]), effort, params, h))
+    motion = motion_of(state.body, params.body)
+    rolled = wheel_speed(state.body, params.body, params.double_track.hub.radius)
+    return state._replace(pose=motion.pose, speed=motion.speed_x, rolled_speed=rolled, pedals=pedals)
 
 
 def _at_wheels(pedals: Pedals, gear: int, params: VehicleParams) -> Effort:

@@ -74,6 +74,6 @@ def run(copy: Path, words: list[str]) -> tuple[int, str]:
 
 
 def test_every_recipe_is_tried() -> None:
-    asked = ("gain", "law", "check", "export", "command", "paper", "planner")
+    asked = ("gain", "law", "controller", "sensor", "check", "export", "command", "paper", "planner")
     titles = " ".join(recipe.title for recipe in recipes())
     assert [word for word in asked if word not in titles] == []

@@ -5,16 +5,18 @@ import sys
 from controller_fmu import model
 from controller_fmu.adaptive.outputs import adaptive_outputs
 from controller_fmu.adaptive.system import adaptive_sample, adaptive_start
+from controller_fmu.apa import chart as apa_chart
 from controller_fmu.apa.outputs import apa_outputs
 from controller_fmu.apa.system import apa_sample, apa_start
+from controller_fmu.guo2015 import chart as guo_chart
 from controller_fmu.guo2015.system import guo_outputs, guo_sample, guo_start
 from controller_fmu.hsic.outputs import hsic_outputs
 from controller_fmu.hsic.system import hsic_sample, hsic_start
-from controller_fmu.interface import ControllerInput, ControllerOutput, ControllerParams, System
+from controller_fmu.interface import ControllerInput, ControllerOutput, ControllerParams, Phase, System
 from controller_fmu.preview.driving import driving_outputs, driving_sample, driving_start
 from controller_fmu.zhang2022.outputs import zhang_outputs
 from controller_fmu.zhang2022.system import zhang_sample, zhang_start
-from modelkit.model import Model, SampledSystem, SampledSystems
+from modelkit.model import Chart, Model, SampledSystem, SampledSystems
 from modelkit.terminals import TERMINALS
 
 OF_PARKING = ("target", "vehicle_fault", "path", "shifts")
@@ -47,6 +49,8 @@ OF_ADAPTIVE = (
     "limit",
     "adaptive",
 )
+GUO_CHART = Chart("phase", Phase, guo_chart.Guard, guo_chart.TRANSITIONS)
+APA_CHART = Chart("apa.mode", apa_chart.Mode, apa_chart.Guard, apa_chart.TRANSITIONS)
 SYSTEMS = SampledSystems(
     state=model.ControllerState,
     parameter="system",
@@ -55,11 +59,13 @@ SYSTEMS = SampledSystems(
     tick=model.tick,
     refused=model.refused,
     systems=(
-        SampledSystem((System.NTBPTCWPT, System.NTBPT), "guo2015", guo_start, guo_sample, guo_outputs, OF_GUO2015),
+        SampledSystem(
+            (System.NTBPTCWPT, System.NTBPT), "guo2015", guo_start, guo_sample, guo_outputs, OF_GUO2015, (GUO_CHART,)
+        ),
         SampledSystem((System.ZHANG2022,), "zhang2022", zhang_start, zhang_sample, zhang_outputs, OF_ZHANG2022),
         SampledSystem((System.HSIC,), "hsic", hsic_start, hsic_sample, hsic_outputs, OF_HSIC),
         SampledSystem((System.PREVIEW,), "preview", driving_start, driving_sample, driving_outputs, OF_PREVIEW),
-        SampledSystem((System.APA,), "apa", apa_start, apa_sample, apa_outputs, OF_APA),
+        SampledSystem((System.APA,), "apa", apa_start, apa_sample, apa_outputs, OF_APA, (APA_CHART,)),
         SampledSystem((System.ADAPTIVE,), "adaptive", adaptive_start, adaptive_sample, adaptive_outputs, OF_ADAPTIVE),
     ),
 )

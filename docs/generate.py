@@ -18,7 +18,7 @@ from typing import Any
 ROOT = Path(__file__).parent.parent
 sys.path[:0] = [str(ROOT), str(ROOT / "docs")]
 
-from chart_svg import chart_svg  # noqa: E402
+
 from equations import equations  # noqa: E402
 from pydantic import BaseModel  # noqa: E402
 
@@ -27,6 +27,7 @@ from modelkit.model import Model  # noqa: E402
 from modelkit.variables import Variable, variables  # noqa: E402
 from orchestrator.cli import parser  # noqa: E402
 from orchestrator.commands.parser import CommandParser  # noqa: E402
+from orchestrator.drawing.chart_svg import chart_svg  # noqa: E402
 from orchestrator.scenario.catalogue import collapsed, range_text, start_text, texts_of  # noqa: E402
 from orchestrator.scenario.end_condition import EndCondition  # noqa: E402
 from orchestrator.scenario.fault import Fault  # noqa: E402

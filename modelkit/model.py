@@ -1,12 +1,24 @@
 """The one face of a model package: types, two functions, and how often it is called."""
 
 from collections.abc import Callable, Mapping
+from enum import IntEnum
 from functools import partial
 from types import ModuleType
 from typing import Any, NamedTuple
 
 from modelkit.store import new_store
 from modelkit.variables import variables, with_values
+
+
+class Chart(NamedTuple):
+    """A state machine of a system as its table, for pictures of it and for who looks on while it runs."""
+
+    signal: str
+    """The output that tells its state."""
+    states: type[IntEnum]
+    guards: type[IntEnum]
+    rows: tuple[tuple[int, ...], ...]
+    """(source, guard, target, ...) in order of priority; a negative source stands for all states that are no end."""
 
 
 class SampledSystem(NamedTuple):
@@ -23,6 +35,8 @@ class SampledSystem(NamedTuple):
     """``outputs(own, params) -> outputs``: what is held until the next sample."""
     own: tuple[str, ...] = ()
     """Parameters, inputs and outputs that mean something to this system and not to every other: names, or groups."""
+    charts: tuple[Chart, ...] = ()
+    """Its state machines that are tables."""
 
 
 class SampledSystems(NamedTuple):

@@ -34,6 +34,8 @@ SLOW = [
     "fmi/test_sources.py",
     "fmi/test_system_fmus.py",
     "fmi/test_tunable.py",
+    "live/test_module.py",
+    "live/test_page.py",
     "orchestrator/test_check_and_test.py",
     "orchestrator/test_cli.py",
     "orchestrator/test_foreign.py",
@@ -100,3 +102,35 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     for item in items:
         if item.path.is_relative_to(here) and item.path.relative_to(here).as_posix() in SLOW:
             item.add_marker(pytest.mark.slow)
+
+
+class Seen:
+    """What a page did that it should not have done."""
+
+    def __init__(self, page: Any) -> None:
+        self.console: list[str] = []
+        self.requests: list[str] = []
+        page.on("console", lambda message: self.console.append(f"{message.type}: {message.text}"))
+        page.on("pageerror", lambda error: self.console.append(f"error: {error}"))
+        page.on("request", lambda request: self.requests.append(request.url))
+
+
+@pytest.fixture
+def show(browser):
+    """Open a page file: returns (page, what it did); closed after the test."""
+    contexts = []
+
+    def opened(
+        path: Path, fragment: str = "", width: int = 1280, height: int = 900, **options: Any
+    ) -> tuple[Any, Seen]:
+        context = browser.new_context(viewport={"width": width, "height": height}, **options)
+        contexts.append(context)
+        page = context.new_page()
+        seen = Seen(page)
+        page.goto(path.as_uri() + fragment)
+        page.wait_for_selector("html[data-ready]", timeout=20_000)
+        return page, seen
+
+    yield opened
+    for context in contexts:
+        context.close()

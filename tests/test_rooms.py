@@ -36,6 +36,7 @@ FLOORS: tuple[tuple[str, ...], ...] = (
     ("orchestrator.steptest",),
     ("orchestrator.suite",),
     ("orchestrator.sweep",),
+    ("orchestrator.live",),
     ("orchestrator.export",),
     ("orchestrator.papers", "orchestrator.bakeoff", "orchestrator.grid"),
     ("orchestrator.commands",),

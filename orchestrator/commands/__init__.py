@@ -8,6 +8,7 @@ COMMANDS = {
     "export": "write other formats",
     "fmu": "check somebody's FMU before it is run",
     "list": "list what is there: scenarios, parameters, signals, systems, limits",
+    "live": "page that runs the models: drive, change, map",
     "recover": "mend the log of a killed run",
     "replay": "repeat a row of a study",
     "report": "replay page of a run",

@@ -7,7 +7,9 @@ import re
 from pathlib import Path
 
 ROOM = Path(__file__).parent
-SCRIPTS = ("data.js", "show.js", "scene.js", "scene_parts.js", "timeline.js", "plots.js", "tables.js", "main.js")
+VIEW = ("data.js", "show.js", "shapes.js", "scene.js", "scene_parts.js", "view.js")
+"""What draws the top view, here and on the page that is driven."""
+SCRIPTS = (*VIEW, "timeline.js", "plots.js", "tables.js", "main.js")
 UPLOT = ROOM / "third_party" / "uplot"
 
 
@@ -29,12 +31,17 @@ def page(title: str, data: str) -> str:
     return re.sub(r"@([A-Z]+)@", lambda match: parts[match[1]], _read(ROOM / "template" / "page.html"))
 
 
-def policy(scripts: list[str]) -> str:
-    """Return a content security policy: these scripts and inline style only, and no network at all."""
+def policy(scripts: list[str], more: str = "") -> str:
+    """Return a content security policy: these scripts and inline style only, and no network at all.
+
+    ``more``: what else scripts may do.
+    """
     hashes = " ".join(
         f"'sha256-{base64.b64encode(hashlib.sha256(item.encode()).digest()).decode()}'" for item in scripts
     )
-    return f"default-src 'none'; script-src {hashes}; style-src 'unsafe-inline'; img-src data:; form-action 'none'"
+    return (
+        f"default-src 'none'; script-src {hashes}{more}; style-src 'unsafe-inline'; img-src data:; form-action 'none'"
+    )
 
 
 STILL_PAGE = """<!doctype html>

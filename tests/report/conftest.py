@@ -1,5 +1,4 @@
 from pathlib import Path
-from typing import Any
 
 import pytest
 
@@ -39,35 +38,3 @@ def overlay(case4, tmp_path_factory) -> Path:
     path: Path = tmp_path_factory.mktemp("overlay") / "overlay.html"
     write_overlay(path, runs, ([], []), compare(*runs, Tolerances(Tolerance(0.01, 0.0, 0.1))))
     return path
-
-
-class Seen:
-    """What a page did that it should not have done."""
-
-    def __init__(self, page: Any) -> None:
-        self.console: list[str] = []
-        self.requests: list[str] = []
-        page.on("console", lambda message: self.console.append(f"{message.type}: {message.text}"))
-        page.on("pageerror", lambda error: self.console.append(f"error: {error}"))
-        page.on("request", lambda request: self.requests.append(request.url))
-
-
-@pytest.fixture
-def show(browser):
-    """Open a page file: returns (page, what it did); closed after the test."""
-    contexts = []
-
-    def opened(
-        path: Path, fragment: str = "", width: int = 1280, height: int = 900, **options: Any
-    ) -> tuple[Any, Seen]:
-        context = browser.new_context(viewport={"width": width, "height": height}, **options)
-        contexts.append(context)
-        page = context.new_page()
-        seen = Seen(page)
-        page.goto(path.as_uri() + fragment)
-        page.wait_for_selector("html[data-ready]", timeout=20_000)
-        return page, seen
-
-    yield opened
-    for context in contexts:
-        context.close()

@@ -68,6 +68,15 @@ LIBRARY_EXPORT Live *live_open(const double *number) {
     return lay_out(&live->runner, calloc(1, lay_out(&live->runner, NULL) + 1)) ? live : NULL;
 }
 
+LIBRARY_EXPORT void live_close(Live *live) {
+    free(live->runner.slaves); /* where its memory begins */
+    free((void *)live->batch.kept);
+    free(live->seen);
+    free(live->places);
+    free(live->row);
+    free(live);
+}
+
 /* times: the step [ns], the stop [ns], the decimation of each model; params: those of all models. */
 LIBRARY_EXPORT void live_begin(Live *live, const double *params, const double *times) {
     const Course course = {(int64_t)times[0], (int64_t)times[1] / (int64_t)times[0], 0, -1};

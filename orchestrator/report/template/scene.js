@@ -152,10 +152,3 @@ function near(box, x, y) {
   const reach = Math.max(10, box[2] - box[0], box[3] - box[1]);
   return x > box[0] - reach && x < box[2] + reach && y > box[1] - reach && y < box[3] + reach;
 }
-
-const rectangle = (back, front, half) => [[back, -half], [front, -half], [front, half], [back, half]];
-
-function moved([x, y, heading], u, v) {
-  const c = Math.cos(heading), s = Math.sin(heading);
-  return [x + c * u - s * v, y + s * u + c * v];
-}

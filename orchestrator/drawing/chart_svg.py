@@ -27,9 +27,7 @@ def chart_svg(arcs: list[Arc], order: list[str]) -> str:
     parts = [_arc(pair, guards, place, lanes[pair], middle) for pair, guards in merged.items()]
     parts += [_state(name, middle, place[name]) for name in states]
     size = f"0 0 {left + WIDTH + right:.0f} {len(states) * ROW + HEIGHT:.0f}"
-    return (
-        f'<svg class="chart" viewBox="{size}" role="img" font-size="12" font-family="sans-serif">{"".join(parts)}</svg>'
-    )
+    return f'<svg xmlns="http://www.w3.org/2000/svg" class="chart" viewBox="{size}" role="img" font-size="12" font-family="sans-serif">{"".join(parts)}</svg>'
 
 
 def _lanes(pairs: list[tuple[str, str]], place: dict[str, float]) -> dict[tuple[str, str], int]:
@@ -76,12 +74,18 @@ def _arc(pair: tuple[str, str], guards: list[str], place: dict[str, float], lane
     top = 0.5 * (start + end) + 4.0 - 7.0 * (len(guards) - 1)
     words = "".join(_text(x, top + 14.0 * number, anchor, guard) for number, guard in enumerate(guards))
     line = f'<path d="{curve}" fill="none" stroke="currentColor" stroke-opacity="0.55" stroke-width="1.4"/>'
-    return f'{line}<path d="{head}" fill="currentColor" fill-opacity="0.7"/>{words}'
+    named = " ".join(f'data-{key}="{html.escape(text)}"' for key, text in _names(pair, guards).items())
+    return f'<g {named}>{line}<path d="{head}" fill="currentColor" fill-opacity="0.7"/>{words}</g>'
+
+
+def _names(pair: tuple[str, str], guards: list[str]) -> dict[str, str]:
+    return {"from": pair[0], "to": pair[1], "guards": ", ".join(guards)}
 
 
 def _state(name: str, middle: float, y: float) -> str:
     box = f'<rect x="{middle - WIDTH / 2:.1f}" y="{y - HEIGHT / 2:.1f}" width="{WIDTH:g}" height="{HEIGHT:g}" rx="7"'
-    return f'{box} fill="#5c9dff" fill-opacity="0.22" stroke="#5c9dff"/>{_text(middle, y + 4.5, "middle", name)}'
+    rectangle = f'{box} fill="#5c9dff" fill-opacity="0.22" stroke="#5c9dff"/>'
+    return f'<g data-state="{html.escape(name)}">{rectangle}{_text(middle, y + 4.5, "middle", name)}</g>'
 
 
 def _text(x: float, y: float, anchor: str, text: str) -> str:

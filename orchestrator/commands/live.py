@@ -1,0 +1,43 @@
+"""``apa live``: a page that runs the models, driven by hand and changed by sliders, one HTML file for any browser."""
+
+import argparse
+from pathlib import Path
+
+from orchestrator.live.page import NAME, write_live
+from orchestrator.scenario.load_scenario import load_scenario, scenario_names
+from orchestrator.text.console import say
+from orchestrator.text.errors import BAD_INPUT, PARKED
+
+EXAMPLES = """examples:
+  apa live                                                writes live.html: all shipped scenarios
+  apa live guo2015-case4 --out /tmp/drive.html            this one only
+  apa live guo2015-case4 --set controller.guo2015.k1=2
+
+Open the file in a browser: it needs no network and nothing else. `apa run` writes one beside the replay page.
+"""
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add what the command takes."""
+    parser.add_argument("scenario", nargs="?", metavar="SCENARIO", help="name or file (default: all that are shipped)")
+    parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", help="change the scenario")
+    parser.add_argument("--out", type=Path, default=Path(NAME), metavar="FILE", help=f"the page (default: {NAME})")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Write the page. Returns 0, or 2 where nothing can be compiled."""
+    names = [arguments.scenario] if arguments.scenario else _shipped()
+    scenarios = [load_scenario(name, arguments.set) for name in names]
+    try:
+        write_live(arguments.out, scenarios)
+    except RuntimeError as error:
+        say(f"apa: {error}")
+        return BAD_INPUT
+    print(arguments.out)
+    return PARKED
+
+
+def _shipped() -> list[str]:
+    """Return the names of all shipped scenarios, the one with most to see first."""
+    first = "guo2015-case4"
+    return [first, *(name for name in scenario_names() if name != first)]

@@ -1,0 +1,72 @@
+"""State machines as the page shows them while they run: a drawing, and what is known of each state."""
+
+import inspect
+from enum import IntEnum
+from pathlib import Path
+from typing import Any
+
+from modelkit.model import Chart
+from orchestrator.drawing.chart_svg import chart_svg
+from orchestrator.scenario.catalogue import texts_of
+from orchestrator.scenario.models import MODELS
+
+ROOT = Path(__file__).parents[2]
+ANY = "any state"
+
+
+def charts_data() -> list[dict[str, Any]]:
+    """Return the charts of all systems with the values that choose them."""
+    return [
+        {"values": list(system.values), **_chart(chart)}
+        for model in MODELS.values()
+        if model.systems is not None
+        for system in model.systems.systems
+        for chart in system.charts
+    ]
+
+
+def _chart(chart: Chart) -> dict[str, Any]:
+    names = [state.name for state in chart.states]
+    arcs = [(_name(chart, row[0]), _words(chart, row[1]), _name(chart, row[2])) for row in chart.rows]
+    texts, guards = texts_of(chart.states), {item.name: text for item, text in _guard_texts(chart)}
+    return {
+        "signal": chart.signal,
+        "file": _where(chart.guards),
+        "svg": chart_svg([(source, target, guard) for source, guard, target in arcs], names),
+        "states": {
+            name: {
+                "text": _sentence(texts.get(name, "")),
+                "leaves": [
+                    f"to {target.lower().replace('_', ' ')} when {guards.get(guard.upper().replace(' ', '_')) or guard}"
+                    for source, guard, target in arcs
+                    if source == name
+                ],
+            }
+            for name in (*names, ANY)
+        },
+    }
+
+
+def _guard_texts(chart: Chart) -> list[tuple[IntEnum, str]]:
+    texts = texts_of(chart.guards)
+    return [(guard, texts.get(guard.name, "").rstrip(".").lower()) for guard in chart.guards]
+
+
+def _name(chart: Chart, value: int) -> str:
+    return chart.states(value).name if value >= 0 else ANY
+
+
+def _words(chart: Chart, guard: int) -> str:
+    return chart.guards(guard).name.lower().replace("_", " ")
+
+
+def _sentence(text: str) -> str:
+    return text if not text or text.endswith(".") else f"{text}."
+
+
+def _where(cls: type[Any]) -> str:
+    """Return the file in which the chart of these guards is written, and the line of its table."""
+    file = Path(inspect.getsourcefile(cls) or "")
+    lines = file.read_text(encoding="utf-8").splitlines()
+    line = next((number for number, text in enumerate(lines, start=1) if text.startswith("TRANSITIONS")), 1)
+    return f"{file.relative_to(ROOT).as_posix()}:{line}"

@@ -1,0 +1,76 @@
+"""The page that runs the models: one HTML file with the module, the scenarios and all scripts inside."""
+
+import base64
+import html
+import re
+import zlib
+from collections.abc import Sequence
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import yaml
+
+from fmus.native.web import web_module
+from orchestrator.live.charts import charts_data
+from orchestrator.live.described import models_data
+from orchestrator.live.situation import numbers_data, situation
+from orchestrator.report import page as report
+from orchestrator.report.payload import Arrays
+from orchestrator.scenario.models import MODELS
+from orchestrator.scenario.scenario import Scenario
+
+ROOM = Path(__file__).parent
+FROM_REPORT = report.ROOM / "template"
+CORE = ("shapes.js", "data.js", "engine.js", "situation.js", "verdict.js", "history.js", "lab.js")
+"""What a worker needs too."""
+OWN = (
+    *("show.js", "scene.js", "scene_parts.js", "view.js", "tables.js"),
+    *("stage.js", "driver.js", "drive.js", "whatif.js", "map.js", "chart.js", "result.js", "main.js"),
+)
+RUNS_MODULES = " 'wasm-unsafe-eval'; worker-src blob:"
+NAME = "live.html"
+
+
+def write_live(path: Path, scenarios: Sequence[Scenario]) -> None:
+    """Write the page of ``scenarios``, the first one in hand. Raises ``RuntimeError`` where nothing can be compiled."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(live_page(scenarios), encoding="utf-8")
+
+
+def live_page(scenarios: Sequence[Scenario]) -> str:
+    """Return the page. Raises ``BadInput`` for a limit of a signal that no model has."""
+    core = f'"use strict";\n{_scripts(CORE)}'
+    script = f'(() => {{\n"use strict";\n{_scripts(OWN)}\n}})();\n'
+    title = scenarios[0].title or scenarios[0].name
+    parts = {
+        "TITLE": html.escape(title),
+        "POLICY": report.policy([core, script], RUNS_MODULES),
+        "STYLE": f"{report.style()}\n{_read('style.css')}",
+        "DATA": Arrays().pack({**_models(), "scenarios": [situation(item) for item in scenarios], "runs": []}),
+        "MODULE": _module(),
+        "CORE": core,
+        "SCRIPT": script,
+    }
+    return re.sub(r"@([A-Z]+)@", lambda match: parts[match[1]], _read("page.html"))
+
+
+@cache
+def _models() -> dict[str, Any]:
+    """Return what is the same for all scenarios."""
+    pins = yaml.safe_load((ROOM / "pins.yaml").read_text(encoding="utf-8"))
+    return {"models": models_data(), "numbers": numbers_data(), "charts": charts_data(), "pins": pins}
+
+
+@cache
+def _module() -> str:
+    return base64.b64encode(zlib.compress(web_module(MODELS).read_bytes(), 9)).decode()
+
+
+def _scripts(names: Sequence[str]) -> str:
+    return "\n".join(_read(name) for name in names)
+
+
+def _read(name: str) -> str:
+    own = ROOM / "template" / name
+    return (own if own.exists() else FROM_REPORT / name).read_text(encoding="utf-8")

@@ -1,0 +1,84 @@
+"""A scenario as the page has it: what is given to the models, what is true, what ends a run and what judges it."""
+
+from typing import Any
+
+from orchestrator.scenario.end_condition import SPEED
+from orchestrator.scenario.requirements import Requirement
+from orchestrator.scenario.scenario import MISSED, SUCCESS, Scenario
+from orchestrator.sweep.rows import measure_of, measures_for, measures_of
+from orchestrator.sweep.verdict import limit_value
+from orchestrator.verdict.conditions import CONDITIONS
+from orchestrator.verdict.limit_text import asked
+from orchestrator.verdict.measures import Measure
+from orchestrator.verdict.numbers import NUMBERS, STANDING
+
+
+def situation(scenario: Scenario) -> dict[str, Any]:
+    """Return the scenario for the page. Raises ``BadInput`` for a limit of a signal that no model has."""
+    measures = measures_for(scenario)
+    ending = scenario.ending
+    return {
+        **{key: getattr(scenario, key) for key in ("name", "title", "description", "task", "expect", "seed")},
+        "source": scenario.file and _shipped_name(scenario),
+        "changed": scenario.changed,
+        "times": [
+            scenario.step_ns,
+            scenario.stop_ns,
+            scenario.every.get("vehicle", 1),
+            scenario.every.get("controller", 1),
+        ],
+        **{owner: getattr(scenario, owner) for owner in ("vehicle", "controller")},
+        "target": scenario.target.model_dump() if scenario.target else None,
+        "slot": scenario.slot.model_dump() if scenario.slot else None,
+        "faults": [f"{fault.kind} {fault.signal} from {fault.start:g} s" for fault in scenario.faults],
+        "success": SUCCESS[scenario.task],
+        "missed": MISSED[scenario.task],
+        "ending": {
+            **{"mode": ending.signal, "reason": ending.reason, "speed": SPEED, "still": ending.still},
+            **{name: ending.values(getattr(ending, name)) for name in ("done", "failed", "over")},
+            **{
+                "standstill_ns": ending.standstill_ns,
+                "final": list(ending.final()),
+                "word": ending.text(ending.done[0]),
+            },
+        },
+        "measures": [_measure(item) for item in measures],
+        "limits": [_limit(item, measures) for item in scenario.limits],
+    }
+
+
+def numbers_data() -> dict[str, dict[str, Any]]:
+    """Return the numbers of a summary: unit, meaning, and what each is made from."""
+    return {
+        name: {
+            **{"unit": item.unit, "text": item.text, "unsigned": item.unsigned, "standing": name in STANDING},
+            "measure": None if item.measure is None else [item.measure.how, item.measure.signal],
+        }
+        for name, item in NUMBERS.items()
+    }
+
+
+def _shipped_name(scenario: Scenario) -> str:
+    """Return what a scenario that is written from the page has as its base."""
+    return scenario.name if scenario.file.endswith(f"scenarios/{scenario.name}.yaml") else scenario.file
+
+
+def _measure(item: Measure) -> list[Any]:
+    """Return how, signal, and for a part of the run the mode and its values."""
+    return [item.how, item.signal, *([] if item.when is None else [item.when.signal, list(item.when.values)])]
+
+
+def _limit(item: Requirement, measures: list[Measure]) -> dict[str, Any]:
+    """Return a requirement; ``measure`` is the place of what decides, -1 if that takes the whole run."""
+    is_number = item.signal in NUMBERS
+    found = None if is_number else measure_of(item)
+    first = measures_of(item)[1:] if found is not None and item.window is not None else []
+    return {
+        **{"id": item.id, "signal": item.signal, "condition": item.condition, "limit": limit_value(item)},
+        **{"source": item.source, "required": item.required, "where": item.where, "text": asked(item)},
+        "sign": CONDITIONS[item.condition].sign,
+        "number": is_number,
+        "measure": measures.index(found) if found is not None else -1,
+        "first": measures.index(first[0]) if first else -1,
+        "ifNever": "fail" if item.window is None else item.window.if_never,
+    }

@@ -1,0 +1,73 @@
+// The scenario in hand, its whole run with the values of now (the ghost), and the models to run it.
+
+const GHOST_EVERY = 5; // exchanges between two rows of the ghost, at 100 Hz
+
+class Lab {
+  constructor(engine, data) {
+    this.engine = engine;
+    this.table = data.numbers;
+    this.scenarios = new Map(data.scenarios.map((item) => [item.name, item]));
+    this.pins = data.pins;
+    this.seen = seenOf(engine);
+  }
+
+  load(name, changes = {}) {
+    for (const course of [this.driven, this.whole]) if (course) course.close();
+    this.situation = new Situation(this.scenarios.get(name), this.engine.models, changes);
+    this.driven = this.engine.open(this.situation.data, this.seen);
+    this.whole = this.engine.open(this.situation.data, this.seen);
+  }
+
+  get system() { return this.situation.get("controller.system"); }
+
+  pinned() {
+    const states = this.situation.known.get("controller.system").states;
+    const own = this.pins[states[this.system].toLowerCase()] || [];
+    return [...this.pins.always, ...own].filter((name) => this.situation.known.has(name));
+  }
+
+  // Whether a parameter means something to the system chosen.
+  isUsed(name) {
+    const model = this.engine.models.find((item) => name.startsWith(`${item.name}.`));
+    if (!model || !model.systems) return true;
+    const own = name.slice(model.name.length + 1), fits = (word) => own === word || own.startsWith(`${word}.`) || own.startsWith(`${word}[`);
+    const chosen = model.systems.find((item) => item.values.includes(this.system));
+    return !model.systems.some((item) => item !== chosen && item.own.some(fits)) || Boolean(chosen && chosen.own.some(fits));
+  }
+
+  // The whole run with the driver modelled, and how it came out.
+  ghost() {
+    const { situation, whole } = this, begun = performance.now();
+    const times = situation.data.times, every = Math.max(1, Math.round(GHOST_EVERY * 1e7 / times[0]));
+    const run = whole.run(situation.params(), times, every);
+    const took = performance.now() - begun;
+    const start = situation.pose("vehicle.start"), origin = [Math.round(start[0]), Math.round(start[1])];
+    return { history: wholeHistory(this.engine, this.seen, situation.still(origin), run), took, ...judged(run.row, situation, this.table) };
+  }
+}
+
+// Outcomes of many runs that differ in two parameters, one row of the grid after the other.
+function* gridOf(lab, [a, b], rows) {
+  const course = lab.engine.open(lab.situation.data, []), times = lab.situation.data.times;
+  for (const [number, y] of b.values.entries()) {
+    const cells = a.values.map((x) => {
+      const situation = new Situation(lab.situation.data, lab.engine.models, { ...lab.situation.changes, [a.name]: x, [b.name]: y });
+      const { outcome, reason, numbers } = judged(course.run(situation.params(), times, 1 << 30).row, situation, lab.table);
+      return { outcome, reason, error: Math.hypot(numbers["final.lateral_error"], numbers["final.longitudinal_error"]), shifts: numbers.shifts };
+    });
+    yield { number, cells, of: rows };
+  }
+  course.close();
+}
+
+// What a worker does: the same models, the same judge.
+function work() {
+  let lab = null;
+  onmessage = async ({ data }) => {
+    if (data.code) { lab = new Lab(await Engine.start(data.code, data.models), data); return; }
+    lab.load(data.scenario, data.changes);
+    const begun = performance.now();
+    for (const row of gridOf(lab, data.axes, data.axes[1].values.length)) postMessage({ ...row, id: data.id });
+    postMessage({ id: data.id, took: performance.now() - begun });
+  };
+}

@@ -1,0 +1,237 @@
+// Puts the page together: scenario, drive, ghost, panels, keys, link.
+
+const PROMPTS = { NONE: "no prompt", STOP: "stop", FORWARD: "drive forward", REVERSE: "drive in reverse", SLOW_DOWN: "slow down", TAKE_OVER: "take over", CONFIRM: "confirm?" };
+
+class Page {
+  constructor(lab, data, code) {
+    this.lab = lab;
+    this.driver = new Driver();
+    this.sounds = new Sounds();
+    this.drive = new Drive(lab, this.driver);
+    this.drive.onEnd = () => this.ended();
+    this.drive.onStep = () => this.prompted();
+    this.whatIf = new WhatIf(lab, () => this.changed());
+    this.map = new Grid(lab, code, data, (values) => { for (const [name, value] of values) lab.situation.set(name, value); this.whatIf.fill(); this.changed(); });
+    this.chart = new LiveChart(lab, data.charts);
+    this.drawn = { runs: [], ribbons: [], ghost: null, poses: () => this.poses() };
+    for (const item of data.scenarios) $("scenario").append(element("option", { value: item.name }, item.name));
+    this.buttons();
+  }
+
+  // What can be dragged: nothing while the car is on its way.
+  poses() {
+    const { situation } = this.lab;
+    if (!this.drive.isFresh) return [];
+    const found = [["vehicle.start", situation.pose("vehicle.start")]];
+    if (situation.target) found.push(["target", situation.target]);
+    if (situation.slot) found.push(["slot", situation.slot.slice(0, 3), 0.5 * situation.slot[3]]);
+    return found;
+  }
+
+  load(name, changes = {}) {
+    this.drive.pause();
+    this.lab.load(name, changes);
+    const { data } = this.lab.situation;
+    $("scenario").value = name;
+    $("title").textContent = document.title = data.title || name;
+    $("subtitle").textContent = data.description;
+    $("faults").hidden = data.faults.length === 0;
+    $("faults").textContent = `Here without what the scenario disturbs: ${data.faults.join(", ")}. apa run disturbs it.`;
+    this.whatIf.more = [];
+    this.whatIf.fill();
+    this.map.fill();
+    this.chart.fill();
+    this.restart();
+    this.ghost();
+    if (this.stage) { this.stage.turn = -this.drive.history.scene.turn; this.stage.fit(); }
+    this.shown();
+  }
+
+  restart() {
+    this.drive.restart();
+    this.mine = null;
+    this.prompt = "NONE";
+    this.drawn.runs = [this.drive.history];
+    const outer = ["controller.apa.mode", "controller.hsic.stage"].filter((name) => this.lab.isUsed(name) && this.drive.history.signals[name]);
+    this.drawn.ribbons = ["controller.phase", ...outer];
+    $("stale").hidden = true;
+  }
+
+  ghost() {
+    this.whole = this.lab.ghost();
+    this.drawn.ghost = this.whole.history;
+    $("ghost-badge").replaceChildren(badge(this.whole));
+    $("ghost-said").textContent = `${said(this.whole).split(": ").slice(1).join(": ")} ${shortly(this.whole)}`;
+    $("ghost-took").textContent = `whole run in ${this.whole.took.toFixed(1)} ms`;
+    showResult(this.lab, this.mine, this.drive.byHand, this.whole);
+    this.isDue = false;
+  }
+
+  // A parameter was changed: a run that has not begun takes it at once, one on its way goes on as it began.
+  changed() {
+    if (this.drive.isFresh) this.restart(); else $("stale").hidden = false;
+    this.isDue = true;
+    this.whatIf.refresh();
+    this.map.draw();
+    this.shown();
+  }
+
+  shown() {
+    const { situation } = this.lab;
+    $("yaml").value = situation.yaml();
+    history.replaceState(null, "", situation.fragment());
+  }
+
+  prompted() {
+    const prompt = this.drive.state("controller.prompt");
+    if (prompt === this.prompt) return;
+    this.prompt = prompt;
+    this.sounds.play(prompt);
+  }
+
+  ended() {
+    this.mine = this.drive.judged();
+    showResult(this.lab, this.mine, this.drive.byHand, this.whole);
+    tab("result-tab");
+  }
+
+  draw(now) {
+    const { drive, driver } = this;
+    drive.frame(now);
+    if (this.isDue) this.ghost();
+    const key = [drive.t, this.whole.took, this.stage.scale, ...this.stage.middle, driver.pedal.accelerator, driver.pedal.brake, driver.lever, driver.drives, drive.isPlaying].join();
+    if (key === this.key) return;
+    this.key = key;
+    if (drive.history.time.length) { this.stage.draw(drive.t); headsUp(this.drawn, drive.t); this.chart.show(drive.history); this.cockpit(); }
+  }
+
+  cockpit() {
+    const { drive, driver } = this, h = drive.history, prompt = drive.state("controller.prompt"), advised = h.last("controller.advised_speed"), speed = h.last("vehicle.speed");
+    text("prompt", PROMPTS[prompt] || words(prompt));
+    $("prompt").dataset.prompt = prompt;
+    text("advised", advised > 0 ? `at most ${(3.6 * advised).toFixed(1)} km/h` : "");
+    text("speedometer", `${(3.6 * Math.abs(speed)).toFixed(1)} km/h`);
+    $("speedometer").classList.toggle("fast", advised > 0 && Math.abs(speed) > advised + 0.02);
+    $("needle").style.width = `${Math.min(100, 100 * Math.abs(speed) / 2)}%`;
+    $("mark").hidden = !(advised > 0);
+    $("mark").style.left = `${Math.min(100, 50 * advised)}%`;
+    for (const gear of Object.keys(GEARS)) {
+      $(`gear-${gear}`).setAttribute("aria-pressed", String(driver.drives && driver.lever === GEARS[gear]));
+      $(`gear-${gear}`).classList.toggle("in", h.last("vehicle.gear") === GEARS[gear]);
+    }
+    for (const pedal of ["accelerator", "brake"]) $(pedal).style.setProperty("--down", `${100 * driver.pedal[pedal]}%`);
+    text("clock", `${drive.t.toFixed(2)} s`);
+    text("play", drive.isPlaying ? "Pause" : drive.isOver ? "Again" : "Start");
+    text("drive-said", drive.isOver && this.mine ? `${drive.byHand ? "You" : "This drive"}: ${said(this.mine)}` : driver.drives ? "You have the pedals; the controller has the wheel" : "The driver modelled has the pedals");
+    $("person").checked = driver.drives;
+    $("modelled").checked = !driver.drives;
+  }
+
+  buttons() {
+    const { drive, driver } = this;
+    $("play").addEventListener("click", () => this.toggle());
+    $("restart").addEventListener("click", () => { drive.pause(); this.restart(); });
+    $("step").addEventListener("click", () => { drive.pause(); drive.go(); });
+    for (const node of document.getElementsByName("pace")) node.addEventListener("change", () => { drive.pace = Number(node.value); });
+    $("modelled").addEventListener("change", () => { driver.drives = false; });
+    $("person").addEventListener("change", () => { driver.drives = true; });
+    $("scenario").addEventListener("change", () => this.load($("scenario").value));
+    for (const gear of Object.keys(GEARS)) $(`gear-${gear}`).addEventListener("click", () => driver.shift(gear));
+    for (const [pedal, share] of [["accelerator", SOFT], ["brake", 0.4]]) holdButton($(pedal), (isDown) => { driver.press(pedal, "screen", isDown ? share : 0); this.begin(isDown); });
+    holdButton($("confirm"), (isDown) => { driver.confirm = isDown; if (isDown) driver.take(); });
+    $("sound").addEventListener("change", () => { this.sounds.isOn = $("sound").checked; });
+    $("copy").addEventListener("click", () => { $("yaml").select(); navigator.clipboard.writeText($("yaml").value).catch(() => document.execCommand("copy")); });
+    $("save").addEventListener("click", () => {
+      const link = element("a", { href: URL.createObjectURL(new Blob([$("yaml").value], { type: "text/yaml" })), download: `${this.lab.situation.data.name}-live.yaml` });
+      link.click();
+      URL.revokeObjectURL(link.href);
+    });
+    driverKeys(driver, () => true);
+    keyboard({ " ": () => this.toggle(), ".": () => { drive.pause(); drive.go(); }, Home: () => { drive.pause(); this.restart(); } });
+    driver.onChange = () => this.begin(driver.pedal.accelerator > 0 || driver.pressed.accelerator.size > 0);
+  }
+
+  // Who steps on the accelerator before the start has started.
+  begin(isPressed) { if (isPressed && this.driver.drives && this.drive.isFresh && !this.drive.isPlaying) this.drive.play(); }
+
+  toggle() {
+    if (this.drive.isPlaying) this.drive.pause();
+    else { if (this.drive.isOver) this.restart(); this.drive.play(); }
+  }
+}
+
+function text(id, words) { if ($(id).textContent !== words) $(id).textContent = words; }
+
+function keyboard(keys) {
+  addEventListener("keydown", (event) => {
+    if (event.ctrlKey || event.metaKey || event.altKey || event.target.closest("input, select, textarea, [role=tab]")) return;
+    if (event.key === " " && event.target.closest("button, summary, a")) return;
+    if (!keys[event.key]) return;
+    event.preventDefault();
+    keys[event.key]();
+  });
+}
+
+function tab(id) {
+  for (const node of document.querySelectorAll("[role=tab]")) {
+    const isOn = node.id === id;
+    node.setAttribute("aria-selected", String(isOn));
+    node.tabIndex = isOn ? 0 : -1;
+    $(node.getAttribute("aria-controls")).hidden = !isOn;
+  }
+}
+
+function tabs() {
+  const all = [...document.querySelectorAll("[role=tab]")];
+  all.forEach((node, i) => {
+    node.addEventListener("click", () => tab(node.id));
+    node.addEventListener("keydown", (event) => {
+      const way = { ArrowRight: 1, ArrowLeft: -1 }[event.key];
+      if (!way) return;
+      const next = all[(i + way + all.length) % all.length];
+      tab(next.id);
+      next.focus();
+      event.preventDefault();
+    });
+  });
+}
+
+// Scenario and changes from the address.
+function fromAddress(lab, first) {
+  const found = { name: first, changes: {} };
+  for (const part of location.hash.slice(1).split("&")) {
+    const [key, value] = part.split("=").map(decodeURIComponent);
+    if (key === "s" && lab.scenarios.has(value)) found.name = value;
+    else if (key.includes(".") && value !== undefined) found.changes[key] = Number(value);
+  }
+  return found;
+}
+
+async function start() {
+  const begun = performance.now();
+  const data = await unpack($("data").textContent.trim());
+  const code = await inflate($("module").textContent.trim());
+  const lab = new Lab(await Engine.start(code, data.models), data), page = new Page(lab, data, code);
+  const { name, changes } = fromAddress(lab, data.scenarios[0].name);
+  tabs();
+  page.load(name, changes);
+  page.stage = new Stage(page.drawn, $("view"), (prefix, pose) => { AXES.forEach((axis, i) => lab.situation.set(`${prefix}.${axis}`, pose[i])); page.changed(); });
+  page.scene = page.stage;
+  page.paint = () => { page.key = ""; page.map.draw(); };
+  page.show = page.paint;
+  page.page = page.drawn;
+  themes(page);
+  layers(page);
+  addEventListener("hashchange", () => { const found = fromAddress(lab, data.scenarios[0].name); page.load(found.name, found.changes); });
+  const frame = (now) => { page.draw(now); requestAnimationFrame(frame); };
+  requestAnimationFrame(frame);
+  page.took = performance.now() - begun;
+  window.live = page;
+  document.documentElement.dataset.ready = "yes";
+}
+
+start().catch((error) => {
+  $("notice").hidden = false;
+  $("notice").textContent = `This page cannot be shown: ${error.message}`;
+  throw error;
+});

@@ -1,0 +1,136 @@
+// A scenario and what was changed of it: parameters for the models, what is true, the scene, and the way back to YAML.
+
+const AXES = ["x", "y", "heading"];
+const SLOT = [...AXES, "length", "width"];
+
+class Situation {
+  constructor(data, models, changes = {}) {
+    this.data = data;
+    this.models = models;
+    this.known = new Map(); // name -> what is said of a parameter
+    let place = 0;
+    for (const model of models)
+      for (const [name, unit, text, kind, start, low, high, mode, source] of model.parameters) {
+        const full = `${model.name}.${name}`;
+        const given = data[model.name][name];
+        const states = mode ? model.states[mode] : null;
+        this.known.set(full, { name: full, unit, text, kind, low, high, states, source, place: place++, start: given === undefined ? start : Number(given) });
+      }
+    for (const owner of ["target", "slot"])
+      for (const name of owner === "target" ? AXES : SLOT)
+        if (data[owner]) this.known.set(`${owner}.${name}`, truth(owner, name, data[owner][name]));
+    this.base = new Float64Array(place);
+    for (const item of this.known.values()) if (item.place >= 0) this.base[item.place] = item.start;
+    this.told = Boolean(data.target) && AXES.every((axis) => this.known.get(`controller.target.${axis}`).start === data.target[axis]);
+    this.changes = {};
+    for (const [name, value] of Object.entries(changes)) this.set(name, value);
+  }
+
+  get(name) { return name in this.changes ? this.changes[name] : this.known.get(name).start; }
+
+  // What is wrong with a value, "" if nothing.
+  wrong(name, value) {
+    const item = this.known.get(name);
+    if (!item) return `there is no parameter ${name}`;
+    const range = `${item.low ?? "\u2212\u221e"} to ${item.high ?? "\u221e"} ${item.unit}`;
+    if (!Number.isFinite(value)) return `not a number; ${name} takes ${range}`;
+    if (item.kind !== "float" && !Number.isInteger(value)) return `${name} takes a whole number`;
+    if (item.states && !(value in item.states)) return `${name} takes ${Object.values(item.states).map((state) => state.toLowerCase()).join(", ")}`;
+    if ((item.low !== null && value < item.low) || (item.high !== null && value > item.high)) return `out of range: ${name} takes ${range}`;
+    return "";
+  }
+
+  // Change a parameter; returns what is wrong with the value. A target that is moved is told to the controller.
+  set(name, value) {
+    const wrong = this.wrong(name, value);
+    if (wrong) return wrong;
+    if (value === this.known.get(name).start) delete this.changes[name]; else this.changes[name] = value;
+    return "";
+  }
+
+  params(changes = this.changes) {
+    const found = Float64Array.from(this.base);
+    for (const [name, value] of Object.entries(changes)) {
+      const item = this.known.get(name);
+      if (item.place >= 0) found[item.place] = value;
+      else if (this.told && name.startsWith("target.") && !(`controller.${name}` in changes)) found[this.known.get(`controller.${name}`).place] = value;
+    }
+    return found;
+  }
+
+  // Values of the vehicle's parameters by name, for the scene and for what is true.
+  vehicle(name) { return this.get(`vehicle.${name}`); }
+
+  pose(prefix) { return AXES.map((axis) => this.get(`${prefix}.${axis}`)); }
+
+  get target() { return this.data.target ? this.pose("target") : null; }
+
+  get slot() { return this.data.slot ? SLOT.map((name) => this.get(`slot.${name}`)) : null; }
+
+  get car() {
+    const wheelbase = this.vehicle("wheelbase");
+    return { front: wheelbase + this.vehicle("front_overhang"), rear: this.vehicle("rear_overhang"), half: 0.5 * this.vehicle("width"), wheelbase };
+  }
+
+  rows(array, fields) {
+    const rows = [];
+    while (this.known.has(`vehicle.${array}[${rows.length + 1}].${fields[0]}`))
+      rows.push(Object.fromEntries(fields.map((field) => [field, this.vehicle(`${array}[${rows.length + 1}].${field}`)])));
+    return rows;
+  }
+
+  get boxes() { return this.rows("scene.boxes", [...SLOT, "appear_at", "disappear_at"]).filter((box) => box.length > 0 && box.width > 0); }
+
+  get kerbs() { return this.rows("scene.kerbs", ["x1", "y1", "x2", "y2", "height"]).filter((kerb) => kerb.height > 0); }
+
+  // Surroundings as scene.js draws them.
+  still(origin) {
+    const less = (points) => points.map(([x, y]) => [x - origin[0], y - origin[1]]);
+    const outline = (box) => less(rectangle(-0.5 * box.length, 0.5 * box.length, 0.5 * box.width).map(([u, v]) => moved([box.x, box.y, box.heading], u, v)));
+    const slot = this.slot, target = this.target;
+    const half = this.vehicle("ultrasonic.half_angle"), range = this.vehicle("ultrasonic.max_range");
+    return {
+      origin, turn: this.vehicle("start.heading"), car: this.car,
+      slot: slot && outline({ x: slot[0], y: slot[1], heading: slot[2], length: slot[3], width: slot[4] }),
+      target: target && [target[0] - origin[0], target[1] - origin[1], target[2]],
+      boxes: this.boxes.map((box) => ({ corners: outline(box), from: box.appear_at, to: box.disappear_at })),
+      kerbs: this.kerbs.map((kerb) => less([[kerb.x1, kerb.y1], [kerb.x2, kerb.y2]])),
+      sensors: this.boxes.length + this.kerbs.length === 0 ? [] : this.rows("ultrasonic.mounts", ["x", "y", "yaw"])
+        .map((mount, i) => ({ signal: `vehicle.ultrasonic[${i + 1}]`, x: mount.x, y: mount.y, heading: mount.yaw, half, range })),
+    };
+  }
+
+  // The scenario with its changes, as `apa run` reads it.
+  yaml() {
+    const lines = [`name: ${this.data.name}-live`, `base: ${this.data.source || this.data.name}`];
+    if (this.data.title) lines.push(`title: ${JSON.stringify(this.data.title)}`);
+    const own = { ...this.data.changed };
+    for (const [name, value] of Object.entries(this.changes)) own[name] = this.written(name, value);
+    const owners = ["target", "slot", "vehicle", "controller"];
+    for (const [key, text] of Object.entries(own)) if (!owners.includes(key.split(".")[0])) lines.push(`${key}: ${text}`);
+    for (const owner of owners) {
+      const names = Object.keys(own).filter((name) => name.startsWith(`${owner}.`));
+      if (names.length) lines.push(`${owner}:`, ...names.map((name) => `  ${JSON.stringify(name.slice(owner.length + 1))}: ${own[name]}`));
+    }
+    return `${lines.join("\n")}\n`;
+  }
+
+  written(name, value) {
+    const item = this.known.get(name);
+    if (item.states) return item.states[value].toLowerCase();
+    return item.kind === "bool" ? String(value !== 0) : String(value);
+  }
+
+  // For the address: scenario and changes.
+  fragment() {
+    const parts = [`s=${encodeURIComponent(this.data.name)}`];
+    for (const [name, value] of Object.entries(this.changes)) parts.push(`${encodeURIComponent(name)}=${value}`);
+    return `#${parts.join("&")}`;
+  }
+}
+
+function truth(owner, name, start) {
+  const unit = name === "heading" ? "rad" : "m", low = owner === "slot" && (name === "length" || name === "width") ? 0.01 : null;
+  const text = { x: "x", y: "y", heading: "heading", length: "length along its heading", width: "width across it" }[name];
+  return { name: `${owner}.${name}`, unit, text: `${owner === "slot" ? "slot" : "where the car shall stand"}: ${text}`, kind: "float", low, high: null, states: null, source: "", place: -1, start };
+}

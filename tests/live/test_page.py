@@ -1,7 +1,9 @@
 """The page in a real browser: its judge agrees with the judge in Python, people drive it, sliders move the ghost."""
 
 import pytest
+from person import drive, hurries_once, never_obeys, obeys
 
+from controller_fmu.interface import Phase
 from orchestrator.cosim.fmu_files import fmu_files
 from orchestrator.live.page import live_page
 from orchestrator.scenario.load_scenario import load_scenario, scenario_names
@@ -10,6 +12,7 @@ from orchestrator.verdict.summary import summarize
 
 WITHOUT_FAULTS = [name for name in scenario_names() if not load_scenario(name).faults]
 LARGEST_PAGE = 400_000
+PHASES = [state.name for state in Phase]
 WHOLE = """(name) => {
   const page = window.live, { lab } = page;
   page.load(name);
@@ -51,3 +54,144 @@ def test_the_judge_of_the_page_says_what_the_judge_in_python_says(page):
         for key, value in summary.final.model_dump().items():
             told = found["numbers"][f"final.{key}"]
             assert told == pytest.approx(value, rel=0.0, abs=1e-6, nan_ok=True), (name, key)
+
+
+def test_keys_drive_to_parked(page):
+    page.select_option("#scenario", "guo2015-case4-105")
+    found = drive(page, obeys)
+    assert (found["outcome"], found["byHand"]) == ("parked", True)
+    assert page.text_content("#drive-said") == "You: parked"
+
+
+def test_who_is_too_fast_once_is_brought_back_by_point_tracking(page):
+    found = drive(page, hurries_once)
+    phases = page.evaluate("() => window.live.drive.history.spans('controller.phase').map((span) => span.value)")
+    assert PHASES.index("TO_Q2") in phases
+    assert found["numbers"]["shifts"] >= 2
+    assert found["outcome"] == "parked"
+
+
+def test_who_never_obeys_fails_with_a_reason(page):
+    found = drive(page, never_obeys)
+    assert found["outcome"] == "failed"
+    assert found["reason"] == "not_stopping"
+    assert "You: failed: not stopping" in page.text_content("#drive-said")
+
+
+def ghost(page):
+    return page.evaluate(
+        "() => { const { outcome, reason, numbers } = window.live.whole; return { outcome, reason, ...numbers }; }"
+    )
+
+
+def run_of(name, *sets):
+    scenario = load_scenario(name, list(sets))
+    ran = run_scenario(scenario, fmu_files("native"), kind="native")
+    return summarize(ran.recording, scenario, ran.wall_time)
+
+
+def agrees(found, summary):
+    assert (found["outcome"], found["reason"]) == (summary.outcome, summary.reason)
+    assert found["shifts"] == summary.shifts
+    for axis in ("x", "y", "heading"):
+        assert found[f"final.{axis}"] == pytest.approx(getattr(summary.final, axis), rel=0.0, abs=1e-6)
+
+
+def fill(page, name, value):
+    field = page.locator(f'[id="p-{name}"]')
+    field.fill(value)
+    field.dispatch_event("change")
+
+
+def test_a_slider_moves_the_ghost_as_apa_run_with_set_does(page):
+    before = ghost(page)
+    page.focus('input[type="range"][aria-label="vehicle.steering.rate_limit"]')
+    for _ in range(15):
+        page.keyboard.press("ArrowLeft")
+    page.wait_for_function("() => !window.live.isDue")
+    value = page.evaluate("() => window.live.lab.situation.get('vehicle.steering.rate_limit')")
+    after = ghost(page)
+    assert value < 9.9
+    assert after["final.x"] != before["final.x"]
+    agrees(after, run_of("guo2015-case4", f"vehicle.steering.rate_limit={value!r}"))
+
+
+def test_a_value_out_of_range_is_refused_with_the_range(page):
+    before = ghost(page)
+    fill(page, "controller.guo2015.k1", "1000")
+    wrong = page.locator('[id="p-controller.guo2015.k1-wrong"]')
+    assert wrong.text_content() == "out of range: it takes 0 to 100 1/m2"
+    assert page.locator('[id="p-controller.guo2015.k1"]').get_attribute("aria-invalid") is not None
+    assert ghost(page) == before
+    fill(page, "controller.guo2015.k1", "2")
+    assert wrong.text_content() == ""
+
+
+def test_the_exported_scenario_comes_to_the_end_of_the_page(page, tmp_path):
+    fill(page, "vehicle.driver.profile[1].speed", "1.2")
+    page.fill("#search", "backlash")
+    page.click("#found button")
+    fill(page, "vehicle.steering.backlash", "3")
+    drag(page, "target", 0.25, 0.05)
+    page.wait_for_function("() => !window.live.isDue")
+    file = tmp_path / "exported.yaml"
+    file.write_text(page.input_value("#yaml"), encoding="utf-8")
+    assert "backlash" in file.read_text(encoding="utf-8")
+    summary = run_of(str(file))
+    assert load_scenario(str(file)).target.pose != load_scenario("guo2015-case4").target.pose
+    agrees(ghost(page), summary)
+
+
+def drag(page, prefix, dx, dy):
+    """Drag a handle by metres."""
+    x, y = page.evaluate(
+        "(prefix) => { const { stage } = window.live, item = stage.handles().find((one) => one.prefix === prefix);"
+        " const box = stage.canvas.getBoundingClientRect(), [u, v] = stage.pixel(...item.points[0][1]);"
+        " return [u + box.left, v + box.top]; }",
+        prefix,
+    )
+    scale = page.evaluate("() => window.live.stage.scale")
+    page.mouse.move(x, y)
+    page.mouse.down()
+    page.mouse.move(x + 0.5 * dx * scale, y - 0.5 * dy * scale)
+    page.mouse.move(x + dx * scale, y - dy * scale)
+    page.mouse.up()
+
+
+def test_the_address_holds_scenario_and_changes(page, file, show):
+    page.select_option("#scenario", "hsic")
+    fill(page, "vehicle.steering.lag", "0.05")
+    page.wait_for_function("() => !window.live.isDue")
+    again, _ = show(file, page.evaluate("() => location.hash"), 1440, 900)
+    assert again.input_value("#scenario") == "hsic"
+    assert ghost(again) == ghost(page)
+
+
+def test_a_map_is_coloured_and_a_cell_taken_from_it_is_what_it_says(page):
+    page.click("#map-tab")
+    page.click("#map-go")
+    page.wait_for_selector("#map[data-done]", timeout=60_000)
+    assert page.text_content("#map-said").startswith("400 runs in")
+    page.focus("#map")
+    for key in ("ArrowRight",) * 4 + ("ArrowUp",) * 6 + ("Enter",):
+        page.keyboard.press(key)
+    page.wait_for_function("() => !window.live.isDue")
+    cell = page.evaluate("() => { const { map } = window.live; return map.rows[6][4]; }")
+    found = ghost(page)
+    assert (found["outcome"], found["reason"]) == (cell["outcome"], cell["reason"])
+
+
+def test_the_chart_shows_the_state_and_how_it_came(page):
+    page.click("#chart-tab")
+    page.evaluate("() => { const { drive } = window.live; while (drive.t < 5.0) drive.go(); }")
+    page.wait_for_timeout(100)
+    on = page.evaluate("() => [...document.querySelectorAll('[data-state].on')].map((node) => node.dataset.state)")
+    assert on == [page.evaluate("() => window.live.drive.state('controller.phase')")]
+    assert page.evaluate("() => window.live.chart.past.length") == 4
+    page.focus('[data-state="STOP"]')
+    assert page.text_content("#chart-said").startswith("stop:")
+
+
+def test_a_scenario_with_faults_says_that_they_are_not_in_the_page(page):
+    page.select_option("#scenario", "fault-pose-frozen")
+    assert "without what the scenario disturbs" in page.text_content("#faults")

@@ -62,9 +62,10 @@ function* gridOf(lab, [a, b], rows) {
 
 // What a worker does: the same models, the same judge.
 function work() {
-  let lab = null;
+  let started = null;
   onmessage = async ({ data }) => {
-    if (data.code) { lab = new Lab(await Engine.start(data.code, data.models), data); return; }
+    if (data.code) { started = Engine.start(data.code, data.models).then((engine) => new Lab(engine, data)); return; }
+    const lab = await started;
     lab.load(data.scenario, data.changes);
     const begun = performance.now();
     for (const row of gridOf(lab, data.axes, data.axes[1].values.length)) postMessage({ ...row, id: data.id });

@@ -9,7 +9,7 @@ class Page {
     this.sounds = new Sounds();
     this.drive = new Drive(lab, this.driver);
     this.drive.onEnd = () => this.ended();
-    this.drive.onStep = () => this.prompted();
+    this.drive.onStep = () => { this.prompted(); this.chart.show(this.drive.history); };
     this.whatIf = new WhatIf(lab, () => this.changed());
     this.map = new Grid(lab, code, data, (values) => { for (const [name, value] of values) lab.situation.set(name, value); this.whatIf.fill(); this.changed(); });
     this.chart = new LiveChart(lab, data.charts);

@@ -60,8 +60,8 @@ class Grid {
   }
 
   axis(name) {
-    const item = this.lab.situation.known.get($(`map-${name}`).value), [, factor] = display(item.unit);
-    const [low, high] = ["low", "high"].map((end) => fromShown($(`map-${name}-${end}`).value, factor));
+    const item = this.lab.situation.known.get($(`map-${name}`).value);
+    const [low, high] = ["low", "high"].map((end) => fromShown($(`map-${name}-${end}`).value, item));
     const values = Array.from({ length: CELLS }, (_, i) => low + (high - low) * i / (CELLS - 1));
     return { name: item.name, values, wrong: this.lab.situation.wrong(item.name, low) || this.lab.situation.wrong(item.name, high) };
   }

@@ -105,7 +105,7 @@ class Situation {
     const lines = [`name: ${this.data.name}-live`, `base: ${this.data.source || this.data.name}`];
     if (this.data.title) lines.push(`title: ${JSON.stringify(this.data.title)}`);
     const own = { ...this.data.changed };
-    for (const [name, value] of Object.entries(this.changes)) own[name] = this.written(name, value);
+    for (const [name, value] of Object.entries(this.changes)) Object.assign(own, this.withArray(name), { [name]: this.written(name, value) });
     const owners = ["target", "slot", "vehicle", "controller"];
     for (const [key, text] of Object.entries(own)) if (!owners.includes(key.split(".")[0])) lines.push(`${key}: ${text}`);
     for (const owner of owners) {
@@ -113,6 +113,13 @@ class Situation {
       if (names.length) lines.push(`${owner}:`, ...names.map((name) => `  ${JSON.stringify(name.slice(owner.length + 1))}: ${own[name]}`));
     }
     return `${lines.join("\n")}\n`;
+  }
+
+  // A scenario that gives the first element of an array gives the whole array: what else stands in that of `name`.
+  withArray(name) {
+    const array = name.includes("[1]") ? name.slice(0, name.indexOf("[") + 1) : null, owner = name.split(".")[0];
+    const given = array ? Object.keys(this.data[owner]).map((item) => `${owner}.${item}`).filter((item) => item.startsWith(array)) : [];
+    return Object.fromEntries(given.map((item) => [item, this.written(item, this.get(item))]));
   }
 
   written(name, value) {

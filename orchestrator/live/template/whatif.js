@@ -51,7 +51,7 @@ class WhatIf {
       const states = item.states || { 0: "no", 1: "yes" };
       field = element("select", { id, on: { change: () => set(Number(field.value)) } }, Object.entries(states).map(([value, text]) => element("option", { value }, words(text))));
     } else {
-      field = element("input", { id, type: "number", step: "any", "aria-describedby": `${id}-wrong`, on: { change: () => set(item.kind === "int" ? Number(field.value) : fromShown(field.value, factor)) } });
+      field = element("input", { id, type: "number", step: "any", "aria-describedby": `${id}-wrong`, on: { change: () => set(fromShown(field.value, item)) } });
       const step = item.kind === "int" ? 1 : (high - low) * factor / 400;
       slider = element("input", { type: "range", min: low * factor, max: high * factor, step: item.kind === "int" ? 1 : step, "aria-label": name, on: { input: () => set(Number(slider.value) / factor) } });
     }
@@ -82,4 +82,9 @@ class WhatIf {
   }
 }
 
-const fromShown = (text, factor) => (text.trim() === "" ? NaN : factor === 1 ? Number(text) : Number(text) / factor);
+// A number as it was typed, in SI; one that is shown rounded at an end of its range is that end.
+function fromShown(text, item) {
+  const [, factor] = display(item.unit), value = text.trim() === "" ? NaN : factor === 1 ? Number(text) : Number(text) / factor;
+  const end = [item.low, item.high].find((limit) => limit !== null && Math.abs(value - limit) <= 1e-6 * Math.abs(limit));
+  return end === undefined ? value : end;
+}

@@ -3,6 +3,7 @@
 import sys
 
 from controller_fmu import model
+from controller_fmu.adaptive import chart as adaptive_chart
 from controller_fmu.adaptive.outputs import adaptive_outputs
 from controller_fmu.adaptive.system import adaptive_sample, adaptive_start
 from controller_fmu.apa import chart as apa_chart
@@ -51,6 +52,7 @@ OF_ADAPTIVE = (
 )
 GUO_CHART = Chart("phase", Phase, guo_chart.Guard, guo_chart.TRANSITIONS)
 APA_CHART = Chart("apa.mode", apa_chart.Mode, apa_chart.Guard, apa_chart.TRANSITIONS)
+ADAPTIVE_CHART = Chart("phase", Phase, adaptive_chart.Guard, adaptive_chart.TRANSITIONS)
 SYSTEMS = SampledSystems(
     state=model.ControllerState,
     parameter="system",
@@ -66,7 +68,15 @@ SYSTEMS = SampledSystems(
         SampledSystem((System.HSIC,), "hsic", hsic_start, hsic_sample, hsic_outputs, OF_HSIC),
         SampledSystem((System.PREVIEW,), "preview", driving_start, driving_sample, driving_outputs, OF_PREVIEW),
         SampledSystem((System.APA,), "apa", apa_start, apa_sample, apa_outputs, OF_APA, (APA_CHART,)),
-        SampledSystem((System.ADAPTIVE,), "adaptive", adaptive_start, adaptive_sample, adaptive_outputs, OF_ADAPTIVE),
+        SampledSystem(
+            (System.ADAPTIVE,),
+            "adaptive",
+            adaptive_start,
+            adaptive_sample,
+            adaptive_outputs,
+            OF_ADAPTIVE,
+            (ADAPTIVE_CHART,),
+        ),
     ),
 )
 MODEL = Model(

@@ -105,15 +105,15 @@ def fill(page, name, value):
 
 def test_a_slider_moves_the_ghost_as_apa_run_with_set_does(page):
     before = ghost(page)
-    page.focus('input[type="range"][aria-label="vehicle.steering.rate_limit"]')
+    page.focus('input[type="range"][aria-label="car.steering.rate_limit"]')
     for _ in range(15):
         page.keyboard.press("ArrowLeft")
     page.wait_for_function("() => !window.live.isDue")
-    value = page.evaluate("() => window.live.lab.situation.get('vehicle.steering.rate_limit')")
+    value = page.evaluate("() => window.live.lab.situation.get('car.steering.rate_limit')")
     after = ghost(page)
     assert value < 9.9
     assert after["final.x"] != before["final.x"]
-    agrees(after, run_of("guo2015-case4", f"vehicle.steering.rate_limit={value!r}"))
+    agrees(after, run_of("guo2015-case4", f"car.steering.rate_limit={value!r}"))
 
 
 def test_a_value_out_of_range_is_refused_with_the_range(page):

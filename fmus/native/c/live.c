@@ -80,9 +80,10 @@ LIBRARY_EXPORT void live_close(Live *live) {
 /* times: the step [ns], the stop [ns], the decimation of each model; params: those of all models. */
 LIBRARY_EXPORT void live_begin(Live *live, const double *params, const double *times) {
     const Course course = {(int64_t)times[0], (int64_t)times[1] / (int64_t)times[0], 0, -1};
+    int64_t every[LIVE_COUNT];
     live->course = course;
-    for (int64_t m = 0; m < LIVE_COUNT; m++) live->runner.slaves[m].every = (int64_t)times[2 + m];
-    connect(&live->runner);
+    for (int64_t m = 0; m < LIVE_COUNT; m++) every[m] = (int64_t)times[2 + m];
+    connect(&live->runner, every);
     for (int64_t k = 0; k < live->seen_count; k++) live->places[k] = place_of(live->runner.slaves, live->seen[k]);
     initialize(&live->runner, params);
     begin_notes(&live->runner, live->row + 2);

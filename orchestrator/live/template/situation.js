@@ -16,17 +16,29 @@ class Situation {
         const states = mode ? model.states[mode] : null;
         this.known.set(full, { name: full, unit, text, kind, low, high, states, source, place: place++, start: given === undefined ? start : Number(given) });
       }
+    this.roots = new Map(); // parameter that is told -> what it is told
     for (const owner of ["target", "slot"])
       for (const name of owner === "target" ? AXES : SLOT)
-        if (data[owner]) this.known.set(`${owner}.${name}`, truth(owner, name, data[owner][name]));
+        if (data[owner]) this.tell(truth(owner, name, data[owner][name]), [`controller.${owner}.${name}`]);
+    for (const item of [...this.known.values()].filter(({ name }) => name.startsWith("vehicle.car.")))
+      this.tell({ ...item, name: item.name.replace("vehicle.", ""), place: -1 }, [item.name, item.name.replace("vehicle.", "controller.")]);
     this.base = new Float64Array(place);
     for (const item of this.known.values()) if (item.place >= 0) this.base[item.place] = item.start;
-    this.told = Boolean(data.target) && AXES.every((axis) => this.known.get(`controller.target.${axis}`).start === data.target[axis]);
     this.changes = {};
     for (const [name, value] of Object.entries(changes)) this.set(name, value);
   }
 
-  get(name) { return name in this.changes ? this.changes[name] : this.known.get(name).start; }
+  // What is true once and told to models: those that are told something else keep it.
+  tell(item, receivers) {
+    this.known.set(item.name, item);
+    for (const name of receivers) if (this.known.has(name) && this.known.get(name).start === item.start) this.roots.set(name, item.name);
+  }
+
+  get(name, changes = this.changes) {
+    if (name in changes) return changes[name];
+    const root = this.roots.get(name);
+    return root in changes ? changes[root] : this.known.get(name).start;
+  }
 
   // What is wrong with a value, "" if nothing.
   wrong(name, value) {
@@ -50,11 +62,8 @@ class Situation {
 
   params(changes = this.changes) {
     const found = Float64Array.from(this.base);
-    for (const [name, value] of Object.entries(changes)) {
-      const item = this.known.get(name);
-      if (item.place >= 0) found[item.place] = value;
-      else if (this.told && name.startsWith("target.") && !(`controller.${name}` in changes)) found[this.known.get(`controller.${name}`).place] = value;
-    }
+    for (const [name, root] of this.roots) if (root in changes) found[this.known.get(name).place] = changes[root];
+    for (const [name, value] of Object.entries(changes)) if (this.known.get(name).place >= 0) found[this.known.get(name).place] = value;
     return found;
   }
 
@@ -68,8 +77,8 @@ class Situation {
   get slot() { return this.data.slot ? SLOT.map((name) => this.get(`slot.${name}`)) : null; }
 
   get car() {
-    const wheelbase = this.vehicle("wheelbase");
-    return { front: wheelbase + this.vehicle("front_overhang"), rear: this.vehicle("rear_overhang"), half: 0.5 * this.vehicle("width"), wheelbase };
+    const wheelbase = this.vehicle("car.wheelbase");
+    return { front: wheelbase + this.vehicle("car.front_overhang"), rear: this.vehicle("car.rear_overhang"), half: 0.5 * this.vehicle("car.width"), wheelbase };
   }
 
   rows(array, fields) {
@@ -88,14 +97,14 @@ class Situation {
     const less = (points) => points.map(([x, y]) => [x - origin[0], y - origin[1]]);
     const outline = (box) => less(rectangle(-0.5 * box.length, 0.5 * box.length, 0.5 * box.width).map(([u, v]) => moved([box.x, box.y, box.heading], u, v)));
     const slot = this.slot, target = this.target;
-    const half = this.vehicle("ultrasonic.half_angle"), range = this.vehicle("ultrasonic.max_range");
+    const half = this.vehicle("car.ultrasonic.half_angle"), range = this.vehicle("car.ultrasonic.max_range");
     return {
       origin, turn: this.vehicle("start.heading"), car: this.car,
       slot: slot && outline({ x: slot[0], y: slot[1], heading: slot[2], length: slot[3], width: slot[4] }),
       target: target && [target[0] - origin[0], target[1] - origin[1], target[2]],
       boxes: this.boxes.map((box) => ({ corners: outline(box), from: box.appear_at, to: box.disappear_at })),
       kerbs: this.kerbs.map((kerb) => less([[kerb.x1, kerb.y1], [kerb.x2, kerb.y2]])),
-      sensors: this.boxes.length + this.kerbs.length === 0 ? [] : this.rows("ultrasonic.mounts", ["x", "y", "yaw"])
+      sensors: this.boxes.length + this.kerbs.length === 0 ? [] : this.rows("car.ultrasonic.mounts", ["x", "y", "yaw"])
         .map((mount, i) => ({ signal: `vehicle.ultrasonic[${i + 1}]`, x: mount.x, y: mount.y, heading: mount.yaw, half, range })),
     };
   }
@@ -106,8 +115,9 @@ class Situation {
     if (this.data.title) lines.push(`title: ${JSON.stringify(this.data.title)}`);
     const own = { ...this.data.changed };
     for (const [name, value] of Object.entries(this.changes)) Object.assign(own, this.withArray(name), { [name]: this.written(name, value) });
-    const owners = ["target", "slot", "vehicle", "controller"];
-    for (const [key, text] of Object.entries(own)) if (!owners.includes(key.split(".")[0])) lines.push(`${key}: ${text}`);
+    const owners = ["car", "target", "slot", "vehicle", "controller"];
+    if ("car" in own && Object.keys(own).some((key) => key.startsWith("car."))) { own["car.base"] = own.car; delete own.car; }
+    for (const [key, text] of Object.entries(own)) if (!owners.includes(key.split(".")[0]) || key === "car") lines.push(`${key}: ${text}`);
     for (const owner of owners) {
       const names = Object.keys(own).filter((name) => name.startsWith(`${owner}.`));
       if (names.length) lines.push(`${owner}:`, ...names.map((name) => `  ${JSON.stringify(name.slice(owner.length + 1))}: ${own[name]}`));
@@ -118,7 +128,7 @@ class Situation {
   // A scenario that gives the first element of an array gives the whole array: what else stands in that of `name`.
   withArray(name) {
     const array = name.includes("[1]") ? name.slice(0, name.indexOf("[") + 1) : null, owner = name.split(".")[0];
-    const given = array ? Object.keys(this.data[owner]).map((item) => `${owner}.${item}`).filter((item) => item.startsWith(array)) : [];
+    const given = array && this.data[owner] ? Object.keys(this.data[owner]).map((item) => `${owner}.${item}`).filter((item) => item.startsWith(array)) : [];
     return Object.fromEntries(given.map((item) => [item, this.written(item, this.get(item))]));
   }
 

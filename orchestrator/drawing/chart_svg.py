@@ -27,7 +27,7 @@ def chart_svg(arcs: list[Arc], order: list[str]) -> str:
     parts = [_arc(pair, guards, place, lanes[pair], middle) for pair, guards in merged.items()]
     parts += [_state(name, middle, place[name]) for name in states]
     size = f"0 0 {left + WIDTH + right:.0f} {len(states) * ROW + HEIGHT:.0f}"
-    head = f'<svg xmlns="http://www.w3.org/2000/svg" class="chart" viewBox="{size}" role="img"'
+    head = f'<svg class="chart" xmlns="http://www.w3.org/2000/svg" viewBox="{size}" role="img"'
     return f'{head} font-size="12" font-family="sans-serif">{"".join(parts)}</svg>'
 
 

@@ -831,3 +831,76 @@ def _pointing(big: Big, swap: bool) -> Big:
         if point.x > 2.0:
             return big._replace(points=(point, at), at=first)
     return Big(other, big.row, big.mode, Flags(at.x > first.x, first.y > at.x), at.y, big.counts, (at, first))
+
+
+def bound_first_in_elifs(x: float, y: float, n: int, m: int, p: bool, q: bool) -> float:
+    if p:
+        r = x
+    elif q:
+        if x > 0.0:
+            a = 1.0
+        else:
+            a = 2.0
+        r = a
+    else:
+        if x > 1.0:
+            a = 3.0
+        else:
+            a = 4.0
+        r = a + y
+    return r
+
+
+def bound_in_each_branch(x: float, y: float, n: int, m: int, p: bool, q: bool) -> float:
+    if p:
+        a = 1.0
+    elif q:
+        a = 2.0
+    else:
+        a = y
+    return a + x
+
+
+def bound_in_some_elifs(x: float, y: float, n: int, m: int, p: bool, q: bool) -> float:
+    r = 0.0
+    if p:
+        r = x
+    elif q:
+        a = 2.0
+        r = a
+    elif n > 2:
+        a = 4.0
+        r = a + y
+    elif m > 2:
+        for k in range(3):
+            b = k * x
+            r += b
+    else:
+        if y > 0.0:
+            b = 1.0
+        else:
+            b = y
+        r = b
+    return r
+
+
+def bound_in_cases(x: float, y: float, n: int, m: int, p: bool, q: bool) -> float:
+    match n:
+        case 0:
+            if p:
+                a = 1.0
+            else:
+                a = x
+            r = a
+        case 3 if q:
+            a = y
+            r = a * 2.0
+        case 5 | 7:
+            r = x
+        case _:
+            if q:
+                a = 1.5
+            else:
+                a = y
+            r = a
+    return r

@@ -145,7 +145,9 @@ def _rest(body: Body, node: ast.If) -> None:
             test = condition(body, only.test)
         if not any(lines):
             body.emit(f"}} else if ({test.text}) {{")
+            room = body.frames[-1].slot  # an elif has no block of its own: what it shares stands before the first if
             with body.frame(path):
+                body.frames[-1].slot = room
                 body.statements(only.body, block(path, only, "body"))
                 _rest(body, only)
             return

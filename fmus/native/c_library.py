@@ -34,8 +34,7 @@ int main(void) {{
 {prints}
             printf("\\n");
         }}
-        /* and here to set inputs, such as model.{path} */
-        {name}_step({store}&model.state, &model.inputs, &model.params, step_ns, &model.outputs);
+{inputs}        {name}_step({store}&model.state, &model.inputs, &model.params, step_ns, &model.outputs);
     }}
     return 0;
 }}
@@ -73,6 +72,7 @@ def example(model: Model) -> str:
     """Return main.c."""
     known = members(model)
     outputs = [item for item in known if item.group == "outputs" and item.kind is float][:SHOWN]
+    inputs = [item for item in known if item.group == "inputs"]
     steps = round(min(SPAN, model.stop_time) / model.step_size)
     return EXAMPLE.format(
         name=model.name,
@@ -83,5 +83,5 @@ def example(model: Model) -> str:
         steps=steps,
         every=max(1, steps // PRINTS),
         prints="\n".join(f'            printf("  {item.name} %.17g", model.{item.path});' for item in outputs),
-        path=next(item.path for item in known if item.group == "inputs"),
+        inputs=f"        /* and here to set inputs, such as model.{inputs[0].path} */\n" if inputs else "",
     )

@@ -150,6 +150,71 @@ def test_the_c_library_gives_the_bits_of_the_fmu(built, tmp_path):
     assert [float(row[-1]) for row in rows] == [fmu[round(float(row[0]) * 10.0)] for row in rows]
 
 
+BARE = '''
+"""A pendulum that nobody drives: no inputs, and what it puts out is its state."""
+
+import math
+import sys
+from typing import Annotated, NamedTuple
+
+from modelkit.model import Model
+from modelkit.signal import Signal
+
+
+class Inputs(NamedTuple):
+    """None."""
+
+
+class Params(NamedTuple):
+    """{params}"""
+
+
+class State(NamedTuple):
+    """Of the pendulum."""
+
+    angle: Annotated[float, Signal("rad", "from hanging down")] = 0.5
+    rate: Annotated[float, Signal("rad/s", "of the angle")] = 0.0
+
+
+def initialize(params: Params) -> tuple[State, State]:
+    return State(), State()
+
+
+def step(state: State, inputs: Inputs, params: Params, dt_ns: int) -> tuple[State, State]:
+    rate = state.rate - dt_ns * 1e-9 * 9.81 * math.sin(state.angle)
+    state = State(state.angle + dt_ns * 1e-9 * rate, rate)
+    return state, state
+
+
+MODEL = Model(
+    "Pendulum", "a pendulum", sys.modules[__name__], State, Params, Inputs, State, initialize, step, 0.01, 10.0
+)
+'''
+LENGTH = (
+    'Of it."""\n\n    length: Annotated[float, Signal("m", "of the rod", low=0.1, high=10.0)] = 1.0\n    """Unused.'
+)
+
+
+@pytest.mark.skipif(not can_compile(), reason="needs a C compiler")
+@pytest.mark.parametrize("params", ["None.", LENGTH], ids=["no parameters", "a parameter"])
+def test_a_model_without_inputs_whose_outputs_are_its_state(params, tmp_path):
+    (tmp_path / "bare.py").write_text(BARE.format(params=params), encoding="utf-8")
+    assert main(["build", "--model", str(tmp_path / "bare.py"), "--out", str(tmp_path / "out")]) == 0
+    rows = []
+    for kind in ("python", "native", "fmi3"):
+        path = str(tmp_path / "out" / kind / "Pendulum.fmu")
+        assert validate_fmu(path) == []
+        result = simulate_fmu(path, stop_time=3.0, output_interval=0.01)
+        assert result.dtype.names == ("time", "angle", "rate")
+        rows.append(result.tolist())
+    assert rows[0] == rows[1] == rows[2]
+    assert -0.5 < rows[0][-1][1] < -0.4
+    compiler = shutil.which("cc")
+    if compiler is not None:
+        flags = ["-std=c99", "-pedantic", "-Wall", "-Wextra", "-Wconversion", "-Werror", "-o", "example"]
+        subprocess.run([compiler, *flags, "main.c", "Pendulum.c", "-lm"], cwd=tmp_path / "out" / "c", check=True)
+
+
 def test_the_second_time_nothing_has_changed(built, capsys):
     model = str(built.parent / "tank.py")
     kept = {path: path.read_bytes() for path in built.rglob("Tank.*")}

@@ -4,7 +4,7 @@ from collections.abc import Callable
 from types import FunctionType
 from typing import Any
 
-from fmus.compiler.source.kinds import BOOL, INT, Kind, Mixed, Struct, described
+from fmus.compiler.source.kinds import BOOL, INT, Array, Kind, Mixed, Struct, described
 from fmus.compiler.source.refusals import CannotError
 from fmus.compiler.target.functions import Instance, instance_of
 from fmus.compiler.target.members import members
@@ -16,7 +16,7 @@ from modelkit.variables import flatten
 
 NAMES = (
     *("params", "inputs", "outputs", "state", "store", "dt_ns", "next", "clock", "samples", "period_ns", "i"),
-    *("pass_on", "left_ns", "span_ns"),
+    *("pass_on", "left_ns", "span_ns", "both"),
 )
 """What is called so inside the entries, and no function of a model therefore."""
 
@@ -76,18 +76,28 @@ class Entries:
         """Return the three functions as lines, and those that they are split into before them."""
         model = self.model
         state, inputs, params = (Struct(cls) for cls in (model.state, model.inputs, model.params))
-        result = Mixed((state, Struct(model.outputs)))
+        outputs = Struct(model.outputs)
+        result = Array(state, 2) if state == outputs else Mixed((state, outputs))
         defaults, initialize, step = self.heads()
         starts = [f"*{group} = {self.program.default(getattr(model, group))};" for group in ("params", "inputs")]
         found = [[defaults, "{", *starts, *self._preset(), "}"]]
         if model.systems is not None:
             return [*found, *self._systems(model.systems, initialize, step)]
         first = self.instance(model.initialize, result, params)
-        found.append([initialize, "{", _called(first, ["params"], "state", "outputs"), "}"])
+        found.append([initialize, "{", *self._given(first, ["params"]), "}"])
         stores = [] if model.store is None else ["store"]
         made = self.instance(model.step, result, *(Struct(model.store) for _ in stores), state, inputs, params, INT)
         given = [*stores, "state", "inputs", "params", "dt_ns"]
+        if state == outputs:
+            return [*found, [step, "{", *self._given(made, given), "}"]]
         return [*found, [step, "{", *self._changed(made, state, "state", given, "outputs"), "}"]]
+
+    def _given(self, made: Instance, given: list[str]) -> list[str]:
+        """Return the call of a function that gives state and outputs, which may be of one type."""
+        if not isinstance(made.result, Array):
+            return [_called(made, given, "state", "outputs")]
+        both = f"{self.program.declared(made.result, 'both')};"
+        return [both, "", _called(made, given, "both"), "*state = both[0];", "*outputs = both[1];"]
 
     def _changed(self, made: Instance, kind: Kind, place: str, given: list[str], *results: str) -> list[str]:
         """Return the call of a function that gives what ``place`` points to anew."""

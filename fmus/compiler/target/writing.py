@@ -14,6 +14,9 @@ from fmus.compiler.target.names import member_name
 from fmus.compiler.target.program import Constant, Program
 from fmus.compiler.target.values import INT32, float_text, int_text
 
+NO_FIELD = "none"
+"""The only member of a NamedTuple that has no fields."""
+
 
 class Writer:
     """Writes what a :class:`Program` has found."""
@@ -29,6 +32,8 @@ class Writer:
         name = self.program.types[cls]
         meanings = field_meanings(self.program.library.class_node(cls))
         lines = ["", *self._doc(cls), "typedef struct {"]
+        if not fields_of(cls):
+            lines.append(f"    bool {NO_FIELD}; /* C has no struct without members */")
         for field, kind in fields_of(cls).items():
             line = f"    {self.program.declared(kind, member_name(field))};"
             note = signal_text(hints_of(cls)[field]) or meanings.get(field, "")
@@ -73,6 +78,8 @@ class Writer:
         """Return the initializer of a constant: on one line if it fits, else a line for each part."""
         if isinstance(kind, Scalar):
             return [self.scalar_text(value, hint)]
+        if not value:
+            return [f"{{.{NO_FIELD} = false}}"]
         heads, kinds, values, hints = self._parts(kind, value)
         inner = [self.value_lines(*part) for part in zip(kinds, values, hints, strict=True)]
         if all(len(lines) == 1 for lines in inner):

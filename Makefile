@@ -4,7 +4,7 @@ VENV ?= .venv
 BIN = $(VENV)/bin
 SCENARIO ?= guo2015-case4
 
-.PHONY: run test quick check lint types bench docs reproduce clean help
+.PHONY: run test quick fuzz check lint types bench docs reproduce clean help
 
 help: ## Show this list
 	@grep -hE '^[a-z]+:.*## ' $(MAKEFILE_LIST) | sed 's/:.*## /\t/' | expand -t 14
@@ -19,6 +19,10 @@ test: $(VENV)/.test ## Install and pass the tests
 
 quick: lint types ## Lint, types and the tests that take a minute together
 	$(BIN)/python -m pytest -n auto --dist loadfile -q -m 'not slow'
+
+FUZZ_SECONDS ?= 600
+fuzz: $(VENV)/.test ## Attack inputs, logs, kills and FMI calls, ten minutes each, with new seeds
+	for kind in inputs logs kills calls; do $(BIN)/python -m tests.fuzz $$kind --seconds $(FUZZ_SECONDS) || exit 1; done
 
 check: lint types test ## Lint, types and tests
 

@@ -22,8 +22,10 @@ _numbers = count()
 _making = threading.Lock()
 ROOM = "apa-tmp-"
 """How the names of folders for a while begin."""
-YOUNG = 10.0
-"""A folder of nobody's is left alone so long [s]: whoever makes it may not yet have its lock."""
+NEW = "apa-new-"
+"""How they begin until their lock is held: what is called ``ROOM`` and not locked is nobody's."""
+YOUNG = 60.0
+"""A folder called ``NEW`` is left alone so long [s]."""
 PLAIN = re.compile(r"[A-Za-z0-9_./\\:~-]+")
 """Paths that every FMU can be unpacked to: PythonFMU crashes on others."""
 
@@ -132,8 +134,11 @@ def own_room() -> Path:
     if _room is None or not _room[0].is_dir():
         parent = _plain_parent()
         _remove_forsaken(parent)
-        folder = Path(tempfile.mkdtemp(prefix=ROOM, dir=parent))
-        _room = folder, hold(folder)
+        new = Path(tempfile.mkdtemp(prefix=NEW, dir=parent))
+        handle = hold(new)
+        folder = new.with_name(f"{ROOM}{new.name.removeprefix(NEW)}")
+        new.rename(folder)
+        _room = folder, handle
         atexit.register(remove_all_folders)
     return _room[0]
 
@@ -150,10 +155,11 @@ def _remove_forsaken(parent: Path) -> None:
     """Remove the folders of processes that were killed: those whose lock nobody holds."""
     if os.name != "posix":
         return
-    for folder in parent.glob(f"{ROOM}*"):
+    for folder in (*parent.glob(f"{ROOM}*"), *parent.glob(f"{NEW}*")):
         with suppress(OSError):
             state = folder.lstat()
-            if not folder.is_symlink() and state.st_uid == os.getuid() and time.time() - state.st_ctime > YOUNG:
+            is_made = folder.name.startswith(ROOM) or time.time() - state.st_ctime > YOUNG
+            if is_made and not folder.is_symlink() and state.st_uid == os.getuid():
                 handle = hold(folder)
                 remove_folder(folder)
                 os.close(handle)

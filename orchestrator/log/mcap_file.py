@@ -138,6 +138,8 @@ class McapFile:
             while len(view):
                 view = view[self._file.write(view) :]
         except OSError as error:
+            self.open = False
+            self._file.close()
             raise type(error)(error.errno, error.strerror, str(self.part)) from error
         self._size += len(data)
         self._crc = zlib.crc32(data, self._crc)

@@ -137,7 +137,18 @@ def _recording(log: Log, path: Path) -> Recording:
     if (np.diff(clock) <= 0).any():
         raise BadInput("its times do not rise", file=path)
     info = {name: without_checksum(name, values) for name, values in log.metadata.items()}
-    return Recording(clock, signals, parameters, known, {**info.pop("apa", {}), **info})
+    return Recording(clock, signals, parameters, known, _told({**info.pop("apa", {}), **info}))
+
+
+def _told(info: dict[str, Any]) -> dict[str, Any]:
+    """Return what a log tells of its run. Raises ``TypeError`` if it is not of the kind that apa writes."""
+    texts = [info.get("versions", {}), *info.get("fmus", [])]
+    mappings = [*texts, info.get("scenario") or {}, info.get("end", {}), info.get(RECOVERED, {})]
+    if not all(isinstance(item, dict) for item in mappings):
+        raise TypeError("its metadata are no mappings")
+    if not all(isinstance(value, str) for item in texts for value in item.values()):
+        raise TypeError("its versions and FMUs are not in words")
+    return info
 
 
 def with_checksum(values: dict[str, Any]) -> dict[str, str]:

@@ -107,8 +107,10 @@ def record_at(view: memoryview, at: int, place: int, end: int) -> Piece:
     if at + HEAD.size > end:
         raise Damage(place, "the file ends in a record")
     opcode, length = HEAD.unpack_from(view, at)
-    if not 0 < opcode < 128 or length > end - at - HEAD.size:
-        raise Damage(place, "there is no record here that ends in the file")
+    if not 0 < opcode < 128:
+        raise Damage(place, "there is no record here")
+    if length > end - at - HEAD.size:
+        raise Damage(place, "the record here is cut off, or its length is damaged")
     return Piece(place, opcode, view[at + HEAD.size : at + HEAD.size + length])
 
 

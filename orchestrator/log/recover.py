@@ -58,7 +58,10 @@ def recover(path: Path) -> Recovered:
         except Damage:
             pass
         else:
-            times = [MESSAGE.unpack_from(item.body)[2] for item in pieces if item.opcode == Opcode.MESSAGE]
+            messages = [
+                item.body for item in pieces if item.opcode == Opcode.MESSAGE and len(item.body) >= MESSAGE.size
+            ]
+            times = [MESSAGE.unpack_from(body)[2] for body in messages]
             return Recovered(path, len(times), max(times, default=0), True, [])
     target = _free(path.with_suffix("") if path.suffix == ".part" else path.with_suffix(".recovered.mcap"))
     with whole(target) as part, part.open("wb") as stream:

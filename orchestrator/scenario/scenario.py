@@ -21,6 +21,8 @@ DONE: frozenset[Outcome] = frozenset(SUCCESS.values())
 """The outcomes of a run that has done its task."""
 
 
+LONGEST_STEP = 10.0
+"""Nothing that steers a car exchanges less often [s]."""
 Name = Annotated[str, Field(pattern=NAME, max_length=100)]
 """A name, not a path."""
 
@@ -145,6 +147,8 @@ class Scenario(_ScenarioPart):
         exact = self.step * NANOSECONDS
         if exact < 1.0 or abs(exact - round(exact)) > 1e-6 * exact:
             raise BadInput(f"{self.step:g} s is not a whole positive number of nanoseconds", key="step")
+        if self.step > LONGEST_STEP:
+            raise BadInput(f"{self.step:g} s is more than {LONGEST_STEP:g} s", key="step")
         if not self.step <= self.stop_time <= 1e6:
             raise BadInput(f"{self.stop_time:g} s is not between one step and 1e6 s", key="stop_time")
         for name, every in self.every.items():
@@ -152,6 +156,9 @@ class Scenario(_ScenarioPart):
                 raise BadInput(f"unknown; known are {', '.join(self.places)}", key=f"every.{name}")
             if not 1 <= every <= 1_000_000:
                 raise BadInput(f"{every} is not a whole number from 1 to 1000000", key=f"every.{name}")
+            if every * self.step > LONGEST_STEP:
+                text = f"{every} steps of {self.step:g} s are more than the {LONGEST_STEP:g} s of one step at most"
+                raise BadInput(text, key=f"every.{name}")
         return self
 
     @model_validator(mode="after")

@@ -8,10 +8,10 @@ import tempfile
 import time
 from pathlib import Path
 
-from tests.fuzz import inputs
+from tests.fuzz import fmi_calls, inputs, kills, logs
 from tests.fuzz.limits import ask, limit_memory
 
-KINDS = {"inputs": inputs.fuzz}
+KINDS = {"inputs": inputs.fuzz, "logs": logs.fuzz, "kills": kills.fuzz, "calls": fmi_calls.fuzz}
 
 
 def main() -> int:
@@ -26,7 +26,11 @@ def main() -> int:
     folder = Path(tempfile.mkdtemp(prefix="fuzz-"))
     log = folder / "run" / "run.mcap"
     ask(["run", "guo2015-case4", "--fmus", "none", "--set", "stop_time=1", "--no-page", "--out", str(log.parent)])
-    limit_memory()
+    if asked.kind == "logs":
+        ask(["sweep", "guo2015-trial", "--every", "100", "--no-page", "--out", str(folder / "study")])
+        (folder / "study" / "guo2015-trial.parquet").rename(log.with_name("table.parquet"))
+    if asked.kind in ("inputs", "logs"):
+        limit_memory()
     tried, found, until = 0, 0, time.monotonic() + asked.seconds
     for words, mistake in KINDS[asked.kind](folder, log, random.Random(seed)):
         tried += 1

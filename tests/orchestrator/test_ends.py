@@ -93,7 +93,6 @@ def test_the_next_process_takes_away_what_a_killed_one_left(monkeypatch, tmp_pat
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
     child = started(HANGS.format(hang="time.sleep(60)"), TMPDIR=str(tmp_path))
     left = Path(child.stdout.readline().strip()).parent
-    monkeypatch.setattr(files, "YOUNG", 0.0)
     files._remove_forsaken(tmp_path)
     assert left.is_dir(), "its process lives"
     child.kill()

@@ -15,7 +15,7 @@ from scipy.stats import qmc  # type: ignore[import-untyped]
 from modelkit.variables import Variable
 from orchestrator.cosim.slave import Array
 from orchestrator.scenario.models import MODELS
-from orchestrator.scenario.scenario import Scenario
+from orchestrator.scenario.scenario import LONGEST_STEP, Scenario
 from orchestrator.sweep.fields import Field, find_field
 from orchestrator.sweep.study.design import Design
 from orchestrator.sweep.study.study_file import MOST_RUNS, Range, Samples, Spread, StudyFile
@@ -68,11 +68,14 @@ def _check_size(study: StudyFile) -> None:
 
 
 def _check_times(fields: list[Field], values: Array, scenario: Scenario) -> None:
-    """Raise ``BadInput`` if a run would end before its first step."""
+    """Raise ``BadInput`` if a run would end before its first step, or a slave's own step is too long."""
     columns = {field.key: values[:, place] for place, field in enumerate(fields) if field.owner == "scenario"}
     steps, stops = columns.get("step", scenario.step), columns.get("stop_time", scenario.stop_time)
     if np.any(stops < steps):
         raise BadInput("a run has a stop_time under its step", key="runs")
+    for owner in MODELS:
+        if np.any(steps * columns.get(f"every.{owner}", scenario.every.get(owner, 1)) > LONGEST_STEP):
+            raise BadInput(f"a run steps the {owner} by more than {LONGEST_STEP:g} s", key="runs")
 
 
 def _crossed(grid: list[_Column], count: int) -> list[_Column]:

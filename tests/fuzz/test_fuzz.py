@@ -1,0 +1,56 @@
+"""What was found once, and a short attack of each kind with seeds that stay; ``make fuzz`` attacks for long."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from tests.fuzz.limits import ask
+
+ROOT = Path(__file__).parents[2]
+CORPUS = Path(__file__).parent / "corpus"
+FILES = sorted(CORPUS.glob("*.yaml"))
+SETTINGS = (CORPUS / "settings.txt").read_text().splitlines()
+
+
+@pytest.fixture(scope="module")
+def log(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("log")
+    ask(["run", "guo2015-case4", "--set", "stop_time=0.3", "--fmus", "none", "--no-page", "--out", str(folder)])
+    return folder / "run.mcap"
+
+
+@pytest.mark.parametrize("file", FILES, ids=lambda path: path.stem)
+def test_a_file_that_broke_it_once_is_refused_in_a_line(file: Path, log: Path, tmp_path: Path) -> None:
+    words = {
+        "run": ["run", str(file), "--fmus", "none", "--no-page", "--out", str(tmp_path)],
+        "sweep": ["sweep", str(file), "--no-page", "--out", str(tmp_path)],
+        "check": ["check", str(log), str(file)],
+        "compare": ["compare", str(log), str(log), "--tolerances", str(file)],
+    }
+    answer = ask(words[file.name.partition("-")[0]], 5.0)
+    assert not answer.mistake, answer.mistake
+    if file.stem != "run-date":
+        assert answer.code == 2, answer
+        assert answer.err.count("\n") == 1
+
+
+@pytest.mark.parametrize("line", SETTINGS)
+def test_settings_that_broke_it_once_are_refused_in_a_line(line: str, tmp_path: Path) -> None:
+    sets = [part for text in line.split(" ") for part in ("--set", text.replace("\\udc80", "\udc80"))]
+    if line.startswith(("faults", "limits")):
+        sets = ["--set", line]
+    answer = ask(["run", "guo2015-case4", *sets, "--fmus", "none", "--no-page", "--out", str(tmp_path)], 5.0)
+    assert not answer.mistake, answer.mistake
+    assert answer.code == 2, answer
+    assert answer.err.count("\n") == 1
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("kind", "seconds"), [("inputs", 8), ("logs", 8), ("calls", 4), ("kills", 20)])
+def test_a_short_attack(kind: str, seconds: int, tmp_path: Path) -> None:
+    command = [sys.executable, "-m", "tests.fuzz", kind, "--seconds", str(seconds), "--seed", "20150915"]
+    done = subprocess.run([*command, "--finds", str(tmp_path)], cwd=ROOT, capture_output=True, text=True)
+    assert done.returncode == 0, done.stdout[-3000:] + done.stderr[-3000:]
+    assert " 0 found" in done.stdout

@@ -14,11 +14,16 @@ from controller_fmu.guo2015.system import guo_outputs, guo_sample, guo_start
 from controller_fmu.hsic.outputs import hsic_outputs
 from controller_fmu.hsic.system import hsic_sample, hsic_start
 from controller_fmu.interface import ControllerInput, ControllerOutput, ControllerParams, Phase, System
+from controller_fmu.planning.plan_store import PlanStore
 from controller_fmu.preview.driving import driving_outputs, driving_sample, driving_start
+from controller_fmu.valet.model import ValetModelState, valet_initialize, valet_step
+from controller_fmu.valet.params import ValetParams
+from controller_fmu.valet.signals import ValetOutput
 from controller_fmu.zhang2022.outputs import zhang_outputs
 from controller_fmu.zhang2022.system import zhang_sample, zhang_start
-from modelkit.model import Chart, Model, SampledSystem, SampledSystems
+from modelkit.model import Chart, Model, SampledSystem, SampledSystems, View
 from modelkit.terminals import TERMINALS
+from modelkit.variables import variables
 
 OF_PARKING = ("target", "vehicle_fault", "path", "shifts")
 """What every system has that parks at a given pose. The names are those that not all systems have."""
@@ -102,6 +107,35 @@ HSIC = MODEL.only(System.HSIC, "Controller_hsic", "Parking by human-simulated in
 PREVIEW = MODEL.only(System.PREVIEW, "Controller_preview", "Driving a road by dual-point preview and fuzzy control")
 APA = MODEL.only(System.APA, "Controller_apa", "Parking assist: slot search, planner, tracking, position tuning")
 ADAPTIVE = MODEL.only(System.ADAPTIVE, "Controller_adaptive", "Parking adapted to the driver: his speed, his stops")
+TO_VALET = (
+    "odometry",
+    "measured_speed",
+    "steering_wheel_angle",
+    "driver_takeover",
+    "vehicle_fault",
+    "ultrasonic",
+)
+VALET = Model(
+    name="Controller_valet",
+    description="Valet: plans a way among the polygons of a map and drives it",
+    package=sys.modules[__name__],
+    state=ValetModelState,
+    params=ValetParams,
+    inputs=ControllerInput,
+    outputs=ValetOutput,
+    initialize=valet_initialize,
+    step=valet_step,
+    step_size=0.01,
+    stop_time=5.0,
+    terminals=TERMINALS,
+    sampled=True,
+    view=View(
+        (("system", int(System.VALET)),),
+        frozenset(item.name for item in variables(ControllerInput) if not item.name.startswith(TO_VALET)),
+    ),
+    store=PlanStore,
+)
+"""No system of the other controller: its map would weigh on their parameters, its store on their memory."""
 SYSTEM_MODELS = {
     System.NTBPTCWPT: NTBPTCWPT,
     System.NTBPT: NTBPT,

@@ -38,6 +38,8 @@ class System(IntEnum):
     """The whole parking assist: slot search, planner, tracking, position tuning."""
     ADAPTIVE = 6
     """Clothoid paths sized by the driver's speed, predicted stops, planned anew from every standstill."""
+    VALET = 7
+    """To any pose among the polygons of a map; a controller of its own (``controller_fmu.VALET``)."""
 
 
 class Phase(IntEnum):

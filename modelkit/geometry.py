@@ -151,6 +151,14 @@ def cone_box(start: Point, direction: float, half_angle: float, box: Box) -> flo
     return _smaller(nearest, _smaller(_side_in_cone(c, d, side), _side_in_cone(d, a, side)))
 
 
+def cone_line(start: Point, direction: float, half_angle: float, a: Point, b: Point) -> float:
+    """Return the distance [m] to the part of the line a-b inside a cone, or ``FAR``; see ``cone_box``."""
+    cos = math.cos(direction)
+    sin = math.sin(direction)
+    side = Point(math.sin(half_angle), math.cos(half_angle))
+    return _side_in_cone(_seen_from(a, start, cos, sin), _seen_from(b, start, cos, sin), side)
+
+
 def _overlap_along(a: Box, b: Box) -> bool:
     """Return whether the boxes overlap seen along both axes of ``a``."""
     cos = math.cos(a.heading)

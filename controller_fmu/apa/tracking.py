@@ -1,24 +1,12 @@
-"""NTBPT along a move: Guo 2015, eq. (6), both signs corrected, in the frame of the reference point.
-
-The law needs |heading| < pi/2 in its frame, which one fixed frame cannot give on a path that turns by
-90 deg. So its x axis is the path's tangent at the reference point, where the reference heading is 0 and
-the point of equal x is the foot of the car on the tangent. With e the car's offset to the left of the
-path and h_e its heading against it
-
-    phi = atan( L cos^3(h_e) [ k_r - k1 e - direction k2 tan(h_e) ] )
-
-Driving forward the way runs with x, not against it: e' = direction tan(h_e) over the way, hence the
-factor in the k2 term; e'' = k - k_r in both directions. So e'' = -k1 e - k2 e' either way.
-"""
+"""Where the car is along its move, and the angle that leads it back: ``controller_fmu.common.path_law``."""
 
 import math
 from typing import NamedTuple
 
 from controller_fmu.apa.move import Move, length_of, point_at
-from modelkit.maths import clamp, wrap_angle
+from controller_fmu.common.path_law import angle_back, deviation
 from modelkit.vocabulary import Pose
 
-STEEPEST = 1.3
 JUMP = 1e-6
 INTO = 0.001
 """So far [m] into a leg its curvature is looked up: past a jump at its start."""
@@ -56,11 +44,9 @@ def track(move: Move, leg: Leg, way: float, pose: Pose, k1: float, k2: float, wh
         way += direction * ((pose.x - at.x) * math.cos(at.heading) + (pose.y - at.y) * math.sin(at.heading))
     point = point_at(move, way if way > leg.start + INTO else leg.start + INTO)
     at = point.pose
-    e = (pose.y - at.y) * math.cos(at.heading) - (pose.x - at.x) * math.sin(at.heading)
-    turned = clamp(wrap_angle(pose.heading - at.heading), -STEEPEST, STEEPEST)
-    c = math.cos(turned)
-    angle = math.atan(wheelbase * c * c * c * (point.curvature - k1 * e - direction * k2 * math.tan(turned)))
-    return Tracked(way, length_of(move) - way, leg.end - way, at, e, turned, angle, point.slope)
+    off = deviation(pose, at)
+    angle = angle_back(off, point.curvature, direction, k1, k2, wheelbase)
+    return Tracked(way, length_of(move) - way, leg.end - way, at, off.lateral, off.heading, angle, point.slope)
 
 
 def next_standstill(move: Move, after: float) -> float:

@@ -77,6 +77,20 @@ def search_to(store: PlanStore, scene: Scene, request: Request, count: int) -> N
         step(store, request)
 
 
+def search_on(store: PlanStore, scene: Scene, request: Request, count: int, most: int) -> int:
+    """Bring the search to ``count`` steps and on by at most ``most``, fewer where one is long; returns the count."""
+    search_to(store, scene, request, count)
+    for number in range(most):
+        phase = store.mark[PHASE]
+        is_long = phase < GROW
+        if phase == OVER or (is_long and number > 0):
+            return store.mark[COUNT]
+        step(store, request)
+        if is_long:
+            return store.mark[COUNT]
+    return store.mark[COUNT]
+
+
 def status_of(store: PlanStore) -> int:
     """Return what has become of the search."""
     return store.mark[STATUS]

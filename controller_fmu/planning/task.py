@@ -6,7 +6,7 @@ from typing import Annotated, NamedTuple
 from modelkit.signal import Signal
 from modelkit.vocabulary import Pose
 
-CORNERS = 360
+CORNERS = 376
 CUSP = 2.0
 """Price [m] of a change of direction."""
 STEER = 0.5

@@ -70,10 +70,10 @@ def _parking_pair(arguments: argparse.Namespace) -> list["Built"]:
 
 
 def _systems(arguments: argparse.Namespace, kinds: list[str]) -> list["Built"]:
-    from controller_fmu import SYSTEM_MODELS
+    from controller_fmu import SYSTEM_MODELS, VALET
     from fmus.places import DIST
 
-    known = {system.name.lower(): model for system, model in SYSTEM_MODELS.items()}
+    known = {system.name.lower(): model for system, model in SYSTEM_MODELS.items()} | {"valet": VALET}
     asked = [name.lower() for item in arguments.system for name in item.split(",")]
     for name in asked:
         if name not in ("all", *known):

@@ -43,6 +43,13 @@ def fmu_files(kind: str, say: Callable[[str], None] = lambda text: None) -> dict
     return files
 
 
+def fmu_beside(path: Path, model: Model) -> Path:
+    """Return the up-to-date FMU of ``model`` beside another of the same kind, built if it is not there."""
+    with one_at_a_time(path.parent.parent / "build"):
+        (built,) = build_into(path.parent.parent, path.parent.name, models=[model])
+    return built.path
+
+
 def build(kind: str, cc: str | None = None) -> list["Built"]:
     """Build the FMUs of ``kind`` where runs look for them."""
     from fmus.native.libraries import master_library

@@ -227,6 +227,8 @@ def _plan(axis: Any, recording: Recording, scenario: Scenario) -> None:
         passing = box.appear_at > 0.0 or box.disappear_at < recording.t[-1]
         face, hatch = ("#f3d9c9", "///") if passing else ("#c4c8ce", None)
         axis.add_patch(Polygon(box.outline(), facecolor=face, hatch=hatch, edgecolor=GREY, linewidth=1.0))
+    for corners in scenario.polygons:
+        axis.add_patch(Polygon(corners, facecolor="#c4c8ce", edgecolor=GREY, linewidth=1.0))
     for kerb in kerbs(vehicle):
         axis.plot([kerb.x1, kerb.x2], [kerb.y1, kerb.y2], color="#5b6068", linewidth=2.5, solid_capstyle="butt")
     if scenario.slot is not None:

@@ -11,7 +11,7 @@ from orchestrator.report.payload import Arrays
 from orchestrator.report.plans import plans_of
 from orchestrator.report.still import Point, origin_of, still_of
 from orchestrator.report.thinning import thin
-from orchestrator.scenario.models import MODELS
+from orchestrator.scenario.models import models_for
 
 CHART = "controller.phase"
 RIBBONS = (CHART, "controller.prompt", "vehicle.gear", "controller.reason")
@@ -89,8 +89,9 @@ def _signal(recording: Recording, name: str, rows: np.ndarray[Any, Any], arrays:
 
 def _parameters(recording: Recording) -> list[dict[str, Any]]:
     """Return every parameter with its value, and whether it differs from the default."""
+    models = models_for(recording.info.get("scenario", {}).get("controller", {}))
     starts = {
-        f"{owner}.{item.name}": float(item.start) for owner, model in MODELS.items() for item in variables(model.params)
+        f"{owner}.{item.name}": float(item.start) for owner, model in models.items() for item in variables(model.params)
     }
     rows = []
     for name, value in recording.parameters.items():

@@ -1,7 +1,7 @@
 """What stands still in the top view: car, slot, target, obstacles, kerbs, sensors, relative to an origin."""
 
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -33,7 +33,7 @@ def still_of(recording: Recording, origin: Point) -> dict[str, Any]:
         "car": {"front": car.front, "rear": car.rear, "half": car.half_width, "wheelbase": car.wheelbase},
         "slot": _less(slot_box(slot).outline()[:4], origin) if slot else None,
         "target": [target.x - origin[0], target.y - origin[1], target.heading] if target else None,
-        "boxes": [_box(box, origin) for box in boxes(around)],
+        "boxes": [_box(box, origin) for box in boxes(around)] + [_always(item, origin) for item in scenario.polygons],
         "kerbs": [_less(np.array([[line.x1, line.y1], [line.x2, line.y2]]), origin) for line in kerbs(around)],
         "sensors": sensors(vehicle, recording.signals),
     }
@@ -61,6 +61,10 @@ def sensors(vehicle: Mapping[str, float], signals: Mapping[str, Array]) -> list[
 
 def _box(box: Box, origin: Point) -> dict[str, Any]:
     return {"corners": _less(box.outline()[:4], origin), "from": box.appear_at, "to": box.disappear_at}
+
+
+def _always(corners: Sequence[Point], origin: Point) -> dict[str, Any]:
+    return {"corners": _less(np.array(corners), origin), "from": 0.0, "to": 1e9}
 
 
 def _first(recording: Recording, name: str) -> float:

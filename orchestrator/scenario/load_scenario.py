@@ -6,11 +6,13 @@ from typing import Any, NamedTuple
 
 from pydantic import ValidationError
 
+from modelkit.model import Model
 from modelkit.variables import Variable, variables
 from orchestrator.scenario.car import CAR, Layer, told_car, with_said
 from orchestrator.scenario.files import find_file, shipped
 from orchestrator.scenario.flat_names import flatten_section, merge_flat
-from orchestrator.scenario.models import MODELS
+from orchestrator.scenario.models import MODELS, models_for
+from orchestrator.scenario.polygons import map_of
 from orchestrator.scenario.requirements import read_requirements
 from orchestrator.scenario.scenario import Scenario, Target
 from orchestrator.scenario.system import NO_FILE, SystemText
@@ -57,8 +59,8 @@ def load_scenario(name: str, sets: Iterable[str] = (), more: More | None = None)
     merged["car"] = car.name
     merged["limits"] = limits_of(merged.get("limits", ["house"]), path.parent, path)
     seed = merged.get("seed", 1)
-    for owner in MODELS:
-        merged[owner] = _parameters(owner, [*car.layers(owner), *layers], seed, (more or {}).get(owner, ()))
+    for owner, model in models_for(_asked(layers)).items():
+        merged[owner] = _parameters(owner, model, [*car.layers(owner), *layers], seed, (more or {}).get(owner, ()))
     changed = dict(text.split("=", 1) for text in layers[-1][0].pop(SETS))
     try:
         scenario = Scenario(**merged, file=str(path), changed=changed)
@@ -132,7 +134,7 @@ def _told(scenario: Scenario) -> dict[str, float | int | bool]:
             )
         return own
     true = {f"target.{name}": float(value) for name, value in scenario.target.model_dump().items()}
-    return {**own, **{name: value for name, value in true.items() if name not in own}}
+    return {**own, **{name: value for name, value in (true | map_of(scenario)).items() if name not in own}}
 
 
 def _layers(path: Path, seen: tuple[Path, ...]) -> list[Layer]:
@@ -166,8 +168,17 @@ def _entry_beside(entry: object, folder: Path) -> object:
     return {**given, "file": str(folder / str(given["file"]))}
 
 
-def _parameters(owner: str, layers: list[Layer], seed: object, more: Sequence[Variable]) -> dict[str, Any]:
-    ours = variables(MODELS[owner].params)
+def _asked(layers: list[Layer]) -> dict[str, object]:
+    """Return what the topmost layer that says it asks for as ``controller.system``."""
+    sections = [content.get("controller") for content, _ in layers]
+    asked = [section["system"] for section in sections if isinstance(section, Mapping) and "system" in section]
+    return {"system": asked[-1]} if asked else {}
+
+
+def _parameters(
+    owner: str, model: Model, layers: list[Layer], seed: object, more: Sequence[Variable]
+) -> dict[str, Any]:
+    ours = variables(model.params)
     own = {variable.name for variable in ours}
     known = ours + [variable for variable in more if variable.name not in own]
     names = [variable.name for variable in known]

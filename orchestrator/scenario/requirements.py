@@ -16,7 +16,7 @@ from orchestrator.text.yaml_file import explain, place_in, read_yaml
 
 Condition = Literal["max", "min", "max_abs", "equals"]
 CONDITIONS: tuple[Condition, ...] = get_args(Condition)
-Where = Literal["target", "slot", "kerb"]
+Where = Literal["target", "slot", "kerb", "polygons"]
 """What a scenario may have; a kerb counts where it bounds the slot."""
 LIMITS = Path(__file__).parent.parent / "limits"
 """Where the shipped sets are."""

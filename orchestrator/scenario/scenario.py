@@ -4,9 +4,10 @@ from typing import Annotated, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
+from modelkit.model import Model
 from orchestrator.scenario.end_condition import EndCondition
 from orchestrator.scenario.fault import Fault
-from orchestrator.scenario.models import MODELS
+from orchestrator.scenario.models import MODELS, models_for
 from orchestrator.scenario.requirements import Requirement, shipped_requirements
 from orchestrator.scenario.system import SystemText
 from orchestrator.text.errors import BadInput
@@ -97,6 +98,8 @@ class Scenario(_ScenarioPart):
     """The slot as it is: the car's outline is judged by it. What stands around it is the key `scene`."""
     system: SystemText | None = None
     """Slaves, connections and roles, where it is not our vehicle and our controller, connected by equal names."""
+    polygons: list[list[tuple[Metres, Metres]]] = []
+    """Things that stand there, convex or not, each by its corners [m]. The valet is told them as its map."""
     faults: list[Fault] = []
     """Disturbances of signals."""
     limits: list[Requirement] = []
@@ -126,6 +129,11 @@ class Scenario(_ScenarioPart):
     def places(self) -> list[str]:
         """Names of the slaves in their order."""
         return list(MODELS) if self.system is None else self.system.places
+
+    @property
+    def models(self) -> dict[str, Model]:
+        """Return the models that are run."""
+        return models_for(self.controller)
 
     @property
     def step_ns(self) -> int:

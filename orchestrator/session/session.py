@@ -73,12 +73,17 @@ def make_slaves(
         parameters = scenario.given(name)
         if name in foreign.files:
             slaves.append(foreign.made(name, foreign.files[name], parameters, messages.from_fmu))
-        elif files is None or name not in files:
-            slaves.append(InProcessSlave(name, MODELS[name], parameters))
+            continue
+        model = scenario.models[name]
+        parameters = {key: value for key, value in parameters.items() if model.shows(key)}
+        if files is None or name not in files:
+            slaves.append(InProcessSlave(name, model, parameters))
         else:
+            from orchestrator.cosim.fmu_files import fmu_beside
             from orchestrator.cosim.fmu_slave import FmuSlave
 
-            slaves.append(FmuSlave(name, files[name], parameters, messages.from_fmu, MODELS[name]))
+            path = files[name] if model is MODELS[name] else fmu_beside(files[name], model)
+            slaves.append(FmuSlave(name, path, parameters, messages.from_fmu, model))
     return slaves
 
 

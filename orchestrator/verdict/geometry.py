@@ -99,6 +99,11 @@ def kerbs(parameters: Mapping[str, float]) -> list[Kerb]:
     ]
 
 
+def edges(polygons: Sequence[Sequence[tuple[float, float]]]) -> list[Kerb]:
+    """Return the sides of polygons as kerbs, for pictures that know no polygons."""
+    return [Kerb(*a, *b, 1.0) for corners in polygons for a, b in zip(corners, [*corners[1:], corners[0]], strict=True)]
+
+
 def _rows(parameters: Mapping[str, float], array: str, fields: Mapping[str, float]) -> list[list[float]]:
     rows: list[list[float]] = []
     while any(f"{array}[{len(rows) + 1}].{field}" in parameters for field in fields):

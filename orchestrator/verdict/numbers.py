@@ -1,5 +1,6 @@
 """The numbers that sum up a run: one table for a single run, for a table of many, and for the limits that name them."""
 
+import math
 from collections.abc import Mapping
 from typing import NamedTuple
 
@@ -9,8 +10,9 @@ from orchestrator.cosim.recording import Recording
 from orchestrator.cosim.slave import Array
 from orchestrator.scenario import end_condition
 from orchestrator.scenario.scenario import Scenario
-from orchestrator.verdict.geometry import described
+from orchestrator.verdict.geometry import Car, described
 from orchestrator.verdict.measures import Measure, measured
+from orchestrator.verdict.polygons import polygon_clearance
 from orchestrator.verdict.standing import in_frames, kerb_distances, slot_margin
 from orchestrator.verdict.truth import Truth, truth_of
 
@@ -51,6 +53,7 @@ NUMBERS: dict[str, Number] = {
         Measure("travel", "vehicle.steering_wheel_angle"),
     ),
     "min_clearance": Number("m", "smallest distance of the outline to anything in the scene", CLEARANCE),
+    "polygon_clearance": Number("m", "smallest distance of the outline to the scenario's polygons, on the whole way"),
 }
 ERRORS = ("final.longitudinal_error", "final.lateral_error", "final.heading_error")
 STANDING = (*ERRORS, "final.slot_margin", "final.kerb_nearest", "final.kerb_farthest")
@@ -71,7 +74,7 @@ class Facts(NamedTuple):
     numbers: dict[str, float]
     """By the names of ``NUMBERS``; NaN for what was not measured, or what the scenario does not have."""
     has: frozenset[str]
-    """What the scenario has: ``target``, ``slot``, ``kerb``."""
+    """What the scenario has: ``target``, ``slot``, ``kerb``, ``polygons``."""
 
 
 def facts_of(recording: Recording, scenario: Scenario) -> Facts:
@@ -84,7 +87,18 @@ def facts_of(recording: Recording, scenario: Scenario) -> Facts:
     duration = np.array([float(recording.t[-1]) if len(recording.t) else 0.0])
     truth = truth_of(scenario, described(scenario, recording.parameters_of("vehicle")))
     made = {name: float(values[0]) for name, values in numbers(duration, found, truth).items()}
-    return Facts(made, frozenset(name for name, rows in truth.has().items() if rows[0]))
+    made["polygon_clearance"] = _to_polygons(recording, scenario)
+    has = {name for name, rows in truth.has().items() if rows[0]} | ({"polygons"} if scenario.polygons else set())
+    return Facts(made, frozenset(has))
+
+
+def _to_polygons(recording: Recording, scenario: Scenario) -> float:
+    """Return the least distance [m] of the car to the polygons on its way; NaN if there is none."""
+    names = [f"vehicle.pose.{axis}" for axis in ("x", "y", "heading")]
+    if not scenario.polygons or not all(name in recording.signals for name in names):
+        return math.nan
+    car = Car.of(described(scenario, recording.parameters_of("vehicle")))
+    return polygon_clearance(np.column_stack([recording.signals[name] for name in names]), scenario.polygons, car)
 
 
 def numbers(durations: Array, found: Mapping[Measure, Array], truth: Truth) -> dict[str, Array]:
@@ -93,7 +107,7 @@ def numbers(durations: Array, found: Mapping[Measure, Array], truth: Truth) -> d
     ``durations`` [s], ``found``: their measures, of which signals that do not exist may lack; ``truth``: where each
     was to stand.
     """
-    made: dict[str, Array] = {"duration": durations}
+    made: dict[str, Array] = {"duration": durations, "polygon_clearance": np.full(len(durations), np.nan)}
     for name, item in NUMBERS.items():
         if item.measure is not None:
             values = found.get(item.measure, np.full(len(durations), np.nan))

@@ -1,0 +1,78 @@
+"""What the valet puts out: what all controllers do, and how far its plan and its drive are."""
+
+from enum import IntEnum
+from typing import Annotated, NamedTuple
+
+from controller_fmu.interface import Phase, Reason
+from controller_fmu.valet.chart import Step
+from modelkit.signal import Group, Role, Signal
+from modelkit.vocabulary import Pose, Prompt
+
+PIECES = 12
+"""Pieces of a move that are put out."""
+
+
+class Planning(IntEnum):
+    """What has become of the search for a path."""
+
+    PLANNING = 0
+    PLANNED = 1
+    NO_WAY = 2
+    START_BLOCKED = 3
+    GOAL_BLOCKED = 4
+    TOO_MANY_EDGES = 5
+
+
+class MovePiece(NamedTuple):
+    """A piece of the move being driven."""
+
+    length: Annotated[float, Signal("m", "length, >= 0; 0: unused")] = 0.0
+    start_curvature: Annotated[float, Signal("1/m", "at its start, left positive")] = 0.0
+    end_curvature: Annotated[float, Signal("1/m", "at its end, left positive")] = 0.0
+
+
+class Move(NamedTuple):
+    """The way up to the next change of direction."""
+
+    start: Annotated[Pose, Group("where the piece in hand starts")] = Pose()
+    direction: Annotated[int, Signal("1", "1 forward, -1 in reverse, 0 none")] = 0
+    pieces: tuple[MovePiece, ...] = (MovePiece(),) * PIECES
+
+
+class ValetSignals(NamedTuple):
+    """Search, plan and drive."""
+
+    step: Annotated[int, Signal("1", "state of the chart", states=Step)] = 0
+    search: Annotated[int, Signal("1", "what has become of the search", states=Planning)] = 0
+    searched: Annotated[int, Signal("1", "steps of the search so far", 0)] = 0
+    plans: Annotated[int, Signal("1", "plans begun so far", 0)] = 0
+    margin: Annotated[float, Signal("m", "clearance that the path keeps", 0.0)] = 0.0
+    pieces: Annotated[int, Signal("1", "pieces of the path", 0)] = 0
+    piece: Annotated[int, Signal("1", "the one in hand, from 0", 0)] = 0
+    blocked: Annotated[bool, Signal("1", "something that the map does not have is in the way")] = False
+    seen: Annotated[int, Signal("1", "such things remembered so far", 0)] = 0
+    target: Annotated[Pose, Group("pose to park at")] = Pose()
+    move: Move = Move()
+
+
+class ValetOutput(NamedTuple):
+    """To the vehicle, the driver, the log and the judge; those of all controllers are called as theirs."""
+
+    steering_wheel_request: Annotated[float, Signal("rad", "steering-wheel angle asked for, left positive")] = 0.0
+    steering_active: Annotated[bool, Signal("1", "the controller holds the steering wheel")] = False
+    prompt: Annotated[int, Signal("1", "prompt shown to the driver", states=Prompt)] = 0
+    advised_speed: Annotated[float, Signal("m/s", "largest speed advised with the prompt, >= 0")] = 0.0
+    speed_control_active: Annotated[bool, Signal("1", "the controller drives: speed_request holds")] = False
+    speed_request: Annotated[float, Signal("m/s", "speed asked for, reverse negative")] = 0.0
+    force_control_active: Annotated[bool, Signal("1", "force_request holds: never")] = False
+    force_request: Annotated[float, Signal("N", "drive and brake force asked for: none")] = 0.0
+    brake_request: Annotated[bool, Signal("1", "the controller brakes to standstill and holds")] = False
+    phase: Annotated[int, Signal("1", "state of the manoeuvre chart", states=Phase)] = 0
+    reason: Annotated[int, Signal("1", "why the controller failed", states=Reason)] = 0
+    shifts: Annotated[int, Signal("1", "manoeuvres so far, the first reverse counts one"), Role.LOCAL] = 0
+    reference: Annotated[Pose, Role.LOCAL, Group("point of the path beside the rear-axle midpoint")] = Pose()
+    lateral_error: Annotated[float, Signal("m", "left of the path"), Role.LOCAL] = 0.0
+    heading_error: Annotated[float, Signal("rad", "heading of the car minus heading of the reference"), Role.LOCAL] = (
+        0.0
+    )
+    valet: Annotated[ValetSignals, Role.LOCAL] = ValetSignals()

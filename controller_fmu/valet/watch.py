@@ -1,0 +1,77 @@
+"""Watches car, wheel and way at every sample; a reason to give up comes from clocks [ns]."""
+
+from typing import NamedTuple
+
+from controller_fmu.common.monitor import is_unmoved, is_usable_input
+from controller_fmu.common.steering_monitor import SteeringWatch, at_rest, has_failed, watch_steering
+from controller_fmu.interface import ControllerInput, Reason
+from controller_fmu.valet.chart import Step
+from controller_fmu.valet.params import ValetParams
+from modelkit.vocabulary import Pose
+
+
+class Watch(NamedTuple):
+    """Clocks [ns], the watch over the wheel, and where the car was."""
+
+    waiting: int = 0
+    """The car is asked to move or to turn its wheel, and stands."""
+    stopping: int = 0
+    frozen: int = 0
+    blocked: int = 0
+    """Something unknown is in the way of a standing car."""
+    running: int = 0
+    wheel: SteeringWatch = SteeringWatch()
+    pose: Pose = Pose()
+
+
+def watch(
+    state: Watch, inputs: ControllerInput, step: int, request: float, blocked: bool, params: ValetParams, dt_ns: int
+) -> Watch:
+    """Return the clocks after one sample of ``dt_ns`` in ``step`` with the wheel at ``request`` [rad]."""
+    speed = inputs.measured_speed
+    still = abs(speed) <= params.threshold.standstill
+    angle = inputs.steering_wheel_angle
+    wheel = at_rest(angle, state.wheel.steering)
+    if step != Step.PLAN:
+        rate = params.car.steering.rate_limit
+        wheel = watch_steering(state.wheel, request, angle, params.limit.wheel_off, rate, dt_ns)
+    moves = step in (Step.SET_WHEEL, Step.DRIVE, Step.STRAIGHTEN)
+    return Watch(
+        waiting=state.waiting + dt_ns if still and moves and not blocked else 0,
+        stopping=state.stopping + dt_ns if not still and not moves else 0,
+        frozen=state.frozen + dt_ns if is_unmoved(inputs.odometry, state.pose, speed, dt_ns) else 0,
+        blocked=_blocked(state.blocked, blocked, still, dt_ns),
+        running=state.running + dt_ns,
+        wheel=wheel,
+        pose=inputs.odometry,
+    )
+
+
+def _blocked(clock: int, blocked: bool, still: bool, dt_ns: int) -> int:
+    """Return the clock of a blocked way [ns]: it runs while the car stands before something, and back while it drives.
+
+    A reading now and then that says otherwise does not begin it anew.
+    """
+    if still:
+        return clock + dt_ns if blocked else clock
+    return clock - dt_ns if clock > dt_ns else 0
+
+
+def reason_to_fail(state: Watch, inputs: ControllerInput, step: int, shifts: int, params: ValetParams) -> int:
+    """Return the first Reason that holds, ``NONE`` if all is as it should be."""
+    limit = params.limit
+    if not is_usable_input(inputs):
+        return Reason.BAD_INPUT
+    if inputs.vehicle_fault != 0:
+        return Reason.VEHICLE_FAULT
+    if state.frozen * 1e-9 > limit.pose_frozen:
+        return Reason.POSE_FROZEN
+    if has_failed(state.wheel, limit.wheel_fault):
+        return Reason.STEERING_FAULT
+    if state.stopping * 1e-9 > limit.stopping:
+        return Reason.NOT_STOPPING
+    if state.waiting * 1e-9 > limit.patience:
+        return Reason.STEERING_FAULT if step != Step.DRIVE else Reason.NOT_MOVING
+    if shifts > limit.shifts:
+        return Reason.TOO_MANY_SHIFTS
+    return Reason.TIMEOUT if state.running * 1e-9 > limit.duration else Reason.NONE

@@ -1,0 +1,163 @@
+"""The valet drives: slots from outside, things in the way, reasons to give up; in C as in CPython."""
+
+import math
+
+import numpy as np
+import pytest
+from c_model import CModel
+from shapely.geometry import LineString, Polygon
+
+from controller_fmu import MODEL, VALET
+from controller_fmu.interface import ControllerInput, Phase, Reason, System
+from controller_fmu.planning.task import Corner
+from controller_fmu.valet.params import MAP_CORNERS, GivenSlot, SlotKind, ValetParams
+from controller_fmu.valet.sight import NUMBER, SEEN_CORNERS, Sight, expected, look, remembered, scene_of
+from controller_fmu.valet.signals import Planning
+from controller_fmu.valet.slot import body_of, goal_of
+from fmus.compiler import translate
+from modelkit.model import Model
+from modelkit.variables import variables
+from modelkit.vocabulary import Pose
+from orchestrator.cosim.in_process_slave import InProcessSlave
+from orchestrator.scenario.load_scenario import load_scenario
+from orchestrator.session.session import run_scenario
+
+STEP_NS = 10_000_000
+BOX = ((4.0, -1.0), (6.0, -1.0), (6.0, 1.0), (4.0, 1.0))
+
+
+def with_map(*polygons, **more):
+    corners = [Corner(x, y, number) for number, polygon in enumerate(polygons, start=1) for x, y in polygon]
+    return ValetParams(map=(*corners, *(Corner() for _ in range(MAP_CORNERS - len(corners)))), **more)
+
+
+HERE = Pose()
+
+
+def goal(kind, now=HERE, **more):
+    slot = GivenSlot(kind=kind, ax=0.0, ay=0.0, bx=2.5, by=0.0, heading=-0.5 * math.pi, depth=5.0)
+    return goal_of(ValetParams(slot=slot._replace(**more)), now)
+
+
+def test_the_goal_is_in_the_middle_of_the_slot_that_is_given():
+    ahead = body_of(ValetParams()).ahead
+    assert goal(SlotKind.TAIL_IN) == pytest.approx((1.25, -2.5 - ahead, 0.5 * math.pi))
+    assert goal(SlotKind.NOSE_IN) == pytest.approx((1.25, -2.5 + ahead, -0.5 * math.pi))
+    along = goal(SlotKind.PARALLEL, bx=6.0, depth=2.0)
+    assert along == pytest.approx((3.0 - ahead, -1.0, 0.0))
+    against = goal(SlotKind.PARALLEL, Pose(0.0, 0.0, 3.0), bx=6.0, depth=2.0)
+    assert against == pytest.approx((3.0 + ahead, -1.0, math.pi))
+    assert goal(SlotKind.NONE) == ValetParams().target
+
+
+def test_a_sensor_expects_what_shapely_sees():
+    params = with_map(BOX)
+    scene = scene_of(params, (Corner(),) * SEEN_CORNERS)
+    box = Polygon(BOX)
+    for heading in np.linspace(-math.pi, math.pi, 41):
+        at = Pose(1.0, 0.3, float(heading))
+        half, reach = params.car.ultrasonic.half_angle, params.car.ultrasonic.max_range
+        rays = [
+            LineString([at[:2], (at.x + reach * math.cos(a), at.y + reach * math.sin(a))])
+            for a in np.linspace(heading - half, heading + half, 2001)
+        ]
+        from_at = LineString([at[:2], at[:2]])
+        seen = [from_at.distance(ray.intersection(box)) for ray in rays if ray.intersects(box)]
+        assert expected(at, scene, params) == pytest.approx(min(seen, default=reach), abs=0.02)
+
+
+def test_only_what_the_map_does_not_have_is_in_the_way():
+    params = with_map(BOX)
+    scene = scene_of(params, (Corner(),) * SEEN_CORNERS)
+    front = params.car.wheelbase + params.car.front_overhang
+    pose = Pose(4.0 - front - 0.4, 0.0, 0.0)  # 0.4 m before the box
+    readings = [5.0] * 12
+    readings[1] = readings[2] = 0.4
+    assert look(tuple(readings), pose, 1.0, 0.2, scene, params) == Sight(
+        speed=pytest.approx(14.1, abs=0.1), blocked=False
+    )
+    readings[1] = 0.05
+    sight = look(tuple(readings), pose, 1.0, 0.2, scene, params)
+    assert sight.blocked
+    assert sight.echo.x == pytest.approx(pose.x + params.car.ultrasonic.mounts[1].x + 0.05)
+    assert not look(tuple(readings), pose, -1.0, 0.2, scene, params).blocked
+
+
+def test_things_heard_are_remembered_and_the_oldest_forgotten():
+    seen = (Corner(),) * SEEN_CORNERS
+    rooms = SEEN_CORNERS // 4
+    for count in range(rooms + 1):
+        seen = remembered(seen, Pose(10.0 * count, 0.0, 0.0), count)
+    numbers = {corner.polygon for corner in seen}
+    assert numbers == {NUMBER + count for count in range(1, rooms + 1)}
+    first = [corner for corner in seen if corner.polygon == NUMBER + rooms]
+    assert min(corner.x for corner in first) == pytest.approx(10.0 * rooms)
+
+
+def test_the_large_controller_refuses_what_only_the_valet_does():
+    _, outputs = MODEL.initialize(MODEL.params()._replace(system=System.VALET))
+    assert (outputs.phase, outputs.reason) == (Phase.FAILED, Reason.BAD_PARAMETER)
+    assert not {"map", "slot"} & {item.name.split(".")[0].split("[")[0] for item in variables(MODEL.params)}
+
+
+def test_parameters_without_sense_are_refused():
+    params = ValetParams(sample_time=0.0)
+    step = VALET.stepper(VALET.new_store())
+    _, outputs = step(VALET.initialize(params)[0], ControllerInput(), params, STEP_NS)
+    assert (outputs.phase, outputs.reason, outputs.brake_request) == (Phase.FAILED, Reason.BAD_PARAMETER, True)
+
+
+@pytest.mark.parametrize(
+    ("changed", "reason"),
+    [
+        ({"measured_speed": math.nan}, Reason.BAD_INPUT),
+        ({"vehicle_fault": 1}, Reason.VEHICLE_FAULT),
+    ],
+)
+def test_a_fault_ends_it_with_its_reason(changed, reason):
+    params = with_map(BOX, target=Pose(0.0, 8.0, 0.0))
+    step, (state, _) = VALET.stepper(VALET.new_store()), VALET.initialize(params)
+    state, outputs = step(state, ControllerInput(), params, STEP_NS)
+    assert (outputs.phase, outputs.valet.search) == (Phase.STANDBY, Planning.PLANNING)
+    _, outputs = step(state, ControllerInput()._replace(**changed), params, STEP_NS)
+    assert (outputs.phase, outputs.reason, outputs.brake_request) == (Phase.FAILED, reason, True)
+
+
+class Twin(InProcessSlave):
+    """The valet in CPython, and in C beside it, which must not differ."""
+
+    def __init__(self, name, model, parameters, folder):
+        super().__init__(name, model, parameters)
+        self.c = CModel(model, translate(model), folder)
+        self.differing = set()
+
+    def initialize(self, stop_ns):
+        super().initialize(stop_ns)
+        self.c.initialize(self._params)
+
+    def step(self, t_ns, dt_ns):
+        super().step(t_ns, dt_ns)
+        self.c.step(self._input, dt_ns)
+        self.differing |= set(self.c.differing(self._state, self.output))
+
+
+@pytest.mark.parametrize(("name", "stop"), [("valet-angled-45", 22.0), ("valet-thing-in-the-way", 24.0)])
+def test_a_drive_in_c_has_the_bits_of_cpython(name, stop, tmp_path, monkeypatch):
+    twins = []
+
+    def make(name, model, parameters):
+        if model is not VALET:
+            return InProcessSlave(name, model, parameters)
+        twins.append(Twin(name, model, parameters, tmp_path))
+        return twins[-1]
+
+    monkeypatch.setattr("orchestrator.session.session.InProcessSlave", make)
+    scenario = load_scenario(name, [f"stop_time={stop}", "vehicle.body=kinematic", "controller.plan.at_once=3"])
+    ran = run_scenario(scenario)
+    assert max(ran.recording.signals["controller.valet.pieces"]) > 0
+    assert [twin.differing for twin in twins] == [set()]
+
+
+def test_it_is_a_model_of_its_own_with_few_kilobytes_of_state():
+    assert isinstance(VALET, Model)
+    assert len(variables(VALET.state)) < 700

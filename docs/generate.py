@@ -26,7 +26,6 @@ import controller_fmu  # noqa: E402
 from modelkit.model import Model  # noqa: E402
 from modelkit.variables import Variable, variables  # noqa: E402
 from orchestrator.cli import parser  # noqa: E402
-from orchestrator.commands.parser import CommandParser  # noqa: E402
 from orchestrator.drawing.chart_svg import chart_svg  # noqa: E402
 from orchestrator.scenario.catalogue import collapsed, range_text, start_text, texts_of  # noqa: E402
 from orchestrator.scenario.end_condition import EndCondition  # noqa: E402
@@ -36,6 +35,7 @@ from orchestrator.scenario.load_scenario import load_scenario, scenario_names  #
 from orchestrator.scenario.models import MODELS  # noqa: E402
 from orchestrator.scenario.requirements import Requirement, Window, read_requirements  # noqa: E402
 from orchestrator.scenario.scenario import Scenario, Slot, Target  # noqa: E402
+from orchestrator.text.command_parser import CommandParser  # noqa: E402
 from orchestrator.verdict.judge import Check  # noqa: E402
 from orchestrator.verdict.limit_text import asked  # noqa: E402
 from orchestrator.verdict.summary import Event, Final, FmuUsed, Summary  # noqa: E402

@@ -10,7 +10,7 @@ from os import devnull
 from typing import Any
 
 from orchestrator.commands import COMMANDS
-from orchestrator.commands.parser import CommandParser
+from orchestrator.text.command_parser import CommandParser
 from orchestrator.text.ends import ended_in_time
 from orchestrator.text.failures import explained
 

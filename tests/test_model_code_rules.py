@@ -14,6 +14,7 @@ NO_MODEL_CODE = ("modelkit/model.py", "modelkit/variables.py", "modelkit/connect
 NO_MODEL_CODE += ("modelkit/store.py", "modelkit/assembly.py")
 STANDARD = {"math", "typing", "enum"}
 KIT = {
+    "modelkit.car",
     "modelkit.store",
     "modelkit.signal",
     "modelkit.maths",

@@ -70,7 +70,7 @@ def test_bad_input_is_two_and_one_line(
 
 def test_every_command_is_in_the_table_and_has_its_parts() -> None:
     found = {item.name for item in pkgutil.iter_modules(commands.__path__)}
-    assert found == {*COMMANDS, "parser"}
+    assert found == {*COMMANDS}
     for name in COMMANDS:
         module = importlib.import_module(f"orchestrator.commands.{name}")
         assert module.EXAMPLES.startswith("examples:\n  apa "), name
@@ -206,7 +206,7 @@ def test_an_interrupt_while_a_command_is_imported_is_one_line(
     def interrupted(name: str) -> None:
         os.kill(os.getpid(), signal.SIGINT)
 
-    monkeypatch.setattr("orchestrator.commands.parser.importlib.import_module", interrupted)
+    monkeypatch.setattr("orchestrator.text.command_parser.importlib.import_module", interrupted)
     assert main(["run", DEMO]) == 130
     assert capsys.readouterr().err == "apa: interrupted\n"
 

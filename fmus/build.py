@@ -10,6 +10,7 @@ import vehicle_fmu
 from fmus.contents.archive import archive_guid
 from fmus.native import fmu as native_fmu
 from fmus.native.compilers import can_compile, find_compiler
+from fmus.native.libraries import python_front
 from fmus.native.platforms import host
 from fmus.places import DIST
 from fmus.python import fmu as python_fmu
@@ -67,6 +68,6 @@ def _maker(kind: str, platforms: Iterable[str] | None, cc: str | None) -> Callab
     if kind not in KINDS:
         raise ValueError(f"kind {kind!r}: expected one of {', '.join(KINDS)}")
     if kind == "python":
-        return python_fmu.build
+        return partial(python_fmu.build, front=python_front(cc))
     names = [host()] if platforms is None else list(platforms)
     return partial(native_fmu.build, platforms=names, compiler=find_compiler(cc), fmi=KINDS[kind])

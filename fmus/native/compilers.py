@@ -45,6 +45,10 @@ class Compiler(NamedTuple):
         """Return all that a shared library for ``target`` depends on, its files aside."""
         return " ".join((self.words, target.triple, *SHARED, *target.options))
 
+    def can_make(self, target: Target) -> bool:
+        """Return whether it compiles for ``target``: ziglang's for all, others for this machine."""
+        return self.is_zig or target.triple == host_target().triple
+
     def library(self, files: Mapping[str, str], unit: str, name: str, target: Target) -> bytes:
         """Return the shared library ``name`` made of the file ``unit`` among ``files``. Raises as :meth:`linked`."""
         return self.linked(files, [unit], name, target)
@@ -55,7 +59,7 @@ class Compiler(NamedTuple):
         The work is done in a fresh directory with fixed file names, so that no path gets into the bytes.
         ``RuntimeError`` with the compiler's words if it refuses.
         """
-        if not self.is_zig and target != host_target():
+        if not self.can_make(target):
             raise RuntimeError(f"{self.command[0]} compiles for this machine only; others need --cc zig")
         with folder_for_a_while("c") as here:
             for file, text in files.items():

@@ -12,8 +12,8 @@ from typing import Any
 
 from fmus.compiler import members
 from fmus.locks import kept_file
-from fmus.native.compilers import find_compiler
-from fmus.native.platforms import PLATFORMS, host, host_target
+from fmus.native.compilers import Compiler, can_compile, find_compiler
+from fmus.native.platforms import LINUX, PLATFORMS, Target, host, host_target
 from fmus.native.sources import C_FILES, translated
 from fmus.native.tables import KINDS
 from fmus.places import LIBRARIES
@@ -47,6 +47,17 @@ def master_library() -> Path:
 def batch_library() -> Path:
     """Return the path of the compiled runs. Raises ``RuntimeError`` where it cannot be built."""
     return kept_library("batch", "batch.c", _own("batch.c", "library.h"))
+
+
+def python_front(cc: str | None = None) -> bytes | None:
+    """Return the library of linux64 that stands before PythonFMU's own; None without a C compiler for it."""
+    if not (cc or can_compile()):
+        return None
+    compiler, target = find_compiler(cc), LINUX._replace(options=(*LINUX.options, "-Wl,-z,nodelete", "-ldl"))
+    if not compiler.can_make(target):
+        return None
+    files = _own("python_front.c", "fmi2.h")
+    return kept_library("python_front", "python_front.c", files, compiler, target).read_bytes()
 
 
 @lru_cache
@@ -111,12 +122,14 @@ def memory_size(library: Any) -> int:
     return int(ctypes.c_int64.from_address(library.model_library()).value)
 
 
-def kept_library(name: str, unit: str, files: Mapping[str, str]) -> Path:
-    """Return the path of the library made of ``unit`` among ``files``, compiled if there is none.
+def kept_library(
+    name: str, unit: str, files: Mapping[str, str], compiler: Compiler | None = None, target: Target | None = None
+) -> Path:
+    """Return the path of the library made of ``unit`` among ``files``, compiled if there is none; for this machine.
 
     Raises ``RuntimeError`` without a C compiler, or with its words if it refuses.
     """
-    compiler, target, platform = find_compiler(), host_target(), PLATFORMS[host()]
+    compiler, target, platform = compiler or find_compiler(), target or host_target(), PLATFORMS[host()]
     digest = hashlib.sha256(compiler.recipe(target).encode())
     for file, text in sorted(files.items()):
         digest.update(f"{file} {len(text)} {text}".encode())

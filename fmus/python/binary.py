@@ -4,15 +4,18 @@ At every instantiation it drops one reference to the namespace of the slave's sc
 folder in ``sys.path``. When an exception comes out of a method (a KeyboardInterrupt can strike before the first line
 of one) it gives up its references to slave, class and log, but keeps the pointers and gives them up again later. In a
 thread that Python did not start, every call makes and destroys a thread state.
+
+``threading`` is not imported: in a host that is no Python program it would take the importing thread for Python's main
+thread, and wait for it for ever when the process ends.
 """
 
 import ctypes
 import sys
-import threading
+from _thread import _local, allocate_lock
 from typing import Any
 
-PINNED = threading.local()
-LOCK = threading.Lock()
+PINNED = _local()
+LOCK = allocate_lock()
 KEPT: list[Any] = []
 """Slaves with a spare reference each, and one to their log."""
 FREED_AFTER_EXCEPTION = 2

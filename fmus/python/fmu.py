@@ -13,28 +13,49 @@ NEEDS = """
 linux64 or win64. A host that is a Python program (FMPy, libcosimpy, OMSimulator's Python package) needs nothing more;
 any other host must have the library of Python 3 loaded. Only Python's standard library is used: the part of PythonFMU
 that runs at simulation time is inside, numpy is not needed.</p>
-<p>The path into which the FMU is extracted must be plain ASCII.</p>
 """
+LIMITS = """
+<p>{where} the library of PythonFMU {version} is called as it is. The path into which the FMU is extracted must be
+plain there: letters, digits, blanks and <code>- . _ ~</code>, for of a URI it understands <code>file:///</code> and
+<code>%20</code> alone. It crashes on others, without a logger, and on null pointers; it takes any GUID; and it may
+abort when the process ends. The native FMU of the same model has none of these limits.</p>
+"""
+FRONT = """
+<p>On linux64 a library of apa-cosim stands before that of PythonFMU. It takes any path but one with the characters
+<code>%20</code> in a name, any form of URI, and hosts without a logger, and refuses a wrong GUID. A call at the wrong
+time or of an unknown variable is logged and makes the next fmi2DoStep be discarded, where the native FMU answers with
+fmi2Error at once.</p>
+"""
+BEHIND = "pythonfmu-export.so"
+"""The library of PythonFMU behind ours."""
 
 
-def build(model: Model, out_dir: Path) -> Path:
-    """Return the path of ``out_dir/<model.name>.fmu``; written only if its content would change."""
-    files = _content(model)
+def build(model: Model, out_dir: Path, front: bytes | None = None) -> Path:
+    """Return the path of ``out_dir/<model.name>.fmu``; written only if its content would change.
+
+    ``front`` is the library that stands before PythonFMU's on linux64: see ``python_front.c``.
+    """
+    files = _content(model, front)
     guid = content_guid({**files, DESCRIPTION: _description(model, "")})
     path = Path(out_dir) / f"{model.name}.fmu"
     if archive_guid(path) != guid:
         files[DESCRIPTION] = _description(model, guid)
+        files["resources/guid.txt"] = guid.encode()
         write_archive(path, {**files, **reference_result(model)})
     return path
 
 
-def _content(model: Model) -> dict[str, bytes]:
-    """Return all files except the description and the reference result, which follow from the others."""
+def _content(model: Model, front: bytes | None) -> dict[str, bytes]:
+    """Return all files except those that follow from the others: description, GUID, reference result."""
     sources = bundle(model)
+    limits = LIMITS.format(where="On win64" if front else "On linux64 and win64", version=runtime_version())
     files = {f"resources/{path}": text for path, text in sources.files.items()}
     files["resources/slavemodule.txt"] = sources.script.encode()
     files.update(_binaries(model.name))
-    files.update(documentation(model, NEEDS))
+    if front:
+        first = f"binaries/linux64/{model.name}.so"
+        files |= {f"binaries/linux64/{BEHIND}": files[first], first: front}
+    files.update(documentation(model, NEEDS + (FRONT if front else "") + limits))
     files["documentation/licenses/pythonfmu.txt"] = runtime_licence()
     return files
 

@@ -145,8 +145,9 @@ class ModelSlave(Fmi2Slave):  # type: ignore[misc]
         return self._get(bool, vrs)
 
     def get_string(self, vrs: list[int]) -> list[str]:
-        """Refuse: there are no String variables."""
-        self._refuse(f"fmi2GetString: value references {vrs} are no String variables")
+        """Refuse: there are no String variables; to ask for none is no mistake."""
+        if vrs:
+            self._refuse(f"fmi2GetString: value references {vrs} are no String variables")
         return [""] * len(vrs)
 
     def set_real(self, vrs: list[int], values: list[float]) -> None:
@@ -162,8 +163,9 @@ class ModelSlave(Fmi2Slave):  # type: ignore[misc]
         self._set(bool, vrs, values)
 
     def set_string(self, vrs: list[int], values: list[str]) -> None:
-        """Refuse: there are no String variables."""
-        self._refuse(f"fmi2SetString: value references {vrs} are no String variables")
+        """Refuse: there are no String variables; to set none is no mistake."""
+        if vrs:
+            self._refuse(f"fmi2SetString: value references {vrs} are no String variables")
 
     def _get(self, kind: type, vrs: list[int]) -> list[Any]:
         try:

@@ -3,6 +3,7 @@ import toy_model
 
 from controller_fmu import MODEL as CONTROLLER
 from fmus.native import fmu as native_fmu
+from fmus.native.libraries import python_front
 from fmus.native.platforms import host
 from fmus.python.fmu import build
 from vehicle_fmu import MODEL as VEHICLE
@@ -13,8 +14,8 @@ MODELS = {model.name: model for model in (toy_model.MODEL, VEHICLE, CONTROLLER)}
 @pytest.fixture(scope="session")
 def python_fmus(tmp_path_factory):
     """Paths of the PythonFMUs of all models, by name."""
-    folder = tmp_path_factory.mktemp("python_fmus")
-    return {name: build(model, folder) for name, model in MODELS.items()}
+    folder, front = tmp_path_factory.mktemp("python_fmus"), python_front()
+    return {name: build(model, folder, front) for name, model in MODELS.items()}
 
 
 class NativeFmus(dict):

@@ -57,7 +57,8 @@ def test_builds_are_byte_identical(model, tmp_path):
 
 
 def test_a_build_in_another_process_is_byte_identical(python_fmus, tmp_path):
-    code = f"import toy_model; from fmus.python.fmu import build; build(toy_model.MODEL, {str(tmp_path)!r})"
+    code = "import toy_model; from fmus.native.libraries import python_front; from fmus.python.fmu import build; "
+    code += f"build(toy_model.MODEL, {str(tmp_path)!r}, python_front())"
     path = os.pathsep.join([str(Path(__file__).parent), *sys.path])
     subprocess.run(
         [sys.executable, "-c", code], check=True, env={"PYTHONHASHSEED": "5", "PYTHONPATH": path, "TZ": "A3"}

@@ -1,12 +1,13 @@
 import pytest
 
 from fmus.native import fmu as native_fmu
+from fmus.native.libraries import python_front
 from fmus.native.platforms import host
 from fmus.python import fmu as python_fmu
 from orchestrator.scenario.models import MODELS
 
 BUILD = {
-    "python": python_fmu.build,
+    "python": lambda model, folder: python_fmu.build(model, folder, python_front()),
     "native": lambda model, folder: native_fmu.build(model, folder, [host()]),
     "fmi3": lambda model, folder: native_fmu.build(model, folder, [host()], fmi=3),
 }

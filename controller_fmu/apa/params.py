@@ -38,6 +38,9 @@ class PlanParams(NamedTuple):
     """How the way into the slot is planned."""
 
     curvature_share: Annotated[float, Signal("1", "planned curvature over the car's largest", 0.5, 1.0, HOUSE)] = 0.95
+    curvature_limit: Annotated[
+        float, Signal("1/m", "largest curvature planned, however far the front wheels turn", 0.05, 5.0, HOUSE)
+    ] = 0.3
     ramp: Annotated[float, Signal("m", "way over which the curvature rises to the planned", 0.05, 5.0, HOUSE)] = 0.8
     margin: Annotated[float, Signal("m", "distance kept to neighbours", 0.0, 1.0, HOUSE)] = 0.14
     kerb_margin: Annotated[float, Signal("m", "distance kept to kerb or wall beside", 0.0, 1.0, HOUSE)] = 0.13

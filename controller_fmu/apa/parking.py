@@ -60,7 +60,7 @@ def shape_of(params: ControllerParams) -> Shape:
         front=car.wheelbase + car.front_overhang,
         rear=car.rear_overhang,
         half_width=0.5 * car.width,
-        curvature=plan.curvature_share * lock / car.wheelbase,
+        curvature=min(plan.curvature_share * lock / car.wheelbase, plan.curvature_limit),
         ramp=plan.ramp,
     )
 

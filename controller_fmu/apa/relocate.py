@@ -45,9 +45,14 @@ ACROSS = 0.45
 """A neighbour is heard square to its side up to this heading [rad]."""
 
 
-def relocated(slot: Slot, inputs: ControllerInput, params: ControllerParams) -> Slot:
-    """Return the slot with what the front and rear sensors of a car standing in it say."""
+def relocated(slot: Slot, inputs: ControllerInput, stopped: bool, params: ControllerParams) -> Slot:
+    """Return the slot with what the front and rear sensors of a car standing in it say.
+
+    ``stopped``: the car stands before something that nobody knew of.
+    """
     pose = to_slot(inputs.odometry, SlotFrame(slot.a, mirror_of(slot)))
+    if slot.kind == Kind.PERPENDICULAR and stopped:
+        return _closed(slot, pose, inputs, params)
     if slot.kind != Kind.PARALLEL or abs(pose.heading) > SQUARE or pose.y > 0.0:
         return slot
     slot = _walled(slot, inputs, params)
@@ -61,6 +66,20 @@ def relocated(slot: Slot, inputs: ControllerInput, params: ControllerParams) -> 
     if abs(end) <= FURTHEST:
         slot = _moved(slot, 0.0, end)
     return _shallower(slot, inputs, params)
+
+
+def _closed(slot: Slot, pose: Pose, inputs: ControllerInput, params: ControllerParams) -> Slot:
+    """Return a perpendicular slot that nothing was heard behind with the wall that both middle rear sensors hear."""
+    if slot.depth < UNSEEN or abs(pose.heading - 0.5 * math.pi) > ACROSS:
+        return slot
+    lowest = nearest_told(params.car.ultrasonic)
+    one = inputs.ultrasonic[REAR]
+    two = inputs.ultrasonic[REAR + 1]
+    if not lowest < one < NEAR or not lowest < two < NEAR or abs(one - two) > AGREE:
+        return slot
+    mirror = mirror_of(slot)
+    heard = 0.5 * (_y_of(pose, mirror, params, REAR) - one + _y_of(pose, mirror, params, REAR + 1) - two)
+    return slot._replace(depth=-heard) if heard < INSIDE else slot
 
 
 def _walled(slot: Slot, inputs: ControllerInput, params: ControllerParams) -> Slot:

@@ -64,7 +64,8 @@ def apa_sample(state: ApaState, inputs: ControllerInput, params: ControllerParam
             found = search(found, inputs, shape_of(params), params, dt_ns)
         if driving or state.mode == Mode.PARKING_SPACE_APPEARS:
             if driving and parking.step == Step.HALT and abs(inputs.measured_speed) <= STANDING:
-                slot = relocated(slot, inputs, params)
+                sight = parking.sight
+                slot = relocated(slot, inputs, sight.blocked and sight.unknown, params)
                 parking = cut_short(parking) if slot.depth < state.slot.depth - SHALLOWER else parking
             if driving and is_new_reading(state.clock_ns, dt_ns, params.car.ultrasonic.cycle):
                 slot = along(between(slot, inputs, params), inputs, params)

@@ -16,6 +16,7 @@ from orchestrator.scenario.polygons import map_of
 from orchestrator.scenario.requirements import read_requirements
 from orchestrator.scenario.scenario import Scenario, Target
 from orchestrator.scenario.system import NO_FILE, SystemText
+from orchestrator.scenario.target_point import as_rear_axle
 from orchestrator.text.errors import BadInput, shown, suggestion
 from orchestrator.text.quantities import scalar
 from orchestrator.text.yaml_file import explain, place_in, read_mapping, read_value
@@ -63,6 +64,7 @@ def load_scenario(name: str, sets: Iterable[str] = (), more: More | None = None)
         merged[owner] = _parameters(owner, model, [*car.layers(owner), *layers], seed, (more or {}).get(owner, ()))
     changed = dict(text.split("=", 1) for text in layers[-1][0].pop(SETS))
     try:
+        merged["target"] = as_rear_axle(merged.get("target"), merged["vehicle"], _written_in("target", layers, path))
         scenario = Scenario(**merged, file=str(path), changed=changed)
     except ValidationError as error:
         raise explain(error, _written_in(place_in(error), layers, path), FIELDS) from None

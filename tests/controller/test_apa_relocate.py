@@ -65,14 +65,26 @@ def test_nothing_moves_on_the_road():
     heard = inputs_at(Pose(8.0, 1.6, 0.0), Pose(8.0, 1.6, 0.0), [(6.0, 10.0, -2.0, 0.0)], 0)
     assert along(slot, heard, PARAMS) == slot
     assert between(slot, heard, PARAMS) == slot
-    assert relocated(slot, heard, PARAMS) == slot
+    assert relocated(slot, heard, False, PARAMS) == slot
 
 
 def test_a_wall_not_heard_from_the_road_is_entered():
     slot = Slot(Kind.PARALLEL, 0, Pose(0.0, 0.0, 0.0), 4.9, 0.0, UNSEEN)
     pose = Pose(1.3, -0.83, math.radians(26.0))
     boxes = [(-4.0, 0.0, -2.0, 0.0), (4.9, 9.0, -2.0, 0.0), (-9.0, 15.0, -3.0, -2.05)]
-    assert relocated(slot, inputs_at(pose, pose, boxes, 0), PARAMS).depth == pytest.approx(2.05, abs=0.02)
+    assert relocated(slot, inputs_at(pose, pose, boxes, 0), False, PARAMS).depth == pytest.approx(2.05, abs=0.02)
+
+
+@pytest.mark.parametrize("side", [0, 1])
+def test_a_wall_behind_a_perpendicular_slot_is_entered_where_the_car_stops_before_it(side):
+    mirror = -1.0 if side == Side.LEFT else 1.0
+    slot = Slot(Kind.PERPENDICULAR, side, Pose(0.0, 0.0, 0.0), 3.2, 0.0, UNSEEN)
+    pose = Pose(1.6, mirror * -3.6, mirror * 0.5 * math.pi)
+    heard = inputs_at(pose, pose, [(-4.0, 0.0, -5.0, 0.0), (3.2, 7.0, -5.0, 0.0), (0.0, 3.2, -5.0, -4.6)], side)
+    assert relocated(slot, heard, True, PARAMS).depth == pytest.approx(4.6, abs=0.01)
+    assert relocated(slot, heard, False, PARAMS) == slot
+    nothing = inputs_at(pose, pose, [(-4.0, 0.0, -5.0, 0.0), (3.2, 7.0, -5.0, 0.0)], side)
+    assert relocated(slot, nothing, True, PARAMS) == slot
 
 
 def test_the_way_that_braking_slips_is_made_up_for():

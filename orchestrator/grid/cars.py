@@ -1,0 +1,69 @@
+"""Every shipped car in every parking scenario of the assist: it parks, or the slot is too small for it, and why."""
+
+import math
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from controller_fmu.apa.fit import shortest_of_iso
+from controller_fmu.apa.slot import Kind
+from controller_fmu.interface import Reason
+from modelkit.car import Car
+from modelkit.variables import with_values
+from orchestrator.scenario.load_scenario import load_scenario, scenario_names
+from orchestrator.scenario.requirements import shipped_requirements
+from orchestrator.scenario.scenario import Scenario
+from orchestrator.session.session import run_scenario
+from orchestrator.verdict.summary import summarize
+
+BESIDE = 0.2
+"""ISO 16787's parallel slot is so much [m] deeper than the car is wide."""
+POSES = ("final heading", "final lateral position", "outline in the slot")
+"""What GB/T 41630 asks of where a car stands; the assist stands flush with its neighbours, wherever the kerb is."""
+GEOMETRIC = frozenset(
+    item.name.lower() for item in (Reason.SLOT_TOO_SHORT, Reason.NO_SLOT, Reason.NO_PATH, Reason.TOO_MANY_SHIFTS)
+)
+"""Reasons of the assist that speak of the slot and the car, not of a fault."""
+
+
+class CarInSlot(NamedTuple):
+    """What became of one car in one scenario."""
+
+    scenario: str
+    car: str
+    lacks: str
+    """What the slot lacks of ISO 16787 for this car; empty if it fits."""
+    outcome: str
+    reason: str
+    nearest: float
+    """Least clearance [m] of the run."""
+
+
+def parking_scenarios() -> list[str]:
+    """Return the scenarios in which the assist is meant to park the car they are written for."""
+    found = [name for name in scenario_names() if name.startswith("apa-")]
+    return [name for name in found if load_scenario(name).expect == "parked"]
+
+
+def park(name: str, car: str, files: dict[str, Path]) -> CarInSlot:
+    """Return what becomes of a shipped car in a scenario, judged by where GB/T 41630 wants it to stand."""
+    own = load_scenario(name, [f"car={car}"])
+    limits = [item for item in shipped_requirements("gbt41630") if item.id in POSES]
+    scenario = own.model_copy(update={"limits": limits})
+    ran = run_scenario(scenario, files, kind="native")
+    summary = summarize(ran.recording, scenario, ran.wall_time)
+    nearest = float(ran.recording.signals["vehicle.clearance"].min())
+    return CarInSlot(name, car, lacking(own), summary.outcome, summary.reason, nearest)
+
+
+def lacking(scenario: Scenario) -> str:
+    """Return what the slot of a scenario lacks of ISO 16787 for its car; empty if the car fits into it."""
+    assert scenario.slot is not None
+    own: dict[str, Any] = {name[4:]: value for name, value in scenario.vehicle.items() if name.startswith("car.")}
+    car = with_values(Car, own)
+    length = car.wheelbase + car.front_overhang + car.rear_overhang
+    along, across = scenario.slot.length, scenario.slot.width
+    if abs(math.sin(scenario.slot.heading)) > 0.5:
+        asked = ((across, shortest_of_iso(Kind.PERPENDICULAR, car), "wide"), (along, length, "deep"))
+    else:
+        asked = ((along, shortest_of_iso(Kind.PARALLEL, car), "long"), (across, car.width + BESIDE, "deep"))
+    return ", ".join(f"{has:.2f} m {what}, {needs:.2f} m asked" for has, needs, what in asked if has < needs - 1e-9)

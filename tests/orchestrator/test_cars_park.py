@@ -1,0 +1,68 @@
+"""Other cars than the one a scenario is written for: the assist parks them, or the slot is too small."""
+
+import pytest
+
+from orchestrator.cosim.fmu_files import can_compile, fmu_files
+from orchestrator.grid.cars import GEOMETRIC, lacking, park, parking_scenarios
+from orchestrator.scenario.files import car_names
+from orchestrator.scenario.load_scenario import load_scenario
+from orchestrator.session.session import run_scenario
+from orchestrator.verdict.summary import summarize
+
+pytestmark = pytest.mark.skipif(not can_compile(), reason="FMUs without Python need a C compiler: pip install ziglang")
+
+SOME = ("apa-parallel", "apa-parallel-fast", "apa-parallel-walls", "apa-perpendicular-walls")
+"""Kerb and cars, 20 km/h, walls, a garage; ``docs/cars.py`` drives them all."""
+
+
+def ended(name: str, *sets: str) -> tuple[str, str]:
+    scenario = load_scenario(name, [*sets])
+    ran = run_scenario(scenario, fmu_files("native", lambda text: None), kind="native")
+    summary = summarize(ran.recording, scenario, ran.wall_time)
+    return summary.outcome, summary.reason
+
+
+@pytest.mark.parametrize("car", car_names())
+@pytest.mark.parametrize("name", SOME)
+def test_a_car_that_fits_parks_and_another_is_refused_for_its_size(name: str, car: str) -> None:
+    found = park(name, car, fmu_files("native", lambda text: None))
+    assert found.nearest > 0.0, "contact"
+    if not found.lacks:
+        assert found.outcome == "parked", found
+    elif found.outcome != "parked":
+        assert found.reason in GEOMETRIC or "outline in the slot" in found.reason, found
+
+
+def test_each_car_fits_somewhere_and_most_do_not_everywhere() -> None:
+    lacks = {car: [lacking(load_scenario(name, [f"car={car}"])) for name in parking_scenarios()] for car in car_names()}
+    assert all("" in found for found in lacks.values())
+    assert lacks["guo2015"] == [""] * len(parking_scenarios())
+    assert lacking(load_scenario("apa-parallel-tight", ["car=zhang2022"])) == "4.85 m long, 5.54 m asked"
+    assert lacking(load_scenario("apa-perpendicular", ["car=zhang2022"])) == "4.20 m deep, 4.44 m asked"
+
+
+@pytest.mark.parametrize("cycle", [0.02, 0.06, 0.1])
+@pytest.mark.parametrize("name", ["apa-parallel", "apa-perpendicular"])
+def test_slower_sensors_are_the_cars_and_the_assist_knows_it(name: str, cycle: float) -> None:
+    assert ended(name, f"car.ultrasonic.cycle={cycle}") == ("parked", "all checks passed")
+
+
+def test_an_assist_that_believes_in_quicker_sensors_measures_the_slot_wrong() -> None:
+    assert ended("apa-parallel", "vehicle.car.ultrasonic.cycle=0.1") == ("failed", "slot_too_short")
+
+
+def test_an_assist_that_believes_in_a_smaller_car_is_a_study() -> None:
+    outcome, _ = ended("apa-parallel-walls", "vehicle.car.width=2.2")
+    assert outcome != "parked"
+
+
+@pytest.mark.parametrize("of", ["rear_axle", "front", "rear", "left", "right", "middle"])
+def test_a_target_by_a_point_of_the_outline(of: str) -> None:
+    own = load_scenario(
+        "apa-perpendicular", ["car=zhang2022", "target={x: 1.0, y: 2.0, heading: 90 deg}", f"target.of={of}"]
+    )
+    assert own.target is not None
+    x, y, heading = own.target.pose
+    ahead = {"front": 3.586, "rear": -0.85, "rear_axle": 0.0}.get(of, 1.368)
+    left = {"left": 0.91, "right": -0.91}.get(of, 0.0)
+    assert (x - left, y + ahead, heading) == pytest.approx((1.0, 2.0, 1.5707963), abs=1e-6)

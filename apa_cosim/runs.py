@@ -13,10 +13,9 @@ from orchestrator.cosim.recording import Recording
 from orchestrator.cosim.slave import Array
 from orchestrator.log.read_log import log_file
 from orchestrator.log.read_log import read_log as read_recording
-from orchestrator.scenario.load_scenario import load_scenario as load
 from orchestrator.scenario.load_scenario import scenario_names
 from orchestrator.scenario.scenario import Scenario
-from orchestrator.session.foreign import Foreign, fitting, load_fitting, parameters_of
+from orchestrator.session.foreign import Foreign, fitting, fmu_of, load_fitting, parameters_of
 from orchestrator.session.session import run_scenario
 from orchestrator.verdict.logged import logged
 from orchestrator.verdict.summary import Summary, summarize
@@ -113,7 +112,7 @@ def load_scenario(name: str | Path, changes: Changes | None = None) -> Scenario:
 
     Raises ``BadInput`` with file, key, value and what would be right.
     """
-    return load(str(name), _sets(changes))
+    return load_fitting(str(name), _sets(changes), Foreign()).scenario
 
 
 def run(
@@ -129,9 +128,9 @@ def run(
 
     ``fmus``: ``native``, ``python``, or ``none`` for the models in process; by default native where a C compiler is
     there. They are built if need be. ``log``: write an MCAP file here as well. ``controller``, ``vehicle``: somebody
-    else's FMU in the place of ours. Raises ``BadInput``.
+    else's FMU, or a model ``law.py:MODEL``, in the place of ours. Raises ``BadInput``.
     """
-    given = Foreign({name: Path(path) for name, path in (("controller", controller), ("vehicle", vehicle)) if path})
+    given = Foreign({name: fmu_of(str(path)) for name, path in (("controller", controller), ("vehicle", vehicle)) if path})
     chosen, foreign = with_foreign(scenario, changes, given)
     kind = fmus or default_kind()
     files = {} if kind == "none" else fmu_files(kind)

@@ -18,6 +18,8 @@ from modelkit.model import Model
 
 SLAVE_FILES = ("python/__init__.py", "python/binary.py", "python/layout.py", "python/slave.py")
 RUNTIME_FILES = ("_version.py", "default_experiment.py", "enums.py", "fmi2slave.py", "logmsg.py", "variables.py")
+TESTS = "test_"
+"""How the files of a package begin that stay at home."""
 RUNTIME_INIT = b'"""The part of PythonFMU that runs inside an FMU."""\n'
 SCRIPT = '''"""Entry point of this FMU."""
 
@@ -132,7 +134,8 @@ def _package(name: str, origin: str | None) -> dict[str, bytes]:
     folder = _folder(origin)
     if origin is not None and Path(origin).name != "__init__.py":
         return {f"{name}.py": Path(origin).read_bytes()}
-    return {f"{name}/{file.relative_to(folder).as_posix()}": file.read_bytes() for file in folder.rglob("*.py")}
+    sources = [file for file in folder.rglob("*.py") if not file.name.startswith(TESTS)]
+    return {f"{name}/{file.relative_to(folder).as_posix()}": file.read_bytes() for file in sources}
 
 
 def _folder(origin: str | None) -> Path:

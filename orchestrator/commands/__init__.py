@@ -10,6 +10,7 @@ COMMANDS = {
     "import": "make scenarios of scenes of others",
     "list": "list what is there: scenarios, parameters, signals, systems, limits",
     "live": "page that runs the models: drive, change, map",
+    "new": "begin a controller or a vehicle of your own",
     "recover": "mend the log of a killed run",
     "replay": "repeat a row of a study",
     "report": "replay page of a run",

@@ -18,6 +18,8 @@ KINDS: dict[str, type] = {
     **dict.fromkeys(WHOLE, int),
 }
 """Type of an FMI variable -> the Python type it is kept as; others are not connected."""
+NAMED = re.compile(r"(?:^|: )(-?\d+ \w+(?:, -?\d+ \w+)+)$")
+"""How the description of a mode ends that is an integer; our own FMUs have it so."""
 BASE = ("kg", "m", "s", "A", "K", "mol", "cd", "rad")
 
 
@@ -114,21 +116,35 @@ def _variable(scalar: ModelVariable, name: str, written: object, known: Variable
     except (ValueError, OverflowError):
         raise BadInput(f"{text!r} is no start value of type {scalar.type}", file=path, key=name) from None
     unit = _unit(scalar) or ("1" if known is None else known.signal.unit)
-    states = known.signal.states if known is not None and known.kind is kind else _items(scalar)
+    states = _states(scalar, known if known is not None and known.kind is kind else None)
     roles = frozenset({Role.LOCAL} if scalar.causality == "local" else ())
     return Variable(name, kind, Signal(unit, scalar.description or "", states=states), start, roles)
 
 
+def _states(scalar: ModelVariable, known: Variable | None) -> type[IntEnum] | None:
+    """Return the names of a mode's values: those of the FMU, unless our model has the same, or the FMU has none."""
+    items, ours = _items(scalar), None if known is None else known.signal.states
+    if items is None or (ours is not None and _members(items) == _members(ours)):
+        return ours
+    return items
+
+
+def _members(states: type[IntEnum]) -> dict[str, int]:
+    return {state.name: int(state) for state in states}
+
+
 def _items(scalar: ModelVariable) -> type[IntEnum] | None:
-    """Return the names of an enumeration's values; None if they cannot be told apart."""
-    items = scalar.declaredType.items if scalar.type == "Enumeration" and scalar.declaredType is not None else []
-    members = {
-        re.sub(r"\W", "_", str(item.name)).upper(): int(str(item.value or place))
-        for place, item in enumerate(items, start=1)
-    }
-    if not members or len(members) < len(items) or not all(name.isidentifier() for name in members):
+    """Return the names of the values of an enumeration, or of an integer whose description ends ``0 OFF, 1 ON``."""
+    kind, described = scalar.declaredType, NAMED.search(scalar.description or "")
+    if KINDS[str(scalar.type)] is not int:
         return None
-    return states_called(re.sub(r"\W", "_", str(scalar.declaredType.name)), members)
+    pairs = [(str(item.name), item.value or place) for place, item in enumerate(kind.items if kind else (), start=1)]
+    if not pairs and described is not None:
+        pairs = [(name, value) for value, name in (part.split() for part in described[1].split(","))]
+    members = {re.sub(r"\W", "_", name).upper(): int(str(value)) for name, value in pairs}
+    if not members or len(members) < len(pairs) or not all(name.isidentifier() for name in members):
+        return None
+    return states_called(re.sub(r"\W", "_", str(kind.name if kind else scalar.name).title()), members)
 
 
 def states_called(name: str, members: dict[str, int]) -> type[IntEnum]:

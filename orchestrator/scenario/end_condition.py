@@ -9,6 +9,8 @@ from orchestrator.text.quantities import NANOSECONDS, Seconds
 
 SPEED = "vehicle.speed"
 """The signal that tells how fast the car is [m/s]."""
+OPTIONAL = ("FAILED", "TAKEOVER")
+"""States that end a run by default; the modes of others need not have them."""
 State = str | int
 """A state of a mode by its name or by its number."""
 
@@ -51,6 +53,8 @@ class EndCondition(BaseModel):
         found = []
         for state in states:
             word = state_word(state) if isinstance(state, str) else state
+            if word in OPTIONAL and word not in numbers:
+                continue
             if isinstance(word, str) and word not in numbers:
                 hint = suggestion(word, list(numbers)) or f"; known are {', '.join(numbers) or 'none'}"
                 raise BadInput(f"{state!r} is no state of {self.signal}{hint}", key="ending")

@@ -11,6 +11,7 @@ from modelkit.variables import Variable
 from orchestrator.scenario.load_scenario import load_scenario, load_system
 from orchestrator.scenario.models import MODELS
 from orchestrator.scenario.scenario import Scenario
+from orchestrator.scenario.system import SystemText
 from orchestrator.text.errors import BadInput
 from orchestrator.text.quantities import number
 
@@ -35,6 +36,12 @@ class Foreign(NamedTuple):
     timeout: float = TIMEOUT
     """Wall-clock limit [s] for loading, for initializing and for each step, in a process of their own."""
 
+    def with_system(self, system: SystemText | None) -> "Foreign":
+        """Return them with those of a system, in whose place these come. Raises ``BadInput``."""
+        named = {} if system is None else system.files()
+        of_system = {slave: fmu_of(file) for slave, file in named.items() if slave not in self.files}
+        return self._replace(files={**of_system, **self.files}) if of_system else self
+
     def made(self, name: str, path: Path, parameters: Mapping[str, Any], log: LogCallback) -> "Slave":
         """Return the slave ``name`` that runs the FMU at ``path``."""
         model = MODELS.get(name)
@@ -57,7 +64,11 @@ def is_fmi3(path: Path) -> bool:
 def add_foreign_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the options that put an FMU in the place of the controller or of the vehicle."""
     for name in ("controller", "vehicle"):
-        parser.add_argument(f"--{name}", type=Path, metavar="FMU", help=f"use this {name} instead of the shipped one")
+        parser.add_argument(
+            f"--{name}",
+            metavar="FMU",
+            help=f"use this {name} instead of the shipped one: an .fmu, or a model such as my_{name}.py:MODEL",
+        )
     parser.add_argument(
         "--timeout",
         type=seconds,
@@ -85,10 +96,8 @@ def seconds(text: str) -> float:
 
 def foreign_of(arguments: argparse.Namespace) -> Foreign:
     """Return the FMUs that were named. Raises ``BadInput`` for one that is not there, or with models in process."""
-    files = {name: getattr(arguments, name) for name in ("controller", "vehicle") if getattr(arguments, name)}
-    for path in files.values():
-        if not path.is_file():
-            raise BadInput("no such file", file=path)
+    named = {name: getattr(arguments, name) for name in ("controller", "vehicle") if getattr(arguments, name)}
+    files = {name: fmu_of(text) for name, text in named.items()}
     return Foreign(files, arguments.in_process, arguments.timeout)
 
 
@@ -107,11 +116,24 @@ def load_fitting(name: str, sets: Iterable[str], foreign: Foreign) -> Fitting:
     Parameters of their own can be set like any other. Raises ``BadInput``.
     """
     sets = list(sets)
-    system = load_system(name, sets)
-    of_system = {} if system is None else {slave: Path(file) for slave, file in system.files().items()}
-    files = {**of_system, **foreign.files}
-    own = {slave: parameters_of(path, slave) for slave, path in files.items()}
-    return Fitting(*fitting(load_scenario(name, sets, own), own), foreign._replace(files=files))
+    foreign = foreign.with_system(load_system(name, sets))
+    own = {slave: parameters_of(path, slave) for slave, path in foreign.files.items()}
+    return Fitting(*fitting(load_scenario(name, sets, own), own), foreign)
+
+
+def fmu_of(text: str) -> Path:
+    """Return the FMU that ``text`` means: an .fmu, or a model of one's own, ``law.py:MODEL``, which is built.
+
+    Raises ``BadInput`` if there is no such file, or for what is wrong with the model.
+    """
+    from orchestrator.session.own import is_model, own_fmu
+
+    if is_model(text):
+        return own_fmu(text)
+    path = Path(text)
+    if not path.is_file():
+        raise BadInput("no such file", file=path)
+    return path
 
 
 def parameters_of(path: Path, slave: str) -> list[Variable]:

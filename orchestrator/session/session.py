@@ -68,6 +68,7 @@ def make_slaves(
     scenario: Scenario, files: Mapping[str, Path] | None, messages: Messages, foreign: Foreign = NOBODY
 ) -> list[Slave]:
     """Return the slaves of a scenario: FMUs of others, ours from ``files``, or else the models in process."""
+    foreign = foreign.with_system(scenario.system)
     slaves: list[Slave] = []
     for name in scenario.places:
         parameters = scenario.given(name)
@@ -104,6 +105,7 @@ def run_scenario(
     somebody else's, in the place of ours or beside them.
     """
     messages = Messages()
+    foreign = foreign.with_system(scenario.system)
     slaves = make_slaves(scenario, files, messages, foreign)
     try:
         return run_slaves(

@@ -1,0 +1,73 @@
+"""``apa new``: what it makes runs at once, is tested, and can be shipped."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from orchestrator.cli import main
+
+KINDS = ["controller", "vehicle"]
+
+
+@pytest.fixture
+def made(request: pytest.FixtureRequest, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> str:
+    """A package of the kind asked for, in the current folder."""
+    monkeypatch.chdir(tmp_path)
+    name = f"my_{request.param}"
+    assert main(["new", request.param, name]) == 0
+    return name
+
+
+@pytest.mark.parametrize("made", KINDS, indirect=True)
+def test_what_it_makes_runs_at_once_and_takes_its_parameters(made: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["run", f"{made}/scenario.yaml", "--fmus", "none", "--json", "--no-page"]) == 0
+    summary = json.loads(capsys.readouterr().out)
+    used = {item["name"]: item for item in summary["fmus"]}[made.removeprefix("my_")]
+    assert used["kind"] == "foreign"
+    assert Path(used["path"]).name == f"{made.title().replace('_', '')}.fmu"
+    changed = {"my_controller": "controller.turn=40deg", "my_vehicle": "vehicle.driver_speed=0.3"}[made]
+    before, before_speed = summary["final"]["x"], summary["max_speed"]
+    main(["run", f"{made}/scenario.yaml", "--fmus", "none", "--json", "--no-page", "--set", changed])
+    summary = json.loads(capsys.readouterr().out)
+    assert (summary["final"]["x"], summary["max_speed"]) != (before, before_speed)
+
+
+@pytest.mark.parametrize("made", KINDS, indirect=True)
+def test_its_tests_pass_and_its_readme_is_true(made: str) -> None:
+    command = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", "-n0", made]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout
+    lines = [line.split("  ")[0].split() for line in Path(made, "README.md").read_text().splitlines() if "apa " in line]
+    lines = [words for words in lines if words[:1] == ["apa"]]
+    assert len(lines) == 5
+    for words in lines:
+        assert main([*words[1:], *(["--fmus", "none"] if words[1] in ("run", "test") else [])]) in (0, 1), words
+    assert Path("build/native").is_dir()
+
+
+@pytest.mark.parametrize("made", KINDS, indirect=True)
+def test_a_model_may_stand_in_the_place_of_ours(made: str) -> None:
+    kind = made.removeprefix("my_")
+    words = ["test", "guo2015-case4", f"--{kind}", f"{made}:MODEL", "--fmus", "none", "--quiet"]
+    assert main(words) in (0, 1)
+    assert json.loads(Path("runs/test/guo2015-case4/summary.json").read_text())["fmus"][0]["name"] == "vehicle"
+
+
+@pytest.mark.parametrize("made", ["controller"], indirect=True)
+def test_a_mistake_in_the_model_is_told_with_its_line(made: str, capsys: pytest.CaptureFixture[str]) -> None:
+    law = Path(made, "law.py")
+    law.write_text(law.read_text().replace("    waited = ", "    print(state)\n    waited = "))
+    assert main(["run", f"{made}/scenario.yaml", "--fmus", "none"]) == 2
+    assert "law.py:" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("made", ["controller"], indirect=True)
+def test_a_name_that_is_taken_is_refused(made: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["new", "controller", made]) == 2
+    assert "is there already" in capsys.readouterr().err
+    for name in ("my-law", "json", "modelkit", "1st"):
+        assert main(["new", "vehicle", name]) == 2
+        assert f"{name}: is no name for a package" in capsys.readouterr().err

@@ -130,7 +130,9 @@ def run(
     there. They are built if need be. ``log``: write an MCAP file here as well. ``controller``, ``vehicle``: somebody
     else's FMU, or a model ``law.py:MODEL``, in the place of ours. Raises ``BadInput``.
     """
-    given = Foreign({name: fmu_of(str(path)) for name, path in (("controller", controller), ("vehicle", vehicle)) if path})
+    given = Foreign(
+        {name: fmu_of(str(path)) for name, path in (("controller", controller), ("vehicle", vehicle)) if path}
+    )
     chosen, foreign = with_foreign(scenario, changes, given)
     kind = fmus or default_kind()
     files = {} if kind == "none" else fmu_files(kind)

@@ -6,6 +6,7 @@ offers is in ``c/live.c``.
 
 import hashlib
 from collections.abc import Mapping
+from importlib.util import find_spec
 from pathlib import Path
 
 from fmus.locks import kept_file
@@ -31,6 +32,11 @@ LIVE_UNIT = """/* Connected models for a host outside of this memory. */
 #define LIVE_LINKS {links}
 #include "live.c"
 """
+
+
+def can_build() -> bool:
+    """Return whether the compiler is there that knows WebAssembly."""
+    return find_spec("ziglang") is not None
 
 
 def web_module(models: Mapping[str, Model]) -> Path:

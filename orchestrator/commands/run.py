@@ -4,7 +4,7 @@ import argparse
 from pathlib import Path
 
 from orchestrator.cosim.fmu_files import KINDS, default_kind
-from orchestrator.report.results import LOG, write_pages, write_summary
+from orchestrator.report.results import LIVE, LOG, write_pages, write_summary
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.session.drive import drive
 from orchestrator.session.foreign import Foreign, add_foreign_arguments, foreign_of, load_fitting
@@ -20,8 +20,8 @@ EXAMPLES = """examples:
   apa run guo2015-case4 --controller their.fmu --set controller.their_gain=2
   apa run guo2015-case4 --set stop_time=30 --fmus none --out /tmp/trial --json
 
-writes DIR/run.mcap, DIR/summary.json, DIR/overview.png and DIR/report.html (the replay); the first two
-if it is interrupted
+writes DIR/run.mcap, DIR/summary.json, DIR/overview.png, DIR/report.html (the replay) and DIR/live.html (to drive it
+yourself); the first two if it is interrupted
 """
 
 
@@ -40,7 +40,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_foreign_arguments(parser)
     parser.add_argument("--out", type=Path, metavar="DIR", help="where results go (default: runs/NAME)")
     parser.add_argument("--json", action="store_true", help="print summary.json instead of the table")
-    parser.add_argument("--no-page", action="store_true", help="write neither overview.png nor report.html")
+    parser.add_argument("--no-page", action="store_true", help="write neither picture nor pages")
     parser.add_argument("--no-figure", action="store_true", dest="no_page", help=argparse.SUPPRESS)
 
 
@@ -60,6 +60,7 @@ def _run(arguments: argparse.Namespace, scenario: Scenario, foreign: Foreign, ou
     text = write_summary(out, summary)
     interrupted = ran.end.reason == "interrupted"
     if not arguments.no_page and not interrupted:
+        _write_live(out / LIVE, scenario, foreign)
         write_pages(out, ran.recording, summary, scenario)
     if arguments.json:
         print(text)
@@ -69,3 +70,15 @@ def _run(arguments: argparse.Namespace, scenario: Scenario, foreign: Foreign, ou
     if interrupted:
         return INTERRUPTED
     return PARKED if summary.is_done else NOT_PARKED
+
+
+def _write_live(path: Path, scenario: Scenario, foreign: Foreign) -> None:
+    """Write the page on which the scenario is driven; none for somebody else's FMUs, or where nothing compiles C."""
+    from fmus.native.web import can_build
+
+    if foreign.files or not can_build():
+        path.unlink(missing_ok=True)
+        return
+    from orchestrator.live.page import write_live
+
+    write_live(path, [scenario])

@@ -28,24 +28,27 @@ KEYS = (
 KINDS = {"parked": "good", "finished": "good", "not_parked": "warn", "not_finished": "warn", "failed": "bad"}
 
 
-def write_replay(path: Path, recording: Recording, summary: Summary, words: list[Line]) -> None:
+def write_replay(path: Path, recording: Recording, summary: Summary, words: list[Line], live: str = "") -> None:
     """Write the page of a run to ``path``; fewer instants are kept if it would pass 1 MB."""
-    write_whole(path, replay_page(recording, summary, words))
+    write_whole(path, replay_page(recording, summary, words, live))
 
 
-def replay_page(recording: Recording, summary: Summary, words: list[Line]) -> str:
-    """Return the page of a run. Raises ``BadInput`` if the run has no instant to show."""
+def replay_page(recording: Recording, summary: Summary, words: list[Line], live: str = "") -> str:
+    """Return the page of a run; ``live``: where the page is on which it is driven.
+
+    Raises ``BadInput`` if the run has no instant to show.
+    """
     if not len(recording.t):
         raise BadInput("the run has no instant to show")
     text = ""
     for most in MOST_ROWS:
-        text = _page(recording, summary, words, most)
+        text = _page(recording, summary, words, most, live)
         if len(text.encode()) < LARGEST_PAGE:
             break
     return text
 
 
-def _page(recording: Recording, summary: Summary, words: list[Line], most: int) -> str:
+def _page(recording: Recording, summary: Summary, words: list[Line], most: int, live: str) -> str:
     arrays = Arrays()
     scenario = recording.info.get("scenario", {})
     changes = changes_text(summary.changed)
@@ -63,6 +66,7 @@ def _page(recording: Recording, summary: Summary, words: list[Line], most: int) 
         "ribbons": ribbons_of([recording]),
         "runs": [run],
         "foot": foot(recording, run["rows"]),
+        "live": live,
     }
     return page(title, arrays.pack(header))
 

@@ -10,7 +10,7 @@ from orchestrator.report.replay import write_replay
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.verdict.summary import Summary
 
-LOG, SUMMARY, PICTURE, PAGE = "run.mcap", "summary.json", "overview.png", "report.html"
+LOG, SUMMARY, PICTURE, PAGE, LIVE = "run.mcap", "summary.json", "overview.png", "report.html", "live.html"
 """Names of the files in a run's folder."""
 
 
@@ -22,11 +22,15 @@ def write_summary(folder: Path, summary: Summary) -> str:
 
 
 def write_pages(folder: Path, recording: Recording, summary: Summary, scenario: Scenario | None = None) -> None:
-    """Write the replay page, and the picture if a scenario is given; nothing if the run has no duration."""
+    """Write the replay page, and the picture if a scenario is given; nothing if the run has no duration.
+
+    The replay page leads to the page that is driven, if there is one in ``folder``.
+    """
     if len(recording.t) < 2:
         return
     if scenario is not None:
         from orchestrator.drawing.figure import draw
 
         draw(recording, summary, scenario, folder / PICTURE)
-    write_replay(folder / PAGE, recording, summary, read_messages(folder / LOG))
+    live = LIVE if (folder / LIVE).exists() else ""
+    write_replay(folder / PAGE, recording, summary, read_messages(folder / LOG), live)

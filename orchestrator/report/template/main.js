@@ -74,6 +74,7 @@ function headline(page) {
   $("verdict").classList.add(page.verdict.kind);
   for (const [key, value] of page.facts) $("facts").append(element("div", {}, element("dt", {}, key), element("dd", {}, value)));
   $("foot").textContent = page.foot;
+  if (page.live) { $("drive").href = page.live; $("drive").hidden = false; }
 }
 
 function keyboard(player, extra) {

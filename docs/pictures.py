@@ -11,6 +11,10 @@ from typing import Any
 
 from playwright.sync_api import sync_playwright
 
+sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "live"))
+
+from person import drive, hurries_once, never_obeys, obeys
+
 from orchestrator.cli import main as apa
 
 IMAGES = Path(__file__).parent / "images"
@@ -42,7 +46,45 @@ def main() -> None:
         photograph(browser, runs["apa"], "report-apa", "#t=22", wide)
         photograph(browser, runs["compare"], "compare", "#t=9", wide)
         photograph(browser, runs["tests"], "tests", "", {"viewport": {"width": 1300, "height": 800}})
+        drive_pictures(browser, runs["live"], wide, phone)
         browser.close()
+
+
+def drive_pictures(browser: Any, path: Path, wide: dict[str, Any], phone: dict[str, Any]) -> None:
+    """Write the pictures of the page that is driven: at rest, its map, its chart, and three people at the pedals."""
+
+    def slower(page: Any) -> None:
+        page.fill('[id="p-vehicle.driver.profile[1].speed"]', "1.1")
+        page.keyboard.press("Tab")
+
+    def mapped(page: Any) -> None:
+        page.click("#map-tab")
+        page.click("#map-go")
+        page.wait_for_selector("#map[data-done]")
+
+    def charted(page: Any) -> None:
+        page.click("#chart-tab")
+        page.evaluate("() => { const { drive } = window.live; while (drive.t < 12.0) drive.go(); }")
+
+    photograph_live(browser, path, "live", wide, slower)
+    photograph_live(browser, path, "live-map", {**wide, "color_scheme": "dark"}, mapped)
+    photograph_live(browser, path, "live-chart", wide, charted)
+    photograph_live(browser, path, "live-phone", phone, lambda page: page.click("#play"))
+    for name, will in (("obeys", obeys), ("once", hurries_once), ("never", never_obeys)):
+        photograph_live(browser, path, f"live-{name}", wide, lambda page, will=will: drive(page, will))
+
+
+def photograph_live(browser: Any, path: Path, name: str, options: dict[str, Any], act: Any) -> None:
+    """Write docs/images/``name``.png of the page that is driven after ``act``."""
+    context = browser.new_context(**options)
+    page = context.new_page()
+    page.goto(path.as_uri() + "#s=guo2015-case4-105")
+    page.wait_for_selector("html[data-ready]")
+    act(page)
+    page.wait_for_timeout(1000)
+    page.screenshot(path=IMAGES / f"{name}.png")
+    context.close()
+    print(f"docs/images/{name}.png")
 
 
 def make_runs(folder: Path) -> dict[str, Path]:
@@ -55,7 +97,9 @@ def make_runs(folder: Path) -> dict[str, Path]:
     limits = ["--abs", "0.01", "--time", "0.2"]
     apa(["compare", str(case4 / "run.mcap"), str(gentle / "run.mcap"), "--html", str(overlay), *limits])
     apa(["test", "guo2015-*", "fault-*", "--fmus", "none", "--out", str(folder / "tests")])
+    apa(["live", "--out", str(folder / "live.html")])
     return {
+        "live": folder / "live.html",
         "report": case4 / "report.html",
         "apa": folder / "apa" / "report.html",
         "compare": overlay,

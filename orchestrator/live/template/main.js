@@ -61,7 +61,7 @@ class Page {
     this.whole = this.lab.ghost();
     this.drawn.ghost = this.whole.history;
     $("ghost-badge").replaceChildren(badge(this.whole));
-    $("ghost-said").textContent = `${said(this.whole).split(": ").slice(1).join(": ")} ${shortly(this.whole)}`;
+    $("ghost-said").textContent = [...said(this.whole).split(": ").slice(1), shortly(this.whole)].join(" \u00b7 ");
     $("ghost-took").textContent = `whole run in ${this.whole.took.toFixed(1)} ms`;
     showResult(this.lab, this.mine, this.drive.byHand, this.whole);
     this.isDue = false;

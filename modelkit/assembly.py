@@ -94,8 +94,7 @@ class Together(NamedTuple):
             span_ns = min(dt_ns, memory[LEFT])
             for name, model in self.assembly.parts:
                 own, held = getattr(params, name), memory[name + INPUTS]
-                step = model.step if model.store is None else model.stepper(store)
-                memory[name], told[name] = step(memory[name], held, own, span_ns)
+                memory[name], told[name] = model.stepper(store)(memory[name], held, own, span_ns)
             memory[LEFT] -= span_ns
             dt_ns -= span_ns
             if memory[LEFT] == 0:

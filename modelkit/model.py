@@ -4,10 +4,28 @@ from collections.abc import Callable, Mapping
 from enum import IntEnum
 from functools import partial
 from types import ModuleType
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, Generic, NamedTuple, TypeAlias, cast
 
 from modelkit.store import new_store
 from modelkit.variables import variables, with_values
+
+if TYPE_CHECKING:
+    from typing_extensions import TypeVar
+
+    State = TypeVar("State", bound=tuple[Any, ...], default=Any)
+    Params = TypeVar("Params", bound=tuple[Any, ...], default=Any)
+    Input = TypeVar("Input", bound=tuple[Any, ...], default=Any)
+    Output = TypeVar("Output", bound=tuple[Any, ...], default=Any)
+    Own = TypeVar("Own", bound=tuple[Any, ...], default=Any)
+    Clock = TypeVar("Clock", bound=tuple[Any, ...], default=Any)
+else:
+    from typing import TypeVar
+
+    State, Params, Input, Output = TypeVar("State"), TypeVar("Params"), TypeVar("Input"), TypeVar("Output")
+    Own, Clock = TypeVar("Own"), TypeVar("Clock")
+
+Step: TypeAlias = Callable[[State, Input, Params, int], tuple[State, Output]]
+StepWithStore: TypeAlias = Callable[[Any, State, Input, Params, int], tuple[State, Output]]
 
 
 class Chart(NamedTuple):
@@ -21,17 +39,17 @@ class Chart(NamedTuple):
     """(source, guard, target, ...) in order of priority; a negative source stands for all states that are no end."""
 
 
-class SampledSystem(NamedTuple):
+class SampledSystem(NamedTuple, Generic[Own, Params, Input, Output]):
     """One of several sampled systems in a model: it alone acts while the choosing parameter has one of its values."""
 
     values: tuple[int, ...]
     field: str
     """Its memory: a field of the model's state."""
-    start: Callable[..., Any]
+    start: Callable[[Params], Own]
     """``start(params) -> own``: its memory before the first sample."""
-    sample: Callable[..., Any]
+    sample: Callable[[Own, Input, Params, int], Own]
     """``sample(own, inputs, params, period_ns) -> own``: its memory a sample later."""
-    outputs: Callable[..., Any]
+    outputs: Callable[[Own, Params], Output]
     """``outputs(own, params) -> outputs``: what is held until the next sample."""
     own: tuple[str, ...] = ()
     """Parameters, inputs and outputs that mean something to this system and not to every other: names, or groups."""
@@ -39,47 +57,50 @@ class SampledSystem(NamedTuple):
     """Its state machines that are tables."""
 
 
-class SampledSystems(NamedTuple):
+class SampledSystems(NamedTuple, Generic[State, Params, Input, Output, Clock]):
     """The sampled systems a model is made of, and the clock they share; together they are its two functions."""
 
-    state: type[Any]
+    state: type[State]
     """The model's: a field for the clock and one for the memory of each system."""
     parameter: str
     """The choosing parameter, an integer; a value that no system has is refused."""
     clock: str
     """The field of the state that all share: it has ``usable``, false if the parameters make no sense."""
-    begin: Callable[..., Any]
+    begin: Callable[[Params], Clock]
     """``begin(params) -> clock``: the clock at time zero."""
-    tick: Callable[..., Any]
+    tick: Callable[[Clock, Params, int], tuple[Clock, int, int]]
     """``tick(clock, params, dt_ns) -> (clock, samples, period_ns)``: how many samples are due in a step."""
-    refused: Callable[..., Any]
+    refused: Callable[[], Output]
     """``refused()``: the outputs where no system acts."""
-    systems: tuple[SampledSystem, ...]
+    systems: tuple[SampledSystem[Any, Params, Input, Output], ...]
 
-    def initialize(self, params: Any) -> tuple[Any, Any]:
+    def initialize(self, params: Params) -> tuple[State, Output]:
         """Return (state, outputs) at time zero: the model's ``initialize``."""
         memories = {item.field: item.start(params) for item in self.systems}
         state = self.state(**{self.clock: self.begin(params)}, **memories)
         chosen = self._chosen(params)
         return state, self._outputs(getattr(state, self.clock), chosen, state, params)
 
-    def step(self, state: Any, inputs: Any, params: Any, dt_ns: int) -> tuple[Any, Any]:
+    def step(self, state: State, inputs: Input, params: Params, dt_ns: int) -> tuple[State, Output]:
         """Return (state, outputs) after a step of the chosen system: the model's ``step``."""
         clock, samples, period_ns = self.tick(getattr(state, self.clock), params, dt_ns)
-        state = state._replace(**{self.clock: clock})
+        changed = {self.clock: clock}
         chosen = self._chosen(params)
         if chosen is not None:
             own = getattr(state, chosen.field)
             for _ in range(samples):
                 own = chosen.sample(own, inputs, params, period_ns)
-            state = state._replace(**{chosen.field: own})
+            changed[chosen.field] = own
+        state = _with(state, changed)
         return state, self._outputs(clock, chosen, state, params)
 
-    def _chosen(self, params: Any) -> SampledSystem | None:
+    def _chosen(self, params: Params) -> SampledSystem[Any, Params, Input, Output] | None:
         value = getattr(params, self.parameter)
         return next((item for item in self.systems if value in item.values), None)
 
-    def _outputs(self, clock: Any, chosen: SampledSystem | None, state: Any, params: Any) -> Any:
+    def _outputs(
+        self, clock: Any, chosen: SampledSystem[Any, Params, Input, Output] | None, state: State, params: Params
+    ) -> Output:
         if chosen is None or not clock.usable:
             return self.refused()
         return chosen.outputs(getattr(state, chosen.field), params)
@@ -115,8 +136,10 @@ class Assembly(NamedTuple):
     """Inputs as ``part.input`` that are left to others although a part offers them."""
 
 
-class Model(NamedTuple):
-    """A sampled or continuous model as pure functions over NamedTuples.
+class Model(NamedTuple, Generic[State, Params, Input, Output]):
+    """A sampled or continuous model as pure functions over NamedTuples: ``Model[State, Params, Input, Output]``.
+
+    A type checker holds both functions against these four types, and those of each system against one another.
 
     ``initialize(params) -> (state, outputs)`` gives the state at time zero and the outputs
     that are valid in FMI's Initialization Mode. ``step(state, inputs, params, dt_ns) ->
@@ -130,12 +153,12 @@ class Model(NamedTuple):
     name: str
     description: str
     package: ModuleType
-    state: type[Any]
-    params: type[Any]
-    inputs: type[Any]
-    outputs: type[Any]
-    initialize: Callable[..., Any]
-    step: Callable[..., Any]
+    state: type[State]
+    params: type[Params]
+    inputs: type[Input]
+    outputs: type[Output]
+    initialize: Callable[[Params], tuple[State, Output]]
+    step: Step[State, Input, Params, Output] | StepWithStore[State, Input, Params, Output]
     step_size: float
     """Default communication step [s]."""
     stop_time: float
@@ -156,13 +179,15 @@ class Model(NamedTuple):
         """Return the work arrays of a new instance, all zeros; None if the model has none."""
         return None if self.store is None else new_store(self.store)
 
-    def stepper(self, store: Any) -> Callable[..., Any]:
+    def stepper(self, store: Any) -> Step[State, Input, Params, Output]:
         """Return ``step(state, inputs, params, dt_ns)`` of the instance with this store."""
-        return self.step if store is None else partial(self.step, store)
+        if self.store is None:
+            return cast("Step[State, Input, Params, Output]", self.step)
+        return cast("Step[State, Input, Params, Output]", partial(cast("Callable[..., Any]", self.step), store))
 
-    def first_params(self) -> Any:
+    def first_params(self) -> Params:
         """Return the parameters it starts with: the defaults, but for those that its view starts otherwise."""
-        return with_values(self.params, dict(self.view.starts))
+        return cast("Params", with_values(self.params, dict(self.view.starts)))
 
     def sources(self) -> list[ModuleType]:
         """Return the packages that its code is in."""
@@ -170,7 +195,7 @@ class Model(NamedTuple):
             return [self.package]
         return [package for _, part in self.assembly.parts for package in part.sources()]
 
-    def started(self, values: Mapping[str, Any]) -> "Model":
+    def started(self, values: Mapping[str, Any]) -> "Model[State, Params, Input, Output]":
         """Return the model with ``values`` as start values of parameters shown, and the defaults of the others.
 
         Values of parameters not shown are left out: they mean nothing to it. Raises ``KeyError`` for a parameter it
@@ -184,7 +209,7 @@ class Model(NamedTuple):
         chosen = {item.name: item.start for item in known if item.name in values and self.shows(item.name)}
         return self._replace(view=self.view._replace(starts=tuple((kept | chosen).items())))
 
-    def only(self, value: int, name: str, description: str) -> "Model":
+    def only(self, value: int, name: str, description: str) -> "Model[State, Params, Input, Output]":
         """Return the model with the system of ``value`` alone: what only others own is not shown."""
         assert self.systems is not None
         chosen = next(item for item in self.systems.systems if value in item.values)
@@ -198,6 +223,12 @@ class Model(NamedTuple):
     def shows(self, name: str) -> bool:
         """Return whether others see the variable ``name``."""
         return name not in self.view.hidden
+
+
+def _with(state: State, changed: dict[str, Any]) -> State:
+    """Return the state with some of its fields changed."""
+    whole: Any = state
+    return cast("State", whole._replace(**changed))
 
 
 def _is_in(name: str, groups: tuple[str, ...]) -> bool:

@@ -25,7 +25,7 @@ class InProcessSlave:
         self._construct = constructor(model.inputs)
         self._input = model.inputs()
         self._state: Any = None
-        self._step = model.step
+        self._step = model.stepper(None)
         self.output: Any = None
         """The latest outputs as the model gave them."""
 

@@ -1,24 +1,21 @@
-"""Vehicle and controller with the parameters of a scenario, and both as one model."""
+"""The controller with the system of a scenario alone, and vehicle and controller as one model."""
 
 import sys
 from collections.abc import Iterable, Mapping
 from typing import Any
 
 import controller_fmu
-import vehicle_fmu
 from fmus.systems.system import identifier
 from modelkit.assembly import assembled
 from modelkit.model import Model
 
 
-def parking_parts(vehicle: Mapping[str, Any], controller: Mapping[str, Any]) -> dict[str, Model]:
-    """Return the two models with these start values; the controller shows the variables of its chosen system only.
-
-    Raises ``KeyError`` for a parameter that is none, ``ValueError`` for a value out of its range.
-    """
-    asked = controller.get("system", controller_fmu.MODEL.params().system)
-    chosen = next(model for system, model in controller_fmu.SYSTEM_MODELS.items() if system == asked)
-    return {"vehicle": vehicle_fmu.MODEL.started(vehicle), "controller": chosen.started(controller)}
+def of_one_system(model: Model, values: Mapping[str, Any]) -> Model:
+    """Return the controller that shows the variables of the system alone that ``values`` choose; others as they are."""
+    if model is not controller_fmu.MODEL:
+        return model
+    asked = values.get("system", model.params().system)
+    return next(one for system, one in controller_fmu.SYSTEM_MODELS.items() if system == asked)
 
 
 def parking_system(scenario: str, title: str, parts: Mapping[str, Model], step_ns: int, opened: Iterable[str]) -> Model:

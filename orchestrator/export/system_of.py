@@ -4,9 +4,10 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from fmus.contents.variables import shown_variables
-from fmus.systems.parking import parking_parts, parking_system
+from fmus.systems.parking import of_one_system, parking_system
 from fmus.systems.system import Part, System
 from modelkit.model import Model
+from orchestrator.scenario.models import MODELS, models_for
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.text.errors import BadInput
 from orchestrator.text.patterns import matching
@@ -23,7 +24,9 @@ def parts_of(scenario: Scenario) -> dict[str, Model]:
         raise BadInput("exports are of our vehicle and controller; leave out", file=scenario.file, key="system")
     if scenario.faults:
         raise BadInput("faults live in apa's own master; leave them out to export", file=scenario.file, key="faults")
-    return parking_parts(scenario.given("vehicle"), scenario.given("controller"))
+    given = {name: scenario.given(name) for name in MODELS}
+    models = models_for(scenario.controller)
+    return {name: of_one_system(model, given[name]).started(given[name]) for name, model in models.items()}
 
 
 def system_of(scenario: Scenario, folder: Path, kind: str, platforms: Iterable[str] = ()) -> System:

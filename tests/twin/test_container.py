@@ -22,7 +22,7 @@ from orchestrator.cli import main
 from orchestrator.cosim.fmu_files import can_compile
 from orchestrator.export.system_of import one_model
 from orchestrator.scenario.load_scenario import load_scenario
-from orchestrator.scenario.models import MODELS
+from orchestrator.scenario.models import MODELS, models_for
 from orchestrator.session.session import run_scenario
 from orchestrator.text.errors import BadInput
 from vehicle_fmu import MODEL as VEHICLE
@@ -33,7 +33,8 @@ from host import OK, Host
 pytestmark = pytest.mark.skipif(not can_compile(), reason="needs a C compiler")
 SCENARIOS = (
     *("guo2015-case4-105", "guo2015-case1", "guo2015-case2", "zhang2022-double-track", "hsic-shuffle", "preview-18"),
-    *("apa-parallel", "apa-perpendicular-left", "apa-takeover", "apa-no-slot"),
+    *("apa-parallel", "apa-perpendicular-left", "apa-takeover", "apa-no-slot", "adaptive"),
+    "valet-parallel",
 )
 CASE = load_scenario("guo2015-case4-105", [])
 STEP = 10_000_000
@@ -41,9 +42,10 @@ ODD = (3_000_000, 7_000_000, 10_000_000, 17_000_000, 1, 22_999_999, 250_000_000)
 
 
 @cache
-def pair(step_ns):
+def pair(step_ns, controller=MODELS["controller"]):
     """Both models with all they have as one, and its library: what every scenario of this step can be played to."""
-    model = assembled("Pair", "vehicle and controller", sys.modules[__name__], MODELS, step_ns)
+    parts = MODELS | {"controller": controller}
+    model = assembled("Pair", "vehicle and controller", sys.modules[__name__], parts, step_ns)
     return model, CLibrary(model)
 
 
@@ -66,7 +68,7 @@ def names(cls):
 @pytest.mark.parametrize("name", SCENARIOS)
 def test_it_gives_the_bits_of_the_pair_under_the_master(fmus, name):
     scenario = load_scenario(name, [])
-    model, library = pair(scenario.step_ns)
+    model, library = pair(scenario.step_ns, models_for(scenario.controller)["controller"])
     expected = run_scenario(scenario, fmus["native"], kind="native").recording
     given = {f"{part}.{key}": value for part in MODELS for key, value in scenario.given(part).items()}
     params = np.array(flatten(with_values(model.params, given)), dtype=float)

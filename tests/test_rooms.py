@@ -34,7 +34,7 @@ FLOORS: tuple[tuple[str, ...], ...] = (
     ("orchestrator.session",),
     ("orchestrator.report",),
     ("orchestrator.steptest",),
-    ("orchestrator.suite",),
+    ("orchestrator.suite", "orchestrator.coverage"),
     ("orchestrator.sweep",),
     ("orchestrator.live",),
     ("orchestrator.export",),

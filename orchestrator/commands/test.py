@@ -13,13 +13,14 @@ from orchestrator.cosim.fmu_files import KINDS, default_kind, fmu_files
 from orchestrator.cosim.interrupts import on_interrupt
 from orchestrator.cosim.master import Interrupt
 from orchestrator.scenario.files import find_file
+from orchestrator.scenario.models import MODELS
 from orchestrator.scenario.requirements import read_requirements
 from orchestrator.session.foreign import add_foreign_arguments, foreign_of
 from orchestrator.suite.collection import write_collection
 from orchestrator.suite.junit import Suite, write_junit
 from orchestrator.suite.suite import Bench, Tested, chosen, run_test, tested_by
 from orchestrator.text.console import Meter, Warnings, console, say
-from orchestrator.text.errors import INTERRUPTED
+from orchestrator.text.errors import INTERRUPTED, BadInput
 from orchestrator.text.owned import owned
 
 EXAMPLES = """examples:
@@ -58,6 +59,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--out", type=Path, metavar="DIR", default=Path("runs/test"), help="where results go (runs/test)"
     )
     parser.add_argument("--junit", type=Path, metavar="FILE", help="where JUnit XML goes (default: DIR/junit.xml)")
+    parser.add_argument("--coverage", action="store_true", help="run in process and say what of the charts was covered")
+    parser.add_argument(
+        "--min-transition-coverage", type=float, metavar="PERCENT", help="fail below this; means --coverage"
+    )
     parser.add_argument("--json", action="store_true", help="print the verdicts as JSON")
 
 
@@ -66,7 +71,34 @@ def run(arguments: argparse.Namespace) -> int:
     out: Path = arguments.out
     names = chosen(arguments.scenarios)
     with owned(out):
-        return _run(arguments, names, Verdicts(arguments.junit or out / "junit.xml", out / "index.html", names))
+        verdicts = Verdicts(arguments.junit or out / "junit.xml", out / "index.html", names)
+        if arguments.coverage or arguments.min_transition_coverage is not None:
+            return _covered(arguments, names, verdicts)
+        return _run(arguments, names, verdicts)
+
+
+def _covered(arguments: argparse.Namespace, names: list[str], verdicts: "Verdicts") -> int:
+    """Test with the models in process, and say what of their charts was covered."""
+    from orchestrator.coverage.covered import covered, share
+    from orchestrator.coverage.show import coverage_table, write_coverage
+    from orchestrator.coverage.tracer import charts_of, name_of, tracing
+
+    if foreign_of(arguments).files:
+        raise BadInput("the charts of somebody else's FMU cannot be looked into", key="--coverage")
+    arguments.fmus = "none"
+    charts = [chart for model in MODELS.values() for chart in charts_of(model)]
+    with tracing(charts) as seen:
+        code = _run(arguments, names, verdicts)
+    found = [covered(chart, seen[name_of(chart)]) for chart in charts]
+    page, part = write_coverage(arguments.out, found), 100.0 * share(found)
+    if not arguments.json:
+        console().print(coverage_table(found))
+        console().print(f"{part:.0f} % of the transitions; {page}", markup=False, soft_wrap=True)
+    least = arguments.min_transition_coverage
+    if code == PASSED and least is not None and part < least:
+        say(f"apa: {part:.1f} % of the transitions are covered, asked {least:g} %")
+        return FAILED
+    return code
 
 
 def _run(arguments: argparse.Namespace, names: list[str], verdicts: "Verdicts") -> int:

@@ -4,17 +4,21 @@ Colours are the page's own (``currentColor``), so it fits light and dark pages, 
 """
 
 import html
+from collections.abc import Collection
 
 ROW, WIDTH, HEIGHT = 62.0, 190.0, 30.0
 FIRST_REACH, REACH, LABEL = 46.0, 50.0, 6.3
 """Distance of the nearest arc from the column, of each further one [px]; width of a letter [px]."""
 
+RED = "#d1343a"
 Arc = tuple[str, str, str]
 """From, to, and when."""
 
 
-def chart_svg(arcs: list[Arc], order: list[str]) -> str:
-    """Return the diagram of ``arcs``; states stand in the given order, others above them."""
+def chart_svg(
+    arcs: list[Arc], order: list[str], red_arcs: Collection[tuple[str, str]] = (), red_states: Collection[str] = ()
+) -> str:
+    """Return the diagram of ``arcs``; states stand in the given order, others above them; some are drawn red."""
     found = list(dict.fromkeys(name for arc in arcs for name in arc[:2]))
     states = [name for name in found if name not in order] + [name for name in order if name in found]
     place = {name: number * ROW + HEIGHT for number, name in enumerate(states)}
@@ -24,11 +28,15 @@ def chart_svg(arcs: list[Arc], order: list[str]) -> str:
     lanes = _lanes(list(merged), place)
     left, right = (_widest(merged, lanes, place, side) for side in (-1, 1))
     middle = left + WIDTH / 2
-    parts = [_arc(pair, guards, place, lanes[pair], middle) for pair, guards in merged.items()]
-    parts += [_state(name, middle, place[name]) for name in states]
+    parts = [_red(_arc(pair, guards, place, lanes[pair], middle), pair in red_arcs) for pair, guards in merged.items()]
+    parts += [_red(_state(name, middle, place[name]), name in red_states) for name in states]
     size = f"0 0 {left + WIDTH + right:.0f} {len(states) * ROW + HEIGHT:.0f}"
     head = f'<svg class="chart" xmlns="http://www.w3.org/2000/svg" viewBox="{size}" role="img"'
     return f'{head} font-size="12" font-family="sans-serif">{"".join(parts)}</svg>'
+
+
+def _red(part: str, is_red: bool) -> str:
+    return f'<g color="{RED}">{part}</g>' if is_red else part
 
 
 def _lanes(pairs: list[tuple[str, str]], place: dict[str, float]) -> dict[tuple[str, str], int]:

@@ -4,25 +4,11 @@ from collections.abc import Callable, Mapping
 from enum import IntEnum
 from functools import partial
 from types import ModuleType
-from typing import TYPE_CHECKING, Any, Generic, NamedTuple, TypeAlias, cast
+from typing import Any, Generic, NamedTuple, TypeAlias, cast
 
 from modelkit.store import new_store
+from modelkit.type_variables import Clock, Input, Output, Own, Params, State
 from modelkit.variables import variables, with_values
-
-if TYPE_CHECKING:
-    from typing_extensions import TypeVar
-
-    State = TypeVar("State", bound=tuple[Any, ...], default=Any)
-    Params = TypeVar("Params", bound=tuple[Any, ...], default=Any)
-    Input = TypeVar("Input", bound=tuple[Any, ...], default=Any)
-    Output = TypeVar("Output", bound=tuple[Any, ...], default=Any)
-    Own = TypeVar("Own", bound=tuple[Any, ...], default=Any)
-    Clock = TypeVar("Clock", bound=tuple[Any, ...], default=Any)
-else:
-    from typing import TypeVar
-
-    State, Params, Input, Output = TypeVar("State"), TypeVar("Params"), TypeVar("Input"), TypeVar("Output")
-    Own, Clock = TypeVar("Own"), TypeVar("Clock")
 
 Step: TypeAlias = Callable[[State, Input, Params, int], tuple[State, Output]]
 StepWithStore: TypeAlias = Callable[[Any, State, Input, Params, int], tuple[State, Output]]

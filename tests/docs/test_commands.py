@@ -34,7 +34,6 @@ NOT_RUN = {
     "apa build --fmi 3 --out build --platform": "compiles C libraries of other platforms; tests/fmi",
     "apa build --fmus native --cc gcc": "would replace the FMUs that all runs here use",
     "dask ": "does not end; tests/sweep/test_dask.py has a cluster",
-    "fmpy simulate Controller.fmu --show-plot": "opens a window",
     "OMSimulator ": "does not install from the package index",
 }
 """How a command begins that is not run here -> why."""

@@ -40,8 +40,8 @@ def write_live(path: Path, scenarios: Sequence[Scenario]) -> None:
 
 def live_page(scenarios: Sequence[Scenario]) -> str:
     """Return the page. Raises ``BadInput`` for a limit of a signal that no model has."""
-    core = f'"use strict";\n{_scripts(CORE)}'
-    script = f'(() => {{\n"use strict";\n{_scripts(OWN)}\n}})();\n'
+    core, own = scripts()
+    script = f'(() => {{\n"use strict";\n{own}\n}})();\n'
     title = scenarios[0].title or scenarios[0].name
     parts = {
         "TITLE": html.escape(title),
@@ -67,8 +67,10 @@ def _module() -> str:
     return base64.b64encode(zlib.compress(web_module(MODELS).read_bytes(), 9)).decode()
 
 
-def _scripts(names: Sequence[str]) -> str:
-    return "\n".join(_read(name) for name in names)
+def scripts() -> tuple[str, str]:
+    """Return what a worker needs too, and the rest of the page's own scripts."""
+    core, own = ("\n".join(_read(name) for name in names) for names in (CORE, OWN))
+    return f'"use strict";\n{core}', own
 
 
 def _read(name: str) -> str:

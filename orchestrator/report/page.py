@@ -9,7 +9,7 @@ from pathlib import Path
 ROOM = Path(__file__).parent
 VIEW = ("data.js", "show.js", "shapes.js", "scene.js", "scene_parts.js", "view.js")
 """What draws the top view, here and on the page that is driven."""
-SCRIPTS = (*VIEW, "timeline.js", "plots.js", "tables.js", "main.js")
+SCRIPTS = (*VIEW, "timeline.js", "plots.js", "tables.js", "cards.js", "main.js")
 UPLOT = ROOM / "third_party" / "uplot"
 
 
@@ -18,8 +18,7 @@ def page(title: str, data: str) -> str:
     uplot = UPLOT / "uPlot.iife.min.js"
     licence = (UPLOT / "LICENSE").read_text(encoding="utf-8").strip()
     library = f"/*!\nuPlot {(UPLOT / 'VERSION').read_text(encoding='utf-8').strip()}\n{licence}\n*/\n{_read(uplot)}"
-    own = "\n".join(_read(ROOM / "template" / name) for name in SCRIPTS)
-    script = f'(() => {{\n"use strict";\n{own}\n}})();\n'
+    script = f'(() => {{\n"use strict";\n{scripts()}\n}})();\n'
     parts = {
         "TITLE": html.escape(title),
         "POLICY": policy([library, script]),
@@ -31,14 +30,17 @@ def page(title: str, data: str) -> str:
     return re.sub(r"@([A-Z]+)@", lambda match: parts[match[1]], _read(ROOM / "template" / "page.html"))
 
 
-def policy(scripts: list[str], more: str = "") -> str:
+def scripts() -> str:
+    """Return the page's own scripts."""
+    return "\n".join(_read(ROOM / "template" / name) for name in SCRIPTS)
+
+
+def policy(texts: list[str], more: str = "") -> str:
     """Return a content security policy: these scripts and inline style only, and no network at all.
 
     ``more``: what else scripts may do.
     """
-    hashes = " ".join(
-        f"'sha256-{base64.b64encode(hashlib.sha256(item.encode()).digest()).decode()}'" for item in scripts
-    )
+    hashes = " ".join(f"'sha256-{base64.b64encode(hashlib.sha256(item.encode()).digest()).decode()}'" for item in texts)
     return (
         f"default-src 'none'; script-src {hashes}{more}; style-src 'unsafe-inline'; img-src data:; form-action 'none'"
     )

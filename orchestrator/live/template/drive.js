@@ -1,6 +1,5 @@
 // A run in real time: exchanges and steps as the clock asks for them, by the driver modelled or by a person.
 
-const PACES = [1, 4, 16];
 const LATEST = 0.25; // more than this the run does not catch up [s]
 
 class Drive {

@@ -63,7 +63,7 @@ function* gridOf(lab, [a, b], rows) {
 // What a worker does: the same models, the same judge.
 function work() {
   let started = null;
-  onmessage = async ({ data }) => {
+  self.onmessage = async ({ data }) => {
     if (data.code) { started = Engine.start(data.code, data.models).then((engine) => new Lab(engine, data)); return; }
     const lab = await started;
     lab.load(data.scenario, data.changes);

@@ -30,7 +30,7 @@ class Grid {
 
   worker() {
     if (this.hand) return this.hand;
-    const source = `"use strict";\n${$("core").textContent}\nwork();`;
+    const source = `"use strict";\n${$("core").textContent}\n${work.name}();`;
     this.hand = new Worker(URL.createObjectURL(new Blob([source], { type: "text/javascript" })));
     this.hand.onmessage = ({ data }) => this.take(data);
     const { models, numbers, scenarios, pins } = this.data;

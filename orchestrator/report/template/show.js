@@ -14,7 +14,13 @@ function element(tag, attributes = {}, ...children) {
   return node;
 }
 
-const color = (name) => getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
+// Colours of the style sheet by name, looked up once until the theme changes.
+const COLORS = new Map();
+
+function color(name) {
+  if (!COLORS.has(name)) COLORS.set(name, getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim());
+  return COLORS.get(name);
+}
 
 // SI unit -> what people read: [unit, factor].
 const DISPLAY = { rad: ["deg", 180 / Math.PI], "rad/s": ["deg/s", 180 / Math.PI], "rad/s2": ["deg/s\u00b2", 180 / Math.PI], "1": ["", 1], "m/s2": ["m/s\u00b2", 1] };

@@ -6,6 +6,9 @@ function headsUp(page, t) {
   const at = Math.min(t, run.duration), box = $("hud");
   const speed = run.at("vehicle.speed", at), wheel = run.at("vehicle.steering_wheel_angle", at);
   const lines = [];
+  const key = `${page.ribbons} ${[...page.ribbons, "controller.phase", "controller.prompt", "vehicle.gear"].map((name) => run.at(name, at))} ${Math.round(speed * 36)} ${Math.round(wheel * 57.3)} ${color("ink")}`;
+  if (box.dataset.key === key) return;
+  box.dataset.key = key;
   const outer = page.ribbons.filter((name) => /\.(mode|stage)$/.test(name));
   for (const name of [...outer, "controller.phase", "controller.prompt", "vehicle.gear"])
     if (run.signals[name]) lines.push([outer.includes(name) ? "phase" : name.split(".")[1], run.stateName(name, run.at(name, at)), run.at(name, at)]);
@@ -21,8 +24,9 @@ function headsUp(page, t) {
 function themes(player) {
   const root = document.documentElement, dark = matchMedia("(prefers-color-scheme: dark)");
   const isDark = () => (root.dataset.theme === "auto" ? dark.matches : root.dataset.theme === "dark");
-  $("theme").addEventListener("click", () => { root.dataset.theme = isDark() ? "light" : "dark"; player.paint(); });
-  dark.addEventListener("change", () => player.paint());
+  const paint = () => { COLORS.clear(); player.paint(); };
+  $("theme").addEventListener("click", () => { root.dataset.theme = isDark() ? "light" : "dark"; paint(); });
+  dark.addEventListener("change", paint);
 }
 
 function layers(player) {

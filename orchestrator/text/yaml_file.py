@@ -4,6 +4,7 @@ What is read is bounded before it is built: size, nesting, aliases (counted as w
 written twice is refused. Where each key stands is kept, so that a mistake found later is told with its line.
 """
 
+import re
 from pathlib import Path
 from typing import Any
 
@@ -20,6 +21,11 @@ MOST_DIGITS = 40
 TEXT = "tag:yaml.org,2002:str"
 AS_TEXT = ("tag:yaml.org,2002:timestamp", "tag:yaml.org,2002:value")
 """What YAML would make of texts that look like it, and nobody means here."""
+RESOLVERS = {
+    first: [(tag, pattern) for tag, pattern in found if tag not in AS_TEXT]
+    for first, found in yaml.SafeLoader.yaml_implicit_resolvers.items()
+}
+NO_TEXT = re.compile("[\0\ud800-\udfff]")
 
 
 class _Loader(yaml.SafeLoader):
@@ -27,10 +33,7 @@ class _Loader(yaml.SafeLoader):
 
     def __init__(self, text: str) -> None:
         super().__init__(text)
-        self.yaml_implicit_resolvers = {
-            first: [(tag, pattern) for tag, pattern in found if tag not in AS_TEXT]
-            for first, found in yaml.SafeLoader.yaml_implicit_resolvers.items()
-        }
+        self.yaml_implicit_resolvers = RESOLVERS
         self._depth, self._count = 0, 0
         self._sizes: dict[str, int] = {}
 
@@ -85,7 +88,7 @@ def _mistake(text: str, where: Any) -> yaml.MarkedYAMLError:
 
 def _is_text(value: str) -> bool:
     """Return whether ``value`` has a place in a file: no half of a letter, no zero byte."""
-    return "\0" not in value and not any("\ud800" <= letter <= "\udfff" for letter in value)
+    return value.isascii() and "\0" not in value or NO_TEXT.search(value) is None
 
 
 def read_yaml(path: Path) -> Any:

@@ -88,7 +88,7 @@ def _mistake(text: str, where: Any) -> yaml.MarkedYAMLError:
 
 def _is_text(value: str) -> bool:
     """Return whether ``value`` has a place in a file: no half of a letter, no zero byte."""
-    return value.isascii() and "\0" not in value or NO_TEXT.search(value) is None
+    return (value.isascii() and "\0" not in value) or NO_TEXT.search(value) is None
 
 
 def read_yaml(path: Path) -> Any:

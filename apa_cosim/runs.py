@@ -88,12 +88,13 @@ class Run:
         from orchestrator.drawing.figure import draw
         from orchestrator.report.replay import write_replay
         from orchestrator.report.results import PAGE, PICTURE, write_summary
+        from orchestrator.text.owned import owned
 
         path = Path(folder)
-        path.mkdir(parents=True, exist_ok=True)
-        write_summary(path, self.summary)
-        draw(self.recording, self.summary, self.scenario, path / PICTURE)
-        write_replay(path / PAGE, self.recording, self.summary, [])
+        with owned(path):
+            write_summary(path, self.summary)
+            draw(self.recording, self.summary, self.scenario, path / PICTURE)
+            write_replay(path / PAGE, self.recording, self.summary, [])
         return path / PAGE
 
     def _repr_html_(self) -> str:

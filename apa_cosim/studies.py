@@ -15,6 +15,7 @@ from orchestrator.sweep.sweep import Options
 from orchestrator.sweep.sweep import sweep as run_study
 from orchestrator.sweep.table import Table
 from orchestrator.text.errors import RunError, suggestion
+from orchestrator.text.owned import owned
 
 if TYPE_CHECKING:
     import pandas as pd  # type: ignore[import-untyped]
@@ -79,8 +80,8 @@ def sweep(
     chosen = chosen_study(str(study), sets)
     chosen = chosen._replace(design=chosen.design.part(first, every))
     out = Path(folder) if folder is not None else Path("runs") / chosen.name
-    out.mkdir(parents=True, exist_ok=True)
-    swept = run_study(chosen, out, Options(resume=resume))
+    with owned(out):
+        swept = run_study(chosen, out, Options(resume=resume))
     if swept.table is None:
         raise RunError(f"{chosen.name}: interrupted after {swept.done} of {swept.count} runs; go on with resume=True")
     return StudyTable(swept.table)

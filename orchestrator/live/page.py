@@ -11,6 +11,7 @@ from typing import Any
 
 import yaml
 
+from fmus.files import write_whole
 from fmus.native.web import web_module
 from orchestrator.live.charts import charts_data
 from orchestrator.live.described import models_data
@@ -34,8 +35,7 @@ NAME = "live.html"
 
 def write_live(path: Path, scenarios: Sequence[Scenario]) -> None:
     """Write the page of ``scenarios``, the first one in hand. Raises ``RuntimeError`` where nothing can be compiled."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text(live_page(scenarios), encoding="utf-8")
+    write_whole(path, live_page(scenarios))
 
 
 def live_page(scenarios: Sequence[Scenario]) -> str:

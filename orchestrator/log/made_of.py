@@ -4,7 +4,7 @@ from pathlib import Path
 
 from orchestrator.text.console import say
 
-MADE_OF_A_LOG = ("summary.json", "overview.png", "report.html")
+MADE_OF_A_LOG = ("summary.json", "overview.png", "report.html", "live.html")
 EXPORTS = (".csv", ".mf4", ".rrd")
 """These no run makes anew."""
 

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
+from fmus.files import write_whole
 from orchestrator.cosim.recording import Recording
 from orchestrator.cosim.slave import Array
 from orchestrator.report.page import still_page
@@ -48,7 +49,7 @@ def write_curves(path: Path, test: StepTest, recording: Recording, checks: list[
         rows=rows,
         curves=curves,
     )
-    path.write_text(still_page(title, body, STYLE), encoding="utf-8")
+    write_whole(path, still_page(title, body, STYLE))
 
 
 def _row(check: Check) -> str:

@@ -138,8 +138,8 @@ def _step_tested(test: StepTest, sets: list[str], bench: Bench, out: Path, taken
         raise BadInput(f"another test is called {scenario.name}", file=test.file, key="name")
     recording, checks = run_step_test(test, bench.kind, bench.foreign)
     folder = out / scenario.name
-    folder.mkdir(parents=True, exist_ok=True)
-    write_curves(folder / PAGE, test, recording, checks)
+    with owned(folder):
+        write_curves(folder / PAGE, test, recording, checks)
     end = str(recording.info["end"]["reason"])
     broken = end if end.startswith("error") else ""
     return Tested(scenario, None, None, [] if broken else told_apart(cases_of(checks)), [], broken)

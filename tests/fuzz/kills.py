@@ -161,7 +161,7 @@ def a_recover(at: Stage, draw: random.Random) -> str:
     if draw.random() < 0.5:
         (out / "run.mcap").write_bytes(at.log)
     wrong = ended(at.start("recover", str(out / "run.mcap.part")), draw.uniform(0.1, 1.5), draw)
-    for path in out.glob("*.mcap"):
+    for path in out.glob("run*.mcap"):
         try:
             before = np.diff(read_log(path).t_ns)
         except BadInput as error:

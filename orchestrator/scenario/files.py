@@ -19,7 +19,7 @@ def car_names() -> list[str]:
 
 def find_file(name: str, folder: str, what: str, beside: Path) -> Path:
     """Return the file of a shipped name, or of a path relative to ``beside``. Raises ``BadInput``."""
-    if name.endswith((".yaml", ".yml")) or "/" in name or "\\" in name:
+    if name.endswith((".yaml", ".yml", ".ssp")) or "/" in name or "\\" in name:
         path = beside / name
         if not path.is_file():
             raise BadInput("is a folder, expected a file" if path.is_dir() else "no such file", file=name)

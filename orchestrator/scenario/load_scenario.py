@@ -15,6 +15,7 @@ from orchestrator.scenario.models import MODELS, models_for
 from orchestrator.scenario.polygons import map_of
 from orchestrator.scenario.requirements import read_requirements
 from orchestrator.scenario.scenario import Scenario, Target
+from orchestrator.scenario.ssp import SUFFIX, ssp_scenario, ssp_system
 from orchestrator.scenario.system import NO_FILE, SystemText
 from orchestrator.scenario.target_point import as_rear_axle
 from orchestrator.text.errors import BadInput, shown, suggestion
@@ -143,7 +144,7 @@ def _layers(path: Path, seen: tuple[Path, ...]) -> list[Layer]:
     """Return the file at ``path`` below it its bases, lowest first."""
     if path in seen:
         raise BadInput(f"inherits from itself by way of {', '.join(item.stem for item in seen)}", file=path, key="base")
-    content = _placed(read_mapping(path), path)
+    content = _placed(ssp_scenario(path) if path.suffix == SUFFIX else read_mapping(path), path)
     base = content.get("base")
     below = [] if base is None else _layers(find_file(str(base), "scenarios", "scenario", path.parent), (*seen, path))
     return [*below, (content, path)]
@@ -159,7 +160,10 @@ def _placed(content: dict[str, Any], path: Path) -> dict[str, Any]:
     if slaves:
         made["slaves"] = {str(name): _entry_beside(item, path.parent) for name, item in slaves.items()}
     if isinstance(system.get("ssp"), str):
-        made["ssp"] = str(path.parent / system["ssp"])
+        file = path.parent / str(system["ssp"])
+        if not file.is_file():
+            raise BadInput("no such file", file=path, key=f"system.ssp: {file}")
+        made = _merge(ssp_system(file), {**made, "ssp": str(file)})
     return {**content, "system": made}
 
 

@@ -15,9 +15,9 @@ from orchestrator.text.patterns import NAME
 from orchestrator.text.quantities import NANOSECONDS, Metres, Radians, Seconds
 
 Outcome = Literal["parked", "not_parked", "finished", "not_finished", "failed", "aborted"]
-Task = Literal["park", "drive"]
-SUCCESS: dict[Task, Outcome] = {"park": "parked", "drive": "finished"}
-MISSED: dict[Task, Outcome] = {"park": "not_parked", "drive": "not_finished"}
+Task = Literal["park", "drive", "run"]
+SUCCESS: dict[Task, Outcome] = {"park": "parked", "drive": "finished", "run": "finished"}
+MISSED: dict[Task, Outcome] = {"park": "not_parked", "drive": "not_finished", "run": "not_finished"}
 DONE: frozenset[Outcome] = frozenset(SUCCESS.values())
 """The outcomes of a run that has done its task."""
 
@@ -79,7 +79,7 @@ class Scenario(_ScenarioPart):
     car: str | None = None
     """Shipped car, or file, or what is different of one: told vehicle and controller alike."""
     task: Task = "park"
-    """What the car is there for: `park`, or `drive` to the end of a road."""
+    """What the car is there for: `park`, or `drive` to the end of a road; `run`: to its time, within limits."""
     stop_time: Seconds = 60.0
     """When the run ends at the latest [s]."""
     step: Seconds = 0.01
@@ -182,8 +182,7 @@ class Scenario(_ScenarioPart):
     def _outcome(self) -> "Scenario":
         if "expect" not in self.model_fields_set:
             self.expect = SUCCESS[self.task]
-        other: Task = "drive" if self.task == "park" else "park"
-        if self.expect in (SUCCESS[other], MISSED[other]):
+        if self.expect not in (SUCCESS[self.task], MISSED[self.task], "failed", "aborted"):
             known = f"{SUCCESS[self.task]}, {MISSED[self.task]}, failed or aborted"
             raise BadInput(f"{self.expect!r} is no outcome of task {self.task}, expected {known}", key="expect")
         return self

@@ -95,6 +95,8 @@ class Feed(_SystemPart):
     """The signal times this..."""
     offset: float = 0.0
     """...plus this, in the unit of the signal, before it is brought into that of the input."""
+    units: bool = True
+    """Bring the number from the unit of one side into that of the other."""
     map: dict[int | str, float | int | str | bool] | None = None
     """Value of the signal -> value of the input, by number or by name of a state."""
     otherwise: Annotated[float | int | str | bool | None, Field(alias="else")] = None
@@ -148,6 +150,8 @@ class SystemText(_SystemPart):
     """Inputs -> what feeds them."""
     roles: dict[str, Feed] = {}
     """What judge, log, page and figure look for -> the signal that it is."""
+    by_name: bool = True
+    """Connect outputs and inputs of the same name of which nothing else is said."""
     frames: dict[str, PoseFrame] = {}
     """Frames of others, by the name that ``into`` and ``out_of`` give them."""
 

@@ -20,7 +20,8 @@ def drive(scenario: Scenario, kind: str, log: Path, foreign: Foreign = NOBODY) -
 
     ``foreign`` FMUs take the place of ours, or stand beside them. Whoever calls it owns the log's folder.
     """
-    files = None if kind == "none" else fmu_files(kind, say)
+    is_ours = any(name not in foreign.files for name in scenario.places)
+    files = fmu_files(kind, say) if is_ours and kind != "none" else None
     before = replaced(log, scenario)
     if before:
         say(f"apa: {before}")

@@ -140,7 +140,11 @@ def run_slaves(
     system = assemble(scenario, slaves)
     exchanges = scenario.stop_ns // scenario.step_ns + 1
     cost = told_cost(exchanges, sum(len(item.inputs.names) + len(item.outputs.names) for item in system.slaves))
-    said = [*remarks(system, scenario.ending), *implausible(scenario), *([cost] if cost else [])]
+    said = [
+        *remarks(system, scenario.ending if scenario.task != "run" else None),
+        *implausible(scenario),
+        *([cost] if cost else []),
+    ]
     for text in said:
         warn(text)
     master = _master(system, scenario, kind)
@@ -187,7 +191,7 @@ def _master(system: Assembled, scenario: Scenario, kind: str) -> Master:
         make = CompiledMaster
     master = make(system.slaves, scenario.step_ns, scenario.stop_ns, scenario.every, system.connections)
     master.manipulators += manipulators(scenario.faults, master, scenario.seed, scenario.file)
-    ending = standstill(scenario.ending, system.slaves)
+    ending = standstill(scenario.ending, system.slaves) if scenario.task != "run" else None
     if ending is not None:
         master.endings.append(ending)
     return master

@@ -46,7 +46,7 @@ def assemble(scenario: Scenario, given: list[Slave]) -> Assembled:
             found += feeder.connections(feed, targets, where)
         else:
             feeder.constant(feed, targets, where)
-    wires = _matching(slaves, fed)
+    wires = _matching(slaves, fed) if text.by_name else []
     fed |= {(wire.target, wire.input) for wire in wires}
     plain = joined(found)
     roles = [link for key, (feed, targets) in feeds.items() for link in _role(feeder, feed, targets, slaves, key)]

@@ -95,7 +95,7 @@ class Feeder:
         return [self._scaled(feed, *pair, key) for pair in zip(sources, targets, strict=True)]
 
     def _scaled(self, feed: Feed, source: Pin, target: Pin, key: str) -> Connection:
-        factor, offset = self._factor(source, target, key)
+        factor, offset = self._factor(source, target, key) if feed.units else (1.0, 0.0)
         gain = source.sign * target.sign * feed.factor
         whole = gain * factor, feed.offset * factor + offset
         same = whole == (1.0, 0.0) and source.variable.kind is target.variable.kind

@@ -26,8 +26,8 @@ Node = tuple[int, str]
 """A slave and an output of it."""
 
 
-def remarks(system: Assembled, ending: EndCondition) -> list[str]:
-    """Return one sentence for each thing that is allowed but hardly meant in a run that ends so."""
+def remarks(system: Assembled, ending: EndCondition | None) -> list[str]:
+    """Return one sentence for each thing that is allowed but hardly meant in a run that ends so; None: by its time."""
     slaves = system.slaves
     found = [
         text
@@ -48,7 +48,9 @@ def missing_for_the_verdict(name: str, slave: Slave | None, ending: EndCondition
     return {item: loss for item, loss in needed.items() if item not in has}
 
 
-def _missing(name: str, slave: Slave | None, ending: EndCondition) -> list[str]:
+def _missing(name: str, slave: Slave | None, ending: EndCondition | None) -> list[str]:
+    if ending is None:
+        return []
     who = name if slave is not None and slave.identity else f"no slave is called {name}, nor plays its roles: {name}"
     found = missing_for_the_verdict(name, slave, ending)
     return [f"{who} has no output {item}: {loss}" for item, loss in found.items()]

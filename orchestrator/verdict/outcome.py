@@ -54,13 +54,15 @@ class _Words:
     def __init__(self, scenario: Scenario, mode: Variable | None, reason: Variable | None) -> None:
         ending = scenario.ending
         self._success, self._missed = SUCCESS[scenario.task], MISSED[scenario.task]
+        self._is_run = scenario.task == "run"
         self._still = ending.still
+        done = [] if self._is_run else ending.done
         self._done, self._failed, self._over = (
-            ending.values(states, mode) for states in (ending.done, ending.failed, ending.over)
+            ending.values(states, mode) for states in (done, ending.failed, ending.over)
         )
         self._output = ending.signal.partition(".")[2]
         self._modes = states_of(ending.signal, mode)
-        self._word = ending.text(ending.done[0], mode)
+        self._word = "" if self._is_run else ending.text(ending.done[0], mode)
         self._reasons = states_of(ending.reason, reason)
 
     def outcome(
@@ -69,6 +71,9 @@ class _Words:
         """Return how a run came out, and why; ``missed`` are names of requirements and whether there is no value."""
         if broken:
             return "aborted", broken
+        if self._is_run and mode not in (*self._failed, *self._over):
+            why = self._why_not(0.0, missed)
+            return (self._missed, why) if why else (self._success, "all checks passed")
         if not math.isfinite(mode):
             return (
                 self._missed,

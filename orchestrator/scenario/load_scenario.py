@@ -15,9 +15,9 @@ from orchestrator.scenario.models import MODELS, models_for
 from orchestrator.scenario.polygons import map_of
 from orchestrator.scenario.requirements import read_requirements
 from orchestrator.scenario.scenario import Scenario, Target
-from orchestrator.scenario.ssp import SUFFIX, ssp_scenario, ssp_system
-from orchestrator.scenario.system import NO_FILE, SystemText
 from orchestrator.scenario.target_point import as_rear_axle
+from orchestrator.scenario.wiring.ssp import SUFFIX, ssp_scenario, ssp_system
+from orchestrator.scenario.wiring.system_text import NO_FILE, SystemText
 from orchestrator.text.errors import BadInput, shown, suggestion
 from orchestrator.text.quantities import scalar
 from orchestrator.text.yaml_file import explain, place_in, read_mapping, read_value

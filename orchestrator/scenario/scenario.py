@@ -9,7 +9,7 @@ from orchestrator.scenario.end_condition import EndCondition
 from orchestrator.scenario.fault import Fault
 from orchestrator.scenario.models import MODELS, models_for
 from orchestrator.scenario.requirements import Requirement, shipped_requirements
-from orchestrator.scenario.system import SystemText
+from orchestrator.scenario.wiring.system_text import SystemText
 from orchestrator.text.errors import BadInput
 from orchestrator.text.patterns import NAME
 from orchestrator.text.quantities import NANOSECONDS, Metres, Radians, Seconds

@@ -11,7 +11,7 @@ from modelkit.variables import Variable
 from orchestrator.scenario.load_scenario import load_scenario, load_system
 from orchestrator.scenario.models import MODELS
 from orchestrator.scenario.scenario import Scenario
-from orchestrator.scenario.system import SystemText
+from orchestrator.scenario.wiring.system_text import SystemText
 from orchestrator.text.errors import BadInput
 from orchestrator.text.quantities import number
 

@@ -11,7 +11,7 @@ from orchestrator.cosim.connections import Connection, part_of_slave, wired
 from orchestrator.cosim.slave import Slave
 from orchestrator.scenario.models import MODELS
 from orchestrator.scenario.scenario import Scenario
-from orchestrator.scenario.system import ROLES, Feed, SystemText
+from orchestrator.scenario.wiring.system_text import ROLES, Feed, SystemText
 from orchestrator.system.feeds import Feeder, Pin, joined, pins_of
 from orchestrator.system.listener import Listener
 from orchestrator.text.errors import BadInput, suggestion

@@ -7,7 +7,7 @@ import numpy as np
 
 from modelkit.variables import Variable
 from orchestrator.cosim.slave import Array
-from orchestrator.scenario.system import PoseFrame
+from orchestrator.scenario.wiring.system_text import PoseFrame
 
 
 class Affine:

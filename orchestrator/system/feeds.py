@@ -9,7 +9,7 @@ from modelkit.variables import Variable
 from orchestrator.cosim.connections import Connection
 from orchestrator.cosim.slave import Ports, Slave
 from orchestrator.scenario.end_condition import state_word
-from orchestrator.scenario.system import Feed, PoseFrame, Term, terms
+from orchestrator.scenario.wiring.system_text import Feed, PoseFrame, Term, terms
 from orchestrator.system.conversions import Affine, PoseChange, ValueMap
 from orchestrator.system.units import UnfitUnitsError, conversion
 from orchestrator.text.errors import BadInput, suggestion

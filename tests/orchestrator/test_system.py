@@ -19,7 +19,7 @@ from orchestrator.cosim.master import Master
 from orchestrator.cosim.slave import Scale, Slave
 from orchestrator.log.read_log import read_log
 from orchestrator.scenario.scenario import Scenario
-from orchestrator.scenario.system import Origin, PoseFrame, SystemText, Term, terms
+from orchestrator.scenario.wiring.system_text import Origin, PoseFrame, SystemText, Term, terms
 from orchestrator.system.assemble import Assembled, assemble
 from orchestrator.system.conversions import into, out_of
 from orchestrator.system.remarks import loops, remarks

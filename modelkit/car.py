@@ -80,6 +80,11 @@ def largest_curvature(car: Car) -> float:
     return math.tan(car.steering.angle_limit / car.steering.ratio) / car.wheelbase
 
 
+def smallest_radius(car: Car) -> float:
+    """Return the smallest radius [m] that the rear axle's middle turns on: the front wheels at their lock."""
+    return car.wheelbase / math.tan(car.steering.angle_limit / car.steering.ratio)
+
+
 def mounts_on(front: float, rear: float, half_width: float) -> tuple[SensorMount, ...]:
     """Return twelve sensors on an outline ``front`` ahead of and ``rear`` behind the rear axle [m], as usual.
 

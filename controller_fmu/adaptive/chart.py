@@ -2,6 +2,7 @@
 
 from enum import IntEnum
 
+from controller_fmu.common.chart import ANY, Row, next_state
 from controller_fmu.interface import Phase
 
 
@@ -16,12 +17,6 @@ class Guard(IntEnum):
     WHEEL_SET_TO_GO_AHEAD = 5
     MUST_STOP = 6
     WHEEL_STRAIGHT = 7
-
-
-ANY = -1
-"""Every state that is not an end."""
-
-Row = tuple[int, int, int]
 
 
 def _row(source: int, guard: Guard, target: Phase) -> Row:
@@ -46,7 +41,4 @@ def transition(phase: int, guards: int) -> int:
     """Return the phase after one sample; ``guards`` holds bit g for guard g."""
     if phase >= Phase.PARKED:
         return phase
-    for source, guard, target in TRANSITIONS:
-        if (source == phase or source == ANY) and (guards >> guard) & 1 == 1:
-            return target
-    return phase
+    return next_state(phase, guards, TRANSITIONS)

@@ -20,6 +20,7 @@ from controller_fmu.adaptive.driver import (
 from controller_fmu.adaptive.planner import ANY_SPEED, NO_PLAN, Demand, Plan, plan
 from controller_fmu.adaptive.room import room_of
 from controller_fmu.adaptive.route import INTO, Foot, curvature_at, drivable, foot_on
+from controller_fmu.common.chart import bit
 from controller_fmu.common.monitor import (
     DIRECTION_OF_PHASE,
     MonitorState,
@@ -31,6 +32,7 @@ from controller_fmu.common.slot_frame import SlotFrame, frame_at, to_slot
 from controller_fmu.common.steering_monitor import Steering, delay_of, rate_of
 from controller_fmu.common.steering_wheel import wheel_request
 from controller_fmu.interface import ControllerInput, ControllerParams, Phase, Reason
+from modelkit.car import smallest_radius
 from modelkit.maths import clamp
 from modelkit.vocabulary import Pose
 
@@ -146,7 +148,7 @@ def wheel_of(steering: Steering, params: ControllerParams) -> Wheel:
     """Return what paths are planned with."""
     path = params.adaptive.path
     rate = rate_of(steering, params.car.steering.rate_limit) / params.car.steering.ratio
-    smallest = params.car.wheelbase / math.tan(params.car.steering.angle_limit / params.car.steering.ratio)
+    smallest = smallest_radius(params.car)
     return Wheel(params.car.wheelbase, path.rate_reserve * rate, path.radius_reserve * smallest)
 
 
@@ -194,14 +196,14 @@ def _guards(
     left = state.end - state.foot.way
     must = off or left <= stopping_way(state.driver, params.adaptive.belief)
     return (
-        _bit(Guard.TAKEOVER, inputs.driver_takeover)
-        | _bit(Guard.FAULT, reason != Reason.NONE)
-        | _bit(Guard.IN_PLACE, standing and is_in_place(pose, params))
-        | _bit(Guard.PLANNED, standing and state.plan.route.direction != 0)
-        | _bit(Guard.WHEEL_SET_TO_REVERSE, wheel_there and state.plan.route.direction < 0)
-        | _bit(Guard.WHEEL_SET_TO_GO_AHEAD, wheel_there and state.plan.route.direction > 0)
-        | _bit(Guard.MUST_STOP, must)
-        | _bit(Guard.WHEEL_STRAIGHT, straight)
+        bit(Guard.TAKEOVER, inputs.driver_takeover)
+        | bit(Guard.FAULT, reason != Reason.NONE)
+        | bit(Guard.IN_PLACE, standing and is_in_place(pose, params))
+        | bit(Guard.PLANNED, standing and state.plan.route.direction != 0)
+        | bit(Guard.WHEEL_SET_TO_REVERSE, wheel_there and state.plan.route.direction < 0)
+        | bit(Guard.WHEEL_SET_TO_GO_AHEAD, wheel_there and state.plan.route.direction > 0)
+        | bit(Guard.MUST_STOP, must)
+        | bit(Guard.WHEEL_STRAIGHT, straight)
     )
 
 
@@ -258,7 +260,3 @@ def _advice(state: AdaptiveState, params: ControllerParams) -> float:
 
 def _ended(state: AdaptiveState, phase: int, reason: int, takeover: bool) -> AdaptiveState:
     return state._replace(phase=phase, reason=reason, moving=False, advice=0.0, takeover=takeover)
-
-
-def _bit(guard: int, holds: bool) -> int:
-    return 1 << guard if holds else 0

@@ -5,6 +5,8 @@ A row says: in ``source``, when ``guard`` holds, go to ``target``. Rows are in o
 
 from enum import IntEnum
 
+from controller_fmu.common.chart import Row, next_state
+
 
 class Mode(IntEnum):
     """States of the parking assist, named as in the source."""
@@ -49,10 +51,6 @@ class Guard(IntEnum):
     """In place, the wheel straight."""
 
 
-ANY = -1
-Row = tuple[int, int, int]
-
-
 def _row(source: int, guard: Guard, target: Mode) -> Row:
     return (int(source), int(guard), int(target))
 
@@ -86,7 +84,4 @@ TRANSITIONS: tuple[Row, ...] = (
 
 def transition(mode: int, guards: int) -> int:
     """Return the mode after one sample; ``guards`` holds bit g for guard g."""
-    for source, guard, target in TRANSITIONS:
-        if source == mode and (guards >> guard) & 1 == 1:
-            return target
-    return mode
+    return next_state(mode, guards, TRANSITIONS)

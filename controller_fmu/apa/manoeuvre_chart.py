@@ -2,6 +2,8 @@
 
 from enum import IntEnum
 
+from controller_fmu.common.chart import Row, next_state
+
 
 class Step(IntEnum):
     """What the assist is doing while it parks."""
@@ -32,9 +34,6 @@ class Guard(IntEnum):
     WHEEL_STRAIGHT = 7
 
 
-Row = tuple[int, int, int]
-
-
 def _row(source: Step, guard: Guard, target: Step) -> Row:
     return (int(source), int(guard), int(target))
 
@@ -53,7 +52,4 @@ TRANSITIONS: tuple[Row, ...] = (
 
 def step_transition(step: int, guards: int) -> int:
     """Return the step after one sample; ``guards`` holds bit g for guard g."""
-    for source, guard, target in TRANSITIONS:
-        if source == step and (guards >> guard) & 1 == 1:
-            return target
-    return step
+    return next_state(step, guards, TRANSITIONS)

@@ -15,6 +15,7 @@ from controller_fmu.apa.speed import planned_speed, stopping_way
 from controller_fmu.apa.supervisor import Sight, look
 from controller_fmu.apa.tracking import Leg, Tracked, next_standstill, set_wheel, track
 from controller_fmu.apa.watch import STANDING
+from controller_fmu.common.chart import bit
 from controller_fmu.common.slot_frame import to_slot
 from controller_fmu.common.steering_monitor import Steering, rate_of
 from controller_fmu.common.steering_wheel import wheel_request
@@ -149,13 +150,13 @@ def _guards(
     at_end = tracked.left <= AT_END or state.cut
     return (
         (1 << StepGuard.STARTED)
-        | _bit(StepGuard.IN_PLACE, right or (stuck and well_enough and allowed))
-        | _bit(StepGuard.PLANNED, plan.status == FOUND and not stuck and allowed)
-        | _bit(StepGuard.WHEEL_SET, abs(wheel - state.wheel) <= params.threshold.wheel and not sight.blocked)
-        | _bit(StepGuard.MUST_HALT, tracked.to_stop <= stop or sight.blocked)
-        | _bit(StepGuard.STANDING_AT_END, standing and at_end)
-        | _bit(StepGuard.STANDING_TO_GO_ON, standing and not at_end and not sight.blocked)
-        | _bit(StepGuard.WHEEL_STRAIGHT, abs(wheel) <= params.threshold.wheel)
+        | bit(StepGuard.IN_PLACE, right or (stuck and well_enough and allowed))
+        | bit(StepGuard.PLANNED, plan.status == FOUND and not stuck and allowed)
+        | bit(StepGuard.WHEEL_SET, abs(wheel - state.wheel) <= params.threshold.wheel and not sight.blocked)
+        | bit(StepGuard.MUST_HALT, tracked.to_stop <= stop or sight.blocked)
+        | bit(StepGuard.STANDING_AT_END, standing and at_end)
+        | bit(StepGuard.STANDING_TO_GO_ON, standing and not at_end and not sight.blocked)
+        | bit(StepGuard.WHEEL_STRAIGHT, abs(wheel) <= params.threshold.wheel)
     )
 
 
@@ -229,10 +230,6 @@ def _speed(tracked: Tracked, sight: Sight, steering: Steering, params: Controlle
     rate = rate_of(steering, params.car.steering.rate_limit) / params.car.steering.ratio
     speed = planned_speed(tracked.to_stop, tracked.slope, params.car.wheelbase, rate, params.apa.drive)
     return max(params.apa.drive.creep, min(speed, sight.speed))
-
-
-def _bit(guard: int, holds: bool) -> int:
-    return 1 << guard if holds else 0
 
 
 def start_planning(slot: Slot, pose: Pose, params: ControllerParams) -> Parking:

@@ -18,6 +18,7 @@ from controller_fmu.apa.relocate import along, between, braked, relocated
 from controller_fmu.apa.search import SearchState, begin_search, is_new_reading, search, without_first
 from controller_fmu.apa.slot import Slot
 from controller_fmu.apa.watch import STANDING, Watch, is_taken_over, reason_to_fail, watch
+from controller_fmu.common.chart import bit
 from controller_fmu.interface import ControllerInput, ControllerParams, Reason
 from modelkit.vocabulary import Pose
 
@@ -114,19 +115,19 @@ def _guards(
     dy = inputs.odometry.y - state.pose.y
     moved = dx * dx + dy * dy > DRIVEN_ON * DRIVEN_ON
     return (
-        _bit(Guard.SWITCHED_OFF, not inputs.apa_switch)
-        | _bit(Guard.TAKEN_OVER, taken or not inputs.apa_switch)
-        | _bit(Guard.FAULT, reason != Reason.NONE)
-        | _bit(Guard.SWITCHED_ON, inputs.apa_switch)
-        | _bit(Guard.READY, not given and speed <= limit)
-        | _bit(Guard.SLOT_GIVEN, given and standing)
-        | _bit(Guard.TOO_FAST, speed > 1.1 * limit)
-        | _bit(Guard.SLOT_AT_STANDSTILL, found.valid > 0 and standing)
-        | _bit(Guard.NO_PLAN, not given and has_failed(parking, params))
-        | _bit(Guard.DRIVEN_ON, not given and moved)
-        | _bit(Guard.CONFIRMED, inputs.driver_confirm and standing and is_planned(parking))
-        | _bit(Guard.NEARLY, parking.step == Step.PLAN and parking.ended and is_planning(parking))
-        | _bit(Guard.ENDED, parking.step == Step.DONE)
+        bit(Guard.SWITCHED_OFF, not inputs.apa_switch)
+        | bit(Guard.TAKEN_OVER, taken or not inputs.apa_switch)
+        | bit(Guard.FAULT, reason != Reason.NONE)
+        | bit(Guard.SWITCHED_ON, inputs.apa_switch)
+        | bit(Guard.READY, not given and speed <= limit)
+        | bit(Guard.SLOT_GIVEN, given and standing)
+        | bit(Guard.TOO_FAST, speed > 1.1 * limit)
+        | bit(Guard.SLOT_AT_STANDSTILL, found.valid > 0 and standing)
+        | bit(Guard.NO_PLAN, not given and has_failed(parking, params))
+        | bit(Guard.DRIVEN_ON, not given and moved)
+        | bit(Guard.CONFIRMED, inputs.driver_confirm and standing and is_planned(parking))
+        | bit(Guard.NEARLY, parking.step == Step.PLAN and parking.ended and is_planning(parking))
+        | bit(Guard.ENDED, parking.step == Step.DONE)
     )
 
 
@@ -171,7 +172,3 @@ def _moved_on(
     taken_over = (state.taken_over or switched_off) if over else False
     kept = (reason if state.mode != Mode.FAIL else state.reason) if over and not taken_over else Reason.NONE
     return ApaState(mode, kept, taken_over, clock, found, slot, parking, seen, waited, pose)
-
-
-def _bit(guard: int, holds: bool) -> int:
-    return 1 << guard if holds else 0

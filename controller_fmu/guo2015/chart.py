@@ -7,6 +7,7 @@ there to what the leg begins with, then the leg is driven.
 
 from enum import IntEnum
 
+from controller_fmu.common.chart import ANY
 from controller_fmu.interface import Phase
 
 
@@ -37,8 +38,6 @@ class Guard(IntEnum):
 
 KEEP = -1
 """The leg stays as it is."""
-ANY = -1
-"""Every state that is not an end."""
 
 Row = tuple[int, int, int, int]
 

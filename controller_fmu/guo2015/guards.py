@@ -1,5 +1,6 @@
 """The guards of the manoeuvre chart, worked out from the pose, the wheel and the speed."""
 
+from controller_fmu.common.chart import bit
 from controller_fmu.guo2015.chart import Guard
 from controller_fmu.guo2015.legs import Tracking, point_of_leg
 from controller_fmu.guo2015.path import distance_to_end, reference_at
@@ -7,11 +8,6 @@ from controller_fmu.guo2015.planner import TwoArcPath
 from controller_fmu.guo2015.prompts import stopping_distance
 from controller_fmu.interface import ControllerInput, ControllerParams, Phase, System
 from modelkit.vocabulary import Pose
-
-
-def bit(guard: int, holds: bool) -> int:
-    """Return the bit of ``guard`` if it holds."""
-    return 1 << guard if holds else 0
 
 
 def within(lateral: float, heading: float, lateral_limit: float, heading_limit: float) -> bool:

@@ -3,6 +3,7 @@
 import math
 from typing import NamedTuple
 
+from controller_fmu.common.chart import bit
 from controller_fmu.common.monitor import (
     DIRECTION_OF_PHASE,
     MonitorState,
@@ -13,7 +14,7 @@ from controller_fmu.common.monitor import (
 from controller_fmu.common.slot_frame import to_slot, to_world
 from controller_fmu.common.steering_wheel import wheel_request
 from controller_fmu.guo2015.chart import Guard, transition
-from controller_fmu.guo2015.guards import bit, standing_guards, way_guards, wheel_guards, within
+from controller_fmu.guo2015.guards import standing_guards, way_guards, wheel_guards, within
 from controller_fmu.guo2015.legs import Tracking, track
 from controller_fmu.guo2015.path import SECOND_ARC, reference_at
 from controller_fmu.guo2015.planner import Plan, plan
@@ -26,6 +27,7 @@ from controller_fmu.guo2015.prompts import (
 )
 from controller_fmu.guo2015.smooth_path import Shape
 from controller_fmu.interface import ControllerInput, ControllerOutput, ControllerParams, Path, Phase, Reason, Segment
+from modelkit.car import smallest_radius
 from modelkit.maths import clamp
 from modelkit.vocabulary import Pose
 
@@ -72,7 +74,7 @@ def guo_sample(state: GuoState, inputs: ControllerInput, params: ControllerParam
         return _ended(state, Phase.FAILED, Reason.BAD_INPUT, inputs.driver_takeover)
     planned = state.plan
     if state.phase == Phase.STANDBY:
-        smallest = params.car.wheelbase / math.tan(params.car.steering.angle_limit / params.car.steering.ratio)
+        smallest = smallest_radius(params.car)
         reserve = params.guo2015.radius_reserve
         radius = params.guo2015.radius
         shape = params.guo2015.path

@@ -12,6 +12,7 @@ from controller_fmu.hsic.key_points import key_points, ready_point
 from controller_fmu.hsic.rules import RULES, SpeedMode
 from controller_fmu.hsic.stages import Course, advance, is_parked, way_to
 from controller_fmu.interface import ControllerInput, ControllerParams, Phase, Reason
+from modelkit.car import largest_curvature
 from modelkit.maths import clamp
 from modelkit.vocabulary import Pose
 
@@ -116,7 +117,7 @@ def _driven(
         hold = hold or direction != state.direction
     turning = speed_mode == SpeedMode.TURN_ROUND and direction == state.direction
     integral = 0.0 if new_goal else state.integral + found.lateral * abs(v) * dt_ns * 1e-9
-    lock = math.tan(params.car.steering.angle_limit / params.car.steering.ratio) / params.car.wheelbase
+    lock = largest_curvature(params.car)
     bend = curvature(steer_mode, course.stage, found, direction, integral, 1.0 / course.points.radius, lock, hsic.gain)
     angle = math.atan(params.car.wheelbase * bend)
     off = abs(inputs.steering_wheel_angle - steering_wheel_angle(angle, state.frame.mirror, params))

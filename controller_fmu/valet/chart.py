@@ -2,6 +2,8 @@
 
 from enum import IntEnum
 
+from controller_fmu.common.chart import Row, next_state
+
 
 class Step(IntEnum):
     """What the valet is doing."""
@@ -38,9 +40,6 @@ class Guard(IntEnum):
     """Wheel straight, not at the goal."""
 
 
-Row = tuple[int, int, int]
-
-
 def _row(source: Step, guard: Guard, target: Step) -> Row:
     return (int(source), int(guard), int(target))
 
@@ -69,7 +68,4 @@ TRANSITIONS: tuple[Row, ...] = (
 
 def step_transition(step: int, guards: int) -> int:
     """Return the step after one sample; ``guards`` holds bit g for guard g."""
-    for source, guard, target in TRANSITIONS:
-        if source == step and (guards >> guard) & 1 == 1:
-            return target
-    return step
+    return next_state(step, guards, TRANSITIONS)

@@ -3,6 +3,7 @@
 import math
 from typing import NamedTuple
 
+from controller_fmu.common.chart import bit
 from controller_fmu.common.path_law import angle_back, deviation
 from controller_fmu.interface import ControllerInput, Reason
 from controller_fmu.planning.plan import (
@@ -159,16 +160,16 @@ def guards_of(state: ValetState, inputs: ControllerInput, params: ValetParams) -
     at_end = tracked.left <= AT_END and state.piece + 1 >= state.path.used
     in_place = is_in_place(inputs.odometry, state.request.goal, params)
     return (
-        _bit(Guard.TAKEN_OVER, inputs.driver_takeover)
-        | _bit(Guard.FAULT, state.reason != Reason.NONE)
-        | _bit(Guard.PLANNED, state.searched > 0 and state.path.used > 0)
-        | _bit(Guard.WHEEL_SET, abs(wheel - state.wheel) <= params.threshold.wheel and not state.sight.blocked)
-        | _bit(Guard.MUST_HALT, tracked.left <= stop - state.early or state.sight.blocked or lost)
-        | _bit(Guard.STANDING_LOST, standing and (lost or blocked_long))
-        | _bit(Guard.STANDING_AT_END, standing and at_end)
-        | _bit(Guard.STANDING, standing and not state.sight.blocked)
-        | _bit(Guard.IN_PLACE, straight and in_place)
-        | _bit(Guard.MISSED, straight and not in_place)
+        bit(Guard.TAKEN_OVER, inputs.driver_takeover)
+        | bit(Guard.FAULT, state.reason != Reason.NONE)
+        | bit(Guard.PLANNED, state.searched > 0 and state.path.used > 0)
+        | bit(Guard.WHEEL_SET, abs(wheel - state.wheel) <= params.threshold.wheel and not state.sight.blocked)
+        | bit(Guard.MUST_HALT, tracked.left <= stop - state.early or state.sight.blocked or lost)
+        | bit(Guard.STANDING_LOST, standing and (lost or blocked_long))
+        | bit(Guard.STANDING_AT_END, standing and at_end)
+        | bit(Guard.STANDING, standing and not state.sight.blocked)
+        | bit(Guard.IN_PLACE, straight and in_place)
+        | bit(Guard.MISSED, straight and not in_place)
     )
 
 
@@ -249,7 +250,3 @@ def _set_out(state: ValetState) -> ValetState:
     if direction != state.direction:
         shifts = shifts + 1 if shifts > 0 or direction < 0.0 else shifts
     return state._replace(direction=direction, shifts=shifts)
-
-
-def _bit(guard: int, holds: bool) -> int:
-    return 1 << guard if holds else 0

@@ -33,9 +33,9 @@ def test_a_car_that_fits_parks_and_another_is_refused_for_its_size(name: str, ca
         assert found.reason in GEOMETRIC or "outline in the slot" in found.reason, found
 
 
-def test_each_car_fits_somewhere_and_most_do_not_everywhere() -> None:
+def test_all_cars_but_the_widest_fit_somewhere_and_most_do_not_everywhere() -> None:
     lacks = {car: [lacking(load_scenario(name, [f"car={car}"])) for name in parking_scenarios()] for car in car_names()}
-    assert all("" in found for found in lacks.values())
+    assert {car for car, found in lacks.items() if "" not in found} <= {"tpcap"}, "1.94 m wide"
     assert lacks["guo2015"] == [""] * len(parking_scenarios())
     assert lacking(load_scenario("apa-parallel-tight", ["car=zhang2022"])) == "4.85 m long, 5.54 m asked"
     assert lacking(load_scenario("apa-perpendicular", ["car=zhang2022"])) == "4.20 m deep, 4.44 m asked"

@@ -42,7 +42,8 @@ def main() -> int:
         if time.monotonic() > until:
             break
     shutil.rmtree(folder, ignore_errors=True)
-    print(f"{asked.kind}: seed {seed}, {tried} tried in {asked.seconds:g} s, {found} found")
+    more = "".join(f", {count} {what}" for what, count in inputs.JUDGED.items())
+    print(f"{asked.kind}: seed {seed}, {tried} tried in {asked.seconds:g} s{more}, {found} found")
     return 1 if found else 0
 
 

@@ -1,11 +1,21 @@
 """Odd scenarios, cars, settings, studies, requirements, tolerances and flags: each ends with one line or a run."""
 
+import math
 import random
 import shutil
+from collections import Counter
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
+import numpy as np
+
+from orchestrator.log.read_log import read_log
+from orchestrator.scenario.plausible import LARGEST
 from tests.fuzz.limits import ask
+
+JUDGED: Counter[str] = Counter()
+FAR = 1.5
+"""A signal may pass what is plausible for a parameter by so much."""
 
 VALUES = (
     "0",
@@ -262,4 +272,26 @@ def fuzz(folder: Path, log: Path, draw: random.Random) -> Iterator[tuple[list[st
     for words in attacks(folder, log, draw):
         shutil.rmtree(folder / "out", ignore_errors=True)
         answer = ask(words)
-        yield words, answer.mistake
+        mistake = answer.mistake
+        if not mistake and words[0] == "run" and answer.code in (0, 1):
+            JUDGED["inputs that were run and judged"] += 1
+            mistake = nonsense(folder / "out", answer.err)
+        yield words, mistake
+
+
+def nonsense(out: Path, said: str) -> str:
+    """Return what an accepted input has led to that no car does and nobody was warned of; empty if nothing."""
+    if not (out / "summary.json").is_file() or not (out / "run.mcap").is_file():
+        return "judged, without results"
+    recording = read_log(out / "run.mcap")
+    for name, variable in recording.variables.items():
+        values = recording.signals.get(name)
+        most = LARGEST.get(variable.signal.unit, math.inf)
+        owner = name.partition(".")[0]
+        if values is None or owner != "vehicle" or "clearance" in name:
+            continue
+        if not np.isfinite(values).all():
+            return f"{name} is not finite"
+        if np.abs(values).max(initial=0.0) > FAR * most and "beyond what is plausible" not in said:
+            return f"{name} = {np.abs(values).max():g} {variable.signal.unit}, and nobody was warned"
+    return ""

@@ -25,10 +25,18 @@ def chosen_folder() -> Path:
     if named:
         return Path(named).absolute()
     room = Path(__file__).parent
-    if (room.parent / "pyproject.toml").is_file() and can_write(room / "dist"):
+    if (room.parent / "pyproject.toml").is_file() and can_write(room / "dist") and is_own(room / "dist"):
         return room / "dist"
     own = user_cache_path("apa-cosim", appauthor=False)
-    return own if can_write(own) else _temporary()
+    return own if can_write(own) and is_own(own) else _temporary()
+
+
+def is_own(folder: Path) -> bool:
+    """Return whether nobody but this user, or root, can put a library into ``folder``; root may use anybody's."""
+    if not hasattr(os, "getuid") or not folder.exists():
+        return True
+    state = folder.stat()
+    return os.getuid() == 0 or (state.st_uid in (os.getuid(), 0) and not state.st_mode & 0o002)
 
 
 def _temporary() -> Path:

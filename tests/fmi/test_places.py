@@ -61,6 +61,16 @@ def test_without_any_home_it_is_a_folder_of_ones_own(monkeypatch, tmp_path):
         places.chosen_folder()
 
 
+@pytest.mark.skipif(not hasattr(os, "getuid"), reason="owners are those of POSIX")
+def test_a_folder_that_others_can_write_to_is_not_ones_own(monkeypatch, tmp_path):
+    monkeypatch.setattr(places.os, "getuid", lambda: tmp_path.stat().st_uid or 1)
+    tmp_path.chmod(0o755)
+    assert places.is_own(tmp_path)
+    tmp_path.chmod(0o777)
+    assert not places.is_own(tmp_path)
+    assert places.is_own(tmp_path / "not there")
+
+
 def test_can_write_asks_the_nearest_folder_that_exists(tmp_path):
     assert places.can_write(tmp_path / "a" / "b")
     assert not places.can_write(Path("/proc/1/a"))

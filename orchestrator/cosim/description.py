@@ -141,10 +141,10 @@ def _items(scalar: ModelVariable) -> type[IntEnum] | None:
     pairs = [(str(item.name), item.value or place) for place, item in enumerate(kind.items if kind else (), start=1)]
     if not pairs and described is not None:
         pairs = [(name, value) for value, name in (part.split() for part in described[1].split(","))]
-    members = {re.sub(r"\W", "_", name).upper(): int(str(value)) for name, value in pairs}
+    members = {re.sub(r"[^A-Za-z0-9_]", "_", name).upper(): int(str(value)) for name, value in pairs}
     if not members or len(members) < len(pairs) or not all(name.isidentifier() for name in members):
         return None
-    return states_called(re.sub(r"\W", "_", str(kind.name if kind else scalar.name).title()), members)
+    return states_called(re.sub(r"[^A-Za-z0-9_]", "_", str(kind.name if kind else scalar.name).title()), members)
 
 
 def states_called(name: str, members: dict[str, int]) -> type[IntEnum]:

@@ -20,18 +20,87 @@ from google.protobuf.descriptor_pb2 import (
 from modelkit.variables import Variable
 
 TOKEN = re.compile(r"[^.\[\]]+")
+PLAIN = re.compile(r"[A-Za-z]\w*(?:\.[A-Za-z]\w*|\[\d+\])*", re.ASCII)
 Tree = dict[str, Any]
 """Field name -> place of a variable (int), message (Tree), or list of these."""
 PACKAGE = "apa"
 
 
 def tree(names: list[str]) -> Tree:
-    """Return the nested structure that ``names`` spell, with the place of each name at its leaf."""
-    root: Tree = {}
+    """Return the nested structure that ``names`` spell, with the place of each name at its leaf.
+
+    Names that spell none - ``der(x)``, ``a`` beside ``a.b``, ``x[2]`` without ``x[1]`` - become fields of their own.
+    """
+    root: dict[str, list[tuple[str, int]]] = {}
     for place, name in enumerate(names):
-        parts = [int(part) if part.isdigit() else part for part in TOKEN.findall(name)]
-        _put(root, parts, place)
-    return _lists(root)  # type: ignore[no-any-return]
+        first = (TOKEN.findall(name) or [name])[0]
+        root.setdefault(str(first), []).append((name, place))
+    made: Tree = {}
+    taken: set[str] = set()
+    for first, items in root.items():
+        content = _structure(items)
+        scope: set[str] = {first, _camel(first)} if isinstance(_element(content), dict) else {first}
+        if content is not None and not scope & taken:
+            made[first] = content
+            taken |= scope
+        else:
+            for name, place in items:
+                made[_own_name(name, taken)] = place
+    return made
+
+
+def _structure(items: list[tuple[str, int]]) -> Any:
+    """Return what names that begin alike spell: a place, a message, a list; None if they cannot be both."""
+    if not all(PLAIN.fullmatch(name) for name, _ in items):
+        return None
+    root: dict[Any, Any] = {}
+    for name, place in items:
+        node, parts = root, [int(part) if part.isdigit() else part for part in TOKEN.findall(name)]
+        for part in parts[:-1]:
+            node = node.setdefault(part, {})
+            if not isinstance(node, dict):
+                return None
+        if parts[-1] in node:
+            return None
+        node[parts[-1]] = place
+    content = _lists(next(iter(root.values())))
+    return content if _is_regular(content) else None
+
+
+def _is_regular(content: Any) -> bool:
+    """Return whether every list has elements alike, that are no lists, and no name means two things."""
+    if isinstance(content, list):
+        return (
+            len({_shape(item) for item in content}) == 1
+            and not isinstance(content[0], list)
+            and _is_regular(content[0])
+        )
+    if not isinstance(content, dict):
+        return True
+    if any(isinstance(key, int) for key in content):
+        return False
+    types = [_camel(key) for key, item in content.items() if isinstance(_element(item), dict)]
+    return len({*types, *content}) == len(types) + len(content) and all(map(_is_regular, content.values()))
+
+
+def _shape(content: Any) -> Any:
+    if isinstance(content, dict):
+        return tuple((key, _shape(item)) for key, item in content.items())
+    return tuple(map(_shape, content)) if isinstance(content, list) else None
+
+
+def _element(content: Any) -> Any:
+    return content[0] if isinstance(content, list) and content else content
+
+
+def _own_name(name: str, taken: set[str]) -> str:
+    """Return a name for a field that no other has."""
+    plain = re.sub(r"[^A-Za-z0-9_]", "_", name)
+    plain = plain if plain[:1].isalpha() else f"v_{plain}"
+    while plain in taken:
+        plain += "_"
+    taken.add(plain)
+    return plain
 
 
 def file_descriptor(message: str, variables: list[Variable], notes: list[str]) -> FileDescriptorProto:
@@ -57,18 +126,13 @@ def comment(variable: Variable, note: str) -> str:
     return f"[{variable.signal.unit}] {variable.signal.text}{names}; {note}"
 
 
-def _put(node: Tree, parts: list[Any], place: int) -> None:
-    for part in parts[:-1]:
-        node = node.setdefault(part, {})
-    node[parts[-1]] = place
-
-
 def _lists(node: Any) -> Any:
+    """Return the same with lists where the keys count from 1."""
     if not isinstance(node, dict):
         return node
-    if node and all(isinstance(key, int) for key in node):
+    if node and set(node) == set(range(1, len(node) + 1)):
         return [_lists(node[key]) for key in sorted(node)]
-    return {str(key): _lists(value) for key, value in node.items()}
+    return {key: _lists(value) for key, value in node.items()}
 
 
 def _enum_holder(name: str, enum: type[IntEnum]) -> DescriptorProto:

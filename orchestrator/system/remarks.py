@@ -6,7 +6,7 @@ from orchestrator.cosim.slave import Slave
 from orchestrator.scenario.end_condition import EndCondition
 from orchestrator.scenario.models import MODELS
 from orchestrator.system.assemble import Assembled
-from orchestrator.text.errors import suggestion
+from orchestrator.text.errors import BadInput, suggestion
 
 NEEDED = {
     "controller": {
@@ -41,11 +41,21 @@ def remarks(system: Assembled, ending: EndCondition | None) -> list[str]:
 
 def missing_for_the_verdict(name: str, slave: Slave | None, ending: EndCondition) -> dict[str, str]:
     """Return output -> what is lost as ``slave``, called ``name``, does not have it."""
-    owner, _, mode = ending.signal.partition(".")
-    says = f"{ending.text(ending.done[0])} of it says that the task is done and, once the car stands, ends the run"
-    needed = ({mode: says} if name == owner else {}) | NEEDED.get(name, {})
     has = {} if slave is None else {**slave.outputs.index, **dict.fromkeys(slave.inputs.names[slave.inputs.own :])}
+    owner, _, mode = ending.signal.partition(".")
+    needed = dict(NEEDED.get(name, {}))
+    if name == owner and mode not in has:
+        needed = {
+            mode: f"{_done(ending)} of it says that the task is done and, once the car stands, ends the run"
+        } | needed
     return {item: loss for item, loss in needed.items() if item not in has}
+
+
+def _done(ending: EndCondition) -> str:
+    try:
+        return ending.text(ending.done[0])
+    except BadInput:
+        return str(ending.done[0])
 
 
 def _missing(name: str, slave: Slave | None, ending: EndCondition | None) -> list[str]:

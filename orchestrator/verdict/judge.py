@@ -10,7 +10,7 @@ from pydantic import BaseModel, ConfigDict
 from modelkit.variables import variables
 from orchestrator.cosim.recording import Recording
 from orchestrator.cosim.slave import Array
-from orchestrator.scenario.end_condition import state_word
+from orchestrator.scenario.end_condition import state_word, states_of
 from orchestrator.scenario.models import MODELS
 from orchestrator.scenario.requirements import Condition, Requirement, Window
 from orchestrator.text.errors import BadInput, suggestion
@@ -92,9 +92,17 @@ def _check(item: Requirement, recording: Recording, numbers: dict[str, float], f
 def _unmeasured(item: Requirement, recording: Recording, numbers: dict[str, float]) -> bool:
     """Return whether a requirement needs what our models put out, but the FMUs of this run do not."""
     missing = item.signal not in recording.signals and item.signal in _known_signals()
-    phase = item.window is not None and bool(item.window.phase) and CHART not in recording.signals
+    phase = item.window is not None and bool(item.window.phase) and not _has_phases(item.window.phase, recording)
     number = item.signal in numbers and not all(name in recording.signals for name in signals_of(item.signal))
     return missing or phase or number
+
+
+def _has_phases(names: list[str], recording: Recording) -> bool:
+    """Return whether the chart of a run has phases of these names, or should have: another's need not have ours."""
+    if CHART not in recording.signals:
+        return False
+    there, ours = set(recording.states(CHART).values()), set(states_of(CHART).values())
+    return all(word in there or word not in ours for word in map(state_word, names))
 
 
 @cache

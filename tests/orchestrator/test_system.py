@@ -2,9 +2,11 @@
 
 import json
 import math
+import re
 import shutil
 from pathlib import Path
 
+import bad_fmus
 import c_fmus
 import numpy as np
 import pytest
@@ -86,6 +88,40 @@ def test_a_suite_runs_systems_beside_shipped_scenarios(desk: Path, tmp_path: Pat
     names = [str(desk / "two_arcs.yaml"), "guo2015-case3"]
     assert main(["test", *names, "--fmus", "none", "--out", str(tmp_path), "--quiet"]) == 0
     assert json.loads((tmp_path / "their-case4" / "summary.json").read_text())["outcome"] == "parked"
+
+
+def test_names_that_no_other_tool_can_spell(tmp_path: Path) -> None:
+    names = ["der(x)", "'a name, 1'", "a", "a.b", "c[2]", "Motor-1.speed", "größe", "1st", "m[1,2]", "d", "D.e", "f[1]"]
+    outputs = "".join(
+        f'<ScalarVariable name="{name}" valueReference="{place}" causality="output"><Real/></ScalarVariable>'
+        for place, name in enumerate(names, start=2)
+    )
+    text = bad_fmus.DESCRIPTION.format(guid="good").replace("</ModelVariables>", f"{outputs}</ModelVariables>")
+    c_fmus.c_fmu(tmp_path / "odd.fmu", c_fmus.THEIR / "bad.c", text, "bad")
+    scenario = {"base": "guo2015-case4", "stop_time": 0.1, "limits": []}
+    system = {
+        "slaves": {"odd": "odd.fmu"},
+        "connections": {"odd.u": "vehicle.speed", "vehicle.advised_speed": "odd.der(x)"},
+    }
+    (tmp_path / "odd.yaml").write_text(yaml.safe_dump({**scenario, "system": system}))
+    main(["run", str(tmp_path / "odd.yaml"), "--fmus", "none", "--out", str(tmp_path), "--quiet"])
+    assert {name for name in read_log(tmp_path / "run.mcap").signals if name.startswith("odd.")} == {
+        f"odd.{name}" for name in [*names, "u", "y"]
+    }
+    assert (tmp_path / "report.html").is_file()
+
+
+def test_windows_in_phases_of_ours_are_not_judged_where_the_chart_has_none(desk: Path, tmp_path: Path) -> None:
+    text = (desk / "two_arcs.yaml").read_text()
+    mode = "{from: controller.State, states: {idle: 1, first: 2, second: 3, there: 4}}"
+    text = re.sub(r"mode: .*", f"mode: {mode}", text) + "ending: {done: [there]}\n"
+    limit = "{id: slow, signal: vehicle.speed, max_abs: 1, window: {phase: TO_Q1}, source: us, required: false}"
+    path = desk / "own_states.yaml"
+    path.write_text(f"{text}limits: [{limit}]\n")
+    assert main(["run", str(path), "--fmus", "none", "--out", str(tmp_path), "--quiet", "--no-page"]) == 0
+    summary = json.loads((tmp_path / "summary.json").read_text())
+    assert [event["to"] for event in summary["events"]] == ["FIRST", "SECOND", "THERE"]
+    assert summary["checks"][0]["note"] == "not measured"
 
 
 def toys(text: str) -> tuple[Scenario, list[Slave]]:

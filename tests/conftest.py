@@ -48,6 +48,7 @@ SLOW = [
     "papers/test_kinds.py",
     "papers/test_preview.py",
     "papers/test_zhang2022.py",
+    "report/test_axe.py",
     "report/test_browser.py",
     "sweep/test_batch.py",
     "sweep/test_page.py",

@@ -31,7 +31,7 @@ def chart_svg(
     parts = [_red(_arc(pair, guards, place, lanes[pair], middle), pair in red_arcs) for pair, guards in merged.items()]
     parts += [_red(_state(name, middle, place[name]), name in red_states) for name in states]
     size = f"0 0 {left + WIDTH + right:.0f} {len(states) * ROW + HEIGHT:.0f}"
-    head = f'<svg class="chart" xmlns="http://www.w3.org/2000/svg" viewBox="{size}" role="img"'
+    head = f'<svg class="chart" xmlns="http://www.w3.org/2000/svg" viewBox="{size}" role="img" aria-label="state chart"'
     return f'{head} font-size="12" font-family="sans-serif">{"".join(parts)}</svg>'
 
 

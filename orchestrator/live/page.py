@@ -46,7 +46,7 @@ def live_page(scenarios: Sequence[Scenario]) -> str:
     parts = {
         "TITLE": html.escape(title),
         "POLICY": report.policy([core, script], RUNS_MODULES),
-        "STYLE": f"{report.style()}\n{_read('style.css')}",
+        "STYLE": report.style(_read("style.css")),
         "DATA": Arrays().pack({**_models(), "scenarios": [situation(item) for item in scenarios], "runs": []}),
         "MODULE": _module(),
         "CORE": core,

@@ -68,9 +68,9 @@ def still_page(title: str, body: str, more_style: str = "") -> str:
     return STILL_PAGE.format(title=html.escape(title), style=style() + more_style, body=body)
 
 
-def style() -> str:
-    """Return the style sheet; the dark colours also hold where the system asks for dark."""
-    style = _read(ROOM / "template" / "style.css")
+def style(more: str = "") -> str:
+    """Return the style sheet and ``more``; the dark colours also hold where the system asks for dark."""
+    style = _read(ROOM / "template" / "style.css") + more
     dark = re.search(r':root\[data-theme="dark"\] \{([^}]*)\}', style)
     assert dark is not None
     small = "".join(

@@ -23,7 +23,7 @@ MOST_ROWS = (2400, 1200, 600)
 LARGEST_PAGE = 1_000_000
 KEYS = (
     "Keys: space plays, arrows step 0.1 s (1 s with shift), Home, End, + and - change speed, F fits, C follows. "
-    "Click a plot to go there, drag to zoom, double-click to reset."
+    "Click a plot to go there, drag to zoom, double-click to reset. Ctrl and wheel zoom the top view."
 )
 KINDS = {"parked": "good", "finished": "good", "not_parked": "warn", "not_finished": "warn", "failed": "bad"}
 

@@ -114,7 +114,8 @@ def test_zoom_of_one_plot_is_the_zoom_of_all(show, replay):
 def test_any_signal_can_be_plotted_and_removed(show, replay):
     page, seen = show(replay)
     before = page.locator(".plot").count()
-    page.select_option(".chooser select", "vehicle.distance")
+    page.fill(".chooser input", "vehicle.distance")
+    page.locator(".chooser input").dispatch_event("change")
     assert page.locator(".plot").count() == before + 1
     page.locator(".plot .close").click()
     assert page.locator(".plot").count() == before
@@ -168,3 +169,38 @@ def test_two_runs_on_one_page(show, overlay):
     assert shades(page) > 20
     assert seen.console == []
     assert seen.requests == [overlay.as_uri()]
+
+
+def test_the_whole_page_looks_where_the_pointer_is(show, replay):
+    page, _ = show(replay, "#t=2")
+    over = page.locator(".u-over").first.bounding_box()
+    page.mouse.move(over["x"] + 0.5 * over["width"], over["y"] + 0.5 * over["height"])
+    half = page.evaluate("window.replay.duration") / 2.0
+    looked = page.evaluate("window.replay.scene.t")
+    assert looked == pytest.approx(half, abs=0.1)
+    assert page.text_content("#clock").startswith(f"{looked:.2f} / ")
+    assert float(page.get_attribute("#timeline", "aria-valuenow")) == pytest.approx(looked, abs=0.006)
+    page.mouse.move(5, 5)
+    assert page.text_content("#clock").startswith("2.00 / ")
+
+
+def test_follow_is_lit_only_while_the_view_follows(show, replay):
+    page, _ = show(replay)
+    page.keyboard.press("C")
+    assert page.get_attribute("#follow", "aria-pressed") == "true"
+    box = page.locator("#view").bounding_box()
+    page.mouse.move(box["x"] + 200, box["y"] + 200)
+    page.mouse.down()
+    page.mouse.move(box["x"] + 260, box["y"] + 200)
+    page.mouse.up()
+    assert page.get_attribute("#follow", "aria-pressed") == "false"
+
+
+def test_a_mode_has_names_at_its_axis(show, replay):
+    page, _ = show(replay)
+    page.fill(".chooser input", "controller.phase")
+    page.locator(".chooser input").dispatch_event("change")
+    marks = page.evaluate(
+        "(() => { const { u } = window.replay.plots.all.at(-1); return u.axes[1].values(u, [0, 2, 2.5]); })()"
+    )
+    assert marks == ["standby", "path tracking", ""]

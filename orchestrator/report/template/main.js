@@ -12,7 +12,7 @@ class Player {
     const seek = (t) => { this.seek(t); };
     this.scene = new Scene(page, $("view"));
     this.timeline = new Timeline(page, seek);
-    this.plots = new Plots(page, $("plots"), seek);
+    this.plots = new Plots(page, $("plots"), seek, (t) => this.look(t));
     for (const item of SPEEDS) $("speed").append(element("option", { value: item }, `${item}\u00d7`));
     this.setSpeed(1);
     $("play").addEventListener("click", () => this.toggle());
@@ -51,11 +51,22 @@ class Player {
   pause() { this.playing = false; $("play").textContent = "Play"; }
 
   show() {
-    this.scene.draw(this.t);
-    this.timeline.show(this.t);
+    this.at(this.t);
     this.plots.show(this.t);
-    $("clock").textContent = `${this.t.toFixed(2)} / ${this.duration.toFixed(2)} s`;
-    headsUp(this.page, this.t);
+  }
+
+  // While the pointer is on a curve all is as it was at that time; null: as it is now.
+  look(t) {
+    if (this.playing) return;
+    $("clock").classList.toggle("looking", t !== null);
+    this.at(t === null ? this.t : Math.min(this.duration, Math.max(0, t)));
+  }
+
+  at(t) {
+    this.scene.draw(t);
+    this.timeline.show(t);
+    $("clock").textContent = `${t.toFixed(2)} / ${this.duration.toFixed(2)} s`;
+    headsUp(this.page, t);
   }
 
   paint() {
@@ -85,9 +96,10 @@ function keyboard(player, extra) {
   document.addEventListener("keydown", (event) => {
     if (event.ctrlKey || event.metaKey || event.altKey || event.target.closest("input, select, textarea")) return;
     if (event.key === " " && event.target.closest("button, summary, a")) return;
-    if (!keys[event.key]) return;
+    const act = keys[event.key] || keys[event.key.toLowerCase()];
+    if (!act) return;
     event.preventDefault();
-    keys[event.key](event);
+    act(event);
   });
 }
 

@@ -1,10 +1,12 @@
 // Curves over time with one cursor and one zoom for all, drawn by uPlot.
 
 class Plots {
-  constructor(page, box, seek) {
+  // `seek(t)`: go there; `look(t)`: the pointer is there, null: on no curve.
+  constructor(page, box, seek, look) {
     this.page = page;
     this.box = box;
     this.seek = seek;
+    this.look = look;
     this.all = [];
     this.t = 0;
     this.hover = null;
@@ -56,7 +58,7 @@ class Plots {
       legend: { show: false }, padding: [8, 10, 0, 0],
       cursor: { sync: { key: "apa", setSeries: false }, drag: { x: true, y: false }, points: { size: 6 }, y: false },
       scales: { x: { time: false }, y: { range: (u, low, high) => widened(low, high, item.plot.least || 0) } },
-      axes: [{ ...axis, size: 24, space: 60 }, { ...axis, size: 48, space: 26, values: (u, marks) => marks.map((mark) => digits(mark)) }],
+      axes: [{ ...axis, size: 24, space: 60 }, { ...axis, space: 26, ...this.marks(item) }],
       series: [{}, ...item.curves.map(([run, name], number) => ({
         label: name, width: 1.75, points: { show: false }, spanGaps: this.page.runs.length > 1,
         stroke: () => this.stroke(item, number), dash: run === this.page.runs[1] ? [6, 4] : undefined,
@@ -68,6 +70,13 @@ class Plots {
         drawClear: [(u) => this.limits(u, item)],
       },
     };
+  }
+
+  // What stands at the y axis: numbers, or the names of a mode.
+  marks(item) {
+    const [run, name] = item.curves[0];
+    if (!run.signals[name].states) return { size: 48, values: (u, marks) => marks.map((mark) => digits(mark)) };
+    return { size: 96, incrs: [1, 2, 5, 10], values: (u, marks) => marks.map((mark) => (mark in run.signals[name].states ? words(run.stateName(name, mark)) : "")) };
   }
 
   height() { return window.innerWidth < 700 ? 130 : 118; }
@@ -119,8 +128,10 @@ class Plots {
   }
 
   hovered(u) {
+    const before = this.hover;
     this.hover = u.cursor.left >= 0 ? u.posToVal(u.cursor.left, "x") : null;
     this.write();
+    if (before !== this.hover) this.look(this.hover);
   }
 
   zoomed(u) {
@@ -166,16 +177,22 @@ class Plots {
     this.show(this.t);
   }
 
+  // All signals to add, those that change first.
   chooser() {
-    const names = [...new Set(this.page.runs.flatMap((run) => Object.keys(run.signals)))].sort();
-    const choice = element("select", { "aria-label": "Add a plot of any signal" }, element("option", { value: "" }, `Add one of ${names.length} signals\u2026`), names.map((name) => element("option", { value: name }, name)));
+    const { runs } = this.page, signal = (name) => runs.map((run) => run.signals[name]).find(Boolean);
+    const names = [...new Set(runs.flatMap((run) => Object.keys(run.signals)))].sort();
+    const moves = (name) => runs.some((run) => run.signals[name] && run.signals[name].a !== undefined);
+    const ordered = [...names.filter(moves), ...names.filter((name) => !moves(name))];
+    const list = element("datalist", { id: "signals" }, ordered.map((name) => element("option", { value: name }, moves(name) ? signal(name).text : `constant: ${signal(name).text}`)));
+    const choice = element("input", { type: "search", list: "signals", placeholder: `Add a plot: one of ${names.length} signals`, "aria-label": "Add a plot of any signal" });
     choice.addEventListener("change", () => {
-      const name = choice.value, signal = this.page.runs.map((run) => run.signals[name]).find(Boolean);
+      const name = choice.value.trim();
+      if (!signal(name)) return;
       choice.value = "";
-      if (signal) this.add({ title: name, unit: signal.unit, signals: [name], extra: true });
+      this.add({ title: name, unit: signal(name).unit, signals: [name], extra: true });
       this.paint();
     });
-    this.choice = element("div", { class: "chooser" }, choice);
+    this.choice = element("div", { class: "chooser" }, choice, list);
     this.box.append(this.choice);
   }
 }

@@ -8,6 +8,7 @@ class Scene {
     this.layers = { planned: true, driven: true, trail: true, sensors: true };
     this.turn = -(page.runs[0].scene.turn || 0);
     this.following = false;
+    this.onFree = () => {};
     this.fit();
     this.listen();
     new ResizeObserver(() => { this.size(); this.fit(); this.draw(this.t || 0); }).observe(canvas);
@@ -89,7 +90,7 @@ class Scene {
       pointers.set(event.pointerId, now);
       const share = pointers.size;
       if (event.pointerType === "mouse" || share > 1) {
-        this.following = false;
+        this.free();
         this.middle[0] -= (now[0] - before[0]) / this.scale / share;
         this.middle[1] += (now[1] - before[1]) / this.scale / share;
       }
@@ -102,10 +103,17 @@ class Scene {
       this.draw(this.t);
     });
     canvas.addEventListener("wheel", (event) => {
+      if (!event.ctrlKey && !event.metaKey) return; // the wheel alone scrolls the page
       event.preventDefault();
       this.zoom(Math.exp(-event.deltaY * 0.0015), event.offsetX, event.offsetY);
     }, { passive: false });
-    canvas.addEventListener("dblclick", () => { this.following = false; this.fit(); this.draw(this.t); });
+    canvas.addEventListener("dblclick", () => { this.free(); this.fit(); this.draw(this.t); });
+  }
+
+  // The car is no longer kept in the middle.
+  free() {
+    this.following = false;
+    this.onFree();
   }
 
   poseAt(run, t) {

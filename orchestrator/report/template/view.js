@@ -36,6 +36,7 @@ function layers(player) {
     box.addEventListener("change", () => { player.scene.layers[name] = box.checked; player.show(); });
     $("layers").append(element("label", {}, box, name));
   }
+  player.scene.onFree = () => $("follow").setAttribute("aria-pressed", "false");
   const follow = () => {
     player.scene.following = !player.scene.following;
     $("follow").setAttribute("aria-pressed", String(player.scene.following));

@@ -214,7 +214,20 @@ def _moved_on(
         wheel = wheel_request(tracked.front_wheel_angle, site.frame.mirror, params)
     if step in (Step.STRAIGHTEN, Step.IDLE):
         wheel = 0.0
-    return Parking(step, plan, attempt, leg, tracked, shifts, direction, ended, cut, sight, wheel, speed)
+    return Parking(
+        step=step,
+        plan=plan,
+        attempt=attempt,
+        leg=leg,
+        tracked=tracked,
+        shifts=shifts,
+        direction=direction,
+        ended=ended,
+        cut=cut,
+        sight=sight,
+        wheel=wheel,
+        speed=speed,
+    )
 
 
 def _next_leg(state: Parking, plan: PlanSearch, tracked: Tracked) -> Leg:

@@ -111,7 +111,16 @@ def slot_of(
         beside = side.sums.r / side.sums.n if side.sums.n > 0.0 else 0.0
         opposite = beside + 2.0 * car.half_width + opposite_heard
     kind = kind_of(length, depth, side.extent, car, params)
-    return Slot(kind, which, corner_a, max(0.0, length), (a2 - a1) * cos, depth, opposite, unsure)
+    return Slot(
+        kind=kind,
+        side=which,
+        a=corner_a,
+        length=max(0.0, length),
+        b_out=(a2 - a1) * cos,
+        depth=depth,
+        opposite=opposite,
+        unsure=unsure,
+    )
 
 
 def kind_of(length: float, depth: float, neighbour: float, car: Shape, params: ApaParams) -> int:

@@ -171,4 +171,15 @@ def _moved_on(
     switched_off = state.mode != Mode.FAIL and (taken or not inputs.apa_switch)
     taken_over = (state.taken_over or switched_off) if over else False
     kept = (reason if state.mode != Mode.FAIL else state.reason) if over and not taken_over else Reason.NONE
-    return ApaState(mode, kept, taken_over, clock, found, slot, parking, seen, waited, pose)
+    return ApaState(
+        mode=mode,
+        reason=kept,
+        taken_over=taken_over,
+        clock_ns=clock,
+        search=found,
+        slot=slot,
+        parking=parking,
+        watch=seen,
+        waited_ns=waited,
+        pose=pose,
+    )

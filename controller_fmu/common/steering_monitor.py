@@ -85,7 +85,8 @@ class SteeringWatch(NamedTuple):
 
 def at_rest(angle: float, steering: Steering) -> SteeringWatch:
     """Return the watch over a wheel at ``angle`` [rad] that nothing is asked of."""
-    return SteeringWatch(steering, 0, 0, angle, 0.0, angle, angle, angle, -1, Window(0, angle, angle, 0.0))
+    window = Window(angle=angle, request=angle)
+    return SteeringWatch(steering=steering, anchor=angle, angle=angle, request=angle, late=angle, window=window)
 
 
 def watch_steering(
@@ -105,16 +106,16 @@ def watch_steering(
     seen = state.steering.seen or nearer
     window, rate, lag = _window(state, request, angle, believed_rate, dt_ns)
     return SteeringWatch(
-        Steering(rate, dead_time, lag, seen),
-        0 if follows else state.off_ns + dt_ns,
-        0 if follows else state.away_ns + dt_ns if away else state.away_ns,
-        angle if follows or away else state.anchor,
-        side,
-        angle,
-        request,
-        late,
-        asked_ns,
-        window,
+        steering=Steering(rate, dead_time, lag, seen),
+        off_ns=0 if follows else state.off_ns + dt_ns,
+        away_ns=0 if follows else state.away_ns + dt_ns if away else state.away_ns,
+        anchor=angle if follows or away else state.anchor,
+        side=side,
+        angle=angle,
+        request=request,
+        late=late,
+        asked_ns=asked_ns,
+        window=window,
     )
 
 

@@ -1,5 +1,7 @@
 """Other cars than the one a scenario is written for: the assist parks them, or the slot is too small."""
 
+from pathlib import Path
+
 import pytest
 
 from orchestrator.cosim.fmu_files import can_compile, fmu_files
@@ -66,3 +68,13 @@ def test_a_target_by_a_point_of_the_outline(of: str) -> None:
     ahead = {"front": 3.586, "rear": -0.85, "rear_axle": 0.0}.get(of, 1.368)
     left = {"left": 0.91, "right": -0.91}.get(of, 0.0)
     assert (x - left, y + ahead, heading) == pytest.approx((1.0, 2.0, 1.5707963), abs=1e-6)
+
+
+def test_the_page_shows_every_car_in_every_scenario() -> None:
+    page = (Path(__file__).parents[2] / "docs" / "apa.md").read_text(encoding="utf-8")
+    head, _, *rows = page.split("<!-- cars -->")[1].split("<!-- /cars -->")[0].strip().splitlines()
+    again = "run docs/cars.py"
+    assert [cell.strip() for cell in head.strip("|").split("|")][1:] == car_names(), again
+    assert [row.split("`")[1] for row in rows] == parking_scenarios(), again
+    plain = [cell.strip() for row in rows for cell in row.strip("|").split("|")[1:] if not cell.strip().startswith("(")]
+    assert set(plain) == {"parked"}

@@ -24,6 +24,7 @@ STUDIES = {
     "apa-grid": "orchestrator.grid.study",
     "bakeoff": "orchestrator.bakeoff.study",
     "guo2015-claim": "orchestrator.bakeoff.claim",
+    "valet-rows": "orchestrator.grid.slot_rows",
 }
 """Study that no file holds -> its module, with ``study(**whole numbers) -> Study`` and ``report(table, folder)``, which
 says what the study makes of its table and returns an exit code."""

@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 
 from fmus.compiled_batch import Ending, Kept, Rows, When, compiled_rows
+from modelkit.model import Model
 from orchestrator.cosim.slave import Array
-from orchestrator.scenario.end_condition import SPEED, EndCondition
-from orchestrator.scenario.models import MODELS
+from orchestrator.scenario.end_condition import SPEED
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.sweep.job import Chunk, Job, arrays
 from orchestrator.sweep.rows import FIRST_MEASURE
@@ -20,22 +20,23 @@ _compiling = threading.Lock()
 
 def run_batch(job: Job, chunk: Chunk) -> Array:
     """Return one row of measures per run of ``chunk``. Scenarios with faults cannot be run so."""
-    rows = compiled(tuple(job.measures), Scenario(**job.scenario).ending)
+    rows = compiled(tuple(job.measures), Scenario(**job.scenario))
     parameters, times = arrays(job, chunk)
     out = np.empty((len(parameters), FIRST_MEASURE + len(job.measures)))
     rows(parameters, times, out)
     return out
 
 
-def compiled(measures: tuple[Measure, ...], ending: EndCondition) -> Rows:
-    """Return the compiled runs, made once per process."""
+def compiled(measures: tuple[Measure, ...], scenario: Scenario) -> Rows:
+    """Return the compiled runs of the models of ``scenario``, made once per process."""
+    ending, models = scenario.ending, tuple(scenario.models.items())
     with _compiling:
-        return _compiled(measures, ending.signal, ending.final(), SPEED, ending.still, ending.standstill_ns)
+        return _compiled(models, measures, ending.signal, ending.final(), SPEED, ending.still, ending.standstill_ns)
 
 
 @lru_cache
-def _compiled(measures: tuple[Measure, ...], *ending: Any) -> Rows:
-    return compiled_rows(MODELS, Ending(*ending), [_kept(item) for item in measures])
+def _compiled(models: tuple[tuple[str, Model], ...], measures: tuple[Measure, ...], *ending: Any) -> Rows:
+    return compiled_rows(dict(models), Ending(*ending), [_kept(item) for item in measures])
 
 
 def _kept(measure: Measure) -> Kept:

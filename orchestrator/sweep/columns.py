@@ -49,7 +49,7 @@ def columns_of(study: Study, job: Job) -> list[Column]:
             for name, item in RESULTS.items()
             if item.measure is None or item.measure in job.measures
         ),
-        *_measures(study.measures),
+        *_measures(study),
         *(Column(WITHIN.format(name), bool, Signal("1", _words(items))) for name, items in study.within.items()),
         *(_number(name, item) for name, item in study.derived.columns.items()),
     ]
@@ -92,9 +92,9 @@ def _number(name: str, item: Number) -> Column:
     return Column(name, int if name in COUNTS else float, Signal(item.unit, item.text))
 
 
-def _measures(measures: Mapping[str, Measure]) -> Iterator[Column]:
-    known = signals()
-    for name, measure in measures.items():
+def _measures(study: Study) -> Iterator[Column]:
+    known = signals(study.scenario.models)
+    for name, measure in study.measures.items():
         signal = known[measure.signal]
         yield Column(name, float, signal._replace(text=f"{measure.how} of {measure.signal}: {signal.text}"))
 

@@ -59,7 +59,7 @@ def find_field(key: str, scenario: Scenario, file: object = None) -> Field:
     if key in TRUE_FIELDS:
         return _true_field(key, owner, name, scenario, file)
     if owner in MODELS:
-        return _parameter(key, owner, name, file)
+        return _parameter(key, owner, name, scenario, file)
     if key in SCENARIO_FIELDS:
         return Field(key, "scenario", key, -1, SCENARIO_FIELDS[key])
     fault = FAULT_KEY.match(key)
@@ -68,14 +68,14 @@ def find_field(key: str, scenario: Scenario, file: object = None) -> Field:
     known = [
         *SCENARIO_FIELDS,
         *TRUE_FIELDS,
-        *(f"{model}.{item.name}" for model in MODELS for item in variables(MODELS[model].params)),
+        *(f"{name}.{item.name}" for name, model in scenario.models.items() for item in variables(model.params)),
     ]
     hint = suggestion(key, known) or "; known are vehicle.*, controller.*, " + ", ".join(SCENARIO_FIELDS)
     raise BadInput(f"unknown{hint}", file=file, key=key)
 
 
-def _parameter(key: str, owner: str, name: str, file: object) -> Field:
-    known = variables(MODELS[owner].params)
+def _parameter(key: str, owner: str, name: str, scenario: Scenario, file: object) -> Field:
+    known = variables(scenario.models[owner].params)
     for place, variable in enumerate(known):
         if variable.name == name:
             return Field(f"{owner}.{name}", owner, name, place, variable)
@@ -94,14 +94,14 @@ def _fault(key: str, number: int, name: str, scenario: Scenario, file: object) -
     if name in FAULT_FIELDS:
         signal = FAULT_FIELDS[name]
     elif name in SIGNAL_FIELDS:
-        signal = Signal(_unit_of(scenario.faults[number - 1].signal), "")
+        signal = Signal(_unit_of(scenario.faults[number - 1].signal, scenario), "")
     else:
         raise BadInput(f"expected one of {', '.join((*FAULT_FIELDS, *SIGNAL_FIELDS))}", file=file, key=key)
     return Field(key, "faults", name, number - 1, Variable(key, float, signal, 0.0))
 
 
-def _unit_of(signal: str) -> str:
+def _unit_of(signal: str, scenario: Scenario) -> str:
     owner, _, name = signal.partition(".")
-    model: Any = MODELS.get(owner)
+    model: Any = scenario.models.get(owner)
     known = [] if model is None else [*variables(model.outputs), *variables(model.inputs)]
     return next((item.signal.unit for item in known if item.name == name), "1")

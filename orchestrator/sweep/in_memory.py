@@ -17,7 +17,7 @@ def columns_in_memory(study: Study) -> dict[str, Any]:
     job = make_job(study)
     task = choose_task(study.scenario, None)
     if task.is_compiled:
-        compiled(tuple(job.measures), study.scenario.ending)
+        compiled(tuple(job.measures), study.scenario)
     todo = chunks(study.design, task.chunk)
     found = sorted(make_engine(task, None, None).results(job, todo, Interrupt()), key=lambda item: item[0].number)
     parts = [filled(study, job, chunk, rows) for chunk, rows in found]

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from modelkit.variables import flatten, variables, with_values
 from orchestrator.cosim.slave import Array
-from orchestrator.scenario.models import MODELS
+from orchestrator.scenario.models import MODELS, models_for
 from orchestrator.scenario.scenario import Scenario, Target
 from orchestrator.sweep.fields import TRUE_OWNERS
 from orchestrator.sweep.rows import measures_for
@@ -70,7 +70,8 @@ def chunk_scenario(job: Job, chunk: Chunk, number: int) -> Scenario:
     data["every"] = dict(data["every"])
     data["faults"] = [dict(fault) for fault in data["faults"]]
     data["seed"] = int(chunk.seeds[number])
-    kinds = {owner: [item.kind for item in variables(model.params)] for owner, model in MODELS.items()}
+    models = models_for(job.scenario["controller"])
+    kinds = {owner: [item.kind for item in variables(model.params)] for owner, model in models.items()}
     values = chunk.values[number].tolist()
     for name, value in _told_targets(job, values):
         data["controller"][name] = value
@@ -125,12 +126,12 @@ def arrays(job: Job, chunk: Chunk) -> tuple[Array, Times]:
     """Return (parameters, times) of every run of ``chunk`` as the compiled batch takes them."""
     scenario = Scenario(**job.scenario)
     count = len(chunk.seeds)
-    base = [flatten(with_values(model.params, getattr(scenario, owner))) for owner, model in MODELS.items()]
+    base = [flatten(with_values(model.params, getattr(scenario, owner))) for owner, model in scenario.models.items()]
     starts = dict(zip(MODELS, np.cumsum([0, *map(len, base)]).tolist(), strict=False))
     parameters = np.tile(np.array([float(item) for part in base for item in part]), (count, 1))
     seeds, steps, stops = chunk.seeds.copy(), np.full(count, scenario.step), np.full(count, scenario.stop_time)
     every = {owner: np.full(count, scenario.every.get(owner, 1), dtype=np.int64) for owner in MODELS}
-    controls = {item.name: place for place, item in enumerate(variables(MODELS["controller"].params))}
+    controls = {item.name: place for place, item in enumerate(variables(scenario.models["controller"].params))}
     for name, values in _told_targets(job, list(chunk.values.T)):
         parameters[:, starts["controller"] + controls[name]] = values
     for column, (owner, name, place) in enumerate(zip(job.owners, job.names, job.places, strict=True)):

@@ -9,30 +9,30 @@ from typing import get_args
 
 import numpy as np
 
+from modelkit.model import Model
 from modelkit.signal import Signal
 from modelkit.variables import variables
 from orchestrator.cosim.recording import Recording
 from orchestrator.cosim.slave import Array
 from orchestrator.scenario.end_condition import state_word, states_of
-from orchestrator.scenario.models import MODELS
 from orchestrator.scenario.requirements import Requirement, Where, Window
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.text.errors import BadInput, suggestion
 from orchestrator.verdict.conditions import CONDITIONS
 from orchestrator.verdict.judge import CHART, judge
 from orchestrator.verdict.measures import Measure, When, measured
-from orchestrator.verdict.numbers import MEASURES, NUMBERS, Facts
+from orchestrator.verdict.numbers import MEASURES, NUMBERS, OF_WHOLE_RUNS, Facts, of_whole_run
 
 STOP_TIME, STANDSTILL, ABORTED = 0.0, 1.0, 2.0
 """How a run ended: first number of its row; the second is when [ns]."""
 FIRST_MEASURE = 2
 
 
-def signals() -> dict[str, Signal]:
+def signals(models: Mapping[str, Model]) -> dict[str, Signal]:
     """Return name -> signal of all inputs and outputs of the models."""
     return {
         f"{owner}.{item.name}": item.signal
-        for owner, model in MODELS.items()
+        for owner, model in models.items()
         for cls in (model.inputs, model.outputs)
         for item in variables(cls)
     }
@@ -50,7 +50,7 @@ def measures_for(
 
     Raises ``BadInput`` for a limit or measure of an unknown signal, or for one of ``more`` that takes the whole run.
     """
-    known = signals()
+    known = signals(scenario.models)
     for item in last_words(scenario):
         if item.signal not in known:
             hint = suggestion(item.signal, known)
@@ -120,7 +120,8 @@ def recorded_limits(scenario: Scenario) -> list[int]:
     return [
         place
         for place, limit in enumerate(scenario.limits)
-        if limit.signal not in NUMBERS and measure_of(limit) is None
+        if (limit.signal not in NUMBERS and measure_of(limit) is None)
+        or (limit.signal in OF_WHOLE_RUNS and scenario.polygons)
     ]
 
 
@@ -142,5 +143,6 @@ def row_of(recording: Recording, scenario: Scenario, measures: list[Measure]) ->
 
 
 def _worst(limit: Requirement, recording: Recording, scenario: Scenario) -> float:
-    (check,) = judge([limit], recording, Facts({}, frozenset(get_args(Where))), scenario.file)
+    facts = Facts(of_whole_run(recording, scenario), frozenset(get_args(Where)))
+    (check,) = judge([limit], recording, facts, scenario.file)
     return check.limit if check.passed and check.value != check.value else check.value

@@ -68,7 +68,7 @@ def sweep(study: Study, folder: Path, options: Options) -> Swept:
     missing = [chunk for chunk in chunks(design, size) if not store.has(chunk.number)]
     swept = Swept(None, total, total - sum(len(chunk.seeds) for chunk in missing), 0, 0, 0.0, task.name, task.note)
     if missing and task.is_compiled:
-        compiled(tuple(job.measures), study.scenario.ending)
+        compiled(tuple(job.measures), study.scenario)
     if missing:
         _run(study, job, missing, make_engine(task, options.dask, options.workers), store, swept)
     if swept.done == total:

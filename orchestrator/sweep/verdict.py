@@ -53,7 +53,8 @@ def judge_rows(scenario: Scenario, truth: Truth, measures: Sequence[Measure], ro
     found = dict(zip(measures, columns, strict=False))
     recorded = dict(zip(recorded_limits(scenario), columns[len(measures) :], strict=True))
     results = numbers(rows[:, 1] / 1e9, found, truth)
-    has, shares = truth.has(), np.zeros(len(rows))
+    has = truth.has() | {"polygons": np.full(len(rows), bool(scenario.polygons))}
+    shares = np.zeros(len(rows))
     asked: list[Asked] = []
     for place, limit in enumerate(scenario.limits):
         if limit.required:

@@ -58,6 +58,7 @@ NUMBERS: dict[str, Number] = {
 ERRORS = ("final.longitudinal_error", "final.lateral_error", "final.heading_error")
 STANDING = (*ERRORS, "final.slot_margin", "final.kerb_nearest", "final.kerb_farthest")
 """Made from the last pose and from what is true; NaN where a scenario has no target, slot or kerb."""
+OF_WHOLE_RUNS = ("polygon_clearance",)
 MEASURES = tuple(item.measure for item in NUMBERS.values() if item.measure is not None)
 
 
@@ -87,9 +88,15 @@ def facts_of(recording: Recording, scenario: Scenario) -> Facts:
     duration = np.array([float(recording.t[-1]) if len(recording.t) else 0.0])
     truth = truth_of(scenario, described(scenario, recording.parameters_of("vehicle")))
     made = {name: float(values[0]) for name, values in numbers(duration, found, truth).items()}
-    made["polygon_clearance"] = _to_polygons(recording, scenario)
+    made |= of_whole_run(recording, scenario)
     has = {name for name, rows in truth.has().items() if rows[0]} | ({"polygons"} if scenario.polygons else set())
     return Facts(made, frozenset(has))
+
+
+def of_whole_run(recording: Recording, scenario: Scenario) -> dict[str, float]:
+    """Return the duration, and the numbers ``OF_WHOLE_RUNS``, which nothing that is kept of a run tells."""
+    duration = float(recording.t[-1]) if len(recording.t) else 0.0
+    return {"duration": duration, "polygon_clearance": _to_polygons(recording, scenario)}
 
 
 def _to_polygons(recording: Recording, scenario: Scenario) -> float:

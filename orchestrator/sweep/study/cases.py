@@ -66,7 +66,7 @@ def _numbers(scenarios: Iterable[Scenario]) -> dict[str, list[float]]:
     """Return every number that may differ from run to run by its key; a parameter not given has its default."""
     items = list(scenarios)
     found: dict[str, list[float]] = {}
-    for owner, model in MODELS.items():
+    for owner, model in items[0].models.items():
         given = [getattr(item, owner) for item in items]
         for variable in variables(model.params):
             values = [float(own.get(variable.name, variable.start)) for own in given]

@@ -5,7 +5,6 @@ from pathlib import Path
 
 from modelkit.variables import variables
 from orchestrator.scenario.load_scenario import limits_of, load_scenario
-from orchestrator.scenario.models import MODELS
 from orchestrator.scenario.requirements import Requirement
 from orchestrator.sweep.fields import SCENARIO_FIELDS
 from orchestrator.sweep.study.design import Design
@@ -56,7 +55,7 @@ def _seeded(scenario: str, sets: list[str], design: Design) -> list[tuple[str, s
     varied = {field.key for field in design.fields}
     return [
         (owner, variable.name, place)
-        for owner, model in MODELS.items()
+        for owner, model in probed.models.items()
         for place, variable in enumerate(variables(model.params))
         if getattr(probed, owner).get(variable.name) == PROBE and f"{owner}.{variable.name}" not in varied
     ]

@@ -119,6 +119,20 @@ def test_a_long_step_is_honoured_and_a_bad_one_refused(python_fmus):
         assert host.step(1.5, 0.01) == OK
 
 
+@pytest.mark.parametrize("size", [1e-12, 4e-10, 5e-324])
+def test_a_last_step_under_half_a_nanosecond_is_ok_and_does_nothing(python_fmus, size):
+    """A master that adds up t += h makes one at the end."""
+    with Host(python_fmus["Toy"]) as host:
+        host.initialize()
+        for k in range(3):
+            assert host.step(k * 0.01, 0.01) == OK
+        before = host.outputs()
+        assert host.step(0.03, size) == OK
+        assert host.outputs() == before
+        assert host.log == []
+        assert host.step(0.03, 0.01) == OK
+
+
 @pytest.mark.parametrize("form", ["memory", "bytes", "other instance"])
 def test_a_restored_state_continues_to_the_same_bits(python_fmus, model, form):
     inputs = random_inputs(fmi_variables(model), 4, 60)

@@ -19,7 +19,9 @@ from libcosimpy.CosimObserver import CosimObserver
 from toolbox_container import write_container
 
 from fmus.systems.ssp import write_ssp
+from orchestrator.cli import main
 from orchestrator.export.system_of import parts_of, system_of
+from orchestrator.log.read_log import read_log
 from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.session.session import run_scenario
 from orchestrator.text.errors import BadInput
@@ -154,6 +156,12 @@ def test_fmpy_shows_the_outputs_of_the_system_itself(system, ours, tmp_path):
     result = simulate_ssp(str(path), stop_time=ours[0], step_size=SCENARIO.step)
     assert set(result.dtype.names) >= {name for _, _, name in system.outputs()} > {"pose.x", "phase"}
     assert [result[name][ours[1] - 1] for name in POSE] == pytest.approx(ours[2], abs=TOLERANCE)
+
+
+def test_apa_run_reads_the_ssp(ssp, ours, tmp_path):
+    assert main(["run", str(ssp), "--out", str(tmp_path / "run"), "--no-page", "--quiet"]) == 0
+    log = read_log(tmp_path / "run" / "run.mcap")
+    assert [log.signals[f"vehicle.{name}"][ours[1]] for name in POSE] == pytest.approx(ours[2], abs=TOLERANCE)
 
 
 @pytest.mark.parametrize("with_outputs", [False, True])

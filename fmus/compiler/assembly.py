@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 
-from fmus.compiler.target.entries import Entries
+from fmus.compiler.entries import Entries
 from fmus.compiler.target.members import member_path
 from fmus.compiler.target.names import member_name
 from fmus.compiler.target.program import Program

@@ -4,10 +4,10 @@ from typing import Any, NamedTuple
 
 from fmus.compiler.assembly import AssemblyEntries
 from fmus.compiler.constructs import arithmetic, calls, conditions, loops, statements, tuples
+from fmus.compiler.entries import NAMES, Entries, roots
+from fmus.compiler.files import Files
 from fmus.compiler.source.kinds import NoKindError, Struct, is_named_tuple
 from fmus.compiler.source.refusals import AlreadySaidError, CannotError, Refusal, Refused
-from fmus.compiler.target.entries import NAMES, Entries, roots
-from fmus.compiler.target.files import Files
 from fmus.compiler.target.program import Program
 from modelkit.model import Model
 

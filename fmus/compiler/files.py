@@ -4,9 +4,9 @@ import re
 from collections.abc import Iterable
 from typing import Any
 
+from fmus.compiler.entries import Entries
 from fmus.compiler.source.kinds import Mixed, hints_of
 from fmus.compiler.target import runtime
-from fmus.compiler.target.entries import Entries
 from fmus.compiler.target.functions import Instance
 from fmus.compiler.target.layout import comment, laid_out
 from fmus.compiler.target.program import Program

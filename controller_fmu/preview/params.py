@@ -54,9 +54,9 @@ ROAD = (
     RoadPiece(20.0 * pi, 0.05),
     RoadPiece(100.0, 0.0),
 ) + (RoadPiece(),) * 3
-"""Fig. 7 is lost. Printed: the curvatures, and curve 2 from s = 357.1 to 514.2 m, a half circle. 100 m straights and a
-quarter circle as curve 1 put it there to the decimetre. Chosen: half circles for curves 3 and 4, 102 m before each (the
-length decides where in its period the alternation meets the curve, see docs/preview.md)."""
+"""Fig. 7 is lost. Printed: the curvatures, and points C and E, which put curve 2 from s = 357.1 to 514.2 m, a half
+circle. 100 m straights and a quarter circle as curve 1 put it there to the decimetre. Chosen: half circles for curves 3
+and 4, 102 m before each (the length decides where in its period the alternation meets the curve, see docs/preview.md)."""
 
 
 class PreviewParams(NamedTuple):

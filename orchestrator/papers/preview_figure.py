@@ -10,6 +10,9 @@ import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.figure import Figure
 
+from controller_fmu.preview.control import drive_force, steering_angle
+from controller_fmu.preview.params import PreviewParams
+from controller_fmu.preview.preview import Sight
 from orchestrator.cosim.slave import Array
 from orchestrator.drawing.save import save
 from orchestrator.papers.result import Driven
@@ -37,6 +40,29 @@ def draw_sweep(speeds: Array, table: Array, file: Path) -> Path:
     other.set(ylabel="deg", ylim=(0.0, 16.0))
     figure.legend(loc="outside lower center", ncols=2, frameon=False)
     return _save(figure, file)
+
+
+def draw_surfaces(file: Path) -> Path:
+    """Write the rule surfaces of both fuzzy controllers (Fig. 6): angle over yL, epsL; force over speed error, rate."""
+    params = PreviewParams()
+    sides = np.linspace(-1.0, 1.0, 41)
+    y, eps = np.meshgrid(params.lateral_range * sides, params.heading_range * sides)
+    error, rate = np.meshgrid(0.2 * params.speed_range * sides, params.rate_range * sides)
+    angles = np.array([steering_angle(Sight(*pair), params) for pair in zip(y.flat, eps.flat, strict=True)])
+    forces = np.array([drive_force(*pair, params) for pair in zip(error.flat, rate.flat, strict=True)])
+    figure = plt.figure(figsize=(10.0, 4.6), layout="constrained")
+    surfaces = (
+        (100.0 * y, np.degrees(eps), np.degrees(angles), ("yL [cm]", "epsL [deg]", "front wheel [deg]")),
+        (error, rate, forces, ("v - v set [m/s]", "its rate [m/s2]", "force [N]")),
+    )
+    for place, (across, along, up, labels) in enumerate(surfaces, start=1):
+        axis = figure.add_subplot(1, 2, place, projection="3d")
+        axis.plot_surface(across, along, np.reshape(up, across.shape), cmap="viridis", linewidth=0)
+        axis.set(xlabel=labels[0], ylabel=labels[1], zlabel=labels[2])
+    figure.suptitle("Preview paper, Fig. 6: what the rules make of their inputs")
+    save(figure, file, dpi=110)
+    plt.close(figure)
+    return file
 
 
 def _distances(eight: Driven, file: Path) -> Path:

@@ -87,6 +87,23 @@ class Row(NamedTuple):
         return {**self._asdict(), **verdict}
 
 
+def bound_row(run: str, item: str, unit: str, bound: float, ours: float, differs: str = "") -> Row:
+    """Return the check of a number that the paper prints as a bound on its size."""
+    printed = f"at most {bound:g} {unit}"
+    here = printed if abs(ours) <= bound else f"{ours:.3g} {unit}"
+    return Row(run, item, "", printed, here, 0.0, f"{ours:.3g} {unit}", PRINTED, differs)
+
+
+def not_tested(item: str, why: str, printed: str = "") -> Row:
+    """Return what the paper has and no check here is about, with the reason."""
+    return Row("", item, "", printed, "-", untestable=why)
+
+
+def yes_row(run: str, item: str, holds: bool, basis: str, differs: str = "") -> Row:
+    """Return the check of a statement."""
+    return Row(run, item, "", "yes", "yes" if holds else "no", 0.0, basis=basis, differs=differs)
+
+
 class Tally(NamedTuple):
     """How many rows of a reproduction are what."""
 

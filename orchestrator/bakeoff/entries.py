@@ -16,7 +16,7 @@ from orchestrator.scenario.scenario import Scenario, Slot
 from orchestrator.sweep.study.cases import LabelledScenario
 from vehicle_fmu.interface import Body
 
-CONTROLLERS = ("ntbptcwpt", "ntbpt", "zhang2022", "hsic", "apa")
+CONTROLLERS = ("ntbptcwpt", "ntbpt", "adaptive", "zhang2022", "hsic", "apa")
 ASSIST = "apa"
 """The controller that looks for its slot."""
 SLOTS = (6.2, 7.7, 9.2)
@@ -88,6 +88,8 @@ def _base(controller: str, slot: float, car: str) -> Scenario:
     vehicle = {**loaded.vehicle, **_scene(slot, line)}
     told = {"hsic.slot.slot_length": slot, "hsic.slot.slot_width": loaded.vehicle["car.width"]}
     told["hsic.slot.rear_gap"] = -REAR_END - loaded.vehicle["car.rear_overhang"]
+    room = {"slot_front": REAR_END + slot, "slot_rear": -REAR_END, "line": line, "depth": DEPTH}
+    told |= {f"adaptive.room.{key}": value for key, value in room.items()}
     if searches:
         vehicle |= {"ultrasonic.noise": 0.01, "ultrasonic.dropout": 0.01, "driver.apa_switch_time": 0.5}
         told = {}

@@ -15,7 +15,14 @@ from orchestrator.bakeoff.drives import REFUSED, Drive, exact_limits
 from orchestrator.bakeoff.entries import CONTROLLERS, SLOTS
 from orchestrator.drawing.save import save
 
-COLOURS = {"ntbptcwpt": "#1f5fbf", "ntbpt": "#7fa8dd", "zhang2022": "#d1602a", "hsic": "#2b8a5a", "apa": "#8a4fa8"}
+COLOURS = {
+    "ntbptcwpt": "#1f5fbf",
+    "ntbpt": "#7fa8dd",
+    "adaptive": "#c9a227",
+    "zhang2022": "#d1602a",
+    "hsic": "#2b8a5a",
+    "apa": "#8a4fa8",
+}
 BAR = 0.16
 """Width of a bar; the slots lie 1 apart."""
 

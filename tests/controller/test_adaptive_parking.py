@@ -79,6 +79,12 @@ def test_a_driver_who_does_not_move_ends_it():
     assert (run.phases[-1], run.controller[-1].reason) == (Phase.FAILED, Reason.NOT_MOVING)
 
 
+def test_a_wheel_that_sticks_is_a_fault_and_the_car_is_stopped():
+    run = drive({**FAST, "car.steering.rate_limit": 0.01}, OURS)
+    assert (run.phases[-1], run.controller[-1].reason) == (Phase.FAILED, Reason.STEERING_FAULT)
+    assert run.controller[-1].brake_request
+
+
 def test_takeover_ends_it():
     run = drive({**FAST, "driver.takeover_time": 4.0}, OURS)
     assert run.phases[-1] == Phase.TAKEOVER

@@ -135,7 +135,7 @@ def test_wilson_keeps_to_shares() -> None:
 def test_its_report_shows_table_and_picture(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     swept = sweep(study_of(chosen(slot=7.7, car="guo2015", start="near")), tmp_path, Options())
     assert swept.table is not None
-    assert swept.count == 50
+    assert swept.count == 60
     assert report(Table(swept.table), tmp_path) == 0
     said = capsys.readouterr().out
     assert "100 %" in next(line for line in said.splitlines() if "zhang2022" in line)

@@ -23,10 +23,13 @@ from equations import equations  # noqa: E402
 from pydantic import BaseModel  # noqa: E402
 
 import controller_fmu  # noqa: E402
+from fmus.native.web import can_build  # noqa: E402
 from modelkit.model import Model  # noqa: E402
 from modelkit.variables import Variable, variables  # noqa: E402
 from orchestrator.cli import parser  # noqa: E402
 from orchestrator.drawing.chart_svg import chart_svg  # noqa: E402
+from orchestrator.live.page import NAME as LIVE  # noqa: E402
+from orchestrator.live.page import write_live  # noqa: E402
 from orchestrator.scenario.catalogue import collapsed, range_text, start_text, texts_of  # noqa: E402
 from orchestrator.scenario.end_condition import EndCondition  # noqa: E402
 from orchestrator.scenario.fault import Fault  # noqa: E402
@@ -50,6 +53,9 @@ def main() -> None:
     for name, text in pages().items():
         (folder / name).write_text(MADE + text, encoding="utf-8")
         print(folder.relative_to(ROOT) / name)
+    if can_build():
+        write_live(folder / LIVE, [load_scenario(name) for name in scenario_names()])
+        print(folder.relative_to(ROOT) / LIVE)
 
 
 def pages() -> dict[str, str]:

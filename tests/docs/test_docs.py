@@ -17,7 +17,7 @@ from orchestrator.commands.export import FORMATS
 from orchestrator.scenario.catalogue import split_index
 from orchestrator.scenario.end_condition import EndCondition
 from orchestrator.scenario.fault import Fault
-from orchestrator.scenario.load_scenario import load_scenario
+from orchestrator.scenario.load_scenario import load_scenario, scenario_names
 from orchestrator.scenario.models import MODELS
 from orchestrator.scenario.requirements import Requirement, Window, read_requirements
 from orchestrator.scenario.scenario import Scenario, Slot, Target
@@ -194,6 +194,22 @@ def test_charts_are_drawn_by_us(generate):
     site = (ROOT / "mkdocs.yml").read_text(encoding="utf-8")
     assert "name: mermaid" not in site
     assert "use_directory_urls: false" in site
+
+
+def test_pages_that_are_driven_stand_where_a_law_is_explained(tmp_path, monkeypatch):
+    frames = load("frames")
+    made = tmp_path / "live.html"
+    monkeypatch.setattr(frames, "PAGE", made)
+    for name in ("guo2015", "preview", "hsic", "zhang2022", "apa"):
+        text = (ROOT / "docs" / f"{name}.md").read_text(encoding="utf-8")
+        ((scenario, names),) = frames.MARK.findall(text)
+        known = {f"{owner}.{item.name}" for owner, model in MODELS.items() for item in variables(model.params)}
+        assert scenario in scenario_names()
+        assert set(names.split()) <= known
+        assert "<iframe" not in frames.on_page_markdown(text)
+        made.touch()
+        assert f"#s={scenario}&amp;only={names.split()[0]}," in frames.on_page_markdown(text)
+        made.unlink()
 
 
 def test_search_finds_the_parts_of_a_name():

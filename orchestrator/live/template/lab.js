@@ -9,6 +9,7 @@ class Lab {
     this.scenarios = new Map(data.scenarios.map((item) => [item.name, item]));
     this.pins = data.pins;
     this.seen = seenOf(engine);
+    this.only = []; // sliders of a page that stands in another one
   }
 
   load(name, changes = {}) {
@@ -22,8 +23,8 @@ class Lab {
 
   pinned() {
     const states = this.situation.known.get("controller.system").states;
-    const own = this.pins[states[this.system].toLowerCase()] || [];
-    return [...this.pins.always, ...own].filter((name) => this.situation.known.has(name));
+    const own = this.pins[states[this.system].toLowerCase()] || [], wanted = this.only.length ? this.only : [...this.pins.always, ...own];
+    return wanted.filter((name) => this.situation.known.has(name));
   }
 
   // Whether a parameter means something to the system chosen.

@@ -79,7 +79,7 @@ class Page {
   shown() {
     const { situation } = this.lab;
     $("yaml").value = situation.yaml();
-    history.replaceState(null, "", situation.fragment());
+    history.replaceState(null, "", situation.fragment() + (this.lab.only.length ? `&only=${this.lab.only.join()}` : ""));
   }
 
   prompted() {
@@ -198,10 +198,11 @@ function tabs() {
 
 // Scenario and changes from the address.
 function fromAddress(lab, first) {
-  const found = { name: first, changes: {} };
+  const found = { name: first, changes: {}, only: [] };
   for (const part of location.hash.slice(1).split("&")) {
     const [key, value] = part.split("=").map(decodeURIComponent);
     if (key === "s" && lab.scenarios.has(value)) found.name = value;
+    else if (key === "only") found.only = value.split(",");
     else if (key.includes(".") && value !== undefined) found.changes[key] = Number(value);
   }
   return found;
@@ -212,7 +213,9 @@ async function start() {
   const data = await unpack($("data").textContent.trim());
   const code = await inflate($("module").textContent.trim());
   const lab = new Lab(await Engine.start(code, data.models), data), page = new Page(lab, data, code);
-  const { name, changes } = fromAddress(lab, data.scenarios[0].name);
+  const { name, changes, only } = fromAddress(lab, data.scenarios[0].name);
+  lab.only = only;
+  document.documentElement.classList.toggle("embedded", only.length > 0);
   tabs();
   page.load(name, changes);
   page.stage = new Stage(page.drawn, $("view"), (prefix, pose) => { AXES.forEach((axis, i) => lab.situation.set(`${prefix}.${axis}`, pose[i])); page.changed(); });

@@ -94,7 +94,7 @@ def flatten(value: Any) -> list[Any]:
     return [scalar for item in value for scalar in flatten(item)]
 
 
-def constructor_source(value: Any, name_of: Callable[[type[Any]], str], array: str, at: int = 0) -> tuple[str, int]:
+def _constructor_source(value: Any, name_of: Callable[[type[Any]], str], array: str, at: int = 0) -> tuple[str, int]:
     """Return (expression, next index) that rebuilds ``value``'s shape from ``array[at:]``.
 
     ``name_of`` names a NamedTuple class in the scope where the expression will be used.
@@ -103,15 +103,15 @@ def constructor_source(value: Any, name_of: Callable[[type[Any]], str], array: s
         return _scalar_source(value, f"{array}[{at}]"), at + 1
     parts = []
     for item in value:
-        part, at = constructor_source(item, name_of, array, at)
+        part, at = _constructor_source(item, name_of, array, at)
         parts.append(part)
     if hasattr(value, "_fields"):
         return f"{name_of(type(value))}({', '.join(parts)})", at
     return f"({', '.join(parts)},)", at
 
 
-def constructor(cls: type[Any], value: Any = None) -> Callable[[Sequence[Any]], Any]:
-    """Return a fast function from a flat sequence of scalars to an instance of ``cls``."""
+def constructor(cls: type[Any], value: Any = None, at: int = 0) -> Callable[[Sequence[Any]], Any]:
+    """Return a fast function from a flat sequence of scalars, the first at ``at``, to an instance of ``cls``."""
     scope: dict[str, Any] = {}
 
     def name_of(inner: type[Any]) -> str:
@@ -119,8 +119,14 @@ def constructor(cls: type[Any], value: Any = None) -> Callable[[Sequence[Any]], 
         scope[name] = inner
         return name
 
-    expression, _ = constructor_source(cls() if value is None else value, name_of, "v")
+    expression, _ = _constructor_source(cls() if value is None else value, name_of, "v", at)
     function: Callable[[Sequence[Any]], Any] = eval(f"lambda v: {expression}", scope)
+    return function
+
+
+def flattener(shape: Any) -> Callable[[Any], list[Any]]:
+    """Return a fast function from a value of ``shape``'s structure to the list of its scalars; modes become ints."""
+    function: Callable[[Any], list[Any]] = eval(f"lambda v: [{', '.join(_flat_sources(shape, 'v'))}]", {})
     return function
 
 
@@ -140,6 +146,12 @@ def with_values(cls: type[Any], changes: dict[str, Any], value: Any = None) -> A
             raise ValueError(f"{name} = {new}: expected [{signal.low}, {signal.high}] {signal.unit}")
         scalars[index[name]] = known[index[name]].kind(new)
     return constructor(cls, value)(scalars)
+
+
+def _flat_sources(shape: Any, source: str) -> list[str]:
+    if isinstance(shape, tuple):
+        return [part for place, item in enumerate(shape) for part in _flat_sources(item, f"{source}[{place}]")]
+    return [f"int({source})"] if isinstance(shape, int) and not isinstance(shape, bool) else [source]
 
 
 def _scalar_source(value: Any, item: str) -> str:

@@ -1,11 +1,10 @@
 """A model package run in this process, without an FMU: for trials, sweeps, and as the twin of the FMUs."""
 
-import re
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from typing import Any
 
 from modelkit.model import Model
-from modelkit.variables import constructor, variables, with_values
+from modelkit.variables import constructor, flattener, variables, with_values
 from orchestrator.cosim.slave import Ports
 from orchestrator.text.errors import RunError
 
@@ -21,7 +20,7 @@ class InProcessSlave:
         self.inputs = Ports(variables(model.inputs))
         self.outputs = Ports(variables(model.outputs))
         self.parameters = Ports(variables(model.params, self._params))
-        self._flatten = flattener(self.outputs.names)
+        self._flatten = flattener(model.outputs())
         self._construct = constructor(model.inputs)
         self._input = model.inputs()
         self._state: Any = None
@@ -54,11 +53,3 @@ class InProcessSlave:
 
     def close(self) -> None:
         """Nothing to free in process."""
-
-
-def flattener(names: list[str]) -> Callable[[Any], tuple[Any, ...]]:
-    """Return a fast function from a nested NamedTuple to its scalars named ``names`` (indices from 1)."""
-    paths = [re.sub(r"\[(\d+)\]", lambda match: f"[{int(match[1]) - 1}]", name) for name in names]
-    items = "".join(f"o.{path}," for path in paths)
-    function: Callable[[Any], tuple[Any, ...]] = eval(f"lambda o: ({items})")
-    return function

@@ -5,7 +5,7 @@ from typing import Annotated, NamedTuple
 import pytest
 
 from modelkit.signal import Group, Role, Signal
-from modelkit.variables import constructor, flatten, variables, with_values
+from modelkit.variables import constructor, flatten, flattener, variables, with_values
 
 
 class Wheel(NamedTuple):
@@ -83,3 +83,9 @@ def test_a_field_of_another_type_is_refused_by_name() -> None:
 
     with pytest.raises(TypeError, match="title"):
         variables(Named)
+
+
+def test_a_fast_flattener_lists_what_flatten_does_and_a_constructor_reads_it_from_anywhere() -> None:
+    cart = Cart(speed=2.5, wheels=(Wheel(0.1, 5), Wheel(0.2, 6)))
+    assert flattener(Cart())(cart) == flatten(cart)
+    assert constructor(Cart, at=3)([None, None, None, *flatten(cart)]) == cart

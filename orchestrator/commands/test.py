@@ -2,6 +2,7 @@
 
 import argparse
 import json
+import os
 import shlex
 import time
 from collections.abc import Mapping
@@ -18,7 +19,7 @@ from orchestrator.scenario.requirements import read_requirements
 from orchestrator.session.foreign import add_foreign_arguments, foreign_of
 from orchestrator.suite.collection import write_collection
 from orchestrator.suite.junit import Suite, write_junit
-from orchestrator.suite.suite import Bench, Tested, chosen, run_test, tested_by
+from orchestrator.suite.suite import Bench, Tested, chosen, run_tests, tested_by
 from orchestrator.text.console import Meter, Warnings, console, say
 from orchestrator.text.errors import INTERRUPTED, BadInput
 from orchestrator.text.owned import owned
@@ -38,6 +39,7 @@ exit codes: 0 all passed, 1 not, 2 a scenario, rule or FMU that cannot be read, 
 3 an internal error in one of them; JUnit is there from the start, with an error for what has not run
 """
 PASSED, FAILED = 0, 1
+MOST_JOBS = 64
 NOT_RUN = "the test ended before this scenario was run"
 
 
@@ -59,6 +61,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--out", type=Path, metavar="DIR", default=Path("runs/test"), help="where results go (runs/test)"
     )
     parser.add_argument("--junit", type=Path, metavar="FILE", help="where JUnit XML goes (default: DIR/junit.xml)")
+    parser.add_argument("-j", "--jobs", type=jobs, default=1, metavar="N", help="scenarios run at a time (1)")
     parser.add_argument("--coverage", action="store_true", help="run in process and say what of the charts was covered")
     parser.add_argument(
         "--min-transition-coverage", type=float, metavar="PERCENT", help="fail below this; means --coverage"
@@ -77,6 +80,13 @@ def run(arguments: argparse.Namespace) -> int:
         return _run(arguments, names, verdicts)
 
 
+def jobs(text: str) -> int:
+    """Return how many scenarios run at a time; 0 means one for each processor."""
+    if not text.isdecimal() or int(text) > MOST_JOBS:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a whole number from 0 to {MOST_JOBS}")
+    return int(text) or os.cpu_count() or 1
+
+
 def _covered(arguments: argparse.Namespace, names: list[str], verdicts: "Verdicts") -> int:
     """Test with the models in process, and say what of their charts was covered."""
     from orchestrator.coverage.covered import covered, share
@@ -85,7 +95,7 @@ def _covered(arguments: argparse.Namespace, names: list[str], verdicts: "Verdict
 
     if foreign_of(arguments).files:
         raise BadInput("the charts of somebody else's FMU cannot be looked into", key="--coverage")
-    arguments.fmus = "none"
+    arguments.fmus, arguments.jobs = "none", 1
     charts = [chart for model in MODELS.values() for chart in charts_of(model)]
     with tracing(charts) as seen:
         code = _run(arguments, names, verdicts)
@@ -106,11 +116,8 @@ def _run(arguments: argparse.Namespace, names: list[str], verdicts: "Verdicts") 
     bench = _bench(arguments, interrupt)
     tested = verdicts.tested
     with on_interrupt(interrupt), Meter("apa test", len(names), "scenarios") as meter:
-        for name in names:
-            if interrupt.requested:
-                break
-            taken = [item.scenario.name for item in tested]
-            tested.append(run_test(name, arguments.set, bench, arguments.out, taken))
+        for item in run_tests(names, arguments.set, bench, arguments.out, arguments.jobs):
+            tested.append(item)
             verdicts.write()
             meter.at(len(tested))
             if not arguments.json:

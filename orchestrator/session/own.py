@@ -2,11 +2,15 @@
 
 import hashlib
 from pathlib import Path
+from threading import Lock
 
 from fmus.own_model import BadModel, build_own, own_model
 from orchestrator.cosim.fmu_files import default_kind, sources_hash
 from orchestrator.text.console import working
 from orchestrator.text.errors import BadInput
+
+READING = Lock()
+"""A module is read anew each time: one at a time."""
 
 
 def is_model(text: str) -> bool:
@@ -21,13 +25,14 @@ def own_fmu(text: str) -> Path:
     from fmus.places import DIST
 
     try:
-        model = own_model(text)
-        kind = default_kind()
-        folder = DIST / "own" / _hash(Path(str(model.package.__file__)), kind)
-        path = folder / kind / f"{model.name}.fmu"
-        if not path.is_file():
-            with working(f"building {model.name}"):
-                build_own(model, folder, [kind])
+        with READING:
+            model = own_model(text)
+            kind = default_kind()
+            folder = DIST / "own" / _hash(Path(str(model.package.__file__)), kind)
+            path = folder / kind / f"{model.name}.fmu"
+            if not path.is_file():
+                with working(f"building {model.name}"):
+                    build_own(model, folder, [kind])
         return path
     except (BadModel, RuntimeError) as error:
         raise BadInput(str(error)) from error

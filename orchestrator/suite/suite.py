@@ -1,10 +1,13 @@
 """Many scenarios, each run, judged and kept: what ``apa test`` does."""
 
 import re
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor, wait
+from contextvars import copy_context
 from datetime import datetime
 from fnmatch import fnmatchcase
 from pathlib import Path
+from threading import Lock
 from typing import NamedTuple
 
 from orchestrator.cosim.master import Interrupt
@@ -27,6 +30,9 @@ from orchestrator.verdict.judge import Check, judge
 from orchestrator.verdict.numbers import facts_of
 from orchestrator.verdict.summary import Summary, summarize
 
+CLAIMING = Lock()
+PATIENCE = 0.2
+"""Between two looks for Ctrl-C [s]."""
 UNNAMEABLE = re.compile(r"[^A-Za-z0-9._-]+")
 
 
@@ -58,6 +64,7 @@ class Tested(NamedTuple):
         notes = {
             "changed": changes_text(self.scenario.changed),
             "left out": ", ".join(self.ignored),
+            **fmus_of(self),
         }
         return Suite(
             self.scenario.name, self.cases, time, self.error, {key: text for key, text in notes.items() if text}
@@ -89,11 +96,39 @@ def chosen(names: list[str]) -> list[str]:
     return found
 
 
-def run_test(name: str, sets: list[str], bench: Bench, out: Path, taken: Collection[str] = ()) -> Tested:
+def run_tests(names: list[str], sets: list[str], bench: Bench, out: Path, jobs: int = 1) -> Iterator[Tested]:
+    """Yield the verdicts of scenarios in their order, ``jobs`` of them at a time; none begins after an interrupt."""
+    taken: set[str] = set()
+    if jobs == 1:
+        for name in names:
+            if not bench.interrupt.requested:
+                yield run_test(name, sets, bench, out, taken)
+        return
+    with ThreadPoolExecutor(jobs) as pool:
+        running = [pool.submit(copy_context().run, run_test, name, sets, bench, out, taken) for name in names]
+        for future in running:
+            while not future.done() and not bench.interrupt.requested:
+                wait([future], PATIENCE)
+            if bench.interrupt.requested:
+                pool.shutdown(wait=True, cancel_futures=True)
+            if not future.cancelled():
+                yield future.result()
+
+
+def _claim(name: str, taken: set[str], what: str, file: object) -> None:
+    """Note that a test is called ``name``. Raises ``BadInput`` if another one is."""
+    with CLAIMING:
+        if name in taken:
+            raise BadInput(f"another {what} is called {name}", file=file, key="name")
+        taken.add(name)
+
+
+def run_test(name: str, sets: list[str], bench: Bench, out: Path, taken: set[str] | None = None) -> Tested:
     """Run one scenario, judge it, and keep log, summary and replay page in ``out``/its name.
 
     Whatever is wrong with it or with an FMU is an error of this scenario alone; so is a name already ``taken``.
     """
+    taken = set() if taken is None else taken
     scenario = Scenario(name=UNNAMEABLE.sub("-", Path(name).stem) or "unnamed")
     ignored: list[str] = []
     try:
@@ -101,8 +136,7 @@ def run_test(name: str, sets: list[str], bench: Bench, out: Path, taken: Collect
             return _step_tested(load_step_test(Path(name)), sets, bench, out, taken)
         scenario, ignored, foreign = load_fitting(name, sets, bench.foreign)
         bench = bench._replace(foreign=foreign)
-        if scenario.name in taken:
-            raise BadInput(f"another scenario of this test is called {scenario.name}", file=name, key="name")
+        _claim(scenario.name, taken, "scenario of this test", name)
         return _judged(scenario, ignored, bench, out / scenario.name)
     except Exception as error:
         code, line = explained(error, ["test", name])
@@ -129,13 +163,12 @@ def _judged(scenario: Scenario, ignored: list[str], bench: Bench, folder: Path) 
     return Tested(scenario, summary, ran.recording, cases, ignored, broken, tuple(ran.remarks))
 
 
-def _step_tested(test: StepTest, sets: list[str], bench: Bench, out: Path, taken: Collection[str]) -> Tested:
+def _step_tested(test: StepTest, sets: list[str], bench: Bench, out: Path, taken: set[str]) -> Tested:
     """Run the test of one model alone, and keep its curves and checks in ``out``/its name."""
     if sets or bench.requirements:
         raise BadInput("a step test takes no --set and no --requirements: write them in it", file=test.file)
     scenario = Scenario(name=UNNAMEABLE.sub("-", test.name), title=test.title or f"step test of {test.model}")
-    if scenario.name in taken:
-        raise BadInput(f"another test is called {scenario.name}", file=test.file, key="name")
+    _claim(scenario.name, taken, "test", test.file)
     recording, checks = run_step_test(test, bench.kind, bench.foreign)
     folder = out / scenario.name
     with owned(folder):
@@ -147,14 +180,22 @@ def _step_tested(test: StepTest, sets: list[str], bench: Bench, out: Path, taken
 
 def tested_by(tested: list[Tested], command: str) -> dict[str, str]:
     """Return what was tested, when and how: for the page and JUnit."""
-    used = next((item.summary.fmus for item in tested if item.summary is not None), [])
+    used = [fmus_of(item) for item in tested if item.summary is not None]
     fmus = {
-        item.name: f"{item.path}, SHA-256 {item.sha256}" if item.path else f"{item.kind}, {item.guid}" for item in used
+        name: text for name, text in (used[0] if used else {}).items() if all(one.get(name) == text for one in used)
     }
     when = datetime.now().astimezone().isoformat(timespec="seconds")
     about = {**fmus, "command": command, "when": when, "apa-cosim": versions()["apa-cosim"]}
     remarks = dict.fromkeys(text for item in tested for text in item.remarks)
     return {**about, "warning": "; ".join(remarks)} if remarks else about
+
+
+def fmus_of(tested: Tested) -> dict[str, str]:
+    """Return slave -> what it was: file and hash of somebody else's, kind and GUID of ours."""
+    used = tested.summary.fmus if tested.summary is not None else []
+    return {
+        item.name: f"{item.path}, SHA-256 {item.sha256}" if item.path else f"{item.kind}, {item.guid}" for item in used
+    }
 
 
 def _extra_checks(bench: Bench, recording: Recording, scenario: Scenario) -> list[Check]:

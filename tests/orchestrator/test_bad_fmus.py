@@ -51,7 +51,7 @@ def test_a_gallery_of_bad_fmus(tmp_path: Path) -> None:
     good = bad_fmus.behaving(tmp_path, "good")
     other = bad_fmus.behaving(tmp_path, "good too")
     names = [scenario(tmp_path, path) for path in (good, *found, other)]
-    command = [sys.executable, "-m", "orchestrator", "test", *names, "--fmus", "none", "--timeout", "1"]
+    command = [sys.executable, "-m", "orchestrator", "test", *names, "--fmus", "none", "--timeout", "3", "-j", "4"]
     done = subprocess.run([*command, "--out", str(tmp_path / "out")], capture_output=True, text=True, check=False)
     assert "Traceback" not in done.stderr
     assert f"2 of {len(found) + 2} scenarios passed" in done.stdout
@@ -72,7 +72,7 @@ def test_what_an_fmu_prints_or_does_at_its_end_harms_no_run(
 ) -> None:
     path = scenario(tmp_path, bad_fmus.behaving(tmp_path, name))
     out = tmp_path / "out"
-    assert main(["test", path, "--fmus", "none", "--timeout", "1", "--out", str(out)]) == 0
+    assert main(["test", path, "--fmus", "none", "--timeout", "3", "--out", str(out)]) == 0
     assert "nobody asked for" not in capfd.readouterr().out
     assert read_log(out / name / "run.mcap").t[-1] == pytest.approx(0.3)
     assert alive() == []
@@ -83,6 +83,23 @@ def test_after_an_error_the_process_is_gone(tmp_path: Path) -> None:
         path = scenario(tmp_path, bad_fmus.behaving(tmp_path, name))
         assert main(["run", path, "--fmus", "none", "--timeout", "0.3", "--out", str(tmp_path / "out"), "-q"]) == 1
     assert alive() == []
+
+
+def test_several_at_a_time_give_the_same_verdicts_in_the_same_order(tmp_path: Path) -> None:
+    names = ["step-hang", "good", "step-crash", "load-hang", "step-exit", "step-fatal"]
+    paths = [scenario(tmp_path, bad_fmus.behaving(tmp_path, name)) for name in names]
+    verdicts = []
+    for jobs in ("1", "4"):
+        out = tmp_path / jobs
+        words = ["test", *paths, "--fmus", "none", "--timeout", "2", "--out", str(out), "-j", jobs, "-q"]
+        assert main(words) == 1
+        root = ElementTree.parse(out / "junit.xml").getroot()
+        verdicts.append([(suite.get("name"), [case.get("message") for case in suite.iter("error")]) for suite in root])
+        told = {item.get("name"): item.get("value") for item in root[1].iter("property")}
+        assert told["bad"].startswith(f"{tmp_path / 'good.fmu'}, SHA-256 ")
+        assert told["vehicle"].startswith("none, in-process")
+    assert verdicts[0] == verdicts[1]
+    assert [name for name, _ in verdicts[0]] == names
 
 
 def test_a_hang_takes_its_limit_of_time_and_no_more(tmp_path: Path) -> None:

@@ -22,6 +22,8 @@ SLOW = [
     "orchestrator/test_ends.py",
     "golden/test_golden.py",
     "docs/test_extend.py",
+    "fuzz/test_places.py",
+    "orchestrator/test_folders.py",
     "fmi/test_c_library.py",
     "fmi/test_fmi3_fmu.py",
     "fmi/test_importers.py",

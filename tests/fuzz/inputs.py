@@ -95,6 +95,8 @@ VALUES = (
     "3 rad",
     "PARKED",
 )
+PLAIN = ("0.3", "-3", "2.5", "50", "1e3", "2e4", "5e5", "-9e5", "45 deg", "5 km/h", "10 cm", "false", "1", "0.0")
+"""Values that are often accepted, some of them far from any car park."""
 SETTINGS = (
     "vehicle",
     "vehicle.start.x",
@@ -157,9 +159,9 @@ vehicle:
 slot: {x: -1.0, y: -1.0, length: 5.0, width: 2.0}
 target: [0.0, 0.0, 0.0]
 faults:
-  - {signal: vehicle.pose, kind: delay, start: 0.1, stop: 1, delay: 0.1}
-  - {signal: vehicle.speed, kind: noise, sigma: 0.1}
-  - {signal: vehicle.speed, kind: drop, probability: 0.5}
+  - {signal: vehicle.odometry, kind: delay, start: 0.1, stop: 1, delay: 0.1}
+  - {signal: vehicle.odometry.x, kind: noise, sigma: 0.1}
+  - {signal: vehicle.odometry.heading, kind: drop, probability: 0.5}
 limits:
   - house
   - {id: a, signal: vehicle.speed, max: 3, window: {from: 0, to: 1, phase: PARKED}, source: me}
@@ -209,7 +211,7 @@ def _value(lines: list[str], place: int, draw: random.Random) -> list[str]:
             if mark in head:
                 head, sep, tail = head.partition(mark)
                 break
-        parts[which] = draw.choice(VALUES) + sep + tail
+        parts[which] = draw.choice(draw.choice((VALUES, PLAIN))) + sep + tail
     lines[place] = ": ".join(parts)
     return lines
 
@@ -247,7 +249,8 @@ def attacks(folder: Path, log: Path, draw: random.Random) -> Iterator[list[str]]
     out = ["--out", str(folder / "out")]
     while True:
         settings = [
-            f"{draw.choice(SETTINGS)}={draw.choice(VALUES).strip(chr(39))}" for _ in range(draw.randrange(1, 4))
+            f"{draw.choice(SETTINGS)}={draw.choice(draw.choice((VALUES, PLAIN))).strip(chr(39))}"
+            for _ in range(draw.randrange(1, 4))
         ]
         sets = [word for text in settings for word in ("--set", text)]
         kind = draw.randrange(10)

@@ -48,7 +48,7 @@ def test_settings_that_broke_it_once_are_refused_in_a_line(line: str, tmp_path: 
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("kind", "seconds"), [("inputs", 8), ("logs", 8), ("calls", 4), ("kills", 20)])
+@pytest.mark.parametrize(("kind", "seconds"), [("inputs", 5), ("logs", 5), ("calls", 2), ("kills", 10)])
 def test_a_short_attack(kind: str, seconds: int, tmp_path: Path) -> None:
     command = [sys.executable, "-m", "tests.fuzz", kind, "--seconds", str(seconds), "--seed", "20150915"]
     done = subprocess.run([*command, "--finds", str(tmp_path)], cwd=ROOT, capture_output=True, text=True)

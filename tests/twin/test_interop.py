@@ -12,12 +12,13 @@ import numpy as np
 import pytest
 from fmpy.fmi2 import FMU2Slave
 from fmpy.ssp.simulation import simulate_ssp
-from fmpy.ssp.ssd import read_ssd
+from fmpy.ssp.ssd import read_ssd, read_ssv
 from libcosimpy.CosimExecution import CosimExecution
 from libcosimpy.CosimLogging import CosimLogLevel, log_output_level
 from libcosimpy.CosimObserver import CosimObserver
 from toolbox_container import write_container
 
+from fmus.contents.xml_file import as_text
 from fmus.systems.ssp import write_ssp
 from orchestrator.cli import main
 from orchestrator.export.system_of import parts_of, system_of
@@ -193,6 +194,8 @@ def test_the_ssp_says_what_other_tools_read(ssp, system):
         set_ones = {**getattr(SCENARIO, part.name)}.keys() & {item.name for item in part.of("parameter")}
         assert sets[part.name].count("<ssv:Parameter ") == len(set_ones) > 0
         assert f'<ssd:ParameterBinding source="resources/{part.name}.ssv" />' in text
+        told = {item.name: item.value for item in read_ssv(str(ssp), f"resources/{part.name}.ssv").parameters}
+        assert told == {variable.name: as_text(value) for variable, value in part.settings()}
 
 
 def test_an_fmu_in_the_ssp_starts_with_what_the_scenario_sets(system):

@@ -13,7 +13,7 @@ from typing import Any
 from fmus.compiler import members
 from fmus.locks import kept_file
 from fmus.native.compilers import Compiler, can_compile, find_compiler
-from fmus.native.platforms import LINUX, PLATFORMS, Target, host, host_target
+from fmus.native.platforms import LINUX, PLATFORMS, Target, host, host_target, is_known
 from fmus.native.sources import C_FILES, translated
 from fmus.native.tables import KINDS
 from fmus.places import LIBRARIES
@@ -51,7 +51,7 @@ def batch_library() -> Path:
 
 def python_front(cc: str | None = None) -> bytes | None:
     """Return the library of linux64 that stands before PythonFMU's own; None without a C compiler for it."""
-    if not (cc or can_compile()):
+    if not (cc or can_compile()) or not is_known():
         return None
     compiler, target = find_compiler(cc), LINUX._replace(options=(*LINUX.options, "-Wl,-z,nodelete", "-ldl"))
     if not compiler.can_make(target):

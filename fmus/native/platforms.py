@@ -62,6 +62,14 @@ def host() -> str:
         raise RuntimeError(f"no native FMU for {sys.platform} on {machine}") from None
 
 
+def is_known() -> bool:
+    """Return whether this machine is of a platform of ours."""
+    try:
+        return bool(host())
+    except RuntimeError:
+        return False
+
+
 def host_target() -> Target:
     """Return the target of this machine's own processor."""
     targets = PLATFORMS[host()].targets

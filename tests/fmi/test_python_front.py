@@ -160,6 +160,11 @@ def test_without_a_compiler_the_library_of_pythonfmu_stands_alone_and_the_page_s
     assert len(python_front()) < 40_000
 
 
+def test_on_an_unknown_machine_there_is_none(monkeypatch):
+    monkeypatch.setattr("fmus.native.platforms.sys.platform", "plan9")
+    assert python_front() is None
+
+
 def test_the_answers_of_the_slave_come_through(python_fmus, unpacked, reference):
     """A step before initialization is the slave's to refuse."""
     from host import Host

@@ -15,13 +15,13 @@ static int64_t int_of(double x)
 }
 """,
     "floor_div": """\
-/* Python's a // b: rounds down. Where Python raises (b is 0): 0. */
+/* Python's division of integers that rounds down. Where Python raises (b is 0): 0. */
 static int64_t floor_div(int64_t a, int64_t b)
 {
     if (b == 0) {
         return 0;
     }
-    return a / b - (a % b != 0 && (a % b < 0) != (b < 0));
+    return a % b != 0 && (a % b < 0) != (b < 0) ? a / b - 1 : a / b;
 }
 """,
     "floor_mod": """\
@@ -37,19 +37,20 @@ static int64_t floor_mod(int64_t a, int64_t b)
 /* Python's a << n for results of 64 bits. */
 static int64_t shift_left(int64_t a, int64_t n)
 {
-    return n < 0 || n > 63 ? 0 : (int64_t)((uint64_t)a << n);
+    return n < 0 || n > 63 ? 0 : (int64_t)((uint64_t)a << (uint64_t)n);
 }
 """,
     "shift_right": """\
 /* Python's a >> n: fills up with the sign. Where Python raises (n is negative): 0. */
 static int64_t shift_right(int64_t a, int64_t n)
 {
-    const int64_t shift = n > 63 ? 63 : n;
+    const uint64_t bits = (uint64_t)a;
+    const uint64_t shift = n > 63 ? UINT64_C(63) : (uint64_t)n;
 
     if (n < 0) {
         return 0;
     }
-    return a < 0 ? ~(~a >> shift) : a >> shift;
+    return (int64_t)(a < 0 ? ~(~bits >> shift) : bits >> shift);
 }
 """,
     "index_in": """\

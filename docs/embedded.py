@@ -1,4 +1,4 @@
-"""Writes the tables of docs/embedded.md: memory, stack, size, time, MISRA rules. ``python docs/embedded.py``.
+"""Writes the tables of docs/embedded.md. ``python docs/embedded.py``, or only some: ``... memory stack size time misra``.
 
 Stack needs gcc 10 or later, MISRA needs cppcheck with its addon; without them these tables stay as they are.
 """
@@ -59,11 +59,12 @@ double sin(double), sqrt(double), tan(double), trunc(double);
 """A freestanding compiler has no math.h; the target's C library brings one, and the functions."""
 
 
-def main() -> None:
-    """Write all tables into the page."""
+def main(names: list[str]) -> None:
+    """Write the tables called ``names``, or all, into the page."""
     text = PAGE.read_text(encoding="utf-8")
-    for name, table in {"memory": memory, "stack": stack, "size": size, "time": times, "misra": misra}.items():
-        lines = table()
+    tables = {"memory": memory, "stack": stack, "size": size, "time": times, "misra": misra}
+    for name in names or tables:
+        lines = tables[name]()
         print(name, *lines, sep="\n")
         if lines:
             text = replaced(text, name, lines)
@@ -209,4 +210,4 @@ def misra() -> list[str]:
 
 
 if __name__ == "__main__":
-    main()
+    main(sys.argv[1:])

@@ -2,7 +2,9 @@
  *
  *     host run   LIBRARY GUID STEPS SIZE WORD...        one line of Real outputs per step, in hexadecimal;
  *                                                       a word is a value reference, or an input held all the
- *                                                       time: real:REFERENCE=VALUE, int:..., bool:...
+ *                                                       time: real:REFERENCE=VALUE, int:..., bool:..., or
+ *                                                       file:NAME with a line of such words to set before
+ *                                                       initialization, and a line to set before each step
  *     host many  LIBRARY GUID COUNT                     instantiate, step and free COUNT times; resident kB before, after
  *     host fuzz  LIBRARY GUID SEED CALLS                random calls with random arguments
  */
@@ -51,15 +53,6 @@ static void logger(fmi2ComponentEnvironment environment, fmi2String instance, fm
 
 static const fmi2CallbackFunctions callbacks = {logger, calloc, free, NULL, NULL};
 
-static fmi2Component start(const char *guid) {
-    fmi2Component slave = CALL(fmi2Instantiate)("slave", fmi2CoSimulation, guid, "", &callbacks, 0, 1);
-    if (!slave) exit(3);
-    if (CALL(fmi2SetupExperiment)(slave, 0, 0, 0, 0, 0) || CALL(fmi2EnterInitializationMode)(slave) ||
-        CALL(fmi2ExitInitializationMode)(slave))
-        exit(4);
-    return slave;
-}
-
 static int hold(fmi2Component slave, const char *text) {
     fmi2ValueReference reference;
     double value;
@@ -70,18 +63,42 @@ static int hold(fmi2Component slave, const char *text) {
                           : CALL(fmi2SetBoolean)(slave, &reference, 1, &integer);
 }
 
+static FILE *script;
+
+static int hold_line(fmi2Component slave) {
+    static char line[65536];
+    if (!script || !fgets(line, sizeof line, script)) return 0;
+    for (char *text = strtok(line, " \r\n"); text; text = strtok(NULL, " \r\n"))
+        if (hold(slave, text)) return 1;
+    return 0;
+}
+
+static fmi2Component start(const char *guid) {
+    fmi2Component slave = CALL(fmi2Instantiate)("slave", fmi2CoSimulation, guid, "", &callbacks, 0, 1);
+    if (!slave) exit(3);
+    if (hold_line(slave)) exit(7);
+    if (CALL(fmi2SetupExperiment)(slave, 0, 0, 0, 0, 0) || CALL(fmi2EnterInitializationMode)(slave) ||
+        CALL(fmi2ExitInitializationMode)(slave))
+        exit(4);
+    return slave;
+}
+
 static int run(const char *guid, int steps, double size, int words, char **texts) {
-    fmi2ValueReference references[64];
-    double values[64];
+    fmi2ValueReference references[256];
+    double values[256];
+    for (int i = 0; i < words; i++)
+        if (!strncmp(texts[i], "file:", 5) && !(script = fopen(texts[i] + 5, "r"))) return 8;
     fmi2Component slave = start(guid);
     int count = 0;
     for (int i = 0; i < words; i++) {
+        if (!strncmp(texts[i], "file:", 5)) continue;
         if (!strchr(texts[i], ':'))
             references[count++] = (unsigned)atoi(texts[i]);
         else if (hold(slave, texts[i]))
             return 7;
     }
     for (int k = 0; k < steps; k++) {
+        if (hold_line(slave)) return 7;
         if (CALL(fmi2DoStep)(slave, k * size, size, 1)) return 5;
         if (CALL(fmi2GetReal)(slave, references, (size_t)count, values)) return 6;
         for (int i = 0; i < count; i++) printf("%a ", values[i]);

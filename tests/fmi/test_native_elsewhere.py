@@ -9,15 +9,19 @@ from pathlib import Path
 from typing import NamedTuple
 
 import pytest
+import toy_model
 from fmpy import read_model_description
 from test_native_host import HERE
 
 from fmus.native.fmu import build
 from fmus.native.platforms import LINUX, LINUX_ARM, WINDOWS
 from fmus.native.sources import C_FILES
-from modelkit.vocabulary import Prompt
+from orchestrator.scenario.load_scenario import load_scenario
+from orchestrator.scenario.models import MODELS
+from orchestrator.session.session import run_scenario
 
 STEPS = 300
+DRIVES = ("guo2015-case4", "apa-parallel", "hsic")
 ARM_SYSROOT = Path("/usr/aarch64-linux-gnu")
 
 
@@ -49,33 +53,19 @@ pytestmark = pytest.mark.skipif(
 )
 
 
-@pytest.fixture
-def fmu(model, tmp_path):
-    """The FMU with a binary for every place that can be run here."""
-    return build(model, tmp_path / "fmu", [place.platform for place in PLACES if place.needs])
-
-
-def held(description):
-    """Return the inputs to hold: the driver of the vehicle is told to reverse, its wheel to turn."""
-    wanted = {"prompt": f"int:{{}}={int(Prompt.REVERSE)}", "steering_wheel_request": "real:{}=3.5"}
-    wanted |= {"steering_active": "bool:{}=1", "force[1]": "real:{}=0.3"}
-    inputs = {item.name: item.valueReference for item in description.modelVariables if item.causality == "input"}
-    return [text.format(inputs[name]) for name, text in wanted.items() if name in inputs]
-
-
-def rows(place, fmu, folder):
-    """Return the Real outputs of each step, as a program for ``place`` saw them."""
+def rows(place, fmu, folder, steps, size, *words):
+    """Return the Real outputs of each step, diagnostics too, as a program for ``place`` saw them."""
     with zipfile.ZipFile(fmu) as archive:
         archive.extractall(folder)
     description = read_model_description(str(fmu), validate=False)
-    outputs = [v for v in description.modelVariables if v.causality == "output" and v.type == "Real"][:40]
+    outputs = [v for v in description.modelVariables if v.causality in ("output", "local") and v.type == "Real"]
     (library,) = (folder / "binaries" / place.platform).iterdir()
     program = folder / f"host{place.suffix}"
     flags = ["-std=gnu11", "-O1", f"-I{C_FILES}", str(HERE / "host.c"), "-o", str(program)]
     libraries = [] if place.suffix else ["-ldl", "-lm"]
     command = [sys.executable, "-m", "ziglang", "cc", "-target", place.target, *flags, *libraries]
     subprocess.run(command, check=True, capture_output=True)
-    words = [str(STEPS), "0.01", *(str(item.valueReference) for item in outputs), *held(description)]
+    words = [str(steps), str(size), *(str(item.valueReference) for item in outputs), *words]
     env = {**os.environ, "WINEPREFIX": str(folder / "wine"), "WINEDEBUG": "-all"}
     done = subprocess.run(
         [*place.command, str(program), "run", str(library), description.guid, *words],
@@ -85,14 +75,53 @@ def rows(place, fmu, folder):
     return [[float.fromhex(word) for word in line.split()] for line in done.stdout.splitlines()]
 
 
-@pytest.mark.parametrize("place", PLACES[1:], ids=lambda place: place.platform)
-def test_other_platforms_give_the_same_numbers(place, fmu, tmp_path):
-    """Their C libraries may round sin and tan differently in the last bit."""
+def is_same(place, fmu, folder, steps, size, *words):
+    """Compare the outputs; other C libraries may round sin and tan differently in the last bit."""
     if not place.needs:
         pytest.skip(f"no way to run {place.platform} here")
-    here = rows(PLACES[0], fmu, tmp_path / "here")
-    there = rows(place, fmu, tmp_path / "there")
-    assert len(here) == len(there) == STEPS
-    assert here[-1] != here[0]
+    here = rows(PLACES[0], fmu, folder / "here", steps, size, *words)
+    there = rows(place, fmu, folder / "there", steps, size, *words)
+    assert len(here) == len(there) == steps
+    assert len(set(map(tuple, here))) > 100
     for mine, its in zip(here, there, strict=True):
         assert its == pytest.approx(mine, rel=1e-9, abs=1e-9)
+
+
+@pytest.mark.parametrize("place", PLACES[1:], ids=lambda place: place.platform)
+def test_other_platforms_give_the_same_numbers(place, tmp_path):
+    fmu = build(toy_model.MODEL, tmp_path / "fmu", [place.platform for place in PLACES if place.needs])
+    known = read_model_description(str(fmu), validate=False).modelVariables
+    force = next(item for item in known if item.name == "force[1]")
+    is_same(place, fmu, tmp_path, STEPS, 0.01, f"real:{force.valueReference}=0.3")
+
+
+def word(variable, value):
+    """Return what sets a variable, as the host program reads it."""
+    kind = {"Real": "real", "Boolean": "bool"}.get(variable.type, "int")
+    return f"{kind}:{variable.valueReference}={float(value)!r}"
+
+
+def written(drive, name, fmu, path):
+    """Write what a model was given in a drive, parameters and then inputs; return how many steps, and their size."""
+    scenario = load_scenario(drive, [])
+    signals = run_scenario(scenario).recording.signals
+    known = {item.name: item for item in read_model_description(str(fmu), validate=False).modelVariables}
+    lines = [" ".join(word(known[key], value) for key, value in dict(getattr(scenario, name)).items())]
+    inputs = {key: item for key, item in known.items() if item.causality == "input"}
+    seen = {key: signals[f"{name}.{key}"] for key in inputs}
+    steps = len(next(iter(seen.values()))) - 1
+    lines += [" ".join(word(item, seen[key][k]) for key, item in inputs.items()) for k in range(steps)]
+    path.write_text("\n".join([*lines, ""]), encoding="ascii")
+    return steps, scenario.step_ns * 1e-9
+
+
+@pytest.mark.parametrize("place", PLACES[1:], ids=lambda place: place.platform)
+@pytest.mark.parametrize("name", ["vehicle", "controller"])
+def test_other_platforms_drive_the_same(place, name, tmp_path):
+    """Each model is given what it was given in shipped scenarios."""
+    fmu = build(MODELS[name], tmp_path / "fmu", [place.platform for place in PLACES if place.needs])
+    for drive in DRIVES:
+        folder = tmp_path / drive
+        folder.mkdir()
+        steps, size = written(drive, name, fmu, folder / "inputs.txt")
+        is_same(place, fmu, folder, steps, size, f"file:{folder / 'inputs.txt'}")

@@ -1,4 +1,4 @@
-"""Writes the tables of docs/embedded.md. ``python docs/embedded.py``, or only some: ``... memory stack size time misra``.
+"""Writes the tables of docs/embedded.md: ``python docs/embedded.py``, or some: ``... memory stack size time misra``.
 
 Stack needs gcc 10 or later, MISRA needs cppcheck with its addon; without them these tables stay as they are.
 """

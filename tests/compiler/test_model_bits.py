@@ -15,6 +15,7 @@ SCENARIOS = {
     "zhang2022-double-track": ("stop_time=10",),
     "hsic-straight": ("stop_time=12",),
     "preview": ("stop_time=3",),
+    "adaptive": (),
     "fault-pose-nan": (),
 }
 """Every system of the controller and every body of the vehicle, with what is set to make the run short."""

@@ -18,6 +18,7 @@ from orchestrator.log.read_log import log_file, read_log
 from orchestrator.scenario.flat_names import flatten_section
 from orchestrator.scenario.models import MODELS
 from orchestrator.session.foreign import Foreign
+from orchestrator.session.own import is_model
 from orchestrator.session.session import NOBODY
 from orchestrator.steptest.step_test import StepTest
 from orchestrator.steptest.stimuli import Place, stimulus
@@ -124,7 +125,7 @@ def _slave(test: StepTest, model: str, kind: str, foreign: Foreign) -> Slave:
         if kind == "none":
             return InProcessSlave(model, ours, parameters)
         return FmuSlave(model, fmu_files(kind)[model], parameters, lambda *said: None, ours)
-    if MODEL_FILE in model:
+    if MODEL_FILE in model or is_model(str(test.near(model))):
         own = _own(str(test.near(model)))
         return InProcessSlave(OTHER, own, _parameters(test, variables(own.params)))
     known_models = ", ".join(MODELS)

@@ -42,7 +42,7 @@ def test_its_tests_pass_and_its_readme_is_true(made: str) -> None:
     assert done.returncode == 0, done.stdout
     lines = [line.split("  ")[0].split() for line in Path(made, "README.md").read_text().splitlines() if "apa " in line]
     lines = [words for words in lines if words[:1] == ["apa"]]
-    assert len(lines) == 5
+    assert len(lines) == 6
     for words in lines:
         assert main([*words[1:], *(["--fmus", "none"] if words[1] in ("run", "test") else [])]) in (0, 1), words
     assert Path("build/native").is_dir()

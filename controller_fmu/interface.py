@@ -46,17 +46,29 @@ class Phase(IntEnum):
     """State of the manoeuvre chart."""
 
     STANDBY = 0
+    """Waits for a way to drive."""
     PRE_STEER = 1
+    """The car stands; the wheel turns to what the next way begins with."""
     PATH_TRACKING = 2
+    """On the planned path."""
     STOP = 3
+    """The driver is asked to stop, until the car stands."""
     TO_Q2 = 4
+    """Forward to Q2, after the path was left."""
     TO_Q1 = 5
+    """Back to Q1, where the path goes on."""
     TO_Q4 = 6
+    """Forward to Q4, to set the end right."""
     TO_Q3 = 7
+    """Back to Q3, the end."""
     STRAIGHTEN = 8
+    """In place; the wheel turns straight."""
     PARKED = 9
+    """Done."""
     FAILED = 10
+    """Given up; the reason says why."""
     TAKEOVER = 11
+    """The driver has taken over."""
 
 
 class Reason(IntEnum):

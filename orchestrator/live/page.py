@@ -13,10 +13,10 @@ import yaml
 
 from fmus.files import write_whole
 from fmus.native.web import web_module
-from orchestrator.live.charts import charts_data
 from orchestrator.live.described import models_data
 from orchestrator.live.situation import numbers_data, situation
 from orchestrator.report import page as report
+from orchestrator.report.charts import charts_data
 from orchestrator.report.payload import Arrays
 from orchestrator.scenario.models import MODELS
 from orchestrator.scenario.scenario import Scenario

@@ -9,7 +9,7 @@ from pathlib import Path
 ROOM = Path(__file__).parent
 VIEW = ("data.js", "show.js", "shapes.js", "scene.js", "scene_parts.js", "view.js")
 """What draws the top view, here and on the page that is driven."""
-SCRIPTS = (*VIEW, "timeline.js", "plots.js", "tables.js", "cards.js", "main.js")
+SCRIPTS = (*VIEW, "timeline.js", "plots.js", "tables.js", "cards.js", "chart.js", "main.js")
 UPLOT = ROOM / "third_party" / "uplot"
 
 

@@ -7,6 +7,7 @@ from typing import Any
 
 from fmus.files import write_whole
 from orchestrator.cosim.recording import Recording
+from orchestrator.report.charts import charts_of
 from orchestrator.report.messages import Line
 from orchestrator.report.page import page
 from orchestrator.report.payload import Arrays
@@ -67,6 +68,7 @@ def _page(recording: Recording, summary: Summary, words: list[Line], most: int, 
         "runs": [run],
         "foot": foot(recording, run["rows"]),
         "live": live,
+        "charts": charts_of(recording),
     }
     return page(title, arrays.pack(header))
 

@@ -187,7 +187,7 @@ def test_the_chart_shows_the_state_and_how_it_came(page):
     page.wait_for_timeout(100)
     on = page.evaluate("() => [...document.querySelectorAll('[data-state].on')].map((node) => node.dataset.state)")
     assert on == [page.evaluate("() => window.live.drive.state('controller.phase')")]
-    assert page.evaluate("() => window.live.chart.past.length") == 4
+    assert page.locator(".past li").count() == 4
     page.focus('[data-state="STOP"]')
     assert page.text_content("#chart-said").startswith("stop:")
 

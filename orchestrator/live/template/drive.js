@@ -31,6 +31,7 @@ class Drive {
     this.isOver = false;
     this.byHand = false;
     this.planKey = "";
+    this.modes = "";
     this.driver.lever = GEARS.P;
     this.driver.release();
     this.look();
@@ -40,8 +41,9 @@ class Drive {
 
   // One exchange at this instant: what the models say goes into the history.
   look() {
-    const { over, seen } = this.course.exchange();
-    this.history.push(this.t, seen, this.count % this.every === 0 || over);
+    const { over, seen } = this.course.exchange(), modes = this.lab.modes.map((place) => seen[place]).join();
+    this.history.push(this.t, seen, this.count % this.every === 0 || over || modes !== this.modes);
+    this.modes = modes;
     this.isOver = over;
   }
 

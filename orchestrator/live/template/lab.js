@@ -2,6 +2,8 @@
 
 const GHOST_EVERY = 5; // exchanges between two rows of the ghost, at 100 Hz
 
+const MODES = ["controller.phase", "controller.apa.mode", "controller.hsic.stage"];
+
 class Lab {
   constructor(engine, data) {
     this.engine = engine;
@@ -9,6 +11,7 @@ class Lab {
     this.scenarios = new Map(data.scenarios.map((item) => [item.name, item]));
     this.pins = data.pins;
     this.seen = seenOf(engine);
+    this.modes = MODES.map((name) => this.seen.indexOf(name)).filter((place) => place >= 0); // a change of these is kept
     this.only = []; // sliders of a page that stands in another one
   }
 

@@ -9,10 +9,11 @@ class Page {
     this.sounds = new Sounds();
     this.drive = new Drive(lab, this.driver);
     this.drive.onEnd = () => this.ended();
-    this.drive.onStep = () => { this.prompted(); this.chart.show(this.drive.history); };
+    this.drive.onStep = () => this.prompted();
     this.whatIf = new WhatIf(lab, () => this.changed());
     this.map = new Grid(lab, code, data, (values) => { for (const [name, value] of values) lab.situation.set(name, value); this.whatIf.fill(); this.changed(); });
-    this.chart = new LiveChart(lab, data.charts);
+    this.chart = new StateChart();
+    this.charts = data.charts;
     this.drawn = { runs: [], ribbons: [], ghost: null, poses: () => this.poses() };
     for (const item of data.scenarios) $("scenario").append(element("option", { value: item.name }, item.name));
     this.buttons();
@@ -40,7 +41,7 @@ class Page {
     this.whatIf.more = [];
     this.whatIf.fill();
     this.map.fill();
-    this.chart.fill();
+    this.chart.fill(this.charts.filter((chart) => chart.values.includes(this.lab.system)));
     this.restart();
     this.ghost();
     if (this.stage) { this.stage.turn = -this.drive.history.scene.turn; this.stage.fit(); }
@@ -102,7 +103,7 @@ class Page {
     const key = [drive.t, this.whole.took, this.stage.scale, ...this.stage.middle, driver.pedal.accelerator, driver.pedal.brake, driver.lever, driver.drives, drive.isPlaying].join();
     if (key === this.key) return;
     this.key = key;
-    if (drive.history.time.length) { this.stage.draw(drive.t); headsUp(this.drawn, drive.t); this.chart.show(drive.history); this.cockpit(); }
+    if (drive.history.time.length) { this.stage.draw(drive.t); headsUp(this.drawn, drive.t); this.chart.show(drive.history, drive.t); this.cockpit(); }
   }
 
   cockpit() {

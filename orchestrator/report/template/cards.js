@@ -61,10 +61,16 @@ function changesCard(page) {
   return card(`Parameters that differ: ${rows.length}`, rows.length ? table(["name", "A", "B"], rows) : "none", rows.length > 0);
 }
 
+// The state machine of the controller, drawn; it follows the time.
+function chartCard(page) {
+  if (!page.charts || !page.charts.length) return null;
+  return card("Chart", element("div", {}, element("p", { id: "chart-said", class: "chart-said", role: "status" }, "Point at a state to see what it does."), element("p", { id: "chart-none", hidden: true }), element("div", { id: "chart" })), false);
+}
+
 function fillTables(page) {
   const box = $("details"), tags = page.runs.map((run) => (page.runs.length > 1 ? ` ${run.label}` : ""));
   for (const item of [changesCard(page), ...differencesCards(page), ...page.runs.map((run, i) => checksCard(run, tags[i]))]) if (item) $("checks").append(item);
-  const cards = [];
+  const cards = [chartCard(page)];
   for (const make of [eventsCard, logCard, parametersCard, provenanceCard]) page.runs.forEach((run, i) => cards.push(make(run, tags[i])));
   for (const item of cards) if (item) box.append(item);
 }

@@ -9,6 +9,7 @@ class Player {
     this.t = 0;
     this.speed = 1;
     this.playing = false;
+    if ($("chart")) { this.chart = new StateChart(); this.chart.fill(page.charts); }
     const seek = (t) => { this.seek(t); };
     this.scene = new Scene(page, $("view"));
     this.timeline = new Timeline(page, seek);
@@ -67,6 +68,7 @@ class Player {
     this.timeline.show(t);
     $("clock").textContent = `${t.toFixed(2)} / ${this.duration.toFixed(2)} s`;
     headsUp(this.page, t);
+    if (this.chart) this.chart.show(this.page.runs[0], t);
   }
 
   paint() {

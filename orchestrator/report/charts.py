@@ -1,19 +1,24 @@
-"""State machines as the page shows them while they run: a drawing, and what is known of each state."""
+"""State machines as pages show them beside a run: a drawing, and what is known of each state."""
 
 import inspect
 from enum import IntEnum
+from functools import cache
 from pathlib import Path
 from typing import Any
 
 from modelkit.model import Chart
+from orchestrator.cosim.recording import Recording
 from orchestrator.drawing.chart_svg import chart_svg
 from orchestrator.scenario.catalogue import texts_of
 from orchestrator.scenario.models import MODELS
 
 ROOT = Path(__file__).parents[2]
 ANY = "any state"
+CHOICE = "system"
+"""The parameter of the controller that chooses its system."""
 
 
+@cache
 def charts_data() -> list[dict[str, Any]]:
     """Return the charts of all systems with the values that choose them."""
     return [
@@ -22,6 +27,16 @@ def charts_data() -> list[dict[str, Any]]:
         if model.systems is not None
         for system in model.systems.systems
         for chart in system.charts
+    ]
+
+
+def charts_of(recording: Recording) -> list[dict[str, Any]]:
+    """Return the charts of the system that a recorded run was made with; none for a controller of somebody else's."""
+    system = recording.parameters.get(f"controller.{CHOICE}")
+    return [
+        item
+        for item in charts_data()
+        if system in item["values"] and f"controller.{item['signal']}" in recording.signals
     ]
 
 

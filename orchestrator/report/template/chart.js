@@ -1,0 +1,43 @@
+// A state machine beside a run: the state it is in, the way it came, what each state does and where it is written.
+
+class StateChart {
+  constructor() { this.own = []; }
+
+  // Show the charts of one system.
+  fill(charts) {
+    this.own = charts.map((chart) => ({ ...chart, key: "" }));
+    $("chart").replaceChildren(...this.own.map((chart) => this.drawn(chart)));
+    $("chart-none").hidden = this.own.length > 0;
+  }
+
+  drawn(chart) {
+    chart.past = element("ol", { class: "past", "aria-label": "Last transitions" });
+    chart.box = element("figure", { class: "chart-box" }, element("figcaption", {}, chart.signal, element("span", { class: "quiet" }, ` ${chart.file}`)), chart.past);
+    chart.box.append(document.importNode(new DOMParser().parseFromString(chart.svg, "image/svg+xml").documentElement, true));
+    for (const node of chart.box.querySelectorAll("[data-state]")) {
+      const state = chart.states[node.dataset.state];
+      const tell = () => { $("chart-said").textContent = `${words(node.dataset.state)}: ${state.text}${state.leaves.length ? ` Leaves: ${state.leaves.join("; ")}.` : ""}`; };
+      node.setAttribute("tabindex", "0");
+      node.setAttribute("role", "img");
+      node.setAttribute("aria-label", words(node.dataset.state));
+      for (const event of ["pointerenter", "focus"]) node.addEventListener(event, tell);
+    }
+    return chart.box;
+  }
+
+  // As it is in `run` at `t`.
+  show(run, t) {
+    for (const chart of this.own) {
+      const name = `controller.${chart.signal}`, spans = run.spans(name).filter((span) => span.from <= t);
+      const states = spans.map((span) => run.stateName(name, span.value)), key = `${spans.length} ${states[states.length - 1]} ${spans.length && spans[spans.length - 1].from}`;
+      if (chart.key === key) continue;
+      chart.key = key;
+      for (const node of chart.box.querySelectorAll(".on")) node.classList.remove("on");
+      const last = states.length - 1, arcs = (i) => [...chart.box.querySelectorAll("[data-from]")].filter(({ dataset }) => (dataset.from === states[i - 1] || dataset.from === "any state") && dataset.to === states[i]);
+      for (const node of chart.box.querySelectorAll(`[data-state="${states[last]}"]`)) node.classList.add("on");
+      if (last > 0) for (const arc of arcs(last)) arc.classList.add("on");
+      const lines = states.map((state, i) => (i === 0 ? "" : `${spans[i].from.toFixed(2)} s  ${words(states[i - 1])} \u2192 ${words(state)}${arcs(i).length ? `  (${arcs(i).map((arc) => arc.dataset.guards).join(", ")})` : ""}`));
+      chart.past.replaceChildren(...lines.slice(1).slice(-8).reverse().map((line) => element("li", {}, line)));
+    }
+  }
+}

@@ -2,17 +2,22 @@
 
 import os
 import signal
-import subprocess
+import sys
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-LIVING: set["subprocess.Popen[str]"] = set()
+if TYPE_CHECKING:
+    import subprocess
+
+LIVING: set["subprocess.Popen[Any]"] = set()
 
 
 def run_child(command: Sequence[str], folder: Path | None = None, environment: Mapping[str, str] | None = None) -> Any:
     """Return the ``CompletedProcess`` of a command with what it wrote as text; an exception ends it first."""
+    import subprocess
+
     pipe = subprocess.PIPE
     group: dict[str, Any] = {"start_new_session": True} if os.name == "posix" else {}
     texts: dict[str, Any] = {"text": True, "encoding": "utf-8", "errors": "replace"}
@@ -41,10 +46,9 @@ def end(child: "subprocess.Popen[str]") -> None:
 
 def end_all() -> None:
     """End every child, and every process of ``multiprocessing``."""
-    import multiprocessing
-
     for child in list(LIVING):
         end(child)
-    for process in multiprocessing.active_children():
+    multiprocessing = sys.modules.get("multiprocessing")
+    for process in multiprocessing.active_children() if multiprocessing else ():
         with suppress(Exception):
             process.kill()

@@ -8,8 +8,6 @@ next process if it was killed.
 import atexit
 import os
 import re
-import shutil
-import tempfile
 import threading
 import time
 from collections.abc import Iterator
@@ -91,6 +89,8 @@ _room: tuple[Path, int] | None = None
 
 def new_folder(name: str) -> Path:
     """Return a new folder for a while; its path is plain. Remove it with :func:`remove_folder`. Raises ``OSError``."""
+    import tempfile
+
     with _making:
         folder = Path(tempfile.mkdtemp(prefix=f"{name}-", dir=own_room()))
     return folder
@@ -98,6 +98,8 @@ def new_folder(name: str) -> Path:
 
 def remove_folder(folder: Path) -> None:
     """Remove a folder, as far as that can be done."""
+    import shutil
+
     shutil.rmtree(folder, ignore_errors=True)
 
 
@@ -124,12 +126,17 @@ def remove_all_folders() -> None:
 
 def live_in(room: Path) -> None:
     """Let this process, a worker of another, keep its folders in the room of that one, which removes them."""
+    import tempfile
+
     global _room
     _room = Path(tempfile.mkdtemp(prefix="worker-", dir=room)), -1
 
 
 def own_room() -> Path:
     """Return the folder of this process, locked while it lives; folders of processes that are gone are removed."""
+    import shutil  # noqa: F401 - it must be there when the program is ended at once
+    import tempfile
+
     global _room
     if _room is None or not _room[0].is_dir():
         parent = _plain_parent()
@@ -145,6 +152,8 @@ def own_room() -> Path:
 
 def _plain_parent() -> Path:
     """Return the folder for temporary files, or another one if its path is not plain."""
+    import tempfile
+
     for name in (tempfile.gettempdir(), "/tmp", "C:\\Temp"):
         if PLAIN.fullmatch(name) and os.path.isdir(name) and os.access(name, os.W_OK):
             return Path(name)

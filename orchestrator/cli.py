@@ -12,7 +12,6 @@ from typing import Any
 from orchestrator.commands import COMMANDS
 from orchestrator.text.command_parser import CommandParser
 from orchestrator.text.ends import ended_in_time
-from orchestrator.text.failures import explained
 
 DESCRIPTION = "Automated parking as a pair of FMI 2.0 co-simulation FMUs."
 EPILOG = """examples:
@@ -38,6 +37,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
             finally:
                 sys.stdout.flush()
         except (Exception, KeyboardInterrupt) as error:
+            from orchestrator.text.failures import explained
+
             code, line = explained(error, words)
             _complain(line)
             _let_go()

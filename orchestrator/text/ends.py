@@ -7,7 +7,6 @@ the system writes each signal into its pipe at once.
 import os
 import select
 import signal
-import socket
 import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
@@ -55,8 +54,7 @@ def ended_in_time() -> Iterator[None]:
     if threading.current_thread() is not threading.main_thread():
         yield
         return
-    here, there = socket.socketpair()
-    there.setblocking(False)
+    here, there = _pipe()
     watch = threading.Thread(target=_watch, args=(here,), daemon=True)
     before = signal.set_wakeup_fd(there.fileno(), warn_on_full_buffer=False)
     watch.start()
@@ -68,6 +66,19 @@ def ended_in_time() -> Iterator[None]:
         there.close()
         watch.join()
         here.close()
+
+
+def _pipe() -> tuple[Any, Any]:
+    """Return two ends: what the system writes into the second comes out of the first."""
+    if os.name == "posix":
+        here, there = os.pipe()
+        os.set_blocking(there, False)
+        return open(here, "rb", buffering=0), open(there, "wb", buffering=0)
+    import socket
+
+    first, second = socket.socketpair()
+    second.setblocking(False)
+    return first, second
 
 
 def end_now() -> None:
@@ -89,7 +100,7 @@ def _watch(pipe: Any) -> None:
     while True:
         if not select.select([pipe], [], [], wait)[0]:
             end_now()
-        data = pipe.recv(64)
+        data = os.read(pipe.fileno(), 64) if os.name == "posix" else pipe.recv(64)
         if not data:
             return
         ends = sum(number in SIGNALS for number in data)

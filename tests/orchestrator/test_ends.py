@@ -25,7 +25,7 @@ with ended_in_time():
 """
 
 
-DEAF = "exec('while True:\\n try: time.sleep(60)\\n except KeyboardInterrupt: pass')"
+DEAF = "exec('while True:\\n try: print(0, flush=True); time.sleep(60)\\n except KeyboardInterrupt: pass')"
 """As an FMU that hangs: nothing that Python does ends it."""
 
 
@@ -79,6 +79,8 @@ def test_a_signal_ends_what_hangs_within_two_seconds_and_takes_its_folders_away(
 def test_a_second_signal_ends_at_once():
     child = started(HANGS.format(hang=DEAF))
     child.stdout.readline()
+    child.stdout.readline()
+    time.sleep(0.1)
     begun = time.monotonic()
     child.send_signal(signal.SIGTERM)
     time.sleep(0.1)

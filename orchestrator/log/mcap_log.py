@@ -35,8 +35,6 @@ TRAIL_PERIOD_NS = 1_000_000_000
 TRAIL_STEP_NS = 200_000_000
 TRAIL_POSES = 100
 AXES = ("x", "y", "heading")
-DRAWN = (*(f"pose.{axis}" for axis in AXES), *(f"odometry.{axis}" for axis in AXES), "front_wheel_angle")
-"""Outputs of the vehicle that the moving frames are made from."""
 
 
 class _SlaveChannel:
@@ -71,8 +69,9 @@ class McapLog:
             self._write_parameters(slave)
         named = {slave.name: slave for slave in slaves}
         self._pictures: list[_Pictures] = []
-        if "vehicle" in named and set(DRAWN) <= named["vehicle"].outputs.index.keys():
-            self._pictures.append(_Pictures(self._file, named, scenario))
+        drawn = _drawn(named["vehicle"]) if "vehicle" in named else []
+        if drawn:
+            self._pictures.append(_Pictures(self._file, named, scenario, drawn))
         rows = max(1, CHUNK_SIZE // 2 // sum(channel.size + MESSAGE_HEADER.itemsize for channel in self._channels))
         self.rows_per_chunk = rows
         self._values = all_values(slaves)
@@ -123,14 +122,15 @@ class McapLog:
 class _Pictures:
     """Frames and scene, as far as the slaves have the signals for them."""
 
-    def __init__(self, file: McapFile, slaves: dict[str, Slave], scenario: Scenario) -> None:
+    def __init__(
+        self, file: McapFile, slaves: dict[str, Slave], scenario: Scenario, drawn: list[tuple[Ports, int] | None]
+    ) -> None:
         self._file = file
-        self._vehicle = slaves["vehicle"]
+        self._drawn = drawn
         self._controller = slaves.get("controller")
-        around = described(scenario, _named(self._vehicle.parameters))
+        around = described(scenario, _named(slaves["vehicle"].parameters))
         self._car = Car.of(around)
         self._frames = scene.Frames(self._car)
-        self._places = [self._vehicle.outputs.index[name] for name in DRAWN]
         self._transforms = file.known_channel("/tf", FrameTransforms)
         self._scene = file.known_channel("/scene", SceneUpdate)
         self._path = file.known_channel("/path", SceneUpdate)
@@ -152,7 +152,8 @@ class _Pictures:
             still = scene.still_life(t_ns, self._car, self._stage)
             self._file.write(self._scene, t_ns, still.SerializeToString(deterministic=True))
         self._next_ns = t_ns - t_ns % SCENE_PERIOD_NS + SCENE_PERIOD_NS
-        x, y, heading, *seen, wheel = self._vehicle.outputs.values[self._places].tolist()
+        values = [0.0 if found is None else float(found[0].values[found[1]]) for found in self._drawn]
+        x, y, heading, *seen, wheel = values
         pose = (x, y, heading)
         message = self._frames.at(t_ns, pose, (seen[0], seen[1], seen[2]), wheel)
         self._file.write(self._transforms, t_ns, message)
@@ -184,6 +185,22 @@ def add_channel(file: McapFile, topic: str, message: str, variables: list[Variab
     """Return a new channel whose schema is made from ``variables``."""
     descriptors = descriptor_set(file_descriptor(message, variables, notes))
     return file.channel(topic, f"{PACKAGE}.{message}", descriptors, {VARIABLES: to_json(variables, notes)})
+
+
+def _drawn(vehicle: Slave) -> list[tuple[Ports, int] | None]:
+    """Return where pose, odometry and angle of the front wheels are, which frames are made of; empty without a pose.
+
+    They may be outputs, or told under the vehicle's name. Odometry that there is not is the pose.
+    """
+
+    def found(*names: str) -> tuple[Ports, int] | None:
+        ways = ((ports, name) for name in names for ports in (vehicle.outputs, vehicle.inputs))
+        return next(((ports, ports.index[name]) for ports, name in ways if name in ports.index), None)
+
+    poses = [found(f"pose.{axis}") for axis in AXES]
+    if None in poses:
+        return []
+    return [*poses, *(found(f"odometry.{axis}", f"pose.{axis}") for axis in AXES), found("front_wheel_angle")]
 
 
 def _named(ports: Ports) -> dict[str, float]:

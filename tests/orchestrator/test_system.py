@@ -13,6 +13,7 @@ import pytest
 import yaml
 from hypothesis import given
 from hypothesis import strategies as st
+from mcap.reader import make_reader
 from toy_models import BRAIN, PLANT
 
 from orchestrator.cli import main
@@ -69,6 +70,9 @@ def test_the_log_has_their_names_and_the_roles(desk: Path, tmp_path: Path) -> No
     assert log.states("gps.quality") == {1: "NONE", 2: "FAIR", 3: "GOOD"}
     assert log.parameters["gps.bias"] == 0.05
     assert log.states("controller.phase")[9] == "PARKED"
+    with (tmp_path / "run.mcap").open("rb") as stream:
+        topics = {channel.topic for channel in make_reader(stream).get_summary().channels.values()}
+    assert {"/tf", "/scene", "/trail", "/plant", "/gps", "/gps/parameters"} <= topics
 
 
 def test_parameters_and_faults_of_a_third_slave(desk: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -66,7 +66,7 @@ def in_threads(rows: Any, parts: list[tuple[Any, Any, Any]]) -> None:
 def rates() -> None:
     job, chunk = bound(MANOEUVRES)
     begun = time.perf_counter()
-    rows = compiled(tuple(job.measures), Scenario(**job.scenario).ending)
+    rows = compiled(tuple(job.measures), Scenario(**job.scenario))
     print(f"models ready after {time.perf_counter() - begun:.1f} s (compiled once per source, then kept)")
     parameters, times = arrays(job, chunk)
     out = np.empty((MANOEUVRES, FIRST_MEASURE + len(job.measures)))

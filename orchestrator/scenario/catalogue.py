@@ -8,7 +8,7 @@ from fnmatch import fnmatchcase
 from typing import Any, NamedTuple
 
 from modelkit.variables import Variable, variables
-from orchestrator.scenario.models import MODELS
+from orchestrator.scenario.models import APART, MODELS
 from orchestrator.text.quantities import DEGREE
 
 UNBOUNDED = 1e300
@@ -48,6 +48,17 @@ def entries(*roles: str) -> list[Entry]:
         groups = {"parameter": model.params, "input": model.inputs, "output": model.outputs}
         for role in roles:
             found += [Entry(owner, role, item, count) for item, count in collapsed(variables(groups[role]))]
+    return found + _apart(roles, {(item.role, item.name) for item in found})
+
+
+def _apart(roles: tuple[str, ...], known: set[tuple[str, str]]) -> list[Entry]:
+    """Return what controllers of their own have besides."""
+    found = []
+    for _, model in APART.values():
+        groups = {"parameter": model.params, "input": model.inputs, "output": model.outputs}
+        for role in roles:
+            items = [item for item in variables(groups[role]) if (role, f"controller.{item.name}") not in known]
+            found += [Entry("controller", role, item, count) for item, count in collapsed(items)]
     return found
 
 

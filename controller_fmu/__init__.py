@@ -131,7 +131,9 @@ VALET = Model(
     sampled=True,
     view=View(
         (("system", int(System.VALET)),),
-        frozenset(item.name for item in variables(ControllerInput) if not item.name.startswith(TO_VALET)),
+        frozenset(
+            {"system", *(item.name for item in variables(ControllerInput) if not item.name.startswith(TO_VALET))}
+        ),
     ),
     store=PlanStore,
 )

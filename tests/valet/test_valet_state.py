@@ -4,6 +4,7 @@ import ctypes
 from ctypes import byref, c_size_t
 
 import pytest
+from host import Host
 from raw import OK, Library, state_pointer
 
 from controller_fmu import VALET
@@ -12,7 +13,9 @@ from fmus.native import fmu as native_fmu
 from fmus.native.compilers import can_compile
 from fmus.native.libraries import load_model, memory_size
 from fmus.native.platforms import host
+from fmus.python import fmu as python_fmu
 from modelkit.store import size_of
+from modelkit.variables import with_values
 from orchestrator.scenario.load_scenario import load_scenario
 
 pytestmark = pytest.mark.skipif(not can_compile(), reason="FMUs without Python need a C compiler: pip install ziglang")
@@ -54,3 +57,21 @@ def test_a_plan_goes_on_in_another_instance(tmp_path):
 
 def test_an_instance_takes_less_than_two_megabytes():
     assert memory_size(load_model(VALET)) < 2_000_000
+
+
+def test_the_python_fmu_plans_as_the_model_does(tmp_path):
+    scenario = load_scenario("valet-angled-45")
+    given = {name: value for name, value in scenario.controller.items() if VALET.shows(name)}
+    start = {f"odometry.{axis}": scenario.vehicle.get(f"start.{axis}", 0.0) for axis in ("x", "y", "heading")}
+    step, params = VALET.stepper(VALET.new_store()), with_values(VALET.params, scenario.controller)
+    state, _ = VALET.initialize(params)
+    inputs = with_values(VALET.inputs, start)
+    with Host(python_fmu.build(VALET, tmp_path)) as fmu:
+        assert "system" not in fmu.refs
+        fmu.initialize(**given)
+        fmu.set(start)
+        for number in range(3):
+            state, outputs = step(state, inputs, params, 10_000_000)
+            assert fmu.step(0.01 * number, 0.01) == OK
+            assert fmu.get(["valet.searched"]) == [outputs.valet.searched]
+        assert outputs.valet.searched > 2

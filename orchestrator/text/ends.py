@@ -17,7 +17,7 @@ from fmus.children import end_all
 from fmus.files import remove_all_folders
 from orchestrator.text.errors import INTERRUPTED
 
-GRACE = 1.7
+GRACE = 1.5
 """Time for an end in order [s]."""
 SIGNALS = tuple(getattr(signal, name) for name in ("SIGINT", "SIGTERM") if hasattr(signal, name))
 

@@ -202,6 +202,31 @@ def test_what_does_not_fit_is_said_with_the_names_that_come_closest(text: str, s
     assert said in str(caught.value)
 
 
+@pytest.mark.parametrize(
+    "system",
+    [
+        5,
+        {"slaves": 5},
+        {"slaves": {"a b": "x.fmu"}},
+        {"slaves": {"controller": None, "vehicle": "none"}},
+        {"slaves": {"sensor": "nothing.fmu"}},
+        {"connections": 5},
+        {"connections": {"vehicle.prompt": None}},
+        {"connections": {"vehicle.prompt": {"from": "controller.prompt", "map": {"zz": 1}}}},
+        {"frames": {"a": {"y": "up"}}},
+        {"ssp": "nothing.ssp"},
+        {"roles": {"speed": "vehicle.speed"}},
+    ],
+)
+def test_a_system_that_has_no_meaning_is_bad_input(
+    system: object, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "bad.yaml"
+    path.write_text(yaml.safe_dump({"base": "guo2015-case4", "system": system}))
+    assert main(["run", str(path), "--fmus", "none", "--out", str(tmp_path / "out")]) == 2
+    assert capsys.readouterr().err.count("\n") == 1
+
+
 def test_a_group_is_connected_as_one_and_what_is_left_by_name() -> None:
     system = assembled("connections: {brain.pose: plant.pose}")
     fed = {(system.slaves[slave].name, system.slaves[slave].inputs.names[place]) for slave, place in system.fed}

@@ -160,7 +160,8 @@ class SystemText(_SystemPart):
     def _written(cls, given: Any) -> Any:
         if not isinstance(given, Mapping):
             return given
-        names = frozenset({*MODELS, *(given.get("slaves") or {})})
+        slaves = given.get("slaves")
+        names = frozenset({*MODELS, *(map(str, slaves) if isinstance(slaves, Mapping) else ())})
         made = dict(given)
         for key in ("connections", "roles"):
             section = made.get(key)
@@ -173,6 +174,8 @@ class SystemText(_SystemPart):
         for name in self.slaves:
             if SLAVE.match(name) is None:
                 raise BadInput("is no name for a slave: write letters, digits and _", key=f"slaves.{name}")
+        if not self.places:
+            raise BadInput("there is no slave left", key="slaves")
         for feed in (*self.connections.values(), *self.roles.values()):
             for frame in (feed.into, feed.out_of):
                 if frame is not None and frame not in self.frames:

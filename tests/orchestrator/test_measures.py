@@ -13,7 +13,7 @@ from orchestrator.scenario.requirements import Condition
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.verdict.conditions import CONDITIONS, share
 from orchestrator.verdict.measures import Measure, When, measured
-from orchestrator.verdict.numbers import MEASURES, NUMBERS, POSE, facts_of, numbers
+from orchestrator.verdict.numbers import MEASURES, NUMBERS, OF_WHOLE_RUNS, POSE, facts_of, numbers
 from orchestrator.verdict.truth import Truth, truth_of
 
 VALUES = np.array([1.0, -3.0, 2.0])
@@ -67,7 +67,9 @@ def test_numbers_of_many_runs_are_those_of_each() -> None:
     for row in range(5):
         own = {key: values[row : row + 1] for key, values in found.items()}
         alone = numbers(np.array([float(row)]), own, Truth(*(part[row : row + 1] for part in true)))
-        assert {name: values[0] for name, values in alone.items()} == {name: v[row] for name, v in whole.items()}
+        kept = [name for name in NUMBERS if name not in OF_WHOLE_RUNS]
+        assert {name: alone[name][0] for name in kept} == {name: whole[name][row] for name in kept}
+        assert all(np.isnan(alone[name]).all() for name in OF_WHOLE_RUNS)
 
 
 def test_errors_are_seen_from_the_target() -> None:

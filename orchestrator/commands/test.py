@@ -31,8 +31,9 @@ EXAMPLES = """examples:
 
 A scenario passes if its outcome is the one it expects and, where that is parked or finished, its required limits
 hold; requirements given here are judged besides. Their FMU needs inputs and outputs of the same names, types
-and units (one it does not say is taken as meant); parameters it does not have are left out and listed, its own
-are set like any other: --set controller.THEIRS=3.
+and units (one it does not say is taken as meant), or a scenario whose system connects it; parameters it does not
+have are left out and listed, its own are set like any other: --set controller.THEIRS=3. With -j several scenarios
+run at a time, which gains where FMUs run in processes of their own.
 
 writes DIR/index.html, DIR/junit.xml and for each scenario DIR/NAME/run.mcap, summary.json and report.html
 exit codes: 0 all passed, 1 not, 2 a scenario, rule or FMU that cannot be read, or a place that cannot be written,

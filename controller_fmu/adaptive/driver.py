@@ -19,7 +19,7 @@ SLOWEST = 0.15
 SURE = 0.05
 """Allowed on top of a reaction seen at setting out only [s]."""
 STOOD = 0.05
-LONG_STOOD = 1.0
+LONG_STOOD = 2.0
 """He stands after this time [s], if he has had time to act on the prompt; after the longer one in any case."""
 SMOOTHED = 0.08
 """Time constant of the acceleration [s]."""
@@ -40,6 +40,8 @@ class Driver(NamedTuple):
     """0: not known yet."""
     fastest: float = 0.0
     """Largest speed he drove [m/s]."""
+    set_out: float = 0.0
+    """From the last prompt to go to his first movement [s]."""
     cruise: float = 0.0
     """Speed [m/s] he settles at."""
     obeys: bool = True
@@ -98,6 +100,7 @@ def seen_driving(
     late = asked_ns * 1e-9 > reaction_of(driver, believed) + v / deceleration_of(driver, believed)
     return driver._replace(
         reaction=reaction,
+        set_out=asked_ns * 1e-9 if sets_out else driver.set_out,
         fastest=max(driver.fastest, v),
         cruise=cruise,
         obeys=driver.obeys and not (late and v > FASTER * advised + 0.03),
@@ -127,7 +130,8 @@ def seen_stopping(driver: Driver, speed: float, standstill: float, dt_ns: int) -
 def has_stopped(driver: Driver, believed: BeliefParams) -> bool:
     """Return whether he stands because he was told to; one who crawls may stand for a moment before he acts on it."""
     stood = driver.stood_ns * 1e-9
-    return stood >= STOOD and (driver.asked_ns * 1e-9 >= reaction_of(driver, believed) or stood >= LONG_STOOD)
+    late = max(driver.set_out, reaction_of(driver, believed))
+    return stood >= STOOD and (driver.asked_ns * 1e-9 >= late or stood >= LONG_STOOD)
 
 
 def stopped(driver: Driver, believed: BeliefParams) -> Driver:

@@ -23,7 +23,7 @@ COLOURS = {
     "hsic": "#2b8a5a",
     "apa": "#8a4fa8",
 }
-BAR = 0.16
+BAR = 0.14
 """Width of a bar; the slots lie 1 apart."""
 
 

@@ -12,7 +12,8 @@ from typing import Any
 from benchmarks.bench_sweep import bound
 from docs.pictures import FLAGS
 from orchestrator.live.page import live_page
-from orchestrator.scenario.load_scenario import load_scenario, scenario_names
+from orchestrator.live.situation import shipped
+from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.sweep.batch import run_batch
 
 RUNS, SECONDS = 300, 6.0
@@ -35,9 +36,7 @@ def main() -> None:
     from playwright.sync_api import sync_playwright
 
     path = Path(tempfile.mkdtemp()) / "live.html"
-    path.write_text(
-        live_page([load_scenario("guo2015-case4"), *map(load_scenario, scenario_names())]), encoding="utf-8"
-    )
+    path.write_text(live_page(shipped()), encoding="utf-8")
     one = len(live_page([load_scenario("guo2015-case4")]).encode())
     print(f"page: {path.stat().st_size / 1e3:.0f} kB with all scenarios, {one / 1e3:.0f} kB with one")
     native = _native()

@@ -30,6 +30,7 @@ from orchestrator.cli import parser  # noqa: E402
 from orchestrator.drawing.chart_svg import chart_svg  # noqa: E402
 from orchestrator.live.page import NAME as LIVE  # noqa: E402
 from orchestrator.live.page import write_live  # noqa: E402
+from orchestrator.live.situation import shipped  # noqa: E402
 from orchestrator.scenario.catalogue import collapsed, range_text, start_text, texts_of  # noqa: E402
 from orchestrator.scenario.end_condition import EndCondition  # noqa: E402
 from orchestrator.scenario.fault import Fault  # noqa: E402
@@ -54,7 +55,7 @@ def main() -> None:
         (folder / name).write_text(MADE + text, encoding="utf-8")
         print(folder.relative_to(ROOT) / name)
     if can_build():
-        write_live(folder / LIVE, [load_scenario(name) for name in scenario_names()])
+        write_live(folder / LIVE, shipped())
         print(folder.relative_to(ROOT) / LIVE)
 
 

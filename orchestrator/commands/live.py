@@ -4,9 +4,10 @@ import argparse
 from pathlib import Path
 
 from orchestrator.live.page import NAME, write_live
-from orchestrator.scenario.load_scenario import load_scenario, scenario_names
+from orchestrator.live.situation import shipped
+from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.text.console import say
-from orchestrator.text.errors import BAD_INPUT, PARKED
+from orchestrator.text.errors import BAD_INPUT, PARKED, BadInput
 
 EXAMPLES = """examples:
   apa live                                                writes live.html: all shipped scenarios
@@ -26,8 +27,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Write the page. Returns 0, or 2 where nothing can be compiled."""
-    names = [arguments.scenario] if arguments.scenario else _shipped()
-    scenarios = [load_scenario(name, arguments.set) for name in names]
+    if arguments.set and not arguments.scenario:
+        raise BadInput("needs a scenario to change: apa live SCENARIO --set ...", key="--set")
+    scenarios = [load_scenario(arguments.scenario, arguments.set)] if arguments.scenario else shipped()
     try:
         write_live(arguments.out, scenarios)
     except RuntimeError as error:
@@ -35,9 +37,3 @@ def run(arguments: argparse.Namespace) -> int:
         return BAD_INPUT
     print(arguments.out)
     return PARKED
-
-
-def _shipped() -> list[str]:
-    """Return the names of all shipped scenarios, the one with most to see first."""
-    first = "guo2015-case4"
-    return [first, *(name for name in scenario_names() if name != first)]

@@ -76,9 +76,11 @@ def _write_live(path: Path, scenario: Scenario, foreign: Foreign) -> None:
     """Write the page on which the scenario is driven; none for somebody else's FMUs, or where nothing compiles C."""
     from fmus.native.web import can_build
 
-    if foreign.files or not can_build():
-        path.unlink(missing_ok=True)
-        return
-    from orchestrator.live.page import write_live
+    if can_build() and not foreign.files:
+        from orchestrator.live.page import write_live
+        from orchestrator.live.situation import why_not
 
-    write_live(path, [scenario])
+        if not why_not(scenario):
+            write_live(path, [scenario])
+            return
+    path.unlink(missing_ok=True)

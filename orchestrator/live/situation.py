@@ -3,18 +3,41 @@
 from typing import Any
 
 from orchestrator.scenario.end_condition import SPEED
+from orchestrator.scenario.load_scenario import load_scenario, scenario_names
+from orchestrator.scenario.models import MODELS, models_for
 from orchestrator.scenario.requirements import Requirement
 from orchestrator.scenario.scenario import MISSED, SUCCESS, Scenario
 from orchestrator.sweep.rows import measure_of, measures_for, measures_of
 from orchestrator.sweep.verdict import limit_value
+from orchestrator.text.errors import BadInput
 from orchestrator.verdict.conditions import CONDITIONS
 from orchestrator.verdict.limit_text import asked
 from orchestrator.verdict.measures import Measure
 from orchestrator.verdict.numbers import NUMBERS, STANDING
 
+FIRST = "guo2015-case4"
+
+
+def why_not(scenario: Scenario) -> str:
+    """Return why a scenario cannot be run on the page, empty if it can: the page has our two models."""
+    if scenario.system is not None:
+        return "its system has FMUs that the page has not"
+    if models_for(scenario.controller) != MODELS:
+        return "its controller is a model apart, which the page has not"
+    return ""
+
+
+def shipped() -> list[Scenario]:
+    """Return the shipped scenarios that the page can run, one with much to see first."""
+    names = [FIRST, *(name for name in scenario_names() if name != FIRST)]
+    return [scenario for scenario in map(load_scenario, names) if not why_not(scenario)]
+
 
 def situation(scenario: Scenario) -> dict[str, Any]:
-    """Return the scenario for the page. Raises ``BadInput`` for a limit of a signal that no model has."""
+    """Return the scenario for the page. Raises ``BadInput`` if it cannot be run there, or limits an unknown signal."""
+    reason = why_not(scenario)
+    if reason:
+        raise BadInput(f"cannot be driven on a page: {reason}", file=scenario.name)
     measures = measures_for(scenario)
     ending = scenario.ending
     return {

@@ -10,11 +10,12 @@ from live_module import PLACES, STANDSTILL, STOP_TIME, LiveModule, parameters, s
 from fmus.native.platforms import Target
 from fmus.native.web import live_library, web_module
 from orchestrator.cosim.fmu_files import fmu_files
-from orchestrator.scenario.load_scenario import load_scenario, scenario_names
+from orchestrator.live.situation import shipped
+from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.scenario.models import MODELS
 from orchestrator.session.session import run_scenario
 
-WITHOUT_FAULTS = [name for name in scenario_names() if not load_scenario(name).faults]
+WITHOUT_FAULTS = [scenario.name for scenario in shipped() if not scenario.faults]
 NAMES = list(PLACES)
 WITHIN = {"preview-geometry": 1e-3}
 """Largest difference of a signal [SI]. 960 m in a loop of high gain: wheel 5e-5 rad, force 1e-3 N, pose 5e-7 m."""

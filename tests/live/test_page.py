@@ -6,11 +6,13 @@ from person import drive, hurries_once, never_obeys, obeys
 from controller_fmu.interface import Phase
 from orchestrator.cosim.fmu_files import fmu_files
 from orchestrator.live.page import live_page
-from orchestrator.scenario.load_scenario import load_scenario, scenario_names
+from orchestrator.live.situation import shipped
+from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.session.session import run_scenario
+from orchestrator.text.errors import BadInput
 from orchestrator.verdict.summary import summarize
 
-WITHOUT_FAULTS = [name for name in scenario_names() if not load_scenario(name).faults]
+WITHOUT_FAULTS = [scenario.name for scenario in shipped() if not scenario.faults]
 LARGEST_PAGE = 400_000
 PHASES = [state.name for state in Phase]
 WHOLE = """(name) => {
@@ -28,7 +30,7 @@ WHOLE = """(name) => {
 @pytest.fixture(scope="module")
 def file(tmp_path_factory):
     path = tmp_path_factory.mktemp("live") / "live.html"
-    path.write_text(live_page([load_scenario(name) for name in scenario_names()]), encoding="utf-8")
+    path.write_text(live_page(shipped()), encoding="utf-8")
     assert path.stat().st_size < LARGEST_PAGE
     return path
 
@@ -195,3 +197,9 @@ def test_the_chart_shows_the_state_and_how_it_came(page):
 def test_a_scenario_with_faults_says_that_they_are_not_in_the_page(page):
     page.select_option("#scenario", "fault-pose-frozen")
     assert "without what the scenario disturbs" in page.text_content("#faults")
+
+
+def test_a_scenario_with_another_controller_is_not_for_the_page():
+    scenario = load_scenario("valet-perpendicular")
+    with pytest.raises(BadInput, match="cannot be driven on a page: its controller"):
+        live_page([scenario])

@@ -58,7 +58,7 @@ def test_a_recipe_does_what_it_says(recipe: Recipe, copy: Path) -> None:
 
 def edit(copy: Path, language: str, file: Path, text: str) -> None:
     if language == "diff":
-        done = subprocess.run(["patch", "-p1"], cwd=copy, input=text, text=True, capture_output=True)
+        done = subprocess.run(["patch", "-p1", "--fuzz=0"], cwd=copy, input=text, text=True, capture_output=True)
         assert done.returncode == 0, done.stdout + done.stderr
     else:
         assert not file.exists(), f"{file} is there already"

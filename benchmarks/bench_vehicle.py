@@ -25,7 +25,7 @@ from orchestrator.cosim.fmu_files import fmu_files
 from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.session.session import run_scenario
 from vehicle_fmu import MODEL
-from vehicle_fmu.chassis import Build, ChassisParams, Motion, RoadParams
+from vehicle_fmu.chassis import Build, ChassisParams, Motion, RoadParams, Stance
 from vehicle_fmu.double_track import DoubleTrackParams, DoubleTrackState, step_double_track
 from vehicle_fmu.effort import Effort
 from vehicle_fmu.kinematic import move
@@ -63,7 +63,7 @@ def double(n: int, state: Any, effort: Any, build: Any, p: Any) -> Any:
 
 def bodies(n: int) -> Rounds:
     """Return the three bodies in CPython."""
-    build, push = Build(WHEELBASE, ChassisParams(), RoadParams()), Effort(200.0, 0.0)
+    build, push = Build(Stance(WHEELBASE, 1.40), ChassisParams(), RoadParams()), Effort(200.0, 0.0)
     one, two = SingleTrackState(MOVING), DoubleTrackState(MOVING, (Wheel(1.0 / 0.344),) * 4)
     return {
         "kinematic": (n, lambda n: kinematic(n, Pose())),

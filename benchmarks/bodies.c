@@ -27,7 +27,7 @@ BENCH double bench_kinematic(int64_t n) {
 BENCH double bench_single_track(int64_t n) {
     const Vehicle car = bench_car();
     const VehicleParams *p = &car.params;
-    const Build build = {2.405, p->chassis, p->road};
+    const Build build = {{2.405, 1.40}, p->chassis, p->road};
     SingleTrackState state = {.motion = bench_motion}, next;
     for (int64_t k = 0; k < n; k += 2) {
         step_single_track(&state, 0.2, &bench_effort, &build, &p->single_track, 0.001, &next);
@@ -39,7 +39,7 @@ BENCH double bench_single_track(int64_t n) {
 BENCH double bench_double_track(int64_t n) {
     const Vehicle car = bench_car();
     const VehicleParams *p = &car.params;
-    const Build build = {2.405, p->chassis, p->road};
+    const Build build = {{2.405, 1.40}, p->chassis, p->road};
     DoubleTrackState state = {.motion = bench_motion}, next;
     for (int64_t k = 0; k < 4; k++) state.wheels[k] = bench_wheel;
     for (int64_t k = 0; k < n; k += 2) {

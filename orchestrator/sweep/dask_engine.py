@@ -39,7 +39,7 @@ class DaskEngine:
                 )
         try:
             self._client = distributed.Client(address or self._cluster, timeout=CONNECT, set_as_default=False)
-        except (OSError, ValueError) as error:
+        except (OSError, ValueError, TypeError) as error:  # TypeError: tls:// without certificates
             raise BadInput(f"no scheduler answers: {error}", key=f"--dask {address}") from error
         self.name = f"{task.name} on Dask at {self._client.scheduler.address}"
         self.workers = max(1, sum(self._client.nthreads().values()))

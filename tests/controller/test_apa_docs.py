@@ -11,5 +11,5 @@ def test_the_page_shows_every_row_of_both_charts() -> None:
     outer = [f"{chart.Mode(a).name} --> {chart.Mode(b).name}: {chart.Guard(g).name}" for a, g, b in chart.TRANSITIONS]
     steps, guards = manoeuvre_chart.Step, manoeuvre_chart.Guard
     inner = [f"{steps(a).name} --> {steps(b).name}: {guards(g).name}" for a, g, b in manoeuvre_chart.TRANSITIONS]
-    shown = [line.strip() for line in PAGE.splitlines() if "-->" in line]
+    shown = [line.strip() for line in PAGE.splitlines() if "-->" in line and not line.startswith("<!--")]
     assert shown == outer + inner

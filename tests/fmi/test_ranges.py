@@ -10,30 +10,37 @@ from orchestrator.bakeoff.entries import entries
 from orchestrator.grid.cases import cases, parameters
 from orchestrator.scenario.files import car_names
 from orchestrator.scenario.load_scenario import load_scenario, scenario_names
+from orchestrator.scenario.models import MODELS
 from orchestrator.sweep.study.sampling import make_design
 from orchestrator.sweep.study.study_file import load_study, study_names
 from vehicle_fmu import MODEL as VEHICLE
 
-KNOWN = {
-    f"{owner}.{item.name}": limits(item)
-    for owner, model in (("vehicle", VEHICLE), ("controller", CONTROLLER))
-    for item in fmi_variables(model)
-    if item.causality == "parameter"
-}
+
+def ranges(models):
+    return {
+        f"{owner}.{item.name}": limits(item)
+        for owner, model in models.items()
+        for item in fmi_variables(model)
+        if item.causality == "parameter"
+    }
 
 
-def outside(owner, values):
+KNOWN = ranges({"vehicle": VEHICLE, "controller": CONTROLLER})
+
+
+def outside(owner, values, known=KNOWN):
     """Return the names of the parameters that are not within their range."""
     found = []
     for name, value in values.items():
-        low, high = KNOWN[f"{owner}.{name}"]
+        low, high = known[f"{owner}.{name}"]
         if (low is not None and value < low) or (high is not None and value > high):
             found.append((f"{owner}.{name}", value, low, high))
     return found
 
 
 def outside_of(scenario):
-    return outside("vehicle", scenario.vehicle) + outside("controller", scenario.controller)
+    known = KNOWN if scenario.models == MODELS else ranges(scenario.models)
+    return outside("vehicle", scenario.vehicle, known) + outside("controller", scenario.controller, known)
 
 
 @pytest.mark.parametrize("name", scenario_names())

@@ -76,7 +76,7 @@ def test_a_test_that_ends_too_soon_is_no_success(tmp_path, monkeypatch):
     def leaves(*_: object) -> None:
         raise SystemExit(0)
 
-    monkeypatch.setattr("orchestrator.commands.test.run_test", leaves)
+    monkeypatch.setattr("orchestrator.suite.suite.run_test", leaves)
     (tmp_path / "index.html").write_text("all passed")
     with pytest.raises(SystemExit):
         main(["test", *SHORT, "--out", str(tmp_path)])

@@ -4,16 +4,13 @@ All signals at all exchanges. FMI 3.0 and the C library are played the inputs th
 all measures and the last value of each output. Faults are made by the master in Python, so the batch has none.
 """
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 from replays import CLibrary, Fmi3, played
 
-import orchestrator
 from modelkit.variables import variables
 from orchestrator.cosim.fmu_files import can_compile
-from orchestrator.scenario.load_scenario import load_scenario
+from orchestrator.scenario.load_scenario import load_scenario, scenario_names
 from orchestrator.scenario.models import MODELS
 from orchestrator.session.session import run_scenario
 from orchestrator.sweep.batch import run_batch
@@ -24,7 +21,8 @@ from orchestrator.sweep.study.study import Study
 from orchestrator.verdict.measures import Measure, measured
 from orchestrator.verdict.numbers import MEASURES
 
-SCENARIOS = sorted(path.stem for path in (Path(orchestrator.__file__).parent / "scenarios").glob("*.yaml"))
+SCENARIOS = [name for name in scenario_names() if load_scenario(name, []).models == MODELS]
+"""Those of a controller apart, the valet, have their own: tests/valet."""
 PYTHON_FMU_TOO = ("guo2015-case4", "guo2015-case4-105", "fault-pose-nan", "fault-driver-takes-over")
 """The PythonFMU runs the very functions that run in process, so some scenarios are enough for it."""
 SLOW = 5.0

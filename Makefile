@@ -14,10 +14,10 @@ run: $(VENV)/.run ## Install, build the FMUs, run a parking case, print the tabl
 	$(BIN)/apa run $(SCENARIO)
 
 test: $(VENV)/.test ## Install and pass the tests
-	@echo "About ten minutes on two cores"
+	@echo "About thirteen minutes on two cores"
 	$(BIN)/python -m pytest -n auto --dist loadfile -q
 
-quick: lint types ## Lint, types and the tests that take a minute together
+quick: lint types ## Lint, types and the tests that take two minutes together
 	$(BIN)/python -m pytest -n auto --dist loadfile -q -m 'not slow'
 
 FUZZ_SECONDS ?= 600

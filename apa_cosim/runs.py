@@ -135,10 +135,14 @@ def run(
         {name: fmu_of(str(path)) for name, path in (("controller", controller), ("vehicle", vehicle)) if path}
     )
     chosen, foreign = with_foreign(scenario, changes, given)
-    kind = fmus or default_kind()
+    return Run(chosen, *driven(chosen, fmus or default_kind(), foreign, Path(log) if log is not None else None))
+
+
+def driven(scenario: Scenario, kind: str, foreign: Foreign, log: Path | None = None) -> tuple[Recording, Summary]:
+    """Return what a scenario's run has recorded, and its verdict; FMUs of ``kind`` are built if need be."""
     files = {} if kind == "none" else fmu_files(kind)
-    ran = run_scenario(chosen, files, kind=kind, log=Path(log) if log is not None else None, foreign=foreign)
-    return Run(chosen, ran.recording, summarize(ran.recording, chosen, ran.wall_time))
+    ran = run_scenario(scenario, files, kind=kind, log=log, foreign=foreign)
+    return ran.recording, summarize(ran.recording, scenario, ran.wall_time)
 
 
 def with_foreign(scenario: str | Path | Scenario, changes: Changes | None, given: Foreign) -> tuple[Scenario, Foreign]:

@@ -6,22 +6,20 @@ from typing import Any, TypeVar
 
 import pytest
 
-from apa_cosim.runs import Run, with_foreign
+from apa_cosim.runs import Run, driven, with_foreign
 from apa_cosim.verdicts import judge
-from orchestrator.cosim.fmu_files import default_kind, fmu_files
+from orchestrator.cosim.fmu_files import default_kind
 from orchestrator.cosim.recording import Recording
 from orchestrator.cosim.slave import Array
 from orchestrator.scenario.requirements import Requirement
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.session.foreign import Foreign
-from orchestrator.session.session import run_scenario
 from orchestrator.steptest.drive import drive
 from orchestrator.steptest.run import run_step_test
 from orchestrator.steptest.step_test import StepTest, load_step_test
 from orchestrator.steptest.verdict import judged
 from orchestrator.verdict.judge import Check
 from orchestrator.verdict.limit_text import sentence
-from orchestrator.verdict.summary import summarize
 
 Same = TypeVar("Same", bound="ClosedLoopRun")
 
@@ -79,9 +77,7 @@ def closed_loop_of(config: pytest.Config) -> Callable[..., ClosedLoopRun]:
 
     def closed_loop(scenario: str | Path | Scenario, changes: Mapping[str, object] | None = None) -> ClosedLoopRun:
         chosen, foreign = with_foreign(scenario, changes, given)
-        files = {} if kind == "none" else fmu_files(kind)
-        ran = run_scenario(chosen, files, kind=kind, foreign=foreign)
-        return ClosedLoopRun(chosen, ran.recording, summarize(ran.recording, chosen, ran.wall_time))
+        return ClosedLoopRun(chosen, *driven(chosen, kind, foreign))
 
     return closed_loop
 

@@ -1,6 +1,7 @@
 """A scenario, driven or read back from its log."""
 
 import html
+import json
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,12 +12,13 @@ import yaml
 from orchestrator.cosim.fmu_files import default_kind, fmu_files
 from orchestrator.cosim.recording import Recording
 from orchestrator.cosim.slave import Array
-from orchestrator.log.read_log import log_file
+from orchestrator.log.read_log import log_file, read_info
 from orchestrator.log.read_log import read_log as read_recording
 from orchestrator.scenario.load_scenario import scenario_names
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.session.foreign import Foreign, fitting, fmu_of, load_fitting, parameters_of
 from orchestrator.session.session import run_scenario
+from orchestrator.text.errors import BadInput
 from orchestrator.verdict.logged import logged
 from orchestrator.verdict.summary import Summary, summarize
 
@@ -84,18 +86,28 @@ class Run:
         return overview(self.recording, self.summary, self.scenario)
 
     def save(self, folder: Path | str) -> Path:
-        """Write ``report.html`` (the replay), ``overview.png`` and ``summary.json`` to a folder; return the replay."""
+        """Write ``report.html`` (the replay), ``overview.png`` and ``summary.json`` to a folder; return the replay.
+
+        Raises ``BadInput`` if the folder has the log of another run: a folder is one run's.
+        """
         from orchestrator.drawing.figure import draw
         from orchestrator.report.replay import write_replay
-        from orchestrator.report.results import PAGE, PICTURE, write_summary
+        from orchestrator.report.results import LOG, PAGE, PICTURE, write_summary
         from orchestrator.text.owned import owned
 
         path = Path(folder)
         with owned(path):
+            if (path / LOG).is_file():
+                self._refuse_another(path / LOG)
             write_summary(path, self.summary)
             draw(self.recording, self.summary, self.scenario, path / PICTURE)
             write_replay(path / PAGE, self.recording, self.summary, [])
         return path / PAGE
+
+    def _refuse_another(self, log: Path) -> None:
+        there, here = (json.dumps(info | {"end": None}, default=str) for info in (read_info(log), self.recording.info))
+        if json.loads(there) != json.loads(here):
+            raise BadInput("has the log of another run; save to a folder of its own", file=log.parent)
 
     def _repr_html_(self) -> str:
         """Return the replay for a notebook."""

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import apa_cosim as apa
+from orchestrator.text.errors import BadInput
 
 PINNED = {
     "compare": "(a, b, *, absolute, relative, time, signals)",
@@ -118,6 +119,16 @@ def test_the_picture_and_the_replay(case4, tmp_path):
     assert case4._repr_html_().startswith("<iframe srcdoc=")
     assert case4.save(tmp_path / "out").name == "report.html"
     assert {file.name for file in (tmp_path / "out").iterdir()} == {"report.html", "overview.png", "summary.json"}
+
+
+def test_a_replay_is_not_saved_beside_the_log_of_another_run(case4, tmp_path):
+    driven = ["run", "guo2015-case1", "--fmus", "none", "--set", "stop_time=1", "--no-page", "--out", str(tmp_path)]
+    subprocess.run([sys.executable, "-m", "orchestrator", *driven], capture_output=True, check=False)
+    assert (tmp_path / "run.mcap").is_file()
+    with pytest.raises(BadInput, match="the log of another run"):
+        case4.save(tmp_path)
+    assert not (tmp_path / "report.html").exists()
+    assert apa.read_log(tmp_path).save(tmp_path).is_file()
 
 
 def test_signals_as_a_data_frame(case4):

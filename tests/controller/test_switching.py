@@ -27,7 +27,7 @@ def energy(pose: Pose) -> float:
 
 
 def driven(pose: Pose, angle: float, way: float) -> Pose:
-    """Return the pose after ``way`` [m] (reverse negative) with the front wheel at ``angle`` [rad], held to the lock."""
+    """Return the pose after ``way`` [m] (reverse negative) with the front wheel at ``angle`` [rad] within its lock."""
     k = math.tan(max(-LOCK, min(LOCK, angle))) / L
     turned = k * way
     share = math.sin(0.5 * turned) / (0.5 * turned) if abs(turned) > 1e-12 else 1.0

@@ -32,9 +32,7 @@ def driven(pose: Pose, angle: float, way: float) -> Pose:
     turned = k * way
     share = math.sin(0.5 * turned) / (0.5 * turned) if abs(turned) > 1e-12 else 1.0
     middle = pose.heading + 0.5 * turned
-    return Pose(
-        pose.x + way * share * math.cos(middle), pose.y + way * share * math.sin(middle), pose.heading + turned
-    )
+    return Pose(pose.x + way * share * math.cos(middle), pose.y + way * share * math.sin(middle), pose.heading + turned)
 
 
 def leg(pose: Pose, direction: int, length: float, k4: float = K4) -> tuple[Pose, float]:

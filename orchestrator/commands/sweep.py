@@ -58,6 +58,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="KEY=VALUE",
         help="as in apa run, for all runs; or the study's own seed, lot, drivers",
     )
+    parser.add_argument("--runs", type=int, metavar="N", help="draw N runs: the n of a study's samples")
+    parser.add_argument("--seed", type=int, metavar="S", help="the study's own seed, as --set seed=S")
     parser.add_argument("--first", type=int, default=0, metavar="N", help="begin at run N of the study")
     parser.add_argument("--every", type=int, default=1, metavar="N", help="only each N-th run of the study")
     parser.add_argument("--json", action="store_true", help="print what came of it as JSON")
@@ -78,7 +80,8 @@ def run(arguments: argparse.Namespace) -> int:
         raise BadInput(f"{arguments.first}: expected 0 or more", key="--first")
     if arguments.picture is not None:
         check_picture(arguments.picture)
-    study = chosen_study(arguments.study, arguments.set)
+    own = [f"{key}={getattr(arguments, key)}" for key in ("runs", "seed") if getattr(arguments, key) is not None]
+    study = chosen_study(arguments.study, [*arguments.set, *own])
     study = study._replace(design=study.design.part(arguments.first, arguments.every))
     if not len(study.design.seeds):
         raise BadInput(f"{arguments.first}: the study has fewer runs", key="--first")

@@ -52,6 +52,7 @@ def columns_of(study: Study, job: Job) -> list[Column]:
         *_measures(study),
         *(Column(WITHIN.format(name), bool, Signal("1", _words(items))) for name, items in study.within.items()),
         *(_number(name, item) for name, item in study.derived.columns.items()),
+        *(Column(name, str, Signal("1", text)) for name, text in study.derived.words.items()),
     ]
 
 

@@ -2,15 +2,17 @@
 
 from collections.abc import Iterable, Mapping
 from pathlib import Path
+from typing import Any
 
-from modelkit.variables import variables
+from modelkit.signal import Signal
+from modelkit.variables import Variable, variables
 from orchestrator.scenario.load_scenario import limits_of, load_scenario
 from orchestrator.scenario.requirements import Requirement
 from orchestrator.sweep.fields import SCENARIO_FIELDS
 from orchestrator.sweep.study.design import Design
 from orchestrator.sweep.study.sampling import make_design
 from orchestrator.sweep.study.study import Study
-from orchestrator.sweep.study.study_file import StudyFile, load_study
+from orchestrator.sweep.study.study_file import MOST_RUNS, Runs, StudyFile, load_study
 from orchestrator.text.errors import BadInput
 from orchestrator.text.quantities import scalar
 from orchestrator.verdict.measures import Measure
@@ -22,12 +24,29 @@ PROBE = 1_000_003
 def read_study(name: str, sets: Mapping[str, str], others: Iterable[str] = ()) -> Study:
     """Return the study called ``name`` or written in the file ``name``, changed by ``sets``. Raises ``BadInput``.
 
-    ``seed`` is the study's own, every other key the scenario's; ``others`` are names of studies without a file.
+    ``seed`` and ``runs`` (how many samples) are the study's own, every other key the scenario's; ``others`` are names
+    of studies without a file.
     """
     file = load_study(name, others)
-    further = {key: value for key, value in sets.items() if key != "seed"}
+    further = {key: value for key, value in sets.items() if key not in ("seed", "runs")}
     seed = scalar(sets.get("seed", file.seed), SCENARIO_FIELDS["seed"], file="--set")
-    return bind(file.model_copy(update={"seed": seed, "set": {**file.set, **further}}))
+    runs = _with_samples(file.runs, scalar(sets["runs"], RUNS, file="--set")) if "runs" in sets else file.runs
+    return bind(file.model_copy(update={"seed": seed, "runs": runs, "set": {**file.set, **further}}))
+
+
+RUNS = Variable("runs", int, Signal("1", "samples of a study", 1, MOST_RUNS), 1)
+
+
+def _with_samples(runs: Runs, n: Any) -> Runs:
+    """Return a study's runs with ``n`` samples in the place of its own number. Raises ``BadInput`` if it has none."""
+    drawn = {
+        kind: samples.model_copy(update={"n": n})
+        for kind, samples in (("monte_carlo", runs.monte_carlo), ("latin_hypercube", runs.latin_hypercube))
+        if samples is not None
+    }
+    if not drawn:
+        raise BadInput("the study has a grid alone: nothing is drawn", key="--runs")
+    return runs.model_copy(update=drawn)
 
 
 def bind(file: StudyFile) -> Study:

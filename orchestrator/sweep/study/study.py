@@ -8,6 +8,7 @@ from orchestrator.cosim.slave import Array
 from orchestrator.scenario.requirements import Requirement
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.sweep.study.design import Design
+from orchestrator.sweep.study.space import Space
 from orchestrator.verdict.measures import Measure
 from orchestrator.verdict.numbers import Number
 
@@ -21,6 +22,8 @@ class Derived(NamedTuple):
     columns: Mapping[str, Number]
     make: Callable[[Columns], Mapping[str, Array]]
     """Called with labels, numbers and measures of some runs."""
+    words: Mapping[str, str] = MappingProxyType({})
+    """Further columns, of words, and what they mean."""
 
 
 NONE: Mapping[str, Any] = MappingProxyType({})
@@ -42,6 +45,8 @@ class Study(NamedTuple):
     within: Mapping[str, list[Requirement]] = NONE
     """Sets of limits that do not decide about the outcome: each is a column ``within NAME``."""
     derived: Derived = NOTHING
+    space: Space | None = None
+    """What its numbers are made of, where a search may choose others."""
 
     @property
     def name(self) -> str:

@@ -1,0 +1,109 @@
+"""The parking assist in the world: slots, neighbours, sensors, car, all disturbed at once, and what came of it."""
+
+from collections import Counter
+from pathlib import Path
+
+import numpy as np
+from rich.table import Table as Printed
+
+from orchestrator.cosim.slave import Array
+from orchestrator.grid.cases import KINDS, gbt_limits
+from orchestrator.grid.parkings import GBT
+from orchestrator.grid.study import GBT_SETS
+from orchestrator.grid.world.ends import CONTACT, ENDLESS, ENDS, FALSE, FOUND, MEASURES
+from orchestrator.grid.world.factors import FACTORS
+from orchestrator.grid.world.scene import F, parameters
+from orchestrator.scenario.requirements import Requirement, shipped_requirements
+from orchestrator.scenario.scenario import Scenario, Slot, Target
+from orchestrator.sweep.fields import Field, find_field
+from orchestrator.sweep.study.design import Design
+from orchestrator.sweep.study.space import Factor, Seeds, Space
+from orchestrator.sweep.study.study import Study
+from orchestrator.sweep.table import Table
+from orchestrator.text.console import console
+
+STOP = 150.0
+KERB = "kerb"
+"""Limits that GB/T states against a kerb: the assist stands flush with its neighbours, wherever that is."""
+
+
+def study(runs: int = 2000, seed: int = 1, mild: int = 0) -> Study:
+    """Return the world; ``mild``: 1 for half the ranges."""
+    world = space([factor.mild() for factor in FACTORS] if mild else list(FACTORS))
+    shares = np.random.default_rng([seed, 0]).random((runs, len(world.factors)))
+    seeds = np.random.default_rng([seed, 1]).integers(1, 2**31 - 1, size=runs)
+    content = {
+        "name": "apa-world-mild" if mild else "apa-world",
+        "title": "The parking assist in the world: everything disturbed at once",
+        "description": "Parked: within GB/T 41630 (heading, lateral position, outline, shifts), nothing touched.",
+        "map": {"x": "extra", "y": "heading", "split": "kind"},
+        "seed": seed,
+        "mild": mild,
+    }
+    design = Design(fields(), world.values(shares, seeds), seeds, world.named(shares))
+    within = {GBT[kind]: _limits(name) for kind, name in GBT_SETS.items()}
+    seeded = [("vehicle", "ultrasonic.seed", find_field("vehicle.ultrasonic.seed", scenario()).place)]
+    return Study(scenario(), design, content, seeded, MEASURES, within, FOUND, world)
+
+
+def scenario() -> Scenario:
+    """Return what all runs share; the assist is told neither slot nor target."""
+    return Scenario(
+        name="apa-world",
+        stop_time=STOP,
+        vehicle={"odometry.perfect": False, "driver.apa_switch_time": 0.5},
+        controller={"system": 5},
+        target=Target(x=0.0, y=0.0),
+        slot=Slot(x=0.0, y=0.0, length=1.0, width=1.0),
+        limits=[*_limits("gbt41630"), *shipped_requirements("no-contact")],
+    )
+
+
+def fields() -> list[Field]:
+    """Return the columns of the design."""
+    shared = scenario()
+    one = Space(FACTORS, _stacked)
+    names = parameters(one.named(one.nominal()[None]), np.array([1]))
+    return [find_field(name, shared) for name in names]
+
+
+def space(factors: list[Factor]) -> Space:
+    """Return factors and what they mean."""
+    return Space(factors, _stacked)
+
+
+def _stacked(values: F, seeds: Seeds) -> Array:
+    return np.column_stack(list(parameters(values, seeds).values()))
+
+
+def report(table: Table, folder: Path) -> int:
+    """Print how the runs ended. Returns 1 if one touched something, claims falsely, or has no end."""
+    ends, kinds = table.column("end"), table.column("kind").astype(int)
+    to = console()
+    to.print(_ends(ends, kinds))
+    for title, column, chosen in (("reasons", "reason", "gave up"), ("touched", "touched", CONTACT)):
+        counted = Counter(table.column(column)[ends == chosen].tolist()).most_common()
+        to.print(f"{title}: " + (", ".join(f"{word} {count}" for word, count in counted) or "none"), highlight=False)
+    worst = np.flatnonzero(np.isin(ends, (CONTACT, FALSE, ENDLESS)))
+    to.print(f"rows: {', '.join(map(str, worst[:MOST_ROWS].tolist())) or 'none'}", highlight=False)
+    return 1 if len(worst) else 0
+
+
+MOST_ROWS = 20
+
+
+def _ends(ends: Array, kinds: Array) -> Printed:
+    groups = {"all": np.full(len(ends), True), **{KINDS[number + 1]: kinds == number for number in (0, 1)}}
+    table = Printed(box=None, pad_edge=False)
+    for name in ("end", *groups):
+        table.add_column(name, justify="left" if name == "end" else "right")
+    table.add_row("runs", *(str(int(chosen.sum())) for chosen in groups.values()))
+    for end in ENDS:
+        counts = [(int((ends[chosen] == end).sum()), max(int(chosen.sum()), 1)) for chosen in groups.values()]
+        table.add_row(end, *(f"{count} ({100.0 * count / of:.2f} %)" for count, of in counts))
+    return table
+
+
+def _limits(name: str) -> list[Requirement]:
+    """Return a set of GB/T 41630's limits, but for those against a kerb."""
+    return [item for item in gbt_limits(name) if item.where != KERB]

@@ -5,21 +5,27 @@ import sys
 from controller_fmu import model
 from controller_fmu.adaptive import chart as adaptive_chart
 from controller_fmu.adaptive.outputs import adaptive_outputs
+from controller_fmu.adaptive.phases import AdaptivePhase
 from controller_fmu.adaptive.system import adaptive_sample, adaptive_start
 from controller_fmu.apa import chart as apa_chart
 from controller_fmu.apa.outputs import apa_outputs
+from controller_fmu.apa.phases import ApaPhase
 from controller_fmu.apa.system import apa_sample, apa_start
 from controller_fmu.guo2015 import chart as guo_chart
+from controller_fmu.guo2015.phases import GuoPhase
 from controller_fmu.guo2015.system import guo_outputs, guo_sample, guo_start
 from controller_fmu.hsic.outputs import hsic_outputs
+from controller_fmu.hsic.phases import HsicPhase
 from controller_fmu.hsic.system import hsic_sample, hsic_start
-from controller_fmu.interface import ControllerInput, ControllerOutput, ControllerParams, Phase, System
+from controller_fmu.interface import ControllerInput, ControllerOutput, ControllerParams, System
 from controller_fmu.planning.plan_store import PlanStore
 from controller_fmu.preview.driving import driving_outputs, driving_sample, driving_start
+from controller_fmu.preview.phases import PreviewPhase
 from controller_fmu.valet.model import ValetModelState, valet_initialize, valet_step
 from controller_fmu.valet.params import ValetParams
 from controller_fmu.valet.signals import ValetOutput
 from controller_fmu.zhang2022.outputs import zhang_outputs
+from controller_fmu.zhang2022.phases import ZhangPhase
 from controller_fmu.zhang2022.system import zhang_sample, zhang_start
 from modelkit.model import Chart, Model, SampledSystem, SampledSystems, View
 from modelkit.terminals import TERMINALS
@@ -55,9 +61,9 @@ OF_ADAPTIVE = (
     "limit",
     "adaptive",
 )
-GUO_CHART = Chart("phase", Phase, guo_chart.Guard, guo_chart.TRANSITIONS)
+GUO_CHART = Chart("phase", GuoPhase, guo_chart.Guard, guo_chart.TRANSITIONS)
 APA_CHART = Chart("apa.mode", apa_chart.Mode, apa_chart.Guard, apa_chart.TRANSITIONS)
-ADAPTIVE_CHART = Chart("phase", Phase, adaptive_chart.Guard, adaptive_chart.TRANSITIONS)
+ADAPTIVE_CHART = Chart("phase", AdaptivePhase, adaptive_chart.Guard, adaptive_chart.TRANSITIONS)
 SYSTEMS = SampledSystems(
     state=model.ControllerState,
     parameter="system",
@@ -67,12 +73,46 @@ SYSTEMS = SampledSystems(
     refused=model.refused,
     systems=(
         SampledSystem(
-            (System.NTBPTCWPT, System.NTBPT), "guo2015", guo_start, guo_sample, guo_outputs, OF_GUO2015, (GUO_CHART,)
+            (System.NTBPTCWPT, System.NTBPT),
+            "guo2015",
+            guo_start,
+            guo_sample,
+            guo_outputs,
+            OF_GUO2015,
+            (GUO_CHART,),
+            states=(("phase", GuoPhase),),
         ),
-        SampledSystem((System.ZHANG2022,), "zhang2022", zhang_start, zhang_sample, zhang_outputs, OF_ZHANG2022),
-        SampledSystem((System.HSIC,), "hsic", hsic_start, hsic_sample, hsic_outputs, OF_HSIC),
-        SampledSystem((System.PREVIEW,), "preview", driving_start, driving_sample, driving_outputs, OF_PREVIEW),
-        SampledSystem((System.APA,), "apa", apa_start, apa_sample, apa_outputs, OF_APA, (APA_CHART,)),
+        SampledSystem(
+            (System.ZHANG2022,),
+            "zhang2022",
+            zhang_start,
+            zhang_sample,
+            zhang_outputs,
+            OF_ZHANG2022,
+            states=(("phase", ZhangPhase),),
+        ),
+        SampledSystem(
+            (System.HSIC,), "hsic", hsic_start, hsic_sample, hsic_outputs, OF_HSIC, states=(("phase", HsicPhase),)
+        ),
+        SampledSystem(
+            (System.PREVIEW,),
+            "preview",
+            driving_start,
+            driving_sample,
+            driving_outputs,
+            OF_PREVIEW,
+            states=(("phase", PreviewPhase),),
+        ),
+        SampledSystem(
+            (System.APA,),
+            "apa",
+            apa_start,
+            apa_sample,
+            apa_outputs,
+            OF_APA,
+            (APA_CHART,),
+            states=(("phase", ApaPhase),),
+        ),
         SampledSystem(
             (System.ADAPTIVE,),
             "adaptive",
@@ -81,6 +121,7 @@ SYSTEMS = SampledSystems(
             adaptive_outputs,
             OF_ADAPTIVE,
             (ADAPTIVE_CHART,),
+            states=(("phase", AdaptivePhase),),
         ),
     ),
 )

@@ -4,18 +4,26 @@ from enum import IntEnum
 from typing import Annotated, NamedTuple
 
 from controller_fmu.adaptive.params import AdaptiveParams
+from controller_fmu.adaptive.phases import AdaptivePhase
 from controller_fmu.apa.params import ApaParams
+from controller_fmu.apa.phases import ApaPhase
 from controller_fmu.apa.signals import ApaSignals
 from controller_fmu.common.params import LimitParams, ThresholdParams
+from controller_fmu.common.phases import CommonPhase
 from controller_fmu.guo2015.params import GuoParams
+from controller_fmu.guo2015.phases import GuoPhase
 from controller_fmu.hsic.params import HsicParams
+from controller_fmu.hsic.phases import HsicPhase
 from controller_fmu.hsic.signals import HsicSignals
 from controller_fmu.preview.params import PreviewParams
+from controller_fmu.preview.phases import PreviewPhase
 from controller_fmu.preview.signals import PreviewSignals
 from controller_fmu.zhang2022.params import ZhangParams
+from controller_fmu.zhang2022.phases import ZhangPhase
 from controller_fmu.zhang2022.signals import ZhangSignals
 from modelkit.car import Car
 from modelkit.signal import Group, Role, Signal
+from modelkit.states import union
 from modelkit.vocabulary import ANYWHERE, Gear, Pose, Prompt
 
 HOUSE = "chosen; the source states none"
@@ -42,33 +50,18 @@ class System(IntEnum):
     """To any pose among the polygons of a map; a controller of its own (``controller_fmu.VALET``)."""
 
 
-class Phase(IntEnum):
-    """State of the manoeuvre chart."""
-
-    STANDBY = 0
-    """Waits for a way to drive."""
-    PRE_STEER = 1
-    """The car stands; the wheel turns to what the next way begins with."""
-    PATH_TRACKING = 2
-    """On the planned path."""
-    STOP = 3
-    """The driver is asked to stop, until the car stands."""
-    TO_Q2 = 4
-    """Forward to Q2, after the path was left."""
-    TO_Q1 = 5
-    """Back to Q1, where the path goes on."""
-    TO_Q4 = 6
-    """Forward to Q4, to set the end right."""
-    TO_Q3 = 7
-    """Back to Q3, the end."""
-    STRAIGHTEN = 8
-    """In place; the wheel turns straight."""
-    PARKED = 9
-    """Done."""
-    FAILED = 10
-    """Given up; the reason says why."""
-    TAKEOVER = 11
-    """The driver has taken over."""
+Phase = union(
+    "Phase",
+    __name__,
+    "What a controller is at: the phases that every system has, and those of each.",
+    CommonPhase,
+    GuoPhase,
+    ZhangPhase,
+    HsicPhase,
+    PreviewPhase,
+    ApaPhase,
+    AdaptivePhase,
+)
 
 
 class Reason(IntEnum):

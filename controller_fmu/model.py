@@ -10,9 +10,10 @@ from typing import NamedTuple
 
 from controller_fmu.adaptive.system import AdaptiveState
 from controller_fmu.apa.system import ApaState
+from controller_fmu.common.phases import CommonPhase
 from controller_fmu.guo2015.system import GuoState
 from controller_fmu.hsic.system import HsicState
-from controller_fmu.interface import ControllerOutput, ControllerParams, Phase, Reason
+from controller_fmu.interface import ControllerOutput, ControllerParams, Reason
 from controller_fmu.preview.driving import DrivingState
 from controller_fmu.zhang2022.system import ZhangState
 from modelkit.maths import is_finite
@@ -59,7 +60,9 @@ def tick(clock: Clock, params: ControllerParams, dt_ns: int) -> tuple[Clock, int
 
 def refused() -> ControllerOutput:
     """Return the outputs of a controller that cannot work with its parameters: it stops the car."""
-    return ControllerOutput(prompt=Prompt.STOP, brake_request=True, phase=Phase.FAILED, reason=Reason.BAD_PARAMETER)
+    return ControllerOutput(
+        prompt=Prompt.STOP, brake_request=True, phase=CommonPhase.FAILED, reason=Reason.BAD_PARAMETER
+    )
 
 
 def _is_usable(params: ControllerParams) -> bool:

@@ -25,6 +25,7 @@ from pydantic import BaseModel  # noqa: E402
 import controller_fmu  # noqa: E402
 from fmus.native.web import can_build  # noqa: E402
 from modelkit.model import Model  # noqa: E402
+from modelkit.states import parts_of  # noqa: E402
 from modelkit.variables import Variable, variables  # noqa: E402
 from orchestrator.cli import parser  # noqa: E402
 from orchestrator.drawing.chart_svg import chart_svg  # noqa: E402
@@ -119,8 +120,16 @@ def signal_table(items: list[Variable], starts: bool) -> str:
 
 
 def state_table(enum: type[IntEnum]) -> str:
-    """Return a table of the states of a mode."""
-    return table(["value", "name"], [[str(int(member)), member.name] for member in enum])
+    """Return a table of the states of a mode; of one made of others, with whose they are and what they mean there."""
+    if parts_of(enum) == (enum,):
+        return table(["value", "name"], [[str(int(member)), member.name] for member in enum])
+    rows = []
+    for member in enum:
+        for part in parts_of(enum):
+            text = texts_of(part).get(member.name)
+            if text:
+                rows.append([str(int(member)), member.name, part.__module__.split(".")[-2], text])
+    return table(["value", "name", "in", "meaning"], rows)
 
 
 def charts_page() -> str:

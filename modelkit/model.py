@@ -41,6 +41,8 @@ class SampledSystem(NamedTuple, Generic[Own, Params, Input, Output]):
     """Parameters, inputs and outputs that mean something to this system and not to every other: names, or groups."""
     charts: tuple[Chart, ...] = ()
     """Its state machines that are tables."""
+    states: tuple[tuple[str, type[IntEnum]], ...] = ()
+    """(output, states) of modes that have other states in each system: those that they have in this one."""
 
 
 class SampledSystems(NamedTuple, Generic[State, Params, Input, Output, Clock]):
@@ -109,6 +111,8 @@ class View(NamedTuple):
     """(parameter, value) of parameters that start with another value than their default."""
     hidden: frozenset[str] = frozenset()
     """Variables that are not shown; they keep their start values."""
+    states: tuple[tuple[str, type[IntEnum]], ...] = ()
+    """(output, states) of modes that have only these of all their states."""
 
 
 class Assembly(NamedTuple):
@@ -203,7 +207,7 @@ class Model(NamedTuple, Generic[State, Params, Input, Output]):
         owned = {item for item in known if any(_is_in(item, system.own) for system in self.systems.systems)}
         hidden = frozenset(item for item in owned if not _is_in(item, chosen.own))
         parameter = self.systems.parameter
-        view = View(((parameter, int(value)),), hidden | {parameter})
+        view = View(((parameter, int(value)),), hidden | {parameter}, chosen.states)
         return self._replace(name=name, description=description, view=view)
 
     def shows(self, name: str) -> bool:

@@ -2,8 +2,9 @@
 
 from enum import IntEnum
 
+from controller_fmu.adaptive.phases import AdaptivePhase
 from controller_fmu.common.chart import ANY, Row, next_state
-from controller_fmu.interface import Phase
+from controller_fmu.common.phases import is_over
 
 
 class Guard(IntEnum):
@@ -19,26 +20,26 @@ class Guard(IntEnum):
     WHEEL_STRAIGHT = 7
 
 
-def _row(source: int, guard: Guard, target: Phase) -> Row:
+def _row(source: int, guard: Guard, target: AdaptivePhase) -> Row:
     return (int(source), int(guard), int(target))
 
 
 TRANSITIONS: tuple[Row, ...] = (
-    _row(ANY, Guard.TAKEOVER, Phase.TAKEOVER),
-    _row(ANY, Guard.FAULT, Phase.FAILED),
-    _row(Phase.STANDBY, Guard.PLANNED, Phase.PRE_STEER),
-    _row(Phase.PRE_STEER, Guard.WHEEL_SET_TO_REVERSE, Phase.PATH_TRACKING),
-    _row(Phase.PRE_STEER, Guard.WHEEL_SET_TO_GO_AHEAD, Phase.TO_Q4),
-    _row(Phase.PATH_TRACKING, Guard.MUST_STOP, Phase.STOP),
-    _row(Phase.TO_Q4, Guard.MUST_STOP, Phase.STOP),
-    _row(Phase.STOP, Guard.IN_PLACE, Phase.STRAIGHTEN),
-    _row(Phase.STOP, Guard.PLANNED, Phase.PRE_STEER),
-    _row(Phase.STRAIGHTEN, Guard.WHEEL_STRAIGHT, Phase.PARKED),
+    _row(ANY, Guard.TAKEOVER, AdaptivePhase.TAKEOVER),
+    _row(ANY, Guard.FAULT, AdaptivePhase.FAILED),
+    _row(AdaptivePhase.STANDBY, Guard.PLANNED, AdaptivePhase.PRE_STEER),
+    _row(AdaptivePhase.PRE_STEER, Guard.WHEEL_SET_TO_REVERSE, AdaptivePhase.PATH_TRACKING),
+    _row(AdaptivePhase.PRE_STEER, Guard.WHEEL_SET_TO_GO_AHEAD, AdaptivePhase.TO_Q4),
+    _row(AdaptivePhase.PATH_TRACKING, Guard.MUST_STOP, AdaptivePhase.STOP),
+    _row(AdaptivePhase.TO_Q4, Guard.MUST_STOP, AdaptivePhase.STOP),
+    _row(AdaptivePhase.STOP, Guard.IN_PLACE, AdaptivePhase.STRAIGHTEN),
+    _row(AdaptivePhase.STOP, Guard.PLANNED, AdaptivePhase.PRE_STEER),
+    _row(AdaptivePhase.STRAIGHTEN, Guard.WHEEL_STRAIGHT, AdaptivePhase.PARKED),
 )
 
 
 def transition(phase: int, guards: int) -> int:
     """Return the phase after one sample; ``guards`` holds bit g for guard g."""
-    if phase >= Phase.PARKED:
+    if is_over(phase):
         return phase
     return next_state(phase, guards, TRANSITIONS)

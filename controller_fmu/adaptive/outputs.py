@@ -1,9 +1,10 @@
 """What driver-adaptive parking puts out."""
 
+from controller_fmu.adaptive.phases import AdaptivePhase, direction_of
 from controller_fmu.adaptive.system import AdaptiveState
-from controller_fmu.common.monitor import DIRECTION_OF_PHASE
+from controller_fmu.common.phases import is_parking
 from controller_fmu.common.slot_frame import to_world
-from controller_fmu.interface import ControllerOutput, ControllerParams, Phase
+from controller_fmu.interface import ControllerOutput, ControllerParams
 from modelkit.vocabulary import Prompt
 
 
@@ -11,10 +12,10 @@ def adaptive_outputs(state: AdaptiveState, params: ControllerParams) -> Controll
     """Return the outputs that hold until the next sample."""
     return ControllerOutput(
         steering_wheel_request=state.request,
-        steering_active=state.phase != Phase.STANDBY and state.phase < Phase.PARKED,
+        steering_active=is_parking(state.phase),
         prompt=prompt_of(state, params),
         advised_speed=state.advice,
-        brake_request=state.phase == Phase.FAILED and not state.takeover,
+        brake_request=state.phase == AdaptivePhase.FAILED and not state.takeover,
         phase=state.phase,
         reason=state.reason,
         shifts=state.shifts,
@@ -26,9 +27,9 @@ def adaptive_outputs(state: AdaptiveState, params: ControllerParams) -> Controll
 
 def prompt_of(state: AdaptiveState, params: ControllerParams) -> int:
     """Return the prompt: to slow down where the advice asks for it and the car is on its way."""
-    if state.phase in (Phase.STANDBY, Phase.TAKEOVER):
+    if state.phase in (AdaptivePhase.STANDBY, AdaptivePhase.TAKEOVER):
         return Prompt.NONE
-    direction = DIRECTION_OF_PHASE[state.phase]
+    direction = direction_of(state.phase)
     if direction == 0:
         return Prompt.STOP
     if state.moving and state.advice < params.adaptive.belief.speed_limit:

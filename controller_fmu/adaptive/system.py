@@ -17,21 +17,22 @@ from controller_fmu.adaptive.driver import (
     stopping_way,
     told_to_stop,
 )
+from controller_fmu.adaptive.phases import AdaptivePhase, direction_of, expected_in
 from controller_fmu.adaptive.planner import ANY_SPEED, NO_PLAN, Demand, Plan, plan
 from controller_fmu.adaptive.room import room_of
 from controller_fmu.adaptive.route import INTO, Foot, curvature_at, drivable, foot_on
 from controller_fmu.common.chart import bit
 from controller_fmu.common.monitor import (
-    DIRECTION_OF_PHASE,
     MonitorState,
     is_usable_input,
     reason_to_fail,
     watch,
 )
+from controller_fmu.common.phases import is_over
 from controller_fmu.common.slot_frame import SlotFrame, frame_at, to_slot
 from controller_fmu.common.steering_monitor import Steering, delay_of, rate_of
 from controller_fmu.common.steering_wheel import wheel_request
-from controller_fmu.interface import ControllerInput, ControllerParams, Phase, Reason
+from controller_fmu.interface import ControllerInput, ControllerParams, Reason
 from modelkit.car import smallest_radius
 from modelkit.maths import clamp
 from modelkit.vocabulary import Pose
@@ -50,7 +51,7 @@ TOO_FAST_BY = 0.03
 class AdaptiveState(NamedTuple):
     """Everything the system remembers."""
 
-    phase: int = Phase.STANDBY
+    phase: int = AdaptivePhase.STANDBY
     reason: int = Reason.NONE
     shifts: int = 0
     direction: int = 0
@@ -80,14 +81,15 @@ def adaptive_sample(
     state: AdaptiveState, inputs: ControllerInput, params: ControllerParams, dt_ns: int
 ) -> AdaptiveState:
     """Return the system one sample of ``dt_ns`` later."""
-    if state.phase >= Phase.PARKED:
+    if is_over(state.phase):
         return _ended(state, state.phase, state.reason, inputs.driver_takeover)
     if not is_usable_input(inputs):
-        return _ended(state, Phase.FAILED, Reason.BAD_INPUT, inputs.driver_takeover)
-    frame = frame_at(params.target, inputs.odometry) if state.phase == Phase.STANDBY else state.frame
+        return _ended(state, AdaptivePhase.FAILED, Reason.BAD_INPUT, inputs.driver_takeover)
+    frame = frame_at(params.target, inputs.odometry) if state.phase == AdaptivePhase.STANDBY else state.frame
     pose = to_slot(inputs.odometry, frame)
-    watched = inputs.steering_wheel_angle if state.phase == Phase.STANDBY else state.request
-    monitor = watch(state.monitor, inputs, state.phase, watched, dt_ns, params)
+    watched = inputs.steering_wheel_angle if state.phase == AdaptivePhase.STANDBY else state.request
+    expected = expected_in(state.phase)
+    monitor = watch(state.monitor, inputs, expected, watched, dt_ns, params)
     seen = state._replace(
         frame=frame,
         monitor=monitor,
@@ -96,18 +98,18 @@ def adaptive_sample(
         driver=_driver(state, inputs, params, dt_ns),
     )
     standing = abs(inputs.measured_speed) <= params.threshold.standstill
-    if state.phase == Phase.STOP:
+    if state.phase == AdaptivePhase.STOP:
         standing = standing and has_stopped(seen.driver, params.adaptive.belief)
-    if standing and state.phase in (Phase.STANDBY, Phase.STOP):
+    if standing and state.phase in (AdaptivePhase.STANDBY, AdaptivePhase.STOP):
         seen = _stood(seen, pose, params)
-    elif DIRECTION_OF_PHASE[state.phase] != 0 or state.phase == Phase.STOP:
+    elif direction_of(state.phase) != 0 or state.phase == AdaptivePhase.STOP:
         seen = _tracked(seen, pose)
-    reason = reason_to_fail(monitor, inputs, state.phase, seen.running_ns, state.shifts, params)
+    reason = reason_to_fail(monitor, inputs, expected, seen.running_ns, state.shifts, params)
     if reason == Reason.NONE and standing and _is_stuck(seen, pose, params):
-        reason = Reason.NO_PATH if state.phase == Phase.STANDBY else Reason.MISSED_TARGET
+        reason = Reason.NO_PATH if state.phase == AdaptivePhase.STANDBY else Reason.MISSED_TARGET
     phase = transition(state.phase, _guards(seen, reason, pose, inputs, standing, params))
-    if phase >= Phase.PARKED:
-        return _ended(seen, phase, reason if phase == Phase.FAILED else Reason.NONE, inputs.driver_takeover)
+    if is_over(phase):
+        return _ended(seen, phase, reason if phase == AdaptivePhase.FAILED else Reason.NONE, inputs.driver_takeover)
     return _moved_on(seen, phase, inputs, params)
 
 
@@ -120,9 +122,9 @@ def is_in_place(pose: Pose, params: ControllerParams) -> bool:
 def _driver(state: AdaptiveState, inputs: ControllerInput, params: ControllerParams, dt_ns: int) -> Driver:
     """Return the driver as known after this sample."""
     speed = inputs.measured_speed
-    if state.phase == Phase.STOP:
+    if state.phase == AdaptivePhase.STOP:
         return seen_stopping(state.driver, speed, params.threshold.standstill, dt_ns)
-    if DIRECTION_OF_PHASE[state.phase] != 0:
+    if direction_of(state.phase) != 0:
         believed = params.adaptive.belief
         return seen_driving(state.driver, speed, state.advice, params.threshold.standstill, believed, dt_ns)
     return state.driver
@@ -130,7 +132,7 @@ def _driver(state: AdaptiveState, inputs: ControllerInput, params: ControllerPar
 
 def _stood(state: AdaptiveState, pose: Pose, params: ControllerParams) -> AdaptiveState:
     """Return the system with a plan from where the car stands, and the driver as his stop has shown him."""
-    driver = stopped(state.driver, params.adaptive.belief) if state.phase == Phase.STOP else state.driver
+    driver = stopped(state.driver, params.adaptive.belief) if state.phase == AdaptivePhase.STOP else state.driver
     if is_in_place(pose, params):
         return state._replace(driver=driver, plan=NO_PLAN)
     path = params.adaptive.path
@@ -156,7 +158,7 @@ def _tracked(state: AdaptiveState, pose: Pose) -> AdaptiveState:
     """Return the system with the foot of the car; a driver too fast for the route stays on its first arc to a stop."""
     foot = foot_on(state.plan.route, state.foot.way, pose)
     slower = state.plan.slower
-    if slower.direction == 0 or state.phase == Phase.STOP:
+    if slower.direction == 0 or state.phase == AdaptivePhase.STOP:
         return state._replace(foot=foot)
     pieces = state.plan.route.pieces
     leaves = pieces[0].length
@@ -174,7 +176,7 @@ def _tracked(state: AdaptiveState, pose: Pose) -> AdaptiveState:
 
 def _is_stuck(state: AdaptiveState, pose: Pose, params: ControllerParams) -> bool:
     """Return whether a car that stands to be planned for has no way on."""
-    planning = state.phase in (Phase.STANDBY, Phase.STOP)
+    planning = state.phase in (AdaptivePhase.STANDBY, AdaptivePhase.STOP)
     return planning and state.plan.route.direction == 0 and not is_in_place(pose, params)
 
 
@@ -208,13 +210,13 @@ def _guards(
 
 
 def _moved_on(state: AdaptiveState, phase: int, inputs: ControllerInput, params: ControllerParams) -> AdaptiveState:
-    direction = DIRECTION_OF_PHASE[phase]
+    direction = direction_of(phase)
     turned = direction != 0 and direction != state.direction
     counted = turned and (state.shifts > 0 or direction < 0)
     driver = state.driver
     if phase != state.phase and direction != 0:
         driver = prompted(driver, inputs.measured_speed)
-    if phase != state.phase and phase == Phase.STOP:
+    if phase != state.phase and phase == AdaptivePhase.STOP:
         driver = told_to_stop(driver, inputs.measured_speed, state.advice, params.adaptive.belief)
     along = direction * inputs.measured_speed
     moved = state._replace(
@@ -225,14 +227,14 @@ def _moved_on(state: AdaptiveState, phase: int, inputs: ControllerInput, params:
         moving=along > 0.05 or (state.moving and along > params.threshold.standstill),
     )
     advice = _advice(moved, params)
-    held = phase == Phase.STOP and state.phase != Phase.STANDBY
+    held = phase == AdaptivePhase.STOP and state.phase != AdaptivePhase.STANDBY
     request = _request(moved, params)
     return moved._replace(advice=min(advice, state.advice) if held else advice, request=request)
 
 
 def _request(state: AdaptiveState, params: ControllerParams) -> float:
     """Return the steering-wheel angle to ask for [rad]."""
-    if state.phase in (Phase.STANDBY, Phase.STRAIGHTEN) or state.plan.route.direction == 0:
+    if state.phase in (AdaptivePhase.STANDBY, AdaptivePhase.STRAIGHTEN) or state.plan.route.direction == 0:
         return 0.0
     route = state.plan.route
     path = params.adaptive.path
@@ -250,7 +252,7 @@ def _advice(state: AdaptiveState, params: ControllerParams) -> float:
     """Return the speed advised [m/s]: that of the route, and less towards the place to stand."""
     believed = params.adaptive.belief
     fast = min(believed.speed_limit, state.plan.speed)
-    if state.phase == Phase.STANDBY:
+    if state.phase == AdaptivePhase.STANDBY:
         return believed.speed_limit
     left = state.end - state.foot.way - state.driver.speed * reaction_of(state.driver, believed)
     creep = believed.creep_speed

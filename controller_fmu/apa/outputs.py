@@ -6,21 +6,22 @@ from controller_fmu.apa.manoeuvre_chart import Step
 from controller_fmu.apa.move import Piece
 from controller_fmu.apa.params import Longitudinal
 from controller_fmu.apa.parking import Parking, is_planned, site_for
+from controller_fmu.apa.phases import ApaPhase
 from controller_fmu.apa.signals import Alarm, ApaSignals, PlannedMove, PlannedPiece
 from controller_fmu.apa.slot import mirror_of
 from controller_fmu.apa.system import ApaState
 from controller_fmu.common.slot_frame import SlotFrame, to_world
-from controller_fmu.interface import ControllerOutput, ControllerParams, Phase
+from controller_fmu.interface import ControllerOutput, ControllerParams
 from modelkit.vocabulary import Pose, Prompt
 
 PHASE_OF_STEP = (
-    Phase.STANDBY,
-    Phase.STOP,
-    Phase.PRE_STEER,
-    Phase.PATH_TRACKING,
-    Phase.STOP,
-    Phase.STRAIGHTEN,
-    Phase.STRAIGHTEN,
+    ApaPhase.STANDBY,
+    ApaPhase.STOP,
+    ApaPhase.PRE_STEER,
+    ApaPhase.PATH_TRACKING,
+    ApaPhase.STOP,
+    ApaPhase.STRAIGHTEN,
+    ApaPhase.STRAIGHTEN,
 )
 """One for each member of Step, in its order."""
 MOVING = 0.05
@@ -29,12 +30,12 @@ MOVING = 0.05
 def phase_of(state: ApaState) -> int:
     """Return the phase as every controller tells it, for what judges and ends a run."""
     if state.mode == Mode.FAIL:
-        return Phase.TAKEOVER if state.taken_over else Phase.FAILED
+        return ApaPhase.TAKEOVER if state.taken_over else ApaPhase.FAILED
     if state.mode == Mode.PARKING_FINISH:
-        return Phase.PARKED
+        return ApaPhase.PARKED
     if state.mode in (Mode.AUTO_PARKING_ASSIST, Mode.POSITION_TUNING):
         return PHASE_OF_STEP[state.parking.step]
-    return Phase.STANDBY
+    return ApaPhase.STANDBY
 
 
 def prompt_of(state: ApaState, params: ControllerParams) -> int:

@@ -6,19 +6,16 @@ when it does not. The steering has a monitor of its own, ``controller_fmu.common
 
 from typing import NamedTuple
 
+from controller_fmu.common.phases import Expected
 from controller_fmu.common.steering_monitor import SteeringWatch, at_rest, has_failed, watch_steering
-from controller_fmu.interface import ControllerInput, ControllerParams, Phase, Reason
+from controller_fmu.interface import ControllerInput, ControllerParams, Reason
 from modelkit.maths import sign
 from modelkit.vocabulary import Pose
-
-STEERING_PHASES = (Phase.PRE_STEER, Phase.STRAIGHTEN)
 
 FARTHEST = 1e9
 """No position [m], heading [rad] or speed [m/s] is beyond this; NaN is not within it either."""
 SLOWEST_SEEN = 0.1
 """A pose counted in ticks may rightly stand still for half a second at less than this [m/s]."""
-DIRECTION_OF_PHASE = (0, 0, -1, 0, 1, -1, 1, -1, 0, 0, 0, 0)
-"""Direction that each Phase drives in, in its order."""
 
 
 class MonitorState(NamedTuple):
@@ -34,19 +31,24 @@ class MonitorState(NamedTuple):
 
 
 def watch(
-    state: MonitorState, inputs: ControllerInput, phase: int, request: float, dt_ns: int, params: ControllerParams
+    state: MonitorState,
+    inputs: ControllerInput,
+    expected: Expected,
+    request: float,
+    dt_ns: int,
+    params: ControllerParams,
 ) -> MonitorState:
-    """Return the clocks after one sample of ``dt_ns`` in ``phase`` with the wheel at ``request``."""
+    """Return the clocks after one sample of ``dt_ns`` in a phase with the wheel at ``request``."""
     speed = inputs.measured_speed
     still = abs(speed) <= params.threshold.standstill
-    direction = DIRECTION_OF_PHASE[phase]
+    direction = expected.direction
     angle = inputs.steering_wheel_angle
     rate = params.car.steering.rate_limit
     wheel = at_rest(angle, state.wheel.steering)
-    if phase != Phase.STANDBY:
+    if expected.begun:
         wheel = watch_steering(state.wheel, request, angle, params.limit.wheel_off, rate, dt_ns)
     return MonitorState(
-        waiting=state.waiting + dt_ns if still and (direction != 0 or phase in STEERING_PHASES) else 0,
+        waiting=state.waiting + dt_ns if still and (direction != 0 or expected.steering) else 0,
         stopping=state.stopping + dt_ns if not still and direction == 0 else 0,
         wrong_way=state.wrong_way + dt_ns if sign(speed) * direction < 0.0 and not still else 0,
         frozen=state.frozen + dt_ns if is_unmoved(inputs.odometry, state.pose, speed, dt_ns) else 0,
@@ -64,13 +66,18 @@ def is_unmoved(pose: Pose, before: Pose, speed: float, dt_ns: int) -> bool:
 
 
 def reason_to_fail(
-    state: MonitorState, inputs: ControllerInput, phase: int, running_ns: int, shifts: int, params: ControllerParams
+    state: MonitorState,
+    inputs: ControllerInput,
+    expected: Expected,
+    running_ns: int,
+    shifts: int,
+    params: ControllerParams,
 ) -> int:
     """Return the first Reason that holds, ``NONE`` if the car and the driver are as they should be."""
     limit = params.limit
     if inputs.vehicle_fault != 0:
         return Reason.VEHICLE_FAULT
-    if phase == Phase.STANDBY:
+    if not expected.begun:
         return Reason.TIMEOUT if running_ns * 1e-9 > limit.duration else Reason.NONE
     if state.frozen * 1e-9 > limit.pose_frozen:
         return Reason.POSE_FROZEN
@@ -81,7 +88,7 @@ def reason_to_fail(
     if state.stopping * 1e-9 > limit.stopping:
         return Reason.NOT_STOPPING
     if state.waiting * 1e-9 > limit.patience:
-        return Reason.STEERING_FAULT if phase in STEERING_PHASES else Reason.NOT_MOVING
+        return Reason.STEERING_FAULT if expected.steering else Reason.NOT_MOVING
     if shifts > limit.shifts:
         return Reason.TOO_MANY_SHIFTS
     if running_ns * 1e-9 > limit.duration:

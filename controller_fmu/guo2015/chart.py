@@ -8,7 +8,8 @@ there to what the leg begins with, then the leg is driven.
 from enum import IntEnum
 
 from controller_fmu.common.chart import ANY
-from controller_fmu.interface import Phase
+from controller_fmu.common.phases import is_over
+from controller_fmu.guo2015.phases import GuoPhase
 
 
 class Guard(IntEnum):
@@ -42,37 +43,37 @@ KEEP = -1
 Row = tuple[int, int, int, int]
 
 
-def _row(source: int, guard: Guard, target: Phase, leg: int = KEEP) -> Row:
+def _row(source: int, guard: Guard, target: GuoPhase, leg: int = KEEP) -> Row:
     return (int(source), int(guard), int(target), int(leg))
 
 
 TRANSITIONS: tuple[Row, ...] = (
-    _row(ANY, Guard.TAKEOVER, Phase.TAKEOVER),
-    _row(ANY, Guard.FAULT, Phase.FAILED),
-    _row(Phase.STANDBY, Guard.PLANNED, Phase.PRE_STEER, Phase.PATH_TRACKING),
-    _row(Phase.PRE_STEER, Guard.WHEEL_SET_FOR_PATH, Phase.PATH_TRACKING),
-    _row(Phase.PRE_STEER, Guard.WHEEL_SET_FOR_Q2, Phase.TO_Q2),
-    _row(Phase.PRE_STEER, Guard.WHEEL_SET_FOR_Q1, Phase.TO_Q1),
-    _row(Phase.PRE_STEER, Guard.WHEEL_SET_FOR_Q4, Phase.TO_Q4),
-    _row(Phase.PRE_STEER, Guard.WHEEL_SET_FOR_Q3, Phase.TO_Q3),
-    _row(Phase.PATH_TRACKING, Guard.PATH_END, Phase.STOP, Phase.STRAIGHTEN),
-    _row(Phase.PATH_TRACKING, Guard.OFF_PATH, Phase.STOP, Phase.TO_Q2),
-    _row(Phase.TO_Q2, Guard.PAST_Q2, Phase.STOP, Phase.TO_Q1),
-    _row(Phase.TO_Q1, Guard.AT_Q1_RIGHT, Phase.STOP, Phase.PATH_TRACKING),
-    _row(Phase.TO_Q1, Guard.AT_Q1_WRONG, Phase.STOP, Phase.TO_Q2),
-    _row(Phase.TO_Q4, Guard.POSE_RIGHT, Phase.STOP, Phase.STRAIGHTEN),
-    _row(Phase.TO_Q4, Guard.PAST_Q4, Phase.STOP, Phase.TO_Q3),
-    _row(Phase.TO_Q3, Guard.AT_Q3, Phase.STOP, Phase.STRAIGHTEN),
-    _row(Phase.STOP, Guard.STANDING_TO_DRIVE, Phase.PRE_STEER),
-    _row(Phase.STOP, Guard.STANDING_AT_END_WRONG, Phase.PRE_STEER, Phase.TO_Q4),
-    _row(Phase.STOP, Guard.STANDING_AT_END, Phase.STRAIGHTEN),
-    _row(Phase.STRAIGHTEN, Guard.WHEEL_STRAIGHT, Phase.PARKED),
+    _row(ANY, Guard.TAKEOVER, GuoPhase.TAKEOVER),
+    _row(ANY, Guard.FAULT, GuoPhase.FAILED),
+    _row(GuoPhase.STANDBY, Guard.PLANNED, GuoPhase.PRE_STEER, GuoPhase.PATH_TRACKING),
+    _row(GuoPhase.PRE_STEER, Guard.WHEEL_SET_FOR_PATH, GuoPhase.PATH_TRACKING),
+    _row(GuoPhase.PRE_STEER, Guard.WHEEL_SET_FOR_Q2, GuoPhase.TO_Q2),
+    _row(GuoPhase.PRE_STEER, Guard.WHEEL_SET_FOR_Q1, GuoPhase.TO_Q1),
+    _row(GuoPhase.PRE_STEER, Guard.WHEEL_SET_FOR_Q4, GuoPhase.TO_Q4),
+    _row(GuoPhase.PRE_STEER, Guard.WHEEL_SET_FOR_Q3, GuoPhase.TO_Q3),
+    _row(GuoPhase.PATH_TRACKING, Guard.PATH_END, GuoPhase.STOP, GuoPhase.STRAIGHTEN),
+    _row(GuoPhase.PATH_TRACKING, Guard.OFF_PATH, GuoPhase.STOP, GuoPhase.TO_Q2),
+    _row(GuoPhase.TO_Q2, Guard.PAST_Q2, GuoPhase.STOP, GuoPhase.TO_Q1),
+    _row(GuoPhase.TO_Q1, Guard.AT_Q1_RIGHT, GuoPhase.STOP, GuoPhase.PATH_TRACKING),
+    _row(GuoPhase.TO_Q1, Guard.AT_Q1_WRONG, GuoPhase.STOP, GuoPhase.TO_Q2),
+    _row(GuoPhase.TO_Q4, Guard.POSE_RIGHT, GuoPhase.STOP, GuoPhase.STRAIGHTEN),
+    _row(GuoPhase.TO_Q4, Guard.PAST_Q4, GuoPhase.STOP, GuoPhase.TO_Q3),
+    _row(GuoPhase.TO_Q3, Guard.AT_Q3, GuoPhase.STOP, GuoPhase.STRAIGHTEN),
+    _row(GuoPhase.STOP, Guard.STANDING_TO_DRIVE, GuoPhase.PRE_STEER),
+    _row(GuoPhase.STOP, Guard.STANDING_AT_END_WRONG, GuoPhase.PRE_STEER, GuoPhase.TO_Q4),
+    _row(GuoPhase.STOP, Guard.STANDING_AT_END, GuoPhase.STRAIGHTEN),
+    _row(GuoPhase.STRAIGHTEN, Guard.WHEEL_STRAIGHT, GuoPhase.PARKED),
 )
 
 
 def transition(phase: int, leg: int, guards: int) -> tuple[int, int]:
     """Return (phase, leg) after one sample; ``guards`` holds bit g for guard g."""
-    if phase >= Phase.PARKED:
+    if is_over(phase):
         return phase, leg
     for source, guard, target, next_leg in TRANSITIONS:
         if (source == phase or source == ANY) and (guards >> guard) & 1 == 1:

@@ -4,9 +4,10 @@ from controller_fmu.common.chart import bit
 from controller_fmu.guo2015.chart import Guard
 from controller_fmu.guo2015.legs import Tracking, point_of_leg
 from controller_fmu.guo2015.path import distance_to_end, reference_at
+from controller_fmu.guo2015.phases import GuoPhase
 from controller_fmu.guo2015.planner import TwoArcPath
 from controller_fmu.guo2015.prompts import stopping_distance
-from controller_fmu.interface import ControllerInput, ControllerParams, Phase, System
+from controller_fmu.interface import ControllerInput, ControllerParams, System
 from modelkit.vocabulary import Pose
 
 
@@ -19,11 +20,11 @@ def wheel_guards(leg: int, wheel: float, request: float, tolerance: float) -> in
     """Return the bits that say the wheel stands at ``request`` for its leg, or straight."""
     there = abs(wheel - request) <= tolerance
     return (
-        bit(Guard.WHEEL_SET_FOR_PATH, there and leg == Phase.PATH_TRACKING)
-        | bit(Guard.WHEEL_SET_FOR_Q2, there and leg == Phase.TO_Q2)
-        | bit(Guard.WHEEL_SET_FOR_Q1, there and leg == Phase.TO_Q1)
-        | bit(Guard.WHEEL_SET_FOR_Q4, there and leg == Phase.TO_Q4)
-        | bit(Guard.WHEEL_SET_FOR_Q3, there and leg == Phase.TO_Q3)
+        bit(Guard.WHEEL_SET_FOR_PATH, there and leg == GuoPhase.PATH_TRACKING)
+        | bit(Guard.WHEEL_SET_FOR_Q2, there and leg == GuoPhase.TO_Q2)
+        | bit(Guard.WHEEL_SET_FOR_Q1, there and leg == GuoPhase.TO_Q1)
+        | bit(Guard.WHEEL_SET_FOR_Q4, there and leg == GuoPhase.TO_Q4)
+        | bit(Guard.WHEEL_SET_FOR_Q3, there and leg == GuoPhase.TO_Q3)
         | bit(Guard.WHEEL_STRAIGHT, abs(wheel) <= tolerance)
     )
 
@@ -34,7 +35,7 @@ def way_guards(tracking: Tracking, pose: Pose, path: TwoArcPath, speed: float, p
     points = params.system == System.NTBPTCWPT
     left = not within(tracking.lateral_error, tracking.heading_error, limit.leave_lateral, limit.leave_heading)
     to_end = distance_to_end(path, reference_at(path, pose.x, tracking.piece))
-    q2 = point_of_leg(Phase.TO_Q2, path, params.guo2015)
+    q2 = point_of_leg(GuoPhase.TO_Q2, path, params.guo2015)
     at_q1 = tracking.ahead <= 0.0
     resumed = within(tracking.lateral_error, tracking.heading_error, limit.resume_lateral, limit.resume_heading)
     share = limit.moving_share
@@ -57,7 +58,7 @@ def standing_guards(leg: int, pose: Pose, inputs: ControllerInput, params: Contr
     limit = params.guo2015.threshold
     if abs(inputs.measured_speed) > params.threshold.standstill:
         return 0
-    at_end = leg == Phase.STRAIGHTEN
+    at_end = leg == GuoPhase.STRAIGHTEN
     wrong = params.system == System.NTBPTCWPT and not within(
         pose.y, pose.heading, limit.park_lateral, limit.park_heading
     )

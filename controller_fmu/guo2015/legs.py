@@ -9,9 +9,10 @@ from typing import NamedTuple
 from controller_fmu.guo2015.params import GuoParams
 from controller_fmu.guo2015.path import reference_at
 from controller_fmu.guo2015.path_tracking import path_tracking_angle
+from controller_fmu.guo2015.phases import GuoPhase
 from controller_fmu.guo2015.planner import TwoArcPath, ahead
 from controller_fmu.guo2015.point_tracking import point_error, point_tracking_angle
-from controller_fmu.interface import ControllerParams, Phase
+from controller_fmu.interface import ControllerParams
 from modelkit.vocabulary import Pose
 
 
@@ -30,24 +31,24 @@ class Tracking(NamedTuple):
 def track(leg: int, pose: Pose, path: TwoArcPath, piece: int, params: ControllerParams) -> Tracking:
     """Return what ``leg`` asks of a car at ``pose`` (slot's frame), the path latched at ``piece``."""
     gains = params.guo2015
-    if leg == Phase.PATH_TRACKING:
+    if leg == GuoPhase.PATH_TRACKING:
         reference = reference_at(path, pose.x, piece)
         angle = path_tracking_angle(pose, reference, gains.k1, gains.k2, params.car.wheelbase)
         at = Pose(reference.x, reference.y, reference.heading)
         return Tracking(at, 0.0, pose.y - reference.y, pose.heading - reference.heading, angle, reference.piece)
     point = point_of_leg(leg, path, gains)
     error = point_error(pose, point)
-    direction = 1.0 if leg in (Phase.TO_Q2, Phase.TO_Q4) else -1.0
+    direction = 1.0 if leg in (GuoPhase.TO_Q2, GuoPhase.TO_Q4) else -1.0
     angle = point_tracking_angle(error, direction, gains.k3, gains.k4, params.car.wheelbase)
     return Tracking(point, error.x, error.y, error.heading, angle, piece)
 
 
 def point_of_leg(leg: int, path: TwoArcPath, params: GuoParams) -> Pose:
     """Return the point that ``leg`` tracks, in the slot's frame; Q3 for the path itself."""
-    if leg == Phase.TO_Q2:
+    if leg == GuoPhase.TO_Q2:
         return ahead(path.tangent2, params.q2_distance)
-    if leg == Phase.TO_Q1:
+    if leg == GuoPhase.TO_Q1:
         return path.tangent2
-    if leg == Phase.TO_Q4:
+    if leg == GuoPhase.TO_Q4:
         return Pose(params.q4_distance, 0.0, 0.0)
     return Pose(0.0, 0.0, 0.0)

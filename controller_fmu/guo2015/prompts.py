@@ -32,7 +32,7 @@ PROMPT_OF_PHASE = (
     Prompt.STOP,
     Prompt.NONE,
 )
-"""One for each member of Phase, in its order."""
+"""One for each member of GuoPhase, in its order."""
 FOLLOWED = 0.8
 """Share of the wheel's rate that is used on a path without jumps of curvature."""
 MOVING = 0.05

@@ -5,18 +5,19 @@ from typing import NamedTuple
 
 from controller_fmu.common.chart import bit
 from controller_fmu.common.monitor import (
-    DIRECTION_OF_PHASE,
     MonitorState,
     is_usable_input,
     reason_to_fail,
     watch,
 )
+from controller_fmu.common.phases import is_over, is_parking
 from controller_fmu.common.slot_frame import to_slot, to_world
 from controller_fmu.common.steering_wheel import wheel_request
 from controller_fmu.guo2015.chart import Guard, transition
 from controller_fmu.guo2015.guards import standing_guards, way_guards, wheel_guards, within
 from controller_fmu.guo2015.legs import Tracking, track
 from controller_fmu.guo2015.path import SECOND_ARC, reference_at
+from controller_fmu.guo2015.phases import DIRECTION_OF_PHASE, GuoPhase, expected_in
 from controller_fmu.guo2015.planner import Plan, plan
 from controller_fmu.guo2015.prompts import (
     is_moving,
@@ -26,7 +27,7 @@ from controller_fmu.guo2015.prompts import (
     swing_speed,
 )
 from controller_fmu.guo2015.smooth_path import Shape
-from controller_fmu.interface import ControllerInput, ControllerOutput, ControllerParams, Path, Phase, Reason, Segment
+from controller_fmu.interface import ControllerInput, ControllerOutput, ControllerParams, Path, Reason, Segment
 from modelkit.car import smallest_radius
 from modelkit.maths import clamp
 from modelkit.vocabulary import Pose
@@ -38,10 +39,10 @@ NOT_DRAWN = (Segment(), Segment(), Segment())
 class GuoState(NamedTuple):
     """Everything the system remembers."""
 
-    phase: int = Phase.STANDBY
-    leg: int = Phase.PATH_TRACKING
+    phase: int = GuoPhase.STANDBY
+    leg: int = GuoPhase.PATH_TRACKING
     """What is driven next, once the car stands and the wheel is set."""
-    driven: int = Phase.PATH_TRACKING
+    driven: int = GuoPhase.PATH_TRACKING
     """What was driven last: its law holds while the car comes to a stop."""
     reason: int = Reason.NONE
     shifts: int = 0
@@ -68,21 +69,22 @@ def guo_start(params: ControllerParams) -> GuoState:
 
 def guo_sample(state: GuoState, inputs: ControllerInput, params: ControllerParams, dt_ns: int) -> GuoState:
     """Return the system one sample of ``dt_ns`` later."""
-    if state.phase >= Phase.PARKED:
+    if is_over(state.phase):
         return _ended(state, state.phase, state.reason, inputs.driver_takeover)
     if not is_usable_input(inputs):
-        return _ended(state, Phase.FAILED, Reason.BAD_INPUT, inputs.driver_takeover)
+        return _ended(state, GuoPhase.FAILED, Reason.BAD_INPUT, inputs.driver_takeover)
     planned = state.plan
-    if state.phase == Phase.STANDBY:
+    if state.phase == GuoPhase.STANDBY:
         smallest = smallest_radius(params.car)
         reserve = params.guo2015.radius_reserve
         radius = params.guo2015.radius
         shape = params.guo2015.path
         planned = plan(inputs.odometry, params.target, radius, reserve * smallest, shape, params.car.wheelbase)
     pose = to_slot(inputs.odometry, planned.frame)
-    watched = inputs.steering_wheel_angle if state.phase == Phase.STANDBY else state.request
-    monitor = watch(state.monitor, inputs, state.phase, watched, dt_ns, params)
-    leg = state.driven if state.phase == Phase.STOP else state.leg
+    watched = inputs.steering_wheel_angle if state.phase == GuoPhase.STANDBY else state.request
+    expected = expected_in(state.phase)
+    monitor = watch(state.monitor, inputs, expected, watched, dt_ns, params)
+    leg = state.driven if state.phase == GuoPhase.STOP else state.leg
     tracking = track(leg, pose, planned.path, state.piece, params)
     reason = _reason(state, monitor, inputs, planned, pose, tracking, params)
     guards = _guards(state, inputs, planned, pose, tracking, reason, params)
@@ -92,7 +94,7 @@ def guo_sample(state: GuoState, inputs: ControllerInput, params: ControllerParam
 
 def guo_outputs(state: GuoState, params: ControllerParams) -> ControllerOutput:
     """Return the outputs that hold until the next sample."""
-    active = state.phase != Phase.STANDBY and state.phase < Phase.PARKED
+    active = is_parking(state.phase)
     frame = state.plan.frame
     path = state.plan.path
     k = frame.mirror / path.radius if path.found else 0.0
@@ -107,7 +109,7 @@ def guo_outputs(state: GuoState, params: ControllerParams) -> ControllerOutput:
         steering_active=active,
         prompt=prompt_of(state.phase, state.moving, state.advice, params.guo2015.prompting),
         advised_speed=state.advice,
-        brake_request=state.phase == Phase.FAILED and not state.takeover,
+        brake_request=state.phase == GuoPhase.FAILED and not state.takeover,
         phase=state.phase,
         reason=state.reason,
         shifts=state.shifts,
@@ -128,14 +130,14 @@ def _reason(
     params: ControllerParams,
 ) -> int:
     limit = params.threshold
-    reason = reason_to_fail(monitor, inputs, state.phase, state.running_ns, state.shifts, params)
+    reason = reason_to_fail(monitor, inputs, expected_in(state.phase), state.running_ns, state.shifts, params)
     if reason != Reason.NONE:
         return reason
     if not planned.path.found:
         return Reason.NO_PATH
     if abs(tracking.lateral_error) > limit.lost_lateral:
         return Reason.LEFT_PATH
-    straight = state.phase == Phase.STRAIGHTEN and abs(inputs.steering_wheel_angle) <= limit.wheel
+    straight = state.phase == GuoPhase.STRAIGHTEN and abs(inputs.steering_wheel_angle) <= limit.wheel
     if straight and not within(pose.y, pose.heading, limit.miss_lateral, limit.miss_heading):
         return Reason.MISSED_TARGET
     return Reason.NONE
@@ -174,14 +176,18 @@ def _moved_on(
     dt_ns: int,
     params: ControllerParams,
 ) -> GuoState:
-    if phase >= Phase.PARKED:
-        return _ended(state, phase, reason if phase == Phase.FAILED else Reason.NONE, inputs.driver_takeover)
-    back_on_path = state.phase == Phase.STOP and phase == Phase.PRE_STEER and leg == Phase.PATH_TRACKING
+    if is_over(phase):
+        return _ended(state, phase, reason if phase == GuoPhase.FAILED else Reason.NONE, inputs.driver_takeover)
+    back_on_path = state.phase == GuoPhase.STOP and phase == GuoPhase.PRE_STEER and leg == GuoPhase.PATH_TRACKING
     direction = DIRECTION_OF_PHASE[phase]
     turned = direction != 0 and direction != state.direction
     driven = phase if direction != 0 else state.driven
     tracking = track(
-        driven if phase == Phase.STOP else leg, pose, planned.path, SECOND_ARC if back_on_path else state.piece, params
+        driven if phase == GuoPhase.STOP else leg,
+        pose,
+        planned.path,
+        SECOND_ARC if back_on_path else state.piece,
+        params,
     )
     request = _wheel_request(phase, tracking, planned, params)
     swing = _swing(state, phase, request, inputs, monitor, params)
@@ -219,15 +225,15 @@ def _advice(
     params: ControllerParams,
 ) -> float:
     """Return the speed advised [m/s]; while a stop is asked for it may fall, as on the way there, but not rise."""
-    if phase == Phase.STANDBY:
+    if phase == GuoPhase.STANDBY:
         return params.guo2015.prompting.speed_limit
     driving = DIRECTION_OF_PHASE[phase] != 0
-    if not driving and phase != Phase.STOP:
+    if not driving and phase != GuoPhase.STOP:
         return state.advice
     way = phase if driving else state.driven
     speed = inputs.measured_speed
     advice = swing
-    if way == Phase.PATH_TRACKING:
+    if way == GuoPhase.PATH_TRACKING:
         reference = reference_at(planned.path, pose.x, tracking.piece)
         advice = min(path_speed(planned.path, reference, speed, monitor.wheel.steering, params), swing)
     else:
@@ -256,7 +262,7 @@ def _swing(
 
 
 def _wheel_request(phase: int, tracking: Tracking, planned: Plan, params: ControllerParams) -> float:
-    if phase in (Phase.STANDBY, Phase.STRAIGHTEN):
+    if phase in (GuoPhase.STANDBY, GuoPhase.STRAIGHTEN):
         return 0.0
     return wheel_request(tracking.front_wheel_angle, planned.frame.mirror, params)
 

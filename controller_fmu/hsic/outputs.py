@@ -4,10 +4,11 @@ from controller_fmu.common.slot_frame import SlotFrame, to_world
 from controller_fmu.common.steering_wheel import steering_wheel_angle
 from controller_fmu.hsic.characteristic_states import errors
 from controller_fmu.hsic.key_points import KeyPoints
+from controller_fmu.hsic.phases import HsicPhase
 from controller_fmu.hsic.rules import RULES
 from controller_fmu.hsic.signals import HsicSignals
 from controller_fmu.hsic.system import HsicState
-from controller_fmu.interface import ControllerOutput, ControllerParams, Path, Phase, Segment
+from controller_fmu.interface import ControllerOutput, ControllerParams, Path, Segment
 from modelkit.vocabulary import Pose
 
 
@@ -28,7 +29,7 @@ def planned_path(points: KeyPoints, frame: SlotFrame) -> Path:
 
 def hsic_outputs(state: HsicState, params: ControllerParams) -> ControllerOutput:
     """Return the outputs that hold until the next sample."""
-    active = state.phase in (Phase.PRE_STEER, Phase.PATH_TRACKING, Phase.STRAIGHTEN)
+    active = state.phase in (HsicPhase.PRE_STEER, HsicPhase.PATH_TRACKING, HsicPhase.STRAIGHTEN)
     modes = RULES[state.characteristic]
     signals = HsicSignals(
         characteristic=state.characteristic,
@@ -38,7 +39,7 @@ def hsic_outputs(state: HsicState, params: ControllerParams) -> ControllerOutput
         distance=state.found.distance,
         tangent_error=tangent_error(state.course.points, state.pose),
     )
-    brake = state.phase != Phase.PATH_TRACKING and state.phase != Phase.TAKEOVER
+    brake = state.phase != HsicPhase.PATH_TRACKING and state.phase != HsicPhase.TAKEOVER
     return ControllerOutput(
         steering_wheel_request=steering_wheel_angle(state.angle, state.frame.mirror, params) if active else 0.0,
         steering_active=active,

@@ -4,14 +4,16 @@ import math
 from typing import NamedTuple
 
 from controller_fmu.common.monitor import MonitorState, is_usable_input, reason_to_fail, watch
+from controller_fmu.common.phases import is_over
 from controller_fmu.common.slot_frame import SlotFrame, frame_at, to_slot
 from controller_fmu.common.steering_wheel import steering_wheel_angle
 from controller_fmu.hsic.characteristic_states import Errors, Stage, errors, recognise
 from controller_fmu.hsic.control import curvature, speed
 from controller_fmu.hsic.key_points import key_points, ready_point
+from controller_fmu.hsic.phases import HsicPhase, expected_in
 from controller_fmu.hsic.rules import RULES, SpeedMode
 from controller_fmu.hsic.stages import Course, advance, is_parked, way_to
-from controller_fmu.interface import ControllerInput, ControllerParams, Phase, Reason
+from controller_fmu.interface import ControllerInput, ControllerParams, Reason
 from modelkit.car import largest_curvature
 from modelkit.maths import clamp
 from modelkit.vocabulary import Pose
@@ -23,7 +25,7 @@ LOST = 3.0
 class HsicState(NamedTuple):
     """Everything the system remembers."""
 
-    phase: int = Phase.STANDBY
+    phase: int = HsicPhase.STANDBY
     reason: int = Reason.NONE
     running_ns: int = 0
     frame: SlotFrame = SlotFrame()
@@ -52,34 +54,27 @@ def hsic_start(params: ControllerParams) -> HsicState:
 
 def hsic_sample(state: HsicState, inputs: ControllerInput, params: ControllerParams, dt_ns: int) -> HsicState:
     """Return the system one sample of ``dt_ns`` later."""
-    if state.phase >= Phase.PARKED:
+    if is_over(state.phase):
         return state
     if not is_usable_input(inputs):
-        return _ended(state, Phase.FAILED, Reason.BAD_INPUT)
+        return _ended(state, HsicPhase.FAILED, Reason.BAD_INPUT)
     if inputs.driver_takeover:
-        return _ended(state, Phase.TAKEOVER, Reason.NONE)
-    if state.phase == Phase.STANDBY:
+        return _ended(state, HsicPhase.TAKEOVER, Reason.NONE)
+    if state.phase == HsicPhase.STANDBY:
         return _planned(inputs, params)
     pose = to_slot(inputs.odometry, state.frame)
-    watched = _watched_phase(state)
+    expected = expected_in(state.phase, state.direction)
     wheel = steering_wheel_angle(state.angle, state.frame.mirror, params)
-    monitor = watch(state.monitor, inputs, watched, wheel, dt_ns, params)
-    reason = reason_to_fail(monitor, inputs, watched, state.running_ns, state.shifts, params)
+    monitor = watch(state.monitor, inputs, expected, wheel, dt_ns, params)
+    reason = reason_to_fail(monitor, inputs, expected, state.running_ns, state.shifts, params)
     lost = abs(state.found.lateral) > LOST * params.threshold.lost_lateral
     if reason == Reason.NONE and state.course.stage != Stage.READY and lost:
         reason = Reason.LEFT_PATH
     if reason != Reason.NONE:
-        return _ended(state, Phase.FAILED, reason)
-    if state.phase == Phase.STRAIGHTEN:
+        return _ended(state, HsicPhase.FAILED, reason)
+    if state.phase == HsicPhase.STRAIGHTEN:
         return _straightened(state, inputs, pose, monitor, params, dt_ns)
     return _driven(state, inputs, pose, monitor, params, dt_ns)
-
-
-def _watched_phase(state: HsicState) -> int:
-    """Return the phase that drives as this state does, for the monitor."""
-    if state.phase != Phase.PATH_TRACKING:
-        return state.phase
-    return Phase.TO_Q4 if state.direction > 0 else Phase.PATH_TRACKING
 
 
 def _planned(inputs: ControllerInput, params: ControllerParams) -> HsicState:
@@ -91,7 +86,7 @@ def _planned(inputs: ControllerInput, params: ControllerParams) -> HsicState:
     p1 = ready_point(slot, car, radius)
     points = key_points(p1, slot, car, radius)
     return HsicState(
-        phase=Phase.PRE_STEER if points.found else Phase.FAILED,
+        phase=HsicPhase.PRE_STEER if points.found else HsicPhase.FAILED,
         reason=Reason.NONE if points.found else Reason.NO_PATH,
         frame=frame,
         course=Course(Stage.READY, points, p1, way=way_to(p1, to_slot(inputs.odometry, frame))),
@@ -124,7 +119,7 @@ def _driven(
     if abs(v) <= params.threshold.standstill and off <= hsic.threshold.wheel:
         hold = False
     still = hold or turning or course.done
-    phase = Phase.STRAIGHTEN if course.done else Phase.PRE_STEER if still else Phase.PATH_TRACKING
+    phase = HsicPhase.STRAIGHTEN if course.done else HsicPhase.PRE_STEER if still else HsicPhase.PATH_TRACKING
     counted = _counted(state, course.stage, phase, direction)
     shifts = state.shifts + 1 if counted != state.counted else state.shifts
     set_speed = 0.0 if still else direction * speed(speed_mode, found, hsic.gain)
@@ -149,7 +144,7 @@ def _driven(
 
 def _counted(state: HsicState, stage: int, phase: int, direction: int) -> int:
     """Return the direction of the manoeuvre being driven: the first reverse begins the first one."""
-    if phase != Phase.PATH_TRACKING or stage == Stage.READY or (state.counted == 0 and direction > 0):
+    if phase != HsicPhase.PATH_TRACKING or stage == Stage.READY or (state.counted == 0 and direction > 0):
         return state.counted
     return direction
 
@@ -158,12 +153,12 @@ def _straightened(
     state: HsicState, inputs: ControllerInput, pose: Pose, monitor: MonitorState, params: ControllerParams, dt_ns: int
 ) -> HsicState:
     """Return the system at its end: wheel to the middle, then parked or missed."""
-    phase = Phase.STRAIGHTEN
+    phase = HsicPhase.STRAIGHTEN
     reason = Reason.NONE
     still = abs(inputs.measured_speed) <= params.threshold.standstill
     if still and abs(inputs.steering_wheel_angle) <= params.hsic.threshold.wheel:
         near = is_parked(pose, 1.0, params.hsic)
-        phase = Phase.PARKED if near else Phase.FAILED
+        phase = HsicPhase.PARKED if near else HsicPhase.FAILED
         reason = Reason.NONE if near else Reason.MISSED_TARGET
     return state._replace(
         phase=phase,

@@ -3,8 +3,10 @@
 from typing import NamedTuple
 
 from controller_fmu.common.monitor import is_usable_input
+from controller_fmu.common.phases import is_over
 from controller_fmu.common.steering_wheel import wheel_request
-from controller_fmu.interface import ControllerInput, ControllerOutput, ControllerParams, Phase, Reason
+from controller_fmu.interface import ControllerInput, ControllerOutput, ControllerParams, Reason
+from controller_fmu.preview.phases import PreviewPhase
 from controller_fmu.preview.road import road_at
 from controller_fmu.preview.system import PreviewState, preview_step
 
@@ -12,7 +14,7 @@ from controller_fmu.preview.system import PreviewState, preview_step
 class DrivingState(NamedTuple):
     """Everything the system remembers."""
 
-    phase: int = Phase.STANDBY
+    phase: int = PreviewPhase.STANDBY
     reason: int = Reason.NONE
     preview: PreviewState = PreviewState()
     angle: float = 0.0
@@ -27,30 +29,30 @@ def driving_start(params: ControllerParams) -> DrivingState:
 
 def driving_sample(state: DrivingState, inputs: ControllerInput, params: ControllerParams, dt_ns: int) -> DrivingState:
     """Return the system one sample of ``dt_ns`` later."""
-    if state.phase >= Phase.PARKED:
+    if is_over(state.phase):
         return state
     if not is_usable_input(inputs):
-        return DrivingState(Phase.FAILED, Reason.BAD_INPUT, state.preview)
+        return DrivingState(PreviewPhase.FAILED, Reason.BAD_INPUT, state.preview)
     if inputs.driver_takeover:
-        return DrivingState(Phase.TAKEOVER, Reason.NONE, state.preview)
-    if state.phase == Phase.STRAIGHTEN:
+        return DrivingState(PreviewPhase.TAKEOVER, Reason.NONE, state.preview)
+    if state.phase == PreviewPhase.STRAIGHTEN:
         still = abs(inputs.measured_speed) <= params.threshold.standstill
-        return DrivingState(Phase.PARKED if still else Phase.STRAIGHTEN, Reason.NONE, state.preview)
+        return DrivingState(PreviewPhase.PARKED if still else PreviewPhase.STRAIGHTEN, Reason.NONE, state.preview)
     preview, command = preview_step(
         state.preview, inputs.odometry, inputs.measured_speed, params.car.cg_to_rear, params.preview, dt_ns * 1e-9
     )
     if abs(preview.sight.y_l) > params.threshold.lost_lateral:
-        return DrivingState(Phase.FAILED, Reason.LEFT_PATH, preview)
-    phase = Phase.STRAIGHTEN if command.finished else Phase.PATH_TRACKING
+        return DrivingState(PreviewPhase.FAILED, Reason.LEFT_PATH, preview)
+    phase = PreviewPhase.STRAIGHTEN if command.finished else PreviewPhase.PATH_TRACKING
     return DrivingState(phase, Reason.NONE, preview, command.front_wheel_angle, command.force)
 
 
 def driving_outputs(state: DrivingState, params: ControllerParams) -> ControllerOutput:
     """Return the outputs that hold until the next sample."""
-    driving = state.phase == Phase.PATH_TRACKING
+    driving = state.phase == PreviewPhase.PATH_TRACKING
     signals = state.preview.signals
-    active = driving or state.phase == Phase.STRAIGHTEN
-    brake = not driving and state.phase != Phase.TAKEOVER
+    active = driving or state.phase == PreviewPhase.STRAIGHTEN
+    brake = not driving and state.phase != PreviewPhase.TAKEOVER
     speed = signals.wanted_speed if driving else 0.0
     force = state.force if driving else 0.0
     return ControllerOutput(

@@ -3,10 +3,11 @@
 import math
 from typing import NamedTuple
 
-from controller_fmu.interface import ControllerInput, Phase, Reason
+from controller_fmu.interface import ControllerInput, Reason
 from controller_fmu.planning.plan_store import PlanStore
 from controller_fmu.valet.outputs import valet_outputs
 from controller_fmu.valet.params import ValetParams
+from controller_fmu.valet.phases import ValetPhase
 from controller_fmu.valet.signals import ValetOutput
 from controller_fmu.valet.system import ValetState, valet_sample
 from modelkit.maths import is_finite
@@ -33,7 +34,9 @@ def valet_step(
     """Return (state, outputs) ``dt_ns`` later: the valet acts at the instants k * sample_time."""
     end_ns = state.time_ns + dt_ns
     if not is_usable(params):
-        refused = ValetOutput(prompt=Prompt.STOP, brake_request=True, phase=Phase.FAILED, reason=Reason.BAD_PARAMETER)
+        refused = ValetOutput(
+            prompt=Prompt.STOP, brake_request=True, phase=ValetPhase.FAILED, reason=Reason.BAD_PARAMETER
+        )
         return ValetModelState(end_ns, state.next_sample_ns, state.valet), refused
     period_ns = math.floor(params.sample_time * 1e9 + 0.5)
     samples = 0

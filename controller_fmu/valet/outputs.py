@@ -1,23 +1,24 @@
 """What the valet puts out, from what it remembers."""
 
-from controller_fmu.interface import Phase, Reason
+from controller_fmu.interface import Reason
 from controller_fmu.planning.plan import PATH
 from controller_fmu.valet.chart import Step
 from controller_fmu.valet.params import ValetParams
+from controller_fmu.valet.phases import ValetPhase
 from controller_fmu.valet.signals import PIECES, Move, MovePiece, Planning, ValetOutput, ValetSignals
 from controller_fmu.valet.system import ValetState
 from modelkit.maths import sign
 from modelkit.vocabulary import Prompt
 
 PHASE_OF_STEP = (
-    Phase.STANDBY,
-    Phase.PRE_STEER,
-    Phase.PATH_TRACKING,
-    Phase.STOP,
-    Phase.STRAIGHTEN,
-    Phase.PARKED,
-    Phase.FAILED,
-    Phase.TAKEOVER,
+    ValetPhase.STANDBY,
+    ValetPhase.PRE_STEER,
+    ValetPhase.PATH_TRACKING,
+    ValetPhase.STOP,
+    ValetPhase.STRAIGHTEN,
+    ValetPhase.PARKED,
+    ValetPhase.FAILED,
+    ValetPhase.TAKEOVER,
 )
 """One for each member of Step, in its order."""
 

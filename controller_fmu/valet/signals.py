@@ -3,8 +3,9 @@
 from enum import IntEnum
 from typing import Annotated, NamedTuple
 
-from controller_fmu.interface import Phase, Reason
+from controller_fmu.interface import Reason
 from controller_fmu.valet.chart import Step
+from controller_fmu.valet.phases import ValetPhase
 from modelkit.signal import Group, Role, Signal
 from modelkit.vocabulary import Pose, Prompt
 
@@ -67,7 +68,7 @@ class ValetOutput(NamedTuple):
     force_control_active: Annotated[bool, Signal("1", "force_request holds: never")] = False
     force_request: Annotated[float, Signal("N", "drive and brake force asked for: none")] = 0.0
     brake_request: Annotated[bool, Signal("1", "the controller brakes to standstill and holds")] = False
-    phase: Annotated[int, Signal("1", "state of the manoeuvre chart", states=Phase)] = 0
+    phase: Annotated[int, Signal("1", "state of the manoeuvre chart", states=ValetPhase)] = 0
     reason: Annotated[int, Signal("1", "why the controller failed", states=Reason)] = 0
     shifts: Annotated[int, Signal("1", "manoeuvres so far, the first reverse counts one"), Role.LOCAL] = 0
     reference: Annotated[Pose, Role.LOCAL, Group("point of the path beside the rear-axle midpoint")] = Pose()

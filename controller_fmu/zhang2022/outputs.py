@@ -4,8 +4,9 @@ import math
 
 from controller_fmu.common.slot_frame import to_world
 from controller_fmu.common.steering_wheel import steering_wheel_angle
-from controller_fmu.interface import ControllerOutput, ControllerParams, Path, Phase, Segment
+from controller_fmu.interface import ControllerOutput, ControllerParams, Path, Segment
 from controller_fmu.zhang2022.path import PathStatus
+from controller_fmu.zhang2022.phases import ZhangPhase
 from controller_fmu.zhang2022.signals import ZhangSignals
 from controller_fmu.zhang2022.system import ZhangState
 
@@ -35,13 +36,13 @@ def planned_path(state: ZhangState) -> Path:
 
 def zhang_outputs(state: ZhangState, params: ControllerParams) -> ControllerOutput:
     """Return the outputs that hold until the next sample."""
-    active = state.phase in (Phase.PATH_TRACKING, Phase.STRAIGHTEN)
-    driving = state.phase == Phase.PATH_TRACKING
+    active = state.phase in (ZhangPhase.PATH_TRACKING, ZhangPhase.STRAIGHTEN)
+    driving = state.phase == ZhangPhase.PATH_TRACKING
     wheel = steering_wheel_angle(state.steering.angle, state.frame.mirror, params)
     force = state.pid.force if driving else 0.0
     speed = state.set_speed if driving else 0.0
-    brake = not driving and state.phase != Phase.TAKEOVER
-    shifts = 0 if state.phase == Phase.STANDBY else 1
+    brake = not driving and state.phase != ZhangPhase.TAKEOVER
+    shifts = 0 if state.phase == ZhangPhase.STANDBY else 1
     return ControllerOutput(
         steering_wheel_request=wheel if active else 0.0,
         steering_active=active,

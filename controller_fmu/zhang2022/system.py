@@ -4,11 +4,13 @@ import math
 from typing import NamedTuple
 
 from controller_fmu.common.monitor import MonitorState, is_usable_input, reason_to_fail, watch
+from controller_fmu.common.phases import is_over
 from controller_fmu.common.slot_frame import SlotFrame, frame_at, to_slot
 from controller_fmu.common.steering_wheel import steering_wheel_angle
-from controller_fmu.interface import ControllerInput, ControllerParams, Phase, Reason
+from controller_fmu.interface import ControllerInput, ControllerParams, Reason
 from controller_fmu.zhang2022.mpc import FrontAxle, Steering, steer, turned
 from controller_fmu.zhang2022.path import PathStatus, QuinticPath, Reference, nearest, plan
+from controller_fmu.zhang2022.phases import ZhangPhase, expected_in
 from controller_fmu.zhang2022.pid import PidState, pid
 from modelkit.maths import move_towards
 from modelkit.vocabulary import Pose
@@ -22,7 +24,7 @@ CREEP = 0.03
 class ZhangState(NamedTuple):
     """Everything the system remembers."""
 
-    phase: int = Phase.STANDBY
+    phase: int = ZhangPhase.STANDBY
     reason: int = Reason.NONE
     running_ns: int = 0
     solved_ns: int = 0
@@ -43,24 +45,25 @@ def zhang_start(params: ControllerParams) -> ZhangState:
 
 def zhang_sample(state: ZhangState, inputs: ControllerInput, params: ControllerParams, dt_ns: int) -> ZhangState:
     """Return the system one sample of ``dt_ns`` later."""
-    if state.phase >= Phase.PARKED:
+    if is_over(state.phase):
         return state
     if not is_usable_input(inputs):
-        return _ended(state, Phase.FAILED, Reason.BAD_INPUT)
+        return _ended(state, ZhangPhase.FAILED, Reason.BAD_INPUT)
     if inputs.driver_takeover:
-        return _ended(state, Phase.TAKEOVER, Reason.NONE)
-    if state.phase == Phase.STANDBY:
+        return _ended(state, ZhangPhase.TAKEOVER, Reason.NONE)
+    if state.phase == ZhangPhase.STANDBY:
         return _planned(inputs, params)
     pose = to_slot(inputs.odometry, state.frame)
     reference = nearest(state.path, pose)
     wheel = steering_wheel_angle(state.steering.angle, state.frame.mirror, params)
-    monitor = watch(state.monitor, inputs, state.phase, wheel, dt_ns, params)
-    reason = reason_to_fail(monitor, inputs, state.phase, state.running_ns, 1, params)
+    expected = expected_in(state.phase)
+    monitor = watch(state.monitor, inputs, expected, wheel, dt_ns, params)
+    reason = reason_to_fail(monitor, inputs, expected, state.running_ns, 1, params)
     if reason == Reason.NONE and abs(reference.lateral_error) > params.threshold.lost_lateral:
         reason = Reason.LEFT_PATH
     if reason != Reason.NONE:
-        return _ended(state, Phase.FAILED, reason)
-    if state.phase == Phase.STRAIGHTEN:
+        return _ended(state, ZhangPhase.FAILED, reason)
+    if state.phase == ZhangPhase.STRAIGHTEN:
         return _straightened(state, inputs, pose, monitor, params, dt_ns)
     return _driven(state, inputs, pose, reference, monitor, params, dt_ns)
 
@@ -84,7 +87,7 @@ def _planned(inputs: ControllerInput, params: ControllerParams) -> ZhangState:
     angle = frame.mirror * inputs.steering_wheel_angle / params.car.steering.ratio
     found = path.status == PathStatus.FOUND
     return ZhangState(
-        phase=Phase.PATH_TRACKING if found else Phase.FAILED,
+        phase=ZhangPhase.PATH_TRACKING if found else ZhangPhase.FAILED,
         reason=Reason.NONE if found else Reason.NO_PATH,
         solved_ns=math.floor(params.zhang2022.mpc.period * 1e9),
         frame=frame,
@@ -118,7 +121,7 @@ def _driven(
     set_speed = move_towards(state.set_speed, wanted, zhang.ramp * dt)
     speed = pid(state.pid, set_speed - inputs.measured_speed, zhang.pid, dt)
     return ZhangState(
-        phase=Phase.STRAIGHTEN if arrived else Phase.PATH_TRACKING,
+        phase=ZhangPhase.STRAIGHTEN if arrived else ZhangPhase.PATH_TRACKING,
         reason=Reason.NONE,
         running_ns=state.running_ns + dt_ns,
         solved_ns=solved_ns,
@@ -137,12 +140,12 @@ def _straightened(
 ) -> ZhangState:
     """Return the system at the target: wheel to the middle, then parked or missed."""
     limit = params.threshold
-    phase = Phase.STRAIGHTEN
+    phase = ZhangPhase.STRAIGHTEN
     reason = Reason.NONE
     still = abs(inputs.measured_speed) <= limit.standstill
     if still and abs(inputs.steering_wheel_angle) <= limit.wheel:
         near = abs(pose.y) <= limit.miss_lateral and abs(pose.heading) <= limit.miss_heading
-        phase = Phase.PARKED if near else Phase.FAILED
+        phase = ZhangPhase.PARKED if near else ZhangPhase.FAILED
         reason = Reason.NONE if near else Reason.MISSED_TARGET
     return state._replace(
         phase=phase,

@@ -71,9 +71,9 @@ def _variable(
     model: Model, item: Variable, vr: int, causality: str, variability: str, initial: str | None
 ) -> FmiVariable:
     start = item.start if initial != "calculated" else None
-    return FmiVariable(
-        item.name, vr, item.kind, causality, variability, initial, start, item.signal, model.shows(item.name)
-    )
+    states = dict(model.view.states).get(item.name, item.signal.states)
+    signal = item.signal._replace(states=states)
+    return FmiVariable(item.name, vr, item.kind, causality, variability, initial, start, signal, model.shows(item.name))
 
 
 def _of_signal(item: Variable, sampled: bool) -> str:

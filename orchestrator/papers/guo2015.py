@@ -12,8 +12,9 @@ import numpy as np
 
 from controller_fmu.common.slot_frame import to_world
 from controller_fmu.guo2015.legs import point_of_leg
+from controller_fmu.guo2015.phases import GuoPhase
 from controller_fmu.guo2015.planner import plan
-from controller_fmu.interface import ControllerParams, Phase
+from controller_fmu.interface import ControllerParams
 from modelkit.vocabulary import Pose
 from orchestrator.papers.guo2015_drivers import obeying_rows
 from orchestrator.papers.guo2015_figure import draw_case
@@ -97,9 +98,8 @@ def table_2() -> list[Row]:
     """Return the rows of Table 2: Q1 from the geometry of the path; the other points are inputs here."""
     params = ControllerParams()
     planned = plan(Pose(0.0, 0.0, 0.0), params.target, params.guo2015.radius, 4.0)
-    q1, q2 = (
-        to_world(point_of_leg(leg, planned.path, params.guo2015), planned.frame) for leg in (Phase.TO_Q1, Phase.TO_Q2)
-    )
+    legs = (GuoPhase.TO_Q1, GuoPhase.TO_Q2)
+    q1, q2 = (to_world(point_of_leg(leg, planned.path, params.guo2015), planned.frame) for leg in legs)
     ours = f"({q2.x:.3f}, {q2.y:.3f}, {q2.heading:.3f})"
     why = "the distances of Q2 and Q4 are read from it, Q3 is the target"
     rows = [Row("", "Table 2, Q2", "", "(-3.077, -0.830, 0.765)", ours, untestable=why)]

@@ -13,6 +13,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Polygon
 
 from controller_fmu.hsic.characteristic_states import Characteristic
+from controller_fmu.zhang2022.phases import ZhangPhase
 from orchestrator.drawing.save import save as save_picture
 from orchestrator.papers.result import Driven
 from orchestrator.verdict.geometry import Car
@@ -28,13 +29,13 @@ def draw_zhang(runs: list[Driven], file: Path) -> Path:
         signals, t = driven.recording.signals, driven.recording.t
         label = "double-track body" if driven.summary.scenario.endswith("track") else "kinematic body"
         path.plot(signals["vehicle.pose.x"], signals["vehicle.pose.y"], color=colour, label=label)
-        on = signals["controller.phase"] == 2.0
+        on = signals["controller.phase"] == ZhangPhase.PATH_TRACKING
         heading.plot(t, np.degrees(signals["vehicle.pose.heading"]), color=colour)
         speed.plot(t, signals["vehicle.speed"], color=colour)
         error = signals["vehicle.front_wheel_angle"] - signals["controller.zhang2022.reference_angle"]
         angle.plot(t[on], np.degrees(error[on]), color=colour)
     first = runs[0].recording
-    on = first.signals["controller.phase"] == 2.0
+    on = first.signals["controller.phase"] == ZhangPhase.PATH_TRACKING
     dotted = {"color": "#222222", "linestyle": ":", "linewidth": 1.0}
     path.plot(
         first.signals["controller.reference.x"][on], first.signals["controller.reference.y"][on], label="path", **dotted
@@ -63,7 +64,7 @@ def draw_hsic(plain: Driven, shuffle: Driven, file: Path) -> Path:
         angles.plot(t, np.degrees(signals["vehicle.pose.heading"]), color=BLUE, label="heading")
         angles.set(ylabel="deg")
         angles.legend(frameon=False, ncols=2)
-        on = signals["controller.hsic.stage"] == 2.0
+        on = signals["controller.hsic.stage"] == ZhangPhase.PATH_TRACKING
         tangent.plot(t[on], 100.0 * signals["controller.hsic.tangent_error"][on], color=ORANGE)
         tangent.set(ylabel="off the\ntangent [cm]", xlim=(0.0, t[-1]))
         _ribbon(ribbon, driven)

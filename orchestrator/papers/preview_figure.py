@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 
 from controller_fmu.preview.control import drive_force, steering_angle
 from controller_fmu.preview.params import PreviewParams
+from controller_fmu.preview.phases import PreviewPhase
 from controller_fmu.preview.preview import Sight
 from orchestrator.cosim.slave import Array
 from orchestrator.drawing.save import save
@@ -93,7 +94,7 @@ def _drive(main: Driven, single: Driven, file: Path) -> Path:
     for driven, colour, label in ((main, BLUE, "dual"), (single, ORANGE, "single point, no slowing")):
         signals = driven.recording.signals
         s = signals["controller.preview.s"]
-        driving = signals["controller.phase"] == 2.0
+        driving = signals["controller.phase"] == PreviewPhase.PATH_TRACKING
         axes[0].plot(
             s[driving], 100.0 * signals["controller.preview.y_l"][driving], color=colour, label=label, linewidth=1.0
         )

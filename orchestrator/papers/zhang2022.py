@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
+from controller_fmu.zhang2022.phases import ZhangPhase
 from orchestrator.cosim.slave import Array
 from orchestrator.papers.motion_figure import draw_zhang
 from orchestrator.papers.result import CONCLUSION, OWN, Drive, Driven, Reproduction, Row, not_tested, yes_row
@@ -26,8 +27,6 @@ UNTESTED = [
         "Fig. 2: slot a, b, c, d and l_c, l_k, l_w", "letters without numbers; the slot here is chosen, contact seen"
     ),
 ]
-PLANNED = 2.0
-"""Phase PATH_TRACKING."""
 
 
 def reproduce(out: Path, drive: Drive) -> Reproduction:
@@ -53,7 +52,7 @@ def curvature_limit(driven: Driven) -> float:
 
 def tracking(driven: Driven) -> Array:
     """Return which instants are driven along the path."""
-    return np.asarray(driven.recording.signals["controller.phase"] == PLANNED)
+    return np.asarray(driven.recording.signals["controller.phase"] == ZhangPhase.PATH_TRACKING)
 
 
 def cruising(driven: Driven) -> Array:

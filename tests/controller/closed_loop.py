@@ -2,6 +2,7 @@
 
 from typing import Any, NamedTuple
 
+from controller_fmu.common.phases import is_over
 from controller_fmu.interface import Phase
 from tests.controller.in_process import run
 
@@ -13,15 +14,15 @@ class Run(NamedTuple):
     controller: list[Any]
 
     @property
-    def phases(self) -> list[Phase]:
+    def phases(self) -> list[int]:
         return [Phase(outputs.phase) for outputs in self.controller]
 
     @property
-    def visited(self) -> list[Phase]:
+    def visited(self) -> list[int]:
         phases = self.phases
         return [phase for k, phase in enumerate(phases) if k == 0 or phase != phases[k - 1]]
 
-    def at_entry(self, phase: Phase) -> Any:
+    def at_entry(self, phase: int) -> Any:
         """Return the vehicle outputs when ``phase`` was first entered."""
         return self.vehicle[self.phases.index(phase)]
 
@@ -33,7 +34,7 @@ def drive(vehicle: dict[str, Any], controller: dict[str, Any], stop: float = 60.
     def look(_t_ns: int, car: Any, asked: Any) -> bool:
         seen.vehicle.append(car)
         seen.controller.append(asked)
-        return bool(asked.phase >= Phase.PARKED and car.speed == 0.0)
+        return bool(is_over(asked.phase) and car.speed == 0.0)
 
     run({"vehicle": vehicle, "controller": controller}, round(stop * 1e9), step_ns, look)
     return seen

@@ -3,11 +3,10 @@
 import pytest
 
 from controller_fmu.adaptive.chart import ANY, TRANSITIONS, Guard, transition
-from controller_fmu.interface import Phase
+from controller_fmu.adaptive.phases import AdaptivePhase
 
-ENDS = {Phase.PARKED, Phase.FAILED, Phase.TAKEOVER}
-NOT_HERE = {Phase.TO_Q1, Phase.TO_Q2, Phase.TO_Q3}
-BUSY = [phase for phase in Phase if phase not in ENDS | NOT_HERE]
+ENDS = {AdaptivePhase.PARKED, AdaptivePhase.FAILED, AdaptivePhase.TAKEOVER}
+BUSY = [phase for phase in AdaptivePhase if phase not in ENDS]
 
 
 @pytest.mark.parametrize("phase", BUSY)
@@ -26,14 +25,14 @@ def test_ends_are_ends(phase):
 @pytest.mark.parametrize("phase", BUSY)
 def test_takeover_wins_then_fault(phase):
     everything = (1 << len(Guard)) - 1
-    assert transition(phase, everything) == Phase.TAKEOVER
-    assert transition(phase, everything & ~(1 << Guard.TAKEOVER)) == Phase.FAILED
+    assert transition(phase, everything) == AdaptivePhase.TAKEOVER
+    assert transition(phase, everything & ~(1 << Guard.TAKEOVER)) == AdaptivePhase.FAILED
 
 
 def test_no_dead_state():
     edges = {(row[0], row[2]) for row in TRANSITIONS if row[0] != ANY}
-    reached, new = {Phase.STANDBY}, {Phase.STANDBY}
+    reached, new = {AdaptivePhase.STANDBY}, {AdaptivePhase.STANDBY}
     while new:
         new = {t for s, t in edges if s in new} - reached
         reached |= new
-    assert reached == set(BUSY) | {Phase.PARKED}
+    assert reached == set(BUSY) | {AdaptivePhase.PARKED}

@@ -5,7 +5,8 @@ import math
 import pytest
 from closed_loop import drive
 
-from controller_fmu.interface import Phase, Reason, System
+from controller_fmu.adaptive.phases import AdaptivePhase
+from controller_fmu.interface import Reason, System
 from modelkit.vocabulary import Prompt
 
 FAST = {"drive.acceleration_limit": 10.0, "drive.deceleration_limit": 3.5, "driver.profile[1].speed": 1.5}
@@ -16,7 +17,7 @@ QUICK_WHEEL = math.radians(1995.0)
 
 def parked(vehicle, controller=None):
     run = drive({**FAST, **vehicle}, {**OURS, **(controller or {})})
-    assert run.phases[-1] == Phase.PARKED, Reason(run.controller[-1].reason)
+    assert run.phases[-1] == AdaptivePhase.PARKED, Reason(run.controller[-1].reason)
     end = run.vehicle[-1].pose
     assert abs(end.x - TARGET[0]) < 0.28
     assert abs(end.y - TARGET[1]) < 0.035
@@ -25,7 +26,7 @@ def parked(vehicle, controller=None):
 
 
 def stops(run):
-    return [phase for phase in run.visited if phase == Phase.STOP]
+    return [phase for phase in run.visited if phase == AdaptivePhase.STOP]
 
 
 def test_a_driver_who_slows_down_parks_in_one_go():
@@ -62,8 +63,8 @@ def test_the_other_side_is_the_mirror_image():
 
 def test_where_no_path_leads_in_it_goes_ahead_first():
     run = parked({"start.x": -1.0, "start.y": 1.1})
-    ways = [phase for phase in run.visited if phase in (Phase.PATH_TRACKING, Phase.TO_Q4)]
-    assert ways[0] == Phase.TO_Q4
+    ways = [phase for phase in run.visited if phase in (AdaptivePhase.PATH_TRACKING, AdaptivePhase.TO_Q4)]
+    assert ways[0] == AdaptivePhase.TO_Q4
     prompts = [out.prompt for out in run.controller]
     assert Prompt.FORWARD in prompts
     assert run.controller[-1].shifts == 1, "the way ahead before the first reverse counts none"
@@ -71,21 +72,21 @@ def test_where_no_path_leads_in_it_goes_ahead_first():
 
 def test_no_room_at_all_is_no_path():
     run = drive(FAST, {**OURS, "adaptive.room.road": 1.0, "adaptive.room.slot_front": 3.3})
-    assert (run.phases[-1], run.controller[-1].reason) == (Phase.FAILED, Reason.NO_PATH)
+    assert (run.phases[-1], run.controller[-1].reason) == (AdaptivePhase.FAILED, Reason.NO_PATH)
 
 
 def test_a_driver_who_does_not_move_ends_it():
     run = drive({**FAST, "driver.obeys_direction": False, "driver.profile[1].speed": 0.0}, OURS)
-    assert (run.phases[-1], run.controller[-1].reason) == (Phase.FAILED, Reason.NOT_MOVING)
+    assert (run.phases[-1], run.controller[-1].reason) == (AdaptivePhase.FAILED, Reason.NOT_MOVING)
 
 
 def test_a_wheel_that_sticks_is_a_fault_and_the_car_is_stopped():
     run = drive({**FAST, "car.steering.rate_limit": 0.01}, OURS)
-    assert (run.phases[-1], run.controller[-1].reason) == (Phase.FAILED, Reason.STEERING_FAULT)
+    assert (run.phases[-1], run.controller[-1].reason) == (AdaptivePhase.FAILED, Reason.STEERING_FAULT)
     assert run.controller[-1].brake_request
 
 
 def test_takeover_ends_it():
     run = drive({**FAST, "driver.takeover_time": 4.0}, OURS)
-    assert run.phases[-1] == Phase.TAKEOVER
+    assert run.phases[-1] == AdaptivePhase.TAKEOVER
     assert not run.controller[-1].brake_request

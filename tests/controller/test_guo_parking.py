@@ -9,7 +9,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from controller_fmu import MODEL as CONTROLLER
-from controller_fmu.interface import ControllerInput, ControllerParams, Phase, Reason, System
+from controller_fmu.guo2015.phases import GuoPhase
+from controller_fmu.interface import ControllerInput, ControllerParams, Reason, System
 from modelkit.variables import constructor, variables, with_values
 from modelkit.vocabulary import Pose, Prompt
 
@@ -43,15 +44,15 @@ def case_4() -> Run:
 
 
 def test_case_4_goes_the_paper_s_way(case_4: Run) -> None:
-    ways = [phase for phase in case_4.visited if phase not in (Phase.STOP, Phase.PRE_STEER)]
+    ways = [phase for phase in case_4.visited if phase not in (GuoPhase.STOP, GuoPhase.PRE_STEER)]
     assert ways == [
-        Phase.STANDBY,
-        Phase.PATH_TRACKING,
-        Phase.TO_Q2,
-        Phase.TO_Q1,
-        Phase.PATH_TRACKING,
-        Phase.STRAIGHTEN,
-        Phase.PARKED,
+        GuoPhase.STANDBY,
+        GuoPhase.PATH_TRACKING,
+        GuoPhase.TO_Q2,
+        GuoPhase.TO_Q1,
+        GuoPhase.PATH_TRACKING,
+        GuoPhase.STRAIGHTEN,
+        GuoPhase.PARKED,
     ]
     end = case_4.vehicle[-1]
     assert abs(end.pose.y - TARGET[1]) < 0.05
@@ -80,7 +81,7 @@ def test_same_way_anywhere(case_4: Run, turn: float, ox: float, oy: float, mirro
 
 
 def test_reverse_only_after_the_wheel_is_set(case_4: Run) -> None:
-    start = case_4.phases.index(Phase.PATH_TRACKING)
+    start = case_4.phases.index(GuoPhase.PATH_TRACKING)
     assert all(outputs.pose == Pose(0.0, 0.0, 0.0) for outputs in case_4.vehicle[: start + 1])
     angle = abs(case_4.vehicle[start].front_wheel_angle)
     assert angle == pytest.approx(math.atan(2.405 / 5.499), abs=2e-3)  # 23.6 deg, as the paper's times need
@@ -115,7 +116,7 @@ def test_every_trouble_ends_with_its_reason(
         run = _drive_unchecked({**CASE_4, **vehicle}, {**PROMPTS, **controller})
     else:
         run = drive({**CASE_4, **vehicle}, {**PROMPTS, **controller})
-    assert run.phases[-1] == Phase.FAILED
+    assert run.phases[-1] == GuoPhase.FAILED
     assert Reason(run.controller[-1].reason) == reason
     assert run.vehicle[-1].speed == 0.0
     assert run.controller[-1].prompt == Prompt.STOP
@@ -137,7 +138,7 @@ def _drive_unchecked(vehicle: dict[str, Any], controller: dict[str, Any]) -> Run
 
 def test_takeover_stops_the_car_and_frees_the_wheel() -> None:
     run = drive({**CASE_4, "driver.takeover_time": 3.0}, PROMPTS)
-    assert run.phases[-1] == Phase.TAKEOVER
+    assert run.phases[-1] == GuoPhase.TAKEOVER
     assert run.vehicle[-1].speed == 0.0
     assert not run.controller[-1].steering_active
     assert not run.controller[-1].brake_request
@@ -165,7 +166,7 @@ def test_a_car_that_never_stands_at_first_is_not_waited_for_for_ever() -> None:
     rolling = ControllerInput(measured_speed=0.02)
     for seconds in range(1, 8):
         state, out = step(state, rolling, params, 1_000_000_000)
-        assert (out.phase == Phase.FAILED) == (seconds > 5)
+        assert (out.phase == GuoPhase.FAILED) == (seconds > 5)
     assert out.reason == Reason.TIMEOUT
 
 

@@ -6,11 +6,11 @@ from typing import Any
 import pytest
 from closed_loop import Run, drive
 
-from controller_fmu.common.monitor import DIRECTION_OF_PHASE
 from controller_fmu.common.steering_monitor import Steering
 from controller_fmu.guo2015.params import GuoPrompts
+from controller_fmu.guo2015.phases import DIRECTION_OF_PHASE, GuoPhase
 from controller_fmu.guo2015.prompts import stopping_distance, swing_speed
-from controller_fmu.interface import ControllerParams, Phase, Reason
+from controller_fmu.interface import ControllerParams, Reason
 from modelkit.vocabulary import Prompt
 
 TANGENT_X = -3.8
@@ -36,24 +36,24 @@ def test_the_advice_holds_until_the_wheel_has_swung(obeying: Run) -> None:
 
 
 def test_the_car_stays_on_the_path(obeying: Run) -> None:
-    on_it = [outputs.lateral_error for outputs in obeying.controller if outputs.phase == Phase.PATH_TRACKING]
+    on_it = [outputs.lateral_error for outputs in obeying.controller if outputs.phase == GuoPhase.PATH_TRACKING]
     assert max(map(abs, on_it)) < 0.12
-    assert Phase.TO_Q2 not in obeying.visited
-    assert obeying.phases[-1] == Phase.PARKED
+    assert GuoPhase.TO_Q2 not in obeying.visited
+    assert obeying.phases[-1] == GuoPhase.PARKED
 
 
 @pytest.mark.parametrize("speed", [0.3, 1.5])
 def test_the_advice_never_rises_with_a_stop(speed: float) -> None:
     run = drive(OBEYING | {"driver.profile[1].speed": speed, "driver.obeys_slow_down": False}, {})
     for before, after in zip(run.controller, run.controller[1:], strict=False):
-        if after.phase == Phase.STOP:
+        if after.phase == GuoPhase.STOP:
             assert after.advised_speed <= before.advised_speed
 
 
 def test_point_tracking_is_slow() -> None:
     """Guo 2015, Fig. 9: stop and drive slowly forward."""
     run = drive(OBEYING | {"driver.obeys_slow_down": False}, {})
-    points = (Phase.TO_Q1, Phase.TO_Q2, Phase.TO_Q3, Phase.TO_Q4)
+    points = (GuoPhase.TO_Q1, GuoPhase.TO_Q2, GuoPhase.TO_Q3, GuoPhase.TO_Q4)
     legs = [outputs for outputs in run.controller if outputs.phase in points]
     assert {Prompt.SLOW_DOWN, Prompt.FORWARD, Prompt.REVERSE} == {Prompt(outputs.prompt) for outputs in legs}
     assert max(outputs.advised_speed for outputs in legs) <= GuoPrompts().point_speed
@@ -70,7 +70,7 @@ def test_a_direction_is_told_whenever_the_car_stands_and_shall_go(start: tuple[f
         if seen.speed == 0.0 and direction != 0:
             assert outputs.prompt == told[direction]
     assert Reason(run.controller[-1].reason) == Reason.NONE
-    assert run.phases[-1] == Phase.PARKED
+    assert run.phases[-1] == GuoPhase.PARKED
 
 
 def test_the_speed_for_a_swing_is_what_its_deviation_allows() -> None:
@@ -94,8 +94,8 @@ def test_a_slower_steering_is_advised_a_slower_swing() -> None:
     slow = drive(OBEYING | {"car.steering.rate_limit": 0.5 * math.radians(570.0)}, {})
     behind = next(k for k, outputs in enumerate(slow.vehicle) if outputs.pose.x <= TANGENT_X)
     assert slow.controller[behind].advised_speed == pytest.approx(0.5 * 0.287, abs=0.01)
-    assert Phase.TO_Q2 not in slow.visited
-    assert slow.phases[-1] == Phase.PARKED
+    assert GuoPhase.TO_Q2 not in slow.visited
+    assert slow.phases[-1] == GuoPhase.PARKED
 
 
 def test_the_way_to_stop_is_reaction_and_braking() -> None:

@@ -9,9 +9,10 @@ from scipy.interpolate import BSpline
 
 from controller_fmu.guo2015.path import reference_at
 from controller_fmu.guo2015.path_tracking import path_tracking_angle
+from controller_fmu.guo2015.phases import GuoPhase
 from controller_fmu.guo2015.planner import path_from
 from controller_fmu.guo2015.smooth_path import Shape, curve, leaning, on_curve, rising, way_left
-from controller_fmu.interface import Phase, Reason, System
+from controller_fmu.interface import Reason, System
 from modelkit.vocabulary import Pose
 
 L = 2.405
@@ -83,7 +84,7 @@ def test_a_car_parks_on_it(shape):
     """Reversing at up to 0.8 m/s with Table 1's wheel; the driver obeys."""
     vehicle = {"start.x": START.x + TARGET[0], "start.heading": START.heading, "driver.profile[1].speed": 0.8}
     run = drive(vehicle, {"system": int(System.NTBPT), "guo2015.path": int(shape)})
-    assert run.phases[-1] == Phase.PARKED
+    assert run.phases[-1] == GuoPhase.PARKED
     assert max(abs(out.lateral_error) for out in run.controller) < 0.03
     end = run.vehicle[-1].pose
     assert (end.x, end.y, end.heading) == pytest.approx((*TARGET, 0.0), abs=0.06)
@@ -92,4 +93,4 @@ def test_a_car_parks_on_it(shape):
 @each
 def test_a_start_too_near_is_refused(shape):
     run = drive({}, {"system": int(System.NTBPT), "guo2015.path": int(shape), "guo2015.radius_reserve": 1.5})
-    assert (run.phases[-1], run.controller[-1].reason) == (Phase.FAILED, Reason.NO_PATH)
+    assert (run.phases[-1], run.controller[-1].reason) == (GuoPhase.FAILED, Reason.NO_PATH)

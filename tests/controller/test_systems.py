@@ -5,7 +5,8 @@ import math
 import pytest
 
 from controller_fmu import MODEL, SYSTEMS
-from controller_fmu.interface import ControllerInput, ControllerParams, Phase, Reason, System
+from controller_fmu.common.phases import CommonPhase
+from controller_fmu.interface import ControllerInput, ControllerParams, Reason, System
 from modelkit.car import Car, CarSteering
 from modelkit.vocabulary import Prompt
 
@@ -41,7 +42,7 @@ def test_only_the_chosen_system_remembers_anything(system):
 @pytest.mark.parametrize("dts", [[], [10_000_000] * 5])
 def test_an_unknown_system_is_refused_and_the_car_is_stopped(dts):
     state, out = after(ControllerParams(system=99), dts)
-    assert (out.phase, out.reason) == (Phase.FAILED, Reason.BAD_PARAMETER)
+    assert (out.phase, out.reason) == (CommonPhase.FAILED, Reason.BAD_PARAMETER)
     assert out.brake_request
     assert state.clock.time_ns == sum(dts)
 
@@ -52,7 +53,7 @@ def test_all_refuse_parameters_without_meaning(system):
     for bad in (*(ControllerParams(car=car) for car in cars), ControllerParams(sample_time=0.0)):
         for dts in ([], [10_000_000] * 3):
             _, out = after(bad._replace(system=int(system)), dts)
-            assert (out.phase, out.reason) == (Phase.FAILED, Reason.BAD_PARAMETER)
+            assert (out.phase, out.reason) == (CommonPhase.FAILED, Reason.BAD_PARAMETER)
             assert out.brake_request
             assert out.prompt == Prompt.STOP
 

@@ -11,15 +11,15 @@ from controller_fmu.common.slot_frame import SlotFrame, to_slot, to_world
 from controller_fmu.guo2015.legs import point_of_leg
 from controller_fmu.guo2015.params import GuoParams
 from controller_fmu.guo2015.path import distance_to_end, reference_at
+from controller_fmu.guo2015.phases import GuoPhase
 from controller_fmu.guo2015.planner import TwoArcPath, plan, touching_radius, two_arcs
-from controller_fmu.interface import Phase
 from modelkit.vocabulary import Pose
 
 SMALLEST = 2.405 / math.tan(math.radians(30.0))
 TABLE_2 = {
-    Phase.TO_Q1: (-3.798, -1.522, 0.765),
-    Phase.TO_Q2: (-3.077, -0.830, 0.765),
-    Phase.TO_Q4: (-5.108, -3.056, 0.0),
+    GuoPhase.TO_Q1: (-3.798, -1.522, 0.765),
+    GuoPhase.TO_Q2: (-3.077, -0.830, 0.765),
+    GuoPhase.TO_Q4: (-5.108, -3.056, 0.0),
 }
 
 poses = st.builds(

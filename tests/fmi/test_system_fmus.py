@@ -13,7 +13,8 @@ from test_python_fmu import bits
 from test_tunable import TO_CONTROLLER, TO_VEHICLE
 
 from controller_fmu import APA, MODEL, SYSTEM_MODELS, SYSTEMS
-from controller_fmu.interface import Phase, System
+from controller_fmu.common.phases import is_over
+from controller_fmu.interface import System
 from fmus.contents.arrays import fmi_arrays, shown_arrays
 from fmus.contents.description import model_description
 from fmus.contents.description3 import model_description3
@@ -86,7 +87,7 @@ def read_and_told(system):
         vehicle, told = VEHICLE.step(vehicle, to_vehicle, car, STEP_NS)
         controller, asked = MODEL.step(controller, to_controller, params, STEP_NS)
         told_by |= {name for name, now, default in zip(names, flatten(asked), first, strict=True) if now != default}
-        if asked.phase >= Phase.PARKED and told.speed == 0.0:
+        if is_over(asked.phase) and told.speed == 0.0:
             break
     return read, heard, told_by
 

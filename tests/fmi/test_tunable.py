@@ -9,7 +9,7 @@ from host import DISCARD, ERROR, OK, Host, random_inputs
 from test_python_fmu import bits
 
 from controller_fmu import MODEL as CONTROLLER
-from controller_fmu.interface import Phase
+from controller_fmu.guo2015.phases import GuoPhase
 from fmus.contents.variables import fmi_variables, limits
 from modelkit.connections import connections, part_of
 from modelkit.variables import constructor, flatten, variables, with_values
@@ -60,8 +60,8 @@ def underway(name):
         to_vehicle, to_controller = TO_VEHICLE(asked), TO_CONTROLLER(told)
         vehicle, told = VEHICLE.step(vehicle, to_vehicle, params["vehicle"], STEP_NS)
         controller, asked = CONTROLLER.step(controller, to_controller, params["controller"], STEP_NS)
-        assert asked.phase != Phase.FAILED
-        left -= asked.phase in (Phase.PATH_TRACKING, Phase.TO_Q2, Phase.TO_Q1) or asked.prompt == 2
+        assert asked.phase != GuoPhase.FAILED
+        left -= asked.phase in (GuoPhase.PATH_TRACKING, GuoPhase.TO_Q2, GuoPhase.TO_Q1) or asked.prompt == 2
     return params, {"vehicle": vehicle, "controller": controller}, (told, asked)
 
 

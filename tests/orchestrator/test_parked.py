@@ -11,7 +11,8 @@ import shapely
 from hypothesis import given
 from hypothesis import strategies as st
 
-from controller_fmu.interface import ControllerOutput, Phase
+from controller_fmu.guo2015.phases import GuoPhase
+from controller_fmu.interface import ControllerOutput
 from modelkit.signal import Signal
 from modelkit.variables import Variable, variables
 from orchestrator.cosim.recording import Recording
@@ -41,7 +42,7 @@ KNOWN = {f"controller.{item.name}": item for item in variables(ControllerOutput)
 
 def standing(
     pose: tuple[float, float, float] = Q3,
-    phase: float = Phase.PARKED,
+    phase: float = GuoPhase.PARKED,
     speed: float = 0.0,
     scenario: Scenario = CASE_4,
     **more: float,
@@ -119,8 +120,8 @@ def test_a_phase_without_names_means_ours() -> None:
 def test_the_scenario_says_what_ends_a_run_and_what_done_means() -> None:
     ending = {"signal": "vehicle.gear", "done": ["PARK"], "failed": [], "over": ["NEUTRAL"], "standstill": "1 s"}
     scenario = load_scenario("guo2015-case4", [f"ending={json.dumps(ending)}"])
-    assert verdict(scenario, phase=Phase.TO_Q2, **{"vehicle.gear": 0.0}).outcome == "parked"
-    assert why(verdict(scenario, phase=Phase.TO_Q2, **{"vehicle.gear": 2.0})) == ("not_parked", "neutral")
+    assert verdict(scenario, phase=GuoPhase.TO_Q2, **{"vehicle.gear": 0.0}).outcome == "parked"
+    assert why(verdict(scenario, phase=GuoPhase.TO_Q2, **{"vehicle.gear": 2.0})) == ("not_parked", "neutral")
     assert why(verdict(scenario, **{"vehicle.gear": 1.0})) == ("not_parked", "stop time reached in reverse")
 
 
@@ -140,7 +141,7 @@ def test_a_road_is_finished_not_parked() -> None:
     road = load_scenario("preview", ["limits=[]"])
     assert (road.task, road.expect, road.target) == ("drive", "finished", None)
     assert why(verdict(road)) == ("finished", "all checks passed")
-    assert why(verdict(road, phase=Phase.PATH_TRACKING)) == ("not_finished", "stop time reached in path_tracking")
+    assert why(verdict(road, phase=GuoPhase.PATH_TRACKING)) == ("not_finished", "stop time reached in path_tracking")
     assert math.isnan(verdict(road).final.lateral_error)
     with pytest.raises(BadInput, match="expect: 'parked' is no outcome of task drive, expected finished"):
         load_scenario("preview", ["expect=parked"])
@@ -235,7 +236,7 @@ def test_one_run_and_a_table_are_judged_alike_to_the_last_bit() -> None:
         sets += [f"scene.kerbs=[[-19, {kerb}, 9, {kerb}, 0.1]]"] if rng.random() < 0.5 else []
         scenario = load_scenario("guo2015-case4", sets)
         pose = tuple(np.array(Q3) + rng.normal(0.0, (0.4, 0.06, 0.02)))
-        phase = rng.choice([Phase.PARKED, Phase.PARKED, Phase.PARKED, Phase.FAILED, Phase.TAKEOVER, Phase.STOP])
+        phase = rng.choice([*[GuoPhase.PARKED] * 3, GuoPhase.FAILED, GuoPhase.TAKEOVER, GuoPhase.STOP])
         scenarios.append(scenario)
         recordings.append(standing(pose, phase, float(rng.choice([0.0, 0.0, 0.0, 0.1])), scenario))
     kept = measures_for(scenarios[0])

@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from controller_fmu.interface import ControllerOutput, Phase, Reason
+from controller_fmu.guo2015.phases import GuoPhase
+from controller_fmu.interface import ControllerOutput, Reason
 from modelkit.variables import variables
 from orchestrator.cosim.recording import Recording
 from orchestrator.scenario.load_scenario import load_scenario
@@ -59,7 +60,7 @@ def test_final_errors_are_in_the_targets_frame() -> None:
 
 
 def test_events_carry_time_phases_and_pose() -> None:
-    data = summary(recording([0, 0, int(Phase.PATH_TRACKING), int(Phase.PARKED)])).as_json()
+    data = summary(recording([0, 0, int(GuoPhase.PATH_TRACKING), int(GuoPhase.PARKED)])).as_json()
     assert [(event["t"], event["from"], event["to"]) for event in data["events"]] == [
         (0.02, "STANDBY", "PATH_TRACKING"),
         (0.03, "PATH_TRACKING", "PARKED"),
@@ -71,31 +72,31 @@ def test_events_carry_time_phases_and_pose() -> None:
 @pytest.mark.parametrize(
     ("phase", "end", "reason", "outcome", "why"),
     [
-        (Phase.PARKED, "standstill", 0, "parked", "all checks passed"),
-        (Phase.FAILED, "standstill", Reason.POSE_FROZEN, "failed", "pose_frozen"),
-        (Phase.FAILED, "stop_time", Reason.NOT_STOPPING, "failed", "not_stopping"),
-        (Phase.TAKEOVER, "standstill", 0, "not_parked", "takeover"),
-        (Phase.TO_Q2, "stop_time", 0, "not_parked", "stop time reached in to_q2"),
-        (Phase.PARKED, "interrupted", 0, "aborted", "interrupted"),
-        (Phase.PARKED, "error: vehicle failed", 0, "aborted", "error: vehicle failed"),
+        (GuoPhase.PARKED, "standstill", 0, "parked", "all checks passed"),
+        (GuoPhase.FAILED, "standstill", Reason.POSE_FROZEN, "failed", "pose_frozen"),
+        (GuoPhase.FAILED, "stop_time", Reason.NOT_STOPPING, "failed", "not_stopping"),
+        (GuoPhase.TAKEOVER, "standstill", 0, "not_parked", "takeover"),
+        (GuoPhase.TO_Q2, "stop_time", 0, "not_parked", "stop time reached in to_q2"),
+        (GuoPhase.PARKED, "interrupted", 0, "aborted", "interrupted"),
+        (GuoPhase.PARKED, "error: vehicle failed", 0, "aborted", "error: vehicle failed"),
     ],
 )
-def test_outcomes(phase: Phase, end: str, reason: int, outcome: str, why: str) -> None:
+def test_outcomes(phase: GuoPhase, end: str, reason: int, outcome: str, why: str) -> None:
     found = summary(recording([0, int(phase)], end, int(reason)))
     assert (found.outcome, found.reason) == (outcome, why)
 
 
 def test_parked_needs_every_required_check() -> None:
     speed = {"id": "speed", "signal": "vehicle.speed", "max_abs": 1.0, "source": "me"}
-    found = summary(recording([0, int(Phase.PARKED)]), [speed])
+    found = summary(recording([0, int(GuoPhase.PARKED)]), [speed])
     assert (found.outcome, found.reason) == ("not_parked", "beyond its limit: speed")
     assert found.checks[0].margin == pytest.approx(-0.25)
     assert found.checks[0].t == 0.0
-    assert summary(recording([0, int(Phase.PARKED)]), [{**speed, "required": False}]).outcome == "parked"
+    assert summary(recording([0, int(GuoPhase.PARKED)]), [{**speed, "required": False}]).outcome == "parked"
 
 
 def test_nan_passes_no_check_and_json_stays_json() -> None:
-    broken = recording([0, int(Phase.PARKED)])
+    broken = recording([0, int(GuoPhase.PARKED)])
     broken.signals["vehicle.pose.x"][-1] = math.nan
     found = summary(broken, [{"id": "lateral", "signal": "final.lateral_error", "max_abs": 0.05, "source": "me"}])
     assert found.outcome == "not_parked"
@@ -104,7 +105,7 @@ def test_nan_passes_no_check_and_json_stays_json() -> None:
 
 
 def test_the_promised_keys() -> None:
-    data = summary(recording([0, int(Phase.PARKED)])).as_json()
+    data = summary(recording([0, int(GuoPhase.PARKED)])).as_json()
     assert set(data) >= PROMISED
     assert list(data["final"]) == [
         *("x", "y", "heading", "lateral_error", "longitudinal_error", "heading_error", "steering_wheel_angle"),

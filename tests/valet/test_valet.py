@@ -8,9 +8,10 @@ from c_model import CModel
 from shapely.geometry import LineString, Polygon
 
 from controller_fmu import MODEL, VALET
-from controller_fmu.interface import ControllerInput, Phase, Reason, System
+from controller_fmu.interface import ControllerInput, Reason, System
 from controller_fmu.planning.task import Corner
 from controller_fmu.valet.params import MAP_CORNERS, GivenSlot, SlotKind, ValetParams
+from controller_fmu.valet.phases import ValetPhase
 from controller_fmu.valet.sight import NUMBER, SEEN_CORNERS, Sight, expected, look, remembered, scene_of
 from controller_fmu.valet.signals import Planning
 from controller_fmu.valet.slot import body_of, goal_of
@@ -96,7 +97,7 @@ def test_things_heard_are_remembered_and_the_oldest_forgotten():
 
 def test_the_large_controller_refuses_what_only_the_valet_does():
     _, outputs = MODEL.initialize(MODEL.params()._replace(system=System.VALET))
-    assert (outputs.phase, outputs.reason) == (Phase.FAILED, Reason.BAD_PARAMETER)
+    assert (outputs.phase, outputs.reason) == (ValetPhase.FAILED, Reason.BAD_PARAMETER)
     assert not {"map", "slot"} & {item.name.split(".")[0].split("[")[0] for item in variables(MODEL.params)}
 
 
@@ -104,7 +105,7 @@ def test_parameters_without_sense_are_refused():
     params = ValetParams(sample_time=0.0)
     step = VALET.stepper(VALET.new_store())
     _, outputs = step(VALET.initialize(params)[0], ControllerInput(), params, STEP_NS)
-    assert (outputs.phase, outputs.reason, outputs.brake_request) == (Phase.FAILED, Reason.BAD_PARAMETER, True)
+    assert (outputs.phase, outputs.reason, outputs.brake_request) == (ValetPhase.FAILED, Reason.BAD_PARAMETER, True)
 
 
 @pytest.mark.parametrize(
@@ -118,9 +119,9 @@ def test_a_fault_ends_it_with_its_reason(changed, reason):
     params = with_map(BOX, target=Pose(0.0, 8.0, 0.0))
     step, (state, _) = VALET.stepper(VALET.new_store()), VALET.initialize(params)
     state, outputs = step(state, ControllerInput(), params, STEP_NS)
-    assert (outputs.phase, outputs.valet.search) == (Phase.STANDBY, Planning.PLANNING)
+    assert (outputs.phase, outputs.valet.search) == (ValetPhase.STANDBY, Planning.PLANNING)
     _, outputs = step(state, ControllerInput()._replace(**changed), params, STEP_NS)
-    assert (outputs.phase, outputs.reason, outputs.brake_request) == (Phase.FAILED, reason, True)
+    assert (outputs.phase, outputs.reason, outputs.brake_request) == (ValetPhase.FAILED, reason, True)
 
 
 class Twin(InProcessSlave):

@@ -13,6 +13,7 @@ from fmus.compiler.target.layout import WIDTH, comment, flat, laid_out
 from fmus.compiler.target.names import member_name
 from fmus.compiler.target.program import Constant, Program
 from fmus.compiler.target.values import INT32, float_text, int_text
+from modelkit.states import parts_of
 
 NO_FIELD = "none"
 """The only member of a NamedTuple that has no fields."""
@@ -50,7 +51,8 @@ class Writer:
     def enum(self, cls: type[IntEnum], header: bool) -> list[str]:
         """Return an enum's members as constants."""
         name = self.program.types[cls]
-        meanings = field_meanings(self.program.library.class_node(cls))
+        nodes = [self.program.library.class_node(part) for part in parts_of(cls)]
+        meanings = {name: text for node in reversed(nodes) for name, text in field_meanings(node).items()}
         lines = ["", *self._doc(cls), "enum {"]
         last = list(cls.__members__)[-1]
         for word, member in cls.__members__.items():

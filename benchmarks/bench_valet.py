@@ -16,7 +16,7 @@ from modelkit.variables import flatten, variables, with_values
 from orchestrator.cosim.fmu_files import fmu_files
 from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.session.session import run_scenario
-from orchestrator.verdict.geometry import Car, described
+from orchestrator.verdict.geometry import CarOutline, described
 from orchestrator.verdict.polygons import polygon_clearance
 from orchestrator.verdict.summary import summarize
 
@@ -59,7 +59,7 @@ def driven(scenario, files):
     ran = run_scenario(scenario, files, kind="native")
     signals = ran.recording.signals
     poses = np.column_stack([signals[f"vehicle.pose.{axis}"] for axis in ("x", "y", "heading")])
-    car = Car.of(described(scenario, ran.recording.parameters_of("vehicle")))
+    car = CarOutline.of(described(scenario, ran.recording.parameters_of("vehicle")))
     clear = np.nanmin([polygon_clearance(poses, scenario.polygons, car), signals["vehicle.clearance"].min()])
     speed = signals["controller.speed_request"]
     signs = np.sign(speed[speed != 0.0])

@@ -42,7 +42,7 @@ class DoubleTrackState(NamedTuple):
     felt: Felt = Felt()
 
 
-class Corner(NamedTuple):
+class CarCorner(NamedTuple):
     """A wheel's place and what acts on it besides the road."""
 
     x: float
@@ -125,7 +125,7 @@ def _sum(on: tuple[Wrench, ...]) -> Wrench:
 
 def _corners(
     angle: float, effort: Effort, loads: Loads, build: Build, p: DoubleTrackParams
-) -> tuple[Corner, Corner, Corner, Corner]:
+) -> tuple[CarCorner, CarCorner, CarCorner, CarCorner]:
     chassis = build.chassis
     front = build.stance.wheelbase - build.stance.cg_to_rear
     rear = -build.stance.cg_to_rear
@@ -143,14 +143,14 @@ def _corners(
     grip = build.road.grip
     load = loads.wheels
     return (
-        Corner(front, y_front, left, load[0], lean_front, grip[0], drive_front, brake_front + drag * load[0]),
-        Corner(front, -y_front, right, load[1], lean_front, grip[1], drive_front, brake_front + drag * load[1]),
-        Corner(rear, y_rear, 0.0, load[2], lean_rear, grip[2], drive_rear, brake_rear + drag * load[2]),
-        Corner(rear, -y_rear, 0.0, load[3], lean_rear, grip[3], drive_rear, brake_rear + drag * load[3]),
+        CarCorner(front, y_front, left, load[0], lean_front, grip[0], drive_front, brake_front + drag * load[0]),
+        CarCorner(front, -y_front, right, load[1], lean_front, grip[1], drive_front, brake_front + drag * load[1]),
+        CarCorner(rear, y_rear, 0.0, load[2], lean_rear, grip[2], drive_rear, brake_rear + drag * load[2]),
+        CarCorner(rear, -y_rear, 0.0, load[3], lean_rear, grip[3], drive_rear, brake_rear + drag * load[3]),
     )
 
 
-def _turn(wheel: Wheel, at: Corner, motion: Motion, hub: HubParams, tires: TireParams, h: float) -> Wheel:
+def _turn(wheel: Wheel, at: CarCorner, motion: Motion, hub: HubParams, tires: TireParams, h: float) -> Wheel:
     forward = motion.speed_x - at.y * motion.yaw_rate
     leftward = motion.speed_y + at.x * motion.yaw_rate
     cos = math.cos(at.angle)
@@ -167,7 +167,7 @@ def _turn(wheel: Wheel, at: Corner, motion: Motion, hub: HubParams, tires: TireP
     return turn_wheel(wheel, contact, hub, tires, h)
 
 
-def _wrench(wheel: Wheel, at: Corner) -> Wrench:
+def _wrench(wheel: Wheel, at: CarCorner) -> Wrench:
     cos = math.cos(at.angle)
     sin = math.sin(at.angle)
     x = wheel.force.x * cos - wheel.force.y * sin

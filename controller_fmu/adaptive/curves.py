@@ -23,7 +23,7 @@ HALVINGS = 24
 LARGEST_RADIUS = 200.0
 
 
-class Wheel(NamedTuple):
+class SteeringLimits(NamedTuple):
     """What the steering can do, as planned with."""
 
     wheelbase: float
@@ -56,7 +56,7 @@ def bend_of(radius: float, ramp: float) -> Bend:
     return Bend(radius, ramp, end.heading, rho, end.x - radius * math.sin(end.heading))
 
 
-def swing_way(speed: float, radius: float, wheel: Wheel) -> float:
+def swing_way(speed: float, radius: float, wheel: SteeringLimits) -> float:
     """Return the way [m] driven at ``speed`` [m/s] while the wheel swings from straight to ``radius`` [m]."""
     return speed * math.atan(wheel.wheelbase / radius) / wheel.rate
 
@@ -98,7 +98,7 @@ def s_curve(start: Pose, lead: float, enter: float, first: Bend, second: Bend, l
     return Route(start, -1, pieces)
 
 
-def arc_in(start: Pose, speed: float, wheel: Wheel, rest: float) -> Route:
+def arc_in(start: Pose, speed: float, wheel: SteeringLimits, rest: float) -> Route:
     """Return the route: left arc, clothoid, line of at least ``rest`` [m] to the target, the radius as it fits."""
     h = start.heading
     none = NO_ROUTE
@@ -123,7 +123,7 @@ def arc_in(start: Pose, speed: float, wheel: Wheel, rest: float) -> Route:
     return _route(start, Piece(arc * low, k, k), Piece(bend.ramp, k, 0.0), Piece(left, 0.0, 0.0), NO_PIECE, NO_PIECE)
 
 
-def _above(start: Pose, radius: float, speed: float, wheel: Wheel) -> float:
+def _above(start: Pose, radius: float, speed: float, wheel: SteeringLimits) -> float:
     """Return how far [m] above the axis a left arc of ``radius`` and its clothoid end."""
     return start.y + radius * math.cos(start.heading) - bend_of(radius, swing_way(speed, radius, wheel)).rho
 

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 from controller_fmu.adaptive.curves import (
     NO_ROUTE,
-    Wheel,
+    SteeringLimits,
     arc,
     arc_in,
     bend_of,
@@ -78,7 +78,7 @@ ANY_SPEED = 99.0
 """Of a route whose curvature stays as it is [m/s]."""
 
 
-def plan(pose: Pose, demand: Demand, wheel: Wheel, room: Room) -> Plan:
+def plan(pose: Pose, demand: Demand, wheel: SteeringLimits, room: Room) -> Plan:
     """Return the plan from standstill at ``pose`` (slot's frame); its route has no direction if there is none."""
     if _is_aligned(pose, abs(pose.x)):
         return plan_straight(pose, demand, room)
@@ -115,7 +115,7 @@ def farthest(room: Room) -> float:
     return room.front.x - 0.5 * room.front.length - room.wheelbase - room.front_overhang - 2.0 * room.margin
 
 
-def plan_back(pose: Pose, demand: Demand, wheel: Wheel, room: Room) -> Plan:
+def plan_back(pose: Pose, demand: Demand, wheel: SteeringLimits, room: Room) -> Plan:
     """Return the plan in reverse to the target: without a stop, else with one on the first arc."""
     moving = _moving(pose, demand, wheel, room)
     if moving.route.direction != 0:
@@ -126,7 +126,7 @@ def plan_back(pose: Pose, demand: Demand, wheel: Wheel, room: Room) -> Plan:
     return Plan(stop, ANY_SPEED)
 
 
-def plan_halting(pose: Pose, demand: Demand, wheel: Wheel, room: Room) -> Plan:
+def plan_halting(pose: Pose, demand: Demand, wheel: SteeringLimits, room: Room) -> Plan:
     """Return the plan in reverse on which the wheel turns at standstill only."""
     stop = stop_on_arc(pose, 0.0, wheel.radius, demand._replace(speed=0.0), wheel, room)
     if stop.direction != 0:
@@ -134,7 +134,7 @@ def plan_halting(pose: Pose, demand: Demand, wheel: Wheel, room: Room) -> Plan:
     return Plan(_smooth(pose, 0.0, 0.0, demand.rest, demand, wheel, room), ANY_SPEED)
 
 
-def _moving(pose: Pose, demand: Demand, wheel: Wheel, room: Room) -> Plan:
+def _moving(pose: Pose, demand: Demand, wheel: SteeringLimits, room: Room) -> Plan:
     """Return the fastest plan in reverse without a stop for a willing driver, else one for his speed."""
     best = NO_PLAN
     for lead in LEADS:
@@ -153,7 +153,9 @@ def _moving(pose: Pose, demand: Demand, wheel: Wheel, room: Room) -> Plan:
     return best
 
 
-def _smooth(pose: Pose, speed: float, lead: float, rest: float, demand: Demand, wheel: Wheel, room: Room) -> Route:
+def _smooth(
+    pose: Pose, speed: float, lead: float, rest: float, demand: Demand, wheel: SteeringLimits, room: Room
+) -> Route:
     """Return a free route in reverse for ``speed``; with 0 the wheel turns at standstill."""
     enough = _enough(pose, room)
     for mirror in (1.0, -1.0):
@@ -179,7 +181,7 @@ def _smooth(pose: Pose, speed: float, lead: float, rest: float, demand: Demand, 
     return NO_ROUTE
 
 
-def stop_on_arc(pose: Pose, lead: float, radius: float, demand: Demand, wheel: Wheel, room: Room) -> Route:
+def stop_on_arc(pose: Pose, lead: float, radius: float, demand: Demand, wheel: SteeringLimits, room: Room) -> Route:
     """Return the first arc back to a stop from which a left arc alone leads in, at the driver's speed."""
     if lead > 0.0:
         return straight(pose, -1, lead)
@@ -207,7 +209,7 @@ def stop_on_arc(pose: Pose, lead: float, radius: float, demand: Demand, wheel: W
     return NO_ROUTE
 
 
-def plan_onto(pose: Pose, demand: Demand, wheel: Wheel, room: Room) -> Plan:
+def plan_onto(pose: Pose, demand: Demand, wheel: SteeringLimits, room: Room) -> Plan:
     """Return the plan forward onto the slot's line, as far as the neighbour ahead allows."""
     seen = Pose(farthest(room) - pose.x, pose.y, -pose.heading)
     empty = room._replace(front=room.front._replace(x=1e6), rear=room.rear._replace(x=-1e6), lowest=-1e6, highest=1e6)
@@ -223,7 +225,7 @@ def plan_onto(pose: Pose, demand: Demand, wheel: Wheel, room: Room) -> Plan:
     return NO_PLAN
 
 
-def plan_ahead(pose: Pose, demand: Demand, wheel: Wheel, room: Room, moving: bool) -> Plan:
+def plan_ahead(pose: Pose, demand: Demand, wheel: SteeringLimits, room: Room, moving: bool) -> Plan:
     """Return the shortest way ahead to where the way in reverse can begin; ``moving``: and needs no stop."""
     enough = _enough(pose, room)
     for more in AHEAD:
@@ -252,7 +254,7 @@ def _is_aligned(pose: Pose, way: float) -> bool:
     return abs(y) <= ALIGNED and abs(slope - both * way) * decay <= ALIGNED_HEADING
 
 
-def _slower(route: Route, demand: Demand, wheel: Wheel, room: Room) -> Route:
+def _slower(route: Route, demand: Demand, wheel: SteeringLimits, room: Room) -> Route:
     """Return the way to a stop for a driver who is too fast for ``route``; no direction if there is none."""
     lead = route.pieces[0]
     if lead.k0 == 0.0 and lead.length > 0.0:

@@ -4,7 +4,7 @@ import math
 from typing import NamedTuple
 
 from controller_fmu.adaptive.chart import Guard, transition
-from controller_fmu.adaptive.curves import Wheel
+from controller_fmu.adaptive.curves import SteeringLimits
 from controller_fmu.adaptive.driver import (
     Driver,
     has_stopped,
@@ -146,12 +146,12 @@ def _stood(state: AdaptiveState, pose: Pose, params: ControllerParams) -> Adapti
     return state._replace(driver=driver, plan=planned, end=drivable(planned.route), foot=foot, begun=foot)
 
 
-def wheel_of(steering: Steering, params: ControllerParams) -> Wheel:
+def wheel_of(steering: Steering, params: ControllerParams) -> SteeringLimits:
     """Return what paths are planned with."""
     path = params.adaptive.path
     rate = rate_of(steering, params.car.steering.rate_limit) / params.car.steering.ratio
     smallest = smallest_radius(params.car)
-    return Wheel(params.car.wheelbase, path.rate_reserve * rate, path.radius_reserve * smallest)
+    return SteeringLimits(params.car.wheelbase, path.rate_reserve * rate, path.radius_reserve * smallest)
 
 
 def _tracked(state: AdaptiveState, pose: Pose) -> AdaptiveState:

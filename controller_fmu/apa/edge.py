@@ -8,7 +8,7 @@ angle g at e = d tan(g). So e = sqrt(r^2 - d^2), and each sample tells the corne
 import math
 from typing import NamedTuple
 
-from controller_fmu.apa.line_fit import Line, distance
+from controller_fmu.apa.line_fit import FittedLine, distance
 
 
 class Heard(NamedTuple):
@@ -31,7 +31,7 @@ UNTOLD = 0.25
 """A sample that does not tell the corner lies at most this times d short of it: sqrt(1.03^2 - 1)."""
 
 
-def seen_up_to(line: Line, sense: float, half_angle: float) -> float:
+def seen_up_to(line: FittedLine, sense: float, half_angle: float) -> float:
     """Return r / d at which the corner leaves the cone, the car driving along u: 1 / cos(g - sense beta)."""
     return 1.0 / math.cos(half_angle - sense * math.atan(line.b))
 
@@ -51,7 +51,7 @@ def append(samples: tuple[Heard, ...], new: Heard, count: int) -> tuple[Heard, .
     )
 
 
-def corner(samples: tuple[Heard, ...], line: Line, sense: float, half_angle: float) -> float:
+def corner(samples: tuple[Heard, ...], line: FittedLine, sense: float, half_angle: float) -> float:
     """Return u [m] of the corner on ``line``; ``sense`` -1: it lies behind the sensor, 1: ahead.
 
     The mean over the samples that tell it, weighted by how well, those of the end most. If none does, the

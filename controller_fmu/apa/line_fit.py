@@ -25,7 +25,7 @@ class Sums(NamedTuple):
     ur: float = 0.0
 
 
-class Line(NamedTuple):
+class FittedLine(NamedTuple):
     """w = a + b u."""
 
     a: float = 0.0
@@ -66,7 +66,7 @@ def offset(sums: Sums, b: float) -> float:
     return (sums.w - sums.r * math.sqrt(1.0 + b * b) - b * sums.u) / sums.n
 
 
-def distance(line: Line, u: float, w: float) -> float:
+def distance(line: FittedLine, u: float, w: float) -> float:
     """Return the distance [m] of a point from the line, positive on the road's side (larger w)."""
     return (w - line.a - line.b * u) / math.sqrt(1.0 + line.b * line.b)
 

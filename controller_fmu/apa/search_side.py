@@ -8,7 +8,7 @@ import math
 from typing import NamedTuple
 
 from controller_fmu.apa.edge import KEPT, NO_SAMPLES, Heard, append, corner, remember, seen_up_to
-from controller_fmu.apa.line_fit import Line, Sums, add, distance, offset, slope, spread
+from controller_fmu.apa.line_fit import FittedLine, Sums, add, distance, offset, slope, spread
 from controller_fmu.apa.params import SearchParams
 from modelkit.maths import clamp
 
@@ -126,9 +126,9 @@ def _change_along(side: SideState, sample: Heard) -> float:
     return distance(line, sample.u, sample.w) - distance(line, side.last.u, side.last.w)
 
 
-def _line(sums: Sums, other: Sums) -> Line:
+def _line(sums: Sums, other: Sums) -> FittedLine:
     b = clamp(slope(sums, other), -STEEPEST, STEEPEST)
-    return Line(offset(sums, b), b)
+    return FittedLine(offset(sums, b), b)
 
 
 def _on_wall(side: SideState, sample: Heard, half_angle: float, params: SearchParams) -> SideState:
@@ -246,7 +246,7 @@ def _on_next_wall(side: SideState, sample: Heard, half_angle: float, params: Sea
             faces=faces,
         )
     b = slope(side.before, sums)
-    edge_b = corner(samples + faces, Line(offset(sums, b), b), 1.0, half_angle)
+    edge_b = corner(samples + faces, FittedLine(offset(sums, b), b), 1.0, half_angle)
     return side._replace(
         mode=WALL,
         begun=edge_b,

@@ -51,7 +51,7 @@ class Steering(NamedTuple):
     """The wheel has been seen to move when asked."""
 
 
-class Window(NamedTuple):
+class Stretch(NamedTuple):
     """A stretch of the wheel's movement, being measured."""
 
     length_ns: int = 0
@@ -80,12 +80,12 @@ class SteeringWatch(NamedTuple):
     """What was asked for a moment ago [rad]."""
     asked_ns: int = -1
     """Since the request jumped away from a wheel at rest; -1: it did not."""
-    window: Window = Window()
+    window: Stretch = Stretch()
 
 
 def at_rest(angle: float, steering: Steering) -> SteeringWatch:
     """Return the watch over a wheel at ``angle`` [rad] that nothing is asked of."""
-    window = Window(angle=angle, request=angle)
+    window = Stretch(angle=angle, request=angle)
     return SteeringWatch(steering=steering, anchor=angle, angle=angle, request=angle, late=angle, window=window)
 
 
@@ -153,13 +153,13 @@ def _dead_time(state: SteeringWatch, request: float, angle: float, tolerance: fl
 
 def _window(
     state: SteeringWatch, request: float, angle: float, believed_rate: float, dt_ns: int
-) -> tuple[Window, float, float]:
+) -> tuple[Stretch, float, float]:
     """Return the window being measured, the rate [rad/s] and the lag [s] as known after it."""
     window = state.window
     steering = state.steering
     length_ns = window.length_ns + dt_ns
     if length_ns < WINDOW_NS:
-        return Window(length_ns, window.angle, window.request, window.rate), steering.rate, steering.lag
+        return Stretch(length_ns, window.angle, window.request, window.rate), steering.rate, steering.lag
     moved = angle - window.angle
     rate = abs(moved) / (length_ns * 1e-9)
     before = abs(window.request - window.angle)
@@ -181,4 +181,4 @@ def _window(
     ):
         lag = 0.5 * (before + left) / rate
         lag = lag if lag < LONGEST_LAG else LONGEST_LAG
-    return Window(0, angle, request, rate), learnt, lag
+    return Stretch(0, angle, request, rate), learnt, lag

@@ -3,7 +3,7 @@
 from math import pi
 from typing import Annotated, NamedTuple
 
-from controller_fmu.guo2015.smooth_path import Shape
+from controller_fmu.guo2015.smooth_path import PathShape
 from modelkit.signal import Role, Signal
 
 GUO = "Guo 2015"
@@ -42,7 +42,7 @@ class GuoPrompts(NamedTuple):
 class GuoParams(NamedTuple):
     """Gains and geometry of path tracking (k1, k2), point tracking (k3, k4) and the two-arc path."""
 
-    path: Annotated[int, Signal("1", "what the path is made of", states=Shape), Role.FIXED] = Shape.TWO_ARCS
+    path: Annotated[int, Signal("1", "what the path is made of", states=PathShape), Role.FIXED] = PathShape.TWO_ARCS
     k1: Annotated[float, Signal("1/m2", "path tracking, distance gain", 0.0, 100.0, GUO)] = 1.0
     k2: Annotated[float, Signal("1/m", "path tracking, heading gain", 0.0, 100.0, GUO)] = 0.8
     k3: Annotated[float, Signal("1/m2", "point tracking, distance gain", 0.0, 100.0, GUO)] = 1.0

@@ -8,7 +8,7 @@ import math
 from typing import NamedTuple
 
 from controller_fmu.guo2015.planner import TwoArcPath
-from controller_fmu.guo2015.smooth_path import Shape, on_curve, way_left
+from controller_fmu.guo2015.smooth_path import PathShape, on_curve, way_left
 from modelkit.maths import clamp
 
 FIRST_ARC = 0
@@ -35,7 +35,7 @@ def reference_at(path: TwoArcPath, x: float, latched: int) -> Reference:
     piece = FIRST_ARC if x > path.tangent1.x else LINE if x > path.tangent2.x else SECOND_ARC if x > 0.0 else BEYOND
     if piece < latched:
         piece = latched
-    if path.curve.shape != Shape.TWO_ARCS:
+    if path.curve.shape != PathShape.TWO_ARCS:
         at = on_curve(path.curve, x)
         return Reference(x, at.y, at.heading, at.curvature, piece)
     r = path.radius
@@ -67,7 +67,7 @@ def distance_to_jump(path: TwoArcPath, reference: Reference) -> float:
 
 def curvature_after(path: TwoArcPath, piece: int) -> float:
     """Return the curvature [1/m] of the piece after ``piece``, a line of no length left out; 0 where none jumps."""
-    if path.curve.shape != Shape.TWO_ARCS:
+    if path.curve.shape != PathShape.TWO_ARCS:
         return 0.0
     if piece == FIRST_ARC and path.tangent1.x - path.tangent2.x > 1e-6:
         return 0.0
@@ -78,7 +78,7 @@ def curvature_after(path: TwoArcPath, piece: int) -> float:
 
 def distance_to_end(path: TwoArcPath, reference: Reference) -> float:
     """Return the way [m] along the path to its end."""
-    if path.curve.shape != Shape.TWO_ARCS:
+    if path.curve.shape != PathShape.TWO_ARCS:
         return way_left(path.curve, reference.x)
     line = path.tangent1.x - path.tangent2.x
     to_q1 = path.radius * path.tangent2.heading

@@ -14,7 +14,7 @@ import math
 from typing import NamedTuple
 
 from controller_fmu.common.slot_frame import SlotFrame, to_slot
-from controller_fmu.guo2015.smooth_path import Curve, Shape, curve
+from controller_fmu.guo2015.smooth_path import Curve, PathShape, curve
 from modelkit.vocabulary import Pose
 
 HALF_PI = 0.5 * math.pi
@@ -68,7 +68,7 @@ def plan(
 
 def path_from(start: Pose, largest_radius: float, smallest_radius: float, shape: int, wheelbase: float) -> TwoArcPath:
     """Return the path of ``shape`` from ``start`` (slot's frame) to the origin."""
-    if shape == Shape.TWO_ARCS:
+    if shape == PathShape.TWO_ARCS:
         return two_arcs(start, largest_radius, smallest_radius)
     if start.x <= 0.0 or start.y <= 0.0 or not -STEEPEST < start.heading < STEEPEST:
         return NO_PATH

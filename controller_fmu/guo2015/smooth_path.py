@@ -25,7 +25,7 @@ NODES = (-0.906179845938664, -0.538469310105683, 0.0, 0.538469310105683, 0.90617
 WEIGHTS = (0.236926885056189, 0.478628670499366, 0.568888888888889, 0.478628670499366, 0.236926885056189)
 
 
-class Shape(IntEnum):
+class PathShape(IntEnum):
     """What the path is made of."""
 
     TWO_ARCS = 0
@@ -48,7 +48,7 @@ class Form(NamedTuple):
 class Curve(NamedTuple):
     """The path from ``start`` (slot's frame) to the origin, and what it asks of the car."""
 
-    shape: int = Shape.TWO_ARCS
+    shape: int = PathShape.TWO_ARCS
     start: Pose = Pose()
     curvature: float = 0.0
     """Largest [1/m]."""
@@ -107,11 +107,11 @@ def on_curve(path: Curve, x: float) -> OnCurve:
 
 def rising(shape: int, t: float) -> Form:
     """Return S of a shape."""
-    if shape == Shape.SINE:
+    if shape == PathShape.SINE:
         return Form(t - math.sin(TWO_PI * t) / TWO_PI, 1.0 - math.cos(TWO_PI * t), TWO_PI * math.sin(TWO_PI * t))
-    if shape == Shape.POLYNOMIAL:
+    if shape == PathShape.POLYNOMIAL:
         return Form(t * t * (3.0 - 2.0 * t), 6.0 * t * (1.0 - t), 6.0 - 12.0 * t)
-    if shape == Shape.B_SPLINE:
+    if shape == PathShape.B_SPLINE:
         half = _b_spline(t if t <= 0.5 else 1.0 - t)
         return half if t <= 0.5 else Form(1.0 - half.value, half.slope, -half.bend)
     return Form(
@@ -123,7 +123,7 @@ def rising(shape: int, t: float) -> Form:
 
 def leaning(shape: int, t: float) -> Form:
     """Return H of a shape."""
-    if shape == Shape.POLYNOMIAL:
+    if shape == PathShape.POLYNOMIAL:
         return Form(t * t * (t - 1.0), t * (3.0 * t - 2.0), 6.0 * t - 2.0)
     return Form(
         t * t * t * (-4.0 + t * (7.0 - 3.0 * t)),

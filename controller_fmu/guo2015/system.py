@@ -26,7 +26,7 @@ from controller_fmu.guo2015.prompts import (
     prompt_of,
     swing_speed,
 )
-from controller_fmu.guo2015.smooth_path import Shape
+from controller_fmu.guo2015.smooth_path import PathShape
 from controller_fmu.interface import ControllerInput, ControllerOutput, ControllerParams, Path, Reason, Segment
 from modelkit.car import smallest_radius
 from modelkit.maths import clamp
@@ -116,7 +116,7 @@ def guo_outputs(state: GuoState, params: ControllerParams) -> ControllerOutput:
         reference=to_world(state.tracking.reference, frame),
         lateral_error=state.tracking.lateral_error,
         heading_error=state.tracking.heading_error,
-        path=Path(to_world(path.start, frame), pieces if path.curve.shape == Shape.TWO_ARCS else NOT_DRAWN),
+        path=Path(to_world(path.start, frame), pieces if path.curve.shape == PathShape.TWO_ARCS else NOT_DRAWN),
     )
 
 

@@ -8,7 +8,7 @@ from controller_fmu.hsic.params import HsicThresholds
 from modelkit.vocabulary import Pose
 
 
-class Stage(IntEnum):
+class HsicStage(IntEnum):
     """Which way is being driven."""
 
     READY = 0
@@ -44,7 +44,7 @@ class Characteristic(IntEnum):
 STANDING = 0.005
 """Below this speed [m/s] the car stands."""
 GROUP_OF_STAGE = (0, 1, 1, 1, 2)
-"""Ready point, slot, in-slot shuffle: one for each Stage, in its order."""
+"""Ready point, slot, in-slot shuffle: one for each HsicStage, in its order."""
 
 
 class Errors(NamedTuple):

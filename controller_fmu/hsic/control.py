@@ -1,6 +1,6 @@
 """Curvature and speed of each control mode."""
 
-from controller_fmu.hsic.characteristic_states import Errors, Stage
+from controller_fmu.hsic.characteristic_states import Errors, HsicStage
 from controller_fmu.hsic.params import HsicGains
 from controller_fmu.hsic.rules import SpeedMode, SteerMode
 from modelkit.maths import clamp
@@ -22,12 +22,12 @@ def curvature(
     """
     if mode == SteerMode.STRAIGHT:
         return 0.0
-    if mode == SteerMode.EXTREMUM_HOLD and stage == Stage.TURN_IN:
+    if mode == SteerMode.EXTREMUM_HOLD and stage == HsicStage.TURN_IN:
         return -arc
-    if mode == SteerMode.EXTREMUM_HOLD and stage == Stage.COUNTER:
+    if mode == SteerMode.EXTREMUM_HOLD and stage == HsicStage.COUNTER:
         return arc
     lateral = gain.lateral * found.lateral
-    if stage == Stage.READY:
+    if stage == HsicStage.READY:
         lateral = clamp(lateral, -gain.heading * gain.steepest, gain.heading * gain.steepest)
     line = lateral + gain.heading * direction * found.heading
     if mode in (SteerMode.BANG_BANG, SteerMode.EXTREMUM_HOLD):

@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from controller_fmu.hsic.characteristic_states import Errors, Stage, errors
+from controller_fmu.hsic.characteristic_states import Errors, HsicStage, errors
 from controller_fmu.hsic.key_points import KeyPoints, key_points
 from controller_fmu.hsic.params import HsicParams
 from modelkit.car import Car
@@ -15,7 +15,7 @@ READY_REACH = 0.3
 class Course(NamedTuple):
     """Stage, key points, and the point steered for."""
 
-    stage: int = Stage.READY
+    stage: int = HsicStage.READY
     points: KeyPoints = KeyPoints()
     goal: Pose = Pose()
     done: bool = False
@@ -34,15 +34,15 @@ def is_parked(pose: Pose, share: float, params: HsicParams) -> bool:
 def advance(course: Course, pose: Pose, found: Errors, car: Car, params: HsicParams) -> Course:
     """Return the course after looking at the pose (slot frame) and its errors to the goal."""
     arrived = course.way * found.ahead >= -params.threshold.reached
-    if course.stage == Stage.READY:
+    if course.stage == HsicStage.READY:
         return _ready(course, pose, found, arrived, car, params)
-    if course.stage == Stage.TURN_IN:
+    if course.stage == HsicStage.TURN_IN:
         if arrived or pose.heading >= course.goal.heading - params.threshold.turned:
-            return _go(course, Stage.TANGENT, course.points.p3, False, pose)
+            return _go(course, HsicStage.TANGENT, course.points.p3, False, pose)
         return course
-    if course.stage == Stage.TANGENT:
-        return _go(course, Stage.COUNTER, Pose(0.0, 0.0, 0.0), True, pose) if arrived else course
-    if course.stage == Stage.COUNTER:
+    if course.stage == HsicStage.TANGENT:
+        return _go(course, HsicStage.COUNTER, Pose(0.0, 0.0, 0.0), True, pose) if arrived else course
+    if course.stage == HsicStage.COUNTER:
         return _counter(course, pose, arrived, params)
     return _shuffle(course, pose, arrived, params)
 
@@ -58,9 +58,9 @@ def _ready(course: Course, pose: Pose, found: Errors, arrived: bool, car: Car, p
     if aligned and abs(pose.x - p1.x) <= READY_REACH:
         points = key_points(pose, params.slot, car, course.points.radius)
         if points.found:
-            return Course(Stage.TURN_IN, points, points.p2, way=-1)
+            return Course(HsicStage.TURN_IN, points, points.p2, way=-1)
     farther = Pose(p1.x + threshold.retreat, p1.y, 0.0)
-    return _go(course, Stage.READY, farther if at_p1 else p1, True, pose)
+    return _go(course, HsicStage.READY, farther if at_p1 else p1, True, pose)
 
 
 def _counter(course: Course, pose: Pose, arrived: bool, params: HsicParams) -> Course:
@@ -68,9 +68,9 @@ def _counter(course: Course, pose: Pose, arrived: bool, params: HsicParams) -> C
     if arrived and is_parked(pose, 1.0, params):
         return _done(course)
     if arrived and pose.x <= course.points.rearmost + params.threshold.reached:
-        return _go(course, Stage.SHUFFLE, Pose(course.points.foremost, 0.0, 0.0), True, pose)
+        return _go(course, HsicStage.SHUFFLE, Pose(course.points.foremost, 0.0, 0.0), True, pose)
     if arrived:
-        return _go(course, Stage.COUNTER, Pose(course.points.rearmost, 0.0, 0.0), False, pose)
+        return _go(course, HsicStage.COUNTER, Pose(course.points.rearmost, 0.0, 0.0), False, pose)
     return course
 
 
@@ -82,7 +82,7 @@ def _shuffle(course: Course, pose: Pose, arrived: bool, params: HsicParams) -> C
         return course
     front = course.points.foremost
     rear = course.points.rearmost
-    return _go(course, Stage.SHUFFLE, Pose(rear if course.goal.x == front else front, 0.0, 0.0), True, pose)
+    return _go(course, HsicStage.SHUFFLE, Pose(rear if course.goal.x == front else front, 0.0, 0.0), True, pose)
 
 
 def _go(course: Course, stage: int, goal: Pose, hold: bool, pose: Pose) -> Course:

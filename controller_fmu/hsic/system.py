@@ -7,7 +7,7 @@ from controller_fmu.common.monitor import MonitorState, is_usable_input, reason_
 from controller_fmu.common.phases import is_over
 from controller_fmu.common.slot_frame import SlotFrame, frame_at, to_slot
 from controller_fmu.common.steering_wheel import steering_wheel_angle
-from controller_fmu.hsic.characteristic_states import Errors, Stage, errors, recognise
+from controller_fmu.hsic.characteristic_states import Errors, HsicStage, errors, recognise
 from controller_fmu.hsic.control import curvature, speed
 from controller_fmu.hsic.key_points import key_points, ready_point
 from controller_fmu.hsic.phases import HsicPhase, expected_in
@@ -68,7 +68,7 @@ def hsic_sample(state: HsicState, inputs: ControllerInput, params: ControllerPar
     monitor = watch(state.monitor, inputs, expected, wheel, dt_ns, params)
     reason = reason_to_fail(monitor, inputs, expected, state.running_ns, state.shifts, params)
     lost = abs(state.found.lateral) > LOST * params.threshold.lost_lateral
-    if reason == Reason.NONE and state.course.stage != Stage.READY and lost:
+    if reason == Reason.NONE and state.course.stage != HsicStage.READY and lost:
         reason = Reason.LEFT_PATH
     if reason != Reason.NONE:
         return _ended(state, HsicPhase.FAILED, reason)
@@ -89,7 +89,7 @@ def _planned(inputs: ControllerInput, params: ControllerParams) -> HsicState:
         phase=HsicPhase.PRE_STEER if points.found else HsicPhase.FAILED,
         reason=Reason.NONE if points.found else Reason.NO_PATH,
         frame=frame,
-        course=Course(Stage.READY, points, p1, way=way_to(p1, to_slot(inputs.odometry, frame))),
+        course=Course(HsicStage.READY, points, p1, way=way_to(p1, to_slot(inputs.odometry, frame))),
     )
 
 
@@ -144,7 +144,7 @@ def _driven(
 
 def _counted(state: HsicState, stage: int, phase: int, direction: int) -> int:
     """Return the direction of the manoeuvre being driven: the first reverse begins the first one."""
-    if phase != HsicPhase.PATH_TRACKING or stage == Stage.READY or (state.counted == 0 and direction > 0):
+    if phase != HsicPhase.PATH_TRACKING or stage == HsicStage.READY or (state.counted == 0 and direction > 0):
         return state.counted
     return direction
 

@@ -3,7 +3,7 @@
 import math
 
 from controller_fmu.planning.plan_store import GOAL_TIGHTER, NEAR_SIDE, ROOM, ROUTE_SIDE, RUNG, PlanStore
-from controller_fmu.planning.task import Request, Rung, Task, Window
+from controller_fmu.planning.task import Request, Rung, SearchWindow, Task
 from modelkit.vocabulary import Pose
 
 DEG = math.pi / 180.0
@@ -34,7 +34,7 @@ NEAR_CELL = 2.0
 ROUTE_CELL = 0.4
 
 
-def window_of(request: Request) -> Window:
+def window_of(request: Request) -> SearchWindow:
     """Return the window of a request, in a frame whose origin is the goal."""
     x = request.start.x - request.goal.x
     y = request.start.y - request.goal.y
@@ -44,7 +44,7 @@ def window_of(request: Request) -> Window:
     route = side / ROUTE_SIDE if side > ROUTE_CELL * ROUTE_SIDE else ROUTE_CELL
     near_count = math.floor(side / near)
     route_count = math.floor(side / route)
-    return Window(0.5 * (x - side), 0.5 * (y - side), side, near, near_count, route, route_count)
+    return SearchWindow(0.5 * (x - side), 0.5 * (y - side), side, near, near_count, route, route_count)
 
 
 def task_of(store: PlanStore, request: Request) -> Task:

@@ -17,20 +17,20 @@ from controller_fmu.planning.plan_store import (
     put_route,
     put_route_next,
 )
-from controller_fmu.planning.task import Car, Task, Window
+from controller_fmu.planning.task import PlannedCar, SearchWindow, Task
 
 FAR = 1e6
 """Way [m] from where the target cannot be reached."""
 UNLISTED = -2
 
 
-def near_reach(window: Window, car: Car) -> float:
+def near_reach(window: SearchWindow, car: PlannedCar) -> float:
     """Return how far [m] from a cell's centre an edge may lie that the car could see from the cell."""
     radius = math.sqrt(car.half_length * car.half_length + car.half_width * car.half_width)
     return 0.7072 * window.near + radius + SIGHT
 
 
-def add_edge(store: PlanStore, count: int, x1: float, y1: float, x2: float, y2: float, window: Window) -> int:
+def add_edge(store: PlanStore, count: int, x1: float, y1: float, x2: float, y2: float, window: SearchWindow) -> int:
     """Return the count of edges with this one added, as far as it lies in the window or within 10 m of it."""
     low = -10.0
     high = window.side + 10.0
@@ -61,7 +61,7 @@ def add_edge(store: PlanStore, count: int, x1: float, y1: float, x2: float, y2: 
     return count + 1
 
 
-def list_near(store: PlanStore, edges: int, window: Window, car: Car) -> bool:
+def list_near(store: PlanStore, edges: int, window: SearchWindow, car: PlannedCar) -> bool:
     """List the edges near each cell; returns whether the list has room for all."""
     cells = window.near_count * window.near_count
     for cell in range(cells + 1):
@@ -79,7 +79,7 @@ def list_near(store: PlanStore, edges: int, window: Window, car: Car) -> bool:
     return True
 
 
-def _each_near(store: PlanStore, edge: int, window: Window, car: Car, fill: bool) -> None:
+def _each_near(store: PlanStore, edge: int, window: SearchWindow, car: PlannedCar, fill: bool) -> None:
     """Count the edge at each cell it is near, or put it into the cell's list, from the end of the list on."""
     reach = near_reach(window, car)
     x1 = store.edge_x1[edge] - window.x0
@@ -176,7 +176,7 @@ def measure_route(store: PlanStore, task: Task) -> None:
             _relax(store, cell, window)
 
 
-def _relax(store: PlanStore, cell: int, window: Window) -> None:
+def _relax(store: PlanStore, cell: int, window: SearchWindow) -> None:
     count = window.route_count
     row = cell // count
     column = cell - row * count
@@ -197,7 +197,7 @@ def _relax(store: PlanStore, cell: int, window: Window) -> None:
                     put_bucket(store, number, other)
 
 
-def route_left(store: PlanStore, x: float, y: float, window: Window) -> float:
+def route_left(store: PlanStore, x: float, y: float, window: SearchWindow) -> float:
     """Return the way [m] of a point at (x, y) to the target."""
     column = _cell(x - window.x0, window.route, window.route_count)
     row = _cell(y - window.y0, window.route, window.route_count)

@@ -2,11 +2,11 @@
 
 from controller_fmu.planning.plan_store import PlanStore
 from controller_fmu.planning.rasters import add_edge
-from controller_fmu.planning.task import CORNERS, Window
+from controller_fmu.planning.task import CORNERS, SearchWindow
 from modelkit.vocabulary import Pose
 
 
-def add_edges(store: PlanStore, origin: Pose, window: Window) -> int:
+def add_edges(store: PlanStore, origin: Pose, window: SearchWindow) -> int:
     """Take over the edges of all polygons, seen from ``origin``; returns how many lie in or near the window."""
     count = 0
     for corner in range(CORNERS):

@@ -27,7 +27,7 @@ class Scene(NamedTuple):
     corners: tuple[Corner, ...] = (Corner(),) * CORNERS
 
 
-class Car(NamedTuple):
+class PlannedCar(NamedTuple):
     """The car's outline about its centre, and what it can steer."""
 
     ahead: float = 0.0
@@ -43,12 +43,12 @@ class Request(NamedTuple):
 
     start: Pose = Pose()
     goal: Pose = Pose()
-    car: Car = Car()
+    car: PlannedCar = PlannedCar()
     margin: float = 0.0
     """Clearance [m] wished for; where it cannot be kept, less is tried."""
 
 
-class Window(NamedTuple):
+class SearchWindow(NamedTuple):
     """The part of the plane that is searched, in the frame of the task: a square and its two rasters."""
 
     x0: float
@@ -91,8 +91,8 @@ class Task(NamedTuple):
 
     root: Pose
     target: Pose
-    car: Car
-    window: Window
+    car: PlannedCar
+    window: SearchWindow
     from_goal: bool
     """``root`` is the goal, ``target`` the start."""
     margin: float
@@ -100,7 +100,7 @@ class Task(NamedTuple):
     rung: Rung
 
 
-def fastest(car: Car, curvature: float) -> float:
+def fastest(car: PlannedCar, curvature: float) -> float:
     """Return how far [m] the fastest point of the outline goes for each metre of the rear axle."""
     k = abs(curvature)
     across = 1.0 + k * car.half_width

@@ -2,13 +2,13 @@
 
 from controller_fmu.preview.fuzzy import infer
 from controller_fmu.preview.params import PreviewParams, RuleTable
-from controller_fmu.preview.preview import Sight
+from controller_fmu.preview.preview import PreviewErrors
 from controller_fmu.preview.rule_tables import FORCE, STEERING_PRINTED, STEERING_SYMMETRIC
 
 UNIVERSE = 3.0
 
 
-def steering_angle(sight: Sight, params: PreviewParams) -> float:
+def steering_angle(sight: PreviewErrors, params: PreviewParams) -> float:
     """Return the front-wheel angle [rad], left positive, from yL and epsL (Table 1)."""
     y = params.lateral_gain * UNIVERSE * sight.y_l / params.lateral_range
     eps = params.heading_gain * UNIVERSE * sight.eps_l / params.heading_range

@@ -9,14 +9,14 @@ from modelkit.maths import wrap_angle
 from modelkit.vocabulary import Pose
 
 
-class Sight(NamedTuple):
+class PreviewErrors(NamedTuple):
     """Errors at the preview point, positive if the road lies or turns to the left."""
 
     y_l: float = 0.0
     eps_l: float = 0.0
 
 
-class Motion(NamedTuple):
+class Displacement(NamedTuple):
     """Displacement of the centre of gravity over one sample, in the car's own axes."""
 
     forward: float = 0.0
@@ -33,14 +33,14 @@ def centre_of_gravity(rear: Pose, cg_to_rear: float) -> Pose:
     )
 
 
-def motion(before: Pose, now: Pose) -> Motion:
+def motion(before: Pose, now: Pose) -> Displacement:
     """Return the displacement from ``before`` to ``now``, seen along the mean heading."""
     turned = wrap_angle(now.heading - before.heading)
     middle = before._replace(heading=before.heading + 0.5 * turned)
-    return Motion(longitudinal_offset(middle, now.x, now.y), lateral_offset(middle, now.x, now.y), turned)
+    return Displacement(longitudinal_offset(middle, now.x, now.y), lateral_offset(middle, now.x, now.y), turned)
 
 
-def integrate_sight(sight: Sight, moved: Motion, kappa1: float, l1: float) -> Sight:
+def integrate_sight(sight: PreviewErrors, moved: Displacement, kappa1: float, l1: float) -> PreviewErrors:
     """Return yL and epsL one sample on by equation (2): yL' = vx epsL - vy - r L1, epsL' = vx kappa1 - r.
 
     The equation is not in the print; this is its standard form, true for constant L1: when L1 jumps
@@ -48,10 +48,10 @@ def integrate_sight(sight: Sight, moved: Motion, kappa1: float, l1: float) -> Si
     """
     eps = sight.eps_l + moved.forward * kappa1 - moved.turned
     mean = 0.5 * (sight.eps_l + eps)
-    return Sight(sight.y_l + moved.forward * mean - moved.left - moved.turned * l1, eps)
+    return PreviewErrors(sight.y_l + moved.forward * mean - moved.left - moved.turned * l1, eps)
 
 
-def look(road_s: float, centre: Pose, l1: float, params: PreviewParams) -> Sight:
+def look(road_s: float, centre: Pose, l1: float, params: PreviewParams) -> PreviewErrors:
     """Return yL and epsL measured from the pose: the road where it crosses the line L1 ahead of the car."""
     point = road_at(params.road, ahead(params.road, road_s + l1, centre, l1)).pose
-    return Sight(lateral_offset(centre, point.x, point.y), wrap_angle(point.heading - centre.heading))
+    return PreviewErrors(lateral_offset(centre, point.x, point.y), wrap_angle(point.heading - centre.heading))

@@ -2,7 +2,7 @@
 
 from typing import Annotated, NamedTuple
 
-from controller_fmu.preview.stage import Stage
+from controller_fmu.preview.stage import PreviewStage
 from modelkit.signal import Signal
 
 
@@ -10,7 +10,7 @@ class PreviewSignals(NamedTuple):
     """What the preview system saw and chose."""
 
     s: Annotated[float, Signal("m", "arc length of the car along the road")] = 0.0
-    stage: Annotated[int, Signal("1", "stage of the preview sequence", states=Stage)] = 0
+    stage: Annotated[int, Signal("1", "stage of the preview sequence", states=PreviewStage)] = 0
     l1: Annotated[float, Signal("m", "first preview distance")] = 0.0
     l2: Annotated[float, Signal("m", "second preview distance")] = 0.0
     kappa1: Annotated[float, Signal("1/m", "road curvature at the first preview point")] = 0.0

@@ -3,7 +3,7 @@
 from enum import IntEnum
 
 
-class Stage(IntEnum):
+class PreviewStage(IntEnum):
     """What the two preview points have seen."""
 
     STRAIGHT = 0

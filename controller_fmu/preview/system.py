@@ -4,11 +4,11 @@ from typing import NamedTuple
 
 from controller_fmu.preview.control import drive_force, steering_angle
 from controller_fmu.preview.params import Camera, Method, PreviewParams
-from controller_fmu.preview.preview import Sight, centre_of_gravity, integrate_sight, look, motion
+from controller_fmu.preview.preview import PreviewErrors, centre_of_gravity, integrate_sight, look, motion
 from controller_fmu.preview.road import curvature_at, project, road_length
 from controller_fmu.preview.sequence import Sequence, advance, straight_distance
 from controller_fmu.preview.signals import PreviewSignals
-from controller_fmu.preview.stage import Stage
+from controller_fmu.preview.stage import PreviewStage
 from modelkit.vocabulary import Pose
 
 
@@ -18,7 +18,7 @@ class PreviewState(NamedTuple):
     started: bool = False
     centre: Pose = Pose()
     s: float = 0.0
-    sight: Sight = Sight()
+    sight: PreviewErrors = PreviewErrors()
     sequence: Sequence = Sequence()
     last_error: float = 0.0
     signals: PreviewSignals = PreviewSignals()
@@ -68,5 +68,5 @@ def _sequence(held: Sequence, kappa1: float, kappa2: float, speed: float, params
     """Return the distances and set speed for the next sample, by the paper's sequence or the conventional way."""
     if params.method == Method.SINGLE:
         l1 = straight_distance(speed, params)
-        return Sequence(Stage.STRAIGHT, l1, l1 + params.near_gap, params.set_speed, 0.0, 0.0)
+        return Sequence(PreviewStage.STRAIGHT, l1, l1 + params.near_gap, params.set_speed, 0.0, 0.0)
     return advance(held, kappa1, kappa2, speed, params, dt)

@@ -2,7 +2,7 @@
 
 import math
 
-from controller_fmu.planning.task import Car as Body
+from controller_fmu.planning.task import PlannedCar as Body
 from controller_fmu.valet.params import SlotKind, ValetParams
 from modelkit.car import largest_curvature
 from modelkit.maths import PI

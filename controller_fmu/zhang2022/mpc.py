@@ -6,10 +6,10 @@ from typing import NamedTuple
 from controller_fmu.zhang2022.params import MpcParams
 from controller_fmu.zhang2022.path import QuinticPath, Reference, at
 from controller_fmu.zhang2022.qp import STAGES, Stages, Status, solve
-from controller_fmu.zhang2022.qp_stage import Stage, Weights
+from controller_fmu.zhang2022.qp_stage import HorizonStage, Weights
 from modelkit.maths import clamp, is_finite
 
-NO_STAGE = Stage(0.0, 0.0, 0.0, 0.0, 0.0)
+NO_STAGE = HorizonStage(0.0, 0.0, 0.0, 0.0, 0.0)
 SLOWEST = 0.2
 """Speed assumed where the car stands [m/s]: without motion nothing can be predicted."""
 
@@ -24,7 +24,7 @@ class FrontAxle(NamedTuple):
     """Largest front-wheel rate [rad/s]."""
 
 
-class Steering(NamedTuple):
+class FrontWheels(NamedTuple):
     """The front-wheel angle and where it is going."""
 
     angle: float = 0.0
@@ -35,8 +35,8 @@ class Steering(NamedTuple):
 
 
 def steer(
-    steering: Steering, path: QuinticPath, reference: Reference, speed: float, car: FrontAxle, p: MpcParams
-) -> Steering:
+    steering: FrontWheels, path: QuinticPath, reference: Reference, speed: float, car: FrontAxle, p: MpcParams
+) -> FrontWheels:
     """Return the rate of the front-wheel angle until the next solution.
 
     The first increment of the optimal sequence, spread over a prediction step. Where the solver does
@@ -47,10 +47,10 @@ def steer(
     found = solve(reference.lateral_error, reference.heading_error, angle, stages, weights(car, p), p.tolerance, p.cap)
     solved = found.status == Status.SOLVED and is_finite(found.nodes[0].u)
     rate = found.nodes[0].u / p.step_time if solved else steering.rate
-    return Steering(angle, clamp(rate, -car.rate_limit, car.rate_limit), found.status, found.iterations)
+    return FrontWheels(angle, clamp(rate, -car.rate_limit, car.rate_limit), found.status, found.iterations)
 
 
-def turned(steering: Steering, car: FrontAxle, dt: float) -> Steering:
+def turned(steering: FrontWheels, car: FrontAxle, dt: float) -> FrontWheels:
     """Return the steering ``dt`` [s] later at its present rate."""
     angle = clamp(steering.angle + steering.rate * dt, -car.angle_limit, car.angle_limit)
     return steering._replace(angle=angle)
@@ -73,13 +73,13 @@ def _onward(path: QuinticPath, x: float, step: float) -> float:
     return x + step / math.sqrt(1.0 + slope * slope)
 
 
-def _stage(path: QuinticPath, x: float, step: float, number: int, car: FrontAxle, p: MpcParams) -> Stage:
+def _stage(path: QuinticPath, x: float, step: float, number: int, car: FrontAxle, p: MpcParams) -> HorizonStage:
     """Return one prediction step: psi' = v (delta - delta_r) / (L cos^2 delta_r), e' = v psi, held over the step."""
     half = at(path, _onward(path, x, 0.5 * step))
     r = clamp(math.atan(car.wheelbase * half.curvature), -car.angle_limit, car.angle_limit)
     cos = math.cos(r)
     g = step / (car.wheelbase * cos * cos)
-    return Stage(step, g, 0.5 * step * g, r, 1.0 if number < p.horizon else 0.0)
+    return HorizonStage(step, g, 0.5 * step * g, r, 1.0 if number < p.horizon else 0.0)
 
 
 def weights(car: FrontAxle, p: MpcParams) -> Weights:

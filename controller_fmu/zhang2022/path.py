@@ -5,7 +5,7 @@ from enum import IntEnum
 from typing import NamedTuple
 
 from controller_fmu.common.arc_line_arc import ArcLineArc, arc_line_arc, largest_radius
-from controller_fmu.zhang2022.quintic import Quintic, Shape, quintic, shape
+from controller_fmu.zhang2022.quintic import Derivatives, Quintic, quintic, shape
 from modelkit.vocabulary import Pose
 
 CANDIDATES = 9
@@ -114,18 +114,18 @@ def through(start: Pose, arcs: ArcLineArc) -> QuinticPath:
     return QuinticPath(PathStatus.FOUND, start, arcs, max(_peak(last), _peak(first)), first, line, last)
 
 
-def at(path: QuinticPath, x: float) -> Shape:
+def at(path: QuinticPath, x: float) -> Derivatives:
     """Return the path at ``x`` [m] of the slot frame; straight on beyond both ends."""
     if x > path.first.x0 + path.first.length:
         slope = math.tan(path.start.heading)
-        return Shape(path.start.y + slope * (x - path.start.x), slope, 0.0)
+        return Derivatives(path.start.y + slope * (x - path.start.x), slope, 0.0)
     if x > path.first.x0:
         return shape(path.first, x)
     if x > path.line.x0:
         return shape(path.line, x)
     if x > 0.0:
         return shape(path.last, x)
-    return Shape(0.0, 0.0, 0.0)
+    return Derivatives(0.0, 0.0, 0.0)
 
 
 def nearest(path: QuinticPath, pose: Pose) -> Reference:

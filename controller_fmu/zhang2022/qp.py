@@ -10,11 +10,11 @@ from enum import IntEnum
 from typing import NamedTuple
 
 from controller_fmu.zhang2022.qp_stage import (
+    CostToGo,
     Gain,
+    HorizonStage,
     Node,
     Six,
-    Stage,
-    Value,
     Weights,
     backward,
     complementarity,
@@ -30,7 +30,7 @@ CONSTRAINTS = 6.0 * STAGES
 FIRST_GAP = 1000.0
 """Multiplier times slack at the start: large against any weight, found to need the fewest iterations."""
 SMALLEST_SLACK = 0.1
-NOTHING = Value(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+NOTHING = CostToGo(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 AT_REST = Six(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 ORIGIN = Node(0.0, 0.0, 0.0, 0.0, 0.0, AT_REST, AT_REST)
 NO_GAIN = Gain(0.0, 0.0, 0.0, 0.0)
@@ -47,7 +47,7 @@ class Status(IntEnum):
 
 
 Nodes = tuple[Node, ...]
-Stages = tuple[Stage, ...]
+Stages = tuple[HorizonStage, ...]
 Gains = tuple[Gain, ...]
 
 
@@ -112,7 +112,7 @@ def _worst(nodes: Nodes, w: Weights) -> float:
     return worst
 
 
-def first_node(before: Node, stage: Stage, w: Weights) -> Node:
+def first_node(before: Node, stage: HorizonStage, w: Weights) -> Node:
     """Return a node reached without steering movement, with slacks and multipliers inside."""
     psi = before.psi + stage.g * (before.d - stage.r)
     e = before.e + stage.a * before.psi + stage.c * (before.d - stage.r)

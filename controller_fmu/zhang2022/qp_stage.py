@@ -13,7 +13,7 @@ where s softens the limit on e: the problem always has a solution if the angle n
 from typing import NamedTuple
 
 
-class Stage(NamedTuple):
+class HorizonStage(NamedTuple):
     """Prediction of one stage."""
 
     a: float
@@ -64,7 +64,7 @@ class Node(NamedTuple):
     l: Six  # noqa: E741
 
 
-class Value(NamedTuple):
+class CostToGo(NamedTuple):
     """Quadratic cost to go x'Px/2 + p'x, P symmetric."""
 
     p11: float
@@ -90,7 +90,7 @@ class Gain(NamedTuple):
 class Back(NamedTuple):
     """What the backward sweep gives at one stage."""
 
-    value: Value
+    value: CostToGo
     gain: Gain
 
 
@@ -127,7 +127,7 @@ def softening_step(node: Node, w: Weights, push: Six, step_e: float) -> float:
     return -(w.q_s * node.s - push.c1 - push.c2 + (b2 - b1) * step_e) / (w.q_s + b1 + b2)
 
 
-def backward(after: Value, node: Node, stage: Stage, w: Weights, mu: float) -> Back:
+def backward(after: CostToGo, node: Node, stage: HorizonStage, w: Weights, mu: float) -> Back:
     """Return value and gain of a stage from the value after it: one step of the Riccati recursion.
 
     Node costs and barrier terms are added to the value after, s is eliminated, the dynamics x+ = A (d + u)
@@ -144,28 +144,28 @@ def backward(after: Value, node: Node, stage: Stage, w: Weights, mu: float) -> B
     g1 = after.p1 + stage.on * w.q_e * node.e + push.c1 - push.c2 - h_es * g_s / h_ss
     g2 = after.p2 + stage.on * w.q_psi * node.psi
     g3 = after.p3 + stage.on * w.q_d * (node.d - stage.r) + push.c3 - push.c4
-    moved = _through_dynamics(Value(m11, after.p12, after.p13, m22, after.p23, m33, g1, g2, g3), stage)
+    moved = _through_dynamics(CostToGo(m11, after.p12, after.p13, m22, after.p23, m33, g1, g2, g3), stage)
     h_uu = w.q_u + m.c5 / t.c5 + m.c6 / t.c6 + moved.p33
     g_u = w.q_u * node.u + push.c5 - push.c6 + moved.p3
     gain = Gain(-g_u / h_uu, -moved.p13 / h_uu, -moved.p23 / h_uu, -moved.p33 / h_uu)
     return Back(_minimised(moved, gain, g_u), gain)
 
 
-def _through_dynamics(v: Value, stage: Stage) -> Value:
+def _through_dynamics(v: CostToGo, stage: HorizonStage) -> CostToGo:
     """Return A'PA and A'p for A = [[1, a, c], [0, 1, g], [0, 0, 1]]."""
     a, g, c = stage.a, stage.g, stage.c
     b1, b2 = a * v.p11 + v.p12, a * v.p12 + v.p22
     c1 = c * v.p11 + g * v.p12 + v.p13
     c2 = c * v.p12 + g * v.p22 + v.p23
     c3 = c * v.p13 + g * v.p23 + v.p33
-    return Value(
+    return CostToGo(
         v.p11, b1, c1, a * b1 + b2, a * c1 + c2, c * c1 + g * c2 + c3, v.p1, a * v.p1 + v.p2, c * v.p1 + g * v.p2 + v.p3
     )
 
 
-def _minimised(v: Value, k: Gain, g_u: float) -> Value:
+def _minimised(v: CostToGo, k: Gain, g_u: float) -> CostToGo:
     """Return the value before the input from that after it, with the best input put in."""
-    return Value(
+    return CostToGo(
         v.p11 + v.p13 * k.k1,
         v.p12 + v.p13 * k.k2,
         v.p13 + v.p13 * k.k3,
@@ -178,7 +178,7 @@ def _minimised(v: Value, k: Gain, g_u: float) -> Value:
     )
 
 
-def forward(before: Node, gain: Gain, node: Node, stage: Stage, w: Weights, mu: float) -> Node:
+def forward(before: Node, gain: Gain, node: Node, stage: HorizonStage, w: Weights, mu: float) -> Node:
     """Return the Newton step of a stage, in the shape of a node, from the step of the stage before."""
     u = gain.k0 + gain.k1 * before.e + gain.k2 * before.psi + gain.k3 * before.d
     d = before.d + u

@@ -16,7 +16,7 @@ class Quintic(NamedTuple):
     c5: float = 0.0
 
 
-class Shape(NamedTuple):
+class Derivatives(NamedTuple):
     """What a path y(x) does at one x."""
 
     y: float
@@ -45,11 +45,11 @@ def quintic(x0: float, y0: float, slope0: float, x1: float, y1: float, slope1: f
     )
 
 
-def shape(piece: Quintic, x: float) -> Shape:
+def shape(piece: Quintic, x: float) -> Derivatives:
     """Return y [m], slope and curvature y'' / (1 + y'^2)^(3/2) [1/m] at ``x`` [m]."""
     t = (x - piece.x0) / piece.length
     y = piece.y0 + t * (piece.m0 + t * t * (piece.c3 + t * (piece.c4 + t * piece.c5)))
     slope = (piece.m0 + t * t * (3.0 * piece.c3 + t * (4.0 * piece.c4 + t * 5.0 * piece.c5))) / piece.length
     bend = t * (6.0 * piece.c3 + t * (12.0 * piece.c4 + t * 20.0 * piece.c5)) / (piece.length * piece.length)
     norm = 1.0 + slope * slope
-    return Shape(y, slope, bend / (norm * math.sqrt(norm)))
+    return Derivatives(y, slope, bend / (norm * math.sqrt(norm)))

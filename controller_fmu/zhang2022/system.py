@@ -8,7 +8,7 @@ from controller_fmu.common.phases import is_over
 from controller_fmu.common.slot_frame import SlotFrame, frame_at, to_slot
 from controller_fmu.common.steering_wheel import steering_wheel_angle
 from controller_fmu.interface import ControllerInput, ControllerParams, Reason
-from controller_fmu.zhang2022.mpc import FrontAxle, Steering, steer, turned
+from controller_fmu.zhang2022.mpc import FrontAxle, FrontWheels, steer, turned
 from controller_fmu.zhang2022.path import PathStatus, QuinticPath, Reference, nearest, plan
 from controller_fmu.zhang2022.phases import ZhangPhase, expected_in
 from controller_fmu.zhang2022.pid import PidState, pid
@@ -32,7 +32,7 @@ class ZhangState(NamedTuple):
     frame: SlotFrame = SlotFrame()
     path: QuinticPath = QuinticPath()
     reference: Reference = Reference()
-    steering: Steering = Steering()
+    steering: FrontWheels = FrontWheels()
     set_speed: float = 0.0
     pid: PidState = PidState()
     monitor: MonitorState = MonitorState()
@@ -93,7 +93,7 @@ def _planned(inputs: ControllerInput, params: ControllerParams) -> ZhangState:
         frame=frame,
         path=path,
         reference=nearest(path, start) if found else Reference(),
-        steering=Steering(angle),
+        steering=FrontWheels(angle),
     )
 
 

@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 from fmus.children import run_child
 from fmus.files import folder_for_a_while
-from fmus.native.platforms import Target, host_target
+from fmus.native.platforms import CompileTarget, host_target
 from fmus.places import CACHE, can_write
 
 MISSING = (
@@ -41,19 +41,19 @@ class Compiler(NamedTuple):
     """Its version, and the flags that it is always called with."""
     is_zig: bool
 
-    def recipe(self, target: Target) -> str:
+    def recipe(self, target: CompileTarget) -> str:
         """Return all that a shared library for ``target`` depends on, its files aside."""
         return " ".join((self.words, target.triple, *SHARED, *target.options))
 
-    def can_make(self, target: Target) -> bool:
+    def can_make(self, target: CompileTarget) -> bool:
         """Return whether it compiles for ``target``: ziglang's for all, others for this machine."""
         return self.is_zig or target.triple == host_target().triple
 
-    def library(self, files: Mapping[str, str], unit: str, name: str, target: Target) -> bytes:
+    def library(self, files: Mapping[str, str], unit: str, name: str, target: CompileTarget) -> bytes:
         """Return the shared library ``name`` made of the file ``unit`` among ``files``. Raises as :meth:`linked`."""
         return self.linked(files, [unit], name, target)
 
-    def linked(self, files: Mapping[str, str], units: Sequence[str], name: str, target: Target) -> bytes:
+    def linked(self, files: Mapping[str, str], units: Sequence[str], name: str, target: CompileTarget) -> bytes:
         """Return what the files ``units`` among ``files`` become together.
 
         The work is done in a fresh directory with fixed file names, so that no path gets into the bytes.
@@ -67,7 +67,7 @@ class Compiler(NamedTuple):
             self.run([*SHARED, "-o", name, *units, *target.options], here, target)
             return (here / name).read_bytes()
 
-    def run(self, arguments: list[str], directory: Path, target: Target | None = None) -> None:
+    def run(self, arguments: list[str], directory: Path, target: CompileTarget | None = None) -> None:
         """Call the compiler in ``directory`` for ``target`` (default: this machine)."""
         cross = ["-target", (target or host_target()).triple, *ZIG] if self.is_zig else []
         command = [*self.command, *cross, *arguments]

@@ -13,7 +13,7 @@ from typing import Any
 from fmus.compiler import members
 from fmus.locks import kept_file
 from fmus.native.compilers import Compiler, can_compile, find_compiler
-from fmus.native.platforms import LINUX, PLATFORMS, Target, host, host_target, is_known
+from fmus.native.platforms import LINUX, PLATFORMS, CompileTarget, host, host_target, is_known
 from fmus.native.sources import C_FILES, translated
 from fmus.native.tables import KINDS
 from fmus.places import LIBRARIES
@@ -123,7 +123,11 @@ def memory_size(library: Any) -> int:
 
 
 def kept_library(
-    name: str, unit: str, files: Mapping[str, str], compiler: Compiler | None = None, target: Target | None = None
+    name: str,
+    unit: str,
+    files: Mapping[str, str],
+    compiler: Compiler | None = None,
+    target: CompileTarget | None = None,
 ) -> Path:
     """Return the path of the library made of ``unit`` among ``files``, compiled if there is none; for this machine.
 

@@ -5,7 +5,7 @@ import sys
 from typing import NamedTuple
 
 
-class Target(NamedTuple):
+class CompileTarget(NamedTuple):
     """One processor and operating system."""
 
     triple: str
@@ -25,12 +25,14 @@ ELF = (
     "-Wl,-s",
     "-lm",
 )
-LINUX = Target("x86_64-linux-gnu.2.17", ELF)
-LINUX_ARM = Target("aarch64-linux-gnu.2.17", ELF)
-WINDOWS = Target("x86_64-windows-gnu", ("-shared", "-Wl,-s"))
-MAC_INTEL = Target("x86_64-macos.11.0", ("-shared", "-Wl,-s"))
-MAC_ARM = Target("aarch64-macos.11.0", ("-shared", "-Wl,-s"))
-WEB = Target("wasm32-wasi", ("-mexec-model=reactor", "-Wl,--export-dynamic", "-Wl,--gc-sections", "-Wl,--strip-all"))
+LINUX = CompileTarget("x86_64-linux-gnu.2.17", ELF)
+LINUX_ARM = CompileTarget("aarch64-linux-gnu.2.17", ELF)
+WINDOWS = CompileTarget("x86_64-windows-gnu", ("-shared", "-Wl,-s"))
+MAC_INTEL = CompileTarget("x86_64-macos.11.0", ("-shared", "-Wl,-s"))
+MAC_ARM = CompileTarget("aarch64-macos.11.0", ("-shared", "-Wl,-s"))
+WEB = CompileTarget(
+    "wasm32-wasi", ("-mexec-model=reactor", "-Wl,--export-dynamic", "-Wl,--gc-sections", "-Wl,--strip-all")
+)
 """WebAssembly with its C library inside."""
 
 
@@ -38,7 +40,7 @@ class Platform(NamedTuple):
     """A folder in ``binaries/`` of FMI 2.0 and what its library is made of (a Mac's holds both processors)."""
 
     suffix: str
-    targets: tuple[Target, ...]
+    targets: tuple[CompileTarget, ...]
     folders3: tuple[str, ...]
     """Names of the folders in FMI 3.0, one for each target."""
 
@@ -70,7 +72,7 @@ def is_known() -> bool:
         return False
 
 
-def host_target() -> Target:
+def host_target() -> CompileTarget:
     """Return the target of this machine's own processor."""
     targets = PLATFORMS[host()].targets
     return targets[-1 if os.name == "posix" and os.uname().machine == "arm64" else 0]

@@ -12,7 +12,7 @@ from pathlib import Path
 from fmus.locks import kept_file
 from fmus.native.compilers import find_compiler
 from fmus.native.libraries import model_files, model_unit
-from fmus.native.platforms import WEB, Target
+from fmus.native.platforms import WEB, CompileTarget
 from fmus.native.sources import C_FILES
 from fmus.places import LIBRARIES
 from modelkit.connections import connections, part_of
@@ -45,7 +45,7 @@ def web_module(models: Mapping[str, Model]) -> Path:
 
 
 def live_library(
-    models: Mapping[str, Model], target: Target, suffix: str, more: Mapping[str, str] | None = None
+    models: Mapping[str, Model], target: CompileTarget, suffix: str, more: Mapping[str, str] | None = None
 ) -> Path:
     """Return the path of what ``live.c`` becomes for ``target``, with the further C files ``more``."""
     compiler = find_compiler("zig")

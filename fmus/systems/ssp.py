@@ -17,7 +17,7 @@ from fmus.contents.archive import write_archive
 from fmus.contents.description import AUTHOR, GENERATED, project_version, unit_definitions
 from fmus.contents.variables import FmiVariable, describe
 from fmus.contents.xml_file import as_text, xml_bytes
-from fmus.systems.system import Part, System
+from fmus.systems.system import FmuPart, FmuSystem
 
 SSP = "http://ssp-standard.org/SSP1/"
 SPACES = {
@@ -33,12 +33,12 @@ SET_NAME = "scenario"
 PORTS = ("input", "output", "parameter")
 
 
-def write_ssp(system: System, path: Path, with_outputs: bool = False) -> Path:
+def write_ssp(system: FmuSystem, path: Path, with_outputs: bool = False) -> Path:
     """Write the .ssp file, on demand ``with_outputs`` of the system itself; the same system gives the same bytes."""
     return write_archive(path, ssp_files(system, with_outputs))
 
 
-def ssp_files(system: System, with_outputs: bool = False) -> dict[str, bytes]:
+def ssp_files(system: FmuSystem, with_outputs: bool = False) -> dict[str, bytes]:
     """Return path in the archive -> content."""
     files = {STRUCTURE: _xml(_structure(system, with_outputs))}
     for part in system.parts:
@@ -47,11 +47,11 @@ def ssp_files(system: System, with_outputs: bool = False) -> dict[str, bytes]:
     return files
 
 
-def _fmu_path(part: Part) -> str:
+def _fmu_path(part: FmuPart) -> str:
     return f"resources/{part.model.name}.fmu"
 
 
-def _set_path(part: Part) -> str:
+def _set_path(part: FmuPart) -> str:
     return f"resources/{part.name}.ssv"
 
 
@@ -64,7 +64,7 @@ def _add(parent: Element, short: str, **attributes: str) -> Element:
     return SubElement(parent, _tag(short), attributes)
 
 
-def _structure(system: System, with_outputs: bool) -> Element:
+def _structure(system: FmuSystem, with_outputs: bool) -> Element:
     made = {"author": AUTHOR, "license": "MIT", "generationTool": f"apa-cosim {project_version()}"}
     made |= {"description": system.title, "generationDateAndTime": GENERATED}
     names = {"name": system.identifier, "version": "1.0"}
@@ -93,7 +93,7 @@ def _structure(system: System, with_outputs: bool) -> Element:
     return root
 
 
-def _component(elements: Element, part: Part) -> None:
+def _component(elements: Element, part: FmuPart) -> None:
     node = _add(elements, "ssd:Component", name=part.name, source=_fmu_path(part), type=FMU_TYPE)
     ports = _add(node, "ssd:Connectors")
     for kind in PORTS:
@@ -109,7 +109,7 @@ def _connector(ports: Element, variable: FmiVariable, kind: str, name: str) -> N
     _add(node, f"ssc:{variable.fmi_type}", **unit)
 
 
-def _units(root: Element, system: System) -> None:
+def _units(root: Element, system: FmuSystem) -> None:
     """Add the units of all connectors, as FMI 2.0 defines them."""
     known = [variable for part in system.parts for kind in PORTS for variable in part.of(kind)]
     units = _add(root, "ssd:Units")
@@ -128,7 +128,7 @@ def _master_of_omsimulator(node: Element, step: float) -> None:
     _add(inner, "oms:FixedStepMaster", description="oms-ma", stepSize=as_text(step), **tolerances)
 
 
-def _parameter_set(part: Part) -> Element:
+def _parameter_set(part: FmuPart) -> Element:
     root = Element(_tag("ssv:ParameterSet"), name=SET_NAME, version="1.0")
     parameters = _add(root, "ssv:Parameters")
     for variable, value in part.settings():

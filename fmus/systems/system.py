@@ -16,7 +16,7 @@ def identifier(scenario: str) -> str:
     return "Parking_" + re.sub(r"\W", "_", scenario, flags=re.ASCII)
 
 
-class Part(NamedTuple):
+class FmuPart(NamedTuple):
     """One FMU in its place."""
 
     name: str
@@ -34,13 +34,13 @@ class Part(NamedTuple):
         return [(known[name], known[name].start) for name, _ in self.model.view.starts if name in known]
 
 
-class System(NamedTuple):
+class FmuSystem(NamedTuple):
     """Parts, and the times of the experiment."""
 
     name: str
     """Of the scenario."""
     title: str
-    parts: tuple[Part, ...]
+    parts: tuple[FmuPart, ...]
     step: float
     """Communication step [s]."""
     stop: float
@@ -51,14 +51,14 @@ class System(NamedTuple):
         """Return ``Parking_<scenario>``, with letters that every tool takes."""
         return identifier(self.name)
 
-    def connections(self) -> list[tuple[Part, Part, str]]:
+    def connections(self) -> list[tuple[FmuPart, FmuPart, str]]:
         """Return (sender, receiver, name) of every signal: an output and an input of the same name are connected."""
         wires = connections([part_of(part.name, part.model) for part in self.parts])
         names = [[item.name for item in variables(part.model.inputs)] for part in self.parts]
         found = [(self.parts[wire.source], self.parts[wire.target], names[wire.target][wire.input]) for wire in wires]
         return [(sender, receiver, name) for sender, receiver, name in found if receiver.model.shows(name)]
 
-    def outputs(self) -> Iterator[tuple[Part, FmiVariable, str]]:
+    def outputs(self) -> Iterator[tuple[FmuPart, FmiVariable, str]]:
         """Yield each output with its name in the system: its own, with that of its part if others are called so too."""
         known = [(part, variable) for part in self.parts for variable in part.of("output")]
         names = [variable.name for _, variable in known]

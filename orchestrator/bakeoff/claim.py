@@ -41,7 +41,7 @@ SHOWN = "GB/T 41630"
 BINS = 24
 
 
-class Group(NamedTuple):
+class Setting(NamedTuple):
     """One system at one steering rate, judged by one limit."""
 
     system: str
@@ -52,7 +52,7 @@ class Group(NamedTuple):
 class Rate(NamedTuple):
     """A success rate and its 95 % confidence interval (Wilson)."""
 
-    group: Group
+    group: Setting
     runs: int
     successes: int
     low: float
@@ -105,11 +105,11 @@ def rates(columns: Mapping[str, Any]) -> list[Rate]:
             parked = mine & (columns["outcome"] == "parked")
             for limit in LIMITS:
                 won = parked & columns[WITHIN.format(limit)]
-                found.append(rate_of(Group(system, steering, limit), int(mine.sum()), int(won.sum())))
+                found.append(rate_of(Setting(system, steering, limit), int(mine.sum()), int(won.sum())))
     return found
 
 
-def rate_of(group: Group, runs: int, successes: int) -> Rate:
+def rate_of(group: Setting, runs: int, successes: int) -> Rate:
     """Return the rate with Wilson's 95 % interval."""
     return Rate(group, runs, successes, *wilson(successes, runs))
 

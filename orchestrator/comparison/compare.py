@@ -8,7 +8,7 @@ import numpy as np
 from pydantic import BaseModel, ConfigDict
 
 from orchestrator.comparison.tolerance import Tolerance, Tolerances
-from orchestrator.comparison.tube import Curve, distance
+from orchestrator.comparison.tube import Trace, distance
 from orchestrator.cosim.recording import Recording
 from orchestrator.text.errors import BadInput
 from orchestrator.text.patterns import fits, matching
@@ -112,7 +112,7 @@ def _signal(name: str, a: Recording, b: Recording, tolerances: Tolerances) -> Di
     return row
 
 
-def _judged(name: str, unit: str, tolerance: Tolerance, first: Curve, second: Curve) -> Difference:
+def _judged(name: str, unit: str, tolerance: Tolerance, first: Trace, second: Trace) -> Difference:
     found = distance(first, second, tolerance)
     if not len(found.t):
         return _row(name, unit, tolerance, note="no common time")
@@ -161,11 +161,11 @@ def _row(name: str, unit: str, tolerance: Tolerance, note: str) -> Difference:
     return Difference.model_validate({**known, "passed": False, "largest": None, "t_largest": None, "first": None})
 
 
-def _curve(recording: Recording, name: str, held: bool) -> Curve:
-    return Curve(recording.t, recording.signals[name], held)
+def _curve(recording: Recording, name: str, held: bool) -> Trace:
+    return Trace(recording.t, recording.signals[name], held)
 
 
-def _unwrapped(first: Curve, second: Curve) -> tuple[Curve, Curve]:
+def _unwrapped(first: Trace, second: Trace) -> tuple[Trace, Trace]:
     """Return two headings without jumps, the second moved by whole turns to where the first begins."""
     if np.isnan(first.values).any() or np.isnan(second.values).any():
         return first, second

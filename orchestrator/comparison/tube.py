@@ -14,7 +14,7 @@ from orchestrator.comparison.tolerance import Tolerance
 from orchestrator.cosim.slave import Array
 
 
-class Curve(NamedTuple):
+class Trace(NamedTuple):
     """A signal over time [s], strictly increasing."""
 
     t: Array
@@ -41,7 +41,7 @@ class Distance(NamedTuple):
     """Tolerance in value."""
 
 
-def distance(reference: Curve, other: Curve, tolerance: Tolerance) -> Distance:
+def distance(reference: Trace, other: Trace, tolerance: Tolerance) -> Distance:
     """Return the distance of ``other`` from ``reference`` over the time both cover."""
     end = min(reference.t[-1], other.t[-1])
     begin = max(reference.t[0], other.t[0])

@@ -20,7 +20,7 @@ from orchestrator.verdict.geometry import (
     WHEEL_RADIUS,
     WHEEL_WIDTH,
     Box,
-    Car,
+    CarOutline,
     boxes,
     described,
     kerbs,
@@ -222,7 +222,7 @@ def _plan(axis: Any, recording: Recording, scenario: Scenario) -> None:
     axis.set_xlabel("x [m]")
     axis.set_ylabel("y [m]")
     vehicle = described(scenario, recording.parameters_of("vehicle"))
-    car = Car.of(vehicle)
+    car = CarOutline.of(vehicle)
     for box in boxes(vehicle):
         passing = box.appear_at > 0.0 or box.disappear_at < recording.t[-1]
         face, hatch = ("#f3d9c9", "///") if passing else ("#c4c8ce", None)
@@ -261,7 +261,7 @@ def _planned(recording: Recording) -> Array:
     return sample_path(recording.values_at("controller", int(rows[-1]))) if len(rows) else np.empty((0, 2))
 
 
-def _outlines(axis: Any, car: Car, x: Array, y: Array, heading: Array) -> None:
+def _outlines(axis: Any, car: CarOutline, x: Array, y: Array, heading: Array) -> None:
     """Draw the car at equal distances along its way, later ones darker."""
     way = np.concatenate([[0.0], np.cumsum(np.nan_to_num(np.hypot(np.diff(x), np.diff(y))))])
     if way[-1] <= 0.0:
@@ -279,7 +279,7 @@ def _outlines(axis: Any, car: Car, x: Array, y: Array, heading: Array) -> None:
     axis.autoscale_view()
 
 
-def _wheels(axis: Any, recording: Recording, car: Car, pose: tuple[float, float, float]) -> None:
+def _wheels(axis: Any, recording: Recording, car: CarOutline, pose: tuple[float, float, float]) -> None:
     steered = float(_signal(recording, "vehicle.front_wheel_angle")[-1])
     half_length, half_width = WHEEL_RADIUS, 0.5 * WHEEL_WIDTH
     corners = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]]) * np.array([half_length, half_width])

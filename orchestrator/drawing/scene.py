@@ -19,7 +19,7 @@ from google.protobuf.duration_pb2 import Duration
 from google.protobuf.timestamp_pb2 import Timestamp
 
 from orchestrator.cosim.slave import Array
-from orchestrator.verdict.geometry import WHEEL_RADIUS, WHEEL_WIDTH, Box, Car, Kerb
+from orchestrator.verdict.geometry import WHEEL_RADIUS, WHEEL_WIDTH, Box, CarOutline, Kerb
 
 WORLD = "world"
 CAR = "car"
@@ -51,7 +51,7 @@ def posed(x: float, y: float, heading: float, z: float = 0.0) -> Pose:
 class Frames:
     """The frames of the car, of its front wheels and of its pose as odometry has it: one message, filled anew."""
 
-    def __init__(self, car: Car) -> None:
+    def __init__(self, car: CarOutline) -> None:
         self._message = FrameTransforms()
         self._parts = [self._add(WORLD, CAR, 0.0, 0.0), self._add(WORLD, ODOMETRY, 0.0, 0.0)]
         self._parts += [self._add(CAR, name, *at) for name, at in zip(FRONT_WHEELS, car.wheels()[2:], strict=True)]
@@ -75,7 +75,7 @@ class Frames:
         return part.timestamp, part.translation, part.rotation
 
 
-class Stage(NamedTuple):
+class Surroundings(NamedTuple):
     """What stands around the car."""
 
     slot: Box | None
@@ -89,7 +89,7 @@ class Stage(NamedTuple):
         return sorted({0, *times})
 
 
-def still_life(t_ns: int, car: Car, stage: Stage) -> SceneUpdate:
+def still_life(t_ns: int, car: CarOutline, stage: Surroundings) -> SceneUpdate:
     """Return everything that stands still in its own frame: car, wheels, slot, obstacles, kerbs, target outline."""
     update = SceneUpdate()
     _draw_car(update, t_ns, car)
@@ -100,7 +100,7 @@ def still_life(t_ns: int, car: Car, stage: Stage) -> SceneUpdate:
     return update
 
 
-def _draw_car(update: SceneUpdate, t_ns: int, car: Car) -> None:
+def _draw_car(update: SceneUpdate, t_ns: int, car: CarOutline) -> None:
     body = _entity(update, t_ns, "car", CAR)
     length, middle = car.front + car.rear, 0.5 * (car.front - car.rear)
     body.cubes.add(
@@ -119,7 +119,7 @@ def _draw_car(update: SceneUpdate, t_ns: int, car: Car) -> None:
     _line(ghost, car.outline(), (*ORANGE[:3], 0.5), 0.03)
 
 
-def _draw_stage(update: SceneUpdate, t_ns: int, stage: Stage) -> None:
+def _draw_stage(update: SceneUpdate, t_ns: int, stage: Surroundings) -> None:
     if stage.slot is not None:
         _line(_entity(update, t_ns, "slot", WORLD), stage.slot.outline(), GREY, 0.08)
     for number, kerb in enumerate(stage.kerbs, start=1):

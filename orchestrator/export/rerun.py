@@ -17,7 +17,7 @@ from orchestrator.report.plots import GROUPS
 from orchestrator.text.errors import BadInput
 from orchestrator.text.owned import owned_with
 from orchestrator.text.patterns import matching
-from orchestrator.verdict.geometry import Car, boxes, described, place, sample_path, slot_box
+from orchestrator.verdict.geometry import CarOutline, boxes, described, place, sample_path, slot_box
 from orchestrator.verdict.logged import logged
 
 EXAMPLES = """examples:
@@ -114,7 +114,7 @@ def _moving(rr: Any, stream: Any, recording: Recording) -> None:
     if any(values is None for values in pose):
         return
     x, y, heading = (np.asarray(values) for values in pose)
-    car = Car.of(recording.parameters_of("vehicle")).outline()
+    car = CarOutline.of(recording.parameters_of("vehicle")).outline()
     rows = _rows(recording.t, RATE)
     for row in rows:
         if not np.isfinite(x[row] + y[row] + heading[row]):

@@ -5,7 +5,7 @@ from pathlib import Path
 
 from fmus.contents.variables import shown_variables
 from fmus.systems.parking import of_one_system, parking_system
-from fmus.systems.system import Part, System
+from fmus.systems.system import FmuPart, FmuSystem
 from modelkit.model import Model
 from orchestrator.scenario.models import MODELS, models_for
 from orchestrator.scenario.scenario import Scenario
@@ -29,14 +29,14 @@ def parts_of(scenario: Scenario) -> dict[str, Model]:
     return {name: of_one_system(model, given[name]).started(given[name]) for name, model in models.items()}
 
 
-def system_of(scenario: Scenario, folder: Path, kind: str, platforms: Iterable[str] = ()) -> System:
+def system_of(scenario: Scenario, folder: Path, kind: str, platforms: Iterable[str] = ()) -> FmuSystem:
     """Return the system of ``scenario`` with FMUs of ``kind``, built into ``folder``. Raises as :func:`parts_of`."""
     from orchestrator.cosim.fmu_files import build_into
 
     models = parts_of(scenario)
     built = {item.name: item.path for item in build_into(folder, kind, platforms, models=models.values())}
-    parts = tuple(Part(name, model, built[model.name]) for name, model in models.items())
-    return System(scenario.name, scenario.title, parts, scenario.step, scenario.stop_time)
+    parts = tuple(FmuPart(name, model, built[model.name]) for name, model in models.items())
+    return FmuSystem(scenario.name, scenario.title, parts, scenario.step, scenario.stop_time)
 
 
 def one_model(

@@ -41,7 +41,7 @@ GBT: dict[int, str] = {Kind.PARALLEL: "GB/T 41630, parallel", Kind.PERPENDICULAR
 HOUSE, HOUSE_BUT_SHIFTS = "house", "house, but for the shifts"
 
 
-class Parking(NamedTuple):
+class GridRun(NamedTuple):
     """One run of the grid."""
 
     case: GridCase
@@ -83,16 +83,16 @@ class Parking(NamedTuple):
         return self.mode == PARKED or (self.mode == FAILED and self.reason != "none")
 
 
-def parkings(columns: Mapping[str, Any]) -> list[Parking]:
+def parkings(columns: Mapping[str, Any]) -> list[GridRun]:
     """Return the runs of a table, by the names of its columns."""
     return [_parking(dict(zip(columns, row, strict=True))) for row in zip(*columns.values(), strict=True)]
 
 
-def _parking(row: Mapping[str, Any]) -> Parking:
+def _parking(row: Mapping[str, Any]) -> GridRun:
     case = cases(int(row["lot"]))[int(row["number"])]
     parked = row["outcome"] == "parked"
     gbt = parked and row[WITHIN.format(GBT[case.kind])]
-    return Parking(
+    return GridRun(
         case,
         int(row["mode"]),
         row["reason"],

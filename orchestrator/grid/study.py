@@ -7,7 +7,7 @@ from rich.table import Table as Printed
 
 from controller_fmu.apa.chart import Mode
 from orchestrator.grid.cases import EXTRA, KINDS, SIDES, GridCase, cases, gbt_limits, scenario_of
-from orchestrator.grid.parkings import FAILED, FOUND, GBT, HOUSE, HOUSE_BUT_SHIFTS, MEASURES, Parking, parkings
+from orchestrator.grid.parkings import FAILED, FOUND, GBT, HOUSE, HOUSE_BUT_SHIFTS, MEASURES, GridRun, parkings
 from orchestrator.scenario.requirements import Requirement, shipped_requirements
 from orchestrator.sweep.study.cases import LabelledScenario, design_of
 from orchestrator.sweep.study.study import Study
@@ -53,7 +53,7 @@ def report(table: Table, folder: Path) -> int:
     return 1 if any(item.nearest <= 0.0 for item in found) else 0
 
 
-def totals(found: list[Parking]) -> dict[str, int]:
+def totals(found: list[GridRun]) -> dict[str, int]:
     """Return how many runs did what."""
     return {
         "runs": len(found),
@@ -68,7 +68,7 @@ def totals(found: list[Parking]) -> dict[str, int]:
     }
 
 
-def line(item: Parking) -> str:
+def line(item: GridRun) -> str:
     """Return one run in words."""
     case = item.case
     verdict = "house" if item.is_house else "gbt" if item.is_gbt else "-"
@@ -90,7 +90,7 @@ def _labels(case: GridCase) -> dict[str, str | float]:
     }
 
 
-def _totals(found: list[Parking]) -> Printed:
+def _totals(found: list[GridRun]) -> Printed:
     """Return the totals: of all runs, of those from inside the start range, of the rest, of those without a slot."""
     groups = {
         "all": found,
@@ -112,7 +112,7 @@ def _totals(found: list[Parking]) -> Printed:
     return table
 
 
-def _by_size(found: list[Parking]) -> Printed:
+def _by_size(found: list[GridRun]) -> Printed:
     """Return how the limits are met in slots of each size: what a slot allows depends on it."""
     table = Printed(box=None, pad_edge=False)
     columns = ("slot", "runs", "GB/T", "house", "house, but shifts as GB/T", "shifts", "nearest")

@@ -28,7 +28,7 @@ from orchestrator.log.protobuf_rows import Encoder
 from orchestrator.log.read_log import VARIABLES, with_checksum
 from orchestrator.log.schema import PACKAGE, descriptor_set, file_descriptor
 from orchestrator.scenario.scenario import Scenario
-from orchestrator.verdict.geometry import Car, boxes, described, edges, kerbs, sample_path, slot_box
+from orchestrator.verdict.geometry import CarOutline, boxes, described, edges, kerbs, sample_path, slot_box
 
 SCENE_PERIOD_NS = 50_000_000
 TRAIL_PERIOD_NS = 1_000_000_000
@@ -129,7 +129,7 @@ class _Pictures:
         self._drawn = drawn
         self._controller = slaves.get("controller")
         around = described(scenario, _named(slaves["vehicle"].parameters))
-        self._car = Car.of(around)
+        self._car = CarOutline.of(around)
         self._frames = scene.Frames(self._car)
         self._transforms = file.known_channel("/tf", FrameTransforms)
         self._scene = file.known_channel("/scene", SceneUpdate)
@@ -141,7 +141,7 @@ class _Pictures:
         self._path_seen = b""
         slot = slot_box(scenario.slot) if scenario.slot is not None else None
         target = scenario.target.pose if scenario.target is not None else None
-        self._stage = scene.Stage(slot, boxes(around), kerbs(around) + edges(scenario.polygons), target)
+        self._stage = scene.Surroundings(slot, boxes(around), kerbs(around) + edges(scenario.polygons), target)
         self._changes = self._stage.changes_ns()
 
     def exchanged(self, t_ns: int) -> None:

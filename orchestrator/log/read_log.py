@@ -15,7 +15,7 @@ from modelkit.signal import Signal
 from modelkit.variables import Variable
 from orchestrator.cosim.recording import Recording
 from orchestrator.log.protobuf_rows import Decoder
-from orchestrator.log.records import MESSAGE, Damage, Piece, checked, file_bytes, parsed, top_records
+from orchestrator.log.records import MESSAGE, Damage, RawRecord, checked, file_bytes, parsed, top_records
 from orchestrator.text.console import say
 from orchestrator.text.errors import BadInput
 
@@ -86,11 +86,11 @@ def read_info(path: Path) -> dict[str, Any]:
         return {}
 
 
-def _metadata(piece: Piece) -> Any:
+def _metadata(piece: RawRecord) -> Any:
     return parsed(Metadata, piece) if piece.opcode == Opcode.METADATA else None
 
 
-def _sorted_out(pieces: list[Piece]) -> Log:
+def _sorted_out(pieces: list[RawRecord]) -> Log:
     log = Log({}, {}, {}, {})
     for piece in pieces:
         if piece.opcode == Opcode.MESSAGE:

@@ -37,7 +37,7 @@ class Damage(Exception):  # noqa: N818 - what is wrong with a file, and where
         self.at = at
 
 
-class Piece(NamedTuple):
+class RawRecord(NamedTuple):
     """One record."""
 
     at: int
@@ -62,7 +62,7 @@ def file_bytes(path: Path) -> bytes:
     return data
 
 
-def checked(data: bytes) -> tuple[list[Piece], bool]:
+def checked(data: bytes) -> tuple[list[RawRecord], bool]:
     """Return the records of a whole file, chunks unpacked, and whether all of it is under a checksum.
 
     Raises ``Damage``.
@@ -81,7 +81,7 @@ def checked(data: bytes) -> tuple[list[Piece], bool]:
         raise Damage(_first_wrong(data, found[:end]), "the checksum of the data is wrong")
     summed = _check_summary(data, found[end + 1 :], found[end])
     budget = max(MOST_UNPACKED, MOST_TIMES * len(data))
-    pieces: list[Piece] = []
+    pieces: list[RawRecord] = []
     for piece in found[:end]:
         if piece.opcode == Opcode.CHUNK:
             inside = list(chunk_records(piece, budget))
@@ -92,7 +92,7 @@ def checked(data: bytes) -> tuple[list[Piece], bool]:
     return pieces, bool(crc) and summed
 
 
-def top_records(data: bytes) -> list[Piece]:
+def top_records(data: bytes) -> list[RawRecord]:
     """Return the records of a file without looking into them. Raises ``Damage`` where there is none."""
     found, at, end = [], len(MCAP0_MAGIC), len(data) - len(MCAP0_MAGIC)
     view = memoryview(data)
@@ -102,7 +102,7 @@ def top_records(data: bytes) -> list[Piece]:
     return found
 
 
-def record_at(view: memoryview, at: int, place: int, end: int) -> Piece:
+def record_at(view: memoryview, at: int, place: int, end: int) -> RawRecord:
     """Return the record at byte ``at`` of ``view``, which is byte ``place`` of the file. Raises ``Damage``."""
     if at + HEAD.size > end:
         raise Damage(place, "the file ends in a record")
@@ -111,10 +111,10 @@ def record_at(view: memoryview, at: int, place: int, end: int) -> Piece:
         raise Damage(place, "there is no record here")
     if length > end - at - HEAD.size:
         raise Damage(place, "the record here is cut off, or its length is damaged")
-    return Piece(place, opcode, view[at + HEAD.size : at + HEAD.size + length])
+    return RawRecord(place, opcode, view[at + HEAD.size : at + HEAD.size + length])
 
 
-def chunk_records(piece: Piece, budget: int = MOST_UNPACKED) -> Iterator[Piece]:
+def chunk_records(piece: RawRecord, budget: int = MOST_UNPACKED) -> Iterator[RawRecord]:
     """Yield the records of a chunk. Raises ``Damage`` if it is not what its checksum says, or has more than may be."""
     data = memoryview(_chunk_bytes(piece, budget))
     at = 0
@@ -124,13 +124,13 @@ def chunk_records(piece: Piece, budget: int = MOST_UNPACKED) -> Iterator[Piece]:
         yield found
 
 
-def chunk_times(piece: Piece) -> tuple[int, int]:
+def chunk_times(piece: RawRecord) -> tuple[int, int]:
     """Return first and last time [ns] that a chunk says of itself."""
     first, last, *_ = _unpacked(CHUNK, piece)
     return int(first), int(last)
 
 
-def _chunk_bytes(piece: Piece, budget: int) -> bytes:
+def _chunk_bytes(piece: RawRecord, budget: int) -> bytes:
     _, _, size, crc, letters = _unpacked(CHUNK, piece)
     at = CHUNK.size + letters
     if letters > 16 or at + 8 > len(piece.body):
@@ -164,7 +164,7 @@ def _decompressed(at: int, compression: bytes, packed: bytes, size: int) -> byte
         raise Damage(at, f"a chunk cannot be unpacked ({error})") from error
 
 
-def _check_summary(data: bytes, summary: list[Piece], end: Piece) -> bool:
+def _check_summary(data: bytes, summary: list[RawRecord], end: RawRecord) -> bool:
     """Return whether the summary has a checksum; raise ``Damage`` if it is wrong."""
     at = end.at + HEAD.size + len(end.body)
     if not summary or summary[-1].opcode != Opcode.FOOTER:
@@ -178,7 +178,7 @@ def _check_summary(data: bytes, summary: list[Piece], end: Piece) -> bool:
     return bool(crc)
 
 
-def _first_wrong(data: bytes, pieces: list[Piece]) -> int:
+def _first_wrong(data: bytes, pieces: list[RawRecord]) -> int:
     """Return where the damage is, as far as chunks tell; else where the data begin."""
     for piece in pieces:
         if piece.opcode == Opcode.CHUNK:
@@ -189,13 +189,13 @@ def _first_wrong(data: bytes, pieces: list[Piece]) -> int:
     return len(MCAP0_MAGIC)
 
 
-def _unpacked(layout: struct.Struct, piece: Piece) -> Any:
+def _unpacked(layout: struct.Struct, piece: RawRecord) -> Any:
     if len(piece.body) < layout.size:
         raise Damage(piece.at, "a record is too short")
     return layout.unpack_from(piece.body)
 
 
-def parsed(record: Any, piece: Piece) -> Any:
+def parsed(record: Any, piece: RawRecord) -> Any:
     """Return a record as a class of the package ``mcap`` has it. Raises ``Damage``."""
     import io
 

@@ -15,7 +15,7 @@ from orchestrator.log.records import (
     HEAD,
     MESSAGE,
     Damage,
-    Piece,
+    RawRecord,
     checked,
     chunk_records,
     chunk_times,
@@ -82,7 +82,7 @@ def _free(path: Path) -> Path:
     raise BadInput("has been recovered a thousand times; remove some", file=path)
 
 
-def salvaged(data: bytes) -> Iterator[Piece | Damage]:
+def salvaged(data: bytes) -> Iterator[RawRecord | Damage]:
     """Yield the records that are whole, and each damage, in the order of the file."""
     view, at, end = memoryview(data), len(MCAP0_MAGIC), len(data)
     while at < end:
@@ -106,7 +106,7 @@ def salvaged(data: bytes) -> Iterator[Piece | Damage]:
             at = _next_chunk(data, at + 1)
 
 
-def _opened(piece: Piece) -> list[Piece]:
+def _opened(piece: RawRecord) -> list[RawRecord]:
     """Return a record, or those in it if it is a chunk: all or, with ``Damage``, none."""
     if piece.opcode != Opcode.CHUNK:
         return [piece]
@@ -174,7 +174,7 @@ class _Copier:
         except Damage as damage:
             self.lost.append(str(damage))
 
-    def _one(self, piece: Piece) -> None:
+    def _one(self, piece: RawRecord) -> None:
         writer = self._writer
         if piece.opcode == Opcode.SCHEMA:
             record = parsed(Schema, piece)
@@ -201,7 +201,7 @@ class _Copier:
             writer.add_attachment(record.create_time, record.log_time, record.name, record.media_type, record.data)
 
 
-def _check_metadata(piece: Piece, record: Any) -> None:
+def _check_metadata(piece: RawRecord, record: Any) -> None:
     """Raise ``Damage`` if metadata are not what their checksum says."""
     try:
         without_checksum(record.name, record.metadata)

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from controller_fmu.hsic.characteristic_states import Characteristic, Stage
+from controller_fmu.hsic.characteristic_states import Characteristic, HsicStage
 from orchestrator.papers.motion_figure import draw_hsic
 from orchestrator.papers.result import CONCLUSION, OWN, Drive, Driven, Reproduction, Row, not_tested, yes_row
 
@@ -56,7 +56,7 @@ def reproduce(out: Path, drive: Drive) -> Reproduction:
 
 def _rows(driven: Driven) -> list[Row]:
     name, signals, final = driven.summary.scenario, driven.recording.signals, driven.summary.final
-    tangent = signals["controller.hsic.tangent_error"][signals["controller.hsic.stage"] == Stage.TANGENT]
+    tangent = signals["controller.hsic.tangent_error"][signals["controller.hsic.stage"] == HsicStage.TANGENT]
     heading, lateral, off = REACHED[name]
     turned = math.degrees(final.heading_error)
     parked = driven.in_line() == "parked" and abs(turned) < HEADING and abs(final.lateral_error) < LATERAL

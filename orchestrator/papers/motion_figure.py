@@ -16,7 +16,7 @@ from controller_fmu.hsic.characteristic_states import Characteristic
 from controller_fmu.zhang2022.phases import ZhangPhase
 from orchestrator.drawing.save import save as save_picture
 from orchestrator.papers.result import Driven
-from orchestrator.verdict.geometry import Car
+from orchestrator.verdict.geometry import CarOutline
 
 BLUE, ORANGE, GREEN, GREY = "#1f5fbf", "#d1602a", "#2b8a5a", "#888888"
 
@@ -95,7 +95,7 @@ def outlines(axis: Any, driven: Driven, count: int) -> None:
     recording = driven.recording
     p = recording.parameters_of("vehicle")
     x, y, heading = (recording.signals[f"vehicle.pose.{key}"] for key in ("x", "y", "heading"))
-    corners = Car.of(p).outline()
+    corners = CarOutline.of(p).outline()
     for row in np.linspace(0, len(x) - 1, count).astype(int):
         c, s = np.cos(heading[row]), np.sin(heading[row])
         points = corners @ np.array([[c, s], [-s, c]]) + (x[row], y[row])

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from controller_fmu.preview.params import ROAD
-from controller_fmu.preview.stage import Stage
+from controller_fmu.preview.stage import PreviewStage
 from orchestrator.cosim.fmu_files import can_compile
 from orchestrator.cosim.slave import Array
 from orchestrator.papers.preview_figure import draw_preview, draw_surfaces, draw_sweep
@@ -115,7 +115,7 @@ def _speeds(main: Driven) -> list[Row]:
     name, speed = main.summary.scenario, main.recording.signals["vehicle.speed"]
     s = main.recording.signals["controller.preview.s"]
     rows = []
-    found = entries(main, Stage.CURVE, Stage.SHORTENED)
+    found = entries(main, PreviewStage.CURVE, PreviewStage.SHORTENED)
     for number, (printed, (start, _, _)) in enumerate(zip(PRINTED_SPEEDS, curves(), strict=True), start=1):
         row = next((row for row in found if start - 20.0 < s[row] < start), None)
         ours = float(speed[row]) if row is not None else math.nan
@@ -206,8 +206,12 @@ def swing_back(change: AngleChange) -> float:
 
 def _points(eight: Driven) -> list[Row]:
     name, s = eight.summary.scenario, eight.recording.signals["controller.preview.s"]
-    steps = ((Stage.SLOWING, Stage.STRAIGHT), (Stage.SHORTENED, Stage.SLOWING), (Stage.CURVE, Stage.SHORTENED))
-    steps += ((Stage.LEAVING, Stage.CURVE), (Stage.STRAIGHT, Stage.LEAVING))  # type: ignore[assignment]
+    steps = (
+        (PreviewStage.SLOWING, PreviewStage.STRAIGHT),
+        (PreviewStage.SHORTENED, PreviewStage.SLOWING),
+        (PreviewStage.CURVE, PreviewStage.SHORTENED),
+    )
+    steps += ((PreviewStage.LEAVING, PreviewStage.CURVE), (PreviewStage.STRAIGHT, PreviewStage.LEAVING))  # type: ignore[assignment]
     at = {}
     for letter, (after, before) in zip("ABCDE", steps, strict=True):
         found = [float(s[row]) for row in entries(eight, after, before) if 300.0 < s[row] < 530.0]
@@ -221,7 +225,9 @@ def _points(eight: Driven) -> list[Row]:
             ("D", "E", "L1 is long again after it has left the curve", NEAR_POINT),
         )
     ]
-    speed = float(eight.recording.signals["vehicle.speed"][entries(eight, Stage.CURVE, Stage.SHORTENED)[1]])
+    speed = float(
+        eight.recording.signals["vehicle.speed"][entries(eight, PreviewStage.CURVE, PreviewStage.SHORTENED)[1]]
+    )
     return [*rows, Row(name, "speed at C", "m/s", 5.4, speed, SPEED_NEAR * 5.4, basis=PRINTED)]
 
 

@@ -13,7 +13,7 @@ from matplotlib.figure import Figure
 from controller_fmu.preview.control import drive_force, steering_angle
 from controller_fmu.preview.params import PreviewParams
 from controller_fmu.preview.phases import PreviewPhase
-from controller_fmu.preview.preview import Sight
+from controller_fmu.preview.preview import PreviewErrors
 from orchestrator.cosim.slave import Array
 from orchestrator.drawing.save import save
 from orchestrator.papers.result import Driven
@@ -49,7 +49,7 @@ def draw_surfaces(file: Path) -> Path:
     sides = np.linspace(-1.0, 1.0, 41)
     y, eps = np.meshgrid(params.lateral_range * sides, params.heading_range * sides)
     error, rate = np.meshgrid(0.2 * params.speed_range * sides, params.rate_range * sides)
-    angles = np.array([steering_angle(Sight(*pair), params) for pair in zip(y.flat, eps.flat, strict=True)])
+    angles = np.array([steering_angle(PreviewErrors(*pair), params) for pair in zip(y.flat, eps.flat, strict=True)])
     forces = np.array([drive_force(*pair, params) for pair in zip(error.flat, rate.flat, strict=True)])
     figure = plt.figure(figsize=(10.0, 4.6), layout="constrained")
     surfaces = (

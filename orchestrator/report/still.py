@@ -8,7 +8,7 @@ import numpy as np
 
 from orchestrator.cosim.recording import Recording
 from orchestrator.cosim.slave import Array
-from orchestrator.verdict.geometry import Box, Car, boxes, described, kerbs, slot_box
+from orchestrator.verdict.geometry import Box, CarOutline, boxes, described, kerbs, slot_box
 from orchestrator.verdict.logged import logged
 
 Point = tuple[float, float]
@@ -26,7 +26,7 @@ def still_of(recording: Recording, origin: Point) -> dict[str, Any]:
     """Return the drawing of a run's surroundings for ``template/scene.js``, positions less ``origin`` [m]."""
     scenario, vehicle = logged(recording).scenario, recording.parameters_of("vehicle")
     slot, target, around = scenario.slot, scenario.target, described(scenario, vehicle)
-    car = Car.of(around)
+    car = CarOutline.of(around)
     return {
         "origin": list(origin),
         "turn": _first(recording, "vehicle.pose.heading"),

@@ -21,7 +21,7 @@ from orchestrator.session.foreign import Foreign
 from orchestrator.session.own import is_model
 from orchestrator.session.session import NOBODY
 from orchestrator.steptest.step_test import StepTest
-from orchestrator.steptest.stimuli import Place, stimulus
+from orchestrator.steptest.stimuli import StimulatedInput, stimulus
 from orchestrator.text.errors import BadInput, suggestion
 from orchestrator.text.quantities import scalar
 
@@ -90,7 +90,7 @@ def _inputs(test: StepTest, slave: Slave) -> dict[int, Array]:
             hint = suggestion(name, ports.names) or f"; known are {', '.join(ports.names[:12])}"
             raise BadInput(f"no such input{hint}", file=test.file, key=f"inputs.{name}")
         place = ports.index[name]
-        columns[place] = stimulus(value, Place(ports.variables[place], test.file, f"inputs.{name}"), t)
+        columns[place] = stimulus(value, StimulatedInput(ports.variables[place], test.file, f"inputs.{name}"), t)
     return columns
 
 

@@ -14,7 +14,7 @@ MARK = "model"
 """The key that a scenario does not have."""
 
 
-class Reference(BaseModel):
+class BackToBack(BaseModel):
     """Another implementation, or an earlier run, that the outputs are held against: back-to-back."""
 
     model_config = ConfigDict(extra="forbid", populate_by_name=True)
@@ -51,7 +51,7 @@ class StepTest(BaseModel):
     replay: str = ""
     """A log whose inputs of the same model are played; what ``inputs`` names is changed on top."""
     expect: list[Expectation] = []
-    reference: Reference | None = None
+    reference: BackToBack | None = None
     file: Path = Path()
 
     @field_validator("inputs", mode="before")

@@ -12,7 +12,7 @@ from orchestrator.text.errors import BadInput, shown, suggestion
 from orchestrator.text.quantities import number, scalar
 
 
-class Place:
+class StimulatedInput:
     """Which input of which file a stimulus is for: reads its values in the input's unit, and names it in messages."""
 
     def __init__(self, variable: Variable, file: Path, key: str) -> None:
@@ -35,7 +35,7 @@ class Place:
         return BadInput(text, file=self.file, key=self.key)
 
 
-def stimulus(given: object, place: Place, t: Array) -> Array:
+def stimulus(given: object, place: StimulatedInput, t: Array) -> Array:
     """Return the values at times ``t`` [s] of what is written for one input. Raises ``BadInput``."""
     if not isinstance(given, Mapping):
         return np.full(len(t), place.value(given))
@@ -56,12 +56,12 @@ def stimulus(given: object, place: Place, t: Array) -> Array:
         raise place.wrong(f"{word}: {missing.args[0]} is missing") from None
 
 
-def _step(parts: Any, place: Place, t: Array) -> Array:
+def _step(parts: Any, place: StimulatedInput, t: Array) -> Array:
     after = t >= place.seconds(parts["at"])
     return np.where(after, place.value(parts["to"]), place.value(parts.get("from", place.variable.start)))
 
 
-def _ramp(parts: Any, place: Place, t: Array) -> Array:
+def _ramp(parts: Any, place: StimulatedInput, t: Array) -> Array:
     begin, end = place.seconds(parts["begin"]), place.seconds(parts["end"])
     if not begin < end:
         raise place.wrong("ramp: begin is not before end")
@@ -69,7 +69,7 @@ def _ramp(parts: Any, place: Place, t: Array) -> Array:
     return np.interp(t, [begin, end], [first, place.value(parts["to"])])
 
 
-def _pulse(parts: Any, place: Place, t: Array) -> Array:
+def _pulse(parts: Any, place: StimulatedInput, t: Array) -> Array:
     at, width = place.seconds(parts["at"]), place.seconds(parts["width"])
     period = place.seconds(parts.get("period"), np.inf)
     if not 0.0 < width < period:
@@ -79,7 +79,7 @@ def _pulse(parts: Any, place: Place, t: Array) -> Array:
     return np.where((since >= 0.0) & (since < width), high, low)
 
 
-def _sine(parts: Any, place: Place, t: Array) -> Array:
+def _sine(parts: Any, place: StimulatedInput, t: Array) -> Array:
     begin = place.seconds(parts.get("begin"), 0.0)
     rate = 2.0 * np.pi * number(parts["frequency"], "Hz", file=place.file, key=place.key)
     middle = place.value(parts.get("offset", 0.0))
@@ -87,14 +87,14 @@ def _sine(parts: Any, place: Place, t: Array) -> Array:
     return middle + np.where(t >= begin, swing, 0.0)
 
 
-def _table(parts: Any, place: Place, t: Array) -> Array:
+def _table(parts: Any, place: StimulatedInput, t: Array) -> Array:
     """``[[time, value], ...]``: numbers between rows are interpolated; truth values and states are held."""
     if not isinstance(parts, list) or not all(isinstance(row, list) and len(row) == 2 for row in parts):
         raise place.wrong("table: expected [[time, value], ...]")
     return _along(np.array([place.seconds(row[0]) for row in parts]), [place.value(row[1]) for row in parts], place, t)
 
 
-def _csv(parts: Any, place: Place, t: Array) -> Array:
+def _csv(parts: Any, place: StimulatedInput, t: Array) -> Array:
     """A column of a CSV file by its name, over its first column, the time [s]; a row of units is skipped."""
     path = place.file.parent / str(parts["file"])
     try:
@@ -110,7 +110,7 @@ def _csv(parts: Any, place: Place, t: Array) -> Array:
     return _along(times, [place.value(row[at].strip()) for row in rows[start:]], place, t)
 
 
-def _along(times: Array, values: list[float], place: Place, t: Array) -> Array:
+def _along(times: Array, values: list[float], place: StimulatedInput, t: Array) -> Array:
     if len(times) == 0 or (np.diff(times) < 0.0).any():
         raise place.wrong("times have to rise from row to row")
     if place.variable.kind is float:
@@ -126,7 +126,7 @@ def _is_number(text: str) -> bool:
     return True
 
 
-Shape = tuple[tuple[str, ...], Callable[[Any, Place, Array], Array]]
+Shape = tuple[tuple[str, ...], Callable[[Any, StimulatedInput, Array], Array]]
 SHAPES: dict[str, Shape] = {
     "step": (("at", "from", "to"), _step),
     "ramp": (("begin", "end", "from", "to"), _ramp),

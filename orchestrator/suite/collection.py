@@ -14,7 +14,7 @@ from orchestrator.report.page import still_page
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.suite.suite import Tested
 from orchestrator.text.readable import changes_text, shifts_text
-from orchestrator.verdict.geometry import Car, described, place, slot_box
+from orchestrator.verdict.geometry import CarOutline, described, place, slot_box
 
 BODY = """<header class="top"><div class="headline"><h1>{title}</h1></div>
 <span class="verdict {kind}">{verdict}</span></header>
@@ -72,7 +72,7 @@ def picture(recording: Recording, scenario: Scenario) -> str:
         return ""
     x, y, heading = x[good], y[good], heading[good]
     target = scenario.target.pose if scenario.target is not None else (0.0, 0.0, 0.0)
-    car = Car.of(described(scenario, recording.parameters_of("vehicle"))).outline()
+    car = CarOutline.of(described(scenario, recording.parameters_of("vehicle"))).outline()
     rows = np.unique(np.linspace(0, len(x) - 1, 160).astype(int))
     shapes: list[tuple[str, Array]] = []
     if scenario.slot is not None:

@@ -26,7 +26,7 @@ KINDS = {"U": str, "f": float, "i": int, "b": bool}
 """Kind of a numpy array -> type of what it holds."""
 
 
-class Column(NamedTuple):
+class TableColumn(NamedTuple):
     """What one column of a table holds."""
 
     name: str
@@ -35,24 +35,24 @@ class Column(NamedTuple):
     signal: Signal
 
 
-def columns_of(study: Study, job: Job) -> list[Column]:
+def columns_of(study: Study, job: Job) -> list[TableColumn]:
     """Return the columns of the table of a study, in order."""
     return [
-        Column("row", int, Signal("1", "number of the run, from 0")),
-        *(Column(key, KINDS[words.dtype.kind], Signal("1", "")) for key, words in study.design.labels.items()),
-        *(Column(field.key, field.variable.kind, field.variable.signal) for field in study.design.fields),
-        Column("run_seed", int, Signal("1", "seed of the run")),
-        Column("outcome", str, Signal("1", "as in summary.json")),
-        Column("reason", str, Signal("1", "as in summary.json")),
+        TableColumn("row", int, Signal("1", "number of the run, from 0")),
+        *(TableColumn(key, KINDS[words.dtype.kind], Signal("1", "")) for key, words in study.design.labels.items()),
+        *(TableColumn(field.key, field.variable.kind, field.variable.signal) for field in study.design.fields),
+        TableColumn("run_seed", int, Signal("1", "seed of the run")),
+        TableColumn("outcome", str, Signal("1", "as in summary.json")),
+        TableColumn("reason", str, Signal("1", "as in summary.json")),
         *(
             _number(name, item)
             for name, item in RESULTS.items()
             if item.measure is None or item.measure in job.measures
         ),
         *_measures(study),
-        *(Column(WITHIN.format(name), bool, Signal("1", _words(items))) for name, items in study.within.items()),
+        *(TableColumn(WITHIN.format(name), bool, Signal("1", _words(items))) for name, items in study.within.items()),
         *(_number(name, item) for name, item in study.derived.columns.items()),
-        *(Column(name, str, Signal("1", text)) for name, text in study.derived.words.items()),
+        *(TableColumn(name, str, Signal("1", text)) for name, text in study.derived.words.items()),
     ]
 
 
@@ -89,15 +89,15 @@ def _is_within(
     return good
 
 
-def _number(name: str, item: Number) -> Column:
-    return Column(name, int if name in COUNTS else float, Signal(item.unit, item.text))
+def _number(name: str, item: Number) -> TableColumn:
+    return TableColumn(name, int if name in COUNTS else float, Signal(item.unit, item.text))
 
 
-def _measures(study: Study) -> Iterator[Column]:
+def _measures(study: Study) -> Iterator[TableColumn]:
     known = signals(study.scenario.models)
     for name, measure in study.measures.items():
         signal = known[measure.signal]
-        yield Column(name, float, signal._replace(text=f"{measure.how} of {measure.signal}: {signal.text}"))
+        yield TableColumn(name, float, signal._replace(text=f"{measure.how} of {measure.signal}: {signal.text}"))
 
 
 def _words(limits: list[Requirement]) -> str:

@@ -13,7 +13,7 @@ from typing import Any
 from orchestrator.cosim.fmu_files import sources_hash
 from orchestrator.cosim.master import Interrupt
 from orchestrator.cosim.slave import Array
-from orchestrator.sweep.engines import AHEAD, POLL, Task, cores, safe_children
+from orchestrator.sweep.engines import AHEAD, POLL, ChunkTask, cores, safe_children
 from orchestrator.sweep.job import Chunk, Job
 from orchestrator.text.errors import BadInput
 
@@ -25,7 +25,7 @@ CONNECT = 10.0
 class DaskEngine:
     """Threads of Dask workers."""
 
-    def __init__(self, task: Task, address: str | None, workers: int | None) -> None:
+    def __init__(self, task: ChunkTask, address: str | None, workers: int | None) -> None:
         self._task = task
         self._cluster: Any = None
         if address is None:

@@ -59,7 +59,7 @@ class Engine(Protocol):
         """Yield chunks with their rows in any order; after an interrupt only those in hand."""
 
 
-class Task(NamedTuple):
+class ChunkTask(NamedTuple):
     """How one chunk is done, and how large it should be."""
 
     work: Work
@@ -76,31 +76,31 @@ class Task(NamedTuple):
         return self.threads
 
 
-def choose_task(scenario: Scenario, fmus: str | None) -> Task:
+def choose_task(scenario: Scenario, fmus: str | None) -> ChunkTask:
     """Return how the runs are done: compiled where that is possible, otherwise one by one in the Python master.
 
     ``fmus``: with FMUs of this kind instead; ``none``: with the models in process.
     """
-    in_process = Task(partial(run_recorded, kind="none", files=None), "models in process", RECORDED_CHUNK, False)
+    in_process = ChunkTask(partial(run_recorded, kind="none", files=None), "models in process", RECORDED_CHUNK, False)
     if fmus == "none":
         return in_process
     if fmus is not None:
         from orchestrator.cosim.fmu_files import fmu_files
 
         files = {name: str(path) for name, path in fmu_files(fmus).items()}
-        return Task(partial(run_recorded, kind=fmus, files=files), f"{fmus} FMUs", RECORDED_CHUNK, False)
+        return ChunkTask(partial(run_recorded, kind=fmus, files=files), f"{fmus} FMUs", RECORDED_CHUNK, False)
     why = why_not_compiled(scenario)
     if not why and not can_compile():
         why = "there is no C compiler"
     if why:
         return in_process._replace(note=f"{why}: every run goes through the Python master")
-    return Task(run_batch, "compiled batch", BATCH_CHUNK, True)
+    return ChunkTask(run_batch, "compiled batch", BATCH_CHUNK, True)
 
 
 class LocalEngine:
     """Threads or processes of this machine."""
 
-    def __init__(self, task: Task, workers: int | None = None) -> None:
+    def __init__(self, task: ChunkTask, workers: int | None = None) -> None:
         self.name = task.name
         self.workers = workers or cores()
         self._task = task
@@ -164,7 +164,7 @@ def safe_children() -> Iterator[None]:
             os.environ["PYTHONSAFEPATH"] = before
 
 
-def make_engine(task: Task, dask: str | None, workers: int | None) -> Engine:
+def make_engine(task: ChunkTask, dask: str | None, workers: int | None) -> Engine:
     """Return the engine: Dask if an address or ``local`` is given. Raises ``BadInput`` if Dask is missing."""
     if dask is None:
         return LocalEngine(task, workers)

@@ -15,7 +15,7 @@ import pyarrow as pa  # type: ignore[import-untyped]
 import pyarrow.parquet as pq  # type: ignore[import-untyped]
 
 from fmus.files import whole, write_whole
-from orchestrator.sweep.columns import Column
+from orchestrator.sweep.columns import TableColumn
 from orchestrator.text.errors import BadInput
 
 ABOUT = b"apa"
@@ -26,7 +26,7 @@ TYPES = {float: pa.float64(), int: pa.int64(), bool: pa.bool_(), str: pa.string(
 class Store:
     """The parts of one unfinished study in ``folder/parts`` and its table ``folder/NAME.parquet``."""
 
-    def __init__(self, folder: Path, name: str, columns: list[Column], about: dict[str, Any]) -> None:
+    def __init__(self, folder: Path, name: str, columns: list[TableColumn], about: dict[str, Any]) -> None:
         self.table = folder / f"{name}.parquet"
         self.parts = folder / "parts"
         self._gone = folder / "parts.gone"
@@ -153,7 +153,7 @@ def forget_made_of(table: Path) -> None:
             row.rename(older)
 
 
-def _field(column: Column) -> Any:
+def _field(column: TableColumn) -> Any:
     signal = column.signal
     states = {} if signal.states is None else {str(int(state)): state.name for state in signal.states}
     metadata = {"unit": signal.unit, "text": signal.text, **({"states": json.dumps(states)} if states else {})}

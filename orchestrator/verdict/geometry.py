@@ -15,7 +15,7 @@ WHEEL_WIDTH = 0.18
 """For pictures only [m]."""
 
 
-class Car(NamedTuple):
+class CarOutline(NamedTuple):
     """Outline of the car about the midpoint of its rear axle [m]."""
 
     front: float
@@ -24,11 +24,13 @@ class Car(NamedTuple):
     wheelbase: float
 
     @staticmethod
-    def of(parameters: Mapping[str, float]) -> "Car":
+    def of(parameters: Mapping[str, float]) -> "CarOutline":
         """Return the outline that the vehicle's parameters (by flat name) give, with fair guesses for what lacks."""
         wheelbase = parameters.get("car.wheelbase", 2.5)
         front = wheelbase + parameters.get("car.front_overhang", 0.8)
-        return Car(front, parameters.get("car.rear_overhang", 0.6), 0.5 * parameters.get("car.width", 1.7), wheelbase)
+        return CarOutline(
+            front, parameters.get("car.rear_overhang", 0.6), 0.5 * parameters.get("car.width", 1.7), wheelbase
+        )
 
     def outline(self) -> Array:
         """Return the closed outline in the car's frame, (5, 2) [m]."""

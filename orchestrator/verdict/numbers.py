@@ -10,7 +10,7 @@ from orchestrator.cosim.recording import Recording
 from orchestrator.cosim.slave import Array
 from orchestrator.scenario import end_condition
 from orchestrator.scenario.scenario import Scenario
-from orchestrator.verdict.geometry import Car, described
+from orchestrator.verdict.geometry import CarOutline, described
 from orchestrator.verdict.measures import Measure, measured
 from orchestrator.verdict.polygons import polygon_clearance
 from orchestrator.verdict.standing import in_frames, kerb_distances, slot_margin
@@ -104,7 +104,7 @@ def _to_polygons(recording: Recording, scenario: Scenario) -> float:
     names = [f"vehicle.pose.{axis}" for axis in ("x", "y", "heading")]
     if not scenario.polygons or not all(name in recording.signals for name in names):
         return math.nan
-    car = Car.of(described(scenario, recording.parameters_of("vehicle")))
+    car = CarOutline.of(described(scenario, recording.parameters_of("vehicle")))
     return polygon_clearance(np.column_stack([recording.signals[name] for name in names]), scenario.polygons, car)
 
 

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from orchestrator.cosim.slave import Array
-from orchestrator.verdict.geometry import Car
+from orchestrator.verdict.geometry import CarOutline
 
 AT_ONCE = 400
 """Poses worked out together."""
@@ -17,7 +17,7 @@ SPACING = 0.01
 TURN = 0.002
 
 
-def polygon_clearance(poses: Array, polygons: Sequence[Sequence[tuple[float, float]]], car: Car) -> float:
+def polygon_clearance(poses: Array, polygons: Sequence[Sequence[tuple[float, float]]], car: CarOutline) -> float:
     """Return the least distance [m] of the outlines at ``poses`` (n, 3) to the polygons; 0 in contact, NaN for none."""
     poses = poses[np.isfinite(poses).all(axis=1)]
     if not polygons or not len(poses):
@@ -36,7 +36,7 @@ def _apart(poses: Array) -> Array:
     return poses[[*kept, len(poses) - 1]]
 
 
-def _clearances(poses: Array, polygons: Sequence[Sequence[tuple[float, float]]], car: Car) -> Array:
+def _clearances(poses: Array, polygons: Sequence[Sequence[tuple[float, float]]], car: CarOutline) -> Array:
     """Return the distance [m] of each outline to the nearest polygon."""
     nearest = np.full(len(poses), np.inf)
     for polygon in polygons:
@@ -46,7 +46,7 @@ def _clearances(poses: Array, polygons: Sequence[Sequence[tuple[float, float]]],
     return nearest
 
 
-def _seen(poses: Array, points: Array, car: Car) -> Array:
+def _seen(poses: Array, points: Array, car: CarOutline) -> Array:
     """Return points (p, 2) in the frames of the outlines' middles, (n, p, 2)."""
     c, s = np.cos(poses[:, 2, None]), np.sin(poses[:, 2, None])
     dx, dy = points[None, :, 0] - poses[:, 0, None], points[None, :, 1] - poses[:, 1, None]

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from orchestrator.cosim.slave import Array
 from orchestrator.scenario.scenario import Scenario
-from orchestrator.verdict.geometry import Car, Kerb, kerbs
+from orchestrator.verdict.geometry import CarOutline, Kerb, kerbs
 
 ALONG = math.cos(math.radians(45.0))
 AT_THE_SLOT = 0.5
@@ -52,7 +52,7 @@ def truth_of(scenario: Scenario, vehicle: Mapping[str, float]) -> Truth:
     """Return the truth of one run, whose car has the parameters ``vehicle``."""
     target = scenario.target.pose if scenario.target is not None else (NONE,) * 3
     slot = tuple(scenario.slot.model_dump().values()) if scenario.slot is not None else (NONE,) * 5
-    car = Car.of(vehicle)
+    car = CarOutline.of(vehicle)
     beside = [(kerb.x1, kerb.y1, kerb.x2, kerb.y2) for kerb in _at_the_slot(scenario, car, kerbs(vehicle))]
     return Truth(np.array([target]), np.array([slot]), np.array(beside).reshape(1, -1, 4), np.array([car]))
 
@@ -67,7 +67,7 @@ def joined(parts: list[Truth]) -> Truth:
     return Truth(targets, slots, np.concatenate(lanes), cars)
 
 
-def _at_the_slot(scenario: Scenario, car: Car, around: list[Kerb]) -> list[Kerb]:
+def _at_the_slot(scenario: Scenario, car: CarOutline, around: list[Kerb]) -> list[Kerb]:
     """Return the kerbs that bound the slot; without a slot those beside the car where it shall stand."""
     place = scenario.slot or scenario.target
     if place is None:

@@ -5,9 +5,9 @@ from typing import Any
 import numpy as np
 
 from controller_fmu.zhang2022.qp import STAGES
-from controller_fmu.zhang2022.qp_stage import Stage, Weights
+from controller_fmu.zhang2022.qp_stage import HorizonStage, Weights
 
-Problem = tuple[float, float, float, tuple[Stage, ...], Weights]
+Problem = tuple[float, float, float, tuple[HorizonStage, ...], Weights]
 
 
 def random_problem(rng: np.random.Generator) -> Problem:
@@ -21,12 +21,12 @@ def random_problem(rng: np.random.Generator) -> Problem:
     for _ in range(STAGES):
         angle = float(np.clip(angle + rng.uniform(-0.1, 0.1), -lock, lock))
         gain = float(speed * time / (wheelbase * np.cos(angle) ** 2))
-        stages.append(Stage(float(speed * time), gain, 0.5 * float(speed * time) * gain, angle, 1.0))
+        stages.append(HorizonStage(float(speed * time), gain, 0.5 * float(speed * time) * gain, angle, 1.0))
     now = rng.uniform(-0.5, 0.5), rng.uniform(-0.4, 0.4), rng.uniform(-lock, lock)
     return float(now[0]), float(now[1]), float(now[2]), tuple(stages), weights
 
 
-def dense(e: float, psi: float, d: float, stages: tuple[Stage, ...], w: Weights) -> tuple[Any, Any, Any, Any]:
+def dense(e: float, psi: float, d: float, stages: tuple[HorizonStage, ...], w: Weights) -> tuple[Any, Any, Any, Any]:
     """Return H, f, G, h of min x'Hx/2 + f'x, Gx <= h with x = (u, s): the states are eliminated."""
     n = len(stages)
     hessian, gradient = np.zeros((2 * n, 2 * n)), np.zeros(2 * n)

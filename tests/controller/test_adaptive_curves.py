@@ -5,11 +5,11 @@ import math
 
 import pytest
 
-from controller_fmu.adaptive.curves import Wheel, arc_in, bend_of, line_in, s_curve, swing_way
+from controller_fmu.adaptive.curves import SteeringLimits, arc_in, bend_of, line_in, s_curve, swing_way
 from controller_fmu.adaptive.route import curvature_at, drivable, foot_on, length_of, mirrored, point_at
 from modelkit.vocabulary import Pose
 
-WHEEL = Wheel(2.405, math.radians(30.0), 4.3)
+WHEEL = SteeringLimits(2.405, math.radians(30.0), 4.3)
 SPEEDS = (0.0, 0.3, 0.6)
 
 

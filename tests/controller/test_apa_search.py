@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 
 from controller_fmu.apa.edge import NO_SAMPLES, Heard, append, corner
-from controller_fmu.apa.line_fit import Line, Sums, add, offset, slope
+from controller_fmu.apa.line_fit import FittedLine, Sums, add, offset, slope
 from controller_fmu.apa.outline import Box, Obstacles
 from controller_fmu.apa.supervisor import look
 from controller_fmu.interface import ControllerParams
@@ -30,7 +30,7 @@ def test_a_side_is_measured_whatever_way_the_car_takes(tilt: float) -> None:
 @pytest.mark.parametrize("sense", [-1.0, 1.0])
 @pytest.mark.parametrize("tilt", [-0.06, 0.0, 0.06])
 def test_a_corner_is_where_its_echoes_come_from(sense: float, tilt: float) -> None:
-    line = Line(-1.0, tilt)
+    line = FittedLine(-1.0, tilt)
     place = 4.0
     samples = NO_SAMPLES
     for n in range(4):

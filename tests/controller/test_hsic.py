@@ -5,7 +5,7 @@ import math
 
 import pytest
 
-from controller_fmu.hsic.characteristic_states import Characteristic, Errors, Stage, errors, recognise
+from controller_fmu.hsic.characteristic_states import Characteristic, Errors, HsicStage, errors, recognise
 from controller_fmu.hsic.control import curvature, speed
 from controller_fmu.hsic.key_points import key_points, ready_point
 from controller_fmu.hsic.params import HsicGains, HsicParams, HsicSlot, HsicThresholds
@@ -42,9 +42,9 @@ def test_no_key_points_too_near():
 
 def test_every_state_is_recognised_and_has_its_rule():
     threshold, seen = HsicThresholds(), set()
-    for stage, rate, heading, distance in itertools.product(Stage, (0.1, -0.1), (0.0, 0.3, -0.3), (0.1, 3.0)):
+    for stage, rate, heading, distance in itertools.product(HsicStage, (0.1, -0.1), (0.0, 0.3, -0.3), (0.1, 3.0)):
         state = recognise(int(stage), Errors(distance, 0.0, heading, distance, rate), threshold)
-        group = {Stage.READY: "READY", Stage.SHUFFLE: "SHUFFLE"}.get(stage, "SLOT")
+        group = {HsicStage.READY: "READY", HsicStage.SHUFFLE: "SHUFFLE"}.get(stage, "SLOT")
         kind = "AWAY" if rate > 0 else "TURNED" if heading else "FAR" if distance > 1 else "NEAR"
         assert Characteristic(state).name == f"{group}_{kind}"
         seen.add(state)
@@ -66,7 +66,7 @@ def test_steering_brings_the_car_to_the_axis_in_both_directions(direction, mode)
     y, heading, step = 0.4, 0.0, 0.005
     for _ in range(int(8.0 / step)):
         found = Errors(1.0, y, heading, 1.0, -0.1)
-        k = curvature(int(mode), int(Stage.SHUFFLE), found, direction, 0.0, 0.2, 0.25, HsicGains())
+        k = curvature(int(mode), int(HsicStage.SHUFFLE), found, direction, 0.0, 0.2, 0.25, HsicGains())
         y += direction * math.sin(heading) * step
         heading += direction * k * step
         assert abs(k) <= 0.25
@@ -77,8 +77,8 @@ def test_steering_brings_the_car_to_the_axis_in_both_directions(direction, mode)
 def test_extremum_hold_turns_in_and_counter_steers():
     far = Errors(3.0, 0.0, 0.5, 3.0, -0.1)
     hold = int(SteerMode.EXTREMUM_HOLD)
-    assert curvature(hold, int(Stage.TURN_IN), far, -1, 0.0, 0.2, 0.25, HsicGains()) == -0.2
-    assert curvature(hold, int(Stage.COUNTER), far, -1, 0.0, 0.2, 0.25, HsicGains()) == 0.2
+    assert curvature(hold, int(HsicStage.TURN_IN), far, -1, 0.0, 0.2, 0.25, HsicGains()) == -0.2
+    assert curvature(hold, int(HsicStage.COUNTER), far, -1, 0.0, 0.2, 0.25, HsicGains()) == 0.2
 
 
 def test_speeds_of_the_modes():

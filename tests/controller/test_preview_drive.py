@@ -6,7 +6,7 @@ import pytest
 from preview_car import Row, drive
 
 from controller_fmu.preview.params import Camera, Method, PreviewParams
-from controller_fmu.preview.stage import Stage
+from controller_fmu.preview.stage import PreviewStage
 
 P = PreviewParams()
 CURVES = ((100.0, -0.01), (357.08, 0.02), (616.16, -0.04), (796.7, 0.05))
@@ -34,13 +34,13 @@ def test_whole_road_within_two_centimetres_by_equation_two(rows):
 @pytest.mark.parametrize(("start", "kappa"), CURVES)
 def test_each_curve_is_entered_at_its_safe_speed(rows, rows8, start, kappa):
     for log in (rows, rows8):
-        entry = first(log, Stage.CURVE, start - 15.0)
+        entry = first(log, PreviewStage.CURVE, start - 15.0)
         assert entry.speed == pytest.approx(math.sqrt(0.578 / abs(kappa)), rel=0.03)
 
 
 def test_points_a_to_e_of_curve_two(rows8):
     points = [first(rows8, stage, 300.0).signals.s for stage in (1, 2, 3, 4)]
-    exit_ = next(r.signals.s for r in rows8 if r.signals.s > 400.0 and r.signals.stage == Stage.STRAIGHT)
+    exit_ = next(r.signals.s for r in rows8 if r.signals.s > 400.0 and r.signals.stage == PreviewStage.STRAIGHT)
     for ours, printed in zip([*points, exit_], (331.5, 350.6, 353.6, 508.6, 510.7), strict=True):
         assert ours == pytest.approx(printed, abs=2.0)
 
@@ -55,7 +55,7 @@ def test_steering_does_not_start_before_l1_sees_the_curve(rows):
     for start, kappa in CURVES:
         before = [r for r in rows if start - 15.0 < r.signals.s < start - 4.01]
         assert max(abs(r.angle) for r in before) < math.radians(0.05)
-        assert first(rows, Stage.CURVE, start - 15.0).signals.s == pytest.approx(
+        assert first(rows, PreviewStage.CURVE, start - 15.0).signals.s == pytest.approx(
             start - (4.5 - 50 * abs(kappa)), abs=0.1
         )
 

@@ -11,7 +11,7 @@ from controller_fmu.preview.control import drive_force, steering_angle
 from controller_fmu.preview.fuzzy import cell_moment, centroid, infer
 from controller_fmu.preview.membership import membership
 from controller_fmu.preview.params import PreviewParams, RuleTable
-from controller_fmu.preview.preview import Sight
+from controller_fmu.preview.preview import PreviewErrors
 
 UNIFORM5 = (-3.0, -1.5, 0.0, 1.5, 3.0)
 UNIFORM7 = (-3.0, -2.0, -1.0, 0.0, 1.0, 2.0, 3.0)
@@ -106,7 +106,9 @@ def test_membership_is_a_partition(value):
 @given(st.floats(-0.3, 0.3), st.floats(-0.7, 0.7))
 def test_symmetric_rules_give_mirrored_steering(y, eps):
     p = PreviewParams()
-    assert steering_angle(Sight(-y, -eps), p) == pytest.approx(-steering_angle(Sight(y, eps), p), abs=1e-12)
+    assert steering_angle(PreviewErrors(-y, -eps), p) == pytest.approx(
+        -steering_angle(PreviewErrors(y, eps), p), abs=1e-12
+    )
 
 
 def test_printed_rules_break_the_symmetry_in_four_cells():
@@ -117,7 +119,11 @@ def test_printed_rules_break_the_symmetry_in_four_cells():
     ]
     assert cells == [3, 4, 15, 16]
     printed = PreviewParams()._replace(rules=int(RuleTable.PRINTED))
-    assert steering_angle(Sight(-0.2, 0.4), printed) < 0 < steering_angle(Sight(-0.2, 0.4), PreviewParams())
+    assert (
+        steering_angle(PreviewErrors(-0.2, 0.4), printed)
+        < 0
+        < steering_angle(PreviewErrors(-0.2, 0.4), PreviewParams())
+    )
 
 
 def test_force_sign_and_limits():
@@ -131,5 +137,5 @@ def test_force_sign_and_limits():
 @pytest.mark.parametrize("bad", [float("nan"), float("inf"), -float("inf")])
 def test_bad_inputs_do_not_raise(bad):
     p = PreviewParams()
-    assert not abs(steering_angle(Sight(bad, 0.0), p)) > p.steering_range
+    assert not abs(steering_angle(PreviewErrors(bad, 0.0), p)) > p.steering_range
     assert not abs(drive_force(bad, bad, p)) > 750.0 + 1e-9

@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from controller_fmu.preview.params import ROAD, PreviewParams
-from controller_fmu.preview.preview import Motion, Sight, integrate_sight, look, motion
+from controller_fmu.preview.preview import Displacement, PreviewErrors, integrate_sight, look, motion
 from controller_fmu.preview.road import along, curvature_at, project, road_at, road_length
 from controller_fmu.preview.safe_speed import safe_speed
 from modelkit.vocabulary import Pose
@@ -77,7 +77,7 @@ def test_geometry_and_kinematics_agree_at_constant_distance():
 
 def test_motion_of_pure_translation_and_rotation():
     moved = motion(Pose(1.0, 2.0, math.pi / 2), Pose(1.0, 3.0, math.pi / 2))
-    assert moved == Motion(pytest.approx(1.0), pytest.approx(0.0), pytest.approx(0.0))
+    assert moved == Displacement(pytest.approx(1.0), pytest.approx(0.0), pytest.approx(0.0))
     turned = motion(Pose(0.0, 0.0, 3.1), Pose(0.0, 0.0, -3.1))
     assert turned.turned == pytest.approx(2 * math.pi - 6.2)
 
@@ -86,5 +86,5 @@ def test_steady_curve_of_equation_two_gives_curvature_times_distance_plus_sidesl
     """vx epsL - vy - r L1 = 0 with r = vx kappa: epsL = kappa L1 + beta."""
     vx, vy, kappa, l1, dt = 5.4, 0.05, 0.02, 3.5, 0.01
     eps = kappa * l1 + vy / vx
-    sight = integrate_sight(Sight(0.0, eps), Motion(vx * dt, vy * dt, vx * kappa * dt), kappa, l1)
-    assert sight == Sight(pytest.approx(0.0, abs=1e-12), pytest.approx(eps))
+    sight = integrate_sight(PreviewErrors(0.0, eps), Displacement(vx * dt, vy * dt, vx * kappa * dt), kappa, l1)
+    assert sight == PreviewErrors(pytest.approx(0.0, abs=1e-12), pytest.approx(eps))

@@ -11,13 +11,13 @@ from controller_fmu.guo2015.path import reference_at
 from controller_fmu.guo2015.path_tracking import path_tracking_angle
 from controller_fmu.guo2015.phases import GuoPhase
 from controller_fmu.guo2015.planner import path_from
-from controller_fmu.guo2015.smooth_path import Shape, curve, leaning, on_curve, rising, way_left
+from controller_fmu.guo2015.smooth_path import PathShape, curve, leaning, on_curve, rising, way_left
 from controller_fmu.interface import Reason, System
 from modelkit.vocabulary import Pose
 
 L = 2.405
 SMALLEST = 4.37
-SMOOTH = [shape for shape in Shape if shape != Shape.TWO_ARCS]
+SMOOTH = [shape for shape in PathShape if shape != PathShape.TWO_ARCS]
 START = Pose(11.6, 3.056, 0.03)
 TARGET = (-7.608, -3.056)
 each = pytest.mark.parametrize("shape", SMOOTH, ids=lambda shape: shape.name.lower())
@@ -39,7 +39,7 @@ def test_the_b_spline_is_the_one_of_scipy():
     knots, ordinates = np.array([0, 0, 0, 0, 0.25, 0.5, 0.75, 1, 1, 1, 1]), np.array([0, 0, 0, 0.5, 1, 1, 1])
     oracle = BSpline(knots, ordinates, 3)
     for t in np.linspace(0.0, 1.0, 33):
-        ours = rising(Shape.B_SPLINE, float(t))
+        ours = rising(PathShape.B_SPLINE, float(t))
         assert ours == pytest.approx([float(oracle.derivative(k)(t)) if k else float(oracle(t)) for k in range(3)])
 
 

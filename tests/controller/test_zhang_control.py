@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from controller_fmu.zhang2022.mpc import FrontAxle, Steering, prediction, steer, turned
+from controller_fmu.zhang2022.mpc import FrontAxle, FrontWheels, prediction, steer, turned
 from controller_fmu.zhang2022.params import MpcParams, PidParams
 from controller_fmu.zhang2022.path import nearest, plan
 from controller_fmu.zhang2022.pid import PidState, pid
@@ -28,7 +28,7 @@ def test_prediction_is_the_kinematic_car_to_first_order():
 
 
 def test_on_a_straight_path_with_a_straight_wheel_nothing_is_asked():
-    found = steer(Steering(), PATH, nearest(PATH, Pose(-0.5, 0.0, 0.0)), -1.0, CAR, P)
+    found = steer(FrontWheels(), PATH, nearest(PATH, Pose(-0.5, 0.0, 0.0)), -1.0, CAR, P)
     assert found.status == Status.SOLVED
     assert found.rate == pytest.approx(0.0, abs=1e-6)
 
@@ -36,22 +36,22 @@ def test_on_a_straight_path_with_a_straight_wheel_nothing_is_asked():
 @pytest.mark.parametrize("side", [1.0, -1.0])
 def test_off_the_path_the_car_is_steered_back(side):
     reference = nearest(PATH, Pose(0.0, 0.0, 0.0))._replace(lateral_error=0.2 * side)
-    found = steer(Steering(), PATH, reference, -1.0, CAR, P)
+    found = steer(FrontWheels(), PATH, reference, -1.0, CAR, P)
     assert found.rate * side < -0.1, "in reverse, too far left: steer right, so that the tail comes in"
     assert abs(found.rate) <= CAR.rate_limit
 
 
 def test_fall_back_keeps_the_last_rate_within_its_limit():
     reference = nearest(PATH, Pose(3.0, 0.5, 0.3))
-    capped = steer(Steering(0.1, 0.2, 0, 0), PATH, reference, -1.0, CAR, P._replace(cap=1))
+    capped = steer(FrontWheels(0.1, 0.2, 0, 0), PATH, reference, -1.0, CAR, P._replace(cap=1))
     assert (capped.status, capped.rate) == (Status.ITERATION_CAP, 0.2)
-    bad = steer(Steering(0.1, 0.9, 0, 0), PATH, reference._replace(lateral_error=math.nan), -1.0, CAR, P)
+    bad = steer(FrontWheels(0.1, 0.9, 0, 0), PATH, reference._replace(lateral_error=math.nan), -1.0, CAR, P)
     assert bad.status in (Status.FAILED, Status.ITERATION_CAP)
     assert bad.rate == CAR.rate_limit
 
 
 def test_turned_stays_within_the_lock():
-    steering = Steering(0.5, 0.5, 0, 0)
+    steering = FrontWheels(0.5, 0.5, 0, 0)
     for _ in range(100):
         steering = turned(steering, CAR, 0.01)
     assert steering.angle == CAR.angle_limit

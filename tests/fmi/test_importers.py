@@ -2,6 +2,8 @@
 
 import random
 import re
+from enum import IntEnum
+from typing import Any
 from xml.etree import ElementTree
 
 import pytest
@@ -12,6 +14,7 @@ from controller_fmu import SYSTEM_MODELS
 from fmus.contents.dependencies import find_dependencies, initial_dependencies
 from fmus.contents.description import model_description
 from fmus.contents.variables import fmi_variables, limits, mode_types
+from modelkit.model import View
 from modelkit.variables import constructor, flatten, variables
 from vehicle_fmu import MODEL as VEHICLE
 
@@ -113,8 +116,10 @@ def test_every_mode_has_a_declared_type_with_the_names_of_its_states(model):
 
 
 def test_two_modes_of_one_name_are_told_apart():
-    names = set(mode_types(CONTROLLER).values())
-    assert {"hsic.Stage", "preview.Stage", "Phase"} <= names
+    others: Any = IntEnum("Mode", {"OFF": 0, "ON": 1}, module="engine.model")
+    model = toy_model.MODEL._replace(view=View(states=(("mode", others),)))
+    assert set(mode_types(toy_model.MODEL).values()) == {"Mode"}
+    assert set(mode_types(model).values()) == {"toy_model.Mode", "engine.Mode"}
 
 
 # Initial dependencies

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from live_module import PLACES, STANDSTILL, STOP_TIME, LiveModule, parameters, setup, times_of
 
-from fmus.native.platforms import Target
+from fmus.native.platforms import CompileTarget
 from fmus.native.web import live_library, web_module
 from orchestrator.cosim.fmu_files import fmu_files
 from orchestrator.live.situation import shipped
@@ -19,7 +19,7 @@ WITHOUT_FAULTS = [scenario.name for scenario in shipped() if not scenario.faults
 NAMES = list(PLACES)
 WITHIN = {"preview-geometry": 1e-3}
 """Largest difference of a signal [SI]. 960 m in a loop of high gain: wheel 5e-5 rad, force 1e-3 N, pose 5e-7 m."""
-STATIC = Target("x86_64-linux-musl", ("-static", "-Wl,-s"))
+STATIC = CompileTarget("x86_64-linux-musl", ("-static", "-Wl,-s"))
 
 
 @pytest.fixture(scope="module")

@@ -12,7 +12,7 @@ from modelkit.vocabulary import Gear
 from orchestrator.cli import main
 from orchestrator.comparison.compare import compare
 from orchestrator.comparison.tolerance import Tolerance, Tolerances, read_tolerances
-from orchestrator.comparison.tube import Curve, distance
+from orchestrator.comparison.tube import Trace, distance
 from orchestrator.cosim.recording import Recording
 from orchestrator.text.errors import BadInput
 
@@ -169,7 +169,7 @@ def test_tube_against_a_search_over_all_pairs():
     t = np.unique(np.round(random.uniform(0.0, 5.0, 60), 3))
     a, b = random.normal(size=len(t)), random.normal(size=len(t))
     tolerance = Tolerance(0.3, 0.2, 0.4)
-    found = distance(Curve(t, a, False), Curve(t, b, False), tolerance)
+    found = distance(Trace(t, a, False), Trace(t, b, False), tolerance)
     fine = np.linspace(t[0], t[-1], 40_001)
     line = np.interp(fine, t, a)
     allowed = np.maximum(0.3, 0.2 * np.abs(line))

@@ -10,7 +10,7 @@ from orchestrator.drawing.figure import draw
 from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.session.session import run_scenario
 from orchestrator.verdict.frame import in_frame
-from orchestrator.verdict.geometry import Car, place, sample_path
+from orchestrator.verdict.geometry import CarOutline, place, sample_path
 from orchestrator.verdict.summary import summarize
 
 DEMO = str(Path(__file__).with_name("demo.yaml"))
@@ -46,7 +46,7 @@ def test_the_sampled_path_ends_where_two_arcs_do() -> None:
 
 
 def test_frames_go_there_and_back() -> None:
-    points = Car.of(
+    points = CarOutline.of(
         {"car.wheelbase": 2.4, "car.front_overhang": 0.8, "car.rear_overhang": 0.6, "car.width": 1.6}
     ).outline()
     assert points.min(axis=0).tolist() == [-0.6, -0.8]

@@ -23,7 +23,7 @@ from orchestrator.session.session import run_scenario
 from orchestrator.sweep.rows import measures_for, row_of
 from orchestrator.sweep.verdict import OUTCOMES, judge_rows
 from orchestrator.text.errors import BadInput
-from orchestrator.verdict.geometry import Car, place, slot_box
+from orchestrator.verdict.geometry import CarOutline, place, slot_box
 from orchestrator.verdict.logged import logged
 from orchestrator.verdict.numbers import NUMBERS
 from orchestrator.verdict.outcome import state_name
@@ -210,7 +210,7 @@ def test_no_kerb_no_kerb_rule_and_one_across_the_slot_is_none() -> None:
 def test_the_margin_is_the_outlines_distance_to_the_slots_edges(
     pose: tuple[float, ...], slot: tuple[float, ...]
 ) -> None:
-    car = Car(3.2, 0.6, 0.85, 2.4)
+    car = CarOutline(3.2, 0.6, 0.85, 2.4)
     found = float(slot_margin(np.array([pose]), np.array([slot]), np.array([car]))[0])
     scenario = Scenario(name="a", slot=dict(zip(("x", "y", "heading", "length", "width"), slot, strict=True)))
     assert scenario.slot is not None

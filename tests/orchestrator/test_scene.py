@@ -2,15 +2,15 @@
 
 import pytest
 
-from orchestrator.drawing.scene import Stage, still_life
+from orchestrator.drawing.scene import Surroundings, still_life
 from orchestrator.scenario.scenario import Slot
-from orchestrator.verdict.geometry import Box, Car, boxes, kerbs, slot_box
+from orchestrator.verdict.geometry import Box, CarOutline, boxes, kerbs, slot_box
 
 SECOND = 1_000_000_000
-CAR = Car.of({})
+CAR = CarOutline.of({})
 
 
-def ids(stage: Stage, t_ns: int) -> set[str]:
+def ids(stage: Surroundings, t_ns: int) -> set[str]:
     return {entity.id for entity in still_life(t_ns, CAR, stage).entities}
 
 
@@ -24,7 +24,7 @@ def test_parameters_become_boxes_and_kerbs_and_empty_ones_are_left_out() -> None
 
 def test_an_obstacle_comes_and_goes() -> None:
     box = Box(1.0, 2.0, 0.0, 0.5, 0.5, appear_at=2.0, disappear_at=5.0)
-    stage = Stage(None, [Box(length=4.0, width=2.0), box], [], None)
+    stage = Surroundings(None, [Box(length=4.0, width=2.0), box], [], None)
     assert stage.changes_ns() == [0, 2 * SECOND, 5 * SECOND]
     for t, there in ((0, False), (2, True), (4, True), (5, False)):
         assert ("obstacle_2" in ids(stage, t * SECOND)) is there
@@ -34,7 +34,7 @@ def test_an_obstacle_comes_and_goes() -> None:
 
 
 def test_the_slot_is_where_the_scenario_says() -> None:
-    stage = Stage(slot_box(Slot(x=1.0, y=2.0, heading=0.0, length=6.0, width=2.0)), [], [], None)
+    stage = Surroundings(slot_box(Slot(x=1.0, y=2.0, heading=0.0, length=6.0, width=2.0)), [], [], None)
     slot = next(entity for entity in still_life(0, CAR, stage).entities if entity.id == "slot")
     assert [(point.x, point.y) for point in slot.lines[0].points] == [(-2, 1), (4, 1), (4, 3), (-2, 3), (-2, 1)]
     assert slot.frame_id == "world"
@@ -42,4 +42,4 @@ def test_the_slot_is_where_the_scenario_says() -> None:
 
 @pytest.mark.parametrize("name", ["car", "odometry", "front_left_wheel", "front_right_wheel"])
 def test_the_car_is_always_there(name: str) -> None:
-    assert name in ids(Stage(None, [], [], None), 0)
+    assert name in ids(Surroundings(None, [], [], None), 0)

@@ -7,7 +7,7 @@ import pytest
 from orchestrator.cli import main
 from orchestrator.cosim.fmu_files import can_compile
 from orchestrator.grid.cases import CARS, cases, parameters
-from orchestrator.grid.parkings import Parking, parkings
+from orchestrator.grid.parkings import GridRun, parkings
 from orchestrator.grid.study import study, study_of, totals
 from orchestrator.session.session import run_scenario
 from orchestrator.sweep.engines import choose_task
@@ -24,12 +24,12 @@ PLAIN = (62, 658)
 """Driven in plain Python as well: one parallel, one perpendicular."""
 
 
-def driven(numbers: tuple[int, ...]) -> list[Parking]:
+def driven(numbers: tuple[int, ...]) -> list[GridRun]:
     return parkings(columns_in_memory(study_of([cases()[number] for number in numbers])))
 
 
 @pytest.fixture(scope="module")
-def results() -> list[Parking]:
+def results() -> list[GridRun]:
     whole = study()
     return parkings(columns_in_memory(whole._replace(design=whole.design.part(0, EVERY))))
 
@@ -52,18 +52,18 @@ def test_the_grid_covers_what_it_says() -> None:
 
 
 @needs_compiler
-def test_no_run_touches_anything(results: list[Parking]) -> None:
+def test_no_run_touches_anything(results: list[GridRun]) -> None:
     assert min(item.nearest for item in results) > 0.05
     assert totals(results)["touched something"] == 0
 
 
 @needs_compiler
-def test_every_run_ends_parked_or_failed_with_its_reason(results: list[Parking]) -> None:
+def test_every_run_ends_parked_or_failed_with_its_reason(results: list[GridRun]) -> None:
     assert [item.case.number for item in results if not item.is_ended] == []
 
 
 @needs_compiler
-def test_all_but_one_in_a_hundred_are_parked_within_gbt(results: list[Parking]) -> None:
+def test_all_but_one_in_a_hundred_are_parked_within_gbt(results: list[GridRun]) -> None:
     inside = [item for item in results if item.inside]
     assert len(inside) > 30
     for group in (results, inside):
@@ -71,14 +71,14 @@ def test_all_but_one_in_a_hundred_are_parked_within_gbt(results: list[Parking]) 
 
 
 @needs_compiler
-def test_house_limits_are_met_where_the_slot_allows_three_shifts(results: list[Parking]) -> None:
+def test_house_limits_are_met_where_the_slot_allows_three_shifts(results: list[GridRun]) -> None:
     group = [item for item in results if item.case.kind == 2 or item.case.extra > 0.0]
     assert sum(item.is_house for item in group) >= 0.93 * len(group)
     assert all(item.is_house_but_shifts for item in results if item.is_house)
 
 
 @needs_compiler
-def test_corners_are_found_and_no_slot_where_there_is_none(results: list[Parking]) -> None:
+def test_corners_are_found_and_no_slot_where_there_is_none(results: list[GridRun]) -> None:
     assert [item.case.number for item in results if item.kind == 0 or item.is_ghost] == []
     slow = [item for item in results if item.case.speed < 5.0]
     assert max(max(item.corner_a, item.corner_b) for item in slow) < 0.1

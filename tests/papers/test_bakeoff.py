@@ -8,7 +8,7 @@ import pytest
 from controller_fmu.common.arc_line_arc import arc_line_arc, largest_radius
 from controller_fmu.zhang2022.path import STEEPEST, PathStatus, plan, through
 from modelkit.vocabulary import Pose
-from orchestrator.bakeoff.claim import LIMITS, STEERING, SYSTEMS, Group, rate_of, rates
+from orchestrator.bakeoff.claim import LIMITS, STEERING, SYSTEMS, Setting, rate_of, rates
 from orchestrator.bakeoff.claim import study as claim
 from orchestrator.bakeoff.drives import Drive, drives
 from orchestrator.bakeoff.entries import ASSIST, CONTROLLERS, LABELS, SLOTS, STARTS, entries, scenario_of
@@ -118,13 +118,13 @@ def test_point_tracking_parks_more_drivers_than_path_tracking_alone() -> None:
     assert len(by_group) == 2 * 2 * 2
     for steering in STEERING:
         for limit in LIMITS:
-            ours, plain = (by_group[Group(system, steering, limit)] for system in SYSTEMS)
+            ours, plain = (by_group[Setting(system, steering, limit)] for system in SYSTEMS)
             assert ours.low > plain.high
     assert rates(columns_in_memory(claim(200, 1))) == found
 
 
 def test_wilson_keeps_to_shares() -> None:
-    group = Group("ntbpt", "30 deg/s", "house")
+    group = Setting("ntbpt", "30 deg/s", "house")
     none, half = rate_of(group, 100, 0), rate_of(group, 100, 50)
     assert none.low == 0.0
     assert none.high == pytest.approx(0.0370, abs=1e-4)

@@ -10,11 +10,11 @@ from shapely.geometry import Polygon
 
 from controller_fmu.planning.plan import PLANNING, begin, search_to
 from controller_fmu.planning.plan_store import COUNT, KEPT_COUNT, STATUS, PlanStore
-from controller_fmu.planning.task import CORNERS, Car, Corner, Request, Scene, drive
+from controller_fmu.planning.task import CORNERS, Corner, PlannedCar, Request, Scene, drive
 from modelkit.store import new_store
 from modelkit.vocabulary import Pose
 
-CAR = Car(1.4155, 2.3445, 0.971, math.tan(0.75) / 2.8)
+CAR = PlannedCar(1.4155, 2.3445, 0.971, math.tan(0.75) / 2.8)
 """The competition's car."""
 
 

@@ -21,7 +21,7 @@ from shapely.geometry import LineString
 from controller_fmu.planning.clearance import edge_gap
 from controller_fmu.planning.plan import GOAL_BLOCKED, PLANNED, START_BLOCKED, search_to
 from controller_fmu.planning.plan_store import COUNT, STATUS, WORDS, PlanStore
-from controller_fmu.planning.task import Request, Rung, Task, Window, drive
+from controller_fmu.planning.task import Request, Rung, SearchWindow, Task, drive
 from controller_fmu.planning.tree import cheapest, word_way
 from controller_fmu.planning.words import list_words, turn_of
 from modelkit.store import new_store, size_of
@@ -43,7 +43,9 @@ def test_distance_to_an_edge_is_that_of_shapely():
 def test_every_word_ends_where_it_should():
     draw = random.Random(2)
     store = new_store(PlanStore)
-    task = Task(ORIGIN, ORIGIN, CAR, Window(0.0, 0.0, 1.0, 1.0, 1, 1.0, 1), True, 0.1, Rung(*[True] * 2, *[1.0] * 6, 1))
+    task = Task(
+        ORIGIN, ORIGIN, CAR, SearchWindow(0.0, 0.0, 1.0, 1.0, 1, 1.0, 1), True, 0.1, Rung(*[True] * 2, *[1.0] * 6, 1)
+    )
     for _ in range(60):
         end = Pose(draw.uniform(-12.0, 12.0), draw.uniform(-12.0, 12.0), draw.uniform(-3.1, 3.1))
         count = list_words(store, ORIGIN, end, 0.0, 0.0, task)

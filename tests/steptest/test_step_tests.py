@@ -14,7 +14,7 @@ from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.session.session import run_scenario
 from orchestrator.steptest.run import run_step_test
 from orchestrator.steptest.step_test import is_step_test, load_step_test
-from orchestrator.steptest.stimuli import Place, stimulus
+from orchestrator.steptest.stimuli import StimulatedInput, stimulus
 from orchestrator.text.errors import BadInput
 from vehicle_fmu.interface import VehicleInput
 
@@ -41,7 +41,7 @@ def write(tmp_path):
 
 
 def place(tmp_path, kind=float, unit="rad"):
-    return Place(Variable("angle", kind, Signal(unit, "angle"), 0), tmp_path / "test.yaml", "inputs.angle")
+    return StimulatedInput(Variable("angle", kind, Signal(unit, "angle"), 0), tmp_path / "test.yaml", "inputs.angle")
 
 
 @pytest.mark.parametrize(

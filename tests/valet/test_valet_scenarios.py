@@ -13,7 +13,7 @@ from orchestrator.scenario.load_scenario import load_scenario, scenario_names
 from orchestrator.scenario.tpcap import read_tpcap
 from orchestrator.session.session import run_scenario
 from orchestrator.text.errors import BadInput
-from orchestrator.verdict.geometry import Car
+from orchestrator.verdict.geometry import CarOutline
 from orchestrator.verdict.polygons import polygon_clearance
 from orchestrator.verdict.summary import summarize
 
@@ -97,7 +97,7 @@ def test_more_corners_than_the_map_holds_are_refused(tmp_path):
 
 def test_distance_to_polygons_is_that_of_shapely():
     draw = np.random.default_rng(3)
-    car = Car(CAR.ahead + CAR.half_length, CAR.half_length - CAR.ahead, CAR.half_width, 2.8)
+    car = CarOutline(CAR.ahead + CAR.half_length, CAR.half_length - CAR.ahead, CAR.half_width, 2.8)
     touched = 0
     for _ in range(100):
         points = draw.uniform(-1.0, 1.0, (5, 2)) * 4.0 + draw.uniform(-6.0, 6.0, 2)

@@ -7,7 +7,7 @@ from typing import Any
 
 from fmus.compiler.source.kinds import BOOL, FLOAT, INT, Array, described
 from fmus.compiler.source.refusals import AlreadySaidError, CannotError
-from fmus.compiler.target.body import EXPRESSIONS, Body
+from fmus.compiler.target.body import EXPRESSIONS, FunctionBody
 from fmus.compiler.target.making import elements, repeated, tuple_of
 from fmus.compiler.target.values import (
     BIT_AND,
@@ -58,7 +58,7 @@ MOST_ITEMS = 10_000
 FLOAT_ADVICE = {ast.FloorDiv: "write math.floor(a / b)", ast.Mod: "write a - b * math.floor(a / b)"}
 
 
-def constant(body: Body, node: ast.Constant) -> Value:
+def constant(body: FunctionBody, node: ast.Constant) -> Value:
     """Return a number or truth value written in the source."""
     if type(node.value) in (float, bool):
         return literal(node.value)
@@ -72,7 +72,7 @@ def constant(body: Body, node: ast.Constant) -> Value:
     raise CannotError(node, f"the constant {node.value!r}", "write a float, an int, True or False")
 
 
-def name(body: Body, node: ast.Name) -> Value:
+def name(body: FunctionBody, node: ast.Name) -> Value:
     """Return a variable, or a constant of the module."""
     if any(node.id in scope for scope in body.scopes) or node.id in body.bindings.local:
         known = variable(body, node.id)
@@ -87,7 +87,7 @@ def name(body: Body, node: ast.Name) -> Value:
     return body.program.constant(found, node)
 
 
-def binary(body: Body, node: ast.BinOp) -> Value:
+def binary(body: FunctionBody, node: ast.BinOp) -> Value:
     """Return ``a + b`` and the like."""
     left, right = body.value(node.left), body.value(node.right)
     kind = type(node.op)
@@ -118,7 +118,7 @@ def _of_floats(node: ast.BinOp, left: Value, right: Value) -> Value:
     return Value(FLOAT, f"{within(left, level)} {sign} {within(right, level + 1)}", level, const=const)
 
 
-def _of_ints(body: Body, node: ast.BinOp, left: Value, right: Value) -> Value:
+def _of_ints(body: FunctionBody, node: ast.BinOp, left: Value, right: Value) -> Value:
     kind = type(node.op)
     const = _known(kind, left, right)
     if kind in (ast.LShift, ast.RShift) and right.const is not UNKNOWN and not 0 <= right.const < 64:
@@ -140,7 +140,7 @@ def _of_ints(body: Body, node: ast.BinOp, left: Value, right: Value) -> Value:
     return in_64_bits(Value(INT, text, level, const=const, low=low, high=high, narrow=narrow), node)
 
 
-def _quotient(body: Body, node: ast.BinOp, left: Value, right: Value) -> Value:
+def _quotient(body: FunctionBody, node: ast.BinOp, left: Value, right: Value) -> Value:
     """Return ``a / b`` of integers, which Python rounds once from the exact quotient."""
     if left.lies_in(-WHOLE, WHOLE) and right.lies_in(-WHOLE, WHOLE):
         return _of_floats(node, as_float(left), as_float(right))
@@ -184,7 +184,7 @@ def in_64_bits(value: Value, node: ast.AST) -> Value:
     return value
 
 
-def _of_tuples(body: Body, node: ast.BinOp, left: Value, right: Value) -> Value:
+def _of_tuples(body: FunctionBody, node: ast.BinOp, left: Value, right: Value) -> Value:
     """Return tuples joined by + or repeated by *."""
     if isinstance(node.op, ast.Mult):
         items, count = (left, right) if isinstance(left.kind, Array) else (right, left)
@@ -203,7 +203,7 @@ def _of_tuples(body: Body, node: ast.BinOp, left: Value, right: Value) -> Value:
     return tuple_of(body, elements(body, left) + elements(body, right))
 
 
-def unary(body: Body, node: ast.UnaryOp) -> Value:
+def unary(body: FunctionBody, node: ast.UnaryOp) -> Value:
     """Return ``-x``, ``+x``, ``~x``."""
     value = body.scalar(node.operand)
     if isinstance(node.op, ast.Invert):

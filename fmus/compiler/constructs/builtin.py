@@ -8,7 +8,7 @@ from typing import Any
 from fmus.compiler.constructs.arithmetic import in_64_bits
 from fmus.compiler.source.kinds import BOOL, FLOAT, INT, Array, Mixed, described
 from fmus.compiler.source.refusals import CannotError
-from fmus.compiler.target.body import Body
+from fmus.compiler.target.body import FunctionBody
 from fmus.compiler.target.making import elements
 from fmus.compiler.target.values import EQUAL, UNKNOWN, Value, as_float, as_int, both, either, literal, truth
 
@@ -31,7 +31,7 @@ MATH_ADVICE = {
 }
 
 
-def math_call(body: Body, node: ast.Call, name: str) -> Value:
+def math_call(body: FunctionBody, node: ast.Call, name: str) -> Value:
     """Return a call of a function of math."""
     if name in WHOLE:
         (value,) = scalars(body, node, f"math.{name}", 1, 1)
@@ -59,7 +59,7 @@ def known_result(function: Callable[..., Any], values: list[Value]) -> Any:
         return UNKNOWN
 
 
-def whole(body: Body, value: Value, c: str, python: Callable[..., Any]) -> Value:
+def whole(body: FunctionBody, value: Value, c: str, python: Callable[..., Any]) -> Value:
     """Return a float made an int by the C function ``c``; used as a float again it need not pass through an int."""
     if value.kind != FLOAT:
         return as_int(value)
@@ -69,7 +69,7 @@ def whole(body: Body, value: Value, c: str, python: Callable[..., Any]) -> Value
     return Value(INT, f"{body.program.helper('int_of')}({given})", const=const, real=f"({text} + 0.0)")
 
 
-def scalars(body: Body, node: ast.Call, name: str, least: int, most: int) -> list[Value]:
+def scalars(body: FunctionBody, node: ast.Call, name: str, least: int, most: int) -> list[Value]:
     """Return the arguments of a call that takes ``least`` to ``most`` numbers."""
     if node.keywords or not least <= len(node.args) <= most:
         count = str(least) if least == most else f"{least} to {most}"
@@ -77,7 +77,7 @@ def scalars(body: Body, node: ast.Call, name: str, least: int, most: int) -> lis
     return [body.scalar(item) for item in node.args]
 
 
-def absolute(body: Body, node: ast.Call) -> Value:
+def absolute(body: FunctionBody, node: ast.Call) -> Value:
     """Return abs(x)."""
     (value,) = scalars(body, node, "abs", 1, 1)
     const = UNKNOWN if value.const is UNKNOWN else abs(value.const)
@@ -89,13 +89,13 @@ def absolute(body: Body, node: ast.Call) -> Value:
     return in_64_bits(Value(INT, text, const=const, low=0, high=high), node)
 
 
-def integer(body: Body, node: ast.Call) -> Value:
+def integer(body: FunctionBody, node: ast.Call) -> Value:
     """Return int(x)."""
     (value,) = scalars(body, node, "int", 1, 1)
     return whole(body, value, "trunc", int)
 
 
-def rounded(body: Body, node: ast.Call) -> Value:
+def rounded(body: FunctionBody, node: ast.Call) -> Value:
     """Return round(x): halves go to the even neighbour, as C's rint does."""
     if len(node.args) == 2 or node.keywords:
         raise CannotError(node, "round() to decimals", "write math.floor(x / step + 0.5) * step")
@@ -103,7 +103,7 @@ def rounded(body: Body, node: ast.Call) -> Value:
     return whole(body, value, "rint", round)
 
 
-def floating(body: Body, node: ast.Call) -> Value:
+def floating(body: FunctionBody, node: ast.Call) -> Value:
     """Return float(x)."""
     if len(node.args) == 1 and isinstance(node.args[0], ast.Constant) and isinstance(node.args[0].value, str):
         raise CannotError(node, "float() of a string", "write math.inf, -math.inf or math.nan")
@@ -111,13 +111,13 @@ def floating(body: Body, node: ast.Call) -> Value:
     return as_float(value)
 
 
-def boolean(body: Body, node: ast.Call) -> Value:
+def boolean(body: FunctionBody, node: ast.Call) -> Value:
     """Return bool(x)."""
     (value,) = scalars(body, node, "bool", 1, 1)
     return truth(value)
 
 
-def length(body: Body, node: ast.Call) -> Value:
+def length(body: FunctionBody, node: ast.Call) -> Value:
     """Return len(xs)."""
     if len(node.args) != 1 or node.keywords:
         raise CannotError(node, "len() with these arguments", "give it one tuple")
@@ -129,10 +129,10 @@ def length(body: Body, node: ast.Call) -> Value:
     raise CannotError(node, f"len() of {described(value.kind)}", "give it a tuple")
 
 
-def extreme(word: str) -> Callable[[Body, ast.Call], Value]:
+def extreme(word: str) -> Callable[[FunctionBody, ast.Call], Value]:
     """Return the translation of min or max."""
 
-    def made(body: Body, node: ast.Call) -> Value:
+    def made(body: FunctionBody, node: ast.Call) -> Value:
         if node.keywords:
             raise CannotError(node, f"{word}() with {node.keywords[0].arg}", "compare the items one by one")
         values = [body.value(item) for item in node.args]
@@ -159,7 +159,7 @@ def one_kind(node: ast.AST, what: str, values: list[Value]) -> None:
         raise CannotError(node, f"{what} of float and int", "make all of them floats: 1.0, float(n)")
 
 
-def _smaller_or_larger(body: Body, word: str, a: Value, b: Value) -> Value:
+def _smaller_or_larger(body: FunctionBody, word: str, a: Value, b: Value) -> Value:
     if a.kind != FLOAT:
         a, b = as_int(a), as_int(b)
     helper = body.program.helper(f"{'float' if a.kind == FLOAT else 'int'}_{word}")
@@ -174,7 +174,7 @@ def _smaller_or_larger(body: Body, word: str, a: Value, b: Value) -> Value:
     return Value(a.kind, f"{helper}({a.text}, {b.text})", const=const, low=low, high=high)
 
 
-BUILTINS: dict[Any, Callable[[Body, ast.Call], Value]] = {
+BUILTINS: dict[Any, Callable[[FunctionBody, ast.Call], Value]] = {
     abs: absolute,
     int: integer,
     round: rounded,

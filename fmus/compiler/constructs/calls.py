@@ -16,7 +16,7 @@ from fmus.compiler.source.advice import CALL_ADVICE
 from fmus.compiler.source.kinds import Array, Kind, Mixed, Open, Struct, described, is_named_tuple
 from fmus.compiler.source.refusals import AlreadySaidError, CannotError
 from fmus.compiler.target.access import is_at, looks_at_place
-from fmus.compiler.target.body import EXPRESSIONS, Body
+from fmus.compiler.target.body import EXPRESSIONS, FunctionBody
 from fmus.compiler.target.functions import Instance, Parameter, instance_of, signature
 from fmus.compiler.target.in_place import InPlace
 from fmus.compiler.target.making import coerced, struct_of, written_out
@@ -24,7 +24,7 @@ from fmus.compiler.target.storage import address, hoist, put, text_of
 from fmus.compiler.target.values import Place, Value, place_of
 
 
-def call(body: Body, node: ast.Call) -> Value:
+def call(body: FunctionBody, node: ast.Call) -> Value:
     """Return the result of a call."""
     if any(isinstance(item, ast.Starred) for item in node.args) or any(item.arg is None for item in node.keywords):
         raise CannotError(node, "a call with * or **", "write the arguments out")
@@ -55,7 +55,7 @@ def call(body: Body, node: ast.Call) -> Value:
 
 
 def invoke(
-    body: Body, node: ast.Call, function: FunctionType, nodes: list[ast.expr], own: Value | None = None
+    body: FunctionBody, node: ast.Call, function: FunctionType, nodes: list[ast.expr], own: Value | None = None
 ) -> Value:
     """Return the result of a function of the model; ``own`` is what a method belongs to."""
     check_place(body, node, function)
@@ -87,7 +87,7 @@ class Given(NamedTuple):
     text: str
 
 
-def _given(body: Body, made: Instance, number: int, value: Value) -> Given:
+def _given(body: FunctionBody, made: Instance, number: int, value: Value) -> Given:
     parameter = made.parameters[number]
     if made.changed is not None and number == made.changed.parameter:
         return Given(parameter, value, place_of(value).text if value.place else "")
@@ -95,7 +95,7 @@ def _given(body: Body, made: Instance, number: int, value: Value) -> Given:
     return Given(parameter, value, text)
 
 
-def _result(body: Body, made: Instance, kind: Kind, given: list[Given]) -> Value:
+def _result(body: FunctionBody, made: Instance, kind: Kind, given: list[Given]) -> Value:
     """Return what a function gives: an expression, or what it writes to pointers."""
     if not made.outs and made.changed is None:
         return Value(kind, f"{made.name}({', '.join(item.text for item in given)})")
@@ -127,7 +127,7 @@ def _result(body: Body, made: Instance, kind: Kind, given: list[Given]) -> Value
     return replace(common, fill=fill, fill_items=fill_items, changes=changes)
 
 
-def _changing(body: Body, changed: InPlace, given: list[Given], place: Place) -> list[str]:
+def _changing(body: FunctionBody, changed: InPlace, given: list[Given], place: Place) -> list[str]:
     """Return the arguments of a call that changes what lies at ``place``; what else points there is copied before."""
     own = given[changed.parameter].value
     there = is_at(body, own, place)
@@ -144,7 +144,7 @@ def _changing(body: Body, changed: InPlace, given: list[Given], place: Place) ->
     return texts
 
 
-def _argument(body: Body, value: Value, kind: Kind, node: ast.AST, why: str) -> Value:
+def _argument(body: FunctionBody, value: Value, kind: Kind, node: ast.AST, why: str) -> Value:
     """Return an argument as the kind that is expected; a tuple of any length for ``tuple[X, ...]``."""
     if isinstance(kind, Open):
         if isinstance(value.kind, Array) and value.kind.item == kind.item:
@@ -171,7 +171,7 @@ def _arguments(
     return found
 
 
-def construct(body: Body, node: ast.Call, cls: Any) -> Value:
+def construct(body: FunctionBody, node: ast.Call, cls: Any) -> Value:
     """Return ``Cls(...)``; fields left out have their defaults."""
     kinds = body.program.fields(cls, node)
     given = _arguments(node, cls.__name__, list(kinds), node.args)
@@ -191,7 +191,7 @@ def construct(body: Body, node: ast.Call, cls: Any) -> Value:
     return struct_of(body, kind, fields)
 
 
-def _method(body: Body, node: ast.Call) -> Value:
+def _method(body: FunctionBody, node: ast.Call) -> Value:
     """Return ``x._replace(...)`` or a method of a NamedTuple."""
     if not isinstance(node.func, ast.Attribute):
         raise CannotError(node, f"a call of {ast.unparse(node.func)}", "call a function of the model by its name")
@@ -213,7 +213,7 @@ def _method(body: Body, node: ast.Call) -> Value:
     return invoke(body, node, function, node.args, value)
 
 
-def call_property(body: Body, value: Value, name: str, node: ast.AST) -> Value:
+def call_property(body: FunctionBody, value: Value, name: str, node: ast.AST) -> Value:
     """Return a property of a NamedTuple."""
     assert isinstance(value.kind, Struct)
     found = vars(value.kind.cls).get(name)

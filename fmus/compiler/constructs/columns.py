@@ -11,12 +11,12 @@ from types import FunctionType
 from fmus.compiler.constructs.tuples import COLUMN_RANGES, index_text
 from fmus.compiler.source.kinds import Cells, described
 from fmus.compiler.source.refusals import CannotError
-from fmus.compiler.target.body import Body
+from fmus.compiler.target.body import FunctionBody
 from fmus.compiler.target.making import coerced
 from fmus.compiler.target.values import UNARY, Value, as_int, place_of, within
 
 
-def write(body: Body, target: ast.Subscript, source: ast.expr, node: ast.AST) -> None:
+def write(body: FunctionBody, target: ast.Subscript, source: ast.expr, node: ast.AST) -> None:
     """Write ``store.column[index] = source``."""
     column = _column(body, target.value)
     if column is None or not isinstance(column.kind, Cells):
@@ -28,12 +28,12 @@ def write(body: Body, target: ast.Subscript, source: ast.expr, node: ast.AST) ->
     body.emit(f"{place} = {_kept(body, value, column.kind)};")
 
 
-def _column(body: Body, node: ast.expr) -> Value | None:
+def _column(body: FunctionBody, node: ast.expr) -> Value | None:
     """Return what is changed, if it is the field of something."""
     return body.value(node) if isinstance(node, ast.Attribute) else None
 
 
-def _kept(body: Body, value: Value, kind: Cells) -> str:
+def _kept(body: FunctionBody, value: Value, kind: Cells) -> str:
     """Return ``value`` as a column keeps it; of an integer that does not fit the nearest, where Python raises."""
     if kind.c == "double":
         return value.text
@@ -46,7 +46,7 @@ def _kept(body: Body, value: Value, kind: Cells) -> str:
     return f"({kind.c}){body.program.helper('int_within')}({value.text}, {least}, {most})"
 
 
-def may_write(body: Body, node: ast.expr, name: str = "") -> None:
+def may_write(body: FunctionBody, node: ast.expr, name: str = "") -> None:
     """Note that ``node`` is all there is to its statement; what a writer gives to ``name`` must be read."""
     body.may_write = node
     if name and isinstance(node, ast.Call) and not body.bindings.home(name, body.frames[-1].path).loads:
@@ -54,7 +54,7 @@ def may_write(body: Body, node: ast.expr, name: str = "") -> None:
             raise CannotError(node, f"{name} is never read", "use it, or let the function return None")
 
 
-def check_place(body: Body, node: ast.Call, function: FunctionType) -> None:
+def check_place(body: FunctionBody, node: ast.Call, function: FunctionType) -> None:
     """Refuse a call of a writer inside an expression."""
     if function in body.program.writers and body.may_write is not node:
         what = f"{function.__name__}() writes to a store inside an expression"

@@ -6,7 +6,7 @@ from typing import Any
 from fmus.compiler.constructs.arithmetic import unary
 from fmus.compiler.source.kinds import BOOL, FLOAT, INT, Array, Scalar, described
 from fmus.compiler.source.refusals import CannotError
-from fmus.compiler.target.body import EXPRESSIONS, Body
+from fmus.compiler.target.body import EXPRESSIONS, FunctionBody
 from fmus.compiler.target.making import elements
 from fmus.compiler.target.storage import hoist, put, settled
 from fmus.compiler.target.values import (
@@ -43,7 +43,7 @@ SIGNS: dict[type[ast.cmpop], tuple[str, int]] = {
 }
 
 
-def condition(body: Body, node: ast.expr) -> Value:
+def condition(body: FunctionBody, node: ast.expr) -> Value:
     """Return the truth of an expression."""
     if isinstance(node, ast.BoolOp):
         return _all_or_any(body, node)
@@ -63,12 +63,12 @@ def negated(value: Value) -> Value:
     return Value(BOOL, f"!{within(value, UNARY)}", UNARY)
 
 
-def unary_or_not(body: Body, node: ast.UnaryOp) -> Value:
+def unary_or_not(body: FunctionBody, node: ast.UnaryOp) -> Value:
     """Return ``not x`` and the unary operators of arithmetic."""
     return condition(body, node) if isinstance(node.op, ast.Not) else unary(body, node)
 
 
-def comparison(body: Body, node: ast.Compare) -> Value:
+def comparison(body: FunctionBody, node: ast.Compare) -> Value:
     """Return ``a < b``, ``a < b < c``, ``a in (B, C)``."""
     left = body.value(node.left)
     terms = []
@@ -89,7 +89,7 @@ def comparison(body: Body, node: ast.Compare) -> Value:
     return Value(BOOL, " && ".join(within(term, BIT_AND) for term in terms), AND)
 
 
-def _compared(body: Body, node: ast.Compare, left: Value, sign: ast.cmpop, right: Value) -> Value:
+def _compared(body: FunctionBody, node: ast.Compare, left: Value, sign: ast.cmpop, right: Value) -> Value:
     if isinstance(sign, ast.Is | ast.IsNot):
         word = "is" if isinstance(sign, ast.Is) else "is not"
         raise CannotError(node, f"'{word}'", f"write {'==' if word == 'is' else '!='}")
@@ -108,7 +108,7 @@ def _compared(body: Body, node: ast.Compare, left: Value, sign: ast.cmpop, right
     return Value(BOOL, f"{within(left, SHIFT)} {text} {within(right, SHIFT)}", level)
 
 
-def _int_with_float(body: Body, left: Value, sign: str, right: Value) -> Value | None:
+def _int_with_float(body: FunctionBody, left: Value, sign: str, right: Value) -> Value | None:
     """Return the exact comparison of an integer that may be larger than a float holds; None if it is not."""
     whole = left if left.kind != FLOAT else right
     if whole.real or whole.lies_in(-WHOLE, WHOLE):
@@ -123,7 +123,7 @@ def _int_with_float(body: Body, left: Value, sign: str, right: Value) -> Value |
     return Value(BOOL, f"{within(other, SHIFT)} == {within(other, SHIFT)} && {exact}", AND)
 
 
-def _contained(body: Body, node: ast.Compare, left: Value, right_node: ast.expr, absent: bool) -> Value:
+def _contained(body: FunctionBody, node: ast.Compare, left: Value, right_node: ast.expr, absent: bool) -> Value:
     """Return ``left in (A, B)`` of integers: Python compares floats by identity first, C cannot."""
     if isinstance(right_node, ast.List | ast.Set):
         right_node = ast.copy_location(ast.Tuple(right_node.elts, ast.Load()), right_node)
@@ -141,19 +141,19 @@ def _contained(body: Body, node: ast.Compare, left: Value, right_node: ast.expr,
     return Value(BOOL, (" && " if absent else " || ").join(equal), AND if absent else OR)
 
 
-def arm(body: Body, node: ast.expr, as_truth: bool = False) -> tuple[list[Any], Value]:
+def arm(body: FunctionBody, node: ast.expr, as_truth: bool = False) -> tuple[list[Any], Value]:
     """Return the statements that an expression takes, which may not run, and its value."""
     with body.capture() as lines:
         value = condition(body, node) if as_truth else body.value(node)
     return lines, value
 
 
-def _all_or_any(body: Body, node: ast.BoolOp) -> Value:
+def _all_or_any(body: FunctionBody, node: ast.BoolOp) -> Value:
     """Return the truth of ``a and b`` or ``a or b``."""
     return _joined(body, node, [arm(body, item, as_truth=True) for item in node.values])
 
 
-def _joined(body: Body, node: ast.BoolOp, arms: list[tuple[list[Any], Value]]) -> Value:
+def _joined(body: FunctionBody, node: ast.BoolOp, arms: list[tuple[list[Any], Value]]) -> Value:
     """Return truth values joined."""
     if any(lines for lines, _ in arms[1:]):
         return _one_by_one(body, node, arms, "holds")
@@ -164,7 +164,7 @@ def _joined(body: Body, node: ast.BoolOp, arms: list[tuple[list[Any], Value]]) -
     return Value(BOOL, (" && " if is_and else " || ").join(parts), level)
 
 
-def _one_by_one(body: Body, node: ast.BoolOp, arms: list[tuple[list[Any], Value]], name: str) -> Value:
+def _one_by_one(body: FunctionBody, node: ast.BoolOp, arms: list[tuple[list[Any], Value]], name: str) -> Value:
     """Return the operand that decides, in a variable; those after it are not worked out."""
     kind = arms[0][1].kind
     assert isinstance(kind, Scalar)
@@ -180,7 +180,7 @@ def _one_by_one(body: Body, node: ast.BoolOp, arms: list[tuple[list[Any], Value]
     return result
 
 
-def boolean(body: Body, node: ast.BoolOp) -> Value:
+def boolean(body: FunctionBody, node: ast.BoolOp) -> Value:
     """Return ``a and b``, ``a or b`` as a value: of truth values, or the operand itself for numbers of one kind."""
     arms = [arm(body, item) for item in node.values]
     kind = arms[0][1].kind
@@ -193,7 +193,7 @@ def boolean(body: Body, node: ast.BoolOp) -> Value:
     return _one_by_one(body, node, arms, "chosen")
 
 
-def choice(body: Body, node: ast.IfExp) -> Value:
+def choice(body: FunctionBody, node: ast.IfExp) -> Value:
     """Return ``a if c else b``."""
     test = condition(body, node.test)
     (first_lines, first), (other_lines, other) = arm(body, node.body), arm(body, node.orelse)
@@ -227,7 +227,9 @@ def _simple_choice(test: Value, first: Value, other: Value) -> Value | None:
     return None
 
 
-def _choice_by_if(body: Body, test: Value, first: tuple[list[Any], Value], other: tuple[list[Any], Value]) -> Value:
+def _choice_by_if(
+    body: FunctionBody, test: Value, first: tuple[list[Any], Value], other: tuple[list[Any], Value]
+) -> Value:
     """Return a choice of which only the side that is meant is worked out."""
 
     def fill(place: Place) -> None:

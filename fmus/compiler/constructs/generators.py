@@ -10,11 +10,11 @@ from fmus.compiler.constructs.unpacking import items_of
 from fmus.compiler.source.bindings import Home
 from fmus.compiler.source.kinds import BOOL, FLOAT, INT, Array, Scalar, described
 from fmus.compiler.source.refusals import CannotError
-from fmus.compiler.target.body import Body
+from fmus.compiler.target.body import FunctionBody
 from fmus.compiler.target.making import coerced
 from fmus.compiler.target.storage import put
 from fmus.compiler.target.values import Place, Value, as_int
-from fmus.compiler.target.variables import Variable
+from fmus.compiler.target.variables import LocalVariable
 
 
 class Loop(NamedTuple):
@@ -29,13 +29,13 @@ class Loop(NamedTuple):
     tests: list[Value]
 
 
-def _loop(body: Body, node: ast.GeneratorExp, truth: bool = False) -> Loop:
+def _loop(body: FunctionBody, node: ast.GeneratorExp, truth: bool = False) -> Loop:
     """Return the loop of a generator, whose variables are seen inside it alone."""
     if len(node.generators) > 1:
         raise CannotError(node, "a generator with two loops", "write for loops")
     (part,) = node.generators
     counter = body.names.add("i")
-    scope: dict[str, Variable] = {}
+    scope: dict[str, LocalVariable] = {}
     if is_call(body, part.iter, range):
         numbers = range_of(body, part.iter)
         low, high = numbers.bounds()
@@ -53,10 +53,10 @@ def _loop(body: Body, node: ast.GeneratorExp, truth: bool = False) -> Loop:
     return Loop(head, counter, length, lines, item, tests)
 
 
-def _name_items(body: Body, scope: dict[str, Variable], target: ast.expr, value: Value) -> None:
+def _name_items(body: FunctionBody, scope: dict[str, LocalVariable], target: ast.expr, value: Value) -> None:
     """Let the names of ``target`` mean the items of ``value`` where they are."""
     if isinstance(target, ast.Name):
-        known = Variable(value.text, Home(()), kind=value.kind, pointer=value.pointer, fixed=True)
+        known = LocalVariable(value.text, Home(()), kind=value.kind, pointer=value.pointer, fixed=True)
         known.low, known.high, known.level, known.narrow = value.low, value.high, value.level, value.narrow
         scope[target.id] = known
     elif isinstance(target, ast.Tuple):
@@ -69,7 +69,7 @@ def _name_items(body: Body, scope: dict[str, Variable], target: ast.expr, value:
         raise CannotError(target, f"{ast.unparse(target)} in a generator", "write names")
 
 
-def made_tuple(body: Body, node: ast.Call, generator: ast.GeneratorExp) -> Value:
+def made_tuple(body: FunctionBody, node: ast.Call, generator: ast.GeneratorExp) -> Value:
     """Return ``tuple(f(x) for x in xs)``."""
     loop = _loop(body, generator)
     if loop.tests:
@@ -96,7 +96,7 @@ def made_tuple(body: Body, node: ast.Call, generator: ast.GeneratorExp) -> Value
     return Value(kind, fill=fill)
 
 
-def _run(body: Body, loop: Loop, inside: list[str]) -> None:
+def _run(body: FunctionBody, loop: Loop, inside: list[str]) -> None:
     """Write a loop; ``inside`` is done in each round that the conditions let in."""
     body.emit(loop.head)
     body.lines += loop.lines
@@ -107,10 +107,10 @@ def _run(body: Body, loop: Loop, inside: list[str]) -> None:
     body.lines += ["}"] * (2 if loop.tests else 1)
 
 
-def any_or_all(word: str) -> Callable[[Body, ast.Call, ast.GeneratorExp], Value]:
+def any_or_all(word: str) -> Callable[[FunctionBody, ast.Call, ast.GeneratorExp], Value]:
     """Return the translation of any or all."""
 
-    def made(body: Body, node: ast.Call, generator: ast.GeneratorExp) -> Value:
+    def made(body: FunctionBody, node: ast.Call, generator: ast.GeneratorExp) -> Value:
         loop = _loop(body, generator, truth=True)
         result = body.names.add(f"{word}_of")
         test = loop.item.text if word == "any" else f"!({loop.item.text})"
@@ -122,7 +122,7 @@ def any_or_all(word: str) -> Callable[[Body, ast.Call, ast.GeneratorExp], Value]
     return made
 
 
-def total(body: Body, node: ast.Call, generator: ast.GeneratorExp) -> Value:
+def total(body: FunctionBody, node: ast.Call, generator: ast.GeneratorExp) -> Value:
     """Return ``sum(f(x) for x in xs)`` of integers."""
     loop = _loop(body, generator)
     if loop.item.kind == FLOAT:
@@ -134,10 +134,10 @@ def total(body: Body, node: ast.Call, generator: ast.GeneratorExp) -> Value:
     return Value(INT, result)
 
 
-def extreme(word: str) -> Callable[[Body, ast.Call, ast.GeneratorExp], Value]:
+def extreme(word: str) -> Callable[[FunctionBody, ast.Call, ast.GeneratorExp], Value]:
     """Return the translation of min or max: the first item stays unless a later one is less (or greater)."""
 
-    def made(body: Body, node: ast.Call, generator: ast.GeneratorExp) -> Value:
+    def made(body: FunctionBody, node: ast.Call, generator: ast.GeneratorExp) -> Value:
         if node.keywords:
             raise CannotError(node, f"{word}() with {node.keywords[0].arg}", "write a loop")
         loop = _loop(body, generator)
@@ -157,7 +157,7 @@ def extreme(word: str) -> Callable[[Body, ast.Call, ast.GeneratorExp], Value]:
     return made
 
 
-GENERATORS: dict[Any, Callable[[Body, ast.Call, ast.GeneratorExp], Value]] = {
+GENERATORS: dict[Any, Callable[[FunctionBody, ast.Call, ast.GeneratorExp], Value]] = {
     tuple: made_tuple,
     any: any_or_all("any"),
     all: any_or_all("all"),

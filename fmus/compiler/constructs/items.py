@@ -4,11 +4,11 @@ import ast
 
 from fmus.compiler.source.kinds import INT, Array, described
 from fmus.compiler.source.refusals import CannotError
-from fmus.compiler.target.body import Body
+from fmus.compiler.target.body import FunctionBody
 from fmus.compiler.target.making import coerced
 from fmus.compiler.target.storage import put
 from fmus.compiler.target.values import UNKNOWN
-from fmus.compiler.target.variables import Variable, looks_at
+from fmus.compiler.target.variables import LocalVariable, looks_at
 
 
 def changed_item(node: ast.expr, name: str) -> tuple[ast.expr, ast.expr] | None:
@@ -37,7 +37,7 @@ def _part(node: ast.expr, name: str) -> ast.Slice | None:
     return None
 
 
-def change_item(body: Body, known: Variable, name: str, index: ast.expr, item: ast.expr) -> None:
+def change_item(body: FunctionBody, known: LocalVariable, name: str, index: ast.expr, item: ast.expr) -> None:
     """Write the new item; the index must be known to lie in the tuple, where Python would make it longer."""
     if not isinstance(known.kind, Array):
         raise CannotError(item, f"another item in {described(known.kind)}", "only tuples of one kind have items")  # type: ignore[arg-type]

@@ -8,15 +8,15 @@ from fmus.compiler.constructs.unpacking import unpack
 from fmus.compiler.source.bindings import Path, block, stored_in
 from fmus.compiler.source.kinds import INT, Array, described
 from fmus.compiler.source.refusals import CannotError
-from fmus.compiler.target.body import STATEMENTS, Body
+from fmus.compiler.target.body import STATEMENTS, FunctionBody
 from fmus.compiler.target.making import tuple_of
 from fmus.compiler.target.storage import hoist, item_of
 from fmus.compiler.target.values import SUM, UNKNOWN, Value, as_int, literal
-from fmus.compiler.target.variables import Variable, bind, variable
+from fmus.compiler.target.variables import LocalVariable, bind, variable
 
 
 @dataclass
-class Range:
+class LoopRange:
     """The numbers of a range."""
 
     start: Value
@@ -38,7 +38,7 @@ class Range:
         return len(range(self.start.const, self.stop.const, self.step))
 
 
-def for_loop(body: Body, node: ast.For) -> None:
+def for_loop(body: FunctionBody, node: ast.For) -> None:
     """Write a for loop."""
     if node.orelse:
         raise CannotError(node.orelse[0], "else after a loop", "set a bool in the loop and test it after")
@@ -67,7 +67,7 @@ def for_loop(body: Body, node: ast.For) -> None:
         body.names.taken.discard(index)
 
 
-def _plain_number(body: Body, node: ast.For) -> str:
+def _plain_number(body: FunctionBody, node: ast.For) -> str:
     """Return the name that counts in ``for i, x in enumerate(xs)``, else an empty string."""
     if not is_call(body, node.iter, enumerate) or not isinstance(node.target, ast.Tuple):
         return ""
@@ -77,7 +77,7 @@ def _plain_number(body: Body, node: ast.For) -> str:
     return first.id if plain and isinstance(first, ast.Name) else ""
 
 
-def _counter(body: Body, name: str, inside: Path) -> Variable | None:
+def _counter(body: FunctionBody, name: str, inside: Path) -> LocalVariable | None:
     """Return the variable ``name`` if C can count with it: it is bound by the loop alone and read inside alone."""
     home = body.bindings.home(name, inside)
     if home.path != inside or home.stores != 1 or not home.loads or name in body.bindings.parameters:
@@ -88,7 +88,7 @@ def _counter(body: Body, name: str, inside: Path) -> Variable | None:
     return known
 
 
-def range_of(body: Body, node: ast.expr) -> Range:
+def range_of(body: FunctionBody, node: ast.expr) -> LoopRange:
     """Return the start, stop and step of ``range(...)``."""
     assert isinstance(node, ast.Call)
     if node.keywords or not 1 <= len(node.args) <= 3:
@@ -102,10 +102,10 @@ def range_of(body: Body, node: ast.expr) -> Range:
     step = values[2].const if len(values) == 3 else 1
     if step is UNKNOWN or step == 0:
         raise CannotError(node, "range() with a step that varies or is 0", "write the step as a number")
-    return Range(start, stop, int(step))
+    return LoopRange(start, stop, int(step))
 
 
-def _over_range(body: Body, node: ast.For, numbers: Range, inside: Path) -> None:
+def _over_range(body: FunctionBody, node: ast.For, numbers: LoopRange, inside: Path) -> None:
     if not isinstance(node.target, ast.Name):
         raise CannotError(node.target, "several names for a number of a range", "write one name")
     name = node.target.id
@@ -126,14 +126,14 @@ def _over_range(body: Body, node: ast.For, numbers: Range, inside: Path) -> None
         body.names.taken.discard(counter)
 
 
-def steady(body: Body, value: Value) -> str:
+def steady(body: FunctionBody, value: Value) -> str:
     """Return the text of the end of a range, which is worked out once."""
     if value.const is not UNKNOWN or (value.place and value.fixed):
         return value.text
     return hoist(body, value, "stop").text
 
 
-def range_head(counter: str, numbers: Range, stop: str) -> str:
+def range_head(counter: str, numbers: LoopRange, stop: str) -> str:
     """Return the head of a loop over a range."""
     sign, step = ("<", numbers.step) if numbers.step > 0 else (">", -numbers.step)
     count = f"{'++' if numbers.step > 0 else '--'}{counter}"
@@ -142,7 +142,7 @@ def range_head(counter: str, numbers: Range, stop: str) -> str:
     return f"for (int64_t {counter} = {numbers.start.text}; {counter} {sign} {stop}; {count}) {{"
 
 
-def items_at(body: Body, node: ast.expr, index: str, changed: set[str]) -> tuple[int, Value]:
+def items_at(body: FunctionBody, node: ast.expr, index: str, changed: set[str]) -> tuple[int, Value]:
     """Return how many items ``node`` has, and the one at ``index``; ``changed`` names what the loop binds."""
     if is_call(body, node, enumerate):
         return _enumerated(body, node, index, changed)
@@ -161,7 +161,7 @@ def items_at(body: Body, node: ast.expr, index: str, changed: set[str]) -> tuple
     return value.kind.length, Value(item.kind, item.text, place=True, fixed=value.fixed or stays)  # type: ignore[union-attr]
 
 
-def _enumerated(body: Body, node: ast.expr, index: str, changed: set[str]) -> tuple[int, Value]:
+def _enumerated(body: FunctionBody, node: ast.expr, index: str, changed: set[str]) -> tuple[int, Value]:
     assert isinstance(node, ast.Call)
     starts = [*node.args[1:], *(item.value for item in node.keywords if item.arg == "start")]
     if not node.args or len(starts) > 1 or len(node.keywords) > len(starts):
@@ -177,7 +177,7 @@ def _enumerated(body: Body, node: ast.expr, index: str, changed: set[str]) -> tu
     return length, tuple_of(body, (number, item))
 
 
-def _zipped(body: Body, node: ast.expr, index: str, changed: set[str]) -> tuple[int, Value]:
+def _zipped(body: FunctionBody, node: ast.expr, index: str, changed: set[str]) -> tuple[int, Value]:
     assert isinstance(node, ast.Call)
     if any(item.arg != "strict" for item in node.keywords) or not node.args:
         raise CannotError(node, "zip() with these arguments", "write zip(xs, ys, strict=True)")
@@ -189,7 +189,7 @@ def _zipped(body: Body, node: ast.expr, index: str, changed: set[str]) -> tuple[
     return lengths[0], tuple_of(body, tuple(item for _, item in found))
 
 
-def is_call(body: Body, node: ast.expr, builtin: type | FunctionType) -> bool:
+def is_call(body: FunctionBody, node: ast.expr, builtin: type | FunctionType) -> bool:
     """Return whether an expression calls a function of Python's own."""
     if not isinstance(node, ast.Call):
         return False

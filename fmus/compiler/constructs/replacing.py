@@ -5,14 +5,14 @@ import ast
 from fmus.compiler.source.kinds import Kind, Struct, described
 from fmus.compiler.source.refusals import CannotError
 from fmus.compiler.target.access import is_at
-from fmus.compiler.target.body import Body
+from fmus.compiler.target.body import FunctionBody
 from fmus.compiler.target.making import coerced
 from fmus.compiler.target.names import member_name
 from fmus.compiler.target.storage import put, put_members
 from fmus.compiler.target.values import Place, Value
 
 
-def replaced(body: Body, node: ast.Call, value: Value) -> Value:
+def replaced(body: FunctionBody, node: ast.Call, value: Value) -> Value:
     """Return a copy of ``value`` with other fields."""
     changes = _changes(body, node, value)
     members = {member_name(name): _new(body, kind, item) for name, (kind, item) in changes.items()}
@@ -28,11 +28,11 @@ def replaced(body: Body, node: ast.Call, value: Value) -> Value:
     return Value(value.kind, fill=fill, base=value if value.place else None)
 
 
-def _new(body: Body, kind: Kind, node: ast.expr) -> Value:
+def _new(body: FunctionBody, kind: Kind, node: ast.expr) -> Value:
     return coerced(body, body.value(node), kind, node, f"the field is {described(kind)}")
 
 
-def _changes(body: Body, node: ast.Call, value: Value) -> dict[str, tuple[Kind, ast.expr]]:
+def _changes(body: FunctionBody, node: ast.Call, value: Value) -> dict[str, tuple[Kind, ast.expr]]:
     """Return kind and new value of each field that is replaced."""
     assert isinstance(value.kind, Struct)
     if node.args:

@@ -24,14 +24,14 @@ from fmus.compiler.source.kinds import (
 )
 from fmus.compiler.source.refusals import CannotError
 from fmus.compiler.target.access import is_at, looks_at_place
-from fmus.compiler.target.body import STATEMENTS, Body
+from fmus.compiler.target.body import STATEMENTS, FunctionBody
 from fmus.compiler.target.making import coerced
 from fmus.compiler.target.storage import put, put_whole, settled, text_of
 from fmus.compiler.target.values import UNKNOWN, Place, Value, is_scalar
 from fmus.compiler.target.variables import bind, variable
 
 
-def assign(body: Body, node: ast.Assign) -> None:
+def assign(body: FunctionBody, node: ast.Assign) -> None:
     """Write ``x = ...`` and ``a, b = ...``."""
     if len(node.targets) > 1:
         raise CannotError(node, "several names bound by one assignment", "write one line for each")
@@ -48,7 +48,7 @@ def assign(body: Body, node: ast.Assign) -> None:
         raise CannotError(node, what, "bind a new value: x = x._replace(field=...), or a new tuple")
 
 
-def _assign_name(body: Body, target: ast.Name, source: ast.expr, node: ast.AST) -> None:
+def _assign_name(body: FunctionBody, target: ast.Name, source: ast.expr, node: ast.AST) -> None:
     item = changed_item(source, target.id)
     if item is not None:
         known = variable(body, target.id)
@@ -65,7 +65,7 @@ def _assign_name(body: Body, target: ast.Name, source: ast.expr, node: ast.AST) 
     bind(body, target.id, value, node, source)
 
 
-def annotated(body: Body, node: ast.AnnAssign) -> None:
+def annotated(body: FunctionBody, node: ast.AnnAssign) -> None:
     """Write ``x: float = ...``; the type must be that of the value."""
     if node.value is None or not isinstance(node.target, ast.Name):
         raise CannotError(node, "a type without a value", "bind the variable where it gets its value")
@@ -78,7 +78,7 @@ def annotated(body: Body, node: ast.AnnAssign) -> None:
     bind(body, node.target.id, coerced(body, value, kind, node, why), node, node.value)
 
 
-def _annotation(body: Body, node: ast.expr) -> Kind:
+def _annotation(body: FunctionBody, node: ast.expr) -> Kind:
     try:
         hint = eval(compile(ast.Expression(node), body.module.file, "eval"), body.function.__globals__)
         return kind_of(hint)
@@ -88,7 +88,7 @@ def _annotation(body: Body, node: ast.expr) -> Kind:
         raise CannotError(node, f"the type {ast.unparse(node)}", "name a type that the module knows") from None
 
 
-def augmented(body: Body, node: ast.AugAssign) -> None:
+def augmented(body: FunctionBody, node: ast.AugAssign) -> None:
     """Write ``x += ...``."""
     if isinstance(node.target, ast.Subscript):
         here = ast.copy_location(ast.Subscript(node.target.value, node.target.slice, ast.Load()), node)
@@ -103,7 +103,7 @@ def augmented(body: Body, node: ast.AugAssign) -> None:
     _assign_name(body, node.target, whole, node)
 
 
-def expression(body: Body, node: ast.Expr) -> None:
+def expression(body: FunctionBody, node: ast.Expr) -> None:
     """Refuse an expression whose value goes nowhere; a string is a comment."""
     if isinstance(node.value, ast.Constant):
         if not isinstance(node.value.value, str):
@@ -120,11 +120,11 @@ def expression(body: Body, node: ast.Expr) -> None:
     )
 
 
-def nothing(body: Body, node: ast.Pass) -> None:
+def nothing(body: FunctionBody, node: ast.Pass) -> None:
     """Write nothing."""
 
 
-def branch(body: Body, node: ast.If) -> None:
+def branch(body: FunctionBody, node: ast.If) -> None:
     """Write if, elif and else."""
     test = condition(body, node.test)
     body.emit(f"if ({test.text}) {{")
@@ -133,7 +133,7 @@ def branch(body: Body, node: ast.If) -> None:
     body.emit("}")
 
 
-def _rest(body: Body, node: ast.If) -> None:
+def _rest(body: FunctionBody, node: ast.If) -> None:
     """Write what follows the first branch; an ``elif`` stays one where its condition takes no statements."""
     if not node.orelse:
         return
@@ -155,7 +155,7 @@ def _rest(body: Body, node: ast.If) -> None:
     body.statements(node.orelse, path)
 
 
-def loop(body: Body, node: ast.While) -> None:
+def loop(body: FunctionBody, node: ast.While) -> None:
     """Write while."""
     if node.orelse:
         raise CannotError(node.orelse[0], "else after a loop", "set a bool in the loop and test it after")
@@ -177,17 +177,17 @@ def loop(body: Body, node: ast.While) -> None:
     body.emit("}")
 
 
-def leave(body: Body, node: ast.Break) -> None:
+def leave(body: FunctionBody, node: ast.Break) -> None:
     """Write break."""
     body.emit("break;")
 
 
-def next_round(body: Body, node: ast.Continue) -> None:
+def next_round(body: FunctionBody, node: ast.Continue) -> None:
     """Write continue."""
     body.emit("continue;")
 
 
-def give(body: Body, node: ast.Return) -> None:
+def give(body: FunctionBody, node: ast.Return) -> None:
     """Write return."""
     if node.value is None and body.result == NOTHING:
         body.emit("return;")
@@ -206,7 +206,7 @@ def give(body: Body, node: ast.Return) -> None:
     _give_value(body, node.value, value)
 
 
-def _own_copy(body: Body, node: ast.expr) -> str:
+def _own_copy(body: FunctionBody, node: ast.expr) -> str:
     """Return the variable of which ``return x._replace(...)`` may change the fields: nobody sees it afterwards."""
     if is_replace(node) and isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute):
         base = node.func.value
@@ -217,7 +217,7 @@ def _own_copy(body: Body, node: ast.expr) -> str:
     return ""
 
 
-def _by_branches(body: Body, source: ast.IfExp) -> bool:
+def _by_branches(body: FunctionBody, source: ast.IfExp) -> bool:
     """Write ``return a if c else b`` of what is no number as two returns."""
     with body.capture() as lines:
         value = body.value(source)
@@ -231,7 +231,7 @@ def _by_branches(body: Body, source: ast.IfExp) -> bool:
     return True
 
 
-def _give_value(body: Body, node: ast.expr, value: Value) -> None:
+def _give_value(body: FunctionBody, node: ast.expr, value: Value) -> None:
     """Write the return of ``value``: as the function's value, or to where its pointers say."""
     wanted = body.result
     name = body.function.__name__
@@ -258,7 +258,7 @@ def _give_value(body: Body, node: ast.expr, value: Value) -> None:
     body.emit("return;")
 
 
-def _give_items(body: Body, value: Value, fill_items: Callable[[list[Place]], None]) -> None:
+def _give_items(body: FunctionBody, value: Value, fill_items: Callable[[list[Place]], None]) -> None:
     """Write a call whose results are this function's, each to where it goes."""
     changed = body.changed
     if changed is None or (value.base is not None and is_at(body, value.base, changed)):
@@ -274,7 +274,7 @@ def _give_items(body: Body, value: Value, fill_items: Callable[[list[Place]], No
     body.emit(f"{changed.whole} = {made.text};")
 
 
-def match(body: Body, node: ast.Match) -> None:
+def match(body: FunctionBody, node: ast.Match) -> None:
     """Write match over an integer: a switch, or ifs where a case has a condition or leaves a loop."""
     subject = body.value(node.subject)
     if subject.kind != INT:
@@ -303,7 +303,7 @@ def match(body: Body, node: ast.Match) -> None:
     body.emit("}")
 
 
-def _refuse_twice(body: Body, node: ast.Match) -> None:
+def _refuse_twice(body: FunctionBody, node: ast.Match) -> None:
     """Refuse a case whose value an earlier one has: it is never reached."""
     seen: set[int] = set()
     for case in node.cases:
@@ -316,7 +316,7 @@ def _refuse_twice(body: Body, node: ast.Match) -> None:
                 seen |= {value} if case.guard is None else set()
 
 
-def _match_by_ifs(body: Body, node: ast.Match, subject: Value, labels: list[list[str] | None]) -> None:
+def _match_by_ifs(body: FunctionBody, node: ast.Match, subject: Value, labels: list[list[str] | None]) -> None:
     """Write match as ifs, one inside the else of the one before where its condition takes statements."""
     depth = 0
     for number, (case, names) in enumerate(zip(node.cases, labels, strict=True)):
@@ -336,7 +336,7 @@ def _match_by_ifs(body: Body, node: ast.Match, subject: Value, labels: list[list
     body.lines += ["}"] * (depth + 1)
 
 
-def _labels(body: Body, pattern: ast.pattern) -> list[str] | None:
+def _labels(body: FunctionBody, pattern: ast.pattern) -> list[str] | None:
     """Return the constants of a case; None for the one of all others."""
     if isinstance(pattern, ast.MatchValue):
         value = body.value(pattern.value)

@@ -5,7 +5,7 @@ import ast
 from fmus.compiler.source.kinds import FLOAT, INT, Array, Cells, Mixed, Struct, described
 from fmus.compiler.source.refusals import CannotError
 from fmus.compiler.source.resolve import attribute as static_attribute
-from fmus.compiler.target.body import EXPRESSIONS, Body
+from fmus.compiler.target.body import EXPRESSIONS, FunctionBody
 from fmus.compiler.target.making import elements, tuple_of
 from fmus.compiler.target.names import member_name
 from fmus.compiler.target.storage import address, item_of, settled
@@ -15,14 +15,14 @@ COLUMN_RANGES = {"int32_t": ("INT32_MIN", "INT32_MAX", 2**31), "int16_t": ("INT1
 """Least and greatest integer that a column keeps, and the first that is too great."""
 
 
-def display(body: Body, node: ast.Tuple) -> Value:
+def display(body: FunctionBody, node: ast.Tuple) -> Value:
     """Return ``(a, b, c)``."""
     if not node.elts:
         raise CannotError(node, "an empty tuple", "leave it out, or give it the items it needs")
     return tuple_of(body, tuple(body.value(item) for item in node.elts))
 
 
-def attribute(body: Body, node: ast.Attribute) -> Value:
+def attribute(body: FunctionBody, node: ast.Attribute) -> Value:
     """Return a field of a NamedTuple, an enum member, a constant of another module."""
     found = body.static(node)
     if found is not None:
@@ -42,7 +42,7 @@ def attribute(body: Body, node: ast.Attribute) -> Value:
     raise CannotError(node, f".{node.attr} of {described(value.kind)}", "only NamedTuples have fields")
 
 
-def field(body: Body, value: Value, name: str, node: ast.AST) -> Value:
+def field(body: FunctionBody, value: Value, name: str, node: ast.AST) -> Value:
     """Return the field ``name`` of a NamedTuple; a property is called."""
     assert isinstance(value.kind, Struct)
     cls = value.kind.cls
@@ -58,7 +58,7 @@ def field(body: Body, value: Value, name: str, node: ast.AST) -> Value:
     return Value(kinds[name], text, place=value.place, fixed=value.fixed and value.place, const=const)
 
 
-def subscript(body: Body, node: ast.Subscript) -> Value:
+def subscript(body: FunctionBody, node: ast.Subscript) -> Value:
     """Return ``xs[i]`` or ``xs[1:]``."""
     value = body.value(node.value)
     if isinstance(value.kind, Struct):
@@ -80,7 +80,7 @@ def subscript(body: Body, node: ast.Subscript) -> Value:
     return Value(item.kind, item.text, place=True, fixed=value.fixed)
 
 
-def _index(body: Body, node: ast.expr, value: Value) -> Value:
+def _index(body: FunctionBody, node: ast.expr, value: Value) -> Value:
     index = body.value(node)
     if index.kind != INT:
         what = f"an index into {described(value.kind)} that is {described(index.kind)}"
@@ -88,7 +88,7 @@ def _index(body: Body, node: ast.expr, value: Value) -> Value:
     return index
 
 
-def _field_at(body: Body, node: ast.Subscript, value: Value) -> Value:
+def _field_at(body: FunctionBody, node: ast.Subscript, value: Value) -> Value:
     """Return the field of a NamedTuple at an index; one that varies chooses among numbers of one kind."""
     assert isinstance(value.kind, Struct)
     kinds = body.program.fields(value.kind.cls, node)
@@ -117,7 +117,7 @@ def _cell(column: Value, index: str) -> Value:
     return Value(kind.item, f"(int64_t){text}", UNARY, low=-bound, high=bound - 1)
 
 
-def index_text(body: Body, node: ast.Subscript, column: Value) -> str:
+def index_text(body: FunctionBody, node: ast.Subscript, column: Value) -> str:
     """Return the index into a column as C takes it."""
     assert isinstance(column.kind, Cells)
     if isinstance(node.slice, ast.Slice):
@@ -125,7 +125,7 @@ def index_text(body: Body, node: ast.Subscript, column: Value) -> str:
     return _in_range(body, node, _index(body, node.slice, column), column.kind.length)
 
 
-def _in_range(body: Body, node: ast.AST, index: Value, length: int) -> str:
+def _in_range(body: FunctionBody, node: ast.AST, index: Value, length: int) -> str:
     """Return an index as C takes it: as it is if it is surely in range, else made so."""
     if index.lies_in(0, length - 1):
         return index.text
@@ -141,7 +141,7 @@ def _place(node: ast.AST, index: int, length: int) -> int:
     return index + length if index < 0 else index
 
 
-def _item(body: Body, value: Value, place: int, index: Value) -> Value:
+def _item(body: FunctionBody, value: Value, place: int, index: Value) -> Value:
     """Return the item at a known place."""
     if value.items is not None:
         return value.items[place]
@@ -157,7 +157,7 @@ def _item(body: Body, value: Value, place: int, index: Value) -> Value:
     return item
 
 
-def _part(body: Body, node: ast.Subscript, value: Value, part: ast.Slice) -> Value:
+def _part(body: FunctionBody, node: ast.Subscript, value: Value, part: ast.Slice) -> Value:
     """Return ``xs[a:b]`` between known places."""
     ends = [None if end is None else body.value(end) for end in (part.lower, part.upper, part.step)]
     if any(end is not None and (end.kind != INT or end.const is UNKNOWN) for end in ends):

@@ -6,14 +6,14 @@ from dataclasses import replace
 from fmus.compiler.source.bindings import reads
 from fmus.compiler.source.kinds import Array, Mixed, Struct, described
 from fmus.compiler.source.refusals import CannotError
-from fmus.compiler.target.body import Body
+from fmus.compiler.target.body import FunctionBody
 from fmus.compiler.target.making import elements
 from fmus.compiler.target.storage import hoist, settled
 from fmus.compiler.target.values import Place, Value, place_of
 from fmus.compiler.target.variables import bind, open_place
 
 
-def unpack_assignment(body: Body, target: ast.Tuple, source: ast.expr, node: ast.AST) -> None:
+def unpack_assignment(body: FunctionBody, target: ast.Tuple, source: ast.expr, node: ast.AST) -> None:
     """Write ``a, b = ...``."""
     value = body.value(source)
     names = [item.id for item in ast.walk(target) if isinstance(item, ast.Name)]
@@ -27,7 +27,7 @@ def unpack_assignment(body: Body, target: ast.Tuple, source: ast.expr, node: ast
     unpack(body, target, value, node)
 
 
-def _from_call(body: Body, target: ast.Tuple, value: Value, source: ast.expr) -> None:
+def _from_call(body: FunctionBody, target: ast.Tuple, value: Value, source: ast.expr) -> None:
     """Write a call of a function that writes each item to where its name lives."""
     assert isinstance(value.kind, Mixed)
     assert value.fill_items is not None
@@ -51,7 +51,7 @@ def _from_call(body: Body, target: ast.Tuple, value: Value, source: ast.expr) ->
         unpack(body, part, item, part)
 
 
-def _apart(body: Body, value: Value, target: ast.Tuple, source: ast.expr) -> Value:
+def _apart(body: FunctionBody, value: Value, target: ast.Tuple, source: ast.expr) -> Value:
     """Return items of which those are worked out first that read a name bound before them."""
     assert value.items is not None
     nodes = source.elts if isinstance(source, ast.Tuple) else [source] * len(value.items)
@@ -65,7 +65,7 @@ def _apart(body: Body, value: Value, target: ast.Tuple, source: ast.expr) -> Val
     return replace(value, items=(*items, *value.items[len(items) :]))
 
 
-def unpack(body: Body, target: ast.expr, value: Value, node: ast.AST) -> None:
+def unpack(body: FunctionBody, target: ast.expr, value: Value, node: ast.AST) -> None:
     """Write that the names of ``target`` get the items of ``value``."""
     if isinstance(target, ast.Name):
         if target.id != "_" or body.bindings.home("_", body.frames[-1].path).loads:
@@ -83,7 +83,7 @@ def unpack(body: Body, target: ast.expr, value: Value, node: ast.AST) -> None:
         unpack(body, part, item, node)
 
 
-def items_of(body: Body, value: Value, node: ast.AST) -> tuple[Value, ...]:
+def items_of(body: FunctionBody, value: Value, node: ast.AST) -> tuple[Value, ...]:
     """Return the items of a tuple or the fields of a NamedTuple."""
     from fmus.compiler.constructs.tuples import field
 

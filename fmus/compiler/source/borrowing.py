@@ -14,12 +14,12 @@ def borrowed(node: ast.FunctionDef, whole: str, cls: type) -> set[str]:
     found = set()
     for place, statement in enumerate(node.body):
         name, field = _bound(statement, whole)
-        if name and _is_put_back(node.body[place + 1 :], name, _Field(whole, field, cls)):
+        if name and _is_put_back(node.body[place + 1 :], name, _ArgumentField(whole, field, cls)):
             found.add(name)
     return found
 
 
-class _Field:
+class _ArgumentField:
     """A field of an argument."""
 
     def __init__(self, whole: str, name: str, cls: type) -> None:
@@ -54,7 +54,7 @@ def _bound(node: ast.stmt, whole: str) -> tuple[str, str]:
     return "", ""
 
 
-def _is_put_back(after: list[ast.stmt], name: str, field: _Field) -> bool:
+def _is_put_back(after: list[ast.stmt], name: str, field: _ArgumentField) -> bool:
     """Return whether the statements put ``name`` back before they look at its field, and leave it alone then."""
     at = next((place for place, one in enumerate(after) if field.whole in stored_in([one])), None)
     if at is None or name in stored_in(after[at:]) or field.whole in stored_in(after[at + 1 :]):

@@ -2,7 +2,7 @@
 
 import re
 
-from fmus.compiler.target.body import Body
+from fmus.compiler.target.body import FunctionBody
 from fmus.compiler.target.values import Place, Value, place_of
 
 Access = tuple[str, ...]
@@ -10,7 +10,7 @@ Access = tuple[str, ...]
 ACCESS = re.compile(r"(?<![\w.>])([A-Za-z_]\w*)((?:(?:\.|->)\w+)*)")
 
 
-def accesses(body: Body, text: str) -> list[Access]:
+def accesses(body: FunctionBody, text: str) -> list[Access]:
     """Return what ``text`` mentions, as often as it does."""
     found = []
     for word, members in ACCESS.findall(text):
@@ -25,18 +25,18 @@ def overlap(one: Access, other: Access) -> bool:
     return one[:shared] == other[:shared]
 
 
-def access_to(body: Body, place: Place) -> Access:
+def access_to(body: FunctionBody, place: Place) -> Access:
     """Return what is written to at ``place``."""
     return accesses(body, place.text)[0]
 
 
-def looks_at_place(body: Body, text: str, place: Place) -> bool:
+def looks_at_place(body: FunctionBody, text: str, place: Place) -> bool:
     """Return whether ``text`` mentions ``place``, a part of it, or what it is part of."""
     own = access_to(body, place)
     return any(overlap(own, other) for other in accesses(body, text))
 
 
-def is_at(body: Body, value: Value, place: Place) -> bool:
+def is_at(body: FunctionBody, value: Value, place: Place) -> bool:
     """Return whether ``value`` is what lies at ``place``."""
     if not value.place:
         return False

@@ -17,8 +17,8 @@ from fmus.compiler.target.program import Program
 from fmus.compiler.target.runtime import TEXTS
 from fmus.compiler.target.values import Place, Value, is_scalar
 
-EXPRESSIONS: dict[type[ast.AST], Callable[["Body", Any], Value]] = {}
-STATEMENTS: dict[type[ast.AST], Callable[["Body", Any], None]] = {}
+EXPRESSIONS: dict[type[ast.AST], Callable[["FunctionBody", Any], Value]] = {}
+STATEMENTS: dict[type[ast.AST], Callable[["FunctionBody", Any], None]] = {}
 
 
 @dataclass
@@ -29,7 +29,7 @@ class Frame:
     slot: list[Any] = field(default_factory=list)
 
 
-class Body:
+class FunctionBody:
     """The translation of one function."""
 
     def __init__(self, program: Program, function: FunctionType, node: ast.FunctionDef) -> None:

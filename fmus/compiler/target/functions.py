@@ -12,7 +12,7 @@ from fmus.compiler.source.borrowing import borrowed
 from fmus.compiler.source.flow import Flow
 from fmus.compiler.source.kinds import NOTHING, Array, Kind, Mixed, NoKindError, Open, Struct, is_store, kind_of
 from fmus.compiler.source.refusals import AlreadySaidError, CannotError
-from fmus.compiler.target.body import Body
+from fmus.compiler.target.body import FunctionBody
 from fmus.compiler.target.in_place import InPlace, in_place
 from fmus.compiler.target.layout import flat
 from fmus.compiler.target.program import Program
@@ -174,7 +174,7 @@ def instance_of(program: Program, function: FunctionType, kinds: tuple[Kind, ...
 def translate(program: Program, made: Instance, kinds: dict[str, Kind], result: Kind) -> None:
     """Write the C function ``made``."""
     caller, program.caller = program.caller, made
-    body = Body(program, made.function, made.node)
+    body = FunctionBody(program, made.function, made.node)
     body.result, body.made = result, made
     for fault in Flow(made.node, kinds, body.bindings.local, body.number, result == NOTHING).faults:
         body.refuse(fault, made.node)
@@ -204,7 +204,7 @@ def _without_docstring(nodes: list[ast.stmt]) -> list[ast.stmt]:
     return nodes
 
 
-def _parameter(body: Body, name: str, kind: Kind, changed: InPlace | None) -> Parameter:
+def _parameter(body: FunctionBody, name: str, kind: Kind, changed: InPlace | None) -> Parameter:
     """Return an argument: a struct as pointer to const, but by value if its name is bound anew on some ways."""
     known = variable(body, name)
     known.kind, known.parameter = kind, True
@@ -234,7 +234,7 @@ def _parameter(body: Body, name: str, kind: Kind, changed: InPlace | None) -> Pa
     return Parameter(known.c, kind, True, body.program.pointed(kind, known.c))
 
 
-def _place_results(body: Body, made: Instance, result: Kind) -> None:
+def _place_results(body: FunctionBody, made: Instance, result: Kind) -> None:
     """Give a pointer to each result that is not returned by value.
 
     A variable that is the result on every way lives where the result goes, and lends it its name.

@@ -6,13 +6,13 @@ from typing import Any
 
 from fmus.compiler.source.kinds import BOOL, FLOAT, INT, Array, Kind, Mixed, Open, Scalar, Struct, described
 from fmus.compiler.source.refusals import CannotError
-from fmus.compiler.target.body import Body
+from fmus.compiler.target.body import FunctionBody
 from fmus.compiler.target.names import member_name
 from fmus.compiler.target.storage import ONE_BY_ONE, initial, item_of, put, settled
 from fmus.compiler.target.values import UNKNOWN, Place, Value, as_int
 
 
-def tuple_of(body: Body, items: tuple[Value, ...], kind: Kind | None = None) -> Value:
+def tuple_of(body: FunctionBody, items: tuple[Value, ...], kind: Kind | None = None) -> Value:
     """Return a tuple of ``items``."""
     kinds = tuple(item.kind for item in items)
     if kind is None:
@@ -28,7 +28,7 @@ def tuple_of(body: Body, items: tuple[Value, ...], kind: Kind | None = None) -> 
     return Value(kind, fill=fill, braces=_braces([initial(item) for item in items]), items=items, const=known)
 
 
-def repeated(body: Body, items: tuple[Value, ...], count: int) -> Value:
+def repeated(body: FunctionBody, items: tuple[Value, ...], count: int) -> Value:
     """Return a tuple of ``items``, ``count`` times over; a single one is written by a loop where there are many."""
     items = tuple(item if item.const is not UNKNOWN else settled(body, item, "item") for item in items)
     whole = tuple_of(body, items * count)
@@ -45,7 +45,7 @@ def repeated(body: Body, items: tuple[Value, ...], count: int) -> Value:
     return replace(whole, fill=fill)
 
 
-def struct_of(body: Body, kind: Struct, fields: dict[str, Value]) -> Value:
+def struct_of(body: FunctionBody, kind: Struct, fields: dict[str, Value]) -> Value:
     """Return a NamedTuple of ``fields``."""
 
     members = {member_name(name): value for name, value in fields.items()}
@@ -63,7 +63,7 @@ def _braces(texts: list[str | None]) -> str:
     return "" if None in texts else "{" + ", ".join(str(text) for text in texts) + "}"
 
 
-def written_out(body: Body, constant: Any, kind: Kind) -> Value:
+def written_out(body: FunctionBody, constant: Any, kind: Kind) -> Value:
     """Return a constant that has no name of its own."""
     if isinstance(kind, Scalar):
         value = body.program.number(constant)
@@ -80,7 +80,7 @@ def written_out(body: Body, constant: Any, kind: Kind) -> Value:
     return tuple_of(body, tuple(written_out(body, item, one) for item, one in zip(constant, parts, strict=True)))
 
 
-def elements(body: Body, value: Value) -> tuple[Value, ...]:
+def elements(body: FunctionBody, value: Value) -> tuple[Value, ...]:
     """Return the items of a tuple of equal kinds one by one."""
     if value.items is not None:
         return value.items
@@ -89,7 +89,7 @@ def elements(body: Body, value: Value) -> tuple[Value, ...]:
     return tuple(item_of(whole, at, known=True) for at in range(value.kind.length))
 
 
-def coerced(body: Body, value: Value, kind: Kind, node: ast.AST, why: str) -> Value:
+def coerced(body: FunctionBody, value: Value, kind: Kind, node: ast.AST, why: str) -> Value:
     """Return ``value`` as ``kind``; refuse what Python would not keep apart but C would."""
     if value.kind == kind:
         return value

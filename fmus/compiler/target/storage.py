@@ -6,7 +6,7 @@ from typing import Any
 
 from fmus.compiler.source.kinds import Array, Scalar, Struct
 from fmus.compiler.target.access import Access, access_to, accesses, is_at, overlap
-from fmus.compiler.target.body import Body
+from fmus.compiler.target.body import FunctionBody
 from fmus.compiler.target.layout import flat
 from fmus.compiler.target.values import SMALL, UNKNOWN, Place, Value, is_scalar, place_of, rvalue, scalars_in
 
@@ -15,7 +15,7 @@ ONE_BY_ONE = 4
 """Arrays of no more items are written item by item."""
 
 
-def put(body: Body, place: Place, value: Value, busy: bool = False) -> None:
+def put(body: FunctionBody, place: Place, value: Value, busy: bool = False) -> None:
     """Write the statements that make ``place`` equal to ``value``; ``busy``: which is made of what the place holds."""
     if value.fill is None:
         if is_at(body, value, place):
@@ -36,12 +36,12 @@ def put(body: Body, place: Place, value: Value, busy: bool = False) -> None:
         value.fill(place)
 
 
-def put_whole(body: Body, place: Place, value: Value) -> None:
+def put_whole(body: FunctionBody, place: Place, value: Value) -> None:
     """Write a new value of what lies at ``place``, which it may be made of."""
     body.lines += _part(body, place, value).lines
 
 
-def put_members(body: Body, place: Place, members: dict[str, Value]) -> None:
+def put_members(body: FunctionBody, place: Place, members: dict[str, Value]) -> None:
     """Write members of a struct, whose new values may be made of what it holds: each after all that reads it."""
     waiting = [_part(body, place.member(name), value) for name, value in members.items()]
     while waiting:
@@ -57,7 +57,7 @@ def put_members(body: Body, place: Place, members: dict[str, Value]) -> None:
 
 
 @dataclass
-class Part:
+class Assignment:
     """The statements that give a place a new value, and what they look at."""
 
     place: Place
@@ -66,22 +66,22 @@ class Part:
     lines: list[Any]
     seen: list[Access]
 
-    def reads(self, other: "Part") -> bool:
+    def reads(self, other: "Assignment") -> bool:
         """Return whether the new value is made of what ``other`` overwrites."""
         return other is not self and any(overlap(other.own, access) for access in self.seen)
 
 
-def _part(body: Body, place: Place, value: Value) -> Part:
+def _part(body: FunctionBody, place: Place, value: Value) -> Assignment:
     own = access_to(body, place)
     lines, seen = _written(body, place, value, False)
     changed = value.base is not None and is_at(body, value.base, place)
     at_once = len(lines) == 1 and _is_store(lines[0], place)
     if not changed and not at_once and any(overlap(own, access) for access in seen):
         lines, seen = _written(body, place, value, True)
-    return Part(place, value, own, lines, seen)
+    return Assignment(place, value, own, lines, seen)
 
 
-def _written(body: Body, place: Place, value: Value, busy: bool) -> tuple[list[Any], list[Access]]:
+def _written(body: FunctionBody, place: Place, value: Value, busy: bool) -> tuple[list[Any], list[Access]]:
     """Return the statements of an assignment, and what they look at."""
     with body.capture() as lines:
         put(body, place, value, busy)
@@ -89,7 +89,7 @@ def _written(body: Body, place: Place, value: Value, busy: bool) -> tuple[list[A
     return lines, [access for line in lines for access in _seen(body, line, place)]
 
 
-def _seen(body: Body, line: str, place: Place) -> list[Access]:
+def _seen(body: FunctionBody, line: str, place: Place) -> list[Access]:
     """Return what a statement looks at; not the place that it writes to, nor the one that is given to a function."""
     if _is_store(line, place):
         left, _, right = line.partition(" = ")
@@ -107,7 +107,7 @@ def _is_store(line: str, place: Place) -> bool:
     return re.match(rf"{re.escape(place.whole)}(?:(?:\.|->|\[)[^=]*)? = ", line) is not None
 
 
-def _copy(body: Body, place: Place, value: Value, kind: Array) -> None:
+def _copy(body: FunctionBody, place: Place, value: Value, kind: Array) -> None:
     index = body.names.add("i")
     body.emit(f"for (int {index} = 0; {index} < {kind.length}; ++{index}) {{")
     put(body, place.element(index), item_of(value, index))
@@ -142,7 +142,7 @@ def start_of(value: Value) -> str | None:
     return None if isinstance(value.kind, Array) else rvalue(value)
 
 
-def declare(body: Body, c: str, value: Value, const: bool) -> None:
+def declare(body: FunctionBody, c: str, value: Value, const: bool) -> None:
     """Write the declaration of a variable with its value."""
     declared = body.program.declared(value.kind, c)
     start = start_of(value)
@@ -161,7 +161,7 @@ def _is_table(value: Value) -> bool:
     return all(NUMBER.fullmatch(item.text) or (item.narrow and item.text.isidentifier()) for item in value.items)
 
 
-def hoist(body: Body, value: Value, name: str) -> Value:
+def hoist(body: FunctionBody, value: Value, name: str) -> Value:
     """Return ``value`` as a constant of its own, declared here."""
     c = body.names.add(name)
     declare(body, c, value, const=True)
@@ -169,14 +169,14 @@ def hoist(body: Body, value: Value, name: str) -> Value:
     return Value(value.kind, c, place=True, fixed=True, const=known[0], low=known[1], high=known[2])
 
 
-def settled(body: Body, value: Value, name: str) -> Value:
+def settled(body: FunctionBody, value: Value, name: str) -> Value:
     """Return ``value`` as something that may be mentioned often and pointed at."""
     if value.place or (is_scalar(value.kind) and value.const is not UNKNOWN):
         return value
     return hoist(body, value, name)
 
 
-def address(body: Body, value: Value, name: str) -> str:
+def address(body: FunctionBody, value: Value, name: str) -> str:
     """Return a pointer to a struct, or to the first item of an array."""
     if value.place:
         return value.text if isinstance(value.kind, Array) else place_of(value).address
@@ -188,7 +188,7 @@ def address(body: Body, value: Value, name: str) -> str:
     return address(body, hoist(body, value, name), name)
 
 
-def text_of(body: Body, value: Value, name: str) -> str:
+def text_of(body: FunctionBody, value: Value, name: str) -> str:
     """Return a value as an expression: a scalar or a struct."""
     if value.fill is None:
         return rvalue(value)

@@ -9,14 +9,14 @@ from fmus.compiler.source.bindings import Home, Path
 from fmus.compiler.source.kinds import Array, Kind, Open, Struct, described
 from fmus.compiler.source.refusals import AlreadySaidError
 from fmus.compiler.target.access import accesses, is_at
-from fmus.compiler.target.body import Body
+from fmus.compiler.target.body import FunctionBody
 from fmus.compiler.target.making import coerced
 from fmus.compiler.target.storage import declare, put
 from fmus.compiler.target.values import PRIMARY, UNKNOWN, Place, Value, is_scalar, place_of
 
 
 @dataclass
-class Variable:
+class LocalVariable:
     """A variable of the function."""
 
     c: str
@@ -59,7 +59,7 @@ class Variable:
         )
 
 
-def variable(body: Body, name: str) -> Variable:
+def variable(body: FunctionBody, name: str) -> LocalVariable:
     """Return the variable that ``name`` stands for here."""
     for scope in reversed(body.scopes):
         if name in scope:
@@ -69,18 +69,18 @@ def variable(body: Body, name: str) -> Variable:
     if key not in body.variables:
         if name not in body.c_names:
             body.c_names[name] = body.names.add(name)
-        body.variables[key] = Variable(body.c_names[name], home)
+        body.variables[key] = LocalVariable(body.c_names[name], home)
     return body.variables[key]  # type: ignore[no-any-return]
 
 
-def bind(body: Body, name: str, value: Value, node: ast.AST, source: ast.AST | None = None) -> None:
+def bind(body: FunctionBody, name: str, value: Value, node: ast.AST, source: ast.AST | None = None) -> None:
     """Write that ``name`` gets ``value``; ``source`` is the expression it comes from."""
     if isinstance(value.kind, Open):
         raise AlreadySaidError
     known = variable(body, name)
     if known.kind is not None and known.parameter and _begins_anew(body, known, name):
         slot = _result_slot(body, known, name, value.kind)
-        known = Variable(slot.text if slot else body.names.add(f"next_{name}"), known.home)
+        known = LocalVariable(slot.text if slot else body.names.add(f"next_{name}"), known.home)
         body.variables[name, ()] = known
     if known.kind is not None:
         value = coerced(body, value, known.kind, node, f"{name} is {described(known.kind)} before")
@@ -90,7 +90,7 @@ def bind(body: Body, name: str, value: Value, node: ast.AST, source: ast.AST | N
     known.kind = value.kind if known.kind is None else known.kind
 
 
-def _begins_anew(body: Body, known: Variable, name: str) -> bool:
+def _begins_anew(body: FunctionBody, known: LocalVariable, name: str) -> bool:
     """Return whether a parameter that is a struct or tuple is bound to something new for all the rest of the function.
 
     Then the rest gets a variable of its own, and the parameter stays a pointer to const.
@@ -98,7 +98,7 @@ def _begins_anew(body: Body, known: Variable, name: str) -> bool:
     return not is_scalar(known.kind) and name in body.anew and body.frames[-1].path == ()  # type: ignore[arg-type]
 
 
-def _store(body: Body, known: Variable, value: Value, name: str, source: ast.AST | None) -> None:
+def _store(body: FunctionBody, known: LocalVariable, value: Value, name: str, source: ast.AST | None) -> None:
     """Write the assignment of ``value``; through a temporary if it is made while the variable is still read."""
     if known.home.loads:
         put(body, known.place, value, busy=source is not None and looks_at(value, known.c, source, name))
@@ -116,7 +116,7 @@ def mentions(node: ast.AST, name: str) -> bool:
     return any(isinstance(item, ast.Name) and item.id == name for item in ast.walk(node))
 
 
-def _first(body: Body, known: Variable, name: str, value: Value) -> None:
+def _first(body: FunctionBody, known: LocalVariable, name: str, value: Value) -> None:
     """Write the first binding of a variable."""
     kind = value.kind
     slot = _result_slot(body, known, name, kind)
@@ -138,7 +138,7 @@ def _first(body: Body, known: Variable, name: str, value: Value) -> None:
             known.const, known.low, known.high = value.const, value.low, value.high
 
 
-def _result_slot(body: Body, known: Variable, name: str, kind: Kind) -> Place | None:
+def _result_slot(body: FunctionBody, known: LocalVariable, name: str, kind: Kind) -> Place | None:
     """Return where the result goes, if the variable is the result."""
     place, wanted = body.result_of.get(name, (None, None))
     if known.home.path != () or place is None:
@@ -147,11 +147,11 @@ def _result_slot(body: Body, known: Variable, name: str, kind: Kind) -> Place | 
     return place if wanted == kind or open_one else None
 
 
-def _frame(body: Body, path: Path) -> Any:
+def _frame(body: FunctionBody, path: Path) -> Any:
     return next(frame for frame in body.frames if frame.path == path)
 
 
-def _point(body: Body, known: Variable, value: Value) -> None:
+def _point(body: FunctionBody, known: LocalVariable, value: Value) -> None:
     """Write a variable as a pointer to what does not change."""
     text = value.text if isinstance(value.kind, Array) else place_of(value).address
     body.emit(f"{body.program.pointed(value.kind, known.c)} = {text};")
@@ -159,7 +159,7 @@ def _point(body: Body, known: Variable, value: Value) -> None:
     known.pointer, known.fixed, known.const = not isinstance(value.kind, Array), True, value.const
 
 
-def _borrow(body: Body, known: Variable, value: Value) -> None:
+def _borrow(body: FunctionBody, known: LocalVariable, value: Value) -> None:
     """Write a variable as a pointer to what it is at first, and will be put back into."""
     place = place_of(value)
     body.emit(f"{body.program.declared(value.kind, f'*{known.c}')} = {place.address};")
@@ -168,7 +168,7 @@ def _borrow(body: Body, known: Variable, value: Value) -> None:
 
 
 def open_place(
-    body: Body, name: str, kind: Kind, value: Value, source: ast.AST, own: Value | None = None
+    body: FunctionBody, name: str, kind: Kind, value: Value, source: ast.AST, own: Value | None = None
 ) -> Place | None:
     """Return where a function may write what ``name`` gets, declared if it is new; None if it must not yet.
 

@@ -39,6 +39,7 @@ SLOW = [
     "live/test_page.py",
     "modelkit/test_geometry.py",
     "orchestrator/test_bad_fmus.py",
+    "orchestrator/test_catalogue.py",
     "orchestrator/test_check_and_test.py",
     "orchestrator/test_cli.py",
     "orchestrator/test_ends.py",

@@ -35,6 +35,7 @@ FLOORS: tuple[tuple[str, ...], ...] = (
     ("orchestrator.report",),
     ("orchestrator.steptest",),
     ("orchestrator.suite", "orchestrator.coverage"),
+    ("orchestrator.catalogue",),
     ("orchestrator.sweep",),
     ("orchestrator.live",),
     ("orchestrator.export",),

@@ -10,6 +10,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
+from orchestrator.catalogue.entries import is_catalogue
 from orchestrator.cosim.fmu_files import KINDS, default_kind, fmu_files
 from orchestrator.cosim.interrupts import on_interrupt
 from orchestrator.cosim.master import Interrupt
@@ -28,12 +29,17 @@ EXAMPLES = """examples:
   apa test "guo2015-*" --out results
   apa test guo2015-case4 my.yaml --controller their.fmu --junit results/junit.xml
   apa test "*" --requirements gbt41630 --set vehicle.body=double_track
+  apa test catalogue --out results
+  apa test "catalogue/gbt*" --controller their.fmu --junit results/junit.xml
 
 A scenario passes if its outcome is the one it expects and, where that is parked or finished, its required limits
 hold; requirements given here are judged besides. Their FMU needs inputs and outputs of the same names, types
 and units (one it does not say is taken as meant), or a scenario whose system connects it; parameters it does not
 have are left out and listed, its own are set like any other: --set controller.THEIRS=3. With -j several scenarios
 run at a time, which gains where FMUs run in processes of their own.
+
+catalogue is what standards ask of parking: the scenarios that test it are run, and each clause is met, missed or not
+tested; apa test catalogue/gbt41630 is one standard of it.
 
 writes DIR/index.html, DIR/junit.xml and for each scenario DIR/NAME/run.mcap, summary.json and report.html
 exit codes: 0 all passed, 1 not, 2 a scenario, rule or FMU that cannot be read, or a place that cannot be written,
@@ -73,6 +79,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Run all, print a line for each. Returns 0 if all passed, 1 if not, 130 if interrupted."""
     out: Path = arguments.out
+    if any(is_catalogue(word) for word in arguments.scenarios):
+        with owned(out):
+            return _catalogue(arguments)
     names = chosen(arguments.scenarios)
     with owned(out):
         verdicts = Verdicts(arguments.junit or out / "junit.xml", out / "index.html", names)
@@ -110,6 +119,27 @@ def _covered(arguments: argparse.Namespace, names: list[str], verdicts: "Verdict
         say(f"apa: {part:.1f} % of the transitions are covered, asked {least:g} %")
         return FAILED
     return code
+
+
+def _catalogue(arguments: argparse.Namespace) -> int:
+    """Test what standards ask. Returns 0 if nothing is missed."""
+    from orchestrator.catalogue.run import Catalogue
+
+    other = [word for word in arguments.scenarios if not is_catalogue(word)]
+    if other:
+        raise BadInput("the catalogue is tested by itself, without other scenarios", key=other[0])
+    if arguments.coverage or arguments.min_transition_coverage is not None:
+        raise BadInput("the catalogue says nothing of charts; test its scenarios by name", key="--coverage")
+    interrupt = Interrupt()
+    bench, catalogue = _bench(arguments, interrupt), Catalogue(arguments.scenarios)
+    files = (arguments.junit or arguments.out / "junit.xml", arguments.out / "index.html")
+    catalogue.write(*files)
+    with on_interrupt(interrupt), Meter("apa test", catalogue.count, "runs") as meter:
+        catalogue.run(arguments.set, bench, arguments.out, arguments.jobs, meter.at)
+    about = catalogue.about(shlex.join(["apa", *arguments.words]))
+    catalogue.write(*files, about)
+    catalogue.show(about, arguments.out, arguments.json)
+    return INTERRUPTED if interrupt.requested else catalogue.code()
 
 
 def _run(arguments: argparse.Namespace, names: list[str], verdicts: "Verdicts") -> int:

@@ -4,6 +4,7 @@ The limits of a scenario, the shipped sets in ``orchestrator/limits`` and the fi
 are all lists of these.
 """
 
+from collections.abc import Mapping
 from functools import cache
 from pathlib import Path
 from typing import Any, Literal, get_args
@@ -22,6 +23,43 @@ LIMITS = Path(__file__).parent.parent / "limits"
 """Where the shipped sets are."""
 
 
+class Moment(BaseModel):
+    """A condition on a signal at one instant: exactly one of ``max``, ``min``, ``max_abs`` and ``equals`` is given."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    signal: str
+    """``vehicle.driver_takeover``: a signal of the run."""
+    max: float | None = None
+    """The value is at most this."""
+    min: float | None = None
+    """The value is at least this."""
+    max_abs: float | None = None
+    """The value without its sign is at most this."""
+    equals: float | str | None = None
+    """The value is this; a number, true, false or the name of a state."""
+    unit: str | None = None
+    """SI unit of the limit; taken from the limit's text if that has one."""
+
+    @model_validator(mode="before")
+    @classmethod
+    def _quantities(cls, data: Any) -> Any:
+        if not isinstance(data, dict):
+            raise BadInput(f"{shown(data)}: expected a mapping with signal and one of {', '.join(CONDITIONS)}")
+        return {**data, **_limit(data, _given(data))}
+
+    @property
+    def condition(self) -> Condition:
+        """Return which of the conditions is given."""
+        return _given(self.__dict__)
+
+    @property
+    def limit(self) -> float | str:
+        """Return the limit [SI unit], or the name of a state."""
+        value: float | str = getattr(self, self.condition)
+        return value
+
+
 class Window(BaseModel):
     """The part of a run in which a requirement holds; all that is given must hold at once."""
 
@@ -35,6 +73,12 @@ class Window(BaseModel):
     """Names of phases of the manoeuvre chart."""
     at: Literal["end"] | None = None
     """``end``: the last instant only."""
+    after: Moment | None = None
+    """From each instant at which this begins to hold."""
+    delay: Seconds = 0.0
+    """So long [s] after ``after``."""
+    lasting: Seconds | None = None
+    """For so long [s] from then on; by default to the end."""
     if_never: Literal["fail", "pass"] = "fail"
     """The verdict if the run has no instant in the window."""
 
@@ -49,6 +93,8 @@ class Window(BaseModel):
     def _ordered(self) -> "Window":
         if self.from_ is not None and self.to is not None and self.from_ > self.to:
             raise BadInput(f"from {self.from_:g} s is after to {self.to:g} s", key="window")
+        if self.after is None and (self.delay or self.lasting is not None):
+            raise BadInput("delay and lasting count from after", key="window")
         return self
 
 
@@ -78,6 +124,8 @@ class Requirement(BaseModel):
     """SI unit of the limit; taken from the limit's text if that has one."""
     window: Window | None = None
     """When it holds; by default always."""
+    ever: bool = False
+    """Met if it holds at one instant of the window; otherwise it has to at all of them."""
     where: Where | None = None
     """Asked only of a scenario that has this."""
     source: str
@@ -96,15 +144,12 @@ class Requirement(BaseModel):
             if key not in cls.model_fields:
                 hint = suggestion(str(key), cls.model_fields) or f"; known are {', '.join(cls.model_fields)}"
                 raise BadInput(f"unknown{hint}", key=f"{data.get('id', '')}: {key}".lstrip(": "))
-        given = [key for key in CONDITIONS if data.get(key) is not None]
-        if len(given) != 1:
-            raise BadInput(f"expected exactly one of {', '.join(CONDITIONS)}", key=str(data.get("id", "")))
-        return {**data, **_limit(data, given[0])}
+        return {**data, **_limit(data, _given(data))}
 
     @property
     def condition(self) -> Condition:
         """Return which of the conditions is given."""
-        return next(key for key in CONDITIONS if getattr(self, key) is not None)
+        return _given(self.__dict__)
 
     @property
     def limit(self) -> float | str:
@@ -134,6 +179,13 @@ def read_requirements(path: Path) -> list[Requirement]:
             at = f"[{number}].{place_in(error)}".rstrip(".")
             raise BadInput(f"requirement {number}: {mistake}", file=path, at=at) from None
     return found
+
+
+def _given(data: Mapping[str, Any]) -> Condition:
+    given = [key for key in CONDITIONS if data.get(key) is not None]
+    if len(given) != 1:
+        raise BadInput(f"expected exactly one of {', '.join(CONDITIONS)}", key=str(data.get("id", "")))
+    return given[0]
 
 
 def _limit(data: dict[str, Any], key: str) -> dict[str, Any]:

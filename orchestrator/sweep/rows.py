@@ -76,7 +76,7 @@ def measures_for(
 
 def measure_of(limit: Requirement) -> Measure | None:
     """Return the measure that decides about a limit on a signal; None if that takes the whole run."""
-    window, worst = limit.window, CONDITIONS[limit.condition].worst
+    window, worst = limit.window, None if limit.ever else CONDITIONS[limit.condition].worst
     if window is not None and window == Window(at="end", if_never=window.if_never):
         return Measure("last", limit.signal)
     if worst is None:

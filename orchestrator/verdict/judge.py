@@ -12,7 +12,7 @@ from orchestrator.cosim.recording import Recording
 from orchestrator.cosim.slave import Array
 from orchestrator.scenario.end_condition import state_word, states_of
 from orchestrator.scenario.models import MODELS
-from orchestrator.scenario.requirements import Condition, Requirement, Window
+from orchestrator.scenario.requirements import Condition, Moment, Requirement, Window
 from orchestrator.text.errors import BadInput, suggestion
 from orchestrator.verdict.conditions import CONDITIONS
 from orchestrator.verdict.numbers import NUMBERS, Facts, signals_of
@@ -20,6 +20,8 @@ from orchestrator.verdict.truth import Bools
 
 CHART = "controller.phase"
 NEVER = "the window never comes"
+CLOSE = 1e-9
+"""Instants are the same within this [s]."""
 
 
 class Check(BaseModel):
@@ -91,7 +93,8 @@ def _check(item: Requirement, recording: Recording, numbers: dict[str, float], f
 
 def _unmeasured(item: Requirement, recording: Recording, numbers: dict[str, float]) -> bool:
     """Return whether a requirement needs what our models put out, but the FMUs of this run do not."""
-    missing = item.signal not in recording.signals and item.signal in _known_signals()
+    named = [item.signal, *([item.window.after.signal] if item.window is not None and item.window.after else [])]
+    missing = any(name not in recording.signals and name in _known_signals() for name in named)
     phase = item.window is not None and bool(item.window.phase) and not _has_phases(item.window.phase, recording)
     number = item.signal in numbers and not all(name in recording.signals for name in signals_of(item.signal))
     return missing or phase or number
@@ -132,12 +135,12 @@ def _not_judged(item: Requirement) -> Check:
 
 
 def _worst(item: Requirement, values: Array, times: Array, limit: float, unit: str, states: dict[int, str]) -> Check:
-    """Return the check at the worst value; NaN is the worst there is and passes nothing."""
+    """Return the check at the value that decides, the worst or the best; NaN is the worst there is, passes nothing."""
     value = margin = math.nan
     when, note, passed = 0.0, "", False
     if len(values):
         found = CONDITIONS[item.condition].margin(values, limit)
-        row = int(np.argmin(np.where(np.isnan(found), -np.inf, found)))
+        row = int((np.argmax if item.ever else np.argmin)(np.where(np.isnan(found), -np.inf, found)))
         value, margin, when = float(values[row]), float(found[row]), float(times[row])
         passed = margin >= 0.0
         unknown = "not known" if item.signal in NUMBERS else "not a number"
@@ -186,10 +189,30 @@ def _rows(window: Window | None, recording: Recording, file: str, where: str) ->
         rows &= t <= window.to
     if window.at == "end":
         rows[:-1] = False
+    if window.after is not None:
+        rows &= _after(window.after, window, recording, file, f"{where}: window.after")
     if window.phase:
         phases: Any = recording.signals.get(CHART)
         if phases is None:
             raise BadInput(f"the run has no {CHART}", file=file, key=f"{where}: window.phase")
         wanted = [_number(name, recording.states(CHART), file, f"{where}: window.phase") for name in window.phase]
         rows &= np.isin(phases, wanted)
+    return rows
+
+
+def _after(moment: Moment, window: Window, recording: Recording, file: str, where: str) -> Bools:
+    """Return which instants lie in the time after each one at which ``moment`` begins to hold."""
+    if moment.signal not in recording.signals:
+        hint = suggestion(moment.signal, list(recording.signals))
+        raise BadInput(f"no signal of this name{hint}", file=file, key=where)
+    unit = recording.variables[moment.signal].signal.unit
+    if moment.unit is not None and moment.unit != unit:
+        raise BadInput(f"the limit is in {moment.unit}, the signal in {unit}", file=file, key=where)
+    limit = _number(moment.limit, recording.states(moment.signal), file, where)
+    holds = CONDITIONS[moment.condition].margin(recording.signals[moment.signal], limit) >= 0.0
+    begins = np.flatnonzero(holds & ~np.concatenate(([False], holds[:-1])))
+    t, rows = recording.t, np.zeros(len(holds), dtype=bool)
+    for start in t[begins] + window.delay:
+        end = np.inf if window.lasting is None else start + window.lasting
+        rows |= (t >= start - CLOSE) & (t <= end + CLOSE)
     return rows

@@ -29,6 +29,7 @@ NOT_RUN = {
     "source ": "the environment is there",
     "python -m venv": "tests/test_wheel.py installs",
     ".venv/bin/": "tests/test_wheel.py installs",
+    "apa test catalogue --out": "a minute; tests/orchestrator/test_catalogue.py has parts",
     "apa reproduce all": "minutes; tests/papers has each paper",
     "apa build --fmus native --out build --platform": "compiles C libraries of other platforms; tests/fmi",
     "apa build --fmi 3 --out build --platform": "compiles C libraries of other platforms; tests/fmi",

@@ -12,7 +12,7 @@ from orchestrator.scenario.files import ROOM
 from orchestrator.scenario.requirements import Requirement, read_requirements
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.text.errors import BadInput
-from orchestrator.verdict.judge import judge
+from orchestrator.verdict.judge import NEVER, judge
 from orchestrator.verdict.numbers import facts_of
 
 PHASE = {"STANDBY": 0, "DRIVE": 1, "PARKED": 2}
@@ -63,6 +63,49 @@ def test_worst_value_its_moment_and_margin(entry, value, t, margin):
     assert (found.value, found.t) == (value, t)
     assert found.margin == pytest.approx(margin)
     assert found.passed == (margin >= 0.0)
+
+
+AFTER = {"after": {"signal": "controller.phase", "equals": "DRIVE"}}
+
+
+@pytest.mark.parametrize(
+    ("entry", "value", "t"),
+    [
+        ({"max": 0.0, "window": AFTER}, 0.5, 3.0),
+        ({"min": -1.5, "window": {**AFTER, "delay": "1 s"}}, -2.0, 2.0),
+        ({"min": -1.5, "window": {**AFTER, "delay": "2.5 s"}}, 0.0, 4.0),
+        ({"min": -1.5, "window": {**AFTER, "lasting": "0 s"}}, -1.0, 1.0),
+        ({"max": -1.5, "ever": True}, -2.0, 2.0),
+        ({"max": -1.5, "ever": True, "window": {"from": 3}}, 0.0, 4.0),
+    ],
+)
+def test_windows_after_a_moment_and_once(entry, value, t):
+    found = check(**entry)
+    assert (found.value, found.t) == (value, t)
+
+
+def test_a_window_opens_each_time_a_moment_comes():
+    run = recording(phase=(1, 0, 0, 1, 0))
+    assert check(run, max_abs=1.0, window={**AFTER, "lasting": 0}).passed
+    assert not check(run, max_abs=1.0, window={**AFTER, "lasting": "2 s"}).passed
+    assert check(run, max_abs=1.0, window={"after": {"signal": "vehicle.speed", "min": "10 m/s"}}).note == NEVER
+    with pytest.raises(BadInput, match="no signal of this name"):
+        check(run, max_abs=1.0, window={"after": {"signal": "vehicle.sped", "min": 1}})
+    with pytest.raises(BadInput, match="the limit is in m"):
+        check(run, max_abs=1.0, window={"after": {"signal": "vehicle.speed", "min": "1 m"}})
+
+
+@pytest.mark.parametrize(
+    "window", [{"delay": 1}, {"lasting": 1}, {"after": {"signal": "x"}}, {"after": {"signal": "x", "max": 1, "min": 0}}]
+)
+def test_windows_that_mean_nothing_are_refused(window):
+    with pytest.raises(ValueError, match=r"count from after|exactly one of"):
+        Requirement.model_validate({"id": "r", "signal": "s", "source": "t", "max": 1, "window": window})
+
+
+def test_what_another_controller_does_not_put_out_opens_no_window():
+    run = recording()
+    assert not check(run, max_abs=9.0, window={"after": {"signal": "vehicle.driver_takeover", "equals": True}}).judged
 
 
 def test_states_by_name():

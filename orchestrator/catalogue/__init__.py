@@ -1,0 +1,1 @@
+"""Requirements of standards as data, and which of them a controller meets."""

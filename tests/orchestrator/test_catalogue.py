@@ -1,0 +1,227 @@
+"""What standards ask, as data: entries that name what tests them, and verdicts that follow from the runs."""
+
+import importlib.util
+import json
+from pathlib import Path
+from types import ModuleType
+from xml.etree import ElementTree
+
+import pytest
+import yaml
+
+from orchestrator.catalogue.entries import ROOM, STEP_TESTS, Clause, chosen_standards, is_catalogue, read_standard
+from orchestrator.catalogue.run import Catalogue, judged
+from orchestrator.catalogue.show import markdown
+from orchestrator.catalogue.verdicts import ClauseVerdict, Tried, counts, note, runs_of, suites, verdicts_of
+from orchestrator.cli import main
+from orchestrator.cosim.fmu_files import can_compile, fmu_files
+from orchestrator.cosim.master import Interrupt
+from orchestrator.scenario.load_scenario import load_scenario
+from orchestrator.scenario.scenario import Scenario
+from orchestrator.session.foreign import Foreign
+from orchestrator.suite import suite
+from orchestrator.suite.junit import Case
+from orchestrator.suite.suite import Bench
+from orchestrator.text.errors import BAD_INPUT, BadInput
+
+EVERYTHING = verdicts_of(chosen_standards(["catalogue"]))
+compiled = pytest.mark.skipif(not can_compile(), reason="FMUs without Python need a C compiler: pip install ziglang")
+
+
+def page() -> str:
+    return (Path(__file__).parents[2] / "docs" / "catalogue.md").read_text(encoding="utf-8")
+
+
+def docs() -> ModuleType:
+    file = Path(__file__).parents[2] / "docs" / "catalogue.py"
+    spec = importlib.util.spec_from_file_location("docs_catalogue", file)
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def test_every_standard_asked_for_is_there() -> None:
+    words = " ".join(item.standard.standard for item in EVERYTHING)
+    for name in ("ISO 16787", "ISO 20900", "ISO 23374-1", "GB/T 41630", "GB/T 47031", "C-ICAP", "UN R79", "Euro NCAP"):
+        assert name in words
+    assert len(EVERYTHING) > 60
+    assert sum(bool(item.entry.scenarios) for item in EVERYTHING) > 45
+
+
+def test_every_step_test_and_every_scenario_made_for_it_is_used() -> None:
+    scenarios, tests = runs_of(EVERYTHING)
+    assert {path.stem for path in STEP_TESTS.glob("*.yaml")} == set(tests)
+    assert {path.stem for path in (ROOM.parent / "scenarios").glob("cicap-*.yaml")} <= set(scenarios)
+
+
+@pytest.mark.parametrize("item", EVERYTHING, ids=lambda item: f"{item.standard.key}-{item.entry.id}")
+def test_documentation_has_every_entry_as_it_is(item: ClauseVerdict) -> None:
+    by = ", ".join(f"`{name}`" for name in (*item.entry.scenarios, *item.entry.step_tests)) or item.entry.not_tested
+    start = f"| {item.entry.clause} | {item.entry.text} | {item.entry.sure} | "
+    lines = [line for line in page().splitlines() if line.startswith(start) and line.endswith(f" | {by} |")]
+    assert lines, start
+    assert ("not tested" in lines[0]) == bool(item.entry.not_tested)
+
+
+def test_limits_that_say_who_asks_say_it_of_the_standard_that_names_them() -> None:
+    """A number belongs to the standard it is from, or to nobody: then it is ours."""
+    for item in EVERYTHING:
+        for limit in item.entry.requirements():
+            source = limit.source.removesuffix(", unverified")
+            own = source == "house" or item.standard.standard.startswith(source)
+            assert own or item.standard.key.startswith("cicap"), (item.entry.id, limit.id, limit.source)
+
+
+def entry(**given: object) -> Clause:
+    return Clause.model_validate({"id": "it", "text": "Something.", "sure": "text", **given})
+
+
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        ({}, "either what tests it"),
+        ({"scenarios": ["apa-parallel"], "not_tested": "no"}, "either what tests it"),
+        ({"scenarios": ["apa-parallel"]}, "an outcome or limits"),
+        ({"scenarios": ["apa-paralel"], "outcome": ["parked"]}, "did you mean apa-parallel"),
+        ({"step_tests": ["ded-sensor"]}, "did you mean dead-sensor"),
+        ({"scenarios": ["apa-parallel"], "limits": {"gbt4163": "all"}}, "did you mean gbt41630"),
+        ({"scenarios": ["apa-parallel"], "limits": {"gbt41630": ["shift"]}}, "did you mean shifts"),
+        ({"scenarios": ["apa-parallel"], "outcome": ["lost"]}, "Input should be"),
+    ],
+)
+def test_an_entry_that_cannot_be_is_refused(given: dict[str, object], said: str) -> None:
+    with pytest.raises(ValueError, match=said):
+        entry(**given)
+
+
+def test_a_mistake_in_a_file_is_told_with_its_place(tmp_path: Path) -> None:
+    one = {"id": "it", "text": "T", "sure": "text", "not_tested": "no"}
+    content = {"standard": "S", "title": "T", "source": "s", "entries": [one]}
+    file = tmp_path / "s.yaml"
+    for change, said in (
+        ({}, ""),
+        ({"entries": [one, one]}, "two entries of this name"),
+        ({"titel": "T"}, "did you mean title"),
+        ({"entries": [{**one, "sure": "very"}]}, "s.yaml:"),
+    ):
+        file.write_text(yaml.safe_dump({**content, **change}))
+        if not said:
+            assert read_standard(file).key == "s"
+            continue
+        with pytest.raises(BadInput, match=said):
+            read_standard(file)
+
+
+OTHER = "apa-perpendicular"
+
+
+def tried(*missed: str, name: str = "apa-parallel", unmeasured: tuple[str, ...] = (), error: str = "") -> Tried:
+    return Tried(name, "parked", list(missed), list(unmeasured), error=error)
+
+
+@pytest.mark.parametrize(
+    ("runs", "word", "why"),
+    [
+        ([], "not tested", "not run"),
+        ([tried()], "not tested", "not run"),
+        ([tried(), tried(name=OTHER)], "met", "apa-parallel, apa-perpendicular"),
+        ([tried("fast"), tried(name=OTHER)], "missed", "apa-parallel: fast"),
+        ([tried(error="crashed"), tried(name=OTHER)], "missed", "apa-parallel: crashed"),
+        (
+            [tried(), tried(name=OTHER, unmeasured=("a",))],
+            "not tested",
+            "apa-perpendicular: not measured: a",
+        ),
+        ([tried("fast"), tried(name=OTHER, unmeasured=("a",))], "missed", "apa-parallel: fast"),
+    ],
+)
+def test_verdicts(runs: list[Tried], word: str, why: str) -> None:
+    asked = entry(scenarios=["apa-parallel", "apa-perpendicular"], outcome=["parked"])
+    found = ClauseVerdict(EVERYTHING[0].standard, asked, runs)
+    assert (found.word, found.why) == (word, why)
+    (of_standard,) = suites([found])
+    (case,) = of_standard.cases
+    assert (case.passed, case.skipped) == (word == "met", word == "not tested")
+
+
+def test_what_a_step_test_cannot_ask_of_an_fmu_is_not_tested() -> None:
+    asked = [ClauseVerdict(EVERYTHING[0].standard, entry(step_tests=["dead-sensor"]), []) for _ in range(3)]
+    test = Scenario(name="dead-sensor")
+    note(asked[:1], suite.Tested(test, None, None, [], [], "no such input", code=BAD_INPUT))
+    note(asked[1:2], suite.Tested(test, None, None, [Case("a", False, "late")], []))
+    note(asked[2:], suite.Tested(test, None, None, [Case("a", True, "in time")], []))
+    assert [item.word for item in asked] == ["not tested", "missed", "met"]
+
+
+def test_words_of_the_command() -> None:
+    assert [is_catalogue(word) for word in ("catalogue", "catalogue/gbt*", "catalogue.yaml")] == [True, True, False]
+    assert [item.key for item in chosen_standards(["catalogue/gbt*", "catalogue/gbt41630"])] == ["gbt41630", "gbt47031"]
+    with pytest.raises(BadInput, match="did you mean unr79"):
+        chosen_standards(["catalogue/unr97"])
+
+
+@pytest.mark.parametrize("words", [["catalogue", "guo2015-case4"], ["catalogue", "--coverage"], ["catalogue/nothing"]])
+def test_what_the_command_refuses(words: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["test", *words, "--out", str(tmp_path)]) == 2
+    assert capsys.readouterr().err
+
+
+@compiled
+def test_the_command_says_it_as_text_json_junit_and_page(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    out = tmp_path / "out"
+    words = ["test", "catalogue/gbt47031", "catalogue/euroncap", "--out", str(out)]
+    assert main(words) == 1
+    printed = capsys.readouterr().out
+    assert "gear at the end" in printed
+    assert "apa-parallel: gear P at the end: vehicle.gear: REVERSE" in " ".join(printed.split())
+    root = ElementTree.parse(out / "junit.xml").getroot()
+    assert [suite.get("name") for suite in root] == ["GB/T 47031-2026", "Euro NCAP"]
+    assert root.find(".//testcase[@name='4.2.1: gear at the end']/failure") is not None
+    assert root.find(".//testcase[@name='4.2.1: brake at the end']/system-out") is not None
+    assert root.find(".//testcase[@name='4.1.1: class']/skipped") is not None
+    text = (out / "index.html").read_text(encoding="utf-8")
+    assert '<a href="apa-parallel/report.html">' in text
+    assert (out / "apa-parallel" / "report.html").is_file()
+    assert main(["test", "catalogue/cicap-b2", "--json", "--out", str(out)]) == 0
+    found = json.loads(capsys.readouterr().out)
+    rows = {row["id"]: row for row in found["entries"]}
+    assert rows["somebody crosses"]["verdict"] == "met"
+    assert rows["somebody crosses"]["runs"][0]["name"] == "valet-pedestrian"
+    assert rows["cruising"]["verdict"] == "not tested"
+    assert sum(found["counts"].values()) == len(found["entries"])
+
+
+@compiled
+def test_nothing_missed_is_exit_code_0_and_documentation_says_the_same(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["test", "catalogue/iso20900", "--out", str(tmp_path / "out")]) == 0
+    assert "0 missed" in capsys.readouterr().out
+    bench = Bench(fmu_files("native", lambda text: None), "native", Foreign(), [], Interrupt())
+    for name in ("iso16787", "cicap-b1"):
+        assert markdown(judged([f"catalogue/{name}"], bench, tmp_path / name)) in page()
+
+
+@compiled
+def test_somebody_elses_controller_is_judged_by_what_it_puts_out(tmp_path: Path) -> None:
+    """Our own as a foreign FMU meets what it meets otherwise; one that crashes misses what it is run for."""
+    catalogue = Catalogue(["catalogue/iso16787"])
+    foreign = Foreign({"controller": fmu_files("native", lambda text: None)["controller"]})
+    catalogue.run(
+        [], Bench(fmu_files("native", lambda text: None), "native", foreign, [], Interrupt()), tmp_path, 1, int
+    )
+    assert counts(catalogue.verdicts) == {"met": 5, "missed": 0, "not tested": 1}
+    assert catalogue.code() == 0
+
+
+def test_documentation_is_written_by_the_file_that_it_names() -> None:
+    module = docs()
+    assert module.BETWEEN.search(page()) is not None
+    assert callable(module.text)
+
+
+def test_scenarios_of_the_catalogue_are_what_they_say() -> None:
+    for name in ("apa-not-confirmed", "apa-switched-off", "apa-search-too-fast"):
+        assert load_scenario(name).expect != "parked"

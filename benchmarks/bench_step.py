@@ -76,11 +76,11 @@ def in_process_loop(scenario: Scenario) -> Loop:
     ]
     parameters = np.array([values])
     times = np.array([[scenario.step_ns, STEPS * scenario.step_ns, 1, 1]], dtype=np.int64)
-    out = np.empty((1, 2))
+    faults, out = np.empty((1, 0)), np.empty((1, 2))
 
     def loop() -> float:
         begun = time.perf_counter()
-        rows(parameters, times, out)
+        rows(parameters, times, faults, out)
         return time.perf_counter() - begun
 
     return loop

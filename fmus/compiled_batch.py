@@ -18,13 +18,17 @@ from modelkit.connections import connections, part_of
 from modelkit.model import Model
 from modelkit.variables import variables
 
-How = Literal["last", "largest", "greatest", "smallest", "travel", "first"]
+How = Literal["last", "largest", "greatest", "smallest", "travel", "first", "time"]
 HOW: tuple[How, ...] = get_args(How)
 FIRST_KEPT = 2
 """A row begins with the end (0 stop time, 1 standstill) and its time [ns]."""
 Doubles = NDArray[np.float64]
-Rows = Callable[[Doubles, NDArray[np.int64], Doubles], None]
-"""``rows(parameters, times, out)``: one run for each line of the three arrays; see :func:`compiled_rows`."""
+Rows = Callable[[Doubles, NDArray[np.int64], Doubles, Doubles], None]
+"""``rows(parameters, times, faults, out)``: one run for each line of the arrays; see :func:`compiled_rows`."""
+FAULTS = ("override", "freeze", "drop", "delay", "noise")
+FAULT_NUMBERS = 4
+"""Of each fault of a run: start [ns], stop [ns], amount, seed. The amount is what its kind needs: the value, nothing,
+the probability, the age [ns], the standard deviation."""
 
 
 class When(NamedTuple):
@@ -40,11 +44,22 @@ class Kept(NamedTuple):
 
     how: How
     """``last``; ``largest`` absolute value, signed; ``greatest``; ``smallest``; ``travel``: sum of absolute changes;
-    ``first``."""
+    ``first``; ``time``: of the first instant [s]."""
     signal: str
     """An output, ``vehicle.speed``; or an input as its model saw it."""
     when: When | None = None
     """The instants that count; None: all."""
+
+
+class Disturbed(NamedTuple):
+    """Inputs of one model that a fault disturbs."""
+
+    kind: str
+    """One of ``FAULTS``."""
+    model: int
+    """Its number."""
+    places: tuple[int, ...]
+    """Of its inputs."""
 
 
 class Ending(NamedTuple):
@@ -74,34 +89,42 @@ BatchC = structure(
     final=ctypes.c_uint64,
     still=ctypes.c_double,
     still_ns=Long,
+    faults=Pointer,
+    places=Pointer,
+    fault_count=Long,
 )
+FaultC = structure("FaultC", kind=Long, model=Long, first=Long, count=Long)
 
 
-def compiled_rows(models: Mapping[str, Model], ending: Ending | None, kept: Sequence[Kept]) -> Rows:
+def compiled_rows(
+    models: Mapping[str, Model], ending: Ending | None, kept: Sequence[Kept], faults: Sequence[Disturbed] = ()
+) -> Rows:
     """Return the compiled runs.
 
     ``parameters``: for each run those of all models, one after the other, as doubles. ``times``: step
-    [ns], stop [ns], then the decimation of each model. ``out`` receives the end, its time [ns] and ``kept``.
+    [ns], stop [ns], then the decimation of each model. The ``faults`` of a run: ``FAULT_NUMBERS`` for each of those
+    given here, which act in their order. ``out`` receives the end, its time [ns] and ``kept``.
     Raises ``KeyError`` for a signal that does not exist, ``TypeError`` if connected types differ or a model
     cannot be compiled, ``RuntimeError`` where there is no compiler.
     """
-    tables = _Tables(models, ending, kept)
+    tables = _Tables(models, ending, kept, faults)
     library = ctypes.CDLL(str(batch_library()))
     library.batch_rows.restype = Long
-    library.batch_rows.argtypes = [Pointer, Long, Pointer, Pointer, Pointer]
+    library.batch_rows.argtypes = [Pointer, Long, Pointer, Pointer, Pointer, Pointer]
 
-    def rows(parameters: Doubles, times: NDArray[np.int64], out: Doubles) -> None:
+    def rows(parameters: Doubles, times: NDArray[np.int64], disturbed: Doubles, out: Doubles) -> None:
         """Run all; no lock is held meanwhile."""
         count = len(parameters)
         shapes = (
             (parameters, tables.width, np.float64),
             (times, 2 + len(models), np.int64),
+            (disturbed, FAULT_NUMBERS * len(faults), np.float64),
             (out, FIRST_KEPT + len(kept), np.float64),
         )
         for array, width, kind in shapes:
             if array.shape != (count, width) or array.dtype != kind or not array.flags.c_contiguous:
                 raise ValueError(f"{array.dtype} {array.shape}: expected {count} lines of {width} in C order")
-        pointers = (array.ctypes.data for array in (parameters, times, out))
+        pointers = (array.ctypes.data for array in (parameters, times, disturbed, out))
         if library.batch_rows(tables.address, count, *pointers):
             raise MemoryError
 
@@ -111,7 +134,9 @@ def compiled_rows(models: Mapping[str, Model], ending: Ending | None, kept: Sequ
 class _Tables:
     """The C structures of a batch, and all memory they point to."""
 
-    def __init__(self, models: Mapping[str, Model], ending: Ending | None, kept: Sequence[Kept]) -> None:
+    def __init__(
+        self, models: Mapping[str, Model], ending: Ending | None, kept: Sequence[Kept], faults: Sequence[Disturbed]
+    ) -> None:
         self._held: list[Any] = []
         self._places: dict[str, Any] = {}
         for number, (owner, model) in enumerate(models.items()):
@@ -134,6 +159,9 @@ class _Tables:
             bits(end.final),
             end.still,
             end.time_ns,
+            self._array(FaultC, [_plan(faults, number) for number in range(len(faults))]),
+            self._array(Long, [place for fault in faults for place in fault.places]),
+            len(faults),
         )
         self.address = ctypes.addressof(self._batch)
         self.width = sum(len(variables(model.params)) for model in models.values())
@@ -152,6 +180,12 @@ class _Tables:
         held = (kind * max(len(items), 1))(*items)
         self._held.append(held)
         return ctypes.addressof(held)
+
+
+def _plan(faults: Sequence[Disturbed], number: int) -> Any:
+    first = sum(len(fault.places) for fault in faults[:number])
+    fault = faults[number]
+    return FaultC(FAULTS.index(fault.kind), fault.model, first, len(fault.places))
 
 
 def bits(values: Sequence[int]) -> int:

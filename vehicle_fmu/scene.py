@@ -1,8 +1,8 @@
 """What stands around the car: boxes and kerb lines, and how near the car's outline is to them.
 
-A box may appear and disappear at given times. A kerb lower than the ground clearance stops the
-wheels but passes under the bumpers: clearance to it is measured from the part of the outline
-between the tyres' outer ends.
+A box may appear and disappear at given times, and move straight on between two more. A kerb lower
+than the ground clearance stops the wheels but passes under the bumpers: clearance to it is measured
+from the part of the outline between the tyres' outer ends.
 """
 
 from typing import Annotated, NamedTuple
@@ -28,6 +28,10 @@ class Obstacle(NamedTuple):
     width: Annotated[float, Signal("m", "width", 0.0, 1000.0)] = 0.0
     appear_at: Annotated[float, Signal("s", "there from this time on", 0.0, FOREVER)] = 0.0
     disappear_at: Annotated[float, Signal("s", "gone from this time on; 1e9: never", 0.0, FOREVER)] = FOREVER
+    speed_x: Annotated[float, Signal("m/s", "speed along x while it moves", -50.0, 50.0)] = 0.0
+    speed_y: Annotated[float, Signal("m/s", "speed along y while it moves", -50.0, 50.0)] = 0.0
+    moves_at: Annotated[float, Signal("s", "moves from this time on", 0.0, FOREVER)] = 0.0
+    halts_at: Annotated[float, Signal("s", "stands again from this time on; 1e9: never", 0.0, FOREVER)] = FOREVER
 
 
 class Kerb(NamedTuple):
@@ -56,9 +60,15 @@ def is_there(obstacle: Obstacle, time_ns: int) -> bool:
     return obstacle.length > 0.0 and obstacle.appear_at <= time_ns * 1e-9 < obstacle.disappear_at
 
 
-def obstacle_box(obstacle: Obstacle) -> Box:
-    """Return the obstacle's rectangle."""
-    return Box(obstacle.x, obstacle.y, obstacle.heading, obstacle.length, obstacle.width)
+def obstacle_box(obstacle: Obstacle, time_ns: int) -> Box:
+    """Return the obstacle's rectangle now: it keeps its heading while it moves."""
+    x = obstacle.x
+    y = obstacle.y
+    if obstacle.speed_x != 0.0 or obstacle.speed_y != 0.0:
+        moved = max(0.0, min(time_ns * 1e-9, obstacle.halts_at) - obstacle.moves_at)
+        x = x + obstacle.speed_x * moved
+        y = y + obstacle.speed_y * moved
+    return Box(x, y, obstacle.heading, obstacle.length, obstacle.width)
 
 
 def clearance(pose: Pose, car: Car, scene: SceneParams, time_ns: int) -> float:
@@ -67,7 +77,7 @@ def clearance(pose: Pose, car: Car, scene: SceneParams, time_ns: int) -> float:
     nearest = FAR
     for obstacle in scene.boxes:
         if is_there(obstacle, time_ns):
-            nearest = nearer(nearest, body, obstacle_box(obstacle))
+            nearest = nearer(nearest, body, obstacle_box(obstacle, time_ns))
     low = outline(pose, car.wheelbase, scene.wheel_radius, scene.wheel_radius, car.width)
     for kerb in scene.kerbs:
         if kerb.height > 0.0:

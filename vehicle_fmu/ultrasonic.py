@@ -82,7 +82,7 @@ def heard_distances(
     ahead = Point(math.cos(pose.heading), math.sin(pose.heading))
     for obstacle in scene.boxes:
         if is_there(obstacle, time_ns):
-            distances = _hear(distances, pose, ahead, sensors, obstacle_box(obstacle))
+            distances = _hear(distances, pose, ahead, sensors, obstacle_box(obstacle, time_ns))
     for kerb in scene.kerbs:
         if kerb.height > 0.0 and kerb.height >= kerb_height:
             line = line_box(kerb.x1, kerb.y1, kerb.x2, kerb.y2)

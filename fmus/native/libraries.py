@@ -46,7 +46,7 @@ def master_library() -> Path:
 
 def batch_library() -> Path:
     """Return the path of the compiled runs. Raises ``RuntimeError`` where it cannot be built."""
-    return kept_library("batch", "batch.c", _own("batch.c", "library.h"))
+    return kept_library("batch", "batch.c", _own("batch.c", "faults.h", "library.h"))
 
 
 def python_front(cc: str | None = None) -> bytes | None:

@@ -61,7 +61,8 @@ def live_library(
 
 def live_files(models: Mapping[str, Model]) -> dict[str, str]:
     """Return the C files; those called ``..._unit.c`` are compiled."""
-    files = {name: (C_FILES / name).read_text(encoding="utf-8") for name in ("live.c", "batch.c", "library.h")}
+    own = ("live.c", "batch.c", "faults.h", "library.h")
+    files = {name: (C_FILES / name).read_text(encoding="utf-8") for name in own}
     for model in models.values():
         files |= {
             **model_files(model),

@@ -112,14 +112,29 @@ class Noise(_Window):
 
 def manipulators(faults: list[Fault], master: Master, seed: int, file: object = None) -> list[Manipulator]:
     """Return a manipulator for every receiver of every fault. Raises ``BadInput`` for an unknown signal."""
-    slaves = master.slaves
     made: list[Manipulator] = []
+    for count, slave, places in receivers(faults, master, file):
+        own_seed = seed * SEEDS + len(made)
+        made.append(_make(faults[count], slave, places, master.slaves, own_seed, file, f"faults[{count + 1}]"))
+    return made
+
+
+SEEDS = 1000
+"""Seeds of the manipulators of a run: so many times its own, and their number."""
+
+
+def receivers(faults: list[Fault], master: Master, file: object = None) -> list[tuple[int, int, list[int]]]:
+    """Return (fault, slave, input places) of every receiver of every fault, by their numbers, in their order.
+
+    Raises ``BadInput`` for an unknown signal, or a fault that lacks something.
+    """
+    found = []
     for count, fault in enumerate(faults):
         key = f"faults[{count + 1}]"
         fault.check(file, key)
-        for slave, places in _receivers(fault.signal, master, file, f"{key}.signal"):
-            made.append(_make(fault, slave, places, slaves, seed * 1000 + len(made), file, key))
-    return made
+        heard = _receivers(fault.signal, master, file, f"{key}.signal")
+        found += [(count, slave, places) for slave, places in heard]
+    return found
 
 
 def _make(

@@ -27,9 +27,10 @@ def map_of(scenario: Scenario) -> dict[str, float | int | bool]:
 
 
 def _boxes(vehicle: Mapping[str, float]) -> Iterator[Points]:
-    """Yield the corners of the boxes that neither come nor go."""
+    """Yield the corners of the boxes that neither come nor go nor move."""
     for box in _items(vehicle, "scene.boxes"):
         stays = not box.get("appear_at", 0.0) and box.get("disappear_at", FOREVER) >= FOREVER
+        stays = stays and not box.get("speed_x", 0.0) and not box.get("speed_y", 0.0)
         if stays and box.get("length", 0.0) > 0.0:
             yield box_corners(box)
 

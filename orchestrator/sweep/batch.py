@@ -6,11 +6,12 @@ from typing import Any
 
 import numpy as np
 
-from fmus.compiled_batch import Ending, Kept, Rows, When, compiled_rows
+from fmus.compiled_batch import Disturbed, Ending, Kept, Rows, When, compiled_rows
 from modelkit.model import Model
 from orchestrator.cosim.slave import Array
 from orchestrator.scenario.end_condition import SPEED
 from orchestrator.scenario.scenario import Scenario
+from orchestrator.sweep.disturbed import fault_numbers, heard
 from orchestrator.sweep.job import Chunk, Job, arrays
 from orchestrator.sweep.rows import FIRST_MEASURE
 from orchestrator.verdict.measures import Measure
@@ -19,24 +20,30 @@ _compiling = threading.Lock()
 
 
 def run_batch(job: Job, chunk: Chunk) -> Array:
-    """Return one row of measures per run of ``chunk``. Scenarios with faults cannot be run so."""
-    rows = compiled(tuple(job.measures), Scenario(**job.scenario))
+    """Return one row of measures per run of ``chunk``."""
+    scenario = Scenario(**job.scenario)
+    rows = compiled(tuple(job.measures), scenario)
     parameters, times = arrays(job, chunk)
     out = np.empty((len(parameters), FIRST_MEASURE + len(job.measures)))
-    rows(parameters, times, out)
+    rows(parameters, times, fault_numbers(job, chunk, scenario), out)
     return out
 
 
 def compiled(measures: tuple[Measure, ...], scenario: Scenario) -> Rows:
     """Return the compiled runs of the models of ``scenario``, made once per process."""
     ending, models = scenario.ending, tuple(scenario.models.items())
+    faults = tuple(item.inputs for item in heard(scenario))
     with _compiling:
-        return _compiled(models, measures, ending.signal, ending.final(), SPEED, ending.still, ending.standstill_ns)
+        return _compiled(
+            models, measures, faults, ending.signal, ending.final(), SPEED, ending.still, ending.standstill_ns
+        )
 
 
 @lru_cache
-def _compiled(models: tuple[tuple[str, Model], ...], measures: tuple[Measure, ...], *ending: Any) -> Rows:
-    return compiled_rows(dict(models), Ending(*ending), [_kept(item) for item in measures])
+def _compiled(
+    models: tuple[tuple[str, Model], ...], measures: tuple[Measure, ...], faults: tuple[Disturbed, ...], *ending: Any
+) -> Rows:
+    return compiled_rows(dict(models), Ending(*ending), [_kept(item) for item in measures], faults)
 
 
 def _kept(measure: Measure) -> Kept:

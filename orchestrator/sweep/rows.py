@@ -127,8 +127,6 @@ def recorded_limits(scenario: Scenario) -> list[int]:
 
 def why_not_compiled(scenario: Scenario) -> str:
     """Return why runs of ``scenario`` need a full recording each, an empty string if they do not."""
-    if scenario.faults:
-        return "the scenario has faults"
     places = recorded_limits(scenario)
     return f"the limit {scenario.limits[places[0]].id!r} needs the whole run" if places else ""
 

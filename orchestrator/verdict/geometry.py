@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Mapping, Sequence
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -43,8 +44,12 @@ class CarOutline(NamedTuple):
         return [(0.0, -half), (0.0, half), (self.wheelbase, -half), (self.wheelbase, half)]
 
 
+FRAME, LONGEST = 0.1, 60.0
+"""Between two pictures of a thing that moves, and how long it is followed [s]."""
+
+
 class Box(NamedTuple):
-    """An oriented rectangle: its middle [m], heading [rad] and size [m], and when it is there [s]."""
+    """An oriented rectangle: its middle [m], heading [rad] and size [m], when it is there [s], and how it moves."""
 
     x: float = 0.0
     y: float = 0.0
@@ -53,11 +58,30 @@ class Box(NamedTuple):
     width: float = 0.0
     appear_at: float = 0.0
     disappear_at: float = 1e9
+    speed_x: float = 0.0
+    speed_y: float = 0.0
+    moves_at: float = 0.0
+    halts_at: float = 1e9
 
     def outline(self) -> Array:
         """Return the closed outline in the world, (5, 2) [m]."""
         a, b = 0.5 * self.length, 0.5 * self.width
         return place(np.array([[-a, -b], [a, -b], [a, b], [-a, b], [-a, -b]]), self.x, self.y, self.heading)
+
+    def stills(self) -> "list[Box]":
+        """Return boxes that stand, one after the other, in the place of one that moves: a picture each ``FRAME``."""
+        begin, end = max(self.moves_at, self.appear_at), min(self.halts_at, self.disappear_at, self.moves_at + LONGEST)
+        if (self.speed_x == 0.0 and self.speed_y == 0.0) or end <= begin:
+            return [self]
+        frames = [begin + FRAME * number for number in range(math.ceil((end - begin) / FRAME))]
+        times = [*([self.appear_at] if self.appear_at < begin else []), *frames, end, self.disappear_at]
+        return [self._at(time, until) for time, until in pairwise(times) if time < until]
+
+    def _at(self, time: float, until: float) -> "Box":
+        """Return the box standing where it is at ``time``, there from then on ``until`` [s]."""
+        moved = max(0.0, min(time, self.halts_at) - self.moves_at)
+        x, y = self.x + self.speed_x * moved, self.y + self.speed_y * moved
+        return Box(x, y, self.heading, self.length, self.width, time, until)
 
 
 def place(points: Array, x: float, y: float, heading: float) -> Array:
@@ -87,9 +111,12 @@ class Kerb(NamedTuple):
 
 
 def boxes(parameters: Mapping[str, float]) -> list[Box]:
-    """Return the obstacles among a vehicle's parameters: ``scene.boxes[1].x`` and so on; empty ones left out."""
-    rows = _rows(parameters, "scene.boxes", Box._field_defaults)
-    return [box for box in (Box(*row) for row in rows) if box.length > 0.0 and box.width > 0.0]
+    """Return the obstacles among a vehicle's parameters: ``scene.boxes[1].x`` and so on; empty ones left out.
+
+    One that moves is told as many that stand, each for a short time.
+    """
+    rows = [Box(*row) for row in _rows(parameters, "scene.boxes", Box._field_defaults)]
+    return [still for box in rows if box.length > 0.0 and box.width > 0.0 for still in box.stills()]
 
 
 def kerbs(parameters: Mapping[str, float]) -> list[Kerb]:

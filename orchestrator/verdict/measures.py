@@ -10,7 +10,7 @@ import numpy as np
 from orchestrator.cosim.recording import Recording
 from orchestrator.cosim.slave import Array
 
-How = Literal["last", "largest", "greatest", "smallest", "travel", "first"]
+How = Literal["last", "largest", "greatest", "smallest", "travel", "first", "time"]
 
 
 class When(NamedTuple):
@@ -25,7 +25,7 @@ class Measure(NamedTuple):
 
     how: How
     """``last``; ``largest`` absolute value, with its sign; ``greatest``; ``smallest``; ``travel``: sum of absolute
-    changes; ``first``."""
+    changes; ``first``; ``time``: of the first instant [s], of whatever signal."""
     signal: str
     """``vehicle.speed``: an output, or an input as its model saw it."""
     when: When | None = None
@@ -34,7 +34,7 @@ class Measure(NamedTuple):
 
 def measured(measure: Measure, recording: Recording, missing: float = float("nan")) -> float:
     """Return the measure of a recorded run; ``missing`` if it has no such signal, or no instant."""
-    values = recording.signals.get(measure.signal)
+    values = recording.t if measure.how == "time" else recording.signals.get(measure.signal)
     if values is not None and measure.when is not None:
         values = values[np.isin(recording.signals[measure.when.signal], measure.when.values)]
     return missing if values is None or not len(values) else _of(measure.how, values)
@@ -47,4 +47,12 @@ def _of(how: How, values: Array) -> float:
     if how == "largest":
         size = np.abs(values)
         return float(values[int(np.argmax(np.where(np.isnan(size), np.inf, size)))])
-    return float({"last": values[-1], "first": values[0], "greatest": np.max(values), "smallest": np.min(values)}[how])
+    return float(
+        {
+            "last": values[-1],
+            "first": values[0],
+            "time": values[0],
+            "greatest": np.max(values),
+            "smallest": np.min(values),
+        }[how]
+    )

@@ -33,6 +33,18 @@ def test_an_obstacle_comes_and_goes() -> None:
     assert [deletion.id for deletion in deletions] == ["obstacle_2"]
 
 
+def test_a_thing_that_moves_is_drawn_where_it_is() -> None:
+    """Between 2 and 3 s along x: boxes that stand, one at each time, in the place of it."""
+    walker = Box(1.0, 2.0, 0.0, 0.5, 0.5, appear_at=1.0, disappear_at=9.0, speed_x=1.5, moves_at=2.0, halts_at=3.0)
+    stills = walker.stills()
+    assert len(stills) == 12
+    for t, x in ((1.5, 1.0), (2.05, 1.0), (2.55, 1.75), (3.0, 2.5), (8.0, 2.5)):
+        (there,) = [box for box in stills if box.appear_at <= t < box.disappear_at]
+        assert (there.x, there.y) == pytest.approx((x, 2.0))
+    assert [box for box in stills if box.appear_at <= 0.9 or box.disappear_at > 9.0] == []
+    assert Box(1.0, length=1.0, width=1.0, speed_x=1.0, moves_at=9.0, disappear_at=5.0).stills()[0].x == 1.0
+
+
 def test_the_slot_is_where_the_scenario_says() -> None:
     stage = Surroundings(slot_box(Slot(x=1.0, y=2.0, heading=0.0, length=6.0, width=2.0)), [], [], None)
     slot = next(entity for entity in still_life(0, CAR, stage).entities if entity.id == "slot")

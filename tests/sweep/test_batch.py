@@ -9,6 +9,7 @@ import pytest
 from fmus.compiled_batch import Kept, compiled_rows
 from modelkit.signal import Signal
 from orchestrator.cosim.fmu_files import fmu_files
+from orchestrator.scenario.load_scenario import scenario_names
 from orchestrator.scenario.models import MODELS
 from orchestrator.session.session import run_scenario
 from orchestrator.sweep.batch import run_batch
@@ -116,13 +117,68 @@ def test_limits_with_a_window_are_judged_from_recordings(bind, tmp_path):
         assert_same(job, chunk, rows, number)
 
 
-def test_faults_go_through_the_python_master(bind):
-    scenario, _, job, chunk = bind(scenario="fault-pose-frozen", runs={"grid": {"faults[1].start": [0.5, 3.0]}})
-    assert why_not_compiled(scenario) == "the scenario has faults"
-    rows = run_recorded(job, chunk, "none", None)
-    for number in range(2):
+FAULTS = [
+    {"signal": "vehicle.odometry", "kind": "noise", "sigma": 0.01, "start": 1.0, "stop": 9.0},
+    {"signal": "vehicle.measured_speed", "kind": "drop", "probability": 0.4, "stop": 20.0},
+    {"signal": "controller.steering_wheel_request", "kind": "delay", "delay": 0.25, "start": 2.0},
+    {"signal": "vehicle.odometry", "kind": "freeze", "start": 6.0, "stop": 6.3},
+    {"signal": "controller.prompt", "kind": "override", "value": "STOP", "start": 12.0, "stop": 12.7},
+    {"signal": "vehicle.person.brake", "kind": "override", "value": 0.3, "start": 3.0, "stop": 3.05},
+    {"signal": "controller.steering_active", "kind": "drop", "probability": 0.2},
+]
+VARIED = {
+    "faults[1].sigma": {"uniform": [0.0, 0.03]},
+    "faults[2].probability": {"uniform": [0.0, 1.0]},
+    "faults[3].delay": {"uniform": [0.0, 0.6]},
+    "faults[4].start": {"uniform": [0.0, 10.0]},
+    "faults[4].stop": {"uniform": [10.1, 20.0]},
+    "faults[5].start": {"uniform": [0.0, 12.0]},
+    "every.controller": {"choice": [1, 2, 3]},
+    "every.vehicle": {"choice": [1, 2]},
+}
+
+
+def test_faults_are_the_python_masters(bind, tmp_path, some):
+    """All kinds, of outputs and inputs, of reals, whole numbers and truths, at any time, models due at other times."""
+    (tmp_path / "a.yaml").write_text(f"base: guo2015-case4\nfaults: {json.dumps(FAULTS)}\n")
+    scenario, _, job, chunk = bind(scenario=str(tmp_path / "a.yaml"), runs={"monte_carlo": {"n": 200, **VARIED}})
+    assert why_not_compiled(scenario) == ""
+    rows = run_batch(job, chunk)
+    for number in some(len(rows), 12):
         assert_same(job, chunk, rows, number)
-    assert rows[0, 1] != rows[1, 1]
+    assert len(set(judge(job, truths(job, chunk), rows).reason)) > 2
+    back = np.arange(len(rows))[::-1]
+    np.testing.assert_array_equal(run_batch(job, Chunk(0, 0, chunk.values[back], chunk.seeds[back]))[back], rows)
+
+
+@pytest.mark.parametrize("name", [name for name in scenario_names() if name.startswith("fault-")])
+def test_shipped_faults(bind, name):
+    _, _, job, chunk = bind(scenario=name, runs={"grid": {}})
+    assert_same(job, chunk, run_batch(job, chunk), 0)
+
+
+def test_an_input_may_be_nan(bind, tmp_path):
+    fault = {"signal": "vehicle.ultrasonic[3]", "kind": "override", "value": "nan", "start": 4.0}
+    (tmp_path / "a.yaml").write_text(f"base: apa-parallel\nfaults: {json.dumps([fault])}\n")
+    runs = {"grid": {"faults[1].start": [4.0, 1e6]}}
+    _, _, job, chunk = bind(scenario=str(tmp_path / "a.yaml"), runs=runs)
+    rows = run_batch(job, chunk)
+    assert_same(job, chunk, rows, 0)
+    assert judge(job, truths(job, chunk), rows).reason[0] == "sensor_loss"
+
+
+def test_the_time_of_an_instant(bind):
+    when = When("controller.phase", (3,))
+    measures = [
+        Measure("time", "vehicle.speed", when),
+        Measure("time", "vehicle.speed", When("controller.phase", (60,))),
+    ]
+    _, _, job, chunk = bind()
+    job = job._replace(measures=[*job.measures, *measures])
+    rows = run_batch(job, chunk)
+    assert_same(job, chunk, rows, 3)
+    assert 0.0 < rows[3, -2] < rows[3, 1] / 1e9
+    assert np.isnan(rows[3, -1])
 
 
 def test_a_signal_that_does_not_exist():
@@ -144,10 +200,13 @@ def test_arrays_of_another_shape_are_refused(bind):
     _, _, job, chunk = bind()
     rows = compiled_rows(MODELS, None, [Kept("last", "vehicle.speed")])
     parameters, times = arrays(job, chunk)
+    none = np.empty((192, 0))
     with pytest.raises(ValueError, match="expected 192 lines of 3 in C order"):
-        rows(parameters, times, np.empty((192, 4)))
+        rows(parameters, times, none, np.empty((192, 4)))
     with pytest.raises(ValueError, match="in C order"):
-        rows(np.asfortranarray(parameters), times, np.empty((192, 3)))
+        rows(np.asfortranarray(parameters), times, none, np.empty((192, 3)))
+    with pytest.raises(ValueError, match="expected 192 lines of 0"):
+        rows(parameters, times, np.empty((192, 4)), np.empty((192, 3)))
 
 
 def test_a_study_can_vary_what_is_true_and_what_the_controller_is_told(bind):

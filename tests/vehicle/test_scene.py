@@ -15,6 +15,7 @@ from vehicle_fmu.scene import Kerb, Obstacle, SceneParams, clearance
 from vehicle_fmu.ultrasonic import (
     UltrasonicParams,
     first_readings,
+    heard_distances,
     is_due,
     measure,
 )
@@ -75,6 +76,17 @@ def test_things_appear_and_disappear() -> None:
     scene = SceneParams((walker, *(Obstacle(),) * 15))
     seen = [clearance(Pose(), Car(), scene, int(t * 1e9)) for t in (1.9, 2.0, 2.9, 3.0)]
     assert seen == [FAR, pytest.approx(5.0 - 0.2 - 3.205), pytest.approx(5.0 - 0.2 - 3.205), FAR]
+
+
+def test_things_move_and_are_heard_where_they_are() -> None:
+    """Towards the front bumper at 0.5 m/s from 2 to 4 s: clearance and the middle front sensors see it there."""
+    walker = Obstacle(6.0, 0.0, 0.0, 0.4, 0.8, speed_x=-0.5, moves_at=2.0, halts_at=4.0)
+    scene = SceneParams((walker, *(Obstacle(),) * 15))
+    first = 6.0 - 0.2 - 3.205
+    for t, gap in ((0.0, first), (2.0, first), (3.0, first - 0.5), (4.0, first - 1.0), (9.0, first - 1.0)):
+        assert clearance(Pose(), Car(), scene, int(t * 1e9)) == pytest.approx(gap, abs=1e-9)
+        heard = heard_distances(Pose(), scene, EXACT, 0.08, int(t * 1e9))
+        assert heard[1:3] == pytest.approx((gap, gap), abs=1e-9)
 
 
 def test_readings_are_shapelys_distances_in_the_cone() -> None:

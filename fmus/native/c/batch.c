@@ -1,10 +1,11 @@
 /* Whole runs in one call: models, exchange, ending and the numbers kept of each run.
  *
  * The exchange is that of the Python master, step by step: fetch the outputs of the models that are due, hand
- * them to the inputs of the same name, note what is kept, ask whether the run is over, step what is due. The
+ * them to the inputs of the same name, disturb these, note what is kept, ask whether the run is over, step what is due. The
  * models keep their variables as the structs of their own C; parameters are laid in once per run. Holds no lock and
  * no static data: any number of threads may be in here at once.
  */
+#include "faults.h"
 #include "library.h"
 
 #include <math.h>
@@ -23,7 +24,7 @@ typedef struct {
     int64_t model, place, input;
 } Signal;
 
-typedef enum { LAST, LARGEST, GREATEST, SMALLEST, TRAVEL, FIRST } How;
+typedef enum { LAST, LARGEST, GREATEST, SMALLEST, TRAVEL, FIRST, TIME } How;
 
 typedef struct {
     int64_t how;
@@ -41,6 +42,9 @@ typedef struct {
     uint64_t final; /* bit n: the mode's value n is final; 0: a run ends at its stop time only */
     double still;   /* largest absolute speed that counts as standing */
     int64_t still_ns;
+    const FaultPlan *faults;
+    const int64_t *places; /* inputs that they disturb */
+    int64_t fault_count;
 } Batch;
 
 typedef enum { STOP_TIME, STANDSTILL } End;
@@ -77,6 +81,7 @@ typedef struct {
     Place *kept, *when;
     double *before;       /* the value noted last */
     unsigned char *noted; /* whether there is one */
+    Fault *faults;
     Place mode, speed;
 } Runner;
 
@@ -120,15 +125,22 @@ static void begin_notes(const Runner *runner, double *kept) {
     }
 }
 
+/* Where a run is: at exchange `count`, standing in a final state since [ns], or not (-1). */
+typedef struct {
+    int64_t step_ns, last, count, since;
+} Course;
+
 /* Of the values noted: NaN is the worst there is; once seen, it stays. None noted: NaN. */
-static void note(const Runner *runner, double *kept) {
+static void note(const Runner *runner, const Course *course, double *kept) {
     for (int64_t k = 0; k < runner->batch->kept_count; k++) {
         const Kept *wanted = &runner->batch->kept[k];
         if (wanted->values && !is_in(look(runner->when[k]), wanted->values)) continue;
         const double now = look(runner->kept[k]);
         const int nan = isnan(now) != 0;
         if (!runner->noted[k]) {
-            kept[k] = wanted->how == TRAVEL && !nan ? 0.0 : now;
+            kept[k] = wanted->how == TRAVEL && !nan ? 0.0
+                      : wanted->how == TIME         ? (double)(course->count * course->step_ns) / 1e9
+                                                    : now;
         } else {
             switch ((How)wanted->how) {
             case LAST: kept[k] = now; break;
@@ -136,7 +148,7 @@ static void note(const Runner *runner, double *kept) {
             case GREATEST: if (now > kept[k] || nan) kept[k] = now; break;
             case SMALLEST: if (now < kept[k] || nan) kept[k] = now; break;
             case TRAVEL: kept[k] += fabs(now - runner->before[k]); break;
-            case FIRST: break;
+            case FIRST: case TIME: break;
             }
         }
         runner->before[k] = now;
@@ -148,7 +160,8 @@ static int stands(const Runner *runner) {
     return is_in(look(runner->mode), runner->batch->final) && !(fabs(look(runner->speed)) > runner->batch->still);
 }
 
-static void initialize(const Runner *runner, const double *params) {
+/* faults: the numbers of each. Returns 0, or -1 if there is no memory. */
+static int initialize(const Runner *runner, const double *params, const double *faults, int64_t step_ns) {
     for (int64_t m = 0; m < runner->batch->model_count; m++) {
         Slave *slave = &runner->slaves[m];
         slave->due = 1;
@@ -156,15 +169,13 @@ static void initialize(const Runner *runner, const double *params) {
         params += slave->model->param_count;
         fetch(slave);
     }
+    for (int64_t k = 0; k < runner->batch->fault_count; k++)
+        if (fault_begin(&runner->faults[k], faults + k * FAULT_NUMBERS, step_ns)) return -1;
     hand_over(runner);
+    return 0;
 }
 
-/* Where a run is: at exchange `count`, standing in a final state since [ns], or not (-1). */
-typedef struct {
-    int64_t step_ns, last, count, since;
-} Course;
-
-/* Outputs of the models that are due go to the inputs of the same name. */
+/* Outputs of the models that are due go to the inputs of the same name; what is disturbed is seen otherwise. */
 static void exchange(const Runner *runner, const Course *course) {
     for (int64_t m = 0; m < runner->batch->model_count; m++) {
         Slave *slave = &runner->slaves[m];
@@ -172,6 +183,10 @@ static void exchange(const Runner *runner, const Course *course) {
         if (slave->due) fetch(slave);
     }
     hand_over(runner);
+    for (int64_t k = 0; k < runner->batch->fault_count; k++) {
+        Fault *fault = &runner->faults[k];
+        if (runner->slaves[fault->plan->model].due) fault_apply(fault, course->count * course->step_ns);
+    }
 }
 
 static int is_over(const Runner *runner, Course *course, End *end) {
@@ -190,19 +205,20 @@ static void advance(const Runner *runner, Course *course) {
     course->count++;
 }
 
-/* Fills row: the end, its time [ns], what is kept. */
-static void run(const Runner *runner, const double *params, int64_t step_ns, int64_t last, double *row) {
-    Course course = {step_ns, last, 0, -1};
+/* Fills row: the end, its time [ns], what is kept. Returns 0, or -1 if there is no memory. */
+static int run(const Runner *runner, const double *params, const double *faults, const int64_t *time, double *row) {
+    Course course = {time[0], time[1] / time[0], 0, -1};
     End end = STOP_TIME;
-    initialize(runner, params);
+    if (initialize(runner, params, faults, course.step_ns)) return -1;
     begin_notes(runner, row + 2);
     for (;; advance(runner, &course)) {
         exchange(runner, &course);
-        note(runner, row + 2);
+        note(runner, &course, row + 2);
         if (is_over(runner, &course, &end)) break;
     }
     row[0] = (double)end;
-    row[1] = (double)(course.count * step_ns);
+    row[1] = (double)(course.count * course.step_ns);
+    return 0;
 }
 
 static int follows(const Wire *before, const Wire *next) {
@@ -237,6 +253,15 @@ static void connect(Runner *runner, const int64_t *every) {
         runner->kept[k] = place_of(runner->slaves, batch->kept[k].signal);
         if (batch->kept[k].values) runner->when[k] = place_of(runner->slaves, batch->kept[k].when);
     }
+    for (int64_t k = 0; k < batch->fault_count; k++) {
+        const Fault *fault = &runner->faults[k];
+        for (int64_t i = 0; i < fault->plan->count; i++) {
+            const Signal input = {fault->plan->model, batch->places[fault->plan->first + i], 1};
+            const Place place = place_of(runner->slaves, input);
+            fault->at[i] = (unsigned char *)place.at;
+            fault->kinds[i] = place.kind;
+        }
+    }
     if (batch->final) {
         runner->mode = place_of(runner->slaves, batch->mode);
         runner->speed = place_of(runner->slaves, batch->speed);
@@ -266,24 +291,36 @@ static size_t lay_out(Runner *runner, unsigned char *memory) {
         const Slave slave = {.model = model, .memory = own, .copy = part(memory, &taken, (size_t)model->outputs_size)};
         if (memory) runner->slaves[m] = slave;
     }
+    runner->faults = part(memory, &taken, (size_t)batch->fault_count * sizeof(Fault));
+    for (int64_t k = 0; k < batch->fault_count; k++) {
+        const size_t count = (size_t)batch->faults[k].count;
+        unsigned char **at = part(memory, &taken, count * sizeof(unsigned char *));
+        double *held = part(memory, &taken, count * sizeof(double));
+        uint32_t *kinds = part(memory, &taken, count * sizeof(uint32_t));
+        const Fault fault = {.plan = &batch->faults[k], .at = at, .held = held, .kinds = kinds};
+        if (memory) runner->faults[k] = fault;
+    }
     return taken;
 }
 
 /* times: for each run the step [ns], the stop [ns] and the decimation of each model; params: for each run those of
- * all models; out: 2 + kept_count numbers for each run. Returns 0, or -1 if there is no memory. */
+ * all models; faults: for each run the numbers of each; out: 2 + kept_count numbers for each run. Returns 0, or -1 if
+ * there is no memory. */
 LIBRARY_EXPORT int64_t batch_rows(const Batch *batch, int64_t rows, const double *params, const int64_t *times,
-                                  double *out) {
+                                  const double *faults, double *out) {
     Runner runner = {.batch = batch};
     unsigned char *memory = calloc(1, lay_out(&runner, NULL) + 1);
-    int64_t width = 0;
+    int64_t width = 0, failed = 0;
     if (!memory) return -1;
     lay_out(&runner, memory);
     for (int64_t m = 0; m < batch->model_count; m++) width += batch->models[m]->param_count;
-    for (int64_t r = 0; r < rows; r++) {
+    for (int64_t r = 0; r < rows && !failed; r++) {
         const int64_t *time = times + r * (2 + batch->model_count);
         connect(&runner, time + 2);
-        run(&runner, params + r * width, time[0], time[1] / time[0], out + r * (2 + batch->kept_count));
+        failed = run(&runner, params + r * width, faults + r * batch->fault_count * FAULT_NUMBERS, time,
+                     out + r * (2 + batch->kept_count));
     }
+    for (int64_t k = 0; k < batch->fault_count; k++) free(runner.faults[k].line);
     free(memory);
-    return 0;
+    return failed;
 }

@@ -85,14 +85,14 @@ LIBRARY_EXPORT void live_begin(Live *live, const double *params, const double *t
     for (int64_t m = 0; m < LIVE_COUNT; m++) every[m] = (int64_t)times[2 + m];
     connect(&live->runner, every);
     for (int64_t k = 0; k < live->seen_count; k++) live->places[k] = place_of(live->runner.slaves, live->seen[k]);
-    initialize(&live->runner, params);
+    initialize(&live->runner, params, NULL, live->course.step_ns);
     begin_notes(&live->runner, live->row + 2);
 }
 
 /* One exchange; fills what is seen. Returns whether the run is over. */
 LIBRARY_EXPORT int32_t live_exchange(Live *live, double *seen) {
     exchange(&live->runner, &live->course);
-    note(&live->runner, live->row + 2);
+    note(&live->runner, &live->course, live->row + 2);
     for (int64_t k = 0; k < live->seen_count; k++) seen[k] = look(live->places[k]);
     const int over = is_over(&live->runner, &live->course, &live->end);
     live->row[0] = (double)live->end;

@@ -2,6 +2,7 @@
 
 const AXES = ["x", "y", "heading"];
 const SLOT = [...AXES, "length", "width"];
+const FRAME = 0.1, LONGEST = 60; // s: between two pictures of a thing that moves, and how long it is followed
 
 class Situation {
   constructor(data, models, changes = {}) {
@@ -88,7 +89,10 @@ class Situation {
     return rows;
   }
 
-  get boxes() { return this.rows("scene.boxes", [...SLOT, "appear_at", "disappear_at"]).filter((box) => box.length > 0 && box.width > 0); }
+  get boxes() {
+    return this.rows("scene.boxes", [...SLOT, "appear_at", "disappear_at", "speed_x", "speed_y", "moves_at", "halts_at"])
+      .filter((box) => box.length > 0 && box.width > 0).flatMap(stills);
+  }
 
   get kerbs() { return this.rows("scene.kerbs", ["x1", "y1", "x2", "y2", "height"]).filter((kerb) => kerb.height > 0); }
 
@@ -144,6 +148,19 @@ class Situation {
     for (const [name, value] of Object.entries(this.changes)) parts.push(`${encodeURIComponent(name)}=${value}`);
     return `#${parts.join("&")}`;
   }
+}
+
+// Boxes that stand, one after the other, in the place of one that moves.
+function stills(box) {
+  const begin = Math.max(box.moves_at, box.appear_at), end = Math.min(box.halts_at, box.disappear_at, box.moves_at + LONGEST);
+  if ((box.speed_x === 0 && box.speed_y === 0) || end <= begin) return [box];
+  const times = box.appear_at < begin ? [box.appear_at] : [];
+  for (let i = 0; i < Math.ceil((end - begin) / FRAME); i++) times.push(begin + FRAME * i);
+  times.push(end, box.disappear_at);
+  return times.slice(1).map((until, i) => [times[i], until]).filter(([from, until]) => from < until).map(([from, until]) => {
+    const moved = Math.max(0, Math.min(from, box.halts_at) - box.moves_at);
+    return { ...box, x: box.x + box.speed_x * moved, y: box.y + box.speed_y * moved, appear_at: from, disappear_at: until };
+  });
 }
 
 function truth(owner, name, start) {

@@ -1,0 +1,90 @@
+"""The faults of a study as the compiled batch takes them: which inputs they disturb, and their numbers in each run."""
+
+import json
+from functools import lru_cache
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from fmus.compiled_batch import FAULT_NUMBERS, Disturbed
+from modelkit.variables import Variable
+from orchestrator.cosim.faults import SEEDS, receivers
+from orchestrator.cosim.master import Master
+from orchestrator.cosim.slave import Array
+from orchestrator.scenario.fault import Fault
+from orchestrator.scenario.scenario import Scenario
+from orchestrator.session.session import Messages, make_slaves
+from orchestrator.sweep.job import Chunk, Job
+from orchestrator.system.assemble import assemble
+from orchestrator.text.quantities import NANOSECONDS, number, scalar
+
+NEVER_NS = float(1 << 62)
+LONGEST = 1e9
+"""A stop later than this [s] never comes."""
+
+
+class Heard(NamedTuple):
+    """One receiver of one fault."""
+
+    fault: int
+    """Its number, from 0."""
+    inputs: Disturbed
+    first: Variable
+    """The first of them, by which its numbers are read."""
+
+
+def heard(scenario: Scenario) -> tuple[Heard, ...]:
+    """Return who hears the faults of ``scenario``, in the order in which they act. Raises ``BadInput``."""
+    if not scenario.faults:
+        return ()
+    faults = [item.model_dump(mode="json") for item in scenario.faults]
+    return _heard(json.dumps(faults), tuple(scenario.models.items()), scenario.file)
+
+
+@lru_cache
+def _heard(faults: str, models: Any, file: str) -> tuple[Heard, ...]:
+    given = [Fault(**item) for item in json.loads(faults)]
+    scenario = Scenario(name="faults", faults=given, file=file)
+    slaves = make_slaves(scenario.model_copy(update={"controller": {}}), None, Messages())
+    system = assemble(scenario, slaves)
+    master = Master(system.slaves, 1, 1, {}, system.connections)
+    return tuple(
+        Heard(count, Disturbed(given[count].kind, slave, tuple(places)), slaves[slave].inputs.variables[places[0]])
+        for count, slave, places in receivers(given, master, file)
+    )
+
+
+def fault_numbers(job: Job, chunk: Chunk, scenario: Scenario) -> Array:
+    """Return the numbers of all receivers of all faults in each run of ``chunk``: see ``FAULT_NUMBERS``."""
+    hearers = heard(scenario)
+    found = np.empty((len(chunk.seeds), len(hearers), FAULT_NUMBERS))
+    varied = {(place, name): chunk.values[:, column] for column, (place, name) in _columns(job)}
+    for count, item in enumerate(hearers):
+        fault = scenario.faults[item.fault]
+        start, stop = (varied.get((item.fault, name), getattr(fault, name)) for name in ("start", "stop"))
+        found[:, count, 0] = np.round(np.asarray(start) * NANOSECONDS)
+        found[:, count, 1] = np.where(np.asarray(stop) > LONGEST, NEVER_NS, np.round(np.asarray(stop) * NANOSECONDS))
+        name = AMOUNT[fault.kind]
+        amount = varied.get((item.fault, name), _amount(fault, item.first)) if name else 0.0
+        found[:, count, 2] = np.round(np.asarray(amount) * NANOSECONDS) if fault.kind == "delay" else amount
+        found[:, count, 3] = chunk.seeds * SEEDS + count
+    return np.ascontiguousarray(found.reshape(len(chunk.seeds), -1))
+
+
+AMOUNT = {"override": "value", "freeze": "", "drop": "probability", "delay": "delay", "noise": "sigma"}
+"""Kind -> the number that it needs."""
+
+
+def _columns(job: Job) -> list[tuple[int, tuple[int, str]]]:
+    owners = enumerate(zip(job.owners, job.names, job.places, strict=True))
+    return [(column, (place, name)) for column, (owner, name, place) in owners if owner == "faults"]
+
+
+def _amount(fault: Fault, first: Variable) -> float:
+    if fault.kind == "override":
+        if first.kind is not float:
+            return float(scalar(fault.value, first))
+        return number(fault.value, first.signal.unit, any_value=True)
+    if fault.kind == "noise":
+        return number(fault.sigma, first.signal.unit)
+    return float(getattr(fault, AMOUNT[fault.kind] or "start"))

@@ -78,14 +78,47 @@ def test_fewer_runs_are_the_first_of_more() -> None:
 
 
 def test_a_contact_is_the_end_whatever_is_said_after_it() -> None:
-    touched = {"touched.x": 1.0, "touched.mode": 4.0, "touched.takeover": 0.0, "mode": 6.0, "reason": "none"}
-    assert ends.end_of({**touched, "kind": 0.0, "within GB/T 41630, parallel": True}) == ends.CONTACT
-    assert ends.end_of({**touched, "touched.mode": 2.0}) == ends.DRIVER
-    free = {**touched, "touched.x": math.nan, "kind": 1.0}
-    assert ends.end_of({**free, "within GB/T 41630, perpendicular": True}) == ends.PARKED
-    assert ends.end_of({**free, "within GB/T 41630, perpendicular": False}) == ends.FALSE
-    assert ends.end_of({**free, "mode": 7.0, "reason": "no_slot"}) == ends.FAILED
-    assert ends.end_of({**free, "mode": 4.0}) == ends.ENDLESS
+    row = {"touched.mode": 4.0, "touched.takeover": 0.0, "mode": 6.0, "reason": "none", "kind": 0.0}
+    row["within GB/T 41630, parallel"] = True
+    wall, person = ends.Touched("wall behind", False), ends.Touched("person", True)
+    assert ends.end_of(row, wall) == ends.CONTACT
+    assert ends.end_of({**row, "touched.mode": 2.0}, wall) == ends.DRIVER
+    assert ends.end_of(row, person) == ends.WALKED_INTO
+    assert ends.end_of(row, None) == ends.PARKED
+    assert ends.end_of({**row, "within GB/T 41630, parallel": False}, None) == ends.FALSE
+    assert ends.end_of({**row, "mode": 7.0, "reason": "no_slot"}, None) == ends.FAILED
+    assert ends.end_of({**row, "mode": 4.0}, None) == ends.ENDLESS
+
+
+@pytest.mark.parametrize(
+    ("speed", "walker", "name", "came"),
+    [
+        ((0.0, -1.0), (1.0, 1.07), "person", True),  # into the side of a car that stands or drives
+        ((0.0, -1.0), (3.45, 0.0), "person", False),  # in front of a car that drives
+        ((0.0, 0.0), (1.0, 1.07), "person", False),
+    ],
+)
+def test_who_brought_a_contact_about(speed, walker, name: str, came: bool) -> None:
+    """The car of Guo 2015 at the origin, 0.8 m/s ahead; it is touched at 10 s."""
+    row = {f"vehicle.car.{key}": value for key, value in CAR.items()} | {
+        "step": 0.01,
+        "vehicle.scene.kerbs[1].height": 0.0,
+    }
+    row |= {"touched.x": 0.0, "touched.y": 0.0, "touched.heading": 0.0, "touched.speed": 0.8, "touched.time": 10.0}
+    row |= {f"vehicle.scene.boxes[1].{key}": 3.0 for key in ("x", "y", "length", "width")}
+    box = {
+        "x": walker[0],
+        "y": walker[1] - speed[1] * 5.0,
+        "length": 0.5,
+        "width": 0.5,
+        "moves_at": 5.0,
+        "speed_y": speed[1],
+    }
+    row |= {f"vehicle.scene.boxes[4].{key}": value for key, value in box.items()}
+    assert ends.touched_first(row) == ends.Touched(name, came)
+
+
+CAR = {"wheelbase": 2.405, "front_overhang": 0.8, "rear_overhang": 0.6, "width": 1.65}
 
 
 def test_a_contact_of_the_table_comes_back(tmp_path: Path) -> None:

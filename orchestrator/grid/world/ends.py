@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -15,6 +15,7 @@ from orchestrator.grid.world.scene import THINGS, WHEEL
 from orchestrator.sweep.columns import WITHIN
 from orchestrator.sweep.study.study import Columns, Derived
 from orchestrator.verdict.measures import Measure, When
+from vehicle_fmu.scene import Obstacle, is_there, obstacle_box
 
 TOUCHING = When("vehicle.contact", (1,))
 AXES = ("x", "y", "heading")
@@ -29,9 +30,8 @@ MEASURES = {
     "mode": Measure("last", "controller.apa.mode"),
     "parking_time": Measure("last", "controller.apa.parking_time"),
     **{name: Measure("first", signal, TOUCHING) for name, signal in FIRST.items()},
+    "touched.time": Measure("time", "vehicle.speed", TOUCHING),
 }
-STANDING = 0.01
-"""A car slower than this stands [m/s]."""
 DRIVES = (Mode.AUTO_PARKING_ASSIST, Mode.POSITION_TUNING, Mode.PARKING_FINISH, Mode.FAIL)
 """In these the car is the assist's, unless the driver has taken over."""
 CONTACT, DRIVER, WALKED_INTO = "contact", "contact, driver drives", "walked into"
@@ -44,7 +44,7 @@ ENDS = {
     FAILED: "gave up, nothing touched",
     UNUSED: "the driver was too fast for the assist to begin",
     DRIVER: "touched something while the driver drives",
-    WALKED_INTO: "somebody or something moved into the standing car",
+    WALKED_INTO: "somebody, or a neighbour, moved into the car: it would have touched it standing, too",
 }
 """How a run in the world ends, the worst first."""
 
@@ -54,10 +54,10 @@ def _ends(columns: Columns) -> Mapping[str, Array]:
     rows = [
         dict(zip(columns, row, strict=True)) for row in zip(*(_plain(item) for item in columns.values()), strict=True)
     ]
-    touched = ["" if math.isnan(row["touched.x"]) else touched_first(row) for row in rows]
+    touched = [None if math.isnan(row["touched.x"]) else touched_first(row) for row in rows]
     return {
-        "end": np.array([end_of(row) for row in rows], dtype=object),
-        "touched": np.array(touched, dtype=object),
+        "end": np.array([end_of(row, first) for row, first in zip(rows, touched, strict=True)], dtype=object),
+        "touched": np.array(["" if first is None else first.name for first in touched], dtype=object),
     }
 
 
@@ -65,11 +65,19 @@ def _plain(values: Any) -> list[Any]:
     return list(np.asarray(values).tolist())
 
 
-def end_of(row: Mapping[str, Any]) -> str:
+class Touched(NamedTuple):
+    """What a car has touched first."""
+
+    name: str
+    came: bool
+    """It would have touched the car one exchange before, too: it came, the car did not bring it about."""
+
+
+def end_of(row: Mapping[str, Any], touched: Touched | None) -> str:
     """Return how a run ended, one of ``ENDS``."""
-    if not math.isnan(row["touched.x"]):
+    if touched is not None:
         driven = row["touched.mode"] in DRIVES and not row["touched.takeover"]
-        return CONTACT if driven else DRIVER
+        return WALKED_INTO if touched.came else CONTACT if driven else DRIVER
     if row["mode"] == Mode.FAIL:
         return FAILED if row["reason"] != "none" else ENDLESS
     if row["mode"] != Mode.PARKING_FINISH:
@@ -77,26 +85,53 @@ def end_of(row: Mapping[str, Any]) -> str:
     return PARKED if row[WITHIN.format(GBT[int(row["kind"]) + 1])] else FALSE
 
 
-def touched_first(row: Mapping[str, Any]) -> str:
-    """Return the name of what the car is nearest to when it touches something for the first time."""
+def touched_first(row: Mapping[str, Any]) -> Touched:
+    """Return what the car is nearest to when it touches something for the first time."""
     pose = Pose(*(row[f"touched.{axis}"] for axis in AXES))
-    car = [row[f"vehicle.car.{name}"] for name in ("wheelbase", "front_overhang", "rear_overhang", "width")]
-    body, low = outline(pose, *car), outline(pose, car[0], WHEEL, WHEEL, car[3])
-    gaps = [boxes_gap(body, box) if box.length > 0.0 else math.inf for box in _boxes(row)]
-    kerb = (row[f"vehicle.scene.kerbs[1].{end}"] for end in ("x1", "y1", "x2", "y2"))
-    height = row["vehicle.scene.kerbs[1].height"]
-    part = low if height < GROUND_CLEARANCE else body
-    gaps.append(boxes_gap(part, line_box(*kerb)) if height > 0.0 else math.inf)
-    return THINGS[int(np.argmin(gaps))]
+    things = _things(row)
+    name = min(things, key=lambda name: _gap(row, pose, *things[name]))
+    way = row["touched.speed"] * row["step"]
+    before = Pose(pose.x - way * math.cos(pose.heading), pose.y - way * math.sin(pose.heading), pose.heading)
+    return Touched(name, name in MOVABLE and _is_moving(row, name) and _gap(row, before, *things[name]) <= 0.0)
 
 
+MOVABLE = THINGS[:2] + THINGS[3:4]
 GROUND_CLEARANCE = 0.15
 """Kerbs lower than this [m] pass under the bumpers."""
 
 
-def _boxes(row: Mapping[str, Any]) -> list[Box]:
-    names = ("x", "y", "heading", "length", "width")
-    return [Box(*(row.get(f"vehicle.scene.boxes[{n}].{name}", 0.0) for name in names)) for n in (1, 2, 3)]
+def _things(row: Mapping[str, Any]) -> dict[str, tuple[Box, bool]]:
+    """Return what stands there as the car touches something, and whether it is under the bumpers."""
+    boxes = [Obstacle(**{name: row.get(f"{_box(n)}.{name}", start) for name, start in EMPTY.items()}) for n in BOXES]
+    time_ns = round(row["touched.time"] * 1e9)
+    there = {THINGS[n]: (obstacle_box(box, time_ns), False) for n, box in enumerate(boxes) if is_there(box, time_ns)}
+    height = row["vehicle.scene.kerbs[1].height"]
+    if height > 0.0:
+        ends = (row[f"vehicle.scene.kerbs[1].{end}"] for end in ("x1", "y1", "x2", "y2"))
+        there[THINGS[-1]] = (line_box(*ends), height < GROUND_CLEARANCE)
+    return there
+
+
+BOXES = range(1, len(THINGS))
+EMPTY = Obstacle()._asdict()
+
+
+def _box(number: int) -> str:
+    return f"vehicle.scene.boxes[{number}]"
+
+
+def _is_moving(row: Mapping[str, Any], name: str) -> bool:
+    box = _box(THINGS.index(name) + 1)
+    moves = row[f"{box}.moves_at"] <= row["touched.time"] <= row.get(f"{box}.halts_at", math.inf) + row["step"]
+    return bool(moves and (row.get(f"{box}.speed_x", 0.0) or row[f"{box}.speed_y"]))
+
+
+def _gap(row: Mapping[str, Any], pose: Pose, thing: Box, under: bool) -> float:
+    wheelbase, front, rear, width = (
+        row[f"vehicle.car.{name}"] for name in ("wheelbase", "front_overhang", "rear_overhang", "width")
+    )
+    front, rear = (WHEEL, WHEEL) if under else (front, rear)
+    return boxes_gap(outline(pose, wheelbase, front, rear, width), thing)
 
 
 FOUND = Derived({}, _ends, {"end": "how the run ended in the world", "touched": "what was touched first"})

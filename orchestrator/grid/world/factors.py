@@ -55,5 +55,20 @@ CAR = (
     Factor("deceleration", "m/s2", 1.5, 3.0, 3.0, "the brake reaches"),
     Factor("exchange", "1", 0, 1, 2, "every so often", ("5 ms", "10 ms", "20 ms")),
 )
-FACTORS = (*SLOT, *NEIGHBOURS, *SEARCH, *SENSORS, *CAR)
+EVENTS = (
+    Factor("person", "1", 0, 0, 5, "somebody crosses the road", (*("nobody",) * 4, "into the slot", "out of the slot")),
+    Factor("person_at", "s", 5.0, 60.0, 60.0, "when"),
+    Factor("person_speed", "m/s", 0.5, 0.5, 1.5, "how fast"),
+    Factor("person_place", "1", -0.5, 1.5, 1.5, "where, as a share of the slot's length; outside it between cars"),
+    Factor("mover", "1", 0, 0, 5, "a neighbour who moves, along itself", (*("none",) * 4, "first", "second")),
+    Factor("mover_at", "s", 5.0, 60.0, 60.0, "when"),
+    Factor("mover_way", "m", -1.0, 0.0, 1.0, "how far, positive into a parallel slot, out of a perpendicular row"),
+    Factor("mover_speed", "m/s", 0.2, 0.2, 1.0, "how fast"),
+    Factor("lost", "1", 0, 0, 9, "a sensor fails", (*("none",) * 8, "hears nothing", "says nothing")),
+    Factor("lost_sensor", "1", 0, 0, 11, "which", tuple(map(str, range(1, 13)))),
+    Factor("lost_at", "s", 2.0, 60.0, 60.0, "when"),
+)
+NOBODY, NO_SENSOR = 4, 8
+"""Below these: nobody walks, no neighbour moves; no sensor fails."""
+FACTORS = (*SLOT, *NEIGHBOURS, *SEARCH, *SENSORS, *CAR, *EVENTS)
 STEPS = (0.005, 0.01, 0.02)

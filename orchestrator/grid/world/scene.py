@@ -14,7 +14,7 @@ from controller_fmu.apa.fit import shortest_of_iso
 from modelkit.car import Car
 from orchestrator.cosim.slave import Array
 from orchestrator.grid.cases import BODY, CARS
-from orchestrator.grid.world.factors import STEPS
+from orchestrator.grid.world.factors import NO_SENSOR, NOBODY, STEPS
 from orchestrator.scenario.car import car_parameters
 from orchestrator.sweep.study.space import Seeds
 
@@ -22,8 +22,15 @@ F = Mapping[str, Array]
 KINDS = (1, 2)
 """Numbers of parallel and perpendicular, by the factor's choices."""
 BODIES = (BODY["kinematic"], BODY["double_track"])
-THINGS = ("first neighbour", "second neighbour", "wall behind", "kerb behind")
-"""What stands in the scene: boxes 1 to 3, then kerb 1."""
+THINGS = ("first neighbour", "second neighbour", "wall behind", "person", "kerb behind")
+"""What stands in the scene: boxes 1 to 4, then kerb 1."""
+SENSORS = 12
+NEVER = 1e6
+"""After any run [s]."""
+PERSON = 0.5
+"""Width of a person [m]."""
+FAR_SIDE, NEAR_SIDE = 8.0, 0.6
+"""Where a person sets out who goes towards the slots, and where one is gone who goes between cars: y [m]."""
 BESIDE_PARALLEL = 0.2
 """ISO 16787's parallel slot is so much [m] deeper than the car is wide."""
 WHEEL = 0.3
@@ -49,7 +56,7 @@ def parameters(f: F, seeds: Seeds) -> dict[str, Array]:
     found |= _boxes(neighbours, size["sign"]) | _behind(f, size)
     found |= _standing(f, size, neighbours) | _start(f, size, neighbours)
     found |= _sensors(f, told, seeds) | _motion(f, told)
-    return found
+    return found | _person(f, size) | _mover(f, size) | _lost(f, told)
 
 
 def _chosen(items: list[dict[str, float]], chosen: Array) -> dict[str, Array]:
@@ -203,3 +210,52 @@ def _motion(f: F, told: F) -> dict[str, Array]:
         "vehicle.drive.deceleration_limit": f["deceleration"],
         "step": np.array(STEPS)[f["exchange"].astype(int)],
     }
+
+
+def _person(f: F, size: F) -> dict[str, Array]:
+    """Return somebody who crosses the road straight, into the slot or out of it, or between the cars beside it."""
+    place = f["person_place"]
+    inside = (place > 0.1) & (place < 0.9)
+    far, near = np.full_like(place, FAR_SIDE), np.where(inside, _mouth(f) - size["depth"] - PERSON, NEAR_SIDE)
+    walks, outward = f["person"] >= NOBODY, f["person"] > NOBODY
+    begin, end = np.where(outward, near, far), np.where(outward, far, near)
+    speed = f["person_speed"] * np.sign(end - begin)
+    box = {
+        "x": place * size["slot"],
+        "y": size["sign"] * begin,
+        "length": np.where(walks, PERSON, 0.0),
+        "width": np.full_like(place, PERSON),
+        "appear_at": f["person_at"],
+        "disappear_at": f["person_at"] + (end - begin) / speed,
+        "speed_y": size["sign"] * speed,
+        "moves_at": f["person_at"],
+    }
+    return {f"scene.boxes[4].{name}": values for name, values in box.items()}
+
+
+def _mover(f: F, size: F) -> dict[str, Array]:
+    """Return how a neighbour moves: along the road in a parallel row, across it in a perpendicular one."""
+    found: dict[str, Array] = {}
+    way, speed = f["mover_way"], f["mover_speed"]
+    for number, towards in ((1, 1.0), (2, -1.0)):
+        moves = f["mover"] == NOBODY + number - 1
+        along = np.where(moves, np.sign(way) * speed, 0.0)
+        box = {
+            "speed_x": np.where(size["parallel"], towards * along, 0.0),
+            "speed_y": np.where(size["parallel"], 0.0, size["sign"] * along),
+            "moves_at": f["mover_at"],
+            "halts_at": f["mover_at"] + np.abs(way) / speed,
+        }
+        found |= {f"scene.boxes[{number}].{name}": values for name, values in box.items()}
+    return found
+
+
+def _lost(f: F, told: F) -> dict[str, Array]:
+    """Return what the controller hears of a sensor that fails: nothing in reach, or no number."""
+    value = np.where(f["lost"] == NO_SENSOR, told["car.ultrasonic.max_range"], np.nan)
+    found: dict[str, Array] = {}
+    for number in range(SENSORS):
+        lost = (f["lost"] >= NO_SENSOR) & (f["lost_sensor"] == number)
+        found[f"faults[{number + 1}].start"] = np.where(lost, f["lost_at"], NEVER)
+        found[f"faults[{number + 1}].value"] = np.where(lost, value, 0.0)
+    return found

@@ -1,9 +1,11 @@
 """The parking assist in the world: slots, neighbours, sensors, car, all disturbed at once, and what came of it."""
 
 from collections import Counter
+from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 from rich.table import Table as Printed
 
 from orchestrator.cosim.slave import Array
@@ -11,8 +13,9 @@ from orchestrator.grid.cases import KINDS, gbt_limits
 from orchestrator.grid.parkings import GBT
 from orchestrator.grid.study import GBT_SETS
 from orchestrator.grid.world.ends import CONTACT, ENDLESS, ENDS, FALSE, FOUND, MEASURES
-from orchestrator.grid.world.factors import FACTORS
-from orchestrator.grid.world.scene import F, parameters
+from orchestrator.grid.world.factors import FACTORS, NO_SENSOR, NOBODY
+from orchestrator.grid.world.scene import NEVER, SENSORS, F, parameters
+from orchestrator.scenario.fault import Fault
 from orchestrator.scenario.requirements import Requirement, shipped_requirements
 from orchestrator.scenario.scenario import Scenario, Slot, Target
 from orchestrator.sweep.fields import Field, find_field
@@ -53,6 +56,10 @@ def scenario() -> Scenario:
         stop_time=STOP,
         vehicle={"odometry.perfect": False, "driver.apa_switch_time": 0.5},
         controller={"system": 5},
+        faults=[
+            Fault(signal=f"vehicle.ultrasonic[{number}]", kind="override", value=0.0, start=NEVER)
+            for number in range(1, SENSORS + 1)
+        ],
         target=Target(x=0.0, y=0.0),
         slot=Slot(x=0.0, y=0.0, length=1.0, width=1.0),
         limits=[*_limits("gbt41630"), *shipped_requirements("no-contact")],
@@ -78,9 +85,8 @@ def _stacked(values: F, seeds: Seeds) -> Array:
 
 def report(table: Table, folder: Path) -> int:
     """Print how the runs ended. Returns 1 if one touched something, claims falsely, or has no end."""
-    ends, kinds = table.column("end"), table.column("kind").astype(int)
-    to = console()
-    to.print(_ends(ends, kinds))
+    ends, to = table.column("end"), console()
+    to.print(_ends(ends, _groups(table)))
     for title, column, chosen in (("reasons", "reason", "gave up"), ("touched", "touched", CONTACT)):
         counted = Counter(table.column(column)[ends == chosen].tolist()).most_common()
         to.print(f"{title}: " + (", ".join(f"{word} {count}" for word, count in counted) or "none"), highlight=False)
@@ -92,8 +98,15 @@ def report(table: Table, folder: Path) -> int:
 MOST_ROWS = 20
 
 
-def _ends(ends: Array, kinds: Array) -> Printed:
-    groups = {"all": np.full(len(ends), True), **{KINDS[number + 1]: kinds == number for number in (0, 1)}}
+def _groups(table: Table) -> dict[str, NDArray[np.bool_]]:
+    """Return which runs are told apart."""
+    kinds, events = table.column("kind"), {name: table.column(name) for name in ("person", "mover", "lost")}
+    quiet = (events["person"] < NOBODY) & (events["mover"] < NOBODY) & (events["lost"] < NO_SENSOR)
+    sides = {KINDS[number + 1]: kinds == number for number in (0, 1)}
+    return {"all": np.full(len(kinds), True), **sides, "nothing moves or fails": quiet}
+
+
+def _ends(ends: Array, groups: Mapping[str, NDArray[np.bool_]]) -> Printed:
     table = Printed(box=None, pad_edge=False)
     for name in ("end", *groups):
         table.add_column(name, justify="left" if name == "end" else "right")

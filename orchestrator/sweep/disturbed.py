@@ -23,7 +23,7 @@ LONGEST = 1e9
 """A stop later than this [s] never comes."""
 
 
-class Heard(NamedTuple):
+class Receiver(NamedTuple):
     """One receiver of one fault."""
 
     fault: int
@@ -33,7 +33,7 @@ class Heard(NamedTuple):
     """The first of them, by which its numbers are read."""
 
 
-def heard(scenario: Scenario) -> tuple[Heard, ...]:
+def heard(scenario: Scenario) -> tuple[Receiver, ...]:
     """Return who hears the faults of ``scenario``, in the order in which they act. Raises ``BadInput``."""
     if not scenario.faults:
         return ()
@@ -42,14 +42,14 @@ def heard(scenario: Scenario) -> tuple[Heard, ...]:
 
 
 @lru_cache
-def _heard(faults: str, models: Any, file: str) -> tuple[Heard, ...]:
+def _heard(faults: str, models: Any, file: str) -> tuple[Receiver, ...]:
     given = [Fault(**item) for item in json.loads(faults)]
     scenario = Scenario(name="faults", faults=given, file=file)
     slaves = make_slaves(scenario.model_copy(update={"controller": {}}), None, Messages())
     system = assemble(scenario, slaves)
     master = Master(system.slaves, 1, 1, {}, system.connections)
     return tuple(
-        Heard(count, Disturbed(given[count].kind, slave, tuple(places)), slaves[slave].inputs.variables[places[0]])
+        Receiver(count, Disturbed(given[count].kind, slave, tuple(places)), slaves[slave].inputs.variables[places[0]])
         for count, slave, places in receivers(given, master, file)
     )
 

@@ -13,6 +13,7 @@ import yaml
 
 from fmus.files import write_whole
 from fmus.native.web import web_module
+from orchestrator.drawing import palette
 from orchestrator.live.described import models_data
 from orchestrator.live.situation import numbers_data, situation
 from orchestrator.report import page as report
@@ -70,7 +71,7 @@ def _module() -> str:
 def scripts() -> tuple[str, str]:
     """Return what a worker needs too, and the rest of the page's own scripts."""
     core, own = ("\n".join(_read(name) for name in names) for names in (CORE, OWN))
-    return f'"use strict";\n{core}', own
+    return f'"use strict";\n{core}', palette.script() + own
 
 
 def _read(name: str) -> str:

@@ -6,10 +6,12 @@ import html
 import re
 from pathlib import Path
 
+from orchestrator.drawing import palette
+
 ROOM = Path(__file__).parent
 VIEW = ("data.js", "show.js", "shapes.js", "scene.js", "scene_parts.js", "view.js")
 """What draws the top view, here and on the page that is driven."""
-SCRIPTS = (*VIEW, "timeline.js", "plots.js", "tables.js", "cards.js", "chart.js", "main.js")
+SCRIPTS = (*VIEW, "timeline.js", "curves.js", "plot.js", "chooser.js", "plots.js", "sheet.js", "keep.js", "tables.js", "cards.js", "chart.js", "main.js")
 UPLOT = ROOM / "third_party" / "uplot"
 
 
@@ -32,7 +34,7 @@ def page(title: str, data: str) -> str:
 
 def scripts() -> str:
     """Return the page's own scripts."""
-    return "\n".join(_read(ROOM / "template" / name) for name in SCRIPTS)
+    return palette.script() + "\n".join(_read(ROOM / "template" / name) for name in SCRIPTS)
 
 
 def policy(texts: list[str], more: str = "") -> str:
@@ -71,6 +73,8 @@ def still_page(title: str, body: str, more_style: str = "") -> str:
 def style(more: str = "") -> str:
     """Return the style sheet and ``more``; the dark colours also hold where the system asks for dark."""
     style = _read(ROOM / "template" / "style.css") + more
+    for mark, colours in (("@LIGHTCOLORS@", palette.LIGHT), ("@DARKCOLORS@", palette.DARK)):
+        style = style.replace(mark, palette.css(colours))
     dark = re.search(r':root\[data-theme="dark"\] \{([^}]*)\}', style)
     assert dark is not None
     small = "".join(

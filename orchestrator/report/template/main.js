@@ -7,6 +7,8 @@ class Player {
     this.page = page;
     this.duration = Math.max(...page.runs.map((run) => run.duration));
     this.t = 0;
+    this.shown = 0; // time that is looked at: t, or where the pointer is
+    this.mark = null; // time of the other cursor
     this.speed = 1;
     this.playing = false;
     if ($("chart")) { this.chart = new StateChart(); this.chart.fill(page.charts); }
@@ -14,12 +16,28 @@ class Player {
     this.scene = new Scene(page, $("view"));
     this.timeline = new Timeline(page, seek);
     this.plots = new Plots(page, $("plots"), seek, (t) => this.look(t));
+    this.keeper = new Keeper(this);
+    this.tools();
     for (const item of SPEEDS) $("speed").append(element("option", { value: item }, `${item}\u00d7`));
     this.setSpeed(1);
     $("play").addEventListener("click", () => this.toggle());
     $("home").addEventListener("click", () => this.seek(0));
     $("end").addEventListener("click", () => this.seek(this.duration));
     $("speed").addEventListener("change", (event) => this.setSpeed(Number(event.target.value)));
+  }
+
+  tools() {
+    $("mark").addEventListener("click", () => this.setMark(this.mark === null ? this.t : null));
+    $("time-in").addEventListener("click", () => this.plots.zoom(1.6));
+    $("time-out").addEventListener("click", () => this.plots.zoom(1 / 1.6));
+    $("time-all").addEventListener("click", () => this.plots.whole());
+  }
+
+  // The other cursor: all differences are from there. null: there is none.
+  setMark(t) {
+    this.mark = this.plots.mark = this.scene.mark = t;
+    $("mark").setAttribute("aria-pressed", String(t !== null));
+    this.show();
   }
 
   setSpeed(speed) { this.speed = speed; $("speed").value = String(speed); }
@@ -64,20 +82,28 @@ class Player {
   }
 
   at(t) {
+    this.shown = t;
     this.scene.draw(t);
-    this.timeline.show(t);
-    $("clock").textContent = `${t.toFixed(2)} / ${this.duration.toFixed(2)} s`;
+    this.timeline.show(t, this.mark);
+    $("clock").textContent = `${t.toFixed(2)} / ${this.duration.toFixed(2)} s${this.mark === null ? "" : ` \u0394 ${signed(t - this.mark)} s, ${digits(this.way(t))} m`}`;
     headsUp(this.page, t);
     if (this.chart) this.chart.show(this.page.runs[0], t);
   }
 
+  // How far the first car is from where it was at the other cursor [m].
+  way(t) {
+    const run = this.page.runs[0], [a, b] = [t, this.mark].map((time) => this.scene.poseAt(run, Math.min(time, run.duration)));
+    return Math.hypot(a[0] - b[0], a[1] - b[1]);
+  }
+
   paint() {
     this.timeline.paint();
-    for (const node of document.querySelectorAll(".details .chip i")) node.style.background = stateColor(node.parentNode.dataset.state, Number(node.parentNode.dataset.value));
     this.plots.paint();
     this.show();
   }
 }
+
+const signed = (value) => `${value < 0 ? "\u2212" : "+"}${Math.abs(value).toFixed(2)}`;
 
 function headline(page) {
   document.title = page.title;
@@ -87,13 +113,16 @@ function headline(page) {
   $("verdict").classList.add(page.verdict.kind);
   for (const [key, value] of page.facts) $("facts").append(element("div", {}, element("dt", {}, key), element("dd", {}, value)));
   $("foot").textContent = page.foot;
+  $("plots-said").textContent = page.runs.length > 1 ? "Colours are runs" : "Solid: what is. Dashed: what is asked";
   if (page.live) { $("drive").href = page.live; $("drive").hidden = false; }
 }
 
 function keyboard(player, extra) {
   const keys = {
     " ": () => player.toggle(), ArrowLeft: (event) => player.seek(player.t - (event.shiftKey ? 1 : 0.1)), ArrowRight: (event) => player.seek(player.t + (event.shiftKey ? 1 : 0.1)),
-    Home: () => player.seek(0), End: () => player.seek(player.duration), "+": () => player.faster(1), "=": () => player.faster(1), "-": () => player.faster(-1), ...extra,
+    Home: () => player.seek(0), End: () => player.seek(player.duration), "+": () => player.scene.zoom(1.4), "=": () => player.scene.zoom(1.4), "-": () => player.scene.zoom(1 / 1.4),
+    ">": () => player.faster(1), "<": () => player.faster(-1), ".": () => player.faster(1), ",": () => player.faster(-1),
+    m: () => player.setMark(player.shown), Escape: () => player.setMark(null), z: (event) => player.plots.zoom(event.shiftKey ? 1 / 1.6 : 1.6), ...extra,
   };
   document.addEventListener("keydown", (event) => {
     if (event.ctrlKey || event.metaKey || event.altKey || event.target.closest("input, select, textarea")) return;
@@ -130,7 +159,8 @@ async function start() {
   fillTables(page);
   const player = new Player(page);
   themes(player);
-  keyboard(player, layers(player));
+  const keys = layers(player), fit = keys.f;
+  keyboard(player, { ...keys, f: () => { player.plots.whole(); fit(); } });
   if (!links(player)) player.seek(0);
   player.paint();
   window.replay = player;

@@ -8,6 +8,7 @@ class Scene {
     this.layers = { planned: true, driven: true, trail: true, sensors: true };
     this.turn = -(page.runs[0].scene.turn || 0);
     this.following = false;
+    this.mark = null; // time of the other cursor
     this.onFree = () => {};
     this.fit();
     this.listen();
@@ -137,6 +138,7 @@ class Scene {
       const item = this.page.runs[number];
       drawCar(this, item, number, Math.min(t, item.duration));
     }
+    if (this.mark !== null) this.page.runs.forEach((item, number) => drawMark(this, item, number, Math.min(this.mark, item.duration)));
     drawScale(this);
   }
 

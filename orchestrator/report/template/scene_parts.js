@@ -28,15 +28,7 @@ function drawStill(scene, run, t) {
     g.lineWidth = Math.max(1.5, 0.07 * scene.scale);
     g.stroke();
   }
-  for (const box of still.boxes) {
-    if (t < box.from || t >= box.to) continue;
-    scene.trace(box.corners, true);
-    g.fillStyle = color("box");
-    g.fill();
-    g.strokeStyle = color("box-line");
-    g.lineWidth = 1.5;
-    g.stroke();
-  }
+  for (const box of still.boxes) if (t >= box.from && t < box.to) drawThing(scene, box);
   g.lineWidth = Math.max(2, 0.12 * scene.scale);
   g.strokeStyle = color("kerb");
   for (const kerb of still.kerbs) { scene.trace(kerb); g.stroke(); }
@@ -51,13 +43,56 @@ function drawStill(scene, run, t) {
   }
 }
 
+const PERSON = 1.0, LONG = 50; // no side of a person is longer [m]; what is there for longer is always there [s]
+const CAR = [3, 6.5, 1.4, 2.3]; // from and to which length and width a box is a car [m]
+
+// What a box of the scene looks like: a person comes or goes and is small, a car is as long and wide as one.
+function looks({ corners: [a, b, c], from, to }) {
+  const sides = [Math.hypot(b[0] - a[0], b[1] - a[1]), Math.hypot(c[0] - b[0], c[1] - b[1])], [width, length] = sides.sort((one, two) => one - two);
+  if (length <= PERSON && (from > 0 || to < 1e6)) return "person";
+  return length >= CAR[0] && length <= CAR[1] && width >= CAR[2] && width <= CAR[3] ? "car" : "box";
+}
+
+function drawThing(scene, box) {
+  const g = scene.context, what = looks(box), [a, b, c, d] = box.corners;
+  const at = (u, v) => [0, 1].map((i) => a[i] + u * (b[i] - a[i]) + v * (d[i] - a[i])); // 0 to 1 along and across
+  if (what === "person") { drawPerson(scene, at(0.5, 0.5), Math.atan2(b[1] - a[1], b[0] - a[0]), 0.5 * Math.hypot(c[0] - a[0], c[1] - a[1])); return; }
+  g.fillStyle = color("box");
+  g.strokeStyle = color("box-line");
+  g.lineWidth = 1.5;
+  if (what === "box") scene.trace(box.corners, true); else rounded(scene, box.corners, 0.3);
+  g.fill();
+  if (box.from > 0 || box.to < 1e6) { g.strokeStyle = color("warn"); g.setLineDash([6, 4]); }
+  g.stroke();
+  g.setLineDash([]);
+  if (what !== "car") return;
+  const along = Math.hypot(b[0] - a[0], b[1] - a[1]) >= Math.hypot(d[0] - a[0], d[1] - a[1]), place = (u, v) => (along ? at(u, v) : at(v, u));
+  g.fillStyle = color("box-line");
+  for (const [near, far] of [[0.24, 0.34], [0.82, 0.74]]) { scene.trace([place(near, 0.1), place(near, 0.9), place(far, 0.84), place(far, 0.16)], true); g.fill(); }
+}
+
+// Somebody from above: shoulders, head, and a ring of the room that the box takes.
+function drawPerson(scene, [x, y], heading, radius) {
+  const g = scene.context, [px, py] = scene.pixel(x, y), size = Math.max(5, 0.72 * radius * scene.scale), turn = -(scene.turn + heading);
+  const oval = (long, wide, fill) => { g.beginPath(); g.ellipse(px, py, long, wide, turn, 0, 2 * Math.PI); g.fillStyle = fill; g.fill(); };
+  g.beginPath();
+  g.arc(px, py, Math.max(8, 1.1 * radius * scene.scale), 0, 2 * Math.PI);
+  g.setLineDash([4, 3]);
+  g.lineWidth = 1.5;
+  g.strokeStyle = color("warn");
+  g.stroke();
+  g.setLineDash([]);
+  oval(0.55 * size, size, color("person"));
+  oval(0.45 * size, 0.45 * size, color("skin"));
+}
+
 // The slot that was found, the pose wanted, the path planned.
 function drawPlan(scene, run, plan) {
   if (!plan) return;
   const g = scene.context, car = run.scene.car;
   g.setLineDash([7, 6]);
   g.lineWidth = 2;
-  g.strokeStyle = color("planned");
+  g.strokeStyle = color("asked");
   for (const shape of [plan.slot, plan.target && rectangle(-car.rear, car.front, car.half).map(([u, v]) => moved(plan.target, u, v))])
     if (shape) { scene.trace(shape, true); g.stroke(); }
   scene.trace(Array.from(plan.x, (x, i) => [x, plan.y[i]]));
@@ -81,7 +116,7 @@ function drawPaths(scene, run, number, t) {
   g.lineWidth = 3;
   const name = scene.page.ribbons[0];
   if (scene.page.runs.length > 1 || !name) {
-    g.strokeStyle = color(number ? "run-b" : "run-a");
+    g.strokeStyle = runColor(number);
     scene.trace([...points.slice(0, now + 1), scene.poseAt(run, t)]);
     g.stroke();
     return;
@@ -109,12 +144,14 @@ function drawTrail(scene, run, number, t) {
     }
   }
   g.lineWidth = 1;
-  g.strokeStyle = color(number ? "trail-b" : "trail");
+  g.strokeStyle = number ? runColor(number) : color("trail");
+  g.globalAlpha = number ? 0.18 : 1;
   for (const [time, pose] of run.trail) {
     if (time > t) break;
     scene.trace(rectangle(-car.rear, car.front, car.half).map(([u, v]) => moved(pose, u, v)), true);
     g.stroke();
   }
+  g.globalAlpha = 1;
 }
 
 function drawRays(scene, run, t) {
@@ -158,9 +195,11 @@ function drawCar(scene, run, number, t) {
   if (!Number.isFinite(pose[0] + pose[1] + pose[2])) return;
   const angle = run.at("vehicle.front_wheel_angle", t), [right, left] = wheelAngles(Number.isFinite(angle) ? angle : 0, car);
   body(scene, pose, car);
-  g.fillStyle = color(run.at("vehicle.contact", t) > 0 ? "bad" : number ? "body-b" : "body");
+  g.fillStyle = run.at("vehicle.contact", t) > 0 ? color("bad") : number ? runColor(number) : color("body");
+  g.globalAlpha = number ? 0.25 : 1;
   g.fill();
-  g.strokeStyle = color(number ? "run-b" : "body-line");
+  g.globalAlpha = 1;
+  g.strokeStyle = number ? runColor(number) : color("body-line");
   g.lineWidth = 1.5;
   g.stroke();
   const side = car.half - 0.12;
@@ -182,18 +221,30 @@ function drawCar(scene, run, number, t) {
   const [px, py] = scene.pixel(pose[0], pose[1]);
   g.beginPath();
   g.arc(px, py, (car.front + car.rear) * scene.scale < 16 ? 6 : 3, 0, 2 * Math.PI);
-  g.fillStyle = color(number ? "run-b" : "run-a");
+  g.fillStyle = runColor(number);
   g.fill();
 }
 
 // The body with rounded corners as the current path.
-function body(scene, pose, car) {
-  const g = scene.context, r = 0.28 * scene.scale;
-  const corners = rectangle(-car.rear, car.front, car.half).map(([u, v]) => scene.pixel(...moved(pose, u, v)));
+function body(scene, pose, car) { rounded(scene, rectangle(-car.rear, car.front, car.half).map(([u, v]) => moved(pose, u, v)), 0.28); }
+
+function rounded(scene, shape, radius) {
+  const g = scene.context, r = radius * scene.scale, corners = shape.map(([x, y]) => scene.pixel(x, y));
   g.beginPath();
   g.moveTo((corners[3][0] + corners[0][0]) / 2, (corners[3][1] + corners[0][1]) / 2);
   corners.forEach((corner, i) => g.arcTo(...corner, ...corners[(i + 1) % 4], r));
   g.closePath();
+}
+
+// The car where it was at the other cursor: its outline alone.
+function drawMark(scene, run, number, t) {
+  const g = scene.context;
+  body(scene, scene.poseAt(run, t), run.scene.car);
+  g.setLineDash([3, 3]);
+  g.lineWidth = 2;
+  g.strokeStyle = number ? runColor(number) : color("ink");
+  g.stroke();
+  g.setLineDash([]);
 }
 
 function drawScale(scene) {

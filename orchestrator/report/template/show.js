@@ -1,5 +1,6 @@
 // Small things everything else uses: elements, colours, numbers as people read them.
 
+/** @returns {any} */
 const $ = (id) => document.getElementById(id);
 
 // An element with text; text never becomes markup.
@@ -42,11 +43,15 @@ function quantity(value, unit) {
 
 const words = (name) => name.toLowerCase().replaceAll("_", " ").replace(/\bq(\d)/g, "Q$1");
 
-// Names of states -> colour; the same name has the same colour everywhere on the page.
-const NAMED = { STANDBY: "idle", OFF: "idle", NONE: "idle", PARK: "idle", NEUTRAL: "idle", PARKED: "good", PARKING_FINISH: "good", FAILED: "bad", FAIL: "bad",
-  TAKEOVER: "warn", TAKE_OVER: "warn", STOP: "stop", SLOW_DOWN: "warn", FORWARD: "s1", DRIVE: "s1", REVERSE: "s0", PATH_TRACKING: "s0", PRE_STEER: "s6", STRAIGHTEN: "s4",
-  TO_Q2: "s1", TO_Q1: "s2", TO_Q4: "s3", TO_Q3: "s5" };
-
+// Colour of a state of the chart: NAMED (palette.py), else the hue of its value. Other modes have no hue, but what is good or urgent.
 function stateColor(name, value) {
   return color(NAMED[name] || `s${((Math.round(value) % 8) + 8) % 8}`);
 }
+
+const SAID = ["good", "bad", "warn", "stop", "idle"];
+
+function modeColor(name, value) {
+  return color(SAID.includes(NAMED[name]) ? NAMED[name] : `m${Math.abs(Math.round(value)) % 2 || 0}`);
+}
+
+const runColor = (number) => color(`run-${"abcdef"[number % 6]}`);

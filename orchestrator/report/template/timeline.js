@@ -9,10 +9,12 @@ class Timeline {
     this.duration = Math.max(...page.runs.map((run) => run.duration)) || 1;
     this.box.setAttribute("aria-valuemax", this.duration.toFixed(2));
     this.lines = element("div", { class: "lanes" });
-    for (const name of page.ribbons)
-      page.runs.forEach((run, number) => { if (run.signals[name]) this.lines.append(this.lane(run, name, number)); });
+    this.unnamed = new Set(); // states of short pieces, which have no room for their names
+    this.rows = page.ribbons.flatMap((name) => page.runs.flatMap((run, number) => (run.signals[name] ? [{ run, name, number }] : [])));
+    for (const { run, name, number } of this.rows) this.lines.append(this.lane(run, name, number));
     this.head = element("div", { class: "head" });
-    this.field = element("div", { class: "field" }, this.head);
+    this.other = element("div", { class: "head other", hidden: true });
+    this.field = element("div", { class: "field" }, this.other, this.head);
     this.lines.append(this.axis(), this.field);
     this.box.append(this.lines);
     this.legend();
@@ -26,21 +28,42 @@ class Timeline {
     for (const name of ["pointerup", "pointercancel"]) this.box.addEventListener(name, () => { held = false; });
   }
 
-  lane(run, name, number) {
+  label(run, name) {
     const short = name.split(".").pop().replaceAll("_", " ");
-    const label = this.page.runs.length > 1 ? `${short} ${run.label}` : short;
+    return this.page.runs.length > 1 ? `${short} ${run.label}` : short;
+  }
+
+  // The chart has hues on a page of one run; where colours are runs, states have names alone.
+  color(name, number, state, value) {
+    if (this.page.runs.length > 1) return runColor(number);
+    return name === this.page.ribbons[0] ? stateColor(state, value) : modeColor(state, value);
+  }
+
+  spans(run, name) {
+    const all = run.spans(name);
+    return all.length > MOST_SPANS ? all.filter((span) => span.to - span.from > this.duration / 2000) : all;
+  }
+
+  // All ribbons as sheet.js draws them.
+  lanes() {
+    return this.rows.map(({ run, name, number }) => ({
+      label: this.label(run, name), duration: this.duration,
+      spans: this.spans(run, name).map((span) => { const state = run.stateName(name, span.value); return { ...span, words: words(state), color: this.color(name, number, state, span.value) }; }),
+    }));
+  }
+
+  lane(run, name, number) {
     const track = element("div", { class: "track" });
-    let spans = run.spans(name);
-    if (spans.length > MOST_SPANS) spans = spans.filter((span) => span.to - span.from > this.duration / 2000);
-    for (const span of spans) {
-      const state = run.stateName(name, span.value), width = (span.to - span.from) / this.duration;
+    for (const span of this.spans(run, name)) {
+      const state = run.stateName(name, span.value), width = (span.to - span.from) / this.duration, fits = width > 0.012 * words(state).length + 0.012;
+      if (!fits && this.page.ribbons[0] !== name) this.unnamed.add(`${this.label(run, name)}: ${words(state)}`);
       track.append(element("span", {
         class: "span", title: `${words(state)}, ${span.from.toFixed(2)} to ${span.to.toFixed(2)} s`,
-        "data-state": state, "data-value": span.value,
+        "data-signal": name, "data-run": number, "data-state": state, "data-value": span.value,
         style: { left: `${100 * span.from / this.duration}%`, width: `${100 * width}%` },
-      }, width > 0.012 * words(state).length + 0.012 ? words(state) : ""));
+      }, fits ? words(state) : ""));
     }
-    return element("div", { class: number ? "lane second" : "lane", "data-signal": name }, element("span", { class: "label", title: name }, label), track);
+    return element("div", { class: number ? "lane second" : "lane", "data-signal": name }, element("span", { class: "label", title: name }, this.label(run, name)), track);
   }
 
   axis() {
@@ -60,21 +83,29 @@ class Timeline {
       for (const span of run.spans(name)) {
         const state = run.stateName(name, span.value);
         if (this.chips.has(state)) continue;
-        const chip = element("span", { class: "chip", "data-state": state, "data-value": span.value }, element("i"), words(state));
+        const chip = element("span", { class: "chip", "data-state": state, "data-value": span.value }, this.page.runs.length > 1 ? null : element("i"), words(state));
         this.chips.set(state, chip);
         box.append(chip);
       }
     }
+    if (this.page.runs.length > 1) box.replaceChildren(...this.page.runs.map((run, number) => element("span", { class: "chip" }, element("i", { "data-run": number }), run.about || run.label)));
+    if (this.unnamed.size) box.append(element("span", { class: "unnamed" }, `short pieces are ${[...this.unnamed].join(", ")}`));
   }
 
   paint() {
-    for (const node of document.querySelectorAll(".span, .chip i")) {
-      const owner = node.matches("i") ? node.parentNode : node;
-      node.style.background = stateColor(owner.dataset.state, Number(owner.dataset.value));
+    for (const node of this.lines.querySelectorAll(".span")) {
+      const { signal, run, state, value } = node.dataset;
+      node.style.background = this.color(signal, Number(run), state, Number(value));
+    }
+    for (const node of document.querySelectorAll(".chip i")) {
+      const { state, value } = node.parentNode.dataset;
+      node.style.background = state === undefined ? runColor(Number(node.dataset.run)) : stateColor(state, Number(value));
     }
   }
 
-  show(t) {
+  show(t, mark = null) {
+    this.other.hidden = mark === null;
+    if (mark !== null) this.other.style.left = `${100 * Math.min(1, mark / this.duration)}%`;
     this.head.style.left = `${100 * Math.min(1, t / this.duration)}%`;
     this.box.setAttribute("aria-valuenow", t.toFixed(2));
     const run = this.page.runs[0], name = this.page.ribbons[0];

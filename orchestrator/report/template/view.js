@@ -9,15 +9,17 @@ function headsUp(page, t) {
   const key = `${page.ribbons} ${[...page.ribbons, "controller.phase", "controller.prompt", "vehicle.gear"].map((name) => run.at(name, at))} ${Math.round(speed * 36)} ${Math.round(wheel * 57.3)} ${color("ink")}`;
   if (box.dataset.key === key) return;
   box.dataset.key = key;
+  const main = run.stateName("controller.phase", run.at("controller.phase", at));
   const outer = page.ribbons.filter((name) => /\.(mode|stage)$/.test(name));
   for (const name of [...outer, "controller.phase", "controller.prompt", "vehicle.gear"])
     if (run.signals[name]) lines.push([outer.includes(name) ? "phase" : name.split(".")[1], run.stateName(name, run.at(name, at)), run.at(name, at)]);
   const cells = lines.filter(([kind, state]) => !(kind === "prompt" && state === "NONE")).map(([kind, state, value]) => {
     const chip = element("span", { class: `tag ${kind}` }, kind === "prompt" ? `driver: ${words(state)}` : words(state));
-    if (kind === "phase") chip.style.background = stateColor(state, value);
+    if (kind === "phase" && page.runs.length < 2) chip.style.background = main === state ? stateColor(state, value) : modeColor(state, value);
     return chip;
   });
   cells.push(element("span", { class: "tag plain" }, `${digits(Math.round(speed * 36) / 10)} km/h`), element("span", { class: "tag plain" }, `wheel ${digits(Math.round(wheel * 180 / Math.PI))}\u00b0`));
+  if (page.runs.length > 1) cells.unshift(element("span", { class: "tag run" }, `${run.label}:`));
   box.replaceChildren(...cells);
 }
 

@@ -132,14 +132,15 @@ def show(browser):
     contexts = []
 
     def opened(
-        path: Path, fragment: str = "", width: int = 1280, height: int = 900, **options: Any
+        path: Path, fragment: str = "", width: int = 1280, height: int = 900, is_scripted: bool = True, **options: Any
     ) -> tuple[Any, Seen]:
         context = browser.new_context(viewport={"width": width, "height": height}, **options)
         contexts.append(context)
         page = context.new_page()
         seen = Seen(page)
         page.goto(path.as_uri() + fragment)
-        page.wait_for_selector("html[data-ready]", timeout=20_000)
+        if is_scripted:
+            page.wait_for_selector("html[data-ready]", timeout=20_000)
         return page, seen
 
     yield opened

@@ -4,6 +4,8 @@ import argparse
 import sys
 from pathlib import Path
 
+from rich.markup import escape
+
 from orchestrator.comparison.compare import Comparison, compare
 from orchestrator.comparison.tolerance import Tolerance, read_tolerances
 from orchestrator.log.read_log import log_file, read_log
@@ -17,6 +19,7 @@ from orchestrator.text.quantities import number
 EXAMPLES = """examples:
   apa compare reference/run.mcap runs/guo2015-case4/run.mcap
   apa compare A.mcap B.mcap --abs 0.01 --rel 0.02 --time "100 ms" --html overlay.html
+  apa compare A.mcap B.mcap C.mcap --html overlay.html    all on one page, B and C each judged by A
   apa compare A.mcap B.mcap --signals "vehicle.pose.*" --tolerances tolerances.yaml --json
 
 A value of B may differ from A by max(ABS, REL * |A|), at any moment of A within TIME.
@@ -33,6 +36,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add what the command takes."""
     parser.add_argument("a", type=log_file, metavar="A.mcap", help="the reference: a log, or the folder of a run")
     parser.add_argument("b", type=log_file, metavar="B.mcap", help="the run to judge")
+    parser.add_argument("more", type=log_file, nargs="*", metavar="MORE.mcap", help="further runs, each judged by A")
     parser.add_argument("--abs", default="1e-9", metavar="NUMBER", help="absolute tolerance in SI units (1e-9)")
     parser.add_argument("--rel", default="1e-9", metavar="NUMBER", help="tolerance relative to A (1e-9)")
     parser.add_argument("--time", default="0", metavar="SECONDS", help="tolerance along time (0)")
@@ -53,18 +57,23 @@ def run(arguments: argparse.Namespace) -> int:
     for key, bound in zip(("abs", "rel", "time"), bounds, strict=True):
         if not bound >= 0.0:
             raise BadInput(f"{bound:g} is not 0 or more", key=f"--{key}")
-    runs = read_log(arguments.a), read_log(arguments.b)
+    logs = [arguments.a, arguments.b, *arguments.more]
+    runs = [read_log(log) for log in logs]
     tolerances = read_tolerances(arguments.tolerances, Tolerance(*bounds))
-    found = compare(*runs, tolerances, arguments.signals)
+    found = [compare(runs[0], run, tolerances, arguments.signals) for run in runs[1:]]
     if arguments.html:
-        write_overlay(arguments.html, runs, (read_messages(arguments.a), read_messages(arguments.b)), found)
+        write_overlay(arguments.html, runs, [read_messages(log) for log in logs], found)
     if arguments.json:
-        print(found.model_dump_json(indent=2))
+        texts = [item.model_dump_json(indent=2) for item in found]
+        print(texts[0] if len(texts) == 1 else f"[{', '.join(texts)}]")
     else:
-        _print(found)
+        for log, item in zip(logs[1:], found, strict=True):
+            if len(found) > 1:
+                console().print(f"[bold]{escape(str(log))}[/]")
+            _print(item)
         if arguments.html:
             print(arguments.html, file=sys.stderr)
-    return SAME if found.passed else DIFFERENT
+    return SAME if all(item.passed for item in found) else DIFFERENT
 
 
 def _print(found: Comparison) -> None:

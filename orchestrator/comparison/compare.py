@@ -32,6 +32,9 @@ class Difference(BaseModel):
     """Tolerance in value at that moment [unit]."""
     time_tolerance: float
     """Half-width of the tube [s]."""
+    absolute: float
+    """Tolerance in value [unit], and as a share of A: the larger one counts."""
+    relative: float
     first: float | None
     """First moment outside the tube [s]; None if there is none."""
     note: str = ""
@@ -127,6 +130,8 @@ def _judged(name: str, unit: str, tolerance: Tolerance, first: Trace, second: Tr
         t_largest=float(found.t[worst]),
         allowed=float(found.allowed[worst]) if math.isfinite(found.allowed[worst]) else 0.0,
         time_tolerance=tolerance.time,
+        absolute=tolerance.absolute,
+        relative=tolerance.relative,
         first=float(found.t[outside.argmax()]) if outside.any() else None,
         note="" if math.isfinite(largest) else "not a number",
     )
@@ -156,6 +161,8 @@ def _row(name: str, unit: str, tolerance: Tolerance, note: str) -> Difference:
         "unit": unit,
         "allowed": tolerance.absolute,
         "time_tolerance": tolerance.time,
+        "absolute": tolerance.absolute,
+        "relative": tolerance.relative,
         "note": note,
     }
     return Difference.model_validate({**known, "passed": False, "largest": None, "t_largest": None, "first": None})

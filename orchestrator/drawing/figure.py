@@ -8,10 +8,12 @@ from typing import Any
 import matplotlib as mpl
 import numpy as np
 from matplotlib.figure import Figure
-from matplotlib.patches import Patch, Polygon
+from matplotlib.patches import Circle, Ellipse, Patch, Polygon
 
 from orchestrator.cosim.recording import Recording
 from orchestrator.cosim.slave import Array
+from orchestrator.drawing.looks import CAR, PERSON, looks
+from orchestrator.drawing.palette import LIGHT, role
 from orchestrator.drawing.save import save
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.text.quantities import DEGREE
@@ -30,36 +32,9 @@ from orchestrator.verdict.geometry import (
 )
 from orchestrator.verdict.summary import Summary, phase_changes
 
-BLUE, RUST, GREEN, GREY, INK = "#2563a8", "#c2571a", "#2f8f5b", "#8a8f98", "#22262c"
-PHASE_COLOURS = {
-    "STANDBY": "#c9cdd3",
-    "PRE_STEER": "#f2c14e",
-    "PATH_TRACKING": "#2563a8",
-    "STOP": "#b23a48",
-    "TO_Q2": "#6a4c93",
-    "TO_Q1": "#8d7bc4",
-    "TO_Q4": "#3a7d8c",
-    "TO_Q3": "#6fb1bd",
-    "STRAIGHTEN": "#e08e45",
-    "PARKED": "#2f8f5b",
-    "FAILED": "#7a1f2b",
-    "TAKEOVER": "#444a52",
-    "READY_AWAY": "#1b2a49",
-    "READY_TURNED": "#2563a8",
-    "READY_FAR": "#6fa8dc",
-    "READY_NEAR": "#b7d3ef",
-    "SLOT_AWAY": "#5a2d0c",
-    "SLOT_TURNED": "#b5541c",
-    "SLOT_FAR": "#e08e45",
-    "SLOT_NEAR": "#f2c89b",
-    "SHUFFLE_AWAY": "#123d24",
-    "SHUFFLE_TURNED": "#2f8f5b",
-    "SHUFFLE_FAR": "#7cc49a",
-    "SHUFFLE_NEAR": "#c3e6d0",
-}
+BLUE, ASKED, GREEN, GREY, INK = LIGHT["run-a"], LIGHT["asked"], LIGHT["good"], "#8a8f98", "#22262c"
 RIBBONS = ("controller.hsic.characteristic", "controller.preview.stage", "controller.phase")
 """What the ribbon shows: the first of these that changes during the run."""
-SPARE_COLOURS = ("#4f7cac", "#9c6644", "#5c946e", "#a65e9c", "#787f3e", "#b56576")
 STYLE: Any = {
     "font.size": 9.0,
     "axes.edgecolor": GREY,
@@ -101,7 +76,7 @@ def overview(recording: Recording, summary: Summary, scenario: Scenario) -> Figu
             axis.set_xlim(recording.t[0], recording.t[-1])
             for row, _, _ in phase_changes(recording):
                 axis.axvline(recording.t[row], color="#d5d9df", linewidth=0.8, zorder=0)
-        names: list[str] = []
+        names: dict[str, str] = {}
         for column, axis in enumerate(panels):
             names = _ribbon(figure.add_subplot(grid[3, column], sharex=axis), recording)
         _legend(figure.add_subplot(grid[1, :]), names)
@@ -132,9 +107,9 @@ def _speed(axis: Any, recording: Recording) -> None:
     wheel.grid(False)
     wheel.spines["right"].set_visible(True)
     request = _signal(recording, "controller.steering_wheel_request") / DEGREE
-    wheel.plot(t, request, color=RUST, linewidth=0.8, alpha=0.55, linestyle=(0, (3, 2)), label="request")
-    wheel.plot(t, _signal(recording, "vehicle.steering_wheel_angle") / DEGREE, color=RUST, linewidth=1.5, label="angle")
-    wheel.set_ylabel("steering wheel [deg]", color=RUST)
+    wheel.plot(t, request, color=ASKED, linewidth=0.8, linestyle=(0, (3, 2)), label="request")
+    wheel.plot(t, _signal(recording, "vehicle.steering_wheel_angle") / DEGREE, color=INK, linewidth=1.2, label="angle")
+    wheel.set_ylabel("steering wheel [deg]", color=INK)
     wheel.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), fontsize=8, ncols=2, borderaxespad=0.0)
 
 
@@ -142,13 +117,13 @@ def _position(axis: Any, recording: Recording) -> None:
     t = recording.t
     far = max(abs(_signal(recording, f"vehicle.pose.{name}")[0]) for name in ("x", "y")) > FAR
     axis.set_title("(b) position")
-    for name, colour in (("x", BLUE), ("y", RUST)):
+    for name, colour in (("x", BLUE), ("y", INK)):
         driven = _signal(recording, f"vehicle.pose.{name}")
         origin = driven[0] if far else 0.0
         reference = _used(recording, f"controller.reference.{name}") - origin
-        axis.plot(t, reference, color=colour, linewidth=0.8, alpha=0.6, linestyle=(0, (3, 2)))
+        axis.plot(t, reference, color=ASKED, linewidth=0.8, linestyle=(0, (3, 2)))
         axis.plot(t, driven - origin, color=colour, linewidth=1.5, label=name)
-    axis.plot([], [], color=GREY, linewidth=0.8, linestyle=(0, (3, 2)), label="reference")
+    axis.plot([], [], color=ASKED, linewidth=0.8, linestyle=(0, (3, 2)), label="reference")
     axis.set_ylabel("way from start [m]" if far else "position [m]")
     axis.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), fontsize=8, ncols=3, borderaxespad=0.0)
 
@@ -160,8 +135,8 @@ def _heading(axis: Any, recording: Recording) -> None:
     reference = _used(recording, "controller.reference.heading")
     turns = np.round((driven - reference) / (2.0 * np.pi))
     reference = (reference + turns * 2.0 * np.pi) / DEGREE
-    axis.plot(t, reference, color=GREEN, linewidth=0.8, alpha=0.7, linestyle=(0, (3, 2)), label="reference")
-    axis.plot(t, driven / DEGREE, color=GREEN, linewidth=1.5, label="heading")
+    axis.plot(t, reference, color=ASKED, linewidth=0.8, linestyle=(0, (3, 2)), label="reference")
+    axis.plot(t, driven / DEGREE, color=BLUE, linewidth=1.5, label="heading")
     axis.set_ylabel("heading [deg]")
     axis.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), fontsize=8, ncols=2, borderaxespad=0.0)
 
@@ -175,8 +150,8 @@ def _used(recording: Recording, name: str) -> Array:
     return np.where(given, _signal(recording, name), np.nan)
 
 
-def _ribbon(axis: Any, recording: Recording) -> list[str]:
-    """Draw the states of the chart over time and return those that occurred."""
+def _ribbon(axis: Any, recording: Recording) -> dict[str, str]:
+    """Draw the states of the chart over time; return those that occurred with their colours."""
     axis.set_yticks([])
     axis.grid(False)
     axis.spines["left"].set_visible(False)
@@ -186,23 +161,19 @@ def _ribbon(axis: Any, recording: Recording) -> list[str]:
     states = recording.states(shown)
     phases = _signal(recording, shown)
     edges = [0, *(int(row) + 1 for row in np.flatnonzero(np.diff(phases))), len(t) - 1]
-    names: dict[str, None] = {}
+    names: dict[str, str] = {}
     for first, last in pairwise(edges):
         value = phases[first]
         name = states.get(int(value), f"{value:g}") if math.isfinite(value) else "unknown"
-        names[name] = None
-        axis.axvspan(t[first], t[last], color=_colour(name), linewidth=0)
+        names[name] = LIGHT[role(name, value if math.isfinite(value) else 0.0)]
+        axis.axvspan(t[first], t[last], color=names[name], linewidth=0)
     axis.set_ylim(0.0, 1.0)
-    return list(names)
+    return names
 
 
-def _colour(name: str) -> str:
-    return PHASE_COLOURS.get(name) or SPARE_COLOURS[sum(map(ord, name)) % len(SPARE_COLOURS)]
-
-
-def _legend(axis: Any, names: list[str]) -> None:
+def _legend(axis: Any, names: dict[str, str]) -> None:
     axis.axis("off")
-    handles = [Patch(color=_colour(name), label=name.lower().replace("_", " ")) for name in names]
+    handles = [Patch(color=colour, label=name.lower().replace("_", " ")) for name, colour in names.items()]
     axis.legend(
         handles=handles,
         title="states of the chart",
@@ -224,9 +195,7 @@ def _plan(axis: Any, recording: Recording, scenario: Scenario) -> None:
     vehicle = described(scenario, recording.parameters_of("vehicle"))
     car = CarOutline.of(vehicle)
     for box in boxes(vehicle):
-        passing = box.appear_at > 0.0 or box.disappear_at < recording.t[-1]
-        face, hatch = ("#f3d9c9", "///") if passing else ("#c4c8ce", None)
-        axis.add_patch(Polygon(box.outline(), facecolor=face, hatch=hatch, edgecolor=GREY, linewidth=1.0))
+        _thing(axis, box)
     for corners in scenario.polygons:
         axis.add_patch(Polygon(corners, facecolor="#c4c8ce", edgecolor=GREY, linewidth=1.0))
     for kerb in kerbs(vehicle):
@@ -238,12 +207,34 @@ def _plan(axis: Any, recording: Recording, scenario: Scenario) -> None:
         axis.plot(*at_target.T, color=GREEN, linewidth=1.4, linestyle=(0, (4, 2)), label="target")
     planned = _planned(recording)
     if len(planned):
-        axis.plot(*planned.T, color=RUST, linewidth=1.6, linestyle=(0, (5, 2)), label="planned path", zorder=4)
+        axis.plot(*planned.T, color=ASKED, linewidth=1.6, linestyle=(0, (5, 2)), label="planned path", zorder=4)
     x, y, heading = (_signal(recording, f"vehicle.pose.{name}") for name in ("x", "y", "heading"))
     _outlines(axis, car, x, y, heading)
     axis.plot(x, y, color=BLUE, linewidth=1.8, label="driven path", zorder=5)
     _wheels(axis, recording, car, (x[-1], y[-1], heading[-1]))
     axis.legend(loc="upper left", fontsize=8)
+
+
+def _thing(axis: Any, box: Box) -> None:
+    """Draw what is in the way: somebody, a car, or a plain box; hatched if it comes or goes."""
+    what, passing = looks(box), box.comes_or_goes
+    style: Any = {"edgecolor": LIGHT["warn"] if passing else GREY, "linewidth": 1.0}
+    if what == PERSON:
+        axis.add_patch(
+            Circle((box.x, box.y), 0.55 * math.hypot(box.length, box.width), fill=False, linestyle=":", **style)
+        )
+        axis.add_patch(
+            Ellipse((box.x, box.y), 0.4 * box.length, 0.9 * box.width, angle=box.heading / DEGREE, color=INK)
+        )
+        axis.add_patch(Circle((box.x, box.y), 0.18 * box.width, facecolor="#f2c9a1", linewidth=0, zorder=3))
+        return
+    axis.add_patch(Polygon(box.outline(), facecolor="#c4c8ce", hatch="///" if passing else None, **style))
+    if what == CAR:
+        for near, far in ((-0.26, -0.16), (0.32, 0.24)):
+            glass = np.array([[near, -0.4], [near, 0.4], [far, 0.34], [far, -0.34]])
+            turned = glass if box.length >= box.width else glass[:, ::-1]
+            corners = place(turned * np.array([box.length, box.width]), box.x, box.y, box.heading)
+            axis.add_patch(Polygon(corners, facecolor=GREY, linewidth=0))
 
 
 def _slot(axis: Any, box: Box) -> None:

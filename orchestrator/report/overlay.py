@@ -1,11 +1,13 @@
-"""The page of two runs on top of each other: both cars, all curves, the verdict on every signal."""
+"""The page of runs on top of each other: all cars, all curves, the verdict on every signal."""
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 from fmus.files import write_whole
 from orchestrator.comparison.compare import Comparison, Difference
 from orchestrator.cosim.recording import Recording
+from orchestrator.drawing.palette import RUNS
 from orchestrator.report.messages import Line
 from orchestrator.report.page import page
 from orchestrator.report.payload import Arrays
@@ -13,16 +15,24 @@ from orchestrator.report.plots import plots_of
 from orchestrator.report.replay import KEYS, LARGEST_PAGE, MOST_ROWS
 from orchestrator.report.run_data import ribbons_of, run_data
 from orchestrator.report.still import origin_of
+from orchestrator.text.errors import BadInput
 from orchestrator.text.readable import readable
 
+LABELS = "ABCDEF"
+MOST_NAMED = 3
 MOST_PLOTS = 4
 """Curves that differ and are shown at once beside the usual ones."""
 
 
 def write_overlay(
-    path: Path, runs: tuple[Recording, Recording], words: tuple[list[Line], list[Line]], found: Comparison
+    path: Path, runs: Sequence[Recording], words: Sequence[list[Line]], found: Sequence[Comparison]
 ) -> None:
-    """Write the page to ``path``; fewer instants are kept if it would pass 1 MB."""
+    """Write the page of runs to ``path``, ``found`` compares each but the first with the first.
+
+    Fewer instants are kept if it would pass 1 MB. Raises ``BadInput`` for more runs than there are colours.
+    """
+    if len(runs) > len(RUNS):
+        raise BadInput(f"{len(runs)} runs on one page; there is room for {len(RUNS)}")
     text = ""
     for most in MOST_ROWS:
         text = _page(runs, words, found, most)
@@ -31,55 +41,87 @@ def write_overlay(
     write_whole(path, text)
 
 
-def _page(runs: tuple[Recording, Recording], words: tuple[list[Line], list[Line]], found: Comparison, most: int) -> str:
+def _page(runs: Sequence[Recording], words: Sequence[list[Line]], found: Sequence[Comparison], most: int) -> str:
     arrays = Arrays()
-    keep = [t for row in found.signals for t in (row.first, row.t_largest) if t is not None][:60]
+    keep = [t for item in found for row in item.signals for t in (row.first, row.t_largest) if t is not None][:60]
     origin = origin_of(runs[0])
     data = [
         run_data(run, arrays, lines, label=label, most=most, keep=keep, origin=origin)
-        for run, lines, label in zip(runs, words, "AB", strict=True)
+        for run, lines, label in zip(runs, words, LABELS, strict=False)
     ]
-    for run in data:
+    names = [found[0].a, *(item.b for item in found)]
+    titles = [
+        f"{label}: {_title(run, name)}{_with(change)}"
+        for label, run, name, change in zip(LABELS, runs, names, [None, *found], strict=False)
+    ]
+    for run, title in zip(data, titles, strict=True):
         run["checks"] = []
-    missed = [row for row in found.signals if not row.passed]
+        run["about"] = title
+    title = " and ".join(dict.fromkeys(names))
+    missed = list(dict.fromkeys(row.signal for item in found for row in item.signals if not row.passed))
     header = {
-        "title": f"{found.a} and {found.b}" if found.a != found.b else found.a,
-        "subtitle": f"A: {_title(runs[0], found.a)} \u00b7 B: {_title(runs[1], found.b)}",
+        "title": title,
+        "name": "-".join(dict.fromkeys(names)),
+        "subtitle": " \u00b7 ".join(titles),
         "verdict": {
-            "text": f"{len(missed)} of {found.compared} differ" if missed else "the same within tolerance",
+            "text": f"{len(missed)} of {max(item.compared for item in found)} differ"
+            if missed
+            else "the same within tolerance",
             "kind": "bad" if missed else "good",
         },
-        "facts": _facts(found),
-        "plots": plots_of(list(runs), [], [row.signal for row in missed][:MOST_PLOTS]),
+        "facts": _facts(found, len(missed)),
+        "plots": plots_of(list(runs), [], missed[:MOST_PLOTS]),
         "ribbons": ribbons_of(list(runs), 2),
-        "differences": [_row(row) for row in found.signals],
-        "changes": [_change(item.name, item.unit, item.a, item.b) for item in found.parameters],
+        "differences": [
+            _row(row, label if len(found) > 1 else "")
+            for item, label in zip(found, LABELS[1:], strict=False)
+            for row in item.signals
+        ],
+        "changes": _changes(found),
         "runs": data,
-        "foot": f"A solid, B dashed. {KEYS}",
+        "foot": f"The colour is the run; the band around A is the tolerance it was judged by. {KEYS}",
     }
-    return page(f"{found.a} and {found.b}", arrays.pack(header))
+    return page(title, arrays.pack(header))
 
 
 def _title(run: Recording, name: str) -> str:
     return str(run.info.get("scenario", {}).get("title") or name)
 
 
-def _facts(found: Comparison) -> list[list[str]]:
-    firsts = [row.first for row in found.signals if row.first is not None]
+def _with(found: Comparison | None) -> str:
+    """Return what sets a run apart from the first, if it is little."""
+    changes = found.parameters if found is not None else []
+    known = [f"{item.name} = {readable(item.b, item.unit)}" for item in changes if item.b is not None]
+    return f" with {', '.join(known)}" if 0 < len(known) <= MOST_NAMED else ""
+
+
+def _facts(found: Sequence[Comparison], missed: int) -> list[list[str]]:
+    firsts = [row.first for item in found for row in item.signals if row.first is not None]
     return [
-        ["Signals", str(found.compared)],
-        ["Differ", str(found.differing)],
+        ["Signals", str(max(item.compared for item in found))],
+        ["Differ", str(missed)],
         ["First beyond", f"{min(firsts):.2f} s" if firsts else "never"],
-        ["Parameters changed", str(len(found.parameters))],
-        ["Only in A / B", f"{len(found.only_in_a)} / {len(found.only_in_b)}"],
+        ["Parameters changed", str(len(_changes(found)))],
+        *(
+            [f"Only in A / {label}", f"{len(item.only_in_a)} / {len(item.only_in_b)}"]
+            for item, label in zip(found, LABELS[1:], strict=False)
+        ),
     ]
 
 
-def _row(row: Difference) -> dict[str, Any]:
+def _row(row: Difference, label: str) -> dict[str, Any]:
     tube = f" within {row.time_tolerance:g} s" if row.time_tolerance > 0.0 else ""
     small = f"{row.allowed:.1e} {row.unit}" if 0.0 < row.allowed < 1e-3 else readable(row.allowed, row.unit)
-    return {**row.model_dump(), "tolerance_text": f"\u00b1 {small}{tube}"}
+    return {**row.model_dump(), "label": label, "tolerance_text": f"\u00b1 {small}{tube}"}
 
 
-def _change(name: str, unit: str, a: float | None, b: float | None) -> list[str]:
-    return [name, *("\u2013" if value is None else readable(value, unit) for value in (a, b))]
+def _changes(found: Sequence[Comparison]) -> list[list[str]]:
+    """Return the parameters that differ anywhere: name, then the value in each run."""
+    units = {change.name: change.unit for item in found for change in item.parameters}
+    rows = []
+    for name, unit in units.items():
+        changes = [next((one for one in item.parameters if one.name == name), None) for item in found]
+        first = next(change.a for change in changes if change is not None)
+        values = [first, *(first if change is None else change.b for change in changes)]
+        rows.append([name, *("\u2013" if value is None else readable(value, unit) for value in values)])
+    return rows

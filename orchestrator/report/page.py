@@ -11,7 +11,8 @@ from orchestrator.drawing import palette
 ROOM = Path(__file__).parent
 VIEW = ("data.js", "show.js", "shapes.js", "scene.js", "scene_parts.js", "view.js")
 """What draws the top view, here and on the page that is driven."""
-SCRIPTS = (*VIEW, "timeline.js", "curves.js", "plot.js", "chooser.js", "plots.js", "sheet.js", "keep.js", "tables.js", "cards.js", "chart.js", "main.js")
+CURVES = ("timeline.js", "curves.js", "plot.js", "chooser.js", "plots.js", "sheet.js", "keep.js")
+SCRIPTS = (*VIEW, *CURVES, "tables.js", "cards.js", "chart.js", "main.js")
 UPLOT = ROOM / "third_party" / "uplot"
 
 

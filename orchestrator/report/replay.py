@@ -23,8 +23,9 @@ from orchestrator.verdict.summary import Final, Summary
 MOST_ROWS = (2400, 1200, 600)
 LARGEST_PAGE = 1_000_000
 KEYS = (
-    "Keys: space plays, arrows step 0.1 s (1 s with shift), Home, End, + and - change speed, F fits, C follows. "
-    "Click a plot to go there, drag to zoom, double-click to reset. Ctrl and wheel zoom the top view."
+    "Keys: space plays, arrows step 0.1 s (shift: 1 s), Home, End, < and > change speed, + and - zoom the top view, "
+    "Z (with shift) zooms the time, M sets a second cursor, F shows everything, C follows. "
+    "Click a plot to go there, drag to zoom, double-click for all. Ctrl and wheel zoom the top view."
 )
 KINDS = {"parked": "good", "finished": "good", "not_parked": "warn", "not_finished": "warn", "failed": "bad"}
 
@@ -60,6 +61,7 @@ def _page(recording: Recording, summary: Summary, words: list[Line], most: int, 
     run["checks"] = check_rows(summary.checks)
     header = {
         "title": title,
+        "name": summary.scenario,
         "subtitle": " \u00b7 ".join(str(item) for item in (summary.scenario, about) if item),
         "verdict": verdict(summary),
         "facts": facts(summary),
@@ -85,18 +87,22 @@ def facts(summary: Summary) -> list[list[str]]:
         *why,
         *(["Note", note] for note in summary.notes),
         ["Duration", f"{summary.duration:.2f} s"],
-        ["Manoeuvres", "not counted" if summary.shifts is None else str(summary.shifts)],
+        ["Shifts", "not counted" if summary.shifts is None else str(summary.shifts)],
         ["Fastest", f"{summary.max_speed * 3.6:.1f} km/h"],
-        *_standing(summary.final),
+        *_standing(summary.final, {check.signal for check in summary.checks}),
     ]
 
 
-def _standing(final: Final) -> Iterator[list[str]]:
-    """Yield how the car stands, as far as the scenario says where it should."""
+def _standing(final: Final, judged: set[str]) -> Iterator[list[str]]:
+    """Yield how the car stands, as far as the scenario says where it should.
+
+    What no check judges is said to be free.
+    """
     if math.isfinite(final.lateral_error):
-        yield ["Lateral", length(final.lateral_error)]
-        yield ["Longitudinal", length(final.longitudinal_error)]
-        yield ["Heading", f"{final.heading_error / DEGREE:+.2f}\u00b0"]
+        free = "" if "final.longitudinal_error" in judged else " (free to choose)"
+        yield ["From the target: across", length(final.lateral_error)]
+        yield [f"along{free}", length(final.longitudinal_error)]
+        yield ["turned", f"{final.heading_error / DEGREE:+.2f}\u00b0"]
     if math.isfinite(final.slot_margin):
         yield ["Inside the slot by", length(final.slot_margin)]
 

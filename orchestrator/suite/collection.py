@@ -18,10 +18,10 @@ from orchestrator.verdict.geometry import CarOutline, described, place, slot_box
 
 BODY = """<header class="top"><div class="headline"><h1>{title}</h1></div>
 <span class="verdict {kind}">{verdict}</span></header>
-<dl class="card about">{facts}</dl>
-<main class="runs">
+<main><dl class="card about">{facts}</dl>
+<div class="runs">
 {cards}
-</main>
+</div></main>
 """
 CARD = """<article class="card run {kind}">
 <a href="{link}" class="picture" aria-label="Replay of {name}">{picture}</a>
@@ -98,4 +98,4 @@ def _svg(shapes: list[tuple[str, Array]]) -> str:
         py = HEIGHT / 2 - (points[:, 1] - middle[1]) * scale
         text = " ".join(f"{a:.1f},{b:.1f}" for a, b in zip(px, py, strict=True) if math.isfinite(a + b))
         lines.append(f'<polyline class="{kind}" points="{text}"/>')
-    return f'<svg viewBox="0 0 {WIDTH:g} {HEIGHT:g}" role="img">{"".join(lines)}</svg>'
+    return f'<svg viewBox="0 0 {WIDTH:g} {HEIGHT:g}" aria-hidden="true">{"".join(lines)}</svg>'

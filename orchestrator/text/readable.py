@@ -25,7 +25,7 @@ def precise(value: float, unit: str) -> str:
 
 def shifts_text(shifts: int | None) -> str:
     """Return a number of manoeuvres in words."""
-    return "shifts not counted" if shifts is None else f"{shifts} shifts"
+    return "shifts not counted" if shifts is None else f"{shifts} shift{'' if shifts == 1 else 's'}"
 
 
 def changes_text(changed: Mapping[str, str]) -> str:

@@ -46,6 +46,8 @@ class CarOutline(NamedTuple):
 
 FRAME, LONGEST = 0.1, 60.0
 """Between two pictures of a thing that moves, and how long it is followed [s]."""
+ALWAYS = 1e6
+"""What goes later than this [s] stays."""
 
 
 class Box(NamedTuple):
@@ -62,6 +64,12 @@ class Box(NamedTuple):
     speed_y: float = 0.0
     moves_at: float = 0.0
     halts_at: float = 1e9
+
+    @property
+    def comes_or_goes(self) -> bool:
+        """Whether it is there for a part of the run only, or moves."""
+        moves = self.speed_x != 0.0 or self.speed_y != 0.0
+        return moves or self.appear_at > 0.0 or self.disappear_at < ALWAYS
 
     def outline(self) -> Array:
         """Return the closed outline in the world, (5, 2) [m]."""

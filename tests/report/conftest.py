@@ -36,5 +36,15 @@ def overlay(case4, tmp_path_factory) -> Path:
     scenario = load_scenario("guo2015-case4", ["controller.guo2015.k4=3"])
     runs = (case4[0], run_scenario(scenario).recording)
     path: Path = tmp_path_factory.mktemp("overlay") / "overlay.html"
-    write_overlay(path, runs, ([], []), compare(*runs, Tolerances(Tolerance(0.01, 0.0, 0.1))))
+    write_overlay(path, runs, ([], []), [compare(*runs, Tolerances(Tolerance(0.01, 0.0, 0.1)))])
+    return path
+
+
+@pytest.fixture(scope="session")
+def three(case4, tmp_path_factory) -> Path:
+    """The page of three runs, each with another gain."""
+    others = [run_scenario(load_scenario("guo2015-case4", [f"controller.guo2015.k4={k4}"])).recording for k4 in (2, 3)]
+    runs = [case4[0], *others]
+    path: Path = tmp_path_factory.mktemp("three") / "overlay.html"
+    write_overlay(path, runs, ([], [], []), [compare(runs[0], run, Tolerances(Tolerance(0.01))) for run in others])
     return path

@@ -1,15 +1,35 @@
-"""Both pages against WCAG 2.2 AA, light and dark, by axe."""
+"""All pages against WCAG 2.2 AA: light, dark, and with the few colours that somebody forces on a page."""
 
 from pathlib import Path
 
 import pytest
 
+from orchestrator.cli import main
 from orchestrator.live.page import live_page
 from orchestrator.scenario.load_scenario import load_scenario
 
-RULES = ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "wcag22aa"]
+RULES = ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "wcag22aa", "best-practice"]
 RUN = """async (rules) => (await axe.run({ runOnly: rules })).violations
   .map((found) => [found.id, found.nodes.map((node) => [node.target.join(" "), (node.any[0] || {}).message])])"""
+OPEN = """() => { for (const node of document.querySelectorAll("details")) node.open = true;
+  const more = document.querySelectorAll("tbody tr:nth-child(n+9), .signals li:nth-child(n+9)");
+  for (const node of more) node.remove(); }"""
+"""Rows further down are of the same kind."""
+LOOKS = {
+    "light": {"color_scheme": "light"},
+    "dark": {"color_scheme": "dark"},
+    "forced": {"color_scheme": "dark", "forced_colors": "active"},
+}
+STUDY = """
+name: trial
+title: Two systems, three speeds
+scenario: guo2015-case4
+runs:
+  grid:
+    controller.system: [ntbpt, ntbptcwpt]
+    "vehicle.driver.profile[1].speed": [0.6, 1.2, 1.8]
+    car.steering.rate_limit: [570 deg/s, 1995 deg/s]
+"""
 
 
 @pytest.fixture(scope="module")
@@ -19,24 +39,54 @@ def axe():
     return file.read_text(encoding="utf-8")
 
 
+@pytest.fixture(scope="module")
+def study(tmp_path_factory):
+    path = tmp_path_factory.mktemp("study")
+    (path / "trial.yaml").write_text(STUDY)
+    assert main(["sweep", str(path / "trial.yaml"), "--out", str(path), "--replays", "0"]) == 0
+    return path / "trial.html"
+
+
+@pytest.fixture(scope="module")
+def index(tmp_path_factory):
+    path = tmp_path_factory.mktemp("suite")
+    main(["test", "guo2015-case4", "guo2015-case2", "--out", str(path)])
+    return path / "index.html"
+
+
 def wrong(page, axe):
     page.evaluate(axe)
     return page.evaluate(RUN, RULES)
 
 
-@pytest.mark.parametrize("scheme", ["light", "dark"])
-def test_replay_page(scheme, show, replay, axe):
-    page, _ = show(replay, color_scheme=scheme, bypass_csp=True)
+@pytest.mark.parametrize("look", LOOKS)
+@pytest.mark.parametrize("which", ["replay", "overlay", "study", "index"])
+def test_pages(which, look, show, axe, request):
+    scripted = which in ("replay", "overlay")
+    page, _ = show(request.getfixturevalue(which), bypass_csp=True, is_scripted=scripted, **LOOKS[look])
+    if scripted:
+        page.evaluate("() => { window.replay.setMark(1); window.replay.plots.chooser.open(null); }")
+    page.evaluate(OPEN)
     assert wrong(page, axe) == []
 
 
-@pytest.mark.parametrize("scheme", ["light", "dark"])
-def test_every_panel_of_the_page_that_is_driven(scheme, show, axe, tmp_path):
+@pytest.mark.parametrize("look", LOOKS)
+def test_every_panel_of_the_page_that_is_driven(look, show, axe, tmp_path):
     path = tmp_path / "live.html"
     path.write_text(live_page([load_scenario("guo2015-case4-105")]), encoding="utf-8")
-    page, _ = show(path, color_scheme=scheme, bypass_csp=True)
+    page, _ = show(path, bypass_csp=True, **LOOKS[look])
     page.evaluate("() => { const { drive } = window.live; while (!drive.isOver) drive.go(); }")
     page.wait_for_timeout(100)
     for tab in ("whatif", "map", "chart", "result", "share"):
         page.click(f"#{tab}-tab")
         assert wrong(page, axe) == [], tab
+
+
+def test_ribbons_and_legend_keep_their_colours_where_colours_are_forced(show, replay):
+    page, _ = show(replay, forced_colors="active")
+    shown = "(selector) => getComputedStyle(document.querySelector(selector)).backgroundColor"
+    chips = page.evaluate(
+        "() => [...document.querySelectorAll('#legend .chip i')].map((node) => getComputedStyle(node).backgroundColor)"
+    )
+    assert len(set(chips)) == len(chips) > 5
+    assert page.evaluate(shown, ".span[data-state=PATH_TRACKING]") in chips

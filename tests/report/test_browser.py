@@ -1,6 +1,15 @@
 """The replay page in a real browser: it renders, plays, obeys the keyboard, asks nothing of any network."""
 
+import csv
+import re
+
 import pytest
+from matplotlib.image import imread
+
+from orchestrator.report.replay import replay_page
+from orchestrator.scenario.load_scenario import load_scenario
+from orchestrator.session.session import run_scenario
+from orchestrator.verdict.summary import summarize
 
 CLOCK = "window.replay.t"
 
@@ -12,6 +21,12 @@ def until(page, condition: str) -> None:
             return
         page.wait_for_timeout(25)
     raise AssertionError(f"never true: {condition}")
+
+
+def pick(page, name: str) -> None:
+    """Choose a signal from the list."""
+    page.fill(".chooser input", name)
+    page.locator(".signals button", has=page.get_by_text(name, exact=True)).click()
 
 
 def shades(page) -> int:
@@ -59,10 +74,10 @@ def test_keyboard(show, replay):
     assert page.evaluate(CLOCK) == pytest.approx(1.1)
     page.keyboard.press("ArrowLeft")
     assert page.evaluate(CLOCK) == pytest.approx(1.0)
-    page.keyboard.press("+")
+    page.keyboard.press(">")
     assert page.input_value("#speed") == "2"
-    page.keyboard.press("-")
-    page.keyboard.press("-")
+    page.keyboard.press("<")
+    page.keyboard.press("<")
     assert page.input_value("#speed") == "0.5"
     page.keyboard.press(" ")
     assert page.evaluate("window.replay.playing")
@@ -114,12 +129,122 @@ def test_zoom_of_one_plot_is_the_zoom_of_all(show, replay):
 def test_any_signal_can_be_plotted_and_removed(show, replay):
     page, seen = show(replay)
     before = page.locator(".plot").count()
-    page.fill(".chooser input", "vehicle.distance")
-    page.locator(".chooser input").dispatch_event("change")
+    pick(page, "vehicle.distance")
     assert page.locator(".plot").count() == before + 1
-    page.locator(".plot .close").click()
+    page.locator(".plot .close").last.click()
     assert page.locator(".plot").count() == before
     assert seen.console == []
+
+
+def test_the_list_has_what_changes_first_and_finds_by_meaning(show, replay):
+    page, _ = show(replay)
+    page.focus(".chooser input")
+    assert page.locator(".signals button").first.get_attribute("class") == ""
+    page.fill(".chooser input", "preview")
+    assert page.locator(".signals button.still").count() == page.locator(".signals button").count() > 3
+    page.fill(".chooser input", "advised with the prompt")
+    found = ["controller.advised_speed", "vehicle.advised_speed"]
+    assert page.locator(".signals code").all_inner_texts() == found
+    page.keyboard.press("Escape")
+    assert page.locator(".signals button").count() == 0
+
+
+def test_several_signals_and_two_units_in_one_plot_but_not_three(show, replay):
+    page, seen = show(replay)
+    plot = "window.replay.plots.all[0]"
+    page.locator(".plot .more").first.click()
+    pick(page, "vehicle.steering_wheel_angle")
+    assert page.evaluate(f"{plot}.spec.signals").count("vehicle.steering_wheel_angle") == 1
+    assert page.evaluate(f"{plot}.units") == ["m/s", "deg"]
+    assert page.evaluate(f"{plot}.u.axes.length") == 3
+    page.locator(".plot .more").first.click()
+    page.fill(".chooser input", "vehicle.pose.x")
+    assert page.locator(".signals button").first.is_disabled()
+    page.locator(".plot").first.locator(".drop").last.click()
+    assert page.evaluate(f"{plot}.units") == ["m/s"]
+    assert seen.console == []
+
+
+def test_two_cursors_and_their_difference(show, replay):
+    page, _ = show(replay, "#t=4")
+    page.keyboard.press("m")
+    page.keyboard.press("Shift+ArrowRight")
+    assert page.text_content("#clock").startswith("5.00 / ")
+    assert "\u0394 +1.00 s" in page.text_content("#clock")
+    change = page.evaluate(
+        "(() => { const run = window.replay.page.runs[0], x = (t) => run.at('vehicle.pose.x', t); return x(5) - x(4); })()"
+    )
+    cell = page.evaluate(
+        "window.replay.plots.all.flatMap((p) => p.cells).find((c) => c.name === 'vehicle.pose.x').value.textContent"
+    )
+    assert float(cell.split("\u0394")[1].replace("\u2212", "-")) == pytest.approx(change, abs=1e-3)
+    assert page.locator(".head.other:visible").count() >= 3
+    page.keyboard.press("Escape")
+    assert "\u0394" not in page.text_content("#clock")
+    assert page.locator(".head.other:visible").count() == 0
+
+
+def test_zoom_keys_and_buttons_do_what_they_show(show, replay):
+    page, _ = show(replay, "#t=6")
+    scale, shown = "window.replay.scene.scale", "window.replay.plots.range"
+    first, whole = page.evaluate(scale), page.evaluate(shown)
+    page.keyboard.press("+")
+    assert page.evaluate(scale) == pytest.approx(1.4 * first)
+    page.keyboard.press("-")
+    assert page.evaluate(scale) == pytest.approx(first)
+    page.click("#zoom-in")
+    page.keyboard.press("z")
+    page.click("#time-in")
+    low, high = page.evaluate(shown)
+    assert high - low == pytest.approx((whole[1] - whole[0]) / 1.6**2, rel=1e-6)
+    assert low < 6.0 < high
+    page.keyboard.press("f")
+    assert page.evaluate(scale) == pytest.approx(first)
+    assert page.evaluate(shown) == whole
+
+
+def test_a_double_click_shows_all_and_goes_nowhere(show, replay):
+    page, _ = show(replay, "#t=6")
+    whole = page.evaluate("window.replay.plots.range")
+    page.click("#time-in")
+    over = page.locator(".u-over").first.bounding_box()
+    page.mouse.dblclick(over["x"] + 0.7 * over["width"], over["y"] + 20)
+    assert page.evaluate("window.replay.plots.range") == whole
+    assert page.evaluate(CLOCK) == 6.0
+
+
+def test_picture_table_and_video_to_take_home(show, replay, tmp_path):
+    page, seen = show(replay, "#t=5")
+    page.select_option("#speed", "8")
+    files = {}
+    for what in ("png", "csv", "video"):
+        with page.expect_download(timeout=30_000) as handed:
+            page.click(f"#{what}")
+        files[what] = tmp_path / handed.value.suggested_filename
+        handed.value.save_as(files[what])
+    assert files["png"].read_bytes()[:4] == b"\x89PNG"
+    assert imread(files["png"])[..., :3].std() > 0.05
+    assert files["video"].read_bytes()[:4] == b"\x1a\x45\xdf\xa3"  # EBML: WebM
+    assert files["video"].stat().st_size > 20_000
+    heads, *rows = list(csv.reader(files["csv"].open(encoding="utf-8")))
+    column = heads.index("vehicle.speed [m/s]")
+    row = next(row for row in rows if float(row[0]) >= 5.0)
+    said = page.evaluate("(t) => window.replay.page.runs[0].at('vehicle.speed', t)", float(row[0]))
+    assert float(row[column]) == pytest.approx(said, rel=1e-6)
+    assert seen.console == []
+
+
+def test_somebody_who_comes_and_goes_is_no_grey_box(show, tmp_path):
+    ran = run_scenario(load_scenario("apa-pedestrian", ["stop_time=14"]))
+    path = tmp_path / "report.html"
+    path.write_text(replay_page(ran.recording, summarize(ran.recording, load_scenario("apa-pedestrian"), 1.0), []))
+    page, _ = show(path, "#t=5")
+    skin = """() => { const c = document.getElementById('view'), g = c.getContext('2d');
+        const d = new Uint32Array(g.getImageData(0, 0, c.width, c.height).data.buffer);
+        return d.filter((pixel) => pixel === 0xffa1c9f2).length; }"""
+    assert page.evaluate(skin) == 0
+    page.evaluate("window.replay.seek(13)")
+    assert page.evaluate(skin) > 10
 
 
 def test_text_of_a_scenario_never_becomes_markup(show, replay):
@@ -171,6 +296,31 @@ def test_two_runs_on_one_page(show, overlay):
     assert seen.requests == [overlay.as_uri()]
 
 
+def test_three_runs_have_three_colours(show, three):
+    page, seen = show(three)
+    for label in "ABC":
+        assert page.locator(".lane", has_text=f"phase {label}").count() == 1
+    runs = page.evaluate(
+        "[...document.querySelectorAll('#legend i')].map((node) => getComputedStyle(node).backgroundColor)"
+    )
+    assert len(set(runs)) == 3
+    lane = """(label) => [...new Set([...document.querySelectorAll(`.span[data-run='${label}']`)]
+        .map((node) => getComputedStyle(node).backgroundColor))]"""
+    assert [page.evaluate(lane, number) for number in range(3)] == [[colour] for colour in runs]
+    assert page.locator("#checks th", has_text=re.compile("^C$")).count() == 1
+    assert seen.console == []
+
+
+def test_the_tube_that_compare_judged_by_is_drawn(show, overlay, replay):
+    drawn = """() => { const { plots } = window.replay, u = plots.all[0].u, { ctx, bbox } = u;
+        const d = ctx.getImageData(bbox.left, bbox.top, bbox.width, bbox.height).data;
+        let n = 0; for (let i = 3; i < d.length; i += 4) if (d[i] > 35 && d[i] < 48) n++; return n; }"""
+    page, _ = show(overlay)
+    with_tube = page.evaluate(drawn)
+    page, _ = show(replay)
+    assert with_tube > 5 * page.evaluate(drawn) > 0
+
+
 def test_the_whole_page_looks_where_the_pointer_is(show, replay):
     page, _ = show(replay, "#t=2")
     over = page.locator(".u-over").first.bounding_box()
@@ -198,8 +348,7 @@ def test_follow_is_lit_only_while_the_view_follows(show, replay):
 
 def test_a_mode_has_names_at_its_axis(show, replay):
     page, _ = show(replay)
-    page.fill(".chooser input", "controller.phase")
-    page.locator(".chooser input").dispatch_event("change")
+    pick(page, "controller.phase")
     marks = page.evaluate(
         "(() => { const { u } = window.replay.plots.all.at(-1); return u.axes[1].values(u, [0, 2, 2.5]); })()"
     )

@@ -24,7 +24,7 @@ function showResult(lab, mine, byHand, ghost) {
   const head = ["", ...runs.map(([name]) => name)];
   $("result").replaceChildren(
     element("div", { class: "ends" }, runs.map(([name, found]) => element("p", {}, element("strong", {}, `${name} `), badge(found), ` ${said(found) === found.outcome.replace("_", " ") ? "" : said(found).split(": ").slice(1).join(": ")}`))),
-    table(head, rows), element("h3", {}, "Checks"), table(head, checks));
+    table(head, rows), element("h2", {}, "Checks"), table(head, checks));
 }
 
 const unitOf = (lab, name) => signalOf(lab.engine, name).unit;

@@ -47,7 +47,7 @@ function provenanceCard(run, tag) {
 
 function differencesCards(page) {
   if (!page.differences) return [];
-  const line = (item) => row([pill(item.passed), element("code", {}, item.signal), numberCell(quantity(item.largest, item.unit)), numberCell(item.tolerance_text),
+  const line = (item) => row([pill(item.passed), element("span", {}, item.label ? `${item.label} ` : "", element("code", {}, item.signal)), numberCell(quantity(item.largest, item.unit)), numberCell(item.tolerance_text),
     moment(item.t_largest), item.first === null ? "\u2013" : moment(item.first), item.note || ""]);
   const heads = ["", "signal", "largest difference", "tolerance", "at", "first beyond", ""];
   const [missed, agreed] = [false, true].map((passed) => page.differences.filter((item) => item.passed === passed));
@@ -57,8 +57,8 @@ function differencesCards(page) {
 
 function changesCard(page) {
   if (!page.changes) return null;
-  const rows = page.changes.map(([name, a, b]) => row([element("code", {}, name), numberCell(a), numberCell(b)]));
-  return card(`Parameters that differ: ${rows.length}`, rows.length ? table(["name", "A", "B"], rows) : "none", rows.length > 0);
+  const rows = page.changes.map(([name, ...values]) => row([element("code", {}, name), ...values.map(numberCell)]));
+  return card(`Parameters that differ: ${rows.length}`, rows.length ? table(["name", ...page.runs.map((run) => run.label)], rows) : "none", rows.length > 0);
 }
 
 // The state machine of the controller, drawn; it follows the time.

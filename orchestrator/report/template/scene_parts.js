@@ -43,10 +43,10 @@ function drawStill(scene, run, t) {
   }
 }
 
-const PERSON = 1.0, LONG = 50; // no side of a person is longer [m]; what is there for longer is always there [s]
+const PERSON = 1.0; // no side of a person is longer [m]
 const CAR = [3, 6.5, 1.4, 2.3]; // from and to which length and width a box is a car [m]
 
-// What a box of the scene looks like: a person comes or goes and is small, a car is as long and wide as one.
+// What a box of the scene looks like, as looks.py says: a person comes or goes and is small, a car is as long and wide as one.
 function looks({ corners: [a, b, c], from, to }) {
   const sides = [Math.hypot(b[0] - a[0], b[1] - a[1]), Math.hypot(c[0] - b[0], c[1] - b[1])], [width, length] = sides.sort((one, two) => one - two);
   if (length <= PERSON && (from > 0 || to < 1e6)) return "person";

@@ -9,7 +9,6 @@ class Timeline {
     this.duration = Math.max(...page.runs.map((run) => run.duration)) || 1;
     this.box.setAttribute("aria-valuemax", this.duration.toFixed(2));
     this.lines = element("div", { class: "lanes" });
-    this.unnamed = new Set(); // states of short pieces, which have no room for their names
     this.rows = page.ribbons.flatMap((name) => page.runs.flatMap((run, number) => (run.signals[name] ? [{ run, name, number }] : [])));
     for (const { run, name, number } of this.rows) this.lines.append(this.lane(run, name, number));
     this.head = element("div", { class: "head" });
@@ -44,6 +43,13 @@ class Timeline {
     return all.length > MOST_SPANS ? all.filter((span) => span.to - span.from > this.duration / 2000) : all;
   }
 
+  // The states of a ribbon that none of its pieces has room to name.
+  unnamed(run, name, number) {
+    const own = [...this.lines.querySelectorAll(`.span[data-signal="${name}"][data-run="${number}"]`)], named = new Set(own.map((node) => node.textContent));
+    const left = [...new Set(own.map((node) => words(node.dataset.state)))].filter((state) => !named.has(state));
+    return left.length ? `${this.label(run, name)} ${left.join(", ")}` : "";
+  }
+
   // All ribbons as sheet.js draws them.
   lanes() {
     return this.rows.map(({ run, name, number }) => ({
@@ -56,7 +62,6 @@ class Timeline {
     const track = element("div", { class: "track" });
     for (const span of this.spans(run, name)) {
       const state = run.stateName(name, span.value), width = (span.to - span.from) / this.duration, fits = width > 0.012 * words(state).length + 0.012;
-      if (!fits && this.page.ribbons[0] !== name) this.unnamed.add(`${this.label(run, name)}: ${words(state)}`);
       track.append(element("span", {
         class: "span", title: `${words(state)}, ${span.from.toFixed(2)} to ${span.to.toFixed(2)} s`,
         "data-signal": name, "data-run": number, "data-state": state, "data-value": span.value,
@@ -89,7 +94,8 @@ class Timeline {
       }
     }
     if (this.page.runs.length > 1) box.replaceChildren(...this.page.runs.map((run, number) => element("span", { class: "chip" }, element("i", { "data-run": number }), run.about || run.label)));
-    if (this.unnamed.size) box.append(element("span", { class: "unnamed" }, `short pieces are ${[...this.unnamed].join(", ")}`));
+    const short = this.rows.slice(1).map(({ run, name, number }) => this.unnamed(run, name, number)).filter(Boolean);
+    if (short.length) box.append(element("span", { class: "unnamed" }, `Pieces too short for a name: ${short.join("; ")}`));
   }
 
   paint() {

@@ -19,7 +19,7 @@ function headsUp(page, t) {
     return chip;
   });
   cells.push(element("span", { class: "tag plain" }, `${digits(Math.round(speed * 36) / 10)} km/h`), element("span", { class: "tag plain" }, `wheel ${digits(Math.round(wheel * 180 / Math.PI))}\u00b0`));
-  if (page.runs.length > 1) cells.unshift(element("span", { class: "tag run" }, `${run.label}:`));
+  if (page.runs.length > 1) cells.unshift(element("span", { class: "tag plain" }, `${run.label}:`));
   box.replaceChildren(...cells);
 }
 

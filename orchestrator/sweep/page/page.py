@@ -22,10 +22,10 @@ from orchestrator.verdict.confidence import wilson
 
 BODY = """<header class="top"><div class="headline"><h1>{title}</h1><p id="subtitle">{subtitle}</p></div>
 <span class="verdict {kind}">{verdict}</span></header>
-<dl class="facts">{facts}</dl>
-<main class="study">
+<main><dl class="facts">{facts}</dl>
+<div class="study">
 {cards}
-</main>
+</div></main>
 <footer>{foot}</footer>
 """
 WORST = 12

@@ -45,43 +45,39 @@ def _page(runs: Sequence[Recording], words: Sequence[list[Line]], found: Sequenc
     arrays = Arrays()
     keep = [t for item in found for row in item.signals for t in (row.first, row.t_largest) if t is not None][:60]
     origin = origin_of(runs[0])
-    data = [
-        run_data(run, arrays, lines, label=label, most=most, keep=keep, origin=origin)
-        for run, lines, label in zip(runs, words, LABELS, strict=False)
-    ]
     names = [found[0].a, *(item.b for item in found)]
-    titles = [
-        f"{label}: {_title(run, name)}{_with(change)}"
-        for label, run, name, change in zip(LABELS, runs, names, [None, *found], strict=False)
-    ]
-    for run, title in zip(data, titles, strict=True):
-        run["checks"] = []
-        run["about"] = title
+    data = []
+    for run, lines, label, name, change in zip(runs, words, LABELS, names, [None, *found], strict=False):
+        about = f"{label}: {_title(run, name)}{_with(change)}"
+        shown = run_data(run, arrays, lines, label=label, most=most, keep=keep, origin=origin)
+        data.append({**shown, "checks": [], "about": about})
     title = " and ".join(dict.fromkeys(names))
     missed = list(dict.fromkeys(row.signal for item in found for row in item.signals if not row.passed))
     header = {
         "title": title,
         "name": "-".join(dict.fromkeys(names)),
-        "subtitle": " \u00b7 ".join(titles),
-        "verdict": {
-            "text": f"{len(missed)} of {max(item.compared for item in found)} differ"
-            if missed
-            else "the same within tolerance",
-            "kind": "bad" if missed else "good",
-        },
+        "subtitle": " \u00b7 ".join(run["about"] for run in data),
         "facts": _facts(found, len(missed)),
         "plots": plots_of(list(runs), [], missed[:MOST_PLOTS]),
         "ribbons": ribbons_of(list(runs), 2),
-        "differences": [
-            _row(row, label if len(found) > 1 else "")
-            for item, label in zip(found, LABELS[1:], strict=False)
-            for row in item.signals
-        ],
         "changes": _changes(found),
         "runs": data,
         "foot": f"The colour is the run; the band around A is the tolerance it was judged by. {KEYS}",
+        **_verdict(found, len(missed)),
     }
     return page(title, arrays.pack(header))
+
+
+def _verdict(found: Sequence[Comparison], missed: int) -> dict[str, Any]:
+    """Return the verdict in words, and the row of every signal of every run."""
+    most = max(item.compared for item in found)
+    text, kind = (f"{missed} of {most} differ", "bad") if missed else ("the same within tolerance", "good")
+    rows = [
+        _row(row, label if len(found) > 1 else "")
+        for item, label in zip(found, LABELS[1:], strict=False)
+        for row in item.signals
+    ]
+    return {"verdict": {"text": text, "kind": kind}, "differences": rows}
 
 
 def _title(run: Recording, name: str) -> str:

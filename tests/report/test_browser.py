@@ -171,9 +171,7 @@ def test_two_cursors_and_their_difference(show, replay):
     page.keyboard.press("Shift+ArrowRight")
     assert page.text_content("#clock").startswith("5.00 / ")
     assert "\u0394 +1.00 s" in page.text_content("#clock")
-    change = page.evaluate(
-        "(() => { const run = window.replay.page.runs[0], x = (t) => run.at('vehicle.pose.x', t); return x(5) - x(4); })()"
-    )
+    change = page.evaluate("((x) => x(5) - x(4))((t) => window.replay.page.runs[0].at('vehicle.pose.x', t))")
     cell = page.evaluate(
         "window.replay.plots.all.flatMap((p) => p.cells).find((c) => c.name === 'vehicle.pose.x').value.textContent"
     )
@@ -226,7 +224,7 @@ def test_picture_table_and_video_to_take_home(show, replay, tmp_path):
     assert imread(files["png"])[..., :3].std() > 0.05
     assert files["video"].read_bytes()[:4] == b"\x1a\x45\xdf\xa3"  # EBML: WebM
     assert files["video"].stat().st_size > 20_000
-    heads, *rows = list(csv.reader(files["csv"].open(encoding="utf-8")))
+    heads, *rows = list(csv.reader(files["csv"].read_text(encoding="utf-8").splitlines()))
     column = heads.index("vehicle.speed [m/s]")
     row = next(row for row in rows if float(row[0]) >= 5.0)
     said = page.evaluate("(t) => window.replay.page.runs[0].at('vehicle.speed', t)", float(row[0]))

@@ -10,8 +10,8 @@ from orchestrator.cosim.slave import Array
 from orchestrator.sweep.page.statistics import Axis, Map
 from orchestrator.verdict.confidence import wilson
 
-WIDTH, HEIGHT = 520.0, 330.0
-LEFT, RIGHT, TOP, BOTTOM = 62.0, 22.0, 8.0, 44.0
+WIDTH, HEIGHT = 540.0, 330.0
+LEFT, RIGHT, TOP, BOTTOM = 84.0, 22.0, 8.0, 44.0
 SCALE = ("#00224e", "#123570", "#3b496c", "#575d6d", "#707173", "#8a8678", "#a59c74", "#c3b369", "#e1cc55", "#fee838")
 """Cividis (Nunez, Anderton, Renslow 2018): read alike with and without colour vision; dark is 0, bright is 1."""
 MOST_TICKS = 8
@@ -40,7 +40,7 @@ def named(axis: Axis) -> str:
 def success_map(shown: Map, word: str) -> str:
     """Return the map as SVG; every cell tells its numbers when pointed at. ``word``: what a good run is."""
     rows, columns = shown.runs.shape
-    width, height = (WIDTH - LEFT - RIGHT) / columns, (HEIGHT - TOP - BOTTOM) / rows
+    across, up = _places(shown.x, LEFT, WIDTH - RIGHT), _places(shown.y, HEIGHT - BOTTOM, TOP)
     cells = []
     for row in range(rows):
         for column in range(columns):
@@ -51,11 +51,12 @@ def success_map(shown: Map, word: str) -> str:
                     f"{shown.x.labels[column]} {shown.x.unit}, {shown.y.labels[row]} {shown.y.unit}: "
                     f"{100.0 * good / count:.1f} % of {count} {word} (95 %: {100.0 * low:.0f} to {100.0 * high:.0f} %)"
                 )
-                at = f'x="{LEFT + column * width:.2f}" y="{TOP + (rows - 1 - row) * height:.2f}"'
+                at = f'x="{across[column]:.2f}" y="{up[row + 1]:.2f}"'
+                width, height = across[column + 1] - across[column], up[row] - up[row + 1]
                 size = f'width="{width + 0.3:.2f}" height="{height + 0.3:.2f}"'
                 fill = colour(good / count)
                 cells.append(f'<rect class="cell" {at} {size} fill="{fill}"><title>{html.escape(note)}</title></rect>')
-    return _svg(cells + _axis_x(shown.x, width) + _axis_y(shown.y, height), f"Success map {shown.title}")
+    return _svg(cells + _axis_x(shown.x, across) + _axis_y(shown.y, up), f"Success map {shown.title}")
 
 
 def scale_bar(word: str) -> str:
@@ -105,12 +106,28 @@ def histogram(values: Array, good: NDArray[np.bool_], name: str, unit: str, word
     return _svg(bars + ticks + counts, f"{name} [{unit}]", 200.0)
 
 
-def _axis_x(axis: Axis, width: float) -> list[str]:
-    step = max(1, -(-len(axis.labels) // MOST_TICKS))
-    places = range(0, len(axis.labels), step)
-    lines = _ticks_x(
-        [axis.labels[place] for place in places], [LEFT + (place + 0.5) * width for place in places], HEIGHT
-    )
+def _places(axis: Axis, first: float, last: float) -> list[float]:
+    """Return where the edges of the cells are drawn: values not evenly spaced are not shown as if they were."""
+    span = float(axis.edges[-1] - axis.edges[0])
+    return [first + (last - first) * float(edge - axis.edges[0]) / span for edge in axis.edges]
+
+
+def _apart(places: Sequence[float], least: float) -> list[int]:
+    """Return which cells have a label: none nearer to the one before than ``least``."""
+    chosen: list[int] = []
+    for cell in range(len(places) - 1):
+        if not chosen or abs(_middle(places, cell) - _middle(places, chosen[-1])) >= least:
+            chosen.append(cell)
+    return chosen
+
+
+def _middle(places: Sequence[float], cell: int) -> float:
+    return 0.5 * (places[cell] + places[cell + 1])
+
+
+def _axis_x(axis: Axis, places: Sequence[float]) -> list[str]:
+    cells = _apart(places, (WIDTH - LEFT - RIGHT) / MOST_TICKS)
+    lines = _ticks_x([axis.labels[cell] for cell in cells], [_middle(places, cell) for cell in cells], HEIGHT)
     label = html.escape(named(axis))
     return [
         *lines,
@@ -118,12 +135,11 @@ def _axis_x(axis: Axis, width: float) -> list[str]:
     ]
 
 
-def _axis_y(axis: Axis, height: float) -> list[str]:
-    step = max(1, -(-len(axis.labels) // MOST_TICKS))
+def _axis_y(axis: Axis, places: Sequence[float]) -> list[str]:
     lines = []
-    for place in range(0, len(axis.labels), step):
-        y = TOP + (len(axis.labels) - place - 0.5) * height
-        lines.append(f'<text x="{LEFT - 6}" y="{y + 4:.1f}" text-anchor="end">{html.escape(axis.labels[place])}</text>')
+    for cell in _apart(places, (HEIGHT - TOP - BOTTOM) / (2 * MOST_TICKS)):
+        at = f'x="{LEFT - 6}" y="{_middle(places, cell) + 4:.1f}"'
+        lines.append(f'<text {at} text-anchor="end">{html.escape(axis.labels[cell])}</text>')
     middle = (TOP + HEIGHT - BOTTOM) / 2
     label = html.escape(named(axis))
     turned = f'transform="rotate(-90 12 {middle:.1f})"'

@@ -50,18 +50,25 @@ def study_page(table: Table) -> str:
     study = table.about["study"]
     good = done(table)
     share = 100.0 * good.mean()
+    groups = _groups(table)
     cards = [_maps(table), _reasons(table), _histograms(table), _influences(table), _worst(table), _about(table)]
     title = study["title"] or study["name"]
     body = BODY.format(
         title=escape(title),
         subtitle=escape(study["description"]),
-        kind="good" if share >= 99.0 else "warn" if share >= 50.0 else "bad",
-        verdict=f"{share:.1f} % {word(table)}",
+        kind="" if len(groups) > 1 else "good" if share >= 99.0 else "warn" if share >= 50.0 else "bad",
+        verdict=escape(", ".join(groups) or f"{share:.1f} %") + f" {word(table)}",
         facts=_facts(table, int(good.sum())),
         cards="\n".join(card for card in cards if card),
         foot=escape(f"apa-cosim {table.about['versions'].get('apa-cosim', '')}, {table.path.name}"),
     )
     return still_page(title, body, (Path(__file__).parent / "page.css").read_text(encoding="utf-8"))
+
+
+def _groups(table: Table) -> list[str]:
+    """Return the success of each part that the maps are split into: one number over unlike systems says nothing."""
+    shown = [item for item in maps(table) if item.title]
+    return [f"{item.title} {100.0 * item.done.sum() / max(1, item.runs.sum()):.1f} %" for item in shown]
 
 
 def _facts(table: Table, good: int) -> str:

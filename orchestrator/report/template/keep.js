@@ -1,8 +1,9 @@
 // What one takes home from the page: a picture, numbers, a video.
 
-const VIDEO = ["video/webm;codecs=vp9", "video/webm;codecs=vp8", "video/mp4"];
+const VIDEO = ["video/webm;codecs=vp8", "video/webm;codecs=vp9", "video/mp4"];
 const RATE = 30; // pictures a second
-const HELD = 500; // how long the last picture stays [ms]
+const HELD = 500, LATEST_END = 8000; // how long the last picture stays, and at most, while the encoder has given nothing yet [ms]
+const HEADER = 2000; // more than a file without pictures has [bytes]
 
 function handOut(name, blob) {
   const link = element("a", { href: URL.createObjectURL(blob), download: name });
@@ -51,7 +52,7 @@ class Keeper {
       $("video").textContent = "Video";
       handOut(`${this.name}.${this.kind.includes("mp4") ? "mp4" : "webm"}`, new Blob(parts, { type: this.kind }));
     };
-    this.recorder.start();
+    this.recorder.start(250);
     $("video").textContent = "Stop recording";
     player.play();
     let over = 0;
@@ -60,7 +61,8 @@ class Keeper {
       sheet.draw();
       if (player.playing && player.t >= to) player.pause();
       if (!player.playing && !over) over = performance.now();
-      if (over && performance.now() - over > HELD) this.stop(); else requestAnimationFrame(frame);
+      const held = over ? performance.now() - over : 0, size = parts.reduce((sum, part) => sum + part.size, 0);
+      if (held > (size > HEADER ? HELD : LATEST_END)) this.stop(); else requestAnimationFrame(frame);
     };
     requestAnimationFrame(frame);
   }

@@ -23,12 +23,12 @@ from orchestrator.verdict.geometry import (
     WHEEL_WIDTH,
     Box,
     CarOutline,
-    boxes,
     described,
     kerbs,
     place,
     sample_path,
     slot_box,
+    things,
 )
 from orchestrator.verdict.summary import Summary, phase_changes
 
@@ -53,6 +53,8 @@ STYLE: Any = {
 }
 FAR = 50.0
 """Beyond this [m] from the origin, positions are shown from the start."""
+STILLS = 10
+"""Of a thing that moves, one picture a second is drawn."""
 OUTLINES = 14
 """About how many outlines are drawn along the path."""
 
@@ -194,8 +196,10 @@ def _plan(axis: Any, recording: Recording, scenario: Scenario) -> None:
     axis.set_ylabel("y [m]")
     vehicle = described(scenario, recording.parameters_of("vehicle"))
     car = CarOutline.of(vehicle)
-    for box in boxes(vehicle):
-        _thing(axis, box)
+    for thing in things(vehicle):
+        stills = [still for still in thing.stills() if still.appear_at <= recording.t[-1]]
+        for still in [*stills[:-1:STILLS], *stills[-1:]]:
+            _thing(axis, still)
     for corners in scenario.polygons:
         axis.add_patch(Polygon(corners, facecolor="#c4c8ce", edgecolor=GREY, linewidth=1.0))
     for kerb in kerbs(vehicle):

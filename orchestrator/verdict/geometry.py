@@ -123,8 +123,13 @@ def boxes(parameters: Mapping[str, float]) -> list[Box]:
 
     One that moves is told as many that stand, each for a short time.
     """
+    return [still for box in things(parameters) for still in box.stills()]
+
+
+def things(parameters: Mapping[str, float]) -> list[Box]:
+    """Return the boxes as they are told, one for each thing even if it moves."""
     rows = [Box(*row) for row in _rows(parameters, "scene.boxes", Box._field_defaults)]
-    return [still for box in rows if box.length > 0.0 and box.width > 0.0 for still in box.stills()]
+    return [box for box in rows if box.length > 0.0 and box.width > 0.0]
 
 
 def kerbs(parameters: Mapping[str, float]) -> list[Kerb]:

@@ -60,6 +60,10 @@ class ValetDriveParams(NamedTuple):
     deceleration: Annotated[float, Signal("m/s2", "planned towards the end of a piece", 0.1, 5.0, HOUSE)] = 0.5
     brake: Annotated[float, Signal("m/s2", "deceleration when braking to standstill", 0.1, 10.0, HOUSE)] = 2.0
     delay: Annotated[float, Signal("s", "from a brake request to its effect", 0.0, 2.0, HOUSE)] = 0.03
+    rolling: Annotated[
+        float, Signal("m", "off the path where the wheel turns on the move; 0: it turns at rest", 0.0, 0.2, HOUSE)
+    ] = 0.02
+    wheel_delay: Annotated[float, Signal("s", "from a request to the wheel to its effect", 0.0, 1.0, HOUSE)] = 0.06
 
 
 class ValetGuardParams(NamedTuple):

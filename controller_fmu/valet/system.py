@@ -4,7 +4,7 @@ import math
 from typing import NamedTuple
 
 from controller_fmu.common.chart import bit
-from controller_fmu.common.path_law import angle_back, deviation
+from controller_fmu.common.path_law import Deviation, angle_back, deviation
 from controller_fmu.interface import ControllerInput, Reason
 from controller_fmu.planning.plan import (
     NO_WAY,
@@ -20,6 +20,7 @@ from controller_fmu.planning.plan_store import PlanStore
 from controller_fmu.planning.task import Corner, Request, drive
 from controller_fmu.valet.chart import Guard, Step, step_transition
 from controller_fmu.valet.params import ValetParams
+from controller_fmu.valet.rolling import Ahead, ahead_of, aim_at, joint_of
 from controller_fmu.valet.sight import SEEN_CORNERS, Sight, look, remembered, scene_of
 from controller_fmu.valet.slot import body_of, goal_of
 from controller_fmu.valet.watch import Watch, reason_to_fail, watch
@@ -43,6 +44,7 @@ class Tracked(NamedTuple):
     heading_error: float = 0.0
     front_wheel_angle: float = 0.0
     """That leads back to it [rad]."""
+    ahead: Ahead = Ahead()
 
 
 class ValetState(NamedTuple):
@@ -129,6 +131,8 @@ def reason_of(status: int, count: int, state: ValetState, params: ValetParams) -
 
 def seen_on(state: ValetState, inputs: ControllerInput, params: ValetParams) -> ValetState:
     """Return the valet that has looked where it is on its path, and what is in the way."""
+    if state.tracked.left <= 0.0 and joint_of(state.path, state.piece, params).ramp > 0.0:
+        state = _rolled_on(state)
     way = state.path.pieces[state.piece].way
     curvature = state.path.pieces[state.piece].k0
     direction = sign(way)
@@ -141,9 +145,14 @@ def seen_on(state: ValetState, inputs: ControllerInput, params: ValetParams) -> 
         at = drive(state.begin, direction * (abs(way) - left), curvature)
     off = deviation(pose, at)
     law = params.drive
-    angle = angle_back(off, curvature, direction, law.k1, law.k2, params.car.wheelbase)
+    soon = left - abs(inputs.measured_speed) * law.wheel_delay
+    aim = aim_at(state.path, state.piece, left, params)
+    asked = aim_at(state.path, state.piece, soon, params).curvature
+    beside = Deviation(off.lateral - aim.lateral, off.heading - aim.heading)
+    angle = angle_back(beside, asked, direction, law.k1, law.k2, params.car.wheelbase)
+    coming = ahead_of(state.path, state.piece, left, params)
     sight = look(inputs.ultrasonic, pose, direction, inputs.measured_speed, scene_of(params, state.seen), params)
-    return state._replace(tracked=Tracked(left, at, off.lateral, off.heading, angle), sight=sight)
+    return state._replace(tracked=Tracked(left, at, off.lateral, off.heading, angle, coming), sight=sight)
 
 
 def guards_of(state: ValetState, inputs: ControllerInput, params: ValetParams) -> int:
@@ -164,7 +173,7 @@ def guards_of(state: ValetState, inputs: ControllerInput, params: ValetParams) -
         | bit(Guard.FAULT, state.reason != Reason.NONE)
         | bit(Guard.PLANNED, state.searched > 0 and state.path.used > 0)
         | bit(Guard.WHEEL_SET, abs(wheel - state.wheel) <= params.threshold.wheel and not state.sight.blocked)
-        | bit(Guard.MUST_HALT, tracked.left <= stop - state.early or state.sight.blocked or lost)
+        | bit(Guard.MUST_HALT, tracked.ahead.left <= stop - state.early or state.sight.blocked or lost)
         | bit(Guard.STANDING_LOST, standing and (lost or blocked_long))
         | bit(Guard.STANDING_AT_END, standing and at_end)
         | bit(Guard.STANDING, standing and not state.sight.blocked)
@@ -190,13 +199,14 @@ def moved_on(state: ValetState, step: int, inputs: ControllerInput, params: Vale
     if step == Step.PLAN and before != Step.PLAN:
         state = _to_plan_anew(state)
     if step == Step.SET_WHEEL and before != Step.SET_WHEEL:
-        state = _with_piece(state, before)
+        state = _with_piece(state, before, params)
     wheel = state.wheel
     speed = 0.0
     limit = params.car.steering.angle_limit
     ratio = params.car.steering.ratio
     if step == Step.SET_WHEEL:
-        wheel = clamp(ratio * math.atan(params.car.wheelbase * state.path.pieces[state.piece].k0), -limit, limit)
+        curvature = aim_at(state.path, state.piece, state.tracked.left, params).curvature
+        wheel = clamp(ratio * math.atan(params.car.wheelbase * curvature), -limit, limit)
     if step == Step.DRIVE or step == Step.HALT:
         wheel = clamp(ratio * state.tracked.front_wheel_angle, -limit, limit)
     if step == Step.STRAIGHTEN:
@@ -204,15 +214,22 @@ def moved_on(state: ValetState, step: int, inputs: ControllerInput, params: Vale
     if step == Step.DRIVE:
         if before != Step.DRIVE:
             state = _set_out(state)
-        speed = state.direction * planned_speed(state.tracked.left, state.sight.speed, params)
+        speed = state.direction * planned_speed(state.tracked.ahead, state.sight.speed, params)
     return state._replace(step=step, wheel=wheel, speed=speed)
 
 
-def planned_speed(left: float, most: float, params: ValetParams) -> float:
-    """Return the speed [m/s] at ``left`` [m] before a standstill, at most ``most`` but never less than creeping."""
+def planned_speed(ahead: Ahead, most: float, params: ValetParams) -> float:
+    """Return the speed [m/s] for what lies ahead, at most ``most`` but never less than creeping."""
     law = params.drive
-    fast = math.sqrt(law.creep * law.creep + 2.0 * law.deceleration * (left if left > 0.0 else 0.0))
-    return max(law.creep, min(law.speed, min(fast, most)))
+    fast = math.sqrt(law.creep * law.creep + 2.0 * law.deceleration * (ahead.left if ahead.left > 0.0 else 0.0))
+    return max(law.creep, min(ahead.speed, min(fast, most)))
+
+
+def _rolled_on(state: ValetState) -> ValetState:
+    """Return the valet on the next piece, which it reached without a stop."""
+    begin = drive(state.begin, state.path.pieces[state.piece].way, state.path.pieces[state.piece].k0)
+    left = state.tracked.left + abs(state.path.pieces[state.piece + 1].way)
+    return state._replace(piece=state.piece + 1, begin=begin, tracked=state.tracked._replace(left=left))
 
 
 def _to_plan_anew(state: ValetState) -> ValetState:
@@ -226,7 +243,7 @@ def _to_plan_anew(state: ValetState) -> ValetState:
     return state._replace(searched=0, path=Path(), seen=seen, seen_count=count, watch=clocks)
 
 
-def _with_piece(state: ValetState, before: int) -> ValetState:
+def _with_piece(state: ValetState, before: int, params: ValetParams) -> ValetState:
     """Return the valet with the piece to drive next; where one was not driven to its end, that goes on."""
     piece = 0
     begin = state.request.start
@@ -240,7 +257,8 @@ def _with_piece(state: ValetState, before: int) -> ValetState:
         early = clamp(early + LEARNT * state.tracked.left, -EARLIEST, EARLIEST)
         piece = piece + 1
     left = abs(state.path.pieces[piece].way)
-    return state._replace(piece=piece, begin=begin, tracked=Tracked(left, begin), early=early)
+    tracked = Tracked(left, begin, ahead=ahead_of(state.path, piece, left, params))
+    return state._replace(piece=piece, begin=begin, tracked=tracked, early=early)
 
 
 def _set_out(state: ValetState) -> ValetState:

@@ -24,7 +24,7 @@ def path_of(*pieces: tuple[float, float]) -> Path:
 
 
 def driven(path: Path) -> list[tuple[float, float, float]]:
-    """Return (aim's lateral, aim's heading, true ones differing) of a car that drives the aim's curvature, every 5 mm."""
+    """Return (aim's lateral, heading, less where the curvature leads; how far beside), every 5 mm."""
     step, pose, begin, rows = 0.005, Pose(), Pose(), []
     for number in range(path.used):
         way = path.pieces[number].way

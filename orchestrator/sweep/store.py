@@ -6,6 +6,7 @@ The columns carry units and meanings; the file carries the study, the scenario a
 needs to be run again. Nothing in it depends on when, where or in which order the runs were made.
 """
 
+import hashlib
 import json
 import shutil
 from pathlib import Path
@@ -18,7 +19,7 @@ from fmus.files import whole, write_whole
 from orchestrator.sweep.columns import TableColumn
 from orchestrator.text.errors import BadInput
 
-ABOUT = b"apa"
+ABOUT, CHECKSUM = b"apa", b"apa.checksum"
 WRITTEN: dict[str, Any] = {"compression": "zstd", "write_page_checksum": True}
 TYPES = {float: pa.float64(), int: pa.int64(), bool: pa.bool_(), str: pa.string()}
 
@@ -32,7 +33,7 @@ class Store:
         self._gone = folder / "parts.gone"
         self._about = self.parts / "about.json"
         self._text = json.dumps(about, sort_keys=True)
-        self.schema = pa.schema([_field(column) for column in columns], metadata={ABOUT: self._text})
+        self.schema = summed(pa.schema([_field(column) for column in columns], metadata={ABOUT: self._text}))
         self._size = 0
 
     def begin(self, chunk_size: int, *, resume: bool, restart: bool) -> int:
@@ -141,6 +142,18 @@ class Store:
 
     def _part(self, number: int) -> Path:
         return self.parts / f"{number:08d}.parquet"
+
+
+def summed(schema: Any) -> Any:
+    """Return a schema that carries a checksum of what it says: names, types, units, meanings, and the study."""
+    return schema.with_metadata({**schema.metadata, CHECKSUM: sum_of(schema)})
+
+
+def sum_of(schema: Any) -> bytes:
+    """Return the checksum of a schema; pages have their own, what describes them has none."""
+    fields = [(field.name, str(field.type), sorted((field.metadata or {}).items())) for field in schema]
+    about = (schema.metadata or {}).get(ABOUT, b"")
+    return hashlib.sha256(repr((fields, about)).encode()).hexdigest().encode()
 
 
 def forget_made_of(table: Path) -> None:

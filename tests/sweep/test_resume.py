@@ -2,6 +2,7 @@
 
 import json
 import os
+import random
 import signal
 import subprocess
 import sys
@@ -12,6 +13,7 @@ import pytest
 
 from orchestrator.cli import main
 from orchestrator.sweep.table import Table
+from orchestrator.text.errors import BadInput
 
 STUDY = """
 name: trial
@@ -149,6 +151,26 @@ def test_a_replay_says_if_the_bits_differ(whole, tmp_path, capsys, monkeypatch):
 def test_a_row_that_is_not_there(whole, row, capsys):
     assert main(["replay", str(whole), "--row", row]) == 2
     assert f"expected 0 to {COUNT - 1}" in capsys.readouterr().err
+
+
+def test_no_bit_of_a_table_can_be_changed_and_believed(whole, tmp_path):
+    def content(path):
+        table = Table(path)
+        notes = [(name, table.note(name)) for name in table.names()]
+        return str((table.about, notes, [table.column(name).tolist() for name in table.names()]))
+
+    data, odd, draw = whole.read_bytes(), tmp_path / "odd.parquet", random.Random(5)
+    told = content(whole)
+    described = int.from_bytes(data[-8:-4], "little") + 8
+    refused = 0
+    for number in range(150):
+        at = draw.randrange(len(data) - described if number % 2 else 0, len(data))
+        odd.write_bytes(data[:at] + bytes([data[at] ^ 1 << draw.randrange(8)]) + data[at + 1 :])
+        try:
+            assert content(odd) == told, at
+        except BadInput:
+            refused += 1
+    assert refused > 50
 
 
 def test_what_is_no_table(tmp_path, capsys):

@@ -8,6 +8,7 @@ needs to be run again. Nothing in it depends on when, where or in which order th
 
 import hashlib
 import json
+import re
 import shutil
 from pathlib import Path
 from typing import Any
@@ -19,7 +20,9 @@ from fmus.files import whole, write_whole
 from orchestrator.sweep.columns import TableColumn
 from orchestrator.text.errors import BadInput
 
-ABOUT, CHECKSUM = b"apa", b"apa.checksum"
+ABOUT, CHECKSUM = b"apa", "apa.checksum"
+UNSUMMED = b"0" * 64
+CARRIED = re.compile(rb"apa\.checksum.{1,4}?([0-9a-f]{64})", re.DOTALL)
 WRITTEN: dict[str, Any] = {"compression": "zstd", "write_page_checksum": True}
 TYPES = {float: pa.float64(), int: pa.int64(), bool: pa.bool_(), str: pa.string()}
 
@@ -33,7 +36,7 @@ class Store:
         self._gone = folder / "parts.gone"
         self._about = self.parts / "about.json"
         self._text = json.dumps(about, sort_keys=True)
-        self.schema = summed(pa.schema([_field(column) for column in columns], metadata={ABOUT: self._text}))
+        self.schema = pa.schema([_field(column) for column in columns], metadata={ABOUT: self._text})
         self._size = 0
 
     def begin(self, chunk_size: int, *, resume: bool, restart: bool) -> int:
@@ -106,6 +109,8 @@ class Store:
             with pq.ParquetWriter(beside, self.schema, **WRITTEN) as writer:
                 for number in range(count):
                     writer.write_table(self._read(number))
+                writer.add_key_value_metadata({CHECKSUM: UNSUMMED.decode()})
+            _put_sum(beside)
             if self._about_of_table() not in (b"", self._text.encode()):
                 forget_made_of(self.table)
         self._forget()
@@ -144,16 +149,23 @@ class Store:
         return self.parts / f"{number:08d}.parquet"
 
 
-def summed(schema: Any) -> Any:
-    """Return a schema that carries a checksum of what it says: names, types, units, meanings, and the study."""
-    return schema.with_metadata({**schema.metadata, CHECKSUM: sum_of(schema)})
+def sum_of(data: bytes) -> tuple[bytes, bytes, int]:
+    """Return the checksum of a table, the one it carries, and where; empty and -1 if it carries none.
+
+    It is one over every byte, its own as zeros: pages have checksums in Parquet, what describes them has none.
+    """
+    found = CARRIED.search(data, max(0, len(data) - 8 - int.from_bytes(data[-8:-4], "little")))
+    if found is None:
+        return b"", b"", -1
+    rest = hashlib.sha256(data[: found.start(1)] + UNSUMMED + data[found.end(1) :])
+    return rest.hexdigest().encode(), found[1], found.start(1)
 
 
-def sum_of(schema: Any) -> bytes:
-    """Return the checksum of a schema; pages have their own, what describes them has none."""
-    fields = [(field.name, str(field.type), sorted((field.metadata or {}).items())) for field in schema]
-    about = (schema.metadata or {}).get(ABOUT, b"")
-    return hashlib.sha256(repr((fields, about)).encode()).hexdigest().encode()
+def _put_sum(table: Path) -> None:
+    checksum, _, at = sum_of(table.read_bytes())
+    with table.open("r+b") as file:
+        file.seek(at)
+        file.write(checksum)
 
 
 def forget_made_of(table: Path) -> None:

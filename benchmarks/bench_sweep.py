@@ -22,7 +22,7 @@ from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.session.session import run_scenario
 from orchestrator.sweep.batch import compiled, run_batch
-from orchestrator.sweep.engines import cores
+from orchestrator.sweep.engine import cores
 from orchestrator.sweep.job import Chunk, arrays, make_job
 from orchestrator.sweep.rows import FIRST_MEASURE
 from orchestrator.sweep.study.read_study import bind

@@ -118,6 +118,14 @@ def test_no_arrow_goes_up_or_aside() -> None:
     assert wrong == []
 
 
+def test_no_files_import_each_other_in_a_circle() -> None:
+    """What is left when files that import no other file left are taken away, again and again."""
+    left = {module: {item.target for item in IMPORTS if item.source == module} - {module} for module in MODULES}
+    while free := {module for module, wanted in left.items() if not wanted & left.keys()}:
+        left = {module: wanted for module, wanted in left.items() if module not in free}
+    assert sorted(left) == []
+
+
 def test_models_and_their_compiler_know_of_no_fmi() -> None:
     assert [str(item) for item in IMPORTS if item.source.startswith(WITHOUT_FMI) and is_host(item)] == []
 

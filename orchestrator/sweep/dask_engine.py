@@ -13,7 +13,7 @@ from typing import Any
 from orchestrator.cosim.fmu_files import sources_hash
 from orchestrator.cosim.master import Interrupt
 from orchestrator.cosim.slave import Array
-from orchestrator.sweep.engines import AHEAD, POLL, ChunkTask, cores, safe_children
+from orchestrator.sweep.engine import AHEAD, POLL, ChunkTask, cores, safe_children
 from orchestrator.sweep.job import Chunk, Job
 from orchestrator.text.errors import BadInput
 

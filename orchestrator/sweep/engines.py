@@ -8,7 +8,7 @@ import os
 import signal
 import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from concurrent.futures import (
     FIRST_COMPLETED,
     BrokenExecutor,
@@ -23,7 +23,6 @@ from functools import partial
 from importlib.util import find_spec
 from multiprocessing import get_context, parent_process
 from pathlib import Path
-from typing import NamedTuple, Protocol
 
 from fmus.files import live_in, own_room
 from fmus.native.compilers import can_compile
@@ -31,49 +30,18 @@ from orchestrator.cosim.master import Interrupt
 from orchestrator.cosim.slave import Array
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.sweep.batch import run_batch
+from orchestrator.sweep.engine import AHEAD, POLL, ChunkTask, Engine, cores, safe_children
 from orchestrator.sweep.fmu_runs import run_recorded
 from orchestrator.sweep.job import Chunk, Job
 from orchestrator.sweep.rows import why_not_compiled
 from orchestrator.text.errors import BadInput
 
-Work = Callable[[Job, Chunk], Array]
 BATCH_CHUNK = 500
 """Runs per chunk of the compiled batch: about half a second."""
 RECORDED_CHUNK = 8
 """Runs per chunk where each run is a recording: some seconds."""
-AHEAD = 2
-"""Chunks handed out per worker."""
 IN_HAND = 1.0
 """How long chunks in hand may take to be done after an interrupt, where they can be cut short [s]."""
-POLL = 0.2
-"""How often an interrupt is looked for [s]."""
-
-
-class Engine(Protocol):
-    """Does chunks."""
-
-    name: str
-    workers: int
-
-    def results(self, job: Job, chunks: Iterator[Chunk], interrupt: Interrupt) -> Iterator[tuple[Chunk, Array]]:
-        """Yield chunks with their rows in any order; after an interrupt only those in hand."""
-
-
-class ChunkTask(NamedTuple):
-    """How one chunk is done, and how large it should be."""
-
-    work: Work
-    name: str
-    chunk: int
-    threads: bool
-    """Threads are enough: the work holds no lock."""
-    note: str = ""
-    """Why it is not the compiled batch."""
-
-    @property
-    def is_compiled(self) -> bool:
-        """Return whether there is machine code to be made first."""
-        return self.threads
 
 
 def choose_task(scenario: Scenario, fmus: str | None) -> ChunkTask:
@@ -150,20 +118,6 @@ def _rows(future: "Future[Array]") -> Array:
         raise BadInput("a worker was ended from outside; what is done is kept, --resume goes on") from error
 
 
-@contextmanager
-def safe_children() -> Iterator[None]:
-    """Let no process that is begun import a module of the current folder."""
-    before = os.environ.get("PYTHONSAFEPATH")
-    os.environ["PYTHONSAFEPATH"] = "1"
-    try:
-        yield
-    finally:
-        if before is None:
-            os.environ.pop("PYTHONSAFEPATH", None)
-        else:
-            os.environ["PYTHONSAFEPATH"] = before
-
-
 def make_engine(task: ChunkTask, dask: str | None, workers: int | None) -> Engine:
     """Return the engine: Dask if an address or ``local`` is given. Raises ``BadInput`` if Dask is missing."""
     if dask is None:
@@ -173,11 +127,6 @@ def make_engine(task: ChunkTask, dask: str | None, workers: int | None) -> Engin
     from orchestrator.sweep.dask_engine import DaskEngine
 
     return DaskEngine(task, None if dask == "local" else dask, workers)
-
-
-def cores() -> int:
-    """Return the number of processor cores this process may use."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def _begin_worker(room: str) -> None:

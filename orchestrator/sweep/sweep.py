@@ -12,7 +12,8 @@ from orchestrator.scenario.plausible import implausible, is_implausible
 from orchestrator.session.session import versions
 from orchestrator.sweep.batch import compiled
 from orchestrator.sweep.columns import columns_of, filled
-from orchestrator.sweep.engines import Engine, choose_task, make_engine
+from orchestrator.sweep.engine import Engine
+from orchestrator.sweep.engines import choose_task, make_engine
 from orchestrator.sweep.job import Chunk, Job, chunks, job_to, make_job
 from orchestrator.sweep.store import Store
 from orchestrator.sweep.study.study import Study

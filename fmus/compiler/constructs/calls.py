@@ -16,10 +16,11 @@ from fmus.compiler.source.advice import CALL_ADVICE
 from fmus.compiler.source.kinds import Array, Kind, Mixed, Open, Struct, described, is_named_tuple
 from fmus.compiler.source.refusals import AlreadySaidError, CannotError
 from fmus.compiler.target.access import is_at, looks_at_place
-from fmus.compiler.target.body import EXPRESSIONS, FunctionBody
-from fmus.compiler.target.functions import Instance, Parameter, instance_of, signature
+from fmus.compiler.target.body import EXPRESSIONS, METHODS, FunctionBody
+from fmus.compiler.target.functions import Instance, Parameter, instance_of
 from fmus.compiler.target.in_place import InPlace
 from fmus.compiler.target.making import coerced, struct_of, written_out
+from fmus.compiler.target.signatures import signature
 from fmus.compiler.target.storage import address, hoist, put, text_of
 from fmus.compiler.target.values import Place, Value, place_of
 
@@ -213,7 +214,7 @@ def _method(body: FunctionBody, node: ast.Call) -> Value:
     return invoke(body, node, function, node.args, value)
 
 
-def call_property(body: FunctionBody, value: Value, name: str, node: ast.AST) -> Value:
+def _property(body: FunctionBody, value: Value, name: str, node: ast.AST) -> Value:
     """Return a property of a NamedTuple."""
     assert isinstance(value.kind, Struct)
     found = vars(value.kind.cls).get(name)
@@ -225,3 +226,4 @@ def call_property(body: FunctionBody, value: Value, name: str, node: ast.AST) ->
 
 
 EXPRESSIONS[ast.Call] = call
+METHODS[property] = _property

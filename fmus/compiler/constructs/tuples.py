@@ -5,7 +5,7 @@ import ast
 from fmus.compiler.source.kinds import FLOAT, INT, Array, Cells, Mixed, Struct, described
 from fmus.compiler.source.refusals import CannotError
 from fmus.compiler.source.resolve import attribute as static_attribute
-from fmus.compiler.target.body import EXPRESSIONS, FunctionBody
+from fmus.compiler.target.body import EXPRESSIONS, METHODS, FunctionBody
 from fmus.compiler.target.making import elements, tuple_of
 from fmus.compiler.target.names import member_name
 from fmus.compiler.target.storage import address, item_of, settled
@@ -48,9 +48,7 @@ def field(body: FunctionBody, value: Value, name: str, node: ast.AST) -> Value:
     cls = value.kind.cls
     kinds = body.program.fields(cls, node)
     if name not in kinds:
-        from fmus.compiler.constructs.calls import call_property
-
-        return call_property(body, value, name, node)
+        return METHODS[property](body, value, name, node)
     if value.fill is not None or (not value.place and isinstance(kinds[name], Array)):
         value = settled(body, value, cls.__name__.lower())
     const = UNKNOWN if value.const is UNKNOWN else getattr(value.const, name)

@@ -3,6 +3,7 @@
 import ast
 from dataclasses import replace
 
+from fmus.compiler.constructs.tuples import field
 from fmus.compiler.source.bindings import reads
 from fmus.compiler.source.kinds import Array, Mixed, Struct, described
 from fmus.compiler.source.refusals import CannotError
@@ -85,8 +86,6 @@ def unpack(body: FunctionBody, target: ast.expr, value: Value, node: ast.AST) ->
 
 def items_of(body: FunctionBody, value: Value, node: ast.AST) -> tuple[Value, ...]:
     """Return the items of a tuple or the fields of a NamedTuple."""
-    from fmus.compiler.constructs.tuples import field
-
     if value.items is not None:
         return value.items
     if isinstance(value.kind, Array):

@@ -19,6 +19,8 @@ from fmus.compiler.target.values import Place, Value, is_scalar
 
 EXPRESSIONS: dict[type[ast.AST], Callable[["FunctionBody", Any], Value]] = {}
 STATEMENTS: dict[type[ast.AST], Callable[["FunctionBody", Any], None]] = {}
+METHODS: dict[type, Callable[["FunctionBody", Value, str, ast.AST], Value]] = {}
+"""Kind of a member of a NamedTuple that is no field -> what its value is."""
 
 
 @dataclass

@@ -12,6 +12,7 @@ from fmus.compiler.source.bindings import stored_in
 from fmus.compiler.source.kinds import Kind, Mixed, Struct
 from fmus.compiler.source.resolve import static
 from fmus.compiler.target.program import Program
+from fmus.compiler.target.signatures import signature
 from fmus.compiler.target.values import returned_by_value
 
 
@@ -34,8 +35,6 @@ def in_place(program: Program, function: FunctionType) -> InPlace | None:
 
 
 def _changed(program: Program, function: FunctionType) -> InPlace | None:
-    from fmus.compiler.target.functions import signature
-
     known = signature(program, function)
     results = known.result.items if isinstance(known.result, Mixed) else (known.result,)
     node = program.library.function(function)

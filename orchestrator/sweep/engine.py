@@ -1,0 +1,62 @@
+"""What an engine of studies is, and what all engines share."""
+
+import os
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import NamedTuple, Protocol
+
+from orchestrator.cosim.master import Interrupt
+from orchestrator.cosim.slave import Array
+from orchestrator.sweep.job import Chunk, Job
+
+Work = Callable[[Job, Chunk], Array]
+AHEAD = 2
+"""Chunks handed out per worker."""
+POLL = 0.2
+"""How often an interrupt is looked for [s]."""
+
+
+class Engine(Protocol):
+    """Does chunks."""
+
+    name: str
+    workers: int
+
+    def results(self, job: Job, chunks: Iterator[Chunk], interrupt: Interrupt) -> Iterator[tuple[Chunk, Array]]:
+        """Yield chunks with their rows in any order; after an interrupt only those in hand."""
+
+
+class ChunkTask(NamedTuple):
+    """How one chunk is done, and how large it should be."""
+
+    work: Work
+    name: str
+    chunk: int
+    threads: bool
+    """Threads are enough: the work holds no lock."""
+    note: str = ""
+    """Why it is not the compiled batch."""
+
+    @property
+    def is_compiled(self) -> bool:
+        """Return whether there is machine code to be made first."""
+        return self.threads
+
+
+@contextmanager
+def safe_children() -> Iterator[None]:
+    """Let no process that is begun import a module of the current folder."""
+    before = os.environ.get("PYTHONSAFEPATH")
+    os.environ["PYTHONSAFEPATH"] = "1"
+    try:
+        yield
+    finally:
+        if before is None:
+            os.environ.pop("PYTHONSAFEPATH", None)
+        else:
+            os.environ["PYTHONSAFEPATH"] = before
+
+
+def cores() -> int:
+    """Return the number of processor cores this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1

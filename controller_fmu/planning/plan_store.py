@@ -230,16 +230,16 @@ def dequeue(store: PlanStore) -> int:
 
 
 def put_word(
-    store: PlanStore, word: int, code: int, cost: float, a: float, b: float, c: float, d: float, e: float
+    store: PlanStore, word: int, code: int, cost: float, ways: tuple[float, float, float, float, float]
 ) -> None:
     """Set a word."""
     store.word_code[word] = code
     store.word_cost[word] = cost
-    store.word_a[word] = a
-    store.word_b[word] = b
-    store.word_c[word] = c
-    store.word_d[word] = d
-    store.word_e[word] = e
+    store.word_a[word] = ways[0]
+    store.word_b[word] = ways[1]
+    store.word_c[word] = ways[2]
+    store.word_d[word] = ways[3]
+    store.word_e[word] = ways[4]
 
 
 def drop_word(store: PlanStore, word: int) -> None:

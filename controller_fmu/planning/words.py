@@ -10,6 +10,7 @@ Lengths are in radii of the smallest circle, angles of an L positive to the left
 """
 
 import math
+from typing import NamedTuple
 
 from controller_fmu.planning.plan_store import PlanStore, put_word
 from controller_fmu.planning.task import CUSP, STEER, Task
@@ -36,6 +37,26 @@ def turn_of(code: int, piece: int) -> float:
     return float(code % 3 - 1)
 
 
+class Arrival(NamedTuple):
+    """How the car comes to the start of a word: what the first change of direction and of the wheel are priced by."""
+
+    gear: float
+    """1.0, -1.0; 0.0: none."""
+    lock: float
+    """-1.0 to 1.0."""
+    radius: float
+    """Of the smallest circle [m]."""
+
+
+class Symmetry(NamedTuple):
+    """One of the four images of a word: mirrored or not, driven forward or in reverse."""
+
+    left: int
+    right: int
+    time: float
+    """1.0, or -1.0: each piece the other way."""
+
+
 def list_words(store: PlanStore, start: Pose, end: Pose, gear: float, lock: float, task: Task) -> int:
     """List the words from ``start`` to ``end`` with their costs; returns how many.
 
@@ -49,31 +70,33 @@ def list_words(store: PlanStore, start: Pose, end: Pose, gear: float, lock: floa
     x = dx * cos + dy * sin
     y = dy * cos - dx * sin
     h = end.heading - start.heading
+    arrival = Arrival(gear, lock, 1.0 / k)
     count = 0
     for side in range(2):
         mirror = 1.0 if side == 0 else -1.0
-        count = _three_pieces(store, count, x, y * mirror, h * mirror, mirror, gear, lock, task)
+        left = LEFT if side == 0 else RIGHT
+        right = RIGHT if side == 0 else LEFT
+        goal = Pose(x, y * mirror, h * mirror)
+        count = _three_pieces(store, count, goal, Symmetry(left, right, 1.0), arrival)
         for way in range(2):
             time = 1.0 if way == 0 else -1.0
-            count = _more_pieces(store, count, x * time, y * mirror, h * mirror * time, mirror, time, gear, lock, task)
+            goal = Pose(x * time, y * mirror, h * mirror * time)
+            count = _more_pieces(store, count, goal, Symmetry(left, right, time), arrival)
     return count
 
 
-def _three_pieces(
-    store: PlanStore, count: int, x: float, y: float, h: float, mirror: float, gear: float, lock: float, task: Task
-) -> int:
+def _three_pieces(store: PlanStore, count: int, goal: Pose, image: Symmetry, arrival: Arrival) -> int:
     """List LSL, LSR and LRL, or their mirror images."""
-    left = LEFT if mirror > 0.0 else RIGHT
-    right = RIGHT if mirror > 0.0 else LEFT
-    sx = x - math.sin(h)
-    sy = y - 1.0 + math.cos(h)
+    h = goal.heading
+    sx = goal.x - math.sin(h)
+    sy = goal.y - 1.0 + math.cos(h)
     apart = math.sqrt(sx * sx + sy * sy)
     towards = math.atan2(sy, sx)
-    code = word_code(left, LINE, left, UNUSED, UNUSED)
-    count = _arcs(store, count, code, towards, apart, h - towards, gear, lock, task)
-    count = _arcs(store, count, code, towards + PI, -apart, h - towards - PI, gear, lock, task)
+    code = word_code(image.left, LINE, image.left, UNUSED, UNUSED)
+    count = _arcs(store, count, code, (towards, apart, h - towards), arrival)
+    count = _arcs(store, count, code, (towards + PI, -apart, h - towards - PI), arrival)
     if apart <= 4.0:
-        code = word_code(left, right, left, UNUSED, UNUSED)
+        code = word_code(image.left, image.right, image.left, UNUSED, UNUSED)
         open_by = math.acos(0.25 * apart)
         for side in range(2):
             b = open_by if side == 0 else -open_by
@@ -81,125 +104,103 @@ def _three_pieces(
             first = towards + b + 0.5 * PI
             second = towards - b - 0.5 * PI
             u = wrap_angle(first - second)
-            count = _arcs(store, count, code, first, u, h - second, gear, lock, task)
+            count = _arcs(store, count, code, (first, u, h - second), arrival)
             other = u - TWO_PI if u > 0.0 else u + TWO_PI
-            count = _arcs(store, count, code, first, other, h - second, gear, lock, task)
-    sx = x + math.sin(h)
-    sy = y - 1.0 - math.cos(h)
+            count = _arcs(store, count, code, (first, other, h - second), arrival)
+    sx = goal.x + math.sin(h)
+    sy = goal.y - 1.0 - math.cos(h)
     square = sx * sx + sy * sy
     if square >= 4.0:
-        code = word_code(left, LINE, right, UNUSED, UNUSED)
+        code = word_code(image.left, LINE, image.right, UNUSED, UNUSED)
         line = math.sqrt(square - 4.0)
         towards = math.atan2(sy, sx)
         along = towards + math.atan2(2.0, line)
-        count = _arcs(store, count, code, along, line, along - h, gear, lock, task)
+        count = _arcs(store, count, code, (along, line, along - h), arrival)
         along = towards + math.atan2(2.0, -line)
-        count = _arcs(store, count, code, along, -line, along - h, gear, lock, task)
+        count = _arcs(store, count, code, (along, -line, along - h), arrival)
     return count
 
 
-def _arcs(
-    store: PlanStore, count: int, code: int, t: float, u: float, v: float, gear: float, lock: float, task: Task
-) -> int:
+def _arcs(store: PlanStore, count: int, code: int, ways: tuple[float, float, float], arrival: Arrival) -> int:
     """List a word of three pieces with its outer arcs driven either way round."""
-    t = wrap_angle(t)
-    v = wrap_angle(v)
+    t = wrap_angle(ways[0])
+    u = ways[1]
+    v = wrap_angle(ways[2])
     t_other = t - TWO_PI if t > 0.0 else t + TWO_PI
     v_other = v - TWO_PI if v > 0.0 else v + TWO_PI
-    count = _add(store, count, code, t, u, v, 0.0, 0.0, gear, lock, task)
-    count = _add(store, count, code, t_other, u, v, 0.0, 0.0, gear, lock, task)
-    count = _add(store, count, code, t, u, v_other, 0.0, 0.0, gear, lock, task)
-    return _add(store, count, code, t_other, u, v_other, 0.0, 0.0, gear, lock, task)
+    count = _add(store, count, code, (t, u, v, 0.0, 0.0), arrival)
+    count = _add(store, count, code, (t_other, u, v, 0.0, 0.0), arrival)
+    count = _add(store, count, code, (t, u, v_other, 0.0, 0.0), arrival)
+    return _add(store, count, code, (t_other, u, v_other, 0.0, 0.0), arrival)
 
 
-def _more_pieces(
-    store: PlanStore,
-    count: int,
-    x: float,
-    y: float,
-    h: float,
-    mirror: float,
-    time: float,
-    gear: float,
-    lock: float,
-    task: Task,
-) -> int:
+def _more_pieces(store: PlanStore, count: int, goal: Pose, image: Symmetry, arrival: Arrival) -> int:
     """List words of four and five pieces: CCCC, CCSC, CSCC and CCSCC, equations 8.7 to 8.11 of the source."""
-    left = LEFT if mirror > 0.0 else RIGHT
-    right = RIGHT if mirror > 0.0 else LEFT
-    px = x + math.sin(h)
-    py = y - 1.0 - math.cos(h)
+    h = goal.heading
+    time = image.time
+    px = goal.x + math.sin(h)
+    py = goal.y - 1.0 - math.cos(h)
     square = px * px + py * py
     rho = 0.25 * (2.0 + math.sqrt(square))
-    code = word_code(left, right, left, right, UNUSED)
+    code = word_code(image.left, image.right, image.left, image.right, UNUSED)
     if rho <= 1.0:
         u = math.acos(rho)
         t = _first_of_four(u, -u, px, py)
         v = wrap_angle(t - 2.0 * u - h)
-        count = _add(store, count, code, time * t, time * u, -time * u, time * v, 0.0, gear, lock, task)
+        count = _add(store, count, code, (time * t, time * u, -time * u, time * v, 0.0), arrival)
     rho = (20.0 - square) / 16.0
     if 0.0 <= rho <= 1.0:
         u = -math.acos(rho)
         t = _first_of_four(u, u, px, py)
         v = wrap_angle(t - h)
-        count = _add(store, count, code, time * t, time * u, time * u, time * v, 0.0, gear, lock, task)
+        count = _add(store, count, code, (time * t, time * u, time * u, time * v, 0.0), arrival)
     if square >= 4.0:
         u = 4.0 - math.sqrt(square - 4.0)
         if u <= 0.0:
             t = wrap_angle(math.atan2((4.0 - u) * px - 2.0 * py, -2.0 * px + (u - 4.0) * py))
             v = wrap_angle(t - h)
             q = -0.5 * PI * time
-            code = word_code(left, right, LINE, left, right)
-            count = _add(store, count, code, time * t, q, time * u, q, time * v, gear, lock, task)
-    count = _four_with_line(store, count, x, y, h, left, right, time, False, gear, lock, task)
-    back_x = x * math.cos(h) + y * math.sin(h)
-    back_y = x * math.sin(h) - y * math.cos(h)
-    return _four_with_line(store, count, back_x, back_y, h, left, right, time, True, gear, lock, task)
+            code = word_code(image.left, image.right, LINE, image.left, image.right)
+            count = _add(store, count, code, (time * t, q, time * u, q, time * v), arrival)
+    count = _four_with_line(store, count, goal, image, False, arrival)
+    back_x = goal.x * math.cos(h) + goal.y * math.sin(h)
+    back_y = goal.x * math.sin(h) - goal.y * math.cos(h)
+    return _four_with_line(store, count, Pose(back_x, back_y, h), image, True, arrival)
 
 
 def _four_with_line(
-    store: PlanStore,
-    count: int,
-    x: float,
-    y: float,
-    h: float,
-    left: int,
-    right: int,
-    time: float,
-    backwards: bool,
-    gear: float,
-    lock: float,
-    task: Task,
+    store: PlanStore, count: int, goal: Pose, image: Symmetry, backwards: bool, arrival: Arrival
 ) -> int:
     """List CCSC or, read backwards, CSCC."""
-    q = -0.5 * PI * time
-    sx = x - math.sin(h)
-    sy = y - 1.0 + math.cos(h)
+    h = goal.heading
+    q = -0.5 * PI * image.time
+    sx = goal.x - math.sin(h)
+    sy = goal.y - 1.0 + math.cos(h)
     square = sx * sx + sy * sy
     if square >= 4.0:
         r = math.sqrt(square - 4.0)
-        t = time * wrap_angle(math.atan2(sy, sx) + math.atan2(r, -2.0))
-        u = time * (2.0 - r)
-        v = time * wrap_angle(h - 0.5 * PI - t * time)
+        t = image.time * wrap_angle(math.atan2(sy, sx) + math.atan2(r, -2.0))
+        u = image.time * (2.0 - r)
+        v = image.time * wrap_angle(h - 0.5 * PI - t * image.time)
         if backwards:
-            code = word_code(left, LINE, right, left, UNUSED)
-            count = _add(store, count, code, v, u, q, t, 0.0, gear, lock, task)
+            code = word_code(image.left, LINE, image.right, image.left, UNUSED)
+            count = _add(store, count, code, (v, u, q, t, 0.0), arrival)
         else:
-            code = word_code(left, right, LINE, left, UNUSED)
-            count = _add(store, count, code, t, q, u, v, 0.0, gear, lock, task)
-    px = x + math.sin(h)
-    py = y - 1.0 - math.cos(h)
+            code = word_code(image.left, image.right, LINE, image.left, UNUSED)
+            count = _add(store, count, code, (t, q, u, v, 0.0), arrival)
+    px = goal.x + math.sin(h)
+    py = goal.y - 1.0 - math.cos(h)
     rho = math.sqrt(px * px + py * py)
     if rho >= 2.0:
-        t = time * math.atan2(px, -py)
-        u = time * (2.0 - rho)
-        v = time * wrap_angle(t * time + 0.5 * PI - h)
+        t = image.time * math.atan2(px, -py)
+        u = image.time * (2.0 - rho)
+        v = image.time * wrap_angle(t * image.time + 0.5 * PI - h)
         if backwards:
-            code = word_code(right, LINE, right, left, UNUSED)
-            count = _add(store, count, code, v, u, q, t, 0.0, gear, lock, task)
+            code = word_code(image.right, LINE, image.right, image.left, UNUSED)
+            count = _add(store, count, code, (v, u, q, t, 0.0), arrival)
         else:
-            code = word_code(left, right, LINE, right, UNUSED)
-            count = _add(store, count, code, t, q, u, v, 0.0, gear, lock, task)
+            code = word_code(image.left, image.right, LINE, image.right, UNUSED)
+            count = _add(store, count, code, (t, q, u, v, 0.0), arrival)
     return count
 
 
@@ -215,45 +216,27 @@ def _first_of_four(u: float, v: float, x: float, y: float) -> float:
 
 
 def _add(
-    store: PlanStore,
-    count: int,
-    code: int,
-    a: float,
-    b: float,
-    c: float,
-    d: float,
-    e: float,
-    gear: float,
-    lock: float,
-    task: Task,
+    store: PlanStore, count: int, code: int, ways: tuple[float, float, float, float, float], arrival: Arrival
 ) -> int:
     """List one word with its cost [m]: its length, changes of direction, and of the wheel."""
-    ways = (_whole(a), _whole(b), _whole(c), _whole(d), _whole(e))
-    radius = 1.0 / task.car.curvature
+    gear = arrival.gear
+    lock = arrival.lock
     cost = 0.0
     rest = code
     for number in range(5):
-        way = ways[number]
+        way = _whole(ways[number])
         turn = float(rest % 3 - 1)
         rest = rest // 3
         if way != 0.0:
             direction = sign(way)
-            cost += abs(way) * radius + abs(turn - lock) * STEER
+            cost += abs(way) * arrival.radius + abs(turn - lock) * STEER
             if direction * gear < 0.0:
                 cost += CUSP
             gear = direction
             lock = turn
-    put_word(
-        store,
-        count,
-        code,
-        cost,
-        ways[0] * radius,
-        ways[1] * radius,
-        ways[2] * radius,
-        ways[3] * radius,
-        ways[4] * radius,
-    )
+    r = arrival.radius
+    a, b, c, d, e = ways
+    put_word(store, count, code, cost, (_whole(a) * r, _whole(b) * r, _whole(c) * r, _whole(d) * r, _whole(e) * r))
     return count + 1
 
 

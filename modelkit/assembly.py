@@ -34,16 +34,15 @@ def assembled(
     types of the whole are said to be from. Raises ``CannotConnectError`` if signals of the same name do not fit,
     ``ValueError`` if more than one part has a store.
     """
-    stores = [model.store for model in parts.values() if model.store is not None]
-    if len(stores) > 1:
-        raise ValueError(f"{name}: only one of the models may have a store")
+    store = _only_store(name, parts)
     own = Assembly(tuple(parts.items()), period_ns, frozenset(opened))
     memory: dict[str, tuple[Any, Any]] = {part: (model.state, model.state()) for part, model in own.parts}
-    memory |= {f"{part}{INPUTS}": (model.inputs, model.inputs()) for part, model in own.parts}
+    memory |= {f"{part}{INPUTS}": (model.inputs, model.inputs()) for part, model in own.parts} | {
+        LEFT: (int, period_ns)
+    }
     params = {part: (model.params, model.first_params()) for part, model in own.parts}
     inputs = {part: (model.inputs, model.inputs()) for part, model in own.parts}
     outputs = {part: (_told(model), model.outputs()) for part, model in own.parts}
-    memory[LEFT] = (int, period_ns)
     state = _tuple(f"{name}State", memory, package)
     told = _tuple(f"{name}Outputs", outputs, package)
     whole = Together(own, state, told)
@@ -56,12 +55,12 @@ def assembled(
         inputs=_tuple(f"{name}Inputs", inputs, package),
         outputs=told,
         initialize=whole.initialize,
-        step=whole.step_with_store if stores else whole.step,
+        step=whole.step if store is None else whole.step_with_store,
         step_size=period_ns * 1e-9,
         stop_time=max(model.stop_time for _, model in own.parts),
         view=View(hidden=frozenset(_hidden(own))),
         assembly=own,
-        store=stores[0] if stores else None,
+        store=store,
     )
 
 
@@ -150,6 +149,14 @@ def _hidden(assembly: Assembly) -> Iterator[str]:
         yield from (f"{part}.{name}" for name in known if not model.shows(name))
     for wire in wires(assembly):
         yield _name(assembly, wire.target, wire.input)
+
+
+def _only_store(name: str, parts: Mapping[str, Model]) -> type[Any] | None:
+    """Return the store of the one model that has one; None if none has."""
+    stores = [model.store for model in parts.values() if model.store is not None]
+    if len(stores) > 1:
+        raise ValueError(f"{name}: only one of the models may have a store")
+    return stores[0] if stores else None
 
 
 def _told(model: Model) -> Any:

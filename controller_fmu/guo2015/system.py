@@ -62,6 +62,17 @@ class GuoState(NamedTuple):
     monitor: MonitorState = MonitorState()
 
 
+class Sample(NamedTuple):
+    """What is known at a sample before the chart decides."""
+
+    inputs: ControllerInput
+    planned: Plan
+    pose: Pose
+    """In the slot's frame."""
+    monitor: MonitorState
+    dt_ns: int
+
+
 def guo_start(params: ControllerParams) -> GuoState:
     """Return the system in standby."""
     return GuoState()
@@ -86,10 +97,13 @@ def guo_sample(state: GuoState, inputs: ControllerInput, params: ControllerParam
     monitor = watch(state.monitor, inputs, expected, watched, dt_ns, params)
     leg = state.driven if state.phase == GuoPhase.STOP else state.leg
     tracking = track(leg, pose, planned.path, state.piece, params)
-    reason = _reason(state, monitor, inputs, planned, pose, tracking, params)
-    guards = _guards(state, inputs, planned, pose, tracking, reason, params)
+    now = Sample(inputs, planned, pose, monitor, dt_ns)
+    reason = _reason(state, now, tracking, params)
+    guards = _guards(state, now, tracking, reason, params)
     phase, next_leg = transition(state.phase, state.leg, guards)
-    return _moved_on(state, inputs, planned, pose, monitor, reason, phase, next_leg, dt_ns, params)
+    if is_over(phase):
+        return _ended(state, phase, reason if phase == GuoPhase.FAILED else Reason.NONE, inputs.driver_takeover)
+    return _moved_on(state, now, phase, next_leg, params)
 
 
 def guo_outputs(state: GuoState, params: ControllerParams) -> ControllerOutput:
@@ -120,109 +134,69 @@ def guo_outputs(state: GuoState, params: ControllerParams) -> ControllerOutput:
     )
 
 
-def _reason(
-    state: GuoState,
-    monitor: MonitorState,
-    inputs: ControllerInput,
-    planned: Plan,
-    pose: Pose,
-    tracking: Tracking,
-    params: ControllerParams,
-) -> int:
+def _reason(state: GuoState, now: Sample, tracking: Tracking, params: ControllerParams) -> int:
     limit = params.threshold
-    reason = reason_to_fail(monitor, inputs, expected_in(state.phase), state.running_ns, state.shifts, params)
+    expected = expected_in(state.phase)
+    reason = reason_to_fail(now.monitor, now.inputs, expected, state.running_ns, state.shifts, params)
     if reason != Reason.NONE:
         return reason
-    if not planned.path.found:
+    if not now.planned.path.found:
         return Reason.NO_PATH
     if abs(tracking.lateral_error) > limit.lost_lateral:
         return Reason.LEFT_PATH
-    straight = state.phase == GuoPhase.STRAIGHTEN and abs(inputs.steering_wheel_angle) <= limit.wheel
-    if straight and not within(pose.y, pose.heading, limit.miss_lateral, limit.miss_heading):
+    straight = state.phase == GuoPhase.STRAIGHTEN and abs(now.inputs.steering_wheel_angle) <= limit.wheel
+    if straight and not within(now.pose.y, now.pose.heading, limit.miss_lateral, limit.miss_heading):
         return Reason.MISSED_TARGET
     return Reason.NONE
 
 
-def _guards(
-    state: GuoState,
-    inputs: ControllerInput,
-    planned: Plan,
-    pose: Pose,
-    tracking: Tracking,
-    reason: int,
-    params: ControllerParams,
-) -> int:
-    wheel = inputs.steering_wheel_angle
-    standing = standing_guards(state.leg, pose, inputs, params)
+def _guards(state: GuoState, now: Sample, tracking: Tracking, reason: int, params: ControllerParams) -> int:
+    wheel = now.inputs.steering_wheel_angle
+    speed = now.inputs.measured_speed
+    path = now.planned.path
+    standing = standing_guards(state.leg, now.pose, now.inputs, params)
     return (
-        bit(Guard.TAKEOVER, inputs.driver_takeover)
+        bit(Guard.TAKEOVER, now.inputs.driver_takeover)
         | bit(Guard.FAULT, reason != Reason.NONE)
-        | bit(Guard.PLANNED, planned.path.found and abs(inputs.measured_speed) <= params.threshold.standstill)
+        | bit(Guard.PLANNED, path.found and abs(speed) <= params.threshold.standstill)
         | wheel_guards(state.leg, wheel, state.request, params.threshold.wheel)
-        | way_guards(tracking, pose, planned.path, inputs.measured_speed, params)
+        | way_guards(tracking, now.pose, path, speed, params)
         | standing
     )
 
 
-def _moved_on(
-    state: GuoState,
-    inputs: ControllerInput,
-    planned: Plan,
-    pose: Pose,
-    monitor: MonitorState,
-    reason: int,
-    phase: int,
-    leg: int,
-    dt_ns: int,
-    params: ControllerParams,
-) -> GuoState:
-    if is_over(phase):
-        return _ended(state, phase, reason if phase == GuoPhase.FAILED else Reason.NONE, inputs.driver_takeover)
+def _moved_on(state: GuoState, now: Sample, phase: int, leg: int, params: ControllerParams) -> GuoState:
     back_on_path = state.phase == GuoPhase.STOP and phase == GuoPhase.PRE_STEER and leg == GuoPhase.PATH_TRACKING
     direction = DIRECTION_OF_PHASE[phase]
     turned = direction != 0 and direction != state.direction
     driven = phase if direction != 0 else state.driven
-    tracking = track(
-        driven if phase == GuoPhase.STOP else leg,
-        pose,
-        planned.path,
-        SECOND_ARC if back_on_path else state.piece,
-        params,
-    )
-    request = _wheel_request(phase, tracking, planned, params)
-    swing = _swing(state, phase, request, inputs, monitor, params)
-    shifts = state.shifts + 1 if turned else state.shifts
-    last_direction = direction if direction != 0 else state.direction
+    tracked = driven if phase == GuoPhase.STOP else leg
+    piece = SECOND_ARC if back_on_path else state.piece
+    tracking = track(tracked, now.pose, now.planned.path, piece, params)
+    request = _wheel_request(phase, tracking, now.planned, params)
+    swing = _swing(state, phase, request, now, params)
     return GuoState(
         phase=phase,
         leg=leg,
         driven=driven,
         reason=Reason.NONE,
-        shifts=shifts,
-        direction=last_direction,
-        running_ns=state.running_ns + dt_ns,
+        shifts=state.shifts + 1 if turned else state.shifts,
+        direction=direction if direction != 0 else state.direction,
+        running_ns=state.running_ns + now.dt_ns,
         piece=tracking.piece,
-        plan=planned,
+        plan=now.planned,
         tracking=tracking,
         request=request,
-        moving=is_moving(state.moving, inputs.measured_speed, direction, params.threshold.standstill),
-        advice=_advice(state, phase, planned, pose, tracking, swing, inputs, monitor, params),
+        moving=is_moving(state.moving, now.inputs.measured_speed, direction, params.threshold.standstill),
+        advice=_advice(state, phase, now, tracking, swing, params),
         swing=swing,
-        takeover=inputs.driver_takeover,
-        monitor=monitor,
+        takeover=now.inputs.driver_takeover,
+        monitor=now.monitor,
     )
 
 
 def _advice(
-    state: GuoState,
-    phase: int,
-    planned: Plan,
-    pose: Pose,
-    tracking: Tracking,
-    swing: float,
-    inputs: ControllerInput,
-    monitor: MonitorState,
-    params: ControllerParams,
+    state: GuoState, phase: int, now: Sample, tracking: Tracking, swing: float, params: ControllerParams
 ) -> float:
     """Return the speed advised [m/s]; while a stop is asked for it may fall, as on the way there, but not rise."""
     if phase == GuoPhase.STANDBY:
@@ -231,33 +205,27 @@ def _advice(
     if not driving and phase != GuoPhase.STOP:
         return state.advice
     way = phase if driving else state.driven
-    speed = inputs.measured_speed
+    speed = now.inputs.measured_speed
     advice = swing
     if way == GuoPhase.PATH_TRACKING:
-        reference = reference_at(planned.path, pose.x, tracking.piece)
-        advice = min(path_speed(planned.path, reference, speed, monitor.wheel.steering, params), swing)
+        path = now.planned.path
+        reference = reference_at(path, now.pose.x, tracking.piece)
+        advice = min(path_speed(path, reference, speed, now.monitor.wheel.steering, params), swing)
     else:
         left = -DIRECTION_OF_PHASE[way] * tracking.ahead
         advice = min(point_speed(left, speed, params.guo2015.prompting), swing)
     return advice if driving else min(state.advice, advice)
 
 
-def _swing(
-    state: GuoState,
-    phase: int,
-    request: float,
-    inputs: ControllerInput,
-    monitor: MonitorState,
-    params: ControllerParams,
-) -> float:
+def _swing(state: GuoState, phase: int, request: float, now: Sample, params: ControllerParams) -> float:
     """Return the speed [m/s] at which the wheel may swing to its request; held until it has arrived."""
     limit = params.guo2015.prompting.speed_limit
-    wheel = inputs.steering_wheel_angle
+    wheel = now.inputs.steering_wheel_angle
     if DIRECTION_OF_PHASE[phase] == 0 or abs(request - wheel) <= params.limit.wheel_off:
         return limit
     lock = params.car.steering.angle_limit
     angle = clamp(wheel, -lock, lock) / params.car.steering.ratio
-    speed = swing_speed(angle, request / params.car.steering.ratio, monitor.wheel.steering, params)
+    speed = swing_speed(angle, request / params.car.steering.ratio, now.monitor.wheel.steering, params)
     return min(state.swing, speed) if DIRECTION_OF_PHASE[state.phase] != 0 else speed
 
 

@@ -105,41 +105,44 @@ def _driven(
     found = errors(pose, course.goal, v, state.direction) if new_goal else seen
     characteristic = recognise(course.stage, found, hsic.threshold)
     speed_mode, steer_mode = RULES[characteristic]
+    standing = abs(v) <= params.threshold.standstill
     direction = state.direction
-    hold = course.hold
-    if speed_mode == SpeedMode.TURN_ROUND and abs(v) <= params.threshold.standstill:
+    if speed_mode == SpeedMode.TURN_ROUND and standing:
         direction = -1 if found.ahead > 0.0 else 1
-        hold = hold or direction != state.direction
     turning = speed_mode == SpeedMode.TURN_ROUND and direction == state.direction
     integral = 0.0 if new_goal else state.integral + found.lateral * abs(v) * dt_ns * 1e-9
-    lock = largest_curvature(params.car)
-    bend = curvature(steer_mode, course.stage, found, direction, integral, 1.0 / course.points.radius, lock, hsic.gain)
-    angle = math.atan(params.car.wheelbase * bend)
+    angle = _front_wheels(steer_mode, course, found, direction, integral, params)
     off = abs(inputs.steering_wheel_angle - steering_wheel_angle(angle, state.frame.mirror, params))
-    if abs(v) <= params.threshold.standstill and off <= hsic.threshold.wheel:
-        hold = False
+    hold = (course.hold or direction != state.direction) and not (standing and off <= hsic.threshold.wheel)
     still = hold or turning or course.done
     phase = HsicPhase.STRAIGHTEN if course.done else HsicPhase.PRE_STEER if still else HsicPhase.PATH_TRACKING
     counted = _counted(state, course.stage, phase, direction)
-    shifts = state.shifts + 1 if counted != state.counted else state.shifts
-    set_speed = 0.0 if still else direction * speed(speed_mode, found, hsic.gain)
     return HsicState(
         phase=phase,
-        reason=Reason.NONE,
         running_ns=state.running_ns + dt_ns,
         frame=state.frame,
         course=course._replace(hold=hold),
         direction=direction,
-        shifts=shifts,
+        shifts=state.shifts + 1 if counted != state.counted else state.shifts,
         counted=counted,
         characteristic=characteristic,
         integral=clamp(integral, -1.0, 1.0),
         angle=angle,
-        set_speed=set_speed,
+        set_speed=0.0 if still else direction * speed(speed_mode, found, hsic.gain),
         found=found,
         pose=pose,
         monitor=monitor,
     )
+
+
+def _front_wheels(
+    mode: int, course: Course, found: Errors, direction: int, integral: float, params: ControllerParams
+) -> float:
+    """Return the front-wheel angle that the rule asks for, in the slot's frame [rad]."""
+    lock = largest_curvature(params.car)
+    arc = 1.0 / course.points.radius
+    bend = curvature(mode, course.stage, found, direction, integral, arc, lock, params.hsic.gain)
+    return math.atan(params.car.wheelbase * bend)
 
 
 def _counted(state: HsicState, stage: int, phase: int, direction: int) -> int:

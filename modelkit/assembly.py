@@ -43,17 +43,15 @@ def assembled(
     params = {part: (model.params, model.first_params()) for part, model in own.parts}
     inputs = {part: (model.inputs, model.inputs()) for part, model in own.parts}
     outputs = {part: (_told(model), model.outputs()) for part, model in own.parts}
-    state = _tuple(f"{name}State", memory, package)
-    told = _tuple(f"{name}Outputs", outputs, package)
-    whole = Together(own, state, told)
+    whole = Together(own, _tuple(f"{name}State", memory, package), _tuple(f"{name}Outputs", outputs, package))
     return Model(
         name=name,
         description=description,
         package=package,
-        state=state,
+        state=whole.state,
         params=_tuple(f"{name}Params", params, package),
         inputs=_tuple(f"{name}Inputs", inputs, package),
-        outputs=told,
+        outputs=whole.outputs,
         initialize=whole.initialize,
         step=whole.step if store is None else whole.step_with_store,
         step_size=period_ns * 1e-9,

@@ -51,6 +51,9 @@ WITHOUT_FMI = ("modelkit", "vehicle_fmu", "controller_fmu", "fmus.compiler")
 INSIDES = ("orchestrator.papers", "orchestrator.bakeoff", "orchestrator.grid")
 """Only these look into a model's package; the others take its ``MODEL``."""
 MOST_FILES, MOST_LINES, MOST_PARAMETERS, MOST_WITH_MORE = 15, 40, 6, 5
+MOST_OF_MODELS_WITH_MORE = 28
+"""Functions of the models that take more: laws that take their numbers one by one. Let it fall."""
+TOO_LONG = {"controller_fmu.apa.parking._moved_on", "controller_fmu.apa.system._moved_on"}
 HOSTS = ("fmus", "orchestrator")
 
 
@@ -99,10 +102,9 @@ def room_of(module: str) -> str:
 
 def functions() -> Iterator[tuple[str, ast.FunctionDef]]:
     for module, file in MODULES.items():
-        if module.split(".")[0] in HOSTS:
-            for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
-                if isinstance(node, ast.FunctionDef):
-                    yield f"{module}.{node.name}", node
+        for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.FunctionDef):
+                yield f"{module}.{node.name}", node
 
 
 def test_every_module_has_its_room() -> None:
@@ -161,8 +163,10 @@ def test_functions_are_short_and_few_take_many_parameters() -> None:
         taken = [item.arg for item in (*node.args.posonlyargs, *node.args.args, *node.args.kwonlyargs)]
         if len([item for item in taken if item not in ("self", "cls")]) > MOST_PARAMETERS:
             wide.append(name)
-    assert long == []
-    assert len(wide) <= MOST_WITH_MORE, wide
+    assert set(long) == TOO_LONG
+    of_models = [name for name in wide if name.split(".")[0] not in HOSTS]
+    assert len(wide) - len(of_models) <= MOST_WITH_MORE, wide
+    assert len(of_models) <= MOST_OF_MODELS_WITH_MORE, of_models
 
 
 ONE_MEANING = {

@@ -12,7 +12,7 @@ INPUT_SETS = 5
 OUTPUT_SETS = 7
 
 
-class Moment(NamedTuple):
+class PieceMoment(NamedTuple):
     """Area and first moment of a piece of the output set."""
 
     area: float
@@ -69,15 +69,15 @@ def centroid(peaks: tuple[float, ...], level: tuple[float, ...]) -> float:
     return first / area
 
 
-def cell_moment(falling: float, rising: float) -> Moment:
+def cell_moment(falling: float, rising: float) -> PieceMoment:
     """Return area and moment about t = 0 of max(min(falling, 1 - t), min(rising, t)) over t in [0, 1]."""
     if falling >= rising:
         return _dominant(falling, rising)
     mirrored = _dominant(rising, falling)
-    return Moment(mirrored.area, mirrored.area - mirrored.first)
+    return PieceMoment(mirrored.area, mirrored.area - mirrored.first)
 
 
-def _dominant(high: float, low: float) -> Moment:
+def _dominant(high: float, low: float) -> PieceMoment:
     """Return the moment of a cell whose falling set is clipped at ``high``, its rising one at ``low`` <= ``high``."""
     flat = 1.0 - high
     if low <= 0.5:
@@ -88,18 +88,18 @@ def _dominant(high: float, low: float) -> Moment:
             _trapezoid(crossing, 1.0, low, low),
         )
     down = _sum(_trapezoid(0.0, flat, high, high), _trapezoid(flat, 0.5, high, 0.5), _trapezoid(0.5, low, 0.5, low))
-    return _sum(down, _trapezoid(low, 1.0, low, low), Moment(0.0, 0.0))
+    return _sum(down, _trapezoid(low, 1.0, low, low), PieceMoment(0.0, 0.0))
 
 
-def _trapezoid(start: float, end: float, left: float, right: float) -> Moment:
+def _trapezoid(start: float, end: float, left: float, right: float) -> PieceMoment:
     """Return the moment of a line from (start, left) to (end, right)."""
     width = end - start
     area = 0.5 * width * (left + right)
-    return Moment(area, start * area + width * width * (left + 2.0 * right) / 6.0)
+    return PieceMoment(area, start * area + width * width * (left + 2.0 * right) / 6.0)
 
 
-def _sum(a: Moment, b: Moment, c: Moment) -> Moment:
-    return Moment(a.area + b.area + c.area, a.first + b.first + c.first)
+def _sum(a: PieceMoment, b: PieceMoment, c: PieceMoment) -> PieceMoment:
+    return PieceMoment(a.area + b.area + c.area, a.first + b.first + c.first)
 
 
 def _level(index: int, fired: tuple[float, ...], named: tuple[int, ...]) -> float:

@@ -43,7 +43,7 @@ class QuinticPath(NamedTuple):
     last: Quintic = Quintic()
 
 
-class Tried(NamedTuple):
+class PathTried(NamedTuple):
     """The path found or refused, and its radius or the best one [m]."""
 
     path: QuinticPath = QuinticPath()
@@ -72,7 +72,7 @@ def plan(start: Pose, radius: float, curvature_limit: float) -> QuinticPath:
     widest = largest_radius(start.x, start.y)
     low = min(widest, radius)
     high = widest
-    tried = Tried()
+    tried = PathTried()
     for _ in range(ROUNDS):
         tried = _first_within(start, low, high, curvature_limit)
         if tried.path.status == PathStatus.FOUND:
@@ -83,7 +83,7 @@ def plan(start: Pose, radius: float, curvature_limit: float) -> QuinticPath:
     return tried.path
 
 
-def _first_within(start: Pose, low: float, high: float, curvature_limit: float) -> Tried:
+def _first_within(start: Pose, low: float, high: float, curvature_limit: float) -> PathTried:
     """Return the path of the smallest of some radii that keeps the limit, or the refusal and the best radius."""
     smallest_peak = 1e9
     best = low
@@ -93,11 +93,11 @@ def _first_within(start: Pose, low: float, high: float, curvature_limit: float) 
         if arcs.line >= 0.0 and 0.0 < arcs.angle < STEEPEST:
             path = through(start, arcs)
             if path.largest_curvature <= curvature_limit:
-                return Tried(path, arcs.radius)
+                return PathTried(path, arcs.radius)
             if path.largest_curvature < smallest_peak:
                 smallest_peak = path.largest_curvature
                 best = arcs.radius
-    return Tried(_refused(PathStatus.CURVATURE_LIMIT, start, smallest_peak), best)
+    return PathTried(_refused(PathStatus.CURVATURE_LIMIT, start, smallest_peak), best)
 
 
 def through(start: Pose, arcs: ArcLineArc) -> QuinticPath:

@@ -1,7 +1,13 @@
-"""The compiled batch: every run is one call of machine code, on threads, on all cores. No FMU, no log."""
+"""The runs of a chunk, in one of two ways that give the same bits.
+
+The compiled batch: every run is one call of machine code, on threads, on all cores; no FMU, no log. Or one by one
+through the Python master, on FMUs or on the models in process.
+"""
 
 import threading
+from collections.abc import Mapping
 from functools import lru_cache
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -11,9 +17,10 @@ from modelkit.model import Model
 from orchestrator.cosim.slave import Array
 from orchestrator.scenario.end_condition import SPEED
 from orchestrator.scenario.scenario import Scenario
+from orchestrator.session.session import run_scenario
 from orchestrator.sweep.disturbed import fault_numbers, heard
-from orchestrator.sweep.job import Chunk, Job, arrays
-from orchestrator.sweep.rows import FIRST_MEASURE
+from orchestrator.sweep.job import Chunk, Job, arrays, chunk_scenario
+from orchestrator.sweep.rows import FIRST_MEASURE, row_of
 from orchestrator.verdict.measures import Measure
 
 _compiling = threading.Lock()
@@ -27,6 +34,17 @@ def run_batch(job: Job, chunk: Chunk) -> Array:
     out = np.empty((len(parameters), FIRST_MEASURE + len(job.measures)))
     rows(parameters, times, fault_numbers(job, chunk, scenario), out)
     return out
+
+
+def run_recorded(job: Job, chunk: Chunk, kind: str, files: Mapping[str, str] | None) -> Array:
+    """Return one row of measures per run of ``chunk``, read off its recording."""
+    paths = None if files is None else {name: Path(path) for name, path in files.items()}
+    rows = []
+    for number in range(len(chunk.seeds)):
+        scenario = chunk_scenario(job, chunk, number)
+        ran = run_scenario(scenario, paths, kind=kind)
+        rows.append(row_of(ran.recording, scenario, job.measures))
+    return np.array(rows)
 
 
 def compiled(measures: tuple[Measure, ...], scenario: Scenario) -> Rows:

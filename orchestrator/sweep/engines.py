@@ -29,9 +29,8 @@ from fmus.native.compilers import can_compile
 from orchestrator.cosim.master import Interrupt
 from orchestrator.cosim.slave import Array
 from orchestrator.scenario.scenario import Scenario
-from orchestrator.sweep.batch import run_batch
+from orchestrator.sweep.batch import run_batch, run_recorded
 from orchestrator.sweep.engine import AHEAD, POLL, ChunkTask, Engine, cores, safe_children
-from orchestrator.sweep.fmu_runs import run_recorded
 from orchestrator.sweep.job import Chunk, Job
 from orchestrator.sweep.rows import why_not_compiled
 from orchestrator.text.errors import BadInput

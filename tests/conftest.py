@@ -60,6 +60,7 @@ SLOW = [
     "papers/test_zhang2022.py",
     "report/test_axe.py",
     "report/test_browser.py",
+    "stream/test_stream.py",
     "sweep/test_batch.py",
     "sweep/test_page.py",
     "test_wheel.py",

@@ -9,15 +9,19 @@ from orchestrator.scenario.scenario import Scenario
 from orchestrator.session.drive import drive
 from orchestrator.session.foreign import Foreign, add_foreign_arguments, foreign_of, load_fitting
 from orchestrator.session.terminal import print_summary
+from orchestrator.stream.realtime import Realtime
 from orchestrator.text.console import say
 from orchestrator.text.errors import INTERRUPTED, NOT_PARKED, PARKED
 from orchestrator.text.owned import owned
 from orchestrator.verdict.summary import summarize
 
+PORT = 8765
+"""Where Foxglove looks for a stream if nothing else is said."""
 EXAMPLES = """examples:
   apa run guo2015-case4
   apa run guo2015-case4 --set vehicle.body=double_track --set "vehicle.driver.reaction_delay=300 ms" --out runs/late
   apa run guo2015-case4 --controller their.fmu --set controller.their_gain=2
+  apa run guo2015-case4 --realtime --live
   apa run guo2015-case4 --set stop_time=30 --fmus none --out /tmp/trial --json
 
 writes DIR/run.mcap, DIR/summary.json, DIR/overview.png, DIR/report.html (the replay) and DIR/live.html (to drive it
@@ -38,6 +42,17 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="kind of FMU (default: native where it can be built); none runs the models in process",
     )
     add_foreign_arguments(parser)
+    parser.add_argument(
+        "--realtime", action="store_true", help="as fast as the clock on the wall; says how late it was"
+    )
+    parser.add_argument(
+        "--live",
+        nargs="?",
+        type=int,
+        const=PORT,
+        metavar="PORT",
+        help=f"show the run as it goes, at this WebSocket ({PORT}), to Foxglove or Lichtblick; includes --realtime",
+    )
     parser.add_argument("--out", type=Path, metavar="DIR", help="where results go (default: runs/NAME)")
     parser.add_argument("--json", action="store_true", help="print summary.json instead of the table")
     parser.add_argument("--no-page", action="store_true", help="write neither picture nor pages")
@@ -55,7 +70,8 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _run(arguments: argparse.Namespace, scenario: Scenario, foreign: Foreign, out: Path) -> int:
-    ran = drive(scenario, arguments.fmus, out / LOG, foreign)
+    paced = arguments.realtime or arguments.live is not None
+    ran = drive(scenario, arguments.fmus, out / LOG, foreign, Realtime(arguments.live, say) if paced else None)
     summary = summarize(ran.recording, scenario, ran.wall_time)
     text = write_summary(out, summary)
     interrupted = ran.end.reason == "interrupted"

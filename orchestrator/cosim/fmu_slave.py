@@ -211,21 +211,26 @@ class FmuSlave:
         self.do_step = function("fmi2DoStep")
         self.do_step.argtypes = [ctypes.c_void_p, ctypes.c_double, ctypes.c_double, ctypes.c_int]
 
+    def tune(self, name: str, value: float) -> None:
+        """Set a tunable parameter between two steps."""
+        kind = self.parameters.variables[self.parameters.index[name]].kind
+        self._set(kind, {name: kind(value)})
+
     def _set_parameters(self) -> None:
-        assert self._instance is not None
-        setters = {
-            float: self._instance.setReal,
-            int: self._instance.setInteger,
-            bool: self._instance.setBoolean,
-        }
-        for kind, setter in setters.items():
+        for kind in (float, int, bool):
             names = [name for name, its_kind in self._changed.items() if its_kind is kind]
-            values = [kind(self.parameters.values[self.parameters.index[name]]) for name in names]
-            if names:
-                try:
-                    setter([self._references[name] for name in names], values)
-                except Exception as error:
-                    raise self._refused("refuses its parameters", _status_of(error), str(error)) from error
+            values = {name: kind(self.parameters.values[self.parameters.index[name]]) for name in names}
+            if values:
+                self._set(kind, values)
+
+    def _set(self, kind: type, values: Mapping[str, Any]) -> None:
+        """Set parameters of one type."""
+        assert self._instance is not None
+        setters = {float: self._instance.setReal, int: self._instance.setInteger, bool: self._instance.setBoolean}
+        try:
+            setters[kind]([self._references[name] for name in values], list(values.values()))
+        except Exception as error:
+            raise self._refused("refuses its parameters", _status_of(error), str(error)) from error
 
     def _make_callbacks(self) -> fmi2CallbackFunctions:
         def logger(_environment: Any, _instance: Any, status: int, category: Any, message: Any) -> None:

@@ -16,7 +16,8 @@ class InProcessSlave:
         self.name = name
         self.identity = f"in-process {model.name}"
         self._model = model
-        self._params = with_values(model.params, dict(parameters))
+        self._given = dict(parameters)
+        self._params = with_values(model.params, self._given)
         self.inputs = Ports(variables(model.inputs))
         self.outputs = Ports(variables(model.outputs))
         self.parameters = Ports(variables(model.params, self._params))
@@ -50,6 +51,12 @@ class InProcessSlave:
             self._state, self.output = self._step(self._state, self._input, self._params, dt_ns)
         except Exception as error:
             raise RunError(f"{self.name} raised {type(error).__name__}: {error}") from error
+
+    def tune(self, name: str, value: float) -> None:
+        """Give a parameter another value from the next step on."""
+        kind = self.parameters.variables[self.parameters.index[name]].kind
+        self._given[name] = kind(value)
+        self._params = with_values(self._model.params, self._given)
 
     def close(self) -> None:
         """Nothing to free in process."""

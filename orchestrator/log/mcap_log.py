@@ -8,7 +8,7 @@ the file depends on the clock on the wall, so the same run gives the same bytes.
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any, Union
 
 import numpy as np
 from foxglove_schemas_protobuf.FrameTransforms_pb2 import FrameTransforms
@@ -30,6 +30,10 @@ from orchestrator.log.schema import PACKAGE, descriptor_set, file_descriptor
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.verdict.geometry import CarOutline, boxes, described, edges, kerbs, sample_path, slot_box
 
+if TYPE_CHECKING:
+    from orchestrator.stream.server import LiveChannels
+Sink = Union[McapFile, "LiveChannels"]
+"""Where channels and messages go."""
 SCENE_PERIOD_NS = 50_000_000
 TRAIL_PERIOD_NS = 1_000_000_000
 TRAIL_STEP_NS = 200_000_000
@@ -40,7 +44,7 @@ AXES = ("x", "y", "heading")
 class _SlaveChannel:
     """One channel for all inputs and outputs of a slave; ``columns`` are its inputs, its outputs in a row of all."""
 
-    def __init__(self, file: McapFile, slave: Slave, columns: Sequence[slice]) -> None:
+    def __init__(self, file: Sink, slave: Slave, columns: Sequence[slice]) -> None:
         variables = [*slave.outputs.variables, *slave.inputs.variables]
         notes = ["local" if Role.LOCAL in item.roles else "output" for item in slave.outputs.variables]
         notes += ["input"] * len(slave.inputs.names)
@@ -57,10 +61,12 @@ class _SlaveChannel:
 
 
 class McapLog:
-    """Observer that writes the log."""
+    """Observer that writes the log to a file, or to whoever looks on."""
 
-    def __init__(self, path: Path, slaves: list[Slave], scenario: Scenario, info: dict[str, Any]) -> None:
-        self._file = McapFile(path)
+    def __init__(
+        self, to: "Path | LiveChannels", slaves: Sequence[Slave], scenario: Scenario, info: dict[str, Any]
+    ) -> None:
+        self._file = McapFile(to) if isinstance(to, Path) else to
         self._file.metadata("apa", with_checksum(info))
         places = places_of(slaves)
         self._channels = [_SlaveChannel(self._file, slave, places[2 * k : 2 * k + 2]) for k, slave in enumerate(slaves)]
@@ -72,7 +78,8 @@ class McapLog:
         drawn = _drawn(named["vehicle"]) if "vehicle" in named else []
         if drawn:
             self._pictures.append(_Pictures(self._file, named, scenario, drawn))
-        rows = max(1, CHUNK_SIZE // 2 // sum(channel.size + MESSAGE_HEADER.itemsize for channel in self._channels))
+        size = CHUNK_SIZE if isinstance(to, Path) else 0  # who looks on wants each row at once
+        rows = max(1, size // 2 // sum(channel.size + MESSAGE_HEADER.itemsize for channel in self._channels))
         self.rows_per_chunk = rows
         self._values = all_values(slaves)
         self._rows = np.empty((rows, len(self._values)))
@@ -123,7 +130,7 @@ class _Pictures:
     """Frames and scene, as far as the slaves have the signals for them."""
 
     def __init__(
-        self, file: McapFile, slaves: dict[str, Slave], scenario: Scenario, drawn: list[tuple[Ports, int] | None]
+        self, file: Sink, slaves: dict[str, Slave], scenario: Scenario, drawn: list[tuple[Ports, int] | None]
     ) -> None:
         self._file = file
         self._drawn = drawn
@@ -181,7 +188,7 @@ class _Pictures:
             self._file.write(self._path, t_ns, update.SerializeToString(deterministic=True))
 
 
-def add_channel(file: McapFile, topic: str, message: str, variables: list[Variable], notes: list[str]) -> int:
+def add_channel(file: Sink, topic: str, message: str, variables: list[Variable], notes: list[str]) -> int:
     """Return a new channel whose schema is made from ``variables``."""
     descriptors = descriptor_set(file_descriptor(message, variables, notes))
     return file.channel(topic, f"{PACKAGE}.{message}", descriptors, {VARIABLES: to_json(variables, notes)})

@@ -9,13 +9,14 @@ from orchestrator.scenario.scenario import Scenario
 from orchestrator.session.foreign import Foreign
 from orchestrator.session.replaced import replaced
 from orchestrator.session.session import NOBODY, Ran, run_scenario
+from orchestrator.stream.realtime import Realtime
 from orchestrator.text.console import Meter, Warnings, say
 
 SHOWN_NS = 500_000_000
 """Simulated time between two looks at how far a run is."""
 
 
-def drive(scenario: Scenario, kind: str, log: Path, foreign: Foreign = NOBODY) -> Ran:
+def drive(scenario: Scenario, kind: str, log: Path, foreign: Foreign = NOBODY, realtime: Realtime | None = None) -> Ran:
     """Return a run with FMUs of ``kind`` (``none``: models in process), which are built if need be.
 
     ``foreign`` FMUs take the place of ours, or stand beside them. Whoever calls it owns the log's folder.
@@ -36,6 +37,7 @@ def drive(scenario: Scenario, kind: str, log: Path, foreign: Foreign = NOBODY) -
             interrupt=interrupt,
             warn=Warnings(),
             foreign=foreign,
+            realtime=realtime,
         )
     return ran
 

@@ -19,10 +19,13 @@ from orchestrator.scenario.plausible import implausible
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.session.cost import told_cost
 from orchestrator.session.foreign import FOREIGN, Foreign, sha256_of
+from orchestrator.stream.realtime import Realtime
 from orchestrator.system.assemble import Assembled, assemble
 from orchestrator.system.remarks import remarks
 from orchestrator.text.errors import RunError
 
+PACED = "paced"
+"""Instead of a kind of FMU: every exchange waits for its time, so there is nothing to gain by a compiled master."""
 PACKAGES = ("apa-cosim", "fmpy", "pythonfmu", "numpy", "mcap", "protobuf")
 
 
@@ -98,11 +101,12 @@ def run_scenario(
     interrupt: Interrupt | None = None,
     warn: Callable[[str], None] = lambda text: None,
     foreign: Foreign = NOBODY,
+    realtime: Realtime | None = None,
 ) -> Ran:
     """Return the recording of one run. Errors of a slave end it as aborted; ``BadInput`` passes through.
 
     ``warn`` is told before the run what is allowed in the system but hardly meant. ``foreign`` are FMUs of
-    somebody else's, in the place of ours or beside them.
+    somebody else's, in the place of ours or beside them. ``realtime`` holds the run to the clock on the wall.
     """
     messages = Messages()
     foreign = foreign.with_system(scenario.system)
@@ -118,6 +122,7 @@ def run_scenario(
             interrupt=interrupt,
             warn=warn,
             foreign=foreign,
+            realtime=realtime,
         )
     finally:
         for slave in slaves:
@@ -135,6 +140,7 @@ def run_slaves(
     interrupt: Interrupt | None = None,
     warn: Callable[[str], None] = lambda text: None,
     foreign: Foreign = NOBODY,
+    realtime: Realtime | None = None,
 ) -> Ran:
     """Return the recording of one run of given slaves."""
     system = assemble(scenario, slaves)
@@ -147,7 +153,7 @@ def run_slaves(
     ]
     for text in said:
         warn(text)
-    master = _master(system, scenario, kind)
+    master = _master(system, scenario, kind if realtime is None else PACED)
     master.interrupt = interrupt or Interrupt()
     info = provenance(scenario, system.slaves, kind, foreign)
     recorder = Recorder(system.slaves, exchanges)
@@ -159,10 +165,14 @@ def run_slaves(
         messages.listeners.append(file.say)
         master.observers.append(file)
     master.observers += observers
+    if realtime is not None:
+        realtime.join(master, scenario, messages.say, messages.listeners)
     for text in said:
         messages.say(0, WARNING, "system", text)
     end, wall_time = _driven(master, messages)
     info["end"] = {"reason": end.reason, "t_ns": end.t_ns}
+    if realtime is not None:
+        info["realtime"] = realtime.told()
     return Ran(recorder.recording(info), end, said, wall_time)
 
 

@@ -36,7 +36,16 @@ def print_summary(summary: Summary, title: str, expected: str) -> None:
         out.print(f"note: {note}", markup=False)
     if summary.checks:
         out.print(checks_table(summary.checks, out))
-    out.print(f"{summary.wall_time:.2f} s of computing, {summary.real_time_factor:.0f} times real time")
+    if summary.realtime is None:
+        out.print(f"{summary.wall_time:.2f} s of computing, {summary.real_time_factor:.0f} times real time")
+        return
+    late = summary.realtime
+    out.print(
+        f"real time: median {1e3 * late.median:.2f} ms late, 99 % within {1e3 * late.percentile_99:.2f} ms, "
+        f"at most {1e3 * late.largest:.1f} ms; {late.late} of {late.exchanges} exchanges over 1 ms"
+    )
+    for change in late.tuned:
+        out.print(f"changed at {change.t:.2f} s: {change.name} = {change.value:g}", markup=False)
 
 
 def _at_the_end(final: Final) -> Iterator[str]:

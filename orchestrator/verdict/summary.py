@@ -84,6 +84,36 @@ class FmuUsed(_Part):
     """Hash of that file."""
 
 
+class Tuned(_Part):
+    """A parameter changed from outside during the run."""
+
+    t: float
+    """From when on [s]."""
+    name: str
+    """Of slave and parameter."""
+    value: float
+    """What it was set to."""
+
+
+class Lateness(_Part):
+    """How a run kept to the clock on the wall."""
+
+    exchanges: int
+    """How many there were."""
+    late: int
+    """How many of them were over 1 ms late."""
+    median: float
+    """Half were later than this [s]."""
+    percentile_99: float
+    """One in a hundred was later than this [s]."""
+    largest: float
+    """The latest of all [s]."""
+    at_end: float
+    """The last one [s]: large, if the run could not keep the pace."""
+    tuned: list[Tuned] = []
+    """What was changed meanwhile."""
+
+
 class Summary(_Part):
     """The whole of summary.json."""
 
@@ -119,6 +149,9 @@ class Summary(_Part):
     """Of Python, of this project and of what it stands on."""
     notes: list[str] = []
     """What is worth knowing of the verdict: a target that was told wrong, or is not in the log."""
+
+    realtime: Lateness | None = None
+    """How late it was, if it was held to the clock on the wall."""
 
     @property
     def is_done(self) -> bool:
@@ -160,6 +193,7 @@ def summarize(recording: Recording, scenario: Scenario, wall_time: float, note: 
         real_time_factor=numbers["duration"] / wall_time if wall_time > 0.0 else 0.0,
         seed=scenario.seed,
         versions=recording.info.get("versions", {}),
+        realtime=recording.info.get("realtime"),
         notes=[text for text in (note, _told_otherwise(recording, scenario)) if text],
     )
 

@@ -34,6 +34,7 @@ NOT_RUN = {
     "apa build --fmus native --out build --platform": "compiles C libraries of other platforms; tests/fmi",
     "apa build --fmi 3 --out build --platform": "compiles C libraries of other platforms; tests/fmi",
     "apa build --fmus native --cc gcc": "would replace the FMUs that all runs here use",
+    "apa run guo2015-case4 --realtime --live": "twenty seconds and a port; tests/stream",
     "dask ": "does not end; tests/sweep/test_dask.py has a cluster",
     "OMSimulator ": "does not install from the package index",
     "apa sweep my-study.yaml --dask tls": "needs a scheduler with certificates",
@@ -122,7 +123,7 @@ def shelf(tmp_path_factory: pytest.TempPathFactory) -> Path:
         main(["run", "guo2015-case4", "--out", str(folder / name), "--no-page", "--quiet", *sets])
         shutil.move(folder / name / "run.mcap", folder / f"{name}.mcap")
         shutil.rmtree(folder / name)
-    for name in ("run.mcap", "copied.mcap"):
+    for name in ("run.mcap", "copied.mcap", "C.mcap"):
         shutil.copy(folder / "A.mcap", folder / name)
     (folder / "runs" / "guo2015-case4").mkdir(parents=True)
     shutil.copy(folder / "A.mcap", folder / "runs" / "guo2015-case4" / "run.mcap")

@@ -1,0 +1,53 @@
+"""What a run has besides when it goes by the clock on the wall: its pace, and a stream of it."""
+
+from collections.abc import Callable
+from typing import Any
+
+from orchestrator.cosim.master import End, Master
+from orchestrator.scenario.scenario import Scenario
+from orchestrator.stream.pace import Pace
+from orchestrator.stream.tuning import Tuning
+
+Say = Callable[[int, int, str, str], None]
+
+
+class Realtime:
+    """Paces a run; with a port it also shows the run there, and takes parameters from there."""
+
+    def __init__(self, port: int | None = None, announce: Callable[[str], None] = lambda text: None) -> None:
+        self._port = port
+        self._announce = announce
+        self._pace = Pace()
+        self._tuning: Tuning | None = None
+        self.address = ""
+        """Where the run is shown."""
+
+    def join(self, master: Master, scenario: Scenario, say: Say, listeners: list[Say]) -> None:
+        """Take part in a run: first of all wait, last of all show. Raises ``BadInput`` if the port cannot be opened."""
+        master.observers.insert(0, self._pace)
+        if self._port is None:
+            return
+        from orchestrator.log.mcap_log import McapLog
+        from orchestrator.stream.server import LiveChannels
+
+        self._tuning = Tuning(master.slaves, scenario.models, say)
+        live = LiveChannels(self._port, scenario.title or scenario.name, self._tuning)
+        self.address = live.address
+        shown = McapLog(live, master.slaves, scenario, {})
+        listeners.append(shown.say)
+        master.observers += [self._tuning, shown, _Clock(live.at)]
+        self._announce(f"live at {self.address}: open it in Foxglove or Lichtblick")
+
+    def told(self) -> dict[str, Any]:
+        """Return how late the run was, and what was changed meanwhile."""
+        return {**self._pace.told(), "tuned": self._tuning.told if self._tuning else []}
+
+
+class _Clock:
+    """Observer that tells somebody the simulated time."""
+
+    def __init__(self, tell: Callable[[int], None]) -> None:
+        self.exchanged = tell
+
+    def closed(self, end: End) -> None:
+        """Nothing to close."""

@@ -1,0 +1,80 @@
+"""Parameters changed from outside while a run goes on: tunable ones, within their range, between two steps."""
+
+from collections import deque
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, NamedTuple, Protocol, runtime_checkable
+
+from modelkit.model import Model
+from modelkit.signal import Role
+from modelkit.variables import Variable, limits_of, variables
+from orchestrator.cosim.master import End
+from orchestrator.cosim.mode_changes import INFO
+from orchestrator.cosim.slave import Slave
+
+
+@runtime_checkable
+class TakesValues(Protocol):
+    """A slave whose tunable parameters can be changed between two steps."""
+
+    def tune(self, name: str, value: float) -> None:
+        """Give a parameter another value. Raises ``RunError`` if the model refuses."""
+
+
+class _Wish(NamedTuple):
+    name: str
+    value: float
+
+
+class Tuning:
+    """Observer that gives the models what was asked for since the last exchange, and says so in the log."""
+
+    def __init__(
+        self, slaves: Sequence[Slave], models: Mapping[str, Model], say: Callable[[int, int, str, str], None]
+    ) -> None:
+        self._say = say
+        self._wishes: deque[_Wish] = deque()
+        self._known: dict[str, tuple[Slave, Variable]] = {}
+        self.told: list[dict[str, Any]] = []
+        """What was changed, and when."""
+        for slave in slaves:
+            model = models.get(slave.name)
+            if model is not None and isinstance(slave, TakesValues):
+                shown = [item for item in variables(model.params) if item.name in slave.parameters.index]
+                tunable = [item for item in shown if Role.TUNABLE in item.roles]
+                self._known |= {f"{slave.name}.{item.name}": (slave, item) for item in tunable}
+
+    def values(self) -> dict[str, float | int | bool]:
+        """Return all that can be changed with its value now, or as it will be at the next exchange."""
+        asked = {wish.name: wish.value for wish in list(self._wishes)}
+        return {
+            name: item.kind(asked.get(name, slave.parameters.values[slave.parameters.index[item.name]]))
+            for name, (slave, item) in self._known.items()
+        }
+
+    def ask(self, name: str, value: object) -> str:
+        """Note a wish, from any thread; return why it is refused, empty if it is not."""
+        if name not in self._known:
+            return f"{name} cannot be changed during a run"
+        _, item = self._known[name]
+        low, high = limits_of(item.signal)
+        if not isinstance(value, int | float) or not low <= float(value) <= high:
+            unit = "" if item.signal.unit == "1" else f" {item.signal.unit}"
+            return f"{name}: {value} is not within {low:g} to {high:g}{unit}"
+        if item.kind is not float and float(value) != int(value):
+            return f"{name}: {value} is no whole number"
+        self._wishes.append(_Wish(name, float(value)))
+        return ""
+
+    def exchanged(self, t_ns: int) -> None:
+        """Change what was asked for; it holds from the step after this exchange on."""
+        while self._wishes:
+            wish = self._wishes.popleft()
+            slave, item = self._known[wish.name]
+            assert isinstance(slave, TakesValues)
+            slave.tune(item.name, wish.value)
+            slave.parameters.values[slave.parameters.index[item.name]] = wish.value
+            self.told.append({"t": t_ns / 1e9, "name": wish.name, "value": wish.value})
+            self._say(t_ns, INFO, "tuning", f"{wish.name} = {wish.value:g} from here on")
+
+    def closed(self, end: End) -> None:
+        """Nothing to close."""

@@ -31,6 +31,7 @@ FLOORS: tuple[tuple[str, ...], ...] = (
     ("orchestrator.comparison",),
     ("orchestrator.drawing",),
     ("orchestrator.log",),
+    ("orchestrator.stream",),
     ("orchestrator.session",),
     ("orchestrator.report",),
     ("orchestrator.steptest",),

@@ -8,7 +8,7 @@ the file depends on the clock on the wall, so the same run gives the same bytes.
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Union
+from typing import Any
 
 import numpy as np
 from foxglove_schemas_protobuf.FrameTransforms_pb2 import FrameTransforms
@@ -27,13 +27,10 @@ from orchestrator.log.mcap_file import CHUNK_SIZE, MESSAGE_HEADER, McapFile
 from orchestrator.log.protobuf_rows import Encoder
 from orchestrator.log.read_log import VARIABLES, with_checksum
 from orchestrator.log.schema import PACKAGE, descriptor_set, file_descriptor
+from orchestrator.log.sink import Sink
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.verdict.geometry import CarOutline, boxes, described, edges, kerbs, sample_path, slot_box
 
-if TYPE_CHECKING:
-    from orchestrator.stream.server import LiveChannels
-Sink = Union[McapFile, "LiveChannels"]
-"""Where channels and messages go."""
 SCENE_PERIOD_NS = 50_000_000
 TRAIL_PERIOD_NS = 1_000_000_000
 TRAIL_STEP_NS = 200_000_000
@@ -63,10 +60,8 @@ class _SlaveChannel:
 class McapLog:
     """Observer that writes the log to a file, or to whoever looks on."""
 
-    def __init__(
-        self, to: "Path | LiveChannels", slaves: Sequence[Slave], scenario: Scenario, info: dict[str, Any]
-    ) -> None:
-        self._file = McapFile(to) if isinstance(to, Path) else to
+    def __init__(self, to: Path | Sink, slaves: Sequence[Slave], scenario: Scenario, info: dict[str, Any]) -> None:
+        self._file: Sink = McapFile(to) if isinstance(to, Path) else to
         self._file.metadata("apa", with_checksum(info))
         places = places_of(slaves)
         self._channels = [_SlaveChannel(self._file, slave, places[2 * k : 2 * k + 2]) for k, slave in enumerate(slaves)]

@@ -1,0 +1,33 @@
+"""Where channels and messages of a log go: a file, or whoever looks on."""
+
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+
+class Sink(Protocol):
+    """Takes channels, then messages; times are simulated time."""
+
+    open: bool
+
+    def metadata(self, name: str, values: dict[str, str]) -> None:
+        """Take what is said of the whole run."""
+
+    def known_channel(self, topic: str, message: type[Any]) -> int:
+        """Return a new channel for a generated protobuf message class."""
+
+    def channel(self, topic: str, schema: str, descriptors: bytes, metadata: dict[str, str]) -> int:
+        """Return a new channel for messages of a type in a serialized FileDescriptorSet."""
+
+    def write(self, channel: int, t_ns: int, data: bytes) -> None:
+        """Take one message."""
+
+    def write_rows(self, channel: int, t_ns: NDArray[np.int64], rows: NDArray[np.uint8]) -> None:
+        """Take messages of equal size, one per row."""
+
+    def flush(self) -> None:
+        """Hand on what is still in hand."""
+
+    def close(self) -> None:
+        """Take nothing more. Safe to call twice."""

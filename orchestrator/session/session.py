@@ -145,12 +145,7 @@ def run_slaves(
     """Return the recording of one run of given slaves."""
     system = assemble(scenario, slaves)
     exchanges = scenario.stop_ns // scenario.step_ns + 1
-    cost = told_cost(exchanges, sum(len(item.inputs.names) + len(item.outputs.names) for item in system.slaves))
-    said = [
-        *remarks(system, scenario.ending if scenario.task != "run" else None),
-        *implausible(scenario),
-        *([cost] if cost else []),
-    ]
+    said = _warnings(system, scenario, exchanges)
     for text in said:
         warn(text)
     master = _master(system, scenario, kind if realtime is None else PACED)
@@ -170,10 +165,15 @@ def run_slaves(
     for text in said:
         messages.say(0, WARNING, "system", text)
     end, wall_time = _driven(master, messages)
-    info["end"] = {"reason": end.reason, "t_ns": end.t_ns}
-    if realtime is not None:
-        info["realtime"] = realtime.told()
+    info |= {"end": {"reason": end.reason, "t_ns": end.t_ns}, **({"realtime": realtime.told()} if realtime else {})}
     return Ran(recorder.recording(info), end, said, wall_time)
+
+
+def _warnings(system: Assembled, scenario: Scenario, exchanges: int) -> list[str]:
+    """Return what is allowed in a system but hardly meant, or costly."""
+    cost = told_cost(exchanges, sum(len(item.inputs.names) + len(item.outputs.names) for item in system.slaves))
+    ending = scenario.ending if scenario.task != "run" else None
+    return [*remarks(system, ending), *implausible(scenario), *([cost] if cost else [])]
 
 
 def _driven(master: Master, messages: Messages) -> tuple[End, float]:

@@ -35,7 +35,7 @@ class Realtime:
         self.address = live.address
         shown = McapLog(live, master.slaves, scenario, {})
         listeners.append(shown.say)
-        master.observers += [self._tuning, shown, _Clock(live.at)]
+        master.observers += [self._tuning, shown, _Ticks(live.at)]
         self._announce(f"live at {self.address}: open it in Foxglove or Lichtblick")
 
     def told(self) -> dict[str, Any]:
@@ -43,7 +43,7 @@ class Realtime:
         return {**self._pace.told(), "tuned": self._tuning.told if self._tuning else []}
 
 
-class _Clock:
+class _Ticks:
     """Observer that tells somebody the simulated time."""
 
     def __init__(self, tell: Callable[[int], None]) -> None:

@@ -7,6 +7,7 @@ COMMANDS = {
     "completion": "print what makes a shell complete apa's words",
     "export": "write other formats",
     "fmu": "check somebody's FMU before it is run",
+    "hunt": "search a study's ranges for what breaks a requirement",
     "import": "make scenarios of scenes of others",
     "list": "list what is there: scenarios, parameters, signals, systems, limits",
     "live": "page that runs the models: drive, change, map",

@@ -35,6 +35,7 @@ NOT_RUN = {
     "apa build --fmi 3 --out build --platform": "compiles C libraries of other platforms; tests/fmi",
     "apa build --fmus native --cc gcc": "would replace the FMUs that all runs here use",
     "apa run guo2015-case4 --realtime --live": "twenty seconds and a port; tests/stream",
+    "apa hunt": "minutes; tests/hunt has small ones",
     "dask ": "does not end; tests/sweep/test_dask.py has a cluster",
     "OMSimulator ": "does not install from the package index",
     "apa sweep my-study.yaml --dask tls": "needs a scheduler with certificates",

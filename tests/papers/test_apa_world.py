@@ -69,6 +69,17 @@ def test_at_the_nominal_point_nothing_is_disturbed() -> None:
     )
 
 
+def test_the_page_has_the_ranges() -> None:
+    import importlib.util
+
+    spec = importlib.util.spec_from_file_location("docs_world", Path(__file__).parents[2] / "docs" / "world.py")
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    assert module.table() in module.PAGE.read_text(encoding="utf-8"), "run docs/world.py"
+
+
 def test_fewer_runs_are_the_first_of_more() -> None:
     few, many = study(5, 7), study(9, 7)
     assert (many.design.values[:5] == few.design.values).all()

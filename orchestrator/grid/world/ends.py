@@ -12,8 +12,9 @@ from modelkit.vocabulary import Pose
 from orchestrator.cosim.slave import Array
 from orchestrator.grid.parkings import GBT
 from orchestrator.grid.world.scene import THINGS, WHEEL
+from orchestrator.scenario.requirements import Requirement
 from orchestrator.sweep.columns import WITHIN
-from orchestrator.sweep.study.study import Columns, Derived
+from orchestrator.sweep.study.study import Columns, Derived, Goal
 from orchestrator.verdict.measures import Measure, When
 from vehicle_fmu.scene import Obstacle, is_there, obstacle_box
 
@@ -26,14 +27,16 @@ FIRST = {
     "touched.takeover": "vehicle.driver_takeover",
 }
 """Column -> signal at the first instant at which something is touched."""
+DRIVES = (Mode.AUTO_PARKING_ASSIST, Mode.POSITION_TUNING, Mode.PARKING_FINISH, Mode.FAIL)
+"""In these the car is the assist's, unless the driver has taken over."""
+NO_CONTACT = (Requirement(id="contact", signal="vehicle.clearance", min=1e-9, source="nothing is touched"),)
 MEASURES = {
     "mode": Measure("last", "controller.apa.mode"),
     "parking_time": Measure("last", "controller.apa.parking_time"),
     **{name: Measure("first", signal, TOUCHING) for name, signal in FIRST.items()},
+    "assist.clearance": Measure("smallest", "vehicle.clearance", When("controller.apa.mode", tuple(map(int, DRIVES)))),
     "touched.time": Measure("time", "vehicle.speed", TOUCHING),
 }
-DRIVES = (Mode.AUTO_PARKING_ASSIST, Mode.POSITION_TUNING, Mode.PARKING_FINISH, Mode.FAIL)
-"""In these the car is the assist's, unless the driver has taken over."""
 CONTACT, DRIVER, WALKED_INTO = "contact", "contact, driver drives", "walked into"
 PARKED, FALSE, FAILED, UNUSED, ENDLESS = "parked", "false parked", "gave up", "not in use", "endless"
 ENDS = {
@@ -134,4 +137,27 @@ def _gap(row: Mapping[str, Any], pose: Pose, thing: Box, under: bool) -> float:
     return boxes_gap(outline(pose, wheelbase, front, rear, width), thing)
 
 
+def _clear(columns: Columns) -> Array:
+    """Return how near [m] the car has come to anything since the assist has it; 0 or less: it has touched it."""
+    nearest = np.nan_to_num(np.asarray(columns["assist.clearance"]), nan=LARGEST)
+    touched = np.asarray(columns["end"]) == CONTACT
+    return np.asarray(np.where(touched, -np.abs(columns["touched.speed"]), np.clip(nearest, LEAST, LARGEST)))
+
+
+def _honest(columns: Columns) -> Array:
+    """Return by how much a run that claims to be parked is within GB/T 41630, as a share of its limits."""
+    heading, lateral = np.abs(columns["final.heading_error"]), np.abs(columns["final.lateral_error"])
+    shares = [1.0 - heading / math.radians(3.0), 1.0 - lateral / 0.15, 1.0 + columns["final.slot_margin"] / 0.15]
+    least = np.minimum(np.min(shares, axis=0), 1.0)
+    ends = np.asarray(columns["end"])
+    found = np.where(ends == FALSE, np.minimum(least, -LEAST), np.where(ends == PARKED, np.maximum(least, LEAST), 1.0))
+    return np.asarray(found)
+
+
+LEAST, LARGEST = 1e-4, 0.5
+"""Margins of runs that have not touched anything [m]."""
+GOALS = (
+    Goal("contact", "nothing is touched while the assist has the car", NO_CONTACT, _clear),
+    Goal("claim", "who claims to be parked stands in the slot, within GB/T 41630", (), _honest),
+)
 FOUND = Derived({}, _ends, {"end": "how the run ended in the world", "touched": "what was touched first"})

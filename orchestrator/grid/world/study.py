@@ -12,7 +12,7 @@ from orchestrator.cosim.slave import Array
 from orchestrator.grid.cases import KINDS, gbt_limits
 from orchestrator.grid.parkings import GBT
 from orchestrator.grid.study import GBT_SETS
-from orchestrator.grid.world.ends import CONTACT, ENDLESS, ENDS, FALSE, FOUND, MEASURES
+from orchestrator.grid.world.ends import CONTACT, ENDLESS, ENDS, FALSE, FOUND, GOALS, MEASURES
 from orchestrator.grid.world.factors import FACTORS, NO_SENSOR, NOBODY
 from orchestrator.grid.world.scene import NEVER, SENSORS, F, parameters
 from orchestrator.scenario.fault import Fault
@@ -46,7 +46,7 @@ def study(runs: int = 2000, seed: int = 1, mild: int = 0) -> Study:
     design = Design(fields(), world.values(shares, seeds), seeds, world.named(shares))
     within = {GBT[kind]: _limits(name) for kind, name in GBT_SETS.items()}
     seeded = [("vehicle", "ultrasonic.seed", find_field("vehicle.ultrasonic.seed", scenario()).place)]
-    return Study(scenario(), design, content, seeded, MEASURES, within, FOUND, world)
+    return Study(scenario(), design, content, seeded, MEASURES, within, FOUND, world, GOALS)
 
 
 def scenario() -> Scenario:

@@ -26,6 +26,17 @@ class Derived(NamedTuple):
     """Further columns, of words, and what they mean."""
 
 
+class Goal(NamedTuple):
+    """A requirement with the margin of each run: what a search of the study's ranges tries to break."""
+
+    name: str
+    text: str
+    limits: Sequence[Requirement] = ()
+    """The scenario of a run that breaks it is judged by these."""
+    margins: Callable[[Columns], Array] | None = None
+    """From the columns of some runs; 0 or less: broken. None: the least margin of ``limits``."""
+
+
 NONE: Mapping[str, Any] = MappingProxyType({})
 NOTHING = Derived({}, lambda columns: {})
 
@@ -47,6 +58,8 @@ class Study(NamedTuple):
     derived: Derived = NOTHING
     space: Space | None = None
     """What its numbers are made of, where a search may choose others."""
+    goals: Sequence[Goal] = ()
+    """What a search tries to break if nothing else is said, the first one first."""
 
     @property
     def name(self) -> str:

@@ -1,0 +1,80 @@
+"""A hunt made ready: who does the runs, where they are kept, whether it goes on."""
+
+import argparse
+import json
+import shutil
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+
+from fmus.files import write_whole
+from orchestrator.cosim.fmu_files import sources_hash
+from orchestrator.cosim.slave import Array
+from orchestrator.hunt.goal import goal_of
+from orchestrator.hunt.subject import Subject
+from orchestrator.hunt.written import space_of
+from orchestrator.session.foreign import Foreign, fitting, fmu_of, parameters_of
+from orchestrator.session.session import run_scenario
+from orchestrator.sweep.batch import compiled
+from orchestrator.sweep.engine import ChunkTask
+from orchestrator.sweep.engines import RECORDED_CHUNK, choose_task, make_engine
+from orchestrator.sweep.job import Chunk, Job, chunk_scenario
+from orchestrator.sweep.rows import row_of
+from orchestrator.sweep.study.study import Study
+from orchestrator.text.errors import BadInput
+
+
+def begin(study: Study, arguments: argparse.Namespace, out: Path) -> Subject:
+    """Return what is hunted. Raises ``BadInput``, also for runs of another hunt that are in the way."""
+    if arguments.controller is not None:
+        study = study._replace(goals=())
+    goal, space = goal_of(study, arguments.requirement), space_of(study)
+    journal = out / "journal"
+    about = {
+        "study": {**study.content},
+        "goal": goal.name,
+        "budget": arguments.budget,
+        "seed": arguments.seed,
+        "sources": sources_hash(),
+        "controller": None if arguments.controller is None else str(arguments.controller.resolve()),
+    }
+    _open(journal, json.dumps(about, sort_keys=True, default=str), resume=arguments.resume)
+    task = _task(study, arguments)
+    subject = Subject(study, space, goal, make_engine(task, None, arguments.workers), journal)
+    if task.is_compiled:
+        compiled(tuple(subject.job.measures), study.scenario)
+    return subject
+
+
+def _open(journal: Path, about: str, *, resume: bool) -> None:
+    """Make a journal, or go on with one of the same hunt."""
+    file = journal / "about.json"
+    if resume:
+        if not file.is_file():
+            raise BadInput("there is no hunt to go on with", file=journal, key="--resume")
+        if file.read_text(encoding="utf-8") != about:
+            raise BadInput("the runs there are of another hunt, or of other models", file=journal, key="--resume")
+        return
+    shutil.rmtree(journal, ignore_errors=True)
+    journal.mkdir(parents=True)
+    write_whole(file, about)
+
+
+def _task(study: Study, arguments: argparse.Namespace) -> ChunkTask:
+    if arguments.controller is None:
+        return choose_task(study.scenario, arguments.fmus)
+    files = {"controller": str(fmu_of(str(arguments.controller)))}
+    return ChunkTask(partial(run_foreign, files=files), "their controller", RECORDED_CHUNK, False)
+
+
+def run_foreign(job: Job, chunk: Chunk, files: dict[str, str]) -> Array:
+    """Return one row of measures per run of ``chunk`` with FMUs of somebody else's; what they do not tell is NaN."""
+    foreign = Foreign({name: Path(path) for name, path in files.items()})
+    own = {slave: parameters_of(path, slave) for slave, path in foreign.files.items()}
+    rows = []
+    for number in range(len(chunk.seeds)):
+        scenario, _ = fitting(chunk_scenario(job, chunk, number), own)
+        ran = run_scenario(scenario, None, foreign=foreign)
+        rows.append(row_of(ran.recording, scenario, job.measures))
+    return np.array(rows)

@@ -1,0 +1,143 @@
+"""A find as a scenario of its own, which runs again to the same bits; a folder of them is a corpus."""
+
+import json
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+import yaml
+
+from fmus.files import write_whole
+from orchestrator.hunt.search import Seed
+from orchestrator.hunt.shrink import away
+from orchestrator.hunt.subject import Subject
+from orchestrator.scenario.load_scenario import load_scenario
+from orchestrator.scenario.scenario import Scenario
+from orchestrator.sweep.batch import run_batch
+from orchestrator.sweep.job import Chunk, chunk_scenario, make_job, truths
+from orchestrator.sweep.study.design import Design
+from orchestrator.sweep.study.study import Study
+from orchestrator.sweep.verdict import OUTCOMES, judge, limit_value, values_in
+from orchestrator.text.errors import BadInput
+from orchestrator.verdict.conditions import CONDITIONS
+
+NOTES = "finds.json"
+"""What the finds of a folder came to when they were written."""
+BITS = ("duration", "min_clearance", "final.x", "final.y", "final.heading", "steering_effort")
+"""Numbers that tell whether a run is the same to the last bit."""
+TOLD = {"file", "base", "car", "changed", "left_out"}
+
+
+class Find(NamedTuple):
+    """A run that breaks the requirement, and the mildest one it was shrunk to."""
+
+    name: str
+    run: Seed
+    chance: float
+    """Share of other seeds with which the same disturbances break it."""
+    drawn: Seed
+    """As it was met first."""
+
+
+def factors_of(subject: Subject, find: Find) -> dict[str, dict[str, float | str]]:
+    """Return the factors of a find that are not nominal: value and nominal value, and the unit."""
+    found: dict[str, dict[str, float | str]] = {}
+    for number in away(subject.space, find.run.shares):
+        factor = subject.space.factors[number]
+        value = float(factor.at(np.array([find.run.shares[number]]))[0])
+        if factor.choices:
+            words = (factor.choices[int(value)], factor.choices[int(factor.nominal)])
+            found[factor.name] = {"value": words[0], "nominal": words[1], "unit": factor.unit, "text": factor.text}
+        else:
+            said = {"unit": factor.unit, "text": factor.text}
+            found[factor.name] = {"value": value, "nominal": factor.nominal, **said}
+    return found
+
+
+def write_find(subject: Subject, find: Find, folder: Path) -> Path:
+    """Write a find as ``folder/NAME.yaml``, and what it came to into ``finds.json``; return the scenario's path."""
+    scenario = chunk_scenario(subject.job, subject.chunk(find.run.shares, find.run.seed), 0)
+    limits = list(subject.goal.limits) or scenario.limits
+    own = {"name": find.name, "title": f"Breaks: {subject.goal.text}", "description": _said(subject, find)}
+    content = scenario.model_copy(update={**own, "limits": limits, "source": f"hunt in {subject.study.name}"})
+    path = folder / f"{find.name}.yaml"
+    write_whole(path, _text(content))
+    notes = read_notes(folder)
+    notes[find.name] = {"requirement": subject.goal.name, **_numbers(load_scenario(str(path)))}
+    write_whole(folder / NOTES, json.dumps(notes, indent=2, sort_keys=True) + "\n")
+    return path
+
+
+def _text(scenario: Scenario) -> str:
+    content = scenario.model_dump(mode="python", exclude=TOLD, by_alias=True, exclude_none=True)
+    text: str = yaml.safe_dump(content, sort_keys=False, allow_unicode=True)
+    return text
+
+
+def _said(subject: Subject, find: Find) -> str:
+    parts = [
+        f"{name} {item['value']:.4g} {item['unit']}" if isinstance(item["value"], float) else f"{name} {item['value']}"
+        for name, item in factors_of(subject, find).items()
+    ]
+    return f"{find.run.words}. Not nominal: {', '.join(parts) or 'nothing'}; seed {find.run.seed}."
+
+
+def read_notes(folder: Path) -> dict[str, dict[str, Any]]:
+    """Return what is noted of the finds of a folder. Raises ``BadInput`` if that cannot be read."""
+    path = folder / NOTES
+    if not path.is_file():
+        return {}
+    try:
+        return dict(json.loads(path.read_text(encoding="utf-8")))
+    except ValueError as error:
+        raise BadInput("is damaged", file=path) from error
+
+
+class Again(NamedTuple):
+    """A find of a corpus run again."""
+
+    name: str
+    breaks: bool
+    same: bool
+    """To the last bit as when it was found."""
+    words: str
+
+
+def check_corpus(folder: Path) -> list[Again]:
+    """Return the finds of a folder as they run now. Raises ``BadInput`` if there is none."""
+    files = sorted(folder.glob("*.yaml"))
+    if not files:
+        raise BadInput("no scenarios in this folder", file=folder)
+    notes = read_notes(folder)
+    return [_again(path, notes.get(path.stem, {})) for path in files]
+
+
+def _again(path: Path, noted: Mapping[str, Any]) -> Again:
+    now = _numbers(load_scenario(str(path)))
+    same = all(noted.get(name) == now[name] for name in now)
+    return Again(path.stem, bool(now["breaks"]), same, f"{now['outcome']}: {now['reason']}")
+
+
+def _numbers(scenario: Scenario) -> dict[str, Any]:
+    """Return what a scenario comes to in the compiled batch; it breaks if it misses a limit and does not say so."""
+    design = Design([], np.empty((1, 0)), np.array([scenario.seed], dtype=np.int64))
+    job = make_job(Study(scenario, design, {"name": scenario.name}))
+    chunk = Chunk(0, 0, design.values, design.seeds)
+    rows = run_batch(job, chunk)
+    verdict = judge(job, truths(job, chunk), rows)
+    found = dict(zip(job.measures, rows[:, 2:].T, strict=False))
+    margins = {
+        limit.id: float(
+            CONDITIONS[limit.condition].margin(values_in(limit, verdict.numbers, found), limit_value(limit))[0]
+        )
+        for limit in scenario.limits
+    }
+    outcome = OUTCOMES[verdict.outcome[0]]
+    touched = min((margins[name] for name in margins if name in TOUCHING), default=1.0) < 0.0
+    bits = {name: float(verdict.numbers[name][0]).hex() for name in BITS}
+    return {"outcome": outcome, "reason": verdict.reason[0], "breaks": touched or outcome == "not_parked", "bits": bits}
+
+
+TOUCHING = ("contact", "no contact")
+"""Limits that hold however a run ends."""

@@ -1,0 +1,50 @@
+"""What is hunted: a requirement whose margin says how far a run is from breaking it."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from orchestrator.cosim.slave import Array
+from orchestrator.scenario.requirements import LIMITS, Requirement, shipped_requirements
+from orchestrator.sweep.rows import measure_of
+from orchestrator.sweep.study.study import Goal, Study
+from orchestrator.text.errors import BadInput, suggestion
+from orchestrator.verdict.numbers import NUMBERS
+
+CONTACT = Requirement(id="contact", signal="vehicle.clearance", min=1e-9, source="nothing is touched")
+
+
+def goal_of(study: Study, name: str | None) -> Goal:
+    """Return what ``name`` means: a goal of the study's own, a limit of its scenario, a shipped limit or set of them.
+
+    No name: the study's first goal, or contact. Raises ``BadInput``.
+    """
+    own = {goal.name: goal for goal in study.goals}
+    if name is None:
+        return study.goals[0] if study.goals else _limits("contact", [CONTACT])
+    if name in own:
+        return own[name]
+    known: dict[str, Sequence[Requirement]] = {"contact": [CONTACT]}
+    for path in sorted(LIMITS.glob("*.yaml")):
+        items = shipped_requirements(path.stem)
+        known |= {path.stem: items} | {f"{path.stem}: {item.id}": [item] for item in items}
+    known |= {f"within {key}": items for key, items in study.within.items()}
+    known |= {item.id: [item] for item in study.scenario.limits}
+    if name not in known:
+        hint = suggestion(name, [*own, *known]) or f"; known are {', '.join([*own, *known])}"
+        raise BadInput(f"no requirement of this name{hint}", key="--requirement")
+    return _limits(name, known[name])
+
+
+def _limits(name: str, limits: Sequence[Requirement]) -> Goal:
+    for limit in limits:
+        if limit.signal not in NUMBERS and measure_of(limit) is None:
+            raise BadInput(
+                "takes the whole run; a search needs a limit without such a window", key=f"limit: {limit.id}"
+            )
+    return Goal(name, ", ".join(item.id for item in limits), limits)
+
+
+def smallest(margins: Sequence[Array]) -> Array:
+    """Return the least of several margins of each run; what was not measured is met by nothing."""
+    return np.asarray(np.nan_to_num(np.min(np.array(margins), axis=0), nan=-1.0))

@@ -1,0 +1,135 @@
+"""The runs of a hunt: points of the unit cube and seeds in, margins and words about each run out.
+
+All that is run is kept in a journal. A hunt that goes on asks for the same runs again, and has those of before from it.
+"""
+
+import math
+from collections.abc import Iterator
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from fmus.files import whole
+from orchestrator.cosim.master import Interrupt
+from orchestrator.cosim.slave import Array
+from orchestrator.hunt.goal import smallest
+from orchestrator.sweep.columns import filled
+from orchestrator.sweep.engine import Engine
+from orchestrator.sweep.job import Chunk, Job, make_job, truths
+from orchestrator.sweep.rows import FIRST_MEASURE
+from orchestrator.sweep.study.design import Design
+from orchestrator.sweep.study.space import Seeds, Space
+from orchestrator.sweep.study.study import Columns, Goal, Study
+from orchestrator.sweep.verdict import judge, limit_value, values_in
+from orchestrator.text.console import Meter
+from orchestrator.verdict.conditions import CONDITIONS
+
+PIECES = 4
+"""Chunks of a batch for each worker."""
+
+
+class Seen(NamedTuple):
+    """What some runs came to."""
+
+    margins: Array
+    """0 or less: the requirement is broken."""
+    words: Array
+    """How each ended."""
+
+
+class Stopped(Exception):  # noqa: N818 - said as it is
+    """Ctrl-C: what is done is in the journal."""
+
+
+class Subject:
+    """What is hunted, in a study, and who does the runs."""
+
+    def __init__(self, study: Study, space: Space, goal: Goal, engine: Engine, journal: Path) -> None:
+        self.space, self.goal, self.runs = space, goal, 0
+        self.study = study._replace(within={**study.within, HUNTED: list(goal.limits)})
+        self.job = make_job(self.study)
+        self.meter: Meter | None = None
+        self.interrupt = Interrupt()
+        self.stage, self.broken = "", 0
+        self._engine, self._journal, self._batches = engine, journal, 0
+
+    def margins(self, shares: Array, seeds: Seeds) -> Array:
+        """Return the margins of runs at points (n, factors) of the unit cube."""
+        return self.see(shares, seeds).margins
+
+    def see(self, shares: Array, seeds: Seeds) -> Seen:
+        """Return what runs come to, from the journal if they were made before. Raises ``Stopped``."""
+        part = self._journal / f"{self._batches:06d}.npz"
+        self._batches += 1
+        seen = _kept(part, shares, seeds) or self._made(part, shares, seeds)
+        self.runs += len(seeds)
+        self.broken += int((seen.margins <= 0.0).sum())
+        if self.meter is not None:
+            self.meter.at(self.runs, f"{self.stage}, {self.broken} broken")
+        return seen
+
+    def chunk(self, shares: Array, seed: int) -> Chunk:
+        """Return one run as a line of the design."""
+        seeds = np.array([seed], dtype=np.int64)
+        return Chunk(0, 0, self.space.values(shares[None], seeds), seeds)
+
+    def _made(self, part: Path, shares: Array, seeds: Seeds) -> Seen:
+        values = self.space.values(shares, seeds)
+        design = Design(self.study.design.fields, values, seeds, self.space.named(shares))
+        study = self.study._replace(design=design)
+        margins, words = np.full(len(seeds), np.nan), np.full(len(seeds), "", dtype=object)
+        for chunk, rows in self._engine.results(self.job, self._chunks(design), self.interrupt):
+            here = slice(chunk.first, chunk.first + len(chunk.seeds))
+            columns = filled(study, self.job, chunk, rows)
+            margins[here] = _margins(self.goal, self.job, chunk, rows, columns)
+            words[here] = _words(columns)
+        if self.interrupt.requested and np.isnan(margins).any():
+            raise Stopped
+        seen = Seen(margins, words.astype(str))
+        with whole(part) as beside, beside.open("wb") as file:
+            np.savez(file, shares=shares, seeds=seeds, margins=seen.margins, words=seen.words)
+        return seen
+
+    def _chunks(self, design: Design) -> Iterator[Chunk]:
+        size = max(1, math.ceil(len(design.seeds) / (PIECES * self._engine.workers)))
+        for number, first in enumerate(range(0, len(design.seeds), size)):
+            yield Chunk(number, first, design.values[first : first + size], design.seeds[first : first + size])
+
+
+HUNTED = "what is hunted"
+
+
+def _kept(part: Path, shares: Array, seeds: Seeds) -> Seen | None:
+    """Return what is in the journal of just these runs; None if nothing is."""
+    if not part.is_file():
+        return None
+    with np.load(part) as found:
+        same = np.array_equal(found["shares"], shares) and np.array_equal(found["seeds"], seeds)
+        return Seen(found["margins"], found["words"]) if same else None
+
+
+def _margins(goal: Goal, job: Job, chunk: Chunk, rows: Array, columns: Columns) -> Array:
+    if goal.margins is not None:
+        return goal.margins(columns)
+    truth = truths(job, chunk)
+    numbers, has = judge(job, truth, rows).numbers, truth.has()
+    found = dict(zip(job.measures, rows[:, FIRST_MEASURE:].T, strict=False))
+    margins = []
+    for limit in goal.limits:
+        margin = CONDITIONS[limit.condition].margin(values_in(limit, numbers, found), limit_value(limit))
+        margins.append(np.where(margin == 0.0, np.finfo(float).tiny, margin))
+        if limit.where is not None:
+            margins[-1] = np.where(has[limit.where], margins[-1], np.inf)
+    return np.clip(smallest(margins), -FARTHEST, FARTHEST)
+
+
+FARTHEST = 1e3
+
+
+def _words(columns: Columns) -> list[str]:
+    names = [name for name in ("end", "touched") if name in columns] or ["outcome"]
+    parts = zip(*(np.asarray(columns[name]).tolist() for name in (*names, "reason")), strict=True)
+    return [
+        ", ".join(dict.fromkeys(word for word in row if word not in ("", "none", "all checks passed"))) for row in parts
+    ]

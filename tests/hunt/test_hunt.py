@@ -1,0 +1,151 @@
+"""A planted fault is found, shrunk and written down; where none is, the hunt says what it proves."""
+
+import json
+
+import numpy as np
+import pytest
+import yaml
+
+from orchestrator.cli import main
+from orchestrator.hunt.finds import BITS, NOTES, check_corpus
+from orchestrator.hunt.goal import goal_of
+from orchestrator.hunt.shrink import away
+from orchestrator.hunt.subject import Subject
+from orchestrator.hunt.written import space_of
+from orchestrator.scenario.load_scenario import load_scenario
+from orchestrator.session.session import run_scenario
+from orchestrator.sweep.study.read_study import read_study
+from orchestrator.text.errors import BadInput
+from orchestrator.verdict.summary import summarize
+
+RUNS = {
+    "n": 64,
+    "vehicle.driver.profile[1].speed": {"uniform": [0.3, 1.5]},
+    "vehicle.driver.reaction_delay": {"uniform": [0.0, 0.5]},
+    "vehicle.start.x": {"uniform": [-0.1, 0.3]},
+    "vehicle.start.y": {"uniform": [-0.1, 0.1]},
+    "vehicle.start.heading": {"uniform": [-0.02, 0.02]},
+    "vehicle.steering.backlash": {"uniform": [0.0, 0.05]},
+    "vehicle.steering.dead_time": {"uniform": [0.0, 0.1]},
+    "vehicle.driver.wobble": {"uniform": [0.0, 0.1]},
+}
+WHOLE = "controller.target.y"
+TRUE = -3.056
+PLANTED = TRUE + 0.045
+"""Of the 5 cm that the lateral position may be off, the controller gives most away."""
+
+
+@pytest.fixture
+def study(tmp_path):
+    """A function from the target that the controller believes to the file of a study."""
+
+    def written(target):
+        content = {"scenario": "guo2015-case3-105", "set": {"limits": ["guo2015-in-line"], WHOLE: target}}
+        path = tmp_path / "drivers.yaml"
+        path.write_text(yaml.safe_dump({**content, "runs": {"monte_carlo": RUNS}}))
+        return str(path)
+
+    return written
+
+
+def hunted(capsys, *words):
+    code = main(["hunt", *words, "--json"])
+    return code, json.loads(capsys.readouterr().out)
+
+
+def test_a_planted_fault_is_found_in_500_runs_and_shrunk(study, tmp_path, capsys):
+    out = tmp_path / "out"
+    words = ("--requirement", "final lateral position", "--budget", "400", "--seed", "3", "--out", str(out))
+    code, found = hunted(capsys, study(PLANTED), *words)
+    assert code == 1
+    assert found["first_after"] <= 500
+    assert found["finds"]
+    for find in found["finds"]:
+        assert find["margin"] <= 0.0
+        assert len(find["factors"]) < len(RUNS) - 1
+    assert (out / "hunt.html").read_text(encoding="utf-8").count("<script") == 0
+    assert json.loads((out / "hunt.json").read_text()) == {key: found[key] for key in found if key != "page"}
+
+
+def test_a_find_runs_again_to_the_same_bits(study, tmp_path, capsys):
+    """In the compiled batch, and as an ordinary run through the Python master."""
+    out = tmp_path / "out"
+    words = ("--requirement", "final lateral position", "--budget", "100", "--out", str(out))
+    code, found = hunted(capsys, study(TRUE + 0.055), *words)
+    assert code == 1
+    folder = out / "finds"
+    again = check_corpus(folder)
+    assert [item.same for item in again] == [True] * len(found["finds"])
+    assert all(item.breaks for item in again)
+    noted = json.loads((folder / NOTES).read_text())
+    scenario = load_scenario(str(folder / f"{again[0].name}.yaml"))
+    summary = summarize(run_scenario(scenario).recording, scenario, 1.0)
+    told = {
+        "duration": summary.duration,
+        **{f"final.{key}": value for key, value in summary.final.model_dump().items()},
+    }
+    bits = noted[again[0].name]["bits"]
+    assert {key: told[key].hex() for key in BITS if key in told} == {key: bits[key] for key in BITS if key in told}
+    assert summary.outcome == "not_parked"
+    assert main(["hunt", "--corpus", str(folder)]) == 1
+    mended = folder / f"{again[0].name}.yaml"
+    content = yaml.safe_load(mended.read_text())
+    for path in folder.glob("*.yaml"):
+        path.unlink()
+    content["controller"]["target.y"] = TRUE
+    mended.write_text(yaml.safe_dump(content))
+    assert main(["hunt", "--corpus", str(folder)]) == 0
+    assert [item.same for item in check_corpus(folder)] == [False]
+
+
+def test_where_nothing_breaks_it_says_what_that_proves(study, tmp_path, capsys):
+    words = ("--requirement", "final lateral position", "--budget", "200", "--out", str(tmp_path / "out"))
+    code, found = hunted(capsys, study(TRUE), *words)
+    assert (code, found["finds"], found["first_after"], found["independent"]["broken"]) == (0, [], None, 0)
+    assert found["probability"]["below"] == pytest.approx(1.0 - 0.05 ** (1.0 / found["independent"]["runs"]))
+    assert found["influences"][0]["first"]["value"] > 0.0
+
+
+def test_an_interrupted_hunt_goes_on_to_the_same_end(study, tmp_path, capsys, monkeypatch):
+    words = (study(PLANTED), "--requirement", "final lateral position", "--budget", "100")
+    _, whole = hunted(capsys, *words, "--out", str(tmp_path / "whole"))
+    out, made = tmp_path / "cut", Subject._made
+
+    def cut(self, part, shares, seeds):
+        if self.runs > 40:
+            self.interrupt.requested = True
+        return made(self, part, shares, seeds)
+
+    monkeypatch.setattr(Subject, "_made", cut)
+    assert main(["hunt", *words, "--out", str(out)]) == 130
+    monkeypatch.setattr(Subject, "_made", made)
+    capsys.readouterr()
+    kept = len(list((out / "journal").glob("*.npz")))
+    assert kept > 0
+    _, resumed = hunted(capsys, *words, "--out", str(out), "--resume")
+    assert {**resumed, "page": ""} == {**whole, "page": ""}
+    assert main(["hunt", *words, "--seed", "9", "--out", str(out), "--resume"]) == 2
+
+
+def test_the_space_of_a_study_is_that_of_its_columns(study):
+    made = read_study(study(TRUE), {})
+    space = space_of(made)
+    assert {factor.name for factor in space.factors} == {key for key in RUNS if key != "n"}
+    nominal = space.nominal()
+    assert away(space, nominal) == []
+    line = space.values(nominal[None], np.array([1]))[0]
+    keys = [field.key for field in made.design.fields]
+    assert line[keys.index("vehicle.start.y")] == pytest.approx(0.0, abs=1e-12)
+    assert away(space, np.where(np.arange(len(nominal)) == 2, 0.99, nominal)) == [2]
+
+
+def test_what_cannot_be_hunted_is_refused(study, capsys):
+    made = read_study(study(TRUE), {})
+    assert goal_of(made, None).name == "contact"
+    assert goal_of(made, "gbt41630").limits
+    with pytest.raises(BadInput, match="did you mean"):
+        goal_of(made, "final heeding")
+    assert main(["hunt"]) == 2
+    assert main(["hunt", "no-such-study"]) == 2
+    assert main(["hunt", study(TRUE), "--budget", "3"]) == 2
+    assert "expected a number from 50" in capsys.readouterr().err

@@ -9,9 +9,9 @@ import numpy as np
 from orchestrator.cosim.interrupts import on_interrupt
 from orchestrator.cosim.slave import Array
 from orchestrator.hunt.finds import Find, write_find
-from orchestrator.hunt.influence import Influence, first_orders, total_index
+from orchestrator.hunt.influence import Mattering, first_orders, total_index
 from orchestrator.hunt.rare import LAST_SEED, Rare, subset_simulation
-from orchestrator.hunt.search import Sample, Seed, by_lot, downhill, everywhere
+from orchestrator.hunt.search import Drawn, Seed, by_lot, downhill, everywhere
 from orchestrator.hunt.shrink import away, chance, shrink
 from orchestrator.hunt.subject import Subject
 from orchestrator.text.console import Meter
@@ -43,7 +43,7 @@ class Hunted(NamedTuple):
     bound: tuple[float, float]
     """95 % each: the probability is above, and below."""
     rare: Rare | None
-    influences: Sequence[Influence]
+    influences: Sequence[Mattering]
 
 
 def hunt(subject: Subject, budget: int, seed: int, folder: Path) -> Hunted:
@@ -78,12 +78,12 @@ def _part(budget: int, share: float) -> int:
     return max(8, round(share * budget))
 
 
-def _first_broken(sample: Sample, before: int) -> int | None:
+def _first_broken(sample: Drawn, before: int) -> int | None:
     broken = np.flatnonzero(sample.margins <= 0.0)
     return before + int(broken[0]) + 1 if len(broken) else None
 
 
-def _downhill(subject: Subject, spread: Sample, budget: int, seed: int) -> list[Seed]:
+def _downhill(subject: Subject, spread: Drawn, budget: int, seed: int) -> list[Seed]:
     """Return the worst run of each of several searches, from the runs that were nearest to breaking."""
     found = []
     order = np.argsort(spread.margins, kind="stable")
@@ -94,7 +94,7 @@ def _downhill(subject: Subject, spread: Sample, budget: int, seed: int) -> list[
     return found
 
 
-def _influences(subject: Subject, spread: Sample, lot: Sample, budget: int, seed: int) -> list[Influence]:
+def _influences(subject: Subject, spread: Drawn, lot: Drawn, budget: int, seed: int) -> list[Mattering]:
     """Return the influences, the strongest first; totals of those that matter most at first sight."""
     names = [factor.name for factor in subject.space.factors]
     shares, margins = np.concatenate([spread.shares, lot.shares]), np.concatenate([spread.margins, lot.margins])
@@ -113,11 +113,11 @@ def _influences(subject: Subject, spread: Sample, lot: Sample, budget: int, seed
         changed[:, members] = other[:, members]
         drawn = seeds if name == NOISE else lot.seeds[:count]
         totals[name] = total_index(own, subject.margins(changed, drawn), variance, seed)
-    found = [Influence(names[number], firsts[number], totals.get(names[number])) for number in order]
-    return [*found, *(Influence(name, None, totals[name]) for name in (OTHERS, NOISE) if name in totals)]
+    found = [Mattering(names[number], firsts[number], totals.get(names[number])) for number in order]
+    return [*found, *(Mattering(name, None, totals[name]) for name in (OTHERS, NOISE) if name in totals)]
 
 
-def _rare(subject: Subject, lot: Sample, budget: int, seed: int) -> Rare | None:
+def _rare(subject: Subject, lot: Drawn, budget: int, seed: int) -> Rare | None:
     """Return the estimate for a rare event; None where independent runs have met it often enough, or few are left."""
     often = (lot.margins <= 0.0).sum() >= OFTEN
     level = budget // 3

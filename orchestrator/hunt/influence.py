@@ -25,7 +25,7 @@ class Index(NamedTuple):
     high: float
 
 
-class Influence(NamedTuple):
+class Mattering(NamedTuple):
     """What one factor, or all the others together, does to the margin."""
 
     name: str

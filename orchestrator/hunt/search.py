@@ -30,7 +30,7 @@ class Seed(NamedTuple):
     words: str
 
 
-class Sample(NamedTuple):
+class Drawn(NamedTuple):
     """Runs, as they were drawn."""
 
     shares: Array
@@ -47,7 +47,7 @@ class Sample(NamedTuple):
         return Seed(self.shares[number], int(self.seeds[number]), float(self.margins[number]), str(self.words[number]))
 
 
-def everywhere(subject: Subject, count: int, seed: int) -> Sample:
+def everywhere(subject: Subject, count: int, seed: int) -> Drawn:
     """Return ``count`` runs of a scrambled Sobol sequence, seeds by lot."""
     rng = np.random.default_rng([seed, 1])
     with warnings.catch_warnings():
@@ -56,15 +56,15 @@ def everywhere(subject: Subject, count: int, seed: int) -> Sample:
     return _sample(subject, shares, rng.integers(1, LAST_SEED, count))
 
 
-def by_lot(subject: Subject, count: int, seed: int) -> Sample:
+def by_lot(subject: Subject, count: int, seed: int) -> Drawn:
     """Return ``count`` independent runs."""
     rng = np.random.default_rng([seed, 2])
     return _sample(subject, rng.random((count, len(subject.space.factors))), rng.integers(1, LAST_SEED, count))
 
 
-def _sample(subject: Subject, shares: Array, seeds: Seeds) -> Sample:
+def _sample(subject: Subject, shares: Array, seeds: Seeds) -> Drawn:
     seen = subject.see(shares, seeds)
-    return Sample(shares, seeds, seen.margins, seen.words)
+    return Drawn(shares, seeds, seen.margins, seen.words)
 
 
 def downhill(subject: Subject, start: Array, budget: int, seed: int) -> list[Seed]:

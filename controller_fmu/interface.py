@@ -24,7 +24,20 @@ from controller_fmu.zhang2022.signals import ZhangSignals
 from modelkit.car import Car
 from modelkit.signal import Group, Role, Signal
 from modelkit.states import union
-from modelkit.vocabulary import ANYWHERE, Gear, Pose, Prompt
+from modelkit.vocabulary import (
+    ANYWHERE,
+    AdvisedSpeed,
+    BrakeRequest,
+    ForceControlActive,
+    ForceRequest,
+    Gear,
+    Pose,
+    PromptShown,
+    SpeedControlActive,
+    SpeedRequest,
+    SteeringActive,
+    SteeringWheelRequest,
+)
 
 HOUSE = "chosen; the source states none"
 
@@ -139,15 +152,15 @@ class Path(NamedTuple):
 class ControllerOutput(NamedTuple):
     """To the vehicle, the driver, the log and the judge."""
 
-    steering_wheel_request: Annotated[float, Signal("rad", "steering-wheel angle asked for, left positive")] = 0.0
-    steering_active: Annotated[bool, Signal("1", "the controller holds the steering wheel")] = False
-    prompt: Annotated[int, Signal("1", "prompt shown to the driver", states=Prompt)] = 0
-    advised_speed: Annotated[float, Signal("m/s", "largest speed advised with the prompt, >= 0")] = 0.0
-    speed_control_active: Annotated[bool, Signal("1", "the controller drives: speed_request holds")] = False
-    speed_request: Annotated[float, Signal("m/s", "speed asked for, reverse negative")] = 0.0
-    force_control_active: Annotated[bool, Signal("1", "force_request holds, not speed_request")] = False
-    force_request: Annotated[float, Signal("N", "drive and brake force asked for, forward positive")] = 0.0
-    brake_request: Annotated[bool, Signal("1", "the controller brakes to standstill and holds")] = False
+    steering_wheel_request: SteeringWheelRequest = 0.0
+    steering_active: SteeringActive = False
+    prompt: PromptShown = 0
+    advised_speed: AdvisedSpeed = 0.0
+    speed_control_active: SpeedControlActive = False
+    speed_request: SpeedRequest = 0.0
+    force_control_active: ForceControlActive = False
+    force_request: ForceRequest = 0.0
+    brake_request: BrakeRequest = False
     phase: Annotated[int, Signal("1", "state of the manoeuvre chart", states=Phase)] = 0
     reason: Annotated[int, Signal("1", "why the controller failed", states=Reason)] = 0
     shifts: Annotated[int, Signal("1", "manoeuvres so far, the first reverse counts one"), Role.LOCAL] = 0

@@ -1,4 +1,4 @@
-"""The words both FMUs speak: a pose, the prompts to the driver, the gears.
+"""The words both FMUs speak: a pose, the prompts to the driver, the gears, what a controller asks of a car.
 
 Frame: ISO 8855. x forward, y left, heading counter-clockwise from x; the reference point of a
 car is the midpoint of its rear axle.
@@ -43,3 +43,15 @@ class Gear(IntEnum):
     REVERSE = 1
     NEUTRAL = 2
     DRIVE = 3
+
+
+SteeringWheelRequest = Annotated[float, Signal("rad", "steering-wheel angle asked for, left positive")]
+SteeringActive = Annotated[bool, Signal("1", "the controller holds the steering wheel")]
+PromptShown = Annotated[int, Signal("1", "prompt shown to the driver", states=Prompt)]
+AdvisedSpeed = Annotated[float, Signal("m/s", "largest speed advised with the prompt, >= 0")]
+SpeedControlActive = Annotated[bool, Signal("1", "the controller drives: speed_request holds")]
+SpeedRequest = Annotated[float, Signal("m/s", "speed asked for, reverse negative")]
+ForceControlActive = Annotated[bool, Signal("1", "force_request holds, not speed_request")]
+ForceRequest = Annotated[float, Signal("N", "drive and brake force asked for, forward positive")]
+BrakeRequest = Annotated[bool, Signal("1", "the controller brakes to standstill and holds")]
+"""What every controller asks of a car: an output of each controller, an input of the car."""

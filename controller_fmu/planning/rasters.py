@@ -1,6 +1,7 @@
 """The two rasters over the window: which edges are near a cell, and how far it is from a cell to the target."""
 
 import math
+from typing import NamedTuple
 
 from controller_fmu.planning.clearance import SIGHT
 from controller_fmu.planning.plan_store import (
@@ -79,15 +80,29 @@ def list_near(store: PlanStore, edges: int, window: SearchWindow, car: PlannedCa
     return True
 
 
+class _Edge(NamedTuple):
+    """An edge as seen from the window's corner: its first end, the way to the other, the least x and y of both [m]."""
+
+    x: float
+    y: float
+    dx: float
+    dy: float
+    low_x: float
+    low_y: float
+
+
+def _edge(store: PlanStore, edge: int, window: SearchWindow) -> _Edge:
+    x = store.edge_x1[edge] - window.x0
+    y = store.edge_y1[edge] - window.y0
+    dx = store.edge_x2[edge] - store.edge_x1[edge]
+    dy = store.edge_y2[edge] - store.edge_y1[edge]
+    return _Edge(x, y, dx, dy, x if dx > 0.0 else x + dx, y if dy > 0.0 else y + dy)
+
+
 def _each_near(store: PlanStore, edge: int, window: SearchWindow, car: PlannedCar, fill: bool) -> None:
     """Count the edge at each cell it is near, or put it into the cell's list, from the end of the list on."""
     reach = near_reach(window, car)
-    x1 = store.edge_x1[edge] - window.x0
-    y1 = store.edge_y1[edge] - window.y0
-    dx = store.edge_x2[edge] - store.edge_x1[edge]
-    dy = store.edge_y2[edge] - store.edge_y1[edge]
-    low_x = x1 if dx > 0.0 else x1 + dx
-    low_y = y1 if dy > 0.0 else y1 + dy
+    x1, y1, dx, dy, low_x, low_y = _edge(store, edge, window)
     first = _cell(low_x - reach, window.near, window.near_count)
     last = _cell(low_x + abs(dx) + reach, window.near, window.near_count)
     for row in range(
@@ -129,12 +144,7 @@ def block_route(store: PlanStore, edges: int, task: Task) -> None:
     clear_route(store, count * count)
     reach = task.car.half_width + task.margin - 0.7072 * window.route
     for edge in range(edges):
-        x1 = store.edge_x1[edge] - window.x0
-        y1 = store.edge_y1[edge] - window.y0
-        dx = store.edge_x2[edge] - store.edge_x1[edge]
-        dy = store.edge_y2[edge] - store.edge_y1[edge]
-        low_x = x1 if dx > 0.0 else x1 + dx
-        low_y = y1 if dy > 0.0 else y1 + dy
+        x1, y1, dx, dy, low_x, low_y = _edge(store, edge, window)
         for row in range(
             _cell(low_y - reach, window.route, count), _cell(low_y + abs(dy) + reach, window.route, count) + 1
         ):

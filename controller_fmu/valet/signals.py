@@ -7,7 +7,16 @@ from controller_fmu.interface import Reason
 from controller_fmu.valet.chart import Step
 from controller_fmu.valet.phases import ValetPhase
 from modelkit.signal import Group, Role, Signal
-from modelkit.vocabulary import Pose, Prompt
+from modelkit.vocabulary import (
+    AdvisedSpeed,
+    BrakeRequest,
+    Pose,
+    PromptShown,
+    SpeedControlActive,
+    SpeedRequest,
+    SteeringActive,
+    SteeringWheelRequest,
+)
 
 PIECES = 12
 """Pieces of a move that are put out."""
@@ -59,15 +68,15 @@ class ValetSignals(NamedTuple):
 class ValetOutput(NamedTuple):
     """To the vehicle, the driver, the log and the judge; those of all controllers are called as theirs."""
 
-    steering_wheel_request: Annotated[float, Signal("rad", "steering-wheel angle asked for, left positive")] = 0.0
-    steering_active: Annotated[bool, Signal("1", "the controller holds the steering wheel")] = False
-    prompt: Annotated[int, Signal("1", "prompt shown to the driver", states=Prompt)] = 0
-    advised_speed: Annotated[float, Signal("m/s", "largest speed advised with the prompt, >= 0")] = 0.0
-    speed_control_active: Annotated[bool, Signal("1", "the controller drives: speed_request holds")] = False
-    speed_request: Annotated[float, Signal("m/s", "speed asked for, reverse negative")] = 0.0
+    steering_wheel_request: SteeringWheelRequest = 0.0
+    steering_active: SteeringActive = False
+    prompt: PromptShown = 0
+    advised_speed: AdvisedSpeed = 0.0
+    speed_control_active: SpeedControlActive = False
+    speed_request: SpeedRequest = 0.0
     force_control_active: Annotated[bool, Signal("1", "force_request holds: never")] = False
     force_request: Annotated[float, Signal("N", "drive and brake force asked for: none")] = 0.0
-    brake_request: Annotated[bool, Signal("1", "the controller brakes to standstill and holds")] = False
+    brake_request: BrakeRequest = False
     phase: Annotated[int, Signal("1", "state of the manoeuvre chart", states=ValetPhase)] = 0
     reason: Annotated[int, Signal("1", "why the controller failed", states=Reason)] = 0
     shifts: Annotated[int, Signal("1", "manoeuvres so far, the first reverse counts one"), Role.LOCAL] = 0

@@ -6,6 +6,7 @@ import yaml
 from scenes import CAR, least_clearance, tpcap_folder
 from shapely.geometry import MultiPoint
 
+from benchmarks.bench_valet import ERRORS
 from modelkit.vocabulary import Pose
 from orchestrator.cli import main
 from orchestrator.cosim.fmu_files import can_compile, fmu_files
@@ -19,14 +20,6 @@ from orchestrator.verdict.summary import summarize
 
 pytestmark = pytest.mark.skipif(not can_compile(), reason="FMUs without Python need a C compiler: pip install ziglang")
 TPCAP = pytest.mark.skipif(tpcap_folder() is None, reason="TPCAP's cases are not here")
-ERRORS = (
-    "vehicle.body=double_track",
-    "vehicle.steering.dead_time=40 ms",
-    "vehicle.steering.lag=50 ms",
-    "vehicle.steering.backlash=0.03",
-    "vehicle.drive.brake_lag=80 ms",
-    "vehicle.odometry={perfect: false, radius_error: 0.001, steering_offset: 0.0002, tick: 0.01}",
-)
 REASONS = {"valet-blocked": "blocked", "valet-no-way": "no_path"}
 CASE = "1.0,3.0,0.1,-1.2,-2.0,0.0,2,4,4,-9,-3,-3.5,-3,-3.5,-1,-9,-1,5,-3,9,-3,9,-1,5,-1"
 

@@ -80,7 +80,7 @@ def list_near(store: PlanStore, edges: int, window: SearchWindow, car: PlannedCa
     return True
 
 
-class _Edge(NamedTuple):
+class _EdgeBox(NamedTuple):
     """An edge as seen from the window's corner: its first end, the way to the other, the least x and y of both [m]."""
 
     x: float
@@ -91,12 +91,12 @@ class _Edge(NamedTuple):
     low_y: float
 
 
-def _edge(store: PlanStore, edge: int, window: SearchWindow) -> _Edge:
+def _edge(store: PlanStore, edge: int, window: SearchWindow) -> _EdgeBox:
     x = store.edge_x1[edge] - window.x0
     y = store.edge_y1[edge] - window.y0
     dx = store.edge_x2[edge] - store.edge_x1[edge]
     dy = store.edge_y2[edge] - store.edge_y1[edge]
-    return _Edge(x, y, dx, dy, x if dx > 0.0 else x + dx, y if dy > 0.0 else y + dy)
+    return _EdgeBox(x, y, dx, dy, x if dx > 0.0 else x + dx, y if dy > 0.0 else y + dy)
 
 
 def _each_near(store: PlanStore, edge: int, window: SearchWindow, car: PlannedCar, fill: bool) -> None:

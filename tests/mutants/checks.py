@@ -1,0 +1,121 @@
+"""What is asked of a mutant, each by what users and CI run: scenarios, step tests, records, tests, reproductions.
+
+Run in a process of its own whose checkout has the mistake in it. A check returns who found it, "" for nobody.
+"""
+
+import contextlib
+import fnmatch
+import io
+from collections.abc import Callable
+from pathlib import Path
+
+NATIVE = ("apa", "preview")
+"""Systems whose scenarios take minutes in plain Python: they are compiled."""
+TESTS = {
+    "guo2015": ("guo", "tracking_laws", "two_arc", "smooth_paths", "steering_monitor"),
+    "apa": ("apa",),
+    "zhang2022": ("zhang",),
+    "hsic": ("hsic",),
+    "preview": ("preview",),
+}
+"""Names of the test files of each system."""
+SCENARIOS = {"guo2015": ("guo2015-*", "fault-*")}
+
+
+def scenarios_of(system: str) -> list[str]:
+    """Return the shipped scenarios of a system, the short ones of no picture first."""
+    from orchestrator.scenario.load_scenario import scenario_names
+
+    patterns = SCENARIOS.get(system, (f"{system}*",))
+    return [name for name in scenario_names() if any(fnmatch.fnmatch(name, pattern) for pattern in patterns)]
+
+
+def scenarios(system: str) -> str:
+    """Return the first scenario of ``apa test "SYSTEM*"`` that does not pass."""
+    from orchestrator.cli import main
+
+    for name in scenarios_of(system):
+        if not name.startswith(system):
+            continue
+        if _quietly(lambda name=name: main(["test", name, "--fmus", _kind(system), "--out", "runs/mutant"])):
+            return f"apa test {name}"
+    return ""
+
+
+def steps(system: str) -> str:
+    """Return the first step test of the system that does not pass."""
+    from orchestrator.cli import main
+
+    for file in sorted(Path("tests/steptest").glob(f"test_{system}*.yaml")):
+        if _quietly(lambda file=file: main(["test", str(file), "--fmus", "none", "--out", "runs/mutant"])):
+            return f"apa test {file.name}"
+    return ""
+
+
+def record(system: str) -> str:
+    """Return the first scenario that does not end as ``tests/golden`` has it."""
+    import yaml
+
+    from orchestrator.papers.drive import drive
+    from tests.golden.test_golden import alike, told
+
+    kept = yaml.safe_load(Path("tests/golden/scenarios.yaml").read_text(encoding="utf-8"))
+    files = None
+    if _kind(system) == "native":
+        from orchestrator.cosim.fmu_files import fmu_files
+
+        files = fmu_files("native")
+    for name in scenarios_of(system):
+        if not alike(told(drive(name, files, _kind(system)).summary), kept[name]):
+            return f"record of {name}"
+    return ""
+
+
+def tests(system: str) -> str:
+    """Return the first of the system's own tests that fails."""
+    import hypothesis
+    import pytest
+
+    hypothesis.settings.register_profile("mutants", deadline=None, database=None, derandomize=True)
+    hypothesis.settings.load_profile("mutants")
+    files = [str(file) for name in TESTS[system] for file in sorted(Path("tests/controller").glob(f"test_{name}*.py"))]
+
+    class Failure:
+        name = ""
+
+        def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
+            if report.failed and not self.name:
+                self.name = report.nodeid.removeprefix("tests/")
+
+        def pytest_collectreport(self, report: pytest.CollectReport) -> None:
+            if report.failed and not self.name:
+                self.name = report.nodeid.removeprefix("tests/")
+
+    failure = Failure()
+    words = ["-x", "-q", "-n0", "-p", "no:cacheprovider", *files]
+    return failure.name if _quietly(lambda: int(pytest.main(words, plugins=[failure]))) else ""
+
+
+def reproduction(system: str) -> str:
+    """Return the paper if ``apa reproduce`` says that one of its checks does not hold."""
+    from orchestrator.cli import main
+
+    return f"apa reproduce {system}" if _quietly(lambda: main(["reproduce", system, "--out", "runs/mutant"])) else ""
+
+
+CHECKS: dict[str, Callable[[str], str]] = {
+    "scenarios": scenarios,
+    "step tests": steps,
+    "record": record,
+    "tests": tests,
+    "reproduction": reproduction,
+}
+
+
+def _kind(system: str) -> str:
+    return "native" if system in NATIVE else "none"
+
+
+def _quietly(run: Callable[[], int]) -> int:
+    with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()):
+        return run()

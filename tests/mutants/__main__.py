@@ -22,7 +22,7 @@ def main() -> int:
     parser.add_argument("--count", type=int, default=COUNT)
     parser.add_argument("--seed", type=int, default=SEED)
     parser.add_argument("--listed", action="store_true", help="the twenty of NTBPTcwPT, each asked of every check")
-    parser.add_argument("--checks", default="record,tests,step tests,reproduction", help="in this order")
+    parser.add_argument("--checks", default="record,step tests,reproduction,tests", help="in this order")
     parser.add_argument("--only", default="", help="of this system")
     parser.add_argument("--out", type=Path, help="where the verdicts go, as JSON lines")
     asked = parser.parse_args()

@@ -73,11 +73,8 @@ def record(system: str) -> str:
 
 def tests(system: str) -> str:
     """Return the first of the system's own tests that fails."""
-    import hypothesis
     import pytest
 
-    hypothesis.settings.register_profile("mutants", deadline=None, database=None, derandomize=True)
-    hypothesis.settings.load_profile("mutants")
     files = [str(file) for name in TESTS[system] for file in sorted(Path("tests/controller").glob(f"test_{name}*.py"))]
 
     class Failure:
@@ -92,7 +89,7 @@ def tests(system: str) -> str:
                 self.name = report.nodeid.removeprefix("tests/")
 
     failure = Failure()
-    words = ["-x", "-q", "-n0", "-p", "no:cacheprovider", *files]
+    words = ["-x", "-q", "-n0", "-p", "no:cacheprovider", "--hypothesis-profile=ci", *files]
     return failure.name if _quietly(lambda: int(pytest.main(words, plugins=[failure]))) else ""
 
 

@@ -1,4 +1,4 @@
-"""``apa new``: a controller or a vehicle of your own as a package that runs at once."""
+"""``apa new``: a controller or a vehicle of your own as a package that runs at once, and its pipeline."""
 
 import argparse
 import sys
@@ -12,8 +12,11 @@ EXAMPLES = """examples:
   apa run my_controller/scenario.yaml       compiles it and drives it
   apa run guo2015-case3 --controller my_controller:MODEL
   apa new vehicle my_car
+  apa new ci my_controller                  pipelines of GitHub and GitLab that test and ship it
 """
-KINDS = ("controller", "vehicle")
+KINDS = ("controller", "vehicle", "ci")
+PIPELINES = {"github.yml": ".github/workflows/{name}.yml", "gitlab.yml": ".gitlab-ci.yml"}
+"""Template -> where the server looks for it."""
 TEMPLATES = Path(__file__).parent / "templates"
 SUFFIX = ".txt"
 RESERVED = ("apa_cosim", "fmus", "modelkit", "orchestrator", "pythonfmu", "vehicle_fmu", "controller_fmu")
@@ -21,9 +24,9 @@ RESERVED = ("apa_cosim", "fmus", "modelkit", "orchestrator", "pythonfmu", "vehic
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add what the command takes."""
-    parser.add_argument("kind", choices=KINDS, metavar="KIND", help=" or ".join(KINDS))
+    parser.add_argument("kind", choices=KINDS, metavar="KIND", help="controller, vehicle or ci")
     parser.add_argument("name", metavar="NAME", help="of the package and of its folder: letters, digits and _")
-    parser.add_argument("--out", type=Path, default=Path(), metavar="DIR", help="where the folder goes (here)")
+    parser.add_argument("--out", type=Path, default=Path(), metavar="DIR", help="where it goes (here)")
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -33,13 +36,34 @@ def run(arguments: argparse.Namespace) -> int:
         raise BadInput(
             "is no name for a package: write letters, digits and _, and nothing that Python or apa has", key=name
         )
-    folder: Path = arguments.out / name
+    return _pipelines(arguments.out, name) if arguments.kind == "ci" else _package(arguments.kind, arguments.out, name)
+
+
+def _package(kind: str, out: Path, name: str) -> int:
+    """Write a package: law, scenario, tests."""
+    folder = out / name
     if folder.exists():
         raise BadInput("is there already", file=folder)
-    words = {"name": name, "title": "".join(part[:1].upper() + part[1:] for part in name.split("_"))}
     folder.mkdir(parents=True)
-    for template in sorted((TEMPLATES / arguments.kind).glob(f"*{SUFFIX}")):
-        text = Template(template.read_text(encoding="utf-8")).substitute(words)
-        (folder / template.name.removesuffix(SUFFIX)).write_text(text, encoding="utf-8")
+    for template in sorted((TEMPLATES / kind).glob(f"*{SUFFIX}")):
+        _write(template, folder / template.name.removesuffix(SUFFIX), name)
     print(f"{folder}: law, scenario, tests, README\nnext: apa run {folder}/scenario.yaml")
     return 0
+
+
+def _pipelines(out: Path, name: str) -> int:
+    """Write what a server runs at every push: tests the package, ships it."""
+    files = {template: out / place.format(name=name) for template, place in PIPELINES.items()}
+    for file in files.values():
+        if file.exists():
+            raise BadInput("is there already", file=file)
+    for template, file in files.items():
+        file.parent.mkdir(parents=True, exist_ok=True)
+        _write(TEMPLATES / "ci" / f"{template}{SUFFIX}", file, name)
+    print(f"{', '.join(map(str, files.values()))}\nnext: write into them where apa-cosim is installed from")
+    return 0
+
+
+def _write(template: Path, file: Path, name: str) -> None:
+    words = {"name": name, "title": "".join(part[:1].upper() + part[1:] for part in name.split("_"))}
+    file.write_text(Template(template.read_text(encoding="utf-8")).substitute(words), encoding="utf-8")

@@ -8,6 +8,7 @@ from controller_fmu.adaptive.outputs import adaptive_outputs
 from controller_fmu.adaptive.phases import AdaptivePhase
 from controller_fmu.adaptive.system import adaptive_sample, adaptive_start
 from controller_fmu.apa import chart as apa_chart
+from controller_fmu.apa import manoeuvre_chart
 from controller_fmu.apa.outputs import apa_outputs
 from controller_fmu.apa.phases import ApaPhase
 from controller_fmu.apa.system import apa_sample, apa_start
@@ -21,6 +22,7 @@ from controller_fmu.interface import ControllerInput, ControllerOutput, Controll
 from controller_fmu.planning.plan_store import PlanStore
 from controller_fmu.preview.driving import driving_outputs, driving_sample, driving_start
 from controller_fmu.preview.phases import PreviewPhase
+from controller_fmu.valet import chart as valet_chart
 from controller_fmu.valet.model import ValetModelState, valet_initialize, valet_step
 from controller_fmu.valet.params import ValetParams
 from controller_fmu.valet.signals import ValetOutput
@@ -63,6 +65,8 @@ OF_ADAPTIVE = (
 )
 GUO_CHART = Chart("phase", GuoPhase, guo_chart.Guard, guo_chart.TRANSITIONS)
 APA_CHART = Chart("apa.mode", apa_chart.Mode, apa_chart.Guard, apa_chart.TRANSITIONS)
+MANOEUVRE_CHART = Chart("", manoeuvre_chart.Step, manoeuvre_chart.Guard, manoeuvre_chart.TRANSITIONS)
+VALET_CHART = Chart("valet.step", valet_chart.Step, valet_chart.Guard, valet_chart.TRANSITIONS)
 ADAPTIVE_CHART = Chart("phase", AdaptivePhase, adaptive_chart.Guard, adaptive_chart.TRANSITIONS)
 SYSTEMS = SampledSystems(
     state=model.ControllerState,
@@ -110,7 +114,7 @@ SYSTEMS = SampledSystems(
             apa_sample,
             apa_outputs,
             OF_APA,
-            (APA_CHART,),
+            (APA_CHART, MANOEUVRE_CHART),
             states=(("phase", ApaPhase),),
         ),
         SampledSystem(
@@ -177,6 +181,7 @@ VALET = Model(
         ),
     ),
     store=PlanStore,
+    charts=(VALET_CHART,),
 )
 """No system of the other controller: its map would weigh on their parameters, its store on their memory."""
 SYSTEM_MODELS = {

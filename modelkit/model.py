@@ -18,7 +18,7 @@ class Chart(NamedTuple):
     """A state machine of a system as its table, for pictures of it and for who looks on while it runs."""
 
     signal: str
-    """The output that tells its state."""
+    """The output that tells its state; empty: none does."""
     states: type[IntEnum]
     guards: type[IntEnum]
     rows: tuple[tuple[int, ...], ...]
@@ -164,6 +164,8 @@ class Model(NamedTuple, Generic[State, Params, Input, Output]):
     """What it is made of, if that is several models."""
     store: type[Any] | None = None
     """Its work arrays beside the state: a NamedTuple of columns."""
+    charts: tuple[Chart, ...] = ()
+    """Its state machines that are tables, if it is not made of systems that have theirs."""
 
     def new_store(self) -> Any:
         """Return the work arrays of a new instance, all zeros; None if the model has none."""

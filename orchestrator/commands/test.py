@@ -15,7 +15,7 @@ from orchestrator.cosim.fmu_files import KINDS, default_kind, fmu_files
 from orchestrator.cosim.interrupts import on_interrupt
 from orchestrator.cosim.master import Interrupt
 from orchestrator.scenario.files import find_file
-from orchestrator.scenario.models import MODELS
+from orchestrator.scenario.models import APART, MODELS
 from orchestrator.scenario.requirements import read_requirements
 from orchestrator.session.foreign import add_foreign_arguments, foreign_of
 from orchestrator.suite.collection import write_collection
@@ -69,10 +69,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--junit", type=Path, metavar="FILE", help="where JUnit XML goes (default: DIR/junit.xml)")
     parser.add_argument("-j", "--jobs", type=jobs, default=1, metavar="N", help="scenarios run at a time (1)")
-    parser.add_argument("--coverage", action="store_true", help="run in process and say what of the charts was covered")
     parser.add_argument(
-        "--min-transition-coverage", type=float, metavar="PERCENT", help="fail below this; means --coverage"
+        "--coverage", action="store_true", help="run in process and say what of charts and code was covered"
     )
+    for what in ("transition", "branch"):
+        parser.add_argument(
+            f"--min-{what}-coverage", type=float, metavar="PERCENT", help="fail below this; means --coverage"
+        )
     parser.add_argument("--json", action="store_true", help="print the verdicts as JSON")
 
 
@@ -85,7 +88,7 @@ def run(arguments: argparse.Namespace) -> int:
     names = chosen(arguments.scenarios)
     with owned(out):
         verdicts = Verdicts(arguments.junit or out / "junit.xml", out / "index.html", names)
-        if arguments.coverage or arguments.min_transition_coverage is not None:
+        if arguments.coverage or (arguments.min_transition_coverage, arguments.min_branch_coverage) != (None, None):
             return _covered(arguments, names, verdicts)
         return _run(arguments, names, verdicts)
 
@@ -98,26 +101,28 @@ def jobs(text: str) -> int:
 
 
 def _covered(arguments: argparse.Namespace, names: list[str], verdicts: "Verdicts") -> int:
-    """Test with the models in process, and say what of their charts was covered."""
-    from orchestrator.coverage.covered import covered, share
-    from orchestrator.coverage.show import coverage_table, write_coverage
-    from orchestrator.coverage.tracer import charts_of, name_of, tracing
+    """Test with the models in process, and say what of their charts and code was covered."""
+    from orchestrator.coverage.coverage import looking_on
+    from orchestrator.coverage.show import coverage_tables, write_coverage
 
     if foreign_of(arguments).files:
         raise BadInput("the charts of somebody else's FMU cannot be looked into", key="--coverage")
     arguments.fmus, arguments.jobs = "none", 1
-    charts = [chart for model in MODELS.values() for chart in charts_of(model)]
-    with tracing(charts) as seen:
+    with looking_on([*MODELS.values(), *(model for _, model in APART.values())]) as so_far:
         code = _run(arguments, names, verdicts)
-    found = [covered(chart, seen[name_of(chart)]) for chart in charts]
-    page, part = write_coverage(arguments.out, found), 100.0 * share(found)
+        found = so_far()
+    page = write_coverage(arguments.out, found)
+    parts = {"transitions": found.transitions_percent, "branches": found.branches_percent}
     if not arguments.json:
-        console().print(coverage_table(found))
-        console().print(f"{part:.0f} % of the transitions; {page}", markup=False, soft_wrap=True)
-    least = arguments.min_transition_coverage
-    if code == PASSED and least is not None and part < least:
-        say(f"apa: {part:.1f} % of the transitions are covered, asked {least:g} %")
-        return FAILED
+        for table in coverage_tables(found):
+            console().print(table)
+        text = ", ".join(f"{part:.0f} % of the {what}" for what, part in parts.items())
+        console().print(f"{text}; {page}", markup=False, soft_wrap=True)
+    asked = {"transitions": arguments.min_transition_coverage, "branches": arguments.min_branch_coverage}
+    for what, least in asked.items():
+        if code == PASSED and least is not None and parts[what] < least:
+            say(f"apa: {parts[what]:.1f} % of the {what} are covered, asked {least:g} %")
+            code = FAILED
     return code
 
 

@@ -1,4 +1,4 @@
-"""Coverage for people and machines: a table, a page with the charts drawn, JSON."""
+"""Coverage for people and machines: tables, a page with the charts drawn and the branches not seen, JSON."""
 
 import html
 import json
@@ -7,50 +7,107 @@ from typing import Any
 
 from rich.table import Table
 
+from orchestrator.coverage.branches import Branch, branch_share
+from orchestrator.coverage.coverage import Coverage
 from orchestrator.coverage.covered import ChartCovered, RowCovered, share
 from orchestrator.drawing.chart_svg import chart_svg
 from orchestrator.report.page import still_page
 
+ROOT = Path(__file__).parents[2]
 STYLE = """
 .sheet { padding: 1rem; margin: 1rem 0; overflow-x: auto; } .sheet svg { max-width: 100%; height: auto; }
 .rows { border-collapse: collapse; } .rows td, .rows th { padding: .2rem .8rem .2rem 0; text-align: left; }
 .missed td { color: var(--bad); } .half td { color: var(--warn); }
 """
-HEAD = """<header class="top"><div class="headline"><h1>Coverage of the charts</h1></div>
-<span class="verdict {kind}">{share:.0f} % of the transitions</span></header>
+HEAD = """<header class="top"><div class="headline"><h1>Coverage of charts and code</h1></div>
+<span class="verdict {kind}">{share:.0f} % of the transitions</span>
+<span class="verdict {branch_kind}">{branch_share:.0f} % of the branches</span></header>
 <p class="quiet">Red: never taken, or never visited. Orange: its guard was never false while it decided.</p>
 """
 
 
-def coverage_table(charts: list[ChartCovered]) -> Table:
-    """Return a table with a row for each chart."""
-    table = Table(box=None)
-    for name in ("chart", "states", "transitions", "guard outcomes"):
-        table.add_column(name, justify="left" if name == "chart" else "right")
-    for chart in charts:
+def coverage_tables(found: Coverage) -> list[Table]:
+    """Return a table with a row for each chart, and one with a row for each folder of model code that ran."""
+    charts = _table("chart", "states", "transitions", "guard outcomes")
+    for chart in found.charts:
         counts = (
             f"{chart.visited} of {len(chart.states)}",
             f"{chart.taken} of {len(chart.rows)}",
             f"{chart.outcomes} of {2 * len(chart.rows)}",
         )
-        table.add_row(f"{chart.name} ({chart.signal})", *counts)
+        charts.add_row(f"{chart.name} ({chart.signal})" if chart.signal else chart.name, *counts)
+    folders = _table("model code", "branches", "outcomes")
+    for folder, branches in _by_folder(found.branches).items():
+        seen = sum(branch.outcomes for branch in branches)
+        folders.add_row(folder, f"{len(branches)}", f"{seen} of {2 * len(branches)}")
+    return [charts, folders]
+
+
+def as_json(found: Coverage) -> dict[str, Any]:
+    """Return the coverage as plain data."""
+    charts = [{**chart._asdict(), "rows": [row._asdict() for row in chart.rows]} for chart in found.charts]
+    branches = [{**branch._asdict(), "file": _short(branch.file)} for branch in found.branches]
+    return {
+        "transition_coverage": share(found.charts),
+        "branch_coverage": branch_share(found.branches),
+        "charts": charts,
+        "branches": branches,
+    }
+
+
+def write_coverage(folder: Path, found: Coverage) -> Path:
+    """Write coverage.html and coverage.json; return the page."""
+    (folder / "coverage.json").write_text(json.dumps(as_json(found), indent=2) + "\n", encoding="utf-8")
+    parts = found.transitions_percent, found.branches_percent
+    kinds = ["good" if part == 100.0 else "warn" for part in parts]
+    head = HEAD.format(kind=kinds[0], share=parts[0], branch_kind=kinds[1], branch_share=parts[1])
+    sheets = "".join(map(_chart, found.charts)) + "".join(_sheet(*item) for item in _by_folder(found.branches).items())
+    page = folder / "coverage.html"
+    page.write_text(still_page("Coverage of charts and code", head + sheets, STYLE), encoding="utf-8")
+    return page
+
+
+def _table(*names: str) -> Table:
+    table = Table(box=None)
+    for number, name in enumerate(names):
+        table.add_column(name, justify="right" if number else "left")
     return table
 
 
-def as_json(charts: list[ChartCovered]) -> dict[str, Any]:
-    """Return the coverage as plain data."""
-    found = [{**chart._asdict(), "rows": [row._asdict() for row in chart.rows]} for chart in charts]
-    return {"transition_coverage": share(charts), "charts": found}
+def _by_folder(branches: list[Branch]) -> dict[str, list[Branch]]:
+    """Return folder -> its branches."""
+    folders: dict[str, list[Branch]] = {}
+    for branch in branches:
+        folders.setdefault(_short(branch.file.parent), []).append(branch)
+    return folders
 
 
-def write_coverage(folder: Path, charts: list[ChartCovered]) -> Path:
-    """Write coverage.html and coverage.json; return the page."""
-    (folder / "coverage.json").write_text(json.dumps(as_json(charts), indent=2) + "\n", encoding="utf-8")
-    part = share(charts)
-    head = HEAD.format(kind="good" if part == 1.0 else "warn", share=100.0 * part)
-    page = folder / "coverage.html"
-    page.write_text(still_page("Coverage of the charts", head + "".join(map(_chart, charts)), STYLE), encoding="utf-8")
-    return page
+def _short(path: Path) -> str:
+    """Return a path as seen from the folder that the checkout, or the user, is in."""
+    for folder in (ROOT, Path.cwd()):
+        if path.is_relative_to(folder):
+            return path.relative_to(folder).as_posix()
+    return path.as_posix()
+
+
+def _sheet(folder: str, branches: list[Branch]) -> str:
+    """Return what of a folder's branches was not seen, as a table."""
+    seen = sum(branch.outcomes for branch in branches)
+    counts = f"{seen} of {2 * len(branches)} outcomes of {len(branches)} decisions and conditions"
+    rows = "".join(_missing(branch) for branch in branches if branch.missing)
+    head = "<tr><th>where</th><th>decides on</th><th></th></tr>" if rows else ""
+    return (
+        f'<article class="card sheet"><h2>{html.escape(folder)}</h2><p>{counts}</p>'
+        f'<table class="rows">{head}{rows}</table></article>'
+    )
+
+
+def _missing(branch: Branch) -> str:
+    kind = "half" if branch.outcomes else "missed"
+    return (
+        f'<tr class="{kind}"><td>{html.escape(branch.file.name)}:{branch.line}</td>'
+        f"<td><code>{html.escape(branch.text)}</code></td><td>{branch.missing}</td></tr>"
+    )
 
 
 def _chart(chart: ChartCovered) -> str:

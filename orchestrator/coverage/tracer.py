@@ -18,10 +18,10 @@ GUARDS = "guards"
 
 
 def charts_of(model: Model) -> list[Chart]:
-    """Return the charts of a model's systems, each once."""
+    """Return the charts of a model and of its systems, each once."""
     systems = () if model.systems is None else model.systems.systems
-    found = {id(chart.rows): chart for system in systems for chart in system.charts}
-    return list(found.values())
+    found = [*model.charts, *(chart for system in systems for chart in system.charts)]
+    return list({id(chart.rows): chart for chart in found}.values())
 
 
 def name_of(chart: Chart) -> str:

@@ -27,6 +27,7 @@ def charts_data() -> list[dict[str, Any]]:
         if model.systems is not None
         for system in model.systems.systems
         for chart in system.charts
+        if chart.signal
     ]
 
 

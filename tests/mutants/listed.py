@@ -24,7 +24,11 @@ LISTED: tuple[tuple[str, str, str], ...] = (
     ("chart.py", "    _row(Phase.PATH_TRACKING, Guard.OFF_PATH, Phase.STOP, Phase.TO_Q2),\n", ""),
     ("chart.py", "    _row(Phase.STOP, Guard.STANDING_AT_END_WRONG, Phase.PRE_STEER, Phase.TO_Q4),\n", ""),
     ("chart.py", "    _row(Phase.TO_Q4, Guard.PAST_Q4, Phase.STOP, Phase.TO_Q3),\n", ""),
-    ("path.py", "return Reference(x, y, math.asin(sine), -1.0 / r, piece)", "return Reference(x, y, math.asin(sine), 1.0 / r, piece)"),
+    (
+        "path.py",
+        "return Reference(x, y, math.asin(sine), -1.0 / r, piece)",
+        "return Reference(x, y, math.asin(sine), 1.0 / r, piece)",
+    ),
 )
 """File, what stands there once, what is to stand there; ``* FACTOR``: the same, times that."""
 

@@ -52,7 +52,9 @@ def checkout() -> Iterator[Path]:
     """Yield a copy of the files of this checkout, built FMUs in it, in a folder that is gone afterwards."""
     with tempfile.TemporaryDirectory(prefix="mutants-") as name:
         copy = Path(name) / "checkout"
-        skip = shutil.ignore_patterns(".git", ".venv", "runs", "site", "build", "dist", "__pycache__", "*.lock", ".*_cache")
+        skip = shutil.ignore_patterns(
+            ".git", ".venv", "runs", "site", "build", "dist", "__pycache__", "*.lock", ".*_cache"
+        )
         shutil.copytree(ROOT, copy, ignore=skip)
         yield copy
 
@@ -139,5 +141,7 @@ def _write(file: Path, text: str) -> None:
 
 def commit() -> str:
     """Return the commit that was looked at, for tables."""
-    done = subprocess.run(["git", "rev-parse", "--short", "HEAD"], cwd=ROOT, capture_output=True, text=True, check=False)
+    done = subprocess.run(
+        ["git", "rev-parse", "--short", "HEAD"], cwd=ROOT, capture_output=True, text=True, check=False
+    )
     return done.stdout.strip()

@@ -79,9 +79,7 @@ def mutants_of(root: Path, file: Path) -> list[Mutant]:
         before = text.encode()[begin:end].decode()
         if kind == "row" and text.encode()[end : end + 1] == b",":
             end, before = end + 1, before + ","
-        found.append(
-            Mutant(file.relative_to(root).as_posix(), node.lineno, begin, end, before, after, kind)
-        )
+        found.append(Mutant(file.relative_to(root).as_posix(), node.lineno, begin, end, before, after, kind))
     return sorted(found, key=lambda item: (item.begin, item.end))
 
 

@@ -1,0 +1,37 @@
+"""What tests have been through: charts and branches of the models that run in this process."""
+
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
+from typing import NamedTuple
+
+from modelkit.model import Model
+from orchestrator.coverage.branches import Branch, branch_share, watching
+from orchestrator.coverage.covered import ChartCovered, covered, share
+from orchestrator.coverage.tracer import charts_of, name_of, tracing
+
+
+class Coverage(NamedTuple):
+    """How far tests went."""
+
+    charts: list[ChartCovered]
+    branches: list[Branch]
+
+    @property
+    def transitions_percent(self) -> float:
+        """Share of the transitions that were taken [%]."""
+        return 100.0 * share(self.charts)
+
+    @property
+    def branches_percent(self) -> float:
+        """Share of the outcomes of all branches that were seen [%]."""
+        return 100.0 * branch_share(self.branches)
+
+
+@contextmanager
+def looking_on(models: Iterable[Model]) -> Iterator[Callable[[], Coverage]]:
+    """Yield a function that says how far the tests have been through these models so far."""
+    known = list(models)
+    charts = [chart for model in known for chart in charts_of(model)]
+    packages = [package for model in known for package in model.sources()]
+    with watching(packages) as branches, tracing(charts) as seen:
+        yield lambda: Coverage([covered(chart, seen[name_of(chart)]) for chart in charts], branches.found())

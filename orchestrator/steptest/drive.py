@@ -8,7 +8,7 @@ import numpy as np
 from modelkit.model import Model
 from modelkit.variables import Variable, variables
 from orchestrator.cosim.description import ports_of, read_description
-from orchestrator.cosim.fmu_files import fmu_files
+from orchestrator.cosim.fmu_files import fmu_beside, fmu_files
 from orchestrator.cosim.fmu_slave import FmuSlave
 from orchestrator.cosim.in_process_slave import InProcessSlave
 from orchestrator.cosim.master import Master
@@ -16,7 +16,7 @@ from orchestrator.cosim.recording import Recorder, Recording
 from orchestrator.cosim.slave import Array, Slave
 from orchestrator.log.read_log import log_file, read_log
 from orchestrator.scenario.flat_names import flatten_section
-from orchestrator.scenario.models import MODELS
+from orchestrator.scenario.models import MODELS, models_for
 from orchestrator.session.foreign import Foreign
 from orchestrator.session.own import is_model
 from orchestrator.session.session import NOBODY
@@ -120,11 +120,13 @@ def _slave(test: StepTest, model: str, kind: str, foreign: Foreign) -> Slave:
         known = ports_of(read_description(path), "parameter", MODELS.get(name), path).variables
         return foreign.made(name, path, _parameters(test, known, name), lambda *said: None)
     if model in MODELS:
-        ours = MODELS[model]
+        ours = models_for(test.parameters)[model]
         parameters = _parameters(test, variables(ours.params), model)
         if kind == "none":
             return InProcessSlave(model, ours, parameters)
-        return FmuSlave(model, fmu_files(kind)[model], parameters, lambda *said: None, ours)
+        file = fmu_files(kind)[model]
+        file = file if ours is MODELS[model] else fmu_beside(file, ours)
+        return FmuSlave(model, file, parameters, lambda *said: None, ours)
     if MODEL_FILE in model or is_model(str(test.near(model))):
         own = _own(str(test.near(model)))
         return InProcessSlave(OTHER, own, _parameters(test, variables(own.params)))

@@ -24,7 +24,11 @@ SHIPPED = (
 """Of the shipped scenarios those that the others add nothing to."""
 OWN = (*(HERE / "suite").glob("*.yaml"), HERE.parent / "steptest" / "test_guo2015_manoeuvre.yaml")
 NEVER_TAKEN = {
-    ("apa.manoeuvre_chart", "IDLE", "STARTED"): "the assist makes a manoeuvre that plans already when it shows the slot",
+    (
+        "apa.manoeuvre_chart",
+        "IDLE",
+        "STARTED",
+    ): "the assist makes a manoeuvre that plans already when it shows the slot",
 }
 """(chart, source, guard) -> why nothing takes it."""
 NEVER_REFUSED = NEVER_TAKEN
@@ -65,7 +69,9 @@ def found(tmp_path_factory: pytest.TempPathFactory) -> Coverage:
 
 
 def test_every_transition_is_taken_but_those_with_a_reason(found: Coverage) -> None:
-    missing = {(short(chart.name), row.source, row.guard) for chart in found.charts for row in chart.rows if not row.taken}
+    missing = {
+        (short(chart.name), row.source, row.guard) for chart in found.charts for row in chart.rows if not row.taken
+    }
     assert missing == set(NEVER_TAKEN)
 
 

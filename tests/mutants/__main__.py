@@ -22,15 +22,24 @@ def main() -> int:
     parser.add_argument("--count", type=int, default=COUNT)
     parser.add_argument("--seed", type=int, default=SEED)
     parser.add_argument("--listed", action="store_true", help="the twenty of NTBPTcwPT, each asked of every check")
-    parser.add_argument("--checks", default="record,step tests,reproduction,tests", help="in this order")
+    parser.add_argument("--checks", default="numbers,record,step tests,reproduction,tests", help="in this order")
     parser.add_argument("--only", default="", help="of this system")
-    parser.add_argument("--out", type=Path, help="where the verdicts go, as JSON lines")
+    parser.add_argument("--out", type=Path, help="where the verdicts go, as JSON lines; what it has already is kept")
     asked = parser.parse_args()
     mutants = listed(ROOT) if asked.listed else drawn(ROOT, asked.count, asked.seed)
     mutants = [item for item in mutants if asked.only in ("", item.system)]
+    mutants = [item for item in mutants if item.name not in _done(asked.out)]
     names = list(CHECKS) if asked.listed else asked.checks.split(",")
     prepare()
     return _run(mutants, names, asked)
+
+
+def _done(out: Path | None) -> set[str]:
+    """Return the names of the mutants that somebody has found already."""
+    if out is None or not out.exists():
+        return set()
+    rows = [json.loads(line) for line in out.read_text(encoding="utf-8").splitlines()]
+    return {row["name"] for row in rows if any(row["found"].values())}
 
 
 def _run(mutants: list[Mutant], names: list[str], asked: argparse.Namespace) -> int:
@@ -41,7 +50,7 @@ def _run(mutants: list[Mutant], names: list[str], asked: argparse.Namespace) -> 
             print(f"{verdict.mutant.name}\n    {found or 'NOBODY'}  ({verdict.seconds:.1f} s)", flush=True)
             if asked.out:
                 with asked.out.open("a", encoding="utf-8") as lines:
-                    lines.write(json.dumps({**verdict.mutant._asdict(), "found": verdict.found}) + "\n")
+                    lines.write(json.dumps({"name": verdict.mutant.name, "found": verdict.found}) + "\n")
             if not verdict.killed:
                 missed.append(verdict.mutant)
     print(f"{len(mutants) - len(missed)} of {len(mutants)} found")

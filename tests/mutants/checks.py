@@ -73,6 +73,17 @@ def record(system: str) -> str:
     return next((f"record of {name}" for name, kind in asked if differs(name, kind)), "")
 
 
+def numbers(system: str) -> str:
+    """Return the first number of the laws that is not what ``tests/golden`` has."""
+    import yaml
+
+    from tests.golden.test_numbers import FILE, numbers
+
+    found, kept = numbers(), yaml.safe_load(FILE.read_text(encoding="utf-8"))
+    names = [(group, name) for group in kept for name in kept[group]]
+    return next((f"number {name}" for group, name in names if found.get(group, {}).get(name) != kept[group][name]), "")
+
+
 def tests(system: str) -> str:
     """Return the first of the system's own tests that fails."""
     import pytest
@@ -105,6 +116,7 @@ def reproduction(system: str) -> str:
 CHECKS: dict[str, Callable[[str], str]] = {
     "scenarios": scenarios,
     "step tests": steps,
+    "numbers": numbers,
     "record": record,
     "tests": tests,
     "reproduction": reproduction,

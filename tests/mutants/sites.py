@@ -1,7 +1,8 @@
 """Where a mistake can be made in model code, and what it then says: numbers, signs, comparisons, guards, rows."""
 
 import ast
-import random
+import hashlib
+from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
 from typing import NamedTuple
@@ -44,11 +45,15 @@ class Mutant(NamedTuple):
     after: str
     kind: str
     """number, sign, operator, comparison, guard, extreme or row."""
+    count: int = 1
+    """It is the so many-th of the file that says the same."""
 
     @property
     def name(self) -> str:
-        """What it is called in tables."""
-        return f"{self.file.removeprefix('controller_fmu/')}:{self.line}: {self.before} -> {self.after}"
+        """What it is called in tables, wherever in the file it moves to."""
+        again = f" [{self.count}]" if self.count > 1 else ""
+        words = " ".join(f"{self.before} -> {self.after or 'nothing'}".split())
+        return f"{self.file.removeprefix('controller_fmu/')}: {words}{again}"
 
     @property
     def system(self) -> str:
@@ -80,13 +85,20 @@ def mutants_of(root: Path, file: Path) -> list[Mutant]:
         if kind == "row" and text.encode()[end : end + 1] == b",":
             end, before = end + 1, before + ","
         found.append(Mutant(file.relative_to(root).as_posix(), node.lineno, begin, end, before, after, kind))
-    return sorted(found, key=lambda item: (item.begin, item.end))
+    seen: Counter[tuple[str, str]] = Counter()
+    counted = []
+    for item in sorted(found, key=lambda item: (item.begin, item.end)):
+        seen[item.before, item.after] += 1
+        counted.append(item._replace(count=seen[item.before, item.after]))
+    return counted
 
 
 def drawn(root: Path, count: int, seed: int) -> list[Mutant]:
-    """Return ``count`` mutants of the systems of all papers, drawn without looking, in the order of their files."""
+    """Return ``count`` mutants of the systems of all papers, drawn without looking; a change of one file draws others
+    of this file only.
+    """
     every = [mutant for system in SYSTEMS for file in files_of(root, system) for mutant in mutants_of(root, file)]
-    return sorted(random.Random(seed).sample(every, count), key=lambda item: (item.file, item.begin, item.after))
+    return sorted(every, key=lambda item: hashlib.sha256(f"{seed} {item.name}".encode()).digest())[:count]
 
 
 def _changes(tree: ast.Module) -> Iterator[tuple[ast.expr, str, str]]:

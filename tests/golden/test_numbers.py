@@ -1,0 +1,79 @@
+"""The numbers that somebody chose: parameters' defaults and constants of model code, beside what they were.
+
+A number changed shows as a difference of ``numbers.yaml``: ``pytest tests/golden --update``, then ``git diff``. Scenarios
+do not tell all of them: many are limits that a drive without trouble never comes near.
+"""
+
+import ast
+import inspect
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+import yaml
+
+import controller_fmu
+import vehicle_fmu
+from modelkit.variables import variables
+
+FILE = Path(__file__).parent / "numbers.yaml"
+MODELS = (vehicle_fmu.MODEL, controller_fmu.MODEL, controller_fmu.VALET)
+Number = float | int
+
+
+def numbers() -> dict[str, Any]:
+    """Return model or module -> name -> number, or list of numbers."""
+    found = {model.name: {item.name: plain(item.start) for item in variables(model.params)} for model in MODELS}
+    for name, module in sorted(sys.modules.items()):
+        if name.split(".")[0] in ("vehicle_fmu", "controller_fmu"):
+            constants = {item: plain(vars(module)[item]) for item in assigned(inspect.getsource(module))}
+            kept = {item: value for item, value in constants.items() if value is not None}
+            if kept:
+                found[name] = kept
+    return found
+
+
+def assigned(text: str) -> list[str]:
+    """Return the names of the constants that a module assigns."""
+    targets = [
+        target
+        for node in ast.parse(text).body
+        for target in (node.targets if isinstance(node, ast.Assign) else [getattr(node, "target", None)])
+    ]
+    return [target.id for target in targets if isinstance(target, ast.Name) and target.id.isupper()]
+
+
+def plain(value: Any) -> Any:
+    """Return numbers, and tuples of nothing else, as YAML writes them; None for anything else."""
+    if isinstance(value, int | float):
+        return int(value) if isinstance(value, int) else round(value, 12)
+    if isinstance(value, tuple) and not hasattr(value, "_fields"):
+        items = [plain(item) for item in value]
+        return None if None in items else items
+    return None
+
+
+@pytest.fixture(scope="module")
+def kept(request: pytest.FixtureRequest) -> dict[str, Any]:
+    if request.config.getoption("--update"):
+        text = yaml.safe_dump(numbers(), default_flow_style=None, sort_keys=False, width=120)
+        FILE.write_text(text, encoding="utf-8")
+    return yaml.safe_load(FILE.read_text(encoding="utf-8"))
+
+
+def test_numbers_are_what_they_were(kept: dict[str, Any]) -> None:
+    found = numbers()
+    flat = {(group, name): value for group, items in found.items() for name, value in items.items()}
+    was = {(group, name): value for group, items in kept.items() for name, value in items.items()}
+    changed = {
+        key: (was.get(key), flat.get(key)) for key in sorted(flat.keys() | was.keys()) if flat.get(key) != was.get(key)
+    }
+    assert not changed, "\n".join(f"{'.'.join(key)}: {new}, was {old}" for key, (old, new) in changed.items())
+
+
+def test_they_are_many() -> None:
+    found = numbers()
+    assert sum(map(len, found.values())) > 500
+    assert found["controller_fmu.guo2015.prompts"]["MOVING"] == 0.05
+    assert found["Controller"]["guo2015.k4"] == 4.0

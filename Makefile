@@ -4,7 +4,7 @@ VENV ?= .venv
 BIN = $(VENV)/bin
 SCENARIO ?= guo2015-case4
 
-.PHONY: run test quick fuzz check lint types bench docs reproduce clean help
+.PHONY: run test quick fuzz mutants check lint types bench docs reproduce clean help
 
 help: ## Show this list
 	@grep -hE '^[a-z]+:.*## ' $(MAKEFILE_LIST) | sed 's/:.*## /\t/' | expand -t 14
@@ -23,6 +23,10 @@ quick: lint types ## Lint, types and the tests that take two minutes together
 FUZZ_SECONDS ?= 600
 fuzz: $(VENV)/.test ## Attack inputs, logs, kills and FMI calls, ten minutes each, with new seeds
 	for kind in inputs logs kills calls; do $(BIN)/python -m tests.fuzz $$kind --seconds $(FUZZ_SECONDS) || exit 1; done
+
+mutants: $(VENV)/.test ## Make mistakes in the laws of all papers and say which nobody finds, an hour on one core
+	$(BIN)/python -m tests.mutants --listed
+	$(BIN)/python -m tests.mutants
 
 check: lint types test ## Lint, types and tests
 

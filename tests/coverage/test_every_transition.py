@@ -1,4 +1,4 @@
-"""Every transition of every chart is taken by scenarios and step tests, each guard seen true and false; but for these."""
+"""Every transition of every chart is taken by scenarios and step tests, each guard seen true and false."""
 
 from pathlib import Path
 

@@ -1,7 +1,7 @@
 """The numbers that somebody chose: parameters' defaults and constants of model code, beside what they were.
 
-A number changed shows as a difference of ``numbers.yaml``: ``pytest tests/golden --update``, then ``git diff``. Scenarios
-do not tell all of them: many are limits that a drive without trouble never comes near.
+A number changed shows as a difference of ``numbers.yaml``: ``pytest tests/golden --update``, then ``git diff``.
+Scenarios do not tell all of them: many are limits that a drive without trouble never comes near.
 """
 
 import ast

@@ -1,6 +1,6 @@
 """The numbers that somebody chose: parameters' defaults and constants of model code, beside what they were.
 
-A number changed shows as a difference of ``numbers.yaml``: ``pytest tests/golden --update``, then ``git diff``.
+A number changed shows as a difference of ``numbers.json``: ``pytest tests/golden --update``, then ``git diff``.
 Scenarios do not tell all of them: many are limits that a drive without trouble never comes near.
 """
 
@@ -12,13 +12,12 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-import yaml
 
 import controller_fmu
 import vehicle_fmu
 from modelkit.variables import variables
 
-FILE = Path(__file__).parent / "numbers.yaml"
+FILE = Path(__file__).parent / "numbers.json"
 MODELS = (vehicle_fmu.MODEL, controller_fmu.MODEL, controller_fmu.VALET)
 Number = float | int
 
@@ -46,7 +45,7 @@ def assigned(text: str) -> list[str]:
 
 
 def plain(value: Any) -> Any:
-    """Return numbers, and tuples of nothing else, as YAML writes them; None for anything else."""
+    """Return numbers, and tuples of nothing else, as JSON writes them; None for anything else."""
     if isinstance(value, int | float):
         return int(value) if isinstance(value, int) else round(value, 12)
     if isinstance(value, tuple) and not hasattr(value, "_fields"):
@@ -56,15 +55,16 @@ def plain(value: Any) -> Any:
 
 
 def written(group: str, items: dict[str, Any]) -> str:
-    """Return a group as YAML, a line for each name."""
-    return f"{group}:\n" + "".join(f"  {name}: {json.dumps(value)}\n" for name, value in items.items())
+    """Return a group as JSON, a line for each name."""
+    lines = ",\n".join(f"  {json.dumps(name)}: {json.dumps(value)}" for name, value in items.items())
+    return f"{json.dumps(group)}: {{\n{lines}\n}}"
 
 
 @pytest.fixture(scope="module")
 def kept(request: pytest.FixtureRequest) -> dict[str, Any]:
     if request.config.getoption("--update"):
-        FILE.write_text("".join(written(*item) for item in numbers().items()), encoding="utf-8")
-    return yaml.safe_load(FILE.read_text(encoding="utf-8"))
+        FILE.write_text("{\n" + ",\n".join(written(*item) for item in numbers().items()) + "\n}\n", encoding="utf-8")
+    return json.loads(FILE.read_text(encoding="utf-8"))
 
 
 def test_numbers_are_what_they_were(kept: dict[str, Any]) -> None:

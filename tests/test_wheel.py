@@ -4,15 +4,17 @@ import os
 import shutil
 import subprocess
 import sys
+import sysconfig
 import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 
 import pytest
 
 from orchestrator.commands import COMMANDS
+from orchestrator.cosim.fmu_files import can_compile
 
 ROOT = Path(__file__).parents[1]
-PACKAGES = ("modelkit", "vehicle_fmu", "controller_fmu", "fmus", "orchestrator")
+PACKAGES = ("apa_cosim", "modelkit", "vehicle_fmu", "controller_fmu", "fmus", "orchestrator")
 FILES = ("pyproject.toml", "README.md", "LICENSE")
 pytestmark = pytest.mark.slow
 
@@ -38,6 +40,25 @@ def apa(wheel: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     program = folder / ("Scripts" if os.name == "nt" else "bin")
     subprocess.run([program / "python", "-m", "pip", "install", "--quiet", str(wheel)], check=True)
     return program / "apa"
+
+
+@pytest.fixture(scope="module")
+def full(wheel: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The same with all extras: those of the environment that runs this."""
+    if not can_compile():
+        pytest.skip("needs a C compiler")
+    folder = tmp_path_factory.mktemp("full") / "venv"
+    subprocess.run([sys.executable, "-m", "venv", "--without-pip", str(folder)], check=True)
+    program = folder / ("Scripts" if os.name == "nt" else "bin")
+    code = "import sysconfig; print(sysconfig.get_path('purelib'))"
+    place = subprocess.run([program / "python", "-c", code], capture_output=True, text=True, check=True).stdout.strip()
+    command = [sys.executable, "-m", "pip", "install", "--quiet", "--no-deps", "--target", place, str(wheel)]
+    subprocess.run(command, check=True)
+    Path(place, "extras.pth").write_text(sysconfig.get_path("purelib") + "\n")
+    apa = program / "apa"
+    apa.write_text(f"#!{program / 'python'}\nfrom orchestrator.cli import main\nraise SystemExit(main())\n")
+    apa.chmod(0o755)
+    return apa
 
 
 def call(apa: Path, folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
@@ -84,6 +105,29 @@ def test_what_the_documentation_promises(apa: Path, tmp_path: Path) -> None:
     assert (tmp_path / "built" / "python" / "Controller.fmu").is_file()
     assert installed(apa) == before
     assert (tmp_path / "cache").is_dir()
+
+
+def test_a_controller_of_ones_own_and_a_study_from_the_wheel(full: Path, tmp_path: Path) -> None:
+    before = installed(full)
+    for words in (
+        ["new", "controller", "my_controller"],
+        ["new", "ci", "my_controller"],
+        ["run", "my_controller/scenario.yaml"],
+        ["test", "my_controller/scenario.yaml", "my_controller/test_steps.yaml", "guo2015-case4"],
+        ["run", "guo2015-case4"],
+        ["sweep", "guo2015-trial", "--every", "1000", "--out", "study"],
+    ):
+        done = call(full, tmp_path, *words)
+        assert done.returncode == 0, (words, done.stdout, done.stderr)
+    assert (tmp_path / ".gitlab-ci.yml").is_file()
+    assert {path.suffix for path in (tmp_path / "study").iterdir()} >= {".parquet", ".html"}
+    assert (tmp_path / "cache").is_dir()
+    assert installed(full) == before
+    code = "import orchestrator, apa_cosim; print(orchestrator.__file__, apa_cosim.__file__)"
+    clean = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
+    words = [full.with_name("python"), "-c", code]
+    done = subprocess.run(words, cwd=tmp_path, env=clean, capture_output=True, text=True, check=True)
+    assert all(str(full.parents[1]) in file for file in done.stdout.split())
 
 
 @pytest.mark.parametrize(

@@ -82,9 +82,10 @@ class Library:
         """Return the ``wanted`` modules so that each comes after those it imports."""
         done: dict[str, None] = {}
         seen: set[str] = set()
+        packages = {name.split(".")[0] for name in (*roots, *wanted)} - sys.stdlib_module_names
 
         def visit(name: str) -> None:
-            if name in seen or name not in sys.modules or not _has_source(name):
+            if name in seen or name.split(".")[0] not in packages or not _has_source(name):
                 return
             seen.add(name)
             for needed in self.module(name).needs:
@@ -97,8 +98,7 @@ class Library:
 
 
 def _has_source(name: str) -> bool:
-    file = getattr(sys.modules[name], "__file__", None) or ""
-    return file.endswith(".py") and not file.startswith((sys.base_prefix + "/lib", sys.prefix + "/lib"))
+    return name in sys.modules and str(getattr(sys.modules[name], "__file__", None)).endswith(".py")
 
 
 def read_module(name: str) -> Module:

@@ -58,14 +58,11 @@ def step_car(state: CarState, inputs: VehicleInput, faulty: bool, params: Vehicl
         wanted = lever_gear(inputs.person, state.selector.gear, state.speed)
     selector = shift(state.selector, wanted, state.speed, params.drive.shift_time, next_ns - state.time_ns)
     steering = _steer(state, inputs, driver.takeover or faulty, params, next_ns)
-    wheel = turn_steering_wheel(
-        state.steering_wheel_angle,
-        steering.lagged,
-        params.car.steering,
-        params.steering.standstill_rate,
-        h,
-        state.speed,
-    )
+    wheel = state.steering_wheel_angle
+    if state.time_ns * 1e-9 < params.steering.stuck_time:
+        wheel = turn_steering_wheel(
+            wheel, steering.lagged, params.car.steering, params.steering.standstill_rate, h, state.speed
+        )
     steering = steering._replace(play=take_up_play(steering.play, wheel, params.steering.backlash))
     state = state._replace(driver=driver, selector=selector)
     angles = (state.steering.play / params.car.steering.ratio, steering.play / params.car.steering.ratio)

@@ -113,6 +113,7 @@ class SteeringParams(NamedTuple):
         Signal("rad/s", "largest steering-wheel rate at standstill; 0: as when moving", 0.0, 100.0, HOUSE),
         Role.TUNABLE,
     ] = 0.0
+    stuck_time: Annotated[float, Signal("s", "the wheel sticks from this time on; 1e9: never", 0.0, 1e9, HOUSE)] = 1e9
 
 
 class DriveParams(NamedTuple):

@@ -26,6 +26,7 @@ STUDIES = {
     "apa-world": "orchestrator.grid.world.study",
     "bakeoff": "orchestrator.bakeoff.study",
     "guo2015-claim": "orchestrator.bakeoff.claim",
+    "search-kpis": "orchestrator.grid.search_kpis",
     "valet-rows": "orchestrator.grid.slot_rows",
 }
 """Study that no file holds -> its module, with ``study(**whole numbers) -> Study`` and ``report(table, folder)``, which

@@ -124,9 +124,9 @@ def _how_found(row: Mapping[str, float]) -> tuple[float, float, float, float]:
     case = cases(int(row["lot"]))[int(row["number"])]
     if math.isnan(row["shown.kind"]):
         return math.nan, math.nan, math.nan, 0.0
-    pose = _pose(row, POSE)
+    pose = pose_of(row, POSE)
     inside = is_inside(pose, true_slot(case), parameters(case)[1])
-    return *_corner_errors(case, row), pose.x - case.length, float(inside)
+    return *corner_errors(case, row), pose.x - case.length, float(inside)
 
 
 def true_slot(case: GridCase) -> Slot:
@@ -136,19 +136,20 @@ def true_slot(case: GridCase) -> Slot:
     return slot._replace(depth=CARS[case.car].width + BEHIND) if case.kind == Kind.PARALLEL else slot
 
 
-def _corner_errors(case: GridCase, row: Mapping[str, float]) -> tuple[float, float]:
+def corner_errors(case: GridCase, row: Mapping[str, float]) -> tuple[float, float]:
     """Return the distances [m] of A and B as believed from the true corners, seen from the car.
 
     What the odometry has drifted before it saw the corner does not matter, what it drifts after does.
     """
-    true, believed = _pose(row, POSE), _pose(row, ODOMETRY)
+    true, believed = pose_of(row, POSE), pose_of(row, ODOMETRY)
     found = ((row[f"{name}.x"], row[f"{name}.y"]) for name in CORNERS)
     pairs = zip(found, ((0.0, 0.0), (case.length, 0.0)), strict=True)
     a, b = (math.dist(_seen_from(believed, one), _seen_from(true, other)) for one, other in pairs)
     return a, b
 
 
-def _pose(row: Mapping[str, float], name: str) -> Pose:
+def pose_of(row: Mapping[str, float], name: str) -> Pose:
+    """Return a pose that was kept of a run under this name."""
     return Pose(row[f"{name}.x"], row[f"{name}.y"], row[f"{name}.heading"])
 
 

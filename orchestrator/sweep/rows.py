@@ -63,7 +63,7 @@ def measures_for(
             hint = suggestion(limit.signal, [*known, *NUMBERS])
             raise BadInput(f"no signal or number of this name{hint}", file=scenario.file, key=f"limits: {limit.id}")
     for limit in more:
-        if limit.signal in known and measure_of(limit) is None:
+        if limit.signal in OF_WHOLE_RUNS or (limit.signal in known and measure_of(limit) is None):
             raise BadInput("takes the whole run; only a scenario's own limits may", key=f"within: {limit.id}")
     for measure in further:
         if measure.signal not in known:
@@ -121,7 +121,7 @@ def recorded_limits(scenario: Scenario) -> list[int]:
         place
         for place, limit in enumerate(scenario.limits)
         if (limit.signal not in NUMBERS and measure_of(limit) is None)
-        or (limit.signal in OF_WHOLE_RUNS and scenario.polygons)
+        or (limit.signal in OF_WHOLE_RUNS and (limit.where != "polygons" or scenario.polygons))
     ]
 
 

@@ -10,6 +10,7 @@ from orchestrator.cosim.recording import Recording
 from orchestrator.cosim.slave import Array
 from orchestrator.scenario import end_condition
 from orchestrator.scenario.scenario import Scenario
+from orchestrator.verdict.comfort import peak_jerk, standstill_steering
 from orchestrator.verdict.geometry import CarOutline, described
 from orchestrator.verdict.measures import Measure, measured
 from orchestrator.verdict.polygons import polygon_clearance
@@ -54,16 +55,25 @@ NUMBERS: dict[str, Number] = {
     ),
     "min_clearance": Number("m", "smallest distance of the outline to anything in the scene", CLEARANCE),
     "polygon_clearance": Number("m", "smallest distance of the outline to the scenario's polygons, on the whole way"),
+    "peak_jerk": Number("m/s3", "largest absolute jerk, averaged over a second"),
+    "standstill_steering": Number("1", "standstills in which the steering wheel is turned by more than 5 deg"),
 }
 ERRORS = ("final.longitudinal_error", "final.lateral_error", "final.heading_error")
 STANDING = (*ERRORS, "final.slot_margin", "final.kerb_nearest", "final.kerb_farthest")
 """Made from the last pose and from what is true; NaN where a scenario has no target, slot or kerb."""
-OF_WHOLE_RUNS = ("polygon_clearance",)
+OF_WHOLE_RUNS = {
+    "polygon_clearance": tuple(measure.signal for measure in POSE),
+    "peak_jerk": (end_condition.SPEED,),
+    "standstill_steering": (end_condition.SPEED, "vehicle.steering_wheel_angle"),
+}
+"""Numbers that take the whole run -> signals; tables of many runs do not have them."""
 MEASURES = tuple(item.measure for item in NUMBERS.values() if item.measure is not None)
 
 
 def signals_of(name: str) -> list[str]:
     """Return the signals that a number is made from."""
+    if name in OF_WHOLE_RUNS:
+        return list(OF_WHOLE_RUNS[name])
     measure = NUMBERS[name].measure
     measures = POSE if name in STANDING else () if measure is None else (measure,)
     return [item.signal for item in measures]
@@ -96,12 +106,21 @@ def facts_of(recording: Recording, scenario: Scenario) -> Facts:
 def of_whole_run(recording: Recording, scenario: Scenario) -> dict[str, float]:
     """Return the duration, and the numbers ``OF_WHOLE_RUNS``, which nothing that is kept of a run tells."""
     duration = float(recording.t[-1]) if len(recording.t) else 0.0
-    return {"duration": duration, "polygon_clearance": _to_polygons(recording, scenario)}
+    speed, wheel = (recording.signals.get(name) for name in OF_WHOLE_RUNS["standstill_steering"])
+    driven = speed is not None and len(speed) > 0
+    return {
+        "duration": duration,
+        "polygon_clearance": _to_polygons(recording, scenario),
+        "peak_jerk": peak_jerk(recording.t, speed) if speed is not None and driven else math.nan,
+        "standstill_steering": (
+            standstill_steering(speed, wheel) if speed is not None and driven and wheel is not None else math.nan
+        ),
+    }
 
 
 def _to_polygons(recording: Recording, scenario: Scenario) -> float:
     """Return the least distance [m] of the car to the polygons on its way; NaN if there is none."""
-    names = [f"vehicle.pose.{axis}" for axis in ("x", "y", "heading")]
+    names = OF_WHOLE_RUNS["polygon_clearance"]
     if not scenario.polygons or not all(name in recording.signals for name in names):
         return math.nan
     car = CarOutline.of(described(scenario, recording.parameters_of("vehicle")))
@@ -114,7 +133,8 @@ def numbers(durations: Array, found: Mapping[Measure, Array], truth: Truth) -> d
     ``durations`` [s], ``found``: their measures, of which signals that do not exist may lack; ``truth``: where each
     was to stand.
     """
-    made: dict[str, Array] = {"duration": durations, "polygon_clearance": np.full(len(durations), np.nan)}
+    made: dict[str, Array] = {"duration": durations}
+    made |= {name: np.full(len(durations), np.nan) for name in OF_WHOLE_RUNS}
     for name, item in NUMBERS.items():
         if item.measure is not None:
             values = found.get(item.measure, np.full(len(durations), np.nan))

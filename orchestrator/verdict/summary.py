@@ -131,6 +131,10 @@ class Summary(_Part):
     """Manoeuvres; null if the controller does not count them."""
     max_speed: float
     """Largest absolute speed [m/s]."""
+    peak_jerk: float
+    """Largest absolute jerk, averaged over a second [m/s3]."""
+    standstill_steering: int | None
+    """Standstills in which the steering wheel is turned by more than 5 deg; null if the wheel is not known."""
     final: Final
     """Where and how the car stands at the end."""
     events: list[Event]
@@ -183,8 +187,10 @@ def summarize(recording: Recording, scenario: Scenario, wall_time: float, note: 
         outcome=outcome,
         reason=reason,
         duration=numbers["duration"],
-        shifts=int(numbers["shifts"]) if math.isfinite(numbers["shifts"]) else None,
+        shifts=_count(numbers["shifts"]),
         max_speed=numbers["max_speed"],
+        peak_jerk=numbers["peak_jerk"],
+        standstill_steering=_count(numbers["standstill_steering"]),
         final=Final(**{name: numbers[f"final.{name}"] for name in Final.model_fields}),
         events=_events(recording),
         checks=checks,
@@ -242,6 +248,10 @@ def _outcome(recording: Recording, scenario: Scenario, checks: list[Check]) -> t
     ]
     (found,) = outcomes(scenario, Ends([broken], *last), asked, *(recording.variables.get(name) for name in signals))
     return found
+
+
+def _count(number: float) -> int | None:
+    return int(number) if math.isfinite(number) else None
 
 
 def _finite(data: Any) -> Any:

@@ -19,8 +19,20 @@ from orchestrator.verdict.summary import Summary, summarize
 DEMO = str(Path(__file__).with_name("demo.yaml"))
 TARGET = Target(x=10.0, y=-5.0, heading=math.pi / 2)
 PROMISED = {
-    *("scenario", "outcome", "reason", "duration", "shifts", "max_speed", "final", "events", "checks", "fmus"),
-    *("wall_time", "real_time_factor", "seed", "versions", "notes"),
+    *(
+        "scenario",
+        "outcome",
+        "reason",
+        "duration",
+        "shifts",
+        "max_speed",
+        "peak_jerk",
+        "final",
+        "events",
+        "checks",
+        "fmus",
+    ),
+    *("standstill_steering", "wall_time", "real_time_factor", "seed", "versions", "notes"),
 }
 
 

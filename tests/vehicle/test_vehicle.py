@@ -151,6 +151,18 @@ def test_driver_brakes_and_grabs_the_wheel() -> None:
     assert out.steering_wheel_angle == pytest.approx(-2.0)
 
 
+@pytest.mark.parametrize("body", BODIES)
+def test_a_stuck_wheel_stays_where_it_was_whoever_turns_it(body: int) -> None:
+    car = params(body=body, steering__stuck_time=1.0, driver__grab_time=3.0, driver__grab_angle=-1.0)
+    state, before = drive(car, prompted(Prompt.FORWARD, 1.0 + 9.0), 1.0)
+    assert before.steering_wheel_angle > 9.0
+    state, out = drive(car, prompted(Prompt.FORWARD, -5.0), 1.0, state)
+    assert out.steering_wheel_angle == before.steering_wheel_angle
+    _, grabbed = drive(car, prompted(Prompt.FORWARD, -5.0), 2.0, state)
+    assert grabbed.steering_wheel_angle == before.steering_wheel_angle
+    assert grabbed.front_wheel_angle == before.front_wheel_angle
+
+
 def test_apa_switch_and_confirmation() -> None:
     car = params(driver__apa_switch_time=1.0, driver__apa_switch_off_time=3.0, driver__confirm_time=2.0)
     state, out = MODEL.initialize(car)

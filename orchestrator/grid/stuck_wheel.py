@@ -142,7 +142,7 @@ HEADS = (
     "median",
     "most",
     "touched",
-    "real, not stuck",
+    "not stuck",
     "false faults",
 )
 SOON = 0.305

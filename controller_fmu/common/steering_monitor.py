@@ -103,7 +103,8 @@ def watch_steering(
     explained = away and side * (late - angle) < 0.0
     follows = side == 0.0 or side != state.side or nearer or explained
     asked_ns, dead_time = _dead_time(state, request, angle, tolerance, dt_ns)
-    seen = state.steering.seen or nearer
+    kept_up = side == 0.0 and abs(angle - state.window.angle) > MOVED
+    seen = state.steering.seen or nearer or kept_up
     window, rate, lag = _window(state, request, angle, believed_rate, dt_ns)
     return SteeringWatch(
         steering=Steering(rate, dead_time, lag, seen),

@@ -14,8 +14,7 @@ from orchestrator.verdict.limit_text import sentence
 
 BODY = """<header class="top"><div class="headline"><h1>Catalogue of parking requirements</h1></div>
 <span class="verdict {kind}">{verdict}</span></header>
-<dl class="card about">{facts}</dl>
-<main>
+<main><dl class="card about">{facts}</dl>
 {parts}
 </main>
 """
@@ -84,7 +83,7 @@ def _table(verdicts: list[ClauseVerdict]) -> str:
 
 
 def _row(item: ClauseVerdict) -> str:
-    kind = {MET: "good", MISSED: "bad"}.get(item.word, "")
+    kind = {MET: "good", MISSED: "bad"}.get(item.word, "warn")
     asked = f"<b>{html.escape(item.entry.id)}</b><br>{html.escape(item.entry.text)}"
     pill = f'<span class="pill {kind}">{item.word}</span>'
     why = "".join(_tried(tried) for tried in item.tried) or f"<li>{html.escape(item.why)}</li>"

@@ -65,7 +65,7 @@ class StuckDrive(NamedTuple):
     @property
     def is_asked(self) -> bool:
         """Return whether something was still asked of the stuck wheel, long enough to tell it from a slow one."""
-        return math.isfinite(self.found) or self.took - self.seen > LimitParams().wheel_fault
+        return self.took - self.seen > LimitParams().wheel_fault or self.delay >= 0.0
 
     @property
     def is_false(self) -> bool:

@@ -99,6 +99,24 @@ def test_a_steering_as_believed_teaches_nothing() -> None:
     assert (learnt.rate, learnt.dead_time, learnt.lag) == (0.0, 0.0, 0.0)
 
 
+@pytest.mark.parametrize("at", [3.0, 3.7, 5.2])
+def test_a_wheel_that_has_kept_up_with_its_request_is_known_to_move(at: float) -> None:
+    """It was never off by more than the tolerance, so never seen to come nearer; stuck, it is found as soon as any."""
+
+    def slowly(t: float) -> float:
+        return 0.4 * math.sin(0.8 * t) + (1.5 if t >= at else 0.0)
+
+    held: list[float] = []
+
+    def stuck(t: float, angle: float) -> float:
+        if t < at:
+            return angle
+        held.append(angle)
+        return held[0]
+
+    assert drive(slowly, SteeringParams(), broken=stuck).failed_at <= at + 0.31
+
+
 @pytest.mark.parametrize("dead_time", [0.0, 0.1])
 @pytest.mark.parametrize("at", [2.49, 5.5, 10.2])
 def test_a_stuck_wheel_is_found_within_three_tenths_of_a_second(dead_time: float, at: float) -> None:

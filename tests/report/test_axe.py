@@ -4,6 +4,9 @@ from pathlib import Path
 
 import pytest
 
+from orchestrator.catalogue.entries import chosen_standards
+from orchestrator.catalogue.show import write_catalogue
+from orchestrator.catalogue.verdicts import Tried, verdicts_of
 from orchestrator.cli import main
 from orchestrator.live.page import live_page
 from orchestrator.scenario.load_scenario import load_scenario
@@ -54,13 +57,25 @@ def index(tmp_path_factory):
     return path / "index.html"
 
 
+@pytest.fixture(scope="module")
+def catalogue(tmp_path_factory):
+    path = tmp_path_factory.mktemp("catalogue") / "index.html"
+    verdicts = verdicts_of(chosen_standards(["catalogue/unr79"]))
+    for item in verdicts[::2]:
+        item.tried.extend(
+            Tried(name, "parked", ["too fast"] * (item is verdicts[0]), []) for name in item.entry.scenarios
+        )
+    write_catalogue(path, verdicts, {"command": "apa test catalogue"})
+    return path
+
+
 def wrong(page, axe):
     page.evaluate(axe)
     return page.evaluate(RUN, RULES)
 
 
 @pytest.mark.parametrize("look", LOOKS)
-@pytest.mark.parametrize("which", ["replay", "overlay", "study", "index"])
+@pytest.mark.parametrize("which", ["replay", "overlay", "study", "index", "catalogue"])
 def test_pages(which, look, show, axe, request):
     scripted = which in ("replay", "overlay")
     page, _ = show(request.getfixturevalue(which), bypass_csp=True, is_scripted=scripted, **LOOKS[look])

@@ -38,7 +38,7 @@ from orchestrator.scenario.fault import Fault  # noqa: E402
 from orchestrator.scenario.files import ROOM  # noqa: E402
 from orchestrator.scenario.load_scenario import load_scenario, scenario_names  # noqa: E402
 from orchestrator.scenario.models import APART, MODELS  # noqa: E402
-from orchestrator.scenario.requirements import Moment, Requirement, Window, read_requirements  # noqa: E402
+from orchestrator.scenario.requirements import Occasion, Requirement, Window, read_requirements  # noqa: E402
 from orchestrator.scenario.scenario import Scenario, Slot, Target  # noqa: E402
 from orchestrator.text.command_parser import CommandParser  # noqa: E402
 from orchestrator.verdict.judge import Check  # noqa: E402
@@ -218,7 +218,7 @@ def files_page() -> str:
         "Fault": Fault,
         "Requirement (YAML)": Requirement,
         "Window": Window,
-        "Moment": Moment,
+        "Occasion": Occasion,
     }
     for title, model in written.items():
         rows = [[*row[:3], row[3].replace("``", "`")] for row in key_rows(model)]

@@ -8,7 +8,7 @@ from pathlib import Path
 from rich.table import Table
 
 from fmus.files import write_whole
-from orchestrator.catalogue.verdicts import MET, MISSED, ClauseVerdict, Tried, counts
+from orchestrator.catalogue.verdicts import MET, MISSED, ClauseRun, ClauseVerdict, counts
 from orchestrator.report.page import still_page
 from orchestrator.verdict.limit_text import sentence
 
@@ -91,7 +91,7 @@ def _row(item: ClauseVerdict) -> str:
     return "<tr>" + "".join(f"<td>{cell}</td>" for cell in cells) + "</tr>"
 
 
-def _tried(tried: Tried) -> str:
+def _tried(tried: ClauseRun) -> str:
     name = html.escape(tried.name)
     texts = [tried.error, *tried.missed, *(f"not measured: {name}" for name in tried.unmeasured)]
     texts += [f"{check.id}: {sentence(check)}" for check in tried.checks if check.judged and check.passed]

@@ -20,7 +20,7 @@ NOT_TESTED: Word = "not tested"
 WORDS: tuple[Word, ...] = (MET, MISSED, NOT_TESTED)
 
 
-class Tried(NamedTuple):
+class ClauseRun(NamedTuple):
     """What one run says of one entry."""
 
     name: str
@@ -41,7 +41,7 @@ class ClauseVerdict(NamedTuple):
 
     standard: Standard
     entry: Clause
-    tried: list[Tried]
+    tried: list[ClauseRun]
 
     @property
     def word(self) -> Word:
@@ -94,26 +94,26 @@ def note(verdicts: list[ClauseVerdict], tested: Tested) -> None:
             item.tried.append(_stepped(name, tested))
         elif name in item.entry.scenarios:
             if recording is None or tested.summary is None or tested.error:
-                item.tried.append(Tried(name, "", [], [], error=tested.error or "was not run"))
+                item.tried.append(ClauseRun(name, "", [], [], error=tested.error or "was not run"))
             else:
                 outcome = (tested.summary.outcome, tested.summary.reason)
                 item.tried.append(_tried(item.entry, tested.scenario, recording, *outcome))
 
 
-def _stepped(name: str, tested: Tested) -> Tried:
+def _stepped(name: str, tested: Tested) -> ClauseRun:
     """Return what a step test says; one that an FMU does not have the variables for cannot be judged."""
     if tested.code == BAD_INPUT:
-        return Tried(name, "", [], [tested.error])
+        return ClauseRun(name, "", [], [tested.error])
     missed = [f"{case.name}: {case.text}" for case in tested.cases if not case.passed]
-    return Tried(name, "", missed, [], error=tested.error)
+    return ClauseRun(name, "", missed, [], error=tested.error)
 
 
-def _tried(entry: Clause, scenario: Scenario, recording: Recording, outcome: str, reason: str) -> Tried:
+def _tried(entry: Clause, scenario: Scenario, recording: Recording, outcome: str, reason: str) -> ClauseRun:
     checks = judge(entry.requirements(), recording, facts_of(recording, scenario), scenario.file)
     missed = [f"{check.id}: {sentence(check)}" for check in checks if check.judged and not check.passed]
     if entry.outcome and outcome not in entry.outcome:
         missed.insert(0, f"{outcome.replace('_', ' ')} ({reason}), asked {' or '.join(entry.outcome)}")
-    return Tried(scenario.name, outcome, missed, [check.id for check in checks if not check.judged], checks)
+    return ClauseRun(scenario.name, outcome, missed, [check.id for check in checks if not check.judged], checks)
 
 
 def counts(verdicts: list[ClauseVerdict]) -> dict[Word, int]:

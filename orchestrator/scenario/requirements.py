@@ -23,7 +23,7 @@ LIMITS = Path(__file__).parent.parent / "limits"
 """Where the shipped sets are."""
 
 
-class Moment(BaseModel):
+class Occasion(BaseModel):
     """A condition on a signal at one instant: exactly one of ``max``, ``min``, ``max_abs`` and ``equals`` is given."""
 
     model_config = ConfigDict(extra="forbid")
@@ -73,7 +73,7 @@ class Window(BaseModel):
     """Names of phases of the manoeuvre chart."""
     at: Literal["end"] | None = None
     """``end``: the last instant only."""
-    after: Moment | None = None
+    after: Occasion | None = None
     """From each instant at which this begins to hold."""
     delay: Seconds = 0.0
     """So long [s] after ``after``."""

@@ -12,7 +12,7 @@ from orchestrator.cosim.recording import Recording
 from orchestrator.cosim.slave import Array
 from orchestrator.scenario.end_condition import state_word, states_of
 from orchestrator.scenario.models import MODELS
-from orchestrator.scenario.requirements import Condition, Moment, Requirement, Window
+from orchestrator.scenario.requirements import Condition, Occasion, Requirement, Window
 from orchestrator.text.errors import BadInput, suggestion
 from orchestrator.verdict.conditions import CONDITIONS
 from orchestrator.verdict.numbers import NUMBERS, Facts, signals_of
@@ -200,7 +200,7 @@ def _rows(window: Window | None, recording: Recording, file: str, where: str) ->
     return rows
 
 
-def _after(moment: Moment, window: Window, recording: Recording, file: str, where: str) -> Bools:
+def _after(moment: Occasion, window: Window, recording: Recording, file: str, where: str) -> Bools:
     """Return which instants lie in the time after each one at which ``moment`` begins to hold."""
     if moment.signal not in recording.signals:
         hint = suggestion(moment.signal, list(recording.signals))

@@ -19,7 +19,7 @@ from orchestrator.scenario.end_condition import EndCondition
 from orchestrator.scenario.fault import Fault
 from orchestrator.scenario.load_scenario import load_scenario, scenario_names
 from orchestrator.scenario.models import MODELS
-from orchestrator.scenario.requirements import Moment, Requirement, Window, read_requirements
+from orchestrator.scenario.requirements import Occasion, Requirement, Window, read_requirements
 from orchestrator.scenario.scenario import Scenario, Slot, Target
 from orchestrator.sweep.study.study_file import load_study
 from orchestrator.verdict.judge import Check
@@ -167,7 +167,7 @@ def test_every_key_of_a_file_has_a_meaning(generate):
         Fault,
         Requirement,
         Window,
-        Moment,
+        Occasion,
         Summary,
         Final,
         Event,

@@ -12,7 +12,7 @@ import yaml
 from orchestrator.catalogue.entries import ROOM, STEP_TESTS, Clause, chosen_standards, is_catalogue, read_standard
 from orchestrator.catalogue.run import Catalogue, judged
 from orchestrator.catalogue.show import markdown
-from orchestrator.catalogue.verdicts import ClauseVerdict, Tried, counts, note, runs_of, suites, verdicts_of
+from orchestrator.catalogue.verdicts import ClauseRun, ClauseVerdict, counts, note, runs_of, suites, verdicts_of
 from orchestrator.cli import main
 from orchestrator.cosim.fmu_files import can_compile, fmu_files
 from orchestrator.cosim.master import Interrupt
@@ -117,8 +117,8 @@ def test_a_mistake_in_a_file_is_told_with_its_place(tmp_path: Path) -> None:
 OTHER = "apa-perpendicular"
 
 
-def tried(*missed: str, name: str = "apa-parallel", unmeasured: tuple[str, ...] = (), error: str = "") -> Tried:
-    return Tried(name, "parked", list(missed), list(unmeasured), error=error)
+def tried(*missed: str, name: str = "apa-parallel", unmeasured: tuple[str, ...] = (), error: str = "") -> ClauseRun:
+    return ClauseRun(name, "parked", list(missed), list(unmeasured), error=error)
 
 
 @pytest.mark.parametrize(
@@ -137,7 +137,7 @@ def tried(*missed: str, name: str = "apa-parallel", unmeasured: tuple[str, ...] 
         ([tried("fast"), tried(name=OTHER, unmeasured=("a",))], "missed", "apa-parallel: fast"),
     ],
 )
-def test_verdicts(runs: list[Tried], word: str, why: str) -> None:
+def test_verdicts(runs: list[ClauseRun], word: str, why: str) -> None:
     asked = entry(scenarios=["apa-parallel", "apa-perpendicular"], outcome=["parked"])
     found = ClauseVerdict(EVERYTHING[0].standard, asked, runs)
     assert (found.word, found.why) == (word, why)

@@ -6,7 +6,7 @@ import pytest
 
 from orchestrator.catalogue.entries import chosen_standards
 from orchestrator.catalogue.show import write_catalogue
-from orchestrator.catalogue.verdicts import Tried, verdicts_of
+from orchestrator.catalogue.verdicts import ClauseRun, verdicts_of
 from orchestrator.cli import main
 from orchestrator.live.page import live_page
 from orchestrator.scenario.load_scenario import load_scenario
@@ -63,7 +63,7 @@ def catalogue(tmp_path_factory):
     verdicts = verdicts_of(chosen_standards(["catalogue/unr79"]))
     for item in verdicts[::2]:
         item.tried.extend(
-            Tried(name, "parked", ["too fast"] * (item is verdicts[0]), []) for name in item.entry.scenarios
+            ClauseRun(name, "parked", ["too fast"] * (item is verdicts[0]), []) for name in item.entry.scenarios
         )
     write_catalogue(path, verdicts, {"command": "apa test catalogue"})
     return path

@@ -60,6 +60,8 @@ $(VENV)/.run: pyproject.toml
 $(VENV)/.test: $(VENV)/.run pyproject.toml
 	@echo "Installing what the tests need into $(VENV): 1 GB more, some minutes"
 	$(BIN)/python -m pip install --quiet --editable '.[native,sweep,export,test]'
+	$(BIN)/npm install --silent --no-save --no-package-lock --prefix $(VENV)/scripts typescript@5.9.3 || \
+	    echo "No TypeScript: the scripts of the pages are not type-checked here"
 	@touch $@
 
 $(VENV)/.docs: $(VENV)/.run pyproject.toml

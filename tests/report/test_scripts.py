@@ -1,7 +1,8 @@
-"""Scripts of the pages: every name is declared and used, and what else a linter finds."""
+"""Scripts of the pages: every name is declared and used, types fit, and what else a linter finds."""
 
 import shutil
 import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -9,6 +10,11 @@ import pytest
 from orchestrator.live import page as live
 from orchestrator.report import page as replay
 
+TSC = Path(sys.prefix) / "scripts" / "node_modules" / "typescript" / "lib" / "tsc.js"
+"""Where `make test` puts the TypeScript compiler."""
+STRICT = ["--allowJs", "--checkJs", "--noEmit", "--strict", "--noImplicitAny", "false"]
+NOW = ["--target", "es2022", "--lib", "es2023,dom,dom.iterable"]
+AROUND = "declare const uPlot: any;\ninterface Window { replay: any; live: any; }\n"
 SCRIPTS = {"replay": replay.scripts, "live": lambda: "\n".join(live.scripts())}
 
 
@@ -28,3 +34,27 @@ def test_the_linter_would_find_a_name_that_nobody_declared(tmp_path):
     (tmp_path / "wrong.js").write_text("window.one = nobody;\n", encoding="utf-8")
     done = subprocess.run([biome, "lint", f"--config-path={tmp_path}", "wrong.js"], cwd=tmp_path, capture_output=True)
     assert done.returncode != 0
+
+
+def checked(folder, script):
+    """Return what the TypeScript compiler says of a script of a page."""
+    node = shutil.which("node") or pytest.skip("no node here")
+    if not TSC.exists():
+        pytest.skip("no TypeScript here")
+    (folder / "around.d.ts").write_text(AROUND, encoding="utf-8")
+    (folder / "page.js").write_text(f"(() => {{\n{script}\n}})();\n", encoding="utf-8")
+    command = [node, str(TSC), *STRICT, *NOW, "around.d.ts", "page.js"]
+    return subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False).stdout
+
+
+@pytest.mark.parametrize("name", SCRIPTS)
+def test_types_fit(name, tmp_path):
+    assert checked(tmp_path, SCRIPTS[name]()) == ""
+
+
+@pytest.mark.parametrize("wrong", ["plots.hoover(1);", "plots.zoom(1, 2);", "moved(3, 1, 2);"])
+def test_a_wrong_name_or_type_would_be_found(wrong, tmp_path):
+    bad = f"function bad(plots = new Plots({{}}, $('x'), bad, bad)) {{ {wrong} }}\nbad();"
+    told = checked(tmp_path, f"{SCRIPTS['replay']()}\n{bad}")
+    assert "error TS" in told
+    assert told.count("error TS") == 1

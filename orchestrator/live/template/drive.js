@@ -3,6 +3,12 @@
 const LATEST = 0.25; // more than this the run does not catch up [s]
 
 class Drive {
+  /** @type {any} what was driven so far, a History */
+  history = null;
+  count = 0;
+  due = 0; // time that the clock asks for and no step has driven yet [s]
+  every = 1; // steps between two rows that are kept
+
   constructor(lab, driver) {
     this.lab = lab;
     this.driver = driver;

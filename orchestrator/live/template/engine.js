@@ -55,7 +55,7 @@ class Course {
     this.c.live_free(address);
     this.line = engine.put(seen.map(() => 0));
     this.times = engine.put([0, 0, 0, 0]);
-    this.params = 0;
+    this.params = this.room = this.trace = 0; // addresses of numbers, and how many lines a trace has room for
   }
 
   close() {

@@ -64,7 +64,9 @@ function wholeHistory(engine, seen, scene, whole) {
 // What the controller has in mind now: path, slot found, pose wanted; null if it has nothing.
 function planOf(engine, course, origin) {
   const at = (name) => course.look(`controller.${name}`);
-  const points = pathOf(engine, at), kind = at("apa.slot.kind"), plan = { x: [], y: [] };
+  const points = pathOf(engine, at), kind = at("apa.slot.kind");
+  /** @type {any} */
+  const plan = { x: [], y: [] };
   for (const [x, y] of points) { plan.x.push(x - origin[0]); plan.y.push(y - origin[1]); }
   if (kind > 0) {
     const pose = (name) => { const [x, y, heading] = AXES.map((axis) => at(`${name}.${axis}`)); return [x - origin[0], y - origin[1], heading]; };
@@ -90,6 +92,7 @@ function pathOf(engine, at) {
 }
 
 // Points along pieces (length, turning per metre at the start, at the end).
+/** @param {number[]} start @param {number} direction @param {any[]} pieces */
 function driven([x, y, heading], direction, pieces) {
   const points = [[x, y]];
   for (const [length, k0, k1] of pieces) {

@@ -5,6 +5,9 @@ const GHOST_EVERY = 5; // exchanges between two rows of the ghost, at 100 Hz
 const MODES = ["controller.phase", "controller.apa.mode", "controller.hsic.stage"];
 
 class Lab {
+  /** @type {any} the scenario in hand; there is none before the first `load` */
+  situation = null;
+
   constructor(engine, data) {
     this.engine = engine;
     this.table = data.numbers;

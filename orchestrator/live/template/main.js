@@ -3,6 +3,16 @@
 const PROMPTS = { NONE: "no prompt", STOP: "stop", FORWARD: "drive forward", REVERSE: "drive in reverse", SLOW_DOWN: "slow down", TAKE_OVER: "take over", CONFIRM: "confirm?" };
 
 class Page {
+  /** @type {any} the top view; there is none before the first scenario */
+  stage = null;
+  /** @type {any} the same, as view.js calls it */
+  scene = null;
+  /** @type {any} what is drawn */
+  page = null;
+  paint = () => {};
+  show = () => {};
+  took = 0; // until the page was ready [ms]
+
   constructor(lab, data, code) {
     this.lab = lab;
     this.driver = new Driver();
@@ -14,6 +24,7 @@ class Page {
     this.map = new Grid(lab, code, data, (values) => { for (const [name, value] of values) lab.situation.set(name, value); this.whatIf.fill(); this.changed(); });
     this.chart = new StateChart();
     this.charts = data.charts;
+    /** @type {any} */
     this.drawn = { runs: [], ribbons: [], ghost: null, poses: () => this.poses() };
     for (const item of data.scenarios) $("scenario").append(element("option", { value: item.name }, item.name));
     this.buttons();
@@ -133,7 +144,7 @@ class Page {
     $("play").addEventListener("click", () => this.toggle());
     $("restart").addEventListener("click", () => { drive.pause(); this.restart(); });
     $("step").addEventListener("click", () => { drive.pause(); drive.go(); });
-    for (const node of document.getElementsByName("pace")) node.addEventListener("change", () => { drive.pace = Number(node.value); });
+    for (const node of /** @type {NodeListOf<any>} */ (document.getElementsByName("pace"))) node.addEventListener("change", () => { drive.pace = Number(node.value); });
     $("modelled").addEventListener("change", () => { driver.drives = false; });
     $("person").addEventListener("change", () => { driver.drives = true; });
     $("scenario").addEventListener("change", () => this.load($("scenario").value));
@@ -165,8 +176,9 @@ function text(id, words) { if ($(id).textContent !== words) $(id).textContent = 
 
 function keyboard(keys) {
   addEventListener("keydown", (event) => {
-    if (event.ctrlKey || event.metaKey || event.altKey || event.target.closest("input, select, textarea, [role=tab]")) return;
-    if (event.key === " " && event.target.closest("button, summary, a")) return;
+    const at = /** @type {HTMLElement} */ (event.target);
+    if (event.ctrlKey || event.metaKey || event.altKey || at.closest("input, select, textarea, [role=tab]")) return;
+    if (event.key === " " && at.closest("button, summary, a")) return;
     if (!keys[event.key]) return;
     event.preventDefault();
     keys[event.key]();
@@ -174,7 +186,7 @@ function keyboard(keys) {
 }
 
 function tab(id) {
-  for (const node of document.querySelectorAll("[role=tab]")) {
+  for (const node of /** @type {NodeListOf<any>} */ (document.querySelectorAll("[role=tab]"))) {
     const isOn = node.id === id;
     node.setAttribute("aria-selected", String(isOn));
     node.tabIndex = isOn ? 0 : -1;
@@ -183,7 +195,7 @@ function tab(id) {
 }
 
 function tabs() {
-  const all = [...document.querySelectorAll("[role=tab]")];
+  const all = [.../** @type {NodeListOf<any>} */ (document.querySelectorAll("[role=tab]"))];
   all.forEach((node, i) => {
     node.addEventListener("click", () => tab(node.id));
     node.addEventListener("keydown", (event) => {
@@ -199,6 +211,7 @@ function tabs() {
 
 // Scenario and changes from the address.
 function fromAddress(lab, first) {
+  /** @type {{ name: string, changes: Record<string, number>, only: string[] }} */
   const found = { name: first, changes: {}, only: [] };
   for (const part of location.hash.slice(1).split("&")) {
     const [key, value] = part.split("=").map(decodeURIComponent);

@@ -41,7 +41,7 @@ class Grid {
   // What the two axes can be: numbers that are pinned, or changed.
   fill() {
     const { situation } = this.lab, names = [...new Set([...this.lab.pinned(), ...$("pins").querySelectorAll("code")].map((item) => item.textContent || item))].filter((name) => { const item = situation.known.get(name); return item.kind === "float"; });
-    for (const [id, place] of [["map-x", 0], ["map-y", 1]]) {
+    for (const [place, id] of ["map-x", "map-y"].entries()) {
       const kept = $(id).value;
       $(id).replaceChildren(...names.map((name) => element("option", { value: name }, name)));
       $(id).value = names.includes(kept) ? kept : names[Math.min(place, names.length - 1)];

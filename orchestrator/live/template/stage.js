@@ -92,7 +92,8 @@ class Stage extends Scene {
     g.stroke();
     for (const [what, point] of points) {
       g.beginPath();
-      g.arc(...this.pixel(...point), what === "move" ? 6 : 5, 0, 2 * Math.PI);
+      const [px, py] = this.pixel(point[0], point[1]);
+      g.arc(px, py, what === "move" ? 6 : 5, 0, 2 * Math.PI);
       g.fillStyle = color(what === "move" ? "accent" : "card");
       g.fill();
       g.stroke();

@@ -9,6 +9,7 @@ const MARGIN = {
 
 const wrap = (angle) => Math.atan2(Math.sin(angle), Math.cos(angle));
 
+/** @param {number[]} pose @param {number[]} frame */
 function inFrame([x, y, heading], frame) {
   const dx = x - frame[0], dy = y - frame[1], c = Math.cos(frame[2]), s = Math.sin(frame[2]);
   return [c * dx + s * dy, c * dy - s * dx, wrap(heading - frame[2])];
@@ -43,6 +44,7 @@ function kerbsAtSlot(situation) {
 }
 
 // [nearest, farthest] distance of the tyres beside the nearest kerb.
+/** @param {number[]} pose @param {any[]} kerbs @param {any} car */
 function kerbDistances([x, y, heading], kerbs, car) {
   const c = Math.cos(heading), s = Math.sin(heading);
   let found = [NaN, NaN];

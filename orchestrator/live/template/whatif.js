@@ -43,7 +43,7 @@ class WhatIf {
     const set = (value) => {
       wrong.textContent = this.lab.situation.set(name, value).replace(name, "it");
       field.toggleAttribute("aria-invalid", wrong.textContent !== "");
-      if (!wrong.textContent) { this.show(name, wrong); this.onChange(name); }
+      if (!wrong.textContent) { this.show(name); this.onChange(name); }
     };
     const [low, high] = sliderRange(item);
     let field, slider = null;
@@ -59,7 +59,7 @@ class WhatIf {
     const label = element("label", { for: id, title: `${item.text}${item.source ? ` (${item.source})` : ""}` }, element("code", {}, name));
     this.rows.set(name, { item, field, slider, back, factor });
     const node = element("div", { class: "pin" }, label, element("span", { class: "meaning" }, item.states || item.kind === "bool" ? item.text : `${item.text} \u00b7 ${rangeText(item)}`), slider, element("span", { class: "value" }, field, unit, back), wrong);
-    this.show(name, wrong);
+    this.show(name);
     return node;
   }
 

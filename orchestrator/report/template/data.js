@@ -20,7 +20,23 @@ async function unpack(text) {
   return header;
 }
 
+/** @typedef {{ unit: string, text: string, held?: boolean, turn?: boolean, states?: Record<number, string>, a?: number, o?: number, c?: number | null }} Signal */
+/** @typedef {{ origin: number[], turn: number, car: any, slot: any, target: any, boxes: any[], kerbs: any[], sensors: any[] }} Still */
+
 class Run {
+  /** @type {Record<string, Signal>} */
+  signals = {};
+  /** @type {any} what stands around, see Still; a run that is made from a log has it from there */
+  scene = null;
+  /** @type {any[]} */
+  plans = [];
+  /** @type {any} rows kept [s]: a typed array, or a plain one that grows */
+  time = [];
+  /** @type {any} outlines where the car was */
+  trail = undefined;
+  label = "";
+  about = "";
+
   constructor(data, arrays) {
     Object.assign(this, data);
     this.time = Float64Array.from(arrays[data.time]);
@@ -36,7 +52,7 @@ class Run {
     if (!signal) return null;
     if (!this.cache.has(name)) {
       const result = new Float64Array(this.time.length);
-      if (signal.a === undefined) result.fill(signal.c === null ? NaN : signal.c);
+      if (signal.a === undefined) result.fill(signal.c ?? NaN);
       else this.arrays[signal.a].forEach((value, i) => { result[i] = value + signal.o; });
       this.cache.set(name, result);
     }

@@ -33,7 +33,7 @@ class Keeper {
     this.recorder = null;
     $("png").addEventListener("click", () => new Sheet(player).draw().toBlob((blob) => handOut(`${this.name}-${player.shown.toFixed(2)}s.png`, blob), "image/png"));
     $("csv").addEventListener("click", () => handOut(`${this.name}.csv`, new Blob([csv(player.plots)], { type: "text/csv" })));
-    this.kind = window.MediaRecorder ? VIDEO.find((kind) => MediaRecorder.isTypeSupported(kind)) : undefined;
+    this.kind = window.MediaRecorder ? VIDEO.find((kind) => MediaRecorder.isTypeSupported(kind)) || "" : "";
     $("video").hidden = !this.kind;
     $("video").addEventListener("click", () => { if (this.recorder) this.stop(); else this.record(); });
   }

@@ -125,8 +125,9 @@ function keyboard(player, extra) {
     m: () => player.setMark(player.shown), Escape: () => player.setMark(null), z: (event) => player.plots.zoom(event.shiftKey ? 1 / 1.6 : 1.6), ...extra,
   };
   document.addEventListener("keydown", (event) => {
-    if (event.ctrlKey || event.metaKey || event.altKey || event.target.closest("input, select, textarea")) return;
-    if (event.key === " " && event.target.closest("button, summary, a")) return;
+    const at = /** @type {HTMLElement} */ (event.target);
+    if (event.ctrlKey || event.metaKey || event.altKey || at.closest("input, select, textarea")) return;
+    if (event.key === " " && at.closest("button, summary, a")) return;
     const act = keys[event.key] || keys[event.key.toLowerCase()];
     if (!act) return;
     event.preventDefault();
@@ -143,7 +144,7 @@ function links(player) {
     return true;
   };
   document.addEventListener("click", (event) => {
-    const link = event.target.closest("a.moment");
+    const link = /** @type {HTMLElement} */ (event.target).closest("a.moment");
     if (!link || !go(link.getAttribute("href"))) return;
     event.preventDefault();
     history.replaceState(null, "", link.getAttribute("href"));

@@ -4,10 +4,15 @@ class Scene {
   constructor(page, canvas) {
     this.page = page;
     this.canvas = canvas;
-    this.context = canvas.getContext("2d");
+    this.context = /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d"));
     this.layers = { planned: true, driven: true, trail: true, sensors: true };
     this.turn = -(page.runs[0].scene.turn || 0);
+    /** @type {number[]} what stands in the middle of the canvas */
+    this.middle = [0, 0];
+    this.scale = this.fitted = 40; // pixels a metre
+    this.width = this.height = this.t = 0;
     this.following = false;
+    /** @type {number | null} */
     this.mark = null; // time of the other cursor
     this.onFree = () => {};
     this.fit();
@@ -138,7 +143,8 @@ class Scene {
       const item = this.page.runs[number];
       drawCar(this, item, number, Math.min(t, item.duration));
     }
-    if (this.mark !== null) this.page.runs.forEach((item, number) => drawMark(this, item, number, Math.min(this.mark, item.duration)));
+    const { mark } = this;
+    if (mark !== null) this.page.runs.forEach((item, number) => drawMark(this, item, number, Math.min(mark, item.duration)));
     drawScale(this);
   }
 

@@ -72,6 +72,7 @@ function drawThing(scene, box) {
 }
 
 // Somebody from above: shoulders, head, and a ring of the room that the box takes.
+/** @param {any} scene @param {number[]} at @param {number} heading @param {number} radius */
 function drawPerson(scene, [x, y], heading, radius) {
   const g = scene.context, [px, py] = scene.pixel(x, y), size = Math.max(5, 0.72 * radius * scene.scale), turn = -(scene.turn + heading);
   const oval = (long, wide, fill) => { g.beginPath(); g.ellipse(px, py, long, wide, turn, 0, 2 * Math.PI); g.fillStyle = fill; g.fill(); };

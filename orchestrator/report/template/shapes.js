@@ -2,6 +2,7 @@
 
 const rectangle = (back, front, half) => [[back, -half], [front, -half], [front, half], [back, half]];
 
+/** @param {number[]} pose */
 function moved([x, y, heading], u, v) {
   const c = Math.cos(heading), s = Math.sin(heading);
   return [x + c * u - s * v, y + s * u + c * v];

@@ -5,8 +5,9 @@ const GAP = 12, LINE = 20, LANE = 16, FONT = "system-ui, sans-serif";
 class Sheet {
   constructor(player) {
     this.player = player;
+    this.ratio = 0; // pixels of the picture for one of the page
     this.canvas = document.createElement("canvas");
-    this.g = this.canvas.getContext("2d");
+    this.g = /** @type {CanvasRenderingContext2D} */ (this.canvas.getContext("2d"));
   }
 
   // Draw the page as it is now; sizes are those of the page, and stay as they were first.
@@ -14,8 +15,9 @@ class Sheet {
     const { player, g } = this, { scene, plots, timeline } = player, plotWidth = plots.all.length ? plots.all[0].place.clientWidth : 0;
     const lanes = timeline.lanes(), places = this.places(plots.all, scene.height + 2 * GAP + lanes.length * (LANE + 3));
     if (!this.ratio) {
-      this.ratio = Math.min(2, window.devicePixelRatio || 1);
-      const even = (size) => 2 * Math.ceil(0.5 * size * this.ratio);
+      const ratio = Math.min(2, window.devicePixelRatio || 1);
+      this.ratio = ratio;
+      const even = (size) => 2 * Math.ceil(0.5 * size * ratio);
       this.canvas.width = even(3 * GAP + scene.width + plotWidth);
       this.canvas.height = even(2 * GAP + 2 * LINE + Math.max(...places.ends));
     }

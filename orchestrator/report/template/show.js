@@ -4,6 +4,7 @@
 const $ = (id) => document.getElementById(id);
 
 // An element with text; text never becomes markup.
+/** @returns {any} */
 function element(tag, attributes = {}, ...children) {
   const node = document.createElement(tag);
   for (const [key, value] of Object.entries(attributes)) {

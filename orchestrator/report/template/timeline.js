@@ -4,6 +4,8 @@ const MOST_SPANS = 400;
 
 class Timeline {
   constructor(page, seek) {
+    /** @type {Map<string, HTMLElement>} */
+    this.chips = new Map();
     this.page = page;
     this.box = $("timeline");
     this.duration = Math.max(...page.runs.map((run) => run.duration)) || 1;
@@ -80,7 +82,6 @@ class Timeline {
   }
 
   legend() {
-    this.chips = new Map();
     const name = this.page.ribbons[0], box = $("legend");
     if (!name) return;
     for (const run of this.page.runs) {
@@ -99,11 +100,11 @@ class Timeline {
   }
 
   paint() {
-    for (const node of this.lines.querySelectorAll(".span")) {
+    for (const node of /** @type {NodeListOf<any>} */ (this.lines.querySelectorAll(".span"))) {
       const { signal, run, state, value } = node.dataset;
       node.style.background = this.color(signal, Number(run), state, Number(value));
     }
-    for (const node of document.querySelectorAll(".chip i")) {
+    for (const node of /** @type {NodeListOf<any>} */ (document.querySelectorAll(".chip i"))) {
       const { state, value } = node.parentNode.dataset;
       node.style.background = state === undefined ? runColor(Number(node.dataset.run)) : stateColor(state, Number(value));
     }

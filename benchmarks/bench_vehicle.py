@@ -25,12 +25,12 @@ from orchestrator.cosim.fmu_files import fmu_files
 from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.session.session import run_scenario
 from vehicle_fmu import MODEL
-from vehicle_fmu.chassis import Build, ChassisParams, Motion, RoadParams, Stance
-from vehicle_fmu.double_track import DoubleTrackParams, DoubleTrackState, step_double_track
+from vehicle_fmu.bodies.chassis import Build, ChassisParams, Motion, RoadParams, Stance
+from vehicle_fmu.bodies.double_track import DoubleTrackParams, DoubleTrackState, step_double_track
+from vehicle_fmu.bodies.kinematic import move
+from vehicle_fmu.bodies.single_track import SingleTrackParams, SingleTrackState, step_single_track
+from vehicle_fmu.bodies.wheels import Wheel
 from vehicle_fmu.effort import Effort
-from vehicle_fmu.kinematic import move
-from vehicle_fmu.single_track import SingleTrackParams, SingleTrackState, step_single_track
-from vehicle_fmu.wheels import Wheel
 
 ROUNDS = 7
 WHEELBASE = 2.405

@@ -60,7 +60,7 @@ def test_model_translates(name):
     [
         "import numpy",
         "import os.path",
-        "from vehicle_fmu.body import slip",
+        "from vehicle_fmu.bodies.body import slip",
         "from modelkit.variables import flatten",
         "from . import path",
         "from math import *",

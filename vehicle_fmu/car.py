@@ -4,13 +4,13 @@ from typing import NamedTuple
 
 from modelkit.maths import clamp
 from modelkit.vocabulary import Gear, Pose
-from vehicle_fmu.body import BodyState, motion_of, place, push_body, wheel_speed
+from vehicle_fmu.bodies.body import BodyState, motion_of, place, push_body, wheel_speed
+from vehicle_fmu.bodies.kinematic import move
 from vehicle_fmu.drive import change_speed, push_speed
 from vehicle_fmu.driver import DriverState, brakes, grabs, wanted_speed, watch
 from vehicle_fmu.drivetrain import Pedals, Selector, along, geared_speed, obey, press, shift, wanted_gear
 from vehicle_fmu.effort import Effort
 from vehicle_fmu.interface import Body, DriverParams, PersonInput, VehicleInput, VehicleParams
-from vehicle_fmu.kinematic import move
 from vehicle_fmu.odometry import OdometryState, reckon
 from vehicle_fmu.person import has_pedals, lever_gear, roll, stops_controller, tread
 from vehicle_fmu.steering import SteeringState, hold_request, pass_request, take_up_play, turn_steering_wheel

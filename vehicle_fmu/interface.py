@@ -19,11 +19,11 @@ from modelkit.vocabulary import (
     SteeringActive,
     SteeringWheelRequest,
 )
-from vehicle_fmu.chassis import ChassisParams, RoadParams
-from vehicle_fmu.double_track import DoubleTrackParams
+from vehicle_fmu.bodies.chassis import ChassisParams, RoadParams
+from vehicle_fmu.bodies.double_track import DoubleTrackParams
+from vehicle_fmu.bodies.single_track import SingleTrackParams
 from vehicle_fmu.odometry import OdometryParams
 from vehicle_fmu.scene import SceneParams
-from vehicle_fmu.single_track import SingleTrackParams
 from vehicle_fmu.ultrasonic import UltrasonicParams
 
 HOUSE = "chosen; the source states none"

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 from modelkit.maths import is_finite
 from modelkit.vocabulary import Pose
-from vehicle_fmu.body import shown_speed
+from vehicle_fmu.bodies.body import shown_speed
 from vehicle_fmu.car import CarState, parked_car, step_car
 from vehicle_fmu.driver import presses_confirm, switch_is_on
 from vehicle_fmu.interface import Body, VehicleFault, VehicleInput, VehicleOutput, VehicleParams

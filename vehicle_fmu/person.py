@@ -8,7 +8,7 @@ nothing and the brake stops the car. Steering, the assist's switch and taking ov
 
 from modelkit.maths import clamp, move_towards
 from modelkit.vocabulary import Gear
-from vehicle_fmu.chassis import GRAVITY, ChassisParams
+from vehicle_fmu.bodies.chassis import GRAVITY, ChassisParams
 from vehicle_fmu.drivetrain import STANDSTILL, Pedals, along, creep, lag
 from vehicle_fmu.effort import Effort
 from vehicle_fmu.interface import DriveParams, PersonInput, VehicleInput

@@ -2,12 +2,12 @@
 
 from modelkit.car import Car, CarUltrasonic
 from modelkit.maths import is_finite
-from vehicle_fmu.chassis import ChassisParams
-from vehicle_fmu.double_track import DoubleTrackParams
+from vehicle_fmu.bodies.chassis import ChassisParams
+from vehicle_fmu.bodies.double_track import DoubleTrackParams
+from vehicle_fmu.bodies.single_track import SingleTrackParams
+from vehicle_fmu.bodies.tires import TireParams
 from vehicle_fmu.interface import Body, DriveParams, VehicleParams
 from vehicle_fmu.scene import SceneParams
-from vehicle_fmu.single_track import SingleTrackParams
-from vehicle_fmu.tires import TireParams
 from vehicle_fmu.ultrasonic import UltrasonicParams
 
 LARGEST = 1e9

@@ -11,12 +11,12 @@ from vehiclemodels.parameters_vehicle2 import parameters_vehicle2
 from vehiclemodels.parameters_vehicle3 import parameters_vehicle3
 from vehiclemodels.vehicle_dynamics_mb import vehicle_dynamics_mb
 
-from vehicle_fmu.chassis import ChassisParams, Stance
-from vehicle_fmu.double_track import DoubleTrackParams
-from vehicle_fmu.loads import RollParams
-from vehicle_fmu.single_track import SingleTrackParams
-from vehicle_fmu.tires import TireParams
-from vehicle_fmu.wheels import HubParams
+from vehicle_fmu.bodies.chassis import ChassisParams, Stance
+from vehicle_fmu.bodies.double_track import DoubleTrackParams
+from vehicle_fmu.bodies.loads import RollParams
+from vehicle_fmu.bodies.single_track import SingleTrackParams
+from vehicle_fmu.bodies.tires import TireParams
+from vehicle_fmu.bodies.wheels import HubParams
 
 CARS: tuple[Any, ...] = (parameters_vehicle1(), parameters_vehicle2(), parameters_vehicle3())
 

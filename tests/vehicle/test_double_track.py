@@ -12,11 +12,17 @@ from modelkit.car import Car
 from modelkit.maths import clamp
 from modelkit.variables import flatten
 from modelkit.vocabulary import Pose
-from vehicle_fmu.chassis import Build, ChassisParams, Motion, RoadParams, Stance
-from vehicle_fmu.double_track import DoubleTrackParams, DoubleTrackState, resting, step_double_track, wheel_angles
+from vehicle_fmu.bodies.chassis import Build, ChassisParams, Motion, RoadParams, Stance
+from vehicle_fmu.bodies.double_track import (
+    DoubleTrackParams,
+    DoubleTrackState,
+    resting,
+    step_double_track,
+    wheel_angles,
+)
+from vehicle_fmu.bodies.loads import Felt
+from vehicle_fmu.bodies.wheels import Wheel
 from vehicle_fmu.effort import Effort
-from vehicle_fmu.loads import Felt
-from vehicle_fmu.wheels import Wheel
 
 WHEELBASE = 2.405
 STANCE = Stance(WHEELBASE, Car().cg_to_rear)

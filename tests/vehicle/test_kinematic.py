@@ -11,9 +11,9 @@ from vehiclemodels.vehicle_dynamics_ks import vehicle_dynamics_ks
 
 from modelkit.car import CarSteering
 from modelkit.vocabulary import Pose
+from vehicle_fmu.bodies.kinematic import kinematic_rates, move
 from vehicle_fmu.drive import change_speed
 from vehicle_fmu.interface import DriveParams
-from vehicle_fmu.kinematic import kinematic_rates, move
 from vehicle_fmu.steering import turn_steering_wheel
 
 

@@ -12,9 +12,9 @@ from vehiclemodels.vehicle_dynamics_st import vehicle_dynamics_st
 
 from modelkit.car import Car
 from modelkit.vocabulary import Pose
-from vehicle_fmu.chassis import Build, ChassisParams, Motion, RoadParams, Stance
+from vehicle_fmu.bodies.chassis import Build, ChassisParams, Motion, RoadParams, Stance
+from vehicle_fmu.bodies.single_track import SingleTrackParams, SingleTrackState, single_track_rates, step_single_track
 from vehicle_fmu.effort import Effort
-from vehicle_fmu.single_track import SingleTrackParams, SingleTrackState, single_track_rates, step_single_track
 
 CAR = st.sampled_from(CARS)
 SPEED = st.floats(0.2, 18.0)  # beyond 18.2 m/s their engine of the first car gives less than 3 m/s2

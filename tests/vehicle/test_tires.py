@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from vehiclemodels.parameters_vehicle1 import parameters_vehicle1
 from vehiclemodels.utils import tire_model
 
-from vehicle_fmu.tires import TireParams, magic, relax, secants, weight
+from vehicle_fmu.bodies.tires import TireParams, magic, relax, secants, weight
 
 TIRES = TireParams()
 SLIP = st.floats(-0.4, 0.4)

@@ -14,11 +14,11 @@ from typing import Annotated, NamedTuple
 
 from modelkit.signal import Signal
 from modelkit.vocabulary import Pose
-from vehicle_fmu.chassis import CHOSEN, Build, Motion, Wrench, accelerations, gravity_in_car, move_body
+from vehicle_fmu.bodies.chassis import CHOSEN, Build, Motion, Wrench, accelerations, gravity_in_car, move_body
+from vehicle_fmu.bodies.loads import Felt, Loads, RollParams, feel, wheel_loads
+from vehicle_fmu.bodies.tires import Force, TireParams
+from vehicle_fmu.bodies.wheels import Contact, HubParams, Wheel, turn_wheel
 from vehicle_fmu.effort import Effort
-from vehicle_fmu.loads import Felt, Loads, RollParams, feel, wheel_loads
-from vehicle_fmu.tires import Force, TireParams
-from vehicle_fmu.wheels import Contact, HubParams, Wheel, turn_wheel
 
 
 class DoubleTrackParams(NamedTuple):

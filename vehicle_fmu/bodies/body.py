@@ -3,11 +3,11 @@
 from typing import NamedTuple
 
 from modelkit.vocabulary import Pose
-from vehicle_fmu.chassis import Build, Motion, Stance
-from vehicle_fmu.double_track import DoubleTrackState, resting, step_double_track
+from vehicle_fmu.bodies.chassis import Build, Motion, Stance
+from vehicle_fmu.bodies.double_track import DoubleTrackState, resting, step_double_track
+from vehicle_fmu.bodies.single_track import SingleTrackState, step_single_track
 from vehicle_fmu.effort import Effort
 from vehicle_fmu.interface import Body, VehicleParams
-from vehicle_fmu.single_track import SingleTrackState, step_single_track
 
 STILL = 1e-3
 """Speed [m/s] below which a car that rocks on its tyres is told to stand."""

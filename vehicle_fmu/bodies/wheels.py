@@ -12,7 +12,7 @@ from typing import Annotated, NamedTuple
 
 from modelkit.maths import move_towards
 from modelkit.signal import Signal
-from vehicle_fmu.tires import Force, TireParams, relax, secants, slide_rate
+from vehicle_fmu.bodies.tires import Force, TireParams, relax, secants, slide_rate
 
 COMMONROAD = "CommonRoad vehicle models 3.0.2"
 

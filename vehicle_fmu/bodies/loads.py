@@ -14,7 +14,7 @@ from typing import Annotated, NamedTuple
 
 from modelkit.maths import clamp
 from modelkit.signal import Signal
-from vehicle_fmu.chassis import CHOSEN, GRAVITY, ChassisParams, Stance
+from vehicle_fmu.bodies.chassis import CHOSEN, GRAVITY, ChassisParams, Stance
 
 
 class RollParams(NamedTuple):

@@ -22,7 +22,7 @@ from typing import Annotated, NamedTuple
 
 from modelkit.maths import clamp, sign
 from modelkit.signal import Signal
-from vehicle_fmu.chassis import (
+from vehicle_fmu.bodies.chassis import (
     CHOSEN,
     GRAVITY,
     Build,
@@ -35,8 +35,8 @@ from vehicle_fmu.chassis import (
     gravity_in_car,
     move_body,
 )
+from vehicle_fmu.bodies.tires import relax, slide_rate
 from vehicle_fmu.effort import Effort
-from vehicle_fmu.tires import relax, slide_rate
 
 HOLD_RATE = 40.0
 """A held car rocks at this rate [rad/s] on its brakes and tyres (6 mm under 1 g)."""

@@ -20,6 +20,7 @@ from orchestrator.sweep.study.design import Design
 from orchestrator.sweep.study.study import Study
 from orchestrator.sweep.verdict import OUTCOMES, judge, limit_value, values_in
 from orchestrator.text.errors import BadInput
+from orchestrator.text.yaml_file import read_mapping
 from orchestrator.verdict.conditions import CONDITIONS
 
 NOTES = "finds.json"
@@ -64,7 +65,7 @@ def write_find(subject: Subject, find: Find, folder: Path) -> Path:
     path = folder / f"{find.name}.yaml"
     write_whole(path, _text(content))
     notes = read_notes(folder)
-    notes[find.name] = {"requirement": subject.goal.name, **_numbers(load_scenario(str(path)))}
+    notes[find.name] = {"requirement": subject.goal.name, **_numbers(path)}
     write_whole(folder / NOTES, json.dumps(notes, indent=2, sort_keys=True) + "\n")
     return path
 
@@ -114,29 +115,32 @@ def check_corpus(folder: Path) -> list[Again]:
 
 
 def _again(path: Path, noted: Mapping[str, Any]) -> Again:
-    now = _numbers(load_scenario(str(path)))
+    now = _numbers(path)
     same = all(noted.get(name) == now[name] for name in now)
     return Again(path.stem, bool(now["breaks"]), same, f"{now['outcome']}: {now['reason']}")
 
 
-def _numbers(scenario: Scenario) -> dict[str, Any]:
-    """Return what a scenario comes to in the compiled batch; it breaks if it misses a limit and does not say so."""
+def _numbers(path: Path) -> dict[str, Any]:
+    """Return what a scenario comes to in the compiled batch.
+
+    It breaks if it misses a limit of its file; one that is not about touching anything, only if it claims to be done.
+    """
+    scenario = load_scenario(str(path))
+    asked = {str(item["id"]) for item in read_mapping(path)["limits"]}
     design = Design([], np.empty((1, 0)), np.array([scenario.seed], dtype=np.int64))
     job = make_job(Study(scenario, design, {"name": scenario.name}))
     chunk = Chunk(0, 0, design.values, design.seeds)
     rows = run_batch(job, chunk)
     verdict = judge(job, truths(job, chunk), rows)
     found = dict(zip(job.measures, rows[:, 2:].T, strict=False))
-    margins = {
-        limit.id: float(
-            CONDITIONS[limit.condition].margin(values_in(limit, verdict.numbers, found), limit_value(limit))[0]
-        )
-        for limit in scenario.limits
-    }
     outcome = OUTCOMES[verdict.outcome[0]]
-    touched = min((margins[name] for name in margins if name in TOUCHING), default=1.0) < 0.0
+    breaks = False
+    for limit in scenario.limits:
+        values = values_in(limit, verdict.numbers, found)
+        missed = not CONDITIONS[limit.condition].margin(values, limit_value(limit))[0] >= 0.0
+        breaks |= missed and limit.id in asked and (limit.id in TOUCHING or outcome == "not_parked")
     bits = {name: float(verdict.numbers[name][0]).hex() for name in BITS}
-    return {"outcome": outcome, "reason": verdict.reason[0], "breaks": touched or outcome == "not_parked", "bits": bits}
+    return {"outcome": outcome, "reason": verdict.reason[0], "breaks": bool(breaks), "bits": bits}
 
 
 TOUCHING = ("contact", "no contact")

@@ -14,7 +14,7 @@ from typing import Any
 import pytest
 
 from controller_fmu.apa import planner
-from controller_fmu.apa.exit import VARIANTS, exit_of
+from controller_fmu.apa.exit import VARIANTS, exit_of, way_out
 from controller_fmu.apa.fit import fit_of, least_moves
 from controller_fmu.apa.move import end_of, length_of
 from controller_fmu.apa.slot import Kind, Site
@@ -53,6 +53,7 @@ def tried() -> dict[str, Any]:
         for number, start in enumerate([*starts, *INSIDE]):
             for family, rows in families(start, site, exits).items():
                 found[f"{family}, {name}, {number}"] = rows
+    found["ways out"] = rounded(*(way_out(Pose(0.0, y, h), CAR) for y in (-4.0, -2.5, -1.0, 0.3) for h in (0.0, 0.4)))
     found["sight"] = [rounded(*sight) for sight in sights()]
     return found
 

@@ -82,11 +82,9 @@ def record(system: str) -> str:
 
 def numbers(system: str) -> str:
     """Return the first number of the laws that is not what ``tests/golden`` has."""
-    from tests.golden.test_numbers import FILE, numbers
+    from tests.golden.test_numbers import FILE, changes
 
-    found, kept = numbers(), json.loads(FILE.read_text(encoding="utf-8"))
-    names = [(group, name) for group in kept for name in kept[group]]
-    return next((f"number {name}" for group, name in names if found.get(group, {}).get(name) != kept[group][name]), "")
+    return next((f"number {name}" for name in changes(json.loads(FILE.read_text(encoding="utf-8")))), "")
 
 
 def tests(system: str) -> str:

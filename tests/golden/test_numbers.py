@@ -68,7 +68,7 @@ def kept(request: pytest.FixtureRequest) -> dict[str, Any]:
 
 
 def changes(kept: dict[str, Any]) -> dict[str, tuple[Any, Any]]:
-    """Return name -> (what it was, what it is) of the numbers that are another; what is new or has moved is no change."""
+    """Return name -> (what it was, what it is) of the numbers that are another; one that is new has not changed."""
     found, was = flat(numbers()), flat(kept)
     return {name: (was[name], found[name]) for name in found.keys() & was.keys() if found[name] != was[name]}
 

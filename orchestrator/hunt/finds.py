@@ -1,7 +1,6 @@
 """A find as a scenario of its own, which runs again to the same bits; a folder of them is a corpus."""
 
 import json
-from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -110,12 +109,12 @@ def check_corpus(folder: Path) -> list[Again]:
     files = sorted(folder.glob("*.yaml"))
     if not files:
         raise BadInput("no scenarios in this folder", file=folder)
-    notes = read_notes(folder)
-    return [_again(path, notes.get(path.stem, {})) for path in files]
+    return [check_find(path) for path in files]
 
 
-def _again(path: Path, noted: Mapping[str, Any]) -> Again:
-    now = _numbers(path)
+def check_find(path: Path) -> Again:
+    """Return a find as it runs now."""
+    noted, now = read_notes(path.parent).get(path.stem, {}), _numbers(path)
     same = all(noted.get(name) == now[name] for name in now)
     return Again(path.stem, bool(now["breaks"]), same, f"{now['outcome']}: {now['reason']}")
 

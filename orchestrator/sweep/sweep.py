@@ -5,9 +5,12 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from orchestrator.cosim.fmu_files import sources_hash
 from orchestrator.cosim.interrupts import on_interrupt
 from orchestrator.cosim.master import Interrupt
+from orchestrator.cosim.slave import Array
 from orchestrator.scenario.plausible import implausible, is_implausible
 from orchestrator.session.session import versions
 from orchestrator.sweep.batch import compiled
@@ -81,15 +84,19 @@ def _say_what_is_hardly_meant(study: Study) -> None:
     """Say which values of a study are allowed but beyond what is plausible, and what a very large one takes."""
     ends = list(zip(study.design.fields, study.design.values.T, strict=True))
     said = [
-        is_implausible(float(end), field.variable._replace(name=field.key))
-        for field, values in ends
-        for end in (values.min(), values.max())
+        is_implausible(end, field.variable._replace(name=field.key)) for field, values in ends for end in _ends(values)
     ]
     for text in dict.fromkeys([*implausible(study.scenario), *said]):
         if text:
             say(f"apa: warning: {text}")
     if len(study.design.seeds) > MANY_RUNS:
         say(f"apa: {len(study.design.seeds):,} runs: about {len(study.design.seeds) / 1e6 * ROW:.1f} GB of table")
+
+
+def _ends(values: Array) -> list[float]:
+    """Return the least and the greatest number of a column; a fault's value may be none."""
+    numbers = values[np.isfinite(values)]
+    return [float(numbers.min()), float(numbers.max())] if len(numbers) else []
 
 
 MANY_RUNS = 1_000_000

@@ -13,8 +13,8 @@ from pathlib import Path
 NATIVE = ("apa", "preview")
 """Systems whose scenarios take minutes in plain Python: they are compiled."""
 TESTS = {
-    "guo2015": ("guo", "tracking_laws", "two_arc", "smooth_paths", "steering_monitor"),
-    "apa": ("apa",),
+    "guo2015": ("limits_of_time", "guo", "tracking_laws", "two_arc", "smooth_paths", "steering_monitor"),
+    "apa": ("limits_of_time", "apa"),
     "zhang2022": ("zhang",),
     "hsic": ("hsic",),
     "preview": ("preview",),

@@ -1,0 +1,102 @@
+"""Each limit of time ends a drive with its reason just past it, not just before; so do the thresholds of a takeover."""
+
+import pytest
+
+from controller_fmu.apa import watch as apa
+from controller_fmu.apa.params import Longitudinal
+from controller_fmu.common import monitor
+from controller_fmu.common.steering_monitor import SteeringWatch
+from controller_fmu.interface import ControllerInput, ControllerParams, Reason
+from modelkit.vocabulary import Gear
+
+PARAMS = ControllerParams()
+LIMIT, GUARD = PARAMS.limit, PARAMS.apa.guard
+DRIVING = ControllerInput(gear=Gear.DRIVE)
+MILLISECOND = 1_000_000
+OFF = SteeringWatch(request=0.31, angle=0.0)
+ASSIST = {
+    "blind": (PARAMS.apa.sensors.blind_time, Reason.SENSOR_LOSS),
+    "frozen": (LIMIT.pose_frozen, Reason.POSE_FROZEN),
+    "fast": (GUARD.over_speed_time, Reason.OVER_SPEED),
+    "stopping": (LIMIT.stopping, Reason.NOT_STOPPING),
+    "blocked": (GUARD.blocked, Reason.BLOCKED),
+    "waiting": (GUARD.patience, Reason.NOT_MOVING),
+    "running": (GUARD.duration, Reason.TIMEOUT),
+}
+"""Clock of the assist -> its limit [s], and the reason."""
+OTHERS = {
+    "frozen": (LIMIT.pose_frozen, Reason.POSE_FROZEN),
+    "wrong_way": (LIMIT.wrong_direction, Reason.WRONG_DIRECTION),
+    "stopping": (LIMIT.stopping, Reason.NOT_STOPPING),
+    "waiting": (LIMIT.patience, Reason.NOT_MOVING),
+}
+
+
+def around(seconds: float) -> tuple[int, int]:
+    """Return a millisecond before and after a time [ns]."""
+    return round(seconds * 1e9) - MILLISECOND, round(seconds * 1e9) + MILLISECOND
+
+
+@pytest.mark.parametrize("clock", ASSIST)
+def test_the_assist_fails_just_past_each_limit(clock: str) -> None:
+    seconds, reason = ASSIST[clock]
+    found = [apa.reason_to_fail(apa.Watch(**{clock: ns}), DRIVING, True, PARAMS) for ns in around(seconds)]
+    assert found == [Reason.NONE, reason]
+    parked = apa.reason_to_fail(apa.Watch(**{clock: around(seconds)[1]}), DRIVING, False, PARAMS)
+    assert parked == (reason if clock in ("blind", "frozen") else Reason.NONE)
+
+
+def test_a_wheel_that_is_off_is_what_the_assist_waits_for() -> None:
+    late = apa.Watch(waiting=around(GUARD.patience)[1], wheel=OFF)
+    assert apa.reason_to_fail(late, DRIVING, True, PARAMS) == Reason.STEERING_FAULT
+    near = late._replace(wheel=OFF._replace(request=0.29))
+    assert apa.reason_to_fail(near, DRIVING, True, PARAMS) == Reason.NOT_MOVING
+
+
+@pytest.mark.parametrize("clock", OTHERS)
+def test_the_other_systems_fail_just_past_each_limit(clock: str) -> None:
+    seconds, reason = OTHERS[clock]
+    expected = monitor.Expected(begun=True, steering=False)
+    states = [monitor.MonitorState(**{clock: ns}) for ns in around(seconds)]
+    found = [monitor.reason_to_fail(state, DRIVING, expected, 0, 0, PARAMS) for state in states]
+    assert found == [Reason.NONE, reason]
+
+
+@pytest.mark.parametrize("begun", [True, False])
+def test_the_other_systems_end_in_time(begun: bool) -> None:
+    expected = monitor.Expected(begun=begun, steering=False)
+    found = [
+        monitor.reason_to_fail(monitor.MonitorState(), DRIVING, expected, ns, 0, PARAMS)
+        for ns in around(LIMIT.duration)
+    ]
+    assert found == [Reason.NONE, Reason.TIMEOUT]
+    shifts = [monitor.reason_to_fail(monitor.MonitorState(), DRIVING, expected, 0, n, PARAMS) for n in (8, 9)]
+    assert shifts == [Reason.NONE, Reason.TOO_MANY_SHIFTS if begun else Reason.NONE]
+
+
+def test_the_driver_takes_over_past_each_threshold() -> None:
+    settled = apa.Watch(running=around(apa.SETTLING)[1])
+    early = apa.Watch(running=around(apa.SETTLING)[0])
+    pressed = DRIVING._replace(brake_pedal=GUARD.pedal + 0.01)
+    rolling = DRIVING._replace(gear=Gear.NEUTRAL, measured_speed=0.21)
+    pulled = OFF._replace(away_ns=around(apa.PULLED_FOR)[1])
+    advised = PARAMS._replace(
+        apa=PARAMS.apa._replace(drive=PARAMS.apa.drive._replace(longitudinal=Longitudinal.DRIVER))
+    )
+    cases = [
+        (settled, DRIVING, PARAMS, False),
+        (settled, DRIVING._replace(driver_takeover=True), PARAMS, True),
+        (settled, pressed, PARAMS, True),
+        (early, pressed, PARAMS, False),
+        (settled, pressed, advised, False),
+        (settled, DRIVING._replace(brake_pedal=GUARD.pedal - 0.01), PARAMS, False),
+        (settled, rolling, PARAMS, True),
+        (early, rolling, PARAMS, False),
+        (settled, rolling._replace(gear=Gear.PARK, measured_speed=-0.21), PARAMS, True),
+        (settled, rolling._replace(measured_speed=0.19), PARAMS, False),
+        (settled._replace(wheel=pulled), DRIVING, PARAMS, True),
+        (settled._replace(wheel=pulled._replace(away_ns=around(apa.PULLED_FOR)[0])), DRIVING, PARAMS, False),
+        (settled._replace(wheel=pulled._replace(request=0.29)), DRIVING, PARAMS, False),
+    ]
+    for number, (state, inputs, params, taken) in enumerate(cases):
+        assert apa.is_taken_over(state, inputs, params) == taken, number

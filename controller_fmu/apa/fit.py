@@ -84,6 +84,10 @@ def fit_of(slot: Slot, car: Shape, params: ApaParams) -> Fit:
     return Fit(False, 0, high)
 
 
+BESIDE_OF_ISO = 0.2
+"""A parallel slot of ISO 16787 is so much deeper than the car is wide [m]."""
+
+
 def shortest_of_iso(kind: int, car: Car) -> float:
     """Return the length (width) [m] of the shortest slot of ISO 16787 (secondary source) for this car."""
     length = car.wheelbase + car.front_overhang + car.rear_overhang

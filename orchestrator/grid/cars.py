@@ -4,7 +4,7 @@ import math
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from controller_fmu.apa.fit import shortest_of_iso
+from controller_fmu.apa.fit import BESIDE_OF_ISO, shortest_of_iso
 from controller_fmu.apa.slot import Kind
 from controller_fmu.interface import Reason
 from modelkit.car import Car
@@ -15,8 +15,6 @@ from orchestrator.scenario.scenario import Scenario
 from orchestrator.session.session import run_scenario
 from orchestrator.verdict.summary import summarize
 
-BESIDE = 0.2
-"""ISO 16787's parallel slot is so much [m] deeper than the car is wide."""
 POSES = ("final heading", "final lateral position", "outline in the slot")
 """What GB/T 41630 asks of where a car stands; the assist stands flush with its neighbours, wherever the kerb is."""
 GEOMETRIC = frozenset(
@@ -65,5 +63,5 @@ def lacking(scenario: Scenario) -> str:
     if abs(math.sin(scenario.slot.heading)) > 0.5:
         asked = ((across, shortest_of_iso(Kind.PERPENDICULAR, car), "wide"), (along, length, "deep"))
     else:
-        asked = ((along, shortest_of_iso(Kind.PARALLEL, car), "long"), (across, car.width + BESIDE, "deep"))
+        asked = ((along, shortest_of_iso(Kind.PARALLEL, car), "long"), (across, car.width + BESIDE_OF_ISO, "deep"))
     return ", ".join(f"{has:.2f} m {what}, {needs:.2f} m asked" for has, needs, what in asked if has < needs - 1e-9)

@@ -10,7 +10,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from controller_fmu.apa.fit import shortest_of_iso
+from controller_fmu.apa.fit import BESIDE_OF_ISO, shortest_of_iso
 from modelkit.car import Car
 from orchestrator.cosim.slave import Array
 from orchestrator.grid.cases import BODY, CARS
@@ -31,8 +31,6 @@ PERSON = 0.5
 """Width of a person [m]."""
 FAR_SIDE, NEAR_SIDE = 8.0, 0.6
 """Where a person sets out who goes towards the slots, and where one is gone who goes between cars: y [m]."""
-BESIDE_PARALLEL = 0.2
-"""ISO 16787's parallel slot is so much [m] deeper than the car is wide."""
 WHEEL = 0.3
 """Tyres reach this far beyond the axles [m]."""
 WALL = 1.0
@@ -51,7 +49,7 @@ def parameters(f: F, seeds: Seeds) -> dict[str, Array]:
     kind = f["kind"].astype(int)
     shortest = np.array([[shortest_of_iso(number, car) for number in KINDS] for car in cars])[chosen, kind]
     size = {**size, "slot": shortest + f["extra"], "parallel": kind == 0, "sign": 1.0 - 2.0 * f["side"]}
-    size["depth"] = np.where(size["parallel"], size["width"] + BESIDE_PARALLEL, size["length"]) + f["depth"]
+    size["depth"] = np.where(size["parallel"], size["width"] + BESIDE_OF_ISO, size["length"]) + f["depth"]
     neighbours = _neighbours(f, size)
     found |= _boxes(neighbours, size["sign"]) | _behind(f, size)
     found |= _standing(f, size, neighbours) | _start(f, size, neighbours)

@@ -17,6 +17,7 @@ from typing import Any
 import numpy as np
 
 from fmus.native.structures import Long, Pointer, structure
+from orchestrator.cosim.connections import Connection
 from orchestrator.cosim.fmu_slave import FmuSlave, Transfer
 from orchestrator.cosim.master import End, Master
 from orchestrator.cosim.slave import Indices, all_values, places_of
@@ -25,24 +26,29 @@ BLOCK = 250
 """Exchanges per compiled call."""
 FETCH, SEND, STEP = 1, 2, 3
 
-TransferC = structure("TransferC", call=Pointer, references=Pointer, integers=Pointer, begin=Long, count=Long)
+TransferC = structure(
+    "TransferC", call=Pointer, references=Pointer, integers=Pointer, begin=Long, count=Long, changed=Long
+)
 SlaveC = structure(
     "SlaveC",
     component=Pointer,
     do_step=Pointer,
-    inputs=Long,
-    outputs=Long,
-    input_count=Long,
-    output_count=Long,
+    begin=Long,
+    count=Long,
     gets=Pointer,
     sets=Pointer,
     get_count=Long,
     set_count=Long,
+    integers=Pointer,
+    integers_begin=Long,
+    integers_count=Long,
+    held=Pointer,
+    held_count=Long,
     every=Long,
     step=ctypes.c_double,
     due=Long,
 )
-LinkC = structure("LinkC", target=Long, source_places=Pointer, target_places=Pointer, count=Long)
+LinkC = structure("LinkC", target=Pointer, set=Pointer, source_places=Pointer, target_places=Pointer, count=Long)
 RunC = structure(
     "RunC",
     slaves=Pointer,
@@ -117,37 +123,30 @@ class _Plan:
         self._kept: list[Any] = []
         self._step_ns = master.step_ns
         self.last = master.stop_ns // master.step_ns
-        begins = [part.start for part in places_of(fmus)]
+        self._begins = [part.start for part in places_of(fmus)]
         groups = [group for slave in fmus for group in (slave.sets, slave.gets)]
-        order = np.concatenate([begin + _order(group) for begin, group in zip(begins, groups, strict=True)])
+        order = np.concatenate([begin + _order(group) for begin, group in zip(self._begins, groups, strict=True)])
         self._columns = np.argsort(order)
+        """Place of a value in all ports -> its place in a row."""
         before = all_values(fmus)[order]
-        self._kept.append(before)
-        slaves = [
-            self._slave(slave, every, *begins[2 * number : 2 * number + 2])
-            for number, (slave, every) in enumerate(zip(fmus, master.every, strict=True))
-        ]
-        links = [
-            LinkC(
-                link.target,
-                self._places(self._columns[begins[2 * link.source + 1] + link.source_places]),
-                self._places(self._columns[begins[2 * link.target] + link.target_places]),
-                len(link.source_places),
-            )
-            for link in master.connections
-        ]
-        counts = (len(slaves), len(links), len(before))
-        arrays = (self._array(SlaveC, slaves), self._array(LinkC, links), before.ctypes.data)
-        self._run = RunC(*arrays, *counts, master.step_ns, self.last)
-        self.rows = np.empty((BLOCK, len(before)))
+        self.rows = np.full((BLOCK, len(before)), np.nan)
+        self._transfers = [_Transfers(group, begin) for group, begin in zip(groups, self._begins, strict=True)]
+        self._slaves = (SlaveC * len(fmus))(*[self._slave(number, master) for number in range(len(fmus))])
+        parts = [(link, number) for link in master.connections for number in range(len(fmus[link.target].sets))]
+        links = (LinkC * len(parts))(*[self._link(link, number) for link, number in parts])
+        self._kept += [before, links]
+        pointers = (ctypes.addressof(self._slaves), ctypes.addressof(links), before.ctypes.data)
+        self._run = RunC(*pointers, len(fmus), len(links), len(before), master.step_ns, self.last)
+        self._addresses = ctypes.addressof(self._run), self.rows.ctypes.data
 
     def rows_of_ports(self, begin: int, end: int) -> Any:
         """Return the rows with their values in the order of the master's."""
-        return self.rows[begin:end, self._columns]
+        return self.rows[begin:end].take(self._columns, axis=1)
 
     def advance(self, first: int) -> int:
         """Do a block of exchanges; return how many are in ``rows``."""
-        return int(self._call(ctypes.addressof(self._run), first, BLOCK, self.rows.ctypes.data))
+        run, rows = self._addresses
+        return int(self._call(run, first, BLOCK, rows))
 
     def check(self, number: int) -> None:
         """Raise the ``RunError`` of the slave that refused in the block just done; ``number`` rows are complete."""
@@ -159,42 +158,68 @@ class _Plan:
         if self._run.failure == STEP:
             raise slave.no_step((number - 1) * self._step_ns, status)
 
-    def _slave(self, slave: FmuSlave, every: int, inputs: int, outputs: int) -> Any:
-        sets, gets = self._transfers(slave.sets, inputs), self._transfers(slave.gets, outputs)
+    def _slave(self, number: int, master: Master) -> Any:
+        slave, every, begin = self._fmus[number], master.every[number], self._begins[2 * number]
+        sets, gets = self._transfers[2 * number : 2 * number + 2]
+        written = [place for link in master.connections if link.target == number for place in link.target_places]
+        held = np.setdiff1d(np.arange(len(slave.inputs.values)), written).astype(np.intp)
         return SlaveC(
-            slave.component,
-            ctypes.cast(slave.do_step, Pointer),
-            inputs,
-            outputs,
-            len(slave.inputs.values),
-            len(slave.outputs.values),
-            self._array(TransferC, gets),
-            self._array(TransferC, sets),
-            len(gets),
-            len(sets),
-            every,
-            every * self._step_ns / 1e9,
-            True,
+            component=slave.component,
+            do_step=ctypes.cast(slave.do_step, Pointer),
+            begin=begin,
+            count=len(slave.inputs.values) + len(slave.outputs.values),
+            gets=ctypes.addressof(gets.array),
+            sets=ctypes.addressof(sets.array),
+            get_count=len(gets.array),
+            set_count=len(sets.array),
+            integers=ctypes.addressof(gets.integers),
+            integers_begin=gets.end - gets.integer_count,
+            integers_count=gets.integer_count,
+            held=self._places(self._columns[begin + held]),
+            held_count=len(held),
+            every=every,
+            step=every * self._step_ns / 1e9,
         )
 
-    def _transfers(self, group: list[Transfer], begin: int) -> list[Any]:
-        found = []
-        for item in group:
-            buffer = None if item.view.dtype == np.float64 else ctypes.addressof(item.array)
-            references = ctypes.addressof(item.references)
-            found.append(TransferC(ctypes.cast(item.function, Pointer), references, buffer, begin, item.count))
-            begin += item.count
-        return found
+    def _link(self, link: Connection, number: int) -> Any:
+        """Return the part of a connection that goes to one transfer of the target."""
+        ours = np.isin(link.target_places, self._fmus[link.target].sets[number].places)
+        source, target = self._begins[2 * link.source + 1], self._begins[2 * link.target]
+        return LinkC(
+            ctypes.addressof(self._slaves) + link.target * ctypes.sizeof(SlaveC),
+            ctypes.addressof(self._transfers[2 * link.target].array) + number * ctypes.sizeof(TransferC),
+            self._places(self._columns[source + link.source_places[ours]]),
+            self._places(self._columns[target + link.target_places[ours]]),
+            int(ours.sum()),
+        )
 
     def _places(self, places: Indices) -> int:
         kept = np.ascontiguousarray(places, dtype=np.int64)
         self._kept.append(kept)
         return int(kept.ctypes.data)
 
-    def _array(self, kind: Any, items: list[Any]) -> int:
-        kept = (kind * max(len(items), 1))(*items)
-        self._kept.append((kept, items))
-        return ctypes.addressof(kept)
+
+class _Transfers:
+    """The transfers of one direction of a slave; real ones first, the integers of all others in one array."""
+
+    def __init__(self, group: list[Transfer], begin: int) -> None:
+        self.integer_count = sum(item.count for item in group if not _is_real(item))
+        self.integers = (ctypes.c_int32 * max(self.integer_count, 1))()
+        self.array = (TransferC * len(group))()
+        self.end = begin
+        """Place in a row behind the last value."""
+        at = ctypes.addressof(self.integers)
+        for number, item in enumerate(group):
+            buffer = None if _is_real(item) else at
+            at += 0 if _is_real(item) else 4 * item.count
+            references = ctypes.addressof(item.references)
+            function = ctypes.cast(item.function, Pointer)
+            self.array[number] = TransferC(function, references, buffer, self.end, item.count)
+            self.end += item.count
+
+
+def _is_real(item: Transfer) -> bool:
+    return bool(item.view.dtype == np.float64)
 
 
 def _order(transfers: list[Transfer]) -> Indices:

@@ -78,6 +78,12 @@ class Library:
         assert status == OK, self.messages
         return number.value
 
+    def number(self, component, reference):
+        """Return a real value, alone."""
+        number = c_double()
+        assert self.call("GetReal", component, byref(c_uint(reference)), c_size_t(1), byref(number)) == OK
+        return number.value
+
     def outputs(self, component):
         return [self.get(component, v.name) for v in self.description.modelVariables if v.causality == "output"]
 

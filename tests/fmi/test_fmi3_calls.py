@@ -179,6 +179,40 @@ def test_wrong_references_types_directions_and_sizes(toy):
     toy.free(component)
 
 
+def test_a_call_is_checked_wherever_it_differs_from_the_last_one(toy):
+    component, vr = toy.initialized(), {name: item.valueReference for name, item in toy.known.items()}
+    room = array(c_double, *range(1, 9))
+
+    def status(function, second, size, first="force"):
+        references = array(c_uint32, vr[first], vr.get(second, 4_000_000_000))
+        return toy.call(function, component, references, c_size_t(2), room, c_size_t(size))
+
+    for _ in range(3):
+        assert [status("GetFloat64", "oscillators.position", size) for size in (4, 4, 3, 5)] == [OK, OK, ERROR, ERROR]
+        assert [status("GetFloat64", name, 3) for name in ("mass", "wish", "nothing")] == [OK, ERROR, ERROR]
+        assert [status("SetFloat64", "divisor", size) for size in (3, 3, 2)] == [OK, OK, ERROR]
+        assert [status("SetFloat64", name, 3) for name in ("angle", "mass", "nothing")] == [ERROR, ERROR, ERROR]
+        assert [status("SetFloat64", "stiffness", size, "divisor") for size in (2, 2, 3)] == [OK, OK, ERROR]
+    toy.free(component)
+
+
+def test_any_number_of_values_in_one_call(toy):
+    component, names = toy.initialized(), ("oscillators.position", "mass", "time")
+    expected = [value for name in names for value in toy.get(component, name)]
+    for count in (1, 24, 25, 100, 2):
+        references = array(c_uint32, *[toy.known[name].valueReference for name in names] * count)
+        values = (c_double * (4 * count))()
+        for _ in range(2):
+            sizes = (c_size_t(3 * count), values, c_size_t(4 * count))
+            assert toy.call("GetFloat64", component, references, *sizes) == OK
+            assert list(values) == expected * count
+        inputs = array(c_uint32, *[toy.known["force"].valueReference] * count)
+        numbers = array(c_double, *range(2 * count))
+        assert toy.call("SetFloat64", component, inputs, c_size_t(count), numbers, c_size_t(2 * count)) == OK
+        assert toy.get(component, "force") == [2 * count - 2, 2 * count - 1]
+    toy.free(component)
+
+
 @pytest.mark.parametrize(("name", "value"), [("mass", 0.0), ("mass", math.nan), ("stiffness", math.inf), ("seed", -1)])
 def test_a_parameter_out_of_range_is_refused(toy, name, value):
     component = toy.instantiate()

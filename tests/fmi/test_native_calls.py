@@ -133,6 +133,48 @@ def test_wrong_references_types_and_directions(toy):
     toy.free(component)
 
 
+def test_a_call_is_checked_wherever_it_differs_from_the_last_one(toy):
+    component, two = toy.initialized(), c_size_t(2)
+    force, velocity = toy.refs["force[1]"], toy.refs["oscillators[2].velocity"]
+    references, values = array(c_uint, toy.refs["pull"], velocity), (c_double * 2)()
+    known = {"Get": [velocity, toy.refs["mass"], force], "Set": [toy.refs["force[2]"]]}
+    wrong = {"Get": [NO_REFERENCE, toy.refs["wish"]], "Set": [NO_REFERENCE, toy.refs["angle"], toy.refs["mass"]]}
+    for verb in ("Get", "Set", "Get"):
+        references[0] = force if verb == "Set" else toy.refs["pull"]
+        for _ in range(3):
+            for reference in known[verb]:
+                references[1], values[0], values[1] = reference, 1.5, 2.5
+                assert toy.call(f"{verb}Real", component, references, two, values) == OK
+                assert values[1] == toy.number(component, reference)
+            for reference in wrong[verb]:
+                references[1], values[0] = reference, 99.0
+                assert toy.call(f"{verb}Real", component, references, two, values) == ERROR
+    assert (toy.get(component, "force[1]"), toy.get(component, "force[2]")) == (1.5, 2.5)
+    toy.free(component)
+
+
+def test_parameters_keep_their_limits_however_often_they_are_set(toy):
+    component = toy.initialized()
+    for value, status in [(50.0, OK), (60.0, OK), (-1.0, ERROR), (60.0, OK), (math.nan, ERROR), (2e4, ERROR)]:
+        assert toy.set(component, "stiffness", value) == status
+    assert toy.get(component, "stiffness") == 60.0
+    toy.free(component)
+
+
+def test_any_number_of_values_in_one_call(toy):
+    component, names = toy.initialized(), ("mass", "oscillators[1].position", "oscillators[2].position", "time")
+    expected = [toy.get(component, name) for name in names]
+    for count in (0, 1, 24, 25, 100, 3):
+        references, values = array(c_uint, *[toy.refs[name] for name in names] * count), (c_double * (4 * count))()
+        for _ in range(2):
+            assert toy.call("GetReal", component, references, c_size_t(4 * count), values) == OK
+            assert list(values) == expected * count
+        inputs, numbers = array(c_uint, *[toy.refs["force[1]"]] * 4 * count), array(c_double, *range(4 * count))
+        assert toy.call("SetReal", component, inputs, c_size_t(4 * count), numbers) == OK
+        assert toy.get(component, "force[1]") == (4 * count - 1 if count else 0.0)
+    toy.free(component)
+
+
 @pytest.mark.parametrize(("name", "value"), [("mass", 0.0), ("mass", math.nan), ("stiffness", math.inf), ("seed", -1)])
 def test_a_parameter_out_of_range_is_refused(toy, name, value):
     component = toy.instantiate()

@@ -55,16 +55,28 @@ typedef struct {
     int32_t stale; /* a parameter has changed since the model was initialized */
 } FmuSaved;
 
+/* REAL is kept as double, INTEGER and ENUMERATION as int64_t, BOOLEAN as bool. */
+typedef enum { FMU_REAL, FMU_INTEGER, FMU_ENUMERATION, FMU_BOOLEAN, FMU_KINDS } FmuKind;
+
+/* What a call was found to be about: its value references, all of one kind, and where their values are kept. A host
+ * makes the same calls at each step; then it is enough to see that they are the same. */
+#define FMU_LISTED 96 /* values; of longer calls nothing is noted */
+typedef struct {
+    size_t count; /* of references; 0: none yet */
+    size_t size;  /* of values */
+    uint32_t references[FMU_LISTED];
+    uint32_t offsets[FMU_LISTED]; /* in FmuSaved */
+} FmuList;
+
 typedef struct {
     FmuSaved saved;
+    FmuList got[FMU_KINDS];
+    FmuList given[FMU_KINDS]; /* inputs alone: parameters have limits */
     char *name;
     FmuLogger logger;
     void *environment;
     bool logging;
 } FmuInstance;
-
-/* REAL is kept as double, INTEGER and ENUMERATION as int64_t, BOOLEAN as bool. */
-typedef enum { FMU_REAL, FMU_INTEGER, FMU_ENUMERATION, FMU_BOOLEAN } FmuKind;
 
 typedef enum { FMU_FIXED, FMU_TUNABLE, FMU_INPUT, FMU_CALCULATED } FmuRole;
 
@@ -112,8 +124,15 @@ static inline int32_t fmu_int32(int64_t value) {
 
 #define FMU_SAME(value) (value)
 
-static inline unsigned char *fmu_at(FmuInstance *fmu, uint32_t reference) {
-    return (unsigned char *)&fmu->saved + fmu_places[reference].offset;
+/* Return where the values of these references are kept if they are the listed ones, else NULL. */
+static inline const uint32_t *fmu_listed(const FmuList *list, const uint32_t references[], size_t count) {
+    uint32_t differences = 0;
+    if (count != list->count) return NULL;
+    for (size_t i = 0; i < count; i++) differences |= references[i] ^ list->references[i];
+    return differences ? NULL : list->offsets;
 }
+
+/* The number that is kept at an offset in FmuSaved. */
+#define FMU_KEPT(fmu, Kept, offset) (*(Kept *)(void *)((unsigned char *)&(fmu)->saved + (offset)))
 
 #endif

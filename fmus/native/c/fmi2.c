@@ -18,6 +18,10 @@ static void fmu_log(const FmuInstance *fmu, FmuStatus status, const char *catego
     fmu->logger(fmu->environment, fmu->name, (fmi2Status)status, category, escaped);
 }
 
+/* Each variable is one value. */
+#define fmu_elements(reference) 1
+#define fmu_offset(reference, number) (fmu_places[reference].offset)
+
 #include "core.c"
 #include "state.c"
 
@@ -86,48 +90,63 @@ fmi2Status fmi2CancelStep(fmi2Component c) {
 #define FMU_IS_BOOLEAN(reference) fmu_is(reference, FMU_BOOLEAN)
 #define FMU_TRUTH(value) ((value) != fmi2False)
 
-#define FMU_GET(Type, Kept, is_known, convert)                                                                      \
+#define FMU_GET(Type, Kept, kind, is_known, convert)                                                                \
     fmi2Status fmi2Get##Type(fmi2Component c, const fmi2ValueReference references[], size_t count,                  \
                              fmi2##Type values[]) {                                                                 \
         FmuInstance *fmu = fmu_in(c, FMU_READABLE, "fmi2Get" #Type);                                                \
         if (!fmu) return fmi2Error;                                                                                 \
         if (count && (!references || !values)) return FMU_NULL(fmu, "fmi2Get" #Type);                               \
         fmu_refresh(fmu);                                                                                           \
-        FMU_FOUR_AT_A_TIME                                                                                          \
-        for (size_t i = 0; i < count; i++) {                                                                        \
-            if (!is_known(references[i])) return (fmi2Status)fmu_unknown(fmu, references[i], "fmi2Get" #Type);      \
-            values[i] = convert(*(const Kept *)(const void *)fmu_at(fmu, references[i]));                           \
+        const uint32_t *offsets = fmu_listed(&fmu->got[kind], references, count);                                   \
+        if (!offsets) {                                                                                             \
+            for (size_t i = 0; i < count; i++)                                                                      \
+                if (!is_known(references[i])) return (fmi2Status)fmu_unknown(fmu, references[i], "fmi2Get" #Type);  \
+            offsets = fmu_list(&fmu->got[kind], references, count);                                                 \
         }                                                                                                           \
+        if (offsets)                                                                                                \
+            FMU_FOUR_AT_A_TIME for (size_t i = 0; i < count; i++)                                                   \
+                values[i] = convert(FMU_KEPT(fmu, Kept, offsets[i]));                                               \
+        else                                                                                                        \
+            for (size_t i = 0; i < count; i++)                                                                      \
+                values[i] = convert(FMU_KEPT(fmu, Kept, fmu_offset(references[i], 0)));                             \
         return fmi2OK;                                                                                              \
     }
 
 /* All values to be set are checked before the first is taken: a refused call changes nothing. */
-#define FMU_SET(Type, Kept, is_known, convert)                                                                      \
+#define FMU_SET(Type, Kept, kind, is_known, convert)                                                                \
     fmi2Status fmi2Set##Type(fmi2Component c, const fmi2ValueReference references[], size_t count,                  \
                              const fmi2##Type values[]) {                                                           \
         FmuInstance *fmu = fmu_in(c, FMU_SETTING_UP | FMU_STEPPING, "fmi2Set" #Type);                               \
         bool parameters = false;                                                                                    \
         if (!fmu) return fmi2Error;                                                                                 \
         if (count && (!references || !values)) return FMU_NULL(fmu, "fmi2Set" #Type);                               \
-        FMU_FOUR_AT_A_TIME                                                                                          \
-        for (size_t i = 0; i < count; i++) {                                                                        \
-            if (!is_known(references[i])) return (fmi2Status)fmu_unknown(fmu, references[i], "fmi2Set" #Type);      \
-            if (fmu_places[references[i]].role == FMU_INPUT) continue;                                              \
-            if (!fmu_is_settable(fmu, references[i], (double)convert(values[i]), "fmi2Set" #Type)) return fmi2Error; \
-            parameters = true;                                                                                      \
+        const uint32_t *offsets = fmu_listed(&fmu->given[kind], references, count);                                 \
+        if (!offsets) {                                                                                             \
+            for (size_t i = 0; i < count; i++) {                                                                    \
+                if (!is_known(references[i])) return (fmi2Status)fmu_unknown(fmu, references[i], "fmi2Set" #Type);  \
+                if (fmu_places[references[i]].role == FMU_INPUT) continue;                                          \
+                if (!fmu_is_settable(fmu, references[i], (double)convert(values[i]), "fmi2Set" #Type))              \
+                    return fmi2Error;                                                                               \
+                parameters = true;                                                                                  \
+            }                                                                                                       \
+            offsets = parameters ? NULL : fmu_list(&fmu->given[kind], references, count);                           \
         }                                                                                                           \
-        FMU_FOUR_AT_A_TIME                                                                                          \
-        for (size_t i = 0; i < count; i++) *(Kept *)(void *)fmu_at(fmu, references[i]) = convert(values[i]);        \
+        if (offsets)                                                                                                \
+            FMU_FOUR_AT_A_TIME for (size_t i = 0; i < count; i++)                                                   \
+                FMU_KEPT(fmu, Kept, offsets[i]) = convert(values[i]);                                               \
+        else                                                                                                        \
+            for (size_t i = 0; i < count; i++)                                                                      \
+                FMU_KEPT(fmu, Kept, fmu_offset(references[i], 0)) = convert(values[i]);                             \
         if (parameters) fmu_parameters_changed(fmu);                                                                \
         return fmi2OK;                                                                                              \
     }
 
-FMU_GET(Real, double, FMU_IS_REAL, FMU_SAME)
-FMU_GET(Integer, int64_t, FMU_IS_INTEGER, fmu_int32)
-FMU_GET(Boolean, bool, FMU_IS_BOOLEAN, FMU_SAME)
-FMU_SET(Real, double, FMU_IS_REAL, FMU_SAME)
-FMU_SET(Integer, int64_t, FMU_IS_INTEGER, FMU_SAME)
-FMU_SET(Boolean, bool, FMU_IS_BOOLEAN, FMU_TRUTH)
+FMU_GET(Real, double, FMU_REAL, FMU_IS_REAL, FMU_SAME)
+FMU_GET(Integer, int64_t, FMU_INTEGER, FMU_IS_INTEGER, fmu_int32)
+FMU_GET(Boolean, bool, FMU_BOOLEAN, FMU_IS_BOOLEAN, FMU_SAME)
+FMU_SET(Real, double, FMU_REAL, FMU_IS_REAL, FMU_SAME)
+FMU_SET(Integer, int64_t, FMU_INTEGER, FMU_IS_INTEGER, FMU_SAME)
+FMU_SET(Boolean, bool, FMU_BOOLEAN, FMU_IS_BOOLEAN, FMU_TRUTH)
 
 fmi2Status fmi2GetFMUstate(fmi2Component c, fmi2FMUstate *state) {
     FmuInstance *fmu = fmu_in(c, FMU_ANY_PHASE, "fmi2GetFMUstate");

@@ -11,11 +11,6 @@ static void fmu_log(const FmuInstance *fmu, FmuStatus status, const char *catego
     fmu->logger(fmu->environment, (fmi3Status)status, category, message);
 }
 
-#include "core.c"
-#include "state.c"
-
-#define FMU_NULL(fmu, function) (fmi3Status) fmu_report(fmu, FMU_ERROR, "%s: null pointer", function)
-
 /* How many elements a variable has along two dimensions, and where the next along each is kept. */
 typedef struct {
     uint32_t rows;
@@ -38,15 +33,18 @@ static size_t fmu_elements(fmi3ValueReference reference) {
     return (size_t)fmu_shapes[reference].rows * fmu_shapes[reference].columns;
 }
 
-/* Return where an element is kept; they are counted row by row. */
-static unsigned char *fmu_element(FmuInstance *fmu, fmi3ValueReference reference, size_t number) {
+/* Return where an element is kept in FmuSaved; they are counted row by row. */
+static uint32_t fmu_offset(fmi3ValueReference reference, size_t number) {
     const FmuShape *shape = &fmu_shapes[reference];
-    const size_t first = fmu_places[reference].offset;
-    unsigned char *at = fmu_at(fmu, reference);
-    if (number == 0) return at;
-    return at + number / shape->columns * (shape->next_row - first) +
-           number % shape->columns * (shape->next_column - first);
+    const uint32_t first = fmu_places[reference].offset;
+    const uint32_t row = (uint32_t)(number / shape->columns), column = (uint32_t)(number % shape->columns);
+    return number ? first + row * (shape->next_row - first) + column * (shape->next_column - first) : first;
 }
+
+#include "core.c"
+#include "state.c"
+
+#define FMU_NULL(fmu, function) (fmi3Status) fmu_report(fmu, FMU_ERROR, "%s: null pointer", function)
 
 const char *fmi3GetVersion(void) { return "3.0"; }
 
@@ -105,9 +103,8 @@ fmi3Status fmi3DoStep(fmi3Instance c, fmi3Float64 time, fmi3Float64 step, fmi3Bo
 
 /* True if all are variables of `kind` and have `value_count` elements together; reports the call if not. */
 static bool fmu_fits(FmuInstance *fmu, const fmi3ValueReference references[], size_t count, FmuKind kind,
-                     const void *values, size_t value_count, const char *function) {
+                     size_t value_count, const char *function) {
     size_t elements = 0;
-    if (count && (!references || !values)) return FMU_NULL(fmu, function), false;
     for (size_t i = 0; i < count; i++) {
         if (!fmu_is(references[i], kind)) return fmu_unknown(fmu, references[i], function), false;
         elements += fmu_elements(references[i]);
@@ -121,11 +118,22 @@ static bool fmu_fits(FmuInstance *fmu, const fmi3ValueReference references[], si
     fmi3Status fmi3Get##Type(fmi3Instance c, const fmi3ValueReference references[], size_t count,                 \
                              fmi3##Type values[], size_t value_count) {                                           \
         FmuInstance *fmu = fmu_in(c, FMU_READABLE, "fmi3Get" #Type);                                              \
-        if (!fmu || !fmu_fits(fmu, references, count, kind, values, value_count, "fmi3Get" #Type)) return fmi3Error; \
+        if (!fmu) return fmi3Error;                                                                               \
+        if (count && (!references || !values)) return FMU_NULL(fmu, "fmi3Get" #Type);                             \
+        FmuList *list = &fmu->got[kind];                                                                          \
+        const uint32_t *offsets = fmu_listed(list, references, count);                                            \
+        if (!offsets || value_count != list->size) {                                                              \
+            if (!fmu_fits(fmu, references, count, kind, value_count, "fmi3Get" #Type)) return fmi3Error;          \
+            offsets = fmu_list(list, references, count);                                                          \
+        }                                                                                                         \
         fmu_refresh(fmu);                                                                                         \
-        for (size_t i = 0; i < count; i++)                                                                        \
-            for (size_t k = 0; k < fmu_elements(references[i]); k++)                                              \
-                *values++ = convert(*(const Kept *)(const void *)fmu_element(fmu, references[i], k));             \
+        if (offsets)                                                                                              \
+            FMU_FOUR_AT_A_TIME for (size_t i = 0; i < value_count; i++)                                           \
+                values[i] = convert(FMU_KEPT(fmu, Kept, offsets[i]));                                             \
+        else                                                                                                      \
+            for (size_t i = 0; i < count; i++)                                                                    \
+                for (size_t k = 0; k < fmu_elements(references[i]); k++)                                          \
+                    *values++ = convert(FMU_KEPT(fmu, Kept, fmu_offset(references[i], k)));                       \
         return fmi3OK;                                                                                            \
     }
 
@@ -136,16 +144,27 @@ static bool fmu_fits(FmuInstance *fmu, const fmi3ValueReference references[], si
         FmuInstance *fmu = fmu_in(c, FMU_SETTING_UP | FMU_STEPPING, "fmi3Set" #Type);                             \
         const fmi3##Type *value = values;                                                                         \
         bool parameters = false;                                                                                  \
-        if (!fmu || !fmu_fits(fmu, references, count, kind, values, value_count, "fmi3Set" #Type)) return fmi3Error; \
-        for (size_t i = 0; i < count; i++)                                                                        \
-            for (size_t k = 0; k < fmu_elements(references[i]); k++, value++) {                                   \
-                if (fmu_places[references[i]].role == FMU_INPUT) continue;                                        \
-                if (!fmu_is_settable(fmu, references[i], (double)*value, "fmi3Set" #Type)) return fmi3Error;      \
-                parameters = true;                                                                                \
-            }                                                                                                     \
-        for (size_t i = 0; i < count; i++)                                                                        \
-            for (size_t k = 0; k < fmu_elements(references[i]); k++)                                              \
-                *(Kept *)(void *)fmu_element(fmu, references[i], k) = *values++;                                  \
+        if (!fmu) return fmi3Error;                                                                               \
+        if (count && (!references || !values)) return FMU_NULL(fmu, "fmi3Set" #Type);                             \
+        FmuList *list = &fmu->given[kind];                                                                        \
+        const uint32_t *offsets = fmu_listed(list, references, count);                                            \
+        if (!offsets || value_count != list->size) {                                                              \
+            if (!fmu_fits(fmu, references, count, kind, value_count, "fmi3Set" #Type)) return fmi3Error;          \
+            for (size_t i = 0; i < count; i++)                                                                    \
+                for (size_t k = 0; k < fmu_elements(references[i]); k++, value++) {                               \
+                    if (fmu_places[references[i]].role == FMU_INPUT) continue;                                    \
+                    if (!fmu_is_settable(fmu, references[i], (double)*value, "fmi3Set" #Type)) return fmi3Error;  \
+                    parameters = true;                                                                            \
+                }                                                                                                 \
+            offsets = parameters ? NULL : fmu_list(list, references, count);                                      \
+        }                                                                                                         \
+        if (offsets)                                                                                              \
+            FMU_FOUR_AT_A_TIME for (size_t i = 0; i < value_count; i++)                                           \
+                FMU_KEPT(fmu, Kept, offsets[i]) = values[i];                                                      \
+        else                                                                                                      \
+            for (size_t i = 0; i < count; i++)                                                                    \
+                for (size_t k = 0; k < fmu_elements(references[i]); k++)                                          \
+                    FMU_KEPT(fmu, Kept, fmu_offset(references[i], k)) = *values++;                                \
         if (parameters) fmu_parameters_changed(fmu);                                                              \
         return fmi3OK;                                                                                            \
     }

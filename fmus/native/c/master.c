@@ -20,27 +20,33 @@ typedef struct {
     int32_t *integers; /* what is handed over instead of the row's numbers, unless they are real: then null */
     int64_t begin;     /* in a row */
     int64_t count;
+    int64_t changed; /* inputs: any differs from what was sent */
 } Transfer;
 
+/* A row has all inputs of a slave, then all its outputs. */
 typedef struct {
     void *component;
     int (*do_step)(void *component, double time, double step, int no_rollback);
-    int64_t inputs; /* where they begin in a row */
-    int64_t outputs;
-    int64_t input_count;
-    int64_t output_count;
-    const Transfer *gets;
-    const Transfer *sets;
+    int64_t begin; /* in a row */
+    int64_t count;
+    Transfer *gets;
+    Transfer *sets;
     int64_t get_count;
     int64_t set_count;
+    const int32_t *integers; /* those of all gets that are not real, one behind the other as in a row */
+    int64_t integers_begin;
+    int64_t integers_count;
+    const int64_t *held; /* places of inputs that nobody writes */
+    int64_t held_count;
     int64_t every; /* stepped every n-th time, by n communication steps */
     double step;   /* their length [s] */
     int64_t due;   /* at this exchange */
 } Slave;
 
-/* All signals from one slave to another, by their places in a row. */
+/* Signals from one slave to the inputs of one transfer, by their places in a row. */
 typedef struct {
-    int64_t target;
+    const Slave *target;
+    Transfer *set;
     const int64_t *source_places;
     const int64_t *target_places;
     int64_t count;
@@ -70,21 +76,21 @@ static int call(const Slave *slave, const Transfer *transfer, double *row) {
 /* The last transfers, of integers, come first and are converted last: what has just been written cannot be read in
  * wider pieces without waiting for it. */
 static int fetch(const Slave *slave, double *row) {
+    double *converted = row + slave->integers_begin;
     for (int64_t g = slave->get_count - 1; g >= 0; g--) {
         int status = call(slave, &slave->gets[g], row);
         if (status > fmi2Warning) return status;
     }
-    for (int64_t g = 0; g < slave->get_count; g++) {
-        const Transfer *get = &slave->gets[g];
-        if (get->integers)
-            for (int64_t i = 0; i < get->count; i++) row[get->begin + i] = get->integers[i];
-    }
+    for (int64_t i = 0; i < slave->integers_count; i++) converted[i] = slave->integers[i];
     return fmi2OK;
 }
 
+/* An FMU holds its inputs: those of a type of which none has changed are not sent again. */
 static int send(const Slave *slave, double *row) {
     for (int64_t s = 0; s < slave->set_count; s++) {
-        const Transfer *set = &slave->sets[s];
+        Transfer *set = &slave->sets[s];
+        if (!set->changed) continue;
+        set->changed = 0;
         if (set->integers)
             for (int64_t i = 0; i < set->count; i++) set->integers[i] = (int32_t)row[set->begin + i];
         int status = call(slave, set, row);
@@ -100,22 +106,34 @@ static int fail(Run *run, int64_t slave, Failure failure, int status) {
     return 0;
 }
 
+/* What has other bits is another value: NaN is itself, -0.0 is not 0.0. */
+static void hand_over(const Link *link, const double *before, double *row) {
+    uint64_t differences = 0, now, then;
+    for (int64_t i = 0; i < link->count; i++) {
+        memcpy(&now, &row[link->source_places[i]], sizeof now);
+        memcpy(&then, &before[link->target_places[i]], sizeof then);
+        memcpy(&row[link->target_places[i]], &now, sizeof now);
+        differences |= now ^ then;
+    }
+    if (differences) link->set->changed = 1;
+}
+
 /* Everything up to the moment at which all of the row is as it is at this exchange. */
 static int exchange(Run *run, int64_t number, double *row) {
+    const double *before = run->before;
     for (int64_t k = 0; k < run->slave_count; k++) {
         Slave *slave = &run->slaves[k];
         slave->due = slave->every == 1 || number % slave->every == 0;
-        memcpy(row + slave->inputs, run->before + slave->inputs, (size_t)slave->input_count * sizeof *row);
-        if (!slave->due)
-            memcpy(row + slave->outputs, run->before + slave->outputs, (size_t)slave->output_count * sizeof *row);
-        int status = slave->due ? fetch(slave, row) : fmi2OK;
+        if (!slave->due) {
+            memcpy(row + slave->begin, before + slave->begin, (size_t)slave->count * sizeof *row);
+            continue;
+        }
+        for (int64_t i = 0; i < slave->held_count; i++) row[slave->held[i]] = before[slave->held[i]];
+        int status = fetch(slave, row);
         if (status > fmi2Warning) return fail(run, k, FETCH, status);
     }
-    for (int64_t l = 0; l < run->link_count; l++) {
-        const Link *link = &run->links[l];
-        if (!run->slaves[link->target].due) continue;
-        for (int64_t i = 0; i < link->count; i++) row[link->target_places[i]] = row[link->source_places[i]];
-    }
+    for (int64_t l = 0; l < run->link_count; l++)
+        if (run->links[l].target->due) hand_over(&run->links[l], before, row);
     run->before = row;
     return 1;
 }

@@ -23,7 +23,7 @@ from fmus.contents.archive import content_hash
 from fmus.locks import kept_file
 from fmus.places import CACHE
 from modelkit.model import Model
-from modelkit.variables import Variable, constructor, flatten, variables
+from modelkit.variables import Variable, constructor, flattener, variables
 
 DRAWN = 9000
 """Points drawn around the defaults times parameters moved there."""
@@ -122,11 +122,11 @@ def _starter(model: Model) -> Callable[[Values], Values]:
 
     NaN and infinite are words, so that each is equal to itself.
     """
-    make = constructor(model.params)
+    make, flat = constructor(model.params), flattener(model.outputs())
 
     def start(values: Values) -> Values:
         try:
-            outputs = flatten(model.initialize(make(values))[1])
+            outputs = flat(model.initialize(make(values))[1])
         except (ArithmeticError, ValueError):
             return []
         return [value if value - value == 0 else str(value) for value in outputs]

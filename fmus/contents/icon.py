@@ -5,6 +5,7 @@ import hashlib
 import math
 import struct
 import zlib
+from functools import lru_cache
 
 SIZE = 96
 SAMPLES = 2
@@ -14,6 +15,7 @@ EDGE: Colour = (60, 64, 72, 255)
 PAPER: Colour = (250, 250, 248, 255)
 
 
+@lru_cache
 def icon(name: str, inputs: int, outputs: int) -> bytes:
     """Return a PNG of 96 by 96 pixels; at most five ports are drawn on a side."""
     hue = hashlib.sha256(name.encode()).digest()[0] / 256.0

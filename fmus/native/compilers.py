@@ -23,6 +23,9 @@ FLAGS = ("-std=c99", "-O2", "-ffp-contract=off", "-fno-math-errno")
 """What every compiler is told that the results depend on, or the speed."""
 ZIG = ("-fno-sanitize=all", "-mllvm", "-disable-fp-call-folding")
 """What ziglang's is told besides: its own library does not work out sin() of a known number, it has other bits."""
+LINUX_ALONE = ("-nostdlib", "-lc")
+"""What ziglang's is told for Linux besides: to leave out its runtime, which nothing here calls; making it takes as long
+as the models."""
 SHARED = (
     *FLAGS,
     "-DFMI2_OVERRIDE_FUNCTION_PREFIX",
@@ -43,7 +46,7 @@ class Compiler(NamedTuple):
 
     def recipe(self, target: CompileTarget) -> str:
         """Return all that a shared library for ``target`` depends on, its files aside."""
-        return " ".join((self.words, target.triple, *SHARED, *target.options))
+        return " ".join((self.words, target.triple, *SHARED, *self._options(target)))
 
     def can_make(self, target: CompileTarget) -> bool:
         """Return whether it compiles for ``target``: ziglang's for all, others for this machine."""
@@ -64,8 +67,11 @@ class Compiler(NamedTuple):
         with folder_for_a_while("c") as here:
             for file, text in files.items():
                 (here / file).write_text(text, encoding="utf-8", newline="\n")
-            self.run([*SHARED, "-o", name, *units, *target.options], here, target)
+            self.run([*SHARED, "-o", name, *units, *self._options(target)], here, target)
             return (here / name).read_bytes()
+
+    def _options(self, target: CompileTarget) -> tuple[str, ...]:
+        return (*target.options, *(LINUX_ALONE if self.is_zig and "linux" in target.triple else ()))
 
     def run(self, arguments: list[str], directory: Path, target: CompileTarget | None = None) -> None:
         """Call the compiler in ``directory`` for ``target`` (default: this machine)."""

@@ -2,6 +2,7 @@ import pytest
 import toy_model
 
 from controller_fmu import MODEL as CONTROLLER
+from controller_fmu import VALET
 from fmus.native import fmu as native_fmu
 from fmus.native.libraries import python_front
 from fmus.native.platforms import host
@@ -9,6 +10,7 @@ from fmus.python.fmu import build
 from vehicle_fmu import MODEL as VEHICLE
 
 MODELS = {model.name: model for model in (toy_model.MODEL, VEHICLE, CONTROLLER)}
+ALL_MODELS = {**MODELS, VALET.name: VALET}
 
 
 @pytest.fixture(scope="session")
@@ -25,7 +27,7 @@ class NativeFmus(dict):
         self.folder, self.fmi = folder, fmi
 
     def __missing__(self, name):
-        self[name] = native_fmu.build(MODELS[name], self.folder, [host()], fmi=self.fmi)
+        self[name] = native_fmu.build(ALL_MODELS[name], self.folder, [host()], fmi=self.fmi)
         return self[name]
 
 
@@ -44,3 +46,9 @@ def fmi3_fmus(tmp_path_factory):
 @pytest.fixture(params=list(MODELS))
 def model(request):
     return MODELS[request.param]
+
+
+@pytest.fixture(params=list(ALL_MODELS))
+def any_model(request):
+    """One of all models, the controller apart too."""
+    return ALL_MODELS[request.param]

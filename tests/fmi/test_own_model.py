@@ -4,6 +4,7 @@ import json
 import re
 import shutil
 import subprocess
+import sys
 import zipfile
 from pathlib import Path
 
@@ -112,6 +113,23 @@ def built(tmp_path_factory):
     (folder / "tank.py").write_text(TANK, encoding="utf-8")
     assert main(["build", "--model", f"{folder / 'tank.py'}:MODEL", "--out", str(folder / "out"), "--json"]) == 0
     return folder / "out"
+
+
+@pytest.mark.parametrize("compiler", [["gcc"], [sys.executable, "-m", "ziglang", "cc"]], ids=["gcc", "clang"])
+@pytest.mark.parametrize("kind", ["c", "native", "fmi3"])
+def test_its_c_compiles_without_a_warning(kind, compiler, built, tmp_path):
+    if shutil.which(compiler[0]) is None:
+        pytest.skip("needs gcc")
+    unit = {"c": "Tank.c", "native": "Tank_fmi2.c", "fmi3": "Tank_fmi3.c"}[kind]
+    sources = built / "c"
+    if kind != "c":
+        sources = tmp_path / "sources"
+        with zipfile.ZipFile(built / kind / "Tank.fmu") as archive:
+            archive.extractall(tmp_path, [name for name in archive.namelist() if name.startswith("sources/")])
+    flags = ["-std=c99", "-O2", "-pedantic", "-Wall", "-Wextra", "-Wconversion"]
+    command = [*compiler, *flags, "-c", str(sources / unit), "-o", str(tmp_path / "unit.o")]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stderr) == (0, "")
 
 
 def levels(path):

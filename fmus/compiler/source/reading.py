@@ -34,6 +34,8 @@ class Module:
     assigned: dict[str, ast.expr] = field(default_factory=dict)
     """What a module constant is assigned."""
     lines: dict[str, int] = field(default_factory=dict)
+    functions: dict[tuple[str, int], ast.FunctionDef] = field(default_factory=dict)
+    """By name and the number of the first line, of a decorator if there are any."""
 
 
 class Library:
@@ -50,11 +52,9 @@ class Library:
 
     def function(self, function: FunctionType) -> ast.FunctionDef:
         """Return the syntax tree of ``function``."""
-        line = function.__code__.co_firstlineno
-        for node in ast.walk(self.module(function.__module__).tree):
-            if isinstance(node, ast.FunctionDef) and node.name == function.__name__:
-                if line in (node.lineno, *(item.lineno for item in node.decorator_list)):
-                    return node
+        node = self.module(function.__module__).functions.get((function.__name__, function.__code__.co_firstlineno))
+        if node is not None:
+            return node
         advice = "define it with def at the top of a module"
         raise CannotError(None, f"{function.__qualname__} has no source text that can be read", advice)
 
@@ -111,6 +111,9 @@ def read_module(name: str) -> Module:
     package = name if is_package else name.rpartition(".")[0]
     for node in ast.walk(found.tree):
         _note_imports(found, node, package)
+        if isinstance(node, ast.FunctionDef):
+            first = min([node.lineno, *(item.lineno for item in node.decorator_list)])
+            found.functions[node.name, first] = node
     body = found.tree.body
     for node, after in zip(body, [*body[1:], None], strict=True):
         _note_constant(found, node, after)

@@ -215,6 +215,8 @@ def in_order(classes: Iterable[Any]) -> list[Any]:
     done: dict[Any, None] = {}
 
     def visit(kind: Kind) -> None:
+        if isinstance(kind, Struct) and kind.cls in done:
+            return
         for part in parts(kind):
             visit(part)
         if isinstance(kind, Struct):

@@ -1,0 +1,120 @@
+"""The built site: opened from a folder it searches, sets its formulas, and asks nothing of any other host."""
+
+import importlib.util
+import subprocess
+import sys
+import xml.etree.ElementTree as ElementTree
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+LIMIT = 30_000
+PLACES = ("vehicle", "controller")
+"""What the pages of the reference are called that say what a parameter is."""
+SEEN = (
+    "[...document.querySelectorAll('.md-search-result__article')].map((node) => node.textContent.trim().toLowerCase())"
+)
+
+
+def load(name):
+    spec = importlib.util.spec_from_file_location(f"docs_{name}", ROOT / "docs" / f"{name}.py")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+FORMULAS = load("formulas")
+
+
+@pytest.fixture(scope="module")
+def site(tmp_path_factory):
+    pytest.importorskip("material", reason="the theme of the site is not installed")
+    folder = tmp_path_factory.mktemp("site")
+    if not (ROOT / "docs" / "reference" / "vehicle.md").exists():
+        subprocess.run([sys.executable, "docs/generate.py"], cwd=ROOT, check=True, capture_output=True)
+    command = [sys.executable, "-m", "mkdocs", "build", "--strict", "--quiet", "--site-dir", str(folder)]
+    subprocess.run(command, cwd=ROOT, check=True, capture_output=True)
+    return folder
+
+
+def opened(browser, path):
+    page = browser.new_page()
+    asked, said = [], []
+    page.on("request", lambda request: asked.append(request.url))
+    page.on("console", lambda message: said.append(message.text))
+    page.on("pageerror", lambda error: said.append(str(error)))
+    page.goto(path.as_uri())
+    return page, asked, said
+
+
+def test_the_search_finds_parameters_by_their_names_from_a_folder(site, browser):
+    page, asked, said = opened(browser, site / "guo2015.html")
+    page.keyboard.press("f")
+    for name in ("rate_limit", "reaction_delay", "obeys_slow_down", "k4"):
+        page.locator("input.md-search__input").fill("")
+        page.locator("input.md-search__input").press_sequentially(name, delay=20)
+        for _ in range(LIMIT // 100):
+            found = page.evaluate(SEEN)
+            if any(name in text for text in found) and any(text.startswith(PLACES) for text in found):
+                break
+            page.wait_for_timeout(100)
+        assert any(name in text for text in found), name
+        assert any(text.startswith(PLACES) for text in found), name
+    assert [url for url in asked if not url.startswith(("file:", "data:", "blob:"))] == []
+    assert said == []
+    page.close()
+
+
+def test_pages_load_nothing_from_elsewhere_and_formulas_are_formulas(site, browser):
+    for name in ("index", "guo2015", "vehicle", "apa", "live", "reference/controller"):
+        page, asked, said = opened(browser, site / f"{name}.html")
+        page.wait_for_timeout(300)
+        assert [url for url in asked if not url.startswith(("file:", "data:", "blob:"))] == [], name
+        assert said == [], name
+        if name == "guo2015":
+            assert page.locator("math").count() == 7
+            assert page.locator("math mfrac").first.bounding_box()["height"] > 15
+        page.close()
+
+
+def test_pages_of_laws_have_the_page_that_is_driven(site):
+    if not (ROOT / "docs" / "reference" / "live.html").exists():
+        pytest.skip("no compiler made the page that is driven")
+    for name in ("guo2015", "apa", "preview", "hsic", "zhang2022"):
+        assert (site / f"{name}.html").read_text(encoding="utf-8").count('<iframe class="live" loading="lazy"') == 1, (
+            name
+        )
+
+
+def test_the_reference_has_a_heading_for_each_group():
+    text = (ROOT / "docs" / "reference" / "vehicle.md").read_text(encoding="utf-8")
+    for group in ("### driver", "### steering", "### ultrasonic", "### person"):
+        assert f"\n{group}\n" in text, group
+
+
+@pytest.mark.parametrize(
+    ("text", "shown"),
+    [
+        ("k1 = 2", "k1=2"),
+        ("dx1/ds = -x2", "dx1ds=\u2212x2"),
+        ("u' = V_s - (c V / S) u", "u\u2032=Vs\u2212(cVS)u"),
+        ("e+ = e + a g / 2 (delta+ - delta_r)", "e+=e+ag2(\u03b4+\u2212\u03b4r)"),
+    ],
+)
+def test_formulas_are_read_as_they_are_meant(text, shown):
+    found = ElementTree.fromstring(f"<math>{FORMULAS.mathml(text)}</math>")
+    assert "".join(found.itertext()) == shown
+
+
+def test_a_power_an_index_a_root_and_a_fraction():
+    found = FORMULAS.mathml("sqrt(cos^3 h_r / 2)")
+    assert "<msup><mrow><mi>cos</mi></mrow><mn>3</mn></msup>" in found
+    assert "<msub><mi>h</mi><mi>r</mi></msub>" in found
+    assert found.count("<mfrac>") == 1
+    assert found.count("<msqrt>") == 1
+
+
+@pytest.mark.parametrize("text", ["apa run guo2015-case4", "x = (a", "a = 3 +", "phase: int = 1", "x = y # why"])
+def test_what_is_no_formula_stays_text(text):
+    assert FORMULAS.formulas(f"    {text}\n") == ""

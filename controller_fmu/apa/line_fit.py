@@ -33,6 +33,8 @@ class FittedLine(NamedTuple):
 
 
 LEAST_SPREAD = 1e-6
+ASKEW = 0.06
+OFF = 0.02
 NO_SUMS = Sums(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 
@@ -57,6 +59,16 @@ def slope(first: Sums, second: Sums, third: Sums = NO_SUMS) -> float:
     for _ in range(6):
         b = (w - r * math.sqrt(1.0 + b * b)) / s
     return b
+
+
+def leaning(known: Sums, own: Sums) -> float:
+    """Return b of a side that stands about as the one ``known`` does, with what is heard of itself: the mean of both.
+
+    Each is weighted by how sure it is; neighbours stand askew by ``ASKEW``, a sample is off by ``OFF`` [m].
+    """
+    before = slope(known, NO_SUMS)
+    weight = spread(own) * ASKEW * ASKEW / (OFF * OFF)
+    return before + (slope(own, NO_SUMS) - before) * weight / (1.0 + weight)
 
 
 def offset(sums: Sums, b: float) -> float:

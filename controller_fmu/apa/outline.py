@@ -1,4 +1,4 @@
-"""The car's outline against boxes with sides along the axes of the slot's frame: clearance, free way.
+"""The car's outline against boxes: clearance, free way.
 
 Two rectangles that do not touch are nearest at a corner of one of them; whether they touch is told
 by the separating axis theorem on the four directions of their sides.
@@ -32,12 +32,18 @@ class Shape(NamedTuple):
 
 
 class Box(NamedTuple):
-    """Something solid: x from ``x0`` to ``x1``, y from ``y0`` to ``y1`` [m]; empty if x0 > x1."""
+    """Something solid: from ``x0`` to ``x1`` and ``y0`` to ``y1`` [m] along its own axes; empty if x0 > x1."""
 
     x0: float = 1.0
     x1: float = -1.0
     y0: float = 1.0
     y1: float = -1.0
+    x: float = 0.0
+    """Where its own axes cross [m]."""
+    y: float = 0.0
+    cos: float = 1.0
+    """Direction of its own x axis."""
+    sin: float = 0.0
 
 
 class Obstacles(NamedTuple):
@@ -50,19 +56,28 @@ class Obstacles(NamedTuple):
     opposite: Box = Box()
 
 
+def turned_box(box: Box, x: float, y: float, heading: float) -> Box:
+    """Return the box with its axes crossing at (x, y) [m], turned by ``heading`` [rad]."""
+    return box._replace(x=x, y=y, cos=math.cos(heading), sin=math.sin(heading))
+
+
 def box_clearance(pose: Pose, car: Shape, box: Box) -> float:
     """Return the distance [m] of the outline to the box; negative: how deep they overlap at least."""
     if box.x0 > box.x1:
         return FAR
-    c = math.cos(pose.heading)
-    s = math.sin(pose.heading)
+    cos = math.cos(pose.heading)
+    sin = math.sin(pose.heading)
+    c = cos * box.cos + sin * box.sin
+    s = sin * box.cos - cos * box.sin
+    ox = pose.x - box.x
+    oy = pose.y - box.y
     middle = 0.5 * (car.front - car.rear)
     half = 0.5 * (car.front + car.rear)
     side = car.half_width
     a = 0.5 * (box.x1 - box.x0)
     b = 0.5 * (box.y1 - box.y0)
-    dx = pose.x + middle * c - 0.5 * (box.x0 + box.x1)
-    dy = pose.y + middle * s - 0.5 * (box.y0 + box.y1)
+    dx = ox * box.cos + oy * box.sin + middle * c - 0.5 * (box.x0 + box.x1)
+    dy = oy * box.cos - ox * box.sin + middle * s - 0.5 * (box.y0 + box.y1)
     ac = abs(c)
     ass = abs(s)
     along = dx * c + dy * s
@@ -130,7 +145,7 @@ def grown(box: Box, margin: float) -> Box:
     """Return the box with its sides moved out by ``margin`` [m]; an empty one stays empty."""
     if box.x0 > box.x1:
         return box
-    return Box(box.x0 - margin, box.x1 + margin, box.y0 - margin, box.y1 + margin)
+    return box._replace(x0=box.x0 - margin, x1=box.x1 + margin, y0=box.y0 - margin, y1=box.y1 + margin)
 
 
 def _corner_squared(x: float, y: float, half_length: float, half_width: float) -> float:

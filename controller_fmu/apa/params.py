@@ -70,7 +70,7 @@ class SearchParams(NamedTuple):
     wish: Annotated[int, Signal("1", "which slots are wanted", states=Wish)] = Wish.ANY
     speed: Annotated[float, Signal("m/s", "largest speed of the search", 0.1, 10.0, "20 km/h")] = 20.0 / 3.6
     way: Annotated[float, Signal("m", "longest way searched", 1.0, 1000.0, HOUSE)] = 60.0
-    beside: Annotated[float, Signal("m", "farthest neighbour looked at", 0.1, 10.0, HOUSE)] = 2.5
+    beside: Annotated[float, Signal("m", "farthest neighbour looked at", 0.1, 10.0, HOUSE)] = 3.0
     step: Annotated[float, Signal("m", "least jump of distance at an edge", 0.05, 5.0, HOUSE)] = 0.4
     wall: Annotated[float, Signal("m", "least length of a neighbour seen", 0.1, 5.0, HOUSE)] = 0.6
     perpendicular_room: Annotated[
@@ -85,11 +85,32 @@ class SearchParams(NamedTuple):
     slot: Slot = Slot()
 
 
+class MapParams(NamedTuple):
+    """The local map: how sure the assist is of what stands around, and how readings change it."""
+
+    corner: Annotated[float, Signal("m", "a corner just found is unsure by this", 0.0, 1.0, HOUSE)] = 0.04
+    turned: Annotated[float, Signal("rad", "its neighbour's heading is unsure by this", 0.0, 0.5, HOUSE)] = 0.03
+    askew: Annotated[float, Signal("rad", "neighbours stand askew by this", 0.001, 0.5, HOUSE)] = 0.05
+    usual: Annotated[float, Signal("m", "margins are made for things that are unsure by this", 0.0, 1.0, HOUSE)] = 0.08
+    drift: Annotated[float, Signal("1", "odometry may be wrong by this share of the way", 0.0, 0.2, HOUSE)] = 0.006
+    turn_drift: Annotated[float, Signal("rad/m", "and turn by this over it", 0.0, 0.1, HOUSE)] = 0.0012
+    heard: Annotated[float, Signal("m", "farthest reading that the map learns from", 0.1, 10.0, HOUSE)] = 2.0
+    noise: Annotated[float, Signal("m", "standard deviation of a reading", 0.001, 1.0, HOUSE)] = 0.03
+    floor: Annotated[float, Signal("m", "nothing is surer than this: mounting of the sensors", 0.0, 1.0, HOUSE)] = 0.015
+    certain: Annotated[
+        float, Signal("m", "parked is told between neighbours that are sure to this", 0.01, 1.0, HOUSE)
+    ] = 0.12
+    gate: Annotated[
+        float, Signal("1", "further off than this many standard deviations, a reading is of something else", 1.0, 10.0)
+    ] = 3.5
+
+
 class EndParams(NamedTuple):
     """When the car is parked well enough."""
 
     lateral: Annotated[float, Signal("m", "parked without tuning", 0.001, 0.5, HOUSE)] = 0.03
     heading: Annotated[float, Signal("rad", "parked without tuning", 0.001, 0.5, HOUSE)] = 0.7 * pi / 180.0
+    out: Annotated[float, Signal("m", "farthest a parked car stands out of the slot", 0.0, 0.15, "GB/T 41630")] = 0.14
     few: Annotated[int, Signal("1", "shifts after which tuning is only for more than the next two", 0, 30, HOUSE)] = 3
     near_lateral: Annotated[float, Signal("m", "parked after so many shifts", 0.001, 0.5, HOUSE)] = 0.04
     near_heading: Annotated[float, Signal("rad", "parked after so many shifts", 0.001, 0.5, HOUSE)] = 0.9 * pi / 180.0
@@ -102,13 +123,14 @@ class EndParams(NamedTuple):
 class GuardParams(NamedTuple):
     """Supervision: each limit ends in Fail with its reason, or stops the car."""
 
-    stop_gap: Annotated[float, Signal("m", "known obstacle ahead: stop at this distance", 0.0, 1.0, HOUSE)] = 0.16
-    corner_gap: Annotated[
-        float,
-        Signal("m", "known obstacle at a corner, nearer than thought: stop at this distance", 0.0, 1.0, HOUSE),
-    ] = 0.24
-    surprise: Annotated[float, Signal("m", "nearer than expected by this: unknown obstacle", 0.05, 2.0, HOUSE)] = 0.25
-    surprise_gap: Annotated[float, Signal("m", "distance kept to an unknown obstacle", 0.1, 2.0, HOUSE)] = 0.4
+    stop_gap: Annotated[float, Signal("m", "anything ahead: stop at this distance", 0.0, 1.0, HOUSE)] = 0.16
+    gap: Annotated[float, Signal("m", "the outline comes no nearer to what is known", 0.0, 1.0, HOUSE)] = 0.03
+    echo_gap: Annotated[float, Signal("m", "nor to where an echo comes from", 0.0, 1.0, HOUSE)] = 0.02
+    surprise: Annotated[float, Signal("m", "nearer than expected by this: unknown obstacle", 0.05, 2.0, HOUSE)] = 0.12
+    surprise_gap: Annotated[float, Signal("m", "distance kept to an unknown obstacle", 0.1, 2.0, HOUSE)] = 0.3
+    brake_delay: Annotated[
+        float, Signal("s", "from a brake request to its effect, at least, until a longer one is seen", 0.0, 2.0, HOUSE)
+    ] = 0.15
     blocked: Annotated[float, Signal("s", "longest wait before an obstacle", 0.1, 600.0, HOUSE)] = 10.0
     over_speed: Annotated[float, Signal("m/s", "driver's speed while parking", 0.1, 10.0, SOURCE + ", 5 km/h")] = (
         5.0 / 3.6
@@ -127,5 +149,6 @@ class ApaParams(NamedTuple):
     plan: PlanParams = PlanParams()
     drive: Annotated[ApaDriveParams, Role.TUNABLE] = ApaDriveParams()
     search: SearchParams = SearchParams()
+    map: MapParams = MapParams()
     end: Annotated[EndParams, Role.TUNABLE] = EndParams()
     guard: Annotated[GuardParams, Role.TUNABLE] = GuardParams()

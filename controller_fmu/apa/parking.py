@@ -3,20 +3,21 @@
 import math
 from typing import NamedTuple
 
-from controller_fmu.apa.fit import closer, following, margins_of, stands_out, under_way
+from controller_fmu.apa.fit import closer, following, margins_of, under_way
+from controller_fmu.apa.guard import Guard, Sight, watch_way
+from controller_fmu.apa.local_map import LocalMap, is_certain
 from controller_fmu.apa.manoeuvre_chart import Guard as StepGuard
 from controller_fmu.apa.manoeuvre_chart import Step, step_transition
-from controller_fmu.apa.move import length_of
-from controller_fmu.apa.outline import Shape
+from controller_fmu.apa.move import Move, length_of, point_at
+from controller_fmu.apa.outline import Shape, clearance
 from controller_fmu.apa.params import Longitudinal
 from controller_fmu.apa.planner import FOUND, NOTHING, SEARCHING, PlanSearch, new_search, search_on
-from controller_fmu.apa.slot import Margins, Site, Slot, site_of
+from controller_fmu.apa.slot import Margins, Site, Slot, mirror_of, site_of, stands_out_by
 from controller_fmu.apa.speed import planned_speed, stopping_way
-from controller_fmu.apa.supervisor import Sight, look
 from controller_fmu.apa.tracking import Leg, Tracked, next_standstill, set_wheel, track
 from controller_fmu.apa.watch import STANDING
 from controller_fmu.common.chart import bit
-from controller_fmu.common.slot_frame import to_slot
+from controller_fmu.common.slot_frame import SlotFrame, to_slot, to_world
 from controller_fmu.common.steering_monitor import Steering, rate_of
 from controller_fmu.common.steering_wheel import wheel_request
 from controller_fmu.interface import ControllerInput, ControllerParams
@@ -27,6 +28,11 @@ AT_END = 0.04
 AT_JUMP = 0.06
 """A car that halts nearer than this [m] to a jump of curvature has halted for it."""
 X_TOLERANCE = 0.08
+LOOK = 0.2
+LOOKS = 6
+"""The rest of a move is looked at every so much [m], so many times."""
+MOST_CUTS = 8
+"""A car whose moves were cut short more often than this finds no way."""
 
 
 class Parking(NamedTuple):
@@ -45,6 +51,10 @@ class Parking(NamedTuple):
     """The last of the planned moves is driven."""
     cut: bool = False
     """The move was cut short by something of the slot that is nearer than thought: plan again."""
+    missed: bool = False
+    """The car stands as planned, and the sensors say that it is not in the slot."""
+    cuts: int = 0
+    """Moves that were cut short so far."""
     sight: Sight = Sight()
     wheel: float = 0.0
     """Steering-wheel angle asked for [rad]."""
@@ -95,7 +105,14 @@ def is_in_place(pose: Pose, site: Site, lateral: float, heading: float) -> bool:
 
 
 def park(
-    state: Parking, slot: Slot, inputs: ControllerInput, steering: Steering, allowed: bool, params: ControllerParams
+    state: Parking,
+    slot: Slot,
+    here: LocalMap,
+    guard: Guard,
+    inputs: ControllerInput,
+    steering: Steering,
+    allowed: bool,
+    params: ControllerParams,
 ) -> Parking:
     """Return the manoeuvre one sample later; while not ``allowed`` the first plan is made, and no more."""
     site = site_for(slot, state.attempt, params)
@@ -115,14 +132,62 @@ def park(
     if state.step in (Step.DRIVE, Step.HALT, Step.SET_WHEEL):
         drive = params.apa.drive
         tracked = track(plan.move, state.leg, tracked.way, pose, drive.k1, drive.k2, params.car.wheelbase)
-        around = site_of(
-            slot, car, Margins(0.0, 0.0, -params.apa.plan.stand_out if stands_out(attempt) else 0.0)
-        ).obstacles
-        mirror = site.frame.mirror
-        sight = look(inputs.ultrasonic, pose, mirror, plan.move.direction, inputs.measured_speed, around, params)
-    guards = _guards(state, plan, tracked, sight, pose, site, inputs, allowed, params)
+        bare = site_of(slot, car, Margins(0.0, 0.0, 0.0))
+        sight = _sight(plan.move.direction, bare, here, guard, inputs, params)
+        if state.step == Step.DRIVE and not is_rest_free(plan.move, tracked, site, bare, params):
+            sight = sight._replace(blocked=True, unknown=False)
+    settled = is_settled(inputs.odometry, slot, here, params)
+    guards = _guards(state, plan, tracked, sight, pose, site, inputs, allowed, settled, params)
     step = step_transition(state.step, guards)
+    limit = params.apa.end
+    missed = state.step == Step.PLAN and not settled and is_in_place(pose, site, limit.lateral, limit.heading)
+    state = state._replace(missed=missed)
     return _moved_on(state, step, plan, attempt, tracked, sight, pose, site, steering, params)
+
+
+def is_settled(odometry: Pose, slot: Slot, here: LocalMap, params: ControllerParams) -> bool:
+    """Return whether a car that stands as planned is parked: neighbours are heard on both sides, it is in the slot."""
+    pose = to_slot(odometry, SlotFrame(slot.a, mirror_of(slot)))
+    in_slot = stands_out_by(pose, slot, shape_of(params)) <= params.apa.end.out
+    return in_slot and is_certain(here, params.apa.map)
+
+
+def is_rest_free(move: Move, tracked: Tracked, site: Site, bare: Site, params: ControllerParams) -> bool:
+    """Return whether the rest of a move, as far as it is looked at, stays clear of what the map has now.
+
+    ``bare``: the slot without margins. The car is as far beside its path as it is now.
+    """
+    car = shape_of(params)
+    for number in range(1, LOOKS + 1):
+        way = tracked.way + LOOK * number
+        if way > tracked.way + tracked.left:
+            return True
+        at = point_at(move, way).pose
+        off = tracked.lateral_error
+        pose = Pose(at.x - off * math.sin(at.heading), at.y + off * math.cos(at.heading), at.heading)
+        pose = to_slot(to_world(pose, site.frame), bare.frame)
+        if clearance(pose, car, bare.obstacles) < params.apa.guard.gap:
+            return False
+    return True
+
+
+def _sight(
+    direction: int, bare: Site, here: LocalMap, guard: Guard, inputs: ControllerInput, params: ControllerParams
+) -> Sight:
+    """Return what the guard says to driving in ``direction`` with the wheels as they are; ``bare``: without margins."""
+    front = bare.frame.mirror * inputs.steering_wheel_angle / params.car.steering.ratio
+    return watch_way(
+        guard,
+        inputs.ultrasonic,
+        here._replace(pose=to_slot(inputs.odometry, here.frame)),
+        to_slot(inputs.odometry, bare.frame),
+        direction,
+        inputs.measured_speed,
+        math.tan(front) / params.car.wheelbase,
+        bare.obstacles,
+        shape_of(params),
+        params,
+    )
 
 
 def _guards(
@@ -134,6 +199,7 @@ def _guards(
     site: Site,
     inputs: ControllerInput,
     allowed: bool,
+    settled: bool,
     params: ControllerParams,
 ) -> int:
     apa = params.apa
@@ -145,14 +211,20 @@ def _guards(
     if state.shifts >= limit.few:
         right = right or is_in_place(pose, site, limit.near_lateral, limit.near_heading)
     well_enough = is_in_place(pose, site, limit.miss_lateral, limit.miss_heading)
-    stuck = plan.status == NOTHING or (plan.status == FOUND and more_shifts(state, plan) > apa.plan.shifts)
+    stuck = (
+        state.cuts > MOST_CUTS
+        or plan.status == NOTHING
+        or (plan.status == FOUND and more_shifts(state, plan) > apa.plan.shifts)
+    )
     wheel = inputs.steering_wheel_angle
+    set_up = abs(wheel - state.wheel) <= params.threshold.wheel
     at_end = tracked.left <= AT_END or state.cut
     return (
         (1 << StepGuard.STARTED)
-        | bit(StepGuard.IN_PLACE, right or (stuck and well_enough and allowed))
+        | bit(StepGuard.IN_PLACE, settled and (right or (stuck and well_enough and allowed)))
         | bit(StepGuard.PLANNED, plan.status == FOUND and not stuck and allowed)
-        | bit(StepGuard.WHEEL_SET, abs(wheel - state.wheel) <= params.threshold.wheel and not sight.blocked)
+        | bit(StepGuard.WHEEL_SET, set_up and not sight.blocked)
+        | bit(StepGuard.NO_WAY_ON, set_up and standing and sight.blocked and not sight.unknown)
         | bit(StepGuard.MUST_HALT, tracked.to_stop <= stop or sight.blocked)
         | bit(StepGuard.STANDING_AT_END, standing and at_end)
         | bit(StepGuard.STANDING_TO_GO_ON, standing and not at_end and not sight.blocked)
@@ -168,7 +240,7 @@ def more_shifts(state: Parking, plan: PlanSearch) -> int:
 
 def has_failed(state: Parking, params: ControllerParams) -> bool:
     """Return whether no way leads on from here."""
-    stuck = state.plan.status == NOTHING
+    stuck = state.plan.status == NOTHING or state.cuts > MOST_CUTS or state.missed
     return state.step == Step.PLAN and (
         stuck or (state.plan.status == FOUND and more_shifts(state, state.plan) > params.apa.plan.shifts)
     )
@@ -193,9 +265,12 @@ def _moved_on(
     wheel = state.wheel
     speed = 0.0
     cut = state.cut
+    cuts = state.cuts
     if step == Step.HALT and state.step == Step.DRIVE:
         cut = sight.blocked and not sight.unknown
     if step == Step.PLAN and state.step != Step.PLAN:
+        cuts = cuts + 1 if cut or state.step == Step.SET_WHEEL else cuts
+        cut = False
         ended = state.step == Step.HALT and plan.moves <= 1
         attempt = under_way(attempt)
         plan = new_search(pose)
@@ -224,6 +299,8 @@ def _moved_on(
         direction=direction,
         ended=ended,
         cut=cut,
+        missed=state.missed,
+        cuts=cuts,
         sight=sight,
         wheel=wheel,
         speed=speed,

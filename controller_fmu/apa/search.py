@@ -4,7 +4,7 @@ import math
 from typing import NamedTuple
 
 from controller_fmu.apa.fit import Fit, fit_of
-from controller_fmu.apa.line_fit import offset, slope
+from controller_fmu.apa.line_fit import NO_SUMS, OFF, leaning, offset, slope, spread
 from controller_fmu.apa.outline import Shape
 from controller_fmu.apa.params import ApaParams, Wish
 from controller_fmu.apa.search_side import DEEP, START, SideState, hear
@@ -95,32 +95,54 @@ def slot_of(
 ) -> Slot:
     """Return the gap between the last two neighbours as a slot, in the world, its corners ``unsure`` by so much [m]."""
     mirror = -1.0 if which == LEFT else 1.0
-    b = slope(side.before, side.sums, side.behind)
-    a1 = offset(side.before, b)
-    a2 = offset(side.sums, b)
+    lean_a = slope(side.before, NO_SUMS)
+    lean_b = leaning(side.before, side.sums)
+    b = _road(side, lean_a, lean_b, params)
     cos = 1.0 / math.sqrt(1.0 + b * b)
     u = side.edge
-    w = mirror * (a1 + b * u)
+    w = offset(side.before, lean_a) + lean_a * u
     c = math.cos(origin.heading)
     s = math.sin(origin.heading)
-    corner_a = Pose(origin.x + u * c - w * s, origin.y + u * s + w * c, origin.heading + mirror * math.atan(b))
-    length = (side.edge_b - side.edge) / cos
-    depth = (a1 - offset(side.behind, b)) * cos if side.behind.n > 0.0 else UNSEEN
+    x = origin.x + u * c - mirror * w * s
+    y = origin.y + u * s + mirror * w * c
+    turn = math.atan(b)
+    along = side.edge_b - u
+    out = offset(side.sums, lean_b) + lean_b * side.edge_b - w
+    depth = UNSEEN
+    if side.behind.n > 0.0:
+        depth = cos * (w + 0.5 * along * b - side.behind.w / side.behind.n) + side.behind.r / side.behind.n
+        depth -= cos * b * (u + 0.5 * along - side.behind.u / side.behind.n)
     opposite = UNSEEN
     if opposite_heard < DEEP:
         beside = side.sums.r / side.sums.n if side.sums.n > 0.0 else 0.0
         opposite = beside + 2.0 * car.half_width + opposite_heard
-    kind = kind_of(length, depth, side.extent, car, params)
+    length = cos * (along + b * out)
     return Slot(
-        kind=kind,
+        kind=kind_of(length, depth, side.extent, car, params),
         side=which,
-        a=corner_a,
+        a=Pose(x, y, origin.heading + mirror * turn),
         length=max(0.0, length),
-        b_out=(a2 - a1) * cos,
+        b_out=cos * (out - b * along),
         depth=depth,
         opposite=opposite,
         unsure=unsure,
+        skew_a=math.atan(lean_a) - turn,
+        skew_b=math.atan(lean_b) - turn,
     )
+
+
+def _road(side: SideState, lean_a: float, lean_b: float, params: ApaParams) -> float:
+    """Return the slope of the road: of both neighbours, and of a wall behind where it does not contradict them."""
+    askew = params.map.askew * params.map.askew
+    a = 1.0 / (askew + OFF * OFF / max(spread(side.before), 0.01))
+    b = 1.0 / (askew + OFF * OFF / max(spread(side.sums), 0.01))
+    both = (a * lean_a + b * lean_b) / (a + b)
+    told = spread(side.behind)
+    if told < 0.1:
+        return both
+    wall = slope(side.behind, NO_SUMS)
+    c = 1.0 / (0.1 * askew + 4.0 * OFF * OFF / told + (wall - both) * (wall - both))
+    return (both * (a + b) + c * wall) / (a + b + c)
 
 
 def kind_of(length: float, depth: float, neighbour: float, car: Shape, params: ApaParams) -> int:

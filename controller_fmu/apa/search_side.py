@@ -8,7 +8,7 @@ import math
 from typing import NamedTuple
 
 from controller_fmu.apa.edge import KEPT, NO_SAMPLES, Heard, append, corner, remember, seen_up_to
-from controller_fmu.apa.line_fit import FittedLine, Sums, add, distance, offset, slope, spread
+from controller_fmu.apa.line_fit import ASKEW, OFF, FittedLine, Sums, add, distance, leaning, offset, slope, spread
 from controller_fmu.apa.params import SearchParams
 from modelkit.maths import clamp
 
@@ -18,7 +18,7 @@ GAP = 2
 NEXT_WALL = 3
 
 BIN = 0.16
-FLAT = 0.12
+FLAT = 0.16
 STEP = 0.016
 """Steeper than ``FLAT`` [m/m], ``STEP`` [m] for noise, the distance does not belong to a flat side along the road."""
 BAND = 0.02
@@ -27,11 +27,17 @@ SPREAD = 0.03
 CONFIRMED = 0.3
 """A gap is one once it is this long [m]: shorter ones are lost echoes."""
 DEEP = 50.0
-STEEPEST = 0.15
+STEEPEST = 0.28
+LEANS = 0.1
+"""A neighbour, or the wall, lies so much [m] off per metre along the line of the neighbour before."""
 STEEP = 1.0
 """The face of a neighbour across the way comes nearer by 1 / sin(g) per metre, its corner by sin(g) at most."""
 LONG_STEADY = 5
 MANY = 8.0
+ALONG = 4
+UNSEEN_BEFORE = 10.0
+"""A neighbour that was there before it was near enough to be looked at is taken to have begun so much [m] before: one
+that was heard in so many level steps by then."""
 LEVEL = 2
 """So many steps in a row that are level: a side that goes on; so many in a gap: its kerb or wall."""
 AGREE = 0.15
@@ -107,9 +113,13 @@ def _sampled(side: SideState, sample: Heard, half_angle: float, params: SearchPa
     change = sample.r - side.last.r - _change_along(side, sample)
     level = way > 0.0 and abs(change) <= FLAT * way + STEP
     steady = side.steady + 1 if level else 0
+    cut = side.steady >= ALONG
     side = side._replace(last=sample, steady=steady, fresh=False)
+    if side.mode == NOTHING and near:
+        side = _begin_wall(side, sample)
+        return side._replace(begun=sample.u - UNSEEN_BEFORE) if cut else side
     if side.mode == NOTHING:
-        return _begin_wall(side, sample) if near else side
+        return side
     if side.mode == WALL:
         return _on_wall(side, sample, half_angle, params)
     if side.mode == GAP:
@@ -127,7 +137,7 @@ def _change_along(side: SideState, sample: Heard) -> float:
 
 
 def _line(sums: Sums, other: Sums) -> FittedLine:
-    b = clamp(slope(sums, other), -STEEPEST, STEEPEST)
+    b = clamp(leaning(other, sums) if other.n > 0.0 else slope(sums, EMPTY), -STEEPEST, STEEPEST)
     return FittedLine(offset(sums, b), b)
 
 
@@ -143,7 +153,7 @@ def _on_wall(side: SideState, sample: Heard, half_angle: float, params: SearchPa
     if sample.r <= most:
         sums = _with_sample(side.sums, EMPTY, sample, side.steady)
         fresh = side.found > 0 and side.steady >= 2 and side.mode == WALL and side.edge_b > side.edge
-        begun = sample.u if side.sums.n == 0.0 else side.begun
+        begun = sample.u if side.sums.n == 0.0 and side.begun > sample.u - UNSEEN_BEFORE else side.begun
         samples = remember(side.samples, sample)
         return side._replace(
             mode=WALL, begun=begun, missed=samples[0].u, samples=samples, sums=sums, fresh=fresh, faces=NO_SAMPLES
@@ -173,7 +183,8 @@ def _with_sample(sums: Sums, other: Sums, sample: Heard, steady: int) -> Sums:
     if sums.n >= 4.0 or (sums.n > 0.0 and other.n >= 4.0):
         off = sample.r - distance(_line(sums, other), sample.u, sample.w)
         beyond = sample.u - sums.u / sums.n
-        band = BAND + SPREAD * math.sqrt(1.0 / sums.n + beyond * beyond / (spread(sums) + spread(other)))
+        told = spread(sums) + (OFF * OFF / (ASKEW * ASKEW) if other.n > 0.0 else 0.0)
+        band = BAND + SPREAD * math.sqrt(1.0 / sums.n + beyond * beyond / told)
         if abs(off) > band and (sums.n >= MANY or (off > 0.0 and steady < LONG_STEADY)):
             return sums
         if abs(off) > band:
@@ -189,7 +200,7 @@ def _still_heard(sums: Sums, other: Sums, sample: Heard, sense: float, half_angl
 
 def _in_gap(side: SideState, sample: Heard, half_angle: float, params: SearchParams) -> SideState:
     d = distance(_line(side.before, EMPTY), sample.u, sample.w)
-    most = _still_heard(side.before, EMPTY, sample, 1.0, half_angle) + STAGGER
+    most = _still_heard(side.before, EMPTY, sample, 1.0, half_angle) + STAGGER + LEANS * (sample.u - side.edge)
     if sample.r < most and sample.r < params.beside + FURTHER:
         return side._replace(
             mode=NEXT_WALL,
@@ -204,8 +215,9 @@ def _in_gap(side: SideState, sample: Heard, half_angle: float, params: SearchPar
         )
     depth = side.depth
     behind = side.behind
-    if side.steady >= LEVEL and sample.r < params.beside + 2.4 and sample.r - d < depth + AGREE:
-        behind = add(behind if sample.r - d > depth - AGREE else EMPTY, sample.u, sample.w, sample.r)
+    agree = AGREE + LEANS * (sample.u - behind.u / behind.n if behind.n > 0.0 else 0.0)
+    if side.steady >= LEVEL and sample.r < params.beside + 2.4 and sample.r - d < depth + agree:
+        behind = add(behind if sample.r - d > depth - agree else EMPTY, sample.u, sample.w, sample.r)
         depth = sample.r - d if sample.r - d < depth else depth
     return side._replace(
         mode=GAP,
@@ -245,7 +257,7 @@ def _on_next_wall(side: SideState, sample: Heard, half_angle: float, params: Sea
             edge_b=0.0,
             faces=faces,
         )
-    b = slope(side.before, sums)
+    b = leaning(side.before, sums)
     edge_b = corner(samples + faces, FittedLine(offset(sums, b), b), 1.0, half_angle)
     return side._replace(
         mode=WALL,

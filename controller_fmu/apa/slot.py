@@ -10,7 +10,7 @@ import math
 from enum import IntEnum
 from typing import Annotated, NamedTuple
 
-from controller_fmu.apa.outline import FAR, Box, Obstacles, Shape, grown
+from controller_fmu.apa.outline import FAR, Box, Obstacles, Shape, grown, turned_box
 from controller_fmu.common.slot_frame import SlotFrame, to_world
 from modelkit.signal import Group, Signal
 from modelkit.vocabulary import ANYWHERE, Pose
@@ -32,6 +32,10 @@ class Side(IntEnum):
 
 
 UNSEEN = 50.0
+REACH_PARALLEL = 8.0
+REACH_PERPENDICULAR = 5.0
+DEEP_DOWN = 30.0
+"""A neighbour, and the row that it stands in, are taken to be so long along the road [m], and so deep."""
 LESS_BESIDE = 0.01
 """The margin to kerb or wall is taken this much [m] smaller, so that a target at that margin is free."""
 
@@ -47,6 +51,10 @@ class Slot(NamedTuple):
     depth: Annotated[float, Signal("m", "corner A to the kerb or wall; 50: none seen", 0.0, 1e4)] = UNSEEN
     opposite: Annotated[float, Signal("m", "corner A to what lies across the road; 50: none seen", 0.0, 1e4)] = UNSEEN
     unsure: Annotated[float, Signal("m", "each corner may lie this much further in than it was found", 0.0, 10.0)] = 0.0
+    skew_a: Annotated[
+        float, Signal("rad", "heading of the neighbour at corner A against the slot's, mirrored for a slot on the left")
+    ] = 0.0
+    skew_b: Annotated[float, Signal("rad", "the same of the neighbour at corner B")] = 0.0
 
 
 class Site(NamedTuple):
@@ -72,16 +80,38 @@ def mirror_of(slot: Slot) -> float:
     return -1.0 if slot.side == Side.LEFT else 1.0
 
 
+class Room(NamedTuple):
+    """From where to where [m] along the road a slot is free as deep as a car stands in it."""
+
+    low: float
+    high: float
+
+
+def room_of(slot: Slot, deep: float) -> Room:
+    """Return the room [m] along the road between two neighbours that may lean into the slot, ``deep`` [m] in it."""
+    return Room(max(0.0, deep * math.sin(slot.skew_a)), slot.length + min(0.0, deep * math.sin(slot.skew_b)))
+
+
 def target_of(slot: Slot, car: Shape, margins: Margins) -> Pose:
     """Return the pose to park at, in A's frame."""
     line = 0.5 * slot.b_out - margins.inset
     if slot.kind == Kind.PERPENDICULAR:
+        room = room_of(slot, car.front + car.rear)
         y = line - car.front
         lowest = car.rear + margins.neighbour - slot.depth
-        return Pose(0.5 * slot.length, lowest if y < lowest else y, 0.5 * math.pi)
+        return Pose(0.5 * (room.low + room.high), lowest if y < lowest else y, 0.5 * math.pi)
+    room = room_of(slot, 2.0 * car.half_width)
     y = line - car.half_width
     lowest = car.half_width + margins.beside - slot.depth
-    return Pose(0.5 * (slot.length - car.front - car.rear) + car.rear, lowest if y < lowest else y, 0.0)
+    return Pose(0.5 * (room.low + room.high - car.front - car.rear) + car.rear, lowest if y < lowest else y, 0.0)
+
+
+def stands_out_by(pose: Pose, slot: Slot, car: Shape) -> float:
+    """Return how far [m] a car at ``pose`` (A's frame) stands out of the line between its neighbours' corners."""
+    c = math.cos(pose.heading)
+    s = math.sin(pose.heading)
+    ahead = max(car.front * s, -car.rear * s)
+    return pose.y + ahead + car.half_width * abs(c) - 0.5 * slot.b_out
 
 
 def site_of(slot: Slot, car: Shape, margins: Margins) -> Site:
@@ -90,11 +120,12 @@ def site_of(slot: Slot, car: Shape, margins: Margins) -> Site:
     frame = SlotFrame(to_world(target, SlotFrame(slot.a, mirror_of(slot))), mirror_of(slot))
     x = target.x
     y = target.y
-    behind = Box(-FAR, slot.unsure, -FAR, 0.0)
-    ahead = Box(slot.length - slot.unsure, FAR, -FAR, slot.b_out)
+    turned = slot.kind == Kind.PERPENDICULAR
+    reach = REACH_PERPENDICULAR if turned else REACH_PARALLEL
+    behind = turned_box(Box(-reach, slot.unsure, -DEEP_DOWN, 0.0), 0.0, 0.0, slot.skew_a)
+    ahead = turned_box(Box(-slot.unsure, reach, -DEEP_DOWN, 0.0), slot.length, slot.b_out, slot.skew_b)
     beside = Box(-FAR, FAR, -FAR, -slot.depth) if slot.depth < UNSEEN else Box(1.0, -1.0, 1.0, -1.0)
     opposite = Box(-FAR, FAR, slot.opposite, FAR) if slot.opposite < UNSEEN else Box(1.0, -1.0, 1.0, -1.0)
-    turned = slot.kind == Kind.PERPENDICULAR
     near = margins.neighbour
     beside_margin = margins.neighbour if turned else margins.beside
     obstacles = Obstacles(
@@ -105,7 +136,8 @@ def site_of(slot: Slot, car: Shape, margins: Margins) -> Site:
     )
     if turned:
         return Site(slot.kind, frame, obstacles, -0.05, 0.1)
-    slack = 0.5 * (slot.length - car.front - car.rear) - near - slot.unsure
+    room = room_of(slot, 2.0 * car.half_width)
+    slack = 0.5 * (room.high - room.low - car.front - car.rear) - near - slot.unsure
     slack = slack - 0.01 if slack > 0.01 else 0.0
     return Site(slot.kind, frame, obstacles, -slack, slack)
 
@@ -123,8 +155,11 @@ def shortest_for_one_move(car: Shape, inner_radius: float, depth: float) -> floa
 
 
 def _seen_from(box: Box, x: float, y: float, turned: bool) -> Box:
+    """Return a box of A's frame in the frame of a target at (x, y), which is ``turned`` by 90 deg or not."""
     if box.x0 > box.x1:
         return box
+    dx = box.x - x
+    dy = box.y - y
     if turned:
-        return Box(box.y0 - y, box.y1 - y, x - box.x1, x - box.x0)
-    return Box(box.x0 - x, box.x1 - x, box.y0 - y, box.y1 - y)
+        return box._replace(x=dy, y=-dx, cos=box.sin, sin=-box.cos)
+    return box._replace(x=dx, y=dy)

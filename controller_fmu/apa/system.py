@@ -3,6 +3,9 @@
 from typing import NamedTuple
 
 from controller_fmu.apa.chart import Guard, Mode, transition
+from controller_fmu.apa.guard import Guard as SafetyGuard
+from controller_fmu.apa.guard import learn_brake, listen
+from controller_fmu.apa.local_map import LocalMap, begin_map, heard, moved, slot_of_map
 from controller_fmu.apa.manoeuvre_chart import Step
 from controller_fmu.apa.parking import (
     Parking,
@@ -14,7 +17,7 @@ from controller_fmu.apa.parking import (
     shape_of,
     start_planning,
 )
-from controller_fmu.apa.relocate import along, between, braked, relocated
+from controller_fmu.apa.relocate import braked, walled
 from controller_fmu.apa.search import SearchState, begin_search, is_new_reading, search, without_first
 from controller_fmu.apa.slot import Slot
 from controller_fmu.apa.watch import STANDING, Watch, is_taken_over, reason_to_fail, watch
@@ -38,6 +41,8 @@ class ApaState(NamedTuple):
     search: SearchState = SearchState()
     slot: Slot = Slot()
     """The slot chosen."""
+    map: LocalMap = LocalMap()
+    guard: SafetyGuard = SafetyGuard()
     parking: Parking = Parking()
     watch: Watch = Watch()
     waited_ns: int = 0
@@ -60,20 +65,27 @@ def apa_sample(state: ApaState, inputs: ControllerInput, params: ControllerParam
     reason = reason_to_fail(seen, inputs, driving, params) if state.mode != Mode.OFF else Reason.NONE
     found = state.search
     slot = state.slot
+    here = state.map
+    guard = state.guard
     if reason == Reason.NONE and not taken:
         if state.mode in (Mode.PARKING_SPACE_SEARCH, Mode.PARKING_SPACE_APPEARS):
             found = search(found, inputs, shape_of(params), params, dt_ns)
         if driving or state.mode == Mode.PARKING_SPACE_APPEARS:
-            if driving and parking.step == Step.HALT and abs(inputs.measured_speed) <= STANDING:
-                sight = parking.sight
-                slot = relocated(slot, inputs, sight.blocked and sight.unknown, params)
+            stopping = driving and parking.step != Step.DRIVE
+            guard = learn_brake(guard, inputs.measured_speed, stopping, dt_ns, params)
+            if is_new_reading(state.clock_ns, dt_ns, params.car.ultrasonic.cycle):
+                here = moved(here, inputs.odometry, params.apa.map)
+                here = heard(here, inputs.ultrasonic, params.car.ultrasonic, params.apa.map)
+                if parking.step == Step.HALT and abs(inputs.measured_speed) <= STANDING:
+                    here = walled(here, slot, inputs, parking.sight.blocked, params)
+                guard = listen(guard, inputs.ultrasonic, here, params)
+                slot = slot_of_map(here, slot, params.apa.map)
                 parking = cut_short(parking) if slot.depth < state.slot.depth - SHALLOWER else parking
-            if driving and is_new_reading(state.clock_ns, dt_ns, params.car.ultrasonic.cycle):
-                slot = along(between(slot, inputs, params), inputs, params)
-            parking = park(parking, slot, inputs, seen.wheel.steering, driving, params)
+            parking = park(parking, slot, here, guard, inputs, seen.wheel.steering, driving, params)
     reason = _later_reason(reason, state, parking, found, params)
     guards = _guards(state, parking, found, inputs, reason, taken, params)
     mode = transition(state.mode, guards)
+    state = state._replace(map=here, guard=guard)
     return _moved_on(state, mode, parking, found, slot, seen, reason, taken, inputs, params, dt_ns)
 
 
@@ -95,6 +107,8 @@ def _later_reason(reason: int, state: ApaState, parking: Parking, found: SearchS
 
 
 def _no_way(parking: Parking) -> int:
+    if parking.missed:
+        return Reason.MISSED_TARGET
     return Reason.TOO_MANY_SHIFTS if parking.plan.found else Reason.NO_PATH
 
 
@@ -146,6 +160,8 @@ def _moved_on(
 ) -> ApaState:
     clock = state.clock_ns + dt_ns
     pose = state.pose
+    here = state.map
+    guard = state.guard
     waiting = (
         is_planned(parking)
         if mode == Mode.PARKING_SPACE_APPEARS
@@ -165,6 +181,8 @@ def _moved_on(
     if mode == Mode.PARKING_SPACE_APPEARS and state.mode != Mode.PARKING_SPACE_APPEARS:
         given = params.apa.search.given
         slot = params.apa.search.slot if given else braked(found.slots[0], found.fastest, params)
+        here = begin_map(slot, inputs.odometry, params.apa.map)
+        guard = SafetyGuard(delay=guard.delay)
         parking = start_planning(slot, inputs.odometry, params)
         pose = inputs.odometry
     over = mode == Mode.FAIL
@@ -178,6 +196,8 @@ def _moved_on(
         clock_ns=clock,
         search=found,
         slot=slot,
+        map=here,
+        guard=guard,
         parking=parking,
         watch=seen,
         waited_ns=waited,

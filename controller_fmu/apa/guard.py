@@ -1,0 +1,242 @@
+"""The guard: stops the car before it could touch anything, whoever drives and whatever is planned.
+
+It knows nothing of the plan. It drives the outline in thought along the arc of the front wheels as they are,
+as far as the car needs to stop, and looks at three things: what the map says stands there, what sensors hear
+that the map does not explain (anywhere on the arc that such an echo may come from), and how near anything is
+straight ahead. Nothing else may keep the brake off; a car may drive away from what is near.
+"""
+
+import math
+from typing import NamedTuple
+
+from controller_fmu.apa.cone import Ear, Echo, rim_point
+from controller_fmu.apa.local_map import LocalMap, ear_at, expected, nearest_case, unsure_of
+from controller_fmu.apa.outline import Box, Obstacles, Shape, box_clearance, clearance, grown
+from controller_fmu.common.curve import advance
+from controller_fmu.interface import ControllerParams
+from modelkit.geometry import Point
+from modelkit.vocabulary import Pose
+
+FREE = 100.0
+STRAIGHT = 0.2
+LOOKED_AT = 1.5
+WIDER = 0.1
+"""The rim of a cone may touch something known that lies so much [rad] beside it."""
+LOOKS = 6
+AHEAD = 0.1
+"""Looked ahead so many times by so much [m], and at where the car would stand, ``LEAST`` at least."""
+LEAST = 0.04
+NEARER = 0.004
+"""A car that comes nearer by less [m] than this drives along something, not to it."""
+UNSURE = 0.7
+"""Kept away from what is known by so many standard deviations more."""
+SURE = 0.03
+"""The gap is made for things that are as sure as this [m]."""
+STANDING = 0.05
+DOUBTS = 2.5
+DIFFERENT = 0.5
+SHARES = (-1.0, -0.5, 0.0, 0.5, 1.0)
+
+
+NOWHERE = Point(1e3, 1e3)
+
+
+class Unknown(NamedTuple):
+    """An echo that the map does not explain: five points of the arc it may come from (map's frame)."""
+
+    there: bool = False
+    points: tuple[Point, ...] = (Point(0.0, 0.0),) * 5
+
+
+class Sight(NamedTuple):
+    """What the guard says."""
+
+    speed: float = FREE
+    """Largest speed [m/s] with which the car still stops in time."""
+    blocked: bool = False
+    unknown: bool = False
+    """What blocks is not on the map."""
+
+
+class Guard(NamedTuple):
+    """What the guard remembers: one unexplained echo for each sensor, and how late the brake is."""
+
+    unknown: tuple[Unknown, ...] = (Unknown(),) * 12
+    echoes: tuple[Point, ...] = (NOWHERE,) * 12
+    """Where the last echo of each sensor comes from (map's frame), if the map explains it."""
+    delay: float = 0.0
+    """Longest seen from a brake request to its effect [s]."""
+    braked_from: float = 0.0
+    """Speed [m/s] at which a stop was last asked for; 0: none is under way."""
+    braked_way: float = 0.0
+    """Driven since [m]."""
+
+
+def stopping_way(state: Guard, speed: float, params: ControllerParams) -> float:
+    """Return the way [m] that the car needs to stop, as late as its brake was ever seen to be."""
+    v = abs(speed)
+    late = max(state.delay, params.apa.guard.brake_delay)
+    return v * late + 0.5 * v * v / params.apa.drive.brake
+
+
+def listen(state: Guard, readings: tuple[float, ...], here: LocalMap, params: ControllerParams) -> Guard:
+    """Return the guard after new readings: echoes that the map does not explain are kept until they are refuted."""
+    sensors = params.car.ultrasonic
+    surprise = params.apa.guard.surprise
+    unknown = state.unknown
+    echoes = state.echoes
+    near = nearest_case(here, DOUBTS)
+    for number in range(12):
+        reading = readings[number]
+        mount = sensors.mounts[number]
+        ear = ear_at(mount, here.pose, here.frame.mirror, sensors.half_angle)
+        wide = ear_at(mount, here.pose, here.frame.mirror, sensors.half_angle + WIDER)
+        kept = unknown[0]
+        echo = NOWHERE
+        known = expected(wide, here)
+        least = min(expected(wide, near).echo.distance, known.echo.distance - DOUBTS * unsure_of(here, known.who))
+        explained = reading >= least - surprise - 0.05 * reading
+        if reading < LOOKED_AT and explained:
+            echo = _origin(ear, expected(ear, here).echo, reading)
+            echo = _origin(ear, expected(wide, near).echo, reading) if echo.x == NOWHERE.x else echo
+        echoes = echoes[1:] + (echo,)
+        if reading < LOOKED_AT and not explained:
+            points = tuple(rim_point(ear, share, reading) for share in SHARES)
+            kept = Unknown(True, points)
+        elif kept.there:
+            middle = kept.points[2]
+            dx = middle.x - ear.x
+            dy = middle.y - ear.y
+            along = dx * ear.ax + dy * ear.ay
+            seen = abs(dy * ear.ax - dx * ear.ay) * ear.cosine < along * ear.sine
+            far = dx * dx + dy * dy
+            kept = Unknown(not (seen and far < reading * reading) and far < 4.0, kept.points)
+        unknown = unknown[1:] + (kept,)
+    return state._replace(unknown=unknown, echoes=echoes)
+
+
+def _origin(ear: Ear, echo: Echo, reading: float) -> Point:
+    """Return where an echo comes from [m]: as far as it says, in the direction in which the map has what it is of."""
+    if echo.distance > reading + DIFFERENT or echo.distance < 0.05:
+        return NOWHERE
+    share = reading / echo.distance
+    return Point(ear.x + share * (echo.x - ear.x), ear.y + share * (echo.y - ear.y))
+
+
+def learn_brake(state: Guard, speed: float, braking: bool, dt_ns: int, params: ControllerParams) -> Guard:
+    """Return the guard with how late the brake was, once the car stands: way = v t + v^2 / 2 b."""
+    v = abs(speed)
+    if not braking:
+        return state._replace(braked_from=0.0, braked_way=0.0)
+    begun = state.braked_from if state.braked_from > 0.0 else v
+    way = state.braked_way + v * dt_ns * 1e-9
+    if v > 0.01 or begun < STANDING:
+        return state._replace(braked_from=begun, braked_way=way)
+    late = (way - 0.5 * begun * begun / params.apa.drive.brake) / begun
+    return state._replace(delay=max(state.delay, min(late, 0.5)))
+
+
+def watch_way(
+    state: Guard,
+    readings: tuple[float, ...],
+    here: LocalMap,
+    pose: Pose,
+    direction: int,
+    speed: float,
+    curvature: float,
+    around: Obstacles,
+    car: Shape,
+    params: ControllerParams,
+) -> Sight:
+    """Return the sight of a car at ``pose`` (frame of ``around``) that drives in ``direction`` on this curvature."""
+    guard = params.apa.guard
+    stop = max(LEAST, stopping_way(state, speed, params))
+    known = _free_way(pose, direction, curvature, stop, car, _unsure(around, here, guard.gap), 0.0)
+    strange = _free_of_unknown(state, here.pose, direction, curvature, stop, car, guard.surprise_gap)
+    straight = _straight_ahead(readings, direction, params) - guard.stop_gap
+    raw = _free_of_echoes(state, here.pose, direction, curvature, stop, car, guard.echo_gap)
+    gap = min(min(known, raw), min(strange, straight))
+    room = gap - 0.02 if gap > 0.02 else 0.0
+    return Sight(math.sqrt(params.apa.drive.brake * room), gap <= stop, strange <= stop and strange <= min(known, raw))
+
+
+def _unsure(around: Obstacles, here: LocalMap, gap: float) -> Obstacles:
+    """Return what is known, grown by the ``gap`` kept to it and by how unsure it is along the road and across."""
+    behind = grown(around.behind, gap)
+    ahead = grown(around.ahead, gap)
+    return Obstacles(
+        behind._replace(x1=behind.x1 + _spread(here.a.xx), y1=behind.y1 + _spread(here.a.yy)),
+        ahead._replace(x0=ahead.x0 - _spread(here.b.xx), y1=ahead.y1 + _spread(here.b.yy)),
+        grown(around.beside, gap),
+        grown(around.opposite, gap),
+    )
+
+
+def _spread(variance: float) -> float:
+    return UNSURE * max(0.0, math.sqrt(variance) - SURE)
+
+
+def _free_way(
+    pose: Pose, direction: int, curvature: float, stop: float, car: Shape, around: Obstacles, gap: float
+) -> float:
+    """Return how far [m] the outline can go before it is nearer than ``gap`` to a known thing, and nearer than now."""
+    now = clearance(pose, car, around)
+    for number in range(LOOKS + 1):
+        way = stop if number == 0 else AHEAD * number
+        there = clearance(advance(pose, float(direction), way, curvature, curvature), car, around)
+        if there < gap and there < now - NEARER:
+            return way if number > 0 else 0.0
+    return FREE
+
+
+def _free_of_unknown(
+    state: Guard, pose: Pose, direction: int, curvature: float, stop: float, car: Shape, gap: float
+) -> float:
+    """Return how far [m] the outline can go before it is nearer than ``gap`` to what an unexplained echo is of."""
+    nearest = FREE
+    for item in state.unknown:
+        if item.there:
+            for number in range(LOOKS + 1):
+                way = stop if number == 0 else AHEAD * number
+                there = advance(pose, float(direction), way, curvature, curvature)
+                if way < nearest and _comes_near(item, pose, there, car, gap):
+                    nearest = way if number > 0 else 0.0
+    return nearest
+
+
+def _free_of_echoes(
+    state: Guard, pose: Pose, direction: int, curvature: float, stop: float, car: Shape, gap: float
+) -> float:
+    """Return how far [m] the outline can go before it is nearer than ``gap`` to where an echo just came from."""
+    for number in range(2):
+        way = stop if number == 0 else stop + AHEAD
+        there = advance(pose, float(direction), way, curvature, curvature)
+        for point in state.echoes:
+            if point.x < NOWHERE.x:
+                box = Box(point.x, point.x, point.y, point.y)
+                near = box_clearance(there, car, box)
+                if near < gap and near < box_clearance(pose, car, box) - NEARER:
+                    return way if number > 0 else 0.0
+    return FREE
+
+
+def _comes_near(item: Unknown, now: Pose, there: Pose, car: Shape, gap: float) -> bool:
+    """Return whether a point of an arc is nearer than ``gap`` to a car that stands ``there``, and nearer than now."""
+    for point in item.points:
+        box = Box(point.x, point.x, point.y, point.y)
+        near = box_clearance(there, car, box)
+        if near < gap and near < box_clearance(now, car, box) - NEARER:
+            return True
+    return False
+
+
+def _straight_ahead(readings: tuple[float, ...], direction: int, params: ControllerParams) -> float:
+    """Return the nearest reading [m] of the sensors that look straight where the car drives."""
+    nearest = FREE
+    first = 0 if direction > 0 else 4
+    for number in range(first, first + 4):
+        yaw = abs(params.car.ultrasonic.mounts[number].yaw)
+        ahead = yaw < STRAIGHT if direction > 0 else yaw > math.pi - STRAIGHT
+        if ahead and readings[number] < LOOKED_AT:
+            nearest = min(nearest, readings[number])
+    return nearest

@@ -1,0 +1,248 @@
+"""The local map: two neighbours, what is behind the slot and across the road, each where the sensors hear it.
+
+Everything is in one frame, A's frame as the slot was chosen, mirrored for a slot on the left; the odometry
+drifts in it, so every thing becomes less sure with the way (``moved``) until it is heard again (``heard``).
+A neighbour has a side along the road and a flank, square to it, with a heading of its own.
+"""
+
+import math
+from typing import NamedTuple
+
+from controller_fmu.apa.cone import Ear, Echo, Hit, ear_of, echo_of
+from controller_fmu.apa.params import MapParams
+from controller_fmu.apa.slot import UNSEEN, Kind, Slot, mirror_of
+from controller_fmu.apa.thing import Slope, Thing, learnt, spread_along, thing_at, wider
+from controller_fmu.common.slot_frame import SlotFrame, to_slot, to_world
+from modelkit.car import CarUltrasonic, SensorMount
+from modelkit.geometry import Point
+from modelkit.vocabulary import Pose
+
+NOBODY, A, B, WALL, ACROSS = 0, 1, 2, 3, 4
+"""Who is heard."""
+SIDE_PARALLEL = 5.0
+SIDE_PERPENDICULAR = 2.5
+"""How long [m] a neighbour's side along the road is taken to be."""
+DEPTH_PARALLEL = 1.8
+DEPTH_PERPENDICULAR = 4.8
+"""How deep [m] it is taken to be."""
+SURE = 1.3
+SURE_PARALLEL = 3.5
+"""So far [m] from its corner a neighbour's side goes on for sure."""
+MUCH = 0.4
+"""A reading that is further off [m] is of something else."""
+DOUBT = 0.002
+"""One that is off by less, but by more than it may, makes a thing less sure by this [m]."""
+SHARED = 0.8
+"""Of what a wall is heard nearer than thought, this share is drift of the odometry, the same for the neighbours."""
+LONG = 30.0
+APART = 0.12
+"""Two things whose distances differ by less [m] cannot be told apart by a reading."""
+
+
+class LocalMap(NamedTuple):
+    """What stands around the slot chosen."""
+
+    frame: SlotFrame = SlotFrame()
+    kind: int = Kind.NONE
+    a: Thing = Thing()
+    b: Thing = Thing()
+    wall: Thing = Thing()
+    walled: bool = False
+    """A kerb or wall behind the slot was heard."""
+    across: float = UNSEEN
+    """y [m] of what lies across the road."""
+    pose: Pose = Pose()
+    """The car at the last reading."""
+
+
+class Expected(NamedTuple):
+    """What a sensor should hear, of whom, and what it should hear of the next other one."""
+
+    echo: Echo = Echo()
+    who: int = NOBODY
+    other: float = 100.0
+
+
+def begin_map(slot: Slot, pose: Pose, params: MapParams) -> LocalMap:
+    """Return the map of a slot as it was found or given, seen from a car at ``pose`` (odometry)."""
+    place = params.corner + slot.unsure
+    frame = SlotFrame(slot.a, mirror_of(slot))
+    return LocalMap(
+        frame,
+        slot.kind,
+        thing_at(0.0, 0.0, slot.skew_a, place, params.turned),
+        thing_at(slot.length, slot.b_out, slot.skew_b, place, params.turned),
+        thing_at(0.5 * slot.length, -slot.depth, 0.0, params.corner, 0.5 * params.turned),
+        slot.depth < UNSEEN,
+        slot.opposite,
+        to_slot(pose, frame),
+    )
+
+
+def slot_of_map(here: LocalMap, slot: Slot, params: MapParams) -> Slot:
+    """Return the slot as the map has it: its heading is that of what stands around, each weighted by how sure it is."""
+    heading = _road(here, params)
+    c = math.cos(heading)
+    s = math.sin(heading)
+    dx = here.b.x - here.a.x
+    dy = here.b.y - here.a.y
+    depth = UNSEEN
+    if here.walled:
+        depth = (here.a.y - here.wall.y) * c - (here.a.x - here.wall.x) * s
+    return slot._replace(
+        a=to_world(Pose(here.a.x, here.a.y, heading), here.frame),
+        length=dx * c + dy * s,
+        b_out=dy * c - dx * s,
+        depth=depth,
+        skew_a=here.a.heading - heading,
+        skew_b=here.b.heading - heading,
+        unsure=_reserve(here, params),
+    )
+
+
+def _road(here: LocalMap, params: MapParams) -> float:
+    """Return the heading [rad] of the road in the map: neighbours stand askew by ``askew``, a wall by less."""
+    least = params.askew * params.askew
+    a = 1.0 / (least + here.a.hh)
+    b = 1.0 / (least + here.b.hh)
+    total = a * here.a.heading + b * here.b.heading
+    weight = a + b
+    if here.walled:
+        wall = 1.0 / (0.01 * least + here.wall.hh)
+        total += wall * here.wall.heading
+        weight += wall
+    return total / weight
+
+
+def _reserve(here: LocalMap, params: MapParams) -> float:
+    """Return how much further in [m] than thought a neighbour may stand, beyond what the margins are there for."""
+    most = math.sqrt(max(here.a.xx, here.b.xx))
+    return max(0.0, most - params.usual)
+
+
+def moved(here: LocalMap, odometry: Pose, params: MapParams) -> LocalMap:
+    """Return the map after the car has driven on: everything is less sure by what the odometry may be wrong by."""
+    pose = to_slot(odometry, here.frame)
+    dx = pose.x - here.pose.x
+    dy = pose.y - here.pose.y
+    way = math.sqrt(dx * dx + dy * dy)
+    if way == 0.0:
+        return here
+    place = params.drift * way
+    turned = params.turn_drift * way
+    return here._replace(
+        a=wider(here.a, place, turned), b=wider(here.b, place, turned), wall=wider(here.wall, place, turned), pose=pose
+    )
+
+
+def ear_at(mount: SensorMount, pose: Pose, mirror: float, half_angle: float) -> Ear:
+    """Return a sensor of a car at ``pose`` (map's frame)."""
+    c = math.cos(pose.heading)
+    s = math.sin(pose.heading)
+    y = mirror * mount.y
+    return ear_of(
+        pose.x + mount.x * c - y * s, pose.y + mount.x * s + y * c, pose.heading + mirror * mount.yaw, half_angle
+    )
+
+
+def expected(ear: Ear, here: LocalMap) -> Expected:
+    """Return what a sensor should hear."""
+    length = SIDE_PARALLEL if here.kind == Kind.PARALLEL else SIDE_PERPENDICULAR
+    depth = DEPTH_PARALLEL if here.kind == Kind.PARALLEL else DEPTH_PERPENDICULAR
+    found = _nearer(Expected(), _of(ear, here.a, -length, depth), A)
+    found = _nearer(found, _of(ear, here.b, length, depth), B)
+    if here.walled:
+        found = _nearer(found, _line(ear, here.wall), WALL)
+    if here.across < UNSEEN:
+        found = _nearer(found, echo_of(ear, Point(-LONG, here.across), Point(LONG, here.across)), ACROSS)
+    return found
+
+
+def nearest_case(here: LocalMap, times: float) -> LocalMap:
+    """Return the map with both neighbours ``times`` standard deviations nearer, into the slot and out of it."""
+    a = here.a
+    b = here.b
+    wall = here.wall
+    return here._replace(
+        a=a._replace(x=a.x + times * math.sqrt(a.xx), y=a.y + times * math.sqrt(a.yy)),
+        b=b._replace(x=b.x - times * math.sqrt(b.xx), y=b.y + times * math.sqrt(b.yy)),
+        wall=wall._replace(y=wall.y + times * math.sqrt(wall.yy)),
+    )
+
+
+def is_certain(here: LocalMap, params: MapParams) -> bool:
+    """Return whether both neighbours are still where a car between them hears them."""
+    return max(here.a.xx, here.b.xx) < params.certain * params.certain
+
+
+def unsure_of(here: LocalMap, who: int) -> float:
+    """Return the standard deviation [m] of the place of one of those who are heard."""
+    if who == NOBODY or who == ACROSS:
+        return 0.0
+    thing = here.a if who == A else here.b if who == B else here.wall
+    return math.sqrt(thing.yy if who == WALL else max(thing.xx, thing.yy))
+
+
+def _nearer(found: Expected, echo: Echo, who: int) -> Expected:
+    if echo.distance < found.echo.distance:
+        return Expected(echo, who, found.echo.distance)
+    return found if echo.distance >= found.other else Expected(found.echo, found.who, echo.distance)
+
+
+def _of(ear: Ear, thing: Thing, along: float, depth: float) -> Echo:
+    """Return what is heard of a neighbour: of its side, ``along`` [m] from its corner, or of its flank."""
+    c = math.cos(thing.heading)
+    s = math.sin(thing.heading)
+    corner = Point(thing.x, thing.y)
+    side = echo_of(ear, corner, Point(thing.x + along * c, thing.y + along * s))
+    flank = echo_of(ear, corner, Point(thing.x + depth * s, thing.y - depth * c))
+    return side if side.distance <= flank.distance else flank
+
+
+def _line(ear: Ear, wall: Thing) -> Echo:
+    c = LONG * math.cos(wall.heading)
+    s = LONG * math.sin(wall.heading)
+    return echo_of(ear, Point(wall.x - c, wall.y - s), Point(wall.x + c, wall.y + s))
+
+
+def heard(here: LocalMap, readings: tuple[float, ...], sensors: CarUltrasonic, params: MapParams) -> LocalMap:
+    """Return the map after new ``readings`` of all sensors: each sets right what it was heard of, if that is plain."""
+    lowest = sensors.min_range + 1.1 * sensors.resolution
+    for number in range(12):
+        reading = readings[number]
+        if lowest < reading < params.heard:
+            ear = ear_at(sensors.mounts[number], here.pose, here.frame.mirror, sensors.half_angle)
+            here = _told(here, ear, expected(ear, here), reading, params)
+    return here
+
+
+def _from_corner(thing: Thing, echo: Echo) -> float:
+    """Return how far [m] along the road from a neighbour's corner an echo comes from."""
+    return abs((echo.x - thing.x) * math.cos(thing.heading) + (echo.y - thing.y) * math.sin(thing.heading))
+
+
+def _told(here: LocalMap, ear: Ear, what: Expected, reading: float, params: MapParams) -> LocalMap:
+    """Return the map after one reading; unchanged if it may be of something else, or of the rim of the cone."""
+    if what.who == ACROSS or what.other - what.echo.distance < APART or what.echo.distance < 0.05:
+        return here
+    if what.echo.hit != Hit.SQUARE and what.echo.hit != Hit.START:
+        return here
+    thing = here.a if what.who == A else here.b if what.who == B else here.wall
+    if what.who != WALL and _from_corner(thing, what.echo) > (SURE_PARALLEL if here.kind == Kind.PARALLEL else SURE):
+        return here
+    nx = (what.echo.x - ear.x) / what.echo.distance
+    ny = (what.echo.y - ear.y) / what.echo.distance
+    lever = nx * (thing.y - what.echo.y) - ny * (thing.x - what.echo.x)
+    slope = Slope(nx, ny, lever)
+    noise = params.noise * params.noise + 0.0001 * reading * reading
+    error = reading - what.echo.distance
+    most = params.gate * math.sqrt(spread_along(thing, slope) + noise)
+    if abs(error) > MUCH:
+        return here
+    thing = wider(thing, DOUBT, 0.0) if abs(error) > most else learnt(thing, slope, error, noise, params.floor)
+    if what.who == A:
+        return here._replace(a=thing)
+    if what.who == B:
+        return here._replace(b=thing)
+    off = SHARED * (thing.y - here.wall.y)
+    return here._replace(wall=thing, a=here.a._replace(y=here.a.y + off), b=here.b._replace(y=here.b.y + off))

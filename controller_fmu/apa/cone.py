@@ -25,7 +25,7 @@ class Hit(IntEnum):
     RIM = 4
 
 
-class Ear(NamedTuple):
+class ConeEar(NamedTuple):
     """A sensor in the plane: where it is, the unit vector of its axis, sine and cosine of its half opening."""
 
     x: float
@@ -45,12 +45,12 @@ class Echo(NamedTuple):
     y: float = 0.0
 
 
-def ear_of(x: float, y: float, axis: float, half_angle: float) -> Ear:
+def ear_of(x: float, y: float, axis: float, half_angle: float) -> ConeEar:
     """Return the sensor at (x, y) [m] that looks along ``axis`` [rad]."""
-    return Ear(x, y, math.cos(axis), math.sin(axis), math.sin(half_angle), math.cos(half_angle))
+    return ConeEar(x, y, math.cos(axis), math.sin(axis), math.sin(half_angle), math.cos(half_angle))
 
 
-def echo_of(ear: Ear, a: Point, b: Point) -> Echo:
+def echo_of(ear: ConeEar, a: Point, b: Point) -> Echo:
     """Return what is heard of the side from ``a`` to ``b``: of its part with |across| cos <= along sin."""
     ux = (a.x - ear.x) * ear.ax + (a.y - ear.y) * ear.ay
     uy = (a.y - ear.y) * ear.ax - (a.x - ear.x) * ear.ay
@@ -85,7 +85,7 @@ def echo_of(ear: Ear, a: Point, b: Point) -> Echo:
     return Echo(math.sqrt(x * x + y * y), int(hit), a.x + t * (b.x - a.x), a.y + t * (b.y - a.y))
 
 
-def rim_point(ear: Ear, share: float, distance: float) -> Point:
+def rim_point(ear: ConeEar, share: float, distance: float) -> Point:
     """Return the point ``distance`` [m] from the sensor, ``share`` (-1 to 1) of the way to the rims of its cone.
 
     Between axis and rim the chord is divided, which is near enough for cones up to 45 deg.

@@ -9,7 +9,7 @@ straight ahead. Nothing else may keep the brake off; a car may drive away from w
 import math
 from typing import NamedTuple
 
-from controller_fmu.apa.cone import Ear, Echo, rim_point
+from controller_fmu.apa.cone import ConeEar, Echo, rim_point
 from controller_fmu.apa.local_map import LocalMap, ear_at, expected, nearest_case, unsure_of
 from controller_fmu.apa.outline import Box, Obstacles, Shape, box_clearance, clearance, grown
 from controller_fmu.common.curve import advance
@@ -58,7 +58,7 @@ class Sight(NamedTuple):
     """What blocks is not on the map."""
 
 
-class Guard(NamedTuple):
+class GuardState(NamedTuple):
     """What the guard remembers: one unexplained echo for each sensor, and how late the brake is."""
 
     unknown: tuple[Unknown, ...] = (Unknown(),) * 12
@@ -72,14 +72,14 @@ class Guard(NamedTuple):
     """Driven since [m]."""
 
 
-def stopping_way(state: Guard, speed: float, params: ControllerParams) -> float:
+def stopping_way(state: GuardState, speed: float, params: ControllerParams) -> float:
     """Return the way [m] that the car needs to stop, as late as its brake was ever seen to be."""
     v = abs(speed)
     late = max(state.delay, params.apa.guard.brake_delay)
     return v * late + 0.5 * v * v / params.apa.drive.brake
 
 
-def listen(state: Guard, readings: tuple[float, ...], here: LocalMap, params: ControllerParams) -> Guard:
+def listen(state: GuardState, readings: tuple[float, ...], here: LocalMap, params: ControllerParams) -> GuardState:
     """Return the guard after new readings: echoes that the map does not explain are kept until they are refuted."""
     sensors = params.car.ultrasonic
     surprise = params.apa.guard.surprise
@@ -115,7 +115,7 @@ def listen(state: Guard, readings: tuple[float, ...], here: LocalMap, params: Co
     return state._replace(unknown=unknown, echoes=echoes)
 
 
-def _origin(ear: Ear, echo: Echo, reading: float) -> Point:
+def _origin(ear: ConeEar, echo: Echo, reading: float) -> Point:
     """Return where an echo comes from [m]: as far as it says, in the direction in which the map has what it is of."""
     if echo.distance > reading + DIFFERENT or echo.distance < 0.05:
         return NOWHERE
@@ -123,7 +123,7 @@ def _origin(ear: Ear, echo: Echo, reading: float) -> Point:
     return Point(ear.x + share * (echo.x - ear.x), ear.y + share * (echo.y - ear.y))
 
 
-def learn_brake(state: Guard, speed: float, braking: bool, dt_ns: int, params: ControllerParams) -> Guard:
+def learn_brake(state: GuardState, speed: float, braking: bool, dt_ns: int, params: ControllerParams) -> GuardState:
     """Return the guard with how late the brake was, once the car stands: way = v t + v^2 / 2 b."""
     v = abs(speed)
     if not braking:
@@ -137,7 +137,7 @@ def learn_brake(state: Guard, speed: float, braking: bool, dt_ns: int, params: C
 
 
 def watch_way(
-    state: Guard,
+    state: GuardState,
     readings: tuple[float, ...],
     here: LocalMap,
     pose: Pose,
@@ -190,7 +190,7 @@ def _free_way(
 
 
 def _free_of_unknown(
-    state: Guard, pose: Pose, direction: int, curvature: float, stop: float, car: Shape, gap: float
+    state: GuardState, pose: Pose, direction: int, curvature: float, stop: float, car: Shape, gap: float
 ) -> float:
     """Return how far [m] the outline can go before it is nearer than ``gap`` to what an unexplained echo is of."""
     nearest = FREE
@@ -205,7 +205,7 @@ def _free_of_unknown(
 
 
 def _free_of_echoes(
-    state: Guard, pose: Pose, direction: int, curvature: float, stop: float, car: Shape, gap: float
+    state: GuardState, pose: Pose, direction: int, curvature: float, stop: float, car: Shape, gap: float
 ) -> float:
     """Return how far [m] the outline can go before it is nearer than ``gap`` to where an echo just came from."""
     for number in range(2):

@@ -8,7 +8,7 @@ A neighbour has a side along the road and a flank, square to it, with a heading 
 import math
 from typing import NamedTuple
 
-from controller_fmu.apa.cone import Ear, Echo, Hit, ear_of, echo_of
+from controller_fmu.apa.cone import ConeEar, Echo, Hit, ear_of, echo_of
 from controller_fmu.apa.params import MapParams
 from controller_fmu.apa.slot import UNSEEN, Kind, Slot, mirror_of
 from controller_fmu.apa.thing import Slope, Thing, learnt, spread_along, thing_at, wider
@@ -55,7 +55,7 @@ class LocalMap(NamedTuple):
     """The car at the last reading."""
 
 
-class Expected(NamedTuple):
+class MapEcho(NamedTuple):
     """What a sensor should hear, of whom, and what it should hear of the next other one."""
 
     echo: Echo = Echo()
@@ -135,7 +135,7 @@ def moved(here: LocalMap, odometry: Pose, params: MapParams) -> LocalMap:
     )
 
 
-def ear_at(mount: SensorMount, pose: Pose, mirror: float, half_angle: float) -> Ear:
+def ear_at(mount: SensorMount, pose: Pose, mirror: float, half_angle: float) -> ConeEar:
     """Return a sensor of a car at ``pose`` (map's frame)."""
     c = math.cos(pose.heading)
     s = math.sin(pose.heading)
@@ -145,11 +145,11 @@ def ear_at(mount: SensorMount, pose: Pose, mirror: float, half_angle: float) -> 
     )
 
 
-def expected(ear: Ear, here: LocalMap) -> Expected:
+def expected(ear: ConeEar, here: LocalMap) -> MapEcho:
     """Return what a sensor should hear."""
     length = SIDE_PARALLEL if here.kind == Kind.PARALLEL else SIDE_PERPENDICULAR
     depth = DEPTH_PARALLEL if here.kind == Kind.PARALLEL else DEPTH_PERPENDICULAR
-    found = _nearer(Expected(), _of(ear, here.a, -length, depth), A)
+    found = _nearer(MapEcho(), _of(ear, here.a, -length, depth), A)
     found = _nearer(found, _of(ear, here.b, length, depth), B)
     if here.walled:
         found = _nearer(found, _line(ear, here.wall), WALL)
@@ -183,13 +183,13 @@ def unsure_of(here: LocalMap, who: int) -> float:
     return math.sqrt(thing.yy if who == WALL else max(thing.xx, thing.yy))
 
 
-def _nearer(found: Expected, echo: Echo, who: int) -> Expected:
+def _nearer(found: MapEcho, echo: Echo, who: int) -> MapEcho:
     if echo.distance < found.echo.distance:
-        return Expected(echo, who, found.echo.distance)
-    return found if echo.distance >= found.other else Expected(found.echo, found.who, echo.distance)
+        return MapEcho(echo, who, found.echo.distance)
+    return found if echo.distance >= found.other else MapEcho(found.echo, found.who, echo.distance)
 
 
-def _of(ear: Ear, thing: Thing, along: float, depth: float) -> Echo:
+def _of(ear: ConeEar, thing: Thing, along: float, depth: float) -> Echo:
     """Return what is heard of a neighbour: of its side, ``along`` [m] from its corner, or of its flank."""
     c = math.cos(thing.heading)
     s = math.sin(thing.heading)
@@ -199,7 +199,7 @@ def _of(ear: Ear, thing: Thing, along: float, depth: float) -> Echo:
     return side if side.distance <= flank.distance else flank
 
 
-def _line(ear: Ear, wall: Thing) -> Echo:
+def _line(ear: ConeEar, wall: Thing) -> Echo:
     c = LONG * math.cos(wall.heading)
     s = LONG * math.sin(wall.heading)
     return echo_of(ear, Point(wall.x - c, wall.y - s), Point(wall.x + c, wall.y + s))
@@ -221,7 +221,7 @@ def _from_corner(thing: Thing, echo: Echo) -> float:
     return abs((echo.x - thing.x) * math.cos(thing.heading) + (echo.y - thing.y) * math.sin(thing.heading))
 
 
-def _told(here: LocalMap, ear: Ear, what: Expected, reading: float, params: MapParams) -> LocalMap:
+def _told(here: LocalMap, ear: ConeEar, what: MapEcho, reading: float, params: MapParams) -> LocalMap:
     """Return the map after one reading; unchanged if it may be of something else, or of the rim of the cone."""
     if what.who == ACROSS or what.other - what.echo.distance < APART or what.echo.distance < 0.05:
         return here

@@ -4,7 +4,7 @@ import math
 from typing import NamedTuple
 
 from controller_fmu.apa.fit import closer, following, margins_of, under_way
-from controller_fmu.apa.guard import Guard, Sight, watch_way
+from controller_fmu.apa.guard import GuardState, Sight, watch_way
 from controller_fmu.apa.local_map import LocalMap, is_certain
 from controller_fmu.apa.manoeuvre_chart import Guard as StepGuard
 from controller_fmu.apa.manoeuvre_chart import Step, step_transition
@@ -108,7 +108,7 @@ def park(
     state: Parking,
     slot: Slot,
     here: LocalMap,
-    guard: Guard,
+    guard: GuardState,
     inputs: ControllerInput,
     steering: Steering,
     allowed: bool,
@@ -172,7 +172,7 @@ def is_rest_free(move: Move, tracked: Tracked, site: Site, bare: Site, params: C
 
 
 def _sight(
-    direction: int, bare: Site, here: LocalMap, guard: Guard, inputs: ControllerInput, params: ControllerParams
+    direction: int, bare: Site, here: LocalMap, guard: GuardState, inputs: ControllerInput, params: ControllerParams
 ) -> Sight:
     """Return what the guard says to driving in ``direction`` with the wheels as they are; ``bare``: without margins."""
     front = bare.frame.mirror * inputs.steering_wheel_angle / params.car.steering.ratio

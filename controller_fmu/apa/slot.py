@@ -80,16 +80,16 @@ def mirror_of(slot: Slot) -> float:
     return -1.0 if slot.side == Side.LEFT else 1.0
 
 
-class Room(NamedTuple):
+class Opening(NamedTuple):
     """From where to where [m] along the road a slot is free as deep as a car stands in it."""
 
     low: float
     high: float
 
 
-def room_of(slot: Slot, deep: float) -> Room:
+def room_of(slot: Slot, deep: float) -> Opening:
     """Return the room [m] along the road between two neighbours that may lean into the slot, ``deep`` [m] in it."""
-    return Room(max(0.0, deep * math.sin(slot.skew_a)), slot.length + min(0.0, deep * math.sin(slot.skew_b)))
+    return Opening(max(0.0, deep * math.sin(slot.skew_a)), slot.length + min(0.0, deep * math.sin(slot.skew_b)))
 
 
 def target_of(slot: Slot, car: Shape, margins: Margins) -> Pose:

@@ -3,8 +3,7 @@
 from typing import NamedTuple
 
 from controller_fmu.apa.chart import Guard, Mode, transition
-from controller_fmu.apa.guard import Guard as SafetyGuard
-from controller_fmu.apa.guard import learn_brake, listen
+from controller_fmu.apa.guard import GuardState, learn_brake, listen
 from controller_fmu.apa.local_map import LocalMap, begin_map, heard, moved, slot_of_map
 from controller_fmu.apa.manoeuvre_chart import Step
 from controller_fmu.apa.parking import (
@@ -42,7 +41,7 @@ class ApaState(NamedTuple):
     slot: Slot = Slot()
     """The slot chosen."""
     map: LocalMap = LocalMap()
-    guard: SafetyGuard = SafetyGuard()
+    guard: GuardState = GuardState()
     parking: Parking = Parking()
     watch: Watch = Watch()
     waited_ns: int = 0
@@ -182,7 +181,7 @@ def _moved_on(
         given = params.apa.search.given
         slot = params.apa.search.slot if given else braked(found.slots[0], found.fastest, params)
         here = begin_map(slot, inputs.odometry, params.apa.map)
-        guard = SafetyGuard(delay=guard.delay)
+        guard = GuardState(delay=guard.delay)
         parking = start_planning(slot, inputs.odometry, params)
         pose = inputs.odometry
     over = mode == Mode.FAIL

@@ -4,11 +4,12 @@ import math
 
 import pytest
 
+from controller_fmu.apa.local_map import begin_map, heard, is_certain, moved, slot_of_map
 from controller_fmu.apa.move import is_move_free
 from controller_fmu.apa.outline import Box, Obstacles, Shape
-from controller_fmu.apa.relocate import OUT, along, between, braked, relocated
+from controller_fmu.apa.params import MapParams
+from controller_fmu.apa.relocate import braked, walled
 from controller_fmu.apa.slot import UNSEEN, Kind, Side, Slot
-from controller_fmu.apa.supervisor import look
 from controller_fmu.apa.turns import straight_move
 from controller_fmu.interface import ControllerInput, ControllerParams
 from modelkit.car import CarUltrasonic
@@ -17,21 +18,34 @@ from vehicle_fmu.scene import Obstacle, SceneParams
 from vehicle_fmu.ultrasonic import UltrasonicParams, heard_distances
 
 PARAMS = ControllerParams()
+SENSORS = CarUltrasonic()
+MAP = MapParams()
 DRIFT = 0.08
 READINGS = 60
 
 
 def scene_of(boxes, side):
-    """Return a scene of (x0, x1, y0, y1), mirrored for a slot on the left."""
+    """Return a scene of (x0, x1, y0, y1) or (x0, x1, y0, y1, heading), mirrored for a slot on the left."""
     mirror = -1.0 if side == Side.LEFT else 1.0
-    obstacles = [Obstacle(0.5 * (a + b), mirror * 0.5 * (c + d), 0.0, b - a, d - c) for a, b, c, d in boxes]
+    obstacles = [
+        Obstacle(0.5 * (a + b), mirror * 0.5 * (c + d), mirror * sum(turn), b - a, d - c) for a, b, c, d, *turn in boxes
+    ]
     missing = len(SceneParams().boxes) - len(obstacles)
     return SceneParams(boxes=(*obstacles, *(Obstacle() for _ in range(missing))))
 
 
 def inputs_at(true, believed, boxes, side):
-    heard = heard_distances(true, scene_of(boxes, side), CarUltrasonic(), UltrasonicParams().kerb_height, 0)
-    return ControllerInput(odometry=believed, ultrasonic=heard)
+    distances = heard_distances(true, scene_of(boxes, side), SENSORS, UltrasonicParams().kerb_height, 0)
+    return ControllerInput(odometry=believed, ultrasonic=distances)
+
+
+def followed(slot, true, believed, boxes):
+    """Return the map and the slot after a while at a pose, of which the car believes another."""
+    here = begin_map(slot, believed, MAP)
+    readings = inputs_at(true, believed, boxes, slot.side).ultrasonic
+    for _ in range(READINGS):
+        here = heard(moved(here, believed, MAP), readings, SENSORS, MAP)
+    return here, slot_of_map(here, slot, MAP)
 
 
 @pytest.mark.parametrize("side", [0, 1])
@@ -40,11 +54,29 @@ def test_neighbours_of_a_perpendicular_slot_are_followed(side):
     slot = Slot(Kind.PERPENDICULAR, side, Pose(0.0, 0.0, 0.0), 2.9, 0.0, UNSEEN)
     true = Pose(1.4, mirror * -2.5, mirror * (0.5 * math.pi + 0.1))
     boxes = [(-2.0, 0.0, -5.0, 0.0), (2.9, 5.0, -5.0, 0.0)]
-    heard = inputs_at(true, Pose(true.x + DRIFT, true.y, true.heading), boxes, side)
-    for _ in range(READINGS):
-        slot = between(slot, heard, PARAMS)
-    assert slot.a.x == pytest.approx(DRIFT, abs=0.01)
-    assert slot.length == pytest.approx(2.9, abs=0.01)
+    here, found = followed(slot, true, Pose(true.x + DRIFT, true.y, true.heading), boxes)
+    assert found.a.x == pytest.approx(DRIFT, abs=0.02)
+    assert found.length == pytest.approx(2.9, abs=0.02)
+    assert is_certain(here, MAP)
+
+
+def askew(corner, middle, turn):
+    """Return a box of 1.8 m x 4.6 m whose corner at the slot's mouth is at x = ``corner``, y = 0."""
+    c, s = math.cos(turn), math.sin(turn)
+    x, y = corner + middle * c + 2.3 * s, middle * s - 2.3 * c
+    return (x - 0.9, x + 0.9, y - 2.3, y + 2.3, turn)
+
+
+@pytest.mark.parametrize("side", [0, 1])
+@pytest.mark.parametrize("degrees", [-4.0, 4.0])
+def test_neighbours_that_stand_askew_are_given_their_own_heading(side, degrees):
+    mirror = -1.0 if side == Side.LEFT else 1.0
+    turn = math.radians(degrees)
+    slot = Slot(Kind.PERPENDICULAR, side, Pose(0.0, 0.0, 0.0), 3.2, 0.0, UNSEEN)
+    boxes = [askew(0.0, -0.9, turn), askew(3.2, 0.9, turn)]
+    true = Pose(1.6 + 2.4 * math.sin(turn), mirror * -3.6, mirror * (0.5 * math.pi + turn))
+    found = followed(slot, true, true, boxes)[1]
+    assert mirror * found.a.heading == pytest.approx(turn, abs=math.radians(0.8))
 
 
 @pytest.mark.parametrize("side", [0, 1])
@@ -53,26 +85,29 @@ def test_the_wall_of_a_parallel_slot_is_followed(side):
     slot = Slot(Kind.PARALLEL, side, Pose(0.0, 0.0, 0.0), 6.0, 0.0, 2.1)
     true = Pose(1.6, mirror * -0.7, mirror * 0.2)
     boxes = [(-4.0, 0.0, -2.0, 0.0), (6.0, 10.0, -2.0, 0.0), (-9.0, 15.0, -3.0, -2.1)]
-    heard = inputs_at(true, Pose(true.x, true.y + mirror * DRIFT, true.heading), boxes, side)
-    for _ in range(READINGS):
-        slot = along(slot, heard, PARAMS)
-    assert slot.a.y == pytest.approx(mirror * (DRIFT + OUT), abs=0.005)
-    assert (slot.length, slot.depth) == (6.0, 2.1)
+    found = followed(slot, true, Pose(true.x, true.y + mirror * DRIFT, true.heading), boxes)[1]
+    assert mirror * found.a.y - found.depth == pytest.approx(DRIFT - 2.1, abs=0.02)
 
 
-def test_nothing_moves_on_the_road():
+def test_the_map_is_less_sure_the_farther_the_car_drives_unheard():
     slot = Slot(Kind.PARALLEL, 0, Pose(0.0, 0.0, 0.0), 6.0, 0.0, 2.1)
-    heard = inputs_at(Pose(8.0, 1.6, 0.0), Pose(8.0, 1.6, 0.0), [(6.0, 10.0, -2.0, 0.0)], 0)
-    assert along(slot, heard, PARAMS) == slot
-    assert between(slot, heard, PARAMS) == slot
-    assert relocated(slot, heard, False, PARAMS) == slot
+    here = begin_map(slot, Pose(8.0, 1.6, 0.0), MAP)
+    after = here
+    for number in range(1, 20):
+        after = moved(after, Pose(8.0 + number, 1.6, 0.0), MAP)
+    assert after.a.xx > here.a.xx
+    assert after.b.hh > here.b.hh
+    assert not is_certain(after, MAP)
+    assert slot_of_map(after, slot, MAP).unsure > 0.0
+    assert slot_of_map(here, slot, MAP) == slot
 
 
 def test_a_wall_not_heard_from_the_road_is_entered():
     slot = Slot(Kind.PARALLEL, 0, Pose(0.0, 0.0, 0.0), 4.9, 0.0, UNSEEN)
     pose = Pose(1.3, -0.83, math.radians(26.0))
     boxes = [(-4.0, 0.0, -2.0, 0.0), (4.9, 9.0, -2.0, 0.0), (-9.0, 15.0, -3.0, -2.05)]
-    assert relocated(slot, inputs_at(pose, pose, boxes, 0), False, PARAMS).depth == pytest.approx(2.05, abs=0.02)
+    here = walled(begin_map(slot, pose, MAP), slot, inputs_at(pose, pose, boxes, 0), False, PARAMS)
+    assert slot_of_map(here, slot, MAP).depth == pytest.approx(2.05, abs=0.02)
 
 
 @pytest.mark.parametrize("side", [0, 1])
@@ -80,19 +115,20 @@ def test_a_wall_behind_a_perpendicular_slot_is_entered_where_the_car_stops_befor
     mirror = -1.0 if side == Side.LEFT else 1.0
     slot = Slot(Kind.PERPENDICULAR, side, Pose(0.0, 0.0, 0.0), 3.2, 0.0, UNSEEN)
     pose = Pose(1.6, mirror * -3.6, mirror * 0.5 * math.pi)
-    heard = inputs_at(pose, pose, [(-4.0, 0.0, -5.0, 0.0), (3.2, 7.0, -5.0, 0.0), (0.0, 3.2, -5.0, -4.6)], side)
-    assert relocated(slot, heard, True, PARAMS).depth == pytest.approx(4.6, abs=0.01)
-    assert relocated(slot, heard, False, PARAMS) == slot
-    nothing = inputs_at(pose, pose, [(-4.0, 0.0, -5.0, 0.0), (3.2, 7.0, -5.0, 0.0)], side)
-    assert relocated(slot, nothing, True, PARAMS) == slot
+    beside = [(-4.0, 0.0, -5.0, 0.0), (3.2, 7.0, -5.0, 0.0)]
+    before = begin_map(slot, pose, MAP)
+    closed = inputs_at(pose, pose, [*beside, (0.0, 3.2, -5.0, -4.6)], side)
+    assert slot_of_map(walled(before, slot, closed, True, PARAMS), slot, MAP).depth == pytest.approx(4.6, abs=0.01)
+    assert walled(before, slot, closed, False, PARAMS) == before
+    assert walled(before, slot, inputs_at(pose, pose, beside, side), True, PARAMS) == before
 
 
 def test_the_way_that_braking_slips_is_made_up_for():
     slot = Slot(Kind.PARALLEL, 0, Pose(1.0, 2.0, 0.5), 6.0, 0.0, 2.1, unsure=0.02)
-    moved = braked(slot, 5.0, PARAMS)
+    after = braked(slot, 5.0, PARAMS)
     missed = 0.5 * PARAMS.apa.search.slip * 25.0
-    assert (moved.a.x, moved.a.y) == pytest.approx((1.0 - missed * math.cos(0.5), 2.0 - missed * math.sin(0.5)))
-    assert (moved.length, moved.unsure) == pytest.approx((6.0, 0.02))
+    assert (after.a.x, after.a.y) == pytest.approx((1.0 - missed * math.cos(0.5), 2.0 - missed * math.sin(0.5)))
+    assert (after.length, after.unsure) == pytest.approx((6.0, 0.02))
     assert braked(slot, 0.0, PARAMS).a == pytest.approx(slot.a)
 
 
@@ -102,11 +138,3 @@ def test_a_move_may_lead_out_of_a_margin_but_not_further_in():
     within = Pose(5.0, 0.825 + 0.3, math.radians(-5.0))
     assert is_move_free(straight_move(within, -1, 2.0), car, obstacles)
     assert not is_move_free(straight_move(within, 1, 2.0), car, obstacles)
-
-
-def test_the_edge_of_a_cone_on_a_known_neighbour_is_no_unknown_thing():
-    pose = Pose(0.0, 0.0, 0.0)
-    readings = (0.38, *(5.0,) * 11)
-    beside = Obstacles(ahead=Box(3.4, 8.0, -2.0, 0.83))
-    assert not look(readings, pose, 1.0, 1, 0.1, beside, PARAMS).unknown
-    assert look(readings, pose, 1.0, 1, 0.1, Obstacles(), PARAMS).unknown

@@ -7,10 +7,6 @@ import pytest
 
 from controller_fmu.apa.edge import NO_SAMPLES, Heard, append, corner
 from controller_fmu.apa.line_fit import FittedLine, Sums, add, offset, slope
-from controller_fmu.apa.outline import Box, Obstacles
-from controller_fmu.apa.supervisor import look
-from controller_fmu.interface import ControllerParams
-from modelkit.vocabulary import Pose
 from tests.controller.apa_bench import CAR, box, car_settings, drive
 
 HALF = math.radians(30.0)
@@ -76,19 +72,3 @@ def test_no_slot_is_seen_where_there_is_none() -> None:
     vehicle |= box(1, -2.0, 9.0, -1.8, 0.0) | {"start.x": -8.0, "start.y": 1.9, "driver.apa_switch_time": 0.1}
     run = drive(vehicle | {"driver.profile[1].speed": 3.0}, controller | {"apa.search.way": 25.0}, 30.0)
     assert (run.controller.apa.slots, run.controller.reason) == (0, 23)
-
-
-def test_the_supervisor_tells_known_from_unknown() -> None:
-    params = ControllerParams()
-    here = Pose(0.0, 0.0, 0.0)
-    behind = Obstacles(behind=Box(-20.0, -1.0, -10.0, 10.0))
-    far = (5.0,) * 4
-    quiet = look(far + (5.0, 0.4, 0.4, 5.0) + far, here, 1.0, -1, 0.0, behind, params)
-    assert not quiet.blocked
-    near = look(far + (5.0, 0.16, 0.16, 5.0) + far, here, 1.0, -1, 0.3, behind, params)
-    assert near.blocked
-    assert not near.unknown
-    surprise = look(far + (5.0, 0.4, 0.4, 5.0) + far, here, 1.0, -1, 0.3, Obstacles(), params)
-    assert surprise.blocked
-    assert surprise.unknown
-    assert not look(far + (5.0, 0.4, 0.4, 5.0) + far, here, 1.0, 1, 0.3, Obstacles(), params).blocked

@@ -1,0 +1,124 @@
+"""The guard over its inputs: whatever stands where the car would be by the time it stops, it brakes."""
+
+import math
+
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from controller_fmu.apa.cone import ear_of, echo_of
+from controller_fmu.apa.guard import GuardState, listen, stopping_way, watch_way
+from controller_fmu.apa.local_map import LocalMap
+from controller_fmu.apa.outline import Box, Obstacles, box_clearance
+from controller_fmu.apa.parking import shape_of
+from controller_fmu.apa.slot import Kind
+from controller_fmu.common.curve import advance
+from controller_fmu.interface import ControllerParams
+from modelkit.car import CarUltrasonic
+from modelkit.geometry import FAR, Point, cone_line
+from modelkit.vocabulary import Pose
+from vehicle_fmu.scene import Obstacle, SceneParams
+from vehicle_fmu.ultrasonic import heard_distances
+
+PARAMS = ControllerParams()
+CAR = shape_of(PARAMS)
+SENSORS = CarUltrasonic()
+NOTHING_HEARD = (SENSORS.max_range,) * 12
+HERE = Pose(0.0, 0.0, 0.0)
+EMPTY = LocalMap(kind=Kind.NONE)._replace(
+    a=LocalMap().a._replace(x=-50.0, y=-50.0), b=LocalMap().b._replace(x=50.0, y=-50.0)
+)
+"""A map whose neighbours are far away."""
+
+places = st.floats(-4.0, 7.0)
+speeds = st.floats(0.05, 1.2)
+curvatures = st.floats(-0.24, 0.24)
+directions = st.sampled_from([-1, 1])
+
+
+def sees(state, readings, around, direction, speed, curvature):
+    return watch_way(state, readings, EMPTY, HERE, direction, direction * speed, curvature, around, CAR, PARAMS)
+
+
+@settings(max_examples=500, deadline=None)
+@given(places, st.floats(-3.5, 3.5), directions, speeds, curvatures)
+def test_a_known_thing_that_would_be_touched_is_braked_for(x, y, direction, speed, curvature):
+    box = Box(x - 0.1, x + 0.1, y - 0.1, y + 0.1)
+    stop = stopping_way(GuardState(), speed, PARAMS)
+    there = advance(HERE, float(direction), stop, curvature, curvature)
+    now = box_clearance(HERE, CAR, box)
+    touched = now > 0.01 and box_clearance(there, CAR, box) <= 0.0
+    sight = sees(GuardState(), NOTHING_HEARD, Obstacles(beside=box), direction, speed, curvature)
+    if touched:
+        assert sight.blocked
+        assert not sight.unknown
+    if now > 3.0:
+        assert not sight.blocked
+
+
+def heard_at(x, y):
+    """Return what the sensors of a car at the origin hear of a pole."""
+    missing = len(SceneParams().boxes) - 1
+    scene = SceneParams(boxes=(Obstacle(x, y, 0.0, 0.2, 0.2), *(Obstacle() for _ in range(missing))))
+    return heard_distances(HERE, scene, SENSORS, 0.08, 0)
+
+
+@settings(max_examples=500, deadline=None)
+@given(places, st.floats(-3.5, 3.5), directions, speeds, curvatures)
+def test_an_unknown_thing_that_is_heard_and_would_be_touched_is_braked_for(x, y, direction, speed, curvature):
+    box = Box(x - 0.1, x + 0.1, y - 0.1, y + 0.1)
+    readings = heard_at(x, y)
+    stop = stopping_way(GuardState(), speed, PARAMS)
+    there = advance(HERE, float(direction), stop, curvature, curvature)
+    heard = any(0.2 < reading < 1.4 for reading in readings)
+    touched = box_clearance(HERE, CAR, box) > 0.05 and box_clearance(there, CAR, box) <= 0.0
+    state = listen(GuardState(), readings, EMPTY, PARAMS)
+    sight = sees(state, readings, Obstacles(), direction, speed, curvature)
+    if heard and touched:
+        assert sight.blocked
+
+
+def test_what_is_driven_away_from_is_no_reason_to_stand() -> None:
+    wall = Obstacles(behind=Box(-20.0, -CAR.rear - 0.02, -10.0, 10.0))
+    assert sees(GuardState(), NOTHING_HEARD, wall, -1, 0.3, 0.0).blocked
+    assert not sees(GuardState(), NOTHING_HEARD, wall, 1, 0.3, 0.0).blocked
+
+
+def test_flanks_are_guarded() -> None:
+    """Somebody stands beside the front, where it swings out when the car reverses to the right."""
+    readings = heard_at(2.9, 1.3)
+    state = listen(GuardState(), readings, EMPTY, PARAMS)
+    assert sees(state, readings, Obstacles(), -1, 0.8, -0.24).blocked
+    assert not sees(state, readings, Obstacles(), -1, 0.8, 0.0).blocked
+
+
+def test_a_thing_that_was_heard_is_remembered_until_a_sensor_hears_past_it() -> None:
+    state = listen(GuardState(), heard_at(2.9, 1.3), EMPTY, PARAMS)
+    assert state.unknown[8].there
+    aside = EMPTY._replace(pose=Pose(1.2, 0.0, 0.0))
+    assert listen(state, NOTHING_HEARD, aside, PARAMS).unknown[8].there
+    assert not listen(state, NOTHING_HEARD, EMPTY, PARAMS).unknown[8].there
+
+
+def test_a_late_brake_is_learnt_and_counted_with() -> None:
+    from controller_fmu.apa.guard import learn_brake
+
+    state = GuardState()
+    speed = 0.8
+    for number in range(200):
+        state = learn_brake(state, speed, True, 10_000_000, PARAMS)
+        speed = max(0.0, speed - 0.02) if number > 30 else speed
+    assert 0.2 < state.delay < 0.45
+    assert stopping_way(state, 0.8, PARAMS) > stopping_way(GuardState(), 0.8, PARAMS)
+    again = learn_brake(state, 0.8, False, 10_000_000, PARAMS)
+    assert again.delay == state.delay
+
+
+@settings(max_examples=300, deadline=None)
+@given(*(st.floats(-4.0, 4.0) for _ in range(4)), st.floats(-math.pi, math.pi))
+def test_what_a_cone_hears_of_a_side_is_what_geometry_says(ax, ay, bx, by, axis):
+    a, b = Point(ax, ay), Point(bx, by)
+    exact = cone_line(Point(0.1, -0.2), axis, SENSORS.half_angle, a, b)
+    ours = echo_of(ear_of(0.1, -0.2, axis, SENSORS.half_angle), a, b)
+    if exact < FAR and abs(ax - bx) + abs(ay - by) > 1e-3:
+        assert abs(ours.distance - exact) < 1e-6
+        assert abs(math.hypot(ours.x - 0.1, ours.y + 0.2) - exact) < 1e-6

@@ -32,6 +32,8 @@ UNSURE = 0.7
 """Kept away from what is known by so many standard deviations more."""
 SURE = 0.03
 """The gap is made for things that are as sure as this [m]."""
+RESERVE = 0.03
+"""A car is slowed down so that it could stop so much [m] earlier than it must."""
 STANDING = 0.05
 DOUBTS = 2.5
 DIFFERENT = 0.5
@@ -77,6 +79,13 @@ def stopping_way(state: GuardState, speed: float, params: ControllerParams) -> f
     v = abs(speed)
     late = max(state.delay, params.apa.guard.brake_delay)
     return v * late + 0.5 * v * v / params.apa.drive.brake
+
+
+def speed_for(state: GuardState, room: float, params: ControllerParams) -> float:
+    """Return the speed [m/s] from which the car stops within ``room`` [m]: v t + v^2 / 2 b = room; 0 without room."""
+    late = max(state.delay, params.apa.guard.brake_delay)
+    brake = params.apa.drive.brake
+    return brake * (math.sqrt(late * late + 2.0 * room / brake) - late) if room > 0.0 else 0.0
 
 
 def listen(state: GuardState, readings: tuple[float, ...], here: LocalMap, params: ControllerParams) -> GuardState:
@@ -150,14 +159,15 @@ def watch_way(
 ) -> Sight:
     """Return the sight of a car at ``pose`` (frame of ``around``) that drives in ``direction`` on this curvature."""
     guard = params.apa.guard
-    stop = max(LEAST, stopping_way(state, speed, params))
+    needed = stopping_way(state, speed, params)
+    stop = max(LEAST, needed)
     known = _free_way(pose, direction, curvature, stop, car, _unsure(around, here, guard.gap), 0.0)
     strange = _free_of_unknown(state, here.pose, direction, curvature, stop, car, guard.surprise_gap)
     straight = _straight_ahead(readings, direction, params) - guard.stop_gap
     raw = _free_of_echoes(state, here.pose, direction, curvature, stop, car, guard.echo_gap)
-    gap = min(min(known, raw), min(strange, straight))
-    room = gap - 0.02 if gap > 0.02 else 0.0
-    return Sight(math.sqrt(params.apa.drive.brake * room), gap <= stop, strange <= stop and strange <= min(known, raw))
+    beside = min(known, raw)
+    allowed = speed_for(state, min(min(beside, strange), straight) - RESERVE, params)
+    return Sight(allowed, min(beside, strange) <= stop or straight <= needed, strange <= stop and strange <= beside)
 
 
 def _unsure(around: Obstacles, here: LocalMap, gap: float) -> Obstacles:

@@ -123,7 +123,7 @@ class EndParams(NamedTuple):
 class GuardParams(NamedTuple):
     """Supervision: each limit ends in Fail with its reason, or stops the car."""
 
-    stop_gap: Annotated[float, Signal("m", "anything ahead: stop at this distance", 0.0, 1.0, HOUSE)] = 0.16
+    stop_gap: Annotated[float, Signal("m", "anything ahead: stop at this distance", 0.0, 1.0, HOUSE)] = 0.15
     gap: Annotated[float, Signal("m", "the outline comes no nearer to what is known", 0.0, 1.0, HOUSE)] = 0.03
     echo_gap: Annotated[float, Signal("m", "nor to where an echo comes from", 0.0, 1.0, HOUSE)] = 0.02
     surprise: Annotated[float, Signal("m", "nearer than expected by this: unknown obstacle", 0.05, 2.0, HOUSE)] = 0.12

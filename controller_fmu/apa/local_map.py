@@ -34,6 +34,8 @@ DOUBT = 0.002
 """One that is off by less, but by more than it may, makes a thing less sure by this [m]."""
 SHARED = 0.8
 """Of what a wall is heard nearer than thought, this share is drift of the odometry, the same for the neighbours."""
+OTHER_SIDE = (3, 2, 1, 0, 7, 6, 5, 4, 10, 11, 8, 9)
+"""The sensor on the other side of the car, of each: a slot on the left is heard in the mirrored order."""
 LONG = 30.0
 APART = 0.12
 """Two things whose distances differ by less [m] cannot be told apart by a reading."""
@@ -208,7 +210,8 @@ def _line(ear: ConeEar, wall: Thing) -> Echo:
 def heard(here: LocalMap, readings: tuple[float, ...], sensors: CarUltrasonic, params: MapParams) -> LocalMap:
     """Return the map after new ``readings`` of all sensors: each sets right what it was heard of, if that is plain."""
     lowest = sensors.min_range + 1.1 * sensors.resolution
-    for number in range(12):
+    for place in range(12):
+        number = place if here.frame.mirror > 0.0 else OTHER_SIDE[place]
         reading = readings[number]
         if lowest < reading < params.heard:
             ear = ear_at(sensors.mounts[number], here.pose, here.frame.mirror, sensors.half_angle)

@@ -1,23 +1,22 @@
 """The parking manoeuvre at one sample: plan, set the wheel, drive, halt, plan again, straighten."""
 
-import math
 from typing import NamedTuple
 
 from controller_fmu.apa.fit import closer, following, margins_of, under_way
-from controller_fmu.apa.guard import GuardState, Sight, watch_way
-from controller_fmu.apa.local_map import LocalMap, is_certain
+from controller_fmu.apa.guard import GuardState, Sight
+from controller_fmu.apa.local_map import LocalMap
 from controller_fmu.apa.manoeuvre_chart import Guard as StepGuard
 from controller_fmu.apa.manoeuvre_chart import Step, step_transition
-from controller_fmu.apa.move import Move, length_of, point_at
-from controller_fmu.apa.outline import Shape, clearance
+from controller_fmu.apa.move import length_of
 from controller_fmu.apa.params import Longitudinal
 from controller_fmu.apa.planner import FOUND, NOTHING, SEARCHING, PlanSearch, new_search, search_on
-from controller_fmu.apa.slot import Margins, Site, Slot, mirror_of, site_of, stands_out_by
+from controller_fmu.apa.slot import Margins, Site, Slot, site_of
 from controller_fmu.apa.speed import planned_speed, stopping_way
+from controller_fmu.apa.surroundings import is_rest_free, is_settled, shape_of, sight_of
 from controller_fmu.apa.tracking import Leg, Tracked, next_standstill, set_wheel, track
 from controller_fmu.apa.watch import STANDING
 from controller_fmu.common.chart import bit
-from controller_fmu.common.slot_frame import SlotFrame, to_slot, to_world
+from controller_fmu.common.slot_frame import to_slot
 from controller_fmu.common.steering_monitor import Steering, rate_of
 from controller_fmu.common.steering_wheel import wheel_request
 from controller_fmu.interface import ControllerInput, ControllerParams
@@ -28,9 +27,6 @@ AT_END = 0.04
 AT_JUMP = 0.06
 """A car that halts nearer than this [m] to a jump of curvature has halted for it."""
 X_TOLERANCE = 0.08
-LOOK = 0.2
-LOOKS = 6
-"""The rest of a move is looked at every so much [m], so many times."""
 MOST_CUTS = 8
 """A car whose moves were cut short more often than this finds no way."""
 
@@ -60,20 +56,6 @@ class Parking(NamedTuple):
     """Steering-wheel angle asked for [rad]."""
     speed: float = 0.0
     """Speed asked for or advised [m/s], reverse negative."""
-
-
-def shape_of(params: ControllerParams) -> Shape:
-    """Return the car as the planner sees it."""
-    car = params.car
-    plan = params.apa.plan
-    lock = math.tan(car.steering.angle_limit / car.steering.ratio)
-    return Shape(
-        front=car.wheelbase + car.front_overhang,
-        rear=car.rear_overhang,
-        half_width=0.5 * car.width,
-        curvature=min(plan.curvature_share * lock / car.wheelbase, plan.curvature_limit),
-        ramp=plan.ramp,
-    )
 
 
 def site_for(slot: Slot, attempt: int, params: ControllerParams) -> Site:
@@ -133,7 +115,7 @@ def park(
         drive = params.apa.drive
         tracked = track(plan.move, state.leg, tracked.way, pose, drive.k1, drive.k2, params.car.wheelbase)
         bare = site_of(slot, car, Margins(0.0, 0.0, 0.0))
-        sight = _sight(plan.move.direction, bare, here, guard, inputs, params)
+        sight = sight_of(plan.move.direction, bare, here, guard, inputs, params)
         if state.step == Step.DRIVE and not is_rest_free(plan.move, tracked, site, bare, params):
             sight = sight._replace(blocked=True, unknown=False)
     settled = is_settled(inputs.odometry, slot, here, params)
@@ -143,51 +125,6 @@ def park(
     missed = state.step == Step.PLAN and not settled and is_in_place(pose, site, limit.lateral, limit.heading)
     state = state._replace(missed=missed)
     return _moved_on(state, step, plan, attempt, tracked, sight, pose, site, steering, params)
-
-
-def is_settled(odometry: Pose, slot: Slot, here: LocalMap, params: ControllerParams) -> bool:
-    """Return whether a car that stands as planned is parked: neighbours are heard on both sides, it is in the slot."""
-    pose = to_slot(odometry, SlotFrame(slot.a, mirror_of(slot)))
-    in_slot = stands_out_by(pose, slot, shape_of(params)) <= params.apa.end.out
-    return in_slot and is_certain(here, params.apa.map)
-
-
-def is_rest_free(move: Move, tracked: Tracked, site: Site, bare: Site, params: ControllerParams) -> bool:
-    """Return whether the rest of a move, as far as it is looked at, stays clear of what the map has now.
-
-    ``bare``: the slot without margins. The car is as far beside its path as it is now.
-    """
-    car = shape_of(params)
-    for number in range(1, LOOKS + 1):
-        way = tracked.way + LOOK * number
-        if way > tracked.way + tracked.left:
-            return True
-        at = point_at(move, way).pose
-        off = tracked.lateral_error
-        pose = Pose(at.x - off * math.sin(at.heading), at.y + off * math.cos(at.heading), at.heading)
-        pose = to_slot(to_world(pose, site.frame), bare.frame)
-        if clearance(pose, car, bare.obstacles) < params.apa.guard.gap:
-            return False
-    return True
-
-
-def _sight(
-    direction: int, bare: Site, here: LocalMap, guard: GuardState, inputs: ControllerInput, params: ControllerParams
-) -> Sight:
-    """Return what the guard says to driving in ``direction`` with the wheels as they are; ``bare``: without margins."""
-    front = bare.frame.mirror * inputs.steering_wheel_angle / params.car.steering.ratio
-    return watch_way(
-        guard,
-        inputs.ultrasonic,
-        here._replace(pose=to_slot(inputs.odometry, here.frame)),
-        to_slot(inputs.odometry, bare.frame),
-        direction,
-        inputs.measured_speed,
-        math.tan(front) / params.car.wheelbase,
-        bare.obstacles,
-        shape_of(params),
-        params,
-    )
 
 
 def _guards(

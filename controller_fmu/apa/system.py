@@ -13,12 +13,12 @@ from controller_fmu.apa.parking import (
     is_planned,
     is_planning,
     park,
-    shape_of,
     start_planning,
 )
 from controller_fmu.apa.relocate import braked, walled
 from controller_fmu.apa.search import SearchState, begin_search, is_new_reading, search, without_first
 from controller_fmu.apa.slot import Slot
+from controller_fmu.apa.surroundings import shape_of
 from controller_fmu.apa.watch import STANDING, Watch, is_taken_over, reason_to_fail, watch
 from controller_fmu.common.chart import bit
 from controller_fmu.interface import ControllerInput, ControllerParams, Reason

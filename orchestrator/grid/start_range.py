@@ -7,9 +7,9 @@ from controller_fmu.apa.candidates import SHARES, SWING_ANGLES, SWING_WAYS, into
 from controller_fmu.apa.exit import VARIANTS, Exit, exit_of
 from controller_fmu.apa.fit import ATTEMPTS, margins_of
 from controller_fmu.apa.outline import Shape
-from controller_fmu.apa.parking import shape_of
 from controller_fmu.apa.slot import Kind, Site, Slot, site_of
 from controller_fmu.apa.start_range import leads_in
+from controller_fmu.apa.surroundings import shape_of
 from controller_fmu.common.slot_frame import to_slot
 from controller_fmu.interface import ControllerParams
 from modelkit.variables import with_values

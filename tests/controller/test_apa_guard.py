@@ -9,8 +9,8 @@ from controller_fmu.apa.cone import ear_of, echo_of
 from controller_fmu.apa.guard import GuardState, listen, stopping_way, watch_way
 from controller_fmu.apa.local_map import LocalMap
 from controller_fmu.apa.outline import Box, Obstacles, box_clearance
-from controller_fmu.apa.parking import shape_of
 from controller_fmu.apa.slot import Kind
+from controller_fmu.apa.surroundings import shape_of
 from controller_fmu.common.curve import advance
 from controller_fmu.interface import ControllerParams
 from modelkit.car import CarUltrasonic

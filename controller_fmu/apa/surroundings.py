@@ -1,0 +1,76 @@
+"""What is asked of the surroundings while the car parks: the guard's sight, the rest of the move, the last word."""
+
+import math
+
+from controller_fmu.apa.guard import GuardState, Sight, watch_way
+from controller_fmu.apa.local_map import LocalMap, is_certain
+from controller_fmu.apa.move import Move, point_at
+from controller_fmu.apa.outline import Shape, clearance
+from controller_fmu.apa.slot import Site, Slot, mirror_of, stands_out_by
+from controller_fmu.apa.tracking import Tracked
+from controller_fmu.common.slot_frame import SlotFrame, to_slot, to_world
+from controller_fmu.interface import ControllerInput, ControllerParams
+from modelkit.vocabulary import Pose
+
+LOOK = 0.2
+LOOKS = 6
+"""The rest of a move is looked at every so much [m], so many times."""
+
+
+def shape_of(params: ControllerParams) -> Shape:
+    """Return the car as the planner sees it."""
+    car = params.car
+    plan = params.apa.plan
+    lock = math.tan(car.steering.angle_limit / car.steering.ratio)
+    return Shape(
+        front=car.wheelbase + car.front_overhang,
+        rear=car.rear_overhang,
+        half_width=0.5 * car.width,
+        curvature=min(plan.curvature_share * lock / car.wheelbase, plan.curvature_limit),
+        ramp=plan.ramp,
+    )
+
+
+def is_settled(odometry: Pose, slot: Slot, here: LocalMap, params: ControllerParams) -> bool:
+    """Return whether a car that stands as planned is parked: neighbours are heard on both sides, it is in the slot."""
+    pose = to_slot(odometry, SlotFrame(slot.a, mirror_of(slot)))
+    in_slot = stands_out_by(pose, slot, shape_of(params)) <= params.apa.end.out
+    return in_slot and is_certain(here, params.apa.map)
+
+
+def is_rest_free(move: Move, tracked: Tracked, site: Site, bare: Site, params: ControllerParams) -> bool:
+    """Return whether the rest of a move, as far as it is looked at, stays clear of what the map has now.
+
+    ``bare``: the slot without margins. The car is as far beside its path as it is now.
+    """
+    car = shape_of(params)
+    for number in range(1, LOOKS + 1):
+        way = tracked.way + LOOK * number
+        if way > tracked.way + tracked.left:
+            return True
+        at = point_at(move, way).pose
+        off = tracked.lateral_error
+        pose = Pose(at.x - off * math.sin(at.heading), at.y + off * math.cos(at.heading), at.heading)
+        pose = to_slot(to_world(pose, site.frame), bare.frame)
+        if clearance(pose, car, bare.obstacles) < params.apa.guard.gap:
+            return False
+    return True
+
+
+def sight_of(
+    direction: int, bare: Site, here: LocalMap, guard: GuardState, inputs: ControllerInput, params: ControllerParams
+) -> Sight:
+    """Return what the guard says to driving in ``direction`` with the wheels as they are; ``bare``: without margins."""
+    front = bare.frame.mirror * inputs.steering_wheel_angle / params.car.steering.ratio
+    return watch_way(
+        guard,
+        inputs.ultrasonic,
+        here._replace(pose=to_slot(inputs.odometry, here.frame)),
+        to_slot(inputs.odometry, bare.frame),
+        direction,
+        inputs.measured_speed,
+        math.tan(front) / params.car.wheelbase,
+        bare.obstacles,
+        shape_of(params),
+        params,
+    )

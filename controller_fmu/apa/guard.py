@@ -145,26 +145,35 @@ def learn_brake(state: GuardState, speed: float, braking: bool, dt_ns: int, para
     return state._replace(delay=max(state.delay, min(late, 0.5)))
 
 
+class HeldCourse(NamedTuple):
+    """Where the car drives if nobody turns the wheel."""
+
+    pose: Pose
+    """In the frame of the obstacles."""
+    direction: int
+    curvature: float
+    """Of the front wheels as they are [1/m]."""
+    speed: float
+    car: Shape
+
+
 def watch_way(
     state: GuardState,
     readings: tuple[float, ...],
     here: LocalMap,
-    pose: Pose,
-    direction: int,
-    speed: float,
-    curvature: float,
     around: Obstacles,
-    car: Shape,
+    course: HeldCourse,
     params: ControllerParams,
 ) -> Sight:
-    """Return the sight of a car at ``pose`` (frame of ``around``) that drives in ``direction`` on this curvature."""
+    """Return the sight of a car on its ``course`` among obstacles not grown; ``here`` has its pose on the map."""
     guard = params.apa.guard
-    needed = stopping_way(state, speed, params)
+    needed = stopping_way(state, course.speed, params)
     stop = max(LEAST, needed)
-    known = _free_way(pose, direction, curvature, stop, car, _unsure(around, here, guard.gap), 0.0)
-    strange = _free_of_unknown(state, here.pose, direction, curvature, stop, car, guard.surprise_gap)
-    straight = _straight_ahead(readings, direction, params) - guard.stop_gap
-    raw = _free_of_echoes(state, here.pose, direction, curvature, stop, car, guard.echo_gap)
+    known = _free_way(course, stop, _unsure(around, here, guard.gap))
+    mapped = course._replace(pose=here.pose)
+    strange = _free_of_unknown(state, mapped, stop, guard.surprise_gap)
+    straight = _straight_ahead(readings, course.direction, params) - guard.stop_gap
+    raw = _free_of_echoes(state, mapped, stop, guard.echo_gap)
     beside = min(known, raw)
     allowed = speed_for(state, min(min(beside, strange), straight) - RESERVE, params)
     return Sight(allowed, min(beside, strange) <= stop or straight <= needed, strange <= stop and strange <= beside)
@@ -186,46 +195,44 @@ def _spread(variance: float) -> float:
     return UNSURE * max(0.0, math.sqrt(variance) - SURE)
 
 
-def _free_way(
-    pose: Pose, direction: int, curvature: float, stop: float, car: Shape, around: Obstacles, gap: float
-) -> float:
-    """Return how far [m] the outline can go before it is nearer than ``gap`` to a known thing, and nearer than now."""
-    now = clearance(pose, car, around)
+def after(course: HeldCourse, way: float) -> Pose:
+    """Return where the car is ``way`` [m] further on its course."""
+    return advance(course.pose, float(course.direction), way, course.curvature, course.curvature)
+
+
+def _free_way(course: HeldCourse, stop: float, around: Obstacles) -> float:
+    """Return how far [m] the outline can go before it would touch one of these boxes, and comes nearer to them."""
+    now = clearance(course.pose, course.car, around)
     for number in range(LOOKS + 1):
         way = stop if number == 0 else AHEAD * number
-        there = clearance(advance(pose, float(direction), way, curvature, curvature), car, around)
-        if there < gap and there < now - NEARER:
+        there = clearance(after(course, way), course.car, around)
+        if there < 0.0 and there < now - NEARER:
             return way if number > 0 else 0.0
     return FREE
 
 
-def _free_of_unknown(
-    state: GuardState, pose: Pose, direction: int, curvature: float, stop: float, car: Shape, gap: float
-) -> float:
+def _free_of_unknown(state: GuardState, course: HeldCourse, stop: float, gap: float) -> float:
     """Return how far [m] the outline can go before it is nearer than ``gap`` to what an unexplained echo is of."""
     nearest = FREE
     for item in state.unknown:
         if item.there:
             for number in range(LOOKS + 1):
                 way = stop if number == 0 else AHEAD * number
-                there = advance(pose, float(direction), way, curvature, curvature)
-                if way < nearest and _comes_near(item, pose, there, car, gap):
+                if way < nearest and _comes_near(item, course.pose, after(course, way), course.car, gap):
                     nearest = way if number > 0 else 0.0
     return nearest
 
 
-def _free_of_echoes(
-    state: GuardState, pose: Pose, direction: int, curvature: float, stop: float, car: Shape, gap: float
-) -> float:
+def _free_of_echoes(state: GuardState, course: HeldCourse, stop: float, gap: float) -> float:
     """Return how far [m] the outline can go before it is nearer than ``gap`` to where an echo just came from."""
     for number in range(2):
         way = stop if number == 0 else stop + AHEAD
-        there = advance(pose, float(direction), way, curvature, curvature)
+        there = after(course, way)
         for point in state.echoes:
             if point.x < NOWHERE.x:
                 box = Box(point.x, point.x, point.y, point.y)
-                near = box_clearance(there, car, box)
-                if near < gap and near < box_clearance(pose, car, box) - NEARER:
+                near = box_clearance(there, course.car, box)
+                if near < gap and near < box_clearance(course.pose, course.car, box) - NEARER:
                     return way if number > 0 else 0.0
     return FREE
 

@@ -32,8 +32,6 @@ class Guard(IntEnum):
     """Standing within a move, the way is free."""
     STANDING_AT_END = 6
     WHEEL_STRAIGHT = 7
-    NO_WAY_ON = 8
-    """The wheel is set, and what is known stands in the way: another plan is needed."""
 
 
 def _row(source: Step, guard: Guard, target: Step) -> Row:
@@ -45,7 +43,6 @@ TRANSITIONS: tuple[Row, ...] = (
     _row(Step.PLAN, Guard.IN_PLACE, Step.STRAIGHTEN),
     _row(Step.PLAN, Guard.PLANNED, Step.SET_WHEEL),
     _row(Step.SET_WHEEL, Guard.WHEEL_SET, Step.DRIVE),
-    _row(Step.SET_WHEEL, Guard.NO_WAY_ON, Step.PLAN),
     _row(Step.DRIVE, Guard.MUST_HALT, Step.HALT),
     _row(Step.HALT, Guard.STANDING_AT_END, Step.PLAN),
     _row(Step.HALT, Guard.STANDING_TO_GO_ON, Step.SET_WHEEL),

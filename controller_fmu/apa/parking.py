@@ -160,8 +160,7 @@ def _guards(
         (1 << StepGuard.STARTED)
         | bit(StepGuard.IN_PLACE, settled and (right or (stuck and well_enough and allowed)))
         | bit(StepGuard.PLANNED, plan.status == FOUND and not stuck and allowed)
-        | bit(StepGuard.WHEEL_SET, set_up and not sight.blocked)
-        | bit(StepGuard.NO_WAY_ON, set_up and standing and sight.blocked and not sight.unknown)
+        | bit(StepGuard.WHEEL_SET, set_up and not (sight.blocked and sight.unknown))
         | bit(StepGuard.MUST_HALT, tracked.to_stop <= stop or sight.blocked)
         | bit(StepGuard.STANDING_AT_END, standing and at_end)
         | bit(StepGuard.STANDING_TO_GO_ON, standing and not at_end and not sight.blocked)
@@ -206,7 +205,7 @@ def _moved_on(
     if step == Step.HALT and state.step == Step.DRIVE:
         cut = sight.blocked and not sight.unknown
     if step == Step.PLAN and state.step != Step.PLAN:
-        cuts = cuts + 1 if cut or state.step == Step.SET_WHEEL else cuts
+        cuts = cuts + 1 if cut else cuts
         cut = False
         ended = state.step == Step.HALT and plan.moves <= 1
         attempt = under_way(attempt)

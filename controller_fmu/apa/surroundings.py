@@ -2,7 +2,7 @@
 
 import math
 
-from controller_fmu.apa.guard import GuardState, Sight, watch_way
+from controller_fmu.apa.guard import GuardState, HeldCourse, Sight, watch_way
 from controller_fmu.apa.local_map import LocalMap, is_certain
 from controller_fmu.apa.move import Move, point_at
 from controller_fmu.apa.outline import Shape, clearance
@@ -62,15 +62,12 @@ def sight_of(
 ) -> Sight:
     """Return what the guard says to driving in ``direction`` with the wheels as they are; ``bare``: without margins."""
     front = bare.frame.mirror * inputs.steering_wheel_angle / params.car.steering.ratio
-    return watch_way(
-        guard,
-        inputs.ultrasonic,
-        here._replace(pose=to_slot(inputs.odometry, here.frame)),
-        to_slot(inputs.odometry, bare.frame),
-        direction,
-        inputs.measured_speed,
-        math.tan(front) / params.car.wheelbase,
-        bare.obstacles,
-        shape_of(params),
-        params,
+    course = HeldCourse(
+        pose=to_slot(inputs.odometry, bare.frame),
+        direction=direction,
+        curvature=math.tan(front) / params.car.wheelbase,
+        speed=inputs.measured_speed,
+        car=shape_of(params),
     )
+    on_map = here._replace(pose=to_slot(inputs.odometry, here.frame))
+    return watch_way(guard, inputs.ultrasonic, on_map, bare.obstacles, course, params)

@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from controller_fmu.apa.cone import ear_of, echo_of
-from controller_fmu.apa.guard import GuardState, listen, stopping_way, watch_way
+from controller_fmu.apa.guard import GuardState, HeldCourse, learn_brake, listen, stopping_way, watch_way
 from controller_fmu.apa.local_map import LocalMap
 from controller_fmu.apa.outline import Box, Obstacles, box_clearance
 from controller_fmu.apa.slot import Kind
@@ -36,7 +36,9 @@ directions = st.sampled_from([-1, 1])
 
 
 def sees(state, readings, around, direction, speed, curvature):
-    return watch_way(state, readings, EMPTY, HERE, direction, direction * speed, curvature, around, CAR, PARAMS)
+    return watch_way(
+        state, readings, EMPTY, around, HeldCourse(HERE, direction, curvature, direction * speed, CAR), PARAMS
+    )
 
 
 @settings(max_examples=500, deadline=None)
@@ -100,8 +102,6 @@ def test_a_thing_that_was_heard_is_remembered_until_a_sensor_hears_past_it() -> 
 
 
 def test_a_late_brake_is_learnt_and_counted_with() -> None:
-    from controller_fmu.apa.guard import learn_brake
-
     state = GuardState()
     speed = 0.8
     for number in range(200):

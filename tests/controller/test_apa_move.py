@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
 from controller_fmu.apa.move import Move, end_of, length_of, point_at
-from controller_fmu.apa.turns import reverse_s, reverse_turn, turn_of
+from controller_fmu.apa.turns import reverse_s, reverse_turn, turn_of, two_arcs
 from controller_fmu.common.curve import advance
 from modelkit.vocabulary import Pose
 
@@ -62,3 +62,9 @@ def test_no_path_is_refused_not_bent() -> None:
     turn = turn_of(0.2, 0.2, 0.8)
     assert reverse_s(Pose(2.0, 3.0, 0.0), Pose(0.0, 0.0, 0.0), 0.0, turn, turn).direction == 0
     assert reverse_turn(Pose(1.0, -1.0, -1.2), turn).direction == 0
+
+
+def test_what_is_left_of_a_move_falls_as_it_is_driven() -> None:
+    move = two_arcs(Pose(1.0, 2.0, 0.1), -1, 0.1, 1.5, 1.0, 0.5)
+    for way in (-0.2, 0.0, 1.0, length_of(move), length_of(move) + 0.3):
+        assert point_at(move, way).left == pytest.approx(length_of(move) - way)

@@ -209,3 +209,21 @@ def test_no_parameter_in_range_raises(data: st.DataObject) -> None:
         pose = Pose(-0.3 * k, -0.05 * k, 0.02 * k)
         state, out = step(state, ControllerInput(odometry=pose, measured_speed=-0.3 * (k % 3)), params, 50_000_000)
         assert math.isfinite(out.steering_wheel_request)
+
+
+@pytest.mark.parametrize("mirror", [1.0, -1.0])
+def test_the_path_told_leads_to_the_target_in_reverse(mirror: float) -> None:
+    params = with_values(ControllerParams, {"target.x": -9.0, "target.y": mirror * -3.056, "system": System.NTBPTCWPT})
+    state, _ = initialize(params)
+    _, told = step(state, ControllerInput(), params, 10_000_000)
+    x, y, heading = told.path.start
+    for segment in told.path.segments:
+        turned = heading - segment.curvature * segment.length
+        chord = segment.length
+        if segment.curvature != 0.0:
+            chord = 2.0 / segment.curvature * math.sin(0.5 * segment.curvature * segment.length)
+        x -= chord * math.cos(0.5 * (heading + turned))
+        y -= chord * math.sin(0.5 * (heading + turned))
+        heading = turned
+    assert (x, y, heading) == pytest.approx((-9.0, mirror * -3.056, 0.0), abs=1e-6)
+    assert told.path.segments[1].length > 0.5

@@ -9,8 +9,11 @@ from controller_fmu.hsic.characteristic_states import Characteristic, Errors, Hs
 from controller_fmu.hsic.control import curvature, speed
 from controller_fmu.hsic.key_points import key_points, ready_point
 from controller_fmu.hsic.params import HsicGains, HsicParams, HsicSlot, HsicThresholds
+from controller_fmu.hsic.phases import HsicPhase
 from controller_fmu.hsic.rules import RULES, SpeedMode, SteerMode
-from controller_fmu.hsic.stages import is_parked
+from controller_fmu.hsic.stages import Course, is_parked
+from controller_fmu.hsic.system import HsicState, hsic_sample
+from controller_fmu.interface import ControllerInput, ControllerParams, Reason
 from modelkit.car import Car
 from modelkit.vocabulary import Pose
 
@@ -95,3 +98,17 @@ def test_parked_by_the_paper_s_limits():
     assert is_parked(Pose(0.3, 0.09, math.radians(4.9)), 1.0, p)
     assert not is_parked(Pose(0.0, 0.11, 0.0), 1.0, p)
     assert not is_parked(Pose(0.0, 0.0, math.radians(5.1)), 1.0, p)
+
+
+def test_a_car_is_lost_three_times_as_far_from_an_axis_as_from_a_path():
+    params = ControllerParams()
+    far = 3.0 * params.threshold.lost_lateral
+    for lateral, stage, reason in (
+        (far - 0.01, HsicStage.COUNTER, Reason.NONE),
+        (far + 0.01, HsicStage.COUNTER, Reason.LEFT_PATH),
+        (-far - 0.01, HsicStage.TURN_IN, Reason.LEFT_PATH),
+        (far + 0.01, HsicStage.READY, Reason.NONE),
+    ):
+        begun = HsicState(phase=HsicPhase.PATH_TRACKING, direction=-1, course=Course(stage=stage))
+        state = begun._replace(found=begun.found._replace(lateral=lateral))
+        assert hsic_sample(state, ControllerInput(), params, 10_000_000).reason == reason

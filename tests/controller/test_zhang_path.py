@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from controller_fmu.common.arc_line_arc import arc_line_arc, largest_radius
-from controller_fmu.zhang2022.path import PathStatus, at, nearest, plan
+from controller_fmu.zhang2022.path import PathStatus, at, nearest, plan, through
 from controller_fmu.zhang2022.quintic import quintic, shape
 from modelkit.vocabulary import Pose
 
@@ -73,3 +73,19 @@ def test_nearest_finds_the_foot_and_the_errors(x, left, turned):
     found = nearest(path, pose)
     assert found.lateral_error == pytest.approx(left, abs=1e-4)
     assert found.heading_error == pytest.approx(turned, abs=1e-3)
+
+
+def test_radii_between_those_tried_first_are_tried_where_none_of_these_keeps_the_limit():
+    start = Pose(8.0, 2.8, 0.0)
+    widest = largest_radius(start.x, start.y)
+
+    def smallest_peak(radii):
+        tried = [through(start, arc_line_arc(start.x, start.y, radius)) for radius in radii]
+        return min(path.largest_curvature for path in tried)
+
+    first = smallest_peak(5.0 + number / 8.0 * (widest - 5.0) for number in range(9))
+    finer = smallest_peak(5.0 + number / 800.0 * (widest - 5.0) for number in range(800))
+    assert finer < first - 1e-6
+    found = plan(start, 5.0, 0.5 * (first + finer))
+    assert found.status == PathStatus.FOUND
+    assert found.largest_curvature <= 0.5 * (first + finer)

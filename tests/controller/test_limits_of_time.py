@@ -3,6 +3,7 @@
 import pytest
 
 from controller_fmu.apa import watch as apa
+from controller_fmu.apa.manoeuvre_chart import Step
 from controller_fmu.apa.params import Longitudinal
 from controller_fmu.common import monitor
 from controller_fmu.common.steering_monitor import SteeringWatch
@@ -100,3 +101,25 @@ def test_the_driver_takes_over_past_each_threshold() -> None:
     ]
     for number, (state, inputs, params, taken) in enumerate(cases):
         assert apa.is_taken_over(state, inputs, params) == taken, number
+
+
+@pytest.mark.parametrize(
+    ("step", "speed", "blocked", "waits"),
+    [
+        (Step.DRIVE, 0.0, False, True),
+        (Step.SET_WHEEL, 0.0, False, True),
+        (Step.STRAIGHTEN, 0.0, False, True),
+        (Step.PLAN, 0.0, False, False),
+        (Step.HALT, 0.0, False, False),
+        (Step.DRIVE, 0.3, False, False),
+        (Step.DRIVE, 0.0, True, False),
+    ],
+)
+def test_the_assist_waits_where_car_or_wheel_should_move_and_nothing_is_in_the_way(
+    step: Step, speed: float, blocked: bool, waits: bool
+) -> None:
+    inputs = DRIVING._replace(measured_speed=speed)
+    clocks = apa.watch(apa.Watch(waiting=5), inputs, step, 0.0, blocked, True, MILLISECOND, PARAMS)
+    assert clocks.waiting == (5 + MILLISECOND if waits else 0)
+    assert clocks.stopping == (MILLISECOND if step == Step.HALT and speed > 0.0 else 0)
+    assert clocks.running == MILLISECOND

@@ -25,7 +25,7 @@ BODIES = (BODY["kinematic"], BODY["double_track"])
 THINGS = ("first neighbour", "second neighbour", "wall behind", "person", "kerb behind")
 """What stands in the scene: boxes 1 to 4, then kerb 1."""
 SENSORS = 12
-NEVER = 1e6
+NEVER = 3e4
 """After any run [s]."""
 PERSON = 0.5
 """Width of a person [m]."""

@@ -159,6 +159,8 @@ TO_VALET = (
     "driver_takeover",
     "vehicle_fault",
     "ultrasonic",
+    "apa_switch",
+    "driver_confirm",
 )
 VALET = Model(
     name="Controller_valet",

@@ -205,7 +205,7 @@ def test_a_class_name_has_one_meaning() -> None:
     assert [name for name, found in twice.items() if all(module.startswith("orchestrator.") for module in found)] == []
 
 
-SHARED_BY_SYSTEMS = ("common", "planning")
+SHARED_BY_SYSTEMS = ("common", "planning", "sensing")
 SYSTEMS = sorted(
     file.parent.name
     for file in (ROOT / "controller_fmu").glob("*/__init__.py")

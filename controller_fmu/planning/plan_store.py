@@ -17,11 +17,16 @@ TALLIES = 8192
 WORDS = 128
 PIECES = 256
 ASKED = 11
+HEARD = 128
+"""Places kept of what one side's sensor has heard."""
 NONE = -1
 
 
 class PlanStore(NamedTuple):
-    """Edges with their rasters, the tree with its table and queue, the words tried, the path found."""
+    """Edges with their rasters, the tree with its table and queue, the words tried, the path found.
+
+    All of these are a memo. What was heard (``heard_*``, ``around_*``) is not: it is remembered here, and nowhere else.
+    """
 
     edge_x1: Annotated[Floats, Column("d", EDGES, "m", "x of an edge's first end")]
     edge_y1: Annotated[Floats, Column("d", EDGES, "m", "y of an edge's first end")]
@@ -64,6 +69,17 @@ class PlanStore(NamedTuple):
     corner_y: Annotated[Floats, Column("d", CORNERS, "m", "its y")]
     corner_of: Annotated[Ints, Column("i", CORNERS, "1", "its polygon")]
     asked: Annotated[Floats, Column("d", ASKED, "1", "the numbers of the request")]
+    heard_x: Annotated[Floats, Column("d", 2 * HEARD, "m", "x of a place heard, right side then left")]
+    heard_y: Annotated[Floats, Column("d", 2 * HEARD, "m", "its y")]
+    heard_count: Annotated[Ints, Column("i", 2 * HEARD, "1", "echoes from there; 0: unused")]
+    heard_joint: Annotated[Ints, Column("i", 2 * HEARD, "1", "1: of the same thing as the place before")]
+    ray_x: Annotated[Floats, Column("d", 2 * HEARD, "m", "x of a sensor that has listened, right side then left")]
+    ray_y: Annotated[Floats, Column("d", 2 * HEARD, "m", "its y")]
+    ray_end_x: Annotated[Floats, Column("d", 2 * HEARD, "m", "x up to where nothing stands along its axis")]
+    ray_end_y: Annotated[Floats, Column("d", 2 * HEARD, "m", "the same, y")]
+    around_x: Annotated[Floats, Column("d", CORNERS, "m", "x of a corner of the map made of what was heard")]
+    around_y: Annotated[Floats, Column("d", CORNERS, "m", "its y")]
+    around_of: Annotated[Ints, Column("i", CORNERS, "1", "its polygon")]
     mark: Annotated[Ints, Column("i", 32, "1", "counts and places, see below")]
     measure: Annotated[Floats, Column("d", 32, "1", "numbers, see below")]
 

@@ -1,4 +1,4 @@
-"""The valet's chart: plan, set the wheel, drive a piece, halt, and so on; at the goal straighten the wheel."""
+"""The valet's chart: find a slot if wished, plan, set the wheel, drive a piece, halt; at the goal straighten."""
 
 from enum import IntEnum
 
@@ -16,6 +16,12 @@ class Step(IntEnum):
     PARKED = 5
     FAILED = 6
     TAKEN_OVER = 7
+    OFF = 8
+    """Switched off: waits for the driver to want a slot."""
+    SEARCH = 9
+    """The driver drives past; a slot is looked for."""
+    SHOWN = 10
+    """Stands, a slot is shown: plans the way into it, waits to be confirmed."""
 
 
 class Guard(IntEnum):
@@ -38,6 +44,20 @@ class Guard(IntEnum):
     """Wheel straight, at the goal."""
     MISSED = 9
     """Wheel straight, not at the goal."""
+    SWITCHED_ON = 10
+    """A slot is to be looked for, and the switch is on."""
+    SWITCHED_OFF = 11
+    """A slot is to be looked for, and the switch is off."""
+    FOUND = 12
+    """A slot has been found, and the car stands."""
+    REFUSED = 13
+    """No way into the slot that is shown."""
+    DRIVEN_ON = 14
+    """The driver drove on instead of confirming."""
+    CONFIRMED = 15
+    """Confirmed at standstill, with a plan."""
+    RESUMED = 16
+    """Switched on again at standstill on the way into a slot, which is still known."""
 
 
 def _row(source: Step, guard: Guard, target: Step) -> Row:
@@ -63,6 +83,17 @@ TRANSITIONS: tuple[Row, ...] = (
     *_given_up(Step.STRAIGHTEN),
     _row(Step.STRAIGHTEN, Guard.IN_PLACE, Step.PARKED),
     _row(Step.STRAIGHTEN, Guard.MISSED, Step.PLAN),
+    *(_row(step, Guard.SWITCHED_OFF, Step.OFF) for step in (Step.PARKED, Step.FAILED, Step.TAKEN_OVER)),
+    _row(Step.OFF, Guard.RESUMED, Step.SHOWN),
+    _row(Step.OFF, Guard.SWITCHED_ON, Step.SEARCH),
+    _row(Step.SEARCH, Guard.SWITCHED_OFF, Step.OFF),
+    _row(Step.SEARCH, Guard.FAULT, Step.FAILED),
+    _row(Step.SEARCH, Guard.FOUND, Step.SHOWN),
+    _row(Step.SHOWN, Guard.SWITCHED_OFF, Step.OFF),
+    _row(Step.SHOWN, Guard.FAULT, Step.FAILED),
+    _row(Step.SHOWN, Guard.REFUSED, Step.SEARCH),
+    _row(Step.SHOWN, Guard.DRIVEN_ON, Step.SEARCH),
+    _row(Step.SHOWN, Guard.CONFIRMED, Step.SET_WHEEL),
 )
 
 

@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 from controller_fmu.interface import ControllerInput, Reason
 from controller_fmu.planning.plan_store import PlanStore
+from controller_fmu.valet.chart import Step
 from controller_fmu.valet.outputs import valet_outputs
 from controller_fmu.valet.params import ValetParams
 from controller_fmu.valet.phases import ValetPhase
@@ -24,8 +25,9 @@ class ValetModelState(NamedTuple):
 
 def valet_initialize(params: ValetParams) -> tuple[ValetModelState, ValetOutput]:
     """Return the valet about to plan, and the outputs at time zero."""
-    state = ValetModelState()
-    return state, ValetOutput(speed_control_active=True, brake_request=True)
+    seeks = params.search.active
+    state = ValetModelState(valet=ValetState(step=Step.OFF if seeks else Step.PLAN))
+    return state, valet_outputs(state.valet, params)
 
 
 def valet_step(

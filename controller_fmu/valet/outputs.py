@@ -2,10 +2,11 @@
 
 from controller_fmu.interface import Reason
 from controller_fmu.planning.plan import PATH
+from controller_fmu.sensing.gap import Layout
 from controller_fmu.valet.chart import Step
 from controller_fmu.valet.params import ValetParams
 from controller_fmu.valet.phases import ValetPhase
-from controller_fmu.valet.signals import PIECES, Move, MovePiece, Planning, ValetOutput, ValetSignals
+from controller_fmu.valet.signals import PIECES, FoundSlot, Move, MovePiece, Planning, ValetOutput, ValetSignals
 from controller_fmu.valet.system import ValetState
 from modelkit.maths import sign
 from modelkit.vocabulary import Prompt
@@ -19,24 +20,30 @@ PHASE_OF_STEP = (
     ValetPhase.PARKED,
     ValetPhase.FAILED,
     ValetPhase.TAKEOVER,
+    ValetPhase.STANDBY,
+    ValetPhase.STANDBY,
+    ValetPhase.STANDBY,
 )
 """One for each member of Step, in its order."""
+
+MOVING = 0.05
 
 
 def valet_outputs(state: ValetState, params: ValetParams) -> ValetOutput:
     """Return the outputs that hold until the next sample."""
     driving = state.step == Step.DRIVE
-    over = state.step >= Step.PARKED
+    over = state.step in (Step.PARKED, Step.FAILED, Step.TAKEN_OVER)
     taken = state.step == Step.TAKEN_OVER
-    steers = not over and state.step != Step.PLAN
+    seeks = state.step in (Step.OFF, Step.SEARCH, Step.SHOWN)
+    steers = not over and not seeks and state.step != Step.PLAN
     return ValetOutput(
         steering_wheel_request=state.wheel if steers else 0.0,
         steering_active=steers,
-        prompt=Prompt.NONE if taken or not over else Prompt.STOP,
-        advised_speed=abs(state.speed),
-        speed_control_active=not over,
+        prompt=prompt_of(state),
+        advised_speed=params.search.speed if state.step == Step.SEARCH else abs(state.speed),
+        speed_control_active=not over and not seeks,
         speed_request=state.speed if driving else 0.0,
-        brake_request=not driving and not taken,
+        brake_request=not driving and not taken and not seeks,
         phase=PHASE_OF_STEP[state.step],
         reason=state.reason,
         shifts=state.shifts,
@@ -45,6 +52,19 @@ def valet_outputs(state: ValetState, params: ValetParams) -> ValetOutput:
         heading_error=state.tracked.heading_error,
         valet=_signals(state),
     )
+
+
+def prompt_of(state: ValetState) -> int:
+    """Return what the driver is asked for."""
+    if state.step in (Step.PARKED, Step.FAILED):
+        return Prompt.STOP
+    if state.step == Step.SHOWN:
+        return Prompt.CONFIRM if state.path.used > 0 else Prompt.STOP
+    if state.step == Step.SEARCH:
+        if state.search.gap.layout != Layout.NONE:
+            return Prompt.STOP
+        return Prompt.SLOW_DOWN if state.search.way > MOVING and state.search.waited_ns == 0 else Prompt.FORWARD
+    return Prompt.NONE
 
 
 def _signals(state: ValetState) -> ValetSignals:
@@ -65,8 +85,16 @@ def _signals(state: ValetState) -> ValetSignals:
         blocked=state.sight.blocked,
         seen=state.seen_count,
         target=state.request.goal,
+        slot=_slot(state),
         move=_move(state),
     )
+
+
+def _slot(state: ValetState) -> FoundSlot:
+    gap = state.search.gap
+    if gap.layout == Layout.NONE:
+        return FoundSlot()
+    return FoundSlot(gap.layout, state.search.side, gap.a.x, gap.a.y, gap.b.x, gap.b.y, gap.into, gap.depth, gap.width)
 
 
 def _move(state: ValetState) -> Move:

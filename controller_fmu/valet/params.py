@@ -40,6 +40,44 @@ class GivenSlot(NamedTuple):
     depth: Annotated[float, Signal("m", "from the opening to the slot's end along its heading", 0.0, 100.0)] = 5.0
 
 
+class Wish(IntEnum):
+    """Which slots the driver wants."""
+
+    ANY = 0
+    """Across the road tail in, but nose in where the slot leads on along the way."""
+    PARALLEL = 1
+    TAIL_IN = 2
+    NOSE_IN = 3
+
+
+class WishedSide(IntEnum):
+    """On which side of the road."""
+
+    ANY = 0
+    RIGHT = 1
+    LEFT = 2
+
+
+class ValetSearchParams(NamedTuple):
+    """Looking for a slot while the driver drives past."""
+
+    active: Annotated[bool, Signal("1", "looks for a slot when the driver switches on; else drives to the target")] = (
+        False
+    )
+    wish: Annotated[int, Signal("1", "which slots are wanted", states=Wish)] = Wish.ANY
+    side: Annotated[int, Signal("1", "on which side", states=WishedSide)] = WishedSide.ANY
+    open_ended: Annotated[bool, Signal("1", "one neighbour will do")] = False
+    speed: Annotated[float, Signal("m/s", "largest speed of the search", 0.1, 10.0, HOUSE)] = 10.0 / 3.6
+    way: Annotated[float, Signal("m", "longest way searched", 1.0, 1000.0, HOUSE)] = 60.0
+    room_along: Annotated[float, Signal("m", "slot along the road over the car's length", 0.2, 10.0, HOUSE)] = 0.7
+    room_across: Annotated[float, Signal("m", "slot across the road over the car's width", 0.2, 10.0, HOUSE)] = 0.5
+    stand_out: Annotated[float, Signal("m", "the car may stand so far out of a shallow slot", 0.0, 3.0, HOUSE)] = 0.4
+    behind: Annotated[float, Signal("m", "distance to what a slot across the road ends at", 0.05, 2.0, HOUSE)] = 0.25
+    kerb_least: Annotated[float, Signal("m", "distance to a kerb beside", 0.05, 1.0, "GB/T 41630")] = 0.12
+    kerb_most: Annotated[float, Signal("m", "the same, at most", 0.05, 1.0, "GB/T 41630")] = 0.28
+    confirm: Annotated[float, Signal("s", "longest wait for the driver", 0.1, 3600.0, HOUSE)] = 60.0
+
+
 class ValetPlanParams(NamedTuple):
     """How the way is planned."""
 
@@ -95,6 +133,7 @@ class ValetParams(NamedTuple):
     slot: Annotated[GivenSlot, Role.TUNABLE] = GivenSlot()
     threshold: Annotated[ThresholdParams, Role.TUNABLE] = ThresholdParams()
     limit: Annotated[LimitParams, Role.TUNABLE] = LimitParams(shifts=30, duration=600.0)
+    search: ValetSearchParams = ValetSearchParams()
     plan: Annotated[ValetPlanParams, Role.TUNABLE] = ValetPlanParams()
     drive: Annotated[ValetDriveParams, Role.TUNABLE] = ValetDriveParams()
     guard: Annotated[ValetGuardParams, Role.TUNABLE] = ValetGuardParams()

@@ -7,6 +7,7 @@ than that by ``surprise`` is something unknown. What is known is left to the pat
 import math
 from typing import NamedTuple
 
+from controller_fmu.planning.plan_store import PlanStore
 from controller_fmu.planning.task import CORNERS, Corner, Scene
 from controller_fmu.valet.params import MAP_CORNERS, ValetParams
 from modelkit.car import SensorMount
@@ -16,6 +17,15 @@ from modelkit.vocabulary import Pose
 FREE = 100.0
 LOOKED_AT = 1.5
 """Readings [m] up to this are looked at."""
+CORNER = 0.3
+"""Neighbours of a slot that was found are not known everywhere: corner sensors are heeded from here on [m]."""
+CORNER_SURPRISE = 0.1
+SIDE = 0.2
+"""What lies beside the car is heeded from here on [m], and this much nearer [m] than known."""
+SENSORS = 12
+SIDE_SENSOR = 8
+CLOSE = 0.18
+"""Straight ahead, nothing is let come nearer than this [m] in a slot that was found, known or not."""
 AGAIN = 0.1
 """A standing car sets out again when there is so much more room [m]."""
 SEEN_CORNERS = CORNERS - MAP_CORNERS
@@ -33,6 +43,8 @@ class Sight(NamedTuple):
     speed: float = FREE
     """Largest speed [m/s] with which the car still stops in time."""
     blocked: bool = False
+    ahead: bool = False
+    """It was heard straight ahead."""
     echo: Pose = Pose()
     """Where the nearest unknown thing was heard, and in which direction."""
 
@@ -44,12 +56,20 @@ def look(
     first = 0 if direction > 0.0 else 4
     nearest = FREE
     echo = Pose()
-    for number in range(first, first + 4):
+    straight = False
+    for number in range(SENSORS):
+        on_side = number >= SIDE_SENSOR and params.search.active
         reading = readings[number]
-        if reading < LOOKED_AT and reading < nearest:
+        if (first <= number < first + 4 or on_side) and reading < LOOKED_AT and reading < nearest:
             at = sensor_at(params.car.ultrasonic.mounts[number], pose)
-            if reading < expected(at, scene, params) - params.guard.surprise:
+            ahead = first < number < first + 3 and params.search.active
+            corner = params.search.active and not ahead
+            surprise = CORNER_SURPRISE if corner else params.guard.surprise
+            heeded = not corner or reading < (SIDE if on_side else CORNER)
+            nearer = heeded and reading < expected(at, scene, params) - surprise
+            if nearer or (ahead and reading < CLOSE):
                 nearest = reading
+                straight = ahead
                 c = math.cos(at.heading)
                 s = math.sin(at.heading)
                 echo = Pose(at.x + reading * c, at.y + reading * s, at.heading)
@@ -58,7 +78,7 @@ def look(
     stop = abs(speed) * drive.delay + 0.5 * speed * speed / drive.brake
     if abs(speed) <= params.threshold.standstill:
         stop = AGAIN
-    return Sight(math.sqrt(drive.brake * (room if room > 0.0 else 0.0)), room <= stop, echo)
+    return Sight(math.sqrt(drive.brake * (room if room > 0.0 else 0.0)), room <= stop, straight, echo)
 
 
 def sensor_at(mount: SensorMount, pose: Pose) -> Pose:
@@ -102,11 +122,16 @@ def remembered(seen: tuple[Corner, ...], echo: Pose, count: int) -> tuple[Corner
     return seen
 
 
-def scene_of(params: ValetParams, seen: tuple[Corner, ...]) -> Scene:
-    """Return the map's polygons and what was heard besides."""
+def scene_of(store: PlanStore, params: ValetParams, seen: tuple[Corner, ...]) -> Scene:
+    """Return the map's polygons, or those made of what was heard in a search, and what was heard besides."""
+    heard = params.search.active
     return Scene(
         tuple(
-            params.map[number if number < MAP_CORNERS else 0]
+            (
+                Corner(store.around_x[number], store.around_y[number], store.around_of[number])
+                if heard
+                else params.map[number if number < MAP_CORNERS else 0]
+            )
             if number < MAP_CORNERS
             else seen[number - MAP_CORNERS if number >= MAP_CORNERS else 0]
             for number in range(CORNERS)

@@ -4,6 +4,7 @@ from enum import IntEnum
 from typing import Annotated, NamedTuple
 
 from controller_fmu.interface import Reason
+from controller_fmu.sensing.gap import Layout
 from controller_fmu.valet.chart import Step
 from controller_fmu.valet.phases import ValetPhase
 from modelkit.signal import Group, Role, Signal
@@ -49,6 +50,20 @@ class Move(NamedTuple):
     pieces: tuple[MovePiece, ...] = (MovePiece(),) * PIECES
 
 
+class FoundSlot(NamedTuple):
+    """The slot that a search has found."""
+
+    layout: Annotated[int, Signal("1", "how the car will stand in it", states=Layout)] = Layout.NONE
+    side: Annotated[int, Signal("1", "0 right, 1 left of the way")] = 0
+    ax: Annotated[float, Signal("m", "x of corner A, passed first")] = 0.0
+    ay: Annotated[float, Signal("m", "y of corner A")] = 0.0
+    bx: Annotated[float, Signal("m", "x of corner B")] = 0.0
+    by: Annotated[float, Signal("m", "y of corner B")] = 0.0
+    heading: Annotated[float, Signal("rad", "direction into the slot")] = 0.0
+    depth: Annotated[float, Signal("m", "to what it ends at; 50: nothing was heard", 0.0)] = 0.0
+    width: Annotated[float, Signal("m", "between the neighbours, across the direction into it", 0.0)] = 0.0
+
+
 class ValetSignals(NamedTuple):
     """Search, plan and drive."""
 
@@ -62,6 +77,7 @@ class ValetSignals(NamedTuple):
     blocked: Annotated[bool, Signal("1", "something that the map does not have is in the way")] = False
     seen: Annotated[int, Signal("1", "such things remembered so far", 0)] = 0
     target: Annotated[Pose, Group("pose to park at")] = Pose()
+    slot: FoundSlot = FoundSlot()
     move: Move = Move()
 
 

@@ -1,12 +1,20 @@
-"""Where to stand: at the target, or in the middle of a slot that is given by its corners."""
+"""Where to stand: at the target, in the middle of a slot that is given by its corners, or in one that was found."""
 
 import math
 
 from controller_fmu.planning.task import PlannedCar as Body
-from controller_fmu.valet.params import SlotKind, ValetParams
+from controller_fmu.sensing.around import along_of
+from controller_fmu.sensing.gap import Gap, Layout
+from controller_fmu.valet.params import SlotKind, ValetParams, Wish
 from modelkit.car import largest_curvature
 from modelkit.maths import PI
 from modelkit.vocabulary import Pose
+
+LEADS_ON = 0.34
+"""A slot leads on along the way if the cosine between them is larger: it is turned by less than 70 deg."""
+
+FARTHEST_KERB = 1.2
+"""What lies farther [m] beside a car that stands flush with its neighbours is not its kerb."""
 
 
 def body_of(params: ValetParams) -> Body:
@@ -33,3 +41,39 @@ def goal_of(params: ValetParams, now: Pose) -> Pose:
         if math.cos(heading - now.heading) < 0.0:
             heading = heading + PI
     return Pose(x - body.ahead * math.cos(heading), y - body.ahead * math.sin(heading), heading)
+
+
+def goal_in(gap: Gap, way: float, params: ValetParams) -> Pose:
+    """Return the pose to park at in a gap found on a way of the direction ``way`` [rad].
+
+    Flush with the neighbours, but where the gap ends at something as far from that as the parameters say.
+    """
+    body = body_of(params)
+    search = params.search
+    e = along_of(gap)
+    tx = math.cos(gap.into)
+    ty = math.sin(gap.into)
+    front = gap.front
+    width = 2.0 * body.half_width
+    if gap.layout == Layout.ALONG:
+        heading = math.atan2(e.y, e.x)
+        left = gap.depth - width
+        shift = 0.0
+        if left < search.kerb_least:
+            shift = left - search.kerb_least
+        elif left > search.kerb_most and gap.depth < width + FARTHEST_KERB:
+            shift = left - search.kerb_most
+        t = front + body.half_width + shift
+    else:
+        t = front + body.half_length - stands_out(gap, params)
+        nose = search.wish == Wish.NOSE_IN or (search.wish == Wish.ANY and math.cos(gap.into - way) > LEADS_ON)
+        heading = gap.into if nose else gap.into + PI
+    x = gap.a.x + t * tx + 0.5 * gap.width * e.x
+    y = gap.a.y + t * ty + 0.5 * gap.width * e.y
+    return Pose(x - body.ahead * math.cos(heading), y - body.ahead * math.sin(heading), heading)
+
+
+def stands_out(gap: Gap, params: ValetParams) -> float:
+    """Return how far [m] a car stands out of a gap across the road, which ends before the car would."""
+    short = 2.0 * body_of(params).half_length + params.search.behind - gap.depth
+    return short if short > 0.0 and gap.layout == Layout.ACROSS else 0.0

@@ -18,12 +18,16 @@ from controller_fmu.planning.plan import (
 )
 from controller_fmu.planning.plan_store import PlanStore
 from controller_fmu.planning.task import Corner, Request, drive
+from controller_fmu.sensing.around import lay_end
+from controller_fmu.sensing.gap import DEEP, Layout
+from controller_fmu.sensing.heard_store import forget_side
 from controller_fmu.valet.chart import Guard, Step, step_transition
 from controller_fmu.valet.params import ValetParams
 from controller_fmu.valet.rolling import Ahead, ahead_of, aim_at, joint_of
+from controller_fmu.valet.search import Search, begin_search, reason_to_end, search, shallower, with_map
 from controller_fmu.valet.sight import SEEN_CORNERS, Sight, look, remembered, scene_of
-from controller_fmu.valet.slot import body_of, goal_of
-from controller_fmu.valet.watch import Watch, reason_to_fail, watch
+from controller_fmu.valet.slot import body_of, goal_in, goal_of, stands_out
+from controller_fmu.valet.watch import Watch, fault_of, reason_to_fail, watch
 from modelkit.maths import clamp, sign, wrap_angle
 from modelkit.vocabulary import Pose
 
@@ -32,6 +36,7 @@ AT_END = 0.03
 LEARNT = 0.6
 """Share of what a stop is off its place that the next stop makes up for."""
 EARLIEST = 0.02
+DRIVEN_ON = 0.3
 
 
 class Tracked(NamedTuple):
@@ -74,6 +79,9 @@ class ValetState(NamedTuple):
     watch: Watch = Watch()
     wheel: float = 0.0
     """Steering-wheel angle asked for [rad]."""
+    search: Search = Search()
+    resumes: bool = False
+    """Switched off on the way into a slot, which is still known."""
     speed: float = 0.0
     """Speed asked for [m/s], reverse negative."""
 
@@ -82,12 +90,14 @@ def valet_sample(
     store: PlanStore, state: ValetState, inputs: ControllerInput, params: ValetParams, dt_ns: int
 ) -> ValetState:
     """Return the valet one sample of ``dt_ns`` later."""
-    if state.step >= Step.PARKED:
-        return state
+    if state.step in (Step.PARKED, Step.FAILED, Step.TAKEN_OVER):
+        return _switched_off(state, inputs, params)
+    if state.step in (Step.OFF, Step.SEARCH, Step.SHOWN):
+        return sought_on(store, state, inputs, params, dt_ns)
     if state.step == Step.PLAN:
         state = planned_on(store, state, inputs, params)
     else:
-        state = seen_on(state, inputs, params)
+        state = seen_on(store, state, inputs, params)
     clocks = watch(state.watch, inputs, state.step, state.wheel, state.sight.blocked, params, dt_ns)
     reason = state.reason
     if reason == Reason.NONE:
@@ -104,14 +114,21 @@ def planned_on(store: PlanStore, state: ValetState, inputs: ControllerInput, par
     request = state.request
     if state.searched == 0:
         pose = inputs.odometry
-        request = Request(pose, goal_of(params, pose), body_of(params), params.plan.margin)
-    scene = scene_of(params, state.seen)
+        goal = goal_of(params, pose)
+        if params.search.active:
+            goal = goal_in(state.search.gap, state.search.pose.heading, params)
+            if state.search.gap.depth < DEEP:
+                lay_end(store, state.search.gap, state.search.lines)
+        request = Request(pose, goal, body_of(params), params.plan.margin)
+    scene = scene_of(store, params, state.seen)
     count = search_on(store, scene, request, state.searched, params.plan.at_once)
     status = status_of(store)
     path = state.path
     if status == PLANNED:
         path = path_of(store)
     reason = reason_of(status, count, state, params)
+    if params.search.active and stands_out(state.search.gap, params) > params.search.stand_out:
+        reason = Reason.SLOT_TOO_SHALLOW
     plans = state.plans + 1 if state.searched == 0 else state.plans
     return state._replace(request=request, searched=count, plans=plans, path=path, reason=reason, sight=Sight())
 
@@ -129,7 +146,77 @@ def reason_of(status: int, count: int, state: ValetState, params: ValetParams) -
     return Reason.NO_PATH if status == NO_WAY and state.seen_count == 0 else Reason.BLOCKED
 
 
-def seen_on(state: ValetState, inputs: ControllerInput, params: ValetParams) -> ValetState:
+def sought_on(
+    store: PlanStore, state: ValetState, inputs: ControllerInput, params: ValetParams, dt_ns: int
+) -> ValetState:
+    """Return the valet after one sample in which the driver drives, or looks at the slot that is shown."""
+    sought = state.search
+    standing = abs(inputs.measured_speed) <= params.threshold.standstill
+    reason = fault_of(inputs)
+    if state.step == Step.SEARCH and reason == Reason.NONE:
+        sought = search(store, sought, inputs, params, dt_ns)
+        waits = standing and sought.gap.layout == Layout.NONE
+        sought = sought._replace(waited_ns=sought.waited_ns + dt_ns if waits else 0)
+        reason = reason_to_end(sought, params)
+    if state.step == Step.SHOWN and reason == Reason.NONE:
+        state = planned_on(store, state, inputs, params)
+        sought = sought._replace(waited_ns=sought.waited_ns + dt_ns if state.path.used > 0 else 0)
+        reason = Reason.TIMEOUT if sought.waited_ns * 1e-9 > params.search.confirm else Reason.NONE
+    refused = state.step == Step.SHOWN and state.reason != Reason.NONE
+    if refused:
+        sought = sought._replace(refused=state.reason)
+    dx = inputs.odometry.x - sought.pose.x
+    dy = inputs.odometry.y - sought.pose.y
+    guards = (
+        bit(Guard.SWITCHED_ON, inputs.apa_switch)
+        | bit(Guard.RESUMED, inputs.apa_switch and state.resumes and standing)
+        | bit(Guard.SWITCHED_OFF, not inputs.apa_switch)
+        | bit(Guard.FAULT, reason != Reason.NONE)
+        | bit(Guard.FOUND, standing and sought.gap.layout != Layout.NONE)
+        | bit(Guard.REFUSED, refused)
+        | bit(Guard.DRIVEN_ON, dx * dx + dy * dy > DRIVEN_ON * DRIVEN_ON)
+        | bit(Guard.CONFIRMED, inputs.driver_confirm and standing and state.path.used > 0)
+    )
+    step = step_transition(state.step, guards)
+    state = state._replace(search=sought, reason=reason)
+    if step == Step.SEARCH and state.step != Step.SEARCH:
+        state = _to_search(store, state)
+    if step == Step.SHOWN and state.step != Step.SHOWN:
+        state = _to_show(store, state, inputs, params)
+    return moved_on(state, step, inputs, params)
+
+
+def _to_search(store: PlanStore, state: ValetState) -> ValetState:
+    """Return the valet that begins to search; a slot that was shown is forgotten, and why it was not taken is not."""
+    forget_side(store, 0)
+    forget_side(store, 1)
+    sought = state.search
+    begun = begin_search(sought.clock_ns)
+    if state.step == Step.SHOWN:
+        begun = begun._replace(way=sought.way, refused=sought.refused)
+    return ValetState(step=state.step, reason=state.reason, search=begun)
+
+
+def _to_show(store: PlanStore, state: ValetState, inputs: ControllerInput, params: ValetParams) -> ValetState:
+    """Return the valet that shows the slot found, or the one that it was on its way into, and plans."""
+    sought = state.search
+    if not state.resumes:
+        sought = with_map(store, sought, inputs, params)
+    sought = sought._replace(waited_ns=0)
+    return ValetState(step=state.step, search=sought._replace(pose=inputs.odometry) if state.resumes else sought)
+
+
+def _switched_off(state: ValetState, inputs: ControllerInput, params: ValetParams) -> ValetState:
+    """Return the valet that is over, or off if it was switched off."""
+    off = params.search.active and not inputs.apa_switch
+    step = step_transition(state.step, bit(Guard.SWITCHED_OFF, off))
+    if step == state.step:
+        return state
+    resumes = state.step != Step.PARKED and state.search.gap.layout != Layout.NONE
+    return ValetState(step=step, search=state.search, resumes=resumes)
+
+
+def seen_on(store: PlanStore, state: ValetState, inputs: ControllerInput, params: ValetParams) -> ValetState:
     """Return the valet that has looked where it is on its path, and what is in the way."""
     if state.tracked.left <= 0.0 and joint_of(state.path, state.piece, params).ramp > 0.0:
         state = _rolled_on(state)
@@ -151,7 +238,8 @@ def seen_on(state: ValetState, inputs: ControllerInput, params: ValetParams) -> 
     beside = Deviation(off.lateral - aim.lateral, off.heading - aim.heading)
     angle = angle_back(beside, asked, direction, law.k1, law.k2, params.car.wheelbase)
     coming = ahead_of(state.path, state.piece, left, params)
-    sight = look(inputs.ultrasonic, pose, direction, inputs.measured_speed, scene_of(params, state.seen), params)
+    scene = scene_of(store, params, state.seen)
+    sight = look(inputs.ultrasonic, pose, direction, inputs.measured_speed, scene, params)
     return state._replace(tracked=Tracked(left, at, off.lateral, off.heading, angle, coming), sight=sight)
 
 
@@ -169,7 +257,7 @@ def guards_of(state: ValetState, inputs: ControllerInput, params: ValetParams) -
     at_end = tracked.left <= AT_END and state.piece + 1 >= state.path.used
     in_place = is_in_place(inputs.odometry, state.request.goal, params)
     return (
-        bit(Guard.TAKEN_OVER, inputs.driver_takeover)
+        bit(Guard.TAKEN_OVER, inputs.driver_takeover or (params.search.active and not inputs.apa_switch))
         | bit(Guard.FAULT, state.reason != Reason.NONE)
         | bit(Guard.PLANNED, state.searched > 0 and state.path.used > 0)
         | bit(Guard.WHEEL_SET, abs(wheel - state.wheel) <= params.threshold.wheel and not state.sight.blocked)
@@ -236,6 +324,9 @@ def _to_plan_anew(state: ValetState) -> ValetState:
     """Return the valet about to plan from where it stands; what is in the way is remembered."""
     seen = state.seen
     count = state.seen_count
+    sought = shallower(state.search, state.sight.echo)
+    if sought.gap.depth < state.search.gap.depth and state.sight.blocked and state.sight.ahead:
+        return state._replace(searched=0, path=Path(), search=sought, watch=state.watch._replace(blocked=0))
     if state.sight.blocked:
         seen = remembered(seen, state.sight.echo, count)
         count = count + 1
@@ -248,7 +339,7 @@ def _with_piece(state: ValetState, before: int, params: ValetParams) -> ValetSta
     piece = 0
     begin = state.request.start
     early = state.early
-    if before != Step.PLAN:
+    if before != Step.PLAN and before != Step.SHOWN:
         piece = state.piece
         begin = state.begin
         if state.tracked.left > AT_END:

@@ -57,13 +57,19 @@ def _blocked(clock: int, blocked: bool, still: bool, dt_ns: int) -> int:
     return clock - dt_ns if clock > dt_ns else 0
 
 
+def fault_of(inputs: ControllerInput) -> int:
+    """Return the Reason for which not even a search goes on, ``NONE`` if there is none."""
+    if not is_usable_input(inputs):
+        return Reason.BAD_INPUT
+    return Reason.VEHICLE_FAULT if inputs.vehicle_fault != 0 else Reason.NONE
+
+
 def reason_to_fail(state: Watch, inputs: ControllerInput, step: int, shifts: int, params: ValetParams) -> int:
     """Return the first Reason that holds, ``NONE`` if all is as it should be."""
     limit = params.limit
-    if not is_usable_input(inputs):
-        return Reason.BAD_INPUT
-    if inputs.vehicle_fault != 0:
-        return Reason.VEHICLE_FAULT
+    fault = fault_of(inputs)
+    if fault != Reason.NONE:
+        return fault
     if state.frozen * 1e-9 > limit.pose_frozen:
         return Reason.POSE_FROZEN
     if has_failed(state.wheel, limit.wheel_fault):

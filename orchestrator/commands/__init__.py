@@ -28,6 +28,7 @@ STUDIES = {
     "guo2015-claim": "orchestrator.bakeoff.claim",
     "search-kpis": "orchestrator.grid.search_kpis",
     "valet-rows": "orchestrator.grid.slot_rows",
+    "valet-slots": "orchestrator.grid.found_study",
 }
 """Study that no file holds -> its module, with ``study(**whole numbers) -> Study`` and ``report(table, folder)``, which
 says what the study makes of its table and returns an exit code."""

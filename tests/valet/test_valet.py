@@ -53,7 +53,7 @@ def test_the_goal_is_in_the_middle_of_the_slot_that_is_given():
 
 def test_a_sensor_expects_what_shapely_sees():
     params = with_map(BOX)
-    scene = scene_of(params, (Corner(),) * SEEN_CORNERS)
+    scene = scene_of(VALET.new_store(), params, (Corner(),) * SEEN_CORNERS)
     box = Polygon(BOX)
     for heading in np.linspace(-math.pi, math.pi, 41):
         at = Pose(1.0, 0.3, float(heading))
@@ -69,13 +69,13 @@ def test_a_sensor_expects_what_shapely_sees():
 
 def test_only_what_the_map_does_not_have_is_in_the_way():
     params = with_map(BOX)
-    scene = scene_of(params, (Corner(),) * SEEN_CORNERS)
+    scene = scene_of(VALET.new_store(), params, (Corner(),) * SEEN_CORNERS)
     front = params.car.wheelbase + params.car.front_overhang
     pose = Pose(4.0 - front - 0.4, 0.0, 0.0)  # 0.4 m before the box
     readings = [5.0] * 12
     readings[1] = readings[2] = 0.4
     assert look(tuple(readings), pose, 1.0, 0.2, scene, params) == Sight(
-        speed=pytest.approx(14.1, abs=0.1), blocked=False
+        speed=pytest.approx(14.1, abs=0.1), blocked=False, ahead=False
     )
     readings[1] = 0.05
     sight = look(tuple(readings), pose, 1.0, 0.2, scene, params)
@@ -142,7 +142,10 @@ class Twin(InProcessSlave):
         self.differing |= set(self.c.differing(self._state, self.output))
 
 
-@pytest.mark.parametrize(("name", "stop"), [("valet-angled-45", 22.0), ("valet-thing-in-the-way", 24.0)])
+@pytest.mark.parametrize(
+    ("name", "stop"),
+    [("valet-angled-45", 22.0), ("valet-thing-in-the-way", 24.0), ("valet-search-perpendicular", 13.0)],
+)
 def test_a_drive_in_c_has_the_bits_of_cpython(name, stop, tmp_path, monkeypatch):
     twins = []
 

@@ -1,0 +1,1 @@
+"""What distance sensors tell of the surroundings, whatever way the car is turned: echoes, contour, slots."""

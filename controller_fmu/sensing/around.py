@@ -1,0 +1,171 @@
+"""The map around a gap, made of what both sides heard: lines that a car shall not cross.
+
+What has not been looked at is taken to be taken: the row goes on beyond what was heard of it, between neighbours and
+behind them is no way, the gap ends where a car's length ends unless something was heard before, and across the road and
+ahead no more is free than the sensors hear.
+"""
+
+import math
+from typing import NamedTuple
+
+from controller_fmu.planning.plan_store import HEARD, PlanStore
+from controller_fmu.sensing.gap import Gap
+from controller_fmu.sensing.heard_store import clear_around, put_line, set_line
+from modelkit.vocabulary import Pose
+
+BEYOND = 10.0
+"""The row and the road go on [m]."""
+NARROW = 0.1
+FLAT = 0.03
+"""Places this near [m] to the line between others are left out."""
+SPARSE = 2.0
+WIDE = 5.0
+
+
+class Surroundings(NamedTuple):
+    """What else the map is made of."""
+
+    side: int
+    """Of the gap: 0 right, 1 left."""
+    here: int
+    """Places heard on this side."""
+    opposite: int
+    """And on the other one."""
+    pose: Pose
+    """Of the car."""
+    reach: float
+    """A sensor hears so far [m]."""
+    half_width: float
+    front: float
+    """From the rear axle to the bumper [m]."""
+    ahead: float
+    """Heard before the bumper [m]."""
+    length: float
+    """So deep [m] the gap is needed, if nothing was heard before."""
+
+
+def lay_around(store: PlanStore, gap: Gap, what: Surroundings) -> int:
+    """Make the map of a gap; returns how many lines it has."""
+    clear_around(store)
+    lines = _lay_gap(store, gap, min(gap.depth, what.length))
+    lines = _lay_row(store, lines, gap, what)
+    lines = _lay_opposite(store, lines, what)
+    pose = what.pose
+    c = math.cos(pose.heading)
+    s = math.sin(pose.heading)
+    x = pose.x + (what.front + what.ahead) * c
+    y = pose.y + (what.front + what.ahead) * s
+    wide = 2.0 if what.ahead < what.reach - 0.2 else WIDE
+    return put_line(store, lines, x - wide * s, y + wide * c, x + wide * s, y - wide * c)
+
+
+def lay_end(store: PlanStore, gap: Gap, lines: int) -> None:
+    """Make a line, the one after so many, of what a gap has been found to end at."""
+    e = along_of(gap)
+    deep = gap.front + gap.depth
+    x = gap.a.x + deep * math.cos(gap.into)
+    y = gap.a.y + deep * math.sin(gap.into)
+    set_line(store, lines, x, y, x + gap.width * e.x, y + gap.width * e.y)
+
+
+def along_of(gap: Gap) -> Pose:
+    """Return the direction across the way into a gap, from A to B, as a unit vector."""
+    x = -math.sin(gap.into)
+    y = math.cos(gap.into)
+    forward = (gap.b.x - gap.a.x) * x + (gap.b.y - gap.a.y) * y > 0.0
+    return Pose(x if forward else -x, y if forward else -y, 0.0)
+
+
+def _lay_gap(store: PlanStore, gap: Gap, deep: float) -> int:
+    """Make the lines beside the gap and behind it."""
+    tx = math.cos(gap.into)
+    ty = math.sin(gap.into)
+    b = (gap.b.x - gap.a.x) * tx + (gap.b.y - gap.a.y) * ty
+    end = gap.front + deep
+    ax = gap.a.x + end * tx
+    ay = gap.a.y + end * ty
+    bx = gap.b.x + (end - b) * tx
+    by = gap.b.y + (end - b) * ty
+    lines = put_line(store, 0, gap.a.x, gap.a.y, ax, ay)
+    lines = put_line(store, lines, gap.b.x, gap.b.y, bx, by)
+    return put_line(store, lines, ax, ay, bx, by)
+
+
+def _lay_row(store: PlanStore, lines: int, gap: Gap, what: Surroundings) -> int:
+    """Make the lines of the row: from place to place, but not across the gap."""
+    first = what.side * HEARD
+    end = first + what.here
+    e = along_of(gap)
+    row_x = gap.b.x - gap.a.x
+    row_y = gap.b.y - gap.a.y
+    length = math.sqrt(row_x * row_x + row_y * row_y)
+    row_x = row_x / length
+    row_y = row_y / length
+    last = first
+    for place in range(first + 1, end):
+        s = _across(store, place, gap, e)
+        before = _across(store, place - 1, gap, e)
+        beside = (s < NARROW and before < NARROW) or (s > gap.width - NARROW and before > gap.width - NARROW)
+        if store.heard_joint[place] == 1 or beside:
+            through = place + 1 < end and store.heard_joint[place + 1] == 1 and _is_flat(store, last, place, place + 1)
+            if not through:
+                lines = _lay(store, lines, last, place)
+                last = place
+        else:
+            last = place
+    if what.here > 0:
+        x = store.heard_x[first]
+        y = store.heard_y[first]
+        lines = put_line(store, lines, x, y, x - BEYOND * row_x, y - BEYOND * row_y)
+        x = store.heard_x[end - 1]
+        y = store.heard_y[end - 1]
+        if _across(store, end - 1, gap, e) > gap.width - NARROW:
+            lines = put_line(store, lines, x, y, x + BEYOND * row_x, y + BEYOND * row_y)
+        else:
+            lines = put_line(store, lines, gap.b.x, gap.b.y, gap.b.x + BEYOND * row_x, gap.b.y + BEYOND * row_y)
+    return lines
+
+
+def _across(store: PlanStore, place: int, gap: Gap, e: Pose) -> float:
+    return (store.heard_x[place] - gap.a.x) * e.x + (store.heard_y[place] - gap.a.y) * e.y
+
+
+def _is_flat(store: PlanStore, a: int, place: int, b: int) -> bool:
+    """Return whether a place lies near the line from a to b, and these not far apart."""
+    dx = store.heard_x[b] - store.heard_x[a]
+    dy = store.heard_y[b] - store.heard_y[a]
+    length = math.sqrt(dx * dx + dy * dy)
+    if length < 1e-6 or length > SPARSE:
+        return False
+    px = store.heard_x[place] - store.heard_x[a]
+    py = store.heard_y[place] - store.heard_y[a]
+    return abs(px * dy - py * dx) < FLAT * length and px * dx + py * dy > 0.0
+
+
+def _lay(store: PlanStore, lines: int, a: int, b: int) -> int:
+    return put_line(store, lines, store.heard_x[a], store.heard_y[a], store.heard_x[b], store.heard_y[b])
+
+
+def _lay_opposite(store: PlanStore, lines: int, what: Surroundings) -> int:
+    """Make the lines across the road; where nothing was heard, as far away as sensors hear."""
+    first = (1 - what.side) * HEARD
+    pose = what.pose
+    c = math.cos(pose.heading)
+    s = math.sin(pose.heading)
+    if what.opposite == 0:
+        off = what.half_width + what.reach if what.side == 0 else -what.half_width - what.reach
+        x = pose.x - off * s
+        y = pose.y + off * c
+        far = BEYOND + WIDE
+        return put_line(store, lines, x - far * c, y - far * s, x + far * c, y + far * s)
+    last = first
+    for place in range(first + 1, first + what.opposite):
+        if place + 1 == first + what.opposite or not _is_flat(store, last, place, place + 1):
+            lines = _lay(store, lines, last, place)
+            last = place
+    x = store.heard_x[first]
+    y = store.heard_y[first]
+    lines = put_line(store, lines, x, y, x - BEYOND * c, y - BEYOND * s)
+    x = store.heard_x[last]
+    y = store.heard_y[last]
+    return put_line(store, lines, x, y, x + BEYOND * c, y + BEYOND * s)

@@ -1,0 +1,157 @@
+"""From the distances that one sensor tells on the way past to the places where the echoes came from.
+
+A sensor that moves by ds hears the nearest point of what stands there at a distance r that changes by dr = -sin(b) ds,
+b the bearing of that point, ahead of the sensor's axis positive: what is ahead comes nearer. So the change of the
+distance tells the bearing, and both together the place, whatever stands there: a side, a corner, a post. Where the
+nearest part lies at the rim of the cone, of half angle g, the distance changes by more than sin(g) ds: the bearing is
+that of the rim. (Envelope of circles; A. Sakamoto and T. Sato's boundary scattering transform is the same.)
+"""
+
+import math
+from typing import NamedTuple
+
+from controller_fmu.planning.plan_store import PlanStore
+from controller_fmu.sensing.heard_store import put_heard, put_ray
+from modelkit.car import CarUltrasonic
+from modelkit.maths import clamp
+from modelkit.vocabulary import Pose
+
+BIN = 0.1
+"""Readings over so much way [m] are averaged."""
+SAME = 0.15
+"""Readings that differ by less [m] are averaged."""
+KEPT = 7
+MIDDLE = 3
+STEEPEST = 2.3
+"""The distance to one thing changes by no more than this over the way [m/m]: the rim of the cone on a side across."""
+STEP = 0.06
+LOST = 0.3
+LEAST = 3
+"""So many more samples must have heard the same for a slope."""
+CREST = 0.4
+"""Where the distance stops growing and shrinks, by so much [m/m], the sensor hears one thing before and another after.
+
+The distance to one convex thing never does that.
+"""
+
+
+class Sample(NamedTuple):
+    """Mean over a bin: where the sensor was, and what it heard."""
+
+    x: float = 0.0
+    y: float = 0.0
+    axis: float = 0.0
+    r: float = 0.0
+
+
+class Ear(NamedTuple):
+    """What is remembered of one sensor: the bin being filled, the last samples, the oldest first, places known."""
+
+    n: float = 0.0
+    sums: Sample = Sample()
+    samples: tuple[Sample, ...] = (Sample(),) * KEPT
+    taken: int = 0
+    """Samples so far, at most ``KEPT``."""
+    silent: bool = True
+    """Nothing was heard since the last echo."""
+    places: int = 0
+    rays: int = 0
+
+
+def listen(
+    store: PlanStore, ear: Ear, side: int, at: Pose, reading: float, forward: float, sensors: CarUltrasonic
+) -> Ear:
+    """Return the ear after one reading of a sensor that is at ``at`` and looks along its heading.
+
+    ``side``: 0 right, 1 left, where places are put; ``forward``: direction [rad] in which the sensor moves.
+    """
+    n = ear.n
+    if n > 0.0:
+        dx = at.x - ear.sums.x / n
+        dy = at.y - ear.sums.y / n
+        full = dx * dx + dy * dy >= 0.25 * BIN * BIN or abs(reading - ear.sums.r / n) > SAME
+        if not full:
+            sums = Sample(ear.sums.x + at.x, ear.sums.y + at.y, ear.sums.axis + at.heading, ear.sums.r + reading)
+            return ear._replace(n=n + 1.0, sums=sums)
+        mean = Sample(ear.sums.x / n, ear.sums.y / n, ear.sums.axis / n, ear.sums.r / n)
+        lost = _is_lost(ear.samples[KEPT - 2].r, ear.samples[KEPT - 1].r, mean.r)
+        kept = ear.samples[: KEPT - 1] + (mean,) if lost else ear.samples[1:] + (mean,)
+        ear = ear._replace(samples=kept, taken=ear.taken + 1 if ear.taken < KEPT else KEPT)
+        if ear.taken == KEPT and not lost:
+            ear = _placed(store, ear, side, forward, sensors)
+    return ear._replace(n=1.0, sums=Sample(at.x, at.y, at.heading, reading))
+
+
+def _is_lost(before: float, middle: float, after: float) -> bool:
+    """Return whether a reading between two others that agree was lost, or was of something else."""
+    return abs(middle - before) > LOST and abs(middle - after) > LOST and abs(before - after) < LOST
+
+
+def _placed(store: PlanStore, ear: Ear, side: int, forward: float, sensors: CarUltrasonic) -> Ear:
+    """Return the ear with the place that the middle sample heard put into the store."""
+    middle = ear.samples[MIDDLE]
+    before = ear.samples[MIDDLE - 1].r
+    end_x = middle.x + middle.r * math.cos(middle.axis)
+    end_y = middle.y + middle.r * math.sin(middle.axis)
+    put_ray(store, side, ear.rays, middle.x, middle.y, end_x, end_y)
+    ear = ear._replace(rays=ear.rays + 1)
+    if middle.r > 0.97 * sensors.max_range:
+        return ear._replace(silent=True)
+    first = _reach(ear.samples, -1)
+    last = _reach(ear.samples, 1)
+    if last - first < LEAST:
+        return ear
+    if last - first == KEPT - 1:
+        bend = _slope(ear.samples, MIDDLE, last, forward) - _slope(ear.samples, first, MIDDLE, forward)
+        if bend < -CREST:
+            return ear._replace(silent=True)
+    slope = _slope(ear.samples, first, last, forward)
+    rim = math.sin(sensors.half_angle)
+    bearing = math.asin(clamp(-slope, -rim, rim))
+    turned = 1.0 if math.sin(forward - middle.axis) > 0.0 else -1.0
+    angle = middle.axis + turned * bearing
+    x = middle.x + middle.r * math.cos(angle)
+    y = middle.y + middle.r * math.sin(angle)
+    jump = abs(middle.r - before) > _most(ear.samples[MIDDLE - 1], middle)
+    places = put_heard(store, side, ear.places, x, y, ear.silent or jump)
+    return ear._replace(places=places, silent=False)
+
+
+def _reach(samples: tuple[Sample, ...], sense: int) -> int:
+    """Return the first (``sense`` -1) or last (1) of the samples around the middle one that go with it."""
+    at = MIDDLE
+    goes_on = True
+    for _ in range(KEPT - 1 - MIDDLE):
+        after = samples[at + sense]
+        goes_on = goes_on and abs(after.r - samples[at].r) <= _most(samples[at], after)
+        at = at + sense if goes_on else at
+    return at
+
+
+def _slope(samples: tuple[Sample, ...], first: int, last: int, forward: float) -> float:
+    """Return how the distance changes over the way [m/m] from one sample to another: the regression."""
+    c = math.cos(forward)
+    s = math.sin(forward)
+    n = 0.0
+    su = 0.0
+    sr = 0.0
+    suu = 0.0
+    sur = 0.0
+    for number in range(KEPT):
+        sample = samples[number]
+        if first <= number <= last:
+            u = (sample.x - samples[MIDDLE].x) * c + (sample.y - samples[MIDDLE].y) * s
+            n += 1.0
+            su += u
+            sr += sample.r
+            suu += u * u
+            sur += u * sample.r
+    spread = suu - su * su / n
+    return (sur - su * sr / n) / spread if spread > 1e-6 else 0.0
+
+
+def _most(one: Sample, other: Sample) -> float:
+    """Return the largest change of the distance [m] between two samples that heard the same thing."""
+    dx = other.x - one.x
+    dy = other.y - one.y
+    return STEEPEST * math.sqrt(dx * dx + dy * dy) + STEP

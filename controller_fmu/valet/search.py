@@ -1,0 +1,153 @@
+"""Looking for a slot: both side sensors listen while the driver drives past; is what they have heard a slot?"""
+
+import math
+from typing import NamedTuple
+
+from controller_fmu.interface import ControllerInput, Reason
+from controller_fmu.planning.plan_store import PlanStore
+from controller_fmu.sensing.around import Surroundings, along_of, lay_around
+from controller_fmu.sensing.ear import Ear, listen
+from controller_fmu.sensing.gap import Gap, Layout, Wanted, find_gap
+from controller_fmu.valet.params import ValetParams, Wish, WishedSide
+from controller_fmu.valet.sight import sensor_at
+from modelkit.vocabulary import Pose
+
+RIGHT_SENSOR = 10
+LEFT_SENSOR = 8
+FRONT_SENSOR = 1
+RIGHT = 0
+LEFT = 1
+SLOWEST = 0.02
+"""A car that moves slower [m/s] hears nothing new."""
+INSIDE = 0.3
+LEAST_DEPTH = 2.0
+STRAIGHT = 0.9
+"""What is heard so far [m] from a slot's edges and front by a sensor that looks along it is what the slot ends at."""
+BEHIND = 0.6
+"""A slot is needed so much [m] deeper than the car, if nothing was heard that it ends at."""
+
+
+class Search(NamedTuple):
+    """What is remembered of a search beside the places heard."""
+
+    clock_ns: int = 0
+    right: Ear = Ear()
+    left: Ear = Ear()
+    way: float = 0.0
+    """Driven since it began [m]."""
+    gap: Gap = Gap()
+    """The slot found; NONE: none yet."""
+    side: int = RIGHT
+    waited_ns: int = 0
+    """For the driver to drive on, or to confirm."""
+    refused: int = Reason.NONE
+    """Why a slot was not taken."""
+    lines: int = 0
+    """Of the map around the slot."""
+    pose: Pose = Pose()
+    """Where the car stood when the slot was shown."""
+
+
+def begin_search(clock_ns: int) -> Search:
+    """Return a search that begins."""
+    return Search(clock_ns=clock_ns)
+
+
+def search(store: PlanStore, state: Search, inputs: ControllerInput, params: ValetParams, dt_ns: int) -> Search:
+    """Return the search after one sample; sensors tell something new every ``cycle``."""
+    speed = abs(inputs.measured_speed)
+    clock = state.clock_ns + dt_ns
+    cycle_ns = math.floor(params.car.ultrasonic.cycle * 1e9 + 0.5)
+    state = state._replace(clock_ns=clock, way=state.way + speed * dt_ns * 1e-9)
+    if clock % cycle_ns >= dt_ns or speed < SLOWEST:
+        return state
+    right = _hear(store, state.right, RIGHT, RIGHT_SENSOR, inputs, params)
+    left = _hear(store, state.left, LEFT, LEFT_SENSOR, inputs, params)
+    new_right = right.rays > state.right.rays and params.search.side != WishedSide.LEFT
+    new_left = left.rays > state.left.rays and params.search.side != WishedSide.RIGHT
+    state = state._replace(right=right, left=left)
+    if new_right and (state.gap.layout == Layout.NONE or state.side == RIGHT):
+        state = _judged(store, state, RIGHT, RIGHT_SENSOR, inputs, params)
+    if new_left and (state.gap.layout == Layout.NONE or state.side == LEFT):
+        state = _judged(store, state, LEFT, LEFT_SENSOR, inputs, params)
+    return state
+
+
+def wanted(params: ValetParams) -> Wanted:
+    """Return what the driver wants a slot to be."""
+    car = params.car
+    wish = params.search.wish
+    length = car.wheelbase + car.front_overhang + car.rear_overhang
+    return Wanted(
+        length=length,
+        width=car.width,
+        room_along=params.search.room_along,
+        room_across=params.search.room_across,
+        along=wish in (Wish.ANY, Wish.PARALLEL),
+        across=wish != Wish.PARALLEL,
+        half_angle=params.car.ultrasonic.half_angle,
+        deep=length + params.search.behind - params.search.stand_out,
+        open_ended=params.search.open_ended,
+    )
+
+
+def with_map(store: PlanStore, state: Search, inputs: ControllerInput, params: ValetParams) -> Search:
+    """Return the search whose slot is shown, with the map around it made."""
+    car = params.car
+    sensors = car.ultrasonic
+    length = car.wheelbase + car.front_overhang + car.rear_overhang
+    across = state.gap.layout == Layout.ACROSS
+    right_side = state.side == RIGHT
+    what = Surroundings(
+        side=state.side,
+        here=state.right.places if right_side else state.left.places,
+        opposite=state.left.places if right_side else state.right.places,
+        pose=inputs.odometry,
+        reach=sensors.max_range,
+        half_width=0.5 * car.width,
+        front=car.wheelbase + car.front_overhang,
+        ahead=min(inputs.ultrasonic[FRONT_SENSOR], inputs.ultrasonic[FRONT_SENSOR + 1]),
+        length=(length if across else car.width) + BEHIND,
+    )
+    lines = lay_around(store, state.gap, what)
+    return state._replace(lines=lines, waited_ns=0, pose=inputs.odometry)
+
+
+def _hear(store: PlanStore, ear: Ear, side: int, sensor: int, inputs: ControllerInput, params: ValetParams) -> Ear:
+    at = sensor_at(params.car.ultrasonic.mounts[sensor], inputs.odometry)
+    heading = inputs.odometry.heading
+    return listen(store, ear, side, at, inputs.ultrasonic[sensor], heading, params.car.ultrasonic)
+
+
+def _judged(
+    store: PlanStore, state: Search, side: int, sensor: int, inputs: ControllerInput, params: ValetParams
+) -> Search:
+    """Return the search with the gap that the places of one side make."""
+    ear = state.right if side == RIGHT else state.left
+    at = sensor_at(params.car.ultrasonic.mounts[sensor], inputs.odometry)
+    gap = find_gap(store, side, ear.places, at, inputs.odometry.heading, wanted(params))
+    if gap.shallow:
+        return state._replace(gap=Gap(), refused=Reason.SLOT_TOO_SHALLOW)
+    return state._replace(gap=gap, side=side)
+
+
+def reason_to_end(state: Search, params: ValetParams) -> int:
+    """Return why a search ends without a slot, ``NONE`` while it goes on."""
+    if state.way > params.search.way and state.gap.layout == Layout.NONE:
+        return state.refused if state.refused != Reason.NONE else Reason.NO_SLOT
+    return Reason.NOT_MOVING if state.waited_ns * 1e-9 > params.search.confirm else Reason.NONE
+
+
+def shallower(state: Search, echo: Pose) -> Search:
+    """Return the search whose slot ends where something has been heard in it; as it was if that is not in the slot."""
+    gap = state.gap
+    if gap.layout == Layout.NONE:
+        return state
+    e = along_of(gap)
+    x = echo.x - gap.a.x
+    y = echo.y - gap.a.y
+    s = x * e.x + y * e.y
+    depth = x * math.cos(gap.into) + y * math.sin(gap.into) - gap.front
+    straight = abs(math.cos(echo.heading - gap.into)) > STRAIGHT
+    inside = INSIDE < s < gap.width - INSIDE and depth > LEAST_DEPTH and straight
+    return state._replace(gap=gap._replace(depth=min(gap.depth, depth))) if inside else state

@@ -1,0 +1,98 @@
+"""What the side sensors hear becomes places, places a gap, at any angle, on either side; and the assist's switch."""
+
+import math
+import random
+
+import pytest
+from shapely.geometry import LineString, Point
+
+from controller_fmu.planning.plan_store import HEARD, PlanStore
+from controller_fmu.sensing.ear import Ear, listen
+from controller_fmu.sensing.gap import Gap, Layout, Wanted, find_gap
+from modelkit.car import Car
+from modelkit.store import new_store
+from modelkit.vocabulary import Pose
+from orchestrator.cosim.fmu_files import can_compile, fmu_files
+from orchestrator.scenario.load_scenario import load_scenario
+from orchestrator.scenario.polygons import box_corners
+from orchestrator.session.session import run_scenario
+from vehicle_fmu.scene import Obstacle, SceneParams
+from vehicle_fmu.ultrasonic import heard_distances
+
+CAR = Car()
+LENGTH, WIDTH = 3.805, 1.65
+WANTED = Wanted(LENGTH, WIDTH, 0.7, 0.5, along=True, across=True, half_angle=math.pi / 6.0, deep=3.5, open_ended=False)
+
+
+def row(angle, side, gap=2.6):
+    """Cars on both sides of a gap, at ``angle`` [deg] against the way; the gap's middle is at x = 0."""
+    turn = math.radians(angle)
+    pitch = 0.5 * (gap + WIDTH) / math.sin(turn)
+    depth = 0.5 * (LENGTH * math.sin(turn) + WIDTH * abs(math.cos(turn)))
+    further = pitch + (WIDTH + 0.7) / math.sin(turn)
+    return [
+        {"x": x, "y": -side * depth, "heading": -side * turn, "length": LENGTH, "width": WIDTH}
+        for x in (-further, -pitch, pitch, further)
+    ]
+
+
+def passed(boxes, side, noise, heading=0.0):
+    """Return the store and the gap that was found on the way past, if any."""
+    scene = SceneParams(boxes=tuple(Obstacle(**box) for box in boxes))
+    store, ear, draw, gap = new_store(PlanStore), Ear(), random.Random(3), Gap()
+    number = 10 if side > 0 else 8
+    mount, which = CAR.ultrasonic.mounts[number], 0 if side > 0 else 1
+    for step in range(260):
+        way = -11.0 + 0.08 * step
+        pose = Pose(way, side * (2.0 + way * math.sin(heading)), side * heading)
+        c, s = math.cos(pose.heading), math.sin(pose.heading)
+        at = Pose(pose.x + mount.x * c - mount.y * s, pose.y + mount.x * s + mount.y * c, pose.heading + mount.yaw)
+        reading = heard_distances(pose, scene, CAR.ultrasonic, 0.08, 0)[number]
+        reading = 5.0 if reading >= 5.0 or draw.random() < 0.01 * (noise > 0.0) else reading + draw.gauss(0.0, noise)
+        ear = listen(store, ear, which, at, reading, pose.heading, CAR.ultrasonic)
+        gap = find_gap(store, which, ear.places, at, pose.heading, WANTED)
+        if gap.layout != Layout.NONE and at.x > 4.0:
+            break
+    return store, ear, gap
+
+
+@pytest.mark.parametrize("angle", [45, 90, 120])
+def test_places_lie_on_what_stands_there(angle):
+    boxes = row(angle, 1)
+    store, ear, _ = passed(boxes, 1, 0.0)
+    lines = [LineString([*box_corners(box), box_corners(box)[0]]) for box in boxes]
+    off = [min(line.distance(Point(store.heard_x[n], store.heard_y[n])) for line in lines) for n in range(ear.places)]
+    assert ear.places > 30
+    assert sorted(off)[int(0.9 * len(off))] < 0.08
+    assert store.heard_count[HEARD] == 0
+
+
+@pytest.mark.parametrize("side", [1, -1])
+@pytest.mark.parametrize(("angle", "wide"), [(45, 3.4), (60, 2.6), (90, 2.6), (120, 2.6)])
+def test_a_gap_is_found_at_any_angle_on_either_side(angle, wide, side):
+    _, _, gap = passed(row(angle, side, wide), side, 0.01)
+    assert gap.layout == Layout.ACROSS
+    assert gap.into == pytest.approx(-side * math.radians(angle), abs=math.radians(2.5))
+    assert gap.width == pytest.approx(wide, abs=0.2)
+    across = (-math.sin(gap.into), math.cos(gap.into))
+    middle = (0.5 * (gap.a.x + gap.b.x), 0.5 * (gap.a.y + gap.b.y))
+    centre = row(angle, side, wide)[0]["y"]
+    off = middle[0] * across[0] + (middle[1] - centre) * across[1]
+    assert abs(off) < 0.15
+
+
+def test_cars_without_a_gap_between_them_are_none():
+    boxes = row(90, 1, gap=0.8)
+    assert passed(boxes, 1, 0.01)[2].layout == Layout.NONE
+
+
+@pytest.mark.skipif(not can_compile(), reason="FMUs without Python need a C compiler: pip install ziglang")
+def test_switched_off_on_the_way_in_it_is_over_and_without_a_slot_it_says_so():
+    files = fmu_files("native", lambda text: None)
+    scenario = load_scenario("valet-search-perpendicular", ["vehicle.driver.apa_switch_off_time=25"])
+    ran = run_scenario(scenario, files, kind="native").recording
+    assert max(ran.signals["controller.valet.step"]) == 10
+    assert ran.signals["controller.phase"].max() == 11
+    scenario = load_scenario("valet-search-perpendicular", ["vehicle.start.y=4.5", "controller.search.way=15"])
+    ran = run_scenario(scenario, files, kind="native").recording
+    assert ran.signals["controller.reason"][-1] == 23

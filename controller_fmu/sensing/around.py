@@ -22,7 +22,7 @@ SPARSE = 2.0
 WIDE = 5.0
 
 
-class Surroundings(NamedTuple):
+class AroundGap(NamedTuple):
     """What else the map is made of."""
 
     side: int
@@ -44,7 +44,7 @@ class Surroundings(NamedTuple):
     """So deep [m] the gap is needed, if nothing was heard before."""
 
 
-def lay_around(store: PlanStore, gap: Gap, what: Surroundings) -> int:
+def lay_around(store: PlanStore, gap: Gap, what: AroundGap) -> int:
     """Make the map of a gap; returns how many lines it has."""
     clear_around(store)
     lines = _lay_gap(store, gap, min(gap.depth, what.length))
@@ -91,7 +91,7 @@ def _lay_gap(store: PlanStore, gap: Gap, deep: float) -> int:
     return put_line(store, lines, ax, ay, bx, by)
 
 
-def _lay_row(store: PlanStore, lines: int, gap: Gap, what: Surroundings) -> int:
+def _lay_row(store: PlanStore, lines: int, gap: Gap, what: AroundGap) -> int:
     """Make the lines of the row: from place to place, but not across the gap."""
     first = what.side * HEARD
     end = first + what.here
@@ -146,7 +146,7 @@ def _lay(store: PlanStore, lines: int, a: int, b: int) -> int:
     return put_line(store, lines, store.heard_x[a], store.heard_y[a], store.heard_x[b], store.heard_y[b])
 
 
-def _lay_opposite(store: PlanStore, lines: int, what: Surroundings) -> int:
+def _lay_opposite(store: PlanStore, lines: int, what: AroundGap) -> int:
     """Make the lines across the road; where nothing was heard, as far away as sensors hear."""
     first = (1 - what.side) * HEARD
     pose = what.pose

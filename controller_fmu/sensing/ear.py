@@ -13,7 +13,7 @@ from typing import NamedTuple
 from controller_fmu.planning.plan_store import PlanStore
 from controller_fmu.sensing.heard_store import put_heard, put_ray
 from modelkit.car import CarUltrasonic
-from modelkit.maths import clamp
+from modelkit.maths import PI, clamp
 from modelkit.vocabulary import Pose
 
 BIN = 0.1
@@ -35,7 +35,7 @@ The distance to one convex thing never does that.
 """
 
 
-class Sample(NamedTuple):
+class HeardSample(NamedTuple):
     """Mean over a bin: where the sensor was, and what it heard."""
 
     x: float = 0.0
@@ -44,12 +44,12 @@ class Sample(NamedTuple):
     r: float = 0.0
 
 
-class Ear(NamedTuple):
+class SideEar(NamedTuple):
     """What is remembered of one sensor: the bin being filled, the last samples, the oldest first, places known."""
 
     n: float = 0.0
-    sums: Sample = Sample()
-    samples: tuple[Sample, ...] = (Sample(),) * KEPT
+    sums: HeardSample = HeardSample()
+    samples: tuple[HeardSample, ...] = (HeardSample(),) * KEPT
     taken: int = 0
     """Samples so far, at most ``KEPT``."""
     silent: bool = True
@@ -58,12 +58,10 @@ class Ear(NamedTuple):
     rays: int = 0
 
 
-def listen(
-    store: PlanStore, ear: Ear, side: int, at: Pose, reading: float, forward: float, sensors: CarUltrasonic
-) -> Ear:
+def listen(store: PlanStore, ear: SideEar, side: int, at: Pose, reading: float, sensors: CarUltrasonic) -> SideEar:
     """Return the ear after one reading of a sensor that is at ``at`` and looks along its heading.
 
-    ``side``: 0 right, 1 left, where places are put; ``forward``: direction [rad] in which the sensor moves.
+    ``side``: 0 right, 1 left, where places are put; it looks square to the way.
     """
     n = ear.n
     if n > 0.0:
@@ -71,15 +69,16 @@ def listen(
         dy = at.y - ear.sums.y / n
         full = dx * dx + dy * dy >= 0.25 * BIN * BIN or abs(reading - ear.sums.r / n) > SAME
         if not full:
-            sums = Sample(ear.sums.x + at.x, ear.sums.y + at.y, ear.sums.axis + at.heading, ear.sums.r + reading)
+            sums = HeardSample(ear.sums.x + at.x, ear.sums.y + at.y, ear.sums.axis + at.heading, ear.sums.r + reading)
             return ear._replace(n=n + 1.0, sums=sums)
-        mean = Sample(ear.sums.x / n, ear.sums.y / n, ear.sums.axis / n, ear.sums.r / n)
+        mean = HeardSample(ear.sums.x / n, ear.sums.y / n, ear.sums.axis / n, ear.sums.r / n)
         lost = _is_lost(ear.samples[KEPT - 2].r, ear.samples[KEPT - 1].r, mean.r)
         kept = ear.samples[: KEPT - 1] + (mean,) if lost else ear.samples[1:] + (mean,)
         ear = ear._replace(samples=kept, taken=ear.taken + 1 if ear.taken < KEPT else KEPT)
         if ear.taken == KEPT and not lost:
+            forward = at.heading + (0.5 * PI if side == 0 else -0.5 * PI)
             ear = _placed(store, ear, side, forward, sensors)
-    return ear._replace(n=1.0, sums=Sample(at.x, at.y, at.heading, reading))
+    return ear._replace(n=1.0, sums=HeardSample(at.x, at.y, at.heading, reading))
 
 
 def _is_lost(before: float, middle: float, after: float) -> bool:
@@ -87,13 +86,13 @@ def _is_lost(before: float, middle: float, after: float) -> bool:
     return abs(middle - before) > LOST and abs(middle - after) > LOST and abs(before - after) < LOST
 
 
-def _placed(store: PlanStore, ear: Ear, side: int, forward: float, sensors: CarUltrasonic) -> Ear:
+def _placed(store: PlanStore, ear: SideEar, side: int, forward: float, sensors: CarUltrasonic) -> SideEar:
     """Return the ear with the place that the middle sample heard put into the store."""
     middle = ear.samples[MIDDLE]
     before = ear.samples[MIDDLE - 1].r
     end_x = middle.x + middle.r * math.cos(middle.axis)
     end_y = middle.y + middle.r * math.sin(middle.axis)
-    put_ray(store, side, ear.rays, middle.x, middle.y, end_x, end_y)
+    put_ray(store, side, ear.rays, Pose(middle.x, middle.y, middle.axis), Pose(end_x, end_y, middle.axis))
     ear = ear._replace(rays=ear.rays + 1)
     if middle.r > 0.97 * sensors.max_range:
         return ear._replace(silent=True)
@@ -117,7 +116,7 @@ def _placed(store: PlanStore, ear: Ear, side: int, forward: float, sensors: CarU
     return ear._replace(places=places, silent=False)
 
 
-def _reach(samples: tuple[Sample, ...], sense: int) -> int:
+def _reach(samples: tuple[HeardSample, ...], sense: int) -> int:
     """Return the first (``sense`` -1) or last (1) of the samples around the middle one that go with it."""
     at = MIDDLE
     goes_on = True
@@ -128,7 +127,7 @@ def _reach(samples: tuple[Sample, ...], sense: int) -> int:
     return at
 
 
-def _slope(samples: tuple[Sample, ...], first: int, last: int, forward: float) -> float:
+def _slope(samples: tuple[HeardSample, ...], first: int, last: int, forward: float) -> float:
     """Return how the distance changes over the way [m/m] from one sample to another: the regression."""
     c = math.cos(forward)
     s = math.sin(forward)
@@ -150,7 +149,7 @@ def _slope(samples: tuple[Sample, ...], first: int, last: int, forward: float) -
     return (sur - su * sr / n) / spread if spread > 1e-6 else 0.0
 
 
-def _most(one: Sample, other: Sample) -> float:
+def _most(one: HeardSample, other: HeardSample) -> float:
     """Return the largest change of the distance [m] between two samples that heard the same thing."""
     dx = other.x - one.x
     dy = other.y - one.y

@@ -67,7 +67,7 @@ LOOKED_MOST = 2.0
 """A gap has been looked into if nothing was heard before this share of the depth that could be looked into, and [m]."""
 
 
-class Layout(IntEnum):
+class GapLayout(IntEnum):
     """How a car would stand in a gap."""
 
     NONE = 0
@@ -97,7 +97,7 @@ class Wanted(NamedTuple):
 class Gap(NamedTuple):
     """A gap: corners A (passed first) and B of its opening, direction into it, depth heard, all in the world."""
 
-    layout: int = Layout.NONE
+    layout: int = GapLayout.NONE
     a: Pose = Pose()
     b: Pose = Pose()
     into: float = 0.0
@@ -114,7 +114,7 @@ class Gap(NamedTuple):
     """Where a car begins that stands as its neighbours do, from A's corner along the direction into it [m]."""
 
 
-class Frame(NamedTuple):
+class GapFrame(NamedTuple):
     """How places are looked at: whose they are, from where, along which way, row and corridor."""
 
     first: int
@@ -146,14 +146,14 @@ def find_gap(store: PlanStore, side: int, places: int, at: Pose, forward: float,
     ``forward``: the way's direction [rad].
     """
     mirror = 1.0 if side == 0 else -1.0
-    frame = Frame(side * HEARD, side * HEARD + places, mirror, Pose(at.x, at.y, forward), math.tan(want.half_angle))
+    frame = GapFrame(side * HEARD, side * HEARD + places, mirror, Pose(at.x, at.y, forward), math.tan(want.half_angle))
     turn = turn_of(store, frame)
     if turn == UNCLEAR:
         return Gap()
     square = frame._replace(row=turn, into=turn + 0.5 * PI)
     if abs(turn) <= ANGLED:
         best = _corridor(store, square, want, True) if want.along else Gap()
-        return _corridor(store, square, want, False) if best.layout == Layout.NONE and want.across else best
+        return _corridor(store, square, want, False) if best.layout == GapLayout.NONE and want.across else best
     if not want.across:
         return Gap()
     other = turn if turn > 0.0 else turn + PI
@@ -163,7 +163,7 @@ def find_gap(store: PlanStore, side: int, places: int, at: Pose, forward: float,
     return _corridor(store, frame._replace(into=other), want, False) if longer < -CLEARLY else Gap()
 
 
-def _longest_side(store: PlanStore, frame: Frame, angle: float) -> float:
+def _longest_side(store: PlanStore, frame: GapFrame, angle: float) -> float:
     """Return the length [m] of the longest side seen along ``angle``: the long sides of cars tell how they stand."""
     longest = 0.0
     start = -1
@@ -182,7 +182,7 @@ def _longest_side(store: PlanStore, frame: Frame, angle: float) -> float:
     return longest
 
 
-def turn_of(store: PlanStore, frame: Frame) -> float:
+def turn_of(store: PlanStore, frame: GapFrame) -> float:
     """Return how neighbours are turned against the way, towards the side, in [-pi/4, pi/4]: the mean over all sides.
 
     ``UNCLEAR`` where few have been seen, or where they contradict each other.
@@ -218,12 +218,12 @@ def _is_side(store: PlanStore, place: int) -> bool:
     return True
 
 
-def _seen(store: PlanStore, place: int, frame: Frame) -> Pose:
+def _seen(store: PlanStore, place: int, frame: GapFrame) -> Pose:
     """Return a place as the sensor sees it: x forward, y to its side [m]."""
     return _turned(store.heard_x[place], store.heard_y[place], frame)
 
 
-def _turned(x: float, y: float, frame: Frame) -> Pose:
+def _turned(x: float, y: float, frame: GapFrame) -> Pose:
     c = math.cos(frame.at.heading)
     s = math.sin(frame.at.heading)
     dx = x - frame.at.x
@@ -231,14 +231,14 @@ def _turned(x: float, y: float, frame: Frame) -> Pose:
     return Pose(dx * c + dy * s, frame.mirror * (dx * s - dy * c), 0.0)
 
 
-def _spot(seen: Pose, frame: Frame) -> Spot:
+def _spot(seen: Pose, frame: GapFrame) -> Spot:
     c = math.cos(frame.into)
     s = math.sin(frame.into)
     behind = seen.y * math.cos(frame.row) - seen.x * math.sin(frame.row)
     return Spot(seen.x * c + seen.y * s, seen.x * s - seen.y * c, behind)
 
 
-def _nearest(store: PlanStore, frame: Frame, u: float) -> float:
+def _nearest(store: PlanStore, frame: GapFrame, u: float) -> float:
     """Return how near [m] to the way something was heard around ``u``."""
     nearest = DEEP
     for place in range(frame.first, frame.end):
@@ -248,7 +248,7 @@ def _nearest(store: PlanStore, frame: Frame, u: float) -> float:
     return nearest
 
 
-def _corridor(store: PlanStore, frame: Frame, want: Wanted, along: bool) -> Gap:
+def _corridor(store: PlanStore, frame: GapFrame, want: Wanted, along: bool) -> Gap:
     """Return the corridor passed last in a frame, with a car along the row or across it."""
     deep = BESIDE if along else CROSS
     least = want.length + want.room_along if along else want.width + want.room_across
@@ -275,18 +275,18 @@ def _corridor(store: PlanStore, frame: Frame, want: Wanted, along: bool) -> Gap:
                 if abs(math.cos(frame.into - frame.row)) > SQUARE and not _is_askew(gap, want):
                     continue
                 if _fits(gap, want, along):
-                    found = gap._replace(layout=Layout.ALONG if along else Layout.ACROSS)
-                elif not along and found.layout == Layout.NONE:
-                    found = gap._replace(layout=Layout.ACROSS, shallow=True)
+                    found = gap._replace(layout=GapLayout.ALONG if along else GapLayout.ACROSS)
+                elif not along and found.layout == GapLayout.NONE:
+                    found = gap._replace(layout=GapLayout.ACROSS, shallow=True)
     return found
 
 
-def _is_past(store: PlanStore, frame: Frame, place: int) -> bool:
+def _is_past(store: PlanStore, frame: GapFrame, place: int) -> bool:
     """Return whether the sensor has passed a place."""
     return _seen(store, place, frame).x < -PASSED
 
 
-def _beside_body(store: PlanStore, frame: Frame, edge: float, sense: float, want: Wanted) -> float:
+def _beside_body(store: PlanStore, frame: GapFrame, edge: float, sense: float, want: Wanted) -> float:
     """Return the edge of a gap at an angle, moved to where the neighbour's body must begin.
 
     The corner that stands out most, of the neighbour beyond which the row recedes, is the far one of its front: the
@@ -318,7 +318,7 @@ class Flank(NamedTuple):
     """How far it is seen away from the gap."""
 
 
-def _flank(store: PlanStore, frame: Frame, edge: float, sense: float) -> Flank:
+def _flank(store: PlanStore, frame: GapFrame, edge: float, sense: float) -> Flank:
     """Return the neighbour that bounds the gap at s = ``edge``, on its lower (``sense`` -1) or upper side."""
     t = DEEP
     z = DEEP
@@ -336,7 +336,7 @@ def _flank(store: PlanStore, frame: Frame, edge: float, sense: float) -> Flank:
     return Flank(t, z, max(0.0, deepest - t), far)
 
 
-def _measured(store: PlanStore, frame: Frame, low: float, high: float, closed: bool, want: Wanted) -> Gap:
+def _measured(store: PlanStore, frame: GapFrame, low: float, high: float, closed: bool, want: Wanted) -> Gap:
     """Return the gap between the lines s = ``low`` and s = ``high``: its corners, its depth, its neighbours."""
     one = _flank(store, frame, low, -1.0)
     angle = frame.into - frame.row
@@ -355,7 +355,7 @@ def _measured(store: PlanStore, frame: Frame, low: float, high: float, closed: b
             depth = min(depth, spot.t - front)
     longer = max(_extent(store, frame, low, one.t, -1.0), _extent(store, frame, high, other.t, 1.0) if closed else 0.0)
     return Gap(
-        layout=Layout.ALONG if longer > LONG else Layout.ACROSS,
+        layout=GapLayout.ALONG if longer > LONG else GapLayout.ACROSS,
         a=_in_world(one.t, low, frame),
         b=_in_world(other.t, high, frame),
         into=frame.at.heading - frame.mirror * frame.into,
@@ -367,7 +367,7 @@ def _measured(store: PlanStore, frame: Frame, low: float, high: float, closed: b
     )
 
 
-def _extent(store: PlanStore, frame: Frame, edge: float, front: float, sense: float) -> float:
+def _extent(store: PlanStore, frame: GapFrame, edge: float, front: float, sense: float) -> float:
     """Return how far [m] a neighbour's front goes on from the gap's edge, outwards."""
     reached = 0.0
     for _ in range(30):
@@ -383,7 +383,7 @@ def _extent(store: PlanStore, frame: Frame, edge: float, front: float, sense: fl
     return reached
 
 
-def _in_world(t: float, s: float, frame: Frame) -> Pose:
+def _in_world(t: float, s: float, frame: GapFrame) -> Pose:
     u = t * math.cos(frame.into) + s * math.sin(frame.into)
     right = frame.mirror * (t * math.sin(frame.into) - s * math.cos(frame.into))
     c = math.cos(frame.at.heading)
@@ -394,7 +394,7 @@ def _in_world(t: float, s: float, frame: Frame) -> Pose:
 def _fits(gap: Gap, want: Wanted, along: bool) -> bool:
     """Return whether a gap is deep enough; along the road a car only stands where neighbours do, or it must."""
     if along:
-        return gap.depth >= want.width - 0.1 and (gap.layout == Layout.ALONG or gap.depth < want.length - 0.3)
+        return gap.depth >= want.width - 0.1 and (gap.layout == GapLayout.ALONG or gap.depth < want.length - 0.3)
     return gap.depth >= want.deep
 
 
@@ -403,7 +403,7 @@ def _is_askew(gap: Gap, want: Wanted) -> bool:
     return gap.support > LEAST_SUPPORT and gap.longest < want.width + WIDER
 
 
-def _is_straight(gap: Gap, frame: Frame) -> bool:
+def _is_straight(gap: Gap, frame: GapFrame) -> bool:
     """Return whether the opening lies along the row."""
     a = _turned(gap.a.x, gap.a.y, frame)
     b = _turned(gap.b.x, gap.b.y, frame)
@@ -412,7 +412,7 @@ def _is_straight(gap: Gap, frame: Frame) -> bool:
     return abs(across) < STRAIGHT * along
 
 
-def _is_seen(store: PlanStore, frame: Frame, gap: Gap, low: float, high: float) -> bool:
+def _is_seen(store: PlanStore, frame: GapFrame, gap: Gap, low: float, high: float) -> bool:
     """Return whether a sensor has looked into a gap (s from ``low`` to ``high``) nearly as deep as its cone lets it.
 
     The rims of the cone meet the neighbours' sides: at the distance of half the opening over tan(g).

@@ -2,6 +2,7 @@
 
 from controller_fmu.planning.plan_store import HEARD, PlanStore
 from controller_fmu.planning.task import CORNERS
+from modelkit.vocabulary import Pose
 
 MERGED = 0.1
 """Echoes from places nearer to each other than this [m] are of one place."""
@@ -57,13 +58,13 @@ def put_heard(store: PlanStore, side: int, count: int, x: float, y: float, broke
     return count + 1
 
 
-def put_ray(store: PlanStore, side: int, number: int, x: float, y: float, end_x: float, end_y: float) -> None:
+def put_ray(store: PlanStore, side: int, number: int, at: Pose, end: Pose) -> None:
     """Remember what a sensor looked along without hearing anything nearer; the oldest of ``HEARD`` is forgotten."""
     place = side * HEARD + number % HEARD
-    store.ray_x[place] = x
-    store.ray_y[place] = y
-    store.ray_end_x[place] = end_x
-    store.ray_end_y[place] = end_y
+    store.ray_x[place] = at.x
+    store.ray_y[place] = at.y
+    store.ray_end_x[place] = end.x
+    store.ray_end_y[place] = end.y
 
 
 def clear_around(store: PlanStore) -> None:

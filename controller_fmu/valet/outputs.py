@@ -2,7 +2,7 @@
 
 from controller_fmu.interface import Reason
 from controller_fmu.planning.plan import PATH
-from controller_fmu.sensing.gap import Layout
+from controller_fmu.sensing.gap import GapLayout
 from controller_fmu.valet.chart import Step
 from controller_fmu.valet.params import ValetParams
 from controller_fmu.valet.phases import ValetPhase
@@ -61,7 +61,7 @@ def prompt_of(state: ValetState) -> int:
     if state.step == Step.SHOWN:
         return Prompt.CONFIRM if state.path.used > 0 else Prompt.STOP
     if state.step == Step.SEARCH:
-        if state.search.gap.layout != Layout.NONE:
+        if state.search.gap.layout != GapLayout.NONE:
             return Prompt.STOP
         return Prompt.SLOW_DOWN if state.search.way > MOVING and state.search.waited_ns == 0 else Prompt.FORWARD
     return Prompt.NONE
@@ -92,7 +92,7 @@ def _signals(state: ValetState) -> ValetSignals:
 
 def _slot(state: ValetState) -> FoundSlot:
     gap = state.search.gap
-    if gap.layout == Layout.NONE:
+    if gap.layout == GapLayout.NONE:
         return FoundSlot()
     return FoundSlot(gap.layout, state.search.side, gap.a.x, gap.a.y, gap.b.x, gap.b.y, gap.into, gap.depth, gap.width)
 

@@ -40,7 +40,7 @@ class GivenSlot(NamedTuple):
     depth: Annotated[float, Signal("m", "from the opening to the slot's end along its heading", 0.0, 100.0)] = 5.0
 
 
-class Wish(IntEnum):
+class SlotWish(IntEnum):
     """Which slots the driver wants."""
 
     ANY = 0
@@ -64,7 +64,7 @@ class ValetSearchParams(NamedTuple):
     active: Annotated[bool, Signal("1", "looks for a slot when the driver switches on; else drives to the target")] = (
         False
     )
-    wish: Annotated[int, Signal("1", "which slots are wanted", states=Wish)] = Wish.ANY
+    wish: Annotated[int, Signal("1", "which slots are wanted", states=SlotWish)] = SlotWish.ANY
     side: Annotated[int, Signal("1", "on which side", states=WishedSide)] = WishedSide.ANY
     open_ended: Annotated[bool, Signal("1", "one neighbour will do")] = False
     speed: Annotated[float, Signal("m/s", "largest speed of the search", 0.1, 10.0, HOUSE)] = 10.0 / 3.6

@@ -5,10 +5,10 @@ from typing import NamedTuple
 
 from controller_fmu.interface import ControllerInput, Reason
 from controller_fmu.planning.plan_store import PlanStore
-from controller_fmu.sensing.around import Surroundings, along_of, lay_around
-from controller_fmu.sensing.ear import Ear, listen
-from controller_fmu.sensing.gap import Gap, Layout, Wanted, find_gap
-from controller_fmu.valet.params import ValetParams, Wish, WishedSide
+from controller_fmu.sensing.around import AroundGap, along_of, lay_around
+from controller_fmu.sensing.ear import SideEar, listen
+from controller_fmu.sensing.gap import Gap, GapLayout, Wanted, find_gap
+from controller_fmu.valet.params import SlotWish, ValetParams, WishedSide
 from controller_fmu.valet.sight import sensor_at
 from modelkit.vocabulary import Pose
 
@@ -31,8 +31,8 @@ class Search(NamedTuple):
     """What is remembered of a search beside the places heard."""
 
     clock_ns: int = 0
-    right: Ear = Ear()
-    left: Ear = Ear()
+    right: SideEar = SideEar()
+    left: SideEar = SideEar()
     way: float = 0.0
     """Driven since it began [m]."""
     gap: Gap = Gap()
@@ -66,9 +66,9 @@ def search(store: PlanStore, state: Search, inputs: ControllerInput, params: Val
     new_right = right.rays > state.right.rays and params.search.side != WishedSide.LEFT
     new_left = left.rays > state.left.rays and params.search.side != WishedSide.RIGHT
     state = state._replace(right=right, left=left)
-    if new_right and (state.gap.layout == Layout.NONE or state.side == RIGHT):
+    if new_right and (state.gap.layout == GapLayout.NONE or state.side == RIGHT):
         state = _judged(store, state, RIGHT, RIGHT_SENSOR, inputs, params)
-    if new_left and (state.gap.layout == Layout.NONE or state.side == LEFT):
+    if new_left and (state.gap.layout == GapLayout.NONE or state.side == LEFT):
         state = _judged(store, state, LEFT, LEFT_SENSOR, inputs, params)
     return state
 
@@ -83,8 +83,8 @@ def wanted(params: ValetParams) -> Wanted:
         width=car.width,
         room_along=params.search.room_along,
         room_across=params.search.room_across,
-        along=wish in (Wish.ANY, Wish.PARALLEL),
-        across=wish != Wish.PARALLEL,
+        along=wish in (SlotWish.ANY, SlotWish.PARALLEL),
+        across=wish != SlotWish.PARALLEL,
         half_angle=params.car.ultrasonic.half_angle,
         deep=length + params.search.behind - params.search.stand_out,
         open_ended=params.search.open_ended,
@@ -96,9 +96,9 @@ def with_map(store: PlanStore, state: Search, inputs: ControllerInput, params: V
     car = params.car
     sensors = car.ultrasonic
     length = car.wheelbase + car.front_overhang + car.rear_overhang
-    across = state.gap.layout == Layout.ACROSS
+    across = state.gap.layout == GapLayout.ACROSS
     right_side = state.side == RIGHT
-    what = Surroundings(
+    what = AroundGap(
         side=state.side,
         here=state.right.places if right_side else state.left.places,
         opposite=state.left.places if right_side else state.right.places,
@@ -113,10 +113,11 @@ def with_map(store: PlanStore, state: Search, inputs: ControllerInput, params: V
     return state._replace(lines=lines, waited_ns=0, pose=inputs.odometry)
 
 
-def _hear(store: PlanStore, ear: Ear, side: int, sensor: int, inputs: ControllerInput, params: ValetParams) -> Ear:
+def _hear(
+    store: PlanStore, ear: SideEar, side: int, sensor: int, inputs: ControllerInput, params: ValetParams
+) -> SideEar:
     at = sensor_at(params.car.ultrasonic.mounts[sensor], inputs.odometry)
-    heading = inputs.odometry.heading
-    return listen(store, ear, side, at, inputs.ultrasonic[sensor], heading, params.car.ultrasonic)
+    return listen(store, ear, side, at, inputs.ultrasonic[sensor], params.car.ultrasonic)
 
 
 def _judged(
@@ -133,7 +134,7 @@ def _judged(
 
 def reason_to_end(state: Search, params: ValetParams) -> int:
     """Return why a search ends without a slot, ``NONE`` while it goes on."""
-    if state.way > params.search.way and state.gap.layout == Layout.NONE:
+    if state.way > params.search.way and state.gap.layout == GapLayout.NONE:
         return state.refused if state.refused != Reason.NONE else Reason.NO_SLOT
     return Reason.NOT_MOVING if state.waited_ns * 1e-9 > params.search.confirm else Reason.NONE
 
@@ -141,7 +142,7 @@ def reason_to_end(state: Search, params: ValetParams) -> int:
 def shallower(state: Search, echo: Pose) -> Search:
     """Return the search whose slot ends where something has been heard in it; as it was if that is not in the slot."""
     gap = state.gap
-    if gap.layout == Layout.NONE:
+    if gap.layout == GapLayout.NONE:
         return state
     e = along_of(gap)
     x = echo.x - gap.a.x

@@ -4,7 +4,7 @@ from enum import IntEnum
 from typing import Annotated, NamedTuple
 
 from controller_fmu.interface import Reason
-from controller_fmu.sensing.gap import Layout
+from controller_fmu.sensing.gap import GapLayout
 from controller_fmu.valet.chart import Step
 from controller_fmu.valet.phases import ValetPhase
 from modelkit.signal import Group, Role, Signal
@@ -53,7 +53,7 @@ class Move(NamedTuple):
 class FoundSlot(NamedTuple):
     """The slot that a search has found."""
 
-    layout: Annotated[int, Signal("1", "how the car will stand in it", states=Layout)] = Layout.NONE
+    layout: Annotated[int, Signal("1", "how the car will stand in it", states=GapLayout)] = GapLayout.NONE
     side: Annotated[int, Signal("1", "0 right, 1 left of the way")] = 0
     ax: Annotated[float, Signal("m", "x of corner A, passed first")] = 0.0
     ay: Annotated[float, Signal("m", "y of corner A")] = 0.0

@@ -4,8 +4,8 @@ import math
 
 from controller_fmu.planning.task import PlannedCar as Body
 from controller_fmu.sensing.around import along_of
-from controller_fmu.sensing.gap import Gap, Layout
-from controller_fmu.valet.params import SlotKind, ValetParams, Wish
+from controller_fmu.sensing.gap import Gap, GapLayout
+from controller_fmu.valet.params import SlotKind, SlotWish, ValetParams
 from modelkit.car import largest_curvature
 from modelkit.maths import PI
 from modelkit.vocabulary import Pose
@@ -55,7 +55,7 @@ def goal_in(gap: Gap, way: float, params: ValetParams) -> Pose:
     ty = math.sin(gap.into)
     front = gap.front
     width = 2.0 * body.half_width
-    if gap.layout == Layout.ALONG:
+    if gap.layout == GapLayout.ALONG:
         heading = math.atan2(e.y, e.x)
         left = gap.depth - width
         shift = 0.0
@@ -66,7 +66,7 @@ def goal_in(gap: Gap, way: float, params: ValetParams) -> Pose:
         t = front + body.half_width + shift
     else:
         t = front + body.half_length - stands_out(gap, params)
-        nose = search.wish == Wish.NOSE_IN or (search.wish == Wish.ANY and math.cos(gap.into - way) > LEADS_ON)
+        nose = search.wish == SlotWish.NOSE_IN or (search.wish == SlotWish.ANY and math.cos(gap.into - way) > LEADS_ON)
         heading = gap.into if nose else gap.into + PI
     x = gap.a.x + t * tx + 0.5 * gap.width * e.x
     y = gap.a.y + t * ty + 0.5 * gap.width * e.y
@@ -76,4 +76,4 @@ def goal_in(gap: Gap, way: float, params: ValetParams) -> Pose:
 def stands_out(gap: Gap, params: ValetParams) -> float:
     """Return how far [m] a car stands out of a gap across the road, which ends before the car would."""
     short = 2.0 * body_of(params).half_length + params.search.behind - gap.depth
-    return short if short > 0.0 and gap.layout == Layout.ACROSS else 0.0
+    return short if short > 0.0 and gap.layout == GapLayout.ACROSS else 0.0

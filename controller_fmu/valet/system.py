@@ -19,7 +19,7 @@ from controller_fmu.planning.plan import (
 from controller_fmu.planning.plan_store import PlanStore
 from controller_fmu.planning.task import Corner, Request, drive
 from controller_fmu.sensing.around import lay_end
-from controller_fmu.sensing.gap import DEEP, Layout
+from controller_fmu.sensing.gap import DEEP, GapLayout
 from controller_fmu.sensing.heard_store import forget_side
 from controller_fmu.valet.chart import Guard, Step, step_transition
 from controller_fmu.valet.params import ValetParams
@@ -155,7 +155,7 @@ def sought_on(
     reason = fault_of(inputs)
     if state.step == Step.SEARCH and reason == Reason.NONE:
         sought = search(store, sought, inputs, params, dt_ns)
-        waits = standing and sought.gap.layout == Layout.NONE
+        waits = standing and sought.gap.layout == GapLayout.NONE
         sought = sought._replace(waited_ns=sought.waited_ns + dt_ns if waits else 0)
         reason = reason_to_end(sought, params)
     if state.step == Step.SHOWN and reason == Reason.NONE:
@@ -172,7 +172,7 @@ def sought_on(
         | bit(Guard.RESUMED, inputs.apa_switch and state.resumes and standing)
         | bit(Guard.SWITCHED_OFF, not inputs.apa_switch)
         | bit(Guard.FAULT, reason != Reason.NONE)
-        | bit(Guard.FOUND, standing and sought.gap.layout != Layout.NONE)
+        | bit(Guard.FOUND, standing and sought.gap.layout != GapLayout.NONE)
         | bit(Guard.REFUSED, refused)
         | bit(Guard.DRIVEN_ON, dx * dx + dy * dy > DRIVEN_ON * DRIVEN_ON)
         | bit(Guard.CONFIRMED, inputs.driver_confirm and standing and state.path.used > 0)
@@ -212,7 +212,7 @@ def _switched_off(state: ValetState, inputs: ControllerInput, params: ValetParam
     step = step_transition(state.step, bit(Guard.SWITCHED_OFF, off))
     if step == state.step:
         return state
-    resumes = state.step != Step.PARKED and state.search.gap.layout != Layout.NONE
+    resumes = state.step != Step.PARKED and state.search.gap.layout != GapLayout.NONE
     return ValetState(step=step, search=state.search, resumes=resumes)
 
 

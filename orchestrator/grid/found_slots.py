@@ -9,7 +9,7 @@ import random
 from functools import cache
 from typing import Any, NamedTuple
 
-from controller_fmu.valet.params import Wish
+from controller_fmu.valet.params import SlotWish
 from orchestrator.grid.cases import BODY, CARS
 from orchestrator.scenario.car import car_parameters
 from orchestrator.scenario.polygons import box_corners
@@ -184,7 +184,7 @@ def standing_of(case: FoundCase) -> tuple[Target, Slot]:
 def scenario_of(case: FoundCase, told: bool = False) -> Scenario:
     """Return the scenario of a case; ``told``: the valet does not search, it is told the map and the target."""
     target, slot = standing_of(case)
-    wish = {"parallel": Wish.PARALLEL, "nose in": Wish.NOSE_IN, "tail in": Wish.TAIL_IN}[case.wish]
+    wish = {"parallel": SlotWish.PARALLEL, "nose in": SlotWish.NOSE_IN, "tail in": SlotWish.TAIL_IN}[case.wish]
     controller: dict[str, Any] = {
         **car_parameters(CARS[case.car]),
         "system": 7,

@@ -7,8 +7,8 @@ import pytest
 from shapely.geometry import LineString, Point
 
 from controller_fmu.planning.plan_store import HEARD, PlanStore
-from controller_fmu.sensing.ear import Ear, listen
-from controller_fmu.sensing.gap import Gap, Layout, Wanted, find_gap
+from controller_fmu.sensing.ear import SideEar, listen
+from controller_fmu.sensing.gap import Gap, GapLayout, Wanted, find_gap
 from modelkit.car import Car
 from modelkit.store import new_store
 from modelkit.vocabulary import Pose
@@ -39,7 +39,7 @@ def row(angle, side, gap=2.6):
 def passed(boxes, side, noise, heading=0.0):
     """Return the store and the gap that was found on the way past, if any."""
     scene = SceneParams(boxes=tuple(Obstacle(**box) for box in boxes))
-    store, ear, draw, gap = new_store(PlanStore), Ear(), random.Random(3), Gap()
+    store, ear, draw, gap = new_store(PlanStore), SideEar(), random.Random(3), Gap()
     number = 10 if side > 0 else 8
     mount, which = CAR.ultrasonic.mounts[number], 0 if side > 0 else 1
     for step in range(260):
@@ -49,9 +49,9 @@ def passed(boxes, side, noise, heading=0.0):
         at = Pose(pose.x + mount.x * c - mount.y * s, pose.y + mount.x * s + mount.y * c, pose.heading + mount.yaw)
         reading = heard_distances(pose, scene, CAR.ultrasonic, 0.08, 0)[number]
         reading = 5.0 if reading >= 5.0 or draw.random() < 0.01 * (noise > 0.0) else reading + draw.gauss(0.0, noise)
-        ear = listen(store, ear, which, at, reading, pose.heading, CAR.ultrasonic)
+        ear = listen(store, ear, which, at, reading, CAR.ultrasonic)
         gap = find_gap(store, which, ear.places, at, pose.heading, WANTED)
-        if gap.layout != Layout.NONE and at.x > 4.0:
+        if gap.layout != GapLayout.NONE and at.x > 4.0:
             break
     return store, ear, gap
 
@@ -71,7 +71,7 @@ def test_places_lie_on_what_stands_there(angle):
 @pytest.mark.parametrize(("angle", "wide"), [(45, 3.4), (60, 2.6), (90, 2.6), (120, 2.6)])
 def test_a_gap_is_found_at_any_angle_on_either_side(angle, wide, side):
     _, _, gap = passed(row(angle, side, wide), side, 0.01)
-    assert gap.layout == Layout.ACROSS
+    assert gap.layout == GapLayout.ACROSS
     assert gap.into == pytest.approx(-side * math.radians(angle), abs=math.radians(2.5))
     assert gap.width == pytest.approx(wide, abs=0.2)
     across = (-math.sin(gap.into), math.cos(gap.into))
@@ -83,7 +83,7 @@ def test_a_gap_is_found_at_any_angle_on_either_side(angle, wide, side):
 
 def test_cars_without_a_gap_between_them_are_none():
     boxes = row(90, 1, gap=0.8)
-    assert passed(boxes, 1, 0.01)[2].layout == Layout.NONE
+    assert passed(boxes, 1, 0.01)[2].layout == GapLayout.NONE
 
 
 @pytest.mark.skipif(not can_compile(), reason="FMUs without Python need a C compiler: pip install ziglang")

@@ -1,6 +1,7 @@
 // Puts the page together: scenario, drive, ghost, panels, keys, link.
 
 const PROMPTS = { NONE: "no prompt", STOP: "stop", FORWARD: "drive forward", REVERSE: "drive in reverse", SLOW_DOWN: "slow down", TAKE_OVER: "take over", CONFIRM: "confirm?" };
+const WORDS_EVERY = 50; // numbers and words follow the picture at intervals that can be read [ms]
 
 class Page {
   /** @type {any} the top view; there is none before the first scenario */
@@ -12,6 +13,7 @@ class Page {
   paint = () => {};
   show = () => {};
   took = 0; // until the page was ready [ms]
+  told = 0; // when numbers and words were last written [ms]
 
   constructor(lab, data, code) {
     this.lab = lab;
@@ -114,7 +116,13 @@ class Page {
     const key = [drive.t, this.whole.took, this.stage.scale, ...this.stage.middle, driver.pedal.accelerator, driver.pedal.brake, driver.lever, driver.drives, drive.isPlaying].join();
     if (key === this.key) return;
     this.key = key;
-    if (drive.history.time.length) { this.stage.draw(drive.t); headsUp(this.drawn, drive.t); this.chart.show(drive.history, drive.t); this.cockpit(); }
+    if (!drive.history.time.length) return;
+    this.stage.draw(drive.t);
+    if (drive.isPlaying && now - this.told < WORDS_EVERY) return;
+    this.told = now;
+    headsUp(this.drawn, drive.t);
+    this.chart.show(drive.history, drive.t);
+    this.cockpit();
   }
 
   cockpit() {

@@ -18,9 +18,13 @@ from orchestrator.verdict.summary import summarize
 POSES = ("final heading", "final lateral position", "outline in the slot")
 """What GB/T 41630 asks of where a car stands; the assist stands flush with its neighbours, wherever the kerb is."""
 GEOMETRIC = frozenset(
-    item.name.lower() for item in (Reason.SLOT_TOO_SHORT, Reason.NO_SLOT, Reason.NO_PATH, Reason.TOO_MANY_SHIFTS)
+    item.name.lower()
+    for item in (
+        *(Reason.SLOT_TOO_SHORT, Reason.NO_SLOT, Reason.NO_PATH, Reason.TOO_MANY_SHIFTS),
+        *(Reason.MISSED_TARGET, Reason.BLOCKED),
+    )
 )
-"""Reasons of the assist that speak of the slot and the car, not of a fault."""
+"""Reasons of the assist that speak of the slot and the car, not of a fault: stands out of it, or before its wall, too."""
 
 
 class CarInSlot(NamedTuple):

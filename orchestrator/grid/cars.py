@@ -24,7 +24,7 @@ GEOMETRIC = frozenset(
         *(Reason.MISSED_TARGET, Reason.BLOCKED),
     )
 )
-"""Reasons of the assist that speak of the slot and the car, not of a fault: stands out of it, or before its wall, too."""
+"""Reasons of the assist that speak of the slot and the car, not of a fault: it stands out, or before a wall, too."""
 
 
 class CarInSlot(NamedTuple):

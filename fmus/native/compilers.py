@@ -71,7 +71,8 @@ class Compiler(NamedTuple):
             return (here / name).read_bytes()
 
     def _options(self, target: CompileTarget) -> tuple[str, ...]:
-        return (*target.options, *(LINUX_ALONE if self.is_zig and "linux" in target.triple else ()))
+        alone = self.is_zig and "linux" in target.triple and "-shared" in target.options
+        return (*target.options, *(LINUX_ALONE if alone else ()))
 
     def run(self, arguments: list[str], directory: Path, target: CompileTarget | None = None) -> None:
         """Call the compiler in ``directory`` for ``target`` (default: this machine)."""

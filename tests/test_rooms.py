@@ -55,8 +55,6 @@ INSIDES = ("orchestrator.papers", "orchestrator.bakeoff", "orchestrator.grid")
 MOST_FILES, MOST_LINES, MOST_PARAMETERS, MOST_WITH_MORE = 15, 40, 6, 5
 MOST_OF_MODELS_WITH_MORE = 28
 """Functions of the models that take more: laws that take their numbers one by one. Let it fall."""
-TOO_LONG = {"controller_fmu.apa.parking._moved_on", "controller_fmu.apa.system._moved_on"}
-TOO_FULL = {"controller_fmu/apa"}
 HOSTS = ("fmus", "orchestrator")
 
 
@@ -154,7 +152,7 @@ def test_the_host_knows_the_insides_of_no_model(package: str) -> None:
 def test_no_folder_has_too_many_files() -> None:
     folders = {file.parent for file in MODULES.values()}
     full = {str(folder.relative_to(ROOT)): len(list(folder.glob("*.py"))) - 1 for folder in folders}
-    assert {folder for folder, count in full.items() if count > MOST_FILES} == TOO_FULL
+    assert [folder for folder, count in full.items() if count > MOST_FILES] == []
 
 
 def test_functions_are_short_and_few_take_many_parameters() -> None:
@@ -166,7 +164,7 @@ def test_functions_are_short_and_few_take_many_parameters() -> None:
         taken = [item.arg for item in (*node.args.posonlyargs, *node.args.args, *node.args.kwonlyargs)]
         if len([item for item in taken if item not in ("self", "cls")]) > MOST_PARAMETERS:
             wide.append(name)
-    assert set(long) == TOO_LONG
+    assert long == []
     of_models = [name for name in wide if name.split(".")[0] not in HOSTS]
     assert len(wide) - len(of_models) <= MOST_WITH_MORE, wide
     assert len(of_models) <= MOST_OF_MODELS_WITH_MORE, of_models

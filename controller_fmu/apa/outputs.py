@@ -1,15 +1,15 @@
 """What the parking assist puts out: requests, prompts, warnings, and what it knows of slot and plan."""
 
 from controller_fmu.apa.chart import Mode
-from controller_fmu.apa.fit import shortest_of_iso
 from controller_fmu.apa.manoeuvre_chart import Step
-from controller_fmu.apa.move import Piece
 from controller_fmu.apa.params import Longitudinal
 from controller_fmu.apa.parking import Parking, is_planned, site_for
 from controller_fmu.apa.phases import ApaPhase
 from controller_fmu.apa.signals import Alarm, ApaSignals, PlannedMove, PlannedPiece
 from controller_fmu.apa.slot import mirror_of
 from controller_fmu.apa.system import ApaState
+from controller_fmu.apa.ways.fit import shortest_of_iso
+from controller_fmu.apa.ways.move import Piece
 from controller_fmu.common.slot_frame import SlotFrame, to_world
 from controller_fmu.interface import ControllerOutput, ControllerParams
 from modelkit.vocabulary import Pose, Prompt

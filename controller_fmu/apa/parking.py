@@ -2,19 +2,19 @@
 
 from typing import NamedTuple
 
-from controller_fmu.apa.fit import closer, following, margins_of, under_way
-from controller_fmu.apa.guard import GuardState, Sight
-from controller_fmu.apa.local_map import LocalMap
+from controller_fmu.apa.around.guard import GuardState, Sight
+from controller_fmu.apa.around.local_map import LocalMap
+from controller_fmu.apa.around.surroundings import is_rest_free, is_settled, shape_of, sight_of
 from controller_fmu.apa.manoeuvre_chart import Guard as StepGuard
 from controller_fmu.apa.manoeuvre_chart import Step, step_transition
-from controller_fmu.apa.move import length_of
 from controller_fmu.apa.params import Longitudinal
-from controller_fmu.apa.planner import FOUND, NOTHING, SEARCHING, PlanSearch, new_search, search_on
 from controller_fmu.apa.slot import Margins, Site, Slot, site_of
 from controller_fmu.apa.speed import planned_speed, stopping_way
-from controller_fmu.apa.surroundings import is_rest_free, is_settled, shape_of, sight_of
 from controller_fmu.apa.tracking import Leg, Tracked, next_standstill, set_wheel, track
 from controller_fmu.apa.watch import STANDING
+from controller_fmu.apa.ways.fit import closer, following, margins_of, under_way
+from controller_fmu.apa.ways.move import length_of
+from controller_fmu.apa.ways.planner import FOUND, NOTHING, SEARCHING, PlanSearch, new_search, search_on
 from controller_fmu.common.chart import bit
 from controller_fmu.common.slot_frame import to_slot
 from controller_fmu.common.steering_monitor import Steering, rate_of
@@ -194,53 +194,40 @@ def _moved_on(
     steering: Steering,
     params: ControllerParams,
 ) -> Parking:
-    shifts = state.shifts
-    direction = state.direction
-    ended = state.ended
-    leg = state.leg
-    wheel = state.wheel
-    speed = 0.0
-    cut = state.cut
-    cuts = state.cuts
+    moved = state._replace(step=step, plan=plan, attempt=attempt, tracked=tracked, sight=sight, speed=0.0)
     if step == Step.HALT and state.step == Step.DRIVE:
-        cut = sight.blocked and not sight.unknown
+        moved = moved._replace(cut=sight.blocked and not sight.unknown)
     if step == Step.PLAN and state.step != Step.PLAN:
-        cuts = cuts + 1 if cut else cuts
-        cut = False
-        ended = state.step == Step.HALT and plan.moves <= 1
-        attempt = under_way(attempt)
-        plan = new_search(pose)
+        moved = moved._replace(
+            cuts=moved.cuts + 1 if moved.cut else moved.cuts,
+            cut=False,
+            ended=state.step == Step.HALT and plan.moves <= 1,
+            attempt=under_way(attempt),
+            plan=new_search(pose),
+        )
     if step == Step.SET_WHEEL:
         leg = _next_leg(state, plan, tracked)
-        if state.step == Step.PLAN:
-            tracked = Tracked(left=length_of(plan.move), to_stop=leg.end, reference=pose)
-        front = set_wheel(plan.move, leg, tracked.way, params.car.wheelbase)
-        wheel = wheel_request(front, site.frame.mirror, params)
+        begun = Tracked(left=length_of(plan.move), to_stop=leg.end, reference=pose)
+        moved = moved._replace(leg=leg, tracked=begun if state.step == Step.PLAN else tracked)
+        front = set_wheel(plan.move, leg, moved.tracked.way, params.car.wheelbase)
+        moved = moved._replace(wheel=wheel_request(front, site.frame.mirror, params))
     if step == Step.DRIVE:
-        if state.step != Step.DRIVE and plan.move.direction != direction:
-            shifts = shifts + 1 if shifts > 0 or plan.move.direction < 0 else shifts
-            direction = plan.move.direction
-        speed = direction * _speed(tracked, sight, steering, params)
+        moved = _set_out(moved) if state.step != Step.DRIVE else moved
+        moved = moved._replace(speed=moved.direction * _speed(tracked, sight, steering, params))
     if step in (Step.DRIVE, Step.HALT):
-        wheel = wheel_request(tracked.front_wheel_angle, site.frame.mirror, params)
+        moved = moved._replace(wheel=wheel_request(tracked.front_wheel_angle, site.frame.mirror, params))
     if step in (Step.STRAIGHTEN, Step.IDLE):
-        wheel = 0.0
-    return Parking(
-        step=step,
-        plan=plan,
-        attempt=attempt,
-        leg=leg,
-        tracked=tracked,
-        shifts=shifts,
-        direction=direction,
-        ended=ended,
-        cut=cut,
-        missed=state.missed,
-        cuts=cuts,
-        sight=sight,
-        wheel=wheel,
-        speed=speed,
-    )
+        moved = moved._replace(wheel=0.0)
+    return moved
+
+
+def _set_out(state: Parking) -> Parking:
+    """Return the manoeuvre at the begin of a leg; a change of direction is a shift, but for driving ahead at first."""
+    direction = state.plan.move.direction
+    if direction == state.direction:
+        return state
+    counted = state.shifts > 0 or direction < 0
+    return state._replace(shifts=state.shifts + 1 if counted else state.shifts, direction=direction)
 
 
 def _next_leg(state: Parking, plan: PlanSearch, tracked: Tracked) -> Leg:

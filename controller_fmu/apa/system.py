@@ -2,9 +2,12 @@
 
 from typing import NamedTuple
 
+from controller_fmu.apa.around.guard import GuardState, learn_brake, listen
+from controller_fmu.apa.around.local_map import LocalMap, begin_map, heard, moved, slot_of_map
+from controller_fmu.apa.around.relocate import braked, walled
+from controller_fmu.apa.around.surroundings import shape_of
 from controller_fmu.apa.chart import Guard, Mode, transition
-from controller_fmu.apa.guard import GuardState, learn_brake, listen
-from controller_fmu.apa.local_map import LocalMap, begin_map, heard, moved, slot_of_map
+from controller_fmu.apa.hearing.search import SearchState, begin_search, is_new_reading, search, without_first
 from controller_fmu.apa.manoeuvre_chart import Step
 from controller_fmu.apa.parking import (
     Parking,
@@ -15,10 +18,7 @@ from controller_fmu.apa.parking import (
     park,
     start_planning,
 )
-from controller_fmu.apa.relocate import braked, walled
-from controller_fmu.apa.search import SearchState, begin_search, is_new_reading, search, without_first
 from controller_fmu.apa.slot import Slot
-from controller_fmu.apa.surroundings import shape_of
 from controller_fmu.apa.watch import STANDING, Watch, is_taken_over, reason_to_fail, watch
 from controller_fmu.common.chart import bit
 from controller_fmu.interface import ControllerInput, ControllerParams, Reason
@@ -157,48 +157,46 @@ def _moved_on(
     params: ControllerParams,
     dt_ns: int,
 ) -> ApaState:
-    clock = state.clock_ns + dt_ns
-    pose = state.pose
-    here = state.map
-    guard = state.guard
-    waiting = (
-        is_planned(parking)
-        if mode == Mode.PARKING_SPACE_APPEARS
-        else mode == Mode.PARKING_SPACE_SEARCH and abs(inputs.measured_speed) <= STANDING
+    moved = state._replace(
+        mode=mode,
+        clock_ns=state.clock_ns + dt_ns,
+        search=found,
+        slot=slot,
+        parking=parking,
+        watch=seen,
+        waited_ns=state.waited_ns + dt_ns if mode == state.mode and _is_waiting(mode, parking, inputs) else 0,
     )
-    waited = state.waited_ns + dt_ns if waiting and mode == state.mode else 0
     if mode in (Mode.OFF, Mode.STANDBY) or state.mode == Mode.STANDBY:
-        found = begin_search(inputs.odometry, clock)
+        moved = moved._replace(search=begin_search(inputs.odometry, moved.clock_ns))
     if mode in (Mode.OFF, Mode.STANDBY):
-        parking = Parking()
-        seen = Watch()
-        slot = Slot() if mode == Mode.OFF else slot
+        moved = moved._replace(parking=Parking(), watch=Watch(), slot=Slot() if mode == Mode.OFF else slot)
     if mode == Mode.PARKING_SPACE_SEARCH and state.mode == Mode.PARKING_SPACE_APPEARS:
-        found = without_first(found) if has_failed(parking, params) else found
-        parking = Parking()
-        slot = Slot()
+        kept = without_first(moved.search) if has_failed(parking, params) else moved.search
+        moved = moved._replace(search=kept, parking=Parking(), slot=Slot())
     if mode == Mode.PARKING_SPACE_APPEARS and state.mode != Mode.PARKING_SPACE_APPEARS:
-        given = params.apa.search.given
-        slot = params.apa.search.slot if given else braked(found.slots[0], found.fastest, params)
-        here = begin_map(slot, inputs.odometry, params.apa.map)
-        guard = GuardState(delay=guard.delay)
-        parking = start_planning(slot, inputs.odometry, params)
-        pose = inputs.odometry
+        moved = _shown(moved, inputs, params)
     over = mode == Mode.FAIL
     switched_off = state.mode != Mode.FAIL and (taken or not inputs.apa_switch)
     taken_over = (state.taken_over or switched_off) if over else False
-    kept = (reason if state.mode != Mode.FAIL else state.reason) if over and not taken_over else Reason.NONE
-    return ApaState(
-        mode=mode,
-        reason=kept,
-        taken_over=taken_over,
-        clock_ns=clock,
-        search=found,
+    why = reason if state.mode != Mode.FAIL else state.reason
+    return moved._replace(taken_over=taken_over, reason=why if over and not taken_over else Reason.NONE)
+
+
+def _is_waiting(mode: int, parking: Parking, inputs: ControllerInput) -> bool:
+    """Return whether the driver is to confirm, or stands in the search and is to drive on."""
+    if mode == Mode.PARKING_SPACE_APPEARS:
+        return is_planned(parking)
+    return mode == Mode.PARKING_SPACE_SEARCH and abs(inputs.measured_speed) <= STANDING
+
+
+def _shown(state: ApaState, inputs: ControllerInput, params: ControllerParams) -> ApaState:
+    """Return the assist that shows the slot it has chosen, with its map of it, and plans."""
+    search = params.apa.search
+    slot = search.slot if search.given else braked(state.search.slots[0], state.search.fastest, params)
+    return state._replace(
         slot=slot,
-        map=here,
-        guard=guard,
-        parking=parking,
-        watch=seen,
-        waited_ns=waited,
-        pose=pose,
+        map=begin_map(slot, inputs.odometry, params.apa.map),
+        guard=GuardState(delay=state.guard.delay),
+        parking=start_planning(slot, inputs.odometry, params),
+        pose=inputs.odometry,
     )

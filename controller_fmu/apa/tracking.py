@@ -3,7 +3,7 @@
 import math
 from typing import NamedTuple
 
-from controller_fmu.apa.move import Move, length_of, point_at
+from controller_fmu.apa.ways.move import Move, length_of, point_at
 from controller_fmu.common.path_law import angle_back, deviation
 from modelkit.vocabulary import Pose
 

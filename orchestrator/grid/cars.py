@@ -4,8 +4,8 @@ import math
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from controller_fmu.apa.fit import BESIDE_OF_ISO, shortest_of_iso
 from controller_fmu.apa.slot import Kind
+from controller_fmu.apa.ways.fit import BESIDE_OF_ISO, shortest_of_iso
 from controller_fmu.interface import Reason
 from modelkit.car import Car
 from modelkit.variables import with_values

@@ -9,8 +9,8 @@ import random
 from functools import cache
 from typing import Any, NamedTuple
 
-from controller_fmu.apa.fit import shortest_of_iso
 from controller_fmu.apa.slot import Kind
+from controller_fmu.apa.ways.fit import shortest_of_iso
 from modelkit.car import Car, CarSteering, CarUltrasonic, mounts_on
 from orchestrator.scenario.car import car_parameters
 from orchestrator.scenario.requirements import Requirement, shipped_requirements

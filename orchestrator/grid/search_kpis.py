@@ -15,8 +15,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from rich.table import Table as Printed
 
-from controller_fmu.apa.fit import shortest_of_iso
 from controller_fmu.apa.slot import Kind
+from controller_fmu.apa.ways.fit import shortest_of_iso
 from orchestrator.cosim.slave import Array
 from orchestrator.grid.cases import BODIES, CARS, KINDS, LOTS, GridCase, scenario_of
 from orchestrator.grid.parkings import GHOST, MEASURES, ODOMETRY, POSE, SIGNALS, corner_errors, pose_of

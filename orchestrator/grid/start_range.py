@@ -3,13 +3,13 @@
 from functools import lru_cache
 from typing import Any
 
-from controller_fmu.apa.candidates import SHARES, SWING_ANGLES, SWING_WAYS, into_perpendicular, swing
-from controller_fmu.apa.exit import VARIANTS, Exit, exit_of
-from controller_fmu.apa.fit import ATTEMPTS, margins_of
+from controller_fmu.apa.around.surroundings import shape_of
 from controller_fmu.apa.outline import Shape
 from controller_fmu.apa.slot import Kind, Site, Slot, site_of
-from controller_fmu.apa.start_range import leads_in
-from controller_fmu.apa.surroundings import shape_of
+from controller_fmu.apa.ways.candidates import SHARES, SWING_ANGLES, SWING_WAYS, into_perpendicular, swing
+from controller_fmu.apa.ways.exit import VARIANTS, Exit, exit_of
+from controller_fmu.apa.ways.fit import ATTEMPTS, margins_of
+from controller_fmu.apa.ways.start_range import leads_in
 from controller_fmu.common.slot_frame import to_slot
 from controller_fmu.interface import ControllerParams
 from modelkit.variables import with_values

@@ -6,16 +6,16 @@ from pathlib import Path
 import numpy as np
 from scipy.interpolate import splev, splrep  # type: ignore[import-untyped]
 
+from controller_fmu.apa.around.surroundings import shape_of
 from controller_fmu.apa.chart import Mode
-from controller_fmu.apa.exit import exit_of
-from controller_fmu.apa.fit import least_moves, shortest_of_iso
-from controller_fmu.apa.move import is_move_free, length_of, point_at
 from controller_fmu.apa.outline import Shape, clearance
 from controller_fmu.apa.params import ApaParams
 from controller_fmu.apa.slot import Kind, Margins, Site, Slot, shortest_for_one_move, site_of
-from controller_fmu.apa.start_range import start_range
-from controller_fmu.apa.surroundings import shape_of
-from controller_fmu.apa.turns import reverse_s, turn_of
+from controller_fmu.apa.ways.exit import exit_of
+from controller_fmu.apa.ways.fit import least_moves, shortest_of_iso
+from controller_fmu.apa.ways.move import is_move_free, length_of, point_at
+from controller_fmu.apa.ways.start_range import start_range
+from controller_fmu.apa.ways.turns import reverse_s, turn_of
 from controller_fmu.common.curve import advance
 from controller_fmu.interface import ControllerParams
 from modelkit.car import Car

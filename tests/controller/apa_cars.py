@@ -2,10 +2,10 @@
 
 import math
 
-from controller_fmu.apa.move import end_of
 from controller_fmu.apa.outline import Shape
-from controller_fmu.apa.planner import NOTHING, SEARCHING, new_search, search_on
 from controller_fmu.apa.slot import Kind, Margins, Site, Slot, site_of
+from controller_fmu.apa.ways.move import end_of
+from controller_fmu.apa.ways.planner import NOTHING, SEARCHING, new_search, search_on
 from controller_fmu.common.slot_frame import to_slot
 from modelkit.vocabulary import Pose
 

@@ -5,12 +5,12 @@ import math
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from controller_fmu.apa.cone import ear_of, echo_of
-from controller_fmu.apa.guard import GuardState, HeldCourse, learn_brake, listen, stopping_way, watch_way
-from controller_fmu.apa.local_map import LocalMap
+from controller_fmu.apa.around.cone import ear_of, echo_of
+from controller_fmu.apa.around.guard import GuardState, HeldCourse, learn_brake, listen, stopping_way, watch_way
+from controller_fmu.apa.around.local_map import LocalMap
+from controller_fmu.apa.around.surroundings import shape_of
 from controller_fmu.apa.outline import Box, Obstacles, box_clearance
 from controller_fmu.apa.slot import Kind
-from controller_fmu.apa.surroundings import shape_of
 from controller_fmu.common.curve import advance
 from controller_fmu.interface import ControllerParams
 from modelkit.car import CarUltrasonic

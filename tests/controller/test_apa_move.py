@@ -8,8 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
-from controller_fmu.apa.move import Move, end_of, length_of, point_at
-from controller_fmu.apa.turns import reverse_s, reverse_turn, turn_of, two_arcs
+from controller_fmu.apa.ways.move import Move, end_of, length_of, point_at
+from controller_fmu.apa.ways.turns import reverse_s, reverse_turn, turn_of, two_arcs
 from controller_fmu.common.curve import advance
 from modelkit.vocabulary import Pose
 

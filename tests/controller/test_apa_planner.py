@@ -4,12 +4,12 @@ import math
 
 import pytest
 
-from controller_fmu.apa.exit import exit_of
-from controller_fmu.apa.move import end_of, is_move_free, length_of, point_at
 from controller_fmu.apa.outline import clearance
-from controller_fmu.apa.planner import FOUND, NOTHING, SEARCHING, new_search, search_on
 from controller_fmu.apa.slot import Kind, Margins, Slot, shortest_for_one_move, site_of
-from controller_fmu.apa.start_range import start_range
+from controller_fmu.apa.ways.exit import exit_of
+from controller_fmu.apa.ways.move import end_of, is_move_free, length_of, point_at
+from controller_fmu.apa.ways.planner import FOUND, NOTHING, SEARCHING, new_search, search_on
+from controller_fmu.apa.ways.start_range import start_range
 from controller_fmu.common.curve import advance
 from modelkit.vocabulary import Pose
 from tests.controller.apa_cars import CARS, MARGINS, park_in_thought, shape_of, slot_and_site, start_of

@@ -4,13 +4,13 @@ import math
 
 import pytest
 
-from controller_fmu.apa.local_map import begin_map, heard, is_certain, moved, slot_of_map
-from controller_fmu.apa.move import is_move_free
+from controller_fmu.apa.around.local_map import begin_map, heard, is_certain, moved, slot_of_map
+from controller_fmu.apa.around.relocate import braked, walled
 from controller_fmu.apa.outline import Box, Obstacles, Shape
 from controller_fmu.apa.params import MapParams
-from controller_fmu.apa.relocate import braked, walled
 from controller_fmu.apa.slot import UNSEEN, Kind, Side, Slot
-from controller_fmu.apa.turns import straight_move
+from controller_fmu.apa.ways.move import is_move_free
+from controller_fmu.apa.ways.turns import straight_move
 from controller_fmu.interface import ControllerInput, ControllerParams
 from modelkit.car import CarUltrasonic
 from modelkit.vocabulary import Pose

@@ -5,8 +5,8 @@ from typing import Any
 
 import pytest
 
-from controller_fmu.apa.edge import NO_SAMPLES, Heard, append, corner
-from controller_fmu.apa.line_fit import FittedLine, Sums, add, offset, slope
+from controller_fmu.apa.hearing.edge import NO_SAMPLES, Heard, append, corner
+from controller_fmu.apa.hearing.line_fit import FittedLine, Sums, add, offset, slope
 from tests.controller.apa_bench import CAR, box, car_settings, drive
 
 HALF = math.radians(30.0)

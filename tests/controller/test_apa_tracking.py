@@ -4,11 +4,11 @@ import math
 
 import pytest
 
-from controller_fmu.apa.move import Move, end_of, length_of, point_at
 from controller_fmu.apa.params import ApaDriveParams
 from controller_fmu.apa.speed import planned_speed, stopping_way
 from controller_fmu.apa.tracking import Leg, next_standstill, set_wheel, track
-from controller_fmu.apa.turns import forward_turn, reverse_turn, straight_move, turn_of, two_arcs
+from controller_fmu.apa.ways.move import Move, end_of, length_of, point_at
+from controller_fmu.apa.ways.turns import forward_turn, reverse_turn, straight_move, turn_of, two_arcs
 from controller_fmu.common.curve import advance
 from modelkit.vocabulary import Pose
 

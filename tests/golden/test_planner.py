@@ -13,14 +13,14 @@ from typing import Any
 
 import pytest
 
-from controller_fmu.apa import planner
-from controller_fmu.apa.exit import VARIANTS, exit_of, way_out
-from controller_fmu.apa.fit import fit_of, least_moves
-from controller_fmu.apa.guard import GuardState, HeldCourse, listen, watch_way
-from controller_fmu.apa.local_map import LocalMap
-from controller_fmu.apa.move import end_of, length_of
+from controller_fmu.apa.around.guard import GuardState, HeldCourse, listen, watch_way
+from controller_fmu.apa.around.local_map import LocalMap
 from controller_fmu.apa.slot import Kind, Site
-from controller_fmu.apa.start_range import start_range
+from controller_fmu.apa.ways import planner
+from controller_fmu.apa.ways.exit import VARIANTS, exit_of, way_out
+from controller_fmu.apa.ways.fit import fit_of, least_moves
+from controller_fmu.apa.ways.move import end_of, length_of
+from controller_fmu.apa.ways.start_range import start_range
 from controller_fmu.interface import ControllerParams
 from modelkit.vocabulary import Pose
 from tests.controller.apa_cars import shape_of, slot_and_site, start_of

@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from controller_fmu.apa.move import Move, Piece, end_of
 from controller_fmu.apa.slot import Kind, Side
+from controller_fmu.apa.ways.move import Move, Piece, end_of
 from modelkit.vocabulary import Pose
 from orchestrator.report.payload import Arrays
 from orchestrator.report.plans import MOST_PLANS, found_slot, plans_of, wanted_pose

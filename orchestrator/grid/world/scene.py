@@ -10,7 +10,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from controller_fmu.apa.fit import BESIDE_OF_ISO, shortest_of_iso
+from controller_fmu.apa.ways.fit import BESIDE_OF_ISO, shortest_of_iso
 from modelkit.car import Car
 from orchestrator.cosim.slave import Array
 from orchestrator.grid.cases import BODY, CARS

@@ -7,8 +7,19 @@ mirrored on the left side. Distances are averaged over about 15 cm of way before
 import math
 from typing import NamedTuple
 
-from controller_fmu.apa.edge import KEPT, NO_SAMPLES, Heard, append, corner, remember, seen_up_to
-from controller_fmu.apa.line_fit import ASKEW, OFF, FittedLine, Sums, add, distance, leaning, offset, slope, spread
+from controller_fmu.apa.hearing.edge import KEPT, NO_SAMPLES, Heard, append, corner, remember, seen_up_to
+from controller_fmu.apa.hearing.line_fit import (
+    ASKEW,
+    OFF,
+    FittedLine,
+    Sums,
+    add,
+    distance,
+    leaning,
+    offset,
+    slope,
+    spread,
+)
 from controller_fmu.apa.params import SearchParams
 from modelkit.maths import clamp
 

@@ -2,12 +2,12 @@
 
 import math
 
-from controller_fmu.apa.guard import GuardState, HeldCourse, Sight, watch_way
-from controller_fmu.apa.local_map import LocalMap, is_certain
-from controller_fmu.apa.move import Move, point_at
+from controller_fmu.apa.around.guard import GuardState, HeldCourse, Sight, watch_way
+from controller_fmu.apa.around.local_map import LocalMap, is_certain
 from controller_fmu.apa.outline import Shape, clearance
 from controller_fmu.apa.slot import Site, Slot, mirror_of, stands_out_by
 from controller_fmu.apa.tracking import Tracked
+from controller_fmu.apa.ways.move import Move, point_at
 from controller_fmu.common.slot_frame import SlotFrame, to_slot, to_world
 from controller_fmu.interface import ControllerInput, ControllerParams
 from modelkit.vocabulary import Pose

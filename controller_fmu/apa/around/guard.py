@@ -9,8 +9,8 @@ straight ahead. Nothing else may keep the brake off; a car may drive away from w
 import math
 from typing import NamedTuple
 
-from controller_fmu.apa.cone import ConeEar, Echo, rim_point
-from controller_fmu.apa.local_map import LocalMap, ear_at, expected, nearest_case, unsure_of
+from controller_fmu.apa.around.cone import ConeEar, Echo, rim_point
+from controller_fmu.apa.around.local_map import LocalMap, ear_at, expected, nearest_case, unsure_of
 from controller_fmu.apa.outline import Box, Obstacles, Shape, box_clearance, clearance, grown
 from controller_fmu.common.curve import advance
 from controller_fmu.interface import ControllerParams

@@ -5,9 +5,9 @@ A kerb or wall behind the slot is entered when two sensors agree on it while the
 
 import math
 
-from controller_fmu.apa.local_map import LocalMap
+from controller_fmu.apa.around.local_map import LocalMap
+from controller_fmu.apa.around.thing import thing_at
 from controller_fmu.apa.slot import UNSEEN, Kind, Slot, mirror_of
-from controller_fmu.apa.thing import thing_at
 from controller_fmu.common.slot_frame import SlotFrame, to_slot, to_world
 from controller_fmu.interface import ControllerInput, ControllerParams
 from modelkit.car import CarUltrasonic

@@ -3,12 +3,12 @@
 import math
 from typing import NamedTuple
 
-from controller_fmu.apa.fit import Fit, fit_of
-from controller_fmu.apa.line_fit import NO_SUMS, OFF, leaning, offset, slope, spread
+from controller_fmu.apa.hearing.line_fit import NO_SUMS, OFF, leaning, offset, slope, spread
+from controller_fmu.apa.hearing.search_side import DEEP, START, SideState, hear
 from controller_fmu.apa.outline import Shape
 from controller_fmu.apa.params import ApaParams, Wish
-from controller_fmu.apa.search_side import DEEP, START, SideState, hear
 from controller_fmu.apa.slot import UNSEEN, Kind, Slot
+from controller_fmu.apa.ways.fit import Fit, fit_of
 from controller_fmu.interface import ControllerInput, ControllerParams
 from modelkit.vocabulary import Pose
 

@@ -2,10 +2,10 @@
 
 from typing import NamedTuple
 
-from controller_fmu.apa.exit import VARIANTS, exit_of
 from controller_fmu.apa.outline import Shape
 from controller_fmu.apa.params import ApaParams
 from controller_fmu.apa.slot import Kind, Margins, Slot, site_of
+from controller_fmu.apa.ways.exit import VARIANTS, exit_of
 from modelkit.car import Car
 
 

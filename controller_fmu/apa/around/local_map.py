@@ -8,10 +8,10 @@ A neighbour has a side along the road and a flank, square to it, with a heading 
 import math
 from typing import NamedTuple
 
-from controller_fmu.apa.cone import ConeEar, Echo, Hit, ear_of, echo_of
+from controller_fmu.apa.around.cone import ConeEar, Echo, Hit, ear_of, echo_of
+from controller_fmu.apa.around.thing import Slope, Thing, learnt, spread_along, thing_at, wider
 from controller_fmu.apa.params import MapParams
 from controller_fmu.apa.slot import UNSEEN, Kind, Slot, mirror_of
-from controller_fmu.apa.thing import Slope, Thing, learnt, spread_along, thing_at, wider
 from controller_fmu.common.slot_frame import SlotFrame, to_slot, to_world
 from modelkit.car import CarUltrasonic, SensorMount
 from modelkit.geometry import Point

@@ -7,7 +7,9 @@ stands where it really stands, and the search is made again from there.
 
 from typing import NamedTuple
 
-from controller_fmu.apa.candidates import (
+from controller_fmu.apa.outline import Shape
+from controller_fmu.apa.slot import Kind, Site
+from controller_fmu.apa.ways.candidates import (
     BACK_WAYS,
     FORWARD_PREFIXES,
     REVERSE_PREFIXES,
@@ -26,10 +28,8 @@ from controller_fmu.apa.candidates import (
     swing,
     swing_back_and_forth,
 )
-from controller_fmu.apa.exit import VARIANTS, Exit, exit_of
-from controller_fmu.apa.move import Move
-from controller_fmu.apa.outline import Shape
-from controller_fmu.apa.slot import Kind, Site
+from controller_fmu.apa.ways.exit import VARIANTS, Exit, exit_of
+from controller_fmu.apa.ways.move import Move
 from modelkit.vocabulary import Pose
 
 SEARCHING = 0

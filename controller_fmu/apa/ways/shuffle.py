@@ -9,10 +9,10 @@ of curvature c and -c lead to y = 0, h = 0 if the heading h1 between them obeys
 import math
 from typing import NamedTuple
 
-from controller_fmu.apa.move import Move, is_move_free
 from controller_fmu.apa.outline import Shape, free_way
 from controller_fmu.apa.slot import Site
-from controller_fmu.apa.turns import two_arcs
+from controller_fmu.apa.ways.move import Move, is_move_free
+from controller_fmu.apa.ways.turns import two_arcs
 from modelkit.vocabulary import Pose
 
 LONGEST_LINE = 8.0

@@ -10,7 +10,7 @@ the lines cross.
 import math
 from typing import NamedTuple
 
-from controller_fmu.apa.move import NO_PIECE, Move, Piece
+from controller_fmu.apa.ways.move import NO_PIECE, Move, Piece
 from controller_fmu.common.curve import advance
 from modelkit.vocabulary import Pose
 

@@ -8,7 +8,7 @@ angle g at e = d tan(g). So e = sqrt(r^2 - d^2), and each sample tells the corne
 import math
 from typing import NamedTuple
 
-from controller_fmu.apa.line_fit import FittedLine, distance
+from controller_fmu.apa.hearing.line_fit import FittedLine, distance
 
 
 class Heard(NamedTuple):

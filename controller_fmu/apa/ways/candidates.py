@@ -3,12 +3,12 @@
 import math
 from typing import NamedTuple
 
-from controller_fmu.apa.exit import Exit
-from controller_fmu.apa.move import Move, end_of, is_move_free, length_of
 from controller_fmu.apa.outline import Shape
-from controller_fmu.apa.shuffle import finish, full_lock
 from controller_fmu.apa.slot import Site
-from controller_fmu.apa.turns import forward_turn, reverse_s, reverse_turn, straight_move, turn_of, two_arcs
+from controller_fmu.apa.ways.exit import Exit
+from controller_fmu.apa.ways.move import Move, end_of, is_move_free, length_of
+from controller_fmu.apa.ways.shuffle import finish, full_lock
+from controller_fmu.apa.ways.turns import forward_turn, reverse_s, reverse_turn, straight_move, turn_of, two_arcs
 from modelkit.maths import sign
 from modelkit.vocabulary import Pose
 

@@ -7,11 +7,11 @@ its heading falls, and at Px_max the car would cut corner B.
 import math
 from typing import NamedTuple
 
-from controller_fmu.apa.exit import Exit
-from controller_fmu.apa.move import is_move_free
 from controller_fmu.apa.outline import Shape
 from controller_fmu.apa.slot import Site
-from controller_fmu.apa.turns import reverse_s, turn_of
+from controller_fmu.apa.ways.exit import Exit
+from controller_fmu.apa.ways.move import is_move_free
+from controller_fmu.apa.ways.turns import reverse_s, turn_of
 from modelkit.vocabulary import Pose
 
 FURTHEST = 8.0

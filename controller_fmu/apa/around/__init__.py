@@ -1,0 +1,1 @@
+"""What stands around the car while it parks: map, guard, and what they say."""

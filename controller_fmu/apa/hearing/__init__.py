@@ -1,0 +1,1 @@
+"""What the side sensors tell while the driver drives past: edges, lines, corners, slots."""

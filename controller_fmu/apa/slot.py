@@ -52,9 +52,9 @@ class Slot(NamedTuple):
     opposite: Annotated[float, Signal("m", "corner A to what lies across the road; 50: none seen", 0.0, 1e4)] = UNSEEN
     unsure: Annotated[float, Signal("m", "each corner may lie this much further in than it was found", 0.0, 10.0)] = 0.0
     skew_a: Annotated[
-        float, Signal("rad", "heading of the neighbour at corner A against the slot's, mirrored for a slot on the left")
+        float, Signal("rad", "heading of corner A's neighbour against the slot's, mirrored on the left", -1.6, 1.6)
     ] = 0.0
-    skew_b: Annotated[float, Signal("rad", "the same of the neighbour at corner B")] = 0.0
+    skew_b: Annotated[float, Signal("rad", "the same of the neighbour at corner B", -1.6, 1.6)] = 0.0
 
 
 class Site(NamedTuple):

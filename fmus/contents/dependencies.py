@@ -14,6 +14,7 @@ The result is the same each time and is kept in ``fmus/dist/cache`` under the ha
 
 import json
 import random
+from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -29,6 +30,8 @@ DRAWN = 9000
 """Points drawn around the defaults times parameters moved there."""
 WAYS = 4
 """How often all are moved from each of those."""
+SMALL = 4
+"""Fields of a group that act together where one of them decides about a mode: a ratio, an angle, a rate."""
 SUFFIX = ".dependencies.json"
 KEPT = 8
 """Results of older sources that stay in the cache."""
@@ -70,11 +73,16 @@ def find_dependencies(model: Model) -> Found:
         for parameter, outputs in acting.items()
         if any(_thing(item.name) in outputs for item in variables(model.outputs) if item.signal.states)
     }
+    sizes = Counter(map(_group, acting))
     found: Found = {}
     for item in variables(model.outputs):
         causes = {parameter for parameter, outputs in acting.items() if _thing(item.name) in outputs}
-        groups = {_group(parameter) for parameter in causes - deciding} - {""}
-        causes |= deciding if causes else set()
+        decide = deciding if causes else set()
+        groups = {_group(parameter) for parameter in causes - deciding} | {
+            group for group in map(_group, decide) if sizes[group] <= SMALL
+        }
+        groups -= {""}
+        causes |= decide
         causes |= {parameter for parameter in acting if _group(parameter) in groups}
         if model.shows(item.name):
             found[item.name] = [known[place].name for place in free if _thing(known[place].name) in causes]

@@ -126,7 +126,8 @@ def _slave(test: StepTest, model: str, kind: str, foreign: Foreign) -> Slave:
             return InProcessSlave(model, ours, parameters)
         file = fmu_files(kind)[model]
         file = file if ours is MODELS[model] else fmu_beside(file, ours)
-        return FmuSlave(model, file, parameters, lambda *said: None, ours)
+        shown = {name: value for name, value in parameters.items() if ours.shows(name)}
+        return FmuSlave(model, file, shown, lambda *said: None, ours)
     if MODEL_FILE in model or is_model(str(test.near(model))):
         own = _own(str(test.near(model)))
         return InProcessSlave(OTHER, own, _parameters(test, variables(own.params)))

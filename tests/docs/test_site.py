@@ -87,7 +87,7 @@ def test_pages_of_laws_have_the_page_that_is_driven(site):
         )
 
 
-def test_the_reference_has_a_heading_for_each_group():
+def test_the_reference_has_a_heading_for_each_group(site):
     text = (ROOT / "docs" / "reference" / "vehicle.md").read_text(encoding="utf-8")
     for group in ("### driver", "### steering", "### ultrasonic", "### person"):
         assert f"\n{group}\n" in text, group

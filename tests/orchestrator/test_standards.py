@@ -13,6 +13,7 @@ SAME = {
     "miss_heading": "final heading",
     "shifts": "shifts",
     "stand_out": "outline in the slot",
+    "out": "outline in the slot",
 }
 
 

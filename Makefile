@@ -14,7 +14,7 @@ run: $(VENV)/.run ## Install, build the FMUs, run a parking case, print the tabl
 	$(BIN)/apa run $(SCENARIO)
 
 test: $(VENV)/.test ## Install and pass the tests
-	@echo "About thirteen minutes on two cores"
+	@echo "About a quarter of an hour on two cores"
 	$(BIN)/python -m pytest -n auto --dist loadfile -q
 
 quick: lint types ## Lint, types and the tests that take two minutes together

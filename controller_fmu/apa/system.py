@@ -157,29 +157,38 @@ def _moved_on(
     params: ControllerParams,
     dt_ns: int,
 ) -> ApaState:
-    moved = state._replace(
+    before = state.mode
+    had_taken_over = state.taken_over
+    why = reason if before != Mode.FAIL else state.reason
+    waiting = mode == before and _is_waiting(mode, parking, inputs)
+    state = state._replace(
         mode=mode,
         clock_ns=state.clock_ns + dt_ns,
         search=found,
         slot=slot,
         parking=parking,
         watch=seen,
-        waited_ns=state.waited_ns + dt_ns if mode == state.mode and _is_waiting(mode, parking, inputs) else 0,
+        waited_ns=state.waited_ns + dt_ns if waiting else 0,
     )
-    if mode in (Mode.OFF, Mode.STANDBY) or state.mode == Mode.STANDBY:
-        moved = moved._replace(search=begin_search(inputs.odometry, moved.clock_ns))
+    if mode in (Mode.OFF, Mode.STANDBY) or before == Mode.STANDBY:
+        state = state._replace(search=begin_search(inputs.odometry, state.clock_ns))
     if mode in (Mode.OFF, Mode.STANDBY):
-        moved = moved._replace(parking=Parking(), watch=Watch(), slot=Slot() if mode == Mode.OFF else slot)
-    if mode == Mode.PARKING_SPACE_SEARCH and state.mode == Mode.PARKING_SPACE_APPEARS:
-        kept = without_first(moved.search) if has_failed(parking, params) else moved.search
-        moved = moved._replace(search=kept, parking=Parking(), slot=Slot())
-    if mode == Mode.PARKING_SPACE_APPEARS and state.mode != Mode.PARKING_SPACE_APPEARS:
-        moved = _shown(moved, inputs, params)
+        state = state._replace(parking=Parking(), watch=Watch(), slot=Slot() if mode == Mode.OFF else slot)
+    if mode == Mode.PARKING_SPACE_SEARCH and before == Mode.PARKING_SPACE_APPEARS:
+        state = _without_the_slot(state, has_failed(parking, params))
+    if mode == Mode.PARKING_SPACE_APPEARS and before != Mode.PARKING_SPACE_APPEARS:
+        state = _shown(state, inputs, params)
     over = mode == Mode.FAIL
-    switched_off = state.mode != Mode.FAIL and (taken or not inputs.apa_switch)
-    taken_over = (state.taken_over or switched_off) if over else False
-    why = reason if state.mode != Mode.FAIL else state.reason
-    return moved._replace(taken_over=taken_over, reason=why if over and not taken_over else Reason.NONE)
+    switched_off = before != Mode.FAIL and (taken or not inputs.apa_switch)
+    taken_over = (had_taken_over or switched_off) if over else False
+    return state._replace(taken_over=taken_over, reason=why if over and not taken_over else Reason.NONE)
+
+
+def _without_the_slot(state: ApaState, failed: bool) -> ApaState:
+    """Return the assist that searches on; a slot that nothing leads into is not shown again."""
+    if failed:
+        state = state._replace(search=without_first(state.search))
+    return state._replace(parking=Parking(), slot=Slot())
 
 
 def _is_waiting(mode: int, parking: Parking, inputs: ControllerInput) -> bool:

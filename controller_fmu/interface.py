@@ -116,8 +116,6 @@ class Reason(IntEnum):
     """The search came to its end with slots that the car does not fit into."""
     SLOT_TOO_SHALLOW = 25
     """The search came to its end with slots that end before the car does."""
-    SLOT_DISAGREES = 26
-    """The sensors hear something where the slot that was given should be free."""
 
 
 class ControllerInput(NamedTuple):

@@ -10,7 +10,8 @@ from functools import cache
 from typing import Any, NamedTuple
 
 from controller_fmu.valet.params import SlotWish
-from orchestrator.grid.cases import BODY, CARS
+from orchestrator.grid.cases import CARS
+from orchestrator.grid.imperfect import imperfect
 from orchestrator.scenario.car import car_parameters
 from orchestrator.scenario.polygons import box_corners
 from orchestrator.scenario.requirements import shipped_requirements
@@ -243,26 +244,7 @@ def _vehicle(case: FoundCase) -> dict[str, Any]:
         "start.heading": case.side * case.heading,
         "driver.apa_switch_time": 0.5,
         "driver.profile[1].speed": case.speed,
-        **_errors(case),
-    }
-
-
-def _errors(case: FoundCase) -> dict[str, Any]:
-    """Return what the car, its steering, sensors and odometry are like."""
-    draw = random.Random(case.number + LOTS * case.lot + 29)
-    return {
-        "body": BODY["double_track"],
-        "ultrasonic.noise": 0.01,
-        "ultrasonic.dropout": 0.01,
-        "ultrasonic.seed": case.number + 1 + LOTS * case.lot,
-        "steering.dead_time": 0.04,
-        "steering.lag": 0.05,
-        "steering.backlash": 0.03,
-        "drive.brake_lag": 0.08,
-        "odometry.perfect": False,
-        "odometry.radius_error": draw.uniform(-0.002, 0.002),
-        "odometry.steering_offset": draw.uniform(-0.0004, 0.0004),
-        "odometry.tick": 0.01,
+        **imperfect(case.number + 1 + LOTS * case.lot, random.Random(case.number + LOTS * case.lot + 29)),
     }
 
 

@@ -15,7 +15,8 @@ from typing import Any, NamedTuple
 from rich.table import Table as Printed
 
 from controller_fmu.valet.params import SlotKind
-from orchestrator.grid.cases import BODY, CARS
+from orchestrator.grid.cases import CARS
+from orchestrator.grid.imperfect import imperfect
 from orchestrator.scenario.car import car_parameters
 from orchestrator.scenario.polygons import map_of
 from orchestrator.scenario.requirements import shipped_requirements
@@ -114,20 +115,7 @@ def _vehicle(case: RowCase, opening: float, middle: tuple[float, float], depth: 
         "start.y": 0.5 * case.street + lot.uniform(-0.2, 0.2),
         "start.heading": (0.0 if case.direction > 0 else math.pi) + lot.uniform(-0.07, 0.07),
     }
-    errors = {
-        "body": BODY["double_track"],
-        "ultrasonic.noise": 0.01,
-        "ultrasonic.dropout": 0.01,
-        "ultrasonic.seed": case.number + 1 + LOTS * case.lot,
-        "steering.dead_time": 0.04,
-        "steering.lag": 0.05,
-        "steering.backlash": 0.03,
-        "drive.brake_lag": 0.08,
-        "odometry.perfect": False,
-        "odometry.radius_error": lot.uniform(-0.002, 0.002),
-        "odometry.steering_offset": lot.uniform(-0.0004, 0.0004),
-        "odometry.tick": 0.01,
-    }
+    errors = imperfect(case.number + 1 + LOTS * case.lot, lot)
     return {**car_parameters(car), **scene, **start, **errors}
 
 

@@ -23,7 +23,22 @@ LIMITS = Path(__file__).parent.parent / "limits"
 """Where the shipped sets are."""
 
 
-class Occasion(BaseModel):
+class Limited(BaseModel):
+    """What has exactly one of the conditions."""
+
+    @property
+    def condition(self) -> Condition:
+        """Return which of the conditions is given."""
+        return _given(self.__dict__)
+
+    @property
+    def limit(self) -> float | str:
+        """Return the limit [SI unit], or the name of a state."""
+        value: float | str = getattr(self, self.condition)
+        return value
+
+
+class Occasion(Limited):
     """A condition on a signal at one instant: exactly one of ``max``, ``min``, ``max_abs`` and ``equals`` is given."""
 
     model_config = ConfigDict(extra="forbid")
@@ -47,17 +62,6 @@ class Occasion(BaseModel):
         if not isinstance(data, dict):
             raise BadInput(f"{shown(data)}: expected a mapping with signal and one of {', '.join(CONDITIONS)}")
         return {**data, **_limit(data, _given(data))}
-
-    @property
-    def condition(self) -> Condition:
-        """Return which of the conditions is given."""
-        return _given(self.__dict__)
-
-    @property
-    def limit(self) -> float | str:
-        """Return the limit [SI unit], or the name of a state."""
-        value: float | str = getattr(self, self.condition)
-        return value
 
 
 class Window(BaseModel):
@@ -98,7 +102,7 @@ class Window(BaseModel):
         return self
 
 
-class Requirement(BaseModel):
+class Requirement(Limited):
     """One requirement on a run; exactly one of ``max``, ``min``, ``max_abs`` and ``equals`` is given.
 
     A limit is a number in SI units, text with a unit (``3 deg``, ``10 km/h``), or for ``equals``
@@ -145,17 +149,6 @@ class Requirement(BaseModel):
                 hint = suggestion(str(key), cls.model_fields) or f"; known are {', '.join(cls.model_fields)}"
                 raise BadInput(f"unknown{hint}", key=f"{data.get('id', '')}: {key}".lstrip(": "))
         return {**data, **_limit(data, _given(data))}
-
-    @property
-    def condition(self) -> Condition:
-        """Return which of the conditions is given."""
-        return _given(self.__dict__)
-
-    @property
-    def limit(self) -> float | str:
-        """Return the limit [SI unit], or the name of a state."""
-        value: float | str = getattr(self, self.condition)
-        return value
 
 
 @cache

@@ -7,7 +7,6 @@ import shutil
 import signal
 import subprocess
 import sys
-import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import NamedTuple
@@ -18,10 +17,14 @@ from fmus.contents.archive import archive_guid
 from orchestrator.log.read_log import read_log
 from orchestrator.sweep.table import Table
 from orchestrator.text.errors import BadInput
+from tests.fuzz.fair_time import FairTime
 
 SIGNALS = (signal.SIGKILL, signal.SIGKILL, signal.SIGTERM, signal.SIGINT)
 SOON = 2.5
-"""An end takes no longer on a machine that has nothing else to do [s]; on a busy one it waits for its turn."""
+"""An end takes no longer, the time in which other processes had its core left out [s]."""
+LONGEST = 300.0
+"""A command that nobody ends takes no longer, counted alike [s]."""
+LOOK = 0.1
 ENDS = (0, 1, 130)
 
 
@@ -44,7 +47,7 @@ class Stage(NamedTuple):
     def finish(self, *words: str) -> str:
         """Return what is wrong with a command that nobody ends, empty if it ends well."""
         child = self.start(*words)
-        _, said = child.communicate(timeout=300)
+        said, _ = waited(child, LONGEST)
         return "" if child.returncode in ENDS else f"apa {' '.join(words)}: {child.returncode}: {said}"
 
 
@@ -72,22 +75,34 @@ def stage(folder: Path) -> Stage:
     return Stage(folder, environment, table, (folder / "log" / "run.mcap").read_bytes(), guids)
 
 
+def waited(child: "subprocess.Popen[str]", longest: float) -> tuple[str, float]:
+    """Return what a process said until it ended, and the time it took of its own; one that takes longer is killed."""
+    taken, late = FairTime(child.pid), ""
+    while True:
+        try:
+            _, said = child.communicate(timeout=LOOK)
+            return late + said, taken.seconds()
+        except subprocess.TimeoutExpired:
+            if taken.seconds() > longest:
+                child.kill()
+                late = f"killed after {longest:g} s: "
+
+
 def ended(child: "subprocess.Popen[str]", after: float, draw: random.Random) -> str:
     """End a process after a time; return what is wrong with how it ended."""
     try:
         child.wait(timeout=after)
     except subprocess.TimeoutExpired:
         number = draw.choice(SIGNALS)
-        begun = time.monotonic()
         child.send_signal(number)
-        _, said = child.communicate(timeout=60)
-        if time.monotonic() - begun > SOON * max(1.0, os.getloadavg()[0] / (os.cpu_count() or 1)):
-            return f"{number.name} took {time.monotonic() - begun:.1f} s: {said}"
+        said, seconds = waited(child, LONGEST)
+        if seconds > SOON:
+            return f"{number.name} took {seconds:.1f} s: {said}"
         # Before Python has come to our first line, a signal ends it as any program.
         if child.returncode not in (*ENDS, -number):
             return f"{number.name} left {child.returncode}: {said}"
         return ""
-    _, said = child.communicate()
+    said, _ = waited(child, LONGEST)
     return "" if child.returncode in (*ENDS, 2) else f"{child.returncode}: {said}"
 
 
@@ -127,10 +142,10 @@ def a_sweep(at: Stage, draw: random.Random) -> str:
         return wrong
     words = ["sweep", str(at.folder / "one.yaml"), "--chunk", "4", "--no-page", "--out", str(out), "--resume"]
     child = at.start(*words)
-    _, said = child.communicate(timeout=300)
+    said, _ = waited(child, LONGEST)
     if child.returncode == 2 and "another" in said:
         child = at.start(*words[:-1], "--restart")
-        _, said = child.communicate(timeout=300)
+        said, _ = waited(child, LONGEST)
     if child.returncode:
         return f"resume: {child.returncode}: {said}"
     if Table(out / "trial.parquet").count != 60 or (out / "trial.parquet").read_bytes() != at.table:

@@ -1,0 +1,51 @@
+"""What counts as a hang: not what neighbours take, all else."""
+
+import os
+import subprocess
+import sys
+import time
+
+import pytest
+
+from tests.fuzz.fair_time import FairTime, threads_of
+from tests.fuzz.limits import Hangs, alarm
+
+SPINS = "import os, sys\nos.sched_setaffinity(0, {int(sys.argv[1])})\nprint(flush=True)\nwhile True: pass"
+SLEEPS = "import time\nprint(flush=True)\ntime.sleep(60)"
+LONG = 1.0
+
+
+def taken(*words: str) -> tuple[float, float]:
+    """Return own time and wall-clock time of a process [s]."""
+    with subprocess.Popen([sys.executable, "-c", *words], stdout=subprocess.PIPE) as child:
+        try:
+            assert child.stdout and child.stdout.readline()
+            watch, begun = FairTime(child.pid), time.monotonic()
+            while time.monotonic() - begun < LONG:
+                time.sleep(0.1)
+                watch.seconds()
+            return watch.seconds(), time.monotonic() - begun
+        finally:
+            child.kill()
+
+
+@pytest.mark.skipif(not threads_of(os.getpid()), reason="the system does not say how long a thread waited for a core")
+def test_a_core_shared_with_others_is_half_the_time() -> None:
+    core = str(min(os.sched_getaffinity(0)))
+    with subprocess.Popen([sys.executable, "-c", SPINS, core], stdout=subprocess.DEVNULL) as neighbour:
+        try:
+            own, wall = taken(SPINS, core)
+        finally:
+            neighbour.kill()
+    assert own < 0.75 * wall
+
+
+def test_who_sleeps_takes_all_of_it() -> None:
+    own, wall = taken(SLEEPS)
+    assert own > 0.7 * wall
+
+
+@pytest.mark.parametrize("hang", ["while True: pass", "import time\nwhile True: time.sleep(0.01)"])
+def test_what_computes_or_waits_for_ever_hangs(hang: str) -> None:
+    with pytest.raises(Hangs), alarm(0.2):
+        exec(hang)

@@ -19,7 +19,8 @@ def taken(*words: str) -> tuple[float, float]:
     """Return own time and wall-clock time of a process [s]."""
     with subprocess.Popen([sys.executable, "-c", *words], stdout=subprocess.PIPE) as child:
         try:
-            assert child.stdout and child.stdout.readline()
+            assert child.stdout
+            child.stdout.readline()
             watch, begun = FairTime(child.pid), time.monotonic()
             while time.monotonic() - begun < LONG:
                 time.sleep(0.1)

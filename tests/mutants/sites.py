@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import NamedTuple
 
+CONTROLLERS = Path("controller_fmu")
 SYSTEMS = ("guo2015", "apa", "zhang2022", "hsic", "preview")
 """Packages of ``controller_fmu`` that are systems of papers."""
 NOT_LAWS = ("__init__.py", "outputs.py", "signals.py")
@@ -50,15 +51,15 @@ class Mutant(NamedTuple):
 
     @property
     def name(self) -> str:
-        """What it is called in tables, wherever in the file it moves to."""
+        """What it is called in tables, wherever in the file it moves to, and its file in the system."""
         again = f" [{self.count}]" if self.count > 1 else ""
         words = " ".join(f"{self.before} -> {self.after or 'nothing'}".split())
-        return f"{self.file.removeprefix('controller_fmu/')}: {words}{again}"
+        return f"{self.system}/{Path(self.file).name}: {words}{again}"
 
     @property
     def system(self) -> str:
         """The package it is in."""
-        return Path(self.file).parent.name
+        return Path(self.file).relative_to(CONTROLLERS).parts[0]
 
     def put_into(self, text: str) -> str:
         """Return the file's text with the mistake."""
@@ -68,8 +69,9 @@ class Mutant(NamedTuple):
 
 
 def files_of(root: Path, system: str) -> list[Path]:
-    """Return the files with laws of a system."""
-    return [item for item in sorted((root / "controller_fmu" / system).glob("*.py")) if item.name not in NOT_LAWS]
+    """Return the files with laws of a system, in its rooms too."""
+    found = [item for item in (root / CONTROLLERS / system).rglob("*.py") if item.name not in NOT_LAWS]
+    return sorted(found, key=lambda item: item.name)
 
 
 def mutants_of(root: Path, file: Path) -> list[Mutant]:

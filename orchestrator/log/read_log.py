@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from mcap.opcode import Opcode
 from mcap.records import Channel, Metadata
+from pydantic import BaseModel, ValidationError
 
 from modelkit.signal import Signal
 from modelkit.variables import Variable
@@ -18,6 +19,8 @@ from orchestrator.log.protobuf_rows import Decoder
 from orchestrator.log.records import MESSAGE, Damage, RawRecord, checked, file_bytes, parsed, top_records
 from orchestrator.text.console import say
 from orchestrator.text.errors import BadInput
+from orchestrator.text.yaml_file import explain
+from orchestrator.verdict.summary import FmuUsed, Lateness
 
 KINDS: dict[str, type] = {"float": float, "int": int, "bool": bool}
 VARIABLES = "variables"
@@ -46,6 +49,8 @@ def read_log(path: Path) -> Recording:
         recording = _recording(log, path)
     except BadInput:
         raise
+    except ValidationError as error:
+        raise explain(error, path, list(Told.model_fields)) from error
     except NO_MEANING as error:
         raise BadInput(f"is not laid out as apa writes it ({type(error).__name__}: {error})", file=path) from error
     lacks = recording.info.get(RECOVERED, {}).get("lacks")
@@ -140,14 +145,20 @@ def _recording(log: Log, path: Path) -> Recording:
     return Recording(clock, signals, parameters, known, _told({**info.pop("apa", {}), **info}))
 
 
+class Told(BaseModel):
+    """What a log tells of its run beside its signals, as far as anybody asks for it."""
+
+    scenario: dict[str, Any] | None = None
+    end: dict[str, Any] = {}
+    recovered: dict[str, Any] = {}
+    versions: dict[str, str] = {}
+    fmus: list[FmuUsed] = []
+    realtime: Lateness | None = None
+
+
 def _told(info: dict[str, Any]) -> dict[str, Any]:
-    """Return what a log tells of its run. Raises ``TypeError`` if it is not of the kind that apa writes."""
-    texts = [info.get("versions", {}), *info.get("fmus", [])]
-    mappings = [*texts, info.get("scenario") or {}, info.get("end", {}), info.get(RECOVERED, {})]
-    if not all(isinstance(item, dict) for item in mappings):
-        raise TypeError("its metadata are no mappings")
-    if not all(isinstance(value, str) for item in texts for value in item.values()):
-        raise TypeError("its versions and FMUs are not in words")
+    """Return what a log tells of its run. Raises ``ValidationError`` if it is not of the kind that apa writes."""
+    Told(**info)
     return info
 
 

@@ -16,7 +16,7 @@ from tests.fuzz.inputs import VALUES
 from tests.fuzz.limits import ask
 
 MAGIC = b"\x89MCAP0\r\n"
-METADATA, CHUNK_CODE, CHANNEL, MESSAGE_CODE, DATA_END = 12, 6, 4, 5, 15
+METADATA, CHUNK_CODE, CHANNEL, MESSAGE_CODE, MESSAGE_INDEX, DATA_END = 12, 6, 4, 5, 7, 15
 
 
 def damaged(data: bytes, draw: random.Random) -> bytes:
@@ -36,6 +36,28 @@ def damaged(data: bytes, draw: random.Random) -> bytes:
     return data[:at] + struct.pack("<Q", draw.choice((0, 1 << 20, 1 << 40, (1 << 64) - 1))) + data[at + 8 :]
 
 
+def retold(data: bytes, key: str, text: str) -> bytes:
+    """Return a file whose description of the run says something else, as tools of others may write it."""
+    out = MAGIC
+    for piece in top_records(data):
+        body = bytes(piece.body)
+        if piece.opcode == METADATA:
+            record = parsed(Metadata, piece)
+            kept = {name: told for name, told in record.metadata.items() if name != "checksum"}
+            body = _body(Metadata(name=record.name, metadata={**kept, key: text} if record.name == "apa" else kept))
+        if piece.opcode == DATA_END:
+            break
+        if piece.opcode != MESSAGE_INDEX:
+            out += HEAD.pack(piece.opcode, len(body)) + body
+    return ended(out)
+
+
+def ended(data: bytes) -> bytes:
+    """Return records with the end of a file without index behind them."""
+    data += HEAD.pack(DATA_END, 4) + struct.pack("<I", zlib.crc32(data))
+    return data + HEAD.pack(2, 20) + bytes(20) + MAGIC
+
+
 def forged(data: bytes, draw: random.Random) -> bytes:
     """Return a file whose checksums are right and whose content is not."""
     out = MAGIC
@@ -47,11 +69,10 @@ def forged(data: bytes, draw: random.Random) -> bytes:
             body = _metadata(parsed(Metadata, piece), draw)
         elif piece.opcode == CHUNK_CODE and draw.random() < 0.5:
             body = _chunk([(item.opcode, bytes(item.body)) for item in chunk_records(piece)], draw)
-        elif piece.opcode == 7:
+        elif piece.opcode == MESSAGE_INDEX:
             continue
         out += HEAD.pack(piece.opcode, len(body)) + body
-    out += HEAD.pack(DATA_END, 4) + struct.pack("<I", zlib.crc32(out))
-    return out + HEAD.pack(2, 20) + bytes(20) + MAGIC
+    return ended(out)
 
 
 def _metadata(record: Metadata, draw: random.Random) -> bytes:

@@ -7,11 +7,13 @@ from pathlib import Path
 import pytest
 
 from tests.fuzz.limits import ask
+from tests.fuzz.logs import retold
 
 ROOT = Path(__file__).parents[2]
 CORPUS = Path(__file__).parent / "corpus"
 FILES = sorted(CORPUS.glob("*.yaml"))
 SETTINGS = (CORPUS / "settings.txt").read_text().splitlines()
+TOLD = (CORPUS / "told.txt").read_text().splitlines()
 
 
 @pytest.fixture(scope="module")
@@ -45,6 +47,18 @@ def test_settings_that_broke_it_once_are_refused_in_a_line(line: str, tmp_path: 
     assert not answer.mistake, answer.mistake
     assert answer.code == 2, answer
     assert answer.err.count("\n") == 1
+
+
+@pytest.mark.parametrize("line", TOLD)
+def test_what_a_log_told_once_and_broke_it_is_refused_in_a_line(line: str, log: Path, tmp_path: Path) -> None:
+    key, _, text = line.partition(" ")
+    odd = tmp_path / "odd.mcap"
+    odd.write_bytes(retold(log.read_bytes(), key, text))
+    for words in (["report", str(odd), "--out", str(tmp_path / "page.html")], ["check", str(odd), "house"]):
+        answer = ask(words, 5.0)
+        assert not answer.mistake, answer.mistake
+        assert answer.code == 2, answer
+        assert [part for part in answer.err.splitlines() if "warning" not in part] == [answer.err.splitlines()[-1]]
 
 
 @pytest.mark.slow

@@ -1,12 +1,18 @@
 """A scenario as the page has it: what is given to the models, what is true, what ends a run and what judges it."""
 
+import math
 from typing import Any
 
+import numpy as np
+
+from fmus.compiled_batch import FAULTS
 from orchestrator.scenario.end_condition import SPEED
+from orchestrator.scenario.fault import Fault
 from orchestrator.scenario.load_scenario import load_scenario, scenario_names
 from orchestrator.scenario.models import MODELS, models_for
 from orchestrator.scenario.requirements import Requirement
 from orchestrator.scenario.scenario import MISSED, SUCCESS, Scenario
+from orchestrator.sweep.disturbed import heard, numbers_for
 from orchestrator.sweep.rows import measure_of, measures_for, measures_of
 from orchestrator.sweep.verdict import limit_value
 from orchestrator.text.errors import BadInput
@@ -53,7 +59,7 @@ def situation(scenario: Scenario) -> dict[str, Any]:
         **{owner: getattr(scenario, owner) for owner in ("vehicle", "controller")},
         "target": scenario.target.model_dump() if scenario.target else None,
         "slot": scenario.slot.model_dump() if scenario.slot else None,
-        "faults": [f"{fault.kind} {fault.signal} from {fault.start:g} s" for fault in scenario.faults],
+        "faults": _faults(scenario),
         "success": SUCCESS[scenario.task],
         "missed": MISSED[scenario.task],
         "ending": {
@@ -68,6 +74,21 @@ def situation(scenario: Scenario) -> dict[str, Any]:
         "measures": [_measure(item) for item in measures],
         "limits": [_limit(item, measures) for item in scenario.limits],
     }
+
+
+def _faults(scenario: Scenario) -> dict[str, Any]:
+    """Return what disturbs the run: in words, which inputs of which model, and the numbers of each receiver."""
+    numbers = numbers_for(scenario, np.array([scenario.seed]))[0].tolist()
+    return {
+        "said": [_said(fault) for fault in scenario.faults],
+        "heard": [[FAULTS.index(kind), model, *places] for kind, model, places in (x.inputs for x in heard(scenario))],
+        "numbers": [None if math.isnan(value) else value for value in numbers],
+    }
+
+
+def _said(fault: Fault) -> str:
+    until = f" to {fault.stop:g} s" if math.isfinite(fault.stop) else " s on"
+    return f"{fault.kind} {fault.signal}, {fault.start:g}{until}"
 
 
 def numbers_data() -> dict[str, dict[str, Any]]:

@@ -1,10 +1,12 @@
-"""The faults of a study as the compiled batch takes them: which inputs they disturb, and their numbers in each run."""
+"""Faults as the compiled batch takes them: which inputs they disturb, and their numbers in each run of a study."""
 
 import json
+from collections.abc import Mapping
 from functools import lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from fmus.compiled_batch import FAULT_NUMBERS, Disturbed
 from modelkit.variables import Variable
@@ -56,9 +58,19 @@ def _heard(faults: str, models: Any, file: str) -> tuple[Receiver, ...]:
 
 def fault_numbers(job: Job, chunk: Chunk, scenario: Scenario) -> Array:
     """Return the numbers of all receivers of all faults in each run of ``chunk``: see ``FAULT_NUMBERS``."""
-    hearers = heard(scenario)
-    found = np.empty((len(chunk.seeds), len(hearers), FAULT_NUMBERS))
     varied = {(place, name): chunk.values[:, column] for column, (place, name) in _columns(job)}
+    return numbers_for(scenario, chunk.seeds, varied)
+
+
+def numbers_for(
+    scenario: Scenario, seeds: NDArray[Any], varied: Mapping[tuple[int, str], Array] | None = None
+) -> Array:
+    """Return a line for each run: ``FAULT_NUMBERS`` of each receiver of the faults of ``scenario``.
+
+    ``seeds``: of the runs; ``varied``: fault and key -> its values in the runs.
+    """
+    hearers, varied = heard(scenario), varied or {}
+    found = np.empty((len(seeds), len(hearers), FAULT_NUMBERS))
     for count, item in enumerate(hearers):
         fault = scenario.faults[item.fault]
         start, stop = (varied.get((item.fault, name), getattr(fault, name)) for name in ("start", "stop"))
@@ -67,8 +79,8 @@ def fault_numbers(job: Job, chunk: Chunk, scenario: Scenario) -> Array:
         name = AMOUNT[fault.kind]
         amount = varied.get((item.fault, name), _amount(fault, item.first)) if name else 0.0
         found[:, count, 2] = np.round(np.asarray(amount) * NANOSECONDS) if fault.kind == "delay" else amount
-        found[:, count, 3] = chunk.seeds * SEEDS + count
-    return np.ascontiguousarray(found.reshape(len(chunk.seeds), -1))
+        found[:, count, 3] = seeds * SEEDS + count
+    return np.ascontiguousarray(found.reshape(len(seeds), -1))
 
 
 AMOUNT = {"override": "value", "freeze": "", "drop": "probability", "delay": "delay", "noise": "sigma"}

@@ -7,9 +7,11 @@ from typing import Any
 import numpy as np
 import wasmtime
 
+from fmus.compiled_batch import FAULTS
 from modelkit.variables import flatten, variables, with_values
 from orchestrator.scenario.models import MODELS
 from orchestrator.scenario.scenario import Scenario
+from orchestrator.sweep.disturbed import heard, numbers_for
 
 PLACES = {
     f"{owner}.{item.name}": (number, place, is_input)
@@ -49,12 +51,13 @@ class LiveModule:
         last = scenario.stop_ns // scenario.step_ns
         live = self.call("live_open", self.put(setup(scenario, names)))
         trace = self.call("live_numbers", (last + 1) * (1 + len(names)))
-        params, times = self.put(parameters(scenario)), self.put(times_of(scenario))
-        lines = self.call("live_run", live, params, times, trace, 1, last + 1)
+        params, times, faults = (self.put(made(scenario)) for made in (parameters, times_of, disturbed))
+        lines = self.call("live_run", live, params, times, faults, trace, 1, last + 1)
         end = self.get(self.call("live_row", live), 2)[0]
         found = self.get(trace, lines * (1 + len(names))).reshape(lines, -1)
-        for address in (trace, params, times):
+        for address in (trace, params, times, faults):
             self.call("live_free", address)
+        self.call("live_close", live)
         return end, found
 
 
@@ -63,7 +66,14 @@ def setup(scenario: Scenario, names: Sequence[str]) -> list[float]:
     final = sum(1 << value for value in ending.final())
     signals = [*PLACES[ending.signal], *PLACES["vehicle.speed"]]
     seen = [number for name in names for number in PLACES[name]]
-    return [final, ending.still, ending.standstill_ns, *signals, 0, len(names), *seen]
+    plans = [(FAULTS.index(kind), model, places) for kind, model, places in (item.inputs for item in heard(scenario))]
+    counts = [0, len(names), len(plans), sum(len(places) for _, _, places in plans)]
+    faults = [number for kind, model, places in plans for number in (kind, model, len(places), *places)]
+    return [final, ending.still, ending.standstill_ns, *signals, *counts, *seen, *faults]
+
+
+def disturbed(scenario: Scenario) -> list[float]:
+    return [float(number) for number in numbers_for(scenario, np.array([scenario.seed]))[0]]
 
 
 def parameters(scenario: Scenario) -> list[float]:

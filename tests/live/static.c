@@ -8,7 +8,8 @@ typedef struct Live Live;
 double *live_numbers(int32_t count);
 Live *live_open(const double *number);
 double *live_row(Live *live);
-int32_t live_run(Live *live, const double *params, const double *times, double *trace, int32_t every, int32_t room);
+int32_t live_run(Live *live, const double *params, const double *times, const double *faults, double *trace,
+                 int32_t every, int32_t room);
 
 static double *take(void) {
     double count = 0.0;
@@ -21,10 +22,10 @@ static double *take(void) {
 
 int main(void) {
     Live *live = live_open(take());
-    const double *params = take(), *times = take(), *sizes = take();
+    const double *params = take(), *times = take(), *faults = take(), *sizes = take();
     const int32_t room = (int32_t)sizes[0], width = (int32_t)sizes[1];
     double *trace = live_numbers(room * width);
-    const int32_t lines = live_run(live, params, times, trace, 1, room);
+    const int32_t lines = live_run(live, params, times, faults, trace, 1, room);
     fwrite(live_row(live), sizeof(double), 2, stdout);
     fwrite(trace, sizeof(double), (size_t)(lines * width), stdout);
     return 0;

@@ -31,13 +31,41 @@ static const double *read_signal(const double *number, Signal *signal) {
     return number;
 }
 
+static const double *read_kept(const double *number, Live *live) {
+    Kept *kept = calloc((size_t)live->batch.kept_count + 1, sizeof(Kept));
+    live->batch.kept = kept;
+    for (int64_t k = 0; kept && k < live->batch.kept_count; k++) {
+        kept[k].how = (int64_t)*number++;
+        number = read_signal(number, &kept[k].signal);
+        number = read_signal(number, &kept[k].when);
+        kept[k].values = (uint64_t)*number++;
+    }
+    return number;
+}
+
+static const double *read_faults(const double *number, Live *live, int64_t place_count) {
+    FaultPlan *faults = calloc((size_t)live->batch.fault_count + 1, sizeof(FaultPlan));
+    int64_t *places = calloc((size_t)place_count + 1, sizeof(int64_t)), taken = 0;
+    live->batch.faults = faults;
+    live->batch.places = places;
+    for (int64_t k = 0; faults && places && k < live->batch.fault_count; k++) {
+        faults[k].kind = (int64_t)*number++;
+        faults[k].model = (int64_t)*number++;
+        faults[k].first = taken;
+        faults[k].count = (int64_t)*number++;
+        for (int64_t i = 0; i < faults[k].count; i++) places[taken++] = (int64_t)*number++;
+    }
+    return number;
+}
+
 /* set-up: final values of the mode as bits, largest speed that counts as standing, for how long [ns], mode, speed,
- * count of what is kept, of what is seen; for each kept: how, signal, when, values as bits; for each seen: signal. A
- * signal is a model, a place and whether it is an input. */
+ * count of what is kept, of what is seen, of faults, of inputs that they disturb; for each kept: how, signal, when,
+ * values as bits; for each seen: signal; for each fault: kind, model, count, inputs. A signal is a model, a place and
+ * whether it is an input. Returns NULL if there is no memory. */
 LIBRARY_EXPORT Live *live_open(const double *number) {
     const Library *const models[] = {LIVE_MODELS};
     Live *live = calloc(1, sizeof(Live));
-    Kept *kept;
+    int64_t place_count;
     if (!live) return NULL;
     memcpy(live->models, models, sizeof models);
     live->batch.models = live->models;
@@ -51,42 +79,44 @@ LIBRARY_EXPORT Live *live_open(const double *number) {
     number = read_signal(number, &live->batch.speed);
     live->batch.kept_count = (int64_t)*number++;
     live->seen_count = (int64_t)*number++;
-    kept = calloc((size_t)live->batch.kept_count + 1, sizeof(Kept));
-    live->batch.kept = kept;
+    live->batch.fault_count = (int64_t)*number++;
+    place_count = (int64_t)*number++;
     live->seen = calloc((size_t)live->seen_count + 1, sizeof(Signal));
     live->places = calloc((size_t)live->seen_count + 1, sizeof(Place));
     live->row = calloc((size_t)live->batch.kept_count + 2, sizeof(double));
     live->runner.batch = &live->batch;
-    if (!kept || !live->seen || !live->places || !live->row) return NULL;
-    for (int64_t k = 0; k < live->batch.kept_count; k++) {
-        kept[k].how = (int64_t)*number++;
-        number = read_signal(number, &kept[k].signal);
-        number = read_signal(number, &kept[k].when);
-        kept[k].values = (uint64_t)*number++;
-    }
+    if (!live->seen || !live->places || !live->row) return NULL;
+    number = read_kept(number, live);
     for (int64_t k = 0; k < live->seen_count; k++) number = read_signal(number, &live->seen[k]);
+    read_faults(number, live, place_count);
+    if (!live->batch.kept || !live->batch.faults || !live->batch.places) return NULL;
     return lay_out(&live->runner, calloc(1, lay_out(&live->runner, NULL) + 1)) ? live : NULL;
 }
 
 LIBRARY_EXPORT void live_close(Live *live) {
+    for (int64_t k = 0; k < live->batch.fault_count; k++) free(live->runner.faults[k].line);
     free(live->runner.slaves); /* where its memory begins */
     free((void *)live->batch.kept);
+    free((void *)live->batch.faults);
+    free((void *)live->batch.places);
     free(live->seen);
     free(live->places);
     free(live->row);
     free(live);
 }
 
-/* times: the step [ns], the stop [ns], the decimation of each model; params: those of all models. */
-LIBRARY_EXPORT void live_begin(Live *live, const double *params, const double *times) {
+/* times: the step [ns], the stop [ns], the decimation of each model; params: those of all models; faults: the numbers
+ * of each. Returns 0, or -1 if there is no memory. */
+LIBRARY_EXPORT int32_t live_begin(Live *live, const double *params, const double *times, const double *faults) {
     const Course course = {(int64_t)times[0], (int64_t)times[1] / (int64_t)times[0], 0, -1};
     int64_t every[LIVE_COUNT];
     live->course = course;
     for (int64_t m = 0; m < LIVE_COUNT; m++) every[m] = (int64_t)times[2 + m];
     connect(&live->runner, every);
     for (int64_t k = 0; k < live->seen_count; k++) live->places[k] = place_of(live->runner.slaves, live->seen[k]);
-    initialize(&live->runner, params, NULL, live->course.step_ns);
+    if (initialize(&live->runner, params, faults, live->course.step_ns)) return -1;
     begin_notes(&live->runner, live->row + 2);
+    return 0;
 }
 
 /* One exchange; fills what is seen. Returns whether the run is over. */
@@ -117,11 +147,11 @@ LIBRARY_EXPORT double live_look(const Live *live, int32_t model, int32_t place, 
 LIBRARY_EXPORT double *live_row(Live *live) { return live->row; }
 
 /* A whole run; every n-th exchange, and the last one, fills a line of trace: time [s], what is seen. Returns how many
- * lines there are, `room` at most. The run ends as `row` says. */
-LIBRARY_EXPORT int32_t live_run(Live *live, const double *params, const double *times, double *trace, int32_t every,
-                                int32_t room) {
+ * lines there are, `room` at most; 0 if there is no memory. The run ends as `row` says. */
+LIBRARY_EXPORT int32_t live_run(Live *live, const double *params, const double *times, const double *faults,
+                                double *trace, int32_t every, int32_t room) {
     int32_t lines = 0;
-    live_begin(live, params, times);
+    if (live_begin(live, params, times, faults)) return 0;
     for (int over = 0; !over; live_advance(live)) {
         double *line = trace + (int64_t)(lines < room ? lines : room - 1) * (1 + live->seen_count);
         over = live_exchange(live, line + 1);

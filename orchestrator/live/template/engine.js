@@ -1,6 +1,6 @@
 // The models as they are in the page: a WebAssembly module (fmus/native/c/live.c), its runs, and numbers to and from it.
 
-const HOW = ["last", "largest", "greatest", "smallest", "travel", "first"];
+const HOW = ["last", "largest", "greatest", "smallest", "travel", "first", "time"];
 const HEAD = 2; // a row begins with how the run ended and when [ns]
 
 async function inflate(text) {
@@ -46,13 +46,17 @@ class Course {
     this.seen = seen;
     this.kept = data.measures.length;
     const place = (name) => engine.places.get(name), bits = (values) => values.reduce((sum, value) => sum + 2 ** value, 0);
-    const numbers = [bits(data.ending.final), data.ending.still, data.ending.standstill_ns, ...place(data.ending.mode), ...place(data.ending.speed), this.kept, seen.length];
+    const { heard } = data.faults, inputs = heard.flatMap(([, , ...places]) => places);
+    const numbers = [bits(data.ending.final), data.ending.still, data.ending.standstill_ns, ...place(data.ending.mode), ...place(data.ending.speed), this.kept, seen.length, heard.length, inputs.length];
     for (const [how, name, mode, values] of data.measures)
       numbers.push(HOW.indexOf(how), ...place(name), ...(mode ? place(mode) : [0, 0, 0]), mode ? bits(values) : 0);
     for (const name of seen) numbers.push(...place(name));
+    for (const [kind, model, ...places] of heard) numbers.push(kind, model, places.length, ...places);
     const address = engine.put(numbers);
     this.live = this.c.live_open(address);
     this.c.live_free(address);
+    if (!this.live) throw new Error("there is not enough memory");
+    this.faults = engine.put(data.faults.numbers.map((value) => value ?? NaN));
     this.line = engine.put(seen.map(() => 0));
     this.times = engine.put([0, 0, 0, 0]);
     this.params = this.room = this.trace = 0; // addresses of numbers, and how many lines a trace has room for
@@ -60,7 +64,7 @@ class Course {
 
   close() {
     this.c.live_close(this.live);
-    for (const address of [this.line, this.times, this.params]) if (address) this.c.live_free(address);
+    for (const address of [this.line, this.times, this.params, this.faults, this.trace]) if (address) this.c.live_free(address);
   }
 
   give(params, times) {
@@ -78,7 +82,8 @@ class Course {
       this.trace = this.c.live_numbers(room * width);
       this.room = room;
     }
-    const lines = this.c.live_run(this.live, this.params, this.times, this.trace, every, room);
+    const lines = this.c.live_run(this.live, this.params, this.times, this.faults, this.trace, every, room);
+    if (!lines) throw new Error("there is not enough memory");
     return { row: this.row(), width, lines, trace: this.engine.view(this.trace, lines * width) };
   }
 
@@ -86,7 +91,7 @@ class Course {
 
   begin(params, times) {
     this.give(params, times);
-    this.c.live_begin(this.live, this.params, this.times);
+    if (this.c.live_begin(this.live, this.params, this.times, this.faults)) throw new Error("there is not enough memory");
   }
 
   // One exchange; returns what is seen and whether the run is over.

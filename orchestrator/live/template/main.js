@@ -49,8 +49,8 @@ class Page {
     $("scenario").value = name;
     $("title").textContent = document.title = data.title || name;
     $("subtitle").textContent = data.description;
-    $("faults").hidden = data.faults.length === 0;
-    $("faults").textContent = `Here without what the scenario disturbs: ${data.faults.join(", ")}. apa run disturbs it.`;
+    $("faults").hidden = data.faults.said.length === 0;
+    $("faults").textContent = `This scenario disturbs what is received: ${data.faults.said.join("; ")}.`;
     this.whatIf.more = [];
     this.whatIf.fill();
     this.map.fill();

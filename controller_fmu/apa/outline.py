@@ -12,9 +12,6 @@ from modelkit.vocabulary import Pose
 
 FAR = 60.0
 """Half length [m] of a box that stands for a wall without end."""
-MET = 1.0
-CREPT = 0.005
-"""So much [m] nearer is taken for no nearer."""
 
 
 class Shape(NamedTuple):
@@ -120,25 +117,6 @@ def free_way(pose: Pose, direction: float, curvature: float, longest: float, car
             return way
         way = next_way
     return longest
-
-
-def least_on(
-    pose: Pose, direction: float, length: float, k0: float, k1: float, least: float, car: Shape, obstacles: Obstacles
-) -> float:
-    """Return the clearance [m] that must not be fallen below after this piece of path, ``MET`` if it was on it.
-
-    ``least`` is that before it: 0, or less for a car that stands within a margin, which it may leave but
-    not go further into. Looked at every 10 cm.
-    """
-    count = 1 + math.floor(length / 0.1)
-    for number in range(1, count + 1):
-        way = length * number / count
-        k = k0 + (k1 - k0) * number / count
-        gap = clearance(advance(pose, direction, way, k0, k), car, obstacles)
-        if gap <= least:
-            return MET
-        least = _smaller(gap - CREPT, 0.0) if least < 0.0 else least
-    return least
 
 
 def grown(box: Box, margin: float) -> Box:

@@ -2,9 +2,8 @@
 
 from typing import NamedTuple
 
-from controller_fmu.apa.around.guard import GuardState, Sight
-from controller_fmu.apa.around.local_map import LocalMap
-from controller_fmu.apa.around.surroundings import is_rest_free, is_settled, shape_of, sight_of
+from controller_fmu.apa.around.guard import Sight
+from controller_fmu.apa.around.surroundings import Around, is_rest_free, is_settled, shape_of, sight_of
 from controller_fmu.apa.manoeuvre_chart import Guard as StepGuard
 from controller_fmu.apa.manoeuvre_chart import Step, step_transition
 from controller_fmu.apa.params import Longitudinal
@@ -63,6 +62,19 @@ def site_for(slot: Slot, attempt: int, params: ControllerParams) -> Site:
     return site_of(slot, shape_of(params), margins_of(attempt, params.apa))
 
 
+class CarAtSite(NamedTuple):
+    """The slot as the planner sees it in an attempt, and where the car is in the frame of its target."""
+
+    site: Site
+    pose: Pose
+
+
+def place_for(slot: Slot, attempt: int, odometry: Pose, params: ControllerParams) -> CarAtSite:
+    """Return the slot of an attempt and the car in it."""
+    site = site_for(slot, attempt, params)
+    return CarAtSite(site, to_slot(odometry, site.frame))
+
+
 def next_attempt(state: Parking, plan: PlanSearch, site: Site, params: ControllerParams) -> int:
     """Return the attempt to make after a search that led nowhere; the same if there is none.
 
@@ -77,8 +89,10 @@ def next_attempt(state: Parking, plan: PlanSearch, site: Site, params: Controlle
     return following(state.attempt, site.kind) if state.direction == 0 else closer(state.attempt)
 
 
-def is_in_place(pose: Pose, site: Site, lateral: float, heading: float) -> bool:
-    """Return whether a pose (target's frame) is within these limits, and its x where it may end."""
+def is_in_place(place: CarAtSite, lateral: float, heading: float) -> bool:
+    """Return whether the car is within these limits of its target, and its x where it may end."""
+    pose = place.pose
+    site = place.site
     return (
         abs(pose.y) <= lateral
         and abs(pose.heading) <= heading
@@ -88,66 +102,59 @@ def is_in_place(pose: Pose, site: Site, lateral: float, heading: float) -> bool:
 
 def park(
     state: Parking,
-    slot: Slot,
-    here: LocalMap,
-    guard: GuardState,
+    around: Around,
     inputs: ControllerInput,
     steering: Steering,
     allowed: bool,
     params: ControllerParams,
 ) -> Parking:
     """Return the manoeuvre one sample later; while not ``allowed`` the first plan is made, and no more."""
-    site = site_for(slot, state.attempt, params)
-    car = shape_of(params)
-    pose = to_slot(inputs.odometry, site.frame)
-    plan = state.plan
-    attempt = state.attempt
+    place = place_for(around.slot, state.attempt, inputs.odometry, params)
     if state.step == Step.PLAN:
-        plan = search_on(plan, site, car, params.apa.plan.at_a_time)
-        attempt = next_attempt(state, plan, site, params)
+        plan = search_on(state.plan, place.site, shape_of(params), params.apa.plan.at_a_time)
+        attempt = next_attempt(state, plan, place.site, params)
         if attempt != state.attempt:
-            site = site_for(slot, attempt, params)
-            pose = to_slot(inputs.odometry, site.frame)
-            plan = new_search(pose)
-    tracked = state.tracked
-    sight = Sight()
+            place = place_for(around.slot, attempt, inputs.odometry, params)
+            plan = new_search(place.pose)
+        state = state._replace(plan=plan, attempt=attempt)
+    state = state._replace(sight=Sight())
     if state.step in (Step.DRIVE, Step.HALT, Step.SET_WHEEL):
-        drive = params.apa.drive
-        tracked = track(plan.move, state.leg, tracked.way, pose, drive.k1, drive.k2, params.car.wheelbase)
-        bare = site_of(slot, car, Margins(0.0, 0.0, 0.0))
-        sight = sight_of(plan.move.direction, bare, here, guard, inputs, params)
-        if state.step == Step.DRIVE and not is_rest_free(plan.move, tracked, site, bare, params):
-            sight = sight._replace(blocked=True, unknown=False)
-    settled = is_settled(inputs.odometry, slot, here, params)
-    guards = _guards(state, plan, tracked, sight, pose, site, inputs, allowed, settled, params)
-    step = step_transition(state.step, guards)
+        state = _looked_around(state, place, around, inputs, params)
+    settled = is_settled(inputs.odometry, around, params)
+    step = step_transition(state.step, _guards(state, place, inputs, settled, allowed, params))
     limit = params.apa.end
-    missed = state.step == Step.PLAN and not settled and is_in_place(pose, site, limit.lateral, limit.heading)
-    state = state._replace(missed=missed)
-    return _moved_on(state, step, plan, attempt, tracked, sight, pose, site, steering, params)
+    missed = state.step == Step.PLAN and not settled and is_in_place(place, limit.lateral, limit.heading)
+    return _moved_on(state._replace(missed=missed), step, place, steering, params)
+
+
+def _looked_around(
+    state: Parking, place: CarAtSite, around: Around, inputs: ControllerInput, params: ControllerParams
+) -> Parking:
+    """Return the manoeuvre that has looked where it is along its move, and what is in the way."""
+    move = state.plan.move
+    tracked = track(move, state.leg, state.tracked.way, place.pose, params.apa.drive, params.car.wheelbase)
+    bare = site_of(around.slot, shape_of(params), Margins(0.0, 0.0, 0.0))
+    sight = sight_of(move.direction, bare, around, inputs, params)
+    if state.step == Step.DRIVE and not is_rest_free(move, tracked, place.site, bare, params):
+        sight = sight._replace(blocked=True, unknown=False)
+    return state._replace(tracked=tracked, sight=sight)
 
 
 def _guards(
-    state: Parking,
-    plan: PlanSearch,
-    tracked: Tracked,
-    sight: Sight,
-    pose: Pose,
-    site: Site,
-    inputs: ControllerInput,
-    allowed: bool,
-    settled: bool,
-    params: ControllerParams,
+    state: Parking, place: CarAtSite, inputs: ControllerInput, settled: bool, allowed: bool, params: ControllerParams
 ) -> int:
     apa = params.apa
     standing = abs(inputs.measured_speed) <= STANDING
     own = apa.drive.longitudinal == Longitudinal.OWN_SPEED
     stop = stopping_way(inputs.measured_speed, apa.drive, apa.drive.delay if own else apa.drive.reaction)
     limit = apa.end
-    right = is_in_place(pose, site, limit.lateral, limit.heading)
+    right = is_in_place(place, limit.lateral, limit.heading)
     if state.shifts >= limit.few:
-        right = right or is_in_place(pose, site, limit.near_lateral, limit.near_heading)
-    well_enough = is_in_place(pose, site, limit.miss_lateral, limit.miss_heading)
+        right = right or is_in_place(place, limit.near_lateral, limit.near_heading)
+    well_enough = is_in_place(place, limit.miss_lateral, limit.miss_heading)
+    plan = state.plan
+    sight = state.sight
+    tracked = state.tracked
     stuck = (
         state.cuts > MOST_CUTS
         or plan.status == NOTHING
@@ -182,40 +189,32 @@ def has_failed(state: Parking, params: ControllerParams) -> bool:
     )
 
 
-def _moved_on(
-    state: Parking,
-    step: int,
-    plan: PlanSearch,
-    attempt: int,
-    tracked: Tracked,
-    sight: Sight,
-    pose: Pose,
-    site: Site,
-    steering: Steering,
-    params: ControllerParams,
-) -> Parking:
-    moved = state._replace(step=step, plan=plan, attempt=attempt, tracked=tracked, sight=sight, speed=0.0)
+def _moved_on(state: Parking, step: int, place: CarAtSite, steering: Steering, params: ControllerParams) -> Parking:
+    """Return the manoeuvre in ``step``, with what it asks of wheel and speed until the next sample."""
+    plan = state.plan
+    mirror = place.site.frame.mirror
+    moved = state._replace(step=step, speed=0.0)
     if step == Step.HALT and state.step == Step.DRIVE:
-        moved = moved._replace(cut=sight.blocked and not sight.unknown)
+        moved = moved._replace(cut=state.sight.blocked and not state.sight.unknown)
     if step == Step.PLAN and state.step != Step.PLAN:
         moved = moved._replace(
             cuts=moved.cuts + 1 if moved.cut else moved.cuts,
             cut=False,
             ended=state.step == Step.HALT and plan.moves <= 1,
-            attempt=under_way(attempt),
-            plan=new_search(pose),
+            attempt=under_way(state.attempt),
+            plan=new_search(place.pose),
         )
     if step == Step.SET_WHEEL:
-        leg = _next_leg(state, plan, tracked)
-        begun = Tracked(left=length_of(plan.move), to_stop=leg.end, reference=pose)
-        moved = moved._replace(leg=leg, tracked=begun if state.step == Step.PLAN else tracked)
+        leg = _next_leg(state)
+        begun = Tracked(left=length_of(plan.move), to_stop=leg.end, reference=place.pose)
+        moved = moved._replace(leg=leg, tracked=begun if state.step == Step.PLAN else state.tracked)
         front = set_wheel(plan.move, leg, moved.tracked.way, params.car.wheelbase)
-        moved = moved._replace(wheel=wheel_request(front, site.frame.mirror, params))
+        moved = moved._replace(wheel=wheel_request(front, mirror, params))
     if step == Step.DRIVE:
         moved = _set_out(moved) if state.step != Step.DRIVE else moved
-        moved = moved._replace(speed=moved.direction * _speed(tracked, sight, steering, params))
+        moved = moved._replace(speed=moved.direction * _speed(state, steering, params))
     if step in (Step.DRIVE, Step.HALT):
-        moved = moved._replace(wheel=wheel_request(tracked.front_wheel_angle, site.frame.mirror, params))
+        moved = moved._replace(wheel=wheel_request(state.tracked.front_wheel_angle, mirror, params))
     if step in (Step.STRAIGHTEN, Step.IDLE):
         moved = moved._replace(wheel=0.0)
     return moved
@@ -230,19 +229,20 @@ def _set_out(state: Parking) -> Parking:
     return state._replace(shifts=state.shifts + 1 if counted else state.shifts, direction=direction)
 
 
-def _next_leg(state: Parking, plan: PlanSearch, tracked: Tracked) -> Leg:
+def _next_leg(state: Parking) -> Leg:
     """Return the part of the move to drive from this standstill on."""
     if state.step == Step.PLAN:
-        return Leg(0.0, next_standstill(plan.move, 0.0))
-    if state.step == Step.HALT and tracked.to_stop < AT_JUMP:
-        return Leg(state.leg.end, next_standstill(plan.move, state.leg.end))
+        return Leg(0.0, next_standstill(state.plan.move, 0.0))
+    if state.step == Step.HALT and state.tracked.to_stop < AT_JUMP:
+        return Leg(state.leg.end, next_standstill(state.plan.move, state.leg.end))
     return state.leg
 
 
-def _speed(tracked: Tracked, sight: Sight, steering: Steering, params: ControllerParams) -> float:
+def _speed(state: Parking, steering: Steering, params: ControllerParams) -> float:
+    tracked = state.tracked
     rate = rate_of(steering, params.car.steering.rate_limit) / params.car.steering.ratio
     speed = planned_speed(tracked.to_stop, tracked.slope, params.car.wheelbase, rate, params.apa.drive)
-    return max(params.apa.drive.creep, min(speed, sight.speed))
+    return max(params.apa.drive.creep, min(speed, state.sight.speed))
 
 
 def start_planning(slot: Slot, pose: Pose, params: ControllerParams) -> Parking:

@@ -3,9 +3,9 @@
 from typing import NamedTuple
 
 from controller_fmu.apa.around.guard import GuardState, learn_brake, listen
-from controller_fmu.apa.around.local_map import LocalMap, begin_map, heard, moved, slot_of_map
+from controller_fmu.apa.around.local_map import begin_map, heard, moved, slot_of_map
 from controller_fmu.apa.around.relocate import braked, walled
-from controller_fmu.apa.around.surroundings import shape_of
+from controller_fmu.apa.around.surroundings import Around, shape_of
 from controller_fmu.apa.chart import Guard, Mode, transition
 from controller_fmu.apa.hearing.search import SearchState, begin_search, is_new_reading, search, without_first
 from controller_fmu.apa.manoeuvre_chart import Step
@@ -21,6 +21,7 @@ from controller_fmu.apa.parking import (
 from controller_fmu.apa.slot import Slot
 from controller_fmu.apa.watch import STANDING, Watch, is_taken_over, reason_to_fail, watch
 from controller_fmu.common.chart import bit
+from controller_fmu.common.monitor import Command
 from controller_fmu.interface import ControllerInput, ControllerParams, Reason
 from modelkit.vocabulary import Pose
 
@@ -38,10 +39,7 @@ class ApaState(NamedTuple):
     taken_over: bool = False
     clock_ns: int = 0
     search: SearchState = SearchState()
-    slot: Slot = Slot()
-    """The slot chosen."""
-    map: LocalMap = LocalMap()
-    guard: GuardState = GuardState()
+    around: Around = Around()
     parking: Parking = Parking()
     watch: Watch = Watch()
     waited_ns: int = 0
@@ -55,49 +53,63 @@ def apa_start(params: ControllerParams) -> ApaState:
     return ApaState()
 
 
+class Judged(NamedTuple):
+    """Why the drive cannot go on, and whether the driver has taken the car back."""
+
+    reason: int
+    taken: bool
+
+
 def apa_sample(state: ApaState, inputs: ControllerInput, params: ControllerParams, dt_ns: int) -> ApaState:
     """Return the assist one sample of ``dt_ns`` later."""
     driving = state.mode in (Mode.AUTO_PARKING_ASSIST, Mode.POSITION_TUNING)
-    parking = state.parking
-    seen = watch(state.watch, inputs, parking.step, parking.wheel, parking.sight.blocked, driving, dt_ns, params)
-    taken = driving and is_taken_over(seen, inputs, params)
-    reason = reason_to_fail(seen, inputs, driving, params) if state.mode != Mode.OFF else Reason.NONE
-    found = state.search
-    slot = state.slot
-    here = state.map
-    guard = state.guard
+    command = Command(state.parking.step, state.parking.wheel, state.parking.sight.blocked)
+    state = state._replace(watch=watch(state.watch, command, inputs, driving, params, dt_ns))
+    taken = driving and is_taken_over(state.watch, inputs, params)
+    reason = reason_to_fail(state.watch, inputs, driving, params) if state.mode != Mode.OFF else Reason.NONE
     if reason == Reason.NONE and not taken:
         if state.mode in (Mode.PARKING_SPACE_SEARCH, Mode.PARKING_SPACE_APPEARS):
-            found = search(found, inputs, shape_of(params), params, dt_ns)
+            state = state._replace(search=search(state.search, inputs, shape_of(params), params, dt_ns))
         if driving or state.mode == Mode.PARKING_SPACE_APPEARS:
-            stopping = driving and parking.step != Step.DRIVE
-            guard = learn_brake(guard, inputs.measured_speed, stopping, dt_ns, params)
-            if is_new_reading(state.clock_ns, dt_ns, params.car.ultrasonic.cycle):
-                here = moved(here, inputs.odometry, params.apa.map)
-                here = heard(here, inputs.ultrasonic, params.car.ultrasonic, params.apa.map)
-                if parking.step == Step.HALT and abs(inputs.measured_speed) <= STANDING:
-                    here = walled(here, slot, inputs, parking.sight.blocked, params)
-                guard = listen(guard, inputs.ultrasonic, here, params)
-                slot = slot_of_map(here, slot, params.apa.map)
-                parking = cut_short(parking) if slot.depth < state.slot.depth - SHALLOWER else parking
-            parking = park(parking, slot, here, guard, inputs, seen.wheel.steering, driving, params)
-    reason = _later_reason(reason, state, parking, found, params)
-    guards = _guards(state, parking, found, inputs, reason, taken, params)
-    mode = transition(state.mode, guards)
-    state = state._replace(map=here, guard=guard)
-    return _moved_on(state, mode, parking, found, slot, seen, reason, taken, inputs, params, dt_ns)
+            state = _parked_on(state, inputs, driving, params, dt_ns)
+    judged = Judged(_later_reason(reason, state, params), taken)
+    mode = transition(state.mode, _guards(state, inputs, judged, params))
+    return _moved_on(state, mode, inputs, judged, params, dt_ns)
 
 
-def _later_reason(reason: int, state: ApaState, parking: Parking, found: SearchState, params: ControllerParams) -> int:
+def _parked_on(
+    state: ApaState, inputs: ControllerInput, driving: bool, params: ControllerParams, dt_ns: int
+) -> ApaState:
+    """Return the assist that has listened, where its sensors tell something new, and gone on with the manoeuvre."""
+    parking = state.parking
+    slot = state.around.slot
+    here = state.around.map
+    stopping = driving and parking.step != Step.DRIVE
+    guard = learn_brake(state.around.guard, inputs.measured_speed, stopping, dt_ns, params)
+    if is_new_reading(state.clock_ns, dt_ns, params.car.ultrasonic.cycle):
+        here = moved(here, inputs.odometry, params.apa.map)
+        here = heard(here, inputs.ultrasonic, params.car.ultrasonic, params.apa.map)
+        if parking.step == Step.HALT and abs(inputs.measured_speed) <= STANDING:
+            here = walled(here, slot, inputs, parking.sight.blocked, params)
+        guard = listen(guard, inputs.ultrasonic, here, params)
+        slot = slot_of_map(here, slot, params.apa.map)
+        parking = cut_short(parking) if slot.depth < state.around.slot.depth - SHALLOWER else parking
+    around = Around(slot, here, guard)
+    parking = park(parking, around, inputs, state.watch.wheel.steering, driving, params)
+    return state._replace(around=around, parking=parking)
+
+
+def _later_reason(reason: int, state: ApaState, params: ControllerParams) -> int:
     if reason != Reason.NONE:
         return reason
+    parking = state.parking
     if state.mode in (Mode.AUTO_PARKING_ASSIST, Mode.POSITION_TUNING):
         if has_failed(parking, params):
             return _no_way(parking)
         if abs(parking.tracked.lateral_error) > LOST:
             return Reason.LEFT_PATH
-    if state.mode == Mode.PARKING_SPACE_SEARCH and found.way > params.apa.search.way:
-        return Reason.SLOT_TOO_SHORT if found.refusals > 0 else Reason.NO_SLOT
+    if state.mode == Mode.PARKING_SPACE_SEARCH and state.search.way > params.apa.search.way:
+        return Reason.SLOT_TOO_SHORT if state.search.refusals > 0 else Reason.NO_SLOT
     if state.waited_ns * 1e-9 > params.apa.guard.confirm:
         return Reason.TIMEOUT if state.mode == Mode.PARKING_SPACE_APPEARS else Reason.NOT_MOVING
     if state.mode == Mode.PARKING_SPACE_APPEARS and params.apa.search.given and has_failed(parking, params):
@@ -111,32 +123,25 @@ def _no_way(parking: Parking) -> int:
     return Reason.TOO_MANY_SHIFTS if parking.plan.found else Reason.NO_PATH
 
 
-def _guards(
-    state: ApaState,
-    parking: Parking,
-    found: SearchState,
-    inputs: ControllerInput,
-    reason: int,
-    taken: bool,
-    params: ControllerParams,
-) -> int:
+def _guards(state: ApaState, inputs: ControllerInput, judged: Judged, params: ControllerParams) -> int:
     given = params.apa.search.given
     speed = abs(inputs.measured_speed)
     standing = speed <= STANDING
     limit = params.apa.search.speed
+    parking = state.parking
     dx = inputs.odometry.x - state.pose.x
     dy = inputs.odometry.y - state.pose.y
     moved = dx * dx + dy * dy > DRIVEN_ON * DRIVEN_ON
     return (
         bit(Guard.SWITCHED_OFF, not inputs.apa_switch)
-        | bit(Guard.TAKEN_OVER, taken or not inputs.apa_switch)
-        | bit(Guard.FAULT, reason != Reason.NONE)
+        | bit(Guard.TAKEN_OVER, judged.taken or not inputs.apa_switch)
+        | bit(Guard.FAULT, judged.reason != Reason.NONE)
         | bit(Guard.SWITCHED_ON, inputs.apa_switch)
         | bit(Guard.READY, not given and speed <= limit)
         | bit(Guard.SLOT_GIVEN, given and standing)
         | bit(Guard.TOO_FAST, speed > 1.1 * limit)
-        | bit(Guard.SLOT_AT_STANDSTILL, found.valid > 0 and standing)
-        | bit(Guard.NO_PLAN, not given and has_failed(parking, params))
+        | bit(Guard.SLOT_AT_STANDSTILL, state.search.valid > 0 and standing)
+        | bit(Guard.NO_PLAN, not given and has_failed(state.parking, params))
         | bit(Guard.DRIVEN_ON, not given and moved)
         | bit(Guard.CONFIRMED, inputs.driver_confirm and standing and is_planned(parking))
         | bit(Guard.NEARLY, parking.step == Step.PLAN and parking.ended and is_planning(parking))
@@ -145,41 +150,28 @@ def _guards(
 
 
 def _moved_on(
-    state: ApaState,
-    mode: int,
-    parking: Parking,
-    found: SearchState,
-    slot: Slot,
-    seen: Watch,
-    reason: int,
-    taken: bool,
-    inputs: ControllerInput,
-    params: ControllerParams,
-    dt_ns: int,
+    state: ApaState, mode: int, inputs: ControllerInput, judged: Judged, params: ControllerParams, dt_ns: int
 ) -> ApaState:
+    """Return the assist in ``mode``."""
     before = state.mode
     had_taken_over = state.taken_over
-    why = reason if before != Mode.FAIL else state.reason
-    waiting = mode == before and _is_waiting(mode, parking, inputs)
+    why = judged.reason if before != Mode.FAIL else state.reason
+    waiting = mode == before and _is_waiting(mode, state.parking, inputs)
     state = state._replace(
-        mode=mode,
-        clock_ns=state.clock_ns + dt_ns,
-        search=found,
-        slot=slot,
-        parking=parking,
-        watch=seen,
-        waited_ns=state.waited_ns + dt_ns if waiting else 0,
+        mode=mode, clock_ns=state.clock_ns + dt_ns, waited_ns=state.waited_ns + dt_ns if waiting else 0
     )
     if mode in (Mode.OFF, Mode.STANDBY) or before == Mode.STANDBY:
         state = state._replace(search=begin_search(inputs.odometry, state.clock_ns))
     if mode in (Mode.OFF, Mode.STANDBY):
-        state = state._replace(parking=Parking(), watch=Watch(), slot=Slot() if mode == Mode.OFF else slot)
+        state = state._replace(parking=Parking(), watch=Watch())
+    if mode == Mode.OFF:
+        state = state._replace(around=state.around._replace(slot=Slot()))
     if mode == Mode.PARKING_SPACE_SEARCH and before == Mode.PARKING_SPACE_APPEARS:
-        state = _without_the_slot(state, has_failed(parking, params))
+        state = _without_the_slot(state, has_failed(state.parking, params))
     if mode == Mode.PARKING_SPACE_APPEARS and before != Mode.PARKING_SPACE_APPEARS:
         state = _shown(state, inputs, params)
     over = mode == Mode.FAIL
-    switched_off = before != Mode.FAIL and (taken or not inputs.apa_switch)
+    switched_off = before != Mode.FAIL and (judged.taken or not inputs.apa_switch)
     taken_over = (had_taken_over or switched_off) if over else False
     return state._replace(taken_over=taken_over, reason=why if over and not taken_over else Reason.NONE)
 
@@ -188,7 +180,7 @@ def _without_the_slot(state: ApaState, failed: bool) -> ApaState:
     """Return the assist that searches on; a slot that nothing leads into is not shown again."""
     if failed:
         state = state._replace(search=without_first(state.search))
-    return state._replace(parking=Parking(), slot=Slot())
+    return state._replace(parking=Parking(), around=state.around._replace(slot=Slot()))
 
 
 def _is_waiting(mode: int, parking: Parking, inputs: ControllerInput) -> bool:
@@ -202,10 +194,9 @@ def _shown(state: ApaState, inputs: ControllerInput, params: ControllerParams) -
     """Return the assist that shows the slot it has chosen, with its map of it, and plans."""
     search = params.apa.search
     slot = search.slot if search.given else braked(state.search.slots[0], state.search.fastest, params)
+    here = begin_map(slot, inputs.odometry, params.apa.map)
     return state._replace(
-        slot=slot,
-        map=begin_map(slot, inputs.odometry, params.apa.map),
-        guard=GuardState(delay=state.guard.delay),
+        around=Around(slot, here, GuardState(delay=state.around.guard.delay)),
         parking=start_planning(slot, inputs.odometry, params),
         pose=inputs.odometry,
     )

@@ -3,6 +3,7 @@
 import math
 from typing import NamedTuple
 
+from controller_fmu.apa.params import ApaDriveParams
 from controller_fmu.apa.ways.move import Move, length_of, point_at
 from controller_fmu.common.path_law import angle_back, deviation
 from modelkit.vocabulary import Pose
@@ -36,7 +37,7 @@ class Leg(NamedTuple):
     end: float = 0.0
 
 
-def track(move: Move, leg: Leg, way: float, pose: Pose, k1: float, k2: float, wheelbase: float) -> Tracked:
+def track(move: Move, leg: Leg, way: float, pose: Pose, law: ApaDriveParams, wheelbase: float) -> Tracked:
     """Return the tracking of ``leg`` of ``move`` by a car at ``pose`` (slot's frame) that was at ``way`` before."""
     direction = float(move.direction)
     for _ in range(2):
@@ -45,7 +46,7 @@ def track(move: Move, leg: Leg, way: float, pose: Pose, k1: float, k2: float, wh
     point = point_at(move, way if way > leg.start + INTO else leg.start + INTO)
     at = point.pose
     off = deviation(pose, at)
-    angle = angle_back(off, point.curvature, direction, k1, k2, wheelbase)
+    angle = angle_back(off, point.curvature, direction, law.k1, law.k2, wheelbase)
     return Tracked(way, length_of(move) - way, leg.end - way, at, off.lateral, off.heading, angle, point.slope)
 
 

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 from controller_fmu.apa.manoeuvre_chart import Step
 from controller_fmu.apa.params import Longitudinal
-from controller_fmu.common.monitor import is_unmoved
+from controller_fmu.common.monitor import Command, clock_before, is_unmoved
 from controller_fmu.common.steering_monitor import SteeringWatch, at_rest, has_failed, watch_steering
 from controller_fmu.interface import ControllerInput, ControllerParams, Reason
 from modelkit.maths import is_finite
@@ -36,14 +36,7 @@ class Watch(NamedTuple):
 
 
 def watch(
-    state: Watch,
-    inputs: ControllerInput,
-    step: int,
-    request: float,
-    blocked: bool,
-    driving: bool,
-    dt_ns: int,
-    params: ControllerParams,
+    state: Watch, command: Command, inputs: ControllerInput, driving: bool, params: ControllerParams, dt_ns: int
 ) -> Watch:
     """Return the clocks after one sample; ``driving``: the assist has been given the car."""
     speed = inputs.measured_speed
@@ -52,14 +45,14 @@ def watch(
     rate = params.car.steering.rate_limit
     wheel = at_rest(angle, state.wheel.steering)
     if driving:
-        wheel = watch_steering(state.wheel, request, angle, params.limit.wheel_off, rate, dt_ns)
-    moving_expected = step in (Step.SET_WHEEL, Step.DRIVE, Step.STRAIGHTEN)
+        wheel = watch_steering(state.wheel, command.wheel, angle, params.limit.wheel_off, rate, dt_ns)
+    moving_expected = command.step in (Step.SET_WHEEL, Step.DRIVE, Step.STRAIGHTEN)
     own = params.apa.drive.longitudinal == Longitudinal.OWN_SPEED
     limit = params.apa.guard.over_speed if not own else 1.5 * params.apa.drive.speed
     return Watch(
-        waiting=state.waiting + dt_ns if still and moving_expected and not blocked else 0,
-        stopping=state.stopping + dt_ns if not still and step == Step.HALT else 0,
-        blocked=_blocked(state.blocked, blocked and driving, still, dt_ns),
+        waiting=state.waiting + dt_ns if still and moving_expected and not command.blocked else 0,
+        stopping=state.stopping + dt_ns if not still and command.step == Step.HALT else 0,
+        blocked=clock_before(command.blocked and driving, state.blocked, still, dt_ns),
         fast=state.fast + dt_ns if abs(speed) > limit and driving else 0,
         blind=state.blind + dt_ns if not _all_heard(inputs, params.car.ultrasonic.min_range) else 0,
         frozen=state.frozen + dt_ns if is_unmoved(inputs.odometry, state.pose, speed, dt_ns) else 0,
@@ -67,16 +60,6 @@ def watch(
         wheel=wheel,
         pose=inputs.odometry,
     )
-
-
-def _blocked(clock: int, blocked: bool, still: bool, dt_ns: int) -> int:
-    """Return the clock of a blocked way [ns]: it runs while the car stands before something, and back while it drives.
-
-    A reading now and then that says otherwise does not begin it anew.
-    """
-    if still:
-        return clock + dt_ns if blocked else clock
-    return clock - dt_ns if clock > dt_ns else 0
 
 
 def is_taken_over(state: Watch, inputs: ControllerInput, params: ControllerParams) -> bool:

@@ -30,6 +30,17 @@ class MonitorState(NamedTuple):
     """Pose at the last sample."""
 
 
+class Command(NamedTuple):
+    """What a manoeuvre asks of the car until the next sample."""
+
+    step: int
+    """Of its chart."""
+    wheel: float
+    """Steering-wheel angle [rad]."""
+    blocked: bool
+    """Something is in the way: the car is to wait."""
+
+
 def watch(
     state: MonitorState,
     inputs: ControllerInput,
@@ -55,6 +66,16 @@ def watch(
         wheel=wheel,
         pose=inputs.odometry,
     )
+
+
+def clock_before(obstacle: bool, clock: int, still: bool, dt_ns: int) -> int:
+    """Return the clock of a blocked way [ns]: it runs while the car stands before something, and back while it drives.
+
+    A reading now and then that says otherwise does not begin it anew.
+    """
+    if still:
+        return clock + dt_ns if obstacle else clock
+    return clock - dt_ns if clock > dt_ns else 0
 
 
 def is_unmoved(pose: Pose, before: Pose, speed: float, dt_ns: int) -> bool:

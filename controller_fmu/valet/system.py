@@ -4,6 +4,7 @@ import math
 from typing import NamedTuple
 
 from controller_fmu.common.chart import bit
+from controller_fmu.common.monitor import Command
 from controller_fmu.common.path_law import Deviation, angle_back, deviation
 from controller_fmu.interface import ControllerInput, Reason
 from controller_fmu.planning.plan import (
@@ -98,7 +99,8 @@ def valet_sample(
         state = planned_on(store, state, inputs, params)
     else:
         state = seen_on(store, state, inputs, params)
-    clocks = watch(state.watch, inputs, state.step, state.wheel, state.sight.blocked, params, dt_ns)
+    command = Command(state.step, state.wheel, state.sight.blocked)
+    clocks = watch(state.watch, command, inputs, params, dt_ns)
     reason = state.reason
     if reason == Reason.NONE:
         reason = reason_to_fail(clocks, inputs, state.step, state.shifts, params)

@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from controller_fmu.common.monitor import is_unmoved, is_usable_input
+from controller_fmu.common.monitor import Command, clock_before, is_unmoved, is_usable_input
 from controller_fmu.common.steering_monitor import SteeringWatch, at_rest, has_failed, watch_steering
 from controller_fmu.interface import ControllerInput, Reason
 from controller_fmu.valet.chart import Step
@@ -24,37 +24,25 @@ class Watch(NamedTuple):
     pose: Pose = Pose()
 
 
-def watch(
-    state: Watch, inputs: ControllerInput, step: int, request: float, blocked: bool, params: ValetParams, dt_ns: int
-) -> Watch:
-    """Return the clocks after one sample of ``dt_ns`` in ``step`` with the wheel at ``request`` [rad]."""
+def watch(state: Watch, command: Command, inputs: ControllerInput, params: ValetParams, dt_ns: int) -> Watch:
+    """Return the clocks after one sample of ``dt_ns``."""
     speed = inputs.measured_speed
     still = abs(speed) <= params.threshold.standstill
     angle = inputs.steering_wheel_angle
     wheel = at_rest(angle, state.wheel.steering)
-    if step != Step.PLAN:
+    if command.step != Step.PLAN:
         rate = params.car.steering.rate_limit
-        wheel = watch_steering(state.wheel, request, angle, params.limit.wheel_off, rate, dt_ns)
-    moves = step in (Step.SET_WHEEL, Step.DRIVE, Step.STRAIGHTEN)
+        wheel = watch_steering(state.wheel, command.wheel, angle, params.limit.wheel_off, rate, dt_ns)
+    moves = command.step in (Step.SET_WHEEL, Step.DRIVE, Step.STRAIGHTEN)
     return Watch(
-        waiting=state.waiting + dt_ns if still and moves and not blocked else 0,
+        waiting=state.waiting + dt_ns if still and moves and not command.blocked else 0,
         stopping=state.stopping + dt_ns if not still and not moves else 0,
         frozen=state.frozen + dt_ns if is_unmoved(inputs.odometry, state.pose, speed, dt_ns) else 0,
-        blocked=_blocked(state.blocked, blocked, still, dt_ns),
+        blocked=clock_before(command.blocked, state.blocked, still, dt_ns),
         running=state.running + dt_ns,
         wheel=wheel,
         pose=inputs.odometry,
     )
-
-
-def _blocked(clock: int, blocked: bool, still: bool, dt_ns: int) -> int:
-    """Return the clock of a blocked way [ns]: it runs while the car stands before something, and back while it drives.
-
-    A reading now and then that says otherwise does not begin it anew.
-    """
-    if still:
-        return clock + dt_ns if blocked else clock
-    return clock - dt_ns if clock > dt_ns else 0
 
 
 def fault_of(inputs: ControllerInput) -> int:

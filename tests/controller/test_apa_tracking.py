@@ -20,7 +20,7 @@ def drive_along(move: Move, start: Pose, k1: float = 2.0, k2: float = 2.4) -> tu
     """Return the lateral errors every centimetre, and the last pose, of an ideal car."""
     pose, way, errors = start, 0.0, []
     while True:
-        tracked = track(move, Leg(0.0, length_of(move)), way, pose, k1, k2, WHEELBASE)
+        tracked = track(move, Leg(0.0, length_of(move)), way, pose, ApaDriveParams(k1=k1, k2=k2), WHEELBASE)
         way = tracked.way
         if tracked.left <= 0.0:
             return errors, pose
@@ -59,7 +59,7 @@ def test_on_the_path_the_wheel_is_the_paths() -> None:
     move = reverse_turn(Pose(8.0, -9.0, -1.3), TURN)
     for n in range(1, 90):
         point = point_at(move, 0.1 * n)
-        tracked = track(move, Leg(0.0, length_of(move)), 0.1 * n, point.pose, 2.0, 2.4, WHEELBASE)
+        tracked = track(move, Leg(0.0, length_of(move)), 0.1 * n, point.pose, ApaDriveParams(), WHEELBASE)
         assert tracked.lateral_error == pytest.approx(0.0, abs=1e-9)
         assert tracked.front_wheel_angle == pytest.approx(math.atan(WHEELBASE * point.curvature), abs=1e-9)
 
@@ -72,7 +72,7 @@ def test_a_jump_of_curvature_is_a_standstill() -> None:
     for way in (0.47, 0.5, 0.53):
         assert set_wheel(move, second, way, WHEELBASE) == pytest.approx(-math.atan(0.15 * WHEELBASE))
         pose = point_at(move, way).pose
-        angle = track(move, second, way, pose, 2.0, 2.4, WHEELBASE).front_wheel_angle
+        angle = track(move, second, way, pose, ApaDriveParams(), WHEELBASE).front_wheel_angle
         assert angle == pytest.approx(-math.atan(0.15 * WHEELBASE), abs=0.03)
 
 

@@ -6,6 +6,7 @@ from controller_fmu.apa import watch as apa
 from controller_fmu.apa.manoeuvre_chart import Step
 from controller_fmu.apa.params import Longitudinal
 from controller_fmu.common import monitor
+from controller_fmu.common.monitor import Command
 from controller_fmu.common.steering_monitor import SteeringWatch
 from controller_fmu.interface import ControllerInput, ControllerParams, Reason
 from modelkit.vocabulary import Gear
@@ -119,7 +120,7 @@ def test_the_assist_waits_where_car_or_wheel_should_move_and_nothing_is_in_the_w
     step: Step, speed: float, blocked: bool, waits: bool
 ) -> None:
     inputs = DRIVING._replace(measured_speed=speed)
-    clocks = apa.watch(apa.Watch(waiting=5), inputs, step, 0.0, blocked, True, MILLISECOND, PARAMS)
+    clocks = apa.watch(apa.Watch(waiting=5), Command(step, 0.0, blocked), inputs, True, PARAMS, MILLISECOND)
     assert clocks.waiting == (5 + MILLISECOND if waits else 0)
     assert clocks.stopping == (MILLISECOND if step == Step.HALT and speed > 0.0 else 0)
     assert clocks.running == MILLISECOND

@@ -1,6 +1,7 @@
 """What is asked of the surroundings while the car parks: the guard's sight, the rest of the move, the last word."""
 
 import math
+from typing import NamedTuple
 
 from controller_fmu.apa.around.guard import GuardState, HeldCourse, Sight, watch_way
 from controller_fmu.apa.around.local_map import LocalMap, is_certain
@@ -17,6 +18,14 @@ LOOKS = 6
 """The rest of a move is looked at every so much [m], so many times."""
 
 
+class Around(NamedTuple):
+    """What the assist knows of what stands around it: the slot chosen, the map of it, and what the guard has heard."""
+
+    slot: Slot = Slot()
+    map: LocalMap = LocalMap()
+    guard: GuardState = GuardState()
+
+
 def shape_of(params: ControllerParams) -> Shape:
     """Return the car as the planner sees it."""
     car = params.car
@@ -31,11 +40,12 @@ def shape_of(params: ControllerParams) -> Shape:
     )
 
 
-def is_settled(odometry: Pose, slot: Slot, here: LocalMap, params: ControllerParams) -> bool:
+def is_settled(odometry: Pose, around: Around, params: ControllerParams) -> bool:
     """Return whether a car that stands as planned is parked: neighbours are heard on both sides, it is in the slot."""
+    slot = around.slot
     pose = to_slot(odometry, SlotFrame(slot.a, mirror_of(slot)))
     in_slot = stands_out_by(pose, slot, shape_of(params)) <= params.apa.end.out
-    return in_slot and is_certain(here, params.apa.map)
+    return in_slot and is_certain(around.map, params.apa.map)
 
 
 def is_rest_free(move: Move, tracked: Tracked, site: Site, bare: Site, params: ControllerParams) -> bool:
@@ -57,9 +67,7 @@ def is_rest_free(move: Move, tracked: Tracked, site: Site, bare: Site, params: C
     return True
 
 
-def sight_of(
-    direction: int, bare: Site, here: LocalMap, guard: GuardState, inputs: ControllerInput, params: ControllerParams
-) -> Sight:
+def sight_of(direction: int, bare: Site, around: Around, inputs: ControllerInput, params: ControllerParams) -> Sight:
     """Return what the guard says to driving in ``direction`` with the wheels as they are; ``bare``: without margins."""
     front = bare.frame.mirror * inputs.steering_wheel_angle / params.car.steering.ratio
     course = HeldCourse(
@@ -69,5 +77,5 @@ def sight_of(
         speed=inputs.measured_speed,
         car=shape_of(params),
     )
-    on_map = here._replace(pose=to_slot(inputs.odometry, here.frame))
-    return watch_way(guard, inputs.ultrasonic, on_map, bare.obstacles, course, params)
+    on_map = around.map._replace(pose=to_slot(inputs.odometry, around.map.frame))
+    return watch_way(around.guard, inputs.ultrasonic, on_map, bare.obstacles, course, params)

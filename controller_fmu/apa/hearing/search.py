@@ -60,11 +60,10 @@ def search(
     if not is_new_reading(state.clock_ns, dt_ns, params.car.ultrasonic.cycle) or speed < 0.01:
         return state._replace(clock_ns=clock, way=way)
     fastest = max(state.fastest, speed)
-    pose = inputs.odometry
     right_r = inputs.ultrasonic[RIGHT_SENSOR]
     left_r = inputs.ultrasonic[LEFT_SENSOR]
-    right = _hear(state.right, state.origin, pose, 1.0, RIGHT_SENSOR, right_r, params)
-    left = _hear(state.left, state.origin, pose, -1.0, LEFT_SENSOR, left_r, params)
+    right = _hear(state.right, RIGHT, state.origin, inputs, params)
+    left = _hear(state.left, LEFT, state.origin, inputs, params)
     top = 0.99 * params.car.ultrasonic.max_range
     far_left = DEEP if right.mode == 1 and state.right.mode != 1 else state.far_left
     far_right = DEEP if left.mode == 1 and state.left.mode != 1 else state.far_right
@@ -74,9 +73,9 @@ def search(
         clock_ns=clock, right=right, left=left, far_right=far_right, far_left=far_left, way=way, fastest=fastest
     )
     if right.fresh:
-        state = _judge(state, right, RIGHT, far_left, fastest, car, params)
+        state = _judge(state, right, RIGHT, car, params)
     if left.fresh:
-        state = _judge(state, left, LEFT, far_right, fastest, car, params)
+        state = _judge(state, left, LEFT, car, params)
     return state
 
 
@@ -90,11 +89,11 @@ def left_part(seen: int) -> int:
     return seen % 16
 
 
-def slot_of(
-    side: SideState, which: int, origin: Pose, opposite_heard: float, unsure: float, car: Shape, params: ApaParams
-) -> Slot:
-    """Return the gap between the last two neighbours as a slot, in the world, its corners ``unsure`` by so much [m]."""
+def slot_of(state: SearchState, side: SideState, which: int, car: Shape, params: ApaParams) -> Slot:
+    """Return the gap between the last two neighbours on a side as a slot, in the world."""
     mirror = -1.0 if which == LEFT else 1.0
+    origin = state.origin
+    opposite_heard = state.far_right if which == LEFT else state.far_left
     lean_a = slope(side.before, NO_SUMS)
     lean_b = leaning(side.before, side.sums)
     b = _road(side, lean_a, lean_b, params)
@@ -125,7 +124,7 @@ def slot_of(
         b_out=cos * (out - b * along),
         depth=depth,
         opposite=opposite,
-        unsure=unsure,
+        unsure=params.search.unsure * state.fastest,
         skew_a=math.atan(lean_a) - turn,
         skew_b=math.atan(lean_b) - turn,
     )
@@ -157,27 +156,26 @@ def kind_of(length: float, depth: float, neighbour: float, car: Shape, params: A
     return Kind.PARALLEL if neighbour > LONG_NEIGHBOUR else Kind.PERPENDICULAR
 
 
-def _hear(
-    side: SideState, origin: Pose, pose: Pose, mirror: float, sensor: int, reading: float, params: ControllerParams
-) -> SideState:
-    sensors = params.car.ultrasonic
-    mount = sensors.mounts[sensor]
+def _hear(side: SideState, which: int, origin: Pose, inputs: ControllerInput, params: ControllerParams) -> SideState:
+    """Return a side after a reading of its sensor."""
+    sensor = LEFT_SENSOR if which == LEFT else RIGHT_SENSOR
+    mirror = -1.0 if which == LEFT else 1.0
+    pose = inputs.odometry
+    mount = params.car.ultrasonic.mounts[sensor]
     c = math.cos(pose.heading)
     s = math.sin(pose.heading)
     dx = pose.x + mount.x * c - mount.y * s - origin.x
     dy = pose.y + mount.x * s + mount.y * c - origin.y
     c = math.cos(origin.heading)
     s = math.sin(origin.heading)
-    return hear(
-        side, dx * c + dy * s, mirror * (dy * c - dx * s), reading, params.car.ultrasonic.half_angle, params.apa.search
-    )
+    u = dx * c + dy * s
+    w = mirror * (dy * c - dx * s)
+    return hear(side, u, w, inputs.ultrasonic[sensor], params.car.ultrasonic.half_angle, params.apa.search)
 
 
-def _judge(
-    state: SearchState, side: SideState, which: int, far: float, speed: float, car: Shape, params: ControllerParams
-) -> SearchState:
+def _judge(state: SearchState, side: SideState, which: int, car: Shape, params: ControllerParams) -> SearchState:
     """Return the search with a new gap judged, or a known one measured better."""
-    slot = slot_of(side, which, state.origin, far, params.apa.search.unsure * speed, car, params.apa)
+    slot = slot_of(state, side, which, car, params.apa)
     mark = side.found * 16 if which == RIGHT else side.found
     known = state.seen - left_part(state.seen) if which == RIGHT else left_part(state.seen)
     other = state.seen - known

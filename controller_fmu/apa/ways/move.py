@@ -4,13 +4,17 @@ Continuous curvature is a B-spline of degree one over the way driven (its knots 
 ramps), so the limits of curvature and curvature rate hold exactly and everywhere.
 """
 
+import math
 from typing import NamedTuple
 
-from controller_fmu.apa.outline import CREPT, MET, Obstacles, Shape, clearance, least_on
+from controller_fmu.apa.outline import Obstacles, Shape, clearance
 from controller_fmu.common.curve import advance
 from modelkit.vocabulary import Pose
 
 PIECES = 7
+MET = 1.0
+CREPT = 0.005
+"""So much [m] nearer is taken for no nearer."""
 
 
 class Piece(NamedTuple):
@@ -95,8 +99,26 @@ def is_move_free(move: Move, car: Shape, obstacles: Obstacles) -> bool:
     least = gap - CREPT if gap <= 0.0 else 0.0
     for piece in move.pieces:
         if piece.length > 0.0:
-            least = least_on(pose, direction, piece.length, piece.k0, piece.k1, least, car, obstacles)
+            least = _least_on(piece, pose, direction, least, car, obstacles)
             if least == MET:
                 return False
             pose = advance(pose, direction, piece.length, piece.k0, piece.k1)
     return True
+
+
+def _least_on(piece: Piece, pose: Pose, direction: float, least: float, car: Shape, obstacles: Obstacles) -> float:
+    """Return the clearance [m] that must not be fallen below after a piece from ``pose``, ``MET`` if it was on it.
+
+    ``least`` is that before it: 0, or less for a car that stands within a margin, which it may leave but
+    not go further into. Looked at every 10 cm.
+    """
+    count = 1 + math.floor(piece.length / 0.1)
+    for number in range(1, count + 1):
+        way = piece.length * number / count
+        k = piece.k0 + (piece.k1 - piece.k0) * number / count
+        gap = clearance(advance(pose, direction, way, piece.k0, k), car, obstacles)
+        if gap <= least:
+            return MET
+        if least < 0.0:
+            least = gap - CREPT if gap < CREPT else 0.0
+    return least

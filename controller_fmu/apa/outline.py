@@ -58,8 +58,11 @@ def turned_box(box: Box, x: float, y: float, heading: float) -> Box:
     return box._replace(x=x, y=y, cos=math.cos(heading), sin=math.sin(heading))
 
 
-def box_clearance(pose: Pose, car: Shape, box: Box) -> float:
-    """Return the distance [m] of the outline to the box; negative: how deep they overlap at least."""
+def box_clearance(pose: Pose, car: Shape, box: Box, enough: float = FAR) -> float:
+    """Return the distance [m] of the outline to the box; negative: how deep they overlap at least.
+
+    What is farther than ``enough`` need not be exact: then it is ``enough`` or more, and no more than the distance.
+    """
     if box.x0 > box.x1:
         return FAR
     cos = math.cos(pose.heading)
@@ -83,7 +86,7 @@ def box_clearance(pose: Pose, car: Shape, box: Box) -> float:
         _larger(abs(dx) - a - half * ac - side * ass, abs(dy) - b - half * ass - side * ac),
         _larger(abs(along) - half - a * ac - b * ass, abs(across) - side - a * ass - b * ac),
     )
-    if gap <= 0.0:
+    if gap <= 0.0 or gap >= enough:
         return gap
     best = _corner_squared(dx + half * c - side * s, dy + half * s + side * c, a, b)
     best = _smaller(best, _corner_squared(dx + half * c + side * s, dy + half * s - side * c, a, b))
@@ -96,12 +99,12 @@ def box_clearance(pose: Pose, car: Shape, box: Box) -> float:
     return math.sqrt(best)
 
 
-def clearance(pose: Pose, car: Shape, obstacles: Obstacles) -> float:
-    """Return the distance [m] of the outline to the nearest obstacle; <= 0: contact."""
-    nearest = box_clearance(pose, car, obstacles.behind)
-    nearest = _smaller(nearest, box_clearance(pose, car, obstacles.ahead))
-    nearest = _smaller(nearest, box_clearance(pose, car, obstacles.beside))
-    return _smaller(nearest, box_clearance(pose, car, obstacles.opposite))
+def clearance(pose: Pose, car: Shape, obstacles: Obstacles, enough: float = FAR) -> float:
+    """Return the distance [m] of the outline to the nearest obstacle, exact up to ``enough``; <= 0: contact."""
+    nearest = box_clearance(pose, car, obstacles.behind, enough)
+    nearest = _smaller(nearest, box_clearance(pose, car, obstacles.ahead, enough))
+    nearest = _smaller(nearest, box_clearance(pose, car, obstacles.beside, enough))
+    return _smaller(nearest, box_clearance(pose, car, obstacles.opposite, enough))
 
 
 def free_way(pose: Pose, direction: float, curvature: float, longest: float, car: Shape, obstacles: Obstacles) -> float:
@@ -113,7 +116,7 @@ def free_way(pose: Pose, direction: float, curvature: float, longest: float, car
     way = 0.0
     while way < longest:
         next_way = _smaller(way + step, longest)
-        if clearance(advance(pose, direction, next_way, curvature, curvature), car, obstacles) <= 0.0:
+        if clearance(advance(pose, direction, next_way, curvature, curvature), car, obstacles, 0.0) <= 0.0:
             return way
         way = next_way
     return longest

@@ -95,6 +95,9 @@ def test_a_contact_is_the_end_whatever_is_said_after_it() -> None:
     assert ends.end_of(row, wall) == ends.CONTACT
     assert ends.end_of({**row, "touched.mode": 2.0}, wall) == ends.DRIVER
     assert ends.end_of(row, person) == ends.WALKED_INTO
+    kerb = ends.Touched("kerb behind", False)
+    assert ends.end_of({**row, "vehicle.scene.kerbs[1].height": 0.08}, kerb) == ends.CONTACT
+    assert ends.end_of({**row, "vehicle.scene.kerbs[1].height": 0.079}, kerb) == ends.LOW_KERB
     assert ends.end_of(row, None) == ends.PARKED
     assert ends.end_of({**row, "within GB/T 41630, parallel": False}, None) == ends.FALSE
     assert ends.end_of({**row, "mode": 7.0, "reason": "no_slot"}, None) == ends.FAILED

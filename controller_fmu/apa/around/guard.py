@@ -202,10 +202,10 @@ def after(course: HeldCourse, way: float) -> Pose:
 
 def _free_way(course: HeldCourse, stop: float, around: Obstacles) -> float:
     """Return how far [m] the outline can go before it would touch one of these boxes, and comes nearer to them."""
-    now = clearance(course.pose, course.car, around)
+    now = clearance(course.pose, course.car, around, NEARER)
     for number in range(LOOKS + 1):
         way = stop if number == 0 else AHEAD * number
-        there = clearance(after(course, way), course.car, around)
+        there = clearance(after(course, way), course.car, around, 0.0)
         if there < 0.0 and there < now - NEARER:
             return way if number > 0 else 0.0
     return FREE

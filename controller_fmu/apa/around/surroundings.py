@@ -62,7 +62,7 @@ def is_rest_free(move: Move, tracked: Tracked, site: Site, bare: Site, params: C
         off = tracked.lateral_error
         pose = Pose(at.x - off * math.sin(at.heading), at.y + off * math.cos(at.heading), at.heading)
         pose = to_slot(to_world(pose, site.frame), bare.frame)
-        if clearance(pose, car, bare.obstacles) < params.apa.guard.gap:
+        if clearance(pose, car, bare.obstacles, params.apa.guard.gap) < params.apa.guard.gap:
             return False
     return True
 

@@ -95,7 +95,7 @@ def is_move_free(move: Move, car: Shape, obstacles: Obstacles) -> bool:
     """Return whether a move meets no obstacle; one that begins within a margin has to lead out of it."""
     pose = move.start
     direction = float(move.direction)
-    gap = clearance(pose, car, obstacles)
+    gap = clearance(pose, car, obstacles, 0.0)
     least = gap - CREPT if gap <= 0.0 else 0.0
     for piece in move.pieces:
         if piece.length > 0.0:
@@ -116,7 +116,7 @@ def _least_on(piece: Piece, pose: Pose, direction: float, least: float, car: Sha
     for number in range(1, count + 1):
         way = piece.length * number / count
         k = piece.k0 + (piece.k1 - piece.k0) * number / count
-        gap = clearance(advance(pose, direction, way, piece.k0, k), car, obstacles)
+        gap = clearance(advance(pose, direction, way, piece.k0, k), car, obstacles, CREPT)
         if gap <= least:
             return MET
         if least < 0.0:

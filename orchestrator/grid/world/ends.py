@@ -17,6 +17,7 @@ from orchestrator.sweep.columns import WITHIN
 from orchestrator.sweep.study.study import Columns, Derived, Goal
 from orchestrator.verdict.measures import Measure, When
 from vehicle_fmu.scene import Obstacle, is_there, obstacle_box
+from vehicle_fmu.ultrasonic import UltrasonicParams
 
 TOUCHING = When("vehicle.contact", (1,))
 AXES = ("x", "y", "heading")
@@ -37,7 +38,7 @@ MEASURES = {
     "assist.clearance": Measure("smallest", "vehicle.clearance", When("controller.apa.mode", tuple(map(int, DRIVES)))),
     "touched.time": Measure("time", "vehicle.speed", TOUCHING),
 }
-CONTACT, DRIVER, WALKED_INTO = "contact", "contact, driver drives", "walked into"
+CONTACT, DRIVER, WALKED_INTO, LOW_KERB = "contact", "contact, driver drives", "walked into", "wheel at a low kerb"
 PARKED, FALSE, FAILED, UNUSED, ENDLESS = "parked", "false parked", "gave up", "not in use", "endless"
 ENDS = {
     CONTACT: "touched something while the assist drives, or while it holds the car",
@@ -48,6 +49,7 @@ ENDS = {
     UNUSED: "the driver was too fast for the assist to begin",
     DRIVER: "touched something while the driver drives",
     WALKED_INTO: "somebody, or a neighbour, moved into the car: it would have touched it standing, too",
+    LOW_KERB: "a tyre against a kerb that is too low to be heard; nothing of the body touches it",
 }
 """How a run in the world ends, the worst first."""
 
@@ -80,7 +82,8 @@ def end_of(row: Mapping[str, Any], touched: Touched | None) -> str:
     """Return how a run ended, one of ``ENDS``."""
     if touched is not None:
         driven = row["touched.mode"] in DRIVES and not row["touched.takeover"]
-        return WALKED_INTO if touched.came else CONTACT if driven else DRIVER
+        low = touched.name == KERB and row["vehicle.scene.kerbs[1].height"] < HEARD
+        return WALKED_INTO if touched.came else LOW_KERB if low else CONTACT if driven else DRIVER
     if row["mode"] == Mode.FAIL:
         return FAILED if row["reason"] != "none" else ENDLESS
     if row["mode"] != Mode.PARKING_FINISH:
@@ -99,6 +102,9 @@ def touched_first(row: Mapping[str, Any]) -> Touched:
 
 
 MOVABLE = THINGS[:2] + THINGS[3:4]
+KERB = THINGS[-1]
+HEARD = UltrasonicParams().kerb_height
+"""Kerbs lower than this [m] are not heard."""
 GROUND_CLEARANCE = 0.15
 """Kerbs lower than this [m] pass under the bumpers."""
 
@@ -111,7 +117,7 @@ def _things(row: Mapping[str, Any]) -> dict[str, tuple[Box, bool]]:
     height = row["vehicle.scene.kerbs[1].height"]
     if height > 0.0:
         ends = (row[f"vehicle.scene.kerbs[1].{end}"] for end in ("x1", "y1", "x2", "y2"))
-        there[THINGS[-1]] = (line_box(*ends), height < GROUND_CLEARANCE)
+        there[KERB] = (line_box(*ends), height < GROUND_CLEARANCE)
     return there
 
 
@@ -140,7 +146,8 @@ def _gap(row: Mapping[str, Any], pose: Pose, thing: Box, under: bool) -> float:
 def _clear(columns: Columns) -> Array:
     """Return how near [m] the car has come to anything since the assist has it; 0 or less: it has touched it."""
     nearest = np.nan_to_num(np.asarray(columns["assist.clearance"]), nan=LARGEST)
-    touched = np.asarray(columns["end"]) == CONTACT
+    ends = np.asarray(columns["end"])
+    touched, nearest = ends == CONTACT, np.where(ends == LOW_KERB, LARGEST, nearest)
     return np.asarray(np.where(touched, -np.abs(columns["touched.speed"]), np.clip(nearest, LEAST, LARGEST)))
 
 

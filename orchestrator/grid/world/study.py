@@ -26,6 +26,8 @@ from orchestrator.sweep.table import Table
 from orchestrator.text.console import console
 
 STOP = 150.0
+BODY_STEP = 0.0025
+"""Internal steps [s] of the bodies with mass: top speeds are those of 1 ms to 2 mm/s, in half the time."""
 KERB = "kerb"
 """Limits that GB/T states against a kerb: the assist stands flush with its neighbours, wherever that is."""
 
@@ -54,7 +56,7 @@ def scenario() -> Scenario:
     return Scenario(
         name="apa-world",
         stop_time=STOP,
-        vehicle={"odometry.perfect": False, "driver.apa_switch_time": 0.5},
+        vehicle={"odometry.perfect": False, "driver.apa_switch_time": 0.5, "body_step": BODY_STEP},
         controller={"system": 5},
         faults=[
             Fault(signal=f"vehicle.ultrasonic[{number}]", kind="override", value=0.0, start=NEVER)

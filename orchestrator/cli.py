@@ -30,7 +30,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Return the exit code of one command line."""
     words = sys.argv[1:] if arguments is None else list(arguments)
     _forgiving_streams()
-    with ended_in_time():
+    with ended_in_time() as interrupted:
         try:
             try:
                 return _run(words)
@@ -39,7 +39,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         except (Exception, KeyboardInterrupt) as error:
             from orchestrator.text.failures import explained
 
-            code, line = explained(error, words)
+            code, line = explained(KeyboardInterrupt() if interrupted.is_set() else error, words)
             _complain(line)
             _let_go()
             return code

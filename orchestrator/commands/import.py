@@ -5,6 +5,7 @@ from pathlib import Path
 
 import yaml
 
+from fmus.files import write_whole
 from orchestrator.scenario.tpcap import read_tpcap
 from orchestrator.text.errors import BadInput
 
@@ -31,8 +32,7 @@ def run(arguments: argparse.Namespace) -> int:
             raise BadInput("no such file", file=file)
         content = READERS[arguments.format](file)
         path: Path = arguments.out / f"{content['name']}.yaml"
-        path.parent.mkdir(parents=True, exist_ok=True)
         text = yaml.safe_dump(content, sort_keys=False, default_flow_style=None, width=120)
-        path.write_text(text, encoding="utf-8")
+        write_whole(path, text)
         print(path)
     return 0

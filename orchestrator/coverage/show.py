@@ -7,6 +7,7 @@ from typing import Any
 
 from rich.table import Table
 
+from fmus.files import write_whole
 from orchestrator.coverage.branches import Branch, branch_share
 from orchestrator.coverage.coverage import Coverage
 from orchestrator.coverage.covered import ChartCovered, RowCovered, share
@@ -57,13 +58,13 @@ def as_json(found: Coverage) -> dict[str, Any]:
 
 def write_coverage(folder: Path, found: Coverage) -> Path:
     """Write coverage.html and coverage.json; return the page."""
-    (folder / "coverage.json").write_text(json.dumps(as_json(found), indent=2) + "\n", encoding="utf-8")
+    write_whole(folder / "coverage.json", json.dumps(as_json(found), indent=2) + "\n")
     parts = found.transitions_percent, found.branches_percent
     kinds = ["good" if part == 100.0 else "warn" for part in parts]
     head = HEAD.format(kind=kinds[0], share=parts[0], branch_kind=kinds[1], branch_share=parts[1])
     sheets = "".join(map(_chart, found.charts)) + "".join(_sheet(*item) for item in _by_folder(found.branches).items())
     page = folder / "coverage.html"
-    page.write_text(still_page("Coverage of charts and code", head + sheets, STYLE), encoding="utf-8")
+    write_whole(page, still_page("Coverage of charts and code", head + sheets, STYLE))
     return page
 
 

@@ -1,6 +1,9 @@
 """``apa export rerun``: a run for the Rerun viewer, with a blueprint. Needs rerun-sdk."""
 
 import argparse
+import re
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -57,7 +60,7 @@ def write_rerun(path: Path, recording: Recording, names: list[str], words: list[
         raise BadInput("needs the package rerun-sdk: pip install 'apa-cosim[export]'") from None
     name = str(recording.info.get("scenario", {}).get("name", path.stem))
     stream = rr.RecordingStream(f"apa-cosim {name}", recording_id=path.stem)
-    with whole(path) as part:
+    with whole(path) as part, _disk_full_told():
         stream.save(str(part), default_blueprint=blueprint(recording))
         _still(rr, stream, recording)
         _moving(rr, stream, recording)
@@ -68,6 +71,18 @@ def write_rerun(path: Path, recording: Recording, names: list[str], words: list[
             stream.log("messages", rr.TextLog(f"{line.name}: {line.text}", level=_level(line.level)))
         stream.flush()
         stream.disconnect()
+
+
+@contextmanager
+def _disk_full_told() -> Iterator[None]:
+    """Raise the ``OSError`` that rerun-sdk tells in words only."""
+    try:
+        yield
+    except RuntimeError as error:
+        number = re.search(r"\(os error (\d+)\)", str(error))
+        if number is None:
+            raise
+        raise OSError(int(number[1]), str(error)) from error
 
 
 def blueprint(recording: Recording) -> Any:

@@ -89,9 +89,12 @@ def read_notes(folder: Path) -> dict[str, dict[str, Any]]:
     if not path.is_file():
         return {}
     try:
-        return dict(json.loads(path.read_text(encoding="utf-8")))
-    except ValueError as error:
+        notes = json.loads(path.read_text(encoding="utf-8"))
+    except (ValueError, RecursionError) as error:
         raise BadInput("is damaged", file=path) from error
+    if not isinstance(notes, dict) or not all(isinstance(item, dict) for item in notes.values()):
+        raise BadInput("is no list of finds", file=path)
+    return notes
 
 
 class Again(NamedTuple):
@@ -125,7 +128,10 @@ def _numbers(path: Path) -> dict[str, Any]:
     It breaks if it misses a limit of its file; one that is not about touching anything, only if it claims to be done.
     """
     scenario = load_scenario(str(path))
-    asked = {str(item["id"]) for item in read_mapping(path)["limits"]}
+    own = read_mapping(path).get("limits") or []
+    asked = {str(item.get("id")) for item in own if isinstance(item, dict)} if isinstance(own, list) else set()
+    if not asked:
+        raise BadInput("is no find: it has no limits of its own", file=path)
     design = Design([], np.empty((1, 0)), np.array([scenario.seed], dtype=np.int64))
     job = make_job(Study(scenario, design, {"name": scenario.name}))
     chunk = Chunk(0, 0, design.values, design.seeds)

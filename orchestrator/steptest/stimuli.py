@@ -101,6 +101,10 @@ def _csv(parts: Any, place: StimulatedInput, t: Array) -> Array:
         rows = [line.split(",") for line in path.read_text(encoding="utf-8").splitlines() if line.strip()]
     except OSError as error:
         raise place.wrong(f"{path}: cannot be read: {error.strerror}") from error
+    except UnicodeDecodeError as error:
+        raise place.wrong(f"{path} is not text in UTF-8") from error
+    if len(rows) < 2 or any(len(row) != len(rows[0]) for row in rows):
+        raise place.wrong(f"{path}: expected a row of names, rows of numbers, and as many of them in each")
     heads, column = [name.strip() for name in rows[0]], str(parts["column"])
     if column not in heads:
         raise place.wrong(f"{path} has no column {column}{suggestion(column, heads)}")

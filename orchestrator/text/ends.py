@@ -49,18 +49,27 @@ def asked_to_end(act: Callable[[], None]) -> Iterator[None]:
 
 
 @contextmanager
-def ended_in_time() -> Iterator[None]:
-    """Let signals raise ``KeyboardInterrupt``, and end the program at once if that takes too long."""
+def ended_in_time() -> Iterator[threading.Event]:
+    """Let signals raise ``KeyboardInterrupt``, and end the program at once if that takes too long.
+
+    Gives what is set by a signal: code in C may make another exception of the interrupt.
+    """
+    interrupted = threading.Event()
     if threading.current_thread() is not threading.main_thread():
-        yield
+        yield interrupted
         return
+
+    def interrupt() -> None:
+        interrupted.set()
+        raise KeyboardInterrupt
+
     here, there = _pipe()
     watch = threading.Thread(target=_watch, args=(here,), daemon=True)
     before = signal.set_wakeup_fd(there.fileno(), warn_on_full_buffer=False)
     watch.start()
     try:
-        with asked_to_end(_interrupt):
-            yield
+        with asked_to_end(interrupt):
+            yield interrupted
     finally:
         signal.set_wakeup_fd(before)
         there.close()
@@ -88,10 +97,6 @@ def end_now() -> None:
         remove_all_folders()
         os.write(2, b"apa: interrupted\n")
     os._exit(INTERRUPTED)
-
-
-def _interrupt() -> None:
-    raise KeyboardInterrupt
 
 
 def _watch(pipe: Any) -> None:

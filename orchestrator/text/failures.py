@@ -51,8 +51,8 @@ def place_of(error: OSError) -> str:
         return f"output: {text}" if error.errno in (errno.ENOSPC, errno.EIO) else text
     path = Path(os.fsdecode(error.filename))
     if error.errno in (errno.ENOTDIR, errno.EEXIST):
-        above = next((item for item in (path, *path.parents) if item.is_file()), path)
-        return f"{above}: is a file, expected a folder"
+        above = next((item for item in (path, *path.parents) if item.is_file()), None)
+        return f"{path}: cannot be made anew" if above is None else f"{above}: is a file, expected a folder"
     return f"{path}: {text}"
 
 

@@ -12,6 +12,7 @@ import numpy as np
 from orchestrator.log.read_log import read_log
 from orchestrator.scenario.plausible import LARGEST
 from tests.fuzz.limits import ask
+from tests.fuzz.more_texts import COLUMNS, SCENE, STEP_TEST
 
 JUDGED: Counter[str] = Counter()
 FAR = 1.5
@@ -202,8 +203,9 @@ def mutated(text: str, draw: random.Random) -> str:
 
 
 def _value(lines: list[str], place: int, draw: random.Random) -> list[str]:
-    """Put another value behind one of the colons of a line."""
-    parts = lines[place].split(": ")
+    """Put another value behind one of the colons, or commas, of a line."""
+    between = ": " if ": " in lines[place] else ","
+    parts = lines[place].split(between)
     if len(parts) > 1:
         which = draw.randrange(1, len(parts))
         head, sep, tail = parts[which], "", ""
@@ -212,7 +214,7 @@ def _value(lines: list[str], place: int, draw: random.Random) -> list[str]:
                 head, sep, tail = head.partition(mark)
                 break
         parts[which] = draw.choice(draw.choice((VALUES, PLAIN))) + sep + tail
-    lines[place] = ": ".join(parts)
+    lines[place] = between.join(parts)
     return lines
 
 
@@ -253,8 +255,8 @@ def attacks(folder: Path, log: Path, draw: random.Random) -> Iterator[list[str]]
             for _ in range(draw.randrange(1, 4))
         ]
         sets = [word for text in settings for word in ("--set", text)]
-        kind = draw.randrange(10)
-        content = {7: STUDY, 8: RULES, 9: TOLERANCES}.get(kind, SCENARIO)
+        kind = draw.randrange(12)
+        content = {7: STUDY, 8: RULES, 9: TOLERANCES, 10: STEP_TEST, 11: SCENE}.get(kind, SCENARIO)
         file.write_text(mutated(content, draw), encoding="utf-8", errors="surrogatepass")
         if kind <= 3:
             yield ["run", str(file), "--fmus", "none", "--no-page", *out]
@@ -266,6 +268,12 @@ def attacks(folder: Path, log: Path, draw: random.Random) -> Iterator[list[str]]
             yield ["sweep", str(file), *sets[: draw.choice((0, 2))], "--restart", "--no-page", "--workers", "1", *out]
         elif kind == 8:
             yield ["check", str(log), str(file)]
+        elif kind == 10:
+            columns = draw.choice((COLUMNS, mutated(COLUMNS, draw), COLUMNS[: draw.randrange(len(COLUMNS))]))
+            (folder / "odd.csv").write_text(columns, encoding="utf-8", errors="surrogatepass")
+            yield ["test", str(file), "--fmus", "none", *out]
+        elif kind == 11:
+            yield ["import", "tpcap", str(file), *out]
         else:
             yield ["compare", str(log), str(log), "--tolerances", str(file), "--abs", draw.choice(VALUES).strip("'")]
 

@@ -8,6 +8,7 @@ import pytest
 
 from tests.fuzz.limits import ask
 from tests.fuzz.logs import retold
+from tests.fuzz.more_texts import STEP_TEST
 
 ROOT = Path(__file__).parents[2]
 CORPUS = Path(__file__).parent / "corpus"
@@ -59,6 +60,25 @@ def test_what_a_log_told_once_and_broke_it_is_refused_in_a_line(line: str, log: 
         assert not answer.mistake, answer.mistake
         assert answer.code == 2, answer
         assert [part for part in answer.err.splitlines() if "warning" not in part] == [answer.err.splitlines()[-1]]
+
+
+@pytest.mark.parametrize("columns", [b"", b"brake", b"t,brake\n0", b"t,brake\ns,1", b"\xff\xfe", b"0,1\n0,1"])
+def test_columns_that_broke_a_step_test_once_are_refused(columns: bytes, tmp_path: Path) -> None:
+    (tmp_path / "odd.yaml").write_text(STEP_TEST)
+    (tmp_path / "odd.csv").write_bytes(columns)
+    answer = ask(["test", str(tmp_path / "odd.yaml"), "--fmus", "none", "--out", str(tmp_path / "out")], 10.0)
+    assert not answer.mistake, answer.mistake
+    assert answer.code == 2, answer
+
+
+@pytest.mark.parametrize("notes", ["{}", "[]", "[[1]]", '{"odd": 1}', "[" * 5000, "{"])
+def test_finds_that_are_none_are_refused_in_a_line(notes: str, tmp_path: Path) -> None:
+    (tmp_path / "odd.yaml").write_text("name: odd\nbase: guo2015-case4\n")
+    (tmp_path / "finds.json").write_text(notes)
+    answer = ask(["hunt", "--corpus", str(tmp_path)], 10.0)
+    assert not answer.mistake, answer.mistake
+    assert answer.code == 2, answer
+    assert answer.err.count("\n") == 1
 
 
 @pytest.mark.slow

@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 
 from tests.fuzz.limits import ask
+from tests.fuzz.more_texts import SCENE
 
 ROOT = Path(__file__).parents[2]
 SHORT = ["guo2015-case4", "--set", "stop_time=0.3", "--fmus", "none"]
@@ -29,6 +30,12 @@ COMMANDS = {
     "replay": ["replay", "TABLE", "--row", "0", "--out", "DIR"],
     "build": ["build", "--fmus", "python", "--out", "DIR"],
     "recover": ["recover", "PART"],
+    "live": ["live", "guo2015-case4", "--out", "FILE.html"],
+    "new": ["new", "controller", "my_law", "--out", "DIR"],
+    "import": ["import", "tpcap", "SCENE", "--out", "DIR"],
+    "hunt": ["hunt", "guo2015-trial", "--budget", "50", "--workers", "1", "--out", "DIR"],
+    "test --coverage": ["test", *SHORT, "--coverage", "--out", "DIR"],
+    "export rerun": ["export", "rerun", "LOG", "--out", "FILE.rrd"],
 }
 
 
@@ -52,7 +59,10 @@ def words(command: str, kept: Path, folder: Path) -> list[str]:
         except OSError:
             part.unlink(missing_ok=True)
             (folder / "cut.mcap.part").symlink_to(kept / "cut.mcap.part")
-    places = {"DIR": folder / "dir", "LOG": kept / "run.mcap", "TABLE": kept / "guo2015-trial.parquet", "PART": part}
+    scene = kept / "scene.csv"
+    scene.write_text(SCENE)
+    table = kept / "guo2015-trial.parquet"
+    places = {"SCENE": scene, "DIR": folder / "dir", "LOG": kept / "run.mcap", "TABLE": table, "PART": part}
     found = []
     for word in COMMANDS[command]:
         word = str(places.get(word, word))

@@ -76,6 +76,21 @@ def test_a_signal_ends_what_hangs_within_two_seconds_and_takes_its_folders_away(
 
 
 @posix
+def test_an_interrupt_that_a_library_makes_another_error_of_is_one(monkeypatch, capsys):
+    def told_otherwise(_arguments: object) -> int:
+        try:
+            os.kill(os.getpid(), signal.SIGINT)
+            time.sleep(1.0)
+        except KeyboardInterrupt as error:
+            raise ValueError("no schema") from error
+        return 0
+
+    monkeypatch.setattr("orchestrator.commands.list.run", told_otherwise)
+    assert main(["list"]) == 130
+    assert capsys.readouterr().err == "apa: interrupted\n"
+
+
+@posix
 def test_a_second_signal_ends_at_once():
     child = started(HANGS.format(hang=DEAF))
     child.stdout.readline()

@@ -1,10 +1,12 @@
 """``apa new``: a controller or a vehicle of your own as a package that runs at once, and its pipeline."""
 
 import argparse
+import shutil
 import sys
 from pathlib import Path
 from string import Template
 
+from fmus.files import write_whole
 from orchestrator.text.errors import BadInput
 
 EXAMPLES = """examples:
@@ -44,9 +46,12 @@ def _package(kind: str, out: Path, name: str) -> int:
     folder = out / name
     if folder.exists():
         raise BadInput("is there already", file=folder)
-    folder.mkdir(parents=True)
-    for template in sorted((TEMPLATES / kind).glob(f"*{SUFFIX}")):
-        _write(template, folder / template.name.removesuffix(SUFFIX), name)
+    try:
+        for template in sorted((TEMPLATES / kind).glob(f"*{SUFFIX}")):
+            _write(template, folder / template.name.removesuffix(SUFFIX), name)
+    except OSError:
+        shutil.rmtree(folder, ignore_errors=True)
+        raise
     print(f"{folder}: law, scenario, tests, README\nnext: apa run {folder}/scenario.yaml")
     return 0
 
@@ -58,7 +63,6 @@ def _pipelines(out: Path, name: str) -> int:
         if file.exists():
             raise BadInput("is there already", file=file)
     for template, file in files.items():
-        file.parent.mkdir(parents=True, exist_ok=True)
         _write(TEMPLATES / "ci" / f"{template}{SUFFIX}", file, name)
     print(f"{', '.join(map(str, files.values()))}\nnext: write into them where apa-cosim is installed from")
     return 0
@@ -66,4 +70,4 @@ def _pipelines(out: Path, name: str) -> int:
 
 def _write(template: Path, file: Path, name: str) -> None:
     words = {"name": name, "title": "".join(part[:1].upper() + part[1:] for part in name.split("_"))}
-    file.write_text(Template(template.read_text(encoding="utf-8")).substitute(words), encoding="utf-8")
+    write_whole(file, Template(template.read_text(encoding="utf-8")).substitute(words))

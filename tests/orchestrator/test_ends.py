@@ -90,6 +90,24 @@ def test_an_interrupt_that_a_library_makes_another_error_of_is_one(monkeypatch, 
     assert capsys.readouterr().err == "apa: interrupted\n"
 
 
+LEAVES_EXEC = """
+import os, signal, sys, time
+import orchestrator.commands.list as command, orchestrator.text.failures
+from orchestrator.cli import _complain, main
+_complain("all is imported, nothing more is made by exec")
+command.run = lambda _: exec("os.kill(os.getpid(), signal.SIGINT); time.sleep(5)")
+sys.exit(main(["list"]))
+"""
+
+
+@posix
+def test_an_interrupt_while_a_library_makes_code_ends_with_the_code_of_interrupts(tmp_path):
+    (tmp_path / "leaves_exec.py").write_text(LEAVES_EXEC)
+    environment = {**os.environ, "PYTHONPATH": f"{ROOT}{os.pathsep}{tmp_path}"}
+    done = subprocess.run([sys.executable, "-m", "leaves_exec"], env=environment, capture_output=True, text=True)
+    assert done.returncode == 130, done.stderr
+
+
 @posix
 def test_a_second_signal_ends_at_once():
     child = started(HANGS.format(hang=DEAF))

@@ -75,7 +75,7 @@ def ended_in_time() -> Iterator[threading.Event]:
         there.close()
         watch.join()
         here.close()
-        # CPython remembers an interrupt that came out of an exec, and ends ``python -m`` for it by SIGINT, without code.
+        # CPython remembers an interrupt that came out of an exec and ends ``python -m`` for it by SIGINT, without code.
         exec("")
 
 

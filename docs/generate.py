@@ -56,8 +56,10 @@ def main() -> None:
         (folder / name).write_text(MADE + text, encoding="utf-8")
         print(folder.relative_to(ROOT) / name)
     if can_build():
-        write_live(folder / LIVE, shipped())
-        print(folder.relative_to(ROOT) / LIVE)
+        for system in ("", *APART):
+            page = folder / (f"live-{system}.html" if system else LIVE)
+            write_live(page, shipped(system))
+            print(page.relative_to(ROOT))
 
 
 def pages() -> dict[str, str]:

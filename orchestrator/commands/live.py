@@ -6,6 +6,7 @@ from pathlib import Path
 from orchestrator.live.page import NAME, write_live
 from orchestrator.live.situation import shipped
 from orchestrator.scenario.load_scenario import load_scenario
+from orchestrator.suite.suite import chosen
 from orchestrator.text.console import say
 from orchestrator.text.errors import BAD_INPUT, PARKED, BadInput
 
@@ -13,6 +14,7 @@ EXAMPLES = """examples:
   apa live                                                writes live.html: all shipped scenarios
   apa live guo2015-case4 --out /tmp/drive.html            this one only
   apa live guo2015-case4 --set controller.guo2015.k1=2
+  apa live "valet-*"                                      several on one page, if their controller is one model
 
 Open the file in a browser: it needs no network and nothing else. `apa run` writes one beside the replay page.
 """
@@ -20,7 +22,9 @@ Open the file in a browser: it needs no network and nothing else. `apa run` writ
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add what the command takes."""
-    parser.add_argument("scenario", nargs="?", metavar="SCENARIO", help="name or file (default: all that are shipped)")
+    parser.add_argument(
+        "scenario", nargs="*", metavar="SCENARIO", help="names, files, patterns (default: all but the valet's)"
+    )
     parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", help="change the scenario")
     parser.add_argument("--out", type=Path, default=Path(NAME), metavar="FILE", help=f"the page (default: {NAME})")
 
@@ -29,7 +33,8 @@ def run(arguments: argparse.Namespace) -> int:
     """Write the page. Returns 0, or 2 where nothing can be compiled."""
     if arguments.set and not arguments.scenario:
         raise BadInput("needs a scenario to change: apa live SCENARIO --set ...", key="--set")
-    scenarios = [load_scenario(arguments.scenario, arguments.set)] if arguments.scenario else shipped()
+    names = chosen(arguments.scenario)
+    scenarios = [load_scenario(name, arguments.set) for name in names] if names else shipped()
     try:
         write_live(arguments.out, scenarios)
     except RuntimeError as error:

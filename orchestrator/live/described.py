@@ -1,17 +1,17 @@
 """What the page knows of the models: parameters, inputs and outputs with what they mean, in their order."""
 
 import math
+from collections.abc import Mapping
 from enum import IntEnum
 from typing import Any
 
 from modelkit.model import Model
 from modelkit.variables import Variable, limits_of, variables
-from orchestrator.scenario.models import MODELS
 
 
-def models_data() -> list[dict[str, Any]]:
+def models_data(models: Mapping[str, Model]) -> list[dict[str, Any]]:
     """Return the models in the order of their exchange; names of states are in ``states``."""
-    return [_model(owner, model) for owner, model in MODELS.items()]
+    return [_model(owner, model) for owner, model in models.items()]
 
 
 def _model(owner: str, model: Model) -> dict[str, Any]:

@@ -4,7 +4,7 @@ import base64
 import html
 import re
 import zlib
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -13,14 +13,15 @@ import yaml
 
 from fmus.files import write_whole
 from fmus.native.web import web_module
+from modelkit.model import Model
 from orchestrator.drawing import palette
 from orchestrator.live.described import models_data
 from orchestrator.live.situation import numbers_data, situation
 from orchestrator.report import page as report
 from orchestrator.report.charts import charts_data
 from orchestrator.report.payload import Arrays
-from orchestrator.scenario.models import MODELS
 from orchestrator.scenario.scenario import Scenario
+from orchestrator.text.errors import BadInput
 
 ROOM = Path(__file__).parent
 FROM_REPORT = report.ROOM / "template"
@@ -40,7 +41,11 @@ def write_live(path: Path, scenarios: Sequence[Scenario]) -> None:
 
 
 def live_page(scenarios: Sequence[Scenario]) -> str:
-    """Return the page. Raises ``BadInput`` for a limit of a signal that no model has."""
+    """Return the page. Raises ``BadInput`` for a limit of a signal that no model has, or controllers of two models."""
+    models = scenarios[0].models
+    for scenario in scenarios:
+        if scenario.models != models:
+            raise BadInput(f"has another controller than {scenarios[0].name}: a page has one", file=scenario.name)
     core, own = scripts()
     script = f'(() => {{\n"use strict";\n{own}\n}})();\n'
     title = scenarios[0].title or scenarios[0].name
@@ -48,8 +53,10 @@ def live_page(scenarios: Sequence[Scenario]) -> str:
         "TITLE": html.escape(title),
         "POLICY": report.policy([core, script], RUNS_MODULES),
         "STYLE": report.style(_read("style.css")),
-        "DATA": Arrays().pack({**_models(), "scenarios": [situation(item) for item in scenarios], "runs": []}),
-        "MODULE": _module(),
+        "DATA": Arrays().pack(
+            {**_models(tuple(models.items())), "scenarios": [situation(item) for item in scenarios], "runs": []}
+        ),
+        "MODULE": _module(models),
         "CORE": core,
         "SCRIPT": script,
     }
@@ -57,15 +64,14 @@ def live_page(scenarios: Sequence[Scenario]) -> str:
 
 
 @cache
-def _models() -> dict[str, Any]:
+def _models(models: tuple[tuple[str, Model], ...]) -> dict[str, Any]:
     """Return what is the same for all scenarios."""
     pins = yaml.safe_load((ROOM / "pins.yaml").read_text(encoding="utf-8"))
-    return {"models": models_data(), "numbers": numbers_data(), "charts": charts_data(), "pins": pins}
+    return {"models": models_data(dict(models)), "numbers": numbers_data(), "charts": charts_data(), "pins": pins}
 
 
-@cache
-def _module() -> str:
-    return base64.b64encode(zlib.compress(web_module(MODELS).read_bytes(), 9)).decode()
+def _module(models: Mapping[str, Model]) -> str:
+    return base64.b64encode(zlib.compress(web_module(models).read_bytes(), 9)).decode()
 
 
 def scripts() -> tuple[str, str]:

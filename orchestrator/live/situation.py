@@ -9,7 +9,8 @@ from fmus.compiled_batch import FAULTS
 from orchestrator.scenario.end_condition import SPEED
 from orchestrator.scenario.fault import Fault
 from orchestrator.scenario.load_scenario import load_scenario, scenario_names
-from orchestrator.scenario.models import MODELS, models_for
+from orchestrator.scenario.models import models_for
+from orchestrator.scenario.polygons import map_of
 from orchestrator.scenario.requirements import Requirement
 from orchestrator.scenario.scenario import MISSED, SUCCESS, Scenario
 from orchestrator.sweep.disturbed import heard, numbers_for
@@ -19,24 +20,22 @@ from orchestrator.text.errors import BadInput
 from orchestrator.verdict.conditions import CONDITIONS
 from orchestrator.verdict.limit_text import asked
 from orchestrator.verdict.measures import Measure
-from orchestrator.verdict.numbers import NUMBERS, STANDING
+from orchestrator.verdict.numbers import NUMBERS, OF_WHOLE_RUNS, STANDING
 
 FIRST = "guo2015-case4"
 
 
 def why_not(scenario: Scenario) -> str:
-    """Return why a scenario cannot be run on the page, empty if it can: the page has our two models."""
-    if scenario.system is not None:
-        return "its system has FMUs that the page has not"
-    if models_for(scenario.controller) != MODELS:
-        return "its controller is a model apart, which the page has not"
-    return ""
+    """Return why a scenario cannot be run on a page, empty if it can: a page has our models."""
+    return "" if scenario.system is None else "its system has FMUs that the page has not"
 
 
-def shipped() -> list[Scenario]:
-    """Return the shipped scenarios that the page can run, one with much to see first."""
+def shipped(system: str = "") -> list[Scenario]:
+    """Return the shipped scenarios of one page, one with much to see first: of our models, or a controller apart."""
     names = [FIRST, *(name for name in scenario_names() if name != FIRST)]
-    return [scenario for scenario in map(load_scenario, names) if not why_not(scenario)]
+    scenarios = [scenario for scenario in map(load_scenario, names) if not why_not(scenario)]
+    models = models_for({"system": system})
+    return [scenario for scenario in scenarios if scenario.models == models]
 
 
 def situation(scenario: Scenario) -> dict[str, Any]:
@@ -59,6 +58,8 @@ def situation(scenario: Scenario) -> dict[str, Any]:
         **{owner: getattr(scenario, owner) for owner in ("vehicle", "controller")},
         "target": scenario.target.model_dump() if scenario.target else None,
         "slot": scenario.slot.model_dump() if scenario.slot else None,
+        "polygons": scenario.polygons,
+        "maps": map_of(scenario).items() <= scenario.controller.items(),
         "faults": _faults(scenario),
         "success": SUCCESS[scenario.task],
         "missed": MISSED[scenario.task],
@@ -82,7 +83,7 @@ def _faults(scenario: Scenario) -> dict[str, Any]:
     return {
         "said": [_said(fault) for fault in scenario.faults],
         "heard": [[FAULTS.index(kind), model, *places] for kind, model, places in (x.inputs for x in heard(scenario))],
-        "numbers": [None if math.isnan(value) else value for value in numbers],
+        "numbers": numbers,
     }
 
 
@@ -114,8 +115,8 @@ def _measure(item: Measure) -> list[Any]:
 
 def _limit(item: Requirement, measures: list[Measure]) -> dict[str, Any]:
     """Return a requirement; ``measure`` is the place of what decides, -1 if that takes the whole run."""
-    is_number = item.signal in NUMBERS
-    found = None if is_number else measure_of(item)
+    is_number = item.signal in NUMBERS and item.signal not in OF_WHOLE_RUNS
+    found = None if item.signal in NUMBERS else measure_of(item)
     first = measures_of(item)[1:] if found is not None and item.window is not None else []
     return {
         **{"id": item.id, "signal": item.signal, "condition": item.condition, "limit": limit_value(item)},

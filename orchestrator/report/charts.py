@@ -10,7 +10,7 @@ from modelkit.model import Chart
 from orchestrator.cosim.recording import Recording
 from orchestrator.drawing.chart_svg import chart_svg
 from orchestrator.scenario.catalogue import texts_of
-from orchestrator.scenario.models import MODELS
+from orchestrator.scenario.models import APART, MODELS
 
 ROOT = Path(__file__).parents[2]
 ANY = "any state"
@@ -21,14 +21,15 @@ CHOICE = "system"
 @cache
 def charts_data() -> list[dict[str, Any]]:
     """Return the charts of all systems with the values that choose them."""
-    return [
-        {"values": list(system.values), **_chart(chart)}
+    own = [
+        (system.values, chart)
         for model in MODELS.values()
         if model.systems is not None
         for system in model.systems.systems
         for chart in system.charts
-        if chart.signal
     ]
+    apart = [((number,), chart) for number, model in APART.values() for chart in model.charts]
+    return [{"values": list(values), **_chart(chart)} for values, chart in (*own, *apart) if chart.signal]
 
 
 def charts_of(recording: Recording) -> list[dict[str, Any]]:

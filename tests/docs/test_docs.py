@@ -17,8 +17,8 @@ from orchestrator.commands.export import FORMATS
 from orchestrator.scenario.catalogue import split_index
 from orchestrator.scenario.end_condition import EndCondition
 from orchestrator.scenario.fault import Fault
-from orchestrator.scenario.load_scenario import load_scenario, scenario_names
-from orchestrator.scenario.models import MODELS
+from orchestrator.scenario.load_scenario import load_scenario
+from orchestrator.scenario.models import MODELS, models_for
 from orchestrator.scenario.requirements import Occasion, Requirement, Window, read_requirements
 from orchestrator.scenario.scenario import Scenario, Slot, Target
 from orchestrator.sweep.study.study_file import load_study
@@ -199,13 +199,15 @@ def test_charts_are_drawn_by_us(generate):
 
 def test_pages_that_are_driven_stand_where_a_law_is_explained(tmp_path, monkeypatch):
     frames = load("frames")
-    made = tmp_path / "live.html"
-    monkeypatch.setattr(frames, "PAGE", made)
-    for name in ("guo2015", "preview", "hsic", "zhang2022", "apa"):
+    monkeypatch.setattr(frames, "REFERENCE", tmp_path)
+    for name in ("guo2015", "preview", "hsic", "zhang2022", "apa", "adaptive", "valet"):
         text = (ROOT / "docs" / f"{name}.md").read_text(encoding="utf-8")
-        ((scenario, names),) = frames.MARK.findall(text)
-        known = {f"{owner}.{item.name}" for owner, model in MODELS.items() for item in variables(model.params)}
-        assert scenario in scenario_names()
+        ((system, scenario, names),) = frames.MARK.findall(text)
+        made = tmp_path / (f"live-{system}.html" if system else "live.html")
+        models = load_scenario(scenario).models
+        assert models == models_for({"system": system})
+        known = {f"{owner}.{item.name}" for owner, model in models.items() for item in variables(model.params)}
+        known |= {item.replace("vehicle.car.", "car.") for item in known}
         assert set(names.split()) <= known
         assert "<iframe" not in frames.on_page_markdown(text)
         made.touch()

@@ -81,7 +81,7 @@ def test_pages_load_nothing_from_elsewhere_and_formulas_are_formulas(site, brows
 def test_pages_of_laws_have_the_page_that_is_driven(site):
     if not (ROOT / "docs" / "reference" / "live.html").exists():
         pytest.skip("no compiler made the page that is driven")
-    for name in ("guo2015", "apa", "preview", "hsic", "zhang2022"):
+    for name in ("guo2015", "apa", "preview", "hsic", "zhang2022", "adaptive", "valet"):
         assert (site / f"{name}.html").read_text(encoding="utf-8").count('<iframe class="live" loading="lazy"') == 1, (
             name
         )

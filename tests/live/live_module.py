@@ -1,31 +1,42 @@
 """The module of the page without a page: opened, set up and run by wasmtime."""
 
-from collections.abc import Sequence
-from pathlib import Path
+from collections.abc import Mapping, Sequence
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
 import wasmtime
 
 from fmus.compiled_batch import FAULTS
+from fmus.native.web import web_module
+from modelkit.model import Model
 from modelkit.variables import flatten, variables, with_values
-from orchestrator.scenario.models import MODELS
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.sweep.disturbed import heard, numbers_for
 
-PLACES = {
-    f"{owner}.{item.name}": (number, place, is_input)
-    for number, (owner, model) in enumerate(MODELS.items())
-    for is_input, cls in ((1, model.inputs), (0, model.outputs))
-    for place, item in enumerate(variables(cls))
-}
 STOP_TIME, STANDSTILL = 0.0, 1.0
 
 
-class LiveModule:
-    """One instance of the module."""
+@lru_cache
+def places(models: tuple[tuple[str, Model], ...]) -> dict[str, tuple[int, int, int]]:
+    """Return signal -> model, place, whether it is an input."""
+    return {
+        f"{owner}.{item.name}": (number, place, is_input)
+        for number, (owner, model) in enumerate(models)
+        for is_input, cls in ((1, model.inputs), (0, model.outputs))
+        for place, item in enumerate(variables(cls))
+    }
 
-    def __init__(self, path: Path) -> None:
+
+def names_of(scenario: Scenario) -> list[str]:
+    return list(places(tuple(scenario.models.items())))
+
+
+class LiveModule:
+    """One instance of the module of some models."""
+
+    def __init__(self, models: Mapping[str, Model]) -> None:
+        path = web_module(models)
         engine = wasmtime.Engine()
         self.store = wasmtime.Store(engine)
         module = wasmtime.Module(engine, path.read_bytes())
@@ -64,8 +75,9 @@ class LiveModule:
 def setup(scenario: Scenario, names: Sequence[str]) -> list[float]:
     ending = scenario.ending
     final = sum(1 << value for value in ending.final())
-    signals = [*PLACES[ending.signal], *PLACES["vehicle.speed"]]
-    seen = [number for name in names for number in PLACES[name]]
+    known = places(tuple(scenario.models.items()))
+    signals = [*known[ending.signal], *known["vehicle.speed"]]
+    seen = [number for name in names for number in known[name]]
     plans = [(FAULTS.index(kind), model, places) for kind, model, places in (item.inputs for item in heard(scenario))]
     counts = [0, len(names), len(plans), sum(len(places) for _, _, places in plans)]
     faults = [number for kind, model, places in plans for number in (kind, model, len(places), *places)]
@@ -77,9 +89,9 @@ def disturbed(scenario: Scenario) -> list[float]:
 
 
 def parameters(scenario: Scenario) -> list[float]:
-    parts = [flatten(with_values(model.params, getattr(scenario, owner))) for owner, model in MODELS.items()]
+    parts = [flatten(with_values(model.params, getattr(scenario, owner))) for owner, model in scenario.models.items()]
     return [float(value) for part in parts for value in part]
 
 
 def times_of(scenario: Scenario) -> list[float]:
-    return [scenario.step_ns, scenario.stop_ns, *(scenario.every.get(owner, 1) for owner in MODELS)]
+    return [scenario.step_ns, scenario.stop_ns, *(scenario.every.get(owner, 1) for owner in scenario.models)]

@@ -15,19 +15,18 @@ from orchestrator.session.session import run_scenario
 from orchestrator.text.errors import BadInput
 from orchestrator.verdict.summary import summarize
 
-SHIPPED = [scenario.name for scenario in shipped()]
 LARGEST_PAGE = 400_000
 PHASES = [state.name for state in Phase]
 WHOLE = """(names) => names.map((name) => {
-  const page = window.live, { lab } = page;
-  page.load(name);
+  const { lab } = window.live;
+  lab.load(name);
   const run = lab.whole.run(lab.situation.params(), lab.situation.data.times, 1);
   const { outcome, reason, numbers: n, checks } = judged(run.row, lab.situation, lab.table);
   const phase = 1 + lab.seen.indexOf("controller.phase"), at = (i, place) => run.trace[i * run.width + place];
   const events = [], changes = (i) => at(i, phase) !== at(i - 1, phase);
   const word = (value) => stateName(stateNames(lab.engine.models, "controller.phase"), value);
   for (let i = 1; i < run.lines; i++) if (changes(i)) events.push([at(i, 0), word(at(i, phase))]);
-  const margins = Object.fromEntries(checks.map((check) => [check.id, check.never ? null : check.margin]));
+  const margins = Object.fromEntries(checks.map((check) => [check.id, check.margin]));
   const pose = AXES.map((axis) => n[`final.${axis}`]), shifts = n.shifts || 0;
   return { outcome, reason, duration: n.duration, shifts, pose, events, margins };
 })"""
@@ -39,8 +38,12 @@ GROWS = "preview-camera"
 
 @pytest.fixture(scope="module")
 def file(tmp_path_factory):
-    path = tmp_path_factory.mktemp("live") / "live.html"
-    path.write_text(live_page(shipped()), encoding="utf-8")
+    return written(tmp_path_factory.mktemp("live"), shipped())
+
+
+def written(folder, scenarios):
+    path = folder / "live.html"
+    path.write_text(live_page(scenarios), encoding="utf-8")
     assert path.stat().st_size < LARGEST_PAGE
     return path
 
@@ -54,8 +57,26 @@ def page(file, show):
 
 
 def test_every_run_of_the_page_comes_to_the_end_on_record(page):
+    as_on_record(page, shipped())
+
+
+def test_the_valet_has_a_page_of_its_own(show, tmp_path):
+    scenarios = shipped("valet")
+    page, seen = show(written(tmp_path, scenarios), "#s=valet-perpendicular")
+    page.fill("#search", "scene.boxes[6].y")
+    page.click("#found button")
+    fill(page, "vehicle.scene.boxes[6].y", "4")  # a wall, of which the controller is told by its map
+    page.wait_for_function("() => !window.live.isDue")
+    agrees(ghost(page), run_of("valet-perpendicular", "vehicle.scene.boxes[6].y=4"))
+    assert ghost(page)["shifts"] == 3
+    as_on_record(page, scenarios)
+    assert seen.console == []
+
+
+def as_on_record(page, scenarios):
+    names = [scenario.name for scenario in scenarios]
     record = yaml.safe_load(RECORD.read_text(encoding="utf-8"))
-    for name, found in zip(SHIPPED, page.evaluate(WHOLE, SHIPPED), strict=True):
+    for name, found in zip(names, page.evaluate(WHOLE, names), strict=True):
         alike(found, record[name], name, 0.1 if name == GROWS else 2e-6)
 
 
@@ -215,7 +236,7 @@ def test_a_scenario_with_faults_says_what_it_disturbs(page):
     assert page.text_content("#faults") == "This scenario disturbs what is received: freeze vehicle.odometry, 2 s on."
 
 
-def test_a_scenario_with_another_controller_is_not_for_the_page():
-    scenario = load_scenario("valet-perpendicular")
-    with pytest.raises(BadInput, match="cannot be driven on a page: its controller"):
-        live_page([scenario])
+def test_controllers_of_two_models_do_not_share_a_page():
+    scenarios = [load_scenario(name) for name in ("guo2015-case4", "valet-perpendicular")]
+    with pytest.raises(BadInput, match="another controller than guo2015-case4: a page has one"):
+        live_page(scenarios)

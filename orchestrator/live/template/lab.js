@@ -2,8 +2,6 @@
 
 const GHOST_EVERY = 5; // exchanges between two rows of the ghost, at 100 Hz
 
-const MODES = ["controller.phase", "controller.apa.mode", "controller.hsic.stage"];
-
 class Lab {
   /** @type {any} the scenario in hand; there is none before the first `load` */
   situation = null;
@@ -14,7 +12,7 @@ class Lab {
     this.scenarios = new Map(data.scenarios.map((item) => [item.name, item]));
     this.pins = data.pins;
     this.seen = seenOf(engine);
-    this.modes = MODES.map((name) => this.seen.indexOf(name)).filter((place) => place >= 0); // a change of these is kept
+    this.modes = MODES.map((name) => this.seen.indexOf(name)).filter((place) => place >= 0);
     this.only = []; // sliders of a page that stands in another one
   }
 

@@ -66,7 +66,7 @@ class Page {
     this.mine = null;
     this.prompt = "NONE";
     this.drawn.runs = [this.drive.history];
-    const outer = ["controller.apa.mode", "controller.hsic.stage"].filter((name) => this.lab.isUsed(name) && this.drive.history.signals[name]);
+    const outer = MODES.slice(1).filter((name) => this.lab.isUsed(name) && this.drive.history.signals[name]);
     this.drawn.ribbons = ["controller.phase", ...outer];
     $("stale").hidden = true;
   }

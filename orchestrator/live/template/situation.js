@@ -2,6 +2,7 @@
 
 const AXES = ["x", "y", "heading"];
 const SLOT = [...AXES, "length", "width"];
+const BOX = [...SLOT, "appear_at", "disappear_at", "speed_x", "speed_y", "moves_at", "halts_at"];
 const FRAME = 0.1, LONGEST = 60; // s: between two pictures of a thing that moves, and how long it is followed
 
 class Situation {
@@ -18,9 +19,8 @@ class Situation {
         this.known.set(full, { name: full, unit, text, kind, low, high, states, source, place: place++, start: given === undefined ? start : Number(given) });
       }
     this.roots = new Map(); // parameter that is told -> what it is told
-    for (const owner of ["target", "slot"])
-      for (const name of owner === "target" ? AXES : SLOT)
-        if (data[owner]) this.tell(truth(owner, name, data[owner][name]), [`controller.${owner}.${name}`]);
+    for (const name of AXES) if (data.target) this.tell(truth("target", name, data.target[name]), [`controller.target.${name}`]);
+    for (const name of SLOT) if (data.slot) this.tell(truth("slot", name, data.slot[name]), []);
     for (const item of [...this.known.values()].filter(({ name }) => name.startsWith("vehicle.car.")))
       this.tell({ ...item, name: item.name.replace("vehicle.", ""), place: -1 }, [item.name, item.name.replace("vehicle.", "controller.")]);
     this.base = new Float64Array(place);
@@ -63,9 +63,20 @@ class Situation {
 
   params(changes = this.changes) {
     const found = Float64Array.from(this.base);
+    if (this.data.maps && Object.keys(changes).some((name) => name.startsWith("vehicle.scene."))) this.tellMap(found);
     for (const [name, root] of this.roots) if (root in changes) found[this.known.get(name).place] = changes[root];
     for (const [name, value] of Object.entries(changes)) if (this.known.get(name).place >= 0) found[this.known.get(name).place] = value;
     return found;
+  }
+
+  // What stands there all the time as the map of a controller that has one: orchestrator/scenario/polygons.py.
+  tellMap(found) {
+    const stays = (box) => box.length > 0 && box.appear_at === 0 && box.disappear_at >= 1e9 && box.speed_x === 0 && box.speed_y === 0;
+    const corners = (box) => [[1, 1], [-1, 1], [-1, -1], [1, -1]].map(([a, b]) => moved([box.x, box.y, box.heading], 0.5 * a * box.length, 0.5 * b * box.width));
+    const things = [...this.data.polygons, ...this.rows("scene.boxes", BOX).filter(stays).map(corners), ...this.kerbs.map((kerb) => [[kerb.x1, kerb.y1], [kerb.x2, kerb.y2]])];
+    const rows = things.flatMap((points, i) => points.map(([x, y]) => ({ x, y, polygon: i + 1 })));
+    for (let i = 0; this.known.has(`controller.map[${i + 1}].x`); i++)
+      for (const field of ["x", "y", "polygon"]) found[this.known.get(`controller.map[${i + 1}].${field}`).place] = rows[i] ? rows[i][field] : 0;
   }
 
   // Values of the vehicle's parameters by name, for the scene and for what is true.
@@ -90,7 +101,7 @@ class Situation {
   }
 
   get boxes() {
-    return this.rows("scene.boxes", [...SLOT, "appear_at", "disappear_at", "speed_x", "speed_y", "moves_at", "halts_at"])
+    return this.rows("scene.boxes", BOX)
       .filter((box) => box.length > 0 && box.width > 0).flatMap(stills);
   }
 
@@ -106,7 +117,7 @@ class Situation {
       origin, turn: this.vehicle("start.heading"), car: this.car,
       slot: slot && outline({ x: slot[0], y: slot[1], heading: slot[2], length: slot[3], width: slot[4] }),
       target: target && [target[0] - origin[0], target[1] - origin[1], target[2]],
-      boxes: this.boxes.map((box) => ({ corners: outline(box), from: box.appear_at, to: box.disappear_at })),
+      boxes: [...this.boxes.map((box) => ({ corners: outline(box), from: box.appear_at, to: box.disappear_at })), ...this.data.polygons.map((corners) => ({ corners: less(corners), from: 0, to: 1e9 }))],
       kerbs: this.kerbs.map((kerb) => less([[kerb.x1, kerb.y1], [kerb.x2, kerb.y2]])),
       sensors: this.boxes.length + this.kerbs.length === 0 ? [] : this.rows("car.ultrasonic.mounts", ["x", "y", "yaw"])
         .map((mount, i) => ({ signal: `vehicle.ultrasonic[${i + 1}]`, x: mount.x, y: mount.y, heading: mount.yaw, half, range })),

@@ -76,7 +76,7 @@ function numbersOf(row, situation, table) {
 
 // Each requirement that is asked of the run, and how it stands against it.
 function checksOf(row, numbers, situation) {
-  const has = { target: Boolean(situation.target), slot: Boolean(situation.slot), kerb: kerbsAtSlot(situation).length > 0 };
+  const has = { target: Boolean(situation.target), slot: Boolean(situation.slot), kerb: kerbsAtSlot(situation).length > 0, polygons: situation.data.polygons.length > 0 };
   return situation.data.limits.filter((limit) => !limit.where || has[limit.where]).map((limit) => {
     const value = limit.number ? numbers[limit.signal] : limit.measure < 0 ? NaN : row[HEAD + limit.measure];
     const never = limit.first >= 0 && Number.isNaN(row[HEAD + limit.first]);
@@ -115,8 +115,9 @@ function outcomeOf(row, checks, situation) {
   const name = stateName(stateNames(situation.models, ending.mode), mode).toLowerCase();
   if (ending.over.includes(mode)) return [missed, name];
   if (!ending.done.includes(mode)) return [missed, `stop time reached in ${name}`];
-  const why = whyNot(speed, checks.filter((check) => check.required && !check.passed), ending.still);
-  return why ? [missed, why] : [success, "all checks passed"];
+  const why = whyNot(speed, checks.filter((check) => check.judged && check.required && !check.passed), ending.still);
+  const left = checks.filter((check) => !check.judged).map((check) => check.id).join(", ");
+  return why ? [missed, why] : [success, left ? `all checks passed but those not judged here: ${left}` : "all checks passed"];
 }
 
 function judged(row, situation, table) {

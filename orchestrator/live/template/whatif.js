@@ -38,10 +38,11 @@ class WhatIf {
   pin(name) { this.more = [...this.more || [], name]; this.fill(); this.rows.get(name).field.focus(); }
 
   row(name) {
-    const item = this.lab.situation.known.get(name), [unit, factor] = display(item.unit), id = `p-${name}`;
+    const { situation } = this.lab, item = situation.known.get(name), [unit, factor] = display(item.unit), id = `p-${name}`;
     const wrong = element("p", { class: "wrong", role: "alert", id: `${id}-wrong` });
     const set = (value) => {
-      wrong.textContent = this.lab.situation.set(name, value).replace(name, "it");
+      if (this.lab.situation !== situation) return; // a field that is left while another scenario is loaded
+      wrong.textContent = situation.set(name, value).replace(name, "it");
       field.toggleAttribute("aria-invalid", wrong.textContent !== "");
       if (!wrong.textContent) { this.show(name); this.onChange(name); }
     };

@@ -8,7 +8,7 @@ farther than ``fastest`` times the way.
 import math
 
 from controller_fmu.planning.plan_store import PlanStore
-from controller_fmu.planning.task import Task, drive, fastest
+from controller_fmu.planning.task import PlannedCar, Task, drive, fastest
 from modelkit.vocabulary import Pose
 
 SIGHT = 1.0
@@ -42,15 +42,16 @@ def clearance(store: PlanStore, pose: Pose, task: Task) -> float:
             ay * cos - ax * sin,
             bx * cos + by * sin,
             by * cos - bx * sin,
-            car.half_length,
-            car.half_width,
+            car,
             best,
         )
     return math.sqrt(best)
 
 
-def edge_gap(ax: float, ay: float, bx: float, by: float, half_length: float, half_width: float, best: float) -> float:
-    """Return the squared distance [m2] from a line a-b to a rectangle about the origin, or ``best`` if that is less."""
+def edge_gap(ax: float, ay: float, bx: float, by: float, car: PlannedCar, best: float) -> float:
+    """Return the squared distance [m2] from a line a-b to a car about the origin, or ``best`` if that is less."""
+    half_length = car.half_length
+    half_width = car.half_width
     low = ax if ax < bx else bx
     high = bx if ax < bx else ax
     apart_x = low - half_length if low > half_length else (-half_length - high if high < -half_length else 0.0)

@@ -2,8 +2,10 @@
 
 from typing import Annotated, NamedTuple
 
-from controller_fmu.planning.task import CORNERS
+from controller_fmu.planning.task import CORNERS, Child
+from modelkit.geometry import Point
 from modelkit.store import Column, Floats, Ints
+from modelkit.vocabulary import Pose
 
 EDGES = 512
 NEAR_SIDE = 64
@@ -133,12 +135,12 @@ def put_measure(store: PlanStore, which: int, value: float) -> None:
     store.measure[which] = value
 
 
-def put_edge(store: PlanStore, edge: int, x1: float, y1: float, x2: float, y2: float) -> None:
+def put_edge(store: PlanStore, edge: int, start: Point, end: Point) -> None:
     """Set an edge."""
-    store.edge_x1[edge] = x1
-    store.edge_y1[edge] = y1
-    store.edge_x2[edge] = x2
-    store.edge_y2[edge] = y2
+    store.edge_x1[edge] = start.x
+    store.edge_y1[edge] = start.y
+    store.edge_x2[edge] = end.x
+    store.edge_y2[edge] = end.y
 
 
 def put_near_first(store: PlanStore, cell: int, place: int) -> None:
@@ -187,19 +189,17 @@ def clear_tree(store: PlanStore) -> None:
     store.mark[BEST_NODE] = NONE
 
 
-def put_node(
-    store: PlanStore, x: float, y: float, h: float, cost: float, way: float, k: float, parent: int, key: int, slot: int
-) -> int:
+def put_node(store: PlanStore, child: Child, key: int, slot: int) -> int:
     """Add a node to the tree and to its slot of the table; returns its number."""
     node = store.mark[NODE_COUNT]
     store.mark[NODE_COUNT] = node + 1
-    store.node_x[node] = x
-    store.node_y[node] = y
-    store.node_h[node] = h
-    store.node_cost[node] = cost
-    store.node_way[node] = way
-    store.node_k[node] = k
-    store.node_parent[node] = parent
+    store.node_x[node] = child.pose.x
+    store.node_y[node] = child.pose.y
+    store.node_h[node] = child.pose.heading
+    store.node_cost[node] = child.cost
+    store.node_way[node] = child.way
+    store.node_k[node] = child.k
+    store.node_parent[node] = child.parent
     store.node_key[node] = key
     store.node_state[node] = 0
     store.node_rest[node] = 0.0
@@ -275,13 +275,13 @@ def put_best(store: PlanStore, node: int, word: int, cost: float) -> None:
     store.measure[BEST_WAY + 4] = store.word_e[word]
 
 
-def put_piece(store: PlanStore, piece: int, way: float, k: float, x: float, y: float, h: float) -> None:
-    """Set a piece of the path."""
+def put_piece(store: PlanStore, piece: int, pose: Pose, way: float, k: float) -> None:
+    """Set a piece of the path that begins at ``pose``."""
     store.piece_way[piece] = way
     store.piece_k[piece] = k
-    store.piece_x[piece] = x
-    store.piece_y[piece] = y
-    store.piece_h[piece] = h
+    store.piece_x[piece] = pose.x
+    store.piece_y[piece] = pose.y
+    store.piece_h[piece] = pose.heading
 
 
 def move_pieces(store: PlanStore, start: int, count: int, by: int) -> None:

@@ -19,6 +19,7 @@ from controller_fmu.planning.plan_store import (
     put_route_next,
 )
 from controller_fmu.planning.task import PlannedCar, SearchWindow, Task
+from modelkit.geometry import Point
 
 FAR = 1e6
 """Way [m] from where the target cannot be reached."""
@@ -31,14 +32,14 @@ def near_reach(window: SearchWindow, car: PlannedCar) -> float:
     return 0.7072 * window.near + radius + SIGHT
 
 
-def add_edge(store: PlanStore, count: int, x1: float, y1: float, x2: float, y2: float, window: SearchWindow) -> int:
+def add_edge(store: PlanStore, count: int, start: Point, end: Point, window: SearchWindow) -> int:
     """Return the count of edges with this one added, as far as it lies in the window or within 10 m of it."""
     low = -10.0
     high = window.side + 10.0
-    ax = x1 - window.x0
-    ay = y1 - window.y0
-    dx = x2 - x1
-    dy = y2 - y1
+    ax = start.x - window.x0
+    ay = start.y - window.y0
+    dx = end.x - start.x
+    dy = end.y - start.y
     enter = 0.0
     leave = 1.0
     for side in range(4):
@@ -58,8 +59,12 @@ def add_edge(store: PlanStore, count: int, x1: float, y1: float, x2: float, y2: 
         return count
     if count >= EDGES:
         return EDGES + 1
-    put_edge(store, count, x1 + enter * dx, y1 + enter * dy, x1 + leave * dx, y1 + leave * dy)
+    put_edge(store, count, _onward(start, enter, dx, dy), _onward(start, leave, dx, dy))
     return count + 1
+
+
+def _onward(start: Point, share: float, dx: float, dy: float) -> Point:
+    return Point(start.x + share * dx, start.y + share * dy)
 
 
 def list_near(store: PlanStore, edges: int, window: SearchWindow, car: PlannedCar) -> bool:

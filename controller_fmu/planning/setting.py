@@ -3,6 +3,7 @@
 from controller_fmu.planning.plan_store import PlanStore
 from controller_fmu.planning.rasters import add_edge
 from controller_fmu.planning.task import CORNERS, SearchWindow
+from modelkit.geometry import Point
 from modelkit.vocabulary import Pose
 
 
@@ -12,16 +13,12 @@ def add_edges(store: PlanStore, origin: Pose, window: SearchWindow) -> int:
     for corner in range(CORNERS):
         if store.corner_of[corner] > 0:
             after = next_corner(store, corner)
-            count = add_edge(
-                store,
-                count,
-                store.corner_x[corner] - origin.x,
-                store.corner_y[corner] - origin.y,
-                store.corner_x[after] - origin.x,
-                store.corner_y[after] - origin.y,
-                window,
-            )
+            count = add_edge(store, count, _seen_from(origin, store, corner), _seen_from(origin, store, after), window)
     return count
+
+
+def _seen_from(origin: Pose, store: PlanStore, corner: int) -> Point:
+    return Point(store.corner_x[corner] - origin.x, store.corner_y[corner] - origin.y)
 
 
 def next_corner(store: PlanStore, corner: int) -> int:

@@ -64,12 +64,10 @@ def add_piece(store: PlanStore, pose: Pose, way: float, k: float) -> Pose:
     if count > 0:
         last = store.piece_way[count - 1]
         if last * way > 0.0 and abs(store.piece_k[count - 1] - k) < SAME:
-            x = store.piece_x[count - 1]
-            y = store.piece_y[count - 1]
-            h = store.piece_h[count - 1]
-            put_piece(store, count - 1, last + way, k, x, y, h)
-            return drive(Pose(x, y, h), last + way, k)
-    put_piece(store, count, way, k, pose.x, pose.y, pose.heading)
+            begin = pose_at(store, count - 1)
+            put_piece(store, count - 1, begin, last + way, k)
+            return drive(begin, last + way, k)
+    put_piece(store, count, pose, way, k)
     put_mark(store, PIECE_COUNT, count + 1)
     return drive(pose, way, k)
 
@@ -194,7 +192,7 @@ def _put_span(store: PlanStore, place: int, span: int, word: int, task: Task) ->
         k = (rest % 3 - 1) * task.car.curvature
         rest = rest // 3
         if way != 0.0:
-            put_piece(store, piece, way, k, pose.x, pose.y, pose.heading)
+            put_piece(store, piece, pose, way, k)
             pose = drive(pose, way, k)
             piece += 1
     put_mark(store, PIECE_COUNT, count + used - span)

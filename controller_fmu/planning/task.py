@@ -100,6 +100,19 @@ class Task(NamedTuple):
     rung: Rung
 
 
+class Child(NamedTuple):
+    """A pose that the tree may grow to, by one line or arc from a node that it has."""
+
+    pose: Pose
+    cost: float
+    """From the root [m]."""
+    way: float
+    """From the parent [m], reverse negative."""
+    k: float
+    """Curvature of that way [1/m]."""
+    parent: int
+
+
 def fastest(car: PlannedCar, curvature: float) -> float:
     """Return how far [m] the fastest point of the outline goes for each metre of the rear axle."""
     k = abs(curvature)

@@ -32,7 +32,7 @@ from controller_fmu.planning.plan_store import (
     put_state,
 )
 from controller_fmu.planning.rasters import route_left
-from controller_fmu.planning.task import CUSP, STEER, Task, drive
+from controller_fmu.planning.task import CUSP, STEER, Child, Task, drive
 from controller_fmu.planning.words import list_words
 from modelkit.maths import PI, TWO_PI, sign, wrap_angle
 from modelkit.vocabulary import Pose
@@ -71,7 +71,7 @@ def begin_tree(store: PlanStore, task: Task) -> None:
             k = (turn - 1) * task.car.curvature
             way = free_way(store, task.target, 2.0 * gear - 1.0, k, 60.0 if turn == 1 else TWO_PI / abs(k), task)
             put_measure(store, FREE_AT_TARGET + 3 * gear + turn, way)
-    offer(store, task.root, 0.0, 0.0, 0.0, NONE, task)
+    offer(store, Child(task.root, 0.0, 0.0, 0.0, NONE), task)
 
 
 def grow(store: PlanStore, task: Task) -> int:
@@ -199,31 +199,37 @@ def branch(store: PlanStore, node: int, pose: Pose, gear: float, lock: float, ta
             if direction * gear < 0.0:
                 cost += CUSP
             k = turn * task.car.curvature
+            here = Child(pose, cost, 0.0, k, node)
             way = FIRST_CHILD
             while way < free - SHORTEST:
-                offer(store, drive(pose, direction * way, k), cost + way, direction * way, k, node, task)
+                offer(store, _driven(here, direction, way), task)
                 way = way * NEXT_CHILD
             if SHORTEST < free < 1.0:
                 for part in range(1, 4):
                     way = 0.25 * part * free
-                    offer(store, drive(pose, direction * way, k), cost + way, direction * way, k, node, task)
+                    offer(store, _driven(here, direction, way), task)
             if free > SHORTEST:
-                offer(store, drive(pose, direction * free, k), cost + free, direction * free, k, node, task)
+                offer(store, _driven(here, direction, free), task)
 
 
-def offer(store: PlanStore, pose: Pose, cost: float, way: float, k: float, parent: int, task: Task) -> None:
+def _driven(here: Child, direction: float, way: float) -> Child:
+    """Return the child ``way`` [m] further on."""
+    return Child(drive(here.pose, direction * way, here.k), here.cost + way, direction * way, here.k, here.parent)
+
+
+def offer(store: PlanStore, child: Child, task: Task) -> None:
     """Add a node unless its cell has one that is as cheap."""
-    key = key_of(pose, way, task)
+    key = key_of(child.pose, child.way, task)
     slot = (key * 40503 // 64) % SLOTS
     other = store.slot[slot]
     while other != NONE:
-        if store.node_key[other] == key and store.node_cost[other] <= cost + 0.02:
+        if store.node_key[other] == key and store.node_cost[other] <= child.cost + 0.02:
             return
         if store.node_key[other] == key:
             put_state(store, other, DONE)
         other = store.node_slot[other]
-    node = put_node(store, pose.x, pose.y, pose.heading, cost, way, k, parent, key, slot)
-    enqueue(store, node, bucket_of(guess(store, pose, cost, task)))
+    node = put_node(store, child, key, slot)
+    enqueue(store, node, bucket_of(guess(store, child.pose, child.cost, task)))
 
 
 def key_of(pose: Pose, way: float, task: Task) -> int:

@@ -36,7 +36,7 @@ def test_distance_to_an_edge_is_that_of_shapely():
     box = outline_of(Pose(-CAR.ahead, 0.0, 0.0), CAR)
     for _ in range(500):
         ends = [draw.uniform(-6.0, 6.0) for _ in range(4)]
-        gap = math.sqrt(edge_gap(*ends, CAR.half_length, CAR.half_width, 1e6))
+        gap = math.sqrt(edge_gap(*ends, CAR, 1e6))
         assert gap == pytest.approx(box.distance(LineString([ends[:2], ends[2:]])), abs=1e-9)
 
 

@@ -189,11 +189,11 @@ def bench_qp(library: Any) -> None:
         for problem in problems:
             solve(*problem, 1e-10, 40)
 
-    flat = [(e, psi, d, numbers(stages), numbers(weights)) for e, psi, d, stages, weights in problems]
+    flat = [(now, numbers(stages), numbers(weights)) for now, stages, weights in problems]
 
     def by_c() -> None:
-        for e, psi, d, stages, weights in flat:
-            library.bench_solve(OFTEN, e, psi, d, stages.ctypes.data, weights.ctypes.data)
+        for now, stages, weights in flat:
+            library.bench_solve(OFTEN, *now, stages.ctypes.data, weights.ctypes.data)
 
     def by_daqp() -> None:
         for h, f, g, limit in matrices:

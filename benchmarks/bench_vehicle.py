@@ -27,13 +27,14 @@ from orchestrator.session.session import run_scenario
 from vehicle_fmu import MODEL
 from vehicle_fmu.bodies.chassis import Build, ChassisParams, Motion, RoadParams, Stance
 from vehicle_fmu.bodies.double_track import DoubleTrackParams, DoubleTrackState, step_double_track
-from vehicle_fmu.bodies.kinematic import move
+from vehicle_fmu.bodies.kinematic import KinematicInput, move
 from vehicle_fmu.bodies.single_track import SingleTrackParams, SingleTrackState, step_single_track
 from vehicle_fmu.bodies.wheels import Wheel
 from vehicle_fmu.effort import Effort
 
 ROUNDS = 7
 WHEELBASE = 2.405
+HELD = KinematicInput(1.0, 0.2)
 MOVING = Motion(Pose(), 1.0, 0.0, 0.0)
 NAMES = ("kinematic", "single_track", "double_track")
 Rounds = dict[str, tuple[int, Callable[[int], Any]]]
@@ -43,7 +44,7 @@ Rounds = dict[str, tuple[int, Callable[[int], Any]]]
 def kinematic(n: int, pose: Any) -> Any:
     """Return the pose after ``n`` steps of 1 ms."""
     for _ in range(n):
-        pose = move(pose, 1.0, 1.0, 0.2, 0.2, WHEELBASE, 0.001)
+        pose = move(pose, HELD, HELD, WHEELBASE, 0.001)
     return pose
 
 

@@ -42,7 +42,8 @@ LIBRARY_EXPORT double bench_solve(int64_t count, double e, double psi, double d,
     double total = 0.0;
     Solution solution;
     for (int64_t k = 0; k < count; k++) {
-        solve(e + 1e-9 * (double)k, psi, d, stages, weights, 1e-10, 40, &solution);
+        const Initial now = {e + 1e-9 * (double)k, psi, d};
+        solve(&now, stages, weights, 1e-10, 40, &solution);
         total += solution.nodes[0].u;
     }
     return total;

@@ -5,10 +5,10 @@ from typing import NamedTuple
 from modelkit.maths import clamp
 from modelkit.vocabulary import Gear, Pose
 from vehicle_fmu.bodies.body import BodyState, motion_of, place, push_body, wheel_speed
-from vehicle_fmu.bodies.kinematic import move
+from vehicle_fmu.bodies.kinematic import KinematicInput, move
 from vehicle_fmu.drive import change_speed, push_speed
 from vehicle_fmu.driver import DriverState, brakes, grabs, wanted_speed, watch
-from vehicle_fmu.drivetrain import Pedals, Selector, along, geared_speed, obey, press, shift, wanted_gear
+from vehicle_fmu.drivetrain import Pedals, Rolling, Selector, along, geared_speed, obey, press, shift, wanted_gear
 from vehicle_fmu.effort import Effort
 from vehicle_fmu.interface import Body, DriverParams, PersonInput, VehicleInput, VehicleParams
 from vehicle_fmu.odometry import OdometryState, reckon
@@ -54,7 +54,8 @@ def step_car(state: CarState, inputs: VehicleInput, faulty: bool, params: Vehicl
     free = not (faulty or driver.takeover or braked)
     target = _target_speed(state, driver, inputs, params.driver) if free else 0.0
     wanted = wanted_gear(state.selector.gear, target)
-    if has_pedals(inputs) and free:
+    treads = free and has_pedals(inputs)
+    if treads:
         wanted = lever_gear(inputs.person, state.selector.gear, state.speed)
     selector = shift(state.selector, wanted, state.speed, params.drive.shift_time, next_ns - state.time_ns)
     steering = _steer(state, inputs, driver.takeover or faulty, params, next_ns)
@@ -67,7 +68,10 @@ def step_car(state: CarState, inputs: VehicleInput, faulty: bool, params: Vehicl
     state = state._replace(driver=driver, selector=selector)
     angles = (state.steering.play / params.car.steering.ratio, steering.play / params.car.steering.ratio)
     speed, rolled_speed = state.speed, state.rolled_speed
-    state = _go(state, inputs, geared_speed(selector, target), free, angles, params, h)
+    if treads:
+        state = _tread(state, inputs.person, angles, params, h)
+    else:
+        state = _go(state, inputs, geared_speed(selector, target), angles, params, h)
     odometry = OdometryState(state.pose)
     if not params.odometry.perfect:
         way = 0.5 * h * (rolled_speed + state.rolled_speed)
@@ -94,29 +98,24 @@ def _steer(state: CarState, inputs: VehicleInput, released: bool, params: Vehicl
 
 
 def _go(
-    state: CarState,
-    inputs: VehicleInput,
-    target: float,
-    free: bool,
-    angles: tuple[float, float],
-    params: VehicleParams,
-    h: float,
+    state: CarState, inputs: VehicleInput, target: float, angles: tuple[float, float], params: VehicleParams, h: float
 ) -> CarState:
-    """Return the car ``h`` [s] later on the way to ``target`` [m/s], front wheels turning from angle to angle."""
-    forced = free and inputs.force_control_active and target != 0.0
-    if free and has_pedals(inputs):
-        return _tread(state, inputs.person, angles, params, h)
+    """Return the car ``h`` [s] later on the way to ``target`` [m/s], front wheels turning from angle to angle.
+
+    A ``target`` of 0 stops it, whatever force is requested.
+    """
+    forced = inputs.force_control_active and target != 0.0
+    gear = state.selector.gear
     if params.body == Body.KINEMATIC:
         speed = change_speed(state.speed, target, params.drive, h)
         if forced:
-            speed = push_speed(state.speed, inputs.force_request, params.chassis.mass, along(state.selector.gear), h)
-        pose = move(state.pose, state.speed, speed, angles[0], angles[1], params.car.wheelbase, h)
-        return state._replace(pose=pose, speed=speed, rolled_speed=speed)
-    gear = state.selector.gear
+            speed = push_speed(state.speed, inputs.force_request, params.chassis.mass, along(gear), h)
+        return _rolled(state, speed, angles, params, h)
+    rolling = Rolling(state.speed, gear)
     if forced:
-        pedals = obey(state.pedals, inputs.force_request, state.speed, gear, params.drive, h)
+        pedals = obey(state.pedals, inputs.force_request, rolling, params.drive, h)
     else:
-        pedals = press(state.pedals, target, state.speed, gear, params.chassis.mass, params.drive, h)
+        pedals = press(state.pedals, target, rolling, params.chassis.mass, params.drive, h)
     return _push(state, pedals, angles, params, h)
 
 
@@ -124,12 +123,18 @@ def _tread(
     state: CarState, person: PersonInput, angles: tuple[float, float], params: VehicleParams, h: float
 ) -> CarState:
     """Return the car ``h`` [s] later under a person's feet."""
-    pedals = tread(state.pedals, person, state.speed, state.selector.gear, params.drive, h)
+    pedals = tread(state.pedals, person, Rolling(state.speed, state.selector.gear), params.drive, h)
     if params.body != Body.KINEMATIC:
         return _push(state, pedals, angles, params, h)
     speed = roll(state.speed, _at_wheels(pedals, state.selector.gear, params), params.chassis, h)
-    pose = move(state.pose, state.speed, speed, angles[0], angles[1], params.car.wheelbase, h)
-    return state._replace(pose=pose, speed=speed, rolled_speed=speed, pedals=pedals)
+    return _rolled(state._replace(pedals=pedals), speed, angles, params, h)
+
+
+def _rolled(state: CarState, speed: float, angles: tuple[float, float], params: VehicleParams, h: float) -> CarState:
+    """Return the car ``h`` [s] later, of the body without tyres, whose ``speed`` [m/s] is known."""
+    now = KinematicInput(state.speed, angles[0])
+    pose = move(state.pose, now, KinematicInput(speed, angles[1]), params.car.wheelbase, h)
+    return state._replace(pose=pose, speed=speed, rolled_speed=speed)
 
 
 def _push(state: CarState, pedals: Pedals, angles: tuple[float, float], params: VehicleParams, h: float) -> CarState:

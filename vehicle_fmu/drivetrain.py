@@ -47,6 +47,15 @@ class Pedals(NamedTuple):
     """Time [s] since the aim became to stand."""
 
 
+class Rolling(NamedTuple):
+    """How the car rolls: what a gearbox makes its creep of."""
+
+    speed: float
+    """[m/s]"""
+    gear: int
+    """Engaged."""
+
+
 def wanted_gear(gear: int, target: float) -> int:
     """Return the gear for going at ``target`` [m/s]; to stand, the one engaged will do."""
     return Gear.REVERSE if target < 0.0 else Gear.DRIVE if target > 0.0 else gear
@@ -80,14 +89,14 @@ def along(gear: int) -> float:
     return -1.0 if gear == Gear.REVERSE else 1.0
 
 
-def press(pedals: Pedals, target: float, speed: float, gear: int, mass: float, p: DriveParams, h: float) -> Pedals:
-    """Return the pedals ``h`` [s] later, on the way from ``speed`` to ``target`` [m/s]."""
+def press(pedals: Pedals, target: float, car: Rolling, mass: float, p: DriveParams, h: float) -> Pedals:
+    """Return the pedals ``h`` [s] later, on the way to ``target`` [m/s]."""
     reference = change_speed(pedals.reference, target, p, h)
-    idle = creep(gear, speed, p)
+    idle = creep(car, p)
     if reference == 0.0 and target == 0.0:
-        brake = mass * _stopping_deceleration(speed, pedals.stopping, p)
+        brake = mass * _stopping_deceleration(car.speed, pedals.stopping, p)
         return Pedals(effort=lag(pedals.effort, idle, brake, p, h), stopping=pedals.stopping + h)
-    error = reference - speed
+    error = reference - car.speed
     push = (reference - pedals.reference) / h + p.speed_gain * error + p.speed_integral * pedals.integral
     force = mass * push - idle
     integral = pedals.integral
@@ -97,13 +106,13 @@ def press(pedals: Pedals, target: float, speed: float, gear: int, mass: float, p
     return Pedals(reference, integral, _split(pedals.effort, force, idle, ahead, p, h))
 
 
-def obey(pedals: Pedals, force: float, speed: float, gear: int, p: DriveParams, h: float) -> Pedals:
+def obey(pedals: Pedals, force: float, car: Rolling, p: DriveParams, h: float) -> Pedals:
     """Return the pedals ``h`` [s] later under a force request [N], forward positive.
 
-    Along the gear's direction it goes to the drive, against it to the brake. The aim follows ``speed``,
+    Along the gear's direction it goes to the drive, against it to the brake. The aim follows the car's speed,
     so that a speed request takes over without a jump.
     """
-    return Pedals(speed, effort=_split(pedals.effort, force, creep(gear, speed, p), along(gear), p, h))
+    return Pedals(car.speed, effort=_split(pedals.effort, force, creep(car, p), along(car.gear), p, h))
 
 
 def _split(effort: Effort, force: float, idle: float, ahead: float, p: DriveParams, h: float) -> Effort:
@@ -121,12 +130,12 @@ def _stopping_deceleration(speed: float, time: float, p: DriveParams) -> float:
     return min(p.hold_deceleration, gentle)
 
 
-def creep(gear: int, speed: float, p: DriveParams) -> float:
+def creep(car: Rolling, p: DriveParams) -> float:
     """Return the force [N] with which an automatic gearbox pushes at idle."""
-    if gear == Gear.DRIVE:
-        return p.creep_force * clamp(1.0 - speed / p.creep_speed, 0.0, 1.0)
-    if gear == Gear.REVERSE:
-        return -p.creep_force * clamp(1.0 + speed / p.creep_speed, 0.0, 1.0)
+    if car.gear == Gear.DRIVE:
+        return p.creep_force * clamp(1.0 - car.speed / p.creep_speed, 0.0, 1.0)
+    if car.gear == Gear.REVERSE:
+        return -p.creep_force * clamp(1.0 + car.speed / p.creep_speed, 0.0, 1.0)
     return 0.0
 
 

@@ -9,7 +9,7 @@ nothing and the brake stops the car. Steering, the assist's switch and taking ov
 from modelkit.maths import clamp, move_towards
 from modelkit.vocabulary import Gear
 from vehicle_fmu.bodies.chassis import GRAVITY, ChassisParams
-from vehicle_fmu.drivetrain import STANDSTILL, Pedals, along, creep, lag
+from vehicle_fmu.drivetrain import STANDSTILL, Pedals, Rolling, along, creep, lag
 from vehicle_fmu.effort import Effort
 from vehicle_fmu.interface import DriveParams, PersonInput, VehicleInput
 
@@ -32,12 +32,12 @@ def lever_gear(person: PersonInput, gear: int, speed: float) -> int:
     return person.lever if abs(speed) < STANDSTILL else gear
 
 
-def tread(pedals: Pedals, person: PersonInput, speed: float, gear: int, p: DriveParams, h: float) -> Pedals:
-    """Return the pedals ``h`` [s] later under a person's feet; the aim follows ``speed`` [m/s] for who comes after."""
-    engaged = gear == Gear.DRIVE or gear == Gear.REVERSE
-    push = along(gear) * clamp(person.accelerator, 0.0, 1.0) * p.drive_force_limit if engaged else 0.0
+def tread(pedals: Pedals, person: PersonInput, car: Rolling, p: DriveParams, h: float) -> Pedals:
+    """Return the pedals ``h`` [s] later under a person's feet; the aim is the car's speed, for who comes after."""
+    engaged = car.gear == Gear.DRIVE or car.gear == Gear.REVERSE
+    push = along(car.gear) * clamp(person.accelerator, 0.0, 1.0) * p.drive_force_limit if engaged else 0.0
     brake = clamp(person.brake, 0.0, 1.0) * p.brake_force_limit
-    return Pedals(speed, effort=lag(pedals.effort, push + creep(gear, speed, p), brake, p, h))
+    return Pedals(car.speed, effort=lag(pedals.effort, push + creep(car, p), brake, p, h))
 
 
 def roll(speed: float, effort: Effort, chassis: ChassisParams, h: float) -> float:

@@ -61,18 +61,19 @@ def swing_way(speed: float, radius: float, wheel: SteeringLimits) -> float:
     return speed * math.atan(wheel.wheelbase / radius) / wheel.rate
 
 
-def s_curve(start: Pose, lead: float, enter: float, first: Bend, second: Bend, leave: Bend, rest: float) -> Route:
-    """Return the route: line ``lead``, clothoid ``enter``, right arc, clothoid, line, clothoid, arc, clothoid, line.
+def s_curve(start: Pose, lead: float, first: Bend, second: Bend, rest: float) -> Route:
+    """Return the route: a line, clothoid, right arc, clothoid, line, clothoid, left arc, clothoid, line.
 
-    ``second`` is how the left arc is entered, ``leave`` how it is left, both of one radius; the last line is ``rest``
-    long. No direction: there is none.
+    The first line is ``lead`` [m] long, the last one ``rest``. Without a first line the right arc begins at once: the
+    wheel turns at standstill. No direction: there is none.
     """
+    enter = first.ramp if lead > 0.0 else 0.0
     k1 = -1.0 / first.radius
     k2 = 1.0 / second.radius
     gone = advance(start, -1.0, lead, 0.0, 0.0)
     on_arc = advance(gone, -1.0, enter, 0.0, k1) if enter > 0.0 else gone
-    dx = on_arc.x + first.radius * math.sin(on_arc.heading) - (rest + leave.tangent)
-    dy = on_arc.y - first.radius * math.cos(on_arc.heading) - leave.rho
+    dx = on_arc.x + first.radius * math.sin(on_arc.heading) - (rest + second.tangent)
+    dy = on_arc.y - first.radius * math.cos(on_arc.heading) - second.rho
     both = first.rho + second.rho
     squared = dx * dx + dy * dy - both * both
     if squared < 0.0:
@@ -81,7 +82,7 @@ def s_curve(start: Pose, lead: float, enter: float, first: Bend, second: Bend, l
     h1 = math.atan2(dy, dx) - math.atan2(-both, between)
     line = between - first.tangent - second.tangent
     arc1 = h1 - first.angle - on_arc.heading
-    arc2 = h1 - second.angle - leave.angle
+    arc2 = h1 - second.angle - second.angle
     if line < 0.0 or arc1 < 0.0 or arc2 < 0.0 or h1 > STEEPEST:
         return NO_ROUTE
     pieces = (
@@ -92,7 +93,7 @@ def s_curve(start: Pose, lead: float, enter: float, first: Bend, second: Bend, l
         Piece(line, 0.0, 0.0),
         Piece(second.ramp, 0.0, k2),
         Piece(arc2 * second.radius, k2, k2),
-        Piece(leave.ramp, k2, 0.0),
+        Piece(second.ramp, k2, 0.0),
         Piece(rest, 0.0, 0.0),
     )
     return Route(start, -1, pieces)

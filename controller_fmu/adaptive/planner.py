@@ -131,7 +131,7 @@ def plan_halting(pose: Pose, demand: Demand, wheel: SteeringLimits, room: Room) 
     stop = stop_on_arc(pose, 0.0, wheel.radius, demand._replace(speed=0.0), wheel, room)
     if stop.direction != 0:
         return Plan(stop, ANY_SPEED)
-    return Plan(_smooth(pose, 0.0, 0.0, demand.rest, demand, wheel, room), ANY_SPEED)
+    return Plan(_smooth(pose, 0.0, 0.0, demand, wheel, room), ANY_SPEED)
 
 
 def _moving(pose: Pose, demand: Demand, wheel: SteeringLimits, room: Room) -> Plan:
@@ -143,39 +143,36 @@ def _moving(pose: Pose, demand: Demand, wheel: SteeringLimits, room: Room) -> Pl
         if demand.willing:
             for speed in SPEEDS:
                 if speed > best.speed:
-                    route = _smooth(pose, speed, lead, demand.rest, demand, wheel, room)
+                    route = _smooth(pose, speed, lead, demand, wheel, room)
                     if route.direction != 0:
                         best = Plan(route, speed)
         else:
-            route = _smooth(pose, demand.speed, lead, demand.rest, demand, wheel, room)
+            route = _smooth(pose, demand.speed, lead, demand, wheel, room)
             if route.direction != 0:
                 best = Plan(route, demand.speed)
     return best
 
 
-def _smooth(
-    pose: Pose, speed: float, lead: float, rest: float, demand: Demand, wheel: SteeringLimits, room: Room
-) -> Route:
+def _smooth(pose: Pose, speed: float, lead: float, demand: Demand, wheel: SteeringLimits, room: Room) -> Route:
     """Return a free route in reverse for ``speed``; with 0 the wheel turns at standstill."""
     enough = _enough(pose, room)
     for mirror in (1.0, -1.0):
         start = Pose(pose.x, mirror * pose.y, mirror * pose.heading)
         if lead == 0.0:
-            found = mirrored(arc_in(start, speed, wheel, rest), mirror, pose, -1)
+            found = mirrored(arc_in(start, speed, wheel, demand.rest), mirror, pose, -1)
             if _is_long(found, demand.shortest) and room_along(found, room, enough) >= enough:
                 return found
         for share in RADII:
             radius = share * wheel.radius
             bend = bend_of(radius, swing_way(speed, radius, wheel))
             if lead == 0.0:
-                found = mirrored(line_in(start, bend, rest), mirror, pose, -1)
+                found = mirrored(line_in(start, bend, demand.rest), mirror, pose, -1)
                 if _is_long(found, demand.shortest) and room_along(found, room, enough) >= enough:
                     return found
-            enter = bend.ramp if lead > 0.0 else 0.0
             for other in RADII:
                 radius2 = other * wheel.radius
                 bend2 = bend_of(radius2, swing_way(speed, radius2, wheel))
-                found = mirrored(s_curve(start, lead, enter, bend, bend2, bend2, rest), mirror, pose, -1)
+                found = mirrored(s_curve(start, lead, bend, bend2, demand.rest), mirror, pose, -1)
                 if _is_long(found, demand.shortest) and room_along(found, room, enough) >= enough:
                     return found
     return NO_ROUTE
@@ -212,11 +209,12 @@ def stop_on_arc(pose: Pose, lead: float, radius: float, demand: Demand, wheel: S
 def plan_onto(pose: Pose, demand: Demand, wheel: SteeringLimits, room: Room) -> Plan:
     """Return the plan forward onto the slot's line, as far as the neighbour ahead allows."""
     seen = Pose(farthest(room) - pose.x, pose.y, -pose.heading)
+    at_once = demand._replace(rest=0.0)
     empty = room._replace(front=room.front._replace(x=1e6), rear=room.rear._replace(x=-1e6), lowest=-1e6, highest=1e6)
     for share in (1.0, 0.6, 0.35, 0.0):
         speed = share * demand.speed
         if share == 1.0 or share == 0.0 or demand.willing:
-            found = _smooth(seen, speed, 0.0, 0.0, demand, wheel, empty)
+            found = _smooth(seen, speed, 0.0, at_once, wheel, empty)
             if found.direction != 0:
                 route = mirrored(found, 1.0, pose, 1)
                 enough = _enough(pose, room)

@@ -1,5 +1,7 @@
 """Curvature and speed of each control mode."""
 
+from typing import NamedTuple
+
 from controller_fmu.hsic.characteristic_states import Errors, HsicStage
 from controller_fmu.hsic.params import HsicGains
 from controller_fmu.hsic.rules import SpeedMode, SteerMode
@@ -9,9 +11,18 @@ SHARPNESS = 10.0
 """Slope of the bang-bang's edge, so that it does not chatter on its switching line."""
 
 
-def curvature(
-    mode: int, stage: int, found: Errors, direction: int, integral: float, arc: float, lock: float, gain: HsicGains
-) -> float:
+class Situation(NamedTuple):
+    """What a rule is applied to."""
+
+    stage: int
+    direction: int
+    """1 forward, -1 in reverse."""
+    found: Errors
+    integral: float
+    """Of the lateral error over the way driven [m2]."""
+
+
+def curvature(mode: int, now: Situation, arc: float, lock: float, gain: HsicGains) -> float:
     """Return the curvature [1/m] asked for, left positive, held to the car's ``lock``.
 
     With s the way driven, y' = d theta and theta' = d kappa (d = +1 forward, -1 in reverse), so
@@ -22,20 +33,20 @@ def curvature(
     """
     if mode == SteerMode.STRAIGHT:
         return 0.0
-    if mode == SteerMode.EXTREMUM_HOLD and stage == HsicStage.TURN_IN:
+    if mode == SteerMode.EXTREMUM_HOLD and now.stage == HsicStage.TURN_IN:
         return -arc
-    if mode == SteerMode.EXTREMUM_HOLD and stage == HsicStage.COUNTER:
+    if mode == SteerMode.EXTREMUM_HOLD and now.stage == HsicStage.COUNTER:
         return arc
-    lateral = gain.lateral * found.lateral
-    if stage == HsicStage.READY:
+    lateral = gain.lateral * now.found.lateral
+    if now.stage == HsicStage.READY:
         lateral = clamp(lateral, -gain.heading * gain.steepest, gain.heading * gain.steepest)
-    line = lateral + gain.heading * direction * found.heading
+    line = lateral + gain.heading * now.direction * now.found.heading
     if mode in (SteerMode.BANG_BANG, SteerMode.EXTREMUM_HOLD):
         line = SHARPNESS * line
     if mode == SteerMode.STRONG_PD:
         line = gain.strengthened * line
     if mode == SteerMode.PID:
-        line = line + gain.integral * integral
+        line = line + gain.integral * now.integral
     return clamp(-line, -lock, lock)
 
 

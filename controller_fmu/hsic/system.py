@@ -8,7 +8,7 @@ from controller_fmu.common.phases import is_over
 from controller_fmu.common.slot_frame import SlotFrame, frame_at, to_slot
 from controller_fmu.common.steering_wheel import steering_wheel_angle
 from controller_fmu.hsic.characteristic_states import Errors, HsicStage, errors, recognise
-from controller_fmu.hsic.control import curvature, speed
+from controller_fmu.hsic.control import Situation, curvature, speed
 from controller_fmu.hsic.key_points import key_points, ready_point
 from controller_fmu.hsic.phases import HsicPhase, expected_in
 from controller_fmu.hsic.rules import RULES, SpeedMode
@@ -72,9 +72,10 @@ def hsic_sample(state: HsicState, inputs: ControllerInput, params: ControllerPar
         reason = Reason.LEFT_PATH
     if reason != Reason.NONE:
         return _ended(state, HsicPhase.FAILED, reason)
+    state = state._replace(running_ns=state.running_ns + dt_ns, pose=pose, monitor=monitor)
     if state.phase == HsicPhase.STRAIGHTEN:
-        return _straightened(state, inputs, pose, monitor, params, dt_ns)
-    return _driven(state, inputs, pose, monitor, params, dt_ns)
+        return _straightened(state, inputs, params)
+    return _driven(state, inputs, params, dt_ns)
 
 
 def _planned(inputs: ControllerInput, params: ControllerParams) -> HsicState:
@@ -93,12 +94,11 @@ def _planned(inputs: ControllerInput, params: ControllerParams) -> HsicState:
     )
 
 
-def _driven(
-    state: HsicState, inputs: ControllerInput, pose: Pose, monitor: MonitorState, params: ControllerParams, dt_ns: int
-) -> HsicState:
+def _driven(state: HsicState, inputs: ControllerInput, params: ControllerParams, dt_ns: int) -> HsicState:
     """Return the system after one look at the situation and the rule that belongs to it."""
     hsic = params.hsic
     v = inputs.measured_speed
+    pose = state.pose
     seen = errors(pose, state.course.goal, v, state.direction)
     course = advance(state.course, pose, seen, params.car, hsic)
     new_goal = course.goal.x != state.course.goal.x or course.stage != state.course.stage
@@ -111,16 +111,15 @@ def _driven(
         direction = -1 if found.ahead > 0.0 else 1
     turning = speed_mode == SpeedMode.TURN_ROUND and direction == state.direction
     integral = 0.0 if new_goal else state.integral + found.lateral * abs(v) * dt_ns * 1e-9
-    angle = _front_wheels(steer_mode, course, found, direction, integral, params)
+    now = Situation(course.stage, direction, found, integral)
+    angle = _front_wheels(steer_mode, now, 1.0 / course.points.radius, params)
     off = abs(inputs.steering_wheel_angle - steering_wheel_angle(angle, state.frame.mirror, params))
     hold = (course.hold or direction != state.direction) and not (standing and off <= hsic.threshold.wheel)
     still = hold or turning or course.done
     phase = HsicPhase.STRAIGHTEN if course.done else HsicPhase.PRE_STEER if still else HsicPhase.PATH_TRACKING
     counted = _counted(state, course.stage, phase, direction)
-    return HsicState(
+    return state._replace(
         phase=phase,
-        running_ns=state.running_ns + dt_ns,
-        frame=state.frame,
         course=course._replace(hold=hold),
         direction=direction,
         shifts=state.shifts + 1 if counted != state.counted else state.shifts,
@@ -130,18 +129,12 @@ def _driven(
         angle=angle,
         set_speed=0.0 if still else direction * speed(speed_mode, found, hsic.gain),
         found=found,
-        pose=pose,
-        monitor=monitor,
     )
 
 
-def _front_wheels(
-    mode: int, course: Course, found: Errors, direction: int, integral: float, params: ControllerParams
-) -> float:
-    """Return the front-wheel angle that the rule asks for, in the slot's frame [rad]."""
-    lock = largest_curvature(params.car)
-    arc = 1.0 / course.points.radius
-    bend = curvature(mode, course.stage, found, direction, integral, arc, lock, params.hsic.gain)
+def _front_wheels(mode: int, now: Situation, arc: float, params: ControllerParams) -> float:
+    """Return the front-wheel angle that the rule asks for, in the slot's frame [rad]; ``arc``: planned [1/m]."""
+    bend = curvature(mode, now, arc, largest_curvature(params.car), params.hsic.gain)
     return math.atan(params.car.wheelbase * bend)
 
 
@@ -152,27 +145,22 @@ def _counted(state: HsicState, stage: int, phase: int, direction: int) -> int:
     return direction
 
 
-def _straightened(
-    state: HsicState, inputs: ControllerInput, pose: Pose, monitor: MonitorState, params: ControllerParams, dt_ns: int
-) -> HsicState:
+def _straightened(state: HsicState, inputs: ControllerInput, params: ControllerParams) -> HsicState:
     """Return the system at its end: wheel to the middle, then parked or missed."""
     phase = HsicPhase.STRAIGHTEN
     reason = Reason.NONE
     still = abs(inputs.measured_speed) <= params.threshold.standstill
     if still and abs(inputs.steering_wheel_angle) <= params.hsic.threshold.wheel:
-        near = is_parked(pose, 1.0, params.hsic)
+        near = is_parked(state.pose, 1.0, params.hsic)
         phase = HsicPhase.PARKED if near else HsicPhase.FAILED
         reason = Reason.NONE if near else Reason.MISSED_TARGET
     return state._replace(
         phase=phase,
         reason=reason,
-        running_ns=state.running_ns + dt_ns,
         integral=0.0,
         angle=0.0,
         set_speed=0.0,
-        found=errors(pose, state.course.goal, inputs.measured_speed, state.direction),
-        pose=pose,
-        monitor=monitor,
+        found=errors(state.pose, state.course.goal, inputs.measured_speed, state.direction),
     )
 
 

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 from controller_fmu.zhang2022.params import MpcParams
 from controller_fmu.zhang2022.path import QuinticPath, Reference, at
-from controller_fmu.zhang2022.qp import STAGES, Stages, Status, solve
+from controller_fmu.zhang2022.qp import STAGES, Initial, Stages, Status, solve
 from controller_fmu.zhang2022.qp_stage import HorizonStage, Weights
 from modelkit.maths import clamp, is_finite
 
@@ -44,7 +44,8 @@ def steer(
     """
     angle = clamp(steering.angle, -car.angle_limit, car.angle_limit)
     stages = prediction(path, reference, speed, car, p)
-    found = solve(reference.lateral_error, reference.heading_error, angle, stages, weights(car, p), p.tolerance, p.cap)
+    now = Initial(reference.lateral_error, reference.heading_error, angle)
+    found = solve(now, stages, weights(car, p), p.tolerance, p.cap)
     solved = found.status == Status.SOLVED and is_finite(found.nodes[0].u)
     rate = found.nodes[0].u / p.step_time if solved else steering.rate
     return FrontWheels(angle, clamp(rate, -car.rate_limit, car.rate_limit), found.status, found.iterations)

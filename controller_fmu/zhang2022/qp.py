@@ -51,6 +51,17 @@ Stages = tuple[HorizonStage, ...]
 Gains = tuple[Gain, ...]
 
 
+class Initial(NamedTuple):
+    """Where the horizon begins."""
+
+    e: float
+    """Lateral error [m]."""
+    psi: float
+    """Heading error [rad]."""
+    d: float
+    """Front-wheel angle [rad]."""
+
+
 class Solution(NamedTuple):
     """Last iterate and how it came about."""
 
@@ -61,14 +72,14 @@ class Solution(NamedTuple):
     """Mean of multiplier times slack."""
 
 
-def solve(e: float, psi: float, d: float, stages: Stages, weights: Weights, tolerance: float, cap: int) -> Solution:
-    """Return the optimal steering over the horizon from lateral error, heading error and angle now.
+def solve(now: Initial, stages: Stages, weights: Weights, tolerance: float, cap: int) -> Solution:
+    """Return the optimal steering over the horizon.
 
     Stops when the mean complementarity and the largest infeasibility are below ``tolerance``, or
     after ``cap`` iterations. Each iteration aims at a share of the present complementarity, the
     smaller the longer the last step was.
     """
-    nodes = _start(Node(e, psi, d, 0.0, 0.0, AT_REST, AT_REST), stages, weights)
+    nodes = _start(Node(now.e, now.psi, now.d, 0.0, 0.0, AT_REST, AT_REST), stages, weights)
     share = 0.2
     gap = _gap(nodes)
     for iteration in range(cap):

@@ -63,9 +63,10 @@ def zhang_sample(state: ZhangState, inputs: ControllerInput, params: ControllerP
         reason = Reason.LEFT_PATH
     if reason != Reason.NONE:
         return _ended(state, ZhangPhase.FAILED, reason)
+    state = state._replace(running_ns=state.running_ns + dt_ns, reference=reference, monitor=monitor)
     if state.phase == ZhangPhase.STRAIGHTEN:
-        return _straightened(state, inputs, pose, monitor, params, dt_ns)
-    return _driven(state, inputs, pose, reference, monitor, params, dt_ns)
+        return _straightened(state, inputs, pose, params)
+    return _driven(state, inputs, pose, params, dt_ns)
 
 
 def front_axle_of(params: ControllerParams) -> FrontAxle:
@@ -97,15 +98,7 @@ def _planned(inputs: ControllerInput, params: ControllerParams) -> ZhangState:
     )
 
 
-def _driven(
-    state: ZhangState,
-    inputs: ControllerInput,
-    pose: Pose,
-    reference: Reference,
-    monitor: MonitorState,
-    params: ControllerParams,
-    dt_ns: int,
-) -> ZhangState:
+def _driven(state: ZhangState, inputs: ControllerInput, pose: Pose, params: ControllerParams, dt_ns: int) -> ZhangState:
     """Return the system with its steering and speed for the next sample; at the target it brakes."""
     zhang = params.zhang2022
     dt = dt_ns * 1e-9
@@ -113,31 +106,24 @@ def _driven(
     steering = state.steering
     solved_ns = state.solved_ns + dt_ns
     if solved_ns * 1e-9 > zhang.mpc.period - 0.5 * dt:
-        steering = steer(steering, state.path, reference, inputs.measured_speed, car, zhang.mpc)
+        steering = steer(steering, state.path, state.reference, inputs.measured_speed, car, zhang.mpc)
         solved_ns = 0
     arrived = pose.x <= zhang.stop_distance
     room = 2.0 * STOPPING_SHARE * zhang.ramp * max(0.0, pose.x)
     wanted = -min(zhang.speed, math.sqrt(room) + CREEP)
     set_speed = move_towards(state.set_speed, wanted, zhang.ramp * dt)
     speed = pid(state.pid, set_speed - inputs.measured_speed, zhang.pid, dt)
-    return ZhangState(
+    return state._replace(
         phase=ZhangPhase.STRAIGHTEN if arrived else ZhangPhase.PATH_TRACKING,
         reason=Reason.NONE,
-        running_ns=state.running_ns + dt_ns,
         solved_ns=solved_ns,
-        frame=state.frame,
-        path=state.path,
-        reference=reference,
         steering=turned(steering, car, dt),
         set_speed=0.0 if arrived else set_speed,
         pid=speed,
-        monitor=monitor,
     )
 
 
-def _straightened(
-    state: ZhangState, inputs: ControllerInput, pose: Pose, monitor: MonitorState, params: ControllerParams, dt_ns: int
-) -> ZhangState:
+def _straightened(state: ZhangState, inputs: ControllerInput, pose: Pose, params: ControllerParams) -> ZhangState:
     """Return the system at the target: wheel to the middle, then parked or missed."""
     limit = params.threshold
     phase = ZhangPhase.STRAIGHTEN
@@ -150,12 +136,9 @@ def _straightened(
     return state._replace(
         phase=phase,
         reason=reason,
-        running_ns=state.running_ns + dt_ns,
         solved_ns=0,
-        reference=nearest(state.path, pose),
         steering=state.steering._replace(angle=0.0, rate=0.0),
         set_speed=0.0,
-        monitor=monitor,
     )
 
 

@@ -4,14 +4,14 @@ from typing import Any
 
 import numpy as np
 
-from controller_fmu.zhang2022.qp import STAGES
+from controller_fmu.zhang2022.qp import STAGES, Initial
 from controller_fmu.zhang2022.qp_stage import HorizonStage, Weights
 
-Problem = tuple[float, float, float, tuple[HorizonStage, ...], Weights]
+Problem = tuple[Initial, tuple[HorizonStage, ...], Weights]
 
 
 def random_problem(rng: np.random.Generator) -> Problem:
-    """Return e, psi, d, stages, weights of a car at 0.1 to 3 m/s, forward or in reverse, on a winding path."""
+    """Return start, stages, weights of a car at 0.1 to 3 m/s, forward or in reverse, on a winding path."""
     speed = rng.choice([-1, 1]) * rng.uniform(0.1, 3.0)
     time, wheelbase = rng.uniform(0.05, 0.3), rng.uniform(2.0, 3.5)
     lock, rate, corridor = rng.uniform(0.3, 0.7), rng.uniform(0.2, 1.5), rng.uniform(0.02, 0.3)
@@ -23,15 +23,15 @@ def random_problem(rng: np.random.Generator) -> Problem:
         gain = float(speed * time / (wheelbase * np.cos(angle) ** 2))
         stages.append(HorizonStage(float(speed * time), gain, 0.5 * float(speed * time) * gain, angle, 1.0))
     now = rng.uniform(-0.5, 0.5), rng.uniform(-0.4, 0.4), rng.uniform(-lock, lock)
-    return float(now[0]), float(now[1]), float(now[2]), tuple(stages), weights
+    return Initial(float(now[0]), float(now[1]), float(now[2])), tuple(stages), weights
 
 
-def dense(e: float, psi: float, d: float, stages: tuple[HorizonStage, ...], w: Weights) -> tuple[Any, Any, Any, Any]:
+def dense(now: Initial, stages: tuple[HorizonStage, ...], w: Weights) -> tuple[Any, Any, Any, Any]:
     """Return H, f, G, h of min x'Hx/2 + f'x, Gx <= h with x = (u, s): the states are eliminated."""
     n = len(stages)
     hessian, gradient = np.zeros((2 * n, 2 * n)), np.zeros(2 * n)
     rows, limits = [], []
-    free, forced = np.array([e, psi, d]), np.zeros((3, 2 * n))
+    free, forced = np.array(now), np.zeros((3, 2 * n))
     for k, q in enumerate(stages):
         a = np.array([[1, q.a, q.c], [0, 1, q.g], [0, 0, 1]])
         free = a @ free - np.array([q.c, q.g, 0]) * q.r

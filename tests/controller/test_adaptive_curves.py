@@ -59,8 +59,7 @@ def test_a_line_before_the_arc():
 @pytest.mark.parametrize(("speed", "radius"), [(0.0, 5.0), (0.3, 4.3), (0.3, 5.0), (0.6, 4.3)])
 def test_an_s_curve_leads_in(lead, speed, radius):
     bend = bend_of(radius, swing_way(speed, radius, WHEEL))
-    enter = bend.ramp if lead > 0.0 else 0.0
-    route = s_curve(Pose(9.0, 3.0, 0.05), lead, enter, bend, bend, bend, 0.2)
+    route = s_curve(Pose(9.0, 3.0, 0.05), lead, bend, bend, 0.2)
     assert_ends_on_axis(route)
     assert max(abs(curvature_at(route, 0.01 * k)) for k in range(int(100 * length_of(route)))) <= 1.0 / radius + 1e-9
     if speed > 0.0:
@@ -70,7 +69,7 @@ def test_an_s_curve_leads_in(lead, speed, radius):
 def test_without_clothoids_it_is_the_path_of_guo():
     """Radius 5.499 m, the tangent point at Q1 of Table 2."""
     bend = bend_of(5.499, 0.0)
-    route = s_curve(Pose(7.608, 3.056, 0.0), 0.0, 0.0, bend, bend, bend, 0.0)
+    route = s_curve(Pose(7.608, 3.056, 0.0), 0.0, bend, bend, 0.0)
     q1 = point_at(route, route.pieces[2].length).pose
     assert (q1.x - 7.608, q1.y - 3.056, q1.heading) == pytest.approx((-3.798, -1.522, 0.765), abs=0.03)
 
@@ -85,7 +84,7 @@ def test_a_clothoid_moves_the_circle_away_from_the_line():
 def test_the_mirror_image_and_the_foot():
     bend = bend_of(4.5, 0.5)
     start = Pose(9.0, 3.0, 0.1)
-    route = s_curve(start, 0.0, 0.0, bend, bend, bend, 0.0)
+    route = s_curve(start, 0.0, bend, bend, 0.0)
     image = mirrored(route, -1.0, Pose(9.0, -3.0, -0.1), -1)
     for way in (0.5, 3.0, 6.0):
         here, there = point_at(route, way).pose, point_at(image, way).pose

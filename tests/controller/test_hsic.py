@@ -6,7 +6,7 @@ import math
 import pytest
 
 from controller_fmu.hsic.characteristic_states import Characteristic, Errors, HsicStage, errors, recognise
-from controller_fmu.hsic.control import curvature, speed
+from controller_fmu.hsic.control import Situation, curvature, speed
 from controller_fmu.hsic.key_points import key_points, ready_point
 from controller_fmu.hsic.params import HsicGains, HsicParams, HsicSlot, HsicThresholds
 from controller_fmu.hsic.phases import HsicPhase
@@ -69,7 +69,7 @@ def test_steering_brings_the_car_to_the_axis_in_both_directions(direction, mode)
     y, heading, step = 0.4, 0.0, 0.005
     for _ in range(int(8.0 / step)):
         found = Errors(1.0, y, heading, 1.0, -0.1)
-        k = curvature(int(mode), int(HsicStage.SHUFFLE), found, direction, 0.0, 0.2, 0.25, HsicGains())
+        k = curvature(int(mode), Situation(int(HsicStage.SHUFFLE), direction, found, 0.0), 0.2, 0.25, HsicGains())
         y += direction * math.sin(heading) * step
         heading += direction * k * step
         assert abs(k) <= 0.25
@@ -80,8 +80,8 @@ def test_steering_brings_the_car_to_the_axis_in_both_directions(direction, mode)
 def test_extremum_hold_turns_in_and_counter_steers():
     far = Errors(3.0, 0.0, 0.5, 3.0, -0.1)
     hold = int(SteerMode.EXTREMUM_HOLD)
-    assert curvature(hold, int(HsicStage.TURN_IN), far, -1, 0.0, 0.2, 0.25, HsicGains()) == -0.2
-    assert curvature(hold, int(HsicStage.COUNTER), far, -1, 0.0, 0.2, 0.25, HsicGains()) == 0.2
+    assert curvature(hold, Situation(int(HsicStage.TURN_IN), -1, far, 0.0), 0.2, 0.25, HsicGains()) == -0.2
+    assert curvature(hold, Situation(int(HsicStage.COUNTER), -1, far, 0.0), 0.2, 0.25, HsicGains()) == 0.2
 
 
 def test_speeds_of_the_modes():

@@ -7,7 +7,7 @@ import pytest
 import scipy.sparse
 from qp_problems import dense, random_problem
 
-from controller_fmu.zhang2022.qp import STAGES, Status, solve
+from controller_fmu.zhang2022.qp import STAGES, Initial, Status, solve
 
 PROBLEMS = 2000
 
@@ -52,8 +52,8 @@ def test_hundreds_of_random_problems_against_osqp():
 def test_limits_hold_and_the_soft_one_gives():
     rng = np.random.default_rng(3)
     for _ in range(50):
-        _, psi, d, stages, w = random_problem(rng)
-        found = solve(1.5, psi, d, stages, w, 1e-10, 60)
+        now, stages, w = random_problem(rng)
+        found = solve(now._replace(e=1.5), stages, w, 1e-10, 60)
         assert found.status == Status.SOLVED
         for node in found.nodes:
             assert abs(node.d) <= w.limit_d + 1e-8
@@ -68,14 +68,15 @@ def test_iteration_cap_is_reported():
 
 @pytest.mark.parametrize("bad", [float("nan"), float("inf")])
 def test_bad_numbers_end_in_failed(bad):
-    _, psi, d, stages, w = random_problem(np.random.default_rng(1))
-    assert solve(bad, psi, d, stages, w, 1e-10, 40).status in (Status.FAILED, Status.ITERATION_CAP)
+    now, stages, w = random_problem(np.random.default_rng(1))
+    assert solve(now._replace(e=bad), stages, w, 1e-10, 40).status in (Status.FAILED, Status.ITERATION_CAP)
 
 
 def test_mirrored_problem_has_the_mirrored_solution():
     rng = np.random.default_rng(5)
     for _ in range(20):
-        e, psi, d, stages, w = random_problem(rng)
+        now, stages, w = random_problem(rng)
+        opposite = Initial(-now.e, -now.psi, -now.d)
         mirrored = tuple(stage._replace(r=-stage.r) for stage in stages)
-        left, right = solve(e, psi, d, stages, w, 1e-12, 60), solve(-e, -psi, -d, mirrored, w, 1e-12, 60)
+        left, right = solve(now, stages, w, 1e-12, 60), solve(opposite, mirrored, w, 1e-12, 60)
         assert steering(left) == pytest.approx(-steering(right), abs=1e-9)

@@ -11,7 +11,7 @@ from vehiclemodels.vehicle_dynamics_ks import vehicle_dynamics_ks
 
 from modelkit.car import CarSteering
 from modelkit.vocabulary import Pose
-from vehicle_fmu.bodies.kinematic import kinematic_rates, move
+from vehicle_fmu.bodies.kinematic import KinematicInput, move
 from vehicle_fmu.drive import change_speed
 from vehicle_fmu.interface import DriveParams
 from vehicle_fmu.steering import turn_steering_wheel
@@ -21,10 +21,11 @@ from vehicle_fmu.steering import turn_steering_wheel
 @given(st.sampled_from(CARS), st.floats(-13.0, 40.0), st.floats(-0.9, 0.9), st.floats(-4.0, 4.0))
 def test_rates_equal_ks(car: Any, speed: float, angle: float, heading: float) -> None:
     theirs = vehicle_dynamics_ks([1.0, 2.0, angle, speed, heading], [0.0, 0.0], car)
-    ours = kinematic_rates(heading, speed, angle, car.a + car.b)
-    assert ours.x == pytest.approx(theirs[0], abs=1e-12)
-    assert ours.y == pytest.approx(theirs[1], abs=1e-12)
-    assert ours.heading == pytest.approx(theirs[4], abs=1e-12, rel=1e-12)
+    held, h = KinematicInput(speed, angle), 1e-7
+    ours = move(Pose(0.0, 0.0, heading), held, held, car.a + car.b, h)
+    assert ours.x / h == pytest.approx(theirs[0], abs=1e-4)
+    assert ours.y / h == pytest.approx(theirs[1], abs=1e-4)
+    assert (ours.heading - heading) / h == pytest.approx(theirs[4], abs=1e-7)
 
 
 @pytest.mark.parametrize("car", CARS)
@@ -50,7 +51,7 @@ def test_acceleration_is_limited_as_in_ks_below_its_switching_speed(car: Any) ->
 
 @given(st.floats(-2.0, 2.0), st.floats(-0.6, 0.6), st.floats(0.001, 0.1))
 def test_a_held_wheel_drives_an_exact_circle(speed: float, angle: float, h: float) -> None:
-    pose = move(Pose(), speed, speed, angle, angle, 2.4, h)
+    pose = move(Pose(), KinematicInput(speed, angle), KinematicInput(speed, angle), 2.4, h)
     turn = speed * h * math.tan(angle) / 2.4
     x, y = speed * h, 0.0
     if abs(turn) > 1e-9:

@@ -11,9 +11,31 @@ from hypothesis import strategies as st
 from vehiclemodels.vehicle_dynamics_st import vehicle_dynamics_st
 
 from modelkit.car import Car
+from modelkit.maths import clamp, sign
 from modelkit.vocabulary import Pose
-from vehicle_fmu.bodies.chassis import Build, ChassisParams, Motion, RoadParams, Stance
-from vehicle_fmu.bodies.single_track import SingleTrackParams, SingleTrackState, single_track_rates, step_single_track
+from vehicle_fmu.bodies.chassis import (
+    GRAVITY,
+    Build,
+    ChassisParams,
+    Gravity,
+    Motion,
+    RoadParams,
+    Stance,
+    Wrench,
+    accelerations,
+)
+from vehicle_fmu.bodies.single_track import (
+    AxleForces,
+    SingleTrackParams,
+    SingleTrackState,
+    Slip,
+    axle_loads,
+    axle_stiffness,
+    front_slip,
+    rear_slip,
+    step_single_track,
+    wrench,
+)
 from vehicle_fmu.effort import Effort
 
 CAR = st.sampled_from(CARS)
@@ -29,11 +51,46 @@ CHASSIS = ChassisParams()
 PARAMS = SingleTrackParams()
 
 
+def steady_force(slip: Slip, stiffness: float, largest: float) -> float:
+    """Return the lateral force [N] of an axle in steady rolling; 0 at standstill, where slip has no meaning."""
+    if slip.along <= 0.0:
+        return 0.0
+    return clamp(-stiffness * slip.across / slip.along, -largest, largest)
+
+
+def steady_rates(
+    motion: Motion,
+    angle: float,
+    force: float,
+    accel: float,
+    build: Build,
+    p: SingleTrackParams,
+) -> Wrench:
+    """Return (v_x' - v_y r, v_y' + v_x r, r') [m/s2, m/s2, rad/s2] of steadily rolling tyres on a flat road.
+
+    ``force`` [N] pushes along; ``accel`` [m/s2] moves load. beta' of ST is the second over v_x, minus r.
+    """
+    stance, chassis, _ = build
+    loads = axle_loads(accel, GRAVITY, stance, p, chassis)
+    stiffness = axle_stiffness(loads, stance, p, chassis)
+    wheelbase, b = stance
+    front = front_slip(motion, angle, wheelbase, b, p.small_angles)
+    rear = rear_slip(motion, b)
+    rolling = chassis.rolling_resistance * chassis.mass * GRAVITY * sign(motion.speed_x)
+    forces = AxleForces(
+        steady_force(front, stiffness.front, p.friction * loads.front),
+        steady_force(rear, stiffness.rear, p.friction * loads.rear),
+        force - rolling,
+    )
+    total = wrench(forces, angle, stance, p.small_angles)
+    return accelerations(motion, total, Gravity(0.0, 0.0, GRAVITY), chassis)
+
+
 def rates(car: Any, speed: float, beta: float, yaw_rate: float, angle: float, accel: float) -> tuple[float, ...]:
     """Return (v', yaw rate', beta') of our single track set as ST."""
     stance, chassis, params = single_track_car(car)
     motion = Motion(Pose(), speed, speed * beta, yaw_rate)
-    found = single_track_rates(motion, angle, car.m * accel, accel, stance, chassis, params)
+    found = steady_rates(motion, angle, car.m * accel, accel, Build(stance, chassis, ROAD), params)
     return found.x, found.yaw, found.y / speed - yaw_rate
 
 
@@ -99,8 +156,8 @@ def test_paper_3_dof_car_has_no_load_transfer() -> None:
     params = SingleTrackParams(32000.0, 32000.0)
     chassis = ChassisParams(560.0, 1040.0)
     motion = Motion(Pose(), 8.0, 0.1, 0.2)
-    slow = single_track_rates(motion, 0.05, 100.0, 0.0, Stance(1.89, 0.76), chassis, params)
-    hard = single_track_rates(motion, 0.05, 100.0, 3.0, Stance(1.89, 0.76), chassis, params)
+    slow = steady_rates(motion, 0.05, 100.0, 0.0, Build(Stance(1.89, 0.76), chassis, ROAD), params)
+    hard = steady_rates(motion, 0.05, 100.0, 3.0, Build(Stance(1.89, 0.76), chassis, ROAD), params)
     assert slow == hard
     front = -32000.0 * ((0.1 + 1.13 * 0.2) * math.cos(0.05) - 8.0 * math.sin(0.05))
     front = front / (8.0 * math.cos(0.05) + (0.1 + 1.13 * 0.2) * math.sin(0.05))

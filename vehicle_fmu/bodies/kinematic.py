@@ -6,35 +6,36 @@ Print gives R = tan(phi) / L; the turning radius is R = L / tan(phi). Valid for 
 """
 
 import math
+from typing import NamedTuple
 
 from modelkit.vocabulary import Pose
 
 
-def kinematic_rates(heading: float, speed: float, front_wheel_angle: float, wheelbase: float) -> Pose:
-    """Return (x', y', heading') [m/s, m/s, rad/s]."""
-    return Pose(
-        speed * math.cos(heading),
-        speed * math.sin(heading),
-        speed * math.tan(front_wheel_angle) / wheelbase,
-    )
+class KinematicInput(NamedTuple):
+    """What moves the car at an instant."""
+
+    speed: float
+    """v [m/s]."""
+    angle: float
+    """phi, of the front wheels [rad]."""
 
 
-def move(
-    pose: Pose, speed: float, next_speed: float, angle: float, next_angle: float, wheelbase: float, h: float
-) -> Pose:
-    """Return the pose ``h`` [s] later, speed and front-wheel angle going linearly to their next values.
+def move(pose: Pose, now: KinematicInput, then: KinematicInput, wheelbase: float, h: float) -> Pose:
+    """Return the pose ``h`` [s] later, speed and front-wheel angle going linearly from those ``now`` to those ``then``.
 
     Both are known functions of time, so heading, then position, are integrals: Simpson's rule,
     with the heading halfway from the parabola through the three rates. Fourth order in ``h``.
     """
+    speed = now.speed
+    next_speed = then.speed
     if speed == 0.0 and next_speed == 0.0:
         return pose
-    tan = math.tan(angle)
+    tan = math.tan(now.angle)
     middle_tan = tan
     next_tan = tan
-    if next_angle != angle:
-        middle_tan = math.tan(0.5 * (angle + next_angle))
-        next_tan = math.tan(next_angle)
+    if then.angle != now.angle:
+        middle_tan = math.tan(0.5 * (now.angle + then.angle))
+        next_tan = math.tan(then.angle)
     middle_speed = 0.5 * (speed + next_speed)
     rate = speed * tan / wheelbase
     middle_rate = middle_speed * middle_tan / wheelbase

@@ -20,14 +20,13 @@ car at rest and let go without a jump. Forces are limited by friction.
 import math
 from typing import Annotated, NamedTuple
 
-from modelkit.maths import clamp, sign
+from modelkit.maths import clamp
 from modelkit.signal import Signal
 from vehicle_fmu.bodies.chassis import (
     CHOSEN,
     GRAVITY,
     Build,
     ChassisParams,
-    Gravity,
     Motion,
     Stance,
     Wrench,
@@ -127,51 +126,15 @@ def rear_slip(motion: Motion, b: float) -> Slip:
     return Slip(motion.speed_y - b * motion.yaw_rate, abs(motion.speed_x))
 
 
-def steady_force(slip: Slip, stiffness: float, largest: float) -> float:
-    """Return the lateral force [N] of an axle in steady rolling; 0 at standstill, where slip has no meaning."""
-    if slip.along <= 0.0:
-        return 0.0
-    return clamp(-stiffness * slip.across / slip.along, -largest, largest)
-
-
-def wrench(front: float, rear: float, along: float, angle: float, wheelbase: float, b: float, small: bool) -> Wrench:
+def wrench(forces: AxleForces, angle: float, stance: Stance, small: bool) -> Wrench:
     """Return force and moment on the car [N, N m] of the axles' lateral and the wheels' rolling force."""
-    a = wheelbase - b
+    front, rear, along = forces
+    b = stance.cg_to_rear
+    a = stance.wheelbase - b
     if small:
         return Wrench(along, front + rear, a * front - b * rear)
     cos = math.cos(angle)
     return Wrench(along - front * math.sin(angle), front * cos + rear, a * front * cos - b * rear)
-
-
-def single_track_rates(
-    motion: Motion,
-    angle: float,
-    force: float,
-    accel: float,
-    stance: Stance,
-    chassis: ChassisParams,
-    p: SingleTrackParams,
-) -> Wrench:
-    """Return (v_x' - v_y r, v_y' + v_x r, r') [m/s2, m/s2, rad/s2] of steadily rolling tyres on a flat road.
-
-    ``force`` [N] pushes along; ``accel`` [m/s2] moves load. beta' of ST is the second over v_x, minus r.
-    """
-    loads = axle_loads(accel, GRAVITY, stance, p, chassis)
-    stiffness = axle_stiffness(loads, stance, p, chassis)
-    wheelbase, b = stance
-    front = front_slip(motion, angle, wheelbase, b, p.small_angles)
-    rear = rear_slip(motion, b)
-    rolling = chassis.rolling_resistance * chassis.mass * GRAVITY * sign(motion.speed_x)
-    total = wrench(
-        steady_force(front, stiffness.front, p.friction * loads.front),
-        steady_force(rear, stiffness.rear, p.friction * loads.rear),
-        force - rolling,
-        angle,
-        wheelbase,
-        b,
-        p.small_angles,
-    )
-    return accelerations(motion, total, Gravity(0.0, 0.0, GRAVITY), chassis)
 
 
 def step_single_track(
@@ -205,12 +168,10 @@ def step_single_track(
     rear, rear_force = _push(
         state.rear, rear_slip(motion, b), stiffness.rear, grip.rear, p.stiffness_rear / p.relaxation, h
     )
-    hold, along = _along(state.hold, motion.speed_x, effort, loads, grip, chassis, h)
-    total = wrench(front_force, rear_force, along, angle, wheelbase, b, p.small_angles)
-    change = accelerations(motion, total, gravity, chassis)
-    return SingleTrackState(
-        move_body(motion, change, b, h), front, rear, hold, AxleForces(front_force, rear_force, along)
-    )
+    hold, along = _along(state.hold, motion.speed_x, _gripped(effort, grip, chassis), loads, chassis, h)
+    forces = AxleForces(front_force, rear_force, along)
+    change = accelerations(motion, wrench(forces, angle, stance, p.small_angles), gravity, chassis)
+    return SingleTrackState(move_body(motion, change, b, h), front, rear, hold, forces)
 
 
 def _push(
@@ -226,18 +187,23 @@ def _push(
     return now, carcass * relax(deflection, -slip.across, rate, h + LOOK_AHEAD)
 
 
-def _along(
-    hold: float, speed: float, effort: Effort, loads: Axles, grip: Axles, chassis: ChassisParams, h: float
-) -> tuple[float, float]:
-    """Return the brake's next deflection [m] and the rolling force of all wheels [N]."""
+def _gripped(effort: Effort, grip: Axles, chassis: ChassisParams) -> Effort:
+    """Return what of the effort the road takes [N]."""
     share = chassis.front_drive_share
     drive = clamp(effort.drive * share, -grip.front, grip.front)
     drive = drive + clamp(effort.drive * (1.0 - share), -grip.rear, grip.rear)
     share = chassis.front_brake_share
     brake = clamp(effort.brake * share, 0.0, grip.front) + clamp(effort.brake * (1.0 - share), 0.0, grip.rear)
-    level = brake + chassis.rolling_resistance * (loads.front + loads.rear)
+    return Effort(drive, brake)
+
+
+def _along(
+    hold: float, speed: float, effort: Effort, loads: Axles, chassis: ChassisParams, h: float
+) -> tuple[float, float]:
+    """Return the brake's next deflection [m] and the rolling force of all wheels [N] under an effort gripped."""
+    level = effort.brake + chassis.rolling_resistance * (loads.front + loads.rear)
     spring = chassis.mass * HOLD_RATE * HOLD_RATE
     limit = level / spring
     now = clamp(hold + h * speed, -limit, limit)
     ahead = clamp(hold + (h + LOOK_AHEAD) * speed, -limit, limit)
-    return now, drive - spring * ahead
+    return now, effort.drive - spring * ahead

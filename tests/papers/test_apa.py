@@ -3,13 +3,12 @@
 import pytest
 
 from orchestrator.papers.apa import CARS, reproduce
-from orchestrator.papers.drive import drive
-from orchestrator.papers.result import Reproduction
+from orchestrator.papers.result import Drive, Reproduction
 
 
 @pytest.fixture(scope="module")
-def reproduction(tmp_path_factory: pytest.TempPathFactory) -> Reproduction:
-    return reproduce(tmp_path_factory.mktemp("apa"), drive)
+def reproduction(by_default: Drive, tmp_path_factory: pytest.TempPathFactory) -> Reproduction:
+    return reproduce(tmp_path_factory.mktemp("apa"), by_default)
 
 
 def test_every_check_is_as_stated(reproduction: Reproduction) -> None:

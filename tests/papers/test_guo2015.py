@@ -22,8 +22,8 @@ SCENARIOS = [
 
 
 @pytest.fixture(scope="module")
-def reproduction(tmp_path_factory: pytest.TempPathFactory) -> Reproduction:
-    return reproduce(tmp_path_factory.mktemp("guo2015"), drive)
+def reproduction(by_default: Drive, tmp_path_factory: pytest.TempPathFactory) -> Reproduction:
+    return reproduce(tmp_path_factory.mktemp("guo2015"), by_default)
 
 
 def test_every_check_is_as_stated(reproduction: Reproduction) -> None:
@@ -116,7 +116,3 @@ def test_faults_end_with_a_reason_and_a_stopped_car(name: str, reason: str) -> N
     assert driven.summary.outcome == driven.scenario.expect
     assert driven.summary.reason == reason
     assert driven.recording.signals["vehicle.speed"][-1] == 0.0
-
-
-def test_native_fmus_give_the_same_numbers(reproduction: Reproduction, native: Drive, tmp_path: Path) -> None:
-    assert reproduce(tmp_path, native).rows == reproduction.rows

@@ -5,14 +5,13 @@ from pathlib import Path
 import pytest
 
 from controller_fmu.hsic.characteristic_states import Characteristic
-from orchestrator.papers.drive import drive
 from orchestrator.papers.hsic import SCENARIOS, reproduce
 from orchestrator.papers.result import Drive, Reproduction
 
 
 @pytest.fixture(scope="module")
-def reproduction(tmp_path_factory: pytest.TempPathFactory) -> Reproduction:
-    return reproduce(tmp_path_factory.mktemp("hsic"), drive)
+def reproduction(by_default: Drive, tmp_path_factory: pytest.TempPathFactory) -> Reproduction:
+    return reproduce(tmp_path_factory.mktemp("hsic"), by_default)
 
 
 def test_every_check_is_as_stated(reproduction: Reproduction) -> None:
@@ -30,7 +29,3 @@ def test_each_of_the_twelve_states_is_reached_by_a_shipped_scenario(reproduction
 
 def test_figure_is_written(reproduction: Reproduction) -> None:
     assert all(Path(figure).stat().st_size > 20_000 for figure in reproduction.figures)
-
-
-def test_native_fmus_give_the_same_numbers(reproduction: Reproduction, native: Drive, tmp_path: Path) -> None:
-    assert reproduce(tmp_path, native).rows == reproduction.rows

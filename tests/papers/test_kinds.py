@@ -19,6 +19,6 @@ def test_python_fmus_record_the_same_bits(name: str) -> None:
         assert np.array_equal(values, theirs.recording.signals[signal], equal_nan=True), signal
 
 
-def test_the_default_is_the_fast_kind(native: Drive) -> None:
+def test_the_default_is_the_fast_kind(by_default: Drive) -> None:
     assert default_kind() == "native"
-    assert native(SHORT[1]).summary.reason == "no_path"
+    assert by_default(SHORT[1]).summary.reason == "no_path"

@@ -6,13 +6,12 @@ import numpy as np
 import pytest
 
 from orchestrator.papers import preview
-from orchestrator.papers.drive import drive
 from orchestrator.papers.result import Drive, Reproduction
 
 
 @pytest.fixture(scope="module")
-def reproduction(tmp_path_factory: pytest.TempPathFactory) -> Reproduction:
-    return without_sweep(tmp_path_factory.mktemp("preview"), drive)
+def reproduction(by_default: Drive, tmp_path_factory: pytest.TempPathFactory) -> Reproduction:
+    return without_sweep(tmp_path_factory.mktemp("preview"), by_default)
 
 
 def without_sweep(out: Path, by: Drive) -> Reproduction:
@@ -55,7 +54,3 @@ def test_steering_rises_in_time_and_swings_where_l1_jumps(reproduction: Reproduc
 def test_figures_are_written(reproduction: Reproduction) -> None:
     assert len(reproduction.figures) == 3
     assert all(Path(figure).stat().st_size > 20_000 for figure in reproduction.figures)
-
-
-def test_native_fmus_give_the_same_numbers(reproduction: Reproduction, native: Drive, tmp_path: Path) -> None:
-    assert without_sweep(tmp_path, native).rows == reproduction.rows

@@ -4,14 +4,13 @@ from pathlib import Path
 
 import pytest
 
-from orchestrator.papers.drive import drive
 from orchestrator.papers.result import Drive, Reproduction
 from orchestrator.papers.zhang2022 import reproduce
 
 
 @pytest.fixture(scope="module")
-def reproduction(tmp_path_factory: pytest.TempPathFactory) -> Reproduction:
-    return reproduce(tmp_path_factory.mktemp("zhang2022"), drive)
+def reproduction(by_default: Drive, tmp_path_factory: pytest.TempPathFactory) -> Reproduction:
+    return reproduce(tmp_path_factory.mktemp("zhang2022"), by_default)
 
 
 def test_every_check_is_as_stated(reproduction: Reproduction) -> None:
@@ -27,7 +26,3 @@ def test_the_refusal_says_by_how_much(reproduction: Reproduction) -> None:
 
 def test_figure_is_written(reproduction: Reproduction) -> None:
     assert all(Path(figure).stat().st_size > 20_000 for figure in reproduction.figures)
-
-
-def test_native_fmus_give_the_same_numbers(reproduction: Reproduction, native: Drive, tmp_path: Path) -> None:
-    assert reproduce(tmp_path, native).rows == reproduction.rows

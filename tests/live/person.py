@@ -61,7 +61,6 @@ def drive(page: Any, will: Will, pace: int = 4) -> dict[str, Any]:
     page.clock.pause_at(time.time() + 1.0)
     page.click(f'label:has([name="pace"][value="{pace}"])')
     page.click("#person + *, label:has(#person)")
-    page.evaluate("() => document.activeElement.blur()")
     page.keyboard.press(" ")
     held: set[str] = set()
     for _ in range(MOST_LOOKS):

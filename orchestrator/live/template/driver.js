@@ -65,12 +65,19 @@ function holdButton(node, press) {
   node.addEventListener("contextmenu", (event) => event.preventDefault());
 }
 
-function driverKeys(driver, free) {
+// Whether a key is for what has the focus: text for a field, arrows for whatever moves by arrows, space for what it switches.
+function isTaken(event) {
+  const at = /** @type {HTMLElement} */ (event.target), is = (kinds) => at.closest(kinds) !== null;
+  if (event.ctrlKey || event.metaKey || event.altKey || is("textarea, select, input:not([type=checkbox], [type=radio], [type=range])")) return true;
+  if (event.key.startsWith("Arrow") || event.key === "Home") return is("[type=radio], [type=range], [role=tab], .grid");
+  return event.key === " " && is("input:not([type=radio]:checked, [type=range]), button, summary, a");
+}
+
+function driverKeys(driver) {
   const pedals = { w: "accelerator", arrowup: "accelerator", s: "brake", arrowdown: "brake" }, gears = { p: "P", r: "R", n: "N", d: "D" };
-  const plain = (event) => !event.ctrlKey && !event.metaKey && !event.altKey && !event.target.closest("input, select, textarea, [role=tab], .grid");
   addEventListener("keydown", (event) => {
     const key = event.key.toLowerCase();
-    if (!plain(event) || !free()) return;
+    if (isTaken(event)) return;
     if (pedals[key]) { driver.press(pedals[key], key, event.shiftKey ? 1 : pedals[key] === "brake" ? 0.4 : SOFT); event.preventDefault(); }
     else if (gears[key]) driver.shift(gears[key]);
     else if (key === "c") { driver.confirm = true; driver.take(); }

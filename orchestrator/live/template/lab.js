@@ -27,8 +27,9 @@ class Lab {
 
   pinned() {
     const states = this.situation.known.get("controller.system").states;
-    const own = this.pins[states[this.system].toLowerCase()] || [], wanted = this.only.length ? this.only : [...this.pins.always, ...own];
-    return wanted.filter((name) => this.situation.known.has(name));
+    const own = this.pins[states[this.system].toLowerCase()] || [], isKnown = (name) => this.situation.known.has(name);
+    const only = this.only.filter(isKnown);
+    return only.length ? only : [...this.pins.always, ...own].filter(isKnown);
   }
 
   // Whether a parameter means something to the system chosen.

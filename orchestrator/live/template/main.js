@@ -42,9 +42,12 @@ class Page {
     return found;
   }
 
-  load(name, changes = {}) {
+  load(name, changes = {}, wrong = []) {
     this.drive.pause();
     this.lab.load(name, changes);
+    const refused = Object.entries(changes).map(([key, value]) => this.lab.situation.wrong(key, value)).filter(Boolean);
+    $("notice").hidden = refused.length + wrong.length === 0;
+    $("notice").textContent = `Not taken from the address: ${[...wrong, ...refused].join("; ")}.`;
     const { data } = this.lab.situation;
     $("scenario").value = name;
     $("title").textContent = document.title = data.title || name;
@@ -166,7 +169,7 @@ class Page {
       link.click();
       URL.revokeObjectURL(link.href);
     });
-    driverKeys(driver, () => true);
+    driverKeys(driver);
     keyboard({ " ": () => this.toggle(), ".": () => { drive.pause(); drive.go(); }, Home: () => { drive.pause(); this.restart(); } });
     driver.onChange = () => this.begin(driver.pedal.accelerator > 0 || driver.pressed.accelerator.size > 0);
   }
@@ -184,10 +187,7 @@ function text(id, words) { if ($(id).textContent !== words) $(id).textContent = 
 
 function keyboard(keys) {
   addEventListener("keydown", (event) => {
-    const at = /** @type {HTMLElement} */ (event.target);
-    if (event.ctrlKey || event.metaKey || event.altKey || at.closest("input, select, textarea, [role=tab]")) return;
-    if (event.key === " " && at.closest("button, summary, a")) return;
-    if (!keys[event.key]) return;
+    if (isTaken(event) || !keys[event.key]) return;
     event.preventDefault();
     keys[event.key]();
   });
@@ -200,6 +200,7 @@ function tab(id) {
     node.tabIndex = isOn ? 0 : -1;
     $(node.getAttribute("aria-controls")).hidden = !isOn;
   }
+  if (window.live) window.live.paint(); // what was hidden has no size until it is seen
 }
 
 function tabs() {
@@ -217,29 +218,32 @@ function tabs() {
   });
 }
 
-// Scenario and changes from the address.
+// Scenario and changes from the address, and what of it means nothing here.
 function fromAddress(lab, first) {
-  /** @type {{ name: string, changes: Record<string, number>, only: string[] }} */
-  const found = { name: first, changes: {}, only: [] };
-  for (const part of location.hash.slice(1).split("&")) {
-    const [key, value] = part.split("=").map(decodeURIComponent);
+  /** @type {{ name: string, changes: Record<string, number>, only: string[], wrong: string[] }} */
+  const found = { name: first, changes: {}, only: [], wrong: [] };
+  for (const part of location.hash.slice(1).split("&").filter(Boolean)) {
+    const [key, value] = part.split("=").map(decoded);
     if (key === "s" && lab.scenarios.has(value)) found.name = value;
-    else if (key === "only") found.only = value.split(",");
-    else if (key.includes(".") && value !== undefined) found.changes[key] = Number(value);
+    else if (key === "only") found.only = (value || "").split(",");
+    else if (key.includes(".") && value) found.changes[key] = Number(value);
+    else found.wrong.push(key === "s" ? `no scenario ${value}` : part);
   }
   return found;
 }
+
+function decoded(text) { try { return decodeURIComponent(text); } catch { return text; } }
 
 async function start() {
   const begun = performance.now();
   const data = await unpack($("data").textContent.trim());
   const code = await inflate($("module").textContent.trim());
   const lab = new Lab(await Engine.start(code, data.models), data), page = new Page(lab, data, code);
-  const { name, changes, only } = fromAddress(lab, data.scenarios[0].name);
+  const { name, changes, only, wrong } = fromAddress(lab, data.scenarios[0].name);
   lab.only = only;
   document.documentElement.classList.toggle("embedded", only.length > 0);
   tabs();
-  page.load(name, changes);
+  page.load(name, changes, wrong);
   page.stage = new Stage(page.drawn, $("view"), (prefix, pose) => { AXES.forEach((axis, i) => lab.situation.set(`${prefix}.${axis}`, pose[i])); page.changed(); });
   page.scene = page.stage;
   page.paint = () => { page.key = ""; page.map.draw(); };
@@ -247,7 +251,7 @@ async function start() {
   page.page = page.drawn;
   themes(page);
   layers(page);
-  addEventListener("hashchange", () => { const found = fromAddress(lab, data.scenarios[0].name); page.load(found.name, found.changes); });
+  addEventListener("hashchange", () => { const found = fromAddress(lab, data.scenarios[0].name); page.load(found.name, found.changes, found.wrong); });
   const frame = (now) => { page.draw(now); requestAnimationFrame(frame); };
   requestAnimationFrame(frame);
   page.took = performance.now() - begun;

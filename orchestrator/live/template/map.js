@@ -1,6 +1,6 @@
 // A map: a grid of whole runs over two parameters, computed in a worker, coloured by how they came out.
 
-const CELLS = 20;
+const CELLS = 20, FARTHEST = 300; // along a side; distance of the last colour [cm]
 const OUTCOME_COLOR = { parked: "good", finished: "good", not_parked: "warn", not_finished: "warn", failed: "bad", aborted: "bad" };
 
 class Grid {
@@ -14,7 +14,7 @@ class Grid {
     this.data = data;
     $("map-go").addEventListener("click", () => this.start());
     for (const id of ["map-x", "map-y"]) $(id).addEventListener("change", () => this.ranges());
-    $("map-color").addEventListener("change", () => this.draw());
+    $("map-color").addEventListener("change", () => { this.key(); this.draw(); });
     const canvas = $("map");
     canvas.addEventListener("click", (event) => { this.move(Math.floor(event.offsetX / canvas.clientWidth * CELLS), CELLS - 1 - Math.floor(event.offsetY / canvas.clientHeight * CELLS)); this.pick(); });
     canvas.addEventListener("pointermove", (event) => this.say(Math.floor(event.offsetX / canvas.clientWidth * CELLS), CELLS - 1 - Math.floor(event.offsetY / canvas.clientHeight * CELLS)));
@@ -48,6 +48,7 @@ class Grid {
     }
     this.ranges();
     this.rows = [];
+    this.key();
     this.draw();
   }
 
@@ -79,18 +80,26 @@ class Grid {
 
   take({ id, number, cells, took }) {
     if (id !== this.id) return;
-    if (cells) this.rows[number] = cells;
+    if (cells) { this.rows[number] = cells; $("map-said").textContent = `${this.rows.flat().length} of ${CELLS * CELLS} runs\u2026`; }
     else {
       const all = this.rows.flat(), good = all.filter((cell) => cell.outcome === this.lab.situation.data.success).length;
       $("map-said").textContent = `${all.length} runs in ${(took / 1000).toFixed(2)} s; ${good} ${this.lab.situation.data.success}`;
       $("map").dataset.done = String(id);
     }
+    this.key();
     this.draw();
+  }
+
+  // What the colours mean, and how often each is there.
+  key() {
+    const count = (outcome) => this.rows.flat().filter((cell) => cell.outcome === outcome).length, isOutcome = $("map-color").value === "outcome";
+    const pills = Object.keys(OUTCOME_COLOR).filter((outcome) => count(outcome)).map((outcome) => element("span", {}, badge({ outcome }), ` ${count(outcome)} `));
+    $("map-key").replaceChildren(...(isOutcome || !pills.length ? pills : [element("span", { class: "ramp", "aria-hidden": "true" }), `on the target to ${FARTHEST / 100} m off and more`]));
   }
 
   paint(cell) {
     if ($("map-color").value === "outcome") return color(OUTCOME_COLOR[cell.outcome] || "idle");
-    const share = Math.min(1, Math.log10(1 + cell.error * 100) / 2.5);
+    const share = Math.min(1, Math.log10(1 + cell.error * 100) / Math.log10(1 + FARTHEST));
     return Number.isFinite(share) ? `color-mix(in oklab, ${color("good")} ${Math.round(100 * (1 - share))}%, ${color("bad")})` : color("idle");
   }
 

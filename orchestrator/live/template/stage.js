@@ -56,10 +56,10 @@ class Stage extends Scene {
   }
 
   drag(px, py) {
-    const { prefix, pose, place, what, grip } = this.held, [x, y] = this.world(px, py), round = (value, step) => Math.round(value / step) * step;
+    const { prefix, pose, place, what, grip } = this.held, [x, y] = this.world(px, py), round = (value, digits) => Number(value.toFixed(digits));
     const origin = this.page.runs[0].scene.origin;
-    if (what === "move") this.moves(prefix, [round(x - grip[0] + origin[0], 0.001), round(y - grip[1] + origin[1], 0.001), pose[2]]);
-    else this.moves(prefix, [pose[0], pose[1], round(pose[2] + wrap(Math.atan2(y - place[1], x - place[0]) - place[2]), 0.0001)]);
+    if (what === "move") this.moves(prefix, [round(x - grip[0] + origin[0], 3), round(y - grip[1] + origin[1], 3), pose[2]]);
+    else this.moves(prefix, [pose[0], pose[1], round(pose[2] + wrap(Math.atan2(y - place[1], x - place[0]) - place[2]), 4)]);
   }
 
   draw(t) {

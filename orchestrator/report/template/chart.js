@@ -1,5 +1,7 @@
 // A state machine beside a run: the state it is in, the way it came, what each state does and where it is written.
 
+const SMALLEST = 0.85; // no smaller than so much of its own size, which can be read; then it is scrolled
+
 class StateChart {
   constructor() { this.own = []; }
 
@@ -13,7 +15,11 @@ class StateChart {
   drawn(chart) {
     chart.past = element("ol", { class: "past", "aria-label": "Last transitions" });
     chart.box = element("figure", { class: "chart-box" }, element("figcaption", {}, chart.signal, element("span", { class: "quiet" }, ` ${chart.file}`)), chart.past);
-    chart.box.append(document.importNode(new DOMParser().parseFromString(chart.svg, "image/svg+xml").documentElement, true));
+    const svg = /** @type {any} */ (document.importNode(new DOMParser().parseFromString(chart.svg, "image/svg+xml").documentElement, true));
+    svg.style.minWidth = `${SMALLEST * svg.viewBox.baseVal.width}px`;
+    chart.sheet = element("div", { class: "chart-sheet" });
+    chart.sheet.append(svg);
+    chart.box.append(chart.sheet);
     for (const node of chart.box.querySelectorAll("[data-state]")) {
       const state = chart.states[node.dataset.state];
       const tell = () => { $("chart-said").textContent = `${words(node.dataset.state)}: ${state.text}${state.leaves.length ? ` Leaves: ${state.leaves.join("; ")}.` : ""}`; };
@@ -25,16 +31,24 @@ class StateChart {
     return chart.box;
   }
 
+  // The column of states stands in the middle when the chart is first seen.
+  centre(chart) {
+    const box = chart.on.getBoundingClientRect(), sheet = chart.sheet.getBoundingClientRect();
+    chart.sheet.scrollLeft += box.left + 0.5 * box.width - sheet.left - 0.5 * sheet.width;
+    chart.isCentred = true;
+  }
+
   // As it is in `run` at `t`.
   show(run, t) {
     for (const chart of this.own) {
       const name = `controller.${chart.signal}`, spans = run.spans(name).filter((span) => span.from <= t);
       const states = spans.map((span) => run.stateName(name, span.value)), key = `${spans.length} ${states[states.length - 1]} ${spans.length && spans[spans.length - 1].from}`;
+      if (!chart.isCentred && chart.on && chart.sheet.clientWidth) this.centre(chart);
       if (chart.key === key) continue;
       chart.key = key;
       for (const node of chart.box.querySelectorAll(".on")) node.classList.remove("on");
       const last = states.length - 1, arcs = (i) => [...chart.box.querySelectorAll("[data-from]")].filter(({ dataset }) => (dataset.from === states[i - 1] || dataset.from === "any state") && dataset.to === states[i]);
-      for (const node of chart.box.querySelectorAll(`[data-state="${states[last]}"]`)) node.classList.add("on");
+      for (const node of chart.box.querySelectorAll(`[data-state="${states[last]}"]`)) { node.classList.add("on"); chart.on = node; }
       if (last > 0) for (const arc of arcs(last)) arc.classList.add("on");
       const lines = states.map((state, i) => (i === 0 ? "" : `${spans[i].from.toFixed(2)} s  ${words(states[i - 1])} \u2192 ${words(state)}${arcs(i).length ? `  (${arcs(i).map((arc) => arc.dataset.guards).join(", ")})` : ""}`));
       chart.past.replaceChildren(...lines.slice(1).slice(-8).reverse().map((line) => element("li", {}, line)));

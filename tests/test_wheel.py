@@ -38,7 +38,7 @@ def apa(wheel: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("environment") / "venv"
     subprocess.run([sys.executable, "-m", "venv", str(folder)], check=True)
     program = folder / ("Scripts" if os.name == "nt" else "bin")
-    subprocess.run([program / "python", "-m", "pip", "install", "--quiet", str(wheel)], check=True)
+    subprocess.run([program / "python", "-m", "pip", "install", "--quiet", "--no-compile", str(wheel)], check=True)
     return program / "apa"
 
 
@@ -52,7 +52,7 @@ def full(wheel: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     program = folder / ("Scripts" if os.name == "nt" else "bin")
     code = "import sysconfig; print(sysconfig.get_path('purelib'))"
     place = subprocess.run([program / "python", "-c", code], capture_output=True, text=True, check=True).stdout.strip()
-    command = [sys.executable, "-m", "pip", "install", "--quiet", "--no-deps", "--target", place, str(wheel)]
+    command = [sys.executable, "-m", "pip", "install", "--quiet", "--no-compile", "--no-deps", "--target", place, str(wheel)]
     subprocess.run(command, check=True)
     Path(place, "extras.pth").write_text(sysconfig.get_path("purelib") + "\n")
     apa = program / "apa"
@@ -64,6 +64,7 @@ def full(wheel: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
 def call(apa: Path, folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
     environment = {name: value for name, value in os.environ.items() if name not in ("PYTHONPATH", "APA_DIST")}
     environment["XDG_CACHE_HOME"] = str(folder / "cache")
+    environment.setdefault("ZIG_GLOBAL_CACHE_DIR", str(Path.home() / ".cache" / "zig"))  # the C library, built once
     return subprocess.run([apa, *arguments], cwd=folder, env=environment, capture_output=True, text=True, check=False)
 
 

@@ -52,8 +52,8 @@ def full(wheel: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     program = folder / ("Scripts" if os.name == "nt" else "bin")
     code = "import sysconfig; print(sysconfig.get_path('purelib'))"
     place = subprocess.run([program / "python", "-c", code], capture_output=True, text=True, check=True).stdout.strip()
-    command = [sys.executable, "-m", "pip", "install", "--quiet", "--no-compile", "--no-deps", "--target", place, str(wheel)]
-    subprocess.run(command, check=True)
+    command = [sys.executable, "-m", "pip", "install", "--quiet", "--no-compile", "--no-deps", "--target", place]
+    subprocess.run([*command, str(wheel)], check=True)
     Path(place, "extras.pth").write_text(sysconfig.get_path("purelib") + "\n")
     apa = program / "apa"
     apa.write_text(f"#!{program / 'python'}\nfrom orchestrator.cli import main\nraise SystemExit(main())\n")

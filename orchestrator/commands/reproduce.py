@@ -3,16 +3,17 @@
 import argparse
 import json
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from fmus.files import write_whole
 from orchestrator.cosim.fmu_files import KINDS, default_kind, fmu_files
-from orchestrator.papers.drive import drive
 from orchestrator.papers.papers import paper, papers
-from orchestrator.papers.result import Drive, Driven
-from orchestrator.papers.table import print_reproduction
 from orchestrator.text.console import say
 from orchestrator.text.errors import NOT_PARKED, PARKED
 from orchestrator.text.owned import owned
+
+if TYPE_CHECKING:
+    from orchestrator.papers.result import Drive, Driven
 
 EXAMPLES = """examples:
   apa reproduce guo2015                 the five cases at both steering rates, beside the paper
@@ -37,6 +38,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Reproduce, write pictures and result.json, print. Returns 0 if every check holds, else 1."""
+    from orchestrator.papers.table import print_reproduction
+
     names = papers() if arguments.paper == "all" else [arguments.paper]
     functions = [(name, paper(name)) for name in names]
     drive = _driver(arguments.fmus)
@@ -57,11 +60,13 @@ def run(arguments: argparse.Namespace) -> int:
     return PARKED if all(result.passed for result in results) else NOT_PARKED
 
 
-def _driver(kind: str) -> Drive:
+def _driver(kind: str) -> "Drive":
+    from orchestrator.papers.drive import drive
+
     files = None if kind == "none" else fmu_files(kind, say)
     done: dict[str, Driven] = {}
 
-    def drive_once(name: str) -> Driven:
+    def drive_once(name: str) -> "Driven":
         if name not in done:
             say(f"driving {name}")
             done[name] = drive(name, files, kind)

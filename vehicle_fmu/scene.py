@@ -52,7 +52,10 @@ class SceneParams(NamedTuple):
     ground_clearance: Annotated[float, Signal("m", "kerbs lower than this pass under the bumpers", 0.0, 1.0, HOUSE)] = (
         0.15
     )
-    wheel_radius: Annotated[float, Signal("m", "tyres reach this far beyond the axles", 0.0, 1.0, HOUSE)] = 0.3
+    tyre_reach: Annotated[
+        float, Signal("m", "tyres reach this far beyond the axles, as high as a kerb is", 0.0, 1.0, HOUSE)
+    ] = 0.3
+    """At most the radius of the tyre; what the wheel rolls on is ``double_track.hub.radius``."""
 
 
 def is_there(obstacle: Obstacle, time_ns: int) -> bool:
@@ -78,7 +81,7 @@ def clearance(pose: Pose, car: Car, scene: SceneParams, time_ns: int) -> float:
     for obstacle in scene.boxes:
         if is_there(obstacle, time_ns):
             nearest = nearer(nearest, body, obstacle_box(obstacle, time_ns))
-    low = outline(pose, car.wheelbase, scene.wheel_radius, scene.wheel_radius, car.width)
+    low = outline(pose, car.wheelbase, scene.tyre_reach, scene.tyre_reach, car.width)
     for kerb in scene.kerbs:
         if kerb.height > 0.0:
             part = low if kerb.height < scene.ground_clearance else body

@@ -110,7 +110,7 @@ def _hears(sensors: CarUltrasonic, p: UltrasonicParams) -> bool:
 
 
 def _stands(p: SceneParams) -> bool:
-    total = p.ground_clearance + p.wheel_radius
+    total = p.ground_clearance + p.tyre_reach
     for box in p.boxes:
         total = total + box.x + box.y + box.heading + box.length + box.width
         total = total + box.speed_x + box.speed_y + box.moves_at + box.halts_at

@@ -8,8 +8,8 @@ from controller_fmu.apa.phases import ApaPhase
 from controller_fmu.apa.signals import Alarm, ApaSignals, PlannedMove, PlannedPiece
 from controller_fmu.apa.slot import mirror_of
 from controller_fmu.apa.system import ApaState
-from controller_fmu.apa.ways.fit import shortest_of_iso
 from controller_fmu.apa.ways.move import Piece
+from controller_fmu.apa.ways.shortest_slot import ISO_16787, shortest_slot
 from controller_fmu.common.slot_frame import SlotFrame, to_world
 from controller_fmu.interface import ControllerOutput, ControllerParams
 from modelkit.vocabulary import Pose, Prompt
@@ -116,7 +116,7 @@ def _signals(state: ApaState, frame: SlotFrame, params: ControllerParams) -> Apa
         target=to_world(Pose(), frame) if shown else Pose(),
         moves=state.parking.plan.moves,
         parking_time=state.watch.running * 1e-9,
-        iso_spare=slot.length - shortest_of_iso(slot.kind, params.car) if shown else 0.0,
+        iso_spare=slot.length - shortest_slot(slot.kind, params.car, ISO_16787) if shown else 0.0,
         move=_move(state.parking, frame),
     )
 

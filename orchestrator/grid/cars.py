@@ -5,10 +5,11 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from controller_fmu.apa.slot import Kind
-from controller_fmu.apa.ways.fit import BESIDE_OF_ISO, shortest_of_iso
+from controller_fmu.apa.ways.shortest_slot import shortest_slot
 from controller_fmu.interface import Reason
 from modelkit.car import Car
 from modelkit.variables import with_values
+from orchestrator.grid.cases import ISO
 from orchestrator.scenario.load_scenario import load_scenario, scenario_names
 from orchestrator.scenario.requirements import shipped_requirements
 from orchestrator.scenario.scenario import Scenario
@@ -65,7 +66,7 @@ def lacking(scenario: Scenario) -> str:
     length = car.wheelbase + car.front_overhang + car.rear_overhang
     along, across = scenario.slot.length, scenario.slot.width
     if abs(math.sin(scenario.slot.heading)) > 0.5:
-        asked = ((across, shortest_of_iso(Kind.PERPENDICULAR, car), "wide"), (along, length, "deep"))
+        asked = ((across, shortest_slot(Kind.PERPENDICULAR, car, ISO), "wide"), (along, length, "deep"))
     else:
-        asked = ((along, shortest_of_iso(Kind.PARALLEL, car), "long"), (across, car.width + BESIDE_OF_ISO, "deep"))
+        asked = ((along, shortest_slot(Kind.PARALLEL, car, ISO), "long"), (across, car.width + ISO.deeper, "deep"))
     return ", ".join(f"{has:.2f} m {what}, {needs:.2f} m asked" for has, needs, what in asked if has < needs - 1e-9)

@@ -10,12 +10,14 @@ from functools import cache
 from typing import Any, NamedTuple
 
 from controller_fmu.apa.slot import Kind
-from controller_fmu.apa.ways.fit import shortest_of_iso
+from controller_fmu.apa.ways.shortest_slot import SlotSizes, shortest_slot
 from modelkit.car import Car, CarSteering, CarUltrasonic, mounts_on
 from orchestrator.scenario.car import car_parameters
 from orchestrator.scenario.requirements import Requirement, shipped_requirements
 from orchestrator.scenario.scenario import Scenario, Slot, Target
+from orchestrator.scenario.slot_sizes import shipped_slot_sizes
 
+ISO = SlotSizes(**shipped_slot_sizes("iso16787"))
 BODIES = ("kinematic", "double_track")
 BODY = {"kinematic": 0, "double_track": 2}
 RATIO = 19.0
@@ -78,7 +80,7 @@ def cases(lot: int = 0) -> list[GridCase]:
     everything = itertools.product(CARS, slots, BESIDE, HEADINGS, BODIES)
     for number, (car, (kind, side, extra), beside, degrees, body) in enumerate(everything):
         speed = SPEEDS[random.Random(number + LOTS * lot).randrange(len(SPEEDS))]
-        length = shortest_of_iso(kind, CARS[car]) + extra
+        length = shortest_slot(kind, CARS[car], ISO) + extra
         heading = math.radians(degrees)
         found.append(GridCase(number, car, kind, side, extra, beside, heading, body, speed, length, lot))
     return found

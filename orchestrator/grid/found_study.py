@@ -40,7 +40,7 @@ def study(runs: int = 1000, lot: int = 0, told: bool = False) -> Study:
     content = {
         "name": "valet-slots",
         "title": "Slots that the valet finds: kinds, angles, neighbours, ends, streets, sides, ways past",
-        "description": "Parked: within GB/T 41630's 3 deg and 15 cm, no contact; the sensors alone tell the slot.",
+        "description": "Parked: turned and beside as GB/T 41630 allows, no contact; the sensors alone tell the slot.",
         "map": {"x": "angle", "y": "neighbours", "split": "end"},
     }
     return Study(scenario, design, content, measures=MEASURES)

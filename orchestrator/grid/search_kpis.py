@@ -16,9 +16,9 @@ import numpy as np
 from rich.table import Table as Printed
 
 from controller_fmu.apa.slot import Kind
-from controller_fmu.apa.ways.fit import shortest_of_iso
+from controller_fmu.apa.ways.shortest_slot import shortest_slot
 from orchestrator.cosim.slave import Array
-from orchestrator.grid.cases import BODIES, CARS, KINDS, LOTS, GridCase, scenario_of
+from orchestrator.grid.cases import BODIES, CARS, ISO, KINDS, LOTS, GridCase, scenario_of
 from orchestrator.grid.parkings import GHOST, MEASURES, ODOMETRY, POSE, SIGNALS, corner_errors, pose_of
 from orchestrator.grid.parkings import SHOWN as WHILE_SHOWN
 from orchestrator.sweep.study.cases import LabelledScenario, design_of
@@ -59,7 +59,7 @@ def cases(lot: int = 0) -> list[GridCase]:
 def _case(number: int, lot: int, kind: int, size: int, speed: float, beside: float, draw: int) -> GridCase:
     lottery = random.Random(f"search {number + LOTS * lot}")
     name = lottery.choice(list(CARS))
-    car, shortest = CARS[name], shortest_of_iso(kind, CARS[name])
+    car, shortest = CARS[name], shortest_slot(kind, CARS[name], ISO)
     length = car.wheelbase + car.front_overhang + car.rear_overhang
     small = (length if kind == Kind.PARALLEL else car.width) + TOO_SMALL[kind]
     extra = (*WIDER[kind], small - shortest)[size]

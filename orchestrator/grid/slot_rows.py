@@ -126,7 +126,7 @@ def study(lot: int = 0, lots: int = 1) -> Study:
     content = {
         "name": "valet-rows",
         "title": "The valet in rows of slots: angles, tail or nose in, streets, ways to come, cars",
-        "description": "Parked: within GB/T 41630's 3 deg and 15 cm, no contact; the slot is told by its corners.",
+        "description": "Parked: turned and beside as GB/T 41630 allows, no contact; the slot is told by its corners.",
         "map": {"x": "angle", "y": "street", "split": "kind"},
     }
     measures = {

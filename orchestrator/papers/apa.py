@@ -12,8 +12,9 @@ from controller_fmu.apa.outline import Shape, clearance
 from controller_fmu.apa.params import ApaParams
 from controller_fmu.apa.slot import Kind, Margins, Site, Slot, shortest_for_one_move, site_of
 from controller_fmu.apa.ways.exit import exit_of
-from controller_fmu.apa.ways.fit import least_moves, shortest_of_iso
+from controller_fmu.apa.ways.fit import least_moves
 from controller_fmu.apa.ways.move import is_move_free, length_of, point_at
+from controller_fmu.apa.ways.shortest_slot import SlotSizes, shortest_slot
 from controller_fmu.apa.ways.start_range import start_range
 from controller_fmu.apa.ways.turns import reverse_s, turn_of
 from controller_fmu.common.curve import advance
@@ -24,6 +25,7 @@ from modelkit.vocabulary import Pose
 from orchestrator.papers.apa_figure import draw_apa
 from orchestrator.papers.result import CONCLUSION, OWN, PRINTED, Drive, Driven, Reproduction, Row, bound_row, not_tested
 from orchestrator.scenario.load_scenario import load_scenario
+from orchestrator.scenario.slot_sizes import shipped_slot_sizes
 
 TITLE = "APA: from looking for a slot to parked (ADAS algorithm design 8)"
 SCENARIOS = ("apa-parallel", "apa-perpendicular", "apa-parallel-tight", "apa-takeover")
@@ -96,7 +98,8 @@ def _length_rows(name: str) -> list[Row]:
     width = 2.0 * car.half_width
     closed = shortest_for_one_move(car, 1.0 / car.curvature - car.half_width, width)
     by_search = shortest_by_search(car, width)
-    iso = shortest_of_iso(Kind.PARALLEL, Car(wheelbase=car.front, front_overhang=0.0, rear_overhang=car.rear))
+    sizes = SlotSizes(**shipped_slot_sizes("iso16787"))
+    iso = shortest_slot(Kind.PARALLEL, Car(wheelbase=car.front, front_overhang=0.0, rear_overhang=car.rear), sizes)
     slot = Slot(Kind.PARALLEL, 0, Pose(0.0, 0.0, 0.0), iso, 0.0, width + 0.4)
     return [
         Row("", f"{name}: L_min, formula and search", "m", closed, by_search, 0.002, basis=PRINTED),

@@ -7,8 +7,10 @@ Scenarios do not tell all of them: many are limits that a drive without trouble 
 import ast
 import inspect
 import json
-import sys
+from importlib import import_module
 from pathlib import Path
+from pkgutil import walk_packages
+from types import ModuleType
 from typing import Any
 
 import pytest
@@ -25,13 +27,19 @@ Number = float | int
 def numbers() -> dict[str, Any]:
     """Return model or module -> name -> number, or list of numbers."""
     found = {model.name: {item.name: plain(item.start) for item in variables(model.params)} for model in MODELS}
-    for name, module in sorted(sys.modules.items()):
-        if name.split(".")[0] in ("vehicle_fmu", "controller_fmu"):
-            constants = {item: plain(vars(module)[item]) for item in assigned(inspect.getsource(module))}
-            kept = {item: value for item, value in constants.items() if value is not None}
-            if kept:
-                found[name] = kept
+    for module in modules():
+        constants = {item: plain(vars(module)[item]) for item in assigned(inspect.getsource(module))}
+        kept = {item: value for item, value in constants.items() if value is not None}
+        if kept:
+            found[module.__name__] = kept
     return found
+
+
+def modules() -> list[ModuleType]:
+    """Return all files of the models, whoever imports them."""
+    packages = (vehicle_fmu, controller_fmu)
+    names = [item.name for package in packages for item in walk_packages(package.__path__, f"{package.__name__}.")]
+    return [import_module(name) for name in sorted([*(package.__name__ for package in packages), *names])]
 
 
 def assigned(text: str) -> list[str]:

@@ -1,10 +1,16 @@
-"""A standard's numbers stand in orchestrator/limits; what a controller asks of itself by one is no laxer."""
+"""A standard's numbers stand in orchestrator/limits alone; what is told of them elsewhere is held to them here."""
 
 import pytest
 
 from controller_fmu import MODEL
-from modelkit.variables import Variable, variables
+from controller_fmu.apa.slot import Kind
+from controller_fmu.apa.ways.shortest_slot import ISO_16787, shortest_slot
+from modelkit.car import Car
+from modelkit.variables import Variable, variables, with_values
+from orchestrator.scenario.files import shipped
+from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.scenario.requirements import shipped_requirements
+from orchestrator.scenario.slot_sizes import shipped_slot_sizes
 
 LIMITS = {item.id: item.limit for item in shipped_requirements("gbt41630")}
 OF_STANDARD = [item for item in variables(MODEL.params) if item.signal.source == "GB/T 41630"]
@@ -22,6 +28,39 @@ def test_a_controller_asks_no_less_of_itself_than_the_standard_it_names(item: Va
     limit = LIMITS[SAME[item.name.rsplit(".", 1)[-1]]]
     assert isinstance(limit, float)
     assert 0.0 < item.start <= abs(limit)
+
+
+def test_nobody_can_have_a_car_stand_out_further_than_the_standard_allows() -> None:
+    ends = {item.name: item.signal.high for item in OF_STANDARD if item.name in ("apa.plan.stand_out", "apa.end.out")}
+    limit = LIMITS["outline in the slot"]
+    assert isinstance(limit, float)
+    assert ends == {"apa.plan.stand_out": abs(limit), "apa.end.out": abs(limit)}
+
+
+def test_the_assist_knows_the_shortest_slots_as_they_are_told() -> None:
+    assert ISO_16787._asdict() == shipped_slot_sizes("iso16787")
+
+
+@pytest.mark.parametrize(("name", "kind"), [("apa-parallel-tight", 1), ("apa-perpendicular-tight", 2)])
+def test_the_tight_slots_are_the_shortest_but_for_centimetres(name: str, kind: int) -> None:
+    scenario = load_scenario(name)
+    own = {key[4:]: value for key, value in scenario.vehicle.items() if key.startswith("car.")}
+    car = with_values(Car, own)
+    assert scenario.slot is not None
+    along, across = scenario.slot.length, scenario.slot.width
+    shortest = shortest_slot(kind, car, ISO_16787)
+    assert 0.0 <= (along if kind == Kind.PARALLEL else across) - shortest < 0.05
+
+
+def test_a_limit_of_a_standard_is_the_same_in_every_set_that_has_it() -> None:
+    """Shifts into a parallel and into a perpendicular slot are two."""
+    found: dict[tuple[str, str], set[float | str]] = {}
+    for name in shipped("limits"):
+        for item in shipped_requirements(name):
+            if item.source.startswith(("GB/T", "ISO", "UN")):
+                found.setdefault((item.source, item.signal), set()).add(item.limit)
+    twice = {key: limits for key, limits in found.items() if len(limits) > 1}
+    assert twice == {("GB/T 41630", "shifts"): {8.0, 7.0}}
 
 
 def test_there_are_such() -> None:

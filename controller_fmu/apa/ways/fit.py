@@ -6,7 +6,6 @@ from controller_fmu.apa.outline import Shape
 from controller_fmu.apa.params import ApaParams
 from controller_fmu.apa.slot import Kind, Margins, Slot, site_of
 from controller_fmu.apa.ways.exit import VARIANTS, exit_of
-from modelkit.car import Car
 
 
 class Fit(NamedTuple):
@@ -82,20 +81,6 @@ def fit_of(slot: Slot, car: Shape, params: ApaParams) -> Fit:
         else:
             low = middle
     return Fit(False, 0, high)
-
-
-BESIDE_OF_ISO = 0.2
-"""A parallel slot of ISO 16787 is so much deeper than the car is wide [m]."""
-
-
-def shortest_of_iso(kind: int, car: Car) -> float:
-    """Return the length (width) [m] of the shortest slot of ISO 16787 (secondary source) for this car."""
-    length = car.wheelbase + car.front_overhang + car.rear_overhang
-    if kind != Kind.PARALLEL:
-        return car.width + 1.2
-    if length < 4.0:
-        return length + 1.0
-    return 1.25 * length if length <= 6.0 else length + 1.5
 
 
 def least_moves(slot: Slot, car: Shape, params: ApaParams) -> int:

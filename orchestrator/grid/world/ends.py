@@ -12,11 +12,11 @@ from modelkit.vocabulary import Pose
 from orchestrator.cosim.slave import Array
 from orchestrator.grid.parkings import GBT
 from orchestrator.grid.world.scene import THINGS, WHEEL
-from orchestrator.scenario.requirements import Requirement
+from orchestrator.scenario.requirements import Requirement, shipped_requirements
 from orchestrator.sweep.columns import WITHIN
 from orchestrator.sweep.study.study import Columns, Derived, Goal
 from orchestrator.verdict.measures import Measure, When
-from vehicle_fmu.scene import Obstacle, is_there, obstacle_box
+from vehicle_fmu.scene import Obstacle, SceneParams, is_there, obstacle_box
 from vehicle_fmu.ultrasonic import UltrasonicParams
 
 TOUCHING = When("vehicle.contact", (1,))
@@ -30,6 +30,7 @@ FIRST = {
 """Column -> signal at the first instant at which something is touched."""
 DRIVES = (Mode.AUTO_PARKING_ASSIST, Mode.POSITION_TUNING, Mode.PARKING_FINISH, Mode.FAIL)
 """In these the car is the assist's, unless the driver has taken over."""
+CLAIMED = ("final heading", "final lateral position", "outline in the slot")
 NO_CONTACT = (Requirement(id="contact", signal="vehicle.clearance", min=1e-9, source="nothing is touched"),)
 MEASURES = {
     "mode": Measure("last", "controller.apa.mode"),
@@ -105,7 +106,7 @@ MOVABLE = THINGS[:2] + THINGS[3:4]
 KERB = THINGS[-1]
 HEARD = UltrasonicParams().kerb_height
 """Kerbs lower than this [m] are not heard."""
-GROUND_CLEARANCE = 0.15
+GROUND_CLEARANCE = SceneParams().ground_clearance
 """Kerbs lower than this [m] pass under the bumpers."""
 
 
@@ -154,7 +155,8 @@ def _clear(columns: Columns) -> Array:
 def _honest(columns: Columns) -> Array:
     """Return by how much a run that claims to be parked is within GB/T 41630, as a share of its limits."""
     heading, lateral = np.abs(columns["final.heading_error"]), np.abs(columns["final.lateral_error"])
-    shares = [1.0 - heading / math.radians(3.0), 1.0 - lateral / 0.15, 1.0 + columns["final.slot_margin"] / 0.15]
+    turned, aside, out = (abs(float(item.limit)) for item in shipped_requirements("gbt41630", *CLAIMED))
+    shares = [1.0 - heading / turned, 1.0 - lateral / aside, 1.0 + columns["final.slot_margin"] / out]
     least = np.minimum(np.min(shares, axis=0), 1.0)
     ends = np.asarray(columns["end"])
     found = np.where(ends == FALSE, np.minimum(least, -LEAST), np.where(ends == PARKED, np.maximum(least, LEAST), 1.0))

@@ -10,13 +10,14 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from controller_fmu.apa.ways.fit import BESIDE_OF_ISO, shortest_of_iso
+from controller_fmu.apa.ways.shortest_slot import shortest_slot
 from modelkit.car import Car
 from orchestrator.cosim.slave import Array
-from orchestrator.grid.cases import BODY, CARS
+from orchestrator.grid.cases import BODY, CARS, ISO
 from orchestrator.grid.world.factors import NO_SENSOR, NOBODY, STEPS
 from orchestrator.scenario.car import car_parameters
 from orchestrator.sweep.study.space import Seeds
+from vehicle_fmu.scene import SceneParams
 
 F = Mapping[str, Array]
 KINDS = (1, 2)
@@ -31,7 +32,7 @@ PERSON = 0.5
 """Width of a person [m]."""
 FAR_SIDE, NEAR_SIDE = 8.0, 0.6
 """Where a person sets out who goes towards the slots, and where one is gone who goes between cars: y [m]."""
-WHEEL = 0.3
+WHEEL = SceneParams().tyre_reach
 """Tyres reach this far beyond the axles [m]."""
 WALL = 1.0
 """Thickness [m]."""
@@ -47,9 +48,9 @@ def parameters(f: F, seeds: Seeds) -> dict[str, Array]:
     found = {f"{owner}.{name}": values for owner in ("vehicle", "controller") for name, values in told.items()}
     size = _chosen([_size(car) for car in cars], chosen)
     kind = f["kind"].astype(int)
-    shortest = np.array([[shortest_of_iso(number, car) for number in KINDS] for car in cars])[chosen, kind]
+    shortest = np.array([[shortest_slot(number, car, ISO) for number in KINDS] for car in cars])[chosen, kind]
     size = {**size, "slot": shortest + f["extra"], "parallel": kind == 0, "sign": 1.0 - 2.0 * f["side"]}
-    size["depth"] = np.where(size["parallel"], size["width"] + BESIDE_OF_ISO, size["length"]) + f["depth"]
+    size["depth"] = np.where(size["parallel"], size["width"] + ISO.deeper, size["length"]) + f["depth"]
     neighbours = _neighbours(f, size)
     found |= _boxes(neighbours, size["sign"]) | _behind(f, size)
     found |= _standing(f, size, neighbours) | _start(f, size, neighbours)

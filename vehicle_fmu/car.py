@@ -127,7 +127,8 @@ def _tread(
     if params.body != Body.KINEMATIC:
         return _push(state, pedals, angles, params, h)
     speed = roll(state.speed, _at_wheels(pedals, state.selector.gear, params), params.chassis, h)
-    return _rolled(state._replace(pedals=pedals), speed, angles, params, h)
+    state = state._replace(pedals=pedals)
+    return _rolled(state, speed, angles, params, h)
 
 
 def _rolled(state: CarState, speed: float, angles: tuple[float, float], params: VehicleParams, h: float) -> CarState:

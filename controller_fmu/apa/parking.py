@@ -124,7 +124,8 @@ def park(
     step = step_transition(state.step, _guards(state, place, inputs, settled, allowed, params))
     limit = params.apa.end
     missed = state.step == Step.PLAN and not settled and is_in_place(place, limit.lateral, limit.heading)
-    return _moved_on(state._replace(missed=missed), step, place, steering, params)
+    state = state._replace(missed=missed)
+    return _moved_on(state, step, place, steering, params)
 
 
 def _looked_around(
@@ -191,33 +192,35 @@ def has_failed(state: Parking, params: ControllerParams) -> bool:
 
 def _moved_on(state: Parking, step: int, place: CarAtSite, steering: Steering, params: ControllerParams) -> Parking:
     """Return the manoeuvre in ``step``, with what it asks of wheel and speed until the next sample."""
-    plan = state.plan
+    before = state.step
     mirror = place.site.frame.mirror
-    moved = state._replace(step=step, speed=0.0)
-    if step == Step.HALT and state.step == Step.DRIVE:
-        moved = moved._replace(cut=state.sight.blocked and not state.sight.unknown)
-    if step == Step.PLAN and state.step != Step.PLAN:
-        moved = moved._replace(
-            cuts=moved.cuts + 1 if moved.cut else moved.cuts,
+    state = state._replace(step=step, speed=0.0)
+    if step == Step.HALT and before == Step.DRIVE:
+        state = state._replace(cut=state.sight.blocked and not state.sight.unknown)
+    if step == Step.PLAN and before != Step.PLAN:
+        state = state._replace(
+            cuts=state.cuts + 1 if state.cut else state.cuts,
             cut=False,
-            ended=state.step == Step.HALT and plan.moves <= 1,
+            ended=before == Step.HALT and state.plan.moves <= 1,
             attempt=under_way(state.attempt),
             plan=new_search(place.pose),
         )
     if step == Step.SET_WHEEL:
-        leg = _next_leg(state)
-        begun = Tracked(left=length_of(plan.move), to_stop=leg.end, reference=place.pose)
-        moved = moved._replace(leg=leg, tracked=begun if state.step == Step.PLAN else state.tracked)
-        front = set_wheel(plan.move, leg, moved.tracked.way, params.car.wheelbase)
-        moved = moved._replace(wheel=wheel_request(front, mirror, params))
+        leg = _next_leg(state, before)
+        if before == Step.PLAN:
+            begun = Tracked(left=length_of(state.plan.move), to_stop=leg.end, reference=place.pose)
+            state = state._replace(tracked=begun)
+        front = set_wheel(state.plan.move, leg, state.tracked.way, params.car.wheelbase)
+        state = state._replace(leg=leg, wheel=wheel_request(front, mirror, params))
     if step == Step.DRIVE:
-        moved = _set_out(moved) if state.step != Step.DRIVE else moved
-        moved = moved._replace(speed=moved.direction * _speed(state, steering, params))
+        if before != Step.DRIVE:
+            state = _set_out(state)
+        state = state._replace(speed=state.direction * _speed(state, steering, params))
     if step in (Step.DRIVE, Step.HALT):
-        moved = moved._replace(wheel=wheel_request(state.tracked.front_wheel_angle, mirror, params))
+        state = state._replace(wheel=wheel_request(state.tracked.front_wheel_angle, mirror, params))
     if step in (Step.STRAIGHTEN, Step.IDLE):
-        moved = moved._replace(wheel=0.0)
-    return moved
+        state = state._replace(wheel=0.0)
+    return state
 
 
 def _set_out(state: Parking) -> Parking:
@@ -229,11 +232,11 @@ def _set_out(state: Parking) -> Parking:
     return state._replace(shifts=state.shifts + 1 if counted else state.shifts, direction=direction)
 
 
-def _next_leg(state: Parking) -> Leg:
+def _next_leg(state: Parking, before: int) -> Leg:
     """Return the part of the move to drive from this standstill on."""
-    if state.step == Step.PLAN:
+    if before == Step.PLAN:
         return Leg(0.0, next_standstill(state.plan.move, 0.0))
-    if state.step == Step.HALT and state.tracked.to_stop < AT_JUMP:
+    if before == Step.HALT and state.tracked.to_stop < AT_JUMP:
         return Leg(state.leg.end, next_standstill(state.plan.move, state.leg.end))
     return state.leg
 

@@ -36,7 +36,8 @@ BAND = 0.02
 SPREAD = 0.03
 """Further than this [m], and what the noise of the readings makes the line unsure by, is off the line."""
 CONFIRMED = 0.3
-"""A gap is one once it is this long [m]: shorter ones are lost echoes."""
+TWO = 1.5
+"""A gap is one once it is this long [m], and two echoes were not heard: others are lost echoes."""
 DEEP = 50.0
 STEEPEST = 0.28
 LEANS = 0.1
@@ -70,6 +71,8 @@ class SideState(NamedTuple):
     r: float = 0.0
     last: Heard = Heard()
     """Last full bin."""
+    spacing: float = 0.0
+    """Way [m] from the bin before to the last one."""
     steady: int = 0
     """Bins in a row whose distance does not change steeply."""
     begun: float = 0.0
@@ -125,7 +128,7 @@ def _sampled(side: SideState, sample: Heard, half_angle: float, params: SearchPa
     level = way > 0.0 and abs(change) <= FLAT * way + STEP
     steady = side.steady + 1 if level else 0
     cut = side.steady >= ALONG
-    side = side._replace(last=sample, steady=steady, fresh=False)
+    side = side._replace(last=sample, spacing=way, steady=steady, fresh=False)
     if side.mode == NOTHING and near:
         side = _begin_wall(side, sample)
         return side._replace(begun=sample.u - UNSEEN_BEFORE) if cut else side
@@ -170,7 +173,7 @@ def _on_wall(side: SideState, sample: Heard, half_angle: float, params: SearchPa
             mode=WALL, begun=begun, missed=samples[0].u, samples=samples, sums=sums, fresh=fresh, faces=NO_SAMPLES
         )
     side = side._replace(faces=remember(side.faces, sample))
-    if sample.u - side.missed < CONFIRMED:
+    if sample.u - side.missed < _confirmed(side):
         return side
     extent = side.missed - side.begun
     if side.sums.n < 3.0 or extent < params.wall or abs(slope(side.sums, EMPTY)) > STEEPEST:
@@ -201,6 +204,11 @@ def _with_sample(sums: Sums, other: Sums, sample: Heard, steady: int) -> Sums:
         if abs(off) > band:
             sums = EMPTY
     return add(sums, sample.u, sample.w, sample.r)
+
+
+def _confirmed(side: SideState) -> float:
+    """Return how far [m] a neighbour must not have been heard to have ended: never so short that one echo tells it."""
+    return max(CONFIRMED, TWO * side.spacing)
 
 
 def _still_heard(sums: Sums, other: Sums, sample: Heard, sense: float, half_angle: float) -> float:
@@ -245,7 +253,7 @@ def _in_gap(side: SideState, sample: Heard, half_angle: float, params: SearchPar
 
 def _on_next_wall(side: SideState, sample: Heard, half_angle: float, params: SearchParams) -> SideState:
     if abs(sample.r - side.samples[0].r) > 2.0 * params.step + 0.4:
-        if sample.u - side.missed < CONFIRMED:
+        if sample.u - side.missed < _confirmed(side):
             return side
         return side._replace(
             mode=GAP, steady=0, taken=0, samples=NO_SAMPLES, sums=EMPTY, fresh=False, edge_b=0.0, faces=NO_SAMPLES
@@ -290,4 +298,6 @@ def _begin_wall(side: SideState, sample: Heard) -> SideState:
 
 def _anew(side: SideState) -> SideState:
     """Return the side as it starts, but for the bin being filled, the last one and the gaps counted."""
-    return START._replace(n=side.n, u=side.u, w=side.w, r=side.r, last=side.last, found=side.found)
+    return START._replace(
+        n=side.n, u=side.u, w=side.w, r=side.r, last=side.last, spacing=side.spacing, found=side.found
+    )

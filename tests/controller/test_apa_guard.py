@@ -6,7 +6,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from controller_fmu.apa.around.cone import ear_of, echo_of
-from controller_fmu.apa.around.guard import GuardState, HeldCourse, learn_brake, listen, stopping_way, watch_way
+from controller_fmu.apa.around.course import HeldCourse
+from controller_fmu.apa.around.guard import GuardState, learn_brake, listen, stopping_way, watch_way
 from controller_fmu.apa.around.local_map import LocalMap
 from controller_fmu.apa.around.surroundings import shape_of
 from controller_fmu.apa.outline import Box, Obstacles, box_clearance

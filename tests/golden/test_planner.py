@@ -13,7 +13,8 @@ from typing import Any
 
 import pytest
 
-from controller_fmu.apa.around.guard import GuardState, HeldCourse, listen, watch_way
+from controller_fmu.apa.around.course import HeldCourse
+from controller_fmu.apa.around.guard import GuardState, listen, watch_way
 from controller_fmu.apa.around.local_map import LocalMap
 from controller_fmu.apa.slot import Kind, Site
 from controller_fmu.apa.ways import planner

@@ -10,9 +10,10 @@ import math
 from typing import NamedTuple
 
 from controller_fmu.apa.around.cone import ConeEar, Echo, rim_point
+from controller_fmu.apa.around.course import HeldCourse, after
 from controller_fmu.apa.around.local_map import LocalMap, ear_at, expected, nearest_case, unsure_of
+from controller_fmu.apa.around.near import room_by_echoes
 from controller_fmu.apa.outline import Box, Obstacles, Shape, box_clearance, clearance, grown
-from controller_fmu.common.curve import advance
 from controller_fmu.interface import ControllerParams
 from modelkit.geometry import Point
 from modelkit.vocabulary import Pose
@@ -34,6 +35,8 @@ SURE = 0.03
 """The gap is made for things that are as sure as this [m]."""
 RESERVE = 0.03
 """A car is slowed down so that it could stop so much [m] earlier than it must."""
+SLOW = 0.15
+"""So fast [m/s] a car may go beside anything that is heard, however near."""
 STANDING = 0.05
 DOUBTS = 2.5
 DIFFERENT = 0.5
@@ -145,18 +148,6 @@ def learn_brake(state: GuardState, speed: float, braking: bool, dt_ns: int, para
     return state._replace(delay=max(state.delay, min(late, 0.5)))
 
 
-class HeldCourse(NamedTuple):
-    """Where the car drives if nobody turns the wheel."""
-
-    pose: Pose
-    """In the frame of the obstacles."""
-    direction: int
-    curvature: float
-    """Of the front wheels as they are [1/m]."""
-    speed: float
-    car: Shape
-
-
 def watch_way(
     state: GuardState,
     readings: tuple[float, ...],
@@ -176,6 +167,9 @@ def watch_way(
     raw = _free_of_echoes(state, mapped, stop, guard.echo_gap)
     beside = min(known, raw)
     allowed = speed_for(state, min(min(beside, strange), straight) - RESERVE, params)
+    heard = room_by_echoes(readings, course, here.frame.mirror, params.car.ultrasonic)
+    old = abs(course.speed) * params.car.ultrasonic.cycle
+    allowed = min(allowed, max(SLOW, speed_for(state, heard - old - RESERVE, params)))
     return Sight(allowed, min(beside, strange) <= stop or straight <= needed, strange <= stop and strange <= beside)
 
 
@@ -193,11 +187,6 @@ def _unsure(around: Obstacles, here: LocalMap, gap: float) -> Obstacles:
 
 def _spread(variance: float) -> float:
     return UNSURE * max(0.0, math.sqrt(variance) - SURE)
-
-
-def after(course: HeldCourse, way: float) -> Pose:
-    """Return where the car is ``way`` [m] further on its course."""
-    return advance(course.pose, float(course.direction), way, course.curvature, course.curvature)
 
 
 def _free_way(course: HeldCourse, stop: float, around: Obstacles) -> float:

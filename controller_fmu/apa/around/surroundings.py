@@ -3,7 +3,8 @@
 import math
 from typing import NamedTuple
 
-from controller_fmu.apa.around.guard import GuardState, HeldCourse, Sight, watch_way
+from controller_fmu.apa.around.course import HeldCourse
+from controller_fmu.apa.around.guard import GuardState, Sight, watch_way
 from controller_fmu.apa.around.local_map import LocalMap, is_certain
 from controller_fmu.apa.outline import Shape, clearance
 from controller_fmu.apa.slot import Site, Slot, mirror_of, stands_out_by

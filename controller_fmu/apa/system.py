@@ -196,7 +196,7 @@ def _shown(state: ApaState, inputs: ControllerInput, params: ControllerParams) -
     slot = search.slot if search.given else braked(state.search.slots[0], state.search.fastest, params)
     here = begin_map(slot, inputs.odometry, params.apa.map)
     return state._replace(
-        around=Around(slot, here, GuardState(delay=state.around.guard.delay)),
+        around=Around(slot, here, GuardState(delay=state.around.guard.delay, shown=state.around.guard.shown)),
         parking=start_planning(slot, inputs.odometry, params),
         pose=inputs.odometry,
     )

@@ -12,9 +12,10 @@ from typing import NamedTuple
 from controller_fmu.apa.around.cone import ConeEar, Echo, rim_point
 from controller_fmu.apa.around.course import HeldCourse, after
 from controller_fmu.apa.around.local_map import LocalMap, ear_at, expected, nearest_case, unsure_of
-from controller_fmu.apa.around.near import room_by_echoes
+from controller_fmu.apa.around.near import nearest_told, room_by_echoes
 from controller_fmu.apa.outline import Box, Obstacles, Shape, box_clearance, clearance, grown
 from controller_fmu.interface import ControllerParams
+from modelkit.car import CarUltrasonic
 from modelkit.geometry import Point
 from modelkit.vocabulary import Pose
 
@@ -38,8 +39,13 @@ RESERVE = 0.03
 SLOW = 0.15
 """So fast [m/s] a car may go beside anything that is heard, however near."""
 STANDING = 0.05
+TELLS = 0.4
+UNSEEN_BRAKE = 0.3
+"""Until a stop from ``TELLS`` [m/s] was seen the brake is taken to be so late [s]: what 1.1 m/s2 take longer than 2."""
 DOUBTS = 2.5
 DIFFERENT = 0.5
+LEFT = 0.4
+"""What was too near to be told is forgotten where the sensor is so far [m] from it, and hears nothing."""
 SHARES = (-1.0, -0.5, 0.0, 0.5, 1.0)
 
 
@@ -69,8 +75,12 @@ class GuardState(NamedTuple):
     unknown: tuple[Unknown, ...] = (Unknown(),) * 12
     echoes: tuple[Point, ...] = (NOWHERE,) * 12
     """Where the last echo of each sensor comes from (map's frame), if the map explains it."""
+    close: tuple[Unknown, ...] = (Unknown(),) * 12
+    """What is nearer than a sensor can tell: where it was when it came so near, for the readings tell no more of it."""
     delay: float = 0.0
     """Longest seen from a brake request to its effect [s]."""
+    shown: bool = False
+    """The car was seen to stop from a speed that tells."""
     braked_from: float = 0.0
     """Speed [m/s] at which a stop was last asked for; 0: none is under way."""
     braked_way: float = 0.0
@@ -84,9 +94,12 @@ def stopping_way(state: GuardState, speed: float, params: ControllerParams) -> f
     return v * late + 0.5 * v * v / params.apa.drive.brake
 
 
-def speed_for(state: GuardState, room: float, params: ControllerParams) -> float:
-    """Return the speed [m/s] from which the car stops within ``room`` [m]: v t + v^2 / 2 b = room; 0 without room."""
-    late = max(state.delay, params.apa.guard.brake_delay)
+def speed_for(state: GuardState, room: float, least: float, params: ControllerParams) -> float:
+    """Return the speed [m/s] from which the car stops within ``room`` [m]: v t + v^2 / 2 b = room; 0 without room.
+
+    ``least``: how late [s] the brake is taken to be where nothing worse was seen.
+    """
+    late = max(state.delay, least)
     brake = params.apa.drive.brake
     return brake * (math.sqrt(late * late + 2.0 * room / brake) - late) if room > 0.0 else 0.0
 
@@ -97,12 +110,14 @@ def listen(state: GuardState, readings: tuple[float, ...], here: LocalMap, param
     surprise = params.apa.guard.surprise
     unknown = state.unknown
     echoes = state.echoes
+    close = state.close
     near = nearest_case(here, DOUBTS)
     for number in range(12):
         reading = readings[number]
         mount = sensors.mounts[number]
         ear = ear_at(mount, here.pose, here.frame.mirror, sensors.half_angle)
         wide = ear_at(mount, here.pose, here.frame.mirror, sensors.half_angle + WIDER)
+        close = close[1:] + (_held(close[0], ear, reading, sensors),)
         kept = unknown[0]
         echo = NOWHERE
         known = expected(wide, here)
@@ -113,8 +128,7 @@ def listen(state: GuardState, readings: tuple[float, ...], here: LocalMap, param
             echo = _origin(ear, expected(wide, near).echo, reading) if echo.x == NOWHERE.x else echo
         echoes = echoes[1:] + (echo,)
         if reading < LOOKED_AT and not explained:
-            points = tuple(rim_point(ear, share, reading) for share in SHARES)
-            kept = Unknown(True, points)
+            kept = _arc_of(ear, reading)
         elif kept.there:
             middle = kept.points[2]
             dx = middle.x - ear.x
@@ -124,7 +138,21 @@ def listen(state: GuardState, readings: tuple[float, ...], here: LocalMap, param
             far = dx * dx + dy * dy
             kept = Unknown(not (seen and far < reading * reading) and far < 4.0, kept.points)
         unknown = unknown[1:] + (kept,)
-    return state._replace(unknown=unknown, echoes=echoes)
+    return state._replace(unknown=unknown, echoes=echoes, close=close)
+
+
+def _arc_of(ear: ConeEar, reading: float) -> Unknown:
+    """Return the places that an echo may come from."""
+    return Unknown(True, tuple(rim_point(ear, share, reading) for share in SHARES))
+
+
+def _held(close: Unknown, ear: ConeEar, reading: float, sensors: CarUltrasonic) -> Unknown:
+    """Return what is too near to be told: as it was when it came so near, until it is heard farther off, or left."""
+    if reading <= nearest_told(sensors):
+        return close if close.there else _arc_of(ear, sensors.min_range)
+    dx = close.points[2].x - ear.x
+    dy = close.points[2].y - ear.y
+    return close if reading >= LOOKED_AT and dx * dx + dy * dy < LEFT * LEFT else Unknown()
 
 
 def _origin(ear: ConeEar, echo: Echo, reading: float) -> Point:
@@ -145,7 +173,7 @@ def learn_brake(state: GuardState, speed: float, braking: bool, dt_ns: int, para
     if v > 0.01 or begun < STANDING:
         return state._replace(braked_from=begun, braked_way=way)
     late = (way - 0.5 * begun * begun / params.apa.drive.brake) / begun
-    return state._replace(delay=max(state.delay, min(late, 0.5)))
+    return state._replace(delay=max(state.delay, min(late, 0.5)), shown=state.shown or begun >= TELLS)
 
 
 def watch_way(
@@ -162,14 +190,16 @@ def watch_way(
     stop = max(LEAST, needed)
     known = _free_way(course, stop, _unsure(around, here, guard.gap))
     mapped = course._replace(pose=here.pose)
-    strange = _free_of_unknown(state, mapped, stop, guard.surprise_gap)
+    strange = _free_of_unknown(state.unknown, mapped, stop, guard.surprise_gap)
+    tight = _free_of_unknown(state.close, mapped, stop, guard.echo_gap)
     straight = _straight_ahead(readings, course.direction, params) - guard.stop_gap
     raw = _free_of_echoes(state, mapped, stop, guard.echo_gap)
-    beside = min(known, raw)
-    allowed = speed_for(state, min(min(beside, strange), straight) - RESERVE, params)
+    beside = min(min(known, raw), tight)
+    allowed = speed_for(state, min(min(beside, strange), straight) - RESERVE, guard.brake_delay, params)
     heard = room_by_echoes(readings, course, here.frame.mirror, params.car.ultrasonic)
     old = abs(course.speed) * params.car.ultrasonic.cycle
-    allowed = min(allowed, max(SLOW, speed_for(state, heard - old - RESERVE, params)))
+    late = guard.brake_delay if state.shown else max(guard.brake_delay, UNSEEN_BRAKE)
+    allowed = min(allowed, max(SLOW, speed_for(state, heard - old - RESERVE, late, params)))
     return Sight(allowed, min(beside, strange) <= stop or straight <= needed, strange <= stop and strange <= beside)
 
 
@@ -200,10 +230,10 @@ def _free_way(course: HeldCourse, stop: float, around: Obstacles) -> float:
     return FREE
 
 
-def _free_of_unknown(state: GuardState, course: HeldCourse, stop: float, gap: float) -> float:
-    """Return how far [m] the outline can go before it is nearer than ``gap`` to what an unexplained echo is of."""
+def _free_of_unknown(arcs: tuple[Unknown, ...], course: HeldCourse, stop: float, gap: float) -> float:
+    """Return how far [m] the outline can go before it is nearer than ``gap`` to a place that an echo may be of."""
     nearest = FREE
-    for item in state.unknown:
+    for item in arcs:
         if item.there:
             for number in range(LOOKS + 1):
                 way = stop if number == 0 else AHEAD * number

@@ -17,8 +17,6 @@ from modelkit.vocabulary import Pose
 NEAR = 0.9
 """Echoes from farther away [m] are not looked at."""
 CLOSE = 0.03
-LOWEST = 1.1
-"""A reading within so many steps of the nearest that can be told says that something is that near, or nearer."""
 NEARER = 0.004
 WAYS = (0.1, 0.2, 0.3, 0.45, 0.6)
 SHARES = (-1.0, -0.5, 0.0, 0.5, 1.0)
@@ -27,7 +25,7 @@ FREE = 100.0
 
 def room_by_echoes(readings: tuple[float, ...], course: HeldCourse, mirror: float, sensors: CarUltrasonic) -> float:
     """Return how far [m] the outline can go on its ``course`` before it may come close to what any sensor hears."""
-    lowest = sensors.min_range + LOWEST * sensors.resolution
+    lowest = nearest_told(sensors)
     here = course._replace(pose=Pose(0.0, 0.0, 0.0))
     poses = tuple(after(here, way) for way in WAYS)
     room = FREE
@@ -64,3 +62,8 @@ def _gap(point: Point, car: Shape) -> float:
     x = max(0.0, max(point.x - car.front, -car.rear - point.x))
     y = max(0.0, abs(point.y) - car.half_width)
     return math.sqrt(x * x + y * y)
+
+
+def nearest_told(sensors: CarUltrasonic) -> float:
+    """Return the distance [m] above which a reading is one: the nearest told says that something is nearer still."""
+    return sensors.min_range + 1.1 * sensors.resolution

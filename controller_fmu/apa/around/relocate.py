@@ -6,11 +6,11 @@ A kerb or wall behind the slot is entered when two sensors agree on it while the
 import math
 
 from controller_fmu.apa.around.local_map import LocalMap
+from controller_fmu.apa.around.near import nearest_told
 from controller_fmu.apa.around.thing import thing_at
 from controller_fmu.apa.slot import UNSEEN, Kind, Slot, mirror_of
 from controller_fmu.common.slot_frame import SlotFrame, to_slot, to_world
 from controller_fmu.interface import ControllerInput, ControllerParams
-from modelkit.car import CarUltrasonic
 from modelkit.vocabulary import Pose
 
 NEAR = 0.9
@@ -94,8 +94,3 @@ def braked(slot: Slot, speed: float, params: ControllerParams) -> Slot:
     missed = 0.5 * params.apa.search.slip * speed * speed
     a = to_world(Pose(-missed, 0.0, 0.0), SlotFrame(slot.a, mirror_of(slot)))
     return slot._replace(a=a)
-
-
-def nearest_told(sensors: CarUltrasonic) -> float:
-    """Return the distance [m] above which a reading is one: the nearest told says that something is nearer still."""
-    return sensors.min_range + 1.1 * sensors.resolution

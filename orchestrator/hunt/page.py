@@ -12,6 +12,8 @@ from orchestrator.hunt.hunt import Hunted
 from orchestrator.hunt.influence import Index
 from orchestrator.hunt.subject import Subject
 from orchestrator.report.page import still_page
+from orchestrator.sweep.page.page import study_style
+from orchestrator.sweep.study.space import Factor
 
 BODY = """<header class="top"><div class="headline"><h1>{title}</h1><p id="subtitle">{subtitle}</p></div>
 <span class="verdict {kind}">{verdict}</span></header>
@@ -109,7 +111,7 @@ def write_page(subject: Subject, hunted: Hunted, out: Path) -> Path:
         verdict=f"{hunted.broken} runs break it" if hunted.broken else "nothing found",
         cards="".join(cards),
     )
-    write_whole(page, still_page(f"Hunt in {subject.study.name}", body))
+    write_whole(page, still_page(f"Hunt in {subject.study.name}", body, study_style()))
     return page
 
 
@@ -158,13 +160,18 @@ def _ranges(subject: Subject) -> str:
     rows = [
         (
             f"<code>{escape(item.name)}</code>",
-            ", ".join(dict.fromkeys(item.choices)) if item.choices else f"{item.low:g} to {item.high:g} {item.unit}",
-            item.choices[int(item.nominal)] if item.choices else f"{item.nominal:g}",
+            (", ".join(dict.fromkeys(item.choices)) if item.choices else f"{item.low:g} to {item.high:g}")
+            + _unit(item),
+            (item.choices[int(item.nominal)] if item.choices else f"{item.nominal:g}") + _unit(item),
             escape(item.text),
         )
         for item in subject.space.factors
     ]
     return CARD.format(title="Ranges", text="", inner=_table(("factor", "range", "nominal", ""), rows))
+
+
+def _unit(factor: Factor) -> str:
+    return "" if factor.unit in ("", "1") else f" {escape(factor.unit)}"
 
 
 def _table(heads: Iterable[str], rows: Iterable[tuple[str, ...]]) -> str:

@@ -52,7 +52,8 @@ def _factor(field: Field, column: Array, scenario: Scenario) -> Factor:
     nominal = _nominal(field, scenario)
     if len(values) <= FEW or field.variable.kind is bool:
         place = int(np.argmin(np.abs(values - nominal)))
-        return Factor(field.key, signal.unit, 0, place, len(values) - 1, signal.text, tuple(f"{v:g}" for v in values))
+        words = tuple(f"{v:g}" if signal.states is None else signal.states(int(v)).name.lower() for v in values)
+        return Factor(field.key, signal.unit, 0, place, len(values) - 1, signal.text, words)
     low, high = float(values[0]), float(values[-1])
     return Factor(field.key, signal.unit, low, min(max(nominal, low), high), high, signal.text)
 

@@ -233,6 +233,7 @@ def test_the_chart_shows_the_state_and_how_it_came(page):
     on = page.evaluate("() => [...document.querySelectorAll('[data-state].on')].map((node) => node.dataset.state)")
     assert on == [page.evaluate("() => window.live.drive.state('controller.phase')")]
     assert page.locator(".past li").count() == 4
+    assert page.text_content("#chart-said").startswith(f"{on[0].lower().replace('_', ' ')}:")
     page.focus('[data-state="STOP"]')
     assert page.text_content("#chart-said").startswith("stop:")
 

@@ -23,6 +23,9 @@ class StateChart {
     for (const node of chart.box.querySelectorAll("[data-state]")) {
       const state = chart.states[node.dataset.state];
       const tell = () => { $("chart-said").textContent = `${words(node.dataset.state)}: ${state.text}${state.leaves.length ? ` Leaves: ${state.leaves.join("; ")}.` : ""}`; };
+      const tellNow = () => { if (chart.on && !chart.box.contains(document.activeElement)) chart.on.tellState(); };
+      /** @type {any} */ (node).tellState = tell;
+      node.addEventListener("pointerleave", tellNow);
       node.setAttribute("tabindex", "0");
       node.setAttribute("role", "img");
       node.setAttribute("aria-label", words(node.dataset.state));
@@ -48,7 +51,7 @@ class StateChart {
       chart.key = key;
       for (const node of chart.box.querySelectorAll(".on")) node.classList.remove("on");
       const last = states.length - 1, arcs = (i) => [...chart.box.querySelectorAll("[data-from]")].filter(({ dataset }) => (dataset.from === states[i - 1] || dataset.from === "any state") && dataset.to === states[i]);
-      for (const node of chart.box.querySelectorAll(`[data-state="${states[last]}"]`)) { node.classList.add("on"); chart.on = node; }
+      for (const node of chart.box.querySelectorAll(`[data-state="${states[last]}"]`)) { node.classList.add("on"); chart.on = node; if (chart === this.own[0] && !chart.box.matches(":hover, :focus-within")) node.tellState(); }
       if (last > 0) for (const arc of arcs(last)) arc.classList.add("on");
       const lines = states.map((state, i) => (i === 0 ? "" : `${spans[i].from.toFixed(2)} s  ${words(states[i - 1])} \u2192 ${words(state)}${arcs(i).length ? `  (${arcs(i).map((arc) => arc.dataset.guards).join(", ")})` : ""}`));
       chart.past.replaceChildren(...lines.slice(1).slice(-8).reverse().map((line) => element("li", {}, line)));

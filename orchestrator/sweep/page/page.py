@@ -62,7 +62,12 @@ def study_page(table: Table) -> str:
         cards="\n".join(card for card in cards if card),
         foot=escape(f"apa-cosim {table.about['versions'].get('apa-cosim', '')}, {table.path.name}"),
     )
-    return still_page(title, body, (Path(__file__).parent / "page.css").read_text(encoding="utf-8"))
+    return still_page(title, body, study_style())
+
+
+def study_style() -> str:
+    """Return what the pages about studies add to the common style."""
+    return (Path(__file__).parent / "page.css").read_text(encoding="utf-8")
 
 
 def _groups(table: Table) -> list[str]:

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 
 import yaml
 
-from orchestrator.cosim.fmu_files import default_kind, fmu_files
+from orchestrator.cosim.fmu_files import fmu_files
+from orchestrator.cosim.kinds import default_kind
 from orchestrator.cosim.recording import Recording
 from orchestrator.cosim.slave import Array
 from orchestrator.log.read_log import log_file, read_info
@@ -82,17 +83,17 @@ class Run:
     def plot(self) -> "Figure":
         """Return the picture of the run: top view, speed, position and heading over time, states."""
         from orchestrator.drawing.figure import overview
+        from orchestrator.drawing.seen import overview_of
 
-        return overview(self.recording, self.summary, self.scenario)
+        return overview(overview_of(self.recording, self.summary, self.scenario))
 
     def save(self, folder: Path | str) -> Path:
         """Write ``report.html`` (the replay), ``overview.png`` and ``summary.json`` to a folder; return the replay.
 
         Raises ``BadInput`` if the folder has the log of another run: a folder is one run's.
         """
-        from orchestrator.drawing.figure import draw
         from orchestrator.report.replay import write_replay
-        from orchestrator.report.results import LOG, PAGE, PICTURE, write_summary
+        from orchestrator.report.results import LOG, PAGE, write_picture, write_summary
         from orchestrator.text.owned import owned
 
         path = Path(folder)
@@ -100,7 +101,7 @@ class Run:
             if (path / LOG).is_file():
                 self._refuse_another(path / LOG)
             write_summary(path, self.summary)
-            draw(self.recording, self.summary, self.scenario, path / PICTURE)
+            write_picture(path, self.recording, self.summary, self.scenario)
             write_replay(path / PAGE, self.recording, self.summary, [])
         return path / PAGE
 

@@ -8,7 +8,7 @@ import pytest
 
 from apa_cosim.runs import Run, driven, with_foreign
 from apa_cosim.verdicts import judge
-from orchestrator.cosim.fmu_files import default_kind
+from orchestrator.cosim.kinds import default_kind
 from orchestrator.cosim.recording import Recording
 from orchestrator.cosim.slave import Array
 from orchestrator.scenario.requirements import Requirement

@@ -11,6 +11,15 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     import subprocess
 
+ROOT = Path(__file__).resolve().parents[1]
+BEGIN = """
+import sys
+sys.path.insert(0, sys.argv[1])
+from {module} import main
+del sys.path[0]
+main()
+"""
+"""What a process of ours runs: nothing of this project stays in its way."""
 LIVING: set["subprocess.Popen[Any]"] = set()
 
 
@@ -35,7 +44,22 @@ def run_child(command: Sequence[str], folder: Path | None = None, environment: M
     return subprocess.CompletedProcess(command, child.returncode, output, errors)
 
 
-def end(child: "subprocess.Popen[str]") -> None:
+def own_process(module: str, folder: Path | None = None, errors: Any = None) -> "subprocess.Popen[bytes]":
+    """Return a process that runs ``main()`` of a module of ours; it talks through its standard streams, in bytes.
+
+    What it writes as errors goes into a pipe too, unless a file is named. Whoever asked for it puts it into ``LIVING``
+    and takes it out. Ctrl-C does not reach it.
+    """
+    import subprocess
+
+    pipe = subprocess.PIPE
+    command = [sys.executable, "-P", "-c", BEGIN.format(module=module), str(ROOT)]
+    group: dict[str, Any] = {"start_new_session": True} if os.name == "posix" else {}
+    streams: dict[str, Any] = {"stdin": pipe, "stdout": pipe, "stderr": errors or pipe}
+    return subprocess.Popen(command, cwd=folder, bufsize=0, **streams, **group)
+
+
+def end(child: "subprocess.Popen[Any]") -> None:
     """End a child and its own children at once."""
     with suppress(OSError):
         if os.name == "posix":

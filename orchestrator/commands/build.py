@@ -5,7 +5,8 @@ import json
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from orchestrator.cosim.fmu_files import KINDS, build, build_into, wanted_platforms
+from orchestrator.cosim.fmu_files import build, build_into, wanted_platforms
+from orchestrator.cosim.kinds import KINDS
 from orchestrator.text.console import working
 from orchestrator.text.errors import BadInput, suggestion
 

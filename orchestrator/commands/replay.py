@@ -4,7 +4,7 @@ import argparse
 import json
 from pathlib import Path
 
-from orchestrator.cosim.fmu_files import KINDS
+from orchestrator.cosim.kinds import KINDS
 from orchestrator.session.terminal import print_summary
 from orchestrator.text.console import console
 from orchestrator.text.errors import BAD_INPUT, INTERRUPTED, NOT_PARKED, PARKED, BadInput

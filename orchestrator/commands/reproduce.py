@@ -6,7 +6,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from fmus.files import write_whole
-from orchestrator.cosim.fmu_files import KINDS, default_kind, fmu_files
+from orchestrator.cosim.fmu_files import fmu_files
+from orchestrator.cosim.kinds import KINDS, default_kind
 from orchestrator.papers.papers import paper, papers
 from orchestrator.text.console import say
 from orchestrator.text.errors import NOT_PARKED, PARKED

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from orchestrator.commands import STUDIES
-from orchestrator.cosim.fmu_files import KINDS
+from orchestrator.cosim.kinds import KINDS
 from orchestrator.drawing.save import check_picture
 from orchestrator.text.console import console
 from orchestrator.text.errors import INTERRUPTED, PARKED, BadInput, shown, suggestion

@@ -11,13 +11,15 @@ from types import MappingProxyType
 from typing import Any
 
 from orchestrator.catalogue.entries import is_catalogue
-from orchestrator.cosim.fmu_files import KINDS, default_kind, fmu_files
+from orchestrator.cosim.fmu_files import fmu_files
 from orchestrator.cosim.interrupts import on_interrupt
+from orchestrator.cosim.kinds import KINDS, default_kind
 from orchestrator.cosim.master import Interrupt
 from orchestrator.scenario.files import find_file
 from orchestrator.scenario.models import APART, MODELS
 from orchestrator.scenario.requirements import read_requirements
-from orchestrator.session.foreign import add_foreign_arguments, foreign_of
+from orchestrator.session.foreign import foreign_of
+from orchestrator.session.options import add_foreign_arguments
 from orchestrator.suite.collection import write_collection
 from orchestrator.suite.junit import Suite, write_junit
 from orchestrator.suite.suite import Bench, Tested, chosen, run_tests, tested_by

@@ -10,6 +10,8 @@ from fmus.files import write_whole
 from fmus.locks import one_at_a_time
 from fmus.native.compilers import can_compile as can_compile
 from modelkit.model import Model
+from orchestrator.cosim.kinds import KINDS as KINDS
+from orchestrator.cosim.kinds import default_kind as default_kind
 from orchestrator.scenario.models import MODELS
 from orchestrator.text.console import working
 from orchestrator.text.errors import BadInput
@@ -20,13 +22,7 @@ if TYPE_CHECKING:
 ROOT = Path(__file__).parent.parent.parent
 SOURCES = ("modelkit", "vehicle_fmu", "controller_fmu", "fmus")
 STAMP = "sources.sha256"
-KINDS = ("python", "native")
 TAKES = {"python": "", "native": " (some seconds, once for each change of the models)"}
-
-
-def default_kind() -> str:
-    """Return ``native``, the faster kind, where it can be built."""
-    return "native" if can_compile() else "python"
 
 
 def fmu_files(kind: str, say: Callable[[str], None] = lambda text: None) -> dict[str, Path]:

@@ -3,7 +3,7 @@
 import argparse
 from pathlib import Path
 
-from orchestrator.cosim.fmu_files import KINDS, default_kind
+from orchestrator.cosim.kinds import KINDS, default_kind
 from orchestrator.scenario.load_scenario import load_scenario
 
 EXAMPLES = """examples:

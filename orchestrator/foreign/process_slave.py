@@ -7,7 +7,6 @@ import json
 import os
 import signal
 import subprocess
-import sys
 import threading
 import time
 from collections.abc import Callable, Mapping, Sequence
@@ -18,7 +17,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from fmus.children import LIVING, end
+from fmus.children import LIVING, end, own_process
 from fmus.files import new_folder, remove_folder
 from modelkit.model import Model
 from orchestrator.cosim.description import element_names, ports_of, read_description
@@ -31,15 +30,6 @@ LAST = 2.0
 """For a process to end that has nothing to say any more [s]."""
 LOOK = 0.05
 """Between two looks at the clock [s]."""
-ROOT = Path(__file__).resolve().parents[2]
-BEGIN = """
-import sys
-sys.path.insert(0, sys.argv[1])
-from orchestrator.foreign.worker import main
-del sys.path[0]
-main()
-"""
-"""What the process runs: nothing of this project stays in its way."""
 LogCallback = Callable[[str, int, str], None]
 
 
@@ -204,12 +194,9 @@ class _Process:
     """A worker, its pipes, and who watches the clock."""
 
     def __init__(self, folder: Path, printed: Path) -> None:
-        command = [sys.executable, "-P", "-c", BEGIN, str(ROOT)]
         self._printed = printed
-        group: dict[str, Any] = {"start_new_session": True} if os.name == "posix" else {}
         with printed.open("wb") as output:
-            streams: dict[str, Any] = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "stderr": output}
-            self._child: subprocess.Popen[Any] = subprocess.Popen(command, cwd=folder, bufsize=0, **streams, **group)
+            self._child = own_process("orchestrator.foreign.worker", folder, output)
         LIVING.add(self._child)
         assert self._child.stdin is not None
         assert self._child.stdout is not None

@@ -8,7 +8,7 @@ import numpy as np
 
 from controller_fmu.preview.params import ROAD
 from controller_fmu.preview.stage import PreviewStage
-from orchestrator.cosim.fmu_files import can_compile
+from fmus.native.compilers import can_compile
 from orchestrator.cosim.slave import Array
 from orchestrator.papers.preview_figure import draw_preview, draw_surfaces, draw_sweep
 from orchestrator.papers.result import (

@@ -21,16 +21,20 @@ def write_summary(folder: Path, summary: Summary) -> str:
     return text
 
 
-def write_pages(folder: Path, recording: Recording, summary: Summary, scenario: Scenario | None = None) -> None:
-    """Write the replay page, and the picture if a scenario is given; nothing if the run has no duration.
+def write_picture(folder: Path, recording: Recording, summary: Summary, scenario: Scenario) -> None:
+    """Write overview.png."""
+    from orchestrator.drawing.figure import picture
+    from orchestrator.drawing.seen import overview_of
 
-    The replay page leads to the page that is driven, if there is one in ``folder``.
-    """
-    if len(recording.t) < 2:
-        return
-    if scenario is not None:
-        from orchestrator.drawing.figure import draw
+    write_whole(folder / PICTURE, picture(overview_of(recording, summary, scenario)))
 
-        draw(recording, summary, scenario, folder / PICTURE)
+
+def write_page(folder: Path, recording: Recording, summary: Summary) -> None:
+    """Write the replay page; it leads to the page that is driven, if there is one in ``folder``."""
     live = LIVE if (folder / LIVE).exists() else ""
     write_replay(folder / PAGE, recording, summary, read_messages(folder / LOG), live)
+
+
+def is_shown(recording: Recording) -> bool:
+    """Return whether a run has a duration, so that there is something to show."""
+    return len(recording.t) > 1

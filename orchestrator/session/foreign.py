@@ -12,8 +12,8 @@ from orchestrator.scenario.load_scenario import load_scenario, load_system
 from orchestrator.scenario.models import MODELS
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.scenario.wiring.system_text import SystemText
+from orchestrator.session.options import TIMEOUT
 from orchestrator.text.errors import BadInput
-from orchestrator.text.quantities import number
 
 if TYPE_CHECKING:
     from orchestrator.cosim.slave import Slave
@@ -23,8 +23,6 @@ FOREIGN = "foreign"
 Files = Mapping[str, Path]
 """Slave -> FMU of somebody else's."""
 LogCallback = Callable[[str, int, str], None]
-TIMEOUT = 30.0
-"""Wall-clock limit [s], if nothing else is said."""
 
 
 class Foreign(NamedTuple):
@@ -59,39 +57,6 @@ def is_fmi3(path: Path) -> bool:
     from orchestrator.cosim.description import read_description
 
     return str(read_description(path).fmiVersion).startswith("3")
-
-
-def add_foreign_arguments(parser: argparse.ArgumentParser) -> None:
-    """Add the options that put an FMU in the place of the controller or of the vehicle."""
-    for name in ("controller", "vehicle"):
-        parser.add_argument(
-            f"--{name}",
-            metavar="FMU",
-            help=f"use this {name} instead of the shipped one: an .fmu, or a model such as my_{name}.py:MODEL",
-        )
-    parser.add_argument(
-        "--timeout",
-        type=seconds,
-        default=TIMEOUT,
-        metavar="S",
-        help=f"wall-clock limit for loading, initializing and each step of somebody else's FMU ({TIMEOUT:g} s)",
-    )
-    parser.add_argument(
-        "--in-process",
-        action="store_true",
-        help="run somebody else's FMU in this process: faster, but its crash is ours",
-    )
-
-
-def seconds(text: str) -> float:
-    """Return a limit of time [s] as the command line has it: ``5``, ``200 ms``."""
-    try:
-        found = number(text, "s")
-    except BadInput as error:
-        raise argparse.ArgumentTypeError(str(error)) from None
-    if not found > 0.0:
-        raise argparse.ArgumentTypeError(f"{text!r} is no time later than 0 s")
-    return found
 
 
 def foreign_of(arguments: argparse.Namespace) -> Foreign:

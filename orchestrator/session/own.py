@@ -5,7 +5,8 @@ from pathlib import Path
 from threading import Lock
 
 from fmus.own_model import BadModel, build_own, own_model
-from orchestrator.cosim.fmu_files import default_kind, sources_hash
+from orchestrator.cosim.fmu_files import sources_hash
+from orchestrator.cosim.kinds import default_kind
 from orchestrator.text.console import working
 from orchestrator.text.errors import BadInput
 

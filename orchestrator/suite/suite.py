@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 from orchestrator.cosim.master import Interrupt
 from orchestrator.cosim.recording import Recording
-from orchestrator.report.results import LOG, PAGE, write_pages, write_summary
+from orchestrator.report.results import LOG, PAGE, is_shown, write_page, write_summary
 from orchestrator.scenario.load_scenario import scenario_names
 from orchestrator.scenario.requirements import Requirement
 from orchestrator.scenario.scenario import Scenario
@@ -157,7 +157,8 @@ def _judged(scenario: Scenario, ignored: list[str], bench: Bench, folder: Path) 
         summary = summarize(ran.recording, scenario, ran.wall_time)
         checks = _extra_checks(bench, ran.recording, scenario)
         write_summary(folder, summary)
-        write_pages(folder, ran.recording, summary.model_copy(update={"checks": [*summary.checks, *checks]}))
+        if is_shown(ran.recording):
+            write_page(folder, ran.recording, summary.model_copy(update={"checks": [*summary.checks, *checks]}))
     broken = ran.end.reason if ran.end.reason.startswith("error") and scenario.expect != "aborted" else ""
     cases = [] if broken else _cases(scenario, summary, checks)
     return Tested(scenario, summary, ran.recording, cases, ignored, broken, tuple(ran.remarks))

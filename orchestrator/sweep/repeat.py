@@ -7,7 +7,7 @@ import yaml
 
 from fmus.files import write_whole
 from orchestrator.cosim.fmu_files import sources_hash
-from orchestrator.report.results import LOG, write_pages, write_summary
+from orchestrator.report.results import LOG, is_shown, write_page, write_picture, write_summary
 from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.session.drive import drive
@@ -44,8 +44,9 @@ def repeat_row(table: Table, number: int, out: Path, kind: str = "none", *, page
         ran = drive(scenario, kind, out / LOG)
         summary = summarize(ran.recording, scenario, ran.wall_time)
         write_summary(out, summary)
-        if pages:
-            write_pages(out, ran.recording, summary, scenario)
+        if pages and is_shown(ran.recording):
+            write_picture(out, ran.recording, summary, scenario)
+            write_page(out, ran.recording, summary)
     different = _differences(table.row(number), summary.as_json())
     return Repeated(scenario, ran, summary, different, table.about["sources"] == sources_hash())
 

@@ -3,13 +3,15 @@
 import math
 from collections.abc import Mapping, Sequence
 from itertools import pairwise
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from orchestrator.cosim.slave import Array
-from orchestrator.scenario.scenario import Scenario, Slot
 from orchestrator.verdict.frame import pose_at
+
+if TYPE_CHECKING:
+    from orchestrator.scenario.scenario import Scenario, Slot
 
 WHEEL_RADIUS = 0.29
 WHEEL_WIDTH = 0.18
@@ -98,12 +100,12 @@ def place(points: Array, x: float, y: float, heading: float) -> Array:
     return np.column_stack([x + c * points[:, 0] - s * points[:, 1], y + s * points[:, 0] + c * points[:, 1]])
 
 
-def described(scenario: Scenario, own: Mapping[str, float]) -> dict[str, float]:
+def described(scenario: "Scenario", own: Mapping[str, float]) -> dict[str, float]:
     """Return the vehicle's parameters: its ``own``, and the scenario's where an FMU has none of that name."""
     return {**scenario.vehicle, **own}
 
 
-def slot_box(slot: Slot) -> Box:
+def slot_box(slot: "Slot") -> Box:
     """Return the slot as a rectangle."""
     return Box(slot.x, slot.y, slot.heading, slot.length, slot.width)
 

@@ -6,7 +6,10 @@ import numpy as np
 import pytest
 from matplotlib.image import imread
 
-from orchestrator.drawing.figure import draw
+from fmus.children import LIVING
+from orchestrator.drawing.beside import PictureBeside
+from orchestrator.drawing.figure import picture
+from orchestrator.drawing.seen import overview_of
 from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.session.session import run_scenario
 from orchestrator.verdict.frame import in_frame
@@ -28,10 +31,37 @@ DEMO = str(Path(__file__).with_name("demo.yaml"))
 def test_a_picture_of_any_run(tmp_path: Path, sets: list[str]) -> None:
     scenario = load_scenario(DEMO, sets)
     ran = run_scenario(scenario)
-    draw(ran.recording, summarize(ran.recording, scenario, 1.0), scenario, tmp_path / "a.png")
-    picture = imread(tmp_path / "a.png")
-    assert picture.shape[:2] == (1080, 1560)
-    assert picture[..., :3].std() > 0.05
+    file = tmp_path / "a.png"
+    file.write_bytes(picture(overview_of(ran.recording, summarize(ran.recording, scenario, 1.0), scenario)))
+    pixels = imread(file)
+    assert pixels.shape[:2] == (1080, 1560)
+    assert pixels[..., :3].std() > 0.05
+
+
+def test_a_process_beside_draws_the_same() -> None:
+    scenario = load_scenario(DEMO, ["stop_time=1"])
+    ran = run_scenario(scenario)
+    seen = overview_of(ran.recording, summarize(ran.recording, scenario, 1.0), scenario)
+    with PictureBeside() as beside:
+        beside.begin(seen)
+        drawn = beside.picture()
+    assert drawn == picture(seen)
+    assert not LIVING
+
+
+def test_what_goes_wrong_beside_is_told() -> None:
+    with PictureBeside() as beside:
+        beside.begin("no picture")  # type: ignore[arg-type]
+        with pytest.raises(RuntimeError, match=r"(?s)the picture was not drawn.*'str' object"):
+            beside.picture()
+
+
+def test_nobody_is_left_of_a_picture_that_nobody_wants() -> None:
+    with PictureBeside() as beside:
+        child = beside._child
+        assert child in LIVING
+    assert child.returncode is not None
+    assert not LIVING
 
 
 def test_the_sampled_path_ends_where_two_arcs_do() -> None:

@@ -9,6 +9,7 @@ from mcap.reader import make_reader
 from mcap_protobuf.decoder import DecoderFactory
 
 from orchestrator.drawing.figure import _plan
+from orchestrator.drawing.seen import overview_of
 from orchestrator.log.read_log import read_log
 from orchestrator.report.still import still_of
 from orchestrator.scenario.load_scenario import load_scenario
@@ -45,7 +46,7 @@ def test_the_log_shows_the_true_target(ran: tuple[Ran, Path]) -> None:
 
 def test_the_picture_shows_the_true_target(ran: tuple[Ran, Path]) -> None:
     axis = Figure().subplots()
-    _plan(axis, ran[0].recording, TOLD)
+    _plan(axis, overview_of(ran[0].recording, summarize(ran[0].recording, TOLD, 1.0), TOLD))
     line = next(line for line in axis.lines if line.get_label() == "target")
     assert np.asarray(line.get_ydata())[:4].mean() == pytest.approx(TRUE[1])
 

@@ -5,7 +5,7 @@ import json
 from pathlib import Path
 
 from orchestrator.session.fmu_check import FmuReport, check_fmu
-from orchestrator.session.foreign import TIMEOUT, seconds
+from orchestrator.session.options import TIMEOUT, seconds
 from orchestrator.text.console import console
 
 EXAMPLES = """examples:

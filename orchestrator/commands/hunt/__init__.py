@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from orchestrator.commands.sweep import chosen_study
-from orchestrator.cosim.fmu_files import KINDS
+from orchestrator.cosim.kinds import KINDS
 from orchestrator.text.console import console
 from orchestrator.text.errors import INTERRUPTED, NOT_PARKED, PARKED, BadInput
 from orchestrator.text.owned import owned

@@ -1,0 +1,63 @@
+"""``apa run``: one scenario, from YAML to log, figure, summary and exit code."""
+
+import argparse
+from contextlib import nullcontext
+from pathlib import Path
+
+from orchestrator.cosim.kinds import KINDS, default_kind
+from orchestrator.drawing.beside import PictureBeside
+from orchestrator.session.options import add_foreign_arguments
+
+PORT = 8765
+"""Where Foxglove looks for a stream if nothing else is said."""
+EXAMPLES = """examples:
+  apa run guo2015-case4
+  apa run guo2015-case4 --set vehicle.body=double_track --set "vehicle.driver.reaction_delay=300 ms" --out runs/late
+  apa run guo2015-case4 --controller their.fmu --set controller.their_gain=2
+  apa run guo2015-case4 --realtime --live
+  apa run guo2015-case4 --set stop_time=30 --fmus none --out /tmp/trial --json
+
+writes DIR/run.mcap, DIR/summary.json, DIR/overview.png, DIR/report.html (the replay) and DIR/live.html (to drive it
+yourself); the first two if it is interrupted
+"""
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add what the command takes."""
+    parser.add_argument("scenario", metavar="NAME|FILE", help="a shipped scenario, or a YAML file")
+    parser.add_argument(
+        "--set", action="append", default=[], metavar="KEY=VALUE", help="vehicle.KEY, controller.KEY or a scenario key"
+    )
+    parser.add_argument(
+        "--fmus",
+        choices=(*KINDS, "none"),
+        default=default_kind(),
+        help="kind of FMU (default: native where it can be built); none runs the models in process",
+    )
+    add_foreign_arguments(parser)
+    parser.add_argument(
+        "--realtime", action="store_true", help="as fast as the clock on the wall; says how late it was"
+    )
+    parser.add_argument(
+        "--live",
+        nargs="?",
+        type=int,
+        const=PORT,
+        metavar="PORT",
+        help=f"show the run as it goes, at this WebSocket ({PORT}), to Foxglove or Lichtblick; includes --realtime",
+    )
+    parser.add_argument("--out", type=Path, metavar="DIR", help="where results go (default: runs/NAME)")
+    parser.add_argument("--json", action="store_true", help="print summary.json instead of the table")
+    parser.add_argument("--no-page", action="store_true", help="write neither picture nor pages")
+    parser.add_argument("--no-figure", action="store_true", dest="no_page", help=argparse.SUPPRESS)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Run, write, print. Returns 0 parked or finished, 1 not, 130 interrupted.
+
+    The picture's process is begun before anything else is imported, so that it is ready when the run is over.
+    """
+    with nullcontext() if arguments.no_page else PictureBeside() as beside:
+        from orchestrator.commands.run.once import run_once
+
+        return run_once(arguments, beside)

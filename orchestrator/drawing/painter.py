@@ -1,0 +1,13 @@
+"""The process that draws one picture: numbers on its standard input, the PNG file on its standard output."""
+
+import pickle
+import sys
+
+from orchestrator.drawing.figure import picture
+
+
+def main() -> None:
+    """Draw what comes, if anything comes."""
+    data = sys.stdin.buffer.read()
+    if data:
+        sys.stdout.buffer.write(picture(pickle.loads(data)))

@@ -26,7 +26,8 @@ from controller_fmu import MODEL
 from controller_fmu.preview.fuzzy import infer
 from controller_fmu.preview.rule_tables import STEERING_SYMMETRIC
 from controller_fmu.zhang2022.qp import STAGES, solve
-from fmus.native.libraries import kept_library, memory_size, model_files, typed
+from fmus.native.kept import kept_library
+from fmus.native.libraries import memory_size, model_files, typed
 from modelkit.variables import flatten, variables, with_values
 from orchestrator.bakeoff.entries import CONTROLLERS, scenario_of
 from orchestrator.cosim.recording import inputs_seen

@@ -19,7 +19,8 @@ from vehiclemodels.vehicle_dynamics_ks import vehicle_dynamics_ks
 from vehiclemodels.vehicle_dynamics_mb import vehicle_dynamics_mb
 from vehiclemodels.vehicle_dynamics_st import vehicle_dynamics_st
 
-from fmus.native.libraries import kept_library, model_files
+from fmus.native.kept import kept_library
+from fmus.native.libraries import model_files
 from modelkit.vocabulary import Pose, Prompt
 from orchestrator.cosim.fmu_files import fmu_files
 from orchestrator.scenario.load_scenario import load_scenario

@@ -16,7 +16,8 @@ from pathlib import Path
 import numpy as np
 
 from fmus.native.compilers import FLAGS
-from fmus.native.libraries import kept_library, memory_size, model_files, typed
+from fmus.native.kept import kept_library
+from fmus.native.libraries import memory_size, model_files, typed
 from fmus.native.sources import translated
 from modelkit.model import Model
 from modelkit.variables import flatten, variables, with_values

@@ -12,7 +12,8 @@ from typing import Any, Literal, NamedTuple, get_args
 import numpy as np
 from numpy.typing import NDArray
 
-from fmus.native.libraries import batch_library, load_model
+from fmus.native.kept import batch_library
+from fmus.native.libraries import load_model
 from fmus.native.structures import Long, Pointer, structure
 from modelkit.connections import connections, part_of
 from modelkit.model import Model

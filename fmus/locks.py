@@ -29,6 +29,8 @@ def kept_file(folder: Path, name: str, key: str, suffix: str, make: Callable[[],
     0: none.
     """
     path = folder / f"{name}-{key}{suffix}"
+    if is_as_made(path):
+        return path
     with one_at_a_time(folder / f"{name}{suffix}"):
         if not is_as_made(path):
             write_made(path, make())

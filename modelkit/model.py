@@ -1,6 +1,6 @@
 """The one face of a model package: types, two functions, and how often it is called."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from enum import IntEnum
 from functools import partial
 from types import ModuleType
@@ -206,8 +206,8 @@ class Model(NamedTuple, Generic[State, Params, Input, Output]):
         assert self.systems is not None
         chosen = next(item for item in self.systems.systems if value in item.values)
         known = [item.name for cls in (self.params, self.inputs, self.outputs) for item in variables(cls)]
-        owned = {item for item in known if any(_is_in(item, system.own) for system in self.systems.systems)}
-        hidden = frozenset(item for item in owned if not _is_in(item, chosen.own))
+        owned = _those_in(tuple({group for system in self.systems.systems for group in system.own}), known)
+        hidden = owned - _those_in(chosen.own, owned)
         parameter = self.systems.parameter
         view = View(((parameter, int(value)),), hidden | {parameter}, chosen.states)
         return self._replace(name=name, description=description, view=view)
@@ -223,6 +223,7 @@ def _with(state: State, changed: dict[str, Any]) -> State:
     return cast("State", whole._replace(**changed))
 
 
-def _is_in(name: str, groups: tuple[str, ...]) -> bool:
-    """Return whether the variable ``name`` is one of ``groups`` or in one of them."""
-    return any(name == group or name.startswith((f"{group}.", f"{group}[")) for group in groups)
+def _those_in(groups: tuple[str, ...], names: Iterable[str]) -> frozenset[str]:
+    """Return which variables are one of ``groups`` or in one of them."""
+    inside = tuple(f"{group}{mark}" for group in groups for mark in ".[")
+    return frozenset(name for name in names if name in groups or name.startswith(inside))

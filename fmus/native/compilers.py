@@ -5,7 +5,6 @@ import shlex
 import shutil
 import sys
 from collections.abc import Mapping, Sequence
-from importlib.metadata import PackageNotFoundError, version
 from importlib.util import find_spec
 from pathlib import Path
 from typing import NamedTuple
@@ -99,6 +98,8 @@ def find_compiler(cc: str | None = None) -> Compiler:
             return _system(tuple(shlex.split(named)))
         except ValueError as error:
             raise RuntimeError(f"{named}: no command of a C compiler: {error}") from error
+    from importlib.metadata import PackageNotFoundError, version
+
     try:
         words = " ".join(("ziglang", version("ziglang"), *ZIG))
     except PackageNotFoundError:

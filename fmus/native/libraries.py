@@ -1,22 +1,17 @@
-"""Shared libraries for this machine and this process: the compiled master, the batch, and a model's own.
-
-Kept in ``LIBRARIES`` under a hash of all they are made of, so each is compiled once.
-"""
+"""Shared libraries for this machine and this process that are made of a model."""
 
 import ctypes
-import hashlib
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
 from fmus.compiler import members
-from fmus.locks import kept_file
-from fmus.native.compilers import Compiler, can_compile, find_compiler
-from fmus.native.platforms import LINUX, PLATFORMS, CompileTarget, host, host_target, is_known
-from fmus.native.sources import C_FILES, translated
+from fmus.native.compilers import can_compile, find_compiler
+from fmus.native.kept import kept_library, own_files
+from fmus.native.platforms import LINUX, is_known
+from fmus.native.sources import translated
 from fmus.native.tables import KINDS
-from fmus.places import LIBRARIES
 from modelkit.model import Model
 from modelkit.variables import flatten, variables
 
@@ -39,16 +34,6 @@ MEMBERS_HEAD = """#ifdef MEMBER /* a line for each parameter, input and output: 
 """
 
 
-def master_library() -> Path:
-    """Return the path of the compiled master. Raises ``RuntimeError`` where it cannot be built."""
-    return kept_library("master", "master.c", _own("master.c", "fmi2.h"))
-
-
-def batch_library() -> Path:
-    """Return the path of the compiled runs. Raises ``RuntimeError`` where it cannot be built."""
-    return kept_library("batch", "batch.c", _own("batch.c", "faults.h", "library.h"))
-
-
 def python_front(cc: str | None = None) -> bytes | None:
     """Return the library of linux64 that stands before PythonFMU's own; None without a C compiler for it."""
     if not (cc or can_compile()) or not is_known():
@@ -56,7 +41,7 @@ def python_front(cc: str | None = None) -> bytes | None:
     compiler, target = find_compiler(cc), LINUX._replace(options=(*LINUX.options, "-Wl,-z,nodelete", "-ldl"))
     if not compiler.can_make(target):
         return None
-    files = _own("python_front.c", "fmi2.h")
+    files = own_files("python_front.c", "fmi2.h")
     return kept_library("python_front", "python_front.c", files, compiler, target).read_bytes()
 
 
@@ -79,7 +64,7 @@ def model_files(model: Model) -> dict[str, str]:
     lines = "".join(f"MEMBER({item.path}, {KINDS[item.kind]})\n" for item in known)
     files = {f"{model.name}.h": code.header, f"{model.name}.c": code.source}
     files[f"{model.name}_members.h"] = MEMBERS_HEAD.format(lines=lines, **count)
-    return files | _own("library.c", "library.h")
+    return files | own_files("library.c", "library.h")
 
 
 def load_model(model: Model) -> Any:
@@ -120,26 +105,3 @@ def _numbers(values: Sequence[float]) -> Any:
 def memory_size(library: Any) -> int:
     """Return how many bytes an instance of a loaded model takes."""
     return int(ctypes.c_int64.from_address(library.model_library()).value)
-
-
-def kept_library(
-    name: str,
-    unit: str,
-    files: Mapping[str, str],
-    compiler: Compiler | None = None,
-    target: CompileTarget | None = None,
-) -> Path:
-    """Return the path of the library made of ``unit`` among ``files``, compiled if there is none; for this machine.
-
-    Raises ``RuntimeError`` without a C compiler, or with its words if it refuses.
-    """
-    compiler, target, platform = compiler or find_compiler(), target or host_target(), PLATFORMS[host()]
-    digest = hashlib.sha256(compiler.recipe(target).encode())
-    for file, text in sorted(files.items()):
-        digest.update(f"{file} {len(text)} {text}".encode())
-    key, file = digest.hexdigest()[:16], f"{name}{platform.suffix}"
-    return kept_file(LIBRARIES, name, key, platform.suffix, lambda: compiler.library(files, unit, file, target))
-
-
-def _own(*names: str) -> dict[str, str]:
-    return {name: (C_FILES / name).read_text(encoding="utf-8") for name in names}

@@ -10,12 +10,12 @@ from fmus import compiler
 from fmus.compiler import Translation, translate
 from fmus.locks import kept_file
 from fmus.native.compilers import FLAGS
+from fmus.native.kept import C_FILES
 from fmus.native.tables import longest_name, runs_file, variables_file
 from fmus.places import CACHE
 from modelkit.model import Model
 from modelkit.variables import flatten
 
-C_FILES = Path(__file__).parent / "c"
 CORE = ("core.h", "core.c", "state.c")
 FACES = {2: ("fmi2.h", "fmi2.c"), 3: ("fmi3.h", "fmi3.c", "fmi3_absent.c")}
 UNIT = """/* The FMU {name}, FMI {fmi}.0 for co-simulation, in one translation unit: compile this file alone.

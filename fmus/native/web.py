@@ -11,9 +11,9 @@ from pathlib import Path
 
 from fmus.locks import kept_file
 from fmus.native.compilers import find_compiler
+from fmus.native.kept import C_FILES
 from fmus.native.libraries import model_files, model_unit
 from fmus.native.platforms import WEB, CompileTarget
-from fmus.native.sources import C_FILES
 from fmus.places import LIBRARIES
 from modelkit.connections import connections, part_of
 from modelkit.model import Model

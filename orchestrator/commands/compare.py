@@ -8,8 +8,8 @@ from rich.markup import escape
 
 from orchestrator.comparison.compare import Comparison, compare
 from orchestrator.comparison.tolerance import Tolerance, read_tolerances
+from orchestrator.log.messages import read_messages
 from orchestrator.log.read_log import log_file, read_log
-from orchestrator.report.messages import read_messages
 from orchestrator.report.overlay import write_overlay
 from orchestrator.session.terminal import differences_table
 from orchestrator.text.console import console

@@ -3,8 +3,8 @@
 import argparse
 from pathlib import Path
 
+from orchestrator.log.messages import read_messages
 from orchestrator.log.read_log import log_file, read_log
-from orchestrator.report.messages import read_messages
 from orchestrator.report.replay import write_replay
 from orchestrator.text.console import say
 from orchestrator.text.errors import PARKED

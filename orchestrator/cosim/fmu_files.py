@@ -48,7 +48,7 @@ def fmu_beside(path: Path, model: Model) -> Path:
 
 def build(kind: str, cc: str | None = None) -> list["Built"]:
     """Build the FMUs of ``kind`` where runs look for them."""
-    from fmus.native.libraries import master_library
+    from fmus.native.kept import master_library
     from fmus.places import DIST
 
     with one_at_a_time(DIST / "build"):

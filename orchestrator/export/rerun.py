@@ -14,8 +14,9 @@ from modelkit.variables import Variable
 from orchestrator.cosim.recording import Recording
 from orchestrator.cosim.slave import Array
 from orchestrator.export.csv import add_run_arguments
+from orchestrator.log.line import Line
+from orchestrator.log.messages import read_messages
 from orchestrator.log.read_log import read_log
-from orchestrator.report.messages import Line, read_messages
 from orchestrator.report.plots import GROUPS
 from orchestrator.text.errors import BadInput
 from orchestrator.text.owned import owned_with

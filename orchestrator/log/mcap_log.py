@@ -23,6 +23,7 @@ from orchestrator.cosim.master import End
 from orchestrator.cosim.recording import to_json
 from orchestrator.cosim.slave import Array, Ports, Slave, all_values, places_of
 from orchestrator.drawing import scene
+from orchestrator.log.line import Line, line_of
 from orchestrator.log.mcap_file import CHUNK_SIZE, MESSAGE_HEADER, McapFile
 from orchestrator.log.protobuf_rows import Encoder
 from orchestrator.log.read_log import VARIABLES, with_checksum
@@ -63,6 +64,8 @@ class McapLog:
     def __init__(self, to: Path | Sink, slaves: Sequence[Slave], scenario: Scenario, info: dict[str, Any]) -> None:
         self._file: Sink = McapFile(to) if isinstance(to, Path) else to
         self._file.metadata("apa", with_checksum(info))
+        self.lines: list[Line] = []
+        """Of ``/log``."""
         places = places_of(slaves)
         self._channels = [_SlaveChannel(self._file, slave, places[2 * k : 2 * k + 2]) for k, slave in enumerate(slaves)]
         self._log = self._file.known_channel("/log", Log)
@@ -97,6 +100,7 @@ class McapLog:
         if self._file.open:
             line = Log(timestamp=scene.stamp(t_ns), level=level, message=text, name=name)  # type: ignore[arg-type]
             self._file.write(self._log, t_ns, line.SerializeToString(deterministic=True))
+            self.lines.append(line_of(t_ns, level, name, text))
 
     def closed(self, end: End) -> None:
         """Write how the run ended and give the file its name."""

@@ -8,7 +8,7 @@ from fmus.files import write_whole
 from orchestrator.comparison.compare import Comparison, Difference
 from orchestrator.cosim.recording import Recording
 from orchestrator.drawing.palette import RUNS
-from orchestrator.report.messages import Line
+from orchestrator.log.line import Line
 from orchestrator.report.page import page
 from orchestrator.report.payload import Arrays
 from orchestrator.report.plots import plots_of

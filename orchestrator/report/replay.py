@@ -7,8 +7,8 @@ from typing import Any
 
 from fmus.files import write_whole
 from orchestrator.cosim.recording import Recording
+from orchestrator.log.line import Line
 from orchestrator.report.charts import charts_of
-from orchestrator.report.messages import Line
 from orchestrator.report.page import page
 from orchestrator.report.payload import Arrays
 from orchestrator.report.plots import plots_of

@@ -5,8 +5,7 @@ from pathlib import Path
 
 from fmus.files import write_whole
 from orchestrator.cosim.recording import Recording
-from orchestrator.report.messages import read_messages
-from orchestrator.report.replay import write_replay
+from orchestrator.log.line import Line
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.verdict.summary import Summary
 
@@ -29,10 +28,11 @@ def write_picture(folder: Path, recording: Recording, summary: Summary, scenario
     write_whole(folder / PICTURE, picture(overview_of(recording, summary, scenario)))
 
 
-def write_page(folder: Path, recording: Recording, summary: Summary) -> None:
+def write_page(folder: Path, recording: Recording, summary: Summary, lines: list[Line]) -> None:
     """Write the replay page; it leads to the page that is driven, if there is one in ``folder``."""
-    live = LIVE if (folder / LIVE).exists() else ""
-    write_replay(folder / PAGE, recording, summary, read_messages(folder / LOG), live)
+    from orchestrator.report.replay import write_replay
+
+    write_replay(folder / PAGE, recording, summary, lines, LIVE if (folder / LIVE).exists() else "")
 
 
 def is_shown(recording: Recording) -> bool:

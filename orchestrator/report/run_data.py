@@ -6,7 +6,7 @@ import numpy as np
 
 from modelkit.variables import Variable, variables
 from orchestrator.cosim.recording import Recording
-from orchestrator.report.messages import Line
+from orchestrator.log.line import Line
 from orchestrator.report.payload import Arrays
 from orchestrator.report.plans import plans_of
 from orchestrator.report.still import Point, origin_of, still_of

@@ -14,6 +14,7 @@ from orchestrator.cosim.master import End, Interrupt, Master, Observer
 from orchestrator.cosim.mode_changes import ERROR, FMI_LEVELS, WARNING, ModeChanges
 from orchestrator.cosim.recording import Recorder, Recording
 from orchestrator.cosim.slave import Slave
+from orchestrator.log.line import Line
 from orchestrator.scenario.models import MODELS
 from orchestrator.scenario.plausible import implausible
 from orchestrator.scenario.scenario import Scenario
@@ -41,6 +42,8 @@ class Ran(NamedTuple):
     """What was said of the system before it ran."""
     wall_time: float
     """Time from the first exchange to the closed log [s]; building, loading and initializing come before."""
+    lines: list[Line]
+    """What models and run wrote to the log."""
 
 
 class Messages:
@@ -153,10 +156,12 @@ def run_slaves(
     info = provenance(scenario, system.slaves, kind, foreign)
     recorder = Recorder(system.slaves, exchanges)
     master.observers += [messages, recorder, ModeChanges(system.slaves, scenario.faults, messages.say)]
+    lines: list[Line] = []
     if log is not None:
         from orchestrator.log.mcap_log import McapLog
 
         file = McapLog(log, system.slaves, scenario, info)
+        lines = file.lines
         messages.listeners.append(file.say)
         master.observers.append(file)
     master.observers += observers
@@ -166,7 +171,7 @@ def run_slaves(
         messages.say(0, WARNING, "system", text)
     end, wall_time = _driven(master, messages)
     info |= {"end": {"reason": end.reason, "t_ns": end.t_ns}, **({"realtime": realtime.told()} if realtime else {})}
-    return Ran(recorder.recording(info), end, said, wall_time)
+    return Ran(recorder.recording(info), end, said, wall_time, lines)
 
 
 def _warnings(system: Assembled, scenario: Scenario, exchanges: int) -> list[str]:

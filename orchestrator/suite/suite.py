@@ -158,7 +158,8 @@ def _judged(scenario: Scenario, ignored: list[str], bench: Bench, folder: Path) 
         checks = _extra_checks(bench, ran.recording, scenario)
         write_summary(folder, summary)
         if is_shown(ran.recording):
-            write_page(folder, ran.recording, summary.model_copy(update={"checks": [*summary.checks, *checks]}))
+            judged = summary.model_copy(update={"checks": [*summary.checks, *checks]})
+            write_page(folder, ran.recording, judged, ran.lines)
     broken = ran.end.reason if ran.end.reason.startswith("error") and scenario.expect != "aborted" else ""
     cases = [] if broken else _cases(scenario, summary, checks)
     return Tested(scenario, summary, ran.recording, cases, ignored, broken, tuple(ran.remarks))

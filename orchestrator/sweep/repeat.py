@@ -46,7 +46,7 @@ def repeat_row(table: Table, number: int, out: Path, kind: str = "none", *, page
         write_summary(out, summary)
         if pages and is_shown(ran.recording):
             write_picture(out, ran.recording, summary, scenario)
-            write_page(out, ran.recording, summary)
+            write_page(out, ran.recording, summary, ran.lines)
     different = _differences(table.row(number), summary.as_json())
     return Repeated(scenario, ran, summary, different, table.about["sources"] == sources_hash())
 

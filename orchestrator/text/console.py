@@ -6,18 +6,11 @@ import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
-from typing import Self, TextIO
+from typing import TYPE_CHECKING, Self, TextIO
 
-from rich.console import Console
-from rich.progress import (
-    BarColumn,
-    Progress,
-    ProgressColumn,
-    SpinnerColumn,
-    TextColumn,
-    TimeElapsedColumn,
-    TimeRemainingColumn,
-)
+if TYPE_CHECKING:
+    from rich.console import Console
+    from rich.progress import Progress, ProgressColumn
 
 QUIET: ContextVar[bool] = ContextVar("quiet", default=False)
 """Whether only errors are wanted."""
@@ -27,8 +20,10 @@ PERIOD, LONGEST = 5.0, 60.0
 """Until the first line of progress where there is no terminal, and between two at most [s]; each time twice as long."""
 
 
-def console(stream: TextIO | None = None) -> Console:
+def console(stream: TextIO | None = None) -> "Console":
     """Return a console that writes colours only to a terminal that wants them."""
+    from rich.console import Console
+
     stream = stream or sys.stdout
     return Console(file=stream, highlight=False, width=None if stream.isatty() else PIPED_WIDTH)
 
@@ -56,6 +51,8 @@ class Warnings:
 def working(text: str) -> Iterator[None]:
     """Show that something of unknown length goes on, and for how long: a spinner, or a line now and then."""
     if sys.stderr.isatty() and not QUIET.get():
+        from rich.progress import SpinnerColumn, TextColumn, TimeElapsedColumn
+
         columns = (SpinnerColumn(), TextColumn(text), TimeElapsedColumn())
         with _bar(*columns) as progress:
             progress.add_task(text, total=None)
@@ -73,8 +70,10 @@ def working(text: str) -> Iterator[None]:
             teller.join()
 
 
-def _bar(*columns: ProgressColumn) -> Progress:
+def _bar(*columns: "ProgressColumn") -> "Progress":
     """Return a bar that lets a file have what is printed meanwhile."""
+    from rich.progress import Progress
+
     return Progress(*columns, console=console(sys.stderr), transient=True, redirect_stdout=sys.stdout.isatty())
 
 
@@ -94,6 +93,8 @@ class Meter:
         self._next = time.monotonic() + PERIOD
         self._bar: Progress | None = None
         if sys.stderr.isatty() and not QUIET.get():
+            from rich.progress import BarColumn, TextColumn, TimeRemainingColumn
+
             columns = (TextColumn("{task.description}"), BarColumn(), TextColumn("{task.fields[at]}, left"))
             self._bar = _bar(*columns, TimeRemainingColumn())
             self._task = self._bar.add_task(title, total=total, at="")

@@ -14,8 +14,8 @@ from fmpy import read_model_description
 from test_native_host import HERE
 
 from fmus.native.fmu import build
+from fmus.native.kept import C_FILES
 from fmus.native.platforms import LINUX, LINUX_ARM, WINDOWS
-from fmus.native.sources import C_FILES
 from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.scenario.models import MODELS
 from orchestrator.session.session import run_scenario

@@ -10,8 +10,9 @@ import pytest
 from elf import dynamic
 from raw import OK, Library
 
+from fmus.native.kept import C_FILES
 from fmus.native.platforms import LINUX
-from fmus.native.sources import C_FILES, fmu_sources, unit_name
+from fmus.native.sources import fmu_sources, unit_name
 
 HERE = Path(__file__).parent
 LIMIT = 400_000

@@ -19,8 +19,8 @@ import toy_model
 from raw import DISCARD, ERROR, OK
 
 from fmus.native.compilers import can_compile
+from fmus.native.kept import C_FILES
 from fmus.native.libraries import python_front
-from fmus.native.sources import C_FILES
 from fmus.python.fmu import BEHIND, build
 
 HERE = Path(__file__).parent

@@ -4,7 +4,7 @@ import pytest
 
 from orchestrator.comparison.compare import compare
 from orchestrator.comparison.tolerance import Tolerance, Tolerances
-from orchestrator.report.messages import Line
+from orchestrator.log.line import Line
 from orchestrator.report.overlay import write_overlay
 from orchestrator.report.replay import replay_page
 from orchestrator.scenario.load_scenario import load_scenario

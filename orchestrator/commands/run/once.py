@@ -4,14 +4,13 @@ import argparse
 from pathlib import Path
 
 from fmus.files import write_whole
-from orchestrator.cosim.recording import Recording
 from orchestrator.drawing.beside import PictureBeside
 from orchestrator.drawing.seen import overview_of
 from orchestrator.report.results import LIVE, LOG, PICTURE, is_shown, write_page, write_summary
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.session.drive import drive
 from orchestrator.session.foreign import Foreign, foreign_of, load_fitting
-from orchestrator.session.terminal import print_summary
+from orchestrator.session.session import Ran
 from orchestrator.stream.realtime import Realtime
 from orchestrator.text.console import say
 from orchestrator.text.errors import INTERRUPTED, NOT_PARKED, PARKED
@@ -32,10 +31,12 @@ def run_once(arguments: argparse.Namespace, beside: PictureBeside | None) -> int
         text = write_summary(out, summary)
         interrupted = ran.end.reason == "interrupted"
         if beside is not None and not interrupted:
-            _write_pages(out, ran.recording, summary, scenario, foreign, beside)
+            _write_pages(out, ran, summary, scenario, foreign, beside)
     if arguments.json:
         print(text)
     else:
+        from orchestrator.session.terminal import print_summary
+
         print_summary(summary, scenario.title, scenario.expect)
         print(f"results in {out}")
     if interrupted:
@@ -44,15 +45,15 @@ def run_once(arguments: argparse.Namespace, beside: PictureBeside | None) -> int
 
 
 def _write_pages(
-    out: Path, recording: Recording, summary: Summary, scenario: Scenario, foreign: Foreign, beside: PictureBeside
+    out: Path, ran: Ran, summary: Summary, scenario: Scenario, foreign: Foreign, beside: PictureBeside
 ) -> None:
     """Write picture, replay page and the page that is driven, the first drawn while the others are made."""
-    shown = is_shown(recording)
+    shown = is_shown(ran.recording)
     if shown:
-        beside.begin(overview_of(recording, summary, scenario))
+        beside.begin(overview_of(ran.recording, summary, scenario))
     _write_live(out / LIVE, scenario, foreign)
     if shown:
-        write_page(out, recording, summary)
+        write_page(out, ran.recording, summary, ran.lines)
         write_whole(out / PICTURE, beside.picture())
 
 

@@ -1,0 +1,49 @@
+"""Shared libraries for this machine and this process that no model is in: the compiled master, the batch.
+
+Kept in ``LIBRARIES`` under a hash of all they are made of, so each is compiled once. Imports no compiler of models.
+"""
+
+import hashlib
+from collections.abc import Mapping
+from pathlib import Path
+
+from fmus.locks import kept_file
+from fmus.native.compilers import Compiler, find_compiler
+from fmus.native.platforms import PLATFORMS, CompileTarget, host, host_target
+from fmus.places import LIBRARIES
+
+C_FILES = Path(__file__).parent / "c"
+
+
+def master_library() -> Path:
+    """Return the path of the compiled master. Raises ``RuntimeError`` where it cannot be built."""
+    return kept_library("master", "master.c", own_files("master.c", "fmi2.h"))
+
+
+def batch_library() -> Path:
+    """Return the path of the compiled runs. Raises ``RuntimeError`` where it cannot be built."""
+    return kept_library("batch", "batch.c", own_files("batch.c", "faults.h", "library.h"))
+
+
+def kept_library(
+    name: str,
+    unit: str,
+    files: Mapping[str, str],
+    compiler: Compiler | None = None,
+    target: CompileTarget | None = None,
+) -> Path:
+    """Return the path of the library made of ``unit`` among ``files``, compiled if there is none; for this machine.
+
+    Raises ``RuntimeError`` without a C compiler, or with its words if it refuses.
+    """
+    compiler, target, platform = compiler or find_compiler(), target or host_target(), PLATFORMS[host()]
+    digest = hashlib.sha256(compiler.recipe(target).encode())
+    for file, text in sorted(files.items()):
+        digest.update(f"{file} {len(text)} {text}".encode())
+    key, file = digest.hexdigest()[:16], f"{name}{platform.suffix}"
+    return kept_file(LIBRARIES, name, key, platform.suffix, lambda: compiler.library(files, unit, file, target))
+
+
+def own_files(*names: str) -> dict[str, str]:
+    """Return file name -> text of C files of this project."""
+    return {name: (C_FILES / name).read_text(encoding="utf-8") for name in names}

@@ -10,6 +10,8 @@ from typing import Any, NamedTuple
 
 import matplotlib as mpl
 import numpy as np
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle, Ellipse, Patch, Polygon
 
@@ -30,6 +32,7 @@ STYLE: Any = {
     "axes.titlesize": 10.0,
     "axes.titleweight": "bold",
     "axes.titlelocation": "left",
+    "axes.titley": 1.0,
     "axes.grid": True,
     "grid.color": "#e3e6ea",
     "grid.linewidth": 0.7,
@@ -64,15 +67,17 @@ LEFT, RIGHT = 0.058, 0.986
 PLAN = _Place(LEFT, 0.515, RIGHT - LEFT, 0.43)
 LEGEND = (LEFT, 0.415, RIGHT - LEFT, 0.045)
 PANELS = [_Place(left, 0.088, 0.253, 0.295) for left in (LEFT, 0.411, RIGHT - 0.253)]
-RIBBONS = [panel._replace(bottom=0.05, height=0.022) for panel in PANELS]
-"""Each under its panel. All places are fixed: to have them found by matplotlib costs more than all the rest."""
+"""All places are fixed: to have them found by matplotlib costs more than all the rest."""
+RIBBON = (-0.125, -0.05)
+"""From and to, below a panel, as shares of its height."""
 
 
 def picture(seen: Overview) -> bytes:
     """Return the overview picture of a run as a PNG file."""
     file, how = BytesIO(), {"compress_level": COMPRESSION}
     with mpl.rc_context(STYLE):
-        overview(seen).savefig(file, format="png", metadata={"Software": "apa-cosim"}, pil_kwargs=how)
+        canvas: Any = FigureCanvasAgg(overview(seen))  # savefig() goes through everything twice
+        canvas.print_png(file, metadata={"Software": "apa-cosim"}, pil_kwargs=how)
     return file.getvalue()
 
 
@@ -81,16 +86,12 @@ def overview(seen: Overview) -> Figure:
     with mpl.rc_context(STYLE):
         figure = Figure(figsize=(WIDTH, HEIGHT), dpi=DPI)
         _plan(figure.add_axes(PLAN), seen)
-        names: dict[str, str] = {}
-        for place_of_panel, place_of_ribbon, panel in zip(PANELS, RIBBONS, (_speed, _position, _heading), strict=True):
+        pieces = _pieces(seen)
+        for place_of_panel, panel in zip(PANELS, (_speed, _position, _heading), strict=True):
             axis = figure.add_axes(place_of_panel)
             panel(axis, seen)
-            axis.tick_params(labelbottom=False)
-            axis.set_xlim(seen.t[0], seen.t[-1])
-            for row in seen.changes:
-                axis.axvline(seen.t[row], color="#d5d9df", linewidth=0.8, zorder=0)
-            names = _ribbon(figure.add_axes(place_of_ribbon, sharex=axis), seen)
-        _legend(figure, names)
+            _over_time(axis, seen, pieces)
+        _legend(figure, {piece.name: piece.colour for piece in pieces})
         figure.suptitle(seen.title, x=0.012, y=0.996, ha="left", va="top", fontsize=12.5, fontweight="bold", color=INK)
     return figure
 
@@ -147,23 +148,39 @@ def _used(seen: Overview, name: str) -> Array:
     return np.where(given, seen.signal(name), np.nan)
 
 
-def _ribbon(axis: Any, seen: Overview) -> dict[str, str]:
-    """Draw the states of the chart over time; return those that occurred with their colours."""
-    axis.set_yticks([])
-    axis.grid(False)
-    axis.spines["left"].set_visible(False)
-    axis.set_xlabel("time [s]")
-    t = seen.t
-    phases, states = seen.ribbon
+class _Piece(NamedTuple):
+    """A state of the chart from one time to another [s]."""
+
+    begin: float
+    end: float
+    name: str
+    colour: str
+
+
+def _pieces(seen: Overview) -> list[_Piece]:
+    """Return the states of the chart, one after the other."""
+    t, (phases, states) = seen.t, seen.ribbon
     edges = [0, *(int(row) + 1 for row in np.flatnonzero(np.diff(phases))), len(t) - 1]
-    names: dict[str, str] = {}
+    pieces = []
     for first, last in pairwise(edges):
         value = phases[first]
         name = states.get(int(value), f"{value:g}") if math.isfinite(value) else "unknown"
-        names[name] = LIGHT[role(name, value if math.isfinite(value) else 0.0)]
-        axis.axvspan(t[first], t[last], color=names[name], linewidth=0)
-    axis.set_ylim(0.0, 1.0)
-    return names
+        colour = LIGHT[role(name, value if math.isfinite(value) else 0.0)]
+        pieces.append(_Piece(t[first], t[last], name, colour))
+    return pieces
+
+
+def _over_time(axis: Any, seen: Overview, pieces: list[_Piece]) -> None:
+    """Give a panel its time axis: the states of the chart in a ribbon below, a line where the phase changes."""
+    axis.set_xlim(seen.t[0], seen.t[-1])
+    axis.set_xlabel("time [s]")
+    below, (bottom, top) = axis.get_xaxis_transform(), RIBBON
+    axis.vlines(seen.t[seen.changes], 0.0, 1.0, color="#d5d9df", linewidth=0.8, zorder=0, transform=below)
+    corners = [[(piece.begin, bottom), (piece.end, bottom), (piece.end, top), (piece.begin, top)] for piece in pieces]
+    ribbon = PolyCollection(corners, facecolors=[piece.colour for piece in pieces], linewidths=0, transform=below)
+    ribbon.set_clip_on(False)
+    axis.add_collection(ribbon, autolim=False)
+    axis.tick_params(axis="x", length=0, pad=0.14 * PANELS[0].height * HEIGHT * 72.0)
 
 
 def _legend(figure: Figure, names: dict[str, str]) -> None:

@@ -24,11 +24,16 @@ EPILOG = """examples:
 exit codes: 0 parked or done, 1 judged and not parked, 2 bad input or a place that cannot be read or written,
 3 internal error (the traceback is kept in a file), 130 interrupted
 """
+SPARING = {"OPENBLAS_NUM_THREADS": "1", "PYDANTIC_DISABLE_PLUGINS": "__all__"}
+"""Set unless they are set: numpy's threads, that nothing here needs, take a tenth of a second to begin; to look for
+plugins takes pydantic 20 ms."""
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Return the exit code of one command line."""
     words = sys.argv[1:] if arguments is None else list(arguments)
+    for name, value in SPARING.items():
+        os.environ.setdefault(name, value)
     _forgiving_streams()
     with ended_in_time() as interrupted:
         try:

@@ -1,20 +1,18 @@
 """The C files of an FMU: the model's, the FMI side, the tables, and the one file that is compiled."""
 
-import hashlib
 import json
 from functools import lru_cache
 from pathlib import Path
-from typing import Any
 
 from fmus import compiler
 from fmus.compiler import Translation, translate
 from fmus.locks import kept_file
 from fmus.native.compilers import FLAGS
 from fmus.native.kept import C_FILES
+from fmus.native.made_of import ROOT, hash_of, words_of
 from fmus.native.tables import longest_name, runs_file, variables_file
 from fmus.places import CACHE
 from modelkit.model import Model
-from modelkit.variables import flatten
 
 CORE = ("core.h", "core.c", "state.c")
 FACES = {2: ("fmi2.h", "fmi2.c"), 3: ("fmi3.h", "fmi3.c", "fmi3_absent.c")}
@@ -36,7 +34,6 @@ UNIT = """/* The FMU {name}, FMI {fmi}.0 for co-simulation, in one translation u
 STORE = """#define FMU_STORE(model) &(model)->store,
 """
 """In the unit of a model that has work arrays."""
-ROOT = Path(__file__).parents[2]
 SUFFIX = ".c.json"
 KEPT = 4
 """Translations of older sources that stay in the cache."""
@@ -62,29 +59,9 @@ def translated(model: Model) -> Translation:
     packages = [Path(str(package.__file__)).parent for package in model.sources()]
     if any(package.parent != ROOT for package in packages):
         return translate(model)
-    key = _hash_of([*packages, ROOT / "modelkit", Path(compiler.__file__).parent], "\0".join(_words(model)))
+    key = hash_of([*packages, ROOT / "modelkit", Path(compiler.__file__).parent], "\0".join(words_of(model)))
     path = kept_file(CACHE, model.name, key, SUFFIX, lambda: json.dumps(translate(model)._asdict()).encode(), KEPT)
     return Translation(**json.loads(path.read_bytes()))
-
-
-def _words(model: Model) -> list[str]:
-    """Return what the C of ``model`` depends on beside the sources."""
-    parts: list[Any] = [model.state, model.params, model.inputs, model.outputs, model.initialize, model.step]
-    parts += [] if model.store is None else [model.store]
-    words = [model.name, model.description, *(f"{part.__module__} {part.__qualname__}" for part in parts)]
-    words += [repr(flatten(start)) for start in (model.params(), model.first_params(), model.inputs())]
-    if model.assembly is not None:
-        words += [str(model.assembly.period_ns), *sorted(model.assembly.opened)]
-        words += [word for name, part in model.assembly.parts for word in (name, *_words(part))]
-    return words
-
-
-def _hash_of(folders: list[Path], more: str) -> str:
-    """Return digits that depend on the names and contents of all Python files in ``folders``, and ``more``."""
-    digest = hashlib.sha256(more.encode())
-    for path in (path for folder in folders for path in sorted(folder.rglob("*.py"))):
-        digest.update(f"{path.relative_to(ROOT)}\0{path.read_text(encoding='utf-8')}\0".encode())
-    return digest.hexdigest()[:32]
 
 
 def unit_name(model: Model, fmi: int) -> str:

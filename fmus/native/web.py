@@ -12,12 +12,14 @@ from pathlib import Path
 from fmus.locks import kept_file
 from fmus.native.compilers import find_compiler
 from fmus.native.kept import C_FILES
-from fmus.native.libraries import model_files, model_unit
+from fmus.native.made_of import ROOT, hash_of, words_of
 from fmus.native.platforms import WEB, CompileTarget
-from fmus.places import LIBRARIES
+from fmus.places import CACHE, LIBRARIES
 from modelkit.connections import connections, part_of
 from modelkit.model import Model
 
+KEPT = 4
+"""Names of modules of older sources that stay in the cache."""
 MODEL_UNIT = """#define LIBRARY_EXPORT __attribute__((unused)) static
 {unit}
 const Library *{name}_library(void);
@@ -48,19 +50,35 @@ def live_library(
     models: Mapping[str, Model], target: CompileTarget, suffix: str, more: Mapping[str, str] | None = None
 ) -> Path:
     """Return the path of what ``live.c`` becomes for ``target``, with the further C files ``more``."""
-    compiler = find_compiler("zig")
-    files = {**live_files(models), **(more or {})}
-    units = sorted(name for name in files if name.endswith("_unit.c"))
-    digest = hashlib.sha256(compiler.recipe(target).encode())
-    for file, text in sorted(files.items()):
-        digest.update(f"{file} {len(text)} {text}".encode())
-    name = f"live{suffix}"
-    made = lambda: compiler.linked(files, units, name, target)  # noqa: E731
-    return kept_file(LIBRARIES, "live", digest.hexdigest()[:16], suffix, made)
+    compiler, name = find_compiler("zig"), f"live{suffix}"
+    further = more or {}
+
+    def files() -> dict[str, str]:
+        return {**live_files(models), **further}
+
+    def made() -> bytes:
+        units = sorted(file for file in files() if file.endswith("_unit.c"))
+        return compiler.linked(files(), units, name, target)
+
+    packages = [Path(str(package.__file__)).parent for model in models.values() for package in model.sources()]
+    words = [compiler.recipe(target), *_told(further), *(word for model in models.values() for word in words_of(model))]
+    sources = hash_of([*packages, ROOT / "modelkit", ROOT / "fmus" / "compiler", C_FILES.parent], "\0".join(words))
+    of_c = kept_file(CACHE, name, sources, ".key", lambda: _digest([compiler.recipe(target), *_told(files())]), KEPT)
+    return kept_file(LIBRARIES, "live", of_c.read_text(encoding="ascii"), suffix, made)
+
+
+def _told(files: Mapping[str, str]) -> list[str]:
+    return [f"{file} {len(text)} {text}" for file, text in sorted(files.items())]
+
+
+def _digest(words: list[str]) -> bytes:
+    return hashlib.sha256("".join(words).encode()).hexdigest()[:16].encode()
 
 
 def live_files(models: Mapping[str, Model]) -> dict[str, str]:
     """Return the C files; those called ``..._unit.c`` are compiled."""
+    from fmus.native.libraries import model_files, model_unit
+
     own = ("live.c", "batch.c", "faults.h", "library.h")
     files = {name: (C_FILES / name).read_text(encoding="utf-8") for name in own}
     for model in models.values():

@@ -30,31 +30,36 @@ def run_once(arguments: argparse.Namespace, beside: PictureBeside | None) -> int
         summary = summarize(ran.recording, scenario, ran.wall_time)
         text = write_summary(out, summary)
         interrupted = ran.end.reason == "interrupted"
+        drawer = beside if is_shown(ran.recording) and not interrupted else None
+        if drawer is not None:
+            drawer.begin(overview_of(ran.recording, summary, scenario))
         if beside is not None and not interrupted:
-            _write_pages(out, ran, summary, scenario, foreign, beside)
-    if arguments.json:
-        print(text)
-    else:
-        from orchestrator.session.terminal import print_summary
-
-        print_summary(summary, scenario.title, scenario.expect)
+            _write_pages(out, ran, summary, scenario, foreign)
+        _tell(arguments, text, summary, scenario)
+        if drawer is not None:
+            write_whole(out / PICTURE, drawer.picture())
+    if not arguments.json:
         print(f"results in {out}")
     if interrupted:
         return INTERRUPTED
     return PARKED if summary.is_done else NOT_PARKED
 
 
-def _write_pages(
-    out: Path, ran: Ran, summary: Summary, scenario: Scenario, foreign: Foreign, beside: PictureBeside
-) -> None:
-    """Write picture, replay page and the page that is driven, the first drawn while the others are made."""
-    shown = is_shown(ran.recording)
-    if shown:
-        beside.begin(overview_of(ran.recording, summary, scenario))
+def _tell(arguments: argparse.Namespace, text: str, summary: Summary, scenario: Scenario) -> None:
+    """Print summary.json, or what it says as a table."""
+    if arguments.json:
+        print(text)
+        return
+    from orchestrator.session.terminal import print_summary
+
+    print_summary(summary, scenario.title, scenario.expect)
+
+
+def _write_pages(out: Path, ran: Ran, summary: Summary, scenario: Scenario, foreign: Foreign) -> None:
+    """Write the page that is driven, and the replay page if there is something to show."""
     _write_live(out / LIVE, scenario, foreign)
-    if shown:
+    if is_shown(ran.recording):
         write_page(out, ran.recording, summary, ran.lines)
-        write_whole(out / PICTURE, beside.picture())
 
 
 def _write_live(path: Path, scenario: Scenario, foreign: Foreign) -> None:

@@ -5,7 +5,7 @@ import json
 import os
 import shlex
 import time
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
@@ -15,10 +15,12 @@ from orchestrator.cosim.fmu_files import fmu_files
 from orchestrator.cosim.interrupts import on_interrupt
 from orchestrator.cosim.kinds import KINDS, default_kind
 from orchestrator.cosim.master import Interrupt
+from orchestrator.cosim.recording import Recording
 from orchestrator.scenario.files import find_file
 from orchestrator.scenario.models import APART, MODELS
 from orchestrator.scenario.requirements import read_requirements
-from orchestrator.session.foreign import foreign_of
+from orchestrator.scenario.scenario import Scenario
+from orchestrator.session.foreign import Files, foreign_of
 from orchestrator.session.options import add_foreign_arguments
 from orchestrator.suite.collection import write_collection
 from orchestrator.suite.junit import Suite, write_junit
@@ -26,6 +28,7 @@ from orchestrator.suite.suite import Bench, Tested, chosen, run_tests, tested_by
 from orchestrator.text.console import Meter, Warnings, console, say
 from orchestrator.text.errors import INTERRUPTED, BadInput
 from orchestrator.text.owned import owned
+from orchestrator.text.readable import shortly
 
 EXAMPLES = """examples:
   apa test "guo2015-*" --out results
@@ -48,6 +51,7 @@ exit codes: 0 all passed, 1 not, 2 a scenario, rule or FMU that cannot be read, 
 3 an internal error in one of them; JUnit is there from the start, with an error for what has not run
 """
 PASSED, FAILED = 0, 1
+Look = Callable[[Scenario, Files, Recording], None]
 MOST_JOBS = 64
 NOT_RUN = "the test ended before this scenario was run"
 
@@ -105,14 +109,17 @@ def jobs(text: str) -> int:
 def _covered(arguments: argparse.Namespace, names: list[str], verdicts: "Verdicts") -> int:
     """Test with the models in process, and say what of their charts and code was covered."""
     from orchestrator.coverage.coverage import looking_on
+    from orchestrator.coverage.modes import Modes
     from orchestrator.coverage.show import coverage_tables, write_coverage
 
-    if foreign_of(arguments).files:
-        raise BadInput("the charts of somebody else's FMU cannot be looked into", key="--coverage")
     arguments.fmus, arguments.jobs = "none", 1
+    modes = Modes()
     with looking_on([*MODELS.values(), *(model for _, model in APART.values())]) as so_far:
-        code = _run(arguments, names, verdicts)
-        found = so_far()
+        code = _run(arguments, names, verdicts, modes.look)
+        found = so_far().of_ours({MODELS[name].package.__name__ for name in modes.ours & set(MODELS)}, modes.covered())
+    if arguments.min_transition_coverage is not None and not found.has_list:
+        advice = "list the transitions of the mode in the scenario, under system: modes:"
+        raise BadInput(f"nothing says which transitions there are; {advice}", key="--min-transition-coverage")
     page = write_coverage(arguments.out, found)
     parts = {"transitions": found.transitions_percent, "branches": found.branches_percent}
     if not arguments.json:
@@ -149,9 +156,10 @@ def _catalogue(arguments: argparse.Namespace) -> int:
     return INTERRUPTED if interrupt.requested else catalogue.code()
 
 
-def _run(arguments: argparse.Namespace, names: list[str], verdicts: "Verdicts") -> int:
+def _run(arguments: argparse.Namespace, names: list[str], verdicts: "Verdicts", look: Look | None = None) -> int:
     interrupt = Interrupt()
     bench = _bench(arguments, interrupt)
+    bench = bench if look is None else bench._replace(look=look)
     tested = verdicts.tested
     with on_interrupt(interrupt), Meter("apa test", len(names), "scenarios") as meter:
         for item in run_tests(names, arguments.set, bench, arguments.out, arguments.jobs):
@@ -219,7 +227,7 @@ def _print(tested: Tested, place: str) -> None:
     if tested.error:
         out.print(f"        {tested.error}", markup=False, soft_wrap=True)
     if tested.ignored:
-        out.print(f"        left out: {', '.join(tested.ignored)}", markup=False, soft_wrap=True)
+        out.print(f"        left out: {shortly(tested.ignored)}", markup=False, soft_wrap=True)
 
 
 def _row(tested: Tested) -> dict[str, Any]:

@@ -1,6 +1,6 @@
 """What tests have been through: charts and branches of the models that run in this process."""
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Collection, Iterable, Iterator
 from contextlib import contextmanager
 from typing import NamedTuple
 
@@ -15,6 +15,16 @@ class Coverage(NamedTuple):
 
     charts: list[ChartCovered]
     branches: list[Branch]
+
+    def of_ours(self, packages: Collection[str], modes: list[ChartCovered]) -> "Coverage":
+        """Return it without the charts of models that were nowhere in the tests, and with modes of others."""
+        ours = [chart for chart in self.charts if chart.name.split(".")[0] in packages]
+        return self._replace(charts=[*ours, *modes])
+
+    @property
+    def has_list(self) -> bool:
+        """Whether anything says which transitions there are."""
+        return any(chart.rows and chart.is_listed for chart in self.charts)
 
     @property
     def transitions_percent(self) -> float:

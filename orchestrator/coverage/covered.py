@@ -4,6 +4,7 @@ A row of a chart is decided on when its source is the state and no row above it 
 a guard seen true and false while it decides is modified condition/decision coverage (MC/DC) of the row.
 """
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 from modelkit.model import Chart
@@ -24,7 +25,8 @@ class RowCovered(NamedTuple):
     @property
     def words(self) -> str:
         """The transition as people read it."""
-        return f"{self.source} to {self.target} when {self.guard}".lower().replace("_", " ")
+        when = f" when {self.guard}" if self.guard else ""
+        return f"{self.source} to {self.target}{when}".lower().replace("_", " ")
 
 
 class ChartCovered(NamedTuple):
@@ -36,6 +38,12 @@ class ChartCovered(NamedTuple):
     states: dict[str, int]
     """State -> samples in it."""
     rows: list[RowCovered]
+    has_guards: bool = True
+    """False: only its state is known, not what it decides on."""
+    is_listed: bool = True
+    """False: the rows are those seen; how many there are nobody says."""
+    beside: Sequence[RowCovered] = ()
+    """Transitions seen that are not listed."""
 
     @property
     def visited(self) -> int:
@@ -87,6 +95,7 @@ def _name(chart: Chart, value: int) -> str:
 
 
 def share(charts: list[ChartCovered]) -> float:
-    """Return the share of the transitions that were taken, of all charts together; 1 without any."""
-    count = sum(len(chart.rows) for chart in charts)
-    return sum(chart.taken for chart in charts) / count if count else 1.0
+    """Return the share of the transitions that were taken, of all charts that list theirs together; 1 without any."""
+    listed = [chart for chart in charts if chart.is_listed]
+    count = sum(len(chart.rows) for chart in listed)
+    return sum(chart.taken for chart in listed) / count if count else 1.0

@@ -23,7 +23,8 @@ STYLE = """
 HEAD = """<header class="top"><div class="headline"><h1>Coverage of charts and code</h1></div>
 <span class="verdict {kind}">{share:.0f} % of the transitions</span>
 <span class="verdict {branch_kind}">{branch_share:.0f} % of the branches</span></header>
-<p class="quiet">Red: never taken, or never visited. Orange: its guard was never false while it decided.</p>
+<p class="quiet">Red: never taken, or never visited. Orange: its guard was never false while it decided,
+or nobody has listed it. Of an FMU of somebody else's only a mode is seen.</p>
 """
 
 
@@ -33,10 +34,12 @@ def coverage_tables(found: Coverage) -> list[Table]:
     for chart in found.charts:
         counts = (
             f"{chart.visited} of {len(chart.states)}",
-            f"{chart.taken} of {len(chart.rows)}",
-            f"{chart.outcomes} of {2 * len(chart.rows)}",
+            f"{chart.taken} of {len(chart.rows)}" if chart.is_listed else f"{chart.taken} seen, none listed",
+            f"{chart.outcomes} of {2 * len(chart.rows)}" if chart.has_guards else "not known",
         )
         charts.add_row(f"{chart.name} ({chart.signal})" if chart.signal else chart.name, *counts)
+        for row in chart.beside:
+            charts.add_row(f"  not listed: {row.words}", "", str(row.taken), "")
     folders = _table("model code", "branches", "outcomes")
     for folder, branches in _by_folder(found.branches).items():
         seen = sum(branch.outcomes for branch in branches)
@@ -46,7 +49,10 @@ def coverage_tables(found: Coverage) -> list[Table]:
 
 def as_json(found: Coverage) -> dict[str, Any]:
     """Return the coverage as plain data."""
-    charts = [{**chart._asdict(), "rows": [row._asdict() for row in chart.rows]} for chart in found.charts]
+    charts = [
+        {**chart._asdict(), **{key: [row._asdict() for row in getattr(chart, key)] for key in ("rows", "beside")}}
+        for chart in found.charts
+    ]
     branches = [{**branch._asdict(), "file": _short(branch.file)} for branch in found.branches]
     return {
         "transition_coverage": share(found.charts),
@@ -113,18 +119,24 @@ def _missing(branch: Branch) -> str:
 
 def _chart(chart: ChartCovered) -> str:
     arcs = [(row.source, row.target, row.guard.lower().replace("_", " ")) for row in chart.rows]
+    arcs += [(row.source, row.target, "not listed") for row in chart.beside]
     missed = {(row.source, row.target) for row in chart.rows if not row.taken}
     unvisited = {name for name, count in chart.states.items() if not count}
     svg = chart_svg(arcs, list(chart.states), missed, unvisited)
-    counts = f"{chart.visited} of {len(chart.states)} states, {chart.taken} of {len(chart.rows)} transitions"
-    rows = "".join(_row(row) for row in chart.rows)
-    head = "<tr><th>transition</th><th>taken</th><th>decided against</th></tr>"
+    transitions = f"{chart.taken} of {len(chart.rows)} transitions" if chart.is_listed else f"{chart.taken} transitions"
+    counts = f"{chart.visited} of {len(chart.states)} states, {transitions}"
+    rows = "".join(_row(row, chart.has_guards) for row in chart.rows)
+    rows += "".join(_row(row, False, "not listed") for row in chart.beside)
+    against = "<th>decided against</th>" if chart.has_guards else ""
+    head = f"<tr><th>transition</th><th>taken</th>{against}</tr>"
+    name = chart.name if chart.has_guards else f"{chart.name}: {chart.signal}"
     return (
-        f'<article class="card sheet"><h2>{html.escape(chart.name)}</h2><p>{counts}</p>{svg}'
+        f'<article class="card sheet"><h2>{html.escape(name)}</h2><p>{counts}</p>{svg}'
         f'<table class="rows">{head}{rows}</table></article>'
     )
 
 
-def _row(row: RowCovered) -> str:
-    kind = "missed" if not row.taken else "half" if not row.refused else ""
-    return f'<tr class="{kind}"><td>{html.escape(row.words)}</td><td>{row.taken}</td><td>{row.refused}</td></tr>'
+def _row(row: RowCovered, has_guard: bool, note: str = "") -> str:
+    kind = "missed" if not row.taken else "half" if note or (has_guard and not row.refused) else ""
+    refused = f"<td>{row.refused}</td>" if has_guard else f"<td>{note}</td>"
+    return f'<tr class="{kind}"><td>{html.escape(row.words)}</td><td>{row.taken}</td>{refused}</tr>'

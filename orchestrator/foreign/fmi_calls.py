@@ -7,7 +7,7 @@ import ctypes
 import struct
 import sys
 from collections.abc import Callable, Mapping
-from typing import Any
+from typing import Any, NamedTuple
 
 OK, WARNING, DISCARD, ERROR, FATAL = 0, 1, 2, 3, 4
 WORDS = {DISCARD: "fmiDiscard", ERROR: "fmiError", FATAL: "fmiFatal"}
@@ -45,16 +45,28 @@ class RefusedError(Exception):
         self.status = status
 
 
-class ValueCall:
-    """One direction of one type: the call, and the memory that its values go through."""
+class Place(NamedTuple):
+    """Where the numbers of a call are, as doubles."""
 
-    def __init__(self, call: Callable[..., int], component: Any, group: Group, counts: bool) -> None:
+    memory: Any
+    """A writable buffer."""
+    begin: int
+    """The first of them in it [bytes]."""
+
+
+class ValueCall:
+    """One direction of one type: the call, and the memory that its values go through.
+
+    Doubles are handed to the FMU where they lie; other types are converted, by ``take`` or ``give``.
+    """
+
+    def __init__(self, call: Callable[..., int], component: Any, group: Group, counts: bool, place: Place) -> None:
         self.count = int(group["count"])
         kind = C_TYPES[group["type"]]
-        self.size = 8 * self.count
-        """Of its numbers as doubles [bytes]."""
-        self._array = (kind * max(self.count, 1))()
-        self._is_double, self._is_real = kind is Double, kind in (Double, ctypes.c_float)
+        self.is_double, self._is_real = kind is Double, kind in (Double, ctypes.c_float)
+        self._memory, self._begin = place
+        inside = self.is_double and self.count
+        self._array = (kind * self.count).from_buffer(*place) if inside else (kind * max(self.count, 1))()
         self._packed = struct.Struct(f"={self.count}d")
         references = [int(item) for item in group["references"]]
         self._references = (ctypes.c_uint32 * max(len(references), 1))(*references)
@@ -64,21 +76,18 @@ class ValueCall:
 
     def __call__(self) -> int:
         """Make the call and return its FMI status."""
-        return int(self._call(*self._arguments)) if self.count else OK
+        return self._call(*self._arguments) if self.count else OK
 
-    def take(self, data: bytes) -> None:
-        """Lay numbers, given as doubles, into the memory."""
-        if self._is_double:
-            ctypes.memmove(self._array, data, self.size)
-        else:
-            values = self._packed.unpack(data)
+    def take(self) -> None:
+        """Lay the numbers into the memory of the call."""
+        if not self.is_double:
+            values = self._packed.unpack_from(self._memory, self._begin)
             self._array[: self.count] = values if self._is_real else [int(value) for value in values]
 
-    def give(self) -> bytes:
-        """Return what is in the memory, as doubles."""
-        if self._is_double:
-            return ctypes.string_at(self._array, self.size)
-        return self._packed.pack(*self._array[: self.count])
+    def give(self) -> None:
+        """Lay what the call has brought where the numbers are."""
+        if not self.is_double:
+            self._packed.pack_into(self._memory, self._begin, *self._array[: self.count])
 
 
 class _Callbacks(ctypes.Structure):
@@ -141,12 +150,12 @@ class Fmi2:
         free.restype, free.argtypes = None, (Pointer,)
         free(self.component)
 
-    def transfer(self, verb: str, group: Group) -> ValueCall:
-        """Return the call that gets, or sets, a group of variables."""
+    def transfer(self, verb: str, group: Group, place: Place) -> ValueCall:
+        """Return the call that gets, or sets, a group of variables whose numbers are at a place."""
         call = getattr(
             self._library, f"{self.prefix}{verb}{group['type'].rstrip('3') if self.counts else group['type']}"
         )
-        return ValueCall(call, self.component, group, self.counts)
+        return ValueCall(call, self.component, group, self.counts, place)
 
     def plain(self, verb: str) -> int:
         """Return the status of a call that takes the instance alone."""

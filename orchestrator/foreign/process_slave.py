@@ -1,9 +1,11 @@
 """An FMU in a process of its own: it may crash, hang or leave, and the run only ends with a reason.
 
-Every order has a limit of wall-clock time. Inputs and outputs go through pipes, once a step: see ``worker``.
+Every order has a limit of wall-clock time. Numbers lie in memory that both processes have, orders go through pipes, one
+a step: see ``worker``.
 """
 
 import json
+import mmap
 import os
 import signal
 import subprocess
@@ -11,7 +13,7 @@ import threading
 import time
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
-from math import inf, isnan
+from math import isnan
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -39,6 +41,19 @@ class _Groups(NamedTuple):
     order: Indices
     """Places in the ports, in the order of the groups."""
     groups: list[dict[str, Any]]
+
+
+class _Shared:
+    """The memory that both processes have: time and step, the inputs, the outputs."""
+
+    def __init__(self, path: Path, inputs: int, outputs: int) -> None:
+        path.write_bytes(bytes(worker.TIMES.size + 8 * (inputs + outputs)))
+        with path.open("r+b") as file:
+            self.memory = mmap.mmap(file.fileno(), 0)
+        numbers = np.frombuffer(self.memory)
+        self.inputs, self.outputs = numbers[2 : 2 + inputs], numbers[2 + inputs :]
+        self.ones = np.ones(outputs)
+        """Times the outputs, that is not-a-number if one of them is; and seldom else."""
 
 
 class ProcessSlave:
@@ -75,6 +90,8 @@ class ProcessSlave:
         self._is_running = self._is_fresh = False
         self._t_ns = 0
         self._in, self._out = self._groups(self.inputs), self._groups(self.outputs)
+        self._shared: _Shared | None = None
+        self._seen = b""
 
     def initialize(self, stop_ns: int) -> None:
         """Unpack, start the process, load, set the parameters, enter Initialization Mode."""
@@ -91,11 +108,13 @@ class ProcessSlave:
         place = self._folder / "fmu" / library
         self._process = _Process(place.parent, self._folder / "printed")
         resources = self._folder / "fmu" / "resources"
+        self._shared = _Shared(self._folder / "shared", len(self._in.order), len(self._out.order))
         asked = {
             "version": self._version,
             "library": str(place),
             "name": self.name,
             "guid": self.identity,
+            "shared": str(self._folder / "shared"),
             "resources": f"{resources}{os.sep}" if self._version == 3 else resources.as_uri(),
             "inputs": self._in.groups,
             "outputs": self._out.groups,
@@ -112,43 +131,57 @@ class ProcessSlave:
 
     def fetch_outputs(self) -> None:
         """Ask for the outputs, unless the last step has brought them. What anything is made of must not be NaN."""
+        assert self._shared is not None
+        values, shared = self.outputs.values, self._shared
         if not self._is_fresh:
-            self._lay(self._ask(worker.OUTPUTS, b"", f"giving outputs at {self._t_ns / 1e9:g} s"))
-        used = self.outputs.values[self.outputs.used]
-        if isnan(np.minimum.reduce(used, initial=inf)):
-            names = [self.outputs.names[place] for place in self.outputs.used if isnan(self.outputs.values[place])]
-            raise RunError(f"{self.name} gives NaN for {', '.join(names)} at {self._t_ns / 1e9:g} s")
+            self._ask(worker.OUTPUTS, b"", f"giving outputs at {self._t_ns / 1e9:g} s")
+        values[self._out.order] = shared.outputs
+        if isnan(shared.ones.dot(shared.outputs)):
+            names = [self.outputs.names[place] for place in self.outputs.used if isnan(values[place])]
+            if names:
+                raise RunError(f"{self.name} gives NaN for {', '.join(names)} at {self._t_ns / 1e9:g} s")
 
     def send_inputs(self) -> None:
         """In Initialization Mode, hand over the inputs; later they go with the step."""
         if not self._is_running:
-            self._ask(worker.INPUTS, self.inputs.values[self._in.order].tobytes(), "taking inputs at 0 s")
+            self._lay_inputs()
+            self._ask(worker.INPUTS, b"", "taking inputs at 0 s")
 
     def step(self, t_ns: int, dt_ns: int) -> None:
-        """Hand over the inputs, step, and take the outputs."""
-        times = worker.TIMES.pack(t_ns / 1e9, dt_ns / 1e9)
-        data = times + self.inputs.values[self._in.order].tobytes()
+        """Hand over the inputs, unless they are what they were: an FMU holds its inputs. Step; take the outputs."""
+        assert self._shared is not None
+        order = worker.STEP if self._lay_inputs() else worker.HELD_STEP
+        worker.TIMES.pack_into(self._shared.memory, 0, t_ns / 1e9, dt_ns / 1e9)
         self._t_ns = t_ns
-        self._lay(self._ask(worker.STEP, data, ""))
+        self._ask(order, b"", "")
         self._t_ns, self._is_fresh = t_ns + dt_ns, True
+
+    def _lay_inputs(self) -> bool:
+        """Lay the inputs where the FMU finds them; return whether any has changed."""
+        assert self._shared is not None
+        given = self.inputs.values[self._in.order]
+        now = given.tobytes()
+        if now == self._seen:
+            return False
+        self._seen = now
+        self._shared.inputs[:] = given
+        return True
 
     def close(self) -> None:
         """Have the FMU terminated and freed, and end its process."""
         if self._process is not None:
             process, self._process = self._process, None
             process.close(min(self._timeout, 5.0))
+        self._shared = None
         if self._folder is not None:
             remove_folder(self._folder)
             self._folder = None
 
-    def _lay(self, data: bytes) -> None:
-        self.outputs.values[self._out.order] = np.frombuffer(data)
-
-    def _ask(self, order: bytes, data: bytes, when: str) -> bytes:
-        """Return the answer to an order. Raises ``RunError`` if the FMU refuses, crashes, leaves or takes too long."""
+    def _ask(self, order: bytes, data: bytes, when: str) -> None:
+        """Wait until an order is done. Raises ``RunError`` if the FMU refuses, crashes, leaves or takes too long."""
         assert self._process is not None
         try:
-            return self._process.ask(order, data, self._timeout, self._heard)
+            self._process.ask(order, data, self._timeout, self._heard)
         except _NoAnswerError as error:
             when = when or f"in the step at {self._t_ns / 1e9:g} s"
             raise RunError(f"{self.name} {str(error).format(when=when)}") from None
@@ -207,15 +240,15 @@ class _Process:
         self._over = threading.Event()
         threading.Thread(target=self._watch, daemon=True).start()
 
-    def ask(self, order: bytes, data: bytes, limit: float, heard: Callable[[int, str], None]) -> bytes:
-        """Return the answer; messages that come before it go to ``heard``."""
+    def ask(self, order: bytes, data: bytes, limit: float, heard: Callable[[int, str], None]) -> None:
+        """Wait until an order is done; messages that come before that go to ``heard``."""
         self._deadline = time.monotonic() + limit
         try:
             worker.send(self._writing, order, data)
             while True:
                 letter, answer = self._answers.message()
                 if letter == worker.DONE:
-                    return answer
+                    return
                 said = json.loads(answer)
                 if letter == worker.REFUSED:
                     what, _, text = said

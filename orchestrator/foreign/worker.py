@@ -1,15 +1,17 @@
 """The process of one FMU: takes orders on its standard input, answers on what was its standard output.
 
-A message is one letter, the length of what follows as four bytes, and that: JSON, or numbers as doubles. Imports
-nothing but the standard library and ``fmi_calls``, so that a process is there in 30 ms.
+A message is one letter, the length of what follows as four bytes, and that: JSON, or nothing. Numbers lie in a file
+that both have in their memory: time and step, the inputs, the outputs, as doubles. Imports nothing but the standard
+library and ``fmi_calls``, so that a process is there in 30 ms.
 
 Orders: ``L`` load, ``P`` parameters, ``I`` enter Initialization Mode, ``R`` exit it, ``O`` give outputs, ``N`` take
-inputs, ``S`` step (time, step, inputs; answers with the outputs), ``C`` close. Answers: ``=`` done (with the numbers
-asked for), ``!`` refused, and before either ``M``, a message of the FMU.
+inputs, ``S`` take inputs, step, give outputs, ``s`` the same with the inputs as they were, ``C`` close. Answers: ``=``
+done, ``!`` refused, and before either ``M``, a message of the FMU.
 """
 
 import ctypes
 import json
+import mmap
 import os
 import struct
 import sys
@@ -21,9 +23,12 @@ from orchestrator.foreign import fmi_calls
 HEAD = struct.Struct("=ci")
 TIMES = struct.Struct("=dd")
 DONE, REFUSED, MESSAGE = b"=", b"!", b"M"
-LOAD, PARAMETERS, INITIALIZE, START, OUTPUTS, INPUTS, STEP, CLOSE = (
-    letter.encode() for letter in ("L", "P", "I", "R", "O", "N", "S", "C")
+ALL_DONE = HEAD.pack(DONE, 0)
+LOAD, PARAMETERS, INITIALIZE, START, OUTPUTS, INPUTS, STEP, HELD_STEP, CLOSE = (
+    letter.encode() for letter in ("L", "P", "I", "R", "O", "N", "S", "s", "C")
 )
+MOST = 1 << 12
+"""Bytes that are read at once."""
 
 
 class Stream:
@@ -35,20 +40,18 @@ class Stream:
 
     def message(self) -> tuple[bytes, bytes]:
         """Return (letter, what follows). Raises ``EOFError`` if there is nobody any more."""
-        while len(self._kept) < HEAD.size:
-            self._more()
-        letter, size = HEAD.unpack_from(self._kept)
-        whole = HEAD.size + size
-        while len(self._kept) < whole:
-            self._more()
-        data, self._kept = self._kept[HEAD.size : whole], self._kept[whole:]
-        return letter, data
-
-    def _more(self) -> None:
-        part = os.read(self._handle, 1 << 16)
-        if not part:
-            raise EOFError
-        self._kept += part
+        while True:
+            kept = self._kept
+            if len(kept) >= HEAD.size:
+                letter, size = HEAD.unpack_from(kept)
+                whole = HEAD.size + size
+                if len(kept) >= whole:
+                    self._kept = kept[whole:]
+                    return letter, kept[HEAD.size : whole]
+            part = os.read(self._handle, MOST)
+            if not part:
+                raise EOFError
+            self._kept = kept + part if kept else part
 
 
 def send(handle: int, letter: bytes, data: bytes) -> None:
@@ -68,18 +71,19 @@ class Worker:
         self._last = ""
         self._gets: list[Any] = []
         self._sets: list[Any] = []
-        self._seen = b""
+        self._shared: Any = None
 
     def serve(self) -> None:
         """Do what is asked until there is nobody who asks."""
-        orders: dict[bytes, Callable[[bytes], bytes]] = {
+        orders: dict[bytes, Callable[[bytes], None]] = {
             LOAD: self._load,
             PARAMETERS: self._parameters,
             INITIALIZE: lambda data: self._checked(self._fmu.initialize(*json.loads(data)), "refuses to initialize"),
             START: lambda data: self._checked(self._fmu.start(), "refuses to start"),
             OUTPUTS: lambda data: self._outputs(),
-            INPUTS: self._inputs,
-            STEP: self._step,
+            INPUTS: lambda data: self._inputs(),
+            STEP: self._step_with_inputs,
+            HELD_STEP: self._step,
             CLOSE: self._close,
         }
         while True:
@@ -88,7 +92,8 @@ class Worker:
             except EOFError:
                 return
             try:
-                send(self._writing, DONE, orders[letter](data))
+                orders[letter](data)
+                os.write(self._writing, ALL_DONE)
             except fmi_calls.RefusedError as error:
                 self._worst = max(self._worst, error.status)
                 word = fmi_calls.WORDS.get(error.status, "")
@@ -96,7 +101,7 @@ class Worker:
             if letter == CLOSE:
                 return
 
-    def _load(self, data: bytes) -> bytes:
+    def _load(self, data: bytes) -> None:
         asked = json.loads(data)
         made = fmi_calls.Fmi3 if asked["version"] == 3 else fmi_calls.Fmi2
         try:
@@ -104,57 +109,59 @@ class Worker:
                 os.add_dll_directory(os.path.dirname(asked["library"]))
             library = ctypes.CDLL(asked["library"])
             self._fmu = made(library, asked["name"], asked["guid"], asked["resources"], self._say)
-            self._gets = [self._fmu.transfer("Get", group) for group in asked["outputs"]]
-            self._sets = [self._fmu.transfer("Set", group) for group in asked["inputs"]]
+            self._share(asked)
         except (OSError, AttributeError) as error:
             self._last = self._last or str(error)
             raise fmi_calls.RefusedError("cannot be loaded here", fmi_calls.ERROR) from error
-        return b""
 
-    def _parameters(self, data: bytes) -> bytes:
+    def _share(self, asked: Any) -> None:
+        """Have the numbers' file in memory, and a call for each type of them, inputs first."""
+        with open(asked["shared"], "r+b") as file:
+            self._shared = mmap.mmap(file.fileno(), 0)
+        at = TIMES.size
+        for verb, groups, transfers in (("Set", asked["inputs"], self._sets), ("Get", asked["outputs"], self._gets)):
+            for group in groups:
+                transfers.append(self._fmu.transfer(verb, group, fmi_calls.Place(self._shared, at)))
+                at += 8 * transfers[-1].count
+
+    def _parameters(self, data: bytes) -> None:
         for group in json.loads(data):
-            transfer = self._fmu.transfer("Set", group)
-            transfer.take(struct.pack(f"={transfer.count}d", *group["values"]))
+            values = bytearray(struct.pack(f"={len(group['values'])}d", *group["values"]))
+            transfer = self._fmu.transfer("Set", group, fmi_calls.Place(values, 0))
+            transfer.take()
             self._checked(transfer(), "refuses its parameters")
-        return b""
 
-    def _step(self, data: bytes) -> bytes:
-        t, dt = TIMES.unpack_from(data)
-        self._inputs(data[TIMES.size :])
+    def _step_with_inputs(self, data: bytes) -> None:
+        self._inputs()
+        self._step(data)
+
+    def _step(self, data: bytes) -> None:
+        t, dt = TIMES.unpack_from(self._shared)
         status = self._fmu.step(t, dt)
         if status > fmi_calls.WARNING:
             raise fmi_calls.RefusedError(f"failed at {t:g} s", status)
-        return self._outputs()
+        self._outputs()
 
-    def _inputs(self, data: bytes) -> bytes:
-        """Set the inputs, if any has changed: an FMU holds its inputs."""
-        if data == self._seen:
-            return b""
-        self._seen = data
-        at = 0
+    def _inputs(self) -> None:
         for transfer in self._sets:
-            transfer.take(data[at : at + transfer.size])
-            at += transfer.size
+            transfer.take()
             self._checked(transfer(), "refuses its inputs")
-        return b""
 
-    def _outputs(self) -> bytes:
+    def _outputs(self) -> None:
         for transfer in self._gets:
             self._checked(transfer(), "gives no outputs")
-        return b"".join([transfer.give() for transfer in self._gets])
+            transfer.give()
 
-    def _close(self, data: bytes) -> bytes:
+    def _close(self, data: bytes) -> None:
         """Terminate and free, as far as FMI allows: after an error free alone, after fmiFatal nothing."""
         if self._fmu is not None:
             status = self._fmu.terminate() if self._worst < fmi_calls.ERROR else fmi_calls.OK
             if max(status, self._worst) < fmi_calls.FATAL:
                 self._fmu.free()
-        return b""
 
-    def _checked(self, status: int, what: str) -> bytes:
+    def _checked(self, status: int, what: str) -> None:
         if status > fmi_calls.WARNING:
             raise fmi_calls.RefusedError(what, status)
-        return b""
 
     def _say(self, status: int, text: str) -> None:
         if status > fmi_calls.WARNING:

@@ -83,6 +83,8 @@ class Bench(NamedTuple):
     """(file, its requirements), judged besides the scenario's own limits."""
     interrupt: Interrupt
     warn: Callable[[str], None] = lambda text: None
+    look: Callable[[Scenario, Files, Recording], None] = lambda scenario, files, recording: None
+    """Is shown each run with the FMUs of somebody else's in it."""
 
 
 def chosen(names: list[str]) -> list[str]:
@@ -154,6 +156,7 @@ def _judged(scenario: Scenario, ignored: list[str], bench: Bench, folder: Path) 
             warn=bench.warn,
             foreign=bench.foreign,
         )
+        bench.look(scenario, bench.foreign.files, ran.recording)
         summary = summarize(ran.recording, scenario, ran.wall_time)
         checks = _extra_checks(bench, ran.recording, scenario)
         write_summary(folder, summary)
@@ -172,6 +175,7 @@ def _step_tested(test: StepTest, sets: list[str], bench: Bench, out: Path, taken
     scenario = Scenario(name=UNNAMEABLE.sub("-", test.name), title=test.title or f"step test of {test.model}")
     _claim(scenario.name, taken, "test", test.file)
     recording, checks = run_step_test(test, bench.kind, bench.foreign)
+    bench.look(scenario, bench.foreign.files, recording)
     folder = out / scenario.name
     with owned(folder):
         write_curves(folder / PAGE, test, recording, checks)

@@ -46,6 +46,8 @@ def assemble(scenario: Scenario, given: list[Slave]) -> Assembled:
             found += feeder.connections(feed, targets, where)
         else:
             feeder.constant(feed, targets, where)
+    for signal in text.modes:
+        pins_of(signal, slaves, False, scenario.file or None, f"system.modes.{signal}")
     wires = _matching(slaves, fed) if text.by_name else []
     fed |= {(wire.target, wire.input) for wire in wires}
     plain = joined(found)

@@ -1,10 +1,12 @@
 """Numbers as people read them."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 
 from orchestrator.text.quantities import DEGREE
 
+FEW = 3
+"""Names of one group that are told one by one."""
 WORDS = ("name", "title", "description", "source")
 """Keys of a scenario that change nothing in a run."""
 
@@ -16,6 +18,15 @@ def readable(value: float, unit: str) -> str:
     if unit.startswith("rad"):
         return f"{value / DEGREE:.2f} {unit.replace('rad', 'deg')}"
     return f"{value:.3f} {unit}" if unit != "1" else f"{value:g}"
+
+
+def shortly(names: Iterable[str]) -> str:
+    """Return names in words; more than a few of one group are told by the group and how many they are."""
+    groups: dict[str, list[str]] = {}
+    for name in names:
+        groups.setdefault(".".join(name.split(".")[:2]), []).append(name)
+    parts = [f"{len(found)} of {group}" if len(found) > FEW else ", ".join(found) for group, found in groups.items()]
+    return ", ".join(parts)
 
 
 def precise(value: float, unit: str) -> str:

@@ -5,6 +5,7 @@ import sys
 from collections import Counter
 from enum import IntEnum
 
+import c_fmus
 import pytest
 
 import controller_fmu
@@ -12,6 +13,7 @@ from modelkit.model import Chart
 from orchestrator.cli import main
 from orchestrator.coverage.covered import covered, share
 from orchestrator.coverage.tracer import charts_of, decider, name_of, tracing
+from orchestrator.scenario.wiring.modes import ModeList
 
 CHARTS = charts_of(controller_fmu.MODEL)
 
@@ -87,8 +89,67 @@ def test_too_little_fails(tmp_path, capsys, least, code):
     assert ("asked 90 %" in capsys.readouterr().err) == (code == 1)
 
 
-def test_the_charts_of_others_cannot_be_looked_into(tmp_path, capsys):
-    fmu = tmp_path / "their.fmu"
-    fmu.write_bytes(b"PK")
-    assert main(["test", "guo2015-case4", "--coverage", "--controller", str(fmu), "--out", str(tmp_path / "out")]) == 2
-    assert "looked into" in capsys.readouterr().err
+STATES = "{idle: 1, first arc: 2, second arc: 3, there: 4, lost: 5}"
+LISTED = "[idle -> first arc, first arc -> second arc, any state -> lost]"
+
+
+@pytest.fixture(scope="module")
+def desk(tmp_path_factory):
+    """Somebody's FMU, a scenario that connects it, and one that lists its mode."""
+    folder = tmp_path_factory.mktemp("desk")
+    c_fmus.two_arcs(folder)
+    text = (c_fmus.THEIR / "two_arcs.yaml").read_text(encoding="utf-8")
+    (folder / "plain.yaml").write_text(text.replace("their-case4", "plain"), encoding="utf-8")
+    modes = f"  modes:\n    controller.State: {{states: {STATES}, transitions: {LISTED}}}\n"
+    (folder / "listed.yaml").write_text(text + modes, encoding="utf-8")
+    return folder
+
+
+def test_of_the_fmu_of_others_a_mode_is_seen(desk, tmp_path, capsys):
+    both = [str(desk / "plain.yaml"), str(desk / "listed.yaml")]
+    assert main(["test", *both, "--min-transition-coverage", "66", "--out", str(tmp_path)]) == 0
+    assert "not listed: second arc to there" in capsys.readouterr().out
+    data = json.loads((tmp_path / "coverage.json").read_text(encoding="utf-8"))
+    (chart,) = data["charts"]
+    assert (chart["name"], chart["signal"]) == ("two_arcs.fmu", "State")
+    assert [(row["source"], row["target"], row["taken"]) for row in chart["rows"]] == [
+        ("idle", "first arc", 2),
+        ("first arc", "second arc", 2),
+        ("any state", "lost", 0),
+    ]
+    assert [name for name, count in chart["states"].items() if not count] == ["lost"]
+    assert data["transition_coverage"] == pytest.approx(2 / 3)
+    assert {branch["file"].split("/")[0] for branch in data["branches"]} == {"vehicle_fmu"}
+    page = (tmp_path / "coverage.html").read_text(encoding="utf-8")
+    assert "any state to lost" in page
+    assert "decided against" not in page
+
+
+def test_what_nobody_lists_is_told_and_has_no_threshold(desk, tmp_path, capsys):
+    plain = str(desk / "plain.yaml")
+    assert main(["test", plain, "--min-transition-coverage", "1", "--out", str(tmp_path)]) == 2
+    assert "nothing says which transitions there are" in capsys.readouterr().err
+    assert main(["test", plain, "--coverage", "--out", str(tmp_path)]) == 0
+    assert "3 seen, none listed" in capsys.readouterr().out
+    data = json.loads((tmp_path / "coverage.json").read_text(encoding="utf-8"))
+    assert list(data["charts"][0]["states"]) == ["standby", "path tracking", "straighten", "parked"]
+
+
+@pytest.mark.parametrize(
+    ("modes", "says"),
+    [
+        ({"transitions": ["idle to driving"]}, "is no transition; expected the like of idle -> driving"),
+        ({"states": {"idle": 1}, "transitions": ["idel -> idle"]}, "did you mean idle"),
+    ],
+)
+def test_a_list_that_means_nothing_is_refused(modes, says):
+    with pytest.raises(ValueError, match=says):
+        ModeList(**modes)
+
+
+def test_a_mode_that_is_no_output_is_told_before_the_run(desk, tmp_path, capsys):
+    file = desk / "wrong.yaml"
+    text = (desk / "listed.yaml").read_text(encoding="utf-8")
+    file.write_text(text.replace("controller.State: {states", "controller.Stat: {states"), encoding="utf-8")
+    assert main(["run", str(file), "--out", str(tmp_path), "--no-page"]) == 2
+    assert "did you mean controller.State" in capsys.readouterr().err

@@ -15,6 +15,7 @@ from orchestrator.stream.realtime import Realtime
 from orchestrator.text.console import say
 from orchestrator.text.errors import INTERRUPTED, NOT_PARKED, PARKED
 from orchestrator.text.owned import owned
+from orchestrator.text.readable import shortly
 from orchestrator.verdict.summary import Summary, summarize
 
 
@@ -22,7 +23,7 @@ def run_once(arguments: argparse.Namespace, beside: PictureBeside | None) -> int
     """Run, write, print; with pages if there is somebody ``beside`` who draws."""
     scenario, left_out, foreign = load_fitting(arguments.scenario, arguments.set, foreign_of(arguments))
     if left_out:
-        say(f"apa: warning: left out, the FMU does not have them: {', '.join(left_out)}")
+        say(f"apa: warning: left out, the FMU does not have them: {shortly(left_out)}")
     out: Path = arguments.out or Path("runs") / scenario.name
     with owned(out):
         paced = arguments.realtime or arguments.live is not None

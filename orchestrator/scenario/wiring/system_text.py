@@ -7,6 +7,7 @@ from typing import Annotated, Any, Literal, NamedTuple
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, model_validator
 
 from orchestrator.scenario.models import MODELS
+from orchestrator.scenario.wiring.modes import ModeList
 from orchestrator.text.errors import BadInput
 from orchestrator.text.quantities import Metres, Radians
 
@@ -150,6 +151,8 @@ class SystemText(_SystemPart):
     """Inputs -> what feeds them."""
     roles: dict[str, Feed] = {}
     """What judge, log, page and figure look for -> the signal that it is."""
+    modes: dict[str, ModeList] = {}
+    """Outputs that tell a mode -> its states and transitions, for ``apa test --coverage``."""
     by_name: bool = True
     """Connect outputs and inputs of the same name of which nothing else is said."""
     frames: dict[str, PoseFrame] = {}

@@ -165,6 +165,7 @@ def with_foreign(scenario: str | Path | Scenario, changes: Changes | None, given
         return fitted.scenario, fitted.foreign
     if changes:
         raise TypeError("changes are made when a scenario is loaded: load_scenario(name, changes)")
+    given = given.with_system(scenario.system)
     own = {slave: parameters_of(path, slave) for slave, path in given.files.items()}
     return fitting(scenario, own)[0], given
 

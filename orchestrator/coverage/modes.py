@@ -25,7 +25,7 @@ class Modes:
     """The modes of FMUs of others, and what of them was seen so far."""
 
     def __init__(self) -> None:
-        self._found: dict[tuple[str, str], _Mode] = {}
+        self._found: dict[tuple[str, str], _ModeSeen] = {}
         self.ours: set[str] = set()
         """Slaves that were ours in one test at least."""
 
@@ -36,7 +36,7 @@ class Modes:
         for signal, listed in modes_of(scenario, files, recording).items():
             slave, _, name = signal.partition(".")
             file = files[slave].name if slave in files else slave
-            self._found.setdefault((file, name), _Mode()).add(listed, recording, signal)
+            self._found.setdefault((file, name), _ModeSeen()).add(listed, recording, signal)
 
     def covered(self) -> list[ChartCovered]:
         """Return each mode as a chart whose guards nobody knows."""
@@ -74,7 +74,7 @@ class _Seen(NamedTuple):
     changes: Counter[tuple[float, float]]
 
 
-class _Mode:
+class _ModeSeen:
     """One mode over all tests."""
 
     def __init__(self) -> None:

@@ -45,7 +45,7 @@ class RefusedError(Exception):
         self.status = status
 
 
-class Place(NamedTuple):
+class NumbersAt(NamedTuple):
     """Where the numbers of a call are, as doubles."""
 
     memory: Any
@@ -60,7 +60,7 @@ class ValueCall:
     Doubles are handed to the FMU where they lie; other types are converted, by ``take`` or ``give``.
     """
 
-    def __init__(self, call: Callable[..., int], component: Any, group: Group, counts: bool, place: Place) -> None:
+    def __init__(self, call: Callable[..., int], component: Any, group: Group, counts: bool, place: NumbersAt) -> None:
         self.count = int(group["count"])
         kind = C_TYPES[group["type"]]
         self.is_double, self._is_real = kind is Double, kind in (Double, ctypes.c_float)
@@ -150,7 +150,7 @@ class Fmi2:
         free.restype, free.argtypes = None, (Pointer,)
         free(self.component)
 
-    def transfer(self, verb: str, group: Group, place: Place) -> ValueCall:
+    def transfer(self, verb: str, group: Group, place: NumbersAt) -> ValueCall:
         """Return the call that gets, or sets, a group of variables whose numbers are at a place."""
         call = getattr(
             self._library, f"{self.prefix}{verb}{group['type'].rstrip('3') if self.counts else group['type']}"

@@ -121,13 +121,13 @@ class Worker:
         at = TIMES.size
         for verb, groups, transfers in (("Set", asked["inputs"], self._sets), ("Get", asked["outputs"], self._gets)):
             for group in groups:
-                transfers.append(self._fmu.transfer(verb, group, fmi_calls.Place(self._shared, at)))
+                transfers.append(self._fmu.transfer(verb, group, fmi_calls.NumbersAt(self._shared, at)))
                 at += 8 * transfers[-1].count
 
     def _parameters(self, data: bytes) -> None:
         for group in json.loads(data):
             values = bytearray(struct.pack(f"={len(group['values'])}d", *group["values"]))
-            transfer = self._fmu.transfer("Set", group, fmi_calls.Place(values, 0))
+            transfer = self._fmu.transfer("Set", group, fmi_calls.NumbersAt(values, 0))
             transfer.take()
             self._checked(transfer(), "refuses its parameters")
 

@@ -10,8 +10,9 @@ from modelkit.signal import Signal
 from orchestrator.cosim.slave import Array
 from orchestrator.scenario.requirements import Requirement
 from orchestrator.sweep.job import Chunk, Job, truths
-from orchestrator.sweep.rows import FIRST_MEASURE, signals
+from orchestrator.sweep.rows import FIRST_MEASURE
 from orchestrator.sweep.study.study import Study
+from orchestrator.sweep.study.theirs import signals_of
 from orchestrator.sweep.verdict import RESULTS, judge, limit_value, values_in
 from orchestrator.verdict.conditions import CONDITIONS
 from orchestrator.verdict.measures import Measure
@@ -94,7 +95,7 @@ def _number(name: str, item: Number) -> TableColumn:
 
 
 def _measures(study: Study) -> Iterator[TableColumn]:
-    known = signals(study.scenario.models)
+    known = signals_of(study.scenario)
     for name, measure in study.measures.items():
         signal = known[measure.signal]
         yield TableColumn(name, float, signal._replace(text=f"{measure.how} of {measure.signal}: {signal.text}"))

@@ -33,6 +33,7 @@ from orchestrator.sweep.batch import run_batch, run_recorded
 from orchestrator.sweep.engine import AHEAD, POLL, ChunkTask, Engine, cores, safe_children
 from orchestrator.sweep.job import Chunk, Job
 from orchestrator.sweep.rows import why_not_compiled
+from orchestrator.sweep.study.theirs import files_of
 from orchestrator.text.errors import BadInput
 
 BATCH_CHUNK = 500
@@ -59,6 +60,8 @@ def choose_task(scenario: Scenario, fmus: str | None) -> ChunkTask:
     why = why_not_compiled(scenario)
     if not why and not can_compile():
         why = "there is no C compiler"
+    if why and scenario.system is not None and can_compile() and set(files_of(scenario)) < set(scenario.places):
+        return choose_task(scenario, "native")._replace(note=f"{why}: every run goes through the Python master")
     if why:
         return in_process._replace(note=f"{why}: every run goes through the Python master")
     return ChunkTask(run_batch, "compiled batch", BATCH_CHUNK, True)

@@ -1,12 +1,14 @@
 """What a study can vary: any parameter of a model, some fields of the scenario, the numbers of a fault."""
 
 import re
+from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 from modelkit.signal import Signal
 from modelkit.variables import Variable, variables
 from orchestrator.scenario.models import MODELS
 from orchestrator.scenario.scenario import LONGEST_STEP, Scenario
+from orchestrator.sweep.study.theirs import parameters_known
 from orchestrator.text.errors import BadInput, suggestion
 
 TIME = Signal("s", "", 0.0, 1e6)
@@ -44,10 +46,10 @@ class Field(NamedTuple):
 
     key: str
     owner: str
-    """A model's name, ``scenario``, ``target``, ``slot`` or ``faults``."""
+    """A slave's name, ``scenario``, ``target``, ``slot`` or ``faults``."""
     name: str
     place: int
-    """Place among the flat parameters of the model, or number of the fault from 0."""
+    """Place among the parameters of the model, or FMU, or number of the fault from 0."""
     variable: Variable
 
 
@@ -58,8 +60,9 @@ def find_field(key: str, scenario: Scenario, file: object = None) -> Field:
         owner, name = "vehicle", key
     if key in TRUE_FIELDS:
         return _true_field(key, owner, name, scenario, file)
-    if owner in MODELS:
-        return _parameter(key, owner, name, scenario, file)
+    known_parameters = parameters_known(scenario)
+    if owner in known_parameters:
+        return _parameter(key, owner, name, known_parameters[owner], file)
     if key in SCENARIO_FIELDS:
         return Field(key, "scenario", key, -1, SCENARIO_FIELDS[key])
     fault = FAULT_KEY.match(key)
@@ -68,14 +71,15 @@ def find_field(key: str, scenario: Scenario, file: object = None) -> Field:
     known = [
         *SCENARIO_FIELDS,
         *TRUE_FIELDS,
-        *(f"{name}.{item.name}" for name, model in scenario.models.items() for item in variables(model.params)),
+        *(f"{slave}.{item.name}" for slave, items in known_parameters.items() for item in items),
     ]
-    hint = suggestion(key, known) or "; known are vehicle.*, controller.*, " + ", ".join(SCENARIO_FIELDS)
+    hint = suggestion(key, known) or "; known are " + ", ".join(
+        (*(f"{slave}.*" for slave in known_parameters), *SCENARIO_FIELDS)
+    )
     raise BadInput(f"unknown{hint}", file=file, key=key)
 
 
-def _parameter(key: str, owner: str, name: str, scenario: Scenario, file: object) -> Field:
-    known = variables(scenario.models[owner].params)
+def _parameter(key: str, owner: str, name: str, known: Sequence[Variable], file: object) -> Field:
     for place, variable in enumerate(known):
         if variable.name == name:
             return Field(f"{owner}.{name}", owner, name, place, variable)

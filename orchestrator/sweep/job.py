@@ -71,12 +71,15 @@ def chunk_scenario(job: Job, chunk: Chunk, number: int) -> Scenario:
     data["faults"] = [dict(fault) for fault in data["faults"]]
     data["seed"] = int(chunk.seeds[number])
     models = models_for(job.scenario["controller"])
+    theirs = _theirs(data)
     kinds = {owner: [item.kind for item in variables(model.params)] for owner, model in models.items()}
     values = chunk.values[number].tolist()
     for name, value in _told_targets(job, values):
         data["controller"][name] = value
     for owner, name, place, value in zip(job.owners, job.names, job.places, values, strict=True):
-        if owner in MODELS:
+        if owner in theirs:
+            theirs[owner][name] = value
+        elif owner in MODELS:
             data[owner][name] = kinds[owner][place](value)
         elif owner == "faults":
             data["faults"][place][name] = value
@@ -89,6 +92,15 @@ def chunk_scenario(job: Job, chunk: Chunk, number: int) -> Scenario:
     for owner, name, _ in job.seeded:
         data[owner][name] = data["seed"]
     return Scenario(**data)
+
+
+def _theirs(data: dict[str, Any]) -> dict[str, dict[str, Any]]:
+    """Return slave -> where a scenario, as plain data, has the parameters of its FMU, for those that are not ours."""
+    if data["system"] is None:
+        return {}
+    slaves = {name: {**item, "parameters": dict(item["parameters"])} for name, item in data["system"]["slaves"].items()}
+    data["system"] = {**data["system"], "slaves": slaves}
+    return {name: data[name] if name in MODELS else item["parameters"] for name, item in slaves.items() if item["file"]}
 
 
 def _told_targets(job: Job, values: list[Any]) -> list[tuple[str, Any]]:

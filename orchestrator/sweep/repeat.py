@@ -8,9 +8,9 @@ import yaml
 from fmus.files import write_whole
 from orchestrator.cosim.fmu_files import sources_hash
 from orchestrator.report.results import LOG, is_shown, write_page, write_picture, write_summary
-from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.session.drive import drive
+from orchestrator.session.foreign import Foreign, load_fitting
 from orchestrator.session.session import Ran
 from orchestrator.sweep.job import chunk_scenario
 from orchestrator.sweep.table import Table
@@ -56,9 +56,11 @@ def write_scenario(table: Table, number: int, file: Path) -> Scenario:
     scenario = chunk_scenario(table.job, table.chunk(number), 0)
     told = {"file", "base", "car", "changed", "left_out"}
     content = scenario.model_dump(mode="python", exclude=told, by_alias=True, exclude_none=True)
+    if scenario.system is not None:
+        content["system"] = scenario.system.model_dump(mode="python", by_alias=True, exclude_defaults=True)
     name = f"{table.about['study']['name']}-row-{number}"
     write_whole(file, yaml.safe_dump({**content, "name": name}, sort_keys=False, allow_unicode=True))
-    return load_scenario(str(file))
+    return load_fitting(str(file), [], Foreign()).scenario
 
 
 def _differences(row: dict[str, Any], summary: dict[str, Any]) -> list[str]:

@@ -9,14 +9,12 @@ from typing import get_args
 
 import numpy as np
 
-from modelkit.model import Model
-from modelkit.signal import Signal
-from modelkit.variables import variables
 from orchestrator.cosim.recording import Recording
 from orchestrator.cosim.slave import Array
 from orchestrator.scenario.end_condition import state_word, states_of
 from orchestrator.scenario.requirements import Requirement, Where, Window
 from orchestrator.scenario.scenario import Scenario
+from orchestrator.sweep.study.theirs import signals_of
 from orchestrator.text.errors import BadInput, suggestion
 from orchestrator.verdict.conditions import CONDITIONS
 from orchestrator.verdict.judge import CHART, judge
@@ -26,16 +24,6 @@ from orchestrator.verdict.numbers import MEASURES, NUMBERS, OF_WHOLE_RUNS, Facts
 STOP_TIME, STANDSTILL, ABORTED = 0.0, 1.0, 2.0
 """How a run ended: first number of its row; the second is when [ns]."""
 FIRST_MEASURE = 2
-
-
-def signals(models: Mapping[str, Model]) -> dict[str, Signal]:
-    """Return name -> signal of all inputs and outputs of the models."""
-    return {
-        f"{owner}.{item.name}": item.signal
-        for owner, model in models.items()
-        for cls in (model.inputs, model.outputs)
-        for item in variables(cls)
-    }
 
 
 def last_words(scenario: Scenario) -> tuple[Measure, Measure]:
@@ -50,7 +38,7 @@ def measures_for(
 
     Raises ``BadInput`` for a limit or measure of an unknown signal, or for one of ``more`` that takes the whole run.
     """
-    known = signals(scenario.models)
+    known = signals_of(scenario)
     for item in last_words(scenario):
         if item.signal not in known:
             hint = suggestion(item.signal, known)
@@ -127,6 +115,8 @@ def recorded_limits(scenario: Scenario) -> list[int]:
 
 def why_not_compiled(scenario: Scenario) -> str:
     """Return why runs of ``scenario`` need a full recording each, an empty string if they do not."""
+    if scenario.system is not None:
+        return "the scenario has a system of its own"
     places = recorded_limits(scenario)
     return f"the limit {scenario.limits[places[0]].id!r} needs the whole run" if places else ""
 

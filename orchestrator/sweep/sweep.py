@@ -20,6 +20,7 @@ from orchestrator.sweep.engines import choose_task, make_engine
 from orchestrator.sweep.job import Chunk, Job, chunks, job_to, make_job
 from orchestrator.sweep.store import Store
 from orchestrator.sweep.study.study import Study
+from orchestrator.sweep.study.theirs import hashes_of
 from orchestrator.text.console import Meter, say
 from orchestrator.text.errors import BadInput, suggestion
 
@@ -134,5 +135,6 @@ def about(study: Study, job: Job) -> dict[str, Any]:
         "job": job_to(job),
         "design": study.design.digest(),
         "sources": sources_hash(),
+        **({"fmus": hashes_of(study.scenario)} if study.scenario.system is not None else {}),
         "versions": versions(),
     }

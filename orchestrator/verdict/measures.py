@@ -36,7 +36,8 @@ def measured(measure: Measure, recording: Recording, missing: float = float("nan
     """Return the measure of a recorded run; ``missing`` if it has no such signal, or no instant."""
     values = recording.t if measure.how == "time" else recording.signals.get(measure.signal)
     if values is not None and measure.when is not None:
-        values = values[np.isin(recording.signals[measure.when.signal], measure.when.values)]
+        mode = recording.signals.get(measure.when.signal, np.full(len(recording.t), np.nan))
+        values = values[np.isin(mode, measure.when.values)]
     return missing if values is None or not len(values) else _of(measure.how, values)
 
 

@@ -6,8 +6,9 @@ from typing import Any
 
 from modelkit.signal import Signal
 from modelkit.variables import Variable, variables
-from orchestrator.scenario.load_scenario import limits_of, load_scenario
+from orchestrator.scenario.load_scenario import limits_of
 from orchestrator.scenario.requirements import Requirement
+from orchestrator.session.foreign import Foreign, load_fitting
 from orchestrator.sweep.fields import SCENARIO_FIELDS
 from orchestrator.sweep.study.design import Design
 from orchestrator.sweep.study.sampling import make_design
@@ -52,9 +53,7 @@ def _with_samples(runs: Runs, n: Any) -> Runs:
 def bind(file: StudyFile) -> Study:
     """Return the study that a file means. Raises ``BadInput``."""
     sets = [f"{key}={value}" for key, value in file.set.items()]
-    scenario = load_scenario(file.scenario, sets)
-    if scenario.system is not None:
-        raise BadInput("studies run our vehicle and our controller; leave out", file=scenario.file, key="system")
+    scenario = load_fitting(file.scenario, sets, Foreign()).scenario
     design = make_design(file, scenario)
     content = file.model_dump(mode="json", by_alias=True)
     measures = {
@@ -70,7 +69,7 @@ def bind(file: StudyFile) -> Study:
 
 def _seeded(scenario: str, sets: list[str], design: Design) -> list[tuple[str, str, int]]:
     """Return the parameters that take the run's seed: those that follow the scenario's."""
-    probed = load_scenario(scenario, [*sets, f"seed={PROBE}"])
+    probed = load_fitting(scenario, [*sets, f"seed={PROBE}"], Foreign()).scenario
     varied = {field.key for field in design.fields}
     return [
         (owner, variable.name, place)

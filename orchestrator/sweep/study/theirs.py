@@ -1,0 +1,44 @@
+"""FMUs of somebody else's in a study: what of them can be varied and kept, and which they are."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from modelkit.signal import Signal
+from modelkit.variables import Variable, variables
+from orchestrator.cosim.description import ports_of, read_description
+from orchestrator.scenario.models import MODELS
+from orchestrator.scenario.scenario import Scenario
+from orchestrator.session.foreign import Files, Foreign, parameters_of, sha256_of
+
+
+def files_of(scenario: Scenario) -> Files:
+    """Return slave -> FMU of somebody else's in the system of ``scenario``. Raises ``BadInput``."""
+    return Foreign().with_system(scenario.system).files
+
+
+def parameters_known(scenario: Scenario) -> dict[str, Sequence[Variable]]:
+    """Return slave -> its parameters: of our models, and of the FMUs that are in their place or beside them."""
+    ours = {owner: variables(model.params) for owner, model in scenario.models.items()}
+    return {**ours, **{slave: parameters_of(path, slave) for slave, path in files_of(scenario).items()}}
+
+
+def signals_of(scenario: Scenario) -> dict[str, Signal]:
+    """Return name -> signal of all inputs and outputs of models and FMUs, and of what plays a role of theirs."""
+    ours = {
+        f"{owner}.{item.name}": item.signal
+        for owner, model in scenario.models.items()
+        for cls in (model.inputs, model.outputs)
+        for item in variables(cls)
+    }
+    return {**ours, **{name: item for slave, path in files_of(scenario).items() for name, item in _told(slave, path)}}
+
+
+def hashes_of(scenario: Scenario) -> dict[str, str]:
+    """Return slave -> SHA-256 of its FMU: runs with another are runs of another study."""
+    return {slave: sha256_of(path) for slave, path in files_of(scenario).items()}
+
+
+def _told(slave: str, path: Path) -> list[tuple[str, Signal]]:
+    description = read_description(path)
+    ports = [ports_of(description, causality, MODELS.get(slave), path) for causality in ("input", "output")]
+    return [(f"{slave}.{item.name}", item.signal) for part in ports for item in part.variables]

@@ -188,7 +188,7 @@ def test_a_translation_is_kept_until_a_source_changes(monkeypatch, tmp_path):
     assert translated(other).name == "Other"
     assert translated(VEHICLE._replace(initialize=VEHICLE.step)).header == "header 3"
     for number in range(sources.KEPT):
-        monkeypatch.setattr(sources, "_hash_of", lambda *_, n=number: str(n))
+        monkeypatch.setattr(sources, "hash_of", lambda *_, n=number: str(n))
         translated(VEHICLE)
     assert len(list(tmp_path.glob("Vehicle-*.json"))) == sources.KEPT
     count = len(made)

@@ -4,17 +4,11 @@ import re
 from pathlib import Path
 
 from orchestrator.cosim.fmu_files import fmu_files
-from orchestrator.grid.cars import CarInSlot, park, parking_scenarios
+from orchestrator.grid.cars import park, parking_scenarios, shown
 from orchestrator.scenario.files import car_names
 
 PAGE = Path(__file__).parent / "apa.md"
 BETWEEN = re.compile(r"(?<=<!-- cars -->\n).*?(?=\n<!-- /cars -->)", re.S)
-
-
-def shown(found: CarInSlot) -> str:
-    """Return a cell: what became of the car; in brackets where the slot is smaller than ISO 16787 asks for it."""
-    word = {"parked": "parked", "failed": found.reason.replace("_", " ")}.get(found.outcome, "stands out")
-    return f"({word})" if found.lacks else word
 
 
 def table() -> list[str]:

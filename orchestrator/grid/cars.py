@@ -58,6 +58,12 @@ def park(name: str, car: str, files: dict[str, Path]) -> CarInSlot:
     return CarInSlot(name, car, lacking(own), summary.outcome, summary.reason, nearest)
 
 
+def shown(found: CarInSlot) -> str:
+    """Return what became of a car; in brackets where the slot is smaller than ISO 16787 asks for it."""
+    word = {"parked": "parked", "failed": found.reason.replace("_", " ")}.get(found.outcome, "stands out")
+    return f"({word})" if found.lacks else word
+
+
 def lacking(scenario: Scenario) -> str:
     """Return what the slot of a scenario lacks of ISO 16787 for its car; empty if the car fits into it."""
     assert scenario.slot is not None

@@ -1,11 +1,12 @@
 """Other cars than the one a scenario is written for: the assist parks them, or the slot is too small."""
 
+from functools import cache
 from pathlib import Path
 
 import pytest
 
 from orchestrator.cosim.fmu_files import can_compile, fmu_files
-from orchestrator.grid.cars import GEOMETRIC, lacking, park, parking_scenarios
+from orchestrator.grid.cars import GEOMETRIC, lacking, park, parking_scenarios, shown
 from orchestrator.scenario.files import car_names
 from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.session.session import run_scenario
@@ -13,8 +14,7 @@ from orchestrator.verdict.summary import summarize
 
 pytestmark = pytest.mark.skipif(not can_compile(), reason="FMUs without Python need a C compiler: pip install ziglang")
 
-SOME = ("apa-parallel", "apa-parallel-fast", "apa-parallel-walls", "apa-perpendicular-walls")
-"""Kerb and cars, 20 km/h, walls, a garage; ``docs/cars.py`` drives them all."""
+AGAIN = "run docs/cars.py"
 
 
 def ended(name: str, *sets: str) -> tuple[str, str]:
@@ -25,14 +25,16 @@ def ended(name: str, *sets: str) -> tuple[str, str]:
 
 
 @pytest.mark.parametrize("car", car_names())
-@pytest.mark.parametrize("name", SOME)
+@pytest.mark.parametrize("name", parking_scenarios())
 def test_a_car_that_fits_parks_and_another_is_refused_for_its_size(name: str, car: str) -> None:
+    """Every car in every parking scenario, as the page tells it."""
     found = park(name, car, fmu_files("native", lambda text: None))
     assert found.nearest > 0.0, "contact"
     if not found.lacks:
         assert found.outcome == "parked", found
     elif found.outcome != "parked":
         assert found.reason in GEOMETRIC or "outline in the slot" in found.reason, found
+    assert shown(found) == on_page()[name][car], AGAIN
 
 
 def test_all_cars_but_the_widest_fit_somewhere_and_most_do_not_everywhere() -> None:
@@ -70,11 +72,17 @@ def test_a_target_by_a_point_of_the_outline(of: str) -> None:
     assert (x - left, y + ahead, heading) == pytest.approx((1.0, 2.0, 1.5707963), abs=1e-6)
 
 
-def test_the_page_shows_every_car_in_every_scenario() -> None:
+@cache
+def on_page() -> dict[str, dict[str, str]]:
+    """Return scenario -> car -> what docs/apa.md says of it."""
     page = (Path(__file__).parents[2] / "docs" / "apa.md").read_text(encoding="utf-8")
     head, _, *rows = page.split("<!-- cars -->")[1].split("<!-- /cars -->")[0].strip().splitlines()
-    again = "run docs/cars.py"
-    assert [cell.strip() for cell in head.strip("|").split("|")][1:] == car_names(), again
-    assert [row.split("`")[1] for row in rows] == parking_scenarios(), again
-    plain = [cell.strip() for row in rows for cell in row.strip("|").split("|")[1:] if not cell.strip().startswith("(")]
+    cells = [[cell.strip() for cell in row.strip("|").split("|")] for row in (head, *rows)]
+    return {row[0].strip("`"): dict(zip(cells[0][1:], row[1:], strict=True)) for row in cells[1:]}
+
+
+def test_the_page_shows_every_car_in_every_scenario() -> None:
+    assert list(on_page()) == parking_scenarios(), AGAIN
+    assert all(list(row) == car_names() for row in on_page().values()), AGAIN
+    plain = [cell for row in on_page().values() for cell in row.values() if not cell.startswith("(")]
     assert set(plain) == {"parked"}

@@ -27,6 +27,11 @@ STOP = 240.0
 MARGIN = 0.12
 ROOM_ACROSS = 0.8
 """Of a slot beside one neighbour [m]."""
+BEFORE = 3.0
+"""The driver starts so far [m] before the neighbour that he passes first, and searches so far past the other."""
+BEHIND = 4.0
+AT_KERB = 0.2
+"""From the tyres to the kerb [m]: the middle of what GB/T 41630 allows."""
 Box = dict[str, float]
 
 
@@ -50,7 +55,7 @@ class FoundCase(NamedTuple):
     heading: float
     """Of the way past against the row, positive away from it [rad]."""
     beside: float
-    """Where the car comes nearest to the row [m]."""
+    """How near the car comes to the row [m]."""
     speed: float
     """Of the driver [m/s]."""
 
@@ -168,18 +173,34 @@ def _behind(place: SlotPlace, length: float, thick: float) -> Box:
 
 
 def standing_of(case: FoundCase) -> tuple[Target, Slot]:
-    """Return where the car should stand, and the slot, on the right side."""
+    """Return where the car should stand, and the slot, on the right side: as its neighbours do, 20 cm from a kerb."""
     car, place = CARS[case.car], place_of(case)
     length, width = size_of(case)
     ahead = 0.5 * length - car.rear_overhang
     if case.angle == 0:
-        slot = Slot(x=place.x, y=place.y, length=length + case.wider, width=width + 0.4)
-        return Target(x=place.x - ahead, y=place.y), slot
+        y = AT_KERB + 0.5 * width - place.depth
+        slot = Slot(x=place.x, y=y, length=length + case.wider, width=width + 0.4)
+        return Target(x=place.x - ahead, y=y), slot
+    x, y, into = _between(case, place, boxes_of(case))
     out = max(0.0, length + 0.25 - place.depth)
-    x, y = place.x - out * math.cos(place.into), place.y - out * math.sin(place.into)
-    heading = place.into if case.wish == "nose in" else place.into + math.pi
+    x, y = x - out * math.cos(into), y - out * math.sin(into)
+    heading = into if case.wish == "nose in" else into + math.pi
     target = Target(x=x - ahead * math.cos(heading), y=y - ahead * math.sin(heading), heading=heading)
-    return target, Slot(x=x, y=y, heading=place.into, length=length + 0.6, width=width + case.wider)
+    return target, Slot(x=x, y=y, heading=into, length=length + 0.6, width=width + case.wider)
+
+
+def _between(case: FoundCase, place: SlotPlace, boxes: list[Box]) -> tuple[float, float, float]:
+    """Return the middle of a slot across the road and its direction: in the middle of what stands on both sides."""
+    if case.neighbours == "one":
+        return place.x, place.y, boxes[1]["heading"]
+    into = 0.5 * (boxes[1]["heading"] + boxes[2]["heading"])
+    c, s = math.cos(into), math.sin(into)
+    near = [[(y - place.y) * c - (x - place.x) * s for x, y in box_corners(box)] for box in boxes]
+    posts = case.neighbours == "pillars"
+    low = max(max(across) for across in ([near[1], near[4]] if posts else [near[1]]))
+    high = min(min(across) for across in ([near[2], near[5]] if posts else [near[2]]))
+    off = 0.5 * (low + high)
+    return place.x - off * s, place.y + off * c, into
 
 
 def scenario_of(case: FoundCase, told: bool = False) -> Scenario:
@@ -193,11 +214,13 @@ def scenario_of(case: FoundCase, told: bool = False) -> Scenario:
         "search.active": not told,
         "search.wish": int(wish),
         "search.open_ended": case.neighbours == "one",
-        "search.way": _way(case),
+        "search.way": way_past(case).way,
     }
     if case.side < 0:
         target = target.model_copy(update={"y": -target.y, "heading": -target.heading})
         slot = slot.model_copy(update={"y": -slot.y, "heading": -slot.heading})
+    if told:
+        controller |= {"target.x": target.x, "target.y": target.y, "target.heading": target.heading}
     return Scenario(
         name="valet-slots",
         stop_time=STOP,
@@ -209,18 +232,33 @@ def scenario_of(case: FoundCase, told: bool = False) -> Scenario:
     )
 
 
-def _way(case: FoundCase) -> float:
-    """Return how far the driver searches [m]: past all neighbours."""
-    length, _ = size_of(case)
-    place = place_of(case)
-    return place.x + place.pitch + length - min(x for box in boxes_of(case)[:2] for x, _ in box_corners(box)) + 5.0
+class WayPast(NamedTuple):
+    """How the driver drives past, on the right side: where the rear axle starts, and how far he goes [m]."""
+
+    x: float
+    y: float
+    way: float
+
+
+def way_past(case: FoundCase) -> WayPast:
+    """Return the way past both neighbours that keeps the case's distance to everything in the row."""
+    length, width = size_of(case)
+    front = length - CARS[case.car].rear_overhang
+    place, boxes = place_of(case), [box_corners(box) for box in boxes_of(case)]
+    first = min(x for x, _ in boxes[1]) - BEFORE - front
+    last = place.x + place.pitch if case.neighbours == "one" else max(x for x, _ in boxes[2])
+    way = (last + BEHIND - front - first) / math.cos(case.heading)
+    t = math.tan(case.heading)
+    row = [corner for box in boxes[:4] for corner in box if corner[0] < last + BEHIND + length]
+    nearest = max(y - x * t for x, y in row)
+    return WayPast(first, nearest + first * t + (case.beside + 0.5 * width) / math.cos(case.heading), way)
 
 
 def _vehicle(case: FoundCase) -> dict[str, Any]:
     """Return the vehicle's parameters: where it starts, what stands there, its errors."""
     car, place, boxes = CARS[case.car], place_of(case), boxes_of(case)
     front = max(y for box in boxes[:2] for _, y in box_corners(box))
-    length, width = size_of(case)
+    length, _ = size_of(case)
     boxes = [*boxes, {"x": 0.0, "y": front + case.street + 0.5, "length": 80.0, "width": 1.0}]
     values: dict[str, Any] = {}
     for number, box in enumerate(boxes, start=1):
@@ -231,16 +269,12 @@ def _vehicle(case: FoundCase) -> dict[str, Any]:
         x1, y1, x2, y2 = line
         kerb = {"x1": x1, "y1": case.side * y1, "x2": x2, "y2": case.side * y2, "height": 0.12}
         values |= {f"scene.kerbs[{number}].{name}": value for name, value in kerb.items()}
-    first = min(x for box in boxes[:2] for x, _ in box_corners(box)) - 5.0
-    last = place.x + place.pitch + length
-    nearest = first if case.heading > 0.0 else last
-    y = front + case.beside + 0.5 * width + (first - nearest) * math.tan(case.heading)
-    y += length * abs(math.sin(case.heading))
+    past = way_past(case)
     return {
         **car_parameters(car),
         **values,
-        "start.x": first,
-        "start.y": case.side * y,
+        "start.x": past.x,
+        "start.y": case.side * past.y,
         "start.heading": case.side * case.heading,
         "driver.apa_switch_time": 0.5,
         "driver.profile[1].speed": case.speed,

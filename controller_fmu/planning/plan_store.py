@@ -21,6 +21,12 @@ PIECES = 256
 ASKED = 11
 HEARD = 128
 """Places kept of what one side's sensor has heard."""
+SIDES = 2
+"""Right and left, as the car drives past."""
+EARS = 6
+"""Besides, corner and side sensor, right and left, at the end that leads into a slot."""
+RAYS = 256
+"""Echoes kept of one side: what they say is free."""
 NONE = -1
 
 
@@ -71,14 +77,14 @@ class PlanStore(NamedTuple):
     corner_y: Annotated[Floats, Column("d", CORNERS, "m", "its y")]
     corner_of: Annotated[Ints, Column("i", CORNERS, "1", "its polygon")]
     asked: Annotated[Floats, Column("d", ASKED, "1", "the numbers of the request")]
-    heard_x: Annotated[Floats, Column("d", 2 * HEARD, "m", "x of a place heard, right side then left")]
-    heard_y: Annotated[Floats, Column("d", 2 * HEARD, "m", "its y")]
-    heard_count: Annotated[Ints, Column("i", 2 * HEARD, "1", "echoes from there; 0: unused")]
-    heard_joint: Annotated[Ints, Column("i", 2 * HEARD, "1", "1: of the same thing as the place before")]
-    ray_x: Annotated[Floats, Column("d", 2 * HEARD, "m", "x of a sensor that has listened, right side then left")]
-    ray_y: Annotated[Floats, Column("d", 2 * HEARD, "m", "its y")]
-    ray_end_x: Annotated[Floats, Column("d", 2 * HEARD, "m", "x up to where nothing stands along its axis")]
-    ray_end_y: Annotated[Floats, Column("d", 2 * HEARD, "m", "the same, y")]
+    heard_x: Annotated[Floats, Column("d", EARS * HEARD, "m", "x of a place heard, by ear")]
+    heard_y: Annotated[Floats, Column("d", EARS * HEARD, "m", "its y")]
+    heard_count: Annotated[Ints, Column("i", EARS * HEARD, "1", "echoes from there; 0: unused")]
+    heard_joint: Annotated[Ints, Column("i", EARS * HEARD, "1", "1: of the same thing as the place before")]
+    ray_x: Annotated[Floats, Column("d", SIDES * RAYS, "m", "x of a sensor that has listened, right side then left")]
+    ray_y: Annotated[Floats, Column("d", SIDES * RAYS, "m", "its y")]
+    ray_end_x: Annotated[Floats, Column("d", SIDES * RAYS, "m", "x up to where nothing stands along its axis")]
+    ray_end_y: Annotated[Floats, Column("d", SIDES * RAYS, "m", "the same, y")]
     around_x: Annotated[Floats, Column("d", CORNERS, "m", "x of a corner of the map made of what was heard")]
     around_y: Annotated[Floats, Column("d", CORNERS, "m", "its y")]
     around_of: Annotated[Ints, Column("i", CORNERS, "1", "its polygon")]

@@ -1,19 +1,19 @@
 """From the distances that one sensor tells on the way past to the places where the echoes came from.
 
-A sensor that moves by ds hears the nearest point of what stands there at a distance r that changes by dr = -sin(b) ds,
-b the bearing of that point, ahead of the sensor's axis positive: what is ahead comes nearer. So the change of the
-distance tells the bearing, and both together the place, whatever stands there: a side, a corner, a post. Where the
-nearest part lies at the rim of the cone, of half angle g, the distance changes by more than sin(g) ds: the bearing is
-that of the rim. (Envelope of circles; A. Sakamoto and T. Sato's boundary scattering transform is the same.)
+A sensor that moves by ds hears the nearest point of what stands there at a distance r that changes by dr = -cos(b) ds,
+b the bearing of that point off the direction in which the sensor moves: what is ahead comes nearer. So the change of
+the distance tells the bearing, and both together the place, whatever stands there: a side, a corner, a post. Where the
+nearest part lies at the rim of the cone, of half angle g, the distance changes by more or less: the bearing is that of
+the rim. (Envelope of circles; A. Sakamoto and T. Sato's boundary scattering transform is the same.)
 """
 
 import math
 from typing import NamedTuple
 
-from controller_fmu.planning.plan_store import PlanStore
+from controller_fmu.planning.plan_store import SIDES, PlanStore
 from controller_fmu.sensing.heard_store import put_heard, put_ray
 from modelkit.car import CarUltrasonic
-from modelkit.maths import PI, clamp
+from modelkit.maths import PI, clamp, sign, wrap_angle
 from modelkit.vocabulary import Pose
 
 BIN = 0.1
@@ -28,6 +28,9 @@ STEP = 0.06
 LOST = 0.3
 LEAST = 3
 """So many more samples must have heard the same for a slope."""
+CLOSE = 0.8
+"""On the way into a slot, where the car turns, only what is so near [m] and not at the cone's rim tells its place."""
+RIM = 0.08
 CREST = 0.4
 """Where the distance stops growing and shrinks, by so much [m/m], the sensor hears one thing before and another after.
 
@@ -61,7 +64,7 @@ class SideEar(NamedTuple):
 def listen(store: PlanStore, ear: SideEar, side: int, at: Pose, reading: float, sensors: CarUltrasonic) -> SideEar:
     """Return the ear after one reading of a sensor that is at ``at`` and looks along its heading.
 
-    ``side``: 0 right, 1 left, where places are put; it looks square to the way.
+    ``side``: which places it puts into, ``Ears``.
     """
     n = ear.n
     if n > 0.0:
@@ -76,8 +79,9 @@ def listen(store: PlanStore, ear: SideEar, side: int, at: Pose, reading: float, 
         kept = ear.samples[: KEPT - 1] + (mean,) if lost else ear.samples[1:] + (mean,)
         ear = ear._replace(samples=kept, taken=ear.taken + 1 if ear.taken < KEPT else KEPT)
         if ear.taken == KEPT and not lost:
-            forward = at.heading + (0.5 * PI if side == 0 else -0.5 * PI)
-            ear = _placed(store, ear, side, forward, sensors)
+            dx = kept[KEPT - 1].x - kept[0].x
+            dy = kept[KEPT - 1].y - kept[0].y
+            ear = _placed(store, ear, side, math.atan2(dy, dx), sensors)
     return ear._replace(n=1.0, sums=HeardSample(at.x, at.y, at.heading, reading))
 
 
@@ -92,7 +96,8 @@ def _placed(store: PlanStore, ear: SideEar, side: int, forward: float, sensors: 
     before = ear.samples[MIDDLE - 1].r
     end_x = middle.x + middle.r * math.cos(middle.axis)
     end_y = middle.y + middle.r * math.sin(middle.axis)
-    put_ray(store, side, ear.rays, Pose(middle.x, middle.y, middle.axis), Pose(end_x, end_y, middle.axis))
+    if side < SIDES:
+        put_ray(store, side, ear.rays, Pose(middle.x, middle.y, middle.axis), Pose(end_x, end_y, middle.axis))
     ear = ear._replace(rays=ear.rays + 1)
     if middle.r > 0.97 * sensors.max_range:
         return ear._replace(silent=True)
@@ -105,10 +110,14 @@ def _placed(store: PlanStore, ear: SideEar, side: int, forward: float, sensors: 
         if bend < -CREST:
             return ear._replace(silent=True)
     slope = _slope(ear.samples, first, last, forward)
-    rim = math.sin(sensors.half_angle)
-    bearing = math.asin(clamp(-slope, -rim, rim))
-    turned = 1.0 if math.sin(forward - middle.axis) > 0.0 else -1.0
-    angle = middle.axis + turned * bearing
+    looks = wrap_angle(middle.axis - forward)
+    least = max(abs(looks) - sensors.half_angle, 0.0)
+    most = min(abs(looks) + sensors.half_angle, PI)
+    ahead = math.cos(least)
+    behind = math.cos(most)
+    if side >= SIDES and (middle.r > CLOSE or not behind + RIM < -slope < ahead - RIM):
+        return ear._replace(silent=True)
+    angle = forward + sign(looks) * math.acos(clamp(-slope, behind, ahead))
     x = middle.x + middle.r * math.cos(angle)
     y = middle.y + middle.r * math.sin(angle)
     jump = abs(middle.r - before) > _most(ear.samples[MIDDLE - 1], middle)

@@ -1,6 +1,6 @@
 """What was heard, in the store: places along both sides, and the map made of them; the only functions that write it."""
 
-from controller_fmu.planning.plan_store import HEARD, PlanStore
+from controller_fmu.planning.plan_store import HEARD, RAYS, SIDES, PlanStore
 from controller_fmu.planning.task import CORNERS
 from modelkit.vocabulary import Pose
 
@@ -15,13 +15,15 @@ MANY = 40
 
 
 def forget_side(store: PlanStore, side: int) -> None:
-    """Forget what was heard on one side."""
+    """Forget what was heard on one side, or by one of the ears after these."""
     for place in range(side * HEARD, side * HEARD + HEARD):
         store.heard_count[place] = 0
-        store.ray_x[place] = 0.0
-        store.ray_y[place] = 0.0
-        store.ray_end_x[place] = 0.0
-        store.ray_end_y[place] = 0.0
+    if side < SIDES:
+        for ray in range(side * RAYS, side * RAYS + RAYS):
+            store.ray_x[ray] = 0.0
+            store.ray_y[ray] = 0.0
+            store.ray_end_x[ray] = 0.0
+            store.ray_end_y[ray] = 0.0
 
 
 def put_heard(store: PlanStore, side: int, count: int, x: float, y: float, broken: bool) -> int:
@@ -59,12 +61,12 @@ def put_heard(store: PlanStore, side: int, count: int, x: float, y: float, broke
 
 
 def put_ray(store: PlanStore, side: int, number: int, at: Pose, end: Pose) -> None:
-    """Remember what a sensor looked along without hearing anything nearer; the oldest of ``HEARD`` is forgotten."""
-    place = side * HEARD + number % HEARD
-    store.ray_x[place] = at.x
-    store.ray_y[place] = at.y
-    store.ray_end_x[place] = end.x
-    store.ray_end_y[place] = end.y
+    """Remember what a sensor looked along without hearing anything nearer; the oldest of ``RAYS`` is forgotten."""
+    ray = side * RAYS + number % RAYS
+    store.ray_x[ray] = at.x
+    store.ray_y[ray] = at.y
+    store.ray_end_x[ray] = end.x
+    store.ray_end_y[ray] = end.y
 
 
 def clear_around(store: PlanStore) -> None:

@@ -125,8 +125,8 @@ def _judged(
 ) -> Search:
     """Return the search with the gap that the places of one side make."""
     ear = state.right if side == RIGHT else state.left
-    at = sensor_at(params.car.ultrasonic.mounts[sensor], inputs.odometry)
-    gap = find_gap(store, side, ear.places, at, inputs.odometry.heading, wanted(params))
+    at = sensor_at(params.car.ultrasonic.mounts[sensor], inputs.odometry)._replace(heading=inputs.odometry.heading)
+    gap = find_gap(store, side, ear.places, at, wanted(params))
     if gap.shallow:
         return state._replace(gap=Gap(), refused=Reason.SLOT_TOO_SHALLOW)
     return state._replace(gap=gap, side=side)

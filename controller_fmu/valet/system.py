@@ -23,6 +23,7 @@ from controller_fmu.sensing.around import lay_end
 from controller_fmu.sensing.gap import DEEP, GapLayout
 from controller_fmu.sensing.heard_store import forget_side
 from controller_fmu.valet.chart import Guard, Step, step_transition
+from controller_fmu.valet.nearby import Nearby, Rest, forget_nearby, hear_nearby, lay_nearby, narrowed
 from controller_fmu.valet.params import ValetParams
 from controller_fmu.valet.rolling import Ahead, ahead_of, aim_at, joint_of
 from controller_fmu.valet.search import Search, begin_search, reason_to_end, search, shallower, with_map
@@ -81,6 +82,8 @@ class ValetState(NamedTuple):
     wheel: float = 0.0
     """Steering-wheel angle asked for [rad]."""
     search: Search = Search()
+    nearby: Nearby = Nearby()
+    """What is heard on the way into a slot that was found."""
     resumes: bool = False
     """Switched off on the way into a slot, which is still known."""
     speed: float = 0.0
@@ -99,6 +102,8 @@ def valet_sample(
         state = planned_on(store, state, inputs, params)
     else:
         state = seen_on(store, state, inputs, params)
+        if params.search.active and state.step in (Step.DRIVE, Step.HALT):
+            state = heard_on(store, state, inputs, params, dt_ns)
     command = Command(state.step, state.wheel, state.sight.blocked)
     clocks = watch(state.watch, command, inputs, params, dt_ns)
     reason = state.reason
@@ -118,9 +123,12 @@ def planned_on(store: PlanStore, state: ValetState, inputs: ControllerInput, par
         pose = inputs.odometry
         goal = goal_of(params, pose)
         if params.search.active:
-            goal = goal_in(state.search.gap, state.search.pose.heading, params)
-            if state.search.gap.depth < DEEP:
-                lay_end(store, state.search.gap, state.search.lines)
+            gap = state.search.gap
+            beside = narrowed(store, state.nearby, gap, 2.0 * body_of(params).half_length)
+            goal = goal_in(beside, state.search.pose.heading, params)
+            if gap.depth < DEEP:
+                lay_end(store, gap, state.search.lines)
+            lay_nearby(store, state.nearby, gap, state.search.lines + 1)
         request = Request(pose, goal, body_of(params), params.plan.margin)
     scene = scene_of(store, params, state.seen)
     count = search_on(store, scene, request, state.searched, params.plan.at_once)
@@ -205,7 +213,9 @@ def _to_show(store: PlanStore, state: ValetState, inputs: ControllerInput, param
     if not state.resumes:
         sought = with_map(store, sought, inputs, params)
     sought = sought._replace(waited_ns=0)
-    return ValetState(step=state.step, search=sought._replace(pose=inputs.odometry) if state.resumes else sought)
+    sought = sought._replace(pose=inputs.odometry) if state.resumes else sought
+    forget_nearby(store)
+    return ValetState(step=state.step, search=sought)
 
 
 def _switched_off(state: ValetState, inputs: ControllerInput, params: ValetParams) -> ValetState:
@@ -245,6 +255,18 @@ def seen_on(store: PlanStore, state: ValetState, inputs: ControllerInput, params
     return state._replace(tracked=Tracked(left, at, off.lateral, off.heading, angle, coming), sight=sight)
 
 
+def heard_on(
+    store: PlanStore, state: ValetState, inputs: ControllerInput, params: ValetParams, dt_ns: int
+) -> ValetState:
+    """Return the valet that has listened on its way into a slot; sensors tell something new every ``cycle``."""
+    cycle_ns = math.floor(params.car.ultrasonic.cycle * 1e9 + 0.5)
+    if state.watch.running % cycle_ns >= dt_ns:
+        return state
+    rest = Rest(state.path, state.piece, state.begin, state.tracked.left)
+    nearby = hear_nearby(store, state.nearby, inputs, rest, state.search.gap, params)
+    return state._replace(nearby=nearby)
+
+
 def guards_of(state: ValetState, inputs: ControllerInput, params: ValetParams) -> int:
     """Return the bits of the conditions that hold."""
     guard = params.guard
@@ -255,6 +277,7 @@ def guards_of(state: ValetState, inputs: ControllerInput, params: ValetParams) -
     straight = abs(wheel) <= params.threshold.wheel
     stop = abs(speed) * params.drive.delay + 0.5 * speed * speed / params.drive.brake
     lost = abs(tracked.lateral_error) > guard.corridor or abs(tracked.heading_error) > guard.corridor_heading
+    lost = lost or state.nearby.in_the_way
     blocked_long = state.watch.blocked * 1e-9 > guard.wait
     at_end = tracked.left <= AT_END and state.piece + 1 >= state.path.used
     in_place = is_in_place(inputs.odometry, state.request.goal, params)
@@ -326,6 +349,7 @@ def _to_plan_anew(state: ValetState) -> ValetState:
     """Return the valet about to plan from where it stands; what is in the way is remembered."""
     seen = state.seen
     count = state.seen_count
+    state = state._replace(nearby=state.nearby._replace(in_the_way=False))
     sought = shallower(state.search, state.sight.echo)
     if sought.gap.depth < state.search.gap.depth and state.sight.blocked and state.sight.ahead:
         return state._replace(searched=0, path=Path(), search=sought, watch=state.watch._replace(blocked=0))

@@ -50,7 +50,7 @@ def passed(boxes, side, noise, heading=0.0):
         reading = heard_distances(pose, scene, CAR.ultrasonic, 0.08, 0)[number]
         reading = 5.0 if reading >= 5.0 or draw.random() < 0.01 * (noise > 0.0) else reading + draw.gauss(0.0, noise)
         ear = listen(store, ear, which, at, reading, CAR.ultrasonic)
-        gap = find_gap(store, which, ear.places, at, pose.heading, WANTED)
+        gap = find_gap(store, which, ear.places, at._replace(heading=pose.heading), WANTED)
         if gap.layout != GapLayout.NONE and at.x > 4.0:
             break
     return store, ear, gap

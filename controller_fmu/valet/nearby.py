@@ -1,0 +1,156 @@
+"""What the corner and side sensors hear on the way into a slot: places that the map does not have yet.
+
+They become lines of the map when the way is planned anew. That is done when a place lies nearer to the rest of the way
+than half the clearance planned, before the car is there.
+"""
+
+import math
+from typing import NamedTuple
+
+from controller_fmu.interface import ControllerInput
+from controller_fmu.planning.plan import PATH, Path
+from controller_fmu.planning.plan_store import HEARD, SIDES, PlanStore
+from controller_fmu.planning.task import PlannedCar, drive
+from controller_fmu.sensing.around import along_of
+from controller_fmu.sensing.ear import SideEar, listen
+from controller_fmu.sensing.gap import Gap
+from controller_fmu.sensing.heard_store import forget_side, put_line
+from controller_fmu.valet.params import ValetParams
+from controller_fmu.valet.sight import sensor_at
+from modelkit.vocabulary import Pose
+
+FRONT_EARS = (3, 10, 0, 8)
+"""Corner and side sensor, right then left, that lead when the car drives forward; and in reverse."""
+REAR_EARS = (7, 11, 4, 9)
+INSIDE = 0.06
+"""A place so far [m] inside a slot's sides is new."""
+BEFORE = 1.0
+"""Slots begin so far [m] before their corners."""
+STUB = 0.03
+STEP = 0.2
+"""The rest of the way is looked along at steps of this [m]."""
+SURE = 2
+SHARE = 0.5
+"""Of the clearance planned, that a new place may take."""
+
+
+class Nearby(NamedTuple):
+    """Four ears, and whether one of them has heard something in the way."""
+
+    ears: tuple[SideEar, ...] = (SideEar(),) * 4
+    forward: bool = True
+    in_the_way: bool = False
+
+
+class Rest(NamedTuple):
+    """The rest of a way: the pieces of a path from one on, where this begins, and what is left of it [m]."""
+
+    path: Path
+    piece: int
+    begin: Pose
+    left: float
+
+
+def forget_nearby(store: PlanStore) -> None:
+    """Forget what was heard on the way into a slot."""
+    for ear in range(4):
+        forget_side(store, SIDES + ear)
+
+
+def hear_nearby(
+    store: PlanStore, state: Nearby, inputs: ControllerInput, rest: Rest, gap: Gap, params: ValetParams
+) -> Nearby:
+    """Return the ears after new readings on the way into a gap."""
+    forward = rest.path.pieces[rest.piece].way > 0.0
+    mounts = params.car.ultrasonic.mounts
+    ears = state.ears
+    blocked = state.in_the_way
+    for number in range(4):
+        ear = ears[number]
+        if forward != state.forward:
+            ear = SideEar(places=ear.places)
+        sensor = FRONT_EARS[number] if forward else REAR_EARS[number]
+        at = sensor_at(mounts[sensor], inputs.odometry)
+        heard = listen(store, ear, SIDES + number, at, inputs.ultrasonic[sensor], params.car.ultrasonic)
+        last = (SIDES + number) * HEARD + heard.places - 1
+        if heard.places > 0 and store.heard_count[last] >= SURE and is_new(store, last, gap):
+            blocked = blocked or room_beside(store, last, rest, params) < SHARE * rest.path.margin
+        ears = ears[:number] + (heard,) + ears[number + 1 :]
+    return Nearby(ears, forward, blocked)
+
+
+def is_new(store: PlanStore, place: int, gap: Gap) -> bool:
+    """Return whether a place lies inside a gap, where the map has nothing."""
+    e = along_of(gap)
+    x = store.heard_x[place] - gap.a.x
+    y = store.heard_y[place] - gap.a.y
+    across = x * e.x + y * e.y
+    deep = x * math.cos(gap.into) + y * math.sin(gap.into)
+    return INSIDE < across < gap.width - INSIDE and -BEFORE < deep < gap.front + gap.depth - INSIDE
+
+
+def room_beside(store: PlanStore, place: int, rest: Rest, params: ValetParams) -> float:
+    """Return how near [m] the rest of the way comes to a place."""
+    car = params.car
+    length = car.wheelbase + car.front_overhang + car.rear_overhang
+    body = PlannedCar(0.5 * length - car.rear_overhang, 0.5 * length, 0.5 * car.width)
+    nearest = 1.0
+    begin = rest.begin
+    left = rest.left
+    for number in range(PATH):
+        if rest.piece <= number < rest.path.used:
+            piece = rest.path.pieces[number]
+            sense = 1.0 if piece.way > 0.0 else -1.0
+            way = abs(piece.way)
+            for step in range(100):
+                on = way - left + STEP * step
+                if on < way + STEP:
+                    pose = drive(begin, sense * (on if on < way else way), piece.k0)
+                    nearest = min(nearest, distance(store.heard_x[place], store.heard_y[place], pose, body))
+            begin = drive(begin, piece.way, piece.k0)
+            left = abs(rest.path.pieces[number + 1 if number + 1 < PATH else number].way)
+    return nearest
+
+
+def distance(x: float, y: float, pose: Pose, body: PlannedCar) -> float:
+    """Return how far [m] a point is from the outline of a car, 0 if it is inside."""
+    c = math.cos(pose.heading)
+    s = math.sin(pose.heading)
+    u = abs((x - pose.x) * c + (y - pose.y) * s - body.ahead) - body.half_length
+    v = abs((y - pose.y) * c - (x - pose.x) * s) - body.half_width
+    u = max(u, 0.0)
+    v = max(v, 0.0)
+    return math.sqrt(u * u + v * v)
+
+
+def lay_nearby(store: PlanStore, state: Nearby, gap: Gap, lines: int) -> None:
+    """Add what was heard in a gap to its map, which has so many lines."""
+    for number in range(4):
+        first = (SIDES + number) * HEARD
+        for place in range(first, first + state.ears[number].places):
+            if store.heard_count[place] >= SURE and is_new(store, place, gap):
+                x = store.heard_x[place]
+                y = store.heard_y[place]
+                lines = put_line(store, lines, x - STUB, y, x + STUB, y)
+
+
+def narrowed(store: PlanStore, state: Nearby, gap: Gap, length: float) -> Gap:
+    """Return a gap as wide as what was heard in it leaves, beside a car of this length [m]."""
+    e = along_of(gap)
+    low = 0.0
+    high = gap.width
+    for number in range(4):
+        first = (SIDES + number) * HEARD
+        for place in range(first, first + state.ears[number].places):
+            if store.heard_count[place] >= SURE and is_new(store, place, gap):
+                x = store.heard_x[place] - gap.a.x
+                y = store.heard_y[place] - gap.a.y
+                across = x * e.x + y * e.y
+                deep = x * math.cos(gap.into) + y * math.sin(gap.into) - gap.front
+                if 0.0 < deep < length:
+                    if across < 0.5 * gap.width:
+                        low = max(low, across)
+                    else:
+                        high = min(high, across)
+    a = Pose(gap.a.x + low * e.x, gap.a.y + low * e.y, gap.a.heading)
+    return gap._replace(a=a, width=high - low)

@@ -28,7 +28,9 @@ LONGEST_DEAD_TIME = 0.5
 USUAL_DEAD_TIME = 0.1
 """A dead time [s] up to this needs no more time than is allowed anyway."""
 UNSEEN = 0.2
-"""A steering that has not yet been seen to move may take this much [s] longer to begin; the car stands."""
+BEGUN = 0.01
+"""A steering that has not yet been seen to follow, and has begun to by so much [rad], may take this much [s] longer to
+come nearer: how lazy or slow it is nobody knows yet."""
 WINDOW_NS = 100_000_000
 EVEN = 0.05
 """Two windows are even, and a rate is as believed, if they differ by less than this share."""
@@ -124,7 +126,8 @@ def has_failed(state: SteeringWatch, longest: float) -> bool:
     """Return whether the wheel has stood or gone away for ``longest`` [s], longer only if its dead time is long."""
     late = state.steering.dead_time - USUAL_DEAD_TIME
     allowed = longest + 2.0 * late if late > 0.0 else longest
-    return state.off_ns * 1e-9 > (allowed if state.steering.seen else allowed + UNSEEN)
+    begun = not state.steering.seen and state.side * (state.angle - state.anchor) >= BEGUN
+    return state.off_ns * 1e-9 > (allowed + UNSEEN if begun else allowed)
 
 
 def rate_of(steering: Steering, believed: float) -> float:

@@ -163,10 +163,14 @@ def deceleration_of(driver: Driver, believed: BeliefParams) -> float:
 
 
 def stopping_way(driver: Driver, believed: BeliefParams) -> float:
-    """Return the way [m] he will drive on if he is told to stop now, his speed changing as it does."""
+    """Return the way [m] he will drive on if he is told to stop now, his speed changing as it does.
+
+    Who drives faster than advised is taken to come back to the speed he settles at: he only swings.
+    """
     r = reaction_of(driver, believed)
     most = max(driver.speed, driver.cruise) if driver.cruise > 0.0 else driver.speed + 2.0 * r
-    braking = clamp(driver.speed + clamp(driver.acceleration, -1.0, 15.0) * r, 0.0, most)
+    least = 0.0 if driver.obeys else min(driver.speed, driver.cruise)
+    braking = clamp(driver.speed + clamp(driver.acceleration, -1.0, 15.0) * r, least, most)
     way = 0.5 * (driver.speed + braking) * r + 0.5 * braking * braking / deceleration_of(driver, believed)
     return driver.stretch * way
 

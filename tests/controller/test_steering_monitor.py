@@ -142,4 +142,16 @@ def test_a_drifting_wheel_is_found_within_three_tenths_of_a_second(speed: float)
 
 
 def test_a_wheel_that_never_moves_is_found_before_the_car_does() -> None:
-    assert drive(swings, SteeringParams(), broken=lambda t, angle: 0.0).failed_at <= 0.6
+    assert drive(swings, SteeringParams(), broken=lambda t, angle: 0.0).failed_at <= 0.31
+
+
+@pytest.mark.parametrize("asked", [0.15, 0.5, 3.0])
+def test_a_wheel_that_begins_late_and_goes_slowly_for_the_first_time_is_no_fault(asked: float) -> None:
+    params = SteeringParams(dead_time=0.2, lag=0.15)
+    for rate in (0.33, 0.5, 1.0):
+        assert drive(lambda t: asked, params, stop=2.0, rate=rate * BELIEVED).failed_at == math.inf
+
+
+def test_a_wheel_that_begins_for_the_first_time_and_sticks_is_found_in_half_a_second() -> None:
+    found = drive(lambda t: 0.15, SteeringParams(lag=0.15), broken=lambda t, angle: min(angle, 0.03)).failed_at
+    assert 0.31 < found <= 0.51

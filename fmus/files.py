@@ -6,6 +6,7 @@ next process if it was killed.
 """
 
 import atexit
+import errno
 import os
 import re
 import threading
@@ -39,7 +40,7 @@ def whole(path: Path, *, sync: bool = False) -> Iterator[Path]:
         if path.exists() and not path.is_file() and not path.is_dir():
             yield path  # a device or a pipe: there is nothing beside it
             return
-        path = path.resolve()
+        path = _resolved(path)
         path.parent.mkdir(parents=True, exist_ok=True)
         part = path.with_name(f".{ROOM}{os.getpid()}-{next(_numbers)}{MARK}{path.suffix}")
         try:
@@ -58,7 +59,7 @@ def whole(path: Path, *, sync: bool = False) -> Iterator[Path]:
 def write_whole(path: Path, content: bytes | str, *, sync: bool = False) -> None:
     """Write a file beside ``path``, then move it there: see :func:`whole`."""
     with whole(path, sync=sync) as part:
-        part.write_bytes(content.encode() if isinstance(content, str) else content)
+        part.write_bytes(content.encode(errors="backslashreplace") if isinstance(content, str) else content)
 
 
 def synced(path: Path) -> None:
@@ -75,6 +76,17 @@ def forget_parts(folder: Path) -> None:
     """Remove what writers that were killed left in ``folder``; call it only while nobody else may write there."""
     for part in folder.glob(f".{ROOM}*{MARK}*"):
         part.unlink(missing_ok=True)
+
+
+def _resolved(path: Path) -> Path:
+    """Return the file that a path means. Raises ``OSError`` for one that is a ring of links, or no file's name."""
+    try:
+        found = path.resolve()
+    except RuntimeError as error:
+        raise OSError(errno.ELOOP, "its links lead in a ring", str(path)) from error
+    if not found.name:
+        raise IsADirectoryError(errno.EISDIR, "is a folder", str(path))
+    return found
 
 
 def _named(error: OSError, path: Path) -> OSError:

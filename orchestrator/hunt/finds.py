@@ -15,6 +15,7 @@ from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.sweep.batch import run_batch
 from orchestrator.sweep.job import Chunk, chunk_scenario, make_job, truths
+from orchestrator.sweep.rows import why_not_compiled
 from orchestrator.sweep.study.design import Design
 from orchestrator.sweep.study.study import Study
 from orchestrator.sweep.verdict import OUTCOMES, judge, limit_value, values_in
@@ -132,6 +133,8 @@ def _numbers(path: Path) -> dict[str, Any]:
     asked = {str(item.get("id")) for item in own if isinstance(item, dict)} if isinstance(own, list) else set()
     if not asked:
         raise BadInput("is no find: it has no limits of its own", file=path)
+    if why_not_compiled(scenario):
+        raise BadInput(f"is no find: {why_not_compiled(scenario)}", file=path)
     design = Design([], np.empty((1, 0)), np.array([scenario.seed], dtype=np.int64))
     job = make_job(Study(scenario, design, {"name": scenario.name}))
     chunk = Chunk(0, 0, design.values, design.seeds)

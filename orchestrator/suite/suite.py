@@ -33,6 +33,7 @@ from orchestrator.verdict.summary import Summary, summarize
 CLAIMING = Lock()
 PATIENCE = 0.2
 """Between two looks for Ctrl-C [s]."""
+MOST_LETTERS = 100
 UNNAMEABLE = re.compile(r"[^A-Za-z0-9._-]+")
 
 
@@ -131,7 +132,7 @@ def run_test(name: str, sets: list[str], bench: Bench, out: Path, taken: set[str
     Whatever is wrong with it or with an FMU is an error of this scenario alone; so is a name already ``taken``.
     """
     taken = set() if taken is None else taken
-    scenario = Scenario(name=UNNAMEABLE.sub("-", Path(name).stem) or "unnamed")
+    scenario = Scenario(name=_nameable(Path(name).stem))
     ignored: list[str] = []
     try:
         if is_step_test(name):
@@ -143,6 +144,11 @@ def run_test(name: str, sets: list[str], bench: Bench, out: Path, taken: set[str
     except Exception as error:
         code, line = explained(error, ["test", name])
         return Tested(scenario, None, None, [], ignored, line, code=code)
+
+
+def _nameable(text: str) -> str:
+    """Return the name of a scenario, and of its folder, that is nearest to a text."""
+    return UNNAMEABLE.sub("-", text).lstrip(".-")[:MOST_LETTERS] or "unnamed"
 
 
 def _judged(scenario: Scenario, ignored: list[str], bench: Bench, folder: Path) -> Tested:
@@ -172,7 +178,7 @@ def _step_tested(test: StepTest, sets: list[str], bench: Bench, out: Path, taken
     """Run the test of one model alone, and keep its curves and checks in ``out``/its name."""
     if sets or bench.requirements:
         raise BadInput("a step test takes no --set and no --requirements: write them in it", file=test.file)
-    scenario = Scenario(name=UNNAMEABLE.sub("-", test.name), title=test.title or f"step test of {test.model}")
+    scenario = Scenario(name=_nameable(test.name), title=test.title or f"step test of {test.model}")
     _claim(scenario.name, taken, "test", test.file)
     recording, checks = run_step_test(test, bench.kind, bench.foreign)
     bench.look(scenario, bench.foreign.files, recording)

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from datetime import datetime
 from pathlib import Path
 
-from orchestrator.text.errors import BAD_INPUT, INTERNAL_ERROR, INTERRUPTED, BadInput, RunError
+from orchestrator.text.errors import BAD_INPUT, INTERNAL_ERROR, INTERRUPTED, BadInput, RunError, shown
 
 REPORT = "please report it with that file to those who maintain apa-cosim"
 WORDS = {
@@ -21,6 +21,7 @@ WORDS = {
     errno.EISDIR: "is a folder, expected a file",
     errno.ENAMETOOLONG: "this name is too long",
     errno.ENOENT: "there is no such file or folder",
+    errno.ELOOP: "its links lead in a ring",
 }
 
 
@@ -34,6 +35,8 @@ def explained(error: BaseException, words: Sequence[str]) -> tuple[int, str]:
         return BAD_INPUT, str(error)
     if isinstance(error, OSError):
         return BAD_INPUT, place_of(error)
+    if isinstance(error, UnicodeEncodeError):
+        return BAD_INPUT, f"{shown(error.object)}: holds what is no letter, and cannot be written"
     if isinstance(error, MemoryError):
         return BAD_INPUT, "this takes more memory than there is"
     if isinstance(error, ModuleNotFoundError):

@@ -8,7 +8,7 @@ import pytest
 
 from tests.fuzz.limits import ask
 from tests.fuzz.logs import retold
-from tests.fuzz.more_texts import STEP_TEST
+from tests.fuzz.more_texts import COLUMNS, STEP_TEST
 
 ROOT = Path(__file__).parents[2]
 CORPUS = Path(__file__).parent / "corpus"
@@ -79,6 +79,18 @@ def test_finds_that_are_none_are_refused_in_a_line(notes: str, tmp_path: Path) -
     assert not answer.mistake, answer.mistake
     assert answer.code == 2, answer
     assert answer.err.count("\n") == 1
+
+
+@pytest.mark.parametrize("name", ["..", ".hidden", "a" * 150, "\udc80", "#", "é"])
+def test_names_that_are_none_cost_that_test_alone(name: str, tmp_path: Path) -> None:
+    file = tmp_path / f"{name}.yaml"
+    file.write_text(STEP_TEST.replace("title: odd", 'name: ".."'))
+    (tmp_path / "odd.csv").write_text(COLUMNS)
+    answer = ask(["test", str(file), name, "--fmus", "none", "--out", str(tmp_path / "out")], 10.0)
+    assert not answer.mistake, answer.mistake
+    assert answer.code == 2
+    assert "1 of 2" in answer.out
+    assert (tmp_path / "out" / "junit.xml").is_file()
 
 
 @pytest.mark.slow

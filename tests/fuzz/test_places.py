@@ -96,6 +96,14 @@ def test_a_folder_where_a_file_should_be(command: str, kept: Path, tmp_path: Pat
     assert [path.name for path in tmp_path.iterdir()] == [Path(asked[-1]).name]
 
 
+@pytest.mark.parametrize("command", ["report", "export csv", "check --junit"])
+def test_links_in_a_ring_and_the_root(command: str, kept: Path, tmp_path: Path) -> None:
+    asked = words(command, kept, tmp_path)
+    Path(asked[-1]).symlink_to(Path(asked[-1]).name)
+    assert "its links lead in a ring" in one_line(asked)
+    assert "is a folder, expected a file" in one_line([*asked[:-1], "/"])
+
+
 def test_a_folder_where_the_log_should_be(tmp_path: Path) -> None:
     (tmp_path / "run.mcap" / "x").mkdir(parents=True)
     assert "run.mcap" in one_line(["run", *SHORT, "--no-page", "--out", str(tmp_path)])

@@ -52,13 +52,18 @@ def never_obeys(seen: Seen) -> tuple[str, float]:
     return "R", 1.2 if seen.t > 1.5 else 0.0
 
 
+def standing_clock(page: Any) -> None:
+    """Let the page's clock stand; ``page.clock.run_for`` moves it on."""
+    page.clock.install()
+    page.clock.pause_at(time.time() + 1.0)
+
+
 def drive(page: Any, will: Will, pace: int = 4) -> dict[str, Any]:
     """Drive by ``will`` to the end, a look each tenth of a second of the drive; return the verdict of the page.
 
     The page's clock stands while nobody looks: what is driven does not depend on how busy the machine is.
     """
-    page.clock.install()
-    page.clock.pause_at(time.time() + 1.0)
+    standing_clock(page)
     page.click(f'label:has([name="pace"][value="{pace}"])')
     page.click("#person + *, label:has(#person)")
     page.keyboard.press(" ")

@@ -47,7 +47,10 @@ def test_runs_as_the_native_fmus_do(name, run_of_page):
         ours = lines[:, 1 + names.index(signal)]
         exact = recording.variables[signal].kind is not float
         within = 0.0 if exact else WITHIN.get(name, 1e-6)
-        np.testing.assert_allclose(ours, theirs, rtol=0.0, atol=within, equal_nan=True, err_msg=signal)
+        with np.errstate(invalid="ignore"):
+            is_near = bool((np.abs(ours - theirs) <= within).all())  # quicker than what says where
+        if not is_near:
+            np.testing.assert_allclose(ours, theirs, rtol=0.0, atol=within, equal_nan=True, err_msg=signal)
 
 
 @pytest.fixture(scope="module")

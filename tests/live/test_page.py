@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 import yaml
-from person import drive, hurries_once, never_obeys, obeys
+from person import drive, hurries_once, never_obeys, obeys, standing_clock
 
 from controller_fmu.interface import Phase
 from orchestrator.cosim.fmu_files import fmu_files
@@ -117,6 +117,43 @@ def test_who_never_obeys_fails_with_a_reason(page):
     assert "You: failed: not stopping" in page.text_content("#drive-said")
 
 
+PADS = """() => {
+  window.pad = { buttons: Array.from({ length: 17 }, () => ({ value: 0, pressed: false })) };
+  navigator.getGamepads = () => [window.pad];
+  window.tones = 0;
+  const made = AudioContext.prototype.createOscillator;
+  AudioContext.prototype.createOscillator = function () { window.tones += 1; return made.call(this); };
+}"""
+HELD = "() => ({ ...live.driver.pedal, lever: live.driver.lever, drives: live.driver.drives, t: live.drive.t })"
+
+
+def test_a_finger_and_a_gamepad_drive_and_sounds_are_off_until_asked_for(file, show):
+    page, seen = show(file, "#s=guo2015-case4-105", 390, 844, has_touch=True, is_mobile=True)
+    page.evaluate(PADS)
+    standing_clock(page)
+    page.tap("#gear-R")
+    box = page.locator("#accelerator").bounding_box()
+    finger = page.context.new_cdp_session(page)
+    at = [{"x": box["x"] + 20, "y": box["y"] + 40}]
+    finger.send("Input.dispatchTouchEvent", {"type": "touchStart", "touchPoints": at})
+    page.clock.run_for(1000)
+    held = page.evaluate(HELD)
+    assert (held["accelerator"], held["lever"], held["drives"]) == (0.25, 1, True)
+    assert 0.9 < held["t"] < 1.1
+    finger.send("Input.dispatchTouchEvent", {"type": "touchEnd", "touchPoints": []})
+    page.clock.run_for(500)
+    assert page.evaluate(HELD)["accelerator"] == 0.0
+    page.evaluate("() => { pad.buttons[6] = { value: 0.6, pressed: true }; pad.buttons[0].pressed = true; }")
+    page.clock.run_for(1000)
+    held = page.evaluate(HELD)
+    assert (held["brake"], held["lever"]) == (0.6, 3)
+    assert page.evaluate("tones") == 0
+    page.check("#sound")
+    page.evaluate("() => { pad.buttons[6].value = 0; live.drive.restart(); live.sounds.play('STOP'); }")
+    assert page.evaluate("tones") == 3
+    assert seen.console == []
+
+
 def ghost(page):
     return page.evaluate(
         "() => { const { outcome, reason, numbers } = window.live.whole; return { outcome, reason, ...numbers }; }"
@@ -221,9 +258,15 @@ def test_a_map_is_coloured_and_a_cell_taken_from_it_is_what_it_says(page):
     for key in ("ArrowRight",) * 4 + ("ArrowUp",) * 6 + ("Enter",):
         page.keyboard.press(key)
     page.wait_for_function("() => !window.live.isDue")
+    assert sum(int(text.split()[-1]) for text in page.locator("#map-key > span").all_text_contents()) == 400
     cell = page.evaluate("() => { const { map } = window.live; return map.rows[6][4]; }")
     found = ghost(page)
     assert (found["outcome"], found["reason"]) == (cell["outcome"], cell["reason"])
+    box = page.locator("#map").bounding_box()
+    page.mouse.click(box["x"] + 10.5 / 20 * box["width"], box["y"] + 10.5 / 20 * box["height"])
+    assert page.evaluate("() => window.live.map.at") == [10, 9]
+    page.select_option("#map-color", "error")
+    assert page.text_content("#map-key") == "on the target to 3 m off and more"
 
 
 def test_the_chart_shows_the_state_and_how_it_came(page):

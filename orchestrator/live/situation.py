@@ -82,6 +82,7 @@ def _faults(scenario: Scenario) -> dict[str, Any]:
     numbers = numbers_for(scenario, np.array([scenario.seed]))[0].tolist()
     return {
         "said": [_said(fault) for fault in scenario.faults],
+        "when": [[fault.start, fault.stop] for fault in scenario.faults],
         "heard": [[FAULTS.index(kind), model, *places] for kind, model, places in (x.inputs for x in heard(scenario))],
         "numbers": numbers,
     }

@@ -124,6 +124,7 @@ PADS = """() => {
   const made = AudioContext.prototype.createOscillator;
   AudioContext.prototype.createOscillator = function () { window.tones += 1; return made.call(this); };
 }"""
+START = "() => live.lab.situation.pose('vehicle.start')"
 HELD = "() => ({ ...live.driver.pedal, lever: live.driver.lever, drives: live.driver.drives, t: live.drive.t })"
 
 
@@ -131,9 +132,17 @@ def test_a_finger_and_a_gamepad_drive_and_sounds_are_off_until_asked_for(file, s
     page, seen = show(file, "#s=guo2015-case4-105", 390, 844, has_touch=True, is_mobile=True)
     page.evaluate(PADS)
     standing_clock(page)
-    page.tap("#gear-R")
     box = page.locator("#accelerator").bounding_box()
     finger = page.context.new_cdp_session(page)
+    before = page.evaluate(START)
+    x, y = handle(page, "vehicle.start")
+    for kind, by in (("touchStart", 15), ("touchMove", 25), ("touchMove", 35)):
+        finger.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": [{"x": x + by, "y": y - by}]})
+    finger.send("Input.dispatchTouchEvent", {"type": "touchEnd", "touchPoints": []})
+    moved = [now - then for now, then in zip(page.evaluate(START), before, strict=True)]
+    scale = page.evaluate("() => live.stage.scale")
+    assert moved == pytest.approx([20 / scale, 20 / scale, 0.0], abs=0.002)
+    page.tap("#gear-R")
     at = [{"x": box["x"] + 20, "y": box["y"] + 40}]
     finger.send("Input.dispatchTouchEvent", {"type": "touchStart", "touchPoints": at})
     page.clock.run_for(1000)
@@ -218,14 +227,19 @@ def test_the_exported_scenario_comes_to_the_end_of_the_page(page, tmp_path):
     agrees(ghost(page), summary)
 
 
-def drag(page, prefix, dx, dy):
-    """Drag a handle by metres."""
-    x, y = page.evaluate(
+def handle(page, prefix):
+    """Return where on the screen what can be dragged is taken."""
+    return page.evaluate(
         "(prefix) => { const { stage } = window.live, item = stage.handles().find((one) => one.prefix === prefix);"
         " const box = stage.canvas.getBoundingClientRect(), [u, v] = stage.pixel(...item.points[0][1]);"
         " return [u + box.left, v + box.top]; }",
         prefix,
     )
+
+
+def drag(page, prefix, dx, dy):
+    """Drag a handle by metres."""
+    x, y = handle(page, prefix)
     scale = page.evaluate("() => window.live.stage.scale")
     page.mouse.move(x, y)
     page.mouse.down()
@@ -283,7 +297,10 @@ def test_the_chart_shows_the_state_and_how_it_came(page):
 
 def test_a_scenario_with_faults_says_what_it_disturbs(page):
     page.select_option("#scenario", "fault-pose-frozen")
-    assert page.text_content("#faults") == "This scenario disturbs what is received: freeze vehicle.odometry, 2 s on."
+    assert page.inner_text("#faults") == "This scenario disturbs what is received: freeze vehicle.odometry, 2 s on."
+    page.evaluate("() => { const { drive } = window.live; while (drive.t < 2.1) drive.go(); }")
+    page.wait_for_selector("#faults em:visible")
+    assert page.inner_text("#faults").endswith("freeze vehicle.odometry, 2 s on, now.")
 
 
 def test_controllers_of_two_models_do_not_share_a_page():

@@ -1,6 +1,7 @@
 // Puts the page together: scenario, drive, ghost, panels, keys, link.
 
 const PROMPTS = { NONE: "no prompt", STOP: "stop", FORWARD: "drive forward", REVERSE: "drive in reverse", SLOW_DOWN: "slow down", TAKE_OVER: "take over", CONFIRM: "confirm?" };
+const LONG = 30; // a ghost that takes longer [ms] leaves the page half of the time
 const WORDS_EVERY = 50; // numbers and words follow the picture at intervals that can be read [ms]
 
 class Page {
@@ -13,6 +14,7 @@ class Page {
   paint = () => {};
   show = () => {};
   took = 0; // until the page was ready [ms]
+  computed = 0; // when the ghost was last computed [ms]
   told = 0; // when numbers and words were last written [ms]
 
   constructor(lab, data, code) {
@@ -53,7 +55,7 @@ class Page {
     $("title").textContent = document.title = data.title || name;
     $("subtitle").textContent = data.description;
     $("faults").hidden = data.faults.said.length === 0;
-    $("faults").textContent = `This scenario disturbs what is received: ${data.faults.said.join("; ")}.`;
+    $("faults").replaceChildren("This scenario disturbs what is received: ", ...data.faults.said.map((said, i) => element("span", {}, i ? "; " : "", said, element("em", { hidden: "" }, ", now"))), ".");
     this.whatIf.more = [];
     this.whatIf.fill();
     this.map.fill();
@@ -74,7 +76,8 @@ class Page {
     $("stale").hidden = true;
   }
 
-  ghost() {
+  ghost(now = 0) {
+    this.computed = now;
     this.whole = this.lab.ghost();
     this.drawn.ghost = this.whole.history;
     $("ghost-badge").replaceChildren(badge(this.whole));
@@ -115,7 +118,7 @@ class Page {
   draw(now) {
     const { drive, driver } = this;
     drive.frame(now);
-    if (this.isDue) this.ghost();
+    if (this.isDue && now - this.computed > (this.whole.took > LONG ? 2 * this.whole.took : 0)) this.ghost(now);
     const key = [drive.t, this.whole.took, this.stage.scale, ...this.stage.middle, driver.pedal.accelerator, driver.pedal.brake, driver.lever, driver.drives, drive.isPlaying].join();
     if (key === this.key) return;
     this.key = key;
@@ -143,6 +146,7 @@ class Page {
       $(`gear-${gear}`).classList.toggle("in", h.last("vehicle.gear") === GEARS[gear]);
     }
     for (const pedal of ["accelerator", "brake"]) $(pedal).style.setProperty("--down", `${100 * driver.pedal[pedal]}%`);
+    this.lab.situation.data.faults.when.forEach(([from, to], i) => { $("faults").querySelectorAll("em")[i].hidden = !(drive.t >= from && drive.t < (to ?? Infinity)); });
     text("clock", `${drive.t.toFixed(2)} s`);
     text("play", drive.isPlaying ? "Pause" : drive.isOver ? "Again" : "Start");
     text("drive-said", drive.isOver && this.mine ? `${drive.byHand ? "You" : "This drive"}: ${said(this.mine)}` : driver.drives ? "You have the pedals; the controller has the wheel" : "The driver modelled has the pedals");

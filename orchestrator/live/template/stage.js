@@ -1,6 +1,6 @@
 // The top view of the page: the scene of the replay page, the ghost of the whole run, and what the mouse may drag.
 
-const GRIP = 12; // how near a pointer must come to a handle [px]
+const GRIP = 12, FINGER = 26; // how near a pointer, or a finger, must come to a handle [px]
 
 class Stage extends Scene {
   constructor(page, canvas, moves) {
@@ -9,11 +9,12 @@ class Stage extends Scene {
     this.held = null;
     const stop = (event) => { event.stopImmediatePropagation(); event.preventDefault(); };
     canvas.addEventListener("pointerdown", (event) => {
-      this.held = this.handleAt(event.offsetX, event.offsetY);
+      this.held = this.handleAt(event.offsetX, event.offsetY, event.pointerType === "touch" ? FINGER : GRIP);
       if (!this.held) return;
       canvas.setPointerCapture(event.pointerId);
       stop(event);
     }, { capture: true });
+    canvas.addEventListener("touchstart", (event) => { if (this.held) event.preventDefault(); }, { passive: false }); // or the page would scroll
     canvas.addEventListener("pointermove", (event) => {
       if (this.held) { stop(event); this.drag(event.offsetX, event.offsetY); return; }
       canvas.style.cursor = this.handleAt(event.offsetX, event.offsetY) ? "move" : "";
@@ -46,13 +47,16 @@ class Stage extends Scene {
     });
   }
 
-  handleAt(px, py) {
+  // The nearest handle within reach, null if there is none.
+  handleAt(px, py, reach = GRIP) {
+    let found = null, nearest = reach;
+    const at = this.world(px, py);
     for (const item of this.handles())
       for (const [what, point] of item.points) {
-        const [x, y] = this.pixel(...point);
-        if (Math.hypot(px - x, py - y) <= GRIP) { const at = this.world(px, py); return { ...item, what, grip: [at[0] - item.place[0], at[1] - item.place[1]] }; }
+        const [x, y] = this.pixel(...point), far = Math.hypot(px - x, py - y);
+        if (far <= nearest) { nearest = far; found = { ...item, what, grip: [at[0] - item.place[0], at[1] - item.place[1]] }; }
       }
-    return null;
+    return found;
   }
 
   drag(px, py) {

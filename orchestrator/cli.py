@@ -1,6 +1,7 @@
 """The command ``apa``: imports the command that is chosen and turns errors into exit codes."""
 
 import argparse
+import gc
 import io
 import os
 import sys
@@ -31,7 +32,23 @@ plugins takes pydantic 20 ms."""
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Return the exit code of one command line."""
-    words = sys.argv[1:] if arguments is None else list(arguments)
+    if arguments is None:
+        return _program()
+    return _command(list(arguments))
+
+
+def _program() -> int:
+    """Return the exit code of this process. What is imported stays: to look through it for rubbish, again and again and
+    once more at the end, takes a fifth of the time of a run.
+    """
+    gc.set_threshold(20_000, 20, 50)
+    try:
+        return _command(sys.argv[1:])
+    finally:
+        gc.freeze()
+
+
+def _command(words: list[str]) -> int:
     for name, value in SPARING.items():
         os.environ.setdefault(name, value)
     _forgiving_streams()

@@ -33,7 +33,7 @@ class ClosedLoopRun(Run):
         assert self.outcome == outcome, f"{self.scenario.name}: {self.outcome}, {self.reason}; expected {outcome}"
         return self
 
-    def must_meet(self: Same, *requirements: str | Path | Requirement) -> Same:
+    def must_meet(self: Same, *requirements: str | Path | Requirement | Mapping[str, Any]) -> Same:
         """Return the run; fails if it misses a requirement, with signal, time, value, limit and margin."""
         __tracebackhide__ = True
         assert_met(judge(self, *requirements))

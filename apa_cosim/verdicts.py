@@ -1,7 +1,8 @@
 """Runs judged by requirements, and held against each other."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from pathlib import Path
+from typing import Any
 
 from apa_cosim.runs import Run
 from orchestrator.comparison.compare import Comparison
@@ -14,8 +15,8 @@ from orchestrator.verdict.judge import judge as judge_recording
 from orchestrator.verdict.numbers import facts_of
 
 
-def judge(run: Run, *requirements: str | Path | Requirement) -> list[Check]:
-    """Return a check for each requirement: a shipped set's name, a YAML file, or a ``Requirement``.
+def judge(run: Run, *requirements: str | Path | Requirement | Mapping[str, Any]) -> list[Check]:
+    """Return a check for each requirement: a shipped set's name, a YAML file, a ``Requirement``, or one as in YAML.
 
     Raises ``BadInput`` for a signal that the run does not have.
     """
@@ -23,6 +24,8 @@ def judge(run: Run, *requirements: str | Path | Requirement) -> list[Check]:
     for item in requirements:
         if isinstance(item, Requirement):
             asked.append(item)
+        elif isinstance(item, Mapping):
+            asked.append(Requirement(**item))
         else:
             asked += read_requirements(find_file(str(item), "limits", "set of limits", Path.cwd()))
     return judge_recording(asked, run.recording, facts_of(run.recording, run.scenario), "judge")

@@ -1,10 +1,13 @@
 """What an FMU says of itself: its variables as ports, read without asking more of the file than a run needs."""
 
+import io
 import re
+import zipfile
 from enum import IntEnum
 from pathlib import Path
 
 from fmpy.model_description import ModelDescription, ModelVariable, read_model_description
+from lxml import etree  # type: ignore[import-untyped]
 
 from modelkit.model import Model
 from modelkit.signal import Role, Signal
@@ -20,19 +23,42 @@ KINDS: dict[str, type] = {
 """Type of an FMI variable -> the Python type it is kept as; others are not connected."""
 NAMED = re.compile(r"(?:^|: )(-?\d+ \w+(?:, -?\d+ \w+)+)$")
 """How the description of a mode ends that is an integer; our own FMUs have it so."""
+DESCRIPTION = "modelDescription.xml"
+PARAMETERS = ("parameter", "calculatedParameter")
+NOT_SAID = "illegal combination of causality"
+"""How FMPy refuses a variable whose variability does not fit; FMI 2.0 has all vary of which nothing is said."""
 BASE = ("kg", "m", "s", "A", "K", "mol", "cd", "rad")
 
 
 def read_description(path: Path) -> ModelDescription:
     """Return what the FMU says of itself. Raises ``BadInput`` if the file is no FMI 2.0 or 3.0 co-simulation FMU."""
     try:
-        description = read_model_description(str(path), validate=False)
+        try:
+            description = read_model_description(str(path), validate=False)
+        except Exception as error:
+            if NOT_SAID not in str(error):
+                raise
+            description = read_model_description(_with_fixed_parameters(path), validate=False)
     except Exception as error:
         raise BadInput(f"is not an FMU: {_first_line(error)}", file=path) from error
     version = str(description.fmiVersion)
     if not version.startswith(("2.", "3.")) or description.coSimulation is None:
         raise BadInput(f"is FMI {version}; expected FMI 2.0 or 3.0 for co-simulation", file=path)
     return description
+
+
+def _with_fixed_parameters(path: Path) -> io.BytesIO:
+    """Return an archive with the description alone, in which parameters are fixed that are said to vary, or not said
+    not to: so PythonFMU writes them unless it is told."""
+    with zipfile.ZipFile(path) as archive:
+        tree = etree.fromstring(archive.read(DESCRIPTION), etree.XMLParser(resolve_entities=False))
+    for item in tree.iter("ScalarVariable"):
+        if item.get("causality") in PARAMETERS and item.get("variability", "continuous") == "continuous":
+            item.set("variability", "fixed")
+    mended = io.BytesIO()
+    with zipfile.ZipFile(mended, "w") as archive:
+        archive.writestr(DESCRIPTION, etree.tostring(tree))
+    return mended
 
 
 def ports_of(description: ModelDescription, causality: str, model: Model | None, path: Path) -> Ports:

@@ -1,5 +1,9 @@
 """A step test from file to verdict."""
 
+from dataclasses import replace
+
+import numpy as np
+
 from orchestrator.cosim.recording import Recording
 from orchestrator.log.read_log import log_file, read_log
 from orchestrator.session.foreign import Foreign
@@ -25,4 +29,13 @@ def _reference(test: StepTest, kind: str) -> Recording:
     assert asked is not None
     if bool(asked.log) == bool(asked.model):
         raise BadInput("expected one of log and model", file=test.file, key="reference")
-    return read_log(log_file(str(test.near(asked.log)))) if asked.log else drive(test, kind, model=asked.model)
+    if not asked.log:
+        return drive(test, kind, model=asked.model)
+    return _until(read_log(log_file(str(test.near(asked.log)))), test.stop_ns)
+
+
+def _until(recording: Recording, stop_ns: int) -> Recording:
+    """Return what a longer run had recorded when the test ends."""
+    count = int(np.searchsorted(recording.t_ns, stop_ns, side="right"))
+    signals = {name: values[:count] for name, values in recording.signals.items()}
+    return replace(recording, t_ns=recording.t_ns[:count], signals=signals)

@@ -9,7 +9,7 @@ from pathlib import Path
 from pythonfmu.builder import FmuBuilder
 
 CONTROLLER = '''
-from pythonfmu import Boolean, Fmi2Causality, Fmi2Slave, Fmi2Variability, Integer, Real
+from pythonfmu import Boolean, Fmi2Causality, Fmi2Slave, Integer, Real
 
 
 class Theirs(Fmi2Slave):
@@ -19,8 +19,7 @@ class Theirs(Fmi2Slave):
         super().__init__(**kwargs)
         self.wheel, self.measured_speed = 5.0, 0.0
         self.{request}, self.steering_active, self.prompt, self.phase = 0.0, True, 3, 2
-        parameter = dict(causality=Fmi2Causality.parameter, variability=Fmi2Variability.tunable)
-        self.register_variable(Real("wheel", **parameter))
+        self.register_variable(Real("wheel", causality=Fmi2Causality.parameter))
         self.register_variable(Real("measured_speed", causality=Fmi2Causality.input))
         self.register_variable(Real("{request}", causality=Fmi2Causality.output))
         self.register_variable(Boolean("steering_active", causality=Fmi2Causality.output))

@@ -4,12 +4,15 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
+from pydantic import ValidationError
+
 from apa_cosim.runs import Run
 from orchestrator.comparison.compare import Comparison
 from orchestrator.comparison.compare import compare as compare_recordings
 from orchestrator.comparison.tolerance import Tolerance, Tolerances
 from orchestrator.scenario.files import find_file
 from orchestrator.scenario.requirements import Requirement, read_requirements
+from orchestrator.text.yaml_file import explain
 from orchestrator.verdict.judge import Check
 from orchestrator.verdict.judge import judge as judge_recording
 from orchestrator.verdict.numbers import facts_of
@@ -25,10 +28,17 @@ def judge(run: Run, *requirements: str | Path | Requirement | Mapping[str, Any])
         if isinstance(item, Requirement):
             asked.append(item)
         elif isinstance(item, Mapping):
-            asked.append(Requirement(**item))
+            asked.append(_requirement(item))
         else:
             asked += read_requirements(find_file(str(item), "limits", "set of limits", Path.cwd()))
     return judge_recording(asked, run.recording, facts_of(run.recording, run.scenario), "judge")
+
+
+def _requirement(written: Mapping[str, Any]) -> Requirement:
+    try:
+        return Requirement.model_validate({"source": "asked here", **written})
+    except ValidationError as error:
+        raise explain(error, None, list(Requirement.model_fields)) from None
 
 
 def compare(

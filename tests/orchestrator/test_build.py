@@ -57,10 +57,10 @@ def test_a_compiler_by_name_or_by_the_variable_cc(asked, tmp_path, monkeypatch, 
 
 def test_without_a_compiler_it_says_what_to_install(tmp_path, monkeypatch, capsys):
     def absent(name):
-        raise compilers.PackageNotFoundError(name)
+        raise PackageNotFoundError(name)
 
     monkeypatch.delenv("CC", raising=False)
-    monkeypatch.setattr(compilers, "version", absent)
+    monkeypatch.setattr("importlib.metadata.version", absent)
     assert main(["build", "--fmus", "native", "--out", str(tmp_path)]) == 2
     assert "pip install 'apa-cosim[native]'" in capsys.readouterr().err
 

@@ -1,6 +1,7 @@
 """``apa build``: kinds, versions, platforms, compilers, and what is said when it cannot be done."""
 
 import json
+from importlib.metadata import PackageNotFoundError
 
 import pytest
 

@@ -13,7 +13,11 @@ import pyarrow.parquet as pq  # type: ignore[import-untyped]
 from orchestrator.cosim.slave import Array
 from orchestrator.sweep.job import Chunk, job_from
 from orchestrator.sweep.store import ABOUT, sum_of
+from orchestrator.text.console import say
 from orchestrator.text.errors import BadInput
+
+OLDER = {ABOUT, b"ARROW:schema"}
+"""What tables carry that were written before they had a checksum."""
 
 
 class Table:
@@ -31,8 +35,10 @@ class Table:
             raise BadInput(f"cannot be read as a table: {_first_line(error)}", file=path) from error
         if ABOUT not in metadata:
             raise BadInput("is no table of a study", file=path)
-        if checksum != carried:
+        if checksum != carried or (not carried and set(self._file.metadata.metadata) - OLDER):
             raise BadInput("is damaged: its bytes do not fit its checksum", file=path)
+        if not carried:
+            say(f"apa: warning: {path}: has no checksum over all of it; a damage in it may go unseen")
         try:
             self.about: dict[str, Any] = json.loads(metadata[ABOUT])
             self.job = job_from(self.about["job"])

@@ -171,6 +171,11 @@ def test_no_bit_of_a_table_can_be_changed_and_believed(whole, tmp_path):
         except BadInput:
             refused += 1
     assert refused > 50
+    place = data.index(b"apa.checksum", len(data) - described)
+    for at in range(place - 2, place + 80):
+        odd.write_bytes(data[:at] + bytes([data[at] ^ 1 << draw.randrange(8)]) + data[at + 1 :])
+        with pytest.raises(BadInput):
+            Table(odd)
 
 
 def test_what_is_no_table(tmp_path, capsys):

@@ -5,26 +5,28 @@ import time
 from pathlib import Path
 
 PROC = Path("/proc")
+Threads = dict[str, tuple[float, float]]
+"""Thread -> what it has computed and waited for a core [s]."""
 
 
 class FairTime:
-    """Watches a process and its children from now on; ask at least each second, children that end are forgotten.
+    """Watches a process and its children from now on, also when it is gone; ask some times a second.
 
     Of a stretch between two questions what the thread that was kept waiting longest lost is left out; so an idle
     machine, and a system that does not tell, give wall-clock time. Whoever computes has at least its processor time.
     """
 
     def __init__(self, pid: int) -> None:
-        self._pid = pid
+        self._family = {pid}
         self._asked = time.monotonic()
-        self._began = threads_of(pid)
+        self._began = self._threads()
         self._before = self._began
         self._computed = 0.0
         self._own = 0.0
 
     def seconds(self) -> float:
         """Return the time that is its own [s]."""
-        asked, threads = time.monotonic(), threads_of(self._pid)
+        asked, threads = time.monotonic(), self._threads()
         starved = 0.0
         for name, (run, waited) in threads.items():
             starved = max(starved, waited - self._before.get(name, (0.0, 0.0))[1])
@@ -33,17 +35,24 @@ class FairTime:
         self._asked, self._before = asked, threads
         return max(self._own, self._computed)
 
+    def _threads(self) -> Threads:
+        """Return the threads of all who belong to it, and remember who does: orphans are no longer found."""
+        found: Threads = {}
+        for pid in list(self._family):
+            self._family |= threads_of(pid, found)
+        return found
 
-def threads_of(pid: int) -> dict[str, tuple[float, float]]:
-    """Return what each thread of a process and of its children has computed and waited for a core [s]."""
-    found = {}
+
+def threads_of(pid: int, found: Threads) -> set[int]:
+    """Add the threads of a process and of its children to ``found``; return who they are."""
+    family = {pid}
     for task in _listed(PROC / str(pid) / "task"):
         with contextlib.suppress(OSError, ValueError):
             run, waited, _ = (task / "schedstat").read_text().split()
             found[task.name] = (1e-9 * int(run), 1e-9 * int(waited))
             for child in (task / "children").read_text().split():
-                found |= threads_of(int(child))
-    return found
+                family |= threads_of(int(child), found)
+    return family
 
 
 def _listed(folder: Path) -> list[Path]:

@@ -75,9 +75,9 @@ def stage(folder: Path) -> Stage:
     return Stage(folder, environment, table, (folder / "log" / "run.mcap").read_bytes(), guids)
 
 
-def waited(child: "subprocess.Popen[str]", longest: float) -> tuple[str, float]:
+def waited(child: "subprocess.Popen[str]", longest: float, taken: FairTime | None = None) -> tuple[str, float]:
     """Return what a process said until it ended, and the time it took of its own; one that takes longer is killed."""
-    taken, late = FairTime(child.pid), ""
+    taken, late = taken or FairTime(child.pid), ""
     while True:
         try:
             _, said = child.communicate(timeout=LOOK)
@@ -94,8 +94,9 @@ def ended(child: "subprocess.Popen[str]", after: float, draw: random.Random) -> 
         child.wait(timeout=after)
     except subprocess.TimeoutExpired:
         number = draw.choice(SIGNALS)
+        taken = FairTime(child.pid)
         child.send_signal(number)
-        said, seconds = waited(child, LONGEST)
+        said, seconds = waited(child, LONGEST, taken)
         if seconds > SOON:
             return f"{number.name} took {seconds:.1f} s: {said}"
         # Before Python has come to our first line, a signal ends it as any program.

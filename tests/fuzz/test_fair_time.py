@@ -1,18 +1,21 @@
 """What counts as a hang: not what neighbours take, all else."""
 
 import os
+import signal
 import subprocess
 import sys
 import time
 
 import pytest
 
-from tests.fuzz.fair_time import FairTime, threads_of
+from tests.fuzz.fair_time import FairTime, Threads, threads_of
 from tests.fuzz.limits import Hangs, alarm
 
 SPINS = "import os, sys\nos.sched_setaffinity(0, {int(sys.argv[1])})\nprint(flush=True)\nwhile True: pass"
 SLEEPS = "import time\nprint(flush=True)\ntime.sleep(60)"
 LONG = 1.0
+TOLD: Threads = {}
+threads_of(os.getpid(), TOLD)
 
 
 def taken(*words: str) -> tuple[float, float]:
@@ -30,7 +33,10 @@ def taken(*words: str) -> tuple[float, float]:
             child.kill()
 
 
-@pytest.mark.skipif(not threads_of(os.getpid()), reason="the system does not say how long a thread waited for a core")
+told = pytest.mark.skipif(not TOLD, reason="the system does not say how long a thread waited for a core")
+
+
+@told
 def test_a_core_shared_with_others_is_half_the_time() -> None:
     core = str(min(os.sched_getaffinity(0)))
     with subprocess.Popen([sys.executable, "-c", SPINS, core], stdout=subprocess.DEVNULL) as neighbour:
@@ -50,3 +56,20 @@ def test_who_sleeps_takes_all_of_it() -> None:
 def test_what_computes_or_waits_for_ever_hangs(hang: str) -> None:
     with pytest.raises(Hangs), alarm(0.2):
         exec(hang)
+
+
+@told
+def test_orphans_are_watched_on() -> None:
+    family = f"import subprocess, sys, time\nsubprocess.Popen([sys.executable, '-c', {SLEEPS!r}])\ntime.sleep(60)"
+    with subprocess.Popen([sys.executable, "-c", family], stdout=subprocess.PIPE) as child:
+        assert child.stdout
+        child.stdout.readline()
+        watch = FairTime(child.pid)
+        child.kill()
+        child.wait()
+        orphans = watch._family - {child.pid}
+        try:
+            assert watch._threads()
+        finally:
+            for pid in orphans:
+                os.kill(pid, signal.SIGKILL)

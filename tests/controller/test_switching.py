@@ -8,9 +8,15 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.linalg import expm
 
+from controller_fmu.adaptive.planner import Demand, plan
+from controller_fmu.adaptive.room import room_of
+from controller_fmu.adaptive.system import wheel_of
+from controller_fmu.common.path_law import angle_back, deviation
+from controller_fmu.common.steering_monitor import Steering
 from controller_fmu.guo2015.path import Reference
 from controller_fmu.guo2015.path_tracking import path_tracking_angle
 from controller_fmu.guo2015.point_tracking import point_error, point_tracking_angle
+from controller_fmu.interface import ControllerParams
 from modelkit.vocabulary import Pose
 
 L = 2.405
@@ -94,3 +100,28 @@ def test_the_same_v_falls_on_a_straight_piece_of_path(y: float, heading: float) 
 def test_the_room_the_docs_state() -> None:
     assert pytest.approx(0.24, abs=0.001) == ROOM
     assert math.degrees(math.atan(math.sqrt(K3 * (ROOM**2 - 0.154**2)))) == pytest.approx(10.4, abs=0.05)
+
+
+@pytest.mark.parametrize("direction", [1, -1])
+@pytest.mark.parametrize(("y", "heading"), [(0.12, 0.0), (-0.1, 0.1), (0.02, -0.15), (0.0, 0.12)])
+def test_along_a_route_the_errors_fall_ahead_and_back(direction: int, y: float, heading: float) -> None:
+    pose = Pose(0.0, y, heading)
+    before = energy(pose)
+    for _ in range(round(3.0 / STEP)):
+        off = deviation(pose, Pose(pose.x, 0.0, 0.0))
+        after = driven(pose, angle_back(off, 0.0, direction, 1.0, 2.0, L), direction * STEP)
+        assert energy(after) <= energy(pose) + 2.0 * STEP**2 * before
+        pose = after
+    assert energy(pose) < 0.1 * before
+
+
+@pytest.mark.parametrize(
+    "pose",
+    [Pose(7.6, 3.06, 0.0), Pose(0.5, 0.02, 0.01), Pose(1.5, 0.15, 0.1), Pose(-0.3, 0.12, -0.1), Pose(3.0, 0.6, 0.35)],
+)
+def test_a_new_plan_begins_where_the_car_stands_or_on_the_slot_line(pose: Pose) -> None:
+    params = ControllerParams()
+    room, wheel = room_of(params.car, params.adaptive.room), wheel_of(Steering(), params)
+    route = plan(pose, Demand(0.8, True, 0.2, 0.5, 0.3), wheel, room).route
+    assert route.direction != 0
+    assert route.start in (pose, Pose(pose.x, 0.0, 0.0))

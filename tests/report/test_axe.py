@@ -12,10 +12,13 @@ from orchestrator.live.page import live_page
 from orchestrator.scenario.load_scenario import load_scenario
 
 RULES = ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "wcag22aa", "best-practice"]
+NARROW = ["scrollable-region-focusable"]
+"""What a phone's width may break."""
 RUN = """async (rules) => (await axe.run({ runOnly: rules })).violations
   .map((found) => [found.id, found.nodes.map((node) => [node.target.join(" "), (node.any[0] || {}).message])])"""
 OPEN = """() => { for (const node of document.querySelectorAll("details")) node.open = true;
-  const more = document.querySelectorAll("tbody tr:nth-child(n+9), .signals li:nth-child(n+9)");
+  const many = ["tbody tr", ".signals li", "svg rect"].map((kind) => `${kind}:nth-of-type(n+9)`);
+  const more = document.querySelectorAll(many.join());
   for (const node of more) node.remove(); }"""
 """Rows further down are of the same kind."""
 LOOKS = {
@@ -83,18 +86,25 @@ def test_pages(which, look, show, axe, request):
         page.evaluate("() => { window.replay.setMark(1); window.replay.plots.chooser.open(null); }")
     page.evaluate(OPEN)
     assert wrong(page, axe) == []
+    if look == "light":
+        page.set_viewport_size({"width": 390, "height": 844})
+        assert page.evaluate(RUN, {"type": "rule", "values": NARROW}) == []
 
 
 @pytest.mark.parametrize("look", LOOKS)
 def test_every_panel_of_the_page_that_is_driven(look, show, axe, tmp_path):
     path = tmp_path / "live.html"
-    path.write_text(live_page([load_scenario("guo2015-case4-105")]), encoding="utf-8")
+    path.write_text(live_page([load_scenario("fault-pose-noise")]), encoding="utf-8")
     page, _ = show(path, bypass_csp=True, **LOOKS[look])
     page.evaluate("() => { const { drive } = window.live; while (!drive.isOver) drive.go(); }")
     page.wait_for_timeout(100)
     for tab in ("whatif", "map", "chart", "result", "share"):
         page.click(f"#{tab}-tab")
         assert wrong(page, axe) == [], tab
+    page.goto(f"{path.as_uri()}#only=controller.guo2015.k1")
+    page.reload()
+    page.wait_for_selector("html[data-ready]")
+    assert wrong(page, axe) == [], "in a page of another"
 
 
 def test_ribbons_and_legend_keep_their_colours_where_colours_are_forced(show, replay):

@@ -208,7 +208,8 @@ def _about(table: Table) -> str:
     rows: list[tuple[str, ...]] = [(escape(name), escape(str(value))) for name, value in about["versions"].items()]
     rows.append(("sources", f"<code>{escape(about['sources'][:16])}</code>"))
     return (
-        f'<section class="card"><details><summary>Study and versions</summary><pre class="scroll">{escape(text)}</pre>'
+        '<section class="card"><details><summary>Study and versions</summary>'
+        f'<pre class="scroll" tabindex="0">{escape(text)}</pre>'
         f"{_table(('what', 'version'), rows)}</details></section>"
     )
 
@@ -226,4 +227,4 @@ def _table(heads: Iterable[str], rows: Iterable[tuple[str, ...]]) -> str:
     number: Callable[[str], str] = lambda text: ' class="number"' if text[:1] in "+-0123456789" else ""  # noqa: E731
     body = "".join("<tr>" + "".join(f"<td{number(cell)}>{cell}</td>" for cell in row) + "</tr>" for row in rows)
     head = "".join(f"<th>{text}</th>" for text in heads)
-    return f'<div class="scroll"><table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table></div>'
+    return f'<div class="scroll" tabindex="0"><table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table></div>'

@@ -71,7 +71,7 @@ def _case(number: int, lot: int) -> FoundCase:
     angle = draw.choice((0, 0, *ANGLES, 90))
     nose = draw.random() < (0.7 if angle < 75 else 0.3)
     street = draw.choice(STREETS)
-    steep = math.radians(15.0 if street > 8.0 else 5.0)
+    steep = math.radians((15.0 if angle else 8.0) if street > 8.0 else 5.0)
     neighbours = draw.choice(NEIGHBOURS if angle else NEIGHBOURS[:3])
     wider = draw.uniform(0.9, 1.8) if angle == 0 else draw.uniform(0.7, 1.4)
     return FoundCase(

@@ -23,6 +23,7 @@ from controller_fmu.planning.plan_store import PlanStore
 from controller_fmu.preview.driving import driving_outputs, driving_sample, driving_start
 from controller_fmu.preview.phases import PreviewPhase
 from controller_fmu.valet import chart as valet_chart
+from controller_fmu.valet.given import ValetInput
 from controller_fmu.valet.model import ValetModelState, valet_initialize, valet_step
 from controller_fmu.valet.params import ValetParams
 from controller_fmu.valet.signals import ValetOutput
@@ -31,7 +32,6 @@ from controller_fmu.zhang2022.phases import ZhangPhase
 from controller_fmu.zhang2022.system import zhang_sample, zhang_start
 from modelkit.model import Chart, Model, SampledSystem, SampledSystems, View
 from modelkit.terminals import TERMINALS
-from modelkit.variables import variables
 
 OF_PARKING = ("target", "vehicle_fault", "path", "shifts")
 """What every system has that parks at a given pose. The names are those that not all systems have."""
@@ -152,23 +152,13 @@ HSIC = MODEL.only(System.HSIC, "Controller_hsic", "Parking by human-simulated in
 PREVIEW = MODEL.only(System.PREVIEW, "Controller_preview", "Driving a road by dual-point preview and fuzzy control")
 APA = MODEL.only(System.APA, "Controller_apa", "Parking assist: slot search, planner, tracking, position tuning")
 ADAPTIVE = MODEL.only(System.ADAPTIVE, "Controller_adaptive", "Parking adapted to the driver: his speed, his stops")
-TO_VALET = (
-    "odometry",
-    "measured_speed",
-    "steering_wheel_angle",
-    "driver_takeover",
-    "vehicle_fault",
-    "ultrasonic",
-    "apa_switch",
-    "driver_confirm",
-)
 VALET = Model(
     name="Controller_valet",
     description="Valet: plans a way among the polygons of a map and drives it",
     package=sys.modules[__name__],
     state=ValetModelState,
     params=ValetParams,
-    inputs=ControllerInput,
+    inputs=ValetInput,
     outputs=ValetOutput,
     initialize=valet_initialize,
     step=valet_step,
@@ -176,12 +166,7 @@ VALET = Model(
     stop_time=5.0,
     terminals=TERMINALS,
     sampled=True,
-    view=View(
-        (("system", int(System.VALET)),),
-        frozenset(
-            {"system", *(item.name for item in variables(ControllerInput) if not item.name.startswith(TO_VALET))}
-        ),
-    ),
+    view=View((("system", int(System.VALET)),), frozenset({"system"})),
     store=PlanStore,
     charts=(VALET_CHART,),
 )

@@ -116,6 +116,8 @@ class Reason(IntEnum):
     """The search came to its end with slots that the car does not fit into."""
     SLOT_TOO_SHALLOW = 25
     """The search came to its end with slots that end before the car does."""
+    SLOT_CONTRADICTED = 26
+    """Something was heard where a slot from outside is said to be."""
 
 
 class ControllerInput(NamedTuple):

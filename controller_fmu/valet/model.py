@@ -3,9 +3,10 @@
 import math
 from typing import NamedTuple
 
-from controller_fmu.interface import ControllerInput, Reason
+from controller_fmu.interface import Reason
 from controller_fmu.planning.plan_store import PlanStore
 from controller_fmu.valet.chart import Step
+from controller_fmu.valet.given import ValetInput, of_the_car
 from controller_fmu.valet.outputs import valet_outputs
 from controller_fmu.valet.params import ValetParams
 from controller_fmu.valet.phases import ValetPhase
@@ -31,7 +32,7 @@ def valet_initialize(params: ValetParams) -> tuple[ValetModelState, ValetOutput]
 
 
 def valet_step(
-    store: PlanStore, state: ValetModelState, inputs: ControllerInput, params: ValetParams, dt_ns: int
+    store: PlanStore, state: ValetModelState, inputs: ValetInput, params: ValetParams, dt_ns: int
 ) -> tuple[ValetModelState, ValetOutput]:
     """Return (state, outputs) ``dt_ns`` later: the valet acts at the instants k * sample_time."""
     end_ns = state.time_ns + dt_ns
@@ -44,9 +45,10 @@ def valet_step(
     samples = 0
     if state.next_sample_ns < end_ns:
         samples = (end_ns - state.next_sample_ns + period_ns - 1) // period_ns
-    valet = state.valet
+    car = of_the_car(inputs)
+    valet = state.valet._replace(told=inputs.told)
     for _ in range(samples):
-        valet = valet_sample(store, valet, inputs, params, period_ns)
+        valet = valet_sample(store, valet, car, params, period_ns)
     return ValetModelState(end_ns, state.next_sample_ns + samples * period_ns, valet), valet_outputs(valet, params)
 
 

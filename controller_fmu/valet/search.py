@@ -8,7 +8,8 @@ from controller_fmu.planning.plan_store import PlanStore
 from controller_fmu.sensing.around import AroundGap, along_of, lay_around
 from controller_fmu.sensing.ear import SideEar, listen
 from controller_fmu.sensing.gap import Gap, GapLayout, Wanted, find_gap
-from controller_fmu.valet.params import SlotWish, ValetParams, WishedSide
+from controller_fmu.valet.given import ToldSlot, gap_told, told_reason
+from controller_fmu.valet.params import SlotKind, SlotWish, ValetParams, WishedSide
 from controller_fmu.valet.sight import sensor_at
 from modelkit.vocabulary import Pose
 
@@ -21,6 +22,8 @@ SLOWEST = 0.02
 """A car that moves slower [m/s] hears nothing new."""
 INSIDE = 0.3
 LEAST_DEPTH = 2.0
+PASSED = 0.5
+"""The sensor has passed a slot from outside by so much [m]."""
 STRAIGHT = 0.9
 """What is heard so far [m] from a slot's edges and front by a sensor that looks along it is what the slot ends at."""
 BEHIND = 0.6
@@ -42,6 +45,8 @@ class Search(NamedTuple):
     """For the driver to drive on, or to confirm."""
     refused: int = Reason.NONE
     """Why a slot was not taken."""
+    told: int = SlotKind.NONE
+    """How to stand in the slot, if it was told from outside."""
     lines: int = 0
     """Of the map around the slot."""
     pose: Pose = Pose()
@@ -71,6 +76,22 @@ def search(store: PlanStore, state: Search, inputs: ControllerInput, params: Val
     if new_left and (state.gap.layout == GapLayout.NONE or state.side == LEFT):
         state = _judged(store, state, LEFT, LEFT_SENSOR, inputs, params)
     return state
+
+
+def told_slot(store: PlanStore, state: Search, told: ToldSlot, inputs: ControllerInput, params: ValetParams) -> Search:
+    """Return the search with the slot that is told from outside, once it has been passed; or why it cannot be one."""
+    reason = told_reason(store, told, params)
+    if reason != Reason.NONE:
+        return state._replace(gap=Gap(), refused=reason)
+    gap = gap_told(told, params)
+    pose = inputs.odometry
+    c = math.cos(pose.heading)
+    s = math.sin(pose.heading)
+    ahead = max((gap.a.x - pose.x) * c + (gap.a.y - pose.y) * s, (gap.b.x - pose.x) * c + (gap.b.y - pose.y) * s)
+    left = (gap.b.y + gap.a.y - 2.0 * pose.y) * c - (gap.b.x + gap.a.x - 2.0 * pose.x) * s > 0.0
+    if ahead > params.car.ultrasonic.mounts[RIGHT_SENSOR].x - PASSED:
+        return state._replace(gap=Gap(), refused=Reason.NONE)
+    return state._replace(gap=gap, side=LEFT if left else RIGHT, told=told.kind, refused=Reason.NONE)
 
 
 def wanted(params: ValetParams) -> Wanted:

@@ -5,7 +5,7 @@ import math
 from controller_fmu.planning.task import PlannedCar as Body
 from controller_fmu.sensing.around import along_of
 from controller_fmu.sensing.gap import Gap, GapLayout
-from controller_fmu.valet.params import SlotKind, SlotWish, ValetParams
+from controller_fmu.valet.params import GivenSlot, SlotKind, SlotWish, ValetParams
 from modelkit.car import largest_curvature
 from modelkit.maths import PI
 from modelkit.vocabulary import Pose
@@ -25,9 +25,8 @@ def body_of(params: ValetParams) -> Body:
     return Body(0.5 * length - car.rear_overhang, 0.5 * length, 0.5 * car.width, curvature)
 
 
-def goal_of(params: ValetParams, now: Pose) -> Pose:
-    """Return the pose to park at, for a car that stands at ``now``."""
-    slot = params.slot
+def goal_of(params: ValetParams, slot: GivenSlot, now: Pose) -> Pose:
+    """Return the pose to park at, the target or in the middle of a slot, for a car that stands at ``now``."""
     if slot.kind == SlotKind.NONE:
         return params.target
     body = body_of(params)
@@ -43,8 +42,8 @@ def goal_of(params: ValetParams, now: Pose) -> Pose:
     return Pose(x - body.ahead * math.cos(heading), y - body.ahead * math.sin(heading), heading)
 
 
-def goal_in(gap: Gap, way: float, params: ValetParams) -> Pose:
-    """Return the pose to park at in a gap found on a way of the direction ``way`` [rad].
+def goal_in(gap: Gap, way: float, wish: int, params: ValetParams) -> Pose:
+    """Return the pose to park at in a gap found on a way of the direction ``way`` [rad], ``wish``: which end first.
 
     Flush with the neighbours, but where the gap ends at something as far from that as the parameters say.
     """
@@ -66,7 +65,7 @@ def goal_in(gap: Gap, way: float, params: ValetParams) -> Pose:
         t = front + body.half_width + shift
     else:
         t = front + body.half_length - stands_out(gap, params)
-        nose = search.wish == SlotWish.NOSE_IN or (search.wish == SlotWish.ANY and math.cos(gap.into - way) > LEADS_ON)
+        nose = wish == SlotWish.NOSE_IN or (wish == SlotWish.ANY and math.cos(gap.into - way) > LEADS_ON)
         heading = gap.into if nose else gap.into + PI
     x = gap.a.x + t * tx + 0.5 * gap.width * e.x
     y = gap.a.y + t * ty + 0.5 * gap.width * e.y

@@ -23,10 +23,11 @@ from controller_fmu.sensing.around import lay_end
 from controller_fmu.sensing.gap import DEEP, GapLayout
 from controller_fmu.sensing.heard_store import forget_side
 from controller_fmu.valet.chart import Guard, Step, step_transition
+from controller_fmu.valet.given import ToldSlot, as_parameter, is_usable_slot
 from controller_fmu.valet.nearby import Nearby, Rest, forget_nearby, hear_nearby, lay_nearby, narrowed
-from controller_fmu.valet.params import ValetParams
+from controller_fmu.valet.params import SlotKind, ValetParams
 from controller_fmu.valet.rolling import Ahead, ahead_of, aim_at, joint_of
-from controller_fmu.valet.search import Search, begin_search, reason_to_end, search, shallower, with_map
+from controller_fmu.valet.search import Search, begin_search, reason_to_end, search, shallower, told_slot, with_map
 from controller_fmu.valet.sight import SEEN_CORNERS, Sight, look, remembered, scene_of
 from controller_fmu.valet.slot import body_of, goal_in, goal_of, stands_out
 from controller_fmu.valet.watch import Watch, fault_of, reason_to_fail, watch
@@ -82,6 +83,8 @@ class ValetState(NamedTuple):
     wheel: float = 0.0
     """Steering-wheel angle asked for [rad]."""
     search: Search = Search()
+    told: ToldSlot = ToldSlot()
+    """The slot from outside, as it is told now."""
     nearby: Nearby = Nearby()
     """What is heard on the way into a slot that was found."""
     resumes: bool = False
@@ -119,13 +122,16 @@ def planned_on(store: PlanStore, state: ValetState, inputs: ControllerInput, par
     if abs(inputs.measured_speed) > params.threshold.standstill:
         return state._replace(searched=0)
     request = state.request
+    if not is_usable_slot(state.told):
+        return state._replace(reason=Reason.BAD_INPUT)
     if state.searched == 0:
         pose = inputs.odometry
-        goal = goal_of(params, pose)
+        goal = goal_of(params, as_parameter(state.told, params.slot), pose)
         if params.search.active:
             gap = state.search.gap
             beside = narrowed(store, state.nearby, gap, 2.0 * body_of(params).half_length)
-            goal = goal_in(beside, state.search.pose.heading, params)
+            wish = state.search.told if state.search.told != SlotKind.NONE else params.search.wish
+            goal = goal_in(beside, state.search.pose.heading, wish, params)
             if gap.depth < DEEP:
                 lay_end(store, gap, state.search.lines)
             lay_nearby(store, state.nearby, gap, state.search.lines + 1)
@@ -163,8 +169,13 @@ def sought_on(
     sought = state.search
     standing = abs(inputs.measured_speed) <= params.threshold.standstill
     reason = fault_of(inputs)
+    told = state.told.kind != SlotKind.NONE
+    if told and reason == Reason.NONE and state.step == Step.SEARCH:
+        reason = sought.refused
     if state.step == Step.SEARCH and reason == Reason.NONE:
         sought = search(store, sought, inputs, params, dt_ns)
+        if told:
+            sought = told_slot(store, sought, state.told, inputs, params)
         waits = standing and sought.gap.layout == GapLayout.NONE
         sought = sought._replace(waited_ns=sought.waited_ns + dt_ns if waits else 0)
         reason = reason_to_end(sought, params)
@@ -204,7 +215,7 @@ def _to_search(store: PlanStore, state: ValetState) -> ValetState:
     begun = begin_search(sought.clock_ns)
     if state.step == Step.SHOWN:
         begun = begun._replace(way=sought.way, refused=sought.refused)
-    return ValetState(step=state.step, reason=state.reason, search=begun)
+    return ValetState(step=state.step, reason=state.reason, search=begun, told=state.told)
 
 
 def _to_show(store: PlanStore, state: ValetState, inputs: ControllerInput, params: ValetParams) -> ValetState:
@@ -215,7 +226,7 @@ def _to_show(store: PlanStore, state: ValetState, inputs: ControllerInput, param
     sought = sought._replace(waited_ns=0)
     sought = sought._replace(pose=inputs.odometry) if state.resumes else sought
     forget_nearby(store)
-    return ValetState(step=state.step, search=sought)
+    return ValetState(step=state.step, search=sought, told=state.told)
 
 
 def _switched_off(state: ValetState, inputs: ControllerInput, params: ValetParams) -> ValetState:
@@ -225,7 +236,7 @@ def _switched_off(state: ValetState, inputs: ControllerInput, params: ValetParam
     if step == state.step:
         return state
     resumes = state.step != Step.PARKED and state.search.gap.layout != GapLayout.NONE
-    return ValetState(step=step, search=state.search, resumes=resumes)
+    return ValetState(step=step, search=state.search, told=state.told, resumes=resumes)
 
 
 def seen_on(store: PlanStore, state: ValetState, inputs: ControllerInput, params: ValetParams) -> ValetState:

@@ -20,8 +20,8 @@ NEEDED = {
     },
 }
 """Slave -> output that a verdict needs -> what is lost without it."""
-SPARE = "person."
-"""Inputs of this group need nothing to feed them: their start values mean that nobody is there."""
+SPARE = ("person.", "told.")
+"""Inputs of these groups need nothing to feed them: their start values mean that nobody is there, no slot is told."""
 Node = tuple[int, str]
 """A slave and an output of it."""
 

@@ -8,8 +8,9 @@ from c_model import CModel
 from shapely.geometry import LineString, Polygon
 
 from controller_fmu import MODEL, VALET
-from controller_fmu.interface import ControllerInput, Reason, System
+from controller_fmu.interface import Reason, System
 from controller_fmu.planning.task import Corner
+from controller_fmu.valet.given import ToldSlot, ValetInput
 from controller_fmu.valet.params import MAP_CORNERS, GivenSlot, SlotKind, ValetParams
 from controller_fmu.valet.phases import ValetPhase
 from controller_fmu.valet.sight import NUMBER, SEEN_CORNERS, Sight, expected, look, remembered, scene_of
@@ -37,7 +38,7 @@ HERE = Pose()
 
 def goal(kind, now=HERE, **more):
     slot = GivenSlot(kind=kind, ax=0.0, ay=0.0, bx=2.5, by=0.0, heading=-0.5 * math.pi, depth=5.0)
-    return goal_of(ValetParams(slot=slot._replace(**more)), now)
+    return goal_of(ValetParams(), slot._replace(**more), now)
 
 
 def test_the_goal_is_in_the_middle_of_the_slot_that_is_given():
@@ -104,7 +105,7 @@ def test_the_large_controller_refuses_what_only_the_valet_does():
 def test_parameters_without_sense_are_refused():
     params = ValetParams(sample_time=0.0)
     step = VALET.stepper(VALET.new_store())
-    _, outputs = step(VALET.initialize(params)[0], ControllerInput(), params, STEP_NS)
+    _, outputs = step(VALET.initialize(params)[0], ValetInput(), params, STEP_NS)
     assert (outputs.phase, outputs.reason, outputs.brake_request) == (ValetPhase.FAILED, Reason.BAD_PARAMETER, True)
 
 
@@ -113,14 +114,15 @@ def test_parameters_without_sense_are_refused():
     [
         ({"measured_speed": math.nan}, Reason.BAD_INPUT),
         ({"vehicle_fault": 1}, Reason.VEHICLE_FAULT),
+        ({"told": ToldSlot(SlotKind.TAIL_IN, ax=math.nan)}, Reason.BAD_INPUT),
     ],
 )
 def test_a_fault_ends_it_with_its_reason(changed, reason):
     params = with_map(BOX, target=Pose(0.0, 8.0, 0.0))
     step, (state, _) = VALET.stepper(VALET.new_store()), VALET.initialize(params)
-    state, outputs = step(state, ControllerInput(), params, STEP_NS)
+    state, outputs = step(state, ValetInput(), params, STEP_NS)
     assert (outputs.phase, outputs.valet.search) == (ValetPhase.STANDBY, Planning.PLANNING)
-    _, outputs = step(state, ControllerInput()._replace(**changed), params, STEP_NS)
+    _, outputs = step(state, ValetInput()._replace(**changed), params, STEP_NS)
     assert (outputs.phase, outputs.reason, outputs.brake_request) == (ValetPhase.FAILED, reason, True)
 
 

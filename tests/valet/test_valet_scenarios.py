@@ -20,7 +20,7 @@ from orchestrator.verdict.summary import summarize
 
 pytestmark = pytest.mark.skipif(not can_compile(), reason="FMUs without Python need a C compiler: pip install ziglang")
 TPCAP = pytest.mark.skipif(tpcap_folder() is None, reason="TPCAP's cases are not here")
-REASONS = {"valet-blocked": "blocked", "valet-no-way": "no_path"}
+REASONS = {"valet-blocked": "blocked", "valet-no-way": "no_path", "valet-told-wrong": "slot_contradicted"}
 CASE = "1.0,3.0,0.1,-1.2,-2.0,0.0,2,4,4,-9,-3,-3.5,-3,-3.5,-1,-9,-1,5,-3,9,-3,9,-1,5,-1"
 
 

@@ -1,0 +1,140 @@
+"""A slot from outside at run time: corners, kind and direction as inputs, and whether it can be, by what was heard."""
+
+import math
+from typing import Annotated, NamedTuple
+
+from controller_fmu.interface import ControllerInput, Reason
+from controller_fmu.planning.plan_store import HEARD, PlanStore
+from controller_fmu.sensing.around import along_of
+from controller_fmu.sensing.gap import DEEP, Gap, GapLayout
+from controller_fmu.valet.params import GivenSlot, SlotKind, ValetParams
+from controller_fmu.valet.slot import body_of
+from modelkit.maths import is_finite
+from modelkit.signal import Group, Signal
+from modelkit.vocabulary import Pose
+
+ROOM = 0.3
+"""A slot is wider, or along the road longer, than the car by this [m]."""
+WELL_IN = 0.25
+"""What is heard so far [m] inside a slot contradicts it."""
+AT_THE_ROAD = 0.15
+"""Slots begin so far [m] before their corners A and B."""
+ECHOES = 2
+DEEPER = 0.1
+"""Corners C and D tell a depth if they lie so far [m] behind A and B."""
+
+
+class ToldSlot(NamedTuple):
+    """A slot as somebody outside sees it: A and B where it opens to the road, C behind B, D behind A."""
+
+    kind: Annotated[int, Signal("1", "how to stand in it; none: no slot is told", states=SlotKind)] = SlotKind.NONE
+    ax: Annotated[float, Signal("m", "x of corner A, at the road")] = 0.0
+    ay: Annotated[float, Signal("m", "y of corner A")] = 0.0
+    bx: Annotated[float, Signal("m", "x of corner B, at the road")] = 0.0
+    by: Annotated[float, Signal("m", "y of corner B")] = 0.0
+    cx: Annotated[float, Signal("m", "x of corner C, behind B; where C and D are A and B the depth is not told")] = 0.0
+    cy: Annotated[float, Signal("m", "y of corner C")] = 0.0
+    dx: Annotated[float, Signal("m", "x of corner D, behind A")] = 0.0
+    dy: Annotated[float, Signal("m", "y of corner D")] = 0.0
+    heading: Annotated[float, Signal("rad", "direction from the road into the slot")] = 0.0
+
+
+class ValetInput(NamedTuple):
+    """From the vehicle, as every controller has it, and a slot from outside."""
+
+    odometry: Annotated[Pose, Group("rear-axle midpoint as the car believes it")] = Pose()
+    measured_speed: Annotated[float, Signal("m/s", "speed, reverse negative")] = 0.0
+    steering_wheel_angle: Annotated[float, Signal("rad", "steering-wheel angle, left positive")] = 0.0
+    driver_takeover: Annotated[bool, Signal("1", "the driver has taken over")] = False
+    vehicle_fault: Annotated[int, Signal("1", "why the vehicle brakes by itself; 0: it does not")] = 0
+    ultrasonic: tuple[
+        Annotated[float, Signal("m", "distance heard: 1-4 front, 5-8 rear, 9-10 left, 11-12 right")], ...
+    ] = (5.0,) * 12
+    apa_switch: Annotated[bool, Signal("1", "the driver has switched the parking assist on")] = False
+    driver_confirm: Annotated[bool, Signal("1", "the driver presses the confirm button")] = False
+    told: Annotated[ToldSlot, Group("a slot from outside: a camera, a map, a test bench")] = ToldSlot()
+
+
+def of_the_car(inputs: ValetInput) -> ControllerInput:
+    """Return what every controller is told."""
+    return ControllerInput(
+        odometry=inputs.odometry,
+        measured_speed=inputs.measured_speed,
+        steering_wheel_angle=inputs.steering_wheel_angle,
+        driver_takeover=inputs.driver_takeover,
+        vehicle_fault=inputs.vehicle_fault,
+        ultrasonic=inputs.ultrasonic,
+        apa_switch=inputs.apa_switch,
+        driver_confirm=inputs.driver_confirm,
+    )
+
+
+def depth_of(told: ToldSlot) -> float:
+    """Return how deep [m] a slot is, ``DEEP`` if that is not told."""
+    c = math.cos(told.heading)
+    s = math.sin(told.heading)
+    depth = 0.5 * ((told.dx - told.ax + told.cx - told.bx) * c + (told.dy - told.ay + told.cy - told.by) * s)
+    return depth if depth > DEEPER else DEEP
+
+
+def as_parameter(told: ToldSlot, slot: GivenSlot) -> GivenSlot:
+    """Return the slot that is told, or that of the parameters if none is; its depth too where that is not told."""
+    if told.kind == SlotKind.NONE:
+        return slot
+    depth = depth_of(told)
+    return GivenSlot(told.kind, told.ax, told.ay, told.bx, told.by, told.heading, depth if depth < DEEP else slot.depth)
+
+
+def gap_told(told: ToldSlot, params: ValetParams) -> Gap:
+    """Return the slot that is told as a gap; a car stands in its middle, or flush with A and B if it has no end."""
+    lengthwise = told.kind == SlotKind.PARALLEL
+    body = body_of(params)
+    needed = 2.0 * (body.half_width if lengthwise else body.half_length)
+    a = Pose(told.ax, told.ay, 0.0)
+    b = Pose(told.bx, told.by, 0.0)
+    made = Gap(GapLayout.ALONG if lengthwise else GapLayout.ACROSS, a, b, told.heading)
+    e = along_of(made)
+    dx = told.bx - told.ax
+    dy = told.by - told.ay
+    middle = 0.5 * (dx * math.cos(told.heading) + dy * math.sin(told.heading))
+    depth = depth_of(told)
+    back = 0.5 * (depth - needed) if needed < depth < DEEP and not lengthwise else 0.0
+    return made._replace(width=dx * e.x + dy * e.y, front=middle + back, depth=depth - back if depth < DEEP else DEEP)
+
+
+def is_usable_slot(told: ToldSlot) -> bool:
+    """Return whether no slot is told, or one whose numbers are finite."""
+    corners = told.ax + told.ay + told.bx + told.by + told.cx + told.cy + told.dx + told.dy
+    return told.kind == SlotKind.NONE or is_finite(corners + told.heading)
+
+
+def told_reason(store: PlanStore, told: ToldSlot, params: ValetParams) -> int:
+    """Return why a slot that is told cannot be one, ``NONE`` if it may be."""
+    if not is_usable_slot(told):
+        return Reason.BAD_INPUT
+    gap = gap_told(told, params)
+    body = body_of(params)
+    lengthwise = gap.layout == GapLayout.ALONG
+    across = 2.0 * (body.half_length if lengthwise else body.half_width)
+    if gap.width < across + ROOM:
+        return Reason.SLOT_TOO_SHORT
+    deep = 2.0 * (body.half_width if lengthwise else body.half_length)
+    least = deep if lengthwise else deep + params.search.behind - params.search.stand_out
+    if depth_of(told) < least:
+        return Reason.SLOT_TOO_SHALLOW
+    count = 0
+    for place in range(2 * HEARD):
+        if store.heard_count[place] > 0 and _is_well_in(store, place, gap, deep):
+            count = count + store.heard_count[place]
+    return Reason.SLOT_CONTRADICTED if count >= ECHOES else Reason.NONE
+
+
+def _is_well_in(store: PlanStore, place: int, gap: Gap, deep: float) -> bool:
+    """Return whether a place lies where a car would stand in a gap."""
+    e = along_of(gap)
+    x = store.heard_x[place] - gap.a.x
+    y = store.heard_y[place] - gap.a.y
+    across = x * e.x + y * e.y
+    t = x * math.cos(gap.into) + y * math.sin(gap.into)
+    end = gap.front + min(deep, gap.depth)
+    return WELL_IN < across < gap.width - WELL_IN and -AT_THE_ROAD < t < end - WELL_IN

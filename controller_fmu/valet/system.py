@@ -169,42 +169,44 @@ def sought_on(
     sought = state.search
     standing = abs(inputs.measured_speed) <= params.threshold.standstill
     reason = fault_of(inputs)
-    told = state.told.kind != SlotKind.NONE
-    if told and reason == Reason.NONE and state.step == Step.SEARCH:
-        reason = sought.refused
     if state.step == Step.SEARCH and reason == Reason.NONE:
+        told = state.told.kind != SlotKind.NONE
+        reason = sought.refused if told else reason
         sought = search(store, sought, inputs, params, dt_ns)
-        if told:
+        if told and reason == Reason.NONE:
             sought = told_slot(store, sought, state.told, inputs, params)
         waits = standing and sought.gap.layout == GapLayout.NONE
         sought = sought._replace(waited_ns=sought.waited_ns + dt_ns if waits else 0)
-        reason = reason_to_end(sought, params)
+        reason = reason if reason != Reason.NONE else reason_to_end(sought, params)
     if state.step == Step.SHOWN and reason == Reason.NONE:
         state = planned_on(store, state, inputs, params)
         sought = sought._replace(waited_ns=sought.waited_ns + dt_ns if state.path.used > 0 else 0)
         reason = Reason.TIMEOUT if sought.waited_ns * 1e-9 > params.search.confirm else Reason.NONE
-    refused = state.step == Step.SHOWN and state.reason != Reason.NONE
-    if refused:
+    if state.step == Step.SHOWN and state.reason != Reason.NONE:
         sought = sought._replace(refused=state.reason)
-    dx = inputs.odometry.x - sought.pose.x
-    dy = inputs.odometry.y - sought.pose.y
-    guards = (
-        bit(Guard.SWITCHED_ON, inputs.apa_switch)
-        | bit(Guard.RESUMED, inputs.apa_switch and state.resumes and standing)
-        | bit(Guard.SWITCHED_OFF, not inputs.apa_switch)
-        | bit(Guard.FAULT, reason != Reason.NONE)
-        | bit(Guard.FOUND, standing and sought.gap.layout != GapLayout.NONE)
-        | bit(Guard.REFUSED, refused)
-        | bit(Guard.DRIVEN_ON, dx * dx + dy * dy > DRIVEN_ON * DRIVEN_ON)
-        | bit(Guard.CONFIRMED, inputs.driver_confirm and standing and state.path.used > 0)
-    )
-    step = step_transition(state.step, guards)
+    step = step_transition(state.step, _sought_guards(state, sought, reason, inputs, standing))
     state = state._replace(search=sought, reason=reason)
     if step == Step.SEARCH and state.step != Step.SEARCH:
         state = _to_search(store, state)
     if step == Step.SHOWN and state.step != Step.SHOWN:
         state = _to_show(store, state, inputs, params)
     return moved_on(state, step, inputs, params)
+
+
+def _sought_guards(state: ValetState, sought: Search, reason: int, inputs: ControllerInput, standing: bool) -> int:
+    """Return the bits of the conditions that hold while a slot is looked for, or shown."""
+    dx = inputs.odometry.x - sought.pose.x
+    dy = inputs.odometry.y - sought.pose.y
+    return (
+        bit(Guard.SWITCHED_ON, inputs.apa_switch)
+        | bit(Guard.RESUMED, inputs.apa_switch and state.resumes and standing)
+        | bit(Guard.SWITCHED_OFF, not inputs.apa_switch)
+        | bit(Guard.FAULT, reason != Reason.NONE)
+        | bit(Guard.FOUND, standing and sought.gap.layout != GapLayout.NONE)
+        | bit(Guard.REFUSED, state.step == Step.SHOWN and state.reason != Reason.NONE)
+        | bit(Guard.DRIVEN_ON, dx * dx + dy * dy > DRIVEN_ON * DRIVEN_ON)
+        | bit(Guard.CONFIRMED, inputs.driver_confirm and standing and state.path.used > 0)
+    )
 
 
 def _to_search(store: PlanStore, state: ValetState) -> ValetState:

@@ -95,6 +95,44 @@ def alike(found, asked, where, within):
         assert found == asked, where
 
 
+TO_TRY = [
+    ("guo2015-case1-105", {"controller.guo2015.k1": 0.3}, "not_parked", 1),
+    ("guo2015-case1-105", {"controller.guo2015.k2": 0.3}, "not_parked", 1),
+    ("guo2015-case1-105", {"vehicle.driver.profile[1].speed": 1.0}, "not_parked", 1),
+    ("guo2015-case1-105", {"vehicle.driver.profile[1].speed": 1.0, "car.steering.rate_limit": 45.0}, "parked", 1),
+    ("apa-parallel", {"vehicle.scene.boxes[2].x": 8.0}, "parked", 3),
+    ("apa-parallel", {"vehicle.scene.boxes[2].x": 7.4}, "not_parked", 3),
+    ("apa-parallel", {"vehicle.scene.boxes[2].x": 2.8}, "failed", 0),
+    ("apa-parallel", {"vehicle.ultrasonic.noise": 0.02}, "parked", 1),
+    ("apa-parallel", {"vehicle.ultrasonic.noise": 0.1}, "failed", 3),
+    ("hsic", {"vehicle.start.y": 5.0}, "parked", 1),
+    ("hsic", {"vehicle.start.y": 5.5}, "not_parked", 1),
+    ("hsic", {"vehicle.steering.lag": 0.4}, "parked", 1),
+    ("hsic", {"vehicle.steering.lag": 0.8}, "failed", 0),
+    ("preview", {"controller.preview.set_speed": 11.0}, "finished", 0),
+    ("preview", {"controller.preview.set_speed": 12.0}, "not_finished", 0),
+    ("preview", {"controller.preview.set_speed": 20.0}, "failed", 0),
+    ("zhang2022", {"vehicle.start.x": 8.0}, "failed", 1),
+    ("zhang2022", {"vehicle.steering.lag": 0.1}, "parked", 1),
+    ("zhang2022", {"vehicle.steering.lag": 0.2}, "not_parked", 1),
+    ("adaptive", {"vehicle.driver.reaction_delay": 0.6}, "parked", 3),
+    ("adaptive", {"vehicle.driver.reaction_delay": 1.2}, "parked", 3),
+    ("adaptive", {"vehicle.driver.profile[1].speed": 2.25}, "parked", 7),
+]
+"""What the pages of the laws say to try."""
+TRIED = """(all) => all.map(([name, changes]) => {
+  const { lab } = window.live;
+  lab.load(name, changes);
+  const { outcome, numbers } = lab.ghost();
+  return [outcome, numbers.shifts];
+})"""
+
+
+def test_what_the_laws_pages_say_to_try_comes_out_so(page):
+    found = page.evaluate(TRIED, [item[:2] for item in TO_TRY])
+    assert [tuple(item) for item in found] == [item[2:] for item in TO_TRY]
+
+
 def test_keys_drive_to_parked(page):
     page.select_option("#scenario", "guo2015-case4-105")
     found = drive(page, obeys)

@@ -27,6 +27,9 @@ from orchestrator.text.errors import BadInput
 
 def begin(study: Study, arguments: argparse.Namespace, out: Path) -> Subject:
     """Return what is hunted. Raises ``BadInput``, also for runs of another hunt that are in the way."""
+    if study.scenario.system is not None:
+        text = "a hunt runs our models, or with --controller one FMU in the place of ours; leave out"
+        raise BadInput(text, file=study.scenario.file, key="system")
     if arguments.controller is not None:
         study = study._replace(goals=())
     goal, space = goal_of(study, arguments.requirement), space_of(study)

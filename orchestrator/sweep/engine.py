@@ -1,9 +1,10 @@
 """What an engine of studies is, and what all engines share."""
 
 import os
+import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from typing import NamedTuple, Protocol
+from typing import Any, NamedTuple, Protocol
 
 from orchestrator.cosim.master import Interrupt
 from orchestrator.cosim.slave import Array
@@ -45,12 +46,16 @@ class ChunkTask(NamedTuple):
 
 @contextmanager
 def safe_children() -> Iterator[None]:
-    """Let no process that is begun import a module of the current folder."""
+    """Let no process that is begun import a module of the current folder, nor run the script that has called us."""
     before = os.environ.get("PYTHONSAFEPATH")
     os.environ["PYTHONSAFEPATH"] = "1"
+    script: dict[str, Any] = vars(sys.modules["__main__"])
+    hidden: dict[str, Any] = {name: script.pop(name) for name in ("__file__", "__spec__") if name in script}
+    script["__spec__"] = None
     try:
         yield
     finally:
+        script.update(hidden)
         if before is None:
             os.environ.pop("PYTHONSAFEPATH", None)
         else:

@@ -12,6 +12,7 @@ from orchestrator.scenario.requirements import Requirement
 from orchestrator.scenario.scenario import Outcome, Scenario
 from orchestrator.sweep.job import Job
 from orchestrator.sweep.rows import ABORTED, FIRST_MEASURE, last_words, recorded_limits, values_of
+from orchestrator.sweep.study.theirs import declared
 from orchestrator.verdict.conditions import CONDITIONS, share
 from orchestrator.verdict.measures import Measure
 from orchestrator.verdict.numbers import NUMBERS, SPEED, Number, numbers
@@ -66,7 +67,8 @@ def judge_rows(scenario: Scenario, truth: Truth, measures: Sequence[Measure], ro
             shares = np.maximum(shares, np.where(is_asked, share(limit.condition, values, bound), 0.0))
     mode, reason = (found[item] for item in last_words(scenario))
     broken = ["error" if end == ABORTED else "" for end in rows[:, 0].tolist()]
-    judged = outcomes(scenario, Ends(broken, mode, reason, found[SPEED]), asked)
+    named = declared(scenario, scenario.ending.signal, scenario.ending.reason)
+    judged = outcomes(scenario, Ends(broken, mode, reason, found[SPEED]), asked, *named)
     codes = np.array([OUTCOMES.index(outcome) for outcome, _ in judged], dtype=np.int8)
     return Verdict(codes, [why for _, why in judged], {**results, "limit_share": shares})
 

@@ -9,7 +9,9 @@ import pytest
 
 from apa_cosim import load_scenario, read_table, run
 from orchestrator.cli import main
-from orchestrator.sweep.job import make_job
+from orchestrator.sweep.batch import run_recorded
+from orchestrator.sweep.columns import filled
+from orchestrator.sweep.job import Chunk, make_job
 from orchestrator.sweep.study.read_study import read_study
 from orchestrator.sweep.table import Table
 from orchestrator.text.errors import BadInput
@@ -53,6 +55,29 @@ def test_a_study_varies_and_keeps_what_is_theirs(
     assert again == 1  # not parked yet
     assert "same bits as in the table" in capsys.readouterr().out
     assert np.array_equal(table.replay(0)["vehicle.pose.x"][-1], x[0])
+
+
+def test_modes_of_their_own_decide_in_a_table_too(desk: Path) -> None:
+    text = (desk / "their.yaml").read_text(encoding="utf-8")
+    own = (
+        text[: text.index("    mode:")]
+        + "    mode: {from: controller.State, states: {idle: 1, first: 2, next: 3, there: 4}}\n"
+    )
+    (desk / "own.yaml").write_text(f"{own}ending: {{done: [there], failed: [next]}}\n", encoding="utf-8")
+    (desk / "own-study.yaml").write_text(STUDY.replace("their.yaml", "own.yaml"), encoding="utf-8")
+    study = read_study(str(desk / "own-study.yaml"), {"stop_time": "3"})
+    job = make_job(study)
+    chunk = Chunk(0, 0, study.design.values[:1], study.design.seeds[:1])
+    columns = filled(study, job, chunk, run_recorded(job, chunk, "none", None))
+    assert (columns["outcome"][0], columns["reason"][0]) == ("not_parked", "stop time reached in first")
+
+
+def test_a_hunt_says_that_it_takes_no_system(
+    desk: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(desk)
+    assert main(["hunt", "study.yaml", "--budget", "50", "--out", str(tmp_path)]) == 2
+    assert "system: a hunt runs our models" in capsys.readouterr().err
 
 
 def test_names_that_theirs_has_not_are_answered(desk: Path, monkeypatch: pytest.MonkeyPatch) -> None:

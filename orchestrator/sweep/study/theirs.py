@@ -9,6 +9,8 @@ from orchestrator.cosim.description import ports_of, read_description
 from orchestrator.scenario.models import MODELS
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.session.foreign import Files, Foreign, parameters_of, sha256_of
+from orchestrator.session.session import Messages, make_slaves
+from orchestrator.system.assemble import assemble
 
 
 def files_of(scenario: Scenario) -> Files:
@@ -31,6 +33,26 @@ def signals_of(scenario: Scenario) -> dict[str, Signal]:
         for item in variables(cls)
     }
     return {**ours, **{name: item for slave, path in files_of(scenario).items() for name, item in _told(slave, path)}}
+
+
+def declared(scenario: Scenario, *signals: str) -> list[Variable | None]:
+    """Return signals as the system of ``scenario`` has them, states that an FMU or a role names included.
+
+    None for one that it has not, and for all of a scenario without a system, whose models have them.
+    """
+    if scenario.system is None:
+        return [None for _ in signals]
+    slaves = make_slaves(scenario, None, Messages())
+    try:
+        ports = {slave.name: (slave.outputs, slave.inputs) for slave in assemble(scenario, slaves).slaves}
+    finally:
+        for slave in slaves:
+            slave.close()
+    names = [(ports.get(signal.partition(".")[0], ()), signal.partition(".")[2]) for signal in signals]
+    return [
+        next((part.variables[part.index[name]] for part in of_slave if name in part.index), None)
+        for of_slave, name in names
+    ]
 
 
 def hashes_of(scenario: Scenario) -> dict[str, str]:

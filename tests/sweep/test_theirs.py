@@ -42,7 +42,7 @@ def test_a_study_varies_and_keeps_what_is_theirs(
     desk: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(desk)
-    words = ["sweep", "study.yaml", "--fmus", "none", "--workers", "2", "--out", str(tmp_path), "--replays", "0"]
+    words = ["sweep", "study.yaml", "--fmus", "none", "--workers", "1", "--out", str(tmp_path), "--replays", "0"]
     assert main([*words, "--no-page"]) == 0
     table = read_table(tmp_path / "study.parquet")
     assert table["controller.TurnTime"].tolist() == [1.5, 1.5, 2.0, 2.0]

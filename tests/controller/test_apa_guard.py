@@ -2,6 +2,7 @@
 
 import math
 
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -10,10 +11,13 @@ from controller_fmu.apa.around.course import HeldCourse
 from controller_fmu.apa.around.guard import GuardState, learn_brake, listen, stopping_way, watch_way
 from controller_fmu.apa.around.local_map import LocalMap
 from controller_fmu.apa.around.surroundings import shape_of
+from controller_fmu.apa.chart import Mode
+from controller_fmu.apa.manoeuvre_chart import Step
 from controller_fmu.apa.outline import Box, Obstacles, box_clearance
 from controller_fmu.apa.slot import Kind
+from controller_fmu.apa.system import apa_sample, apa_start
 from controller_fmu.common.curve import advance
-from controller_fmu.interface import ControllerParams
+from controller_fmu.interface import ControllerInput, ControllerParams
 from modelkit.car import CarUltrasonic
 from modelkit.geometry import FAR, Point, cone_line
 from modelkit.vocabulary import Pose
@@ -34,6 +38,14 @@ places = st.floats(-4.0, 7.0)
 speeds = st.floats(0.05, 1.2)
 curvatures = st.floats(-0.24, 0.24)
 directions = st.sampled_from([-1, 1])
+BRAKING = (
+    (Mode.AUTO_PARKING_ASSIST, Step.HALT, True),
+    (Mode.AUTO_PARKING_ASSIST, Step.SET_WHEEL, True),
+    (Mode.POSITION_TUNING, Step.HALT, True),
+    (Mode.AUTO_PARKING_ASSIST, Step.DRIVE, False),
+    (Mode.PARKING_SPACE_APPEARS, Step.PLAN, False),
+)
+"""Mode, step of the manoeuvre, whether it brakes."""
 
 
 def sees(state, readings, around, direction, speed, curvature):
@@ -112,6 +124,14 @@ def test_a_late_brake_is_learnt_and_counted_with() -> None:
     assert stopping_way(state, 0.8, PARAMS) > stopping_way(GuardState(), 0.8, PARAMS)
     again = learn_brake(state, 0.8, False, 10_000_000, PARAMS)
     assert again.delay == state.delay
+
+
+@pytest.mark.parametrize(("mode", "step", "learns"), BRAKING)
+def test_the_brake_is_learnt_while_the_assist_brakes_and_at_no_other_time(mode: int, step: int, learns: bool) -> None:
+    inputs = ControllerInput(apa_switch=True, measured_speed=-0.6, ultrasonic=NOTHING_HEARD)
+    state = apa_start(PARAMS)
+    state = state._replace(mode=mode, parking=state.parking._replace(step=step))
+    assert (apa_sample(state, inputs, PARAMS, 10_000_000).around.guard.braked_from > 0.0) == learns
 
 
 @settings(max_examples=300, deadline=None)

@@ -7,6 +7,7 @@ import pytest
 
 from controller_fmu.apa.hearing.edge import NO_SAMPLES, Heard, append, corner
 from controller_fmu.apa.hearing.line_fit import FittedLine, Sums, add, offset, slope
+from controller_fmu.apa.hearing.search_side import _with_sample
 from tests.controller.apa_bench import CAR, box, car_settings, drive
 
 HALF = math.radians(30.0)
@@ -33,6 +34,18 @@ def test_a_corner_is_where_its_echoes_come_from(sense: float, tilt: float) -> No
         u = place - sense * (0.2 + 0.08 * n)
         samples = append(samples, Heard(u, 0.0, math.hypot(u - place, 1.0 - tilt * place)), n)
     assert corner(samples, line, sense, HALF) == pytest.approx(place, abs=1e-9)
+
+
+@pytest.mark.parametrize(("off", "belongs"), [(0.0, True), (0.05, True), (0.06, False), (-0.05, True), (-0.06, False)])
+def test_how_far_off_a_new_side_a_sample_may_lie_follows_from_how_sure_its_slope_is(off: float, belongs: bool) -> None:
+    known, begun = Sums(), add(Sums(), 10.0, 0.0, 1.0)
+    for n in range(10):
+        known = add(known, 0.1 * n, 0.0, 1.0)
+    after = _with_sample(begun, known, Heard(10.2, 0.0, 1.0 + off), 2)
+    assert after.n == (2.0 if belongs else 1.0)
+    assert belongs or after.r == (1.0 if off > 0.0 else 1.0 + off), (
+        "a nearer one shows that the one before was a corner's"
+    )
 
 
 def scene(kind: str, length: float, side: int, speed: float, **more: Any) -> tuple[dict[str, Any], dict[str, Any]]:

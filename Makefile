@@ -17,7 +17,7 @@ test: $(VENV)/.test ## Install and pass the tests
 	@echo "About a quarter of an hour on two cores"
 	$(BIN)/python -m pytest -n auto --dist loadfile -q
 
-quick: lint types ## Lint, types and the tests that take two minutes together
+quick: lint types ## Lint, types and the tests that take a minute together
 	$(BIN)/python -m pytest -n auto --dist loadfile -q -m 'not slow'
 
 FUZZ_SECONDS ?= 600

@@ -38,7 +38,7 @@ def test_controllers(bench):
     points = source.uniform(-3.0, 3.0, (50, 2))
     ours = [module.infer(a, b, *module.FUZZY) for a, b in points.tolist()]
     assert library.bench_infer(points.ctypes.data, len(points)) == sum(ours) != 0.0
-    e, psi, d, stages, weights = module.random_problem(source)
+    now, stages, weights = module.random_problem(source)
     flat = [np.array(flatten(item)) for item in (stages, weights)]
-    found = library.bench_solve(1, e, psi, d, *(item.ctypes.data for item in flat))
-    assert found == module.solve(e, psi, d, stages, weights, 1e-10, 40).nodes[0].u
+    found = library.bench_solve(1, *now, *(item.ctypes.data for item in flat))
+    assert found == module.solve(now, stages, weights, 1e-10, 40).nodes[0].u

@@ -100,7 +100,7 @@ SLOW = [
     "vehicle/test_tires.py",
     "vehicle/test_vehicle.py",
 ]
-"""Files of tests that take over three seconds of the processor; ``make quick`` leaves them out, and what is marked slow."""
+"""Files of tests that take over 3 s of the processor; ``make quick`` leaves them out, and what is marked slow."""
 FLAGS = [
     "--headless",
     "--no-sandbox",

@@ -4,8 +4,9 @@ import argparse
 from pathlib import Path
 
 from orchestrator.live.page import NAME, write_live
-from orchestrator.live.situation import shipped
+from orchestrator.live.situation import shipped, why_not
 from orchestrator.scenario.load_scenario import load_scenario
+from orchestrator.scenario.scenario import Scenario
 from orchestrator.suite.suite import chosen
 from orchestrator.text.console import say
 from orchestrator.text.errors import BAD_INPUT, PARKED, BadInput
@@ -34,7 +35,9 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.set and not arguments.scenario:
         raise BadInput("needs a scenario to change: apa live SCENARIO --set ...", key="--set")
     names = chosen(arguments.scenario)
-    scenarios = [load_scenario(name, arguments.set) for name in names] if names else shipped()
+    scenarios = [scenario for name in names if (scenario := _fitting(name, arguments))] if names else shipped()
+    if not scenarios:
+        raise BadInput("nothing of this can be driven on a page", key=" ".join(arguments.scenario))
     try:
         write_live(arguments.out, scenarios)
     except RuntimeError as error:
@@ -42,3 +45,13 @@ def run(arguments: argparse.Namespace) -> int:
         return BAD_INPUT
     print(arguments.out)
     return PARKED
+
+
+def _fitting(name: str, arguments: argparse.Namespace) -> Scenario | None:
+    """Return a scenario; None, which is said, for one that only a pattern means and that no page can run."""
+    scenario = load_scenario(name, arguments.set)
+    why = why_not(scenario)
+    if not why or name in arguments.scenario:
+        return scenario
+    say(f"apa: {name} is left out: {why}")
+    return None

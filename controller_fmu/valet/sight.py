@@ -26,6 +26,8 @@ SENSORS = 12
 SIDE_SENSOR = 8
 CLOSE = 0.18
 """Straight ahead, nothing is let come nearer than this [m] in a slot that was found, known or not."""
+BOTH = 0.25
+"""What a slot ends at is heard by both sensors that look straight ahead, as far off but for this [m]."""
 AGAIN = 0.1
 """A standing car sets out again when there is so much more room [m]."""
 SEEN_CORNERS = CORNERS - MAP_CORNERS
@@ -69,7 +71,8 @@ def look(
             nearer = heeded and reading < expected(at, scene, params) - surprise
             if nearer or (ahead and reading < CLOSE):
                 nearest = reading
-                straight = ahead
+                beside = readings[2 * first + 3 - number] if ahead else reading
+                straight = ahead and abs(beside - reading) < BOTH
                 c = math.cos(at.heading)
                 s = math.sin(at.heading)
                 echo = Pose(at.x + reading * c, at.y + reading * s, at.heading)

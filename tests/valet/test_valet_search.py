@@ -7,8 +7,12 @@ import pytest
 from shapely.geometry import LineString, Point
 
 from controller_fmu.planning.plan_store import HEARD, PlanStore
+from controller_fmu.planning.task import Scene
 from controller_fmu.sensing.ear import SideEar, listen
 from controller_fmu.sensing.gap import Gap, GapLayout, Wanted, find_gap
+from controller_fmu.sensing.heard_store import put_heard
+from controller_fmu.valet.params import ValetParams, ValetSearchParams
+from controller_fmu.valet.sight import look
 from modelkit.car import Car
 from modelkit.store import new_store
 from modelkit.vocabulary import Pose
@@ -50,7 +54,8 @@ def passed(boxes, side, noise, heading=0.0):
         reading = heard_distances(pose, scene, CAR.ultrasonic, 0.08, 0)[number]
         reading = 5.0 if reading >= 5.0 or draw.random() < 0.01 * (noise > 0.0) else reading + draw.gauss(0.0, noise)
         ear = listen(store, ear, which, at, reading, CAR.ultrasonic)
-        gap = find_gap(store, which, ear.places, at._replace(heading=pose.heading), WANTED)
+        if at.x > 0.0 and step % 10 == 0:
+            gap = find_gap(store, which, ear.places, at._replace(heading=pose.heading), WANTED)
         if gap.layout != GapLayout.NONE and at.x > 4.0:
             break
     return store, ear, gap
@@ -84,6 +89,26 @@ def test_a_gap_is_found_at_any_angle_on_either_side(angle, wide, side):
 def test_cars_without_a_gap_between_them_are_none():
     boxes = row(90, 1, gap=0.8)
     assert passed(boxes, 1, 0.01)[2].layout == GapLayout.NONE
+
+
+def test_a_place_heard_once_between_the_neighbours_is_no_end_of_a_gap():
+    store, ear, gap = passed(row(90, 1, wide := 2.6), 1, 0.0)
+    assert gap.width == pytest.approx(wide, abs=0.1)
+    places = put_heard(store, 0, ear.places, 0.0, -1.0, True)
+    at = Pose(7.0, 2.0 - 0.825, 0.0)
+    assert find_gap(store, 0, places, at, WANTED).width == pytest.approx(gap.width, abs=0.05)
+    store.heard_count[places - 1] = 2
+    assert find_gap(store, 0, places, at, WANTED).layout == GapLayout.NONE
+
+
+def test_the_end_of_a_slot_is_heard_by_both_sensors_that_look_straight_at_it():
+    params = ValetParams()._replace(search=ValetSearchParams()._replace(active=True))
+    silent = (5.0,) * 12
+    for first, direction in ((0, 1.0), (4, -1.0)):
+        one = silent[: first + 1] + (0.4,) + silent[first + 2 :]
+        both = silent[: first + 1] + (0.4, 0.5) + silent[first + 3 :]
+        heard = [look(readings, Pose(), direction, 0.3, Scene(), params) for readings in (one, both)]
+        assert [(sight.blocked, sight.ahead) for sight in heard] == [(True, False), (True, True)]
 
 
 @pytest.mark.skipif(not can_compile(), reason="FMUs without Python need a C compiler: pip install ziglang")

@@ -30,6 +30,9 @@ SURE_PARALLEL = 3.5
 """So far [m] from its corner a neighbour's side goes on for sure."""
 MUCH = 0.4
 """A reading that is further off [m] is of something else."""
+RIM_LEARNT = 0.6
+RIM_OFF = 0.06
+"""Echoes of a cone's rim are learnt from up to so far [m], where they are nearer than expected by so much [m]."""
 DOUBT = 0.002
 """One that is off by less, but by more than it may, makes a thing less sure by this [m]."""
 SHARED = 0.8
@@ -213,9 +216,9 @@ def heard(here: LocalMap, readings: tuple[float, ...], sensors: CarUltrasonic, p
     for place in range(12):
         number = place if here.frame.mirror > 0.0 else OTHER_SIDE[place]
         reading = readings[number]
-        if lowest < reading < params.heard:
+        if reading < params.heard:
             ear = ear_at(sensors.mounts[number], here.pose, here.frame.mirror, sensors.half_angle)
-            here = _told(here, ear, expected(ear, here), reading, params)
+            here = _told(here, ear, expected(ear, here), Told(reading, reading > lowest), params)
     return here
 
 
@@ -224,11 +227,25 @@ def _from_corner(thing: Thing, echo: Echo) -> float:
     return abs((echo.x - thing.x) * math.cos(thing.heading) + (echo.y - thing.y) * math.sin(thing.heading))
 
 
-def _told(here: LocalMap, ear: ConeEar, what: MapEcho, reading: float, params: MapParams) -> LocalMap:
-    """Return the map after one reading; unchanged if it may be of something else, or of the rim of the cone."""
+class Told(NamedTuple):
+    """One reading [m], and whether it is a distance: the nearest that can be told says no more than nearer."""
+
+    reading: float
+    exact: bool
+
+
+def _told(here: LocalMap, ear: ConeEar, what: MapEcho, told: Told, params: MapParams) -> LocalMap:
+    """Return the map after one reading; unchanged if it may be of something else, or of the rim of the cone.
+
+    A reading of the rim, or of the nearest that can be told, is learnt from if it is plainly nearer than expected:
+    then the thing is nearer, wherever in the cone.
+    """
+    reading = told.reading
     if what.who == ACROSS or what.other - what.echo.distance < APART or what.echo.distance < 0.05:
         return here
-    if what.echo.hit != Hit.SQUARE and what.echo.hit != Hit.START:
+    plain = told.exact and (what.echo.hit == Hit.SQUARE or what.echo.hit == Hit.START)
+    nearer = reading < RIM_LEARNT and what.echo.distance - reading > RIM_OFF + 0.1 * reading
+    if not plain and not nearer:
         return here
     thing = here.a if what.who == A else here.b if what.who == B else here.wall
     if what.who != WALL and _from_corner(thing, what.echo) > (SURE_PARALLEL if here.kind == Kind.PARALLEL else SURE):

@@ -16,7 +16,8 @@ from modelkit.vocabulary import Pose
 
 NEAR = 0.9
 """Echoes from farther away [m] are not looked at."""
-CLOSE = 0.03
+CLOSE = 0.1
+"""Nearer than this [m] is close: what is heard may go on beside the cone."""
 NEARER = 0.004
 WAYS = (0.1, 0.2, 0.3, 0.45, 0.6)
 SHARES = (-1.0, -0.5, 0.0, 0.5, 1.0)

@@ -36,7 +36,10 @@ RIM_OFF = 0.06
 DOUBT = 0.002
 """One that is off by less, but by more than it may, makes a thing less sure by this [m]."""
 SHARED = 0.8
-"""Of what a wall is heard nearer than thought, this share is drift of the odometry, the same for the neighbours."""
+SHARED_AT_FIRST = 0.15
+KNOWN = 0.03
+"""Of what a wall is heard nearer than thought, this share is drift of the odometry, the same for the neighbours: most
+once its place was known to so much [m]; at first it is the search that was wrong, past neighbours who stand askew."""
 OTHER_SIDE = (3, 2, 1, 0, 7, 6, 5, 4, 10, 11, 8, 9)
 """The sensor on the other side of the car, of each: a slot on the left is heard in the mirrored order."""
 LONG = 30.0
@@ -264,5 +267,6 @@ def _told(here: LocalMap, ear: ConeEar, what: MapEcho, told: Told, params: MapPa
         return here._replace(a=thing)
     if what.who == B:
         return here._replace(b=thing)
-    off = SHARED * (thing.y - here.wall.y)
+    share = SHARED if here.wall.yy < KNOWN * KNOWN else SHARED_AT_FIRST
+    off = share * (thing.y - here.wall.y)
     return here._replace(wall=thing, a=here.a._replace(y=here.a.y + off), b=here.b._replace(y=here.b.y + off))

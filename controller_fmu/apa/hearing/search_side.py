@@ -31,7 +31,9 @@ NEXT_WALL = 3
 BIN = 0.16
 FLAT = 0.16
 STEP = 0.016
-"""Steeper than ``FLAT`` [m/m], ``STEP`` [m] for noise, the distance does not belong to a flat side along the road."""
+SINGLE = 0.04
+"""Steeper than ``FLAT`` [m/m], ``STEP`` [m] for noise (``SINGLE`` for that of single readings), the distance does not
+belong to a flat side along the road."""
 BAND = 0.02
 SPREAD = 0.03
 """Further than this [m], and what the noise of the readings makes the line unsure by, is off the line."""
@@ -73,6 +75,8 @@ class SideState(NamedTuple):
     """Last full bin."""
     spacing: float = 0.0
     """Way [m] from the bin before to the last one."""
+    told: float = 1.0
+    """Readings in the last bin."""
     steady: int = 0
     """Bins in a row whose distance does not change steeply."""
     begun: float = 0.0
@@ -86,6 +90,8 @@ class SideState(NamedTuple):
     samples: tuple[Heard, ...] = NO_SAMPLES
     sums: Sums = Sums()
     """Of the neighbour in hand."""
+    spare: Sums = Sums()
+    """Of it, before they began anew: they count until there are enough of the new ones."""
     before: Sums = Sums()
     """Of the neighbour before the gap."""
     edge: float = 0.0
@@ -114,7 +120,7 @@ def hear(side: SideState, u: float, w: float, r: float, half_angle: float, param
         full = abs(u - first) >= 0.5 * BIN or abs(r - mean) > params.step
         if full:
             sample = Heard(first, side.w / side.n, mean)
-            side = _sampled(side._replace(n=0.0, u=0.0, w=0.0, r=0.0), sample, half_angle, params)
+            side = _sampled(side._replace(n=0.0, u=0.0, w=0.0, r=0.0, told=side.n), sample, half_angle, params)
             return side._replace(n=1.0, u=u, w=w, r=r)
         return side._replace(n=side.n + 1.0, u=side.u + u, w=side.w + w, r=side.r + r, fresh=False)
     return side._replace(n=1.0, u=u, w=w, r=r, fresh=False)
@@ -125,7 +131,7 @@ def _sampled(side: SideState, sample: Heard, half_angle: float, params: SearchPa
     near = sample.r < params.beside
     way = sample.u - side.last.u
     change = sample.r - side.last.r - _change_along(side, sample)
-    level = way > 0.0 and abs(change) <= FLAT * way + STEP
+    level = way > 0.0 and abs(change) <= FLAT * way + (STEP if side.told > 1.0 else SINGLE)
     steady = side.steady + 1 if level else 0
     cut = side.steady >= ALONG
     side = side._replace(last=sample, spacing=way, steady=steady, fresh=False)
@@ -166,16 +172,25 @@ def _on_wall(side: SideState, sample: Heard, half_angle: float, params: SearchPa
         return _begin_wall(side, sample)
     if sample.r <= most:
         sums = _with_sample(side.sums, EMPTY, sample, side.steady)
+        spare = side.sums if sums.n < side.sums.n and side.sums.n >= 3.0 else side.spare
         fresh = side.found > 0 and side.steady >= 2 and side.mode == WALL and side.edge_b > side.edge
         begun = sample.u if side.sums.n == 0.0 and side.begun > sample.u - UNSEEN_BEFORE else side.begun
         samples = remember(side.samples, sample)
         return side._replace(
-            mode=WALL, begun=begun, missed=samples[0].u, samples=samples, sums=sums, fresh=fresh, faces=NO_SAMPLES
+            mode=WALL,
+            begun=begun,
+            missed=samples[0].u,
+            samples=samples,
+            sums=sums,
+            spare=spare,
+            fresh=fresh,
+            faces=NO_SAMPLES,
         )
     side = side._replace(faces=remember(side.faces, sample))
     if sample.u - side.missed < _confirmed(side):
         return side
     extent = side.missed - side.begun
+    side = side._replace(sums=side.spare) if side.sums.n < 3.0 else side
     if side.sums.n < 3.0 or extent < params.wall or abs(slope(side.sums, EMPTY)) > STEEPEST:
         return _anew(side)
     edge = corner(side.samples + side.faces, _line(side.sums, EMPTY), -1.0, half_angle)
@@ -285,6 +300,7 @@ def _on_next_wall(side: SideState, sample: Heard, half_angle: float, params: Sea
         taken=count,
         samples=remember(NO_SAMPLES, sample),
         sums=sums,
+        spare=EMPTY,
         found=side.found + 1,
         fresh=True,
         edge_b=edge_b,

@@ -31,9 +31,7 @@ NEXT_WALL = 3
 BIN = 0.16
 FLAT = 0.16
 STEP = 0.016
-SINGLE = 0.04
-"""Steeper than ``FLAT`` [m/m], ``STEP`` [m] for noise (``SINGLE`` for that of single readings), the distance does not
-belong to a flat side along the road."""
+"""Steeper than ``FLAT`` [m/m], ``STEP`` [m] for noise, the distance does not belong to a flat side along the road."""
 BAND = 0.02
 SPREAD = 0.03
 """Further than this [m], and what the noise of the readings makes the line unsure by, is off the line."""
@@ -75,8 +73,6 @@ class SideState(NamedTuple):
     """Last full bin."""
     spacing: float = 0.0
     """Way [m] from the bin before to the last one."""
-    told: float = 1.0
-    """Readings in the last bin."""
     steady: int = 0
     """Bins in a row whose distance does not change steeply."""
     begun: float = 0.0
@@ -120,7 +116,7 @@ def hear(side: SideState, u: float, w: float, r: float, half_angle: float, param
         full = abs(u - first) >= 0.5 * BIN or abs(r - mean) > params.step
         if full:
             sample = Heard(first, side.w / side.n, mean)
-            side = _sampled(side._replace(n=0.0, u=0.0, w=0.0, r=0.0, told=side.n), sample, half_angle, params)
+            side = _sampled(side._replace(n=0.0, u=0.0, w=0.0, r=0.0), sample, half_angle, params)
             return side._replace(n=1.0, u=u, w=w, r=r)
         return side._replace(n=side.n + 1.0, u=side.u + u, w=side.w + w, r=side.r + r, fresh=False)
     return side._replace(n=1.0, u=u, w=w, r=r, fresh=False)
@@ -131,7 +127,7 @@ def _sampled(side: SideState, sample: Heard, half_angle: float, params: SearchPa
     near = sample.r < params.beside
     way = sample.u - side.last.u
     change = sample.r - side.last.r - _change_along(side, sample)
-    level = way > 0.0 and abs(change) <= FLAT * way + (STEP if side.told > 1.0 else SINGLE)
+    level = way > 0.0 and abs(change) <= FLAT * way + STEP
     steady = side.steady + 1 if level else 0
     cut = side.steady >= ALONG
     side = side._replace(last=sample, spacing=way, steady=steady, fresh=False)

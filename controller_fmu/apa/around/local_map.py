@@ -30,6 +30,9 @@ SURE_PARALLEL = 3.5
 """So far [m] from its corner a neighbour's side goes on for sure."""
 MUCH = 0.4
 """A reading that is further off [m] is of something else."""
+LOOKED_FOR = 1.5
+GONE = 0.006
+"""A wall that is not heard from so near [m] is less sure of its direction by this [rad] each time."""
 RIM_LEARNT = 0.6
 RIM_OFF = 0.06
 """Echoes of a cone's rim are learnt from up to so far [m], where they are nearer than expected by so much [m]."""
@@ -219,15 +222,25 @@ def heard(here: LocalMap, readings: tuple[float, ...], sensors: CarUltrasonic, p
     for place in range(12):
         number = place if here.frame.mirror > 0.0 else OTHER_SIDE[place]
         reading = readings[number]
+        ear = ear_at(sensors.mounts[number], here.pose, here.frame.mirror, sensors.half_angle)
         if reading < params.heard:
-            ear = ear_at(sensors.mounts[number], here.pose, here.frame.mirror, sensors.half_angle)
             here = _told(here, ear, expected(ear, here), Told(reading, reading > lowest), params)
+        elif here.walled:
+            here = _unheard(here, ear)
     return here
 
 
 def _from_corner(thing: Thing, echo: Echo) -> float:
     """Return how far [m] along the road from a neighbour's corner an echo comes from."""
     return abs((echo.x - thing.x) * math.cos(thing.heading) + (echo.y - thing.y) * math.sin(thing.heading))
+
+
+def _unheard(here: LocalMap, ear: ConeEar) -> LocalMap:
+    """Return the map after a sensor heard nothing: a wall it looks at square is perhaps none, and tells no road."""
+    ahead = _line(ear, here.wall)
+    if ahead.hit != Hit.SQUARE or ahead.distance > LOOKED_FOR or expected(ear, here).who != WALL:
+        return here
+    return here._replace(wall=wider(here.wall, 0.0, GONE))
 
 
 class Told(NamedTuple):

@@ -224,7 +224,7 @@ def heard(here: LocalMap, readings: tuple[float, ...], sensors: CarUltrasonic, p
         reading = readings[number]
         ear = ear_at(sensors.mounts[number], here.pose, here.frame.mirror, sensors.half_angle)
         if reading < params.heard:
-            here = _told(here, ear, expected(ear, here), Told(reading, reading > lowest), params)
+            here = _told(here, ear, expected(ear, here), Reading(reading, reading > lowest), params)
         elif here.walled:
             here = _unheard(here, ear)
     return here
@@ -243,14 +243,14 @@ def _unheard(here: LocalMap, ear: ConeEar) -> LocalMap:
     return here._replace(wall=wider(here.wall, 0.0, GONE))
 
 
-class Told(NamedTuple):
+class Reading(NamedTuple):
     """One reading [m], and whether it is a distance: the nearest that can be told says no more than nearer."""
 
     reading: float
     exact: bool
 
 
-def _told(here: LocalMap, ear: ConeEar, what: MapEcho, told: Told, params: MapParams) -> LocalMap:
+def _told(here: LocalMap, ear: ConeEar, what: MapEcho, told: Reading, params: MapParams) -> LocalMap:
     """Return the map after one reading; unchanged if it may be of something else, or of the rim of the cone.
 
     A reading of the rim, or of the nearest that can be told, is learnt from if it is plainly nearer than expected:

@@ -40,6 +40,7 @@ DRIVES = {
     "double track": ("vehicle", "guo2015-case4", ("vehicle.body=double_track",)),
     "Guo 2015": ("controller", "guo2015-case4", ()),
     "parking assist": ("controller", "apa-parallel", ()),
+    "parking assist, ISO's shortest slot": ("controller", "apa-parallel-tight", ()),
     "Zhang 2022": ("controller", "zhang2022", ()),
     "HSIC": ("controller", "hsic", ()),
     "preview": ("controller", "preview", ("stop_time=20",)),

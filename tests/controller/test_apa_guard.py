@@ -143,3 +143,29 @@ def test_what_a_cone_hears_of_a_side_is_what_geometry_says(ax, ay, bx, by, axis)
     if exact < FAR and abs(ax - bx) + abs(ay - by) > 1e-3:
         assert abs(ours.distance - exact) < 1e-6
         assert abs(math.hypot(ours.x - 0.1, ours.y + 0.2) - exact) < 1e-6
+
+
+def test_a_car_goes_slowly_beside_what_is_heard_near_it_wherever_the_map_has_it() -> None:
+    """The nearer the echo the slower, never slower than creeping; away from it as fast as one likes."""
+
+    def speed(reading: float, direction: int) -> float:
+        readings = (*NOTHING_HEARD[:7], reading, *NOTHING_HEARD[8:])
+        return sees(GuardState(), readings, Obstacles(), direction, 0.8, 0.0).speed
+
+    backwards = [speed(reading, -1) for reading in (0.85, 0.6, 0.4, 0.2)]
+    assert backwards == sorted(backwards, reverse=True)
+    assert backwards[0] > 0.6 > 0.3 > backwards[-1] >= 0.1
+    assert speed(0.2, 1) > 1.0
+
+
+def test_what_is_too_near_to_be_told_stays_where_it_was() -> None:
+    """The reading is the least that can be told while the car swings on towards it: it is held, and braked for."""
+    flank = (*NOTHING_HEARD[:8], SENSORS.min_range, *NOTHING_HEARD[9:])
+    state = listen(GuardState(), flank, EMPTY, PARAMS)
+    assert state.close[8].there
+    turned = EMPTY._replace(pose=Pose(-0.1, 0.0, 0.035))
+    state = listen(state, flank, turned, PARAMS)
+    course = HeldCourse(turned.pose, -1, -0.2, -0.3, CAR)
+    assert watch_way(state, flank, turned, Obstacles(), course, PARAMS).blocked
+    farther = (*NOTHING_HEARD[:8], 0.5, *NOTHING_HEARD[9:])
+    assert not listen(state, farther, turned, PARAMS).close[8].there

@@ -5,9 +5,11 @@ from typing import Any
 
 import pytest
 
+from controller_fmu.apa.hearing import search_side
 from controller_fmu.apa.hearing.edge import NO_SAMPLES, Heard, append, corner
 from controller_fmu.apa.hearing.line_fit import FittedLine, Sums, add, offset, slope
 from controller_fmu.apa.hearing.search_side import _with_sample
+from controller_fmu.interface import ControllerParams
 from tests.controller.apa_bench import CAR, box, car_settings, drive
 
 HALF = math.radians(30.0)
@@ -85,3 +87,20 @@ def test_no_slot_is_seen_where_there_is_none() -> None:
     vehicle |= box(1, -2.0, 9.0, -1.8, 0.0) | {"start.x": -8.0, "start.y": 1.9, "driver.apa_switch_time": 0.1}
     run = drive(vehicle | {"driver.profile[1].speed": 3.0}, controller | {"apa.search.way": 25.0}, 30.0)
     assert (run.controller.apa.slots, run.controller.reason) == (0, 23)
+
+
+def test_one_lost_echo_does_not_end_a_neighbour_however_fast_the_search() -> None:
+    """Readings each 33 cm, as at 20 km/h: one that is lost is no gap, two are."""
+
+    def after(lost: set[int]) -> int:
+        side = search_side.START
+        for number in range(14):
+            reading = 5.0 if number in lost else 1.0
+            side = search_side.hear(
+                side, 0.33 * number, 0.0, reading, math.radians(30.0), ControllerParams().apa.search
+            )
+        return side.mode
+
+    assert after(set()) == search_side.WALL
+    assert after({8}) == search_side.WALL
+    assert after({10, 11, 12, 13}) == search_side.GAP

@@ -101,6 +101,14 @@ def test_a_contact_is_the_end_whatever_is_said_after_it() -> None:
     assert ends.end_of(row, None) == ends.PARKED
     assert ends.end_of({**row, "within GB/T 41630, parallel": False}, None) == ends.FALSE
     assert ends.end_of({**row, "mode": 7.0, "reason": "no_slot"}, None) == ends.FAILED
+    moved = {**row, "within GB/T 41630, perpendicular": False, "kind": 1.0, "shifts": 3, "duration": 40.0} | {
+        "final.heading_error": 0.01, "final.lateral_error": 0.1, "final.slot_margin": -0.3,
+        "mover": 4, "mover_at": 10.0, "mover_speed": 0.5, "mover_way": 0.4,
+    }  # fmt: skip
+    assert ends.end_of(moved, None) == ends.PARKED
+    assert ends.end_of({**moved, "mover_at": 39.9}, None) == ends.FALSE
+    assert ends.end_of({**moved, "mover_way": -0.4}, None) == ends.FALSE
+    assert ends.end_of({**moved, "mover": 0}, None) == ends.FALSE
     assert ends.end_of({**row, "mode": 4.0}, None) == ends.ENDLESS
 
 

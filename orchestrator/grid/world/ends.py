@@ -11,6 +11,7 @@ from modelkit.geometry import Box, boxes_gap, line_box, outline
 from modelkit.vocabulary import Pose
 from orchestrator.cosim.slave import Array
 from orchestrator.grid.parkings import GBT
+from orchestrator.grid.world.factors import NOBODY
 from orchestrator.grid.world.scene import THINGS, WHEEL
 from orchestrator.scenario.requirements import Requirement, shipped_requirements
 from orchestrator.sweep.columns import WITHIN
@@ -89,7 +90,27 @@ def end_of(row: Mapping[str, Any], touched: Touched | None) -> str:
         return FAILED if row["reason"] != "none" else ENDLESS
     if row["mode"] != Mode.PARKING_FINISH:
         return UNUSED if row["mode"] == Mode.STANDBY else ENDLESS
-    return PARKED if row[WITHIN.format(GBT[int(row["kind"]) + 1])] else FALSE
+    return PARKED if row[WITHIN.format(GBT[int(row["kind"]) + 1])] or _stands_among_the_moved(row) else FALSE
+
+
+def _stands_among_the_moved(row: Mapping[str, Any]) -> bool:
+    """Return whether a car is within GB/T 41630 among neighbours of whom one has moved away, as they stand at the end.
+
+    One who leaves a parallel row makes its slot longer by his way; one who stands out of a perpendicular row moves
+    its line by half of that.
+    """
+    if row.get("mover", 0) < NOBODY:
+        return False
+    way = math.copysign(min(abs(row["mover_way"]), _driven(row)), row["mover_way"])
+    more = max(0.0, -way if row["kind"] == 0 else 0.5 * way)
+    heading, lateral = abs(row["final.heading_error"]), abs(row["final.lateral_error"])
+    near = heading <= math.radians(3.0) and lateral <= OFF and row["final.slot_margin"] + more >= -OFF
+    return bool(near and row["shifts"] <= SHIFTS[int(row["kind"])])
+
+
+def _driven(row: Mapping[str, Any]) -> float:
+    """Return how far [m] a neighbour who moves could have come by the end of the run."""
+    return float(max(0.0, row["duration"] - row["mover_at"]) * row["mover_speed"])
 
 
 def touched_first(row: Mapping[str, Any]) -> Touched:
@@ -102,6 +123,8 @@ def touched_first(row: Mapping[str, Any]) -> Touched:
     return Touched(name, name in MOVABLE and _is_moving(row, name) and _gap(row, before, *things[name]) <= 0.0)
 
 
+OFF, SHIFTS = 0.15, (8, 7)
+"""GB/T 41630: aside and out of the slot [m]; shifts, parallel and perpendicular."""
 MOVABLE = THINGS[:2] + THINGS[3:4]
 KERB = THINGS[-1]
 HEARD = UltrasonicParams().kerb_height

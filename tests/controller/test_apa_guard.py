@@ -9,8 +9,9 @@ from hypothesis import strategies as st
 from controller_fmu.apa.around.cone import ear_of, echo_of
 from controller_fmu.apa.around.course import HeldCourse
 from controller_fmu.apa.around.guard import GuardState, learn_brake, listen, stopping_way, watch_way
-from controller_fmu.apa.around.local_map import LocalMap
+from controller_fmu.apa.around.local_map import LocalMap, _of
 from controller_fmu.apa.around.surroundings import shape_of
+from controller_fmu.apa.around.thing import Thing
 from controller_fmu.apa.chart import Mode
 from controller_fmu.apa.manoeuvre_chart import Step
 from controller_fmu.apa.outline import Box, Obstacles, box_clearance
@@ -124,6 +125,16 @@ def test_a_late_brake_is_learnt_and_counted_with() -> None:
     assert stopping_way(state, 0.8, PARAMS) > stopping_way(GuardState(), 0.8, PARAMS)
     again = learn_brake(state, 0.8, False, 10_000_000, PARAMS)
     assert again.delay == state.delay
+
+
+@pytest.mark.parametrize("heading", [-0.5, 0.0, 0.5])
+@pytest.mark.parametrize("at", [-3.9, -1.0, 1.0, 3.9])
+def test_the_side_of_a_neighbour_askew_is_heard_square(heading: float, at: float) -> None:
+    c, s = math.cos(heading), math.sin(heading)
+    ear = ear_of(1.0 + at * c - s, 2.0 + at * s + c, heading - 0.5 * math.pi, math.radians(1.0))
+    side = math.copysign(4.0, at)
+    assert _of(ear, Thing(1.0, 2.0, heading), side, 2.0).distance == pytest.approx(1.0, abs=1e-3)
+    assert _of(ear, Thing(1.0, 2.0, heading), -side, 2.0).distance > 10.0
 
 
 @pytest.mark.parametrize(("mode", "step", "learns"), BRAKING)

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from controller_fmu.apa.around.cone import ear_of, echo_of
 from controller_fmu.apa.around.course import HeldCourse
 from controller_fmu.apa.around.guard import GuardState, learn_brake, listen, stopping_way, watch_way
-from controller_fmu.apa.around.local_map import LocalMap, _of
+from controller_fmu.apa.around.local_map import LocalMap, _of, is_certain
 from controller_fmu.apa.around.surroundings import shape_of
 from controller_fmu.apa.around.thing import Thing
 from controller_fmu.apa.chart import Mode
@@ -125,6 +125,13 @@ def test_a_late_brake_is_learnt_and_counted_with() -> None:
     assert stopping_way(state, 0.8, PARAMS) > stopping_way(GuardState(), 0.8, PARAMS)
     again = learn_brake(state, 0.8, False, 10_000_000, PARAMS)
     assert again.delay == state.delay
+
+
+@pytest.mark.parametrize(("a", "b"), [(0.5, 0.5), (0.5, 2.0), (2.0, 0.5), (2.0, 2.0)])
+def test_neighbours_are_certain_only_both_together(a: float, b: float) -> None:
+    limit = PARAMS.apa.map.certain
+    here = LocalMap(a=Thing(xx=(a * limit) ** 2), b=Thing(xx=(b * limit) ** 2))
+    assert is_certain(here, PARAMS.apa.map) == (a < 1.0 and b < 1.0)
 
 
 @pytest.mark.parametrize("heading", [-0.5, 0.0, 0.5])

@@ -31,10 +31,13 @@ def _car(wheelbase: float, front: float, rear: float, width: float, radius: floa
 
 
 CARS = {
-    "guo2015": _car(2.405, 0.80, 0.60, 1.65, 4.166),
-    "zhang2022": _car(2.62, 0.966, 0.85, 1.82, 4.8),
-    "commonroad1": _car(2.579, 0.88, 0.839, 1.674, 5.0),
+    "small": _car(2.405, 0.80, 0.60, 1.65, 4.166),
+    "large": _car(2.62, 0.966, 0.85, 1.82, 4.8),
+    "middle": _car(2.579, 0.88, 0.839, 1.674, 5.0),
 }
+"""Cars of the studies: the small one has the outline and the turning circle of the car of Guo 2015, the large one the
+outline of that of Zhang 2022 with a wider circle, the middle one is of no paper. Whoever asks for a car of a file has
+``cars/``."""
 EXTRA: dict[int, tuple[float, ...]] = {Kind.PARALLEL: (0.0, 0.4, 0.8, 1.6), Kind.PERPENDICULAR: (0.0, 0.3, 0.8)}
 """Length (width) over the shortest of ISO 16787 [m]."""
 BESIDE = (0.5, 1.0, 1.5)

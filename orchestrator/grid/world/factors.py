@@ -3,7 +3,7 @@
 from orchestrator.sweep.study.space import Factor
 
 SLOT = (
-    Factor("car", "1", 0, 0, 2, "which car", ("guo2015", "zhang2022", "commonroad1")),
+    Factor("car", "1", 0, 0, 2, "which car", ("small", "large", "middle")),
     Factor("kind", "1", 0, 0, 1, "how the car shall stand", ("parallel", "perpendicular")),
     Factor("side", "1", 0, 0, 1, "of the road", ("right", "left")),
     Factor("extra", "m", 0.0, 1.0, 2.0, "length (width) of the slot over ISO 16787's shortest for the car"),

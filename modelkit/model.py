@@ -212,6 +212,12 @@ class Model(NamedTuple, Generic[State, Params, Input, Output]):
         view = View(((parameter, int(value)),), hidden | {parameter}, chosen.states)
         return self._replace(name=name, description=description, view=view)
 
+    def all_charts(self) -> list[Chart]:
+        """Return its charts and those of its systems, each once."""
+        systems = () if self.systems is None else self.systems.systems
+        found = [*self.charts, *(chart for system in systems for chart in system.charts)]
+        return list({id(chart.rows): chart for chart in found}.values())
+
     def shows(self, name: str) -> bool:
         """Return whether others see the variable ``name``."""
         return name not in self.view.hidden

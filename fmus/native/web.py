@@ -5,7 +5,7 @@ offers is in ``c/live.c``.
 """
 
 import hashlib
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from importlib.util import find_spec
 from pathlib import Path
 
@@ -14,13 +14,14 @@ from fmus.native.compilers import find_compiler
 from fmus.native.kept import C_FILES
 from fmus.native.made_of import ROOT, hash_of, words_of
 from fmus.native.platforms import WEB, CompileTarget
+from fmus.native.probes import DECLARED, probed
 from fmus.places import CACHE, LIBRARIES
 from modelkit.connections import connections, part_of
-from modelkit.model import Model
+from modelkit.model import Chart, Model
 
 KEPT = 4
 """Names of modules of older sources that stay in the cache."""
-MODEL_UNIT = """#define LIBRARY_EXPORT __attribute__((unused)) static
+MODEL_UNIT = """{declared}#define LIBRARY_EXPORT __attribute__((unused)) static
 {unit}
 const Library *{name}_library(void);
 const Library *{name}_library(void) {{ return &library_table; }}
@@ -32,8 +33,14 @@ LIVE_UNIT = """/* Connected models for a host outside of this memory. */
 #define LIVE_MODELS {tables}
 #define LIVE_COUNT {count}
 #define LIVE_LINKS {links}
+#define LIVE_CHARTS {charts}
 #include "live.c"
 """
+
+
+def charts_of(models: Iterable[Model]) -> list[Chart]:
+    """Return the charts of connected models in the order in which ``live.c`` tells what they decide on."""
+    return [chart for model in models for chart in model.all_charts()]
 
 
 def can_build() -> bool:
@@ -81,11 +88,12 @@ def live_files(models: Mapping[str, Model]) -> dict[str, str]:
 
     own = ("live.c", "batch.c", "faults.h", "library.h")
     files = {name: (C_FILES / name).read_text(encoding="utf-8") for name in own}
+    charts = 0
     for model in models.values():
-        files |= {
-            **model_files(model),
-            f"{model.name}_unit.c": MODEL_UNIT.format(name=model.name, unit=model_unit(model)),
-        }
+        files |= model_files(model)
+        files[f"{model.name}.c"] = probed(files[f"{model.name}.c"], model.all_charts(), charts)
+        files[f"{model.name}_unit.c"] = MODEL_UNIT.format(declared=DECLARED, name=model.name, unit=model_unit(model))
+        charts += len(model.all_charts())
     names = [f"{model.name}_library" for model in models.values()]
     wires = connections([part_of(name, model) for name, model in models.items()])
     files["live_unit.c"] = LIVE_UNIT.format(
@@ -93,5 +101,6 @@ def live_files(models: Mapping[str, Model]) -> dict[str, str]:
         count=len(names),
         tables=", ".join(f"{name}()" for name in names),
         links=", ".join(f"{{{', '.join(map(str, wire))}}}" for wire in wires),
+        charts=charts,
     )
     return files

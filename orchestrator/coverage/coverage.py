@@ -7,7 +7,7 @@ from typing import NamedTuple
 from modelkit.model import Model
 from orchestrator.coverage.branches import Branch, branch_share, watching
 from orchestrator.coverage.covered import ChartCovered, covered, share
-from orchestrator.coverage.tracer import charts_of, name_of, tracing
+from orchestrator.coverage.tracer import name_of, tracing
 
 
 class Coverage(NamedTuple):
@@ -41,7 +41,7 @@ class Coverage(NamedTuple):
 def looking_on(models: Iterable[Model]) -> Iterator[Callable[[], Coverage]]:
     """Yield a function that says how far the tests have been through these models so far."""
     known = list(models)
-    charts = [chart for model in known for chart in charts_of(model)]
+    charts = [chart for model in known for chart in model.all_charts()]
     packages = [package for model in known for package in model.sources()]
     with watching(packages) as branches, tracing(charts) as seen:
         yield lambda: Coverage([covered(chart, seen[name_of(chart)]) for chart in charts], branches.found())

@@ -9,19 +9,12 @@ from functools import wraps
 from types import ModuleType
 from typing import Any
 
-from modelkit.model import Chart, Model
+from modelkit.model import Chart
 
 Seen = Counter[tuple[int, int]]
 """(state, guards as bits) -> samples at which the chart decided on it."""
 GUARDS = "guards"
 """Parameter of the function that decides; its first one is the state."""
-
-
-def charts_of(model: Model) -> list[Chart]:
-    """Return the charts of a model and of its systems, each once."""
-    systems = () if model.systems is None else model.systems.systems
-    found = [*model.charts, *(chart for system in systems for chart in system.charts)]
-    return list({id(chart.rows): chart for chart in found}.values())
 
 
 def name_of(chart: Chart) -> str:

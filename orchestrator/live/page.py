@@ -12,7 +12,7 @@ from typing import Any
 import yaml
 
 from fmus.files import write_whole
-from fmus.native.web import web_module
+from fmus.native.web import charts_of, web_module
 from modelkit.model import Model
 from orchestrator.drawing import palette
 from orchestrator.live.described import models_data
@@ -29,7 +29,7 @@ CORE = ("shapes.js", "data.js", "engine.js", "situation.js", "verdict.js", "hist
 """What a worker needs too."""
 OWN = (
     *("show.js", "scene.js", "scene_parts.js", "view.js", "tables.js"),
-    *("stage.js", "driver.js", "drive.js", "whatif.js", "map.js", "chart.js", "result.js", "main.js"),
+    *("stage.js", "driver.js", "drive.js", "whatif.js", "map.js", "chart.js", "guards.js", "result.js", "main.js"),
 )
 RUNS_MODULES = " 'wasm-unsafe-eval'; worker-src blob:"
 NAME = "live.html"
@@ -67,7 +67,9 @@ def live_page(scenarios: Sequence[Scenario]) -> str:
 def _models(models: tuple[tuple[str, Model], ...]) -> dict[str, Any]:
     """Return what is the same for all scenarios."""
     pins = yaml.safe_load((ROOM / "pins.yaml").read_text(encoding="utf-8"))
-    return {"models": models_data(dict(models)), "numbers": numbers_data(), "charts": charts_data(), "pins": pins}
+    own = charts_of(model for _, model in models)
+    charts = [{**data, "place": own.index(chart)} for chart, data in charts_data() if chart in own]
+    return {"models": models_data(dict(models)), "numbers": numbers_data(), "charts": charts, "pins": pins}
 
 
 def _module(models: Mapping[str, Model]) -> str:

@@ -1,7 +1,6 @@
 """State machines as pages show them beside a run: a drawing, and what is known of each state."""
 
 import inspect
-from enum import IntEnum
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -19,8 +18,8 @@ CHOICE = "system"
 
 
 @cache
-def charts_data() -> list[dict[str, Any]]:
-    """Return the charts of all systems with the values that choose them."""
+def charts_data() -> list[tuple[Chart, dict[str, Any]]]:
+    """Return the charts of all systems, each with what a page is told of it and the values that choose its system."""
     own = [
         (system.values, chart)
         for model in MODELS.values()
@@ -29,7 +28,7 @@ def charts_data() -> list[dict[str, Any]]:
         for chart in system.charts
     ]
     apart = [((number,), chart) for number, model in APART.values() for chart in model.charts]
-    return [{"values": list(values), **_chart(chart)} for values, chart in (*own, *apart) if chart.signal]
+    return [(chart, {"values": list(values), **_chart(chart)}) for values, chart in (*own, *apart) if chart.signal]
 
 
 def charts_of(recording: Recording) -> list[dict[str, Any]]:
@@ -37,7 +36,7 @@ def charts_of(recording: Recording) -> list[dict[str, Any]]:
     system = recording.parameters.get(f"controller.{CHOICE}")
     return [
         item
-        for item in charts_data()
+        for _, item in charts_data()
         if system in item["values"] and f"controller.{item['signal']}" in recording.signals
     ]
 
@@ -45,28 +44,17 @@ def charts_of(recording: Recording) -> list[dict[str, Any]]:
 def _chart(chart: Chart) -> dict[str, Any]:
     names = [state.name for state in chart.states]
     arcs = [(_name(chart, row[0]), _words(chart, row[1]), _name(chart, row[2])) for row in chart.rows]
-    texts, guards = texts_of(chart.states), {item.name: text for item, text in _guard_texts(chart)}
+    texts, guards = texts_of(chart.states), texts_of(chart.guards)
     return {
         "signal": chart.signal,
         "file": _where(chart.guards),
         "svg": chart_svg([(source, target, guard) for source, guard, target in arcs], names),
-        "states": {
-            name: {
-                "text": _sentence(texts.get(name, "")),
-                "leaves": [
-                    f"to {target.lower().replace('_', ' ')} when {guards.get(guard.upper().replace(' ', '_')) or guard}"
-                    for source, guard, target in arcs
-                    if source == name
-                ],
-            }
-            for name in (*names, ANY)
+        "states": {name: _sentence(texts.get(name, "")) for name in (*names, ANY)},
+        "guards": {
+            guard.value: [_words(chart, guard), texts.get(guard.name, "").rstrip(".").lower()] for guard in chart.guards
         },
+        "rows": [[_name(chart, row[0]), row[1], _name(chart, row[2])] for row in chart.rows],
     }
-
-
-def _guard_texts(chart: Chart) -> list[tuple[IntEnum, str]]:
-    texts = texts_of(chart.guards)
-    return [(guard, texts.get(guard.name, "").rstrip(".").lower()) for guard in chart.guards]
 
 
 def _name(chart: Chart, value: int) -> str:

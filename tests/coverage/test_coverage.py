@@ -12,10 +12,10 @@ import controller_fmu
 from modelkit.model import Chart
 from orchestrator.cli import main
 from orchestrator.coverage.covered import covered, share
-from orchestrator.coverage.tracer import charts_of, decider, name_of, tracing
+from orchestrator.coverage.tracer import decider, name_of, tracing
 from orchestrator.scenario.wiring.modes import ModeList
 
-CHARTS = charts_of(controller_fmu.MODEL)
+CHARTS = controller_fmu.MODEL.all_charts()
 
 
 class Lamp(IntEnum):

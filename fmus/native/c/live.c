@@ -2,9 +2,12 @@
  * call, and a run that goes on exchange by exchange while somebody looks on and sets inputs.
  *
  * Numbers come in and go out as arrays of doubles. The file that is compiled has defined LIVE_MODELS, the tables of
- * the models, LIVE_COUNT, how many there are, and LIVE_LINKS, their connections, made of the models' types as all others are.
+ * the models, LIVE_COUNT, how many there are, LIVE_LINKS, their connections, made of the models' types as all others
+ * are, and LIVE_CHARTS, how many state machines they have, which call live_decides.
  */
 #include "batch.c"
+
+#define DECIDED 3
 
 typedef struct {
     const Library *models[LIVE_COUNT];
@@ -16,9 +19,21 @@ typedef struct {
     Place *places;
     double *row; /* the end, its time [ns], what is kept */
     End end;
+    double decided[LIVE_CHARTS + 1][DECIDED]; /* of each chart: the exchange before it decided last, state, guards */
 } Live;
 
 static const Link live_links[] = {LIVE_LINKS};
+
+static Live *deciding; /* the run that is a step on its way */
+
+/* What the C of a chart says where it decides: `guards` has a bit for each that holds. */
+void live_decides(int32_t chart, int64_t state, int64_t guards);
+void live_decides(int32_t chart, int64_t state, int64_t guards) {
+    if (!deciding) return;
+    deciding->decided[chart][0] = (double)deciding->course.count;
+    deciding->decided[chart][1] = (double)state;
+    deciding->decided[chart][2] = (double)guards;
+}
 
 LIBRARY_EXPORT double *live_numbers(int32_t count) { return calloc((size_t)count, sizeof(double)); }
 
@@ -116,6 +131,7 @@ LIBRARY_EXPORT int32_t live_begin(Live *live, const double *params, const double
     for (int64_t k = 0; k < live->seen_count; k++) live->places[k] = place_of(live->runner.slaves, live->seen[k]);
     if (initialize(&live->runner, params, faults, live->course.step_ns)) return -1;
     begin_notes(&live->runner, live->row + 2);
+    for (int64_t k = 0; k < LIVE_CHARTS; k++) live->decided[k][0] = -1.0;
     return 0;
 }
 
@@ -131,7 +147,15 @@ LIBRARY_EXPORT int32_t live_exchange(Live *live, double *seen) {
 }
 
 /* The step from this exchange to the next. */
-LIBRARY_EXPORT void live_advance(Live *live) { advance(&live->runner, &live->course); }
+LIBRARY_EXPORT void live_advance(Live *live) {
+    deciding = live;
+    advance(&live->runner, &live->course);
+    deciding = NULL;
+}
+
+/* For each chart what it decided on last: the number of the exchange before, or -1 if it has not in this run; its
+ * state then; the guards as bits. */
+LIBRARY_EXPORT const double *live_decided(const Live *live) { return live->decided[0]; }
 
 /* An input that nothing is connected to, from the next step on. */
 LIBRARY_EXPORT void live_set(Live *live, int32_t model, int32_t input, double value) {

@@ -8,6 +8,7 @@ class Drive {
   count = 0;
   due = 0; // time that the clock asks for and no step has driven yet [s]
   every = 1; // steps between two rows that are kept
+  held = 1; // steps between two samples of the controller, at most
 
   constructor(lab, driver) {
     this.lab = lab;
@@ -32,6 +33,7 @@ class Drive {
     this.changes = { ...situation.changes };
     this.history = new History(engine, seen, situation.still(this.origin));
     this.every = Math.max(1, Math.round(FINE / this.step));
+    this.held = Math.max(situation.data.times[3], Math.ceil(situation.get("controller.sample_time") / this.step - 1e-9));
     this.count = 0;
     this.due = 0;
     this.isOver = false;
@@ -51,6 +53,12 @@ class Drive {
     this.history.push(this.t, seen, this.count % this.every === 0 || over || modes !== this.modes);
     this.modes = modes;
     this.isOver = over;
+  }
+
+  // State and guards that the chart in `place` decided on in the latest sample; null if it did not.
+  decided(place) {
+    const [at, state, guards] = this.course.decided(place);
+    return at >= 0 && this.count - at <= this.held ? { state, guards } : null;
   }
 
   plan() {

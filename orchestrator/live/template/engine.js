@@ -102,6 +102,9 @@ class Course {
 
   advance() { this.c.live_advance(this.live); }
 
+  // What the chart in `place` decided on last: the exchange before it did, or -1; its state then; the guards as bits.
+  decided(place) { return this.engine.view(this.c.live_decided(this.live), 3 * (place + 1)).subarray(3 * place); }
+
   set(name, value) {
     const [model, place] = this.engine.places.get(name);
     this.c.live_set(this.live, model, place, value);

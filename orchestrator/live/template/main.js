@@ -26,7 +26,7 @@ class Page {
     this.drive.onStep = () => this.prompted();
     this.whatIf = new WhatIf(lab, () => this.changed());
     this.map = new Grid(lab, code, data, (values) => { for (const [name, value] of values) lab.situation.set(name, value); this.whatIf.fill(); this.changed(); });
-    this.chart = new StateChart();
+    this.chart = new LiveChart();
     this.charts = data.charts;
     /** @type {any} */
     this.drawn = { runs: [], ribbons: [], ghost: null, poses: () => this.poses() };
@@ -128,6 +128,7 @@ class Page {
     this.told = now;
     headsUp(this.drawn, drive.t);
     this.chart.show(drive.history, drive.t);
+    this.chart.decide(drive);
     this.cockpit();
   }
 

@@ -21,8 +21,8 @@ class StateChart {
     chart.sheet.append(svg);
     chart.box.append(chart.sheet);
     for (const node of chart.box.querySelectorAll("[data-state]")) {
-      const state = chart.states[node.dataset.state];
-      const tell = () => { $("chart-said").textContent = `${words(node.dataset.state)}: ${state.text}${state.leaves.length ? ` Leaves: ${state.leaves.join("; ")}.` : ""}`; };
+      const { state } = node.dataset, leaves = chart.rows.filter(([source]) => source === state).map(([, guard, target]) => `to ${words(target)} when ${chart.guards[guard][1] || chart.guards[guard][0]}`);
+      const tell = () => { $("chart-said").textContent = `${words(state)}: ${chart.states[state]}${leaves.length ? ` Leaves: ${leaves.join("; ")}.` : ""}`; };
       const tellNow = () => { if (chart.on && !chart.box.contains(document.activeElement)) chart.on.tellState(); };
       /** @type {any} */ (node).tellState = tell;
       node.addEventListener("pointerleave", tellNow);

@@ -64,7 +64,9 @@ def drive_pictures(browser: Any, path: Path, wide: dict[str, Any], phone: dict[s
 
     def charted(page: Any) -> None:
         page.click("#chart-tab")
-        page.evaluate("() => { const { drive } = window.live; while (drive.t < 12.0) drive.go(); }")
+        page.evaluate(
+            "() => { const { drive } = window.live; while (drive.state('controller.phase') !== 'TO_Q2') drive.go(); }"
+        )
 
     photograph_live(browser, path, "live", wide, slower)
     photograph_live(browser, path, "live-map", {**wide, "color_scheme": "dark"}, mapped)

@@ -18,7 +18,7 @@ DECIDER = re.compile(r"\(int64_t (\w+),[^;{}]*\bint64_t guards\b[^;{}]*\)\n\{\n"
 
 
 def probed(source: str, charts: Sequence[Chart], first: int) -> str:
-    """Return the C of a model in which each of its charts tells what it decides on; their numbers begin at ``first``."""
+    """Return the C of a model in which each of its charts tells what it decides on, numbered from ``first`` on."""
     numbers = {_file(chart): number for number, chart in enumerate(charts, first)}
     return "".join(_told(section, numbers.get(_title(section), -1)) for section in SECTION.split(source))
 

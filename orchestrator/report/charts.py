@@ -44,14 +44,15 @@ def charts_of(recording: Recording) -> list[dict[str, Any]]:
 def _chart(chart: Chart) -> dict[str, Any]:
     names = [state.name for state in chart.states]
     arcs = [(_name(chart, row[0]), _words(chart, row[1]), _name(chart, row[2])) for row in chart.rows]
-    texts, guards = texts_of(chart.states), texts_of(chart.guards)
+    states, guards = texts_of(chart.states), texts_of(chart.guards)
     return {
         "signal": chart.signal,
         "file": _where(chart.guards),
         "svg": chart_svg([(source, target, guard) for source, guard, target in arcs], names),
-        "states": {name: _sentence(texts.get(name, "")) for name in (*names, ANY)},
+        "states": {name: _sentence(states.get(name, "")) for name in (*names, ANY)},
         "guards": {
-            guard.value: [_words(chart, guard), texts.get(guard.name, "").rstrip(".").lower()] for guard in chart.guards
+            guard.value: [_words(chart, guard), guards.get(guard.name, "").rstrip(".").lower()]
+            for guard in chart.guards
         },
         "rows": [[_name(chart, row[0]), row[1], _name(chart, row[2])] for row in chart.rows],
     }

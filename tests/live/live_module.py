@@ -8,7 +8,7 @@ import numpy as np
 import wasmtime
 
 from fmus.compiled_batch import FAULTS
-from fmus.native.web import web_module
+from fmus.native.web import charts_of, web_module
 from modelkit.model import Model
 from modelkit.variables import flatten, variables, with_values
 from orchestrator.scenario.scenario import Scenario
@@ -70,6 +70,22 @@ class LiveModule:
             self.call("live_free", address)
         self.call("live_close", live)
         return end, found
+
+    def decisions(self, scenario: Scenario, names: Sequence[str]) -> tuple[Any, Any]:
+        """Return a line for each exchange of a run: ``names``; and what each chart had decided on by then."""
+        charts = len(charts_of(scenario.models.values()))
+        live = self.call("live_open", self.put(setup(scenario, names)))
+        seen = self.call("live_numbers", len(names))
+        self.call("live_begin", live, *(self.put(made(scenario)) for made in (parameters, times_of, disturbed)))
+        decided = self.call("live_decided", live)
+        lines, found, over = [], [], False
+        while not over:
+            over = self.call("live_exchange", live, seen)
+            lines.append(self.get(seen, len(names)))
+            found.append(self.get(decided, 3 * charts).reshape(charts, 3))
+            self.call("live_advance", live)
+        self.call("live_close", live)
+        return np.array(lines), np.array(found)
 
 
 def setup(scenario: Scenario, names: Sequence[str]) -> list[float]:

@@ -1,6 +1,7 @@
 """WebAssembly against the native FMUs, and against the same C with the same mathematics library on this machine."""
 
 import subprocess
+from collections import Counter
 from functools import cache
 from pathlib import Path
 
@@ -9,8 +10,9 @@ import pytest
 from live_module import STANDSTILL, STOP_TIME, LiveModule, disturbed, names_of, parameters, setup, times_of
 
 from fmus.native.platforms import CompileTarget
-from fmus.native.web import live_library
+from fmus.native.web import charts_of, live_library
 from orchestrator.cosim.fmu_files import fmu_files
+from orchestrator.coverage.tracer import name_of, tracing
 from orchestrator.live.situation import shipped
 from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.scenario.models import MODELS
@@ -25,12 +27,16 @@ STATIC = CompileTarget("x86_64-linux-musl", ("-static", "-Wl,-s"))
 
 
 @pytest.fixture(scope="module")
-def run_of_page():
+def module_of():
     modules = cache(lambda models: LiveModule(dict(models)))
+    return lambda scenario: modules(tuple(scenario.models.items()))
 
+
+@pytest.fixture(scope="module")
+def run_of_page(module_of):
     def run(scenario):
         names = names_of(scenario)
-        return names, *modules(tuple(scenario.models.items())).run(scenario, names)
+        return names, *module_of(scenario).run(scenario, names)
 
     return run
 
@@ -82,3 +88,43 @@ def test_has_the_bits_of_this_machine_with_the_same_mathematics_library(name, st
     found = np.frombuffer(done.stdout, dtype=float)
     assert found[0] == end
     assert found[2:].tobytes() == lines.tobytes()
+
+
+def next_by_table(chart, state, guards):
+    """Return where the first row leads whose guard holds; ``state`` if there is none."""
+    is_end = all(row[0] != state for row in chart.rows)
+    rows = [row for row in chart.rows if row[0] == state or (row[0] < 0 and not is_end)]
+    return next((row[2] for row in rows if guards >> row[1] & 1), state)
+
+
+@pytest.mark.parametrize("name", ["guo2015-case4", "apa-parallel", "adaptive", "valet-search-perpendicular"])
+def test_the_guards_told_are_those_that_the_chart_went_by(name, module_of):
+    scenario = load_scenario(name)
+    charts = charts_of(scenario.models.values())
+    known = [f"controller.{chart.signal or 'phase'}" for chart in charts]
+    lines, decided = module_of(scenario).decisions(scenario, known)
+    own = [number for number, chart in enumerate(charts) if (decided[:, number, 0] >= 0).any()]
+    assert sum(bool(charts[number].signal) for number in own) == 1
+    for number in [item for item in own if charts[item].signal]:
+        changes = 0
+        for i in range(1, len(lines)):
+            before, state, guards = decided[i, number].astype(int)
+            if before == i - 1:
+                assert state == lines[i - 1, number]
+                assert next_by_table(charts[number], state, guards) == lines[i, number]
+                changes += state != lines[i, number]
+            else:
+                assert lines[i, number] == lines[i - 1, number]
+        assert changes == (np.diff(lines[:, number]) != 0).sum() >= 3
+
+
+def test_the_guards_told_are_those_of_the_model_in_python(module_of):
+    scenario = load_scenario("guo2015-case4")
+    charts = charts_of(scenario.models.values())
+    _, decided = module_of(scenario).decisions(scenario, ["controller.phase"])
+    with tracing(charts) as seen:
+        run_scenario(scenario, {}, kind="none")
+    for number, chart in enumerate(charts):
+        found = [tuple(row) for i, row in enumerate(decided[:, number].astype(int)) if row[0] == i - 1 >= 0]
+        assert Counter((state, guards) for _, state, guards in found) == seen[name_of(chart)]
+    assert len(seen["controller_fmu.guo2015.chart"]) >= 15

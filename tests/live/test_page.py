@@ -321,6 +321,9 @@ def test_a_map_is_coloured_and_a_cell_taken_from_it_is_what_it_says(page):
     assert page.text_content("#map-key") == "on the target to 3 m off and more"
 
 
+UNTIL = "([name, state]) => { const { drive } = window.live; while (drive.state(name) !== state) drive.go(); }"
+
+
 def test_the_chart_shows_the_state_and_how_it_came(page):
     page.click("#chart-tab")
     page.evaluate("() => { const { drive } = window.live; while (drive.t < 5.0) drive.go(); }")
@@ -329,8 +332,33 @@ def test_the_chart_shows_the_state_and_how_it_came(page):
     assert on == [page.evaluate("() => window.live.drive.state('controller.phase')")]
     assert page.locator(".past li").count() == 4
     assert page.text_content("#chart-said").startswith(f"{on[0].lower().replace('_', ' ')}:")
+    assert "(standing to drive)" in page.locator(".past li").first.text_content()
+    guards = page.locator(".deciding li")
+    assert guards.all_text_contents()[-1] == "\u2013 notwheel set for Q3 \u2192 to Q3"
+    assert page.locator(".deciding .holds").count() == 0
+    page.evaluate(
+        "() => { const { drive } = live; while (drive.state('controller.phase') === 'PRE_STEER') drive.go(); }"
+    )
+    page.wait_for_timeout(100)
+    assert page.locator(".deciding .holds").all_text_contents() == ["\u2713 holdswheel set for Q2 \u2192 to Q2, taken"]
+    page.click("#restart")
+    page.wait_for_timeout(100)
+    assert guards.count() == 0
     page.focus('[data-state="STOP"]')
     assert page.text_content("#chart-said").startswith("stop:")
+    page.select_option("#scenario", "apa-parallel")
+    page.evaluate(UNTIL, ["controller.apa.mode", "STANDBY"])
+    page.wait_for_timeout(100)
+    taken = page.locator(".deciding .holds").text_content()
+    assert taken == "\u2713 holdsswitched on \u2192 standby, taken"
+    page.evaluate("live.drive.go()")
+    page.wait_for_timeout(100)
+    assert guards.all_text_contents() == [
+        "\u2013 notswitched off \u2192 off: the switch is off",
+        "\u2013 notfault \u2192 fail: there is a reason to fail",
+        "\u2013 notslot given \u2192 parking space appears: no search wanted, the car stands",
+        "\u2713 holdsready \u2192 parking space search, taken: slow enough to search",
+    ]
 
 
 def test_a_scenario_with_faults_says_what_it_disturbs(page):

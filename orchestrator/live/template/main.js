@@ -23,7 +23,7 @@ class Page {
     this.sounds = new Sounds();
     this.drive = new Drive(lab, this.driver);
     this.drive.onEnd = () => this.ended();
-    this.drive.onStep = () => this.prompted();
+    this.drive.onStep = () => { this.prompted(); this.chart.note(this.drive); };
     this.whatIf = new WhatIf(lab, () => this.changed());
     this.map = new Grid(lab, code, data, (values) => { for (const [name, value] of values) lab.situation.set(name, value); this.whatIf.fill(); this.changed(); });
     this.chart = new LiveChart();
@@ -68,6 +68,7 @@ class Page {
 
   restart() {
     this.drive.restart();
+    this.chart.begin();
     this.mine = null;
     this.prompt = "NONE";
     this.drawn.runs = [this.drive.history];

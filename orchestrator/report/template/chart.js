@@ -21,7 +21,7 @@ class StateChart {
     chart.sheet.append(svg);
     chart.box.append(chart.sheet);
     for (const node of chart.box.querySelectorAll("[data-state]")) {
-      const { state } = node.dataset, leaves = chart.rows.filter(([source]) => source === state).map(([, guard, target]) => `to ${words(target)} when ${chart.guards[guard][1] || chart.guards[guard][0]}`);
+      const { state } = node.dataset, leaves = chart.rows.filter(([source]) => source === state).map(([, guard, target]) => `to ${words(target)} when ${chart.guards[guard][1] || words(chart.guards[guard][0])}`);
       const tell = () => { $("chart-said").textContent = `${words(state)}: ${chart.states[state]}${leaves.length ? ` Leaves: ${leaves.join("; ")}.` : ""}`; };
       const tellNow = () => { if (chart.on && !chart.box.contains(document.activeElement)) chart.on.tellState(); };
       /** @type {any} */ (node).tellState = tell;
@@ -41,6 +41,9 @@ class StateChart {
     chart.isCentred = true;
   }
 
+  // The guards for which a state was left at `at`: one of those of the arcs to the next.
+  why(_chart, _at, arcs) { return arcs.map((arc) => words(arc.dataset.guards)).join(", "); }
+
   // As it is in `run` at `t`.
   show(run, t) {
     for (const chart of this.own) {
@@ -53,7 +56,7 @@ class StateChart {
       const last = states.length - 1, arcs = (i) => [...chart.box.querySelectorAll("[data-from]")].filter(({ dataset }) => (dataset.from === states[i - 1] || dataset.from === "any state") && dataset.to === states[i]);
       for (const node of chart.box.querySelectorAll(`[data-state="${states[last]}"]`)) { node.classList.add("on"); chart.on = node; if (chart === this.own[0] && !chart.box.matches(":hover, :focus-within")) node.tellState(); }
       if (last > 0) for (const arc of arcs(last)) arc.classList.add("on");
-      const lines = states.map((state, i) => (i === 0 ? "" : `${spans[i].from.toFixed(2)} s  ${words(states[i - 1])} \u2192 ${words(state)}${arcs(i).length ? `  (${arcs(i).map((arc) => arc.dataset.guards).join(", ")})` : ""}`));
+      const lines = states.map((state, i) => (i === 0 ? "" : `${spans[i].from.toFixed(2)} s  ${words(states[i - 1])} \u2192 ${words(state)}${this.why(chart, spans[i].from, arcs(i)).replace(/(.+)/, "  ($1)")}`));
       chart.past.replaceChildren(...lines.slice(1).slice(-8).reverse().map((line) => element("li", {}, line)));
     }
   }

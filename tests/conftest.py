@@ -157,7 +157,7 @@ class Seen:
 
 
 @pytest.fixture
-def show(browser):
+def show(browser: Any) -> Iterator[Any]:
     """Open a page file: returns (page, what it did); closed after the test."""
     contexts = []
 

@@ -1,6 +1,7 @@
 """The C of the benchmarks compiles with the models' C as it is now, and does what CPython does."""
 
 import importlib
+from typing import Any
 
 import numpy as np
 import pytest
@@ -9,10 +10,10 @@ from modelkit.variables import flatten
 
 
 @pytest.fixture
-def bench(monkeypatch):
+def bench(monkeypatch: pytest.MonkeyPatch) -> Any:
     """Import a benchmark; what it compares with need not be installed."""
 
-    def load(name, *needs):
+    def load(name: Any, *needs: Any) -> Any:
         for package in needs:
             pytest.importorskip(package)
         return importlib.import_module(f"benchmarks.{name}")
@@ -21,7 +22,7 @@ def bench(monkeypatch):
 
 
 @pytest.mark.filterwarnings("ignore")
-def test_bodies(bench):
+def test_bodies(bench: Any) -> None:
     module = bench("bench_vehicle", "vehiclemodels")
     library = module.compiled()
     for name, (_, run) in module.bodies(0).items():
@@ -32,7 +33,7 @@ def test_bodies(bench):
 
 
 @pytest.mark.filterwarnings("ignore")
-def test_controllers(bench):
+def test_controllers(bench: Any) -> None:
     module = bench("bench_controllers", "cvxpy", "daqp", "osqp", "skfuzzy")
     library, source = module.compiled(), np.random.default_rng(1)
     points = source.uniform(-3.0, 3.0, (50, 2))

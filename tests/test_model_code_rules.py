@@ -2,6 +2,7 @@
 
 import ast
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -25,13 +26,13 @@ KIT = {
 }
 
 
-def model_files():
+def model_files() -> Any:
     files = (path for room in ROOMS for path in sorted((ROOT / room).rglob("*.py")))
     names = (path.relative_to(ROOT).as_posix() for path in files if path.name != "__init__.py")
     return [name for name in names if name not in NO_MODEL_CODE]
 
 
-def faults(source, room):
+def faults(source: Any, room: Any) -> Any:
     """Return 'line: import' of everything that a model file in ``room`` may not import."""
     found = []
     for node in ast.walk(ast.parse(source)):
@@ -46,12 +47,12 @@ def faults(source, room):
 
 
 @pytest.mark.parametrize("name", model_files())
-def test_model_file_imports_model_files(name):
+def test_model_file_imports_model_files(name: Any) -> None:
     assert faults((ROOT / name).read_text(), name.split("/")[0]) == []
 
 
 @pytest.mark.parametrize("name", MODELS)
-def test_model_translates(name):
+def test_model_translates(name: Any) -> None:
     assert f"void {MODELS[name].name}_step(" in translate(MODELS[name]).source
 
 
@@ -67,5 +68,5 @@ def test_model_translates(name):
         "def f() -> None:\n    import random",
     ],
 )
-def test_the_rule_finds_what_it_should(line):
+def test_the_rule_finds_what_it_should(line: str) -> None:
     assert len(faults(f"import math\nfrom enum import IntEnum\n{line}\n", "controller_fmu")) == 1

@@ -5,6 +5,7 @@ import math
 import shutil
 import struct
 from enum import IntEnum
+from typing import Any
 
 from fmus.compiler import members
 from fmus.compiler.source.kinds import BOOL, FLOAT, INT, Array, Cells, Struct, fields_of
@@ -18,7 +19,9 @@ CELLS = {"double": ctypes.c_double, "float": ctypes.c_float, "int32_t": ctypes.c
 SCALARS = {FLOAT: ctypes.c_double, INT: ctypes.c_int64, BOOL: ctypes.c_bool}
 
 
-def compiled(folder, name, file, compiler=COMPILER, options=FLAGS, warnings=WARNINGS):
+def compiled(
+    folder: Any, name: Any, file: Any, compiler: Any = COMPILER, options: Any = FLAGS, warnings: Any = WARNINGS
+) -> Any:
     """Return a shared library made of a C file without a warning."""
     compiler.run([*options, *warnings, "-shared", "-fPIC", "-o", f"{name}.so", file, "-lm"], folder)
     return ctypes.CDLL(str(folder / f"{name}.so"))
@@ -27,7 +30,7 @@ def compiled(folder, name, file, compiler=COMPILER, options=FLAGS, warnings=WARN
 _structures = {}
 
 
-def structure(kind):
+def structure(kind: Any) -> Any:
     """Return the ctypes type of a kind."""
     if isinstance(kind, Array):
         return structure(kind.item) * kind.length
@@ -41,7 +44,7 @@ def structure(kind):
     return _structures[kind.cls]
 
 
-def to_c(value, kind):
+def to_c(value: Any, kind: Any) -> Any:
     """Return a Python value as ctypes."""
     if isinstance(kind, Array):
         return structure(kind)(*(to_c(item, kind.item) for item in value))
@@ -51,7 +54,7 @@ def to_c(value, kind):
     return int(value) if isinstance(value, IntEnum) else value
 
 
-def bits(scalar):
+def bits(scalar: Any) -> Any:
     """Return something that is equal for scalars of the same bits only."""
     if isinstance(scalar, float):
         return "NaN" if math.isnan(scalar) else struct.pack("d", scalar)
@@ -61,7 +64,7 @@ def bits(scalar):
 class CModel:
     """The C of a model behind the functions of the model."""
 
-    def __init__(self, model, translation, folder, **how):
+    def __init__(self, model: Any, translation: Any, folder: Any, **how: Any) -> None:
         (folder / f"{model.name}.h").write_text(translation.header)
         (folder / f"{model.name}.c").write_text(translation.source)
         self.model = model
@@ -77,31 +80,31 @@ class CModel:
             items = "".join(f"{item.path.replace(group, 'o', 1)}," for item in found)
             self.flat[group] = eval(f"lambda o: ({items})")
 
-    def function(self, name):
+    def function(self, name: Any) -> Any:
         return getattr(self.library, f"{self.model.name}_{name}")
 
-    def defaults(self):
+    def defaults(self) -> Any:
         """Return start values of parameters and inputs, flat."""
         params, inputs = (structure(self.kinds[group])() for group in ("params", "inputs"))
         self.function("defaults")(ctypes.byref(params), ctypes.byref(inputs))
         return self.flat["params"](params), self.flat["inputs"](inputs)
 
-    def initialize(self, params):
+    def initialize(self, params: Any) -> None:
         self.params = to_c(params, self.kinds["params"])
         pointers = (ctypes.byref(item) for item in (self.params, self.state, self.outputs))
         self.function("initialize")(*pointers)
 
-    def step(self, inputs, dt_ns):
+    def step(self, inputs: Any, dt_ns: Any) -> None:
         inputs = to_c(inputs, self.kinds["inputs"])
         state, params, outputs = (ctypes.byref(item) for item in (self.state, self.params, self.outputs))
         store = [] if self.store is None else [ctypes.byref(self.store)]
         self.function("step")(*store, state, ctypes.byref(inputs), params, ctypes.c_int64(dt_ns), outputs)
 
-    def differing_columns(self, store):
+    def differing_columns(self, store: Any) -> Any:
         """Return the names of the columns whose bytes differ from CPython's."""
         return [name for name in store._fields if bytes(getattr(self.store, name)) != getattr(store, name).tobytes()]
 
-    def differing(self, state, outputs):
+    def differing(self, state: Any, outputs: Any) -> Any:
         """Return the names of state and outputs whose bits differ from CPython's."""
         found = []
         for group, own, other in (("state", self.state, state), ("outputs", self.outputs, outputs)):
@@ -110,7 +113,7 @@ class CModel:
         return found
 
 
-def flatten(value):
+def flatten(value: Any) -> Any:
     if not isinstance(value, tuple):
         return [value]
     return [scalar for item in value for scalar in flatten(item)]

@@ -4,7 +4,7 @@ import ctypes
 import importlib.util
 import re
 import sys
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from c_model import CModel, bits, flatten
 
@@ -63,7 +63,7 @@ class Inputs(NamedTuple):
     q: bool = False
 
 
-def load(text, folder, name):
+def load(text: Any, folder: Any, name: Any) -> Any:
     """Return the module made of ``text``."""
     path = folder / f"{name}.py"
     path.write_text(text)
@@ -74,7 +74,7 @@ def load(text, folder, name):
     return module
 
 
-def model_of(module):
+def model_of(module: Any) -> Any:
     """Return the model that a module holds in the usual names."""
     return Model(
         "Trial", "a trial", module, module.Nothing, module.Nothing, module.In, module.Out, module.initialize,
@@ -82,12 +82,12 @@ def model_of(module):
     )  # fmt: skip
 
 
-def results(text):
+def results(text: Any) -> Any:
     """Return name and result type of the functions under test: those that take all six inputs."""
     return re.findall(rf"^def (\w+)\({re.escape(SIGNATURE)}\) -> (\w+):", text, re.MULTILINE)
 
 
-def whole_module(text):
+def whole_module(text: Any) -> Any:
     """Return a module that has the functions in ``text`` and a model that calls all of them."""
     found = results(text)
     fields = "\n".join(f"    {name}: {kind} = {STARTS.get(kind, f'{kind}()')}" for name, kind in found)
@@ -98,7 +98,7 @@ def whole_module(text):
 class Twins:
     """The functions of a text, in CPython and in C."""
 
-    def __init__(self, text, folder, name, **how):
+    def __init__(self, text: Any, folder: Any, name: Any, **how: Any) -> None:
         self.names = [name for name, _ in results(text)]
         self.module = load(whole_module(text), folder, name)
         self.translation = translate(model_of(self.module))
@@ -108,7 +108,7 @@ class Twins:
         self.c.initialize(self.module.Nothing())
         self.raised = 0
 
-    def differing(self, inputs, only=None):
+    def differing(self, inputs: Any, only: Any = None) -> Any:
         """Return what differs; where CPython raises or leaves 64 bits there is nothing to compare."""
         self.c.step(self.module.In(*inputs), 0)
         found = []
@@ -127,7 +127,7 @@ class Twins:
         return found
 
 
-def flat_c(value):
+def flat_c(value: Any) -> Any:
     """Return the scalars of a ctypes value."""
     if isinstance(value, ctypes.Array):
         return [scalar for item in value for scalar in flat_c(item)]

@@ -1,5 +1,7 @@
 """Hypothesis writes functions of the model language: well typed, of bounded integers, all nested in all."""
 
+from typing import Any
+
 from hypothesis import strategies as st
 
 HEAD = '''\
@@ -57,7 +59,7 @@ INTS = ("0", "1", "-1", "2", "3", "7", "-5", "100000", "Mode.HIGH", "Mode.LOW", 
 class Function:
     """One function in the writing."""
 
-    def __init__(self, draw, helpers, name):
+    def __init__(self, draw: Any, helpers: Any, name: Any) -> None:
         self.draw, self.helpers, self.name = draw, helpers, name
         self.lines = []
         self.scope = {"float": ["x", "y"], "int": ["n", "m"], "bool": ["p", "q"], "Point": [], "Car": ["CAR"],
@@ -65,26 +67,26 @@ class Function:
         self.fixed = {"CAR", "ROW"}
         self.count = 0
 
-    def pick(self, options):
+    def pick(self, options: Any) -> Any:
         return self.draw(st.sampled_from(options))
 
-    def chance(self, one_in):
+    def chance(self, one_in: Any) -> Any:
         return self.draw(st.integers(1, one_in)) == 1
 
-    def new(self, kind):
+    def new(self, kind: Any) -> Any:
         self.count += 1
         return f"{kind[0].lower()}{self.count}"
 
     # ---- expressions
 
-    def expression(self, kind, depth):
+    def expression(self, kind: Any, depth: Any) -> Any:
         """Return the text of an expression; deeper than ``depth`` there are names and numbers only."""
         if depth <= 0 or self.chance(5):
             return self.leaf(kind)
         made = self.pick(getattr(self, f"{kind.lower()}s"))
         return made(self, depth - 1)
 
-    def leaf(self, kind):
+    def leaf(self, kind: Any) -> Any:
         if self.scope[kind] and not self.chance(3):
             return self.pick(self.scope[kind])
         return {
@@ -97,18 +99,18 @@ class Function:
             "Fleet": lambda: self.pick(("Fleet()", "Fleet(lead=-0.0)")),
         }[kind]()
 
-    def call(self, kind, depth):
+    def call(self, kind: Any, depth: Any) -> Any:
         found = [item for item in self.helpers if item[1] == kind]
         if not found:
             return self.leaf(kind)
         name, _, kinds = self.pick(found)
         return f"{name}({', '.join(self.expression(item, min(depth, 1)) for item in kinds)})"
 
-    def choice(self, kind, depth):
+    def choice(self, kind: Any, depth: Any) -> Any:
         test, first, other = (self.expression(item, depth) for item in ("bool", kind, kind))
         return f"({first} if {test} else {other})"
 
-    def several(self, kind, depth, forms):
+    def several(self, kind: Any, depth: Any, forms: Any) -> Any:
         """Return one of ``forms`` with expressions in place of {f}, {i} and so on."""
         text = self.pick(forms)
         letters = {"f": "float", "i": "int", "b": "bool", "p": "Point", "c": "Car", "r": "Row", "w": "Fleet"}
@@ -198,10 +200,10 @@ class Function:
 
     # ---- statements
 
-    def write(self, text, indent):
+    def write(self, text: Any, indent: Any) -> None:
         self.lines.append("    " * indent + text)
 
-    def statements(self, indent, budget, returned, in_loop=False):
+    def statements(self, indent: Any, budget: Any, returned: Any, in_loop: bool = False) -> None:
         """Write a block; names that it binds are forgotten after it."""
         before = {kind: list(names) for kind, names in self.scope.items()}
         count = len(self.lines)
@@ -211,21 +213,21 @@ class Function:
             self.write("pass", indent)
         self.scope = before
 
-    def statement(self, indent, budget, returned, in_loop):
+    def statement(self, indent: Any, budget: Any, returned: Any, in_loop: Any) -> None:
         forms = [self.assign, self.assign, self.again, self.again, self.unpack, self.replace, self.update, self.fleet]
         if budget > 0:
             forms += [self.branch, self.branch, self.loop, self.match, self.leave]
             forms += [self.go_on] if in_loop else []
         self.pick(forms)(indent, budget - 1, returned)
 
-    def assign(self, indent, _budget, _returned):
+    def assign(self, indent: Any, _budget: Any, _returned: Any) -> None:
         kind = self.pick(ALL)
         text = self.expression(kind, 3)
         name = self.new(kind)
         self.write(f"{name} = {text}", indent)
         self.scope[kind].append(name)
 
-    def again(self, indent, _budget, _returned):
+    def again(self, indent: Any, _budget: Any, _returned: Any) -> None:
         kind = self.pick(KINDS)
         names = [name for name in self.scope[kind] if name not in self.fixed]
         if names and kind in ("float", "int") and self.chance(3):
@@ -234,7 +236,7 @@ class Function:
         elif names:
             self.write(f"{self.pick(names)} = {self.expression(kind, 3)}", indent)
 
-    def unpack(self, indent, _budget, _returned):
+    def unpack(self, indent: Any, _budget: Any, _returned: Any) -> None:
         kind = self.pick(("float", "int", "Point", "Row"))
         names = [name for name in self.scope[kind] if name not in self.fixed]
         if len(names) > 1:
@@ -245,7 +247,7 @@ class Function:
             self.write(f"{a}, {b} = {self.expression('Point', 2)}", indent)
             self.scope["float"] += [a, b]
 
-    def replace(self, indent, _budget, _returned):
+    def replace(self, indent: Any, _budget: Any, _returned: Any) -> None:
         names = [name for name in self.scope["Car"] if name not in self.fixed]
         if names:
             name = self.pick(names)
@@ -255,7 +257,7 @@ class Function:
             ))  # fmt: skip
             self.write(f"{name} = {name}._replace({self.several('Car', 2, (form.replace('{c}', name),))})", indent)
 
-    def update(self, indent, _budget, _returned):
+    def update(self, indent: Any, _budget: Any, _returned: Any) -> None:
         """Write a change of a struct by a function that changes it where it lies."""
         for kind, names in ((kind, [n for n in self.scope[kind] if n not in self.fixed]) for kind in ("Car", "Fleet")):
             found = [item for item in self.helpers if item[1] == kind and item[2][0] == kind]
@@ -264,13 +266,13 @@ class Function:
                 rest = "".join(f", {self.expression(one, 1)}" for one in kinds[1:])
                 self.write(f"{name} = {helper}({self.pick((name, name, self.leaf(kind)))}{rest})", indent)
 
-    def fleet(self, indent, _budget, _returned):
+    def fleet(self, indent: Any, _budget: Any, _returned: Any) -> None:
         names = self.scope["Fleet"]
         if names:
             name = self.pick(names)
             self.write(f"{name} = {self.new_fleet(name)}", indent)
 
-    def new_fleet(self, name):
+    def new_fleet(self, name: Any) -> Any:
         """Return another fleet made of one."""
         form = self.pick((
             "{F}._replace(first={c}, second={F}.first)", "{F}._replace(second={F}.second._replace(at={F}.first.at))",
@@ -280,7 +282,7 @@ class Function:
         ))  # fmt: skip
         return self.several("Car", 1, (form.replace("{F}", name),))
 
-    def branch(self, indent, budget, returned):
+    def branch(self, indent: Any, budget: Any, returned: Any) -> None:
         self.write(f"if {self.expression('bool', 3)}:", indent)
         self.statements(indent + 1, budget, returned)
         if self.chance(3):
@@ -290,7 +292,7 @@ class Function:
             self.write("else:", indent)
             self.statements(indent + 1, budget, returned)
 
-    def loop(self, indent, budget, returned):
+    def loop(self, indent: Any, budget: Any, returned: Any) -> None:
         kind, head = self.pick((
             ("int", "range({i} % 4)"), ("int", "range(2, 9, 3)"), ("int", "range(3, -2, -1)"), ("float", "{r}"),
             ("Point", "{c}.ends"), ("float", "({f}, {f})"), ("int", "range({i} % 3, {i} % 5)"),
@@ -309,22 +311,22 @@ class Function:
         self.scope[kind].remove(name)
         self.scope["int"] = before
 
-    def go_on(self, indent, _budget, _returned):
+    def go_on(self, indent: Any, _budget: Any, _returned: Any) -> None:
         self.write(f"if {self.expression('bool', 2)}:", indent)
         self.write(self.pick(("break", "continue")), indent + 1)
 
-    def match(self, indent, budget, returned):
+    def match(self, indent: Any, budget: Any, returned: Any) -> None:
         self.write(f"match {self.expression('int', 2)}:", indent)
         for case in ("Mode.ON", "0 | Mode.LOW", "2 if " + self.expression("bool", 1), "_"):
             if case == "_" or not self.chance(3):
                 self.write(f"case {case}:", indent + 1)
                 self.statements(indent + 2, budget, returned)
 
-    def leave(self, indent, _budget, returned):
+    def leave(self, indent: Any, _budget: Any, returned: Any) -> None:
         self.write(f"if {self.expression('bool', 2)}:", indent)
         self.write(f"return {self.returned(returned)}", indent + 1)
 
-    def returned(self, kind):
+    def returned(self, kind: Any) -> Any:
         """Return what a function gives: of a large struct often what was changed."""
         names = [name for name in self.scope.get(kind, ()) if name not in self.fixed]
         if kind == "Fleet":
@@ -341,7 +343,7 @@ class Function:
         text = self.pick((whole, f"{{c}}._replace({form})", "{c}"))
         return self.several("Car", 1, (text.replace("{c}", name),))
 
-    def whole(self, signature, kinds, returned):
+    def whole(self, signature: Any, kinds: Any, returned: Any) -> Any:
         """Return the text of the function."""
         self.scope = {kind: [name for name, own in kinds.items() if own == kind] + [
             name for name in self.scope[kind] if name in self.fixed] for kind in ALL}  # fmt: skip
@@ -352,7 +354,7 @@ class Function:
 
 
 @st.composite
-def programs(draw, functions):
+def programs(draw: Any, functions: Any) -> Any:
     """Return the text of a module with ``functions`` functions of the usual six arguments, and helpers."""
     texts, helpers = [HEAD], []
     for number in range(functions):

@@ -3,6 +3,7 @@
 import itertools
 import math
 from pathlib import Path
+from typing import Any
 
 import pytest
 from c_model import COMPILER
@@ -15,11 +16,11 @@ INTS = (0, 1, -1, 5, 7, -2, 3, 2**31, -(2**31), 2**53 + 1, -(2**53) - 1, 1234567
 
 
 @pytest.fixture(scope="module")
-def twins(tmp_path_factory):
+def twins(tmp_path_factory: pytest.TempPathFactory) -> Any:
     return Twins("# ---- types" + TEXT, tmp_path_factory.mktemp("language"), "constructs_under_test")
 
 
-def samples():
+def samples() -> Any:
     """Return inputs that meet each pair of special values, and both truths."""
     floats = list(itertools.product(FLOATS, FLOATS))
     ints = list(itertools.product(INTS, INTS))
@@ -30,12 +31,12 @@ def samples():
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_construct_gives_the_bits_of_cpython(twins, name):
+def test_construct_gives_the_bits_of_cpython(twins: Any, name: Any) -> None:
     before = twins.raised
     differing = [line for inputs in samples() for line in twins.differing(inputs, only=name)]
     assert differing[:5] == []
     assert twins.raised - before < 0.95 * len(samples())
 
 
-def test_there_is_a_compiler():
+def test_there_is_a_compiler() -> None:
     assert COMPILER

@@ -1,5 +1,8 @@
 """The shipped models in C give CPython's bits: every state and output, at every step of closed-loop runs."""
 
+from pathlib import Path
+from typing import Any
+
 import pytest
 from c_model import COMPILER, ZIG, CModel, compiled
 
@@ -22,28 +25,28 @@ SCENARIOS = {
 
 
 @pytest.fixture(scope="module")
-def translations():
+def translations() -> Any:
     return {name: translate(model) for name, model in MODELS.items()}
 
 
 @pytest.fixture(scope="module")
-def in_c(translations, tmp_path_factory):
+def in_c(translations: Any, tmp_path_factory: pytest.TempPathFactory) -> Any:
     """Place in a run -> the model compiled."""
     folder = tmp_path_factory.mktemp("c")
     return {name: CModel(model, translations[name], folder) for name, model in MODELS.items()}
 
 
-def watched(model, twin):
+def watched(model: Any, twin: Any) -> Any:
     """Return ``model`` whose functions also step ``twin`` and compare."""
 
-    def initialize(params):
+    def initialize(params: Any) -> Any:
         state, outputs = model.initialize(params)
         twin.initialize(params)
         assert twin.differing(state, outputs) == []
         twin.steps = 0
         return state, outputs
 
-    def step(state, inputs, params, dt_ns):
+    def step(state: Any, inputs: Any, params: Any, dt_ns: Any) -> Any:
         state, outputs = model.step(state, inputs, params, dt_ns)
         twin.step(inputs, dt_ns)
         assert twin.differing(state, outputs) == []
@@ -54,7 +57,7 @@ def watched(model, twin):
 
 
 @pytest.mark.parametrize("name", SCENARIOS)
-def test_closed_loop_in_c_equals_cpython(name, in_c, monkeypatch):
+def test_closed_loop_in_c_equals_cpython(name: Any, in_c: Any, monkeypatch: pytest.MonkeyPatch) -> None:
     for place, model in MODELS.items():
         monkeypatch.setitem(session.MODELS, place, watched(model, in_c[place]))
     ran = session.run_scenario(load_scenario(name, list(SCENARIOS[name])))
@@ -62,14 +65,14 @@ def test_closed_loop_in_c_equals_cpython(name, in_c, monkeypatch):
     assert all(twin.steps > 100 for twin in in_c.values())
 
 
-def test_start_values_are_the_defaults_of_the_types(in_c):
+def test_start_values_are_the_defaults_of_the_types(in_c: Any) -> None:
     for twin in in_c.values():
         params, inputs = twin.defaults()
         assert list(params) == flatten(twin.model.params())
         assert list(inputs) == flatten(twin.model.inputs())
 
 
-def test_both_headers_may_be_included_in_one_file(translations, tmp_path):
+def test_both_headers_may_be_included_in_one_file(translations: Any, tmp_path: Path) -> None:
     for item in translations.values():
         (tmp_path / f"{item.name}.h").write_text(item.header)
     text = '#include "Vehicle.h"\n#include "Controller.h"\nVehicle vehicle;\nController controller;\n'
@@ -77,7 +80,7 @@ def test_both_headers_may_be_included_in_one_file(translations, tmp_path):
     compiled(tmp_path, "both", "both.c")
 
 
-def test_both_compilers_have_nothing_to_say(translations, tmp_path):
+def test_both_compilers_have_nothing_to_say(translations: Any, tmp_path: Path) -> None:
     for item in translations.values():
         (tmp_path / f"{item.name}.h").write_text(item.header)
         (tmp_path / f"{item.name}.c").write_text(item.source)

@@ -4,6 +4,7 @@ import ast
 import copy
 import random
 from pathlib import Path
+from typing import Any
 
 import pytest
 from language import HEAD, SIGNATURE, Twins, results
@@ -46,12 +47,12 @@ PLAIN = (
 )
 
 
-def expressions(function):
+def expressions(function: Any) -> Any:
     nodes = (node for part in function.body for node in ast.walk(part) if isinstance(node, ast.expr))
     return [node for node in nodes if not isinstance(getattr(node, "ctx", None), ast.Store | ast.Del)]
 
 
-def donors():
+def donors() -> Any:
     """Return expressions that need nothing but arguments and what the module has."""
     known = ARGUMENTS | {name for node in TREE.body for name in bound(node)} | set(dir(__builtins__))
     found = [node for function in FUNCTIONS for node in expressions(function)]
@@ -60,21 +61,21 @@ def donors():
     return plain + [node for node, used in zip(found, names, strict=True) if used <= known]
 
 
-def bound(node):
+def bound(node: Any) -> Any:
     if isinstance(node, ast.Assign):
         return [target.id for target in node.targets]
     return [alias.asname or alias.name for alias in node.names] if hasattr(node, "names") else [node.name]
 
 
 class Swap(ast.NodeTransformer):
-    def __init__(self, old, new):
+    def __init__(self, old: Any, new: Any) -> None:
         self.old, self.new = old, new
 
-    def visit(self, node):
+    def visit(self, node: Any) -> Any:
         return self.new if node is self.old else self.generic_visit(node)
 
 
-def mutant(choose, name, parts):
+def mutant(choose: Any, name: Any, parts: Any) -> Any:
     """Return a function with an expression replaced, and perhaps a statement gone or doubled."""
     while True:
         function = copy.deepcopy(choose.choice(FUNCTIONS))
@@ -92,7 +93,7 @@ def mutant(choose, name, parts):
         return text
 
 
-def translated(mutants, head, folder, seed):
+def translated(mutants: Any, head: Any, folder: Any, seed: Any) -> Any:
     """Return the mutants that are not refused, compiled; and the names of those that are."""
     refused = set()
     while True:
@@ -108,7 +109,7 @@ def translated(mutants, head, folder, seed):
         assert refused <= set(mutants)
 
 
-def name_at(lines, number):
+def name_at(lines: Any, number: Any) -> Any:
     """Return the name of the function at a line."""
     heads = [line for line in lines[:number] if line.startswith("def ")]
     return heads[-1].removeprefix("def ").partition("(")[0]
@@ -116,7 +117,7 @@ def name_at(lines, number):
 
 @pytest.mark.filterwarnings("ignore::SyntaxWarning")
 @pytest.mark.parametrize("seed", [1, 2, 3])
-def test_mutants_are_refused_or_equal(seed, tmp_path):
+def test_mutants_are_refused_or_equal(seed: int, tmp_path: Path) -> None:
     choose, parts = random.Random(seed), donors()
     mutants = {f"f{number}": mutant(choose, f"f{number}", parts) for number in range(40)}
     twins, refused = translated(mutants, "\n\n".join(ast.unparse(node) for node in HELPERS), tmp_path, seed)

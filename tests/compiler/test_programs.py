@@ -1,6 +1,7 @@
 """Random programs of the model language run in CPython and in C: the same bits for any input."""
 
 import itertools
+from typing import Any
 
 import pytest
 from hypothesis import HealthCheck, Phase, given, settings
@@ -15,7 +16,7 @@ INPUTS = st.tuples(FLOATS, FLOATS, INTS, INTS, st.booleans(), st.booleans())
 
 
 @pytest.fixture(scope="module")
-def folder(tmp_path_factory):
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Any:
     return tmp_path_factory.mktemp("programs")
 
 
@@ -28,6 +29,6 @@ def folder(tmp_path_factory):
     suppress_health_check=list(HealthCheck),
 )
 @given(programs(functions=12), st.lists(INPUTS, min_size=30, max_size=30))
-def test_random_programs_give_the_bits_of_cpython(folder, text, inputs):
+def test_random_programs_give_the_bits_of_cpython(folder: Any, text: Any, inputs: Any) -> None:
     twins = Twins(text, folder, f"program_{next(numbers)}", warnings=("-w",))
     assert [line for item in inputs for line in twins.differing(item)] == []

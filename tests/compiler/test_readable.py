@@ -6,6 +6,7 @@ import re
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 import pytest
 from c_model import COMPILER, ZIG, compiled
@@ -56,18 +57,18 @@ def step(state: Nothing, inputs: In, params: Nothing, dt_ns: int) -> tuple[Nothi
 
 
 @pytest.fixture(scope="module")
-def translations():
+def translations() -> Any:
     return [translate(model) for model in MODELS.values()]
 
 
-def test_lines_fit_on_a_page(translations):
+def test_lines_fit_on_a_page(translations: Any) -> None:
     for item in translations:
         for text in (item.header, item.source):
             assert max(map(len, text.splitlines())) <= 120
             assert text.isascii() or not re.search(r"[^\x00-\x7f]", re.sub(r"/\*.*?\*/", "", text, flags=re.DOTALL))
 
 
-def test_every_function_has_its_docstring_and_its_file(translations):
+def test_every_function_has_its_docstring_and_its_file(translations: Any) -> None:
     vehicle = translations[0].source
     assert "/* Return the car at rest at its start pose, wheel straight, in park. */\nstatic " in vehicle
     for file in ("modelkit/geometry.py", "vehicle_fmu/steering.py", "vehicle_fmu/model.py"):
@@ -76,12 +77,12 @@ def test_every_function_has_its_docstring_and_its_file(translations):
     assert vehicle.index("vehicle_fmu/steering.py -") < vehicle.index("vehicle_fmu/model.py -")
 
 
-def test_units_and_meanings_are_in_the_header(translations):
+def test_units_and_meanings_are_in_the_header(translations: Any) -> None:
     assert "double wheelbase; /* [m] front to rear axle */" in translations[0].header
     assert "Body_SINGLE_TRACK = 1, /* Three degrees of freedom, linear tyres. */" in translations[0].header
 
 
-def test_only_the_entries_are_external(translations):
+def test_only_the_entries_are_external(translations: Any) -> None:
     for item in translations:
         heads = re.findall(r"^(?!static|typedef|enum|#|/| |\}|\{|$)(.*)\(", item.source, re.MULTILINE)
         assert heads == [f"void {item.name}_{entry}" for entry in ("defaults", "initialize", "step")]
@@ -90,7 +91,7 @@ def test_only_the_entries_are_external(translations):
         assert not re.search(r"\b((malloc|free|memcpy)\(|static (?!const|inline)\w+ \w+( =|;|\[))", item.source)
 
 
-def test_text_is_the_same_for_any_hash_seed():
+def test_text_is_the_same_for_any_hash_seed() -> None:
     program = (
         "import hashlib, controller_fmu; from fmus.compiler import translate; t = translate(controller_fmu.MODEL);"
         "print(hashlib.sha256((t.header + t.source).encode()).hexdigest())"
@@ -102,7 +103,7 @@ def test_text_is_the_same_for_any_hash_seed():
     assert other.stdout.strip() == hashlib.sha256((here.header + here.source).encode()).hexdigest()
 
 
-def test_header_is_c_plus_plus(translations, tmp_path):
+def test_header_is_c_plus_plus(translations: Any, tmp_path: Path) -> None:
     compiler = [*ZIG.command[:-1], "c++"] if COMPILER.is_zig else ["g++"]
     for item in translations:
         (tmp_path / f"{item.name}.h").write_text(item.header)
@@ -115,7 +116,7 @@ def test_header_is_c_plus_plus(translations, tmp_path):
     assert not done.returncode, done.stderr
 
 
-def test_what_the_models_remember_is_changed_where_it_lies(translations):
+def test_what_the_models_remember_is_changed_where_it_lies(translations: Any) -> None:
     """Neither the step nor what it calls makes a second state."""
     for item in translations:
         states = re.findall(r"^    (\w*State) next\w*;$", item.source, re.MULTILINE)
@@ -147,7 +148,7 @@ def f(x: float, y: float, n: int, m: int, p: bool, q: bool) -> float:
 '''
 
 
-def test_comments_stay_where_they_are(tmp_path):
+def test_comments_stay_where_they_are(tmp_path: Path) -> None:
     module = load(whole_module(COMMENTED), tmp_path, "commented")
     source = translate(model_of(module)).source
     body = source[source.index("/* Return something") : source.index("/* -------- entries")]
@@ -197,7 +198,7 @@ def Trial_step(next: float) -> float:
 '''
 
 
-def test_names_that_c_has_taken(tmp_path):
+def test_names_that_c_has_taken(tmp_path: Path) -> None:
     text = whole_module(NAMES).replace("    _hidden_: float = 1.0\n", "")
     module = load(text, tmp_path, "names")
     translation = translate(model_of(module))
@@ -209,7 +210,7 @@ def test_names_that_c_has_taken(tmp_path):
     assert "static inline double remainder_names(" in translation.source
 
 
-def test_the_example_of_the_documentation_is_true(tmp_path):
+def test_the_example_of_the_documentation_is_true(tmp_path: Path) -> None:
     blocks = dict(re.findall(r"<!-- (python|c) -->\n\n```\w+\n(.*?)```", DOCS.read_text(), re.DOTALL))
     module = load(WALLS.format(text=blocks["python"]), tmp_path, "walls")
     translation = translate(model_of(module))

@@ -1,6 +1,8 @@
 """What cannot be proved equal in C is refused: all of it at once, each with its line and what to write instead."""
 
 import itertools
+from pathlib import Path
+from typing import Any
 
 import pytest
 from bad_programs import BODIES, FRAME, HEAD, MODULES, WHOLE
@@ -11,7 +13,7 @@ from fmus.compiler import Refused, translate
 numbers = itertools.count()
 
 
-def refusals_of(text, folder):
+def refusals_of(text: Any, folder: Any) -> Any:
     """Return what is said of a module, and the lines marked in it."""
     module = load(text, folder, f"bad_{next(numbers)}")
     marked = [number for number, line in enumerate(text.splitlines(), start=1) if "# !" in line]
@@ -23,13 +25,13 @@ def refusals_of(text, folder):
     return refused.value.refusals, marked
 
 
-def function(body):
+def function(body: Any) -> Any:
     return WHOLE + "\n".join(f"    {line}" for line in body.splitlines()) + "\n"
 
 
 @pytest.mark.parametrize("name", BODIES)
 @pytest.mark.filterwarnings("ignore::SyntaxWarning")
-def test_bad_body_is_refused(name, tmp_path):
+def test_bad_body_is_refused(name: Any, tmp_path: Path) -> None:
     body, what, advice = BODIES[name]
     found, marked = refusals_of(HEAD + function(body) + FRAME, tmp_path)
     assert [item.line for item in found] == marked
@@ -38,7 +40,7 @@ def test_bad_body_is_refused(name, tmp_path):
 
 
 @pytest.mark.parametrize("name", MODULES)
-def test_bad_definition_is_refused(name, tmp_path):
+def test_bad_definition_is_refused(name: Any, tmp_path: Path) -> None:
     definition, call, what, advice = MODULES[name]
     call, _, mark = call.partition("  ")
     body = f"return {call}  {mark}"
@@ -48,19 +50,19 @@ def test_bad_definition_is_refused(name, tmp_path):
     assert advice in found[0].advice
 
 
-def test_decorated_function_is_refused(tmp_path):
+def test_decorated_function_is_refused(tmp_path: Path) -> None:
     text = HEAD.replace("def half", "def same(g):\n    return g\n\n\n@same  # !\ndef half")
     found, marked = refusals_of(text + function("return half(x)") + FRAME, tmp_path)
     assert [item.line for item in found] == marked
     assert "decorator" in found[0].what
 
 
-def test_all_that_is_wrong_is_said_at_once(tmp_path):
+def test_all_that_is_wrong_is_said_at_once(tmp_path: Path) -> None:
     body = "y = [x]  # !\nz = y[0]\nfor k in n:  # !\n    x += 1\nx = x ** 2  # !\nif x:\n    return 1  # !\n"
     body += "return half(2)  # !"
     found, marked = refusals_of(HEAD + function(body) + FRAME, tmp_path)
     assert [item.line for item in found] == marked
 
 
-def test_there_are_many_of_them():
+def test_there_are_many_of_them() -> None:
     assert len(BODIES) + len(MODULES) > 120

@@ -2,6 +2,7 @@
 
 import itertools
 import math
+from typing import Any
 
 import pytest
 
@@ -13,7 +14,7 @@ WHEEL = SteeringLimits(2.405, math.radians(30.0), 4.3)
 SPEEDS = (0.0, 0.3, 0.6)
 
 
-def assert_ends_on_axis(route):
+def assert_ends_on_axis(route: Any) -> None:
     assert route.direction == -1
     end = point_at(route, length_of(route)).pose
     assert end.y == pytest.approx(0.0, abs=1e-5)
@@ -21,7 +22,7 @@ def assert_ends_on_axis(route):
     assert end.x == pytest.approx(0.0, abs=1e-6)
 
 
-def assert_wheel_follows(route, speed):
+def assert_wheel_follows(route: Any, speed: Any) -> None:
     """From sample to sample the wheel turns no faster than it can."""
     step = 0.01 * speed
     angles = [math.atan(WHEEL.wheelbase * curvature_at(route, k * step)) for k in range(int(length_of(route) / step))]
@@ -31,7 +32,7 @@ def assert_wheel_follows(route, speed):
 
 @pytest.mark.parametrize("speed", SPEEDS)
 @pytest.mark.parametrize("pose", [(6.6, 1.6, 0.55), (4.6, 1.5, 0.7), (4.6, 1.5, 0.78)])
-def test_an_arc_leads_in(pose, speed):
+def test_an_arc_leads_in(pose: Any, speed: Any) -> None:
     route = arc_in(Pose(*pose), speed, WHEEL, 0.0)
     assert_ends_on_axis(route)
     if speed > 0.0:
@@ -41,13 +42,13 @@ def test_an_arc_leads_in(pose, speed):
         assert drivable(route) < length_of(route)
 
 
-def test_an_arc_that_is_too_tight_or_too_wide_is_none():
+def test_an_arc_that_is_too_tight_or_too_wide_is_none() -> None:
     assert arc_in(Pose(4.6, 0.8, 0.8), 0.0, WHEEL, 0.0).direction == 0
     assert arc_in(Pose(2.0, 1.8, 0.8), 0.0, WHEEL, 0.0).direction == 0
     assert arc_in(Pose(4.6, 1.5, -0.1), 0.0, WHEEL, 0.0).direction == 0
 
 
-def test_a_line_before_the_arc():
+def test_a_line_before_the_arc() -> None:
     bend = bend_of(4.3, swing_way(0.3, 4.3, WHEEL))
     route = line_in(Pose(6.0, 3.0, 0.7), bend, 0.0)
     assert_ends_on_axis(route)
@@ -57,7 +58,7 @@ def test_a_line_before_the_arc():
 
 @pytest.mark.parametrize("lead", [0.0, 0.8])
 @pytest.mark.parametrize(("speed", "radius"), [(0.0, 5.0), (0.3, 4.3), (0.3, 5.0), (0.6, 4.3)])
-def test_an_s_curve_leads_in(lead, speed, radius):
+def test_an_s_curve_leads_in(lead: float, speed: float, radius: float) -> None:
     bend = bend_of(radius, swing_way(speed, radius, WHEEL))
     route = s_curve(Pose(9.0, 3.0, 0.05), lead, bend, bend, 0.2)
     assert_ends_on_axis(route)
@@ -66,7 +67,7 @@ def test_an_s_curve_leads_in(lead, speed, radius):
         assert_wheel_follows(route, speed)
 
 
-def test_without_clothoids_it_is_the_path_of_guo():
+def test_without_clothoids_it_is_the_path_of_guo() -> None:
     """Radius 5.499 m, the tangent point at Q1 of Table 2."""
     bend = bend_of(5.499, 0.0)
     route = s_curve(Pose(7.608, 3.056, 0.0), 0.0, bend, bend, 0.0)
@@ -74,14 +75,14 @@ def test_without_clothoids_it_is_the_path_of_guo():
     assert (q1.x - 7.608, q1.y - 3.056, q1.heading) == pytest.approx((-3.798, -1.522, 0.765), abs=0.03)
 
 
-def test_a_clothoid_moves_the_circle_away_from_the_line():
+def test_a_clothoid_moves_the_circle_away_from_the_line() -> None:
     bend = bend_of(5.0, 1.0)
     assert bend.angle == pytest.approx(0.1)
     assert bend.rho - 5.0 == pytest.approx(1.0 / (24.0 * 5.0), rel=0.01)
     assert bend.tangent == pytest.approx(0.5, rel=0.01)
 
 
-def test_the_mirror_image_and_the_foot():
+def test_the_mirror_image_and_the_foot() -> None:
     bend = bend_of(4.5, 0.5)
     start = Pose(9.0, 3.0, 0.1)
     route = s_curve(start, 0.0, bend, bend, 0.0)

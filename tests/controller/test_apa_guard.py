@@ -1,6 +1,7 @@
 """The guard over its inputs: whatever stands where the car would be by the time it stops, it brakes."""
 
 import math
+from typing import Any
 
 import pytest
 from hypothesis import given, settings
@@ -49,7 +50,7 @@ BRAKING = (
 """Mode, step of the manoeuvre, whether it brakes."""
 
 
-def sees(state, readings, around, direction, speed, curvature):
+def sees(state: Any, readings: Any, around: Any, direction: Any, speed: Any, curvature: Any) -> Any:
     return watch_way(
         state, readings, EMPTY, around, HeldCourse(HERE, direction, curvature, direction * speed, CAR), PARAMS
     )
@@ -57,7 +58,9 @@ def sees(state, readings, around, direction, speed, curvature):
 
 @settings(max_examples=500, deadline=None)
 @given(places, st.floats(-3.5, 3.5), directions, speeds, curvatures)
-def test_a_known_thing_that_would_be_touched_is_braked_for(x, y, direction, speed, curvature):
+def test_a_known_thing_that_would_be_touched_is_braked_for(
+    x: Any, y: Any, direction: Any, speed: Any, curvature: Any
+) -> None:
     box = Box(x - 0.1, x + 0.1, y - 0.1, y + 0.1)
     stop = stopping_way(GuardState(), speed, PARAMS)
     there = advance(HERE, float(direction), stop, curvature, curvature)
@@ -71,7 +74,7 @@ def test_a_known_thing_that_would_be_touched_is_braked_for(x, y, direction, spee
         assert not sight.blocked
 
 
-def heard_at(x, y):
+def heard_at(x: Any, y: Any) -> Any:
     """Return what the sensors of a car at the origin hear of a pole."""
     missing = len(SceneParams().boxes) - 1
     scene = SceneParams(boxes=(Obstacle(x, y, 0.0, 0.2, 0.2), *(Obstacle() for _ in range(missing))))
@@ -80,7 +83,9 @@ def heard_at(x, y):
 
 @settings(max_examples=500, deadline=None)
 @given(places, st.floats(-3.5, 3.5), directions, speeds, curvatures)
-def test_an_unknown_thing_that_is_heard_and_would_be_touched_is_braked_for(x, y, direction, speed, curvature):
+def test_an_unknown_thing_that_is_heard_and_would_be_touched_is_braked_for(
+    x: Any, y: Any, direction: Any, speed: Any, curvature: Any
+) -> None:
     box = Box(x - 0.1, x + 0.1, y - 0.1, y + 0.1)
     readings = heard_at(x, y)
     stop = stopping_way(GuardState(), speed, PARAMS)
@@ -154,7 +159,7 @@ def test_the_brake_is_learnt_while_the_assist_brakes_and_at_no_other_time(mode: 
 
 @settings(max_examples=300, deadline=None)
 @given(*(st.floats(-4.0, 4.0) for _ in range(4)), st.floats(-math.pi, math.pi))
-def test_what_a_cone_hears_of_a_side_is_what_geometry_says(ax, ay, bx, by, axis):
+def test_what_a_cone_hears_of_a_side_is_what_geometry_says(ax: Any, ay: Any, bx: Any, by: Any, axis: Any) -> None:
     a, b = Point(ax, ay), Point(bx, by)
     exact = cone_line(Point(0.1, -0.2), axis, SENSORS.half_angle, a, b)
     ours = echo_of(ear_of(0.1, -0.2, axis, SENSORS.half_angle), a, b)

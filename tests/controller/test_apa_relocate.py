@@ -1,6 +1,7 @@
 """The slot is found again where the sensors hear it: drift of the odometry, walls not heard from the road."""
 
 import math
+from typing import Any
 
 import pytest
 
@@ -24,7 +25,7 @@ DRIFT = 0.08
 READINGS = 60
 
 
-def scene_of(boxes, side):
+def scene_of(boxes: Any, side: Any) -> Any:
     """Return a scene of (x0, x1, y0, y1) or (x0, x1, y0, y1, heading), mirrored for a slot on the left."""
     mirror = -1.0 if side == Side.LEFT else 1.0
     obstacles = [
@@ -34,12 +35,12 @@ def scene_of(boxes, side):
     return SceneParams(boxes=(*obstacles, *(Obstacle() for _ in range(missing))))
 
 
-def inputs_at(true, believed, boxes, side):
+def inputs_at(true: Any, believed: Any, boxes: Any, side: Any) -> Any:
     distances = heard_distances(true, scene_of(boxes, side), SENSORS, UltrasonicParams().kerb_height, 0)
     return ControllerInput(odometry=believed, ultrasonic=distances)
 
 
-def followed(slot, true, believed, boxes):
+def followed(slot: Any, true: Any, believed: Any, boxes: Any) -> Any:
     """Return the map and the slot after a while at a pose, of which the car believes another."""
     here = begin_map(slot, believed, MAP)
     readings = inputs_at(true, believed, boxes, slot.side).ultrasonic
@@ -49,7 +50,7 @@ def followed(slot, true, believed, boxes):
 
 
 @pytest.mark.parametrize("side", [0, 1])
-def test_neighbours_of_a_perpendicular_slot_are_followed(side):
+def test_neighbours_of_a_perpendicular_slot_are_followed(side: int) -> None:
     mirror = -1.0 if side == Side.LEFT else 1.0
     slot = Slot(Kind.PERPENDICULAR, side, Pose(0.0, 0.0, 0.0), 2.9, 0.0, UNSEEN)
     true = Pose(1.4, mirror * -2.5, mirror * (0.5 * math.pi + 0.1))
@@ -60,7 +61,7 @@ def test_neighbours_of_a_perpendicular_slot_are_followed(side):
     assert is_certain(here, MAP)
 
 
-def askew(corner, middle, turn):
+def askew(corner: Any, middle: Any, turn: Any) -> Any:
     """Return a box of 1.8 m x 4.6 m whose corner at the slot's mouth is at x = ``corner``, y = 0."""
     c, s = math.cos(turn), math.sin(turn)
     x, y = corner + middle * c + 2.3 * s, middle * s - 2.3 * c
@@ -69,7 +70,7 @@ def askew(corner, middle, turn):
 
 @pytest.mark.parametrize("side", [0, 1])
 @pytest.mark.parametrize("degrees", [-4.0, 4.0])
-def test_neighbours_that_stand_askew_are_given_their_own_heading(side, degrees):
+def test_neighbours_that_stand_askew_are_given_their_own_heading(side: int, degrees: float) -> None:
     mirror = -1.0 if side == Side.LEFT else 1.0
     turn = math.radians(degrees)
     slot = Slot(Kind.PERPENDICULAR, side, Pose(0.0, 0.0, 0.0), 3.2, 0.0, UNSEEN)
@@ -80,7 +81,7 @@ def test_neighbours_that_stand_askew_are_given_their_own_heading(side, degrees):
 
 
 @pytest.mark.parametrize("side", [0, 1])
-def test_the_wall_of_a_parallel_slot_is_followed(side):
+def test_the_wall_of_a_parallel_slot_is_followed(side: int) -> None:
     mirror = -1.0 if side == Side.LEFT else 1.0
     slot = Slot(Kind.PARALLEL, side, Pose(0.0, 0.0, 0.0), 6.0, 0.0, 2.1)
     true = Pose(1.6, mirror * -0.7, mirror * 0.2)
@@ -89,7 +90,7 @@ def test_the_wall_of_a_parallel_slot_is_followed(side):
     assert mirror * found.a.y - found.depth == pytest.approx(DRIFT - 2.1, abs=0.02)
 
 
-def test_the_map_is_less_sure_the_farther_the_car_drives_unheard():
+def test_the_map_is_less_sure_the_farther_the_car_drives_unheard() -> None:
     slot = Slot(Kind.PARALLEL, 0, Pose(0.0, 0.0, 0.0), 6.0, 0.0, 2.1)
     here = begin_map(slot, Pose(8.0, 1.6, 0.0), MAP)
     after = here
@@ -102,7 +103,7 @@ def test_the_map_is_less_sure_the_farther_the_car_drives_unheard():
     assert slot_of_map(here, slot, MAP) == slot
 
 
-def test_a_wall_not_heard_from_the_road_is_entered():
+def test_a_wall_not_heard_from_the_road_is_entered() -> None:
     slot = Slot(Kind.PARALLEL, 0, Pose(0.0, 0.0, 0.0), 4.9, 0.0, UNSEEN)
     pose = Pose(1.3, -0.83, math.radians(26.0))
     boxes = [(-4.0, 0.0, -2.0, 0.0), (4.9, 9.0, -2.0, 0.0), (-9.0, 15.0, -3.0, -2.05)]
@@ -111,7 +112,7 @@ def test_a_wall_not_heard_from_the_road_is_entered():
 
 
 @pytest.mark.parametrize("side", [0, 1])
-def test_a_wall_behind_a_perpendicular_slot_is_entered_where_the_car_stops_before_it(side):
+def test_a_wall_behind_a_perpendicular_slot_is_entered_where_the_car_stops_before_it(side: int) -> None:
     mirror = -1.0 if side == Side.LEFT else 1.0
     slot = Slot(Kind.PERPENDICULAR, side, Pose(0.0, 0.0, 0.0), 3.2, 0.0, UNSEEN)
     pose = Pose(1.6, mirror * -3.6, mirror * 0.5 * math.pi)
@@ -123,7 +124,7 @@ def test_a_wall_behind_a_perpendicular_slot_is_entered_where_the_car_stops_befor
     assert walled(before, slot, inputs_at(pose, pose, beside, side), True, PARAMS) == before
 
 
-def test_the_way_that_braking_slips_is_made_up_for():
+def test_the_way_that_braking_slips_is_made_up_for() -> None:
     slot = Slot(Kind.PARALLEL, 0, Pose(1.0, 2.0, 0.5), 6.0, 0.0, 2.1, unsure=0.02)
     after = braked(slot, 5.0, PARAMS)
     missed = 0.5 * PARAMS.apa.search.slip * 25.0
@@ -132,7 +133,7 @@ def test_the_way_that_braking_slips_is_made_up_for():
     assert braked(slot, 0.0, PARAMS).a == pytest.approx(slot.a)
 
 
-def test_a_move_may_lead_out_of_a_margin_but_not_further_in():
+def test_a_move_may_lead_out_of_a_margin_but_not_further_in() -> None:
     car = Shape()
     obstacles = Obstacles(ahead=Box(0.0, 60.0, -60.0, 0.0))
     within = Pose(5.0, 0.825 + 0.3, math.radians(-5.0))

@@ -2,6 +2,7 @@
 
 import itertools
 import math
+from typing import Any
 
 import pytest
 
@@ -21,14 +22,14 @@ SLOT, RADIUS = HsicSlot(), 4.3
 CAR = Car(wheelbase=2.62, front_overhang=0.966, rear_overhang=0.85, width=1.82)
 
 
-def test_ready_point_is_half_a_metre_beside_and_tail_level():
+def test_ready_point_is_half_a_metre_beside_and_tail_level() -> None:
     p1 = ready_point(SLOT, CAR, RADIUS)
     assert p1.y - CAR.width / 2 - SLOT.slot_width / 2 == pytest.approx(0.5)
     front_end = SLOT.slot_length - SLOT.rear_gap - CAR.rear_overhang
     assert p1.x - CAR.rear_overhang == pytest.approx(front_end)
 
 
-def test_key_points_lie_on_two_tangent_arcs_and_their_tangent():
+def test_key_points_lie_on_two_tangent_arcs_and_their_tangent() -> None:
     p1 = ready_point(SLOT, CAR, RADIUS)
     points = key_points(p1, SLOT, CAR, RADIUS)
     assert points.found
@@ -39,11 +40,11 @@ def test_key_points_lie_on_two_tangent_arcs_and_their_tangent():
     assert points.p2.heading == points.p3.heading
 
 
-def test_no_key_points_too_near():
+def test_no_key_points_too_near() -> None:
     assert not key_points(Pose(3.0, 2.5, 0.0), SLOT, CAR, RADIUS).found
 
 
-def test_every_state_is_recognised_and_has_its_rule():
+def test_every_state_is_recognised_and_has_its_rule() -> None:
     threshold, seen = HsicThresholds(), set()
     for stage, rate, heading, distance in itertools.product(HsicStage, (0.1, -0.1), (0.0, 0.3, -0.3), (0.1, 3.0)):
         state = recognise(int(stage), Errors(distance, 0.0, heading, distance, rate), threshold)
@@ -58,14 +59,14 @@ def test_every_state_is_recognised_and_has_its_rule():
 
 
 @pytest.mark.parametrize(("x", "direction", "rate"), [(2.0, -1, -1), (2.0, 1, 1), (-2.0, 1, -1), (-2.0, -1, 1)])
-def test_rate_of_the_distance_at_speed_and_at_standstill(x, direction, rate):
+def test_rate_of_the_distance_at_speed_and_at_standstill(x: float, direction: int, rate: int) -> None:
     for v in (0.5 * direction, 0.0):
         assert errors(Pose(x, 0.0, 0.0), Pose(0.0, 0.0, 0.0), v, direction).rate * rate > 0.0
 
 
 @pytest.mark.parametrize("direction", [1, -1])
 @pytest.mark.parametrize("mode", [SteerMode.PD, SteerMode.STRONG_PD, SteerMode.BANG_BANG])
-def test_steering_brings_the_car_to_the_axis_in_both_directions(direction, mode):
+def test_steering_brings_the_car_to_the_axis_in_both_directions(direction: int, mode: Any) -> None:
     y, heading, step = 0.4, 0.0, 0.005
     for _ in range(int(8.0 / step)):
         found = Errors(1.0, y, heading, 1.0, -0.1)
@@ -77,14 +78,14 @@ def test_steering_brings_the_car_to_the_axis_in_both_directions(direction, mode)
     assert abs(heading) < 0.03
 
 
-def test_extremum_hold_turns_in_and_counter_steers():
+def test_extremum_hold_turns_in_and_counter_steers() -> None:
     far = Errors(3.0, 0.0, 0.5, 3.0, -0.1)
     hold = int(SteerMode.EXTREMUM_HOLD)
     assert curvature(hold, Situation(int(HsicStage.TURN_IN), -1, far, 0.0), 0.2, 0.25, HsicGains()) == -0.2
     assert curvature(hold, Situation(int(HsicStage.COUNTER), -1, far, 0.0), 0.2, 0.25, HsicGains()) == 0.2
 
 
-def test_speeds_of_the_modes():
+def test_speeds_of_the_modes() -> None:
     gain = HsicGains()
     near, far = Errors(0.3, 0, 0, 0.3, -1), Errors(5.0, 0, 0, 5.0, -1)
     assert speed(int(SpeedMode.STAND), far, gain) == 0.0
@@ -93,14 +94,14 @@ def test_speeds_of_the_modes():
     assert speed(int(SpeedMode.SLOW), far, gain) == speed(int(SpeedMode.TURN_ROUND), far, gain) == gain.slow
 
 
-def test_parked_by_the_paper_s_limits():
+def test_parked_by_the_paper_s_limits() -> None:
     p = HsicParams()
     assert is_parked(Pose(0.3, 0.09, math.radians(4.9)), 1.0, p)
     assert not is_parked(Pose(0.0, 0.11, 0.0), 1.0, p)
     assert not is_parked(Pose(0.0, 0.0, math.radians(5.1)), 1.0, p)
 
 
-def test_a_car_is_lost_three_times_as_far_from_an_axis_as_from_a_path():
+def test_a_car_is_lost_three_times_as_far_from_an_axis_as_from_a_path() -> None:
     params = ControllerParams()
     far = 3.0 * params.threshold.lost_lateral
     for lateral, stage, reason in (

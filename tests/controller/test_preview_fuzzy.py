@@ -1,5 +1,7 @@
 """The fuzzy controllers against scikit-fuzzy and against their own symmetry."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 import skfuzzy
@@ -25,7 +27,7 @@ TABLES = {
 class Oracle:
     """The same controller in scikit-fuzzy, its centroid on a sampled universe."""
 
-    def __init__(self, inputs, outputs, rules, samples=6001):
+    def __init__(self, inputs: Any, outputs: Any, rules: Any, samples: Any = 6001) -> None:
         self.x = np.linspace(outputs[0], outputs[-1], samples)
         self.inputs = [self._triangles(peaks, np.linspace(peaks[0], peaks[-1], 2401)) for peaks in inputs]
         self.grids = [np.linspace(peaks[0], peaks[-1], 2401) for peaks in inputs]
@@ -33,11 +35,11 @@ class Oracle:
         self.rules = rules
 
     @staticmethod
-    def _triangles(peaks, x):
+    def _triangles(peaks: Any, x: Any) -> Any:
         corners = (peaks[0], *peaks, peaks[-1])
         return [skfuzzy.trimf(x, corners[i : i + 3]) for i in range(len(peaks))]
 
-    def __call__(self, row, column):
+    def __call__(self, row: Any, column: Any) -> Any:
         degrees = [
             [skfuzzy.interp_membership(grid, mf, np.clip(v, grid[0], grid[-1])) for mf in sets]
             for grid, sets, v in zip(self.grids, self.inputs, (row, column), strict=True)
@@ -50,7 +52,7 @@ class Oracle:
 
 
 @pytest.mark.parametrize("name", TABLES)
-def test_grid_against_scikit_fuzzy(name):
+def test_grid_against_scikit_fuzzy(name: Any) -> None:
     oracle = Oracle((UNIFORM5, UNIFORM5), UNIFORM7, TABLES[name])
     worst = 0.0
     for row in np.linspace(-3.6, 3.6, 19):
@@ -60,7 +62,7 @@ def test_grid_against_scikit_fuzzy(name):
     assert worst < 1e-5
 
 
-def test_force_sets_as_shipped_against_scikit_fuzzy():
+def test_force_sets_as_shipped_against_scikit_fuzzy() -> None:
     p = PreviewParams()
     oracle = Oracle((p.speed_peaks, p.rate_peaks), p.force_peaks, rule_tables.FORCE, 7001)
     for error in np.linspace(-0.8, 0.8, 23):
@@ -69,11 +71,11 @@ def test_force_sets_as_shipped_against_scikit_fuzzy():
             assert ours == pytest.approx(250.0 * oracle(error / 2.0, rate * 3.0 / 1000.0), abs=5e-3)
 
 
-def test_exact_centroid_is_the_limit_of_the_sampled_one():
+def test_exact_centroid_is_the_limit_of_the_sampled_one() -> None:
     level = (0.0, 0.3, 0.8, 0.65, 0.1, 0.0, 1.0)
     exact = centroid(UNIFORM7, level)
 
-    def sampled(samples):
+    def sampled(samples: Any) -> Any:
         x = np.linspace(-3.0, 3.0, samples)
         sets = Oracle._triangles(UNIFORM7, x)
         joined = np.max([np.fmin(a, mf) for a, mf in zip(level, sets, strict=True)], axis=0)
@@ -85,7 +87,7 @@ def test_exact_centroid_is_the_limit_of_the_sampled_one():
 
 
 @given(st.floats(0, 1), st.floats(0, 1))
-def test_cell_moment_against_quadrature(falling, rising):
+def test_cell_moment_against_quadrature(falling: Any, rising: Any) -> None:
     t = (np.arange(20000) + 0.5) / 20000
     height = np.maximum(np.minimum(falling, 1 - t), np.minimum(rising, t))
     piece = cell_moment(falling, rising)
@@ -94,7 +96,7 @@ def test_cell_moment_against_quadrature(falling, rising):
 
 
 @given(st.floats(-5, 5))
-def test_membership_is_a_partition(value):
+def test_membership_is_a_partition(value: Any) -> None:
     found = membership(value, UNIFORM5)
     assert 0 <= found.lower <= 3
     assert 0.0 <= found.degree_lower <= 1.0
@@ -104,14 +106,14 @@ def test_membership_is_a_partition(value):
 
 
 @given(st.floats(-0.3, 0.3), st.floats(-0.7, 0.7))
-def test_symmetric_rules_give_mirrored_steering(y, eps):
+def test_symmetric_rules_give_mirrored_steering(y: Any, eps: Any) -> None:
     p = PreviewParams()
     assert steering_angle(PreviewErrors(-y, -eps), p) == pytest.approx(
         -steering_angle(PreviewErrors(y, eps), p), abs=1e-12
     )
 
 
-def test_printed_rules_break_the_symmetry_in_four_cells():
+def test_printed_rules_break_the_symmetry_in_four_cells() -> None:
     cells = [
         i
         for i, (a, b) in enumerate(zip(rule_tables.STEERING_PRINTED, rule_tables.STEERING_SYMMETRIC, strict=True))
@@ -126,7 +128,7 @@ def test_printed_rules_break_the_symmetry_in_four_cells():
     )
 
 
-def test_force_sign_and_limits():
+def test_force_sign_and_limits() -> None:
     p = PreviewParams()
     assert drive_force(-6.0, 0.0, p) == pytest.approx(750.0)
     assert drive_force(6.0, 0.0, p) == pytest.approx(-750.0)
@@ -135,7 +137,7 @@ def test_force_sign_and_limits():
 
 
 @pytest.mark.parametrize("bad", [float("nan"), float("inf"), -float("inf")])
-def test_bad_inputs_do_not_raise(bad):
+def test_bad_inputs_do_not_raise(bad: Any) -> None:
     p = PreviewParams()
     assert not abs(steering_angle(PreviewErrors(bad, 0.0), p)) > p.steering_range
     assert not abs(drive_force(bad, bad, p)) > 750.0 + 1e-9

@@ -1,5 +1,7 @@
 """The sequence of the two preview points, stage by stage."""
 
+from typing import Any
+
 import pytest
 
 from controller_fmu.preview.params import PreviewParams
@@ -10,18 +12,18 @@ P = PreviewParams()
 
 
 @pytest.mark.parametrize(("speed", "length"), [(5.0, 4.5), (7.0, 4.5), (8.0, 5.72), (16.0, 15.48), (30.0, 15.5)])
-def test_distance_on_straights(speed, length):
+def test_distance_on_straights(speed: float, length: float) -> None:
     assert straight_distance(speed, P) == pytest.approx(length)
 
 
 @pytest.mark.parametrize(
     ("kappa", "length"), [(0.01, 4.0), (-0.02, 3.5), (0.04, 2.5), (-0.05, 2.0), (0.2, 2.0), (0.001, 4.0)]
 )
-def test_distance_on_curves(kappa, length):
+def test_distance_on_curves(kappa: float, length: float) -> None:
     assert curve_distance(kappa, P) == pytest.approx(length)
 
 
-def test_alternation_is_far_for_a_fifth_of_the_period():
+def test_alternation_is_far_for_a_fifth_of_the_period() -> None:
     sequence, far = Sequence(), 0
     for _ in range(1000):
         sequence = advance(sequence, 0.0, 0.0, 8.0, P, 0.01)
@@ -30,7 +32,7 @@ def test_alternation_is_far_for_a_fifth_of_the_period():
     assert far == pytest.approx(200, abs=2)
 
 
-def test_the_whole_sequence_on_curve_two():
+def test_the_whole_sequence_on_curve_two() -> None:
     straight = advance(Sequence(), 0.0, 0.0, 8.0, P, 0.01)
     assert (straight.stage, straight.l1, straight.l2) == (
         PreviewStage.STRAIGHT,
@@ -53,13 +55,13 @@ def test_the_whole_sequence_on_curve_two():
     assert (e.stage, e.l1, e.l2, e.set_speed) == (PreviewStage.STRAIGHT, 4.5, 24.5, P.set_speed)
 
 
-def test_near_point_alone_also_starts_the_curve():
+def test_near_point_alone_also_starts_the_curve() -> None:
     near = Sequence(int(PreviewStage.STRAIGHT), 4.5, 6.5, 8.3, 0.5, 0.0)
     found = advance(near, 0.0, 0.05, 5.0, P, 0.01)
     assert (found.stage, found.l1, found.set_speed) == (PreviewStage.SHORTENED, 2.0, pytest.approx(3.4, abs=1e-3))
 
 
-def test_curves_without_a_straight_between():
+def test_curves_without_a_straight_between() -> None:
     curve = Sequence(int(PreviewStage.CURVE), 3.5, 5.5, 5.4, 0.0, 0.02)
     sharper = advance(curve, 0.02, -0.05, 5.4, P, 0.01)
     assert (sharper.stage, sharper.l1, sharper.l2) == (PreviewStage.CURVE, 2.0, 4.0)
@@ -71,7 +73,7 @@ def test_curves_without_a_straight_between():
 @pytest.mark.parametrize("stage", list(PreviewStage))
 @pytest.mark.parametrize("kappa1", [0.0, 0.02])
 @pytest.mark.parametrize("kappa2", [0.0, 0.02, -0.05])
-def test_every_stage_and_sight_gives_distances_in_range(stage, kappa1, kappa2):
+def test_every_stage_and_sight_gives_distances_in_range(stage: Any, kappa1: float, kappa2: float) -> None:
     after = advance(Sequence(int(stage), 3.5, 5.5, 5.4, 0.0, 0.02), kappa1, kappa2, 8.0, P, 0.01)
     assert after.stage in set(PreviewStage)
     assert P.curve_shortest <= after.l1 <= P.straight_longest

@@ -1,6 +1,7 @@
 """NBTPT on paths that are no arcs: the law is the same, the path another one."""
 
 import math
+from typing import Any
 
 import numpy as np
 import pytest
@@ -24,7 +25,7 @@ each = pytest.mark.parametrize("shape", SMOOTH, ids=lambda shape: shape.name.low
 
 
 @each
-def test_ends_and_derivatives(shape):
+def test_ends_and_derivatives(shape: Any) -> None:
     for function, first, last in ((rising, (0.0, 0.0), (1.0, 0.0)), (leaning, (0.0, 0.0), (0.0, 1.0))):
         assert function(shape, 0.0)[:2] == pytest.approx(first, abs=1e-12)
         assert function(shape, 1.0)[:2] == pytest.approx(last, abs=1e-12)
@@ -35,7 +36,7 @@ def test_ends_and_derivatives(shape):
             assert here.bend == pytest.approx((far.slope - near.slope) / 2e-5, abs=1e-5)
 
 
-def test_the_b_spline_is_the_one_of_scipy():
+def test_the_b_spline_is_the_one_of_scipy() -> None:
     knots, ordinates = np.array([0, 0, 0, 0, 0.25, 0.5, 0.75, 1, 1, 1, 1]), np.array([0, 0, 0, 0.5, 1, 1, 1])
     oracle = BSpline(knots, ordinates, 3)
     for t in np.linspace(0.0, 1.0, 33):
@@ -44,7 +45,7 @@ def test_the_b_spline_is_the_one_of_scipy():
 
 
 @each
-def test_what_the_curve_asks_of_the_car(shape):
+def test_what_the_curve_asks_of_the_car(shape: Any) -> None:
     path = curve(shape, START, L)
     xs = np.linspace(0.0, START.x, 4001)
     points = [on_curve(path, float(x)) for x in xs]
@@ -60,7 +61,7 @@ def test_what_the_curve_asks_of_the_car(shape):
 
 
 @each
-def test_errors_obey_the_same_linear_equation(shape):
+def test_errors_obey_the_same_linear_equation(shape: Any) -> None:
     """x1'' = -k1 x1 - k2 x1' over s = -x, whatever the path; integrated apart from the law and solved by hand."""
     k1, k2, offset = 1.0, 0.8, 0.1
     path = path_from(START, 5.5, SMALLEST, shape, L)
@@ -80,7 +81,7 @@ def test_errors_obey_the_same_linear_equation(shape):
 
 
 @each
-def test_a_car_parks_on_it(shape):
+def test_a_car_parks_on_it(shape: Any) -> None:
     """Reversing at up to 0.8 m/s with Table 1's wheel; the driver obeys."""
     vehicle = {"start.x": START.x + TARGET[0], "start.heading": START.heading, "driver.profile[1].speed": 0.8}
     run = drive(vehicle, {"system": int(System.NTBPT), "guo2015.path": int(shape)})
@@ -91,6 +92,6 @@ def test_a_car_parks_on_it(shape):
 
 
 @each
-def test_a_start_too_near_is_refused(shape):
+def test_a_start_too_near_is_refused(shape: Any) -> None:
     run = drive({}, {"system": int(System.NTBPT), "guo2015.path": int(shape), "guo2015.radius_reserve": 1.5})
     assert (run.phases[-1], run.controller[-1].reason) == (GuoPhase.FAILED, Reason.NO_PATH)

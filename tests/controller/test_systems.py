@@ -1,6 +1,7 @@
 """The systems in one controller: each acts alone, and all refuse parameters that make no sense alike."""
 
 import math
+from typing import Any
 
 import pytest
 
@@ -16,20 +17,20 @@ APART = {System.VALET}
 """Controllers of their own."""
 
 
-def after(params, dts):
+def after(params: Any, dts: Any) -> Any:
     state, out = MODEL.initialize(params)
     for dt_ns in dts:
         state, out = MODEL.step(state, ControllerInput(), params, dt_ns)
     return state, out
 
 
-def test_every_system_has_a_branch():
+def test_every_system_has_a_branch() -> None:
     assert sorted(value for branch in SYSTEMS.systems for value in branch.values) == sorted(set(System) - APART)
     assert set(NAMES) == set(MODEL.state._fields) - {SYSTEMS.clock}
 
 
 @pytest.mark.parametrize("system", sorted(set(System) - APART))
-def test_only_the_chosen_system_remembers_anything(system):
+def test_only_the_chosen_system_remembers_anything(system: Any) -> None:
     params = ControllerParams(system=int(system))
     before, _ = MODEL.initialize(params)
     state, _ = after(params, [10_000_000] * 30)
@@ -40,7 +41,7 @@ def test_only_the_chosen_system_remembers_anything(system):
 
 
 @pytest.mark.parametrize("dts", [[], [10_000_000] * 5])
-def test_an_unknown_system_is_refused_and_the_car_is_stopped(dts):
+def test_an_unknown_system_is_refused_and_the_car_is_stopped(dts: Any) -> None:
     state, out = after(ControllerParams(system=99), dts)
     assert (out.phase, out.reason) == (CommonPhase.FAILED, Reason.BAD_PARAMETER)
     assert out.brake_request
@@ -48,7 +49,7 @@ def test_an_unknown_system_is_refused_and_the_car_is_stopped(dts):
 
 
 @pytest.mark.parametrize("system", sorted(set(System) - APART))
-def test_all_refuse_parameters_without_meaning(system):
+def test_all_refuse_parameters_without_meaning(system: Any) -> None:
     cars = (Car(wheelbase=math.nan), Car(steering=CarSteering(ratio=0.0)))
     for bad in (*(ControllerParams(car=car) for car in cars), ControllerParams(sample_time=0.0)):
         for dts in ([], [10_000_000] * 3):
@@ -59,7 +60,7 @@ def test_all_refuse_parameters_without_meaning(system):
 
 
 @pytest.mark.parametrize("steps", [[7_000_000] * 10, [70_000_000], [1] * 3 + [69_999_997]])
-def test_samples_fall_on_whole_periods_whatever_the_step(steps):
+def test_samples_fall_on_whole_periods_whatever_the_step(steps: Any) -> None:
     state, _ = after(ControllerParams(sample_time=0.02), steps)
     assert state.clock.time_ns == 70_000_000
     assert state.clock.next_sample_ns == 80_000_000

@@ -16,7 +16,7 @@ PATH = plan(Pose(8.5, 2.8, 0.0), 5.0, 0.235)
 P = MpcParams()
 
 
-def test_prediction_is_the_kinematic_car_to_first_order():
+def test_prediction_is_the_kinematic_car_to_first_order() -> None:
     pose = Pose(6.0, 0.0, 0.0)
     reference = nearest(PATH, pose._replace(y=2.2))
     stage = prediction(PATH, reference, -1.0, CAR, P)[0]
@@ -27,21 +27,21 @@ def test_prediction_is_the_kinematic_car_to_first_order():
     assert stage.c == pytest.approx(0.5 * stage.a * stage.g)
 
 
-def test_on_a_straight_path_with_a_straight_wheel_nothing_is_asked():
+def test_on_a_straight_path_with_a_straight_wheel_nothing_is_asked() -> None:
     found = steer(FrontWheels(), PATH, nearest(PATH, Pose(-0.5, 0.0, 0.0)), -1.0, CAR, P)
     assert found.status == Status.SOLVED
     assert found.rate == pytest.approx(0.0, abs=1e-6)
 
 
 @pytest.mark.parametrize("side", [1.0, -1.0])
-def test_off_the_path_the_car_is_steered_back(side):
+def test_off_the_path_the_car_is_steered_back(side: float) -> None:
     reference = nearest(PATH, Pose(0.0, 0.0, 0.0))._replace(lateral_error=0.2 * side)
     found = steer(FrontWheels(), PATH, reference, -1.0, CAR, P)
     assert found.rate * side < -0.1, "in reverse, too far left: steer right, so that the tail comes in"
     assert abs(found.rate) <= CAR.rate_limit
 
 
-def test_fall_back_keeps_the_last_rate_within_its_limit():
+def test_fall_back_keeps_the_last_rate_within_its_limit() -> None:
     reference = nearest(PATH, Pose(3.0, 0.5, 0.3))
     capped = steer(FrontWheels(0.1, 0.2, 0, 0), PATH, reference, -1.0, CAR, P._replace(cap=1))
     assert (capped.status, capped.rate) == (Status.ITERATION_CAP, 0.2)
@@ -50,19 +50,19 @@ def test_fall_back_keeps_the_last_rate_within_its_limit():
     assert bad.rate == CAR.rate_limit
 
 
-def test_turned_stays_within_the_lock():
+def test_turned_stays_within_the_lock() -> None:
     steering = FrontWheels(0.5, 0.5, 0, 0)
     for _ in range(100):
         steering = turned(steering, CAR, 0.01)
     assert steering.angle == CAR.angle_limit
 
 
-def test_horizon_drops_the_weights_beyond_it():
+def test_horizon_drops_the_weights_beyond_it() -> None:
     stages = prediction(PATH, nearest(PATH, Pose(6.0, 2.2, 0.2)), -1.0, CAR, P._replace(horizon=5))
     assert [stage.on for stage in stages] == [1.0] * 5 + [0.0] * 7
 
 
-def test_pid_is_equation_eight():
+def test_pid_is_equation_eight() -> None:
     p, dt, state, integral, last = PidParams(100.0, 50.0, 10.0, 1e9), 0.01, PidState(), 0.0, None
     for k in range(50):
         error = math.sin(0.1 * k)
@@ -72,7 +72,7 @@ def test_pid_is_equation_eight():
         assert state.force == pytest.approx(100.0 * error + 50.0 * integral + 10.0 * rate)
 
 
-def test_pid_does_not_wind_up():
+def test_pid_does_not_wind_up() -> None:
     p, state = PidParams(100.0, 1000.0, 0.0, 50.0), PidState()
     for _ in range(1000):
         state = pid(state, 1.0, p, 0.01)

@@ -1,5 +1,7 @@
 """The steering QP against OSQP and DAQP, and against its own optimality conditions."""
 
+from typing import Any
+
 import daqp
 import numpy as np
 import osqp
@@ -12,11 +14,11 @@ from controller_fmu.zhang2022.qp import STAGES, Initial, Status, solve
 PROBLEMS = 2000
 
 
-def steering(solution):
+def steering(solution: Any) -> Any:
     return np.array([node.u for node in solution.nodes])
 
 
-def test_thousands_of_random_problems_against_daqp():
+def test_thousands_of_random_problems_against_daqp() -> None:
     rng = np.random.default_rng(2022)
     worst = 0.0
     for _ in range(PROBLEMS):
@@ -30,7 +32,7 @@ def test_thousands_of_random_problems_against_daqp():
     assert worst < 1e-6
 
 
-def test_hundreds_of_random_problems_against_osqp():
+def test_hundreds_of_random_problems_against_osqp() -> None:
     rng = np.random.default_rng(7)
     worst, compared = 0.0, 0
     for _ in range(300):
@@ -49,7 +51,7 @@ def test_hundreds_of_random_problems_against_osqp():
     assert worst < 1e-6
 
 
-def test_limits_hold_and_the_soft_one_gives():
+def test_limits_hold_and_the_soft_one_gives() -> None:
     rng = np.random.default_rng(3)
     for _ in range(50):
         now, stages, w = random_problem(rng)
@@ -61,18 +63,18 @@ def test_limits_hold_and_the_soft_one_gives():
             assert abs(node.e) <= w.limit_e + node.s + 1e-8
 
 
-def test_iteration_cap_is_reported():
+def test_iteration_cap_is_reported() -> None:
     problem = random_problem(np.random.default_rng(1))
     assert solve(*problem, 1e-12, 2).status == Status.ITERATION_CAP
 
 
 @pytest.mark.parametrize("bad", [float("nan"), float("inf")])
-def test_bad_numbers_end_in_failed(bad):
+def test_bad_numbers_end_in_failed(bad: Any) -> None:
     now, stages, w = random_problem(np.random.default_rng(1))
     assert solve(now._replace(e=bad), stages, w, 1e-10, 40).status in (Status.FAILED, Status.ITERATION_CAP)
 
 
-def test_mirrored_problem_has_the_mirrored_solution():
+def test_mirrored_problem_has_the_mirrored_solution() -> None:
     rng = np.random.default_rng(5)
     for _ in range(20):
         now, stages, w = random_problem(rng)

@@ -4,6 +4,9 @@ import html
 import importlib
 import json
 import sys
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -51,7 +54,7 @@ def never(x: int) -> int:
 
 
 @pytest.fixture
-def law(tmp_path, monkeypatch):
+def law(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Any]:
     """A package with a law of some branches, and somebody who has imported one of its functions before."""
     folder = tmp_path / "branchy"
     folder.mkdir()
@@ -63,11 +66,11 @@ def law(tmp_path, monkeypatch):
         del sys.modules[name]
 
 
-def missing(branches):
+def missing(branches: Any) -> Any:
     return {branch.text: branch.missing for branch in branches.found() if branch.missing}
 
 
-def test_both_outcomes_of_each_decision_and_condition_are_counted(law):
+def test_both_outcomes_of_each_decision_and_condition_are_counted(law: Any) -> None:
     module = sys.modules["branchy.law"]
     with watching([law]) as branches:
         assert [law.sign(x, wide) for x, wide in ((1.0, False), (1.0, True), (0.0, False))] == [1, 0, 0]
@@ -90,7 +93,7 @@ def test_both_outcomes_of_each_decision_and_condition_are_counted(law):
     assert 0.0 < branch_share(branches.found()) < 1.0
 
 
-def test_functions_are_what_they_were_afterwards(law):
+def test_functions_are_what_they_were_afterwards(law: Any) -> None:
     module = sys.modules["branchy.law"]
     functions = {name: vars(module)[name] for name in ("sign", "halved", "even")}
     codes = {name: function.__code__ for name, function in functions.items()}
@@ -103,13 +106,13 @@ def test_functions_are_what_they_were_afterwards(law):
     assert branches.found() == []
 
 
-def test_what_did_not_run_is_not_counted():
+def test_what_did_not_run_is_not_counted() -> None:
     with watching([controller_fmu]) as branches:
         assert branches.found() == []
         assert branch_share(branches.found()) == 1.0
 
 
-def test_a_run_says_how_far_it_went_into_the_code(tmp_path, capsys):
+def test_a_run_says_how_far_it_went_into_the_code(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     words = ["test", "guo2015-case1", "--min-branch-coverage", "90", "--out", str(tmp_path)]
     assert main(words) == 1
     said = capsys.readouterr()
@@ -125,7 +128,7 @@ def test_a_run_says_how_far_it_went_into_the_code(tmp_path, capsys):
     assert all(f"<code>{html.escape(branch['text'])}</code>" in page for branch in missing)
 
 
-def test_the_numbers_of_a_run_are_the_same_while_it_is_watched(tmp_path):
+def test_the_numbers_of_a_run_are_the_same_while_it_is_watched(tmp_path: Path) -> None:
     for name, words in {"plain": ["--fmus", "none"], "watched": ["--coverage"]}.items():
         main(["test", "guo2015-case4", *words, "--out", str(tmp_path / name), "--quiet"])
     plain, watched = (

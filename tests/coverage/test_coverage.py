@@ -4,6 +4,8 @@ import json
 import sys
 from collections import Counter
 from enum import IntEnum
+from pathlib import Path
+from typing import Any
 
 import c_fmus
 import pytest
@@ -32,11 +34,11 @@ class Guard(IntEnum):
 LAMP = Chart("lamp", Lamp, Guard, ((-1, 0, 2), (0, 1, 1), (1, 1, 0)))
 
 
-def counts(*decided):
+def counts(*decided: Any) -> Any:
     return covered(LAMP, Counter(decided))
 
 
-def test_a_row_decides_unless_one_above_it_was_taken():
+def test_a_row_decides_unless_one_above_it_was_taken() -> None:
     both, switched = 0b11, 0b10
     found = counts((0, both), (0, switched), (0, 0), (1, 0))
     assert [(row.source, row.taken, row.refused) for row in found.rows] == [
@@ -48,18 +50,18 @@ def test_a_row_decides_unless_one_above_it_was_taken():
     assert share([found]) == pytest.approx(2 / 3)
 
 
-def test_a_row_for_any_state_does_not_leave_an_end():
+def test_a_row_for_any_state_does_not_leave_an_end() -> None:
     assert [row.taken + row.refused for row in counts((2, 0b11)).rows] == [0, 0, 0]
 
 
-def test_every_chart_has_one_function_that_decides():
+def test_every_chart_has_one_function_that_decides() -> None:
     assert len(CHARTS) >= 3
     for chart in CHARTS:
         names = list(decider(chart).__code__.co_varnames)
         assert "guards" in names
 
 
-def test_looking_on_changes_nothing_and_ends():
+def test_looking_on_changes_nothing_and_ends() -> None:
     before = {name_of(chart): decider(chart) for chart in CHARTS}
     with tracing(CHARTS) as seen:
         guo = sys.modules["controller_fmu.guo2015.system"]
@@ -69,7 +71,7 @@ def test_looking_on_changes_nothing_and_ends():
     assert guo.transition is before["controller_fmu.guo2015.chart"]
 
 
-def test_a_run_covers_what_it_went_through(tmp_path, capsys):
+def test_a_run_covers_what_it_went_through(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["test", "guo2015-case4", "--coverage", "--out", str(tmp_path)]) == 0
     assert "11 of 20" in capsys.readouterr().out
     data = json.loads((tmp_path / "coverage.json").read_text(encoding="utf-8"))
@@ -83,7 +85,7 @@ def test_a_run_covers_what_it_went_through(tmp_path, capsys):
 
 
 @pytest.mark.parametrize(("least", "code"), [("5", 0), ("90", 1)])
-def test_too_little_fails(tmp_path, capsys, least, code):
+def test_too_little_fails(tmp_path: Path, capsys: pytest.CaptureFixture[str], least: str, code: int) -> None:
     words = ["test", "guo2015-case4", "--min-transition-coverage", least, "--out", str(tmp_path)]
     assert main(words) == code
     assert ("asked 90 %" in capsys.readouterr().err) == (code == 1)
@@ -94,7 +96,7 @@ LISTED = "[idle -> first arc, first arc -> second arc, any state -> lost]"
 
 
 @pytest.fixture(scope="module")
-def desk(tmp_path_factory):
+def desk(tmp_path_factory: pytest.TempPathFactory) -> Any:
     """Somebody's FMU, a scenario that connects it, and one that lists its mode."""
     folder = tmp_path_factory.mktemp("desk")
     c_fmus.two_arcs(folder)
@@ -105,7 +107,7 @@ def desk(tmp_path_factory):
     return folder
 
 
-def test_of_the_fmu_of_others_a_mode_is_seen(desk, tmp_path, capsys):
+def test_of_the_fmu_of_others_a_mode_is_seen(desk: Any, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     both = [str(desk / "plain.yaml"), str(desk / "listed.yaml")]
     assert main(["test", *both, "--min-transition-coverage", "66", "--out", str(tmp_path)]) == 0
     assert "not listed: second arc to there" in capsys.readouterr().out
@@ -125,7 +127,9 @@ def test_of_the_fmu_of_others_a_mode_is_seen(desk, tmp_path, capsys):
     assert "decided against" not in page
 
 
-def test_what_nobody_lists_is_told_and_has_no_threshold(desk, tmp_path, capsys):
+def test_what_nobody_lists_is_told_and_has_no_threshold(
+    desk: Any, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     plain = str(desk / "plain.yaml")
     assert main(["test", plain, "--min-transition-coverage", "1", "--out", str(tmp_path)]) == 2
     assert "nothing says which transitions there are" in capsys.readouterr().err
@@ -142,12 +146,14 @@ def test_what_nobody_lists_is_told_and_has_no_threshold(desk, tmp_path, capsys):
         ({"states": {"idle": 1}, "transitions": ["idel -> idle"]}, "did you mean idle"),
     ],
 )
-def test_a_list_that_means_nothing_is_refused(modes, says):
+def test_a_list_that_means_nothing_is_refused(modes: Any, says: str) -> None:
     with pytest.raises(ValueError, match=says):
         ModeList(**modes)
 
 
-def test_a_mode_that_is_no_output_is_told_before_the_run(desk, tmp_path, capsys):
+def test_a_mode_that_is_no_output_is_told_before_the_run(
+    desk: Any, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     file = desk / "wrong.yaml"
     text = (desk / "listed.yaml").read_text(encoding="utf-8")
     file.write_text(text.replace("controller.State: {states", "controller.Stat: {states"), encoding="utf-8")

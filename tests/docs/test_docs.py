@@ -6,6 +6,7 @@ import re
 import shlex
 from contextlib import suppress
 from pathlib import Path
+from typing import Any
 
 import pytest
 import yaml
@@ -31,7 +32,7 @@ MADE_HERE = "extend.md"
 PAGES = sorted([ROOT / "README.md", *(ROOT / "docs").glob("*.md")], key=lambda path: path.name)
 
 
-def load(name: str):
+def load(name: str) -> Any:
     spec = importlib.util.spec_from_file_location(f"docs_{name}", ROOT / "docs" / f"{name}.py")
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
@@ -39,12 +40,12 @@ def load(name: str):
 
 
 @pytest.fixture(scope="module")
-def generate():
+def generate() -> Any:
     return load("generate")
 
 
 @pytest.fixture(scope="module")
-def reference(generate) -> set[str]:
+def reference(generate: Any) -> set[str]:
     """The pages that are made, as the others link to them."""
     return {f"reference/{name}" for name in generate.pages()}
 
@@ -66,12 +67,12 @@ def commands() -> list[str]:
     return list(dict.fromkeys(chosen))
 
 
-def test_there_are_commands_to_check():
+def test_there_are_commands_to_check() -> None:
     assert len(commands()) > 60
 
 
 @pytest.mark.parametrize("line", commands())
-def test_commands_in_the_documentation_parse(line, capsys):
+def test_commands_in_the_documentation_parse(line: Any, capsys: pytest.CaptureFixture[str]) -> None:
     words = [{"N": "3"}.get(word, word) for word in shlex.split(line)[1:]]
     with suppress(SystemExit):
         parser().parse_args(words)
@@ -87,14 +88,14 @@ def named(study: bool) -> list[str]:
 
 
 @pytest.mark.parametrize("text", named(study=True))
-def test_studies_in_the_documentation_are_valid(text, tmp_path):
+def test_studies_in_the_documentation_are_valid(text: Any, tmp_path: Path) -> None:
     file = tmp_path / "study.yaml"
     file.write_text(text)
     assert load_study(str(file)).name == yaml.safe_load(text)["name"]
 
 
 @pytest.mark.parametrize("text", named(study=False))
-def test_scenarios_in_the_documentation_are_valid(text, tmp_path):
+def test_scenarios_in_the_documentation_are_valid(text: Any, tmp_path: Path) -> None:
     file = tmp_path / "scenario.yaml"
     file.write_text(text)
     assert load_scenario(str(file)).name == yaml.safe_load(text)["name"]
@@ -105,20 +106,20 @@ def rules() -> list[str]:
 
 
 @pytest.mark.parametrize("text", rules())
-def test_requirements_in_the_documentation_are_valid(text, tmp_path):
+def test_requirements_in_the_documentation_are_valid(text: Any, tmp_path: Path) -> None:
     file = tmp_path / "rules.yaml"
     file.write_text(text)
     assert read_requirements(file)
 
 
-def test_both_kinds_were_found():
+def test_both_kinds_were_found() -> None:
     assert len(named(study=False)) >= 1
     assert len(named(study=True)) >= 1
     assert len(rules()) >= 2
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda path: path.name)
-def test_links_lead_to_files(page):
+def test_links_lead_to_files(page: Any) -> None:
     """To files that are in the repository: the reference is made by ``make docs``, a link to it would be dead there."""
     for target in re.findall(r"\]\(([^)#]+)(?:#[^)]*)?\)", page.read_text(encoding="utf-8")):
         if "://" in target:
@@ -128,7 +129,7 @@ def test_links_lead_to_files(page):
 
 
 @pytest.mark.parametrize("model", MODELS.values(), ids=MODELS.keys())
-def test_every_variable_is_in_its_reference(generate, model):
+def test_every_variable_is_in_its_reference(generate: Any, model: Any) -> None:
     text = generate.model_page(model)
     for cls in (model.inputs, model.outputs, model.params):
         for item in variables(cls):
@@ -137,7 +138,7 @@ def test_every_variable_is_in_its_reference(generate, model):
             assert f"`{first}`" in text, item.name
 
 
-def test_every_row_of_every_chart_is_drawn(generate):
+def test_every_row_of_every_chart_is_drawn(generate: Any) -> None:
     modules = generate.chart_modules()
     assert "controller_fmu.guo2015.chart" in [module.__name__ for module in modules]
     page = generate.charts_page()
@@ -146,13 +147,13 @@ def test_every_row_of_every_chart_is_drawn(generate):
     assert page.count("<text") - page.count("<rect") == rows
 
 
-def test_every_command_is_in_the_reference(generate):
+def test_every_command_is_in_the_reference(generate: Any) -> None:
     page = generate.commands_page()
     for name in ("run", "report", "compare", "check", "test", "export csv", "export mf4", "export rerun"):
         assert f"## apa {name}\n" in page
 
 
-def test_scenarios_and_files_pages(generate):
+def test_scenarios_and_files_pages(generate: Any) -> None:
     text = generate.scenarios_page()
     assert "`guo2015-case4`" in text
     assert "Limits: gbt41630" in text
@@ -160,7 +161,7 @@ def test_scenarios_and_files_pages(generate):
     assert "GB/T 41630" in text
 
 
-def test_every_key_of_a_file_has_a_meaning(generate):
+def test_every_key_of_a_file_has_a_meaning(generate: Any) -> None:
     for model in (
         Scenario,
         Target,
@@ -184,7 +185,7 @@ def test_every_key_of_a_file_has_a_meaning(generate):
     assert keys["`stop_time`"][2] == "`60.0`"
 
 
-def test_charts_are_drawn_by_us(generate):
+def test_charts_are_drawn_by_us(generate: Any) -> None:
     charts = load("charts")
     for name in ("apa.md", "guo2015.md"):
         text = (ROOT / "docs" / name).read_text(encoding="utf-8")
@@ -199,7 +200,7 @@ def test_charts_are_drawn_by_us(generate):
     assert "use_directory_urls: false" in site
 
 
-def test_pages_that_are_driven_stand_where_a_law_is_explained(tmp_path, monkeypatch):
+def test_pages_that_are_driven_stand_where_a_law_is_explained(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     frames = load("frames")
     monkeypatch.setattr(frames, "REFERENCE", tmp_path)
     for name in ("guo2015", "preview", "hsic", "zhang2022", "apa", "adaptive", "valet"):
@@ -217,13 +218,13 @@ def test_pages_that_are_driven_stand_where_a_law_is_explained(tmp_path, monkeypa
         made.unlink()
 
 
-def test_search_finds_the_parts_of_a_name():
+def test_search_finds_the_parts_of_a_name() -> None:
     separator = re.search(r"separator: '(.*)'", (ROOT / "mkdocs.yml").read_text(encoding="utf-8"))[1]
     assert re.split(separator, "vehicle.car.steering.rate_limit") == ["vehicle", "car", "steering", "rate_limit"]
     assert re.split(separator, "ultrasonic[3]")[:2] == ["ultrasonic", "3"]
 
 
-def test_pages_not_named_in_the_site_get_a_place():
+def test_pages_not_named_in_the_site_get_a_place() -> None:
     nav = load("nav")
     config = {"docs_dir": str(ROOT / "docs"), "nav": [{"Start": "index.md"}, {nav.SECTION: ["architecture.md"]}]}
     pages = nav.on_config(config)["nav"][1][nav.SECTION]
@@ -232,13 +233,13 @@ def test_pages_not_named_in_the_site_get_a_place():
     assert "index.md" not in pages
 
 
-def test_equations_name_their_files():
+def test_equations_name_their_files() -> None:
     found = {(item.paper, item.number): item.where for item in load("equations").equations(ROOT)}
     assert found["Guo 2015", 14] == "`controller_fmu/guo2015/point_tracking.py`"
     assert found["Zhang 2022", 4] == "`controller_fmu/zhang2022/quintic.py`"
     assert all(paper for paper, _ in found)
 
 
-def test_every_decision_is_listed():
+def test_every_decision_is_listed() -> None:
     listed = (ROOT / "docs" / "adr" / "index.md").read_text(encoding="utf-8")
     assert [page.name for page in (ROOT / "docs" / "adr").glob("0*.md") if f"({page.name})" not in listed] == []

@@ -5,6 +5,7 @@ import subprocess
 import sys
 import xml.etree.ElementTree as ElementTree
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -17,7 +18,7 @@ SEEN = (
 )
 
 
-def load(name):
+def load(name: Any) -> Any:
     spec = importlib.util.spec_from_file_location(f"docs_{name}", ROOT / "docs" / f"{name}.py")
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
@@ -28,7 +29,7 @@ FORMULAS = load("formulas")
 
 
 @pytest.fixture(scope="module")
-def site(tmp_path_factory):
+def site(tmp_path_factory: pytest.TempPathFactory) -> Any:
     pytest.importorskip("material", reason="the theme of the site is not installed")
     folder = tmp_path_factory.mktemp("site")
     if not (ROOT / "docs" / "reference" / "vehicle.md").exists():
@@ -38,7 +39,7 @@ def site(tmp_path_factory):
     return folder
 
 
-def opened(browser, path):
+def opened(browser: Any, path: Any) -> Any:
     page = browser.new_page()
     asked, said = [], []
     page.on("request", lambda request: asked.append(request.url))
@@ -48,7 +49,7 @@ def opened(browser, path):
     return page, asked, said
 
 
-def test_the_search_finds_parameters_by_their_names_from_a_folder(site, browser):
+def test_the_search_finds_parameters_by_their_names_from_a_folder(site: Any, browser: Any) -> None:
     page, asked, said = opened(browser, site / "guo2015.html")
     page.keyboard.press("f")
     for name in ("rate_limit", "reaction_delay", "obeys_slow_down", "k4"):
@@ -66,7 +67,7 @@ def test_the_search_finds_parameters_by_their_names_from_a_folder(site, browser)
     page.close()
 
 
-def test_pages_load_nothing_from_elsewhere_and_formulas_are_formulas(site, browser):
+def test_pages_load_nothing_from_elsewhere_and_formulas_are_formulas(site: Any, browser: Any) -> None:
     for name in ("index", "guo2015", "vehicle", "apa", "live", "reference/controller"):
         page, asked, said = opened(browser, site / f"{name}.html")
         page.wait_for_timeout(300)
@@ -78,7 +79,7 @@ def test_pages_load_nothing_from_elsewhere_and_formulas_are_formulas(site, brows
         page.close()
 
 
-def test_pages_of_laws_have_the_page_that_is_driven(site):
+def test_pages_of_laws_have_the_page_that_is_driven(site: Any) -> None:
     if not (ROOT / "docs" / "reference" / "live.html").exists():
         pytest.skip("no compiler made the page that is driven")
     for name in ("guo2015", "apa", "preview", "hsic", "zhang2022", "adaptive", "valet"):
@@ -87,7 +88,7 @@ def test_pages_of_laws_have_the_page_that_is_driven(site):
         )
 
 
-def test_the_reference_has_a_heading_for_each_group(site):
+def test_the_reference_has_a_heading_for_each_group(site: Any) -> None:
     text = (ROOT / "docs" / "reference" / "vehicle.md").read_text(encoding="utf-8")
     for group in ("### driver", "### steering", "### ultrasonic", "### person"):
         assert f"\n{group}\n" in text, group
@@ -102,12 +103,12 @@ def test_the_reference_has_a_heading_for_each_group(site):
         ("e+ = e + a g / 2 (delta+ - delta_r)", "e+=e+ag2(\u03b4+\u2212\u03b4r)"),
     ],
 )
-def test_formulas_are_read_as_they_are_meant(text, shown):
+def test_formulas_are_read_as_they_are_meant(text: str, shown: str) -> None:
     found = ElementTree.fromstring(f"<math>{FORMULAS.mathml(text)}</math>")
     assert "".join(found.itertext()) == shown
 
 
-def test_a_power_an_index_a_root_and_a_fraction():
+def test_a_power_an_index_a_root_and_a_fraction() -> None:
     found = FORMULAS.mathml("sqrt(cos^3 h_r / 2)")
     assert "<msup><mrow><mi>cos</mi></mrow><mn>3</mn></msup>" in found
     assert "<msub><mi>h</mi><mi>r</mi></msub>" in found
@@ -116,5 +117,5 @@ def test_a_power_an_index_a_root_and_a_fraction():
 
 
 @pytest.mark.parametrize("text", ["apa run guo2015-case4", "x = (a", "a = 3 +", "phase: int = 1", "x = y # why"])
-def test_what_is_no_formula_stays_text(text):
+def test_what_is_no_formula_stays_text(text: str) -> None:
     assert FORMULAS.formulas(f"    {text}\n") == ""

@@ -3,6 +3,8 @@
 import inspect
 import subprocess
 import sys
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -23,16 +25,16 @@ PINNED = {
 
 
 @pytest.fixture(scope="module")
-def log(tmp_path_factory):
+def log(tmp_path_factory: pytest.TempPathFactory) -> Any:
     return tmp_path_factory.mktemp("log") / "run.mcap"
 
 
 @pytest.fixture(scope="module")
-def case4(log):
+def case4(log: Any) -> Any:
     return apa.run("guo2015-case4", fmus="none", log=log)
 
 
-def bare(function) -> str:
+def bare(function: Any) -> str:
     signature = inspect.signature(function)
     names = [
         item.replace(default=inspect.Parameter.empty, annotation=inspect.Parameter.empty)
@@ -41,23 +43,23 @@ def bare(function) -> str:
     return str(inspect.Signature(names))
 
 
-def test_the_names_are_pinned():
+def test_the_names_are_pinned() -> None:
     assert sorted(name for name in apa.__all__ if name[0].islower()) == sorted(PINNED)
     assert {name: bare(getattr(apa, name)) for name in PINNED} == PINNED
     assert {"BadInput", "Run", "Scenario", "StudyTable", "Summary"} <= set(dir(apa))
 
 
-def test_nothing_is_imported_before_it_is_used():
+def test_nothing_is_imported_before_it_is_used() -> None:
     code = "import sys, apa_cosim; print([name for name in sys.modules if name.startswith(('numpy', 'orchestrator'))])"
     assert subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout == "[]\n"
 
 
-def test_an_unknown_name_is_an_attribute_error():
+def test_an_unknown_name_is_an_attribute_error() -> None:
     with pytest.raises(AttributeError, match="parc"):
         apa.parc  # noqa: B018
 
 
-def test_a_run_is_arrays_and_a_verdict(case4):
+def test_a_run_is_arrays_and_a_verdict(case4: Any) -> None:
     assert (case4.outcome, case4.reason) == ("parked", "all checks passed")
     assert case4["vehicle.pose.x"].shape == case4.t.shape
     assert case4["vehicle.pose.x"][-1] == case4.summary.final.x
@@ -65,39 +67,39 @@ def test_a_run_is_arrays_and_a_verdict(case4):
     assert repr(case4).startswith("<Run guo2015-case4: parked")
 
 
-def test_a_misspelt_signal_says_what_was_meant(case4):
+def test_a_misspelt_signal_says_what_was_meant(case4: Any) -> None:
     with pytest.raises(KeyError, match=r"vehicle\.pose\.x"):
         case4["vehicle.pose.X"]
 
 
-def test_a_log_gives_the_same_run_back(case4, log):
+def test_a_log_gives_the_same_run_back(case4: Any, log: Any) -> None:
     again = apa.read_log(log)
     assert again.summary.as_json()["final"] == case4.summary.as_json()["final"]
     assert all(np.array_equal(again[name], values, equal_nan=True) for name, values in case4.signals.items())
 
 
 @pytest.mark.parametrize("value", [3.0, 3, "3 1/m"])
-def test_changes_are_numbers_or_texts_with_units(value):
+def test_changes_are_numbers_or_texts_with_units(value: Any) -> None:
     assert apa.load_scenario("guo2015-case4", {"controller.guo2015.k4": value}).controller["guo2015.k4"] == 3.0
 
 
-def test_changes_may_be_lists_of_mappings():
+def test_changes_may_be_lists_of_mappings() -> None:
     profile = [{"at": 0, "speed": 0.5}]
     changed = apa.load_scenario("guo2015-case4", {"vehicle.driver.profile": profile, "step": 0.02})
     assert (changed.vehicle["driver.profile[1].speed"], changed.step_ns) == (0.5, 20_000_000)
 
 
-def test_a_wrong_key_is_one_clear_error():
+def test_a_wrong_key_is_one_clear_error() -> None:
     with pytest.raises(apa.BadInput, match="k4"):
         apa.load_scenario("guo2015-case4", {"controller.guo2015.k44": 1.0})
 
 
-def test_a_loaded_scenario_takes_no_more_changes():
+def test_a_loaded_scenario_takes_no_more_changes() -> None:
     with pytest.raises(TypeError, match="load_scenario"):
         apa.run(apa.load_scenario("guo2015-case4"), {"step": 0.02})
 
 
-def test_a_run_is_judged_by_shipped_sets_and_files(case4, tmp_path):
+def test_a_run_is_judged_by_shipped_sets_and_files(case4: Any, tmp_path: Path) -> None:
     own = tmp_path / "own.yaml"
     own.write_text("- {id: slow, signal: vehicle.speed, max_abs: 1 m/s, source: me}\n", encoding="utf-8")
     fast = {"id": "fast", "signal": "vehicle.speed", "max_abs": "2 m/s"}
@@ -108,7 +110,7 @@ def test_a_run_is_judged_by_shipped_sets_and_files(case4, tmp_path):
     assert checks["slow"].value == pytest.approx(-1.5)
 
 
-def test_two_runs_are_compared(case4):
+def test_two_runs_are_compared(case4: Any) -> None:
     other = apa.run("guo2015-case4", {"controller.guo2015.k4": 3.0}, fmus="none")
     assert apa.compare(case4, case4).passed
     found = apa.compare(case4, other, absolute=1e-6, signals=["vehicle.pose.*"])
@@ -116,14 +118,14 @@ def test_two_runs_are_compared(case4):
     assert [change.name for change in found.parameters] == ["controller.guo2015.k4"]
 
 
-def test_the_picture_and_the_replay(case4, tmp_path):
+def test_the_picture_and_the_replay(case4: Any, tmp_path: Path) -> None:
     assert len(case4.plot().axes) >= 8
     assert case4._repr_html_().startswith("<iframe srcdoc=")
     assert case4.save(tmp_path / "out").name == "report.html"
     assert {file.name for file in (tmp_path / "out").iterdir()} == {"report.html", "overview.png", "summary.json"}
 
 
-def test_a_replay_is_not_saved_beside_the_log_of_another_run(case4, tmp_path):
+def test_a_replay_is_not_saved_beside_the_log_of_another_run(case4: Any, tmp_path: Path) -> None:
     driven = ["run", "guo2015-case1", "--fmus", "none", "--set", "stop_time=1", "--no-page", "--out", str(tmp_path)]
     subprocess.run([sys.executable, "-m", "orchestrator", *driven], capture_output=True, check=False)
     assert (tmp_path / "run.mcap").is_file()
@@ -133,7 +135,7 @@ def test_a_replay_is_not_saved_beside_the_log_of_another_run(case4, tmp_path):
     assert apa.read_log(tmp_path).save(tmp_path).is_file()
 
 
-def test_signals_as_a_data_frame(case4):
+def test_signals_as_a_data_frame(case4: Any) -> None:
     pd = pytest.importorskip("pandas")
     frame = case4.to_pandas()
     assert isinstance(frame, pd.DataFrame)
@@ -141,7 +143,7 @@ def test_signals_as_a_data_frame(case4):
     assert frame.index.name == "t"
 
 
-def test_a_study_is_a_table_and_any_row_a_run(tmp_path):
+def test_a_study_is_a_table_and_any_row_a_run(tmp_path: Path) -> None:
     pytest.importorskip("pyarrow")
     table = apa.sweep("guo2015-trial", folder=tmp_path, every=10)
     assert len(table) == len(table["outcome"]) == len(apa.read_table(table.path))

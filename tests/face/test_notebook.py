@@ -3,6 +3,7 @@
 import json
 import re
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -11,7 +12,7 @@ CELLS = json.loads((DOCS / "notebook.ipynb").read_text(encoding="utf-8"))["cells
 SNIPPETS = re.findall(r"^```python\n(.*?)^```", (DOCS / "python.md").read_text(encoding="utf-8"), re.S | re.M)
 
 
-def test_the_notebook_runs_and_says_what_it_is_about(capsys):
+def test_the_notebook_runs_and_says_what_it_is_about(capsys: pytest.CaptureFixture[str]) -> None:
     names = {}
     for cell in CELLS:
         if cell["cell_type"] == "code":
@@ -22,12 +23,14 @@ def test_the_notebook_runs_and_says_what_it_is_about(capsys):
     assert names["run"]._repr_html_()
 
 
-def test_the_notebook_is_kept_without_its_outputs():
+def test_the_notebook_is_kept_without_its_outputs() -> None:
     assert [cell for cell in CELLS if cell.get("outputs")] == []
 
 
 @pytest.mark.parametrize("snippet", SNIPPETS)
-def test_a_snippet_runs(snippet, tmp_path, monkeypatch, capsys):
+def test_a_snippet_runs(
+    snippet: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
     if "sweep" in snippet:
         pytest.importorskip("pyarrow")
     monkeypatch.chdir(tmp_path)

@@ -6,6 +6,7 @@ import shutil
 import sys
 import tempfile
 from ctypes import byref
+from typing import Any
 
 import fmpy
 from fmpy.fmi2 import FMU2Slave, defaultCallbacks, fmi2CallbackFunctions, fmi2CallbackLoggerTYPE
@@ -21,7 +22,7 @@ NUMBERS = itertools.count()
 
 
 class Host:
-    def __init__(self, path, name=None):
+    def __init__(self, path: Any, name: Any = None) -> None:
         self.name = name or f"instance {next(NUMBERS)}"
         self.folder = tempfile.mkdtemp(prefix="fmu_")
         fmpy.extract(str(path), self.folder)
@@ -43,30 +44,30 @@ class Host:
             )
         self.fmu.instantiate(callbacks=self.callbacks, loggingOn=True)
 
-    def _logger(self, environment, name, status, category, message):
+    def _logger(self, environment: Any, name: Any, status: Any, category: Any, message: Any) -> None:
         self.log.append((status, (category or b"").decode(), message.decode()))
 
-    def __enter__(self):
+    def __enter__(self) -> Any:
         return self
 
-    def __exit__(self, *_):
+    def __exit__(self, *_: Any) -> None:
         self.fmu.freeInstance()
         shutil.rmtree(self.folder, ignore_errors=True)
 
-    def initialize(self, start=0.0, **params):
+    def initialize(self, start: Any = 0.0, **params: Any) -> None:
         self.fmu.setupExperiment(startTime=start)
         self.set(params)
         self.fmu.enterInitializationMode()
         self.fmu.exitInitializationMode()
 
-    def set(self, values):
+    def set(self, values: Any) -> None:
         for fmi_type in ("Real", "Integer", "Boolean"):
             names = [name for name in values if self.types[name] == fmi_type]
             if names:
                 setter = getattr(self.fmu, f"set{fmi_type}")
                 setter([self.refs[name] for name in names], [values[name] for name in names])
 
-    def get(self, names):
+    def get(self, names: Any) -> Any:
         found = {}
         for fmi_type in ("Real", "Integer", "Boolean"):
             chosen = [name for name in names if self.types[name] == fmi_type]
@@ -75,11 +76,11 @@ class Host:
                 found.update(zip(chosen, map(bool, values) if fmi_type == "Boolean" else values, strict=True))
         return [found[name] for name in names]
 
-    def outputs(self):
+    def outputs(self) -> Any:
         """Return the values of all outputs and local variables, in the order of the model."""
         return self.get(calculated(self.description))
 
-    def step(self, time, size):
+    def step(self, time: Any, size: Any) -> Any:
         """Return the status of fmi2DoStep."""
         status = []
         call = self.fmu.fmi2DoStep
@@ -90,26 +91,26 @@ class Host:
         return status[0] if status else OK
 
 
-def calculated(description):
+def calculated(description: Any) -> Any:
     """Return the names of outputs and local variables in the order of their value references."""
     found = [v for v in description.modelVariables if v.causality in ("output", "local")]
     return [v.name for v in sorted(found, key=lambda v: v.valueReference)]
 
 
-def slaves(host):
+def slaves(host: Any) -> Any:
     """Return the Python objects behind a host's instance: after a reset the last of them is in use."""
     modules = [module for name, module in sys.modules.items() if name.startswith("fmu_") and name.endswith(".binary")]
     return [slave for module in modules for slave in module.KEPT if slave.instance_name == host.name]
 
 
-def random_inputs(known, seed, count):
+def random_inputs(known: Any, seed: Any, count: Any) -> Any:
     """Return ``count`` dicts of input values inside their limits; the same for the same seed."""
     source = random.Random(seed)
     chosen = [variable for variable in known if variable.causality == "input"]
     return [{variable.name: _random_value(source, variable) for variable in chosen} for _ in range(count)]
 
 
-def _random_value(source, variable):
+def _random_value(source: Any, variable: Any) -> Any:
     if variable.kind is bool:
         return source.random() < 0.2
     low, high = limits(variable)

@@ -8,6 +8,7 @@ import json
 import sys
 from ctypes import byref, c_double, c_size_t, c_uint, c_void_p
 from pathlib import Path
+from typing import Any
 
 from raw import LOGGER, Callbacks
 
@@ -18,17 +19,17 @@ DLL.fmi2Instantiate.restype = c_void_p
 HEARD = []
 
 
-def call(function, *arguments):
+def call(function: Any, *arguments: Any) -> Any:
     return getattr(DLL, f"fmi2{function}")(*arguments)
 
 
-def asked_for_nothing(component):
+def asked_for_nothing(component: Any) -> Any:
     """Return the statuses of calls with no references, and no memory for them."""
     kinds = ("GetReal", "GetInteger", "GetBoolean", "GetString", "SetReal", "SetInteger", "SetBoolean", "SetString")
     return [call(kind, component, None, c_size_t(0), None) for kind in kinds]
 
 
-def main():
+def main() -> None:
     heard = LOGGER(lambda _, name, status, category, text: HEARD.append((status, text.decode())))
     logger = heard if TOLD.get("logger", True) else ctypes.cast(None, LOGGER)
     callbacks = Callbacks(logger, None, None, None, None)

@@ -3,6 +3,7 @@
 import ctypes
 import zipfile
 from ctypes import CFUNCTYPE, byref, c_bool, c_char_p, c_double, c_int, c_int32, c_int64, c_size_t, c_uint32, c_void_p
+from typing import Any
 
 from fmpy import read_model_description
 from raw import ERROR, OK, array
@@ -22,7 +23,7 @@ __all__ = ["ERROR", "OK", "TYPES", "Library3", "array"]
 class Library3:
     """The shared library of one FMU and its description."""
 
-    def __init__(self, path, folder, platform="x86_64-linux"):
+    def __init__(self, path: Any, folder: Any, platform: str = "x86_64-linux") -> None:
         with zipfile.ZipFile(path) as archive:
             archive.extractall(folder)
         self.description = read_model_description(str(path))
@@ -35,21 +36,28 @@ class Library3:
         self.messages = []
         self.logger = LOGGER(lambda _, status, category, text: self.messages.append((status, category, text.decode())))
 
-    def instantiate(self, name=b"toy", token=None, logging=True, event_mode=False, intermediate=0):
+    def instantiate(
+        self,
+        name: Any = b"toy",
+        token: Any = None,
+        logging: bool = True,
+        event_mode: bool = False,
+        intermediate: Any = 0,
+    ) -> Any:
         token = self.description.guid.encode() if token is None else token
         flags = [c_bool(flag) for flag in (False, logging, event_mode, False)]
         more = (None, c_size_t(intermediate), None, self.logger, None)
         return self.dll.fmi3InstantiateCoSimulation(name, token or None, b"/tmp/", *flags, *more)
 
-    def call(self, function, component, *arguments):
+    def call(self, function: Any, component: Any, *arguments: Any) -> Any:
         """Return the status of fmi3<function>."""
         return getattr(self.dll, f"fmi3{function}")(c_void_p(component), *arguments)
 
-    def enter(self, component, start=0.0, stop=None):
+    def enter(self, component: Any, start: Any = 0.0, stop: Any = None) -> Any:
         times = (c_double(start), c_bool(stop is not None), c_double(stop or 0.0))
         return self.call("EnterInitializationMode", component, c_bool(False), c_double(0.0), *times)
 
-    def initialized(self, **values):
+    def initialized(self, **values: Any) -> Any:
         """Return a new instance, ready to step."""
         component = self.instantiate()
         for name, value in values.items():
@@ -58,20 +66,20 @@ class Library3:
         assert self.call("ExitInitializationMode", component) == OK
         return component
 
-    def size(self, name):
+    def size(self, name: Any) -> Any:
         count = 1
         for dimension in self.known[name].dimensions:
             count *= int(dimension.start)
         return count
 
-    def set(self, component, name, value, count=None):
+    def set(self, component: Any, name: Any, value: Any, count: Any = None) -> Any:
         values = list(value) if isinstance(value, (tuple, list)) else [value]
         function, kind = TYPES[self.known[name].type]
         reference = byref(c_uint32(self.known[name].valueReference))
         many = c_size_t(len(values) if count is None else count)
         return self.call(f"Set{function}", component, reference, c_size_t(1), array(kind, *values), many)
 
-    def get(self, component, name):
+    def get(self, component: Any, name: Any) -> Any:
         """Return the elements of a variable."""
         function, kind = TYPES[self.known[name].type]
         values = (kind * self.size(name))()
@@ -80,13 +88,13 @@ class Library3:
         assert status == OK, self.messages
         return list(values)
 
-    def outputs(self, component):
+    def outputs(self, component: Any) -> Any:
         return {v.name: self.get(component, v.name) for v in self.known.values() if v.causality in ("output", "local")}
 
-    def step(self, component, time, size=0.01):
+    def step(self, component: Any, time: Any, size: Any = 0.01) -> Any:
         self.told = (c_bool(True), c_bool(True), c_bool(True), c_double(-1.0))
         pointers = (byref(item) for item in self.told)
         return self.call("DoStep", component, c_double(time), c_double(size), c_bool(True), *pointers)
 
-    def free(self, component):
+    def free(self, component: Any) -> None:
         self.dll.fmi3FreeInstance(c_void_p(component))

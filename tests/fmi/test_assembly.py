@@ -15,7 +15,7 @@ STEPS = [3_000_000, 7_000_000, 17_000_000, 50_000_000] * 5
 HERE = sys.modules[__name__]
 
 
-def test_models_that_do_not_feed_each_other_and_one_with_work_arrays():
+def test_models_that_do_not_feed_each_other_and_one_with_work_arrays() -> None:
     parts = {"a": toy_model.MODEL, "b": store_model.MODEL}
     model = assembled("Both", "two", HERE, parts, 10_000_000)
     ports = {item.name for item in shown_variables(model) if item.causality == "input"}
@@ -25,13 +25,13 @@ def test_models_that_do_not_feed_each_other_and_one_with_work_arrays():
     assert rows[-1] != rows[0]
 
 
-def test_two_models_with_work_arrays_are_refused():
+def test_two_models_with_work_arrays_are_refused() -> None:
     parts = {"a": store_model.MODEL, "b": store_model.MODEL._replace(name="Other")}
     with pytest.raises(ValueError, match="Both: only one of the models may have a store"):
         assembled("Both", "two", HERE, parts, 10_000_000)
 
 
-def test_start_values_of_a_model_are_checked():
+def test_start_values_of_a_model_are_checked() -> None:
     model = toy_model.MODEL.started({"mass": 3, "noisy": False})
     assert (model.first_params().mass, model.first_params().noisy) == (3.0, False)
     assert model.started({}) == toy_model.MODEL

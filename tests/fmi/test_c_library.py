@@ -3,6 +3,8 @@
 import shutil
 import subprocess
 import sys
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -17,7 +19,7 @@ from modelkit.variables import flatten, variables
 NEEDED = ("make", "cc", "ar")
 
 
-def example_rows(text):
+def example_rows(text: Any) -> Any:
     """Return [(time, {name: value})] of what an example prints."""
     rows = []
     for line in text.splitlines():
@@ -27,7 +29,7 @@ def example_rows(text):
 
 
 @pytest.mark.skipif(not all(map(shutil.which, NEEDED)), reason=f"needs {', '.join(NEEDED)}")
-def test_the_example_prints_cpythons_numbers(model, tmp_path):
+def test_the_example_prints_cpythons_numbers(model: Any, tmp_path: Path) -> None:
     write_c_library(model, tmp_path)
     assert sorted(path.name for path in tmp_path.iterdir()) == sorted(
         ["Makefile", "main.c", f"{model.name}.c", f"{model.name}.h"]
@@ -51,7 +53,7 @@ def test_the_example_prints_cpythons_numbers(model, tmp_path):
 
 
 @pytest.mark.parametrize("seed", [1, 2])
-def test_the_library_equals_the_model_to_the_bit(model, seed):
+def test_the_library_equals_the_model_to_the_bit(model: Any, seed: int) -> None:
     given = random_inputs(fmi_variables(model), seed, len(STEPS))
     expected = in_process(model, given, STEPS)
     library, names = load_model(model), [item.name for item in variables(model.inputs)]
@@ -68,7 +70,7 @@ def test_the_library_equals_the_model_to_the_bit(model, seed):
         assert y.tobytes() == np.array(expected[number], dtype=float).tobytes()
 
 
-def test_the_command_writes_both_models(tmp_path):
+def test_the_command_writes_both_models(tmp_path: Path) -> None:
     done = subprocess.run(
         [sys.executable, "-m", "orchestrator", "export", "c", str(tmp_path)], capture_output=True, text=True, check=True
     )

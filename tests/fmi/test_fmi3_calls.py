@@ -4,6 +4,8 @@ import ctypes
 import math
 import random
 from ctypes import byref, c_bool, c_double, c_int64, c_size_t, c_uint32, c_void_p
+from pathlib import Path
+from typing import Any
 
 import pytest
 from raw3 import ERROR, OK, Library3, array
@@ -20,11 +22,11 @@ MODES = (
 
 
 @pytest.fixture
-def toy(fmi3_fmus, tmp_path):
+def toy(fmi3_fmus: Any, tmp_path: Path) -> Any:
     return Library3(fmi3_fmus["Toy"], tmp_path)
 
 
-def test_version(toy):
+def test_version(toy: Any) -> None:
     assert toy.dll.fmi3GetVersion() == b"3.0"
 
 
@@ -40,21 +42,21 @@ def test_version(toy):
         ({"intermediate": 1}, "no intermediate update"),
     ],
 )
-def test_instantiate_refuses_and_says_why(toy, wrong, words):
+def test_instantiate_refuses_and_says_why(toy: Any, wrong: Any, words: str) -> None:
     assert toy.instantiate(**wrong) is None
     (status, category, text) = toy.messages[-1]
     assert (status, category) == (ERROR, b"logStatusError")
     assert words in text
 
 
-def test_it_is_for_co_simulation_only(toy):
+def test_it_is_for_co_simulation_only(toy: Any) -> None:
     token = toy.description.guid.encode()
     made = toy.dll.fmi3InstantiateModelExchange(b"x", token, b"/", c_bool(False), c_bool(False), None, toy.logger)
     assert made is None
     assert toy.messages[-1][2] == "this FMU is for co-simulation only"
 
 
-def test_without_a_logger_nothing_is_said(toy):
+def test_without_a_logger_nothing_is_said(toy: Any) -> None:
     token, off = toy.description.guid.encode(), c_bool(False)
     made = toy.dll.fmi3InstantiateCoSimulation(
         b"x", token, b"/", off, off, off, off, None, c_size_t(0), None, None, None
@@ -84,7 +86,7 @@ ALLOWED = {
 }
 
 
-def in_phase(toy, phase):
+def in_phase(toy: Any, phase: Any) -> Any:
     component = toy.instantiate()
     if phase == "instantiated":
         return component
@@ -96,7 +98,7 @@ def in_phase(toy, phase):
     return component
 
 
-def call(toy, function, component):
+def call(toy: Any, function: Any, component: Any) -> Any:
     if function == "EnterInitializationMode":
         return toy.enter(component)
     if function == "DoStep":
@@ -115,7 +117,7 @@ def call(toy, function, component):
 
 @pytest.mark.parametrize("phase", PHASES)
 @pytest.mark.parametrize("function", ALLOWED)
-def test_calls_out_of_order_are_refused(toy, phase, function):
+def test_calls_out_of_order_are_refused(toy: Any, phase: Any, function: Any) -> None:
     component = in_phase(toy, phase)
     expected = OK if phase in ALLOWED[function] else ERROR
     assert call(toy, function, component) == expected
@@ -125,14 +127,14 @@ def test_calls_out_of_order_are_refused(toy, phase, function):
 
 
 @pytest.mark.parametrize("function", ALLOWED)
-def test_no_instance_is_an_error_not_a_crash(toy, function):
+def test_no_instance_is_an_error_not_a_crash(toy: Any, function: Any) -> None:
     assert call(toy, function, None) == ERROR
     toy.free(None)
 
 
 @pytest.mark.parametrize("kind", ABSENT)
 @pytest.mark.parametrize("verb", ["Get", "Set"])
-def test_types_that_no_variable_has(toy, verb, kind):
+def test_types_that_no_variable_has(toy: Any, verb: str, kind: Any) -> None:
     component = toy.initialized()
     reference, one, room = c_uint32(toy.known["mass"].valueReference), c_size_t(1), (c_int64 * 4)()
     arguments = (byref(reference), one, room, room, one)
@@ -144,7 +146,7 @@ def test_types_that_no_variable_has(toy, verb, kind):
 
 
 @pytest.mark.parametrize("function", MODES)
-def test_modes_it_does_not_have(toy, function):
+def test_modes_it_does_not_have(toy: Any, function: Any) -> None:
     component, room = toy.initialized(), (c_int64 * 8)()
     pointers = (byref(room, 8 * place) for place in range(6))
     assert toy.call(function, component, *pointers) == ERROR
@@ -152,12 +154,12 @@ def test_modes_it_does_not_have(toy, function):
     toy.free(component)
 
 
-def test_wrong_references_types_directions_and_sizes(toy):
+def test_wrong_references_types_directions_and_sizes(toy: Any) -> None:
     component = toy.initialized()
     before = toy.outputs(component)
     room = (c_int64 * 8)()
 
-    def refused(function, name, words, count=1):
+    def refused(function: Any, name: Any, words: Any, count: Any = 1) -> None:
         vr = toy.known[name].valueReference if isinstance(name, str) else name
         arguments = (byref(c_uint32(vr)), c_size_t(1), room, c_size_t(count))
         assert toy.call(function, component, *arguments) == ERROR
@@ -179,11 +181,11 @@ def test_wrong_references_types_directions_and_sizes(toy):
     toy.free(component)
 
 
-def test_a_call_is_checked_wherever_it_differs_from_the_last_one(toy):
+def test_a_call_is_checked_wherever_it_differs_from_the_last_one(toy: Any) -> None:
     component, vr = toy.initialized(), {name: item.valueReference for name, item in toy.known.items()}
     room = array(c_double, *range(1, 9))
 
-    def status(function, second, size, first="force"):
+    def status(function: Any, second: Any, size: Any, first: str = "force") -> Any:
         references = array(c_uint32, vr[first], vr.get(second, 4_000_000_000))
         return toy.call(function, component, references, c_size_t(2), room, c_size_t(size))
 
@@ -196,7 +198,7 @@ def test_a_call_is_checked_wherever_it_differs_from_the_last_one(toy):
     toy.free(component)
 
 
-def test_any_number_of_values_in_one_call(toy):
+def test_any_number_of_values_in_one_call(toy: Any) -> None:
     component, names = toy.initialized(), ("oscillators.position", "mass", "time")
     expected = [value for name in names for value in toy.get(component, name)]
     for count in (1, 24, 25, 100, 2):
@@ -214,7 +216,7 @@ def test_any_number_of_values_in_one_call(toy):
 
 
 @pytest.mark.parametrize(("name", "value"), [("mass", 0.0), ("mass", math.nan), ("stiffness", math.inf), ("seed", -1)])
-def test_a_parameter_out_of_range_is_refused(toy, name, value):
+def test_a_parameter_out_of_range_is_refused(toy: Any, name: Any, value: Any) -> None:
     component = toy.instantiate()
     assert toy.set(component, name, value) == ERROR
     assert f"{name} = " in toy.messages[-1][2]
@@ -222,7 +224,7 @@ def test_a_parameter_out_of_range_is_refused(toy, name, value):
     toy.free(component)
 
 
-def test_a_refused_set_changes_none_of_its_values(toy):
+def test_a_refused_set_changes_none_of_its_values(toy: Any) -> None:
     component = toy.initialized()
     references = array(c_uint32, toy.known["force"].valueReference, toy.known["mass"].valueReference)
     values = array(c_double, 5.0, 6.0, 3.0)
@@ -231,7 +233,7 @@ def test_a_refused_set_changes_none_of_its_values(toy):
     toy.free(component)
 
 
-def test_several_variables_in_one_call(toy):
+def test_several_variables_in_one_call(toy: Any) -> None:
     component = toy.initialized()
     references = array(c_uint32, toy.known["oscillators.position"].valueReference, toy.known["time"].valueReference)
     values = (c_double * 3)()
@@ -249,7 +251,7 @@ def test_several_variables_in_one_call(toy):
         (math.inf, 0.01, "is no time"),
     ],
 )
-def test_a_wrong_step_is_refused_and_the_next_one_goes_on(toy, time, size, words):
+def test_a_wrong_step_is_refused_and_the_next_one_goes_on(toy: Any, time: Any, size: Any, words: Any) -> None:
     component = toy.initialized()
     assert toy.step(component, time, size) == ERROR
     assert words in toy.messages[-1][2]
@@ -261,7 +263,7 @@ def test_a_wrong_step_is_refused_and_the_next_one_goes_on(toy, time, size, words
     toy.free(component)
 
 
-def test_times_of_the_experiment_are_checked(toy):
+def test_times_of_the_experiment_are_checked(toy: Any) -> None:
     component = toy.instantiate()
     assert toy.enter(component, math.nan) == ERROR
     assert toy.enter(component, 1.0, 0.5) == ERROR
@@ -271,7 +273,7 @@ def test_times_of_the_experiment_are_checked(toy):
     toy.free(component)
 
 
-def test_log_categories(toy):
+def test_log_categories(toy: Any) -> None:
     component = toy.instantiate(logging=False)
     assert toy.call("SetDebugLogging", component, c_bool(True), c_size_t(1), (ctypes.c_char_p * 1)(b"logAll")) == OK
     wrong = (ctypes.c_char_p * 1)(b"nonsense")
@@ -280,14 +282,14 @@ def test_log_categories(toy):
     toy.free(component)
 
 
-def run_on(toy, component, count, first=0):
+def run_on(toy: Any, component: Any, count: Any, first: Any = 0) -> Any:
     for k in range(first, first + count):
         toy.set(component, "force", [math.sin(0.3 * k), 0.0])
         assert toy.step(component, 0.01 * k) == OK
     return toy.outputs(component)
 
 
-def test_a_state_is_restored_and_goes_on_in_another_instance(toy):
+def test_a_state_is_restored_and_goes_on_in_another_instance(toy: Any) -> None:
     component, other = toy.initialized(), toy.instantiate(b"other")
     run_on(toy, component, 30)
     state, size, restored = c_void_p(None), c_size_t(), c_void_p(None)
@@ -305,7 +307,7 @@ def test_a_state_is_restored_and_goes_on_in_another_instance(toy):
         toy.free(instance)
 
 
-def test_damaged_bytes_are_no_state(toy):
+def test_damaged_bytes_are_no_state(toy: Any) -> None:
     component = toy.initialized()
     state, size, nothing = c_void_p(None), c_size_t(), c_void_p(None)
     toy.call("GetFMUState", component, byref(state))
@@ -326,7 +328,7 @@ def test_damaged_bytes_are_no_state(toy):
     toy.free(component)
 
 
-def test_the_same_state_has_the_same_bytes(toy):
+def test_the_same_state_has_the_same_bytes(toy: Any) -> None:
     """Memory between the fields of a struct is not part of a state."""
     found = []
     for _ in range(3):

@@ -4,6 +4,7 @@ import math
 import struct
 import zipfile
 from pathlib import Path
+from typing import Any
 
 import fmpy
 import pytest
@@ -26,20 +27,20 @@ TABLE = table_model.MODEL
 
 
 @pytest.fixture(scope="session")
-def table_fmu(tmp_path_factory):
+def table_fmu(tmp_path_factory: pytest.TempPathFactory) -> Any:
     return native_fmu.build(TABLE, tmp_path_factory.mktemp("table"), [host()], fmi=3)
 
 
-def read(path, name):
+def read(path: Any, name: Any) -> Any:
     with zipfile.ZipFile(path) as archive:
         return archive.read(name)
 
 
-def bits(values):
+def bits(values: Any) -> Any:
     return [struct.pack("d", value) if isinstance(value, float) else int(value) for value in values]
 
 
-def grouped(names, values):
+def grouped(names: Any, values: Any) -> Any:
     """Return name in FMI 3.0 -> elements, of flat ``values``."""
     found = {}
     for name, value in zip(names, values, strict=True):
@@ -48,7 +49,7 @@ def grouped(names, values):
 
 
 @pytest.mark.parametrize("seed", [1, 2])
-def test_equals_the_model_in_process_to_the_bit(fmi3_fmus, model, seed, tmp_path):
+def test_equals_the_model_in_process_to_the_bit(fmi3_fmus: Any, model: Any, seed: int, tmp_path: Path) -> None:
     inputs = random_inputs(fmi_variables(model), seed, len(STEPS))
     expected = in_process(model, inputs, STEPS)
     names = [item.name for item in variables(model.outputs)]
@@ -68,7 +69,7 @@ def test_equals_the_model_in_process_to_the_bit(fmi3_fmus, model, seed, tmp_path
     library.free(component)
 
 
-def test_simulates_in_fmpy_and_gives_the_reference_result(fmi3_fmus, model, tmp_path):
+def test_simulates_in_fmpy_and_gives_the_reference_result(fmi3_fmus: Any, model: Any, tmp_path: Path) -> None:
     path = str(fmi3_fmus[model.name])
     fmpy.extract(path, str(tmp_path))
     reference = fmpy.util.read_csv(tmp_path / f"extra/org.fmi-standard.fmi-ls-ref/{model.name}_out.csv")
@@ -83,7 +84,7 @@ def test_simulates_in_fmpy_and_gives_the_reference_result(fmi3_fmus, model, tmp_
         assert (column[(slice(None), *places)] == reference[name]).all(), name
 
 
-def test_checkers_find_nothing(fmi3_fmus, model):
+def test_checkers_find_nothing(fmi3_fmus: Any, model: Any) -> None:
     path = fmi3_fmus[model.name]
     assert validate_fmu(str(path)) == []
     for file, schema in (
@@ -99,14 +100,14 @@ def test_checkers_find_nothing(fmi3_fmus, model):
     assert read(path, "terminalsAndIcons/icon.png").startswith(b"\x89PNG")
 
 
-def test_every_scalar_of_fmi_2_is_an_element(model):
+def test_every_scalar_of_fmi_2_is_an_element(model: Any) -> None:
     elements = [item.name for array in fmi_arrays(model) for item in array.elements]
     assert sorted(elements) == sorted(item.name for item in fmi_variables(model))
     for item in fmi_arrays(model):
         assert len(item.elements) == math.prod(item.shape)
 
 
-def test_arrays_and_enumerations_of_the_vehicle(fmi3_fmus):
+def test_arrays_and_enumerations_of_the_vehicle(fmi3_fmus: Any) -> None:
     known = {v.name: v for v in fmpy.read_model_description(str(fmi3_fmus["Vehicle"])).modelVariables}
     sizes = {name: [int(d.start) for d in known[name].dimensions] for name in known if known[name].dimensions}
     assert sizes["ultrasonic"] == [12]
@@ -118,7 +119,7 @@ def test_arrays_and_enumerations_of_the_vehicle(fmi3_fmus):
     assert {item.name: int(item.value) for item in prompt.declaredType.items}["REVERSE"] == 3
 
 
-def test_a_table_goes_row_by_row(table_fmu, tmp_path):
+def test_a_table_goes_row_by_row(table_fmu: Any, tmp_path: Path) -> None:
     library = Library3(table_fmu, tmp_path)
     component = library.instantiate()
     assert library.size("rows.cells") == 6
@@ -140,7 +141,9 @@ def test_a_table_goes_row_by_row(table_fmu, tmp_path):
     library.free(component)
 
 
-def test_two_builds_are_the_same_bytes_and_the_token_is_its_own(fmi3_fmus, native_fmus, tmp_path):
+def test_two_builds_are_the_same_bytes_and_the_token_is_its_own(
+    fmi3_fmus: Any, native_fmus: Any, tmp_path: Path
+) -> None:
     again = native_fmu.build(toy_model.MODEL, tmp_path, [host()], fmi=3)
     assert again.read_bytes() == fmi3_fmus["Toy"].read_bytes()
     stamp = again.stat().st_mtime_ns

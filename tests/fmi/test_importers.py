@@ -27,15 +27,15 @@ PORTS = [
 everywhere = pytest.mark.parametrize("model", MODELS, ids=lambda model: model.name)
 
 
-def xml(model):
+def xml(model: Any) -> Any:
     return model_description(model, guid="", generation_tool="", flags={})
 
 
-def by_name(model):
+def by_name(model: Any) -> Any:
     return {item.name: item for item in fmi_variables(model)}
 
 
-def test_a_block_of_the_controller_has_the_ports_it_needs():
+def test_a_block_of_the_controller_has_the_ports_it_needs() -> None:
     outputs = [item.name for item in fmi_variables(CONTROLLER) if item.causality == "output"]
     assert outputs == PORTS
     inputs = {item.name for item in fmi_variables(VEHICLE) if item.causality == "input"}
@@ -44,7 +44,7 @@ def test_a_block_of_the_controller_has_the_ports_it_needs():
     assert wanted < {item.name for item in fmi_variables(VEHICLE) if item.causality == "output"}
 
 
-def test_what_is_calculated_is_output_or_local_and_nothing_is_lost():
+def test_what_is_calculated_is_output_or_local_and_nothing_is_lost() -> None:
     known = by_name(CONTROLLER)
     for item in variables(CONTROLLER.outputs):
         assert known[item.name].causality == ("output" if item.name in PORTS else "local")
@@ -77,12 +77,12 @@ def test_what_is_calculated_is_output_or_local_and_nothing_is_lost():
         (VEHICLE, "driver.profile[1].speed", "fixed"),
     ],
 )
-def test_variability(model, name, variability):
+def test_variability(model: Any, name: Any, variability: Any) -> None:
     assert by_name(model)[name].variability == variability
 
 
 @everywhere
-def test_every_numeric_parameter_has_a_range(model):
+def test_every_numeric_parameter_has_a_range(model: Any) -> None:
     missing = [
         item.name
         for item in fmi_variables(model)
@@ -92,7 +92,7 @@ def test_every_numeric_parameter_has_a_range(model):
 
 
 @everywhere
-def test_every_mode_has_a_declared_type_with_the_names_of_its_states(model):
+def test_every_mode_has_a_declared_type_with_the_names_of_its_states(model: Any) -> None:
     root = ElementTree.fromstring(xml(model))
     types = {node.get("name"): node for node in root.find("TypeDefinitions")}
     names = mode_types(model)
@@ -115,7 +115,7 @@ def test_every_mode_has_a_declared_type_with_the_names_of_its_states(model):
         assert number.get("min") == kind.find("Integer").get("min")
 
 
-def test_two_modes_of_one_name_are_told_apart():
+def test_two_modes_of_one_name_are_told_apart() -> None:
     others: Any = IntEnum("Mode", {"OFF": 0, "ON": 1}, module="engine.model")
     model = toy_model.MODEL._replace(view=View(states=(("mode", others),)))
     assert set(mode_types(toy_model.MODEL).values()) == {"Mode"}
@@ -125,7 +125,7 @@ def test_two_modes_of_one_name_are_told_apart():
 # Initial dependencies
 
 
-def indexed(model):
+def indexed(model: Any) -> Any:
     """Return (output, its dependencies) of the description, by name."""
     root = ElementTree.fromstring(xml(model))
     names = [node.get("name") for node in root.find("ModelVariables")]
@@ -135,7 +135,7 @@ def indexed(model):
     }
 
 
-def test_dependencies_of_a_small_model_are_those_its_source_has():
+def test_dependencies_of_a_small_model_are_those_its_source_has() -> None:
     found = initial_dependencies(toy_model.MODEL)
     start = {f"start[{number}].{field}" for number in (1, 2) for field in ("position", "velocity")}
     drift = {f"drift[{number}].{field}" for number in (1, 2, 3) for field in ("position", "velocity")}
@@ -147,7 +147,7 @@ def test_dependencies_of_a_small_model_are_those_its_source_has():
 
 
 @pytest.mark.parametrize(("model", "most"), [(VEHICLE, 3600), (CONTROLLER, 60)], ids=["Vehicle", "Controller"])
-def test_few_dependencies_take_a_small_part_of_the_description(model, most):
+def test_few_dependencies_take_a_small_part_of_the_description(model: Any, most: Any) -> None:
     found = indexed(model)
     assert 0 < sum(map(len, found.values())) < most
     assert {name: set(names) for name, names in initial_dependencies(model).items() if name in found} == found
@@ -157,7 +157,7 @@ def test_few_dependencies_take_a_small_part_of_the_description(model, most):
 
 
 @pytest.mark.parametrize("model", [VEHICLE, CONTROLLER, SYSTEM_MODELS[5]], ids=lambda model: model.name)
-def test_what_changes_an_output_at_the_start_is_named(model):
+def test_what_changes_an_output_at_the_start_is_named(model: Any) -> None:
     """Points and moves of its own, drawn otherwise than by the search."""
     draw = random.Random(99)
     named = indexed(model)
@@ -166,7 +166,7 @@ def test_what_changes_an_output_at_the_start_is_named(model):
     free = [place for place, item in enumerate(known) if model.shows(item.name)]
     names = [item.name for item in variables(model.outputs)]
 
-    def start(values):
+    def start(values: Any) -> Any:
         return dict(zip(names, flatten(model.initialize(make(values))[1]), strict=True))
 
     seen = set()
@@ -184,7 +184,7 @@ def test_what_changes_an_output_at_the_start_is_named(model):
     assert [pair for pair in seen if pair[1] not in named[pair[0]]] == []
 
 
-def drawn(draw, item, now):
+def drawn(draw: Any, item: Any, now: Any) -> Any:
     if item.kind is bool:
         return draw.random() < 0.5
     if item.signal.states is not None:
@@ -194,11 +194,11 @@ def drawn(draw, item, now):
     return item.kind(min(max(now + draw.uniform(-spread, spread), low), high))
 
 
-def test_the_search_gives_the_same_each_time():
+def test_the_search_gives_the_same_each_time() -> None:
     assert find_dependencies(SYSTEM_MODELS[5]) == find_dependencies(SYSTEM_MODELS[5])
 
 
-def test_outputs_that_nothing_changes_at_the_start_depend_on_nothing():
+def test_outputs_that_nothing_changes_at_the_start_depend_on_nothing() -> None:
     found = indexed(VEHICLE)
     assert found["speed"] == found["gear"] == found["distance"] == set()
     assert {"start.x", "body"} <= found["pose.x"]

@@ -2,6 +2,7 @@
 
 import subprocess
 import sys
+from pathlib import Path
 
 CODE = """
 import sys, time
@@ -18,7 +19,7 @@ with one_at_a_time(path):
 """
 
 
-def test_only_one_process_makes_the_file(tmp_path):
+def test_only_one_process_makes_the_file(tmp_path: Path) -> None:
     running = [
         subprocess.Popen([sys.executable, "-c", CODE, str(tmp_path)], stdout=subprocess.PIPE, text=True)
         for _ in range(3)

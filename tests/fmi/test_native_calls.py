@@ -4,6 +4,8 @@ import ctypes
 import math
 import random
 from ctypes import byref, c_double, c_int, c_size_t, c_uint, c_void_p
+from pathlib import Path
+from typing import Any
 
 import pytest
 from raw import DISCARD, ERROR, OK, Library, array, state_pointer
@@ -12,11 +14,11 @@ NO_REFERENCE = 4_000_000_000
 
 
 @pytest.fixture
-def toy(native_fmus, tmp_path):
+def toy(native_fmus: Any, tmp_path: Path) -> Any:
     return Library(native_fmus["Toy"], tmp_path)
 
 
-def test_version_and_platform(toy):
+def test_version_and_platform(toy: Any) -> None:
     assert toy.dll.fmi2GetVersion() == b"2.0"
     assert toy.dll.fmi2GetTypesPlatform() == b"default"
 
@@ -32,14 +34,14 @@ def test_version_and_platform(toy):
         ({"guid": b""}, "GUID (null)"),
     ],
 )
-def test_instantiate_refuses_and_says_why(toy, wrong, words):
+def test_instantiate_refuses_and_says_why(toy: Any, wrong: Any, words: str) -> None:
     assert toy.instantiate(**wrong) is None
     (status, category, text) = toy.messages[-1]
     assert (status, category) == (ERROR, "logStatusError")
     assert words in text
 
 
-def test_instantiate_without_callbacks_gives_nothing(toy):
+def test_instantiate_without_callbacks_gives_nothing(toy: Any) -> None:
     assert toy.instantiate(callbacks=False) is None
 
 
@@ -63,7 +65,7 @@ ALLOWED = {
 }
 
 
-def in_phase(toy, phase):
+def in_phase(toy: Any, phase: Any) -> Any:
     component = toy.instantiate()
     if phase == "instantiated":
         return component
@@ -76,7 +78,7 @@ def in_phase(toy, phase):
     return component
 
 
-def call(toy, function, component):
+def call(toy: Any, function: Any, component: Any) -> Any:
     if function == "SetupExperiment":
         return toy.setup(component)
     if function == "DoStep":
@@ -95,7 +97,7 @@ def call(toy, function, component):
 
 @pytest.mark.parametrize("phase", PHASES)
 @pytest.mark.parametrize("function", ALLOWED)
-def test_calls_out_of_order_are_refused(toy, phase, function):
+def test_calls_out_of_order_are_refused(toy: Any, phase: Any, function: Any) -> None:
     component = in_phase(toy, phase)
     expected = OK if phase in ALLOWED[function] else ERROR
     assert call(toy, function, component) == expected
@@ -105,17 +107,17 @@ def test_calls_out_of_order_are_refused(toy, phase, function):
 
 
 @pytest.mark.parametrize("function", ALLOWED)
-def test_no_instance_is_an_error_not_a_crash(toy, function):
+def test_no_instance_is_an_error_not_a_crash(toy: Any, function: Any) -> None:
     assert call(toy, function, None) == ERROR
     toy.free(None)
 
 
-def test_wrong_references_types_and_directions(toy):
+def test_wrong_references_types_and_directions(toy: Any) -> None:
     component = toy.initialized()
     one, number, flag = c_size_t(1), byref(c_double()), byref(c_int())
     before = toy.outputs(component)
 
-    def refused(function, reference, value, words):
+    def refused(function: Any, reference: Any, value: Any, words: Any) -> None:
         assert toy.call(function, component, byref(c_uint(reference)), one, value) == ERROR
         assert words in toy.messages[-1][2]
 
@@ -133,7 +135,7 @@ def test_wrong_references_types_and_directions(toy):
     toy.free(component)
 
 
-def test_a_call_is_checked_wherever_it_differs_from_the_last_one(toy):
+def test_a_call_is_checked_wherever_it_differs_from_the_last_one(toy: Any) -> None:
     component, two = toy.initialized(), c_size_t(2)
     force, velocity = toy.refs["force[1]"], toy.refs["oscillators[2].velocity"]
     references, values = array(c_uint, toy.refs["pull"], velocity), (c_double * 2)()
@@ -153,7 +155,7 @@ def test_a_call_is_checked_wherever_it_differs_from_the_last_one(toy):
     toy.free(component)
 
 
-def test_parameters_keep_their_limits_however_often_they_are_set(toy):
+def test_parameters_keep_their_limits_however_often_they_are_set(toy: Any) -> None:
     component = toy.initialized()
     for value, status in [(50.0, OK), (60.0, OK), (-1.0, ERROR), (60.0, OK), (math.nan, ERROR), (2e4, ERROR)]:
         assert toy.set(component, "stiffness", value) == status
@@ -161,7 +163,7 @@ def test_parameters_keep_their_limits_however_often_they_are_set(toy):
     toy.free(component)
 
 
-def test_any_number_of_values_in_one_call(toy):
+def test_any_number_of_values_in_one_call(toy: Any) -> None:
     component, names = toy.initialized(), ("mass", "oscillators[1].position", "oscillators[2].position", "time")
     expected = [toy.get(component, name) for name in names]
     for count in (0, 1, 24, 25, 100, 3):
@@ -176,7 +178,7 @@ def test_any_number_of_values_in_one_call(toy):
 
 
 @pytest.mark.parametrize(("name", "value"), [("mass", 0.0), ("mass", math.nan), ("stiffness", math.inf), ("seed", -1)])
-def test_a_parameter_out_of_range_is_refused(toy, name, value):
+def test_a_parameter_out_of_range_is_refused(toy: Any, name: Any, value: Any) -> None:
     component = toy.instantiate()
     assert toy.set(component, name, value) == ERROR
     assert f"{name} = " in toy.messages[-1][2]
@@ -184,7 +186,7 @@ def test_a_parameter_out_of_range_is_refused(toy, name, value):
     toy.free(component)
 
 
-def test_a_refused_set_changes_none_of_its_values(toy):
+def test_a_refused_set_changes_none_of_its_values(toy: Any) -> None:
     component = toy.initialized()
     references = array(c_uint, toy.refs["force[1]"], toy.refs["mass"])
     assert toy.call("SetReal", component, references, c_size_t(2), array(c_double, 5.0, 3.0)) == ERROR
@@ -204,7 +206,7 @@ def test_a_refused_set_changes_none_of_its_values(toy):
         (math.nan, 0.01, "is no time"),
     ],
 )
-def test_a_wrong_step_is_refused_and_the_next_one_goes_on(toy, time, size, words):
+def test_a_wrong_step_is_refused_and_the_next_one_goes_on(toy: Any, time: Any, size: Any, words: Any) -> None:
     component = toy.initialized()
     assert toy.step(component, time, size) == ERROR
     assert words in toy.messages[-1][2]
@@ -214,7 +216,7 @@ def test_a_wrong_step_is_refused_and_the_next_one_goes_on(toy, time, size, words
 
 
 @pytest.mark.parametrize("size", [1e-12, 4e-10, 5e-324])
-def test_a_step_that_ends_before_the_next_nanosecond_does_nothing(toy, size):
+def test_a_step_that_ends_before_the_next_nanosecond_does_nothing(toy: Any, size: float) -> None:
     component = toy.initialized()
     toy.step(component, 0.0)
     before = toy.outputs(component)
@@ -227,7 +229,7 @@ def test_a_step_that_ends_before_the_next_nanosecond_does_nothing(toy, size):
     toy.free(component)
 
 
-def test_a_master_that_adds_up_its_steps_reaches_the_end(toy):
+def test_a_master_that_adds_up_its_steps_reaches_the_end(toy: Any) -> None:
     component = toy.initialized()
     time, stop = 0.0, 0.6
     while time < stop:
@@ -238,7 +240,7 @@ def test_a_master_that_adds_up_its_steps_reaches_the_end(toy):
     toy.free(component)
 
 
-def test_times_of_the_experiment_are_checked(toy):
+def test_times_of_the_experiment_are_checked(toy: Any) -> None:
     component = toy.instantiate()
     assert toy.setup(component, math.nan) == ERROR
     assert toy.call("SetupExperiment", component, 0, c_double(0), c_double(1), 1, c_double(0.5)) == ERROR
@@ -246,7 +248,7 @@ def test_times_of_the_experiment_are_checked(toy):
     toy.free(component)
 
 
-def test_what_the_fmu_declares_that_it_cannot_do(toy):
+def test_what_the_fmu_declares_that_it_cannot_do(toy: Any) -> None:
     component = toy.initialized()
     one = c_size_t(1)
     assert toy.call("SetRealInputDerivatives", component, None, one, None, None) == ERROR
@@ -263,7 +265,7 @@ def test_what_the_fmu_declares_that_it_cannot_do(toy):
     toy.free(component)
 
 
-def test_log_categories(toy):
+def test_log_categories(toy: Any) -> None:
     component = toy.instantiate(logging=0)
     categories = (ctypes.c_char_p * 1)(b"logStatusWarning")
     assert toy.call("SetDebugLogging", component, 1, c_size_t(1), categories) == OK
@@ -272,7 +274,7 @@ def test_log_categories(toy):
     toy.free(component)
 
 
-def test_reset_starts_afresh(toy):
+def test_reset_starts_afresh(toy: Any) -> None:
     component = toy.initialized(mass=3.0)
     first = [toy.step(component, 0.01 * k) for k in range(20)] and toy.outputs(component)
     assert toy.call("Reset", component) == OK
@@ -286,7 +288,7 @@ def test_reset_starts_afresh(toy):
     toy.free(component)
 
 
-def test_a_parameter_set_in_initialization_mode_counts(toy):
+def test_a_parameter_set_in_initialization_mode_counts(toy: Any) -> None:
     component = toy.instantiate()
     toy.setup(component)
     toy.call("EnterInitializationMode", component)
@@ -296,20 +298,20 @@ def test_a_parameter_set_in_initialization_mode_counts(toy):
     toy.free(component)
 
 
-def save(toy, component):
+def save(toy: Any, component: Any) -> Any:
     state = state_pointer()
     assert toy.call("GetFMUstate", component, byref(state)) == OK
     return state
 
 
-def run_on(toy, component, count, first=0):
+def run_on(toy: Any, component: Any, count: Any, first: Any = 0) -> Any:
     for k in range(first, first + count):
         toy.set(component, "force[1]", math.sin(0.3 * k))
         assert toy.step(component, 0.01 * k) == OK
     return toy.outputs(component)
 
 
-def test_a_restored_state_goes_on_to_the_same_bits(toy):
+def test_a_restored_state_goes_on_to_the_same_bits(toy: Any) -> None:
     component = toy.initialized()
     run_on(toy, component, 30)
     state = save(toy, component)
@@ -325,7 +327,7 @@ def test_a_restored_state_goes_on_to_the_same_bits(toy):
     toy.free(component)
 
 
-def test_a_serialized_state_goes_on_in_another_instance(toy):
+def test_a_serialized_state_goes_on_in_another_instance(toy: Any) -> None:
     component, other = toy.initialized(), toy.instantiate(b"other")
     run_on(toy, component, 30)
     state, size = save(toy, component), c_size_t()
@@ -341,7 +343,7 @@ def test_a_serialized_state_goes_on_in_another_instance(toy):
         toy.free(instance)
 
 
-def test_damaged_or_foreign_bytes_are_no_state(toy):
+def test_damaged_or_foreign_bytes_are_no_state(toy: Any) -> None:
     component = toy.initialized()
     state, size, nothing = save(toy, component), c_size_t(), state_pointer()
     toy.call("SerializedFMUstateSize", component, state, byref(size))

@@ -6,7 +6,7 @@ import subprocess
 import sys
 import zipfile
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import pytest
 import toy_model
@@ -53,7 +53,7 @@ pytestmark = pytest.mark.skipif(
 )
 
 
-def rows(place, fmu, folder, steps, size, *words):
+def rows(place: Any, fmu: Any, folder: Any, steps: Any, size: Any, *words: Any) -> Any:
     """Return the Real outputs of each step, diagnostics too, as a program for ``place`` saw them."""
     with zipfile.ZipFile(fmu) as archive:
         archive.extractall(folder)
@@ -75,7 +75,7 @@ def rows(place, fmu, folder, steps, size, *words):
     return [[float.fromhex(word) for word in line.split()] for line in done.stdout.splitlines()]
 
 
-def is_same(place, fmu, folder, steps, size, *words):
+def is_same(place: Any, fmu: Any, folder: Any, steps: Any, size: Any, *words: Any) -> None:
     """Compare the outputs; other C libraries may round sin and tan differently in the last bit."""
     if not place.needs:
         pytest.skip(f"no way to run {place.platform} here")
@@ -88,20 +88,20 @@ def is_same(place, fmu, folder, steps, size, *words):
 
 
 @pytest.mark.parametrize("place", PLACES[1:], ids=lambda place: place.platform)
-def test_other_platforms_give_the_same_numbers(place, tmp_path):
+def test_other_platforms_give_the_same_numbers(place: Any, tmp_path: Path) -> None:
     fmu = build(toy_model.MODEL, tmp_path / "fmu", [place.platform for place in PLACES if place.needs])
     known = read_model_description(str(fmu), validate=False).modelVariables
     force = next(item for item in known if item.name == "force[1]")
     is_same(place, fmu, tmp_path, STEPS, 0.01, f"real:{force.valueReference}=0.3")
 
 
-def word(variable, value):
+def word(variable: Any, value: Any) -> Any:
     """Return what sets a variable, as the host program reads it."""
     kind = {"Real": "real", "Boolean": "bool"}.get(variable.type, "int")
     return f"{kind}:{variable.valueReference}={float(value)!r}"
 
 
-def written(drive, name, fmu, path):
+def written(drive: Any, name: Any, fmu: Any, path: Any) -> Any:
     """Write what a model was given in a drive, parameters and then inputs; return how many steps, and their size."""
     scenario = load_scenario(drive, [])
     signals = run_scenario(scenario).recording.signals
@@ -117,7 +117,7 @@ def written(drive, name, fmu, path):
 
 @pytest.mark.parametrize("place", PLACES[1:], ids=lambda place: place.platform)
 @pytest.mark.parametrize("name", ["vehicle", "controller"])
-def test_other_platforms_drive_the_same(place, name, tmp_path):
+def test_other_platforms_drive_the_same(place: Any, name: str, tmp_path: Path) -> None:
     """Each model is given what it was given in shipped scenarios."""
     fmu = build(MODELS[name], tmp_path / "fmu", [place.platform for place in PLACES if place.needs])
     for drive in DRIVES:

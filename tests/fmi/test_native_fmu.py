@@ -5,6 +5,7 @@ import subprocess
 import sys
 import zipfile
 from pathlib import Path
+from typing import Any
 from xml.etree import ElementTree
 
 import fmpy
@@ -20,12 +21,12 @@ from fmus.native import fmu as native_fmu
 from fmus.native.platforms import host
 
 
-def bits(values):
+def bits(values: Any) -> Any:
     return [struct.pack("d", value) if isinstance(value, float) else value for value in values]
 
 
 @pytest.mark.parametrize("seed", [1, 2])
-def test_equals_the_model_in_process_to_the_bit(native_fmus, model, seed):
+def test_equals_the_model_in_process_to_the_bit(native_fmus: Any, model: Any, seed: int) -> None:
     inputs = random_inputs(fmi_variables(model), seed, len(STEPS))
     expected = in_process(model, inputs, STEPS)
     with Host(native_fmus[model.name]) as fmu:
@@ -41,7 +42,7 @@ def test_equals_the_model_in_process_to_the_bit(native_fmus, model, seed):
         assert fmu.log == []
 
 
-def test_starts_at_any_time_and_steps_are_rounded_at_their_ends(native_fmus):
+def test_starts_at_any_time_and_steps_are_rounded_at_their_ends(native_fmus: Any) -> None:
     with Host(native_fmus["Toy"]) as fmu:
         fmu.initialize(start=7.5)
         assert fmu.get(["time"]) == [7.5]
@@ -52,7 +53,7 @@ def test_starts_at_any_time_and_steps_are_rounded_at_their_ends(native_fmus):
         assert fmu.get(["count"]) == [300]
 
 
-def test_simulates_alone_and_gives_the_reference_result(native_fmus, model, tmp_path):
+def test_simulates_alone_and_gives_the_reference_result(native_fmus: Any, model: Any, tmp_path: Path) -> None:
     fmpy.extract(str(native_fmus[model.name]), str(tmp_path))
     reference = fmpy.util.read_csv(tmp_path / f"extra/org.fmi-standard.fmi-ls-ref/{model.name}_out.csv")
     stop, interval = reference["time"][-1], reference["time"][1]
@@ -65,8 +66,10 @@ def test_simulates_alone_and_gives_the_reference_result(native_fmus, model, tmp_
         assert (result[name] == reference[name]).all(), name
 
 
-def test_description_is_the_python_fmus_but_for_guid_tool_and_sources(native_fmus, python_fmus, model):
-    def text(path):
+def test_description_is_the_python_fmus_but_for_guid_tool_and_sources(
+    native_fmus: Any, python_fmus: Any, model: Any
+) -> None:
+    def text(path: Any) -> Any:
         with zipfile.ZipFile(path) as archive:
             root = ElementTree.fromstring(archive.read("modelDescription.xml"))
         for sources in root.findall("CoSimulation/SourceFiles"):
@@ -78,7 +81,7 @@ def test_description_is_the_python_fmus_but_for_guid_tool_and_sources(native_fmu
     assert text(native_fmus[model.name]) == text(python_fmus[model.name])
 
 
-def test_checkers_find_nothing(native_fmus, model):
+def test_checkers_find_nothing(native_fmus: Any, model: Any) -> None:
     path = str(native_fmus[model.name])
     assert validate_fmu(path) == []
     command = [Path(sys.executable).parent / "fmutool", "-input", path, "-check"]
@@ -89,7 +92,7 @@ def test_checkers_find_nothing(native_fmus, model):
     assert "WARNING" not in text
 
 
-def test_two_builds_are_the_same_bytes(native_fmus, tmp_path):
+def test_two_builds_are_the_same_bytes(native_fmus: Any, tmp_path: Path) -> None:
     from toy_model import MODEL
 
     again = native_fmu.build(MODEL, tmp_path / "elsewhere", [host()])
@@ -98,12 +101,14 @@ def test_two_builds_are_the_same_bytes(native_fmus, tmp_path):
     assert native_fmu.build(MODEL, tmp_path / "elsewhere", [host()]).stat().st_mtime_ns == stamp
 
 
-def test_another_model_has_another_guid(native_fmus):
+def test_another_model_has_another_guid(native_fmus: Any) -> None:
     guids = {fmpy.read_model_description(str(native_fmus[name])).guid for name in ("Toy", "Vehicle", "Controller")}
     assert len(guids) == 3
 
 
-def test_another_flag_of_the_compiler_gives_another_guid(native_fmus, tmp_path, monkeypatch):
+def test_another_flag_of_the_compiler_gives_another_guid(
+    native_fmus: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     from toy_model import MODEL
 
     with monkeypatch.context() as patch:

@@ -5,6 +5,7 @@ import subprocess
 import sys
 import threading
 from pathlib import Path
+from typing import Any
 
 import pytest
 from elf import dynamic
@@ -20,7 +21,7 @@ pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="the host progra
 
 
 @pytest.fixture(scope="module")
-def host(tmp_path_factory):
+def host(tmp_path_factory: pytest.TempPathFactory) -> Any:
     """The host program, made by the C compiler that makes the FMUs."""
     program = tmp_path_factory.mktemp("host") / "host"
     options = ["-target", LINUX.triple, "-std=gnu11", "-O1", "-Wall", "-Wextra", f"-I{C_FILES}"]
@@ -30,17 +31,17 @@ def host(tmp_path_factory):
 
 
 @pytest.fixture
-def library(native_fmus, model, tmp_path):
+def library(native_fmus: Any, model: Any, tmp_path: Path) -> Any:
     return Library(native_fmus[model.name], tmp_path)
 
 
-def run(*command, **more):
+def run(*command: Any, **more: Any) -> Any:
     done = subprocess.run([str(word) for word in command], capture_output=True, text=True, env={}, check=False, **more)
     assert done.returncode == 0, (done.returncode, done.stdout, done.stderr)
     return done.stdout
 
 
-def test_needs_nothing_but_the_c_library(library, model):
+def test_needs_nothing_but_the_c_library(library: Any, model: Any) -> None:
     content = library.file.read_bytes()
     needed, undefined, defined = dynamic(content)
     assert set(needed) <= {"libc.so.6", "libm.so.6"}
@@ -51,7 +52,7 @@ def test_needs_nothing_but_the_c_library(library, model):
     assert len(content) < LIMIT
 
 
-def test_steps_in_a_host_without_python(host, library):
+def test_steps_in_a_host_without_python(host: Any, library: Any) -> None:
     names = [v.name for v in library.description.modelVariables if v.causality == "output" and v.type == "Real"][:20]
     references = [library.refs[name] for name in names]
     text = run(host, "run", library.file, library.description.guid, 50, 0.01, *references)
@@ -64,12 +65,12 @@ def test_steps_in_a_host_without_python(host, library):
     library.free(component)
 
 
-def test_ten_thousand_instances_leave_no_memory_behind(host, library):
+def test_ten_thousand_instances_leave_no_memory_behind(host: Any, library: Any) -> None:
     before, after = map(int, run(host, "many", library.file, library.description.guid, 10_000).split())
     assert after < before + 200, "kB; the smallest leak, 32 bytes per instance, would be 280"
 
 
-def test_a_hundred_instances_do_not_know_of_each_other(native_fmus, tmp_path):
+def test_a_hundred_instances_do_not_know_of_each_other(native_fmus: Any, tmp_path: Path) -> None:
     toy = Library(native_fmus["Toy"], tmp_path)
     crowd = [toy.initialized(stiffness=float(10 + number)) for number in range(100)]
     for k in range(20):
@@ -87,11 +88,11 @@ def test_a_hundred_instances_do_not_know_of_each_other(native_fmus, tmp_path):
         toy.free(component)
 
 
-def test_instances_on_several_threads(native_fmus, tmp_path):
+def test_instances_on_several_threads(native_fmus: Any, tmp_path: Path) -> None:
     toy = Library(native_fmus["Toy"], tmp_path)
     found = {}
 
-    def drive(number):
+    def drive(number: Any) -> None:
         component = toy.initialized(stiffness=float(10 + number))
         for k in range(500):
             toy.step(component, 0.01 * k)
@@ -111,7 +112,7 @@ def test_instances_on_several_threads(native_fmus, tmp_path):
 
 
 @pytest.mark.parametrize("seed", [1, 2])
-def test_no_random_call_crashes(host, library, seed):
+def test_no_random_call_crashes(host: Any, library: Any, seed: int) -> None:
     text = run(host, "fuzz", library.file, library.description.guid, seed, 20_000, timeout=120)
     calls, refused, messages = (int(word.split()[0]) for word in text.split(", "))
     assert calls == 20_000
@@ -119,7 +120,7 @@ def test_no_random_call_crashes(host, library, seed):
     assert messages > refused / 2
 
 
-def sanitized(model, fmi, source, folder):
+def sanitized(model: Any, fmi: Any, source: Any, folder: Any) -> Any:
     """Return (library, host program), made with AddressSanitizer and the undefined-behaviour sanitizer."""
     for name, text in fmu_sources(model, "{sanitized}", fmi).items():
         (folder / name).write_text(text)
@@ -137,7 +138,7 @@ needs_gcc = pytest.mark.skipif(shutil.which("gcc") is None, reason="needs gcc fo
 
 
 @needs_gcc
-def test_sanitizers_find_nothing(model, tmp_path):
+def test_sanitizers_find_nothing(model: Any, tmp_path: Path) -> None:
     library, program = sanitized(model, 2, "host.c", tmp_path)
     run(program, "many", library, "{sanitized}", 100)
     assert "refused" in run(program, "fuzz", library, "{sanitized}", 3, 20_000, timeout=300)
@@ -145,7 +146,7 @@ def test_sanitizers_find_nothing(model, tmp_path):
 
 @needs_gcc
 @pytest.mark.parametrize("seed", [1, 2])
-def test_sanitizers_find_nothing_in_fmi_3(model, seed, tmp_path):
+def test_sanitizers_find_nothing_in_fmi_3(model: Any, seed: int, tmp_path: Path) -> None:
     library, program = sanitized(model, 3, "host3.c", tmp_path)
     text = run(program, library, "{sanitized}", seed, 30_000, timeout=300)
     calls, refused, messages = (int(word.split()[0]) for word in text.split(", "))
@@ -155,7 +156,7 @@ def test_sanitizers_find_nothing_in_fmi_3(model, seed, tmp_path):
 
 
 @pytest.mark.skipif(shutil.which("valgrind") is None, reason="needs valgrind")
-def test_valgrind_finds_nothing(host, native_fmus, tmp_path):
+def test_valgrind_finds_nothing(host: Any, native_fmus: Any, tmp_path: Path) -> None:
     toy = Library(native_fmus["Toy"], tmp_path)
     check = ["valgrind", "--quiet", "--leak-check=full", "--error-exitcode=9"]
     command = [*check, str(host), "fuzz", str(toy.file), toy.description.guid, "5", "3000"]

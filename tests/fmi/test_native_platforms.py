@@ -2,6 +2,7 @@
 
 import struct
 import zipfile
+from typing import Any
 
 import pytest
 import toy_model
@@ -18,7 +19,7 @@ X86_64, ARM64 = 0x01000007, 0x0100000C
 
 
 @pytest.fixture(scope="module")
-def binaries(tmp_path_factory):
+def binaries(tmp_path_factory: pytest.TempPathFactory) -> Any:
     """Platform -> content of its library."""
     path = build(toy_model.MODEL, tmp_path_factory.mktemp("platforms"), PLATFORMS)
     with zipfile.ZipFile(path) as archive:
@@ -26,7 +27,7 @@ def binaries(tmp_path_factory):
         return {name.split("/")[1]: archive.read(name) for name in names}
 
 
-def slices(content):
+def slices(content: Any) -> Any:
     """Return processor -> Mach-O file in a universal binary."""
     magic, count = struct.unpack_from(">II", content)
     assert magic == 0xCAFEBABE
@@ -34,12 +35,12 @@ def slices(content):
     return {processor: content[at : at + size] for processor, _, at, size, _ in entries}
 
 
-def test_all_platforms_are_there(binaries):
+def test_all_platforms_are_there(binaries: Any) -> None:
     assert sorted(binaries) == ["aarch64-linux", "darwin64", "linux64", "win64"]
 
 
 @pytest.mark.parametrize(("platform", "machine"), [("linux64", 62), ("aarch64-linux", 183)])
-def test_linux(binaries, platform, machine):
+def test_linux(binaries: Any, platform: str, machine: int) -> None:
     content = binaries[platform]
     needed, undefined, defined = dynamic(content)
     assert struct.unpack_from("<H", content, 0x12) == (machine,)
@@ -49,7 +50,7 @@ def test_linux(binaries, platform, machine):
     assert len(content) < LIMIT
 
 
-def test_windows(binaries):
+def test_windows(binaries: Any) -> None:
     content = binaries["win64"]
     (header,) = struct.unpack_from("<I", content, 0x3C)
     assert content[:2] == b"MZ"
@@ -59,7 +60,7 @@ def test_windows(binaries):
     assert len(content) < LIMIT
 
 
-def test_mac(binaries):
+def test_mac(binaries: Any) -> None:
     found = slices(binaries["darwin64"])
     assert set(found) == {X86_64, ARM64}
     for processor, content in found.items():
@@ -70,6 +71,6 @@ def test_mac(binaries):
         assert len(content) < LIMIT
 
 
-def test_a_slice_must_be_a_mach_o_file():
+def test_a_slice_must_be_a_mach_o_file() -> None:
     with pytest.raises(ValueError, match="64-bit Mach-O"):
         fat_binary([b"\x7fELF" + bytes(100)])

@@ -7,6 +7,7 @@ import subprocess
 import sys
 import zipfile
 from pathlib import Path
+from typing import Any
 
 import pytest
 from fmpy import simulate_fmu
@@ -45,7 +46,7 @@ MISTAKES = {
 }
 
 
-def answer(folder, text, capsys, name="tank.py"):
+def answer(folder: Any, text: Any, capsys: pytest.CaptureFixture[str], name: str = "tank.py") -> Any:
     """Return exit code and what is said of a model file with ``text``."""
     (folder / name).write_text(text, encoding="utf-8")
     code = main(["build", "--model", str(folder / name), "--out", str(folder / "out")])
@@ -53,7 +54,7 @@ def answer(folder, text, capsys, name="tank.py"):
     return code, capsys.readouterr().err
 
 
-def wrong(what):
+def wrong(what: Any) -> Any:
     """Return the model with a mistake, and the number and text of the line that has it."""
     old, new = MISTAKES[what]
     assert TANK.count(old) == 1, old
@@ -64,7 +65,7 @@ def wrong(what):
 
 
 @pytest.mark.parametrize("what", MISTAKES)
-def test_a_mistake_is_answered_in_one_line(what, tmp_path, capsys):
+def test_a_mistake_is_answered_in_one_line(what: Any, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     text, _, _ = wrong(what)
     code, said = answer(tmp_path, text, capsys)
     assert code == 2
@@ -75,7 +76,7 @@ def test_a_mistake_is_answered_in_one_line(what, tmp_path, capsys):
     assert row[1] == text.splitlines()[int(row[2]) - 1].strip()
 
 
-def test_the_page_has_every_mistake():
+def test_the_page_has_every_mistake() -> None:
     assert [row[0] for row in ROWS] == list(MISTAKES)
 
 
@@ -90,7 +91,9 @@ def test_the_page_has_every_mistake():
         ("tank.txt", "tank.txt", "a model is a .py file, or a folder with __init__.py"),
     ],
 )
-def test_a_file_that_is_none_is_refused(name, argument, said, tmp_path, capsys):
+def test_a_file_that_is_none_is_refused(
+    name: str, argument: str, said: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     if name != "nowhere.py":
         (tmp_path / name).write_text(TANK, encoding="utf-8")
     assert main(["build", "--model", str(tmp_path / argument), "--out", str(tmp_path / "out")]) == 2
@@ -98,14 +101,14 @@ def test_a_file_that_is_none_is_refused(name, argument, said, tmp_path, capsys):
     assert said in line
 
 
-def test_a_place_is_needed(tmp_path, capsys):
+def test_a_place_is_needed(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (tmp_path / "tank.py").write_text(TANK, encoding="utf-8")
     assert main(["build", "--model", str(tmp_path / "tank.py")]) == 2
     assert capsys.readouterr().err == "apa: --model: a model of your own needs a place: give --out\n"
 
 
 @pytest.fixture(scope="module")
-def built(tmp_path_factory):
+def built(tmp_path_factory: pytest.TempPathFactory) -> Any:
     """The folder in which one command has built everything."""
     if not can_compile():
         pytest.skip("needs a C compiler")
@@ -117,7 +120,7 @@ def built(tmp_path_factory):
 
 @pytest.mark.parametrize("compiler", [["gcc"], [sys.executable, "-m", "ziglang", "cc"]], ids=["gcc", "clang"])
 @pytest.mark.parametrize("kind", ["c", "native", "fmi3"])
-def test_its_c_compiles_without_a_warning(kind, compiler, built, tmp_path):
+def test_its_c_compiles_without_a_warning(kind: str, compiler: Any, built: Any, tmp_path: Path) -> None:
     if shutil.which(compiler[0]) is None:
         pytest.skip("needs gcc")
     unit = {"c": "Tank.c", "native": "Tank_fmi2.c", "fmi3": "Tank_fmi3.c"}[kind]
@@ -132,12 +135,12 @@ def test_its_c_compiles_without_a_warning(kind, compiler, built, tmp_path):
     assert (done.returncode, done.stderr) == (0, "")
 
 
-def levels(path):
+def levels(path: Any) -> Any:
     result = simulate_fmu(path, stop_time=SPAN, output_interval=0.1, output=["level"], start_values={"inflow": 0.02})
     return result["level"].tolist()
 
 
-def test_every_kind_gives_the_same_bits(built):
+def test_every_kind_gives_the_same_bits(built: Any) -> None:
     found = {kind: levels(built / kind / "Tank.fmu") for kind in ("python", "native", "fmi3")}
     assert len(found["native"]) == 101
     assert found["python"] == found["native"] == found["fmi3"]
@@ -145,11 +148,11 @@ def test_every_kind_gives_the_same_bits(built):
 
 
 @pytest.mark.parametrize("kind", ["python", "native", "fmi3"])
-def test_fmpy_finds_nothing_to_complain_about(built, kind):
+def test_fmpy_finds_nothing_to_complain_about(built: Any, kind: str) -> None:
     assert validate_fmu(str(built / kind / "Tank.fmu")) == []
 
 
-def test_the_c_library_gives_the_bits_of_the_fmu(built, tmp_path):
+def test_the_c_library_gives_the_bits_of_the_fmu(built: Any, tmp_path: Path) -> None:
     compiler = shutil.which("cc")
     if compiler is None:
         pytest.skip("needs a cc")
@@ -215,7 +218,7 @@ LENGTH = (
 
 @pytest.mark.skipif(not can_compile(), reason="needs a C compiler")
 @pytest.mark.parametrize("params", ["None.", LENGTH], ids=["no parameters", "a parameter"])
-def test_a_model_without_inputs_whose_outputs_are_its_state(params, tmp_path):
+def test_a_model_without_inputs_whose_outputs_are_its_state(params: Any, tmp_path: Path) -> None:
     (tmp_path / "bare.py").write_text(BARE.format(params=params), encoding="utf-8")
     assert main(["build", "--model", str(tmp_path / "bare.py"), "--out", str(tmp_path / "out")]) == 0
     rows = []
@@ -233,7 +236,7 @@ def test_a_model_without_inputs_whose_outputs_are_its_state(params, tmp_path):
         subprocess.run([compiler, *flags, "main.c", "Pendulum.c", "-lm"], cwd=tmp_path / "out" / "c", check=True)
 
 
-def test_the_second_time_nothing_has_changed(built, capsys):
+def test_the_second_time_nothing_has_changed(built: Any, capsys: pytest.CaptureFixture[str]) -> None:
     model = str(built.parent / "tank.py")
     kept = {path: path.read_bytes() for path in built.rglob("Tank.*")}
     (built / "c" / "main.c").unlink()
@@ -245,14 +248,14 @@ def test_the_second_time_nothing_has_changed(built, capsys):
     assert {path: path.read_bytes() for path in kept} == kept
 
 
-def test_the_python_fmu_holds_the_file_below_its_own_root(built):
+def test_the_python_fmu_holds_the_file_below_its_own_root(built: Any) -> None:
     with zipfile.ZipFile(built / "python" / "Tank.fmu") as archive:
         (name,) = (name for name in archive.namelist() if name.endswith("/tank.py"))
         root = name.split("/")[1]
         assert f"from {root}.modelkit.model import Model" in archive.read(name).decode()
 
 
-def test_a_package_of_several_files(tmp_path, capsys):
+def test_a_package_of_several_files(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     package = tmp_path / "basin"
     package.mkdir()
     text = TANK.replace("import math\n", "from basin.law import outflow\n")

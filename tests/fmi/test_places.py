@@ -4,6 +4,7 @@ import os
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -13,7 +14,7 @@ ROOT = Path(__file__).parents[2]
 SHOW = "from fmus.places import DIST; print(DIST)"
 
 
-def shown(folder, **environment):
+def shown(folder: Any, **environment: Any) -> Any:
     """Return DIST of the copy of fmus in ``folder``."""
     plain = {name: value for name, value in os.environ.items() if name not in ("APA_DIST", "XDG_CACHE_HOME")}
     found = {name: value for name, value in {**plain, "PYTHONPATH": str(folder), **environment}.items() if value}
@@ -22,7 +23,7 @@ def shown(folder, **environment):
 
 
 @pytest.fixture
-def installed(tmp_path):
+def installed(tmp_path: Path) -> Any:
     """A package that is no checkout."""
     folder = tmp_path / "site-packages"
     (folder / "fmus").mkdir(parents=True)
@@ -31,23 +32,23 @@ def installed(tmp_path):
     return folder
 
 
-def test_a_checkout_keeps_it_beside_the_sources():
+def test_a_checkout_keeps_it_beside_the_sources() -> None:
     assert shown(ROOT) == ROOT / "fmus" / "dist"
 
 
-def test_a_package_keeps_it_in_the_users_cache(installed, tmp_path):
+def test_a_package_keeps_it_in_the_users_cache(installed: Any, tmp_path: Path) -> None:
     assert shown(installed, HOME=str(tmp_path), XDG_CACHE_HOME="") == tmp_path / ".cache" / "apa-cosim"
     assert shown(installed, XDG_CACHE_HOME=str(tmp_path / "c")) == tmp_path / "c" / "apa-cosim"
     assert not (installed / "fmus" / "dist").exists()
 
 
-def test_a_variable_names_another_place(installed, tmp_path):
+def test_a_variable_names_another_place(installed: Any, tmp_path: Path) -> None:
     assert shown(installed, APA_DIST=str(tmp_path / "mine")) == tmp_path / "mine"
     assert shown(ROOT, APA_DIST=str(tmp_path / "mine")) == tmp_path / "mine"
 
 
 @pytest.mark.skipif(not hasattr(os, "getuid"), reason="owners are those of POSIX")
-def test_without_any_home_it_is_a_folder_of_ones_own(monkeypatch, tmp_path):
+def test_without_any_home_it_is_a_folder_of_ones_own(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setattr(places, "__file__", str(tmp_path / "fmus" / "places.py"))
     monkeypatch.setattr(places, "user_cache_path", lambda *_, **__: Path("/proc/nothing"))
     monkeypatch.setattr(places.tempfile, "gettempdir", lambda: str(tmp_path))
@@ -62,7 +63,7 @@ def test_without_any_home_it_is_a_folder_of_ones_own(monkeypatch, tmp_path):
 
 
 @pytest.mark.skipif(not hasattr(os, "getuid"), reason="owners are those of POSIX")
-def test_a_folder_that_others_can_write_to_is_not_ones_own(monkeypatch, tmp_path):
+def test_a_folder_that_others_can_write_to_is_not_ones_own(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setattr(places.os, "getuid", lambda: tmp_path.stat().st_uid or 1)
     tmp_path.chmod(0o755)
     assert places.is_own(tmp_path)
@@ -71,7 +72,7 @@ def test_a_folder_that_others_can_write_to_is_not_ones_own(monkeypatch, tmp_path
     assert places.is_own(tmp_path / "not there")
 
 
-def test_can_write_asks_the_nearest_folder_that_exists(tmp_path):
+def test_can_write_asks_the_nearest_folder_that_exists(tmp_path: Path) -> None:
     assert places.can_write(tmp_path / "a" / "b")
     assert not places.can_write(Path("/proc/1/a"))
     (tmp_path / "file").write_text("")
@@ -89,7 +90,7 @@ print(build(toy_model.MODEL, Path(sys.argv[1]), [host()]))
 
 @pytest.mark.slow
 @pytest.mark.skipif(os.name != "posix", reason="HOME is POSIX's")
-def test_the_compiler_works_without_a_home(tmp_path):
+def test_the_compiler_works_without_a_home(tmp_path: Path) -> None:
     environment = {name: os.environ[name] for name in ("PATH",) if name in os.environ}
     environment |= {"PYTHONPATH": f"{ROOT}:{ROOT / 'tests' / 'fmi'}", "APA_DIST": str(tmp_path / "dist")}
     command = [sys.executable, "-c", BUILD, str(tmp_path)]

@@ -2,6 +2,8 @@
 
 import random
 import struct
+from pathlib import Path
+from typing import Any
 
 import fmpy
 import pytest
@@ -13,11 +15,11 @@ from modelkit.variables import constructor, flatten, variables
 STEPS = [0.01] * 40 + [0.001, 0.02, 0.0133, 0.005] * 10
 
 
-def bits(values):
+def bits(values: Any) -> Any:
     return [struct.pack("d", value) if isinstance(value, float) else value for value in values]
 
 
-def in_process(model, inputs, steps):
+def in_process(model: Any, inputs: Any, steps: Any) -> Any:
     """Return the outputs of the model's own functions at every communication point."""
     make = constructor(model.inputs)
     params = model.params()
@@ -33,7 +35,7 @@ def in_process(model, inputs, steps):
 
 
 @pytest.mark.parametrize("seed", [1, 2])
-def test_equals_the_model_in_process_to_the_bit(python_fmus, model, seed):
+def test_equals_the_model_in_process_to_the_bit(python_fmus: Any, model: Any, seed: int) -> None:
     inputs = random_inputs(fmi_variables(model), seed, len(STEPS))
     expected = in_process(model, inputs, STEPS)
     with Host(python_fmus[model.name]) as host:
@@ -49,7 +51,7 @@ def test_equals_the_model_in_process_to_the_bit(python_fmus, model, seed):
         assert host.log == []
 
 
-def test_values_read_one_by_one_equal_values_read_at_once(python_fmus, model):
+def test_values_read_one_by_one_equal_values_read_at_once(python_fmus: Any, model: Any) -> None:
     with Host(python_fmus[model.name]) as host:
         host.initialize()
         host.step(0.0, 0.01)
@@ -57,7 +59,7 @@ def test_values_read_one_by_one_equal_values_read_at_once(python_fmus, model):
         assert bits(host.get(names)) == bits([host.get([name])[0] for name in names])
 
 
-def test_start_values_are_those_of_the_description(python_fmus, model):
+def test_start_values_are_those_of_the_description(python_fmus: Any, model: Any) -> None:
     with Host(python_fmus[model.name]) as host:
         known = [v for v in host.description.modelVariables if v.start is not None]
         convert = {"Real": float, "Integer": int, "Boolean": lambda text: text == "true"}
@@ -65,7 +67,7 @@ def test_start_values_are_those_of_the_description(python_fmus, model):
         assert host.get([v.name for v in known]) == expected
 
 
-def test_simulates_alone_and_gives_the_reference_result(python_fmus, model, tmp_path):
+def test_simulates_alone_and_gives_the_reference_result(python_fmus: Any, model: Any, tmp_path: Path) -> None:
     fmpy.extract(str(python_fmus[model.name]), str(tmp_path))
     reference = fmpy.util.read_csv(tmp_path / f"extra/org.fmi-standard.fmi-ls-ref/{model.name}_out.csv")
     stop, interval = reference["time"][-1], reference["time"][1]
@@ -78,7 +80,7 @@ def test_simulates_alone_and_gives_the_reference_result(python_fmus, model, tmp_
         assert result[name] == pytest.approx(reference[name], rel=1e-9, abs=1e-9), name
 
 
-def test_outputs_follow_parameters_in_initialization_mode(python_fmus):
+def test_outputs_follow_parameters_in_initialization_mode(python_fmus: Any) -> None:
     with Host(python_fmus["Toy"]) as host:
         host.fmu.setupExperiment()
         host.fmu.enterInitializationMode()
@@ -92,7 +94,7 @@ def test_outputs_follow_parameters_in_initialization_mode(python_fmus):
         assert host.get(["oscillators[1].position"])[0] == pytest.approx(0.9)
 
 
-def test_reset_gives_a_new_instance(python_fmus, model):
+def test_reset_gives_a_new_instance(python_fmus: Any, model: Any) -> None:
     inputs = random_inputs(fmi_variables(model), 3, 20)
     with Host(python_fmus[model.name]) as host:
         runs = []
@@ -107,7 +109,7 @@ def test_reset_gives_a_new_instance(python_fmus, model):
         assert runs[0] == runs[1] == runs[2]
 
 
-def test_a_long_step_is_honoured_and_a_bad_one_refused(python_fmus):
+def test_a_long_step_is_honoured_and_a_bad_one_refused(python_fmus: Any) -> None:
     with Host(python_fmus["Toy"]) as host:
         host.initialize()
         assert host.step(0.0, 1.5) == OK
@@ -120,7 +122,7 @@ def test_a_long_step_is_honoured_and_a_bad_one_refused(python_fmus):
 
 
 @pytest.mark.parametrize("size", [1e-12, 4e-10, 5e-324])
-def test_a_last_step_under_half_a_nanosecond_is_ok_and_does_nothing(python_fmus, size):
+def test_a_last_step_under_half_a_nanosecond_is_ok_and_does_nothing(python_fmus: Any, size: float) -> None:
     """A master that adds up t += h makes one at the end."""
     with Host(python_fmus["Toy"]) as host:
         host.initialize()
@@ -134,10 +136,10 @@ def test_a_last_step_under_half_a_nanosecond_is_ok_and_does_nothing(python_fmus,
 
 
 @pytest.mark.parametrize("form", ["memory", "bytes", "other instance"])
-def test_a_restored_state_continues_to_the_same_bits(python_fmus, model, form):
+def test_a_restored_state_continues_to_the_same_bits(python_fmus: Any, model: Any, form: str) -> None:
     inputs = random_inputs(fmi_variables(model), 4, 60)
 
-    def run(host, begin, end):
+    def run(host: Any, begin: Any, end: Any) -> Any:
         found = []
         for number in range(begin, end):
             host.set(inputs[number])
@@ -166,7 +168,7 @@ def test_a_restored_state_continues_to_the_same_bits(python_fmus, model, form):
         host.fmu.freeFMUstate(state)
 
 
-def test_a_state_saved_before_initialization_takes_parameters_again(python_fmus):
+def test_a_state_saved_before_initialization_takes_parameters_again(python_fmus: Any) -> None:
     with Host(python_fmus["Toy"]) as host:
         fresh = host.fmu.getFMUstate()
         host.initialize(**{"start[1].position": 0.5})
@@ -178,7 +180,7 @@ def test_a_state_saved_before_initialization_takes_parameters_again(python_fmus)
         assert host.step(0.0, 0.01) == OK
 
 
-def test_instances_do_not_touch_each_other(python_fmus):
+def test_instances_do_not_touch_each_other(python_fmus: Any) -> None:
     path = python_fmus["Toy"]
     source = random.Random(5)
     with Host(path, "a") as a, Host(path, "b") as b:

@@ -1,6 +1,7 @@
 """Exceptions and wrong calls: logged, refused, never fmi2Fatal, never a crash."""
 
 import gc
+from typing import Any
 
 import pytest
 from host import DISCARD, ERROR, FATAL, OK, Host, slaves
@@ -8,7 +9,7 @@ from host import DISCARD, ERROR, FATAL, OK, Host, slaves
 TOO_HIGH = 10_000
 
 
-def test_an_exception_is_logged_with_its_traceback_and_discards_the_step(python_fmus):
+def test_an_exception_is_logged_with_its_traceback_and_discards_the_step(python_fmus: Any) -> None:
     with Host(python_fmus["Toy"]) as host:
         host.initialize()
         assert host.step(0.0, 0.01) == OK
@@ -26,7 +27,7 @@ def test_an_exception_is_logged_with_its_traceback_and_discards_the_step(python_
         assert host.get(["count"]) == [2]
 
 
-def test_a_failing_initialize_is_logged_and_no_step_is_taken(python_fmus):
+def test_a_failing_initialize_is_logged_and_no_step_is_taken(python_fmus: Any) -> None:
     with Host(python_fmus["Toy"]) as host:
         host.initialize(broken=True)
         assert any("ZeroDivisionError" in text for _, _, text in host.log)
@@ -37,7 +38,7 @@ def test_a_failing_initialize_is_logged_and_no_step_is_taken(python_fmus):
 
 
 @pytest.mark.parametrize("text", ["50% done", "%s %n %d", "100 %% of 5%", "naïve \ud800 text"])
-def test_percent_signs_reach_the_host_as_they_are(python_fmus, text):
+def test_percent_signs_reach_the_host_as_they_are(python_fmus: Any, text: str) -> None:
     """FMPy formats the message as printf does, so a lone %n would crash here."""
     with Host(python_fmus["Toy"]) as host:
         slaves(host)[-1]._error(text)
@@ -45,10 +46,10 @@ def test_percent_signs_reach_the_host_as_they_are(python_fmus, text):
         assert host.log[0] == (ERROR, "logStatusError", text.encode("utf-8", "replace").decode())
 
 
-def test_an_interrupt_that_strikes_before_the_first_line_does_no_harm(python_fmus):
+def test_an_interrupt_that_strikes_before_the_first_line_does_no_harm(python_fmus: Any) -> None:
     """Ctrl-C can raise at the entry of a method; the binary then frees its objects twice."""
 
-    def interrupted(*_):
+    def interrupted(*_: Any) -> None:
         raise KeyboardInterrupt
 
     for _ in range(5):
@@ -69,7 +70,7 @@ def test_an_interrupt_that_strikes_before_the_first_line_does_no_harm(python_fmu
         gc.collect()
 
 
-def test_freed_instances_are_given_back(python_fmus):
+def test_freed_instances_are_given_back(python_fmus: Any) -> None:
     counts = []
     for _ in range(6):
         with Host(python_fmus["Toy"], "always the same") as host:
@@ -79,7 +80,7 @@ def test_freed_instances_are_given_back(python_fmus):
     assert counts[1:] == [counts[1]] * 5
 
 
-def test_an_unknown_value_reference_or_a_wrong_type_is_refused(python_fmus):
+def test_an_unknown_value_reference_or_a_wrong_type_is_refused(python_fmus: Any) -> None:
     for call in (
         lambda fmu, vr: fmu.getReal([vr["angle"], TOO_HIGH]),
         lambda fmu, vr: fmu.getReal([0xFFFFFFFF]),
@@ -109,7 +110,7 @@ def test_an_unknown_value_reference_or_a_wrong_type_is_refused(python_fmus):
             assert host.step(0.0, 0.01) == OK
 
 
-def test_a_value_that_cannot_be_read_is_nan_beside_the_good_ones(python_fmus):
+def test_a_value_that_cannot_be_read_is_nan_beside_the_good_ones(python_fmus: Any) -> None:
     with Host(python_fmus["Toy"]) as host:
         host.initialize()
         good, bad = host.fmu.getReal([host.refs["mass"], TOO_HIGH])
@@ -117,7 +118,7 @@ def test_a_value_that_cannot_be_read_is_nan_beside_the_good_ones(python_fmus):
         assert bad != bad
 
 
-def test_steps_outside_of_step_mode_are_refused(python_fmus):
+def test_steps_outside_of_step_mode_are_refused(python_fmus: Any) -> None:
     with Host(python_fmus["Toy"]) as host:
         assert host.step(0.0, 0.01) == DISCARD
         host.initialize()
@@ -127,7 +128,7 @@ def test_steps_outside_of_step_mode_are_refused(python_fmus):
 
 
 @pytest.mark.parametrize("content", [b"", b"null", b"[1, 2]", b"\xff\xfe", b'["x", 2, false, "", [], []]'])
-def test_a_damaged_state_is_refused(python_fmus, content):
+def test_a_damaged_state_is_refused(python_fmus: Any, content: Any) -> None:
     with Host(python_fmus["Toy"]) as host:
         host.initialize()
         state = host.fmu.deSerializeFMUstate(content)
@@ -136,7 +137,7 @@ def test_a_damaged_state_is_refused(python_fmus, content):
         assert host.step(0.0, 0.01) == DISCARD
 
 
-def test_a_state_of_another_model_is_refused(python_fmus):
+def test_a_state_of_another_model_is_refused(python_fmus: Any) -> None:
     with Host(python_fmus["Vehicle"]) as vehicle, Host(python_fmus["Toy"]) as toy:
         vehicle.initialize()
         toy.initialize()

@@ -8,6 +8,7 @@ import sys
 import zipfile
 import zlib
 from pathlib import Path
+from typing import Any
 from xml.etree import ElementTree
 
 import fmpy
@@ -28,20 +29,20 @@ from vehicle_fmu import MODEL as VEHICLE
 BIN = Path(sys.executable).parent
 
 
-def read(path, name):
+def read(path: Any, name: Any) -> Any:
     with zipfile.ZipFile(path) as archive:
         return archive.read(name)
 
 
-def description(path):
+def description(path: Any) -> Any:
     return ElementTree.fromstring(read(path, "modelDescription.xml"))
 
 
-def test_fmpy_finds_nothing_wrong(python_fmus, model):
+def test_fmpy_finds_nothing_wrong(python_fmus: Any, model: Any) -> None:
     assert validate_fmu(str(python_fmus[model.name])) == []
 
 
-def test_fmutool_finds_nothing_wrong(python_fmus, model):
+def test_fmutool_finds_nothing_wrong(python_fmus: Any, model: Any) -> None:
     command = [BIN / "fmutool", "-input", python_fmus[model.name], "-check"]
     result = subprocess.run(command, capture_output=True, text=True, check=True)
     text = result.stdout + result.stderr
@@ -51,12 +52,12 @@ def test_fmutool_finds_nothing_wrong(python_fmus, model):
     assert "WARNING" not in text
 
 
-def test_builds_are_byte_identical(model, tmp_path):
+def test_builds_are_byte_identical(model: Any, tmp_path: Path) -> None:
     one, other = build(model, tmp_path / "one"), build(model, tmp_path / "other")
     assert one.read_bytes() == other.read_bytes()
 
 
-def test_a_build_in_another_process_is_byte_identical(python_fmus, tmp_path):
+def test_a_build_in_another_process_is_byte_identical(python_fmus: Any, tmp_path: Path) -> None:
     code = "import toy_model; from fmus.native.libraries import python_front; from fmus.python.fmu import build; "
     code += f"build(toy_model.MODEL, {str(tmp_path)!r}, python_front())"
     path = os.pathsep.join([str(Path(__file__).parent), *sys.path])
@@ -66,7 +67,7 @@ def test_a_build_in_another_process_is_byte_identical(python_fmus, tmp_path):
     assert (tmp_path / "Toy.fmu").read_bytes() == python_fmus["Toy"].read_bytes()
 
 
-def test_an_unchanged_build_is_left_alone(tmp_path):
+def test_an_unchanged_build_is_left_alone(tmp_path: Path) -> None:
     seen = []
     first = build_all(tmp_path, progress=seen.append)
     stamps = [built.path.stat().st_mtime_ns for built in first]
@@ -82,7 +83,7 @@ def test_an_unchanged_build_is_left_alone(tmp_path):
         build_all(tmp_path, kinds=("wasm",))
 
 
-def test_the_archive_depends_on_its_content_alone():
+def test_the_archive_depends_on_its_content_alone() -> None:
     one, other = {"a": b"1", "b.so": b"2"}, {"b.so": b"2", "a": b"1"}
     assert archive_bytes(one) == archive_bytes(other)
     assert content_guid(one) == content_guid(other)
@@ -92,14 +93,14 @@ def test_the_archive_depends_on_its_content_alone():
     assert {entry.compress_type for entry in entries} == {zipfile.ZIP_DEFLATED}
 
 
-def test_guid_is_in_the_description_and_changes_with_the_content(python_fmus):
+def test_guid_is_in_the_description_and_changes_with_the_content(python_fmus: Any) -> None:
     guids = {archive_guid(path) for path in python_fmus.values()}
     assert len(guids) == len(python_fmus)
     for path in python_fmus.values():
         assert description(path).get("guid") == archive_guid(path)
 
 
-def test_every_real_has_a_unit_and_every_variable_a_meaning(python_fmus, model):
+def test_every_real_has_a_unit_and_every_variable_a_meaning(python_fmus: Any, model: Any) -> None:
     root = description(python_fmus[model.name])
     defined = {node.get("name"): node for node in root.find("UnitDefinitions")}
     for scalar in root.find("ModelVariables"):
@@ -115,20 +116,20 @@ def test_every_real_has_a_unit_and_every_variable_a_meaning(python_fmus, model):
         assert float(node.find("DisplayUnit").get("factor")) == pytest.approx(57.29577951308232, rel=1e-15)
 
 
-def test_value_references_are_one_running_number_in_the_order_of_the_types(python_fmus, model):
+def test_value_references_are_one_running_number_in_the_order_of_the_types(python_fmus: Any, model: Any) -> None:
     scalars = list(description(python_fmus[model.name]).find("ModelVariables"))
     names = {int(scalar.get("valueReference")): scalar.get("name") for scalar in scalars}
     assert [names[vr] for vr in range(len(scalars))] == [item.name for item in fmi_variables(model)]
 
 
-def test_what_is_connected_comes_first(python_fmus, model):
+def test_what_is_connected_comes_first(python_fmus: Any, model: Any) -> None:
     scalars = list(description(python_fmus[model.name]).find("ModelVariables"))
     order = [scalar.get("causality") for scalar in scalars]
     assert order == sorted(order, key=["input", "output", "parameter", "local", "independent"].index)
     assert scalars[-1].get("name") == "time"
 
 
-def test_outputs_depend_on_no_input_and_at_the_start_on_parameters(python_fmus, model):
+def test_outputs_depend_on_no_input_and_at_the_start_on_parameters(python_fmus: Any, model: Any) -> None:
     root = description(python_fmus[model.name])
     scalars = list(root.find("ModelVariables"))
     outputs = [str(place) for place, scalar in enumerate(scalars, 1) if scalar.get("causality") == "output"]
@@ -140,7 +141,7 @@ def test_outputs_depend_on_no_input_and_at_the_start_on_parameters(python_fmus, 
     assert {scalars[int(place) - 1].get("causality") for place in depended} == {"parameter"}
 
 
-def test_capabilities_and_default_experiment(python_fmus, model):
+def test_capabilities_and_default_experiment(python_fmus: Any, model: Any) -> None:
     root = description(python_fmus[model.name])
     simulation = root.find("CoSimulation")
     for flag in ("canHandleVariableCommunicationStepSize", "canGetAndSetFMUstate", "canSerializeFMUstate"):
@@ -152,7 +153,7 @@ def test_capabilities_and_default_experiment(python_fmus, model):
     assert len(root.find("LogCategories")) == 5
 
 
-def test_the_kind_of_fmu_changes_only_what_it_says(model):
+def test_the_kind_of_fmu_changes_only_what_it_says(model: Any) -> None:
     one = ElementTree.fromstring(model_description(model, guid="a", generation_tool="b", flags={"x": True}))
     other = ElementTree.fromstring(model_description(model, guid="c", generation_tool="d", flags={"x": False}))
     for root in (one, other):
@@ -162,7 +163,7 @@ def test_the_kind_of_fmu_changes_only_what_it_says(model):
     assert ElementTree.tostring(one) == ElementTree.tostring(other)
 
 
-def test_documentation_names_every_variable(python_fmus, model):
+def test_documentation_names_every_variable(python_fmus: Any, model: Any) -> None:
     page = read(python_fmus[model.name], "documentation/index.html").decode()
     for variable in fmi_variables(model)[:-1]:
         assert f"<td class='v'>{variable.name}</td>" in page
@@ -171,7 +172,7 @@ def test_documentation_names_every_variable(python_fmus, model):
     assert b"Permission is hereby granted" in read(python_fmus[model.name], "documentation/licenses/pythonfmu.txt")
 
 
-def test_icon_is_a_picture(python_fmus, model):
+def test_icon_is_a_picture(python_fmus: Any, model: Any) -> None:
     content = read(python_fmus[model.name], "model.png")
     assert content.startswith(b"\x89PNG\r\n\x1a\n")
     width, height = struct.unpack(">II", content[16:24])
@@ -185,7 +186,7 @@ def test_icon_is_a_picture(python_fmus, model):
     assert bytes([255, 255, 255, 0]) in colours
 
 
-def test_terminals_keep_to_their_schema(python_fmus, model):
+def test_terminals_keep_to_their_schema(python_fmus: Any, model: Any) -> None:
     schema = Path(fmpy.__file__).parent / "schema/fmi3/fmi3TerminalsAndIcons.xsd"
     document = etree.fromstring(read(python_fmus[model.name], "terminalsAndIcons/terminalsAndIcons.xml"))
     etree.XMLSchema(file=str(schema)).assertValid(document)
@@ -195,7 +196,7 @@ def test_terminals_keep_to_their_schema(python_fmus, model):
     assert set(members) <= ports if model.terminals else set(members) == ports
 
 
-def test_every_connected_signal_is_in_a_terminal_of_both():
+def test_every_connected_signal_is_in_a_terminal_of_both() -> None:
     signals = [{item.name: name for name, item in _terminal_members(model)} for model in (VEHICLE, CONTROLLER)]
     ports = [{v.name: v.causality for v in fmi_variables(model)} for model in (VEHICLE, CONTROLLER)]
     pairs = {name for name in ports[0] if {ports[0][name], ports[1].get(name)} == {"input", "output"}}
@@ -204,7 +205,7 @@ def test_every_connected_signal_is_in_a_terminal_of_both():
     assert signals[0] == signals[1]
 
 
-def _terminal_members(model):
+def _terminal_members(model: Any) -> Any:
     known = {item.name: item for item in fmi_variables(model)}
     root = ElementTree.fromstring(terminals(model))
     return [(t.get("name"), known[node.get("variableName")]) for t in root.iter("Terminal") for node in t]
@@ -224,7 +225,7 @@ def _terminal_members(model):
         ("m.s-1", {"m": 1, "s": -1}, 1.0, None),
     ],
 )
-def test_units(name, exponents, factor, display):
+def test_units(name: Any, exponents: Any, factor: Any, display: Any) -> None:
     this = unit(name)
     assert this.exponents == exponents
     assert this.factor == pytest.approx(factor, rel=1e-15)
@@ -233,6 +234,6 @@ def test_units(name, exponents, factor, display):
 
 
 @pytest.mark.parametrize("name", ["", "furlong", "m//", "m/", "m/(s", "m^x", "rad s"])
-def test_an_unreadable_unit_is_refused(name):
+def test_an_unreadable_unit_is_refused(name: str) -> None:
     with pytest.raises(ValueError, match="unit"):
         unit(name)

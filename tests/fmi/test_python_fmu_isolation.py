@@ -8,6 +8,7 @@ import sys
 import textwrap
 import zipfile
 from pathlib import Path
+from typing import Any
 
 import fmpy
 import pytest
@@ -25,7 +26,7 @@ ROOT = Path(__file__).parents[2]
 PACKAGES = ("modelkit", "vehicle_fmu", "controller_fmu", "fmus")
 
 
-def build_elsewhere(folder, package, change):
+def build_elsewhere(folder: Any, package: Any, change: Any) -> Any:
     """Return the FMU of ``package`` built from a copy of the sources with ``change`` made to each model file."""
     for name in PACKAGES:
         shutil.copytree(ROOT / name, folder / name, ignore=shutil.ignore_patterns("__pycache__", "dist"))
@@ -38,12 +39,12 @@ def build_elsewhere(folder, package, change):
     return Path(result.stdout.strip())
 
 
-def roots_of(hosts):
+def roots_of(hosts: Any) -> Any:
     """Return the root packages of the instances' code."""
     return {slave.model.step.__module__.split(".")[0] for host in hosts for slave in slaves(host)}
 
 
-def test_all_fmus_run_beside_the_packages_of_the_host(python_fmus):
+def test_all_fmus_run_beside_the_packages_of_the_host(python_fmus: Any) -> None:
     inputs = {name: random_inputs(fmi_variables(model_of(name)), 6, 10) for name in python_fmus}
     path = list(sys.path)
     alone = {name: run(python_fmus[name], inputs[name]) for name in python_fmus}
@@ -68,11 +69,11 @@ def test_all_fmus_run_beside_the_packages_of_the_host(python_fmus):
         assert not package.__name__.startswith("fmu_")
 
 
-def model_of(name):
+def model_of(name: Any) -> Any:
     return {"Toy": toy_model.MODEL, "Vehicle": vehicle_fmu.MODEL, "Controller": controller_fmu.MODEL}[name]
 
 
-def run(path, inputs):
+def run(path: Any, inputs: Any) -> Any:
     with Host(path) as host:
         host.initialize()
         for number, values in enumerate(inputs):
@@ -81,7 +82,7 @@ def run(path, inputs):
         return host.outputs()
 
 
-def test_two_builds_of_one_model_each_run_their_own_code(python_fmus, tmp_path):
+def test_two_builds_of_one_model_each_run_their_own_code(python_fmus: Any, tmp_path: Path) -> None:
     twice = build_elsewhere(tmp_path, "toy_model", lambda text: text.replace("GAIN = 1.0", "GAIN = 2.0"))
     assert archive_guid(twice) != archive_guid(python_fmus["Toy"])
     with Host(python_fmus["Toy"]) as once, Host(twice) as fast:
@@ -106,7 +107,7 @@ def test_two_builds_of_one_model_each_run_their_own_code(python_fmus, tmp_path):
         assert fast.step(0.2, 0.01) != OK, "a state of the other build"
 
 
-def slow_motion(path):
+def slow_motion(path: Any) -> Any:
     """Return where the first oscillator is after 20 steps of twice the length."""
     with Host(path) as host:
         host.initialize(noisy=False)
@@ -116,7 +117,7 @@ def slow_motion(path):
 
 
 @pytest.mark.parametrize("name", ["Vehicle", "Controller"])
-def test_a_different_build_of_the_real_models_beside_the_first(python_fmus, tmp_path, name):
+def test_a_different_build_of_the_real_models_beside_the_first(python_fmus: Any, tmp_path: Path, name: str) -> None:
     package = model_of(name).package.__name__
     other = build_elsewhere(tmp_path, package, lambda text: text + "\nANOTHER_BUILD = 1\n")
     assert archive_guid(other) != archive_guid(python_fmus[name])
@@ -132,7 +133,7 @@ def test_a_different_build_of_the_real_models_beside_the_first(python_fmus, tmp_
             assert first.outputs() == second.outputs()
 
 
-def test_only_the_standard_library_is_needed(python_fmus, model, tmp_path):
+def test_only_the_standard_library_is_needed(python_fmus: Any, model: Any, tmp_path: Path) -> None:
     with zipfile.ZipFile(python_fmus[model.name]) as archive:
         archive.extractall(tmp_path)
     script = (tmp_path / "resources/slavemodule.txt").read_text()
@@ -151,7 +152,7 @@ def test_only_the_standard_library_is_needed(python_fmus, model, tmp_path):
     assert result.stdout.strip() == str([script.replace("slave_", "fmu_"), script])
 
 
-def test_packages_of_the_host_with_the_same_names_do_no_harm(python_fmus, tmp_path):
+def test_packages_of_the_host_with_the_same_names_do_no_harm(python_fmus: Any, tmp_path: Path) -> None:
     """A host whose own modelkit, pythonfmu and model packages are something else altogether."""
     for name in (*PACKAGES, "toy_model", "pythonfmu"):
         (tmp_path / f"{name}.py").write_text("raise ImportError('this is another package')\n")
@@ -162,7 +163,7 @@ def test_packages_of_the_host_with_the_same_names_do_no_harm(python_fmus, tmp_pa
     assert [int(line) > 10 for line in result.stdout.split()] == [True, True, True]
 
 
-def test_many_instantiations(python_fmus):
+def test_many_instantiations(python_fmus: Any) -> None:
     """PythonFMU's binary drops a reference to the script's namespace every time; it must survive that."""
     folder = fmpy.extract(str(python_fmus["Toy"]))
     description = fmpy.read_model_description(folder)
@@ -181,7 +182,7 @@ def test_many_instantiations(python_fmus):
     shutil.rmtree(folder)
 
 
-def test_imports_that_cannot_be_isolated_are_refused():
+def test_imports_that_cannot_be_isolated_are_refused() -> None:
     with pytest.raises(ValueError, match=r"toy\.py:1: import of numpy"):
         rewrite(b"import numpy", "toy.py", "root", {"toy"})
     with pytest.raises(ValueError, match=r"toy\.py:2: import of toy"):
@@ -190,6 +191,6 @@ def test_imports_that_cannot_be_isolated_are_refused():
     assert rewrite(text, "toy.py", "root", {"toy"}) == text.replace(b"from toy.", b"from root.toy.")
 
 
-def test_a_model_must_be_found_in_its_package():
+def test_a_model_must_be_found_in_its_package() -> None:
     with pytest.raises(ValueError, match="must hold the Model"):
         bundle(toy_model.MODEL._replace(step_size=0.02))

@@ -1,6 +1,7 @@
 """Hosts that call from other threads: Python's own, and those of a C++ master (libcosim)."""
 
 from concurrent.futures import ThreadPoolExecutor
+from typing import Any
 
 import pytest
 import toy_model
@@ -17,7 +18,7 @@ STEPS = 200
 
 
 @pytest.fixture(scope="module")
-def expected():
+def expected() -> Any:
     """Outputs of the toy model after STEPS steps with the inputs at their start values."""
     params, inputs = toy_model.MODEL.params(), toy_model.MODEL.inputs()
     state, outputs = toy_model.MODEL.initialize(params)
@@ -26,8 +27,8 @@ def expected():
     return dict(zip([item.name for item in variables(toy_model.MODEL.outputs)], flatten(outputs), strict=True))
 
 
-def test_instances_in_python_threads(python_fmus, expected):
-    def run(number):
+def test_instances_in_python_threads(python_fmus: Any, expected: Any) -> None:
+    def run(number: Any) -> Any:
         with Host(python_fmus["Toy"], f"instance {number}") as host:
             host.initialize()
             assert [host.step(k * 0.01, 0.01) for k in range(STEPS)] == [OK] * STEPS
@@ -37,7 +38,7 @@ def test_instances_in_python_threads(python_fmus, expected):
         assert list(pool.map(run, range(8))) == [expected] * 8
 
 
-def test_an_instance_called_from_another_thread_than_its_own(python_fmus, expected):
+def test_an_instance_called_from_another_thread_than_its_own(python_fmus: Any, expected: Any) -> None:
     with Host(python_fmus["Toy"]) as host:
         host.initialize()
         for k in range(STEPS):
@@ -46,7 +47,7 @@ def test_an_instance_called_from_another_thread_than_its_own(python_fmus, expect
         assert dict(zip(expected, host.get(list(expected)), strict=True)) == expected
 
 
-def test_libcosim_gives_the_same_bits(python_fmus, expected):
+def test_libcosim_gives_the_same_bits(python_fmus: Any, expected: Any) -> None:
     log_output_level(CosimLogLevel.FATAL)
     execution = CosimExecution.from_step_size(step_size=10_000_000)
     index = execution.add_local_slave(CosimLocalSlave(fmu_path=str(python_fmus["Toy"]), instance_name="toy"))

@@ -12,6 +12,7 @@ import sys
 import sysconfig
 import zipfile
 from pathlib import Path
+from typing import Any
 from urllib.parse import quote
 
 import pytest
@@ -54,7 +55,7 @@ FORMS = {
 
 
 @pytest.fixture(scope="module")
-def unpacked(python_fmus, tmp_path_factory):
+def unpacked(python_fmus: Any, tmp_path_factory: pytest.TempPathFactory) -> Any:
     folder = tmp_path_factory.mktemp("unpacked") / "fmu"
     with zipfile.ZipFile(python_fmus["Toy"]) as archive:
         archive.extractall(folder)
@@ -62,7 +63,7 @@ def unpacked(python_fmus, tmp_path_factory):
 
 
 @pytest.fixture
-def reference(unpacked):
+def reference(unpacked: Any) -> Any:
     from fmpy import read_model_description
 
     known = read_model_description(str(unpacked)).modelVariables
@@ -70,7 +71,7 @@ def reference(unpacked):
 
 
 @pytest.fixture(scope="module")
-def expected():
+def expected() -> Any:
     """Where the first oscillator is after five steps."""
     params, inputs = toy_model.MODEL.params(), toy_model.MODEL.inputs()
     state, outputs = toy_model.MODEL.initialize(params)
@@ -79,7 +80,7 @@ def expected():
     return outputs.oscillators[0].position
 
 
-def child(**told):
+def child(**told: Any) -> Any:
     """Return what a process found that called the FMU in ``folder``; it must have ended in peace."""
     environment = {**os.environ, "MALLOC_PERTURB_": "165", "PYTHONPATH": os.pathsep.join([str(HERE), *sys.path])}
     command = [sys.executable, str(HERE / "python_child.py"), json.dumps({**told, "folder": str(told["folder"])})]
@@ -88,7 +89,7 @@ def child(**told):
     return json.loads(done.stdout)
 
 
-def check(found, expected):
+def check(found: Any, expected: Any) -> None:
     assert found["made"], found["heard"]
     assert found["steps"] == [OK] * 5
     assert (found["get"], found["value"]) == (OK, expected)
@@ -98,26 +99,26 @@ def check(found, expected):
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_any_path(unpacked, reference, expected, tmp_path, name):
+def test_any_path(unpacked: Any, reference: Any, expected: Any, tmp_path: Path, name: Any) -> None:
     folder = tmp_path / name / "fmu"
     shutil.copytree(unpacked, folder)
     check(child(folder=folder, uri=FORMS["file:///"](f"{folder}/resources"), reference=reference), expected)
 
 
 @pytest.mark.parametrize("form", FORMS)
-def test_any_form_of_uri(unpacked, reference, expected, tmp_path, form):
+def test_any_form_of_uri(unpacked: Any, reference: Any, expected: Any, tmp_path: Path, form: Any) -> None:
     folder = tmp_path / "a blank (and more)"
     shutil.copytree(unpacked, folder)
     check(child(folder=folder, uri=FORMS[form](f"{folder}/resources"), reference=reference), expected)
 
 
-def test_no_uri_no_logger_no_functions(unpacked, reference, expected):
+def test_no_uri_no_logger_no_functions(unpacked: Any, reference: Any, expected: Any) -> None:
     for less in ({"uri": None}, {"logger": False}, {"functions": False}):
         told = {"folder": unpacked, "uri": f"file://{unpacked}/resources", "reference": reference, **less}
         check(child(**told), expected)
 
 
-def test_an_instance_that_is_never_freed_does_no_harm_at_the_end(unpacked, reference, expected):
+def test_an_instance_that_is_never_freed_does_no_harm_at_the_end(unpacked: Any, reference: Any, expected: Any) -> None:
     check(child(folder=unpacked, reference=reference, leave=True), expected)
 
 
@@ -131,14 +132,14 @@ def test_an_instance_that_is_never_freed_does_no_harm_at_the_end(unpacked, refer
         ({"name": None}, "an instance needs a name"),
     ],
 )
-def test_a_wrong_instantiation_is_refused_with_a_message(unpacked, reference, wrong, said):
+def test_a_wrong_instantiation_is_refused_with_a_message(unpacked: Any, reference: Any, wrong: Any, said: str) -> None:
     found = child(folder=unpacked, reference=reference, **wrong)
     assert not found["made"]
     assert found["heard"] == [[ERROR, said]]
     assert not child(folder=unpacked, reference=reference, logger=False, **wrong)["made"]
 
 
-def test_a_path_that_pythonfmu_misreads_is_refused(unpacked, reference, tmp_path):
+def test_a_path_that_pythonfmu_misreads_is_refused(unpacked: Any, reference: Any, tmp_path: Path) -> None:
     folder = tmp_path / "a%20b"
     shutil.copytree(unpacked, folder)
     found = child(folder=folder, uri=FORMS["file:///"](f"{folder}/resources"), reference=reference)
@@ -146,7 +147,7 @@ def test_a_path_that_pythonfmu_misreads_is_refused(unpacked, reference, tmp_path
     assert "%%20 in it" in found["heard"][0][1], "the host formats it as printf does"
 
 
-def test_without_a_compiler_the_library_of_pythonfmu_stands_alone_and_the_page_says_so(tmp_path):
+def test_without_a_compiler_the_library_of_pythonfmu_stands_alone_and_the_page_says_so(tmp_path: Path) -> None:
     alone = build(toy_model.MODEL, tmp_path / "alone")
     both = build(toy_model.MODEL, tmp_path / "both", python_front())
     with zipfile.ZipFile(alone) as one, zipfile.ZipFile(both) as other:
@@ -160,12 +161,12 @@ def test_without_a_compiler_the_library_of_pythonfmu_stands_alone_and_the_page_s
     assert len(python_front()) < 40_000
 
 
-def test_on_an_unknown_machine_there_is_none(monkeypatch):
+def test_on_an_unknown_machine_there_is_none(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("fmus.native.platforms.sys.platform", "plan9")
     assert python_front() is None
 
 
-def test_the_answers_of_the_slave_come_through(python_fmus, unpacked, reference):
+def test_the_answers_of_the_slave_come_through(python_fmus: Any, unpacked: Any, reference: Any) -> None:
     """A step before initialization is the slave's to refuse."""
     from host import Host
 
@@ -180,14 +181,14 @@ PYTHON = Path(str(sysconfig.get_config_var("LIBDIR"))) / str(sysconfig.get_confi
 
 
 @pytest.fixture(scope="module")
-def c_host(tmp_path_factory):
+def c_host(tmp_path_factory: pytest.TempPathFactory) -> Any:
     program = tmp_path_factory.mktemp("c_host") / "host"
     command = [sys.executable, "-m", "ziglang", "cc", "-std=gnu11", "-O1", f"-I{C_FILES}", str(HERE / "host.c")]
     subprocess.run([*command, "-o", str(program), "-ldl", "-lm"], check=True)
     return program
 
 
-def ran(c_host, unpacked, *words, preload=True):
+def ran(c_host: Any, unpacked: Any, *words: Any, preload: bool = True) -> Any:
     guid = (unpacked / "resources/guid.txt").read_text()
     environment = {"PYTHONHOME": sys.base_prefix, "MALLOC_PERTURB_": "165"}
     environment |= {"LD_PRELOAD": str(PYTHON)} if preload else {}
@@ -196,13 +197,15 @@ def ran(c_host, unpacked, *words, preload=True):
 
 
 @pytest.mark.skipif(not PYTHON.is_file(), reason="Python's library is not shared here")
-def test_a_host_in_c_with_pythons_library_loaded_runs_it_and_ends(c_host, unpacked, reference, expected):
+def test_a_host_in_c_with_pythons_library_loaded_runs_it_and_ends(
+    c_host: Any, unpacked: Any, reference: Any, expected: Any
+) -> None:
     done = ran(c_host, unpacked, "run", "5", "0.01", str(reference))
     assert done.returncode == 0, done.stderr
     assert float.fromhex(done.stdout.split()[-1]) == expected
     assert ran(c_host, unpacked, "many", "20").returncode == 0
 
 
-def test_a_host_in_c_without_python_is_refused(c_host, unpacked, reference):
+def test_a_host_in_c_without_python_is_refused(c_host: Any, unpacked: Any, reference: Any) -> None:
     done = ran(c_host, unpacked, "run", "5", "0.01", str(reference), preload=False)
     assert done.returncode == 3, "no instance, no crash"

@@ -1,5 +1,7 @@
 """No range of a parameter refuses what a shipped scenario, car, study, bake-off or grid uses."""
 
+from typing import Any
+
 import pytest
 
 from controller_fmu import MODEL as CONTROLLER
@@ -16,7 +18,7 @@ from orchestrator.sweep.study.study_file import load_study, study_names
 from vehicle_fmu import MODEL as VEHICLE
 
 
-def ranges(models):
+def ranges(models: Any) -> Any:
     return {
         f"{owner}.{item.name}": limits(item)
         for owner, model in models.items()
@@ -28,7 +30,7 @@ def ranges(models):
 KNOWN = ranges({"vehicle": VEHICLE, "controller": CONTROLLER})
 
 
-def outside(owner, values, known=KNOWN):
+def outside(owner: Any, values: Any, known: Any = KNOWN) -> Any:
     """Return the names of the parameters that are not within their range."""
     found = []
     for name, value in values.items():
@@ -38,23 +40,23 @@ def outside(owner, values, known=KNOWN):
     return found
 
 
-def outside_of(scenario):
+def outside_of(scenario: Any) -> Any:
     known = KNOWN if scenario.models == MODELS else ranges(scenario.models)
     return outside("vehicle", scenario.vehicle, known) + outside("controller", scenario.controller, known)
 
 
 @pytest.mark.parametrize("name", scenario_names())
-def test_scenarios(name):
+def test_scenarios(name: Any) -> None:
     assert outside_of(load_scenario(name, [])) == []
 
 
 @pytest.mark.parametrize("name", car_names())
-def test_cars(name):
+def test_cars(name: Any) -> None:
     assert outside_of(load_scenario("guo2015-case4", [f"car={name}"])) == []
 
 
 @pytest.mark.parametrize("name", study_names())
-def test_studies(name):
+def test_studies(name: Any) -> None:
     study = load_study(name)
     design = make_design(study, load_scenario(study.scenario, []))
     assert len(design.values) > 0
@@ -64,17 +66,17 @@ def test_studies(name):
             assert outside(owner, {name: column.min()}) + outside(owner, {name: column.max()}) == []
 
 
-def test_bake_off():
+def test_bake_off() -> None:
     assert [item for entry in entries() for item in outside_of(entry.scenario)] == []
 
 
-def test_grid_of_the_parking_assist():
+def test_grid_of_the_parking_assist() -> None:
     for case in cases():
         vehicle, controller = parameters(case)
         assert outside("vehicle", vehicle) + outside("controller", controller) == []
 
 
-def test_coordinates_of_a_map_are_in_range():
+def test_coordinates_of_a_map_are_in_range() -> None:
     """UTM: up to 834 km east, 10,000 km north."""
     map_place = {"start.x": 834e3, "start.y": 1e7, "scene.boxes[1].x": 834e3, "scene.kerbs[1].y2": 1e7}
     assert outside("vehicle", map_place) == []
@@ -85,7 +87,7 @@ def test_coordinates_of_a_map_are_in_range():
 # How a type says it
 
 
-def test_a_group_says_what_it_is_and_the_range_of_fields_that_have_none():
+def test_a_group_says_what_it_is_and_the_range_of_fields_that_have_none() -> None:
     start = {item.name: item.signal for item in variables(VEHICLE.params) if item.name.startswith("start.")}
     assert start["start.x"] == Signal("m", "rear-axle midpoint at time zero: x", -1e8, 1e8)
     assert start["start.heading"].high == 100.0
@@ -94,7 +96,7 @@ def test_a_group_says_what_it_is_and_the_range_of_fields_that_have_none():
     assert Group("g").limits == ()
 
 
-def test_the_role_next_to_a_field_wins():
+def test_the_role_next_to_a_field_wins() -> None:
     roles = {item.name: item.roles for item in variables(CONTROLLER.params)}
     assert roles["guo2015.k1"] == {Role.TUNABLE}
     assert roles["guo2015.radius"] == {Role.FIXED}

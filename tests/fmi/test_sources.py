@@ -6,6 +6,7 @@ import sys
 import zipfile
 from functools import lru_cache
 from pathlib import Path
+from typing import Any
 
 import pytest
 import table_model
@@ -35,7 +36,7 @@ COMPILERS = [pytest.param([GCC], id="gcc", marks=pytest.mark.skipif(GCC is None,
 needs_gcc = pytest.mark.skipif(GCC is None, reason="needs gcc")
 
 
-def write(model, fmi, folder):
+def write(model: Any, fmi: Any, folder: Any) -> Any:
     folder.mkdir(exist_ok=True)
     for name, text in fmu_sources(model, "{token}", fmi).items():
         (folder / name).write_text(text)
@@ -44,14 +45,14 @@ def write(model, fmi, folder):
 
 @pytest.mark.parametrize("fmi", [2, 3])
 @pytest.mark.parametrize("compiler", COMPILERS)
-def test_compiles_without_a_warning(any_model, fmi, compiler, tmp_path):
+def test_compiles_without_a_warning(any_model: Any, fmi: int, compiler: Any, tmp_path: Path) -> None:
     unit = write(any_model, fmi, tmp_path)
     command = [*compiler, *FLAGS, *WARNINGS, "-c", unit, "-o", "unit.o"]
     done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
     assert (done.returncode, done.stderr) == (0, "")
 
 
-def without_binaries(path, copy):
+def without_binaries(path: Any, copy: Any) -> Any:
     with zipfile.ZipFile(path) as source, zipfile.ZipFile(copy, "w") as target:
         for name in source.namelist():
             if not name.startswith("binaries/"):
@@ -60,7 +61,7 @@ def without_binaries(path, copy):
 
 
 @lru_cache
-def given(model):
+def given(model: Any) -> Any:
     """Return parameters, and the inputs of 400 steps: of a drive for the models in it, else random ones."""
     drives = {"guo2015-case4": SHIPPED, "valet-parallel": {"controller": VALET}}
     found = [(drive, part) for drive, parts in drives.items() for part, one in parts.items() if one is model]
@@ -75,10 +76,10 @@ def given(model):
     return {item.name: item.start for item in variables(model.params, values) if model.shows(item.name)}, inputs
 
 
-def drive(library, params, inputs, scalar=True):
+def drive(library: Any, params: Any, inputs: Any, scalar: bool = True) -> Any:
     """Return the outputs of each step; ``scalar``: FMI 2.0, where there are no arrays."""
 
-    def as_known(values):
+    def as_known(values: Any) -> Any:
         return values if scalar else grouped(values, values.values())
 
     component, rows = library.initialized(**as_known(params)), []
@@ -94,7 +95,9 @@ def drive(library, params, inputs, scalar=True):
 
 @needs_gcc
 @pytest.mark.parametrize("fmi", [2, 3])
-def test_fmpy_compiles_it_to_the_same_bits(any_model, fmi, native_fmus, fmi3_fmus, tmp_path):
+def test_fmpy_compiles_it_to_the_same_bits(
+    any_model: Any, fmi: int, native_fmus: Any, fmi3_fmus: Any, tmp_path: Path
+) -> None:
     model = any_model
     fmu = (native_fmus if fmi == 2 else fmi3_fmus)[model.name]
     bare = without_binaries(fmu, tmp_path / f"{model.name}.fmu")
@@ -108,7 +111,7 @@ def test_fmpy_compiles_it_to_the_same_bits(any_model, fmi, native_fmus, fmi3_fmu
 
 
 @needs_gcc
-def test_this_machines_own_compiler_makes_the_same_bits(native_fmus, tmp_path):
+def test_this_machines_own_compiler_makes_the_same_bits(native_fmus: Any, tmp_path: Path) -> None:
     made = native_fmu.build(toy_model.MODEL, tmp_path / "gcc", [host()], find_compiler("gcc"))
     ours, theirs = (Library(path, tmp_path / name) for path, name in ((native_fmus["Toy"], "a"), (made, "b")))
     assert ours.description.guid != theirs.description.guid
@@ -116,7 +119,7 @@ def test_this_machines_own_compiler_makes_the_same_bits(native_fmus, tmp_path):
     assert drive(ours, params, inputs) == drive(theirs, params, inputs)
 
 
-def test_another_platform_needs_ziglang(tmp_path):
+def test_another_platform_needs_ziglang(tmp_path: Path) -> None:
     other = next(name for name in PLATFORMS if name != host())
     with pytest.raises(RuntimeError, match="compiles for this machine only; others need --cc zig"):
         native_fmu.build(toy_model.MODEL, tmp_path, [other], find_compiler("gcc" if GCC else "cc"))
@@ -124,7 +127,7 @@ def test_another_platform_needs_ziglang(tmp_path):
 
 @needs_gcc
 @pytest.mark.parametrize("fmi", [2, 3])
-def test_two_fmus_in_one_image(fmi, tmp_path):
+def test_two_fmus_in_one_image(fmi: int, tmp_path: Path) -> None:
     objects = []
     for model in (toy_model.MODEL, table_model.MODEL):
         folder = tmp_path / model.name
@@ -146,8 +149,10 @@ def test_two_fmus_in_one_image(fmi, tmp_path):
     assert subprocess.run([tmp_path / "image"], check=False).returncode == 0
 
 
-def test_tunable_parameters_change_between_steps_and_hold_from_the_next_on(monkeypatch, tmp_path):
-    def tunable(model):
+def test_tunable_parameters_change_between_steps_and_hold_from_the_next_on(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    def tunable(model: Any) -> Any:
         known = fmi_variables(model)
         return [item._replace(variability="tunable") if item.name == "stiffness" else item for item in known]
 
@@ -173,10 +178,10 @@ def test_tunable_parameters_change_between_steps_and_hold_from_the_next_on(monke
         toy.free(instance)
 
 
-def test_a_translation_is_kept_until_a_source_changes(monkeypatch, tmp_path):
+def test_a_translation_is_kept_until_a_source_changes(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     made = []
 
-    def translate(model):
+    def translate(model: Any) -> Any:
         made.append(model.name)
         return sources.Translation(model.name, f"header {len(made)}", "source")
 

@@ -4,6 +4,8 @@ import ctypes
 import importlib
 import sys
 from ctypes import byref, c_size_t, c_void_p
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -26,7 +28,7 @@ MODEL = store_model.MODEL
 INPUTS = random_inputs(fmi_variables(MODEL), 5, 90)
 
 
-def in_process(first=0, last=90, store=None, state=None):
+def in_process(first: Any = 0, last: Any = 90, store: Any = None, state: Any = None) -> Any:
     """Return store, state and the outputs after each step."""
     params = MODEL.params()
     start, _ = MODEL.initialize(params)
@@ -38,7 +40,7 @@ def in_process(first=0, last=90, store=None, state=None):
     return store, state, found
 
 
-def test_a_store_becomes_bytes_and_comes_back():
+def test_a_store_becomes_bytes_and_comes_back() -> None:
     store, state, _ = in_process(0, 40)
     content = bytes_of(store)
     assert len(content) == size_of(MODEL.store)
@@ -48,7 +50,7 @@ def test_a_store_becomes_bytes_and_comes_back():
     assert store_of(None, b"") is None
 
 
-def test_compiled_in_process_it_has_the_same_bits():
+def test_compiled_in_process_it_has_the_same_bits() -> None:
     library = load_model(MODEL)
     memory = np.zeros(memory_size(library), dtype=np.uint8)
     params, outputs = np.array(flatten(MODEL.params())), np.zeros(3)
@@ -60,7 +62,7 @@ def test_compiled_in_process_it_has_the_same_bits():
             assert outputs.tolist() == expected
 
 
-def run_on(fmu, component, first, last):
+def run_on(fmu: Any, component: Any, first: Any, last: Any) -> Any:
     found = []
     for number in range(first, last):
         for name, value in INPUTS[number].items():
@@ -70,7 +72,7 @@ def run_on(fmu, component, first, last):
     return found
 
 
-def test_the_native_fmu_saves_and_serializes_it(tmp_path):
+def test_the_native_fmu_saves_and_serializes_it(tmp_path: Path) -> None:
     fmu = Library(native_fmu.build(MODEL, tmp_path, [platform()]), tmp_path / "native")
     component, other = fmu.initialized(), fmu.instantiate(b"other")
     expected = in_process()[2]
@@ -93,10 +95,10 @@ def test_the_native_fmu_saves_and_serializes_it(tmp_path):
         fmu.free(instance)
 
 
-def test_the_python_fmu_saves_and_serializes_it(tmp_path):
+def test_the_python_fmu_saves_and_serializes_it(tmp_path: Path) -> None:
     path, expected = python_fmu.build(MODEL, tmp_path), in_process()[2]
 
-    def run(fmu, first, last):
+    def run(fmu: Any, first: Any, last: Any) -> Any:
         found = []
         for number in range(first, last):
             fmu.set(INPUTS[number])
@@ -116,7 +118,7 @@ def test_the_python_fmu_saves_and_serializes_it(tmp_path):
         assert run(other, 40, 90) == expected[40:]
 
 
-def test_the_c_library_has_it_in_its_memory(tmp_path):
+def test_the_c_library_has_it_in_its_memory(tmp_path: Path) -> None:
     write_c_library(MODEL, tmp_path)
     assert "Worker_step(&model.store, &model.state," in (tmp_path / "main.c").read_text()
     assert "    Work store;" in (tmp_path / "Worker.h").read_text()
@@ -158,7 +160,9 @@ def step(store: Work, state: State, inputs: Input, params: Params, dt_ns: int) -
         (A_FLOAT, "store.whole is a column of int"),
     ],
 )
-def test_what_would_not_be_the_same_in_c_is_refused(text, said, tmp_path, monkeypatch):
+def test_what_would_not_be_the_same_in_c_is_refused(
+    text: Any, said: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     (tmp_path / "refused_store.py").write_text("from store_model import *\n" + text)
     monkeypatch.syspath_prepend(str(tmp_path))
     monkeypatch.delitem(sys.modules, "refused_store", raising=False)
@@ -168,7 +172,7 @@ def test_what_would_not_be_the_same_in_c_is_refused(text, said, tmp_path, monkey
     assert said in str(refused.value)
 
 
-def test_a_field_that_is_no_column_is_said():
+def test_a_field_that_is_no_column_is_said() -> None:
     assert field_refusals(MODEL) == []
     found = field_refusals(MODEL._replace(store=store_model.State))
     assert [item.what for item in found] == ["State.place is no column of a store"]

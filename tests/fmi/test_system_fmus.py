@@ -4,6 +4,7 @@ import subprocess
 import sys
 from functools import cache
 from pathlib import Path
+from typing import Any
 from xml.etree import ElementTree
 
 import pytest
@@ -45,33 +46,33 @@ each = pytest.mark.parametrize("system", SYSTEM_MODELS, ids=lambda system: syste
 class Watched:
     """A tuple of a model's types that notes which of its scalars are read."""
 
-    def __init__(self, value, name, seen):
+    def __init__(self, value: Any, name: Any, seen: Any) -> None:
         self.value, self.name, self.seen = value, name, seen
 
-    def _item(self, value, name):
+    def _item(self, value: Any, name: Any) -> Any:
         if isinstance(value, tuple):
             return Watched(value, name, self.seen)
         self.seen.add(name)
         return value
 
-    def __getattr__(self, field):
+    def __getattr__(self, field: Any) -> Any:
         return self._item(getattr(self.value, field), f"{self.name}.{field}" if self.name else field)
 
-    def __getitem__(self, place):
+    def __getitem__(self, place: Any) -> Any:
         places = range(len(self.value))[place]
         if isinstance(places, range):
             return tuple(self[number] for number in places)
         return self._item(self.value[places], f"{self.name}[{places + 1}]")
 
-    def __iter__(self):
+    def __iter__(self) -> Any:
         return (self[number] for number in range(len(self.value)))
 
-    def __len__(self):
+    def __len__(self) -> Any:
         return len(self.value)
 
 
 @cache
-def read_and_told(system):
+def read_and_told(system: Any) -> Any:
     """Return the parameters and inputs that a scenario's run reads, and the outputs that it changes."""
     name, stop = RUNS[system]
     scenario = load_scenario(name, [f"controller.system={system.name.lower()}"])
@@ -92,18 +93,18 @@ def read_and_told(system):
     return read, heard, told_by
 
 
-def shown(model, cls):
+def shown(model: Any, cls) -> Any:
     return {item.name for item in variables(cls) if model.shows(item.name)}
 
 
 @each
-def test_it_shows_every_parameter_that_the_system_reads(system):
+def test_it_shows_every_parameter_that_the_system_reads(system: Any) -> None:
     read, _, _ = read_and_told(system)
     assert read - shown(SYSTEM_MODELS[system], MODEL.params) <= CHECKED_ONLY
 
 
 @each
-def test_what_it_shows_beside_what_all_have_is_read(system):
+def test_what_it_shows_beside_what_all_have_is_read(system: Any) -> None:
     read, heard, told = read_and_told(system)
     own = next(item.own for item in SYSTEMS.systems if system in item.values)
     used = read | heard | told | ({"threshold.standstill"} if system == System.PREVIEW else set())  # at the road's end
@@ -114,19 +115,19 @@ def test_what_it_shows_beside_what_all_have_is_read(system):
 
 
 @each
-def test_it_has_the_inputs_that_the_system_reads(system):
+def test_it_has_the_inputs_that_the_system_reads(system: Any) -> None:
     _, heard, _ = read_and_told(system)
     assert shown(SYSTEM_MODELS[system], MODEL.inputs) == heard
 
 
 @each
-def test_it_shows_every_output_that_the_system_changes(system):
+def test_it_shows_every_output_that_the_system_changes(system: Any) -> None:
     _, _, told = read_and_told(system)
     assert told <= shown(SYSTEM_MODELS[system], MODEL.outputs)
 
 
 @each
-def test_its_description_has_only_those_and_the_system_is_no_parameter(system):
+def test_its_description_has_only_those_and_the_system_is_no_parameter(system: Any) -> None:
     model = SYSTEM_MODELS[system]
     assert model.name == f"Controller_{system.name.lower()}"
     root = ElementTree.fromstring(model_description(model, guid="", generation_tool="", flags={}))
@@ -142,7 +143,7 @@ def test_its_description_has_only_those_and_the_system_is_no_parameter(system):
 
 
 @each
-def test_as_fmi_3_it_has_the_same(system):
+def test_as_fmi_3_it_has_the_same(system: Any) -> None:
     model = SYSTEM_MODELS[system]
     root = ElementTree.fromstring(model_description3(model, token="", generation_tool="", flags={}))
     names = [node.get("name") for node in root.find("ModelVariables")]
@@ -152,32 +153,32 @@ def test_as_fmi_3_it_has_the_same(system):
     assert scalars == {item.name for item in shown_variables(model)}
 
 
-def test_value_references_are_those_of_the_whole_controller():
+def test_value_references_are_those_of_the_whole_controller() -> None:
     whole = {item.name: item.vr for item in fmi_variables(MODEL)}
     assert {item.name: item.vr for item in shown_variables(APA)}.items() <= whole.items()
 
 
 @pytest.fixture(scope="module")
-def python_systems(tmp_path_factory):
+def python_systems(tmp_path_factory: pytest.TempPathFactory) -> Any:
     folder = tmp_path_factory.mktemp("python_systems")
     return {system: python_fmu.build(model, folder) for system, model in SYSTEM_MODELS.items()}
 
 
 @pytest.fixture(scope="module")
-def native_apa(tmp_path_factory):
+def native_apa(tmp_path_factory: pytest.TempPathFactory) -> Any:
     return native_fmu.build(APA, tmp_path_factory.mktemp("native_apa"), [this_platform()])
 
 
 @each
-def test_checkers_find_nothing(python_systems, system):
+def test_checkers_find_nothing(python_systems: Any, system: Any) -> None:
     check(python_systems[system])
 
 
-def test_checkers_find_nothing_in_a_native_one(native_apa):
+def test_checkers_find_nothing_in_a_native_one(native_apa: Any) -> None:
     check(native_apa)
 
 
-def check(path):
+def check(path: Any) -> None:
     assert validate_fmu(str(path)) == []
     command = [Path(sys.executable).parent / "fmutool", "-input", path, "-check"]
     done = subprocess.run(command, capture_output=True, text=True, check=True)
@@ -186,15 +187,15 @@ def check(path):
 
 
 @each
-def test_it_gives_the_bits_of_the_whole_controller(python_systems, system):
+def test_it_gives_the_bits_of_the_whole_controller(python_systems: Any, system: Any) -> None:
     twin(python_systems[system], system)
 
 
-def test_a_native_one_gives_the_bits_of_the_whole_controller(native_apa):
+def test_a_native_one_gives_the_bits_of_the_whole_controller(native_apa: Any) -> None:
     twin(native_apa, System.APA)
 
 
-def twin(path, system):
+def twin(path: Any, system: Any) -> None:
     model = SYSTEM_MODELS[system]
     params = with_values(MODEL.params, {"system": int(system), "car.steering.ratio": 17.0})
     inputs = random_inputs(shown_variables(model), 3, 60)
@@ -212,7 +213,7 @@ def twin(path, system):
             assert host.step(number * 0.01, 0.01) == OK
 
 
-def test_what_is_not_shown_cannot_be_read_or_set_in_a_python_one(python_systems):
+def test_what_is_not_shown_cannot_be_read_or_set_in_a_python_one(python_systems: Any) -> None:
     hidden = next(item for item in fmi_variables(APA) if item.name == "guo2015.k1")
     with Host(python_systems[System.APA]) as host:
         host.fmu.getReal([hidden.vr])
@@ -222,7 +223,7 @@ def test_what_is_not_shown_cannot_be_read_or_set_in_a_python_one(python_systems)
         assert host.log[-1][0] == ERROR
 
 
-def test_apa_build_makes_it(tmp_path, capsys):
+def test_apa_build_makes_it(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["build", "--system", "hsic,APA", "--fmus", "python", "--out", str(tmp_path)]) == 0
     assert {path.name for path in (tmp_path / "python").iterdir()} == {"Controller_apa.fmu", "Controller_hsic.fmu"}
     assert "Controller_apa.fmu" in capsys.readouterr().out
@@ -230,5 +231,5 @@ def test_apa_build_makes_it(tmp_path, capsys):
     assert "did you mean apa" in capsys.readouterr().err
 
 
-def test_a_scenario_passes_with_it(native_apa, tmp_path):
+def test_a_scenario_passes_with_it(native_apa: Any, tmp_path: Path) -> None:
     assert main(["test", "apa-parallel", "--controller", str(native_apa), "--out", str(tmp_path)]) == 0

@@ -2,6 +2,7 @@
 
 import random
 from functools import cache
+from typing import Any
 
 import pytest
 import toy_model
@@ -22,14 +23,14 @@ FIRST_ECHO = ("ultrasonic.noise", "ultrasonic.dropout")
 STEP_NS = 10_000_000
 
 
-def receiver(number):
+def receiver(number: Any) -> Any:
     """Return the function from the outputs of the other model to the inputs of this one."""
     names = list(MODELS)
     wires = [wire for wire in connections([part_of(name, MODELS[name]) for name in names]) if wire.target == number]
     target = MODELS[names[number]]
     start, build = flatten(target.inputs()), constructor(target.inputs)
 
-    def receive(outputs):
+    def receive(outputs: Any) -> Any:
         given, values = flatten(outputs), list(start)
         for wire in wires:
             values[wire.input] = given[wire.output]
@@ -41,16 +42,16 @@ def receiver(number):
 TO_VEHICLE, TO_CONTROLLER = receiver(0), receiver(1)
 
 
-def tunables(model):
+def tunables(model: Any) -> Any:
     return [item for item in fmi_variables(model) if item.variability == "tunable"]
 
 
-def constants(scenario):
+def constants(scenario: Any) -> Any:
     return {name: with_values(model.params, dict(getattr(scenario, name))) for name, model in MODELS.items()}
 
 
 @cache
-def underway(name):
+def underway(name: Any) -> Any:
     """Return parameters, states and inputs of a scenario three seconds after the car has begun its path."""
     params = constants(load_scenario(name, []))
     vehicle, told = VEHICLE.initialize(params["vehicle"])
@@ -65,7 +66,7 @@ def underway(name):
     return params, {"vehicle": vehicle, "controller": controller}, (told, asked)
 
 
-def drive(name, changed, steps):
+def drive(name: Any, changed: Any, steps: Any) -> Any:
     """Return all outputs of ``steps`` further steps of both, with other parameters."""
     _, states, (told, asked) = underway(name)
     vehicle, controller = states["vehicle"], states["controller"]
@@ -78,7 +79,7 @@ def drive(name, changed, steps):
     return rows
 
 
-def test_gains_and_thresholds_are_tunable_geometry_is_not():
+def test_gains_and_thresholds_are_tunable_geometry_is_not() -> None:
     names = {item.name for model in MODELS.values() for item in tunables(model)}
     assert len(names) > 100
     for group in (
@@ -111,7 +112,7 @@ def test_gains_and_thresholds_are_tunable_geometry_is_not():
 
 @pytest.mark.parametrize("model", MODELS.values(), ids=list(MODELS))
 @pytest.mark.parametrize("name", [*SCENARIOS, "apa-parallel-real"])
-def test_the_memory_at_the_start_is_the_same_whatever_a_tunable_is(model, name):
+def test_the_memory_at_the_start_is_the_same_whatever_a_tunable_is(model: Any, name: Any) -> None:
     """So a value set before the first step and one set before initialization do the same, but for the first echo."""
     params = constants(load_scenario(name, []))[next(key for key, item in MODELS.items() if item is model)]
     expected, _ = model.initialize(params)
@@ -121,14 +122,14 @@ def test_the_memory_at_the_start_is_the_same_whatever_a_tunable_is(model, name):
             assert state == expected, item.name
 
 
-def others(item):
+def others(item: Any) -> Any:
     if item.kind is bool:
         return [True, False]
     return [item.kind(end) for end in limits(item)]
 
 
 @pytest.mark.parametrize("name", SCENARIOS)
-def test_no_tunable_at_an_end_of_its_range_harms_a_run(name):
+def test_no_tunable_at_an_end_of_its_range_harms_a_run(name: Any) -> None:
     params, states, (told, asked) = underway(name)
     given = {"vehicle": TO_VEHICLE(asked), "controller": TO_CONTROLLER(told)}
     for key, model in MODELS.items():
@@ -142,7 +143,7 @@ def test_no_tunable_at_an_end_of_its_range_harms_a_run(name):
 
 
 @pytest.mark.parametrize("name", SCENARIOS)
-def test_no_set_of_tunables_within_their_ranges_harms_a_run(name):
+def test_no_set_of_tunables_within_their_ranges_harms_a_run(name: Any) -> None:
     params = underway(name)[0]
     draw = random.Random(name)
     for _ in range(20):
@@ -154,7 +155,7 @@ def test_no_set_of_tunables_within_their_ranges_harms_a_run(name):
         assert all(number - number == 0 for row in rows for number in row)
 
 
-def drawn(draw, item):
+def drawn(draw: Any, item: Any) -> Any:
     if item.kind is bool:
         return draw.random() < 0.5
     low, high = limits(item)
@@ -186,7 +187,7 @@ def drawn(draw, item):
         ("apa-parallel", "vehicle", "ultrasonic.noise", 0.5),
     ],
 )
-def test_a_changed_tunable_acts(name, owner, parameter, value):
+def test_a_changed_tunable_acts(name: str, owner: str, parameter: str, value: float) -> None:
     params = underway(name)[0]
     changed = params | {owner: with_values(MODELS[owner].params, {parameter: value}, params[owner])}
     assert parameter in {item.name for item in tunables(MODELS[owner])}
@@ -197,11 +198,11 @@ def test_a_changed_tunable_acts(name, owner, parameter, value):
 
 
 @pytest.fixture(params=["python", "native"])
-def fmus(request):
+def fmus(request: pytest.FixtureRequest) -> Any:
     return request.getfixturevalue(f"{request.param}_fmus")
 
 
-def in_process(model, inputs, changes):
+def in_process(model: Any, inputs: Any, changes: Any) -> Any:
     """Return the outputs after every step; ``changes``: step -> parameters changed before it."""
     params = model.params()
     make = constructor(model.inputs)
@@ -216,7 +217,7 @@ def in_process(model, inputs, changes):
     return rows
 
 
-def test_a_change_in_a_run_gives_the_models_own_bits(fmus, model):
+def test_a_change_in_a_run_gives_the_models_own_bits(fmus: Any, model: Any) -> None:
     inputs = random_inputs(fmi_variables(model), 11, 40)
     draw = random.Random(model.name)
     changes = {step: {item.name: settable(draw, item) for item in tunables(model)} for step in (10, 25)}
@@ -232,7 +233,7 @@ def test_a_change_in_a_run_gives_the_models_own_bits(fmus, model):
         assert host.get([name]) == [changes[25][name]]
 
 
-def settable(draw, item):
+def settable(draw: Any, item: Any) -> Any:
     """Return a value within the range, not far from the one at the start."""
     if item.kind is bool:
         return draw.random() < 0.5
@@ -240,7 +241,7 @@ def settable(draw, item):
     return item.kind(min(max(item.start * draw.uniform(0.5, 1.5) + draw.uniform(0, 0.1), low), high))
 
 
-def test_a_changed_tunable_is_part_of_the_saved_state(fmus):
+def test_a_changed_tunable_is_part_of_the_saved_state(fmus: Any) -> None:
     with Host(fmus["Toy"]) as host:
         host.initialize()
         host.set({"stiffness": 7.0, "noisy": False})
@@ -257,7 +258,7 @@ def test_a_changed_tunable_is_part_of_the_saved_state(fmus):
 
 
 @pytest.mark.parametrize(("name", "value"), [("mass", 3.0), ("start[1].position", 0.2), ("seed", 3)])
-def test_a_fixed_parameter_is_refused_between_steps(fmus, name, value):
+def test_a_fixed_parameter_is_refused_between_steps(fmus: Any, name: str, value: float) -> None:
     with Host(fmus["Toy"]) as host:
         host.initialize()
         before = host.get([name])
@@ -267,7 +268,7 @@ def test_a_fixed_parameter_is_refused_between_steps(fmus, name, value):
 
 @pytest.mark.parametrize("value", [-1.0, 1.1e4, float("nan"), float("inf")])
 @pytest.mark.parametrize("when", ["at the start", "between steps"])
-def test_a_value_out_of_range_is_refused(fmus, value, when):
+def test_a_value_out_of_range_is_refused(fmus: Any, value: Any, when: str) -> None:
     with Host(fmus["Toy"]) as host:
         if when == "between steps":
             host.initialize()
@@ -279,7 +280,7 @@ def test_a_value_out_of_range_is_refused(fmus, value, when):
         assert host.get(["stiffness"]) == [toy_model.MODEL.params().stiffness]
 
 
-def refuses(host, values):
+def refuses(host: Any, values: Any) -> Any:
     """Return whether a set is refused: at once, or, as PythonFMU can do no better, by the next step."""
     try:
         host.set(values)

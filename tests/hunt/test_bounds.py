@@ -1,6 +1,7 @@
 """What a hunt says of probabilities and influences, against closed forms."""
 
 import math
+from typing import Any
 
 import numpy as np
 import pytest
@@ -12,7 +13,7 @@ from orchestrator.hunt.rare import subset_simulation
 from orchestrator.verdict.confidence import clopper_pearson
 
 
-def test_of_no_events_the_bound_is_three_over_n():
+def test_of_no_events_the_bound_is_three_over_n() -> None:
     for count in (10, 300, 100_000):
         low, high = clopper_pearson(0, count)
         assert (low, high) == (0.0, pytest.approx(1.0 - 0.05 ** (1.0 / count), rel=1e-9))
@@ -20,23 +21,23 @@ def test_of_no_events_the_bound_is_three_over_n():
     assert clopper_pearson(0, 0) == (0.0, 1.0)
 
 
-def test_of_some_events_it_is_that_of_the_beta_distribution():
+def test_of_some_events_it_is_that_of_the_beta_distribution() -> None:
     low, high = clopper_pearson(7, 500)
     assert low == pytest.approx(beta.ppf(0.05, 7, 494), rel=1e-9)
     assert high == pytest.approx(beta.ppf(0.95, 8, 493), rel=1e-9)
 
 
-def test_the_bound_holds_as_often_as_it_says():
+def test_the_bound_holds_as_often_as_it_says() -> None:
     rng = np.random.default_rng(3)
     highs = [clopper_pearson(int(events), 200)[1] for events in rng.binomial(200, 0.02, 300)]
     assert np.mean(np.array(highs) >= 0.02) >= 0.93
 
 
 @pytest.mark.parametrize("distance", [2.5, 3.5, 4.5])
-def test_a_rare_event_of_known_probability(distance):
+def test_a_rare_event_of_known_probability(distance: float) -> None:
     """A plane at a distance from the middle of 12 normal numbers: probability Phi(-distance), down to 3.4e-6."""
 
-    def margins(shares, seeds):
+    def margins(shares: Any, seeds: Any) -> Any:
         return distance - ndtri(shares).sum(axis=1) / math.sqrt(shares.shape[1])
 
     true, covered = float(ndtr(-distance)), 0
@@ -49,26 +50,26 @@ def test_a_rare_event_of_known_probability(distance):
     assert found.runs < 6000
 
 
-def test_what_the_seed_alone_decides_is_a_rare_event_too():
+def test_what_the_seed_alone_decides_is_a_rare_event_too() -> None:
     """One seed in 500 breaks it, in some 5 % of the ranges: 1e-4."""
 
-    def margins(shares, seeds):
+    def margins(shares: Any, seeds: Any) -> Any:
         return np.where(shares[:, 0] < 0.05, (seeds % 500) / 500.0, 1.0 + shares[:, 0])
 
     found = [subset_simulation(margins, 4, 1000, seed).probability for seed in range(8)]
     assert 3e-5 < np.mean(found) < 3e-4
 
 
-def test_what_cannot_happen_is_a_bound():
+def test_what_cannot_happen_is_a_bound() -> None:
     found = subset_simulation(lambda shares, seeds: 1.0 + shares[:, 0], 3, 200, 1)
     assert found.is_bound
     assert found.probability < 1e-6
 
 
-def test_influences_of_ishigamis_function():
+def test_influences_of_ishigamis_function() -> None:
     """First order 0.314, 0.442, 0; total 0.558, 0.442, 0.244."""
 
-    def function(shares):
+    def function(shares: Any) -> Any:
         x = math.pi * (2.0 * shares - 1.0)
         return np.sin(x[:, 0]) + 7.0 * np.sin(x[:, 1]) ** 2 + 0.1 * x[:, 2] ** 4 * np.sin(x[:, 0])
 

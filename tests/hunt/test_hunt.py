@@ -1,6 +1,8 @@
 """A planted fault is found, shrunk and written down; where none is, the hunt says what it proves."""
 
 import json
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -36,10 +38,10 @@ PLANTED = TRUE + 0.045
 
 
 @pytest.fixture
-def study(tmp_path):
+def study(tmp_path: Path) -> Any:
     """A function from the target that the controller believes to the file of a study."""
 
-    def written(target):
+    def written(target: Any) -> Any:
         content = {"scenario": "guo2015-case3-105", "set": {"limits": ["guo2015-in-line"], WHOLE: target}}
         path = tmp_path / "drivers.yaml"
         path.write_text(yaml.safe_dump({**content, "runs": {"monte_carlo": RUNS}}))
@@ -48,12 +50,14 @@ def study(tmp_path):
     return written
 
 
-def hunted(capsys, *words):
+def hunted(capsys: pytest.CaptureFixture[str], *words: Any) -> Any:
     code = main(["hunt", *words, "--json"])
     return code, json.loads(capsys.readouterr().out)
 
 
-def test_a_planted_fault_is_found_in_500_runs_and_shrunk(study, tmp_path, capsys):
+def test_a_planted_fault_is_found_in_500_runs_and_shrunk(
+    study: Any, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     out = tmp_path / "out"
     words = ("--requirement", "final lateral position", "--budget", "400", "--seed", "3", "--out", str(out))
     code, found = hunted(capsys, study(PLANTED), *words)
@@ -67,7 +71,7 @@ def test_a_planted_fault_is_found_in_500_runs_and_shrunk(study, tmp_path, capsys
     assert json.loads((out / "hunt.json").read_text()) == {key: found[key] for key in found if key != "page"}
 
 
-def test_a_find_runs_again_to_the_same_bits(study, tmp_path, capsys):
+def test_a_find_runs_again_to_the_same_bits(study: Any, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """In the compiled batch, and as an ordinary run through the Python master."""
     out = tmp_path / "out"
     words = ("--requirement", "final lateral position", "--budget", "100", "--out", str(out))
@@ -98,7 +102,9 @@ def test_a_find_runs_again_to_the_same_bits(study, tmp_path, capsys):
     assert [item.same for item in check_corpus(folder)] == [False]
 
 
-def test_where_nothing_breaks_it_says_what_that_proves(study, tmp_path, capsys):
+def test_where_nothing_breaks_it_says_what_that_proves(
+    study: Any, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     words = ("--requirement", "final lateral position", "--budget", "200", "--out", str(tmp_path / "out"))
     code, found = hunted(capsys, study(TRUE), *words)
     assert (code, found["finds"], found["first_after"], found["independent"]["broken"]) == (0, [], None, 0)
@@ -106,12 +112,14 @@ def test_where_nothing_breaks_it_says_what_that_proves(study, tmp_path, capsys):
     assert found["influences"][0]["first"]["value"] > 0.0
 
 
-def test_an_interrupted_hunt_goes_on_to_the_same_end(study, tmp_path, capsys, monkeypatch):
+def test_an_interrupted_hunt_goes_on_to_the_same_end(
+    study: Any, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
     words = (study(PLANTED), "--requirement", "final lateral position", "--budget", "100")
     _, whole = hunted(capsys, *words, "--out", str(tmp_path / "whole"))
     out, made = tmp_path / "cut", Subject._made
 
-    def cut(self, part, shares, seeds):
+    def cut(self, part: Any, shares: Any, seeds: Any) -> Any:
         if self.runs > 40:
             self.interrupt.requested = True
         return made(self, part, shares, seeds)
@@ -127,7 +135,7 @@ def test_an_interrupted_hunt_goes_on_to_the_same_end(study, tmp_path, capsys, mo
     assert main(["hunt", *words, "--seed", "9", "--out", str(out), "--resume"]) == 2
 
 
-def test_the_space_of_a_study_is_that_of_its_columns(study):
+def test_the_space_of_a_study_is_that_of_its_columns(study: Any) -> None:
     made = read_study(study(TRUE), {})
     space = space_of(made)
     assert {factor.name for factor in space.factors} == {key for key in RUNS if key != "n"}
@@ -139,7 +147,7 @@ def test_the_space_of_a_study_is_that_of_its_columns(study):
     assert away(space, np.where(np.arange(len(nominal)) == 2, 0.99, nominal)) == [2]
 
 
-def test_what_cannot_be_hunted_is_refused(study, capsys):
+def test_what_cannot_be_hunted_is_refused(study: Any, capsys: pytest.CaptureFixture[str]) -> None:
     made = read_study(study(TRUE), {})
     assert goal_of(made, None).name == "contact"
     assert goal_of(made, "gbt41630").limits

@@ -4,6 +4,7 @@ import subprocess
 from collections import Counter
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -27,14 +28,14 @@ STATIC = CompileTarget("x86_64-linux-musl", ("-static", "-Wl,-s"))
 
 
 @pytest.fixture(scope="module")
-def module_of():
+def module_of() -> Any:
     modules = cache(lambda models: LiveModule(dict(models)))
     return lambda scenario: modules(tuple(scenario.models.items()))
 
 
 @pytest.fixture(scope="module")
-def run_of_page(module_of):
-    def run(scenario):
+def run_of_page(module_of: Any) -> Any:
+    def run(scenario: Any) -> Any:
         names = names_of(scenario)
         return names, *module_of(scenario).run(scenario, names)
 
@@ -42,7 +43,7 @@ def run_of_page(module_of):
 
 
 @pytest.mark.parametrize("name", [name for name in SHIPPED if name != GROWS])
-def test_runs_as_the_native_fmus_do(name, run_of_page):
+def test_runs_as_the_native_fmus_do(name: Any, run_of_page: Any) -> None:
     scenario = load_scenario(name)
     recording = run_scenario(scenario, fmu_files("native"), kind="native").recording
     names, end, lines = run_of_page(scenario)
@@ -60,7 +61,7 @@ def test_runs_as_the_native_fmus_do(name, run_of_page):
 
 
 @pytest.fixture(scope="module")
-def static(tmp_path_factory):
+def static(tmp_path_factory: pytest.TempPathFactory) -> Any:
     main = (Path(__file__).parent / "static.c").read_text(encoding="utf-8")
     built = live_library(MODELS, STATIC, ".program", {"main_unit.c": main})
     program = tmp_path_factory.mktemp("static") / "live"
@@ -72,7 +73,9 @@ def static(tmp_path_factory):
 @pytest.mark.parametrize(
     "name", ["guo2015-case4", "apa-parallel-real", "zhang2022-double-track", "fault-pose-noise", GROWS]
 )
-def test_has_the_bits_of_this_machine_with_the_same_mathematics_library(name, static, run_of_page):
+def test_has_the_bits_of_this_machine_with_the_same_mathematics_library(
+    name: Any, static: Any, run_of_page: Any
+) -> None:
     scenario = load_scenario(name)
     names, end, lines = run_of_page(scenario)
     room = scenario.stop_ns // scenario.step_ns + 1
@@ -90,7 +93,7 @@ def test_has_the_bits_of_this_machine_with_the_same_mathematics_library(name, st
     assert found[2:].tobytes() == lines.tobytes()
 
 
-def next_by_table(chart, state, guards):
+def next_by_table(chart: Any, state: Any, guards: Any) -> Any:
     """Return where the first row leads whose guard holds; ``state`` if there is none."""
     is_end = all(row[0] != state for row in chart.rows)
     rows = [row for row in chart.rows if row[0] == state or (row[0] < 0 and not is_end)]
@@ -98,7 +101,7 @@ def next_by_table(chart, state, guards):
 
 
 @pytest.mark.parametrize("name", ["guo2015-case4", "apa-parallel", "adaptive", "valet-search-perpendicular"])
-def test_the_guards_told_are_those_that_the_chart_went_by(name, module_of):
+def test_the_guards_told_are_those_that_the_chart_went_by(name: str, module_of: Any) -> None:
     scenario = load_scenario(name)
     charts = charts_of(scenario.models.values())
     known = [f"controller.{chart.signal or 'phase'}" for chart in charts]
@@ -118,7 +121,7 @@ def test_the_guards_told_are_those_that_the_chart_went_by(name, module_of):
         assert changes == (np.diff(lines[:, number]) != 0).sum() >= 3
 
 
-def test_the_guards_told_are_those_of_the_model_in_python(module_of):
+def test_the_guards_told_are_those_of_the_model_in_python(module_of: Any) -> None:
     scenario = load_scenario("guo2015-case4")
     charts = charts_of(scenario.models.values())
     _, decided = module_of(scenario).decisions(scenario, ["controller.phase"])

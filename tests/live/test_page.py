@@ -1,6 +1,8 @@
 """The page in a real browser: its judge agrees with the judge in Python, people drive it, sliders move the ghost."""
 
+from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 import yaml
@@ -37,11 +39,11 @@ GROWS = "preview-camera"
 
 
 @pytest.fixture(scope="module")
-def file(tmp_path_factory):
+def file(tmp_path_factory: pytest.TempPathFactory) -> Any:
     return written(tmp_path_factory.mktemp("live"), shipped())
 
 
-def written(folder, scenarios):
+def written(folder: Any, scenarios: Any) -> Any:
     path = folder / "live.html"
     path.write_text(live_page(scenarios), encoding="utf-8")
     assert path.stat().st_size < LARGEST_PAGE
@@ -49,18 +51,18 @@ def written(folder, scenarios):
 
 
 @pytest.fixture
-def page(file, show):
+def page(file: Any, show: Any) -> Iterator[Any]:
     shown, seen = show(file, "#s=guo2015-case4", 1440, 900)
     yield shown
     assert seen.console == []
     assert [url for url in seen.requests if not url.startswith(("file:", "data:", "blob:"))] == []
 
 
-def test_every_run_of_the_page_comes_to_the_end_on_record(page):
+def test_every_run_of_the_page_comes_to_the_end_on_record(page: Any) -> None:
     as_on_record(page, shipped())
 
 
-def test_the_valet_has_a_page_of_its_own(show, tmp_path):
+def test_the_valet_has_a_page_of_its_own(show: Any, tmp_path: Path) -> None:
     scenarios = shipped("valet")
     page, seen = show(written(tmp_path, scenarios), "#s=valet-perpendicular")
     page.fill("#search", "scene.boxes[6].y")
@@ -73,14 +75,14 @@ def test_the_valet_has_a_page_of_its_own(show, tmp_path):
     assert seen.console == []
 
 
-def as_on_record(page, scenarios):
+def as_on_record(page: Any, scenarios: Any) -> None:
     names = [scenario.name for scenario in scenarios]
     record = yaml.safe_load(RECORD.read_text(encoding="utf-8"))
     for name, found in zip(names, page.evaluate(WHOLE, names), strict=True):
         alike(found, record[name], name, 0.1 if name == GROWS else 2e-6)
 
 
-def alike(found, asked, where, within):
+def alike(found: Any, asked: Any, where: Any, within: Any) -> None:
     if isinstance(asked, dict):
         assert found.keys() == asked.keys(), where
         for key, value in asked.items():
@@ -128,19 +130,19 @@ TRIED = """(all) => all.map(([name, changes]) => {
 })"""
 
 
-def test_what_the_laws_pages_say_to_try_comes_out_so(page):
+def test_what_the_laws_pages_say_to_try_comes_out_so(page: Any) -> None:
     found = page.evaluate(TRIED, [item[:2] for item in TO_TRY])
     assert [tuple(item) for item in found] == [item[2:] for item in TO_TRY]
 
 
-def test_keys_drive_to_parked(page):
+def test_keys_drive_to_parked(page: Any) -> None:
     page.select_option("#scenario", "guo2015-case4-105")
     found = drive(page, obeys)
     assert (found["outcome"], found["byHand"]) == ("parked", True)
     assert page.text_content("#drive-said") == "You: parked"
 
 
-def test_who_is_too_fast_once_is_brought_back_by_point_tracking(page):
+def test_who_is_too_fast_once_is_brought_back_by_point_tracking(page: Any) -> None:
     found = drive(page, hurries_once)
     phases = page.evaluate("() => window.live.drive.history.spans('controller.phase').map((span) => span.value)")
     assert PHASES.index("TO_Q2") in phases
@@ -148,7 +150,7 @@ def test_who_is_too_fast_once_is_brought_back_by_point_tracking(page):
     assert found["outcome"] == "parked"
 
 
-def test_who_never_obeys_fails_with_a_reason(page):
+def test_who_never_obeys_fails_with_a_reason(page: Any) -> None:
     found = drive(page, never_obeys)
     assert found["outcome"] == "failed"
     assert found["reason"] == "not_stopping"
@@ -166,7 +168,7 @@ START = "() => live.lab.situation.pose('vehicle.start')"
 HELD = "() => ({ ...live.driver.pedal, lever: live.driver.lever, drives: live.driver.drives, t: live.drive.t })"
 
 
-def test_a_finger_and_a_gamepad_drive_and_sounds_are_off_until_asked_for(file, show):
+def test_a_finger_and_a_gamepad_drive_and_sounds_are_off_until_asked_for(file: Any, show: Any) -> None:
     page, seen = show(file, "#s=guo2015-case4-105", 390, 844, has_touch=True, is_mobile=True)
     page.evaluate(PADS)
     standing_clock(page)
@@ -201,32 +203,32 @@ def test_a_finger_and_a_gamepad_drive_and_sounds_are_off_until_asked_for(file, s
     assert seen.console == []
 
 
-def ghost(page):
+def ghost(page: Any) -> Any:
     return page.evaluate(
         "() => { const { outcome, reason, numbers } = window.live.whole; return { outcome, reason, ...numbers }; }"
     )
 
 
-def run_of(name, *sets):
+def run_of(name: Any, *sets: Any) -> Any:
     scenario = load_scenario(name, list(sets))
     ran = run_scenario(scenario, fmu_files("native"), kind="native")
     return summarize(ran.recording, scenario, ran.wall_time)
 
 
-def agrees(found, summary):
+def agrees(found: Any, summary: Any) -> None:
     assert (found["outcome"], found["reason"]) == (summary.outcome, summary.reason)
     assert found["shifts"] == summary.shifts
     for axis in ("x", "y", "heading"):
         assert found[f"final.{axis}"] == pytest.approx(getattr(summary.final, axis), rel=0.0, abs=1e-6)
 
 
-def fill(page, name, value):
+def fill(page: Any, name: Any, value: Any) -> None:
     field = page.locator(f'[id="p-{name}"]')
     field.fill(value)
     field.dispatch_event("change")
 
 
-def test_a_slider_moves_the_ghost_as_apa_run_with_set_does(page):
+def test_a_slider_moves_the_ghost_as_apa_run_with_set_does(page: Any) -> None:
     before = ghost(page)
     page.focus('input[type="range"][aria-label="car.steering.rate_limit"]')
     for _ in range(15):
@@ -239,7 +241,7 @@ def test_a_slider_moves_the_ghost_as_apa_run_with_set_does(page):
     agrees(after, run_of("guo2015-case4", f"car.steering.rate_limit={value!r}"))
 
 
-def test_a_value_out_of_range_is_refused_with_the_range(page):
+def test_a_value_out_of_range_is_refused_with_the_range(page: Any) -> None:
     before = ghost(page)
     fill(page, "controller.guo2015.k1", "1000")
     wrong = page.locator('[id="p-controller.guo2015.k1-wrong"]')
@@ -250,7 +252,7 @@ def test_a_value_out_of_range_is_refused_with_the_range(page):
     assert wrong.text_content() == ""
 
 
-def test_the_exported_scenario_comes_to_the_end_of_the_page(page, tmp_path):
+def test_the_exported_scenario_comes_to_the_end_of_the_page(page: Any, tmp_path: Path) -> None:
     fill(page, "vehicle.driver.profile[1].speed", "1.2")
     page.fill("#search", "backlash")
     page.click("#found button")
@@ -265,7 +267,7 @@ def test_the_exported_scenario_comes_to_the_end_of_the_page(page, tmp_path):
     agrees(ghost(page), summary)
 
 
-def handle(page, prefix):
+def handle(page: Any, prefix: Any) -> Any:
     """Return where on the screen what can be dragged is taken."""
     return page.evaluate(
         "(prefix) => { const { stage } = window.live, item = stage.handles().find((one) => one.prefix === prefix);"
@@ -275,7 +277,7 @@ def handle(page, prefix):
     )
 
 
-def drag(page, prefix, dx, dy):
+def drag(page: Any, prefix: Any, dx: Any, dy: Any) -> None:
     """Drag a handle by metres."""
     x, y = handle(page, prefix)
     scale = page.evaluate("() => window.live.stage.scale")
@@ -286,7 +288,7 @@ def drag(page, prefix, dx, dy):
     page.mouse.up()
 
 
-def test_the_address_holds_scenario_and_changes(page, file, show):
+def test_the_address_holds_scenario_and_changes(page: Any, file: Any, show: Any) -> None:
     page.select_option("#scenario", "hsic")
     fill(page, "vehicle.steering.lag", "0.05")
     page.wait_for_function("() => !window.live.isDue")
@@ -301,7 +303,7 @@ def test_the_address_holds_scenario_and_changes(page, file, show):
         assert words in told
 
 
-def test_a_map_is_coloured_and_a_cell_taken_from_it_is_what_it_says(page):
+def test_a_map_is_coloured_and_a_cell_taken_from_it_is_what_it_says(page: Any) -> None:
     page.click("#map-tab")
     page.click("#map-go")
     page.wait_for_selector("#map[data-done]", timeout=60_000)
@@ -324,7 +326,7 @@ def test_a_map_is_coloured_and_a_cell_taken_from_it_is_what_it_says(page):
 UNTIL = "([name, state]) => { const { drive } = window.live; while (drive.state(name) !== state) drive.go(); }"
 
 
-def test_the_chart_shows_the_state_and_how_it_came(page):
+def test_the_chart_shows_the_state_and_how_it_came(page: Any) -> None:
     page.click("#chart-tab")
     page.evaluate("() => { const { drive } = window.live; while (drive.t < 5.0) drive.go(); }")
     page.wait_for_timeout(100)
@@ -361,7 +363,7 @@ def test_the_chart_shows_the_state_and_how_it_came(page):
     ]
 
 
-def test_a_scenario_with_faults_says_what_it_disturbs(page):
+def test_a_scenario_with_faults_says_what_it_disturbs(page: Any) -> None:
     page.select_option("#scenario", "fault-pose-frozen")
     assert page.inner_text("#faults") == "This scenario disturbs what is received: freeze vehicle.odometry, 2 s on."
     page.evaluate("() => { const { drive } = window.live; while (drive.t < 2.1) drive.go(); }")
@@ -369,7 +371,7 @@ def test_a_scenario_with_faults_says_what_it_disturbs(page):
     assert page.inner_text("#faults").endswith("freeze vehicle.odometry, 2 s on, now.")
 
 
-def test_controllers_of_two_models_do_not_share_a_page():
+def test_controllers_of_two_models_do_not_share_a_page() -> None:
     scenarios = [load_scenario(name) for name in ("guo2015-case4", "valet-perpendicular")]
     with pytest.raises(BadInput, match="another controller than guo2015-case4: a page has one"):
         live_page(scenarios)

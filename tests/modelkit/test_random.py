@@ -1,5 +1,7 @@
 """The generator against its paper, and its numbers against the distributions they are said to follow."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -13,7 +15,7 @@ DOUBT = 1e-3
 """Seeds are fixed: the tests do not flicker, and this share of seeds would fail for a true generator."""
 
 
-def drawn(draw, seed: int) -> np.ndarray:
+def drawn(draw: Any, seed: int) -> np.ndarray:
     state, found = seed_state(seed), np.empty(COUNT)
     for place in range(COUNT):
         state, found[place] = draw(state)

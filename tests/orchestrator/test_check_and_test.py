@@ -2,6 +2,8 @@
 
 import json
 import xml.etree.ElementTree as ElementTree
+from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -21,20 +23,22 @@ RULES = """
 
 
 @pytest.fixture(scope="module")
-def log(tmp_path_factory):
+def log(tmp_path_factory: pytest.TempPathFactory) -> Any:
     out = tmp_path_factory.mktemp("case4")
     main(["run", "guo2015-case4", "--fmus", "none", "--no-figure", "--out", str(out)])
     return out / "run.mcap"
 
 
 @pytest.fixture
-def rules(tmp_path):
+def rules(tmp_path: Path) -> Any:
     file = tmp_path / "rules.yaml"
     file.write_text(RULES)
     return file
 
 
-def test_check_passes_and_writes_junit(log, rules, tmp_path, capsys):
+def test_check_passes_and_writes_junit(
+    log: Any, rules: Any, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     junit = tmp_path / "out" / "junit.xml"
     assert main(["check", str(log), str(rules), "gbt41630", "--junit", str(junit)]) == 0
     root = ElementTree.parse(junit).getroot()
@@ -44,7 +48,7 @@ def test_check_passes_and_writes_junit(log, rules, tmp_path, capsys):
     assert "7 of 8 met" in capsys.readouterr().out
 
 
-def test_check_fails_with_a_margin(log, rules, capsys):
+def test_check_fails_with_a_margin(log: Any, rules: Any, capsys: pytest.CaptureFixture[str]) -> None:
     rules.write_text("- {id: quick, signal: duration, max: 10 s, source: us}")
     assert main(["check", str(log), str(rules), "--json"]) == 1
     found = json.loads(capsys.readouterr().out)
@@ -52,19 +56,19 @@ def test_check_fails_with_a_margin(log, rules, capsys):
     assert found["checks"][0]["margin"] == pytest.approx(10.0 - found["checks"][0]["value"])
 
 
-def test_check_gives_the_verdicts_of_the_run_itself(log, capsys):
+def test_check_gives_the_verdicts_of_the_run_itself(log: Any, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["check", str(log), "guo2015", "gbt41630", "--json"]) == 0
     checks = json.loads(capsys.readouterr().out)["checks"]
     assert checks == json.loads((log.parent / "summary.json").read_text())["checks"]
 
 
 @pytest.mark.parametrize("arguments", [["nothing.mcap", "house"], ["LOG", "nothing.yaml"], ["LOG", "hause"]])
-def test_check_refuses_bad_input(log, arguments, capsys):
+def test_check_refuses_bad_input(log: Any, arguments: Any, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["check", *(str(log) if item == "LOG" else item for item in arguments)]) == 2
     assert capsys.readouterr().err
 
 
-def test_junit_holds_any_text(tmp_path):
+def test_junit_holds_any_text(tmp_path: Path) -> None:
     file = tmp_path / "j.xml"
     write_junit(file, [Suite("<&\x00\x1b>", [Case('a"b', False, "\x07]]>")], 1.0), Suite("b", [], 0.0, "broken")])
     root = ElementTree.parse(file).getroot()
@@ -72,14 +76,14 @@ def test_junit_holds_any_text(tmp_path):
     assert root[0].get("name") == "<&??>"
 
 
-def test_patterns_choose_shipped_scenarios():
+def test_patterns_choose_shipped_scenarios() -> None:
     names = chosen(["guo2015-case4*", "guo2015-case4", "my.yaml"])
     assert names[0] == "guo2015-case4"
     assert names[-1] == "my.yaml"
     assert len(names) == len(set(names)) >= 5
 
 
-def test_test_command(tmp_path, capsys):
+def test_test_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     out = tmp_path / "out"
     names = ["guo2015-case4", "guo2015-case2", "fault-pose-nan"]
     assert main(["test", *names, "--fmus", "none", "--out", str(out)]) == 0
@@ -97,7 +101,9 @@ def test_test_command(tmp_path, capsys):
     assert root.get("failures") == "0"
 
 
-def test_test_command_fails_when_a_requirement_or_the_outcome_is_missed(tmp_path, rules, capsys):
+def test_test_command_fails_when_a_requirement_or_the_outcome_is_missed(
+    tmp_path: Path, rules: Any, capsys: pytest.CaptureFixture[str]
+) -> None:
     out = tmp_path / "out"
     arguments = ["test", "guo2015-case4", "--fmus", "none", "--out", str(out), "--json"]
     rules.write_text("- {id: quick, signal: duration, max: 10 s, source: us}")
@@ -110,20 +116,22 @@ def test_test_command_fails_when_a_requirement_or_the_outcome_is_missed(tmp_path
     assert root.find(".//testcase[@name='outcome']/failure").get("message").startswith("parked")
 
 
-def test_titles_of_scenarios_are_escaped_on_the_page(tmp_path):
+def test_titles_of_scenarios_are_escaped_on_the_page(tmp_path: Path) -> None:
     out = tmp_path / "out"
     title = "title=<script>alert(1)</script>"
     assert main(["test", "guo2015-case4", "--fmus", "none", "--out", str(out), "--set", title]) == 0
     assert "<script" not in (out / "index.html").read_text()
 
 
-def test_bad_input(tmp_path, capsys):
+def test_bad_input(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["test", "guo2016-*", "--fmus", "none", "--out", str(tmp_path)]) == 2
     assert main(["test", "guo2015-case4", "--controller", "nothing.fmu", "--out", str(tmp_path)]) == 2
     assert "nothing.fmu" in capsys.readouterr().err
 
 
-def test_a_foreign_controller_is_run_without_the_parameters_it_does_not_have(tmp_path, monkeypatch):
+def test_a_foreign_controller_is_run_without_the_parameters_it_does_not_have(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     files = fmu_files("python")
     theirs = tmp_path / "their controller.fmu"
     theirs.write_bytes(files["controller"].read_bytes())
@@ -134,12 +142,12 @@ def test_a_foreign_controller_is_run_without_the_parameters_it_does_not_have(tmp
     assert tested.passed
 
 
-def foreign_scenario(name):
+def foreign_scenario(name: Any) -> Any:
     scenario = load_scenario(name)
     return scenario.model_copy(update={"controller": {**scenario.controller, "no_such_gain": 1.0}})
 
 
-def test_names_of_cases_are_unique_and_tell_the_source(tmp_path, rules):
+def test_names_of_cases_are_unique_and_tell_the_source(tmp_path: Path, rules: Any) -> None:
     rules.write_text(
         "- {id: quick, signal: duration, max: 50 s, source: us}\n- {id: quick, signal: duration, max: 60 s, source: us}"
     )
@@ -157,7 +165,9 @@ def test_names_of_cases_are_unique_and_tell_the_source(tmp_path, rules):
     } < set(names)
 
 
-def test_a_window_that_never_comes_is_said_in_words(tmp_path, rules, capsys):
+def test_a_window_that_never_comes_is_said_in_words(
+    tmp_path: Path, rules: Any, capsys: pytest.CaptureFixture[str]
+) -> None:
     rules.write_text("- {id: crawl, signal: vehicle.speed, max_abs: 2 km/h, window: {phase: TO_Q4}, source: us}")
     arguments = ["--fmus", "none", "--out", str(tmp_path / "out"), "--requirements", str(rules)]
     assert main(["test", "guo2015-case4", *arguments]) == 1

@@ -2,6 +2,8 @@
 
 import json
 import math
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -22,7 +24,7 @@ HEADING = Variable("heading", float, Signal("rad", "an angle"), 0.0)
 MODE = Variable("gear", int, Signal("1", "a mode", states=Gear), 0)
 
 
-def made(t=T, **signals) -> Recording:
+def made(t: Any = T, **signals: Any) -> Recording:
     kinds = {"x": FLOAT, "heading": HEADING, "gear": MODE}
     return Recording(
         np.round(np.asarray(t) * 1e9).astype(np.int64),
@@ -32,12 +34,12 @@ def made(t=T, **signals) -> Recording:
     )
 
 
-def verdict(a: Recording, b: Recording, **tolerance: float):
+def verdict(a: Recording, b: Recording, **tolerance: float) -> Any:
     found = compare(a, b, Tolerances(Tolerance(**tolerance)))
     return found, {row.signal.removeprefix("vehicle."): row for row in found.signals}
 
 
-def test_a_run_equals_itself():
+def test_a_run_equals_itself() -> None:
     run = made(x=np.sin(T), gear=T > 5.0, heading=T)
     found, rows = verdict(run, run, absolute=0.0, relative=0.0)
     assert found.passed
@@ -45,7 +47,7 @@ def test_a_run_equals_itself():
     assert all(row.largest == 0.0 and row.first is None for row in rows.values())
 
 
-def test_absolute_tolerance_and_the_first_excess():
+def test_absolute_tolerance_and_the_first_excess() -> None:
     offset = np.where(T > 4.0, 0.02, 0.0) + np.where((T > 7.0) & (T < 7.1), 0.01, 0.0)
     a, b = made(x=np.sin(T)), made(x=np.sin(T) + offset)
     assert verdict(a, b, absolute=0.0301)[0].passed
@@ -57,7 +59,7 @@ def test_absolute_tolerance_and_the_first_excess():
     assert verdict(a, b, absolute=0.025)[1]["x"].first == pytest.approx(7.01)
 
 
-def test_the_larger_of_absolute_and_relative_counts():
+def test_the_larger_of_absolute_and_relative_counts() -> None:
     a, b = made(x=np.linspace(0.0, 100.0, 1001)), made(x=np.linspace(0.0, 100.9, 1001))
     assert verdict(a, b, absolute=0.0, relative=0.0091)[0].passed
     assert verdict(a, b, absolute=0.91, relative=0.0)[0].passed
@@ -67,7 +69,7 @@ def test_the_larger_of_absolute_and_relative_counts():
     assert rows["x"].allowed == 0.45
 
 
-def test_time_tolerance_forgives_a_shift_but_not_a_value():
+def test_time_tolerance_forgives_a_shift_but_not_a_value() -> None:
     shift = 0.2
     a, b = made(x=np.sin(2.0 * T)), made(x=np.sin(2.0 * (T - shift)))
     assert not verdict(a, b, absolute=1e-6, time=0.15)[0].passed
@@ -82,14 +84,14 @@ def test_time_tolerance_forgives_a_shift_but_not_a_value():
     assert not verdict(a, taller, absolute=1e-4, time=0.21)[1]["x"].passed
 
 
-def test_runs_of_different_steps_are_aligned_in_time():
+def test_runs_of_different_steps_are_aligned_in_time() -> None:
     coarse = np.linspace(0.0, 10.0, 101)
     a, b = made(x=3.0 * T), made(coarse, x=3.0 * coarse)
     assert verdict(a, b, absolute=1e-9)[0].passed
     assert verdict(b, a, absolute=1e-9)[0].passed
 
 
-def test_a_mode_may_change_a_little_later_but_not_be_another():
+def test_a_mode_may_change_a_little_later_but_not_be_another() -> None:
     a, b = made(gear=np.where(T < 5.0, 1, 3)), made(gear=np.where(T < 5.1, 1, 3))
     assert not verdict(a, b)[0].passed
     assert verdict(a, b)[1]["gear"].first == pytest.approx(5.0)
@@ -99,7 +101,7 @@ def test_a_mode_may_change_a_little_later_but_not_be_another():
     assert not rows["gear"].passed, "2 lies between 1 and 3 but the reference never was 2"
 
 
-def test_headings_are_compared_as_angles():
+def test_headings_are_compared_as_angles() -> None:
     a = made(heading=np.linspace(3.0, 3.3, 1001))
     wrapped = (np.linspace(3.0, 3.3, 1001) + math.pi) % (2.0 * math.pi) - math.pi
     assert verdict(a, made(heading=wrapped), absolute=1e-9)[0].passed
@@ -107,7 +109,7 @@ def test_headings_are_compared_as_angles():
     assert not verdict(a, made(heading=wrapped + 0.01), absolute=1e-3)[0].passed
 
 
-def test_not_a_number_equals_only_itself():
+def test_not_a_number_equals_only_itself() -> None:
     hole = np.where((T > 3.0) & (T < 4.0), np.nan, 1.0)
     assert verdict(made(x=hole), made(x=hole))[0].passed
     found, rows = verdict(made(x=np.ones(1001)), made(x=hole), absolute=1e6)
@@ -117,7 +119,7 @@ def test_not_a_number_equals_only_itself():
     json.loads(found.model_dump_json())
 
 
-def test_length_of_the_runs_is_judged():
+def test_length_of_the_runs_is_judged() -> None:
     a, b = made(x=T), made(T[:901], x=T[:901])
     found, rows = verdict(a, b, absolute=0.5)
     assert not found.passed
@@ -126,7 +128,7 @@ def test_length_of_the_runs_is_judged():
     assert verdict(a, b, absolute=0.5, time=1.0)[0].passed
 
 
-def test_a_signal_that_is_gone_differs_and_a_new_one_is_listed():
+def test_a_signal_that_is_gone_differs_and_a_new_one_is_listed() -> None:
     a, b = made(x=T, heading=T), made(x=T, gear=T > 5)
     found, rows = verdict(a, b)
     assert not found.passed
@@ -135,7 +137,7 @@ def test_a_signal_that_is_gone_differs_and_a_new_one_is_listed():
     assert found.only_in_b == ["vehicle.gear"]
 
 
-def test_patterns_choose_signals_and_tolerances(tmp_path):
+def test_patterns_choose_signals_and_tolerances(tmp_path: Path) -> None:
     file = tmp_path / "tolerances.yaml"
     file.write_text('"vehicle.*": {abs: 1 cm}\n"*.heading": {rel: 0, time: 50 ms}\n')
     tolerances = read_tolerances(file, Tolerance(0.5, 0.25, 0.0))
@@ -148,7 +150,7 @@ def test_patterns_choose_signals_and_tolerances(tmp_path):
         compare(a, b, Tolerances(Tolerance()), ["*.y"])
 
 
-def test_a_later_pattern_counts_even_if_an_earlier_one_has_another_unit(tmp_path):
+def test_a_later_pattern_counts_even_if_an_earlier_one_has_another_unit(tmp_path: Path) -> None:
     file = tmp_path / "tolerances.yaml"
     file.write_text('"vehicle.pose.*": {abs: 1 cm, time: 100 ms}\n"*.heading": {abs: 0.5 deg}')
     tolerances = read_tolerances(file, Tolerance())
@@ -157,14 +159,14 @@ def test_a_later_pattern_counts_even_if_an_earlier_one_has_another_unit(tmp_path
 
 
 @pytest.mark.parametrize("text", ["x: 3", "x: {abs: -1}", "x: {absolute: 1}", "x: {abs: 1 kg}"])
-def test_bad_tolerances_are_refused_with_their_key(tmp_path, text):
+def test_bad_tolerances_are_refused_with_their_key(tmp_path: Path, text: str) -> None:
     file = tmp_path / "tolerances.yaml"
     file.write_text(text)
     with pytest.raises(BadInput, match="x"):
         read_tolerances(file, Tolerance()).of("x", "m")
 
 
-def test_tube_against_a_search_over_all_pairs():
+def test_tube_against_a_search_over_all_pairs() -> None:
     random = np.random.default_rng(7)
     t = np.unique(np.round(random.uniform(0.0, 5.0, 60), 3))
     a, b = random.normal(size=len(t)), random.normal(size=len(t))
@@ -182,7 +184,7 @@ def test_tube_against_a_search_over_all_pairs():
         assert excess == pytest.approx(max(edges[0] - value, value - edges[1]), abs=0.02)
 
 
-def test_command(tmp_path, capsys):
+def test_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     names = ("a", "same", "other")
     sets = ([], [], ["--set", "controller.guo2015.k4=3"])
     for name, changes in zip(names, sets, strict=True):

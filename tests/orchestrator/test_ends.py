@@ -7,6 +7,7 @@ import sys
 import tempfile
 import time
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -35,7 +36,9 @@ def started(code: str, **more: str) -> "subprocess.Popen[str]":
     return subprocess.Popen([sys.executable, "-c", code], stdout=pipe, stderr=pipe, text=True, env=environment)
 
 
-def test_an_unexpected_error_is_one_line_with_code_3_and_its_traceback_in_a_file(monkeypatch, capsys, tmp_path):
+def test_an_unexpected_error_is_one_line_with_code_3_and_its_traceback_in_a_file(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
     def broken(_arguments: object) -> int:
         raise KeyError("some\nthing")
 
@@ -51,7 +54,9 @@ def test_an_unexpected_error_is_one_line_with_code_3_and_its_traceback_in_a_file
     assert "apa list" in file.read_text()
 
 
-def test_without_memory_it_is_no_internal_error(monkeypatch, capsys):
+def test_without_memory_it_is_no_internal_error(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
     def hungry(_arguments: object) -> int:
         raise MemoryError
 
@@ -63,7 +68,7 @@ def test_without_memory_it_is_no_internal_error(monkeypatch, capsys):
 @posix
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 @pytest.mark.parametrize("hang", [DEAF, "time.sleep(60)"])
-def test_a_signal_ends_what_hangs_within_two_seconds_and_takes_its_folders_away(number, hang):
+def test_a_signal_ends_what_hangs_within_two_seconds_and_takes_its_folders_away(number: Any, hang: Any) -> None:
     child = started(HANGS.format(hang=hang))
     folder = Path(child.stdout.readline().strip())
     assert folder.is_dir()
@@ -76,7 +81,9 @@ def test_a_signal_ends_what_hangs_within_two_seconds_and_takes_its_folders_away(
 
 
 @posix
-def test_an_interrupt_that_a_library_makes_another_error_of_is_one(monkeypatch, capsys):
+def test_an_interrupt_that_a_library_makes_another_error_of_is_one(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
     def told_otherwise(_arguments: object) -> int:
         try:
             os.kill(os.getpid(), signal.SIGINT)
@@ -101,7 +108,7 @@ sys.exit(main(["list"]))
 
 
 @posix
-def test_an_interrupt_while_a_library_makes_code_ends_with_the_code_of_interrupts(tmp_path):
+def test_an_interrupt_while_a_library_makes_code_ends_with_the_code_of_interrupts(tmp_path: Path) -> None:
     (tmp_path / "leaves_exec.py").write_text(LEAVES_EXEC)
     environment = {**os.environ, "PYTHONPATH": f"{ROOT}{os.pathsep}{tmp_path}"}
     done = subprocess.run([sys.executable, "-m", "leaves_exec"], env=environment, capture_output=True, text=True)
@@ -109,7 +116,7 @@ def test_an_interrupt_while_a_library_makes_code_ends_with_the_code_of_interrupt
 
 
 @posix
-def test_a_second_signal_ends_at_once():
+def test_a_second_signal_ends_at_once() -> None:
     child = started(HANGS.format(hang=DEAF))
     child.stdout.readline()
     child.stdout.readline()
@@ -124,7 +131,7 @@ def test_a_second_signal_ends_at_once():
 
 
 @posix
-def test_the_next_process_takes_away_what_a_killed_one_left(monkeypatch, tmp_path):
+def test_the_next_process_takes_away_what_a_killed_one_left(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
     child = started(HANGS.format(hang="time.sleep(60)"), TMPDIR=str(tmp_path))
     left = Path(child.stdout.readline().strip()).parent
@@ -136,7 +143,7 @@ def test_the_next_process_takes_away_what_a_killed_one_left(monkeypatch, tmp_pat
     assert not left.exists()
 
 
-def test_a_file_is_whole_or_as_it_was(tmp_path):
+def test_a_file_is_whole_or_as_it_was(tmp_path: Path) -> None:
     path = tmp_path / "new" / "file.txt"
     files.write_whole(path, "one", sync=True)
     with pytest.raises(TypeError):
@@ -145,7 +152,7 @@ def test_a_file_is_whole_or_as_it_was(tmp_path):
     assert [item.name for item in path.parent.iterdir()] == ["file.txt"]
 
 
-def test_what_is_in_the_way_is_named(tmp_path):
+def test_what_is_in_the_way_is_named(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("")
     with pytest.raises(IsADirectoryError) as found:
         files.write_whole(tmp_path, "x")
@@ -155,7 +162,7 @@ def test_what_is_in_the_way_is_named(tmp_path):
 
 
 @posix
-def test_standard_output_that_is_full_is_said(tmp_path):
+def test_standard_output_that_is_full_is_said(tmp_path: Path) -> None:
     if not Path("/dev/full").exists():
         pytest.skip("there is no /dev/full")
     environment = {**os.environ, "PYTHONPATH": str(ROOT)}
@@ -167,7 +174,7 @@ def test_standard_output_that_is_full_is_said(tmp_path):
     assert done.stderr == b"apa: output: the disk is full\n"
 
 
-def test_letters_that_a_terminal_has_not_cost_no_run(tmp_path):
+def test_letters_that_a_terminal_has_not_cost_no_run(tmp_path: Path) -> None:
     scenario = tmp_path / "own.yaml"
     scenario.write_text("base: guo2015-case4\ntitle: '→ 車庫'\nstop_time: 0.1\n", encoding="utf-8")
     environment = {**os.environ, "PYTHONPATH": str(ROOT), "PYTHONIOENCODING": "cp1252"}

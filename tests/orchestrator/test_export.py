@@ -5,6 +5,8 @@ import importlib
 import pkgutil
 import subprocess
 import sys
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -17,13 +19,13 @@ from orchestrator.text.patterns import matching
 
 
 @pytest.fixture(scope="module")
-def log(tmp_path_factory):
+def log(tmp_path_factory: pytest.TempPathFactory) -> Any:
     out = tmp_path_factory.mktemp("case4")
     main(["run", "guo2015-case4", "--fmus", "none", "--no-figure", "--out", str(out)])
     return out / "run.mcap"
 
 
-def test_csv_has_all_signals_with_units_and_every_bit(log, tmp_path):
+def test_csv_has_all_signals_with_units_and_every_bit(log: Any, tmp_path: Path) -> None:
     out = tmp_path / "run.csv"
     assert main(["export", "csv", str(log), "--out", str(out)]) == 0
     run = read_log(log)
@@ -37,7 +39,7 @@ def test_csv_has_all_signals_with_units_and_every_bit(log, tmp_path):
         np.testing.assert_array_equal(table[:, place], run.signals[name], err_msg=name)
 
 
-def test_csv_of_some_signals_with_names_of_states(log, tmp_path):
+def test_csv_of_some_signals_with_names_of_states(log: Any, tmp_path: Path) -> None:
     out = tmp_path / "run.csv"
     arguments = ["--signals", "vehicle.pose.*", "--signals", "controller.phase", "--names"]
     assert main(["export", "csv", str(log), "--out", str(out), *arguments]) == 0
@@ -47,18 +49,18 @@ def test_csv_of_some_signals_with_names_of_states(log, tmp_path):
     assert lines[-1].endswith(",PARKED")
 
 
-def test_without_out_the_file_stands_beside_the_log(log):
+def test_without_out_the_file_stands_beside_the_log(log: Any) -> None:
     assert main(["export", "csv", str(log), "--signals", "vehicle.speed"]) == 0
     assert log.with_suffix(".csv").is_file()
 
 
 @pytest.mark.parametrize("arguments", [["csv", "nothing.mcap"], ["csv", "LOG", "--signals", "vehicle.sped"]])
-def test_bad_input(log, arguments, capsys):
+def test_bad_input(log: Any, arguments: Any, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["export", *(str(log) if item == "LOG" else item for item in arguments)]) == 2
     assert capsys.readouterr().err
 
 
-def test_mf4_has_values_units_comments_and_names_of_states(log, tmp_path):
+def test_mf4_has_values_units_comments_and_names_of_states(log: Any, tmp_path: Path) -> None:
     asammdf = pytest.importorskip("asammdf", reason="asammdf is not installed: pip install 'apa-cosim[export]'")
     out = tmp_path / "run.mf4"
     assert main(["export", "mf4", str(log), "--out", str(out)]) == 0
@@ -76,11 +78,11 @@ def test_mf4_has_values_units_comments_and_names_of_states(log, tmp_path):
         assert phase[-1] in (b"PARKED", "PARKED")
 
 
-def test_mf4_refuses_a_name_that_it_would_change(log, tmp_path):
+def test_mf4_refuses_a_name_that_it_would_change(log: Any, tmp_path: Path) -> None:
     assert main(["export", "mf4", str(log), "--out", str(tmp_path / "run.dat")]) == 2
 
 
-def test_rerun_file_is_valid_and_complete(log, tmp_path):
+def test_rerun_file_is_valid_and_complete(log: Any, tmp_path: Path) -> None:
     pytest.importorskip("rerun", reason="rerun-sdk is not installed: pip install 'apa-cosim[export]'")
     out = tmp_path / "run.rrd"
     assert main(["export", "rerun", str(log), "--out", str(out)]) == 0
@@ -94,7 +96,7 @@ def test_rerun_file_is_valid_and_complete(log, tmp_path):
     assert "blueprint" in listing.lower()
 
 
-def test_every_format_is_a_module_of_its_own(capsys):
+def test_every_format_is_a_module_of_its_own(capsys: pytest.CaptureFixture[str]) -> None:
     names = [item.name for item in pkgutil.iter_modules(export.__path__)]
     found = {name for name in names if hasattr(importlib.import_module(f"{export.__name__}.{name}"), "add_arguments")}
     assert found == FORMATS.keys()
@@ -104,7 +106,7 @@ def test_every_format_is_a_module_of_its_own(capsys):
     assert all(name in text for name in FORMATS)
 
 
-def test_brackets_in_a_pattern_mean_themselves():
+def test_brackets_in_a_pattern_mean_themselves() -> None:
     names = ["vehicle.ultrasonic[1]", "vehicle.ultrasonic[12]", "vehicle.speed"]
     assert matching(names, ["*[1]"]) == ["vehicle.ultrasonic[1]"]
     assert matching(names, ["vehicle.ultra*"]) == names[:2]

@@ -6,6 +6,7 @@ import subprocess
 import sys
 import xml.etree.ElementTree as ElementTree
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -21,7 +22,7 @@ posix = pytest.mark.skipif(os.name != "posix", reason="folders are locked on POS
 
 @posix
 @pytest.mark.parametrize("words", [["run", *SHORT], ["test", *SHORT], ["replay", "TABLE", "--row", "0"]])
-def test_a_folder_in_use_is_refused(words, tmp_path, capsys, study):
+def test_a_folder_in_use_is_refused(words: Any, tmp_path: Path, capsys: pytest.CaptureFixture[str], study: Any) -> None:
     words = [str(study("2.0", tmp_path / "study")) if word == "TABLE" else word for word in words]
     with owned(tmp_path / "out"):
         assert main([*words, "--out", str(tmp_path / "out")]) == 2
@@ -31,7 +32,7 @@ def test_a_folder_in_use_is_refused(words, tmp_path, capsys, study):
 
 
 @posix
-def test_the_lock_dies_with_its_process(tmp_path):
+def test_the_lock_dies_with_its_process(tmp_path: Path) -> None:
     code = "import sys, os; from pathlib import Path; from orchestrator.text.owned import owned\n"
     code += "with owned(Path(sys.argv[1])):\n print('has it', flush=True)\n os.kill(os.getpid(), 9)"
     environment = {**os.environ, "PYTHONPATH": str(ROOT)}
@@ -41,7 +42,7 @@ def test_the_lock_dies_with_its_process(tmp_path):
         pass
 
 
-def test_an_older_report_goes_as_the_new_log_comes(tmp_path, capsys):
+def test_an_older_report_goes_as_the_new_log_comes(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["run", *SHORT, "--out", str(tmp_path)]) == 1
     assert main(["export", "csv", str(tmp_path)]) == 0
     (tmp_path / "mine.txt").write_text("kept")
@@ -50,7 +51,7 @@ def test_an_older_report_goes_as_the_new_log_comes(tmp_path, capsys):
     assert sorted(path.name for path in tmp_path.iterdir()) == ["mine.txt", "run.mcap", "summary.json"]
 
 
-def test_two_scenarios_of_one_name_are_refused_and_junit_holds_all(tmp_path):
+def test_two_scenarios_of_one_name_are_refused_and_junit_holds_all(tmp_path: Path) -> None:
     for number in (1, 2):
         (tmp_path / str(number)).mkdir()
         (tmp_path / str(number) / "one.yaml").write_text("base: guo2015-case4\nstop_time: 0.1\n")
@@ -62,7 +63,9 @@ def test_two_scenarios_of_one_name_are_refused_and_junit_holds_all(tmp_path):
     assert (tmp_path / "out" / "index.html").is_file()
 
 
-def test_a_mistake_of_ours_is_3_with_junit(tmp_path, monkeypatch, capsys):
+def test_a_mistake_of_ours_is_3_with_junit(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
     monkeypatch.setattr("platformdirs.user_log_path", lambda *_, **__: tmp_path / "log")
     monkeypatch.setattr("orchestrator.suite.suite.summarize", lambda *_: 1 / 0)
     assert main(["test", *SHORT, "--out", str(tmp_path / "out")]) == 3
@@ -72,7 +75,7 @@ def test_a_mistake_of_ours_is_3_with_junit(tmp_path, monkeypatch, capsys):
     assert "Traceback" not in capsys.readouterr().err
 
 
-def test_a_test_that_ends_too_soon_is_no_success(tmp_path, monkeypatch):
+def test_a_test_that_ends_too_soon_is_no_success(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     def leaves(*_: object) -> None:
         raise SystemExit(0)
 
@@ -86,7 +89,7 @@ def test_a_test_that_ends_too_soon_is_no_success(tmp_path, monkeypatch):
 
 
 @pytest.fixture
-def study():
+def study() -> Any:
     def swept(first: str, out: Path, *more: str) -> Path:
         file = out.parent / f"{first}.yaml"
         file.write_text(STUDY.replace("X", first))
@@ -101,7 +104,9 @@ def parts_of(table: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("orchestrator.sweep.store.Store._forget", lambda self: None)
 
 
-def test_parts_of_another_study_are_refused(study, tmp_path, monkeypatch, capsys):
+def test_parts_of_another_study_are_refused(
+    study: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
     with monkeypatch.context() as patched:
         parts_of(tmp_path, patched)
         study("1.9", tmp_path / "a", "--no-page")
@@ -122,7 +127,9 @@ def test_parts_of_another_study_are_refused(study, tmp_path, monkeypatch, capsys
     assert (tmp_path / "a" / "trial.parquet").read_bytes() == whole
 
 
-def test_a_damaged_part_is_made_again(study, tmp_path, monkeypatch, capsys):
+def test_a_damaged_part_is_made_again(
+    study: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
     with monkeypatch.context() as patched:
         parts_of(tmp_path, patched)
         whole = study("1.9", tmp_path / "a", "--no-page").read_bytes()
@@ -137,7 +144,9 @@ def test_a_damaged_part_is_made_again(study, tmp_path, monkeypatch, capsys):
     assert (tmp_path / "a" / "trial.parquet").read_bytes() == whole
 
 
-def test_a_finished_study_is_not_run_again_and_another_takes_its_page_away(study, tmp_path, capsys):
+def test_a_finished_study_is_not_run_again_and_another_takes_its_page_away(
+    study: Any, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     table = study("2.0", tmp_path / "out", "--replays", "1")
     (row,) = (tmp_path / "out").glob("row-*")
     capsys.readouterr()
@@ -150,7 +159,7 @@ def test_a_finished_study_is_not_run_again_and_another_takes_its_page_away(study
 
 @pytest.mark.slow
 @pytest.mark.parametrize("words", [["sweep", "STUDY", "--no-page"], ["sweep", "STUDY", "--no-page", "--fmus", "none"]])
-def test_no_module_of_the_current_folder_is_run(words, tmp_path):
+def test_no_module_of_the_current_folder_is_run(words: Any, tmp_path: Path) -> None:
     (tmp_path / "trial.yaml").write_text(STUDY.replace("X", "2.0"))
     for name in ("struct", "math", "random", "pickle", "multiprocessing", "ziglang", "numpy", "orchestrator"):
         (tmp_path / f"{name}.py").write_text(f"open({str(tmp_path / 'ran')!r}, 'a').write({name!r})\n")
@@ -164,7 +173,7 @@ def test_no_module_of_the_current_folder_is_run(words, tmp_path):
     assert not (tmp_path / "ran").exists(), (tmp_path / "ran").read_text()
 
 
-def test_a_library_that_is_damaged_is_made_again(tmp_path):
+def test_a_library_that_is_damaged_is_made_again(tmp_path: Path) -> None:
     from fmus.locks import kept_file
 
     made = []

@@ -12,11 +12,11 @@ from orchestrator.session.cost import told_cost
 from orchestrator.text.errors import BadInput
 
 
-def test_no_shipped_scenario_is_absurd():
+def test_no_shipped_scenario_is_absurd() -> None:
     assert [text for name in scenario_names() for text in implausible(load_scenario(name))] == []
 
 
-def test_the_plausible_range_is_within_the_hard_one_and_holds_the_default():
+def test_the_plausible_range_is_within_the_hard_one_and_holds_the_default() -> None:
     from modelkit.variables import variables
 
     for model in MODELS.values():
@@ -36,7 +36,7 @@ def test_the_plausible_range_is_within_the_hard_one_and_holds_the_default():
         ("faults=[{signal: vehicle.pose.x, kind: override, value: nan}]", ""),
     ],
 )
-def test_what_is_hardly_meant_is_said(setting, said):
+def test_what_is_hardly_meant_is_said(setting: str, said: str) -> None:
     try:
         found = implausible(load_scenario("guo2015-case4", [setting]))
     except BadInput:
@@ -56,19 +56,21 @@ def test_what_is_hardly_meant_is_said(setting, said):
         "every.vehicle=1e7",
     ],
 )
-def test_what_cannot_be_is_refused(setting, tmp_path: Path, capsys):
+def test_what_cannot_be_is_refused(setting: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["run", "guo2015-case4", "--set", setting, "--fmus", "none", "--out", str(tmp_path)]) == 2
     assert capsys.readouterr().err.count("\n") == 1
 
 
-def test_a_run_of_terabytes_is_refused_and_a_long_one_told():
+def test_a_run_of_terabytes_is_refused_and_a_long_one_told() -> None:
     assert told_cost(6001, 250) == ""
     assert "up to 30 GB of memory" in told_cost(5_000_000, 250)
     with pytest.raises(BadInput, match="TB of memory"):
         told_cost(10**12, 250)
 
 
-def test_a_study_of_too_many_runs_is_refused_before_any_number_is_drawn(tmp_path, capsys):
+def test_a_study_of_too_many_runs_is_refused_before_any_number_is_drawn(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     study = tmp_path / "large.yaml"
     study.write_text("scenario: guo2015-case4\nruns: {monte_carlo: {n: 90000000, vehicle.start.x: {uniform: [0, 1]},")
     with study.open("a") as file:

@@ -1,6 +1,8 @@
 """Requirements as data: what a file may say, and what a run must do to meet it."""
 
 import math
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -20,7 +22,7 @@ T = np.array([0.0, 1.0, 2.0, 3.0, 4.0])
 SPEED = np.array([0.0, -1.0, -2.0, 0.5, 0.0])
 
 
-def recording(speed=SPEED, phase=(0, 1, 1, 1, 2)) -> Recording:
+def recording(speed: Any = SPEED, phase: Any = (0, 1, 1, 1, 2)) -> Recording:
     from enum import IntEnum
 
     states = IntEnum("Phase", PHASE)
@@ -32,7 +34,7 @@ def recording(speed=SPEED, phase=(0, 1, 1, 1, 2)) -> Recording:
     return Recording((T * 1e9).astype(np.int64), signals, {}, variables)
 
 
-def check(run=None, **entry):
+def check(run: Any = None, **entry: Any) -> Any:
     run = recording() if run is None else run
     requirement = Requirement.model_validate({"id": "r", "signal": "vehicle.speed", "source": "test", **entry})
     return judge([requirement], run, facts_of(run, Scenario(name="here")), "file")[0]
@@ -58,7 +60,7 @@ def check(run=None, **entry):
         ({"min": -1.5, "window": {"phase": "drive", "from": 3}}, 0.5, 3.0, 2.0),
     ],
 )
-def test_worst_value_its_moment_and_margin(entry, value, t, margin):
+def test_worst_value_its_moment_and_margin(entry: Any, value: float, t: float, margin: float) -> None:
     found = check(**entry)
     assert (found.value, found.t) == (value, t)
     assert found.margin == pytest.approx(margin)
@@ -79,12 +81,12 @@ AFTER = {"after": {"signal": "controller.phase", "equals": "DRIVE"}}
         ({"max": -1.5, "ever": True, "window": {"from": 3}}, 0.0, 4.0),
     ],
 )
-def test_windows_after_a_moment_and_once(entry, value, t):
+def test_windows_after_a_moment_and_once(entry: Any, value: Any, t: Any) -> None:
     found = check(**entry)
     assert (found.value, found.t) == (value, t)
 
 
-def test_a_window_opens_each_time_a_moment_comes():
+def test_a_window_opens_each_time_a_moment_comes() -> None:
     run = recording(phase=(1, 0, 0, 1, 0))
     assert check(run, max_abs=1.0, window={**AFTER, "lasting": 0}).passed
     assert not check(run, max_abs=1.0, window={**AFTER, "lasting": "2 s"}).passed
@@ -98,17 +100,17 @@ def test_a_window_opens_each_time_a_moment_comes():
 @pytest.mark.parametrize(
     "window", [{"delay": 1}, {"lasting": 1}, {"after": {"signal": "x"}}, {"after": {"signal": "x", "max": 1, "min": 0}}]
 )
-def test_windows_that_mean_nothing_are_refused(window):
+def test_windows_that_mean_nothing_are_refused(window: Any) -> None:
     with pytest.raises(ValueError, match=r"count from after|exactly one of"):
         Requirement.model_validate({"id": "r", "signal": "s", "source": "t", "max": 1, "window": window})
 
 
-def test_what_another_controller_does_not_put_out_opens_no_window():
+def test_what_another_controller_does_not_put_out_opens_no_window() -> None:
     run = recording()
     assert not check(run, max_abs=9.0, window={"after": {"signal": "vehicle.driver_takeover", "equals": True}}).judged
 
 
-def test_states_by_name():
+def test_states_by_name() -> None:
     at_end = {"signal": "controller.phase", "window": {"at": "end"}}
     parked = check(equals="PARKED", **at_end)
     assert parked.passed
@@ -118,7 +120,7 @@ def test_states_by_name():
         check(equals="Parkd", **at_end)
 
 
-def test_numbers_of_the_summary():
+def test_numbers_of_the_summary() -> None:
     assert check(signal="duration", max="4 s").passed
     assert not check(signal="duration", max="3999 ms").passed
     assert check(signal="max_speed", max="7.2 km/h").margin == pytest.approx(0.0)
@@ -126,7 +128,7 @@ def test_numbers_of_the_summary():
         check(signal="duration", max=1, window={"at": "end"})
 
 
-def test_not_a_number_passes_nothing():
+def test_not_a_number_passes_nothing() -> None:
     broken = recording(speed=[0.0, math.nan, 0.0, 0.0, 0.0])
     found = check(broken, max=100)
     assert not found.passed
@@ -134,7 +136,7 @@ def test_not_a_number_passes_nothing():
     assert found.note == "not a number"
 
 
-def test_a_window_that_never_comes_fails_unless_told_otherwise():
+def test_a_window_that_never_comes_fails_unless_told_otherwise() -> None:
     entry = {"max": 1, "window": {"from": 10}}
     assert not check(**entry).passed
     assert check(**entry).note == "the window never comes"
@@ -155,12 +157,12 @@ def test_a_window_that_never_comes_fails_unless_told_otherwise():
         ({"max": "3 deg", "unit": "m"}, "not in m"),
     ],
 )
-def test_mistakes_are_named(entry, message):
+def test_mistakes_are_named(entry: Any, message: str) -> None:
     with pytest.raises(ValueError, match=message):
         check(**entry)
 
 
-def test_a_file_names_its_faulty_entry(tmp_path):
+def test_a_file_names_its_faulty_entry(tmp_path: Path) -> None:
     file = tmp_path / "r.yaml"
     file.write_text("- {id: a, signal: duration, max: 1 s, source: me}\n- {id: b, signal: duration, source: me}\n")
     with pytest.raises(BadInput, match=r"r\.yaml: requirement 2: b: exactly one of|requirement 2: .*exactly one of"):
@@ -171,6 +173,6 @@ def test_a_file_names_its_faulty_entry(tmp_path):
 
 
 @pytest.mark.parametrize("file", sorted((ROOM / "limits").glob("*.yaml")), ids=lambda path: path.stem)
-def test_shipped_sets_can_be_read_and_survive_a_log(file):
+def test_shipped_sets_can_be_read_and_survive_a_log(file: Any) -> None:
     for requirement in read_requirements(file):
         assert Requirement.model_validate(requirement.model_dump(mode="json")) == requirement

@@ -1,6 +1,7 @@
 """The shipped layouts are what the code makes, and speak only of topics and fields that a log has."""
 
 import json
+from typing import Any
 
 import pytest
 from mcap.reader import make_reader
@@ -11,23 +12,23 @@ from orchestrator.log.viewer_layouts import FOLDER, TITLES, layout
 
 
 @pytest.fixture(scope="module")
-def log(tmp_path_factory):
+def log(tmp_path_factory: pytest.TempPathFactory) -> Any:
     out = tmp_path_factory.mktemp("case4")
     main(["run", "guo2015-case4", "--fmus", "none", "--no-figure", "--out", str(out)])
     return out / "run.mcap"
 
 
 @pytest.mark.parametrize("viewer", TITLES)
-def test_shipped_file_is_what_the_code_makes(viewer):
+def test_shipped_file_is_what_the_code_makes(viewer: Any) -> None:
     assert json.loads((FOLDER / f"{viewer}.json").read_text()) == layout(viewer)
 
 
 @pytest.mark.parametrize("viewer", TITLES)
-def test_every_panel_is_placed_once(viewer):
+def test_every_panel_is_placed_once(viewer: Any) -> None:
     made = layout(viewer)
     placed = []
 
-    def walk(node):
+    def walk(node: Any) -> None:
         if isinstance(node, str):
             placed.append(node)
         else:
@@ -41,7 +42,7 @@ def test_every_panel_is_placed_once(viewer):
 
 
 @pytest.mark.parametrize("viewer", TITLES)
-def test_topics_and_fields_exist_in_a_log(viewer, log):
+def test_topics_and_fields_exist_in_a_log(viewer: Any, log: Any) -> None:
     run = read_log(log)
     with log.open("rb") as stream:
         topics = {channel.topic for channel in make_reader(stream).get_summary().channels.values()}

@@ -2,6 +2,7 @@
 
 import math
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -120,7 +121,7 @@ def test_a_contact_is_the_end_whatever_is_said_after_it() -> None:
         ((0.0, 0.0), (1.0, 1.07), "person", False),
     ],
 )
-def test_who_brought_a_contact_about(speed, walker, name: str, came: bool) -> None:
+def test_who_brought_a_contact_about(speed: Any, walker: Any, name: str, came: bool) -> None:
     """The car of Guo 2015 at the origin, 0.8 m/s ahead; it is touched at 10 s."""
     row = {f"vehicle.car.{key}": value for key, value in CAR.items()} | {
         "step": 0.01,

@@ -4,7 +4,9 @@ import math
 import os
 from array import array
 from pathlib import Path
+from typing import Any
 
+import pytest
 import shapely
 from shapely.geometry import Polygon
 
@@ -18,14 +20,14 @@ CAR = PlannedCar(1.4155, 2.3445, 0.971, math.tan(0.75) / 2.8)
 """The competition's car."""
 
 
-def tpcap_folder():
+def tpcap_folder() -> Any:
     """Return the folder of TPCAP's cases, which are no part of the project, or None."""
     places = [Path(os.environ["TPCAP"])] if "TPCAP" in os.environ else []
     places += [parent / "shared" / "tpcap" for parent in Path(__file__).resolve().parents]
     return next((place for place in places if (place / "Case1.csv").exists()), None)
 
 
-def read_case(number):
+def read_case(number: Any) -> Any:
     """Return (start, goal, polygons) of a TPCAP case, seen from the goal."""
     text = (tpcap_folder() / f"Case{number}.csv").read_text()
     values = [float(word) for word in text.replace("\n", ",").split(",") if word.strip()]
@@ -40,13 +42,13 @@ def read_case(number):
     return Pose(start[0] - goal[0], start[1] - goal[1], start[2]), Pose(0.0, 0.0, goal[2]), polygons
 
 
-def scene_of(polygons):
+def scene_of(polygons: Any) -> Any:
     """Return polygons as the planner's scene."""
     corners = [Corner(x, y, number + 1) for number, polygon in enumerate(polygons) for x, y in polygon]
     return Scene(tuple(corners + [Corner()] * (CORNERS - len(corners))))
 
 
-def plan(request, scene, store=None, at_a_time=200, most=4000):
+def plan(request: pytest.FixtureRequest, scene: Any, store: Any = None, at_a_time: Any = 200, most: Any = 4000) -> Any:
     """Return the store after the search for ``request`` has ended."""
     store = new_store(PlanStore) if store is None else store
     begin(store, scene, request)
@@ -57,12 +59,12 @@ def plan(request, scene, store=None, at_a_time=200, most=4000):
     return store
 
 
-def kept(store):
+def kept(store: Any) -> Any:
     """Return the path as (way, curvature) pairs."""
     return [(store.kept_way[at], store.kept_k[at]) for at in range(store.mark[KEPT_COUNT])]
 
 
-def poses_along(start, pieces, step=0.01):
+def poses_along(start: Any, pieces: Any, step: Any = 0.01) -> Any:
     """Return poses along a path at most ``step`` [m] apart, its end last."""
     found = []
     for way, k in pieces:
@@ -72,20 +74,20 @@ def poses_along(start, pieces, step=0.01):
     return [*found, start]
 
 
-def outline_of(pose, car):
+def outline_of(pose: Any, car: Any) -> Any:
     """Return the car's outline as a polygon of shapely."""
     cos, sin = math.cos(pose.heading), math.sin(pose.heading)
     sides = [(car.ahead + a * car.half_length, b * car.half_width) for a, b in ((1, 1), (-1, 1), (-1, -1), (1, -1))]
     return Polygon([(pose.x + x * cos - y * sin, pose.y + x * sin + y * cos) for x, y in sides])
 
 
-def least_clearance(poses, polygons, car):
+def least_clearance(poses: Any, polygons: Any, car: Any) -> Any:
     """Return the least distance [m] of the outline to any polygon."""
     things = shapely.union_all([Polygon(polygon).buffer(0) for polygon in polygons])
     return float(shapely.distance([outline_of(pose, car) for pose in poses], things).min())
 
 
-def bits_of(store):
+def bits_of(store: Any) -> Any:
     """Return all that a store holds, as bytes, but for the scratch space of words."""
     names = [name for name in store._fields if not name.startswith("word")]
     return {name: bytes(array(getattr(store, name).typecode, getattr(store, name))) for name in names}

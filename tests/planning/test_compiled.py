@@ -1,6 +1,7 @@
 """The planner in C has the bits of CPython in every column of its store, at every step."""
 
 from itertools import pairwise
+from typing import Any
 
 import plan_model
 import pytest
@@ -18,16 +19,16 @@ BOXES = [[(-9.0, -3.0), (-3.5, -3.0), (-3.5, -1.0), (-9.0, -1.0)], [(5.0, -3.0),
 
 
 @pytest.fixture(scope="module")
-def folder(tmp_path_factory):
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Any:
     return tmp_path_factory.mktemp("planner")
 
 
 @pytest.fixture(scope="module")
-def translation():
+def translation() -> Any:
     return translate(plan_model.MODEL)
 
 
-def twins(translation, folder, scene, request, each):
+def twins(translation: Any, folder: Any, scene: Any, request: pytest.FixtureRequest, each: Any) -> Any:
     """Return the planner in C and in CPython, and both outputs' differences after each call until it has ended."""
     compiled = CModel(plan_model.MODEL, translation, folder)
     params = Params(scene, request, each)
@@ -42,21 +43,21 @@ def twins(translation, folder, scene, request, each):
     return outputs
 
 
-def test_between_two_boxes(translation, folder):
+def test_between_two_boxes(translation: Any, folder: Any) -> None:
     request = Request(Pose(1.0, 3.0, 0.1), Pose(-1.2, -2.0, 0.0), CAR, 0.1)
     assert twins(translation, folder, scene_of(BOXES), request, 9).status == PLANNED
 
 
 @TPCAP
 @pytest.mark.parametrize("number", [6, 12, 17])
-def test_cases_of_tpcap(translation, folder, number):
+def test_cases_of_tpcap(translation: Any, folder: Any, number: int) -> None:
     start, goal, polygons = read_case(number)
     assert twins(translation, folder, scene_of(polygons), Request(start, goal, CAR, 0.1), 25).status == PLANNED
 
 
 @TPCAP
 @pytest.mark.parametrize("number", range(1, 21))
-def test_all_cases_of_tpcap_in_c(translation, folder, number):
+def test_all_cases_of_tpcap_in_c(translation: Any, folder: Any, number: Any) -> None:
     start, goal, polygons = read_case(number)
     compiled = CModel(plan_model.MODEL, translation, folder)
     compiled.initialize(Params(scene_of(polygons), Request(start, goal, CAR, 0.1), 50))

@@ -31,7 +31,7 @@ ORIGIN = Pose(0.0, 0.0, 0.0)
 BOXES = [[(-9.0, -3.0), (-3.5, -3.0), (-3.5, -1.0), (-9.0, -1.0)], [(5.0, -3.0), (9.0, -3.0), (9.0, -1.0), (5.0, -1.0)]]
 
 
-def test_distance_to_an_edge_is_that_of_shapely():
+def test_distance_to_an_edge_is_that_of_shapely() -> None:
     draw = random.Random(1)
     box = outline_of(Pose(-CAR.ahead, 0.0, 0.0), CAR)
     for _ in range(500):
@@ -40,7 +40,7 @@ def test_distance_to_an_edge_is_that_of_shapely():
         assert gap == pytest.approx(box.distance(LineString([ends[:2], ends[2:]])), abs=1e-9)
 
 
-def test_every_word_ends_where_it_should():
+def test_every_word_ends_where_it_should() -> None:
     draw = random.Random(2)
     store = new_store(PlanStore)
     task = Task(
@@ -61,7 +61,7 @@ def test_every_word_ends_where_it_should():
         assert least >= math.hypot(end.x, end.y) - 1e-9
 
 
-def test_parks_between_two_boxes_with_the_margin_it_states():
+def test_parks_between_two_boxes_with_the_margin_it_states() -> None:
     request = Request(Pose(1.0, 3.0, 0.0), Pose(-1.2, -2.0, 0.0), CAR, 0.1)
     store = plan(request, scene_of(BOXES))
     assert store.mark[STATUS] == PLANNED
@@ -70,7 +70,7 @@ def test_parks_between_two_boxes_with_the_margin_it_states():
     assert least_clearance(poses, BOXES, CAR) >= 0.1 - 1e-3
 
 
-def test_a_search_done_anew_is_the_same_to_the_bit_however_it_is_split():
+def test_a_search_done_anew_is_the_same_to_the_bit_however_it_is_split() -> None:
     request = Request(Pose(1.0, 3.0, 0.2), Pose(-1.2, -2.0, 0.0), CAR, 0.1)
     other = Request(Pose(1.0, 3.0, 0.0), Pose(-1.2, -2.0, 0.0), CAR, 0.1)
     scene = scene_of(BOXES)
@@ -86,20 +86,20 @@ def test_a_search_done_anew_is_the_same_to_the_bit_however_it_is_split():
     assert bits_of(again) == bits_of(once)
 
 
-def test_start_or_goal_on_an_obstacle_is_said():
+def test_start_or_goal_on_an_obstacle_is_said() -> None:
     scene = scene_of(BOXES)
     free, blocked = Pose(1.0, 3.0, 0.0), Pose(-6.0, -2.0, 0.0)
     assert plan(Request(blocked, free, CAR, 0.1), scene).mark[STATUS] == START_BLOCKED
     assert plan(Request(free, blocked, CAR, 0.1), scene).mark[STATUS] == GOAL_BLOCKED
 
 
-def test_the_store_is_small():
+def test_the_store_is_small() -> None:
     assert size_of(PlanStore) < 2_000_000
 
 
 @pytest.mark.skipif(tpcap_folder() is None, reason="TPCAP's cases are not here")
 @pytest.mark.parametrize("number", [6, 12, 17])
-def test_easy_cases_of_tpcap(number):
+def test_easy_cases_of_tpcap(number: int) -> None:
     start, goal, polygons = read_case(number)
     store = plan(Request(start, goal, CAR, 0.1), scene_of(polygons))
     assert store.mark[STATUS] == PLANNED

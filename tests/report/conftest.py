@@ -1,4 +1,5 @@
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -15,7 +16,7 @@ EVIL = "<script>window.evil = 1</script><img src=x onerror='window.evil = 1'>"
 
 
 @pytest.fixture(scope="session")
-def case4():
+def case4() -> Any:
     """Recording and summary of case 4, run in process, with a hostile title."""
     scenario = load_scenario("guo2015-case4").model_copy(update={"title": f"{EVIL} & case 4"})
     ran = run_scenario(scenario)
@@ -23,7 +24,7 @@ def case4():
 
 
 @pytest.fixture(scope="session")
-def replay(case4, tmp_path_factory) -> Path:
+def replay(case4: Any, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The replay page of that run, with a hostile message."""
     path: Path = tmp_path_factory.mktemp("replay") / "report.html"
     path.write_text(replay_page(*case4, [Line(1.0, "warning", "model", EVIL)]), encoding="utf-8")
@@ -31,7 +32,7 @@ def replay(case4, tmp_path_factory) -> Path:
 
 
 @pytest.fixture(scope="session")
-def overlay(case4, tmp_path_factory) -> Path:
+def overlay(case4: Any, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The page of that run and one with another gain."""
     scenario = load_scenario("guo2015-case4", ["controller.guo2015.k4=3"])
     runs = (case4[0], run_scenario(scenario).recording)
@@ -41,7 +42,7 @@ def overlay(case4, tmp_path_factory) -> Path:
 
 
 @pytest.fixture(scope="session")
-def three(case4, tmp_path_factory) -> Path:
+def three(case4: Any, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The page of three runs, each with another gain."""
     others = [run_scenario(load_scenario("guo2015-case4", [f"controller.guo2015.k4={k4}"])).recording for k4 in (2, 3)]
     runs = [case4[0], *others]

@@ -1,6 +1,7 @@
 """All pages against WCAG 2.2 AA: light, dark, and with the few colours that somebody forces on a page."""
 
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -39,14 +40,14 @@ runs:
 
 
 @pytest.fixture(scope="module")
-def axe():
+def axe() -> Any:
     package = pytest.importorskip("axe_core_python")
     (file,) = Path(package.__file__).parent.rglob("axe*.js")
     return file.read_text(encoding="utf-8")
 
 
 @pytest.fixture(scope="module")
-def study(tmp_path_factory):
+def study(tmp_path_factory: pytest.TempPathFactory) -> Any:
     path = tmp_path_factory.mktemp("study")
     (path / "trial.yaml").write_text(STUDY)
     assert main(["sweep", str(path / "trial.yaml"), "--out", str(path), "--replays", "0"]) == 0
@@ -54,14 +55,14 @@ def study(tmp_path_factory):
 
 
 @pytest.fixture(scope="module")
-def index(tmp_path_factory):
+def index(tmp_path_factory: pytest.TempPathFactory) -> Any:
     path = tmp_path_factory.mktemp("suite")
     main(["test", "guo2015-case4", "guo2015-case2", "--out", str(path)])
     return path / "index.html"
 
 
 @pytest.fixture(scope="module")
-def catalogue(tmp_path_factory):
+def catalogue(tmp_path_factory: pytest.TempPathFactory) -> Any:
     path = tmp_path_factory.mktemp("catalogue") / "index.html"
     verdicts = verdicts_of(chosen_standards(["catalogue/unr79"]))
     for item in verdicts[::2]:
@@ -72,14 +73,14 @@ def catalogue(tmp_path_factory):
     return path
 
 
-def wrong(page, axe):
+def wrong(page: Any, axe: Any) -> Any:
     page.evaluate(axe)
     return page.evaluate(RUN, RULES)
 
 
 @pytest.mark.parametrize("look", LOOKS)
 @pytest.mark.parametrize("which", ["replay", "overlay", "study", "index", "catalogue"])
-def test_pages(which, look, show, axe, request):
+def test_pages(which: str, look: Any, show: Any, axe: Any, request: pytest.FixtureRequest) -> None:
     scripted = which in ("replay", "overlay")
     page, _ = show(request.getfixturevalue(which), bypass_csp=True, is_scripted=scripted, **LOOKS[look])
     if scripted:
@@ -92,7 +93,7 @@ def test_pages(which, look, show, axe, request):
 
 
 @pytest.mark.parametrize("look", LOOKS)
-def test_every_panel_of_the_page_that_is_driven(look, show, axe, tmp_path):
+def test_every_panel_of_the_page_that_is_driven(look: Any, show: Any, axe: Any, tmp_path: Path) -> None:
     path = tmp_path / "live.html"
     path.write_text(live_page([load_scenario("fault-pose-noise")]), encoding="utf-8")
     page, _ = show(path, bypass_csp=True, **LOOKS[look])
@@ -111,7 +112,7 @@ def test_every_panel_of_the_page_that_is_driven(look, show, axe, tmp_path):
     assert wrong(page, axe) == [], "in a page of another"
 
 
-def test_ribbons_and_legend_keep_their_colours_where_colours_are_forced(show, replay):
+def test_ribbons_and_legend_keep_their_colours_where_colours_are_forced(show: Any, replay: Any) -> None:
     page, _ = show(replay, forced_colors="active")
     shown = "(selector) => getComputedStyle(document.querySelector(selector)).backgroundColor"
     chips = page.evaluate(

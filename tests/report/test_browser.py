@@ -2,6 +2,8 @@
 
 import csv
 import re
+from pathlib import Path
+from typing import Any
 
 import pytest
 from matplotlib.image import imread
@@ -14,7 +16,7 @@ from orchestrator.verdict.summary import summarize
 CLOCK = "window.replay.t"
 
 
-def until(page, condition: str) -> None:
+def until(page: Any, condition: str) -> None:
     """Wait for a condition; the page's policy forbids Playwright's own way, which is eval."""
     for _ in range(400):
         if page.evaluate(condition):
@@ -23,13 +25,13 @@ def until(page, condition: str) -> None:
     raise AssertionError(f"never true: {condition}")
 
 
-def pick(page, name: str) -> None:
+def pick(page: Any, name: str) -> None:
     """Choose a signal from the list."""
     page.fill(".chooser input", name)
     page.locator(".signals button", has=page.get_by_text(name, exact=True)).click()
 
 
-def shades(page) -> int:
+def shades(page: Any) -> int:
     """Return how many different colours the top view has."""
     return page.evaluate(
         """() => { const c = document.getElementById('view'), g = c.getContext('2d');
@@ -37,7 +39,7 @@ def shades(page) -> int:
     )
 
 
-def test_page_renders_without_a_request_or_a_complaint(show, replay):
+def test_page_renders_without_a_request_or_a_complaint(show: Any, replay: Any) -> None:
     page, seen = show(replay)
     assert shades(page) > 20
     assert page.locator(".plot canvas").count() >= 5
@@ -49,7 +51,7 @@ def test_page_renders_without_a_request_or_a_complaint(show, replay):
     assert seen.requests == [replay.as_uri()]
 
 
-def test_plays_moves_the_car_and_stops_at_the_end(show, replay):
+def test_plays_moves_the_car_and_stops_at_the_end(show: Any, replay: Any) -> None:
     page, seen = show(replay)
     start = page.evaluate("document.getElementById('view').toDataURL()")
     page.select_option("#speed", "16")
@@ -63,7 +65,7 @@ def test_plays_moves_the_car_and_stops_at_the_end(show, replay):
     assert seen.console == []
 
 
-def test_keyboard(show, replay):
+def test_keyboard(show: Any, replay: Any) -> None:
     page, _ = show(replay)
     page.keyboard.press("End")
     assert page.evaluate(f"{CLOCK} === window.replay.duration")
@@ -85,7 +87,7 @@ def test_keyboard(show, replay):
     assert not page.evaluate("window.replay.playing")
 
 
-def test_links_lead_to_the_moment_of_the_worst_value(show, replay, case4):
+def test_links_lead_to_the_moment_of_the_worst_value(show: Any, replay: Any, case4: Any) -> None:
     page, _ = show(replay)
     speed = next(check for check in case4[1].checks if check.signal == "vehicle.speed")
     page.locator("#checks tr", has_text="speed").locator("a.moment").click()
@@ -95,13 +97,13 @@ def test_links_lead_to_the_moment_of_the_worst_value(show, replay, case4):
     )
 
 
-def test_fragment_opens_at_a_moment(show, replay):
+def test_fragment_opens_at_a_moment(show: Any, replay: Any) -> None:
     page, _ = show(replay, "#t=9.25")
     assert page.evaluate(CLOCK) == 9.25
     assert page.locator("#clock").inner_text().startswith("9.25")
 
 
-def test_timeline_and_plots_are_scrubbers(show, replay):
+def test_timeline_and_plots_are_scrubbers(show: Any, replay: Any) -> None:
     page, _ = show(replay)
     box = page.locator(".lane:first-child .track").bounding_box()
     page.mouse.click(box["x"] + 0.5 * box["width"], box["y"] + 5)
@@ -111,7 +113,7 @@ def test_timeline_and_plots_are_scrubbers(show, replay):
     assert page.evaluate(f"{CLOCK} / window.replay.duration") == pytest.approx(0.25, abs=0.01)
 
 
-def test_zoom_of_one_plot_is_the_zoom_of_all(show, replay):
+def test_zoom_of_one_plot_is_the_zoom_of_all(show: Any, replay: Any) -> None:
     page, _ = show(replay)
     over = page.locator(".u-over").first.bounding_box()
     y = over["y"] + 30
@@ -126,7 +128,7 @@ def test_zoom_of_one_plot_is_the_zoom_of_all(show, replay):
     assert ranges[0][1] == pytest.approx(0.6 * duration, rel=0.03)
 
 
-def test_any_signal_can_be_plotted_and_removed(show, replay):
+def test_any_signal_can_be_plotted_and_removed(show: Any, replay: Any) -> None:
     page, seen = show(replay)
     before = page.locator(".plot").count()
     pick(page, "vehicle.distance")
@@ -136,7 +138,7 @@ def test_any_signal_can_be_plotted_and_removed(show, replay):
     assert seen.console == []
 
 
-def test_the_list_has_what_changes_first_and_finds_by_meaning(show, replay):
+def test_the_list_has_what_changes_first_and_finds_by_meaning(show: Any, replay: Any) -> None:
     page, _ = show(replay)
     page.focus(".chooser input")
     assert page.locator(".signals button").first.get_attribute("class") == ""
@@ -149,7 +151,7 @@ def test_the_list_has_what_changes_first_and_finds_by_meaning(show, replay):
     assert page.locator(".signals button").count() == 0
 
 
-def test_several_signals_and_two_units_in_one_plot_but_not_three(show, replay):
+def test_several_signals_and_two_units_in_one_plot_but_not_three(show: Any, replay: Any) -> None:
     page, seen = show(replay)
     plot = "window.replay.plots.all[0]"
     page.locator(".plot .more").first.click()
@@ -165,7 +167,7 @@ def test_several_signals_and_two_units_in_one_plot_but_not_three(show, replay):
     assert seen.console == []
 
 
-def test_two_cursors_and_their_difference(show, replay):
+def test_two_cursors_and_their_difference(show: Any, replay: Any) -> None:
     page, _ = show(replay, "#t=4")
     page.keyboard.press("m")
     page.keyboard.press("Shift+ArrowRight")
@@ -182,7 +184,7 @@ def test_two_cursors_and_their_difference(show, replay):
     assert page.locator(".head.other:visible").count() == 0
 
 
-def test_zoom_keys_and_buttons_do_what_they_show(show, replay):
+def test_zoom_keys_and_buttons_do_what_they_show(show: Any, replay: Any) -> None:
     page, _ = show(replay, "#t=6")
     scale, shown = "window.replay.scene.scale", "window.replay.plots.range"
     first, whole = page.evaluate(scale), page.evaluate(shown)
@@ -201,7 +203,7 @@ def test_zoom_keys_and_buttons_do_what_they_show(show, replay):
     assert page.evaluate(shown) == whole
 
 
-def test_a_double_click_shows_all_and_goes_nowhere(show, replay):
+def test_a_double_click_shows_all_and_goes_nowhere(show: Any, replay: Any) -> None:
     page, _ = show(replay, "#t=6")
     whole = page.evaluate("window.replay.plots.range")
     page.click("#time-in")
@@ -211,7 +213,7 @@ def test_a_double_click_shows_all_and_goes_nowhere(show, replay):
     assert page.evaluate(CLOCK) == 6.0
 
 
-def test_picture_table_and_video_to_take_home(show, replay, tmp_path):
+def test_picture_table_and_video_to_take_home(show: Any, replay: Any, tmp_path: Path) -> None:
     page, seen = show(replay, "#t=5")
     page.select_option("#speed", "8")
     files = {}
@@ -232,7 +234,7 @@ def test_picture_table_and_video_to_take_home(show, replay, tmp_path):
     assert seen.console == []
 
 
-def test_somebody_who_comes_and_goes_is_no_grey_box(show, tmp_path):
+def test_somebody_who_comes_and_goes_is_no_grey_box(show: Any, tmp_path: Path) -> None:
     ran = run_scenario(load_scenario("apa-pedestrian", ["stop_time=14"]))
     path = tmp_path / "report.html"
     path.write_text(replay_page(ran.recording, summarize(ran.recording, load_scenario("apa-pedestrian"), 1.0), []))
@@ -245,7 +247,7 @@ def test_somebody_who_comes_and_goes_is_no_grey_box(show, tmp_path):
     assert page.evaluate(skin) > 10
 
 
-def test_text_of_a_scenario_never_becomes_markup(show, replay):
+def test_text_of_a_scenario_never_becomes_markup(show: Any, replay: Any) -> None:
     page, seen = show(replay)
     assert page.locator("#title").inner_text().startswith("<script>")
     assert page.title().startswith("<script>")
@@ -256,7 +258,7 @@ def test_text_of_a_scenario_never_becomes_markup(show, replay):
 
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])
-def test_theme_follows_the_system_and_the_switch(show, replay, scheme):
+def test_theme_follows_the_system_and_the_switch(show: Any, replay: Any, scheme: str) -> None:
     page, _ = show(replay, color_scheme=scheme)
     colour = "getComputedStyle(document.body).backgroundColor"
     first = page.evaluate(colour)
@@ -269,7 +271,7 @@ def test_theme_follows_the_system_and_the_switch(show, replay, scheme):
     assert page.evaluate(colour) == first
 
 
-def test_phone(show, replay):
+def test_phone(show: Any, replay: Any) -> None:
     page, seen = show(replay, width=390, height=844, is_mobile=True, has_touch=True)
     assert page.evaluate("document.documentElement.scrollWidth") <= 390
     assert shades(page) > 20
@@ -280,7 +282,7 @@ def test_phone(show, replay):
     assert seen.console == []
 
 
-def test_two_runs_on_one_page(show, overlay):
+def test_two_runs_on_one_page(show: Any, overlay: Any) -> None:
     page, seen = show(overlay)
     assert page.locator("#verdict").inner_text().endswith("differ")
     assert page.locator(".lane", has_text="phase A").count() == 1
@@ -294,7 +296,7 @@ def test_two_runs_on_one_page(show, overlay):
     assert seen.requests == [overlay.as_uri()]
 
 
-def test_three_runs_have_three_colours(show, three):
+def test_three_runs_have_three_colours(show: Any, three: Any) -> None:
     page, seen = show(three)
     for label in "ABC":
         assert page.locator(".lane", has_text=f"phase {label}").count() == 1
@@ -309,7 +311,7 @@ def test_three_runs_have_three_colours(show, three):
     assert seen.console == []
 
 
-def test_the_tube_that_compare_judged_by_is_drawn(show, overlay, replay):
+def test_the_tube_that_compare_judged_by_is_drawn(show: Any, overlay: Any, replay: Any) -> None:
     drawn = """() => { const { plots } = window.replay, u = plots.all[0].u, { ctx, bbox } = u;
         const d = ctx.getImageData(bbox.left, bbox.top, bbox.width, bbox.height).data;
         let n = 0; for (let i = 3; i < d.length; i += 4) if (d[i] > 35 && d[i] < 48) n++; return n; }"""
@@ -319,7 +321,7 @@ def test_the_tube_that_compare_judged_by_is_drawn(show, overlay, replay):
     assert with_tube > 5 * page.evaluate(drawn) > 0
 
 
-def test_the_whole_page_looks_where_the_pointer_is(show, replay):
+def test_the_whole_page_looks_where_the_pointer_is(show: Any, replay: Any) -> None:
     page, _ = show(replay, "#t=2")
     over = page.locator(".u-over").first.bounding_box()
     page.mouse.move(over["x"] + 0.5 * over["width"], over["y"] + 0.5 * over["height"])
@@ -332,7 +334,7 @@ def test_the_whole_page_looks_where_the_pointer_is(show, replay):
     assert page.text_content("#clock").startswith("2.00 / ")
 
 
-def test_follow_is_lit_only_while_the_view_follows(show, replay):
+def test_follow_is_lit_only_while_the_view_follows(show: Any, replay: Any) -> None:
     page, _ = show(replay)
     page.keyboard.press("C")
     assert page.get_attribute("#follow", "aria-pressed") == "true"
@@ -344,7 +346,7 @@ def test_follow_is_lit_only_while_the_view_follows(show, replay):
     assert page.get_attribute("#follow", "aria-pressed") == "false"
 
 
-def test_a_mode_has_names_at_its_axis(show, replay):
+def test_a_mode_has_names_at_its_axis(show: Any, replay: Any) -> None:
     page, _ = show(replay)
     pick(page, "controller.phase")
     marks = page.evaluate(

@@ -6,6 +6,7 @@ import html
 import json
 import re
 import zlib
+from typing import Any
 
 import numpy as np
 import pytest
@@ -22,7 +23,7 @@ from orchestrator.verdict.summary import summarize
 EVIL = "<script>window.evil = 1</script><img src=x onerror='window.evil = 1'>"
 
 
-def unpacked(text: str):
+def unpacked(text: str) -> Any:
     """Return the header and the arrays of a packed page, as template/data.js reads them."""
     raw = zlib.decompress(base64.b64decode(text))
     size = int.from_bytes(raw[:4], "little")
@@ -35,11 +36,11 @@ def unpacked(text: str):
     return header, arrays
 
 
-def data_of(text: str):
+def data_of(text: str) -> Any:
     return unpacked(re.search(r'<script type="text/plain" id="data">([^<]*)</script>', text)[1])
 
 
-def test_packed_numbers_come_back():
+def test_packed_numbers_come_back() -> None:
     arrays = Arrays()
     places = [arrays.add(np.array(values)) for values in ([1.5, -2.0, np.nan], [], [1.5, -2.0, np.nan], [7.0])]
     assert places == [0, 1, 0, 2]
@@ -50,7 +51,7 @@ def test_packed_numbers_come_back():
     assert [len(item) for item in found] == [3, 0, 1]
 
 
-def test_page_is_one_file_that_fetches_nothing(replay):
+def test_page_is_one_file_that_fetches_nothing(replay: Any) -> None:
     text = replay.read_text()
     assert not re.search(r'(src|href)\s*=\s*["\']?(https?:)?//', text)
     assert '<link rel="stylesheet"' not in text
@@ -60,7 +61,7 @@ def test_page_is_one_file_that_fetches_nothing(replay):
     assert "Copyright (c) 2022 Leon Sorokin" in text
 
 
-def test_policy_allows_exactly_the_scripts_of_the_page(replay):
+def test_policy_allows_exactly_the_scripts_of_the_page(replay: Any) -> None:
     text = replay.read_text()
     content = re.search(r'Content-Security-Policy" content="([^"]*)"', text)[1]
     scripts = re.findall(r"<script>(.*?)</script>", text, re.S)
@@ -69,17 +70,17 @@ def test_policy_allows_exactly_the_scripts_of_the_page(replay):
     assert hashes == set(re.search(r"script-src ([^;]*)", content)[1].split())
 
 
-def test_title_is_escaped():
+def test_title_is_escaped() -> None:
     assert "<title>&lt;script&gt;&amp;&quot;</title>" in page('<script>&"', "")
 
 
-def test_no_text_of_the_scenario_stands_in_the_page(replay):
+def test_no_text_of_the_scenario_stands_in_the_page(replay: Any) -> None:
     text = replay.read_text()
     assert EVIL not in text
     assert text.count("window.evil") == text.count(html.escape(EVIL)) * EVIL.count("window.evil")
 
 
-def test_signals_in_the_page_are_those_of_the_run(replay, case4):
+def test_signals_in_the_page_are_those_of_the_run(replay: Any, case4: Any) -> None:
     recording = case4[0]
     header, arrays = data_of(replay.read_text())
     run = header["runs"][0]
@@ -99,7 +100,7 @@ def test_signals_in_the_page_are_those_of_the_run(replay, case4):
             assert error <= 1.01 * TOLERANCE * np.ptp(values) + 1e-5
 
 
-def test_sixty_seconds_stay_under_one_megabyte_whatever_happens():
+def test_sixty_seconds_stay_under_one_megabyte_whatever_happens() -> None:
     scenario = load_scenario("fault-driver-does-not-move", ["stop_time=60", "controller.limit.patience=100"])
     ran = run_scenario(scenario)
     recording = ran.recording
@@ -112,7 +113,7 @@ def test_sixty_seconds_stay_under_one_megabyte_whatever_happens():
     assert len(text.encode()) < LARGEST_PAGE
 
 
-def test_far_from_the_origin_nothing_is_rounded_away():
+def test_far_from_the_origin_nothing_is_rounded_away() -> None:
     scenario = load_scenario("guo2015-case4-far")
     ran = run_scenario(scenario)
     header, arrays = data_of(replay_page(ran.recording, summarize(ran.recording, scenario, 0.0), []))
@@ -125,7 +126,7 @@ def test_far_from_the_origin_nothing_is_rounded_away():
     assert all(abs(number) < 100.0 for corner in run["scene"]["slot"] for number in corner)
 
 
-def test_thinning_keeps_steps_and_spikes():
+def test_thinning_keeps_steps_and_spikes() -> None:
     t = np.linspace(0.0, 60.0, 6001)
     smooth = np.sin(t)
     smooth[2345] = 9.0
@@ -137,7 +138,7 @@ def test_thinning_keeps_steps_and_spikes():
     assert len(thinned.rows) <= 1000
 
 
-def test_thinning_says_when_it_cannot():
+def test_thinning_says_when_it_cannot() -> None:
     t = np.linspace(0.0, 60.0, 6001)
     noise = np.random.default_rng(1).normal(size=6001)
     thinned = thin(t, [noise], [], [], 500)
@@ -145,7 +146,7 @@ def test_thinning_says_when_it_cannot():
     assert thinned.deviation > 0.1
 
 
-def test_a_run_of_one_instant_has_a_page_and_one_of_none_is_refused():
+def test_a_run_of_one_instant_has_a_page_and_one_of_none_is_refused() -> None:
     scenario = load_scenario("guo2015-case4", ["stop_time=0.01"])
     recording = run_scenario(scenario).recording
     for rows in (1, 0):

@@ -1,6 +1,7 @@
 """What the page draws of the controller's intentions, against the controller's own geometry."""
 
 import math
+from typing import Any
 
 import numpy as np
 import pytest
@@ -17,12 +18,12 @@ from orchestrator.verdict.geometry import sample_path
 
 
 @pytest.fixture(scope="module")
-def recording():
+def recording() -> Any:
     return run_scenario(load_scenario("apa-parallel")).recording
 
 
 @pytest.mark.parametrize("direction", [1, -1])
-def test_a_sampled_move_ends_where_the_controller_says(direction):
+def test_a_sampled_move_ends_where_the_controller_says(direction: int) -> None:
     pieces = (Piece(1.5, 0.0, 0.15), Piece(2.0, 0.15, 0.15), Piece(1.0, 0.15, -0.1), Piece(0.5, 0.0, 0.0))
     start = Pose(3.0, -2.0, 0.7)
     values = {"apa.move.direction": float(direction)}
@@ -37,7 +38,7 @@ def test_a_sampled_move_ends_where_the_controller_says(direction):
 
 
 @pytest.mark.parametrize(("side", "mirror"), [(Side.RIGHT, 1.0), (Side.LEFT, -1.0)])
-def test_a_found_slot_lies_on_its_side_of_the_road(side, mirror):
+def test_a_found_slot_lies_on_its_side_of_the_road(side: Any, mirror: Any) -> None:
     heading = 0.3
     values = {"apa.slot.kind": float(Kind.PARALLEL), "apa.slot.side": float(side), "apa.slot.length": 6.0}
     values |= {"apa.slot.b_out": 0.1, "apa.slot.depth": 2.2}
@@ -49,13 +50,13 @@ def test_a_found_slot_lies_on_its_side_of_the_road(side, mirror):
     np.testing.assert_allclose(found_slot(values), expected, atol=1e-12)
 
 
-def test_no_slot_no_pose_no_path():
+def test_no_slot_no_pose_no_path() -> None:
     assert found_slot({"apa.slot.kind": 0.0}) is None
     assert wanted_pose({}) is None
     assert len(sample_path({})) == 0
 
 
-def test_plans_follow_the_run(recording):
+def test_plans_follow_the_run(recording: Any) -> None:
     arrays = Arrays()
     plans = plans_of(recording, arrays, (0.0, 0.0))
     assert "slot" not in plans[0]
@@ -68,7 +69,7 @@ def test_plans_follow_the_run(recording):
     assert len(plans) <= MOST_PLANS + 1
 
 
-def test_every_changing_mode_is_a_ribbon_once(recording):
+def test_every_changing_mode_is_a_ribbon_once(recording: Any) -> None:
     ribbons = ribbons_of([recording])
     assert ribbons[0] == "controller.phase"
     assert "controller.apa.mode" in ribbons

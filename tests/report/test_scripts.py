@@ -4,6 +4,7 @@ import shutil
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -19,7 +20,7 @@ SCRIPTS = {"replay": replay.scripts, "live": lambda: "\n".join(live.scripts())}
 
 
 @pytest.mark.parametrize("name", SCRIPTS)
-def test_the_linter_finds_nothing(name, tmp_path):
+def test_the_linter_finds_nothing(name: Any, tmp_path: Path) -> None:
     biome = shutil.which("biome") or pytest.skip("no biome here")
     shutil.copy(Path(__file__).parent / "biome.json", tmp_path)
     (tmp_path / f"{name}.js").write_text(SCRIPTS[name](), encoding="utf-8")
@@ -28,7 +29,7 @@ def test_the_linter_finds_nothing(name, tmp_path):
     assert done.returncode == 0, done.stdout + done.stderr
 
 
-def test_the_linter_would_find_a_name_that_nobody_declared(tmp_path):
+def test_the_linter_would_find_a_name_that_nobody_declared(tmp_path: Path) -> None:
     biome = shutil.which("biome") or pytest.skip("no biome here")
     shutil.copy(Path(__file__).parent / "biome.json", tmp_path)
     (tmp_path / "wrong.js").write_text("window.one = nobody;\n", encoding="utf-8")
@@ -36,7 +37,7 @@ def test_the_linter_would_find_a_name_that_nobody_declared(tmp_path):
     assert done.returncode != 0
 
 
-def checked(folder, script):
+def checked(folder: Any, script: Any) -> Any:
     """Return what the TypeScript compiler says of a script of a page."""
     node = shutil.which("node") or pytest.skip("no node here")
     if not TSC.exists():
@@ -48,12 +49,12 @@ def checked(folder, script):
 
 
 @pytest.mark.parametrize("name", SCRIPTS)
-def test_types_fit(name, tmp_path):
+def test_types_fit(name: Any, tmp_path: Path) -> None:
     assert checked(tmp_path, SCRIPTS[name]()) == ""
 
 
 @pytest.mark.parametrize("wrong", ["plots.hoover(1);", "plots.zoom(1, 2);", "moved(3, 1, 2);"])
-def test_a_wrong_name_or_type_would_be_found(wrong, tmp_path):
+def test_a_wrong_name_or_type_would_be_found(wrong: str, tmp_path: Path) -> None:
     bad = f"function bad(plots = new Plots({{}}, $('x'), bad, bad)) {{ {wrong} }}\nbad();"
     told = checked(tmp_path, f"{SCRIPTS['replay']()}\n{bad}")
     assert "error TS" in told

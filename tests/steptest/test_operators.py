@@ -2,6 +2,7 @@
 
 import math
 import warnings
+from typing import Any
 
 import numpy as np
 import pytest
@@ -14,12 +15,12 @@ from orchestrator.steptest.temporal import always, eventually, rises, until
 margins = st.lists(st.floats(-10.0, 10.0), min_size=1, max_size=12)
 
 
-def spread(values):
+def spread(values: Any) -> Any:
     return np.array(values)
 
 
 @given(margins, st.data())
-def test_always_is_the_least_margin_of_its_window(values, data):
+def test_always_is_the_least_margin_of_its_window(values: Any, data: Any) -> None:
     rows = spread(data.draw(st.lists(st.booleans(), min_size=len(values), max_size=len(values))))
     found = always(spread(values), rows)
     chosen = [value for value, is_in in zip(values, rows, strict=True) if is_in]
@@ -29,7 +30,7 @@ def test_always_is_the_least_margin_of_its_window(values, data):
 
 
 @given(margins, st.data())
-def test_eventually_is_the_best_of_each_window_and_the_worst_of_those(values, data):
+def test_eventually_is_the_best_of_each_window_and_the_worst_of_those(values: Any, data: Any) -> None:
     starts = data.draw(st.lists(st.integers(0, len(values) - 1), max_size=4))
     length = data.draw(st.integers(1, 14))
     found = eventually(spread(values), np.array(starts, dtype=np.intp), length)
@@ -38,7 +39,7 @@ def test_eventually_is_the_best_of_each_window_and_the_worst_of_those(values, da
 
 
 @given(margins, st.data())
-def test_until_is_as_signal_temporal_logic_defines_it(values, data):
+def test_until_is_as_signal_temporal_logic_defines_it(values: Any, data: Any) -> None:
     ends = data.draw(st.lists(st.floats(-10.0, 10.0), min_size=len(values), max_size=len(values)))
     start, length = data.draw(st.integers(0, len(values) - 1)), data.draw(st.integers(1, 14))
     found = until(spread(values), spread(ends), np.array([start], dtype=np.intp), length)
@@ -48,14 +49,14 @@ def test_until_is_as_signal_temporal_logic_defines_it(values, data):
 
 
 @pytest.fixture(scope="module")
-def rtamt():
+def rtamt() -> Any:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", DeprecationWarning)
         return pytest.importorskip("rtamt", exc_type=ImportError)
 
 
 @pytest.mark.parametrize("seed", range(10))
-def test_another_monitor_finds_the_same_margins(rtamt, seed):
+def test_another_monitor_finds_the_same_margins(rtamt: Any, seed: Any) -> None:
     a, b = np.random.default_rng(seed).normal(size=(2, 12)).round(3)
     for length in (1, 4, 12):
         ours = {
@@ -71,7 +72,7 @@ def test_another_monitor_finds_the_same_margins(rtamt, seed):
 T = np.arange(12)
 
 
-def monitored(rtamt, formula, a, b):
+def monitored(rtamt: Any, formula: Any, a: Any, b: Any) -> Any:
     monitor = rtamt.StlDiscreteTimeSpecification()
     for name in ("a", "b", "out"):
         monitor.declare_var(name, "float")
@@ -80,23 +81,23 @@ def monitored(rtamt, formula, a, b):
     return [row[1] for row in monitor.evaluate({"time": T.tolist(), "a": a.tolist(), "b": b.tolist()})]
 
 
-def test_not_a_number_meets_nothing():
+def test_not_a_number_meets_nothing() -> None:
     values = np.array([1.0, math.nan, 1.0])
     assert math.isnan(always(values, np.ones(3, dtype=bool)).margin)
     assert eventually(np.array([math.nan]), np.array([0]), 1).margin == -math.inf
 
 
-def test_a_condition_rises_where_it_begins_to_hold_the_start_included():
+def test_a_condition_rises_where_it_begins_to_hold_the_start_included() -> None:
     assert rises(np.array([0.0, 1.0, -1.0, 2.0, 3.0, math.nan, 0.0])).tolist() == [0, 3, 6]
 
 
-def response(of, goal=1.0, band=0.02, end=30.0, step=0.001):
+def response(of: Any, goal: Any = 1.0, band: Any = 0.02, end: Any = 30.0, step: Any = 0.001) -> Any:
     t = np.arange(0.0, end, step)
     return Response(t, of(t), goal, band)
 
 
 @pytest.mark.parametrize("scale", [1.0, -2.5])
-def test_a_first_order_lag(scale):
+def test_a_first_order_lag(scale: float) -> None:
     lag = 0.7
     found = response(lambda t: 3.0 + scale * (1.0 - np.exp(-t / lag)), 3.0 + scale)
     assert rise_time(found) == pytest.approx(lag * math.log(9.0), abs=1e-5)
@@ -106,13 +107,13 @@ def test_a_first_order_lag(scale):
 
 
 @pytest.mark.parametrize("damping", [0.2, 0.5, 0.8])
-def test_a_second_order_lag_overshoots_by_the_known_formula(damping):
+def test_a_second_order_lag_overshoots_by_the_known_formula(damping: float) -> None:
     root = math.sqrt(1.0 - damping**2)
     found = response(lambda t: 1.0 - np.exp(-damping * t) * np.sin(root * t + math.acos(damping)) / root)
     assert overshoot(found) == pytest.approx(math.exp(-math.pi * damping / root), abs=1e-5)
 
 
-def test_what_never_gets_there_takes_for_ever():
+def test_what_never_gets_there_takes_for_ever() -> None:
     found = response(lambda t: 0.5 * (1.0 - np.exp(-t)))
     assert rise_time(found) == settling_time(found) == math.inf
     assert steady_state_error(found) == pytest.approx(-0.5, abs=1e-6)

@@ -1,6 +1,7 @@
 """The pytest plugin, used by a test file of somebody else's."""
 
 from importlib.metadata import entry_points
+from typing import Any
 
 import pytest
 
@@ -11,11 +12,11 @@ PLUGIN = (*(() if INSTALLED else ("-p", "apa_cosim.pytest_plugin")), "-p", "no:c
 
 
 @pytest.fixture
-def run(pytester):
+def run(pytester: pytest.Pytester) -> Any:
     return lambda *words: pytester.runpytest_subprocess(*PLUGIN, *words)
 
 
-def test_fixtures_drive_the_system_and_each_part_alone(pytester, run):
+def test_fixtures_drive_the_system_and_each_part_alone(pytester: pytest.Pytester, run: Any) -> None:
     pytester.makepyfile(
         """
         import pytest
@@ -40,7 +41,7 @@ def test_fixtures_drive_the_system_and_each_part_alone(pytester, run):
     run().assert_outcomes(passed=4)
 
 
-def test_a_miss_says_signal_time_value_and_limit(pytester, run):
+def test_a_miss_says_signal_time_value_and_limit(pytester: pytest.Pytester, run: Any) -> None:
     pytester.makepyfile(
         """
         def test_too_slow(closed_loop):
@@ -58,7 +59,7 @@ def test_a_miss_says_signal_time_value_and_limit(pytester, run):
     )
 
 
-def test_step_tests_are_collected(pytester, run):
+def test_step_tests_are_collected(pytester: pytest.Pytester, run: Any) -> None:
     text = (
         "model: vehicle\nstop_time: 2 s\n"
         "inputs: {steering_active: true, steering_wheel_request: {step: {at: 1 s, to: 1}}}\n"
@@ -71,7 +72,7 @@ def test_step_tests_are_collected(pytester, run):
     found.stdout.fnmatch_lines(["*good PASSED*", "*bad: vehicle.steering_wheel_angle:*asked*"])
 
 
-def test_an_fmu_of_somebody_elses_takes_the_place_of_ours(pytester, run):
+def test_an_fmu_of_somebody_elses_takes_the_place_of_ours(pytester: pytest.Pytester, run: Any) -> None:
     pytester.makepyfile("def test_it(closed_loop):\n    closed_loop('guo2015-case4')\n")
     found = run("--apa-controller", "no.fmu")
     found.assert_outcomes(failed=1)

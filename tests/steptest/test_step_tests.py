@@ -2,6 +2,8 @@
 
 import math
 import xml.etree.ElementTree as ElementTree
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -31,8 +33,8 @@ expect:
 
 
 @pytest.fixture
-def write(tmp_path):
-    def write(expect, head=STEERING, name="steering.yaml"):
+def write(tmp_path: Path) -> Any:
+    def write(expect: Any, head: Any = STEERING, name: str = "steering.yaml") -> Any:
         path = tmp_path / name
         path.write_text(head + "".join(f"  - {line}\n" for line in expect), encoding="utf-8")
         return path
@@ -40,7 +42,7 @@ def write(tmp_path):
     return write
 
 
-def place(tmp_path, kind=float, unit="rad"):
+def place(tmp_path: Path, kind: Any = float, unit: str = "rad") -> Any:
     return StimulatedInput(Variable("angle", kind, Signal(unit, "angle"), 0), tmp_path / "test.yaml", "inputs.angle")
 
 
@@ -56,16 +58,16 @@ def place(tmp_path, kind=float, unit="rad"):
         ({"table": [[1, 0], [2, 4]]}, [0, 0, 0, 2, 4, 4, 4, 4, 4, 4]),
     ],
 )
-def test_shapes(tmp_path, given, values):
+def test_shapes(tmp_path: Path, given: Any, values: Any) -> None:
     np.testing.assert_allclose(stimulus(given, place(tmp_path), T), values, atol=1e-12)
 
 
-def test_truth_values_of_a_table_are_held(tmp_path):
+def test_truth_values_of_a_table_are_held(tmp_path: Path) -> None:
     found = stimulus({"table": [[0, False], [1.2, True], [3, False]]}, place(tmp_path, bool, "1"), T)
     assert found.tolist() == [0, 0, 0, 1, 1, 1, 0, 0, 0, 0]
 
 
-def test_a_column_of_a_csv_file_with_a_row_of_units(tmp_path):
+def test_a_column_of_a_csv_file_with_a_row_of_units(tmp_path: Path) -> None:
     (tmp_path / "in.csv").write_text("time,a\ns,rad\n0,0\n2,4\n")
     found = stimulus({"csv": {"file": "in.csv", "column": "a"}}, place(tmp_path), T)
     np.testing.assert_allclose(found[:6], [0, 1, 2, 3, 4, 4])
@@ -86,7 +88,7 @@ def test_a_column_of_a_csv_file_with_a_row_of_units(tmp_path):
         ("3 m", "is in 'm'"),
     ],
 )
-def test_a_wrong_shape_says_what_would_be_right(tmp_path, given, said):
+def test_a_wrong_shape_says_what_would_be_right(tmp_path: Path, given: Any, said: str) -> None:
     with pytest.raises(BadInput) as error:
         stimulus(given, place(tmp_path), T)
     assert said in str(error.value)
@@ -121,14 +123,14 @@ EXPECTATIONS = [
 
 
 @pytest.mark.parametrize(("expected", "passed", "t"), EXPECTATIONS)
-def test_expectations(write, expected, passed, t):
+def test_expectations(write: Any, expected: Any, passed: Any, t: Any) -> None:
     _, (check,) = run_step_test(load_step_test(write([expected])), "none")
     assert check.passed == passed
     if t is not None:
         assert check.t == pytest.approx(t)
 
 
-def test_the_rise_is_that_of_the_rate_limit(write):
+def test_the_rise_is_that_of_the_rate_limit(write: Any) -> None:
     expected = "{id: a, signal: steering_wheel_angle, response: {rise_time: {max: 1 s}, to: 180 deg, at: 1 s}}"
     _, (check,) = run_step_test(load_step_test(write([expected])), "none")
     assert check.value == pytest.approx(0.8 * 180.0 / 570.0, abs=1e-3)
@@ -147,13 +149,13 @@ def test_the_rise_is_that_of_the_rate_limit(write):
         ("{id: a, signal: speed, alway: {max: 1}}", "did you mean always"),
     ],
 )
-def test_a_wrong_expectation_says_what_would_be_right(write, expected, said):
+def test_a_wrong_expectation_says_what_would_be_right(write: Any, expected: str, said: str) -> None:
     with pytest.raises(BadInput) as error:
         run_step_test(load_step_test(write([expected])), "none")
     assert said in str(error.value)
 
 
-def test_what_a_run_gave_the_controller_gives_the_same_outputs(write, tmp_path):
+def test_what_a_run_gave_the_controller_gives_the_same_outputs(write: Any, tmp_path: Path) -> None:
     scenario = load_scenario("guo2015-case4", ["stop_time=6"])
     run_scenario(scenario, log=tmp_path / "run.mcap")
     head = "model: controller\nstop_time: 6 s\nreplay: run.mcap\nreference: {log: run.mcap, abs: 0, rel: 0}\n"
@@ -169,14 +171,14 @@ def test_what_a_run_gave_the_controller_gives_the_same_outputs(write, tmp_path):
     assert read_log(tmp_path / "run.mcap").signals["controller.phase"][-1] > 0
 
 
-def test_back_to_back_with_another_implementation(write):
+def test_back_to_back_with_another_implementation(write: Any) -> None:
     head = STEERING.replace("expect:", "reference: {model: vehicle, abs: 0, rel: 0}\nexpect:")
     _, checks = run_step_test(load_step_test(write(["{id: a, signal: speed, always: {max: 1}}"], head)), "native")
     assert all(check.passed for check in checks)
     assert len(checks) > len(VehicleInput._fields)
 
 
-def test_a_model_of_ones_own(write, tmp_path):
+def test_a_model_of_ones_own(write: Any, tmp_path: Path) -> None:
     (tmp_path / "lag.py").write_text(
         '''"""A lag."""
 
@@ -235,7 +237,7 @@ MODEL = Model(
     assert check.value == pytest.approx(0.4 * math.log(9.0), rel=2e-3)
 
 
-def test_scenarios_are_no_step_tests(write, tmp_path):
+def test_scenarios_are_no_step_tests(write: Any, tmp_path: Path) -> None:
     assert is_step_test(str(write(["{id: a, signal: speed, always: {max: 1}}"])))
     scenario = tmp_path / "scenario.yaml"
     scenario.write_text("base: guo2015-case4\n")
@@ -243,7 +245,7 @@ def test_scenarios_are_no_step_tests(write, tmp_path):
     assert not is_step_test("guo2015-case4")
 
 
-def test_apa_test_takes_them_beside_scenarios(write, tmp_path, capsys):
+def test_apa_test_takes_them_beside_scenarios(write: Any, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     good = "{id: at rest before, signal: steering_wheel_angle, always: {max_abs: 0.1 deg}, to: 1 s}"
     bad = "{id: too fast, signal: steering_wheel_angle, response: {rise_time: {max: 0.2 s}, to: 180 deg, at: 1 s}}"
     out = tmp_path / "out"
@@ -259,7 +261,9 @@ def test_apa_test_takes_them_beside_scenarios(write, tmp_path, capsys):
     assert "too fast" in (out / "index.html").read_text(encoding="utf-8")
 
 
-def test_a_wrong_step_test_is_bad_input_of_its_own(write, tmp_path, capsys):
+def test_a_wrong_step_test_is_bad_input_of_its_own(
+    write: Any, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     path = write(["{id: a, signal: spee, always: {max: 1}}"])
     assert main(["test", str(path), "--fmus", "none", "--out", str(tmp_path / "out")]) == 2
     assert "did you mean speed" in capsys.readouterr().out

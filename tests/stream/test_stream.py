@@ -8,7 +8,9 @@ import subprocess
 import sys
 import threading
 import time
+from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -32,19 +34,19 @@ K4 = "controller.guo2015.k4"
 class Clock:
     """A clock that goes on only when somebody sleeps, or when it is told to."""
 
-    def __init__(self):
+    def __init__(self) -> None:
         self.now = 5.0
         self.slept = []
 
-    def __call__(self):
+    def __call__(self) -> Any:
         return self.now
 
-    def sleep(self, seconds):
+    def sleep(self, seconds: Any) -> None:
         self.slept.append(seconds)
         self.now += seconds
 
 
-def test_who_is_early_waits_and_who_is_late_is_counted():
+def test_who_is_early_waits_and_who_is_late_is_counted() -> None:
     clock = Clock()
     pace = Pace(clock, clock.sleep)
     for step, work in enumerate((0.004, 0.002, 0.025, 0.0, 0.0)):
@@ -57,7 +59,7 @@ def test_who_is_early_waits_and_who_is_late_is_counted():
     assert told["at_end"] == pytest.approx(0.005)
 
 
-def test_a_run_takes_as_long_as_its_time_and_says_how_late_it_was():
+def test_a_run_takes_as_long_as_its_time_and_says_how_late_it_was() -> None:
     scenario = load_scenario("guo2015-case4", ["stop_time=0.5"])
     ran = run_scenario(scenario, realtime=Realtime())
     assert 0.5 <= ran.wall_time < 3.0
@@ -70,7 +72,7 @@ def test_a_run_takes_as_long_as_its_time_and_says_how_late_it_was():
 
 
 @contextlib.contextmanager
-def shown(scenario, files=None, **options):
+def shown(scenario: Any, files: Any = None, **options: Any) -> Iterator[Any]:
     """A run in a thread, and the address it is shown at."""
     addresses, found, interrupt = [], [], Interrupt()
     realtime = Realtime(0, addresses.append)
@@ -89,7 +91,7 @@ def shown(scenario, files=None, **options):
 
 
 @pytest.mark.parametrize("kind", ["none", "native"])
-def test_a_viewer_sees_what_the_log_has_and_changes_a_parameter(kind, tmp_path):
+def test_a_viewer_sees_what_the_log_has_and_changes_a_parameter(kind: str, tmp_path: Path) -> None:
     scenario, log = load_scenario("guo2015-case4", ["stop_time=60"]), tmp_path / "run.mcap"
     files = fmu_files("native") if kind == "native" else None
     with shown(scenario, files, kind=kind, log=log) as (address, found):
@@ -126,22 +128,22 @@ def test_a_viewer_sees_what_the_log_has_and_changes_a_parameter(kind, tmp_path):
             assert logged[topic, t_ns] == data, (topic, t_ns)
 
 
-def test_a_changed_parameter_acts_as_the_same_parameter_from_the_start():
+def test_a_changed_parameter_acts_as_the_same_parameter_from_the_start() -> None:
     """Set before the first step, a gain gives the run that has it from the start."""
     scenario = load_scenario("guo2015-case4", ["stop_time=6"])
     early = []
 
     class Asks:
-        def exchanged(self, t_ns):
+        def exchanged(self, t_ns: Any) -> None:
             pass
 
-        def closed(self, end):
+        def closed(self, end: Any) -> None:
             pass
 
     realtime = Realtime(0)
     join = realtime.join
 
-    def joined(*given):
+    def joined(*given: Any) -> None:
         join(*given)
         early.append(realtime._tuning.ask(K4, 3.0))
 
@@ -155,7 +157,7 @@ def test_a_changed_parameter_acts_as_the_same_parameter_from_the_start():
     assert (plain.signals["vehicle.pose.y"] != other.signals["vehicle.pose.y"]).any()
 
 
-def test_a_port_that_is_taken_is_said():
+def test_a_port_that_is_taken_is_said() -> None:
     scenario = load_scenario("guo2015-case4", ["stop_time=30"])
     with shown(scenario) as (address, _):
         port = int(address.rpartition(":")[2])
@@ -163,7 +165,7 @@ def test_a_port_that_is_taken_is_said():
             run_scenario(scenario, realtime=Realtime(port))
 
 
-def test_ctrl_c_ends_in_order(tmp_path):
+def test_ctrl_c_ends_in_order(tmp_path: Path) -> None:
     command = [sys.executable, "-m", "orchestrator", "run", "guo2015-case4", "--fmus", "none", "--live", "0"]
     environment = {**os.environ, "PYTHONPATH": str(Path(__file__).parents[2])}
     with subprocess.Popen(

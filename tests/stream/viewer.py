@@ -38,7 +38,7 @@ class Viewer:
         elif frame[0] == TIME:
             self.times.append(struct.unpack_from("<Q", frame, 1)[0])
 
-    def until(self, holds, seconds: float = 30.0) -> None:
+    def until(self, holds: Any, seconds: float = 30.0) -> None:
         end = time.monotonic() + seconds
         while not holds():
             assert time.monotonic() < end, "never came"

@@ -1,3 +1,5 @@
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -22,10 +24,10 @@ RUNS = {
 
 
 @pytest.fixture
-def bind():
+def bind() -> Any:
     """A function from a study as data to (scenario, design, job, all its runs as one chunk)."""
 
-    def bound(**content):
+    def bound(**content: Any) -> Any:
         study = bind_file(StudyFile(**{"name": "test", "scenario": "guo2015-case4", "runs": RUNS, **content}))
         return study.scenario, study.design, make_job(study), Chunk(0, 0, study.design.values, study.design.seeds)
 
@@ -33,10 +35,10 @@ def bind():
 
 
 @pytest.fixture
-def some():
+def some() -> Any:
     """A function from a count to a few row numbers, drawn at random."""
 
-    def chosen(count, n=8, seed=20150101):
+    def chosen(count: Any, n: Any = 8, seed: Any = 20150101) -> Any:
         return np.random.default_rng(seed).choice(count, size=min(n, count), replace=False).tolist()
 
     return chosen

@@ -1,7 +1,8 @@
 """Rows of the compiled batch against the Python master, run by run, to the last bit."""
 
 import json
-from typing import Annotated, NamedTuple
+from pathlib import Path
+from typing import Annotated, Any, NamedTuple
 
 import numpy as np
 import pytest
@@ -42,7 +43,7 @@ WINDOWED = [
 ]
 
 
-def assert_same(job, chunk, rows, number, files=None, kind="none"):
+def assert_same(job: Any, chunk: Any, rows: Any, number: Any, files: Any = None, kind: str = "none") -> None:
     scenario = chunk_scenario(job, chunk, number)
     ran = run_scenario(scenario, files, kind=kind)
     np.testing.assert_array_equal(rows[number], row_of(ran.recording, scenario, job.measures))
@@ -56,7 +57,7 @@ def assert_same(job, chunk, rows, number, files=None, kind="none"):
     assert numbers["max_speed"] == summary.max_speed
 
 
-def test_rows_equal_the_python_master(bind, some):
+def test_rows_equal_the_python_master(bind: Any, some: Any) -> None:
     _, _, job, chunk = bind()
     rows = run_batch(job, chunk)
     for number in some(len(rows), 12):
@@ -65,7 +66,7 @@ def test_rows_equal_the_python_master(bind, some):
 
 
 @pytest.mark.parametrize("kind", ["python", "native"])
-def test_rows_equal_fmu_runs(bind, some, kind):
+def test_rows_equal_fmu_runs(bind: Any, some: Any, kind: str) -> None:
     _, _, job, chunk = bind()
     rows = run_batch(job, chunk)
     files = fmu_files(kind)
@@ -73,7 +74,7 @@ def test_rows_equal_fmu_runs(bind, some, kind):
         assert_same(job, chunk, rows, number, files, kind)
 
 
-def test_rows_do_not_depend_on_their_neighbours(bind):
+def test_rows_do_not_depend_on_their_neighbours(bind: Any) -> None:
     _, _, job, chunk = bind()
     whole = run_batch(job, chunk)
     back = np.arange(len(whole))[::-1]
@@ -81,7 +82,7 @@ def test_rows_do_not_depend_on_their_neighbours(bind):
 
 
 @pytest.mark.parametrize("every", [{"controller": 5}, {"vehicle": 3}, {"vehicle": 2, "controller": 4}])
-def test_multi_rate_is_the_masters(bind, every):
+def test_multi_rate_is_the_masters(bind: Any, every: Any) -> None:
     _, _, job, chunk = bind(
         set={f"every.{name}": count for name, count in every.items()}, runs={"grid": {"step": [0.005, 0.01]}}
     )
@@ -93,12 +94,12 @@ def test_multi_rate_is_the_masters(bind, every):
 @pytest.mark.parametrize(
     "name", ["guo2015-case1", "guo2015-case5", "guo2015-case4-far", "guo2015-case4-left", "fault-no-path"]
 )
-def test_shipped_scenarios(bind, name):
+def test_shipped_scenarios(bind: Any, name: str) -> None:
     _, _, job, chunk = bind(scenario=name, runs={"grid": {}})
     assert_same(job, chunk, run_batch(job, chunk), 0)
 
 
-def test_limits_on_signals_and_numbers(bind, tmp_path, some):
+def test_limits_on_signals_and_numbers(bind: Any, tmp_path: Path, some: Any) -> None:
     (tmp_path / "a.yaml").write_text(f"base: guo2015-case4\nlimits: {LIMITS}\n")
     scenario, _, job, chunk = bind(scenario=str(tmp_path / "a.yaml"))
     assert why_not_compiled(scenario) == ""
@@ -107,7 +108,7 @@ def test_limits_on_signals_and_numbers(bind, tmp_path, some):
         assert_same(job, chunk, rows, number)
 
 
-def test_limits_with_a_window_are_judged_from_recordings(bind, tmp_path):
+def test_limits_with_a_window_are_judged_from_recordings(bind: Any, tmp_path: Path) -> None:
     (tmp_path / "a.yaml").write_text(f"base: guo2015-case4\nlimits: {WINDOWED}\n")
     scenario, _, job, chunk = bind(scenario=str(tmp_path / "a.yaml"), runs={"grid": {"controller.system": [0, 1]}})
     assert "'late' needs the whole run" in why_not_compiled(scenario)
@@ -137,7 +138,7 @@ VARIED = {
 }
 
 
-def test_faults_are_the_python_masters(bind, tmp_path, some):
+def test_faults_are_the_python_masters(bind: Any, tmp_path: Path, some: Any) -> None:
     """All kinds, of outputs and inputs, of reals, whole numbers and truths, at any time, models due at other times."""
     (tmp_path / "a.yaml").write_text(f"base: guo2015-case4\nfaults: {json.dumps(FAULTS)}\n")
     scenario, _, job, chunk = bind(scenario=str(tmp_path / "a.yaml"), runs={"monte_carlo": {"n": 200, **VARIED}})
@@ -151,12 +152,12 @@ def test_faults_are_the_python_masters(bind, tmp_path, some):
 
 
 @pytest.mark.parametrize("name", [name for name in scenario_names() if name.startswith("fault-")])
-def test_shipped_faults(bind, name):
+def test_shipped_faults(bind: Any, name: Any) -> None:
     _, _, job, chunk = bind(scenario=name, runs={"grid": {}})
     assert_same(job, chunk, run_batch(job, chunk), 0)
 
 
-def test_an_input_may_be_nan(bind, tmp_path):
+def test_an_input_may_be_nan(bind: Any, tmp_path: Path) -> None:
     fault = {"signal": "vehicle.ultrasonic[3]", "kind": "override", "value": "nan", "start": 4.0}
     (tmp_path / "a.yaml").write_text(f"base: apa-parallel\nfaults: {json.dumps([fault])}\n")
     runs = {"grid": {"faults[1].start": [4.0, 1e6]}}
@@ -166,7 +167,7 @@ def test_an_input_may_be_nan(bind, tmp_path):
     assert judge(job, truths(job, chunk), rows).reason[0] == "sensor_loss"
 
 
-def test_the_time_of_an_instant(bind):
+def test_the_time_of_an_instant(bind: Any) -> None:
     when = When("controller.phase", (3,))
     measures = [
         Measure("time", "vehicle.speed", when),
@@ -180,7 +181,7 @@ def test_the_time_of_an_instant(bind):
     assert np.isnan(rows[3, -1])
 
 
-def test_a_signal_that_does_not_exist():
+def test_a_signal_that_does_not_exist() -> None:
     with pytest.raises(KeyError, match=r"vehicle\.sped"):
         compiled_rows(MODELS, None, [Kept("last", "vehicle.sped")])
 
@@ -189,13 +190,13 @@ class Wrong(NamedTuple):
     prompt: Annotated[float, Signal("1", "an integer at its receiver")] = 0.0
 
 
-def test_connected_types_must_agree():
+def test_connected_types_must_agree() -> None:
     models = {**MODELS, "controller": MODELS["controller"]._replace(outputs=Wrong)}
     with pytest.raises(TypeError, match=r"prompt: output of controller is float, input of vehicle is int"):
         compiled_rows(models, None, [Kept("last", "vehicle.speed")])
 
 
-def test_arrays_of_another_shape_are_refused(bind):
+def test_arrays_of_another_shape_are_refused(bind: Any) -> None:
     _, _, job, chunk = bind()
     rows = compiled_rows(MODELS, None, [Kept("last", "vehicle.speed")])
     parameters, times = arrays(job, chunk)
@@ -208,7 +209,7 @@ def test_arrays_of_another_shape_are_refused(bind):
         rows(parameters, times, np.empty((192, 4)), np.empty((192, 3)))
 
 
-def test_a_study_can_vary_what_is_true_and_what_the_controller_is_told(bind):
+def test_a_study_can_vary_what_is_true_and_what_the_controller_is_told(bind: Any) -> None:
     runs = {"grid": {"target.y": [-3.056, -2.9], "slot.length": [6.0, 8.0], "controller.target.x": [-7.608, -7.4]}}
     _, _, job, chunk = bind(runs=runs)
     rows = run_batch(job, chunk)
@@ -223,7 +224,7 @@ def test_a_study_can_vary_what_is_true_and_what_the_controller_is_told(bind):
     assert len(set(verdict.numbers["final.slot_margin"].round(2).tolist())) > 1
 
 
-def test_the_scene_of_a_study_moves_the_kerb(bind, tmp_path):
+def test_the_scene_of_a_study_moves_the_kerb(bind: Any, tmp_path: Path) -> None:
     (tmp_path / "a.yaml").write_text(
         "base: guo2015-case4\nscene: {kerbs: [[-20, -4.1, 5, -4.1, 0.1]]}\nlimits: [gbt41630]\n"
     )
@@ -237,12 +238,12 @@ def test_the_scene_of_a_study_moves_the_kerb(bind, tmp_path):
     assert verdict.reason[2] == "beyond its limit: farthest tyre to the kerb"
 
 
-def test_a_key_of_what_the_scenario_does_not_have(bind):
+def test_a_key_of_what_the_scenario_does_not_have(bind: Any) -> None:
     with pytest.raises(BadInput, match="the scenario has no target"):
         bind(scenario="preview", runs={"grid": {"target.x": [1.0]}})
 
 
-def test_a_table_of_an_older_version_is_judged_by_what_the_controller_was_told(bind):
+def test_a_table_of_an_older_version_is_judged_by_what_the_controller_was_told(bind: Any) -> None:
     _, _, job, chunk = bind(runs={"grid": {}})
     data = job_to(job)
     del data["scenario"]["target"]
@@ -251,7 +252,7 @@ def test_a_table_of_an_older_version_is_judged_by_what_the_controller_was_told(b
     assert judge(old, truths(old, chunk), run_batch(old, chunk)).reason == ["all checks passed"]
 
 
-def test_what_counts_at_some_instants_only_is_as_in_the_recording(bind, some):
+def test_what_counts_at_some_instants_only_is_as_in_the_recording(bind: Any, some: Any) -> None:
     _, _, job, chunk = bind()
     parking = When("controller.phase", (2, 3))
     hows = ("last", "largest", "greatest", "smallest", "travel", "first")

@@ -5,6 +5,9 @@ import socket
 import subprocess
 import sys
 import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -22,12 +25,12 @@ runs:
 CHUNK = 25
 
 
-def started(*arguments):
+def started(*arguments: Any) -> Any:
     return subprocess.Popen([sys.executable, "-m", *arguments], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
 
 
 @pytest.fixture
-def cluster():
+def cluster() -> Iterator[Any]:
     """Address of a scheduler with two workers of one thread, and the processes."""
     with socket.socket() as free:
         free.bind(("127.0.0.1", 0))
@@ -44,7 +47,7 @@ def cluster():
         process.wait()
 
 
-def test_nothing_is_lost_when_a_worker_is_killed(cluster, tmp_path):
+def test_nothing_is_lost_when_a_worker_is_killed(cluster: Any, tmp_path: Path) -> None:
     address, workers = cluster
     study = tmp_path / "trial.yaml"
     study.write_text(STUDY)
@@ -70,7 +73,9 @@ def test_nothing_is_lost_when_a_worker_is_killed(cluster, tmp_path):
     assert tables[0] == tables[1]
 
 
-def test_a_scheduler_that_does_not_answer(tmp_path, capsys, monkeypatch):
+def test_a_scheduler_that_does_not_answer(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
     from orchestrator.sweep import dask_engine
 
     monkeypatch.setattr(dask_engine, "CONNECT", 0.3)

@@ -1,4 +1,5 @@
 import math
+from typing import Any
 
 import numpy as np
 import pytest
@@ -9,32 +10,32 @@ from orchestrator.text.errors import BadInput
 SPEED = "vehicle.driver.profile[1].speed"
 
 
-def design(bind, **runs):
+def design(bind: Any, **runs: Any) -> Any:
     return bind(runs=runs)[1]
 
 
-def column(made, key):
+def column(made: Any, key: Any) -> Any:
     return made.values[:, [field.key for field in made.fields].index(key)]
 
 
-def test_a_grid_is_every_combination_once(bind):
+def test_a_grid_is_every_combination_once(bind: Any) -> None:
     made = design(bind, grid={"controller.system": ["ntbpt", "ntbptcwpt"], SPEED: {"from": 1, "to": 2, "steps": 3}})
     assert sorted(map(tuple, made.values.tolist())) == [(s, v) for s in (0.0, 1.0) for v in (1.0, 1.5, 2.0)]
 
 
-def test_units_and_states_are_read_as_in_a_scenario(bind):
+def test_units_and_states_are_read_as_in_a_scenario(bind: Any) -> None:
     made = design(
         bind, grid={SPEED: ["3.6 km/h"], "vehicle.start.heading": ["180 deg"], "controller.system": ["ntbpt"]}
     )
     assert made.values.tolist() == [[1.0, math.pi, 1.0]]
 
 
-def test_keys_with_a_comma_share_their_values(bind):
+def test_keys_with_a_comma_share_their_values(bind: Any) -> None:
     made = design(bind, grid={"car.steering.rate_limit": [1.0, 2.0]})
     assert made.values.tolist() == [[1.0, 1.0], [2.0, 2.0]]
 
 
-def test_every_grid_point_has_the_same_samples(bind):
+def test_every_grid_point_has_the_same_samples(bind: Any) -> None:
     sampled = {"n": 7, "vehicle.start.x": {"uniform": [-1, 1]}}
     made = design(bind, grid={SPEED: [1.0, 2.0]}, monte_carlo=sampled)
     x = column(made, "vehicle.start.x").reshape(2, 7)
@@ -43,32 +44,32 @@ def test_every_grid_point_has_the_same_samples(bind):
     assert len(set(made.seeds.tolist())) == 14
 
 
-def test_latin_hypercube_has_one_sample_in_each_stratum(bind):
+def test_latin_hypercube_has_one_sample_in_each_stratum(bind: Any) -> None:
     made = design(bind, latin_hypercube={"n": 50, "vehicle.start.x": {"uniform": [-1, 1]}})
     strata = np.floor((column(made, "vehicle.start.x") + 1.0) / 2.0 * 50)
     assert sorted(strata) == list(range(50))
 
 
-def test_normal_samples_have_their_mean_and_deviation(bind):
+def test_normal_samples_have_their_mean_and_deviation(bind: Any) -> None:
     made = design(bind, latin_hypercube={"n": 2000, "vehicle.start.x": {"normal": [3.0, 0.5]}})
     x = column(made, "vehicle.start.x")
     assert abs(x.mean() - 3.0) < 0.01
     assert abs(x.std() - 0.5) < 0.01
 
 
-def test_normal_samples_stay_in_the_range_of_the_parameter(bind):
+def test_normal_samples_stay_in_the_range_of_the_parameter(bind: Any) -> None:
     made = design(bind, monte_carlo={"n": 2000, "vehicle.driver.reaction_delay": {"normal": [0.1, 0.3]}})
     delay = column(made, "vehicle.driver.reaction_delay")
     assert delay.min() >= 0.0
     assert (delay < 0.05).any()
 
 
-def test_choices_are_about_equally_frequent(bind):
+def test_choices_are_about_equally_frequent(bind: Any) -> None:
     made = design(bind, latin_hypercube={"n": 300, "vehicle.driver.obeys_stop": {"choice": [True, False, True]}})
     assert column(made, "vehicle.driver.obeys_stop").sum() == 200
 
 
-def test_both_kinds_of_samples_are_joined_side_by_side(bind):
+def test_both_kinds_of_samples_are_joined_side_by_side(bind: Any) -> None:
     made = design(
         bind,
         monte_carlo={"n": 5, "vehicle.start.x": {"uniform": [0, 1]}},
@@ -77,12 +78,12 @@ def test_both_kinds_of_samples_are_joined_side_by_side(bind):
     assert made.values.shape == (5, 2)
 
 
-def test_the_same_study_gives_the_same_design_and_another_seed_another(bind):
+def test_the_same_study_gives_the_same_design_and_another_seed_another(bind: Any) -> None:
     assert bind()[1].digest() == bind()[1].digest()
     assert bind(seed=2)[1].digest() != bind()[1].digest()
 
 
-def test_scenario_fields_and_faults_can_be_varied(bind):
+def test_scenario_fields_and_faults_can_be_varied(bind: Any) -> None:
     fault = {"signal": "vehicle.odometry", "kind": "freeze", "start": 1.0}
     scenario, made, job, chunk = bind(
         scenario="fault-pose-frozen",
@@ -112,17 +113,17 @@ def test_scenario_fields_and_faults_can_be_varied(bind):
         ({"grid": {"speed": [1.0]}}, "unknown"),
     ],
 )
-def test_a_mistake_is_one_clear_sentence(bind, runs, says):
+def test_a_mistake_is_one_clear_sentence(bind: Any, runs: Any, says: str) -> None:
     with pytest.raises(BadInput, match=says.replace("[", r"\[")):
         bind(runs=runs)
 
 
-def test_different_numbers_of_samples_are_refused():
+def test_different_numbers_of_samples_are_refused() -> None:
     samples = [{"n": count, "vehicle.start.x": {"uniform": [0, 1]}} for count in (2, 3)]
     with pytest.raises(ValueError, match="same n"):
         StudyFile(name="a", scenario="b", runs={"monte_carlo": samples[0], "latin_hypercube": samples[1]})
 
 
-def test_a_spread_has_exactly_one_distribution():
+def test_a_spread_has_exactly_one_distribution() -> None:
     with pytest.raises(ValueError, match="exactly one of uniform, normal and choice"):
         StudyFile(name="a", scenario="b", runs={"monte_carlo": {"n": 1, "x": {"uniform": [0, 1], "choice": [1]}}})

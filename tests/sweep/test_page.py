@@ -1,6 +1,7 @@
 """What a study's page and its numbers say."""
 
 from html.parser import HTMLParser
+from typing import Any
 
 import numpy as np
 import pytest
@@ -27,7 +28,7 @@ runs:
 
 
 @pytest.fixture(scope="module")
-def folder(tmp_path_factory):
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Any:
     """A finished study with its page and the replay of its worst run."""
     path = tmp_path_factory.mktemp("page")
     (path / "trial.yaml").write_text(STUDY)
@@ -37,21 +38,21 @@ def folder(tmp_path_factory):
 
 
 @pytest.fixture(scope="module")
-def table(folder):
+def table(folder: Any) -> Any:
     return Table(folder / "trial.parquet")
 
 
 class Page(HTMLParser):
-    def __init__(self, text):
+    def __init__(self, text: Any) -> None:
         super().__init__()
         self.tags = []
         self.feed(text)
 
-    def handle_starttag(self, tag, attrs):
+    def handle_starttag(self, tag: Any, attrs: Any) -> None:
         self.tags.append((tag, dict(attrs)))
 
 
-def test_the_page_needs_nothing_but_itself(folder):
+def test_the_page_needs_nothing_but_itself(folder: Any) -> None:
     text = (folder / "trial.html").read_text()
     tags = Page(text).tags
     assert "script" not in {tag for tag, _ in tags}
@@ -60,13 +61,13 @@ def test_the_page_needs_nothing_but_itself(folder):
     assert len(text) < 300_000
 
 
-def test_every_cell_of_the_map_tells_its_numbers(table):
+def test_every_cell_of_the_map_tells_its_numbers(table: Any) -> None:
     text = study_page(table)
     assert text.count('class="cell"') == 2 * 3 * 2
     assert "of 15 parked (95 %:" in text
 
 
-def test_the_worst_run_links_to_its_replay_and_every_one_has_its_command(folder, table):
+def test_the_worst_run_links_to_its_replay_and_every_one_has_its_command(folder: Any, table: Any) -> None:
     text = (folder / "trial.html").read_text()
     rows = worst(table, 12)
     assert f'href="row-{rows[0]}/report.html"' in text
@@ -75,19 +76,19 @@ def test_the_worst_run_links_to_its_replay_and_every_one_has_its_command(folder,
     assert table.row(rows[0])["limit_share"] == np.nanmax(table.column("limit_share"))
 
 
-def test_maps_count_every_run_once(table):
+def test_maps_count_every_run_once(table: Any) -> None:
     shown = maps(table)
     assert [item.title for item in shown] == ["ntbptcwpt", "ntbpt"]
     assert sum(item.runs.sum() for item in shown) == table.count
     assert sum(item.done.sum() for item in shown) == (table.column("outcome") == "parked").sum()
 
 
-def test_parameters_that_always_agree_are_shown_once(table):
+def test_parameters_that_always_agree_are_shown_once(table: Any) -> None:
     assert "controller.car.steering.rate_limit" not in varied(table)
     assert [item.name for item in influences(table)].count("vehicle.car.steering.rate_limit") == 1
 
 
-def test_an_axis_with_many_values_is_cut_into_equal_bins(table):
+def test_an_axis_with_many_values_is_cut_into_equal_bins(table: Any) -> None:
     cut = axis(table, "vehicle.driver.profile[1].speed")
     assert cut.labels == ["0.6", "1.2", "1.8"]
     np.testing.assert_allclose(cut.edges, [0.3, 0.9, 1.5, 2.1])
@@ -95,18 +96,18 @@ def test_an_axis_with_many_values_is_cut_into_equal_bins(table):
     assert axis(table, "controller.system").labels == ["ntbptcwpt", "ntbpt"]
 
 
-def test_the_picture_is_written(folder):
+def test_the_picture_is_written(folder: Any) -> None:
     assert (folder / "map.png").read_bytes()[:8] == b"\x89PNG\r\n\x1a\n"
 
 
-def test_the_confidence_interval_is_wilsons():
+def test_the_confidence_interval_is_wilsons() -> None:
     # Wilson 1927 as tabulated by Newcombe 1998, table I: 81 of 263, 15 of 148, 0 of 20, 1 of 29.
     for good, count, low, high in ((81, 263, 0.2553, 0.3662), (15, 148, 0.0624, 0.1605), (0, 20, 0.0, 0.1611)):
         np.testing.assert_allclose(wilson(good, count), (low, high), atol=5e-5)
     np.testing.assert_allclose(wilson(1, 29), (0.0061, 0.1718), atol=5e-5)
 
 
-def test_the_share_of_variance_is_the_analytic_one():
+def test_the_share_of_variance_is_the_analytic_one() -> None:
     rng = np.random.default_rng(3)
     a, b = rng.integers(0, 5, 40_000), rng.integers(0, 5, 40_000)
     values = 3.0 * a + 1.0 * b
@@ -116,19 +117,19 @@ def test_the_share_of_variance_is_the_analytic_one():
     assert variance_share(np.ones(10), np.zeros(10, dtype=np.intp)) == 0.0
 
 
-def test_a_histogram_holds_every_run(table):
+def test_a_histogram_holds_every_run(table: Any) -> None:
     values = np.append(np.linspace(0.0, 1.0, 1000), [50.0, -50.0, np.nan])
     text = histogram(values, np.ones(len(values), dtype=bool), "x", "m", "parked")
     counts = [int(part.split(" parked")[0].rsplit(" ", 1)[-1]) for part in text.split("<title>")[1:]]
     assert sum(counts) == 1002
 
 
-def test_colours_run_along_the_scale():
+def test_colours_run_along_the_scale() -> None:
     assert (colour(0.0), colour(1.0), colour(-1.0), colour(2.0)) == (SCALE[0], SCALE[-1], SCALE[0], SCALE[-1])
 
 
 @pytest.mark.parametrize("width", [1280, 390])
-def test_the_page_in_a_browser(folder, browser, width):
+def test_the_page_in_a_browser(folder: Any, browser: Any, width: int) -> None:
     page = browser.new_page(viewport={"width": width, "height": 900})
     seen, requests = [], []
     page.on("console", lambda message: seen.append(message.text))

@@ -8,6 +8,7 @@ import subprocess
 import sys
 import time
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -30,39 +31,39 @@ CHUNK = 20
 
 
 @pytest.fixture(scope="module")
-def study(tmp_path_factory):
+def study(tmp_path_factory: pytest.TempPathFactory) -> Any:
     path = tmp_path_factory.mktemp("study") / "trial.yaml"
     path.write_text(STUDY)
     return path
 
 
 @pytest.fixture(scope="module")
-def whole(study, tmp_path_factory):
+def whole(study: Any, tmp_path_factory: pytest.TempPathFactory) -> Any:
     """The table of a study that nothing happened to."""
     return sweep(study, tmp_path_factory.mktemp("whole"))
 
 
-def sweep(study, out, *more):
+def sweep(study: Any, out: Any, *more: Any) -> Any:
     assert main(["sweep", str(study), "--out", str(out), "--chunk", str(CHUNK), "--no-page", *more]) == 0
     return out / "trial.parquet"
 
 
-def begun(study, out, *more):
+def begun(study: Any, out: Any, *more: Any) -> Any:
     command = [sys.executable, "-m", "orchestrator", "sweep", str(study), "--out", str(out), "--chunk", str(CHUNK)]
     return subprocess.Popen([*command, "--no-page", *more], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
 
 
-def parts(out):
+def parts(out: Any) -> Any:
     return sorted((out / "parts").glob("*.parquet"))
 
 
-def wait_for_parts(process, out, count):
+def wait_for_parts(process: Any, out: Any, count: Any) -> None:
     while len(parts(out)) < count:
         assert process.poll() is None, process.communicate()
         time.sleep(0.005)
 
 
-def test_a_killed_study_goes_on_to_the_same_bytes(study, whole, tmp_path):
+def test_a_killed_study_goes_on_to_the_same_bytes(study: Any, whole: Any, tmp_path: Path) -> None:
     process = begun(study, tmp_path, "--workers", "1")
     wait_for_parts(process, tmp_path, 3)
     os.kill(process.pid, signal.SIGKILL)
@@ -78,7 +79,7 @@ def test_a_killed_study_goes_on_to_the_same_bytes(study, whole, tmp_path):
     assert not (tmp_path / "parts").exists()
 
 
-def test_an_interrupted_study_keeps_what_is_done(study, whole, tmp_path):
+def test_an_interrupted_study_keeps_what_is_done(study: Any, whole: Any, tmp_path: Path) -> None:
     process = begun(study, tmp_path, "--workers", "1")
     wait_for_parts(process, tmp_path, 2)
     process.send_signal(signal.SIGINT)
@@ -89,7 +90,9 @@ def test_an_interrupted_study_keeps_what_is_done(study, whole, tmp_path):
     assert sweep(study, tmp_path, "--resume").read_bytes() == whole.read_bytes()
 
 
-def test_an_unfinished_study_is_not_overwritten_unasked(study, tmp_path, capsys):
+def test_an_unfinished_study_is_not_overwritten_unasked(
+    study: Any, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     (tmp_path / "parts").mkdir()
     assert main(["sweep", str(study), "--out", str(tmp_path), "--no-page"]) == 0
     process = begun(study, tmp_path, "--workers", "1")
@@ -105,7 +108,7 @@ def test_an_unfinished_study_is_not_overwritten_unasked(study, tmp_path, capsys)
     sweep(study, tmp_path, "--restart")
 
 
-def test_a_study_may_be_finished_by_another_engine(study, tmp_path):
+def test_a_study_may_be_finished_by_another_engine(study: Any, tmp_path: Path) -> None:
     small = tmp_path / "trial.yaml"
     small.write_text(study.read_text().replace("n: 600", "n: 6"))
     common = ["sweep", str(small), "--no-page", "--chunk", "4", "--out"]
@@ -115,7 +118,7 @@ def test_a_study_may_be_finished_by_another_engine(study, tmp_path):
     assert tables[0] == tables[1]
 
 
-def test_rows_come_in_order_with_units_and_study(whole):
+def test_rows_come_in_order_with_units_and_study(whole: Any) -> None:
     table = Table(whole)
     assert table.count == COUNT
     assert table.column("row").tolist() == list(range(COUNT))
@@ -126,7 +129,9 @@ def test_rows_come_in_order_with_units_and_study(whole):
     assert set(table.column("outcome")) >= {"parked", "failed"}
 
 
-def test_any_row_can_be_replayed_with_the_same_bits(whole, some, tmp_path, capsys):
+def test_any_row_can_be_replayed_with_the_same_bits(
+    whole: Any, some: Any, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     for number in some(COUNT, 4, seed=12):
         out = tmp_path / str(number)
         code = main(["replay", str(whole), "--row", str(number), "--out", str(out), "--no-figure"])
@@ -135,12 +140,14 @@ def test_any_row_can_be_replayed_with_the_same_bits(whole, some, tmp_path, capsy
         assert (out / "run.mcap").stat().st_size > 10_000
 
 
-def test_a_row_can_be_replayed_on_fmus(whole, tmp_path, capsys):
+def test_a_row_can_be_replayed_on_fmus(whole: Any, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     main(["replay", str(whole), "--row", "700", "--out", str(tmp_path), "--no-figure", "--fmus", "python"])
     assert "same bits as in the table" in capsys.readouterr().out
 
 
-def test_a_replay_says_if_the_bits_differ(whole, tmp_path, capsys, monkeypatch):
+def test_a_replay_says_if_the_bits_differ(
+    whole: Any, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
     original = Table.row
     monkeypatch.setattr(Table, "row", lambda self, number: {**original(self, number), "max_speed": 1e-3})
     assert main(["replay", str(whole), "--row", "3", "--out", str(tmp_path), "--no-figure"]) == 2
@@ -148,13 +155,13 @@ def test_a_replay_says_if_the_bits_differ(whole, tmp_path, capsys, monkeypatch):
 
 
 @pytest.mark.parametrize("row", ["-1", str(COUNT)])
-def test_a_row_that_is_not_there(whole, row, capsys):
+def test_a_row_that_is_not_there(whole: Any, row: Any, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["replay", str(whole), "--row", row]) == 2
     assert f"expected 0 to {COUNT - 1}" in capsys.readouterr().err
 
 
-def test_no_bit_of_a_table_can_be_changed_and_believed(whole, tmp_path):
-    def content(path):
+def test_no_bit_of_a_table_can_be_changed_and_believed(whole: Any, tmp_path: Path) -> None:
+    def content(path: Any) -> Any:
         table = Table(path)
         notes = [(name, table.note(name)) for name in table.names()]
         return str((table.about, notes, [table.column(name).tolist() for name in table.names()]))
@@ -178,13 +185,13 @@ def test_no_bit_of_a_table_can_be_changed_and_believed(whole, tmp_path):
             Table(odd)
 
 
-def test_what_is_no_table(tmp_path, capsys):
+def test_what_is_no_table(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     Path(tmp_path / "a.parquet").write_text("no")
     assert main(["replay", str(tmp_path / "a.parquet"), "--row", "0"]) == 2
     assert "cannot be read as a table" in capsys.readouterr().err
 
 
-def test_set_and_json(study, tmp_path, capsys):
+def test_set_and_json(study: Any, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     arguments = ["sweep", str(study), "--out", str(tmp_path), "--no-page", "--set", "vehicle.start.x=1 cm", "--json"]
     assert main(arguments) == 0
     told = json.loads(capsys.readouterr().out)

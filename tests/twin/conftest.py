@@ -1,3 +1,5 @@
+from typing import Any
+
 import pytest
 
 from fmus.native import fmu as native_fmu
@@ -14,7 +16,7 @@ BUILD = {
 
 
 @pytest.fixture(scope="session")
-def fmus(tmp_path_factory):
+def fmus(tmp_path_factory: pytest.TempPathFactory) -> Any:
     """Kind -> slave name -> path of its FMU."""
     folder = tmp_path_factory.mktemp("fmus")
     return {

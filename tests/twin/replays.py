@@ -3,6 +3,7 @@
 import sys
 from ctypes import c_size_t, c_uint32, c_void_p
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -23,7 +24,7 @@ FUNCTIONS = {
 """Type in FMI 3.0 -> name of its functions, type of an element."""
 
 
-def played(target, scenario, recording, name):
+def played(target: Any, scenario: Any, recording: Any, name: Any) -> Any:
     """Return the outputs of model ``name`` at each exchange of ``recording``, played its inputs by ``target``."""
     model = MODELS[name]
     inputs, outputs = ([f"{name}.{item.name}" for item in variables(cls)] for cls in (model.inputs, model.outputs))
@@ -37,10 +38,10 @@ def played(target, scenario, recording, name):
 class CLibrary:
     """The C of a model, without FMI."""
 
-    def __init__(self, model):
+    def __init__(self, model: Any) -> None:
         self.library, self.count = load_model(model), len(variables(model.outputs))
 
-    def __call__(self, params, given, step_ns):
+    def __call__(self, params: Any, given: Any, step_ns: Any) -> Any:
         memory, rows = np.zeros(memory_size(self.library), dtype=np.uint8), np.empty((len(given), self.count))
         self.library.model_start(memory.ctypes.data, params.ctypes.data, rows.ctypes.data)
         at, y = given.ctypes.data, rows.ctypes.data
@@ -53,7 +54,7 @@ class CLibrary:
 class Block:
     """The variables of one FMI 3.0 type among the parameters, inputs or outputs."""
 
-    def __init__(self, dll, verb, kind, arrays, places):
+    def __init__(self, dll: Any, verb: Any, kind: Any, arrays: Any, places: Any) -> None:
         name, self.dtype = FUNCTIONS[kind]
         chosen = [item for item in arrays if item.fmi_type == kind and item.first.name in places]
         self.places = [places[element.name] for item in chosen for element in item.elements]
@@ -61,11 +62,11 @@ class Block:
         self.function = getattr(dll, f"fmi3{verb}{name}")
         self.function.argtypes = [c_void_p, c_void_p, c_size_t, c_void_p, c_size_t]
 
-    def rows(self, count):
+    def rows(self, count: Any) -> Any:
         """Return room for the values of ``count`` exchanges."""
         return np.empty((count, len(self.places)), dtype=self.dtype)
 
-    def call(self, component, rows, k):
+    def call(self, component: Any, rows: Any, k: Any) -> Any:
         """Return the status of the call that hands over, or fetches, row ``k``."""
         at = rows.ctypes.data + k * rows.strides[0]
         return self.function(component, self.references, len(self.references), at, len(self.places))
@@ -74,11 +75,11 @@ class Block:
 class Fmi3:
     """An FMI 3.0 FMU: a call for each type of variable."""
 
-    def __init__(self, model, path, folder):
+    def __init__(self, model: Any, path: Any, folder: Any) -> None:
         self.library = Library3(path, folder)
         arrays = fmi_arrays(model)
 
-        def blocks(verb, cls):
+        def blocks(verb: Any, cls) -> Any:
             places = {item.name: place for place, item in enumerate(variables(cls))}
             found = [Block(self.library.dll, verb, kind, arrays, places) for kind in FUNCTIONS]
             assert sorted(place for block in found for place in block.places) == list(range(len(places)))
@@ -87,7 +88,7 @@ class Fmi3:
         self.params, self.inputs = blocks("Set", model.params), blocks("Set", model.inputs)
         self.outputs = blocks("Get", model.outputs)
 
-    def __call__(self, params, given, step_ns):
+    def __call__(self, params: Any, given: Any, step_ns: Any) -> Any:
         component = self.library.instantiate()
         for block in self.params:
             assert block.call(component, np.array([params[block.places]], block.dtype), 0) == OK, self.library.messages

@@ -1,6 +1,7 @@
 """The compiled master is the Python master, block by block: recordings, endings, errors, multi-rate, threads."""
 
 import threading
+from typing import Any
 
 import pytest
 from test_same_bits import differing
@@ -16,19 +17,19 @@ from orchestrator.text.errors import RunError
 NAME = "guo2015-case4-105"
 
 
-def both(files, *changes):
+def both(files: Any, *changes: Any) -> Any:
     """Return the same run by the Python master and by the compiled one."""
     scenario = load_scenario(NAME, list(changes))
     return run_scenario(scenario, files, kind="python"), run_scenario(scenario, files, kind="native")
 
 
 @pytest.fixture
-def loops(monkeypatch):
+def loops(monkeypatch: pytest.MonkeyPatch) -> Any:
     """The compiled calls made, as numbers of rows."""
     calls = []
     advance = compiled_master._Plan.advance
 
-    def counted(self, first):
+    def counted(self, first: Any) -> Any:
         calls.append(advance(self, first))
         return calls[-1]
 
@@ -37,7 +38,7 @@ def loops(monkeypatch):
 
 
 @pytest.mark.parametrize("kind", ["native", "python"])
-def test_whole_run(fmus, loops, kind):
+def test_whole_run(fmus: Any, loops: Any, kind: str) -> None:
     expected, found = both(fmus[kind], "stop_time=12")
     assert found.end == expected.end
     assert differing(found.recording, expected.recording) == {}
@@ -45,43 +46,43 @@ def test_whole_run(fmus, loops, kind):
     assert set(loops[:-1]) == {compiled_master.BLOCK}
 
 
-def test_an_ending_in_mid_block(fmus, loops):
+def test_an_ending_in_mid_block(fmus: Any, loops: Any) -> None:
     expected, found = both(fmus["native"])
     assert found.end == expected.end
     assert found.end.reason == "standstill"
     assert len(found.recording.t_ns) == len(expected.recording.t_ns) < sum(loops)
 
 
-def test_multi_rate(fmus, loops):
+def test_multi_rate(fmus: Any, loops: Any) -> None:
     expected, found = both(fmus["native"], "stop_time=12", "every.controller=3")
     assert differing(found.recording, expected.recording) == {}
     assert loops
 
 
-def test_faults_take_the_python_loop(fmus, loops):
+def test_faults_take_the_python_loop(fmus: Any, loops: Any) -> None:
     scenario = load_scenario("fault-pose-frozen", ["stop_time=3"])
     assert run_scenario(scenario, fmus["native"], kind="native").end.t_ns > 0
     assert loops == []
 
 
-def slaves(files, log):
+def slaves(files: Any, log: Any) -> Any:
     return [FmuSlave(name, path, {}, log) for name, path in files.items()]
 
 
 class Seen:
     """Observer that counts."""
 
-    def __init__(self):
+    def __init__(self) -> None:
         self.times = []
 
-    def exchanged(self, t_ns):
+    def exchanged(self, t_ns: Any) -> None:
         self.times.append(t_ns)
 
-    def closed(self, end):
+    def closed(self, end: Any) -> None:
         self.end = end
 
 
-def drive(make, files, after=None):
+def drive(make: Any, files: Any, after: Any = None) -> Any:
     """Run 3 s with ``make``'s master; ``after`` may break something once time is zero. Return times, error, log."""
     log = []
     master = make(slaves(files, lambda *words: log.append(words)), 10_000_000, 3_000_000_000)
@@ -100,23 +101,23 @@ def drive(make, files, after=None):
     return seen.times, error, log
 
 
-def break_vehicle(master):
+def break_vehicle(master: Any) -> None:
     """Bring the vehicle 1.5 s ahead of the master's clock."""
     master.slaves[0].step(0, 1_500_000_000)
 
 
-def test_a_refused_step_ends_the_run_with_the_fmus_words(fmus):
+def test_a_refused_step_ends_the_run_with_the_fmus_words(fmus: Any) -> None:
     expected, found = drive(Master, fmus["native"], break_vehicle), drive(CompiledMaster, fmus["native"], break_vehicle)
     assert found == expected
     assert found[0] == [0]
     assert "vehicle failed at 0 s: fmi2DoStep: called at 0.0" in found[1]
 
 
-def test_runs_on_several_threads_at_once(fmus):
+def test_runs_on_several_threads_at_once(fmus: Any) -> None:
     expected = run_scenario(load_scenario(NAME, ["stop_time=12"]), fmus["native"], kind="native").recording
     found = {}
 
-    def job(number):
+    def job(number: Any) -> None:
         scenario = load_scenario(NAME, ["stop_time=12"])
         found[number] = run_scenario(scenario, fmus["native"], kind="native").recording
 
@@ -129,8 +130,8 @@ def test_runs_on_several_threads_at_once(fmus):
     assert all(differing(recording, expected) == {} for recording in found.values())
 
 
-def test_without_a_compiler_the_python_loop_does_it(fmus, monkeypatch, loops):
-    def absent():
+def test_without_a_compiler_the_python_loop_does_it(fmus: Any, monkeypatch: pytest.MonkeyPatch, loops: Any) -> None:
+    def absent() -> None:
         raise RuntimeError("no compiler")
 
     monkeypatch.setattr("fmus.native.libraries.master_library", absent)

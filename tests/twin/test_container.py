@@ -4,6 +4,7 @@ import subprocess
 import sys
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 import fmpy
 import numpy as np
@@ -42,7 +43,7 @@ ODD = (3_000_000, 7_000_000, 10_000_000, 17_000_000, 1, 22_999_999, 250_000_000)
 
 
 @cache
-def pair(step_ns, controller=MODELS["controller"]):
+def pair(step_ns: Any, controller: Any = MODELS["controller"]) -> Any:
     """Both models with all they have as one, and its library: what every scenario of this step can be played to."""
     parts = MODELS | {"controller": controller}
     model = assembled("Pair", "vehicle and controller", sys.modules[__name__], parts, step_ns)
@@ -50,23 +51,23 @@ def pair(step_ns, controller=MODELS["controller"]):
 
 
 @pytest.fixture(scope="module")
-def recording(fmus):
+def recording(fmus: Any) -> Any:
     return run_scenario(CASE, fmus["native"], kind="native").recording
 
 
 @pytest.fixture(scope="module")
-def containers(tmp_path_factory):
+def containers(tmp_path_factory: pytest.TempPathFactory) -> Any:
     """Version of FMI -> the system of CASE as one FMU."""
     folder = tmp_path_factory.mktemp("containers")
     return {fmi: native_fmu.build(one_model(CASE), folder / str(fmi), [this_platform()], fmi=fmi) for fmi in (2, 3)}
 
 
-def names(cls):
+def names(cls) -> Any:
     return [item.name for item in variables(cls)]
 
 
 @pytest.mark.parametrize("name", SCENARIOS)
-def test_it_gives_the_bits_of_the_pair_under_the_master(fmus, name):
+def test_it_gives_the_bits_of_the_pair_under_the_master(fmus: Any, name: Any) -> None:
     scenario = load_scenario(name, [])
     model, library = pair(scenario.step_ns, models_for(scenario.controller)["controller"])
     expected = run_scenario(scenario, fmus["native"], kind="native").recording
@@ -79,7 +80,7 @@ def test_it_gives_the_bits_of_the_pair_under_the_master(fmus, name):
     assert [key for key, values in found.items() if not same(values, expected.signals[key])] == []
 
 
-def test_the_container_of_fmi_2_gives_them(containers, recording):
+def test_the_container_of_fmi_2_gives_them(containers: Any, recording: Any) -> None:
     model = one_model(CASE)
     order = [item.name for item in variables(model.outputs) if model.shows(item.name)]
     with Host(containers[2]) as host:
@@ -94,7 +95,7 @@ def test_the_container_of_fmi_2_gives_them(containers, recording):
     assert [key for key, values in found.items() if not same(values, recording.signals[key])] == []
 
 
-def test_the_container_of_fmi_3_gives_them(containers, recording, tmp_path):
+def test_the_container_of_fmi_3_gives_them(containers: Any, recording: Any, tmp_path: Path) -> None:
     model = one_model(CASE)
     params = np.array(flatten(model.first_params()), dtype=float)
     inputs = np.zeros((len(recording.t_ns), len(variables(model.inputs))))
@@ -103,7 +104,7 @@ def test_the_container_of_fmi_3_gives_them(containers, recording, tmp_path):
     assert [key for key, values in found.items() if not same(values, recording.signals[key])] == []
 
 
-def test_its_python_gives_the_bits_of_its_c_at_steps_of_any_length():
+def test_its_python_gives_the_bits_of_its_c_at_steps_of_any_length() -> None:
     """Steps within, on and across the exchanges."""
     model, played = pair(STEP)
     params = with_values(model.params, {f"vehicle.{key}": value for key, value in CASE.given("vehicle").items()})
@@ -120,7 +121,7 @@ def test_its_python_gives_the_bits_of_its_c_at_steps_of_any_length():
     assert state.to_exchange_ns == STEP - sum(ODD) % STEP
 
 
-def test_a_state_saved_between_two_exchanges_continues_to_the_same_bits(containers):
+def test_a_state_saved_between_two_exchanges_continues_to_the_same_bits(containers: Any) -> None:
     with Host(containers[2]) as host, Host(containers[2]) as other:
         host.initialize()
         for k in range(100):
@@ -136,14 +137,16 @@ def test_a_state_saved_between_two_exchanges_continues_to_the_same_bits(containe
 
 
 @pytest.mark.parametrize("fmi", [2, 3])
-def test_checkers_find_nothing(containers, fmi):
+def test_checkers_find_nothing(containers: Any, fmi: int) -> None:
     assert validate_fmu(str(containers[fmi])) == []
     command = [Path(sys.executable).parent / "fmutool", "-input", containers[fmi], "-check"]
     done = subprocess.run(command, capture_output=True, text=True, check=True)
     assert "ERROR" not in done.stdout + done.stderr
 
 
-def test_it_has_units_licence_parameters_and_its_own_reference_result(containers, recording, tmp_path):
+def test_it_has_units_licence_parameters_and_its_own_reference_result(
+    containers: Any, recording: Any, tmp_path: Path
+) -> None:
     description = fmpy.read_model_description(str(containers[2]))
     known = {v.name: v for v in description.modelVariables}
     assert description.license == "MIT"
@@ -167,14 +170,14 @@ def test_it_has_units_licence_parameters_and_its_own_reference_result(containers
     assert same(rows["vehicle.pose.x"][: len(expected)], expected)
 
 
-def test_initial_dependencies_are_those_of_the_parts():
+def test_initial_dependencies_are_those_of_the_parts() -> None:
     model = one_model(CASE)
     found, of_vehicle = initial_dependencies(model), initial_dependencies(VEHICLE)
     assert found["vehicle.pose.x"] == [f"vehicle.{name}" for name in of_vehicle["pose.x"]] != []
     assert found.keys() == {item.name for item in shown_variables(model) if item.initial == "calculated"}
 
 
-def test_a_parameter_changes_what_it_changes_in_the_pair(containers):
+def test_a_parameter_changes_what_it_changes_in_the_pair(containers: Any) -> None:
     with Host(containers[2]) as host, Host(containers[2]) as other:
         host.initialize()
         other.initialize(**{"vehicle.driver.profile[1].speed": 0.3})
@@ -186,7 +189,7 @@ def test_a_parameter_changes_what_it_changes_in_the_pair(containers):
 # What is chosen
 
 
-def test_inputs_parameters_and_outputs_are_chosen_by_patterns():
+def test_inputs_parameters_and_outputs_are_chosen_by_patterns() -> None:
     model = one_model(CASE, ["vehicle.driver.*"], ["vehicle.prompt", "controller.driver_takeover"], ["*.pose.*"])
     ports = {}
     for item in shown_variables(model):
@@ -199,7 +202,7 @@ def test_inputs_parameters_and_outputs_are_chosen_by_patterns():
         one_model(CASE, None, ["vehicle.promt"], None)
 
 
-def test_an_input_left_open_is_what_the_tool_says(tmp_path):
+def test_an_input_left_open_is_what_the_tool_says(tmp_path: Path) -> None:
     out = tmp_path / "open.fmu"
     assert main(["export", "container", CASE.name, "--input", "vehicle.prompt", "--out", str(out)]) == 0
     assert validate_fmu(str(out)) == []

@@ -6,6 +6,7 @@ import sys
 import zipfile
 from pathlib import Path
 from types import SimpleNamespace
+from typing import Any
 
 import fmpy
 import numpy as np
@@ -34,41 +35,41 @@ TOLERANCE = 1e-9
 
 
 @pytest.fixture(scope="module")
-def ours(fmus):
+def ours(fmus: Any) -> Any:
     """(end time [s], steps, pose there) of our master."""
     recording = run_scenario(SCENARIO, fmus["native"], kind="native").recording
     return recording.t[-1], len(recording.t_ns) - 1, [recording.signals[f"vehicle.{name}"][-1] for name in POSE]
 
 
 @pytest.fixture(scope="module", params=KINDS)
-def kind(request):
+def kind(request: pytest.FixtureRequest) -> Any:
     return request.param
 
 
 @pytest.fixture(scope="module")
-def system(kind, tmp_path_factory):
+def system(kind: Any, tmp_path_factory: pytest.TempPathFactory) -> Any:
     return system_of(SCENARIO, tmp_path_factory.mktemp("fmus_of_a_scenario"), kind)
 
 
 @pytest.fixture(scope="module")
-def ssp(system, tmp_path_factory):
+def ssp(system: Any, tmp_path_factory: pytest.TempPathFactory) -> Any:
     return write_ssp(system, tmp_path_factory.mktemp("ssp") / "case4.ssp")
 
 
 @pytest.fixture(scope="module")
-def container(system, tmp_path_factory):
+def container(system: Any, tmp_path_factory: pytest.TempPathFactory) -> Any:
     return write_container(system, tmp_path_factory.mktemp("container"))
 
 
-def references(path):
+def references(path: Any) -> Any:
     return {v.name: v.valueReference for v in fmpy.read_model_description(str(path)).modelVariables}
 
 
-def test_a_plain_loop_over_fmpy(system, ours, tmp_path):
+def test_a_plain_loop_over_fmpy(system: Any, ours: Any, tmp_path: Path) -> None:
     parts = {part.name: load(part, tmp_path / part.name) for part in system.parts}
     links = [(parts[a.name], parts[b.name], name) for a, b, name in system.connections()]
 
-    def exchange():
+    def exchange() -> None:
         values = [(receiver, name, get(sender, name)) for sender, receiver, name in links]
         for receiver, name, value in values:
             set_value(receiver, name, value)
@@ -86,7 +87,7 @@ def test_a_plain_loop_over_fmpy(system, ours, tmp_path):
         part.fmu.freeInstance()
 
 
-def load(part, folder):
+def load(part: Any, folder: Any) -> Any:
     fmpy.extract(str(part.fmu), str(folder))
     description = fmpy.read_model_description(str(folder))
     fmu = FMU2Slave(
@@ -99,17 +100,17 @@ def load(part, folder):
     return loaded
 
 
-def get(part, name):
+def get(part: Any, name: Any) -> Any:
     variable = part.variables[name]
     return getattr(part.fmu, f"get{variable.type}")([variable.valueReference])[0]
 
 
-def set_value(part, name, value):
+def set_value(part: Any, name: Any, value: Any) -> None:
     variable = part.variables[name]
     getattr(part.fmu, f"set{variable.type}")([variable.valueReference], [value])
 
 
-def test_libcosim_reads_the_ssp(system, ssp, ours):
+def test_libcosim_reads_the_ssp(system: Any, ssp: Any, ours: Any) -> None:
     log_output_level(CosimLogLevel.FATAL)
     execution = CosimExecution.from_ssp_file(ssp_path=str(ssp))
     observer = CosimObserver.create_last_value()
@@ -122,7 +123,7 @@ def test_libcosim_reads_the_ssp(system, ssp, ours):
 
 
 @pytest.mark.parametrize("told", [{"parameter_set": "scenario"}, {}], ids=["told the set", "told nothing"])
-def test_ecos_reads_the_ssp(ssp, ours, told):
+def test_ecos_reads_the_ssp(ssp: Any, ours: Any, told: Any) -> None:
     """Where it is installed: it needs oneTBB besides its package. Not told the set it drives the same scenario."""
     try:
         from ecospy import EcosSimulation
@@ -135,7 +136,7 @@ def test_ecos_reads_the_ssp(ssp, ours, told):
     assert found == pytest.approx(ours[2], abs=TOLERANCE)
 
 
-def test_fmpy_simulates_the_container_of_fmucontainer(container, ours, tmp_path):
+def test_fmpy_simulates_the_container_of_fmucontainer(container: Any, ours: Any, tmp_path: Path) -> None:
     table = tmp_path / "result.csv"
     command = [Path(sys.executable).parent / "fmpy", "simulate", container, "--stop-time", repr(float(ours[0]))]
     subprocess.run([*command, "--output-interval", "0.01", "--output-file", table], check=True, capture_output=True)
@@ -145,28 +146,28 @@ def test_fmpy_simulates_the_container_of_fmucontainer(container, ours, tmp_path)
     assert [float(last[f"vehicle.{name}"]) for name in POSE] == pytest.approx(ours[2], abs=TOLERANCE)
 
 
-def test_fmpy_simulates_the_ssp(ssp, ours):
+def test_fmpy_simulates_the_ssp(ssp: Any, ours: Any) -> None:
     """FMPy reads no parameter bindings: the FMUs start as the scenario does. Its last rows lie behind the stop time."""
     result = simulate_ssp(str(ssp), stop_time=ours[0], step_size=SCENARIO.step)
     found = [result[f"vehicle.{name}"][ours[1] - 1] for name in POSE]
     assert found == pytest.approx(ours[2], abs=TOLERANCE)
 
 
-def test_fmpy_shows_the_outputs_of_the_system_itself(system, ours, tmp_path):
+def test_fmpy_shows_the_outputs_of_the_system_itself(system: Any, ours: Any, tmp_path: Path) -> None:
     path = write_ssp(system, tmp_path / "with_outputs.ssp", with_outputs=True)
     result = simulate_ssp(str(path), stop_time=ours[0], step_size=SCENARIO.step)
     assert set(result.dtype.names) >= {name for _, _, name in system.outputs()} > {"pose.x", "phase"}
     assert [result[name][ours[1] - 1] for name in POSE] == pytest.approx(ours[2], abs=TOLERANCE)
 
 
-def test_apa_run_reads_the_ssp(ssp, ours, tmp_path):
+def test_apa_run_reads_the_ssp(ssp: Any, ours: Any, tmp_path: Path) -> None:
     assert main(["run", str(ssp), "--out", str(tmp_path / "run"), "--no-page", "--quiet"]) == 0
     log = read_log(tmp_path / "run" / "run.mcap")
     assert [log.signals[f"vehicle.{name}"][ours[1]] for name in POSE] == pytest.approx(ours[2], abs=TOLERANCE)
 
 
 @pytest.mark.parametrize("with_outputs", [False, True])
-def test_the_ssp_is_valid_and_the_same_bytes_each_time(system, tmp_path, with_outputs):
+def test_the_ssp_is_valid_and_the_same_bytes_each_time(system: Any, tmp_path: Path, with_outputs: bool) -> None:
     one, other = (write_ssp(system, tmp_path / name, with_outputs) for name in ("one.ssp", "other.ssp"))
     assert one.read_bytes() == other.read_bytes()
     structure = read_ssd(str(one))  # against the schema
@@ -182,7 +183,7 @@ def test_the_ssp_is_valid_and_the_same_bytes_each_time(system, tmp_path, with_ou
         assert len(part.of("parameter")) > 40
 
 
-def test_the_ssp_says_what_other_tools_read(ssp, system):
+def test_the_ssp_says_what_other_tools_read(ssp: Any, system: Any) -> None:
     with zipfile.ZipFile(ssp) as archive:
         text = archive.read("SystemStructure.ssd").decode()
         sets = {part.name: archive.read(f"resources/{part.name}.ssv").decode() for part in system.parts}
@@ -198,7 +199,7 @@ def test_the_ssp_says_what_other_tools_read(ssp, system):
         assert told == {variable.name: as_text(value) for variable, value in part.settings()}
 
 
-def test_an_fmu_in_the_ssp_starts_with_what_the_scenario_sets(system):
+def test_an_fmu_in_the_ssp_starts_with_what_the_scenario_sets(system: Any) -> None:
     for part in system.parts:
         starts = {v.name: v.start for v in fmpy.read_model_description(str(part.fmu)).modelVariables}
         for variable, value in part.settings():
@@ -207,13 +208,13 @@ def test_an_fmu_in_the_ssp_starts_with_what_the_scenario_sets(system):
 
 
 @pytest.mark.parametrize("name", ["fault-pose-frozen"])
-def test_what_a_system_file_cannot_say_is_refused(name):
+def test_what_a_system_file_cannot_say_is_refused(name: str) -> None:
     with pytest.raises(BadInput, match="faults live in apa's own master"):
         parts_of(load_scenario(name, []))
     with pytest.raises(BadInput, match="one communication step for all"):
         parts_of(load_scenario("guo2015-case4", ["every.controller=2"]))
 
 
-def test_the_reference_is_a_parked_car(ours):
+def test_the_reference_is_a_parked_car(ours: Any) -> None:
     assert ours[1] > 1000
     assert np.isfinite(ours[2]).all()

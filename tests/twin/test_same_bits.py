@@ -4,6 +4,8 @@ All signals at all exchanges. FMI 3.0 and the C library are played the inputs th
 all measures and the last value of each output.
 """
 
+from typing import Any
+
 import numpy as np
 import pytest
 from replays import CLibrary, Fmi3, played
@@ -31,7 +33,7 @@ OUTPUTS = [f"{name}.{item.name}" for name, model in MODELS.items() for item in v
 KEPT = [*MEASURES, *(Measure("last", signal) for signal in OUTPUTS)]
 
 
-def differing(one, other):
+def differing(one: Any, other: Any) -> Any:
     """Return the signals whose bits differ, with the first row in which they do."""
     assert one.signals.keys() == other.signals.keys()
     assert np.array_equal(one.t_ns, other.t_ns)
@@ -44,18 +46,18 @@ def differing(one, other):
     return found
 
 
-def unlike(signals, recording):
+def unlike(signals: Any, recording: Any) -> Any:
     """Return those of ``signals`` whose bits are not the recorded ones; a NaN is a NaN."""
     return [name for name, values in signals.items() if not same(values, recording.signals[name])]
 
 
-def same(one, other):
+def same(one: Any, other: Any) -> Any:
     bits = np.ascontiguousarray(one).view(np.int64) == np.ascontiguousarray(other).view(np.int64)
     return bool((bits | (np.isnan(one) & np.isnan(other))).all())
 
 
 @pytest.fixture(scope="module")
-def targets(fmus, tmp_path_factory):
+def targets(fmus: Any, tmp_path_factory: pytest.TempPathFactory) -> Any:
     """Target -> model -> what plays recorded inputs to it."""
     folder = tmp_path_factory.mktemp("fmi3")
     return {
@@ -66,7 +68,7 @@ def targets(fmus, tmp_path_factory):
 
 @pytest.mark.skipif(not can_compile(), reason="needs a C compiler")
 @pytest.mark.parametrize("name", SCENARIOS)
-def test_every_target_equals_the_models_in_process(fmus, targets, name):
+def test_every_target_equals_the_models_in_process(fmus: Any, targets: Any, name: Any) -> None:
     scenario = load_scenario(name, [])
     short = load_scenario(name, [f"stop_time={SLOW}"]) if name.startswith("preview") else scenario
     in_process, found = run_scenario(short), run_scenario(short, fmus["native"], kind="native")
@@ -86,7 +88,7 @@ def test_every_target_equals_the_models_in_process(fmus, targets, name):
 
 
 @pytest.mark.parametrize("name", PYTHON_FMU_TOO)
-def test_native_fmus_equal_python_fmus(fmus, name):
+def test_native_fmus_equal_python_fmus(fmus: Any, name: Any) -> None:
     scenario = load_scenario(name, [])
     expected = run_scenario(scenario, fmus["python"], kind="python")
     found = run_scenario(scenario, fmus["native"], kind="native")

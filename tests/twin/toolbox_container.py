@@ -7,9 +7,10 @@ import json
 import shutil
 import subprocess
 import sys
+from typing import Any
 
 
-def write_container(system, folder):
+def write_container(system: Any, folder: Any) -> Any:
     """Return the path of the container, made in ``folder``; its outputs are called as ``vehicle.pose.x``."""
     files = {part.name: f"{part.model.name}.fmu" for part in system.parts}
     links = system.connections()

@@ -1,6 +1,7 @@
 """The study of slots in rows: its cases, and a study of the valet beside single runs of the same."""
 
 import math
+from typing import Any
 
 import numpy as np
 import pytest
@@ -17,7 +18,7 @@ from orchestrator.verdict.summary import summarize
 pytestmark = pytest.mark.skipif(not can_compile(), reason="runs without Python need a C compiler: pip install ziglang")
 
 
-def boxes_of(scenario):
+def boxes_of(scenario: Any) -> Any:
     found = {}
     for name, value in scenario.vehicle.items():
         if name.startswith("scene.boxes["):
@@ -26,7 +27,7 @@ def boxes_of(scenario):
     return [Polygon(box_corners(box)) for box in found.values()]
 
 
-def test_the_slot_is_free_and_the_map_has_what_stands_there():
+def test_the_slot_is_free_and_the_map_has_what_stands_there() -> None:
     assert len(cases()) == 480
     for case in cases()[::13]:
         scenario = scenario_of(case)
@@ -40,7 +41,7 @@ def test_the_slot_is_free_and_the_map_has_what_stands_there():
         )
 
 
-def test_a_row_of_the_study_is_the_run_itself(monkeypatch):
+def test_a_row_of_the_study_is_the_run_itself(monkeypatch: pytest.MonkeyPatch) -> None:
     chosen = [cases()[number] for number in (40, 330)]
     monkeypatch.setattr("orchestrator.grid.slot_rows.cases", lambda lot: chosen)
     columns = columns_in_memory(study())

@@ -1,6 +1,8 @@
 """The valet drives: slots from outside, things in the way, reasons to give up; in C as in CPython."""
 
 import math
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -28,7 +30,7 @@ STEP_NS = 10_000_000
 BOX = ((4.0, -1.0), (6.0, -1.0), (6.0, 1.0), (4.0, 1.0))
 
 
-def with_map(*polygons, **more):
+def with_map(*polygons: Any, **more: Any) -> Any:
     corners = [Corner(x, y, number) for number, polygon in enumerate(polygons, start=1) for x, y in polygon]
     return ValetParams(map=(*corners, *(Corner() for _ in range(MAP_CORNERS - len(corners)))), **more)
 
@@ -36,12 +38,12 @@ def with_map(*polygons, **more):
 HERE = Pose()
 
 
-def goal(kind, now=HERE, **more):
+def goal(kind: Any, now: Any = HERE, **more: Any) -> Any:
     slot = GivenSlot(kind=kind, ax=0.0, ay=0.0, bx=2.5, by=0.0, heading=-0.5 * math.pi, depth=5.0)
     return goal_of(ValetParams(), slot._replace(**more), now)
 
 
-def test_the_goal_is_in_the_middle_of_the_slot_that_is_given():
+def test_the_goal_is_in_the_middle_of_the_slot_that_is_given() -> None:
     ahead = body_of(ValetParams()).ahead
     assert goal(SlotKind.TAIL_IN) == pytest.approx((1.25, -2.5 - ahead, 0.5 * math.pi))
     assert goal(SlotKind.NOSE_IN) == pytest.approx((1.25, -2.5 + ahead, -0.5 * math.pi))
@@ -52,7 +54,7 @@ def test_the_goal_is_in_the_middle_of_the_slot_that_is_given():
     assert goal(SlotKind.NONE) == ValetParams().target
 
 
-def test_a_sensor_expects_what_shapely_sees():
+def test_a_sensor_expects_what_shapely_sees() -> None:
     params = with_map(BOX)
     scene = scene_of(VALET.new_store(), params, (Corner(),) * SEEN_CORNERS)
     box = Polygon(BOX)
@@ -68,7 +70,7 @@ def test_a_sensor_expects_what_shapely_sees():
         assert expected(at, scene, params) == pytest.approx(min(seen, default=reach), abs=0.02)
 
 
-def test_only_what_the_map_does_not_have_is_in_the_way():
+def test_only_what_the_map_does_not_have_is_in_the_way() -> None:
     params = with_map(BOX)
     scene = scene_of(VALET.new_store(), params, (Corner(),) * SEEN_CORNERS)
     front = params.car.wheelbase + params.car.front_overhang
@@ -85,7 +87,7 @@ def test_only_what_the_map_does_not_have_is_in_the_way():
     assert not look(tuple(readings), pose, -1.0, 0.2, scene, params).blocked
 
 
-def test_things_heard_are_remembered_and_the_oldest_forgotten():
+def test_things_heard_are_remembered_and_the_oldest_forgotten() -> None:
     seen = (Corner(),) * SEEN_CORNERS
     rooms = SEEN_CORNERS // 4
     for count in range(rooms + 1):
@@ -96,13 +98,13 @@ def test_things_heard_are_remembered_and_the_oldest_forgotten():
     assert min(corner.x for corner in first) == pytest.approx(10.0 * rooms)
 
 
-def test_the_large_controller_refuses_what_only_the_valet_does():
+def test_the_large_controller_refuses_what_only_the_valet_does() -> None:
     _, outputs = MODEL.initialize(MODEL.params()._replace(system=System.VALET))
     assert (outputs.phase, outputs.reason) == (ValetPhase.FAILED, Reason.BAD_PARAMETER)
     assert not {"map", "slot"} & {item.name.split(".")[0].split("[")[0] for item in variables(MODEL.params)}
 
 
-def test_parameters_without_sense_are_refused():
+def test_parameters_without_sense_are_refused() -> None:
     params = ValetParams(sample_time=0.0)
     step = VALET.stepper(VALET.new_store())
     _, outputs = step(VALET.initialize(params)[0], ValetInput(), params, STEP_NS)
@@ -117,7 +119,7 @@ def test_parameters_without_sense_are_refused():
         ({"told": ToldSlot(SlotKind.TAIL_IN, ax=math.nan)}, Reason.BAD_INPUT),
     ],
 )
-def test_a_fault_ends_it_with_its_reason(changed, reason):
+def test_a_fault_ends_it_with_its_reason(changed: Any, reason: Any) -> None:
     params = with_map(BOX, target=Pose(0.0, 8.0, 0.0))
     step, (state, _) = VALET.stepper(VALET.new_store()), VALET.initialize(params)
     state, outputs = step(state, ValetInput(), params, STEP_NS)
@@ -129,16 +131,16 @@ def test_a_fault_ends_it_with_its_reason(changed, reason):
 class Twin(InProcessSlave):
     """The valet in CPython, and in C beside it, which must not differ."""
 
-    def __init__(self, name, model, parameters, folder):
+    def __init__(self, name: Any, model: Any, parameters: Any, folder: Any) -> None:
         super().__init__(name, model, parameters)
         self.c = CModel(model, translate(model), folder)
         self.differing = set()
 
-    def initialize(self, stop_ns):
+    def initialize(self, stop_ns: Any) -> None:
         super().initialize(stop_ns)
         self.c.initialize(self._params)
 
-    def step(self, t_ns, dt_ns):
+    def step(self, t_ns: Any, dt_ns: Any) -> None:
         super().step(t_ns, dt_ns)
         self.c.step(self._input, dt_ns)
         self.differing |= set(self.c.differing(self._state, self.output))
@@ -148,10 +150,12 @@ class Twin(InProcessSlave):
     ("name", "stop"),
     [("valet-angled-45", 22.0), ("valet-thing-in-the-way", 24.0), ("valet-search-perpendicular", 13.0)],
 )
-def test_a_drive_in_c_has_the_bits_of_cpython(name, stop, tmp_path, monkeypatch):
+def test_a_drive_in_c_has_the_bits_of_cpython(
+    name: str, stop: float, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     twins = []
 
-    def make(name, model, parameters):
+    def make(name: Any, model: Any, parameters: Any) -> Any:
         if model is not VALET:
             return InProcessSlave(name, model, parameters)
         twins.append(Twin(name, model, parameters, tmp_path))
@@ -164,6 +168,6 @@ def test_a_drive_in_c_has_the_bits_of_cpython(name, stop, tmp_path, monkeypatch)
     assert [twin.differing for twin in twins] == [set()]
 
 
-def test_it_is_a_model_of_its_own_with_few_kilobytes_of_state():
+def test_it_is_a_model_of_its_own_with_few_kilobytes_of_state() -> None:
     assert isinstance(VALET, Model)
     assert len(variables(VALET.state)) < 700

@@ -1,6 +1,7 @@
 """Slots from outside as inputs: their goals, and why they are not taken."""
 
 import math
+from typing import Any
 
 import pytest
 
@@ -19,7 +20,9 @@ PARAMS = ValetParams()
 NOW = Pose(-5.0, 2.0, 0.0)
 
 
-def across(turn=90.0, width=2.6, depth=4.5, kind=SlotKind.TAIL_IN, swapped=False):
+def across(
+    turn: Any = 90.0, width: Any = 2.6, depth: Any = 4.5, kind: Any = SlotKind.TAIL_IN, swapped: bool = False
+) -> Any:
     """A slot on the right of x whose opening's middle is the origin, ``turn`` [deg] off the way."""
     h = -math.radians(turn)
     c, s = math.cos(h), math.sin(h)
@@ -30,7 +33,7 @@ def across(turn=90.0, width=2.6, depth=4.5, kind=SlotKind.TAIL_IN, swapped=False
 
 @pytest.mark.parametrize("swapped", [False, True])
 @pytest.mark.parametrize("turn", [45.0, 90.0, 135.0])
-def test_a_car_stands_in_the_middle_of_what_is_told_however_its_corners_are_named(turn, swapped):
+def test_a_car_stands_in_the_middle_of_what_is_told_however_its_corners_are_named(turn: float, swapped: bool) -> None:
     told = across(turn, swapped=swapped)
     assert depth_of(told) == pytest.approx(4.5)
     body = body_of(PARAMS)
@@ -43,7 +46,7 @@ def test_a_car_stands_in_the_middle_of_what_is_told_however_its_corners_are_name
     assert gap_told(told, PARAMS).layout == GapLayout.ACROSS
 
 
-def test_without_c_and_d_the_depth_is_not_told_and_the_car_stands_flush():
+def test_without_c_and_d_the_depth_is_not_told_and_the_car_stands_flush() -> None:
     told = across()._replace(cx=1.3, cy=0.0, dx=-1.3, dy=0.0)
     assert depth_of(told) == DEEP
     goal = goal_in(gap_told(told, PARAMS), 0.0, SlotWish.NOSE_IN, PARAMS)
@@ -65,7 +68,7 @@ def test_without_c_and_d_the_depth_is_not_told_and_the_car_stands_flush():
         (across()._replace(cx=math.nan), Reason.BAD_INPUT),
     ],
 )
-def test_a_slot_that_the_car_does_not_fit_into_is_refused_with_its_reason(told, reason):
+def test_a_slot_that_the_car_does_not_fit_into_is_refused_with_its_reason(told: Any, reason: Any) -> None:
     assert told_reason(new_store(PlanStore), told, PARAMS) == reason
 
 
@@ -76,7 +79,7 @@ def test_a_slot_that_the_car_does_not_fit_into_is_refused_with_its_reason(told, 
     (0.0, -4.6, Reason.NONE),
     (0.0, 0.5, Reason.NONE),
 ])  # fmt: skip
-def test_two_echoes_from_where_the_car_would_stand_contradict_a_slot(x, y, reason):
+def test_two_echoes_from_where_the_car_would_stand_contradict_a_slot(x: Any, y: Any, reason: Any) -> None:
     store = new_store(PlanStore)
     assert put_heard(store, 0, 0, x, y, True) == 1
     assert told_reason(store, across(), PARAMS) == Reason.NONE
@@ -84,7 +87,7 @@ def test_two_echoes_from_where_the_car_would_stand_contradict_a_slot(x, y, reaso
     assert told_reason(store, across(), PARAMS) == reason
 
 
-def test_a_parallel_slot_leads_along_the_way():
+def test_a_parallel_slot_leads_along_the_way() -> None:
     told = across(width=5.0, depth=2.2, kind=SlotKind.PARALLEL)
     assert gap_told(told, PARAMS).layout == GapLayout.ALONG
     goal = goal_in(gap_told(told, PARAMS), 0.0, SlotWish.PARALLEL, PARAMS)

@@ -1,5 +1,8 @@
 """The valet's scenarios with native FMUs; cases of TPCAP driven with errors, judged by shapely."""
 
+from pathlib import Path
+from typing import Any
+
 import numpy as np
 import pytest
 import yaml
@@ -25,18 +28,18 @@ CASE = "1.0,3.0,0.1,-1.2,-2.0,0.0,2,4,4,-9,-3,-3.5,-3,-3.5,-1,-9,-1,5,-3,9,-3,9,
 
 
 @pytest.fixture(scope="module")
-def files():
+def files() -> Any:
     return fmu_files("native", lambda text: None)
 
 
-def driven(name, files, sets=()):
+def driven(name: Any, files: Any, sets: Any = ()) -> Any:
     scenario = load_scenario(str(name), list(sets))
     ran = run_scenario(scenario, files, kind="native")
     return scenario, ran.recording, summarize(ran.recording, scenario, ran.wall_time)
 
 
 @pytest.mark.parametrize("name", [name for name in scenario_names() if name.startswith("valet")])
-def test_a_shipped_scenario_ends_as_it_should(name, files):
+def test_a_shipped_scenario_ends_as_it_should(name: Any, files: Any) -> None:
     scenario, recording, summary = driven(name, files)
     assert summary.outcome == scenario.expect
     assert recording.signals["vehicle.clearance"].min() > 0.1
@@ -44,7 +47,7 @@ def test_a_shipped_scenario_ends_as_it_should(name, files):
         assert REASONS[name] in summary.reason
 
 
-def test_something_in_the_way_is_planned_around_and_somebody_who_goes_is_waited_for(files):
+def test_something_in_the_way_is_planned_around_and_somebody_who_goes_is_waited_for(files: Any) -> None:
     _, around, _ = driven("valet-thing-in-the-way", files)
     assert around.signals["controller.valet.plans"].max() == 2
     assert around.signals["controller.valet.seen"].max() == 1
@@ -53,7 +56,7 @@ def test_something_in_the_way_is_planned_around_and_somebody_who_goes_is_waited_
     assert waited.signals["controller.valet.blocked"].max() == 1
 
 
-def test_a_case_becomes_a_scenario_that_is_judged_by_its_polygons(files, tmp_path):
+def test_a_case_becomes_a_scenario_that_is_judged_by_its_polygons(files: Any, tmp_path: Path) -> None:
     (tmp_path / "Case0.csv").write_text(CASE)
     assert main(["import", "tpcap", str(tmp_path / "Case0.csv"), "--out", str(tmp_path)]) == 0
     scenario, recording, summary = driven(tmp_path / "Case0.yaml", files)
@@ -65,7 +68,7 @@ def test_a_case_becomes_a_scenario_that_is_judged_by_its_polygons(files, tmp_pat
     assert least > 0.09
 
 
-def rows_of(recording):
+def rows_of(recording: Any) -> Any:
     return np.column_stack([recording.signals[f"vehicle.pose.{axis}"] for axis in ("x", "y", "heading")])
 
 
@@ -73,13 +76,13 @@ def rows_of(recording):
     "text",
     ["1,2,3", "1,2,x,4,5,6,0", "0,0,0,1,1,0,1,2,0,0,1,1", "0,0,0,1,1,0,1,3,0,0,1,1", "nan,0,0,1,1,0,0"],
 )
-def test_a_file_that_is_no_case_is_refused(text, tmp_path):
+def test_a_file_that_is_no_case_is_refused(text: str, tmp_path: Path) -> None:
     (tmp_path / "bad.csv").write_text(text)
     with pytest.raises(BadInput, match=r"bad\.csv"):
         read_tpcap(tmp_path / "bad.csv")
 
 
-def test_more_corners_than_the_map_holds_are_refused(tmp_path):
+def test_more_corners_than_the_map_holds_are_refused(tmp_path: Path) -> None:
     (tmp_path / "Case0.csv").write_text(CASE)
     content = read_tpcap(tmp_path / "Case0.csv")
     content["polygons"] = [[[0.01 * n, 9.0], [0.01 * n, 9.1], [0.01 * n + 0.005, 9.0]] for n in range(121)]
@@ -88,7 +91,7 @@ def test_more_corners_than_the_map_holds_are_refused(tmp_path):
         load_scenario(str(tmp_path / "many.yaml"))
 
 
-def test_distance_to_polygons_is_that_of_shapely():
+def test_distance_to_polygons_is_that_of_shapely() -> None:
     draw = np.random.default_rng(3)
     car = CarOutline(CAR.ahead + CAR.half_length, CAR.half_length - CAR.ahead, CAR.half_width, 2.8)
     touched = 0
@@ -106,7 +109,7 @@ def test_distance_to_polygons_is_that_of_shapely():
 
 @TPCAP
 @pytest.mark.parametrize("number", range(1, 21))
-def test_cases_of_tpcap_driven_with_errors_touch_nothing(number, files, tmp_path):
+def test_cases_of_tpcap_driven_with_errors_touch_nothing(number: Any, files: Any, tmp_path: Path) -> None:
     content = read_tpcap(tpcap_folder() / f"Case{number}.csv")
     (tmp_path / "case.yaml").write_text(yaml.safe_dump(content))
     errors = ERRORS[:-1] if number == 7 else ERRORS  # it has 3 cm to spare, less than odometry drifts

@@ -2,6 +2,7 @@
 
 import math
 import random
+from typing import Any
 
 import pytest
 from shapely.geometry import LineString, Point
@@ -28,7 +29,7 @@ LENGTH, WIDTH = 3.805, 1.65
 WANTED = Wanted(LENGTH, WIDTH, 0.7, 0.5, along=True, across=True, half_angle=math.pi / 6.0, deep=3.5, open_ended=False)
 
 
-def row(angle, side, gap=2.6):
+def row(angle: Any, side: Any, gap: Any = 2.6) -> Any:
     """Cars on both sides of a gap, at ``angle`` [deg] against the way; the gap's middle is at x = 0."""
     turn = math.radians(angle)
     pitch = 0.5 * (gap + WIDTH) / math.sin(turn)
@@ -40,7 +41,7 @@ def row(angle, side, gap=2.6):
     ]
 
 
-def passed(boxes, side, noise, heading=0.0):
+def passed(boxes: Any, side: Any, noise: Any, heading: Any = 0.0) -> Any:
     """Return the store and the gap that was found on the way past, if any."""
     scene = SceneParams(boxes=tuple(Obstacle(**box) for box in boxes))
     store, ear, draw, gap = new_store(PlanStore), SideEar(), random.Random(3), Gap()
@@ -62,7 +63,7 @@ def passed(boxes, side, noise, heading=0.0):
 
 
 @pytest.mark.parametrize("angle", [45, 90, 120])
-def test_places_lie_on_what_stands_there(angle):
+def test_places_lie_on_what_stands_there(angle: int) -> None:
     boxes = row(angle, 1)
     store, ear, _ = passed(boxes, 1, 0.0)
     lines = [LineString([*box_corners(box), box_corners(box)[0]]) for box in boxes]
@@ -74,7 +75,7 @@ def test_places_lie_on_what_stands_there(angle):
 
 @pytest.mark.parametrize("side", [1, -1])
 @pytest.mark.parametrize(("angle", "wide"), [(45, 3.4), (60, 2.6), (90, 2.6), (120, 2.6)])
-def test_a_gap_is_found_at_any_angle_on_either_side(angle, wide, side):
+def test_a_gap_is_found_at_any_angle_on_either_side(angle: int, wide: float, side: int) -> None:
     _, _, gap = passed(row(angle, side, wide), side, 0.01)
     assert gap.layout == GapLayout.ACROSS
     assert gap.into == pytest.approx(-side * math.radians(angle), abs=math.radians(2.5))
@@ -86,12 +87,12 @@ def test_a_gap_is_found_at_any_angle_on_either_side(angle, wide, side):
     assert abs(off) < 0.15
 
 
-def test_cars_without_a_gap_between_them_are_none():
+def test_cars_without_a_gap_between_them_are_none() -> None:
     boxes = row(90, 1, gap=0.8)
     assert passed(boxes, 1, 0.01)[2].layout == GapLayout.NONE
 
 
-def test_a_place_heard_once_between_the_neighbours_is_no_end_of_a_gap():
+def test_a_place_heard_once_between_the_neighbours_is_no_end_of_a_gap() -> None:
     store, ear, gap = passed(row(90, 1, wide := 2.6), 1, 0.0)
     assert gap.width == pytest.approx(wide, abs=0.1)
     places = put_heard(store, 0, ear.places, 0.0, -1.0, True)
@@ -101,7 +102,7 @@ def test_a_place_heard_once_between_the_neighbours_is_no_end_of_a_gap():
     assert find_gap(store, 0, places, at, WANTED).layout == GapLayout.NONE
 
 
-def test_the_end_of_a_slot_is_heard_by_both_sensors_that_look_straight_at_it():
+def test_the_end_of_a_slot_is_heard_by_both_sensors_that_look_straight_at_it() -> None:
     params = ValetParams()._replace(search=ValetSearchParams()._replace(active=True))
     silent = (5.0,) * 12
     for first, direction in ((0, 1.0), (4, -1.0)):
@@ -112,7 +113,7 @@ def test_the_end_of_a_slot_is_heard_by_both_sensors_that_look_straight_at_it():
 
 
 @pytest.mark.skipif(not can_compile(), reason="FMUs without Python need a C compiler: pip install ziglang")
-def test_switched_off_on_the_way_in_it_is_over_and_without_a_slot_it_says_so():
+def test_switched_off_on_the_way_in_it_is_over_and_without_a_slot_it_says_so() -> None:
     files = fmu_files("native", lambda text: None)
     scenario = load_scenario("valet-search-perpendicular", ["vehicle.driver.apa_switch_off_time=25"])
     ran = run_scenario(scenario, files, kind="native").recording

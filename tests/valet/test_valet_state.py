@@ -2,6 +2,8 @@
 
 import ctypes
 from ctypes import byref, c_size_t
+from pathlib import Path
+from typing import Any
 
 import pytest
 from host import Host
@@ -22,7 +24,7 @@ pytestmark = pytest.mark.skipif(not can_compile(), reason="FMUs without Python n
 SHOWN = ("valet.searched", "valet.pieces", "valet.margin", "valet.move.pieces[1].length", "steering_wheel_request")
 
 
-def stepped(fmu, component, first, last):
+def stepped(fmu: Any, component: Any, first: Any, last: Any) -> Any:
     found = []
     for number in range(first, last):
         assert fmu.step(component, 0.01 * number) == OK
@@ -30,7 +32,7 @@ def stepped(fmu, component, first, last):
     return found
 
 
-def test_a_plan_goes_on_in_another_instance(tmp_path):
+def test_a_plan_goes_on_in_another_instance(tmp_path: Path) -> None:
     fmu = Library(native_fmu.build(VALET, tmp_path, [host()]), tmp_path / "files")
     scenario = load_scenario("valet-nose-in")
     given = {name: value for name, value in scenario.controller.items() if VALET.shows(name)}
@@ -55,11 +57,11 @@ def test_a_plan_goes_on_in_another_instance(tmp_path):
         fmu.free(instance)
 
 
-def test_an_instance_takes_less_than_two_megabytes():
+def test_an_instance_takes_less_than_two_megabytes() -> None:
     assert memory_size(load_model(VALET)) < 2_000_000
 
 
-def test_the_python_fmu_plans_as_the_model_does(tmp_path):
+def test_the_python_fmu_plans_as_the_model_does(tmp_path: Path) -> None:
     scenario = load_scenario("valet-angled-45")
     given = {name: value for name, value in scenario.controller.items() if VALET.shows(name)}
     start = {f"odometry.{axis}": scenario.vehicle.get(f"start.{axis}", 0.0) for axis in ("x", "y", "heading")}

@@ -1,6 +1,7 @@
 """Somebody's vehicle, made with PythonFMU: a kinematic car that counts its pose its own way."""
 
 import math
+from typing import Any
 
 from pythonfmu import Fmi2Causality, Fmi2Slave, Fmi2Variability, Real
 
@@ -8,7 +9,7 @@ from pythonfmu import Fmi2Causality, Fmi2Slave, Fmi2Variability, Real
 class Plant(Fmi2Slave):
     """Position of the front axle [cm], x to the east and y to the south, heading clockwise from east [deg]."""
 
-    def __init__(self, **kwargs):
+    def __init__(self, **kwargs: Any) -> None:
         super().__init__(**kwargs)
         self.Steer, self.Demand, self.Travel = 0.0, 0.0, 0.0
         self.East, self.South, self.Course = 240.5, 0.0, 0.0
@@ -21,7 +22,7 @@ class Plant(Fmi2Slave):
         self.Wheelbase = 2.405
         self.register_variable(Real("Wheelbase", **fixed))
 
-    def do_step(self, t, dt):
+    def do_step(self, t: Any, dt: Any) -> Any:
         wheel = math.radians(self.Steer) / 19.0
         self.Speed = self.Demand
         self.Yaw += self.Speed * math.tan(wheel) / self.Wheelbase * dt

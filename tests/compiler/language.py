@@ -6,10 +6,9 @@ import re
 import sys
 from typing import Any, NamedTuple
 
-from c_model import CModel, bits, flatten
-
 from fmus.compiler import translate
 from modelkit.model import Model
+from tests.compiler.c_model import CModel, bits, flatten
 
 HEAD = """\
 import enum

@@ -6,8 +6,9 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from c_model import COMPILER
-from language import Twins, results
+
+from tests.compiler.c_model import COMPILER
+from tests.compiler.language import Twins, results
 
 TEXT = (Path(__file__).parent / "constructs.py").read_text().split('"""', 2)[2].split("# ---- types", 1)[1]
 NAMES = [name for name, _ in results(TEXT)]

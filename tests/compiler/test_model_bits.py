@@ -4,13 +4,13 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from c_model import COMPILER, ZIG, CModel, compiled
 
 from fmus.compiler import translate
 from modelkit.variables import flatten
 from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.scenario.models import MODELS
 from orchestrator.session import session
+from tests.compiler.c_model import COMPILER, ZIG, CModel, compiled
 
 SCENARIOS = {
     "guo2015-case4-105": (),

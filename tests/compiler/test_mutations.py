@@ -7,9 +7,9 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from language import HEAD, SIGNATURE, Twins, results
 
 from fmus.compiler import Refused
+from tests.compiler.language import HEAD, SIGNATURE, Twins, results
 
 TEXT = "# ---- types" + (Path(__file__).parent / "constructs.py").read_text().split("# ---- types", 1)[1]
 TREE = ast.parse(HEAD + TEXT)

@@ -6,8 +6,9 @@ from typing import Any
 import pytest
 from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import strategies as st
-from language import Twins
-from programs import programs
+
+from tests.compiler.language import Twins
+from tests.compiler.programs import programs
 
 numbers = itertools.count()
 FLOATS = st.floats() | st.sampled_from((0.0, -0.0, 1.0, -1.0, 0.5, 2.5, 1e308, 5e-324, float("inf"), float("nan")))

@@ -9,11 +9,11 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from c_model import COMPILER, ZIG, compiled
-from language import load, model_of, whole_module
 
 from fmus.compiler import translate
 from orchestrator.scenario.models import MODELS
+from tests.compiler.c_model import COMPILER, ZIG, compiled
+from tests.compiler.language import load, model_of, whole_module
 
 DOCS = Path(__file__).parents[2] / "docs" / "c-code.md"
 WALLS = '''\

@@ -5,10 +5,10 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from bad_programs import BODIES, FRAME, HEAD, MODULES, WHOLE
-from language import load, model_of
 
 from fmus.compiler import Refused, translate
+from tests.compiler.bad_programs import BODIES, FRAME, HEAD, MODULES, WHOLE
+from tests.compiler.language import load, model_of
 
 numbers = itertools.count()
 

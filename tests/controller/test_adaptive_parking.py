@@ -4,11 +4,11 @@ import math
 from typing import Any
 
 import pytest
-from closed_loop import drive
 
 from controller_fmu.adaptive.phases import AdaptivePhase
 from controller_fmu.interface import Reason, System
 from modelkit.vocabulary import Prompt
+from tests.controller.closed_loop import drive
 
 FAST = {"drive.acceleration_limit": 10.0, "drive.deceleration_limit": 3.5, "driver.profile[1].speed": 1.5}
 OURS = {"system": int(System.ADAPTIVE)}

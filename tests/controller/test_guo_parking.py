@@ -4,7 +4,6 @@ import math
 from typing import Any
 
 import pytest
-from closed_loop import Run, drive
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -13,6 +12,7 @@ from controller_fmu.guo2015.phases import GuoPhase
 from controller_fmu.interface import ControllerInput, ControllerParams, Reason, System
 from modelkit.variables import constructor, variables, with_values
 from modelkit.vocabulary import Pose, Prompt
+from tests.controller.closed_loop import Run, drive
 
 CASE_4 = {
     "drive.acceleration_limit": 10.0,

@@ -4,7 +4,6 @@ import math
 from typing import Any
 
 import pytest
-from closed_loop import Run, drive
 
 from controller_fmu.common.steering_monitor import Steering
 from controller_fmu.guo2015.params import GuoPrompts
@@ -12,6 +11,7 @@ from controller_fmu.guo2015.phases import DIRECTION_OF_PHASE, GuoPhase
 from controller_fmu.guo2015.prompts import stopping_distance, swing_speed
 from controller_fmu.interface import ControllerParams, Reason
 from modelkit.vocabulary import Prompt
+from tests.controller.closed_loop import Run, drive
 
 TANGENT_X = -3.8
 OBEYING = {"driver.profile[1].speed": 1.5, "driver.reaction_delay": 0.3}

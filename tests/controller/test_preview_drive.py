@@ -4,10 +4,10 @@ import math
 from typing import Any
 
 import pytest
-from preview_car import Row, drive
 
 from controller_fmu.preview.params import Camera, Method, PreviewParams
 from controller_fmu.preview.stage import PreviewStage
+from tests.controller.preview_car import Row, drive
 
 P = PreviewParams()
 CURVES = ((100.0, -0.01), (357.08, 0.02), (616.16, -0.04), (796.7, 0.05))

@@ -5,7 +5,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from closed_loop import drive
 from scipy.interpolate import BSpline
 
 from controller_fmu.guo2015.path import reference_at
@@ -15,6 +14,7 @@ from controller_fmu.guo2015.planner import path_from
 from controller_fmu.guo2015.smooth_path import PathShape, curve, leaning, on_curve, rising, way_left
 from controller_fmu.interface import Reason, System
 from modelkit.vocabulary import Pose
+from tests.controller.closed_loop import drive
 
 L = 2.405
 SMALLEST = 4.37

@@ -7,9 +7,9 @@ import numpy as np
 import osqp
 import pytest
 import scipy.sparse
-from qp_problems import dense, random_problem
 
 from controller_fmu.zhang2022.qp import STAGES, Initial, Status, solve
+from tests.controller.qp_problems import dense, random_problem
 
 PROBLEMS = 2000
 

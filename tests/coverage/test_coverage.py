@@ -7,7 +7,6 @@ from enum import IntEnum
 from pathlib import Path
 from typing import Any
 
-import c_fmus
 import pytest
 
 import controller_fmu
@@ -16,6 +15,7 @@ from orchestrator.cli import main
 from orchestrator.coverage.covered import covered, share
 from orchestrator.coverage.tracer import decider, name_of, tracing
 from orchestrator.scenario.wiring.modes import ModeList
+from tests.orchestrator import c_fmus
 
 CHARTS = controller_fmu.MODEL.all_charts()
 

@@ -10,7 +10,7 @@ from ctypes import byref, c_double, c_size_t, c_uint, c_void_p
 from pathlib import Path
 from typing import Any
 
-from raw import LOGGER, Callbacks
+from tests.fmi.raw import LOGGER, Callbacks
 
 TOLD = json.loads(sys.argv[1])
 FOLDER = Path(TOLD["folder"])

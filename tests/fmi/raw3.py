@@ -6,7 +6,8 @@ from ctypes import CFUNCTYPE, byref, c_bool, c_char_p, c_double, c_int, c_int32,
 from typing import Any
 
 from fmpy import read_model_description
-from raw import ERROR, OK, array
+
+from tests.fmi.raw import ERROR, OK, array
 
 LOGGER = CFUNCTYPE(None, c_void_p, c_int, c_char_p, c_char_p)
 TYPES = {

@@ -8,13 +8,13 @@ from typing import Any
 
 import numpy as np
 import pytest
-from host import random_inputs
-from test_python_fmu import STEPS, in_process
 
 from fmus.contents.variables import fmi_variables
 from fmus.native.c_library import write_c_library
 from fmus.native.libraries import load_model, memory_size
 from modelkit.variables import flatten, variables
+from tests.fmi.host import random_inputs
+from tests.fmi.test_python_fmu import STEPS, in_process
 
 NEEDED = ("make", "cc", "ar")
 

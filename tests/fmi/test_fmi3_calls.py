@@ -8,7 +8,8 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from raw3 import ERROR, OK, Library3, array
+
+from tests.fmi.raw3 import ERROR, OK, Library3, array
 
 ABSENT = (
     *("Float32", "Int8", "UInt8", "Int16", "UInt16", "UInt32", "UInt64", "String", "Binary", "Clock"),

@@ -11,16 +11,16 @@ import pytest
 import table_model
 import toy_model
 from fmpy.validation import validate_fmu
-from host import random_inputs
 from lxml import etree
-from raw3 import OK, Library3
-from test_python_fmu import STEPS, in_process
 
 from fmus.contents.arrays import INDEX, fmi_arrays
 from fmus.contents.variables import fmi_variables
 from fmus.native import fmu as native_fmu
 from fmus.native.platforms import host
 from modelkit.variables import variables
+from tests.fmi.host import random_inputs
+from tests.fmi.raw3 import OK, Library3
+from tests.fmi.test_python_fmu import STEPS, in_process
 
 SCHEMAS = Path(fmpy.__file__).parent / "schema/fmi3"
 TABLE = table_model.MODEL

@@ -8,7 +8,8 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from raw import DISCARD, ERROR, OK, Library, array, state_pointer
+
+from tests.fmi.raw import DISCARD, ERROR, OK, Library, array, state_pointer
 
 NO_REFERENCE = 4_000_000_000
 

@@ -11,7 +11,6 @@ from typing import Any, NamedTuple
 import pytest
 import toy_model
 from fmpy import read_model_description
-from test_native_host import HERE
 
 from fmus.native.fmu import build
 from fmus.native.kept import C_FILES
@@ -19,6 +18,7 @@ from fmus.native.platforms import LINUX, LINUX_ARM, WINDOWS
 from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.scenario.models import MODELS
 from orchestrator.session.session import run_scenario
+from tests.fmi.test_native_host import HERE
 
 STEPS = 300
 DRIVES = ("guo2015-case4", "apa-parallel", "hsic")

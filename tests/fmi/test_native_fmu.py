@@ -11,14 +11,14 @@ from xml.etree import ElementTree
 import fmpy
 import pytest
 from fmpy.validation import validate_fmu
-from host import OK, Host, random_inputs
-from test_python_fmu import STEPS, in_process
 
 from fmus.contents.archive import archive_guid
 from fmus.contents.variables import fmi_variables
 from fmus.native import compilers
 from fmus.native import fmu as native_fmu
 from fmus.native.platforms import host
+from tests.fmi.host import OK, Host, random_inputs
+from tests.fmi.test_python_fmu import STEPS, in_process
 
 
 def bits(values: Any) -> Any:

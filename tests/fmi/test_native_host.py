@@ -8,12 +8,12 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from elf import dynamic
-from raw import OK, Library
 
 from fmus.native.kept import C_FILES
 from fmus.native.platforms import LINUX
 from fmus.native.sources import fmu_sources, unit_name
+from tests.fmi.elf import dynamic
+from tests.fmi.raw import OK, Library
 
 HERE = Path(__file__).parent
 LIMIT = 400_000

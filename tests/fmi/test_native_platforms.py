@@ -6,11 +6,11 @@ from typing import Any
 
 import pytest
 import toy_model
-from elf import dynamic
 
 from fmus.native.fat_binary import fat_binary
 from fmus.native.fmu import build
 from fmus.native.platforms import PLATFORMS
+from tests.fmi.elf import dynamic
 
 LIMIT = 400_000
 FUNCTIONS = ("fmi2GetVersion", "fmi2Instantiate", "fmi2DoStep", "fmi2SetFMUstate", "fmi2GetStringStatus")

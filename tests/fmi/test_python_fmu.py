@@ -7,10 +7,10 @@ from typing import Any
 
 import fmpy
 import pytest
-from host import DISCARD, OK, Host, random_inputs
 
 from fmus.contents.variables import fmi_variables
 from modelkit.variables import constructor, flatten, variables
+from tests.fmi.host import DISCARD, OK, Host, random_inputs
 
 STEPS = [0.01] * 40 + [0.001, 0.02, 0.0133, 0.005] * 10
 

@@ -4,7 +4,8 @@ import gc
 from typing import Any
 
 import pytest
-from host import DISCARD, ERROR, FATAL, OK, Host, slaves
+
+from tests.fmi.host import DISCARD, ERROR, FATAL, OK, Host, slaves
 
 TOO_HIGH = 10_000
 

@@ -13,7 +13,6 @@ from typing import Any
 import fmpy
 import pytest
 import toy_model
-from host import OK, Host, random_inputs, slaves
 
 import controller_fmu
 import modelkit
@@ -21,6 +20,7 @@ import vehicle_fmu
 from fmus.contents.archive import archive_guid
 from fmus.contents.variables import fmi_variables
 from fmus.python.bundle import bundle, rewrite
+from tests.fmi.host import OK, Host, random_inputs, slaves
 
 ROOT = Path(__file__).parents[2]
 PACKAGES = ("modelkit", "vehicle_fmu", "controller_fmu", "fmus")

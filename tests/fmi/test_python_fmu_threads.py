@@ -5,7 +5,6 @@ from typing import Any
 
 import pytest
 import toy_model
-from host import OK, Host
 from libcosimpy.CosimExecution import CosimExecution
 from libcosimpy.CosimLogging import CosimLogLevel, log_output_level
 from libcosimpy.CosimObserver import CosimObserver
@@ -13,6 +12,7 @@ from libcosimpy.CosimSlave import CosimLocalSlave
 
 from fmus.contents.variables import fmi_variables
 from modelkit.variables import flatten, variables
+from tests.fmi.host import OK, Host
 
 STEPS = 200
 

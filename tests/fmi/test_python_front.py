@@ -17,12 +17,12 @@ from urllib.parse import quote
 
 import pytest
 import toy_model
-from raw import DISCARD, ERROR, OK
 
 from fmus.native.compilers import can_compile
 from fmus.native.kept import C_FILES
 from fmus.native.libraries import python_front
 from fmus.python.fmu import BEHIND, build
+from tests.fmi.raw import DISCARD, ERROR, OK
 
 HERE = Path(__file__).parent
 pytestmark = pytest.mark.skipif(
@@ -168,7 +168,7 @@ def test_on_an_unknown_machine_there_is_none(monkeypatch: pytest.MonkeyPatch) ->
 
 def test_the_answers_of_the_slave_come_through(python_fmus: Any, unpacked: Any, reference: Any) -> None:
     """A step before initialization is the slave's to refuse."""
-    from host import Host
+    from tests.fmi.host import Host
 
     with Host(python_fmus["Toy"]) as host:
         assert host.step(0.0, 0.01) == DISCARD

@@ -11,10 +11,6 @@ from typing import Any
 import pytest
 import table_model
 import toy_model
-from host import calculated, random_inputs
-from raw import ERROR, OK, Library
-from raw3 import Library3
-from test_fmi3_fmu import grouped
 
 from controller_fmu import VALET
 from fmus.contents.variables import fmi_variables, shown_variables
@@ -27,6 +23,10 @@ from modelkit.variables import variables, with_values
 from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.scenario.models import MODELS as SHIPPED
 from orchestrator.session.session import run_scenario
+from tests.fmi.host import calculated, random_inputs
+from tests.fmi.raw import ERROR, OK, Library
+from tests.fmi.raw3 import Library3
+from tests.fmi.test_fmi3_fmu import grouped
 from vehicle_fmu import MODEL as VEHICLE
 
 WARNINGS = ["-pedantic", "-Wall", "-Wextra", "-Wconversion"]

@@ -10,8 +10,6 @@ from typing import Any
 import numpy as np
 import pytest
 import store_model
-from host import OK, Host, random_inputs
-from raw import Library, state_pointer
 
 from fmus.compiler import Refused, translate
 from fmus.contents.variables import fmi_variables
@@ -23,6 +21,8 @@ from fmus.native.platforms import host as platform
 from fmus.python import fmu as python_fmu
 from modelkit.store import bytes_of, size_of, store_of
 from modelkit.variables import constructor, flatten
+from tests.fmi.host import OK, Host, random_inputs
+from tests.fmi.raw import Library, state_pointer
 
 MODEL = store_model.MODEL
 INPUTS = random_inputs(fmi_variables(MODEL), 5, 90)

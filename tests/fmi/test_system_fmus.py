@@ -9,9 +9,6 @@ from xml.etree import ElementTree
 
 import pytest
 from fmpy.validation import validate_fmu
-from host import ERROR, OK, Host, random_inputs
-from test_python_fmu import bits
-from test_tunable import TO_CONTROLLER, TO_VEHICLE
 
 from controller_fmu import APA, MODEL, SYSTEM_MODELS, SYSTEMS
 from controller_fmu.common.phases import is_over
@@ -26,6 +23,9 @@ from fmus.python import fmu as python_fmu
 from modelkit.variables import constructor, flatten, variables, with_values
 from orchestrator.cli import main
 from orchestrator.scenario.load_scenario import load_scenario
+from tests.fmi.host import ERROR, OK, Host, random_inputs
+from tests.fmi.test_python_fmu import bits
+from tests.fmi.test_tunable import TO_CONTROLLER, TO_VEHICLE
 from vehicle_fmu import MODEL as VEHICLE
 
 RUNS = {

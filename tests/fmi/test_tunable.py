@@ -6,8 +6,6 @@ from typing import Any
 
 import pytest
 import toy_model
-from host import DISCARD, ERROR, OK, Host, random_inputs
-from test_python_fmu import bits
 
 from controller_fmu import MODEL as CONTROLLER
 from controller_fmu.guo2015.phases import GuoPhase
@@ -15,6 +13,8 @@ from fmus.contents.variables import fmi_variables, limits
 from modelkit.connections import connections, part_of
 from modelkit.variables import constructor, flatten, variables, with_values
 from orchestrator.scenario.load_scenario import load_scenario
+from tests.fmi.host import DISCARD, ERROR, OK, Host, random_inputs
+from tests.fmi.test_python_fmu import bits
 from vehicle_fmu import MODEL as VEHICLE
 
 MODELS = {"vehicle": VEHICLE, "controller": CONTROLLER}

@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from live_module import STANDSTILL, STOP_TIME, LiveModule, disturbed, names_of, parameters, setup, times_of
 
 from fmus.native.platforms import CompileTarget
 from fmus.native.web import charts_of, live_library
@@ -18,6 +17,7 @@ from orchestrator.live.situation import shipped
 from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.scenario.models import MODELS
 from orchestrator.session.session import run_scenario
+from tests.live.live_module import STANDSTILL, STOP_TIME, LiveModule, disturbed, names_of, parameters, setup, times_of
 
 SHIPPED = [scenario.name for scenario in (*shipped(), *shipped("valet"))]
 WITHIN = {"preview-geometry": 1e-3}

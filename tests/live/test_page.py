@@ -6,7 +6,6 @@ from typing import Any
 
 import pytest
 import yaml
-from person import drive, hurries_once, never_obeys, obeys, standing_clock
 
 from controller_fmu.interface import Phase
 from orchestrator.cosim.fmu_files import fmu_files
@@ -16,6 +15,7 @@ from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.session.session import run_scenario
 from orchestrator.text.errors import BadInput
 from orchestrator.verdict.summary import summarize
+from tests.live.person import drive, hurries_once, never_obeys, obeys, standing_clock
 
 LARGEST_PAGE = 400_000
 PHASES = [state.name for state in Phase]

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from itertools import pairwise
 from pathlib import Path
 
-from c_fmus import THEIR, c_fmu
+from tests.orchestrator.c_fmus import THEIR, c_fmu
 
 DESCRIPTION = """<?xml version="1.0" encoding="UTF-8"?>
 <fmiModelDescription fmiVersion="2.0" modelName="Bad" guid="{guid}">

@@ -7,11 +7,11 @@ import time
 import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 
-import bad_fmus
 import pytest
 
 from orchestrator.cli import main
 from orchestrator.log.read_log import read_log
+from tests.orchestrator import bad_fmus
 
 SCENARIO = """
 name: {name}

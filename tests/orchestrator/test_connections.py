@@ -1,7 +1,6 @@
 """Connections by equal names, refused where type or unit differ."""
 
 import pytest
-from toy_models import BRAIN, PLANT
 
 from modelkit.signal import Signal
 from modelkit.variables import Variable
@@ -9,6 +8,7 @@ from orchestrator.cosim.connections import connect
 from orchestrator.cosim.in_process_slave import InProcessSlave
 from orchestrator.cosim.slave import Slave
 from orchestrator.text.errors import BadInput
+from tests.orchestrator.toy_models import BRAIN, PLANT
 
 
 def toys() -> list[InProcessSlave]:

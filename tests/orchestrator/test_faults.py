@@ -6,7 +6,6 @@ from typing import Any
 import numpy as np
 import pytest
 from pydantic import ValidationError
-from toy_models import BRAIN, PLANT
 
 from orchestrator.cosim.faults import manipulators
 from orchestrator.cosim.in_process_slave import InProcessSlave
@@ -14,6 +13,7 @@ from orchestrator.cosim.master import Master
 from orchestrator.cosim.recording import Recorder, Recording
 from orchestrator.scenario.fault import Fault
 from orchestrator.text.errors import BadInput
+from tests.orchestrator.toy_models import BRAIN, PLANT
 
 STEP = 10_000_000
 TIMES = np.arange(11) * 0.01

@@ -5,14 +5,12 @@ import shutil
 from pathlib import Path
 from typing import Any
 
-import bad_fmus
-import c_fmus
-import foreign_fmus
 import pytest
 
 from fmus.python.fmu import build
 from orchestrator.cli import main
 from orchestrator.scenario.models import MODELS
+from tests.orchestrator import bad_fmus, c_fmus, foreign_fmus
 
 
 def report(capsys: pytest.CaptureFixture[str], *words: str, code: int) -> dict[str, Any]:

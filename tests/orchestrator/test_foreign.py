@@ -7,11 +7,11 @@ import sys
 import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 
-import foreign_fmus
 import pytest
 
 from orchestrator.cli import main
 from orchestrator.cosim.fmu_files import fmu_files
+from tests.orchestrator import foreign_fmus
 
 KINDS = ["python", "native"]
 

@@ -10,7 +10,6 @@ from google.protobuf.descriptor_pb2 import FileDescriptorSet
 from mcap.reader import make_reader
 from mcap.stream_reader import StreamReader
 from mcap_protobuf.decoder import DecoderFactory
-from toy_models import BRAIN, PLANT, Mode
 
 from orchestrator.cosim.in_process_slave import InProcessSlave
 from orchestrator.cosim.master import End
@@ -22,6 +21,7 @@ from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.session.session import Messages, run_scenario, run_slaves
 from orchestrator.text.errors import BadInput
+from tests.orchestrator.toy_models import BRAIN, PLANT, Mode
 
 DEMO = str(Path(__file__).with_name("demo.yaml"))
 

@@ -4,11 +4,11 @@ from typing import NamedTuple
 
 import numpy as np
 import pytest
-from toy_models import BRAIN, PLANT
 
 from orchestrator.cosim.in_process_slave import InProcessSlave
 from orchestrator.cosim.master import Master
 from orchestrator.cosim.recording import Recorder, Recording
+from tests.orchestrator.toy_models import BRAIN, PLANT
 
 STEP = 10_000_000
 

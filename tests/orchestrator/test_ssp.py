@@ -4,11 +4,11 @@ import json
 import zipfile
 from pathlib import Path
 
-import c_fmus
 import pytest
 
 from orchestrator.cli import main
 from orchestrator.log.read_log import read_log
+from tests.orchestrator import c_fmus
 
 SSV = """<ssv:ParameterSet xmlns:ssv="http://ssp-standard.org/SSP1/SystemStructureParameterValues" version="1.0">
 <ssv:Parameters><ssv:Parameter name="base"><ssv:Real value="2.405"/></ssv:Parameter></ssv:Parameters></ssv:ParameterSet>

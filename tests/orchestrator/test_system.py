@@ -6,15 +6,12 @@ import re
 import shutil
 from pathlib import Path
 
-import bad_fmus
-import c_fmus
 import numpy as np
 import pytest
 import yaml
 from hypothesis import given
 from hypothesis import strategies as st
 from mcap.reader import make_reader
-from toy_models import BRAIN, PLANT
 
 from orchestrator.cli import main
 from orchestrator.cosim.in_process_slave import InProcessSlave
@@ -28,6 +25,8 @@ from orchestrator.system.conversions import into, out_of
 from orchestrator.system.remarks import loops, remarks
 from orchestrator.system.units import UnfitUnitsError, conversion
 from orchestrator.text.errors import BadInput
+from tests.orchestrator import bad_fmus, c_fmus
+from tests.orchestrator.toy_models import BRAIN, PLANT
 
 MOST_LINES = 20
 

@@ -3,16 +3,16 @@
 from itertools import pairwise
 from typing import Any
 
-import plan_model
 import pytest
-from c_model import CModel
-from plan_model import Input, Params
-from scenes import CAR, least_clearance, poses_along, read_case, scene_of, tpcap_folder
 
 from controller_fmu.planning.plan import PLANNED, PLANNING
 from controller_fmu.planning.task import Request
 from fmus.compiler import translate
 from modelkit.vocabulary import Pose
+from tests.compiler.c_model import CModel
+from tests.planning import plan_model
+from tests.planning.plan_model import Input, Params
+from tests.planning.scenes import CAR, least_clearance, poses_along, read_case, scene_of, tpcap_folder
 
 TPCAP = pytest.mark.skipif(tpcap_folder() is None, reason="TPCAP's cases are not here")
 BOXES = [[(-9.0, -3.0), (-3.5, -3.0), (-3.5, -1.0), (-9.0, -1.0)], [(5.0, -3.0), (9.0, -3.0), (9.0, -1.0), (5.0, -1.0)]]

@@ -4,7 +4,17 @@ import math
 import random
 
 import pytest
-from scenes import (
+from shapely.geometry import LineString
+
+from controller_fmu.planning.clearance import edge_gap
+from controller_fmu.planning.plan import GOAL_BLOCKED, PLANNED, START_BLOCKED, search_to
+from controller_fmu.planning.plan_store import COUNT, STATUS, WORDS, PlanStore
+from controller_fmu.planning.task import Request, Rung, SearchWindow, Task, drive
+from controller_fmu.planning.tree import cheapest, word_way
+from controller_fmu.planning.words import list_words, turn_of
+from modelkit.store import new_store, size_of
+from modelkit.vocabulary import Pose
+from tests.planning.scenes import (
     CAR,
     bits_of,
     kept,
@@ -16,16 +26,6 @@ from scenes import (
     scene_of,
     tpcap_folder,
 )
-from shapely.geometry import LineString
-
-from controller_fmu.planning.clearance import edge_gap
-from controller_fmu.planning.plan import GOAL_BLOCKED, PLANNED, START_BLOCKED, search_to
-from controller_fmu.planning.plan_store import COUNT, STATUS, WORDS, PlanStore
-from controller_fmu.planning.task import Request, Rung, SearchWindow, Task, drive
-from controller_fmu.planning.tree import cheapest, word_way
-from controller_fmu.planning.words import list_words, turn_of
-from modelkit.store import new_store, size_of
-from modelkit.vocabulary import Pose
 
 ORIGIN = Pose(0.0, 0.0, 0.0)
 BOXES = [[(-9.0, -3.0), (-3.5, -3.0), (-3.5, -1.0), (-9.0, -1.0)], [(5.0, -3.0), (9.0, -3.0), (9.0, -1.0), (5.0, -1.0)]]

@@ -27,7 +27,7 @@ from orchestrator.text.errors import BadInput
 from orchestrator.verdict.summary import summarize
 
 pytest.importorskip("foxglove")
-viewer = pytest.importorskip("viewer", reason="the package websockets is not installed")
+viewer = pytest.importorskip("tests.stream.viewer", reason="the package websockets is not installed")
 K4 = "controller.guo2015.k4"
 
 

@@ -3,7 +3,6 @@
 import shutil
 from pathlib import Path
 
-import c_fmus
 import numpy as np
 import pytest
 
@@ -15,6 +14,7 @@ from orchestrator.sweep.job import Chunk, make_job
 from orchestrator.sweep.study.read_study import read_study
 from orchestrator.sweep.table import Table
 from orchestrator.text.errors import BadInput
+from tests.orchestrator import c_fmus
 
 STUDY = """scenario: their.yaml
 set: {stop_time: 6, expect: not_parked}

@@ -13,7 +13,7 @@ from modelkit.variables import flatten, variables, with_values
 from orchestrator.scenario.models import MODELS
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "fmi"))
-from raw3 import OK, Library3
+from tests.fmi.raw3 import OK, Library3
 
 FUNCTIONS = {
     "Float64": ("Float64", np.float64),

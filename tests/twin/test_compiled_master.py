@@ -4,7 +4,6 @@ import threading
 from typing import Any
 
 import pytest
-from test_same_bits import differing
 
 from orchestrator.cosim import compiled_master
 from orchestrator.cosim.compiled_master import CompiledMaster
@@ -13,6 +12,7 @@ from orchestrator.cosim.master import Master
 from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.session.session import run_scenario
 from orchestrator.text.errors import RunError
+from tests.twin.test_same_bits import differing
 
 NAME = "guo2015-case4-105"
 

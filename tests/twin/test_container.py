@@ -10,8 +10,6 @@ import fmpy
 import numpy as np
 import pytest
 from fmpy.validation import validate_fmu
-from replays import CLibrary, Fmi3
-from test_same_bits import same
 
 from fmus.contents.dependencies import initial_dependencies
 from fmus.contents.variables import shown_variables
@@ -26,10 +24,12 @@ from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.scenario.models import MODELS, models_for
 from orchestrator.session.session import run_scenario
 from orchestrator.text.errors import BadInput
+from tests.twin.replays import CLibrary, Fmi3
+from tests.twin.test_same_bits import same
 from vehicle_fmu import MODEL as VEHICLE
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "fmi"))
-from host import OK, Host
+from tests.fmi.host import OK, Host
 
 pytestmark = pytest.mark.skipif(not can_compile(), reason="needs a C compiler")
 SCENARIOS = (

@@ -17,7 +17,6 @@ from fmpy.ssp.ssd import read_ssd, read_ssv
 from libcosimpy.CosimExecution import CosimExecution
 from libcosimpy.CosimLogging import CosimLogLevel, log_output_level
 from libcosimpy.CosimObserver import CosimObserver
-from toolbox_container import write_container
 
 from fmus.contents.xml_file import as_text
 from fmus.systems.ssp import write_ssp
@@ -27,6 +26,7 @@ from orchestrator.log.read_log import read_log
 from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.session.session import run_scenario
 from orchestrator.text.errors import BadInput
+from tests.twin.toolbox_container import write_container
 
 POSE = ("pose.x", "pose.y", "pose.heading")
 KINDS = ("native", "python")

@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from replays import CLibrary, Fmi3, played
 
 from modelkit.variables import variables
 from orchestrator.cosim.fmu_files import can_compile
@@ -22,6 +21,7 @@ from orchestrator.sweep.study.cases import LabelledScenario, design_of
 from orchestrator.sweep.study.study import Study
 from orchestrator.verdict.measures import Measure, measured
 from orchestrator.verdict.numbers import MEASURES
+from tests.twin.replays import CLibrary, Fmi3, played
 
 SCENARIOS = [name for name in scenario_names() if load_scenario(name, []).models == MODELS]
 """Those of a controller apart, the valet, have their own: tests/valet."""

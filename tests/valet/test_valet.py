@@ -6,7 +6,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from c_model import CModel
 from shapely.geometry import LineString, Polygon
 
 from controller_fmu import MODEL, VALET
@@ -25,6 +24,7 @@ from modelkit.vocabulary import Pose
 from orchestrator.cosim.in_process_slave import InProcessSlave
 from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.session.session import run_scenario
+from tests.compiler.c_model import CModel
 
 STEP_NS = 10_000_000
 BOX = ((4.0, -1.0), (6.0, -1.0), (6.0, 1.0), (4.0, 1.0))

@@ -6,7 +6,6 @@ from typing import Any
 import numpy as np
 import pytest
 import yaml
-from scenes import CAR, least_clearance, tpcap_folder
 from shapely.geometry import MultiPoint
 
 from benchmarks.bench_valet import ERRORS
@@ -20,6 +19,7 @@ from orchestrator.text.errors import BadInput
 from orchestrator.verdict.geometry import CarOutline
 from orchestrator.verdict.polygons import polygon_clearance
 from orchestrator.verdict.summary import summarize
+from tests.planning.scenes import CAR, least_clearance, tpcap_folder
 
 pytestmark = pytest.mark.skipif(not can_compile(), reason="FMUs without Python need a C compiler: pip install ziglang")
 TPCAP = pytest.mark.skipif(tpcap_folder() is None, reason="TPCAP's cases are not here")

@@ -6,8 +6,6 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from host import Host
-from raw import OK, Library, state_pointer
 
 from controller_fmu import VALET
 from controller_fmu.planning.plan_store import PlanStore
@@ -19,6 +17,8 @@ from fmus.python import fmu as python_fmu
 from modelkit.store import size_of
 from modelkit.variables import with_values
 from orchestrator.scenario.load_scenario import load_scenario
+from tests.fmi.host import Host
+from tests.fmi.raw import OK, Library, state_pointer
 
 pytestmark = pytest.mark.skipif(not can_compile(), reason="FMUs without Python need a C compiler: pip install ziglang")
 SHOWN = ("valet.searched", "valet.pieces", "valet.margin", "valet.move.pieces[1].length", "steering_wheel_request")

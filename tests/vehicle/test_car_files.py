@@ -5,11 +5,11 @@ from typing import Any
 
 import pytest
 import yaml
-from cars import CARS, double_track_car, single_track_car
 
 from modelkit.variables import flatten, variables, with_values
 from orchestrator.scenario.files import car_names
 from orchestrator.scenario.load_scenario import load_scenario
+from tests.vehicle.cars import CARS, double_track_car, single_track_car
 from vehicle_fmu.interface import Body, VehicleParams
 from vehicle_fmu.usable import is_usable
 

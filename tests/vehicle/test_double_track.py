@@ -4,7 +4,6 @@ import math
 from typing import Any
 
 import pytest
-from cars import CARS, double_track_car, multi_body_yaw_rate
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -12,6 +11,7 @@ from modelkit.car import Car
 from modelkit.maths import clamp
 from modelkit.variables import flatten
 from modelkit.vocabulary import Pose
+from tests.vehicle.cars import CARS, double_track_car, multi_body_yaw_rate
 from vehicle_fmu.bodies.chassis import Build, ChassisParams, Motion, RoadParams, Stance
 from vehicle_fmu.bodies.double_track import (
     DoubleTrackParams,

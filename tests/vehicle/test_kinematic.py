@@ -4,13 +4,13 @@ import math
 from typing import Any
 
 import pytest
-from cars import CARS
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from vehiclemodels.vehicle_dynamics_ks import vehicle_dynamics_ks
 
 from modelkit.car import CarSteering
 from modelkit.vocabulary import Pose
+from tests.vehicle.cars import CARS
 from vehicle_fmu.bodies.kinematic import KinematicInput, move
 from vehicle_fmu.drive import change_speed
 from vehicle_fmu.interface import DriveParams

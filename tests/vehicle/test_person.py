@@ -4,9 +4,9 @@ import math
 from typing import Any
 
 import pytest
-from test_vehicle import BODIES, drive, params, prompted
 
 from modelkit.vocabulary import Gear, Prompt
+from tests.vehicle.test_vehicle import BODIES, drive, params, prompted
 from vehicle_fmu import MODEL
 from vehicle_fmu.interface import PersonInput, VehicleFault, VehicleInput
 

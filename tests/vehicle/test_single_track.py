@@ -5,7 +5,6 @@ import math
 from typing import Any
 
 import pytest
-from cars import CARS, single_track_car
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from vehiclemodels.vehicle_dynamics_st import vehicle_dynamics_st
@@ -13,6 +12,7 @@ from vehiclemodels.vehicle_dynamics_st import vehicle_dynamics_st
 from modelkit.car import Car
 from modelkit.maths import clamp, sign
 from modelkit.vocabulary import Pose
+from tests.vehicle.cars import CARS, single_track_car
 from vehicle_fmu.bodies.chassis import (
     GRAVITY,
     Build,

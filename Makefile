@@ -35,7 +35,7 @@ lint: $(VENV)/.test
 	$(BIN)/ruff format --check .
 
 types: $(VENV)/.test
-	$(BIN)/mypy modelkit vehicle_fmu controller_fmu fmus orchestrator apa_cosim
+	$(BIN)/mypy modelkit vehicle_fmu controller_fmu fmus orchestrator apa_cosim tests
 
 bench: $(VENV)/.test ## Measure speed, as ratios side by side in one run
 	$(BIN)/python -m benchmarks

@@ -24,7 +24,7 @@ from orchestrator.verdict.logged import logged
 from orchestrator.verdict.summary import Summary, summarize
 
 if TYPE_CHECKING:
-    import pandas as pd  # type: ignore[import-untyped]
+    import pandas as pd
     from matplotlib.figure import Figure
 
 __all__ = ["Run", "load_scenario", "read_log", "run", "scenario_names"]

@@ -18,7 +18,7 @@ from orchestrator.text.errors import RunError, suggestion
 from orchestrator.text.owned import owned
 
 if TYPE_CHECKING:
-    import pandas as pd  # type: ignore[import-untyped]
+    import pandas as pd
 
 
 class StudyTable:

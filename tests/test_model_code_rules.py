@@ -11,8 +11,10 @@ from orchestrator.scenario.models import MODELS
 
 ROOT = Path(__file__).parents[1]
 ROOMS = ("modelkit", "vehicle_fmu", "controller_fmu")
-NO_MODEL_CODE = ("modelkit/model.py", "modelkit/variables.py", "modelkit/connections.py", "modelkit/terminals.py")
-NO_MODEL_CODE += ("modelkit/store.py", "modelkit/assembly.py", "modelkit/states.py")
+NO_MODEL_CODE = (
+    *("modelkit/model.py", "modelkit/variables.py", "modelkit/connections.py", "modelkit/terminals.py"),
+    *("modelkit/store.py", "modelkit/assembly.py", "modelkit/states.py"),
+)
 STANDARD = {"math", "typing", "enum"}
 KIT = {
     "modelkit.car",

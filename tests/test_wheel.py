@@ -126,7 +126,7 @@ def test_a_controller_of_ones_own_and_a_study_from_the_wheel(full: Path, tmp_pat
     assert installed(full) == before
     code = "import orchestrator, apa_cosim; print(orchestrator.__file__, apa_cosim.__file__)"
     clean = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
-    words = [full.with_name("python"), "-c", code]
+    words = [str(full.with_name("python")), "-c", code]
     done = subprocess.run(words, cwd=tmp_path, env=clean, capture_output=True, text=True, check=True)
     assert all(str(full.parents[1]) in file for file in done.stdout.split())
 

@@ -14,8 +14,8 @@ import zlib
 from collections.abc import Callable, Sequence
 from typing import Any, ClassVar, NamedTuple
 
-from pythonfmu.enums import Fmi2Status  # type: ignore[import-untyped]
-from pythonfmu.fmi2slave import Fmi2Slave  # type: ignore[import-untyped]
+from pythonfmu.enums import Fmi2Status
+from pythonfmu.fmi2slave import Fmi2Slave
 
 from fmus.python.binary import keep, pin_thread, tidy_path
 from fmus.python.layout import Layout, Values, picker

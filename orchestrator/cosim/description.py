@@ -7,7 +7,7 @@ from enum import IntEnum
 from pathlib import Path
 
 from fmpy.model_description import ModelDescription, ModelVariable, read_model_description
-from lxml import etree  # type: ignore[import-untyped]
+from lxml import etree
 
 from modelkit.model import Model
 from modelkit.signal import Role, Signal

@@ -4,8 +4,8 @@ import warnings
 from typing import Any, NamedTuple
 
 import numpy as np
-from scipy.special import ndtr, ndtri  # type: ignore[import-untyped]
-from scipy.stats import qmc  # type: ignore[import-untyped]
+from scipy.special import ndtr, ndtri
+from scipy.stats import qmc
 
 from orchestrator.cosim.slave import Array
 from orchestrator.hunt.rare import LAST_SEED
@@ -72,7 +72,7 @@ def downhill(subject: Subject, start: Array, budget: int, seed: int) -> list[See
 
     Each run has noise of its own: the seeds are searched with the ranges.
     """
-    import cma  # type: ignore[import-untyped]  # slow to import
+    import cma  # slow to import
 
     size = len(start)
     rng = np.random.default_rng([seed, 3])

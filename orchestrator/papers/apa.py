@@ -4,7 +4,7 @@ import math
 from pathlib import Path
 
 import numpy as np
-from scipy.interpolate import splev, splrep  # type: ignore[import-untyped]
+from scipy.interpolate import splev, splrep
 
 from controller_fmu.apa.around.surroundings import shape_of
 from controller_fmu.apa.chart import Mode

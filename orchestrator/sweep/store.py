@@ -13,8 +13,8 @@ import shutil
 from pathlib import Path
 from typing import Any
 
-import pyarrow as pa  # type: ignore[import-untyped]
-import pyarrow.parquet as pq  # type: ignore[import-untyped]
+import pyarrow as pa
+import pyarrow.parquet as pq
 
 from fmus.files import whole, write_whole
 from orchestrator.sweep.columns import TableColumn

@@ -17,7 +17,7 @@ def clopper_pearson(events: int, count: int, confidence: float = 0.95) -> tuple[
 
 
 def _interval(events: int, count: int, confidence: float, method: str) -> tuple[float, float]:
-    from scipy.stats import binomtest  # type: ignore[import-untyped]  # slow to import
+    from scipy.stats import binomtest  # slow to import
 
     if count == 0:
         return 0.0, 1.0

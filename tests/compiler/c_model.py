@@ -15,7 +15,10 @@ from fmus.native.compilers import FLAGS, find_compiler
 WARNINGS = ("-pedantic", "-Wall", "-Wextra", "-Wconversion", "-Wno-unused-parameter", "-Werror")
 ZIG = find_compiler("zig")
 COMPILER = find_compiler("gcc") if shutil.which("gcc") else ZIG
-CELLS = {"double": ctypes.c_double, "float": ctypes.c_float, "int32_t": ctypes.c_int32, "int16_t": ctypes.c_int16}
+CELLS: dict[str, Any] = {
+    **{"double": ctypes.c_double, "float": ctypes.c_float},
+    **{"int32_t": ctypes.c_int32, "int16_t": ctypes.c_int16},
+}
 SCALARS = {FLOAT: ctypes.c_double, INT: ctypes.c_int64, BOOL: ctypes.c_bool}
 
 
@@ -27,7 +30,7 @@ def compiled(
     return ctypes.CDLL(str(folder / f"{name}.so"))
 
 
-_structures = {}
+_structures: dict[Any, Any] = {}
 
 
 def structure(kind: Any) -> Any:

@@ -648,7 +648,7 @@ def mapped(x: float, y: float, n: int, m: int, p: bool, q: bool) -> Big:
     row = tuple(value * x for value in START.row)
     points = tuple(Point(point.y, y) for point in START.points)
     counts = tuple(i * n % 9 for i in range(3))
-    return Big(row=tuple(min(a, b) for a, b in zip(row, START.row, strict=True)), points=points, counts=counts)
+    return Big(row=tuple(min(a, b) for a, b in zip(row, START.row, strict=True)), points=points, counts=counts)  # type: ignore[arg-type]
 
 
 def names_of_generators(x: float, y: float, n: int, m: int, p: bool, q: bool) -> float:
@@ -727,7 +727,7 @@ class Pair(NamedTuple):
 
     one: Big = Big()
     two: Big = Big(default=3.0)
-    count: int = 0
+    count: int = 0  # type: ignore[assignment]  # tuples have a method count
 
 
 def changed_within(x: float, y: float, n: int, m: int, p: bool, q: bool) -> Pair:
@@ -808,15 +808,15 @@ def results_after(x: float, y: float, n: int, m: int, p: bool, q: bool) -> Big:
 def _turned_out(big: Big, n: int) -> tuple[Big, tuple[float, float, float, float, float], Point]:
     if n == 1:
         return _turned_out_again(big)
-    return big._replace(row=big.row[::-1], at=Point(big.at.y, big.default)), big.row, big.at
+    return big._replace(row=big.row[::-1], at=Point(big.at.y, big.default)), big.row, big.at  # type: ignore[return-value]
 
 
 def _turned_out_again(big: Big) -> tuple[Big, tuple[float, float, float, float, float], Point]:
-    return _marked(big, big.points[1], big.at.x), big.row, big.at
+    return _marked(big, big.points[1], big.at.x), big.row, big.at  # type: ignore[return-value]
 
 
 def _the_other_way(big: Big) -> tuple[tuple[float, float, float, float, float], Big]:
-    return big.row, big._replace(row=big.row[::-1], default=big.row[0])
+    return big.row, big._replace(row=big.row[::-1], default=big.row[0])  # type: ignore[return-value]
 
 
 def pointed_at(x: float, y: float, n: int, m: int, p: bool, q: bool) -> Big:

@@ -66,7 +66,7 @@ def load(text: Any, folder: Any, name: Any) -> Any:
     """Return the module made of ``text``."""
     path = folder / f"{name}.py"
     path.write_text(text)
-    spec = importlib.util.spec_from_file_location(name, path)
+    spec: Any = importlib.util.spec_from_file_location(name, path)
     module = importlib.util.module_from_spec(spec)
     sys.modules[name] = module
     spec.loader.exec_module(module)
@@ -131,5 +131,5 @@ def flat_c(value: Any) -> Any:
     if isinstance(value, ctypes.Array):
         return [scalar for item in value for scalar in flat_c(item)]
     if isinstance(value, ctypes.Structure):
-        return [scalar for name, _ in value._fields_ for scalar in flat_c(getattr(value, name))]
+        return [scalar for name, *_ in value._fields_ for scalar in flat_c(getattr(value, name))]
     return [value]

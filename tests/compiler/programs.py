@@ -1,5 +1,6 @@
 """Hypothesis writes functions of the model language: well typed, of bounded integers, all nested in all."""
 
+from collections.abc import Callable
 from typing import Any
 
 from hypothesis import strategies as st
@@ -61,7 +62,7 @@ class Function:
 
     def __init__(self, draw: Any, helpers: Any, name: Any) -> None:
         self.draw, self.helpers, self.name = draw, helpers, name
-        self.lines = []
+        self.lines: list[str] = []
         self.scope = {"float": ["x", "y"], "int": ["n", "m"], "bool": ["p", "q"], "Point": [], "Car": ["CAR"],
                       "Row": ["ROW"], "Fleet": []}  # fmt: skip
         self.fixed = {"CAR", "ROW"}
@@ -214,6 +215,7 @@ class Function:
         self.scope = before
 
     def statement(self, indent: Any, budget: Any, returned: Any, in_loop: Any) -> None:
+        forms: list[Callable[[Any, Any, Any], None]]
         forms = [self.assign, self.assign, self.again, self.again, self.unpack, self.replace, self.update, self.fleet]
         if budget > 0:
             forms += [self.branch, self.branch, self.loop, self.match, self.leave]
@@ -356,7 +358,8 @@ class Function:
 @st.composite
 def programs(draw: Any, functions: Any) -> Any:
     """Return the text of a module with ``functions`` functions of the usual six arguments, and helpers."""
-    texts, helpers = [HEAD], []
+    texts = [HEAD]
+    helpers: list[tuple[str, str, tuple[str, ...]]] = []
     for number in range(functions):
         if number % 3 == 0:
             kinds = {"a": draw(st.sampled_from(KINDS)), "b": draw(st.sampled_from(KINDS)), "c": "float"}

@@ -9,7 +9,7 @@ from fmus.compiler import translate
 from modelkit.variables import flatten
 from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.scenario.models import MODELS
-from orchestrator.session import session
+from orchestrator.session.session import run_scenario
 from tests.compiler.c_model import COMPILER, ZIG, CModel, compiled
 
 SCENARIOS = {
@@ -59,8 +59,8 @@ def watched(model: Any, twin: Any) -> Any:
 @pytest.mark.parametrize("name", SCENARIOS)
 def test_closed_loop_in_c_equals_cpython(name: Any, in_c: Any, monkeypatch: pytest.MonkeyPatch) -> None:
     for place, model in MODELS.items():
-        monkeypatch.setitem(session.MODELS, place, watched(model, in_c[place]))
-    ran = session.run_scenario(load_scenario(name, list(SCENARIOS[name])))
+        monkeypatch.setitem(MODELS, place, watched(model, in_c[place]))
+    ran = run_scenario(load_scenario(name, list(SCENARIOS[name])))
     assert not ran.end.reason.startswith("error"), ran.end
     assert all(twin.steps > 100 for twin in in_c.values())
 

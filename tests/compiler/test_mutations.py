@@ -63,7 +63,7 @@ def donors() -> Any:
 
 def bound(node: Any) -> Any:
     if isinstance(node, ast.Assign):
-        return [target.id for target in node.targets]
+        return [target.id for target in node.targets if isinstance(target, ast.Name)]
     return [alias.asname or alias.name for alias in node.names] if hasattr(node, "names") else [node.name]
 
 
@@ -95,7 +95,7 @@ def mutant(choose: Any, name: Any, parts: Any) -> Any:
 
 def translated(mutants: Any, head: Any, folder: Any, seed: Any) -> Any:
     """Return the mutants that are not refused, compiled; and the names of those that are."""
-    refused = set()
+    refused: set[str] = set()
     while True:
         text = head + "\n\n\n" + "\n\n\n".join(body for name, body in mutants.items() if name not in refused)
         name = f"mutants_{seed}_{len(refused)}"

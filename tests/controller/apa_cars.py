@@ -4,7 +4,7 @@ import math
 
 from controller_fmu.apa.outline import Shape
 from controller_fmu.apa.slot import Kind, Margins, Site, Slot, site_of
-from controller_fmu.apa.ways.move import end_of
+from controller_fmu.apa.ways.move import Move, end_of
 from controller_fmu.apa.ways.planner import NOTHING, SEARCHING, new_search, search_on
 from controller_fmu.common.slot_frame import to_slot
 from modelkit.vocabulary import Pose
@@ -39,9 +39,10 @@ def start_of(slot: Slot, site: Site, car: Shape, past_b: float, beside: float, h
     return to_slot(pose, site.frame)
 
 
-def park_in_thought(start: Pose, site: Site, car: Shape) -> tuple[list, Pose]:
+def park_in_thought(start: Pose, site: Site, car: Shape) -> tuple[list[Move], Pose]:
     """Return the moves (each driven exactly) and the last pose; no moves if nothing was found."""
-    pose, moves = start, []
+    pose = start
+    moves: list[Move] = []
     for _ in range(12):
         if math.hypot(pose.y, pose.heading) < 0.01 and site.x_low - 1e-6 <= pose.x <= site.x_high + 1e-6:
             return moves, pose

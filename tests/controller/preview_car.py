@@ -4,7 +4,8 @@ import math
 from typing import NamedTuple
 
 from controller_fmu.preview.params import PreviewParams
-from controller_fmu.preview.system import PreviewSignals, PreviewState, preview_step
+from controller_fmu.preview.signals import PreviewSignals
+from controller_fmu.preview.system import PreviewState, preview_step
 from modelkit.vocabulary import Pose
 
 MASS, INERTIA, FRONT, REAR, STIFFNESS = 560.0, 1040.0, 1.13, 0.76, 32000.0

@@ -16,7 +16,7 @@ def random_problem(rng: np.random.Generator) -> Problem:
     time, wheelbase = rng.uniform(0.05, 0.3), rng.uniform(2.0, 3.5)
     lock, rate, corridor = rng.uniform(0.3, 0.7), rng.uniform(0.2, 1.5), rng.uniform(0.02, 0.3)
     costs = (rng.uniform(1, 200), rng.uniform(0.1, 50), rng.uniform(0, 1), rng.uniform(0.1, 50), rng.uniform(10, 1e4))
-    weights = Weights(*map(float, costs), float(corridor), float(lock), float(rate * time))
+    weights = Weights._make([*map(float, costs), float(corridor), float(lock), float(rate * time)])
     stages, angle = [], rng.uniform(-lock, lock)
     for _ in range(STAGES):
         angle = float(np.clip(angle + rng.uniform(-0.1, 0.1), -lock, lock))

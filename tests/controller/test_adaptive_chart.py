@@ -4,8 +4,9 @@ from typing import Any
 
 import pytest
 
-from controller_fmu.adaptive.chart import ANY, TRANSITIONS, Guard, transition
+from controller_fmu.adaptive.chart import TRANSITIONS, Guard, transition
 from controller_fmu.adaptive.phases import AdaptivePhase
+from controller_fmu.common.chart import ANY
 
 ENDS = {AdaptivePhase.PARKED, AdaptivePhase.FAILED, AdaptivePhase.TAKEOVER}
 BUSY = [phase for phase in AdaptivePhase if phase not in ENDS]
@@ -33,7 +34,9 @@ def test_takeover_wins_then_fault(phase: Any) -> None:
 
 def test_no_dead_state() -> None:
     edges = {(row[0], row[2]) for row in TRANSITIONS if row[0] != ANY}
-    reached, new = {AdaptivePhase.STANDBY}, {AdaptivePhase.STANDBY}
+    reached: set[int] = set()
+    new: set[int] = {AdaptivePhase.STANDBY}
+    reached |= new
     while new:
         new = {t for s, t in edges if s in new} - reached
         reached |= new

@@ -18,7 +18,8 @@ TURN = turn_of(0.15, 0.15, 0.8)
 
 def drive_along(move: Move, start: Pose, k1: float = 2.0, k2: float = 2.4) -> tuple[list[float], Pose]:
     """Return the lateral errors every centimetre, and the last pose, of an ideal car."""
-    pose, way, errors = start, 0.0, []
+    pose, way = start, 0.0
+    errors: list[float] = []
     while True:
         tracked = track(move, Leg(0.0, length_of(move)), way, pose, ApaDriveParams(k1=k1, k2=k2), WHEELBASE)
         way = tracked.way

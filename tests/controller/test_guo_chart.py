@@ -4,7 +4,8 @@ import itertools
 
 import pytest
 
-from controller_fmu.guo2015.chart import ANY, KEEP, TRANSITIONS, Guard, transition
+from controller_fmu.common.chart import ANY
+from controller_fmu.guo2015.chart import KEEP, TRANSITIONS, Guard, transition
 from controller_fmu.guo2015.phases import DIRECTION_OF_PHASE, GuoPhase
 from controller_fmu.guo2015.prompts import PROMPT_OF_PHASE
 

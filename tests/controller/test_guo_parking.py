@@ -24,7 +24,7 @@ CASE_4 = {
     "driver.obeys_slow_down": False,
 }
 PROMPTS = {"guo2015.prompting.reaction": 0.0}
-initialize, step = CONTROLLER.initialize, CONTROLLER.step
+initialize, step = CONTROLLER.initialize, CONTROLLER.stepper(None)
 TARGET = (-7.608, -3.056)
 
 

@@ -1,5 +1,7 @@
 """Each limit of time ends a drive with its reason just past it, not just before; so do the thresholds of a takeover."""
 
+from typing import Any
+
 import pytest
 
 from controller_fmu.apa import watch as apa
@@ -7,6 +9,7 @@ from controller_fmu.apa.manoeuvre_chart import Step
 from controller_fmu.apa.params import Longitudinal
 from controller_fmu.common import monitor
 from controller_fmu.common.monitor import Command
+from controller_fmu.common.phases import Expected
 from controller_fmu.common.steering_monitor import SteeringWatch
 from controller_fmu.interface import ControllerInput, ControllerParams, Reason
 from modelkit.vocabulary import Gear
@@ -42,9 +45,10 @@ def around(seconds: float) -> tuple[int, int]:
 @pytest.mark.parametrize("clock", ASSIST)
 def test_the_assist_fails_just_past_each_limit(clock: str) -> None:
     seconds, reason = ASSIST[clock]
-    found = [apa.reason_to_fail(apa.Watch(**{clock: ns}), DRIVING, True, PARAMS) for ns in around(seconds)]
+    watches: list[Any] = [{clock: ns} for ns in around(seconds)]
+    found = [apa.reason_to_fail(apa.Watch(**watch), DRIVING, True, PARAMS) for watch in watches]
     assert found == [Reason.NONE, reason]
-    parked = apa.reason_to_fail(apa.Watch(**{clock: around(seconds)[1]}), DRIVING, False, PARAMS)
+    parked = apa.reason_to_fail(apa.Watch(**watches[1]), DRIVING, False, PARAMS)
     assert parked == (reason if clock in ("blind", "frozen") else Reason.NONE)
 
 
@@ -58,15 +62,16 @@ def test_a_wheel_that_is_off_is_what_the_assist_waits_for() -> None:
 @pytest.mark.parametrize("clock", OTHERS)
 def test_the_other_systems_fail_just_past_each_limit(clock: str) -> None:
     seconds, reason = OTHERS[clock]
-    expected = monitor.Expected(begun=True, steering=False)
-    states = [monitor.MonitorState(**{clock: ns}) for ns in around(seconds)]
+    expected = Expected(begun=True, steering=False)
+    clocks: list[Any] = [{clock: ns} for ns in around(seconds)]
+    states = [monitor.MonitorState(**given) for given in clocks]
     found = [monitor.reason_to_fail(state, DRIVING, expected, 0, 0, PARAMS) for state in states]
     assert found == [Reason.NONE, reason]
 
 
 @pytest.mark.parametrize("begun", [True, False])
 def test_the_other_systems_end_in_time(begun: bool) -> None:
-    expected = monitor.Expected(begun=begun, steering=False)
+    expected = Expected(begun=begun, steering=False)
     found = [
         monitor.reason_to_fail(monitor.MonitorState(), DRIVING, expected, ns, 0, PARAMS)
         for ns in around(LIMIT.duration)

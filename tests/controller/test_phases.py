@@ -8,7 +8,7 @@ import pytest
 from controller_fmu import ADAPTIVE, APA, HSIC, MODEL, SYSTEM_MODELS, SYSTEMS, VALET
 from controller_fmu.adaptive.phases import AdaptivePhase
 from controller_fmu.common.phases import CommonPhase, is_over, is_parking
-from controller_fmu.interface import Phase
+from controller_fmu.interface import Phase, System
 from controller_fmu.valet.signals import ValetOutput
 from fmus.contents.description3 import model_description3
 from fmus.contents.variables import describe, fmi_variables
@@ -44,7 +44,7 @@ def test_over_parking_and_standby() -> None:
 
 
 @pytest.mark.parametrize("system", SYSTEM_MODELS)
-def test_a_controller_of_one_system_names_that_systems_phases(system: int) -> None:
+def test_a_controller_of_one_system_names_that_systems_phases(system: System) -> None:
     model: Model[Any, Any, Any, Any] = SYSTEM_MODELS[system]
     own = next(dict(item.states)["phase"] for item in SYSTEMS.systems if system in item.values)
     assert phase_of(model) is own

@@ -78,7 +78,7 @@ def test_geometry_and_kinematics_agree_at_constant_distance() -> None:
 
 def test_motion_of_pure_translation_and_rotation() -> None:
     moved = motion(Pose(1.0, 2.0, math.pi / 2), Pose(1.0, 3.0, math.pi / 2))
-    assert moved == Displacement(pytest.approx(1.0), pytest.approx(0.0), pytest.approx(0.0))
+    assert moved == (pytest.approx(1.0), pytest.approx(0.0), pytest.approx(0.0))
     turned = motion(Pose(0.0, 0.0, 3.1), Pose(0.0, 0.0, -3.1))
     assert turned.turned == pytest.approx(2 * math.pi - 6.2)
 
@@ -88,4 +88,4 @@ def test_steady_curve_of_equation_two_gives_curvature_times_distance_plus_sidesl
     vx, vy, kappa, l1, dt = 5.4, 0.05, 0.02, 3.5, 0.01
     eps = kappa * l1 + vy / vx
     sight = integrate_sight(PreviewErrors(0.0, eps), Displacement(vx * dt, vy * dt, vx * kappa * dt), kappa, l1)
-    assert sight == PreviewErrors(pytest.approx(0.0, abs=1e-12), pytest.approx(eps))
+    assert sight == (pytest.approx(0.0, abs=1e-12), pytest.approx(eps))

@@ -20,7 +20,7 @@ APART = {System.VALET}
 def after(params: Any, dts: Any) -> Any:
     state, out = MODEL.initialize(params)
     for dt_ns in dts:
-        state, out = MODEL.step(state, ControllerInput(), params, dt_ns)
+        state, out = MODEL.stepper(None)(state, ControllerInput(), params, dt_ns)
     return state, out
 
 

@@ -30,7 +30,7 @@ poses = st.builds(
 )
 
 
-def guo() -> tuple[object, TwoArcPath]:
+def guo() -> tuple[SlotFrame, TwoArcPath]:
     planned = plan(Pose(0.0, 0.0, 0.0), Pose(-7.608, -3.056, 0.0), 5.5, SMALLEST)
     return planned.frame, planned.path
 
@@ -41,16 +41,16 @@ def test_equation_9_is_one_instance() -> None:
     assert path.radius == pytest.approx(5.5, abs=2e-3)  # print's arcs overlap by 2 mm; ours touch
     for x in [-0.5 * k for k in range(1, 15)]:
         printed = -5.5 + math.sqrt(30.25 - x * x) if x > -3.8 else 2.44 - math.sqrt(30.25 - (x + 7.61) ** 2)
-        at = to_slot(Pose(x, 0.0, 0.0), frame)  # type: ignore[arg-type]
+        at = to_slot(Pose(x, 0.0, 0.0), frame)
         reference = reference_at(path, at.x, 0)
-        world = to_world(Pose(at.x, reference.y, reference.heading), frame)  # type: ignore[arg-type]
+        world = to_world(Pose(at.x, reference.y, reference.heading), frame)
         assert world.y == pytest.approx(printed, abs=4e-3)
 
 
 @pytest.mark.parametrize("leg", TABLE_2)
-def test_table_2_follows_from_the_geometry(leg: int) -> None:
+def test_table_2_follows_from_the_geometry(leg: GuoPhase) -> None:
     frame, path = guo()
-    point = to_world(point_of_leg(leg, path, GuoParams()), frame)  # type: ignore[arg-type]
+    point = to_world(point_of_leg(leg, path, GuoParams()), frame)
     x, y, heading = TABLE_2[leg]
     assert (point.x, point.y) == pytest.approx((x, y), abs=0.01)
     assert point.heading == pytest.approx(heading, abs=2e-3)

@@ -33,7 +33,7 @@ PAGES = sorted([ROOT / "README.md", *(ROOT / "docs").glob("*.md")], key=lambda p
 
 
 def load(name: str) -> Any:
-    spec = importlib.util.spec_from_file_location(f"docs_{name}", ROOT / "docs" / f"{name}.py")
+    spec: Any = importlib.util.spec_from_file_location(f"docs_{name}", ROOT / "docs" / f"{name}.py")
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
     return module
@@ -219,7 +219,7 @@ def test_pages_that_are_driven_stand_where_a_law_is_explained(tmp_path: Path, mo
 
 
 def test_search_finds_the_parts_of_a_name() -> None:
-    separator = re.search(r"separator: '(.*)'", (ROOT / "mkdocs.yml").read_text(encoding="utf-8"))[1]
+    (separator,) = re.findall(r"separator: '(.*)'", (ROOT / "mkdocs.yml").read_text(encoding="utf-8"))
     assert re.split(separator, "vehicle.car.steering.rate_limit") == ["vehicle", "car", "steering", "rate_limit"]
     assert re.split(separator, "ultrasonic[3]")[:2] == ["ultrasonic", "3"]
 

@@ -16,7 +16,7 @@ PAGE = (DOCS / "embedded.md").read_text(encoding="utf-8")
 
 @pytest.fixture(scope="module")
 def script() -> Any:
-    spec = importlib.util.spec_from_file_location("docs_embedded", DOCS / "embedded.py")
+    spec: Any = importlib.util.spec_from_file_location("docs_embedded", DOCS / "embedded.py")
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
     return module

@@ -13,7 +13,7 @@ SNIPPETS = re.findall(r"^```python\n(.*?)^```", (DOCS / "python.md").read_text(e
 
 
 def test_the_notebook_runs_and_says_what_it_is_about(capsys: pytest.CaptureFixture[str]) -> None:
-    names = {}
+    names: dict[str, Any] = {}
     for cell in CELLS:
         if cell["cell_type"] == "code":
             exec("".join(cell["source"]), names)

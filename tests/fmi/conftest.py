@@ -1,3 +1,4 @@
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -22,13 +23,13 @@ def python_fmus(tmp_path_factory: pytest.TempPathFactory) -> Any:
     return {name: build(model, folder, front) for name, model in MODELS.items()}
 
 
-class NativeFmus(dict):
+class NativeFmus(dict[str, Path]):
     """Path of each model's native FMU for this machine, built when it is first asked for."""
 
     def __init__(self, folder: Any, fmi: Any = 2) -> None:
         self.folder, self.fmi = folder, fmi
 
-    def __missing__(self, name: Any) -> Any:
+    def __missing__(self, name: str) -> Path:
         self[name] = native_fmu.build(ALL_MODELS[name], self.folder, [host()], fmi=self.fmi)
         return self[name]
 

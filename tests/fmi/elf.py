@@ -28,7 +28,8 @@ def dynamic(content: Any) -> Any:
         return content[strings + at : content.index(b"\0", strings + at)].decode()
 
     needed = [text(value) for tag, value in entries if tag == NEEDED]
-    undefined, defined = [], []
+    undefined: list[str] = []
+    defined: list[str] = []
     for place in range(symbols + 24, min(strings, len(content)) if strings > symbols else len(content), 24):
         name, info, _, section = struct.unpack_from("<IBBH", content, place)
         if info >> 4 not in (1, 2):

@@ -29,7 +29,7 @@ class Host:
         self.description = fmpy.read_model_description(self.folder)
         self.refs = {v.name: v.valueReference for v in self.description.modelVariables}
         self.types = {v.name: v.type for v in self.description.modelVariables}
-        self.log = []
+        self.log: list[tuple[int, str, str]] = []
         self.callbacks = fmi2CallbackFunctions()
         self.callbacks.logger = fmi2CallbackLoggerTYPE(self._logger)
         self.callbacks.allocateMemory = defaultCallbacks.allocateMemory
@@ -68,7 +68,7 @@ class Host:
                 setter([self.refs[name] for name in names], [values[name] for name in names])
 
     def get(self, names: Any) -> Any:
-        found = {}
+        found: dict[str, Any] = {}
         for fmi_type in ("Real", "Integer", "Boolean"):
             chosen = [name for name in names if self.types[name] == fmi_type]
             if chosen:

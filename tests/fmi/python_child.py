@@ -16,7 +16,8 @@ TOLD = json.loads(sys.argv[1])
 FOLDER = Path(TOLD["folder"])
 DLL = ctypes.CDLL(str(FOLDER / "binaries/linux64/Toy.so"))
 DLL.fmi2Instantiate.restype = c_void_p
-HEARD = []
+HEARD: list[tuple[int, str]] = []
+NOTHING: Any = None
 
 
 def call(function: Any, *arguments: Any) -> Any:
@@ -31,13 +32,13 @@ def asked_for_nothing(component: Any) -> Any:
 
 def main() -> None:
     heard = LOGGER(lambda _, name, status, category, text: HEARD.append((status, text.decode())))
-    logger = heard if TOLD.get("logger", True) else ctypes.cast(None, LOGGER)
+    logger: Any = heard if TOLD.get("logger", True) else ctypes.cast(NOTHING, LOGGER)
     callbacks = Callbacks(logger, None, None, None, None)
     guid = TOLD.get("guid", (FOLDER / "resources/guid.txt").read_text())
     functions = byref(callbacks) if TOLD.get("functions", True) else None
     name, uri = TOLD.get("name", "toy"), TOLD.get("uri")
     strings = [text and text.encode() for text in (name, guid, uri)]
-    found = {"heard": HEARD}
+    found: dict[str, Any] = {"heard": HEARD}
     component = c_void_p(call("Instantiate", strings[0], 1, strings[1], strings[2], functions, 0, 1))
     found["made"] = bool(component)
     if component:

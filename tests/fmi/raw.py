@@ -10,7 +10,7 @@ from fmpy import read_model_description
 OK, WARNING, DISCARD, ERROR, FATAL = range(5)
 CO_SIMULATION = 1
 LOGGER = CFUNCTYPE(None, c_void_p, c_char_p, c_int, c_char_p, c_char_p)
-NUMBER = {"Real": c_double, "Integer": c_int, "Boolean": c_int}
+NUMBER: dict[str, Any] = {"Real": c_double, "Integer": c_int, "Boolean": c_int}
 
 
 class Callbacks(ctypes.Structure):
@@ -38,7 +38,7 @@ class Library:
         self.dll.fmi2Instantiate.restype = c_void_p
         self.dll.fmi2GetVersion.restype = c_char_p
         self.dll.fmi2GetTypesPlatform.restype = c_char_p
-        self.messages = []
+        self.messages: list[tuple[int, str, str]] = []
         self.callbacks = Callbacks(LOGGER(self._log), None, None, None, None)
 
     def _log(self, _environment: Any, name: Any, status: Any, category: Any, text: Any) -> None:

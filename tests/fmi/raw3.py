@@ -34,7 +34,7 @@ class Library3:
         for name in ("fmi3InstantiateCoSimulation", "fmi3InstantiateModelExchange"):
             getattr(self.dll, name).restype = c_void_p
         self.dll.fmi3GetVersion.restype = c_char_p
-        self.messages = []
+        self.messages: list[tuple[int, bytes, str]] = []
         self.logger = LOGGER(lambda _, status, category, text: self.messages.append((status, category, text.decode())))
 
     def instantiate(

@@ -11,7 +11,7 @@ from modelkit.signal import Signal
 
 def with_params(**fields: Any) -> Any:
     """Return the toy model with the parameters ``name=(annotation, default)``."""
-    cls = NamedTuple("Params", [(name, hint) for name, (hint, _) in fields.items()])
+    cls: Any = NamedTuple("Params", [(name, hint) for name, (hint, _) in fields.items()])  # type: ignore[misc]
     cls.__new__.__defaults__ = tuple(default for _, default in fields.values())
     return toy_model.MODEL._replace(params=cls)
 

@@ -42,7 +42,7 @@ def bits(values: Any) -> Any:
 
 def grouped(names: Any, values: Any) -> Any:
     """Return name in FMI 3.0 -> elements, of flat ``values``."""
-    found = {}
+    found: dict[str, list[Any]] = {}
     for name, value in zip(names, values, strict=True):
         found.setdefault(INDEX.sub("", name), []).append(value)
     return found

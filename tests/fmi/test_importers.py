@@ -11,6 +11,7 @@ import toy_model
 
 from controller_fmu import MODEL as CONTROLLER
 from controller_fmu import SYSTEM_MODELS
+from controller_fmu.interface import System
 from fmus.contents.dependencies import find_dependencies, initial_dependencies
 from fmus.contents.description import model_description
 from fmus.contents.variables import fmi_variables, limits, mode_types
@@ -93,7 +94,7 @@ def test_every_numeric_parameter_has_a_range(model: Any) -> None:
 
 @everywhere
 def test_every_mode_has_a_declared_type_with_the_names_of_its_states(model: Any) -> None:
-    root = ElementTree.fromstring(xml(model))
+    root: Any = ElementTree.fromstring(xml(model))
     types = {node.get("name"): node for node in root.find("TypeDefinitions")}
     names = mode_types(model)
     assert len(set(names.values())) == len(names)
@@ -116,8 +117,8 @@ def test_every_mode_has_a_declared_type_with_the_names_of_its_states(model: Any)
 
 
 def test_two_modes_of_one_name_are_told_apart() -> None:
-    others: Any = IntEnum("Mode", {"OFF": 0, "ON": 1}, module="engine.model")
-    model = toy_model.MODEL._replace(view=View(states=(("mode", others),)))
+    Mode = IntEnum("Mode", {"OFF": 0, "ON": 1}, module="engine.model")
+    model = toy_model.MODEL._replace(view=View(states=(("mode", Mode),)))
     assert set(mode_types(toy_model.MODEL).values()) == {"Mode"}
     assert set(mode_types(model).values()) == {"toy_model.Mode", "engine.Mode"}
 
@@ -127,7 +128,7 @@ def test_two_modes_of_one_name_are_told_apart() -> None:
 
 def indexed(model: Any) -> Any:
     """Return (output, its dependencies) of the description, by name."""
-    root = ElementTree.fromstring(xml(model))
+    root: Any = ElementTree.fromstring(xml(model))
     names = [node.get("name") for node in root.find("ModelVariables")]
     return {
         names[int(node.get("index")) - 1]: {names[int(place) - 1] for place in node.get("dependencies").split()}
@@ -156,7 +157,7 @@ def test_few_dependencies_take_a_small_part_of_the_description(model: Any, most:
     assert len(structure) < 0.15 * len(content)
 
 
-@pytest.mark.parametrize("model", [VEHICLE, CONTROLLER, SYSTEM_MODELS[5]], ids=lambda model: model.name)
+@pytest.mark.parametrize("model", [VEHICLE, CONTROLLER, SYSTEM_MODELS[System.APA]], ids=lambda model: model.name)
 def test_what_changes_an_output_at_the_start_is_named(model: Any) -> None:
     """Points and moves of its own, drawn otherwise than by the search."""
     draw = random.Random(99)
@@ -195,7 +196,7 @@ def drawn(draw: Any, item: Any, now: Any) -> Any:
 
 
 def test_the_search_gives_the_same_each_time() -> None:
-    assert find_dependencies(SYSTEM_MODELS[5]) == find_dependencies(SYSTEM_MODELS[5])
+    assert find_dependencies(SYSTEM_MODELS[System.APA]) == find_dependencies(SYSTEM_MODELS[System.APA])
 
 
 def test_outputs_that_nothing_changes_at_the_start_depend_on_nothing() -> None:

@@ -65,10 +65,10 @@ def rows(place: Any, fmu: Any, folder: Any, steps: Any, size: Any, *words: Any) 
     libraries = [] if place.suffix else ["-ldl", "-lm"]
     command = [sys.executable, "-m", "ziglang", "cc", "-target", place.target, *flags, *libraries]
     subprocess.run(command, check=True, capture_output=True)
-    words = [str(steps), str(size), *(str(item.valueReference) for item in outputs), *words]
+    given = [str(steps), str(size), *(str(item.valueReference) for item in outputs), *words]
     env = {**os.environ, "WINEPREFIX": str(folder / "wine"), "WINEDEBUG": "-all"}
     done = subprocess.run(
-        [*place.command, str(program), "run", str(library), description.guid, *words],
+        [*place.command, str(program), "run", str(library), description.guid, *given],
         capture_output=True, text=True, env=env, check=False, timeout=300,
     )  # fmt: skip
     assert done.returncode == 0, (done.returncode, done.stdout[-500:], done.stderr[-500:])

@@ -71,7 +71,7 @@ def test_description_is_the_python_fmus_but_for_guid_tool_and_sources(
 ) -> None:
     def text(path: Any) -> Any:
         with zipfile.ZipFile(path) as archive:
-            root = ElementTree.fromstring(archive.read("modelDescription.xml"))
+            root: Any = ElementTree.fromstring(archive.read("modelDescription.xml"))
         for sources in root.findall("CoSimulation/SourceFiles"):
             root.find("CoSimulation").remove(sources)
         for name in ("guid", "generationTool"):
@@ -84,7 +84,7 @@ def test_description_is_the_python_fmus_but_for_guid_tool_and_sources(
 def test_checkers_find_nothing(native_fmus: Any, model: Any) -> None:
     path = str(native_fmus[model.name])
     assert validate_fmu(path) == []
-    command = [Path(sys.executable).parent / "fmutool", "-input", path, "-check"]
+    command = [str(Path(sys.executable).parent / "fmutool"), "-input", path, "-check"]
     result = subprocess.run(command, capture_output=True, text=True, check=True)
     text = result.stdout + result.stderr
     assert "No semantic error" in text

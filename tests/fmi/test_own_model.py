@@ -162,7 +162,8 @@ def test_the_c_library_gives_the_bits_of_the_fmu(built: Any, tmp_path: Path) -> 
         .replace("    /* here is", "    model.inputs.inflow = 0.02;\n    /* here is")
     )
     (built / "c" / "main.c").write_text(text)
-    command = [compiler, "-std=c99", "-O2", "-ffp-contract=off", "main.c", "Tank.c", "-lm", "-o", tmp_path / "example"]
+    program = str(tmp_path / "example")
+    command = [compiler, "-std=c99", "-O2", "-ffp-contract=off", "main.c", "Tank.c", "-lm", "-o", program]
     subprocess.run(command, cwd=built / "c", check=True)
     printed = subprocess.run([tmp_path / "example"], check=True, capture_output=True, text=True).stdout
     rows = [line.split() for line in printed.splitlines()]

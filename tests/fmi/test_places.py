@@ -3,6 +3,7 @@
 import os
 import subprocess
 import sys
+import tempfile
 from pathlib import Path
 from typing import Any
 
@@ -51,7 +52,7 @@ def test_a_variable_names_another_place(installed: Any, tmp_path: Path) -> None:
 def test_without_any_home_it_is_a_folder_of_ones_own(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setattr(places, "__file__", str(tmp_path / "fmus" / "places.py"))
     monkeypatch.setattr(places, "user_cache_path", lambda *_, **__: Path("/proc/nothing"))
-    monkeypatch.setattr(places.tempfile, "gettempdir", lambda: str(tmp_path))
+    monkeypatch.setattr(tempfile, "gettempdir", lambda: str(tmp_path))
     monkeypatch.setattr(places, "can_write", lambda path: str(path).startswith(str(tmp_path / "apa")))
     monkeypatch.delenv("APA_DIST", raising=False)
     folder = places.chosen_folder()
@@ -64,7 +65,7 @@ def test_without_any_home_it_is_a_folder_of_ones_own(monkeypatch: pytest.MonkeyP
 
 @pytest.mark.skipif(not hasattr(os, "getuid"), reason="owners are those of POSIX")
 def test_a_folder_that_others_can_write_to_is_not_ones_own(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    monkeypatch.setattr(places.os, "getuid", lambda: tmp_path.stat().st_uid or 1)
+    monkeypatch.setattr(os, "getuid", lambda: tmp_path.stat().st_uid or 1)
     tmp_path.chmod(0o755)
     assert places.is_own(tmp_path)
     tmp_path.chmod(0o777)

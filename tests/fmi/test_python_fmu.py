@@ -62,7 +62,7 @@ def test_values_read_one_by_one_equal_values_read_at_once(python_fmus: Any, mode
 def test_start_values_are_those_of_the_description(python_fmus: Any, model: Any) -> None:
     with Host(python_fmus[model.name]) as host:
         known = [v for v in host.description.modelVariables if v.start is not None]
-        convert = {"Real": float, "Integer": int, "Boolean": lambda text: text == "true"}
+        convert: dict[str, Any] = {"Real": float, "Integer": int, "Boolean": lambda text: text == "true"}
         expected = [convert[v.type](v.start) for v in known]
         assert host.get([v.name for v in known]) == expected
 

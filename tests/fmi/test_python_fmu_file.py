@@ -68,7 +68,7 @@ def test_a_build_in_another_process_is_byte_identical(python_fmus: Any, tmp_path
 
 
 def test_an_unchanged_build_is_left_alone(tmp_path: Path) -> None:
-    seen = []
+    seen: list[Any] = []
     first = build_all(tmp_path, progress=seen.append)
     stamps = [built.path.stat().st_mtime_ns for built in first]
     second = build_all(tmp_path)
@@ -154,8 +154,8 @@ def test_capabilities_and_default_experiment(python_fmus: Any, model: Any) -> No
 
 
 def test_the_kind_of_fmu_changes_only_what_it_says(model: Any) -> None:
-    one = ElementTree.fromstring(model_description(model, guid="a", generation_tool="b", flags={"x": True}))
-    other = ElementTree.fromstring(model_description(model, guid="c", generation_tool="d", flags={"x": False}))
+    one: Any = ElementTree.fromstring(model_description(model, guid="a", generation_tool="b", flags={"x": True}))
+    other: Any = ElementTree.fromstring(model_description(model, guid="c", generation_tool="d", flags={"x": False}))
     for root in (one, other):
         for name in ("guid", "generationTool"):
             del root.attrib[name]
@@ -208,7 +208,7 @@ def test_every_connected_signal_is_in_a_terminal_of_both() -> None:
 def _terminal_members(model: Any) -> Any:
     known = {item.name: item for item in fmi_variables(model)}
     root = ElementTree.fromstring(terminals(model))
-    return [(t.get("name"), known[node.get("variableName")]) for t in root.iter("Terminal") for node in t]
+    return [(t.get("name"), known[node.attrib["variableName"]]) for t in root.iter("Terminal") for node in t]
 
 
 @pytest.mark.parametrize(

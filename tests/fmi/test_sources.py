@@ -13,6 +13,7 @@ import table_model
 import toy_model
 
 from controller_fmu import VALET
+from fmus.compiler import Translation
 from fmus.contents.variables import fmi_variables, shown_variables
 from fmus.native import fmu as native_fmu
 from fmus.native import sources, tables
@@ -133,7 +134,7 @@ def test_two_fmus_in_one_image(fmi: int, tmp_path: Path) -> None:
         folder = tmp_path / model.name
         unit = write(model, fmi, folder)
         prefix = [f"-DFMI2_FUNCTION_PREFIX={model.name}_"] if fmi == 2 else []
-        subprocess.run([GCC, *FLAGS, *prefix, "-c", unit, "-o", f"{model.name}.o"], cwd=folder, check=True)
+        subprocess.run([str(GCC), *FLAGS, *prefix, "-c", unit, "-o", f"{model.name}.o"], cwd=folder, check=True)
         objects.append(str(folder / f"{model.name}.o"))
         listing = subprocess.run(
             ["nm", "-g", "--defined-only", objects[-1]], capture_output=True, text=True, check=True
@@ -145,7 +146,7 @@ def test_two_fmus_in_one_image(fmi: int, tmp_path: Path) -> None:
     text = "\n".join(main.format(name, fmi) for name in ("Toy", "Table"))
     text += f"\nint main(void) {{ return Toy_fmi{fmi}GetVersion()[0] != Table_fmi{fmi}GetVersion()[0]; }}\n"
     (tmp_path / "main.c").write_text(text)
-    subprocess.run([GCC, "main.c", *objects, "-o", "image", "-lm"], cwd=tmp_path, check=True)
+    subprocess.run([str(GCC), "main.c", *objects, "-o", "image", "-lm"], cwd=tmp_path, check=True)
     assert subprocess.run([tmp_path / "image"], check=False).returncode == 0
 
 
@@ -183,15 +184,16 @@ def test_a_translation_is_kept_until_a_source_changes(monkeypatch: pytest.Monkey
 
     def translate(model: Any) -> Any:
         made.append(model.name)
-        return sources.Translation(model.name, f"header {len(made)}", "source")
+        return Translation(model.name, f"header {len(made)}", "source")
 
     monkeypatch.setattr(sources, "translate", translate)
     monkeypatch.setattr(sources, "CACHE", tmp_path)
     translated = sources.translated.__wrapped__
     assert translated(VEHICLE) == translated(VEHICLE) == ("Vehicle", "header 1", "source")
     other = VEHICLE._replace(name="Other")
+    other_start: Any = VEHICLE.step
     assert translated(other).name == "Other"
-    assert translated(VEHICLE._replace(initialize=VEHICLE.step)).header == "header 3"
+    assert translated(VEHICLE._replace(initialize=other_start)).header == "header 3"
     for number in range(sources.KEPT):
         monkeypatch.setattr(sources, "hash_of", lambda *_, n=number: str(n))
         translated(VEHICLE)

@@ -76,24 +76,27 @@ def read_and_told(system: Any) -> Any:
     """Return the parameters and inputs that a scenario's run reads, and the outputs that it changes."""
     name, stop = RUNS[system]
     scenario = load_scenario(name, [f"controller.system={system.name.lower()}"])
-    read, heard, told_by = set(), set(), set()
+    read: set[str] = set()
+    heard: set[str] = set()
+    told_by: set[str] = set()
     car = with_values(VEHICLE.params, dict(scenario.vehicle))
-    params = Watched(with_values(MODEL.params, dict(scenario.controller)), "", read)
+    params: Any = Watched(with_values(MODEL.params, dict(scenario.controller)), "", read)
     vehicle, told = VEHICLE.initialize(car)
     controller, asked = MODEL.initialize(params)
     first = flatten(MODEL.outputs())
     names = [item.name for item in variables(MODEL.outputs)]
     for _ in range(round(stop * 100)):
-        to_vehicle, to_controller = TO_VEHICLE(asked), Watched(TO_CONTROLLER(told), "", heard)
-        vehicle, told = VEHICLE.step(vehicle, to_vehicle, car, STEP_NS)
-        controller, asked = MODEL.step(controller, to_controller, params, STEP_NS)
+        to_vehicle = TO_VEHICLE(asked)
+        to_controller: Any = Watched(TO_CONTROLLER(told), "", heard)
+        vehicle, told = VEHICLE.stepper(None)(vehicle, to_vehicle, car, STEP_NS)
+        controller, asked = MODEL.stepper(None)(controller, to_controller, params, STEP_NS)
         told_by |= {name for name, now, default in zip(names, flatten(asked), first, strict=True) if now != default}
         if is_over(asked.phase) and told.speed == 0.0:
             break
     return read, heard, told_by
 
 
-def shown(model: Any, cls) -> Any:
+def shown(model: Any, cls: Any) -> Any:
     return {item.name for item in variables(cls) if model.shows(item.name)}
 
 
@@ -130,7 +133,7 @@ def test_it_shows_every_output_that_the_system_changes(system: Any) -> None:
 def test_its_description_has_only_those_and_the_system_is_no_parameter(system: Any) -> None:
     model = SYSTEM_MODELS[system]
     assert model.name == f"Controller_{system.name.lower()}"
-    root = ElementTree.fromstring(model_description(model, guid="", generation_tool="", flags={}))
+    root: Any = ElementTree.fromstring(model_description(model, guid="", generation_tool="", flags={}))
     assert root.find("CoSimulation").get("modelIdentifier") == model.name
     names = [node.get("name") for node in root.find("ModelVariables")]
     assert names == [item.name for item in shown_variables(model)]
@@ -145,7 +148,7 @@ def test_its_description_has_only_those_and_the_system_is_no_parameter(system: A
 @each
 def test_as_fmi_3_it_has_the_same(system: Any) -> None:
     model = SYSTEM_MODELS[system]
-    root = ElementTree.fromstring(model_description3(model, token="", generation_tool="", flags={}))
+    root: Any = ElementTree.fromstring(model_description3(model, token="", generation_tool="", flags={}))
     names = [node.get("name") for node in root.find("ModelVariables")]
     assert names == [item.name for item in shown_arrays(model)]
     assert len(names) < len(fmi_arrays(model))
@@ -208,7 +211,7 @@ def twin(path: Any, system: Any) -> None:
         for number, values in enumerate(inputs):
             expected = dict(zip(names, flatten(outputs), strict=True))
             assert bits(host.outputs()) == bits([expected[name] for name in told])
-            state, outputs = MODEL.step(state, make(list((start | values).values())), params, STEP_NS)
+            state, outputs = MODEL.stepper(None)(state, make(list((start | values).values())), params, STEP_NS)
             host.set(values)
             assert host.step(number * 0.01, 0.01) == OK
 

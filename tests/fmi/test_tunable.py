@@ -11,16 +11,18 @@ from controller_fmu import MODEL as CONTROLLER
 from controller_fmu.guo2015.phases import GuoPhase
 from fmus.contents.variables import fmi_variables, limits
 from modelkit.connections import connections, part_of
+from modelkit.model import Model
 from modelkit.variables import constructor, flatten, variables, with_values
 from orchestrator.scenario.load_scenario import load_scenario
 from tests.fmi.host import DISCARD, ERROR, OK, Host, random_inputs
 from tests.fmi.test_python_fmu import bits
 from vehicle_fmu import MODEL as VEHICLE
 
-MODELS = {"vehicle": VEHICLE, "controller": CONTROLLER}
+MODELS: dict[str, Model] = {"vehicle": VEHICLE, "controller": CONTROLLER}
 SCENARIOS = ("guo2015-case4", "guo2015-case1", "zhang2022-double-track", "hsic", "preview", "apa-parallel")
 FIRST_ECHO = ("ultrasonic.noise", "ultrasonic.dropout")
 STEP_NS = 10_000_000
+step_vehicle, step_controller = VEHICLE.stepper(None), CONTROLLER.stepper(None)
 
 
 def receiver(number: Any) -> Any:
@@ -59,8 +61,8 @@ def underway(name: Any) -> Any:
     left = 300
     while left:
         to_vehicle, to_controller = TO_VEHICLE(asked), TO_CONTROLLER(told)
-        vehicle, told = VEHICLE.step(vehicle, to_vehicle, params["vehicle"], STEP_NS)
-        controller, asked = CONTROLLER.step(controller, to_controller, params["controller"], STEP_NS)
+        vehicle, told = step_vehicle(vehicle, to_vehicle, params["vehicle"], STEP_NS)
+        controller, asked = step_controller(controller, to_controller, params["controller"], STEP_NS)
         assert asked.phase != GuoPhase.FAILED
         left -= asked.phase in (GuoPhase.PATH_TRACKING, GuoPhase.TO_Q2, GuoPhase.TO_Q1) or asked.prompt == 2
     return params, {"vehicle": vehicle, "controller": controller}, (told, asked)
@@ -73,8 +75,8 @@ def drive(name: Any, changed: Any, steps: Any) -> Any:
     rows = []
     for _ in range(steps):
         to_vehicle, to_controller = TO_VEHICLE(asked), TO_CONTROLLER(told)
-        vehicle, told = VEHICLE.step(vehicle, to_vehicle, changed["vehicle"], STEP_NS)
-        controller, asked = CONTROLLER.step(controller, to_controller, changed["controller"], STEP_NS)
+        vehicle, told = step_vehicle(vehicle, to_vehicle, changed["vehicle"], STEP_NS)
+        controller, asked = step_controller(controller, to_controller, changed["controller"], STEP_NS)
         rows.append(flatten(told) + flatten(asked))
     return rows
 
@@ -138,7 +140,7 @@ def test_no_tunable_at_an_end_of_its_range_harms_a_run(name: Any) -> None:
                 changed = with_values(model.params, {item.name: value}, params[key])
                 state = states[key]
                 for _ in range(3):
-                    state, outputs = model.step(state, given[key], changed, STEP_NS)
+                    state, outputs = model.stepper(None)(state, given[key], changed, STEP_NS)
                 assert all(number - number == 0 for number in flatten(outputs)), item.name
 
 
@@ -159,6 +161,8 @@ def drawn(draw: Any, item: Any) -> Any:
     if item.kind is bool:
         return draw.random() < 0.5
     low, high = limits(item)
+    assert low is not None
+    assert high is not None
     return item.kind(draw.choice((low, high, low + draw.random() * (high - low))))
 
 
@@ -212,7 +216,7 @@ def in_process(model: Any, inputs: Any, changes: Any) -> Any:
     for number, values in enumerate(inputs):
         params = with_values(model.params, changes.get(number, {}), params)
         dt_ns = round((number * 0.01 + 0.01) * 1e9) - round(number * 0.01 * 1e9)
-        state, outputs = model.step(state, make([values[name] for name in names]), params, dt_ns)
+        state, outputs = model.stepper(None)(state, make([values[name] for name in names]), params, dt_ns)
         rows.append(flatten(outputs))
     return rows
 

@@ -6,10 +6,11 @@ import struct
 import zlib
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import zstandard
 from mcap.data_stream import RecordBuilder
-from mcap.records import Channel, Metadata
+from mcap.records import Channel, McapRecord, Metadata
 
 from orchestrator.log.records import CHUNK, HEAD, MESSAGE, chunk_records, parsed, top_records
 from tests.fuzz.inputs import VALUES
@@ -84,7 +85,8 @@ def _metadata(record: Metadata, draw: random.Random) -> bytes:
 
 def _json(text: str, draw: random.Random) -> str:
     """Return JSON with another value somewhere, or no JSON."""
-    odd = [1e308, -1, 10**400, None, [], {}, "", "x" * 300, True, "\ud800", [[]] * 50, {"a": 1}, draw.choice(VALUES)]
+    odd: list[Any] = [1e308, -1, 10**400, None, [], {}, "", "x" * 300, True, "\ud800", [[]] * 50, {"a": 1}]
+    odd.append(draw.choice(VALUES))
     if draw.random() < 0.2:
         return draw.choice(["", "{", "[" * 5000, "nan", text[: len(text) // 2], "1" * 6000])
     content = json.loads(text)
@@ -130,8 +132,8 @@ def _chunk(records: list[tuple[int, bytes]], draw: random.Random) -> bytes:
         data = bytes(draw.choice((1 << 20, 1 << 25, 1 << 27)))
     packed = zstandard.ZstdCompressor().compress(data)
     said = draw.choice((len(data), len(data), len(data), 1, 1 << 62))
-    head = CHUNK.pack(0, 0, said, zlib.crc32(data), 4) + b"zstd"
-    return head + struct.pack("<Q", len(packed)) + packed
+    header = CHUNK.pack(0, 0, said, zlib.crc32(data), 4) + b"zstd"
+    return header + struct.pack("<Q", len(packed)) + packed
 
 
 def _channel(body: bytes) -> Channel:
@@ -142,7 +144,7 @@ def _channel(body: bytes) -> Channel:
     return Channel.read(ReadDataStream(io.BytesIO(body)))
 
 
-def _body(record: object) -> bytes:
+def _body(record: McapRecord) -> bytes:
     builder = RecordBuilder()
     record.write(builder)
     return builder.end()[HEAD.size :]

@@ -119,7 +119,7 @@ def test_an_interrupted_hunt_goes_on_to_the_same_end(
     _, whole = hunted(capsys, *words, "--out", str(tmp_path / "whole"))
     out, made = tmp_path / "cut", Subject._made
 
-    def cut(self, part: Any, shares: Any, seeds: Any) -> Any:
+    def cut(self: Any, part: Any, shares: Any, seeds: Any) -> Any:
         if self.runs > 40:
             self.interrupt.requested = True
         return made(self, part, shares, seeds)

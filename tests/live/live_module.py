@@ -41,7 +41,7 @@ class LiveModule:
         self.store = wasmtime.Store(engine)
         module = wasmtime.Module(engine, path.read_bytes())
         assert not module.imports
-        self.exports = wasmtime.Instance(self.store, module, []).exports(self.store)
+        self.exports: Any = wasmtime.Instance(self.store, module, []).exports(self.store)
         self.call("_initialize")
 
     def call(self, name: str, *values: Any) -> Any:

@@ -79,7 +79,7 @@ def test_has_the_bits_of_this_machine_with_the_same_mathematics_library(
     scenario = load_scenario(name)
     names, end, lines = run_of_page(scenario)
     room = scenario.stop_ns // scenario.step_ns + 1
-    parts = [
+    parts: list[Any] = [
         setup(scenario, names),
         parameters(scenario),
         times_of(scenario),

@@ -263,7 +263,10 @@ def test_the_exported_scenario_comes_to_the_end_of_the_page(page: Any, tmp_path:
     file.write_text(page.input_value("#yaml"), encoding="utf-8")
     assert "backlash" in file.read_text(encoding="utf-8")
     summary = run_of(str(file))
-    assert load_scenario(str(file)).target.pose != load_scenario("guo2015-case4").target.pose
+    dragged, usual = load_scenario(str(file)).target, load_scenario("guo2015-case4").target
+    assert dragged is not None
+    assert usual is not None
+    assert dragged.pose != usual.pose
     agrees(ghost(page), summary)
 
 

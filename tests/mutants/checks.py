@@ -8,6 +8,7 @@ import fnmatch
 import io
 import json
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 NATIVE = ("apa", "preview")
@@ -40,7 +41,7 @@ def scenarios(system: str) -> str:
     for name in scenarios_of(system):
         if not name.startswith(system):
             continue
-        if _quietly(lambda name=name: main(["test", name, "--fmus", _kind(system), "--out", "runs/mutant"])):
+        if _quietly(partial(main, ["test", name, "--fmus", _kind(system), "--out", "runs/mutant"])):
             return f"apa test {name}"
     return ""
 
@@ -50,7 +51,7 @@ def steps(system: str) -> str:
     from orchestrator.cli import main
 
     for file in sorted(Path("tests/steptest").glob(f"test_{system}*.yaml")):
-        if _quietly(lambda file=file: main(["test", str(file), "--fmus", "none", "--out", "runs/mutant"])):
+        if _quietly(partial(main, ["test", str(file), "--fmus", "none", "--out", "runs/mutant"])):
             return f"apa test {file.name}"
     return ""
 

@@ -46,7 +46,7 @@ class Mutant(NamedTuple):
     after: str
     kind: str
     """number, sign, operator, comparison, guard, extreme or row."""
-    count: int = 1
+    count: int = 1  # type: ignore[assignment]  # tuples have a method count
     """It is the so many-th of the file that says the same."""
 
     @property
@@ -82,6 +82,8 @@ def mutants_of(root: Path, file: Path) -> list[Mutant]:
         lines.append(lines[-1] + len(line))
     found = []
     for node, after, kind in _changes(ast.parse(text)):
+        assert node.end_lineno is not None
+        assert node.end_col_offset is not None
         begin, end = lines[node.lineno - 1] + node.col_offset, lines[node.end_lineno - 1] + node.end_col_offset
         before = text.encode()[begin:end].decode()
         if kind == "row" and text.encode()[end : end + 1] == b",":

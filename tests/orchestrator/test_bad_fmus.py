@@ -6,6 +6,7 @@ import sys
 import time
 import xml.etree.ElementTree as ElementTree
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -55,7 +56,7 @@ def test_a_gallery_of_bad_fmus(tmp_path: Path) -> None:
     done = subprocess.run([*command, "--out", str(tmp_path / "out")], capture_output=True, text=True, check=False)
     assert "Traceback" not in done.stderr
     assert f"2 of {len(found) + 2} scenarios passed" in done.stdout
-    root = ElementTree.parse(tmp_path / "out" / "junit.xml").getroot()
+    root: Any = ElementTree.parse(tmp_path / "out" / "junit.xml").getroot()
     suites = {suite.get("name"): suite for suite in root}
     said = {}
     for path, text in found.items():
@@ -93,7 +94,7 @@ def test_several_at_a_time_give_the_same_verdicts_in_the_same_order(tmp_path: Pa
         out = tmp_path / jobs
         words = ["test", *paths, "--fmus", "none", "--timeout", "2", "--out", str(out), "-j", jobs, "-q"]
         assert main(words) == 1
-        root = ElementTree.parse(out / "junit.xml").getroot()
+        root: Any = ElementTree.parse(out / "junit.xml").getroot()
         verdicts.append([(suite.get("name"), [case.get("message") for case in suite.iter("error")]) for suite in root])
         told = {item.get("name"): item.get("value") for item in root[1].iter("property")}
         assert told["bad"].startswith(f"{tmp_path / 'good.fmu'}, SHA-256 ")

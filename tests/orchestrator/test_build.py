@@ -1,14 +1,14 @@
 """``apa build``: kinds, versions, platforms, compilers, and what is said when it cannot be done."""
 
 import json
+import shutil
 from importlib.metadata import PackageNotFoundError
 from pathlib import Path
 from typing import Any
 
 import pytest
 
-from fmus import build as fmus_build
-from fmus.native import compilers
+from fmus.native import fmu as native_fmu
 from fmus.native.platforms import host
 from orchestrator.cli import main
 
@@ -25,7 +25,7 @@ def asked(monkeypatch: pytest.MonkeyPatch) -> Any:
         path.write_bytes(b"")
         return path
 
-    monkeypatch.setattr(fmus_build.native_fmu, "build", build)
+    monkeypatch.setattr(native_fmu, "build", build)
     monkeypatch.delenv("CC", raising=False)
     return calls
 
@@ -52,7 +52,7 @@ def test_a_compiler_by_name_or_by_the_variable_cc(
     base = ["build", "--fmus", "native", "--out", str(tmp_path)]
     assert main([*base, "--cc", "no-such-cc"]) == 2
     assert "there is no C compiler called no-such-cc" in capsys.readouterr().err
-    monkeypatch.setattr(compilers.shutil, "which", lambda name: name)
+    monkeypatch.setattr(shutil, "which", lambda name: name)
     monkeypatch.setenv("CC", "true")
     assert main(base) == 0
     assert asked[-1][3] is False

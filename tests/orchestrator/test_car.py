@@ -96,7 +96,8 @@ def test_a_mistake_in_a_car_is_explained(tmp_path: Path, text: str, message: str
 
 
 def test_a_study_varies_the_car_of_both() -> None:
-    file = StudyFile(name="any", scenario="guo2015-case4", runs={"grid": {"car.width": [1.5, "160 cm"]}})
+    runs: Any = {"grid": {"car.width": [1.5, "160 cm"]}}
+    file = StudyFile(name="any", scenario="guo2015-case4", runs=runs)
     design = make_design(file, load_scenario("guo2015-case4"))
     assert [field.key for field in design.fields] == ["vehicle.car.width", "controller.car.width"]
     assert design.values.tolist() == [[1.5, 1.5], [1.6, 1.6]]

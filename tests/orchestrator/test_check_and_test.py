@@ -41,7 +41,7 @@ def test_check_passes_and_writes_junit(
 ) -> None:
     junit = tmp_path / "out" / "junit.xml"
     assert main(["check", str(log), str(rules), "gbt41630", "--junit", str(junit)]) == 0
-    root = ElementTree.parse(junit).getroot()
+    root: Any = ElementTree.parse(junit).getroot()
     assert (root.get("tests"), root.get("failures"), root.get("skipped")) == ("8", "0", "1")
     skipped = root.find(".//testcase[@name='never fast (us)']/skipped")
     assert "-1.500 m/s at " in skipped.get("message")
@@ -71,7 +71,7 @@ def test_check_refuses_bad_input(log: Any, arguments: Any, capsys: pytest.Captur
 def test_junit_holds_any_text(tmp_path: Path) -> None:
     file = tmp_path / "j.xml"
     write_junit(file, [Suite("<&\x00\x1b>", [Case('a"b', False, "\x07]]>")], 1.0), Suite("b", [], 0.0, "broken")])
-    root = ElementTree.parse(file).getroot()
+    root: Any = ElementTree.parse(file).getroot()
     assert (root.get("tests"), root.get("failures"), root.get("errors")) == ("2", "1", "1")
     assert root[0].get("name") == "<&??>"
 
@@ -96,7 +96,7 @@ def test_test_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Non
     page = (out / "index.html").read_text()
     assert page.count("<svg") == 3
     assert "3 of 3 passed" in page
-    root = ElementTree.parse(out / "junit.xml").getroot()
+    root: Any = ElementTree.parse(out / "junit.xml").getroot()
     assert [suite.get("name") for suite in root] == names
     assert root.get("failures") == "0"
 
@@ -112,7 +112,7 @@ def test_test_command_fails_when_a_requirement_or_the_outcome_is_missed(
     assert [case["name"] for case in found["scenarios"][0]["cases"] if not case["passed"]] == ["quick (us)"]
     assert main([*arguments, "--set", "expect=failed"]) == 1
     assert "fail" in (out / "index.html").read_text()
-    root = ElementTree.parse(out / "junit.xml").getroot()
+    root: Any = ElementTree.parse(out / "junit.xml").getroot()
     assert root.find(".//testcase[@name='outcome']/failure").get("message").startswith("parked")
 
 

@@ -7,7 +7,7 @@ import sys
 import tempfile
 import time
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import pytest
 
@@ -70,6 +70,7 @@ def test_without_memory_it_is_no_internal_error(
 @pytest.mark.parametrize("hang", [DEAF, "time.sleep(60)"])
 def test_a_signal_ends_what_hangs_within_two_seconds_and_takes_its_folders_away(number: Any, hang: Any) -> None:
     child = started(HANGS.format(hang=hang))
+    assert child.stdout is not None
     folder = Path(child.stdout.readline().strip())
     assert folder.is_dir()
     begun = time.monotonic()
@@ -118,6 +119,7 @@ def test_an_interrupt_while_a_library_makes_code_ends_with_the_code_of_interrupt
 @posix
 def test_a_second_signal_ends_at_once() -> None:
     child = started(HANGS.format(hang=DEAF))
+    assert child.stdout is not None
     child.stdout.readline()
     child.stdout.readline()
     time.sleep(0.1)
@@ -134,6 +136,7 @@ def test_a_second_signal_ends_at_once() -> None:
 def test_the_next_process_takes_away_what_a_killed_one_left(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
     child = started(HANGS.format(hang="time.sleep(60)"), TMPDIR=str(tmp_path))
+    assert child.stdout is not None
     left = Path(child.stdout.readline().strip()).parent
     files._remove_forsaken(tmp_path)
     assert left.is_dir(), "its process lives"
@@ -144,10 +147,10 @@ def test_the_next_process_takes_away_what_a_killed_one_left(monkeypatch: pytest.
 
 
 def test_a_file_is_whole_or_as_it_was(tmp_path: Path) -> None:
-    path = tmp_path / "new" / "file.txt"
+    path, number = tmp_path / "new" / "file.txt", cast("str", 2)
     files.write_whole(path, "one", sync=True)
     with pytest.raises(TypeError):
-        files.write_whole(path, 2)
+        files.write_whole(path, number)
     assert path.read_text() == "one"
     assert [item.name for item in path.parent.iterdir()] == ["file.txt"]
 

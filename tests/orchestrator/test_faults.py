@@ -11,6 +11,7 @@ from orchestrator.cosim.faults import manipulators
 from orchestrator.cosim.in_process_slave import InProcessSlave
 from orchestrator.cosim.master import Master
 from orchestrator.cosim.recording import Recorder, Recording
+from orchestrator.cosim.slave import Slave
 from orchestrator.scenario.fault import Fault
 from orchestrator.text.errors import BadInput
 from tests.orchestrator.toy_models import BRAIN, PLANT
@@ -20,10 +21,10 @@ TIMES = np.arange(11) * 0.01
 
 
 def run(*faults: dict[str, Any], seed: int = 1, every: dict[str, int] | None = None) -> Recording:
-    slaves = [InProcessSlave("plant", PLANT, {}), InProcessSlave("brain", BRAIN, {})]
+    slaves: list[Slave] = [InProcessSlave("plant", PLANT, {}), InProcessSlave("brain", BRAIN, {})]
     master = Master(slaves, STEP, 10 * STEP, every)
     master.manipulators += manipulators([Fault(**fault) for fault in faults], master, seed)
-    recorder = Recorder(list(slaves), 11)
+    recorder = Recorder(slaves, 11)
     master.observers.append(recorder)
     master.initialize()
     master.run()

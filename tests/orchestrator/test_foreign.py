@@ -6,6 +6,7 @@ import subprocess
 import sys
 import xml.etree.ElementTree as ElementTree
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -75,7 +76,7 @@ def test_one_that_fails_is_a_verdict_and_the_others_go_on(kind: str, step: str, 
     done = subprocess.run([*command, "--out", str(out)], capture_output=True, text=True, check=False)
     assert done.returncode == 1, done.stderr
     assert "0 of 2 scenarios passed" in done.stdout
-    root = ElementTree.parse(out / "junit.xml").getroot()
+    root: Any = ElementTree.parse(out / "junit.xml").getroot()
     assert [suite.get("name") for suite in root] == names
     assert root.get("errors") == "2"
     assert "controller " in root[0].find("testcase/error").get("message")
@@ -105,7 +106,7 @@ def test_a_scenario_that_cannot_be_read_fails_alone(tmp_path: Path, capsys: pyte
     assert "pass  fault-pose-nan  (1 of 3)" in printed
     assert "no scenario of this name" in printed
     assert "another scenario of this test is called fault-pose-nan" in printed
-    root = ElementTree.parse(tmp_path / "out" / "junit.xml").getroot()
+    root: Any = ElementTree.parse(tmp_path / "out" / "junit.xml").getroot()
     assert root.get("errors") == "2"
 
 
@@ -119,7 +120,7 @@ def test_what_is_not_measured_is_never_passed(theirs: Path, tmp_path: Path, caps
     assert "not measured: shifts" in summary["reason"]
     parallel = json.loads((out / "apa-parallel" / "summary.json").read_text())
     assert "time to park" in parallel["reason"].partition("not measured")[2]
-    root = ElementTree.parse(out / "junit.xml").getroot()
+    root: Any = ElementTree.parse(out / "junit.xml").getroot()
     skipped = root.find("testsuite/testcase[@name='shifts (GB/T 41630)']/skipped")
     assert skipped.get("message") == "shifts: not measured, so not judged"
     capsys.readouterr()
@@ -151,7 +152,7 @@ def test_what_was_tested_when_and_how_is_told(theirs: Path, tmp_path: Path, caps
     page = (out / "index.html").read_text(encoding="utf-8")
     suite = ElementTree.parse(out / "junit.xml").getroot()[0]
     assert suite.get("timestamp") == about["when"]
-    told = {item.get("name"): item.get("value") for item in suite.iter("property")}
+    told: Any = {item.get("name"): item.get("value") for item in suite.iter("property")}
     assert {key: told[key] for key in about} == about
     assert told["left out"].startswith("controller.system, ")
     assert all(html.escape(text) in page for text in about.values())

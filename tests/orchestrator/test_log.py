@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from google.protobuf.descriptor_pb2 import FileDescriptorSet
 from mcap.reader import make_reader
+from mcap.records import Chunk
 from mcap.stream_reader import StreamReader
 from mcap_protobuf.decoder import DecoderFactory
 
@@ -96,7 +97,7 @@ def test_units_and_states_stand_in_the_schema(toy_run: tuple[Path, Recording]) -
 def test_every_record_and_checksum_is_right(demo_run: tuple[Path, Recording]) -> None:
     with demo_run[0].open("rb") as stream:
         records = list(StreamReader(stream, emit_chunks=True, validate_crcs=True).records)
-    chunks = [record for record in records if type(record).__name__ == "Chunk"]
+    chunks = [record for record in records if isinstance(record, Chunk)]
     assert len(chunks) > 3
     assert max(chunk.uncompressed_size for chunk in chunks[1:]) < 1.1 * CHUNK_SIZE
     with demo_run[0].open("rb") as stream:

@@ -8,12 +8,13 @@ import pytest
 from orchestrator.cosim.in_process_slave import InProcessSlave
 from orchestrator.cosim.master import Master
 from orchestrator.cosim.recording import Recorder, Recording
+from orchestrator.cosim.slave import Slave
 from tests.orchestrator.toy_models import BRAIN, PLANT
 
 STEP = 10_000_000
 
 
-def toys() -> list[InProcessSlave]:
+def toys() -> list[Slave]:
     return [InProcessSlave("plant", PLANT, {}), InProcessSlave("brain", BRAIN, {})]
 
 

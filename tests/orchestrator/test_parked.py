@@ -212,7 +212,8 @@ def test_the_margin_is_the_outlines_distance_to_the_slots_edges(
 ) -> None:
     car = CarOutline(3.2, 0.6, 0.85, 2.4)
     found = float(slot_margin(np.array([pose]), np.array([slot]), np.array([car]))[0])
-    scenario = Scenario(name="a", slot=dict(zip(("x", "y", "heading", "length", "width"), slot, strict=True)))
+    sides: Any = dict(zip(("x", "y", "heading", "length", "width"), slot, strict=True))
+    scenario = Scenario(name="a", slot=sides)
     assert scenario.slot is not None
     box = shapely.Polygon(slot_box(scenario.slot).outline())
     outline = shapely.Polygon(place(car.outline(), *pose))

@@ -1,6 +1,7 @@
 """Requirements as data: what a file may say, and what a run must do to meet it."""
 
 import math
+from enum import IntEnum
 from pathlib import Path
 from typing import Any
 
@@ -17,18 +18,15 @@ from orchestrator.text.errors import BadInput
 from orchestrator.verdict.judge import NEVER, judge
 from orchestrator.verdict.numbers import facts_of
 
-PHASE = {"STANDBY": 0, "DRIVE": 1, "PARKED": 2}
+Phase = IntEnum("Phase", {"STANDBY": 0, "DRIVE": 1, "PARKED": 2})
 T = np.array([0.0, 1.0, 2.0, 3.0, 4.0])
 SPEED = np.array([0.0, -1.0, -2.0, 0.5, 0.0])
 
 
 def recording(speed: Any = SPEED, phase: Any = (0, 1, 1, 1, 2)) -> Recording:
-    from enum import IntEnum
-
-    states = IntEnum("Phase", PHASE)
     variables = {
         "vehicle.speed": Variable("speed", float, Signal("m/s", ""), 0.0),
-        "controller.phase": Variable("phase", int, Signal("1", "", states=states), 0),
+        "controller.phase": Variable("phase", int, Signal("1", "", states=Phase), 0),
     }
     signals = {"vehicle.speed": np.asarray(speed, dtype=float), "controller.phase": np.asarray(phase, dtype=float)}
     return Recording((T * 1e9).astype(np.int64), signals, {}, variables)

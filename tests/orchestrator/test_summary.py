@@ -59,8 +59,8 @@ def recording(phases: list[int], end: str = "standstill", reason: int = 0, **mor
 def summary(found: Recording, limits: list[dict[str, Any]] | None = None) -> Summary:
     scenario = load_scenario(DEMO)
     given = limits if limits is not None else []
-    limits = [type(scenario.limits[0]).model_validate(item) for item in given]
-    changed = scenario.model_copy(update={"limits": limits, "target": TARGET})
+    judged = [type(scenario.limits[0]).model_validate(item) for item in given]
+    changed = scenario.model_copy(update={"limits": judged, "target": TARGET})
     return summarize(found, changed, 0.02)
 
 

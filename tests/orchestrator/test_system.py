@@ -5,6 +5,7 @@ import math
 import re
 import shutil
 from pathlib import Path
+from typing import Literal
 
 import numpy as np
 import pytest
@@ -70,7 +71,9 @@ def test_the_log_has_their_names_and_the_roles(desk: Path, tmp_path: Path) -> No
     assert log.parameters["gps.bias"] == 0.05
     assert log.states("controller.phase")[9] == "PARKED"
     with (tmp_path / "run.mcap").open("rb") as stream:
-        topics = {channel.topic for channel in make_reader(stream).get_summary().channels.values()}
+        summary = make_reader(stream).get_summary()
+        assert summary is not None
+        topics = {channel.topic for channel in summary.channels.values()}
     assert {"/tf", "/scene", "/trail", "/plant", "/gps", "/gps/parameters"} <= topics
 
 
@@ -257,7 +260,7 @@ def test_what_a_verdict_needs_and_nobody_plays_is_said() -> None:
     ahead=st.floats(-3, 3),
 )
 def test_a_frame_there_and_back(
-    pose: tuple[float, float, float], origin: tuple[float, float, float], side: str, ahead: float
+    pose: tuple[float, float, float], origin: tuple[float, float, float], side: Literal["left", "right"], ahead: float
 ) -> None:
     frame = PoseFrame(origin=Origin(x=origin[0], y=origin[1], heading=origin[2]), y=side, ahead=ahead)
     assert out_of(frame, *into(frame, *pose)) == pytest.approx(pose, abs=1e-9)

@@ -45,7 +45,9 @@ def test_every_panel_is_placed_once(viewer: Any) -> None:
 def test_topics_and_fields_exist_in_a_log(viewer: Any, log: Any) -> None:
     run = read_log(log)
     with log.open("rb") as stream:
-        topics = {channel.topic for channel in make_reader(stream).get_summary().channels.values()}
+        summary = make_reader(stream).get_summary()
+        assert summary is not None
+        topics = {channel.topic for channel in summary.channels.values()}
     for panel in layout(viewer)["configById"].values():
         for path in panel.get("paths", []):
             assert path["value"].removeprefix("/") in run.signals

@@ -11,7 +11,7 @@ from modelkit.vocabulary import Pose
 from orchestrator.bakeoff.claim import LIMITS, STEERING, SYSTEMS, Setting, rate_of, rates
 from orchestrator.bakeoff.claim import study as claim
 from orchestrator.bakeoff.drives import Drive, drives
-from orchestrator.bakeoff.entries import ASSIST, CONTROLLERS, LABELS, SLOTS, STARTS, entries, scenario_of
+from orchestrator.bakeoff.entries import ASSIST, CONTROLLERS, SLOTS, STARTS, entries, scenario_of
 from orchestrator.bakeoff.study import report, study_of
 from orchestrator.cosim.fmu_files import can_compile
 from orchestrator.scenario.scenario import Scenario
@@ -29,7 +29,7 @@ def chosen(**labels: str | float) -> list[LabelledScenario]:
 
 
 def scenario(drive: Drive) -> Scenario:
-    return scenario_of(*drive[: len(LABELS)])
+    return scenario_of(drive.controller, drive.slot, drive.car, drive.body, drive.start, drive.disturbance)
 
 
 @pytest.fixture(scope="module")

@@ -11,7 +11,7 @@ from modelkit.signal import Signal
 
 
 class State(NamedTuple):
-    count: int = 0
+    count: int = 0  # type: ignore[assignment]  # tuples have a method count
 
 
 class Params(NamedTuple):

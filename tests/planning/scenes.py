@@ -6,7 +6,6 @@ from array import array
 from pathlib import Path
 from typing import Any
 
-import pytest
 import shapely
 from shapely.geometry import Polygon
 
@@ -48,7 +47,7 @@ def scene_of(polygons: Any) -> Any:
     return Scene(tuple(corners + [Corner()] * (CORNERS - len(corners))))
 
 
-def plan(request: pytest.FixtureRequest, scene: Any, store: Any = None, at_a_time: Any = 200, most: Any = 4000) -> Any:
+def plan(request: Request, scene: Any, store: Any = None, at_a_time: Any = 200, most: Any = 4000) -> Any:
     """Return the store after the search for ``request`` has ended."""
     store = new_store(PlanStore) if store is None else store
     begin(store, scene, request)

@@ -28,7 +28,7 @@ def translation() -> Any:
     return translate(plan_model.MODEL)
 
 
-def twins(translation: Any, folder: Any, scene: Any, request: pytest.FixtureRequest, each: Any) -> Any:
+def twins(translation: Any, folder: Any, scene: Any, request: Request, each: Any) -> Any:
     """Return the planner in C and in CPython, and both outputs' differences after each call until it has ended."""
     compiled = CModel(plan_model.MODEL, translation, folder)
     params = Params(scene, request, each)

@@ -36,16 +36,15 @@ def test_distance_to_an_edge_is_that_of_shapely() -> None:
     box = outline_of(Pose(-CAR.ahead, 0.0, 0.0), CAR)
     for _ in range(500):
         ends = [draw.uniform(-6.0, 6.0) for _ in range(4)]
-        gap = math.sqrt(edge_gap(*ends, CAR, 1e6))
+        gap = math.sqrt(edge_gap(ends[0], ends[1], ends[2], ends[3], CAR, 1e6))
         assert gap == pytest.approx(box.distance(LineString([ends[:2], ends[2:]])), abs=1e-9)
 
 
 def test_every_word_ends_where_it_should() -> None:
     draw = random.Random(2)
     store = new_store(PlanStore)
-    task = Task(
-        ORIGIN, ORIGIN, CAR, SearchWindow(0.0, 0.0, 1.0, 1.0, 1, 1.0, 1), True, 0.1, Rung(*[True] * 2, *[1.0] * 6, 1)
-    )
+    rung = Rung._make([*[True] * 2, *[1.0] * 6, 1])
+    task = Task(ORIGIN, ORIGIN, CAR, SearchWindow(0.0, 0.0, 1.0, 1.0, 1, 1.0, 1), True, 0.1, rung)
     for _ in range(60):
         end = Pose(draw.uniform(-12.0, 12.0), draw.uniform(-12.0, 12.0), draw.uniform(-3.1, 3.1))
         count = list_words(store, ORIGIN, end, 0.0, 0.0, task)

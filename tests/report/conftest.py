@@ -27,7 +27,8 @@ def case4() -> Any:
 def replay(case4: Any, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The replay page of that run, with a hostile message."""
     path: Path = tmp_path_factory.mktemp("replay") / "report.html"
-    path.write_text(replay_page(*case4, [Line(1.0, "warning", "model", EVIL)]), encoding="utf-8")
+    recording, summary = case4
+    path.write_text(replay_page(recording, summary, [Line(1.0, "warning", "model", EVIL)]), encoding="utf-8")
     return path
 
 

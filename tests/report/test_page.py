@@ -36,8 +36,14 @@ def unpacked(text: str) -> Any:
     return header, arrays
 
 
+def said(pattern: str, text: str) -> str:
+    found = re.search(pattern, text)
+    assert found is not None
+    return found[1]
+
+
 def data_of(text: str) -> Any:
-    return unpacked(re.search(r'<script type="text/plain" id="data">([^<]*)</script>', text)[1])
+    return unpacked(said(r'<script type="text/plain" id="data">([^<]*)</script>', text))
 
 
 def test_packed_numbers_come_back() -> None:
@@ -63,11 +69,11 @@ def test_page_is_one_file_that_fetches_nothing(replay: Any) -> None:
 
 def test_policy_allows_exactly_the_scripts_of_the_page(replay: Any) -> None:
     text = replay.read_text()
-    content = re.search(r'Content-Security-Policy" content="([^"]*)"', text)[1]
+    content = said(r'Content-Security-Policy" content="([^"]*)"', text)
     scripts = re.findall(r"<script>(.*?)</script>", text, re.S)
     hashes = {f"'sha256-{base64.b64encode(hashlib.sha256(item.encode()).digest()).decode()}'" for item in scripts}
     assert content.startswith("default-src 'none'")
-    assert hashes == set(re.search(r"script-src ([^;]*)", content)[1].split())
+    assert hashes == set(said(r"script-src ([^;]*)", content).split())
 
 
 def test_title_is_escaped() -> None:

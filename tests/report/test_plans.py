@@ -47,7 +47,9 @@ def test_a_found_slot_lies_on_its_side_of_the_road(side: Any, mirror: Any) -> No
     out = mirror * np.array([-math.sin(heading), math.cos(heading)])
     a = np.array([4.0, 5.0])
     expected = [a, a + 6.0 * along + 0.1 * out, a + 6.0 * along - 2.2 * out, a - 2.2 * out]
-    np.testing.assert_allclose(found_slot(values), expected, atol=1e-12)
+    found = found_slot(values)
+    assert found is not None
+    np.testing.assert_allclose(found, expected, atol=1e-12)
 
 
 def test_no_slot_no_pose_no_path() -> None:

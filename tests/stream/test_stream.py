@@ -36,7 +36,7 @@ class Clock:
 
     def __init__(self) -> None:
         self.now = 5.0
-        self.slept = []
+        self.slept: list[float] = []
 
     def __call__(self) -> Any:
         return self.now
@@ -64,6 +64,7 @@ def test_a_run_takes_as_long_as_its_time_and_says_how_late_it_was() -> None:
     ran = run_scenario(scenario, realtime=Realtime())
     assert 0.5 <= ran.wall_time < 3.0
     late = summarize(ran.recording, scenario, ran.wall_time).realtime
+    assert late is not None
     assert late.exchanges == 51
     assert 0.0 <= late.median <= late.percentile_99 <= late.largest
     plain = run_scenario(scenario).recording
@@ -74,7 +75,9 @@ def test_a_run_takes_as_long_as_its_time_and_says_how_late_it_was() -> None:
 @contextlib.contextmanager
 def shown(scenario: Any, files: Any = None, **options: Any) -> Iterator[Any]:
     """A run in a thread, and the address it is shown at."""
-    addresses, found, interrupt = [], [], Interrupt()
+    addresses: list[str] = []
+    found: list[Any] = []
+    interrupt = Interrupt()
     realtime = Realtime(0, addresses.append)
     given = {"realtime": realtime, "interrupt": interrupt, **options}
     thread = threading.Thread(target=lambda: found.append(run_scenario(scenario, files, **given)))
@@ -116,7 +119,9 @@ def test_a_viewer_sees_what_the_log_has_and_changes_a_parameter(kind: str, tmp_p
     assert [(item["name"], item["value"]) for item in ran.recording.info["realtime"]["tuned"]] == [(K4, 3.25)]
     with log.open("rb") as stream:
         reader = make_reader(stream)
-        schemas = {schema.name: schema.data for schema in reader.get_summary().schemas.values()}
+        summary = reader.get_summary()
+        assert summary is not None
+        schemas = {schema.name: schema.data for schema in summary.schemas.values()}
         logged = {(channel.topic, message.log_time): message.data for _, channel, message in reader.iter_messages()}
     for channel in look.channels.values():
         assert channel["encoding"] == "protobuf"
@@ -140,7 +145,7 @@ def test_a_changed_parameter_acts_as_the_same_parameter_from_the_start() -> None
         def closed(self, end: Any) -> None:
             pass
 
-    realtime = Realtime(0)
+    realtime: Any = Realtime(0)
     join = realtime.join
 
     def joined(*given: Any) -> None:
@@ -172,6 +177,7 @@ def test_ctrl_c_ends_in_order(tmp_path: Path) -> None:
         [*command, "--out", str(tmp_path)], stderr=subprocess.PIPE, stdout=subprocess.PIPE, text=True, env=environment
     ) as process:
         line = ""
+        assert process.stderr is not None
         while "ws://" not in line:
             line = process.stderr.readline()
             assert line, "ended before it was shown"

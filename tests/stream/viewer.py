@@ -6,9 +6,10 @@ import time
 from collections import defaultdict
 from typing import Any
 
+from websockets import Subprotocol
 from websockets.sync.client import connect
 
-PROTOCOLS = ["foxglove.sdk.v1", "foxglove.websocket.v1"]
+PROTOCOLS = [Subprotocol("foxglove.sdk.v1"), Subprotocol("foxglove.websocket.v1")]
 MESSAGE, TIME = 1, 2
 
 

@@ -217,6 +217,7 @@ def test_a_study_can_vary_what_is_true_and_what_the_controller_is_told(bind: Any
     for number in range(len(rows)):
         assert_same(job, chunk, rows, number)
         scenario = chunk_scenario(job, chunk, number)
+        assert scenario.target is not None
         assert scenario.controller["target.y"] == scenario.target.y
         assert scenario.target.x == -7.608
     along = verdict.numbers["final.longitudinal_error"]
@@ -255,7 +256,7 @@ def test_a_table_of_an_older_version_is_judged_by_what_the_controller_was_told(b
 def test_what_counts_at_some_instants_only_is_as_in_the_recording(bind: Any, some: Any) -> None:
     _, _, job, chunk = bind()
     parking = When("controller.phase", (2, 3))
-    hows = ("last", "largest", "greatest", "smallest", "travel", "first")
+    hows: tuple[Any, ...] = ("last", "largest", "greatest", "smallest", "travel", "first")
     signals = ("vehicle.speed", "vehicle.clearance", "controller.shifts", "vehicle.prompt")
     measures = [Measure(how, signal, when) for how in hows for signal in signals for when in (parking, None)]
     never = Measure("last", "vehicle.speed", When("controller.phase", (63,)))

@@ -7,7 +7,7 @@ import pytest
 
 from orchestrator.cosim.fmu_files import can_compile
 from orchestrator.scenario.load_scenario import load_scenario
-from orchestrator.scenario.requirements import Requirement, shipped_requirements
+from orchestrator.scenario.requirements import Requirement, Window, shipped_requirements
 from orchestrator.scenario.scenario import Scenario, Target
 from orchestrator.sweep.columns import WITHIN, columns_of
 from orchestrator.sweep.fields import find_field
@@ -119,7 +119,8 @@ def test_rows_of_such_a_study_come_back(tmp_path: Path) -> None:
 
 
 def test_a_set_of_limits_that_takes_the_whole_run_is_refused() -> None:
-    late = Requirement(id="late", signal="vehicle.speed", max=1.0, window={"from": 2.0}, source="test")
+    window = Window.model_validate({"from": 2.0})
+    late = Requirement(id="late", signal="vehicle.speed", max=1.0, window=window, source="test")
     with pytest.raises(BadInput, match="within: late: takes the whole run"):
         make_job(study()._replace(within={"late": [late]}))
     with pytest.raises(BadInput, match=r"vehicle\.sped: no signal of this name; did you mean vehicle\.speed"):

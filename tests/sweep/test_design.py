@@ -120,10 +120,12 @@ def test_a_mistake_is_one_clear_sentence(bind: Any, runs: Any, says: str) -> Non
 
 def test_different_numbers_of_samples_are_refused() -> None:
     samples = [{"n": count, "vehicle.start.x": {"uniform": [0, 1]}} for count in (2, 3)]
+    runs: Any = {"monte_carlo": samples[0], "latin_hypercube": samples[1]}
     with pytest.raises(ValueError, match="same n"):
-        StudyFile(name="a", scenario="b", runs={"monte_carlo": samples[0], "latin_hypercube": samples[1]})
+        StudyFile(name="a", scenario="b", runs=runs)
 
 
 def test_a_spread_has_exactly_one_distribution() -> None:
+    runs: Any = {"monte_carlo": {"n": 1, "x": {"uniform": [0, 1], "choice": [1]}}}
     with pytest.raises(ValueError, match="exactly one of uniform, normal and choice"):
-        StudyFile(name="a", scenario="b", runs={"monte_carlo": {"n": 1, "x": {"uniform": [0, 1], "choice": [1]}}})
+        StudyFile(name="a", scenario="b", runs=runs)

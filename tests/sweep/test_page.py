@@ -45,7 +45,7 @@ def table(folder: Any) -> Any:
 class Page(HTMLParser):
     def __init__(self, text: Any) -> None:
         super().__init__()
-        self.tags = []
+        self.tags: list[tuple[str, dict[str, Any]]] = []
         self.feed(text)
 
     def handle_starttag(self, tag: Any, attrs: Any) -> None:

@@ -1,8 +1,6 @@
 """Models played the inputs that a run has recorded, step by step, by ways that no master of ours drives."""
 
-import sys
 from ctypes import c_size_t, c_uint32, c_void_p
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -11,8 +9,6 @@ from fmus.contents.arrays import fmi_arrays
 from fmus.native.libraries import load_model, memory_size
 from modelkit.variables import flatten, variables, with_values
 from orchestrator.scenario.models import MODELS
-
-sys.path.insert(0, str(Path(__file__).parents[1] / "fmi"))
 from tests.fmi.raw3 import OK, Library3
 
 FUNCTIONS = {
@@ -79,7 +75,7 @@ class Fmi3:
         self.library = Library3(path, folder)
         arrays = fmi_arrays(model)
 
-        def blocks(verb: Any, cls) -> Any:
+        def blocks(verb: Any, cls: Any) -> Any:
             places = {item.name: place for place, item in enumerate(variables(cls))}
             found = [Block(self.library.dll, verb, kind, arrays, places) for kind in FUNCTIONS]
             assert sorted(place for block in found for place in block.places) == list(range(len(places)))

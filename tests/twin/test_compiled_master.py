@@ -29,7 +29,7 @@ def loops(monkeypatch: pytest.MonkeyPatch) -> Any:
     calls = []
     advance = compiled_master._Plan.advance
 
-    def counted(self, first: Any) -> Any:
+    def counted(self: Any, first: Any) -> Any:
         calls.append(advance(self, first))
         return calls[-1]
 
@@ -73,7 +73,7 @@ class Seen:
     """Observer that counts."""
 
     def __init__(self) -> None:
-        self.times = []
+        self.times: list[int] = []
 
     def exchanged(self, t_ns: Any) -> None:
         self.times.append(t_ns)

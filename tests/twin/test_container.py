@@ -24,12 +24,10 @@ from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.scenario.models import MODELS, models_for
 from orchestrator.session.session import run_scenario
 from orchestrator.text.errors import BadInput
+from tests.fmi.host import OK, Host
 from tests.twin.replays import CLibrary, Fmi3
 from tests.twin.test_same_bits import same
 from vehicle_fmu import MODEL as VEHICLE
-
-sys.path.insert(0, str(Path(__file__).parents[1] / "fmi"))
-from tests.fmi.host import OK, Host
 
 pytestmark = pytest.mark.skipif(not can_compile(), reason="needs a C compiler")
 SCENARIOS = (
@@ -62,7 +60,7 @@ def containers(tmp_path_factory: pytest.TempPathFactory) -> Any:
     return {fmi: native_fmu.build(one_model(CASE), folder / str(fmi), [this_platform()], fmi=fmi) for fmi in (2, 3)}
 
 
-def names(cls) -> Any:
+def names(cls: Any) -> Any:
     return [item.name for item in variables(cls)]
 
 
@@ -158,6 +156,7 @@ def test_it_has_units_licence_parameters_and_its_own_reference_result(
     assert known["controller.lateral_error"].causality == "local"
     assert known["controller.phase"].variability == "discrete"
     assert "controller.apa.drive.k1" not in known, "of another system"
+    assert CASE.target is not None
     assert float(known["controller.target.x"].start) == CASE.target.x
     inputs = [v.name for v in description.modelVariables if v.causality == "input"]
     assert {name.rpartition(".")[0] for name in inputs} == {"vehicle.person"}, "what neither feeds"
@@ -191,7 +190,7 @@ def test_a_parameter_changes_what_it_changes_in_the_pair(containers: Any) -> Non
 
 def test_inputs_parameters_and_outputs_are_chosen_by_patterns() -> None:
     model = one_model(CASE, ["vehicle.driver.*"], ["vehicle.prompt", "controller.driver_takeover"], ["*.pose.*"])
-    ports = {}
+    ports: dict[str, list[str]] = {}
     for item in shown_variables(model):
         ports.setdefault(item.causality, []).append(item.name)
     own = [name for name in ports["input"] if not name.startswith("vehicle.person.")]

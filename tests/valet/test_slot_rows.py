@@ -19,7 +19,7 @@ pytestmark = pytest.mark.skipif(not can_compile(), reason="runs without Python n
 
 
 def boxes_of(scenario: Any) -> Any:
-    found = {}
+    found: dict[int, dict[str, Any]] = {}
     for name, value in scenario.vehicle.items():
         if name.startswith("scene.boxes["):
             number, _, field = name[len("scene.boxes[") :].partition("].")
@@ -32,6 +32,7 @@ def test_the_slot_is_free_and_the_map_has_what_stands_there() -> None:
     for case in cases()[::13]:
         scenario = scenario_of(case)
         slot, things = scenario.slot, boxes_of(scenario)
+        assert slot is not None
         around = Polygon(box_corners({name: getattr(slot, name) for name in ("x", "y", "heading", "length", "width")}))
         assert union_all(things).intersection(around).area < 1e-6
         assert scenario.controller["map[24].polygon"] == 6

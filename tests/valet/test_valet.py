@@ -77,9 +77,8 @@ def test_only_what_the_map_does_not_have_is_in_the_way() -> None:
     pose = Pose(4.0 - front - 0.4, 0.0, 0.0)  # 0.4 m before the box
     readings = [5.0] * 12
     readings[1] = readings[2] = 0.4
-    assert look(tuple(readings), pose, 1.0, 0.2, scene, params) == Sight(
-        speed=pytest.approx(14.1, abs=0.1), blocked=False, ahead=False
-    )
+    near: Any = pytest.approx(14.1, abs=0.1)
+    assert look(tuple(readings), pose, 1.0, 0.2, scene, params) == Sight(speed=near, blocked=False, ahead=False)
     readings[1] = 0.05
     sight = look(tuple(readings), pose, 1.0, 0.2, scene, params)
     assert sight.blocked
@@ -134,7 +133,7 @@ class Twin(InProcessSlave):
     def __init__(self, name: Any, model: Any, parameters: Any, folder: Any) -> None:
         super().__init__(name, model, parameters)
         self.c = CModel(model, translate(model), folder)
-        self.differing = set()
+        self.differing: set[str] = set()
 
     def initialize(self, stop_ns: Any) -> None:
         super().initialize(stop_ns)

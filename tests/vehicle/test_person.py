@@ -6,8 +6,7 @@ from typing import Any
 import pytest
 
 from modelkit.vocabulary import Gear, Prompt
-from tests.vehicle.test_vehicle import BODIES, drive, params, prompted
-from vehicle_fmu import MODEL
+from tests.vehicle.test_vehicle import BODIES, drive, params, prompted, step
 from vehicle_fmu.interface import PersonInput, VehicleFault, VehicleInput
 
 
@@ -91,7 +90,7 @@ def test_nobody_there_changes_no_bit(body: int) -> None:
 
 
 def test_a_pedal_that_is_no_number_stops_the_car() -> None:
-    _, out = MODEL.step(
-        *drive(params(), VehicleInput(), 0.01)[:1], VehicleInput(person=person(accelerator=math.nan)), params(), 10
+    _, out = step(
+        drive(params(), VehicleInput(), 0.01)[0], VehicleInput(person=person(accelerator=math.nan)), params(), 10
     )
     assert out.vehicle_fault == VehicleFault.BAD_INPUT

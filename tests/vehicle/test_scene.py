@@ -38,7 +38,7 @@ def random_scene(draw: random.Random) -> SceneParams:
         )
         for _ in range(6)
     ]
-    kerbs = [Kerb(*(draw.uniform(-8, 8) for _ in range(4)), 0.2) for _ in range(2)]
+    kerbs = [Kerb._make([*(draw.uniform(-8, 8) for _ in range(4)), 0.2]) for _ in range(2)]
     return SceneParams((*boxes, *(Obstacle(),) * 10), (*kerbs, *(Kerb(),) * 2))
 
 

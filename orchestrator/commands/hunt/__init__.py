@@ -46,8 +46,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Search, write finds and page, print what was found. Returns 1 if a run breaks the requirement, else 0."""
     try:
-        import cma  # type: ignore[import-untyped]  # noqa: F401
-        import pyarrow  # type: ignore[import-untyped]  # noqa: F401
+        import cma  # noqa: F401
+        import pyarrow  # noqa: F401
     except ModuleNotFoundError as error:
         raise BadInput(f"{error.name} is not installed; run: pip install 'apa-cosim[native,sweep]'") from error
     if arguments.corpus is not None:

@@ -9,8 +9,8 @@ import math
 from typing import Any, NamedTuple
 
 import numpy as np
-from scipy.special import ndtr, ndtri  # type: ignore[import-untyped]
-from scipy.stats import qmc  # type: ignore[import-untyped]
+from scipy.special import ndtr, ndtri
+from scipy.stats import qmc
 
 from modelkit.variables import Variable
 from orchestrator.cosim.slave import Array

@@ -30,7 +30,7 @@ class Input(NamedTuple):
 class Output(NamedTuple):
     total: Annotated[float, Signal("m", "of all that came in")] = 0.0
     rounded: Annotated[float, Signal("m", "of the same, rounded")] = 0.0
-    count: Annotated[int, Signal("1", "written so far")] = 0
+    count: Annotated[int, Signal("1", "written so far")] = 0  # type: ignore[assignment]  # tuples have a method count
 
 
 class State(NamedTuple):

@@ -52,7 +52,7 @@ class Output(NamedTuple):
     oscillators: tuple[Oscillator, ...] = (Oscillator(), Oscillator())
     angle: Annotated[float, Signal("rad", "of the line through both, noisy"), Role.SAMPLED] = 0.0
     mode: Annotated[int, Signal("1", "mode", states=Mode)] = 0
-    count: Annotated[int, Signal("1", "steps so far"), Role.LOCAL] = 0
+    count: Annotated[int, Signal("1", "steps so far"), Role.LOCAL] = 0  # type: ignore[assignment]  # tuples have a method count
     resting: Annotated[bool, Signal("1", "braked")] = False
     drifted: Oscillator = Oscillator()
     pull: Annotated[float, Signal("N", "sum of the forces"), Role.LOCAL] = 0.0
@@ -62,7 +62,7 @@ class State(NamedTuple):
     oscillators: tuple[Oscillator, ...] = (Oscillator(), Oscillator())
     random: int = 1
     time_ns: int = 0
-    count: int = 0
+    count: int = 0  # type: ignore[assignment]  # tuples have a method count
 
 
 def initialize(params: Params) -> tuple[State, Output]:

@@ -6,7 +6,7 @@ from typing import Any
 from pythonfmu import Fmi2Causality, Fmi2Slave, Fmi2Variability, Real
 
 
-class Plant(Fmi2Slave):
+class Plant(Fmi2Slave):  # type: ignore[misc]
     """Position of the front axle [cm], x to the east and y to the south, heading clockwise from east [deg]."""
 
     def __init__(self, **kwargs: Any) -> None:

@@ -34,7 +34,7 @@ def test_fixtures_drive_the_system_and_each_part_alone(pytester: pytest.Pytester
             assert run["steering_wheel_angle"][-1] == pytest.approx(3.14)
 
         def test_takeover(controller):
-            run = controller({"driver_takeover": {"step": {"at": 0.5, "to": True}}}, stop_time=1.0)
+            run = controller({"driver_takeover": {"step": {"at": 0.2, "to": True}}}, stop_time=1.0)
             run.must_meet({"id": "ends", "signal": "phase", "eventually": {"equals": "TAKEOVER"}})
         """
     )

@@ -8,6 +8,7 @@ import argparse
 import statistics
 import time
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -34,7 +35,7 @@ ERRORS = (
 HEAD = "| case | samples | planned in | slowest sample | steps | margin | length | cusps | driven in | clearance |"
 
 
-def planned(scenario):
+def planned(scenario: Any) -> Any:
     """Return what the outputs say when the path is found, and the processor time [s] of each sample until then."""
     model = scenario.models["controller"]
     library, names = load_model(model), [item.name for item in variables(model.outputs)]
@@ -54,7 +55,7 @@ def planned(scenario):
     return dict(zip(names, y.tolist(), strict=True)), times
 
 
-def driven(scenario, files):
+def driven(scenario: Any, files: Any) -> Any:
     """Return the summary of a drive, its clearance [m] to polygons and scene, its length [m] and cusps."""
     ran = run_scenario(scenario, files, kind="native")
     signals = ran.recording.signals
@@ -67,7 +68,7 @@ def driven(scenario, files):
     return summarize(ran.recording, scenario, ran.wall_time), clear, signals["vehicle.distance"][-1], cusps
 
 
-def main():
+def main() -> None:
     """Print a table."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("files", nargs="+")

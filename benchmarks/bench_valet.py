@@ -47,7 +47,7 @@ def planned(scenario: Any) -> Any:
     memory = np.zeros(memory_size(library), dtype=np.uint8)
     library.model_start(memory.ctypes.data, params.ctypes.data, y.ctypes.data)
     found = names.index("valet.pieces"), names.index("reason")
-    times = []
+    times: list[float] = []
     while not y[found[0]] and not y[found[1]] and len(times) < LONGEST:
         begun = time.thread_time()
         library.model_step(memory.ctypes.data, u.ctypes.data, y.ctypes.data, STEP_NS)

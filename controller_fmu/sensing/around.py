@@ -76,6 +76,21 @@ def along_of(gap: Gap) -> Pose:
     return Pose(x if forward else -x, y if forward else -y, 0.0)
 
 
+class PlaceInGap(NamedTuple):
+    """A place as a gap has it [m]: from A towards B across it, and into it."""
+
+    across: float
+    deep: float
+
+
+def in_gap(store: PlanStore, place: int, gap: Gap) -> PlaceInGap:
+    """Return where in a gap a place lies that was heard."""
+    e = along_of(gap)
+    x = store.heard_x[place] - gap.a.x
+    y = store.heard_y[place] - gap.a.y
+    return PlaceInGap(x * e.x + y * e.y, x * math.cos(gap.into) + y * math.sin(gap.into))
+
+
 def _lay_gap(store: PlanStore, gap: Gap, deep: float) -> int:
     """Make the lines beside the gap and behind it."""
     tx = math.cos(gap.into)

@@ -42,6 +42,7 @@ def turn_of(store: PlanStore, frame: PlacesFrame) -> float:
     """
     mean = 0.0
     for within in WITHIN:
+        least = math.cos(4.0 * within)
         cosines = 0.0
         sines = 0.0
         total = 0.0
@@ -56,7 +57,7 @@ def turn_of(store: PlanStore, frame: PlacesFrame) -> float:
                 if here.y < _nearest(store, frame, here.x) + IN_FRONT:
                     angle = 4.0 * (math.atan2(dw, du) - mean)
                     total += length
-                    if math.cos(angle) > math.cos(4.0 * within) or within > 1.0:
+                    if math.cos(angle) > least or within > 1.0:
                         agreed += length
                         cosines += length * math.cos(angle)
                         sines += length * math.sin(angle)

@@ -5,7 +5,7 @@ from typing import Annotated, NamedTuple
 
 from controller_fmu.interface import ControllerInput, Reason
 from controller_fmu.planning.plan_store import HEARD, PlanStore
-from controller_fmu.sensing.around import along_of
+from controller_fmu.sensing.around import along_of, in_gap
 from controller_fmu.sensing.gap import DEEP, Gap, GapLayout
 from controller_fmu.valet.params import GivenSlot, SlotKind, ValetParams
 from controller_fmu.valet.slot import body_of
@@ -131,10 +131,6 @@ def told_reason(store: PlanStore, told: ToldSlot, params: ValetParams) -> int:
 
 def _is_well_in(store: PlanStore, place: int, gap: Gap, deep: float) -> bool:
     """Return whether a place lies where a car would stand in a gap."""
-    e = along_of(gap)
-    x = store.heard_x[place] - gap.a.x
-    y = store.heard_y[place] - gap.a.y
-    across = x * e.x + y * e.y
-    t = x * math.cos(gap.into) + y * math.sin(gap.into)
+    at = in_gap(store, place, gap)
     end = gap.front + min(deep, gap.depth)
-    return WELL_IN < across < gap.width - WELL_IN and -AT_THE_ROAD < t < end - WELL_IN
+    return WELL_IN < at.across < gap.width - WELL_IN and -AT_THE_ROAD < at.deep < end - WELL_IN

@@ -4,19 +4,19 @@ They become lines of the map when the way is planned anew. That is done when a p
 than half the clearance planned, before the car is there.
 """
 
-import math
 from typing import NamedTuple
 
 from controller_fmu.interface import ControllerInput
 from controller_fmu.planning.plan import PATH, Path
 from controller_fmu.planning.plan_store import HEARD, SIDES, PlanStore
-from controller_fmu.planning.task import PlannedCar, drive
-from controller_fmu.sensing.around import along_of
+from controller_fmu.planning.task import drive
+from controller_fmu.sensing.around import along_of, in_gap
 from controller_fmu.sensing.ear import SideEar, listen
 from controller_fmu.sensing.gap import Gap
 from controller_fmu.sensing.heard_store import forget_side, put_line
 from controller_fmu.valet.params import ValetParams
 from controller_fmu.valet.sight import sensor_at
+from modelkit.geometry import Point, outline, point_gap
 from modelkit.vocabulary import Pose
 
 FRONT_EARS = (3, 10, 0, 8)
@@ -81,19 +81,14 @@ def hear_nearby(
 
 def is_new(store: PlanStore, place: int, gap: Gap) -> bool:
     """Return whether a place lies inside a gap, where the map has nothing."""
-    e = along_of(gap)
-    x = store.heard_x[place] - gap.a.x
-    y = store.heard_y[place] - gap.a.y
-    across = x * e.x + y * e.y
-    deep = x * math.cos(gap.into) + y * math.sin(gap.into)
-    return INSIDE < across < gap.width - INSIDE and -BEFORE < deep < gap.front + gap.depth - INSIDE
+    at = in_gap(store, place, gap)
+    return INSIDE < at.across < gap.width - INSIDE and -BEFORE < at.deep < gap.front + gap.depth - INSIDE
 
 
 def room_beside(store: PlanStore, place: int, rest: Rest, params: ValetParams) -> float:
     """Return how near [m] the rest of the way comes to a place."""
     car = params.car
-    length = car.wheelbase + car.front_overhang + car.rear_overhang
-    body = PlannedCar(0.5 * length - car.rear_overhang, 0.5 * length, 0.5 * car.width)
+    point = Point(store.heard_x[place], store.heard_y[place])
     nearest = 1.0
     begin = rest.begin
     left = rest.left
@@ -106,21 +101,11 @@ def room_beside(store: PlanStore, place: int, rest: Rest, params: ValetParams) -
                 on = way - left + STEP * step
                 if on < way + STEP:
                     pose = drive(begin, sense * (on if on < way else way), piece.k0)
-                    nearest = min(nearest, distance(store.heard_x[place], store.heard_y[place], pose, body))
+                    body = outline(pose, car.wheelbase, car.front_overhang, car.rear_overhang, car.width)
+                    nearest = min(nearest, point_gap(point, body))
             begin = drive(begin, piece.way, piece.k0)
             left = abs(rest.path.pieces[number + 1 if number + 1 < PATH else number].way)
     return nearest
-
-
-def distance(x: float, y: float, pose: Pose, body: PlannedCar) -> float:
-    """Return how far [m] a point is from the outline of a car, 0 if it is inside."""
-    c = math.cos(pose.heading)
-    s = math.sin(pose.heading)
-    u = abs((x - pose.x) * c + (y - pose.y) * s - body.ahead) - body.half_length
-    v = abs((y - pose.y) * c - (x - pose.x) * s) - body.half_width
-    u = max(u, 0.0)
-    v = max(v, 0.0)
-    return math.sqrt(u * u + v * v)
 
 
 def lay_nearby(store: PlanStore, state: Nearby, gap: Gap, lines: int) -> None:
@@ -143,14 +128,11 @@ def narrowed(store: PlanStore, state: Nearby, gap: Gap, length: float) -> Gap:
         first = (SIDES + number) * HEARD
         for place in range(first, first + state.ears[number].places):
             if store.heard_count[place] >= SURE and is_new(store, place, gap):
-                x = store.heard_x[place] - gap.a.x
-                y = store.heard_y[place] - gap.a.y
-                across = x * e.x + y * e.y
-                deep = x * math.cos(gap.into) + y * math.sin(gap.into) - gap.front
-                if 0.0 < deep < length:
-                    if across < 0.5 * gap.width:
-                        low = max(low, across)
+                at = in_gap(store, place, gap)
+                if 0.0 < at.deep - gap.front < length:
+                    if at.across < 0.5 * gap.width:
+                        low = max(low, at.across)
                     else:
-                        high = min(high, across)
+                        high = min(high, at.across)
     a = Pose(gap.a.x + low * e.x, gap.a.y + low * e.y, gap.a.heading)
     return gap._replace(a=a, width=high - low)

@@ -10,7 +10,7 @@ from controller_fmu.sensing.ear import SideEar, listen
 from controller_fmu.sensing.gap import Gap, GapLayout, Wanted, find_gap
 from controller_fmu.valet.given import ToldSlot, gap_told, told_reason
 from controller_fmu.valet.params import SlotKind, SlotWish, ValetParams, WishedSide
-from controller_fmu.valet.sight import sensor_at
+from controller_fmu.valet.sight import is_told_anew, sensor_at
 from modelkit.vocabulary import Pose
 
 RIGHT_SENSOR = 10
@@ -62,9 +62,8 @@ def search(store: PlanStore, state: Search, inputs: ControllerInput, params: Val
     """Return the search after one sample; sensors tell something new every ``cycle``."""
     speed = abs(inputs.measured_speed)
     clock = state.clock_ns + dt_ns
-    cycle_ns = math.floor(params.car.ultrasonic.cycle * 1e9 + 0.5)
     state = state._replace(clock_ns=clock, way=state.way + speed * dt_ns * 1e-9)
-    if clock % cycle_ns >= dt_ns or speed < SLOWEST:
+    if not is_told_anew(clock, params.car.ultrasonic, dt_ns) or speed < SLOWEST:
         return state
     right = _hear(store, state.right, RIGHT, RIGHT_SENSOR, inputs, params)
     left = _hear(store, state.left, LEFT, LEFT_SENSOR, inputs, params)

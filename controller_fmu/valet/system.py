@@ -28,7 +28,7 @@ from controller_fmu.valet.nearby import Nearby, Rest, forget_nearby, hear_nearby
 from controller_fmu.valet.params import SlotKind, ValetParams
 from controller_fmu.valet.rolling import Ahead, ahead_of, aim_at, joint_of
 from controller_fmu.valet.search import Search, begin_search, reason_to_end, search, shallower, told_slot, with_map
-from controller_fmu.valet.sight import SEEN_CORNERS, Sight, look, remembered, scene_of
+from controller_fmu.valet.sight import SEEN_CORNERS, Sight, is_told_anew, look, remembered, scene_of
 from controller_fmu.valet.slot import body_of, goal_in, goal_of, stands_out
 from controller_fmu.valet.watch import Watch, fault_of, reason_to_fail, watch
 from modelkit.maths import clamp, sign, wrap_angle
@@ -272,8 +272,7 @@ def heard_on(
     store: PlanStore, state: ValetState, inputs: ControllerInput, params: ValetParams, dt_ns: int
 ) -> ValetState:
     """Return the valet that has listened on its way into a slot; sensors tell something new every ``cycle``."""
-    cycle_ns = math.floor(params.car.ultrasonic.cycle * 1e9 + 0.5)
-    if state.watch.running % cycle_ns >= dt_ns:
+    if not is_told_anew(state.watch.running, params.car.ultrasonic, dt_ns):
         return state
     rest = Rest(state.path, state.piece, state.begin, state.tracked.left)
     nearby = hear_nearby(store, state.nearby, inputs, rest, state.search.gap, params)

@@ -37,11 +37,18 @@ def kept_library(
     Raises ``RuntimeError`` without a C compiler, or with its words if it refuses.
     """
     compiler, target, platform = compiler or find_compiler(), target or host_target(), PLATFORMS[host()]
-    digest = hashlib.sha256(compiler.recipe(target).encode())
-    for file, text in sorted(files.items()):
-        digest.update(f"{file} {len(text)} {text}".encode())
-    key, file = digest.hexdigest()[:16], f"{name}{platform.suffix}"
+    key, file = key_of(compiler, target, files), f"{name}{platform.suffix}"
     return kept_file(LIBRARIES, name, key, platform.suffix, lambda: compiler.library(files, unit, file, target))
+
+
+def key_of(compiler: Compiler, target: CompileTarget, files: Mapping[str, str]) -> str:
+    """Return digits that depend on all that a library is made of."""
+    return hashlib.sha256("".join((compiler.recipe(target), *told(files))).encode()).hexdigest()[:16]
+
+
+def told(files: Mapping[str, str]) -> list[str]:
+    """Return a text for each C file that no other file has."""
+    return [f"{file} {len(text)} {text}" for file, text in sorted(files.items())]
 
 
 def own_files(*names: str) -> dict[str, str]:

@@ -4,14 +4,14 @@ The C is that of the native FMUs and the batch; the C library, its mathematics i
 offers is in ``c/live.c``.
 """
 
-import hashlib
 from collections.abc import Iterable, Mapping
+from functools import cache
 from importlib.util import find_spec
 from pathlib import Path
 
 from fmus.locks import kept_file
 from fmus.native.compilers import find_compiler
-from fmus.native.kept import C_FILES
+from fmus.native.kept import C_FILES, key_of, own_files, told
 from fmus.native.made_of import ROOT, hash_of, words_of
 from fmus.native.platforms import WEB, CompileTarget
 from fmus.native.probes import DECLARED, probed
@@ -60,6 +60,7 @@ def live_library(
     compiler, name = find_compiler("zig"), f"live{suffix}"
     further = more or {}
 
+    @cache
     def files() -> dict[str, str]:
         return {**live_files(models), **further}
 
@@ -68,26 +69,17 @@ def live_library(
         return compiler.linked(files(), units, name, target)
 
     packages = [Path(str(package.__file__)).parent for model in models.values() for package in model.sources()]
-    words = [compiler.recipe(target), *_told(further), *(word for model in models.values() for word in words_of(model))]
+    words = [compiler.recipe(target), *told(further), *(word for model in models.values() for word in words_of(model))]
     sources = hash_of([*packages, ROOT / "modelkit", ROOT / "fmus" / "compiler", C_FILES.parent], "\0".join(words))
-    of_c = kept_file(CACHE, name, sources, ".key", lambda: _digest([compiler.recipe(target), *_told(files())]), KEPT)
+    of_c = kept_file(CACHE, name, sources, ".key", lambda: key_of(compiler, target, files()).encode(), KEPT)
     return kept_file(LIBRARIES, "live", of_c.read_text(encoding="ascii"), suffix, made)
-
-
-def _told(files: Mapping[str, str]) -> list[str]:
-    return [f"{file} {len(text)} {text}" for file, text in sorted(files.items())]
-
-
-def _digest(words: list[str]) -> bytes:
-    return hashlib.sha256("".join(words).encode()).hexdigest()[:16].encode()
 
 
 def live_files(models: Mapping[str, Model]) -> dict[str, str]:
     """Return the C files; those called ``..._unit.c`` are compiled."""
     from fmus.native.libraries import model_files, model_unit
 
-    own = ("live.c", "batch.c", "faults.h", "library.h")
-    files = {name: (C_FILES / name).read_text(encoding="utf-8") for name in own}
+    files = own_files("live.c", "batch.c", "faults.h", "library.h")
     charts = 0
     for model in models.values():
         files |= model_files(model)

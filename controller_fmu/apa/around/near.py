@@ -6,6 +6,7 @@ at last to be elsewhere than thought is found while the car can still be stopped
 """
 
 import math
+from typing import NamedTuple
 
 from controller_fmu.apa.around.cone import ear_of, rim_point
 from controller_fmu.apa.around.course import HeldCourse, after
@@ -24,11 +25,21 @@ SHARES = (-1.0, -0.5, 0.0, 0.5, 1.0)
 FREE = 100.0
 
 
+class FurtherOn(NamedTuple):
+    """Where the car is a way further on, in the frame of where it is now."""
+
+    x: float
+    y: float
+    c: float
+    """Cosine and sine of its heading."""
+    s: float
+
+
 def room_by_echoes(readings: tuple[float, ...], course: HeldCourse, mirror: float, sensors: CarUltrasonic) -> float:
     """Return how far [m] the outline can go on its ``course`` before it may come close to what any sensor hears."""
     lowest = nearest_told(sensors)
     here = course._replace(pose=Pose(0.0, 0.0, 0.0))
-    poses = tuple(after(here, way) for way in WAYS)
+    poses = tuple(_further_on(here, way) for way in WAYS)
     room = FREE
     for number in range(12):
         reading = readings[number]
@@ -41,17 +52,20 @@ def room_by_echoes(readings: tuple[float, ...], course: HeldCourse, mirror: floa
     return room
 
 
-def _room_beside(point: Point, close: float, poses: tuple[Pose, ...], car: Shape) -> float:
+def _further_on(course: HeldCourse, way: float) -> FurtherOn:
+    pose = after(course, way)
+    return FurtherOn(pose.x, pose.y, math.cos(pose.heading), math.sin(pose.heading))
+
+
+def _room_beside(point: Point, close: float, poses: tuple[FurtherOn, ...], car: Shape) -> float:
     """Return how far [m] a car may go before it is nearer than ``close`` to a point, and nearer than now."""
     now = _gap(point, car)
     room = 0.0
     for number in range(len(WAYS)):
         pose = poses[number]
-        c = math.cos(pose.heading)
-        s = math.sin(pose.heading)
         dx = point.x - pose.x
         dy = point.y - pose.y
-        there = _gap(Point(dx * c + dy * s, dy * c - dx * s), car)
+        there = _gap(Point(dx * pose.c + dy * pose.s, dy * pose.c - dx * pose.s), car)
         if there < close and there < now - NEARER:
             return room
         room = WAYS[number]

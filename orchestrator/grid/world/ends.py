@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Mapping
+from functools import cache
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -11,6 +12,7 @@ from modelkit.geometry import Box, boxes_gap, line_box, outline
 from modelkit.vocabulary import Pose
 from orchestrator.cosim.slave import Array
 from orchestrator.grid.parkings import GBT
+from orchestrator.grid.study import GBT_SETS
 from orchestrator.grid.world.factors import NOBODY
 from orchestrator.grid.world.scene import THINGS, WHEEL
 from orchestrator.scenario.requirements import Requirement, shipped_requirements
@@ -103,9 +105,16 @@ def _stands_among_the_moved(row: Mapping[str, Any]) -> bool:
         return False
     way = math.copysign(min(abs(row["mover_way"]), _driven(row)), row["mover_way"])
     more = max(0.0, -way if row["kind"] == 0 else 0.5 * way)
+    turned, aside, out, shifts = _limits_of(int(row["kind"]) + 1)
     heading, lateral = abs(row["final.heading_error"]), abs(row["final.lateral_error"])
-    near = heading <= math.radians(3.0) and lateral <= OFF and row["final.slot_margin"] + more >= -OFF
-    return bool(near and row["shifts"] <= SHIFTS[int(row["kind"])])
+    near = heading <= turned and lateral <= aside and row["final.slot_margin"] + more >= -out
+    return bool(near and row["shifts"] <= shifts)
+
+
+@cache
+def _limits_of(kind: int) -> tuple[float, ...]:
+    """Return how far GB/T 41630 lets a car of this kind of slot be turned, aside, out of it, and its shifts."""
+    return tuple(abs(float(item.limit)) for item in shipped_requirements(GBT_SETS[kind], *CLAIMED, "shifts"))
 
 
 def _driven(row: Mapping[str, Any]) -> float:
@@ -123,8 +132,6 @@ def touched_first(row: Mapping[str, Any]) -> Touched:
     return Touched(name, name in MOVABLE and _is_moving(row, name) and _gap(row, before, *things[name]) <= 0.0)
 
 
-OFF, SHIFTS = 0.15, (8, 7)
-"""GB/T 41630: aside and out of the slot [m]; shifts, parallel and perpendicular."""
 MOVABLE = THINGS[:2] + THINGS[3:4]
 KERB = THINGS[-1]
 HEARD = UltrasonicParams().kerb_height

@@ -119,7 +119,10 @@ def test_two_runs_are_compared(case4: Any) -> None:
 
 
 def test_the_picture_and_the_replay(case4: Any, tmp_path: Path) -> None:
-    assert len(case4.plot().axes) >= 5
+    panels = [axes for axes in case4.plot().axes if axes.get_ylabel() != "steering wheel [deg]"]
+    assert [axes.get_title("left")[:3] for axes in panels] == ["(d)", "(a)", "(b)", "(c)"]
+    ribbons = [[type(item).__name__ for item in axes.collections].count("PolyCollection") for axes in panels]
+    assert ribbons == [0, 1, 1, 1]
     assert case4._repr_html_().startswith("<iframe srcdoc=")
     assert case4.save(tmp_path / "out").name == "report.html"
     assert {file.name for file in (tmp_path / "out").iterdir()} == {"report.html", "overview.png", "summary.json"}

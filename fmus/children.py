@@ -21,6 +21,8 @@ main()
 """
 """What a process of ours runs: nothing of this project stays in its way."""
 LIVING: set["subprocess.Popen[Any]"] = set()
+PYTHON = str(Path(sys.executable).absolute()) if sys.executable else ""
+"""The interpreter that runs this, from any folder: with a relative entry in ``PATH`` its own name is relative."""
 
 
 def run_child(command: Sequence[str], folder: Path | None = None, environment: Mapping[str, str] | None = None) -> Any:
@@ -53,7 +55,7 @@ def own_process(module: str, folder: Path | None = None, errors: Any = None) -> 
     import subprocess
 
     pipe = subprocess.PIPE
-    command = [sys.executable, "-P", "-c", BEGIN.format(module=module), str(ROOT)]
+    command = [PYTHON, "-P", "-c", BEGIN.format(module=module), str(ROOT)]
     group: dict[str, Any] = {"start_new_session": True} if os.name == "posix" else {}
     streams: dict[str, Any] = {"stdin": pipe, "stdout": pipe, "stderr": errors or pipe}
     return subprocess.Popen(command, cwd=folder, bufsize=0, **streams, **group)

@@ -3,13 +3,12 @@
 import os
 import shlex
 import shutil
-import sys
 from collections.abc import Mapping, Sequence
 from importlib.util import find_spec
 from pathlib import Path
 from typing import NamedTuple
 
-from fmus.children import run_child
+from fmus.children import PYTHON, run_child
 from fmus.files import folder_for_a_while
 from fmus.native.platforms import CompileTarget, host_target
 from fmus.places import CACHE, can_write
@@ -104,7 +103,7 @@ def find_compiler(cc: str | None = None) -> Compiler:
         words = " ".join(("ziglang", version("ziglang"), *ZIG))
     except PackageNotFoundError:
         raise RuntimeError(MISSING) from None
-    return Compiler((sys.executable, "-P", "-m", "ziglang", "cc"), words, True)
+    return Compiler((PYTHON, "-P", "-m", "ziglang", "cc"), words, True)
 
 
 def _system(command: tuple[str, ...]) -> Compiler:

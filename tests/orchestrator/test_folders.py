@@ -173,6 +173,17 @@ def test_no_module_of_the_current_folder_is_run(words: Any, tmp_path: Path) -> N
     assert not (tmp_path / "ran").exists(), (tmp_path / "ran").read_text()
 
 
+@posix
+def test_a_relative_entry_of_path_names_the_interpreter_from_any_folder() -> None:
+    code = "import os, sys; from fmus.children import PYTHON; print(os.path.isabs(sys.executable), PYTHON)"
+    python = Path(sys.executable)
+    environment = {**os.environ, "PATH": python.parent.name, "PYTHONPATH": str(ROOT)}
+    done = subprocess.run(
+        [python.name, "-c", code], cwd=python.parents[1], env=environment, capture_output=True, text=True, check=True
+    )
+    assert done.stdout.split() == ["False", str(python)]
+
+
 def test_a_library_that_is_damaged_is_made_again(tmp_path: Path) -> None:
     from fmus.locks import kept_file
 

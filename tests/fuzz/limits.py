@@ -3,14 +3,16 @@
 import contextlib
 import io
 import os
+import re
 import resource
 import signal
 import time
 import traceback
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from typing import NamedTuple
 
 from orchestrator.cli import main
+from orchestrator.text.errors import INTERRUPTED
 from tests.fuzz.fair_time import FairTime
 
 LONGEST = 20.0
@@ -23,8 +25,16 @@ CODES = (0, 1, 2, 130)
 """Codes that an input may lead to; 3 is a mistake of ours."""
 
 
+PROGRESS = re.compile(r": (\d+) of (\d+) runs")
+"""What a study says while it goes on."""
+
+
 class Hangs(BaseException):
     """It takes too long."""
+
+
+class GoesOn(BaseException):
+    """It takes long because a million runs were asked for, and says how far it is."""
 
 
 class Answer(NamedTuple):
@@ -44,11 +54,13 @@ def ask(words: Sequence[str], longest: float = LONGEST) -> Answer:
     out, err = io.StringIO(), io.StringIO()
     begun, mistake, code = time.monotonic(), "", None
     try:
-        with alarm(longest), contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
+        with alarm(longest, lambda: goes_on(err.getvalue())), contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
             try:
                 code = main(list(words))
             except SystemExit as left:
                 code = int(left.code or 0)
+    except GoesOn:
+        code = INTERRUPTED
     except Hangs:
         mistake = f"hangs: more than {longest:g} s of its own, {time.monotonic() - begun:.0f} s in all"
     except BaseException:
@@ -63,14 +75,20 @@ def ask(words: Sequence[str], longest: float = LONGEST) -> Answer:
     return Answer(code, out.getvalue(), said, time.monotonic() - begun, mistake)
 
 
+def goes_on(said: str) -> bool:
+    """Return whether runs were made, and are still made when the time is over: two lines, the later one with more."""
+    done = [int(at[1]) for at in PROGRESS.finditer(said)]
+    return len(done) > 1 and done[-1] > done[-2]
+
+
 @contextlib.contextmanager
-def alarm(seconds: float) -> Iterator[None]:
-    """Raise ``Hangs`` in what takes longer, as ``FairTime`` counts."""
+def alarm(seconds: float, goes_on: Callable[[], bool] = lambda: False) -> Iterator[None]:
+    """Raise ``Hangs`` in what takes longer, as ``FairTime`` counts, or ``GoesOn`` where that is told of it."""
     taken = FairTime(os.getpid())
 
     def look(*_: object) -> None:
         if taken.seconds() > seconds:
-            raise Hangs
+            raise GoesOn if goes_on() else Hangs
 
     before = signal.signal(signal.SIGALRM, look)
     signal.setitimer(signal.ITIMER_REAL, LOOK, LOOK)

@@ -9,7 +9,7 @@ import time
 import pytest
 
 from tests.fuzz.fair_time import FairTime, Threads, threads_of
-from tests.fuzz.limits import Hangs, alarm
+from tests.fuzz.limits import GoesOn, Hangs, alarm, goes_on
 
 SPINS = "import os, sys\nos.sched_setaffinity(0, {int(sys.argv[1])})\nprint(flush=True)\nwhile True: pass"
 SLEEPS = "import time\nprint(flush=True)\ntime.sleep(60)"
@@ -56,6 +56,14 @@ def test_who_sleeps_takes_all_of_it() -> None:
 def test_what_computes_or_waits_for_ever_hangs(hang: str) -> None:
     with pytest.raises(Hangs), alarm(0.2):
         exec(hang)
+
+
+def test_what_says_that_it_goes_on_does_not_hang() -> None:
+    with pytest.raises(GoesOn), alarm(0.2, lambda: goes_on("x: 20 of 900 runs\nx: 60 of 900 runs, 8/s\n")):
+        time.sleep(60.0)
+    for said in ("", "x: 20 of 900 runs\n", "x: 20 of 900 runs\nx: 20 of 900 runs\n"):
+        with pytest.raises(Hangs), alarm(0.2, lambda said=said: goes_on(said)):  # type: ignore[misc]
+            time.sleep(60.0)
 
 
 @told

@@ -54,7 +54,8 @@ def ask(words: Sequence[str], longest: float = LONGEST) -> Answer:
     out, err = io.StringIO(), io.StringIO()
     begun, mistake, code = time.monotonic(), "", None
     try:
-        with alarm(longest, lambda: goes_on(err.getvalue())), contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
+        watched = alarm(longest, lambda: goes_on(err.getvalue()))
+        with watched, contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
             try:
                 code = main(list(words))
             except SystemExit as left:

@@ -3,13 +3,13 @@
 import math
 from typing import Annotated, NamedTuple
 
+from controller_fmu.common.told import SlotKind, ToldSlot, depth_of, is_usable_slot
 from controller_fmu.interface import ControllerInput, Reason
 from controller_fmu.planning.plan_store import HEARD, PlanStore
 from controller_fmu.sensing.around import along_of, in_gap
 from controller_fmu.sensing.gap import DEEP, Gap, GapLayout
-from controller_fmu.valet.params import GivenSlot, SlotKind, ValetParams
+from controller_fmu.valet.params import GivenSlot, ValetParams
 from controller_fmu.valet.slot import body_of
-from modelkit.maths import is_finite
 from modelkit.signal import Group, Signal
 from modelkit.vocabulary import Pose
 
@@ -20,23 +20,6 @@ WELL_IN = 0.25
 AT_THE_ROAD = 0.15
 """Slots begin so far [m] before their corners A and B."""
 ECHOES = 2
-DEEPER = 0.1
-"""Corners C and D tell a depth if they lie so far [m] behind A and B."""
-
-
-class ToldSlot(NamedTuple):
-    """A slot as somebody outside sees it: A and B where it opens to the road, C behind B, D behind A."""
-
-    kind: Annotated[int, Signal("1", "how to stand in it; none: no slot is told", states=SlotKind)] = SlotKind.NONE
-    ax: Annotated[float, Signal("m", "x of corner A, at the road")] = 0.0
-    ay: Annotated[float, Signal("m", "y of corner A")] = 0.0
-    bx: Annotated[float, Signal("m", "x of corner B, at the road")] = 0.0
-    by: Annotated[float, Signal("m", "y of corner B")] = 0.0
-    cx: Annotated[float, Signal("m", "x of corner C, behind B; where C and D are A and B the depth is not told")] = 0.0
-    cy: Annotated[float, Signal("m", "y of corner C")] = 0.0
-    dx: Annotated[float, Signal("m", "x of corner D, behind A")] = 0.0
-    dy: Annotated[float, Signal("m", "y of corner D")] = 0.0
-    heading: Annotated[float, Signal("rad", "direction from the road into the slot")] = 0.0
 
 
 class ValetInput(NamedTuple):
@@ -69,14 +52,6 @@ def of_the_car(inputs: ValetInput) -> ControllerInput:
     )
 
 
-def depth_of(told: ToldSlot) -> float:
-    """Return how deep [m] a slot is, ``DEEP`` if that is not told."""
-    c = math.cos(told.heading)
-    s = math.sin(told.heading)
-    depth = 0.5 * ((told.dx - told.ax + told.cx - told.bx) * c + (told.dy - told.ay + told.cy - told.by) * s)
-    return depth if depth > DEEPER else DEEP
-
-
 def as_parameter(told: ToldSlot, slot: GivenSlot) -> GivenSlot:
     """Return the slot that is told, or that of the parameters if none is; its depth too where that is not told."""
     if told.kind == SlotKind.NONE:
@@ -100,12 +75,6 @@ def gap_told(told: ToldSlot, params: ValetParams) -> Gap:
     depth = depth_of(told)
     back = 0.5 * (depth - needed) if needed < depth < DEEP and not lengthwise else 0.0
     return made._replace(width=dx * e.x + dy * e.y, front=middle + back, depth=depth - back if depth < DEEP else DEEP)
-
-
-def is_usable_slot(told: ToldSlot) -> bool:
-    """Return whether no slot is told, or one whose numbers are finite."""
-    corners = told.ax + told.ay + told.bx + told.by + told.cx + told.cy + told.dx + told.dy
-    return told.kind == SlotKind.NONE or is_finite(corners + told.heading)
 
 
 def told_reason(store: PlanStore, told: ToldSlot, params: ValetParams) -> int:

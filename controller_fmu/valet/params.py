@@ -5,6 +5,7 @@ from math import pi
 from typing import Annotated, NamedTuple
 
 from controller_fmu.common.params import LimitParams, ThresholdParams
+from controller_fmu.common.told import SlotKind
 from controller_fmu.interface import System
 from controller_fmu.planning.task import Corner
 from modelkit.car import Car
@@ -13,19 +14,6 @@ from modelkit.vocabulary import ANYWHERE, Pose
 
 HOUSE = "chosen; the source states none"
 MAP_CORNERS = 360
-
-
-class SlotKind(IntEnum):
-    """How to stand in a slot that is given by its corners."""
-
-    NONE = 0
-    """No slot is given: the goal is the target."""
-    PARALLEL = 1
-    """Along the side from A to B, turned as the car is now."""
-    TAIL_IN = 2
-    """Rear end first, as deep as the slot's middle."""
-    NOSE_IN = 3
-    """Front end first."""
 
 
 class GivenSlot(NamedTuple):

@@ -2,10 +2,11 @@
 
 import math
 
+from controller_fmu.common.told import SlotKind
 from controller_fmu.planning.task import PlannedCar as Body
 from controller_fmu.sensing.around import along_of
 from controller_fmu.sensing.gap import Gap, GapLayout
-from controller_fmu.valet.params import GivenSlot, SlotKind, SlotWish, ValetParams
+from controller_fmu.valet.params import GivenSlot, SlotWish, ValetParams
 from modelkit.car import largest_curvature
 from modelkit.maths import PI
 from modelkit.vocabulary import Pose

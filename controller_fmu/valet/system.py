@@ -6,6 +6,7 @@ from typing import NamedTuple
 from controller_fmu.common.chart import bit
 from controller_fmu.common.monitor import Command
 from controller_fmu.common.path_law import Deviation, angle_back, deviation
+from controller_fmu.common.told import SlotKind, ToldSlot, is_usable_slot
 from controller_fmu.interface import ControllerInput, Reason
 from controller_fmu.planning.plan import (
     NO_WAY,
@@ -23,9 +24,9 @@ from controller_fmu.sensing.around import lay_end
 from controller_fmu.sensing.gap import DEEP, GapLayout
 from controller_fmu.sensing.heard_store import forget_side
 from controller_fmu.valet.chart import Guard, Step, step_transition
-from controller_fmu.valet.given import ToldSlot, as_parameter, is_usable_slot
+from controller_fmu.valet.given import as_parameter
 from controller_fmu.valet.nearby import Nearby, Rest, forget_nearby, hear_nearby, lay_nearby, narrowed
-from controller_fmu.valet.params import SlotKind, ValetParams
+from controller_fmu.valet.params import ValetParams
 from controller_fmu.valet.rolling import Ahead, ahead_of, aim_at, joint_of
 from controller_fmu.valet.search import Search, begin_search, reason_to_end, search, shallower, told_slot, with_map
 from controller_fmu.valet.sight import SEEN_CORNERS, Sight, is_told_anew, look, remembered, scene_of

@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 
 from rich.table import Table as Printed
 
-from controller_fmu.valet.params import SlotKind
+from controller_fmu.common.told import SlotKind
 from orchestrator.grid.cases import CARS
 from orchestrator.grid.imperfect import imperfect
 from orchestrator.scenario.car import car_parameters

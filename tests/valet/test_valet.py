@@ -9,10 +9,11 @@ import pytest
 from shapely.geometry import LineString, Polygon
 
 from controller_fmu import MODEL, VALET
+from controller_fmu.common.told import SlotKind, ToldSlot
 from controller_fmu.interface import Reason, System
 from controller_fmu.planning.task import Corner
-from controller_fmu.valet.given import ToldSlot, ValetInput
-from controller_fmu.valet.params import MAP_CORNERS, GivenSlot, SlotKind, ValetParams
+from controller_fmu.valet.given import ValetInput
+from controller_fmu.valet.params import MAP_CORNERS, GivenSlot, ValetParams
 from controller_fmu.valet.phases import ValetPhase
 from controller_fmu.valet.sight import NUMBER, SEEN_CORNERS, Sight, expected, look, remembered, scene_of
 from controller_fmu.valet.signals import Planning

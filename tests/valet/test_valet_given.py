@@ -5,12 +5,13 @@ from typing import Any
 
 import pytest
 
+from controller_fmu.common.told import SlotKind, ToldSlot, depth_of
 from controller_fmu.interface import Reason
 from controller_fmu.planning.plan_store import PlanStore
 from controller_fmu.sensing.gap import DEEP, GapLayout
 from controller_fmu.sensing.heard_store import put_heard
-from controller_fmu.valet.given import ToldSlot, as_parameter, depth_of, gap_told, told_reason
-from controller_fmu.valet.params import GivenSlot, SlotKind, SlotWish, ValetParams
+from controller_fmu.valet.given import as_parameter, gap_told, told_reason
+from controller_fmu.valet.params import GivenSlot, SlotWish, ValetParams
 from controller_fmu.valet.slot import body_of, goal_in, goal_of
 from modelkit.maths import PI
 from modelkit.store import new_store

@@ -81,7 +81,7 @@ def step_car(state: CarState, inputs: VehicleInput, faulty: bool, params: Vehicl
         time_ns=next_ns,
         steering_wheel_angle=wheel,
         distance=state.distance + 0.5 * h * abs(speed + state.speed),
-        brake_pedal=_brake_pedal(state.time_ns, driver, driven, inputs, params.driver),
+        brake_pedal=1.0 if faulty else _brake_pedal(state.time_ns, driver, driven, inputs, params.driver),
         steering=steering,
         odometry=odometry,
     )

@@ -89,8 +89,8 @@ def test_nobody_there_changes_no_bit(body: int) -> None:
     assert drive(params(body=body), reverse._replace(person=idle), 3.0) == drive(params(body=body), reverse, 3.0)
 
 
-def test_a_pedal_that_is_no_number_stops_the_car() -> None:
-    _, out = step(
-        drive(params(), VehicleInput(), 0.01)[0], VehicleInput(person=person(accelerator=math.nan)), params(), 10
-    )
-    assert out.vehicle_fault == VehicleFault.BAD_INPUT
+@pytest.mark.parametrize("pedals", [person(accelerator=math.nan), person(brake=math.nan)])
+def test_a_pedal_that_is_no_number_stops_the_car(pedals: PersonInput) -> None:
+    sat = drive(params(), VehicleInput(), 0.01)[0]
+    _, out = step(sat, VehicleInput(person=pedals), params(), 10)
+    assert (out.vehicle_fault, out.brake_pedal) == (VehicleFault.BAD_INPUT, 1.0)

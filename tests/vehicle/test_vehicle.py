@@ -207,7 +207,7 @@ def test_bad_input_brakes_and_holds_the_wheel(body: int) -> None:
     state, out = drive(car, prompted(Prompt.FORWARD, 2.0), 3.0)
     wheel = out.steering_wheel_angle
     _, out = drive(car, prompted(Prompt.FORWARD, math.nan), 3.0, state)
-    assert out.vehicle_fault == VehicleFault.BAD_INPUT
+    assert (out.vehicle_fault, out.brake_pedal) == (VehicleFault.BAD_INPUT, 1.0)
     assert out.speed == 0.0
     assert out.steering_wheel_angle == wheel
 

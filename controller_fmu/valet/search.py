@@ -7,8 +7,9 @@ from controller_fmu.common.told import SlotKind, ToldSlot
 from controller_fmu.interface import ControllerInput, Reason
 from controller_fmu.planning.plan_store import PlanStore
 from controller_fmu.sensing.around import AroundGap, along_of, lay_around
+from controller_fmu.sensing.corridor import find_gap
 from controller_fmu.sensing.ear import SideEar, listen
-from controller_fmu.sensing.gap import Gap, GapLayout, Wanted, find_gap
+from controller_fmu.sensing.gap import Gap, GapLayout, Wanted
 from controller_fmu.valet.given import gap_told, told_reason
 from controller_fmu.valet.params import SlotWish, ValetParams, WishedSide
 from controller_fmu.valet.sight import is_told_anew, sensor_at

@@ -1,97 +1,24 @@
-"""The valet at one sample: plan a bounded amount, set the wheel, drive a piece of the path, halt, plan anew."""
+"""The valet at one sample: look for a slot, plan a bounded amount, set the wheel, drive a piece, halt, plan anew."""
 
 import math
-from typing import NamedTuple
 
 from controller_fmu.common.chart import bit
 from controller_fmu.common.monitor import Command
-from controller_fmu.common.path_law import Deviation, angle_back, deviation
-from controller_fmu.common.told import SlotKind, ToldSlot, is_usable_slot
+from controller_fmu.common.told import SlotKind
 from controller_fmu.interface import ControllerInput, Reason
-from controller_fmu.planning.plan import (
-    NO_WAY,
-    PLANNED,
-    PLANNING,
-    TOO_MANY_EDGES,
-    Path,
-    path_of,
-    search_on,
-    status_of,
-)
 from controller_fmu.planning.plan_store import PlanStore
-from controller_fmu.planning.task import Corner, Request, drive
-from controller_fmu.sensing.around import lay_end
-from controller_fmu.sensing.gap import DEEP, GapLayout
+from controller_fmu.sensing.gap import GapLayout
 from controller_fmu.sensing.heard_store import forget_side
 from controller_fmu.valet.chart import Guard, Step, step_transition
-from controller_fmu.valet.given import as_parameter
-from controller_fmu.valet.nearby import Nearby, Rest, forget_nearby, hear_nearby, lay_nearby, narrowed
+from controller_fmu.valet.driven import AT_END, ValetState, heard_on, moved_on, planned_on, seen_on
+from controller_fmu.valet.nearby import forget_nearby
 from controller_fmu.valet.params import ValetParams
-from controller_fmu.valet.rolling import Ahead, ahead_of, aim_at, joint_of
-from controller_fmu.valet.search import Search, begin_search, reason_to_end, search, shallower, told_slot, with_map
-from controller_fmu.valet.sight import SEEN_CORNERS, Sight, is_told_anew, look, remembered, scene_of
-from controller_fmu.valet.slot import body_of, goal_in, goal_of, stands_out
-from controller_fmu.valet.watch import Watch, fault_of, reason_to_fail, watch
-from modelkit.maths import clamp, sign, wrap_angle
+from controller_fmu.valet.search import Search, begin_search, reason_to_end, search, told_slot, with_map
+from controller_fmu.valet.watch import fault_of, reason_to_fail, watch
+from modelkit.maths import wrap_angle
 from modelkit.vocabulary import Pose
 
-AT_END = 0.03
-"""Left of a piece [m] that is not worth driving."""
-LEARNT = 0.6
-"""Share of what a stop is off its place that the next stop makes up for."""
-EARLIEST = 0.02
 DRIVEN_ON = 0.3
-
-
-class Tracked(NamedTuple):
-    """Where the car is along the piece of path in hand."""
-
-    left: float = 0.0
-    """To its end [m]."""
-    reference: Pose = Pose()
-    lateral_error: float = 0.0
-    heading_error: float = 0.0
-    front_wheel_angle: float = 0.0
-    """That leads back to it [rad]."""
-    ahead: Ahead = Ahead()
-
-
-class ValetState(NamedTuple):
-    """Everything the valet remembers beside its store."""
-
-    step: int = Step.PLAN
-    reason: int = Reason.NONE
-    request: Request = Request()
-    searched: int = 0
-    """Steps of the search done for the request; 0: there is none yet."""
-    plans: int = 0
-    path: Path = Path()
-    piece: int = 0
-    """The one in hand."""
-    begin: Pose = Pose()
-    """Where it begins."""
-    tracked: Tracked = Tracked()
-    early: float = 0.0
-    """The car has been found to stop so much [m] before where it should."""
-    shifts: int = 0
-    direction: float = 0.0
-    """Last driven, 0: not yet."""
-    seen: tuple[Corner, ...] = (Corner(),) * SEEN_CORNERS
-    """Things heard that the map does not have."""
-    seen_count: int = 0
-    sight: Sight = Sight()
-    watch: Watch = Watch()
-    wheel: float = 0.0
-    """Steering-wheel angle asked for [rad]."""
-    search: Search = Search()
-    told: ToldSlot = ToldSlot()
-    """The slot from outside, as it is told now."""
-    nearby: Nearby = Nearby()
-    """What is heard on the way into a slot that was found."""
-    resumes: bool = False
-    """Switched off on the way into a slot, which is still known."""
-    speed: float = 0.0
-    """Speed asked for [m/s], reverse negative."""
 
 
 def valet_sample(
@@ -118,49 +45,43 @@ def valet_sample(
     return moved_on(state, step, inputs, params)
 
 
-def planned_on(store: PlanStore, state: ValetState, inputs: ControllerInput, params: ValetParams) -> ValetState:
-    """Return the valet after some more steps of the search; it begins when the car stands."""
-    if abs(inputs.measured_speed) > params.threshold.standstill:
-        return state._replace(searched=0)
-    request = state.request
-    if not is_usable_slot(state.told):
-        return state._replace(reason=Reason.BAD_INPUT)
-    if state.searched == 0:
-        pose = inputs.odometry
-        goal = goal_of(params, as_parameter(state.told, params.slot), pose)
-        if params.search.active:
-            gap = state.search.gap
-            beside = narrowed(store, state.nearby, gap, 2.0 * body_of(params).half_length)
-            wish = state.search.told if state.search.told != SlotKind.NONE else params.search.wish
-            goal = goal_in(beside, state.search.pose.heading, wish, params)
-            if gap.depth < DEEP:
-                lay_end(store, gap, state.search.lines)
-            lay_nearby(store, state.nearby, gap, state.search.lines + 1)
-        request = Request(pose, goal, body_of(params), params.plan.margin)
-    scene = scene_of(store, params, state.seen)
-    count = search_on(store, scene, request, state.searched, params.plan.at_once)
-    status = status_of(store)
-    path = state.path
-    if status == PLANNED:
-        path = path_of(store)
-    reason = reason_of(status, count, state, params)
-    if params.search.active and stands_out(state.search.gap, params) > params.search.stand_out:
-        reason = Reason.SLOT_TOO_SHALLOW
-    plans = state.plans + 1 if state.searched == 0 else state.plans
-    return state._replace(request=request, searched=count, plans=plans, path=path, reason=reason, sight=Sight())
+def guards_of(state: ValetState, inputs: ControllerInput, params: ValetParams) -> int:
+    """Return the bits of the conditions that hold."""
+    guard = params.guard
+    tracked = state.tracked
+    speed = inputs.measured_speed
+    standing = abs(speed) <= params.threshold.standstill
+    wheel = inputs.steering_wheel_angle
+    straight = abs(wheel) <= params.threshold.wheel
+    stop = abs(speed) * params.drive.delay + 0.5 * speed * speed / params.drive.brake
+    lost = abs(tracked.lateral_error) > guard.corridor or abs(tracked.heading_error) > guard.corridor_heading
+    lost = lost or state.nearby.in_the_way
+    blocked_long = state.watch.blocked * 1e-9 > guard.wait
+    at_end = tracked.left <= AT_END and state.piece + 1 >= state.path.used
+    in_place = is_in_place(inputs.odometry, state.request.goal, params)
+    return (
+        bit(Guard.TAKEN_OVER, inputs.driver_takeover or (params.search.active and not inputs.apa_switch))
+        | bit(Guard.FAULT, state.reason != Reason.NONE)
+        | bit(Guard.PLANNED, state.searched > 0 and state.path.used > 0)
+        | bit(Guard.WHEEL_SET, abs(wheel - state.wheel) <= params.threshold.wheel and not state.sight.blocked)
+        | bit(Guard.MUST_HALT, tracked.ahead.left <= stop - state.early or state.sight.blocked or lost)
+        | bit(Guard.STANDING_LOST, standing and (lost or blocked_long))
+        | bit(Guard.STANDING_AT_END, standing and at_end)
+        | bit(Guard.STANDING, standing and not state.sight.blocked)
+        | bit(Guard.IN_PLACE, straight and in_place)
+        | bit(Guard.MISSED, straight and not in_place)
+    )
 
 
-def reason_of(status: int, count: int, state: ValetState, params: ValetParams) -> int:
-    """Return why a search leads nowhere, ``NONE`` if it may yet or has found a path."""
-    if status == PLANNED:
-        return Reason.NONE
-    if state.plans > params.plan.plans:
-        return Reason.LEFT_PATH
-    if status == PLANNING:
-        return Reason.NO_PATH if count > params.plan.steps else Reason.NONE
-    if status == TOO_MANY_EDGES:
-        return Reason.BAD_PARAMETER
-    return Reason.NO_PATH if status == NO_WAY and state.seen_count == 0 else Reason.BLOCKED
+def is_in_place(pose: Pose, goal: Pose, params: ValetParams) -> bool:
+    """Return whether a pose is as near to the goal as the drive may end."""
+    dx = pose.x - goal.x
+    dy = pose.y - goal.y
+    along = dx * math.cos(goal.heading) + dy * math.sin(goal.heading)
+    across = dy * math.cos(goal.heading) - dx * math.sin(goal.heading)
+    end = params.end
+    turned = abs(wrap_angle(pose.heading - goal.heading)) <= end.heading
+    return abs(along) <= end.position and abs(across) <= end.position and turned
 
 
 def sought_on(
@@ -240,161 +161,3 @@ def _switched_off(state: ValetState, inputs: ControllerInput, params: ValetParam
         return state
     resumes = state.step != Step.PARKED and state.search.gap.layout != GapLayout.NONE
     return ValetState(step=step, search=state.search, told=state.told, resumes=resumes)
-
-
-def seen_on(store: PlanStore, state: ValetState, inputs: ControllerInput, params: ValetParams) -> ValetState:
-    """Return the valet that has looked where it is on its path, and what is in the way."""
-    if state.tracked.left <= 0.0 and joint_of(state.path, state.piece, params).ramp > 0.0:
-        state = _rolled_on(state)
-    way = state.path.pieces[state.piece].way
-    curvature = state.path.pieces[state.piece].k0
-    direction = sign(way)
-    pose = inputs.odometry
-    at = drive(state.begin, direction * (abs(way) - state.tracked.left), curvature)
-    left = state.tracked.left
-    for _ in range(2):
-        ahead = (pose.x - at.x) * math.cos(at.heading) + (pose.y - at.y) * math.sin(at.heading)
-        left = left - direction * ahead
-        at = drive(state.begin, direction * (abs(way) - left), curvature)
-    off = deviation(pose, at)
-    law = params.drive
-    soon = left - abs(inputs.measured_speed) * law.wheel_delay
-    aim = aim_at(state.path, state.piece, left, params)
-    asked = aim_at(state.path, state.piece, soon, params).curvature
-    beside = Deviation(off.lateral - aim.lateral, off.heading - aim.heading)
-    angle = angle_back(beside, asked, direction, law.k1, law.k2, params.car.wheelbase)
-    coming = ahead_of(state.path, state.piece, left, params)
-    scene = scene_of(store, params, state.seen)
-    sight = look(inputs.ultrasonic, pose, direction, inputs.measured_speed, scene, params)
-    return state._replace(tracked=Tracked(left, at, off.lateral, off.heading, angle, coming), sight=sight)
-
-
-def heard_on(
-    store: PlanStore, state: ValetState, inputs: ControllerInput, params: ValetParams, dt_ns: int
-) -> ValetState:
-    """Return the valet that has listened on its way into a slot; sensors tell something new every ``cycle``."""
-    if not is_told_anew(state.watch.running, params.car.ultrasonic, dt_ns):
-        return state
-    rest = Rest(state.path, state.piece, state.begin, state.tracked.left)
-    nearby = hear_nearby(store, state.nearby, inputs, rest, state.search.gap, params)
-    return state._replace(nearby=nearby)
-
-
-def guards_of(state: ValetState, inputs: ControllerInput, params: ValetParams) -> int:
-    """Return the bits of the conditions that hold."""
-    guard = params.guard
-    tracked = state.tracked
-    speed = inputs.measured_speed
-    standing = abs(speed) <= params.threshold.standstill
-    wheel = inputs.steering_wheel_angle
-    straight = abs(wheel) <= params.threshold.wheel
-    stop = abs(speed) * params.drive.delay + 0.5 * speed * speed / params.drive.brake
-    lost = abs(tracked.lateral_error) > guard.corridor or abs(tracked.heading_error) > guard.corridor_heading
-    lost = lost or state.nearby.in_the_way
-    blocked_long = state.watch.blocked * 1e-9 > guard.wait
-    at_end = tracked.left <= AT_END and state.piece + 1 >= state.path.used
-    in_place = is_in_place(inputs.odometry, state.request.goal, params)
-    return (
-        bit(Guard.TAKEN_OVER, inputs.driver_takeover or (params.search.active and not inputs.apa_switch))
-        | bit(Guard.FAULT, state.reason != Reason.NONE)
-        | bit(Guard.PLANNED, state.searched > 0 and state.path.used > 0)
-        | bit(Guard.WHEEL_SET, abs(wheel - state.wheel) <= params.threshold.wheel and not state.sight.blocked)
-        | bit(Guard.MUST_HALT, tracked.ahead.left <= stop - state.early or state.sight.blocked or lost)
-        | bit(Guard.STANDING_LOST, standing and (lost or blocked_long))
-        | bit(Guard.STANDING_AT_END, standing and at_end)
-        | bit(Guard.STANDING, standing and not state.sight.blocked)
-        | bit(Guard.IN_PLACE, straight and in_place)
-        | bit(Guard.MISSED, straight and not in_place)
-    )
-
-
-def is_in_place(pose: Pose, goal: Pose, params: ValetParams) -> bool:
-    """Return whether a pose is as near to the goal as the drive may end."""
-    dx = pose.x - goal.x
-    dy = pose.y - goal.y
-    along = dx * math.cos(goal.heading) + dy * math.sin(goal.heading)
-    across = dy * math.cos(goal.heading) - dx * math.sin(goal.heading)
-    end = params.end
-    turned = abs(wrap_angle(pose.heading - goal.heading)) <= end.heading
-    return abs(along) <= end.position and abs(across) <= end.position and turned
-
-
-def moved_on(state: ValetState, step: int, inputs: ControllerInput, params: ValetParams) -> ValetState:
-    """Return the valet in ``step``, with what it asks of wheel and speed until the next sample."""
-    before = state.step
-    if step == Step.PLAN and before != Step.PLAN:
-        state = _to_plan_anew(state)
-    if step == Step.SET_WHEEL and before != Step.SET_WHEEL:
-        state = _with_piece(state, before, params)
-    wheel = state.wheel
-    speed = 0.0
-    limit = params.car.steering.angle_limit
-    ratio = params.car.steering.ratio
-    if step == Step.SET_WHEEL:
-        curvature = aim_at(state.path, state.piece, state.tracked.left, params).curvature
-        wheel = clamp(ratio * math.atan(params.car.wheelbase * curvature), -limit, limit)
-    if step == Step.DRIVE or step == Step.HALT:
-        wheel = clamp(ratio * state.tracked.front_wheel_angle, -limit, limit)
-    if step == Step.STRAIGHTEN:
-        wheel = 0.0
-    if step == Step.DRIVE:
-        if before != Step.DRIVE:
-            state = _set_out(state)
-        speed = state.direction * planned_speed(state.tracked.ahead, state.sight.speed, params)
-    return state._replace(step=step, wheel=wheel, speed=speed)
-
-
-def planned_speed(ahead: Ahead, most: float, params: ValetParams) -> float:
-    """Return the speed [m/s] for what lies ahead, at most ``most`` but never less than creeping."""
-    law = params.drive
-    fast = math.sqrt(law.creep * law.creep + 2.0 * law.deceleration * (ahead.left if ahead.left > 0.0 else 0.0))
-    return max(law.creep, min(ahead.speed, min(fast, most)))
-
-
-def _rolled_on(state: ValetState) -> ValetState:
-    """Return the valet on the next piece, which it reached without a stop."""
-    begin = drive(state.begin, state.path.pieces[state.piece].way, state.path.pieces[state.piece].k0)
-    left = state.tracked.left + abs(state.path.pieces[state.piece + 1].way)
-    return state._replace(piece=state.piece + 1, begin=begin, tracked=state.tracked._replace(left=left))
-
-
-def _to_plan_anew(state: ValetState) -> ValetState:
-    """Return the valet about to plan from where it stands; what is in the way is remembered."""
-    seen = state.seen
-    count = state.seen_count
-    state = state._replace(nearby=state.nearby._replace(in_the_way=False))
-    sought = shallower(state.search, state.sight.echo)
-    if sought.gap.depth < state.search.gap.depth and state.sight.blocked and state.sight.ahead:
-        return state._replace(searched=0, path=Path(), search=sought, watch=state.watch._replace(blocked=0))
-    if state.sight.blocked:
-        seen = remembered(seen, state.sight.echo, count)
-        count = count + 1
-    clocks = state.watch._replace(blocked=0)
-    return state._replace(searched=0, path=Path(), seen=seen, seen_count=count, watch=clocks)
-
-
-def _with_piece(state: ValetState, before: int, params: ValetParams) -> ValetState:
-    """Return the valet with the piece to drive next; where one was not driven to its end, that goes on."""
-    piece = 0
-    begin = state.request.start
-    early = state.early
-    if before != Step.PLAN and before != Step.SHOWN:
-        piece = state.piece
-        begin = state.begin
-        if state.tracked.left > AT_END:
-            return state
-        begin = drive(begin, state.path.pieces[piece].way, state.path.pieces[piece].k0)
-        early = clamp(early + LEARNT * state.tracked.left, -EARLIEST, EARLIEST)
-        piece = piece + 1
-    left = abs(state.path.pieces[piece].way)
-    tracked = Tracked(left, begin, ahead=ahead_of(state.path, piece, left, params))
-    return state._replace(piece=piece, begin=begin, tracked=tracked, early=early)
-
-
-def _set_out(state: ValetState) -> ValetState:
-    """Return the valet that begins to drive; a change of direction is a shift, but for driving forward at first."""
-    direction = sign(state.path.pieces[state.piece].way)
-    shifts = state.shifts
-    if direction != state.direction:
-        shifts = shifts + 1 if shifts > 0 or direction < 0.0 else shifts
-    return state._replace(direction=direction, shifts=shifts)

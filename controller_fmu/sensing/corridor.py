@@ -1,0 +1,160 @@
+"""Gaps between what was heard on one side: free corridors for a car, at the direction that the neighbours stand in.
+
+Every place that is heard bounds the corridors on either side of it, unless it lies deep in: then it bounds their depth.
+Hidden parts of neighbours are taken to be there unless an echo says that their place is free. This holds for parallel
+and perpendicular slots and for those at any angle alike.
+"""
+
+import math
+
+from controller_fmu.planning.plan_store import PlanStore
+from controller_fmu.sensing.gap import DEEP, Gap, GapLayout, Wanted
+from controller_fmu.sensing.neighbours import FACE, beside_body, front_of, is_askew, measured
+from controller_fmu.sensing.places import (
+    PlacesFrame,
+    along,
+    frame_of,
+    is_free,
+    is_sure,
+    seen,
+    spot,
+    spot_of,
+    turned,
+)
+from controller_fmu.sensing.rows import UNCLEAR, WIDEST, sides_along, turn_of
+from modelkit.maths import PI
+from modelkit.vocabulary import Pose
+
+ANGLED = 20.0 * PI / 180.0
+LONGEST_FRONT = 2.3
+"""At an angle, a neighbour's front is no wider [m]."""
+BESIDE_ONE = 0.3
+"""A slot beside one neighbour is this much [m] wider than the least."""
+CLEARLY = 0.15
+"""A side is longer than another by more than this [m]."""
+LATE = 3.0
+"""Sides are compared when the gap has been passed by so much [m]: before, the neighbour behind it is not seen."""
+LONGEST = 15.0
+PASSED = 0.5
+"""The sensor has passed the gap's end by so much [m]."""
+BESIDE = 1.5
+"""Deep enough for what bounds a slot along the road [m]; and for one across it."""
+CROSS = 2.4
+CROSS_ASKEW = 2.5
+"""And for one at an angle, behind the front of the car that would stand there."""
+STRAIGHT = 0.25
+"""The corners of a slot along the road lie along its neighbours, up to so much [m/m]."""
+LOOKED = 4
+"""So many of nine points in a gap's opening have to be known to be free."""
+
+
+def find_gap(store: PlanStore, side: int, places: int, at: Pose, want: Wanted) -> Gap:
+    """Return the gap passed last on a side that has heard so many places; or NONE.
+
+    ``at``: the sensor, its heading is the way's direction [rad].
+    """
+    frame = frame_of(side, places, at, want.half_angle)
+    turn = turn_of(store, frame)
+    if turn == UNCLEAR:
+        return Gap()
+    if abs(turn) <= ANGLED:
+        square = along(frame, turn, turn + 0.5 * PI)
+        best = _corridor(store, square, want, True) if want.along else Gap()
+        return _corridor(store, square, want, False) if best.layout == GapLayout.NONE and want.across else best
+    if not want.across:
+        return Gap()
+    other = turn if turn > 0.0 else turn + PI
+    one = turn + 0.5 * PI
+    sides = sides_along(store, frame, one)
+    across = sides_along(store, frame, other)
+    longer = sides.longest - across.longest
+    if sides.longest > WIDEST or across.longest > WIDEST:
+        return _corridor(store, along(frame, 0.0, one if longer > 0.0 else other), want, False)
+    if across.front != sides.front:
+        return _corridor(store, along(frame, 0.0, one if across.front else other), want, False)
+    if abs(longer) < CLEARLY:
+        return Gap()
+    gap = _corridor(store, along(frame, 0.0, one if longer > 0.0 else other), want, False)
+    return gap if turned(gap.b.x, gap.b.y, frame).x < -LATE else Gap()
+
+
+def _corridor(store: PlanStore, frame: PlacesFrame, want: Wanted, lengthwise: bool) -> Gap:
+    """Return the corridor passed last in a frame, with a car along the row or across it."""
+    askew = is_askew(frame)
+    least = want.length + want.room_along if lengthwise else want.width + want.room_across
+    found = Gap()
+    for place in range(frame.first, frame.end):
+        if is_sure(store, place, frame):
+            low = spot(store, place, frame).s
+            which = _next(store, frame, place, want, lengthwise)
+            high = spot(store, which, frame).s if which != place else low + least + BESIDE_ONE
+            ends = which != place or want.open_ended
+            if ends and least <= high - low < LONGEST and seen(store, which, frame).x < -PASSED:
+                if askew:
+                    low = beside_body(store, frame, low, -1.0, want)
+                    high = beside_body(store, frame, high, 1.0, want) if which != place else high
+                gap = measured(store, frame, low, high, which != place, want)
+                past = turned(gap.b.x, gap.b.y, frame).x < -PASSED
+                open_ = past and high - low >= least and _is_open(store, frame, gap, low, high)
+                straight = gap.longest < LONGEST_FRONT if askew else _is_straight(gap, frame)
+                if open_ and straight:
+                    if _fits(gap, want, lengthwise):
+                        found = gap._replace(layout=GapLayout.ALONG if lengthwise else GapLayout.ACROSS)
+                    elif not lengthwise and found.layout == GapLayout.NONE:
+                        found = gap._replace(layout=GapLayout.ACROSS, shallow=True)
+    return found
+
+
+def _next(store: PlanStore, frame: PlacesFrame, place: int, want: Wanted, lengthwise: bool) -> int:
+    """Return the place that ends the corridor which ``place`` begins; itself if none does where one neighbour will do.
+
+    Only what lies beside where a car would stand counts, not what is deep in: less than so much behind the front of
+    the neighbour that ``place`` is of, or behind where the car's own front would be.
+    """
+    least = want.length + want.room_along if lengthwise else want.width + want.room_across
+    one = spot(store, place, frame)
+    front = one.z
+    for other in range(frame.first, frame.end):
+        its = spot(store, other, frame)
+        if one.s - FACE <= its.s <= one.s and its.z < front and is_sure(store, other, frame):
+            front = its.z
+    askew = is_askew(frame)
+    t = front_of(front, one.s, one.s + least, frame, want) + CROSS_ASKEW if askew else -DEEP
+    z = front + (BESIDE if lengthwise else CROSS * math.sin(frame.into - frame.row))
+    which = place
+    nearest = one.s + least + BESIDE_ONE if want.open_ended else DEEP
+    for other in range(frame.first, frame.end):
+        its = spot(store, other, frame)
+        beside = its.t < t or its.z < z
+        if beside and one.s < its.s < nearest and is_sure(store, other, frame):
+            nearest = its.s
+            which = other
+    return which
+
+
+def _fits(gap: Gap, want: Wanted, along: bool) -> bool:
+    """Return whether a gap is deep enough; along the road a car only stands where neighbours do, or it must."""
+    if along:
+        return gap.depth >= want.width - 0.1 and (gap.layout == GapLayout.ALONG or gap.depth < want.length - 0.3)
+    return gap.depth >= want.deep
+
+
+def _is_straight(gap: Gap, frame: PlacesFrame) -> bool:
+    """Return whether the opening lies along the row."""
+    a = turned(gap.a.x, gap.a.y, frame)
+    b = turned(gap.b.x, gap.b.y, frame)
+    along = (b.x - a.x) * math.cos(frame.row) + (b.y - a.y) * math.sin(frame.row)
+    across = (b.y - a.y) * math.cos(frame.row) - (b.x - a.x) * math.sin(frame.row)
+    return abs(across) < STRAIGHT * along
+
+
+def _is_open(store: PlanStore, frame: PlacesFrame, gap: Gap, low: float, high: float) -> bool:
+    """Return whether echoes say that a gap's opening is free: enough of nine points in it."""
+    a = spot_of(turned(gap.a.x, gap.a.y, frame), frame).t
+    b = spot_of(turned(gap.b.x, gap.b.y, frame), frame).t
+    count = 0
+    for across in (0.25, 0.5, 0.75):
+        for into in (0.2, 0.5, 0.8):
+            if is_free(store, a + across * (b - a) + into, low + across * (high - low), frame):
+                count = count + 1
+    return count >= LOOKED

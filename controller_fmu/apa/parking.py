@@ -26,6 +26,9 @@ AT_END = 0.04
 AT_JUMP = 0.06
 """A car that halts nearer than this [m] to a jump of curvature has halted for it."""
 X_TOLERANCE = 0.08
+LEAD = 0.15
+"""A drive is asked for no more than this [m/s] above the speed it has: on a slippery slope a larger error makes the
+pedals wind up, the driven wheels spin at full lock, and the car turns by twice what its odometry says."""
 MOST_CUTS = 8
 """A car whose moves were cut short more often than this finds no way."""
 
@@ -125,7 +128,7 @@ def park(
     limit = params.apa.end
     missed = state.step == Step.PLAN and not settled and is_in_place(place, limit.lateral, limit.heading)
     state = state._replace(missed=missed)
-    return _moved_on(state, step, place, steering, params)
+    return _moved_on(state, step, place, steering, inputs.measured_speed, params)
 
 
 def _looked_around(
@@ -190,7 +193,9 @@ def has_failed(state: Parking, params: ControllerParams) -> bool:
     )
 
 
-def _moved_on(state: Parking, step: int, place: CarAtSite, steering: Steering, params: ControllerParams) -> Parking:
+def _moved_on(
+    state: Parking, step: int, place: CarAtSite, steering: Steering, measured: float, params: ControllerParams
+) -> Parking:
     """Return the manoeuvre in ``step``, with what it asks of wheel and speed until the next sample."""
     before = state.step
     mirror = place.site.frame.mirror
@@ -215,7 +220,7 @@ def _moved_on(state: Parking, step: int, place: CarAtSite, steering: Steering, p
     if step == Step.DRIVE:
         if before != Step.DRIVE:
             state = _set_out(state)
-        state = state._replace(speed=state.direction * _speed(state, steering, params))
+        state = state._replace(speed=state.direction * _speed(state, steering, measured, params))
     if step in (Step.DRIVE, Step.HALT):
         state = state._replace(wheel=wheel_request(state.tracked.front_wheel_angle, mirror, params))
     if step in (Step.STRAIGHTEN, Step.IDLE):
@@ -241,10 +246,13 @@ def _next_leg(state: Parking, before: int) -> Leg:
     return state.leg
 
 
-def _speed(state: Parking, steering: Steering, params: ControllerParams) -> float:
+def _speed(state: Parking, steering: Steering, measured: float, params: ControllerParams) -> float:
+    """Return the speed [m/s] to ask for; of the drive no more than a little over the ``measured`` one: see LEAD."""
     tracked = state.tracked
     rate = rate_of(steering, params.car.steering.rate_limit) / params.car.steering.ratio
     speed = planned_speed(tracked.to_stop, tracked.slope, params.car.wheelbase, rate, params.apa.drive)
+    if params.apa.drive.longitudinal == Longitudinal.OWN_SPEED:
+        speed = min(speed, max(0.0, state.direction * measured) + LEAD)
     return max(params.apa.drive.creep, min(speed, state.sight.speed))
 
 

@@ -48,6 +48,12 @@ def test_the_car_is_parked_within_the_house_limits(kind: str, length: float, sid
     assert abs(end.vehicle.steering_wheel_angle) < math.radians(5.0)
 
 
+def test_a_drive_is_asked_for_little_more_speed_than_it_has() -> None:
+    rows = drive(*given("parallel", 7.2, 1), 4.0, keep=True).rows
+    over = [abs(asked.speed_request) - abs(car.measured_speed) for _, car, asked in rows]
+    assert 0.1 < max(over) < 0.151
+
+
 def test_the_left_is_the_mirror_image_of_the_right() -> None:
     right, left = (drive(*given("parallel", 7.2, side), 60.0).vehicle.pose for side in (1, -1))
     assert (left.x, left.y, left.heading) == pytest.approx((right.x, -right.y, -right.heading), abs=1e-9)

@@ -7,7 +7,7 @@ from controller_fmu.apa.around.surroundings import Around, is_rest_free, is_sett
 from controller_fmu.apa.manoeuvre_chart import Guard as StepGuard
 from controller_fmu.apa.manoeuvre_chart import Step, step_transition
 from controller_fmu.apa.params import Longitudinal
-from controller_fmu.apa.slot import Margins, Site, Slot, site_of
+from controller_fmu.apa.slot import Kind, Margins, Site, Slot, site_of
 from controller_fmu.apa.speed import planned_speed, stopping_way
 from controller_fmu.apa.tracking import Leg, Tracked, next_standstill, set_wheel, track
 from controller_fmu.apa.watch import STANDING
@@ -29,6 +29,8 @@ X_TOLERANCE = 0.08
 LEAD = 0.15
 """A drive is asked for no more than this [m/s] above the speed it has: on a slippery slope a larger error makes the
 pedals wind up, the driven wheels spin at full lock, and the car turns by twice what its odometry says."""
+SHIFTS_PERPENDICULAR = 7
+"""Most shifts into a perpendicular slot (GB/T 41630)."""
 MOST_CUTS = 8
 """A car whose moves were cut short more often than this finds no way."""
 
@@ -85,7 +87,7 @@ def next_attempt(state: Parking, plan: PlanSearch, site: Site, params: Controlle
     parallel one may stand out, then come closer still. A car under way may come closer step by step.
     """
     nothing = plan.status == NOTHING
-    most = params.apa.end.few if state.direction == 0 and state.attempt == 0 else params.apa.plan.shifts
+    most = params.apa.end.few if state.direction == 0 and state.attempt == 0 else most_shifts(site.kind, params)
     too_many = plan.status == FOUND and more_shifts(state, plan) > most
     if not (nothing or too_many):
         return state.attempt
@@ -162,7 +164,7 @@ def _guards(
     stuck = (
         state.cuts > MOST_CUTS
         or plan.status == NOTHING
-        or (plan.status == FOUND and more_shifts(state, plan) > apa.plan.shifts)
+        or (plan.status == FOUND and more_shifts(state, plan) > most_shifts(place.site.kind, params))
     )
     wheel = inputs.steering_wheel_angle
     set_up = abs(wheel - state.wheel) <= params.threshold.wheel
@@ -185,11 +187,17 @@ def more_shifts(state: Parking, plan: PlanSearch) -> int:
     return state.shifts + first + plan.moves - 1
 
 
-def has_failed(state: Parking, params: ControllerParams) -> bool:
-    """Return whether no way leads on from here."""
+def most_shifts(kind: int, params: ControllerParams) -> int:
+    """Return the most shifts into a slot of this kind."""
+    most = params.apa.plan.shifts
+    return min(most, SHIFTS_PERPENDICULAR) if kind == Kind.PERPENDICULAR else most
+
+
+def has_failed(state: Parking, kind: int, params: ControllerParams) -> bool:
+    """Return whether no way leads on from here into a slot of this kind."""
     stuck = state.plan.status == NOTHING or state.cuts > MOST_CUTS or state.missed
     return state.step == Step.PLAN and (
-        stuck or (state.plan.status == FOUND and more_shifts(state, state.plan) > params.apa.plan.shifts)
+        stuck or (state.plan.status == FOUND and more_shifts(state, state.plan) > most_shifts(kind, params))
     )
 
 

@@ -104,7 +104,7 @@ def _later_reason(reason: int, state: ApaState, params: ControllerParams) -> int
         return reason
     parking = state.parking
     if state.mode in (Mode.AUTO_PARKING_ASSIST, Mode.POSITION_TUNING):
-        if has_failed(parking, params):
+        if has_failed(parking, state.around.slot.kind, params):
             return _no_way(parking)
         if abs(parking.tracked.lateral_error) > LOST:
             return Reason.LEFT_PATH
@@ -112,7 +112,11 @@ def _later_reason(reason: int, state: ApaState, params: ControllerParams) -> int
         return Reason.SLOT_TOO_SHORT if state.search.refusals > 0 else Reason.NO_SLOT
     if state.waited_ns * 1e-9 > params.apa.guard.confirm:
         return Reason.TIMEOUT if state.mode == Mode.PARKING_SPACE_APPEARS else Reason.NOT_MOVING
-    if state.mode == Mode.PARKING_SPACE_APPEARS and params.apa.search.given and has_failed(parking, params):
+    if (
+        state.mode == Mode.PARKING_SPACE_APPEARS
+        and params.apa.search.given
+        and has_failed(parking, state.around.slot.kind, params)
+    ):
         return _no_way(parking)
     return Reason.NONE
 
@@ -141,7 +145,7 @@ def _guards(state: ApaState, inputs: ControllerInput, judged: Judged, params: Co
         | bit(Guard.SLOT_GIVEN, given and standing)
         | bit(Guard.TOO_FAST, speed > 1.1 * limit)
         | bit(Guard.SLOT_AT_STANDSTILL, state.search.valid > 0 and standing)
-        | bit(Guard.NO_PLAN, not given and has_failed(state.parking, params))
+        | bit(Guard.NO_PLAN, not given and has_failed(state.parking, state.around.slot.kind, params))
         | bit(Guard.DRIVEN_ON, not given and moved)
         | bit(Guard.CONFIRMED, inputs.driver_confirm and standing and is_planned(parking))
         | bit(Guard.NEARLY, parking.step == Step.PLAN and parking.ended and is_planning(parking))
@@ -167,7 +171,7 @@ def _moved_on(
     if mode == Mode.OFF:
         state = state._replace(around=state.around._replace(slot=Slot()))
     if mode == Mode.PARKING_SPACE_SEARCH and before == Mode.PARKING_SPACE_APPEARS:
-        state = _without_the_slot(state, has_failed(state.parking, params))
+        state = _without_the_slot(state, has_failed(state.parking, state.around.slot.kind, params))
     if mode == Mode.PARKING_SPACE_APPEARS and before != Mode.PARKING_SPACE_APPEARS:
         state = _shown(state, inputs, params)
     over = mode == Mode.FAIL

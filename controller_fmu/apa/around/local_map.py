@@ -45,6 +45,13 @@ KNOWN = 0.03
 once its place was known to so much [m]; at first it is the search that was wrong, past neighbours who stand askew."""
 OTHER_SIDE = (3, 2, 1, 0, 7, 6, 5, 4, 10, 11, 8, 9)
 """The sensor on the other side of the car, of each: a slot on the left is heard in the mirrored order."""
+STAGGER = 0.12
+"""A neighbour's corner stands out of the row, or in, by this [m]: their line tells the road's direction."""
+WALL_ASKEW = 0.01
+WALL_DOUBT = 0.05
+"""A wall stands askew by a tenth of what neighbours do; one that contradicts them is perhaps none."""
+PLAIN = 0.7
+"""An echo whose direction has this share across the road tells how far out a neighbour stands, others do not."""
 LONG = 30.0
 APART = 0.12
 """Two things whose distances differ by less [m] cannot be told apart by a reading."""
@@ -112,17 +119,22 @@ def slot_of_map(here: LocalMap, slot: Slot, params: MapParams) -> Slot:
 
 
 def _road(here: LocalMap, params: MapParams) -> float:
-    """Return the heading [rad] of the road in the map: neighbours stand askew by ``askew``, a wall by less."""
+    """Return the heading [rad] of the slot in the map: half way between the neighbours' mean one and the road's."""
     least = params.askew * params.askew
     a = 1.0 / (least + here.a.hh)
     b = 1.0 / (least + here.b.hh)
-    total = a * here.a.heading + b * here.b.heading
-    weight = a + b
+    both = (a * here.a.heading + b * here.b.heading) / (a + b)
+    dx = max(here.b.x - here.a.x, 1.0)
+    line = math.atan2(here.b.y - here.a.y, dx)
+    corners = dx * dx / (2.0 * STAGGER * STAGGER + here.a.yy + here.b.yy)
+    total = corners * (line - both)
+    weight = a + b + corners
     if here.walled:
-        wall = 1.0 / (0.01 * least + here.wall.hh)
-        total += wall * here.wall.heading
+        off = here.wall.heading - both
+        wall = 1.0 / (WALL_ASKEW * least + here.wall.hh + WALL_DOUBT * off * off)
+        total += wall * off
         weight += wall
-    return total / weight
+    return both + 0.5 * total / weight
 
 
 def _reserve(here: LocalMap, params: MapParams) -> float:
@@ -275,7 +287,12 @@ def _told(here: LocalMap, ear: ConeEar, what: MapEcho, told: Reading, params: Ma
     most = params.gate * math.sqrt(spread_along(thing, slope) + noise)
     if abs(error) > MUCH:
         return here
-    thing = wider(thing, DOUBT, 0.0) if abs(error) > most else learnt(thing, slope, error, noise, params.floor)
+    if abs(error) > most:
+        thing = wider(thing, DOUBT, 0.0)
+    else:
+        told_out = learnt(thing, slope, error, noise, params.floor)
+        along = what.who != WALL and abs(ny) < PLAIN
+        thing = told_out._replace(y=thing.y, yy=thing.yy) if along else told_out
     if what.who == A:
         return here._replace(a=thing)
     if what.who == B:

@@ -291,7 +291,8 @@ def _told(here: LocalMap, ear: ConeEar, what: MapEcho, told: Reading, params: Ma
         thing = wider(thing, DOUBT, 0.0)
     else:
         told_out = learnt(thing, slope, error, noise, params.floor)
-        along = what.who != WALL and abs(ny) < PLAIN
+        corner = here.kind == Kind.PERPENDICULAR and what.echo.hit == Hit.START
+        along = what.who != WALL and abs(ny) < PLAIN and not corner
         thing = told_out._replace(y=thing.y, yy=thing.yy) if along else told_out
     if what.who == A:
         return here._replace(a=thing)

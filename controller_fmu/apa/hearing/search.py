@@ -21,6 +21,12 @@ LONG_NEIGHBOUR = 2.6
 """A neighbour longer than this [m] along the road stands parallel to it."""
 
 
+CAR_WIDE = 1.3
+"""One that is longer than this and no longer than that is a whole car, seen from its nose or tail: what ends a slot
+beside it must be told by ``TOLD`` readings to be no part of a flank."""
+TOLD = 3.0
+
+
 class SearchState(NamedTuple):
     """Both sides, and the slots found, the newest first."""
 
@@ -111,6 +117,8 @@ def slot_of(state: SearchState, side: SideState, which: int, car: Shape, params:
     if side.behind.n > 0.0:
         depth = cos * (w + 0.5 * along * b - side.behind.w / side.behind.n) + side.behind.r / side.behind.n
         depth -= cos * b * (u + 0.5 * along - side.behind.u / side.behind.n)
+    if side.behind.n < TOLD and CAR_WIDE <= side.extent < LONG_NEIGHBOUR:
+        depth = UNSEEN
     opposite = UNSEEN
     if opposite_heard < DEEP:
         beside = side.sums.r / side.sums.n if side.sums.n > 0.0 else 0.0
@@ -184,13 +192,24 @@ def _judge(state: SearchState, side: SideState, which: int, car: Shape, params: 
         better = state.valid > 0 and first.side == which and abs(first.length - slot.length) < 0.5
         if not better:
             return state
-        return state._replace(slots=(slot._replace(kind=first.kind), state.slots[1], state.slots[2]))
+        slot = slot._replace(kind=first.kind)
+        if first.kind == Kind.PERPENDICULAR and _is_long(side, params.apa):
+            slot = slot._replace(kind=Kind.PARALLEL)
+            fit = fit_of(slot, car, params.apa)
+            if not fit.fits:
+                return without_first(state)._replace(refused=fit)
+        return state._replace(slots=(slot, state.slots[1], state.slots[2]))
     fit = fit_of(slot, car, params.apa)
     seen = mark + other
     if not fit.fits:
         return state._replace(seen=seen, refused=fit, refusals=state.refusals + 1)
     slots = (slot, state.slots[0], state.slots[1])
     return state._replace(slots=slots, valid=min(REMEMBERED, state.valid + 1), seen=seen)
+
+
+def _is_long(side: SideState, params: ApaParams) -> bool:
+    """Return whether the neighbour after the gap is heard to stand along the road; never where a kind is wished for."""
+    return params.search.wish == Wish.ANY and side.last.u - side.edge_b > LONG_NEIGHBOUR
 
 
 def without_first(state: SearchState) -> SearchState:

@@ -139,7 +139,7 @@ def _sampled(side: SideState, sample: Heard, half_angle: float, params: SearchPa
     if side.mode == WALL:
         return _on_wall(side, sample, half_angle, params)
     if side.mode == GAP:
-        return _in_gap(side, sample, half_angle, params)
+        return _in_gap(side, sample, change > STEEP * way, half_angle, params)
     return _on_next_wall(side, sample, half_angle, params)
 
 
@@ -228,10 +228,11 @@ def _still_heard(sums: Sums, other: Sums, sample: Heard, sense: float, half_angl
     return 1.03 * distance(line, sample.u, sample.w) * seen_up_to(line, sense, half_angle) + 0.02
 
 
-def _in_gap(side: SideState, sample: Heard, half_angle: float, params: SearchParams) -> SideState:
+def _in_gap(side: SideState, sample: Heard, leaves: bool, half_angle: float, params: SearchParams) -> SideState:
+    """Return the side after a bin in a gap; ``leaves``: it goes away steeply, as the end of the neighbour before does."""
     d = distance(_line(side.before, EMPTY), sample.u, sample.w)
     most = _still_heard(side.before, EMPTY, sample, 1.0, half_angle) + STAGGER + LEANS * (sample.u - side.edge)
-    if sample.r < most and sample.r < params.beside + FURTHER:
+    if sample.r < most and sample.r < params.beside + FURTHER and not leaves:
         return side._replace(
             mode=NEXT_WALL,
             steady=0,

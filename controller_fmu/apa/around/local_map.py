@@ -52,6 +52,8 @@ WALL_DOUBT = 0.05
 """A wall stands askew by a tenth of what neighbours do; one that contradicts them is perhaps none."""
 PLAIN = 0.7
 """An echo whose direction has this share across the road tells how far out a neighbour stands, others do not."""
+OUT_OF_LINE = 0.5
+"""A map in which a neighbour has come so much [m] further out, or in, than the other is lost."""
 LONG = 30.0
 APART = 0.12
 """Two things whose distances differ by less [m] cannot be told apart by a reading."""
@@ -69,6 +71,8 @@ class LocalMap(NamedTuple):
     """A kerb or wall behind the slot was heard."""
     across: float = UNSEEN
     """y [m] of what lies across the road."""
+    out: float = 0.0
+    """How far [m] corner B was found to stand out further than corner A."""
     pose: Pose = Pose()
     """The car at the last reading."""
 
@@ -93,6 +97,7 @@ def begin_map(slot: Slot, pose: Pose, params: MapParams) -> LocalMap:
         thing_at(0.5 * slot.length, -slot.depth, 0.0, params.corner, 0.5 * params.turned),
         slot.depth < UNSEEN,
         slot.opposite,
+        slot.b_out,
         to_slot(pose, frame),
     )
 
@@ -194,8 +199,14 @@ def nearest_case(here: LocalMap, times: float) -> LocalMap:
 
 
 def is_certain(here: LocalMap, params: MapParams) -> bool:
-    """Return whether both neighbours are still where a car between them hears them."""
-    return max(here.a.xx, here.b.xx) < params.certain * params.certain
+    """Return whether both neighbours are still where a car between them hears them, and in line as they were found."""
+    in_line = abs(here.b.y - here.a.y - here.out) < OUT_OF_LINE
+    return in_line and max(here.a.xx, here.b.xx) < params.certain * params.certain
+
+
+def line_unsure(here: LocalMap) -> float:
+    """Return the standard deviation [m] of how far out the line between the neighbours' corners lies."""
+    return 0.5 * math.sqrt(here.a.yy + here.b.yy)
 
 
 def unsure_of(here: LocalMap, who: int) -> float:

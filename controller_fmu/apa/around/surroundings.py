@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 from controller_fmu.apa.around.course import HeldCourse
 from controller_fmu.apa.around.guard import GuardState, Sight, watch_way
-from controller_fmu.apa.around.local_map import LocalMap, is_certain
+from controller_fmu.apa.around.local_map import LocalMap, is_certain, line_unsure
 from controller_fmu.apa.outline import Shape, clearance
 from controller_fmu.apa.slot import Site, Slot, mirror_of, stands_out_by
 from controller_fmu.apa.tracking import Tracked
@@ -14,6 +14,8 @@ from controller_fmu.common.slot_frame import SlotFrame, to_slot, to_world
 from controller_fmu.interface import ControllerInput, ControllerParams
 from modelkit.vocabulary import Pose
 
+DOUBT = 0.5
+"""The line between the neighbours' corners is taken to lie further in by this share of its standard deviation."""
 LOOK = 0.2
 LOOKS = 6
 """The rest of a move is looked at every so much [m], so many times."""
@@ -45,7 +47,8 @@ def is_settled(odometry: Pose, around: Around, params: ControllerParams) -> bool
     """Return whether a car that stands as planned is parked: neighbours are heard on both sides, it is in the slot."""
     slot = around.slot
     pose = to_slot(odometry, SlotFrame(slot.a, mirror_of(slot)))
-    in_slot = stands_out_by(pose, slot, shape_of(params)) <= params.apa.end.out
+    out = stands_out_by(pose, slot, shape_of(params)) + DOUBT * line_unsure(around.map)
+    in_slot = out <= params.apa.end.out
     return in_slot and is_certain(around.map, params.apa.map)
 
 

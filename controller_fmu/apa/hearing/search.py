@@ -209,7 +209,8 @@ def _judge(state: SearchState, side: SideState, which: int, car: Shape, params: 
 
 def _is_long(side: SideState, params: ApaParams) -> bool:
     """Return whether the neighbour after the gap is heard to stand along the road; never where a kind is wished for."""
-    return params.search.wish == Wish.ANY and side.last.u - side.edge_b > LONG_NEIGHBOUR
+    heard_past = side.last.r
+    return params.search.wish == Wish.ANY and side.last.u - side.edge_b > LONG_NEIGHBOUR + heard_past
 
 
 def without_first(state: SearchState) -> SearchState:

@@ -229,7 +229,7 @@ def _still_heard(sums: Sums, other: Sums, sample: Heard, sense: float, half_angl
 
 
 def _in_gap(side: SideState, sample: Heard, leaves: bool, half_angle: float, params: SearchParams) -> SideState:
-    """Return the side after a bin in a gap; ``leaves``: it goes away steeply, as the end of the neighbour before does."""
+    """Return the side after a bin in a gap; ``leaves``: it goes away steeply, as the end of a neighbour does."""
     d = distance(_line(side.before, EMPTY), sample.u, sample.w)
     most = _still_heard(side.before, EMPTY, sample, 1.0, half_angle) + STAGGER + LEANS * (sample.u - side.edge)
     if sample.r < most and sample.r < params.beside + FURTHER and not leaves:

@@ -3,8 +3,9 @@
 from typing import NamedTuple
 
 from controller_fmu.apa.around.guard import GuardState, learn_brake, listen
-from controller_fmu.apa.around.local_map import begin_map, heard, moved, slot_of_map
+from controller_fmu.apa.around.local_map import begin_map, heard, moved
 from controller_fmu.apa.around.relocate import braked, walled
+from controller_fmu.apa.around.row import slot_of_map
 from controller_fmu.apa.around.surroundings import Around, shape_of
 from controller_fmu.apa.chart import Guard, Mode, transition
 from controller_fmu.apa.hearing.search import SearchState, begin_search, is_new_reading, search, without_first

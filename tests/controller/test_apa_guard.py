@@ -10,7 +10,8 @@ from hypothesis import strategies as st
 from controller_fmu.apa.around.cone import ear_of, echo_of
 from controller_fmu.apa.around.course import HeldCourse
 from controller_fmu.apa.around.guard import GuardState, learn_brake, listen, stopping_way, watch_way
-from controller_fmu.apa.around.local_map import LocalMap, _of, is_certain
+from controller_fmu.apa.around.local_map import LocalMap, _of
+from controller_fmu.apa.around.row import is_certain
 from controller_fmu.apa.around.surroundings import shape_of
 from controller_fmu.apa.around.thing import Thing
 from controller_fmu.apa.chart import Mode

@@ -5,8 +5,9 @@ from typing import Any
 
 import pytest
 
-from controller_fmu.apa.around.local_map import begin_map, heard, is_certain, moved, slot_of_map
+from controller_fmu.apa.around.local_map import begin_map, heard, moved
 from controller_fmu.apa.around.relocate import braked, walled
+from controller_fmu.apa.around.row import is_certain, slot_of_map
 from controller_fmu.apa.outline import Box, Obstacles, Shape
 from controller_fmu.apa.params import MapParams
 from controller_fmu.apa.slot import UNSEEN, Kind, Side, Slot

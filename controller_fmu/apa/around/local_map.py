@@ -12,7 +12,7 @@ from controller_fmu.apa.around.cone import ConeEar, Echo, Hit, ear_of, echo_of
 from controller_fmu.apa.around.thing import Slope, Thing, learnt, spread_along, thing_at, wider
 from controller_fmu.apa.params import MapParams
 from controller_fmu.apa.slot import UNSEEN, Kind, Slot, mirror_of
-from controller_fmu.common.slot_frame import SlotFrame, to_slot, to_world
+from controller_fmu.common.slot_frame import SlotFrame, to_slot
 from modelkit.car import CarUltrasonic, SensorMount
 from modelkit.geometry import Point
 from modelkit.vocabulary import Pose
@@ -45,15 +45,10 @@ KNOWN = 0.03
 once its place was known to so much [m]; at first it is the search that was wrong, past neighbours who stand askew."""
 OTHER_SIDE = (3, 2, 1, 0, 7, 6, 5, 4, 10, 11, 8, 9)
 """The sensor on the other side of the car, of each: a slot on the left is heard in the mirrored order."""
-STAGGER = 0.12
-"""A neighbour's corner stands out of the row, or in, by this [m]: their line tells the road's direction."""
-WALL_ASKEW = 0.01
-WALL_DOUBT = 0.05
-"""A wall stands askew by a tenth of what neighbours do; one that contradicts them is perhaps none."""
 PLAIN = 0.7
-"""An echo whose direction has this share across the road tells how far out a neighbour stands, others do not."""
-OUT_OF_LINE = 0.5
-"""A map in which a neighbour has come so much [m] further out, or in, than the other is lost."""
+CORNER_PLAIN = 0.2
+"""An echo of a side whose direction has this share across the road tells how far out a neighbour stands, others do
+not; of a corner at the end of a parallel slot, which is easily taken for its flank, this share; of others any."""
 LONG = 30.0
 APART = 0.12
 """Two things whose distances differ by less [m] cannot be told apart by a reading."""
@@ -100,52 +95,6 @@ def begin_map(slot: Slot, pose: Pose, params: MapParams) -> LocalMap:
         slot.b_out,
         to_slot(pose, frame),
     )
-
-
-def slot_of_map(here: LocalMap, slot: Slot, params: MapParams) -> Slot:
-    """Return the slot as the map has it: its heading is that of what stands around, each weighted by how sure it is."""
-    heading = _road(here, params)
-    c = math.cos(heading)
-    s = math.sin(heading)
-    dx = here.b.x - here.a.x
-    dy = here.b.y - here.a.y
-    depth = UNSEEN
-    if here.walled:
-        depth = (here.a.y - here.wall.y) * c - (here.a.x - here.wall.x) * s
-    return slot._replace(
-        a=to_world(Pose(here.a.x, here.a.y, heading), here.frame),
-        length=dx * c + dy * s,
-        b_out=dy * c - dx * s,
-        depth=depth,
-        skew_a=here.a.heading - heading,
-        skew_b=here.b.heading - heading,
-        unsure=_reserve(here, params),
-    )
-
-
-def _road(here: LocalMap, params: MapParams) -> float:
-    """Return the heading [rad] of the slot in the map: half way between the neighbours' mean one and the road's."""
-    least = params.askew * params.askew
-    a = 1.0 / (least + here.a.hh)
-    b = 1.0 / (least + here.b.hh)
-    both = (a * here.a.heading + b * here.b.heading) / (a + b)
-    dx = max(here.b.x - here.a.x, 1.0)
-    line = math.atan2(here.b.y - here.a.y, dx)
-    corners = dx * dx / (2.0 * STAGGER * STAGGER + here.a.yy + here.b.yy)
-    total = corners * (line - both)
-    weight = a + b + corners
-    if here.walled:
-        off = here.wall.heading - both
-        wall = 1.0 / (WALL_ASKEW * least + here.wall.hh + WALL_DOUBT * off * off)
-        total += wall * off
-        weight += wall
-    return both + 0.5 * total / weight
-
-
-def _reserve(here: LocalMap, params: MapParams) -> float:
-    """Return how much further in [m] than thought a neighbour may stand, beyond what the margins are there for."""
-    most = math.sqrt(max(here.a.xx, here.b.xx))
-    return max(0.0, most - params.usual)
 
 
 def moved(here: LocalMap, odometry: Pose, params: MapParams) -> LocalMap:
@@ -196,17 +145,6 @@ def nearest_case(here: LocalMap, times: float) -> LocalMap:
         b=b._replace(x=b.x - times * math.sqrt(b.xx), y=b.y + times * math.sqrt(b.yy)),
         wall=wall._replace(y=wall.y + times * math.sqrt(wall.yy)),
     )
-
-
-def is_certain(here: LocalMap, params: MapParams) -> bool:
-    """Return whether both neighbours are still where a car between them hears them, and in line as they were found."""
-    in_line = abs(here.b.y - here.a.y - here.out) < OUT_OF_LINE
-    return in_line and max(here.a.xx, here.b.xx) < params.certain * params.certain
-
-
-def line_unsure(here: LocalMap) -> float:
-    """Return the standard deviation [m] of how far out the line between the neighbours' corners lies."""
-    return 0.5 * math.sqrt(here.a.yy + here.b.yy)
 
 
 def unsure_of(here: LocalMap, who: int) -> float:
@@ -302,8 +240,8 @@ def _told(here: LocalMap, ear: ConeEar, what: MapEcho, told: Reading, params: Ma
         thing = wider(thing, DOUBT, 0.0)
     else:
         told_out = learnt(thing, slope, error, noise, params.floor)
-        corner = here.kind == Kind.PERPENDICULAR and what.echo.hit == Hit.START
-        along = what.who != WALL and abs(ny) < PLAIN and not corner
+        least = PLAIN if what.echo.hit == Hit.SQUARE else CORNER_PLAIN if here.kind == Kind.PARALLEL else 0.0
+        along = what.who != WALL and abs(ny) < least
         thing = told_out._replace(y=thing.y, yy=thing.yy) if along else told_out
     if what.who == A:
         return here._replace(a=thing)

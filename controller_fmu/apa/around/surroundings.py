@@ -5,7 +5,8 @@ from typing import NamedTuple
 
 from controller_fmu.apa.around.course import HeldCourse
 from controller_fmu.apa.around.guard import GuardState, Sight, watch_way
-from controller_fmu.apa.around.local_map import LocalMap, is_certain, line_unsure
+from controller_fmu.apa.around.local_map import LocalMap
+from controller_fmu.apa.around.row import is_certain, line_unsure
 from controller_fmu.apa.outline import Shape, clearance
 from controller_fmu.apa.slot import Site, Slot, mirror_of, stands_out_by
 from controller_fmu.apa.tracking import Tracked

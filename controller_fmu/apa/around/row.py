@@ -1,0 +1,76 @@
+"""The slot as the map has it: its line and its heading, by the two neighbours and the wall, and how sure they are."""
+
+import math
+
+from controller_fmu.apa.around.local_map import LocalMap
+from controller_fmu.apa.params import MapParams
+from controller_fmu.apa.slot import UNSEEN, Slot
+from controller_fmu.common.slot_frame import to_world
+from modelkit.vocabulary import Pose
+
+STAGGER = 0.12
+"""A neighbour's corner stands out of the row, or in, by this [m]: their line tells the road's direction."""
+WALL_ASKEW = 0.01
+WALL_DOUBT = 0.05
+"""A wall stands askew by a tenth of what neighbours do; one that contradicts them is perhaps none."""
+OUT_OF_LINE = 0.5
+"""A map in which a neighbour has come so much [m] further out, or in, than the other is lost."""
+
+
+def slot_of_map(here: LocalMap, slot: Slot, params: MapParams) -> Slot:
+    """Return the slot as the map has it: its heading is that of what stands around, each weighted by how sure it is."""
+    heading = slot_heading(here, params)
+    c = math.cos(heading)
+    s = math.sin(heading)
+    dx = here.b.x - here.a.x
+    dy = here.b.y - here.a.y
+    depth = UNSEEN
+    if here.walled:
+        depth = (here.a.y - here.wall.y) * c - (here.a.x - here.wall.x) * s
+    return slot._replace(
+        a=to_world(Pose(here.a.x, here.a.y, heading), here.frame),
+        length=dx * c + dy * s,
+        b_out=dy * c - dx * s,
+        depth=depth,
+        skew_a=here.a.heading - heading,
+        skew_b=here.b.heading - heading,
+        unsure=_reserve(here, params),
+    )
+
+
+def slot_heading(here: LocalMap, params: MapParams) -> float:
+    """Return the heading [rad] of the slot in the map: half way between the neighbours' mean one and the road's."""
+    least = params.askew * params.askew
+    a = 1.0 / (least + here.a.hh)
+    b = 1.0 / (least + here.b.hh)
+    both = (a * here.a.heading + b * here.b.heading) / (a + b)
+    dx = max(here.b.x - here.a.x, 1.0)
+    line = math.atan2(here.b.y - here.a.y, dx)
+    corners = dx * dx / (2.0 * STAGGER * STAGGER + here.a.yy + here.b.yy)
+    total = corners * (line - both)
+    weight = a + b + corners
+    if here.walled:
+        off = here.wall.heading - both
+        wall = 1.0 / (WALL_ASKEW * least + here.wall.hh + WALL_DOUBT * off * off)
+        total += wall * off
+        weight += wall
+    road = both + total / weight
+    stand = road + 0.5 * least * (a * (here.a.heading - road) + b * (here.b.heading - road))
+    return 0.5 * (road + stand)
+
+
+def _reserve(here: LocalMap, params: MapParams) -> float:
+    """Return how much further in [m] than thought a neighbour may stand, beyond what the margins are there for."""
+    most = math.sqrt(max(here.a.xx, here.b.xx))
+    return max(0.0, most - params.usual)
+
+
+def is_certain(here: LocalMap, params: MapParams) -> bool:
+    """Return whether both neighbours are still where a car between them hears them, and in line as they were found."""
+    in_line = abs(here.b.y - here.a.y - here.out) < OUT_OF_LINE
+    return in_line and max(here.a.xx, here.b.xx) < params.certain * params.certain
+
+
+def line_unsure(here: LocalMap) -> float:
+    """Return the standard deviation [m] of how far out the line between the neighbours' corners lies."""
+    return 0.5 * math.sqrt(here.a.yy + here.b.yy)

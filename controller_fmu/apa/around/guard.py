@@ -3,25 +3,26 @@
 It knows nothing of the plan. It drives the outline in thought along the arc of the front wheels as they are,
 as far as the car needs to stop, and looks at three things: what the map says stands there, what sensors hear
 that the map does not explain (anywhere on the arc that such an echo may come from), and how near anything is
-straight ahead. Nothing else may keep the brake off; a car may drive away from what is near.
+straight ahead. Besides it stops for what comes nearer to a sensor than the map has it (``closing``), and for who
+comes by himself (``comer``). Nothing else may keep the brake off; a car may drive away from what is near.
 """
 
 import math
 from typing import NamedTuple
 
-from controller_fmu.apa.around.cone import ConeEar, Echo, rim_point
+from controller_fmu.apa.around.arcs import LOOKED_AT, NOWHERE, Unknown, arc_of, held, not_refuted, origin
+from controller_fmu.apa.around.closing import SILENCES, Track, room_to_strange, tracked_on, turned_round
+from controller_fmu.apa.around.comer import Comer, followed, somebody_comes
 from controller_fmu.apa.around.course import HeldCourse, after
 from controller_fmu.apa.around.local_map import LocalMap, ear_at, expected, nearest_case, unsure_of
-from controller_fmu.apa.around.near import nearest_told, room_by_echoes
+from controller_fmu.apa.around.near import room_by_echoes
 from controller_fmu.apa.outline import Box, Obstacles, Shape, box_clearance, clearance, grown
 from controller_fmu.interface import ControllerParams
-from modelkit.car import CarUltrasonic
 from modelkit.geometry import Point
 from modelkit.vocabulary import Pose
 
 FREE = 100.0
 STRAIGHT = 0.2
-LOOKED_AT = 1.5
 WIDER = 0.1
 """The rim of a cone may touch something known that lies so much [rad] beside it."""
 LOOKS = 6
@@ -43,20 +44,8 @@ TELLS = 0.4
 UNSEEN_BRAKE = 0.3
 """Until a stop from ``TELLS`` [m/s] was seen the brake is taken to be so late [s]: what 1.1 m/s2 take longer than 2."""
 DOUBTS = 2.5
-DIFFERENT = 0.5
-LEFT = 0.4
-"""What was too near to be told is forgotten where the sensor is so far [m] from it, and hears nothing."""
-SHARES = (-1.0, -0.5, 0.0, 0.5, 1.0)
-
-
-NOWHERE = Point(1e3, 1e3)
-
-
-class Unknown(NamedTuple):
-    """An echo that the map does not explain: five points of the arc it may come from (map's frame)."""
-
-    there: bool = False
-    points: tuple[Point, ...] = (Point(0.0, 0.0),) * 5
+MOVED = 0.002
+"""A car that has gone less [m] stands."""
 
 
 class Sight(NamedTuple):
@@ -77,6 +66,13 @@ class GuardState(NamedTuple):
     """Where the last echo of each sensor comes from (map's frame), if the map explains it."""
     close: tuple[Unknown, ...] = (Unknown(),) * 12
     """What is nearer than a sensor can tell: where it was when it came so near, for the readings tell no more of it."""
+    tracks: tuple[Track, ...] = (Track(),) * 12
+    """What each sensor has heard since the car goes this way."""
+    comers: tuple[Comer, ...] = (Comer(),) * 12
+    direction: int = 0
+    """Which way the car goes."""
+    pose: Pose = Pose()
+    """The car at the last reading (map's frame)."""
     delay: float = 0.0
     """Longest seen from a brake request to its effect [s]."""
     shown: bool = False
@@ -112,55 +108,50 @@ def listen(state: GuardState, readings: tuple[float, ...], here: LocalMap, param
     echoes = state.echoes
     close = state.close
     near = nearest_case(here, DOUBTS)
+    state = _followed(state, readings, here, params)
     for number in range(12):
         reading = readings[number]
         mount = sensors.mounts[number]
         ear = ear_at(mount, here.pose, here.frame.mirror, sensors.half_angle)
         wide = ear_at(mount, here.pose, here.frame.mirror, sensors.half_angle + WIDER)
-        close = close[1:] + (_held(close[0], ear, reading, sensors),)
+        close = close[1:] + (held(close[0], ear, reading, sensors),)
         kept = unknown[0]
         echo = NOWHERE
         known = expected(wide, here)
         least = min(expected(wide, near).echo.distance, known.echo.distance - DOUBTS * unsure_of(here, known.who))
         explained = reading >= least - surprise - 0.05 * reading
         if reading < LOOKED_AT and explained:
-            echo = _origin(ear, expected(ear, here).echo, reading)
-            echo = _origin(ear, expected(wide, near).echo, reading) if echo.x == NOWHERE.x else echo
+            echo = origin(ear, expected(ear, here).echo, reading)
+            echo = origin(ear, expected(wide, near).echo, reading) if echo.x == NOWHERE.x else echo
         echoes = echoes[1:] + (echo,)
         if reading < LOOKED_AT and not explained:
-            kept = _arc_of(ear, reading)
-        elif kept.there:
-            middle = kept.points[2]
-            dx = middle.x - ear.x
-            dy = middle.y - ear.y
-            along = dx * ear.ax + dy * ear.ay
-            seen = abs(dy * ear.ax - dx * ear.ay) * ear.cosine < along * ear.sine
-            far = dx * dx + dy * dy
-            kept = Unknown(not (seen and far < reading * reading) and far < 4.0, kept.points)
+            kept = arc_of(ear, reading)
+        elif kept.there and (reading < sensors.max_range or state.tracks[number].silent >= SILENCES):
+            kept = not_refuted(kept, ear, reading)
         unknown = unknown[1:] + (kept,)
     return state._replace(unknown=unknown, echoes=echoes, close=close)
 
 
-def _arc_of(ear: ConeEar, reading: float) -> Unknown:
-    """Return the places that an echo may come from."""
-    return Unknown(True, tuple(rim_point(ear, share, reading) for share in SHARES))
+def _followed(state: GuardState, readings: tuple[float, ...], here: LocalMap, params: ControllerParams) -> GuardState:
+    """Return the guard that has followed each sensor over the way and over time; anew where the car turns round."""
+    sensors = params.car.ultrasonic
+    way = _way(state.pose, here.pose)
+    direction = state.direction if abs(way) < MOVED else 1 if way > 0.0 else -1
+    tracks = state.tracks
+    comers = state.comers
+    for number in range(12):
+        reading = readings[number]
+        wide = ear_at(sensors.mounts[number], here.pose, here.frame.mirror, sensors.half_angle + WIDER)
+        track = tracks[0] if direction == state.direction else turned_round(tracks[0])
+        track = tracked_on(track, reading, abs(way), expected(wide, here).echo.distance, sensors.max_range)
+        tracks = tracks[1:] + (track,)
+        comers = comers[1:] + (followed(comers[0], reading, sensors.cycle, sensors.max_range),)
+    return state._replace(tracks=tracks, comers=comers, direction=direction, pose=here.pose)
 
 
-def _held(close: Unknown, ear: ConeEar, reading: float, sensors: CarUltrasonic) -> Unknown:
-    """Return what is too near to be told: as it was when it came so near, until it is heard farther off, or left."""
-    if reading <= nearest_told(sensors):
-        return close if close.there else _arc_of(ear, sensors.min_range)
-    dx = close.points[2].x - ear.x
-    dy = close.points[2].y - ear.y
-    return close if reading >= LOOKED_AT and dx * dx + dy * dy < LEFT * LEFT else Unknown()
-
-
-def _origin(ear: ConeEar, echo: Echo, reading: float) -> Point:
-    """Return where an echo comes from [m]: as far as it says, in the direction in which the map has what it is of."""
-    if echo.distance > reading + DIFFERENT or echo.distance < 0.05:
-        return NOWHERE
-    share = reading / echo.distance
-    return Point(ear.x + share * (echo.x - ear.x), ear.y + share * (echo.y - ear.y))
+def _way(before: Pose, now: Pose) -> float:
+    """Return how far [m] the car has gone, in reverse negative."""
+    return (now.x - before.x) * math.cos(now.heading) + (now.y - before.y) * math.sin(now.heading)
 
 
 def learn_brake(state: GuardState, speed: float, braking: bool, dt_ns: int, params: ControllerParams) -> GuardState:
@@ -195,11 +186,15 @@ def watch_way(
     straight = _straight_ahead(readings, course.direction, params) - guard.stop_gap
     raw = _free_of_echoes(state, mapped, stop, guard.echo_gap)
     beside = min(min(known, raw), tight)
+    old = abs(course.speed) * params.car.ultrasonic.cycle
+    if course.direction == state.direction:
+        beside = min(beside, room_to_strange(state.tracks, course.car, params.car.ultrasonic) - 2.0 * old)
     allowed = speed_for(state, min(min(beside, strange), straight) - RESERVE, guard.brake_delay, params)
     heard = room_by_echoes(readings, course, here.frame.mirror, params.car.ultrasonic)
-    old = abs(course.speed) * params.car.ultrasonic.cycle
     late = guard.brake_delay if state.shown else max(guard.brake_delay, UNSEEN_BRAKE)
     allowed = min(allowed, max(SLOW, speed_for(state, heard - old - RESERVE, late, params)))
+    if somebody_comes(state.comers, state.tracks, course.speed, course.car, params.car.ultrasonic):
+        return Sight(0.0, True, True)
     return Sight(allowed, min(beside, strange) <= stop or straight <= needed, strange <= stop and strange <= beside)
 
 

@@ -1,0 +1,81 @@
+"""What comes nearer than the map has it, and who comes by himself: by sensors' readings alone."""
+
+import pytest
+
+from controller_fmu.apa.around.closing import FREE, GAP, SILENCES, Track, own_reach, room_to_strange, tracked_on
+from controller_fmu.apa.around.closing import turned_round as turned
+from controller_fmu.apa.around.comer import Comer, followed, somebody_comes
+from controller_fmu.apa.around.near import nearest_told
+from controller_fmu.apa.around.surroundings import shape_of
+from controller_fmu.interface import ControllerParams
+from modelkit.car import CarUltrasonic
+
+PARAMS = ControllerParams()
+CAR = shape_of(PARAMS)
+SENSORS = CarUltrasonic()
+FURTHEST = SENSORS.max_range
+REAR_CORNER, REAR, FLANK = 4, 5, 8
+
+
+def tracks(number: int, readings: list[float], expected: float, way: float = 0.01) -> tuple[Track, ...]:
+    """Return the tracks of sensors of which one has heard this, the others nothing."""
+    track = Track()
+    for reading in readings:
+        track = tracked_on(track, reading, way, expected, FURTHEST)
+    return tuple(track if place == number else Track() for place in range(12))
+
+
+def falling(least: float) -> list[float]:
+    """Return readings of a car that drives straight at something, each 1 cm of way."""
+    return [least + 0.01 * number for number in range(40, -1, -1)]
+
+
+@pytest.mark.parametrize("number", [REAR_CORNER, REAR, FLANK])
+def test_who_goes_on_stands_before_what_comes_nearer_is_at_the_outline(number: int) -> None:
+    reach = own_reach(SENSORS.mounts[number], CAR, SENSORS.half_angle)
+    least = max(reach + GAP, nearest_told(SENSORS))
+    room = room_to_strange(tracks(number, falling(0.3), 1.5), CAR, SENSORS)
+    assert 0.3 - least <= room < 0.3 - least + 0.02
+    assert room_to_strange(tracks(number, falling(0.3), 0.3), CAR, SENSORS) == FREE, "the map has it there"
+    assert room_to_strange(tracks(number, falling(0.3)[::-1], 1.5), CAR, SENSORS) == FREE, "it is left behind"
+    assert room_to_strange(tracks(number, [0.3] * 40, 1.5), CAR, SENSORS) == FREE, "driven along"
+    back = tuple(turned(track) for track in tracks(number, falling(0.3), 1.5))
+    assert room_to_strange(back, CAR, SENSORS) == FREE, "the way out is free"
+
+
+def test_a_corner_of_the_car_is_as_far_from_its_sensor_as_it_is() -> None:
+    mount = SENSORS.mounts[REAR_CORNER]
+    far = ((CAR.rear + mount.x) ** 2 + (CAR.half_width - mount.y) ** 2) ** 0.5
+    assert own_reach(mount, CAR, SENSORS.half_angle) == pytest.approx(far)
+    assert own_reach(SENSORS.mounts[FLANK], CAR, SENSORS.half_angle) == 0.0
+    assert own_reach(SENSORS.mounts[REAR], CAR, SENSORS.half_angle) == 0.0
+
+
+def test_a_lost_reading_is_bridged_and_silence_is_not() -> None:
+    track = tracks(FLANK, falling(0.3), 1.5)[FLANK]
+    for _ in range(SILENCES - 1):
+        track = tracked_on(track, FURTHEST, 0.01, 1.5, FURTHEST)
+    assert track.strange
+    assert not tracked_on(track, FURTHEST, 0.01, 1.5, FURTHEST).strange
+
+
+def comes(rate: float, speed: float, *, strange: bool = True, lost: int = -1, cycle: float = 0.04) -> bool:
+    """Return whether somebody is found to come who changes his distance by ``rate`` [m/s], from 2 m for 0.8 s."""
+    comer = Comer()
+    for number in range(round(0.8 / cycle)):
+        reading = FURTHEST if number == lost else 2.0 + rate * number * cycle
+        comer = followed(comer, reading, cycle, FURTHEST)
+    comers = tuple(comer if place == REAR else Comer() for place in range(12))
+    known = tuple(Track(strange=strange) for _ in range(12))
+    return somebody_comes(comers, known, speed, CAR, SENSORS)
+
+
+@pytest.mark.parametrize("cycle", [0.04, 0.08])
+def test_who_comes_by_himself_is_stood_still_for(cycle: float) -> None:
+    assert comes(-1.5, 0.0, cycle=cycle)
+    assert comes(-2.0, -0.8, cycle=cycle)
+    assert comes(-1.5, 0.0, lost=9, cycle=cycle)
+    assert not comes(-0.8, -0.8, cycle=cycle), "the car's own way"
+    assert not comes(-1.5, 0.0, strange=False, cycle=cycle), "the map has it there"
+    assert not comes(0.5, 0.0, cycle=cycle)
+    assert not comes(-0.5, 0.0, cycle=cycle), "not here for a while"

@@ -46,7 +46,8 @@ OUTLINE = ("car.front_overhang", "car.rear_overhang", "car.width")
 OF_HSIC = (*OF_PARKING, *OUTLINE, "threshold.standstill", "threshold.lost_lateral", "limit", "hsic")
 OF_PREVIEW = ("car.cg_to_rear", "threshold.standstill", "threshold.lost_lateral", "preview")
 OF_APA = (
-    *("gear", "brake_pedal", "vehicle_fault", "ultrasonic", "apa_switch", "driver_confirm", "shifts"),
+    *("gear", "brake_pedal", "vehicle_fault", "ultrasonic", "apa_switch", "driver_confirm"),
+    *("told", "choice", "shifts"),
     *OUTLINE,
     "car.ultrasonic",
     "threshold.wheel",

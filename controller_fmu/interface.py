@@ -5,11 +5,13 @@ from typing import Annotated, NamedTuple
 
 from controller_fmu.adaptive.params import AdaptiveParams
 from controller_fmu.adaptive.phases import AdaptivePhase
+from controller_fmu.apa.choice import Choice
 from controller_fmu.apa.params import ApaParams
 from controller_fmu.apa.phases import ApaPhase
 from controller_fmu.apa.signals import ApaSignals
 from controller_fmu.common.params import LimitParams, ThresholdParams
 from controller_fmu.common.phases import CommonPhase
+from controller_fmu.common.told import ToldSlot
 from controller_fmu.guo2015.params import GuoParams
 from controller_fmu.guo2015.phases import GuoPhase
 from controller_fmu.hsic.params import HsicParams
@@ -118,6 +120,8 @@ class Reason(IntEnum):
     """The search came to its end with slots that end before the car does."""
     SLOT_CONTRADICTED = 26
     """Something was heard where a slot from outside is said to be."""
+    SLOT_NOT_SUPPORTED = 27
+    """A slot from outside of a kind that this system does not park in: at an angle, or nose first."""
 
 
 class ControllerInput(NamedTuple):
@@ -135,6 +139,8 @@ class ControllerInput(NamedTuple):
     ] = (5.0,) * 12
     apa_switch: Annotated[bool, Signal("1", "the driver has switched the parking assist on")] = False
     driver_confirm: Annotated[bool, Signal("1", "the driver presses the confirm button")] = False
+    told: Annotated[ToldSlot, Group("a slot from outside: a camera, a map, a test bench")] = ToldSlot()
+    choice: Annotated[Choice, Group("what the driver chooses on the display")] = Choice()
 
 
 class Segment(NamedTuple):

@@ -34,7 +34,7 @@ class Guard(IntEnum):
     READY = 4
     """Slow enough to search."""
     SLOT_GIVEN = 5
-    """No search wanted, the car stands."""
+    """The car stands, and the slot is known without a search: given, from before, or the one to pull out of."""
     TOO_FAST = 6
     """Faster than the search allows."""
     SLOT_AT_STANDSTILL = 7
@@ -42,13 +42,15 @@ class Guard(IntEnum):
     NO_PLAN = 8
     """No way into the slot was found; others may come."""
     DRIVEN_ON = 9
-    """The driver drove on instead of confirming."""
+    """The driver drove on instead of confirming, or chose another slot."""
     CONFIRMED = 10
     """Confirmed at standstill, with a plan."""
     NEARLY = 11
     """The planned way is driven; something remains."""
     ENDED = 12
     """In place, the wheel straight."""
+    WANTS_OUT = 13
+    """The driver wants to pull out."""
 
 
 def _row(source: int, guard: Guard, target: Mode) -> Row:
@@ -71,6 +73,7 @@ TRANSITIONS: tuple[Row, ...] = (
     _row(Mode.POSITION_TUNING, Guard.FAULT, Mode.FAIL),
     _row(Mode.STANDBY, Guard.SLOT_GIVEN, Mode.PARKING_SPACE_APPEARS),
     _row(Mode.STANDBY, Guard.READY, Mode.PARKING_SPACE_SEARCH),
+    _row(Mode.PARKING_SPACE_SEARCH, Guard.WANTS_OUT, Mode.STANDBY),
     _row(Mode.PARKING_SPACE_SEARCH, Guard.TOO_FAST, Mode.STANDBY),
     _row(Mode.PARKING_SPACE_SEARCH, Guard.SLOT_AT_STANDSTILL, Mode.PARKING_SPACE_APPEARS),
     _row(Mode.PARKING_SPACE_APPEARS, Guard.NO_PLAN, Mode.PARKING_SPACE_SEARCH),

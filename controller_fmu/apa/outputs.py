@@ -1,14 +1,18 @@
 """What the parking assist puts out: requests, prompts, warnings, and what it knows of slot and plan."""
 
+from controller_fmu.apa.around.surroundings import shape_of
 from controller_fmu.apa.chart import Mode
+from controller_fmu.apa.choice import OFFERED, Task
 from controller_fmu.apa.manoeuvre_chart import Step
+from controller_fmu.apa.outline import Shape
 from controller_fmu.apa.params import Longitudinal
 from controller_fmu.apa.parking import Parking, is_planned, site_for
 from controller_fmu.apa.phases import ApaPhase
-from controller_fmu.apa.signals import Alarm, ApaSignals, PlannedMove, PlannedPiece
-from controller_fmu.apa.slot import mirror_of
+from controller_fmu.apa.signals import Alarm, ApaSignals, Family, OfferedSlot, PlannedMove, PlannedPiece
+from controller_fmu.apa.slot import Kind, Slot, mirror_of
 from controller_fmu.apa.system import ApaState
 from controller_fmu.apa.ways.move import Piece
+from controller_fmu.apa.ways.planner import FOUND, IN_PERPENDICULAR, ON_THE_WAY, TURN, is_inside
 from controller_fmu.apa.ways.shortest_slot import ISO_16787, shortest_slot
 from controller_fmu.common.slot_frame import SlotFrame, to_world
 from controller_fmu.interface import ControllerOutput, ControllerParams
@@ -41,13 +45,15 @@ def phase_of(state: ApaState) -> int:
 def prompt_of(state: ApaState, params: ControllerParams) -> int:
     """Return what the driver is asked for."""
     if state.mode == Mode.PARKING_SPACE_SEARCH:
-        if state.search.valid > 0:
+        if state.chosen > 0 or state.told.slot.kind > 0:
             return Prompt.STOP
         return Prompt.SLOW_DOWN if state.search.way > MOVING and state.waited_ns == 0 else Prompt.FORWARD
     if state.mode == Mode.STANDBY:
-        return Prompt.STOP if params.apa.search.given else Prompt.SLOW_DOWN
+        return Prompt.STOP if params.apa.search.given or state.task == Task.PULL_OUT else Prompt.SLOW_DOWN
     if state.mode == Mode.PARKING_SPACE_APPEARS:
         return Prompt.CONFIRM if is_planned(state.parking) else Prompt.STOP
+    if state.mode == Mode.PARKING_FINISH and state.parking.out:
+        return Prompt.TAKE_OVER
     if state.mode in (Mode.PARKING_FINISH, Mode.FAIL):
         return Prompt.NONE if state.taken_over else Prompt.STOP
     driving = state.mode in (Mode.AUTO_PARKING_ASSIST, Mode.POSITION_TUNING)
@@ -69,7 +75,7 @@ def alarm_of(state: ApaState) -> int:
     if state.parking.sight.blocked:
         return Alarm.OBSTACLE
     if state.mode == Mode.PARKING_SPACE_SEARCH and state.search.refusals > 0 and state.search.valid == 0:
-        return Alarm.SLOT_TOO_SHORT
+        return Alarm.SLOT_TOO_SHALLOW if state.search.refused.shallow else Alarm.SLOT_TOO_SHORT
     return Alarm.NONE
 
 
@@ -110,6 +116,9 @@ def _signals(state: ApaState, frame: SlotFrame, params: ControllerParams) -> Apa
         alarm=alarm_of(state),
         confirm=state.mode == Mode.PARKING_SPACE_APPEARS and is_planned(state.parking),
         slots=state.search.valid,
+        offered=_offered(state),
+        shown=state.shown,
+        family=family_of(state.parking, slot.kind, shape_of(params)),
         missing=state.search.refused.missing,
         slot=slot,
         corner_b=b if shown else Pose(),
@@ -119,6 +128,35 @@ def _signals(state: ApaState, frame: SlotFrame, params: ControllerParams) -> Apa
         iso_spare=slot.length - shortest_slot(slot.kind, params.car, ISO_16787) if shown else 0.0,
         move=_move(state.parking, frame),
     )
+
+
+def _offered(state: ApaState) -> tuple[OfferedSlot, ...]:
+    """Return the slots that the driver may choose from; a slot from outside is the only one."""
+    if state.told.slot.kind > 0:
+        return (_offer(state.told.slot), OfferedSlot(), OfferedSlot())
+    if state.mode not in (Mode.PARKING_SPACE_SEARCH, Mode.PARKING_SPACE_APPEARS):
+        return (OfferedSlot(),) * OFFERED
+    slots = state.search.slots
+    return (_offer(slots[0]), _offer(slots[1]), _offer(slots[2]))
+
+
+def _offer(slot: Slot) -> OfferedSlot:
+    return OfferedSlot(slot.kind, slot.side, slot.a, slot.length)
+
+
+def family_of(parking: Parking, kind: int, car: Shape) -> int:
+    """Return the family of ways that the move being driven is of."""
+    plan = parking.plan
+    if plan.status != FOUND or plan.moves == 0:
+        return Family.NONE
+    if parking.out:
+        return Family.PULL_OUT
+    if kind == Kind.PARALLEL:
+        start = plan.move.start
+        short = is_inside(start, car) or (abs(start.heading) > ON_THE_WAY and plan.stage == 1)
+        return Family.SHORT_MOVES if short else Family.ENTRY
+    found_at = plan.stage - 1
+    return Family.TURN if found_at >= 0 and IN_PERPENDICULAR[found_at] >= TURN else Family.SHORT_MOVES
 
 
 def _move(parking: Parking, frame: SlotFrame) -> PlannedMove:

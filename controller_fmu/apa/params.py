@@ -81,6 +81,9 @@ class SearchParams(NamedTuple):
     ] = 0.005
     slip: Annotated[float, Signal("s2/m", "slip of braked wheels over the deceleration", 0.0, 0.1, HOUSE)] = 0.002
     depth_room: Annotated[float, Signal("m", "depth that may be missing", 0.0, 2.0, HOUSE)] = 0.1
+    told_unsure: Annotated[
+        float, Signal("m", "each corner of a slot from outside may lie this much further in", 0.0, 1.0, HOUSE)
+    ] = 0.03
     given: Annotated[bool, Signal("1", "no search: the slot is given")] = False
     slot: Slot = Slot()
 

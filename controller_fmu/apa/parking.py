@@ -14,6 +14,7 @@ from controller_fmu.apa.watch import STANDING
 from controller_fmu.apa.ways.fit import closer, following, margins_of, under_way
 from controller_fmu.apa.ways.move import length_of
 from controller_fmu.apa.ways.planner import FOUND, NOTHING, SEARCHING, PlanSearch, new_search, search_on
+from controller_fmu.apa.ways.pull_out import plan_out
 from controller_fmu.common.chart import bit
 from controller_fmu.common.slot_frame import to_slot
 from controller_fmu.common.steering_monitor import Steering, rate_of
@@ -40,6 +41,8 @@ class Parking(NamedTuple):
 
     step: int = Step.IDLE
     plan: PlanSearch = PlanSearch()
+    out: bool = False
+    """On the way out of the slot."""
     attempt: int = 0
     """Odd: the car may stand out of the slot a little; each two more: smaller margins, see ``fit``."""
     leg: Leg = Leg()
@@ -87,6 +90,9 @@ def next_attempt(state: Parking, plan: PlanSearch, site: Site, params: Controlle
     parallel one may stand out, then come closer still. A car under way may come closer step by step.
     """
     nothing = plan.status == NOTHING
+    if state.out:
+        many = plan.status == FOUND and more_shifts(state, plan) > most_shifts(site.kind, params)
+        return closer(state.attempt) if nothing or many else state.attempt
     most = params.apa.end.few if state.direction == 0 and state.attempt == 0 else most_shifts(site.kind, params)
     too_many = plan.status == FOUND and more_shifts(state, plan) > most
     if not (nothing or too_many):
@@ -116,7 +122,11 @@ def park(
     """Return the manoeuvre one sample later; while not ``allowed`` the first plan is made, and no more."""
     place = place_for(around.slot, state.attempt, inputs.odometry, params)
     if state.step == Step.PLAN:
-        plan = search_on(state.plan, place.site, shape_of(params), params.apa.plan.at_a_time)
+        car = shape_of(params)
+        if state.out:
+            plan = plan_out(place.pose, place.site, car)
+        else:
+            plan = search_on(state.plan, place.site, car, params.apa.plan.at_a_time)
         attempt = next_attempt(state, plan, place.site, params)
         if attempt != state.attempt:
             place = place_for(around.slot, attempt, inputs.odometry, params)
@@ -129,7 +139,7 @@ def park(
     step = step_transition(state.step, _guards(state, place, inputs, settled, allowed, params))
     limit = params.apa.end
     missed = state.step == Step.PLAN and not settled and is_in_place(place, limit.lateral, limit.heading)
-    state = state._replace(missed=missed)
+    state = state._replace(missed=missed and not state.out)
     return _moved_on(state, step, place, steering, inputs.measured_speed, params)
 
 
@@ -169,9 +179,12 @@ def _guards(
     wheel = inputs.steering_wheel_angle
     set_up = abs(wheel - state.wheel) <= params.threshold.wheel
     at_end = tracked.left <= AT_END or state.cut
+    in_place = settled and (right or (stuck and well_enough and allowed))
+    if state.out:
+        in_place = plan.status == FOUND and plan.moves == 0 and allowed
     return (
         (1 << StepGuard.STARTED)
-        | bit(StepGuard.IN_PLACE, settled and (right or (stuck and well_enough and allowed)))
+        | bit(StepGuard.IN_PLACE, in_place)
         | bit(StepGuard.PLANNED, plan.status == FOUND and not stuck and allowed)
         | bit(StepGuard.WHEEL_SET, set_up and not (sight.blocked and sight.unknown))
         | bit(StepGuard.MUST_HALT, tracked.to_stop <= stop or sight.blocked)
@@ -264,10 +277,14 @@ def _speed(state: Parking, steering: Steering, measured: float, params: Controll
     return max(params.apa.drive.creep, min(speed, state.sight.speed))
 
 
-def start_planning(slot: Slot, pose: Pose, params: ControllerParams) -> Parking:
-    """Return the manoeuvre at its beginning: the first plan is made from a car at ``pose`` (world)."""
-    site = site_for(slot, 0, params)
-    return Parking(step=Step.PLAN, plan=new_search(to_slot(pose, site.frame)))
+def start_planning(slot: Slot, pose: Pose, out: bool, resumes: bool, params: ControllerParams) -> Parking:
+    """Return the manoeuvre at its beginning, ``out`` of the slot or into it, for a car at ``pose`` (world).
+
+    A car that ``resumes`` may stand nearer to the neighbours than one that sets out: its margins are those under way.
+    """
+    attempt = under_way(0) if resumes else 0
+    site = site_for(slot, attempt, params)
+    return Parking(step=Step.PLAN, plan=new_search(to_slot(pose, site.frame)), attempt=attempt, out=out)
 
 
 def cut_short(state: Parking) -> Parking:

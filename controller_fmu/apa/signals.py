@@ -4,7 +4,8 @@ from enum import IntEnum
 from typing import Annotated, NamedTuple
 
 from controller_fmu.apa.chart import Mode
-from controller_fmu.apa.slot import Slot
+from controller_fmu.apa.choice import OFFERED
+from controller_fmu.apa.slot import Kind, Side, Slot
 from modelkit.signal import Group, Role, Signal
 from modelkit.vocabulary import Pose
 
@@ -20,6 +21,30 @@ class Alarm(IntEnum):
     """The car stands before something in the way."""
     FAILED = 4
     TAKEN_OVER = 5
+    SLOT_TOO_SHALLOW = 6
+
+
+class Family(IntEnum):
+    """Which of its planners the assist has its move from: each a family of ways in closed form."""
+
+    NONE = 0
+    ENTRY = 1
+    """One reverse into a parallel slot: line, arc, line, arc."""
+    TURN = 2
+    """Into a perpendicular slot: forward and reverse turns."""
+    SHORT_MOVES = 3
+    """Short moves in the slot."""
+    PULL_OUT = 4
+    """Out of a parallel slot."""
+
+
+class OfferedSlot(NamedTuple):
+    """A slot that the driver may choose."""
+
+    kind: Annotated[int, Signal("1", "how the car will stand; none: nothing is offered", states=Kind)] = Kind.NONE
+    side: Annotated[int, Signal("1", "side of the road", states=Side)] = Side.RIGHT
+    a: Annotated[Pose, Group("corner A in the world, heading along the road")] = Pose()
+    length: Annotated[float, Signal("m", "corner A to corner B along the road", 0.0)] = 0.0
 
 
 class PlannedPiece(NamedTuple):
@@ -44,6 +69,9 @@ class ApaSignals(NamedTuple):
     mode: Annotated[int, Signal("1", "state of the outer chart", states=Mode)] = 0
     alarm: Annotated[int, Signal("1", "warning on the display", states=Alarm)] = 0
     confirm: Annotated[bool, Signal("1", "the display asks to confirm the slot")] = False
+    offered: tuple[OfferedSlot, ...] = (OfferedSlot(),) * OFFERED
+    shown: Annotated[int, Signal("1", "number of the slot shown among those offered; 0: of none", 0, OFFERED)] = 0
+    family: Annotated[int, Signal("1", "planner that the move being driven is from", states=Family)] = Family.NONE
     slots: Annotated[int, Signal("1", "valid slots remembered"), Role.LOCAL] = 0
     missing: Annotated[float, Signal("m", "length that the last refused slot lacks", 0.0), Role.LOCAL] = 0.0
     slot: Annotated[Slot, Role.LOCAL] = Slot()

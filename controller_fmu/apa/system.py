@@ -6,9 +6,11 @@ from controller_fmu.apa.around.guard import GuardState, learn_brake, listen
 from controller_fmu.apa.around.local_map import begin_map, heard, moved
 from controller_fmu.apa.around.relocate import braked, walled
 from controller_fmu.apa.around.row import slot_of_map
+from controller_fmu.apa.around.standing_in import slot_around
 from controller_fmu.apa.around.surroundings import Around, shape_of
 from controller_fmu.apa.chart import Guard, Mode, transition
-from controller_fmu.apa.hearing.search import SearchState, begin_search, is_new_reading, search, without_first
+from controller_fmu.apa.choice import Task
+from controller_fmu.apa.hearing.search import SearchState, begin_search, is_new_reading, number_chosen, search, without
 from controller_fmu.apa.manoeuvre_chart import Step
 from controller_fmu.apa.parking import (
     Parking,
@@ -19,14 +21,18 @@ from controller_fmu.apa.parking import (
     park,
     start_planning,
 )
-from controller_fmu.apa.slot import Slot
+from controller_fmu.apa.slot import Kind, Slot
+from controller_fmu.apa.told import ToldWatch, watch_told
 from controller_fmu.apa.watch import STANDING, Watch, is_taken_over, reason_to_fail, watch
 from controller_fmu.common.chart import bit
 from controller_fmu.common.monitor import Command
+from controller_fmu.common.told import SlotKind
 from controller_fmu.interface import ControllerInput, ControllerParams, Reason
 from modelkit.vocabulary import Pose
 
 DRIVEN_ON = 0.3
+NEAR = 12.0
+"""A slot that was driven into is still known so far [m] from it."""
 LOST = 1.0
 SHALLOWER = 0.3
 """A slot that turns out to be so much [m] less deep needs another plan."""
@@ -47,6 +53,15 @@ class ApaState(NamedTuple):
     """For the driver to confirm, or to drive on in the search."""
     pose: Pose = Pose()
     """Where the car stood when the slot was shown."""
+    told: ToldWatch = ToldWatch()
+    chosen: int = 0
+    """Number of the slot remembered that the driver means; 0: none."""
+    shown: int = 0
+    """Number of the slot shown among those remembered; 0: it is none of them."""
+    task: int = Task.PARK
+    """What the driver wants."""
+    resumes: bool = False
+    """Switched off on the way; the slot is still known."""
 
 
 def apa_start(params: ControllerParams) -> ApaState:
@@ -71,11 +86,25 @@ def apa_sample(state: ApaState, inputs: ControllerInput, params: ControllerParam
     if reason == Reason.NONE and not taken:
         if state.mode in (Mode.PARKING_SPACE_SEARCH, Mode.PARKING_SPACE_APPEARS):
             state = state._replace(search=search(state.search, inputs, shape_of(params), params, dt_ns))
+        if state.mode in (Mode.STANDBY, Mode.PARKING_SPACE_SEARCH):
+            state = _chosen(state, inputs, params, dt_ns)
+        elif state.mode == Mode.PARKING_SPACE_APPEARS:
+            state = state._replace(chosen=number_chosen(state.search, inputs.choice.side, inputs.choice.slot))
         if driving or state.mode == Mode.PARKING_SPACE_APPEARS:
             state = _parked_on(state, inputs, driving, params, dt_ns)
     judged = Judged(_later_reason(reason, state, params), taken)
     mode = transition(state.mode, _guards(state, inputs, judged, params))
     return _moved_on(state, mode, inputs, judged, params, dt_ns)
+
+
+def _chosen(state: ApaState, inputs: ControllerInput, params: ControllerParams, dt_ns: int) -> ApaState:
+    """Return the assist that knows which slot is meant, of those that it has found or from outside."""
+    fresh = is_new_reading(state.clock_ns, dt_ns, params.car.ultrasonic.cycle)
+    told = watch_told(state.told, state.search, inputs, fresh, shape_of(params), params)
+    number = number_chosen(state.search, inputs.choice.side, inputs.choice.slot)
+    if inputs.told.kind != SlotKind.NONE:
+        number = 0
+    return state._replace(told=told, chosen=number, task=inputs.choice.task)
 
 
 def _parked_on(
@@ -109,15 +138,16 @@ def _later_reason(reason: int, state: ApaState, params: ControllerParams) -> int
             return _no_way(parking)
         if abs(parking.tracked.lateral_error) > LOST:
             return Reason.LEFT_PATH
+    looking = state.mode == Mode.PARKING_SPACE_SEARCH or (state.mode == Mode.STANDBY and params.apa.search.given)
+    if looking and state.told.refused != Reason.NONE:
+        return state.told.refused
     if state.mode == Mode.PARKING_SPACE_SEARCH and state.search.way > params.apa.search.way:
-        return Reason.SLOT_TOO_SHORT if state.search.refusals > 0 else Reason.NO_SLOT
+        refused = Reason.SLOT_TOO_SHALLOW if state.search.refused.shallow else Reason.SLOT_TOO_SHORT
+        return refused if state.search.refusals > 0 else Reason.NO_SLOT
     if state.waited_ns * 1e-9 > params.apa.guard.confirm:
         return Reason.TIMEOUT if state.mode == Mode.PARKING_SPACE_APPEARS else Reason.NOT_MOVING
-    if (
-        state.mode == Mode.PARKING_SPACE_APPEARS
-        and params.apa.search.given
-        and has_failed(parking, state.around.slot.kind, params)
-    ):
+    shows = state.mode == Mode.PARKING_SPACE_APPEARS and state.shown == 0
+    if shows and has_failed(parking, state.around.slot.kind, params):
         return _no_way(parking)
     return Reason.NONE
 
@@ -137,20 +167,26 @@ def _guards(state: ApaState, inputs: ControllerInput, judged: Judged, params: Co
     dx = inputs.odometry.x - state.pose.x
     dy = inputs.odometry.y - state.pose.y
     moved = dx * dx + dy * dy > DRIVEN_ON * DRIVEN_ON
+    out = inputs.choice.task == Task.PULL_OUT
+    told = inputs.told.kind != SlotKind.NONE
+    known = given and (state.told.slot.kind if told else params.apa.search.slot.kind) != Kind.NONE
+    another = state.shown > 0 and state.chosen != state.shown
+    found = state.chosen > 0 or state.told.slot.kind != Kind.NONE
     return (
         bit(Guard.SWITCHED_OFF, not inputs.apa_switch)
         | bit(Guard.TAKEN_OVER, judged.taken or not inputs.apa_switch)
         | bit(Guard.FAULT, judged.reason != Reason.NONE)
         | bit(Guard.SWITCHED_ON, inputs.apa_switch)
-        | bit(Guard.READY, not given and speed <= limit)
-        | bit(Guard.SLOT_GIVEN, given and standing)
+        | bit(Guard.READY, not given and not out and speed <= limit)
+        | bit(Guard.SLOT_GIVEN, (known or out or state.resumes) and standing)
         | bit(Guard.TOO_FAST, speed > 1.1 * limit)
-        | bit(Guard.SLOT_AT_STANDSTILL, state.search.valid > 0 and standing)
-        | bit(Guard.NO_PLAN, not given and has_failed(state.parking, state.around.slot.kind, params))
-        | bit(Guard.DRIVEN_ON, not given and moved)
+        | bit(Guard.SLOT_AT_STANDSTILL, found and standing)
+        | bit(Guard.NO_PLAN, state.shown > 0 and has_failed(state.parking, state.around.slot.kind, params))
+        | bit(Guard.DRIVEN_ON, (not given and moved) or another)
         | bit(Guard.CONFIRMED, inputs.driver_confirm and standing and is_planned(parking))
-        | bit(Guard.NEARLY, parking.step == Step.PLAN and parking.ended and is_planning(parking))
+        | bit(Guard.NEARLY, parking.step == Step.PLAN and parking.ended and is_planning(parking) and not parking.out)
         | bit(Guard.ENDED, parking.step == Step.DONE)
+        | bit(Guard.WANTS_OUT, out)
     )
 
 
@@ -167,9 +203,10 @@ def _moved_on(
     )
     if mode in (Mode.OFF, Mode.STANDBY) or before == Mode.STANDBY:
         state = state._replace(search=begin_search(inputs.odometry, state.clock_ns))
+    state = state._replace(resumes=_resumes(state, before, inputs))
     if mode in (Mode.OFF, Mode.STANDBY):
         state = state._replace(parking=Parking(), watch=Watch())
-    if mode == Mode.OFF:
+    if mode == Mode.OFF and not state.resumes:
         state = state._replace(around=state.around._replace(slot=Slot()))
     if mode == Mode.PARKING_SPACE_SEARCH and before == Mode.PARKING_SPACE_APPEARS:
         state = _without_the_slot(state, has_failed(state.parking, state.around.slot.kind, params))
@@ -181,10 +218,21 @@ def _moved_on(
     return state._replace(taken_over=taken_over, reason=why if over and not taken_over else Reason.NONE)
 
 
+def _resumes(state: ApaState, before: int, inputs: ControllerInput) -> bool:
+    """Return whether the slot is still known that the car was driven into, or out of, and it is still there."""
+    if state.mode == Mode.OFF and before == Mode.FAIL:
+        return state.parking.direction != 0
+    slot = state.around.slot
+    dx = inputs.odometry.x - slot.a.x
+    dy = inputs.odometry.y - slot.a.y
+    near = dx * dx + dy * dy < NEAR * NEAR
+    return state.resumes and near and state.mode in (Mode.OFF, Mode.STANDBY, Mode.PARKING_SPACE_APPEARS)
+
+
 def _without_the_slot(state: ApaState, failed: bool) -> ApaState:
     """Return the assist that searches on; a slot that nothing leads into is not shown again."""
     if failed:
-        state = state._replace(search=without_first(state.search))
+        state = state._replace(search=without(state.search, state.shown))
     return state._replace(parking=Parking(), around=state.around._replace(slot=Slot()))
 
 
@@ -196,12 +244,26 @@ def _is_waiting(mode: int, parking: Parking, inputs: ControllerInput) -> bool:
 
 
 def _shown(state: ApaState, inputs: ControllerInput, params: ControllerParams) -> ApaState:
-    """Return the assist that shows the slot it has chosen, with its map of it, and plans."""
-    search = params.apa.search
-    slot = search.slot if search.given else braked(state.search.slots[0], state.search.fastest, params)
-    here = begin_map(slot, inputs.odometry, params.apa.map)
+    """Return the assist that shows the slot that is meant, with its map of it, and plans the way in, or out."""
+    out = inputs.choice.task == Task.PULL_OUT
+    number = state.chosen
+    slot = params.apa.search.slot
+    here = state.around.map
+    if state.resumes:
+        slot = state.around.slot
+        number = 0
+    elif out:
+        slot = slot_around(inputs, shape_of(params), params)
+        number = 0
+    elif inputs.told.kind != SlotKind.NONE:
+        slot = state.told.slot
+    elif number > 0:
+        slot = braked(state.search.slots[number - 1 if number > 0 else 0], state.search.fastest, params)
+    if not state.resumes:
+        here = begin_map(slot, inputs.odometry, params.apa.map)
     return state._replace(
         around=Around(slot, here, GuardState(delay=state.around.guard.delay, shown=state.around.guard.shown)),
-        parking=start_planning(slot, inputs.odometry, params),
+        parking=start_planning(slot, inputs.odometry, out, state.resumes, params),
         pose=inputs.odometry,
+        shown=number,
     )

@@ -20,7 +20,7 @@ NEEDED = {
     },
 }
 """Slave -> output that a verdict needs -> what is lost without it."""
-SPARE = ("person.", "told.")
+SPARE = ("person.", "told.", "choice.")
 """Inputs of these groups need nothing to feed them: their start values mean that nobody is there, no slot is told."""
 Node = tuple[int, str]
 """A slave and an output of it."""

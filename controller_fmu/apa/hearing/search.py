@@ -3,11 +3,12 @@
 import math
 from typing import NamedTuple
 
+from controller_fmu.apa.choice import OFFERED, ChosenSide
 from controller_fmu.apa.hearing.line_fit import NO_SUMS, OFF, leaning, offset, slope, spread
 from controller_fmu.apa.hearing.search_side import DEEP, START, SideState, hear
 from controller_fmu.apa.outline import Shape
 from controller_fmu.apa.params import ApaParams, Wish
-from controller_fmu.apa.slot import UNSEEN, Kind, Slot
+from controller_fmu.apa.slot import UNSEEN, Kind, Side, Slot
 from controller_fmu.apa.ways.fit import Fit, fit_of
 from controller_fmu.interface import ControllerInput, ControllerParams
 from modelkit.vocabulary import Pose
@@ -16,7 +17,6 @@ LEFT_SENSOR = 8
 RIGHT_SENSOR = 10
 RIGHT = 0
 LEFT = 1
-REMEMBERED = 3
 LONG_NEIGHBOUR = 2.6
 """A neighbour longer than this [m] along the road stands parallel to it."""
 
@@ -39,7 +39,7 @@ class SearchState(NamedTuple):
     far_left: float = DEEP
     way: float = 0.0
     """Driven since the search began [m]."""
-    slots: tuple[Slot, ...] = (Slot(),) * REMEMBERED
+    slots: tuple[Slot, ...] = (Slot(),) * OFFERED
     valid: int = 0
     """Valid slots remembered."""
     seen: int = 0
@@ -204,7 +204,7 @@ def _judge(state: SearchState, side: SideState, which: int, car: Shape, params: 
     if not fit.fits:
         return state._replace(seen=seen, refused=fit, refusals=state.refusals + 1)
     slots = (slot, state.slots[0], state.slots[1])
-    return state._replace(slots=slots, valid=min(REMEMBERED, state.valid + 1), seen=seen)
+    return state._replace(slots=slots, valid=min(OFFERED, state.valid + 1), seen=seen)
 
 
 def _is_long(side: SideState, params: ApaParams) -> bool:
@@ -213,7 +213,26 @@ def _is_long(side: SideState, params: ApaParams) -> bool:
     return params.search.wish == Wish.ANY and side.last.u - side.edge_b > LONG_NEIGHBOUR + heard_past
 
 
-def without_first(state: SearchState) -> SearchState:
-    """Return the search with its newest slot given up."""
-    slots = (state.slots[1], state.slots[2], Slot())
+def is_on(slot: Slot, side: int) -> bool:
+    """Return whether a slot lies on the side that the driver wants."""
+    return side == ChosenSide.ANY or slot.side == (Side.LEFT if side == ChosenSide.LEFT else Side.RIGHT)
+
+
+def number_chosen(state: SearchState, side: int, number: int) -> int:
+    """Return the number, from 1, of the slot remembered that is meant: of ``number``, or the newest; 0: none is."""
+    if number > 0:
+        at = number - 1 if number <= OFFERED else 0
+        return number if number <= state.valid and is_on(state.slots[at], side) else 0
+    chosen = 0
+    for at in range(OFFERED):
+        if chosen == 0 and at < state.valid and is_on(state.slots[at], side):
+            chosen = at + 1
+    return chosen
+
+
+def without(state: SearchState, number: int) -> SearchState:
+    """Return the search with one of its slots given up, counted from 1."""
+    slots = (state.slots[1] if number <= 1 else state.slots[0], state.slots[2], Slot())
+    if number >= OFFERED:
+        slots = (state.slots[0], state.slots[1], Slot())
     return state._replace(slots=slots, valid=max(0, state.valid - 1), refusals=state.refusals + 1)

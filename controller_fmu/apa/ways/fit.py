@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 from controller_fmu.apa.outline import Shape
 from controller_fmu.apa.params import ApaParams
-from controller_fmu.apa.slot import Kind, Margins, Slot, site_of
+from controller_fmu.apa.slot import UNSEEN, Kind, Margins, Slot, site_of
 from controller_fmu.apa.ways.exit import VARIANTS, exit_of
 
 
@@ -16,6 +16,8 @@ class Fit(NamedTuple):
     """Moves that its shortest way takes at least."""
     missing: float = 0.0
     """Length (width) [m] that it lacks, >= 0."""
+    shallow: bool = False
+    """Long enough, but it ends before the car does."""
 
 
 LONGEST_LACK = 3.0
@@ -68,10 +70,12 @@ def fit_of(slot: Slot, car: Shape, params: ApaParams) -> Fit:
     if slot.kind != Kind.PARALLEL:
         missing = max(0.0, width + params.search.perpendicular_room - slot.length)
         shallow = length - params.search.depth_room - slot.depth
-        return Fit(missing <= 0.0 and shallow <= 0.0, 1, missing)
+        return Fit(missing <= 0.0 and shallow <= 0.0, 1, missing, missing <= 0.0 and shallow > 0.0)
     moves = least_moves(slot, car, params)
     if moves > 0:
         return Fit(True, moves, 0.0)
+    if slot.depth < width + params.plan.kerb_margin and least_moves(slot._replace(depth=UNSEEN), car, params) > 0:
+        return Fit(shallow=True)
     low = 0.0
     high = LONGEST_LACK
     for _ in range(HALVINGS):

@@ -48,6 +48,9 @@ NO_STAGE = -1
 STEEPEST_INSIDE = 0.9
 """Past this heading [rad] short moves are not looked for."""
 
+ON_THE_WAY = 0.25
+"""Turned by more than this [rad] a car before a parallel slot is on its way in already."""
+
 IN_PARALLEL = (1, 2, 3, 4, 5, 6, 7, 8, NO_STAGE)
 """Stages of a car in a parallel slot: short moves, 1 to 8 of them."""
 IN_PERPENDICULAR = (1, 40, 2, 41, 3, 44, 42, 45, 4, 43, NO_STAGE)
@@ -81,13 +84,27 @@ def search_on(search: PlanSearch, site: Site, car: Shape, count: int) -> PlanSea
     return search
 
 
+def is_inside(start: Pose, car: Shape) -> bool:
+    """Return whether a car stands so deep in a parallel slot that short moves are looked for."""
+    return start.y < 1.3 * car.half_width
+
+
 def stage_of(place: int, start: Pose, site: Site, car: Shape) -> int:
     """Return the family of candidates at ``place`` in the order for this start, -1 past the last."""
     if site.kind == Kind.PARALLEL:
-        if start.y < 1.3 * car.half_width:
+        if is_inside(start, car):
             return IN_PARALLEL[place] if place < len(IN_PARALLEL) else NO_STAGE
+        if abs(start.heading) > ON_THE_WAY:
+            return _stage_on_the_way(place)
         return ENTRY + place if place < VARIANTS else NO_STAGE
     return IN_PERPENDICULAR[place] if place < len(IN_PERPENDICULAR) else NO_STAGE
+
+
+def _stage_on_the_way(place: int) -> int:
+    """Return the family for a car that stands turned before a parallel slot: to the end in one reverse, else anew."""
+    if place == 0:
+        return 1
+    return ENTRY + place - 1 if place <= VARIANTS else NO_STAGE
 
 
 def count_of(stage: int) -> int:

@@ -1,0 +1,154 @@
+"""A slot from outside, as the assist takes it: instead of one that the search finds, checked against what is heard."""
+
+import math
+from typing import NamedTuple
+
+from controller_fmu.apa.hearing.search import LEFT_SENSOR, RIGHT_SENSOR, SearchState
+from controller_fmu.apa.outline import Shape
+from controller_fmu.apa.slot import UNSEEN, Kind, Side, Slot, mirror_of
+from controller_fmu.apa.ways.fit import fit_of
+from controller_fmu.common.slot_frame import SlotFrame, to_slot
+from controller_fmu.common.told import UNTOLD, SlotKind, ToldSlot, depth_of, is_usable_slot
+from controller_fmu.interface import ControllerInput, ControllerParams, Reason
+from modelkit.vocabulary import Pose
+
+SQUARE = 0.15
+"""A slot whose direction is turned by more than this [rad] against the square of its opening is an angled one."""
+PASSED = 0.5
+"""It is shown once the sensor has passed both corners by so much [m]."""
+SAME = 0.1
+"""Corners that move by less [m] are the same slot, seen again."""
+ABOUT = 0.5
+"""A slot heard whose corner A is not farther [m] from that of the slot told is the same."""
+WELL_IN = 0.25
+"""What is heard so far [m] inside contradicts the slot."""
+AT_THE_ROAD = 0.15
+"""It begins so far [m] before its corners."""
+ECHOES = 2
+HEARD = 0.99
+"""A reading of more than this share of the range tells nothing."""
+
+
+class ToldWatch(NamedTuple):
+    """What has become of the slot from outside."""
+
+    slot: Slot = Slot()
+    """Kind none: not told, not passed yet, or refused."""
+    refused: int = Reason.NONE
+    judged: ToldSlot = ToldSlot()
+    """As it was told when it was judged."""
+    echoes: int = 0
+    """Heard in it since."""
+
+
+def watch_told(
+    state: ToldWatch, search: SearchState, inputs: ControllerInput, fresh: bool, car: Shape, params: ControllerParams
+) -> ToldWatch:
+    """Return the slot that is told, as far as it may be shown; ``fresh``: the sensors tell something new."""
+    told = inputs.told
+    if told.kind == SlotKind.NONE:
+        return ToldWatch()
+    if not is_usable_slot(told):
+        return ToldWatch(refused=Reason.BAD_INPUT)
+    slot = slot_of_told(told, search, inputs, car, params)
+    same = _is_same(told, state.judged)
+    refused = state.refused if same else reason_to_refuse(told, slot, car, params)
+    echoes = state.echoes if same else 0
+    if fresh and not params.apa.search.given and _hears_inside(slot, inputs, car, params):
+        echoes = echoes + 1
+    if refused == Reason.NONE and echoes >= ECHOES:
+        refused = Reason.SLOT_CONTRADICTED
+    shown = refused == Reason.NONE and (params.apa.search.given or _is_passed(slot, inputs, params))
+    return ToldWatch(slot if shown else Slot(), refused, state.judged if same else told, echoes)
+
+
+def slot_of_told(
+    told: ToldSlot, search: SearchState, inputs: ControllerInput, car: Shape, params: ControllerParams
+) -> Slot:
+    """Return the slot that is told, corner A first on the car's way; a depth that is not told is the one heard."""
+    pose = inputs.odometry
+    dx = told.bx - told.ax
+    dy = told.by - told.ay
+    turned = dx * math.cos(pose.heading) + dy * math.sin(pose.heading) < 0.0
+    ax = told.bx if turned else told.ax
+    ay = told.by if turned else told.ay
+    along = math.atan2(-dy, -dx) if turned else math.atan2(dy, dx)
+    side = Side.LEFT if math.sin(told.heading - along) > 0.0 else Side.RIGHT
+    kind = Kind.PARALLEL if told.kind == SlotKind.PARALLEL else Kind.PERPENDICULAR
+    slot = Slot(
+        kind=kind,
+        side=side,
+        a=Pose(ax, ay, along),
+        length=math.sqrt(dx * dx + dy * dy),
+        depth=depth_of(told),
+        unsure=params.apa.search.told_unsure,
+    )
+    if slot.depth >= UNTOLD:
+        slot = slot._replace(depth=_depth_heard(search, slot))
+    far = search.far_right if side == Side.LEFT else search.far_left
+    if far < params.car.ultrasonic.max_range:
+        slot = slot._replace(opposite=to_slot(pose, SlotFrame(slot.a, mirror_of(slot))).y + car.half_width + far)
+    return slot
+
+
+def reason_to_refuse(told: ToldSlot, slot: Slot, car: Shape, params: ControllerParams) -> int:
+    """Return why a car cannot park in a slot that is told, ``NONE`` if it may."""
+    leaning = abs(math.cos(told.heading - slot.a.heading))
+    if told.kind == SlotKind.NOSE_IN or leaning > math.sin(SQUARE):
+        return Reason.SLOT_NOT_SUPPORTED
+    fit = fit_of(slot, car, params.apa)
+    if fit.fits:
+        return Reason.NONE
+    return Reason.SLOT_TOO_SHALLOW if fit.shallow else Reason.SLOT_TOO_SHORT
+
+
+def _depth_heard(search: SearchState, slot: Slot) -> float:
+    """Return the depth [m] of the slot that was heard at the same place, ``UNSEEN`` if there is none."""
+    depth = UNSEEN
+    for heard in search.slots:
+        dx = heard.a.x - slot.a.x
+        dy = heard.a.y - slot.a.y
+        if heard.kind != Kind.NONE and heard.side == slot.side and dx * dx + dy * dy < ABOUT * ABOUT:
+            depth = heard.depth
+    return depth
+
+
+def _is_same(told: ToldSlot, before: ToldSlot) -> bool:
+    """Return whether this is the slot told before, seen again."""
+    return (
+        told.kind == before.kind
+        and abs(told.ax - before.ax) + abs(told.ay - before.ay) < SAME
+        and abs(told.bx - before.bx) + abs(told.by - before.by) < SAME
+        and abs(told.cx - before.cx) + abs(told.cy - before.cy) < SAME
+        and abs(told.dx - before.dx) + abs(told.dy - before.dy) < SAME
+    )
+
+
+def _sensor_in(slot: Slot, inputs: ControllerInput, params: ControllerParams) -> Pose:
+    """Return the sensor that passes the slot, in A's frame."""
+    mount = params.car.ultrasonic.mounts[LEFT_SENSOR if slot.side == Side.LEFT else RIGHT_SENSOR]
+    pose = inputs.odometry
+    c = math.cos(pose.heading)
+    s = math.sin(pose.heading)
+    at = Pose(pose.x + mount.x * c - mount.y * s, pose.y + mount.x * s + mount.y * c, pose.heading + mount.yaw)
+    return to_slot(at, SlotFrame(slot.a, mirror_of(slot)))
+
+
+def _is_passed(slot: Slot, inputs: ControllerInput, params: ControllerParams) -> bool:
+    """Return whether the sensor has passed both corners."""
+    return _sensor_in(slot, inputs, params).x > slot.length + PASSED
+
+
+def _hears_inside(slot: Slot, inputs: ControllerInput, car: Shape, params: ControllerParams) -> bool:
+    """Return whether an echo comes from where the car would stand, wherever in the cone it comes from."""
+    sensors = params.car.ultrasonic
+    reading = inputs.ultrasonic[LEFT_SENSOR if slot.side == Side.LEFT else RIGHT_SENSOR]
+    if reading > HEARD * sensors.max_range:
+        return False
+    ear = _sensor_in(slot, inputs, params)
+    x = ear.x + reading * math.cos(ear.heading)
+    y = ear.y + reading * math.sin(ear.heading)
+    aside = reading * math.sin(sensors.half_angle)
+    deep = 2.0 * car.half_width if slot.kind == Kind.PARALLEL else car.front + car.rear
+    inside = x - aside > WELL_IN and x + aside < slot.length - WELL_IN
+    return inside and WELL_IN - min(deep, slot.depth) < y < AT_THE_ROAD

@@ -9,7 +9,7 @@ OFFERED = 3
 """Slots that are remembered, and offered."""
 
 
-class Task(IntEnum):
+class ChosenTask(IntEnum):
     """What the assist is wanted for."""
 
     PARK = 0
@@ -28,6 +28,6 @@ class ChosenSide(IntEnum):
 class Choice(NamedTuple):
     """The driver's choice, which may change at any time before it is confirmed."""
 
-    task: Annotated[int, Signal("1", "to park, or to pull out", states=Task)] = Task.PARK
+    task: Annotated[int, Signal("1", "to park, or to pull out", states=ChosenTask)] = ChosenTask.PARK
     side: Annotated[int, Signal("1", "side of the road", states=ChosenSide)] = ChosenSide.ANY
     slot: Annotated[int, Signal("1", "number of the slot among those offered, from 1; 0: the newest", 0, OFFERED)] = 0

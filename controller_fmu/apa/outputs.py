@@ -2,7 +2,7 @@
 
 from controller_fmu.apa.around.surroundings import shape_of
 from controller_fmu.apa.chart import Mode
-from controller_fmu.apa.choice import OFFERED, Task
+from controller_fmu.apa.choice import OFFERED, ChosenTask
 from controller_fmu.apa.manoeuvre_chart import Step
 from controller_fmu.apa.outline import Shape
 from controller_fmu.apa.params import Longitudinal
@@ -49,7 +49,7 @@ def prompt_of(state: ApaState, params: ControllerParams) -> int:
             return Prompt.STOP
         return Prompt.SLOW_DOWN if state.search.way > MOVING and state.waited_ns == 0 else Prompt.FORWARD
     if state.mode == Mode.STANDBY:
-        return Prompt.STOP if params.apa.search.given or state.task == Task.PULL_OUT else Prompt.SLOW_DOWN
+        return Prompt.STOP if params.apa.search.given or state.task == ChosenTask.PULL_OUT else Prompt.SLOW_DOWN
     if state.mode == Mode.PARKING_SPACE_APPEARS:
         return Prompt.CONFIRM if is_planned(state.parking) else Prompt.STOP
     if state.mode == Mode.PARKING_FINISH and state.parking.out:

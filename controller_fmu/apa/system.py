@@ -9,7 +9,7 @@ from controller_fmu.apa.around.row import slot_of_map
 from controller_fmu.apa.around.standing_in import slot_around
 from controller_fmu.apa.around.surroundings import Around, shape_of
 from controller_fmu.apa.chart import Guard, Mode, transition
-from controller_fmu.apa.choice import Task
+from controller_fmu.apa.choice import ChosenTask
 from controller_fmu.apa.hearing.search import SearchState, begin_search, is_new_reading, number_chosen, search, without
 from controller_fmu.apa.manoeuvre_chart import Step
 from controller_fmu.apa.parking import (
@@ -58,7 +58,7 @@ class ApaState(NamedTuple):
     """Number of the slot remembered that the driver means; 0: none."""
     shown: int = 0
     """Number of the slot shown among those remembered; 0: it is none of them."""
-    task: int = Task.PARK
+    task: int = ChosenTask.PARK
     """What the driver wants."""
     resumes: bool = False
     """Switched off on the way; the slot is still known."""
@@ -167,7 +167,7 @@ def _guards(state: ApaState, inputs: ControllerInput, judged: Judged, params: Co
     dx = inputs.odometry.x - state.pose.x
     dy = inputs.odometry.y - state.pose.y
     moved = dx * dx + dy * dy > DRIVEN_ON * DRIVEN_ON
-    out = inputs.choice.task == Task.PULL_OUT
+    out = inputs.choice.task == ChosenTask.PULL_OUT
     told = inputs.told.kind != SlotKind.NONE
     known = given and (state.told.slot.kind if told else params.apa.search.slot.kind) != Kind.NONE
     another = state.shown > 0 and state.chosen != state.shown
@@ -245,7 +245,7 @@ def _is_waiting(mode: int, parking: Parking, inputs: ControllerInput) -> bool:
 
 def _shown(state: ApaState, inputs: ControllerInput, params: ControllerParams) -> ApaState:
     """Return the assist that shows the slot that is meant, with its map of it, and plans the way in, or out."""
-    out = inputs.choice.task == Task.PULL_OUT
+    out = inputs.choice.task == ChosenTask.PULL_OUT
     number = state.chosen
     slot = params.apa.search.slot
     here = state.around.map

@@ -8,7 +8,7 @@ from shapely.geometry import box as rectangle
 
 from controller_fmu.apa.around.standing_in import slot_around
 from controller_fmu.apa.around.surroundings import shape_of
-from controller_fmu.apa.choice import Choice, ChosenSide, Task
+from controller_fmu.apa.choice import Choice, ChosenSide, ChosenTask
 from controller_fmu.apa.outline import Shape
 from controller_fmu.apa.slot import UNSEEN, Kind, Margins, Side, Site, Slot, site_of
 from controller_fmu.apa.ways.move import end_of, length_of, point_at
@@ -76,7 +76,7 @@ def test_the_slot_around_a_parked_car_is_what_it_hears(wish: ChosenSide, side: S
     readings[5] = readings[6] = 0.4
     readings[kerb] = 0.3
     inputs = ControllerInput(
-        odometry=Pose(3.0, 2.0, 0.5 * math.pi), ultrasonic=tuple(readings), choice=Choice(Task.PULL_OUT, wish)
+        odometry=Pose(3.0, 2.0, 0.5 * math.pi), ultrasonic=tuple(readings), choice=Choice(ChosenTask.PULL_OUT, wish)
     )
     slot = slot_around(inputs, CAR, PARAMS)
     assert (slot.kind, slot.side, slot.opposite) == (Kind.PARALLEL, side, UNSEEN)

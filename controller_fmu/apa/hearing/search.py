@@ -197,7 +197,7 @@ def _judge(state: SearchState, side: SideState, which: int, car: Shape, params: 
             slot = slot._replace(kind=Kind.PARALLEL)
             fit = fit_of(slot, car, params.apa)
             if not fit.fits:
-                return without_first(state)._replace(refused=fit)
+                return without(state, 1)._replace(refused=fit)
         return state._replace(slots=(slot, state.slots[1], state.slots[2]))
     fit = fit_of(slot, car, params.apa)
     seen = mark + other

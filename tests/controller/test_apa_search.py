@@ -38,6 +38,17 @@ def test_a_corner_is_where_its_echoes_come_from(sense: float, tilt: float) -> No
     assert corner(samples, line, sense, HALF) == pytest.approx(place, abs=1e-9)
 
 
+@pytest.mark.parametrize("tilt", [-0.2, 0.0, 0.2])
+def test_a_corner_that_no_echo_tells_is_half_way_to_where_it_would_have_been_heard(tilt: float) -> None:
+    """So far apart that half way is where the sensor's own distance meets the side: its foot."""
+    line, untold = FittedLine(-1.0, tilt), 0.25
+    d = 1.0 / math.hypot(1.0, tilt)
+    rim = math.tan(HALF + math.atan(tilt))
+    samples = append(NO_SAMPLES, Heard(0.0, 0.0, d), 0)
+    samples = append(samples, Heard(-d * (rim + untold), -tilt * d * (rim + untold), d), 1)
+    assert corner(samples, line, -1.0, HALF) == pytest.approx(tilt / (1.0 + tilt * tilt), abs=1e-9)
+
+
 @pytest.mark.parametrize(("off", "belongs"), [(0.0, True), (0.05, True), (0.06, False), (-0.05, True), (-0.06, False)])
 def test_how_far_off_a_new_side_a_sample_may_lie_follows_from_how_sure_its_slope_is(off: float, belongs: bool) -> None:
     known, begun = Sums(), add(Sums(), 10.0, 0.0, 1.0)

@@ -55,6 +55,8 @@ class Slot(NamedTuple):
         float, Signal("rad", "heading of corner A's neighbour against the slot's, mirrored on the left", -1.6, 1.6)
     ] = 0.0
     skew_b: Annotated[float, Signal("rad", "the same of the neighbour at corner B", -1.6, 1.6)] = 0.0
+    empty_a: Annotated[bool, Signal("1", "nobody stands at corner A: it is a line, kept clear all the same")] = False
+    empty_b: Annotated[bool, Signal("1", "nobody stands at corner B")] = False
 
 
 class Site(NamedTuple):

@@ -27,6 +27,18 @@ AT_THE_ROAD = 0.15
 ECHOES = 2
 HEARD = 0.99
 """A reading of more than this share of the range tells nothing."""
+BESIDE = (0.2, 2.0)
+FURTHER_IN = 0.8
+LISTENED = 3
+"""A neighbour is heard that far [m] from a corner, no further in [m] than this; nobody stands there if so many
+readings are of none."""
+
+
+class Beside(NamedTuple):
+    """Readings next to a corner, and those that are of a neighbour."""
+
+    readings: int = 0
+    of_one: int = 0
 
 
 class ToldWatch(NamedTuple):
@@ -39,6 +51,8 @@ class ToldWatch(NamedTuple):
     """As it was told when it was judged."""
     echoes: int = 0
     """Heard in it since."""
+    a: Beside = Beside()
+    b: Beside = Beside()
 
 
 def watch_told(
@@ -54,12 +68,20 @@ def watch_told(
     same = _is_same(told, state.judged)
     refused = state.refused if same else reason_to_refuse(told, slot, car, params)
     echoes = state.echoes if same else 0
-    if fresh and not params.apa.search.given and _hears_inside(slot, inputs, car, params):
-        echoes = echoes + 1
+    a = state.a
+    b = state.b
+    if fresh and not params.apa.search.given:
+        at = _sensor_in(slot, inputs, params)
+        reading = _reading_of(slot, inputs)
+        echoes = echoes + 1 if _is_inside(at, reading, slot, car, params) else echoes
+        deep = at.y + reading * math.sin(at.heading)
+        a = _listened(a, -at.x, deep)
+        b = _listened(b, at.x - slot.length, deep)
+    slot = slot._replace(empty_a=_is_nobody(a), empty_b=_is_nobody(b))
     if refused == Reason.NONE and echoes >= ECHOES:
         refused = Reason.SLOT_CONTRADICTED
     shown = refused == Reason.NONE and (params.apa.search.given or _is_passed(slot, inputs, params))
-    return ToldWatch(slot if shown else Slot(), refused, state.judged if same else told, echoes)
+    return ToldWatch(slot if shown else Slot(), refused, state.judged if same else told, echoes, a, b)
 
 
 def slot_of_told(
@@ -139,16 +161,30 @@ def _is_passed(slot: Slot, inputs: ControllerInput, params: ControllerParams) ->
     return _sensor_in(slot, inputs, params).x > slot.length + PASSED
 
 
-def _hears_inside(slot: Slot, inputs: ControllerInput, car: Shape, params: ControllerParams) -> bool:
+def _reading_of(slot: Slot, inputs: ControllerInput) -> float:
+    """Return what the sensor that passes the slot tells [m]."""
+    return inputs.ultrasonic[LEFT_SENSOR if slot.side == Side.LEFT else RIGHT_SENSOR]
+
+
+def _is_inside(at: Pose, reading: float, slot: Slot, car: Shape, params: ControllerParams) -> bool:
     """Return whether an echo comes from where the car would stand, wherever in the cone it comes from."""
     sensors = params.car.ultrasonic
-    reading = inputs.ultrasonic[LEFT_SENSOR if slot.side == Side.LEFT else RIGHT_SENSOR]
     if reading > HEARD * sensors.max_range:
         return False
-    ear = _sensor_in(slot, inputs, params)
-    x = ear.x + reading * math.cos(ear.heading)
-    y = ear.y + reading * math.sin(ear.heading)
+    x = at.x + reading * math.cos(at.heading)
+    y = at.y + reading * math.sin(at.heading)
     aside = reading * math.sin(sensors.half_angle)
     deep = 2.0 * car.half_width if slot.kind == Kind.PARALLEL else car.front + car.rear
     inside = x - aside > WELL_IN and x + aside < slot.length - WELL_IN
     return inside and WELL_IN - min(deep, slot.depth) < y < AT_THE_ROAD
+
+
+def _listened(beside: Beside, away: float, y: float) -> Beside:
+    """Return what is known of a neighbour after a reading ``away`` [m] from the corner, of something at ``y`` [m]."""
+    if not BESIDE[0] < away < BESIDE[1]:
+        return beside
+    return Beside(beside.readings + 1, beside.of_one + 1 if y > -FURTHER_IN else beside.of_one)
+
+
+def _is_nobody(beside: Beside) -> bool:
+    return beside.readings >= LISTENED and beside.of_one < ECHOES

@@ -5,6 +5,9 @@ from typing import Any
 
 import pytest
 
+from controller_fmu.apa.around.cone import ear_of
+from controller_fmu.apa.around.local_map import WALL, B, begin_map, expected, moved
+from controller_fmu.apa.around.row import is_certain
 from controller_fmu.apa.around.surroundings import shape_of
 from controller_fmu.apa.hearing.search import SearchState, number_chosen, without
 from controller_fmu.apa.slot import UNSEEN, Kind, Side, Slot
@@ -120,6 +123,26 @@ def test_two_echoes_from_where_the_car_would_stand_contradict_it() -> None:
 @pytest.mark.parametrize("readings", [{0.1: 1.0, 0.2: 1.0}, {6.0: 1.0, 6.1: 1.0}, {3.0: 2.9, 3.1: 2.9}])
 def test_neighbours_and_what_the_slot_ends_at_do_not(readings: dict[float, float]) -> None:
     assert passed(told(), readings).slot.kind == Kind.PARALLEL
+
+
+@pytest.mark.parametrize(("at_a", "at_b"), [(True, True), (True, False), (False, True), (False, False)])
+def test_who_is_not_heard_beside_a_corner_is_not_there(at_a: bool, at_b: bool) -> None:
+    places = [-0.8, -0.7, -0.6] * at_a + [6.6, 6.7, 6.8] * at_b
+    slot = passed(told(), dict.fromkeys(places, 1.0)).slot
+    assert (slot.empty_a, slot.empty_b) == (not at_a, not at_b)
+    kerb = passed(told(), dict.fromkeys([*places, -0.5, -0.4, 7.0, 7.1], 2.9)).slot
+    assert (kerb.empty_a, kerb.empty_b) == (True, True)
+
+
+def test_nobody_is_expected_at_an_empty_corner_and_it_stays_where_it_was_told() -> None:
+    slot = seen(told())._replace(empty_b=True)
+    here = begin_map(slot, Pose(5.0, 1.8, 0.0), PARAMS.apa.map)
+    ear = ear_of(7.0, 1.0, -0.5 * math.pi, PARAMS.car.ultrasonic.half_angle)
+    assert expected(ear, here).who == WALL
+    assert expected(ear, here._replace(empty_b=False)).who == B
+    far = moved(here, Pose(30.0, 1.8, 0.0), PARAMS.apa.map)
+    assert not is_certain(far, PARAMS.apa.map)
+    assert is_certain(far._replace(empty_a=True), PARAMS.apa.map)
 
 
 def test_the_slot_chosen_is_the_newest_or_that_of_the_number_on_the_side_wanted() -> None:

@@ -70,6 +70,9 @@ class LocalMap(NamedTuple):
     """How far [m] corner B was found to stand out further than corner A."""
     pose: Pose = Pose()
     """The car at the last reading."""
+    empty_a: bool = False
+    """Nobody stands there: it is not heard, and nothing is learnt of it."""
+    empty_b: bool = False
 
 
 class MapEcho(NamedTuple):
@@ -94,6 +97,8 @@ def begin_map(slot: Slot, pose: Pose, params: MapParams) -> LocalMap:
         slot.opposite,
         slot.b_out,
         to_slot(pose, frame),
+        slot.empty_a,
+        slot.empty_b,
     )
 
 
@@ -126,8 +131,11 @@ def expected(ear: ConeEar, here: LocalMap) -> MapEcho:
     """Return what a sensor should hear."""
     length = SIDE_PARALLEL if here.kind == Kind.PARALLEL else SIDE_PERPENDICULAR
     depth = DEPTH_PARALLEL if here.kind == Kind.PARALLEL else DEPTH_PERPENDICULAR
-    found = _nearer(MapEcho(), _of(ear, here.a, -length, depth), A)
-    found = _nearer(found, _of(ear, here.b, length, depth), B)
+    found = MapEcho()
+    if not here.empty_a:
+        found = _nearer(found, _of(ear, here.a, -length, depth), A)
+    if not here.empty_b:
+        found = _nearer(found, _of(ear, here.b, length, depth), B)
     if here.walled:
         found = _nearer(found, _line(ear, here.wall), WALL)
     if here.across < UNSEEN:

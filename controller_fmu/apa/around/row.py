@@ -61,14 +61,18 @@ def slot_heading(here: LocalMap, params: MapParams) -> float:
 
 def _reserve(here: LocalMap, params: MapParams) -> float:
     """Return how much further in [m] than thought a neighbour may stand, beyond what the margins are there for."""
-    most = math.sqrt(max(here.a.xx, here.b.xx))
-    return max(0.0, most - params.usual)
+    return max(0.0, math.sqrt(_unsure_along(here)) - params.usual)
+
+
+def _unsure_along(here: LocalMap) -> float:
+    """Return the variance [m2] along the road of the less sure neighbour of those who are there."""
+    return max(0.0 if here.empty_a else here.a.xx, 0.0 if here.empty_b else here.b.xx)
 
 
 def is_certain(here: LocalMap, params: MapParams) -> bool:
-    """Return whether both neighbours are still where a car between them hears them, and in line as they were found."""
+    """Return whether neighbours are still where a car between them hears them, and in line as they were found."""
     in_line = abs(here.b.y - here.a.y - here.out) < OUT_OF_LINE
-    return in_line and max(here.a.xx, here.b.xx) < params.certain * params.certain
+    return in_line and _unsure_along(here) < params.certain * params.certain
 
 
 def line_unsure(here: LocalMap) -> float:

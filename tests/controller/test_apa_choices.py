@@ -18,14 +18,19 @@ from orchestrator.verdict.summary import summarize
 from tests.controller.test_apa_pull_out import CAR, outline
 
 pytestmark = pytest.mark.skipif(not can_compile(), reason="FMUs without Python need a C compiler: pip install ziglang")
-REASONS = {"apa-told-wrong": "slot_contradicted", "apa-told-nose-in": "slot_not_supported"}
+REASONS = {
+    "apa-slot-too-shallow": "slot_too_shallow",
+    "apa-told-wrong": "slot_contradicted",
+    "apa-told-nose-in": "slot_not_supported",
+}
 ENDS = {
     "apa-told": 0.15,
     "apa-told-wrong": 0.9,
     "apa-told-nose-in": 1.0,
     "apa-choose": 0.14,
+    "apa-slot-too-shallow": 0.9,
     "apa-pull-out": 0.1,
-    "apa-pull-out-right": 0.08,
+    "apa-pull-out-right": 0.03,
     "apa-resume": 0.12,
     "apa-switched-on-again": 0.12,
 }

@@ -19,6 +19,8 @@ WIDTHS = {"double": 8, "int": 4, "enum": 5, "bool": 1}
 WIRE_TYPES = {"double": FIXED64, "int": FIXED32, "enum": VARINT, "bool": VARINT}
 SHIFTS = np.array([0, 7, 14, 21, 28], dtype=np.int64)
 CONTINUES = np.array([0x80, 0x80, 0x80, 0x80, 0x00], dtype=np.int64)
+AT_ONCE = 4096
+"""Messages that are decoded at once: a long log takes little more memory than its values."""
 LOW_BITS = np.array([0x7F, 0x7F, 0x7F, 0x7F, 0x0F], dtype=np.int64)
 
 
@@ -130,8 +132,14 @@ class Decoder:
         size = self._encoder.size
         if any(len(message) != size for message in messages):
             raise BadInput("holds messages that are not laid out as apa writes them", file=file)
-        data = np.frombuffer(b"".join(messages), dtype=np.uint8).reshape(len(messages), size)
         rows = np.empty((len(messages), self._width))
+        for begin in range(0, len(messages), AT_ONCE):
+            block = messages[begin : begin + AT_ONCE]
+            self._into(rows[begin : begin + AT_ONCE], np.frombuffer(b"".join(block), dtype=np.uint8))
+        return rows
+
+    def _into(self, rows: Array, data: NDArray[np.uint8]) -> None:
+        data = data.reshape(len(rows), self._encoder.size)
         for kind, (places, where) in self._encoder.layout.items():
             if not len(places):
                 continue
@@ -143,6 +151,5 @@ class Decoder:
             elif kind == "bool":
                 rows[:, places] = raw
             else:
-                bits = raw.reshape(len(messages), len(places), 5).astype(np.int64) & LOW_BITS
+                bits = raw.reshape(len(rows), len(places), 5).astype(np.int64) & LOW_BITS
                 rows[:, places] = (bits << SHIFTS).sum(axis=2).astype(np.uint32).view(np.int32)
-        return rows

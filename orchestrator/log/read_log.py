@@ -3,6 +3,7 @@
 import json
 import struct
 import zlib
+from collections.abc import Iterable
 from enum import IntEnum
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -16,7 +17,16 @@ from modelkit.signal import Signal
 from modelkit.variables import Variable
 from orchestrator.cosim.recording import Recording
 from orchestrator.log.protobuf_rows import Decoder
-from orchestrator.log.records import MESSAGE, Damage, RawRecord, checked, file_bytes, parsed, top_records
+from orchestrator.log.records import (
+    MESSAGE,
+    Damage,
+    RawRecord,
+    check,
+    file_bytes,
+    parsed,
+    top_records,
+    unpacked_records,
+)
 from orchestrator.text.console import say
 from orchestrator.text.errors import BadInput
 from orchestrator.text.yaml_file import explain
@@ -63,8 +73,8 @@ def open_log(path: Path) -> Log:
     """Return the messages and metadata of a log. Raises ``BadInput`` for a damaged one, with the place."""
     data = file_bytes(path)
     try:
-        pieces, sure = checked(data)
-        log = _sorted_out(pieces)
+        sure = check(data)
+        log = _sorted_out(unpacked_records(data))
     except Damage as damage:
         raise BadInput(f"is not a complete log ({damage}); try: apa recover {path}", file=path) from damage
     if not sure:
@@ -95,7 +105,7 @@ def _metadata(piece: RawRecord) -> Any:
     return parsed(Metadata, piece) if piece.opcode == Opcode.METADATA else None
 
 
-def _sorted_out(pieces: list[RawRecord]) -> Log:
+def _sorted_out(pieces: Iterable[RawRecord]) -> Log:
     log = Log({}, {}, {}, {})
     for piece in pieces:
         if piece.opcode == Opcode.MESSAGE:
@@ -126,7 +136,7 @@ def _recording(log: Log, path: Path) -> Recording:
             continue
         owner, is_parameter = channel.topic.strip("/").partition("/")[::2]
         variables = from_json(channel.metadata[VARIABLES])
-        values = Decoder(variables).decode(log.messages[channel.topic], path)
+        values = Decoder(variables).decode(log.messages.pop(channel.topic), path)
         for place, variable in enumerate(variables):
             name = f"{owner}.{variable.name}"
             known[name] = variable

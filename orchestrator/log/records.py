@@ -62,34 +62,37 @@ def file_bytes(path: Path) -> bytes:
     return data
 
 
-def checked(data: bytes) -> tuple[list[RawRecord], bool]:
-    """Return the records of a whole file, chunks unpacked, and whether all of it is under a checksum.
-
-    Raises ``Damage``.
-    """
+def check(data: bytes) -> bool:
+    """Return whether all of a whole file is under a checksum; chunks stay packed. Raises ``Damage``."""
     if len(data) < 2 * len(MCAP0_MAGIC) or data[-len(MCAP0_MAGIC) :] != MCAP0_MAGIC:
         raise Damage(len(data), "the file ends before the log does")
-    found, end = top_records(data), -1
-    for place, piece in enumerate(found):
-        if piece.opcode == Opcode.DATA_END:
-            end = place
-            break
-    if end < 0:
-        raise Damage(found[-1].at if found else len(MCAP0_MAGIC), "there is no end of the data")
+    found = top_records(data)
+    end = _end_of_data(found)
     (crc,) = _unpacked(struct.Struct("<I"), found[end])
     if crc and crc != zlib.crc32(memoryview(data)[: found[end].at]):
         raise Damage(_first_wrong(data, found[:end]), "the checksum of the data is wrong")
-    summed = _check_summary(data, found[end + 1 :], found[end])
+    return _check_summary(data, found[end + 1 :], found[end]) and bool(crc)
+
+
+def unpacked_records(data: bytes) -> Iterator[RawRecord]:
+    """Yield the records of a whole file up to the end of the data, one chunk unpacked at a time. Raises ``Damage``."""
+    found = top_records(data)
     budget = max(MOST_UNPACKED, MOST_TIMES * len(data))
-    pieces: list[RawRecord] = []
-    for piece in found[:end]:
-        if piece.opcode == Opcode.CHUNK:
-            inside = list(chunk_records(piece, budget))
-            budget -= sum(len(item.body) for item in inside)
-            pieces += inside
-        else:
-            pieces.append(piece)
-    return pieces, bool(crc) and summed
+    for piece in found[: _end_of_data(found)]:
+        if piece.opcode != Opcode.CHUNK:
+            yield piece
+            continue
+        for item in chunk_records(piece, budget):
+            budget -= len(item.body)
+            yield item
+
+
+def _end_of_data(found: list[RawRecord]) -> int:
+    """Return the place of the record that ends the data."""
+    for place, piece in enumerate(found):
+        if piece.opcode == Opcode.DATA_END:
+            return place
+    raise Damage(found[-1].at if found else len(MCAP0_MAGIC), "there is no end of the data")
 
 
 def top_records(data: bytes) -> list[RawRecord]:

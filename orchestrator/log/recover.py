@@ -16,12 +16,13 @@ from orchestrator.log.records import (
     MESSAGE,
     Damage,
     RawRecord,
-    checked,
+    check,
     chunk_records,
     chunk_times,
     file_bytes,
     parsed,
     record_at,
+    unpacked_records,
 )
 from orchestrator.text.errors import BadInput
 
@@ -54,14 +55,10 @@ def recover(path: Path) -> Recovered:
     data = file_bytes(path)
     if path.suffix != ".part":
         try:
-            pieces, _ = checked(data)
+            times = _times(data)
         except Damage:
             pass
         else:
-            messages = [
-                item.body for item in pieces if item.opcode == Opcode.MESSAGE and len(item.body) >= MESSAGE.size
-            ]
-            times = [MESSAGE.unpack_from(body)[2] for body in messages]
             return Recovered(path, len(times), max(times, default=0), True, [])
     target = _free(path.with_suffix("") if path.suffix == ".part" else path.with_suffix(".recovered.mcap"))
     with whole(target) as part, part.open("wb") as stream:
@@ -70,6 +67,13 @@ def recover(path: Path) -> Recovered:
         if not copier.messages:
             raise BadInput("holds no complete chunk of messages; nothing to recover", file=path)
     return Recovered(target, copier.messages, copier.last_ns, not copier.lost, copier.lost)
+
+
+def _times(data: bytes) -> list[int]:
+    """Return the times of the messages [ns] of a whole log. Raises ``Damage``."""
+    check(data)
+    messages = (item.body for item in unpacked_records(data) if item.opcode == Opcode.MESSAGE)
+    return [MESSAGE.unpack_from(body)[2] for body in messages if len(body) >= MESSAGE.size]
 
 
 def _free(path: Path) -> Path:
@@ -170,7 +174,7 @@ class _Copier:
     def _check_all(self, data: bytes) -> None:
         """Note that something is damaged that no record shows by itself."""
         try:
-            checked(data)
+            check(data)
         except Damage as damage:
             self.lost.append(str(damage))
 

@@ -99,7 +99,6 @@ def slot_of(state: SearchState, side: SideState, which: int, car: Shape, params:
     """Return the gap between the last two neighbours on a side as a slot, in the world."""
     mirror = -1.0 if which == LEFT else 1.0
     origin = state.origin
-    opposite_heard = state.far_right if which == LEFT else state.far_left
     lean_a = slope(side.before, NO_SUMS)
     lean_b = leaning(side.before, side.sums)
     b = _road(side, lean_a, lean_b, params)
@@ -119,10 +118,6 @@ def slot_of(state: SearchState, side: SideState, which: int, car: Shape, params:
         depth -= cos * b * (u + 0.5 * along - side.behind.u / side.behind.n)
     if side.behind.n < TOLD and CAR_WIDE <= side.extent < LONG_NEIGHBOUR:
         depth = UNSEEN
-    opposite = UNSEEN
-    if opposite_heard < DEEP:
-        beside = side.sums.r / side.sums.n if side.sums.n > 0.0 else 0.0
-        opposite = beside + 2.0 * car.half_width + opposite_heard
     length = cos * (along + b * out)
     return Slot(
         kind=kind_of(length, depth, side.extent, car, params),
@@ -131,11 +126,19 @@ def slot_of(state: SearchState, side: SideState, which: int, car: Shape, params:
         length=max(0.0, length),
         b_out=cos * (out - b * along),
         depth=depth,
-        opposite=opposite,
+        opposite=_opposite(side, state.far_right if which == LEFT else state.far_left, car),
         unsure=params.search.unsure * state.fastest,
         skew_a=math.atan(lean_a) - turn,
         skew_b=math.atan(lean_b) - turn,
     )
+
+
+def _opposite(side: SideState, heard: float, car: Shape) -> float:
+    """Return how far [m] from corner A something lies across the road that the other side ``heard``."""
+    if heard >= DEEP:
+        return UNSEEN
+    beside = side.sums.r / side.sums.n if side.sums.n > 0.0 else 0.0
+    return beside + 2.0 * car.half_width + heard
 
 
 def _road(side: SideState, lean_a: float, lean_b: float, params: ApaParams) -> float:

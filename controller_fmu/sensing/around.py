@@ -85,10 +85,15 @@ class PlaceInGap(NamedTuple):
 
 def in_gap(store: PlanStore, place: int, gap: Gap) -> PlaceInGap:
     """Return where in a gap a place lies that was heard."""
+    return point_in_gap(store.heard_x[place], store.heard_y[place], gap)
+
+
+def point_in_gap(x: float, y: float, gap: Gap) -> PlaceInGap:
+    """Return where in a gap a point lies."""
     e = along_of(gap)
-    x = store.heard_x[place] - gap.a.x
-    y = store.heard_y[place] - gap.a.y
-    return PlaceInGap(x * e.x + y * e.y, x * math.cos(gap.into) + y * math.sin(gap.into))
+    dx = x - gap.a.x
+    dy = y - gap.a.y
+    return PlaceInGap(dx * e.x + dy * e.y, dx * math.cos(gap.into) + dy * math.sin(gap.into))
 
 
 def _lay_gap(store: PlanStore, gap: Gap, deep: float) -> int:

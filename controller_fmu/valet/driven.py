@@ -22,7 +22,7 @@ from controller_fmu.sensing.around import lay_end
 from controller_fmu.sensing.gap import DEEP
 from controller_fmu.valet.chart import Step
 from controller_fmu.valet.given import as_parameter
-from controller_fmu.valet.nearby import Nearby, Rest, hear_nearby, lay_nearby, narrowed
+from controller_fmu.valet.nearby import Nearby, Rest, hear_nearby, is_in_gap, lay_nearby, narrowed, put_nearby
 from controller_fmu.valet.params import ValetParams
 from controller_fmu.valet.rolling import Ahead, ahead_of, aim_at, joint_of
 from controller_fmu.valet.search import Search, shallower
@@ -158,7 +158,7 @@ def seen_on(store: PlanStore, state: ValetState, inputs: ControllerInput, params
     angle = angle_back(beside, asked, direction, law.k1, law.k2, params.car.wheelbase)
     coming = ahead_of(state.path, state.piece, left, params)
     scene = scene_of(store, params, state.seen)
-    sight = look(inputs.ultrasonic, pose, direction, inputs.measured_speed, scene, params)
+    sight = look(inputs.ultrasonic, pose, state.path.pieces[state.piece], inputs.measured_speed, scene, params)
     return state._replace(tracked=Tracked(left, at, off.lateral, off.heading, angle, coming), sight=sight)
 
 
@@ -173,11 +173,13 @@ def heard_on(
     return state._replace(nearby=nearby)
 
 
-def moved_on(state: ValetState, step: int, inputs: ControllerInput, params: ValetParams) -> ValetState:
+def moved_on(
+    store: PlanStore, state: ValetState, step: int, inputs: ControllerInput, params: ValetParams
+) -> ValetState:
     """Return the valet in ``step``, with what it asks of wheel and speed until the next sample."""
     before = state.step
     if step == Step.PLAN and before != Step.PLAN:
-        state = _to_plan_anew(state)
+        state = _to_plan_anew(store, state, params)
     if step == Step.SET_WHEEL and before != Step.SET_WHEEL:
         state = _with_piece(state, before, params)
     wheel = state.wheel
@@ -212,19 +214,23 @@ def rolled_on(state: ValetState) -> ValetState:
     return state._replace(piece=state.piece + 1, begin=begin, tracked=state.tracked._replace(left=left))
 
 
-def _to_plan_anew(state: ValetState) -> ValetState:
+def _to_plan_anew(store: PlanStore, state: ValetState, params: ValetParams) -> ValetState:
     """Return the valet about to plan from where it stands; what is in the way is remembered."""
-    seen = state.seen
-    count = state.seen_count
     state = state._replace(nearby=state.nearby._replace(in_the_way=False))
-    sought = shallower(state.search, state.sight.echo)
-    if sought.gap.depth < state.search.gap.depth and state.sight.blocked and state.sight.ahead:
-        return state._replace(searched=0, path=Path(), search=sought, watch=state.watch._replace(blocked=0))
-    if state.sight.blocked:
-        seen = remembered(seen, state.sight.echo, count)
-        count = count + 1
     clocks = state.watch._replace(blocked=0)
-    return state._replace(searched=0, path=Path(), seen=seen, seen_count=count, watch=clocks)
+    sought = shallower(state.search, state.sight.echo)
+    state = state._replace(searched=0, path=Path(), watch=clocks)
+    if not state.sight.blocked:
+        return state
+    if sought.gap.depth < state.search.gap.depth and state.sight.ahead:
+        return state._replace(search=sought)
+    echo = state.sight.echo
+    beside = params.search.active and not state.sight.ahead
+    if beside and is_in_gap(echo.x, echo.y, sought.gap):
+        nearby = put_nearby(store, state.nearby, echo)
+        return state._replace(nearby=nearby)
+    seen = remembered(state.seen, echo, state.seen_count, beside)
+    return state._replace(seen=seen, seen_count=state.seen_count + 1)
 
 
 def _with_piece(state: ValetState, before: int, params: ValetParams) -> ValetState:

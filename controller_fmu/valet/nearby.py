@@ -10,10 +10,10 @@ from controller_fmu.interface import ControllerInput
 from controller_fmu.planning.plan import PATH, Path
 from controller_fmu.planning.plan_store import HEARD, SIDES, PlanStore
 from controller_fmu.planning.task import drive
-from controller_fmu.sensing.around import along_of, in_gap
+from controller_fmu.sensing.around import along_of, in_gap, point_in_gap
 from controller_fmu.sensing.ear import SideEar, listen
 from controller_fmu.sensing.gap import Gap
-from controller_fmu.sensing.heard_store import forget_side, put_line
+from controller_fmu.sensing.heard_store import forget_side, put_heard, put_line
 from controller_fmu.valet.params import ValetParams
 from controller_fmu.valet.sight import sensor_at
 from modelkit.geometry import Point, outline, point_gap
@@ -81,8 +81,21 @@ def hear_nearby(
 
 def is_new(store: PlanStore, place: int, gap: Gap) -> bool:
     """Return whether a place lies inside a gap, where the map has nothing."""
-    at = in_gap(store, place, gap)
+    return is_in_gap(store.heard_x[place], store.heard_y[place], gap)
+
+
+def is_in_gap(x: float, y: float, gap: Gap) -> bool:
+    """Return whether a point lies inside a gap, where the map has nothing."""
+    at = point_in_gap(x, y, gap)
     return INSIDE < at.across < gap.width - INSIDE and -BEFORE < at.deep < gap.front + gap.depth - INSIDE
+
+
+def put_nearby(store: PlanStore, state: Nearby, echo: Pose) -> Nearby:
+    """Return the ears with a place that was heard without a doubt."""
+    ear = state.ears[0]
+    places = put_heard(store, SIDES, ear.places, echo.x, echo.y, True)
+    places = put_heard(store, SIDES, places, echo.x, echo.y, False)
+    return state._replace(ears=(ear._replace(places=places),) + state.ears[1:])
 
 
 def room_beside(store: PlanStore, place: int, rest: Rest, params: ValetParams) -> float:

@@ -7,6 +7,7 @@ than that by ``surprise`` is something unknown. What is known is left to the pat
 import math
 from typing import NamedTuple
 
+from controller_fmu.planning.plan import Piece
 from controller_fmu.planning.plan_store import PlanStore
 from controller_fmu.planning.task import CORNERS, Corner, Scene
 from controller_fmu.valet.params import MAP_CORNERS, ValetParams
@@ -20,12 +21,20 @@ LOOKED_AT = 1.5
 CORNER = 0.3
 """Neighbours of a slot that was found are not known everywhere: corner sensors are heeded from here on [m]."""
 CORNER_SURPRISE = 0.1
+TOUCHING = 0.22
+"""What corner and side sensors hear so near [m] is nearly touched: there a smaller surprise [m] counts."""
+TOUCHING_SURPRISE = 0.04
 SIDE = 0.2
 """What lies beside the car is heeded from here on [m], and this much nearer [m] than known."""
 SENSORS = 12
 SIDE_SENSOR = 8
+BEND = 0.05
+"""A front swings out where the way bends by more [1/m]."""
 CLOSE = 0.18
-"""Straight ahead, nothing is let come nearer than this [m] in a slot that was found, known or not."""
+"""Straight ahead, nothing is let come nearer than this [m] in a slot that was found, known or not.
+
+A corner of the car is so far from its sensor: on the way into a slot that was found, the car could stop before it.
+"""
 BOTH = 0.25
 """What a slot ends at is heard by both sensors that look straight ahead, as far off but for this [m]."""
 AGAIN = 0.1
@@ -35,6 +44,8 @@ SEEN_CORNERS = CORNERS - MAP_CORNERS
 SEEN_WIDTH = 0.8
 SEEN_DEPTH = 0.5
 """A thing that was heard is taken to be so large [m]; its front is where the echo came from."""
+SMALL = 0.1
+"""And what a corner or side sensor heard beside the way into a slot."""
 NUMBER = 1_000_000
 """Number of the first polygon of what was heard."""
 
@@ -52,24 +63,27 @@ class Sight(NamedTuple):
 
 
 def look(
-    readings: tuple[float, ...], pose: Pose, direction: float, speed: float, scene: Scene, params: ValetParams
+    readings: tuple[float, ...], pose: Pose, piece: Piece, speed: float, scene: Scene, params: ValetParams
 ) -> Sight:
-    """Return the sight of a car at ``pose`` that drives in ``direction`` with ``speed`` [m/s]."""
-    first = 0 if direction > 0.0 else 4
+    """Return the sight of a car at ``pose`` that drives a ``piece`` of its way with ``speed`` [m/s]."""
+    first = 0 if piece.way > 0.0 else 4
+    swings = _swinging_corner(piece) if params.search.active else -1
     nearest = FREE
+    leading = FREE
     echo = Pose()
     straight = False
     for number in range(SENSORS):
         on_side = number >= SIDE_SENSOR and params.search.active
         reading = readings[number]
-        if (first <= number < first + 4 or on_side) and reading < LOOKED_AT and reading < nearest:
+        leads = first <= number < first + 4 or number == swings
+        leading = reading if leads and reading < leading else leading
+        if (leads or on_side) and reading < LOOKED_AT and reading < nearest:
             at = sensor_at(params.car.ultrasonic.mounts[number], pose)
             ahead = first < number < first + 3 and params.search.active
             corner = params.search.active and not ahead
-            surprise = CORNER_SURPRISE if corner else params.guard.surprise
             heeded = not corner or reading < (SIDE if on_side else CORNER)
-            nearer = heeded and reading < expected(at, scene, params) - surprise
-            if nearer or (ahead and reading < CLOSE):
+            unknown = heeded and reading < expected(at, scene, params) - _surprise(reading, corner, params)
+            if unknown or (ahead and reading < CLOSE):
                 nearest = reading
                 beside = readings[2 * first + 3 - number] if ahead else reading
                 straight = ahead and abs(beside - reading) < BOTH
@@ -81,7 +95,24 @@ def look(
     stop = abs(speed) * drive.delay + 0.5 * speed * speed / drive.brake
     if abs(speed) <= params.threshold.standstill:
         stop = AGAIN
-    return Sight(math.sqrt(drive.brake * (room if room > 0.0 else 0.0)), room <= stop, straight, echo)
+    fast = math.sqrt(drive.brake * max(room, 0.0))
+    if params.search.active:
+        fast = min(fast, math.sqrt(2.0 * drive.deceleration * max(leading - CLOSE, 0.0)))
+    return Sight(fast, room <= stop, straight, echo)
+
+
+def _swinging_corner(piece: Piece) -> int:
+    """Return the sensor at the front corner that swings out where the car backs around a bend; -1: none does."""
+    if piece.way > 0.0 or abs(piece.k0) < BEND:
+        return -1
+    return 3 if piece.k0 > 0.0 else 0
+
+
+def _surprise(reading: float, corner: bool, params: ValetParams) -> float:
+    """Return how much nearer [m] than the map says something is that is unknown."""
+    if not corner:
+        return params.guard.surprise
+    return CORNER_SURPRISE if reading > TOUCHING else TOUCHING_SURPRISE
 
 
 def sensor_at(mount: SensorMount, pose: Pose) -> Pose:
@@ -115,16 +146,18 @@ def expected(at: Pose, scene: Scene, params: ValetParams) -> float:
     return nearest
 
 
-def remembered(seen: tuple[Corner, ...], echo: Pose, count: int) -> tuple[Corner, ...]:
+def remembered(seen: tuple[Corner, ...], echo: Pose, count: int, small: bool) -> tuple[Corner, ...]:
     """Return the things heard with one more, the ``count``-th; the oldest is forgotten when there is no room."""
+    width = SMALL if small else SEEN_WIDTH
+    depth = SMALL if small else SEEN_DEPTH
     first = 4 * (count % (SEEN_CORNERS // 4))
     c = math.cos(echo.heading)
     s = math.sin(echo.heading)
     for corner in range(SEEN_CORNERS):
         if first <= corner < first + 4:
             side = corner - first
-            x = 0.0 if side == 0 or side == 3 else SEEN_DEPTH
-            y = 0.5 * SEEN_WIDTH if side < 2 else -0.5 * SEEN_WIDTH
+            x = 0.0 if side == 0 or side == 3 else depth
+            y = 0.5 * width if side < 2 else -0.5 * width
             new = Corner(echo.x + x * c - y * s, echo.y + x * s + y * c, NUMBER + count)
             seen = seen[:corner] + (new,) + seen[corner + 1 :]
     return seen

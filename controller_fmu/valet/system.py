@@ -42,7 +42,7 @@ def valet_sample(
         reason = reason_to_fail(clocks, inputs, state.step, state.shifts, params)
     state = state._replace(watch=clocks, reason=reason)
     step = step_transition(state.step, guards_of(state, inputs, params))
-    return moved_on(state, step, inputs, params)
+    return moved_on(store, state, step, inputs, params)
 
 
 def guards_of(state: ValetState, inputs: ControllerInput, params: ValetParams) -> int:
@@ -112,7 +112,7 @@ def sought_on(
         state = _to_search(store, state)
     if step == Step.SHOWN and state.step != Step.SHOWN:
         state = _to_show(store, state, inputs, params)
-    return moved_on(state, step, inputs, params)
+    return moved_on(store, state, step, inputs, params)
 
 
 def _sought_guards(state: ValetState, sought: Search, reason: int, inputs: ControllerInput, standing: bool) -> int:

@@ -11,6 +11,7 @@ from shapely.geometry import LineString, Polygon
 from controller_fmu import MODEL, VALET
 from controller_fmu.common.told import SlotKind, ToldSlot
 from controller_fmu.interface import Reason, System
+from controller_fmu.planning.plan import Piece
 from controller_fmu.planning.task import Corner
 from controller_fmu.valet.given import ValetInput
 from controller_fmu.valet.params import MAP_CORNERS, GivenSlot, ValetParams
@@ -79,19 +80,19 @@ def test_only_what_the_map_does_not_have_is_in_the_way() -> None:
     readings = [5.0] * 12
     readings[1] = readings[2] = 0.4
     near: Any = pytest.approx(14.1, abs=0.1)
-    assert look(tuple(readings), pose, 1.0, 0.2, scene, params) == Sight(speed=near, blocked=False, ahead=False)
+    assert look(tuple(readings), pose, Piece(1.0), 0.2, scene, params) == Sight(speed=near, blocked=False, ahead=False)
     readings[1] = 0.05
-    sight = look(tuple(readings), pose, 1.0, 0.2, scene, params)
+    sight = look(tuple(readings), pose, Piece(1.0), 0.2, scene, params)
     assert sight.blocked
     assert sight.echo.x == pytest.approx(pose.x + params.car.ultrasonic.mounts[1].x + 0.05)
-    assert not look(tuple(readings), pose, -1.0, 0.2, scene, params).blocked
+    assert not look(tuple(readings), pose, Piece(-1.0), 0.2, scene, params).blocked
 
 
 def test_things_heard_are_remembered_and_the_oldest_forgotten() -> None:
     seen = (Corner(),) * SEEN_CORNERS
     rooms = SEEN_CORNERS // 4
     for count in range(rooms + 1):
-        seen = remembered(seen, Pose(10.0 * count, 0.0, 0.0), count)
+        seen = remembered(seen, Pose(10.0 * count, 0.0, 0.0), count, False)
     numbers = {corner.polygon for corner in seen}
     assert numbers == {NUMBER + count for count in range(1, rooms + 1)}
     first = [corner for corner in seen if corner.polygon == NUMBER + rooms]

@@ -7,6 +7,7 @@ from typing import Any
 import pytest
 from shapely.geometry import LineString, Point
 
+from controller_fmu.planning.plan import Piece
 from controller_fmu.planning.plan_store import HEARD, PlanStore
 from controller_fmu.planning.task import Scene
 from controller_fmu.sensing.corridor import find_gap
@@ -109,7 +110,7 @@ def test_the_end_of_a_slot_is_heard_by_both_sensors_that_look_straight_at_it() -
     for first, direction in ((0, 1.0), (4, -1.0)):
         one = silent[: first + 1] + (0.4,) + silent[first + 2 :]
         both = silent[: first + 1] + (0.4, 0.5) + silent[first + 3 :]
-        heard = [look(readings, Pose(), direction, 0.3, Scene(), params) for readings in (one, both)]
+        heard = [look(readings, Pose(), Piece(direction), 0.3, Scene(), params) for readings in (one, both)]
         assert [(sight.blocked, sight.ahead) for sight in heard] == [(True, False), (True, True)]
 
 

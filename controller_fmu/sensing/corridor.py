@@ -21,7 +21,7 @@ from controller_fmu.sensing.places import (
     spot_of,
     turned,
 )
-from controller_fmu.sensing.rows import UNCLEAR, WIDEST, sides_along, turn_of
+from controller_fmu.sensing.rows import UNCLEAR, WIDEST, row_of, sides_along, turn_of
 from modelkit.maths import PI
 from modelkit.vocabulary import Pose
 
@@ -32,7 +32,7 @@ BESIDE_ONE = 0.3
 """A slot beside one neighbour is this much [m] wider than the least."""
 CLEARLY = 0.15
 """A side is longer than another by more than this [m]."""
-LATE = 3.0
+LATE = 4.5
 """Sides are compared when the gap has been passed by so much [m]: before, the neighbour behind it is not seen."""
 LONGEST = 15.0
 PASSED = 0.5
@@ -63,18 +63,20 @@ def find_gap(store: PlanStore, side: int, places: int, at: Pose, want: Wanted) -
         return _corridor(store, square, want, False) if best.layout == GapLayout.NONE and want.across else best
     if not want.across:
         return Gap()
+    row = row_of(store, frame)
+    lined = frame._replace(line=row.behind)
     other = turn if turn > 0.0 else turn + PI
     one = turn + 0.5 * PI
     sides = sides_along(store, frame, one)
     across = sides_along(store, frame, other)
     longer = sides.longest - across.longest
     if sides.longest > WIDEST or across.longest > WIDEST:
-        return _corridor(store, along(frame, 0.0, one if longer > 0.0 else other), want, False)
+        return _corridor(store, along(lined, row.turn, one if longer > 0.0 else other), want, False)
     if across.front != sides.front:
-        return _corridor(store, along(frame, 0.0, one if across.front else other), want, False)
+        return _corridor(store, along(lined, row.turn, one if across.front else other), want, False)
     if abs(longer) < CLEARLY:
         return Gap()
-    gap = _corridor(store, along(frame, 0.0, one if longer > 0.0 else other), want, False)
+    gap = _corridor(store, along(lined, row.turn, one if longer > 0.0 else other), want, False)
     return gap if turned(gap.b.x, gap.b.y, frame).x < -LATE else Gap()
 
 

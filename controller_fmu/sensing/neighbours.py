@@ -5,16 +5,10 @@ from typing import NamedTuple
 
 from controller_fmu.planning.plan_store import PlanStore
 from controller_fmu.sensing.gap import DEEP, Gap, GapLayout, Wanted
-from controller_fmu.sensing.places import (
-    PlacesFrame,
-    in_world,
-    is_free,
-    is_sure,
-    spot,
-)
+from controller_fmu.sensing.places import UNSEEN, PlacesFrame, in_world, is_free, is_sure, spot
 
-BODY = 0.9
-"""A neighbour is no narrower than this share of the car's own width."""
+BODY = 0.97
+"""A neighbour is as wide as this share of the car's own width."""
 FACE = 2.2
 """Where a neighbour's front is looked for [m] from the gap."""
 BAND = 0.12
@@ -110,7 +104,7 @@ def measured(store: PlanStore, frame: PlacesFrame, low: float, high: float, clos
         z = one.z
     if leans_back and one.far < SHOWN:
         z = other.z
-    front = front_of(z, low, high, frame, want)
+    front = front_of(frame.line if frame.line > UNSEEN else z, low, high, frame, want)
     if not is_askew(frame):
         front = 0.5 * (one.t + other.t)
     depth = DEEP

@@ -15,6 +15,8 @@ BEFORE_ECHO = 0.05
 """So much [m] before an echo nothing stands."""
 STRAY = 2
 """A place of its own needs so many echoes, else it may be of two things heard in turn."""
+UNSEEN = -50.0
+"""Where [m] a row is of which too little was seen."""
 
 
 class PlacesFrame(NamedTuple):
@@ -43,6 +45,8 @@ class PlacesFrame(NamedTuple):
     row_s: float = 0.0
     into_c: float = 0.0
     into_s: float = 1.0
+    line: float = UNSEEN
+    """Where the row's line lies [m]."""
 
 
 class Spot(NamedTuple):

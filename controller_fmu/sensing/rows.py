@@ -4,8 +4,8 @@ import math
 from typing import NamedTuple
 
 from controller_fmu.planning.plan_store import PlanStore
-from controller_fmu.sensing.places import PlacesFrame, along, is_free, seen
-from modelkit.maths import PI
+from controller_fmu.sensing.places import UNSEEN, PlacesFrame, along, is_free, is_sure, seen
+from modelkit.maths import PI, clamp
 from modelkit.vocabulary import Pose
 
 NEAR = 3.0
@@ -32,6 +32,14 @@ BEYOND = (0.3, 0.45, 0.6, 0.8, 1.0, 1.3, 1.6)
 """Where a side goes on there is no free space so far [m] beyond what was seen of it, and so far behind its line."""
 BEYOND_IN = 0.15
 ENOUGH = 2
+CREST = 1.2
+"""What stands out of the row is the nearest to the way within this [m]."""
+STEEP = 0.35
+"""A row is turned against the way by no more than this [m/m]."""
+IN_ROW = (1.6, 0.8, 0.6, 0.4)
+"""What stands out lies no farther [m] behind the row's line, in turn."""
+LEAST_ROW = 4.0
+"""Sum of squares [m2] of how far apart things have to stand for a direction."""
 
 
 def turn_of(store: PlanStore, frame: PlacesFrame) -> float:
@@ -65,6 +73,57 @@ def turn_of(store: PlanStore, frame: PlacesFrame) -> float:
             return UNCLEAR
         mean = mean + 0.25 * math.atan2(sines, cosines)
     return 0.25 * math.atan2(math.sin(4.0 * mean), math.cos(4.0 * mean))
+
+
+class RowLine(NamedTuple):
+    """The line through what stands out of a row."""
+
+    turn: float = 0.0
+    """Against the way [rad]."""
+    behind: float = UNSEEN
+    """So far [m] from the sensor, across; ``UNSEEN``: too little stands out."""
+
+
+def row_of(store: PlanStore, frame: PlacesFrame) -> RowLine:
+    """Return the line of a row: through fronts' ends and corners that are as near to the way as anything around.
+
+    Regression, without what lies far behind it.
+    """
+    slope = 0.0
+    at = FAR
+    for place in range(frame.first, frame.end):
+        at = min(at, seen(store, place, frame).y) if is_sure(store, place, frame) else at
+    for within in IN_ROW:
+        n = 0.0
+        su = 0.0
+        sw = 0.0
+        suu = 0.0
+        suw = 0.0
+        for place in range(frame.first, frame.end):
+            here = seen(store, place, frame)
+            near = here.y - at - slope * here.x < within and is_sure(store, place, frame)
+            if near and _stands_out(store, frame, here):
+                n += 1.0
+                su += here.x
+                sw += here.y
+                suu += here.x * here.x
+                suw += here.x * here.y
+        spread = suu - su * su / n if n > 0.0 else 0.0
+        if spread < LEAST_ROW:
+            return RowLine()
+        slope = clamp((suw - su * sw / n) / spread, -STEEP, STEEP)
+        at = (sw - slope * su) / n
+    turn = math.atan(slope)
+    return RowLine(turn, at * math.cos(turn))
+
+
+def _stands_out(store: PlanStore, frame: PlacesFrame, here: Pose) -> bool:
+    """Return whether nothing around is nearer to the way."""
+    for place in range(frame.first, frame.end):
+        other = seen(store, place, frame)
+        if abs(other.x - here.x) < CREST and other.y < here.y and is_sure(store, place, frame):
+            return False
+    return True
 
 
 class Sides(NamedTuple):

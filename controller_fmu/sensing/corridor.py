@@ -6,12 +6,15 @@ and perpendicular slots and for those at any angle alike.
 """
 
 import math
+from typing import NamedTuple
 
 from controller_fmu.planning.plan_store import PlanStore
 from controller_fmu.sensing.gap import DEEP, Gap, GapLayout, Wanted
 from controller_fmu.sensing.neighbours import FACE, beside_body, front_of, is_askew, measured
 from controller_fmu.sensing.places import (
+    UNSEEN,
     PlacesFrame,
+    Spot,
     along,
     frame_of,
     is_free,
@@ -21,7 +24,7 @@ from controller_fmu.sensing.places import (
     spot_of,
     turned,
 )
-from controller_fmu.sensing.rows import UNCLEAR, WIDEST, row_of, sides_along, turn_of
+from controller_fmu.sensing.rows import UNCLEAR, WIDEST, row_of, sides_along, turn_of, wrap_quarter
 from modelkit.maths import PI
 from modelkit.vocabulary import Pose
 
@@ -57,13 +60,14 @@ def find_gap(store: PlanStore, side: int, places: int, at: Pose, want: Wanted) -
     turn = turn_of(store, frame)
     if turn == UNCLEAR:
         return Gap()
-    if abs(turn) <= ANGLED:
+    row = row_of(store, frame)
+    askew = wrap_quarter(turn - row.turn) if row.behind > UNSEEN else turn
+    if abs(askew) <= ANGLED:
         square = along(frame, turn, turn + 0.5 * PI)
         best = _corridor(store, square, want, True) if want.along else Gap()
         return _corridor(store, square, want, False) if best.layout == GapLayout.NONE and want.across else best
     if not want.across:
         return Gap()
-    row = row_of(store, frame)
     lined = frame._replace(line=row.behind)
     other = turn if turn > 0.0 else turn + PI
     one = turn + 0.5 * PI
@@ -87,10 +91,12 @@ def _corridor(store: PlanStore, frame: PlacesFrame, want: Wanted, lengthwise: bo
     found = Gap()
     for place in range(frame.first, frame.end):
         if is_sure(store, place, frame):
-            low = spot(store, place, frame).s
-            which = _next(store, frame, place, want, lengthwise)
+            limit = _beside(store, frame, place, want, lengthwise)
+            at = spot(store, place, frame)
+            low = at.s
+            which = _next(store, frame, place, want, limit, lengthwise) if _bounds(at, limit) else place
             high = spot(store, which, frame).s if which != place else low + least + BESIDE_ONE
-            ends = which != place or want.open_ended
+            ends = which != place or (want.open_ended and _bounds(at, limit))
             if ends and least <= high - low < LONGEST and seen(store, which, frame).x < -PASSED:
                 if askew:
                     low = beside_body(store, frame, low, -1.0, want)
@@ -107,11 +113,17 @@ def _corridor(store: PlanStore, frame: PlacesFrame, want: Wanted, lengthwise: bo
     return found
 
 
-def _next(store: PlanStore, frame: PlacesFrame, place: int, want: Wanted, lengthwise: bool) -> int:
-    """Return the place that ends the corridor which ``place`` begins; itself if none does where one neighbour will do.
+class Beside(NamedTuple):
+    """What bounds a corridor lies beside where a car would stand: before one of these [m], along it, from the row."""
 
-    Only what lies beside where a car would stand counts, not what is deep in: less than so much behind the front of
-    the neighbour that ``place`` is of, or behind where the car's own front would be.
+    t: float
+    z: float
+
+
+def _beside(store: PlanStore, frame: PlacesFrame, place: int, want: Wanted, lengthwise: bool) -> Beside:
+    """Return how deep [m] may lie what bounds a corridor that ``place`` begins.
+
+    Less than so much behind the front of the neighbour that it is of, or behind where the car's own front would be.
     """
     least = want.length + want.room_along if lengthwise else want.width + want.room_across
     one = spot(store, place, frame)
@@ -120,15 +132,24 @@ def _next(store: PlanStore, frame: PlacesFrame, place: int, want: Wanted, length
         its = spot(store, other, frame)
         if one.s - FACE <= its.s <= one.s and its.z < front and is_sure(store, other, frame):
             front = its.z
-    askew = is_askew(frame)
-    t = front_of(front, one.s, one.s + least, frame, want) + CROSS_ASKEW if askew else -DEEP
-    z = front + (BESIDE if lengthwise else CROSS * math.sin(frame.into - frame.row))
+    t = front_of(front, one.s, one.s + least, frame, want) + CROSS_ASKEW if is_askew(frame) else -DEEP
+    return Beside(t, front + (BESIDE if lengthwise else CROSS * math.sin(frame.into - frame.row)))
+
+
+def _bounds(at: Spot, limit: Beside) -> bool:
+    """Return whether a place bounds a corridor, and is not deep in."""
+    return at.t < limit.t or at.z < limit.z
+
+
+def _next(store: PlanStore, frame: PlacesFrame, place: int, want: Wanted, limit: Beside, lengthwise: bool) -> int:
+    """Return the place that ends the corridor which ``place`` begins; itself if none does, or where one will do."""
+    least = want.length + want.room_along if lengthwise else want.width + want.room_across
+    one = spot(store, place, frame)
     which = place
     nearest = one.s + least + BESIDE_ONE if want.open_ended else DEEP
     for other in range(frame.first, frame.end):
         its = spot(store, other, frame)
-        beside = its.t < t or its.z < z
-        if beside and one.s < its.s < nearest and is_sure(store, other, frame):
+        if _bounds(its, limit) and one.s < its.s < nearest and is_sure(store, other, frame):
             nearest = its.s
             which = other
     return which

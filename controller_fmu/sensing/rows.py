@@ -72,7 +72,7 @@ def turn_of(store: PlanStore, frame: PlacesFrame) -> float:
         if total < LEAST_SIDE or agreed < AGREED * total:
             return UNCLEAR
         mean = mean + 0.25 * math.atan2(sines, cosines)
-    return 0.25 * math.atan2(math.sin(4.0 * mean), math.cos(4.0 * mean))
+    return wrap_quarter(mean)
 
 
 class RowLine(NamedTuple):
@@ -133,6 +133,11 @@ class Sides(NamedTuple):
     """Length [m] of the longest."""
     front: bool = False
     """One is as long as a car is wide, and ends there."""
+
+
+def wrap_quarter(angle: float) -> float:
+    """Return an angle modulo 90 deg, in [-pi/4, pi/4]."""
+    return 0.25 * math.atan2(math.sin(4.0 * angle), math.cos(4.0 * angle))
 
 
 def sides_along(store: PlanStore, frame: PlacesFrame, angle: float) -> Sides:

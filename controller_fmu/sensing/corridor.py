@@ -35,8 +35,13 @@ BESIDE_ONE = 0.3
 """A slot beside one neighbour is this much [m] wider than the least."""
 CLEARLY = 0.15
 """A side is longer than another by more than this [m]."""
-LATE = 4.5
-"""Sides are compared when the gap has been passed by so much [m]: before, the neighbour behind it is not seen."""
+HALFWAY = 36.0 * PI / 180.0
+LATE = 3.0
+LATER = 4.5
+"""Sides are compared when the gap has been passed by so much [m]: before, the neighbour behind it is not seen.
+
+Later where the one side of a car lies nearly along the row, as the car in front of it hides that.
+"""
 LONGEST = 15.0
 PASSED = 0.5
 """The sensor has passed the gap's end by so much [m]."""
@@ -81,7 +86,7 @@ def find_gap(store: PlanStore, side: int, places: int, at: Pose, want: Wanted) -
     if abs(longer) < CLEARLY:
         return Gap()
     gap = _corridor(store, along(lined, row.turn, one if longer > 0.0 else other), want, False)
-    return gap if turned(gap.b.x, gap.b.y, frame).x < -LATE else Gap()
+    return gap if turned(gap.b.x, gap.b.y, frame).x < -(LATE if abs(askew) > HALFWAY else LATER) else Gap()
 
 
 def _corridor(store: PlanStore, frame: PlacesFrame, want: Wanted, lengthwise: bool) -> Gap:

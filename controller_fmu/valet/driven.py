@@ -19,7 +19,7 @@ from controller_fmu.planning.plan import (
 from controller_fmu.planning.plan_store import PlanStore
 from controller_fmu.planning.task import Corner, Request, drive
 from controller_fmu.sensing.around import lay_end
-from controller_fmu.sensing.gap import DEEP
+from controller_fmu.sensing.gap import DEEP, GapLayout
 from controller_fmu.valet.chart import Step
 from controller_fmu.valet.given import as_parameter
 from controller_fmu.valet.nearby import Nearby, Rest, hear_nearby, is_in_gap, lay_nearby, narrowed, put_nearby
@@ -102,7 +102,9 @@ def planned_on(store: PlanStore, state: ValetState, inputs: ControllerInput, par
         goal = goal_of(params, as_parameter(state.told, params.slot), pose)
         if params.search.active:
             gap = state.search.gap
-            beside = narrowed(store, state.nearby, gap, 2.0 * body_of(params).half_length)
+            body = body_of(params)
+            deep = 2.0 * (body.half_length if gap.layout == GapLayout.ACROSS else body.half_width)
+            beside = narrowed(store, state.nearby, gap, deep)
             wish = state.search.told if state.search.told != SlotKind.NONE else params.search.wish
             goal = goal_in(beside, state.search.pose.heading, wish, params)
             if gap.depth < DEEP:

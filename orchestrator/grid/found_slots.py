@@ -30,6 +30,8 @@ ROOM_ACROSS = 0.8
 BEFORE = 3.0
 """The driver starts so far [m] before the neighbour that he passes first, and searches so far past the other."""
 BEHIND = 4.0
+AT_WALL = 0.5
+"""Left between the driver's way past and the street's other side [m]."""
 AT_KERB = 0.2
 """From the tyres to the kerb [m]: the middle of what GB/T 41630 allows."""
 Box = dict[str, float]
@@ -254,12 +256,20 @@ def way_past(case: FoundCase) -> WayPast:
     return WayPast(first, nearest + first * t + (case.beside + 0.5 * width) / math.cos(case.heading), way)
 
 
+def _reach(case: FoundCase) -> float:
+    """Return how far across the road the driver's way needs it to be free: the street is no narrower there."""
+    past, car, width = way_past(case), CARS[case.car], size_of(case)[1]
+    rise, half = math.sin(case.heading), 0.5 * width * math.cos(case.heading)
+    ends = (past.y - car.rear_overhang * rise, past.y + (past.way + car.wheelbase + car.front_overhang) * rise)
+    return max(ends) + half + AT_WALL
+
+
 def _vehicle(case: FoundCase) -> dict[str, Any]:
     """Return the vehicle's parameters: where it starts, what stands there, its errors."""
     car, place, boxes = CARS[case.car], place_of(case), boxes_of(case)
     front = max(y for box in boxes[:2] for _, y in box_corners(box))
     length, _ = size_of(case)
-    boxes = [*boxes, {"x": 0.0, "y": front + case.street + 0.5, "length": 80.0, "width": 1.0}]
+    boxes = [*boxes, {"x": 0.0, "y": max(front + case.street, _reach(case)) + 0.5, "length": 80.0, "width": 1.0}]
     values: dict[str, Any] = {}
     for number, box in enumerate(boxes, start=1):
         values |= {f"scene.boxes[{number}].{name}": value for name, value in box.items()}

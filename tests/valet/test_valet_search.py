@@ -14,6 +14,8 @@ from controller_fmu.sensing.corridor import find_gap
 from controller_fmu.sensing.ear import SideEar, listen
 from controller_fmu.sensing.gap import Gap, GapLayout, Wanted
 from controller_fmu.sensing.heard_store import put_heard
+from controller_fmu.sensing.places import frame_of
+from controller_fmu.sensing.rows import row_of
 from controller_fmu.valet.params import ValetParams, ValetSearchParams
 from controller_fmu.valet.sight import look
 from modelkit.car import Car
@@ -89,6 +91,28 @@ def test_a_gap_is_found_at_any_angle_on_either_side(angle: int, wide: float, sid
     assert abs(off) < 0.15
 
 
+@pytest.mark.parametrize("side", [1, -1])
+@pytest.mark.parametrize(("angle", "askew"), [(45, 0.1), (45, -0.15), (60, -0.15)])
+def test_a_row_is_seen_along_its_own_line_whatever_way_it_is_passed(angle: int, askew: float, side: int) -> None:
+    store, ear, gap = passed(row(angle, side, 3.4), side, 0.01, askew)
+    frame = frame_of(0 if side > 0 else 1, ear.places, Pose(4.0, 0.0, side * askew), WANTED.half_angle)
+    assert row_of(store, frame).turn == pytest.approx(askew, abs=math.radians(2.5))
+    assert gap.layout == GapLayout.ACROSS
+    assert gap.into == pytest.approx(-side * math.radians(angle), abs=math.radians(2.5))
+    front = (gap.a.x + gap.front * math.cos(gap.into), gap.a.y + gap.front * math.sin(gap.into))
+    neighbour = row(angle, side, 3.4)[1]
+    off = (front[0] - neighbour["x"]) * math.cos(gap.into) + (front[1] - neighbour["y"]) * math.sin(gap.into)
+    pitch = 0.5 * (3.4 + WIDTH) / math.tan(math.radians(angle))
+    assert off + 0.5 * LENGTH == pytest.approx(pitch, abs=0.3)
+
+
+def test_what_a_slot_ends_at_does_not_make_it_narrower() -> None:
+    wall = {"x": -2.9, "y": -2.2, "heading": -math.radians(150), "length": 0.8, "width": 2.2}
+    _, _, gap = passed([*row(150, 1, 2.9), wall], 1, 0.0)
+    assert gap.layout == GapLayout.ACROSS
+    assert gap.width == pytest.approx(2.9, abs=0.3)
+
+
 def test_cars_without_a_gap_between_them_are_none() -> None:
     boxes = row(90, 1, gap=0.8)
     assert passed(boxes, 1, 0.01)[2].layout == GapLayout.NONE
@@ -112,6 +136,17 @@ def test_the_end_of_a_slot_is_heard_by_both_sensors_that_look_straight_at_it() -
         both = silent[: first + 1] + (0.4, 0.5) + silent[first + 3 :]
         heard = [look(readings, Pose(), Piece(direction), 0.3, Scene(), params) for readings in (one, both)]
         assert [(sight.blocked, sight.ahead) for sight in heard] == [(True, False), (True, True)]
+
+
+def test_what_is_near_a_leading_corner_or_one_that_swings_out_slows_the_car() -> None:
+    params = ValetParams()._replace(search=ValetSearchParams()._replace(active=True))
+    silent = (5.0,) * 12
+    near = silent[:3] + (0.25,) + silent[4:]
+    bends = [Piece(1.0), Piece(-1.0, 0.2), Piece(-1.0, -0.2), Piece(-1.0)]
+    sights = [look(near, Pose(), piece, 0.3, Scene(), params) for piece in bends]
+    assert [sight.blocked for sight in sights] == [True, True, False, False]
+    assert [sight.speed < 0.3 for sight in sights] == [True, True, False, False]
+    assert not look(near, Pose(), Piece(-1.0, 0.2), 0.3, Scene(), ValetParams()).blocked
 
 
 @pytest.mark.skipif(not can_compile(), reason="FMUs without Python need a C compiler: pip install ziglang")

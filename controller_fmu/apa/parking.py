@@ -3,6 +3,7 @@
 from typing import NamedTuple
 
 from controller_fmu.apa.around.guard import Sight
+from controller_fmu.apa.around.row import is_certain
 from controller_fmu.apa.around.surroundings import Around, is_rest_free, is_settled, shape_of, sight_of
 from controller_fmu.apa.manoeuvre_chart import Guard as StepGuard
 from controller_fmu.apa.manoeuvre_chart import Step, step_transition
@@ -55,7 +56,7 @@ class Parking(NamedTuple):
     cut: bool = False
     """The move was cut short by something of the slot that is nearer than thought: plan again."""
     missed: bool = False
-    """The car stands as planned, and the sensors say that it is not in the slot."""
+    """The car stands as planned, the sensors say that it is not in the slot, and no move leads deeper."""
     cuts: int = 0
     """Moves that were cut short so far."""
     sight: Sight = Sight()
@@ -139,7 +140,8 @@ def park(
     step = step_transition(state.step, _guards(state, place, inputs, settled, allowed, params))
     limit = params.apa.end
     missed = state.step == Step.PLAN and not settled and is_in_place(place, limit.lateral, limit.heading)
-    state = state._replace(missed=missed and not state.out)
+    nothing_better = state.plan.status == NOTHING or not is_certain(around.map, params.apa.map)
+    state = state._replace(missed=missed and nothing_better and not state.out)
     return _moved_on(state, step, place, steering, inputs.measured_speed, params)
 
 

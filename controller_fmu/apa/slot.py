@@ -38,6 +38,10 @@ DEEP_DOWN = 30.0
 """A neighbour, and the row that it stands in, are taken to be so long along the road [m], and so deep."""
 LESS_BESIDE = 0.01
 """The margin to kerb or wall is taken this much [m] smaller, so that a target at that margin is free."""
+BEHIND = 0.08
+"""A perpendicular slot's wall or wheel stop is left so far [m] behind the car at least."""
+LESS_OUT = 0.02
+"""A move into a perpendicular slot ends so much [m] deeper than it need to be."""
 
 
 class Slot(NamedTuple):
@@ -75,6 +79,8 @@ class Margins(NamedTuple):
     neighbour: float = 0.2
     beside: float = 0.1
     inset: float = 0.0
+    out: float = 0.14
+    """Farthest [m] that a parked car stands out of the line."""
 
 
 def mirror_of(slot: Slot) -> float:
@@ -100,7 +106,7 @@ def target_of(slot: Slot, car: Shape, margins: Margins) -> Pose:
     if slot.kind == Kind.PERPENDICULAR:
         room = room_of(slot, car.front + car.rear)
         y = line - car.front
-        lowest = car.rear + margins.neighbour - slot.depth
+        lowest = car.rear + max(margins.neighbour, BEHIND) - slot.depth
         return Pose(0.5 * (room.low + room.high), lowest if y < lowest else y, 0.5 * math.pi)
     room = room_of(slot, 2.0 * car.half_width)
     y = line - car.half_width
@@ -137,7 +143,8 @@ def site_of(slot: Slot, car: Shape, margins: Margins) -> Site:
         grown(_seen_from(opposite, x, y, turned), near),
     )
     if turned:
-        return Site(slot.kind, frame, obstacles, -0.05, 0.1)
+        most = margins.out - LESS_OUT - stands_out_by(target, slot, car)
+        return Site(slot.kind, frame, obstacles, -0.05, most if most < 0.1 else 0.1)
     room = room_of(slot, 2.0 * car.half_width)
     slack = 0.5 * (room.high - room.low - car.front - car.rear) - near - slot.unsure
     slack = slack - 0.01 if slack > 0.01 else 0.0

@@ -16,13 +16,13 @@ from controller_fmu.apa.around.comer import Comer, followed, somebody_comes
 from controller_fmu.apa.around.course import HeldCourse, after
 from controller_fmu.apa.around.local_map import LocalMap, ear_at, expected, nearest_case, unsure_of
 from controller_fmu.apa.around.near import room_by_echoes
+from controller_fmu.apa.around.straight import room_straight
 from controller_fmu.apa.outline import Box, Obstacles, Shape, box_clearance, clearance, grown
 from controller_fmu.interface import ControllerParams
 from modelkit.geometry import Point
 from modelkit.vocabulary import Pose
 
 FREE = 100.0
-STRAIGHT = 0.2
 WIDER = 0.1
 """The rim of a cone may touch something known that lies so much [rad] beside it."""
 LOOKS = 6
@@ -183,7 +183,7 @@ def watch_way(
     mapped = course._replace(pose=here.pose)
     strange = _free_of_unknown(state.unknown, mapped, stop, guard.surprise_gap)
     tight = _free_of_unknown(state.close, mapped, stop, guard.echo_gap)
-    straight = _straight_ahead(readings, course.direction, params) - guard.stop_gap
+    straight = room_straight(readings, here, course.direction, params)
     raw = _free_of_echoes(state, mapped, stop, guard.echo_gap)
     beside = min(min(known, raw), tight)
     old = abs(course.speed) * params.car.ultrasonic.cycle
@@ -259,15 +259,3 @@ def _comes_near(item: Unknown, now: Pose, there: Pose, car: Shape, gap: float) -
         if near < gap and near < box_clearance(now, car, box) - NEARER:
             return True
     return False
-
-
-def _straight_ahead(readings: tuple[float, ...], direction: int, params: ControllerParams) -> float:
-    """Return the nearest reading [m] of the sensors that look straight where the car drives."""
-    nearest = FREE
-    first = 0 if direction > 0 else 4
-    for number in range(first, first + 4):
-        yaw = abs(params.car.ultrasonic.mounts[number].yaw)
-        ahead = yaw < STRAIGHT if direction > 0 else yaw > math.pi - STRAIGHT
-        if ahead and readings[number] < LOOKED_AT:
-            nearest = min(nearest, readings[number])
-    return nearest

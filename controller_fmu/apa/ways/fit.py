@@ -60,7 +60,7 @@ def margins_of(attempt: int, params: ApaParams) -> Margins:
     plan = params.plan
     inset = -plan.stand_out if stands_out(attempt) else 0.0
     share = SHARES[attempt // LEVEL]
-    return Margins(share * plan.margin, share * plan.kerb_margin, inset)
+    return Margins(share * plan.margin, share * plan.kerb_margin, inset, params.end.out)
 
 
 def fit_of(slot: Slot, car: Shape, params: ApaParams) -> Fit:

@@ -1,0 +1,45 @@
+"""How far a car may go before what the sensors hear straight where it drives, whatever it is of.
+
+A wall or kerb behind the slot that the map has, and has surely, may come nearer than what nobody knows of: a car
+that parks before a wheel stop stands in the row only if it comes near it.
+"""
+
+import math
+
+from controller_fmu.apa.around.local_map import WALL, LocalMap, ear_at, expected
+from controller_fmu.apa.around.near import nearest_told
+from controller_fmu.interface import ControllerParams
+
+FREE = 100.0
+STRAIGHT = 0.2
+LOOKED_AT = 1.5
+SURE = 0.03
+"""A wall known to so much [m] may come nearer."""
+WALL_GAP = 0.06
+"""So near [m]."""
+SAME = 0.06
+"""An echo is of the wall if it says the distance to it to so much [m] and a tenth of it."""
+
+
+def room_straight(readings: tuple[float, ...], here: LocalMap, direction: int, params: ControllerParams) -> float:
+    """Return how far [m] the car may go by the nearest of the sensors that look straight where it drives."""
+    sensors = params.car.ultrasonic
+    guard = params.apa.guard
+    lowest = nearest_told(sensors)
+    sure = here.walled and here.wall.yy < SURE * SURE
+    room = FREE
+    first = 0 if direction > 0 else 4
+    for number in range(first, first + 4):
+        mount = sensors.mounts[number]
+        reading = readings[number]
+        yaw = abs(mount.yaw)
+        ahead = yaw < STRAIGHT if direction > 0 else yaw > math.pi - STRAIGHT
+        if ahead and reading < LOOKED_AT:
+            free = reading - guard.stop_gap
+            if sure:
+                known = expected(ear_at(mount, here.pose, here.frame.mirror, sensors.half_angle), here)
+                far = known.echo.distance
+                if known.who == WALL and abs(max(far, sensors.min_range) - reading) < SAME + 0.1 * reading:
+                    free = max(free, (min(reading, far) if reading > lowest else far) - WALL_GAP)
+            room = min(room, free)
+    return room

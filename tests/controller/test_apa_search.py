@@ -6,10 +6,13 @@ from typing import Any
 import pytest
 
 from controller_fmu.apa.hearing import search_side
+from controller_fmu.apa.hearing.consensus import NO_WINDOW, agreed, newest
 from controller_fmu.apa.hearing.edge import NO_SAMPLES, Heard, append, corner
 from controller_fmu.apa.hearing.line_fit import FittedLine, Sums, add, offset, slope
-from controller_fmu.apa.hearing.search_side import _with_sample
-from controller_fmu.interface import ControllerParams
+from controller_fmu.apa.hearing.search import LEFT, LEFT_SENSOR, RIGHT, _hear
+from controller_fmu.apa.hearing.search_side import DEEP, START, _with_sample
+from controller_fmu.interface import ControllerInput, ControllerParams
+from modelkit.vocabulary import Pose
 from tests.controller.apa_bench import CAR, box, car_settings, drive
 
 HALF = math.radians(30.0)
@@ -59,6 +62,40 @@ def test_how_far_off_a_new_side_a_sample_may_lie_follows_from_how_sure_its_slope
     assert belongs or after.r == (1.0 if off > 0.0 else 1.0 + off), (
         "a nearer one shows that the one before was a corner's"
     )
+
+
+@pytest.mark.parametrize("tilt", [-0.2, 0.0, 0.2])
+@pytest.mark.parametrize("known", [False, True])
+def test_a_side_is_what_most_samples_agree_on(tilt: float, known: bool) -> None:
+    window, noise = NO_WINDOW, (0.02, -0.025, 0.0, 0.03, -0.02)
+    corner_at, spacing = 1.6, 0.3
+    for n in range(8):
+        u = spacing * n
+        reached = min(u, corner_at)
+        far = (
+            math.hypot(u - reached, 1.0 - tilt * reached) if u > corner_at else (1.0 - tilt * u) / math.hypot(1.0, tilt)
+        )
+        window = newest(window, Heard(u, 0.0, far + noise[n % 5]))
+    told = agreed(window, 0.28, known, tilt)
+    assert told.n >= 5.0
+    assert slope(told, Sums()) == pytest.approx(tilt, abs=0.05)
+
+
+def test_samples_that_lie_before_it_are_of_no_corner() -> None:
+    window = NO_WINDOW
+    for n in range(6):
+        window = newest(window, Heard(0.3 * n, 0.0, 1.3 if n < 4 else 1.0))
+    assert agreed(window, 0.28, False, 0.0).n < 4.0
+    assert agreed(NO_WINDOW, 0.28, False, 0.0).n == 0.0
+
+
+@pytest.mark.parametrize("sensor", [8, 10])
+def test_nothing_heard_is_no_wall_at_the_end_of_what_sensors_hear(sensor: int) -> None:
+    side = START
+    for n in range(20):
+        inputs = ControllerInput(odometry=Pose(0.1 * n, 0.0, 0.0), ultrasonic=(5.0,) * 12)
+        side = _hear(side, LEFT if sensor == LEFT_SENSOR else RIGHT, Pose(), inputs, ControllerParams())
+    assert side.last.r >= DEEP
 
 
 def scene(kind: str, length: float, side: int, speed: float, **more: Any) -> tuple[dict[str, Any], dict[str, Any]]:

@@ -181,7 +181,9 @@ def _hear(side: SideState, which: int, origin: Pose, inputs: ControllerInput, pa
     s = math.sin(origin.heading)
     u = dx * c + dy * s
     w = mirror * (dy * c - dx * s)
-    return hear(side, u, w, inputs.ultrasonic[sensor], params.car.ultrasonic.half_angle, params.apa.search)
+    reading = inputs.ultrasonic[sensor]
+    r = reading if reading < 0.99 * params.car.ultrasonic.max_range else DEEP
+    return hear(side, u, w, r, params.car.ultrasonic.half_angle, params.apa.search)
 
 
 def _judge(state: SearchState, side: SideState, which: int, car: Shape, params: ControllerParams) -> SearchState:

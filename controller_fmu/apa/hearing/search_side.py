@@ -7,6 +7,7 @@ mirrored on the left side. Distances are averaged over about 15 cm of way before
 import math
 from typing import NamedTuple
 
+from controller_fmu.apa.hearing.consensus import NO_WINDOW, agreed, newest
 from controller_fmu.apa.hearing.edge import KEPT, NO_SAMPLES, Heard, append, corner, remember, seen_up_to
 from controller_fmu.apa.hearing.line_fit import (
     ASKEW,
@@ -42,10 +43,14 @@ DEEP = 50.0
 STEEPEST = 0.28
 LEANS = 0.1
 """A neighbour, or the wall, lies so much [m] off per metre along the line of the neighbour before."""
+CLOSING = 0.2
+"""A neighbour has not begun while it comes nearer by so much [m] more than a slanting side does."""
 STEEP = 1.0
 """The face of a neighbour across the way comes nearer by 1 / sin(g) per metre, its corner by sin(g) at most."""
 LONG_STEADY = 5
 MANY = 8.0
+FEW = 3.0
+MORE = 2.0
 ALONG = 4
 UNSEEN_BEFORE = 10.0
 """A neighbour that was there before it was near enough to be looked at is taken to have begun so much [m] before: one
@@ -102,6 +107,10 @@ class SideState(NamedTuple):
     """Newest samples past corner A or short of corner B, where the cone's edge touches the neighbour's end."""
     behind: Sums = Sums()
     """Of the kerb or wall that the gap ends at."""
+    first: Heard = Heard()
+    """Of the neighbour in hand: its first corner, or near it; of none if it was there before it was looked at."""
+    window: tuple[Heard, ...] = NO_WINDOW
+    """Newest samples of the neighbour in hand, of its corners too."""
 
 
 EMPTY = Sums()
@@ -133,7 +142,7 @@ def _sampled(side: SideState, sample: Heard, half_angle: float, params: SearchPa
     side = side._replace(last=sample, spacing=way, steady=steady, fresh=False)
     if side.mode == NOTHING and near:
         side = _begin_wall(side, sample)
-        return side._replace(begun=sample.u - UNSEEN_BEFORE) if cut else side
+        return side._replace(begun=sample.u - UNSEEN_BEFORE, first=Heard()) if cut else side
     if side.mode == NOTHING:
         return side
     if side.mode == WALL:
@@ -167,30 +176,35 @@ def _on_wall(side: SideState, sample: Heard, half_angle: float, params: SearchPa
     if sample.r < least:
         return _begin_wall(side, sample)
     if sample.r <= most:
+        window = newest(side.window, sample)
         sums = _with_sample(side.sums, EMPTY, sample, side.steady)
         spare = side.sums if sums.n < side.sums.n and side.sums.n >= 3.0 else side.spare
         fresh = side.found > 0 and side.steady >= 2 and side.mode == WALL and side.edge_b > side.edge
-        begun = sample.u if side.sums.n == 0.0 and side.begun > sample.u - UNSEEN_BEFORE else side.begun
+        closing = sample.r < side.first.r - CLOSING - STEEPEST * (sample.u - side.first.u)
+        first = sample if closing else side.first
         samples = remember(side.samples, sample)
         return side._replace(
             mode=WALL,
-            begun=begun,
+            begun=first.u if closing else side.begun,
+            first=first,
             missed=samples[0].u,
             samples=samples,
             sums=sums,
             spare=spare,
             fresh=fresh,
             faces=NO_SAMPLES,
+            window=window,
         )
     side = side._replace(faces=remember(side.faces, sample))
     if sample.u - side.missed < _confirmed(side):
         return side
     extent = side.missed - side.begun
     side = side._replace(sums=side.spare) if side.sums.n < 3.0 else side
+    side = side._replace(sums=_or_agreed(side.sums, side.window, EMPTY)) if side.sums.n < MANY else side
     if side.sums.n < 3.0 or extent < params.wall or abs(slope(side.sums, EMPTY)) > STEEPEST:
         return _anew(side)
     edge = corner(side.samples + side.faces, _line(side.sums, EMPTY), -1.0, half_angle)
-    extent = edge - side.begun
+    extent = edge - side.begun - _short_of_it(side)
     return _anew(side)._replace(
         mode=GAP, begun=side.begun, extent=extent, missed=side.missed, before=side.sums, edge=edge
     )
@@ -215,6 +229,21 @@ def _with_sample(sums: Sums, other: Sums, sample: Heard, steady: int) -> Sums:
         if abs(off) > band:
             sums = EMPTY
     return add(sums, sample.u, sample.w, sample.r)
+
+
+def _short_of_it(side: SideState) -> float:
+    """Return how far [m] ahead of the sensor the neighbour's first corner was where it was first heard."""
+    if side.first.r <= 0.0:
+        return 0.0
+    d = distance(_line(side.sums, EMPTY), side.first.u, side.first.w)
+    e = math.sqrt(max(0.0, side.first.r * side.first.r - d * d))
+    return min(e, 0.6 * d) if d > 0.0 else 0.0
+
+
+def _or_agreed(sums: Sums, window: tuple[Heard, ...], before: Sums) -> Sums:
+    """Return the sums of a side that has ended, or of the samples that agree on a line, if those are plainly more."""
+    told = agreed(window, STEEPEST, before.n >= FEW, slope(before, EMPTY))
+    return told if told.n >= FEW and told.n > sums.n + MORE else sums
 
 
 def _confirmed(side: SideState) -> float:
@@ -243,6 +272,7 @@ def _in_gap(side: SideState, sample: Heard, leaves: bool, half_angle: float, par
             sums=EMPTY,
             fresh=False,
             edge_b=0.0,
+            window=newest(NO_WINDOW, sample),
         )
     depth = side.depth
     behind = side.behind
@@ -267,6 +297,9 @@ def _on_next_wall(side: SideState, sample: Heard, half_angle: float, params: Sea
     if abs(sample.r - side.samples[0].r) > 2.0 * params.step + 0.4:
         if sample.u - side.missed < _confirmed(side):
             return side
+        told = _or_agreed(EMPTY, side.window, side.before)
+        if side.missed - side.begun >= params.wall and told.n > 0.0:
+            return _found(side._replace(sums=told), half_angle)
         return side._replace(
             mode=GAP, steady=0, taken=0, samples=NO_SAMPLES, sums=EMPTY, fresh=False, edge_b=0.0, faces=NO_SAMPLES
         )
@@ -275,28 +308,31 @@ def _on_next_wall(side: SideState, sample: Heard, half_angle: float, params: Sea
     faces = remember(side.faces, earlier) if steep else side.faces
     taken = 0 if steep else side.taken
     samples = append(NO_SAMPLES if steep else side.samples, sample, taken)
-    count = taken + 1 if taken < KEPT else KEPT
-    sums = _with_sample(side.sums, side.before, sample, side.steady)
-    if sample.u - side.begun < params.wall or sums.n < 2.0:
-        return side._replace(
-            mode=NEXT_WALL,
-            missed=sample.u,
-            taken=count,
-            samples=samples,
-            sums=sums,
-            fresh=False,
-            edge_b=0.0,
-            faces=faces,
-        )
-    b = leaning(side.before, sums)
-    edge_b = corner(samples + faces, FittedLine(offset(sums, b), b), 1.0, half_angle)
+    side = side._replace(
+        mode=NEXT_WALL,
+        missed=sample.u,
+        taken=taken + 1 if taken < KEPT else KEPT,
+        samples=samples,
+        sums=_with_sample(side.sums, side.before, sample, side.steady),
+        fresh=False,
+        edge_b=0.0,
+        faces=faces,
+        window=newest(side.window, sample),
+    )
+    if sample.u - side.begun < params.wall or side.sums.n < 2.0:
+        return side
+    return _found(side, half_angle)._replace(samples=remember(NO_SAMPLES, sample))
+
+
+def _found(side: SideState, half_angle: float) -> SideState:
+    """Return the side on which the next neighbour is told from here on: the gap before it ends at its corner."""
+    b = leaning(side.before, side.sums)
+    line = FittedLine(offset(side.sums, b), b)
+    edge_b = corner(side.samples + side.faces, line, 1.0, half_angle)
     return side._replace(
         mode=WALL,
         begun=edge_b,
-        missed=sample.u,
-        taken=count,
-        samples=remember(NO_SAMPLES, sample),
-        sums=sums,
+        first=Heard(),
         spare=EMPTY,
         found=side.found + 1,
         fresh=True,
@@ -306,7 +342,10 @@ def _on_next_wall(side: SideState, sample: Heard, half_angle: float, params: Sea
 
 
 def _begin_wall(side: SideState, sample: Heard) -> SideState:
-    return _anew(side)._replace(mode=WALL, begun=sample.u, missed=sample.u, samples=remember(NO_SAMPLES, sample))
+    window = newest(NO_WINDOW, sample)
+    return _anew(side)._replace(
+        mode=WALL, begun=sample.u, first=sample, missed=sample.u, samples=remember(NO_SAMPLES, sample), window=window
+    )
 
 
 def _anew(side: SideState) -> SideState:

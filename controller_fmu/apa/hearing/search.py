@@ -25,6 +25,8 @@ CAR_WIDE = 1.3
 """One that is longer than this and no longer than that is a whole car, seen from its nose or tail: what ends a slot
 beside it must be told by ``TOLD`` readings to be no part of a flank."""
 TOLD = 3.0
+BESIDE = 0.6
+"""The end of a neighbour is heard past it as far as this share of its distance: the tangent of half a cone."""
 
 
 class SearchState(NamedTuple):
@@ -214,8 +216,8 @@ def _judge(state: SearchState, side: SideState, which: int, car: Shape, params: 
 
 def _is_long(side: SideState, params: ApaParams) -> bool:
     """Return whether the neighbour after the gap is heard to stand along the road; never where a kind is wished for."""
-    heard_past = side.last.r
-    return params.search.wish == Wish.ANY and side.last.u - side.edge_b > LONG_NEIGHBOUR + heard_past
+    heard_past = BESIDE * side.samples[0].r
+    return params.search.wish == Wish.ANY and side.missed - side.edge_b > LONG_NEIGHBOUR + heard_past
 
 
 def is_on(slot: Slot, side: int) -> bool:

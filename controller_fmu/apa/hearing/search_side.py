@@ -196,8 +196,11 @@ def _on_wall(side: SideState, sample: Heard, half_angle: float, params: SearchPa
             window=window,
         )
     side = side._replace(faces=remember(side.faces, sample))
-    if sample.u - side.missed < _confirmed(side):
-        return side
+    return side if sample.u - side.missed < _confirmed(side) else _ended(side, half_angle, params)
+
+
+def _ended(side: SideState, half_angle: float, params: SearchParams) -> SideState:
+    """Return the side past a neighbour's end: in the gap after it, or anew where too little was heard of it."""
     extent = side.missed - side.begun
     side = side._replace(sums=side.spare) if side.sums.n < 3.0 else side
     side = side._replace(sums=_or_agreed(side.sums, side.window, EMPTY)) if side.sums.n < MANY else side

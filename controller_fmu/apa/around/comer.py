@@ -15,6 +15,8 @@ FITS = 0.12
 """A reading that is further off [m] is of something else."""
 WEIGHT = 0.5
 WEIGHT_OF_RATE = 0.2
+BUMPERS = 8
+"""Sensors of the flanks come after these; the rim of their cones runs along oblique sides faster than the car."""
 EVENLY = 4
 """So many readings in a row must fit."""
 SWINGS = 1.3
@@ -54,7 +56,7 @@ def somebody_comes(
     comers: tuple[Comer, ...], tracks: tuple[Track, ...], speed: float, car: Shape, sensors: CarUltrasonic
 ) -> bool:
     """Return whether something that is not on the map comes by itself to a car of this ``speed`` [m/s], and soon."""
-    for number in range(12):
+    for number in range(BUMPERS):
         comer = comers[number]
         if tracks[number].strange and comer.fits >= EVENLY and comer.rate + SWINGS * abs(speed) < -COMES:
             left = comer.at - own_reach(sensors.mounts[number], car, sensors.half_angle)

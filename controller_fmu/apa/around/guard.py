@@ -141,9 +141,9 @@ def _followed(state: GuardState, readings: tuple[float, ...], here: LocalMap, pa
     comers = state.comers
     for number in range(12):
         reading = readings[number]
-        wide = ear_at(sensors.mounts[number], here.pose, here.frame.mirror, sensors.half_angle + WIDER)
+        ear = ear_at(sensors.mounts[number], here.pose, here.frame.mirror, sensors.half_angle)
         track = tracks[0] if direction == state.direction else turned_round(tracks[0])
-        track = tracked_on(track, reading, abs(way), expected(wide, here).echo.distance, sensors.max_range)
+        track = tracked_on(track, reading, abs(way), expected(ear, here).echo.distance, sensors.max_range)
         tracks = tracks[1:] + (track,)
         comers = comers[1:] + (followed(comers[0], reading, sensors.cycle, sensors.max_range),)
     return state._replace(tracks=tracks, comers=comers, direction=direction, pose=here.pose)

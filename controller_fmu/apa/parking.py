@@ -136,7 +136,7 @@ def park(
     state = state._replace(sight=Sight())
     if state.step in (Step.DRIVE, Step.HALT, Step.SET_WHEEL):
         state = _looked_around(state, place, around, inputs, params)
-    settled = is_settled(inputs.odometry, around, params)
+    settled = state.step == Step.PLAN and is_settled(inputs, around, params)
     step = step_transition(state.step, _guards(state, place, inputs, settled, allowed, params))
     limit = params.apa.end
     missed = state.step == Step.PLAN and not settled and is_in_place(place, limit.lateral, limit.heading)

@@ -2,10 +2,11 @@
 
 import math
 
-from controller_fmu.apa.around.local_map import LocalMap
+from controller_fmu.apa.around.local_map import LocalMap, ear_at, expected
 from controller_fmu.apa.params import MapParams
-from controller_fmu.apa.slot import UNSEEN, Slot
+from controller_fmu.apa.slot import UNSEEN, Kind, Slot
 from controller_fmu.common.slot_frame import to_world
+from controller_fmu.interface import ControllerParams
 from modelkit.vocabulary import Pose
 
 STAGGER = 0.12
@@ -13,6 +14,8 @@ STAGGER = 0.12
 WALL_ASKEW = 0.01
 WALL_DOUBT = 0.05
 """A wall stands askew by a tenth of what neighbours do; one that contradicts them is perhaps none."""
+MISSED = 0.4
+"""What is heard so much [m] further off than a neighbour should be is something else."""
 OUT_OF_LINE = 0.5
 """A map in which a neighbour has come so much [m] further out, or in, than the other is lost."""
 
@@ -73,6 +76,28 @@ def is_certain(here: LocalMap, params: MapParams) -> bool:
     """Return whether neighbours are still where a car between them hears them, and in line as they were found."""
     in_line = abs(here.b.y - here.a.y - here.out) < OUT_OF_LINE
     return in_line and _unsure_along(here) < params.certain * params.certain
+
+
+def is_heard(here: LocalMap, readings: tuple[float, ...], params: ControllerParams) -> bool:
+    """Return whether a car that stands in a perpendicular slot hears its neighbours beside it, as deep as it stands.
+
+    Not if both sensors of a side hear nothing where the map has its neighbour, nor if neither of the rear ones does:
+    then the neighbours are as deep as cars are wide, and stand along the road.
+    """
+    if here.kind != Kind.PERPENDICULAR:
+        return True
+    front_left = _is_missed(here, readings, 8, params)
+    rear_left = _is_missed(here, readings, 9, params)
+    front_right = _is_missed(here, readings, 10, params)
+    rear_right = _is_missed(here, readings, 11, params)
+    return not ((front_left and rear_left) or (front_right and rear_right) or (rear_left and rear_right))
+
+
+def _is_missed(here: LocalMap, readings: tuple[float, ...], number: int, params: ControllerParams) -> bool:
+    """Return whether a sensor hears nothing where the map has a neighbour in its reach, or something far behind it."""
+    sensors = params.car.ultrasonic
+    echo = expected(ear_at(sensors.mounts[number], here.pose, here.frame.mirror, sensors.half_angle), here).echo
+    return echo.distance < params.apa.map.heard and readings[number] > echo.distance + MISSED
 
 
 def line_unsure(here: LocalMap) -> float:

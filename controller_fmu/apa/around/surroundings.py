@@ -6,7 +6,7 @@ from typing import NamedTuple
 from controller_fmu.apa.around.course import HeldCourse
 from controller_fmu.apa.around.guard import GuardState, Sight, watch_way
 from controller_fmu.apa.around.local_map import LocalMap
-from controller_fmu.apa.around.row import is_certain, line_unsure
+from controller_fmu.apa.around.row import is_certain, is_heard, line_unsure
 from controller_fmu.apa.outline import Shape, clearance
 from controller_fmu.apa.slot import Site, Slot, mirror_of, stands_out_by
 from controller_fmu.apa.tracking import Tracked
@@ -44,13 +44,13 @@ def shape_of(params: ControllerParams) -> Shape:
     )
 
 
-def is_settled(odometry: Pose, around: Around, params: ControllerParams) -> bool:
+def is_settled(inputs: ControllerInput, around: Around, params: ControllerParams) -> bool:
     """Return whether a car that stands as planned is parked: neighbours are heard on both sides, it is in the slot."""
     slot = around.slot
-    pose = to_slot(odometry, SlotFrame(slot.a, mirror_of(slot)))
+    pose = to_slot(inputs.odometry, SlotFrame(slot.a, mirror_of(slot)))
     out = stands_out_by(pose, slot, shape_of(params)) + DOUBT * line_unsure(around.map)
     in_slot = out <= params.apa.end.out
-    return in_slot and is_certain(around.map, params.apa.map)
+    return in_slot and is_certain(around.map, params.apa.map) and is_heard(around.map, inputs.ultrasonic, params)
 
 
 def is_rest_free(move: Move, tracked: Tracked, site: Site, bare: Site, params: ControllerParams) -> bool:

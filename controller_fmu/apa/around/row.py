@@ -14,14 +14,35 @@ STAGGER = 0.12
 WALL_ASKEW = 0.01
 WALL_DOUBT = 0.05
 """A wall stands askew by a tenth of what neighbours do; one that contradicts them is perhaps none."""
+FOUND = 0.08
+"""How far out one corner is found against the other is unsure by this [m]: the odometry has turned since."""
+FOUND_DOUBT = 0.25
+"""Where they contradict it, one of them was perhaps not found well."""
 MISSED = 0.4
 """What is heard so much [m] further off than a neighbour should be is something else."""
 OUT_OF_LINE = 0.5
 """A map in which a neighbour has come so much [m] further out, or in, than the other is lost."""
 
 
+def as_found(here: LocalMap) -> LocalMap:
+    """Return the map with corner B as much further out than corner A as it was found, as far as that is surer.
+
+    Both were found in one pass, a few metres apart; what is heard since, of one of them most, moves both.
+    """
+    spread = here.a.yy + here.b.yy
+    off = here.out - (here.b.y - here.a.y)
+    share = 1.0 / (spread + FOUND * FOUND + FOUND_DOUBT * off * off)
+    a = share * here.a.yy
+    b = share * here.b.yy
+    return here._replace(
+        a=here.a._replace(y=here.a.y - a * off, yy=(1.0 - a) * here.a.yy),
+        b=here.b._replace(y=here.b.y + b * off, yy=(1.0 - b) * here.b.yy),
+    )
+
+
 def slot_of_map(here: LocalMap, slot: Slot, params: MapParams) -> Slot:
     """Return the slot as the map has it: its heading is that of what stands around, each weighted by how sure it is."""
+    here = as_found(here)
     heading = slot_heading(here, params)
     c = math.cos(heading)
     s = math.sin(heading)
@@ -102,4 +123,5 @@ def _is_missed(here: LocalMap, readings: tuple[float, ...], number: int, params:
 
 def line_unsure(here: LocalMap) -> float:
     """Return the standard deviation [m] of how far out the line between the neighbours' corners lies."""
+    here = as_found(here)
     return 0.5 * math.sqrt(here.a.yy + here.b.yy)

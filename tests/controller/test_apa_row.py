@@ -1,0 +1,109 @@
+"""The row that a slot lies in: the road's direction, the line between the corners, neighbours not heard, its kind."""
+
+import math
+
+import pytest
+
+from controller_fmu.apa.around.local_map import ear_at, expected, heard, moved
+from controller_fmu.apa.around.row import as_found, is_certain, is_heard, line_unsure, slot_heading
+from controller_fmu.apa.around.surroundings import shape_of
+from controller_fmu.apa.hearing.edge import Heard
+from controller_fmu.apa.hearing.line_fit import Sums, add
+from controller_fmu.apa.hearing.search import SearchState, slot_of
+from controller_fmu.apa.hearing.search_side import GAP, NEXT_WALL, START, SideState, _in_gap
+from controller_fmu.apa.params import MapParams
+from controller_fmu.apa.slot import UNSEEN, Kind, Slot
+from controller_fmu.interface import ControllerParams
+from modelkit.vocabulary import Pose
+from tests.controller.test_apa_relocate import READINGS, SENSORS, begin_map, inputs_at
+
+PARAMS = ControllerParams()
+MAP = MapParams()
+DEG = math.pi / 180.0
+
+
+def between(kind: int = Kind.PARALLEL, length: float = 6.0, depth: float = UNSEEN) -> Slot:
+    return Slot(kind, 0, Pose(), length, 0.0, depth)
+
+
+@pytest.mark.parametrize(("wall", "least", "most"), [(0.0, 1.7, 2.4), (4.0, 3.0, 4.0), (30.0, 2.0, 6.0)])
+def test_a_car_stands_half_way_between_the_road_and_neighbours_who_stand_askew(
+    wall: float, least: float, most: float
+) -> None:
+    here = begin_map(between(depth=2.1), Pose(2.0, 1.5, 0.0), MAP)
+    here = here._replace(
+        a=here.a._replace(heading=4.0 * DEG, hh=1e-6),
+        b=here.b._replace(heading=4.0 * DEG, hh=1e-6),
+        wall=here.wall._replace(heading=wall * DEG, hh=1e-6),
+    )
+    assert least <= slot_heading(here, MAP) / DEG <= most
+
+
+def test_echoes_of_a_flank_do_not_move_its_corner_across_the_road() -> None:
+    pose, boxes = Pose(1.3, -0.9, 0.0), [(-4.4, 0.0, -1.8, 0.0), (6.0, 10.0, -1.8, 0.0)]
+    believed = Pose(1.3, -0.9, 6.0 * DEG)
+    here = begin_map(between(), believed, MAP)
+    readings = inputs_at(pose, believed, boxes, 0).ultrasonic
+    for _ in range(READINGS):
+        here = heard(moved(here, believed, MAP), readings, SENSORS, MAP)
+    assert here.a.hh < 0.5 * MAP.turned**2, "its flank is heard"
+    assert here.a.y == 0.0
+
+
+def test_a_corner_that_is_not_heard_goes_with_the_other_as_they_were_found() -> None:
+    found = begin_map(between(), Pose(2.0, 1.5, 0.0), MAP)
+    here = found._replace(a=found.a._replace(yy=0.15**2), b=found.b._replace(y=0.1, yy=0.015**2))
+    line = as_found(here)
+    assert 0.06 < line.a.y < 0.1
+    assert line.b.y == pytest.approx(0.1, abs=0.002)
+    assert line_unsure(here) < 0.7 * 0.5 * math.hypot(0.15, 0.015)
+    assert as_found(found) == found._replace(
+        a=found.a._replace(yy=line_part(found.a.yy, found.b.yy)),
+        b=found.b._replace(yy=line_part(found.b.yy, found.a.yy)),
+    )
+    assert not is_certain(here._replace(b=here.b._replace(y=0.6)), MAP)
+
+
+def line_part(own: float, other: float) -> float:
+    """Return the variance of a corner that is heard on its own as ``own``, against 8 cm between both."""
+    return own * (1.0 - own / (own + other + 0.08**2))
+
+
+@pytest.mark.parametrize(
+    ("silent", "stays"),
+    [((), True), ((9,), True), ((8, 9), False), ((10, 11), False), ((9, 11), False), ((8, 10), True)],
+)
+def test_a_car_between_neighbours_that_are_not_there_is_not_parked(silent: tuple[int, ...], stays: bool) -> None:
+    pose = Pose(1.6, -3.2, 0.5 * math.pi)
+    here = begin_map(between(Kind.PERPENDICULAR, 3.2), pose, MAP)
+    readings = [expected(ear_at(mount, pose, 1.0, SENSORS.half_angle), here).echo.distance for mount in SENSORS.mounts]
+    readings = [SENSORS.max_range if number in silent else reading for number, reading in enumerate(readings)]
+    assert is_heard(here, tuple(readings), PARAMS) == stays
+    assert is_heard(here._replace(kind=Kind.PARALLEL), tuple(readings), PARAMS)
+
+
+def passed(behind: int) -> SideState:
+    """Return a side after a neighbour 1.8 m long, a gap of 5 m with ``behind`` echoes 3 m deep in it, and another."""
+    sums = [Sums(), Sums(), Sums()]
+    for n in range(10):
+        sums[0] = add(sums[0], -1.8 + 0.2 * n, 0.0, 1.0)
+        sums[2] = add(sums[2], 5.0 + 0.1 * n, 0.0, 1.0)
+    for n in range(behind):
+        sums[1] = add(sums[1], 2.0 + 0.2 * n, 0.0, 4.0)
+    return START._replace(before=sums[0], behind=sums[1], sums=sums[2], extent=1.8, edge=0.0, edge_b=5.0)
+
+
+@pytest.mark.parametrize(
+    ("behind", "kind"), [(0, Kind.PERPENDICULAR), (1, Kind.PERPENDICULAR), (2, Kind.PERPENDICULAR), (3, Kind.PARALLEL)]
+)
+def test_what_ends_a_slot_beside_a_narrow_neighbour_is_told_by_three_echoes(behind: int, kind: Kind) -> None:
+    slot = slot_of(SearchState(), passed(behind), 0, shape_of(PARAMS), PARAMS.apa)
+    assert slot.kind == kind
+    assert (slot.depth < UNSEEN) == (behind == 3)
+
+
+def test_the_end_of_a_neighbour_that_the_cone_leaves_is_not_the_next_one() -> None:
+    side = passed(0)._replace(mode=GAP)
+    sample = Heard(1.0, 0.0, 1.1)
+    assert _in_gap(side, sample, False, SENSORS.half_angle, PARAMS.apa.search).mode == NEXT_WALL
+    assert _in_gap(side, sample, True, SENSORS.half_angle, PARAMS.apa.search).mode == GAP

@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from controller_fmu.apa.around.local_map import ear_at, expected, heard, moved
+from controller_fmu.apa.around.local_map import begin_map, ear_at, expected, heard, moved
 from controller_fmu.apa.around.row import as_found, is_certain, is_heard, line_unsure, slot_heading
 from controller_fmu.apa.around.surroundings import shape_of
 from controller_fmu.apa.hearing.edge import Heard
@@ -15,7 +15,7 @@ from controller_fmu.apa.params import MapParams
 from controller_fmu.apa.slot import UNSEEN, Kind, Slot
 from controller_fmu.interface import ControllerParams
 from modelkit.vocabulary import Pose
-from tests.controller.test_apa_relocate import READINGS, SENSORS, begin_map, inputs_at
+from tests.controller.test_apa_relocate import READINGS, SENSORS, inputs_at
 
 PARAMS = ControllerParams()
 MAP = MapParams()

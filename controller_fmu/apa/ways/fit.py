@@ -22,7 +22,7 @@ class Fit(NamedTuple):
 
 LONGEST_LACK = 3.0
 HALVINGS = 5
-SHARES = (1.0, 0.88, 0.83, 0.6, 0.3)
+SHARES = (1.0, 0.88, 0.855, 0.6, 0.3)
 """Of the margins: planned with, if that saves shifts, driven with once under way, and where there is no other way."""
 LEVEL = 2
 """Attempts of the same margins: parked in line, and standing out a little."""

@@ -3,8 +3,7 @@
 from typing import NamedTuple
 
 from controller_fmu.apa.around.guard import Sight
-from controller_fmu.apa.around.row import is_certain
-from controller_fmu.apa.around.surroundings import Around, is_rest_free, is_settled, shape_of, sight_of
+from controller_fmu.apa.around.surroundings import Around, is_rest_free, is_settled, is_sure, shape_of, sight_of
 from controller_fmu.apa.manoeuvre_chart import Guard as StepGuard
 from controller_fmu.apa.manoeuvre_chart import Step, step_transition
 from controller_fmu.apa.params import Longitudinal
@@ -140,7 +139,7 @@ def park(
     step = step_transition(state.step, _guards(state, place, inputs, settled, allowed, params))
     limit = params.apa.end
     missed = state.step == Step.PLAN and not settled and is_in_place(place, limit.lateral, limit.heading)
-    nothing_better = state.plan.status == NOTHING or not is_certain(around.map, params.apa.map)
+    nothing_better = state.plan.status == NOTHING or not is_sure(inputs, around, params)
     state = state._replace(missed=missed and nothing_better and not state.out)
     return _moved_on(state, step, place, steering, inputs.measured_speed, params)
 

@@ -49,8 +49,12 @@ def is_settled(inputs: ControllerInput, around: Around, params: ControllerParams
     slot = around.slot
     pose = to_slot(inputs.odometry, SlotFrame(slot.a, mirror_of(slot)))
     out = stands_out_by(pose, slot, shape_of(params)) + DOUBT * line_unsure(around.map)
-    in_slot = out <= params.apa.end.out
-    return in_slot and is_certain(around.map, params.apa.map) and is_heard(around.map, inputs.ultrasonic, params)
+    return out <= params.apa.end.out and is_sure(inputs, around, params)
+
+
+def is_sure(inputs: ControllerInput, around: Around, params: ControllerParams) -> bool:
+    """Return whether both neighbours are where the map has them, and the sensors do not contradict it."""
+    return is_certain(around.map, params.apa.map) and is_heard(around.map, inputs.ultrasonic, params)
 
 
 def is_rest_free(move: Move, tracked: Tracked, site: Site, bare: Site, params: ControllerParams) -> bool:

@@ -6,16 +6,11 @@ on the other side, as a mirror image), the street to its left.
 
 import math
 import random
-from functools import cache
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
-from controller_fmu.valet.params import SlotWish
 from orchestrator.grid.cases import CARS
-from orchestrator.grid.imperfect import imperfect
-from orchestrator.scenario.car import car_parameters
 from orchestrator.scenario.polygons import box_corners
-from orchestrator.scenario.requirements import shipped_requirements
-from orchestrator.scenario.scenario import Scenario, Slot, Target
+from orchestrator.scenario.scenario import Slot, Target
 
 ANGLES = (30, 45, 60, 90, 120, 135, 150)
 """Of a slot against the way of the car [deg]; 0: parallel."""
@@ -23,15 +18,8 @@ NEIGHBOURS = ("straight", "crooked", "staggered", "pillars", "one")
 ENDS = ("open", "wall", "wheel stop", "shallow")
 STREETS = (5.5, 6.5, 9.0)
 LOTS = 100_000
-STOP = 240.0
-MARGIN = 0.12
 ROOM_ACROSS = 0.8
 """Of a slot beside one neighbour [m]."""
-BEFORE = 3.0
-"""The driver starts so far [m] before the neighbour that he passes first, and searches so far past the other."""
-BEHIND = 4.0
-AT_WALL = 0.5
-"""Left between the driver's way past and the street's other side [m]."""
 AT_KERB = 0.2
 """From the tyres to the kerb [m]: the middle of what GB/T 41630 allows."""
 Box = dict[str, float]
@@ -62,7 +50,6 @@ class FoundCase(NamedTuple):
     """Of the driver [m/s]."""
 
 
-@cache
 def cases(runs: int, lot: int = 0) -> list[FoundCase]:
     """Return so many cases."""
     return [_case(number, lot) for number in range(runs)]
@@ -203,102 +190,3 @@ def _between(case: FoundCase, place: SlotPlace, boxes: list[Box]) -> tuple[float
     high = min(min(across) for across in ([near[2], near[5]] if posts else [near[2]]))
     off = 0.5 * (low + high)
     return place.x - off * s, place.y + off * c, into
-
-
-def scenario_of(case: FoundCase, told: bool = False) -> Scenario:
-    """Return the scenario of a case; ``told``: the valet does not search, it is told the map and the target."""
-    target, slot = standing_of(case)
-    wish = {"parallel": SlotWish.PARALLEL, "nose in": SlotWish.NOSE_IN, "tail in": SlotWish.TAIL_IN}[case.wish]
-    controller: dict[str, Any] = {
-        **car_parameters(CARS[case.car]),
-        "system": 7,
-        "plan.margin": MARGIN,
-        "search.active": not told,
-        "search.wish": int(wish),
-        "search.open_ended": case.neighbours == "one",
-        "search.way": way_past(case).way,
-    }
-    if case.side < 0:
-        target = target.model_copy(update={"y": -target.y, "heading": -target.heading})
-        slot = slot.model_copy(update={"y": -slot.y, "heading": -slot.heading})
-    if told:
-        controller |= {"target.x": target.x, "target.y": target.y, "target.heading": target.heading}
-    return Scenario(
-        name="valet-slots",
-        stop_time=STOP,
-        vehicle=_vehicle(case),
-        controller=controller,
-        target=target,
-        slot=slot,
-        limits=[*shipped_requirements("valet-slot")],
-    )
-
-
-class WayPast(NamedTuple):
-    """How the driver drives past, on the right side: where the rear axle starts, and how far he goes [m]."""
-
-    x: float
-    y: float
-    way: float
-
-
-def way_past(case: FoundCase) -> WayPast:
-    """Return the way past both neighbours that keeps the case's distance to everything in the row."""
-    length, width = size_of(case)
-    front = length - CARS[case.car].rear_overhang
-    place, boxes = place_of(case), [box_corners(box) for box in boxes_of(case)]
-    first = min(x for x, _ in boxes[1]) - BEFORE - front
-    last = place.x + place.pitch if case.neighbours == "one" else max(x for x, _ in boxes[2])
-    way = (last + BEHIND - front - first) / math.cos(case.heading)
-    t = math.tan(case.heading)
-    row = [corner for box in boxes[:4] for corner in box if corner[0] < last + BEHIND + length]
-    nearest = max(y - x * t for x, y in row)
-    return WayPast(first, nearest + first * t + (case.beside + 0.5 * width) / math.cos(case.heading), way)
-
-
-def _reach(case: FoundCase) -> float:
-    """Return how far across the road the driver's way needs it to be free: the street is no narrower there."""
-    past, car, width = way_past(case), CARS[case.car], size_of(case)[1]
-    rise, half = math.sin(case.heading), 0.5 * width * math.cos(case.heading)
-    ends = (past.y - car.rear_overhang * rise, past.y + (past.way + car.wheelbase + car.front_overhang) * rise)
-    return max(ends) + half + AT_WALL
-
-
-def _vehicle(case: FoundCase) -> dict[str, Any]:
-    """Return the vehicle's parameters: where it starts, what stands there, its errors."""
-    car, place, boxes = CARS[case.car], place_of(case), boxes_of(case)
-    front = max(y for box in boxes[:2] for _, y in box_corners(box))
-    length, _ = size_of(case)
-    boxes = [*boxes, {"x": 0.0, "y": max(front + case.street, _reach(case)) + 0.5, "length": 80.0, "width": 1.0}]
-    values: dict[str, Any] = {}
-    for number, box in enumerate(boxes, start=1):
-        values |= {f"scene.boxes[{number}].{name}": value for name, value in box.items()}
-        values[f"scene.boxes[{number}].y"] *= case.side
-        values[f"scene.boxes[{number}].heading"] = case.side * box.get("heading", 0.0)
-    for number, line in enumerate(_kerbs(case, place, length), start=1):
-        x1, y1, x2, y2 = line
-        kerb = {"x1": x1, "y1": case.side * y1, "x2": x2, "y2": case.side * y2, "height": 0.12}
-        values |= {f"scene.kerbs[{number}].{name}": value for name, value in kerb.items()}
-    past = way_past(case)
-    return {
-        **car_parameters(car),
-        **values,
-        "start.x": past.x,
-        "start.y": case.side * past.y,
-        "start.heading": case.side * case.heading,
-        "driver.apa_switch_time": 0.5,
-        "driver.profile[1].speed": case.speed,
-        **imperfect(case.number + 1 + LOTS * case.lot, random.Random(case.number + LOTS * case.lot + 29)),
-    }
-
-
-def _kerbs(case: FoundCase, place: SlotPlace, length: float) -> list[tuple[float, float, float, float]]:
-    """Return the kerb along the road behind a parallel slot, or the wheel stop in one across it."""
-    if case.angle == 0:
-        return [(-15.0, -place.depth, place.x + 25.0, -place.depth)]
-    if case.end != "wheel stop":
-        return []
-    off = place.depth - 0.5 * length
-    x, y = place.x + off * math.cos(place.into), place.y + off * math.sin(place.into)
-    dx, dy = -0.9 * math.sin(place.into), 0.9 * math.cos(place.into)
-    return [(x - dx, y - dy, x + dx, y + dy)]

@@ -5,7 +5,8 @@ from typing import Any
 
 from rich.table import Table as Printed
 
-from orchestrator.grid.found_slots import FoundCase, cases, scenario_of
+from orchestrator.grid.found_scenarios import out_of, scenario_of
+from orchestrator.grid.found_slots import FoundCase, cases
 from orchestrator.scenario.polygons import map_of
 from orchestrator.sweep.study.cases import LabelledScenario, design_of
 from orchestrator.sweep.study.study import Study
@@ -27,13 +28,16 @@ MEASURES = {
 }
 
 
-def study(runs: int = 1000, lot: int = 0, told: bool = False) -> Study:
-    """Return so many runs; ``told``: the same with the map and the target told, no search: what could be parked."""
+def study(runs: int = 1000, lot: int = 0, told: bool = False, out: bool = False) -> Study:
+    """Return so many runs; ``told``: the same with the map and the target told, no search: what could be parked.
+
+    ``out``: the car stands in the slot, is told the map, and comes out to either side.
+    """
     chosen = cases(runs, lot)
     scenarios = []
     for case in chosen:
-        scenario = scenario_of(case, told)
-        if told:
+        scenario = out_of(case) if out else scenario_of(case, told)
+        if told or out:
             scenario = scenario.model_copy(update={"controller": scenario.controller | map_of(scenario)})
         scenarios.append(LabelledScenario(_labels(case), scenario))
     scenario, design = design_of(scenarios)

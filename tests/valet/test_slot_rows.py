@@ -8,9 +8,12 @@ import pytest
 from shapely import union_all
 from shapely.geometry import Polygon
 
+from controller_fmu.valet.phases import ValetPhase
 from orchestrator.cosim.fmu_files import can_compile, fmu_files
+from orchestrator.grid.found_scenarios import out_of
+from orchestrator.grid.found_slots import cases as slots
 from orchestrator.grid.slot_rows import cases, scenario_of, study
-from orchestrator.scenario.polygons import box_corners
+from orchestrator.scenario.polygons import box_corners, map_of
 from orchestrator.session.session import run_scenario
 from orchestrator.sweep.in_memory import columns_in_memory
 from orchestrator.verdict.summary import summarize
@@ -56,3 +59,15 @@ def test_a_row_of_the_study_is_the_run_itself(monkeypatch: pytest.MonkeyPatch) -
         assert columns["final.x"][place] == summary.final.x
         assert columns["min_clearance"][place] == np.min(ran.recording.signals["vehicle.clearance"])
         assert columns["plans"][place] == 1.0
+
+
+def test_out_of_a_slot_the_car_hands_over_along_the_street() -> None:
+    case = next(case for case in slots(20) if case.angle == 60)
+    scenario = out_of(case).model_copy(update={"controller": out_of(case).controller | map_of(out_of(case))})
+    ran = run_scenario(scenario, fmu_files("native", lambda text: None), kind="native").recording
+    assert ran.signals["controller.phase"][-1] == ValetPhase.PARKED
+    assert ran.signals["vehicle.clearance"].min() > 0.02
+    assert abs(math.sin(ran.signals["vehicle.pose.heading"][-1])) < math.sin(math.radians(3.0))
+    assert scenario.target is not None
+    assert ran.signals["vehicle.pose.y"][-1] == pytest.approx(scenario.target.y, abs=0.15)
+    assert ran.signals["vehicle.pose.y"][-1] * case.side > 1.0

@@ -96,7 +96,7 @@ def _corridor(store: PlanStore, frame: PlacesFrame, want: Wanted, lengthwise: bo
     found = Gap()
     for place in range(frame.first, frame.end):
         if is_sure(store, place, frame):
-            limit = _beside(store, frame, place, want, lengthwise)
+            limit = _bound_of(store, frame, place, want, lengthwise)
             at = spot(store, place, frame)
             low = at.s
             which = _next(store, frame, place, want, limit, lengthwise) if _bounds(at, limit) else place
@@ -118,14 +118,14 @@ def _corridor(store: PlanStore, frame: PlacesFrame, want: Wanted, lengthwise: bo
     return found
 
 
-class Beside(NamedTuple):
+class CorridorBound(NamedTuple):
     """What bounds a corridor lies beside where a car would stand: before one of these [m], along it, from the row."""
 
     t: float
     z: float
 
 
-def _beside(store: PlanStore, frame: PlacesFrame, place: int, want: Wanted, lengthwise: bool) -> Beside:
+def _bound_of(store: PlanStore, frame: PlacesFrame, place: int, want: Wanted, lengthwise: bool) -> CorridorBound:
     """Return how deep [m] may lie what bounds a corridor that ``place`` begins.
 
     Less than so much behind the front of the neighbour that it is of, or behind where the car's own front would be.
@@ -138,15 +138,17 @@ def _beside(store: PlanStore, frame: PlacesFrame, place: int, want: Wanted, leng
         if one.s - FACE <= its.s <= one.s and its.z < front and is_sure(store, other, frame):
             front = its.z
     t = front_of(front, one.s, one.s + least, frame, want) + CROSS_ASKEW if is_askew(frame) else -DEEP
-    return Beside(t, front + (BESIDE if lengthwise else CROSS * math.sin(frame.into - frame.row)))
+    return CorridorBound(t, front + (BESIDE if lengthwise else CROSS * math.sin(frame.into - frame.row)))
 
 
-def _bounds(at: Spot, limit: Beside) -> bool:
+def _bounds(at: Spot, limit: CorridorBound) -> bool:
     """Return whether a place bounds a corridor, and is not deep in."""
     return at.t < limit.t or at.z < limit.z
 
 
-def _next(store: PlanStore, frame: PlacesFrame, place: int, want: Wanted, limit: Beside, lengthwise: bool) -> int:
+def _next(
+    store: PlanStore, frame: PlacesFrame, place: int, want: Wanted, limit: CorridorBound, lengthwise: bool
+) -> int:
     """Return the place that ends the corridor which ``place`` begins; itself if none does, or where one will do."""
     least = want.length + want.room_along if lengthwise else want.width + want.room_across
     one = spot(store, place, frame)

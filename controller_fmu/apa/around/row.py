@@ -20,6 +20,9 @@ FOUND_DOUBT = 0.25
 """Where they contradict it, one of them was perhaps not found well."""
 MISSED = 0.4
 """What is heard so much [m] further off than a neighbour should be is something else."""
+FOUND_ASKEW = 0.15
+"""Beside a parallel slot where no wall is heard the road's direction is also as the search found it, to this share of
+how neighbours stand."""
 OUT_OF_LINE = 0.5
 """A map in which a neighbour has come so much [m] further out, or in, than the other is lost."""
 
@@ -78,6 +81,10 @@ def slot_heading(here: LocalMap, params: MapParams) -> float:
         wall = 1.0 / (WALL_ASKEW * least + here.wall.hh + WALL_DOUBT * off * off)
         total += wall * off
         weight += wall
+    elif here.kind == Kind.PARALLEL:
+        found = 1.0 / (FOUND_ASKEW * least)
+        total -= found * both
+        weight += found
     road = both + total / weight
     stand = road + 0.5 * least * (a * (here.a.heading - road) + b * (here.b.heading - road))
     return 0.5 * (road + stand)

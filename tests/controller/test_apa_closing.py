@@ -36,7 +36,8 @@ def test_who_goes_on_stands_before_what_comes_nearer_is_at_the_outline(number: i
     least = max(reach + GAP, nearest_told(SENSORS))
     room = room_to_strange(tracks(number, falling(0.3), 1.5), CAR, SENSORS)
     assert 0.3 - least <= room < 0.3 - least + 0.02
-    assert room_to_strange(tracks(number, falling(0.3), 0.3), CAR, SENSORS) == FREE, "the map has it there"
+    known = room_to_strange(tracks(number, falling(0.3), 0.3), CAR, SENSORS)
+    assert known == FREE if reach == 0.0 else known > room + 0.05, "the map has it there"
     assert room_to_strange(tracks(number, falling(0.3)[::-1], 1.5), CAR, SENSORS) == FREE, "it is left behind"
     assert room_to_strange(tracks(number, [0.3] * 40, 1.5), CAR, SENSORS) == FREE, "driven along"
     back = tuple(turned(track) for track in tracks(number, falling(0.3), 1.5))

@@ -26,6 +26,8 @@ SILENCES = 3
 """So many readings of nothing in a row are no lost ones."""
 GAP = 0.03
 """Kept [m] to what comes nearer, beyond the car's own outline."""
+KNOWN = -0.03
+"""The same where the map has it there, and none beside a corner: a reading and a brake may be off by so much."""
 WIDER = 0.1
 """A corner of the car may be heard from so far [rad] beside the cone."""
 NEAR_CORNER = 0.6
@@ -68,9 +70,12 @@ def room_to_strange(tracks: tuple[Track, ...], car: Shape, sensors: CarUltrasoni
     lowest = nearest_told(sensors)
     for number in range(12):
         track = tracks[number]
-        if track.strange and track.now < track.before - FALLING:
-            least = max(own_reach(sensors.mounts[number], car, sensors.half_angle) + GAP, lowest)
-            room = min(room, track.now - least)
+        if track.now < track.before - FALLING:
+            reach = own_reach(sensors.mounts[number], car, sensors.half_angle)
+            if track.strange:
+                room = min(room, track.now - max(reach + GAP, lowest))
+            elif reach > 0.0:
+                room = min(room, track.now - reach - KNOWN)
     return room
 
 

@@ -42,9 +42,14 @@ class CarInSlot(NamedTuple):
 
 
 def parking_scenarios() -> list[str]:
-    """Return the scenarios in which the assist is meant to park the car they are written for."""
-    found = [name for name in scenario_names() if name.startswith("apa-")]
-    return [name for name in found if load_scenario(name).expect == "parked"]
+    """Return the scenarios in which the assist is meant to find a slot and park the car they are written for."""
+    found = {name: load_scenario(name) for name in scenario_names() if name.startswith("apa-")}
+    return [name for name, item in found.items() if item.expect == "parked" and _finds_its_slot(item)]
+
+
+def _finds_its_slot(scenario: Scenario) -> bool:
+    """Return whether there is a slot to be found, and nothing told from outside or done by way of faults."""
+    return scenario.slot is not None and scenario.system is None and not scenario.faults
 
 
 def park(name: str, car: str, files: dict[str, Path]) -> CarInSlot:

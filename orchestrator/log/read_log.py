@@ -37,6 +37,7 @@ VARIABLES = "variables"
 """Channel metadata that describes a message made from the variables of a slave."""
 CHECKSUM = "checksum"
 """Key of a metadata record: the checksum of its other values."""
+MOST = 1 << 31
 RECOVERED = "recovered"
 """Metadata record that says what a mended log lacks."""
 NO_MEANING = (ValueError, KeyError, TypeError, IndexError, AttributeError, OverflowError, RecursionError, struct.error)
@@ -201,6 +202,9 @@ def from_json(text: str) -> list[Variable]:
 
 
 def _enum(states: dict[str, Any]) -> type[IntEnum]:
+    """Return the states of a variable; raises ``OverflowError`` if one is no FMI integer."""
     functional: Any = IntEnum
     made: type[IntEnum] = functional(states["name"], states["values"])
+    if any(not -MOST <= state < MOST for state in made):
+        raise OverflowError("a state is no 32-bit integer")
     return made

@@ -5,13 +5,13 @@ from pydantic import BaseModel, ConfigDict, Field
 from modelkit.variables import Variable, variables
 from orchestrator.scenario.models import MODELS
 from orchestrator.text.errors import BadInput, suggestion
-from orchestrator.text.quantities import NANOSECONDS, Seconds
+from orchestrator.text.quantities import NANOSECONDS, Seconds, Whole
 
 SPEED = "vehicle.speed"
 """The signal that tells how fast the car is [m/s]."""
 OPTIONAL = ("FAILED", "TAKEOVER")
 """States that end a run by default; the modes of others need not have them."""
-State = str | int
+State = str | Whole
 """A state of a mode by its name or by its number."""
 
 

@@ -4,7 +4,7 @@ import math
 import re
 from typing import Annotated
 
-from pydantic import BeforeValidator
+from pydantic import BeforeValidator, Field
 
 from modelkit.variables import Variable
 from orchestrator.text.errors import BadInput, shown, suggestion
@@ -29,6 +29,8 @@ QUANTITY = re.compile(
 )
 MOST_LETTERS = 60
 """A number with its unit is not longer."""
+Whole = Annotated[int, Field(ge=-(1 << 31), lt=1 << 31)]
+"""A whole number as FMI has them."""
 LARGEST = 1e15
 """No number that anybody means is larger, in SI."""
 

@@ -5,6 +5,7 @@ import re
 from pydantic import BaseModel, ConfigDict, model_validator
 
 from orchestrator.text.errors import BadInput, suggestion
+from orchestrator.text.quantities import Whole
 
 ARROW = re.compile(r"\s*->\s*")
 ANY = "any state"
@@ -16,7 +17,7 @@ class ModeList(BaseModel):
 
     model_config = ConfigDict(extra="forbid")
 
-    states: dict[str, int] = {}
+    states: dict[str, Whole] = {}
     """Name -> value; those that its FMU, or the role ``mode``, names by default."""
     transitions: list[str] = []
     """``idle -> first arc``, and ``any state -> lost``: all that there are."""

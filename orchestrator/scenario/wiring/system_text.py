@@ -9,7 +9,7 @@ from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, model_valida
 from orchestrator.scenario.models import MODELS
 from orchestrator.scenario.wiring.modes import ModeList
 from orchestrator.text.errors import BadInput
-from orchestrator.text.quantities import Metres, Radians
+from orchestrator.text.quantities import Metres, Radians, Whole
 
 TERM = re.compile(r"^(?P<minus>-)?\s*(?P<name>[^\[\]\s]+(?:\[[\d, ]+\][^\[\]\s]*)*)(?:\s+\[(?P<unit>[^\[\]]*)\])?$")
 SLAVE = re.compile(r"^[A-Za-z_][A-Za-z0-9_]*$")
@@ -98,11 +98,11 @@ class Feed(_SystemPart):
     """...plus this, in the unit of the signal, before it is brought into that of the input."""
     units: bool = True
     """Bring the number from the unit of one side into that of the other."""
-    map: dict[int | str, float | int | str | bool] | None = None
+    map: dict[Whole | str, float | Whole | str | bool] | None = None
     """Value of the signal -> value of the input, by number or by name of a state."""
-    otherwise: Annotated[float | int | str | bool | None, Field(alias="else")] = None
+    otherwise: Annotated[float | Whole | str | bool | None, Field(alias="else")] = None
     """Value of the input for all that is not in the map (its start value)."""
-    states: dict[str, int] | None = None
+    states: dict[str, Whole] | None = None
     """Names of the values, for a mode whose FMU does not name them."""
     into: str | None = None
     """Three signals are a pose of ours, brought into this frame."""

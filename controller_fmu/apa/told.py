@@ -12,8 +12,8 @@ from controller_fmu.common.told import UNTOLD, SlotKind, ToldSlot, depth_of, is_
 from controller_fmu.interface import ControllerInput, ControllerParams, Reason
 from modelkit.vocabulary import Pose
 
-SQUARE = 0.15
-"""A slot whose direction is turned by more than this [rad] against the square of its opening is an angled one."""
+SQUARE = math.sin(0.15)
+"""A slot whose direction leans by more than this sine against the square of its opening is an angled one."""
 PASSED = 0.5
 """It is shown once the sensor has passed both corners by so much [m]."""
 SAME = 0.1
@@ -116,7 +116,7 @@ def slot_of_told(
 def reason_to_refuse(told: ToldSlot, slot: Slot, car: Shape, params: ControllerParams) -> int:
     """Return why a car cannot park in a slot that is told, ``NONE`` if it may."""
     leaning = abs(math.cos(told.heading - slot.a.heading))
-    if told.kind == SlotKind.NOSE_IN or leaning > math.sin(SQUARE):
+    if told.kind == SlotKind.NOSE_IN or leaning > SQUARE:
         return Reason.SLOT_NOT_SUPPORTED
     fit = fit_of(slot, car, params.apa)
     if fit.fits:

@@ -79,7 +79,7 @@ class Scenario(_ScenarioPart):
     car: str | None = None
     """Shipped car, or file, or what is different of one: told vehicle and controller alike."""
     task: Task = "park"
-    """What the car is there for: `park`, or `drive` to the end of a road; `run`: to its time, within limits."""
+    """What the car is there for: `park`; `drive` along a road, out of a slot; `run`: to its time, within limits."""
     stop_time: Seconds = 60.0
     """When the run ends at the latest [s]."""
     step: Seconds = 0.01

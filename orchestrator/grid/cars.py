@@ -21,7 +21,7 @@ POSES = ("final heading", "final lateral position", "outline in the slot")
 GEOMETRIC = frozenset(
     item.name.lower()
     for item in (
-        *(Reason.SLOT_TOO_SHORT, Reason.NO_SLOT, Reason.NO_PATH, Reason.TOO_MANY_SHIFTS),
+        *(Reason.SLOT_TOO_SHORT, Reason.SLOT_TOO_SHALLOW, Reason.NO_SLOT, Reason.NO_PATH, Reason.TOO_MANY_SHIFTS),
         *(Reason.MISSED_TARGET, Reason.BLOCKED),
     )
 )

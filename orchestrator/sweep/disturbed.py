@@ -20,6 +20,8 @@ from orchestrator.sweep.job import Chunk, Job
 from orchestrator.system.assemble import assemble
 from orchestrator.text.quantities import NANOSECONDS, number, scalar
 
+SYSTEM = "system"
+"""The controller's parameter that says which model it is, and so which inputs there are."""
 NEVER_NS = float(1 << 62)
 LONGEST = 1e9
 """A stop later than this [s] never comes."""
@@ -40,15 +42,15 @@ def heard(scenario: Scenario) -> tuple[Receiver, ...]:
     if not scenario.faults:
         return ()
     faults = [item.model_dump(mode="json") for item in scenario.faults]
-    return _heard(json.dumps(faults), tuple(scenario.models.items()), scenario.file)
+    chosen = {key: value for key, value in scenario.controller.items() if key == SYSTEM}
+    return _heard(json.dumps(faults), tuple(chosen.items()), scenario.file)
 
 
 @lru_cache
-def _heard(faults: str, models: Any, file: str) -> tuple[Receiver, ...]:
+def _heard(faults: str, chosen: tuple[tuple[str, Any], ...], file: str) -> tuple[Receiver, ...]:
     given = [Fault(**item) for item in json.loads(faults)]
-    scenario = Scenario(name="faults", faults=given, file=file)
-    slaves = make_slaves(scenario.model_copy(update={"controller": {}}), None, Messages())
-    system = assemble(scenario, slaves)
+    scenario = Scenario(name="faults", faults=given, file=file, controller=dict(chosen))
+    system = assemble(scenario, slaves := make_slaves(scenario, None, Messages()))
     master = Master(system.slaves, 1, 1, {}, system.connections)
     return tuple(
         Receiver(count, Disturbed(given[count].kind, slave, tuple(places)), slaves[slave].inputs.variables[places[0]])

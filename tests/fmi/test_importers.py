@@ -24,7 +24,11 @@ PORTS = [
     *("steering_wheel_request", "steering_active", "prompt", "advised_speed", "speed_control_active", "speed_request"),
     *("force_control_active", "force_request", "brake_request"),
     *("phase", "reason", "apa.mode", "apa.alarm", "apa.confirm"),
+    *(f"apa.offered[{n}].{name}" for n in (1, 2, 3) for name in ("kind", "side", "a.x", "a.y", "a.heading", "length")),
+    *("apa.shown", "apa.family"),
 ]
+FROM_OUTSIDE = ("told.", "choice.")
+"""Inputs that a driver's display, a camera, a map or a test bench feeds, not the vehicle."""
 everywhere = pytest.mark.parametrize("model", MODELS, ids=lambda model: model.name)
 
 
@@ -42,7 +46,8 @@ def test_a_block_of_the_controller_has_the_ports_it_needs() -> None:
     inputs = {item.name for item in fmi_variables(VEHICLE) if item.causality == "input"}
     assert {name for name in inputs if not name.startswith("person.")} < set(outputs)
     wanted = {item.name for item in fmi_variables(CONTROLLER) if item.causality == "input"}
-    assert wanted < {item.name for item in fmi_variables(VEHICLE) if item.causality == "output"}
+    told = {item.name for item in fmi_variables(VEHICLE) if item.causality == "output"}
+    assert {name for name in wanted if not name.startswith(FROM_OUTSIDE)} < told
 
 
 def test_what_is_calculated_is_output_or_local_and_nothing_is_lost() -> None:

@@ -106,7 +106,7 @@ TO_TRY = [
     ("apa-parallel", {"vehicle.scene.boxes[2].x": 7.4}, "not_parked", 3),
     ("apa-parallel", {"vehicle.scene.boxes[2].x": 2.8}, "failed", 0),
     ("apa-parallel", {"vehicle.ultrasonic.noise": 0.02}, "parked", 1),
-    ("apa-parallel", {"vehicle.ultrasonic.noise": 0.1}, "failed", 1),
+    ("apa-parallel", {"vehicle.ultrasonic.noise": 0.1}, "failed", 7),
     ("hsic", {"vehicle.start.y": 5.0}, "parked", 1),
     ("hsic", {"vehicle.start.y": 5.5}, "not_parked", 1),
     ("hsic", {"vehicle.steering.lag": 0.4}, "parked", 1),
@@ -361,7 +361,8 @@ def test_the_chart_shows_the_state_and_how_it_came(page: Any) -> None:
     assert guards.all_text_contents() == [
         "\u2013 notswitched off \u2192 off: the switch is off",
         "\u2013 notfault \u2192 fail: there is a reason to fail",
-        "\u2013 notslot given \u2192 parking space appears: no search wanted, the car stands",
+        "\u2013 notslot given \u2192 parking space appears: the car stands, and the slot is known without a "
+        "search: given, from before, or the one to pull out of",
         "\u2713 holdsready \u2192 parking space search, taken: slow enough to search",
     ]
 

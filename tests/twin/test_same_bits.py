@@ -78,6 +78,8 @@ def test_every_target_equals_the_models_in_process(fmus: Any, targets: Any, name
     for target, models in targets.items():
         for model, play in models.items():
             assert unlike(played(play, scenario, expected.recording, model), expected.recording) == [], target
+    if scenario.system is not None:  # inputs that are told from outside: no run of the batch
+        return
     fixed, design = design_of([LabelledScenario({}, scenario)])
     job = make_job(Study(fixed, design, {"name": name}))._replace(measures=list(KEPT))
     (row,) = run_batch(job, next(chunks(design, 1)))

@@ -25,9 +25,7 @@ from tests.twin.replays import CLibrary, Fmi3, played
 
 LIKE_OTHERS = ("apa-pull-out-right", "apa-resume", "apa-switched-on-again", "apa-told-wrong", "apa-slot-too-shallow")
 """Drives of half a minute of CPython each, through models whose lines others take too."""
-SCENARIOS = [
-    name for name in scenario_names() if name not in LIKE_OTHERS and load_scenario(name, []).models == MODELS
-]
+SCENARIOS = [name for name in scenario_names() if name not in LIKE_OTHERS and load_scenario(name, []).models == MODELS]
 """Those of a controller apart, the valet, have their own: tests/valet."""
 PYTHON_FMU_TOO = ("guo2015-case4", "guo2015-case4-105", "fault-pose-nan", "fault-driver-takes-over")
 """The PythonFMU runs the very functions that run in process, so some scenarios are enough for it."""

@@ -30,7 +30,7 @@ ENDS = {
     "apa-choose": 0.14,
     "apa-slot-too-shallow": 0.9,
     "apa-pull-out": 0.1,
-    "apa-pull-out-right": 0.03,
+    "apa-pull-out-right": 0.1,
     "apa-resume": 0.12,
     "apa-switched-on-again": 0.12,
 }

@@ -29,6 +29,7 @@ from orchestrator.log.records import (
 )
 from orchestrator.text.console import say
 from orchestrator.text.errors import BadInput
+from orchestrator.text.quantities import MOST_WHOLE
 from orchestrator.text.yaml_file import explain
 from orchestrator.verdict.summary import FmuUsed, Lateness
 
@@ -37,7 +38,6 @@ VARIABLES = "variables"
 """Channel metadata that describes a message made from the variables of a slave."""
 CHECKSUM = "checksum"
 """Key of a metadata record: the checksum of its other values."""
-MOST = 1 << 31
 RECOVERED = "recovered"
 """Metadata record that says what a mended log lacks."""
 NO_MEANING = (ValueError, KeyError, TypeError, IndexError, AttributeError, OverflowError, RecursionError, struct.error)
@@ -205,6 +205,6 @@ def _enum(states: dict[str, Any]) -> type[IntEnum]:
     """Return the states of a variable; raises ``OverflowError`` if one is no FMI integer."""
     functional: Any = IntEnum
     made: type[IntEnum] = functional(states["name"], states["values"])
-    if any(not -MOST <= state < MOST for state in made):
+    if any(not -MOST_WHOLE <= state < MOST_WHOLE for state in made):
         raise OverflowError("a state is no 32-bit integer")
     return made

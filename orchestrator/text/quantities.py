@@ -29,7 +29,8 @@ QUANTITY = re.compile(
 )
 MOST_LETTERS = 60
 """A number with its unit is not longer."""
-Whole = Annotated[int, Field(ge=-(1 << 31), lt=1 << 31)]
+MOST_WHOLE = 1 << 31
+Whole = Annotated[int, Field(ge=-MOST_WHOLE, lt=MOST_WHOLE)]
 """A whole number as FMI has them."""
 LARGEST = 1e15
 """No number that anybody means is larger, in SI."""

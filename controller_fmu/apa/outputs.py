@@ -10,7 +10,7 @@ from controller_fmu.apa.parking import Parking, is_planned, site_for
 from controller_fmu.apa.phases import ApaPhase
 from controller_fmu.apa.signals import Alarm, ApaSignals, Family, OfferedSlot, PlannedMove, PlannedPiece
 from controller_fmu.apa.slot import Kind, Slot, mirror_of
-from controller_fmu.apa.system import ApaState
+from controller_fmu.apa.system import ApaState, has_slot
 from controller_fmu.apa.ways.move import Piece
 from controller_fmu.apa.ways.planner import FOUND, IN_PERPENDICULAR, ON_THE_WAY, TURN, is_inside
 from controller_fmu.apa.ways.shortest_slot import ISO_16787, shortest_slot
@@ -45,7 +45,7 @@ def phase_of(state: ApaState) -> int:
 def prompt_of(state: ApaState, params: ControllerParams) -> int:
     """Return what the driver is asked for."""
     if state.mode == Mode.PARKING_SPACE_SEARCH:
-        if state.chosen > 0 or state.told.slot.kind > 0:
+        if has_slot(state):
             return Prompt.STOP
         return Prompt.SLOW_DOWN if state.search.way > MOVING and state.waited_ns == 0 else Prompt.FORWARD
     if state.mode == Mode.STANDBY:

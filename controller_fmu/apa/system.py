@@ -10,7 +10,7 @@ from controller_fmu.apa.around.standing_in import slot_around
 from controller_fmu.apa.around.surroundings import Around, shape_of
 from controller_fmu.apa.chart import Guard, Mode, transition
 from controller_fmu.apa.choice import ChosenTask
-from controller_fmu.apa.hearing.search import SearchState, begin_search, is_new_reading, number_chosen, search, without
+from controller_fmu.apa.hearing.search import SearchState, begin_search, number_chosen, search, without
 from controller_fmu.apa.manoeuvre_chart import Step
 from controller_fmu.apa.parking import (
     Parking,
@@ -26,6 +26,7 @@ from controller_fmu.apa.told import ToldWatch, watch_told
 from controller_fmu.apa.watch import STANDING, Watch, is_taken_over, reason_to_fail, watch
 from controller_fmu.common.chart import bit
 from controller_fmu.common.monitor import Command
+from controller_fmu.common.sensors import is_told_anew
 from controller_fmu.common.told import SlotKind
 from controller_fmu.interface import ControllerInput, ControllerParams, Reason
 from modelkit.vocabulary import Pose
@@ -99,7 +100,7 @@ def apa_sample(state: ApaState, inputs: ControllerInput, params: ControllerParam
 
 def _chosen(state: ApaState, inputs: ControllerInput, params: ControllerParams, dt_ns: int) -> ApaState:
     """Return the assist that knows which slot is meant, of those that it has found or from outside."""
-    fresh = is_new_reading(state.clock_ns, dt_ns, params.car.ultrasonic.cycle)
+    fresh = is_told_anew(state.clock_ns, dt_ns, params.car.ultrasonic.cycle)
     told = watch_told(state.told, state.search, inputs, fresh, shape_of(params), params)
     number = number_chosen(state.search, inputs.choice.side, inputs.choice.slot)
     if inputs.told.kind != SlotKind.NONE:
@@ -116,7 +117,7 @@ def _parked_on(
     here = state.around.map
     stopping = driving and parking.step != Step.DRIVE
     guard = learn_brake(state.around.guard, inputs.measured_speed, stopping, dt_ns, params)
-    if is_new_reading(state.clock_ns, dt_ns, params.car.ultrasonic.cycle):
+    if is_told_anew(state.clock_ns, dt_ns, params.car.ultrasonic.cycle):
         here = moved(here, inputs.odometry, params.apa.map)
         here = heard(here, inputs.ultrasonic, params.car.ultrasonic, params.apa.map)
         if parking.step == Step.HALT and abs(inputs.measured_speed) <= STANDING:
@@ -171,7 +172,6 @@ def _guards(state: ApaState, inputs: ControllerInput, judged: Judged, params: Co
     told = inputs.told.kind != SlotKind.NONE
     known = given and (state.told.slot.kind if told else params.apa.search.slot.kind) != Kind.NONE
     another = state.shown > 0 and state.chosen != state.shown
-    found = state.chosen > 0 or state.told.slot.kind != Kind.NONE
     return (
         bit(Guard.SWITCHED_OFF, not inputs.apa_switch)
         | bit(Guard.TAKEN_OVER, judged.taken or not inputs.apa_switch)
@@ -180,7 +180,7 @@ def _guards(state: ApaState, inputs: ControllerInput, judged: Judged, params: Co
         | bit(Guard.READY, not given and not out and speed <= limit)
         | bit(Guard.SLOT_GIVEN, (known or out or state.resumes) and standing)
         | bit(Guard.TOO_FAST, speed > 1.1 * limit)
-        | bit(Guard.SLOT_AT_STANDSTILL, found and standing)
+        | bit(Guard.SLOT_AT_STANDSTILL, has_slot(state) and standing)
         | bit(Guard.NO_PLAN, state.shown > 0 and has_failed(state.parking, state.around.slot.kind, params))
         | bit(Guard.DRIVEN_ON, (not given and moved) or another)
         | bit(Guard.CONFIRMED, inputs.driver_confirm and standing and is_planned(parking))
@@ -216,6 +216,11 @@ def _moved_on(
     switched_off = before != Mode.FAIL and (judged.taken or not inputs.apa_switch)
     taken_over = (had_taken_over or switched_off) if over else False
     return state._replace(taken_over=taken_over, reason=why if over and not taken_over else Reason.NONE)
+
+
+def has_slot(state: ApaState) -> bool:
+    """Return whether there is a slot to be shown: one that was found and is meant, or one from outside."""
+    return state.chosen > 0 or state.told.slot.kind != Kind.NONE
 
 
 def _resumes(state: ApaState, before: int, inputs: ControllerInput) -> bool:
@@ -258,7 +263,7 @@ def _shown(state: ApaState, inputs: ControllerInput, params: ControllerParams) -
     elif inputs.told.kind != SlotKind.NONE:
         slot = state.told.slot
     elif number > 0:
-        slot = braked(state.search.slots[number - 1 if number > 0 else 0], state.search.fastest, params)
+        slot = braked(state.search.slots[number - 1], state.search.fastest, params)
     if not state.resumes:
         here = begin_map(slot, inputs.odometry, params.apa.map)
     return state._replace(

@@ -3,12 +3,22 @@
 import math
 from typing import NamedTuple
 
-from controller_fmu.apa.hearing.search import LEFT_SENSOR, RIGHT_SENSOR, SearchState
+from controller_fmu.apa.hearing.search import SearchState
 from controller_fmu.apa.outline import Shape
 from controller_fmu.apa.slot import UNSEEN, Kind, Side, Slot, mirror_of
 from controller_fmu.apa.ways.fit import fit_of
+from controller_fmu.common.sensors import HEARD, LEFT_SENSOR, RIGHT_SENSOR, sensor_at
 from controller_fmu.common.slot_frame import SlotFrame, to_slot
-from controller_fmu.common.told import UNTOLD, SlotKind, ToldSlot, depth_of, is_usable_slot
+from controller_fmu.common.told import (
+    AT_THE_ROAD,
+    ECHOES,
+    UNTOLD,
+    WELL_IN,
+    SlotKind,
+    ToldSlot,
+    depth_of,
+    is_usable_slot,
+)
 from controller_fmu.interface import ControllerInput, ControllerParams, Reason
 from modelkit.vocabulary import Pose
 
@@ -20,13 +30,6 @@ SAME = 0.1
 """Corners that move by less [m] are the same slot, seen again."""
 ABOUT = 0.5
 """A slot heard whose corner A is not farther [m] from that of the slot told is the same."""
-WELL_IN = 0.25
-"""What is heard so far [m] inside contradicts the slot."""
-AT_THE_ROAD = 0.15
-"""It begins so far [m] before its corners."""
-ECHOES = 2
-HEARD = 0.99
-"""A reading of more than this share of the range tells nothing."""
 BESIDE = (0.2, 2.0)
 FURTHER_IN = 0.8
 LISTENED = 3
@@ -149,11 +152,7 @@ def _is_same(told: ToldSlot, before: ToldSlot) -> bool:
 def _sensor_in(slot: Slot, inputs: ControllerInput, params: ControllerParams) -> Pose:
     """Return the sensor that passes the slot, in A's frame."""
     mount = params.car.ultrasonic.mounts[LEFT_SENSOR if slot.side == Side.LEFT else RIGHT_SENSOR]
-    pose = inputs.odometry
-    c = math.cos(pose.heading)
-    s = math.sin(pose.heading)
-    at = Pose(pose.x + mount.x * c - mount.y * s, pose.y + mount.x * s + mount.y * c, pose.heading + mount.yaw)
-    return to_slot(at, SlotFrame(slot.a, mirror_of(slot)))
+    return to_slot(sensor_at(mount, inputs.odometry), SlotFrame(slot.a, mirror_of(slot)))
 
 
 def _is_passed(slot: Slot, inputs: ControllerInput, params: ControllerParams) -> bool:

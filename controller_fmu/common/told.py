@@ -11,6 +11,12 @@ DEEPER = 0.1
 """Corners C and D tell a depth if they lie so far [m] behind A and B."""
 UNTOLD = 50.0
 """Depth [m] of a slot of which none is told."""
+WELL_IN = 0.25
+"""What is heard so far [m] inside a slot contradicts it."""
+AT_THE_ROAD = 0.15
+"""Slots begin so far [m] before their corners A and B."""
+ECHOES = 2
+"""So many echoes contradict a slot; and tell a neighbour."""
 
 
 class SlotKind(IntEnum):

@@ -4,6 +4,7 @@ import math
 from typing import NamedTuple
 
 from controller_fmu.common.path_law import Deviation, angle_back, deviation
+from controller_fmu.common.sensors import is_told_anew
 from controller_fmu.common.told import SlotKind, ToldSlot, is_usable_slot
 from controller_fmu.interface import ControllerInput, Reason
 from controller_fmu.planning.plan import (
@@ -26,7 +27,7 @@ from controller_fmu.valet.nearby import Nearby, Rest, hear_nearby, is_in_gap, la
 from controller_fmu.valet.params import ValetParams
 from controller_fmu.valet.rolling import Ahead, ahead_of, aim_at, joint_of
 from controller_fmu.valet.search import Search, shallower
-from controller_fmu.valet.sight import SEEN_CORNERS, Sight, is_told_anew, look, remembered, scene_of
+from controller_fmu.valet.sight import SEEN_CORNERS, Sight, look, remembered, scene_of
 from controller_fmu.valet.slot import body_of, goal_in, goal_of, stands_out
 from controller_fmu.valet.watch import Watch
 from modelkit.maths import clamp, sign
@@ -168,7 +169,7 @@ def heard_on(
     store: PlanStore, state: ValetState, inputs: ControllerInput, params: ValetParams, dt_ns: int
 ) -> ValetState:
     """Return the valet that has listened on its way into a slot; sensors tell something new every ``cycle``."""
-    if not is_told_anew(state.watch.running, params.car.ultrasonic, dt_ns):
+    if not is_told_anew(state.watch.running, dt_ns, params.car.ultrasonic.cycle):
         return state
     rest = Rest(state.path, state.piece, state.begin, state.tracked.left)
     nearby = hear_nearby(store, state.nearby, inputs, rest, state.search.gap, params)

@@ -3,7 +3,7 @@
 import math
 from typing import Annotated, NamedTuple
 
-from controller_fmu.common.told import SlotKind, ToldSlot, depth_of, is_usable_slot
+from controller_fmu.common.told import AT_THE_ROAD, ECHOES, WELL_IN, SlotKind, ToldSlot, depth_of, is_usable_slot
 from controller_fmu.interface import ControllerInput, Reason
 from controller_fmu.planning.plan_store import HEARD, PlanStore
 from controller_fmu.sensing.around import along_of, in_gap
@@ -15,11 +15,6 @@ from modelkit.vocabulary import Pose
 
 ROOM = 0.3
 """A slot is wider, or along the road longer, than the car by this [m]."""
-WELL_IN = 0.25
-"""What is heard so far [m] inside a slot contradicts it."""
-AT_THE_ROAD = 0.15
-"""Slots begin so far [m] before their corners A and B."""
-ECHOES = 2
 
 
 class ValetInput(NamedTuple):

@@ -6,6 +6,7 @@ than half the clearance planned, before the car is there.
 
 from typing import NamedTuple
 
+from controller_fmu.common.sensors import sensor_at
 from controller_fmu.interface import ControllerInput
 from controller_fmu.planning.plan import PATH, Path
 from controller_fmu.planning.plan_store import HEARD, SIDES, PlanStore
@@ -15,7 +16,6 @@ from controller_fmu.sensing.ear import SideEar, listen
 from controller_fmu.sensing.gap import Gap
 from controller_fmu.sensing.heard_store import forget_side, put_heard, put_line
 from controller_fmu.valet.params import ValetParams
-from controller_fmu.valet.sight import sensor_at
 from modelkit.geometry import Point, outline, point_gap
 from modelkit.vocabulary import Pose
 

@@ -3,6 +3,7 @@
 import math
 from typing import NamedTuple
 
+from controller_fmu.common.sensors import LEFT_SENSOR, RIGHT_SENSOR, is_told_anew, sensor_at
 from controller_fmu.common.told import SlotKind, ToldSlot
 from controller_fmu.interface import ControllerInput, Reason
 from controller_fmu.planning.plan_store import PlanStore
@@ -12,11 +13,8 @@ from controller_fmu.sensing.ear import SideEar, listen
 from controller_fmu.sensing.gap import Gap, GapLayout, Wanted
 from controller_fmu.valet.given import gap_told, told_reason
 from controller_fmu.valet.params import SlotWish, ValetParams, WishedSide
-from controller_fmu.valet.sight import is_told_anew, sensor_at
 from modelkit.vocabulary import Pose
 
-RIGHT_SENSOR = 10
-LEFT_SENSOR = 8
 FRONT_SENSOR = 1
 RIGHT = 0
 LEFT = 1
@@ -65,7 +63,7 @@ def search(store: PlanStore, state: Search, inputs: ControllerInput, params: Val
     speed = abs(inputs.measured_speed)
     clock = state.clock_ns + dt_ns
     state = state._replace(clock_ns=clock, way=state.way + speed * dt_ns * 1e-9)
-    if not is_told_anew(clock, params.car.ultrasonic, dt_ns) or speed < SLOWEST:
+    if not is_told_anew(clock, dt_ns, params.car.ultrasonic.cycle) or speed < SLOWEST:
         return state
     right = _hear(store, state.right, RIGHT, RIGHT_SENSOR, inputs, params)
     left = _hear(store, state.left, LEFT, LEFT_SENSOR, inputs, params)

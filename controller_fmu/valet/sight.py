@@ -7,11 +7,11 @@ than that by ``surprise`` is something unknown. What is known is left to the pat
 import math
 from typing import NamedTuple
 
+from controller_fmu.common.sensors import sensor_at
 from controller_fmu.planning.plan import Piece
 from controller_fmu.planning.plan_store import PlanStore
 from controller_fmu.planning.task import CORNERS, Corner, Scene
 from controller_fmu.valet.params import MAP_CORNERS, ValetParams
-from modelkit.car import CarUltrasonic, SensorMount
 from modelkit.geometry import Point, cone_line
 from modelkit.vocabulary import Pose
 
@@ -113,18 +113,6 @@ def _surprise(reading: float, corner: bool, params: ValetParams) -> float:
     if not corner:
         return params.guard.surprise
     return CORNER_SURPRISE if reading > TOUCHING else TOUCHING_SURPRISE
-
-
-def sensor_at(mount: SensorMount, pose: Pose) -> Pose:
-    """Return where a sensor is and looks."""
-    c = math.cos(pose.heading)
-    s = math.sin(pose.heading)
-    return Pose(pose.x + mount.x * c - mount.y * s, pose.y + mount.x * s + mount.y * c, pose.heading + mount.yaw)
-
-
-def is_told_anew(clock_ns: int, sensors: CarUltrasonic, dt_ns: int) -> bool:
-    """Return whether sensors tell something new in the sample of ``dt_ns`` that ends at ``clock_ns``: every cycle."""
-    return clock_ns % math.floor(sensors.cycle * 1e9 + 0.5) < dt_ns
 
 
 def expected(at: Pose, scene: Scene, params: ValetParams) -> float:

@@ -2,10 +2,10 @@
 
 import pytest
 
-from controller_fmu.apa.around.closing import FREE, GAP, SILENCES, Track, own_reach, room_to_strange, tracked_on
+from controller_fmu.apa.around.closing import GAP, SILENCES, Track, own_reach, room_to_strange, tracked_on
 from controller_fmu.apa.around.closing import turned_round as turned
 from controller_fmu.apa.around.comer import Comer, followed, somebody_comes
-from controller_fmu.apa.around.near import nearest_told
+from controller_fmu.apa.around.near import FREE, nearest_told
 from controller_fmu.apa.around.surroundings import shape_of
 from controller_fmu.interface import ControllerParams
 from modelkit.car import CarUltrasonic

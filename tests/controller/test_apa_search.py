@@ -9,8 +9,9 @@ from controller_fmu.apa.hearing import search_side
 from controller_fmu.apa.hearing.consensus import NO_WINDOW, agreed, newest
 from controller_fmu.apa.hearing.edge import NO_SAMPLES, Heard, append, corner
 from controller_fmu.apa.hearing.line_fit import FittedLine, Sums, add, offset, slope
-from controller_fmu.apa.hearing.search import LEFT, LEFT_SENSOR, RIGHT, _hear
+from controller_fmu.apa.hearing.search import LEFT, RIGHT, _hear
 from controller_fmu.apa.hearing.search_side import DEEP, START, _with_sample
+from controller_fmu.common.sensors import LEFT_SENSOR
 from controller_fmu.interface import ControllerInput, ControllerParams
 from modelkit.vocabulary import Pose
 from tests.controller.apa_bench import CAR, box, car_settings, drive

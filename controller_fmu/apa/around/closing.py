@@ -8,7 +8,7 @@ import math
 from typing import NamedTuple
 
 from controller_fmu.apa.around.cone import SILENT
-from controller_fmu.apa.around.near import nearest_told
+from controller_fmu.apa.around.near import FREE, nearest_told
 from controller_fmu.apa.outline import Shape
 from modelkit.car import CarUltrasonic, SensorMount
 
@@ -31,7 +31,6 @@ KNOWN = -0.03
 WIDER = 0.1
 """A corner of the car may be heard from so far [rad] beside the cone."""
 NEAR_CORNER = 0.6
-FREE = 100.0
 
 
 class Track(NamedTuple):

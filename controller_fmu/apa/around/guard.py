@@ -15,22 +15,19 @@ from controller_fmu.apa.around.closing import SILENCES, Track, room_to_strange, 
 from controller_fmu.apa.around.comer import Comer, followed, somebody_comes
 from controller_fmu.apa.around.course import HeldCourse, after
 from controller_fmu.apa.around.local_map import LocalMap, ear_at, expected, nearest_case, unsure_of
-from controller_fmu.apa.around.near import room_by_echoes
+from controller_fmu.apa.around.near import FREE, NEARER, room_by_echoes
 from controller_fmu.apa.around.straight import room_straight
 from controller_fmu.apa.outline import Box, Obstacles, Shape, box_clearance, clearance, grown
 from controller_fmu.interface import ControllerParams
 from modelkit.geometry import Point
 from modelkit.vocabulary import Pose
 
-FREE = 100.0
 WIDER = 0.1
 """The rim of a cone may touch something known that lies so much [rad] beside it."""
 LOOKS = 6
 AHEAD = 0.1
 """Looked ahead so many times by so much [m], and at where the car would stand, ``LEAST`` at least."""
 LEAST = 0.04
-NEARER = 0.004
-"""A car that comes nearer by less [m] than this drives along something, not to it."""
 UNSURE = 0.7
 """Kept away from what is known by so many standard deviations more."""
 SURE = 0.03
@@ -101,40 +98,12 @@ def speed_for(state: GuardState, room: float, least: float, params: ControllerPa
 
 
 def listen(state: GuardState, readings: tuple[float, ...], here: LocalMap, params: ControllerParams) -> GuardState:
-    """Return the guard after new readings: echoes that the map does not explain are kept until they are refuted."""
+    """Return the guard that followed each sensor, and keeps echoes that the map does not explain until refuted."""
     sensors = params.car.ultrasonic
-    surprise = params.apa.guard.surprise
     unknown = state.unknown
     echoes = state.echoes
     close = state.close
     near = nearest_case(here, DOUBTS)
-    state = _followed(state, readings, here, params)
-    for number in range(12):
-        reading = readings[number]
-        mount = sensors.mounts[number]
-        ear = ear_at(mount, here.pose, here.frame.mirror, sensors.half_angle)
-        wide = ear_at(mount, here.pose, here.frame.mirror, sensors.half_angle + WIDER)
-        close = close[1:] + (held(close[0], ear, reading, sensors),)
-        kept = unknown[0]
-        echo = NOWHERE
-        known = expected(wide, here)
-        least = min(expected(wide, near).echo.distance, known.echo.distance - DOUBTS * unsure_of(here, known.who))
-        explained = reading >= least - surprise - 0.05 * reading
-        if reading < LOOKED_AT and explained:
-            echo = origin(ear, expected(ear, here).echo, reading)
-            echo = origin(ear, expected(wide, near).echo, reading) if echo.x == NOWHERE.x else echo
-        echoes = echoes[1:] + (echo,)
-        if reading < LOOKED_AT and not explained:
-            kept = arc_of(ear, reading)
-        elif kept.there and (reading < sensors.max_range or state.tracks[number].silent >= SILENCES):
-            kept = not_refuted(kept, ear, reading)
-        unknown = unknown[1:] + (kept,)
-    return state._replace(unknown=unknown, echoes=echoes, close=close)
-
-
-def _followed(state: GuardState, readings: tuple[float, ...], here: LocalMap, params: ControllerParams) -> GuardState:
-    """Return the guard that has followed each sensor over the way and over time; anew where the car turns round."""
-    sensors = params.car.ultrasonic
     way = _way(state.pose, here.pose)
     direction = state.direction if abs(way) < MOVED else 1 if way > 0.0 else -1
     tracks = state.tracks
@@ -142,11 +111,31 @@ def _followed(state: GuardState, readings: tuple[float, ...], here: LocalMap, pa
     for number in range(12):
         reading = readings[number]
         ear = ear_at(sensors.mounts[number], here.pose, here.frame.mirror, sensors.half_angle)
+        wide = ear_at(sensors.mounts[number], here.pose, here.frame.mirror, sensors.half_angle + WIDER)
+        mapped = expected(ear, here).echo
         track = tracks[0] if direction == state.direction else turned_round(tracks[0])
-        track = tracked_on(track, reading, abs(way), expected(ear, here).echo.distance, sensors.max_range)
+        track = tracked_on(track, reading, abs(way), mapped.distance, sensors.max_range)
         tracks = tracks[1:] + (track,)
         comers = comers[1:] + (followed(comers[0], reading, sensors.cycle, sensors.max_range),)
-    return state._replace(tracks=tracks, comers=comers, direction=direction, pose=here.pose)
+        close = close[1:] + (held(close[0], ear, reading, sensors),)
+        kept = unknown[0]
+        echo = NOWHERE
+        known = expected(wide, here)
+        closest = expected(wide, near).echo
+        least = min(closest.distance, known.echo.distance - DOUBTS * unsure_of(here, known.who))
+        explained = reading >= least - params.apa.guard.surprise - 0.05 * reading
+        if reading < LOOKED_AT and explained:
+            echo = origin(ear, mapped, reading)
+            echo = origin(ear, closest, reading) if echo.x == NOWHERE.x else echo
+        echoes = echoes[1:] + (echo,)
+        if reading < LOOKED_AT and not explained:
+            kept = arc_of(ear, reading)
+        elif kept.there and (reading < sensors.max_range or track.silent >= SILENCES):
+            kept = not_refuted(kept, ear, reading)
+        unknown = unknown[1:] + (kept,)
+    return state._replace(
+        unknown=unknown, echoes=echoes, close=close, tracks=tracks, comers=comers, direction=direction, pose=here.pose
+    )
 
 
 def _way(before: Pose, now: Pose) -> float:

@@ -20,9 +20,11 @@ NEAR = 0.9
 CLOSE = 0.1
 """Nearer than this [m] is close: what is heard may go on beside the cone."""
 NEARER = 0.004
+"""A car that comes nearer by less [m] than this drives along something, not to it."""
 WAYS = (0.1, 0.2, 0.3, 0.45, 0.6)
 SHARES = (-1.0, -0.5, 0.0, 0.5, 1.0)
 FREE = 100.0
+"""Room [m], and speed [m/s], where nothing is near."""
 
 
 class FurtherOn(NamedTuple):

@@ -3,6 +3,7 @@
 from controller_fmu.apa.choice import ChosenSide
 from controller_fmu.apa.outline import Shape
 from controller_fmu.apa.slot import UNSEEN, Kind, Side, Slot, mirror_of
+from controller_fmu.common.sensors import HEARD, LEFT_SENSOR, RIGHT_SENSOR
 from controller_fmu.common.slot_frame import SlotFrame, to_world
 from controller_fmu.interface import ControllerInput, ControllerParams
 from modelkit.vocabulary import Pose
@@ -13,9 +14,6 @@ KERB = 1.5
 """What is heard farther [m] beside the car is no kerb."""
 FRONT = 1
 REAR = 5
-LEFT = 8
-RIGHT = 10
-HEARD = 0.99
 
 
 def slot_around(inputs: ControllerInput, car: Shape, params: ControllerParams) -> Slot:
@@ -28,8 +26,8 @@ def slot_around(inputs: ControllerInput, car: Shape, params: ControllerParams) -
     side = Side.LEFT if right_is_road else Side.RIGHT
     ahead = _nearest(FRONT, inputs)
     behind = _nearest(REAR, inputs)
-    beside = _nearest(LEFT if right_is_road else RIGHT, inputs)
-    road = _nearest(RIGHT if right_is_road else LEFT, inputs)
+    beside = _nearest(LEFT_SENSOR if right_is_road else RIGHT_SENSOR, inputs)
+    road = _nearest(RIGHT_SENSOR if right_is_road else LEFT_SENSOR, inputs)
     line = car.half_width + STANDS_OUT
     slot = Slot(kind=Kind.PARALLEL, side=side, length=behind + car.rear + car.front + ahead)
     mirror = mirror_of(slot)

@@ -6,13 +6,12 @@ that parks before a wheel stop stands in the row only if it comes near it.
 
 import math
 
+from controller_fmu.apa.around.arcs import LOOKED_AT
 from controller_fmu.apa.around.local_map import WALL, LocalMap, ear_at, expected
-from controller_fmu.apa.around.near import nearest_told
+from controller_fmu.apa.around.near import FREE, nearest_told
 from controller_fmu.interface import ControllerParams
 
-FREE = 100.0
 STRAIGHT = 0.2
-LOOKED_AT = 1.5
 SURE = 0.03
 """A wall known to so much [m] may come nearer."""
 WALL_GAP = 0.06

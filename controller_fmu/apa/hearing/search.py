@@ -10,11 +10,10 @@ from controller_fmu.apa.outline import Shape
 from controller_fmu.apa.params import ApaParams, Wish
 from controller_fmu.apa.slot import UNSEEN, Kind, Side, Slot
 from controller_fmu.apa.ways.fit import Fit, fit_of
+from controller_fmu.common.sensors import HEARD, LEFT_SENSOR, RIGHT_SENSOR, is_told_anew, sensor_at
 from controller_fmu.interface import ControllerInput, ControllerParams
 from modelkit.vocabulary import Pose
 
-LEFT_SENSOR = 8
-RIGHT_SENSOR = 10
 RIGHT = 0
 LEFT = 1
 LONG_NEIGHBOUR = 2.6
@@ -65,14 +64,14 @@ def search(
     clock = state.clock_ns + dt_ns
     speed = abs(inputs.measured_speed)
     way = state.way + speed * dt_ns * 1e-9
-    if not is_new_reading(state.clock_ns, dt_ns, params.car.ultrasonic.cycle) or speed < 0.01:
+    if not is_told_anew(state.clock_ns, dt_ns, params.car.ultrasonic.cycle) or speed < 0.01:
         return state._replace(clock_ns=clock, way=way)
     fastest = max(state.fastest, speed)
     right_r = inputs.ultrasonic[RIGHT_SENSOR]
     left_r = inputs.ultrasonic[LEFT_SENSOR]
     right = _hear(state.right, RIGHT, state.origin, inputs, params)
     left = _hear(state.left, LEFT, state.origin, inputs, params)
-    top = 0.99 * params.car.ultrasonic.max_range
+    top = HEARD * params.car.ultrasonic.max_range
     far_left = DEEP if right.mode == 1 and state.right.mode != 1 else state.far_left
     far_right = DEEP if left.mode == 1 and state.left.mode != 1 else state.far_right
     far_left = left_r if left_r < far_left and left_r < top else far_left
@@ -85,11 +84,6 @@ def search(
     if left.fresh:
         state = _judge(state, left, LEFT, car, params)
     return state
-
-
-def is_new_reading(clock_ns: int, dt_ns: int, cycle: float) -> bool:
-    """Return whether the sensors, which measure every ``cycle`` [s], have told something new since the last sample."""
-    return clock_ns % math.floor(cycle * 1e9 + 0.5) < dt_ns
 
 
 def left_part(seen: int) -> int:
@@ -173,18 +167,15 @@ def _hear(side: SideState, which: int, origin: Pose, inputs: ControllerInput, pa
     """Return a side after a reading of its sensor."""
     sensor = LEFT_SENSOR if which == LEFT else RIGHT_SENSOR
     mirror = -1.0 if which == LEFT else 1.0
-    pose = inputs.odometry
-    mount = params.car.ultrasonic.mounts[sensor]
-    c = math.cos(pose.heading)
-    s = math.sin(pose.heading)
-    dx = pose.x + mount.x * c - mount.y * s - origin.x
-    dy = pose.y + mount.x * s + mount.y * c - origin.y
+    at = sensor_at(params.car.ultrasonic.mounts[sensor], inputs.odometry)
+    dx = at.x - origin.x
+    dy = at.y - origin.y
     c = math.cos(origin.heading)
     s = math.sin(origin.heading)
     u = dx * c + dy * s
     w = mirror * (dy * c - dx * s)
     reading = inputs.ultrasonic[sensor]
-    r = reading if reading < 0.99 * params.car.ultrasonic.max_range else DEEP
+    r = reading if reading < HEARD * params.car.ultrasonic.max_range else DEEP
     return hear(side, u, w, r, params.car.ultrasonic.half_angle, params.apa.search)
 
 

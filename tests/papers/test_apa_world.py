@@ -10,6 +10,7 @@ import pytest
 from modelkit.geometry import Box, boxes_gap, corners
 from orchestrator.commands.sweep import chosen_study
 from orchestrator.grid.world import ends
+from orchestrator.grid.world.asked import HEARD, asked
 from orchestrator.grid.world.factors import FACTORS
 from orchestrator.grid.world.study import fields, space, study
 from orchestrator.sweep.repeat import repeat_row
@@ -113,6 +114,45 @@ def test_a_contact_is_the_end_whatever_is_said_after_it() -> None:
     assert ends.end_of({**row, "mode": 4.0}, None) == ends.ENDLESS
 
 
+def test_what_is_valid_and_what_is_asked_for_follows_from_the_factors_alone() -> None:
+    world = space(list(FACTORS))
+    nominal = {name: values[0] for name, values in world.named(world.nominal()[None]).items()}
+    nominal["vehicle.car.rear_overhang"] = 0.6
+
+    def said(**factors: float) -> tuple[float, float]:
+        found = asked({name: np.array([value]) for name, value in {**nominal, **factors}.items()})
+        return float(found["valid"][0]), float(found["asked"][0])
+
+    stop = {"kind": 1, "behind": 2, "kerb_height": 0.08}
+    assert said() == (1.0, 1.0)
+    assert said(**stop, depth=0.29) == (0.0, 1.0)  # under the tail: 0.6 m of it, a tyre of 0.3 m
+    assert said(**stop, depth=0.31) == (1.0, 1.0)
+    assert said(**{**stop, "kerb_height": 0.079}, depth=0.29) == (1.0, 1.0)
+    assert said(**{**stop, "kind": 0}, depth=0.0) == (1.0, 1.0)
+    assert said(kind=1, behind=1, depth=0.0) == (1.0, 1.0)
+    assert said(speed=20.1) == said(lost=8) == said(lost=9) == (1.0, 0.0)
+    assert said(mover=4, mover_way=0.9, extra=0.8) == (1.0, 0.0)
+    assert said(mover=5, mover_way=0.7, extra=0.8) == said(mover=4, mover_way=-0.9, extra=0.8) == (1.0, 1.0)
+    assert said(mover=4, mover_way=0.9, extra=0.8, kind=1) == (1.0, 1.0)
+    assert said(person=4, person_place=0.5) == said(person=5, person_place=0.5) == (1.0, 0.0)
+    assert said(person=4, person_place=-0.3) == said(person=3, person_place=0.5) == (1.0, 1.0)
+
+
+def test_a_heard_wheel_stop_is_where_it_is_said_to_be() -> None:
+    """In a slot that is valid no stop that is heard lies under a car that stands at its target; else one does."""
+    made = study(2000, 5)
+    values, labels = columns(made), made.design.labels
+    said = asked({**values, **labels})["valid"]
+    half_turn = np.where(labels["side"] == 0, 1.0, -1.0)
+    tail = half_turn * values["target.y"] - values["vehicle.car.rear_overhang"] * np.cos(
+        np.radians(0.25 * (labels["turn_a"] + labels["turn_b"]))
+    )
+    stop = np.where(labels["kerb_height"] >= HEARD, half_turn * values["vehicle.scene.kerbs[1].y1"], -np.inf)
+    under = (labels["kind"] == 1) & (labels["behind"] == 2) & (stop > tail)
+    assert (said == 0.0).sum() > 50
+    assert (under != (said == 0.0)).sum() <= 3  # a car askew by 2 deg is 1 cm shorter across
+
+
 @pytest.mark.parametrize(
     ("speed", "walker", "name", "came"),
     [
@@ -153,6 +193,7 @@ def test_a_contact_of_the_table_comes_back(tmp_path: Path) -> None:
     ended, touched = table.column("end"), table.column("touched")
     assert set(ended.tolist()) <= set(ends.ENDS)
     assert ends.PARKED in ended
+    assert {0.0, 1.0} == set(table.column("asked").tolist()) == set(table.column("valid").tolist())
     assert ((touched != "") == np.isfinite(table.column("touched.x"))).all()
     again = repeat_row(table, int(np.flatnonzero(ended == ends.PARKED)[0]), tmp_path / "again", pages=False)
     assert again.different == []

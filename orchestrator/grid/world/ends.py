@@ -13,6 +13,7 @@ from modelkit.vocabulary import Pose
 from orchestrator.cosim.slave import Array
 from orchestrator.grid.parkings import GBT
 from orchestrator.grid.study import GBT_SETS
+from orchestrator.grid.world.asked import COLUMNS, HEARD, asked
 from orchestrator.grid.world.factors import NOBODY
 from orchestrator.grid.world.scene import THINGS, WHEEL
 from orchestrator.scenario.requirements import Requirement, shipped_requirements
@@ -20,7 +21,6 @@ from orchestrator.sweep.columns import WITHIN
 from orchestrator.sweep.study.study import Columns, Derived, Goal
 from orchestrator.verdict.measures import Measure, When
 from vehicle_fmu.scene import Obstacle, SceneParams, is_there, obstacle_box
-from vehicle_fmu.ultrasonic import UltrasonicParams
 
 TOUCHING = When("vehicle.contact", (1,))
 AXES = ("x", "y", "heading")
@@ -59,12 +59,13 @@ ENDS = {
 
 
 def _ends(columns: Columns) -> Mapping[str, Array]:
-    """Return the end of each run, and what was touched first."""
+    """Return the end of each run, what was touched first, and whether the run asks for what can be had."""
     rows = [
         dict(zip(columns, row, strict=True)) for row in zip(*(_plain(item) for item in columns.values()), strict=True)
     ]
     touched = [None if math.isnan(row["touched.x"]) else touched_first(row) for row in rows]
     return {
+        **asked(columns),
         "end": np.array([end_of(row, first) for row, first in zip(rows, touched, strict=True)], dtype=object),
         "touched": np.array(["" if first is None else first.name for first in touched], dtype=object),
     }
@@ -134,8 +135,6 @@ def touched_first(row: Mapping[str, Any]) -> Touched:
 
 MOVABLE = THINGS[:2] + THINGS[3:4]
 KERB = THINGS[-1]
-HEARD = UltrasonicParams().kerb_height
-"""Kerbs lower than this [m] are not heard."""
 GROUND_CLEARANCE = SceneParams().ground_clearance
 """Kerbs lower than this [m] pass under the bumpers."""
 
@@ -199,4 +198,4 @@ GOALS = (
     Goal("contact", "nothing is touched while the assist has the car", NO_CONTACT, _clear),
     Goal("claim", "who claims to be parked stands in the slot, within GB/T 41630", (), _honest),
 )
-FOUND = Derived({}, _ends, {"end": "how the run ended in the world", "touched": "what was touched first"})
+FOUND = Derived(COLUMNS, _ends, {"end": "how the run ended in the world", "touched": "what was touched first"})

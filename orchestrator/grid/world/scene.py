@@ -9,6 +9,7 @@ import math
 from collections.abc import Mapping
 
 import numpy as np
+from numpy.typing import NDArray
 
 from controller_fmu.apa.ways.shortest_slot import shortest_slot
 from modelkit.car import Car
@@ -214,7 +215,7 @@ def _motion(f: F, told: F) -> dict[str, Array]:
 def _person(f: F, size: F) -> dict[str, Array]:
     """Return somebody who crosses the road straight, into the slot or out of it, or between the cars beside it."""
     place = f["person_place"]
-    inside = (place > 0.1) & (place < 0.9)
+    inside = crosses_slot(place)
     far, near = np.full_like(place, FAR_SIDE), np.where(inside, _mouth(f) - size["depth"] - PERSON, NEAR_SIDE)
     walks, outward = f["person"] >= NOBODY, f["person"] > NOBODY
     begin, end = np.where(outward, near, far), np.where(outward, far, near)
@@ -230,6 +231,11 @@ def _person(f: F, size: F) -> dict[str, Array]:
         "moves_at": f["person_at"],
     }
     return {f"scene.boxes[4].{name}": values for name, values in box.items()}
+
+
+def crosses_slot(place: Array) -> NDArray[np.bool_]:
+    """Return whether somebody who crosses the road at this share of the slot's length walks through the slot."""
+    return np.asarray((place > 0.1) & (place < 0.9))
 
 
 def _mover(f: F, size: F) -> dict[str, Array]:

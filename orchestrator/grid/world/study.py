@@ -12,7 +12,7 @@ from orchestrator.cosim.slave import Array
 from orchestrator.grid.cases import KINDS, gbt_limits
 from orchestrator.grid.parkings import GBT
 from orchestrator.grid.study import GBT_SETS
-from orchestrator.grid.world.ends import CONTACT, ENDLESS, ENDS, FALSE, FOUND, GOALS, MEASURES
+from orchestrator.grid.world.ends import CONTACT, ENDLESS, ENDS, FALSE, FOUND, GOALS, MEASURES, PARKED
 from orchestrator.grid.world.factors import FACTORS, NO_SENSOR, NOBODY
 from orchestrator.grid.world.scene import NEVER, SENSORS, F, parameters
 from orchestrator.scenario.fault import Fault
@@ -24,6 +24,7 @@ from orchestrator.sweep.study.space import Factor, Seeds, Space
 from orchestrator.sweep.study.study import Study
 from orchestrator.sweep.table import Table
 from orchestrator.text.console import console
+from orchestrator.verdict.confidence import clopper_pearson
 
 STOP = 150.0
 BODY_STEP = 0.0025
@@ -89,6 +90,8 @@ def report(table: Table, folder: Path) -> int:
     """Print how the runs ended. Returns 1 if one touched something, claims falsely, or has no end."""
     ends, to = table.column("end"), console()
     to.print(_ends(ends, _groups(table)))
+    for line in _parked_of_valid(ends, table):
+        to.print(line, highlight=False)
     for title, column, chosen in (("reasons", "reason", "gave up"), ("touched", "touched", CONTACT)):
         counted = Counter(table.column(column)[ends == chosen].tolist()).most_common()
         to.print(f"{title}: " + (", ".join(f"{word} {count}" for word, count in counted) or "none"), highlight=False)
@@ -97,7 +100,22 @@ def report(table: Table, folder: Path) -> int:
     return 1 if len(worst) else 0
 
 
+def _parked_of_valid(ends: Array, table: Table) -> list[str]:
+    """Return which share of the runs is parked whose slot is valid for the car, and whose task is possible as well."""
+    valid, asked = table.column("valid") == 1.0, table.column("asked") == 1.0
+    quiet = _groups(table)[QUIET]
+    groups = {"valid": valid, "valid and asked": valid & asked, f"these where {QUIET}": valid & asked & quiet}
+    lines = []
+    for name, chosen in groups.items():
+        count, of = int((ends[chosen] == PARKED).sum()), int(chosen.sum())
+        low, high = (100.0 * share for share in clopper_pearson(count, of, 0.975))
+        share = 100.0 * count / max(of, 1)
+        lines.append(f"parked of {name}: {count} of {of}, {share:.2f} % (95 %: {low:.2f} to {high:.2f} %)")
+    return lines
+
+
 MOST_ROWS = 20
+QUIET = "nothing moves or fails"
 
 
 def _groups(table: Table) -> dict[str, NDArray[np.bool_]]:
@@ -105,7 +123,7 @@ def _groups(table: Table) -> dict[str, NDArray[np.bool_]]:
     kinds, events = table.column("kind"), {name: table.column(name) for name in ("person", "mover", "lost")}
     quiet = (events["person"] < NOBODY) & (events["mover"] < NOBODY) & (events["lost"] < NO_SENSOR)
     sides = {KINDS[number + 1]: kinds == number for number in (0, 1)}
-    return {"all": np.full(len(kinds), True), **sides, "nothing moves or fails": quiet}
+    return {"all": np.full(len(kinds), True), **sides, QUIET: quiet}
 
 
 def _ends(ends: Array, groups: Mapping[str, NDArray[np.bool_]]) -> Printed:

@@ -2,6 +2,9 @@
 
 Two rectangles that do not touch are nearest at a corner of one of them; whether they touch is told
 by the separating axis theorem on the four directions of their sides.
+
+Of a way that is looked at every few centimetres no place is looked at that the clearance seen last reaches beyond: no
+point of the outline comes nearer to anything than it moves.
 """
 
 import math
@@ -12,6 +15,8 @@ from modelkit.vocabulary import Pose
 
 FAR = 60.0
 """Half length [m] of a box that stands for a wall without end."""
+ROUNDING = 1e-4
+"""Clearance [m] that rounding and the integral of a ramp surely leave."""
 
 
 class Shape(NamedTuple):
@@ -26,6 +31,15 @@ class Shape(NamedTuple):
     """Largest curvature [1/m] that is planned."""
     ramp: float = 0.8
     """Way [m] over which the curvature goes from 0 to the largest."""
+
+
+class Stand(NamedTuple):
+    """Where the rear axle is [m], and the unit vector ahead."""
+
+    x: float
+    y: float
+    cos: float
+    sin: float
 
 
 class Box(NamedTuple):
@@ -63,14 +77,20 @@ def box_clearance(pose: Pose, car: Shape, box: Box, enough: float = FAR) -> floa
 
     What is farther than ``enough`` need not be exact: then it is ``enough`` or more, and no more than the distance.
     """
+    return _clearance_of(_stand_at(pose), car, box, enough)
+
+
+def _stand_at(pose: Pose) -> Stand:
+    return Stand(pose.x, pose.y, math.cos(pose.heading), math.sin(pose.heading))
+
+
+def _clearance_of(stand: Stand, car: Shape, box: Box, enough: float) -> float:
     if box.x0 > box.x1:
         return FAR
-    cos = math.cos(pose.heading)
-    sin = math.sin(pose.heading)
-    c = cos * box.cos + sin * box.sin
-    s = sin * box.cos - cos * box.sin
-    ox = pose.x - box.x
-    oy = pose.y - box.y
+    c = stand.cos * box.cos + stand.sin * box.sin
+    s = stand.sin * box.cos - stand.cos * box.sin
+    ox = stand.x - box.x
+    oy = stand.y - box.y
     middle = 0.5 * (car.front - car.rear)
     half = 0.5 * (car.front + car.rear)
     side = car.half_width
@@ -101,10 +121,11 @@ def box_clearance(pose: Pose, car: Shape, box: Box, enough: float = FAR) -> floa
 
 def clearance(pose: Pose, car: Shape, obstacles: Obstacles, enough: float = FAR) -> float:
     """Return the distance [m] of the outline to the nearest obstacle, exact up to ``enough``; <= 0: contact."""
-    nearest = box_clearance(pose, car, obstacles.behind, enough)
-    nearest = _smaller(nearest, box_clearance(pose, car, obstacles.ahead, enough))
-    nearest = _smaller(nearest, box_clearance(pose, car, obstacles.beside, enough))
-    return _smaller(nearest, box_clearance(pose, car, obstacles.opposite, enough))
+    stand = _stand_at(pose)
+    nearest = _clearance_of(stand, car, obstacles.behind, enough)
+    nearest = _smaller(nearest, _clearance_of(stand, car, obstacles.ahead, enough))
+    nearest = _smaller(nearest, _clearance_of(stand, car, obstacles.beside, enough))
+    return _smaller(nearest, _clearance_of(stand, car, obstacles.opposite, enough))
 
 
 def free_way(pose: Pose, direction: float, curvature: float, longest: float, car: Shape, obstacles: Obstacles) -> float:
@@ -113,13 +134,32 @@ def free_way(pose: Pose, direction: float, curvature: float, longest: float, car
     The boxes are grown by the margin beforehand. Looked at every 4 cm.
     """
     step = 0.04
+    moved = step * outline_rate(curvature, car)
     way = 0.0
+    sure = 0
     while way < longest:
         next_way = _smaller(way + step, longest)
-        if clearance(advance(pose, direction, next_way, curvature, curvature), car, obstacles, 0.0) <= 0.0:
-            return way
+        if sure > 0:
+            sure -= 1
+        else:
+            gap = clearance(advance(pose, direction, next_way, curvature, curvature), car, obstacles, 0.0)
+            if gap <= 0.0:
+                return way
+            sure = sure_steps(gap, moved)
         way = next_way
     return longest
+
+
+def outline_rate(curvature: float, car: Shape) -> float:
+    """Return how far [m] a point of the outline moves at most while the rear axle moves 1 m at this curvature."""
+    along = 1.0 + abs(curvature) * car.half_width
+    across = curvature * _larger(car.front, car.rear)
+    return math.sqrt(along * along + across * across)
+
+
+def sure_steps(gap: float, moved: float) -> int:
+    """Return how many more steps surely meet nothing, if each moves the outline by ``moved`` [m] at most."""
+    return math.floor((gap - ROUNDING) / moved) if gap > ROUNDING else 0
 
 
 def grown(box: Box, margin: float) -> Box:

@@ -7,7 +7,7 @@ ramps), so the limits of curvature and curvature rate hold exactly and everywher
 import math
 from typing import NamedTuple
 
-from controller_fmu.apa.outline import Obstacles, Shape, clearance
+from controller_fmu.apa.outline import Obstacles, Shape, clearance, outline_rate, sure_steps
 from controller_fmu.common.curve import advance
 from modelkit.vocabulary import Pose
 
@@ -113,12 +113,19 @@ def _least_on(piece: Piece, pose: Pose, direction: float, least: float, car: Sha
     not go further into. Looked at every 10 cm.
     """
     count = 1 + math.floor(piece.length / 0.1)
+    moved = piece.length / count * outline_rate(max(abs(piece.k0), abs(piece.k1)), car)
+    sure = 0
     for number in range(1, count + 1):
-        way = piece.length * number / count
-        k = piece.k0 + (piece.k1 - piece.k0) * number / count
-        gap = clearance(advance(pose, direction, way, piece.k0, k), car, obstacles, CREPT)
-        if gap <= least:
-            return MET
-        if least < 0.0:
-            least = gap - CREPT if gap < CREPT else 0.0
+        if sure > 0:
+            sure -= 1
+        else:
+            way = piece.length * number / count
+            k = piece.k0 + (piece.k1 - piece.k0) * number / count
+            gap = clearance(advance(pose, direction, way, piece.k0, k), car, obstacles, CREPT)
+            if gap <= least:
+                return MET
+            if least < 0.0:
+                least = gap - CREPT if gap < CREPT else 0.0
+            if least == 0.0:
+                sure = sure_steps(gap, moved)
     return least

@@ -3,9 +3,13 @@
 import math
 
 import numpy as np
+import pytest
 import shapely
 
-from controller_fmu.apa.outline import Box, Obstacles, Shape, box_clearance, clearance, free_way, grown
+from controller_fmu.apa import outline
+from controller_fmu.apa.outline import Box, Obstacles, Shape, box_clearance, clearance, free_way, grown, turned_box
+from controller_fmu.apa.ways import move
+from controller_fmu.apa.ways.move import NO_PIECE, Move, Piece, is_move_free
 from modelkit.vocabulary import Pose
 
 POSES = 100_000
@@ -47,3 +51,30 @@ def test_free_way_ends_before_the_wall() -> None:
     way = free_way(Pose(0.0, 0.0, 0.0), 1.0, 0.0, 20.0, CAR, walls)
     assert 10.0 - 3.5 - 0.041 < way < 10.0 - 3.5
     assert free_way(Pose(0.0, 0.0, 0.0), 1.0, 0.0, 3.0, CAR, walls) == 3.0
+
+
+def test_a_way_is_as_free_as_if_every_place_were_looked_at(monkeypatch: pytest.MonkeyPatch) -> None:
+    random = np.random.default_rng(7)
+    scenes = []
+    for _ in range(300):
+        things = [
+            turned_box(Box(-2.2, 2.2, -1.0, 1.0), x + random.uniform(-1, 1), y + random.uniform(-1, 1), turn)
+            for x, y, turn in zip((-6.5, 8.0, 0.5), (0.0, 0.0, -3.5), random.uniform(-0.4, 0.4, 3), strict=True)
+        ]
+        k = random.uniform(-0.2, 0.2, 4).tolist()
+        pieces = (Piece(1.0, k[0], k[0]), Piece(0.8, k[0], k[1]), NO_PIECE, Piece(1.5, k[2], k[3]), *(NO_PIECE,) * 3)
+        start = Pose(*random.uniform(-1, 1, 3).tolist())
+        scenes.append((start, Obstacles(*things), k[0], Move(start, random.choice((-1, 1)), pieces)))
+
+    def found() -> list[tuple[float, bool]]:
+        return [
+            (free_way(start, float(way.direction), k, 4.0, CAR, around), is_move_free(way, CAR, around))
+            for start, around, k, way in scenes
+        ]
+
+    skipping = found()
+    for module in (outline, move):
+        monkeypatch.setattr(module, "sure_steps", lambda gap, moved: 0)
+    assert skipping == found()
+    assert len({way for way, _ in skipping}) > 40
+    assert 50 < sum(free for _, free in skipping) < 250

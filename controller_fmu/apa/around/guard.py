@@ -17,7 +17,7 @@ from controller_fmu.apa.around.course import HeldCourse, after
 from controller_fmu.apa.around.local_map import LocalMap, ear_at, expected, nearest_case, unsure_of
 from controller_fmu.apa.around.near import FREE, NEARER, room_by_echoes
 from controller_fmu.apa.around.straight import room_straight
-from controller_fmu.apa.outline import Box, Obstacles, Shape, box_clearance, clearance, grown
+from controller_fmu.apa.outline import Box, Obstacles, Shape, box_clearance, clearance, grown, outline_rate, sure_steps
 from controller_fmu.interface import ControllerParams
 from modelkit.geometry import Point
 from modelkit.vocabulary import Pose
@@ -206,11 +206,13 @@ def _spread(variance: float) -> float:
 def _free_way(course: HeldCourse, stop: float, around: Obstacles) -> float:
     """Return how far [m] the outline can go before it would touch one of these boxes, and comes nearer to them."""
     now = clearance(course.pose, course.car, around, NEARER)
+    rate = outline_rate(course.curvature, course.car)
     for number in range(LOOKS + 1):
         way = stop if number == 0 else AHEAD * number
-        there = clearance(after(course, way), course.car, around, 0.0)
-        if there < 0.0 and there < now - NEARER:
-            return way if number > 0 else 0.0
+        if sure_steps(now, way * rate) == 0:
+            there = clearance(after(course, way), course.car, around, 0.0)
+            if there < 0.0 and there < now - NEARER:
+                return way if number > 0 else 0.0
     return FREE
 
 

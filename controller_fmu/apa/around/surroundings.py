@@ -7,7 +7,7 @@ from controller_fmu.apa.around.course import HeldCourse
 from controller_fmu.apa.around.guard import GuardState, Sight, watch_way
 from controller_fmu.apa.around.local_map import LocalMap
 from controller_fmu.apa.around.row import is_certain, is_heard, line_unsure
-from controller_fmu.apa.outline import Shape, clearance
+from controller_fmu.apa.outline import Shape, clearance, outline_rate, sure_steps
 from controller_fmu.apa.slot import Site, Slot, mirror_of, stands_out_by
 from controller_fmu.apa.tracking import Tracked
 from controller_fmu.apa.ways.move import Move, point_at
@@ -63,16 +63,24 @@ def is_rest_free(move: Move, tracked: Tracked, site: Site, bare: Site, params: C
     ``bare``: the slot without margins. The car is as far beside its path as it is now.
     """
     car = shape_of(params)
+    gap = params.apa.guard.gap
+    off = tracked.lateral_error
+    moved = LOOK * outline_rate(car.curvature, car._replace(half_width=car.half_width + abs(off)))
+    sure = 0
     for number in range(1, LOOKS + 1):
         way = tracked.way + LOOK * number
         if way > tracked.way + tracked.left:
             return True
-        at = point_at(move, way).pose
-        off = tracked.lateral_error
-        pose = Pose(at.x - off * math.sin(at.heading), at.y + off * math.cos(at.heading), at.heading)
-        pose = to_slot(to_world(pose, site.frame), bare.frame)
-        if clearance(pose, car, bare.obstacles, params.apa.guard.gap) < params.apa.guard.gap:
-            return False
+        if sure > 0:
+            sure -= 1
+        else:
+            at = point_at(move, way).pose
+            pose = Pose(at.x - off * math.sin(at.heading), at.y + off * math.cos(at.heading), at.heading)
+            pose = to_slot(to_world(pose, site.frame), bare.frame)
+            free = clearance(pose, car, bare.obstacles, gap)
+            if free < gap:
+                return False
+            sure = sure_steps(free - gap, moved)
     return True
 
 

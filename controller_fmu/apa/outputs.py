@@ -1,10 +1,8 @@
 """What the parking assist puts out: requests, prompts, warnings, and what it knows of slot and plan."""
 
-from controller_fmu.apa.around.surroundings import shape_of
 from controller_fmu.apa.chart import Mode
 from controller_fmu.apa.choice import OFFERED, ChosenTask
 from controller_fmu.apa.manoeuvre_chart import Step
-from controller_fmu.apa.outline import Shape
 from controller_fmu.apa.params import Longitudinal
 from controller_fmu.apa.parking import Parking, is_planned, site_for
 from controller_fmu.apa.phases import ApaPhase
@@ -12,7 +10,7 @@ from controller_fmu.apa.signals import Alarm, ApaSignals, Family, OfferedSlot, P
 from controller_fmu.apa.slot import Kind, Slot, mirror_of
 from controller_fmu.apa.system import ApaState, has_slot
 from controller_fmu.apa.ways.move import Piece
-from controller_fmu.apa.ways.planner import FOUND, IN_PERPENDICULAR, ON_THE_WAY, TURN, is_inside
+from controller_fmu.apa.ways.planner import FOUND, IN_PERPENDICULAR, TURN
 from controller_fmu.apa.ways.shortest_slot import ISO_16787, shortest_slot
 from controller_fmu.common.slot_frame import SlotFrame, to_world
 from controller_fmu.interface import ControllerOutput, ControllerParams
@@ -118,7 +116,7 @@ def _signals(state: ApaState, frame: SlotFrame, params: ControllerParams) -> Apa
         slots=state.search.valid,
         offered=_offered(state),
         shown=state.shown,
-        family=family_of(state.parking, slot.kind, shape_of(params)),
+        family=family_of(state.parking, slot.kind),
         missing=state.search.refused.missing,
         slot=slot,
         corner_b=b if shown else Pose(),
@@ -144,7 +142,7 @@ def _offer(slot: Slot) -> OfferedSlot:
     return OfferedSlot(slot.kind, slot.side, slot.a, slot.length)
 
 
-def family_of(parking: Parking, kind: int, car: Shape) -> int:
+def family_of(parking: Parking, kind: int) -> int:
     """Return the family of ways that the move being driven is of."""
     plan = parking.plan
     if plan.status != FOUND or plan.moves == 0:
@@ -152,9 +150,7 @@ def family_of(parking: Parking, kind: int, car: Shape) -> int:
     if parking.out:
         return Family.PULL_OUT
     if kind == Kind.PARALLEL:
-        start = plan.move.start
-        short = is_inside(start, car) or (abs(start.heading) > ON_THE_WAY and plan.stage == 1)
-        return Family.SHORT_MOVES if short else Family.ENTRY
+        return Family.ENTRY if plan.way_in.found else Family.SHORT_MOVES
     found_at = plan.stage - 1
     return Family.TURN if found_at >= 0 and IN_PERPENDICULAR[found_at] >= TURN else Family.SHORT_MOVES
 

@@ -70,7 +70,7 @@ class SearchParams(NamedTuple):
     wish: Annotated[int, Signal("1", "which slots are wanted", states=Wish)] = Wish.ANY
     speed: Annotated[float, Signal("m/s", "largest speed of the search", 0.1, 10.0, "20 km/h")] = 20.0 / 3.6
     way: Annotated[float, Signal("m", "longest way searched", 1.0, 1000.0, HOUSE)] = 60.0
-    beside: Annotated[float, Signal("m", "farthest neighbour looked at", 0.1, 10.0, HOUSE)] = 3.0
+    beside: Annotated[float, Signal("m", "farthest neighbour looked at", 0.1, 10.0, HOUSE)] = 4.0
     step: Annotated[float, Signal("m", "least jump of distance at an edge", 0.05, 5.0, HOUSE)] = 0.4
     wall: Annotated[float, Signal("m", "least length of a neighbour seen", 0.1, 5.0, HOUSE)] = 0.6
     perpendicular_room: Annotated[

@@ -58,6 +58,8 @@ class Parking(NamedTuple):
     """The car stands as planned, the sensors say that it is not in the slot, and no move leads deeper."""
     cuts: int = 0
     """Moves that were cut short so far."""
+    stuck: bool = False
+    """The last one was before the car had moved."""
     sight: Sight = Sight()
     wheel: float = 0.0
     """Steering-wheel angle asked for [rad]."""
@@ -227,6 +229,7 @@ def _moved_on(
     if step == Step.PLAN and before != Step.PLAN:
         state = state._replace(
             cuts=state.cuts + 1 if state.cut else state.cuts,
+            stuck=state.cut and state.tracked.way < AT_END,
             cut=False,
             ended=before == Step.HALT and state.plan.moves <= 1,
             attempt=under_way(state.attempt),

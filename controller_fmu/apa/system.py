@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 from controller_fmu.apa.around.guard import GuardState, learn_brake, listen
 from controller_fmu.apa.around.local_map import begin_map, heard, moved
+from controller_fmu.apa.around.nearer import explained, nearer_than_thought, pressed
 from controller_fmu.apa.around.relocate import braked, walled
 from controller_fmu.apa.around.row import slot_of_map
 from controller_fmu.apa.around.standing_in import slot_around
@@ -35,6 +36,8 @@ DRIVEN_ON = 0.3
 NEAR = 12.0
 """A slot that was driven into is still known so far [m] from it."""
 LOST = 1.0
+LOOKED_FOR = 3.0
+"""What is still in the way after so long [s] is not passing by: a neighbour may stand nearer than the map has him."""
 SHALLOWER = 0.3
 """A slot that turns out to be so much [m] less deep needs another plan."""
 
@@ -120,9 +123,19 @@ def _parked_on(
     if is_told_anew(state.clock_ns, dt_ns, params.car.ultrasonic.cycle):
         here = moved(here, inputs.odometry, params.apa.map)
         here = heard(here, inputs.ultrasonic, params.car.ultrasonic, params.apa.map)
-        if parking.step == Step.HALT and abs(inputs.measured_speed) <= STANDING:
+        halted = parking.step in (Step.HALT, Step.SET_WHEEL) and abs(inputs.measured_speed) <= STANDING
+        if halted:
             here = walled(here, slot, inputs, parking.sight.blocked, params)
         guard = listen(guard, inputs.ultrasonic, here, params)
+        if halted and parking.sight.unknown and state.watch.blocked * 1e-9 > LOOKED_FOR:
+            there = nearer_than_thought(here, inputs.ultrasonic, params)
+            if there.found:
+                here = there.map
+                guard = explained(guard, inputs.ultrasonic, here, params)
+                parking = cut_short(parking)
+        if parking.stuck:
+            here = pressed(here, inputs.ultrasonic, params)
+            parking = parking._replace(stuck=False)
         slot = slot_of_map(here, slot, params.apa.map)
         parking = cut_short(parking) if slot.depth < state.around.slot.depth - SHALLOWER else parking
     around = Around(slot, here, guard)

@@ -8,7 +8,16 @@ from controller_fmu.apa.outline import clearance
 from controller_fmu.apa.slot import Kind, Margins, Slot, shortest_for_one_move, site_of
 from controller_fmu.apa.ways.exit import exit_of
 from controller_fmu.apa.ways.move import end_of, is_move_free, length_of, point_at
-from controller_fmu.apa.ways.planner import FOUND, NOTHING, SEARCHING, new_search, search_on
+from controller_fmu.apa.ways.planner import (
+    ENTRY,
+    FOUND,
+    IN_PARALLEL,
+    NOTHING,
+    SEARCHING,
+    new_search,
+    search_on,
+    stage_of,
+)
 from controller_fmu.apa.ways.start_range import start_range
 from controller_fmu.common.curve import advance
 from modelkit.vocabulary import Pose
@@ -78,6 +87,26 @@ def test_a_slot_too_short_is_refused() -> None:
     while search.status == SEARCHING:
         search = search_on(search, site, car, 50)
     assert search.status == NOTHING
+
+
+def test_a_car_past_the_slot_close_to_the_row_reverses_in_from_the_road() -> None:
+    """It is no car in the slot, though it is as near to the row as one."""
+    car = shape_of("middle")
+    site = site_of(Slot(Kind.PARALLEL, 0, Pose(0.0, 0.0, 0.0), 7.0, 0.0, 2.3), car, MARGINS)
+    for x in (7.0, 9.0):
+        start = Pose(x, 1.25 * car.half_width, 0.0)
+        assert stage_of(0, start, site, car) == ENTRY
+    assert stage_of(0, Pose(0.5, 0.5, 0.1), site, car) < ENTRY
+
+
+def test_a_car_that_no_short_moves_lead_in_drives_out_and_in_anew() -> None:
+    """Half out of a short slot, and turned: eight short moves do not do, the road ahead is free."""
+    car = shape_of("large")
+    site = site_of(Slot(Kind.PARALLEL, 0, Pose(0.0, 0.0, 0.0), 6.3, 0.0, 2.3), car, MARGINS)
+    search = search_on(new_search(Pose(1.6, 0.75, 0.41)), site, car, 100_000)
+    assert search.status == FOUND
+    assert search.stage > IN_PARALLEL
+    assert search.move.direction > 0
 
 
 def test_the_number_of_candidates_at_a_time_changes_nothing() -> None:

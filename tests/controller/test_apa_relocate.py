@@ -5,7 +5,10 @@ from typing import Any
 
 import pytest
 
+from controller_fmu.apa.around.arcs import Unknown
+from controller_fmu.apa.around.guard import GuardState
 from controller_fmu.apa.around.local_map import begin_map, heard, moved
+from controller_fmu.apa.around.nearer import explained, nearer_than_thought, pressed
 from controller_fmu.apa.around.relocate import braked, walled
 from controller_fmu.apa.around.row import is_certain, slot_of_map
 from controller_fmu.apa.outline import Box, Obstacles, Shape
@@ -140,3 +143,63 @@ def test_a_move_may_lead_out_of_a_margin_but_not_further_in() -> None:
     within = Pose(5.0, 0.825 + 0.3, math.radians(-5.0))
     assert is_move_free(straight_move(within, -1, 2.0), car, obstacles)
     assert not is_move_free(straight_move(within, 1, 2.0), car, obstacles)
+
+
+NEARER = 0.6
+BESIDE = Slot(Kind.PARALLEL, Side.RIGHT, Pose(0.0, 0.0, 0.0), 6.6, 0.0, UNSEEN)
+"""As the search found it; who stands nearer does so by ``NEARER``."""
+STANDS = Pose(2.3, -0.8, 0.1)
+
+
+def standing(side: int, a: float, b: float, lost: tuple[int, ...] = ()) -> Any:
+    """Return map and readings of a car in a slot whose neighbours stand nearer than found by ``a`` and ``b`` [m]."""
+    mirror = -1.0 if side == Side.LEFT else 1.0
+    pose = Pose(STANDS.x, mirror * STANDS.y, mirror * STANDS.heading)
+    here = begin_map(BESIDE._replace(side=side), pose, MAP)
+    boxes = [(a - 4.4, a, -1.8, 0.0), (6.6 - b, 11.0 - b, -1.8, 0.0)]
+    readings = list(inputs_at(pose, pose, boxes, side).ultrasonic)
+    for number in lost:
+        readings[number] = SENSORS.max_range
+    return here, tuple(readings)
+
+
+@pytest.mark.parametrize("side", [Side.RIGHT, Side.LEFT])
+@pytest.mark.parametrize(("a", "b"), [(NEARER, 0.0), (0.0, 0.8)])
+@pytest.mark.parametrize("lost", [(), (5,), (2, 6)])
+def test_a_neighbour_nearer_than_the_search_found_him_is_placed_where_he_is_heard(
+    side: int, a: float, b: float, lost: tuple[int, ...]
+) -> None:
+    here, readings = standing(side, a, b, lost)
+    found = nearer_than_thought(here, readings, PARAMS)
+    assert found.found
+    assert found.map.a.x == pytest.approx(a, abs=0.07 if b == 0.0 else 1e-9)
+    assert found.map.b.x == pytest.approx(6.6 - b, abs=0.07 if a == 0.0 else 1e-9)
+    assert not is_certain(found.map, MAP)
+
+
+@pytest.mark.parametrize("lost", [(), (5,), (0, 4)])
+def test_who_stands_where_the_map_has_him_stays_there(lost: tuple[int, ...]) -> None:
+    here, readings = standing(Side.RIGHT, 0.0, 0.0, lost)
+    assert not nearer_than_thought(here, readings, PARAMS).found
+
+
+def test_what_a_better_map_explains_is_strange_no_more_and_the_rest_is() -> None:
+    here, readings = standing(Side.RIGHT, NEARER, 0.0)
+    strange = GuardState(unknown=(Unknown(True),) * 12)
+    before = explained(strange, readings, here, PARAMS)
+    after = explained(strange, readings, nearer_than_thought(here, readings, PARAMS).map, PARAMS)
+    assert before.unknown[5].there
+    assert before.unknown[6].there
+    assert not after.unknown[5].there
+    assert not after.unknown[6].there
+    silent = [number for number in range(12) if readings[number] >= SENSORS.max_range]
+    assert silent
+    assert all(after.unknown[number].there for number in silent)
+
+
+def test_who_is_heard_nearest_is_taken_for_nearer() -> None:
+    here, readings = standing(Side.RIGHT, NEARER, 0.0)
+    closer = pressed(here, (*readings[:5], 0.2, *readings[6:]), PARAMS)
+    assert closer == here._replace(a=here.a._replace(x=closer.a.x))
+    assert 0.0 < closer.a.x < 0.1
+    assert pressed(here, (SENSORS.max_range,) * 12, PARAMS) == here

@@ -30,13 +30,15 @@ def arc_of(ear: ConeEar, reading: float) -> Unknown:
     return Unknown(True, tuple(rim_point(ear, share, reading) for share in SHARES))
 
 
-def not_refuted(kept: Unknown, ear: ConeEar, reading: float) -> Unknown:
-    """Return an arc that was kept, as long as the sensor does not hear past its middle, and is not far from it."""
+def not_refuted(kept: Unknown, ear: ConeEar, reading: float, known: bool) -> Unknown:
+    """Return an arc that was kept, as long as the sensor is not far from its middle and, looking there, neither hears
+    past it nor something ``known``.
+    """
     dx = kept.points[2].x - ear.x
     dy = kept.points[2].y - ear.y
     seen = abs(dy * ear.ax - dx * ear.ay) * ear.cosine < (dx * ear.ax + dy * ear.ay) * ear.sine
     far = dx * dx + dy * dy
-    return Unknown(not (seen and far < reading * reading) and far < BEHIND * BEHIND, kept.points)
+    return Unknown(not (seen and (known or far < reading * reading)) and far < BEHIND * BEHIND, kept.points)
 
 
 def held(close: Unknown, ear: ConeEar, reading: float, sensors: CarUltrasonic) -> Unknown:

@@ -120,9 +120,9 @@ def listen(state: GuardState, readings: tuple[float, ...], here: LocalMap, param
         close = close[1:] + (held(close[0], ear, reading, sensors),)
         kept = unknown[0]
         echo = NOWHERE
-        known = expected(wide, here)
+        beside = expected(wide, here)
         closest = expected(wide, near).echo
-        least = min(closest.distance, known.echo.distance - DOUBTS * unsure_of(here, known.who))
+        least = min(closest.distance, beside.echo.distance - DOUBTS * unsure_of(here, beside.who))
         explained = reading >= least - params.apa.guard.surprise - 0.05 * reading
         if reading < LOOKED_AT and explained:
             echo = origin(ear, mapped, reading)
@@ -131,7 +131,8 @@ def listen(state: GuardState, readings: tuple[float, ...], here: LocalMap, param
         if reading < LOOKED_AT and not explained:
             kept = arc_of(ear, reading)
         elif kept.there and (reading < sensors.max_range or track.silent >= SILENCES):
-            kept = not_refuted(kept, ear, reading)
+            known = reading < LOOKED_AT and abs(reading - mapped.distance) <= params.apa.guard.surprise
+            kept = not_refuted(kept, ear, reading, known)
         unknown = unknown[1:] + (kept,)
     return state._replace(
         unknown=unknown, echoes=echoes, close=close, tracks=tracks, comers=comers, direction=direction, pose=here.pose

@@ -51,8 +51,8 @@ STEEPEST_INSIDE = 0.9
 ON_THE_WAY = 0.25
 """Turned by more than this [rad] a car before a parallel slot is on its way in already."""
 
-IN_PARALLEL = (1, 2, 3, 4, 5, 6, 7, 8, NO_STAGE)
-"""Stages of a car in a parallel slot: short moves, 1 to 8 of them."""
+IN_PARALLEL = 8
+"""Stages of a car in a parallel slot: short moves, 1 to 8 of them, then out of it and in anew."""
 IN_PERPENDICULAR = (1, 40, 2, 41, 3, 44, 42, 45, 4, 43, NO_STAGE)
 
 
@@ -84,27 +84,30 @@ def search_on(search: PlanSearch, site: Site, car: Shape, count: int) -> PlanSea
     return search
 
 
-def is_inside(start: Pose, car: Shape) -> bool:
-    """Return whether a car stands so deep in a parallel slot that short moves are looked for."""
-    return start.y < 1.3 * car.half_width
+def is_inside(start: Pose, site: Site, car: Shape) -> bool:
+    """Return whether a car stands so deep in a parallel slot, and not past it, that short moves are looked for."""
+    return start.y < 1.3 * car.half_width and start.x < site.x_high + car.front
 
 
 def stage_of(place: int, start: Pose, site: Site, car: Shape) -> int:
     """Return the family of candidates at ``place`` in the order for this start, -1 past the last."""
     if site.kind == Kind.PARALLEL:
-        if is_inside(start, car):
-            return IN_PARALLEL[place] if place < len(IN_PARALLEL) else NO_STAGE
+        if is_inside(start, site, car):
+            return place + 1 if place < IN_PARALLEL else _entry(place - IN_PARALLEL)
         if abs(start.heading) > ON_THE_WAY:
             return _stage_on_the_way(place)
-        return ENTRY + place if place < VARIANTS else NO_STAGE
+        return _entry(place)
     return IN_PERPENDICULAR[place] if place < len(IN_PERPENDICULAR) else NO_STAGE
 
 
 def _stage_on_the_way(place: int) -> int:
     """Return the family for a car that stands turned before a parallel slot: to the end in one reverse, else anew."""
-    if place == 0:
-        return 1
-    return ENTRY + place - 1 if place <= VARIANTS else NO_STAGE
+    return 1 if place == 0 else _entry(place - 1)
+
+
+def _entry(variant: int) -> int:
+    """Return the family that reverses in from the road to the begin of a way in."""
+    return ENTRY + variant if variant < VARIANTS else NO_STAGE
 
 
 def count_of(stage: int) -> int:

@@ -11,6 +11,7 @@ from typing import NamedTuple
 from controller_fmu.planning.plan_store import HEARD, PlanStore
 from controller_fmu.sensing.gap import Gap
 from controller_fmu.sensing.heard_store import clear_around, put_line, set_line
+from controller_fmu.sensing.places import is_sure
 from modelkit.vocabulary import Pose
 
 BEYOND = 10.0
@@ -122,16 +123,21 @@ def _lay_row(store: PlanStore, lines: int, gap: Gap, what: AroundGap) -> int:
     row_x = row_x / length
     row_y = row_y / length
     last = first
+    broken = False
     for place in range(first + 1, end):
         s = _across(store, place, gap, e)
-        before = _across(store, place - 1, gap, e)
+        before = _across(store, last, gap, e)
         beside = (s < NARROW and before < NARROW) or (s > gap.width - NARROW and before > gap.width - NARROW)
-        if store.heard_joint[place] == 1 or beside:
+        if NARROW < s < gap.width - NARROW and not is_sure(store, place, end):
+            broken = True
+        elif (store.heard_joint[place] == 1 and not broken) or beside:
             through = place + 1 < end and store.heard_joint[place + 1] == 1 and _is_flat(store, last, place, place + 1)
+            broken = False
             if not through:
                 lines = _lay(store, lines, last, place)
                 last = place
         else:
+            broken = False
             last = place
     if what.here > 0:
         x = store.heard_x[first]

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 from controller_fmu.planning.plan_store import PlanStore
 from controller_fmu.sensing.gap import DEEP, Gap, GapLayout, Wanted
-from controller_fmu.sensing.neighbours import FACE, beside_body, front_of, is_askew, measured
+from controller_fmu.sensing.neighbours import FACE, beside_body, free_of_bodies, front_of, is_askew, measured
 from controller_fmu.sensing.places import (
     UNSEEN,
     PlacesFrame,
@@ -24,7 +24,8 @@ from controller_fmu.sensing.places import (
     spot_of,
     turned,
 )
-from controller_fmu.sensing.rows import UNCLEAR, WIDEST, row_of, sides_along, turn_of, wrap_quarter
+from controller_fmu.sensing.row_line import row_of
+from controller_fmu.sensing.rows import UNCLEAR, WIDEST, sides_along, turn_of, wrap_quarter
 from modelkit.maths import PI
 from modelkit.vocabulary import Pose
 
@@ -33,11 +34,13 @@ LONGEST_FRONT = 2.3
 """At an angle, a neighbour's front is no wider [m]."""
 BESIDE_ONE = 0.3
 """A slot beside one neighbour is this much [m] wider than the least."""
+CONTRADICTED = 3
+"""Neighbours stand the other way, where so many points more of them are known to be free."""
 CLEARLY = 0.15
 """A side is longer than another by more than this [m]."""
 HALFWAY = 36.0 * PI / 180.0
 LATE = 3.0
-LATER = 4.5
+LATER = 4.0
 """Sides are compared when the gap has been passed by so much [m]: before, the neighbour behind it is not seen.
 
 Later where the one side of a car lies nearly along the row, as the car in front of it hides that.
@@ -80,13 +83,52 @@ def find_gap(store: PlanStore, side: int, places: int, at: Pose, want: Wanted) -
     across = sides_along(store, frame, other)
     longer = sides.longest - across.longest
     if sides.longest > WIDEST or across.longest > WIDEST:
-        return _corridor(store, along(lined, row.turn, one if longer > 0.0 else other), want, False)
+        return _deep(store, along(lined, row.turn, one if longer > 0.0 else other), want)
     if across.front != sides.front:
-        return _corridor(store, along(lined, row.turn, one if across.front else other), want, False)
+        return _deep(store, along(lined, row.turn, one if across.front else other), want)
+    late = LATE if abs(askew) > HALFWAY else LATER
+    return _likelier(store, along(lined, row.turn, one), along(lined, row.turn, other), longer, late, want)
+
+
+def _likelier(
+    store: PlanStore, one: PlacesFrame, other: PlacesFrame, longer: float, late: float, want: Wanted
+) -> Gap:
+    """Return the gap of two corridors across each other whose neighbours stand where nothing is known to be free.
+
+    It has been passed by so much (``late`` [m]) that both neighbours were seen. ``longer``: the sides seen along the
+    one, than those along the other [m].
+    """
+    gap = _passed(_deep(store, one, want), one, late)
+    cross = _passed(_deep(store, other, want), other, late)
+    if gap.layout == GapLayout.NONE or cross.layout == GapLayout.NONE:
+        return cross if gap.layout == GapLayout.NONE else gap
+    fewer = free_of_bodies(store, other, cross, want) - free_of_bodies(store, one, gap, want)
+    if abs(fewer) >= CONTRADICTED:
+        return gap if fewer > 0 else cross
     if abs(longer) < CLEARLY:
         return Gap()
-    gap = _corridor(store, along(lined, row.turn, one if longer > 0.0 else other), want, False)
-    return gap if turned(gap.b.x, gap.b.y, frame).x < -(LATE if abs(askew) > HALFWAY else LATER) else Gap()
+    return gap if longer > 0.0 else cross
+
+
+def _deep(store: PlanStore, frame: PlacesFrame, want: Wanted) -> Gap:
+    """Return the corridor passed last in a frame at an angle, if an echo says that it is free deep in, else NONE.
+
+    Before the corners of cars that stand at an angle there is free space too, but not deep.
+    """
+    gap = _corridor(store, frame, want, False)
+    a = spot_of(turned(gap.a.x, gap.a.y, frame), frame)
+    b = spot_of(turned(gap.b.x, gap.b.y, frame), frame)
+    for across in (0.25, 0.5, 0.75):
+        for into in (1.2, 1.6, 2.0, 2.4):
+            t = a.t + across * (b.t - a.t) + into
+            if gap.layout != GapLayout.NONE and is_free(store, t, a.s + across * (b.s - a.s), frame):
+                return gap
+    return Gap()
+
+
+def _passed(gap: Gap, frame: PlacesFrame, late: float) -> Gap:
+    """Return a gap that the sensor has passed by so much [m], else NONE."""
+    return gap if turned(gap.b.x, gap.b.y, frame).x < -late else Gap()
 
 
 def _corridor(store: PlanStore, frame: PlacesFrame, want: Wanted, lengthwise: bool) -> Gap:
@@ -95,7 +137,7 @@ def _corridor(store: PlanStore, frame: PlacesFrame, want: Wanted, lengthwise: bo
     least = want.length + want.room_along if lengthwise else want.width + want.room_across
     found = Gap()
     for place in range(frame.first, frame.end):
-        if is_sure(store, place, frame):
+        if is_sure(store, place, frame.end):
             limit = _bound_of(store, frame, place, want, lengthwise)
             at = spot(store, place, frame)
             low = at.s
@@ -105,7 +147,7 @@ def _corridor(store: PlanStore, frame: PlacesFrame, want: Wanted, lengthwise: bo
             if ends and least <= high - low < LONGEST and seen(store, which, frame).x < -PASSED:
                 if askew:
                     low = beside_body(store, frame, low, -1.0, want)
-                    high = beside_body(store, frame, high, 1.0, want) if which != place else high
+                    high = beside_body(store, frame, high, 1.0, want) if which != place else low + least + BESIDE_ONE
                 gap = measured(store, frame, low, high, which != place, want)
                 past = turned(gap.b.x, gap.b.y, frame).x < -PASSED
                 open_ = past and high - low >= least and _is_open(store, frame, gap, low, high)
@@ -135,7 +177,7 @@ def _bound_of(store: PlanStore, frame: PlacesFrame, place: int, want: Wanted, le
     front = one.z
     for other in range(frame.first, frame.end):
         its = spot(store, other, frame)
-        if one.s - FACE <= its.s <= one.s and its.z < front and is_sure(store, other, frame):
+        if one.s - FACE <= its.s <= one.s and its.z < front and is_sure(store, other, frame.end):
             front = its.z
     t = front_of(front, one.s, one.s + least, frame, want) + CROSS_ASKEW if is_askew(frame) else -DEEP
     return CorridorBound(t, front + (BESIDE if lengthwise else CROSS * math.sin(frame.into - frame.row)))
@@ -156,7 +198,7 @@ def _next(
     nearest = one.s + least + BESIDE_ONE if want.open_ended else DEEP
     for other in range(frame.first, frame.end):
         its = spot(store, other, frame)
-        if _bounds(its, limit) and one.s < its.s < nearest and is_sure(store, other, frame):
+        if _bounds(its, limit) and one.s < its.s < nearest and is_sure(store, other, frame.end):
             nearest = its.s
             which = other
     return which

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 from controller_fmu.planning.plan_store import PlanStore
 from controller_fmu.sensing.gap import DEEP, Gap, GapLayout, Wanted
-from controller_fmu.sensing.places import UNSEEN, PlacesFrame, in_world, is_free, is_sure, spot
+from controller_fmu.sensing.places import UNSEEN, PlacesFrame, in_world, is_free, is_sure, spot, spot_of, turned
 
 BODY = 0.97
 """A neighbour is as wide as this share of the car's own width."""
@@ -52,13 +52,28 @@ def beside_body(store: PlanStore, frame: PlacesFrame, edge: float, sense: float,
     z = DEEP
     for place in range(frame.first, frame.end):
         at = spot(store, place, frame)
-        if -EDGE <= sense * (at.s - edge) <= FACE and at.z < z and is_sure(store, place, frame):
+        if -EDGE <= sense * (at.s - edge) <= FACE and at.z < z and is_sure(store, place, frame.end):
             body = at.s - sense * BODY * want.width
             hidden = not is_free(store, at.t + INTO_BODY, body + sense * EDGE, frame)
             if hidden and not is_free(store, at.t + INTO_BODY, 0.5 * (at.s + body), frame):
                 z = at.z
                 out = body
     return out if sense * (out - edge) < 0.0 else edge
+
+
+def free_of_bodies(store: PlanStore, frame: PlacesFrame, gap: Gap, want: Wanted) -> int:
+    """Return how many of thirty points of both neighbours of a gap, as long and wide as the car, are known free."""
+    a = spot_of(turned(gap.a.x, gap.a.y, frame), frame)
+    b = spot_of(turned(gap.b.x, gap.b.y, frame), frame)
+    count = 0
+    for into in (0.2, 0.35, 0.5, 0.65, 0.8):
+        for across in (0.3, 0.5, 0.7):
+            t = into * want.length
+            s = across * want.width
+            count = count + 1 if is_free(store, a.t + t, a.s - s, frame) else count
+            beyond = not want.open_ended and is_free(store, b.t + t, b.s + s, frame)
+            count = count + 1 if beyond else count
+    return count
 
 
 class Flank(NamedTuple):
@@ -83,7 +98,7 @@ def _flank(store: PlanStore, frame: PlacesFrame, edge: float, sense: float) -> F
     for place in range(frame.first, frame.end):
         at = spot(store, place, frame)
         off = sense * (at.s - edge)
-        if -EDGE <= off <= FACE and is_sure(store, place, frame):
+        if -EDGE <= off <= FACE and is_sure(store, place, frame.end):
             t = min(t, at.t)
             z = min(z, at.z)
             far = max(far, off)
@@ -110,7 +125,7 @@ def measured(store: PlanStore, frame: PlacesFrame, low: float, high: float, clos
     depth = DEEP
     for place in range(frame.first, frame.end):
         at = spot(store, place, frame)
-        if low + INSIDE < at.s < high - INSIDE and is_sure(store, place, frame):
+        if low + INSIDE < at.s < high - INSIDE and is_sure(store, place, frame.end):
             depth = min(depth, at.t - front)
     longer = max(_extent(store, frame, low, one.t, -1.0), _extent(store, frame, high, other.t, 1.0) if closed else 0.0)
     return Gap(

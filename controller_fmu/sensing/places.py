@@ -15,6 +15,8 @@ BEFORE_ECHO = 0.05
 """So much [m] before an echo nothing stands."""
 STRAY = 2
 """A place of its own needs so many echoes, else it may be of two things heard in turn."""
+NEXT = 0.3
+"""Places heard once are of one thing if they are so near [m] to each other."""
 UNSEEN = -50.0
 """Where [m] a row is of which too little was seen."""
 
@@ -111,10 +113,23 @@ def in_world(t: float, s: float, frame: PlacesFrame) -> Pose:
     return Pose(x, frame.at.y + u * frame.way_s - right * frame.way_c, 0.0)
 
 
-def is_sure(store: PlanStore, place: int, frame: PlacesFrame) -> bool:
-    """Return whether a place is of something: heard more than once, or joined to the place before or after it."""
-    joined = store.heard_joint[place] == 1 or (place + 1 < frame.end and store.heard_joint[place + 1] == 1)
-    return joined or store.heard_count[place] >= STRAY
+def is_sure(store: PlanStore, place: int, end: int) -> bool:
+    """Return whether a place is of something: heard more than once, or joined to a near one before or after it."""
+    if store.heard_count[place] >= STRAY:
+        return True
+    return _goes_on(store, place) or (place + 1 < end and _goes_on(store, place + 1))
+
+
+def _goes_on(store: PlanStore, place: int) -> bool:
+    """Return whether a place is joined to the one before, and near.
+
+    At the rim of the cone places jump; the first place of a side is joined to nothing, and 0 is the first of all.
+    """
+    if store.heard_joint[place] == 0:
+        return False
+    dx = store.heard_x[place] - store.heard_x[place - 1]
+    dy = store.heard_y[place] - store.heard_y[place - 1]
+    return dx * dx + dy * dy < NEXT * NEXT
 
 
 def is_free(store: PlanStore, t: float, s: float, frame: PlacesFrame) -> bool:

@@ -4,8 +4,8 @@ import math
 from typing import NamedTuple
 
 from controller_fmu.planning.plan_store import PlanStore
-from controller_fmu.sensing.places import UNSEEN, PlacesFrame, along, is_free, is_sure, seen
-from modelkit.maths import PI, clamp
+from controller_fmu.sensing.places import PlacesFrame, along, is_free, seen
+from modelkit.maths import PI
 from modelkit.vocabulary import Pose
 
 NEAR = 3.0
@@ -21,25 +21,19 @@ AGREED = 0.35
 """Sides that agree are at least this share of all, else nothing is told."""
 WITHIN = (10.0, 0.5, 0.25)
 """Sides that are turned [rad] by less against the mean before are taken, in turn: what lies about is left out."""
-ASIDE = 0.25
-"""Sine of how far chords of one side differ from its direction."""
+BESIDE_LINE = 0.08
+"""Places of one side lie so near [m] to the line along it through its first place,"""
+ASKEW = 0.1
+"""and as much farther [m/m] as it may be turned against it."""
 FAR = 50.0
 NARROWEST = 0.6
 """So much of a front [m] is seen at least, else it may be a post."""
-WIDEST = 2.1
+WIDEST = 2.3
 """And it is no wider."""
 BEYOND = (0.3, 0.45, 0.6, 0.8, 1.0, 1.3, 1.6)
 """Where a side goes on there is no free space so far [m] beyond what was seen of it, and so far behind its line."""
 BEYOND_IN = 0.15
 ENOUGH = 2
-CREST = 1.2
-"""What stands out of the row is the nearest to the way within this [m]."""
-STEEP = 0.35
-"""A row is turned against the way by no more than this [m/m]."""
-IN_ROW = (1.6, 0.8, 0.6, 0.4)
-"""What stands out lies no farther [m] behind the row's line, in turn."""
-LEAST_ROW = 4.0
-"""Sum of squares [m2] of how far apart things have to stand for a direction."""
 
 
 def turn_of(store: PlanStore, frame: PlacesFrame) -> float:
@@ -75,57 +69,6 @@ def turn_of(store: PlanStore, frame: PlacesFrame) -> float:
     return wrap_quarter(mean)
 
 
-class RowLine(NamedTuple):
-    """The line through what stands out of a row."""
-
-    turn: float = 0.0
-    """Against the way [rad]."""
-    behind: float = UNSEEN
-    """So far [m] from the sensor, across; ``UNSEEN``: too little stands out."""
-
-
-def row_of(store: PlanStore, frame: PlacesFrame) -> RowLine:
-    """Return the line of a row: through fronts' ends and corners that are as near to the way as anything around.
-
-    Regression, without what lies far behind it.
-    """
-    slope = 0.0
-    at = FAR
-    for place in range(frame.first, frame.end):
-        at = min(at, seen(store, place, frame).y) if is_sure(store, place, frame) else at
-    for within in IN_ROW:
-        n = 0.0
-        su = 0.0
-        sw = 0.0
-        suu = 0.0
-        suw = 0.0
-        for place in range(frame.first, frame.end):
-            here = seen(store, place, frame)
-            near = here.y - at - slope * here.x < within and is_sure(store, place, frame)
-            if near and _stands_out(store, frame, here):
-                n += 1.0
-                su += here.x
-                sw += here.y
-                suu += here.x * here.x
-                suw += here.x * here.y
-        spread = suu - su * su / n if n > 0.0 else 0.0
-        if spread < LEAST_ROW:
-            return RowLine()
-        slope = clamp((suw - su * sw / n) / spread, -STEEP, STEEP)
-        at = (sw - slope * su) / n
-    turn = math.atan(slope)
-    return RowLine(turn, at * math.cos(turn))
-
-
-def _stands_out(store: PlanStore, frame: PlacesFrame, here: Pose) -> bool:
-    """Return whether nothing around is nearer to the way."""
-    for place in range(frame.first, frame.end):
-        other = seen(store, place, frame)
-        if abs(other.x - here.x) < CREST and other.y < here.y and is_sure(store, place, frame):
-            return False
-    return True
-
-
 class Sides(NamedTuple):
     """What was seen of the sides that lie in one direction."""
 
@@ -144,23 +87,37 @@ def sides_along(store: PlanStore, frame: PlacesFrame, angle: float) -> Sides:
     """Return what was seen of sides along ``angle`` [rad]: long sides and whole fronts tell how cars stand."""
     longest = 0.0
     front = False
-    start = -1
-    for place in range(frame.first + CHORD, frame.end):
-        before = seen(store, place - CHORD, frame)
-        here = seen(store, place, frame)
-        off = math.sin(math.atan2(here.y - before.y, here.x - before.x) - angle)
-        if _is_side(store, place) and abs(off) < ASIDE:
-            start = place - CHORD if start < 0 else start
-            first = seen(store, start, frame)
+    for start in range(frame.first, frame.end):
+        end = _end_of_side(store, frame, start, angle)
+        first = seen(store, start, frame)
+        here = seen(store, end, frame)
+        dx = here.x - first.x
+        dy = here.y - first.y
+        length = math.sqrt(dx * dx + dy * dy)
+        longest = max(longest, length)
+        if not front and NARROWEST < length < WIDEST:
+            front = _ends_at(store, frame, here if dy > 0.0 else first, angle)
+    return Sides(longest, front)
+
+
+def _end_of_side(store: PlanStore, frame: PlacesFrame, start: int, angle: float) -> int:
+    """Return the last place of those joined to ``start`` that lie with it on a side along ``angle``; itself if none."""
+    c = math.cos(angle)
+    s = math.sin(angle)
+    first = seen(store, start, frame)
+    last = start
+    goes_on = True
+    for place in range(start + 1, frame.end):
+        if goes_on and store.heard_joint[place] == 1:
+            here = seen(store, place, frame)
             dx = here.x - first.x
             dy = here.y - first.y
-            length = math.sqrt(dx * dx + dy * dy)
-            longest = max(longest, length)
-            whole = NARROWEST < length < WIDEST
-            front = front or (whole and _ends_at(store, frame, here if dy > 0.0 else first, angle))
+            on = abs(dx * c + dy * s)
+            goes_on = abs(dx * s - dy * c) < BESIDE_LINE + ASKEW * on
+            last = place if goes_on else last
         else:
-            start = -1
-    return Sides(longest, front)
+            goes_on = False
+    return last
 
 
 def _ends_at(store: PlanStore, frame: PlacesFrame, end: Pose, angle: float) -> bool:

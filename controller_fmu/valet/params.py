@@ -57,9 +57,9 @@ class ValetSearchParams(NamedTuple):
     open_ended: Annotated[bool, Signal("1", "one neighbour will do")] = False
     speed: Annotated[float, Signal("m/s", "largest speed of the search", 0.1, 10.0, HOUSE)] = 10.0 / 3.6
     way: Annotated[float, Signal("m", "longest way searched", 1.0, 1000.0, HOUSE)] = 60.0
-    room_along: Annotated[float, Signal("m", "slot along the road over the car's length", 0.2, 10.0, HOUSE)] = 0.7
-    room_across: Annotated[float, Signal("m", "slot across the road over the car's width", 0.2, 10.0, HOUSE)] = 0.5
-    stand_out: Annotated[float, Signal("m", "the car may stand so far out of a shallow slot", 0.0, 3.0, HOUSE)] = 0.4
+    room_along: Annotated[float, Signal("m", "slot along the road over the car's length", 0.2, 10.0, HOUSE)] = 0.5
+    room_across: Annotated[float, Signal("m", "slot across the road over the car's width", 0.2, 10.0, HOUSE)] = 0.4
+    stand_out: Annotated[float, Signal("m", "the car may stand so far out of a shallow slot", 0.0, 3.0, HOUSE)] = 0.5
     behind: Annotated[float, Signal("m", "distance to what a slot across the road ends at", 0.05, 2.0, HOUSE)] = 0.25
     kerb_least: Annotated[float, Signal("m", "distance to a kerb beside", 0.05, 1.0, "GB/T 41630")] = 0.12
     kerb_most: Annotated[float, Signal("m", "the same, at most", 0.05, 1.0, "GB/T 41630")] = 0.28

@@ -1,0 +1,160 @@
+"""Where a row lies: the line through what stands out of it, whatever single things stand before it or behind it."""
+
+import math
+from typing import NamedTuple
+
+from controller_fmu.planning.plan_store import PlanStore
+from controller_fmu.sensing.places import UNSEEN, PlacesFrame, is_sure, seen
+from modelkit.vocabulary import Pose
+
+FAR = 50.0
+SLOPES = (0.0, 0.08, -0.08, 0.16, -0.16, 0.24, -0.24)
+"""A row is turned against the way by about one of these [m/m]."""
+STEEP = 0.35
+"""And by no more than this."""
+ON_LINE = 0.3
+"""What lies so near [m] to a line is on it."""
+AROUND = 1.2
+"""What stands out of the row is the nearest to the way within this [m]."""
+CRESTS = 12
+ONE_CORNER = 0.25
+"""Echoes so near [m] to each other are of one corner."""
+CERTAIN = 20.0
+"""So many echoes of a corner are as good as more."""
+APART = 2.0
+"""A line is drawn through things that stand so far apart [m]."""
+LEAST_ROW = 2.5
+"""Sum of squares [m2] of how far apart things have to stand for a direction."""
+
+
+class RowLine(NamedTuple):
+    """The line through what stands out of a row."""
+
+    turn: float = 0.0
+    """Against the way [rad]."""
+    behind: float = UNSEEN
+    """So far [m] from the sensor, across; ``UNSEEN``: too little stands out."""
+
+
+class Crest(NamedTuple):
+    """What stands out of a row: where [m], and how well it was heard."""
+
+    x: float = 0.0
+    y: float = 0.0
+    weight: float = 0.0
+
+
+def row_of(store: PlanStore, frame: PlacesFrame) -> RowLine:
+    """Return the line of a row: out of those through two things that stand out, the one on which most others lie.
+
+    A pillar that stands before the row, or what stands alone behind it, is on no line with the others. What is on the
+    line tells it by regression.
+    """
+    crests = _crests(store, frame, _leaning(store, frame))
+    most = 0.0
+    slope = 0.0
+    at = FAR
+    for one in crests:
+        for other in crests:
+            run = other.x - one.x
+            if run > APART and one.weight > 0.0 and other.weight > 0.0:
+                steep = (other.y - one.y) / run
+                score = _score(crests, steep, one.y - steep * one.x)
+                if abs(steep) < STEEP and score > most:
+                    most = score
+                    slope = steep
+                    at = one.y - steep * one.x
+    return _fitted(crests, slope, at)
+
+
+def _score(crests: tuple[Crest, ...], slope: float, at: float) -> float:
+    """Return how many echoes are of what lies on a line, those beside it for less."""
+    score = 0.0
+    for crest in crests:
+        off = abs(crest.y - at - slope * crest.x)
+        score += crest.weight * (1.0 - off / ON_LINE) if off < ON_LINE else 0.0
+    return score
+
+
+def _fitted(crests: tuple[Crest, ...], slope: float, at: float) -> RowLine:
+    """Return the line of those things that lie on one, by regression."""
+    n = 0.0
+    su = 0.0
+    sw = 0.0
+    suu = 0.0
+    suw = 0.0
+    for crest in crests:
+        if crest.weight > 0.0 and abs(crest.y - at - slope * crest.x) < ON_LINE:
+            n += 1.0
+            su += crest.x
+            sw += crest.y
+            suu += crest.x * crest.x
+            suw += crest.x * crest.y
+    spread = suu - su * su / n if n > 0.0 else 0.0
+    if spread < LEAST_ROW:
+        return RowLine()
+    steep = (suw - su * sw / n) / spread
+    turn = math.atan(steep)
+    return RowLine(turn, (sw - steep * su) / n * math.cos(turn))
+
+
+def _crests(store: PlanStore, frame: PlacesFrame, slope: float) -> tuple[Crest, ...]:
+    """Return what stands out of a row of about this slope, the last of it if there is more."""
+    crests: tuple[Crest, ...] = (Crest(),) * CRESTS
+    for place in range(frame.first, frame.end):
+        if is_sure(store, place, frame.end):
+            here = seen(store, place, frame)
+            if _stands_out(store, frame, here, slope):
+                crests = crests[1:] + (Crest(here.x, here.y, _echoes(store, frame, here)),)
+    return crests
+
+
+def _echoes(store: PlanStore, frame: PlacesFrame, here: Pose) -> float:
+    """Return how many echoes came from around a point, at most ``CERTAIN``."""
+    count = 0.0
+    for place in range(frame.first, frame.end):
+        other = seen(store, place, frame)
+        if abs(other.x - here.x) < ONE_CORNER and abs(other.y - here.y) < ONE_CORNER:
+            count += store.heard_count[place]
+    return min(count, CERTAIN)
+
+
+def _stands_out(store: PlanStore, frame: PlacesFrame, here: Pose, slope: float) -> bool:
+    """Return whether nothing around is nearer to a line of this slope before the row."""
+    for place in range(frame.first, frame.end):
+        other = seen(store, place, frame)
+        nearer = other.y - here.y < slope * (other.x - here.x)
+        if abs(other.x - here.x) < AROUND and nearer and is_sure(store, place, frame.end):
+            return False
+    return True
+
+
+def _leaning(store: PlanStore, frame: PlacesFrame) -> float:
+    """Return which of ``SLOPES`` has a line with nothing before it on which places lie the farthest apart."""
+    best = 0.0
+    most = -1.0
+    for slope in SLOPES:
+        at = _support(store, frame, slope)
+        n = 0.0
+        su = 0.0
+        suu = 0.0
+        for place in range(frame.first, frame.end):
+            here = seen(store, place, frame)
+            if here.y - slope * here.x < at + ON_LINE and is_sure(store, place, frame.end):
+                n += 1.0
+                su += here.x
+                suu += here.x * here.x
+        spread = suu - su * su / n if n > 0.0 else 0.0
+        if spread > most:
+            most = spread
+            best = slope
+    return best
+
+
+def _support(store: PlanStore, frame: PlacesFrame, slope: float) -> float:
+    """Return where [m], beside the sensor, the line of a slope lies that has nothing before it."""
+    at = FAR
+    for place in range(frame.first, frame.end):
+        here = seen(store, place, frame)
+        at = min(at, here.y - slope * here.x) if is_sure(store, place, frame.end) else at
+    return at

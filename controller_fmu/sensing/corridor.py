@@ -41,6 +41,9 @@ CLEARLY = 0.15
 HALFWAY = 36.0 * PI / 180.0
 LATE = 3.0
 LATER = 4.0
+LATEST = 7.0
+DEEP_IN = 2
+"""So many of twelve points deep in a gap at an angle have to be known to be free."""
 """Sides are compared when the gap has been passed by so much [m]: before, the neighbour behind it is not seen.
 
 Later where the one side of a car lies nearly along the row, as the car in front of it hides that.
@@ -82,53 +85,70 @@ def find_gap(store: PlanStore, side: int, places: int, at: Pose, want: Wanted) -
     sides = sides_along(store, frame, one)
     across = sides_along(store, frame, other)
     longer = sides.longest - across.longest
+    ways = TwoWays(along(lined, row.turn, one), along(lined, row.turn, other), longer)
     if sides.longest > WIDEST or across.longest > WIDEST:
-        return _deep(store, along(lined, row.turn, one if longer > 0.0 else other), want)
+        return _corridor(store, ways.one if longer > 0.0 else ways.other, want, False)
     if across.front != sides.front:
-        return _deep(store, along(lined, row.turn, one if across.front else other), want)
-    late = LATE if abs(askew) > HALFWAY else LATER
-    return _likelier(store, along(lined, row.turn, one), along(lined, row.turn, other), longer, late, want)
+        return _deep(store, ways.one if across.front else ways.other, want)
+    return _likelier(store, ways, LATE if abs(askew) > HALFWAY else LATER, want)
 
 
-def _likelier(
-    store: PlanStore, one: PlacesFrame, other: PlacesFrame, longer: float, late: float, want: Wanted
-) -> Gap:
-    """Return the gap of two corridors across each other whose neighbours stand where nothing is known to be free.
+class TwoWays(NamedTuple):
+    """Two ways, across each other, in which cars of a row may stand."""
 
-    It has been passed by so much (``late`` [m]) that both neighbours were seen. ``longer``: the sides seen along the
-    one, than those along the other [m].
+    one: PlacesFrame
+    other: PlacesFrame
+    longer: float
+    """Sides seen along the one than along the other [m]."""
+
+
+def _likelier(store: PlanStore, ways: TwoWays, late: float, want: Wanted) -> Gap:
+    """Return the gap of a row that may stand in two ways: of that way in which there is one.
+
+    If there is one in both, of that whose neighbours stand where less is known to be free, or whose sides are longer.
     """
-    gap = _passed(_deep(store, one, want), one, late)
-    cross = _passed(_deep(store, other, want), other, late)
-    if gap.layout == GapLayout.NONE or cross.layout == GapLayout.NONE:
-        return cross if gap.layout == GapLayout.NONE else gap
-    fewer = free_of_bodies(store, other, cross, want) - free_of_bodies(store, one, gap, want)
+    one = _passed(store, ways.one, late, want)
+    other = _passed(store, ways.other, late, want)
+    if one.layout == GapLayout.NONE or other.layout == GapLayout.NONE:
+        return other if one.layout == GapLayout.NONE else one
+    fewer = free_of_bodies(store, ways.other, other, want) - free_of_bodies(store, ways.one, one, want)
     if abs(fewer) >= CONTRADICTED:
-        return gap if fewer > 0 else cross
-    if abs(longer) < CLEARLY:
+        return one if fewer > 0 else other
+    if abs(ways.longer) < CLEARLY:
         return Gap()
-    return gap if longer > 0.0 else cross
+    return one if ways.longer > 0.0 else other
+
+
+def _passed(store: PlanStore, frame: PlacesFrame, late: float, want: Wanted) -> Gap:
+    """Return the gap that the sensor has passed by so much [m], else NONE.
+
+    By more if neighbours as large as the car would stand where something is known to be free: those are pillars, or
+    parts of cars that stand the other way. At the end of the search what is there has to do.
+    """
+    gap = _deep(store, frame, want)
+    if gap.layout == GapLayout.NONE or want.at_end:
+        return gap
+    contradicted = free_of_bodies(store, frame, gap, want) >= CONTRADICTED
+    return gap if turned(gap.b.x, gap.b.y, frame).x < -(LATEST if contradicted else late) else Gap()
 
 
 def _deep(store: PlanStore, frame: PlacesFrame, want: Wanted) -> Gap:
-    """Return the corridor passed last in a frame at an angle, if an echo says that it is free deep in, else NONE.
+    """Return the corridor passed last in a frame at an angle, if echoes say that it is free deep in, else NONE.
 
     Before the corners of cars that stand at an angle there is free space too, but not deep.
     """
     gap = _corridor(store, frame, want, False)
+    if gap.layout == GapLayout.NONE or want.at_end:
+        return gap
     a = spot_of(turned(gap.a.x, gap.a.y, frame), frame)
     b = spot_of(turned(gap.b.x, gap.b.y, frame), frame)
+    count = 0
     for across in (0.25, 0.5, 0.75):
         for into in (1.2, 1.6, 2.0, 2.4):
             t = a.t + across * (b.t - a.t) + into
-            if gap.layout != GapLayout.NONE and is_free(store, t, a.s + across * (b.s - a.s), frame):
-                return gap
-    return Gap()
-
-
-def _passed(gap: Gap, frame: PlacesFrame, late: float) -> Gap:
-    """Return a gap that the sensor has passed by so much [m], else NONE."""
-    return gap if turned(gap.b.x, gap.b.y, frame).x < -late else Gap()
+            if is_free(store, t, a.s + across * (b.s - a.s), frame):
+                count = count + 1
+    return gap if count >= DEEP_IN else Gap()
 
 
 def _corridor(store: PlanStore, frame: PlacesFrame, want: Wanted, lengthwise: bool) -> Gap:

@@ -34,6 +34,8 @@ class Wanted(NamedTuple):
     """Least depth [m] across the road."""
     open_ended: bool
     """One neighbour will do."""
+    at_end: bool = False
+    """The search ends here: what is unclear is decided by what there is."""
 
 
 class Gap(NamedTuple):

@@ -26,6 +26,8 @@ PASSED = 0.5
 """The sensor has passed a slot from outside by so much [m]."""
 STRAIGHT = 0.9
 """What is heard so far [m] from a slot's edges and front by a sensor that looks along it is what the slot ends at."""
+LAST = 0.5
+"""Over the last of the way [m] that is searched, what is unclear is decided."""
 BEHIND = 0.6
 """A slot is needed so much [m] deeper than the car, if nothing was heard that it ends at."""
 
@@ -146,7 +148,8 @@ def _judged(
     """Return the search with the gap that the places of one side make."""
     ear = state.right if side == RIGHT else state.left
     at = sensor_at(params.car.ultrasonic.mounts[sensor], inputs.odometry)._replace(heading=inputs.odometry.heading)
-    gap = find_gap(store, side, ear.places, at, wanted(params))
+    want = wanted(params)._replace(at_end=state.way > params.search.way - LAST)
+    gap = find_gap(store, side, ear.places, at, want)
     if gap.shallow:
         return state._replace(gap=Gap(), refused=Reason.SLOT_TOO_SHALLOW)
     return state._replace(gap=gap, side=side)

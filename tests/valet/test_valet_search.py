@@ -15,7 +15,7 @@ from controller_fmu.sensing.ear import SideEar, listen
 from controller_fmu.sensing.gap import Gap, GapLayout, Wanted
 from controller_fmu.sensing.heard_store import put_heard
 from controller_fmu.sensing.places import frame_of
-from controller_fmu.sensing.rows import row_of
+from controller_fmu.sensing.row_line import row_of
 from controller_fmu.valet.params import ValetParams, ValetSearchParams
 from controller_fmu.valet.sight import look
 from modelkit.car import Car

@@ -48,6 +48,8 @@ DEEP_IN = 2
 
 Later where the one side of a car lies nearly along the row, as the car in front of it hides that.
 """
+LEAST_THINGS = 3
+"""A row at an angle has so many cars, posts on its line, or it is not known which of them stand out of it."""
 LONGEST = 15.0
 PASSED = 0.5
 """The sensor has passed the gap's end by so much [m]."""
@@ -77,7 +79,8 @@ def find_gap(store: PlanStore, side: int, places: int, at: Pose, want: Wanted) -
         square = along(frame, turn, turn + 0.5 * PI)
         best = _corridor(store, square, want, True) if want.along else Gap()
         return _corridor(store, square, want, False) if best.layout == GapLayout.NONE and want.across else best
-    if not want.across:
+    too_few = row.things < LEAST_THINGS and not want.open_ended and not want.at_end
+    if not want.across or too_few:
         return Gap()
     lined = frame._replace(line=row.behind)
     other = turn if turn > 0.0 else turn + PI

@@ -34,6 +34,8 @@ class RowLine(NamedTuple):
     """Against the way [rad]."""
     behind: float = UNSEEN
     """So far [m] from the sensor, across; ``UNSEEN``: too little stands out."""
+    things: int = 0
+    """So many things stand on it."""
 
 
 class Crest(NamedTuple):
@@ -83,8 +85,10 @@ def _fitted(crests: tuple[Crest, ...], slope: float, at: float) -> RowLine:
     sw = 0.0
     suu = 0.0
     suw = 0.0
+    things = 0
     for crest in crests:
         if crest.weight > 0.0 and abs(crest.y - at - slope * crest.x) < ON_LINE:
+            things = things + 1
             n += 1.0
             su += crest.x
             sw += crest.y
@@ -95,7 +99,7 @@ def _fitted(crests: tuple[Crest, ...], slope: float, at: float) -> RowLine:
         return RowLine()
     steep = (suw - su * sw / n) / spread
     turn = math.atan(steep)
-    return RowLine(turn, (sw - steep * su) / n * math.cos(turn))
+    return RowLine(turn, (sw - steep * su) / n * math.cos(turn), things)
 
 
 def _crests(store: PlanStore, frame: PlacesFrame, slope: float) -> tuple[Crest, ...]:

@@ -47,6 +47,12 @@ CLOSING = 0.2
 """A neighbour has not begun while it comes nearer by so much [m] more than a slanting side does."""
 STEEP = 1.0
 """The face of a neighbour across the way comes nearer by 1 / sin(g) per metre, its corner by sin(g) at most."""
+SPLIT = 0.6
+SPLIT_READINGS = 3.2
+"""What is heard again so soon [m], or after so many readings, as far away as before, is the same neighbour."""
+SPLIT_OFF = 0.08
+BEND = 0.3
+"""Its end was none if the distance did not grow by so much per metre: past a corner it grows by 0.4 and more."""
 LONG_STEADY = 5
 MANY = 8.0
 FEW = 3.0
@@ -111,6 +117,8 @@ class SideState(NamedTuple):
     """Of the neighbour in hand: its first corner, or near it; of none if it was there before it was looked at."""
     window: tuple[Heard, ...] = NO_WINDOW
     """Newest samples of the neighbour in hand, of its corners too."""
+    ends: tuple[Heard, ...] = NO_SAMPLES
+    """In a gap: the newest samples of the neighbour before it."""
 
 
 EMPTY = Sums()
@@ -140,16 +148,40 @@ def _sampled(side: SideState, sample: Heard, half_angle: float, params: SearchPa
     steady = side.steady + 1 if level else 0
     cut = side.steady >= ALONG
     side = side._replace(last=sample, spacing=way, steady=steady, fresh=False)
-    if side.mode == NOTHING and near:
-        side = _begin_wall(side, sample)
-        return side._replace(begun=sample.u - UNSEEN_BEFORE, first=Heard()) if cut else side
     if side.mode == NOTHING:
-        return side
+        side = _from_afar(side, sample, params)
+        return _comes_near(side, sample, cut) if near else side
     if side.mode == WALL:
         return _on_wall(side, sample, half_angle, params)
     if side.mode == GAP:
         return _in_gap(side, sample, change > STEEP * way, half_angle, params)
     return _on_next_wall(side, sample, half_angle, params)
+
+
+def _from_afar(side: SideState, sample: Heard, params: SearchParams) -> SideState:
+    """Return the side before a neighbour, with the begin of what is heard farther away than neighbours are looked at."""
+    bridged = max(SPLIT, SPLIT_READINGS * side.spacing)
+    if sample.r >= DEEP:
+        return side if sample.u - side.missed < bridged else side._replace(first=Heard())
+    begun = side.first.r <= 0.0 or sample.u - side.missed > bridged or _is_closing(side.first, sample)
+    begun = begun or abs(sample.r - side.samples[0].r) > params.step + STEEPEST * (sample.u - side.missed)
+    return side._replace(
+        first=sample if begun else side.first, missed=sample.u, samples=remember(side.samples, sample)
+    )
+
+
+def _is_closing(first: Heard, sample: Heard) -> bool:
+    """Return whether what was heard ``first`` came nearer since as no side does, however it slants: it is the begin."""
+    return sample.r < first.r - CLOSING - STEEPEST * (sample.u - first.u)
+
+
+def _comes_near(side: SideState, sample: Heard, cut: bool) -> SideState:
+    """Return the side at whose first neighbour is near enough to be looked at; ``cut``: it was heard before."""
+    first = side.first
+    side = _begin_wall(side, sample)
+    if first.u < sample.u:
+        return side._replace(begun=first.u, first=first)
+    return side._replace(begun=sample.u - UNSEEN_BEFORE, first=Heard()) if cut else side
 
 
 def _change_along(side: SideState, sample: Heard) -> float:
@@ -180,7 +212,7 @@ def _on_wall(side: SideState, sample: Heard, half_angle: float, params: SearchPa
         sums = _with_sample(side.sums, EMPTY, sample, side.steady)
         spare = side.sums if sums.n < side.sums.n and side.sums.n >= 3.0 else side.spare
         fresh = side.found > 0 and side.steady >= 2 and side.mode == WALL and side.edge_b > side.edge
-        closing = sample.r < side.first.r - CLOSING - STEEPEST * (sample.u - side.first.u)
+        closing = _is_closing(side.first, sample)
         first = sample if closing else side.first
         samples = remember(side.samples, sample)
         return side._replace(
@@ -205,11 +237,19 @@ def _ended(side: SideState, half_angle: float, params: SearchParams) -> SideStat
     side = side._replace(sums=side.spare) if side.sums.n < 3.0 else side
     side = side._replace(sums=_or_agreed(side.sums, side.window, EMPTY)) if side.sums.n < MANY else side
     if side.sums.n < 3.0 or extent < params.wall or abs(slope(side.sums, EMPTY)) > STEEPEST:
-        return _anew(side)
+        return _anew(side)._replace(first=side.first, missed=side.missed, samples=side.samples)
     edge = corner(side.samples + side.faces, _line(side.sums, EMPTY), -1.0, half_angle)
     extent = edge - side.begun - _short_of_it(side)
     return _anew(side)._replace(
-        mode=GAP, begun=side.begun, extent=extent, missed=side.missed, before=side.sums, edge=edge
+        mode=GAP,
+        begun=side.begun,
+        extent=extent,
+        missed=side.missed,
+        before=side.sums,
+        edge=edge,
+        first=side.first,
+        window=side.window,
+        ends=side.samples,
     )
 
 
@@ -262,6 +302,8 @@ def _still_heard(sums: Sums, other: Sums, sample: Heard, sense: float, half_angl
 
 def _in_gap(side: SideState, sample: Heard, leaves: bool, half_angle: float, params: SearchParams) -> SideState:
     """Return the side after a bin in a gap; ``leaves``: it goes away steeply, as the end of a neighbour does."""
+    if _goes_on(side, sample):
+        return _gone_on(side, sample)
     d = distance(_line(side.before, EMPTY), sample.u, sample.w)
     most = _still_heard(side.before, EMPTY, sample, 1.0, half_angle) + STAGGER + LEANS * (sample.u - side.edge)
     if sample.r < most and sample.r < params.beside + FURTHER and not leaves:
@@ -276,6 +318,7 @@ def _in_gap(side: SideState, sample: Heard, leaves: bool, half_angle: float, par
             fresh=False,
             edge_b=0.0,
             window=newest(NO_WINDOW, sample),
+            ends=NO_SAMPLES,
         )
     depth = side.depth
     behind = side.behind
@@ -293,6 +336,34 @@ def _in_gap(side: SideState, sample: Heard, leaves: bool, half_angle: float, par
         edge_b=0.0,
         faces=remember(side.faces, sample),
         behind=behind,
+    )
+
+
+def _goes_on(side: SideState, sample: Heard) -> bool:
+    """Return whether a sample in a gap is of the neighbour before it: lost echoes, or a bad line, were no end of it."""
+    end = side.ends[0]
+    way = sample.u - end.u
+    if end.r <= 0.0 or way > max(SPLIT, SPLIT_READINGS * side.spacing):
+        return False
+    if abs(sample.r - end.r) > SPLIT_OFF + STEEPEST * way:
+        return False
+    before = end
+    for older in side.ends:
+        if older.r > 0.0 and (before.u >= end.u or end.u - older.u <= SPLIT):
+            before = older
+    return before.u < end.u and end.r - before.r <= BEND * (end.u - before.u)
+
+
+def _gone_on(side: SideState, sample: Heard) -> SideState:
+    """Return the side on the neighbour before a gap that was none: its line begins anew."""
+    return _anew(side)._replace(
+        mode=WALL,
+        begun=side.begun,
+        first=side.first,
+        missed=sample.u,
+        samples=remember(side.ends, sample),
+        spare=side.before,
+        window=newest(side.window, sample),
     )
 
 

@@ -16,8 +16,10 @@ from modelkit.vocabulary import Pose
 
 RIGHT = 0
 LEFT = 1
-LONG_NEIGHBOUR = 2.6
-"""A neighbour longer than this [m] along the road stands parallel to it."""
+LONG_NEIGHBOUR = 2.9
+"""A neighbour longer than this [m] along the road stands parallel to it: cars are 1.5 to 2 m wide, 3.5 to 5 m long."""
+LONG_AT_LEAST = 2.6
+"""The second one already where so much [m] of it was heard, and not its end."""
 
 
 CAR_WIDE = 1.3
@@ -152,13 +154,19 @@ def _road(side: SideState, lean_a: float, lean_b: float, params: ApaParams) -> f
 
 
 def kind_of(length: float, depth: float, neighbour: float, car: Shape, params: ApaParams) -> int:
-    """Return how a car would stand in a gap: by its length, its depth, and how the neighbour stands."""
+    """Return how a car would stand in a gap: by its length, its depth, and how the neighbour stands.
+
+    Where the neighbour is heard shorter than any car, how it stands is not known: two cars side by side leave their
+    place free less often than one along the road.
+    """
     if params.search.wish != Wish.ANY:
         return params.search.wish
     car_length = car.front + car.rear
     if length < 0.8 * car_length:
         return Kind.PERPENDICULAR
     if depth < car_length - params.search.depth_room:
+        return Kind.PARALLEL
+    if neighbour < CAR_WIDE and length > 2.0 * (2.0 * car.half_width + params.search.perpendicular_room):
         return Kind.PARALLEL
     return Kind.PARALLEL if neighbour > LONG_NEIGHBOUR else Kind.PERPENDICULAR
 
@@ -208,7 +216,7 @@ def _judge(state: SearchState, side: SideState, which: int, car: Shape, params: 
 def _is_long(side: SideState, params: ApaParams) -> bool:
     """Return whether the neighbour after the gap is heard to stand along the road; never where a kind is wished for."""
     heard_past = BESIDE * side.samples[0].r
-    return params.search.wish == Wish.ANY and side.missed - side.edge_b > LONG_NEIGHBOUR + heard_past
+    return params.search.wish == Wish.ANY and side.missed - side.edge_b > LONG_AT_LEAST + heard_past
 
 
 def is_on(slot: Slot, side: int) -> bool:

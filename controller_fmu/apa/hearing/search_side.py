@@ -249,7 +249,7 @@ def _ended(side: SideState, half_angle: float, params: SearchParams) -> SideStat
         edge=edge,
         first=side.first,
         window=side.window,
-        ends=side.samples,
+        ends=side.samples if _is_split(side.samples[0], side.faces) else NO_SAMPLES,
     )
 
 
@@ -304,6 +304,7 @@ def _in_gap(side: SideState, sample: Heard, leaves: bool, half_angle: float, par
     """Return the side after a bin in a gap; ``leaves``: it goes away steeply, as the end of a neighbour does."""
     if _goes_on(side, sample):
         return _gone_on(side, sample)
+    side = side if sample.r >= DEEP else side._replace(ends=NO_SAMPLES)
     d = distance(_line(side.before, EMPTY), sample.u, sample.w)
     most = _still_heard(side.before, EMPTY, sample, 1.0, half_angle) + STAGGER + LEANS * (sample.u - side.edge)
     if sample.r < most and sample.r < params.beside + FURTHER and not leaves:
@@ -345,13 +346,26 @@ def _goes_on(side: SideState, sample: Heard) -> bool:
     way = sample.u - end.u
     if end.r <= 0.0 or way > max(SPLIT, SPLIT_READINGS * side.spacing):
         return False
-    if abs(sample.r - end.r) > SPLIT_OFF + STEEPEST * way:
+    if not _is_level(end, sample):
         return False
     before = end
     for older in side.ends:
         if older.r > 0.0 and (before.u >= end.u or end.u - older.u <= SPLIT):
             before = older
     return before.u < end.u and end.r - before.r <= BEND * (end.u - before.u)
+
+
+def _is_level(end: Heard, sample: Heard) -> bool:
+    """Return whether a sample is as far away as the last one before an end, but for how a side may slant."""
+    return abs(sample.r - end.r) <= SPLIT_OFF + STEEPEST * (sample.u - end.u)
+
+
+def _is_split(end: Heard, past: tuple[Heard, ...]) -> bool:
+    """Return whether the samples past an end are lost echoes, or level: then it may be none."""
+    for sample in past:
+        if 0.0 < sample.r < DEEP and not _is_level(end, sample):
+            return False
+    return True
 
 
 def _gone_on(side: SideState, sample: Heard) -> SideState:

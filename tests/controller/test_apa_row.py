@@ -10,7 +10,8 @@ from controller_fmu.apa.around.surroundings import shape_of
 from controller_fmu.apa.hearing.edge import Heard
 from controller_fmu.apa.hearing.line_fit import Sums, add
 from controller_fmu.apa.hearing.search import SearchState, slot_of
-from controller_fmu.apa.hearing.search_side import GAP, NEXT_WALL, START, SideState, _in_gap
+from controller_fmu.apa.hearing.search_side import _in_gap
+from controller_fmu.apa.hearing.side import GAP, NEXT_WALL, START, SideState
 from controller_fmu.apa.params import MapParams
 from controller_fmu.apa.slot import UNSEEN, Kind, Slot
 from controller_fmu.interface import ControllerParams

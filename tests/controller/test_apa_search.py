@@ -5,12 +5,15 @@ from typing import Any
 
 import pytest
 
+from controller_fmu.apa.around.surroundings import shape_of
 from controller_fmu.apa.hearing import search_side
 from controller_fmu.apa.hearing.consensus import NO_WINDOW, agreed, newest
 from controller_fmu.apa.hearing.edge import NO_SAMPLES, Heard, append, corner
 from controller_fmu.apa.hearing.line_fit import FittedLine, Sums, add, offset, slope
-from controller_fmu.apa.hearing.search import LEFT, RIGHT, _hear
-from controller_fmu.apa.hearing.search_side import DEEP, START, _with_sample
+from controller_fmu.apa.hearing.search import LEFT, RIGHT, _hear, kind_of
+from controller_fmu.apa.hearing.search_side import _with_sample
+from controller_fmu.apa.hearing.side import DEEP, GAP, START, WALL, SideState
+from controller_fmu.apa.slot import UNSEEN, Kind
 from controller_fmu.common.sensors import LEFT_SENSOR
 from controller_fmu.interface import ControllerInput, ControllerParams
 from modelkit.vocabulary import Pose
@@ -142,7 +145,7 @@ def test_one_lost_echo_does_not_end_a_neighbour_however_fast_the_search() -> Non
     """Readings each 33 cm, as at 20 km/h: one that is lost is no gap, two are."""
 
     def after(lost: set[int]) -> int:
-        side = search_side.START
+        side = START
         for number in range(14):
             reading = 5.0 if number in lost else 1.0
             side = search_side.hear(
@@ -150,6 +153,54 @@ def test_one_lost_echo_does_not_end_a_neighbour_however_fast_the_search() -> Non
             )
         return side.mode
 
-    assert after(set()) == search_side.WALL
-    assert after({8}) == search_side.WALL
-    assert after({10, 11, 12, 13}) == search_side.GAP
+    assert after(set()) == WALL
+    assert after({8}) == WALL
+    assert after({10, 11, 12, 13}) == GAP
+
+
+def past_faces(faces: tuple[tuple[float, float], ...], lean: float, spacing: float, lost: set[int]) -> SideState:
+    """Return a side past faces that begin and end there, beside the last of them, for a car that leans to the row."""
+    side, settings = START, ControllerParams().apa.search
+    for number in range(int(faces[-1][1] / spacing)):
+        u = spacing * number
+        away = 1.0 + lean * (faces[-1][1] - u)
+        reach = away * math.tan(HALF)
+        heard = [math.hypot(away, max(a - u, u - b, 0.0)) for a, b in faces if a - reach < u < b + reach]
+        reading = min(heard, default=DEEP) if number not in lost else DEEP
+        side = search_side.hear(side, u, away if lean else 1.0, reading, HALF, settings)
+    return side
+
+
+@pytest.mark.parametrize(("length", "lean"), [(4.4, 0.0), (4.4, 0.14), (1.8, 0.0), (1.8, 0.14)])
+def test_a_neighbour_is_as_long_as_it_is_however_far_away_it_begins(length: float, lean: float) -> None:
+    """Towards a row that is first heard 3.7 m away, farther than neighbours are looked at."""
+    side = past_faces(((8.0, 8.0 + length), (14.0 + length, 18.0 + length)), lean, 0.12, set())
+    assert side.extent == pytest.approx(length, abs=0.35)
+
+
+@pytest.mark.parametrize("lost", [set(), {30}, {30, 31}, {30, 31, 35, 36}])
+def test_lost_echoes_do_not_split_a_neighbour(lost: set[int]) -> None:
+    """At 23 km/h a reading each 36 cm: two that are lost look like a gap of a metre."""
+    side = past_faces(((8.0, 12.4), (18.4, 22.8)), 0.0, 0.36, lost)
+    assert (side.extent, side.edge_b) == (pytest.approx(4.4, abs=0.4), pytest.approx(18.4, abs=0.3))
+
+
+def test_a_gap_past_whose_corner_something_is_heard_is_one() -> None:
+    side = past_faces(((8.0, 9.8), (12.7, 14.5)), 0.0, 0.4, set())
+    assert (side.extent, side.edge_b) == (pytest.approx(1.8, abs=0.3), pytest.approx(12.7, abs=0.3))
+
+
+@pytest.mark.parametrize(
+    ("length", "neighbour", "kind"),
+    [
+        (6.0, 4.0, Kind.PARALLEL),
+        (6.0, 2.6, Kind.PERPENDICULAR),
+        (6.0, 0.8, Kind.PARALLEL),
+        (4.8, 0.8, Kind.PERPENDICULAR),
+        (3.0, 4.0, Kind.PERPENDICULAR),
+    ],
+)
+def test_the_neighbour_tells_the_kind_of_a_gap_that_nothing_ends(length: float, neighbour: float, kind: Kind) -> None:
+    """Shorter than any car: not known, and two cars side by side leave their place free less often than one along."""
+    car = shape_of(ControllerParams())
+    assert kind_of(length, UNSEEN, neighbour, car, ControllerParams().apa) == kind

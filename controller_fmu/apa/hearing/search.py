@@ -5,7 +5,8 @@ from typing import NamedTuple
 
 from controller_fmu.apa.choice import OFFERED, ChosenSide
 from controller_fmu.apa.hearing.line_fit import NO_SUMS, OFF, leaning, offset, slope, spread
-from controller_fmu.apa.hearing.search_side import DEEP, START, SideState, hear
+from controller_fmu.apa.hearing.search_side import hear
+from controller_fmu.apa.hearing.side import DEEP, START, SideState
 from controller_fmu.apa.outline import Shape
 from controller_fmu.apa.params import ApaParams, Wish
 from controller_fmu.apa.slot import UNSEEN, Kind, Side, Slot

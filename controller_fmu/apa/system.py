@@ -7,6 +7,7 @@ from controller_fmu.apa.around.local_map import begin_map, heard, moved
 from controller_fmu.apa.around.nearer import explained, nearer_than_thought, pressed
 from controller_fmu.apa.around.relocate import braked, walled
 from controller_fmu.apa.around.row import slot_of_map
+from controller_fmu.apa.around.shifted import followed, relocated
 from controller_fmu.apa.around.standing_in import slot_around
 from controller_fmu.apa.around.surroundings import Around, shape_of
 from controller_fmu.apa.chart import Guard, Mode, transition
@@ -118,6 +119,7 @@ def _parked_on(
     parking = state.parking
     slot = state.around.slot
     here = state.around.map
+    shifts = state.around.shifts
     stopping = driving and parking.step != Step.DRIVE
     guard = learn_brake(state.around.guard, inputs.measured_speed, stopping, dt_ns, params)
     if is_told_anew(state.clock_ns, dt_ns, params.car.ultrasonic.cycle):
@@ -126,6 +128,11 @@ def _parked_on(
         halted = parking.step in (Step.HALT, Step.SET_WHEEL) and abs(inputs.measured_speed) <= STANDING
         if halted:
             here = walled(here, slot, inputs, parking.sight.blocked, params)
+        if abs(inputs.measured_speed) > STANDING:
+            shifts = followed(shifts, here, inputs.ultrasonic, params.car.ultrasonic)
+            found = relocated(here, shifts, inputs.ultrasonic, params.car.ultrasonic)
+            here = found.map
+            shifts = found.shifts
         guard = listen(guard, inputs.ultrasonic, here, params)
         if halted and parking.sight.unknown and state.watch.blocked * 1e-9 > LOOKED_FOR:
             there = nearer_than_thought(here, inputs.ultrasonic, params)
@@ -138,7 +145,7 @@ def _parked_on(
             parking = parking._replace(stuck=False)
         slot = slot_of_map(here, slot, params.apa.map)
         parking = cut_short(parking) if slot.depth < state.around.slot.depth - SHALLOWER else parking
-    around = Around(slot, here, guard)
+    around = Around(slot, here, guard, shifts)
     parking = park(parking, around, inputs, state.watch.wheel.steering, driving, params)
     return state._replace(around=around, parking=parking)
 

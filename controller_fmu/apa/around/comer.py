@@ -11,13 +11,13 @@ from controller_fmu.apa.around.cone import SILENT
 from controller_fmu.apa.outline import Shape
 from modelkit.car import CarUltrasonic
 
-FITS = 0.12
+FITS = 0.2
 """A reading that is further off [m] is of something else."""
 WEIGHT = 0.5
 WEIGHT_OF_RATE = 0.2
 BUMPERS = 8
 """Sensors of the flanks come after these; the rim of their cones runs along oblique sides faster than the car."""
-EVENLY = 4
+EVENLY = 3
 """So many readings in a row must fit."""
 SWINGS = 1.3
 """A sensor at the front of a turning car is faster than its rear axle by up to this."""

@@ -129,18 +129,23 @@ def ear_at(mount: SensorMount, pose: Pose, mirror: float, half_angle: float) -> 
 
 def expected(ear: ConeEar, here: LocalMap) -> MapEcho:
     """Return what a sensor should hear."""
-    length = SIDE_PARALLEL if here.kind == Kind.PARALLEL else SIDE_PERPENDICULAR
-    depth = DEPTH_PARALLEL if here.kind == Kind.PARALLEL else DEPTH_PERPENDICULAR
     found = MapEcho()
     if not here.empty_a:
-        found = _nearer(found, _of(ear, here.a, -length, depth), A)
+        found = _nearer(found, echo_of_neighbour(ear, here, A), A)
     if not here.empty_b:
-        found = _nearer(found, _of(ear, here.b, length, depth), B)
+        found = _nearer(found, echo_of_neighbour(ear, here, B), B)
     if here.walled:
         found = _nearer(found, _line(ear, here.wall), WALL)
     if here.across < UNSEEN:
         found = _nearer(found, echo_of(ear, Point(-LONG, here.across), Point(LONG, here.across)), ACROSS)
     return found
+
+
+def echo_of_neighbour(ear: ConeEar, here: LocalMap, who: int) -> Echo:
+    """Return what a sensor should hear of neighbour A or B."""
+    length = SIDE_PARALLEL if here.kind == Kind.PARALLEL else SIDE_PERPENDICULAR
+    depth = DEPTH_PARALLEL if here.kind == Kind.PARALLEL else DEPTH_PERPENDICULAR
+    return _of(ear, here.a, -length, depth) if who == A else _of(ear, here.b, length, depth)
 
 
 def nearest_case(here: LocalMap, times: float) -> LocalMap:

@@ -7,6 +7,7 @@ from controller_fmu.apa.around.course import HeldCourse
 from controller_fmu.apa.around.guard import GuardState, Sight, watch_way
 from controller_fmu.apa.around.local_map import LocalMap
 from controller_fmu.apa.around.row import is_certain, is_heard, line_unsure
+from controller_fmu.apa.around.shifted import Shifts
 from controller_fmu.apa.outline import Shape, clearance, outline_rate, sure_steps
 from controller_fmu.apa.slot import Site, Slot, mirror_of, stands_out_by
 from controller_fmu.apa.tracking import Tracked
@@ -17,17 +18,23 @@ from modelkit.vocabulary import Pose
 
 DOUBT = 0.5
 """The line between the neighbours' corners is taken to lie further in by this share of its standard deviation."""
+ROLLS = 0.1
+"""A car that goes faster [m/s] against its gear slips, or rolls down a slope, and is stopped."""
 LOOK = 0.2
 LOOKS = 6
 """The rest of a move is looked at every so much [m], so many times."""
 
 
 class Around(NamedTuple):
-    """What the assist knows of what stands around it: the slot chosen, the map of it, and what the guard has heard."""
+    """What the assist knows of what stands around it."""
 
     slot: Slot = Slot()
+    """The one chosen."""
     map: LocalMap = LocalMap()
     guard: GuardState = GuardState()
+    """What the guard has heard."""
+    shifts: Shifts = Shifts()
+    """Neighbours who seem to stand elsewhere than on the map."""
 
 
 def shape_of(params: ControllerParams) -> Shape:
@@ -86,6 +93,8 @@ def is_rest_free(move: Move, tracked: Tracked, site: Site, bare: Site, params: C
 
 def sight_of(direction: int, bare: Site, around: Around, inputs: ControllerInput, params: ControllerParams) -> Sight:
     """Return what the guard says to driving in ``direction`` with the wheels as they are; ``bare``: without margins."""
+    if direction * inputs.measured_speed < -ROLLS:
+        return Sight(0.0, True, True)
     front = bare.frame.mirror * inputs.steering_wheel_angle / params.car.steering.ratio
     course = HeldCourse(
         pose=to_slot(inputs.odometry, bare.frame),

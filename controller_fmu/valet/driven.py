@@ -25,7 +25,7 @@ from controller_fmu.valet.chart import Step
 from controller_fmu.valet.given import as_parameter
 from controller_fmu.valet.nearby import Nearby, Rest, hear_nearby, is_in_gap, lay_nearby, narrowed, put_nearby
 from controller_fmu.valet.params import ValetParams
-from controller_fmu.valet.rolling import Ahead, ahead_of, aim_at, joint_of
+from controller_fmu.valet.rolling import Ahead, ahead_of, aim_at, joint_of, trimmed, turns_already
 from controller_fmu.valet.search import Search, shallower
 from controller_fmu.valet.sight import SEEN_CORNERS, Sight, look, remembered, scene_of
 from controller_fmu.valet.slot import body_of, goal_in, goal_of, stands_out
@@ -117,7 +117,7 @@ def planned_on(store: PlanStore, state: ValetState, inputs: ControllerInput, par
     status = status_of(store)
     path = state.path
     if status == PLANNED:
-        path = path_of(store)
+        path = trimmed(path_of(store))
     reason = reason_of(status, count, state, params)
     if params.search.active and stands_out(state.search.gap, params) > params.search.stand_out:
         reason = Reason.SLOT_TOO_SHALLOW
@@ -160,6 +160,8 @@ def seen_on(store: PlanStore, state: ValetState, inputs: ControllerInput, params
     beside = Deviation(off.lateral - aim.lateral, off.heading - aim.heading)
     angle = angle_back(beside, asked, direction, law.k1, law.k2, params.car.wheelbase)
     coming = ahead_of(state.path, state.piece, left, params)
+    if turns_already(coming, params):
+        angle = math.atan(params.car.wheelbase * coming.rest.then)
     scene = scene_of(store, params, state.seen)
     sight = look(inputs.ultrasonic, pose, state.path.pieces[state.piece], inputs.measured_speed, scene, params)
     return state._replace(tracked=Tracked(left, at, off.lateral, off.heading, angle, coming), sight=sight)
@@ -247,7 +249,7 @@ def _with_piece(state: ValetState, before: int, params: ValetParams) -> ValetSta
         if state.tracked.left > AT_END:
             return state
         begin = drive(begin, state.path.pieces[piece].way, state.path.pieces[piece].k0)
-        early = clamp(early + LEARNT * state.tracked.left, -EARLIEST, EARLIEST)
+        early = clamp(early + LEARNT * state.tracked.ahead.left, -EARLIEST, EARLIEST)
         piece = piece + 1
     left = abs(state.path.pieces[piece].way)
     tracked = Tracked(left, begin, ahead=ahead_of(state.path, piece, left, params))

@@ -1,25 +1,52 @@
 """How the car rolls from one piece of its path to the next: the wheel turns on the move where that is near enough.
 
 Where the curvature jumps by dk it changes linearly over a ramp of length r instead, half of it before the joint. The
-heading behind it is the path's, and the car is beside it by dk r^2 / 24. The wheel needs a time T for it, so the car
-may go r / T. Where that would be slower than ``SLOWEST`` it stands, and the wheel turns at rest.
+heading behind it is the path's, and the car is beside it by dk r^2 / 24. Ramps may overlap, what they do adds up: of
+two jumps there and back close together little is left, and the wheel hardly turns. They end where the gear changes.
+
+About a standstill, too, the wheel turns while the car still rolls, or rolls again: it begins a time before and goes on
+a time behind. The curvature is off by then, which costs heading. Where the gear changes a car that goes farther by that
+heading over dk before it turns round gets it back. The times are so long that this is what the car may be off its path.
+
+On ramps the wheel turns by dphi for each metre driven, so the car may go its rate over that. Where one ramp alone asks
+for less than ``SLOWEST`` on the average the car stands, and the wheel turns at rest.
 """
 
 import math
 from typing import NamedTuple
 
-from controller_fmu.planning.plan import PATH, Path
+from controller_fmu.planning.plan import Path
 from controller_fmu.valet.params import ValetParams
 from modelkit.maths import sign
 
 SLOWEST = 0.12
 """[m/s]"""
-RATE_SHARE = 0.85
+RATE_SHARE = 0.9
 """Of the wheel's rate that a ramp asks for; the rest is for tracking."""
 OF_MARGIN = 0.2
 """Share of the clearance planned that a ramp may use."""
 SAME = 1e-6
 """Curvatures nearer than this [1/m] are one."""
+SHORTEST = 0.01
+"""A last piece that is shorter [m] is left out."""
+REST_SHARE = 0.5
+"""Share of what ramps may take that turning about a standstill may."""
+ROOMY = 0.05
+"""Where the plan leaves less clearance [m] the wheel turns at rest."""
+SETTLED = 0.3
+"""So long [s] before its last standstill the car tracks no more: the wheel is at rest when it is straight."""
+QUICKEST = 1.0
+"""Acceleration [m/s2] with which a car sets out, the lag of its drive counted."""
+BEHIND = 1e-6
+"""So far [m] behind its edge a ramp has begun, or ended, in spite of rounding."""
+
+
+class Stretch(NamedTuple):
+    """The pieces that are driven in one gear, from ``first`` to ``last``, and their length [m]."""
+
+    first: int
+    last: int
+    length: float
 
 
 class Joint(NamedTuple):
@@ -27,8 +54,8 @@ class Joint(NamedTuple):
 
     ramp: float = 0.0
     """Way [m] over which the curvature changes there; 0: the car has to stand."""
-    speed: float = 0.0
-    """Largest speed [m/s] on that way."""
+    jump: float = 0.0
+    """Of the curvature [1/m]."""
 
 
 class Aim(NamedTuple):
@@ -42,72 +69,202 @@ class Aim(NamedTuple):
     """Off its direction, to the left [rad]."""
 
 
+class Rest(NamedTuple):
+    """How the wheel turns about a standstill."""
+
+    before: float = 0.0
+    """It begins so long [s] before."""
+    after: float = 0.0
+    """The car sets out so long [s] before it is turned in full."""
+    over: float = 0.0
+    """The car stands so far [m] behind the end of its piece."""
+    then: float = 0.0
+    """What it turns to: curvature [1/m] behind the standstill, 0 at the end of the path."""
+
+
 class Ahead(NamedTuple):
     """What the pieces ahead ask for."""
 
     left: float = 0.0
     """Way to the next standstill [m]."""
     speed: float = 0.0
-    """Largest speed [m/s] here, that the joints behind and ahead allow."""
+    """Largest speed [m/s] here, that the ramps here and ahead allow."""
+    rest: Rest = Rest()
+    """That standstill."""
+
+
+def trimmed(path: Path) -> Path:
+    """Return the path without last pieces that are not worth turning the wheel for."""
+    used = path.used
+    while used > 1 and abs(path.pieces[used - 1].way) < SHORTEST:
+        used -= 1
+    return path._replace(used=used)
+
+
+def stretch_of(path: Path, piece: int) -> Stretch:
+    """Return the stretch that ``piece`` is of."""
+    direction = sign(path.pieces[piece].way)
+    first = piece
+    while first > 0 and path.pieces[first - 1].way * direction > 0.0:
+        first -= 1
+    last = first
+    length = abs(path.pieces[first].way)
+    while last + 1 < path.used and path.pieces[last + 1].way * direction > 0.0:
+        last += 1
+        length += abs(path.pieces[last].way)
+    return Stretch(first, last, length)
+
+
+def way_before(path: Path, whole: Stretch, piece: int) -> float:
+    """Return the way [m] from the begin of a stretch to that of a piece."""
+    way = 0.0
+    for number in range(whole.first, piece):
+        way += abs(path.pieces[number].way)
+    return way
 
 
 def joint_of(path: Path, piece: int, params: ValetParams) -> Joint:
     """Return the joint at the end of ``piece``."""
-    here = path.pieces[piece]
-    after = path.pieces[piece + 1 if piece + 1 < PATH else piece]
-    law = params.drive
-    off = min(law.rolling, OF_MARGIN * path.margin)
-    if piece + 1 >= path.used or here.way * after.way <= 0.0 or off <= 0.0:
+    whole = stretch_of(path, piece)
+    return _joint(path, whole, piece, way_before(path, whole, piece + 1), params)
+
+
+def _joint(path: Path, whole: Stretch, piece: int, at: float, params: ValetParams) -> Joint:
+    """Return the joint at the end of ``piece``, ``at`` [m] from the begin of the stretch."""
+    off = _largest_off(path, params)
+    if piece >= whole.last or off <= 0.0:
         return Joint()
-    jump = abs(after.k0 - here.k0)
-    shorter = min(abs(here.way), abs(after.way))
-    if jump < SAME:
-        return Joint(shorter, law.speed)
-    ramp = min(shorter, math.sqrt(24.0 * off / jump))
+    longest = 2.0 * min(at, whole.length - at)
+    k0 = path.pieces[piece].k0
+    k1 = path.pieces[piece + 1].k0
+    if abs(k1 - k0) < SAME:
+        return Joint(longest)
+    ramp = min(longest, math.sqrt(24.0 * off / abs(k1 - k0)))
     base = params.car.wheelbase
-    swing = abs(math.atan(base * after.k0) - math.atan(base * here.k0))
-    speed = RATE_SHARE * ramp * params.car.steering.rate_limit / (params.car.steering.ratio * swing)
-    return Joint(ramp, speed) if speed >= SLOWEST else Joint()
+    swing = math.atan(base * k1) - math.atan(base * k0)
+    return Joint(ramp, k1 - k0) if speed_on(swing / ramp, params) >= SLOWEST else Joint()
+
+
+def speed_on(turning: float, params: ValetParams) -> float:
+    """Return the largest speed [m/s] where the front wheels turn by ``turning`` [rad/m]."""
+    car = params.car.steering
+    most = params.drive.speed
+    rate = RATE_SHARE * car.rate_limit / car.ratio
+    return rate / abs(turning) if rate < most * abs(turning) else most
 
 
 def aim_at(path: Path, piece: int, left: float, params: ValetParams) -> Aim:
-    """Return how to drive ``left`` [m] before the end of ``piece``, ramps counted."""
-    here = path.pieces[piece]
-    direction = sign(here.way)
-    ramp = joint_of(path, piece, params).ramp
-    if ramp > 0.0 and left < 0.5 * ramp:
-        jump = path.pieces[piece + 1 if piece + 1 < PATH else piece].k0 - here.k0
-        on = 0.5 * ramp - left
-        share = on / ramp
-        return Aim(here.k0 + jump * share, jump * on * on * share / 6.0, direction * 0.5 * jump * on * share)
-    if piece > 0:
-        before = joint_of(path, piece - 1, params).ramp
-        rest = 0.5 * before - abs(here.way) + left
-        if before > 0.0 and rest > 0.0:
-            jump = here.k0 - path.pieces[piece - 1].k0
-            share = rest / before
-            beside = jump * (before * before / 24.0 - rest * rest * share / 6.0)
-            return Aim(here.k0 - jump * share, beside, direction * 0.5 * jump * rest * share)
-    return Aim(here.k0)
+    """Return how to drive ``left`` [m] before the end of ``piece``, ramps counted; behind a stretch as at its end."""
+    whole = stretch_of(path, piece)
+    at = 0.0
+    place = min(way_before(path, whole, piece + 1) - left, whole.length - BEHIND)
+    curvature = path.pieces[piece].k0
+    lateral = 0.0
+    heading = 0.0
+    for number in range(whole.first, whole.last):
+        at += abs(path.pieces[number].way)
+        joint = _joint(path, whole, number, at, params)
+        past = place - at
+        if abs(past) < 0.5 * joint.ramp:
+            on = past + 0.5 * joint.ramp
+            share = on / joint.ramp
+            path_turned = 1.0 if number < piece else 0.0
+            curvature += joint.jump * (share - path_turned)
+            heading += joint.jump * (0.5 * on * share - path_turned * past)
+            lateral += joint.jump * (on * on * share / 6.0 - path_turned * 0.5 * past * past)
+    return Aim(curvature, lateral, sign(path.pieces[piece].way) * heading)
+
+
+def turning_at(path: Path, whole: Stretch, place: float, params: ValetParams) -> float:
+    """Return by how much the front wheels turn [rad/m] at a place [m] of a stretch: L k' / (1 + (L k)^2)."""
+    at = 0.0
+    curvature = path.pieces[whole.first].k0
+    slope = 0.0
+    for number in range(whole.first, whole.last):
+        at += abs(path.pieces[number].way)
+        joint = _joint(path, whole, number, at, params)
+        on = place - at + 0.5 * joint.ramp
+        share = 1.0 if on >= joint.ramp else 0.0
+        if 0.0 < on < joint.ramp:
+            share = on / joint.ramp
+            slope += joint.jump / joint.ramp
+        curvature += share * (path.pieces[number + 1].k0 - path.pieces[number].k0)
+    bent = params.car.wheelbase * curvature
+    return params.car.wheelbase * slope / (1.0 + bent * bent)
 
 
 def ahead_of(path: Path, piece: int, left: float, params: ValetParams) -> Ahead:
     """Return what lies ahead of a car ``left`` [m] before the end of ``piece``."""
-    law = params.drive
-    speed = law.speed
+    whole = stretch_of(path, piece)
+    here = way_before(path, whole, piece + 1) - left
+    speed = speed_on(turning_at(path, whole, here, params), params)
+    at = 0.0
+    for number in range(whole.first, whole.last):
+        at += abs(path.pieces[number].way)
+        ramp = _joint(path, whole, number, at, params).ramp
+        if number >= piece and ramp <= 0.0:
+            return Ahead(at - here, speed, rest_before(path, number + 1, params))
+        for share in (-0.5, 0.0, 0.5):
+            place = at + share * ramp
+            if place > here:
+                there = speed_on(turning_at(path, whole, place + BEHIND, params), params)
+                speed = min(speed, math.sqrt(there * there + 2.0 * params.drive.deceleration * (place - here)))
+    rest = rest_before(path, whole.last + 1, params)
+    return Ahead(whole.length + rest.over - here, speed, rest)
+
+
+def rest_before(path: Path, piece: int, params: ValetParams) -> Rest:
+    """Return the standstill before ``piece``; of the number of pieces: that at the end."""
+    before = aim_at(path, piece - 1, 0.0, params).curvature if piece > 0 else 0.0
+    then = aim_at(path, piece, abs(path.pieces[piece].way), params).curvature if piece < path.used else 0.0
+    off = REST_SHARE * _largest_off(path, params)
+    ends = piece >= path.used
+    settled = SETTLED if ends else 0.0
+    if off <= 0.0 or path.margin < ROOMY:
+        return Rest(then=then)
+    if abs(then - before) < SAME:
+        return Rest(settled, then=then)
+    early = Turn()
+    late = Turn()
     if piece > 0:
-        behind = joint_of(path, piece - 1, params)
-        if abs(path.pieces[piece].way) - left < 0.5 * behind.ramp:
-            speed = min(speed, behind.speed)
-    way = left
-    for number in range(PATH - 1):
-        at = piece + number
-        if at < PATH - 1:
-            joint = joint_of(path, at, params)
-            if joint.ramp <= 0.0:
-                return Ahead(way, speed)
-            there = way - 0.5 * joint.ramp
-            fast = math.sqrt(joint.speed * joint.speed + 2.0 * law.deceleration * (there if there > 0.0 else 0.0))
-            speed = min(speed, fast)
-            way = way + abs(path.pieces[at + 1].way)
-    return Ahead(way, speed)
+        early = _turn_while(2.0 * off if ends else off, before, then, params.drive.deceleration, params)
+    if not ends:
+        late = _turn_while(off, then, before, QUICKEST, params)
+    same_gear = piece > 0 and not ends and path.pieces[piece - 1].way * path.pieces[piece].way > 0.0
+    return Rest(max(early.time, settled), late.time, 0.0 if same_gear or piece == 0 else early.over + late.over, then)
+
+
+class Turn(NamedTuple):
+    """How long [s] the wheel turns while the car moves on one side of a standstill, and how far [m] that takes it."""
+
+    time: float = 0.0
+    over: float = 0.0
+
+
+def _turn_while(off: float, near: float, far: float, acceleration: float, params: ValetParams) -> Turn:
+    """Return the turn from curvature ``near`` [1/m] towards ``far`` that takes the car half of ``off`` [m] at most.
+
+    The heading lost is the integral of (k - near) v, by Simpson's rule: at both ends it is 0.
+    """
+    base = params.car.wheelbase
+    car = params.car.steering
+    rate = car.rate_limit / car.ratio
+    angle = math.atan(base * near)
+    swing = math.atan(base * far) - angle
+    steepest = rate * (1.0 + base * base * max(near * near, far * far)) / base
+    cube = 3.0 * off * abs(far - near) / (steepest * acceleration)
+    time = min(0.5 * abs(swing) / rate, math.exp(math.log(cube) / 3.0))
+    half_way = math.tan(angle + sign(swing) * 0.5 * rate * time) / base
+    return Turn(time, abs(half_way - near) * acceleration * time * time / (3.0 * abs(far - near)))
+
+
+def turns_already(ahead: Ahead, params: ValetParams) -> bool:
+    """Return whether the standstill ahead is so near that the wheel turns to what comes behind it."""
+    return (
+        ahead.rest.before > 0.0 and ahead.left < 0.5 * params.drive.deceleration * ahead.rest.before * ahead.rest.before
+    )
+
+
+def _largest_off(path: Path, params: ValetParams) -> float:
+    """Return how far [m] off its path the car may come by turning its wheel on the move."""
+    return min(params.drive.rolling, OF_MARGIN * path.margin)

@@ -13,6 +13,7 @@ from controller_fmu.valet.chart import Guard, Step, step_transition
 from controller_fmu.valet.driven import AT_END, ValetState, heard_on, moved_on, planned_on, seen_on
 from controller_fmu.valet.nearby import forget_nearby
 from controller_fmu.valet.params import ValetParams
+from controller_fmu.valet.rolling import rest_before
 from controller_fmu.valet.search import Search, begin_search, reason_to_end, search, told_slot, with_map
 from controller_fmu.valet.watch import fault_of, reason_to_fail, watch
 from modelkit.maths import wrap_angle
@@ -53,6 +54,8 @@ def guards_of(state: ValetState, inputs: ControllerInput, params: ValetParams) -
     standing = abs(speed) <= params.threshold.standstill
     wheel = inputs.steering_wheel_angle
     straight = abs(wheel) <= params.threshold.wheel
+    rolls_after = rest_before(state.path, state.piece, params).after
+    turned = max(params.threshold.wheel, params.car.steering.rate_limit * rolls_after)
     stop = abs(speed) * params.drive.delay + 0.5 * speed * speed / params.drive.brake
     lost = abs(tracked.lateral_error) > guard.corridor or abs(tracked.heading_error) > guard.corridor_heading
     lost = lost or state.nearby.in_the_way
@@ -63,7 +66,7 @@ def guards_of(state: ValetState, inputs: ControllerInput, params: ValetParams) -
         bit(Guard.TAKEN_OVER, inputs.driver_takeover or (params.search.active and not inputs.apa_switch))
         | bit(Guard.FAULT, state.reason != Reason.NONE)
         | bit(Guard.PLANNED, state.searched > 0 and state.path.used > 0)
-        | bit(Guard.WHEEL_SET, abs(wheel - state.wheel) <= params.threshold.wheel and not state.sight.blocked)
+        | bit(Guard.WHEEL_SET, abs(wheel - state.wheel) <= turned and not state.sight.blocked)
         | bit(Guard.MUST_HALT, tracked.ahead.left <= stop - state.early or state.sight.blocked or lost)
         | bit(Guard.STANDING_LOST, standing and (lost or blocked_long))
         | bit(Guard.STANDING_AT_END, standing and at_end)

@@ -82,7 +82,7 @@ def apa_outputs(state: ApaState, params: ControllerParams) -> ControllerOutput:
     driving = state.mode in (Mode.AUTO_PARKING_ASSIST, Mode.POSITION_TUNING)
     own = driving and params.apa.drive.longitudinal == Longitudinal.OWN_SPEED
     parking = state.parking
-    site = site_for(state.around.slot, parking.attempt, params)
+    site = site_for(state.around.slot, parking.attempt, parking.out, params)
     advised = params.apa.search.speed if state.mode in (Mode.PARKING_SPACE_SEARCH, Mode.STANDBY) else abs(parking.speed)
     stopping = driving and parking.step != Step.DRIVE
     braking = (own and stopping) or (driving and parking.sight.blocked)

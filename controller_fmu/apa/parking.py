@@ -13,8 +13,9 @@ from controller_fmu.apa.tracking import Leg, Tracked, next_standstill, set_wheel
 from controller_fmu.apa.watch import STANDING
 from controller_fmu.apa.ways.fit import closer, following, margins_of, under_way
 from controller_fmu.apa.ways.move import length_of
+from controller_fmu.apa.ways.out_limits import CUTS, MOVES, SHIFTS, margins_out, next_attempt_out, with_lock
 from controller_fmu.apa.ways.planner import FOUND, NOTHING, SEARCHING, PlanSearch, new_search, search_on
-from controller_fmu.apa.ways.pull_out import plan_out
+from controller_fmu.apa.ways.pull_out import OutSearch, plan_out
 from controller_fmu.common.chart import bit
 from controller_fmu.common.slot_frame import to_slot
 from controller_fmu.common.steering_monitor import Steering, rate_of
@@ -43,6 +44,7 @@ class Parking(NamedTuple):
     plan: PlanSearch = PlanSearch()
     out: bool = False
     """On the way out of the slot."""
+    way_out: OutSearch = OutSearch()
     attempt: int = 0
     """Odd: the car may stand out of the slot a little; each two more: smaller margins, see ``fit``."""
     leg: Leg = Leg()
@@ -67,9 +69,10 @@ class Parking(NamedTuple):
     """Speed asked for or advised [m/s], reverse negative."""
 
 
-def site_for(slot: Slot, attempt: int, params: ControllerParams) -> Site:
-    """Return the slot as the planner sees it in this attempt."""
-    return site_of(slot, shape_of(params), margins_of(attempt, params.apa))
+def site_for(slot: Slot, attempt: int, out: bool, params: ControllerParams) -> Site:
+    """Return the slot as the planner sees it in this attempt to come in, or ``out``."""
+    margins = margins_out(attempt, params.apa) if out else margins_of(attempt, params.apa)
+    return site_of(slot, shape_of(params), margins)
 
 
 class CarAtSite(NamedTuple):
@@ -79,9 +82,9 @@ class CarAtSite(NamedTuple):
     pose: Pose
 
 
-def place_for(slot: Slot, attempt: int, odometry: Pose, params: ControllerParams) -> CarAtSite:
+def place_for(slot: Slot, attempt: int, out: bool, odometry: Pose, params: ControllerParams) -> CarAtSite:
     """Return the slot of an attempt and the car in it."""
-    site = site_for(slot, attempt, params)
+    site = site_for(slot, attempt, out, params)
     return CarAtSite(site, to_slot(odometry, site.frame))
 
 
@@ -93,9 +96,8 @@ def next_attempt(state: Parking, plan: PlanSearch, site: Site, params: Controlle
     """
     nothing = plan.status == NOTHING
     if state.out:
-        many = plan.status == FOUND and more_shifts(state, plan) > most_shifts(site.kind, params)
-        return closer(state.attempt) if nothing or many else state.attempt
-    most = params.apa.end.few if state.direction == 0 and state.attempt == 0 else most_shifts(site.kind, params)
+        return next_attempt_out(state.attempt, plan, more_shifts(state, plan), state.direction)
+    most = params.apa.end.few if state.direction == 0 and state.attempt == 0 else most_shifts(site.kind, False, params)
     too_many = plan.status == FOUND and more_shifts(state, plan) > most
     if not (nothing or too_many):
         return state.attempt
@@ -122,17 +124,21 @@ def park(
     params: ControllerParams,
 ) -> Parking:
     """Return the manoeuvre one sample later; while not ``allowed`` the first plan is made, and no more."""
-    place = place_for(around.slot, state.attempt, inputs.odometry, params)
+    place = place_for(around.slot, state.attempt, state.out, inputs.odometry, params)
     if state.step == Step.PLAN:
         car = shape_of(params)
         if state.out:
-            plan = plan_out(place.pose, place.site, car)
+            car = with_lock(car, params.apa)
+            looked = plan_out(state.way_out, place.pose, place.site, car, MOVES[state.attempt])
+            plan = looked.plan
+            state = state._replace(way_out=looked.search)
         else:
             plan = search_on(state.plan, place.site, car, params.apa.plan.at_a_time)
         attempt = next_attempt(state, plan, place.site, params)
         if attempt != state.attempt:
-            place = place_for(around.slot, attempt, inputs.odometry, params)
+            place = place_for(around.slot, attempt, state.out, inputs.odometry, params)
             plan = new_search(place.pose)
+            state = state._replace(way_out=OutSearch())
         state = state._replace(plan=plan, attempt=attempt)
     state = state._replace(sight=Sight())
     if state.step in (Step.DRIVE, Step.HALT, Step.SET_WHEEL):
@@ -154,7 +160,7 @@ def _looked_around(
     tracked = track(move, state.leg, state.tracked.way, place.pose, params.apa.drive, params.car.wheelbase)
     bare = site_of(around.slot, shape_of(params), Margins(0.0, 0.0, 0.0))
     sight = sight_of(move.direction, bare, around, inputs, params)
-    if state.step == Step.DRIVE and not is_rest_free(move, tracked, place.site, bare, params):
+    if state.step == Step.DRIVE and not is_rest_free(move, tracked, place.site, bare, state.out, params):
         sight = sight._replace(blocked=True, unknown=False)
     return state._replace(tracked=tracked, sight=sight)
 
@@ -175,9 +181,9 @@ def _guards(
     sight = state.sight
     tracked = state.tracked
     stuck = (
-        state.cuts > MOST_CUTS
+        state.cuts > most_cuts(state.out)
         or plan.status == NOTHING
-        or (plan.status == FOUND and more_shifts(state, plan) > most_shifts(place.site.kind, params))
+        or (plan.status == FOUND and more_shifts(state, plan) > most_shifts(place.site.kind, state.out, params))
     )
     wheel = inputs.steering_wheel_angle
     set_up = abs(wheel - state.wheel) <= params.threshold.wheel
@@ -203,17 +209,24 @@ def more_shifts(state: Parking, plan: PlanSearch) -> int:
     return state.shifts + first + plan.moves - 1
 
 
-def most_shifts(kind: int, params: ControllerParams) -> int:
-    """Return the most shifts into a slot of this kind."""
+def most_shifts(kind: int, out: bool, params: ControllerParams) -> int:
+    """Return the most shifts into a slot of this kind, or ``out`` of any."""
+    if out:
+        return SHIFTS
     most = params.apa.plan.shifts
     return min(most, SHIFTS_PERPENDICULAR) if kind == Kind.PERPENDICULAR else most
 
 
+def most_cuts(out: bool) -> int:
+    """Return how many moves may be cut short, on the way in or ``out``."""
+    return CUTS if out else MOST_CUTS
+
+
 def has_failed(state: Parking, kind: int, params: ControllerParams) -> bool:
     """Return whether no way leads on from here into a slot of this kind."""
-    stuck = state.plan.status == NOTHING or state.cuts > MOST_CUTS or state.missed
+    stuck = state.plan.status == NOTHING or state.cuts > most_cuts(state.out) or state.missed
     return state.step == Step.PLAN and (
-        stuck or (state.plan.status == FOUND and more_shifts(state, state.plan) > most_shifts(kind, params))
+        stuck or (state.plan.status == FOUND and more_shifts(state, state.plan) > most_shifts(kind, state.out, params))
     )
 
 
@@ -232,8 +245,9 @@ def _moved_on(
             stuck=state.cut and state.tracked.way < AT_END,
             cut=False,
             ended=before == Step.HALT and state.plan.moves <= 1,
-            attempt=under_way(state.attempt),
+            attempt=max(state.attempt - 1, 0) if state.out else under_way(state.attempt),
             plan=new_search(place.pose),
+            way_out=OutSearch(),
         )
     if step == Step.SET_WHEEL:
         leg = _next_leg(state, before)
@@ -286,8 +300,8 @@ def start_planning(slot: Slot, pose: Pose, out: bool, resumes: bool, params: Con
 
     A car that ``resumes`` may stand nearer to the neighbours than one that sets out: its margins are those under way.
     """
-    attempt = under_way(0) if resumes else 0
-    site = site_for(slot, attempt, params)
+    attempt = under_way(0) if resumes and not out else 0
+    site = site_for(slot, attempt, out, params)
     return Parking(step=Step.PLAN, plan=new_search(to_slot(pose, site.frame)), attempt=attempt, out=out)
 
 

@@ -10,6 +10,7 @@ from controller_fmu.apa.around.row import slot_of_map
 from controller_fmu.apa.around.shifted import followed, relocated
 from controller_fmu.apa.around.standing_in import slot_around
 from controller_fmu.apa.around.surroundings import Around, shape_of
+from controller_fmu.apa.around.within import heard_within
 from controller_fmu.apa.chart import Guard, Mode, transition
 from controller_fmu.apa.choice import ChosenTask
 from controller_fmu.apa.hearing.search import SearchState, begin_search, number_chosen, search, without
@@ -125,6 +126,7 @@ def _parked_on(
     if is_told_anew(state.clock_ns, dt_ns, params.car.ultrasonic.cycle):
         here = moved(here, inputs.odometry, params.apa.map)
         here = heard(here, inputs.ultrasonic, params.car.ultrasonic, params.apa.map)
+        here = heard_within(here, inputs.ultrasonic, params.car.ultrasonic) if here.within else here
         halted = parking.step in (Step.HALT, Step.SET_WHEEL) and abs(inputs.measured_speed) <= STANDING
         if halted:
             here = walled(here, slot, inputs, parking.sight.blocked, params)
@@ -285,7 +287,7 @@ def _shown(state: ApaState, inputs: ControllerInput, params: ControllerParams) -
     elif number > 0:
         slot = braked(state.search.slots[number - 1], state.search.fastest, params)
     if not state.resumes:
-        here = begin_map(slot, inputs.odometry, params.apa.map)
+        here = begin_map(slot, inputs.odometry, params.apa.map)._replace(within=out)
     return state._replace(
         around=Around(slot, here, GuardState(delay=state.around.guard.delay, shown=state.around.guard.shown)),
         parking=start_planning(slot, inputs.odometry, out, state.resumes, params),

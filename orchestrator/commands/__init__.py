@@ -23,6 +23,7 @@ COMMANDS = {
 """Command -> what it does. Its module is imported when it is chosen, so that ``apa --help`` imports none."""
 STUDIES = {
     "apa-grid": "orchestrator.grid.study",
+    "apa-out": "orchestrator.grid.out_study",
     "apa-world": "orchestrator.grid.world.study",
     "bakeoff": "orchestrator.bakeoff.study",
     "guo2015-claim": "orchestrator.bakeoff.claim",

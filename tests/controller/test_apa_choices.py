@@ -9,7 +9,7 @@ from shapely.geometry import box
 
 from controller_fmu.apa.chart import Mode
 from controller_fmu.apa.signals import Family
-from controller_fmu.apa.ways.pull_out import CLEAR
+from controller_fmu.apa.ways.out_moves import CLEAR
 from modelkit.vocabulary import Pose, Prompt
 from orchestrator.cosim.fmu_files import can_compile, fmu_files
 from orchestrator.scenario.load_scenario import load_scenario
@@ -30,7 +30,7 @@ ENDS = {
     "apa-choose": 0.14,
     "apa-slot-too-shallow": 0.9,
     "apa-pull-out": 0.1,
-    "apa-pull-out-right": 0.1,
+    "apa-pull-out-right": 0.07,
     "apa-resume": 0.12,
     "apa-switched-on-again": 0.12,
 }

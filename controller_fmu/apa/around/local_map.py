@@ -25,6 +25,8 @@ SIDE_PERPENDICULAR = 2.5
 DEPTH_PARALLEL = 1.8
 DEPTH_PERPENDICULAR = 4.8
 """How deep [m] it is taken to be."""
+DEEPER = 0.6
+"""From within nobody has heard how far out a neighbour stands: it may be so much [m] deeper than that."""
 SURE = 1.3
 SURE_PARALLEL = 3.5
 """So far [m] from its corner a neighbour's side goes on for sure."""
@@ -73,6 +75,8 @@ class LocalMap(NamedTuple):
     empty_a: bool = False
     """Nobody stands there: it is not heard, and nothing is learnt of it."""
     empty_b: bool = False
+    within: bool = False
+    """The car stood between the neighbours when the map was begun."""
 
 
 class MapEcho(NamedTuple):
@@ -145,6 +149,7 @@ def echo_of_neighbour(ear: ConeEar, here: LocalMap, who: int) -> Echo:
     """Return what a sensor should hear of neighbour A or B."""
     length = SIDE_PARALLEL if here.kind == Kind.PARALLEL else SIDE_PERPENDICULAR
     depth = DEPTH_PARALLEL if here.kind == Kind.PARALLEL else DEPTH_PERPENDICULAR
+    depth = depth + DEEPER if here.within else depth
     return _of(ear, here.a, -length, depth) if who == A else _of(ear, here.b, length, depth)
 
 
@@ -253,7 +258,8 @@ def _told(here: LocalMap, ear: ConeEar, what: MapEcho, told: Reading, params: Ma
         thing = wider(thing, DOUBT, 0.0)
     else:
         told_out = learnt(thing, slope, error, noise, params.floor)
-        least = PLAIN if what.echo.hit == Hit.SQUARE else CORNER_PLAIN if here.kind == Kind.PARALLEL else 0.0
+        least = (PLAIN if here.within else CORNER_PLAIN) if here.kind == Kind.PARALLEL else 0.0
+        least = PLAIN if what.echo.hit == Hit.SQUARE else least
         along = what.who != WALL and abs(ny) < least
         thing = told_out._replace(y=thing.y, yy=thing.yy) if along else told_out
     if what.who == A:

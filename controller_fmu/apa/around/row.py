@@ -62,6 +62,7 @@ def slot_of_map(here: LocalMap, slot: Slot, params: MapParams) -> Slot:
         skew_a=here.a.heading - heading,
         skew_b=here.b.heading - heading,
         unsure=_reserve(here, params),
+        opposite=here.across - here.a.y if here.within and here.across < UNSEEN else slot.opposite,
     )
 
 

@@ -7,7 +7,7 @@ that parks before a wheel stop stands in the row only if it comes near it.
 import math
 
 from controller_fmu.apa.around.arcs import LOOKED_AT
-from controller_fmu.apa.around.local_map import WALL, LocalMap, ear_at, expected
+from controller_fmu.apa.around.local_map import WALL, A, B, LocalMap, ear_at, expected
 from controller_fmu.apa.around.near import FREE, nearest_told
 from controller_fmu.interface import ControllerParams
 
@@ -16,6 +16,8 @@ SURE = 0.03
 """A wall known to so much [m] may come nearer."""
 WALL_GAP = 0.06
 """So near [m]."""
+NEIGHBOUR_GAP = 0.05
+"""A car on its way out may come so near [m] to the neighbours whom it heard before it set out."""
 SAME = 0.06
 """An echo is of the wall if it says the distance to it to so much [m] and a tenth of it."""
 
@@ -35,10 +37,12 @@ def room_straight(readings: tuple[float, ...], here: LocalMap, direction: int, p
         ahead = yaw < STRAIGHT if direction > 0 else yaw > math.pi - STRAIGHT
         if ahead and reading < LOOKED_AT:
             free = reading - guard.stop_gap
-            if sure:
+            if sure or here.within:
                 known = expected(ear_at(mount, here.pose, here.frame.mirror, sensors.half_angle), here)
                 far = known.echo.distance
-                if known.who == WALL and abs(max(far, sensors.min_range) - reading) < SAME + 0.1 * reading:
-                    free = max(free, (min(reading, far) if reading > lowest else far) - WALL_GAP)
+                told = (sure and known.who == WALL) or (here.within and (known.who == A or known.who == B))
+                if told and abs(max(far, sensors.min_range) - reading) < SAME + 0.1 * reading:
+                    gap = WALL_GAP if known.who == WALL else NEIGHBOUR_GAP
+                    free = max(free, (min(reading, far) if reading > lowest else far) - gap)
             room = min(room, free)
     return room

@@ -6,6 +6,7 @@ from typing import NamedTuple
 from controller_fmu.apa.around.course import HeldCourse
 from controller_fmu.apa.around.guard import GuardState, Sight, watch_way
 from controller_fmu.apa.around.local_map import LocalMap
+from controller_fmu.apa.around.near import NEARER
 from controller_fmu.apa.around.row import is_certain, is_heard, line_unsure
 from controller_fmu.apa.around.shifted import Shifts
 from controller_fmu.apa.outline import Shape, clearance, outline_rate, sure_steps
@@ -64,14 +65,19 @@ def is_sure(inputs: ControllerInput, around: Around, params: ControllerParams) -
     return is_certain(around.map, params.apa.map) and is_heard(around.map, inputs.ultrasonic, params)
 
 
-def is_rest_free(move: Move, tracked: Tracked, site: Site, bare: Site, params: ControllerParams) -> bool:
+def is_rest_free(move: Move, tracked: Tracked, site: Site, bare: Site, out: bool, params: ControllerParams) -> bool:
     """Return whether the rest of a move, as far as it is looked at, stays clear of what the map has now.
 
-    ``bare``: the slot without margins. The car is as far beside its path as it is now.
+    ``bare``: the slot without margins. The car is as far beside its path as it is now. On its way ``out`` it may drive
+    away from what it stands near to.
     """
     car = shape_of(params)
     gap = params.apa.guard.gap
     off = tracked.lateral_error
+    least = gap
+    if out:
+        now = point_at(move, tracked.way).pose
+        least = min(gap, clearance(_beside(now, off, site, bare), car, bare.obstacles, gap) - NEARER)
     moved = LOOK * outline_rate(car.curvature, car._replace(half_width=car.half_width + abs(off)))
     sure = 0
     for number in range(1, LOOKS + 1):
@@ -81,14 +87,17 @@ def is_rest_free(move: Move, tracked: Tracked, site: Site, bare: Site, params: C
         if sure > 0:
             sure -= 1
         else:
-            at = point_at(move, way).pose
-            pose = Pose(at.x - off * math.sin(at.heading), at.y + off * math.cos(at.heading), at.heading)
-            pose = to_slot(to_world(pose, site.frame), bare.frame)
-            free = clearance(pose, car, bare.obstacles, gap)
-            if free < gap:
+            free = clearance(_beside(point_at(move, way).pose, off, site, bare), car, bare.obstacles, gap)
+            if free < least:
                 return False
             sure = sure_steps(free - gap, moved)
     return True
+
+
+def _beside(at: Pose, off: float, site: Site, bare: Site) -> Pose:
+    """Return the pose, in bare's frame, of a car ``off`` [m] to the left of ``at`` (site's frame)."""
+    pose = Pose(at.x - off * math.sin(at.heading), at.y + off * math.cos(at.heading), at.heading)
+    return to_slot(to_world(pose, site.frame), bare.frame)
 
 
 def sight_of(direction: int, bare: Site, around: Around, inputs: ControllerInput, params: ControllerParams) -> Sight:

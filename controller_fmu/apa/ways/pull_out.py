@@ -1,91 +1,135 @@
-"""The way out of a parallel slot: at full lock forward and back in turn, until straight ahead is clear.
+"""The way out of a slot: moves back and forth, looked for level by level, until the car can drive off.
 
-The slot lies at y < 0 of its target's frame. Forward to the left and back to the right both turn the car to the road.
-Each move goes as far as nothing is near; the last ends where the car could drive straight on past the neighbour ahead.
+Level n of the search holds the best poses after n moves, ``WIDTH`` of them at most. From each the moves of
+``out_moves`` go as far as nothing is near; two poses that are nearly the same are one. The first level from which one
+move leads out has a way of the fewest moves; its first move is driven, then the search is made anew.
 """
 
 from typing import NamedTuple
 
-from controller_fmu.apa.outline import Box, Obstacles, Shape, clearance, free_way
-from controller_fmu.apa.slot import Site
-from controller_fmu.apa.ways.move import Move
-from controller_fmu.apa.ways.planner import FOUND, NOTHING, PlanSearch
-from controller_fmu.apa.ways.turns import two_arcs
-from controller_fmu.common.curve import advance
+from controller_fmu.apa.outline import Shape
+from controller_fmu.apa.slot import Kind, Site
+from controller_fmu.apa.ways.move import Move, end_of, length_of
+from controller_fmu.apa.ways.out_moves import CHOICES, NO_WAY, is_out, last_move, next_move
+from controller_fmu.apa.ways.planner import FOUND, NOTHING, SEARCHING, PlanSearch
 from modelkit.vocabulary import Pose
 
-CLEAR = 4.0
-"""So far [m] straight ahead nothing of the slot may stand when the car is handed over."""
-LONGEST = 3.0
-SHORTEST = 0.1
+WIDTH = 24
+AT_A_TIME = 8
+"""Poses looked on from in one sample."""
+SHORTEST = 0.04
 """A move that is shorter [m] leads nowhere."""
-STEP = 0.1
-FARTHEST = 50
-"""Steps of the last move that are looked at."""
-MOST = 8
-"""Moves that are looked ahead."""
+SAME_PLACE = 0.03
+SAME_HEADING = 0.02
+"""Poses that differ by less [m, rad] are one."""
 
 
-class WayOut(NamedTuple):
-    """Moves that a way out takes, 0: there is none, and its first one."""
+class OutNode(NamedTuple):
+    """A pose reached, and the first move on the way to it."""
 
-    moves: int
-    first: Move
+    pose: Pose = Pose()
+    direction: int = 0
+    """Of the next move; 0: no pose."""
+    score: float = 0.0
+    """How much [rad] of the way is done."""
+    first: int = 0
+    """Number of the first move among those from the start."""
+    ahead: int = 1
+    """Its direction."""
 
 
-def plan_out(start: Pose, site: Site, car: Shape) -> PlanSearch:
-    """Return the next move on the way out from ``start`` (target's frame), of the way with the fewest moves.
+class OutSearch(NamedTuple):
+    """The level that is looked on from, the next one, and how far the search has come."""
 
-    Found with no moves: the front is clear.
+    start: Pose = Pose()
+    level: int = 0
+    """Moves driven to the poses of this level."""
+    place: int = 0
+    nodes: tuple[OutNode, ...] = (OutNode(),) * WIDTH
+    reached: tuple[OutNode, ...] = (OutNode(),) * WIDTH
+
+
+def begun_at(start: Pose) -> OutSearch:
+    """Return the search from ``start`` (target's frame), forward or back."""
+    nodes = (OutNode(),) * WIDTH
+    return OutSearch(start, nodes=_kept(_kept(nodes, OutNode(start, 1)), OutNode(start, -1, 0.0, 0, -1)))
+
+
+class OutPlan(NamedTuple):
+    """The search, and what has come of it."""
+
+    search: OutSearch
+    plan: PlanSearch
+
+
+def plan_out(search: OutSearch, start: Pose, site: Site, car: Shape, most: int) -> OutPlan:
+    """Return the search from ``start`` for a way of at most so many moves, some poses later.
+
+    Found with no moves: the car is out.
     """
-    if is_clear(start, site, car):
-        return PlanSearch(FOUND, found=True, move=Move(start))
-    best = _way_out(start, 1, 1.0, site, car)
-    for share in (0.0, 1.0):
-        other = _way_out(start, -1, share, site, car)
-        if other.moves > 0 and (best.moves == 0 or other.moves < best.moves):
-            best = other
-    if best.moves == 0:
-        return PlanSearch(NOTHING, move=Move(start))
-    return PlanSearch(FOUND, found=True, moves=best.moves, move=best.first)
+    if search.level == 0 and search.nodes[0].direction == 0:
+        search = begun_at(start)
+    start = search.start
+    if is_out(start, site, car):
+        return OutPlan(search, PlanSearch(FOUND, found=True, move=Move(start)))
+    for _ in range(AT_A_TIME):
+        node = search.nodes[search.place]
+        if node.direction == 0 or search.place == WIDTH - 1:
+            search = search._replace(
+                level=search.level + 1,
+                place=0,
+                nodes=search.reached,
+                reached=(OutNode(),) * WIDTH,
+            )
+            if search.nodes[0].direction == 0 or search.level >= most:
+                return OutPlan(search, PlanSearch(NOTHING, move=Move(start)))
+        else:
+            last = last_move(node.pose, site, car) if node.direction > 0 else NO_WAY
+            if last.direction != 0:
+                first = last if search.level == 0 else next_move(start, node.ahead, node.first, site, car)
+                return OutPlan(search, PlanSearch(FOUND, found=True, moves=search.level + 1, move=first))
+            search = search._replace(place=search.place + 1, reached=_on_from(search, node, site, car))
+    return OutPlan(search, PlanSearch(SEARCHING, move=Move(start)))
 
 
-def is_clear(pose: Pose, site: Site, car: Shape) -> bool:
-    """Return whether a car at ``pose`` could drive straight on past the neighbour ahead."""
-    none = Box(1.0, -1.0, 1.0, -1.0)
-    ahead = Obstacles(none, site.obstacles.ahead, none, none)
-    return clearance(pose, car._replace(front=car.front + CLEAR), ahead, 0.0) > 0.0
+def _on_from(search: OutSearch, node: OutNode, site: Site, car: Shape) -> tuple[OutNode, ...]:
+    """Return the poses reached, with those that a move from ``node`` leads to."""
+    reached = search.reached
+    for number in range(CHOICES):
+        move = next_move(node.pose, node.direction, number, site, car)
+        if length_of(move) >= SHORTEST:
+            pose = end_of(move)
+            first = number if search.level == 0 else node.first
+            reached = _kept(reached, OutNode(pose, -node.direction, _score(pose, site, car), first, node.ahead))
+    return reached
 
 
-def way_to_clear(pose: Pose, site: Site, car: Shape) -> float:
-    """Return how far [m] to drive forward at full lock until straight ahead is clear, -1 if that cannot be."""
-    for number in range(1, FARTHEST + 1):
-        way = STEP * number
-        at = advance(pose, 1.0, way, car.curvature, car.curvature)
-        if clearance(at, car, site.obstacles, 0.0) <= 0.0 or at.heading > 1.2:
-            return -1.0
-        if is_clear(at, site, car):
-            return way
-    return -1.0
+def _score(pose: Pose, site: Site, car: Shape) -> float:
+    """Return how much [rad] of the way out is done at ``pose``: turned to the road, and out of the row."""
+    if site.kind == Kind.PERPENDICULAR:
+        return pose.heading + 0.1 * pose.x
+    return pose.heading + 2.0 * pose.y / car.front
 
 
-def _way_out(start: Pose, first: int, share: float, site: Site, car: Shape) -> WayOut:
-    """Return the way out whose first move goes in this direction, at full lock or (``share`` 0) straight."""
-    none = Move(start)
-    pose = start
-    direction = first
-    first_move = none
-    for number in range(MOST):
-        lock = share if number == 0 else 1.0
-        c = direction * lock * car.curvature
-        out = way_to_clear(pose, site, car) if direction > 0 else -1.0
-        way = out if out > 0.0 else free_way(pose, float(direction), c, LONGEST, car, site.obstacles)
-        if way < SHORTEST:
-            return WayOut(0, none)
-        if number == 0:
-            first_move = two_arcs(start, direction, c, way, 0.0, 0.0)
-        if out > 0.0:
-            return WayOut(number + 1, first_move)
-        pose = advance(pose, float(direction), way, c, c)
-        direction = -direction
-    return WayOut(0, none)
+def _kept(nodes: tuple[OutNode, ...], node: OutNode) -> tuple[OutNode, ...]:
+    """Return the best of ``nodes`` and ``node``, best first; of two that are nearly the same the better one."""
+    carried = node
+    for _ in range(WIDTH):
+        here = nodes[0]
+        kept = here
+        if carried.direction != 0:
+            if here.direction != 0 and _is_same(here, node):
+                kept = here if here.score >= carried.score else carried
+                carried = OutNode()
+            elif here.direction == 0 or carried.score > here.score:
+                kept = carried
+                carried = here
+        nodes = nodes[1:] + (kept,)
+    return nodes
+
+
+def _is_same(one: OutNode, other: OutNode) -> bool:
+    a = one.pose
+    b = other.pose
+    near = abs(a.x - b.x) < SAME_PLACE and abs(a.y - b.y) < SAME_PLACE
+    return one.direction == other.direction and near and abs(a.heading - b.heading) < SAME_HEADING

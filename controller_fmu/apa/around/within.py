@@ -1,0 +1,37 @@
+"""What a car on its way out tells of its surroundings beside the map: how far its neighbours stand out, and the street.
+
+From within nobody has heard how far out the neighbours of a slot along the road stand: they are taken to stand out as
+far as is likely, and never further in. What lies across the road comes within reach on the way; nothing nearer than a
+street is wide is taken for it.
+"""
+
+import math
+
+from controller_fmu.apa.around.local_map import OTHER_SIDE, LocalMap, ear_at
+from controller_fmu.apa.slot import Kind
+from controller_fmu.common.sensors import HEARD
+from modelkit.car import CarUltrasonic
+
+NARROWEST = 4.5
+"""A street is no narrower [m]."""
+FURTHER = 0.3
+"""Of what is heard there the nearest is kept, until it is heard so much [m] further off: it was somebody."""
+SENSORS = (1, 2, 3, 10)
+"""Sensors that look across the road in turn while the car turns to the left."""
+SQUARE = 0.4
+"""A wall is heard at its distance by a sensor that looks at it to so much [rad]."""
+
+
+def heard_within(here: LocalMap, readings: tuple[float, ...], sensors: CarUltrasonic) -> LocalMap:
+    """Return the map of a car on its way out after new ``readings``."""
+    if here.kind != Kind.PARALLEL:
+        for place in SENSORS:
+            number = place if here.frame.mirror > 0.0 else OTHER_SIDE[place]
+            ear = ear_at(sensors.mounts[number], here.pose, here.frame.mirror, sensors.half_angle)
+            far = ear.y + readings[number]
+            square = ear.ay > math.cos(SQUARE)
+            heard = square and readings[number] < HEARD * sensors.max_range and far > here.a.y + NARROWEST
+            if heard and (far < here.across or far > here.across + FURTHER):
+                here = here._replace(across=far)
+        return here
+    return here._replace(a=here.a._replace(y=max(here.a.y, 0.0)), b=here.b._replace(y=max(here.b.y, 0.0)))

@@ -6,6 +6,8 @@ from controller_fmu.apa.around.guard import Sight
 from controller_fmu.apa.around.surroundings import Around, is_rest_free, is_settled, is_sure, shape_of, sight_of
 from controller_fmu.apa.manoeuvre_chart import Guard as StepGuard
 from controller_fmu.apa.manoeuvre_chart import Step, step_transition
+from controller_fmu.apa.out.limits import CUTS, MOVES, SHIFTS, margins_out, next_attempt_out, with_lock
+from controller_fmu.apa.out.pull_out import OutSearch, plan_out
 from controller_fmu.apa.params import Longitudinal
 from controller_fmu.apa.slot import Kind, Margins, Site, Slot, site_of
 from controller_fmu.apa.speed import planned_speed, stopping_way
@@ -13,9 +15,7 @@ from controller_fmu.apa.tracking import Leg, Tracked, next_standstill, set_wheel
 from controller_fmu.apa.watch import STANDING
 from controller_fmu.apa.ways.fit import closer, following, margins_of, under_way
 from controller_fmu.apa.ways.move import length_of
-from controller_fmu.apa.ways.out_limits import CUTS, MOVES, SHIFTS, margins_out, next_attempt_out, with_lock
 from controller_fmu.apa.ways.planner import FOUND, NOTHING, SEARCHING, PlanSearch, new_search, search_on
-from controller_fmu.apa.ways.pull_out import OutSearch, plan_out
 from controller_fmu.common.chart import bit
 from controller_fmu.common.slot_frame import to_slot
 from controller_fmu.common.steering_monitor import Steering, rate_of

@@ -8,13 +8,13 @@ from controller_fmu.apa.around.nearer import explained, nearer_than_thought, pre
 from controller_fmu.apa.around.relocate import braked, walled
 from controller_fmu.apa.around.row import slot_of_map
 from controller_fmu.apa.around.shifted import followed, relocated
-from controller_fmu.apa.around.standing_in import slot_around
 from controller_fmu.apa.around.surroundings import Around, shape_of
-from controller_fmu.apa.around.within import heard_within
 from controller_fmu.apa.chart import Guard, Mode, transition
 from controller_fmu.apa.choice import ChosenTask
 from controller_fmu.apa.hearing.search import SearchState, begin_search, number_chosen, search, without
 from controller_fmu.apa.manoeuvre_chart import Step
+from controller_fmu.apa.out.standing_in import slot_around
+from controller_fmu.apa.out.within import heard_within
 from controller_fmu.apa.parking import (
     Parking,
     cut_short,

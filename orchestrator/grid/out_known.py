@@ -2,11 +2,11 @@
 
 import math
 
+from controller_fmu.apa.out.limits import MOVES
+from controller_fmu.apa.out.pull_out import OutSearch, plan_out
 from controller_fmu.apa.outline import Box, Obstacles, Shape, clearance, grown
 from controller_fmu.apa.slot import Kind, Site
-from controller_fmu.apa.ways.out_limits import MOVES
 from controller_fmu.apa.ways.planner import FOUND, SEARCHING, PlanSearch
-from controller_fmu.apa.ways.pull_out import OutSearch, plan_out
 from controller_fmu.common.slot_frame import SlotFrame, to_slot
 from modelkit.car import largest_curvature
 from modelkit.vocabulary import Pose

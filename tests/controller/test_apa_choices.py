@@ -8,8 +8,8 @@ import pytest
 from shapely.geometry import box
 
 from controller_fmu.apa.chart import Mode
+from controller_fmu.apa.out.moves import CLEAR
 from controller_fmu.apa.signals import Family
-from controller_fmu.apa.ways.out_moves import CLEAR
 from modelkit.vocabulary import Pose, Prompt
 from orchestrator.cosim.fmu_files import can_compile, fmu_files
 from orchestrator.scenario.load_scenario import load_scenario

@@ -7,10 +7,10 @@ move leads out has a way of the fewest moves; its first move is driven, then the
 
 from typing import NamedTuple
 
+from controller_fmu.apa.out.moves import CHOICES, NO_WAY, is_out, last_move, next_move
 from controller_fmu.apa.outline import Shape
 from controller_fmu.apa.slot import Kind, Site
 from controller_fmu.apa.ways.move import Move, end_of, length_of
-from controller_fmu.apa.ways.out_moves import CHOICES, NO_WAY, is_out, last_move, next_move
 from controller_fmu.apa.ways.planner import FOUND, NOTHING, SEARCHING, PlanSearch
 from modelkit.vocabulary import Pose
 

@@ -4,6 +4,7 @@ import math
 
 import pytest
 
+from controller_fmu.apa.around.local_map import WALL as WALL_BEHIND
 from controller_fmu.apa.around.local_map import begin_map, ear_at, expected, heard, moved
 from controller_fmu.apa.around.row import as_found, is_certain, is_heard, line_unsure, slot_heading
 from controller_fmu.apa.around.surroundings import shape_of
@@ -81,6 +82,22 @@ def test_a_car_between_neighbours_that_are_not_there_is_not_parked(silent: tuple
     readings = [SENSORS.max_range if number in silent else reading for number, reading in enumerate(readings)]
     assert is_heard(here, tuple(readings), PARAMS) == stays
     assert is_heard(here._replace(kind=Kind.PARALLEL), tuple(readings), PARAMS)
+
+
+def test_neighbours_are_heard_beside_a_wheel_stop_that_is_no_wall() -> None:
+    """The map has a wall behind for a stop 1.6 m wide: the rear side sensors would hear it before the neighbours."""
+    pose = Pose(2.4, -3.4, 0.5 * math.pi)
+    here = begin_map(between(Kind.PERPENDICULAR, 4.8), pose, MAP)
+    readings = tuple(
+        expected(ear_at(mount, pose, 1.0, SENSORS.half_angle), here).echo.distance for mount in SENSORS.mounts
+    )
+    walled = here._replace(walled=True, wall=here.wall._replace(y=-4.1))
+    rear = expected(ear_at(SENSORS.mounts[9], pose, 1.0, SENSORS.half_angle), walled)
+    assert rear.who == WALL_BEHIND
+    assert readings[9] > rear.echo.distance + 0.4
+    assert is_heard(walled, readings, PARAMS)
+    silent = tuple(SENSORS.max_range if number in (9, 11) else value for number, value in enumerate(readings))
+    assert not is_heard(walled, silent, PARAMS)
 
 
 def passed(behind: int) -> SideState:

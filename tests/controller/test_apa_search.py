@@ -10,10 +10,10 @@ from controller_fmu.apa.hearing import search_side
 from controller_fmu.apa.hearing.consensus import NO_WINDOW, agreed, newest
 from controller_fmu.apa.hearing.edge import NO_SAMPLES, Heard, append, corner
 from controller_fmu.apa.hearing.line_fit import FittedLine, Sums, add, offset, slope
-from controller_fmu.apa.hearing.search import LEFT, RIGHT, _hear, kind_of
+from controller_fmu.apa.hearing.search import LEFT, RIGHT, SearchState, _hear, _kept_but_behind, kind_of
 from controller_fmu.apa.hearing.search_side import _with_sample
-from controller_fmu.apa.hearing.side import DEEP, GAP, START, WALL, SideState
-from controller_fmu.apa.slot import UNSEEN, Kind
+from controller_fmu.apa.hearing.side import DEEP, GAP, START, WALL, SideState, begin_wall
+from controller_fmu.apa.slot import UNSEEN, Kind, Slot
 from controller_fmu.common.sensors import LEFT_SENSOR
 from controller_fmu.interface import ControllerInput, ControllerParams
 from modelkit.vocabulary import Pose
@@ -204,3 +204,24 @@ def test_the_neighbour_tells_the_kind_of_a_gap_that_nothing_ends(length: float, 
     """Shorter than any car: not known, and two cars side by side leave their place free less often than one along."""
     car = shape_of(ControllerParams())
     assert kind_of(length, UNSEEN, neighbour, car, ControllerParams().apa) == kind
+
+
+def test_a_neighbour_whose_line_has_begun_anew_ends_where_the_one_before_says() -> None:
+    """Nine bins level, six that are 12 cm farther, then an end whose distance grows by less than a step each bin."""
+    readings = [1.5] * 9 + [1.62] * 6 + [1.62 + 0.3 * number for number in range(1, 8)]
+    side = START
+    for number, reading in enumerate(readings):
+        side = search_side.hear(side, 0.15 * number, 0.0, reading, HALF, ControllerParams().apa.search)
+    assert side.mode == GAP
+    assert side.before.n >= 7.0
+
+
+def test_a_slot_whose_second_neighbour_is_a_wall_behind_is_none() -> None:
+    """Something nearer stands before it. Who goes on along the same wall, or passes another side, keeps the slot."""
+    gap = START._replace(mode=WALL, edge=2.0, edge_b=5.2)
+    state = SearchState(slots=(Slot(kind=2, side=1), Slot(kind=1, side=0), Slot()), valid=2)
+    nearer = begin_wall(gap, Heard(6.0, 0.0, 1.0))
+    assert _kept_but_behind(state, gap, nearer, LEFT) == state._replace(slots=(state.slots[1], Slot(), Slot()), valid=1)
+    assert _kept_but_behind(state, gap, nearer, RIGHT) == state
+    assert _kept_but_behind(state, gap, gap, LEFT) == state
+    assert _kept_but_behind(state, gap, gap._replace(mode=GAP, edge_b=0.0), LEFT) == state

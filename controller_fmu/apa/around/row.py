@@ -123,9 +123,13 @@ def is_heard(here: LocalMap, readings: tuple[float, ...], params: ControllerPara
 
 
 def _is_missed(here: LocalMap, readings: tuple[float, ...], number: int, params: ControllerParams) -> bool:
-    """Return whether a sensor hears nothing where the map has a neighbour in its reach, or something far behind it."""
+    """Return whether a sensor hears nothing where the map has a neighbour in its reach, or something far behind it.
+
+    What ends the slot is left out: a wheel stop is not as wide as a wall.
+    """
     sensors = params.car.ultrasonic
-    echo = expected(ear_at(sensors.mounts[number], here.pose, here.frame.mirror, sensors.half_angle), here).echo
+    ear = ear_at(sensors.mounts[number], here.pose, here.frame.mirror, sensors.half_angle)
+    echo = expected(ear, here._replace(walled=False)).echo
     return echo.distance < params.apa.map.heard and readings[number] > echo.distance + MISSED
 
 

@@ -6,7 +6,7 @@ from typing import NamedTuple
 from controller_fmu.apa.choice import OFFERED, ChosenSide
 from controller_fmu.apa.hearing.line_fit import NO_SUMS, OFF, leaning, offset, slope, spread
 from controller_fmu.apa.hearing.search_side import hear
-from controller_fmu.apa.hearing.side import DEEP, START, SideState
+from controller_fmu.apa.hearing.side import DEEP, START, WALL, SideState
 from controller_fmu.apa.outline import Shape
 from controller_fmu.apa.params import ApaParams, Wish
 from controller_fmu.apa.slot import UNSEEN, Kind, Side, Slot
@@ -79,6 +79,7 @@ def search(
     far_right = DEEP if left.mode == 1 and state.left.mode != 1 else state.far_right
     far_left = left_r if left_r < far_left and left_r < top else far_left
     far_right = right_r if right_r < far_right and right_r < top else far_right
+    state = _kept_but_behind(_kept_but_behind(state, state.right, right, RIGHT), state.left, left, LEFT)
     state = state._replace(
         clock_ns=clock, right=right, left=left, far_right=far_right, far_left=far_left, way=way, fastest=fastest
     )
@@ -87,6 +88,16 @@ def search(
     if left.fresh:
         state = _judge(state, left, LEFT, car, params)
     return state
+
+
+def _kept_but_behind(state: SearchState, before: SideState, now: SideState, which: int) -> SearchState:
+    """Return the search without a slot whose second neighbour is a wall behind: something nearer stands before it."""
+    beside_it = before.mode == WALL and before.edge_b > before.edge
+    if not (beside_it and now.mode == WALL and now.edge_b <= now.edge):
+        return state
+    if state.valid == 0 or state.slots[0].side != which:
+        return state
+    return state._replace(slots=(state.slots[1], state.slots[2], Slot()), valid=state.valid - 1)
 
 
 def left_part(seen: int) -> int:

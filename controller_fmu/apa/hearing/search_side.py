@@ -55,6 +55,8 @@ LEANS = 0.1
 """A neighbour, or the wall, lies so much [m] off per metre along the line of the neighbour before."""
 STEEP = 1.0
 """The face of a neighbour across the way comes nearer by 1 / sin(g) per metre, its corner by sin(g) at most."""
+RISES = 0.2
+"""A neighbour whose line is not sure has not ended before a sample is so much [m] farther off than the last one."""
 LONG_STEADY = 5
 MANY = 8.0
 FEW = 3.0
@@ -119,8 +121,12 @@ def _on_wall(side: SideState, sample: Heard, half_angle: float, params: SearchPa
     expected = side.samples[0].r if side.samples[0].r > 0.0 else sample.r
     most = expected + params.step
     least = expected - params.step
-    if side.sums.n >= 3.0:
-        most = _still_heard(side.sums, EMPTY, sample, -1.0, half_angle)
+    known = side.sums if side.sums.n >= FEW else side.spare
+    known = known if known.n >= FEW else agreed(side.window, STEEPEST, False, 0.0)
+    if known.n >= FEW:
+        rises = expected + RISES if side.sums.n < FEW else 0.0
+        most = max(rises, _still_heard(known, EMPTY, sample, -1.0, half_angle))
+    if side.sums.n >= FEW:
         least = distance(_line(side.sums, EMPTY), sample.u, sample.w) - params.step
     if sample.r < least:
         return begin_wall(side, sample)

@@ -22,6 +22,7 @@ from controller_fmu.apa.parking import (
     is_planned,
     is_planning,
     park,
+    site_for,
     start_planning,
 )
 from controller_fmu.apa.slot import Kind, Slot
@@ -158,7 +159,7 @@ def _later_reason(reason: int, state: ApaState, params: ControllerParams) -> int
     parking = state.parking
     if state.mode in (Mode.AUTO_PARKING_ASSIST, Mode.POSITION_TUNING):
         if has_failed(parking, state.around.slot.kind, params):
-            return _no_way(parking)
+            return _no_way(state, params)
         if abs(parking.tracked.lateral_error) > LOST:
             return Reason.LEFT_PATH
     looking = state.mode == Mode.PARKING_SPACE_SEARCH or (state.mode == Mode.STANDBY and params.apa.search.given)
@@ -171,11 +172,16 @@ def _later_reason(reason: int, state: ApaState, params: ControllerParams) -> int
         return Reason.TIMEOUT if state.mode == Mode.PARKING_SPACE_APPEARS else Reason.NOT_MOVING
     shows = state.mode == Mode.PARKING_SPACE_APPEARS and state.shown == 0
     if shows and has_failed(parking, state.around.slot.kind, params):
-        return _no_way(parking)
+        return _no_way(state, params)
     return Reason.NONE
 
 
-def _no_way(parking: Parking) -> int:
+def _no_way(state: ApaState, params: ControllerParams) -> int:
+    """Return why no way leads on: what ends a perpendicular slot may leave no place in line with the neighbours."""
+    parking = state.parking
+    site = site_for(state.around.slot, parking.attempt, parking.out, params)
+    if site.x_high < site.x_low and not parking.out:
+        return Reason.SLOT_TOO_SHALLOW
     if parking.missed:
         return Reason.MISSED_TARGET
     return Reason.TOO_MANY_SHIFTS if parking.plan.found else Reason.NO_PATH

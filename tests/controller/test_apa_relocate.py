@@ -11,12 +11,15 @@ from controller_fmu.apa.around.local_map import begin_map, heard, moved
 from controller_fmu.apa.around.nearer import explained, nearer_than_thought, pressed
 from controller_fmu.apa.around.relocate import braked, walled
 from controller_fmu.apa.around.row import is_certain, slot_of_map
+from controller_fmu.apa.around.surroundings import Around
 from controller_fmu.apa.outline import Box, Obstacles, Shape
 from controller_fmu.apa.params import MapParams
+from controller_fmu.apa.parking import Parking
 from controller_fmu.apa.slot import UNSEEN, Kind, Side, Slot
+from controller_fmu.apa.system import ApaState, _no_way
 from controller_fmu.apa.ways.move import is_move_free
 from controller_fmu.apa.ways.turns import straight_move
-from controller_fmu.interface import ControllerInput, ControllerParams
+from controller_fmu.interface import ControllerInput, ControllerParams, Reason
 from modelkit.car import CarUltrasonic
 from modelkit.vocabulary import Pose
 from vehicle_fmu.scene import Obstacle, SceneParams
@@ -203,3 +206,11 @@ def test_who_is_heard_nearest_is_taken_for_nearer() -> None:
     assert closer == here._replace(a=here.a._replace(x=closer.a.x))
     assert 0.0 < closer.a.x < 0.1
     assert pressed(here, (SENSORS.max_range,) * 12, PARAMS) == here
+
+
+@pytest.mark.parametrize(("depth", "reason"), [(3.6, Reason.SLOT_TOO_SHALLOW), (4.2, Reason.NO_PATH)])
+def test_a_slot_that_turns_out_too_shallow_is_no_missing_path(depth: float, reason: Reason) -> None:
+    """A car of 3.8 m that stands out by 12 cm and 8 cm before what ends the slot needs 3.76 m."""
+    slot = Slot(Kind.PERPENDICULAR, Side.RIGHT, Pose(), 3.0, 0.0, depth)
+    assert _no_way(ApaState(around=Around(slot)), PARAMS) == reason
+    assert _no_way(ApaState(around=Around(slot), parking=Parking(out=True)), PARAMS) == Reason.NO_PATH

@@ -9,9 +9,10 @@ import math
 from typing import NamedTuple
 
 from controller_fmu.planning.plan_store import HEARD, PlanStore
-from controller_fmu.sensing.gap import Gap
+from controller_fmu.sensing.gap import Gap, GapLayout
 from controller_fmu.sensing.heard_store import clear_around, put_line, set_line
 from controller_fmu.sensing.places import is_sure
+from modelkit.maths import clamp
 from modelkit.vocabulary import Pose
 
 BEYOND = 10.0
@@ -20,6 +21,8 @@ NARROW = 0.1
 FLAT = 0.03
 """Places this near [m] to the line between others are left out."""
 SPARSE = 2.0
+LEVEL = 0.05
+"""A front lies along its row if it stands out less than this [m/m]."""
 WIDE = 5.0
 
 
@@ -48,7 +51,7 @@ class AroundGap(NamedTuple):
 def lay_around(store: PlanStore, gap: Gap, what: AroundGap) -> int:
     """Make the map of a gap; returns how many lines it has."""
     clear_around(store)
-    lines = _lay_gap(store, gap, min(gap.depth, what.length))
+    lines = _lay_gap(store, gap, min(gap.depth, what.length), 2.0 * what.half_width)
     lines = _lay_row(store, lines, gap, what)
     lines = _lay_opposite(store, lines, what)
     pose = what.pose
@@ -97,7 +100,7 @@ def point_in_gap(x: float, y: float, gap: Gap) -> PlaceInGap:
     return PlaceInGap(dx * e.x + dy * e.y, dx * math.cos(gap.into) + dy * math.sin(gap.into))
 
 
-def _lay_gap(store: PlanStore, gap: Gap, deep: float) -> int:
+def _lay_gap(store: PlanStore, gap: Gap, deep: float, width: float) -> int:
     """Make the lines beside the gap and behind it."""
     tx = math.cos(gap.into)
     ty = math.sin(gap.into)
@@ -109,7 +112,23 @@ def _lay_gap(store: PlanStore, gap: Gap, deep: float) -> int:
     by = gap.b.y + (end - b) * ty
     lines = put_line(store, 0, gap.a.x, gap.a.y, ax, ay)
     lines = put_line(store, lines, gap.b.x, gap.b.y, bx, by)
-    return put_line(store, lines, ax, ay, bx, by)
+    lines = put_line(store, lines, ax, ay, bx, by)
+    if gap.layout == GapLayout.ACROSS:
+        lines = _lay_fronts(store, lines, gap, width)
+    return lines
+
+
+def _lay_fronts(store: PlanStore, lines: int, gap: Gap, width: float) -> int:
+    """Make the fronts of both neighbours, as wide as the car but no farther out than their row: heard or not."""
+    e = along_of(gap)
+    nx = -math.sin(gap.row) * _away(gap)
+    ny = math.cos(gap.row) * _away(gap)
+    rate = e.x * nx + e.y * ny
+    b_out = gap.out - (gap.b.x - gap.a.x) * nx - (gap.b.y - gap.a.y) * ny
+    at_a = clamp(gap.out / -rate, 0.0, width) if rate < -LEVEL else width
+    at_b = clamp(b_out / rate, 0.0, width) if rate > LEVEL else width
+    lines = put_line(store, lines, gap.a.x, gap.a.y, gap.a.x - at_a * e.x, gap.a.y - at_a * e.y)
+    return put_line(store, lines, gap.b.x, gap.b.y, gap.b.x + at_b * e.x, gap.b.y + at_b * e.y)
 
 
 def _lay_row(store: PlanStore, lines: int, gap: Gap, what: AroundGap) -> int:
@@ -117,11 +136,6 @@ def _lay_row(store: PlanStore, lines: int, gap: Gap, what: AroundGap) -> int:
     first = what.side * HEARD
     end = first + what.here
     e = along_of(gap)
-    row_x = gap.b.x - gap.a.x
-    row_y = gap.b.y - gap.a.y
-    length = math.sqrt(row_x * row_x + row_y * row_y)
-    row_x = row_x / length
-    row_y = row_y / length
     last = first
     broken = False
     for place in range(first + 1, end):
@@ -139,17 +153,39 @@ def _lay_row(store: PlanStore, lines: int, gap: Gap, what: AroundGap) -> int:
         else:
             broken = False
             last = place
-    if what.here > 0:
-        x = store.heard_x[first]
-        y = store.heard_y[first]
-        lines = put_line(store, lines, x, y, x - BEYOND * row_x, y - BEYOND * row_y)
-        x = store.heard_x[end - 1]
-        y = store.heard_y[end - 1]
-        if _across(store, end - 1, gap, e) > gap.width - NARROW:
-            lines = put_line(store, lines, x, y, x + BEYOND * row_x, y + BEYOND * row_y)
-        else:
-            lines = put_line(store, lines, gap.b.x, gap.b.y, gap.b.x + BEYOND * row_x, gap.b.y + BEYOND * row_y)
-    return lines
+    return _lay_beyond(store, lines, gap, what)
+
+
+def _lay_beyond(store: PlanStore, lines: int, gap: Gap, what: AroundGap) -> int:
+    """Make the lines of what was not heard of the row: beyond both ends it goes on, where it stands out."""
+    first = what.side * HEARD
+    end = first + what.here
+    c = math.cos(gap.row)
+    s = math.sin(gap.row)
+    low = 0.0
+    high = (gap.b.x - gap.a.x) * c + (gap.b.y - gap.a.y) * s
+    for place in range(first, end):
+        if is_sure(store, place, end):
+            on = (store.heard_x[place] - gap.a.x) * c + (store.heard_y[place] - gap.a.y) * s
+            low = min(low, on)
+            high = max(high, on)
+    beside = gap.out * _away(gap)
+    lines = _lay_along_row(store, lines, gap, low, low - BEYOND, beside)
+    return _lay_along_row(store, lines, gap, high, high + BEYOND, beside)
+
+
+def _away(gap: Gap) -> float:
+    """Return 1 if the road lies to the left of a gap's row, else -1."""
+    return -1.0 if math.sin(gap.into - gap.row) > 0.0 else 1.0
+
+
+def _lay_along_row(store: PlanStore, lines: int, gap: Gap, begin: float, end: float, beside: float) -> int:
+    """Make a line along a row, from and to so far [m] from corner A, so far to its left."""
+    c = math.cos(gap.row)
+    s = math.sin(gap.row)
+    x = gap.a.x - beside * s
+    y = gap.a.y + beside * c
+    return put_line(store, lines, x + begin * c, y + begin * s, x + end * c, y + end * s)
 
 
 def _across(store: PlanStore, place: int, gap: Gap, e: Pose) -> float:

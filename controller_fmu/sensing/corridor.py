@@ -30,9 +30,11 @@ from modelkit.maths import PI
 from modelkit.vocabulary import Pose
 
 ANGLED = 20.0 * PI / 180.0
+CROOKED = 6.0 * PI / 180.0
+"""Cars along the road stand no more askew to their row: it is the row that tells how the road goes."""
 LONGEST_FRONT = 2.3
 """At an angle, a neighbour's front is no wider [m]."""
-BESIDE_ONE = 0.3
+BESIDE_ONE = 0.4
 """A slot beside one neighbour is this much [m] wider than the least."""
 CONTRADICTED = 3
 """Neighbours stand the other way, where so many points more of them are known to be free."""
@@ -77,23 +79,32 @@ def find_gap(store: PlanStore, side: int, places: int, at: Pose, want: Wanted) -
     askew = wrap_quarter(turn - row.turn) if row.behind > UNSEEN else turn
     if abs(askew) <= ANGLED:
         square = along(frame, turn, turn + 0.5 * PI)
-        best = _corridor(store, square, want, True) if want.along else Gap()
+        straight = row.turn if row.things >= LEAST_THINGS and abs(askew) < CROOKED else turn
+        best = _corridor(store, along(frame, straight, straight + 0.5 * PI), want, True) if want.along else Gap()
         return _corridor(store, square, want, False) if best.layout == GapLayout.NONE and want.across else best
     too_few = row.things < LEAST_THINGS and not want.open_ended and not want.at_end
     if not want.across or too_few:
         return Gap()
-    lined = frame._replace(line=row.behind)
+    late = LATE if abs(askew) > HALFWAY else LATER
+    return _at_an_angle(store, frame._replace(line=row.behind), turn, row.turn, late, want)
+
+
+def _at_an_angle(store: PlanStore, frame: PlacesFrame, turn: float, row: float, late: float, want: Wanted) -> Gap:
+    """Return the gap passed last between cars turned by ``turn`` [rad], or across that, to a row turned by ``row``.
+
+    Long sides and whole fronts tell which of the two; where neither was seen, it is the one in which there is a gap.
+    """
     other = turn if turn > 0.0 else turn + PI
     one = turn + 0.5 * PI
     sides = sides_along(store, frame, one)
     across = sides_along(store, frame, other)
     longer = sides.longest - across.longest
-    ways = TwoWays(along(lined, row.turn, one), along(lined, row.turn, other), longer)
+    ways = TwoWays(along(frame, row, one), along(frame, row, other), longer)
     if sides.longest > WIDEST or across.longest > WIDEST:
         return _corridor(store, ways.one if longer > 0.0 else ways.other, want, False)
     if across.front != sides.front:
         return _deep(store, ways.one if across.front else ways.other, want)
-    return _likelier(store, ways, LATE if abs(askew) > HALFWAY else LATER, want)
+    return _likelier(store, ways, late, want)
 
 
 class TwoWays(NamedTuple):

@@ -56,3 +56,7 @@ class Gap(NamedTuple):
     """So far [m] does a neighbour's front go on."""
     front: float = 0.0
     """Where a car begins that stands as its neighbours do, from A's corner along the direction into it [m]."""
+    row: float = 0.0
+    """Direction of the row [rad], from A on."""
+    out: float = 0.0
+    """So much nearer [m] to the road than corner A what stands out of the row lies."""

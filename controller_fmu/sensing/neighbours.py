@@ -122,6 +122,8 @@ def measured(store: PlanStore, frame: PlacesFrame, low: float, high: float, clos
     front = front_of(frame.line if frame.line > UNSEEN else z, low, high, frame, want)
     if not is_askew(frame):
         front = 0.5 * (one.t + other.t)
+    a = in_world(one.t, low, frame)
+    out = spot_of(turned(a.x, a.y, frame), frame).z - frame.line if frame.line > UNSEEN else 0.0
     depth = DEEP
     for place in range(frame.first, frame.end):
         at = spot(store, place, frame)
@@ -130,7 +132,7 @@ def measured(store: PlanStore, frame: PlacesFrame, low: float, high: float, clos
     longer = max(_extent(store, frame, low, one.t, -1.0), _extent(store, frame, high, other.t, 1.0) if closed else 0.0)
     return Gap(
         layout=GapLayout.ALONG if longer > LONG else GapLayout.ACROSS,
-        a=in_world(one.t, low, frame),
+        a=a,
         b=in_world(other.t, high, frame),
         into=frame.at.heading - frame.mirror * frame.into,
         depth=depth,
@@ -138,6 +140,8 @@ def measured(store: PlanStore, frame: PlacesFrame, low: float, high: float, clos
         support=max(one.support, other.support),
         longest=longer,
         front=front - one.t,
+        row=frame.at.heading - frame.mirror * frame.row,
+        out=max(out, 0.0),
     )
 
 

@@ -14,6 +14,8 @@ STEEP = 0.35
 """And by no more than this."""
 ON_LINE = 0.3
 """What lies so near [m] to a line is on it."""
+CLOSE = 0.15
+"""And so near [m] to the line that it speaks for it."""
 AROUND = 1.2
 """What stands out of the row is the nearest to the way within this [m]."""
 CRESTS = 12
@@ -74,7 +76,7 @@ def _score(crests: tuple[Crest, ...], slope: float, at: float) -> float:
     score = 0.0
     for crest in crests:
         off = abs(crest.y - at - slope * crest.x)
-        score += crest.weight * (1.0 - off / ON_LINE) if off < ON_LINE else 0.0
+        score += crest.weight * (1.0 - off / CLOSE) if off < CLOSE else 0.0
     return score
 
 

@@ -20,10 +20,18 @@ from controller_fmu.planning.plan import (
 from controller_fmu.planning.plan_store import PlanStore
 from controller_fmu.planning.task import Corner, Request, drive
 from controller_fmu.sensing.around import lay_end
-from controller_fmu.sensing.gap import DEEP, GapLayout
+from controller_fmu.sensing.gap import DEEP, Gap, GapLayout
 from controller_fmu.valet.chart import Step
 from controller_fmu.valet.given import as_parameter
-from controller_fmu.valet.nearby import Nearby, Rest, hear_nearby, is_in_gap, lay_nearby, narrowed, put_nearby
+from controller_fmu.valet.nearby import (
+    Nearby,
+    Rest,
+    corrected,
+    hear_nearby,
+    is_in_gap,
+    lay_nearby,
+    put_nearby,
+)
 from controller_fmu.valet.params import ValetParams
 from controller_fmu.valet.rolling import Ahead, ahead_of, aim_at, joint_of, trimmed, turns_already
 from controller_fmu.valet.search import Search, shallower
@@ -38,6 +46,8 @@ AT_END = 0.03
 LEARNT = 0.6
 """Share of what a stop is off its place that the next stop makes up for."""
 EARLIEST = 0.02
+LEAST_MARGIN = 0.03
+"""A way into a slot across the road that comes nearer [m] to what was heard is not driven: odometry drifts more."""
 
 
 class Tracked(NamedTuple):
@@ -103,11 +113,7 @@ def planned_on(store: PlanStore, state: ValetState, inputs: ControllerInput, par
         goal = goal_of(params, as_parameter(state.told, params.slot), pose)
         if params.search.active:
             gap = state.search.gap
-            body = body_of(params)
-            deep = 2.0 * (body.half_length if gap.layout == GapLayout.ACROSS else body.half_width)
-            beside = narrowed(store, state.nearby, gap, deep)
-            wish = state.search.told if state.search.told != SlotKind.NONE else params.search.wish
-            goal = goal_in(beside, state.search.pose.heading, wish, params)
+            goal = goal_now(store, state, params)
             if gap.depth < DEEP:
                 lay_end(store, gap, state.search.lines)
             lay_nearby(store, state.nearby, gap, state.search.lines + 1)
@@ -119,10 +125,35 @@ def planned_on(store: PlanStore, state: ValetState, inputs: ControllerInput, par
     if status == PLANNED:
         path = trimmed(path_of(store))
     reason = reason_of(status, count, state, params)
+    found_across = params.search.active and state.search.gap.layout == GapLayout.ACROSS
+    if status == PLANNED and found_across and path.margin < LEAST_MARGIN:
+        reason = Reason.BLOCKED
     if params.search.active and stands_out(state.search.gap, params) > params.search.stand_out:
         reason = Reason.SLOT_TOO_SHALLOW
     plans = state.plans + 1 if state.searched == 0 else state.plans
     return state._replace(request=request, searched=count, plans=plans, path=path, reason=reason, sight=Sight())
+
+
+def goal_now(store: PlanStore, state: ValetState, params: ValetParams) -> Pose:
+    """Return where to stand in the slot found, by all that was heard of it up to now."""
+    gap = state.search.gap
+    wish = state.search.told if state.search.told != SlotKind.NONE else params.search.wish
+    beside = corrected(store, state.nearby, gap, deep_in(gap, params))
+    return goal_in(beside, state.search.pose.heading, wish, params)
+
+
+def room_beside_car(store: PlanStore, state: ValetState, params: ValetParams) -> float:
+    """Return how much more room [m] there is between the slot's neighbours than a car needs, by all that was heard."""
+    gap = state.search.gap
+    body = body_of(params)
+    needed = 2.0 * (body.half_width if gap.layout == GapLayout.ACROSS else body.half_length)
+    return corrected(store, state.nearby, gap, deep_in(gap, params)).width - needed
+
+
+def deep_in(gap: Gap, params: ValetParams) -> float:
+    """Return how deep [m] into a gap a car reaches."""
+    body = body_of(params)
+    return 2.0 * (body.half_length if gap.layout == GapLayout.ACROSS else body.half_width)
 
 
 def reason_of(status: int, count: int, state: ValetState, params: ValetParams) -> int:

@@ -62,7 +62,8 @@ def gap_told(told: ToldSlot, params: ValetParams) -> Gap:
     needed = 2.0 * (body.half_width if lengthwise else body.half_length)
     a = Pose(told.ax, told.ay, 0.0)
     b = Pose(told.bx, told.by, 0.0)
-    made = Gap(GapLayout.ALONG if lengthwise else GapLayout.ACROSS, a, b, told.heading)
+    layout = GapLayout.ALONG if lengthwise else GapLayout.ACROSS
+    made = Gap(layout, a, b, told.heading, row=math.atan2(told.by - told.ay, told.bx - told.ax))
     e = along_of(made)
     dx = told.bx - told.ax
     dy = told.by - told.ay

@@ -10,7 +10,16 @@ from controller_fmu.planning.plan_store import PlanStore
 from controller_fmu.sensing.gap import GapLayout
 from controller_fmu.sensing.heard_store import forget_side
 from controller_fmu.valet.chart import Guard, Step, step_transition
-from controller_fmu.valet.driven import AT_END, ValetState, heard_on, moved_on, planned_on, seen_on
+from controller_fmu.valet.driven import (
+    AT_END,
+    ValetState,
+    goal_now,
+    heard_on,
+    moved_on,
+    planned_on,
+    room_beside_car,
+    seen_on,
+)
 from controller_fmu.valet.nearby import forget_nearby
 from controller_fmu.valet.params import ValetParams
 from controller_fmu.valet.rolling import rest_before
@@ -20,6 +29,10 @@ from modelkit.maths import wrap_angle
 from modelkit.vocabulary import Pose
 
 DRIVEN_ON = 0.3
+CORRECTIONS = 4
+"""After so many plans a car stays in a slot where it is, even if what it heard on the way in tells a better place."""
+CORRECTION_ROOM = 0.7
+"""And in a slot that leaves it less room [m] to its neighbours than this."""
 
 
 def valet_sample(
@@ -42,11 +55,11 @@ def valet_sample(
     if reason == Reason.NONE:
         reason = reason_to_fail(clocks, inputs, state.step, state.shifts, params)
     state = state._replace(watch=clocks, reason=reason)
-    step = step_transition(state.step, guards_of(state, inputs, params))
+    step = step_transition(state.step, guards_of(store, state, inputs, params))
     return moved_on(store, state, step, inputs, params)
 
 
-def guards_of(state: ValetState, inputs: ControllerInput, params: ValetParams) -> int:
+def guards_of(store: PlanStore, state: ValetState, inputs: ControllerInput, params: ValetParams) -> int:
     """Return the bits of the conditions that hold."""
     guard = params.guard
     tracked = state.tracked
@@ -61,14 +74,19 @@ def guards_of(state: ValetState, inputs: ControllerInput, params: ValetParams) -
     lost = lost or state.nearby.in_the_way
     blocked_long = state.watch.blocked * 1e-9 > guard.wait
     at_end = tracked.left <= AT_END and state.piece + 1 >= state.path.used
-    in_place = is_in_place(inputs.odometry, state.request.goal, params)
+    goal = state.request.goal
+    corrects = params.search.active and standing and state.plans < CORRECTIONS
+    corrects = corrects and room_beside_car(store, state, params) > CORRECTION_ROOM
+    goal = goal_now(store, state, params) if corrects else goal
+    in_place = is_in_place(inputs.odometry, goal, params)
+    moved = corrects and not is_in_place(state.request.goal, goal, params)
     return (
         bit(Guard.TAKEN_OVER, inputs.driver_takeover or (params.search.active and not inputs.apa_switch))
         | bit(Guard.FAULT, state.reason != Reason.NONE)
         | bit(Guard.PLANNED, state.searched > 0 and state.path.used > 0)
         | bit(Guard.WHEEL_SET, abs(wheel - state.wheel) <= turned and not state.sight.blocked)
         | bit(Guard.MUST_HALT, tracked.ahead.left <= stop - state.early or state.sight.blocked or lost)
-        | bit(Guard.STANDING_LOST, standing and (lost or blocked_long))
+        | bit(Guard.STANDING_LOST, standing and (lost or blocked_long or moved))
         | bit(Guard.STANDING_AT_END, standing and at_end)
         | bit(Guard.STANDING, standing and not state.sight.blocked)
         | bit(Guard.IN_PLACE, straight and in_place)

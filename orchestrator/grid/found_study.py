@@ -8,6 +8,7 @@ from rich.table import Table as Printed
 from orchestrator.grid.found_scenarios import out_of, scenario_of
 from orchestrator.grid.found_slots import FoundCase, cases
 from orchestrator.scenario.polygons import map_of
+from orchestrator.scenario.scenario import Scenario
 from orchestrator.sweep.study.cases import LabelledScenario, design_of
 from orchestrator.sweep.study.study import Study
 from orchestrator.sweep.table import Table
@@ -27,19 +28,25 @@ MEASURES = {
     "target_y": Measure("last", "controller.valet.target.y"),
 }
 
+FACTORS = ("angle", "neighbours", "end", "street", "wish")
+WAY = "way"
+"""A run of this is there to see whether there is a way."""
+PLANNING = 10.0
+BEYOND = "beyond its limit"
 
-def study(runs: int = 1000, lot: int = 0, told: bool = False, out: bool = False) -> Study:
+
+def study(runs: int = 1000, lot: int = 0, told: bool = False, out: bool = False, ways: bool = False) -> Study:
     """Return so many runs; ``told``: the same with the map and the target told, no search: what could be parked.
 
-    ``out``: the car stands in the slot, is told the map, and comes out to either side.
+    ``out``: the car stands in the slot, is told the map, and comes out to either side. ``ways``: behind every run a
+    short one in which the valet is told the map and has ``PLANNING`` seconds to plan: whether there is a way at all.
     """
-    chosen = cases(runs, lot)
     scenarios = []
-    for case in chosen:
+    for case in cases(runs, lot):
         scenario = out_of(case) if out else scenario_of(case, told)
-        if told or out:
-            scenario = scenario.model_copy(update={"controller": scenario.controller | map_of(scenario)})
-        scenarios.append(LabelledScenario(_labels(case), scenario))
+        scenarios.append(LabelledScenario(_labels(case, ""), _with_map(scenario) if told or out else scenario))
+        if ways:
+            scenarios.append(LabelledScenario(_labels(case, WAY), _planned(case)))
     scenario, design = design_of(scenarios)
     content = {
         "name": "valet-slots",
@@ -50,35 +57,62 @@ def study(runs: int = 1000, lot: int = 0, told: bool = False, out: bool = False)
     return Study(scenario, design, content, measures=MEASURES)
 
 
-def _labels(case: FoundCase) -> dict[str, str | float]:
-    return {name: str(value) if isinstance(value, bool) else value for name, value in case._asdict().items()}
+def _planned(case: FoundCase) -> Scenario:
+    """Return the short scenario in which the valet plans with the map and the target told."""
+    told = _with_map(scenario_of(case, told=True))
+    return told.model_copy(update={"stop_time": PLANNING, "controller": told.controller | {"plan.at_once": 100}})
+
+
+def _with_map(scenario: Scenario) -> Scenario:
+    """Return the scenario with its map told to the valet."""
+    return scenario.model_copy(update={"controller": scenario.controller | map_of(scenario)})
+
+
+def _labels(case: FoundCase, of: str) -> dict[str, str | float]:
+    own = {name: str(value) if isinstance(value, bool) else value for name, value in case._asdict().items()}
+    return {**own, "of": of}
 
 
 def report(table: Table, folder: Path) -> int:
-    """Print how many parked by each factor, and why others did not. Returns 1 if a run touched something."""
-    names = ("angle", "neighbours", "end", "street", "wish", "outcome", "reason", "min_clearance")
-    rows = [dict(zip(names, row, strict=True)) for row in zip(*(table.column(name) for name in names), strict=True)]
-    for factor in names[:5]:
+    """Print how many parked by each factor, and why others did not. Returns 1 if a run touched something.
+
+    With ``ways`` shares are of the slots for which there is a way.
+    """
+    names = (*FACTORS, "number", "of", "outcome", "reason", "min_clearance", "margin")
+    every = [dict(zip(names, row, strict=True)) for row in zip(*(table.column(name) for name in names), strict=True)]
+    rows = [row for row in every if row["of"] != WAY]
+    planned = {row["number"] for row in every if row["of"] == WAY and row["margin"] > 0.0}
+    for row in rows:
+        row["way"] = row["number"] in planned or len(every) == len(rows)
+    for factor in FACTORS:
         console().print(_by(rows, factor))
     for reason in sorted({str(row["reason"]) for row in rows if row["outcome"] != "parked"}):
         count = sum(row["reason"] == reason and row["outcome"] != "parked" for row in rows)
         console().print(f"{count} not parked: {reason}")
     touched = sum(row["min_clearance"] <= 0.0 for row in rows)
-    console().print(f"{len(rows)} runs, {sum(row['outcome'] == 'parked' for row in rows)} parked, {touched} touched")
+    parked = sum(row["outcome"] == "parked" for row in rows)
+    if len(every) > len(rows):
+        console().print(f"{len(planned)} with a way for a planner that knows everything")
+    console().print(f"{len(rows)} runs, {parked} parked, {touched} touched; {_gbt(rows)} of those that stand in a slot")
     return 1 if touched else 0
 
 
 def _by(rows: list[dict[str, Any]], factor: str) -> Printed:
     table = Printed(box=None, pad_edge=False)
-    for name in (factor, "runs", "parked", "touched"):
+    for name in (factor, "runs", "with a way", "parked", "GB/T 41630", "touched"):
         table.add_column(name, justify="right")
     for value in sorted({row[factor] for row in rows}):
         own = [row for row in rows if row[factor] == value]
-        parked = sum(row["outcome"] == "parked" for row in own)
-        table.add_row(
-            f"{value}",
-            f"{len(own)}",
-            f"{100.0 * parked / len(own):.1f} %",
-            f"{sum(r['min_clearance'] <= 0 for r in own)}",
-        )
+        ways = [row for row in own if row["way"]]
+        parked = sum(row["outcome"] == "parked" for row in ways)
+        share = f"{100.0 * parked / len(ways):.1f} %" if ways else ""
+        touched = sum(row["min_clearance"] <= 0.0 for row in own)
+        table.add_row(f"{value}", f"{len(own)}", f"{len(ways)}", share, _gbt(own), f"{touched}")
     return table
+
+
+def _gbt(rows: list[dict[str, Any]]) -> str:
+    """Return how many of those that the valet says are parked stand as GB/T 41630 asks."""
+    stand = [row for row in rows if row["outcome"] == "parked" or str(row["reason"]).startswith(BEYOND)]
+    good = sum(row["outcome"] == "parked" for row in stand)
+    return f"{100.0 * good / len(stand):.1f} %" if stand else ""

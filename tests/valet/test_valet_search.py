@@ -106,6 +106,17 @@ def test_a_row_is_seen_along_its_own_line_whatever_way_it_is_passed(angle: int, 
     assert off + 0.5 * LENGTH == pytest.approx(pitch, abs=0.3)
 
 
+@pytest.mark.parametrize("angle", [30, 150])
+def test_a_pillar_that_stands_before_a_row_does_not_turn_its_line(angle: int) -> None:
+    pillar = {"x": 1.6, "y": 0.3, "heading": 0.0, "length": 0.4, "width": 0.4}
+    store, ear, _ = passed([*row(angle, 1, 3.4), pillar], 1, 0.01)
+    end = Pose(8.0, 2.0, 0.0)
+    line = row_of(store, frame_of(0, ear.places, end, WANTED.half_angle))
+    assert line.things >= 3
+    assert abs(line.turn) < math.radians(1.0)
+    assert line.behind == pytest.approx(2.0, abs=0.1)
+
+
 def test_what_a_slot_ends_at_does_not_make_it_narrower() -> None:
     wall = {"x": -2.9, "y": -2.2, "heading": -math.radians(150), "length": 0.8, "width": 2.2}
     _, _, gap = passed([*row(150, 1, 2.9), wall], 1, 0.0)

@@ -6,7 +6,7 @@ import pytest
 
 from controller_fmu.apa.around.local_map import WALL as WALL_BEHIND
 from controller_fmu.apa.around.local_map import begin_map, ear_at, expected, heard, moved
-from controller_fmu.apa.around.row import as_found, is_certain, is_heard, line_unsure, slot_heading
+from controller_fmu.apa.around.row import as_found, is_certain, is_heard, is_in_the_middle, line_unsure, slot_heading
 from controller_fmu.apa.around.surroundings import shape_of
 from controller_fmu.apa.hearing.edge import Heard
 from controller_fmu.apa.hearing.line_fit import Sums, add
@@ -98,6 +98,27 @@ def test_neighbours_are_heard_beside_a_wheel_stop_that_is_no_wall() -> None:
     assert is_heard(walled, readings, PARAMS)
     silent = tuple(SENSORS.max_range if number in (9, 11) else value for number, value in enumerate(readings))
     assert not is_heard(walled, silent, PARAMS)
+
+
+@pytest.mark.parametrize(
+    ("left", "right", "stays"),
+    [
+        ((1.0, 1.0), (1.2, 1.2), True),
+        ((0.9, 0.9), (1.2, 1.2), False),
+        ((1.2, 1.2), (0.9, 0.9), False),
+        ((0.9, 1.2), (1.2, 0.9), True),
+        ((0.9, 1.2), (1.2, 1.2), True),
+        ((0.9, 0.9), (1.2, 5.0), True),
+    ],
+)
+def test_a_car_that_hears_itself_aside_of_the_middle_is_not_parked(
+    left: tuple[float, float], right: tuple[float, float], stays: bool
+) -> None:
+    """By front and rear, not where it is turned, where one pair hears past an end or one sensor hears nobody."""
+    here = begin_map(between(Kind.PERPENDICULAR, 4.0), Pose(2.0, -3.0, 90.0 * DEG), MAP)
+    readings = (5.0,) * 8 + left + right
+    assert is_in_the_middle(here, readings, PARAMS) == stays
+    assert is_in_the_middle(here._replace(kind=Kind.PARALLEL), readings, PARAMS)
 
 
 def passed(behind: int) -> SideState:

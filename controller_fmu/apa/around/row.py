@@ -23,6 +23,8 @@ MISSED = 0.4
 FOUND_ASKEW = 0.15
 """Beside a parallel slot where no wall is heard the road's direction is also as the search found it, to this share of
 how neighbours stand."""
+ASIDE = 0.12
+"""A car in a perpendicular slot stands so much [m] nearer to one neighbour than to the middle at most."""
 OUT_OF_LINE = 0.5
 """A map in which a neighbour has come so much [m] further out, or in, than the other is lost."""
 
@@ -120,6 +122,20 @@ def is_heard(here: LocalMap, readings: tuple[float, ...], params: ControllerPara
     front_right = _is_missed(here, readings, 10, params)
     rear_right = _is_missed(here, readings, 11, params)
     return not ((front_left and rear_left) or (front_right and rear_right) or (rear_left and rear_right))
+
+
+def is_in_the_middle(here: LocalMap, readings: tuple[float, ...], params: ControllerParams) -> bool:
+    """Return False if a car in a perpendicular slot hears itself aside of the middle, whatever the map has.
+
+    Both the front and the rear flank sensors must say so, by what they hear of the neighbours on either side: one pair
+    alone may hear past the end of one who is shorter.
+    """
+    farthest = max(readings[8], readings[9], readings[10], readings[11])
+    if here.kind != Kind.PERPENDICULAR or farthest > params.apa.map.heard:
+        return True
+    front = 0.5 * (readings[8] - readings[10])
+    rear = 0.5 * (readings[9] - readings[11])
+    return max(front, rear) > -ASIDE and min(front, rear) < ASIDE
 
 
 def _is_missed(here: LocalMap, readings: tuple[float, ...], number: int, params: ControllerParams) -> bool:

@@ -12,7 +12,6 @@ from controller_fmu.apa.around.cone import ConeEar
 from controller_fmu.apa.around.local_map import A, B, LocalMap, ear_at, echo_of_neighbour, expected
 from controller_fmu.apa.around.near import nearest_told
 from controller_fmu.apa.around.thing import wider
-from controller_fmu.apa.slot import Kind
 from modelkit.car import CarUltrasonic
 
 MOST = 1.2
@@ -38,6 +37,8 @@ NARROWER = 0.1
 """Cones may be so much [rad] narrower than thought."""
 LOOKED_AT = 1.5
 """Sensors that he would be nearer to [m] than this are asked whether they hear past him."""
+SAME = 0.1
+"""He is heard where the map has him if he is to this [m]."""
 PAST = 0.2
 """A sensor that hears something so much [m] farther than the neighbour would be hears past him."""
 
@@ -68,7 +69,7 @@ def followed(shifts: Shifts, here: LocalMap, readings: tuple[float, ...], sensor
     b = shifts.b
     for number in range(12):
         reading = readings[number]
-        if here.kind == Kind.PARALLEL and lowest < reading < FARTHEST:
+        if lowest < reading < FARTHEST:
             ear = ear_at(sensors.mounts[number], here.pose, here.frame.mirror, sensors.half_angle)
             if expected(ear, here).echo.distance - reading > NEARER + 0.1 * reading:
                 a = _told(a, shift_that_explains(ear, here, A, reading))
@@ -128,18 +129,25 @@ def relocated(here: LocalMap, shifts: Shifts, readings: tuple[float, ...], senso
         return Found(here, shifts)
     who = A if first else B
     there = shifted(here, who, shifts.a.by if first else shifts.b.by)
-    if _is_refuted(there, who, readings, sensors):
+    if _is_refuted(here, there, who, readings, sensors):
         return Found(here, Shifts())
     if first:
         return Found(there._replace(a=wider(there.a, UNSURE, 0.0)), Shifts())
     return Found(there._replace(b=wider(there.b, UNSURE, 0.0)), Shifts())
 
 
-def _is_refuted(there: LocalMap, who: int, readings: tuple[float, ...], sensors: CarUltrasonic) -> bool:
-    """Return whether a sensor hears past a neighbour whom it should hear, even in a narrower cone."""
+def _is_refuted(here: LocalMap, there: LocalMap, who: int, readings: tuple[float, ...], sensors: CarUltrasonic) -> bool:
+    """Return whether a sensor hears past a neighbour whom it should hear, or hears him where he was, and not there."""
     for number in range(12):
-        ear = ear_at(sensors.mounts[number], there.pose, there.frame.mirror, sensors.half_angle - NARROWER)
-        distance = echo_of_neighbour(ear, there, who).distance
-        if distance < LOOKED_AT and readings[number] > distance + PAST:
+        reading = readings[number]
+        mount = sensors.mounts[number]
+        narrow = ear_at(mount, here.pose, here.frame.mirror, sensors.half_angle - NARROWER)
+        distance = echo_of_neighbour(narrow, there, who).distance
+        if distance < LOOKED_AT and reading > distance + PAST:
+            return True
+        ear = ear_at(mount, here.pose, here.frame.mirror, sensors.half_angle)
+        before = expected(ear, here)
+        heard_there = before.who == who and reading < LOOKED_AT and abs(reading - before.echo.distance) < SAME
+        if heard_there and abs(reading - echo_of_neighbour(ear, there, who).distance) > PAST:
             return True
     return False

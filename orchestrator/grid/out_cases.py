@@ -34,6 +34,7 @@ STAGGER = (-0.2, 0.3)
 ASKEW = math.radians(2.0)
 WALL = 1.0
 PASSES = ("nobody", "person", "car")
+PERSON = 0.5
 
 
 class OutCase(NamedTuple):
@@ -151,11 +152,28 @@ def vehicle_of(case: OutCase) -> dict[str, Any]:
         kerb = things["kerb"]
         line = {"x1": kerb.x0, "y1": case.side * kerb.y0, "x2": kerb.x1, "y2": case.side * kerb.y1, "height": 0.12}
         scene |= {f"scene.kerbs[1].{key}": value for key, value in line.items()}
+    scene |= {f"scene.boxes[5].{key}": value for key, value in _passer(case).items()}
     x, y, heading = start_of(case)
     place = {"start.x": x, "start.y": case.side * y, "start.heading": case.side * heading}
     seed = case.number + 1 + LOTS * case.lot
     errors = imperfect(seed, random.Random(seed + 29)) | {"body": BODY[case.body]}
     return {**car_parameters(CARS[case.car]), **scene, **place, "driver.apa_switch_time": 0.5, **errors}
+
+
+def _passer(case: OutCase) -> dict[str, float]:
+    """Return who comes: a person across the road who stays before the slot for a while, or a car along the road."""
+    draw = random.Random(case.number + LOTS * case.lot + 53)
+    begins, far = draw.uniform(1.0, 10.0), case.extra + length_of(CARS[case.car])
+    if case.passes == "person":
+        halt, speed = draw.uniform(0.8, 2.5), draw.uniform(0.8, 1.5)
+        box = {"x": draw.uniform(0.0, far + 2.0), "y": case.side * 5.0, "length": PERSON, "width": PERSON}
+        halts = begins + (5.0 - halt) / speed
+        gone = halts + draw.uniform(2.0, 15.0)
+        return {**box, "speed_y": -case.side * speed, "moves_at": begins, "halts_at": halts, "disappear_at": gone}
+    if case.passes == "car":
+        box = {"x": -30.0, "y": case.side * draw.uniform(2.2, 3.5), "length": LENGTH, "width": WIDTH}
+        return {**box, "speed_x": draw.uniform(3.0, 8.0), "moves_at": begins}
+    return {"x": 0.0, "y": 0.0, "length": 0.0, "width": 0.0}
 
 
 def side_of(case: OutCase) -> int:

@@ -20,14 +20,16 @@ from orchestrator.sweep.study.cases import LabelledScenario, design_of
 from orchestrator.sweep.study.study import Study
 from orchestrator.sweep.table import Table
 from orchestrator.text.console import console
-from orchestrator.verdict.measures import Measure
+from orchestrator.verdict.measures import Measure, When
 
 STOP = 150.0
+STANDING = 0.01
 AHEAD = 3.5
 """A car is handed over with so much free ahead [m]; the assist asks for 4 m by its map."""
 MEASURES = {
     "mode": Measure("last", "controller.apa.mode"),
     "parking_time": Measure("last", "controller.apa.parking_time"),
+    "touched.speed": Measure("first", "vehicle.speed", When("vehicle.contact", (1,))),
 }
 
 
@@ -38,6 +40,8 @@ class OutRun(NamedTuple):
     is_out: bool
     reason: str
     nearest: float
+    driven: bool
+    """Touched something while it drove; who walks, or drives, into a standing car touches it, too."""
     shifts: int
     seconds: float
     ahead: float
@@ -89,15 +93,18 @@ def outs(table: Table) -> list[OutRun]:
         case = case_of(number, lot, people)
         out = str(columns["outcome"][row]) == "finished"
         end = Pose(*(float(columns[f"final.{name}"][row]) for name in ("x", "y", "heading")))
-        numbers = (float(columns["min_clearance"][row]), int(columns["shifts"][row]), float(columns["duration"][row]))
+        nearest, driven = float(columns["min_clearance"][row]), abs(float(columns["touched.speed"][row])) > STANDING
+        numbers = (nearest, driven, int(columns["shifts"][row]), float(columns["duration"][row]))
         reason, way = str(columns["reason"][row]), 1 if out else moves_out(case)
         found.append(OutRun(case, out, reason, *numbers, free_ahead(case, end), way))
     return found
 
 
 def report(table: Table, folder: Path) -> int:
-    """Print how many came out of those slots that there is a way out of. Returns 1 if one touched something, or was
-    handed over with its front not clear."""
+    """Print how many came out of those slots that there is a way out of.
+
+    Returns 1 if one drove against something, or was handed over with its front not clear.
+    """
     found, to = outs(table), console()
     to.print(_by_room(found))
     for run in found:
@@ -107,12 +114,13 @@ def report(table: Table, folder: Path) -> int:
             to.print(text, highlight=False, soft_wrap=True)
     for reason, count in Counter(run.reason for run in found if not run.is_out).most_common():
         to.print(f"{count} not out: {reason}", highlight=False)
-    touched = sum(run.nearest <= 0.0 for run in found)
+    touched, driven = sum(run.nearest <= 0.0 for run in found), sum(run.driven for run in found)
     early = sum(run.is_out and run.ahead < AHEAD for run in found)
     out, ways = sum(run.is_out for run in found), sum(run.way > 0 for run in found)
     text = f"{len(found)} runs, a way out of {ways}, {out} out ({100.0 * out / max(ways, 1):.1f} %), {touched} touched"
+    text += f" ({driven} while they drove)" if touched else ""
     to.print(f"{text}, {early} handed over too early", highlight=False)
-    return 1 if touched or early else 0
+    return 1 if driven or early else 0
 
 
 def _by_room(found: list[OutRun]) -> Printed:

@@ -33,7 +33,7 @@ STAGGER = (-0.2, 0.3)
 """Neighbours stand further out than the car by this [m]."""
 ASKEW = math.radians(2.0)
 WALL = 1.0
-PASSES = ("nobody", "person", "car")
+PASSES = ("nobody", "stands", "walks off")
 PERSON = 0.5
 
 
@@ -61,11 +61,11 @@ class OutCase(NamedTuple):
     """How far the neighbour behind, or on the right, stands out further than the car [m]."""
     out_b: float
     passes: str
-    """Who comes along the road."""
+    """What a person does who is on the road beside the slot."""
 
 
 def cases(runs: int, lot: int = 0, people: bool = False) -> list[OutCase]:
-    """Return so many cases; ``people``: somebody walks or drives past each."""
+    """Return so many cases; ``people``: with a person on the road beside each slot."""
     return [case_of(number, lot, people) for number in range(runs)]
 
 
@@ -161,19 +161,17 @@ def vehicle_of(case: OutCase) -> dict[str, Any]:
 
 
 def _passer(case: OutCase) -> dict[str, float]:
-    """Return who comes: a person across the road who stays before the slot for a while, or a car along the road."""
+    """Return a person on the road beside the slot, who stands there for a while, or walks off across the road then."""
     draw = random.Random(case.number + LOTS * case.lot + 53)
-    begins, far = draw.uniform(1.0, 10.0), case.extra + length_of(CARS[case.car])
-    if case.passes == "person":
-        halt, speed = draw.uniform(0.8, 2.5), draw.uniform(0.8, 1.5)
-        box = {"x": draw.uniform(0.0, far + 2.0), "y": case.side * 5.0, "length": PERSON, "width": PERSON}
-        halts = begins + (5.0 - halt) / speed
-        gone = halts + draw.uniform(2.0, 15.0)
-        return {**box, "speed_y": -case.side * speed, "moves_at": begins, "halts_at": halts, "disappear_at": gone}
-    if case.passes == "car":
-        box = {"x": -30.0, "y": case.side * draw.uniform(2.2, 3.5), "length": LENGTH, "width": WIDTH}
-        return {**box, "speed_x": draw.uniform(3.0, 8.0), "moves_at": begins}
-    return {"x": 0.0, "y": 0.0, "length": 0.0, "width": 0.0}
+    if case.passes == PASSES[0]:
+        return {"length": 0.0}
+    far = case.extra + (length_of(CARS[case.car]) if case.kind == Kind.PARALLEL else CARS[case.car].width)
+    place = {"x": draw.uniform(0.0, far + 1.0), "y": case.side * draw.uniform(0.8, 2.5)}
+    person, leaves = {**place, "length": PERSON, "width": PERSON}, draw.uniform(3.0, 20.0)
+    if case.passes == PASSES[1]:
+        return {**person, "disappear_at": leaves}
+    speed = draw.uniform(0.8, 1.5)
+    return {**person, "speed_y": case.side * speed, "moves_at": leaves, "disappear_at": leaves + 6.0 / speed}
 
 
 def side_of(case: OutCase) -> int:

@@ -41,7 +41,7 @@ class OutRun(NamedTuple):
     reason: str
     nearest: float
     driven: bool
-    """Touched something while it drove; who walks, or drives, into a standing car touches it, too."""
+    """Touched something while it drove."""
     shifts: int
     seconds: float
     ahead: float
@@ -67,7 +67,7 @@ def scenario_of(case: OutCase) -> Scenario:
 
 
 def study(runs: int = 400, lot: int = 0, people: bool = False) -> Study:
-    """Return so many runs; ``people``: somebody walks or drives past each."""
+    """Return so many runs; ``people``: with a person on the road beside each slot."""
     chosen = cases(runs, lot, people)
     scenario, design = design_of(LabelledScenario(named(case), scenario_of(case)) for case in chosen)
     side = np.array([[float(side_of(case))] for case in chosen])

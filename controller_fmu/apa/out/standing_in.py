@@ -20,6 +20,9 @@ ASKEW = 0.3
 """The readings of a flank's two sensors differ by less [m] where both are of one kerb or wall."""
 FRONT = 1
 REAR = 5
+NARROWEST = 2.0
+NARROWEST_ACROSS = 4.5
+"""Streets are no narrower [m] beside a car, and before one across them: what is heard nearer is somebody."""
 UNSURE = 0.015
 """What is told by the rim of a cone may be so much [m] nearer."""
 NEAREST = 0.04
@@ -45,14 +48,14 @@ class KerbLine(NamedTuple):
 def slot_around(inputs: ControllerInput, car: Shape, params: ControllerParams) -> Slot:
     """Return the slot around a standing car; the road is on the side that the driver chose, else on the left.
 
-    Something near on that side is a neighbour: then the car stands across the road, its nose to it. Neighbours are
+    What both sensors of that side hear near is a neighbour: the car stands across the road, its nose to it. They are
     where the sensors hear something, as far out as is likely.
     """
     right_is_road = inputs.choice.side == ChosenSide.RIGHT
     road = flank_of(inputs, right_is_road, params)
     other = flank_of(inputs, not right_is_road, params)
     side = Side.LEFT if right_is_road else Side.RIGHT
-    if min(road.front, road.rear) < KERB:
+    if max(road.front, road.rear) < KERB:
         return _across(road, other, side, inputs, car, params)
     return _along(road, other, side, inputs, car, params)
 
@@ -75,7 +78,7 @@ def _along(
     return slot._replace(
         a=a,
         depth=depth if walled else UNSEEN,
-        opposite=far - STANDS_OUT if far < HEARD * params.car.ultrasonic.max_range else UNSEEN,
+        opposite=far - STANDS_OUT if NARROWEST < far < HEARD * params.car.ultrasonic.max_range else UNSEEN,
     )
 
 
@@ -87,6 +90,7 @@ def _across(
     behind = _nearest(REAR, inputs)
     near = min(road.front, road.rear)
     far = min(other.front, other.rear)
+    reach = HEARD * params.car.ultrasonic.max_range
     slot = Slot(kind=Kind.PERPENDICULAR, side=side, length=near + 2.0 * car.half_width + min(far, KERB))
     mirror = mirror_of(slot)
     out = car.front + STANDS_OUT
@@ -94,7 +98,7 @@ def _across(
     return slot._replace(
         a=to_world(corner, SlotFrame(inputs.odometry, 1.0)),
         depth=out + car.rear + behind if behind < KERB else UNSEEN,
-        opposite=ahead - STANDS_OUT if ahead < HEARD * params.car.ultrasonic.max_range else UNSEEN,
+        opposite=ahead - STANDS_OUT if NARROWEST_ACROSS < ahead < reach else UNSEEN,
         empty_b=far >= KERB,
     )
 

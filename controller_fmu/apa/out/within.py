@@ -8,7 +8,7 @@ street is wide is taken for it.
 import math
 
 from controller_fmu.apa.around.local_map import OTHER_SIDE, LocalMap, ear_at
-from controller_fmu.apa.slot import Kind
+from controller_fmu.apa.slot import UNSEEN, Kind
 from controller_fmu.common.sensors import HEARD
 from modelkit.car import CarUltrasonic
 
@@ -16,6 +16,8 @@ NARROWEST = 4.5
 """A street is no narrower [m]."""
 FURTHER = 0.3
 """Of what is heard there the nearest is kept, until it is heard so much [m] further off: it was somebody."""
+LOST = 0.8
+"""What was nearer than this share of the reach and is not heard any more is gone."""
 SENSORS = (1, 2, 3, 10)
 """Sensors that look across the road in turn while the car turns to the left."""
 SQUARE = 0.4
@@ -30,6 +32,8 @@ def heard_within(here: LocalMap, readings: tuple[float, ...], sensors: CarUltras
             ear = ear_at(sensors.mounts[number], here.pose, here.frame.mirror, sensors.half_angle)
             far = ear.y + readings[number]
             square = ear.ay > math.cos(SQUARE)
+            if square and readings[number] >= sensors.max_range and here.across < ear.y + LOST * sensors.max_range:
+                here = here._replace(across=UNSEEN)
             heard = square and readings[number] < HEARD * sensors.max_range and far > here.a.y + NARROWEST
             if heard and (far < here.across or far > here.across + FURTHER):
                 here = here._replace(across=far)

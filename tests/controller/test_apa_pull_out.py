@@ -154,9 +154,11 @@ def test_something_near_on_the_side_wished_for_is_a_neighbour_of_a_slot_across_t
     corner = Pose(CAR.front + STANDS_OUT, CAR.half_width + 0.4, -0.5 * math.pi)
     assert slot.a == pytest.approx(corner)
     assert slot.depth == pytest.approx(CAR.front + STANDS_OUT + CAR.rear + 0.3)
-    alone = slot_around(heard_at(Pose(), left=0.4, ahead=4.0, behind=5.0), CAR, PARAMS)
+    alone = slot_around(heard_at(Pose(), left=0.4, ahead=4.8, behind=5.0), CAR, PARAMS)
     assert (alone.depth, alone.empty_b) == (UNSEEN, True)
-    assert alone.opposite == pytest.approx(4.0 - STANDS_OUT)
+    assert alone.opposite == pytest.approx(4.8 - STANDS_OUT)
+    somebody = slot_around(heard_at(Pose(), left=0.4, ahead=2.0, behind=5.0), CAR, PARAMS)
+    assert somebody.opposite == UNSEEN
 
 
 @pytest.mark.parametrize(("wish", "side"), [(ChosenSide.ANY, Side.RIGHT), (ChosenSide.RIGHT, Side.LEFT)])

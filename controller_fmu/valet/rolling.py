@@ -41,7 +41,7 @@ BEHIND = 1e-6
 """So far [m] behind its edge a ramp has begun, or ended, in spite of rounding."""
 
 
-class Stretch(NamedTuple):
+class OneGear(NamedTuple):
     """The pieces that are driven in one gear, from ``first`` to ``last``, and their length [m]."""
 
     first: int
@@ -69,7 +69,7 @@ class Aim(NamedTuple):
     """Off its direction, to the left [rad]."""
 
 
-class Rest(NamedTuple):
+class WheelAtRest(NamedTuple):
     """How the wheel turns about a standstill."""
 
     before: float = 0.0
@@ -89,7 +89,7 @@ class Ahead(NamedTuple):
     """Way to the next standstill [m]."""
     speed: float = 0.0
     """Largest speed [m/s] here, that the ramps here and ahead allow."""
-    rest: Rest = Rest()
+    rest: WheelAtRest = WheelAtRest()
     """That standstill."""
 
 
@@ -101,7 +101,7 @@ def trimmed(path: Path) -> Path:
     return path._replace(used=used)
 
 
-def stretch_of(path: Path, piece: int) -> Stretch:
+def stretch_of(path: Path, piece: int) -> OneGear:
     """Return the stretch that ``piece`` is of."""
     direction = sign(path.pieces[piece].way)
     first = piece
@@ -112,10 +112,10 @@ def stretch_of(path: Path, piece: int) -> Stretch:
     while last + 1 < path.used and path.pieces[last + 1].way * direction > 0.0:
         last += 1
         length += abs(path.pieces[last].way)
-    return Stretch(first, last, length)
+    return OneGear(first, last, length)
 
 
-def way_before(path: Path, whole: Stretch, piece: int) -> float:
+def way_before(path: Path, whole: OneGear, piece: int) -> float:
     """Return the way [m] from the begin of a stretch to that of a piece."""
     way = 0.0
     for number in range(whole.first, piece):
@@ -129,7 +129,7 @@ def joint_of(path: Path, piece: int, params: ValetParams) -> Joint:
     return _joint(path, whole, piece, way_before(path, whole, piece + 1), params)
 
 
-def _joint(path: Path, whole: Stretch, piece: int, at: float, params: ValetParams) -> Joint:
+def _joint(path: Path, whole: OneGear, piece: int, at: float, params: ValetParams) -> Joint:
     """Return the joint at the end of ``piece``, ``at`` [m] from the begin of the stretch."""
     off = _largest_off(path, params)
     if piece >= whole.last or off <= 0.0:
@@ -175,7 +175,7 @@ def aim_at(path: Path, piece: int, left: float, params: ValetParams) -> Aim:
     return Aim(curvature, lateral, sign(path.pieces[piece].way) * heading)
 
 
-def turning_at(path: Path, whole: Stretch, place: float, params: ValetParams) -> float:
+def turning_at(path: Path, whole: OneGear, place: float, params: ValetParams) -> float:
     """Return by how much the front wheels turn [rad/m] at a place [m] of a stretch: L k' / (1 + (L k)^2)."""
     at = 0.0
     curvature = path.pieces[whole.first].k0
@@ -213,7 +213,7 @@ def ahead_of(path: Path, piece: int, left: float, params: ValetParams) -> Ahead:
     return Ahead(whole.length + rest.over - here, speed, rest)
 
 
-def rest_before(path: Path, piece: int, params: ValetParams) -> Rest:
+def rest_before(path: Path, piece: int, params: ValetParams) -> WheelAtRest:
     """Return the standstill before ``piece``; of the number of pieces: that at the end."""
     before = aim_at(path, piece - 1, 0.0, params).curvature if piece > 0 else 0.0
     then = aim_at(path, piece, abs(path.pieces[piece].way), params).curvature if piece < path.used else 0.0
@@ -221,27 +221,29 @@ def rest_before(path: Path, piece: int, params: ValetParams) -> Rest:
     ends = piece >= path.used
     settled = SETTLED if ends else 0.0
     if off <= 0.0 or path.margin < ROOMY:
-        return Rest(then=then)
+        return WheelAtRest(then=then)
     if abs(then - before) < SAME:
-        return Rest(settled, then=then)
-    early = Turn()
-    late = Turn()
+        return WheelAtRest(settled, then=then)
+    early = WheelTurn()
+    late = WheelTurn()
     if piece > 0:
         early = _turn_while(2.0 * off if ends else off, before, then, params.drive.deceleration, params)
     if not ends:
         late = _turn_while(off, then, before, QUICKEST, params)
     same_gear = piece > 0 and not ends and path.pieces[piece - 1].way * path.pieces[piece].way > 0.0
-    return Rest(max(early.time, settled), late.time, 0.0 if same_gear or piece == 0 else early.over + late.over, then)
+    return WheelAtRest(
+        max(early.time, settled), late.time, 0.0 if same_gear or piece == 0 else early.over + late.over, then
+    )
 
 
-class Turn(NamedTuple):
+class WheelTurn(NamedTuple):
     """How long [s] the wheel turns while the car moves on one side of a standstill, and how far [m] that takes it."""
 
     time: float = 0.0
     over: float = 0.0
 
 
-def _turn_while(off: float, near: float, far: float, acceleration: float, params: ValetParams) -> Turn:
+def _turn_while(off: float, near: float, far: float, acceleration: float, params: ValetParams) -> WheelTurn:
     """Return the turn from curvature ``near`` [1/m] towards ``far`` that takes the car half of ``off`` [m] at most.
 
     The heading lost is the integral of (k - near) v, by Simpson's rule: at both ends it is 0.
@@ -255,7 +257,7 @@ def _turn_while(off: float, near: float, far: float, acceleration: float, params
     cube = 3.0 * off * abs(far - near) / (steepest * acceleration)
     time = min(0.5 * abs(swing) / rate, math.exp(math.log(cube) / 3.0))
     half_way = math.tan(angle + sign(swing) * 0.5 * rate * time) / base
-    return Turn(time, abs(half_way - near) * acceleration * time * time / (3.0 * abs(far - near)))
+    return WheelTurn(time, abs(half_way - near) * acceleration * time * time / (3.0 * abs(far - near)))
 
 
 def turns_already(ahead: Ahead, params: ValetParams) -> bool:

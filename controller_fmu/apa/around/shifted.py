@@ -112,28 +112,28 @@ def shifted(here: LocalMap, who: int, by: float) -> LocalMap:
     return here._replace(a=there) if who == A else here._replace(b=there)
 
 
-class Found(NamedTuple):
+class Relocated(NamedTuple):
     """The map with a neighbour where he stands now, and what is still followed."""
 
     map: LocalMap
     shifts: Shifts
 
 
-def relocated(here: LocalMap, shifts: Shifts, readings: tuple[float, ...], sensors: CarUltrasonic) -> Found:
+def relocated(here: LocalMap, shifts: Shifts, readings: tuple[float, ...], sensors: CarUltrasonic) -> Relocated:
     """Return the map in which a neighbour stands where enough echoes have him, if no sensor hears past that place.
 
     Of two shifts that explain the same it is the less.
     """
     first = shifts.a.echoes >= ENOUGH and (shifts.b.echoes < ENOUGH or shifts.a.by < shifts.b.by)
     if not first and shifts.b.echoes < ENOUGH:
-        return Found(here, shifts)
+        return Relocated(here, shifts)
     who = A if first else B
     there = shifted(here, who, shifts.a.by if first else shifts.b.by)
     if _is_refuted(here, there, who, readings, sensors):
-        return Found(here, Shifts())
+        return Relocated(here, Shifts())
     if first:
-        return Found(there._replace(a=wider(there.a, UNSURE, 0.0)), Shifts())
-    return Found(there._replace(b=wider(there.b, UNSURE, 0.0)), Shifts())
+        return Relocated(there._replace(a=wider(there.a, UNSURE, 0.0)), Shifts())
+    return Relocated(there._replace(b=wider(there.b, UNSURE, 0.0)), Shifts())
 
 
 def _is_refuted(here: LocalMap, there: LocalMap, who: int, readings: tuple[float, ...], sensors: CarUltrasonic) -> bool:

@@ -15,12 +15,12 @@ from controller_fmu.apa.tracking import Tracked
 from controller_fmu.apa.ways.move import Move, point_at
 from controller_fmu.common.slot_frame import SlotFrame, to_slot, to_world
 from controller_fmu.interface import ControllerInput, ControllerParams
-from modelkit.vocabulary import Pose
+from modelkit.vocabulary import Gear, Pose
 
 DOUBT = 0.5
 """The line between the neighbours' corners is taken to lie further in by this share of its standard deviation."""
 ROLLS = 0.1
-"""A car that goes faster [m/s] against its gear slips, or rolls down a slope, and is stopped."""
+"""A car in the move's gear that goes faster [m/s] the other way slips, or rolls down a slope, and is stopped."""
 LOOK = 0.2
 LOOKS = 6
 """The rest of a move is looked at every so much [m], so many times."""
@@ -104,7 +104,8 @@ def _beside(at: Pose, off: float, site: Site, bare: Site) -> Pose:
 
 def sight_of(direction: int, bare: Site, around: Around, inputs: ControllerInput, params: ControllerParams) -> Sight:
     """Return what the guard says to driving in ``direction`` with the wheels as they are; ``bare``: without margins."""
-    if direction * inputs.measured_speed < -ROLLS:
+    in_gear = inputs.gear == (Gear.REVERSE if direction < 0 else Gear.DRIVE)
+    if in_gear and direction * inputs.measured_speed < -ROLLS:
         return Sight(0.0, True, True)
     front = bare.frame.mirror * inputs.steering_wheel_angle / params.car.steering.ratio
     course = HeldCourse(

@@ -8,6 +8,7 @@ import numpy as np
 from orchestrator.cosim.fmu_files import fmu_files
 from orchestrator.grid.search_kpis import HEADS, rows_of, study
 from orchestrator.scenario.load_scenario import load_scenario, scenario_names
+from orchestrator.scenario.scenario import DONE
 from orchestrator.session.session import run_scenario
 from orchestrator.sweep.in_memory import columns_in_memory
 from orchestrator.verdict.numbers import facts_of
@@ -33,7 +34,7 @@ def felt() -> list[str]:
     files, rows = fmu_files("native", print), []
     for name in scenario_names():
         scenario = load_scenario(name)
-        if name.startswith(("apa-", "cicap-", "valet-")) and scenario.expect == "parked":
+        if name.startswith(("apa-", "cicap-", "valet-")) and scenario.expect in DONE:
             numbers = facts_of(run_scenario(scenario, files, kind="native").recording, scenario).numbers
             rows.append([f"`{name}`", *(text.format(numbers[key]) for key, text in DRIVES.items())])
     return table(["", *(name.replace("_", " ") for name in DRIVES)], rows)

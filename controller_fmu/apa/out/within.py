@@ -20,8 +20,8 @@ LOST = 0.8
 """What was nearer than this share of the reach and is not heard any more is gone."""
 SENSORS = (1, 2, 3, 10)
 """Sensors that look across the road in turn while the car turns to the left."""
-SQUARE = 0.4
-"""A wall is heard at its distance by a sensor that looks at it to so much [rad]."""
+SQUARE = math.cos(0.4)
+"""A wall is heard at its distance by a sensor whose direction has this share, or more, across the road."""
 
 
 def heard_within(here: LocalMap, readings: tuple[float, ...], sensors: CarUltrasonic) -> LocalMap:
@@ -31,7 +31,7 @@ def heard_within(here: LocalMap, readings: tuple[float, ...], sensors: CarUltras
             number = place if here.frame.mirror > 0.0 else OTHER_SIDE[place]
             ear = ear_at(sensors.mounts[number], here.pose, here.frame.mirror, sensors.half_angle)
             far = ear.y + readings[number]
-            square = ear.ay > math.cos(SQUARE)
+            square = ear.ay > SQUARE
             if square and readings[number] >= sensors.max_range and here.across < ear.y + LOST * sensors.max_range:
                 here = here._replace(across=UNSEEN)
             heard = square and readings[number] < HEARD * sensors.max_range and far > here.a.y + NARROWEST

@@ -17,7 +17,7 @@ from typing import Any, ClassVar, NamedTuple
 from pythonfmu.enums import Fmi2Status
 from pythonfmu.fmi2slave import Fmi2Slave
 
-from fmus.python.binary import keep, pin_thread, tidy_path
+from fmus.python.binary import end_once, keep, pin_thread, tidy_path
 from fmus.python.layout import Layout, Values, picker
 from modelkit.model import Model
 from modelkit.store import bytes_of, store_of
@@ -54,6 +54,7 @@ class ModelSlave(Fmi2Slave):  # type: ignore[misc]
         pin_thread()
         keep(self)
         tidy_path(self.resources)
+        end_once(self.resources)
         self.values: Values = list(self.layout.start)
         self.mode = INSTANTIATED
         self.refused = ""

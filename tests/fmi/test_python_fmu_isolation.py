@@ -2,6 +2,7 @@
 
 import gc
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -20,6 +21,7 @@ import vehicle_fmu
 from fmus.contents.archive import archive_guid
 from fmus.contents.variables import fmi_variables
 from fmus.python.bundle import bundle, rewrite
+from fmus.python.fmu import build
 from tests.fmi.host import OK, Host, random_inputs, slaves
 
 ROOT = Path(__file__).parents[2]
@@ -180,6 +182,24 @@ def test_many_instantiations(python_fmus: Any) -> None:
             fmu.reset()
         fmu.freeInstance()
     shutil.rmtree(folder)
+
+
+def test_a_python_program_ends_with_nothing_left_to_free(tmp_path: Path) -> None:
+    """PythonFMU's own library, as in an environment without compiler, looks at its interpreter after freeing it."""
+    path = build(toy_model.MODEL, tmp_path)
+    code = """if 1:
+    import ctypes, fmpy, sys
+    fmpy.simulate_fmu(sys.argv[1], stop_time=0.2)
+    class Told(ctypes.CDLL):
+        def __getattr__(self, name):
+            found = super().__getattr__(name)
+            print(name, self._name)
+            return found
+    ctypes.CDLL = Told
+    """
+    command = [sys.executable, "-c", code, str(path)]
+    done = subprocess.run(command, check=True, capture_output=True, text=True, cwd=tmp_path)
+    assert re.fullmatch(r"finalizePythonInterpreter \S+/binaries/linux64/Toy\.so\n", done.stdout), done.stderr
 
 
 def test_imports_that_cannot_be_isolated_are_refused() -> None:

@@ -18,7 +18,8 @@ LIMITS = """
 <p>{where} the library of PythonFMU {version} is called as it is. The path into which the FMU is extracted must be
 plain there: letters, digits, blanks and <code>- . _ ~</code>, for of a URI it understands <code>file:///</code> and
 <code>%20</code> alone. It crashes on others, without a logger, and on null pointers; it takes any GUID; and in a host
-that is no Python program it may abort when the process ends. The native FMU of the same model has none of these limits.</p>
+that is no Python program it may abort when the process ends. The native FMU of the same model has none of these
+limits.</p>
 """
 FRONT = """
 <p>On linux64 a library of apa-cosim stands before that of PythonFMU. It takes any path but one with the characters

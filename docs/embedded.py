@@ -41,6 +41,8 @@ DRIVES = {
     "Guo 2015": ("controller", "guo2015-case4", ()),
     "parking assist": ("controller", "apa-parallel", ()),
     "parking assist, ISO's shortest slot": ("controller", "apa-parallel-tight", ()),
+    "parking assist, out of a slot": ("controller", "apa-pull-out-right", ()),
+    "parking assist, a child in the slot": ("controller", "cicap-child", ()),
     "Zhang 2022": ("controller", "zhang2022", ()),
     "HSIC": ("controller", "hsic", ()),
     "preview": ("controller", "preview", ("stop_time=20",)),

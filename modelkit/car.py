@@ -75,6 +75,11 @@ class Car(NamedTuple):
     ultrasonic: CarUltrasonic = CarUltrasonic()
 
 
+def car_length(car: Car) -> float:
+    """Return the length of the car [m]."""
+    return car.wheelbase + car.front_overhang + car.rear_overhang
+
+
 def largest_curvature(car: Car) -> float:
     """Return the largest curvature [1/m] of the rear axle's path: the front wheels at their lock, tan(phi) / L."""
     return math.tan(car.steering.angle_limit / car.steering.ratio) / car.wheelbase

@@ -132,8 +132,8 @@ def site_of(slot: Slot, car: Shape, margins: Margins) -> Site:
     reach = REACH_PERPENDICULAR if turned else REACH_PARALLEL
     behind = turned_box(Box(-reach, slot.unsure, -DEEP_DOWN, 0.0), 0.0, 0.0, slot.skew_a)
     ahead = turned_box(Box(-slot.unsure, reach, -DEEP_DOWN, 0.0), slot.length, slot.b_out, slot.skew_b)
-    beside = Box(-FAR, FAR, -FAR, -slot.depth) if slot.depth < UNSEEN else Box(1.0, -1.0, 1.0, -1.0)
-    opposite = Box(-FAR, FAR, slot.opposite, FAR) if slot.opposite < UNSEEN else Box(1.0, -1.0, 1.0, -1.0)
+    beside = Box(-FAR, FAR, -FAR, -slot.depth) if slot.depth < UNSEEN else Box()
+    opposite = Box(-FAR, FAR, slot.opposite, FAR) if slot.opposite < UNSEEN else Box()
     near = margins.neighbour
     beside_margin = margins.neighbour if turned else margins.beside
     obstacles = Obstacles(

@@ -113,7 +113,7 @@ def planned_on(store: PlanStore, state: ValetState, inputs: ControllerInput, par
         goal = goal_of(params, as_parameter(state.told, params.slot), pose)
         if params.search.active:
             gap = state.search.gap
-            goal = goal_now(store, state, params)
+            goal = goal_now(state, gap_now(store, state, params), params)
             if gap.depth < DEEP:
                 lay_end(store, gap, state.search.lines)
             lay_nearby(store, state.nearby, gap, state.search.lines + 1)
@@ -134,26 +134,24 @@ def planned_on(store: PlanStore, state: ValetState, inputs: ControllerInput, par
     return state._replace(request=request, searched=count, plans=plans, path=path, reason=reason, sight=Sight())
 
 
-def goal_now(store: PlanStore, state: ValetState, params: ValetParams) -> Pose:
-    """Return where to stand in the slot found, by all that was heard of it up to now."""
+def gap_now(store: PlanStore, state: ValetState, params: ValetParams) -> Gap:
+    """Return the slot found, by all that was heard of it up to now."""
     gap = state.search.gap
+    body = body_of(params)
+    deep = 2.0 * (body.half_length if gap.layout == GapLayout.ACROSS else body.half_width)
+    return corrected(store, state.nearby, gap, deep)
+
+
+def goal_now(state: ValetState, gap: Gap, params: ValetParams) -> Pose:
+    """Return where to stand in the slot found, which is ``gap`` now."""
     wish = state.search.told if state.search.told != SlotKind.NONE else params.search.wish
-    beside = corrected(store, state.nearby, gap, deep_in(gap, params))
-    return goal_in(beside, state.search.pose.heading, wish, params)
+    return goal_in(gap, state.search.pose.heading, wish, params)
 
 
-def room_beside_car(store: PlanStore, state: ValetState, params: ValetParams) -> float:
-    """Return how much more room [m] there is between the slot's neighbours than a car needs, by all that was heard."""
-    gap = state.search.gap
+def room_beside_car(gap: Gap, params: ValetParams) -> float:
+    """Return how much more room [m] there is between a slot's neighbours than a car needs."""
     body = body_of(params)
-    needed = 2.0 * (body.half_width if gap.layout == GapLayout.ACROSS else body.half_length)
-    return corrected(store, state.nearby, gap, deep_in(gap, params)).width - needed
-
-
-def deep_in(gap: Gap, params: ValetParams) -> float:
-    """Return how deep [m] into a gap a car reaches."""
-    body = body_of(params)
-    return 2.0 * (body.half_length if gap.layout == GapLayout.ACROSS else body.half_width)
+    return gap.width - 2.0 * (body.half_width if gap.layout == GapLayout.ACROSS else body.half_length)
 
 
 def reason_of(status: int, count: int, state: ValetState, params: ValetParams) -> int:

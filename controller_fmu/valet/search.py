@@ -13,6 +13,7 @@ from controller_fmu.sensing.ear import SideEar, listen
 from controller_fmu.sensing.gap import Gap, GapLayout, Wanted
 from controller_fmu.valet.given import gap_told, told_reason
 from controller_fmu.valet.params import SlotWish, ValetParams, WishedSide
+from modelkit.car import car_length
 from modelkit.vocabulary import Pose
 
 FRONT_SENSOR = 1
@@ -99,7 +100,7 @@ def wanted(params: ValetParams) -> Wanted:
     """Return what the driver wants a slot to be."""
     car = params.car
     wish = params.search.wish
-    length = car.wheelbase + car.front_overhang + car.rear_overhang
+    length = car_length(car)
     return Wanted(
         length=length,
         width=car.width,
@@ -117,7 +118,7 @@ def with_map(store: PlanStore, state: Search, inputs: ControllerInput, params: V
     """Return the search whose slot is shown, with the map around it made."""
     car = params.car
     sensors = car.ultrasonic
-    length = car.wheelbase + car.front_overhang + car.rear_overhang
+    length = car_length(car)
     across = state.gap.layout == GapLayout.ACROSS
     right_side = state.side == RIGHT
     what = AroundGap(

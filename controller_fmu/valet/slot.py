@@ -7,7 +7,7 @@ from controller_fmu.planning.task import PlannedCar as Body
 from controller_fmu.sensing.around import along_of
 from controller_fmu.sensing.gap import Gap, GapLayout
 from controller_fmu.valet.params import GivenSlot, SlotWish, ValetParams
-from modelkit.car import largest_curvature
+from modelkit.car import car_length, largest_curvature
 from modelkit.maths import PI
 from modelkit.vocabulary import Pose
 
@@ -21,7 +21,7 @@ FARTHEST_KERB = 1.2
 def body_of(params: ValetParams) -> Body:
     """Return the car as the planner sees it."""
     car = params.car
-    length = car.wheelbase + car.front_overhang + car.rear_overhang
+    length = car_length(car)
     curvature = params.plan.curvature_share * largest_curvature(car)
     return Body(0.5 * length - car.rear_overhang, 0.5 * length, 0.5 * car.width, curvature)
 

@@ -13,6 +13,7 @@ from controller_fmu.valet.chart import Guard, Step, step_transition
 from controller_fmu.valet.driven import (
     AT_END,
     ValetState,
+    gap_now,
     goal_now,
     heard_on,
     moved_on,
@@ -67,7 +68,7 @@ def guards_of(store: PlanStore, state: ValetState, inputs: ControllerInput, para
     standing = abs(speed) <= params.threshold.standstill
     wheel = inputs.steering_wheel_angle
     straight = abs(wheel) <= params.threshold.wheel
-    rolls_after = rest_before(state.path, state.piece, params).after
+    rolls_after = rest_before(state.path, state.piece, params).after if state.step == Step.SET_WHEEL else 0.0
     turned = max(params.threshold.wheel, params.car.steering.rate_limit * rolls_after)
     stop = abs(speed) * params.drive.delay + 0.5 * speed * speed / params.drive.brake
     lost = abs(tracked.lateral_error) > guard.corridor or abs(tracked.heading_error) > guard.corridor_heading
@@ -75,11 +76,13 @@ def guards_of(store: PlanStore, state: ValetState, inputs: ControllerInput, para
     blocked_long = state.watch.blocked * 1e-9 > guard.wait
     at_end = tracked.left <= AT_END and state.piece + 1 >= state.path.used
     goal = state.request.goal
-    corrects = params.search.active and standing and state.plans < CORRECTIONS
-    corrects = corrects and room_beside_car(store, state, params) > CORRECTION_ROOM
-    goal = goal_now(store, state, params) if corrects else goal
+    moved = False
+    if params.search.active and standing and state.plans < CORRECTIONS:
+        gap = gap_now(store, state, params)
+        if room_beside_car(gap, params) > CORRECTION_ROOM:
+            goal = goal_now(state, gap, params)
+            moved = not is_in_place(state.request.goal, goal, params)
     in_place = is_in_place(inputs.odometry, goal, params)
-    moved = corrects and not is_in_place(state.request.goal, goal, params)
     return (
         bit(Guard.TAKEN_OVER, inputs.driver_takeover or (params.search.active and not inputs.apa_switch))
         | bit(Guard.FAULT, state.reason != Reason.NONE)

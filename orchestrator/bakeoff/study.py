@@ -21,6 +21,7 @@ from orchestrator.sweep.table import Table
 from orchestrator.text.console import console
 from orchestrator.verdict.measures import Measure
 from orchestrator.verdict.numbers import Number
+from orchestrator.verdict.outcome import BEYOND
 
 CONTENT = {
     "name": "bakeoff",
@@ -100,7 +101,7 @@ def _compared(found: list[Drive]) -> Printed:
 def _cells(slot: str, name: str, mine: list[Drive]) -> list[str]:
     won = [item for item in mine if item.parked]
     refused = sum(item.why == REFUSED for item in mine)
-    reasons = Counter(item.why.removeprefix("beyond its limit: ").replace(", ", " and ") for item in mine if item.why)
+    reasons = Counter(item.why.removeprefix(BEYOND).replace(", ", " and ") for item in mine if item.why)
     why = ", ".join(f"{reason.replace('_', ' ')} {count}" for reason, count in reasons.most_common())
     counts = [str(len(mine)), f"{100.0 * refused / len(mine):.0f} %", str(len(won)), str(sum(i.exact for i in mine))]
     numbers = [f"{statistics.median(pick(item) for item in won):.3g}" if won else "-" for pick in MEDIANS]

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 from controller_fmu.apa.slot import Kind
 from controller_fmu.apa.ways.shortest_slot import shortest_slot
 from controller_fmu.interface import Reason
-from modelkit.car import Car
+from modelkit.car import Car, car_length
 from modelkit.variables import with_values
 from orchestrator.grid.cases import ISO
 from orchestrator.scenario.load_scenario import load_scenario, scenario_names
@@ -74,7 +74,7 @@ def lacking(scenario: Scenario) -> str:
     assert scenario.slot is not None
     own: dict[str, Any] = {name[4:]: value for name, value in scenario.vehicle.items() if name.startswith("car.")}
     car = with_values(Car, own)
-    length = car.wheelbase + car.front_overhang + car.rear_overhang
+    length = car_length(car)
     along, across = scenario.slot.length, scenario.slot.width
     if abs(math.sin(scenario.slot.heading)) > 0.5:
         asked = ((across, shortest_slot(Kind.PERPENDICULAR, car, ISO), "wide"), (along, length, "deep"))

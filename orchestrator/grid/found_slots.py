@@ -8,6 +8,7 @@ import math
 import random
 from typing import NamedTuple
 
+from modelkit.car import car_length
 from orchestrator.grid.cases import CARS
 from orchestrator.scenario.polygons import box_corners
 from orchestrator.scenario.scenario import Slot, Target
@@ -109,7 +110,7 @@ def place_of(case: FoundCase) -> SlotPlace:
 def size_of(case: FoundCase) -> tuple[float, float]:
     """Return the car's length and width [m]."""
     car = CARS[case.car]
-    return car.wheelbase + car.front_overhang + car.rear_overhang, car.width
+    return car_length(car), car.width
 
 
 def boxes_of(case: FoundCase) -> list[Box]:

@@ -14,6 +14,7 @@ from orchestrator.sweep.study.study import Study
 from orchestrator.sweep.table import Table
 from orchestrator.text.console import console
 from orchestrator.verdict.measures import Measure
+from orchestrator.verdict.outcome import BEYOND
 
 MEASURES = {
     "plans": Measure("last", "controller.valet.plans"),
@@ -32,7 +33,6 @@ FACTORS = ("angle", "neighbours", "end", "street", "wish")
 WAY = "way"
 """A run of this is there to see whether there is a way."""
 PLANNING = 10.0
-BEYOND = "beyond its limit"
 
 
 def study(runs: int = 1000, lot: int = 0, told: bool = False, out: bool = False, ways: bool = False) -> Study:

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 
 from controller_fmu.apa.choice import ChosenSide
 from controller_fmu.apa.slot import Kind
-from modelkit.car import Car
+from modelkit.car import car_length
 from orchestrator.grid.cases import BODY, CARS, KINDS
 from orchestrator.grid.imperfect import imperfect
 from orchestrator.scenario.car import car_parameters
@@ -105,11 +105,6 @@ class Footprint(NamedTuple):
     y1: float
 
 
-def length_of(car: Car) -> float:
-    """Return the length of a car [m]."""
-    return car.wheelbase + car.front_overhang + car.rear_overhang
-
-
 def start_of(case: OutCase) -> tuple[float, float, float]:
     """Return where the rear axle of a car stands that comes out to the left: x, y, heading; its outer end at y = 0."""
     car = CARS[case.car]
@@ -124,7 +119,7 @@ def things_of(case: OutCase) -> dict[str, Footprint]:
     car = CARS[case.car]
     across = case.kind == Kind.PERPENDICULAR
     along, deep = (WIDTH, LENGTH) if across else (LENGTH, WIDTH)
-    size, depth = (car.width, length_of(car)) if across else (length_of(car), car.width)
+    size, depth = (car.width, car_length(car)) if across else (car_length(car), car.width)
     end = -depth - case.beside
     found = {
         "first": Footprint(-along, 0.0, case.out_a - deep, case.out_a),
@@ -165,7 +160,7 @@ def _passer(case: OutCase) -> dict[str, float]:
     draw = random.Random(case.number + LOTS * case.lot + 53)
     if case.passes == PASSES[0]:
         return {"length": 0.0}
-    far = case.extra + (length_of(CARS[case.car]) if case.kind == Kind.PARALLEL else CARS[case.car].width)
+    far = case.extra + (car_length(CARS[case.car]) if case.kind == Kind.PARALLEL else CARS[case.car].width)
     place = {"x": draw.uniform(0.0, far + 1.0), "y": case.side * draw.uniform(0.8, 2.5)}
     person, leaves = {**place, "length": PERSON, "width": PERSON}, draw.uniform(3.0, 20.0)
     if case.passes == PASSES[1]:

@@ -15,7 +15,6 @@ from orchestrator.grid.out_cases import OutCase, start_of, things_of
 
 KEPT = 0.05
 """Clearance [m] of a way that counts, or as much as the car has where it stands."""
-NONE = Box(1.0, -1.0, 1.0, -1.0)
 
 
 def moves_out(case: OutCase) -> int:
@@ -42,8 +41,8 @@ def site_known(case: OutCase, margin: float) -> Site:
     for name, item in things.items():
         box = Box(item.y0, item.y1, -item.x1, -item.x0) if across else Box(item.x0, item.x1, item.y0, item.y1)
         boxes[name] = grown(box, margin)
-    beside = boxes.get("wall", boxes.get("kerb", NONE))
-    obstacles = Obstacles(boxes["first"], boxes["second"], beside, boxes.get("across", NONE))
+    beside = boxes.get("wall", boxes.get("kerb", Box()))
+    obstacles = Obstacles(boxes["first"], boxes["second"], beside, boxes.get("across", Box()))
     frame = SlotFrame(Pose(0.0, 0.0, 0.5 * math.pi if across else 0.0), 1.0)
     return Site(case.kind, frame, obstacles)
 
@@ -52,7 +51,7 @@ def free_ahead(case: OutCase, end: Pose, most: float = 5.0) -> float:
     """Return how far [m] a car that ended at ``end`` (scene) could drive straight on past its neighbours, ``most``."""
     site, car = site_known(case, 0.0), shape_known(case)
     at = to_slot(Pose(end.x, case.side * end.y, case.side * end.heading), site.frame)
-    row = Obstacles(site.obstacles.behind, site.obstacles.ahead, NONE, NONE)
+    row = Obstacles(site.obstacles.behind, site.obstacles.ahead)
     way = 0.0
     while way < most and clearance(at, car._replace(front=car.front + way), row, 0.0) > 0.0:
         way += 0.1

@@ -9,7 +9,7 @@ from rich.table import Table as Printed
 
 from modelkit.vocabulary import Pose
 from orchestrator.grid.cases import CARS, KINDS
-from orchestrator.grid.out_cases import OutCase, case_of, cases, named, side_of, vehicle_of
+from orchestrator.grid.out_cases import PASSES, OutCase, case_of, cases, named, side_of, vehicle_of
 from orchestrator.grid.out_known import free_ahead, moves_out
 from orchestrator.scenario.car import car_parameters
 from orchestrator.scenario.fault import Fault
@@ -89,7 +89,7 @@ def outs(table: Table) -> list[OutRun]:
     found = []
     for row in range(len(columns["number"])):
         number, lot = int(columns["number"][row]), int(columns["lot"][row])
-        people = str(columns["passes"][row]) != "nobody"
+        people = str(columns["passes"][row]) != PASSES[0]
         case = case_of(number, lot, people)
         out = str(columns["outcome"][row]) == "finished"
         end = Pose(*(float(columns[f"final.{name}"][row]) for name in ("x", "y", "heading")))

@@ -17,6 +17,7 @@ from rich.table import Table as Printed
 
 from controller_fmu.apa.slot import Kind
 from controller_fmu.apa.ways.shortest_slot import shortest_slot
+from modelkit.car import car_length
 from orchestrator.cosim.slave import Array
 from orchestrator.grid.cases import BODIES, CARS, ISO, KINDS, LOTS, GridCase, scenario_of
 from orchestrator.grid.parkings import GHOST, MEASURES, ODOMETRY, POSE, SIGNALS, corner_errors, pose_of
@@ -60,7 +61,7 @@ def _case(number: int, lot: int, kind: int, size: int, speed: float, beside: flo
     lottery = random.Random(f"search {number + LOTS * lot}")
     name = lottery.choice(list(CARS))
     car, shortest = CARS[name], shortest_slot(kind, CARS[name], ISO)
-    length = car.wheelbase + car.front_overhang + car.rear_overhang
+    length = car_length(car)
     small = (length if kind == Kind.PARALLEL else car.width) + TOO_SMALL[kind]
     extra = (*WIDER[kind], small - shortest)[size]
     side, heading = 1 - 2 * (draw % 2), math.radians(lottery.uniform(-TURNED, TURNED))

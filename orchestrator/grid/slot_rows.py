@@ -15,6 +15,7 @@ from typing import Any, NamedTuple
 from rich.table import Table as Printed
 
 from controller_fmu.common.told import SlotKind
+from modelkit.car import car_length
 from orchestrator.grid.cases import CARS
 from orchestrator.grid.imperfect import imperfect
 from orchestrator.scenario.car import car_parameters
@@ -70,7 +71,7 @@ def cases(lot: int = 0) -> list[RowCase]:
 def scenario_of(case: RowCase) -> Scenario:
     """Return the scenario of a case: corner A at the origin, the slot to the right of x, the street to the left."""
     car = CARS[case.car]
-    length, width = car.wheelbase + car.front_overhang + car.rear_overhang, car.width + case.wider
+    length, width = car_length(car), car.width + case.wider
     turn, depth = math.radians(case.angle), length + DEEPER
     into, opening = (math.cos(turn), -math.sin(turn)), width / math.sin(turn)
     middle = (0.5 * opening + 0.5 * depth * into[0], 0.5 * depth * into[1])
@@ -99,7 +100,7 @@ def _vehicle(case: RowCase, opening: float, middle: tuple[float, float], depth: 
     """Return the vehicle's parameters: where it starts, what stands there, its errors."""
     car, turn = CARS[case.car], math.radians(case.angle)
     lot = random.Random(5000 + case.number + LOTS * case.lot)
-    length = car.wheelbase + car.front_overhang + car.rear_overhang
+    length = car_length(car)
     behind = depth * math.sin(turn) + 0.5 * (car.width + case.wider) * math.cos(turn) + 0.8
     boxes = [
         {"x": middle[0] + place * opening, "y": middle[1], "heading": -turn, "length": length, "width": car.width}

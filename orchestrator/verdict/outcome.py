@@ -9,6 +9,9 @@ from orchestrator.scenario.end_condition import states_of
 from orchestrator.scenario.scenario import MISSED, SUCCESS, Outcome, Scenario
 from orchestrator.verdict.truth import Bools
 
+BEYOND = "beyond its limit: "
+"""Begins why a run has not done its task whose controller says so, but which misses requirements."""
+
 
 class Ends(NamedTuple):
     """How runs ended, an entry for each run."""
@@ -96,7 +99,7 @@ class _Words:
         parts = [] if abs(speed) <= self._still else [f"the car still moves: {speed:.3g} m/s"]
         if math.isnan(speed):
             parts, unknown = [], ["the car's speed", *unknown]
-        parts += [f"beyond its limit: {', '.join(beyond)}"] if beyond else []
+        parts += [f"{BEYOND}{', '.join(beyond)}"] if beyond else []
         parts += [f"not measured: {', '.join(unknown)}"] if unknown else []
         return "; ".join(parts)
 

@@ -7,6 +7,8 @@ import pytest
 import shapely
 
 from controller_fmu.apa import outline
+from controller_fmu.apa.out import moves
+from controller_fmu.apa.out.moves import free_out
 from controller_fmu.apa.outline import Box, Obstacles, Shape, box_clearance, clearance, free_way, grown, turned_box
 from controller_fmu.apa.ways import move
 from controller_fmu.apa.ways.move import NO_PIECE, Move, Piece, is_move_free
@@ -66,15 +68,20 @@ def test_a_way_is_as_free_as_if_every_place_were_looked_at(monkeypatch: pytest.M
         start = Pose(*random.uniform(-1, 1, 3).tolist())
         scenes.append((start, Obstacles(*things), k[0], Move(start, random.choice((-1, 1)), pieces)))
 
-    def found() -> list[tuple[float, bool]]:
+    def found() -> list[tuple[float, bool, float]]:
         return [
-            (free_way(start, float(way.direction), k, 4.0, CAR, around), is_move_free(way, CAR, around))
+            (
+                free_way(start, float(way.direction), k, 4.0, CAR, around),
+                is_move_free(way, CAR, around),
+                free_out(start, way.direction, k, 4.0, CAR, around),
+            )
             for start, around, k, way in scenes
         ]
 
     skipping = found()
-    for module in (outline, move):
+    for module in (outline, move, moves):
         monkeypatch.setattr(module, "sure_steps", lambda gap, moved: 0)
     assert skipping == found()
-    assert len({way for way, _ in skipping}) > 40
-    assert 50 < sum(free for _, free in skipping) < 250
+    assert len({way for way, _, _ in skipping}) > 40
+    assert 50 < sum(free for _, free, _ in skipping) < 250
+    assert len({way for _, _, way in skipping}) > 40

@@ -14,7 +14,7 @@ from controller_fmu.apa.around.arcs import LOOKED_AT, NOWHERE, Unknown, arc_of, 
 from controller_fmu.apa.around.closing import SILENCES, Track, room_to_strange, tracked_on, turned_round
 from controller_fmu.apa.around.comer import Comer, followed, somebody_comes
 from controller_fmu.apa.around.course import HeldCourse, after
-from controller_fmu.apa.around.local_map import LocalMap, ear_at, expected, nearest_case, unsure_of
+from controller_fmu.apa.around.local_map import LocalMap, ear_on, expected, nearest_case, unsure_of
 from controller_fmu.apa.around.near import FREE, NEARER, room_by_echoes
 from controller_fmu.apa.around.straight import room_straight
 from controller_fmu.apa.outline import Box, Obstacles, Shape, box_clearance, clearance, grown, outline_rate, sure_steps
@@ -110,8 +110,8 @@ def listen(state: GuardState, readings: tuple[float, ...], here: LocalMap, param
     comers = state.comers
     for number in range(12):
         reading = readings[number]
-        ear = ear_at(sensors.mounts[number], here.pose, here.frame.mirror, sensors.half_angle)
-        wide = ear_at(sensors.mounts[number], here.pose, here.frame.mirror, sensors.half_angle + WIDER)
+        ear = ear_on(here, sensors, number)
+        wide = ear_on(here, sensors, number, WIDER)
         mapped = expected(ear, here).echo
         track = tracks[0] if direction == state.direction else turned_round(tracks[0])
         track = tracked_on(track, reading, abs(way), mapped.distance, sensors.max_range)
@@ -131,12 +131,16 @@ def listen(state: GuardState, readings: tuple[float, ...], here: LocalMap, param
         if reading < LOOKED_AT and not explained:
             kept = arc_of(ear, reading)
         elif kept.there and (reading < sensors.max_range or track.silent >= SILENCES):
-            known = reading < LOOKED_AT and abs(reading - mapped.distance) <= params.apa.guard.surprise
-            kept = not_refuted(kept, ear, reading, known)
+            kept = not_refuted(kept, ear, reading, is_known(reading, mapped.distance, params))
         unknown = unknown[1:] + (kept,)
     return state._replace(
         unknown=unknown, echoes=echoes, close=close, tracks=tracks, comers=comers, direction=direction, pose=here.pose
     )
+
+
+def is_known(reading: float, distance: float, params: ControllerParams) -> bool:
+    """Return whether a reading is of what the map has at this distance [m]."""
+    return reading < LOOKED_AT and abs(reading - distance) <= params.apa.guard.surprise
 
 
 def _way(before: Pose, now: Pose) -> float:

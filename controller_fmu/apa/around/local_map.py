@@ -131,6 +131,21 @@ def ear_at(mount: SensorMount, pose: Pose, mirror: float, half_angle: float) -> 
     )
 
 
+def ear_on(here: LocalMap, sensors: CarUltrasonic, number: int, wider_by: float = 0.0) -> ConeEar:
+    """Return a sensor of the car on the map, its half angle wider by so much [rad]."""
+    return ear_at(sensors.mounts[number], here.pose, here.frame.mirror, sensors.half_angle + wider_by)
+
+
+def neighbour_of(here: LocalMap, who: int) -> Thing:
+    """Return neighbour A or B."""
+    return here.a if who == A else here.b
+
+
+def with_neighbour(here: LocalMap, who: int, thing: Thing) -> LocalMap:
+    """Return the map with neighbour A or B as ``thing``."""
+    return here._replace(a=thing) if who == A else here._replace(b=thing)
+
+
 def expected(ear: ConeEar, here: LocalMap) -> MapEcho:
     """Return what a sensor should hear."""
     found = MapEcho()
@@ -150,7 +165,7 @@ def echo_of_neighbour(ear: ConeEar, here: LocalMap, who: int) -> Echo:
     length = SIDE_PARALLEL if here.kind == Kind.PARALLEL else SIDE_PERPENDICULAR
     depth = DEPTH_PARALLEL if here.kind == Kind.PARALLEL else DEPTH_PERPENDICULAR
     depth = depth + DEEPER if here.within else depth
-    return _of(ear, here.a, -length, depth) if who == A else _of(ear, here.b, length, depth)
+    return _of(ear, neighbour_of(here, who), -length if who == A else length, depth)
 
 
 def nearest_case(here: LocalMap, times: float) -> LocalMap:
@@ -201,7 +216,7 @@ def heard(here: LocalMap, readings: tuple[float, ...], sensors: CarUltrasonic, p
     for place in range(12):
         number = place if here.frame.mirror > 0.0 else OTHER_SIDE[place]
         reading = readings[number]
-        ear = ear_at(sensors.mounts[number], here.pose, here.frame.mirror, sensors.half_angle)
+        ear = ear_on(here, sensors, number)
         if reading < params.heard:
             here = _told(here, ear, expected(ear, here), Reading(reading, reading > lowest), params)
         elif here.walled:
@@ -242,7 +257,7 @@ def _told(here: LocalMap, ear: ConeEar, what: MapEcho, told: Reading, params: Ma
     nearer = reading < RIM_LEARNT and what.echo.distance - reading > RIM_OFF + 0.1 * reading
     if not plain and not nearer:
         return here
-    thing = here.a if what.who == A else here.b if what.who == B else here.wall
+    thing = neighbour_of(here, what.who) if what.who in (A, B) else here.wall
     if what.who != WALL and _from_corner(thing, what.echo) > (SURE_PARALLEL if here.kind == Kind.PARALLEL else SURE):
         return here
     nx = (what.echo.x - ear.x) / what.echo.distance
@@ -262,10 +277,8 @@ def _told(here: LocalMap, ear: ConeEar, what: MapEcho, told: Reading, params: Ma
         least = PLAIN if what.echo.hit == Hit.SQUARE else least
         along = what.who != WALL and abs(ny) < least
         thing = told_out._replace(y=thing.y, yy=thing.yy) if along else told_out
-    if what.who == A:
-        return here._replace(a=thing)
-    if what.who == B:
-        return here._replace(b=thing)
+    if what.who in (A, B):
+        return with_neighbour(here, what.who, thing)
     share = SHARED if here.wall.yy < KNOWN * KNOWN else SHARED_AT_FIRST
     off = share * (thing.y - here.wall.y)
     return here._replace(wall=thing, a=here.a._replace(y=here.a.y + off), b=here.b._replace(y=here.b.y + off))

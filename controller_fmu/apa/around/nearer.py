@@ -8,8 +8,18 @@ explains best what all twelve sensors hear is taken for it, and the way is plann
 from typing import NamedTuple
 
 from controller_fmu.apa.around.arcs import LOOKED_AT, Unknown
-from controller_fmu.apa.around.guard import GuardState
-from controller_fmu.apa.around.local_map import NOBODY, WALL, A, B, LocalMap, ear_at, expected
+from controller_fmu.apa.around.guard import GuardState, is_known
+from controller_fmu.apa.around.local_map import (
+    NOBODY,
+    WALL,
+    A,
+    B,
+    LocalMap,
+    ear_on,
+    expected,
+    neighbour_of,
+    with_neighbour,
+)
 from controller_fmu.apa.around.thing import Thing, thing_at
 from controller_fmu.interface import ControllerParams
 from modelkit.maths import clamp
@@ -57,15 +67,14 @@ def pressed(here: LocalMap, readings: tuple[float, ...], params: ControllerParam
     least = NEAR
     who = NOBODY
     for number in range(12):
-        ear = ear_at(sensors.mounts[number], here.pose, here.frame.mirror, sensors.half_angle)
+        ear = ear_on(here, sensors, number)
         if readings[number] < least:
             least = readings[number]
             who = expected(ear, here).who
-    if who == A:
-        return here._replace(a=here.a._replace(x=here.a.x + PRESSED))
-    if who == B:
-        return here._replace(b=here.b._replace(x=here.b.x - PRESSED))
-    return here
+    if who not in (A, B):
+        return here
+    thing = neighbour_of(here, who)
+    return with_neighbour(here, who, thing._replace(x=thing.x + PRESSED if who == A else thing.x - PRESSED))
 
 
 def misfit(here: LocalMap, readings: tuple[float, ...], params: ControllerParams) -> float:
@@ -73,18 +82,16 @@ def misfit(here: LocalMap, readings: tuple[float, ...], params: ControllerParams
     sensors = params.car.ultrasonic
     total = 0.0
     for number in range(12):
-        ear = ear_at(sensors.mounts[number], here.pose, here.frame.mirror, sensors.half_angle)
+        ear = ear_on(here, sensors, number)
         told = clamp(expected(ear, here).echo.distance, sensors.min_range, LOOKED_AT)
         total += min(MOST, abs(min(readings[number], LOOKED_AT) - told))
     return total
 
 
 def _moved(here: LocalMap, who: int, along: float, out: float, params: ControllerParams) -> LocalMap:
-    if who == A:
-        return here._replace(a=_placed(here.a, along, out, params))
-    if who == B:
-        return here._replace(b=_placed(here.b, along, out, params))
-    return here._replace(wall=_placed(here.wall, along, out, params))
+    if who == WALL:
+        return here._replace(wall=_placed(here.wall, along, out, params))
+    return with_neighbour(here, who, _placed(neighbour_of(here, who), along, out, params))
 
 
 def _placed(thing: Thing, along: float, out: float, params: ControllerParams) -> Thing:
@@ -99,9 +106,8 @@ def explained(state: GuardState, readings: tuple[float, ...], here: LocalMap, pa
     unknown = state.unknown
     for number in range(12):
         kept = unknown[0]
-        ear = ear_at(sensors.mounts[number], here.pose, here.frame.mirror, sensors.half_angle)
-        reading = readings[number]
-        if reading < LOOKED_AT and abs(reading - expected(ear, here).echo.distance) <= params.apa.guard.surprise:
+        ear = ear_on(here, sensors, number)
+        if is_known(readings[number], expected(ear, here).echo.distance, params):
             kept = Unknown()
         unknown = unknown[1:] + (kept,)
     return state._replace(unknown=unknown)

@@ -2,7 +2,7 @@
 
 import math
 
-from controller_fmu.apa.around.local_map import LocalMap, ear_at, expected
+from controller_fmu.apa.around.local_map import LocalMap, ear_on, expected
 from controller_fmu.apa.params import MapParams
 from controller_fmu.apa.slot import UNSEEN, Kind, Slot
 from controller_fmu.common.slot_frame import to_world
@@ -144,7 +144,7 @@ def _is_missed(here: LocalMap, readings: tuple[float, ...], number: int, params:
     What ends the slot is left out: a wheel stop is not as wide as a wall.
     """
     sensors = params.car.ultrasonic
-    ear = ear_at(sensors.mounts[number], here.pose, here.frame.mirror, sensors.half_angle)
+    ear = ear_on(here, sensors, number)
     echo = expected(ear, here._replace(walled=False)).echo
     return echo.distance < params.apa.map.heard and readings[number] > echo.distance + MISSED
 

@@ -9,7 +9,16 @@ import math
 from typing import NamedTuple
 
 from controller_fmu.apa.around.cone import ConeEar
-from controller_fmu.apa.around.local_map import A, B, LocalMap, ear_at, echo_of_neighbour, expected
+from controller_fmu.apa.around.local_map import (
+    A,
+    B,
+    LocalMap,
+    ear_on,
+    echo_of_neighbour,
+    expected,
+    neighbour_of,
+    with_neighbour,
+)
 from controller_fmu.apa.around.near import nearest_told
 from controller_fmu.apa.around.thing import wider
 from modelkit.car import CarUltrasonic
@@ -70,7 +79,7 @@ def followed(shifts: Shifts, here: LocalMap, readings: tuple[float, ...], sensor
     for number in range(12):
         reading = readings[number]
         if lowest < reading < FARTHEST:
-            ear = ear_at(sensors.mounts[number], here.pose, here.frame.mirror, sensors.half_angle)
+            ear = ear_on(here, sensors, number)
             if expected(ear, here).echo.distance - reading > NEARER + 0.1 * reading:
                 a = _told(a, shift_that_explains(ear, here, A, reading))
                 b = _told(b, shift_that_explains(ear, here, B, reading))
@@ -106,10 +115,10 @@ def shift_that_explains(ear: ConeEar, here: LocalMap, who: int, reading: float) 
 
 def shifted(here: LocalMap, who: int, by: float) -> LocalMap:
     """Return the map with a neighbour, along himself, ``by`` [m] further in the slot."""
-    thing = here.a if who == A else here.b
+    thing = neighbour_of(here, who)
     way = by if who == A else -by
     there = thing._replace(x=thing.x + way * math.cos(thing.heading), y=thing.y + way * math.sin(thing.heading))
-    return here._replace(a=there) if who == A else here._replace(b=there)
+    return with_neighbour(here, who, there)
 
 
 class Relocated(NamedTuple):
@@ -131,21 +140,18 @@ def relocated(here: LocalMap, shifts: Shifts, readings: tuple[float, ...], senso
     there = shifted(here, who, shifts.a.by if first else shifts.b.by)
     if _is_refuted(here, there, who, readings, sensors):
         return Relocated(here, Shifts())
-    if first:
-        return Relocated(there._replace(a=wider(there.a, UNSURE, 0.0)), Shifts())
-    return Relocated(there._replace(b=wider(there.b, UNSURE, 0.0)), Shifts())
+    return Relocated(with_neighbour(there, who, wider(neighbour_of(there, who), UNSURE, 0.0)), Shifts())
 
 
 def _is_refuted(here: LocalMap, there: LocalMap, who: int, readings: tuple[float, ...], sensors: CarUltrasonic) -> bool:
     """Return whether a sensor hears past a neighbour whom it should hear, or hears him where he was, and not there."""
     for number in range(12):
         reading = readings[number]
-        mount = sensors.mounts[number]
-        narrow = ear_at(mount, here.pose, here.frame.mirror, sensors.half_angle - NARROWER)
+        narrow = ear_on(here, sensors, number, -NARROWER)
         distance = echo_of_neighbour(narrow, there, who).distance
         if distance < LOOKED_AT and reading > distance + PAST:
             return True
-        ear = ear_at(mount, here.pose, here.frame.mirror, sensors.half_angle)
+        ear = ear_on(here, sensors, number)
         before = expected(ear, here)
         heard_there = before.who == who and reading < LOOKED_AT and abs(reading - before.echo.distance) < SAME
         if heard_there and abs(reading - echo_of_neighbour(ear, there, who).distance) > PAST:

@@ -7,7 +7,7 @@ that parks before a wheel stop stands in the row only if it comes near it.
 import math
 
 from controller_fmu.apa.around.arcs import LOOKED_AT
-from controller_fmu.apa.around.local_map import WALL, A, B, LocalMap, ear_at, expected
+from controller_fmu.apa.around.local_map import WALL, A, B, LocalMap, ear_on, expected
 from controller_fmu.apa.around.near import FREE, nearest_told
 from controller_fmu.interface import ControllerParams
 
@@ -38,7 +38,7 @@ def room_straight(readings: tuple[float, ...], here: LocalMap, direction: int, p
         if ahead and reading < LOOKED_AT:
             free = reading - guard.stop_gap
             if sure or here.within:
-                known = expected(ear_at(mount, here.pose, here.frame.mirror, sensors.half_angle), here)
+                known = expected(ear_on(here, sensors, number), here)
                 far = known.echo.distance
                 told = (sure and known.who == WALL) or (here.within and (known.who == A or known.who == B))
                 if told and abs(max(far, sensors.min_range) - reading) < SAME + 0.1 * reading:

@@ -4,9 +4,10 @@ In the target's frame a slot along the road lies at y < 0 and the car turns to t
 drives ahead and turns to the left, too. Forward to the left and back to the right both turn the car to the road.
 """
 
-from controller_fmu.apa.outline import Box, Obstacles, Shape, clearance
+from controller_fmu.apa.outline import Obstacles, Shape, clearance, outline_rate, sure_steps
 from controller_fmu.apa.slot import Kind, Site
 from controller_fmu.apa.ways.move import CREPT, NO_PIECE, Move, Piece
+from controller_fmu.apa.ways.turns import two_arcs
 from controller_fmu.common.curve import advance
 from modelkit.vocabulary import Pose
 
@@ -36,11 +37,10 @@ CHOICES = len(ARCS) + len(ASIDE) + LINES
 
 def is_out(pose: Pose, site: Site, car: Shape) -> bool:
     """Return whether a car at ``pose`` could drive straight on, out of the slot."""
-    none = Box(1.0, -1.0, 1.0, -1.0)
     far = car._replace(front=car.front + CLEAR)
     if site.kind == Kind.PERPENDICULAR:
         return pose.heading >= TURNED and clearance(pose, far, site.obstacles, 0.0) > 0.0
-    return clearance(pose, far, Obstacles(none, site.obstacles.ahead, none, none), 0.0) > 0.0
+    return clearance(pose, far, Obstacles(ahead=site.obstacles.ahead), 0.0) > 0.0
 
 
 def last_move(pose: Pose, site: Site, car: Shape) -> Move:
@@ -74,13 +74,19 @@ def free_out(pose: Pose, direction: int, c: float, longest: float, car: Shape, o
     """Return how far [m] the car can drive at curvature ``c``; where it begins within a margin it may leave that."""
     gap = clearance(pose, car, obstacles, CREPT)
     least = gap - CREPT if gap <= 0.0 else 0.0
+    moved = STEP * outline_rate(c, car)
     way = 0.0
+    sure = 0
     while way < longest:
         further = min(way + STEP, longest)
-        gap = clearance(advance(pose, float(direction), further, c, c), car, obstacles, CREPT)
-        if gap <= least:
-            return way
-        least = max(least, gap - CREPT) if gap <= 0.0 else 0.0
+        if sure > 0:
+            sure -= 1
+        else:
+            gap = clearance(advance(pose, float(direction), further, c, c), car, obstacles, CREPT)
+            if gap <= least:
+                return way
+            least = max(least, gap - CREPT) if gap <= 0.0 else 0.0
+            sure = sure_steps(gap, moved)
         way = further
     return longest
 
@@ -99,8 +105,7 @@ def _aside(pose: Pose, share: float, site: Site, car: Shape) -> Move:
         if free_out(pose, 1, c, half, car, site.obstacles) >= half:
             there = advance(pose, 1.0, half, c, c)
             if free_out(there, 1, -c, half, car, site.obstacles) >= half:
-                pieces = (Piece(half, c, c), Piece(half, -c, -c), NO_PIECE, NO_PIECE, NO_PIECE, NO_PIECE, NO_PIECE)
-                return Move(pose, 1, pieces)
+                return two_arcs(pose, 1, c, half, half, 0.0)
     return NO_WAY
 
 

@@ -1,7 +1,7 @@
 """The way out of a slot: moves back and forth, looked for level by level, until the car can drive off.
 
 Level n of the search holds the best poses after n moves, ``WIDTH`` of them at most. From each the moves of
-``out_moves`` go as far as nothing is near; two poses that are nearly the same are one. The first level from which one
+``moves.py`` go as far as nothing is near; two poses that are nearly the same are one. The first level from which one
 move leads out has a way of the fewest moves; its first move is driven, then the search is made anew.
 """
 

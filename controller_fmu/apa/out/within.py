@@ -7,13 +7,12 @@ street is wide is taken for it.
 
 import math
 
-from controller_fmu.apa.around.local_map import OTHER_SIDE, LocalMap, ear_at
+from controller_fmu.apa.around.local_map import OTHER_SIDE, LocalMap, ear_on
+from controller_fmu.apa.out.standing_in import NARROWEST_ACROSS
 from controller_fmu.apa.slot import UNSEEN, Kind
 from controller_fmu.common.sensors import HEARD
 from modelkit.car import CarUltrasonic
 
-NARROWEST = 4.5
-"""A street is no narrower [m]."""
 FURTHER = 0.3
 """Of what is heard there the nearest is kept, until it is heard so much [m] further off: it was somebody."""
 LOST = 0.8
@@ -29,12 +28,12 @@ def heard_within(here: LocalMap, readings: tuple[float, ...], sensors: CarUltras
     if here.kind != Kind.PARALLEL:
         for place in SENSORS:
             number = place if here.frame.mirror > 0.0 else OTHER_SIDE[place]
-            ear = ear_at(sensors.mounts[number], here.pose, here.frame.mirror, sensors.half_angle)
+            ear = ear_on(here, sensors, number)
             far = ear.y + readings[number]
             square = ear.ay > SQUARE
             if square and readings[number] >= sensors.max_range and here.across < ear.y + LOST * sensors.max_range:
                 here = here._replace(across=UNSEEN)
-            heard = square and readings[number] < HEARD * sensors.max_range and far > here.a.y + NARROWEST
+            heard = square and readings[number] < HEARD * sensors.max_range and far > here.a.y + NARROWEST_ACROSS
             if heard and (far < here.across or far > here.across + FURTHER):
                 here = here._replace(across=far)
         return here

@@ -6,7 +6,7 @@ Its numbers stand in ``orchestrator/limits/slots``; a test holds those here equa
 from typing import NamedTuple
 
 from controller_fmu.apa.slot import Kind
-from modelkit.car import Car
+from modelkit.car import Car, car_length
 
 
 class SlotSizes(NamedTuple):
@@ -35,7 +35,7 @@ def shortest_slot(kind: int, car: Car, sizes: SlotSizes) -> float:
     """Return the length (width) [m] of the shortest slot for this car."""
     if kind != Kind.PARALLEL:
         return car.width + sizes.across_room
-    length = car.wheelbase + car.front_overhang + car.rear_overhang
+    length = car_length(car)
     if length < sizes.short:
         return length + sizes.short_room
     return sizes.share * length if length <= sizes.long else length + sizes.long_room

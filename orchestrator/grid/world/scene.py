@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from controller_fmu.apa.ways.shortest_slot import shortest_slot
-from modelkit.car import Car
+from modelkit.car import Car, car_length
 from orchestrator.cosim.slave import Array
 from orchestrator.grid.cases import BODY, CARS, ISO
 from orchestrator.grid.world.factors import NO_SENSOR, NOBODY, STEPS
@@ -64,7 +64,7 @@ def _chosen(items: list[dict[str, float]], chosen: Array) -> dict[str, Array]:
 
 
 def _size(car: Car) -> dict[str, float]:
-    length = car.wheelbase + car.front_overhang + car.rear_overhang
+    length = car_length(car)
     return {"length": length, "width": car.width, "nose": car.wheelbase + car.front_overhang, "tail": car.rear_overhang}
 
 

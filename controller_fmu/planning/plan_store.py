@@ -1,8 +1,8 @@
-"""The work arrays of a search, and the only functions that write to them."""
+"""The work arrays of a search, and functions that write to them; those of the tree are written in ``tree_store.py``."""
 
 from typing import Annotated, NamedTuple
 
-from controller_fmu.planning.task import CORNERS, Child
+from controller_fmu.planning.task import CORNERS
 from modelkit.geometry import Point
 from modelkit.store import Column, Floats, Ints
 from modelkit.vocabulary import Pose
@@ -181,76 +181,6 @@ def put_bucket(store: PlanStore, bucket: int, first: int) -> None:
     store.bucket[bucket] = first
 
 
-def clear_tree(store: PlanStore) -> None:
-    """Empty tree, table and queue."""
-    for slot in range(SLOTS):
-        store.slot[slot] = NONE
-    for bucket in range(BUCKETS):
-        store.bucket[bucket] = NONE
-    for region in range(TALLIES):
-        store.tally[region] = 0
-    for which in range(TREE_MARKS):
-        store.mark[which] = 0
-    store.mark[LOWEST] = BUCKETS
-    store.mark[BEST_NODE] = NONE
-
-
-def put_node(store: PlanStore, child: Child, key: int, slot: int) -> int:
-    """Add a node to the tree and to its slot of the table; returns its number."""
-    node = store.mark[NODE_COUNT]
-    store.mark[NODE_COUNT] = node + 1
-    store.node_x[node] = child.pose.x
-    store.node_y[node] = child.pose.y
-    store.node_h[node] = child.pose.heading
-    store.node_cost[node] = child.cost
-    store.node_way[node] = child.way
-    store.node_k[node] = child.k
-    store.node_parent[node] = child.parent
-    store.node_key[node] = key
-    store.node_state[node] = 0
-    store.node_rest[node] = 0.0
-    store.node_slot[node] = store.slot[slot]
-    store.slot[slot] = node
-    return node
-
-
-def put_rest(store: PlanStore, node: int, rest: float) -> None:
-    """Set what the way from a node to the target is thought to cost [m]."""
-    store.node_rest[node] = rest
-
-
-def count_up(store: PlanStore, region: int) -> None:
-    """Count a region once more."""
-    if store.tally[region] < 30000:
-        store.tally[region] += 1
-
-
-def put_state(store: PlanStore, node: int, state: int) -> None:
-    """Set what has been done with a node."""
-    store.node_state[node] = state
-
-
-def enqueue(store: PlanStore, node: int, bucket: int) -> None:
-    """Put a node first into a bucket."""
-    store.node_queue[node] = store.bucket[bucket]
-    store.bucket[bucket] = node
-    if bucket < store.mark[LOWEST]:
-        store.mark[LOWEST] = bucket
-
-
-def dequeue(store: PlanStore) -> int:
-    """Take the first node out of the lowest bucket that has any; returns it, or ``NONE``."""
-    bucket = store.mark[LOWEST]
-    while bucket < BUCKETS and store.bucket[bucket] == NONE:
-        bucket += 1
-    store.mark[LOWEST] = bucket
-    if bucket >= BUCKETS:
-        return NONE
-    node = store.bucket[bucket]
-    store.bucket[bucket] = store.node_queue[node]
-    return node
-
-
 def put_word(
     store: PlanStore, word: int, code: int, cost: float, ways: tuple[float, float, float, float, float]
 ) -> None:
@@ -267,18 +197,6 @@ def put_word(
 def drop_word(store: PlanStore, word: int) -> None:
     """Take a word out of the choice."""
     store.word_cost[word] = 1e9
-
-
-def put_best(store: PlanStore, node: int, word: int, cost: float) -> None:
-    """Remember the best way to the target: along the tree to ``node``, then along ``word``."""
-    store.mark[BEST_NODE] = node
-    store.mark[BEST_CODE] = store.word_code[word]
-    store.measure[BEST_COST] = cost
-    store.measure[BEST_WAY] = store.word_a[word]
-    store.measure[BEST_WAY + 1] = store.word_b[word]
-    store.measure[BEST_WAY + 2] = store.word_c[word]
-    store.measure[BEST_WAY + 3] = store.word_d[word]
-    store.measure[BEST_WAY + 4] = store.word_e[word]
 
 
 def put_piece(store: PlanStore, piece: int, pose: Pose, way: float, k: float) -> None:

@@ -1,5 +1,6 @@
 """The path that a search has found, made shorter: spans of it replaced by cheaper words that are free."""
 
+from controller_fmu.planning.joining import cheapest, is_word_free, word_way
 from controller_fmu.planning.plan_store import (
     BEST_CODE,
     BEST_NODE,
@@ -18,7 +19,6 @@ from controller_fmu.planning.plan_store import (
     put_piece,
 )
 from controller_fmu.planning.task import CUSP, STEER, Task, drive
-from controller_fmu.planning.tree import cheapest, is_word_free, word_way
 from controller_fmu.planning.words import list_words
 from modelkit.maths import sign
 from modelkit.vocabulary import Pose

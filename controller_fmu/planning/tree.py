@@ -3,8 +3,8 @@
 import math
 
 from controller_fmu.planning.clearance import free_way
+from controller_fmu.planning.joining import LONGEST, cheapest, join
 from controller_fmu.planning.plan_store import (
-    BEST_COST,
     BEST_NODE,
     BUCKETS,
     EXPANDED,
@@ -19,20 +19,20 @@ from controller_fmu.planning.plan_store import (
     SLOTS,
     TALLIES,
     PlanStore,
+    put_mark,
+    put_measure,
+)
+from controller_fmu.planning.rasters import route_left
+from controller_fmu.planning.task import CUSP, STEER, Child, Task, drive
+from controller_fmu.planning.tree_store import (
     clear_tree,
     count_up,
     dequeue,
-    drop_word,
     enqueue,
-    put_best,
-    put_mark,
-    put_measure,
     put_node,
     put_rest,
     put_state,
 )
-from controller_fmu.planning.rasters import route_left
-from controller_fmu.planning.task import CUSP, STEER, Child, Task, drive
 from controller_fmu.planning.words import list_words
 from modelkit.maths import PI, TWO_PI, sign, wrap_angle
 from modelkit.vocabulary import Pose
@@ -45,10 +45,8 @@ GUESSED = 0
 KNOWN = 1
 DONE = 2
 
-LONGEST = 10.0
 FIRST_CHILD = 0.35
 NEXT_CHILD = 2.3
-TRIES = 8
 PER_METRE = 4.0
 """Buckets of the queue for each metre of cost."""
 SHORTEST = 0.02
@@ -242,74 +240,3 @@ def key_of(pose: Pose, way: float, task: Task) -> int:
     turns = math.floor((wrap_angle(pose.heading) + PI) * fine / task.rung.turn_cell)
     key = (along * 16384 + across) * 4096 + turns
     return (2 * key + (1 if way > 0.0 else 0)) % 2147483647
-
-
-def cheapest(store: PlanStore, words: int) -> int:
-    """Return the word of least cost."""
-    best = 0
-    for word in range(1, words):
-        if store.word_cost[word] < store.word_cost[best]:
-            best = word
-    return best
-
-
-def join(store: PlanStore, node: int, pose: Pose, words: int, task: Task) -> None:
-    """Try the cheapest words from a node to the target; remember the first that is free if it is the best way yet."""
-    tries = 0
-    while tries < TRIES:
-        word = cheapest(store, words)
-        cost = store.node_cost[node] + store.word_cost[word]
-        if store.word_cost[word] > 1e8 or (store.mark[BEST_NODE] != NONE and cost >= store.measure[BEST_COST]):
-            return
-        if _ends_free(store, word):
-            tries += 1
-            if is_word_free(store, word, pose, task):
-                put_best(store, node, word, cost)
-                return
-        drop_word(store, word)
-
-
-def word_way(store: PlanStore, word: int, piece: int) -> float:
-    """Return the way [m] of a word's piece."""
-    if piece == 0:
-        return store.word_a[word]
-    if piece == 1:
-        return store.word_b[word]
-    if piece == 2:
-        return store.word_c[word]
-    return store.word_d[word] if piece == 3 else store.word_e[word]
-
-
-def _ends_free(store: PlanStore, word: int) -> bool:
-    """Return whether the first and the last piece of a word fit what is free at the node and at the target."""
-    rest = store.word_code[word]
-    first = True
-    last = 0.0
-    last_turn = 0
-    for piece in range(5):
-        way = word_way(store, word, piece)
-        turn = rest % 3
-        rest = rest // 3
-        if way != 0.0:
-            if first:
-                free = store.measure[FREE_AT_NODE + (5 if way > 0.0 else 0) + 2 * turn]
-                if abs(way) > free and free < LONGEST:
-                    return False
-            first = False
-            last = way
-            last_turn = turn
-    return abs(last) <= store.measure[FREE_AT_TARGET + (0 if last > 0.0 else 3) + last_turn]
-
-
-def is_word_free(store: PlanStore, word: int, pose: Pose, task: Task) -> bool:
-    """Return whether the car can drive a word from ``pose``."""
-    rest = store.word_code[word]
-    for piece in range(5):
-        way = word_way(store, word, piece)
-        k = (rest % 3 - 1) * task.car.curvature
-        rest = rest // 3
-        if way != 0.0:
-            if free_way(store, pose, sign(way), k, abs(way), task) < abs(way):
-                return False
-            pose = drive(pose, way, k)
-    return True

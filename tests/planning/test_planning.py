@@ -7,10 +7,10 @@ import pytest
 from shapely.geometry import LineString
 
 from controller_fmu.planning.clearance import edge_gap
+from controller_fmu.planning.joining import cheapest, word_way
 from controller_fmu.planning.plan import GOAL_BLOCKED, PLANNED, START_BLOCKED, search_to
 from controller_fmu.planning.plan_store import COUNT, STATUS, WORDS, PlanStore
 from controller_fmu.planning.task import Request, Rung, SearchWindow, Task, drive
-from controller_fmu.planning.tree import cheapest, word_way
 from controller_fmu.planning.words import list_words, turn_of
 from modelkit.store import new_store, size_of
 from modelkit.vocabulary import Pose

@@ -64,12 +64,14 @@ def prompt_of(state: ApaState, params: ControllerParams) -> int:
     return Prompt.NONE
 
 
-def alarm_of(state: ApaState) -> int:
+def alarm_of(state: ApaState, params: ControllerParams) -> int:
     """Return the warning shown."""
     if state.mode == Mode.FAIL:
         return Alarm.TAKEN_OVER if state.taken_over else Alarm.FAILED
     if state.mode == Mode.STANDBY:
         return Alarm.SLOW_DOWN
+    if state.watch.mute * 1e-9 > params.apa.sensors.blind_time:
+        return Alarm.SENSOR_LOST
     if state.parking.sight.blocked:
         return Alarm.OBSTACLE
     if state.mode == Mode.PARKING_SPACE_SEARCH and state.search.refusals > 0 and state.search.valid == 0:
@@ -111,7 +113,7 @@ def _signals(state: ApaState, frame: SlotFrame, params: ControllerParams) -> Apa
     b = to_world(Pose(slot.length, slot.b_out, 0.0), SlotFrame(slot.a, mirror_of(slot)))
     return ApaSignals(
         mode=state.mode,
-        alarm=alarm_of(state),
+        alarm=alarm_of(state, params),
         confirm=state.mode == Mode.PARKING_SPACE_APPEARS and is_planned(state.parking),
         slots=state.search.valid,
         offered=_offered(state),

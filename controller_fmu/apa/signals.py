@@ -22,6 +22,8 @@ class Alarm(IntEnum):
     FAILED = 4
     TAKEN_OVER = 5
     SLOT_TOO_SHALLOW = 6
+    SENSOR_LOST = 7
+    """A sensor tells nothing; the assist goes on without it."""
 
 
 class Family(IntEnum):

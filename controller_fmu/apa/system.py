@@ -11,6 +11,7 @@ from controller_fmu.apa.around.shifted import followed, relocated
 from controller_fmu.apa.around.surroundings import Around, shape_of
 from controller_fmu.apa.chart import Guard, Mode, transition
 from controller_fmu.apa.choice import ChosenTask
+from controller_fmu.apa.hearing.mute import spared, usable
 from controller_fmu.apa.hearing.search import SearchState, begin_search, number_chosen, search, without
 from controller_fmu.apa.manoeuvre_chart import Step
 from controller_fmu.apa.out.standing_in import slot_around
@@ -27,7 +28,7 @@ from controller_fmu.apa.parking import (
 )
 from controller_fmu.apa.slot import Kind, Slot
 from controller_fmu.apa.told import ToldWatch, watch_told
-from controller_fmu.apa.watch import STANDING, Watch, is_taken_over, reason_to_fail, watch
+from controller_fmu.apa.watch import STANDING, Duty, Watch, is_taken_over, reason_to_fail, watch
 from controller_fmu.common.chart import bit
 from controller_fmu.common.monitor import Command
 from controller_fmu.common.sensors import is_told_anew
@@ -86,8 +87,12 @@ class Judged(NamedTuple):
 def apa_sample(state: ApaState, inputs: ControllerInput, params: ControllerParams, dt_ns: int) -> ApaState:
     """Return the assist one sample of ``dt_ns`` later."""
     driving = state.mode in (Mode.AUTO_PARKING_ASSIST, Mode.POSITION_TUNING)
+    inputs = inputs._replace(ultrasonic=usable(inputs.ultrasonic, params.car.ultrasonic.min_range))
     command = Command(state.parking.step, state.parking.wheel, state.parking.sight.blocked)
-    state = state._replace(watch=watch(state.watch, command, inputs, driving, params, dt_ns))
+    looking = state.mode in (Mode.STANDBY, Mode.PARKING_SPACE_SEARCH) and not has_slot(state)
+    out = state.parking.out or inputs.choice.task == ChosenTask.PULL_OUT
+    duty = Duty(driving, 0 if out else spared(inputs.ultrasonic, looking))
+    state = state._replace(watch=watch(state.watch, command, inputs, duty, params, dt_ns))
     taken = driving and is_taken_over(state.watch, inputs, params)
     reason = reason_to_fail(state.watch, inputs, driving, params) if state.mode != Mode.OFF else Reason.NONE
     if reason == Reason.NONE and not taken:
@@ -148,7 +153,7 @@ def _parked_on(
             parking = parking._replace(stuck=False)
         slot = slot_of_map(here, slot, params.apa.map)
         parking = cut_short(parking) if slot.depth < state.around.slot.depth - SHALLOWER else parking
-    around = Around(slot, here, guard, shifts)
+    around = Around(slot, here, guard, shifts, state.watch.mute)
     parking = park(parking, around, inputs, state.watch.wheel.steering, driving, params)
     return state._replace(around=around, parking=parking)
 

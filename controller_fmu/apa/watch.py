@@ -1,8 +1,8 @@
 """Watches driver, car and sensors at every sample; a reason to fail or a takeover comes from clocks [ns]."""
 
-import math
 from typing import NamedTuple
 
+from controller_fmu.apa.hearing.mute import count_mute
 from controller_fmu.apa.manoeuvre_chart import Step
 from controller_fmu.apa.params import Longitudinal
 from controller_fmu.common.monitor import Command, clock_before, is_unmoved
@@ -28,6 +28,9 @@ class Watch(NamedTuple):
     blocked: int = 0
     fast: int = 0
     blind: int = 0
+    """Since more sensors than can be spared tell nothing,"""
+    mute: int = 0
+    """and since any does."""
     frozen: int = 0
     running: int = 0
     """Since the driver confirmed."""
@@ -35,15 +38,26 @@ class Watch(NamedTuple):
     pose: Pose = Pose()
 
 
+class Duty(NamedTuple):
+    """What the assist is about, and what it needs for that."""
+
+    driving: bool
+    """It has been given the car."""
+    spared: int
+    """So many sensors can be gone without."""
+
+
 def watch(
-    state: Watch, command: Command, inputs: ControllerInput, driving: bool, params: ControllerParams, dt_ns: int
+    state: Watch, command: Command, inputs: ControllerInput, duty: Duty, params: ControllerParams, dt_ns: int
 ) -> Watch:
-    """Return the clocks after one sample; ``driving``: the assist has been given the car."""
+    """Return the clocks after one sample."""
+    driving = duty.driving
     speed = inputs.measured_speed
     still = abs(speed) <= STANDING
     angle = inputs.steering_wheel_angle
     rate = params.car.steering.rate_limit
     wheel = at_rest(angle, state.wheel.steering)
+    mute = count_mute(inputs.ultrasonic)
     if driving:
         wheel = watch_steering(state.wheel, command.wheel, angle, params.limit.wheel_off, rate, dt_ns)
     moving_expected = command.step in (Step.SET_WHEEL, Step.DRIVE, Step.STRAIGHTEN)
@@ -54,7 +68,8 @@ def watch(
         stopping=state.stopping + dt_ns if not still and command.step == Step.HALT else 0,
         blocked=clock_before(command.blocked and driving, state.blocked, still, dt_ns),
         fast=state.fast + dt_ns if abs(speed) > limit and driving else 0,
-        blind=state.blind + dt_ns if not _all_heard(inputs, params.car.ultrasonic.min_range) else 0,
+        blind=state.blind + dt_ns if mute > duty.spared else 0,
+        mute=state.mute + dt_ns if mute > 0 else 0,
         frozen=state.frozen + dt_ns if is_unmoved(inputs.odometry, state.pose, speed, dt_ns) else 0,
         running=state.running + dt_ns if driving else state.running,
         wheel=wheel,
@@ -115,11 +130,3 @@ def is_finite_input(inputs: ControllerInput) -> bool:
         and is_finite(inputs.steering_wheel_angle)
         and is_finite(inputs.brake_pedal)
     )
-
-
-def _all_heard(inputs: ControllerInput, nearest: float) -> bool:
-    """Return whether every sensor tells a distance: finite, not under half of the ``nearest`` [m] it can tell."""
-    for reading in inputs.ultrasonic:
-        if not is_finite(reading) or reading < 0.5 * nearest:
-            return False
-    return math.isfinite(nearest)

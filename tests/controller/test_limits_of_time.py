@@ -125,7 +125,9 @@ def test_the_assist_waits_where_car_or_wheel_should_move_and_nothing_is_in_the_w
     step: Step, speed: float, blocked: bool, waits: bool
 ) -> None:
     inputs = DRIVING._replace(measured_speed=speed)
-    clocks = apa.watch(apa.Watch(waiting=5), Command(step, 0.0, blocked), inputs, True, PARAMS, MILLISECOND)
+    clocks = apa.watch(
+        apa.Watch(waiting=5), Command(step, 0.0, blocked), inputs, apa.Duty(True, 0), PARAMS, MILLISECOND
+    )
     assert clocks.waiting == (5 + MILLISECOND if waits else 0)
     assert clocks.stopping == (MILLISECOND if step == Step.HALT and speed > 0.0 else 0)
     assert clocks.running == MILLISECOND

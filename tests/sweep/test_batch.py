@@ -7,6 +7,7 @@ from typing import Annotated, Any, NamedTuple
 import numpy as np
 import pytest
 
+from controller_fmu.apa.hearing.mute import WAIT
 from fmus.compiled_batch import Kept, compiled_rows
 from modelkit.signal import Signal
 from orchestrator.cosim.fmu_files import fmu_files
@@ -158,13 +159,18 @@ def test_shipped_faults(bind: Any, name: Any) -> None:
 
 
 def test_an_input_may_be_nan(bind: Any, tmp_path: Path) -> None:
-    fault = {"signal": "vehicle.ultrasonic[3]", "kind": "override", "value": "nan", "start": 4.0}
-    (tmp_path / "a.yaml").write_text(f"base: apa-parallel\nfaults: {json.dumps([fault])}\n")
-    runs = {"grid": {"faults[1].start": [4.0, 1e6]}}
+    """One that parks must not do without, and one that it does without once it has waited for it."""
+    nan = {"kind": "override", "value": "nan", "start": 4.0}
+    faults = [{"signal": f"vehicle.ultrasonic[{number}]", **nan} for number in (8, 7)]
+    (tmp_path / "a.yaml").write_text(f"base: apa-parallel\nfaults: {json.dumps(faults)}\n")
+    runs = {"grid": {"faults[1].start": [4.0, 1e6], "faults[2].start": [18.0, 1e6]}}
     _, _, job, chunk = bind(scenario=str(tmp_path / "a.yaml"), runs=runs)
     rows = run_batch(job, chunk)
     assert_same(job, chunk, rows, 0)
-    assert judge(job, truths(job, chunk), rows).reason[0] == "sensor_loss"
+    verdict = judge(job, truths(job, chunk), rows)
+    assert list(verdict.reason) == ["sensor_loss"] * 2 + ["all checks passed"] * 2
+    *_, without, usual = verdict.numbers["duration"]
+    assert without > usual + WAIT
 
 
 def test_the_time_of_an_instant(bind: Any) -> None:

@@ -17,6 +17,7 @@ from controller_fmu.apa.around.course import HeldCourse, after
 from controller_fmu.apa.around.local_map import LocalMap, ear_on, expected, nearest_case, unsure_of
 from controller_fmu.apa.around.near import FREE, NEARER, room_by_echoes
 from controller_fmu.apa.around.straight import room_straight
+from controller_fmu.apa.hearing.mute import is_mute
 from controller_fmu.apa.outline import Box, Obstacles, Shape, box_clearance, clearance, grown, outline_rate, sure_steps
 from controller_fmu.interface import ControllerParams
 from modelkit.geometry import Point
@@ -130,7 +131,7 @@ def listen(state: GuardState, readings: tuple[float, ...], here: LocalMap, param
         echoes = echoes[1:] + (echo,)
         if reading < LOOKED_AT and not explained:
             kept = arc_of(ear, reading)
-        elif kept.there and (reading < sensors.max_range or track.silent >= SILENCES):
+        elif kept.there and not is_mute(reading) and (reading < sensors.max_range or track.silent >= SILENCES):
             kept = not_refuted(kept, ear, reading, is_known(reading, mapped.distance, params))
         unknown = unknown[1:] + (kept,)
     return state._replace(

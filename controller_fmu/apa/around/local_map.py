@@ -10,6 +10,7 @@ from typing import NamedTuple
 
 from controller_fmu.apa.around.cone import ConeEar, Echo, Hit, ear_of, echo_of
 from controller_fmu.apa.around.thing import Slope, Thing, learnt, spread_along, thing_at, wider
+from controller_fmu.apa.hearing.mute import is_mute
 from controller_fmu.apa.params import MapParams
 from controller_fmu.apa.slot import UNSEEN, Kind, Slot, mirror_of
 from controller_fmu.common.slot_frame import SlotFrame, to_slot
@@ -219,7 +220,7 @@ def heard(here: LocalMap, readings: tuple[float, ...], sensors: CarUltrasonic, p
         ear = ear_on(here, sensors, number)
         if reading < params.heard:
             here = _told(here, ear, expected(ear, here), Reading(reading, reading > lowest), params)
-        elif here.walled:
+        elif here.walled and not is_mute(reading):
             here = _unheard(here, ear)
     return here
 

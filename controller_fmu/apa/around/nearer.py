@@ -21,6 +21,7 @@ from controller_fmu.apa.around.local_map import (
     with_neighbour,
 )
 from controller_fmu.apa.around.thing import Thing, thing_at
+from controller_fmu.apa.hearing.mute import is_mute
 from controller_fmu.interface import ControllerParams
 from modelkit.maths import clamp
 
@@ -82,9 +83,10 @@ def misfit(here: LocalMap, readings: tuple[float, ...], params: ControllerParams
     sensors = params.car.ultrasonic
     total = 0.0
     for number in range(12):
-        ear = ear_on(here, sensors, number)
-        told = clamp(expected(ear, here).echo.distance, sensors.min_range, LOOKED_AT)
-        total += min(MOST, abs(min(readings[number], LOOKED_AT) - told))
+        if not is_mute(readings[number]):
+            ear = ear_on(here, sensors, number)
+            told = clamp(expected(ear, here).echo.distance, sensors.min_range, LOOKED_AT)
+            total += min(MOST, abs(min(readings[number], LOOKED_AT) - told))
     return total
 
 

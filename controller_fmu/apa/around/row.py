@@ -3,6 +3,7 @@
 import math
 
 from controller_fmu.apa.around.local_map import LocalMap, ear_on, expected
+from controller_fmu.apa.hearing.mute import is_mute
 from controller_fmu.apa.params import MapParams
 from controller_fmu.apa.slot import UNSEEN, Kind, Slot
 from controller_fmu.common.slot_frame import to_world
@@ -128,13 +129,19 @@ def is_in_the_middle(here: LocalMap, readings: tuple[float, ...], params: Contro
     """Return False if a car in a perpendicular slot hears itself aside of the middle, whatever the map has.
 
     Both the front and the rear flank sensors must say so, by what they hear of the neighbours on either side: one pair
-    alone may hear past the end of one who is shorter.
+    alone may hear past the end of one who is shorter. It has to do where one of the other pair tells nothing.
     """
-    farthest = max(readings[8], readings[9], readings[10], readings[11])
-    if here.kind != Kind.PERPENDICULAR or farthest > params.apa.map.heard:
+    ahead = max(readings[8], readings[10])
+    behind = max(readings[9], readings[11])
+    nearer = min(ahead, behind) if is_mute(max(ahead, behind)) else max(ahead, behind)
+    if here.kind != Kind.PERPENDICULAR or nearer > params.apa.map.heard:
         return True
     front = 0.5 * (readings[8] - readings[10])
     rear = 0.5 * (readings[9] - readings[11])
+    if is_mute(ahead):
+        front = rear
+    if is_mute(behind):
+        rear = front
     return max(front, rear) > -ASIDE and min(front, rear) < ASIDE
 
 

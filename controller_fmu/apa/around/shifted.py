@@ -21,6 +21,7 @@ from controller_fmu.apa.around.local_map import (
 )
 from controller_fmu.apa.around.near import nearest_told
 from controller_fmu.apa.around.thing import wider
+from controller_fmu.apa.hearing.mute import is_mute
 from modelkit.car import CarUltrasonic
 
 MOST = 1.2
@@ -149,7 +150,7 @@ def _is_refuted(here: LocalMap, there: LocalMap, who: int, readings: tuple[float
         reading = readings[number]
         narrow = ear_on(here, sensors, number, -NARROWER)
         distance = echo_of_neighbour(narrow, there, who).distance
-        if distance < LOOKED_AT and reading > distance + PAST:
+        if distance < LOOKED_AT and reading > distance + PAST and not is_mute(reading):
             return True
         ear = ear_on(here, sensors, number)
         before = expected(ear, here)

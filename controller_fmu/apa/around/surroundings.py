@@ -9,6 +9,7 @@ from controller_fmu.apa.around.local_map import LocalMap
 from controller_fmu.apa.around.near import NEARER
 from controller_fmu.apa.around.row import is_certain, is_heard, is_in_the_middle, line_unsure
 from controller_fmu.apa.around.shifted import Shifts
+from controller_fmu.apa.hearing.mute import SLOWLY, is_waited_for
 from controller_fmu.apa.outline import Shape, clearance, outline_rate, sure_steps
 from controller_fmu.apa.slot import Site, Slot, mirror_of, stands_out_by
 from controller_fmu.apa.tracking import Tracked
@@ -36,6 +37,8 @@ class Around(NamedTuple):
     """What the guard has heard."""
     shifts: Shifts = Shifts()
     """Neighbours who seem to stand elsewhere than on the map."""
+    mute_ns: int = 0
+    """Since when a sensor tells nothing [ns]."""
 
 
 def shape_of(params: ControllerParams) -> Shape:
@@ -107,6 +110,8 @@ def sight_of(direction: int, bare: Site, around: Around, inputs: ControllerInput
     in_gear = inputs.gear == (Gear.REVERSE if direction < 0 else Gear.DRIVE)
     if in_gear and direction * inputs.measured_speed < -ROLLS:
         return Sight(0.0, True, True)
+    if is_waited_for(around.mute_ns, params.apa.sensors):
+        return Sight(0.0, True, True)
     front = bare.frame.mirror * inputs.steering_wheel_angle / params.car.steering.ratio
     course = HeldCourse(
         pose=to_slot(inputs.odometry, bare.frame),
@@ -116,4 +121,5 @@ def sight_of(direction: int, bare: Site, around: Around, inputs: ControllerInput
         car=shape_of(params),
     )
     on_map = around.map._replace(pose=to_slot(inputs.odometry, around.map.frame))
-    return watch_way(around.guard, inputs.ultrasonic, on_map, bare.obstacles, course, params)
+    sight = watch_way(around.guard, inputs.ultrasonic, on_map, bare.obstacles, course, params)
+    return sight._replace(speed=min(sight.speed, SLOWLY)) if around.mute_ns > 0 else sight

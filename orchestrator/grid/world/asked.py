@@ -53,7 +53,7 @@ PERPENDICULAR, KERB = 1, 2
 def is_possible(columns: Columns) -> Array:
     """Return whether a perfect assist could do what each run asks.
 
-    Not so if the driver searches faster than the assist is made for, if a sensor fails (it has to refuse), if a
+    Not so if the driver searches faster than the assist is made for, if a sensor fails (it may refuse), if a
     neighbour drives so far into a parallel slot that it becomes shorter than ISO 16787's, or if somebody walks
     through the slot itself, who looks at nothing.
     """

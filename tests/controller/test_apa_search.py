@@ -1,18 +1,19 @@
 """Slot search: sides, corners and refusals, with ideal and noisy sensors; and what the supervisor sees."""
 
 import math
+from itertools import pairwise
 from typing import Any
 
 import pytest
 
 from controller_fmu.apa.around.surroundings import shape_of
 from controller_fmu.apa.hearing import search_side
-from controller_fmu.apa.hearing.consensus import NO_WINDOW, agreed, newest
+from controller_fmu.apa.hearing.consensus import NO_WINDOW, PLACES, agreed, taken_up
 from controller_fmu.apa.hearing.edge import NO_SAMPLES, Heard, append, corner
 from controller_fmu.apa.hearing.line_fit import FittedLine, Sums, add, offset, slope
 from controller_fmu.apa.hearing.search import LEFT, RIGHT, SearchState, _hear, _kept_but_behind, kind_of
-from controller_fmu.apa.hearing.search_side import _with_sample
 from controller_fmu.apa.hearing.side import DEEP, GAP, START, WALL, SideState, begin_wall
+from controller_fmu.apa.hearing.side_line import with_sample
 from controller_fmu.apa.slot import UNSEEN, Kind, Slot
 from controller_fmu.common.sensors import LEFT_SENSOR
 from controller_fmu.interface import ControllerInput, ControllerParams
@@ -61,7 +62,7 @@ def test_how_far_off_a_new_side_a_sample_may_lie_follows_from_how_sure_its_slope
     known, begun = Sums(), add(Sums(), 10.0, 0.0, 1.0)
     for n in range(10):
         known = add(known, 0.1 * n, 0.0, 1.0)
-    after = _with_sample(begun, known, Heard(10.2, 0.0, 1.0 + off), 2)
+    after = with_sample(begun, known, Heard(10.2, 0.0, 1.0 + off), 2)
     assert after.n == (2.0 if belongs else 1.0)
     assert belongs or after.r == (1.0 if off > 0.0 else 1.0 + off), (
         "a nearer one shows that the one before was a corner's"
@@ -79,7 +80,7 @@ def test_a_side_is_what_most_samples_agree_on(tilt: float, known: bool) -> None:
         far = (
             math.hypot(u - reached, 1.0 - tilt * reached) if u > corner_at else (1.0 - tilt * u) / math.hypot(1.0, tilt)
         )
-        window = newest(window, Heard(u, 0.0, far + noise[n % 5]))
+        window = taken_up(window, Heard(u, 0.0, far + noise[n % 5]))
     told = agreed(window, 0.28, known, tilt)
     assert told.n >= 5.0
     assert slope(told, Sums()) == pytest.approx(tilt, abs=0.05)
@@ -88,9 +89,42 @@ def test_a_side_is_what_most_samples_agree_on(tilt: float, known: bool) -> None:
 def test_samples_that_lie_before_it_are_of_no_corner() -> None:
     window = NO_WINDOW
     for n in range(6):
-        window = newest(window, Heard(0.3 * n, 0.0, 1.3 if n < 4 else 1.0))
+        window = taken_up(window, Heard(0.3 * n, 0.0, 1.3 if n < 4 else 1.0))
     assert agreed(window, 0.28, False, 0.0).n < 4.0
     assert agreed(NO_WINDOW, 0.28, False, 0.0).n == 0.0
+
+
+def test_all_of_a_neighbour_is_kept_in_places_of_equal_way() -> None:
+    window = NO_WINDOW
+    for n in range(100):
+        window = taken_up(window, Heard(0.1 * n, 0.0, 1.0 + 0.1 * n))
+    kept = [sample for sample in window.samples if sample.r > 0.0]
+    assert PLACES // 2 <= len(kept) <= PLACES
+    assert [sample.r - sample.u for sample in kept] == pytest.approx([1.0] * len(kept))
+    assert kept[-1].u == pytest.approx(0.05 * (window.each - 1)), "the first ones too"
+    assert [one.u - two.u for one, two in pairwise(kept)] == pytest.approx([0.1 * window.each] * (len(kept) - 1))
+
+
+@pytest.mark.parametrize("tilt", [-0.1, 0.0, 0.1])
+@pytest.mark.parametrize("far", [1.5, 3.0])
+def test_what_is_heard_of_a_corner_ahead_is_not_taken_for_the_side(tilt: float, far: float) -> None:
+    """A slow car hears a far corner for metres before it is beside the neighbour, and it comes nearer evenly."""
+    side = START
+    for n in range(120):
+        u = -3.0 + 0.08 * n
+        r = _heard_beside(u, far, tilt, 4.0)
+        side = search_side.hear(side, u, 0.0, 0.011 * round(r / 0.011), HALF, ControllerParams().apa.search)
+    assert side.mode == GAP
+    b = slope(side.before, Sums())
+    assert b == pytest.approx(tilt, abs=0.02)
+    assert offset(side.before, b) + b * side.edge == pytest.approx(-far + tilt * 4.0, abs=0.03)
+
+
+def _heard_beside(u: float, far: float, tilt: float, length: float) -> float:
+    """Return what a sensor at u hears of the side from 0 to ``length`` on the line -far + tilt u."""
+    points = [(0.01 * n, -far + tilt * 0.01 * n) for n in range(round(100 * length) + 1)]
+    seen = [(x, y) for x, y in points if abs(x - u) <= -y * math.tan(HALF)]
+    return min((math.hypot(x - u, y) for x, y in seen), default=DEEP)
 
 
 @pytest.mark.parametrize("sensor", [8, 10])

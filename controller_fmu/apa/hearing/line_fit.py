@@ -35,6 +35,8 @@ class FittedLine(NamedTuple):
 LEAST_SPREAD = 1e-6
 ASKEW = 0.06
 OFF = 0.02
+CONTRADICTS = 0.5
+"""A side that is turned against the other by ``ASKEW`` is believed so much less, by the square where it is more."""
 NO_SUMS = Sums(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 
@@ -64,11 +66,13 @@ def slope(first: Sums, second: Sums, third: Sums = NO_SUMS) -> float:
 def leaning(known: Sums, own: Sums) -> float:
     """Return b of a side that stands about as the one ``known`` does, with what is heard of itself: the mean of both.
 
-    Each is weighted by how sure it is; neighbours stand askew by ``ASKEW``, a sample is off by ``OFF`` [m].
+    Each is weighted by how sure it is; neighbours stand askew by ``ASKEW``, a sample is off by ``OFF`` [m], by more
+    the more the two contradict each other: what is heard of a corner ahead comes nearer as no side does.
     """
     before = slope(known, NO_SUMS)
-    weight = spread(own) * ASKEW * ASKEW / (OFF * OFF)
-    return before + (slope(own, NO_SUMS) - before) * weight / (1.0 + weight)
+    turned = (slope(own, NO_SUMS) - before) / ASKEW
+    weight = spread(own) * ASKEW * ASKEW / (OFF * OFF * (1.0 + CONTRADICTS * turned * turned))
+    return before + ASKEW * turned * weight / (1.0 + weight)
 
 
 def offset(sums: Sums, b: float) -> float:

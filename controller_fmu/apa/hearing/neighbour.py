@@ -1,6 +1,6 @@
 """One neighbour is one: where it begins, farther away than it is looked at, and that it goes on past lost echoes."""
 
-from controller_fmu.apa.hearing.consensus import newest
+from controller_fmu.apa.hearing.consensus import taken_up
 from controller_fmu.apa.hearing.edge import Heard, remember
 from controller_fmu.apa.hearing.side import DEEP, WALL, SideState, anew, begin_wall
 from controller_fmu.apa.params import SearchParams
@@ -71,5 +71,5 @@ def gone_on(side: SideState, sample: Heard) -> SideState:
         missed=sample.u,
         samples=remember(side.ends, sample),
         spare=side.before,
-        window=newest(side.window, sample),
+        window=taken_up(side.window, sample),
     )

@@ -6,19 +6,15 @@ mirrored on the left side. Distances are averaged over about 15 cm of way before
 
 import math
 
-from controller_fmu.apa.hearing.consensus import NO_WINDOW, agreed, newest
-from controller_fmu.apa.hearing.edge import KEPT, NO_SAMPLES, Heard, append, corner, remember, seen_up_to
+from controller_fmu.apa.hearing.consensus import NO_WINDOW, agreed, taken_up
+from controller_fmu.apa.hearing.edge import KEPT, NO_SAMPLES, Heard, append, corner, remember
 from controller_fmu.apa.hearing.line_fit import (
-    ASKEW,
-    OFF,
     FittedLine,
-    Sums,
     add,
     distance,
     leaning,
     offset,
     slope,
-    spread,
 )
 from controller_fmu.apa.hearing.neighbour import (
     STEEPEST,
@@ -41,26 +37,19 @@ from controller_fmu.apa.hearing.side import (
     begin_wall,
     confirmed,
 )
+from controller_fmu.apa.hearing.side_line import FEW, MANY, line_of, or_agreed, still_heard, with_sample
 from controller_fmu.apa.params import SearchParams
-from modelkit.maths import clamp
 
 BIN = 0.16
 FLAT = 0.16
 STEP = 0.016
 """Steeper than ``FLAT`` [m/m], ``STEP`` [m] for noise, the distance does not belong to a flat side along the road."""
-BAND = 0.02
-SPREAD = 0.03
-"""Further than this [m], and what the noise of the readings makes the line unsure by, is off the line."""
 LEANS = 0.1
 """A neighbour, or the wall, lies so much [m] off per metre along the line of the neighbour before."""
 STEEP = 1.0
 """The face of a neighbour across the way comes nearer by 1 / sin(g) per metre, its corner by sin(g) at most."""
 RISES = 0.2
 """A neighbour whose line is not sure has not ended before a sample is so much [m] farther off than the last one."""
-LONG_STEADY = 5
-MANY = 8.0
-FEW = 3.0
-MORE = 2.0
 LEVEL = 2
 """So many steps in a row that are level: a side that goes on; so many in a gap: its kerb or wall."""
 AGREE = 0.15
@@ -108,13 +97,8 @@ def _change_along(side: SideState, sample: Heard) -> float:
     known = side.sums if side.mode == WALL else side.before
     if known.n < MANY:
         return 0.0
-    line = _line(known, EMPTY)
+    line = line_of(known, EMPTY)
     return distance(line, sample.u, sample.w) - distance(line, side.last.u, side.last.w)
-
-
-def _line(sums: Sums, other: Sums) -> FittedLine:
-    b = clamp(leaning(other, sums) if other.n > 0.0 else slope(sums, EMPTY), -STEEPEST, STEEPEST)
-    return FittedLine(offset(sums, b), b)
 
 
 def _on_wall(side: SideState, sample: Heard, half_angle: float, params: SearchParams) -> SideState:
@@ -125,16 +109,18 @@ def _on_wall(side: SideState, sample: Heard, half_angle: float, params: SearchPa
     known = known if known.n >= FEW else agreed(side.window, STEEPEST, False, 0.0)
     if known.n >= FEW:
         rises = expected + RISES if side.sums.n < FEW else 0.0
-        most = max(rises, _still_heard(known, EMPTY, sample, -1.0, half_angle))
+        most = max(rises, still_heard(known, EMPTY, sample, -1.0, half_angle))
     if side.sums.n >= FEW:
-        least = distance(_line(side.sums, EMPTY), sample.u, sample.w) - params.step
+        least = distance(line_of(side.sums, EMPTY), sample.u, sample.w) - params.step
     if sample.r < least:
         return begin_wall(side, sample)
     if sample.r <= most:
-        window = newest(side.window, sample)
-        sums = _with_sample(side.sums, EMPTY, sample, side.steady)
+        window = taken_up(side.window, sample)
+        sums = with_sample(side.sums, EMPTY, sample, side.steady)
         spare = side.sums if sums.n < side.sums.n and side.sums.n >= 3.0 else side.spare
-        fresh = side.found > 0 and side.steady >= 2 and side.mode == WALL and side.edge_b > side.edge
+        second = side.found > 0 and side.edge_b > side.edge
+        sums = or_agreed(sums, window, side.before) if second else sums
+        fresh = second and sums.n >= FEW
         closing = is_closing(side.first, sample)
         first = sample if closing else side.first
         samples = remember(side.samples, sample)
@@ -158,10 +144,10 @@ def _ended(side: SideState, half_angle: float, params: SearchParams) -> SideStat
     """Return the side past a neighbour's end: in the gap after it, or anew where too little was heard of it."""
     extent = side.missed - side.begun
     side = side._replace(sums=side.spare) if side.sums.n < 3.0 else side
-    side = side._replace(sums=_or_agreed(side.sums, side.window, EMPTY)) if side.sums.n < MANY else side
+    side = side._replace(sums=or_agreed(side.sums, side.window, EMPTY))
     if side.sums.n < 3.0 or extent < params.wall or abs(slope(side.sums, EMPTY)) > STEEPEST:
         return anew(side)._replace(first=side.first, missed=side.missed, samples=side.samples)
-    edge = corner(side.samples + side.faces, _line(side.sums, EMPTY), -1.0, half_angle)
+    edge = corner(side.samples + side.faces, line_of(side.sums, EMPTY), -1.0, half_angle)
     extent = edge - side.begun - _short_of_it(side)
     return anew(side)._replace(
         mode=GAP,
@@ -176,46 +162,13 @@ def _ended(side: SideState, half_angle: float, params: SearchParams) -> SideStat
     )
 
 
-def _with_sample(sums: Sums, other: Sums, sample: Heard, steady: int) -> Sums:
-    """Return the sums with a sample that belongs to the flat side, not to its corner.
-
-    A corner is heard further away than the side's line: such a sample is left out. While the samples are few,
-    one that is nearer, or one of many in a row that are level, shows that those before it were of the corner:
-    the sums begin anew. How far off is too far follows from how unsure the line is itself.
-    """
-    if steady < 2:
-        return sums
-    if sums.n >= 4.0 or (sums.n > 0.0 and other.n >= 4.0):
-        off = sample.r - distance(_line(sums, other), sample.u, sample.w)
-        beyond = sample.u - sums.u / sums.n
-        told = spread(sums) + (OFF * OFF / (ASKEW * ASKEW) if other.n > 0.0 else 0.0)
-        band = BAND + SPREAD * math.sqrt(1.0 / sums.n + beyond * beyond / told)
-        if abs(off) > band and (sums.n >= MANY or (off > 0.0 and steady < LONG_STEADY)):
-            return sums
-        if abs(off) > band:
-            sums = EMPTY
-    return add(sums, sample.u, sample.w, sample.r)
-
-
 def _short_of_it(side: SideState) -> float:
     """Return how far [m] ahead of the sensor the neighbour's first corner was where it was first heard."""
     if side.first.r <= 0.0:
         return 0.0
-    d = distance(_line(side.sums, EMPTY), side.first.u, side.first.w)
+    d = distance(line_of(side.sums, EMPTY), side.first.u, side.first.w)
     e = math.sqrt(max(0.0, side.first.r * side.first.r - d * d))
     return min(e, 0.6 * d) if d > 0.0 else 0.0
-
-
-def _or_agreed(sums: Sums, window: tuple[Heard, ...], before: Sums) -> Sums:
-    """Return the sums of a side that has ended, or of the samples that agree on a line, if those are plainly more."""
-    told = agreed(window, STEEPEST, before.n >= FEW, slope(before, EMPTY))
-    return told if told.n >= FEW and told.n > sums.n + MORE else sums
-
-
-def _still_heard(sums: Sums, other: Sums, sample: Heard, sense: float, half_angle: float) -> float:
-    """Return the largest distance [m] at which a sensor there hears a side or its corner, with 2 cm for noise."""
-    line = _line(sums, other)
-    return 1.03 * distance(line, sample.u, sample.w) * seen_up_to(line, sense, half_angle) + 0.02
 
 
 def _in_gap(side: SideState, sample: Heard, leaves: bool, half_angle: float, params: SearchParams) -> SideState:
@@ -223,8 +176,8 @@ def _in_gap(side: SideState, sample: Heard, leaves: bool, half_angle: float, par
     if goes_on(side, sample):
         return gone_on(side, sample)
     side = side if sample.r >= DEEP else side._replace(ends=NO_SAMPLES)
-    d = distance(_line(side.before, EMPTY), sample.u, sample.w)
-    most = _still_heard(side.before, EMPTY, sample, 1.0, half_angle) + STAGGER + LEANS * (sample.u - side.edge)
+    d = distance(line_of(side.before, EMPTY), sample.u, sample.w)
+    most = still_heard(side.before, EMPTY, sample, 1.0, half_angle) + STAGGER + LEANS * (sample.u - side.edge)
     if sample.r < most and sample.r < params.beside + FURTHER and not leaves:
         return side._replace(
             mode=NEXT_WALL,
@@ -236,7 +189,7 @@ def _in_gap(side: SideState, sample: Heard, leaves: bool, half_angle: float, par
             sums=EMPTY,
             fresh=False,
             edge_b=0.0,
-            window=newest(NO_WINDOW, sample),
+            window=taken_up(NO_WINDOW, sample),
             ends=NO_SAMPLES,
         )
     depth = side.depth
@@ -262,7 +215,7 @@ def _on_next_wall(side: SideState, sample: Heard, half_angle: float, params: Sea
     if abs(sample.r - side.samples[0].r) > 2.0 * params.step + 0.4:
         if sample.u - side.missed < confirmed(side):
             return side
-        told = _or_agreed(EMPTY, side.window, side.before)
+        told = or_agreed(EMPTY, side.window, side.before)
         if side.missed - side.begun >= params.wall and told.n > 0.0:
             return _found(side._replace(sums=told), half_angle)
         return side._replace(
@@ -278,11 +231,11 @@ def _on_next_wall(side: SideState, sample: Heard, half_angle: float, params: Sea
         missed=sample.u,
         taken=taken + 1 if taken < KEPT else KEPT,
         samples=samples,
-        sums=_with_sample(side.sums, side.before, sample, side.steady),
+        sums=with_sample(side.sums, side.before, sample, side.steady),
         fresh=False,
         edge_b=0.0,
         faces=faces,
-        window=newest(side.window, sample),
+        window=taken_up(side.window, sample),
     )
     if sample.u - side.begun < params.wall or side.sums.n < 2.0:
         return side

@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from controller_fmu.apa.hearing.consensus import NO_WINDOW, newest
+from controller_fmu.apa.hearing.consensus import NO_WINDOW, HeardSide, taken_up
 from controller_fmu.apa.hearing.edge import NO_SAMPLES, Heard, remember
 from controller_fmu.apa.hearing.line_fit import Sums
 
@@ -61,8 +61,8 @@ class SideState(NamedTuple):
     """Of the kerb or wall that the gap ends at."""
     first: Heard = Heard()
     """Of the neighbour in hand: its first corner, or near it; of none if it was there before it was looked at."""
-    window: tuple[Heard, ...] = NO_WINDOW
-    """Newest samples of the neighbour in hand, of its corners too."""
+    window: HeardSide = NO_WINDOW
+    """All that is heard of the neighbour in hand, of its corners too."""
     ends: tuple[Heard, ...] = NO_SAMPLES
     """In a gap: the newest samples of the neighbour before it."""
 
@@ -73,7 +73,7 @@ START = SideState()
 
 def begin_wall(side: SideState, sample: Heard) -> SideState:
     """Return the side on a neighbour that begins with a sample."""
-    window = newest(NO_WINDOW, sample)
+    window = taken_up(NO_WINDOW, sample)
     return anew(side)._replace(
         mode=WALL, begun=sample.u, first=sample, missed=sample.u, samples=remember(NO_SAMPLES, sample), window=window
     )

@@ -2,7 +2,16 @@
 
 import pytest
 
-from controller_fmu.apa.around.closing import GAP, SILENCES, Track, own_reach, room_to_strange, tracked_on
+from controller_fmu.apa.around.closing import (
+    GAP,
+    SILENCES,
+    TAIL_GAP,
+    Track,
+    own_reach,
+    room_at_tail,
+    room_to_strange,
+    tracked_on,
+)
 from controller_fmu.apa.around.closing import turned_round as turned
 from controller_fmu.apa.around.comer import Comer, followed, somebody_comes
 from controller_fmu.apa.around.near import FREE, nearest_told
@@ -14,7 +23,7 @@ PARAMS = ControllerParams()
 CAR = shape_of(PARAMS)
 SENSORS = CarUltrasonic()
 FURTHEST = SENSORS.max_range
-REAR_CORNER, REAR, FLANK = 4, 5, 8
+REAR_CORNER, REAR, FLANK, REAR_FLANK = 4, 5, 8, 9
 
 
 def tracks(number: int, readings: list[float], expected: float, way: float = 0.01) -> tuple[Track, ...]:
@@ -50,6 +59,20 @@ def test_a_corner_of_the_car_is_as_far_from_its_sensor_as_it_is() -> None:
     assert own_reach(mount, CAR, SENSORS.half_angle) == pytest.approx(far)
     assert own_reach(SENSORS.mounts[FLANK], CAR, SENSORS.half_angle) == 0.0
     assert own_reach(SENSORS.mounts[REAR], CAR, SENSORS.half_angle) == 0.0
+
+
+@pytest.mark.parametrize("slant", [0.3, 0.6])
+def test_the_flank_tells_how_far_the_tail_may_go_whose_corner_hears_nothing(slant: float) -> None:
+    readings = [0.4 + slant * 0.01 * number for number in range(60, -1, -1)]
+    heard = tracks(REAR_FLANK, readings, 1.5)
+    deaf = heard[:REAR_CORNER] + (Track(silent=SILENCES),) + heard[REAR_CORNER + 1 :]
+    ahead = SENSORS.mounts[REAR_FLANK].x + CAR.rear
+    room = room_at_tail(deaf, CAR, SENSORS)
+    at_corner = 0.4 - slant * (ahead + room)
+    assert at_corner == pytest.approx(TAIL_GAP, abs=0.02), "a side that slants towards the tail goes on straight"
+    assert room_at_tail(heard, CAR, SENSORS) == FREE, "the corner hears for itself"
+    known = tracks(REAR_FLANK, readings, 0.4)[REAR_FLANK]
+    assert room_at_tail((*deaf[:REAR_FLANK], known, *deaf[REAR_FLANK + 1 :]), CAR, SENSORS) > room, "the map has it"
 
 
 def test_a_lost_reading_is_bridged_and_silence_is_not() -> None:

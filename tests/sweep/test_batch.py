@@ -159,9 +159,9 @@ def test_shipped_faults(bind: Any, name: Any) -> None:
 
 
 def test_an_input_may_be_nan(bind: Any, tmp_path: Path) -> None:
-    """One that parks must not do without, and one that it does without once it has waited for it."""
+    """One that the search needs, and one that the way in does without once it has waited for it."""
     nan = {"kind": "override", "value": "nan", "start": 4.0}
-    faults = [{"signal": f"vehicle.ultrasonic[{number}]", **nan} for number in (8, 7)]
+    faults = [{"signal": f"vehicle.ultrasonic[{number}]", **nan} for number in (9, 8)]
     (tmp_path / "a.yaml").write_text(f"base: apa-parallel\nfaults: {json.dumps(faults)}\n")
     runs = {"grid": {"faults[1].start": [4.0, 1e6], "faults[2].start": [18.0, 1e6]}}
     _, _, job, chunk = bind(scenario=str(tmp_path / "a.yaml"), runs=runs)

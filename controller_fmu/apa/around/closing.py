@@ -31,6 +31,13 @@ KNOWN = -0.03
 WIDER = 0.1
 """A corner of the car may be heard from so far [rad] beside the cone."""
 NEAR_CORNER = 0.6
+TAIL = ((4, 9), (7, 11))
+"""The sensors at the corners of the tail, each with the rear one of its flank."""
+AT_TAIL = 0.8
+SLANTS = 0.15
+"""The flank's one stands in for the corner's up to so far [m], where what it hears comes nearer by this share."""
+TAIL_GAP = 0.08
+"""Kept [m] to it."""
 
 
 class Track(NamedTuple):
@@ -75,6 +82,27 @@ def room_to_strange(tracks: tuple[Track, ...], car: Shape, sensors: CarUltrasoni
                 room = min(room, track.now - max(reach + GAP, lowest))
             elif reach > 0.0:
                 room = min(room, track.now - reach - KNOWN)
+    return room
+
+
+def room_at_tail(tracks: tuple[Track, ...], car: Shape, sensors: CarUltrasonic) -> float:
+    """Return how far [m] a car in reverse may go before a corner of its tail is at what the rear sensor of that flank
+    hears, where the corner's own hears nothing.
+
+    What comes nearer to the flank by a share of the way does so at the corner, which is as much further on.
+    """
+    room = FREE
+    lowest = nearest_told(sensors)
+    for corner, flank in TAIL:
+        track = tracks[flank]
+        if tracks[corner].silent >= SILENCES and track.now < AT_TAIL:
+            share = (track.before - track.now) / MEMORY
+            ahead = sensors.mounts[flank].x + car.rear
+            if track.strange and track.now <= lowest:
+                room = 0.0
+            elif share > SLANTS:
+                gap = TAIL_GAP if track.strange else 0.0
+                room = min(room, max(0.0, (track.now - gap) / share - ahead))
     return room
 
 

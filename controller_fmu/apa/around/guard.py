@@ -11,7 +11,7 @@ import math
 from typing import NamedTuple
 
 from controller_fmu.apa.around.arcs import LOOKED_AT, NOWHERE, Unknown, arc_of, held, not_refuted, origin
-from controller_fmu.apa.around.closing import SILENCES, Track, room_to_strange, tracked_on, turned_round
+from controller_fmu.apa.around.closing import SILENCES, Track, room_at_tail, room_to_strange, tracked_on, turned_round
 from controller_fmu.apa.around.comer import Comer, followed, somebody_comes
 from controller_fmu.apa.around.course import HeldCourse, after
 from controller_fmu.apa.around.local_map import LocalMap, ear_on, expected, nearest_case, unsure_of
@@ -184,6 +184,8 @@ def watch_way(
     old = abs(course.speed) * params.car.ultrasonic.cycle
     if course.direction == state.direction:
         beside = min(beside, room_to_strange(state.tracks, course.car, params.car.ultrasonic) - 2.0 * old)
+        if course.direction < 0:
+            beside = min(beside, room_at_tail(state.tracks, course.car, params.car.ultrasonic) - 2.0 * old)
     allowed = speed_for(state, min(min(beside, strange), straight) - RESERVE, guard.brake_delay, params)
     heard = room_by_echoes(readings, course, here.frame.mirror, params.car.ultrasonic)
     late = guard.brake_delay if state.shown else max(guard.brake_delay, UNSEEN_BRAKE)

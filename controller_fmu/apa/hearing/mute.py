@@ -3,8 +3,7 @@
 A sensor that hears nothing tells its largest distance, and says that nothing is near. One that tells no number, or
 less than any echo could be, says nothing at all: its reading is put beyond all distances, and what the other sensors
 tell has to do. A car on its way in stops when a sensor falls silent, waits for it, and then goes on without it, slowly.
-Not without two, not on its way out, nor without one at a rear corner, as no other hears what the tail slides along; the
-search needs the two that find slots besides. Then the assist gives up.
+Not without two, and not on its way out; the search needs the two that find slots. Then the assist gives up.
 """
 
 from controller_fmu.apa.params import SensorParams
@@ -13,7 +12,6 @@ from modelkit.maths import is_finite
 
 MUTE = 1e3
 """Reading [m] of a sensor that tells nothing."""
-REAR_CORNERS = (4, 7)
 WAIT = 2.0
 """A car stands so long [s] for a sensor to come back."""
 SLOWLY = 0.4
@@ -44,10 +42,8 @@ def count_mute(readings: tuple[float, ...]) -> int:
 
 def spared(readings: tuple[float, ...], looking: bool) -> int:
     """Return how many sensors may tell nothing on the way in, or in the search while it is ``looking`` for a slot."""
-    needed = is_mute(readings[REAR_CORNERS[0]]) or is_mute(readings[REAR_CORNERS[1]])
-    if looking:
-        needed = needed or is_mute(readings[LEFT_SENSOR]) or is_mute(readings[RIGHT_SENSOR])
-    return 0 if needed else 1
+    needed = is_mute(readings[LEFT_SENSOR]) or is_mute(readings[RIGHT_SENSOR])
+    return 0 if looking and needed else 1
 
 
 def is_waited_for(mute_ns: int, params: SensorParams) -> bool:

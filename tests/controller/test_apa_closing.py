@@ -16,6 +16,7 @@ from controller_fmu.apa.around.closing import turned_round as turned
 from controller_fmu.apa.around.comer import Comer, followed, somebody_comes
 from controller_fmu.apa.around.near import FREE, nearest_told
 from controller_fmu.apa.around.surroundings import shape_of
+from controller_fmu.apa.hearing.mute import MUTE
 from controller_fmu.interface import ControllerParams
 from modelkit.car import CarUltrasonic
 
@@ -62,17 +63,15 @@ def test_a_corner_of_the_car_is_as_far_from_its_sensor_as_it_is() -> None:
 
 
 @pytest.mark.parametrize("slant", [0.3, 0.6])
-def test_the_flank_tells_how_far_the_tail_may_go_whose_corner_hears_nothing(slant: float) -> None:
+def test_the_flank_tells_how_far_the_tail_may_go_whose_corner_tells_nothing(slant: float) -> None:
     readings = [0.4 + slant * 0.01 * number for number in range(60, -1, -1)]
-    heard = tracks(REAR_FLANK, readings, 1.5)
-    deaf = heard[:REAR_CORNER] + (Track(silent=SILENCES),) + heard[REAR_CORNER + 1 :]
-    ahead = SENSORS.mounts[REAR_FLANK].x + CAR.rear
-    room = room_at_tail(deaf, CAR, SENSORS)
-    at_corner = 0.4 - slant * (ahead + room)
+    heard, known = tracks(REAR_FLANK, readings, 1.5), tracks(REAR_FLANK, readings, 0.4)
+    mute = (FURTHEST,) * REAR_CORNER + (MUTE,) + (FURTHEST,) * (11 - REAR_CORNER)
+    room = room_at_tail(heard, mute, CAR, SENSORS)
+    at_corner = 0.4 - slant * (SENSORS.mounts[REAR_FLANK].x + CAR.rear + room)
     assert at_corner == pytest.approx(TAIL_GAP, abs=0.02), "a side that slants towards the tail goes on straight"
-    assert room_at_tail(heard, CAR, SENSORS) == FREE, "the corner hears for itself"
-    known = tracks(REAR_FLANK, readings, 0.4)[REAR_FLANK]
-    assert room_at_tail((*deaf[:REAR_FLANK], known, *deaf[REAR_FLANK + 1 :]), CAR, SENSORS) > room, "the map has it"
+    assert room_at_tail(known, mute, CAR, SENSORS) > room, "the map has it there"
+    assert room_at_tail(heard, (FURTHEST,) * 12, CAR, SENSORS) == FREE, "the corner's own sensor tells"
 
 
 def test_a_lost_reading_is_bridged_and_silence_is_not() -> None:

@@ -4,12 +4,22 @@ import math
 
 import pytest
 
+from controller_fmu.apa.around.closing import Track
 from controller_fmu.apa.around.local_map import WALL as WALL_BEHIND
 from controller_fmu.apa.around.local_map import begin_map, ear_at, expected, heard, moved
-from controller_fmu.apa.around.row import as_found, is_certain, is_heard, is_in_the_middle, line_unsure, slot_heading
+from controller_fmu.apa.around.row import (
+    as_found,
+    is_certain,
+    is_heard,
+    is_in_the_middle,
+    line_unsure,
+    slot_heading,
+    without_gone,
+)
 from controller_fmu.apa.around.surroundings import shape_of
 from controller_fmu.apa.hearing.edge import Heard
 from controller_fmu.apa.hearing.line_fit import Sums, add
+from controller_fmu.apa.hearing.mute import MUTE
 from controller_fmu.apa.hearing.search import SearchState, slot_of
 from controller_fmu.apa.hearing.search_side import _in_gap
 from controller_fmu.apa.hearing.side import GAP, NEXT_WALL, START, SideState
@@ -21,6 +31,7 @@ from tests.controller.test_apa_relocate import READINGS, SENSORS, inputs_at
 
 PARAMS = ControllerParams()
 MAP = MapParams()
+FURTHEST = SENSORS.max_range
 DEG = math.pi / 180.0
 
 
@@ -39,6 +50,16 @@ def test_a_car_stands_half_way_between_the_road_and_neighbours_who_stand_askew(
         wall=here.wall._replace(heading=wall * DEG, hh=1e-6),
     )
     assert least <= slot_heading(here, MAP) / DEG <= most
+
+
+@pytest.mark.parametrize(
+    ("heard_at", "kind", "gone"), [(1.9, 1, True), (0.6, 1, False), (MUTE, 1, False), (1.9, 2, False)]
+)
+def test_a_neighbour_behind_whom_the_rear_hears_past_has_gone(heard_at: float, kind: int, gone: bool) -> None:
+    here = begin_map(between(kind), Pose(1.2, -0.9, 0.0), MAP)
+    readings = (FURTHEST,) * 5 + (1.9, heard_at) + (FURTHEST,) * 5
+    tracks = (Track(),) * 5 + (Track(1.9, 1.9), Track(heard_at, heard_at)) + (Track(),) * 5
+    assert without_gone(here, tracks, readings, PARAMS).empty_a == gone
 
 
 def test_echoes_of_a_flank_do_not_move_its_corner_across_the_road() -> None:

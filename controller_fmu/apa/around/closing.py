@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 from controller_fmu.apa.around.cone import SILENT
 from controller_fmu.apa.around.near import FREE, nearest_told
+from controller_fmu.apa.hearing.mute import is_mute
 from controller_fmu.apa.outline import Shape
 from modelkit.car import CarUltrasonic, SensorMount
 
@@ -85,9 +86,9 @@ def room_to_strange(tracks: tuple[Track, ...], car: Shape, sensors: CarUltrasoni
     return room
 
 
-def room_at_tail(tracks: tuple[Track, ...], car: Shape, sensors: CarUltrasonic) -> float:
+def room_at_tail(tracks: tuple[Track, ...], readings: tuple[float, ...], car: Shape, sensors: CarUltrasonic) -> float:
     """Return how far [m] a car in reverse may go before a corner of its tail is at what the rear sensor of that flank
-    hears, where the corner's own hears nothing.
+    hears, where the corner's own tells nothing.
 
     What comes nearer to the flank by a share of the way does so at the corner, which is as much further on.
     """
@@ -95,7 +96,7 @@ def room_at_tail(tracks: tuple[Track, ...], car: Shape, sensors: CarUltrasonic) 
     lowest = nearest_told(sensors)
     for corner, flank in TAIL:
         track = tracks[flank]
-        if tracks[corner].silent >= SILENCES and track.now < AT_TAIL:
+        if is_mute(readings[corner]) and track.now < AT_TAIL:
             share = (track.before - track.now) / MEMORY
             ahead = sensors.mounts[flank].x + car.rear
             if track.strange and track.now <= lowest:

@@ -185,7 +185,7 @@ def watch_way(
     if course.direction == state.direction:
         beside = min(beside, room_to_strange(state.tracks, course.car, params.car.ultrasonic) - 2.0 * old)
         if course.direction < 0:
-            beside = min(beside, room_at_tail(state.tracks, course.car, params.car.ultrasonic) - 2.0 * old)
+            beside = min(beside, room_at_tail(state.tracks, readings, course.car, params.car.ultrasonic) - 2.0 * old)
     allowed = speed_for(state, min(min(beside, strange), straight) - RESERVE, guard.brake_delay, params)
     heard = room_by_echoes(readings, course, here.frame.mirror, params.car.ultrasonic)
     late = guard.brake_delay if state.shown else max(guard.brake_delay, UNSEEN_BRAKE)

@@ -2,6 +2,7 @@
 
 import math
 
+from controller_fmu.apa.around.closing import Track
 from controller_fmu.apa.around.local_map import LocalMap, ear_on, expected
 from controller_fmu.apa.hearing.mute import is_mute
 from controller_fmu.apa.params import MapParams
@@ -108,6 +109,25 @@ def is_certain(here: LocalMap, params: MapParams) -> bool:
     """Return whether neighbours are still where a car between them hears them, and in line as they were found."""
     in_line = abs(here.b.y - here.a.y - here.out) < OUT_OF_LINE
     return in_line and _unsure_along(here) < params.certain * params.certain
+
+
+def without_gone(
+    here: LocalMap, tracks: tuple[Track, ...], readings: tuple[float, ...], params: ControllerParams
+) -> LocalMap:
+    """Return the map without the neighbour behind a parallel slot if he has gone: the middle sensors hear past him.
+
+    What tells how deep the car stands is the neighbour ahead, so he is missed if he has gone.
+    """
+    gone = _hears_past(here, tracks, readings, 5, params) and _hears_past(here, tracks, readings, 6, params)
+    return here._replace(empty_a=here.empty_a or gone) if here.kind == Kind.PARALLEL else here
+
+
+def _hears_past(
+    here: LocalMap, tracks: tuple[Track, ...], readings: tuple[float, ...], number: int, params: ControllerParams
+) -> bool:
+    """Return whether a sensor hears past what the map has before it; nothing, where it should hear something."""
+    told = expected(ear_on(here, params.car.ultrasonic, number), here).echo.distance
+    return told < params.apa.map.heard and tracks[number].now > told + MISSED and not is_mute(readings[number])
 
 
 def is_heard(here: LocalMap, readings: tuple[float, ...], params: ControllerParams) -> bool:

@@ -7,7 +7,7 @@ from controller_fmu.apa.around.course import HeldCourse
 from controller_fmu.apa.around.guard import GuardState, Sight, watch_way
 from controller_fmu.apa.around.local_map import LocalMap
 from controller_fmu.apa.around.near import NEARER
-from controller_fmu.apa.around.row import is_certain, is_heard, is_in_the_middle, line_unsure
+from controller_fmu.apa.around.row import is_certain, is_heard, is_in_the_middle, line_unsure, without_gone
 from controller_fmu.apa.around.shifted import Shifts
 from controller_fmu.apa.hearing.mute import SLOWLY, is_waited_for
 from controller_fmu.apa.outline import Shape, clearance, outline_rate, sure_steps
@@ -67,7 +67,7 @@ def is_sure(inputs: ControllerInput, around: Around, params: ControllerParams) -
     """Return whether both neighbours are where the map has them, and the sensors do not contradict it."""
     heard = inputs.ultrasonic
     told = is_heard(around.map, heard, params) and is_in_the_middle(around.map, heard, params)
-    return told and is_certain(around.map, params.apa.map)
+    return told and is_certain(without_gone(around.map, around.guard.tracks, heard, params), params.apa.map)
 
 
 def is_rest_free(move: Move, tracked: Tracked, site: Site, bare: Site, out: bool, params: ControllerParams) -> bool:

@@ -40,6 +40,8 @@ LESS_BESIDE = 0.01
 """The margin to kerb or wall is taken this much [m] smaller, so that a target at that margin is free."""
 BEHIND = 0.08
 """A perpendicular slot's wall or wheel stop is left so far [m] behind the car at least."""
+OUT_OF_LINE = 0.5
+"""Neighbours of whom one stands so much [m] further out than the other make no line."""
 LESS_OUT = 0.02
 """A move into a perpendicular slot ends so much [m] deeper than it need to be."""
 
@@ -100,9 +102,19 @@ def room_of(slot: Slot, deep: float) -> Opening:
     return Opening(max(0.0, deep * math.sin(slot.skew_a)), slot.length + min(0.0, deep * math.sin(slot.skew_b)))
 
 
+def line_of(slot: Slot) -> float:
+    """Return y [m] of the line that a parked car stands flush with: half way between the corners at the mouth.
+
+    Across the road it is the corner further in where the other has come out of the row by so much that it is none.
+    """
+    if slot.kind == Kind.PERPENDICULAR and abs(slot.b_out) > OUT_OF_LINE:
+        return min(0.0, slot.b_out)
+    return 0.5 * slot.b_out
+
+
 def target_of(slot: Slot, car: Shape, margins: Margins) -> Pose:
     """Return the pose to park at, in A's frame."""
-    line = 0.5 * slot.b_out - margins.inset
+    line = line_of(slot) - margins.inset
     if slot.kind == Kind.PERPENDICULAR:
         room = room_of(slot, car.front + car.rear)
         y = line - car.front
@@ -119,7 +131,7 @@ def stands_out_by(pose: Pose, slot: Slot, car: Shape) -> float:
     c = math.cos(pose.heading)
     s = math.sin(pose.heading)
     ahead = max(car.front * s, -car.rear * s)
-    return pose.y + ahead + car.half_width * abs(c) - 0.5 * slot.b_out
+    return pose.y + ahead + car.half_width * abs(c) - line_of(slot)
 
 
 def site_of(slot: Slot, car: Shape, margins: Margins) -> Site:

@@ -14,6 +14,7 @@ from controller_fmu.apa.around.row import (
     is_in_the_middle,
     line_unsure,
     slot_heading,
+    slot_of_map,
     without_gone,
 )
 from controller_fmu.apa.around.surroundings import shape_of
@@ -24,7 +25,7 @@ from controller_fmu.apa.hearing.search import SearchState, slot_of
 from controller_fmu.apa.hearing.search_side import _in_gap
 from controller_fmu.apa.hearing.side import GAP, NEXT_WALL, START, SideState
 from controller_fmu.apa.params import MapParams
-from controller_fmu.apa.slot import UNSEEN, Kind, Slot
+from controller_fmu.apa.slot import UNSEEN, Kind, Slot, line_of
 from controller_fmu.interface import ControllerParams
 from modelkit.vocabulary import Pose
 from tests.controller.test_apa_relocate import READINGS, SENSORS, inputs_at
@@ -85,6 +86,19 @@ def test_a_corner_that_is_not_heard_goes_with_the_other_as_they_were_found() -> 
         b=found.b._replace(yy=line_part(found.b.yy, found.a.yy)),
     )
     assert not is_certain(here._replace(b=here.b._replace(y=0.6)), MAP)
+
+
+@pytest.mark.parametrize(
+    ("a", "b", "sure"), [(0.7, 0.0, True), (0.1, 0.8, True), (0.4, -0.3, False), (0.0, -0.7, False)]
+)
+def test_one_who_has_come_out_of_a_row_across_the_road_tells_no_direction(a: float, b: float, sure: bool) -> None:
+    found = begin_map(between(Kind.PERPENDICULAR, 2.8), Pose(1.4, -3.0, 0.5 * math.pi), MAP)
+    here = found._replace(a=found.a._replace(y=a), b=found.b._replace(y=b))
+    assert is_certain(here, MAP) == sure
+    if sure:
+        assert slot_heading(here, MAP) == pytest.approx(0.0, abs=1e-9)
+        slot = slot_of_map(here, between(Kind.PERPENDICULAR, 2.8), MAP)
+        assert slot.a.y + line_of(slot) == pytest.approx(min(a, b), abs=0.15), "flush with the one who stays"
 
 
 def line_part(own: float, other: float) -> float:

@@ -28,7 +28,9 @@ how neighbours stand."""
 ASIDE = 0.12
 """A car in a perpendicular slot stands so much [m] nearer to one neighbour than to the middle at most."""
 OUT_OF_LINE = 0.5
-"""A map in which a neighbour has come so much [m] further out, or in, than the other is lost."""
+"""A map in which a neighbour has come so much [m] further out, or in, than the other is lost,"""
+STAYS = 0.25
+"""but for one beside a perpendicular slot who has come out while the other stands to this [m] where he was found."""
 
 
 def as_found(here: LocalMap) -> LocalMap:
@@ -79,6 +81,8 @@ def slot_heading(here: LocalMap, params: MapParams) -> float:
     dx = max(here.b.x - here.a.x, 1.0)
     line = math.atan2(here.b.y - here.a.y, dx)
     corners = dx * dx / (2.0 * STAGGER * STAGGER + here.a.yy + here.b.yy)
+    if _has_one_come_out(here):
+        corners = 0.0
     total = corners * (line - both)
     weight = a + b + corners
     if here.walled:
@@ -105,9 +109,21 @@ def _unsure_along(here: LocalMap) -> float:
     return max(0.0 if here.empty_a else here.a.xx, 0.0 if here.empty_b else here.b.xx)
 
 
+def _out_of_line(here: LocalMap) -> float:
+    """Return how much further out [m] corner B is against corner A than it was found."""
+    return here.b.y - here.a.y - here.out
+
+
+def _has_one_come_out(here: LocalMap) -> bool:
+    """Return whether one neighbour beside a perpendicular slot has come out of the row, and the other has not moved."""
+    off = _out_of_line(here)
+    stays = here.a.y if off > 0.0 else here.b.y - here.out
+    return here.kind == Kind.PERPENDICULAR and abs(off) > OUT_OF_LINE and abs(stays) < STAYS
+
+
 def is_certain(here: LocalMap, params: MapParams) -> bool:
     """Return whether neighbours are still where a car between them hears them, and in line as they were found."""
-    in_line = abs(here.b.y - here.a.y - here.out) < OUT_OF_LINE
+    in_line = abs(_out_of_line(here)) < OUT_OF_LINE or _has_one_come_out(here)
     return in_line and _unsure_along(here) < params.certain * params.certain
 
 

@@ -180,6 +180,20 @@ def test_a_neighbour_nearer_than_the_search_found_him_is_placed_where_he_is_hear
     assert not is_certain(found.map, MAP)
 
 
+@pytest.mark.parametrize("side", [Side.RIGHT, Side.LEFT])
+@pytest.mark.parametrize("kind", [Kind.PERPENDICULAR, Kind.PARALLEL])
+def test_who_has_come_out_of_a_row_across_the_road_is_placed_there(kind: int, side: int) -> None:
+    mirror = -1.0 if side == Side.LEFT else 1.0
+    pose = Pose(4.3, mirror * 1.95, mirror * 0.5)
+    here = begin_map(Slot(kind, side, Pose(), 3.0), pose, MAP)
+    boxes = [(-1.8, 0.0, -4.6, 0.0), (3.0, 4.8, -3.9, 0.7)]
+    found = nearer_than_thought(here, inputs_at(pose, pose, boxes, side).ultrasonic, PARAMS)
+    if kind == Kind.PERPENDICULAR:
+        assert (found.map.b.x, found.map.b.y) == pytest.approx((3.0, 0.7), abs=0.07)
+        assert found.map.a == here.a
+    assert found.map.b.y == 0.0 or kind == Kind.PERPENDICULAR, "cars along the road do not drive across it"
+
+
 @pytest.mark.parametrize("lost", [(), (5,), (0, 4)])
 def test_who_stands_where_the_map_has_him_stays_there(lost: tuple[int, ...]) -> None:
     here, readings = standing(Side.RIGHT, 0.0, 0.0, lost)

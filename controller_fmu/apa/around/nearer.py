@@ -22,14 +22,15 @@ from controller_fmu.apa.around.local_map import (
 )
 from controller_fmu.apa.around.thing import Thing, thing_at
 from controller_fmu.apa.hearing.mute import is_mute
+from controller_fmu.apa.slot import Kind
 from controller_fmu.interface import ControllerParams
 from modelkit.maths import clamp
 
 STEP = 0.06
 STEPS = 20
 """Things are tried so many times so much [m] nearer."""
-WAYS = ((A, 1.0, 0.0), (B, -1.0, 0.0), (WALL, 0.0, 1.0))
-"""Who, and which way nearer: along the road into the slot, or out towards it."""
+WAYS = ((A, 1.0, 0.0), (B, -1.0, 0.0), (WALL, 0.0, 1.0), (A, 0.0, 1.0), (B, 0.0, 1.0))
+"""Who, and which way nearer: along the road into the slot, or out towards it; neighbours across the road come out."""
 MOST = 0.3
 """No reading says more [m] against a map: it may be lost, or of something else."""
 BETTER = 0.2
@@ -51,7 +52,7 @@ def nearer_than_thought(here: LocalMap, readings: tuple[float, ...], params: Con
     best = Nearer(False, here)
     least = misfit(here, readings, params) - BETTER
     for who, along, out in WAYS:
-        if who != WALL or here.walled:
+        if here.walled if who == WALL else along != 0.0 or here.kind == Kind.PERPENDICULAR:
             for number in range(STEPS):
                 way = STEP * (number + 1)
                 there = _moved(here, who, way * along, way * out, params)

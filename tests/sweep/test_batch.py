@@ -170,7 +170,7 @@ def test_an_input_may_be_nan(bind: Any, tmp_path: Path) -> None:
     verdict = judge(job, truths(job, chunk), rows)
     assert list(verdict.reason) == ["sensor_loss"] * 2 + ["all checks passed"] * 2
     *_, without, usual = verdict.numbers["duration"]
-    assert without > usual + WAIT
+    assert without > usual + 0.5 * WAIT, "it stands, and waits"
 
 
 def test_the_time_of_an_instant(bind: Any) -> None:

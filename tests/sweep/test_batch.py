@@ -7,7 +7,6 @@ from typing import Annotated, Any, NamedTuple
 import numpy as np
 import pytest
 
-from controller_fmu.apa.hearing.mute import WAIT
 from fmus.compiled_batch import Kept, compiled_rows
 from modelkit.signal import Signal
 from orchestrator.cosim.fmu_files import fmu_files
@@ -159,7 +158,7 @@ def test_shipped_faults(bind: Any, name: Any) -> None:
 
 
 def test_an_input_may_be_nan(bind: Any, tmp_path: Path) -> None:
-    """One that the search needs, and one that the way in does without once it has waited for it."""
+    """One that the search needs, and one that the way in does without."""
     nan = {"kind": "override", "value": "nan", "start": 4.0}
     faults = [{"signal": f"vehicle.ultrasonic[{number}]", **nan} for number in (9, 8)]
     (tmp_path / "a.yaml").write_text(f"base: apa-parallel\nfaults: {json.dumps(faults)}\n")
@@ -169,8 +168,6 @@ def test_an_input_may_be_nan(bind: Any, tmp_path: Path) -> None:
     assert_same(job, chunk, rows, 0)
     verdict = judge(job, truths(job, chunk), rows)
     assert list(verdict.reason) == ["sensor_loss"] * 2 + ["all checks passed"] * 2
-    *_, without, usual = verdict.numbers["duration"]
-    assert without > usual + 0.5 * WAIT, "it stands, and waits"
 
 
 def test_the_time_of_an_instant(bind: Any) -> None:

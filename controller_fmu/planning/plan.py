@@ -21,6 +21,7 @@ from controller_fmu.planning.plan_store import (
     PIECE_COUNT,
     ROOM,
     RUNG,
+    SEEN,
     STATUS,
     PlanStore,
     put_asked,
@@ -30,6 +31,7 @@ from controller_fmu.planning.plan_store import (
     put_measure,
 )
 from controller_fmu.planning.rasters import FAR, block_route, list_near, measure_route, route_left
+from controller_fmu.planning.room import see_room
 from controller_fmu.planning.setting import add_edges, is_inside
 from controller_fmu.planning.shorten import begin_path, path_cost, shorten
 from controller_fmu.planning.task import CORNERS, Request, Scene, Task
@@ -39,7 +41,8 @@ SCENE = 0
 PLANT = 1
 GROW = 2
 SHORTEN = 3
-OVER = 4
+SEE = 4
+OVER = 5
 
 PLANNING = 0
 PLANNED = 1
@@ -53,11 +56,14 @@ MOST_CUSPS = 25
 
 
 class Piece(NamedTuple):
-    """A piece of a path: its way [m], reverse negative, and its curvature [1/m] at both ends."""
+    """A piece of a path."""
 
     way: float = 0.0
-    k0: float = 0.0
-    k1: float = 0.0
+    """[m], reverse negative."""
+    k: float = 0.0
+    """Curvature [1/m]."""
+    room: float = 0.0
+    """What is free beyond the margin [m] near its begin; where the gear changes how far the piece before may go on."""
 
 
 class Path(NamedTuple):
@@ -127,7 +133,7 @@ def begin(store: PlanStore, scene: Scene, request: Request) -> None:
 
 
 def step(store: PlanStore, request: Request) -> None:
-    """Do one bounded piece of work: lay out the scene, plant a tree, take up a node, or try a shorter span."""
+    """Do one bounded piece of work: lay out a scene, plant a tree, take up a node, try a shorter span, see a joint."""
     put_mark(store, COUNT, store.mark[COUNT] + 1)
     phase = store.mark[PHASE]
     task = task_of(store, request)
@@ -147,19 +153,21 @@ def step(store: PlanStore, request: Request) -> None:
         if not more:
             _keep(store, task)
             _next_rung(store)
+    elif phase == SEE:
+        more = see_room(store, request, task)
+        if not more:
+            _over(store, PLANNED)
 
 
 def path_of(store: PlanStore) -> Path:
     """Return the path that was found."""
-    pieces = tuple(
-        Piece(
-            store.kept_way[number] if number < store.mark[KEPT_COUNT] else 0.0,
-            store.kept_k[number] if number < store.mark[KEPT_COUNT] else 0.0,
-            store.kept_k[number] if number < store.mark[KEPT_COUNT] else 0.0,
-        )
-        for number in range(PATH)
-    )
+    pieces = tuple(_piece(store, number) if number < store.mark[KEPT_COUNT] else Piece() for number in range(PATH))
     return Path(store.mark[KEPT_COUNT], store.measure[KEPT_MARGIN], store.measure[KEPT_COST], pieces)
+
+
+def _piece(store: PlanStore, number: int) -> Piece:
+    """Return a piece of the path that was found."""
+    return Piece(store.kept_way[number], store.kept_k[number], store.kept_room[number])
 
 
 def _numbers(request: Request) -> tuple[float, float, float, float, float, float, float, float, float, float, float]:
@@ -258,7 +266,8 @@ def _next_rung(store: PlanStore) -> None:
     kept = store.mark[KEPT_COUNT] > 0
     last = rung >= len(LADDER)
     if kept and (last or not LADDER[rung].also):
-        _over(store, PLANNED)
+        put_mark(store, SEEN, 0)
+        put_mark(store, PHASE, SEE)
     elif last:
         _over(store, NO_WAY)
     else:

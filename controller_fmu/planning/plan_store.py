@@ -73,6 +73,7 @@ class PlanStore(NamedTuple):
     piece_h: Annotated[Floats, Column("d", PIECES, "rad", "heading where it begins")]
     kept_way: Annotated[Floats, Column("d", PIECES, "m", "way of a piece of the best path yet")]
     kept_k: Annotated[Floats, Column("d", PIECES, "1/m", "its curvature")]
+    kept_room: Annotated[Floats, Column("d", PIECES, "m", "room about its begin")]
     corner_x: Annotated[Floats, Column("d", CORNERS, "m", "x of a corner of the scene asked about")]
     corner_y: Annotated[Floats, Column("d", CORNERS, "m", "its y")]
     corner_of: Annotated[Ints, Column("i", CORNERS, "1", "its polygon")]
@@ -117,6 +118,8 @@ EDGE_COUNT = 15
 KEPT_COUNT = 16
 KEPT_RUNG = 17
 GOAL_TIGHTER = 18
+SEEN = 20
+"""Pieces of the path kept about whose begin the room is known."""
 
 BEST_COST = 0
 BEST_WAY = 1
@@ -232,6 +235,12 @@ def put_asked(store: PlanStore, which: int, value: float) -> None:
 
 
 def put_kept(store: PlanStore, piece: int, way: float, k: float) -> None:
-    """Set a piece of the best path yet."""
+    """Set a piece of the best path yet; of its room nothing is known."""
     store.kept_way[piece] = way
     store.kept_k[piece] = k
+    put_room(store, piece, 0.0)
+
+
+def put_room(store: PlanStore, piece: int, room: float) -> None:
+    """Set what room there is where a piece of the best path begins."""
+    store.kept_room[piece] = room

@@ -18,6 +18,7 @@ from controller_fmu.planning.plan import (
     status_of,
 )
 from controller_fmu.planning.plan_store import PlanStore
+from controller_fmu.planning.stretch import trimmed
 from controller_fmu.planning.task import Corner, Request, drive
 from controller_fmu.sensing.around import lay_end
 from controller_fmu.sensing.gap import DEEP, Gap, GapLayout
@@ -33,11 +34,12 @@ from controller_fmu.valet.nearby import (
     put_nearby,
 )
 from controller_fmu.valet.params import ValetParams
-from controller_fmu.valet.rolling import Ahead, ahead_of, aim_at, joint_of, trimmed, turns_already
+from controller_fmu.valet.rolling import Ahead, ahead_of, aim_at, joint_of, turns_already
 from controller_fmu.valet.search import Search, shallower
 from controller_fmu.valet.sight import SEEN_CORNERS, Sight, look, remembered, scene_of
 from controller_fmu.valet.slot import body_of, goal_in, goal_of, stands_out
 from controller_fmu.valet.watch import Watch
+from modelkit.car import largest_curvature
 from modelkit.maths import clamp, sign
 from modelkit.vocabulary import Pose
 
@@ -46,6 +48,8 @@ AT_END = 0.03
 LEARNT = 0.6
 """Share of what a stop is off its place that the next stop makes up for."""
 EARLIEST = 0.02
+REGAINED = 0.5
+"""Way [m]."""
 LEAST_MARGIN = 0.03
 """A way into a slot across the road that comes nearer [m] to what was heard is not driven: odometry drifts more."""
 
@@ -172,7 +176,7 @@ def seen_on(store: PlanStore, state: ValetState, inputs: ControllerInput, params
     if state.tracked.left <= 0.0 and joint_of(state.path, state.piece, params).ramp > 0.0:
         state = rolled_on(state)
     way = state.path.pieces[state.piece].way
-    curvature = state.path.pieces[state.piece].k0
+    curvature = state.path.pieces[state.piece].k
     direction = sign(way)
     pose = inputs.odometry
     at = drive(state.begin, direction * (abs(way) - state.tracked.left), curvature)
@@ -186,7 +190,7 @@ def seen_on(store: PlanStore, state: ValetState, inputs: ControllerInput, params
     soon = left - abs(inputs.measured_speed) * law.wheel_delay
     aim = aim_at(state.path, state.piece, left, params)
     asked = aim_at(state.path, state.piece, soon, params).curvature
-    beside = Deviation(off.lateral - aim.lateral, off.heading - aim.heading)
+    beside = Deviation(led_back(off.lateral - aim.lateral, asked, params), off.heading - aim.heading)
     angle = angle_back(beside, asked, direction, law.k1, law.k2, params.car.wheelbase)
     coming = ahead_of(state.path, state.piece, left, params)
     if turns_already(coming, params):
@@ -194,6 +198,17 @@ def seen_on(store: PlanStore, state: ValetState, inputs: ControllerInput, params
     scene = scene_of(store, params, state.seen)
     sight = look(inputs.ultrasonic, pose, state.path.pieces[state.piece], inputs.measured_speed, scene, params)
     return state._replace(tracked=Tracked(left, at, off.lateral, off.heading, angle, coming), sight=sight)
+
+
+def led_back(lateral: float, curvature: float, params: ValetParams) -> float:
+    """Return as much of what the car is off its path [m] as it can take back and be in its direction again.
+
+    Inside a bend at full lock the car can turn out, but hardly in again: there it leaves its direction by no more than
+    what it can steer beyond the bend over ``REGAINED``.
+    """
+    spare = largest_curvature(params.car) - sign(lateral) * curvature
+    most = max(0.0, spare) * REGAINED * params.drive.k2 / params.drive.k1 if params.drive.k1 > 0.0 else 0.0
+    return clamp(lateral, -most, most)
 
 
 def heard_on(
@@ -243,7 +258,7 @@ def planned_speed(ahead: Ahead, most: float, params: ValetParams) -> float:
 
 def rolled_on(state: ValetState) -> ValetState:
     """Return the valet on the next piece, which it reached without a stop."""
-    begin = drive(state.begin, state.path.pieces[state.piece].way, state.path.pieces[state.piece].k0)
+    begin = drive(state.begin, state.path.pieces[state.piece].way, state.path.pieces[state.piece].k)
     left = state.tracked.left + abs(state.path.pieces[state.piece + 1].way)
     return state._replace(piece=state.piece + 1, begin=begin, tracked=state.tracked._replace(left=left))
 
@@ -277,7 +292,7 @@ def _with_piece(state: ValetState, before: int, params: ValetParams) -> ValetSta
         begin = state.begin
         if state.tracked.left > AT_END:
             return state
-        begin = drive(begin, state.path.pieces[piece].way, state.path.pieces[piece].k0)
+        begin = drive(begin, state.path.pieces[piece].way, state.path.pieces[piece].k)
         early = clamp(early + LEARNT * state.tracked.ahead.left, -EARLIEST, EARLIEST)
         piece = piece + 1
     left = abs(state.path.pieces[piece].way)

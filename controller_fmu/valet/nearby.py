@@ -122,10 +122,10 @@ def room_beside(store: PlanStore, place: int, rest: Rest, params: ValetParams) -
             for step in range(100):
                 on = way - left + STEP * step
                 if on < way + STEP:
-                    pose = drive(begin, sense * (on if on < way else way), piece.k0)
+                    pose = drive(begin, sense * (on if on < way else way), piece.k)
                     body = outline(pose, car.wheelbase, car.front_overhang, car.rear_overhang, car.width)
                     nearest = min(nearest, point_gap(point, body))
-            begin = drive(begin, piece.way, piece.k0)
+            begin = drive(begin, piece.way, piece.k)
             left = abs(rest.path.pieces[number + 1 if number + 1 < PATH else number].way)
     return nearest
 

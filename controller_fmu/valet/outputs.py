@@ -111,4 +111,4 @@ def _move(state: ValetState) -> Move:
 
 def _piece(state: ValetState, number: int) -> MovePiece:
     piece = state.path.pieces[number if number < PATH else 0]
-    return MovePiece(abs(piece.way), piece.k0, piece.k1)
+    return MovePiece(abs(piece.way), piece.k, piece.k)

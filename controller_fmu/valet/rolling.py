@@ -6,7 +6,8 @@ two jumps there and back close together little is left, and the wheel hardly tur
 
 About a standstill, too, the wheel turns while the car still rolls, or rolls again: it begins a time before and goes on
 a time behind. The curvature is off by then, which costs heading. Where the gear changes a car that goes farther by that
-heading over dk before it turns round gets it back. The times are so long that this is what the car may be off its path.
+heading over dk before it turns round gets it back. The times are so long that this is as far as it may go: where there
+is room for that with the path's margin, ``FARTHER`` times ``drive.rolling``.
 
 On ramps the wheel turns by dphi for each metre driven, so the car may go its rate over that. Where one ramp alone asks
 for less than ``SLOWEST`` on the average the car stands, and the wheel turns at rest.
@@ -16,6 +17,7 @@ import math
 from typing import NamedTuple
 
 from controller_fmu.planning.plan import Path
+from controller_fmu.planning.stretch import OneGear, stretch_of, way_before
 from controller_fmu.valet.params import ValetParams
 from modelkit.maths import sign
 
@@ -25,28 +27,25 @@ RATE_SHARE = 0.9
 """Of the wheel's rate that a ramp asks for; the rest is for tracking."""
 OF_MARGIN = 0.2
 """Share of the clearance planned that a ramp may use."""
+OF_ROOM = 0.25
+"""And of what there is near the joint beyond that, up to ``ROOMIEST`` times ``drive.rolling``."""
+ROOMIEST = 1.5
 SAME = 1e-6
 """Curvatures nearer than this [1/m] are one."""
-SHORTEST = 0.01
-"""A last piece that is shorter [m] is left out."""
+BEHIND = 1e-6
+"""So far [m] behind its edge a ramp has begun, or ended, in spite of rounding."""
 REST_SHARE = 0.5
-"""Share of what ramps may take that turning about a standstill may."""
+"""Share of what ramps may take that turning about a standstill may, if there is no room beyond it."""
+FARTHER = 5.0
+"""A car may go farther before it turns round by so many times ``drive.rolling``, where there is room."""
+AT_FIRST = 2.0
+"""And by so many times that it might have to as it sets out on its path, which tracking takes back."""
 ROOMY = 0.05
 """Where the plan leaves less clearance [m] the wheel turns at rest."""
 SETTLED = 0.3
 """So long [s] before its last standstill the car tracks no more: the wheel is at rest when it is straight."""
 QUICKEST = 1.0
 """Acceleration [m/s2] with which a car sets out, the lag of its drive counted."""
-BEHIND = 1e-6
-"""So far [m] behind its edge a ramp has begun, or ended, in spite of rounding."""
-
-
-class OneGear(NamedTuple):
-    """The pieces that are driven in one gear, from ``first`` to ``last``, and their length [m]."""
-
-    first: int
-    last: int
-    length: float
 
 
 class Joint(NamedTuple):
@@ -93,36 +92,6 @@ class Ahead(NamedTuple):
     """That standstill."""
 
 
-def trimmed(path: Path) -> Path:
-    """Return the path without last pieces that are not worth turning the wheel for."""
-    used = path.used
-    while used > 1 and abs(path.pieces[used - 1].way) < SHORTEST:
-        used -= 1
-    return path._replace(used=used)
-
-
-def stretch_of(path: Path, piece: int) -> OneGear:
-    """Return the stretch that ``piece`` is of."""
-    direction = sign(path.pieces[piece].way)
-    first = piece
-    while first > 0 and path.pieces[first - 1].way * direction > 0.0:
-        first -= 1
-    last = first
-    length = abs(path.pieces[first].way)
-    while last + 1 < path.used and path.pieces[last + 1].way * direction > 0.0:
-        last += 1
-        length += abs(path.pieces[last].way)
-    return OneGear(first, last, length)
-
-
-def way_before(path: Path, whole: OneGear, piece: int) -> float:
-    """Return the way [m] from the begin of a stretch to that of a piece."""
-    way = 0.0
-    for number in range(whole.first, piece):
-        way += abs(path.pieces[number].way)
-    return way
-
-
 def joint_of(path: Path, piece: int, params: ValetParams) -> Joint:
     """Return the joint at the end of ``piece``."""
     whole = stretch_of(path, piece)
@@ -131,12 +100,14 @@ def joint_of(path: Path, piece: int, params: ValetParams) -> Joint:
 
 def _joint(path: Path, whole: OneGear, piece: int, at: float, params: ValetParams) -> Joint:
     """Return the joint at the end of ``piece``, ``at`` [m] from the begin of the stretch."""
-    off = _largest_off(path, params)
-    if piece >= whole.last or off <= 0.0:
+    if piece >= whole.last:
+        return Joint()
+    off = _off_about(path, piece + 1, params)
+    if off <= 0.0:
         return Joint()
     longest = 2.0 * min(at, whole.length - at)
-    k0 = path.pieces[piece].k0
-    k1 = path.pieces[piece + 1].k0
+    k0 = path.pieces[piece].k
+    k1 = path.pieces[piece + 1].k
     if abs(k1 - k0) < SAME:
         return Joint(longest)
     ramp = min(longest, math.sqrt(24.0 * off / abs(k1 - k0)))
@@ -158,7 +129,7 @@ def aim_at(path: Path, piece: int, left: float, params: ValetParams) -> Aim:
     whole = stretch_of(path, piece)
     at = 0.0
     place = min(way_before(path, whole, piece + 1) - left, whole.length - BEHIND)
-    curvature = path.pieces[piece].k0
+    curvature = path.pieces[piece].k
     lateral = 0.0
     heading = 0.0
     for number in range(whole.first, whole.last):
@@ -172,13 +143,14 @@ def aim_at(path: Path, piece: int, left: float, params: ValetParams) -> Aim:
             curvature += joint.jump * (share - path_turned)
             heading += joint.jump * (0.5 * on * share - path_turned * past)
             lateral += joint.jump * (on * on * share / 6.0 - path_turned * 0.5 * past * past)
-    return Aim(curvature, lateral, sign(path.pieces[piece].way) * heading)
+    k = path.pieces[piece].k
+    return Aim(curvature * (1.0 + k * lateral), lateral, sign(path.pieces[piece].way) * heading)
 
 
 def turning_at(path: Path, whole: OneGear, place: float, params: ValetParams) -> float:
     """Return by how much the front wheels turn [rad/m] at a place [m] of a stretch: L k' / (1 + (L k)^2)."""
     at = 0.0
-    curvature = path.pieces[whole.first].k0
+    curvature = path.pieces[whole.first].k
     slope = 0.0
     for number in range(whole.first, whole.last):
         at += abs(path.pieces[number].way)
@@ -188,7 +160,7 @@ def turning_at(path: Path, whole: OneGear, place: float, params: ValetParams) ->
         if 0.0 < on < joint.ramp:
             share = on / joint.ramp
             slope += joint.jump / joint.ramp
-        curvature += share * (path.pieces[number + 1].k0 - path.pieces[number].k0)
+        curvature += share * (path.pieces[number + 1].k - path.pieces[number].k)
     bent = params.car.wheelbase * curvature
     return params.car.wheelbase * slope / (1.0 + bent * bent)
 
@@ -217,7 +189,7 @@ def rest_before(path: Path, piece: int, params: ValetParams) -> WheelAtRest:
     """Return the standstill before ``piece``; of the number of pieces: that at the end."""
     before = aim_at(path, piece - 1, 0.0, params).curvature if piece > 0 else 0.0
     then = aim_at(path, piece, abs(path.pieces[piece].way), params).curvature if piece < path.used else 0.0
-    off = REST_SHARE * _largest_off(path, params)
+    off = _off_at_rest(path, piece, params)
     ends = piece >= path.used
     settled = SETTLED if ends else 0.0
     if off <= 0.0 or path.margin < ROOMY:
@@ -270,3 +242,19 @@ def turns_already(ahead: Ahead, params: ValetParams) -> bool:
 def _largest_off(path: Path, params: ValetParams) -> float:
     """Return how far [m] off its path the car may come by turning its wheel on the move."""
     return min(params.drive.rolling, OF_MARGIN * path.margin)
+
+
+def _off_about(path: Path, piece: int, params: ValetParams) -> float:
+    """Return the same where ``piece`` begins: more where there is room."""
+    off = _largest_off(path, params)
+    return min(ROOMIEST * params.drive.rolling, off + OF_ROOM * path.pieces[piece].room)
+
+
+def _off_at_rest(path: Path, piece: int, params: ValetParams) -> float:
+    """Return how far [m] farther the car may go before ``piece`` begins, for turning its wheel on the move."""
+    least = REST_SHARE * _largest_off(path, params)
+    if piece == 0:
+        return min(AT_FIRST * params.drive.rolling, least + OF_ROOM * path.pieces[0].room)
+    if piece >= path.used or path.pieces[piece - 1].way * path.pieces[piece].way > 0.0:
+        return least
+    return max(least, min(FARTHER * params.drive.rolling, path.pieces[piece].room))

@@ -103,9 +103,9 @@ def look(
 
 def _swinging_corner(piece: Piece) -> int:
     """Return the sensor at the front corner that swings out where the car backs around a bend; -1: none does."""
-    if piece.way > 0.0 or abs(piece.k0) < BEND:
+    if piece.way > 0.0 or abs(piece.k) < BEND:
         return -1
-    return 3 if piece.k0 > 0.0 else 0
+    return 3 if piece.k > 0.0 else 0
 
 
 def _surprise(reading: float, corner: bool, params: ValetParams) -> float:

@@ -65,7 +65,7 @@ def test_all_cases_of_tpcap_in_c(translation: Any, folder: Any, number: Any) -> 
         compiled.step(Input(), 0)
     assert compiled.outputs.status == PLANNED
     path = compiled.outputs.path
-    pieces = [(piece.way, piece.k0) for piece in path.pieces[: path.used]]
+    pieces = [(piece.way, piece.k) for piece in path.pieces[: path.used]]
     poses = poses_along(start, pieces)
     assert max(abs(a - b) for a, b in zip(poses[-1][:2], goal[:2], strict=True)) < 1e-4
     assert least_clearance(poses, polygons, CAR) >= path.margin - 1e-3

@@ -2,14 +2,16 @@
 
 import math
 import random
+from itertools import accumulate, pairwise
 
 import pytest
 from shapely.geometry import LineString
 
 from controller_fmu.planning.clearance import edge_gap
 from controller_fmu.planning.joining import cheapest, word_way
-from controller_fmu.planning.plan import GOAL_BLOCKED, PLANNED, START_BLOCKED, search_to
+from controller_fmu.planning.plan import GOAL_BLOCKED, PLANNED, START_BLOCKED, path_of, search_to
 from controller_fmu.planning.plan_store import COUNT, STATUS, WORDS, PlanStore
+from controller_fmu.planning.room import BEYOND, REACH
 from controller_fmu.planning.task import Request, Rung, SearchWindow, Task, drive
 from controller_fmu.planning.words import list_words, turn_of
 from modelkit.store import new_store, size_of
@@ -67,6 +69,31 @@ def test_parks_between_two_boxes_with_the_margin_it_states() -> None:
     poses = poses_along(request.start, kept(store))
     assert math.dist(poses[-1][:2], request.goal[:2]) < 1e-4
     assert least_clearance(poses, BOXES, CAR) >= 0.1 - 1e-3
+
+
+def test_the_room_about_its_pieces_is_what_shapely_finds() -> None:
+    request = Request(Pose(1.0, 3.0, 0.0), Pose(-1.2, -2.0, 0.0), CAR, 0.1)
+    store = plan(request, scene_of(BOXES))
+    path = path_of(store)
+    pieces = [(piece.way, piece.k) for piece in path.pieces[: path.used]]
+    poses, begin = poses_along(request.start, pieces), request.start
+    gone = [math.dist(one[:2], other[:2]) for one, other in pairwise(poses)]
+    places, at = [0.0, *accumulate(gone)], 0.0
+    cusps = 0
+    for number, piece in enumerate(path.pieces[: path.used]):
+        way, k = pieces[number - 1]
+        if number > 0 and way * piece.way < 0.0:
+            on = [drive(begin, math.copysign(share * piece.room, way), k) for share in (0.25, 0.5, 1.0)]
+            assert least_clearance(on, BOXES, CAR) >= path.margin - 1e-3
+            farther = drive(begin, math.copysign(piece.room + 0.02, way), k)
+            assert piece.room == BEYOND or least_clearance([farther], BOXES, CAR) < path.margin + 0.01
+            cusps += 1
+        else:
+            near = [pose for pose, place in zip(poses, places, strict=True) if abs(place - at) <= REACH]
+            least = min(1.0, least_clearance(near, BOXES, CAR))
+            assert piece.room == pytest.approx(max(0.0, least - path.margin), abs=0.03)
+        at, begin = at + abs(piece.way), drive(begin, piece.way, piece.k)
+    assert 0 < cusps < path.used - 1
 
 
 def test_a_search_done_anew_is_the_same_to_the_bit_however_it_is_split() -> None:

@@ -94,7 +94,7 @@ def apa_sample(state: ApaState, inputs: ControllerInput, params: ControllerParam
     duty = Duty(driving, 0 if out else spared(inputs.ultrasonic, looking))
     state = state._replace(watch=watch(state.watch, command, inputs, duty, params, dt_ns))
     taken = driving and is_taken_over(state.watch, inputs, params)
-    reason = reason_to_fail(state.watch, inputs, driving, params) if state.mode != Mode.OFF else Reason.NONE
+    reason = reason_to_fail(state.watch, inputs, driving, params, state.task) if state.mode != Mode.OFF else Reason.NONE
     if reason == Reason.NONE and not taken:
         if state.mode in (Mode.PARKING_SPACE_SEARCH, Mode.PARKING_SPACE_APPEARS):
             state = state._replace(search=search(state.search, inputs, shape_of(params), params, dt_ns))

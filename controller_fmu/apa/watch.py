@@ -2,6 +2,7 @@
 
 from typing import NamedTuple
 
+from controller_fmu.apa.choice import ChosenTask
 from controller_fmu.apa.hearing.mute import count_mute
 from controller_fmu.apa.manoeuvre_chart import Step
 from controller_fmu.apa.params import Longitudinal
@@ -16,6 +17,8 @@ PULLED = 0.3
 """The wheel is this far [rad] from its request and goes the other way: the driver turns it."""
 PULLED_FOR = 0.2
 """For so long [s]."""
+WAIT_OUT = 30.0
+"""On the way out a car waits so long [s] at least before an obstacle: who stands beside a parked car goes again."""
 SETTLING = 0.3
 """The driver's pedal and selector are looked at this long [s] after the assist took over."""
 
@@ -91,8 +94,10 @@ def _is_off(wheel: SteeringWatch) -> bool:
     return abs(wheel.request - wheel.angle) > PULLED
 
 
-def reason_to_fail(state: Watch, inputs: ControllerInput, driving: bool, params: ControllerParams) -> int:
-    """Return the first Reason that holds, ``NONE`` if all is as it should be."""
+def reason_to_fail(
+    state: Watch, inputs: ControllerInput, driving: bool, params: ControllerParams, task: int = ChosenTask.PARK
+) -> int:
+    """Return the first Reason that holds, ``NONE`` if all is as it should be; ``task``: what the car does."""
     guard = params.apa.guard
     if not is_finite_input(inputs):
         return Reason.BAD_INPUT
@@ -110,7 +115,7 @@ def reason_to_fail(state: Watch, inputs: ControllerInput, driving: bool, params:
         return Reason.STEERING_FAULT
     if state.stopping * 1e-9 > params.limit.stopping:
         return Reason.NOT_STOPPING
-    if state.blocked * 1e-9 > guard.blocked:
+    if state.blocked * 1e-9 > (max(guard.blocked, WAIT_OUT) if task == ChosenTask.PULL_OUT else guard.blocked):
         return Reason.BLOCKED
     if state.waiting * 1e-9 > guard.patience:
         return Reason.STEERING_FAULT if _is_off(state.wheel) else Reason.NOT_MOVING

@@ -6,12 +6,13 @@ from typing import Any
 import pytest
 
 from controller_fmu.apa.around.arcs import Unknown
-from controller_fmu.apa.around.guard import GuardState
+from controller_fmu.apa.around.guard import GuardState, listen
 from controller_fmu.apa.around.local_map import begin_map, heard, moved
 from controller_fmu.apa.around.nearer import explained, nearer_than_thought, pressed
 from controller_fmu.apa.around.relocate import braked, walled
 from controller_fmu.apa.around.row import is_certain, slot_of_map
 from controller_fmu.apa.around.surroundings import Around
+from controller_fmu.apa.hearing.mute import MUTE
 from controller_fmu.apa.outline import Box, Obstacles, Shape
 from controller_fmu.apa.params import MapParams
 from controller_fmu.apa.parking import Parking
@@ -127,6 +128,9 @@ def test_a_wall_behind_a_perpendicular_slot_is_entered_where_the_car_stops_befor
     before = begin_map(slot, pose, MAP)
     closed = inputs_at(pose, pose, [*beside, (0.0, 3.2, -5.0, -4.6)], side)
     assert slot_of_map(walled(before, slot, closed, True, PARAMS), slot, MAP).depth == pytest.approx(4.6, abs=0.01)
+    one_mute = tuple(MUTE if number == 5 else reading for number, reading in enumerate(closed.ultrasonic))
+    entered = walled(before, slot, closed._replace(ultrasonic=one_mute), True, PARAMS)
+    assert slot_of_map(entered, slot, MAP).depth == pytest.approx(4.6, abs=0.01), "the other has to do"
     assert walled(before, slot, closed, False, PARAMS) == before
     assert walled(before, slot, inputs_at(pose, pose, beside, side), True, PARAMS) == before
 
@@ -198,6 +202,17 @@ def test_who_has_come_out_of_a_row_across_the_road_is_placed_there(kind: int, si
 def test_who_stands_where_the_map_has_him_stays_there(lost: tuple[int, ...]) -> None:
     here, readings = standing(Side.RIGHT, 0.0, 0.0, lost)
     assert not nearer_than_thought(here, readings, PARAMS).found
+
+
+@pytest.mark.parametrize("side", [Side.RIGHT, Side.LEFT])
+def test_a_neighbour_who_is_wider_than_most_is_no_stranger(side: int) -> None:
+    mirror = -1.0 if side == Side.LEFT else 1.0
+    pose = Pose(0.85, mirror * -1.3, 0.0)
+    here = begin_map(BESIDE._replace(side=side), pose, MAP)
+    for stranger in (0.0, 0.3):
+        boxes = [(-4.4, stranger, -2.0, -1.85), (-4.4, 0.0, -1.85, 0.0)]
+        kept = listen(GuardState(), inputs_at(pose, pose, boxes, side).ultrasonic, here, PARAMS).unknown
+        assert any(item.there for item in kept) == (stranger > 0.0), "what stands out of his flank is one"
 
 
 def test_what_a_better_map_explains_is_strange_no_more_and_the_rest_is() -> None:

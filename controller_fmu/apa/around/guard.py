@@ -14,7 +14,7 @@ from controller_fmu.apa.around.arcs import LOOKED_AT, NOWHERE, Unknown, arc_of, 
 from controller_fmu.apa.around.closing import SILENCES, Track, room_at_tail, room_to_strange, tracked_on, turned_round
 from controller_fmu.apa.around.comer import Comer, followed, somebody_comes
 from controller_fmu.apa.around.course import HeldCourse, after
-from controller_fmu.apa.around.local_map import LocalMap, ear_on, expected, nearest_case, unsure_of
+from controller_fmu.apa.around.local_map import LocalMap, as_deep_as_any, ear_on, expected, nearest_case, unsure_of
 from controller_fmu.apa.around.near import FREE, NEARER, room_by_echoes
 from controller_fmu.apa.around.straight import room_straight
 from controller_fmu.apa.hearing.mute import is_mute
@@ -104,7 +104,8 @@ def listen(state: GuardState, readings: tuple[float, ...], here: LocalMap, param
     unknown = state.unknown
     echoes = state.echoes
     close = state.close
-    near = nearest_case(here, DOUBTS)
+    deep = as_deep_as_any(here)
+    near = nearest_case(deep, DOUBTS)
     way = _way(state.pose, here.pose)
     direction = state.direction if abs(way) < MOVED else 1 if way > 0.0 else -1
     tracks = state.tracks
@@ -113,7 +114,7 @@ def listen(state: GuardState, readings: tuple[float, ...], here: LocalMap, param
         reading = readings[number]
         ear = ear_on(here, sensors, number)
         wide = ear_on(here, sensors, number, WIDER)
-        mapped = expected(ear, here).echo
+        mapped = expected(ear, deep).echo
         track = tracks[0] if direction == state.direction else turned_round(tracks[0])
         track = tracked_on(track, reading, abs(way), mapped.distance, sensors.max_range)
         tracks = tracks[1:] + (track,)
@@ -121,7 +122,7 @@ def listen(state: GuardState, readings: tuple[float, ...], here: LocalMap, param
         close = close[1:] + (held(close[0], ear, reading, sensors),)
         kept = unknown[0]
         echo = NOWHERE
-        beside = expected(wide, here)
+        beside = expected(wide, deep)
         closest = expected(wide, near).echo
         least = min(closest.distance, beside.echo.distance - DOUBTS * unsure_of(here, beside.who))
         explained = reading >= least - params.apa.guard.surprise - 0.05 * reading

@@ -169,6 +169,11 @@ def echo_of_neighbour(ear: ConeEar, here: LocalMap, who: int) -> Echo:
     return _of(ear, neighbour_of(here, who), -length if who == A else length, depth)
 
 
+def as_deep_as_any(here: LocalMap) -> LocalMap:
+    """Return the map with neighbours who stand as deep as the widest cars, by which echoes from there are explained."""
+    return here._replace(within=True)
+
+
 def nearest_case(here: LocalMap, times: float) -> LocalMap:
     """Return the map with both neighbours ``times`` standard deviations nearer, into the slot and out of it."""
     a = here.a

@@ -8,6 +8,7 @@ import math
 from controller_fmu.apa.around.local_map import LocalMap
 from controller_fmu.apa.around.near import nearest_told
 from controller_fmu.apa.around.thing import thing_at
+from controller_fmu.apa.hearing.mute import is_mute
 from controller_fmu.apa.slot import UNSEEN, Kind, Slot, mirror_of
 from controller_fmu.common.slot_frame import SlotFrame, to_slot, to_world
 from controller_fmu.interface import ControllerInput, ControllerParams
@@ -49,12 +50,19 @@ def walled(here: LocalMap, slot: Slot, inputs: ControllerInput, stopped: bool, p
 
 
 def _closed(slot: Slot, pose: Pose, inputs: ControllerInput, params: ControllerParams) -> Slot:
-    """Return a perpendicular slot that nothing was heard behind with the wall that both middle rear sensors hear."""
+    """Return a perpendicular slot that nothing was heard behind with the wall that both middle rear sensors hear.
+
+    One has to do where the other tells nothing.
+    """
     if slot.depth < UNSEEN or abs(pose.heading - 0.5 * math.pi) > ACROSS:
         return slot
     lowest = nearest_told(params.car.ultrasonic)
     one = inputs.ultrasonic[REAR]
     two = inputs.ultrasonic[REAR + 1]
+    if is_mute(one):
+        one = two
+    if is_mute(two):
+        two = one
     if not lowest < one < NEAR or not lowest < two < NEAR or abs(one - two) > AGREE:
         return slot
     mirror = mirror_of(slot)

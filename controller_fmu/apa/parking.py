@@ -160,7 +160,8 @@ def _looked_around(
     tracked = track(move, state.leg, state.tracked.way, place.pose, params.apa.drive, params.car.wheelbase)
     bare = site_of(around.slot, shape_of(params), Margins(0.0, 0.0, 0.0))
     sight = sight_of(move.direction, bare, around, inputs, params)
-    if state.step == Step.DRIVE and not is_rest_free(move, tracked, place.site, bare, state.out, params):
+    leads_away = state.out or state.shifts <= 1
+    if state.step == Step.DRIVE and not is_rest_free(move, tracked, place.site, bare, leads_away, params):
         sight = sight._replace(blocked=True, unknown=False)
     return state._replace(tracked=tracked, sight=sight)
 

@@ -70,17 +70,19 @@ def is_sure(inputs: ControllerInput, around: Around, params: ControllerParams) -
     return told and is_certain(without_gone(around.map, around.guard.tracks, heard, params), params.apa.map)
 
 
-def is_rest_free(move: Move, tracked: Tracked, site: Site, bare: Site, out: bool, params: ControllerParams) -> bool:
+def is_rest_free(
+    move: Move, tracked: Tracked, site: Site, bare: Site, leads_away: bool, params: ControllerParams
+) -> bool:
     """Return whether the rest of a move, as far as it is looked at, stays clear of what the map has now.
 
-    ``bare``: the slot without margins. The car is as far beside its path as it is now. On its way ``out`` it may drive
-    away from what it stands near to.
+    ``bare``: the slot without margins. The car is as far beside its path as it is now. A move that ``leads_away``, as
+    the first one in and those out, may begin near to something.
     """
     car = shape_of(params)
     gap = params.apa.guard.gap
     off = tracked.lateral_error
     least = gap
-    if out:
+    if leads_away:
         now = point_at(move, tracked.way).pose
         least = min(gap, clearance(_beside(now, off, site, bare), car, bare.obstacles, gap) - NEARER)
     moved = LOOK * outline_rate(car.curvature, car._replace(half_width=car.half_width + abs(off)))

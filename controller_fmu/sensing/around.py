@@ -11,7 +11,7 @@ from typing import NamedTuple
 from controller_fmu.planning.plan_store import HEARD, PlanStore
 from controller_fmu.sensing.gap import Gap, GapLayout
 from controller_fmu.sensing.heard_store import clear_around, put_line, set_line
-from controller_fmu.sensing.places import is_sure
+from controller_fmu.sensing.places import is_certain, is_sure
 from modelkit.maths import clamp
 from modelkit.vocabulary import Pose
 
@@ -24,6 +24,8 @@ SPARSE = 2.0
 LEVEL = 0.05
 """A front lies along its row if it stands out less than this [m/m]."""
 WIDE = 5.0
+OFF_CAR = 0.3
+"""What was not heard of a row lies so far [m] behind the car that drives past it."""
 
 
 class AroundGap(NamedTuple):
@@ -42,6 +44,8 @@ class AroundGap(NamedTuple):
     half_width: float
     front: float
     """From the rear axle to the bumper [m]."""
+    rear: float
+    """And to the rear bumper [m]."""
     ahead: float
     """Heard before the bumper [m]."""
     length: float
@@ -53,7 +57,7 @@ def lay_around(store: PlanStore, gap: Gap, what: AroundGap) -> int:
     clear_around(store)
     lines = _lay_gap(store, gap, min(gap.depth, what.length), 2.0 * what.half_width)
     lines = _lay_row(store, lines, gap, what)
-    lines = _lay_opposite(store, lines, what)
+    lines = _lay_opposite(store, lines, gap, what)
     pose = what.pose
     c = math.cos(pose.heading)
     s = math.sin(pose.heading)
@@ -132,7 +136,7 @@ def _lay_fronts(store: PlanStore, lines: int, gap: Gap, width: float) -> int:
 
 
 def _lay_row(store: PlanStore, lines: int, gap: Gap, what: AroundGap) -> int:
-    """Make the lines of the row: from place to place, but not across the gap."""
+    """Make the lines of the row: from place to place, but not across the gap, where echoes of two things are none."""
     first = what.side * HEARD
     end = first + what.here
     e = along_of(gap)
@@ -142,7 +146,7 @@ def _lay_row(store: PlanStore, lines: int, gap: Gap, what: AroundGap) -> int:
         s = _across(store, place, gap, e)
         before = _across(store, last, gap, e)
         beside = (s < NARROW and before < NARROW) or (s > gap.width - NARROW and before > gap.width - NARROW)
-        if NARROW < s < gap.width - NARROW and not is_sure(store, place, end):
+        if NARROW < s < gap.width - NARROW and not is_certain(store, place, first, end):
             broken = True
         elif (store.heard_joint[place] == 1 and not broken) or beside:
             through = place + 1 < end and store.heard_joint[place + 1] == 1 and _is_flat(store, last, place, place + 1)
@@ -170,8 +174,21 @@ def _lay_beyond(store: PlanStore, lines: int, gap: Gap, what: AroundGap) -> int:
             low = min(low, on)
             high = max(high, on)
     beside = gap.out * _away(gap)
-    lines = _lay_along_row(store, lines, gap, low, low - BEYOND, beside)
-    return _lay_along_row(store, lines, gap, high, high + BEYOND, beside)
+    driven = min(gap.out, _beside(gap, what)) * _away(gap)
+    onwards = math.cos(gap.row - what.pose.heading) > 0.0
+    lines = _lay_along_row(store, lines, gap, low, low - BEYOND, beside if onwards else driven)
+    return _lay_along_row(store, lines, gap, high, high + BEYOND, driven if onwards else beside)
+
+
+def _beside(gap: Gap, what: AroundGap) -> float:
+    """Return how far [m] before corner A, across its row, a row may stand out that the car has just driven past."""
+    nx = -math.sin(gap.row) * _away(gap)
+    ny = math.cos(gap.row) * _away(gap)
+    pose = what.pose
+    middle = (pose.x - gap.a.x) * nx + (pose.y - gap.a.y) * ny
+    ahead = math.cos(pose.heading) * nx + math.sin(pose.heading) * ny
+    aside = math.cos(pose.heading) * ny - math.sin(pose.heading) * nx
+    return middle + min(what.front * ahead, -what.rear * ahead) - what.half_width * abs(aside) - OFF_CAR
 
 
 def _away(gap: Gap) -> float:
@@ -208,8 +225,8 @@ def _lay(store: PlanStore, lines: int, a: int, b: int) -> int:
     return put_line(store, lines, store.heard_x[a], store.heard_y[a], store.heard_x[b], store.heard_y[b])
 
 
-def _lay_opposite(store: PlanStore, lines: int, what: AroundGap) -> int:
-    """Make the lines across the road; where nothing was heard, as far away as sensors hear."""
+def _lay_opposite(store: PlanStore, lines: int, gap: Gap, what: AroundGap) -> int:
+    """Make the lines across the road, which goes on as its row; where nothing was heard, as far as sensors hear."""
     first = (1 - what.side) * HEARD
     pose = what.pose
     c = math.cos(pose.heading)
@@ -227,7 +244,10 @@ def _lay_opposite(store: PlanStore, lines: int, what: AroundGap) -> int:
             last = place
     x = store.heard_x[first]
     y = store.heard_y[first]
-    lines = put_line(store, lines, x, y, x - BEYOND * c, y - BEYOND * s)
+    onwards = BEYOND if math.cos(gap.row - pose.heading) > 0.0 else -BEYOND
+    row_c = onwards * math.cos(gap.row)
+    row_s = onwards * math.sin(gap.row)
+    lines = put_line(store, lines, x, y, x - row_c, y - row_s)
     x = store.heard_x[last]
     y = store.heard_y[last]
-    return put_line(store, lines, x, y, x + BEYOND * c, y + BEYOND * s)
+    return put_line(store, lines, x, y, x + row_c, y + row_s)

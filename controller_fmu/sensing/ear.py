@@ -36,6 +36,8 @@ CREST = 0.4
 
 The distance to one convex thing never does that.
 """
+DOUBTFUL = 0.25
+"""Where it does so by less, noise may be the reason: the place is not known, what comes may be of the same thing."""
 
 
 class HeardSample(NamedTuple):
@@ -107,8 +109,8 @@ def _placed(store: PlanStore, ear: SideEar, side: int, forward: float, sensors: 
         return ear
     if last - first == KEPT - 1:
         bend = _slope(ear.samples, MIDDLE, last, forward) - _slope(ear.samples, first, MIDDLE, forward)
-        if bend < -CREST:
-            return ear._replace(silent=True)
+        if bend < -DOUBTFUL:
+            return ear._replace(silent=ear.silent or bend < -CREST)
     slope = _slope(ear.samples, first, last, forward)
     looks = wrap_angle(middle.axis - forward)
     least = max(abs(looks) - sensors.half_angle, 0.0)

@@ -5,7 +5,17 @@ from typing import NamedTuple
 
 from controller_fmu.planning.plan_store import PlanStore
 from controller_fmu.sensing.gap import DEEP, Gap, GapLayout, Wanted
-from controller_fmu.sensing.places import UNSEEN, PlacesFrame, in_world, is_free, is_sure, spot, spot_of, turned
+from controller_fmu.sensing.places import (
+    UNSEEN,
+    PlacesFrame,
+    in_world,
+    is_certain,
+    is_free,
+    is_sure,
+    spot,
+    spot_of,
+    turned,
+)
 
 BODY = 0.97
 """A neighbour is as wide as this share of the car's own width."""
@@ -122,27 +132,44 @@ def measured(store: PlanStore, frame: PlacesFrame, low: float, high: float, clos
     front = front_of(frame.line if frame.line > UNSEEN else z, low, high, frame, want)
     if not is_askew(frame):
         front = 0.5 * (one.t + other.t)
+    elif frame.line > UNSEEN:
+        one = one._replace(t=max(one.t, _on_line(low, frame)))
+        other = other._replace(t=max(other.t, _on_line(high, frame)))
     a = in_world(one.t, low, frame)
     out = spot_of(turned(a.x, a.y, frame), frame).z - frame.line if frame.line > UNSEEN else 0.0
-    depth = DEEP
-    for place in range(frame.first, frame.end):
-        at = spot(store, place, frame)
-        if low + INSIDE < at.s < high - INSIDE and is_sure(store, place, frame.end):
-            depth = min(depth, at.t - front)
     longer = max(_extent(store, frame, low, one.t, -1.0), _extent(store, frame, high, other.t, 1.0) if closed else 0.0)
     return Gap(
         layout=GapLayout.ALONG if longer > LONG else GapLayout.ACROSS,
         a=a,
         b=in_world(other.t, high, frame),
         into=frame.at.heading - frame.mirror * frame.into,
-        depth=depth,
+        depth=_ends(store, frame, low, high, front, want),
         width=high - low,
         support=max(one.support, other.support),
         longest=longer,
         front=front - one.t,
         row=frame.at.heading - frame.mirror * frame.row,
         out=max(out, 0.0),
+        shown=max(one.far, other.far),
     )
+
+
+def _ends(store: PlanStore, frame: PlacesFrame, low: float, high: float, front: float, want: Wanted) -> float:
+    """Return how far [m] behind ``front`` a gap ends; across the road at what was heard well enough."""
+    depth = DEEP
+    across = high - low < want.length
+    for place in range(frame.first, frame.end):
+        at = spot(store, place, frame)
+        if low + INSIDE < at.s < high - INSIDE and is_sure(store, place, frame.end):
+            known = not across or is_certain(store, place, frame.first, frame.end)
+            depth = min(depth, at.t - front) if known else depth
+    return depth
+
+
+def _on_line(s: float, frame: PlacesFrame) -> float:
+    """Return where [m] along a corridor at an angle the row's line lies at ``s`` across it: no corner lies before."""
+    angle = frame.into - frame.row
+    return (frame.line + s * math.cos(angle)) / math.sin(angle)
 
 
 def _extent(store: PlanStore, frame: PlacesFrame, edge: float, front: float, sense: float) -> float:

@@ -17,6 +17,8 @@ STRAY = 2
 """A place of its own needs so many echoes, else it may be of two things heard in turn."""
 NEXT = 0.3
 """Places heard once are of one thing if they are so near [m] to each other."""
+CERTAIN = 4
+"""What a gap ends at was heard so often within ``NEXT``."""
 UNSEEN = -50.0
 """Where [m] a row is of which too little was seen."""
 
@@ -118,6 +120,16 @@ def is_sure(store: PlanStore, place: int, end: int) -> bool:
     if store.heard_count[place] >= STRAY:
         return True
     return _goes_on(store, place) or (place + 1 < end and _goes_on(store, place + 1))
+
+
+def is_certain(store: PlanStore, place: int, first: int, end: int) -> bool:
+    """Return whether enough was heard around a place to take it for what a gap ends at: no echoes of two things."""
+    count = 0
+    for other in range(first, end):
+        dx = store.heard_x[other] - store.heard_x[place]
+        dy = store.heard_y[other] - store.heard_y[place]
+        count = count + store.heard_count[other] if dx * dx + dy * dy < NEXT * NEXT else count
+    return count >= CERTAIN
 
 
 def _goes_on(store: PlanStore, place: int) -> bool:

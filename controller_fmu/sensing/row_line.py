@@ -25,6 +25,8 @@ CERTAIN = 20.0
 """So many echoes of a corner are as good as more."""
 APART = 2.0
 """A line is drawn through things that stand so far apart [m]."""
+POST = 0.6
+"""What is no larger [m] may be a post, that stands before its row or behind it."""
 LEAST_ROW = 2.5
 """Sum of squares [m2] of how far apart things have to stand for a direction."""
 
@@ -46,15 +48,16 @@ class Crest(NamedTuple):
     x: float = 0.0
     y: float = 0.0
     weight: float = 0.0
+    post: bool = False
 
 
 def row_of(store: PlanStore, frame: PlacesFrame) -> RowLine:
     """Return the line of a row: out of those through two things that stand out, the one on which most others lie.
 
-    A pillar that stands before the row, or what stands alone behind it, is on no line with the others. What is on the
-    line tells it by regression.
+    A pillar that stands before the row, or what stands alone behind it, is on no line with the others; where two cars
+    were heard, posts do not count. What is on the line tells it by regression.
     """
-    crests = _crests(store, frame, _leaning(store, frame))
+    crests = _without_posts(_crests(store, frame, _leaning(store, frame)))
     most = 0.0
     slope = 0.0
     at = FAR
@@ -69,6 +72,16 @@ def row_of(store: PlanStore, frame: PlacesFrame) -> RowLine:
                     slope = steep
                     at = one.y - steep * one.x
     return _fitted(crests, slope, at)
+
+
+def _without_posts(crests: tuple[Crest, ...]) -> tuple[Crest, ...]:
+    """Return what stands out and is no post, if that is enough for a line; else all."""
+    cars = 0
+    for crest in crests:
+        cars = cars + 1 if crest.weight > 0.0 and not crest.post else cars
+    if cars < 2:
+        return crests
+    return tuple(Crest() if crests[number].post else crests[number] for number in range(CRESTS))
 
 
 def _score(crests: tuple[Crest, ...], slope: float, at: float) -> float:
@@ -111,8 +124,30 @@ def _crests(store: PlanStore, frame: PlacesFrame, slope: float) -> tuple[Crest, 
         if is_sure(store, place, frame.end):
             here = seen(store, place, frame)
             if _stands_out(store, frame, here, slope):
-                crests = crests[1:] + (Crest(here.x, here.y, _echoes(store, frame, here)),)
+                post = _is_post(store, frame, place)
+                crests = crests[1:] + (Crest(here.x, here.y, _echoes(store, frame, here), post),)
     return crests
+
+
+def _is_post(store: PlanStore, frame: PlacesFrame, place: int) -> bool:
+    """Return whether a place is of something no larger than a post."""
+    first = place
+    last = place
+    begins = False
+    for number in range(frame.first, place):
+        at = place - 1 - (number - frame.first)
+        begins = begins or store.heard_joint[at + 1] == 0
+        first = first if begins else at
+    ends = False
+    for at in range(place + 1, frame.end):
+        ends = ends or store.heard_joint[at] == 0
+        last = last if ends else at
+    one = seen(store, first, frame)
+    here = seen(store, place, frame)
+    other = seen(store, last, frame)
+    before = (here.x - one.x) * (here.x - one.x) + (here.y - one.y) * (here.y - one.y)
+    after = (other.x - here.x) * (other.x - here.x) + (other.y - here.y) * (other.y - here.y)
+    return before < POST * POST and after < POST * POST
 
 
 def _echoes(store: PlanStore, frame: PlacesFrame, here: Pose) -> float:

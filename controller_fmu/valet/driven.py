@@ -23,16 +23,9 @@ from controller_fmu.planning.task import Corner, Request, drive
 from controller_fmu.sensing.around import lay_end
 from controller_fmu.sensing.gap import DEEP, Gap, GapLayout
 from controller_fmu.valet.chart import Step
+from controller_fmu.valet.found.corrected import corrected, turned_gap
 from controller_fmu.valet.given import as_parameter
-from controller_fmu.valet.nearby import (
-    Nearby,
-    Rest,
-    corrected,
-    hear_nearby,
-    is_in_gap,
-    lay_nearby,
-    put_nearby,
-)
+from controller_fmu.valet.nearby import Nearby, Rest, hear_nearby, is_in_gap, lay_nearby, put_nearby
 from controller_fmu.valet.params import ValetParams
 from controller_fmu.valet.rolling import Ahead, ahead_of, aim_at, joint_of, turns_already
 from controller_fmu.valet.search import Search, shallower
@@ -143,7 +136,10 @@ def gap_now(store: PlanStore, state: ValetState, params: ValetParams) -> Gap:
     gap = state.search.gap
     body = body_of(params)
     deep = 2.0 * (body.half_length if gap.layout == GapLayout.ACROSS else body.half_width)
-    return corrected(store, state.nearby, gap, deep)
+    told = state.search.told != SlotKind.NONE
+    if not told:
+        gap = turned_gap(store, state.nearby, gap, deep)
+    return corrected(store, state.nearby, gap, deep, told)
 
 
 def goal_now(state: ValetState, gap: Gap, params: ValetParams) -> Pose:
@@ -196,7 +192,8 @@ def seen_on(store: PlanStore, state: ValetState, inputs: ControllerInput, params
     if turns_already(coming, params):
         angle = math.atan(params.car.wheelbase * coming.rest.then)
     scene = scene_of(store, params, state.seen)
-    sight = look(inputs.ultrasonic, pose, state.path.pieces[state.piece], inputs.measured_speed, scene, params)
+    rest = state.path.pieces[state.piece]._replace(way=direction * max(coming.left, AT_END))
+    sight = look(inputs.ultrasonic, pose, rest, inputs.measured_speed, scene, params)
     return state._replace(tracked=Tracked(left, at, off.lateral, off.heading, angle, coming), sight=sight)
 
 

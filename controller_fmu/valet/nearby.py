@@ -11,9 +11,9 @@ from controller_fmu.interface import ControllerInput
 from controller_fmu.planning.plan import PATH, Path
 from controller_fmu.planning.plan_store import HEARD, SIDES, PlanStore
 from controller_fmu.planning.task import drive
-from controller_fmu.sensing.around import along_of, in_gap, point_in_gap
+from controller_fmu.sensing.around import point_in_gap
 from controller_fmu.sensing.ear import SideEar, listen
-from controller_fmu.sensing.gap import DEEP, Gap, GapLayout
+from controller_fmu.sensing.gap import Gap
 from controller_fmu.sensing.heard_store import forget_side, put_heard, put_line
 from controller_fmu.valet.params import ValetParams
 from modelkit.geometry import Point, outline, point_gap
@@ -26,15 +26,6 @@ INSIDE = 0.06
 """A place so far [m] inside a slot's sides is new."""
 BEFORE = 1.0
 """Slots begin so far [m] before their corners."""
-WIDER = 0.5
-"""A gap was thought to be narrower by no more than this [m]."""
-FLANK = 1.0
-"""So much [m] of a neighbour's flank was heard if it is taken to end the gap."""
-KERB = 0.8
-"""A kerb lies behind this share of a car's width that stands flush with its neighbours."""
-KERB_PLACES = 4
-KERB_OFF = 0.3
-"""And no farther [m] from where it was heard from the road."""
 STUB = 0.03
 STEP = 0.2
 """The rest of the way is looked along at steps of this [m]."""
@@ -139,50 +130,3 @@ def lay_nearby(store: PlanStore, state: Nearby, gap: Gap, lines: int) -> None:
                 x = store.heard_x[place]
                 y = store.heard_y[place]
                 lines = put_line(store, lines, x - STUB, y, x + STUB, y)
-
-
-def corrected(store: PlanStore, state: Nearby, gap: Gap, length: float) -> Gap:
-    """Return a gap as what was heard in it on the way in leaves it, beside a car of this length [m].
-
-    What stands in it makes it narrower. Where a flank was heard over more than ``FLANK``, the gap ends there, and may
-    be wider than it was thought to be. Along the road a kerb that was heard tells how deep it is.
-    """
-    e = along_of(gap)
-    low = _edge(store, state, gap, length, 1.0)
-    high = gap.width - _edge(store, state, gap, length, -1.0)
-    a = Pose(gap.a.x + low * e.x, gap.a.y + low * e.y, gap.a.heading)
-    depth = _kerb_behind(store, state, gap, length) if gap.layout == GapLayout.ALONG else gap.depth
-    return gap._replace(a=a, width=high - low, depth=depth)
-
-
-def _edge(store: PlanStore, state: Nearby, gap: Gap, length: float, sense: float) -> float:
-    """Return how far [m] inside its side at A (``sense`` 1), or at B (-1), a gap begins; negative: outside."""
-    edge = -WIDER
-    first = DEEP
-    last = -DEEP
-    for number in range(4):
-        for place in range((SIDES + number) * HEARD, (SIDES + number) * HEARD + state.ears[number].places):
-            at = in_gap(store, place, gap)
-            across = at.across if sense > 0.0 else gap.width - at.across
-            deep = at.deep - gap.front
-            if store.heard_count[place] >= SURE and -WIDER < across < 0.5 * gap.width and 0.0 < deep < length:
-                edge = max(edge, across)
-                first = min(first, deep)
-                last = max(last, deep)
-    return edge if last - first > FLANK else max(edge if edge > INSIDE else 0.0, 0.0)
-
-
-def _kerb_behind(store: PlanStore, state: Nearby, gap: Gap, width: float) -> float:
-    """Return how deep [m] a gap along the road is, by the kerb heard behind a car of this width; else as known."""
-    depth = DEEP
-    count = 0
-    for number in range(4):
-        for place in range((SIDES + number) * HEARD, (SIDES + number) * HEARD + state.ears[number].places):
-            at = in_gap(store, place, gap)
-            deep = at.deep - gap.front
-            behind = abs(at.across - 0.5 * gap.width) < 0.25 * gap.width and KERB * width < deep < width + WIDER
-            if store.heard_count[place] >= SURE and behind:
-                depth = min(depth, deep)
-                count = count + 1
-    told = count >= KERB_PLACES and (gap.depth >= DEEP or abs(depth - gap.depth) < KERB_OFF)
-    return depth if told else gap.depth

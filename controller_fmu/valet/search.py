@@ -8,8 +8,8 @@ from controller_fmu.common.told import SlotKind, ToldSlot
 from controller_fmu.interface import ControllerInput, Reason
 from controller_fmu.planning.plan_store import PlanStore
 from controller_fmu.sensing.around import AroundGap, along_of, lay_around
-from controller_fmu.sensing.corridor import find_gap
 from controller_fmu.sensing.ear import SideEar, listen
+from controller_fmu.sensing.find_gap import find_gap
 from controller_fmu.sensing.gap import Gap, GapLayout, Wanted
 from controller_fmu.valet.given import gap_told, told_reason
 from controller_fmu.valet.params import SlotWish, ValetParams, WishedSide
@@ -54,6 +54,10 @@ class Search(NamedTuple):
     """Of the map around the slot."""
     pose: Pose = Pose()
     """Where the car stood when the slot was shown."""
+    ahead: float = 0.0
+    """Heard before the bumper there [m]."""
+    again: bool = False
+    """Its neighbours were thought to stand the other way before."""
 
 
 def begin_search(clock_ns: int) -> Search:
@@ -116,6 +120,13 @@ def wanted(params: ValetParams) -> Wanted:
 
 def with_map(store: PlanStore, state: Search, inputs: ControllerInput, params: ValetParams) -> Search:
     """Return the search whose slot is shown, with the map around it made."""
+    ahead = min(inputs.ultrasonic[FRONT_SENSOR], inputs.ultrasonic[FRONT_SENSOR + 1])
+    state = state._replace(waited_ns=0, pose=inputs.odometry, ahead=ahead, again=False)
+    return mapped(store, state, params)
+
+
+def mapped(store: PlanStore, state: Search, params: ValetParams) -> Search:
+    """Return the search with the map made around its slot, as it was heard from where the slot was shown."""
     car = params.car
     sensors = car.ultrasonic
     length = car_length(car)
@@ -125,15 +136,16 @@ def with_map(store: PlanStore, state: Search, inputs: ControllerInput, params: V
         side=state.side,
         here=state.right.places if right_side else state.left.places,
         opposite=state.left.places if right_side else state.right.places,
-        pose=inputs.odometry,
+        pose=state.pose,
         reach=sensors.max_range,
         half_width=0.5 * car.width,
         front=car.wheelbase + car.front_overhang,
-        ahead=min(inputs.ultrasonic[FRONT_SENSOR], inputs.ultrasonic[FRONT_SENSOR + 1]),
+        rear=car.rear_overhang,
+        ahead=state.ahead,
         length=(length if across else car.width) + BEHIND,
     )
     lines = lay_around(store, state.gap, what)
-    return state._replace(lines=lines, waited_ns=0, pose=inputs.odometry)
+    return state._replace(lines=lines)
 
 
 def _hear(

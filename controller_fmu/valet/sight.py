@@ -35,6 +35,8 @@ CLOSE = 0.18
 
 A corner of the car is so far from its sensor: on the way into a slot that was found, the car could stop before it.
 """
+CLOSEST = 0.07
+"""But where the move ends before that, up to so much [m]."""
 BOTH = 0.25
 """What a slot ends at is heard by both sensors that look straight ahead, as far off but for this [m]."""
 AGAIN = 0.1
@@ -65,7 +67,7 @@ class Sight(NamedTuple):
 def look(
     readings: tuple[float, ...], pose: Pose, piece: Piece, speed: float, scene: Scene, params: ValetParams
 ) -> Sight:
-    """Return the sight of a car at ``pose`` that drives a ``piece`` of its way with ``speed`` [m/s]."""
+    """Return the sight of a car at ``pose`` that drives a ``piece``, the rest of its move, with ``speed`` [m/s]."""
     first = 0 if piece.way > 0.0 else 4
     swings = _swinging_corner(piece) if params.search.active else -1
     nearest = FREE
@@ -83,7 +85,7 @@ def look(
             corner = params.search.active and not ahead
             heeded = not corner or reading < (SIDE if on_side else CORNER)
             unknown = heeded and reading < expected(at, scene, params) - _surprise(reading, corner, params)
-            if unknown or (ahead and reading < CLOSE):
+            if unknown or (ahead and reading < min(CLOSE, abs(piece.way) + CLOSEST)):
                 nearest = reading
                 beside = readings[2 * first + 3 - number] if ahead else reading
                 straight = ahead and abs(beside - reading) < BOTH

@@ -21,6 +21,7 @@ from controller_fmu.valet.driven import (
     room_beside_car,
     seen_on,
 )
+from controller_fmu.valet.found.second_look import looked_again
 from controller_fmu.valet.nearby import forget_nearby
 from controller_fmu.valet.params import ValetParams
 from controller_fmu.valet.rolling import rest_before
@@ -32,7 +33,7 @@ from modelkit.vocabulary import Pose
 DRIVEN_ON = 0.3
 CORRECTIONS = 4
 """After so many plans a car stays in a slot where it is, even if what it heard on the way in tells a better place."""
-CORRECTION_ROOM = 0.7
+CORRECTION_ROOM = 0.55
 """And in a slot that leaves it less room [m] to its neighbours than this."""
 
 
@@ -46,6 +47,7 @@ def valet_sample(
         return sought_on(store, state, inputs, params, dt_ns)
     if state.step == Step.PLAN:
         state = planned_on(store, state, inputs, params)
+        state = looked_again(store, state, params)
     else:
         state = seen_on(store, state, inputs, params)
         if params.search.active and state.step in (Step.DRIVE, Step.HALT):
@@ -126,6 +128,8 @@ def sought_on(
         reason = reason if reason != Reason.NONE else reason_to_end(sought, params)
     if state.step == Step.SHOWN and reason == Reason.NONE:
         state = planned_on(store, state, inputs, params)
+        state = looked_again(store, state, params)
+        sought = state.search
         sought = sought._replace(waited_ns=sought.waited_ns + dt_ns if state.path.used > 0 else 0)
         reason = Reason.TIMEOUT if sought.waited_ns * 1e-9 > params.search.confirm else Reason.NONE
     if state.step == Step.SHOWN and state.reason != Reason.NONE:

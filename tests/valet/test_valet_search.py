@@ -10,8 +10,8 @@ from shapely.geometry import LineString, Point
 from controller_fmu.planning.plan import Piece
 from controller_fmu.planning.plan_store import HEARD, PlanStore
 from controller_fmu.planning.task import Scene
-from controller_fmu.sensing.corridor import find_gap
 from controller_fmu.sensing.ear import SideEar, listen
+from controller_fmu.sensing.find_gap import find_gap
 from controller_fmu.sensing.gap import Gap, GapLayout, Wanted
 from controller_fmu.sensing.heard_store import put_heard
 from controller_fmu.sensing.places import frame_of

@@ -1,0 +1,153 @@
+"""A slot as what was heard on the way into it tells it anew: its sides, its direction, how deep it is."""
+
+import math
+
+from controller_fmu.planning.plan_store import HEARD, SIDES, PlanStore
+from controller_fmu.sensing.around import PlaceInGap, along_of, in_gap
+from controller_fmu.sensing.gap import DEEP, Gap, GapLayout
+from controller_fmu.valet.nearby import INSIDE, SURE, Nearby
+from modelkit.vocabulary import Pose
+
+WIDER = 0.5
+"""A gap was thought to be narrower by no more than this [m]."""
+EDGE = 0.25
+"""So much [m] of a neighbour's flank, or of a post, was heard if the gap is taken to be as wide as that."""
+FLANK = 1.0
+"""And so much if it tells how the gap is turned."""
+KERB_LINE = 0.7
+"""So much [m] of a kerb was heard if it tells how the road goes."""
+ASKEW = 0.18
+"""A flank, or a kerb, is turned by no more than this [m/m] against what it was thought to be."""
+KERB = 0.8
+"""A kerb lies behind this share of a car's width that stands flush with its neighbours."""
+KERB_BEHIND = 1.0
+"""And no farther [m] behind a car that stands so."""
+KERB_PLACES = 3
+KERB_OFF = 0.3
+"""It lies no farther [m] from where it was heard from the road."""
+BEHIND = 0.3
+"""What is heard so far [m] from both neighbours is no part of them."""
+
+
+def corrected(store: PlanStore, state: Nearby, gap: Gap, length: float, told: bool) -> Gap:
+    """Return a gap as what was heard in it on the way in leaves it, beside a car of this length [m].
+
+    What stands in it makes it narrower. Where a flank was heard over more than ``EDGE``, the gap ends there, and may
+    be wider than it was thought to be, but not than it was told. Along the road a kerb heard tells how deep it is.
+    """
+    e = along_of(gap)
+    least = 0.0 if told else -WIDER
+    low = max(_edge(store, state, gap, length, 1.0), least)
+    high = gap.width - max(_edge(store, state, gap, length, -1.0), least)
+    a = Pose(gap.a.x + low * e.x, gap.a.y + low * e.y, gap.a.heading)
+    depth = _kerb_behind(store, state, gap, length) if gap.layout == GapLayout.ALONG else gap.depth
+    return gap._replace(a=a, width=high - low, depth=depth)
+
+
+def turned_gap(store: PlanStore, state: Nearby, gap: Gap, length: float) -> Gap:
+    """Return a gap turned about the middle of a car of this length [m] that stands in it, as was heard on the way in.
+
+    Across the road as the mean of both neighbours' flanks; where only one was heard, the other one is thought to stand
+    as it was. Along the road as the kerb.
+    """
+    if gap.layout == GapLayout.ALONG:
+        turn = -_kerb_turn(store, state, gap, length)
+    else:
+        turn = 0.5 * (_flank_turn(store, state, gap, length, 1.0) - _flank_turn(store, state, gap, length, -1.0))
+    e = along_of(gap)
+    c = math.cos(gap.into)
+    s = math.sin(gap.into)
+    left = c * e.y - s * e.x > 0.0
+    into = gap.into + (math.atan(turn) if left else -math.atan(turn))
+    deep = gap.front + 0.5 * length
+    half = 0.5 * gap.width
+    x = gap.a.x + deep * c + half * e.x
+    y = gap.a.y + deep * s + half * e.y
+    now = gap._replace(into=into)
+    e = along_of(now)
+    a = Pose(x - deep * math.cos(into) - half * e.x, y - deep * math.sin(into) - half * e.y, gap.a.heading)
+    return now._replace(a=a)
+
+
+def _flank_turn(store: PlanStore, state: Nearby, gap: Gap, length: float, sense: float) -> float:
+    """Return by how much [m/m] the flank at A (``sense`` 1), or at B (-1), leads into a gap; 0: too little heard."""
+    across = 0.0
+    deep = 0.0
+    for number in range(4):
+        first = (SIDES + number) * HEARD
+        for place in range(first + 1, first + state.ears[number].places):
+            if store.heard_joint[place] == 1:
+                one = _from_side(in_gap(store, place - 1, gap), gap, sense)
+                other = _from_side(in_gap(store, place, gap), gap, sense)
+                forward = 1.0 if other.deep > one.deep else -1.0
+                run = forward * (other.deep - one.deep)
+                off = forward * (other.across - one.across)
+                beside = _is_beside(one, gap, length) and _is_beside(other, gap, length)
+                if beside and abs(off) < ASKEW * run:
+                    deep += run
+                    across += off
+    return across / deep if deep > FLANK else 0.0
+
+
+def _kerb_turn(store: PlanStore, state: Nearby, gap: Gap, width: float) -> float:
+    """Return by how much deeper [m/m] the kerb lies from A to B, behind a car of this width; 0: too little heard."""
+    across = 0.0
+    deep = 0.0
+    for number in range(4):
+        first = (SIDES + number) * HEARD
+        for place in range(first + 1, first + state.ears[number].places):
+            if store.heard_joint[place] == 1:
+                one = in_gap(store, place - 1, gap)
+                other = in_gap(store, place, gap)
+                forward = 1.0 if other.across > one.across else -1.0
+                run = forward * (other.across - one.across)
+                off = forward * (other.deep - one.deep)
+                behind = _is_behind(one, gap, width) and _is_behind(other, gap, width)
+                if behind and abs(off) < ASKEW * run:
+                    across += run
+                    deep += off
+    return deep / across if across > KERB_LINE else 0.0
+
+
+def _from_side(at: PlaceInGap, gap: Gap, sense: float) -> PlaceInGap:
+    """Return where a place lies from the side at A (``sense`` 1), or at B (-1), and from the neighbours' front."""
+    return PlaceInGap(at.across if sense > 0.0 else gap.width - at.across, at.deep - gap.front)
+
+
+def _is_beside(at: PlaceInGap, gap: Gap, length: float) -> bool:
+    """Return whether a place, seen from a gap's side, lies there beside a car of this length [m]."""
+    return -WIDER < at.across < 0.5 * gap.width and 0.0 < at.deep < length
+
+
+def _is_behind(at: PlaceInGap, gap: Gap, width: float) -> bool:
+    """Return whether a place may be of the kerb behind a car of this width [m]."""
+    return BEHIND < at.across < gap.width - BEHIND and KERB * width < at.deep - gap.front < width + KERB_BEHIND
+
+
+def _edge(store: PlanStore, state: Nearby, gap: Gap, length: float, sense: float) -> float:
+    """Return how far [m] inside its side at A (``sense`` 1), or at B (-1), a gap begins; negative: outside."""
+    edge = -WIDER
+    first = DEEP
+    last = -DEEP
+    for number in range(4):
+        for place in range((SIDES + number) * HEARD, (SIDES + number) * HEARD + state.ears[number].places):
+            at = _from_side(in_gap(store, place, gap), gap, sense)
+            if store.heard_count[place] >= SURE and _is_beside(at, gap, length):
+                edge = max(edge, at.across)
+                first = min(first, at.deep)
+                last = max(last, at.deep)
+    return edge if last - first > EDGE else max(edge if edge > INSIDE else 0.0, 0.0)
+
+
+def _kerb_behind(store: PlanStore, state: Nearby, gap: Gap, width: float) -> float:
+    """Return how deep [m] a gap along the road is, by the kerb heard behind a car of this width; else as known."""
+    depth = DEEP
+    count = 0
+    for number in range(4):
+        for place in range((SIDES + number) * HEARD, (SIDES + number) * HEARD + state.ears[number].places):
+            at = in_gap(store, place, gap)
+            if store.heard_count[place] >= SURE and _is_behind(at, gap, width):
+                depth = min(depth, at.deep - gap.front)
+                count = count + 1
+    told = count >= KERB_PLACES and (gap.depth >= DEEP or abs(depth - gap.depth) < KERB_OFF)
+    return depth if told else gap.depth

@@ -1,0 +1,115 @@
+"""A slot that was found, as it turns out on the way in: turned as flanks and kerb are, its neighbours the other way."""
+
+import math
+from typing import Any
+
+import pytest
+from shapely.geometry import LineString, Polygon
+
+from controller_fmu.planning.plan import Piece
+from controller_fmu.planning.plan_store import HEARD, SIDES, PlanStore
+from controller_fmu.planning.task import CORNERS, Corner, Scene
+from controller_fmu.sensing.around import AroundGap, lay_around, point_in_gap
+from controller_fmu.sensing.ear import SideEar
+from controller_fmu.sensing.find_gap import gap_across
+from controller_fmu.sensing.gap import Gap, GapLayout
+from controller_fmu.sensing.heard_store import put_heard
+from controller_fmu.valet.found.corrected import corrected, turned_gap
+from controller_fmu.valet.nearby import Nearby
+from controller_fmu.valet.params import ValetParams, ValetSearchParams
+from controller_fmu.valet.sight import look
+from modelkit.store import new_store
+from modelkit.vocabulary import Pose
+from tests.valet.test_valet_search import WANTED, passed, row
+
+LENGTH, WIDTH = 4.0, 1.8
+ACROSS = Gap(GapLayout.ACROSS, Pose(0.0, 0.0), Pose(2.8, 0.0), -0.5 * math.pi, width=2.8)
+ALONG = Gap(GapLayout.ALONG, Pose(0.0, 0.0), Pose(5.5, 0.0), -0.5 * math.pi, width=5.5)
+
+
+def heard(*lines: Any) -> Any:
+    """Return a store whose first ears heard these lines, (x, y) to (x, y), every 15 cm, each place three times."""
+    store, ears = new_store(PlanStore), []
+    for number, (one, other) in enumerate(lines):
+        places = 0
+        count = int(math.dist(one, other) / 0.15)
+        for step in range(count + 1):
+            x, y = (a + (b - a) * step / count for a, b in zip(one, other, strict=True))
+            for again in range(3):
+                places = put_heard(store, SIDES + number, places, x, y, step == 0 and again == 0)
+        ears.append(SideEar(places=places))
+    return store, Nearby(tuple(ears) + (SideEar(),) * (4 - len(ears)))
+
+
+@pytest.mark.parametrize(("a", "b", "turn"), [(3.0, 3.0, 3.0), (5.0, -1.0, 2.0), (-4.0, None, -2.0), (None, None, 0.0)])
+def test_a_slot_is_turned_as_the_mean_of_its_neighbours_flanks(a: Any, b: Any, turn: Any) -> None:
+    flanks = [(x, math.radians(angle)) for x, angle in ((0.0, a), (2.8, b)) if angle is not None]
+    lines = [((x - 0.5 * t, -0.5), (x + 2.0 * t, -3.0)) for x, t in ((x, math.tan(angle)) for x, angle in flanks)]
+    store, nearby = heard(*lines)
+    gap = turned_gap(store, nearby, ACROSS, LENGTH)
+    assert gap.into - ACROSS.into == pytest.approx(math.radians(turn), abs=math.radians(0.2))
+    middle = point_in_gap(1.4, -0.5 * LENGTH, gap)
+    assert (middle.across, middle.deep) == pytest.approx((1.4, 0.5 * LENGTH))
+    again = corrected(store, nearby, gap, LENGTH, told=False)
+    if a == b == 3.0:
+        beside = (0.5 * again.width, point_in_gap(1.4 + 0.75 * math.tan(math.radians(3.0)), -2.5, again).across)
+        assert beside[1] == pytest.approx(beside[0], abs=0.06)
+
+
+def test_a_slot_along_the_road_is_turned_as_its_kerb() -> None:
+    tan = math.tan(math.radians(2.5))
+    store, nearby = heard(((1.5, -2.1 + 1.25 * tan), (4.0, -2.1 - 1.25 * tan)))
+    gap = turned_gap(store, nearby, ALONG, WIDTH)
+    assert gap.into - ALONG.into == pytest.approx(-math.radians(2.5), abs=math.radians(0.2))
+    depth = corrected(store, nearby, gap, WIDTH, told=False).depth
+    assert depth == pytest.approx(2.1, abs=0.06)
+
+
+def test_a_post_makes_a_slot_as_wide_as_it_is_there() -> None:
+    store, nearby = heard(((-0.3, -0.7), (-0.3, -1.1)), ((2.6, -0.7), (2.6, -1.1)))
+    gap = corrected(store, nearby, ACROSS, LENGTH, told=False)
+    assert gap.a.x == pytest.approx(-0.3, abs=0.01)
+    assert gap.width == pytest.approx(2.9, abs=0.02)
+    told = corrected(store, nearby, ACROSS, LENGTH, told=True)
+    assert (told.a.x, told.width) == pytest.approx((0.0, 2.6), abs=0.02)
+
+
+@pytest.mark.parametrize(("angle", "there"), [(45, True), (90, False)])
+def test_cars_at_an_angle_may_stand_the_other_way(angle: Any, there: Any) -> None:
+    store, ear, gap = passed(row(angle, 1, 3.4), 1, 0.01)
+    at = Pose(8.0, 2.0, 0.0)
+    assert gap.layout == GapLayout.ACROSS
+    wrong = gap.into - 0.5 * math.pi if angle == 45 else gap.into
+    other = gap_across(store, 0, ear.places, at, WANTED._replace(at_end=True), wrong)
+    assert (other.layout == GapLayout.ACROSS) == there
+    if there:
+        assert other.into == pytest.approx(gap.into, abs=math.radians(2.0))
+
+
+@pytest.mark.parametrize("heading", [0.0, -0.25])
+def test_a_row_that_was_not_heard_is_not_where_the_car_has_driven(heading: float) -> None:
+    store = new_store(PlanStore)
+    places = 0
+    for step in range(30):
+        places = put_heard(store, 0, places, -3.0 + 0.1 * step, 0.0, step == 0)
+    pose = Pose(4.5, 1.6, heading)
+    what = AroundGap(0, places, 0, pose, 5.0, 0.9, 3.7, 0.9, 5.0, LENGTH)
+    lines = lay_around(store, ACROSS._replace(row=0.0, out=0.2), what)
+    c, s = math.cos(heading), math.sin(heading)
+    corners = [(pose.x + x * c - y * s, pose.y + x * s + y * c) for x in (-0.9, 3.7) for y in (-0.9, 0.9)]
+    car = Polygon([corners[n] for n in (0, 1, 3, 2)])
+    ends = [(store.around_x[n], store.around_y[n]) for n in range(2 * lines)]
+    assert lines > 5
+    assert min(LineString(ends[2 * n : 2 * n + 2]).distance(car) for n in range(lines)) > 0.2
+    assert store.heard_count[HEARD] == 0
+
+
+def test_a_move_that_ends_before_something_near_is_driven_to_its_end() -> None:
+    params = ValetParams()._replace(search=ValetSearchParams()._replace(active=True))
+    wall = params.car.wheelbase + params.car.front_overhang + 0.15
+    corners = ((wall, -3.0), (wall, 3.0), (wall + 1.0, 3.0), (wall + 1.0, -3.0))
+    scene = Scene(tuple(Corner(*corner, 1) for corner in corners) + (Corner(),) * (CORNERS - 4))
+    near = [(5.0, reading, reading) + (5.0,) * 9 for reading in (0.15, 0.06)]
+    blocked = [look(near[0], Pose(), Piece(way), 0.0, scene, params).blocked for way in (1.0, 0.1, 0.05)]
+    assert blocked == [True, True, False]
+    assert look(near[1], Pose(), Piece(0.05), 0.0, scene, params).blocked

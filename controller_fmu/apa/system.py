@@ -11,6 +11,7 @@ from controller_fmu.apa.around.shifted import followed, relocated
 from controller_fmu.apa.around.surroundings import Around, shape_of
 from controller_fmu.apa.chart import Guard, Mode, transition
 from controller_fmu.apa.choice import ChosenTask
+from controller_fmu.apa.hearing.deaf import without_deaf
 from controller_fmu.apa.hearing.mute import spared, usable
 from controller_fmu.apa.hearing.search import SearchState, begin_search, number_chosen, search, without
 from controller_fmu.apa.manoeuvre_chart import Step
@@ -87,7 +88,8 @@ class Judged(NamedTuple):
 def apa_sample(state: ApaState, inputs: ControllerInput, params: ControllerParams, dt_ns: int) -> ApaState:
     """Return the assist one sample of ``dt_ns`` later."""
     driving = state.mode in (Mode.AUTO_PARKING_ASSIST, Mode.POSITION_TUNING)
-    inputs = inputs._replace(ultrasonic=usable(inputs.ultrasonic, params.car.ultrasonic.min_range))
+    heard_now = without_deaf(inputs.ultrasonic, state.around.guard.silences)
+    inputs = inputs._replace(ultrasonic=usable(heard_now, params.car.ultrasonic.min_range))
     command = Command(state.parking.step, state.parking.wheel, state.parking.sight.blocked)
     looking = state.mode in (Mode.STANDBY, Mode.PARKING_SPACE_SEARCH) and not has_slot(state)
     out = state.parking.out or inputs.choice.task == ChosenTask.PULL_OUT

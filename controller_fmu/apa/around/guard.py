@@ -14,12 +14,25 @@ from controller_fmu.apa.around.arcs import LOOKED_AT, NOWHERE, Unknown, arc_of, 
 from controller_fmu.apa.around.closing import SILENCES, Track, room_at_tail, room_to_strange, tracked_on, turned_round
 from controller_fmu.apa.around.comer import Comer, followed, somebody_comes
 from controller_fmu.apa.around.course import HeldCourse, after
-from controller_fmu.apa.around.local_map import LocalMap, as_deep_as_any, ear_on, expected, nearest_case, unsure_of
+from controller_fmu.apa.around.local_map import (
+    A,
+    B,
+    LocalMap,
+    as_deep_as_any,
+    ear_at,
+    ear_on,
+    expected,
+    nearest_case,
+    unsure_of,
+)
 from controller_fmu.apa.around.near import FREE, NEARER, room_by_echoes
 from controller_fmu.apa.around.straight import room_straight
+from controller_fmu.apa.hearing.deaf import silences
 from controller_fmu.apa.hearing.mute import is_mute
+from controller_fmu.apa.hearing.stir import QUIET, HeardOf, heard_on, own_way, stirs
 from controller_fmu.apa.outline import Box, Obstacles, Shape, box_clearance, clearance, grown, outline_rate, sure_steps
 from controller_fmu.interface import ControllerParams
+from modelkit.car import CarUltrasonic
 from modelkit.geometry import Point
 from modelkit.vocabulary import Pose
 
@@ -67,6 +80,12 @@ class GuardState(NamedTuple):
     tracks: tuple[Track, ...] = (Track(),) * 12
     """What each sensor has heard since the car goes this way."""
     comers: tuple[Comer, ...] = (Comer(),) * 12
+    neighbours: tuple[HeardOf, ...] = (HeardOf(),) * 12
+    """What each sensor has heard of the neighbours."""
+    silences: tuple[int, ...] = (0,) * 12
+    """How many times in a row each sensor heard nothing where it should have."""
+    quiet: float = QUIET
+    """How long [s] no neighbour was heard to move."""
     direction: int = 0
     """Which way the car goes."""
     pose: Pose = Pose()
@@ -79,6 +98,8 @@ class GuardState(NamedTuple):
     """Speed [m/s] at which a stop was last asked for; 0: none is under way."""
     braked_way: float = 0.0
     """Driven since [m]."""
+    speed: float = 0.0
+    """At the last sample [m/s]."""
 
 
 def stopping_way(state: GuardState, speed: float, params: ControllerParams) -> float:
@@ -135,9 +156,28 @@ def listen(state: GuardState, readings: tuple[float, ...], here: LocalMap, param
         elif kept.there and not is_mute(reading) and (reading < sensors.max_range or track.silent >= SILENCES):
             kept = not_refuted(kept, ear, reading, is_known(reading, mapped.distance, params))
         unknown = unknown[1:] + (kept,)
+    state = _heard_of_neighbours(state, readings, here, sensors)
     return state._replace(
         unknown=unknown, echoes=echoes, close=close, tracks=tracks, comers=comers, direction=direction, pose=here.pose
     )
+
+
+def _heard_of_neighbours(
+    state: GuardState, readings: tuple[float, ...], here: LocalMap, sensors: CarUltrasonic
+) -> GuardState:
+    """Return the guard that knows whether a neighbour moves, and which sensors hear none where one is."""
+    neighbours = state.neighbours
+    silent = state.silences
+    for number in range(12):
+        ear = ear_on(here, sensors, number)
+        before = ear_at(sensors.mounts[number], state.pose, here.frame.mirror, sensors.half_angle)
+        own = own_way(ear, before, expected(ear, here), readings[number])
+        silent = silent[1:] + (silences(silent[0], readings[number], number, here, state.neighbours, sensors),)
+        heard = heard_on(neighbours[0], readings[number], sensors.cycle, sensors.max_range, own)
+        neighbours = neighbours[1:] + (heard,)
+    moves = stirs(A, neighbours, state.speed) or stirs(B, neighbours, state.speed)
+    quiet = 0.0 if moves else state.quiet + sensors.cycle
+    return state._replace(neighbours=neighbours, silences=silent, quiet=quiet)
 
 
 def is_known(reading: float, distance: float, params: ControllerParams) -> bool:
@@ -153,6 +193,7 @@ def _way(before: Pose, now: Pose) -> float:
 def learn_brake(state: GuardState, speed: float, braking: bool, dt_ns: int, params: ControllerParams) -> GuardState:
     """Return the guard with how late the brake was, once the car stands: way = v t + v^2 / 2 b."""
     v = abs(speed)
+    state = state._replace(speed=speed)
     if not braking:
         return state._replace(braked_from=0.0, braked_way=0.0)
     begun = state.braked_from if state.braked_from > 0.0 else v
@@ -191,7 +232,8 @@ def watch_way(
     heard = room_by_echoes(readings, course, here.frame.mirror, params.car.ultrasonic)
     late = guard.brake_delay if state.shown else max(guard.brake_delay, UNSEEN_BRAKE)
     allowed = min(allowed, max(SLOW, speed_for(state, heard - old - RESERVE, late, params)))
-    if somebody_comes(state.comers, state.tracks, course.speed, course.car, params.car.ultrasonic):
+    comes = somebody_comes(state.comers, state.tracks, course.speed, course.car, params.car.ultrasonic)
+    if comes or state.quiet < QUIET:
         return Sight(0.0, True, True)
     return Sight(allowed, min(beside, strange) <= stop or straight <= needed, strange <= stop and strange <= beside)
 

@@ -178,7 +178,11 @@ def test_who_brought_a_contact_about(speed: Any, walker: Any, name: str, came: b
         "speed_y": speed[1],
     }
     row |= {f"vehicle.scene.boxes[4].{key}": value for key, value in box.items()}
-    assert ends.touched_first(row) == ends.Touched(name, came)
+    first = ends.touched_first(row)
+    assert first == ends.Touched(name, came)
+    assert not ends.is_driven_into(row, first), "it drives"
+    assert ends.is_driven_into({**row, "touched.speed": 0.005}, first) == (speed[1] != 0.0)
+    assert not ends.is_driven_into({**row, "touched.speed": 0.0}, ends.Touched("kerb behind", False))
 
 
 CAR = {"wheelbase": 2.405, "front_overhang": 0.8, "rear_overhang": 0.6, "width": 1.65}

@@ -20,6 +20,7 @@ from orchestrator.scenario.requirements import Requirement, shipped_requirements
 from orchestrator.sweep.columns import WITHIN
 from orchestrator.sweep.study.study import Columns, Derived, Goal
 from orchestrator.verdict.measures import Measure, When
+from orchestrator.verdict.numbers import Number
 from vehicle_fmu.scene import Obstacle, SceneParams, is_there, obstacle_box
 
 TOUCHING = When("vehicle.contact", (1,))
@@ -64,9 +65,12 @@ def _ends(columns: Columns) -> Mapping[str, Array]:
         dict(zip(columns, row, strict=True)) for row in zip(*(_plain(item) for item in columns.values()), strict=True)
     ]
     touched = [None if math.isnan(row["touched.x"]) else touched_first(row) for row in rows]
+    found = [end_of(row, first) for row, first in zip(rows, touched, strict=True)]
+    into = [end == CONTACT and is_driven_into(row, first) for row, end, first in zip(rows, found, touched, strict=True)]
     return {
         **asked(columns),
-        "end": np.array([end_of(row, first) for row, first in zip(rows, touched, strict=True)], dtype=object),
+        "driven_into": np.array(into, dtype=float),
+        "end": np.array(found, dtype=object),
         "touched": np.array(["" if first is None else first.name for first in touched], dtype=object),
     }
 
@@ -133,6 +137,15 @@ def touched_first(row: Mapping[str, Any]) -> Touched:
     return Touched(name, name in MOVABLE and _is_moving(row, name) and _gap(row, before, *things[name]) <= 0.0)
 
 
+def is_driven_into(row: Mapping[str, Any], touched: Touched | None) -> bool:
+    """Return whether somebody who moves has touched a car that stands: it could have done no more."""
+    if touched is None or touched.name not in MOVABLE:
+        return False
+    return abs(row["touched.speed"]) <= STANDS and _is_moving(row, touched.name)
+
+
+STANDS = 0.01
+"""A car no faster [m/s] stands: so the assist sees it."""
 MOVABLE = THINGS[:2] + THINGS[3:4]
 KERB = THINGS[-1]
 GROUND_CLEARANCE = SceneParams().ground_clearance
@@ -198,4 +211,7 @@ GOALS = (
     Goal("contact", "nothing is touched while the assist has the car", NO_CONTACT, _clear),
     Goal("claim", "who claims to be parked stands in the slot, within GB/T 41630", (), _honest),
 )
-FOUND = Derived(COLUMNS, _ends, {"end": "how the run ended in the world", "touched": "what was touched first"})
+INTO = {"driven_into": Number("1", "1: a contact in which the car stands, and somebody who moves touches it")}
+FOUND = Derived(
+    {**COLUMNS, **INTO}, _ends, {"end": "how the run ended in the world", "touched": "what was touched first"}
+)

@@ -95,6 +95,7 @@ def report(table: Table, folder: Path) -> int:
     for title, column, chosen in (("reasons", "reason", "gave up"), ("touched", "touched", CONTACT)):
         counted = Counter(table.column(column)[ends == chosen].tolist()).most_common()
         to.print(f"{title}: " + (", ".join(f"{word} {count}" for word, count in counted) or "none"), highlight=False)
+    to.print(f"of the contacts, driven into while it stood: {int(table.column('driven_into').sum())}", highlight=False)
     worst = np.flatnonzero(np.isin(ends, (CONTACT, FALSE, ENDLESS)))
     to.print(f"rows: {', '.join(map(str, worst[:MOST_ROWS].tolist())) or 'none'}", highlight=False)
     return 1 if len(worst) else 0

@@ -156,8 +156,7 @@ def listen(state: GuardState, readings: tuple[float, ...], here: LocalMap, param
         elif kept.there and not is_mute(reading) and (reading < sensors.max_range or track.silent >= SILENCES):
             kept = not_refuted(kept, ear, reading, is_known(reading, mapped.distance, params))
         unknown = unknown[1:] + (kept,)
-    state = _heard_of_neighbours(state, readings, here, sensors)
-    return state._replace(
+    return _heard_of_neighbours(state, readings, here, sensors)._replace(
         unknown=unknown, echoes=echoes, close=close, tracks=tracks, comers=comers, direction=direction, pose=here.pose
     )
 

@@ -6,13 +6,13 @@ from controller_fmu.apa.slot import LESS_BESIDE, Margins
 from controller_fmu.apa.ways.planner import FOUND, NOTHING, PlanSearch
 
 MARGINS = (0.14, 0.1, 0.07, 0.045, 0.035)
-MOVES = (4, 6, 10, 24, 24)
+MOVES = (4, 6, 10, 30, 30)
 """Distance kept to everything [m], attempt by attempt, and the moves up to which a way is looked for with it."""
-AT_FIRST = 4
+AT_FIRST = 5
 """A car sets out with one of so many attempts; the last is for what it missed on the way."""
-SHIFTS = 24
+SHIFTS = 30
 """Most shifts."""
-CUTS = 24
+CUTS = 30
 """A car whose moves were cut short more often than this finds no way."""
 LOCK = 0.99
 """Planned curvature over the car's largest: what a move misses is planned anew at its end."""

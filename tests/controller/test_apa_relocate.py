@@ -191,8 +191,11 @@ def test_who_has_come_out_of_a_row_across_the_road_is_placed_there(kind: int, si
     pose = Pose(4.3, mirror * 1.95, mirror * 0.5)
     here = begin_map(Slot(kind, side, Pose(), 3.0), pose, MAP)
     boxes = [(-1.8, 0.0, -4.6, 0.0), (3.0, 4.8, -3.9, 0.7)]
-    found = nearer_than_thought(here, inputs_at(pose, pose, boxes, side).ultrasonic, PARAMS)
+    readings = inputs_at(pose, pose, boxes, side).ultrasonic
+    found = nearer_than_thought(here, readings, PARAMS)
     if kind == Kind.PERPENDICULAR:
+        on_its_way_out = nearer_than_thought(here._replace(within=True), readings, PARAMS)
+        assert on_its_way_out.map.b.y == 0.0, "before a car that comes out itself it is a person"
         assert (found.map.b.x, found.map.b.y) == pytest.approx((3.0, 0.7), abs=0.07)
         assert found.map.a == here.a
     assert found.map.b.y == 0.0 or kind == Kind.PERPENDICULAR, "cars along the road do not drive across it"

@@ -30,7 +30,9 @@ STEP = 0.06
 STEPS = 20
 """Things are tried so many times so much [m] nearer."""
 WAYS = ((A, 1.0, 0.0), (B, -1.0, 0.0), (WALL, 0.0, 1.0), (A, 0.0, 1.0), (B, 0.0, 1.0))
-"""Who, and which way nearer: along the road into the slot, or out towards it; neighbours across the road come out."""
+"""Who, and which way nearer: along the road into the slot, or out towards it; neighbours across the road come out.
+
+Who stands there when a car itself comes out is a person on the road."""
 MOST = 0.3
 """No reading says more [m] against a map: it may be lost, or of something else."""
 BETTER = 0.2
@@ -52,7 +54,8 @@ def nearer_than_thought(here: LocalMap, readings: tuple[float, ...], params: Con
     best = Nearer(False, here)
     least = misfit(here, readings, params) - BETTER
     for who, along, out in WAYS:
-        if here.walled if who == WALL else along != 0.0 or here.kind == Kind.PERPENDICULAR:
+        comes_out = here.kind == Kind.PERPENDICULAR and not here.within
+        if here.walled if who == WALL else along != 0.0 or comes_out:
             for number in range(STEPS):
                 way = STEP * (number + 1)
                 there = _moved(here, who, way * along, way * out, params)

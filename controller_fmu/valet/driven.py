@@ -44,7 +44,7 @@ EARLIEST = 0.02
 REGAINED = 0.5
 """Way [m]."""
 LEAST_MARGIN = 0.03
-"""A way into a slot across the road that comes nearer [m] to what was heard is not driven: odometry drifts more."""
+"""A way into a slot that was found that comes nearer [m] to what was heard is not driven: odometry drifts more."""
 
 
 class Tracked(NamedTuple):
@@ -122,8 +122,7 @@ def planned_on(store: PlanStore, state: ValetState, inputs: ControllerInput, par
     if status == PLANNED:
         path = trimmed(path_of(store))
     reason = reason_of(status, count, state, params)
-    found_across = params.search.active and state.search.gap.layout == GapLayout.ACROSS
-    if status == PLANNED and found_across and path.margin < LEAST_MARGIN:
+    if status == PLANNED and params.search.active and path.margin < LEAST_MARGIN:
         reason = Reason.BLOCKED
     if params.search.active and stands_out(state.search.gap, params) > params.search.stand_out:
         reason = Reason.SLOT_TOO_SHALLOW

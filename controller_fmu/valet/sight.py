@@ -35,6 +35,8 @@ CLOSE = 0.18
 
 A corner of the car is so far from its sensor: on the way into a slot that was found, the car could stop before it.
 """
+AT_CORNER = 0.17
+"""What a corner sensor that leads hears so near [m] is as good as touched, known or not."""
 CLOSEST = 0.07
 """But where the move ends before that, up to so much [m]."""
 BOTH = 0.25
@@ -85,7 +87,8 @@ def look(
             corner = params.search.active and not ahead
             heeded = not corner or reading < (SIDE if on_side else CORNER)
             unknown = heeded and reading < expected(at, scene, params) - _surprise(reading, corner, params)
-            if unknown or (ahead and reading < min(CLOSE, abs(piece.way) + CLOSEST)):
+            touching = corner and leads and reading < AT_CORNER
+            if unknown or touching or (ahead and reading < min(CLOSE, abs(piece.way) + CLOSEST)):
                 nearest = reading
                 beside = readings[2 * first + 3 - number] if ahead else reading
                 straight = ahead and abs(beside - reading) < BOTH

@@ -27,8 +27,8 @@ MANY = 8.0
 FEW = 3.0
 LONG_STEADY = 5
 MORE = 2.0
-MORE_OF_SECOND = 0.5
-"""So many more samples must speak for another line: of a neighbour that has ended, of the second while it is heard."""
+MORE_IF_ALIKE = 0.5
+"""So many more samples must speak for another line; for one of the second that stands more like the first does, fewer."""
 
 
 def line_of(sums: Sums, other: Sums) -> FittedLine:
@@ -63,8 +63,11 @@ def or_agreed(sums: Sums, window: HeardSide, before: Sums) -> Sums:
     told = agreed(window, STEEPEST, before.n >= FEW, slope(before, EMPTY))
     if told.n < FEW or sums.n < FEW:
         return told if told.n >= FEW else sums
-    better = support(window, line_of(told, before)) - support(window, line_of(sums, before))
-    return told if better > (MORE if before.n < FEW else MORE_OF_SECOND) else sums
+    other, line = line_of(told, before), line_of(sums, before)
+    first = slope(before, EMPTY)
+    alike = before.n >= FEW and abs(other.b - first) <= abs(line.b - first)
+    better = support(window, other) - support(window, line)
+    return told if better > (MORE_IF_ALIKE if alike else MORE) else sums
 
 
 def still_heard(sums: Sums, other: Sums, sample: Heard, sense: float, half_angle: float) -> float:

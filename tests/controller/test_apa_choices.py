@@ -27,7 +27,7 @@ ENDS = {
     "apa-told": 0.15,
     "apa-told-wrong": 0.9,
     "apa-told-nose-in": 1.0,
-    "apa-choose": 0.1,
+    "apa-choose": 0.14,
     "apa-slot-too-shallow": 0.9,
     "apa-pull-out": 0.1,
     "apa-pull-out-right": 0.07,

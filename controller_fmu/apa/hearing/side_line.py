@@ -28,7 +28,7 @@ FEW = 3.0
 LONG_STEADY = 5
 MORE = 2.0
 MORE_IF_ALIKE = 0.5
-"""So many more samples must speak for another line; for one of the second that stands more like the first does, fewer."""
+"""So many more samples must speak for another line; for one of the second that is more like the first, fewer."""
 
 
 def line_of(sums: Sums, other: Sums) -> FittedLine:

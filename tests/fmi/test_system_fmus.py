@@ -70,6 +70,9 @@ class Watched:
     def __len__(self) -> Any:
         return len(self.value)
 
+    def _replace(self, **changes: Any) -> Any:
+        return Watched(self.value._replace(**changes), self.name, self.seen)
+
 
 @cache
 def read_and_told(system: Any) -> Any:

@@ -51,7 +51,8 @@ def test_the_aim_is_where_its_curvature_leads(k0: float, k1: float, length: floa
     joint = joint_of(path, 0, PARAMS)
     rows = driven(path)
     half = int((length + 0.5 * joint.ramp) / 0.005) - 2
-    assert max(abs(row[1]) for row in rows) < 2e-3
+    bent = max(abs(k0), abs(k1)) ** 2  # beside a bend the way is as much longer as it is off, which the aim leaves out
+    assert max(abs(row[1]) for row in rows) < 1e-3 + 0.5 * bent * MOST * joint.ramp
     assert max(abs(row[0]) for row in rows[:half]) < 2e-3, "until the ramp is over"
     assert max(row[2] for row in rows) <= MOST + 3e-3
 
@@ -65,8 +66,8 @@ def test_ramps_that_overlap_lead_back_to_the_path(
 ) -> None:
     ways = (2.0, round(middle, 2), 2.0)
     path = path_of(*((direction * way, number) for way, number in zip(ways, k, strict=True)))
-    rows = driven(path)
-    assert max(abs(row[1]) for row in rows) < 3e-3
+    rows, ramps = driven(path), joint_of(path, 0, PARAMS).ramp + joint_of(path, 1, PARAMS).ramp
+    assert max(abs(row[1]) for row in rows) < 1e-3 + max(number * number for number in k) * MOST * ramps
     assert max(row[2] for row in rows) <= 2.0 * MOST + 5e-3
     assert max(abs(aim_at(path, 1, 0.01 * n, PARAMS).curvature) for n in range(round(100 * ways[1]))) < 0.31
 

@@ -1,6 +1,7 @@
 """A slot as what was heard on the way into it tells it anew: its sides, its direction, how deep it is."""
 
 import math
+from typing import NamedTuple
 
 from controller_fmu.planning.plan_store import HEARD, SIDES, PlanStore
 from controller_fmu.sensing.around import PlaceInGap, along_of, in_gap
@@ -29,6 +30,15 @@ BEHIND = 0.3
 """What is heard so far [m] from both neighbours is no part of them."""
 
 
+class OnSide(NamedTuple):
+    """Where something heard lies along a side, and aside from it [m]."""
+
+    along: float
+    aside: float
+    there: bool
+    """It may be of that side."""
+
+
 def corrected(store: PlanStore, state: Nearby, gap: Gap, length: float, told: bool) -> Gap:
     """Return a gap as what was heard in it on the way in leaves it, beside a car of this length [m].
 
@@ -51,9 +61,9 @@ def turned_gap(store: PlanStore, state: Nearby, gap: Gap, length: float) -> Gap:
     as it was. Along the road as the kerb.
     """
     if gap.layout == GapLayout.ALONG:
-        turn = -_kerb_turn(store, state, gap, length)
+        turn = -_turn(store, state, gap, length, 0.0)
     else:
-        turn = 0.5 * (_flank_turn(store, state, gap, length, 1.0) - _flank_turn(store, state, gap, length, -1.0))
+        turn = 0.5 * (_turn(store, state, gap, length, 1.0) - _turn(store, state, gap, length, -1.0))
     e = along_of(gap)
     c = math.cos(gap.into)
     s = math.sin(gap.into)
@@ -69,44 +79,34 @@ def turned_gap(store: PlanStore, state: Nearby, gap: Gap, length: float) -> Gap:
     return now._replace(a=a)
 
 
-def _flank_turn(store: PlanStore, state: Nearby, gap: Gap, length: float, sense: float) -> float:
-    """Return by how much [m/m] the flank at A (``sense`` 1), or at B (-1), leads into a gap; 0: too little heard."""
-    across = 0.0
-    deep = 0.0
+def _turn(store: PlanStore, state: Nearby, gap: Gap, size: float, sense: float) -> float:
+    """Return by how much [m/m] a side of a gap is turned away from what it was thought to be; 0: too little heard.
+
+    ``sense``: the flank at A (1) or at B (-1), beside a car of this length, or the kerb (0) behind one of this width.
+    """
+    aside = 0.0
+    along = 0.0
     for number in range(4):
         first = (SIDES + number) * HEARD
         for place in range(first + 1, first + state.ears[number].places):
             if store.heard_joint[place] == 1:
-                one = _from_side(in_gap(store, place - 1, gap), gap, sense)
-                other = _from_side(in_gap(store, place, gap), gap, sense)
-                forward = 1.0 if other.deep > one.deep else -1.0
-                run = forward * (other.deep - one.deep)
-                off = forward * (other.across - one.across)
-                beside = _is_beside(one, gap, length) and _is_beside(other, gap, length)
-                if beside and abs(off) < ASKEW * run:
-                    deep += run
-                    across += off
-    return across / deep if deep > FLANK else 0.0
+                one = _on_side(in_gap(store, place - 1, gap), gap, size, sense)
+                other = _on_side(in_gap(store, place, gap), gap, size, sense)
+                forward = 1.0 if other.along > one.along else -1.0
+                run = forward * (other.along - one.along)
+                off = forward * (other.aside - one.aside)
+                if one.there and other.there and abs(off) < ASKEW * run:
+                    along += run
+                    aside += off
+    return aside / along if along > (KERB_LINE if sense == 0.0 else FLANK) else 0.0
 
 
-def _kerb_turn(store: PlanStore, state: Nearby, gap: Gap, width: float) -> float:
-    """Return by how much deeper [m/m] the kerb lies from A to B, behind a car of this width; 0: too little heard."""
-    across = 0.0
-    deep = 0.0
-    for number in range(4):
-        first = (SIDES + number) * HEARD
-        for place in range(first + 1, first + state.ears[number].places):
-            if store.heard_joint[place] == 1:
-                one = in_gap(store, place - 1, gap)
-                other = in_gap(store, place, gap)
-                forward = 1.0 if other.across > one.across else -1.0
-                run = forward * (other.across - one.across)
-                off = forward * (other.deep - one.deep)
-                behind = _is_behind(one, gap, width) and _is_behind(other, gap, width)
-                if behind and abs(off) < ASKEW * run:
-                    across += run
-                    deep += off
-    return deep / across if across > KERB_LINE else 0.0
+def _on_side(at: PlaceInGap, gap: Gap, size: float, sense: float) -> OnSide:
+    """Return where a place lies along a flank, or the kerb, of ``_turn``."""
+    if sense == 0.0:
+        return OnSide(at.across, at.deep, _is_behind(at, gap, size))
+    beside = _from_side(at, gap, sense)
+    return OnSide(beside.deep, beside.across, _is_beside(beside, gap, size))
 
 
 def _from_side(at: PlaceInGap, gap: Gap, sense: float) -> PlaceInGap:

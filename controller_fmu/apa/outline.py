@@ -77,14 +77,16 @@ def box_clearance(pose: Pose, car: Shape, box: Box, enough: float = FAR) -> floa
 
     What is farther than ``enough`` need not be exact: then it is ``enough`` or more, and no more than the distance.
     """
-    return _clearance_of(_stand_at(pose), car, box, enough)
+    return stand_clearance(stand_at(pose), car, box, enough)
 
 
-def _stand_at(pose: Pose) -> Stand:
+def stand_at(pose: Pose) -> Stand:
+    """Return how a car stands at ``pose``."""
     return Stand(pose.x, pose.y, math.cos(pose.heading), math.sin(pose.heading))
 
 
-def _clearance_of(stand: Stand, car: Shape, box: Box, enough: float) -> float:
+def stand_clearance(stand: Stand, car: Shape, box: Box, enough: float = FAR) -> float:
+    """Return the same [m] of a car that stands so: of many boxes the heading is looked up once."""
     if box.x0 > box.x1:
         return FAR
     c = stand.cos * box.cos + stand.sin * box.sin
@@ -121,11 +123,11 @@ def _clearance_of(stand: Stand, car: Shape, box: Box, enough: float) -> float:
 
 def clearance(pose: Pose, car: Shape, obstacles: Obstacles, enough: float = FAR) -> float:
     """Return the distance [m] of the outline to the nearest obstacle, exact up to ``enough``; <= 0: contact."""
-    stand = _stand_at(pose)
-    nearest = _clearance_of(stand, car, obstacles.behind, enough)
-    nearest = _smaller(nearest, _clearance_of(stand, car, obstacles.ahead, enough))
-    nearest = _smaller(nearest, _clearance_of(stand, car, obstacles.beside, enough))
-    return _smaller(nearest, _clearance_of(stand, car, obstacles.opposite, enough))
+    stand = stand_at(pose)
+    nearest = stand_clearance(stand, car, obstacles.behind, enough)
+    nearest = _smaller(nearest, stand_clearance(stand, car, obstacles.ahead, enough))
+    nearest = _smaller(nearest, stand_clearance(stand, car, obstacles.beside, enough))
+    return _smaller(nearest, stand_clearance(stand, car, obstacles.opposite, enough))
 
 
 def free_way(pose: Pose, direction: float, curvature: float, longest: float, car: Shape, obstacles: Obstacles) -> float:

@@ -13,16 +13,19 @@ from typing import NamedTuple
 from controller_fmu.apa.around.arcs import LOOKED_AT, NOWHERE, Unknown, arc_of, held, not_refuted, origin
 from controller_fmu.apa.around.closing import SILENCES, Track, room_at_tail, room_to_strange, tracked_on, turned_round
 from controller_fmu.apa.around.comer import Comer, followed, somebody_comes
+from controller_fmu.apa.around.cone import ConeEar, Echo
 from controller_fmu.apa.around.course import HeldCourse, after
 from controller_fmu.apa.around.local_map import (
     A,
     B,
     LocalMap,
+    MapEcho,
     as_deep_as_any,
-    ear_at,
     ear_on,
+    ears_on,
     expected,
     nearest_case,
+    place_of,
     unsure_of,
 )
 from controller_fmu.apa.around.near import FREE, NEARER, room_by_echoes
@@ -30,7 +33,18 @@ from controller_fmu.apa.around.straight import room_straight
 from controller_fmu.apa.hearing.deaf import silences
 from controller_fmu.apa.hearing.mute import is_mute
 from controller_fmu.apa.hearing.stir import QUIET, HeardOf, heard_on, own_way, stirs
-from controller_fmu.apa.outline import Box, Obstacles, Shape, box_clearance, clearance, grown, outline_rate, sure_steps
+from controller_fmu.apa.outline import (
+    Box,
+    Obstacles,
+    Shape,
+    Stand,
+    clearance,
+    grown,
+    outline_rate,
+    stand_at,
+    stand_clearance,
+    sure_steps,
+)
 from controller_fmu.interface import ControllerParams
 from modelkit.car import CarUltrasonic
 from modelkit.geometry import Point
@@ -102,6 +116,21 @@ class GuardState(NamedTuple):
     """At the last sample [m/s]."""
 
 
+class Explained(NamedTuple):
+    """Whether the map explains an echo, and where that then comes from (map's frame)."""
+
+    by_map: bool = True
+    origin: Point = NOWHERE
+
+
+class HeardHere(NamedTuple):
+    """What a sensor hears [m], where it is, and what the map has it hear."""
+
+    reading: float
+    ear: ConeEar
+    mapped: Echo
+
+
 def stopping_way(state: GuardState, speed: float, params: ControllerParams) -> float:
     """Return the way [m] that the car needs to stop, as late as its brake was ever seen to be."""
     v = abs(speed)
@@ -131,10 +160,10 @@ def listen(state: GuardState, readings: tuple[float, ...], here: LocalMap, param
     direction = state.direction if abs(way) < MOVED else 1 if way > 0.0 else -1
     tracks = state.tracks
     comers = state.comers
+    ears = ears_on(here, sensors)
     for number in range(12):
         reading = readings[number]
-        ear = ear_on(here, sensors, number)
-        wide = ear_on(here, sensors, number, WIDER)
+        ear = ears[number]
         mapped = expected(ear, deep).echo
         track = tracks[0] if direction == state.direction else turned_round(tracks[0])
         track = tracked_on(track, reading, abs(way), mapped.distance, sensors.max_range)
@@ -142,34 +171,46 @@ def listen(state: GuardState, readings: tuple[float, ...], here: LocalMap, param
         comers = comers[1:] + (followed(comers[0], reading, sensors.cycle, sensors.max_range),)
         close = close[1:] + (held(close[0], ear, reading, sensors),)
         kept = unknown[0]
-        echo = NOWHERE
-        beside = expected(wide, deep)
-        closest = expected(wide, near).echo
-        least = min(closest.distance, beside.echo.distance - DOUBTS * unsure_of(here, beside.who))
-        explained = reading >= least - params.apa.guard.surprise - 0.05 * reading
-        if reading < LOOKED_AT and explained:
-            echo = origin(ear, mapped, reading)
-            echo = origin(ear, closest, reading) if echo.x == NOWHERE.x else echo
-        echoes = echoes[1:] + (echo,)
-        if reading < LOOKED_AT and not explained:
+        told = Explained()
+        if reading < LOOKED_AT:
+            wide = ear_on(here, sensors, number, WIDER)
+            told = _explained(
+                HeardHere(reading, ear, mapped), expected(wide, deep), expected(wide, near).echo, here, params
+            )
+        echoes = echoes[1:] + (told.origin,)
+        if not told.by_map:
             kept = arc_of(ear, reading)
         elif kept.there and not is_mute(reading) and (reading < sensors.max_range or track.silent >= SILENCES):
             kept = not_refuted(kept, ear, reading, is_known(reading, mapped.distance, params))
         unknown = unknown[1:] + (kept,)
-    return _heard_of_neighbours(state, readings, here, sensors)._replace(
+    return _heard_of_neighbours(state, readings, here, ears, sensors)._replace(
         unknown=unknown, echoes=echoes, close=close, tracks=tracks, comers=comers, direction=direction, pose=here.pose
     )
 
 
+def _explained(heard: HeardHere, beside: MapEcho, closest: Echo, here: LocalMap, params: ControllerParams) -> Explained:
+    """Return whether an echo is no nearer than what a little wider cone should hear, or hears in the nearest case."""
+    least = min(closest.distance, beside.echo.distance - DOUBTS * unsure_of(here, beside.who))
+    if heard.reading < least - params.apa.guard.surprise - 0.05 * heard.reading:
+        return Explained(False)
+    place = origin(heard.ear, heard.mapped, heard.reading)
+    return Explained(True, origin(heard.ear, closest, heard.reading) if place.x == NOWHERE.x else place)
+
+
 def _heard_of_neighbours(
-    state: GuardState, readings: tuple[float, ...], here: LocalMap, sensors: CarUltrasonic
+    state: GuardState,
+    readings: tuple[float, ...],
+    here: LocalMap,
+    ears: tuple[ConeEar, ...],
+    sensors: CarUltrasonic,
 ) -> GuardState:
     """Return the guard that knows whether a neighbour moves, and which sensors hear none where one is."""
     neighbours = state.neighbours
     silent = state.silences
+    stood = stand_at(state.pose)
     for number in range(12):
-        ear = ear_on(here, sensors, number)
-        before = ear_at(sensors.mounts[number], state.pose, here.frame.mirror, sensors.half_angle)
+        ear = ears[number]
+        before = place_of(sensors.mounts[number], stood, here.frame.mirror)
         own = own_way(ear, before, expected(ear, here), readings[number])
         silent = silent[1:] + (silences(silent[0], readings[number], number, here, state.neighbours, sensors),)
         heard = heard_on(neighbours[0], readings[number], sensors.cycle, sensors.max_range, own)
@@ -269,34 +310,38 @@ def _free_way(course: HeldCourse, stop: float, around: Obstacles) -> float:
 def _free_of_unknown(arcs: tuple[Unknown, ...], course: HeldCourse, stop: float, gap: float) -> float:
     """Return how far [m] the outline can go before it is nearer than ``gap`` to a place that an echo may be of."""
     nearest = FREE
+    now = stand_at(course.pose)
     for item in arcs:
         if item.there:
             for number in range(LOOKS + 1):
                 way = stop if number == 0 else AHEAD * number
-                if way < nearest and _comes_near(item, course.pose, after(course, way), course.car, gap):
+                if way < nearest and _comes_near(item, now, stand_at(after(course, way)), course.car, gap):
                     nearest = way if number > 0 else 0.0
     return nearest
 
 
 def _free_of_echoes(state: GuardState, course: HeldCourse, stop: float, gap: float) -> float:
     """Return how far [m] the outline can go before it is nearer than ``gap`` to where an echo just came from."""
+    now = stand_at(course.pose)
     for number in range(2):
         way = stop if number == 0 else stop + AHEAD
-        there = after(course, way)
+        there = stand_at(after(course, way))
         for point in state.echoes:
-            if point.x < NOWHERE.x:
-                box = Box(point.x, point.x, point.y, point.y)
-                near = box_clearance(there, course.car, box)
-                if near < gap and near < box_clearance(course.pose, course.car, box) - NEARER:
-                    return way if number > 0 else 0.0
+            if point.x < NOWHERE.x and _comes_nearer(point, now, there, course.car, gap):
+                return way if number > 0 else 0.0
     return FREE
 
 
-def _comes_near(item: Unknown, now: Pose, there: Pose, car: Shape, gap: float) -> bool:
+def _comes_near(item: Unknown, now: Stand, there: Stand, car: Shape, gap: float) -> bool:
     """Return whether a point of an arc is nearer than ``gap`` to a car that stands ``there``, and nearer than now."""
+    comes = False
     for point in item.points:
-        box = Box(point.x, point.x, point.y, point.y)
-        near = box_clearance(there, car, box)
-        if near < gap and near < box_clearance(now, car, box) - NEARER:
-            return True
-    return False
+        comes = comes or _comes_nearer(point, now, there, car, gap)
+    return comes
+
+
+def _comes_nearer(point: Point, now: Stand, there: Stand, car: Shape, gap: float) -> bool:
+    """Return the same of one point."""
+    box = Box(point.x, point.x, point.y, point.y)
+    near = stand_clearance(there, car, box, gap)
+    return near < gap and near < stand_clearance(now, car, box) - NEARER

@@ -11,6 +11,7 @@ from typing import NamedTuple
 from controller_fmu.apa.around.cone import ConeEar, Echo, Hit, ear_of, echo_of
 from controller_fmu.apa.around.thing import Slope, Thing, learnt, spread_along, thing_at, wider
 from controller_fmu.apa.hearing.mute import is_mute
+from controller_fmu.apa.outline import Stand, stand_at
 from controller_fmu.apa.params import MapParams
 from controller_fmu.apa.slot import UNSEEN, Kind, Slot, mirror_of
 from controller_fmu.common.slot_frame import SlotFrame, to_slot
@@ -18,6 +19,7 @@ from modelkit.car import CarUltrasonic, SensorMount
 from modelkit.geometry import Point
 from modelkit.vocabulary import Pose
 
+SOME_EAR = ConeEar(0.0, 0.0, 1.0, 0.0, 0.0, 1.0)
 NOBODY, A, B, WALL, ACROSS = 0, 1, 2, 3, 4
 """Who is heard."""
 SIDE_PARALLEL = 5.0
@@ -124,17 +126,32 @@ def moved(here: LocalMap, odometry: Pose, params: MapParams) -> LocalMap:
 
 def ear_at(mount: SensorMount, pose: Pose, mirror: float, half_angle: float) -> ConeEar:
     """Return a sensor of a car at ``pose`` (map's frame)."""
-    c = math.cos(pose.heading)
-    s = math.sin(pose.heading)
+    place = place_of(mount, stand_at(pose), mirror)
+    return ear_of(place.x, place.y, pose.heading + mirror * mount.yaw, half_angle)
+
+
+def place_of(mount: SensorMount, stand: Stand, mirror: float) -> Point:
+    """Return where a sensor is of a car that stands so (map's frame)."""
     y = mirror * mount.y
-    return ear_of(
-        pose.x + mount.x * c - y * s, pose.y + mount.x * s + y * c, pose.heading + mirror * mount.yaw, half_angle
-    )
+    return Point(stand.x + mount.x * stand.cos - y * stand.sin, stand.y + mount.x * stand.sin + y * stand.cos)
 
 
 def ear_on(here: LocalMap, sensors: CarUltrasonic, number: int, wider_by: float = 0.0) -> ConeEar:
     """Return a sensor of the car on the map, its half angle wider by so much [rad]."""
     return ear_at(sensors.mounts[number], here.pose, here.frame.mirror, sensors.half_angle + wider_by)
+
+
+def ears_on(here: LocalMap, sensors: CarUltrasonic) -> tuple[ConeEar, ...]:
+    """Return all sensors of the car on the map."""
+    stand = stand_at(here.pose)
+    sine = math.sin(sensors.half_angle)
+    cosine = math.cos(sensors.half_angle)
+    ears = (SOME_EAR,) * 12
+    for mount in sensors.mounts:
+        place = place_of(mount, stand, here.frame.mirror)
+        axis = here.pose.heading + here.frame.mirror * mount.yaw
+        ears = ears[1:] + (ConeEar(place.x, place.y, math.cos(axis), math.sin(axis), sine, cosine),)
+    return ears
 
 
 def neighbour_of(here: LocalMap, who: int) -> Thing:
@@ -219,10 +236,11 @@ def _line(ear: ConeEar, wall: Thing) -> Echo:
 def heard(here: LocalMap, readings: tuple[float, ...], sensors: CarUltrasonic, params: MapParams) -> LocalMap:
     """Return the map after new ``readings`` of all sensors: each sets right what it was heard of, if that is plain."""
     lowest = sensors.min_range + 1.1 * sensors.resolution
+    ears = ears_on(here, sensors)
     for place in range(12):
         number = place if here.frame.mirror > 0.0 else OTHER_SIDE[place]
         reading = readings[number]
-        ear = ear_on(here, sensors, number)
+        ear = ears[number]
         if reading < params.heard:
             here = _told(here, ear, expected(ear, here), Reading(reading, reading > lowest), params)
         elif here.walled and not is_mute(reading):

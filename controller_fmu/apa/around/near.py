@@ -40,6 +40,11 @@ class FurtherOn(NamedTuple):
 def room_by_echoes(readings: tuple[float, ...], course: HeldCourse, mirror: float, sensors: CarUltrasonic) -> float:
     """Return how far [m] the outline can go on its ``course`` before it may come close to what any sensor hears."""
     lowest = nearest_told(sensors)
+    heard = False
+    for reading in readings:
+        heard = heard or reading < NEAR
+    if not heard:
+        return FREE
     here = course._replace(pose=Pose(0.0, 0.0, 0.0))
     poses = tuple(_further_on(here, way) for way in WAYS)
     room = FREE

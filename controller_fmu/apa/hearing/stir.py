@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 from controller_fmu.apa.around.cone import SILENT, ConeEar, Hit
 from controller_fmu.apa.around.local_map import NOBODY, MapEcho
+from modelkit.geometry import Point
 
 WEIGHT = 0.4
 """Of a new reading in the mean of the last."""
@@ -54,7 +55,7 @@ class OwnWay(NamedTuple):
     """How much farther [m] it is heard than the map has it."""
 
 
-def own_way(ear: ConeEar, before: ConeEar, mapped: MapEcho, reading: float) -> OwnWay:
+def own_way(ear: ConeEar, before: Point, mapped: MapEcho, reading: float) -> OwnWay:
     """Return by how much a sensor that was ``before`` elsewhere has come nearer to what it hears: its way along n.
 
     n is the direction of a side that the map has square ahead, or of its corner; the rim of a cone tells none.

@@ -15,10 +15,10 @@ run: $(VENV)/.run ## Install, build the FMUs, run a parking case, print the tabl
 
 test: $(VENV)/.test ## Install and pass the tests
 	@echo "About a quarter of an hour on two cores"
-	$(BIN)/python -m pytest -n auto --dist loadfile -q
+	$(BIN)/python -m pytest -n auto --dist loadfile --no-loadscope-reorder -q
 
 quick: lint types ## Lint, types and the tests that take a minute together
-	$(BIN)/python -m pytest -n auto --dist loadfile -q -m 'not slow'
+	$(BIN)/python -m pytest -n auto --dist loadfile --no-loadscope-reorder -q -m 'not slow'
 
 FUZZ_SECONDS ?= 600
 fuzz: $(VENV)/.test ## Attack inputs, logs, kills and FMI calls, ten minutes each, with new seeds

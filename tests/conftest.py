@@ -101,6 +101,20 @@ SLOW = [
     "vehicle/test_vehicle.py",
 ]
 """Files of tests that take over 3 s of the processor; ``make quick`` leaves them out, and what is marked slow."""
+LONGEST = [
+    "docs/test_commands.py",
+    "test_wheel.py",
+    "fmi/test_native_platforms.py",
+    "fmi/test_sources.py",
+    "docs/test_extend.py",
+    "twin/test_container.py",
+    "twin/test_interop.py",
+    "live/test_module.py",
+    "coverage/test_every_transition.py",
+    "orchestrator/test_catalogue.py",
+    "golden/test_golden.py",
+]
+"""Run first, then the other slow ones: at the end no core waits long for another."""
 FLAGS = [
     "--headless",
     "--no-sandbox",
@@ -138,11 +152,18 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Mark the tests of slow files."""
+    """Mark the tests of slow files, and run them first."""
     here = Path(__file__).parent
+    order = {name: place for place, name in enumerate([*LONGEST, *(name for name in SLOW if name not in LONGEST)])}
+
+    def place_of(item: pytest.Item) -> int:
+        name = item.path.relative_to(here).as_posix() if item.path.is_relative_to(here) else ""
+        return order.get(name, len(order))
+
     for item in items:
-        if item.path.is_relative_to(here) and item.path.relative_to(here).as_posix() in SLOW:
+        if place_of(item) < len(order):
             item.add_marker(pytest.mark.slow)
+    items.sort(key=place_of)
 
 
 class Seen:

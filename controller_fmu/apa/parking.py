@@ -9,7 +9,7 @@ from controller_fmu.apa.manoeuvre_chart import Step, step_transition
 from controller_fmu.apa.out.limits import CUTS, MOVES, SHIFTS, margins_out, next_attempt_out, with_lock
 from controller_fmu.apa.out.pull_out import OutSearch, plan_out
 from controller_fmu.apa.params import Longitudinal
-from controller_fmu.apa.slot import Kind, Margins, Site, Slot, site_of
+from controller_fmu.apa.slot import Kind, Margins, Site, Slot, no_deeper, site_of
 from controller_fmu.apa.speed import planned_speed, stopping_way
 from controller_fmu.apa.tracking import Leg, Tracked, next_standstill, set_wheel, track
 from controller_fmu.apa.watch import STANDING
@@ -71,8 +71,11 @@ class Parking(NamedTuple):
 
 def site_for(slot: Slot, attempt: int, out: bool, params: ControllerParams) -> Site:
     """Return the slot as the planner sees it in this attempt to come in, or ``out``."""
-    margins = margins_out(attempt, params.apa) if out else margins_of(attempt, params.apa)
-    return site_of(slot, shape_of(params), margins)
+    car = shape_of(params)
+    if out:
+        return site_of(slot, car, margins_out(attempt, params.apa))
+    margins = margins_of(attempt, params.apa)
+    return site_of(no_deeper(slot, car, margins), car, margins)
 
 
 class CarAtSite(NamedTuple):

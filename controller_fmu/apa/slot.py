@@ -42,6 +42,9 @@ BEHIND = 0.08
 """A perpendicular slot's wall or wheel stop is left so far [m] behind the car at least."""
 OUT_OF_LINE = 0.5
 """Neighbours of whom one stands so much [m] further out than the other make no line."""
+DEEPER = 0.2
+"""Where nothing is heard behind a perpendicular slot no move goes more than so far [m] deeper than the car is to stand:
+wheel stops lower than 8 cm are not heard."""
 LESS_OUT = 0.02
 """A move into a perpendicular slot ends so much [m] deeper than it need to be."""
 
@@ -124,6 +127,14 @@ def target_of(slot: Slot, car: Shape, margins: Margins) -> Pose:
     y = line - car.half_width
     lowest = car.half_width + margins.beside - slot.depth
     return Pose(0.5 * (room.low + room.high - car.front - car.rear) + car.rear, lowest if y < lowest else y, 0.0)
+
+
+def no_deeper(slot: Slot, car: Shape, margins: Margins) -> Slot:
+    """Return the slot that ends not far behind a car that stands across the road in it, if no end of it is heard."""
+    if slot.kind != Kind.PERPENDICULAR or slot.depth < UNSEEN:
+        return slot
+    needed = car.front + car.rear + margins.inset - line_of(slot) + max(margins.neighbour, BEHIND)
+    return slot._replace(depth=needed + DEEPER)
 
 
 def stands_out_by(pose: Pose, slot: Slot, car: Shape) -> float:

@@ -7,8 +7,21 @@ import pytest
 from controller_fmu.apa.around.local_map import LocalMap, begin_map
 from controller_fmu.apa.around.straight import WALL_GAP, room_straight
 from controller_fmu.apa.around.surroundings import shape_of
+from controller_fmu.apa.outline import clearance
 from controller_fmu.apa.params import MapParams
-from controller_fmu.apa.slot import BEHIND, LESS_OUT, Kind, Side, Slot, site_of, stands_out_by, target_of
+from controller_fmu.apa.parking import site_for
+from controller_fmu.apa.slot import (
+    BEHIND,
+    DEEPER,
+    LESS_OUT,
+    UNSEEN,
+    Kind,
+    Side,
+    Slot,
+    site_of,
+    stands_out_by,
+    target_of,
+)
 from controller_fmu.apa.ways.fit import margins_of
 from controller_fmu.interface import ControllerParams
 from modelkit.vocabulary import Pose
@@ -38,6 +51,15 @@ def test_a_car_that_is_parked_stands_out_no_further_than_it_may(deeper: float) -
 
 def test_in_a_slot_that_is_too_shallow_no_place_is_left() -> None:
     assert site_of(slot_of(LENGTH - 0.1), SHAPE, margins_of(CLOSEST, PARAMS.apa)).x_high < 0.0
+
+
+@pytest.mark.parametrize("depth", [UNSEEN, LENGTH + 3.0])
+def test_where_nothing_is_heard_behind_no_move_goes_much_deeper_than_the_car_stands(depth: float) -> None:
+    slot = slot_of(depth)
+    site = site_for(slot, 0, False, PARAMS)
+    assert site.frame == site_of(slot, SHAPE, margins_of(0, PARAMS.apa)).frame, "it is to stand at the same place"
+    free = [clearance(Pose(-deeper, 0.0, 0.0), SHAPE, site.obstacles) > 0.0 for deeper in (0.0, DEEPER, DEEPER + 0.05)]
+    assert free == [True, True, depth < UNSEEN]
 
 
 def before_a_wall(gap: float, sure: float) -> tuple[tuple[float, ...], LocalMap]:

@@ -165,24 +165,25 @@ def listen(state: GuardState, readings: tuple[float, ...], here: LocalMap, param
         reading = readings[number]
         ear = ears[number]
         mapped = expected(ear, deep).echo
-        track = tracks[0] if direction == state.direction else turned_round(tracks[0])
+        track = tracks[number] if direction == state.direction else turned_round(tracks[number])
         track = tracked_on(track, reading, abs(way), mapped.distance, sensors.max_range)
-        tracks = tracks[1:] + (track,)
-        comers = comers[1:] + (followed(comers[0], reading, sensors.cycle, sensors.max_range),)
-        close = close[1:] + (held(close[0], ear, reading, sensors),)
-        kept = unknown[0]
+        tracks = tracks[:number] + (track,) + tracks[number + 1 :]
+        comer = followed(comers[number], reading, sensors.cycle, sensors.max_range)
+        comers = comers[:number] + (comer,) + comers[number + 1 :]
+        close = close[:number] + (held(close[number], ear, reading, sensors),) + close[number + 1 :]
+        kept = unknown[number]
         told = Explained()
         if reading < LOOKED_AT:
             wide = ear_on(here, sensors, number, WIDER)
             told = _explained(
                 HeardHere(reading, ear, mapped), expected(wide, deep), expected(wide, near).echo, here, params
             )
-        echoes = echoes[1:] + (told.origin,)
+        echoes = echoes[:number] + (told.origin,) + echoes[number + 1 :]
         if not told.by_map:
             kept = arc_of(ear, reading)
         elif kept.there and not is_mute(reading) and (reading < sensors.max_range or track.silent >= SILENCES):
             kept = not_refuted(kept, ear, reading, is_known(reading, mapped.distance, params))
-        unknown = unknown[1:] + (kept,)
+        unknown = unknown[:number] + (kept,) + unknown[number + 1 :]
     return _heard_of_neighbours(state, readings, here, ears, sensors)._replace(
         unknown=unknown, echoes=echoes, close=close, tracks=tracks, comers=comers, direction=direction, pose=here.pose
     )
@@ -212,9 +213,10 @@ def _heard_of_neighbours(
         ear = ears[number]
         before = place_of(sensors.mounts[number], stood, here.frame.mirror)
         own = own_way(ear, before, expected(ear, here), readings[number])
-        silent = silent[1:] + (silences(silent[0], readings[number], number, here, state.neighbours, sensors),)
-        heard = heard_on(neighbours[0], readings[number], sensors.cycle, sensors.max_range, own)
-        neighbours = neighbours[1:] + (heard,)
+        missed = silences(silent[number], readings[number], number, here, state.neighbours, sensors)
+        silent = silent[:number] + (missed,) + silent[number + 1 :]
+        heard = heard_on(neighbours[number], readings[number], sensors.cycle, sensors.max_range, own)
+        neighbours = neighbours[:number] + (heard,) + neighbours[number + 1 :]
     moves = stirs(A, neighbours, state.speed) or stirs(B, neighbours, state.speed)
     quiet = 0.0 if moves else state.quiet + sensors.cycle
     return state._replace(neighbours=neighbours, silences=silent, quiet=quiet)

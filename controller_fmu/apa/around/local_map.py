@@ -146,11 +146,13 @@ def ears_on(here: LocalMap, sensors: CarUltrasonic) -> tuple[ConeEar, ...]:
     stand = stand_at(here.pose)
     sine = math.sin(sensors.half_angle)
     cosine = math.cos(sensors.half_angle)
-    ears = (SOME_EAR,) * 12
-    for mount in sensors.mounts:
+    ears: tuple[ConeEar, ...] = (SOME_EAR,) * 12
+    for number in range(12):
+        mount = sensors.mounts[number]
         place = place_of(mount, stand, here.frame.mirror)
         axis = here.pose.heading + here.frame.mirror * mount.yaw
-        ears = ears[1:] + (ConeEar(place.x, place.y, math.cos(axis), math.sin(axis), sine, cosine),)
+        ear = ConeEar(place.x, place.y, math.cos(axis), math.sin(axis), sine, cosine)
+        ears = ears[:number] + (ear,) + ears[number + 1 :]
     return ears
 
 

@@ -111,9 +111,7 @@ def explained(state: GuardState, readings: tuple[float, ...], here: LocalMap, pa
     sensors = params.car.ultrasonic
     unknown = state.unknown
     for number in range(12):
-        kept = unknown[0]
         ear = ear_on(here, sensors, number)
         if is_known(readings[number], expected(ear, here).echo.distance, params):
-            kept = Unknown()
-        unknown = unknown[1:] + (kept,)
+            unknown = unknown[:number] + (Unknown(),) + unknown[number + 1 :]
     return state._replace(unknown=unknown)

@@ -57,5 +57,6 @@ def silences(
 def without_deaf(readings: tuple[float, ...], counts: tuple[int, ...]) -> tuple[float, ...]:
     """Return the readings [m]; those of sensors that hear nothing any more tell nothing."""
     for number in range(12):
-        readings = readings[1:] + (MUTE if counts[number] >= SILENCES else readings[0],)
+        if counts[number] >= SILENCES:
+            readings = readings[:number] + (MUTE,) + readings[number + 1 :]
     return readings

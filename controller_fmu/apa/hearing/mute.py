@@ -20,10 +20,10 @@ SLOWLY = 0.4
 
 def usable(readings: tuple[float, ...], nearest: float) -> tuple[float, ...]:
     """Return the readings [m]; ``MUTE`` for each that is no distance: not finite, or under half of the ``nearest``."""
-    for _ in range(12):
-        reading = readings[0]
-        told = is_finite(reading) and reading >= 0.5 * nearest
-        readings = readings[1:] + (reading if told else MUTE,)
+    for number in range(12):
+        reading = readings[number]
+        if not is_finite(reading) or reading < 0.5 * nearest:
+            readings = readings[:number] + (MUTE,) + readings[number + 1 :]
     return readings
 
 

@@ -66,6 +66,9 @@ class Slot(NamedTuple):
     skew_b: Annotated[float, Signal("rad", "the same of the neighbour at corner B", -1.6, 1.6)] = 0.0
     empty_a: Annotated[bool, Signal("1", "nobody stands at corner A: it is a line, kept clear all the same")] = False
     empty_b: Annotated[bool, Signal("1", "nobody stands at corner B")] = False
+    line: Annotated[
+        float, Signal("m", "a parked car stands so much further out than flush with the corners", -1e3, 1e3)
+    ] = 0.0
 
 
 class Site(NamedTuple):
@@ -105,14 +108,19 @@ def room_of(slot: Slot, deep: float) -> Opening:
     return Opening(max(0.0, deep * math.sin(slot.skew_a)), slot.length + min(0.0, deep * math.sin(slot.skew_b)))
 
 
-def line_of(slot: Slot) -> float:
-    """Return y [m] of the line that a parked car stands flush with: half way between the corners at the mouth.
+def flush_with(kind: int, b_out: float) -> float:
+    """Return y [m] half way between the corners at the mouth, of which B stands out ``b_out`` [m] further.
 
     Across the road it is the corner further in where the other has come out of the row by so much that it is none.
     """
-    if slot.kind == Kind.PERPENDICULAR and abs(slot.b_out) > OUT_OF_LINE:
-        return min(0.0, slot.b_out)
-    return 0.5 * slot.b_out
+    if kind == Kind.PERPENDICULAR and abs(b_out) > OUT_OF_LINE:
+        return min(0.0, b_out)
+    return 0.5 * b_out
+
+
+def line_of(slot: Slot) -> float:
+    """Return y [m] of the line that a parked car stands flush with."""
+    return flush_with(slot.kind, slot.b_out) + slot.line
 
 
 def target_of(slot: Slot, car: Shape, margins: Margins) -> Pose:

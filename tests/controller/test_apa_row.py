@@ -89,16 +89,27 @@ def test_a_corner_that_is_not_heard_goes_with_the_other_as_they_were_found() -> 
 
 
 @pytest.mark.parametrize(
-    ("a", "b", "sure"), [(0.7, 0.0, True), (0.1, 0.8, True), (0.4, -0.3, False), (0.0, -0.7, False)]
+    ("a", "b", "sure"),
+    [(0.7, 0.0, True), (0.1, 0.8, True), (0.0, -0.7, True), (-0.3, 0.0, True), (0.4, -0.3, False)],
 )
-def test_one_who_has_come_out_of_a_row_across_the_road_tells_no_direction(a: float, b: float, sure: bool) -> None:
+def test_one_who_has_moved_in_a_row_across_the_road_tells_neither_direction_nor_line(
+    a: float, b: float, sure: bool
+) -> None:
     found = begin_map(between(Kind.PERPENDICULAR, 2.8), Pose(1.4, -3.0, 0.5 * math.pi), MAP)
     here = found._replace(a=found.a._replace(y=a), b=found.b._replace(y=b))
     assert is_certain(here, MAP) == sure
     if sure:
-        assert slot_heading(here, MAP) == pytest.approx(0.0, abs=1e-9)
         slot = slot_of_map(here, between(Kind.PERPENDICULAR, 2.8), MAP)
-        assert slot.a.y + line_of(slot) == pytest.approx(min(a, b), abs=0.15), "flush with the one who stays"
+        assert slot.a.heading == pytest.approx(0.0, abs=1e-9)
+        assert slot.a.y + line_of(slot) == pytest.approx(min(a, b, key=abs), abs=0.02), "in line with the one who stays"
+
+
+@pytest.mark.parametrize("gone", [0.0, 0.6])
+def test_one_who_has_driven_off_along_the_road_stands_out_as_far_as_he_did(gone: float) -> None:
+    found = begin_map(between(), Pose(2.0, 1.5, 0.0), MAP)
+    here = found._replace(b=found.b._replace(x=found.b.x + gone, y=-0.3, yy=0.03**2), a=found.a._replace(yy=0.13**2))
+    line = as_found(here)
+    assert line.b.y == pytest.approx(-0.1 if gone else -0.3, abs=0.05)
 
 
 def line_part(own: float, other: float) -> float:

@@ -72,7 +72,9 @@ class LocalMap(NamedTuple):
     across: float = UNSEEN
     """y [m] of what lies across the road."""
     out: float = 0.0
-    """How far [m] corner B was found to stand out further than corner A."""
+    """How far [m] corner B was found to stand out further than corner A,"""
+    found: float = 0.0
+    """and how far along the road from it."""
     pose: Pose = Pose()
     """The car at the last reading."""
     empty_a: bool = False
@@ -103,6 +105,7 @@ def begin_map(slot: Slot, pose: Pose, params: MapParams) -> LocalMap:
         slot.depth < UNSEEN,
         slot.opposite,
         slot.b_out,
+        slot.length,
         to_slot(pose, frame),
         slot.empty_a,
         slot.empty_b,

@@ -4,9 +4,10 @@ import math
 
 from controller_fmu.apa.around.closing import Track
 from controller_fmu.apa.around.local_map import LocalMap, ear_on, expected
+from controller_fmu.apa.around.thing import Thing
 from controller_fmu.apa.hearing.mute import is_mute
 from controller_fmu.apa.params import MapParams
-from controller_fmu.apa.slot import UNSEEN, Kind, Slot
+from controller_fmu.apa.slot import UNSEEN, Kind, Slot, flush_with
 from controller_fmu.common.slot_frame import to_world
 from controller_fmu.interface import ControllerParams
 from modelkit.vocabulary import Pose
@@ -22,22 +23,26 @@ FOUND_DOUBT = 0.25
 """Where they contradict it, one of them was perhaps not found well."""
 MISSED = 0.4
 """What is heard so much [m] further off than a neighbour should be is something else."""
-FOUND_ASKEW = 0.15
-"""Beside a parallel slot where no wall is heard the road's direction is also as the search found it, to this share of
-how neighbours stand."""
 ASIDE = 0.12
 """A car in a perpendicular slot stands so much [m] nearer to one neighbour than to the middle at most."""
+HAS_MOVED = 0.2
+"""A neighbour who stands so much [m] along himself from where he was found has moved since."""
+MOVED_ASIDE = 0.3
+"""How far out he stands beside a parallel slot is heard no better than this [m] then."""
 OUT_OF_LINE = 0.5
 """A map in which a neighbour has come so much [m] further out, or in, than the other is lost,"""
 STAYS = 0.25
-"""but for one beside a perpendicular slot who has come out while the other stands to this [m] where he was found."""
+"""but for one beside a perpendicular slot who has moved while the other stands to this [m] where he was found."""
 
 
 def as_found(here: LocalMap) -> LocalMap:
     """Return the map with corner B as much further out than corner A as it was found, as far as that is surer.
 
-    Both were found in one pass, a few metres apart; what is heard since, of one of them most, moves both.
+    Both were found in one pass, a few metres apart; what is heard since, of one of them most, moves both. Cars move
+    along themselves: one beside a parallel slot who has moved stands out as far as he did.
     """
+    if here.kind == Kind.PARALLEL:
+        here = here._replace(a=_unsure_aside(here.a, 0.0), b=_unsure_aside(here.b, here.found))
     spread = here.a.yy + here.b.yy
     off = here.out - (here.b.y - here.a.y)
     share = 1.0 / (spread + FOUND * FOUND + FOUND_DOUBT * off * off)
@@ -49,10 +54,30 @@ def as_found(here: LocalMap) -> LocalMap:
     )
 
 
+def _unsure_aside(thing: Thing, found: float) -> Thing:
+    """Return a neighbour of a parallel slot, found at x = ``found`` [m]: unsure in y if he has moved along the road."""
+    moved = abs(thing.x - found) > HAS_MOVED
+    return thing._replace(yy=thing.yy + MOVED_ASIDE * MOVED_ASIDE) if moved else thing
+
+
+def in_row(here: LocalMap) -> LocalMap:
+    """Return the map with a neighbour of a perpendicular slot who has moved since back where he was in the row.
+
+    Of two that stand otherwise than they were found it is the one who stands further from where he was.
+    """
+    off = _out_of_line(here)
+    if here.kind != Kind.PERPENDICULAR or abs(off) < HAS_MOVED:
+        return here
+    if abs(here.a.y) > abs(here.b.y - here.out):
+        return here._replace(a=here.a._replace(y=here.a.y + off, yy=here.b.yy + FOUND * FOUND))
+    return here._replace(b=here.b._replace(y=here.b.y - off, yy=here.a.yy + FOUND * FOUND))
+
+
 def slot_of_map(here: LocalMap, slot: Slot, params: MapParams) -> Slot:
     """Return the slot as the map has it: its heading is that of what stands around, each weighted by how sure it is."""
+    row = as_found(in_row(here))
+    heading = slot_heading(row, params)
     here = as_found(here)
-    heading = slot_heading(here, params)
     c = math.cos(heading)
     s = math.sin(heading)
     dx = here.b.x - here.a.x
@@ -60,10 +85,14 @@ def slot_of_map(here: LocalMap, slot: Slot, params: MapParams) -> Slot:
     depth = UNSEEN
     if here.walled:
         depth = (here.a.y - here.wall.y) * c - (here.a.x - here.wall.x) * s
+    b_out = dy * c - dx * s
+    out = (row.a.y - here.a.y) * c
+    line = out + flush_with(slot.kind, b_out - out + (row.b.y - here.b.y) * c)
     return slot._replace(
         a=to_world(Pose(here.a.x, here.a.y, heading), here.frame),
         length=dx * c + dy * s,
-        b_out=dy * c - dx * s,
+        b_out=b_out,
+        line=line - flush_with(slot.kind, b_out),
         depth=depth,
         skew_a=here.a.heading - heading,
         skew_b=here.b.heading - heading,
@@ -81,8 +110,6 @@ def slot_heading(here: LocalMap, params: MapParams) -> float:
     dx = max(here.b.x - here.a.x, 1.0)
     line = math.atan2(here.b.y - here.a.y, dx)
     corners = dx * dx / (2.0 * STAGGER * STAGGER + here.a.yy + here.b.yy)
-    if _has_one_come_out(here):
-        corners = 0.0
     total = corners * (line - both)
     weight = a + b + corners
     if here.walled:
@@ -90,10 +117,6 @@ def slot_heading(here: LocalMap, params: MapParams) -> float:
         wall = 1.0 / (WALL_ASKEW * least + here.wall.hh + WALL_DOUBT * off * off)
         total += wall * off
         weight += wall
-    elif here.kind == Kind.PARALLEL:
-        found = 1.0 / (FOUND_ASKEW * least)
-        total -= found * both
-        weight += found
     road = both + total / weight
     stand = road + 0.5 * least * (a * (here.a.heading - road) + b * (here.b.heading - road))
     return 0.5 * (road + stand)
@@ -114,16 +137,14 @@ def _out_of_line(here: LocalMap) -> float:
     return here.b.y - here.a.y - here.out
 
 
-def _has_one_come_out(here: LocalMap) -> bool:
-    """Return whether one neighbour beside a perpendicular slot has come out of the row, and the other has not moved."""
-    off = _out_of_line(here)
-    stays = here.a.y if off > 0.0 else here.b.y - here.out
-    return here.kind == Kind.PERPENDICULAR and abs(off) > OUT_OF_LINE and abs(stays) < STAYS
+def _has_one_moved(here: LocalMap) -> bool:
+    """Return whether one neighbour beside a perpendicular slot has moved out of the row, or in, and the other stays."""
+    return here.kind == Kind.PERPENDICULAR and min(abs(here.a.y), abs(here.b.y - here.out)) < STAYS
 
 
 def is_certain(here: LocalMap, params: MapParams) -> bool:
     """Return whether neighbours are still where a car between them hears them, and in line as they were found."""
-    in_line = abs(_out_of_line(here)) < OUT_OF_LINE or _has_one_come_out(here)
+    in_line = abs(_out_of_line(here)) < OUT_OF_LINE or _has_one_moved(here)
     return in_line and _unsure_along(here) < params.certain * params.certain
 
 

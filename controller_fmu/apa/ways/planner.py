@@ -16,6 +16,7 @@ from controller_fmu.apa.ways.candidates import (
     SHARES,
     SWING_ANGLES,
     SWING_WAYS,
+    TURNS,
     Candidate,
     ahead_back_and_swing,
     back_and_forth,
@@ -23,10 +24,10 @@ from controller_fmu.apa.ways.candidates import (
     inside,
     inside_count,
     into_parallel,
-    into_perpendicular,
     none_from,
     swing,
     swing_back_and_forth,
+    turn_in,
 )
 from controller_fmu.apa.ways.exit import VARIANTS, Exit, exit_of
 from controller_fmu.apa.ways.move import Move
@@ -46,14 +47,14 @@ BACK_AND_SWING = 44
 AHEAD_BACK_AND_SWING = 45
 NO_STAGE = -1
 STEEPEST_INSIDE = 0.9
-"""Past this heading [rad] short moves are not looked for."""
+"""Past this heading [rad] short moves are not looked for, but for a single one."""
 
 ON_THE_WAY = 0.25
 """Turned by more than this [rad] a car before a parallel slot is on its way in already."""
 
 IN_PARALLEL = 8
 """Stages of a car in a parallel slot: short moves, 1 to 8 of them, then out of it and in anew."""
-IN_PERPENDICULAR = (1, 40, 2, 41, 3, 44, 42, 45, 4, 43, NO_STAGE)
+IN_PERPENDICULAR = (40, 1, 2, 41, 3, 44, 42, 45, 4, 43, NO_STAGE)
 
 
 class PlanSearch(NamedTuple):
@@ -113,7 +114,7 @@ def _entry(variant: int) -> int:
 def count_of(stage: int) -> int:
     """Return how many candidates a stage has."""
     if stage == TURN:
-        return SHARES
+        return TURNS
     if stage == SWING:
         return 2 * SWING_ANGLES * SWING_WAYS
     if stage == BACK_AND_FORTH:
@@ -156,7 +157,7 @@ def _one_more(search: PlanSearch, site: Site, car: Shape) -> PlanSearch:
 
 def _candidate(stage: int, number: int, start: Pose, way_in: Exit, site: Site, car: Shape) -> Candidate:
     if stage == TURN:
-        return into_perpendicular(start, number, site, car)
+        return turn_in(start, number, site, car)
     if stage == SWING:
         return swing(start, number, site, car)
     if stage == BACK_AND_FORTH:
@@ -171,6 +172,6 @@ def _candidate(stage: int, number: int, start: Pose, way_in: Exit, site: Site, c
         if not way_in.found:
             return none_from(start)
         return into_parallel(start, number, way_in, site, car)
-    if abs(start.heading) > STEEPEST_INSIDE:
+    if stage > 1 and abs(start.heading) > STEEPEST_INSIDE:
         return none_from(start)
     return inside(start, number, stage, site, car)

@@ -13,7 +13,7 @@ from controller_fmu.apa.slot import Kind, Margins, Site, Slot, no_deeper, site_o
 from controller_fmu.apa.speed import planned_speed, stopping_way
 from controller_fmu.apa.tracking import Leg, Tracked, next_standstill, set_wheel, track
 from controller_fmu.apa.watch import STANDING
-from controller_fmu.apa.ways.fit import closer, following, margins_of, under_way
+from controller_fmu.apa.ways.fit import closer, following, is_wide, margins_of, under_way
 from controller_fmu.apa.ways.move import length_of
 from controller_fmu.apa.ways.planner import FOUND, NOTHING, SEARCHING, PlanSearch, new_search, search_on
 from controller_fmu.common.chart import bit
@@ -100,7 +100,8 @@ def next_attempt(state: Parking, plan: PlanSearch, site: Site, params: Controlle
     nothing = plan.status == NOTHING
     if state.out:
         return next_attempt_out(state.attempt, plan, more_shifts(state, plan), state.direction)
-    most = params.apa.end.few if state.direction == 0 and state.attempt == 0 else most_shifts(site.kind, False, params)
+    sparing = (state.direction == 0 and state.attempt == 0) or (site.kind == Kind.PARALLEL and is_wide(state.attempt))
+    most = params.apa.end.few if sparing else most_shifts(site.kind, False, params)
     too_many = plan.status == FOUND and more_shifts(state, plan) > most
     if not (nothing or too_many):
         return state.attempt

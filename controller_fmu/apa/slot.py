@@ -89,6 +89,8 @@ class Margins(NamedTuple):
     inset: float = 0.0
     out: float = 0.14
     """Farthest [m] that a parked car stands out of the line."""
+    wall: float = 0.0
+    """Distance [m] kept to kerb or wall on the way into a parallel slot where the parked car leaves as much."""
 
 
 def mirror_of(slot: Slot) -> float:
@@ -166,7 +168,8 @@ def site_of(slot: Slot, car: Shape, margins: Margins) -> Site:
     beside = Box(-FAR, FAR, -FAR, -slot.depth) if slot.depth < UNSEEN else Box()
     opposite = Box(-FAR, FAR, slot.opposite, FAR) if slot.opposite < UNSEEN else Box()
     near = margins.neighbour
-    beside_margin = margins.neighbour if turned else margins.beside
+    left = y - car.half_width + slot.depth
+    beside_margin = margins.neighbour if turned else max(margins.beside, min(margins.wall, left))
     obstacles = Obstacles(
         grown(_seen_from(behind, x, y, turned), near),
         grown(_seen_from(ahead, x, y, turned), near),

@@ -22,14 +22,16 @@ class Fit(NamedTuple):
 
 LONGEST_LACK = 3.0
 HALVINGS = 5
-SHARES = (1.0, 0.88, 0.855, 0.6, 0.3)
+SHARES = (1.0, 0.88, 0.855, 0.855, 0.6, 0.3)
 """Of the margins: planned with, if that saves shifts, driven with once under way, and where there is no other way."""
+WALLS = (1.0, 0.88, 0.93, 0.855, 0.6, 0.3)
+"""The same of the margin to kerb or wall, where the parked car leaves as much."""
 LEVEL = 2
 """Attempts of the same margins: parked in line, and standing out a little."""
 UNDER_WAY = 2
-ATTEMPTS = 8
+ATTEMPTS = 10
 """A slot is refused if none of these leads in."""
-AFTER = (2, 3, 1, 6, 5, 6, 7, 7)
+AFTER = (2, 3, 1, 8, 6, 7, 7, 8, 9, 9)
 """Which attempt follows which before a car sets out: closer in line, standing out, closer and standing out."""
 
 
@@ -41,6 +43,11 @@ def stands_out(attempt: int) -> bool:
 def under_way(attempt: int) -> int:
     """Return the attempt to plan with from within, as far out as this one."""
     return LEVEL * UNDER_WAY + attempt % LEVEL
+
+
+def is_wide(attempt: int) -> bool:
+    """Return whether a car under way is planned for with a wider margin to kerb or wall in this attempt."""
+    return attempt // LEVEL == UNDER_WAY
 
 
 def following(attempt: int, kind: int) -> int:
@@ -60,7 +67,8 @@ def margins_of(attempt: int, params: ApaParams) -> Margins:
     plan = params.plan
     inset = -plan.stand_out if stands_out(attempt) else 0.0
     share = SHARES[attempt // LEVEL]
-    return Margins(share * plan.margin, share * plan.kerb_margin, inset, params.end.out)
+    wall = WALLS[attempt // LEVEL] * plan.kerb_margin
+    return Margins(share * plan.margin, share * plan.kerb_margin, inset, params.end.out, wall)
 
 
 def fit_of(slot: Slot, car: Shape, params: ApaParams) -> Fit:

@@ -245,12 +245,13 @@ def _moved_on(
     if step == Step.HALT and before == Step.DRIVE:
         state = state._replace(cut=state.sight.blocked and not state.sight.unknown)
     if step == Step.PLAN and before != Step.PLAN:
+        wide = place.site.kind == Kind.PARALLEL and state.shifts < params.apa.end.few
         state = state._replace(
             cuts=state.cuts + 1 if state.cut else state.cuts,
             stuck=state.cut and state.tracked.way < AT_END,
             cut=False,
             ended=before == Step.HALT and state.plan.moves <= 1,
-            attempt=max(state.attempt - 1, 0) if state.out else under_way(state.attempt),
+            attempt=max(state.attempt - 1, 0) if state.out else under_way(state.attempt, wide),
             plan=new_search(place.pose),
             way_out=OutSearch(),
         )
@@ -305,7 +306,7 @@ def start_planning(slot: Slot, pose: Pose, out: bool, resumes: bool, params: Con
 
     A car that ``resumes`` may stand nearer to the neighbours than one that sets out: its margins are those under way.
     """
-    attempt = under_way(0) if resumes and not out else 0
+    attempt = under_way(0, True) if resumes and not out else 0
     site = site_for(slot, attempt, out, params)
     return Parking(step=Step.PLAN, plan=new_search(to_slot(pose, site.frame)), attempt=attempt, out=out)
 

@@ -23,14 +23,14 @@ SWING_WAYS = 13
 SWING_ANGLES = 13
 SHARES = 4
 FINER = 2
-"""A turn into a slot is tried with so many radii for one of a turn that is thought of for later."""
+"""A turn to be driven next is tried with so many times the radii of one that comes after other moves."""
 BESIDE = 0.02
 """It may end so far [m] beside the slot's axis, on either side."""
 BESIDES = 3
 BESIDE_COST = 50.0
 TURNS = BESIDES * (FINER * (SHARES - 1) + 1)
 SHORTEST_LINE = 0.15
-"""A turn thought of for later has lines of this length [m] before and after it, for what is missed until then."""
+"""A turn after other moves should have lines of this length [m] before and behind it, for what they miss."""
 LINE_COST = 20.0
 PARTS = (1.0, 0.5, 1.0, 0.5, 1.0, 0.75, 0.25, 0.75)
 CHOICES = 8
@@ -95,8 +95,8 @@ def _before(start: Pose, number: int, car: Shape) -> Move:
 def turn_in(start: Pose, number: int, site: Site, car: Shape) -> Candidate:
     """Return the reverse line, arc, line into a perpendicular slot, at 1 to 0.55 of the lock, on its axis or beside."""
     share = number // BESIDES
-    beside = number % BESIDES
-    return _turn_beside(start, share / FINER, BESIDE * beside if beside < 2 else -BESIDE, site, car)
+    aside = BESIDE * (number % BESIDES - 1)
+    return _turn_beside(start, share / FINER, aside, site, car)
 
 
 def _turn_beside(start: Pose, share: float, aside: float, site: Site, car: Shape) -> Candidate:
@@ -107,7 +107,7 @@ def _turn_beside(start: Pose, share: float, aside: float, site: Site, car: Shape
 
 
 def into_perpendicular(start: Pose, share: int, site: Site, car: Shape) -> Candidate:
-    """Return the same thought of for later, at 1, 0.85, 0.7 or 0.55 of the lock; dearer the less room it leaves."""
+    """Return the same after other moves, at 1, 0.85, 0.7 or 0.55 of the lock; dearer with lines that are too short."""
     after = _turn_beside(start, float(share), 0.0, site, car)
     lack = 0.0
     for line in (after.move.pieces[0].length, after.move.pieces[4].length):

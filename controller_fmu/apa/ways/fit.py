@@ -40,9 +40,9 @@ def stands_out(attempt: int) -> bool:
     return attempt % LEVEL == 1
 
 
-def under_way(attempt: int) -> int:
-    """Return the attempt to plan with from within, as far out as this one."""
-    return LEVEL * UNDER_WAY + attempt % LEVEL
+def under_way(attempt: int, wide: bool) -> int:
+    """Return the attempt to plan with from within, as far out as this one; ``wide``: see :func:`is_wide`."""
+    return LEVEL * (UNDER_WAY if wide else UNDER_WAY + 1) + attempt % LEVEL
 
 
 def is_wide(attempt: int) -> bool:

@@ -3,7 +3,15 @@
 from typing import NamedTuple
 
 from controller_fmu.apa.around.guard import Sight
-from controller_fmu.apa.around.surroundings import Around, is_rest_free, is_settled, is_sure, shape_of, sight_of
+from controller_fmu.apa.around.surroundings import (
+    Around,
+    Settled,
+    is_rest_free,
+    is_sure,
+    settled_in,
+    shape_of,
+    sight_of,
+)
 from controller_fmu.apa.manoeuvre_chart import Guard as StepGuard
 from controller_fmu.apa.manoeuvre_chart import Step, step_transition
 from controller_fmu.apa.out.limits import CUTS, MOVES, SHIFTS, margins_out, next_attempt_out, with_lock
@@ -33,6 +41,8 @@ LEAD = 0.15
 pedals wind up, the driven wheels spin at full lock, and the car turns by twice what its odometry says."""
 SHIFTS_PERPENDICULAR = 7
 """Most shifts into a perpendicular slot (GB/T 41630)."""
+TRIED = 4
+"""After so many shifts a car in place does not drive deeper only to be surer that it is in the slot."""
 MOST_CUTS = 8
 """A car whose moves were cut short more often than this finds no way."""
 
@@ -147,10 +157,10 @@ def park(
     state = state._replace(sight=Sight())
     if state.step in (Step.DRIVE, Step.HALT, Step.SET_WHEEL):
         state = _looked_around(state, place, around, inputs, params)
-    settled = state.step == Step.PLAN and is_settled(inputs, around, params)
+    settled = settled_in(inputs, around, params) if state.step == Step.PLAN else Settled()
     step = step_transition(state.step, _guards(state, place, inputs, settled, allowed, params))
     limit = params.apa.end
-    missed = state.step == Step.PLAN and not settled and is_in_place(place, limit.lateral, limit.heading)
+    missed = state.step == Step.PLAN and not settled.enough and is_in_place(place, limit.lateral, limit.heading)
     nothing_better = state.plan.status == NOTHING or not is_sure(inputs, around, params)
     state = state._replace(missed=missed and nothing_better and not state.out)
     return _moved_on(state, step, place, steering, inputs.measured_speed, params)
@@ -171,7 +181,7 @@ def _looked_around(
 
 
 def _guards(
-    state: Parking, place: CarAtSite, inputs: ControllerInput, settled: bool, allowed: bool, params: ControllerParams
+    state: Parking, place: CarAtSite, inputs: ControllerInput, settled: Settled, allowed: bool, params: ControllerParams
 ) -> int:
     apa = params.apa
     standing = abs(inputs.measured_speed) <= STANDING
@@ -193,7 +203,8 @@ def _guards(
     wheel = inputs.steering_wheel_angle
     set_up = abs(wheel - state.wheel) <= params.threshold.wheel
     at_end = tracked.left <= AT_END or state.cut
-    in_place = settled and (right or (stuck and well_enough and allowed))
+    well_settled = settled.surely or (settled.enough and state.shifts >= TRIED)
+    in_place = (well_settled and right) or (settled.enough and stuck and well_enough and allowed)
     if state.out:
         in_place = plan.status == FOUND and plan.moves == 0 and allowed
     return (

@@ -40,7 +40,7 @@ LESS_BESIDE = 0.01
 """The margin to kerb or wall is taken this much [m] smaller, so that a target at that margin is free."""
 BEHIND = 0.08
 """A perpendicular slot's wall or wheel stop is left so far [m] behind the car at least."""
-OUT_OF_LINE = 0.5
+OUT_OF_LINE = 0.8
 """Neighbours of whom one stands so much [m] further out than the other make no line."""
 DEEPER = 0.2
 """Where nothing is heard behind a perpendicular slot no move goes more than so far [m] deeper than the car is to stand:

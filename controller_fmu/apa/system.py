@@ -6,7 +6,7 @@ from controller_fmu.apa.around.guard import GuardState, learn_brake, listen
 from controller_fmu.apa.around.local_map import begin_map, heard, moved
 from controller_fmu.apa.around.nearer import explained, nearer_than_thought, pressed
 from controller_fmu.apa.around.relocate import braked, walled
-from controller_fmu.apa.around.row import slot_of_map
+from controller_fmu.apa.around.row import driven_on, slot_of_map
 from controller_fmu.apa.around.shifted import followed, relocated
 from controller_fmu.apa.around.surroundings import Around, shape_of
 from controller_fmu.apa.chart import Guard, Mode, transition
@@ -144,6 +144,8 @@ def _parked_on(
             here = found.map
             shifts = found.shifts
         guard = listen(guard, inputs.ultrasonic, here, params)
+        if driving and abs(inputs.measured_speed) <= STANDING:
+            here = driven_on(here, guard.tracks, inputs.ultrasonic, params)
         if halted and parking.sight.unknown and state.watch.blocked * 1e-9 > LOOKED_FOR:
             there = nearer_than_thought(here, inputs.ultrasonic, params)
             if there.found:

@@ -9,6 +9,7 @@ from controller_fmu.apa.around.local_map import WALL as WALL_BEHIND
 from controller_fmu.apa.around.local_map import begin_map, ear_at, expected, heard, moved
 from controller_fmu.apa.around.row import (
     as_found,
+    driven_on,
     is_certain,
     is_heard,
     is_in_the_middle,
@@ -17,7 +18,7 @@ from controller_fmu.apa.around.row import (
     slot_of_map,
     without_gone,
 )
-from controller_fmu.apa.around.surroundings import shape_of
+from controller_fmu.apa.around.surroundings import Around, settled_in, shape_of
 from controller_fmu.apa.hearing.edge import Heard
 from controller_fmu.apa.hearing.line_fit import Sums, add
 from controller_fmu.apa.hearing.mute import MUTE
@@ -25,8 +26,8 @@ from controller_fmu.apa.hearing.search import SearchState, slot_of
 from controller_fmu.apa.hearing.search_side import _in_gap
 from controller_fmu.apa.hearing.side import GAP, NEXT_WALL, START, SideState
 from controller_fmu.apa.params import MapParams
-from controller_fmu.apa.slot import UNSEEN, Kind, Slot, line_of
-from controller_fmu.interface import ControllerParams
+from controller_fmu.apa.slot import UNSEEN, Kind, Margins, Slot, line_of, target_of
+from controller_fmu.interface import ControllerInput, ControllerParams
 from modelkit.vocabulary import Pose
 from tests.controller.test_apa_relocate import READINGS, SENSORS, inputs_at
 
@@ -61,6 +62,23 @@ def test_a_neighbour_behind_whom_the_rear_hears_past_has_gone(heard_at: float, k
     readings = (FURTHEST,) * 5 + (1.9, heard_at) + (FURTHEST,) * 5
     tracks = (Track(),) * 5 + (Track(1.9, 1.9), Track(heard_at, heard_at)) + (Track(),) * 5
     assert without_gone(here, tracks, readings, PARAMS).empty_a == gone
+
+
+@pytest.mark.parametrize(
+    ("one", "two", "kind", "by"),
+    [(1.5, 1.6, 1, 0.9), (5.0, 5.0, 1, 1.2), (1.5, 0.6, 1, 0.0), (MUTE, 1.5, 1, 0.0), (1.5, 1.6, 2, 0.0)],
+)
+def test_a_neighbour_ahead_whom_the_front_hears_past_has_driven_on(
+    one: float, two: float, kind: int, by: float
+) -> None:
+    front = PARAMS.car.wheelbase + PARAMS.car.front_overhang
+    here = begin_map(between(kind), Pose(6.0 - front - 0.6, -0.9, 0.0), MAP)
+    readings = (FURTHEST, one, two) + (FURTHEST,) * 9
+    tracks = (Track(), Track(one, one), Track(two, two)) + (Track(),) * 9
+    on = driven_on(here, tracks, readings, PARAMS)
+    assert on.b.x - here.b.x == pytest.approx(by, abs=0.02)
+    assert on.b.y == here.b.y
+    assert (on.b.xx > here.b.xx) == (by > 0.0)
 
 
 def test_echoes_of_a_flank_do_not_move_its_corner_across_the_road() -> None:
@@ -102,6 +120,31 @@ def test_one_who_has_moved_in_a_row_across_the_road_tells_neither_direction_nor_
         slot = slot_of_map(here, between(Kind.PERPENDICULAR, 2.8), MAP)
         assert slot.a.heading == pytest.approx(0.0, abs=1e-9)
         assert slot.a.y + line_of(slot) == pytest.approx(min(a, b, key=abs), abs=0.02), "in line with the one who stays"
+
+
+@pytest.mark.parametrize(("out", "least", "most"), [(0.3, 0.4, 3.0), (0.9, 0.0, 1e-9)])
+def test_one_who_had_left_the_row_before_he_was_found_tells_no_direction(out: float, least: float, most: float) -> None:
+    here = begin_map(between(Kind.PERPENDICULAR, 2.8)._replace(b_out=out), Pose(1.4, -3.0, 0.5 * math.pi), MAP)
+    assert least <= slot_heading(here, MAP) / DEG <= most
+
+
+@pytest.mark.parametrize(
+    ("out", "kind", "surely", "enough"),
+    [(0.08, 2, True, True), (0.115, 2, False, True), (0.115, 1, True, True), (0.135, 1, False, False)],
+)
+def test_a_car_across_the_road_that_stands_out_is_parked_if_nothing_leads_deeper(
+    out: float, kind: int, surely: bool, enough: bool
+) -> None:
+    slot = between(kind, 2.8 if kind == Kind.PERPENDICULAR else 6.0)
+    shape = shape_of(PARAMS)
+    target = target_of(slot, shape, Margins())
+    pose = target._replace(y=target.y + out)
+    here = begin_map(slot, pose, MAP)
+    readings = tuple(
+        expected(ear_at(mount, pose, 1.0, SENSORS.half_angle), here).echo.distance for mount in SENSORS.mounts
+    )
+    settled = settled_in(ControllerInput(odometry=pose, ultrasonic=readings), Around(slot, here), PARAMS)
+    assert settled == (surely, enough)
 
 
 @pytest.mark.parametrize("gone", [0.0, 0.6])

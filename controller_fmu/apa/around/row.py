@@ -3,8 +3,9 @@
 import math
 
 from controller_fmu.apa.around.closing import Track
-from controller_fmu.apa.around.local_map import LocalMap, ear_on, expected
-from controller_fmu.apa.around.thing import Thing
+from controller_fmu.apa.around.local_map import B, LocalMap, ear_on, expected, with_neighbour
+from controller_fmu.apa.around.shifted import MOST, UNSURE, shifted
+from controller_fmu.apa.around.thing import Thing, wider
 from controller_fmu.apa.hearing.mute import is_mute
 from controller_fmu.apa.params import MapParams
 from controller_fmu.apa.slot import UNSEEN, Kind, Slot, flush_with
@@ -21,8 +22,12 @@ FOUND = 0.08
 """How far out one corner is found against the other is unsure by this [m]: the odometry has turned since."""
 FOUND_DOUBT = 0.25
 """Where they contradict it, one of them was perhaps not found well."""
+FAR_OUT = 0.7
+"""Corners of whom one stands so much [m] further out than the other tell no direction: one had left the row before."""
 MISSED = 0.4
 """What is heard so much [m] further off than a neighbour should be is something else."""
+LISTENED = 3.5
+"""Neighbours beside a car in a perpendicular slot are listened for up to so far [m]."""
 ASIDE = 0.12
 """A car in a perpendicular slot stands so much [m] nearer to one neighbour than to the middle at most."""
 HAS_MOVED = 0.2
@@ -110,6 +115,8 @@ def slot_heading(here: LocalMap, params: MapParams) -> float:
     dx = max(here.b.x - here.a.x, 1.0)
     line = math.atan2(here.b.y - here.a.y, dx)
     corners = dx * dx / (2.0 * STAGGER * STAGGER + here.a.yy + here.b.yy)
+    if here.kind == Kind.PERPENDICULAR and abs(line - both) * dx > FAR_OUT:
+        corners = 0.0
     total = corners * (line - both)
     weight = a + b + corners
     if here.walled:
@@ -157,6 +164,21 @@ def without_gone(
     """
     gone = _hears_past(here, tracks, readings, 5, params) and _hears_past(here, tracks, readings, 6, params)
     return here._replace(empty_a=here.empty_a or gone) if here.kind == Kind.PARALLEL else here
+
+
+def driven_on(
+    here: LocalMap, tracks: tuple[Track, ...], readings: tuple[float, ...], params: ControllerParams
+) -> LocalMap:
+    """Return the map with the neighbour ahead in a parallel slot as far on as both middle sensors of the front hear."""
+    if here.kind != Kind.PARALLEL or here.empty_b:
+        return here
+    one = expected(ear_on(here, params.car.ultrasonic, 1), here)
+    two = expected(ear_on(here, params.car.ultrasonic, 2), here)
+    past = _hears_past(here, tracks, readings, 1, params) and _hears_past(here, tracks, readings, 2, params)
+    if not past or one.who != B or two.who != B:
+        return here
+    way = min(tracks[1].now - one.echo.distance, tracks[2].now - two.echo.distance, MOST)
+    return with_neighbour(here, B, wider(shifted(here, B, -way).b, UNSURE, 0.0))
 
 
 def _hears_past(
@@ -210,7 +232,7 @@ def _is_missed(here: LocalMap, readings: tuple[float, ...], number: int, params:
     sensors = params.car.ultrasonic
     ear = ear_on(here, sensors, number)
     echo = expected(ear, here._replace(walled=False)).echo
-    return echo.distance < params.apa.map.heard and readings[number] > echo.distance + MISSED
+    return echo.distance < LISTENED and readings[number] > echo.distance + MISSED
 
 
 def line_unsure(here: LocalMap) -> float:

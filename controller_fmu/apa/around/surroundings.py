@@ -11,7 +11,7 @@ from controller_fmu.apa.around.row import is_certain, is_heard, is_in_the_middle
 from controller_fmu.apa.around.shifted import Shifts
 from controller_fmu.apa.hearing.mute import SLOWLY, is_waited_for
 from controller_fmu.apa.outline import Shape, clearance, outline_rate, sure_steps
-from controller_fmu.apa.slot import Site, Slot, mirror_of, stands_out_by
+from controller_fmu.apa.slot import Kind, Site, Slot, mirror_of, stands_out_by
 from controller_fmu.apa.tracking import Tracked
 from controller_fmu.apa.ways.move import Move, point_at
 from controller_fmu.common.slot_frame import SlotFrame, to_slot, to_world
@@ -19,7 +19,9 @@ from controller_fmu.interface import ControllerInput, ControllerParams
 from modelkit.vocabulary import Gear, Pose
 
 DOUBT = 0.5
-"""The line between the neighbours' corners is taken to lie further in by this share of its standard deviation."""
+"""The line between the neighbours' corners is taken to lie further in by this share of its standard deviation,"""
+DOUBT_AT_FIRST = 1.2
+"""and by this beside a perpendicular slot, as long as a way leads deeper."""
 ROLLS = 0.1
 """A car in the move's gear that goes faster [m/s] the other way slips, or rolls down a slope, and is stopped."""
 LOOK = 0.2
@@ -55,12 +57,23 @@ def shape_of(params: ControllerParams) -> Shape:
     )
 
 
-def is_settled(inputs: ControllerInput, around: Around, params: ControllerParams) -> bool:
-    """Return whether a car that stands as planned is parked: neighbours are heard on both sides, it is in the slot."""
+class Settled(NamedTuple):
+    """Whether a car that stands as planned is parked: neighbours are heard on both sides, it is in the slot."""
+
+    surely: bool = False
+    enough: bool = False
+    """It is so if no way leads deeper."""
+
+
+def settled_in(inputs: ControllerInput, around: Around, params: ControllerParams) -> Settled:
+    """Return whether a car that stands as planned is parked."""
     slot = around.slot
     pose = to_slot(inputs.odometry, SlotFrame(slot.a, mirror_of(slot)))
-    out = stands_out_by(pose, slot, shape_of(params)) + DOUBT * line_unsure(around.map)
-    return out <= params.apa.end.out and is_sure(inputs, around, params)
+    spare = params.apa.end.out - stands_out_by(pose, slot, shape_of(params))
+    unsure = line_unsure(around.map)
+    sure = is_sure(inputs, around, params)
+    doubt = DOUBT_AT_FIRST if slot.kind == Kind.PERPENDICULAR else DOUBT
+    return Settled(sure and spare >= doubt * unsure, sure and spare >= DOUBT * unsure)
 
 
 def is_sure(inputs: ControllerInput, around: Around, params: ControllerParams) -> bool:

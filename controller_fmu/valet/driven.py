@@ -29,7 +29,7 @@ from controller_fmu.valet.nearby import Nearby, Rest, hear_nearby, is_in_gap, la
 from controller_fmu.valet.params import ValetParams
 from controller_fmu.valet.rolling import Ahead, ahead_of, aim_at, joint_of, turns_already
 from controller_fmu.valet.search import Search, shallower
-from controller_fmu.valet.sight import SEEN_CORNERS, Sight, look, remembered, scene_of
+from controller_fmu.valet.sight import SEEN_CORNERS, Sight, heard_again, look, remembered, scene_of
 from controller_fmu.valet.slot import body_of, goal_in, goal_of, stands_out
 from controller_fmu.valet.watch import Watch
 from modelkit.car import largest_curvature
@@ -193,7 +193,8 @@ def seen_on(store: PlanStore, state: ValetState, inputs: ControllerInput, params
     scene = scene_of(store, params, state.seen)
     rest = state.path.pieces[state.piece]._replace(way=direction * max(coming.left, AT_END))
     sight = look(inputs.ultrasonic, pose, rest, inputs.measured_speed, scene, params)
-    return state._replace(tracked=Tracked(left, at, off.lateral, off.heading, angle, coming), sight=sight)
+    tracked = Tracked(left, at, off.lateral, off.heading, angle, coming)
+    return state._replace(tracked=tracked, sight=heard_again(sight, state.sight))
 
 
 def led_back(lateral: float, curvature: float, params: ValetParams) -> float:

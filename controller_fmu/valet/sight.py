@@ -41,6 +41,8 @@ CLOSEST = 0.07
 """But where the move ends before that, up to so much [m]."""
 BOTH = 0.25
 """What a slot ends at is heard by both sensors that look straight ahead, as far off but for this [m]."""
+SAME = 0.8
+"""What the other of them hears of it lies no farther [m] from there."""
 AGAIN = 0.1
 """A standing car sets out again when there is so much more room [m]."""
 SEEN_CORNERS = CORNERS - MAP_CORNERS
@@ -104,6 +106,14 @@ def look(
     if params.search.active:
         fast = min(fast, math.sqrt(2.0 * drive.deceleration * max(leading - CLOSE, 0.0)))
     return Sight(fast, room <= stop, straight, echo)
+
+
+def heard_again(sight: Sight, before: Sight) -> Sight:
+    """Return a sight after another: what both sensors heard straight ahead is so if one of them misses an echo now."""
+    x = sight.echo.x - before.echo.x
+    y = sight.echo.y - before.echo.y
+    same = sight.blocked and before.blocked and before.ahead and x * x + y * y < SAME * SAME
+    return sight._replace(ahead=sight.ahead or same)
 
 
 def _swinging_corner(piece: Piece) -> int:

@@ -24,6 +24,7 @@ from controller_fmu.sensing.around import lay_end
 from controller_fmu.sensing.gap import DEEP, Gap, GapLayout
 from controller_fmu.valet.chart import Step
 from controller_fmu.valet.found.corrected import corrected, turned_gap
+from controller_fmu.valet.found.way_back import MARGIN, way_back
 from controller_fmu.valet.given import as_parameter
 from controller_fmu.valet.nearby import Nearby, Rest, hear_nearby, is_in_gap, lay_nearby, put_nearby
 from controller_fmu.valet.params import ValetParams
@@ -43,6 +44,8 @@ LEARNT = 0.6
 EARLIEST = 0.02
 REGAINED = 0.5
 """Way [m]."""
+BACKS = 3
+"""A car goes back the way it came no more often in one drive."""
 LEAST_MARGIN = 0.03
 """A way into a slot that was found that comes nearer [m] to what was heard is not driven: odometry drifts more."""
 
@@ -92,6 +95,10 @@ class ValetState(NamedTuple):
     """The slot from outside, as it is told now."""
     nearby: Nearby = Nearby()
     """What is heard on the way into a slot that was found."""
+    back: Path = Path()
+    """The way it came, which it drives back if none leads on; without pieces: nowhere."""
+    backs: int = 0
+    """How often it did."""
     resumes: bool = False
     """Switched off on the way into a slot, which is still known."""
     speed: float = 0.0
@@ -127,6 +134,10 @@ def planned_on(store: PlanStore, state: ValetState, inputs: ControllerInput, par
     if params.search.active and stands_out(state.search.gap, params) > params.search.stand_out:
         reason = Reason.SLOT_TOO_SHALLOW
     plans = state.plans + 1 if state.searched == 0 else state.plans
+    if reason in (Reason.BLOCKED, Reason.NO_PATH) and state.back.used > 0:
+        backs = state.backs + 1
+        path = state.back
+        return state._replace(request=request, searched=count, plans=plans, path=path, back=Path(), backs=backs)
     return state._replace(request=request, searched=count, plans=plans, path=path, reason=reason, sight=Sight())
 
 
@@ -265,7 +276,10 @@ def _to_plan_anew(store: PlanStore, state: ValetState, params: ValetParams) -> V
     state = state._replace(nearby=state.nearby._replace(in_the_way=False))
     clocks = state.watch._replace(blocked=0)
     sought = shallower(state.search, state.sight.echo)
-    state = state._replace(searched=0, path=Path(), watch=clocks)
+    back = Path()
+    if params.search.active and state.backs < BACKS and state.path.margin > MARGIN:
+        back = way_back(state.path, state.piece, state.tracked.left)
+    state = state._replace(searched=0, path=Path(), watch=clocks, back=back)
     if not state.sight.blocked:
         return state
     if sought.gap.depth < state.search.gap.depth and state.sight.ahead:

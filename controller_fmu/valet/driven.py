@@ -23,6 +23,7 @@ from controller_fmu.planning.task import Corner, Request, drive
 from controller_fmu.sensing.around import lay_end
 from controller_fmu.sensing.gap import DEEP, Gap, GapLayout
 from controller_fmu.valet.chart import Step
+from controller_fmu.valet.found.beside import CYCLES, Beside, hear_beside, put_beside
 from controller_fmu.valet.found.corrected import corrected, turned_gap
 from controller_fmu.valet.found.way_back import MARGIN, way_back
 from controller_fmu.valet.given import as_parameter
@@ -95,6 +96,8 @@ class ValetState(NamedTuple):
     """The slot from outside, as it is told now."""
     nearby: Nearby = Nearby()
     """What is heard on the way into a slot that was found."""
+    beside: Beside = Beside()
+    """What is heard at the end of the way, standing."""
     back: Path = Path()
     """The way it came, which it drives back if none leads on; without pieces: nowhere."""
     backs: int = 0
@@ -230,6 +233,20 @@ def heard_on(
     return state._replace(nearby=nearby)
 
 
+def listened_on(
+    store: PlanStore, state: ValetState, inputs: ControllerInput, params: ValetParams, dt_ns: int
+) -> ValetState:
+    """Return the valet that has listened to what is beside it at the end of its way, where it is put right by that."""
+    told_anew = is_told_anew(state.watch.running, dt_ns, params.car.ultrasonic.cycle)
+    if not told_anew or state.beside.cycles >= CYCLES:
+        return state
+    beside = hear_beside(state.beside, inputs, params)
+    if beside.cycles < CYCLES:
+        return state._replace(beside=beside)
+    nearby = put_beside(store, state.nearby, beside, inputs.odometry, state.search, params)
+    return state._replace(beside=beside, nearby=nearby)
+
+
 def moved_on(
     store: PlanStore, state: ValetState, step: int, inputs: ControllerInput, params: ValetParams
 ) -> ValetState:
@@ -279,7 +296,7 @@ def _to_plan_anew(store: PlanStore, state: ValetState, params: ValetParams) -> V
     back = Path()
     if params.search.active and state.backs < BACKS and state.path.margin > MARGIN:
         back = way_back(state.path, state.piece, state.tracked.left)
-    state = state._replace(searched=0, path=Path(), watch=clocks, back=back)
+    state = state._replace(searched=0, path=Path(), watch=clocks, back=back, beside=Beside())
     if not state.sight.blocked:
         return state
     if sought.gap.depth < state.search.gap.depth and state.sight.ahead:

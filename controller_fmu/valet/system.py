@@ -16,11 +16,13 @@ from controller_fmu.valet.driven import (
     gap_now,
     goal_now,
     heard_on,
+    listened_on,
     moved_on,
     planned_on,
     room_beside_car,
     seen_on,
 )
+from controller_fmu.valet.found.beside import CYCLES
 from controller_fmu.valet.found.second_look import looked_again
 from controller_fmu.valet.nearby import forget_nearby
 from controller_fmu.valet.params import ValetParams
@@ -52,6 +54,8 @@ def valet_sample(
         state = seen_on(store, state, inputs, params)
         if params.search.active and state.step in (Step.DRIVE, Step.HALT):
             state = heard_on(store, state, inputs, params, dt_ns)
+        if listens(state, params):
+            state = listened_on(store, state, inputs, params, dt_ns)
     command = Command(state.step, state.wheel, state.sight.blocked)
     clocks = watch(state.watch, command, inputs, params, dt_ns)
     reason = state.reason
@@ -69,7 +73,7 @@ def guards_of(store: PlanStore, state: ValetState, inputs: ControllerInput, para
     speed = inputs.measured_speed
     standing = abs(speed) <= params.threshold.standstill
     wheel = inputs.steering_wheel_angle
-    straight = abs(wheel) <= params.threshold.wheel
+    straight = abs(wheel) <= params.threshold.wheel and not (listens(state, params) and state.beside.cycles < CYCLES)
     rolls_after = rest_before(state.path, state.piece, params).after if state.step == Step.SET_WHEEL else 0.0
     turned = max(params.threshold.wheel, params.car.steering.rate_limit * rolls_after)
     stop = abs(speed) * params.drive.delay + 0.5 * speed * speed / params.drive.brake
@@ -97,6 +101,12 @@ def guards_of(store: PlanStore, state: ValetState, inputs: ControllerInput, para
         | bit(Guard.IN_PLACE, straight and in_place)
         | bit(Guard.MISSED, straight and not in_place)
     )
+
+
+def listens(state: ValetState, params: ValetParams) -> bool:
+    """Return whether the car is at the end of a way into a slot that it found, and is put right by what it hears."""
+    found = params.search.active and state.search.told == SlotKind.NONE
+    return found and state.step == Step.STRAIGHTEN and state.plans < CORRECTIONS
 
 
 def is_in_place(pose: Pose, goal: Pose, params: ValetParams) -> bool:

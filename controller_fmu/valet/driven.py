@@ -23,9 +23,9 @@ from controller_fmu.planning.task import Corner, Request, drive
 from controller_fmu.sensing.around import lay_end
 from controller_fmu.sensing.gap import DEEP, Gap, GapLayout
 from controller_fmu.valet.chart import Step
-from controller_fmu.valet.found.beside import CYCLES, Beside, hear_beside, put_beside
+from controller_fmu.valet.found.beside import CYCLES, SideEchoes, hear_beside, put_beside
 from controller_fmu.valet.found.corrected import corrected, turned_gap
-from controller_fmu.valet.found.way_back import MARGIN, way_back
+from controller_fmu.valet.found.way_back import way_back
 from controller_fmu.valet.given import as_parameter
 from controller_fmu.valet.nearby import Nearby, Rest, hear_nearby, is_in_gap, lay_nearby, put_nearby
 from controller_fmu.valet.params import ValetParams
@@ -96,7 +96,7 @@ class ValetState(NamedTuple):
     """The slot from outside, as it is told now."""
     nearby: Nearby = Nearby()
     """What is heard on the way into a slot that was found."""
-    beside: Beside = Beside()
+    beside: SideEchoes = SideEchoes()
     """What is heard at the end of the way, standing."""
     back: Path = Path()
     """The way it came, which it drives back if none leads on; without pieces: nowhere."""
@@ -294,9 +294,9 @@ def _to_plan_anew(store: PlanStore, state: ValetState, params: ValetParams) -> V
     clocks = state.watch._replace(blocked=0)
     sought = shallower(state.search, state.sight.echo)
     back = Path()
-    if params.search.active and state.backs < BACKS and state.path.margin > MARGIN:
+    if params.search.active and state.backs < BACKS and state.path.margin > 0.0:
         back = way_back(state.path, state.piece, state.tracked.left)
-    state = state._replace(searched=0, path=Path(), watch=clocks, back=back, beside=Beside())
+    state = state._replace(searched=0, path=Path(), watch=clocks, back=back, beside=SideEchoes())
     if not state.sight.blocked:
         return state
     if sought.gap.depth < state.search.gap.depth and state.sight.ahead:

@@ -35,6 +35,11 @@ from modelkit.vocabulary import Pose
 DRIVEN_ON = 0.3
 CORRECTIONS = 4
 """After so many plans a car stays in a slot where it is, even if what it heard on the way in tells a better place."""
+NEARLY = 0.3
+"""A car is at the end of its way into a slot if it is no more [m], and no more [rad], off it."""
+NEARLY_TURNED = 0.1
+LAST_CORRECTIONS = 7
+"""After so many also if what its sides hear, as it stands at the end, tells one."""
 CORRECTION_ROOM = 0.55
 """And in a slot that leaves it less room [m] to its neighbours than this."""
 
@@ -54,7 +59,7 @@ def valet_sample(
         state = seen_on(store, state, inputs, params)
         if params.search.active and state.step in (Step.DRIVE, Step.HALT):
             state = heard_on(store, state, inputs, params, dt_ns)
-        if listens(state, params):
+        if listens(state, inputs.odometry, params):
             state = listened_on(store, state, inputs, params, dt_ns)
     command = Command(state.step, state.wheel, state.sight.blocked)
     clocks = watch(state.watch, command, inputs, params, dt_ns)
@@ -73,7 +78,9 @@ def guards_of(store: PlanStore, state: ValetState, inputs: ControllerInput, para
     speed = inputs.measured_speed
     standing = abs(speed) <= params.threshold.standstill
     wheel = inputs.steering_wheel_angle
-    straight = abs(wheel) <= params.threshold.wheel and not (listens(state, params) and state.beside.cycles < CYCLES)
+    straight = abs(wheel) <= params.threshold.wheel and not (
+        listens(state, inputs.odometry, params) and state.beside.cycles < CYCLES
+    )
     rolls_after = rest_before(state.path, state.piece, params).after if state.step == Step.SET_WHEEL else 0.0
     turned = max(params.threshold.wheel, params.car.steering.rate_limit * rolls_after)
     stop = abs(speed) * params.drive.delay + 0.5 * speed * speed / params.drive.brake
@@ -83,7 +90,7 @@ def guards_of(store: PlanStore, state: ValetState, inputs: ControllerInput, para
     at_end = tracked.left <= AT_END and state.piece + 1 >= state.path.used
     goal = state.request.goal
     moved = False
-    if params.search.active and standing and state.plans < CORRECTIONS:
+    if params.search.active and standing and (state.plans < CORRECTIONS or listens(state, inputs.odometry, params)):
         gap = gap_now(store, state, params)
         if room_beside_car(gap, params) > CORRECTION_ROOM:
             goal = goal_now(state, gap, params)
@@ -103,21 +110,29 @@ def guards_of(store: PlanStore, state: ValetState, inputs: ControllerInput, para
     )
 
 
-def listens(state: ValetState, params: ValetParams) -> bool:
+def listens(state: ValetState, pose: Pose, params: ValetParams) -> bool:
     """Return whether the car is at the end of a way into a slot that it found, and is put right by what it hears."""
-    found = params.search.active and state.search.told == SlotKind.NONE
-    return found and state.step == Step.STRAIGHTEN and state.plans < CORRECTIONS
+    if not params.search.active or state.search.told != SlotKind.NONE or state.step != Step.STRAIGHTEN:
+        return False
+    off = seen_from(state.request.goal, pose)
+    there = abs(off.x) < NEARLY and abs(off.y) < NEARLY and abs(off.heading) < NEARLY_TURNED
+    return there and state.plans < LAST_CORRECTIONS
 
 
 def is_in_place(pose: Pose, goal: Pose, params: ValetParams) -> bool:
     """Return whether a pose is as near to the goal as the drive may end."""
+    off = seen_from(goal, pose)
+    end = params.end
+    return abs(off.x) <= end.position and abs(off.y) <= end.position and abs(off.heading) <= end.heading
+
+
+def seen_from(goal: Pose, pose: Pose) -> Pose:
+    """Return a pose as the goal has it: along and across its heading [m], turned against it [rad]."""
     dx = pose.x - goal.x
     dy = pose.y - goal.y
-    along = dx * math.cos(goal.heading) + dy * math.sin(goal.heading)
-    across = dy * math.cos(goal.heading) - dx * math.sin(goal.heading)
-    end = params.end
-    turned = abs(wrap_angle(pose.heading - goal.heading)) <= end.heading
-    return abs(along) <= end.position and abs(across) <= end.position and turned
+    c = math.cos(goal.heading)
+    s = math.sin(goal.heading)
+    return Pose(dx * c + dy * s, dy * c - dx * s, wrap_angle(pose.heading - goal.heading))
 
 
 def sought_on(

@@ -12,6 +12,7 @@ from controller_fmu.sensing.heard_store import put_heard
 from controller_fmu.valet.nearby import FRONT_EARS, REAR_EARS, Nearby
 from controller_fmu.valet.params import ValetParams
 from controller_fmu.valet.search import Search
+from modelkit.geometry import Point
 from modelkit.vocabulary import Pose
 
 CYCLES = 5
@@ -23,8 +24,11 @@ SENSORS = (REAR_EARS[1], FRONT_EARS[1], REAR_EARS[3], FRONT_EARS[3])
 KERB_STEPS = 10
 """A kerb goes on between what both of a side hear: in so many steps, places of one thing."""
 
+PART = 0.15
+"""What one sensor hears of a neighbour is seen over so much [m] to either side of its axis."""
 
-class Beside(NamedTuple):
+
+class SideEchoes(NamedTuple):
     """Readings of ``SENSORS`` added up [m], how many of them heard something, and of how many cycles."""
 
     sums: tuple[float, ...] = (0.0,) * 4
@@ -32,47 +36,57 @@ class Beside(NamedTuple):
     cycles: int = 0
 
 
-def hear_beside(state: Beside, inputs: ControllerInput, params: ValetParams) -> Beside:
+def hear_beside(state: SideEchoes, inputs: ControllerInput, params: ValetParams) -> SideEchoes:
     """Return what was heard beside a standing car with the readings of one more cycle."""
     far = HEARD * params.car.ultrasonic.max_range
     readings = tuple(inputs.ultrasonic[sensor] for sensor in SENSORS)
     sums = tuple(state.sums[n] + (readings[n] if readings[n] < far else 0.0) for n in range(4))
     heard = tuple(state.heard[n] + (1 if readings[n] < far else 0) for n in range(4))
-    return Beside(sums, heard, state.cycles + 1)
+    return SideEchoes(sums, heard, state.cycles + 1)
 
 
 def put_beside(
-    store: PlanStore, nearby: Nearby, beside: Beside, pose: Pose, sought: Search, params: ValetParams
+    store: PlanStore, nearby: Nearby, beside: SideEchoes, pose: Pose, sought: Search, params: ValetParams
 ) -> Nearby:
-    """Return the ears with what stands beside a car at ``pose``: two places a side, along the road a kerb's line."""
+    """Return the ears with what stands beside a car at ``pose``: what each sensor hears, along the road a kerb."""
     ears = nearby.ears
     along = sought.gap.layout == GapLayout.ALONG
     for side in range(2):
-        if beside.heard[2 * side] > 0 and beside.heard[2 * side + 1] > 0 and (not along or side == sought.side):
-            rear = _echo(beside, 2 * side, pose, params)
-            front = _echo(beside, 2 * side + 1, pose, params)
-            which = SIDE_EARS[side]
-            for number in range(4):
-                if number == which:
-                    ear = _with_line(store, ears[number], number, rear, front, KERB_STEPS if along else 1)
-                    ears = ears[:number] + (ear,) + ears[number + 1 :]
+        rear = 2 * side
+        front = 2 * side + 1
+        both = beside.heard[rear] > 0 and beside.heard[front] > 0
+        for number in range(4):
+            if number == SIDE_EARS[side]:
+                ear = ears[number]
+                if along and both and side == sought.side:
+                    ends = (echo_at(beside, rear, 0.0, pose, params), echo_at(beside, front, 0.0, pose, params))
+                    ear = _with_line(store, ear, number, ends, KERB_STEPS)
+                for which in (rear, front):
+                    if not along and beside.heard[which] > 0:
+                        ends = (
+                            echo_at(beside, which, -PART, pose, params),
+                            echo_at(beside, which, PART, pose, params),
+                        )
+                        ear = _with_line(store, ear, number, ends, 1)
+                ears = ears[:number] + (ear,) + ears[number + 1 :]
     return nearby._replace(ears=ears)
 
 
-def _echo(beside: Beside, number: int, pose: Pose, params: ValetParams) -> Pose:
-    """Return where a sensor's echoes came from, if straight ahead of it."""
+def echo_at(beside: SideEchoes, number: int, on: float, pose: Pose, params: ValetParams) -> Point:
+    """Return where a sensor's echoes came from, straight ahead of it, or so far [m] on along the car."""
     at = sensor_at(params.car.ultrasonic.mounts[SENSORS[number]], pose)
     reading = beside.sums[number] / max(beside.heard[number], 1)
-    return Pose(at.x + reading * math.cos(at.heading), at.y + reading * math.sin(at.heading), at.heading)
+    x = at.x + reading * math.cos(at.heading) + on * math.cos(pose.heading)
+    return Point(x, at.y + reading * math.sin(at.heading) + on * math.sin(pose.heading))
 
 
-def _with_line(store: PlanStore, ear: SideEar, number: int, rear: Pose, front: Pose, steps: int) -> SideEar:
-    """Return an ear with the places from one to another; each is certain, as if heard twice."""
+def _with_line(store: PlanStore, ear: SideEar, number: int, ends: tuple[Point, Point], steps: int) -> SideEar:
+    """Return an ear with the places from one end to another; each is certain, as if heard twice."""
     places = ear.places
     for step in range(KERB_STEPS + 1):
         if step <= steps:
-            x = rear.x + step / steps * (front.x - rear.x)
-            y = rear.y + step / steps * (front.y - rear.y)
+            x = ends[0].x + step / steps * (ends[1].x - ends[0].x)
+            y = ends[0].y + step / steps * (ends[1].y - ends[0].y)
             places = put_heard(store, SIDES + number, places, x, y, step == 0)
             places = put_heard(store, SIDES + number, places, x, y, False)
     return ear._replace(places=places)

@@ -9,14 +9,12 @@ LEAST = 0.15
 """It goes back no less [m], or not at all."""
 DRIVEN = 0.02
 """Less of a piece [m] is not driven back."""
-MARGIN = 0.03
-"""Where the car has driven nothing stands; what is heard nearer [m] than half of this is in the way nevertheless."""
 
 
 def way_back(path: Path, piece: int, left: float) -> Path:
     """Return the way back over a path of which this piece was driven but for ``left`` [m], to the last change of gear.
 
-    Without pieces if there is hardly any.
+    Without pieces if there is hardly any; without a margin: where the car has driven nothing stands, whatever is heard.
     """
     begun = _driven(path, piece, left) > DRIVEN
     last = piece if begun else piece - 1
@@ -32,7 +30,7 @@ def way_back(path: Path, piece: int, left: float) -> Path:
     pieces = tuple(
         _back(path, last - number, rest if number == 0 else 0.0) if number < used else Piece() for number in range(PATH)
     )
-    return Path(used, MARGIN, total, pieces) if total > LEAST else Path()
+    return Path(used, 0.0, total, pieces) if total > LEAST else Path()
 
 
 def _came(path: Path, piece: int) -> Piece:

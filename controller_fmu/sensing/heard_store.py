@@ -26,6 +26,12 @@ def forget_side(store: PlanStore, side: int) -> None:
             store.ray_end_y[ray] = 0.0
 
 
+def forget_place(store: PlanStore, place: int) -> None:
+    """Forget one place: no echo came from there, and it belongs to nothing."""
+    store.heard_count[place] = 0
+    store.heard_joint[place] = 0
+
+
 def put_heard(store: PlanStore, side: int, count: int, x: float, y: float, broken: bool) -> int:
     """Take in an echo from a place; returns how many places the side has. The oldest is forgotten when it is full.
 

@@ -27,7 +27,7 @@ from controller_fmu.valet.found.beside import CYCLES, SideEchoes, hear_beside, p
 from controller_fmu.valet.found.corrected import corrected, turned_gap
 from controller_fmu.valet.found.way_back import way_back
 from controller_fmu.valet.given import as_parameter
-from controller_fmu.valet.nearby import Nearby, Rest, hear_nearby, is_in_gap, lay_nearby, put_nearby
+from controller_fmu.valet.nearby import Nearby, Rest, forget_under, hear_nearby, is_in_gap, lay_nearby, put_nearby
 from controller_fmu.valet.params import ValetParams
 from controller_fmu.valet.rolling import Ahead, ahead_of, aim_at, joint_of, turns_already
 from controller_fmu.valet.search import Search, shallower
@@ -120,6 +120,7 @@ def planned_on(store: PlanStore, state: ValetState, inputs: ControllerInput, par
         goal = goal_of(params, as_parameter(state.told, params.slot), pose)
         if params.search.active:
             gap = state.search.gap
+            forget_under(store, state.nearby, pose, params)
             goal = goal_now(state, gap_now(store, state, params), params)
             if gap.depth < DEEP:
                 lay_end(store, gap, state.search.lines)

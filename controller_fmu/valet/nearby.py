@@ -14,7 +14,7 @@ from controller_fmu.planning.task import drive
 from controller_fmu.sensing.around import point_in_gap
 from controller_fmu.sensing.ear import SideEar, listen
 from controller_fmu.sensing.gap import Gap
-from controller_fmu.sensing.heard_store import forget_side, put_heard, put_line
+from controller_fmu.sensing.heard_store import forget_place, forget_side, put_heard, put_line
 from controller_fmu.valet.params import ValetParams
 from modelkit.geometry import Point, outline, point_gap
 from modelkit.vocabulary import Pose
@@ -27,6 +27,8 @@ INSIDE = 0.06
 BEFORE = 1.0
 """Slots begin so far [m] before their corners."""
 STUB = 0.03
+UNDER = 0.03
+"""What is nearer [m] to the car, or inside of it, would touch it as the map has it, by ``STUB``."""
 STEP = 0.2
 """The rest of the way is looked along at steps of this [m]."""
 SURE = 2
@@ -55,6 +57,17 @@ def forget_nearby(store: PlanStore) -> None:
     """Forget what was heard on the way into a slot."""
     for ear in range(4):
         forget_side(store, SIDES + ear)
+
+
+def forget_under(store: PlanStore, state: Nearby, pose: Pose, params: ValetParams) -> None:
+    """Forget places that the car as it stands would touch: whatever was heard, it was elsewhere."""
+    car = params.car
+    body = outline(pose, car.wheelbase, car.front_overhang, car.rear_overhang, car.width)
+    for number in range(4):
+        first = (SIDES + number) * HEARD
+        for place in range(first, first + state.ears[number].places):
+            if point_gap(Point(store.heard_x[place], store.heard_y[place]), body) < UNDER:
+                forget_place(store, place)
 
 
 def hear_nearby(

@@ -6,18 +6,22 @@ from typing import Any
 import pytest
 from shapely.geometry import LineString, Polygon
 
-from controller_fmu.planning.plan import Piece
+from controller_fmu.interface import ControllerInput
+from controller_fmu.planning.plan import PATH, Path, Piece
 from controller_fmu.planning.plan_store import HEARD, SIDES, PlanStore
-from controller_fmu.planning.task import CORNERS, Corner, Scene
+from controller_fmu.planning.task import CORNERS, Corner, Scene, drive
 from controller_fmu.sensing.around import AroundGap, lay_around, point_in_gap
 from controller_fmu.sensing.ear import SideEar
 from controller_fmu.sensing.find_gap import gap_across
 from controller_fmu.sensing.gap import Gap, GapLayout
 from controller_fmu.sensing.heard_store import put_heard
+from controller_fmu.valet.found.beside import SENSORS, SideEchoes, hear_beside, put_beside
 from controller_fmu.valet.found.corrected import corrected, turned_gap
-from controller_fmu.valet.nearby import Nearby
+from controller_fmu.valet.found.way_back import way_back
+from controller_fmu.valet.nearby import Nearby, forget_under
 from controller_fmu.valet.params import ValetParams, ValetSearchParams
-from controller_fmu.valet.sight import look
+from controller_fmu.valet.search import Search
+from controller_fmu.valet.sight import Sight, heard_again, look
 from modelkit.store import new_store
 from modelkit.vocabulary import Pose
 from tests.valet.test_valet_search import WANTED, passed, row
@@ -123,3 +127,65 @@ def test_a_corner_that_is_as_good_as_touched_stops_the_car_though_the_map_has_it
         corners = ((x, y - 0.01), (x, y + 0.01), (x + 0.01, y + 0.01), (x + 0.01, y - 0.01))
         scene = Scene(tuple(Corner(*corner, 1) for corner in corners) + (Corner(),) * (CORNERS - 4))
         assert look((reading,) + (5.0,) * 11, Pose(), Piece(1.0), 0.0, scene, params).blocked == stops
+
+
+@pytest.mark.parametrize(("lost", "there"), [(0.1, True), (2.0, False)])
+def test_what_a_slot_ends_at_is_so_though_one_of_two_sensors_misses_an_echo(lost: Any, there: Any) -> None:
+    before = Sight(blocked=True, ahead=True, echo=Pose(5.0, 0.0, 0.0))
+    now = before._replace(ahead=False, echo=Pose(5.0, lost, 0.0))
+    assert heard_again(now, before).ahead == there
+    assert not heard_again(now._replace(blocked=False), before).ahead
+    assert not heard_again(now, before._replace(ahead=False)).ahead
+
+
+@pytest.mark.parametrize(("piece", "left", "used"), [(2, 0.3, 2), (2, 0.7, 1), (1, 0.0, 1), (3, 0.1, 1), (3, 0.95, 0)])
+def test_the_way_back_is_the_way_driven_to_the_last_change_of_gear(piece: Any, left: Any, used: Any) -> None:
+    ways = ((0.9, 0.1), (-0.5, 0.2), (-0.7, 0.0), (1.0, -0.2))
+    pieces = tuple(Piece(way, k) for way, k in ways) + (Piece(),) * (PATH - 4)
+    back = way_back(Path(4, 0.12, 3.1, pieces), piece, left)
+    assert back.used == used
+    at = Pose()
+    for way, k in ways[:piece]:
+        at = drive(at, way, k)
+    sense = math.copysign(1.0, ways[piece][0])
+    at = drive(at, ways[piece][0] - sense * left, ways[piece][1])
+    for number in range(back.used):
+        at = drive(at, back.pieces[number].way, back.pieces[number].k)
+    turned = {(2, 0.3): 1, (2, 0.7): 1, (1, 0.0): 1, (3, 0.1): 3}.get((piece, left))
+    if turned is not None:
+        there = Pose()
+        for way, k in ways[:turned]:
+            there = drive(there, way, k)
+        assert at == pytest.approx(there, abs=1e-9)
+
+
+def test_a_standing_car_is_put_right_by_what_both_sides_and_the_kerb_echo() -> None:
+    params = ValetParams()
+    car = params.car
+    middle = 0.5 * (car.wheelbase + car.front_overhang - car.rear_overhang)
+    for gap, pose, sides in (
+        (ACROSS, Pose(1.4, -2.0 + middle, -0.5 * math.pi), {SENSORS[0]: 0.6, SENSORS[3]: 0.4}),
+        (ALONG, Pose(2.75 - middle, -1.0, 0.0), {SENSORS[0]: 0.5, SENSORS[1]: 0.5}),
+    ):
+        readings = tuple(sides.get(sensor, car.ultrasonic.max_range) for sensor in range(12))
+        beside = SideEchoes()
+        for _ in range(3):
+            beside = hear_beside(beside, ControllerInput(ultrasonic=readings), params)
+        assert (beside.cycles, sum(beside.heard)) == (3, 6)
+        store, nearby = heard()
+        nearby = put_beside(store, nearby, beside, pose, Search(gap=gap), params)
+        now = corrected(store, nearby, gap, LENGTH if gap is ACROSS else WIDTH, told=False)
+        if gap is ACROSS:
+            mount = car.ultrasonic.mounts[SENSORS[0]].y
+            assert (now.a.x, now.width) == pytest.approx((1.4 + mount - 0.6, 1.0 - 2.0 * mount), abs=0.01)
+        else:
+            assert now.depth == pytest.approx(1.5 - car.ultrasonic.mounts[SENSORS[0]].y, abs=0.01)
+
+
+def test_a_car_stands_where_nothing_else_does() -> None:
+    params = ValetParams()
+    half = 0.5 * params.car.width
+    store, nearby = heard(((1.0, half - 0.2), (1.0, half + 0.2)))
+    places = range(SIDES * HEARD, SIDES * HEARD + nearby.ears[0].places)
+    forget_under(store, nearby, Pose(), params)
+    assert [store.heard_count[place] for place in places] == [0, 0, 3]

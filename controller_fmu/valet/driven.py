@@ -244,7 +244,8 @@ def listened_on(
     beside = hear_beside(state.beside, inputs, params)
     if beside.cycles < CYCLES:
         return state._replace(beside=beside)
-    nearby = put_beside(store, state.nearby, beside, inputs.odometry, state.search, params)
+    sought = state.search._replace(gap=gap_now(store, state, params))
+    nearby = put_beside(store, state.nearby, beside, inputs.odometry, sought, params)
     return state._replace(beside=beside, nearby=nearby)
 
 

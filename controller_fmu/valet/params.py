@@ -61,8 +61,8 @@ class ValetSearchParams(NamedTuple):
     room_across: Annotated[float, Signal("m", "slot across the road over the car's width", 0.2, 10.0, HOUSE)] = 0.4
     stand_out: Annotated[float, Signal("m", "the car may stand so far out of a shallow slot", 0.0, 3.0, HOUSE)] = 0.5
     behind: Annotated[float, Signal("m", "distance to what a slot across the road ends at", 0.05, 2.0, HOUSE)] = 0.25
-    kerb_least: Annotated[float, Signal("m", "distance to a kerb beside", 0.05, 1.0, "GB/T 41630")] = 0.12
-    kerb_most: Annotated[float, Signal("m", "the same, at most", 0.05, 1.0, "GB/T 41630")] = 0.28
+    kerb_least: Annotated[float, Signal("m", "distance to a kerb beside", 0.05, 1.0, "GB/T 41630")] = 0.15
+    kerb_most: Annotated[float, Signal("m", "the same, at most", 0.05, 1.0, "GB/T 41630")] = 0.25
     confirm: Annotated[float, Signal("s", "longest wait for the driver", 0.1, 3600.0, HOUSE)] = 60.0
 
 

@@ -9,7 +9,7 @@ from controller_fmu.planning.plan_store import SIDES, PlanStore
 from controller_fmu.sensing.ear import SideEar
 from controller_fmu.sensing.gap import GapLayout
 from controller_fmu.sensing.heard_store import put_heard
-from controller_fmu.valet.nearby import FRONT_EARS, REAR_EARS, Nearby
+from controller_fmu.valet.nearby import FRONT_EARS, REAR_EARS, Nearby, is_in_gap
 from controller_fmu.valet.params import ValetParams
 from controller_fmu.valet.search import Search
 from modelkit.geometry import Point
@@ -48,7 +48,10 @@ def hear_beside(state: SideEchoes, inputs: ControllerInput, params: ValetParams)
 def put_beside(
     store: PlanStore, nearby: Nearby, beside: SideEchoes, pose: Pose, sought: Search, params: ValetParams
 ) -> Nearby:
-    """Return the ears with what stands beside a car at ``pose``: what each sensor hears, along the road a kerb."""
+    """Return the ears with what stands beside a car at ``pose``: along the road the kerb.
+
+    Across it what is nearer than a slot's sides were thought to be: a sensor that hears nothing so near may miss it.
+    """
     ears = nearby.ears
     along = sought.gap.layout == GapLayout.ALONG
     for side in range(2):
@@ -62,7 +65,8 @@ def put_beside(
                     ends = (echo_at(beside, rear, 0.0, pose, params), echo_at(beside, front, 0.0, pose, params))
                     ear = _with_line(store, ear, number, ends, KERB_STEPS)
                 for which in (rear, front):
-                    if not along and beside.heard[which] > 0:
+                    at = echo_at(beside, which, 0.0, pose, params)
+                    if not along and beside.heard[which] > 0 and is_in_gap(at.x, at.y, sought.gap):
                         ends = (
                             echo_at(beside, which, -PART, pose, params),
                             echo_at(beside, which, PART, pose, params),

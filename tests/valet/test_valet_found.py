@@ -159,12 +159,12 @@ def test_the_way_back_is_the_way_driven_to_the_last_change_of_gear(piece: Any, l
         assert at == pytest.approx(there, abs=1e-9)
 
 
-def test_a_standing_car_is_put_right_by_what_both_sides_and_the_kerb_echo() -> None:
+def test_a_standing_car_is_put_right_by_the_nearer_of_its_neighbours_and_by_the_kerb() -> None:
     params = ValetParams()
     car = params.car
     middle = 0.5 * (car.wheelbase + car.front_overhang - car.rear_overhang)
     for gap, pose, sides in (
-        (ACROSS, Pose(1.4, -2.0 + middle, -0.5 * math.pi), {SENSORS[0]: 0.6, SENSORS[3]: 0.4}),
+        (ACROSS, Pose(1.4, -2.0 + middle, -0.5 * math.pi), {SENSORS[0]: 0.7, SENSORS[3]: 0.3}),
         (ALONG, Pose(2.75 - middle, -1.0, 0.0), {SENSORS[0]: 0.5, SENSORS[1]: 0.5}),
     ):
         readings = tuple(sides.get(sensor, car.ultrasonic.max_range) for sensor in range(12))
@@ -176,8 +176,8 @@ def test_a_standing_car_is_put_right_by_what_both_sides_and_the_kerb_echo() -> N
         nearby = put_beside(store, nearby, beside, pose, Search(gap=gap), params)
         now = corrected(store, nearby, gap, LENGTH if gap is ACROSS else WIDTH, told=False)
         if gap is ACROSS:
-            mount = car.ultrasonic.mounts[SENSORS[0]].y
-            assert (now.a.x, now.width) == pytest.approx((1.4 + mount - 0.6, 1.0 - 2.0 * mount), abs=0.01)
+            mount = car.ultrasonic.mounts[SENSORS[3]].y
+            assert (now.a.x, now.width) == pytest.approx((0.0, 1.4 + mount + 0.3), abs=0.01)
         else:
             assert now.depth == pytest.approx(1.5 - car.ultrasonic.mounts[SENSORS[0]].y, abs=0.01)
 

@@ -23,9 +23,9 @@ from controller_fmu.planning.task import Corner, Request, drive
 from controller_fmu.sensing.around import lay_end
 from controller_fmu.sensing.gap import DEEP, Gap, GapLayout
 from controller_fmu.valet.chart import Step
-from controller_fmu.valet.found.beside import CYCLES, SideEchoes, hear_beside, put_beside
+from controller_fmu.valet.found.beside import SideEchoes
 from controller_fmu.valet.found.corrected import corrected, turned_gap
-from controller_fmu.valet.found.way_back import way_back
+from controller_fmu.valet.found.way_back import WayBack, path_back, way_back
 from controller_fmu.valet.given import as_parameter
 from controller_fmu.valet.nearby import Nearby, Rest, forget_under, hear_nearby, is_in_gap, lay_nearby, put_nearby
 from controller_fmu.valet.params import ValetParams
@@ -98,7 +98,7 @@ class ValetState(NamedTuple):
     """What is heard on the way into a slot that was found."""
     beside: SideEchoes = SideEchoes()
     """What is heard at the end of the way, standing."""
-    back: Path = Path()
+    back: WayBack = WayBack()
     """The way it came, which it drives back if none leads on; without pieces: nowhere."""
     backs: int = 0
     """How often it did."""
@@ -140,8 +140,8 @@ def planned_on(store: PlanStore, state: ValetState, inputs: ControllerInput, par
     plans = state.plans + 1 if state.searched == 0 else state.plans
     if reason in (Reason.BLOCKED, Reason.NO_PATH) and state.back.used > 0:
         backs = state.backs + 1
-        path = state.back
-        return state._replace(request=request, searched=count, plans=plans, path=path, back=Path(), backs=backs)
+        path = path_back(state.back)
+        return state._replace(request=request, searched=count, plans=plans, path=path, back=WayBack(), backs=backs)
     return state._replace(request=request, searched=count, plans=plans, path=path, reason=reason, sight=Sight())
 
 
@@ -234,21 +234,6 @@ def heard_on(
     return state._replace(nearby=nearby)
 
 
-def listened_on(
-    store: PlanStore, state: ValetState, inputs: ControllerInput, params: ValetParams, dt_ns: int
-) -> ValetState:
-    """Return the valet that has listened to what is beside it at the end of its way, where it is put right by that."""
-    told_anew = is_told_anew(state.watch.running, dt_ns, params.car.ultrasonic.cycle)
-    if not told_anew or state.beside.cycles >= CYCLES:
-        return state
-    beside = hear_beside(state.beside, inputs, params)
-    if beside.cycles < CYCLES:
-        return state._replace(beside=beside)
-    sought = state.search._replace(gap=gap_now(store, state, params))
-    nearby = put_beside(store, state.nearby, beside, inputs.odometry, sought, params)
-    return state._replace(beside=beside, nearby=nearby)
-
-
 def moved_on(
     store: PlanStore, state: ValetState, step: int, inputs: ControllerInput, params: ValetParams
 ) -> ValetState:
@@ -295,7 +280,7 @@ def _to_plan_anew(store: PlanStore, state: ValetState, params: ValetParams) -> V
     state = state._replace(nearby=state.nearby._replace(in_the_way=False))
     clocks = state.watch._replace(blocked=0)
     sought = shallower(state.search, state.sight.echo)
-    back = Path()
+    back = WayBack()
     if params.search.active and state.backs < BACKS and state.path.margin > 0.0:
         back = way_back(state.path, state.piece, state.tracked.left)
     state = state._replace(searched=0, path=Path(), watch=clocks, back=back, beside=SideEchoes())

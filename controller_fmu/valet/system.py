@@ -1,7 +1,5 @@
 """The valet at one sample: look for a slot, plan a bounded amount, set the wheel, drive a piece, halt, plan anew."""
 
-import math
-
 from controller_fmu.common.chart import bit
 from controller_fmu.common.monitor import Command
 from controller_fmu.common.told import SlotKind
@@ -16,30 +14,22 @@ from controller_fmu.valet.driven import (
     gap_now,
     goal_now,
     heard_on,
-    listened_on,
     moved_on,
     planned_on,
     room_beside_car,
     seen_on,
 )
-from controller_fmu.valet.found.beside import CYCLES
+from controller_fmu.valet.found.at_end import is_in_place, listened_on, listens, waits
 from controller_fmu.valet.found.second_look import looked_again
 from controller_fmu.valet.nearby import forget_nearby
 from controller_fmu.valet.params import ValetParams
 from controller_fmu.valet.rolling import rest_before
 from controller_fmu.valet.search import Search, begin_search, reason_to_end, search, told_slot, with_map
 from controller_fmu.valet.watch import fault_of, reason_to_fail, watch
-from modelkit.maths import wrap_angle
-from modelkit.vocabulary import Pose
 
 DRIVEN_ON = 0.3
 CORRECTIONS = 4
 """After so many plans a car stays in a slot where it is, even if what it heard on the way in tells a better place."""
-NEARLY = 0.3
-"""A car is at the end of its way into a slot if it is no more [m], and no more [rad], off it."""
-NEARLY_TURNED = 0.1
-LAST_CORRECTIONS = 7
-"""After so many also if what its sides hear, as it stands at the end, tells one."""
 CORRECTION_ROOM = 0.55
 """And in a slot that leaves it less room [m] to its neighbours than this."""
 
@@ -78,9 +68,7 @@ def guards_of(store: PlanStore, state: ValetState, inputs: ControllerInput, para
     speed = inputs.measured_speed
     standing = abs(speed) <= params.threshold.standstill
     wheel = inputs.steering_wheel_angle
-    straight = abs(wheel) <= params.threshold.wheel and not (
-        listens(state, inputs.odometry, params) and state.beside.cycles < CYCLES
-    )
+    straight = abs(wheel) <= params.threshold.wheel and not waits(state, inputs.odometry, params)
     rolls_after = rest_before(state.path, state.piece, params).after if state.step == Step.SET_WHEEL else 0.0
     turned = max(params.threshold.wheel, params.car.steering.rate_limit * rolls_after)
     stop = abs(speed) * params.drive.delay + 0.5 * speed * speed / params.drive.brake
@@ -108,31 +96,6 @@ def guards_of(store: PlanStore, state: ValetState, inputs: ControllerInput, para
         | bit(Guard.IN_PLACE, straight and in_place)
         | bit(Guard.MISSED, straight and not in_place)
     )
-
-
-def listens(state: ValetState, pose: Pose, params: ValetParams) -> bool:
-    """Return whether the car is at the end of a way into a slot that it found, and is put right by what it hears."""
-    if not params.search.active or state.search.told != SlotKind.NONE or state.step != Step.STRAIGHTEN:
-        return False
-    off = seen_from(state.request.goal, pose)
-    there = abs(off.x) < NEARLY and abs(off.y) < NEARLY and abs(off.heading) < NEARLY_TURNED
-    return there and state.plans < LAST_CORRECTIONS
-
-
-def is_in_place(pose: Pose, goal: Pose, params: ValetParams) -> bool:
-    """Return whether a pose is as near to the goal as the drive may end."""
-    off = seen_from(goal, pose)
-    end = params.end
-    return abs(off.x) <= end.position and abs(off.y) <= end.position and abs(off.heading) <= end.heading
-
-
-def seen_from(goal: Pose, pose: Pose) -> Pose:
-    """Return a pose as the goal has it: along and across its heading [m], turned against it [rad]."""
-    dx = pose.x - goal.x
-    dy = pose.y - goal.y
-    c = math.cos(goal.heading)
-    s = math.sin(goal.heading)
-    return Pose(dx * c + dy * s, dy * c - dx * s, wrap_angle(pose.heading - goal.heading))
 
 
 def sought_on(

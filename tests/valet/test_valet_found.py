@@ -17,7 +17,7 @@ from controller_fmu.sensing.gap import Gap, GapLayout
 from controller_fmu.sensing.heard_store import put_heard
 from controller_fmu.valet.found.beside import SENSORS, SideEchoes, hear_beside, put_beside
 from controller_fmu.valet.found.corrected import corrected, turned_gap
-from controller_fmu.valet.found.way_back import way_back
+from controller_fmu.valet.found.way_back import path_back, way_back
 from controller_fmu.valet.nearby import Nearby, forget_under
 from controller_fmu.valet.params import ValetParams, ValetSearchParams
 from controller_fmu.valet.search import Search
@@ -142,7 +142,7 @@ def test_what_a_slot_ends_at_is_so_though_one_of_two_sensors_misses_an_echo(lost
 def test_the_way_back_is_the_way_driven_to_the_last_change_of_gear(piece: Any, left: Any, used: Any) -> None:
     ways = ((0.9, 0.1), (-0.5, 0.2), (-0.7, 0.0), (1.0, -0.2))
     pieces = tuple(Piece(way, k) for way, k in ways) + (Piece(),) * (PATH - 4)
-    back = way_back(Path(4, 0.12, 3.1, pieces), piece, left)
+    back = path_back(way_back(Path(4, 0.12, 3.1, pieces), piece, left))
     assert back.used == used
     at = Pose()
     for way, k in ways[:piece]:

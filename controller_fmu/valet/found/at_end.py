@@ -1,0 +1,65 @@
+"""At the end of a way into a slot that was found: is the car in its place, and what do its sides hear of it?"""
+
+import math
+
+from controller_fmu.common.sensors import is_told_anew
+from controller_fmu.common.told import SlotKind
+from controller_fmu.interface import ControllerInput
+from controller_fmu.planning.plan_store import PlanStore
+from controller_fmu.valet.chart import Step
+from controller_fmu.valet.driven import ValetState, gap_now
+from controller_fmu.valet.found.beside import CYCLES, hear_beside, put_beside
+from controller_fmu.valet.params import ValetParams
+from modelkit.maths import wrap_angle
+from modelkit.vocabulary import Pose
+
+NEARLY = 0.3
+"""A car is at the end of its way into a slot if it is no more [m], and no more [rad], off it."""
+NEARLY_TURNED = 0.1
+LAST_CORRECTIONS = 7
+"""After so many plans a car stays in a slot where it is, even if what it hears beside it then tells a better place."""
+
+
+def listened_on(
+    store: PlanStore, state: ValetState, inputs: ControllerInput, params: ValetParams, dt_ns: int
+) -> ValetState:
+    """Return the valet that has listened to what is beside it at the end of its way, where it is put right by that."""
+    told_anew = is_told_anew(state.watch.running, dt_ns, params.car.ultrasonic.cycle)
+    if not told_anew or state.beside.cycles >= CYCLES:
+        return state
+    beside = hear_beside(state.beside, inputs, params)
+    if beside.cycles < CYCLES:
+        return state._replace(beside=beside)
+    sought = state.search._replace(gap=gap_now(store, state, params))
+    nearby = put_beside(store, state.nearby, beside, inputs.odometry, sought, params)
+    return state._replace(beside=beside, nearby=nearby)
+
+
+def listens(state: ValetState, pose: Pose, params: ValetParams) -> bool:
+    """Return whether the car is at the end of a way into a slot that it found, and is put right by what it hears."""
+    if not params.search.active or state.search.told != SlotKind.NONE or state.step != Step.STRAIGHTEN:
+        return False
+    off = seen_from(state.request.goal, pose)
+    there = abs(off.x) < NEARLY and abs(off.y) < NEARLY and abs(off.heading) < NEARLY_TURNED
+    return there and state.plans < LAST_CORRECTIONS
+
+
+def waits(state: ValetState, pose: Pose, params: ValetParams) -> bool:
+    """Return whether the car listens, and has not yet heard enough."""
+    return listens(state, pose, params) and state.beside.cycles < CYCLES
+
+
+def is_in_place(pose: Pose, goal: Pose, params: ValetParams) -> bool:
+    """Return whether a pose is as near to the goal as the drive may end."""
+    off = seen_from(goal, pose)
+    end = params.end
+    return abs(off.x) <= end.position and abs(off.y) <= end.position and abs(off.heading) <= end.heading
+
+
+def seen_from(goal: Pose, pose: Pose) -> Pose:
+    """Return a pose as the goal has it: along and across its heading [m], turned against it [rad]."""
+    dx = pose.x - goal.x
+    dy = pose.y - goal.y
+    c = math.cos(goal.heading)
+    s = math.sin(goal.heading)
+    return Pose(dx * c + dy * s, dy * c - dx * s, wrap_angle(pose.heading - goal.heading))

@@ -39,6 +39,9 @@ X_TOLERANCE = 0.08
 LEAD = 0.15
 """A drive is asked for no more than this [m/s] above the speed it has: on a slippery slope a larger error makes the
 pedals wind up, the driven wheels spin at full lock, and the car turns by twice what its odometry says."""
+SHIFTED = 0.08
+TURNED = 0.03
+"""A plan is made again where the slot turns out to lie so far [m] elsewhere, or turned so much [rad]."""
 SHIFTS_PERPENDICULAR = 7
 """Most shifts into a perpendicular slot (GB/T 41630)."""
 TRIED = 4
@@ -141,6 +144,8 @@ def park(
     place = place_for(around.slot, state.attempt, state.out, inputs.odometry, params)
     if state.step == Step.PLAN:
         car = shape_of(params)
+        if has_shifted(state, place.pose):
+            state = state._replace(plan=new_search(place.pose))
         if state.out:
             car = with_lock(car, params.apa)
             looked = plan_out(state.way_out, place.pose, place.site, car, MOVES[state.attempt])
@@ -164,6 +169,15 @@ def park(
     nothing_better = state.plan.status == NOTHING or not is_sure(inputs, around, params)
     state = state._replace(missed=missed and nothing_better and not state.out)
     return _moved_on(state, step, place, steering, inputs.measured_speed, params)
+
+
+def has_shifted(state: Parking, pose: Pose) -> bool:
+    """Return whether the slot has moved under a car at ``pose`` that has its first plan and has not set out."""
+    start = state.plan.move.start
+    dx = pose.x - start.x
+    dy = pose.y - start.y
+    far = dx * dx + dy * dy > SHIFTED * SHIFTED or abs(pose.heading - start.heading) > TURNED
+    return far and state.plan.status == FOUND and state.direction == 0 and not state.out
 
 
 def _looked_around(

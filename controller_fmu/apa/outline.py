@@ -15,6 +15,8 @@ from modelkit.vocabulary import Pose
 
 FAR = 60.0
 """Half length [m] of a box that stands for a wall without end."""
+CREPT = 0.005
+"""So much [m] nearer is taken for no nearer."""
 ROUNDING = 1e-4
 """Clearance [m] that rounding and the integral of a ramp surely leave."""
 
@@ -130,10 +132,13 @@ def clearance(pose: Pose, car: Shape, obstacles: Obstacles, enough: float = FAR)
     return _smaller(nearest, stand_clearance(stand, car, obstacles.opposite, enough))
 
 
-def free_way(pose: Pose, direction: float, curvature: float, longest: float, car: Shape, obstacles: Obstacles) -> float:
+def free_way(
+    pose: Pose, direction: float, curvature: float, longest: float, car: Shape, obstacles: Obstacles, least: float = 0.0
+) -> float:
     """Return how far [m] the car can drive at this curvature before an obstacle is nearer than 0.
 
-    The boxes are grown by the margin beforehand. Looked at every 4 cm.
+    The boxes are grown by the margin beforehand. ``least``: 0, or less for a car that stands within a margin, which it
+    may leave but not go further into. Looked at every 4 cm.
     """
     step = 0.04
     moved = step * outline_rate(curvature, car)
@@ -145,11 +150,18 @@ def free_way(pose: Pose, direction: float, curvature: float, longest: float, car
             sure -= 1
         else:
             gap = clearance(advance(pose, direction, next_way, curvature, curvature), car, obstacles, 0.0)
-            if gap <= 0.0:
+            if gap <= least:
                 return way
+            least = gap - CREPT if gap <= 0.0 else 0.0
             sure = sure_steps(gap, moved)
         way = next_way
     return longest
+
+
+def least_from(pose: Pose, car: Shape, obstacles: Obstacles) -> float:
+    """Return the clearance [m] that a car at ``pose`` must not fall below: 0, or less where it has less already."""
+    gap = clearance(pose, car, obstacles, 0.0)
+    return gap - CREPT if gap <= 0.0 else 0.0
 
 
 def outline_rate(curvature: float, car: Shape) -> float:

@@ -4,9 +4,9 @@ In the target's frame a slot along the road lies at y < 0 and the car turns to t
 drives ahead and turns to the left, too. Forward to the left and back to the right both turn the car to the road.
 """
 
-from controller_fmu.apa.outline import Obstacles, Shape, clearance, outline_rate, sure_steps
+from controller_fmu.apa.outline import CREPT, Obstacles, Shape, clearance, outline_rate, sure_steps
 from controller_fmu.apa.slot import Kind, Site
-from controller_fmu.apa.ways.move import CREPT, NO_PIECE, Move, Piece
+from controller_fmu.apa.ways.move import NO_PIECE, Move, Piece
 from controller_fmu.apa.ways.turns import two_arcs
 from controller_fmu.common.curve import advance
 from modelkit.vocabulary import Pose

@@ -7,14 +7,12 @@ ramps), so the limits of curvature and curvature rate hold exactly and everywher
 import math
 from typing import NamedTuple
 
-from controller_fmu.apa.outline import Obstacles, Shape, clearance, outline_rate, sure_steps
+from controller_fmu.apa.outline import CREPT, Obstacles, Shape, clearance, least_from, outline_rate, sure_steps
 from controller_fmu.common.curve import advance
 from modelkit.vocabulary import Pose
 
 PIECES = 7
 MET = 1.0
-CREPT = 0.005
-"""So much [m] nearer is taken for no nearer."""
 
 
 class Piece(NamedTuple):
@@ -95,8 +93,7 @@ def is_move_free(move: Move, car: Shape, obstacles: Obstacles) -> bool:
     """Return whether a move meets no obstacle; one that begins within a margin has to lead out of it."""
     pose = move.start
     direction = float(move.direction)
-    gap = clearance(pose, car, obstacles, 0.0)
-    least = gap - CREPT if gap <= 0.0 else 0.0
+    least = least_from(pose, car, obstacles)
     for piece in move.pieces:
         if piece.length > 0.0:
             least = _least_on(piece, pose, direction, least, car, obstacles)

@@ -132,14 +132,13 @@ def clearance(pose: Pose, car: Shape, obstacles: Obstacles, enough: float = FAR)
     return _smaller(nearest, stand_clearance(stand, car, obstacles.opposite, enough))
 
 
-def free_way(
-    pose: Pose, direction: float, curvature: float, longest: float, car: Shape, obstacles: Obstacles, least: float = 0.0
-) -> float:
+def free_way(pose: Pose, direction: float, curvature: float, longest: float, car: Shape, obstacles: Obstacles) -> float:
     """Return how far [m] the car can drive at this curvature before an obstacle is nearer than 0.
 
-    The boxes are grown by the margin beforehand. ``least``: 0, or less for a car that stands within a margin, which it
-    may leave but not go further into. Looked at every 4 cm.
+    The boxes are grown by the margin beforehand. A car that stands within a margin may leave it, but not go further
+    into it. Looked at every 4 cm.
     """
+    least = least_from(pose, car, obstacles)
     step = 0.04
     moved = step * outline_rate(curvature, car)
     way = 0.0

@@ -53,6 +53,8 @@ def test_free_way_ends_before_the_wall() -> None:
     way = free_way(Pose(0.0, 0.0, 0.0), 1.0, 0.0, 20.0, CAR, walls)
     assert 10.0 - 3.5 - 0.041 < way < 10.0 - 3.5
     assert free_way(Pose(0.0, 0.0, 0.0), 1.0, 0.0, 3.0, CAR, walls) == 3.0
+    assert free_way(Pose(6.6, 0.0, 0.0), 1.0, 0.0, 3.0, CAR, walls) == 0.0, "within a margin, and further into it"
+    assert free_way(Pose(6.6, 0.0, 0.0), -1.0, 0.0, 3.0, CAR, walls) == 3.0, "out of it"
 
 
 def test_a_way_is_as_free_as_if_every_place_were_looked_at(monkeypatch: pytest.MonkeyPatch) -> None:

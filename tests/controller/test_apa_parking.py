@@ -6,7 +6,12 @@ from typing import Any
 import pytest
 
 from controller_fmu.apa.chart import Mode
+from controller_fmu.apa.manoeuvre_chart import Step
+from controller_fmu.apa.parking import Parking, has_shifted
+from controller_fmu.apa.ways.move import Move
+from controller_fmu.apa.ways.planner import FOUND, PlanSearch, new_search
 from controller_fmu.interface import Reason
+from modelkit.vocabulary import Pose
 from tests.controller.apa_bench import CAR, Run, box, car_settings, drive
 
 HALF = 0.5 * CAR.width
@@ -52,6 +57,17 @@ def test_a_drive_is_asked_for_little_more_speed_than_it_has() -> None:
     rows = drive(*given("parallel", 7.2, 1), 4.0, keep=True).rows
     over = [abs(asked.speed_request) - abs(car.measured_speed) for _, car, asked in rows]
     assert 0.1 < max(over) < 0.151
+
+
+def test_the_first_plan_is_made_again_where_the_slot_turns_out_to_lie_elsewhere() -> None:
+    start = Pose(6.0, 2.0, 0.1)
+    planned = Parking(step=Step.PLAN, plan=PlanSearch(status=FOUND, move=Move(start)))
+    assert not has_shifted(planned, start)
+    assert not has_shifted(planned, Pose(6.0, 2.05, 0.1)), "what the map learns at standstill"
+    for moved in (Pose(6.0, 2.1, 0.1), Pose(6.1, 2.0, 0.1), Pose(6.0, 2.0, 0.15)):
+        assert has_shifted(planned, moved)
+        assert not has_shifted(planned._replace(direction=-1), moved), "a car under way plans at the end of its move"
+        assert not has_shifted(planned._replace(plan=new_search(start)), moved), "nothing is planned yet"
 
 
 def test_the_left_is_the_mirror_image_of_the_right() -> None:

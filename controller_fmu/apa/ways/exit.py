@@ -7,7 +7,7 @@ the arc forward leads out. What has to be driven then from the road is one rever
 import math
 from typing import NamedTuple
 
-from controller_fmu.apa.outline import Shape, free_way
+from controller_fmu.apa.outline import Shape, clearance, free_way
 from controller_fmu.apa.slot import Site
 from controller_fmu.common.curve import advance
 from modelkit.vocabulary import Pose
@@ -35,6 +35,8 @@ def exit_of(variant: int, site: Site, car: Shape) -> Exit:
     x = site.x_high if moves % 2 == 1 else site.x_low
     x = 0.5 * variant * site.x_low if moves == 0 else x
     pose = Pose(x, 0.0, 0.0)
+    if clearance(pose, car, site.obstacles, 0.0) <= 0.0:
+        return Exit(False, pose, moves)
     for number in range(moves):
         left = moves - number
         direction = 1.0 if left % 2 == 0 else -1.0

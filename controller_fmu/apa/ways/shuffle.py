@@ -9,7 +9,7 @@ of curvature c and -c lead to y = 0, h = 0 if the heading h1 between them obeys
 import math
 from typing import NamedTuple
 
-from controller_fmu.apa.outline import Shape, free_way, least_from
+from controller_fmu.apa.outline import Shape, free_way
 from controller_fmu.apa.slot import Site
 from controller_fmu.apa.ways.move import Move, is_move_free
 from controller_fmu.apa.ways.turns import two_arcs
@@ -62,11 +62,7 @@ def finish(start: Pose, direction: int, sense: float, aside: float, site: Site, 
 
 
 def full_lock(start: Pose, direction: int, sense: float, longest: float, site: Site, car: Shape) -> Move:
-    """Return the move along one arc as far as nothing is near; no direction if that is under 10 cm.
-
-    A car that stands within a margin may leave it.
-    """
+    """Return the move along one arc as far as nothing is near; no direction if that is under 10 cm."""
     c = sense * car.curvature
-    least = least_from(start, car, site.obstacles)
-    way = free_way(start, float(direction), c, longest, car, site.obstacles, least)
+    way = free_way(start, float(direction), c, longest, car, site.obstacles)
     return two_arcs(start, direction if way >= 0.1 else 0, c, way, 0.0, 0.0)

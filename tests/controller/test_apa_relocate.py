@@ -111,6 +111,20 @@ def test_the_map_is_less_sure_the_farther_the_car_drives_unheard() -> None:
     assert slot_of_map(here, slot, MAP) == slot
 
 
+def test_a_wall_moves_a_neighbour_the_less_the_surer_he_is() -> None:
+    pose = Pose(1.6, -0.9, 0.0)
+    slot = Slot(Kind.PARALLEL, 0, Pose(), 6.0, depth=2.1)
+    here = begin_map(slot, pose, MAP)
+    sure = here._replace(
+        a=here.a._replace(yy=0.15**2), b=here.b._replace(yy=0.015**2), wall=here.wall._replace(yy=0.02**2)
+    )
+    nearer = inputs_at(pose, pose, [(-5.0, 11.0, -2.5, -2.07)], 0).ultrasonic
+    after = heard(sure, nearer, SENSORS, MAP)
+    assert after.wall.y > sure.wall.y + 0.005
+    assert 0.7 * (after.wall.y - sure.wall.y) < after.a.y < 0.8 * (after.wall.y - sure.wall.y)
+    assert 0.0 < after.b.y < 0.25 * after.a.y
+
+
 def test_a_wall_not_heard_from_the_road_is_entered() -> None:
     slot = Slot(Kind.PARALLEL, 0, Pose(0.0, 0.0, 0.0), 4.9, 0.0, UNSEEN)
     pose = Pose(1.3, -0.83, math.radians(26.0))

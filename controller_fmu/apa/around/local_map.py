@@ -310,4 +310,9 @@ def _told(here: LocalMap, ear: ConeEar, what: MapEcho, told: Reading, params: Ma
         return with_neighbour(here, what.who, thing)
     share = SHARED if here.wall.yy < KNOWN * KNOWN else SHARED_AT_FIRST
     off = share * (thing.y - here.wall.y)
-    return here._replace(wall=thing, a=here.a._replace(y=here.a.y + off), b=here.b._replace(y=here.b.y + off))
+    return here._replace(wall=thing, a=_drifted(here.a, off), b=_drifted(here.b, off))
+
+
+def _drifted(thing: Thing, off: float) -> Thing:
+    """Return a neighbour moved by what the wall says the odometry has drifted: less, the surer it is of its own."""
+    return thing._replace(y=thing.y + off * thing.yy / (thing.yy + KNOWN * KNOWN))

@@ -2,6 +2,7 @@
 
 from typing import NamedTuple
 
+from controller_fmu.apa.around.comer import is_odd
 from controller_fmu.apa.around.guard import GuardState, learn_brake, listen
 from controller_fmu.apa.around.local_map import begin_map, heard, moved
 from controller_fmu.apa.around.nearer import explained, nearer_than_thought, pressed
@@ -14,6 +15,7 @@ from controller_fmu.apa.choice import ChosenTask
 from controller_fmu.apa.hearing.deaf import without_deaf
 from controller_fmu.apa.hearing.mute import spared, usable
 from controller_fmu.apa.hearing.search import SearchState, begin_search, number_chosen, search, without
+from controller_fmu.apa.hearing.stir import QUIET
 from controller_fmu.apa.manoeuvre_chart import Step
 from controller_fmu.apa.out.standing_in import slot_around
 from controller_fmu.apa.out.within import heard_within
@@ -42,7 +44,8 @@ NEAR = 12.0
 """A slot that was driven into is still known so far [m] from it."""
 LOST = 1.0
 LOOKED_FOR = 3.0
-"""What is still in the way after so long [s] is not passing by: a neighbour may stand nearer than the map has him."""
+"""What is still in the way after so long [s] is not passing by: a neighbour may stand nearer than the map has him.
+So may one who was heard to move, before the car goes on."""
 SHALLOWER = 0.3
 """A slot that turns out to be so much [m] less deep needs another plan."""
 
@@ -136,7 +139,7 @@ def _parked_on(
         here = heard(here, inputs.ultrasonic, params.car.ultrasonic, params.apa.map)
         here = heard_within(here, inputs.ultrasonic, params.car.ultrasonic) if here.within else here
         halted = parking.step in (Step.HALT, Step.SET_WHEEL) and abs(inputs.measured_speed) <= STANDING
-        if halted:
+        if halted and guard.quiet >= QUIET:
             here = walled(here, slot, inputs, parking.sight.blocked, params)
         if abs(inputs.measured_speed) > STANDING:
             shifts = followed(shifts, here, inputs.ultrasonic, params.car.ultrasonic)
@@ -146,7 +149,7 @@ def _parked_on(
         guard = listen(guard, inputs.ultrasonic, here, params)
         if driving and abs(inputs.measured_speed) <= STANDING:
             here = driven_on(here, guard.tracks, inputs.ultrasonic, params)
-        if halted and parking.sight.unknown and state.watch.blocked * 1e-9 > LOOKED_FOR:
+        if halted and _may_stand_nearer(state, guard, params):
             there = nearer_than_thought(here, inputs.ultrasonic, params)
             if there.found:
                 here = there.map
@@ -160,6 +163,14 @@ def _parked_on(
     around = Around(slot, here, guard, shifts, state.watch.mute)
     parking = park(parking, around, inputs, state.watch.wheel.steering, driving, params)
     return state._replace(around=around, parking=parking)
+
+
+def _may_stand_nearer(state: ApaState, guard: GuardState, params: ControllerParams) -> bool:
+    """Return whether a standing car asks if a neighbour is nearer than the map has him."""
+    parking = state.parking
+    stays = parking.sight.unknown and state.watch.blocked * 1e-9 > LOOKED_FOR
+    goes_on = guard.quiet < QUIET <= guard.quiet + 2.0 * params.car.ultrasonic.cycle
+    return stays or (goes_on and is_odd(guard.comers) and not parking.out)
 
 
 def _later_reason(reason: int, state: ApaState, params: ControllerParams) -> int:

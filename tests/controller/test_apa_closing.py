@@ -1,5 +1,7 @@
 """What comes nearer than the map has it, and who comes by himself: by sensors' readings alone."""
 
+import random
+
 import pytest
 
 from controller_fmu.apa.around.closing import (
@@ -13,7 +15,7 @@ from controller_fmu.apa.around.closing import (
     tracked_on,
 )
 from controller_fmu.apa.around.closing import turned_round as turned
-from controller_fmu.apa.around.comer import Comer, followed, somebody_comes
+from controller_fmu.apa.around.comer import STEADY, Comer, followed, is_odd, somebody_comes
 from controller_fmu.apa.around.near import FREE, nearest_told
 from controller_fmu.apa.around.surroundings import shape_of
 from controller_fmu.apa.hearing.mute import MUTE
@@ -82,23 +84,48 @@ def test_a_lost_reading_is_bridged_and_silence_is_not() -> None:
     assert not tracked_on(track, FURTHEST, 0.01, 1.5, FURTHEST).strange
 
 
-def comes(rate: float, speed: float, *, strange: bool = True, lost: int = -1, cycle: float = 0.04) -> bool:
-    """Return whether somebody is found to come who changes his distance by ``rate`` [m/s], from 2 m for 0.8 s."""
+def comes(
+    rate: float,
+    speed: float,
+    *,
+    off: float = 3.0,
+    lost: int = -1,
+    cycle: float = 0.04,
+    place: int = REAR,
+    each: int = 1,
+) -> bool:
+    """Return whether somebody is found to come who changes his distance by ``rate`` [m/s], from 2 m for 0.8 s.
+
+    The map has something ``off`` [m]. Of readings that come ``each`` so many times the ones between are not seen.
+    """
     comer = Comer()
     for number in range(round(0.8 / cycle)):
-        reading = FURTHEST if number == lost else 2.0 + rate * number * cycle
-        comer = followed(comer, reading, cycle, FURTHEST)
-    comers = tuple(comer if place == REAR else Comer() for place in range(12))
-    known = tuple(Track(strange=strange) for _ in range(12))
-    return somebody_comes(comers, known, speed, CAR, SENSORS)
+        reading = FURTHEST if number == lost else 2.0 + rate * (number - number % each) * cycle
+        comer = followed(comer, reading, cycle, FURTHEST, off)
+    return somebody_comes(tuple(comer if number == place else Comer() for number in range(12)), abs(speed))
 
 
 @pytest.mark.parametrize("cycle", [0.04, 0.08])
 def test_who_comes_by_himself_is_stood_still_for(cycle: float) -> None:
     assert comes(-1.5, 0.0, cycle=cycle)
     assert comes(-2.0, -0.8, cycle=cycle)
+    assert comes(-2.0, -0.8, cycle=cycle, each=2), "each reading is looked at twice"
     assert comes(-1.5, 0.0, lost=9, cycle=cycle)
+    assert comes(-1.5, 0.0, cycle=cycle, place=FLANK), "beside the car, where the map has nobody"
+    assert not comes(-1.5, 0.0, cycle=cycle, place=FLANK, off=1.7), "along a flank that the map has there"
     assert not comes(-0.8, -0.8, cycle=cycle), "the car's own way"
-    assert not comes(-1.5, 0.0, strange=False, cycle=cycle), "the map has it there"
+    assert not comes(-1.5, 0.0, off=1.1, cycle=cycle), "the map has it there"
+    assert not comes(-2.2, 0.0, cycle=cycle), "faster than anybody: another thing heard each time"
     assert not comes(0.5, 0.0, cycle=cycle)
     assert not comes(-0.5, 0.0, cycle=cycle), "not here for a while"
+
+
+def test_noise_alone_is_nobody_who_comes() -> None:
+    draw = random.Random(3)
+    comers = (Comer(),) * 12
+    for _ in range(400):
+        comers = tuple(followed(comer, draw.gauss(0.8, 0.03), 0.04, FURTHEST, 3.0) for comer in comers)
+        assert comers[0].fits < STEADY or not somebody_comes(comers, 0.0)
+    assert not is_odd(comers), "of something of which the map has nothing"
+    assert is_odd(tuple(comer._replace(nearer=0.3) for comer in comers))
+    assert not is_odd(tuple(comer._replace(nearer=0.3, fits=3) for comer in comers))

@@ -34,7 +34,7 @@ def backed(number: int, speed: float) -> Pose:
 
 
 def drive(
-    comes: float, speed: float, count: int, noise: float = 0.0, lost: int = -1, who: int = A
+    comes: float, speed: float, count: int, noise: float = 0.0, lost: int = -1, who: int = A, only: int = -1
 ) -> tuple[GuardState, LocalMap]:
     """Return the guard of a car that goes back at ``speed`` [m/s] while one neighbour comes into the slot."""
     draw = random.Random(7)
@@ -47,6 +47,8 @@ def drive(
         ears = [ear_at(mount, pose, 1.0, SENSORS.half_angle) for mount in SENSORS.mounts]
         distances = [expected(ear, truth).echo.distance + draw.gauss(0.0, noise) for ear in ears]
         readings = [min(SENSORS.max_range, max(SENSORS.min_range, distance)) for distance in distances]
+        if only >= 0:
+            readings = [reading if place == only else SENSORS.max_range for place, reading in enumerate(readings)]
         if lost >= 0:
             readings[lost] = SENSORS.max_range
         here = heard(here, tuple(readings), SENSORS, MAP)
@@ -71,11 +73,19 @@ def test_who_comes_is_stood_still_for(speed: float, comes: float) -> None:
     assert watch_way(state, silent, here, Obstacles(), course, PARAMS).blocked
 
 
+@pytest.mark.parametrize("speed", [0.0, 0.8])
+def test_one_sensor_tells_it_where_no_other_hears_him(speed: float) -> None:
+    """The rear sensor of the flank hears the corner of A go by: nobody else does."""
+    count = round(0.7 / CYCLE)
+    assert drive(0.9, speed, count, 0.01, only=5)[0].quiet < QUIET
+    assert drive(0.0, speed, count, 0.03, only=5)[0].quiet >= QUIET
+
+
 def test_a_car_stands_until_who_moved_has_been_quiet_for_a_while() -> None:
     state, here = drive(0.9, 0.0, round(0.6 / CYCLE))
     course = HeldCourse(here.pose, -1, 0.0, 0.0, CAR)
     silent = (SENSORS.max_range,) * 12
-    for number in range(round(1.5 * QUIET / CYCLE)):
+    for number in range(round(2.0 * QUIET / CYCLE)):
         blocked = watch_way(state, silent, here, Obstacles(), course, PARAMS).unknown
         assert blocked or number * CYCLE > 0.5 * QUIET
         state = listen(state, silent, here, PARAMS)

@@ -6,24 +6,38 @@ what comes evenly counts. The car stands before somebody who comes; a standing c
 
 from typing import NamedTuple
 
-from controller_fmu.apa.around.closing import JUMP, Track, own_reach
+from controller_fmu.apa.around.closing import JUMP
 from controller_fmu.apa.around.cone import SILENT
-from controller_fmu.apa.outline import Shape
-from modelkit.car import CarUltrasonic
 
 FITS = 0.2
 """A reading that is further off [m] is of something else."""
 WEIGHT = 0.5
 WEIGHT_OF_RATE = 0.2
+LEAST_WEIGHT = 0.1
+"""What has been followed for long changes its rate less: noise alone comes no nearer."""
 BUMPERS = 8
 """Sensors of the flanks come after these; the rim of their cones runs along oblique sides faster than the car."""
+STRANGE = 0.4
+"""The map has nothing up to so much [m] behind what is heard,"""
+ALONE = 1.0
+"""or so much for sensors of the flanks."""
 EVENLY = 3
 """So many readings in a row must fit."""
 SWINGS = 1.3
 """A sensor at the front of a turning car is faster than its rear axle by up to this."""
 COMES = 0.4
-"""Nearer by so much [m/s] more than the car goes: it comes by itself."""
-SOON = 1.2
+RUNS = 2.0
+"""Nearer by so much and less [m/s] more than the car goes: it comes by itself."""
+SLOWS = 1.0
+"""A rate follows a car that brakes as late as if it slowed down by this [m/s2]."""
+FAST = 1.0
+"""What comes so fast [m/s] is not heard twice at the same distance."""
+STEADY = 8
+NEAR = 0.9
+ODD = 0.2
+LOOKED_AT = 2.0
+"""So many readings in a row, of what is no farther [m], that are nearer than the map has it by so much and less [m]."""
+SOON = 1.4
 """Who would be here within this time [s] is stood still for."""
 
 
@@ -36,10 +50,27 @@ class Comer(NamedTuple):
     """Its change [m/s]."""
     fits: int = 0
     """Readings in a row that fitted."""
+    nearer: float = 0.0
+    """Than the map has anything there [m]."""
+    last: float = SILENT
+    """Last reading [m]."""
+    again: bool = False
+    """It was read twice: as likely as not it was the same, looked at before there was another."""
 
 
-def followed(comer: Comer, reading: float, cycle: float, furthest: float) -> Comer:
-    """Return what a sensor follows after a reading, ``cycle`` [s] after the last; a lost one is bridged."""
+def followed(comer: Comer, reading: float, cycle: float, furthest: float, expected: float) -> Comer:
+    """Return what a sensor follows after a reading, ``cycle`` [s] after the last; a lost one is bridged.
+
+    The map ``expected`` to hear something so far [m] off.
+    """
+    fast = comer.fits == 0 or comer.rate < -FAST
+    if reading == comer.last and fast and not comer.again:
+        return comer._replace(again=True, nearer=expected - comer.at)
+    then = _followed(comer, reading, 2.0 * cycle if comer.again and reading != comer.last else cycle, furthest)
+    return then._replace(nearer=expected - then.at, last=reading, again=False)
+
+
+def _followed(comer: Comer, reading: float, cycle: float, furthest: float) -> Comer:
     ahead = comer.at + comer.rate * cycle
     if reading >= furthest:
         return Comer(ahead, comer.rate, comer.fits - 1) if comer.fits > 0 else Comer()
@@ -49,17 +80,29 @@ def followed(comer: Comer, reading: float, cycle: float, furthest: float) -> Com
         return Comer(reading, (reading - comer.at) / cycle if near else 0.0, 1 if near else 0)
     if abs(off) > FITS:
         return Comer(reading)
-    return Comer(ahead + WEIGHT * off, comer.rate + WEIGHT_OF_RATE * off / cycle, comer.fits + 1)
+    weight = max(LEAST_WEIGHT, min(WEIGHT_OF_RATE, EVENLY * WEIGHT_OF_RATE / comer.fits))
+    return Comer(ahead + WEIGHT * off, comer.rate + weight * off / cycle, comer.fits + 1)
 
 
-def somebody_comes(
-    comers: tuple[Comer, ...], tracks: tuple[Track, ...], speed: float, car: Shape, sensors: CarUltrasonic
-) -> bool:
-    """Return whether something that is not on the map comes by itself to a car of this ``speed`` [m/s], and soon."""
-    for number in range(BUMPERS):
+def pace_after(pace: float, speed: float, cycle: float) -> float:
+    """Return the pace [m/s] to which rates are compared: that of the car, or a little ago if it brakes."""
+    return max(abs(speed), pace - SLOWS * cycle)
+
+
+def somebody_comes(comers: tuple[Comer, ...], pace: float) -> bool:
+    """Return whether something that is not on the map comes by itself to a car of this ``pace`` [m/s], and soon."""
+    for number in range(12):
         comer = comers[number]
-        if tracks[number].strange and comer.fits >= EVENLY and comer.rate + SWINGS * abs(speed) < -COMES:
-            left = comer.at - own_reach(sensors.mounts[number], car, sensors.half_angle)
-            if left < -comer.rate * SOON:
+        strange = comer.nearer > (STRANGE if number < BUMPERS else ALONE) and comer.fits >= EVENLY
+        if strange and comer.rate + SWINGS * pace < -COMES and comer.rate + pace > -RUNS:
+            if comer.at < -comer.rate * SOON:
                 return True
     return False
+
+
+def is_odd(comers: tuple[Comer, ...]) -> bool:
+    """Return whether something near is heard steadily, and plainly nearer than the map has it."""
+    odd = False
+    for comer in comers:
+        odd = odd or (comer.fits >= STEADY and comer.at < NEAR and ODD < comer.nearer < LOOKED_AT)
+    return odd

@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 from controller_fmu.apa.around.arcs import LOOKED_AT, NOWHERE, Unknown, arc_of, held, not_refuted, origin
 from controller_fmu.apa.around.closing import SILENCES, Track, room_at_tail, room_to_strange, tracked_on, turned_round
-from controller_fmu.apa.around.comer import Comer, followed, somebody_comes
+from controller_fmu.apa.around.comer import Comer, followed, pace_after, somebody_comes
 from controller_fmu.apa.around.cone import ConeEar, Echo
 from controller_fmu.apa.around.course import HeldCourse, after
 from controller_fmu.apa.around.local_map import (
@@ -99,7 +99,9 @@ class GuardState(NamedTuple):
     silences: tuple[int, ...] = (0,) * 12
     """How many times in a row each sensor heard nothing where it should have."""
     quiet: float = QUIET
-    """How long [s] no neighbour was heard to move."""
+    """How long [s] nobody was heard to move."""
+    pace: float = 0.0
+    """Of the car just now [m/s], see ``comer``."""
     direction: int = 0
     """Which way the car goes."""
     pose: Pose = Pose()
@@ -168,7 +170,7 @@ def listen(state: GuardState, readings: tuple[float, ...], here: LocalMap, param
         track = tracks[number] if direction == state.direction else turned_round(tracks[number])
         track = tracked_on(track, reading, abs(way), mapped.distance, sensors.max_range)
         tracks = tracks[:number] + (track,) + tracks[number + 1 :]
-        comer = followed(comers[number], reading, sensors.cycle, sensors.max_range)
+        comer = followed(comers[number], reading, sensors.cycle, sensors.max_range, mapped.distance)
         comers = comers[:number] + (comer,) + comers[number + 1 :]
         close = close[:number] + (held(close[number], ear, reading, sensors),) + close[number + 1 :]
         kept = unknown[number]
@@ -184,8 +186,9 @@ def listen(state: GuardState, readings: tuple[float, ...], here: LocalMap, param
         elif kept.there and not is_mute(reading) and (reading < sensors.max_range or track.silent >= SILENCES):
             kept = not_refuted(kept, ear, reading, is_known(reading, mapped.distance, params))
         unknown = unknown[:number] + (kept,) + unknown[number + 1 :]
-    return _heard_of_neighbours(state, readings, here, ears, sensors)._replace(
-        unknown=unknown, echoes=echoes, close=close, tracks=tracks, comers=comers, direction=direction, pose=here.pose
+    state = _heard_of_neighbours(state._replace(comers=comers), readings, here, ears, sensors)
+    return state._replace(
+        unknown=unknown, echoes=echoes, close=close, tracks=tracks, direction=direction, pose=here.pose
     )
 
 
@@ -205,7 +208,7 @@ def _heard_of_neighbours(
     ears: tuple[ConeEar, ...],
     sensors: CarUltrasonic,
 ) -> GuardState:
-    """Return the guard that knows whether a neighbour moves, and which sensors hear none where one is."""
+    """Return the guard that knows whether anybody moves, and which sensors hear no neighbour where one is."""
     neighbours = state.neighbours
     silent = state.silences
     stood = stand_at(state.pose)
@@ -218,8 +221,10 @@ def _heard_of_neighbours(
         heard = heard_on(neighbours[number], readings[number], sensors.cycle, sensors.max_range, own)
         neighbours = neighbours[:number] + (heard,) + neighbours[number + 1 :]
     moves = stirs(A, neighbours, state.speed) or stirs(B, neighbours, state.speed)
+    pace = pace_after(state.pace, state.speed, sensors.cycle)
+    moves = moves or somebody_comes(state.comers, pace)
     quiet = 0.0 if moves else state.quiet + sensors.cycle
-    return state._replace(neighbours=neighbours, silences=silent, quiet=quiet)
+    return state._replace(neighbours=neighbours, silences=silent, quiet=quiet, pace=pace)
 
 
 def is_known(reading: float, distance: float, params: ControllerParams) -> bool:
@@ -274,8 +279,7 @@ def watch_way(
     heard = room_by_echoes(readings, course, here.frame.mirror, params.car.ultrasonic)
     late = guard.brake_delay if state.shown else max(guard.brake_delay, UNSEEN_BRAKE)
     allowed = min(allowed, max(SLOW, speed_for(state, heard - old - RESERVE, late, params)))
-    comes = somebody_comes(state.comers, state.tracks, course.speed, course.car, params.car.ultrasonic)
-    if comes or state.quiet < QUIET:
+    if state.quiet < QUIET:
         return Sight(0.0, True, True)
     return Sight(allowed, min(beside, strange) <= stop or straight <= needed, strange <= stop and strange <= beside)
 

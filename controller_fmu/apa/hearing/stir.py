@@ -28,6 +28,10 @@ ITS_OWN = 0.5
 """A reading no further [m] from what the map has is of that."""
 NEARBY = 1.2
 """Who is heard no farther [m] than this is stood still for."""
+ALONE = 0.1
+ALONE_SHARE = 0.1
+NEARBY_ALONE = 2.2
+"""The same where one sensor tells it; the share [m s] by the distance [m] to him."""
 QUIET = 0.8
 """So long [s] after who moved was last heard to."""
 
@@ -83,11 +87,20 @@ def heard_on(heard: HeardOf, reading: float, cycle: float, furthest: float, own:
 
 
 def stirs(who: int, all_heard: tuple[HeardOf, ...], speed: float) -> bool:
-    """Return whether one on the map comes nearer to a car of this ``speed`` [m/s] than it drives to him."""
+    """Return whether one on the map comes nearer to a car of this ``speed`` [m/s] than it drives to him.
+
+    What one sensor tells has to be more than what two and more agree on, and more for what is near: there the map
+    tells less surely what the car's own way brings. And it has to be nearer than the map has him by now.
+    """
     total = 0.0
     count = 0
+    alone = False
     for heard in all_heard:
-        if heard.who == who and heard.readings >= EVENLY and heard.now < NEARBY:
-            total += heard.before - heard.now
-            count += 1
-    return count > 1 and total > count * (LEAST + LEAST_SHARE * abs(speed))
+        if heard.who == who and heard.readings >= EVENLY:
+            nearer = heard.before - heard.now
+            if heard.now < NEARBY:
+                total += nearer
+                count += 1
+            least = ALONE + ALONE_SHARE * abs(speed) / max(heard.now, 0.1)
+            alone = alone or (heard.now < NEARBY_ALONE and nearer > least and heard.off < -ALONE)
+    return alone or (count > 1 and total > count * (LEAST + LEAST_SHARE * abs(speed)))

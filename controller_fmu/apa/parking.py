@@ -1,5 +1,6 @@
 """The parking manoeuvre at one sample: plan, set the wheel, drive, halt, plan again, straighten."""
 
+import math
 from typing import NamedTuple
 
 from controller_fmu.apa.around.guard import Sight
@@ -16,6 +17,7 @@ from controller_fmu.apa.manoeuvre_chart import Guard as StepGuard
 from controller_fmu.apa.manoeuvre_chart import Step, step_transition
 from controller_fmu.apa.out.limits import CUTS, MOVES, SHIFTS, margins_out, next_attempt_out, with_lock
 from controller_fmu.apa.out.pull_out import OutSearch, plan_out
+from controller_fmu.apa.outline import Shape
 from controller_fmu.apa.params import Longitudinal
 from controller_fmu.apa.slot import Kind, Margins, Site, Slot, no_deeper, site_of
 from controller_fmu.apa.speed import planned_speed, stopping_way
@@ -42,6 +44,8 @@ pedals wind up, the driven wheels spin at full lock, and the car turns by twice 
 SHIFTED = 0.08
 TURNED = 0.03
 """A plan is made again where the slot turns out to lie so far [m] elsewhere, or turned so much [rad]."""
+LEVEL_OUT = 0.035
+"""A car beside the road is worth tuning, too, while its nose or tail stands out of the line by more than this [m]."""
 SHIFTS_PERPENDICULAR = 7
 """Most shifts into a perpendicular slot (GB/T 41630)."""
 TRIED = 4
@@ -132,6 +136,14 @@ def is_in_place(place: CarAtSite, lateral: float, heading: float) -> bool:
     )
 
 
+def end_out(place: CarAtSite, car: Shape) -> float:
+    """Return how far [m] nose or tail of a car in a parallel slot stand out further than its side should; else 0."""
+    if place.site.kind != Kind.PARALLEL:
+        return 0.0
+    s = math.sin(place.pose.heading)
+    return place.pose.y + max(car.front * s, -car.rear * s)
+
+
 def park(
     state: Parking,
     around: Around,
@@ -202,7 +214,7 @@ def _guards(
     own = apa.drive.longitudinal == Longitudinal.OWN_SPEED
     stop = stopping_way(inputs.measured_speed, apa.drive, apa.drive.delay if own else apa.drive.reaction)
     limit = apa.end
-    right = is_in_place(place, limit.lateral, limit.heading)
+    right = is_in_place(place, limit.lateral, limit.heading) and end_out(place, shape_of(params)) <= LEVEL_OUT
     if state.shifts >= limit.few:
         right = right or is_in_place(place, limit.near_lateral, limit.near_heading)
     well_enough = is_in_place(place, limit.miss_lateral, limit.miss_heading)

@@ -6,6 +6,7 @@ import pytest
 
 from controller_fmu.apa.outline import clearance
 from controller_fmu.apa.slot import Kind, Margins, Slot, shortest_for_one_move, site_of
+from controller_fmu.apa.ways.candidates import BESIDE
 from controller_fmu.apa.ways.exit import exit_of
 from controller_fmu.apa.ways.move import end_of, is_move_free, length_of, point_at
 from controller_fmu.apa.ways.planner import (
@@ -19,9 +20,10 @@ from controller_fmu.apa.ways.planner import (
     stage_of,
 )
 from controller_fmu.apa.ways.start_range import start_range
+from controller_fmu.apa.ways.turns import reverse_turn, turn_of
 from controller_fmu.common.curve import advance
 from modelkit.vocabulary import Pose
-from tests.controller.apa_cars import CARS, MARGINS, park_in_thought, shape_of, slot_and_site, start_of
+from tests.controller.apa_cars import CARS, MARGINS, iso_slot, park_in_thought, shape_of, slot_and_site, start_of
 
 NO_MARGINS = Margins(0.0, 0.0, 0.0)
 
@@ -139,3 +141,35 @@ def test_inside_the_start_range_one_reverse_leads_in_and_outside_it_does_not() -
         assert at_once == inside, x
         assert is_move_free(search.move, car, site.obstacles)
         assert end_of(search.move).y <= 3.0
+
+
+@pytest.mark.parametrize("short", [0.002, 0.01, 0.03])
+def test_a_car_that_ends_its_swing_a_little_off_still_turns_in_with_one_move(short: float) -> None:
+    """The turn at full lock on the axis just does not fit any more, ``short`` [m] too late."""
+    car = shape_of("small")
+    _, site = slot_and_site(car, Kind.PERPENDICULAR, 0.3)
+    turn = turn_of(car.curvature, car.curvature, car.ramp)
+    fits = next(
+        Pose(5.79, -2.50 - 0.001 * n, math.radians(-59.5))
+        for n in range(1000)
+        if reverse_turn(Pose(5.79, -2.50 - 0.001 * n, math.radians(-59.5)), turn).direction < 0
+    )
+    start = advance(fits, -1.0, reverse_turn(fits, turn).pieces[0].length + short, 0.0, 0.0)
+    assert reverse_turn(start, turn).direction == 0
+    search = search_on(new_search(start), site, car, 10_000)
+    assert (search.status, search.moves) == (FOUND, 1)
+    end = end_of(search.move)
+    assert (end.y, end.heading) == pytest.approx((0.0, 0.0), abs=BESIDE + 1e-4)
+
+
+@pytest.mark.parametrize("deeper", [0.0, 0.05, 0.1, 0.4])
+def test_a_wider_margin_to_the_wall_is_kept_where_the_parked_car_leaves_it(deeper: float) -> None:
+    """Without a move into the margin at the target itself: there the car has what is left."""
+    car = shape_of("small")
+    slot = iso_slot(car, Kind.PARALLEL, 0.4)._replace(depth=2.0 * car.half_width + 0.05 + deeper)
+    narrow = site_of(slot, car, Margins(0.12, 0.05, 0.0))
+    wide = site_of(slot, car, Margins(0.12, 0.05, 0.0, wall=0.15))
+    assert wide.frame == narrow.frame
+    nearer = narrow.obstacles.beside.y1 - wide.obstacles.beside.y1
+    assert nearer == pytest.approx(-min(deeper, 0.1), abs=1e-9)
+    assert clearance(Pose(), car, wide.obstacles) >= 0.0

@@ -19,7 +19,7 @@ from controller_fmu.valet.driven import (
     room_beside_car,
     seen_on,
 )
-from controller_fmu.valet.found.at_end import is_in_place, listened_on, listens, waits
+from controller_fmu.valet.found.at_end import is_beside, is_in_place, listened_on, listens, waits
 from controller_fmu.valet.found.second_look import looked_again
 from controller_fmu.valet.nearby import forget_nearby
 from controller_fmu.valet.params import ValetParams
@@ -83,7 +83,7 @@ def guards_of(store: PlanStore, state: ValetState, inputs: ControllerInput, para
         if room_beside_car(gap, params) > CORRECTION_ROOM:
             goal = goal_now(state, gap, params)
             moved = not is_in_place(state.request.goal, goal, params)
-    in_place = is_in_place(inputs.odometry, goal, params)
+    in_place = is_in_place(inputs.odometry, goal, params) and not is_beside(state, inputs.odometry, goal, params)
     return (
         bit(Guard.TAKEN_OVER, inputs.driver_takeover or (params.search.active and not inputs.apa_switch))
         | bit(Guard.FAULT, state.reason != Reason.NONE)

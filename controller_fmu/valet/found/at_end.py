@@ -6,6 +6,7 @@ from controller_fmu.common.sensors import is_told_anew
 from controller_fmu.common.told import SlotKind
 from controller_fmu.interface import ControllerInput
 from controller_fmu.planning.plan_store import PlanStore
+from controller_fmu.sensing.gap import GapLayout
 from controller_fmu.valet.chart import Step
 from controller_fmu.valet.driven import ValetState, gap_now
 from controller_fmu.valet.found.beside import CYCLES, hear_beside, put_beside
@@ -16,6 +17,8 @@ from modelkit.vocabulary import Pose
 NEARLY = 0.3
 """A car is at the end of its way into a slot if it is no more [m], and no more [rad], off it."""
 NEARLY_TURNED = 0.1
+ASIDE = 0.05
+"""Across the road a car that knows its neighbours by what it hears beside it stands no farther [m] off their middle."""
 LAST_CORRECTIONS = 7
 """After so many plans a car stays in a slot where it is, even if what it hears beside it then tells a better place."""
 
@@ -54,6 +57,12 @@ def is_in_place(pose: Pose, goal: Pose, params: ValetParams) -> bool:
     off = seen_from(goal, pose)
     end = params.end
     return abs(off.x) <= end.position and abs(off.y) <= end.position and abs(off.heading) <= end.heading
+
+
+def is_beside(state: ValetState, pose: Pose, goal: Pose, params: ValetParams) -> bool:
+    """Return whether a car across the road that has listened stands beside its goal, farther than it need be."""
+    across = state.search.gap.layout == GapLayout.ACROSS
+    return across and listens(state, pose, params) and abs(seen_from(goal, pose).y) > ASIDE
 
 
 def seen_from(goal: Pose, pose: Pose) -> Pose:

@@ -15,6 +15,9 @@ from controller_fmu.sensing.ear import SideEar
 from controller_fmu.sensing.find_gap import gap_across
 from controller_fmu.sensing.gap import Gap, GapLayout
 from controller_fmu.sensing.heard_store import put_heard
+from controller_fmu.valet.chart import Step
+from controller_fmu.valet.driven import ValetState
+from controller_fmu.valet.found.at_end import is_beside, is_in_place
 from controller_fmu.valet.found.beside import SENSORS, SideEchoes, hear_beside, put_beside
 from controller_fmu.valet.found.corrected import corrected, turned_gap
 from controller_fmu.valet.found.way_back import path_back, way_back
@@ -189,3 +192,12 @@ def test_a_car_stands_where_nothing_else_does() -> None:
     places = range(SIDES * HEARD, SIDES * HEARD + nearby.ears[0].places)
     forget_under(store, nearby, Pose(), params)
     assert [store.heard_count[place] for place in places] == [0, 0, 3]
+
+
+def test_across_the_road_a_car_that_listens_stands_nearer_to_the_middle() -> None:
+    params = ValetParams()._replace(search=ValetSearchParams()._replace(active=True))
+    for gap, aside, stays in ((ACROSS, 0.06, False), (ACROSS, 0.04, True), (ALONG, 0.06, True)):
+        state = ValetState(step=Step.STRAIGHTEN, search=Search(gap=gap), plans=2)
+        assert is_in_place(Pose(0.0, aside), Pose(), params)
+        assert is_beside(state, Pose(0.0, aside), Pose(), params) != stays
+        assert not is_beside(state._replace(plans=7), Pose(0.0, aside), Pose(), params)

@@ -151,7 +151,7 @@ def free_way(pose: Pose, direction: float, curvature: float, longest: float, car
             gap = clearance(advance(pose, direction, next_way, curvature, curvature), car, obstacles, 0.0)
             if gap <= least:
                 return way
-            least = gap - CREPT if gap <= 0.0 else 0.0
+            least = max(least, gap - CREPT) if gap <= 0.0 else 0.0
             sure = sure_steps(gap, moved)
         way = next_way
     return longest

@@ -48,7 +48,7 @@ LEVEL_OUT = 0.035
 """A car beside the road is worth tuning, too, while its nose or tail stands out of the line by more than this [m]."""
 SHIFTS_PERPENDICULAR = 7
 """Most shifts into a perpendicular slot (GB/T 41630)."""
-TRIED = 4
+TRIED = 6
 """After so many shifts a car in place does not drive deeper only to be surer that it is in the slot."""
 MOST_CUTS = 8
 """A car whose moves were cut short more often than this finds no way."""

@@ -15,7 +15,7 @@ from controller_fmu.apa.around.closing import (
     tracked_on,
 )
 from controller_fmu.apa.around.closing import turned_round as turned
-from controller_fmu.apa.around.comer import STEADY, Comer, followed, is_odd, somebody_comes
+from controller_fmu.apa.around.comer import BRIDGED, STEADY, Comer, followed, is_odd, somebody_comes
 from controller_fmu.apa.around.near import FREE, nearest_told
 from controller_fmu.apa.around.surroundings import shape_of
 from controller_fmu.apa.hearing.mute import MUTE
@@ -118,6 +118,17 @@ def test_who_comes_by_himself_is_stood_still_for(cycle: float) -> None:
     assert not comes(-2.2, 0.0, cycle=cycle), "faster than anybody: another thing heard each time"
     assert not comes(0.5, 0.0, cycle=cycle)
     assert not comes(-0.5, 0.0, cycle=cycle), "not here for a while"
+
+
+def test_who_is_not_heard_any_more_comes_no_longer() -> None:
+    comer = Comer()
+    for number in range(40):
+        comer = followed(comer, 3.0 - 0.06 * number, 0.04, FURTHEST, 4.0)
+    heard_last = comer
+    for number in range(BRIDGED + 2):
+        assert somebody_comes((comer,) * 12, 0.0) == (number <= BRIDGED), "a lost reading or two is bridged"
+        comer = followed(comer, FURTHEST, 0.04, FURTHEST, 4.0)
+    assert heard_last.fits > 30
 
 
 def test_noise_alone_is_nobody_who_comes() -> None:

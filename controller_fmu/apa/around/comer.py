@@ -23,6 +23,8 @@ ALONE = 1.0
 """or so much for sensors of the flanks."""
 EVENLY = 3
 """So many readings in a row must fit."""
+BRIDGED = 2
+"""Who is not heard so many times in a row is still thought to come."""
 SWINGS = 1.3
 """A sensor at the front of a turning car is faster than its rear axle by up to this."""
 COMES = 0.4
@@ -64,7 +66,7 @@ def followed(comer: Comer, reading: float, cycle: float, furthest: float, expect
     The map ``expected`` to hear something so far [m] off.
     """
     fast = comer.fits == 0 or comer.rate < -FAST
-    if reading == comer.last and fast and not comer.again:
+    if reading == comer.last and reading < furthest and fast and not comer.again:
         return comer._replace(again=True, nearer=expected - comer.at)
     then = _followed(comer, reading, 2.0 * cycle if comer.again and reading != comer.last else cycle, furthest)
     return then._replace(nearer=expected - then.at, last=reading, again=False)
@@ -73,7 +75,7 @@ def followed(comer: Comer, reading: float, cycle: float, furthest: float, expect
 def _followed(comer: Comer, reading: float, cycle: float, furthest: float) -> Comer:
     ahead = comer.at + comer.rate * cycle
     if reading >= furthest:
-        return Comer(ahead, comer.rate, comer.fits - 1) if comer.fits > 0 else Comer()
+        return Comer(ahead, comer.rate, min(comer.fits, EVENLY + BRIDGED) - 1) if comer.fits > 0 else Comer()
     off = reading - ahead
     if comer.fits == 0:
         near = abs(reading - comer.at) < JUMP

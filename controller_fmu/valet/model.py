@@ -6,12 +6,12 @@ from typing import NamedTuple
 from controller_fmu.interface import Reason
 from controller_fmu.planning.plan_store import PlanStore
 from controller_fmu.valet.chart import Step
-from controller_fmu.valet.driven import ValetState
 from controller_fmu.valet.given import ValetInput, of_the_car
 from controller_fmu.valet.outputs import valet_outputs
 from controller_fmu.valet.params import ValetParams
 from controller_fmu.valet.phases import ValetPhase
 from controller_fmu.valet.signals import ValetOutput
+from controller_fmu.valet.state import ValetState
 from controller_fmu.valet.system import valet_sample
 from modelkit.maths import is_finite
 from modelkit.vocabulary import Prompt

@@ -4,10 +4,10 @@ from controller_fmu.interface import Reason
 from controller_fmu.planning.plan import PATH
 from controller_fmu.sensing.gap import GapLayout
 from controller_fmu.valet.chart import Step
-from controller_fmu.valet.driven import ValetState
 from controller_fmu.valet.params import ValetParams
 from controller_fmu.valet.phases import ValetPhase
 from controller_fmu.valet.signals import PIECES, FoundSlot, Move, MovePiece, Planning, ValetOutput, ValetSignals
+from controller_fmu.valet.state import ValetState
 from modelkit.maths import sign
 from modelkit.vocabulary import Prompt
 

@@ -16,15 +16,15 @@ from controller_fmu.sensing.find_gap import gap_across
 from controller_fmu.sensing.gap import Gap, GapLayout
 from controller_fmu.sensing.heard_store import put_heard
 from controller_fmu.valet.chart import Step
-from controller_fmu.valet.driven import ValetState
 from controller_fmu.valet.found.at_end import is_beside, is_in_place
 from controller_fmu.valet.found.beside import SENSORS, SideEchoes, hear_beside, put_beside
 from controller_fmu.valet.found.corrected import corrected, turned_gap
+from controller_fmu.valet.found.nearby import Nearby, forget_under
+from controller_fmu.valet.found.search import Search
 from controller_fmu.valet.found.way_back import path_back, way_back
-from controller_fmu.valet.nearby import Nearby, forget_under
 from controller_fmu.valet.params import ValetParams, ValetSearchParams
-from controller_fmu.valet.search import Search
 from controller_fmu.valet.sight import Sight, heard_again, look
+from controller_fmu.valet.state import ValetState
 from modelkit.store import new_store
 from modelkit.vocabulary import Pose
 from tests.valet.test_valet_search import WANTED, passed, row

@@ -1,1 +1,1 @@
-"""A slot that was found, as it turns out on the way in."""
+"""A slot that is looked for, and as it turns out on the way in once it is found."""

@@ -8,9 +8,10 @@ from controller_fmu.interface import ControllerInput
 from controller_fmu.planning.plan_store import PlanStore
 from controller_fmu.sensing.gap import GapLayout
 from controller_fmu.valet.chart import Step
-from controller_fmu.valet.driven import ValetState, gap_now
 from controller_fmu.valet.found.beside import CYCLES, hear_beside, put_beside
 from controller_fmu.valet.params import ValetParams
+from controller_fmu.valet.planned import gap_now
+from controller_fmu.valet.state import ValetState
 from modelkit.maths import wrap_angle
 from modelkit.vocabulary import Pose
 

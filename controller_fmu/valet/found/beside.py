@@ -9,9 +9,9 @@ from controller_fmu.planning.plan_store import SIDES, PlanStore
 from controller_fmu.sensing.ear import SideEar
 from controller_fmu.sensing.gap import GapLayout
 from controller_fmu.sensing.heard_store import put_heard
-from controller_fmu.valet.nearby import FRONT_EARS, REAR_EARS, Nearby, is_in_gap
+from controller_fmu.valet.found.nearby import FRONT_EARS, REAR_EARS, Nearby, is_in_gap
+from controller_fmu.valet.found.search import Search
 from controller_fmu.valet.params import ValetParams
-from controller_fmu.valet.search import Search
 from modelkit.geometry import Point
 from modelkit.vocabulary import Pose
 

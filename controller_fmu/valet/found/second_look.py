@@ -8,10 +8,10 @@ from controller_fmu.planning.plan_store import PlanStore
 from controller_fmu.planning.task import Corner
 from controller_fmu.sensing.find_gap import gap_across
 from controller_fmu.sensing.gap import Gap, GapLayout
-from controller_fmu.valet.driven import ValetState
+from controller_fmu.valet.found.search import RIGHT, mapped, wanted
 from controller_fmu.valet.params import ValetParams
-from controller_fmu.valet.search import RIGHT, mapped, wanted
 from controller_fmu.valet.sight import SEEN_CORNERS, Sight
+from controller_fmu.valet.state import ValetState
 
 NO_WAY_IN = (Reason.NO_PATH, Reason.BLOCKED, Reason.SLOT_TOO_SHALLOW, Reason.LEFT_PATH)
 

@@ -34,7 +34,7 @@ from controller_fmu.apa.told import ToldWatch, watch_told
 from controller_fmu.apa.watch import STANDING, Duty, Watch, is_taken_over, reason_to_fail, watch
 from controller_fmu.common.chart import bit
 from controller_fmu.common.monitor import Command
-from controller_fmu.common.sensors import is_told_anew
+from controller_fmu.common.sensors import Listened, listened_on
 from controller_fmu.common.told import SlotKind
 from controller_fmu.interface import ControllerInput, ControllerParams, Reason
 from modelkit.vocabulary import Pose
@@ -57,6 +57,8 @@ class ApaState(NamedTuple):
     reason: int = Reason.NONE
     taken_over: bool = False
     clock_ns: int = 0
+    listened: Listened = Listened()
+    """What the sensors told last."""
     search: SearchState = SearchState()
     around: Around = Around()
     parking: Parking = Parking()
@@ -93,6 +95,8 @@ def apa_sample(state: ApaState, inputs: ControllerInput, params: ControllerParam
     driving = state.mode in (Mode.AUTO_PARKING_ASSIST, Mode.POSITION_TUNING)
     heard_now = without_deaf(inputs.ultrasonic, state.around.guard.silences)
     inputs = inputs._replace(ultrasonic=usable(heard_now, params.car.ultrasonic.min_range))
+    heard_last = listened_on(state.listened, inputs.ultrasonic, state.clock_ns, dt_ns, params.car.ultrasonic.cycle)
+    state = state._replace(listened=heard_last)
     command = Command(state.parking.step, state.parking.wheel, state.parking.sight.blocked)
     looking = state.mode in (Mode.STANDBY, Mode.PARKING_SPACE_SEARCH) and not has_slot(state)
     out = state.parking.out or inputs.choice.task == ChosenTask.PULL_OUT
@@ -102,7 +106,9 @@ def apa_sample(state: ApaState, inputs: ControllerInput, params: ControllerParam
     reason = reason_to_fail(state.watch, inputs, driving, params, state.task) if state.mode != Mode.OFF else Reason.NONE
     if reason == Reason.NONE and not taken:
         if state.mode in (Mode.PARKING_SPACE_SEARCH, Mode.PARKING_SPACE_APPEARS):
-            state = state._replace(search=search(state.search, inputs, shape_of(params), params, dt_ns))
+            state = state._replace(
+                search=search(state.search, inputs, shape_of(params), params, dt_ns, state.listened.fresh)
+            )
         if state.mode in (Mode.STANDBY, Mode.PARKING_SPACE_SEARCH):
             state = _chosen(state, inputs, params, dt_ns)
         elif state.mode == Mode.PARKING_SPACE_APPEARS:
@@ -116,8 +122,7 @@ def apa_sample(state: ApaState, inputs: ControllerInput, params: ControllerParam
 
 def _chosen(state: ApaState, inputs: ControllerInput, params: ControllerParams, dt_ns: int) -> ApaState:
     """Return the assist that knows which slot is meant, of those that it has found or from outside."""
-    fresh = is_told_anew(state.clock_ns, dt_ns, params.car.ultrasonic.cycle)
-    told = watch_told(state.told, state.search, inputs, fresh, shape_of(params), params)
+    told = watch_told(state.told, state.search, inputs, state.listened.fresh, shape_of(params), params)
     number = number_chosen(state.search, inputs.choice.side, inputs.choice.slot)
     if inputs.told.kind != SlotKind.NONE:
         number = 0
@@ -134,7 +139,7 @@ def _parked_on(
     shifts = state.around.shifts
     stopping = driving and parking.step != Step.DRIVE
     guard = learn_brake(state.around.guard, inputs.measured_speed, stopping, dt_ns, params)
-    if is_told_anew(state.clock_ns, dt_ns, params.car.ultrasonic.cycle):
+    if state.listened.fresh:
         here = moved(here, inputs.odometry, params.apa.map)
         here = heard(here, inputs.ultrasonic, params.car.ultrasonic, params.apa.map)
         here = heard_within(here, inputs.ultrasonic, params.car.ultrasonic) if here.within else here
@@ -250,7 +255,7 @@ def _moved_on(
         mode=mode, clock_ns=state.clock_ns + dt_ns, waited_ns=state.waited_ns + dt_ns if waiting else 0
     )
     if mode in (Mode.OFF, Mode.STANDBY) or before == Mode.STANDBY:
-        state = state._replace(search=begin_search(inputs.odometry, state.clock_ns))
+        state = state._replace(search=begin_search(inputs.odometry))
     state = state._replace(resumes=_resumes(state, before, inputs))
     if mode in (Mode.OFF, Mode.STANDBY):
         state = state._replace(parking=Parking(), watch=Watch())

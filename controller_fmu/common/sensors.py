@@ -1,6 +1,7 @@
 """The ultrasonic sensors as controllers use them: where one is, and when and whether it tells something."""
 
 import math
+from typing import NamedTuple
 
 from modelkit.car import SensorMount
 from modelkit.vocabulary import Pose
@@ -8,6 +9,8 @@ from modelkit.vocabulary import Pose
 LEFT_SENSOR = 8
 RIGHT_SENSOR = 10
 """The front ones of the flanks, by which slots are found."""
+LATE = 0.02
+"""So long [s] new readings may be under way."""
 HEARD = 0.99
 """A reading of more than this share of the range tells nothing."""
 
@@ -15,6 +18,34 @@ HEARD = 0.99
 def is_told_anew(clock_ns: int, dt_ns: int, cycle: float) -> bool:
     """Return whether sensors that measure every ``cycle`` [s] tell something new in a sample of ``dt_ns``."""
     return clock_ns % math.floor(cycle * 1e9 + 0.5) < dt_ns
+
+
+class Listened(NamedTuple):
+    """What sensors told last, and whether they tell something new now."""
+
+    readings: tuple[float, ...] = (0.0,) * 12
+    """The last that were listened to [m]."""
+    waited_ns: int = 0
+    """Since they should have told something new [ns]; 0: they should not yet."""
+    fresh: bool = False
+
+
+def listened_on(before: Listened, readings: tuple[float, ...], clock_ns: int, dt_ns: int, cycle: float) -> Listened:
+    """Return what is heard in a sample of ``dt_ns``: new readings may come later than they are measured.
+
+    Where data is exchanged seldom, what was measured when the ``cycle`` [s] ended comes up to ``LATE`` [s] later: until
+    then the readings are the last ones still. Readings that are the same after that are new ones too.
+    """
+    due = is_told_anew(clock_ns, dt_ns, cycle)
+    if not due and before.waited_ns == 0:
+        return before._replace(fresh=False)
+    waited = before.waited_ns + dt_ns
+    changed = due and before.waited_ns > 0
+    for number in range(12):
+        changed = changed or readings[number] != before.readings[number]
+    if not changed and waited * 1e-9 <= LATE:
+        return before._replace(waited_ns=waited, fresh=False)
+    return Listened(readings, 0, True)
 
 
 def sensor_at(mount: SensorMount, pose: Pose) -> Pose:

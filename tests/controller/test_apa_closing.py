@@ -133,7 +133,7 @@ def test_who_is_not_heard_any_more_comes_no_longer() -> None:
 
 def test_noise_alone_is_nobody_who_comes() -> None:
     draw = random.Random(3)
-    comers = (Comer(),) * 12
+    comers: tuple[Comer, ...] = (Comer(),) * 12
     for _ in range(400):
         comers = tuple(followed(comer, draw.gauss(0.8, 0.03), 0.04, FURTHEST, 3.0) for comer in comers)
         assert comers[0].fits < STEADY or not somebody_comes(comers, 0.0)

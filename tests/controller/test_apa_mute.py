@@ -7,7 +7,7 @@ import pytest
 from controller_fmu.apa.hearing.mute import MUTE, SLOWLY, WAIT, count_mute, is_waited_for, spared, usable
 from controller_fmu.apa.watch import Duty, Watch, watch
 from controller_fmu.common.monitor import Command
-from controller_fmu.common.sensors import LEFT_SENSOR, RIGHT_SENSOR
+from controller_fmu.common.sensors import LEFT_SENSOR, RIGHT_SENSOR, Listened, listened_on
 from controller_fmu.interface import ControllerInput, ControllerParams
 
 PARAMS = ControllerParams()
@@ -55,3 +55,30 @@ def test_the_clock_of_what_is_missed_runs_where_more_is_mute_than_can_be_spared(
     clocks = watch(Watch(blind=3, mute=5), Command(0, 0.0, False), inputs, Duty(True, spare), PARAMS, SECOND)
     assert clocks.blind == (3 + SECOND if blind else 0)
     assert clocks.mute == (5 + SECOND if mute else 0)
+
+
+@pytest.mark.parametrize(
+    ("exchange", "cycle"), [(0.01, 0.05), (0.02, 0.05), (0.02, 0.053), (0.02, 0.07), (0.005, 0.041)]
+)
+def test_each_measurement_is_listened_to_once_however_seldom_data_is_exchanged(exchange: float, cycle: float) -> None:
+    """A controller that samples every 10 ms reads what was measured up to the last exchange."""
+    state = Listened()
+    heard = []
+    for sample in range(2000):
+        exchanged = math.floor(sample * 0.01 / exchange + 1e-9) * exchange
+        measured = math.floor(exchanged / cycle + 1e-9)
+        state = listened_on(state, (float(measured),) * 12, sample * 10_000_000, 10_000_000, cycle)
+        if state.fresh:
+            heard.append(measured)
+    assert heard[1:-1] == list(range(heard[1], heard[1] + len(heard) - 2))
+    assert len(heard) > 20.0 / cycle - 3
+
+
+def test_readings_that_stay_the_same_are_listened_to_too() -> None:
+    """A car that stands hears the same again: then they are new after what an exchange may take."""
+    state = Listened()
+    times = []
+    for sample in range(100):
+        state = listened_on(state, (1.0,) * 12, sample * 10_000_000, 10_000_000, 0.05)
+        times += [sample * 10] if state.fresh else []
+    assert times == [0, *range(70, 1000, 50)]

@@ -11,7 +11,7 @@ from controller_fmu.apa.outline import Shape
 from controller_fmu.apa.params import ApaParams, Wish
 from controller_fmu.apa.slot import UNSEEN, Kind, Side, Slot
 from controller_fmu.apa.ways.fit import Fit, fit_of
-from controller_fmu.common.sensors import HEARD, LEFT_SENSOR, RIGHT_SENSOR, is_told_anew, sensor_at
+from controller_fmu.common.sensors import HEARD, LEFT_SENSOR, RIGHT_SENSOR, sensor_at
 from controller_fmu.interface import ControllerInput, ControllerParams
 from modelkit.vocabulary import Pose
 
@@ -35,7 +35,6 @@ class SearchState(NamedTuple):
     """Both sides, and the slots found, the newest first."""
 
     origin: Pose = Pose()
-    clock_ns: int = 0
     right: SideState = START
     left: SideState = START
     far_right: float = DEEP
@@ -55,20 +54,19 @@ class SearchState(NamedTuple):
     """Largest speed of the search [m/s]."""
 
 
-def begin_search(pose: Pose, clock_ns: int) -> SearchState:
+def begin_search(pose: Pose) -> SearchState:
     """Return a search that begins at ``pose``."""
-    return SearchState(origin=pose, clock_ns=clock_ns)
+    return SearchState(origin=pose)
 
 
 def search(
-    state: SearchState, inputs: ControllerInput, car: Shape, params: ControllerParams, dt_ns: int
+    state: SearchState, inputs: ControllerInput, car: Shape, params: ControllerParams, dt_ns: int, fresh: bool
 ) -> SearchState:
-    """Return the search after one sample; sensors tell something new every ``cycle``."""
-    clock = state.clock_ns + dt_ns
+    """Return the search after one sample; ``fresh``: the sensors tell something new."""
     speed = abs(inputs.measured_speed)
     way = state.way + speed * dt_ns * 1e-9
-    if not is_told_anew(state.clock_ns, dt_ns, params.car.ultrasonic.cycle) or speed < 0.01:
-        return state._replace(clock_ns=clock, way=way)
+    if not fresh or speed < 0.01:
+        return state._replace(way=way)
     fastest = max(state.fastest, speed)
     right_r = inputs.ultrasonic[RIGHT_SENSOR]
     left_r = inputs.ultrasonic[LEFT_SENSOR]
@@ -80,9 +78,7 @@ def search(
     far_left = left_r if left_r < far_left and left_r < top else far_left
     far_right = right_r if right_r < far_right and right_r < top else far_right
     state = _kept_but_behind(_kept_but_behind(state, state.right, right, RIGHT), state.left, left, LEFT)
-    state = state._replace(
-        clock_ns=clock, right=right, left=left, far_right=far_right, far_left=far_left, way=way, fastest=fastest
-    )
+    state = state._replace(right=right, left=left, far_right=far_right, far_left=far_left, way=way, fastest=fastest)
     if right.fresh:
         state = _judge(state, right, RIGHT, car, params)
     if left.fresh:

@@ -96,7 +96,7 @@ def turn_in(start: Pose, number: int, site: Site, car: Shape) -> Candidate:
     """Return the reverse line, arc, line into a perpendicular slot, at 1 to 0.55 of the lock, on its axis or beside."""
     share = number // BESIDES
     aside = BESIDE * (number % BESIDES - 1)
-    return _turn_beside(start, share / FINER, aside, site, car)
+    return _turn_beside(start, share * (1.0 / FINER), aside, site, car)
 
 
 def _turn_beside(start: Pose, share: float, aside: float, site: Site, car: Shape) -> Candidate:

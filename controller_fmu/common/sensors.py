@@ -9,7 +9,7 @@ from modelkit.vocabulary import Pose
 LEFT_SENSOR = 8
 RIGHT_SENSOR = 10
 """The front ones of the flanks, by which slots are found."""
-LATE = 0.02
+LATE = 0.01
 """So long [s] new readings may be under way."""
 HEARD = 0.99
 """A reading of more than this share of the range tells nothing."""

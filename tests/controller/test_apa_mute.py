@@ -81,4 +81,4 @@ def test_readings_that_stay_the_same_are_listened_to_too() -> None:
     for sample in range(100):
         state = listened_on(state, (1.0,) * 12, sample * 10_000_000, 10_000_000, 0.05)
         times += [sample * 10] if state.fresh else []
-    assert times == [0, *range(70, 1000, 50)]
+    assert times == [0, *range(60, 1000, 50)]

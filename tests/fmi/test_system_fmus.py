@@ -50,6 +50,8 @@ class Watched:
         self.value, self.name, self.seen = value, name, seen
 
     def _item(self, value: Any, name: Any) -> Any:
+        if isinstance(value, Watched):
+            return value
         if isinstance(value, tuple):
             return Watched(value, name, self.seen)
         self.seen.add(name)

@@ -169,8 +169,11 @@ def without_gone(
 def driven_on(
     here: LocalMap, tracks: tuple[Track, ...], readings: tuple[float, ...], params: ControllerParams
 ) -> LocalMap:
-    """Return the map with the neighbour ahead in a parallel slot as far on as both middle sensors of the front hear."""
-    if here.kind != Kind.PARALLEL or here.empty_b:
+    """Return the map with the neighbour ahead in a parallel slot as far on as both middle sensors of the front hear.
+
+    A car that stood between the neighbours when the map was begun has heard him nearest from there.
+    """
+    if here.kind != Kind.PARALLEL or here.empty_b or here.within:
         return here
     one = expected(ear_on(here, params.car.ultrasonic, 1), here)
     two = expected(ear_on(here, params.car.ultrasonic, 2), here)

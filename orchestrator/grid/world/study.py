@@ -89,8 +89,8 @@ def _stacked(values: F, seeds: Seeds) -> Array:
 def report(table: Table, folder: Path) -> int:
     """Print how the runs ended. Returns 1 if one touched something, claims falsely, or has no end."""
     ends, to = table.column("end"), console()
-    to.print(_ends(ends, _groups(table)))
-    for line in _parked_of_valid(ends, table):
+    to.print(_ends(ends, groups(table)))
+    for line in _parked_of_valid(table):
         to.print(line, highlight=False)
     for title, column, chosen in (("reasons", "reason", "gave up"), ("touched", "touched", CONTACT)):
         counted = Counter(table.column(column)[ends == chosen].tolist()).most_common()
@@ -101,14 +101,17 @@ def report(table: Table, folder: Path) -> int:
     return 1 if len(worst) else 0
 
 
-def _parked_of_valid(ends: Array, table: Table) -> list[str]:
-    """Return which share of the runs is parked whose slot is valid for the car, and whose task is possible as well."""
-    valid, asked = table.column("valid") == 1.0, table.column("asked") == 1.0
-    quiet = _groups(table)[QUIET]
-    groups = {"valid": valid, "valid and asked": valid & asked, f"these where {QUIET}": valid & asked & quiet}
+def parked_of(table: Table) -> dict[str, tuple[int, int]]:
+    """Return how many are parked, of how many runs: of those valid, whose task is possible too, and quiet ones of these."""
+    ends, valid, asked = table.column("end"), table.column("valid") == 1.0, table.column("asked") == 1.0
+    quiet = groups(table)[QUIET]
+    chosen = {"valid": valid, "valid and asked": valid & asked, f"these where {QUIET}": valid & asked & quiet}
+    return {name: (int((ends[of] == PARKED).sum()), int(of.sum())) for name, of in chosen.items()}
+
+
+def _parked_of_valid(table: Table) -> list[str]:
     lines = []
-    for name, chosen in groups.items():
-        count, of = int((ends[chosen] == PARKED).sum()), int(chosen.sum())
+    for name, (count, of) in parked_of(table).items():
         low, high = (100.0 * share for share in clopper_pearson(count, of, 0.975))
         share = 100.0 * count / max(of, 1)
         lines.append(f"parked of {name}: {count} of {of}, {share:.2f} % (95 %: {low:.2f} to {high:.2f} %)")
@@ -119,8 +122,8 @@ MOST_ROWS = 20
 QUIET = "nothing moves or fails"
 
 
-def _groups(table: Table) -> dict[str, NDArray[np.bool_]]:
-    """Return which runs are told apart."""
+def groups(table: Table) -> dict[str, NDArray[np.bool_]]:
+    """Return which runs are told apart: a name, and for each run whether it is one of them."""
     kinds, events = table.column("kind"), {name: table.column(name) for name in ("person", "mover", "lost")}
     quiet = (events["person"] < NOBODY) & (events["mover"] < NOBODY) & (events["lost"] < NO_SENSOR)
     sides = {KINDS[number + 1]: kinds == number for number in (0, 1)}

@@ -1,4 +1,7 @@
-"""Writes how the runs of the study apa-world ended into docs/hunt.md. ``python docs/ends.py WHOLE.parquet MILD.parquet``."""
+"""Writes how the runs of the study apa-world ended into docs/hunt.md.
+
+``python docs/ends.py WHOLE.parquet MILD.parquet``
+"""
 
 import re
 import sys

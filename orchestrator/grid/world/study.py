@@ -102,7 +102,7 @@ def report(table: Table, folder: Path) -> int:
 
 
 def parked_of(table: Table) -> dict[str, tuple[int, int]]:
-    """Return how many are parked, of how many runs: of those valid, whose task is possible too, and quiet ones of these."""
+    """Return how many are parked, of how many: valid runs, those whose task is possible too, quiet ones of these."""
     ends, valid, asked = table.column("end"), table.column("valid") == 1.0, table.column("asked") == 1.0
     quiet = groups(table)[QUIET]
     chosen = {"valid": valid, "valid and asked": valid & asked, f"these where {QUIET}": valid & asked & quiet}

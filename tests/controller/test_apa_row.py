@@ -5,6 +5,7 @@ import math
 import pytest
 
 from controller_fmu.apa.around.closing import Track
+from controller_fmu.apa.around.guard import GuardState, listen
 from controller_fmu.apa.around.local_map import WALL as WALL_BEHIND
 from controller_fmu.apa.around.local_map import begin_map, ear_at, expected, heard, moved
 from controller_fmu.apa.around.row import (
@@ -18,7 +19,7 @@ from controller_fmu.apa.around.row import (
     slot_of_map,
     without_gone,
 )
-from controller_fmu.apa.around.surroundings import Around, settled_in, shape_of
+from controller_fmu.apa.around.surroundings import Around, is_sure, settled_in, shape_of
 from controller_fmu.apa.hearing.edge import Heard
 from controller_fmu.apa.hearing.line_fit import Sums, add
 from controller_fmu.apa.hearing.mute import MUTE
@@ -171,6 +172,20 @@ def test_a_car_between_neighbours_that_are_not_there_is_not_parked(silent: tuple
     readings = [SENSORS.max_range if number in silent else reading for number, reading in enumerate(readings)]
     assert is_heard(here, tuple(readings), PARAMS) == stays
     assert is_heard(here._replace(kind=Kind.PARALLEL), tuple(readings), PARAMS)
+
+
+@pytest.mark.parametrize(("lost", "parked"), [(1, True), (2, True), (3, False)])
+def test_echoes_lost_at_both_flanks_at_once_are_no_neighbours_gone(lost: int, parked: bool) -> None:
+    slot = between(Kind.PERPENDICULAR, 2.8)
+    pose = target_of(slot, shape_of(PARAMS), Margins())
+    here = begin_map(slot, pose, MAP)
+    readings = [expected(ear_at(mount, pose, 1.0, SENSORS.half_angle), here).echo.distance for mount in SENSORS.mounts]
+    silent = tuple(SENSORS.max_range if number in (9, 11) else value for number, value in enumerate(readings))
+    guard = GuardState()
+    for heard_now in (tuple(readings),) * 5 + (silent,) * lost:
+        guard = listen(guard, heard_now, here, PARAMS)
+    around = Around(slot, here, guard)
+    assert is_sure(ControllerInput(odometry=pose, ultrasonic=silent), around, PARAMS) == parked
 
 
 def test_neighbours_are_heard_beside_a_wheel_stop_that_is_no_wall() -> None:

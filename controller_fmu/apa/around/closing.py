@@ -66,6 +66,15 @@ def tracked_on(track: Track, reading: float, way: float, expected: float, furthe
     return Track(now, before, 0, now < expected - STRANGE)
 
 
+def without_lost(readings: tuple[float, ...], tracks: tuple[Track, ...]) -> tuple[float, ...]:
+    """Return the readings [m]; one or two of nothing in a row are lost echoes: there the mean of those before."""
+    for number in range(12):
+        track = tracks[number]
+        if 0 < track.silent < SILENCES and track.now < readings[number] and not is_mute(readings[number]):
+            readings = readings[:number] + (track.now,) + readings[number + 1 :]
+    return readings
+
+
 def turned_round(track: Track) -> Track:
     """Return the track of a car that begins to go the other way."""
     return track._replace(before=track.now)

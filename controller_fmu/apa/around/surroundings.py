@@ -3,6 +3,7 @@
 import math
 from typing import NamedTuple
 
+from controller_fmu.apa.around.closing import without_lost
 from controller_fmu.apa.around.course import HeldCourse
 from controller_fmu.apa.around.guard import GuardState, Sight, watch_way
 from controller_fmu.apa.around.local_map import LocalMap
@@ -79,7 +80,8 @@ def settled_in(inputs: ControllerInput, around: Around, params: ControllerParams
 def is_sure(inputs: ControllerInput, around: Around, params: ControllerParams) -> bool:
     """Return whether both neighbours are where the map has them, and the sensors do not contradict it."""
     heard = inputs.ultrasonic
-    told = is_heard(around.map, heard, params) and is_in_the_middle(around.map, heard, params)
+    last = without_lost(heard, around.guard.tracks)
+    told = is_heard(around.map, last, params) and is_in_the_middle(around.map, last, params)
     return told and is_certain(without_gone(around.map, around.guard.tracks, heard, params), params.apa.map)
 
 

@@ -92,15 +92,14 @@ def comes(
     lost: int = -1,
     cycle: float = 0.04,
     place: int = REAR,
-    each: int = 1,
 ) -> bool:
     """Return whether somebody is found to come who changes his distance by ``rate`` [m/s], from 2 m for 0.8 s.
 
-    The map has something ``off`` [m]. Of readings that come ``each`` so many times the ones between are not seen.
+    The map has something ``off`` [m].
     """
     comer = Comer()
     for number in range(round(0.8 / cycle)):
-        reading = FURTHEST if number == lost else 2.0 + rate * (number - number % each) * cycle
+        reading = FURTHEST if number == lost else 2.0 + rate * number * cycle
         comer = followed(comer, reading, cycle, FURTHEST, off)
     return somebody_comes(tuple(comer if number == place else Comer() for number in range(12)), abs(speed))
 
@@ -109,7 +108,6 @@ def comes(
 def test_who_comes_by_himself_is_stood_still_for(cycle: float) -> None:
     assert comes(-1.5, 0.0, cycle=cycle)
     assert comes(-2.0, -0.8, cycle=cycle)
-    assert comes(-2.0, -0.8, cycle=cycle, each=2), "each reading is looked at twice"
     assert comes(-1.5, 0.0, lost=9, cycle=cycle)
     assert comes(-1.5, 0.0, cycle=cycle, place=FLANK), "beside the car, where the map has nobody"
     assert not comes(-1.5, 0.0, cycle=cycle, place=FLANK, off=1.7), "along a flank that the map has there"

@@ -32,8 +32,6 @@ RUNS = 2.0
 """Nearer by so much and less [m/s] more than the car goes: it comes by itself."""
 SLOWS = 1.0
 """A rate follows a car that brakes as late as if it slowed down by this [m/s2]."""
-FAST = 1.0
-"""What comes so fast [m/s] is not heard twice at the same distance."""
 STEADY = 8
 NEAR = 0.9
 ODD = 0.2
@@ -54,10 +52,6 @@ class Comer(NamedTuple):
     """Readings in a row that fitted."""
     nearer: float = 0.0
     """Than the map has anything there [m]."""
-    last: float = SILENT
-    """Last reading [m]."""
-    again: bool = False
-    """It was read twice: as likely as not it was the same, looked at before there was another."""
 
 
 def followed(comer: Comer, reading: float, cycle: float, furthest: float, expected: float) -> Comer:
@@ -65,11 +59,8 @@ def followed(comer: Comer, reading: float, cycle: float, furthest: float, expect
 
     The map ``expected`` to hear something so far [m] off.
     """
-    fast = comer.fits == 0 or comer.rate < -FAST
-    if reading == comer.last and reading < furthest and fast and not comer.again:
-        return comer._replace(again=True, nearer=expected - comer.at)
-    then = _followed(comer, reading, 2.0 * cycle if comer.again and reading != comer.last else cycle, furthest)
-    return then._replace(nearer=expected - then.at, last=reading, again=False)
+    then = _followed(comer, reading, cycle, furthest)
+    return then._replace(nearer=expected - then.at)
 
 
 def _followed(comer: Comer, reading: float, cycle: float, furthest: float) -> Comer:

@@ -11,7 +11,7 @@ from typing import NamedTuple
 from controller_fmu.planning.plan_store import PlanStore
 from controller_fmu.sensing.gap import DEEP, Gap, GapLayout, Wanted
 from controller_fmu.sensing.neighbours import FACE, beside_body, front_of, is_askew, measured
-from controller_fmu.sensing.places import PlacesFrame, Spot, is_free, is_sure, seen, spot, spot_of, turned
+from controller_fmu.sensing.places import BEFORE_ECHO, PlacesFrame, Spot, is_free, is_sure, seen, spot, spot_of, turned
 
 LONGEST_FRONT = 2.3
 """At an angle, a neighbour's front is no wider [m]."""
@@ -30,6 +30,8 @@ STRAIGHT = 0.25
 FLUSH = 0.15
 """What lies so near [m] to the front of a neighbour, beside it, is more of its front."""
 FAR_OFF = 2.5
+HALF_A_METRE = 0.5
+"""From no farther off would a cone that the opening just lets through tell what is so far [m] in."""
 JUST_INSIDE = 0.1
 LOOKED = 4
 """So many of nine points in a gap's opening have to be known to be free."""
@@ -130,7 +132,8 @@ def _is_straight(gap: Gap, frame: PlacesFrame) -> bool:
 def _is_open(store: PlanStore, frame: PlacesFrame, gap: Gap, low: float, high: float) -> bool:
     """Return whether echoes say that a gap's opening is free: enough of nine points in it.
 
-    From far away a cone that is wider than the opening reaches hardly into it: there, three points just inside it.
+    From far away a cone that is wider than the opening reaches hardly into it, as it hears the corners beside it:
+    there, three points just inside it. The narrower the opening, the nearer that is.
     """
     a = spot_of(turned(gap.a.x, gap.a.y, frame), frame).t
     b = spot_of(turned(gap.b.x, gap.b.y, frame), frame).t
@@ -142,5 +145,6 @@ def _is_open(store: PlanStore, frame: PlacesFrame, gap: Gap, low: float, high: f
         first = first + 1 if is_free(store, t + JUST_INSIDE, s, frame) else first
         for into in (0.2, 0.5, 0.8):
             count = count + 1 if is_free(store, t + into, s, frame) else count
-    far = turned(gap.a.x, gap.a.y, frame).y > FAR_OFF
+    lets_through = 0.5 * (high - low) / math.sqrt(1.0 - frame.cone)
+    far = turned(gap.a.x, gap.a.y, frame).y > min(FAR_OFF, lets_through - HALF_A_METRE - BEFORE_ECHO)
     return count >= LOOKED or (far and first == 3)

@@ -116,6 +116,7 @@ def _likelier(store: PlanStore, ways: TwoWays, late: float, want: Wanted) -> Gap
     """Return the gap of a row that may stand in two ways: of that way in which there is one.
 
     If there is one in both, of that whose neighbours stand where less is known to be free, or whose sides are longer.
+    At the end of the search, where neither tells, of that into which the driver wants to go: nose in along the way.
     """
     one = _passed(store, ways.one, late if ways.longer > -CLEARLY else LATEST, want)
     other = _passed(store, ways.other, late if ways.longer < CLEARLY else LATEST, want)
@@ -125,7 +126,8 @@ def _likelier(store: PlanStore, ways: TwoWays, late: float, want: Wanted) -> Gap
     if abs(fewer) >= CONTRADICTED:
         return one if fewer > 0 else other
     if abs(ways.longer) < CLEARLY:
-        return Gap()
+        leads_back = math.cos(ways.one.into - ways.one.row) < 0.0
+        return (one if leads_back == want.tail_in else other) if want.at_end else Gap()
     return one if ways.longer > 0.0 else other
 
 

@@ -36,6 +36,8 @@ class Wanted(NamedTuple):
     """One neighbour will do."""
     at_end: bool = False
     """The search ends here: what is unclear is decided by what there is."""
+    tail_in: bool = False
+    """A slot at an angle that leads back against the way is wanted, else one that leads on."""
 
 
 class Gap(NamedTuple):

@@ -139,6 +139,26 @@ def test_a_place_heard_once_between_the_neighbours_is_no_end_of_a_gap() -> None:
     assert find_gap(store, 0, places, at, WANTED).layout == GapLayout.NONE
 
 
+@pytest.mark.parametrize("farther", [0.9, 1.1])
+def test_a_slot_too_narrow_for_the_cone_is_open_if_it_is_free_just_inside(farther: float) -> None:
+    boxes = [box | {"y": box["y"] - farther} for box in row(90, 1, 2.5)]
+    store, ear, _ = passed(boxes, 1, 0.0)
+    at = Pose(7.0, 2.0 - 0.825, 0.0)
+    gap = find_gap(store, 0, ear.places, at, WANTED._replace(along=False))
+    assert gap.layout == GapLayout.ACROSS
+    assert gap.width == pytest.approx(2.5, abs=0.3)
+
+
+@pytest.mark.parametrize(("tail_in", "into"), [(True, -135.0), (False, -45.0)])
+def test_cars_that_may_stand_either_way_do_so_as_the_driver_wants_it_at_the_end(tail_in: bool, into: float) -> None:
+    boxes = [box | {"y": box["y"] - 0.6} for box in row(135, 1, 2.5)]
+    store, ear, _ = passed(boxes, 1, 0.0)
+    at = Pose(7.0, 2.0 - 0.825, 0.0)
+    assert find_gap(store, 0, ear.places, at, WANTED).layout == GapLayout.NONE
+    gap = find_gap(store, 0, ear.places, at, WANTED._replace(at_end=True, tail_in=tail_in))
+    assert math.degrees(gap.into) == pytest.approx(into, abs=2.0)
+
+
 def test_the_end_of_a_slot_is_heard_by_both_sensors_that_look_straight_at_it() -> None:
     params = ValetParams()._replace(search=ValetSearchParams()._replace(active=True))
     silent = (5.0,) * 12

@@ -115,6 +115,7 @@ def wanted(params: ValetParams) -> Wanted:
         half_angle=params.car.ultrasonic.half_angle,
         deep=length + params.search.behind - params.search.stand_out,
         open_ended=params.search.open_ended,
+        tail_in=wish == SlotWish.TAIL_IN,
     )
 
 

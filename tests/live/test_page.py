@@ -106,7 +106,7 @@ TO_TRY = [
     ("apa-parallel", {"vehicle.scene.boxes[2].x": 7.4}, "not_parked", 3),
     ("apa-parallel", {"vehicle.scene.boxes[2].x": 2.8}, "failed", 0),
     ("apa-parallel", {"vehicle.ultrasonic.noise": 0.02}, "parked", 2),
-    ("apa-parallel", {"vehicle.ultrasonic.noise": 0.1}, "failed", 2),
+    ("apa-parallel", {"vehicle.ultrasonic.noise": 0.1}, "failed", 6),
     ("hsic", {"vehicle.start.y": 5.0}, "parked", 1),
     ("hsic", {"vehicle.start.y": 5.5}, "not_parked", 1),
     ("hsic", {"vehicle.steering.lag": 0.4}, "parked", 1),

@@ -50,13 +50,12 @@ def ends(whole: Table, mild: Table) -> list[str]:
     told = columns(whole, mild)
     lines = [f"| | {' | '.join(title for title, _, _ in told)} |", "|---|" + "---:|" * len(told)]
     lines.append("| runs | " + " | ".join(f"{int(of.sum()):,}" for _, _, of in told) + " |")
-    for end in ENDS:
-        counts = [(int((found[of] == end).sum()), int(of.sum())) for _, found, of in told]
-        if end != UNUSED or any(count for count, _ in counts):
-            lines.append(f"| {end} | " + " | ".join(share(*pair) for pair in counts) + " |")
+    counts = {end: [(int((found[of] == end).sum()), int(of.sum())) for _, found, of in told] for end in ENDS}
+    for end, pairs in counts.items():
+        if end != UNUSED or any(count for count, _ in pairs):
+            lines.append(f"| {end} | " + " | ".join(share(*pair) for pair in pairs) + " |")
     for end in (CONTACT, FALSE):
-        counts = [(int((found[of] == end).sum()), int(of.sum())) for _, found, of in told]
-        lines.append(f"| {end}, 95 % | " + " | ".join(bounds(*pair) for pair in counts) + " |")
+        lines.append(f"| {end}, 95 % | " + " | ".join(bounds(*pair) for pair in counts[end]) + " |")
     return lines
 
 

@@ -30,7 +30,7 @@ STRAIGHT = 0.25
 FLUSH = 0.15
 """What lies so near [m] to the front of a neighbour, beside it, is more of its front."""
 FAR_OFF = 2.5
-HALF_A_METRE = 0.5
+TOLD_INSIDE = 0.5
 """From no farther off would a cone that the opening just lets through tell what is so far [m] in."""
 JUST_INSIDE = 0.1
 LOOKED = 4
@@ -146,5 +146,5 @@ def _is_open(store: PlanStore, frame: PlacesFrame, gap: Gap, low: float, high: f
         for into in (0.2, 0.5, 0.8):
             count = count + 1 if is_free(store, t + into, s, frame) else count
     lets_through = 0.5 * (high - low) / math.sqrt(1.0 - frame.cone)
-    far = turned(gap.a.x, gap.a.y, frame).y > min(FAR_OFF, lets_through - HALF_A_METRE - BEFORE_ECHO)
+    far = turned(gap.a.x, gap.a.y, frame).y > min(FAR_OFF, lets_through - TOLD_INSIDE - BEFORE_ECHO)
     return count >= LOOKED or (far and first == 3)

@@ -63,7 +63,8 @@ class Piece(NamedTuple):
     k: float = 0.0
     """Curvature [1/m]."""
     room: float = 0.0
-    """What is free beyond the margin [m] near its begin; where the gear changes how far the piece before may go on."""
+    """Where the path begins what is free beyond the margin [m]; where the gear changes how far the piece before may go
+    on; else how far beside the path a wheel that turns on the move may take the car."""
 
 
 class Path(NamedTuple):

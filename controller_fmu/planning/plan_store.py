@@ -73,7 +73,7 @@ class PlanStore(NamedTuple):
     piece_h: Annotated[Floats, Column("d", PIECES, "rad", "heading where it begins")]
     kept_way: Annotated[Floats, Column("d", PIECES, "m", "way of a piece of the best path yet")]
     kept_k: Annotated[Floats, Column("d", PIECES, "1/m", "its curvature")]
-    kept_room: Annotated[Floats, Column("d", PIECES, "m", "room about its begin")]
+    kept_room: Annotated[Floats, Column("d", PIECES, "m", "room about its begin: see Piece")]
     corner_x: Annotated[Floats, Column("d", CORNERS, "m", "x of a corner of the scene asked about")]
     corner_y: Annotated[Floats, Column("d", CORNERS, "m", "its y")]
     corner_of: Annotated[Ints, Column("i", CORNERS, "1", "its polygon")]

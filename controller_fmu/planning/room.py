@@ -1,6 +1,14 @@
-"""What room there is, beyond its margin, where pieces of the path kept begin: a car that rolls may use of it."""
+"""What room there is where pieces of the path kept begin: a car that turns its wheel on the move may use of it.
 
-from controller_fmu.planning.clearance import SIGHT, clearance, free_way
+Where the curvature jumps by dk such a car changes it linearly over a ramp of length r, half of it before the joint. On
+the ramp it is off its direction, by dk r / 8 half way, and its nose swings out so much times its length; behind the
+ramp it is dk r^2 / 24 beside its path. So the outline is looked at as it stands on the ramp, not on the path alone.
+"""
+
+import math
+from typing import NamedTuple
+
+from controller_fmu.planning.clearance import clearance, free_way
 from controller_fmu.planning.plan_store import KEPT_COUNT, KEPT_MARGIN, SEEN, PlanStore, put_mark, put_room
 from controller_fmu.planning.task import Request, Task, drive
 from modelkit.maths import sign
@@ -12,6 +20,16 @@ EACH = 0.125
 """Way [m] from one look to the next."""
 BEYOND = 0.2
 """Looked for no farther [m] beyond a change of gear."""
+OFFS = (0.03, 0.02, 0.01, 0.005, 0.002)
+"""How far [m] beside its path a ramp takes the car: the first that leaves enough."""
+LEFT = 0.75
+"""Share of the margin that is left on a ramp, for what tracking and odometry are off."""
+RATE = 1.3
+"""How fast [1/m] tracking takes back what a ramp leaves: as e^(-RATE s) (1 + RATE s) over the way s."""
+SAME = 1e-6
+"""Curvatures nearer than this [1/m] are one."""
+TAKEN_BACK = 2.0
+"""Way [m] behind a ramp over which the car is looked at."""
 
 
 def see_room(store: PlanStore, request: Request, task: Task) -> bool:
@@ -19,24 +37,25 @@ def see_room(store: PlanStore, request: Request, task: Task) -> bool:
     piece = store.mark[SEEN]
     task = task._replace(margin=store.measure[KEPT_MARGIN])
     start = Pose(request.start.x - request.goal.x, request.start.y - request.goal.y, request.start.heading)
-    turns_round = piece > 0 and store.kept_way[piece - 1] * store.kept_way[piece] < 0.0
-    put_room(store, piece, _beyond(store, start, piece, task) if turns_round else _beside(store, start, piece, task))
+    if piece == 0:
+        put_room(store, piece, _about_start(store, start, task))
+    elif store.kept_way[piece - 1] * store.kept_way[piece] < 0.0:
+        put_room(store, piece, _beyond(store, start, piece, task))
+    else:
+        _put_ramp(store, start, piece, task)
     put_mark(store, SEEN, piece + 1)
     return piece + 1 < store.mark[KEPT_COUNT]
 
 
-def _beside(store: PlanStore, start: Pose, piece: int, task: Task) -> float:
-    """Return the least clearance [m] beyond the margin within ``REACH`` of where a piece begins."""
-    joint = 0.0
-    for number in range(piece):
-        joint += abs(store.kept_way[number])
-    least = clearance(store, start, task) if piece == 0 else SIGHT
+def _about_start(store: PlanStore, start: Pose, task: Task) -> float:
+    """Return the least clearance [m] beyond the margin within ``REACH`` of the start."""
+    least = clearance(store, start, task)
     pose = start
     at = 0.0
     for number in range(store.mark[KEPT_COUNT]):
         way = store.kept_way[number]
-        place = max(0.0, joint - REACH - at)
-        last = min(abs(way), joint + REACH - at)
+        place = 0.0
+        last = min(abs(way), REACH - at)
         while place <= last:
             there = drive(pose, sign(way) * place, store.kept_k[number])
             least = min(least, clearance(store, there, task))
@@ -44,6 +63,112 @@ def _beside(store: PlanStore, start: Pose, piece: int, task: Task) -> float:
         at += abs(way)
         pose = drive(pose, way, store.kept_k[number])
     return max(0.0, least - task.margin)
+
+
+class Beside(NamedTuple):
+    """Where a car is whose curvature changes over ramps."""
+
+    lateral: float = 0.0
+    """Beside the path, to the left [m]."""
+    turned: float = 0.0
+    """Off its direction [rad], as the curvature takes it when it goes forward."""
+
+
+def _put_ramp(store: PlanStore, start: Pose, piece: int, task: Task) -> None:
+    """Set how far [m] beside the path a ramp may take the car where a piece begins; 0: it has to stand there."""
+    joint = start
+    for number in range(piece):
+        joint = drive(joint, store.kept_way[number], store.kept_k[number])
+    if abs(store.kept_k[piece] - store.kept_k[piece - 1]) < SAME:
+        put_room(store, piece, OFFS[0])
+        return
+    for number in range(len(OFFS)):
+        put_room(store, piece, OFFS[number])
+        if _is_ramp_free(store, joint, piece, task):
+            return
+    put_room(store, piece, 0.0)
+
+
+def _is_ramp_free(store: PlanStore, joint: Pose, piece: int, task: Task) -> bool:
+    """Return whether the car keeps enough of the margin on a ramp and behind it, those before counted."""
+    direction = sign(store.kept_way[piece])
+    past = -0.5 * _ramp(store, piece)
+    last = min(_gear_after(store, piece), TAKEN_BACK - past)
+    while past <= last:
+        at = _along(store, joint, piece, past)
+        off = _beside(store, piece, past)
+        x = at.x - off.lateral * math.sin(at.heading)
+        y = at.y + off.lateral * math.cos(at.heading)
+        if clearance(store, Pose(x, y, at.heading + direction * off.turned), task) < LEFT * task.margin:
+            return False
+        past += EACH
+    return True
+
+
+def _beside(store: PlanStore, piece: int, past: float) -> Beside:
+    """Return where the car is ``past`` [m] behind the begin of a piece, by the ramps up to there in its gear."""
+    lateral = 0.0
+    turned = 0.0
+    way = past
+    number = piece
+    while number > 0 and store.kept_way[number - 1] * store.kept_way[piece] > 0.0:
+        jump = store.kept_k[number] - store.kept_k[number - 1]
+        ramp = _ramp(store, number)
+        on = way + 0.5 * ramp
+        if 0.0 < on < ramp:
+            bent = way if way > 0.0 else 0.0
+            share = on / ramp
+            lateral += jump * (on * on * share / 6.0 - 0.5 * bent * bent)
+            turned += jump * (0.5 * on * share - bent)
+        if 0.0 < ramp <= on:
+            behind = RATE * (on - ramp)
+            off = jump * ramp * ramp / 24.0 * math.exp(-behind)
+            lateral += off * (1.0 + behind)
+            turned -= off * RATE * behind
+        number -= 1
+        way += abs(store.kept_way[number])
+    return Beside(lateral, turned)
+
+
+def _ramp(store: PlanStore, piece: int) -> float:
+    """Return the length [m] of the ramp about the begin of a piece, by what it may take the car off."""
+    jump = abs(store.kept_k[piece] - store.kept_k[piece - 1])
+    longest = 2.0 * min(_gear_before(store, piece), _gear_after(store, piece))
+    off = store.kept_room[piece]
+    return longest if jump * longest * longest < 24.0 * off else math.sqrt(24.0 * off / jump)
+
+
+def _gear_before(store: PlanStore, piece: int) -> float:
+    """Return the way [m] before a piece that is driven in its gear."""
+    way = 0.0
+    number = piece - 1
+    while number >= 0 and store.kept_way[number] * store.kept_way[piece] > 0.0:
+        way += abs(store.kept_way[number])
+        number -= 1
+    return way
+
+
+def _gear_after(store: PlanStore, piece: int) -> float:
+    """Return the way [m] from the begin of a piece on that is driven in its gear."""
+    way = 0.0
+    number = piece
+    while number < store.mark[KEPT_COUNT] and store.kept_way[number] * store.kept_way[piece] > 0.0:
+        way += abs(store.kept_way[number])
+        number += 1
+    return way
+
+
+def _along(store: PlanStore, joint: Pose, piece: int, past: float) -> Pose:
+    """Return the pose on the path ``past`` [m] behind the begin of a piece, or before it, in the same gear."""
+    pose = joint
+    left = abs(past)
+    number = piece if past > 0.0 else piece - 1
+    turn = 1 if past > 0.0 else -1
+    while left > abs(store.kept_way[number]) and 0 <= number + turn < store.mark[KEPT_COUNT]:
+        pose = drive(pose, turn * store.kept_way[number], store.kept_k[number])
+        left -= abs(store.kept_way[number])
+        number += turn
+    return drive(pose, turn * sign(store.kept_way[number]) * left, store.kept_k[number])
 
 
 def _beyond(store: PlanStore, start: Pose, piece: int, task: Task) -> float:

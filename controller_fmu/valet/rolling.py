@@ -26,10 +26,11 @@ SLOWEST = 0.12
 RATE_SHARE = 0.9
 """Of the wheel's rate that a ramp asks for; the rest is for tracking."""
 OF_MARGIN = 0.2
-"""Share of the clearance planned that a ramp may use."""
+"""Share of the clearance planned that turning about a standstill may use."""
 OF_ROOM = 0.25
-"""And of what there is near the joint beyond that, up to ``ROOMIEST`` times ``drive.rolling``."""
+"""And of what there is about the start beyond that."""
 ROOMIEST = 1.5
+"""A ramp takes the car off by ``drive.rolling`` times this at most, and by what the planner finds room for."""
 SAME = 1e-6
 """Curvatures nearer than this [1/m] are one."""
 BEHIND = 1e-6
@@ -245,9 +246,8 @@ def _largest_off(path: Path, params: ValetParams) -> float:
 
 
 def _off_about(path: Path, piece: int, params: ValetParams) -> float:
-    """Return the same where ``piece`` begins: more where there is room."""
-    off = _largest_off(path, params)
-    return min(ROOMIEST * params.drive.rolling, off + OF_ROOM * path.pieces[piece].room)
+    """Return the same where ``piece`` begins in the gear of the one before: more where there is room."""
+    return min(ROOMIEST * params.drive.rolling, path.pieces[piece].room)
 
 
 def _off_at_rest(path: Path, piece: int, params: ValetParams) -> float:

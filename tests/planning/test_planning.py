@@ -11,7 +11,7 @@ from controller_fmu.planning.clearance import edge_gap
 from controller_fmu.planning.joining import cheapest, word_way
 from controller_fmu.planning.plan import GOAL_BLOCKED, PLANNED, START_BLOCKED, path_of, search_to
 from controller_fmu.planning.plan_store import COUNT, STATUS, WORDS, PlanStore
-from controller_fmu.planning.room import BEYOND, REACH
+from controller_fmu.planning.room import BEYOND, LEFT, OFFS, REACH
 from controller_fmu.planning.task import Request, Rung, SearchWindow, Task, drive
 from controller_fmu.planning.words import list_words, turn_of
 from modelkit.store import new_store, size_of
@@ -79,7 +79,7 @@ def test_the_room_about_its_pieces_is_what_shapely_finds() -> None:
     poses, begin = poses_along(request.start, pieces), request.start
     gone = [math.dist(one[:2], other[:2]) for one, other in pairwise(poses)]
     places, at = [0.0, *accumulate(gone)], 0.0
-    cusps = 0
+    cusps = joints = 0
     for number, piece in enumerate(path.pieces[: path.used]):
         way, k = pieces[number - 1]
         if number > 0 and way * piece.way < 0.0:
@@ -88,12 +88,31 @@ def test_the_room_about_its_pieces_is_what_shapely_finds() -> None:
             farther = drive(begin, math.copysign(piece.room + 0.02, way), k)
             assert piece.room == BEYOND or least_clearance([farther], BOXES, CAR) < path.margin + 0.01
             cusps += 1
-        else:
+        elif number > 0 and piece.k != k:
+            assert piece.room in (0.0, *OFFS)
+            if piece.room > 0.0:
+                ramp = ramp_poses(begin, pieces[number - 1 : number + 1], piece.room)
+                assert least_clearance(ramp, BOXES, CAR) >= LEFT * path.margin - 0.01
+                joints += 1
+        elif number == 0:
             near = [pose for pose, place in zip(poses, places, strict=True) if abs(place - at) <= REACH]
             least = min(1.0, least_clearance(near, BOXES, CAR))
             assert piece.room == pytest.approx(max(0.0, least - path.margin), abs=0.03)
         at, begin = at + abs(piece.way), drive(begin, piece.way, piece.k)
-    assert 0 < cusps < path.used - 1
+    assert cusps > 0 < joints
+
+
+def ramp_poses(joint: Pose, pieces: list[tuple[float, float]], off: float) -> list[Pose]:
+    """Return poses of a car that comes along the first of two pieces and changes its curvature over a ramp."""
+    (way, k0), (after, k1) = pieces
+    length = min(math.sqrt(24.0 * off / abs(k1 - k0)), 2.0 * abs(way), 2.0 * abs(after))
+    direction, count = math.copysign(1.0, way), 200
+    pose = drive(joint, -direction * 0.5 * length, k0)
+    poses = [pose]
+    for number in range(count):
+        pose = drive(pose, direction * length / count, k0 + (k1 - k0) * (number + 0.5) / count)
+        poses.append(pose)
+    return poses
 
 
 def test_a_search_done_anew_is_the_same_to_the_bit_however_it_is_split() -> None:

@@ -18,10 +18,10 @@ MOST = ROOMIEST * PARAMS.drive.rolling
 curvature = st.floats(-0.3, 0.3)
 
 
-def path_of(*pieces: tuple[float, float]) -> Path:
+def path_of(*pieces: tuple[float, float], room: float = 0.1) -> Path:
     """Return a path of (way, curvature) with 15 cm of margin."""
     found = Path()
-    made = tuple(Piece(way, k, 0.1) for way, k in pieces)
+    made = tuple(Piece(way, k, room) for way, k in pieces)
     return found._replace(used=len(made), margin=0.15, pieces=made + found.pieces[len(made) :])
 
 
@@ -153,7 +153,9 @@ def test_where_there_is_room_the_wheel_turns_longer_on_the_move() -> None:
     assert wide.before + wide.after > 1.5 * (narrow.before + narrow.after)
     assert rest_before(path, 0, PARAMS).after > 1.2 * rest_before(without_room(path), 0, PARAMS).after
     onto = path_of((2.0, 0.0), (2.0, 0.3))
-    assert joint_of(onto, 0, PARAMS).ramp > 1.1 * joint_of(without_room(onto), 0, PARAMS).ramp > 0.5
+    tight = path_of((2.0, 0.0), (2.0, 0.3), room=0.01)
+    assert joint_of(onto, 0, PARAMS).ramp > 1.1 * joint_of(tight, 0, PARAMS).ramp > 0.5
+    assert joint_of(without_room(onto), 0, PARAMS).ramp == 0.0, "it stands"
     stands = path_of((1.5, 0.3), (0.02, -0.3))
     assert joint_of(stands, 0, PARAMS).ramp == 0.0
     assert rest_before(stands, 1, PARAMS) == rest_before(without_room(stands), 1, PARAMS), "nothing is got back"

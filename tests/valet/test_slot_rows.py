@@ -71,3 +71,14 @@ def test_out_of_a_slot_the_car_hands_over_along_the_street() -> None:
     assert scenario.target is not None
     assert ran.signals["vehicle.pose.y"][-1] == pytest.approx(scenario.target.y, abs=0.15)
     assert ran.signals["vehicle.pose.y"][-1] * case.side > 1.0
+
+
+@pytest.mark.parametrize("number", [286, 414])
+def test_the_nose_keeps_its_margin_where_the_wheel_turns_on_the_move(number: int) -> None:
+    """Both touched a post with the nose, with 12 cm planned: the rear axle was no more than 2 cm off its path."""
+    case = slots(number + 1, 5)[number]
+    scenario = out_of(case).model_copy(update={"controller": out_of(case).controller | map_of(out_of(case))})
+    ran = run_scenario(scenario, fmu_files("native", lambda text: None), kind="native").recording
+    assert ran.signals["controller.phase"][-1] == ValetPhase.PARKED
+    assert ran.signals["controller.valet.margin"].max() == pytest.approx(0.12)
+    assert ran.signals["vehicle.clearance"].min() > 0.08

@@ -11,6 +11,7 @@ from controller_fmu.apa.hearing import search_side
 from controller_fmu.apa.hearing.consensus import NO_WINDOW, PLACES, agreed, taken_up
 from controller_fmu.apa.hearing.edge import NO_SAMPLES, Heard, append, corner
 from controller_fmu.apa.hearing.line_fit import FittedLine, Sums, add, offset, slope
+from controller_fmu.apa.hearing.neighbour import is_between
 from controller_fmu.apa.hearing.search import LEFT, RIGHT, SearchState, _hear, _kept_but_behind, kind_of
 from controller_fmu.apa.hearing.side import DEEP, GAP, START, WALL, SideState, begin_wall
 from controller_fmu.apa.hearing.side_line import with_sample
@@ -259,3 +260,17 @@ def test_a_slot_whose_second_neighbour_is_a_wall_behind_is_none() -> None:
     assert _kept_but_behind(state, gap, nearer, RIGHT) == state
     assert _kept_but_behind(state, gap, gap, LEFT) == state
     assert _kept_but_behind(state, gap, gap._replace(mode=GAP, edge_b=0.0), LEFT) == state
+
+
+@pytest.mark.parametrize(
+    ("beyond", "again", "between"), [(3.2, 2.7, True), (3.2, 3.15, False), (DEEP, 2.7, False), (2.6, 2.5, False)]
+)
+def test_one_reading_beyond_a_corner_is_a_gap_where_the_next_one_comes_near(
+    beyond: float, again: float, between: bool
+) -> None:
+    """Towards the row a wide cone hears both corners, and one reading between them; a lost echo is none."""
+    side = SideState(
+        samples=(Heard(15.2, -0.8, 2.85), Heard(14.9, -0.8, 2.68), Heard(), Heard()),
+        faces=(Heard(15.5, -0.8, beyond), Heard(), Heard(), Heard()),
+    )
+    assert is_between(side, Heard(15.8, -0.8, again)) == between

@@ -73,3 +73,21 @@ def gone_on(side: SideState, sample: Heard) -> SideState:
         spare=side.before,
         window=taken_up(side.window, sample),
     )
+
+
+def is_between(side: SideState, sample: Heard) -> bool:
+    """Return whether what was heard last lay in a gap so short that the next neighbour is heard already.
+
+    The distance grew as past a corner, then beyond where a corner is heard, and falls again: no lost echo does so.
+    """
+    end = side.samples[0]
+    beyond = side.faces[1] if side.faces[1].r > side.faces[0].r else side.faces[0]
+    if not 0.0 < beyond.r < DEEP or side.samples[1].r <= 0.0:
+        return False
+    leaves = _rises(side.samples[1], end) and _rises(end, beyond)
+    return leaves and beyond.r - sample.r > BEND * (sample.u - beyond.u)
+
+
+def _rises(earlier: Heard, later: Heard) -> bool:
+    """Return whether the distance grows from a sample to a later one as past a corner."""
+    return later.r - earlier.r > BEND * (later.u - earlier.u)

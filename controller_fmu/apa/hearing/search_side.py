@@ -22,6 +22,7 @@ from controller_fmu.apa.hearing.neighbour import (
     from_afar,
     goes_on,
     gone_on,
+    is_between,
     is_closing,
     is_split,
 )
@@ -114,6 +115,10 @@ def _on_wall(side: SideState, sample: Heard, half_angle: float, params: SearchPa
         least = distance(line_of(side.sums, EMPTY), sample.u, sample.w) - params.step
     if sample.r < least:
         return begin_wall(side, sample)
+    if sample.r <= most and max(side.sums.n, side.spare.n) >= FEW and is_between(side, sample):
+        ended = _ended(side, half_angle, params)
+        if ended.mode == GAP:
+            return _in_gap(ended, sample, False, half_angle, params)
     if sample.r <= most:
         window = taken_up(side.window, sample)
         sums = with_sample(side.sums, EMPTY, sample, side.steady)

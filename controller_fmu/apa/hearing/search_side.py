@@ -104,13 +104,8 @@ def _change_along(side: SideState, sample: Heard) -> float:
 
 def _on_wall(side: SideState, sample: Heard, half_angle: float, params: SearchParams) -> SideState:
     expected = side.samples[0].r if side.samples[0].r > 0.0 else sample.r
-    most = expected + params.step
+    most = _farthest(side, sample, expected, half_angle, params)
     least = expected - params.step
-    known = side.sums if side.sums.n >= FEW else side.spare
-    known = known if known.n >= FEW else agreed(side.window, STEEPEST, False, 0.0)
-    if known.n >= FEW:
-        rises = expected + RISES if side.sums.n < FEW else 0.0
-        most = max(rises, still_heard(known, EMPTY, sample, -1.0, half_angle))
     if side.sums.n >= FEW:
         least = distance(line_of(side.sums, EMPTY), sample.u, sample.w) - params.step
     if sample.r < least:
@@ -143,6 +138,16 @@ def _on_wall(side: SideState, sample: Heard, half_angle: float, params: SearchPa
         )
     side = side._replace(faces=remember(side.faces, sample))
     return side if sample.u - side.missed < confirmed(side) else _ended(side, half_angle, params)
+
+
+def _farthest(side: SideState, sample: Heard, expected: float, half_angle: float, params: SearchParams) -> float:
+    """Return the largest distance [m] at which a sample is of the neighbour in hand; ``expected``: the last one's."""
+    known = side.sums if side.sums.n >= FEW else side.spare
+    known = known if known.n >= FEW else agreed(side.window, STEEPEST, False, 0.0)
+    if known.n < FEW:
+        return expected + params.step
+    rises = expected + RISES if side.sums.n < FEW else 0.0
+    return max(rises, still_heard(known, EMPTY, sample, -1.0, half_angle))
 
 
 def _ended(side: SideState, half_angle: float, params: SearchParams) -> SideState:

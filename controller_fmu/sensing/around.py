@@ -24,6 +24,8 @@ SPARSE = 2.0
 LEVEL = 0.05
 """A front lies along its row if it stands out less than this [m/m]."""
 WIDE = 5.0
+NEAR_CORNER = 0.5
+"""What is heard so near [m] to a gap's corner is of the neighbour there."""
 OFF_CAR = 0.3
 """What was not heard of a row lies so far [m] behind the car that drives past it."""
 
@@ -55,7 +57,13 @@ class AroundGap(NamedTuple):
 def lay_around(store: PlanStore, gap: Gap, what: AroundGap) -> int:
     """Make the map of a gap; returns how many lines it has."""
     clear_around(store)
-    lines = _lay_gap(store, gap, min(gap.depth, what.length), 2.0 * what.half_width)
+    back = _off_car(store, gap, what)
+    b = Pose(gap.b.x + back * math.cos(gap.into), gap.b.y + back * math.sin(gap.into), gap.b.heading)
+    gap = gap._replace(b=b)
+    lines = _lay_gap(store, gap, min(gap.depth, what.length))
+    if gap.layout == GapLayout.ACROSS:
+        out = min(gap.out, _beside(gap, what)) if back > 0.0 else gap.out
+        lines = _lay_fronts(store, lines, gap, 2.0 * what.half_width, out)
     lines = _lay_row(store, lines, gap, what)
     lines = _lay_opposite(store, lines, gap, what)
     pose = what.pose
@@ -104,7 +112,7 @@ def point_in_gap(x: float, y: float, gap: Gap) -> PlaceInGap:
     return PlaceInGap(dx * e.x + dy * e.y, dx * math.cos(gap.into) + dy * math.sin(gap.into))
 
 
-def _lay_gap(store: PlanStore, gap: Gap, deep: float, width: float) -> int:
+def _lay_gap(store: PlanStore, gap: Gap, deep: float) -> int:
     """Make the lines beside the gap and behind it."""
     tx = math.cos(gap.into)
     ty = math.sin(gap.into)
@@ -116,19 +124,19 @@ def _lay_gap(store: PlanStore, gap: Gap, deep: float, width: float) -> int:
     by = gap.b.y + (end - b) * ty
     lines = put_line(store, 0, gap.a.x, gap.a.y, ax, ay)
     lines = put_line(store, lines, gap.b.x, gap.b.y, bx, by)
-    lines = put_line(store, lines, ax, ay, bx, by)
-    if gap.layout == GapLayout.ACROSS:
-        lines = _lay_fronts(store, lines, gap, width)
-    return lines
+    return put_line(store, lines, ax, ay, bx, by)
 
 
-def _lay_fronts(store: PlanStore, lines: int, gap: Gap, width: float) -> int:
-    """Make the fronts of both neighbours, as wide as the car but no farther out than their row: heard or not."""
+def _lay_fronts(store: PlanStore, lines: int, gap: Gap, width: float, out: float) -> int:
+    """Make the fronts of both neighbours, as wide as the car but no farther out than their row: heard or not.
+
+    ``out``: so far [m] before corner A the row stands out at B.
+    """
     e = along_of(gap)
     nx = -math.sin(gap.row) * _away(gap)
     ny = math.cos(gap.row) * _away(gap)
     rate = e.x * nx + e.y * ny
-    b_out = gap.out - (gap.b.x - gap.a.x) * nx - (gap.b.y - gap.a.y) * ny
+    b_out = out - (gap.b.x - gap.a.x) * nx - (gap.b.y - gap.a.y) * ny
     at_a = clamp(gap.out / -rate, 0.0, width) if rate < -LEVEL else width
     at_b = clamp(b_out / rate, 0.0, width) if rate > LEVEL else width
     lines = put_line(store, lines, gap.a.x, gap.a.y, gap.a.x - at_a * e.x, gap.a.y - at_a * e.y)
@@ -178,6 +186,18 @@ def _lay_beyond(store: PlanStore, lines: int, gap: Gap, what: AroundGap) -> int:
     onwards = math.cos(gap.row - what.pose.heading) > 0.0
     lines = _lay_along_row(store, lines, gap, low, low - BEYOND, beside if onwards else driven)
     return _lay_along_row(store, lines, gap, high, high + BEYOND, driven if onwards else beside)
+
+
+def _off_car(store: PlanStore, gap: Gap, what: AroundGap) -> float:
+    """Return how much deeper [m] a gap's corner B lies, if nothing was heard there and the car stands before it."""
+    first = what.side * HEARD
+    for place in range(first, first + what.here):
+        dx = store.heard_x[place] - gap.b.x
+        dy = store.heard_y[place] - gap.b.y
+        if dx * dx + dy * dy < NEAR_CORNER * NEAR_CORNER:
+            return 0.0
+    across = (gap.b.y - gap.a.y) * math.cos(gap.row) - (gap.b.x - gap.a.x) * math.sin(gap.row)
+    return max(across * _away(gap) - _beside(gap, what), 0.0) / abs(math.sin(gap.into - gap.row))
 
 
 def _beside(gap: Gap, what: AroundGap) -> float:

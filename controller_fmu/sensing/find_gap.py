@@ -16,8 +16,8 @@ from modelkit.vocabulary import Pose
 ANGLED = 20.0 * PI / 180.0
 CROOKED = 6.0 * PI / 180.0
 """Cars along the road stand no more askew to their row: it is the row that tells how the road goes."""
-FRONT = 0.8
-"""So much [m] of a front is heard of cars that stand square to the road."""
+FRONT = 1.1
+"""So much [m] of one straight front is heard of cars that stand square to the road."""
 CONTRADICTED = 3
 """Neighbours stand the other way, where so many points more of them are known to be free."""
 CLEARLY = 0.15
@@ -51,7 +51,7 @@ def find_gap(store: PlanStore, side: int, places: int, at: Pose, want: Wanted) -
         square = along(frame, turn, turn + 0.5 * PI)
         straight = row.turn if row.things >= LEAST_THINGS and abs(askew) < CROOKED else turn
         best = corridor(store, along(frame, straight, straight + 0.5 * PI), want, True) if want.along else Gap()
-        return _square(store, square, want) if best.layout == GapLayout.NONE and want.across else best
+        return _square(store, square, turn, want) if best.layout == GapLayout.NONE and want.across else best
     too_few = row.things < LEAST_THINGS and not want.open_ended and not want.at_end
     if not want.across or too_few:
         return Gap()
@@ -59,13 +59,13 @@ def find_gap(store: PlanStore, side: int, places: int, at: Pose, want: Wanted) -
     return _at_an_angle(store, frame._replace(line=row.behind), turn, row.turn, late, want)
 
 
-def _square(store: PlanStore, frame: PlacesFrame, want: Wanted) -> Gap:
+def _square(store: PlanStore, frame: PlacesFrame, turn: float, want: Wanted) -> Gap:
     """Return the corridor passed last between cars square to the road, if a front of them was heard; else NONE.
 
-    Corners of cars that stand at an angle look square from far away.
+    Corners of cars that stand at an angle look square from far away, but lie on no straight side along ``turn`` [rad].
     """
-    gap = corridor(store, frame, want, False)
-    return gap if gap.shown > FRONT or want.at_end else Gap()
+    heard = want.at_end or sides_along(store, frame, turn).longest > FRONT
+    return corridor(store, frame, want, False) if heard else Gap()
 
 
 def gap_across(store: PlanStore, side: int, places: int, at: Pose, want: Wanted, into: float) -> Gap:

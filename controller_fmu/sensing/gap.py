@@ -62,5 +62,3 @@ class Gap(NamedTuple):
     """Direction of the row [rad], from A on."""
     out: float = 0.0
     """So much nearer [m] to the road than corner A what stands out of the row lies."""
-    shown: float = 0.0
-    """So much [m] of a neighbour's front was heard, away from the gap."""

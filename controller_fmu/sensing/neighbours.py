@@ -150,7 +150,6 @@ def measured(store: PlanStore, frame: PlacesFrame, low: float, high: float, clos
         front=front - one.t,
         row=frame.at.heading - frame.mirror * frame.row,
         out=max(out, 0.0),
-        shown=max(one.far, other.far),
     )
 
 

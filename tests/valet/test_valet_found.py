@@ -32,6 +32,7 @@ from tests.valet.test_valet_search import WANTED, passed, row
 LENGTH, WIDTH = 4.0, 1.8
 ACROSS = Gap(GapLayout.ACROSS, Pose(0.0, 0.0), Pose(2.8, 0.0), -0.5 * math.pi, width=2.8)
 ALONG = Gap(GapLayout.ALONG, Pose(0.0, 0.0), Pose(5.5, 0.0), -0.5 * math.pi, width=5.5)
+OUTLINE = ((-0.9, -0.9), (-0.9, 0.9), (3.7, 0.9), (3.7, -0.9))
 
 
 def heard(*lines: Any) -> Any:
@@ -109,6 +110,19 @@ def test_a_row_that_was_not_heard_is_not_where_the_car_has_driven(heading: float
     assert lines > 5
     assert min(LineString(ends[2 * n : 2 * n + 2]).distance(car) for n in range(lines)) > 0.2
     assert store.heard_count[HEARD] == 0
+
+
+def test_beside_one_neighbour_no_other_is_taken_to_stand_where_the_car_stands() -> None:
+    store, places = new_store(PlanStore), 0
+    for step in range(31):
+        places = put_heard(store, 0, places, -3.0 + 0.1 * step, 0.0, step == 0)
+    pose = Pose(1.9, 1.4, -0.25)
+    lines = lay_around(store, ACROSS, AroundGap(0, places, 0, pose, 5.0, 0.9, 3.7, 0.9, 5.0, LENGTH))
+    c, s = math.cos(pose.heading), math.sin(pose.heading)
+    car = Polygon([(pose.x + x * c - y * s, pose.y + x * s + y * c) for x, y in OUTLINE])
+    ends = [(store.around_x[n], store.around_y[n]) for n in range(2 * lines)]
+    assert min(LineString(ends[2 * n : 2 * n + 2]).distance(car) for n in range(lines)) > 0.2
+    assert store.around_y[2] < -0.6
 
 
 def test_a_move_that_ends_before_something_near_is_driven_to_its_end() -> None:

@@ -13,7 +13,7 @@ from controller_fmu.planning.task import Scene
 from controller_fmu.sensing.ear import SideEar, listen
 from controller_fmu.sensing.find_gap import find_gap
 from controller_fmu.sensing.gap import Gap, GapLayout, Wanted
-from controller_fmu.sensing.heard_store import put_heard
+from controller_fmu.sensing.heard_store import put_heard, put_ray
 from controller_fmu.sensing.places import frame_of
 from controller_fmu.sensing.row_line import row_of
 from controller_fmu.valet.params import ValetParams, ValetSearchParams
@@ -64,6 +64,21 @@ def passed(boxes: Any, side: Any, noise: Any, heading: Any = 0.0) -> Any:
         if gap.layout != GapLayout.NONE and at.x > 4.0:
             break
     return store, ear, gap
+
+
+@pytest.mark.parametrize(("pieces", "layout"), [(1, GapLayout.ACROSS), (2, GapLayout.NONE)])
+def test_cars_are_square_to_the_road_where_a_whole_front_was_heard(pieces: int, layout: int) -> None:
+    store, places = new_store(PlanStore), 0
+    for begin in (-3.2, 1.3):
+        for step in range(20):
+            broken = step % (20 // pieces) == 0
+            places = put_heard(store, 0, places, begin + 0.11 * step, -1.0, broken)
+    for step in range(41):
+        x = -2.0 + 0.1 * step
+        put_ray(store, 0, step, Pose(x, 0.0), Pose(x, -5.0 if abs(x) < 1.0 else -1.0))
+    want = WANTED._replace(along=False)
+    assert find_gap(store, 0, places, Pose(4.0, 0.0), want).layout == layout
+    assert find_gap(store, 0, places, Pose(4.0, 0.0), want._replace(at_end=True)).layout == GapLayout.ACROSS
 
 
 @pytest.mark.parametrize("angle", [45, 90, 120])

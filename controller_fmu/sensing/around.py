@@ -52,12 +52,14 @@ class AroundGap(NamedTuple):
     """Heard before the bumper [m]."""
     length: float
     """So deep [m] the gap is needed, if nothing was heard before."""
+    told: bool = False
+    """The gap was told from outside: so were its corners."""
 
 
 def lay_around(store: PlanStore, gap: Gap, what: AroundGap) -> int:
     """Make the map of a gap; returns how many lines it has."""
     clear_around(store)
-    back = _off_car(store, gap, what)
+    back = 0.0 if what.told else _off_car(store, gap, what)
     b = Pose(gap.b.x + back * math.cos(gap.into), gap.b.y + back * math.sin(gap.into), gap.b.heading)
     gap = gap._replace(b=b)
     lines = _lay_gap(store, gap, min(gap.depth, what.length))

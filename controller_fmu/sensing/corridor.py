@@ -59,7 +59,7 @@ def corridor(store: PlanStore, frame: PlacesFrame, want: Wanted, lengthwise: boo
                 open_ = past and high - low >= least and _is_open(store, frame, gap, low, high)
                 straight = gap.longest < LONGEST_FRONT if askew else _is_straight(gap, frame)
                 if open_ and straight:
-                    if _fits(gap, want, lengthwise):
+                    if _fits(gap, frame, want, lengthwise):
                         found = gap._replace(layout=GapLayout.ALONG if lengthwise else GapLayout.ACROSS)
                     elif not lengthwise and found.layout == GapLayout.NONE:
                         found = gap._replace(layout=GapLayout.ACROSS, shallow=True)
@@ -113,11 +113,11 @@ def _next(
     return which
 
 
-def _fits(gap: Gap, want: Wanted, along: bool) -> bool:
+def _fits(gap: Gap, frame: PlacesFrame, want: Wanted, along: bool) -> bool:
     """Return whether a gap is deep enough; along the road a car only stands where neighbours do, or it must."""
     if along:
         return gap.depth >= want.width - 0.1 and (gap.layout == GapLayout.ALONG or gap.depth < want.length - 0.3)
-    return gap.depth >= want.deep
+    return gap.depth >= want.deep + want.stand_out - want.stand_out / abs(math.sin(frame.into - frame.row))
 
 
 def _is_straight(gap: Gap, frame: PlacesFrame) -> bool:

@@ -22,7 +22,7 @@ from controller_fmu.valet.found.way_back import WayBack, path_back
 from controller_fmu.valet.given import as_parameter
 from controller_fmu.valet.params import ValetParams
 from controller_fmu.valet.sight import Sight, scene_of
-from controller_fmu.valet.slot import body_of, goal_in, goal_of, stands_out
+from controller_fmu.valet.slot import body_of, goal_in, goal_of, stands_in_road
 from controller_fmu.valet.state import ValetState
 from modelkit.vocabulary import Pose
 
@@ -57,7 +57,7 @@ def planned_on(store: PlanStore, state: ValetState, inputs: ControllerInput, par
     reason = reason_of(status, count, state, params)
     if status == PLANNED and params.search.active and path.margin < LEAST_MARGIN:
         reason = Reason.BLOCKED
-    if params.search.active and stands_out(state.search.gap, params) > params.search.stand_out:
+    if params.search.active and stands_in_road(state.search.gap, params) > params.search.stand_out:
         reason = Reason.SLOT_TOO_SHALLOW
     plans = state.plans + 1 if state.searched == 0 else state.plans
     if reason in (Reason.BLOCKED, Reason.NO_PATH) and state.back.used > 0:

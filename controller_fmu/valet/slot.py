@@ -77,3 +77,8 @@ def stands_out(gap: Gap, params: ValetParams) -> float:
     """Return how far [m] a car stands out of a gap across the road, which ends before the car would."""
     short = 2.0 * body_of(params).half_length + params.search.behind - gap.depth
     return short if short > 0.0 and gap.layout == GapLayout.ACROSS else 0.0
+
+
+def stands_in_road(gap: Gap, params: ValetParams) -> float:
+    """Return how far [m] into the road a car stands out of such a gap: less than along it if that is at an angle."""
+    return stands_out(gap, params) * abs(math.sin(gap.into - gap.row))

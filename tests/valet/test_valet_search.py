@@ -7,6 +7,7 @@ from typing import Any
 import pytest
 from shapely.geometry import LineString, Point
 
+from controller_fmu.interface import ControllerInput
 from controller_fmu.planning.plan import Piece
 from controller_fmu.planning.plan_store import HEARD, PlanStore
 from controller_fmu.planning.task import Scene
@@ -16,8 +17,10 @@ from controller_fmu.sensing.gap import Gap, GapLayout, Wanted
 from controller_fmu.sensing.heard_store import put_heard, put_ray
 from controller_fmu.sensing.places import frame_of
 from controller_fmu.sensing.row_line import row_of
+from controller_fmu.valet.found import search
 from controller_fmu.valet.params import ValetParams, ValetSearchParams
 from controller_fmu.valet.sight import look
+from controller_fmu.valet.slot import stands_in_road, stands_out
 from modelkit.car import Car
 from modelkit.store import new_store
 from modelkit.vocabulary import Pose
@@ -137,6 +140,34 @@ def test_what_a_slot_ends_at_does_not_make_it_narrower() -> None:
     _, _, gap = passed([*row(150, 1, 2.9), wall], 1, 0.0)
     assert gap.layout == GapLayout.ACROSS
     assert gap.width == pytest.approx(2.9, abs=0.3)
+
+
+def test_a_slot_at_an_angle_is_deep_enough_if_the_car_stands_no_farther_into_the_road() -> None:
+    turn, deep = math.radians(30), 3.3 - 0.5 * LENGTH + 0.2
+    y = -0.5 * (LENGTH * math.sin(turn) + WIDTH * math.cos(turn)) - deep * math.sin(turn)
+    wall = {"x": deep * math.cos(turn), "y": y, "heading": -turn, "length": 0.4, "width": 1.6}
+    store, ear, gap = passed([*row(30, 1, 3.0), wall], 1, 0.0)
+    assert gap.shallow
+    assert gap.depth == pytest.approx(3.3, abs=0.1)
+    gap = find_gap(store, 0, ear.places, Pose(8.0, 2.0 - 0.825), WANTED._replace(stand_out=0.5))
+    assert not gap.shallow
+    params = ValetParams()
+    short = stands_out(gap, params)
+    assert stands_in_road(gap, params) == pytest.approx(0.5 * short, abs=0.05 * short)
+    assert short > 0.5
+
+
+def test_a_gap_across_the_one_that_the_car_stops_at_is_not_taken(monkeypatch: pytest.MonkeyPatch) -> None:
+    params = ValetParams()
+    dt_ns = int(params.car.ultrasonic.cycle * 1e9)
+    told = [Gap(GapLayout.ACROSS, into=into) for into in (0.5, 0.5 + 0.5 * math.pi, 0.6)]
+    monkeypatch.setattr(search, "listen", lambda store, ear, *_: ear._replace(rays=ear.rays + 1))
+    monkeypatch.setattr(search, "find_gap", lambda *_: told.pop(0))
+    state, found = search.begin_search(0), []
+    for _ in range(3):
+        state = search.search(new_store(PlanStore), state, ControllerInput(measured_speed=1.0), params, dt_ns)
+        found.append(state.gap.into)
+    assert found == [0.5, 0.5, 0.6]
 
 
 def test_cars_without_a_gap_between_them_are_none() -> None:

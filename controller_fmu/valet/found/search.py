@@ -27,6 +27,8 @@ PASSED = 0.5
 """The sensor has passed a slot from outside by so much [m]."""
 STRAIGHT = 0.9
 """What is heard so far [m] from a slot's edges and front by a sensor that looks along it is what the slot ends at."""
+ACROSS = 0.5
+"""Cosine of 60 deg: a gap turned by more against the one before lies across it."""
 LAST = 0.5
 """Over the last of the way [m] that is searched, what is unclear is decided."""
 BEHIND = 0.6
@@ -115,6 +117,7 @@ def wanted(params: ValetParams) -> Wanted:
         half_angle=params.car.ultrasonic.half_angle,
         deep=length + params.search.behind - params.search.stand_out,
         open_ended=params.search.open_ended,
+        stand_out=params.search.stand_out,
         tail_in=wish == SlotWish.TAIL_IN,
     )
 
@@ -144,6 +147,7 @@ def mapped(store: PlanStore, state: Search, params: ValetParams) -> Search:
         rear=car.rear_overhang,
         ahead=state.ahead,
         length=(length if across else car.width) + BEHIND,
+        told=state.told != SlotKind.NONE,
     )
     lines = lay_around(store, state.gap, what)
     return state._replace(lines=lines)
@@ -164,9 +168,17 @@ def _judged(
     at = sensor_at(params.car.ultrasonic.mounts[sensor], inputs.odometry)._replace(heading=inputs.odometry.heading)
     want = wanted(params)._replace(at_end=state.way > params.search.way - LAST)
     gap = find_gap(store, side, ear.places, at, want)
+    if _is_across(gap, state.gap):
+        return state
     if gap.shallow:
         return state._replace(gap=Gap(), refused=Reason.SLOT_TOO_SHALLOW)
     return state._replace(gap=gap, side=side)
+
+
+def _is_across(gap: Gap, before: Gap) -> bool:
+    """Return whether a gap lies across the one found before, which the car is about to stop at: what is behind it."""
+    both = gap.layout == GapLayout.ACROSS and before.layout == GapLayout.ACROSS
+    return both and abs(math.cos(gap.into - before.into)) < ACROSS
 
 
 def reason_to_end(state: Search, params: ValetParams) -> int:

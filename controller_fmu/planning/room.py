@@ -8,7 +8,7 @@ ramp it is dk r^2 / 24 beside its path. So the outline is looked at as it stands
 import math
 from typing import NamedTuple
 
-from controller_fmu.planning.clearance import clearance, free_way
+from controller_fmu.planning.clearance import SIGHT, clearance, free_way
 from controller_fmu.planning.plan_store import KEPT_COUNT, KEPT_MARGIN, SEEN, PlanStore, put_mark, put_room
 from controller_fmu.planning.task import Request, Task, drive
 from modelkit.maths import sign
@@ -20,8 +20,16 @@ EACH = 0.125
 """Way [m] from one look to the next."""
 BEYOND = 0.2
 """Looked for no farther [m] beyond a change of gear."""
-OFFS = (0.03, 0.02, 0.01, 0.005, 0.002)
-"""How far [m] beside its path a ramp takes the car: the first that leaves enough."""
+OF_MARGIN = 0.2
+"""Share of the margin that a ramp may take the car beside its path, up to ``MOST``."""
+MOST = 0.02
+"""[m]"""
+OF_ROOM = 0.25
+"""And of what there is about the joint beyond the margin, up to ``ROOMIEST`` in all."""
+ROOMIEST = 0.03
+"""[m]"""
+SHARES = (1.0, 0.7, 0.5, 0.35, 0.2, 0.1)
+"""Of that; the first is taken that leaves enough."""
 LEFT = 0.75
 """Share of the margin that is left on a ramp, for what tracking and odometry are off."""
 RATE = 1.3
@@ -38,7 +46,7 @@ def see_room(store: PlanStore, request: Request, task: Task) -> bool:
     task = task._replace(margin=store.measure[KEPT_MARGIN])
     start = Pose(request.start.x - request.goal.x, request.start.y - request.goal.y, request.start.heading)
     if piece == 0:
-        put_room(store, piece, _about_start(store, start, task))
+        put_room(store, piece, _about(store, start, piece, task))
     elif store.kept_way[piece - 1] * store.kept_way[piece] < 0.0:
         put_room(store, piece, _beyond(store, start, piece, task))
     else:
@@ -47,15 +55,18 @@ def see_room(store: PlanStore, request: Request, task: Task) -> bool:
     return piece + 1 < store.mark[KEPT_COUNT]
 
 
-def _about_start(store: PlanStore, start: Pose, task: Task) -> float:
-    """Return the least clearance [m] beyond the margin within ``REACH`` of the start."""
-    least = clearance(store, start, task)
+def _about(store: PlanStore, start: Pose, piece: int, task: Task) -> float:
+    """Return the least clearance [m] beyond the margin within ``REACH`` of where a piece begins."""
+    joint = 0.0
+    for number in range(piece):
+        joint += abs(store.kept_way[number])
+    least = clearance(store, start, task) if piece == 0 else SIGHT
     pose = start
     at = 0.0
     for number in range(store.mark[KEPT_COUNT]):
         way = store.kept_way[number]
-        place = 0.0
-        last = min(abs(way), REACH - at)
+        place = max(0.0, joint - REACH - at)
+        last = min(abs(way), joint + REACH - at)
         while place <= last:
             there = drive(pose, sign(way) * place, store.kept_k[number])
             least = min(least, clearance(store, there, task))
@@ -79,11 +90,12 @@ def _put_ramp(store: PlanStore, start: Pose, piece: int, task: Task) -> None:
     joint = start
     for number in range(piece):
         joint = drive(joint, store.kept_way[number], store.kept_k[number])
+    most = min(ROOMIEST, min(MOST, OF_MARGIN * task.margin) + OF_ROOM * _about(store, start, piece, task))
     if abs(store.kept_k[piece] - store.kept_k[piece - 1]) < SAME:
-        put_room(store, piece, OFFS[0])
+        put_room(store, piece, most)
         return
-    for number in range(len(OFFS)):
-        put_room(store, piece, OFFS[number])
+    for number in range(len(SHARES)):
+        put_room(store, piece, SHARES[number] * most)
         if _is_ramp_free(store, joint, piece, task):
             return
     put_room(store, piece, 0.0)

@@ -11,7 +11,7 @@ from controller_fmu.planning.clearance import edge_gap
 from controller_fmu.planning.joining import cheapest, word_way
 from controller_fmu.planning.plan import GOAL_BLOCKED, PLANNED, START_BLOCKED, path_of, search_to
 from controller_fmu.planning.plan_store import COUNT, STATUS, WORDS, PlanStore
-from controller_fmu.planning.room import BEYOND, LEFT, OFFS, REACH
+from controller_fmu.planning.room import BEYOND, LEFT, REACH, ROOMIEST
 from controller_fmu.planning.task import Request, Rung, SearchWindow, Task, drive
 from controller_fmu.planning.words import list_words, turn_of
 from modelkit.store import new_store, size_of
@@ -89,7 +89,7 @@ def test_the_room_about_its_pieces_is_what_shapely_finds() -> None:
             assert piece.room == BEYOND or least_clearance([farther], BOXES, CAR) < path.margin + 0.01
             cusps += 1
         elif number > 0 and piece.k != k:
-            assert piece.room in (0.0, *OFFS)
+            assert 0.0 <= piece.room <= ROOMIEST
             if piece.room > 0.0:
                 ramp = ramp_poses(begin, pieces[number - 1 : number + 1], piece.room)
                 assert least_clearance(ramp, BOXES, CAR) >= LEFT * path.margin - 0.01

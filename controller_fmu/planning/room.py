@@ -76,11 +76,11 @@ def _about(store: PlanStore, start: Pose, piece: int, task: Task) -> float:
     return max(0.0, least - task.margin)
 
 
-class Beside(NamedTuple):
+class OffPath(NamedTuple):
     """Where a car is whose curvature changes over ramps."""
 
     lateral: float = 0.0
-    """Beside the path, to the left [m]."""
+    """OffPath the path, to the left [m]."""
     turned: float = 0.0
     """Off its direction [rad], as the curvature takes it when it goes forward."""
 
@@ -117,7 +117,7 @@ def _is_ramp_free(store: PlanStore, joint: Pose, piece: int, task: Task) -> bool
     return True
 
 
-def _beside(store: PlanStore, piece: int, past: float) -> Beside:
+def _beside(store: PlanStore, piece: int, past: float) -> OffPath:
     """Return where the car is ``past`` [m] behind the begin of a piece, by the ramps up to there in its gear."""
     lateral = 0.0
     turned = 0.0
@@ -139,7 +139,7 @@ def _beside(store: PlanStore, piece: int, past: float) -> Beside:
             turned -= off * RATE * behind
         number -= 1
         way += abs(store.kept_way[number])
-    return Beside(lateral, turned)
+    return OffPath(lateral, turned)
 
 
 def _ramp(store: PlanStore, piece: int) -> float:

@@ -156,7 +156,7 @@ def park(
     place = place_for(around.slot, state.attempt, state.out, inputs.odometry, params)
     if state.step == Step.PLAN:
         car = shape_of(params)
-        if has_shifted(state, place.pose) or (around.mute_ns > 0 and state.plan.barred != 0):
+        if has_shifted(state, place.pose):
             state = state._replace(plan=new_search(place.pose))
         if state.out:
             car = with_lock(car, params.apa)
@@ -166,9 +166,6 @@ def park(
         else:
             plan = search_on(state.plan, place.site, car, params.apa.plan.at_a_time)
         attempt = next_attempt(state, plan, place.site, params)
-        if attempt != state.attempt and plan.barred != 0:
-            plan = new_search(place.pose)
-            attempt = state.attempt
         if attempt != state.attempt:
             place = place_for(around.slot, attempt, state.out, inputs.odometry, params)
             plan = new_search(place.pose)
@@ -292,7 +289,7 @@ def _moved_on(
             cut=False,
             ended=before == Step.HALT and state.plan.moves <= 1,
             attempt=max(state.attempt - 1, 0) if state.out else under_way(state.attempt, wide),
-            plan=new_search(place.pose, state.plan.move.direction if _could_not_begin(state) else 0),
+            plan=new_search(place.pose),
             way_out=OutSearch(),
         )
     if step == Step.SET_WHEEL:
@@ -311,11 +308,6 @@ def _moved_on(
     if step in (Step.STRAIGHTEN, Step.IDLE):
         state = state._replace(wheel=0.0)
     return state
-
-
-def _could_not_begin(state: Parking) -> bool:
-    """Return whether the guard, who may hear what the map does not have, let the car not begin its move."""
-    return state.cut and state.tracked.way < AT_END and not state.out
 
 
 def _set_out(state: Parking) -> Parking:
@@ -354,13 +346,6 @@ def start_planning(slot: Slot, pose: Pose, out: bool, resumes: bool, params: Con
     attempt = under_way(0, True) if resumes and not out else 0
     site = site_for(slot, attempt, out, params)
     return Parking(step=Step.PLAN, plan=new_search(to_slot(pose, site.frame)), attempt=attempt, out=out)
-
-
-def planned_anew(state: Parking, slot: Slot, odometry: Pose, params: ControllerParams) -> Parking:
-    """Return the manoeuvre that plans again from where it stands, in a slot that is another than it was thought."""
-    attempt = under_way(state.attempt, False)
-    place = place_for(slot, attempt, state.out, odometry, params)
-    return state._replace(plan=new_search(place.pose), attempt=attempt, cuts=state.cuts + 1)
 
 
 def cut_short(state: Parking) -> Parking:

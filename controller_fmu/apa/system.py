@@ -5,7 +5,7 @@ from typing import NamedTuple
 from controller_fmu.apa.around.comer import is_odd
 from controller_fmu.apa.around.guard import GuardState, learn_brake, listen
 from controller_fmu.apa.around.local_map import begin_map, heard, moved
-from controller_fmu.apa.around.nearer import explained, farther_than_thought, nearer_than_thought, pressed
+from controller_fmu.apa.around.nearer import explained, nearer_than_thought, pressed
 from controller_fmu.apa.around.relocate import braked, walled
 from controller_fmu.apa.around.row import driven_on, slot_of_map
 from controller_fmu.apa.around.shifted import followed, relocated
@@ -25,9 +25,7 @@ from controller_fmu.apa.parking import (
     has_failed,
     is_planned,
     is_planning,
-    most_cuts,
     park,
-    planned_anew,
     site_for,
     start_planning,
 )
@@ -169,23 +167,7 @@ def _parked_on(
         parking = cut_short(parking) if slot.depth < state.around.slot.depth - SHALLOWER else parking
     around = Around(slot, here, guard, shifts, state.watch.mute)
     parking = park(parking, around, inputs, state.watch.wheel.steering, driving, params)
-    state = state._replace(around=around, parking=parking)
-    return _looked_for_room(state, inputs, params) if driving and not parking.out else state
-
-
-def _looked_for_room(state: ApaState, inputs: ControllerInput, params: ControllerParams) -> ApaState:
-    """Return the assist that plans anew where no way leads on, and a neighbour stands farther than the map has him."""
-    parking = state.parking
-    around = state.around
-    stuck = has_failed(parking, around.slot.kind, params) and not parking.missed
-    if not stuck or parking.cuts > most_cuts(False):
-        return state
-    there = farther_than_thought(around.map, inputs.ultrasonic, params)
-    if not there.found:
-        return state
-    slot = slot_of_map(there.map, around.slot, params.apa.map)
-    parking = planned_anew(parking, slot, inputs.odometry, params)
-    return state._replace(around=around._replace(slot=slot, map=there.map), parking=parking)
+    return state._replace(around=around, parking=parking)
 
 
 def _may_stand_nearer(state: ApaState, guard: GuardState, params: ControllerParams) -> bool:

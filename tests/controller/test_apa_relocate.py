@@ -8,7 +8,7 @@ import pytest
 from controller_fmu.apa.around.arcs import Unknown
 from controller_fmu.apa.around.guard import GuardState, listen
 from controller_fmu.apa.around.local_map import begin_map, heard, moved
-from controller_fmu.apa.around.nearer import explained, farther_than_thought, nearer_than_thought, pressed
+from controller_fmu.apa.around.nearer import explained, nearer_than_thought, pressed
 from controller_fmu.apa.around.relocate import braked, walled
 from controller_fmu.apa.around.row import is_certain, slot_of_map
 from controller_fmu.apa.around.surroundings import Around
@@ -196,19 +196,6 @@ def test_a_neighbour_nearer_than_the_search_found_him_is_placed_where_he_is_hear
     assert found.map.a.x == pytest.approx(a, abs=0.07 if b == 0.0 else 1e-9)
     assert found.map.b.x == pytest.approx(6.6 - b, abs=0.07 if a == 0.0 else 1e-9)
     assert not is_certain(found.map, MAP)
-
-
-@pytest.mark.parametrize("side", [Side.RIGHT, Side.LEFT])
-@pytest.mark.parametrize(("thought", "is_there"), [(NEARER, 0.0), (NEARER, NEARER), (0.0, -NEARER)])
-def test_where_no_way_leads_on_a_neighbour_is_put_back_up_to_where_he_was_found(
-    side: int, thought: float, is_there: float
-) -> None:
-    here, readings = standing(side, is_there, 0.0)
-    here = here._replace(a=here.a._replace(x=thought))
-    found = farther_than_thought(here, readings, PARAMS)
-    assert found.found == (thought > is_there >= 0.0)
-    assert found.map.a.x == pytest.approx(max(0.0, is_there) if found.found else thought, abs=0.13)
-    assert found.map.b == here.b
 
 
 @pytest.mark.parametrize("side", [Side.RIGHT, Side.LEFT])

@@ -33,8 +33,6 @@ WAYS = ((A, 1.0, 0.0), (B, -1.0, 0.0), (WALL, 0.0, 1.0), (A, 0.0, 1.0), (B, 0.0,
 """Who, and which way nearer: along the road into the slot, or out towards it; neighbours across the road come out.
 
 Who stands there when a car itself comes out is a person on the road."""
-BACK = ((A, -1.0), (B, 1.0))
-"""Who, and which way along the road he is farther."""
 MOST = 0.3
 """No reading says more [m] against a map: it may be lost, or of something else."""
 BETTER = 0.2
@@ -61,25 +59,6 @@ def nearer_than_thought(here: LocalMap, readings: tuple[float, ...], params: Con
             for number in range(STEPS):
                 way = STEP * (number + 1)
                 there = _moved(here, who, way * along, way * out, params)
-                off = misfit(there, readings, params)
-                if off < least:
-                    least = off
-                    best = Nearer(True, there)
-    return best
-
-
-def farther_than_thought(here: LocalMap, readings: tuple[float, ...], params: ControllerParams) -> Nearer:
-    """Return the map with that neighbour farther along the road, where he was found at most, that explains best
-    what is heard.
-
-    Asked where no way leads on: he was perhaps taken to have come nearer by echoes of something else.
-    """
-    best = Nearer(False, here)
-    least = misfit(here, readings, params) - BETTER
-    for who, along in BACK:
-        for number in range(STEPS):
-            there = _moved(here, who, STEP * (number + 1) * along, 0.0, params)
-            if there.a.x >= -STEP and there.b.x <= here.found + STEP:
                 off = misfit(there, readings, params)
                 if off < least:
                     least = off

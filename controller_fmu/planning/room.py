@@ -1,13 +1,13 @@
 """What room there is where pieces of the path kept begin: a car that turns its wheel on the move may use of it.
 
-Where the curvature jumps by dk such a car changes it linearly over a ramp of length r, half of it before the joint. On
-the ramp it is off its direction, by dk r / 8 half way, and its nose swings out so much times its length; behind the
-ramp it is dk r^2 / 24 beside its path. So the outline is looked at as it stands on the ramp, not on the path alone.
+On a ramp (``common/ramp.py``) the car is off its direction, and behind it beside its path. So the outline is looked at
+as it stands on the ramp, not on the path alone.
 """
 
 import math
 from typing import NamedTuple
 
+from controller_fmu.common.ramp import off_behind, on_ramp, ramp_length
 from controller_fmu.planning.clearance import SIGHT, clearance, free_way
 from controller_fmu.planning.plan_store import KEPT_COUNT, KEPT_MARGIN, SEEN, PlanStore, put_mark, put_room
 from controller_fmu.planning.task import Request, Task, drive
@@ -21,11 +21,11 @@ EACH = 0.125
 BEYOND = 0.2
 """Looked for no farther [m] beyond a change of gear."""
 OF_MARGIN = 0.2
-"""Share of the margin that a ramp may take the car beside its path, up to ``MOST``."""
+"""Share of the margin that turning the wheel on the move may take: a ramp up to ``MOST`` beside the path."""
 MOST = 0.02
 """[m]"""
 OF_ROOM = 0.25
-"""And of what there is about the joint beyond the margin, up to ``ROOMIEST`` in all."""
+"""And of what there is beyond the margin: a ramp up to ``ROOMIEST`` in all."""
 ROOMIEST = 0.03
 """[m]"""
 SHARES = (1.0, 0.7, 0.5, 0.35, 0.2, 0.1)
@@ -80,16 +80,14 @@ class OffPath(NamedTuple):
     """Where a car is whose curvature changes over ramps."""
 
     lateral: float = 0.0
-    """OffPath the path, to the left [m]."""
+    """Beside the path, to the left [m]."""
     turned: float = 0.0
     """Off its direction [rad], as the curvature takes it when it goes forward."""
 
 
 def _put_ramp(store: PlanStore, start: Pose, piece: int, task: Task) -> None:
     """Set how far [m] beside the path a ramp may take the car where a piece begins; 0: it has to stand there."""
-    joint = start
-    for number in range(piece):
-        joint = drive(joint, store.kept_way[number], store.kept_k[number])
+    joint = _joint(store, start, piece)
     most = min(ROOMIEST, min(MOST, OF_MARGIN * task.margin) + OF_ROOM * _about(store, start, piece, task))
     if abs(store.kept_k[piece] - store.kept_k[piece - 1]) < SAME:
         put_room(store, piece, most)
@@ -105,7 +103,7 @@ def _is_ramp_free(store: PlanStore, joint: Pose, piece: int, task: Task) -> bool
     """Return whether the car keeps enough of the margin on a ramp and behind it, those before counted."""
     direction = sign(store.kept_way[piece])
     past = -0.5 * _ramp(store, piece)
-    last = min(_gear_after(store, piece), TAKEN_BACK - past)
+    last = min(_gear_way(store, piece, 1), TAKEN_BACK - past)
     while past <= last:
         at = _along(store, joint, piece, past)
         off = _beside(store, piece, past)
@@ -128,13 +126,12 @@ def _beside(store: PlanStore, piece: int, past: float) -> OffPath:
         ramp = _ramp(store, number)
         on = way + 0.5 * ramp
         if 0.0 < on < ramp:
-            bent = way if way > 0.0 else 0.0
-            share = on / ramp
-            lateral += jump * (on * on * share / 6.0 - 0.5 * bent * bent)
-            turned += jump * (0.5 * on * share - bent)
+            more = on_ramp(jump, ramp, way, way > 0.0)
+            lateral += more.lateral
+            turned += more.turned
         if 0.0 < ramp <= on:
             behind = RATE * (on - ramp)
-            off = jump * ramp * ramp / 24.0 * math.exp(-behind)
+            off = off_behind(jump, ramp) * math.exp(-behind)
             lateral += off * (1.0 + behind)
             turned -= off * RATE * behind
         number -= 1
@@ -144,30 +141,26 @@ def _beside(store: PlanStore, piece: int, past: float) -> OffPath:
 
 def _ramp(store: PlanStore, piece: int) -> float:
     """Return the length [m] of the ramp about the begin of a piece, by what it may take the car off."""
-    jump = abs(store.kept_k[piece] - store.kept_k[piece - 1])
-    longest = 2.0 * min(_gear_before(store, piece), _gear_after(store, piece))
-    off = store.kept_room[piece]
-    return longest if jump * longest * longest < 24.0 * off else math.sqrt(24.0 * off / jump)
+    longest = 2.0 * min(_gear_way(store, piece, -1), _gear_way(store, piece, 1))
+    return ramp_length(store.kept_room[piece], store.kept_k[piece] - store.kept_k[piece - 1], longest)
 
 
-def _gear_before(store: PlanStore, piece: int) -> float:
-    """Return the way [m] before a piece that is driven in its gear."""
+def _gear_way(store: PlanStore, piece: int, turn: int) -> float:
+    """Return the way [m] driven in a piece's gear from its begin on (``turn`` 1), or before it (-1)."""
     way = 0.0
-    number = piece - 1
-    while number >= 0 and store.kept_way[number] * store.kept_way[piece] > 0.0:
+    number = piece if turn > 0 else piece - 1
+    while 0 <= number < store.mark[KEPT_COUNT] and store.kept_way[number] * store.kept_way[piece] > 0.0:
         way += abs(store.kept_way[number])
-        number -= 1
+        number += turn
     return way
 
 
-def _gear_after(store: PlanStore, piece: int) -> float:
-    """Return the way [m] from the begin of a piece on that is driven in its gear."""
-    way = 0.0
-    number = piece
-    while number < store.mark[KEPT_COUNT] and store.kept_way[number] * store.kept_way[piece] > 0.0:
-        way += abs(store.kept_way[number])
-        number += 1
-    return way
+def _joint(store: PlanStore, start: Pose, piece: int) -> Pose:
+    """Return the pose where a piece begins."""
+    pose = start
+    for number in range(piece):
+        pose = drive(pose, store.kept_way[number], store.kept_k[number])
+    return pose
 
 
 def _along(store: PlanStore, joint: Pose, piece: int, past: float) -> Pose:
@@ -185,7 +178,5 @@ def _along(store: PlanStore, joint: Pose, piece: int, past: float) -> Pose:
 
 def _beyond(store: PlanStore, start: Pose, piece: int, task: Task) -> float:
     """Return how far [m] the piece before may go on, at the margin."""
-    pose = start
-    for number in range(piece):
-        pose = drive(pose, store.kept_way[number], store.kept_k[number])
+    pose = _joint(store, start, piece)
     return free_way(store, pose, sign(store.kept_way[piece - 1]), store.kept_k[piece - 1], BEYOND, task)

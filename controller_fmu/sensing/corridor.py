@@ -117,7 +117,7 @@ def _fits(gap: Gap, frame: PlacesFrame, want: Wanted, along: bool) -> bool:
     """Return whether a gap is deep enough; along the road a car only stands where neighbours do, or it must."""
     if along:
         return gap.depth >= want.width - 0.1 and (gap.layout == GapLayout.ALONG or gap.depth < want.length - 0.3)
-    return gap.depth >= want.deep + want.stand_out - want.stand_out / abs(math.sin(frame.into - frame.row))
+    return gap.depth >= want.deep - want.stand_out / abs(math.sin(frame.into - frame.row))
 
 
 def _is_straight(gap: Gap, frame: PlacesFrame) -> bool:

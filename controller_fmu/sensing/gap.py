@@ -31,11 +31,11 @@ class Wanted(NamedTuple):
     half_angle: float
     """Of the sensor's cone [rad]."""
     deep: float
-    """Least depth [m] square to the road."""
+    """Depth [m] across the road that the car needs to stand in the slot whole."""
     open_ended: bool
     """One neighbour will do."""
     stand_out: float = 0.0
-    """So far [m] into the road the car may stand out of a slot of that depth; at an angle it is more along the slot."""
+    """So far [m] into the road the car may stand out of the slot; at an angle it is more along the slot."""
     at_end: bool = False
     """The search ends here: what is unclear is decided by what there is."""
     tail_in: bool = False

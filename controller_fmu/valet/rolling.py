@@ -16,7 +16,9 @@ for less than ``SLOWEST`` on the average the car stands, and the wheel turns at 
 import math
 from typing import NamedTuple
 
+from controller_fmu.common.ramp import on_ramp, ramp_length
 from controller_fmu.planning.plan import Path
+from controller_fmu.planning.room import OF_MARGIN, OF_ROOM, SAME
 from controller_fmu.planning.stretch import OneGear, stretch_of, way_before
 from controller_fmu.valet.params import ValetParams
 from modelkit.maths import sign
@@ -25,14 +27,8 @@ SLOWEST = 0.12
 """[m/s]"""
 RATE_SHARE = 0.9
 """Of the wheel's rate that a ramp asks for; the rest is for tracking."""
-OF_MARGIN = 0.2
-"""Share of the clearance planned that turning about a standstill may use."""
-OF_ROOM = 0.25
-"""And of what there is about the start beyond that."""
 ROOMIEST = 1.5
 """A ramp takes the car off by ``drive.rolling`` times this at most, and by what the planner finds room for."""
-SAME = 1e-6
-"""Curvatures nearer than this [1/m] are one."""
 BEHIND = 1e-6
 """So far [m] behind its edge a ramp has begun, or ended, in spite of rounding."""
 REST_SHARE = 0.5
@@ -111,7 +107,7 @@ def _joint(path: Path, whole: OneGear, piece: int, at: float, params: ValetParam
     k1 = path.pieces[piece + 1].k
     if abs(k1 - k0) < SAME:
         return Joint(longest)
-    ramp = min(longest, math.sqrt(24.0 * off / abs(k1 - k0)))
+    ramp = ramp_length(off, k1 - k0, longest)
     base = params.car.wheelbase
     swing = math.atan(base * k1) - math.atan(base * k0)
     return Joint(ramp, k1 - k0) if speed_on(swing / ramp, params) >= SLOWEST else Joint()
@@ -138,12 +134,10 @@ def aim_at(path: Path, piece: int, left: float, params: ValetParams) -> Aim:
         joint = _joint(path, whole, number, at, params)
         past = place - at
         if abs(past) < 0.5 * joint.ramp:
-            on = past + 0.5 * joint.ramp
-            share = on / joint.ramp
-            path_turned = 1.0 if number < piece else 0.0
-            curvature += joint.jump * (share - path_turned)
-            heading += joint.jump * (0.5 * on * share - path_turned * past)
-            lateral += joint.jump * (on * on * share / 6.0 - path_turned * 0.5 * past * past)
+            more = on_ramp(joint.jump, joint.ramp, past, number < piece)
+            curvature += more.curvature
+            heading += more.turned
+            lateral += more.lateral
     k = path.pieces[piece].k
     return Aim(curvature * (1.0 + k * lateral), lateral, sign(path.pieces[piece].way) * heading)
 

@@ -6,6 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from controller_fmu.common.ramp import off_behind, ramp_length
 from controller_fmu.planning.plan import Path, Piece
 from controller_fmu.planning.stretch import trimmed
 from controller_fmu.planning.task import drive
@@ -159,6 +160,12 @@ def test_where_there_is_room_the_wheel_turns_longer_on_the_move() -> None:
     stands = path_of((1.5, 0.3), (0.02, -0.3))
     assert joint_of(stands, 0, PARAMS).ramp == 0.0
     assert rest_before(stands, 1, PARAMS) == rest_before(without_room(stands), 1, PARAMS), "nothing is got back"
+
+
+def test_without_room_a_jump_has_no_ramp_and_no_jump_has_the_longest() -> None:
+    assert ramp_length(0.0, 0.2, 3.0) == 0.0
+    assert ramp_length(0.0, 0.0, 3.0) == ramp_length(0.02, 0.0, 3.0) == 3.0
+    assert off_behind(0.2, ramp_length(0.02, -0.2, 3.0)) == pytest.approx(0.02)
 
 
 def test_a_last_piece_of_millimetres_is_left_out() -> None:

@@ -149,7 +149,7 @@ def test_a_slot_at_an_angle_is_deep_enough_if_the_car_stands_no_farther_into_the
     store, ear, gap = passed([*row(30, 1, 3.0), wall], 1, 0.0)
     assert gap.shallow
     assert gap.depth == pytest.approx(3.3, abs=0.1)
-    gap = find_gap(store, 0, ear.places, Pose(8.0, 2.0 - 0.825), WANTED._replace(stand_out=0.5))
+    gap = find_gap(store, 0, ear.places, Pose(8.0, 2.0 - 0.825), WANTED._replace(deep=WANTED.deep + 0.5, stand_out=0.5))
     assert not gap.shallow
     params = ValetParams()
     short = stands_out(gap, params)

@@ -49,7 +49,7 @@ def goes_on(side: SideState, sample: Heard) -> bool:
     for older in side.ends:
         if older.r > 0.0 and (before.u >= end.u or end.u - older.u <= SPLIT):
             before = older
-    return before.u < end.u and end.r - before.r <= BEND * (end.u - before.u)
+    return before.u < end.u and not _rises(before, end)
 
 
 def _is_level(end: Heard, sample: Heard) -> bool:

@@ -115,7 +115,7 @@ def wanted(params: ValetParams) -> Wanted:
         along=wish in (SlotWish.ANY, SlotWish.PARALLEL),
         across=wish != SlotWish.PARALLEL,
         half_angle=params.car.ultrasonic.half_angle,
-        deep=length + params.search.behind - params.search.stand_out,
+        deep=length + params.search.behind,
         open_ended=params.search.open_ended,
         stand_out=params.search.stand_out,
         tail_in=wish == SlotWish.TAIL_IN,

@@ -25,6 +25,9 @@ BLUE, ASKED, GREEN, GREY, INK = LIGHT["run-a"], LIGHT["asked"], LIGHT["good"], "
 DEGREE = math.radians(1.0)
 COMPRESSION = 3
 """Of the PNG file: a tenth larger than at best, in a fifth of the time."""
+TITLE, TITLE_AT = 12.5, 0.012
+"""Size of the title's letters [pt]; where it begins, as a share of the width."""
+LEAST_TITLE = 4.0
 STYLE: Any = {
     "font.size": 9.0,
     "axes.edgecolor": GREY,
@@ -92,8 +95,18 @@ def overview(seen: Overview) -> Figure:
             panel(axis, seen)
             _over_time(axis, seen, pieces)
         _legend(figure, {piece.name: piece.colour for piece in pieces})
-        figure.suptitle(seen.title, x=0.012, y=0.996, ha="left", va="top", fontsize=12.5, fontweight="bold", color=INK)
+        _title(figure, seen.title)
     return figure
+
+
+def _title(figure: Figure, text: str) -> None:
+    """Write the title, in smaller letters if it is longer than the picture is wide."""
+    title = figure.suptitle(text, x=TITLE_AT, y=0.996, ha="left", va="top", fontweight="bold", color=INK)
+    room, size = figure.bbox.width * (1.0 - 2.0 * TITLE_AT), TITLE
+    title.set_fontsize(size)
+    while title.get_window_extent().width > room and size > LEAST_TITLE:  # letters do not get narrower evenly
+        size -= 0.5
+        title.set_fontsize(size)
 
 
 def _speed(axis: Any, seen: Overview) -> None:

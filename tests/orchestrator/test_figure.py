@@ -8,7 +8,7 @@ from matplotlib.image import imread
 
 from fmus.children import LIVING
 from orchestrator.drawing.beside import PictureBeside
-from orchestrator.drawing.figure import picture
+from orchestrator.drawing.figure import overview, picture
 from orchestrator.drawing.seen import overview_of
 from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.session.session import run_scenario
@@ -36,6 +36,19 @@ def test_a_picture_of_any_run(tmp_path: Path, sets: list[str]) -> None:
     pixels = imread(file)
     assert pixels.shape[:2] == (1080, 1560)
     assert pixels[..., :3].std() > 0.05
+
+
+def test_a_long_title_is_not_cut_off() -> None:
+    scenario = load_scenario(DEMO, ["stop_time=0.01"])
+    ran = run_scenario(scenario)
+    seen = overview_of(ran.recording, summarize(ran.recording, scenario, 1.0), scenario)
+    ends = []
+    for title in ("short", "W" * 60, "W" * 150, "controller.car = {width: 1.9}, " * 9):
+        figure = overview(seen._replace(title=title))
+        drawn = next(text for text in figure.texts if text.get_text() == title)
+        ends.append(drawn.get_window_extent().x1 / figure.bbox.width)
+    assert ends[0] < 0.1
+    assert 0.95 < min(ends[2:]) <= max(ends) < 1.0
 
 
 def test_a_process_beside_draws_the_same() -> None:

@@ -1,14 +1,12 @@
 """Writes the table of docs/apa.md: every shipped car in every parking scenario. ``python docs/cars.py``."""
 
-import re
 from pathlib import Path
+
+from marked import put
 
 from orchestrator.cosim.fmu_files import fmu_files
 from orchestrator.grid.cars import park, parking_scenarios, shown
 from orchestrator.scenario.files import car_names
-
-PAGE = Path(__file__).parent / "apa.md"
-BETWEEN = re.compile(r"(?<=<!-- cars -->\n).*?(?=\n<!-- /cars -->)", re.S)
 
 
 def table() -> list[str]:
@@ -24,4 +22,4 @@ def table() -> list[str]:
 
 
 if __name__ == "__main__":
-    PAGE.write_text(BETWEEN.sub("\n" + "\n".join(table()) + "\n", PAGE.read_text(encoding="utf-8")), encoding="utf-8")
+    put(Path(__file__).parent / "apa.md", "cars", table())

@@ -3,21 +3,19 @@
 ``python docs/ends.py WHOLE.parquet MILD.parquet``
 """
 
-import re
 import sys
 from collections import Counter
 from pathlib import Path
 
 import numpy as np
+from marked import put
 from numpy.typing import NDArray
 
 from orchestrator.grid.world.ends import CONTACT, ENDS, FAILED, FALSE, UNUSED
 from orchestrator.grid.world.study import QUIET, groups, parked_of
 from orchestrator.sweep.table import Table
-from orchestrator.verdict.confidence import clopper_pearson
+from orchestrator.verdict.confidence import clopper_pearson, percent_interval
 
-PAGE = Path(__file__).parent / "hunt.md"
-BETWEEN = re.compile(r"(?<=<!-- ends -->\n).*?(?=<!-- /ends -->)", re.S)
 Chosen = NDArray[np.bool_]
 
 
@@ -30,8 +28,7 @@ def bounds(count: int, of: int) -> str:
     """Return the exact 95 % interval of a probability; of none the upper end alone."""
     if not count:
         return f"below {100.0 * clopper_pearson(0, of)[1]:.2f} %"
-    low, high = (100.0 * end for end in clopper_pearson(count, of, 0.975))
-    return f"{low:.3f} to {high:.3f} %"
+    return percent_interval(count, of, 3)
 
 
 def columns(whole: Table, mild: Table) -> list[tuple[str, NDArray[np.str_], Chosen]]:
@@ -67,8 +64,7 @@ def parked(whole: Table, mild: Table) -> list[str]:
     for title, *pairs in zip(titles, *both, strict=True):
         cells = []
         for count, of in pairs:
-            low, high = (100.0 * end for end in clopper_pearson(count, of, 0.975))
-            cells.append(f"{count:,} of {of:,}: {100.0 * count / of:.1f} % ({low:.2f} to {high:.2f} %)")
+            cells.append(f"{count:,} of {of:,}: {100.0 * count / of:.1f} % ({percent_interval(count, of)})")
         lines.append(f"| {title} | {' | '.join(cells)} |")
     return lines
 
@@ -80,15 +76,14 @@ def counted(table: Table, column: str, end: str) -> str:
     return ", ".join(f"{mark}{word}{mark} {count}" for word, count in words) or "none"
 
 
-def block(whole: Table, mild: Table) -> str:
+def block(whole: Table, mild: Table) -> list[str]:
     """Return all that is written."""
     reasons = f"Reasons of those that gave up: {counted(whole, 'reason', FAILED)}; in half the ranges "
-    lines = ["", *ends(whole, mild), "", *parked(whole, mild), "", reasons + f"{counted(mild, 'reason', FAILED)}."]
+    lines = [*ends(whole, mild), "", *parked(whole, mild), "", reasons + f"{counted(mild, 'reason', FAILED)}."]
     stood = int(whole.column("driven_into").sum())
     first = f"Touched first: {counted(whole, 'touched', CONTACT)}. In {stood or 'none'} of these runs the car stood."
-    return "\n".join([*lines, "", first, "", ""])
+    return [*lines, "", first]
 
 
 if __name__ == "__main__":
-    written = block(*(Table(Path(path)) for path in sys.argv[1:3]))
-    PAGE.write_text(BETWEEN.sub(lambda _: written, PAGE.read_text(encoding="utf-8")), encoding="utf-8")
+    put(Path(__file__).parent / "hunt.md", "ends", block(*(Table(Path(path)) for path in sys.argv[1:3])))

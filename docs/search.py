@@ -1,9 +1,9 @@
 """Writes two tables of docs/apa.md: the search in numbers, and how drives feel. ``python docs/search.py``."""
 
-import re
 from pathlib import Path
 
 import numpy as np
+from marked import put
 
 from orchestrator.cosim.fmu_files import fmu_files
 from orchestrator.grid.search_kpis import HEADS, rows_of, study
@@ -46,13 +46,6 @@ def table(heads: list[str], rows: list[list[str]]) -> list[str]:
     return ["| " + " | ".join(heads) + " |", rule, *("| " + " | ".join(row) + " |" for row in rows)]
 
 
-def put(name: str, lines: list[str]) -> None:
-    """Put a table between the marks of this name."""
-    between = re.compile(rf"(?<=<!-- {name} -->\n).*?(?=\n<!-- /{name} -->)", re.S)
-    text = "\n" + "\n".join(lines) + "\n"
-    PAGE.write_text(between.sub(lambda match: text, PAGE.read_text(encoding="utf-8")), encoding="utf-8")
-
-
 if __name__ == "__main__":
-    put("search", searched())
-    put("comfort", felt())
+    put(PAGE, "search", searched())
+    put(PAGE, "comfort", felt())

@@ -1,13 +1,12 @@
 """Writes the table of docs/guo2015.md: steerings that stick, and real ones that do not. ``python docs/stuck.py``."""
 
-import re
 from pathlib import Path
+
+from marked import put
 
 from orchestrator.cosim.fmu_files import fmu_files
 from orchestrator.grid.stuck_wheel import BASES, HEADS, StuckDrive, drive, line_of
 
-PAGE = Path(__file__).parent / "guo2015.md"
-BETWEEN = re.compile(r"(?<=<!-- stuck -->\n).*?(?=\n<!-- /stuck -->)", re.S)
 STUCK, HEALTHY = 334, 200
 
 
@@ -28,5 +27,4 @@ def table() -> list[str]:
 
 
 if __name__ == "__main__":
-    made = "\n" + "\n".join(table()) + "\n"
-    PAGE.write_text(BETWEEN.sub(lambda match: made, PAGE.read_text(encoding="utf-8")), encoding="utf-8")
+    put(Path(__file__).parent / "guo2015.md", "stuck", table())

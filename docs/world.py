@@ -1,13 +1,11 @@
 """Writes the ranges of docs/hunt.md: what differs in the study apa-world. ``python docs/world.py``."""
 
-import re
 from pathlib import Path
+
+from marked import put
 
 from orchestrator.grid.world.factors import FACTORS
 from orchestrator.sweep.study.space import Factor
-
-PAGE = Path(__file__).parent / "hunt.md"
-BETWEEN = re.compile(r"(?<=<!-- world -->\n).*?(?=<!-- /world -->)", re.S)
 
 
 def line(factor: Factor) -> str:
@@ -20,11 +18,10 @@ def line(factor: Factor) -> str:
     return f"| `{factor.name}` | {factor.low:g} to {factor.high:g}{unit} | {factor.nominal:g} | {factor.text} |"
 
 
-def table() -> str:
+def table() -> list[str]:
     """Return the table."""
-    lines = ["", "| factor | range | nominal | |", "|---|---|---|---|", *map(line, FACTORS), "", ""]
-    return "\n".join(lines)
+    return ["| factor | range | nominal | |", "|---|---|---|---|", *map(line, FACTORS)]
 
 
 if __name__ == "__main__":
-    PAGE.write_text(BETWEEN.sub(lambda _: table(), PAGE.read_text(encoding="utf-8")), encoding="utf-8")
+    put(Path(__file__).parent / "hunt.md", "world", table())

@@ -16,6 +16,12 @@ def clopper_pearson(events: int, count: int, confidence: float = 0.95) -> tuple[
     return low, high
 
 
+def percent_interval(events: int, count: int, digits: int = 2) -> str:
+    """Return the exact two-sided 95 % interval of a probability in words: ``89.37 to 90.23 %``."""
+    low, high = (f"{100.0 * end:.{digits}f}" for end in clopper_pearson(events, count, 0.975))
+    return f"{low} to {high} %"
+
+
 def _interval(events: int, count: int, confidence: float, method: str) -> tuple[float, float]:
     from scipy.stats import binomtest  # slow to import
 

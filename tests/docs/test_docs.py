@@ -240,6 +240,17 @@ def test_equations_name_their_files() -> None:
     assert all(paper for paper, _ in found)
 
 
+def test_a_table_is_put_between_its_marks_and_nowhere_else(tmp_path: Path) -> None:
+    page, put = tmp_path / "page.md", load("marked").put
+    page.write_text("a\n<!-- one -->\nold\n<!-- /one -->\nb\n<!-- two -->\n<!-- /two -->\n")
+    put(page, "one", ["| 1 |", "| 2 |"])
+    put(page, "two", ["x\\1"])
+    first, second = "<!-- one -->\n\n| 1 |\n| 2 |\n\n<!-- /one -->", "<!-- two -->\n\nx\\1\n\n<!-- /two -->"
+    assert page.read_text() == f"a\n{first}\nb\n{second}\n"
+    with pytest.raises(ValueError, match="0 blocks"):
+        put(page, "three", [])
+
+
 def test_every_decision_is_listed() -> None:
     listed = (ROOT / "docs" / "adr" / "index.md").read_text(encoding="utf-8")
     assert [page.name for page in (ROOT / "docs" / "adr").glob("0*.md") if f"({page.name})" not in listed] == []

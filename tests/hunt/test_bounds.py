@@ -10,7 +10,7 @@ from scipy.stats import beta
 
 from orchestrator.hunt.influence import first_orders, total_index
 from orchestrator.hunt.rare import subset_simulation
-from orchestrator.verdict.confidence import clopper_pearson
+from orchestrator.verdict.confidence import clopper_pearson, percent_interval
 
 
 def test_of_no_events_the_bound_is_three_over_n() -> None:
@@ -25,6 +25,12 @@ def test_of_some_events_it_is_that_of_the_beta_distribution() -> None:
     low, high = clopper_pearson(7, 500)
     assert low == pytest.approx(beta.ppf(0.05, 7, 494), rel=1e-9)
     assert high == pytest.approx(beta.ppf(0.95, 8, 493), rel=1e-9)
+
+
+def test_an_interval_in_words_has_a_fortieth_left_out_at_each_end() -> None:
+    low, high = 100.0 * beta.ppf(0.025, 7, 494), 100.0 * beta.ppf(0.975, 8, 493)
+    assert percent_interval(7, 500) == f"{low:.2f} to {high:.2f} %"
+    assert percent_interval(7, 500, 3) == f"{low:.3f} to {high:.3f} %"
 
 
 def test_the_bound_holds_as_often_as_it_says() -> None:

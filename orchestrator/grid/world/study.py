@@ -24,7 +24,7 @@ from orchestrator.sweep.study.space import Factor, Seeds, Space
 from orchestrator.sweep.study.study import Study
 from orchestrator.sweep.table import Table
 from orchestrator.text.console import console
-from orchestrator.verdict.confidence import clopper_pearson
+from orchestrator.verdict.confidence import percent_interval
 
 STOP = 150.0
 BODY_STEP = 0.0025
@@ -112,9 +112,8 @@ def parked_of(table: Table) -> dict[str, tuple[int, int]]:
 def _parked_of_valid(table: Table) -> list[str]:
     lines = []
     for name, (count, of) in parked_of(table).items():
-        low, high = (100.0 * share for share in clopper_pearson(count, of, 0.975))
         share = 100.0 * count / max(of, 1)
-        lines.append(f"parked of {name}: {count} of {of}, {share:.2f} % (95 %: {low:.2f} to {high:.2f} %)")
+        lines.append(f"parked of {name}: {count} of {of}, {share:.2f} % (95 %: {percent_interval(count, of)})")
     return lines
 
 

@@ -156,7 +156,7 @@ def park(
     place = place_for(around.slot, state.attempt, state.out, inputs.odometry, params)
     if state.step == Step.PLAN:
         car = shape_of(params)
-        if has_shifted(state, place.pose):
+        if has_shifted(state, place.pose) or (around.mute_ns > 0 and state.plan.barred != 0):
             state = state._replace(plan=new_search(place.pose))
         if state.out:
             car = with_lock(car, params.apa)
@@ -166,6 +166,9 @@ def park(
         else:
             plan = search_on(state.plan, place.site, car, params.apa.plan.at_a_time)
         attempt = next_attempt(state, plan, place.site, params)
+        if attempt != state.attempt and plan.barred != 0:
+            plan = new_search(place.pose)
+            attempt = state.attempt
         if attempt != state.attempt:
             place = place_for(around.slot, attempt, state.out, inputs.odometry, params)
             plan = new_search(place.pose)
@@ -289,7 +292,7 @@ def _moved_on(
             cut=False,
             ended=before == Step.HALT and state.plan.moves <= 1,
             attempt=max(state.attempt - 1, 0) if state.out else under_way(state.attempt, wide),
-            plan=new_search(place.pose),
+            plan=new_search(place.pose, state.plan.move.direction if _could_not_begin(state) else 0),
             way_out=OutSearch(),
         )
     if step == Step.SET_WHEEL:
@@ -308,6 +311,11 @@ def _moved_on(
     if step in (Step.STRAIGHTEN, Step.IDLE):
         state = state._replace(wheel=0.0)
     return state
+
+
+def _could_not_begin(state: Parking) -> bool:
+    """Return whether the guard, who may hear what the map does not have, let the car not begin its move."""
+    return state.cut and state.tracked.way < AT_END and not state.out
 
 
 def _set_out(state: Parking) -> Parking:

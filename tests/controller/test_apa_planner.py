@@ -111,6 +111,18 @@ def test_a_car_that_no_short_moves_lead_in_drives_out_and_in_anew() -> None:
     assert search.move.direction > 0
 
 
+@pytest.mark.parametrize("barred", [1, -1])
+def test_a_way_is_looked_for_that_does_not_begin_as_the_one_that_could_not(barred: int) -> None:
+    car = shape_of("middle")
+    site = site_of(Slot(Kind.PERPENDICULAR, 0, Pose(0.0, 0.0, 0.0), 3.2, 0.0, 5.0), car, MARGINS)
+    start = Pose(6.0, -1.5, -1.0)
+    free = search_on(new_search(start), site, car, 100_000)
+    other = search_on(new_search(start, barred), site, car, 100_000)
+    assert (free.status, other.status) == (FOUND, FOUND)
+    assert other.move.direction == -barred
+    assert barred == -free.move.direction or other.moves >= free.moves
+
+
 def test_the_number_of_candidates_at_a_time_changes_nothing() -> None:
     car = shape_of("middle")
     slot, site = slot_and_site(car, Kind.PARALLEL, 0.0)

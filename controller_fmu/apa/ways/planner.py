@@ -70,11 +70,13 @@ class PlanSearch(NamedTuple):
     """Moves of the best way, its first included."""
     move: Move = Move()
     """First move of the best way."""
+    barred: int = 0
+    """A way does not begin in this direction; 0: in any."""
 
 
-def new_search(start: Pose) -> PlanSearch:
-    """Return a search not yet begun, from ``start`` (slot's frame)."""
-    return PlanSearch(move=Move(start))
+def new_search(start: Pose, barred: int = 0) -> PlanSearch:
+    """Return a search not yet begun, from ``start`` (slot's frame), for a way that does not begin ``barred``."""
+    return PlanSearch(move=Move(start), barred=barred)
 
 
 def search_on(search: PlanSearch, site: Site, car: Shape, count: int) -> PlanSearch:
@@ -140,9 +142,10 @@ def _one_more(search: PlanSearch, site: Site, car: Shape) -> PlanSearch:
     if is_entry and search.number == 0:
         way_in = exit_of(stage - ENTRY, site, car)
     candidate = _candidate(stage, search.number, start, way_in, site, car)
-    better = candidate.found and (not search.found or candidate.cost < search.cost)
-    last = search.number + 1 >= count_of(stage) or (is_entry and (candidate.found or not way_in.found))
-    found = search.found or candidate.found
+    good = candidate.found and (search.barred == 0 or candidate.move.direction != search.barred)
+    better = good and (not search.found or candidate.cost < search.cost)
+    last = search.number + 1 >= count_of(stage) or (is_entry and (good or not way_in.found))
+    found = search.found or good
     return PlanSearch(
         FOUND if last and found else SEARCHING,
         search.stage + 1 if last else search.stage,
@@ -152,6 +155,7 @@ def _one_more(search: PlanSearch, site: Site, car: Shape) -> PlanSearch:
         candidate.cost if better else search.cost,
         candidate.moves if better else search.moves,
         candidate.move if better else search.move,
+        search.barred,
     )
 
 

@@ -77,6 +77,7 @@ def _is_double(p: DoubleTrackParams) -> bool:
         and _sizes(p.track_rear)
         and _sizes(p.hub.radius)
         and _sizes(p.hub.inertia)
+        and _sizes(p.hub.traction)
         and is_finite(p.ackermann + roll.arm + roll.stiffness_front + roll.stiffness_rear)
         and is_finite(roll.camber_front + roll.camber_rear + roll.unsprung_front + roll.unsprung_rear)
         and roll.lag >= 0.0

@@ -249,3 +249,29 @@ def test_a_slippery_side_pulls_the_braked_car_round() -> None:
     for _ in range(500):
         state = step_double_track(state, 0.0, Effort(0.0, 8000.0), Build(STANCE, CHASSIS, road), PARAMS, 0.001)
     assert state.motion.yaw_rate > 0.1
+
+
+def _pushed(drive: float, grip: float, traction: float, heading: float, seconds: float = 4.0) -> DoubleTrackState:
+    """Return the car that a force, growing for 0.3 s, pushes from rest over a road that rises and leans to its left."""
+    build = Build(STANCE, CHASSIS, RoadParams(0.045 * math.copysign(1.0, drive), -0.032, (grip,) * 4))
+    params = PARAMS._replace(hub=PARAMS.hub._replace(traction=traction))
+    state = resting(Pose(0.0, 0.0, heading), 0.0, build, params)
+    for number in range(int(seconds * 1000)):
+        effort = Effort(drive * min(1.0, number / 300.0), 0.0)
+        state = step_double_track(state, 0.0, effort, build, params, 0.001)
+    return state
+
+
+@pytest.mark.parametrize("drive", [4000.0, -4000.0])
+def test_traction_control_keeps_a_car_driven_too_hard_from_spinning(drive: float) -> None:
+    """Twice what the tyres pass on: with it the rims turn little faster than the car rolls, and it keeps its way."""
+    held, spun = (_pushed(drive, 0.34, traction, 0.0) for traction in (0.05, 100.0))
+    rims = [abs(wheel.spin) * PARAMS.hub.radius for wheel in held.wheels]
+    assert max(rims) < 1.1 * abs(held.motion.speed_x) + 0.01
+    assert abs(held.motion.pose.heading) < 0.05
+    assert max(abs(wheel.spin) for wheel in spun.wheels) * PARAMS.hub.radius > 50.0
+    assert abs(held.motion.speed_x) > abs(spun.motion.speed_x)
+
+
+def test_traction_control_does_nothing_where_tyres_hold() -> None:
+    assert _pushed(1500.0, 1.0, 0.05, 0.1) == _pushed(1500.0, 1.0, 100.0, 0.1)

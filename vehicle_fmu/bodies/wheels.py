@@ -1,6 +1,7 @@
 """One wheel: spin, carcass springs, drive and brake torque.
 
-    I omega' = T_drive - R F_x - friction,  friction <= T_brake + f_r R F_z, sticking at rest
+    I omega' = s T_drive - R F_x - friction,  friction <= T_brake + f_r R F_z, sticking at rest
+    s = 2 - (R omega - V_x) / (slip V_x), from 0 to 1: traction control, V_x no less than 1 m/s
     u' = (R omega - V_x) - rate_x u    w' = -V_y - rate_y w        (see tires)
 
 The force is taken at the deflection a damping time further on, which damps the carcass at low
@@ -10,11 +11,14 @@ force is linear in the new spin), so that a step of any length is stable from st
 
 from typing import Annotated, NamedTuple
 
-from modelkit.maths import move_towards
+from modelkit.maths import clamp, move_towards
 from modelkit.signal import Signal
+from vehicle_fmu.bodies.chassis import CHOSEN
 from vehicle_fmu.bodies.tires import Force, TireParams, relax, secants, slide_rate
 
 COMMONROAD = "CommonRoad vehicle models 3.0.2"
+SLOW = 1.0
+"""Slip is told against this speed [m/s] below it."""
 
 
 class HubParams(NamedTuple):
@@ -22,6 +26,9 @@ class HubParams(NamedTuple):
 
     radius: Annotated[float, Signal("m", "rolling radius", 0.05, 2.0, COMMONROAD + ", R_w")] = 0.344
     inertia: Annotated[float, Signal("kg.m2", "about its axle", 0.01, 100.0, COMMONROAD + ", I_y_w")] = 1.7
+    traction: Annotated[
+        float, Signal("1", "slip from which traction control takes the drive back; 100: none", 0.001, 100.0, CHOSEN)
+    ] = 0.05
 
 
 class Wheel(NamedTuple):
@@ -66,7 +73,8 @@ def turn_wheel(wheel: Wheel, contact: Contact, hub: HubParams, tires: TireParams
     force = tires.carcass_x * relax(wheel.u, slide_x, rate_x, ahead)
     slope = tires.carcass_x * hub.radius * ahead / (1.0 + ahead * rate_x)
     inertia = hub.inertia + h * hub.radius * slope
-    free = wheel.spin + h * (contact.drive - hub.radius * force) / inertia
+    drive = contact.drive * _passed(slide_x if contact.drive > 0.0 else -slide_x, contact.along, hub)
+    free = wheel.spin + h * (drive - hub.radius * force) / inertia
     spin = move_towards(free, 0.0, h * contact.brake / inertia)
     return Wheel(
         spin,
@@ -74,3 +82,9 @@ def turn_wheel(wheel: Wheel, contact: Contact, hub: HubParams, tires: TireParams
         relax(wheel.w, slide_y, rate_y, h),
         Force(force + slope * (spin - wheel.spin), tires.carcass_y * relax(wheel.w, slide_y, rate_y, ahead)),
     )
+
+
+def _passed(slide: float, along: float, hub: HubParams) -> float:
+    """Return the share of the drive that traction control lets through at this wheel spin [m/s]."""
+    allowed = hub.traction * max(abs(along), SLOW)
+    return clamp(2.0 - slide / allowed, 0.0, 1.0)

@@ -177,11 +177,24 @@ def job_to(job: Job) -> dict[str, Any]:
 
 
 def job_from(data: dict[str, Any]) -> Job:
-    """Return the job that :func:`job_to` wrote."""
+    """Return the job that :func:`job_to` wrote, its parameters placed as the models have them now."""
     if "target" not in data["scenario"]:
         data = {**data, "scenario": {**data["scenario"], "target": _told_target(data["scenario"]["controller"])}}
-    seeded = [(owner, name, int(place)) for owner, name, place in data["seeded"]]
-    return Job(**{**data, "seeded": seeded, "measures": [_measure(*item) for item in data["measures"]]})
+    named = _places_by_name(data["scenario"])
+    fields = zip(data["owners"], data["names"], data["places"], strict=True)
+    places = [named[owner][name] if owner in named else int(place) for owner, name, place in fields]
+    seeded = [(owner, name, named[owner][name]) for owner, name, _ in data["seeded"]]
+    measures = [_measure(*item) for item in data["measures"]]
+    return Job(**{**data, "places": places, "seeded": seeded, "measures": measures})
+
+
+def _places_by_name(scenario: dict[str, Any]) -> dict[str, dict[str, int]]:
+    """Return model -> parameter -> its place, of the models that are ours: another version may have had others."""
+    system = scenario.get("system")
+    theirs = {name for name, item in system["slaves"].items() if item["file"]} if system else set()
+    models = models_for(scenario["controller"])
+    ours = {owner: model for owner, model in models.items() if owner not in theirs}
+    return {owner: {item.name: at for at, item in enumerate(variables(model.params))} for owner, model in ours.items()}
 
 
 def _measure(how: Any, signal: str, when: list[Any] | None) -> Measure:

@@ -256,6 +256,22 @@ def test_a_table_of_an_older_version_is_judged_by_what_the_controller_was_told(b
     assert judge(old, truths(old, chunk), run_batch(old, chunk)).reason == ["all checks passed"]
 
 
+def test_a_table_of_a_version_with_other_parameters_sets_those_it_names(bind: Any) -> None:
+    """Places are those of the models now: an older version may have had one more before, or one less."""
+    keys = {"vehicle.ultrasonic.noise": [0.01], "vehicle.odometry.radius_error": [0.002], "stop_time": [50.0]}
+    _, _, job, _ = bind(runs={"grid": keys})
+    older = {**job_to(job), "places": [place + 1 for place in job.places]}
+    older["seeded"] = [(owner, name, place + 1) for owner, name, place in job.seeded]
+    again = job_from(json.loads(json.dumps(older)))
+    ours = [owner in job.scenario for owner in job.owners]
+    assert [p for p, is_ours in zip(again.places, ours, strict=True) if is_ours] == [
+        p for p, is_ours in zip(job.places, ours, strict=True) if is_ours
+    ]
+    assert again.seeded == job.seeded
+    with pytest.raises(KeyError, match="gone"):
+        job_from(json.loads(json.dumps({**job_to(job), "names": ["gone", *job.names[1:]]})))
+
+
 def test_what_counts_at_some_instants_only_is_as_in_the_recording(bind: Any, some: Any) -> None:
     _, _, job, chunk = bind()
     parking = When("controller.phase", (2, 3))

@@ -1,4 +1,4 @@
-"""What all tests share: one browser a process, which files are slow, the option ``--update``."""
+"""What all tests share: one browser a process, which files are slow, no clock over drawn examples, ``--update``."""
 
 import shutil
 from collections.abc import Iterator
@@ -6,6 +6,10 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from hypothesis import HealthCheck, settings
+
+settings.register_profile("no clock", deadline=None, suppress_health_check=[HealthCheck.too_slow])
+settings.load_profile("no clock")
 
 SLOW = [
     "compiler/test_model_bits.py",

@@ -58,7 +58,7 @@ def sees(state: Any, readings: Any, around: Any, direction: Any, speed: Any, cur
     )
 
 
-@settings(max_examples=500, deadline=None)
+@settings(max_examples=500)
 @given(places, st.floats(-3.5, 3.5), directions, speeds, curvatures)
 def test_a_known_thing_that_would_be_touched_is_braked_for(
     x: Any, y: Any, direction: Any, speed: Any, curvature: Any
@@ -83,7 +83,7 @@ def heard_at(x: Any, y: Any) -> Any:
     return heard_distances(HERE, scene, SENSORS, 0.08, 0)
 
 
-@settings(max_examples=500, deadline=None)
+@settings(max_examples=500)
 @given(places, st.floats(-3.5, 3.5), directions, speeds, curvatures)
 def test_an_unknown_thing_that_is_heard_and_would_be_touched_is_braked_for(
     x: Any, y: Any, direction: Any, speed: Any, curvature: Any
@@ -162,7 +162,7 @@ def test_the_brake_is_learnt_while_the_assist_brakes_and_at_no_other_time(mode: 
     assert (apa_sample(state, inputs, PARAMS, 10_000_000).around.guard.braked_from > 0.0) == learns
 
 
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=300)
 @given(*(st.floats(-4.0, 4.0) for _ in range(4)), st.floats(-math.pi, math.pi))
 def test_what_a_cone_hears_of_a_side_is_what_geometry_says(ax: Any, ay: Any, bx: Any, by: Any, axis: Any) -> None:
     a, b = Point(ax, ay), Point(bx, by)

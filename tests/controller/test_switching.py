@@ -52,7 +52,7 @@ def leg(pose: Pose, direction: int, length: float, k4: float = K4) -> tuple[Pose
     return pose, worst
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(
     radius=st.floats(0.0, 0.99),
     turn=st.floats(-math.pi, math.pi),
@@ -85,7 +85,7 @@ def test_two_and_a_half_metres_each_way_shrink_them_as_the_docs_say() -> None:
         assert pose.y == pytest.approx(said, abs=0.0015)
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(y=st.floats(-0.1, 0.1), heading=st.floats(-0.1, 0.1))
 def test_the_same_v_falls_on_a_straight_piece_of_path(y: float, heading: float) -> None:
     pose = Pose(0.0, y, heading)

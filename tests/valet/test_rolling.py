@@ -44,7 +44,7 @@ def driven(path: Path) -> list[tuple[float, float, float]]:
     return rows
 
 
-@settings(max_examples=12, deadline=None)
+@settings(max_examples=12)
 @given(k0=curvature, k1=curvature, length=st.floats(1.5, 2.5), direction=st.sampled_from([1.0, -1.0]))
 def test_the_aim_is_where_its_curvature_leads(k0: float, k1: float, length: float, direction: float) -> None:
     length = round(length, 2)
@@ -58,7 +58,7 @@ def test_the_aim_is_where_its_curvature_leads(k0: float, k1: float, length: floa
     assert max(row[2] for row in rows) <= MOST + 3e-3
 
 
-@settings(max_examples=12, deadline=None)
+@settings(max_examples=12)
 @given(
     k=st.tuples(curvature, curvature, curvature), middle=st.floats(0.05, 1.0), direction=st.sampled_from([1.0, -1.0])
 )
@@ -80,7 +80,7 @@ def test_of_a_short_arc_between_two_lines_little_is_left() -> None:
     assert ahead_of(path, 0, 0.5, PARAMS).speed == PARAMS.drive.speed
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 @given(k0=curvature, k1=curvature, way=st.floats(0.1, 5.0))
 def test_the_wheel_can_follow_a_ramp(k0: float, k1: float, way: float) -> None:
     path = path_of((way, k0), (way, k1))

@@ -114,7 +114,7 @@ def _push_error(state: DoubleTrackState, h: float) -> float:
     return body + sum(0.5 * h * h * (0.344 * x) ** 2 / PARAMS.hub.inertia for x, _ in forces)
 
 
-@settings(deadline=None, max_examples=10)
+@settings(max_examples=10)
 @given(
     speed=st.floats(-20.0, 20.0),
     side=st.floats(-3.0, 3.0),
@@ -207,7 +207,7 @@ def test_mirrored_to_the_bit() -> None:
 REAL = st.floats(-1.0, 1.0)
 
 
-@settings(deadline=None, max_examples=200)
+@settings(max_examples=200)
 @given(
     st.tuples(REAL, REAL, REAL),
     st.lists(REAL, min_size=4, max_size=4),

@@ -4,7 +4,7 @@ import math
 from typing import Any
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from vehiclemodels.vehicle_dynamics_ks import vehicle_dynamics_ks
 
@@ -17,7 +17,6 @@ from vehicle_fmu.interface import DriveParams
 from vehicle_fmu.steering import turn_steering_wheel
 
 
-@settings(deadline=None)
 @given(st.sampled_from(CARS), st.floats(-13.0, 40.0), st.floats(-0.9, 0.9), st.floats(-4.0, 4.0))
 def test_rates_equal_ks(car: Any, speed: float, angle: float, heading: float) -> None:
     held, h = KinematicInput(speed, angle), 1e-7

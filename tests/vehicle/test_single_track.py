@@ -5,7 +5,7 @@ import math
 from typing import Any
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from vehiclemodels.vehicle_dynamics_st import vehicle_dynamics_st
 
@@ -98,7 +98,6 @@ def close(ours: float, theirs: float, tolerance: float) -> bool:
     return abs(ours - theirs) <= tolerance * (1.0 + abs(theirs))
 
 
-@settings(deadline=None)
 @given(CAR, SPEED, BETA, CURVATURE, ANGLE, ACCEL)
 def test_equals_st_forward(car: Any, v: float, beta: float, curvature: float, angle: float, accel: float) -> None:
     theirs = vehicle_dynamics_st([0.0, 0.0, angle, v, 0.3, curvature * v, beta], [0.0, accel], car)
@@ -108,7 +107,6 @@ def test_equals_st_forward(car: Any, v: float, beta: float, curvature: float, an
     assert close(ours[2], theirs[6], 1e-9)
 
 
-@settings(deadline=None)
 @given(CAR, SPEED, BETA, CURVATURE, ANGLE, ACCEL)
 def test_in_reverse_equals_st_driven_forward_with_axles_swapped(
     car: Any, v: float, beta: float, curvature: float, angle: float, accel: float

@@ -4,7 +4,7 @@ import math
 from typing import Any
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from vehiclemodels.parameters_vehicle1 import parameters_vehicle1
 from vehiclemodels.utils import tire_model
@@ -30,7 +30,6 @@ def without_shifts() -> Any:
 THEIRS = without_shifts()
 
 
-@settings(deadline=None)
 @given(SLIP, ANGLE, LOAD)
 def test_equals_commonroads_magic_formula_without_its_shifts(kappa: float, angle: float, load: float) -> None:
     theirs = THEIRS

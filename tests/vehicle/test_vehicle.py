@@ -241,7 +241,7 @@ def test_parameters_without_meaning_give_a_status(name: str, value: float) -> No
     assert all(math.isfinite(number) for number in flatten(out))
 
 
-@settings(deadline=None, max_examples=60)
+@settings(max_examples=60)
 @given(
     st.sampled_from(BODIES),
     st.lists(

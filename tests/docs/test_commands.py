@@ -24,6 +24,8 @@ MADE_HERE = ROOT / "docs" / "extend.md"
 PAGES = sorted({ROOT / "README.md", *(ROOT / "docs").glob("*.md")} - {MADE_HERE}, key=lambda path: path.name)
 INSTEAD = {"make run": "apa run guo2015-case4"}
 """What a command does after it has installed everything."""
+FEWER = {'"guo2015-*"': '"guo2015-case[34]"', '"fault-*"': "fault-no-path", "catalogue/iso20900": "catalogue/cicap-b2"}
+"""Tests of a suite -> some of them, which are enough to see that the command does what it says."""
 NOT_RUN = {
     "make test": "it is what runs this",
     "source ": "the environment is there",
@@ -39,6 +41,8 @@ NOT_RUN = {
     "dask ": "does not end; tests/sweep/test_dask.py has a cluster",
     "OMSimulator ": "does not install from the package index",
     "apa sweep my-study.yaml --dask tls": "needs a scheduler with certificates",
+    "apa export container guo2015-case4 --set": "compiles for half a minute what the line above it does",
+    "apa build --system": "compiles; tests/fmi/test_system_fmus.py",
     "apa import tpcap": "TPCAP's files are not part of this; tests/valet reads them where they are",
     "apa recover runs/guo2015-case4/run.mcap.part": "needs a killed run; tests/orchestrator/test_recover.py has some",
 }
@@ -114,6 +118,8 @@ def test_most_pages_have_commands() -> None:
     assert len(printed) > 40
     for start in (*INSTEAD, *NOT_RUN, *NEEDS, *ENDS):
         assert any(line.startswith(start) for line in printed), f"{start}: no page has it any more"
+    for tests in FEWER:
+        assert any(tests in line for line in printed), f"{tests}: no page has it any more"
 
 
 @pytest.fixture(scope="module")
@@ -170,6 +176,8 @@ def write_file(block: Block) -> None:
 def run(line: str) -> str:
     """Run a command in the current folder and return what it printed."""
     line = INSTEAD.get(line, line)
+    for tests, some in FEWER.items():
+        line = line.replace(tests, some)
     missing = [package for start, package in NEEDS.items() if line.startswith(start) and find_spec(package) is None]
     if missing or any(line.startswith(start) for start in NOT_RUN):
         return ""

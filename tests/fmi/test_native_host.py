@@ -145,12 +145,11 @@ def test_sanitizers_find_nothing(model: Any, tmp_path: Path) -> None:
 
 
 @needs_gcc
-@pytest.mark.parametrize("seed", [1, 2])
-def test_sanitizers_find_nothing_in_fmi_3(model: Any, seed: int, tmp_path: Path) -> None:
+def test_sanitizers_find_nothing_in_fmi_3(model: Any, tmp_path: Path) -> None:
     library, program = sanitized(model, 3, "host3.c", tmp_path)
-    text = run(program, library, "{sanitized}", seed, 30_000, timeout=300)
+    text = run(program, library, "{sanitized}", 1, 60_000, timeout=300)
     calls, refused, messages = (int(word.split()[0]) for word in text.split(", "))
-    assert calls == 30_000
+    assert calls == 60_000
     assert 0.2 < refused / calls < 0.8
     assert messages > refused / 2
 

@@ -23,13 +23,18 @@ from orchestrator.verdict.measures import Measure, measured
 from orchestrator.verdict.numbers import MEASURES
 from tests.twin.replays import CLibrary, Fmi3, played
 
-LIKE_OTHERS = ("apa-pull-out-right", "apa-resume", "apa-switched-on-again", "apa-told-wrong", "apa-slot-too-shallow")
-"""Drives of half a minute of CPython each, through models whose lines others take too."""
+LIKE_OTHERS = (
+    *("apa-pull-out-right", "apa-resume", "apa-switched-on-again", "apa-told-wrong", "apa-slot-too-shallow"),
+    *("apa-switched-off", "apa-parallel-tight", "apa-parallel-left", "apa-parallel-walls", "apa-parallel-deep"),
+    *("apa-perpendicular-tight", "apa-perpendicular-walls", "apa-pedestrian-stays", "apa-not-confirmed"),
+    "cicap-bicycle",
+)
+"""Drives of many seconds of CPython each, through models whose lines others take too; tests/golden has all."""
 SCENARIOS = [name for name in scenario_names() if name not in LIKE_OTHERS and load_scenario(name, []).models == MODELS]
 """Those of a controller apart, the valet, have their own: tests/valet."""
 PYTHON_FMU_TOO = ("guo2015-case4", "guo2015-case4-105", "fault-pose-nan", "fault-driver-takes-over")
 """The PythonFMU runs the very functions that run in process, so some scenarios are enough for it."""
-SLOW = 2.0
+SLOW = 1.0
 """The fuzzy law takes CPython a minute for a drive: there it is compared over this time [s], the others over all."""
 OUTPUTS = [f"{name}.{item.name}" for name, model in MODELS.items() for item in variables(model.outputs)]
 KEPT = [*MEASURES, *(Measure("last", signal) for signal in OUTPUTS)]

@@ -20,6 +20,8 @@ FRONT = 1.1
 """So much [m] of one straight front is heard of cars that stand square to the road."""
 CONTRADICTED = 3
 """Neighbours stand the other way, where so many points more of them are known to be free."""
+LONG_SIDE = 1.0
+"""A side longer than this [m] is a car's, no post's."""
 CLEARLY = 0.15
 """A side is longer than another by more than this [m]."""
 HALFWAY = 36.0 * PI / 180.0
@@ -55,8 +57,8 @@ def find_gap(store: PlanStore, side: int, places: int, at: Pose, want: Wanted) -
     too_few = row.things < LEAST_THINGS and not want.open_ended and not want.at_end
     if not want.across or too_few:
         return Gap()
-    late = LATE if abs(askew) > HALFWAY else LATER
-    return _at_an_angle(store, frame._replace(line=row.behind), turn, row.turn, late, want)
+    both_show = abs(askew) > HALFWAY
+    return _at_an_angle(store, frame._replace(line=row.behind), turn, row.turn, both_show, want)
 
 
 def _square(store: PlanStore, frame: PlacesFrame, turn: float, want: Wanted) -> Gap:
@@ -85,8 +87,11 @@ def gap_across(store: PlanStore, side: int, places: int, at: Pose, want: Wanted,
     return corridor(store, along(frame._replace(line=row.behind), row.turn, way), want, False)
 
 
-def _at_an_angle(store: PlanStore, frame: PlacesFrame, turn: float, row: float, late: float, want: Wanted) -> Gap:
+def _at_an_angle(store: PlanStore, frame: PlacesFrame, turn: float, row: float, both_show: bool, want: Wanted) -> Gap:
     """Return the gap passed last between cars turned by ``turn`` [rad], or across that, to a row turned by ``row``.
+
+    ``both_show``: of each car the front and a side; else the side that lies nearly along the row is hidden by the car
+    in front of it, and a corner of a car looks like a post.
 
     Long sides and whole fronts tell which of the two; where neither was seen, it is the one in which there is a gap.
     """
@@ -95,12 +100,14 @@ def _at_an_angle(store: PlanStore, frame: PlacesFrame, turn: float, row: float, 
     sides = sides_along(store, frame, one)
     across = sides_along(store, frame, other)
     longer = sides.longest - across.longest
+    if both_show:
+        frame = frame._replace(cars=max(sides.longest, across.longest) > LONG_SIDE)
     ways = TwoWays(along(frame, row, one), along(frame, row, other), longer)
     if sides.longest > WIDEST or across.longest > WIDEST:
         return corridor(store, ways.one if longer > 0.0 else ways.other, want, False)
     if across.front != sides.front:
         return _deep(store, ways.one if across.front else ways.other, want)
-    return _likelier(store, ways, late, want)
+    return _likelier(store, ways, LATE if both_show else LATER, want)
 
 
 class TwoWays(NamedTuple):

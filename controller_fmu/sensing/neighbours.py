@@ -16,6 +16,7 @@ from controller_fmu.sensing.places import (
     spot_of,
     turned,
 )
+from controller_fmu.sensing.row_line import is_post
 
 BODY = 0.97
 """A neighbour is as wide as this share of the car's own width."""
@@ -54,7 +55,7 @@ def beside_body(store: PlanStore, frame: PlacesFrame, edge: float, sense: float,
 
     The corner that stands out most, of the neighbour beyond which the row recedes, is the far one of its front: the
     near one is a car's width nearer to the gap, whether it was heard or not. Where an echo says that nothing is
-    there, it was a post.
+    there, or so little was heard of it where sides of cars were, it was a post.
     """
     if sense * math.cos(frame.into - frame.row) < 0.0:
         return edge
@@ -65,7 +66,8 @@ def beside_body(store: PlanStore, frame: PlacesFrame, edge: float, sense: float,
         if -EDGE <= sense * (at.s - edge) <= FACE and at.z < z and is_sure(store, place, frame.end):
             body = at.s - sense * BODY * want.width
             hidden = not is_free(store, at.t + INTO_BODY, body + sense * EDGE, frame)
-            if hidden and not is_free(store, at.t + INTO_BODY, 0.5 * (at.s + body), frame):
+            post = frame.cars and is_post(store, frame, place)
+            if hidden and not post and not is_free(store, at.t + INTO_BODY, 0.5 * (at.s + body), frame):
                 z = at.z
                 out = body
     return out if sense * (out - edge) < 0.0 else edge

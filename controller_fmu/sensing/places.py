@@ -51,6 +51,8 @@ class PlacesFrame(NamedTuple):
     into_s: float = 1.0
     line: float = UNSEEN
     """Where the row's line lies [m]."""
+    cars: bool = False
+    """Sides as long as those of cars were seen: what is small among them is a post."""
 
 
 class Spot(NamedTuple):

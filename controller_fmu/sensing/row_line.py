@@ -124,12 +124,12 @@ def _crests(store: PlanStore, frame: PlacesFrame, slope: float) -> tuple[Crest, 
         if is_sure(store, place, frame.end):
             here = seen(store, place, frame)
             if _stands_out(store, frame, here, slope):
-                post = _is_post(store, frame, place)
+                post = is_post(store, frame, place)
                 crests = crests[1:] + (Crest(here.x, here.y, _echoes(store, frame, here), post),)
     return crests
 
 
-def _is_post(store: PlanStore, frame: PlacesFrame, place: int) -> bool:
+def is_post(store: PlanStore, frame: PlacesFrame, place: int) -> bool:
     """Return whether a place is of something no larger than a post."""
     first = place
     last = place

@@ -24,6 +24,8 @@ LONG_SIDE = 1.0
 """A side longer than this [m] is a car's, no post's."""
 CLEARLY = 0.15
 """A side is longer than another by more than this [m]."""
+MUCH = 0.3
+"""Much shorter than the other sides is what is by more than this [m]."""
 HALFWAY = 36.0 * PI / 180.0
 LATE = 3.0
 LATER = 4.0
@@ -127,8 +129,10 @@ def _likelier(store: PlanStore, ways: TwoWays, late: float, want: Wanted) -> Gap
     """
     one = _passed(store, ways.one, late if ways.longer > -CLEARLY else LATEST, want)
     other = _passed(store, ways.other, late if ways.longer < CLEARLY else LATEST, want)
-    if one.layout == GapLayout.NONE or other.layout == GapLayout.NONE:
-        return other if one.layout == GapLayout.NONE else one
+    if one.layout == GapLayout.NONE:
+        return Gap() if _is_unlikely(store, ways.other, other, ways.longer, want) else other
+    if other.layout == GapLayout.NONE:
+        return Gap() if _is_unlikely(store, ways.one, one, -ways.longer, want) else one
     fewer = free_of_bodies(store, ways.other, other, want) - free_of_bodies(store, ways.one, one, want)
     if abs(fewer) >= CONTRADICTED:
         return one if fewer > 0 else other
@@ -136,6 +140,11 @@ def _likelier(store: PlanStore, ways: TwoWays, late: float, want: Wanted) -> Gap
         leads_back = math.cos(ways.one.into - ways.one.row) < 0.0
         return (one if leads_back == want.tail_in else other) if want.at_end else Gap()
     return one if ways.longer > 0.0 else other
+
+
+def _is_unlikely(store: PlanStore, frame: PlacesFrame, gap: Gap, shorter: float, want: Wanted) -> bool:
+    """Return whether cars beside a gap would stand where it is free, and show sides so much ``shorter`` [m] there."""
+    return shorter > MUCH and free_of_bodies(store, frame, gap, want) >= CONTRADICTED
 
 
 def _passed(store: PlanStore, frame: PlacesFrame, late: float, want: Wanted) -> Gap:

@@ -10,9 +10,10 @@ from typing import NamedTuple
 from controller_fmu.common.sensors import sensor_at
 from controller_fmu.planning.plan import Piece
 from controller_fmu.planning.plan_store import PlanStore
-from controller_fmu.planning.task import CORNERS, Corner, Scene
+from controller_fmu.planning.task import CORNERS, Corner, Scene, drive
 from controller_fmu.valet.params import MAP_CORNERS, ValetParams
 from modelkit.geometry import Point, cone_line
+from modelkit.maths import sign
 from modelkit.vocabulary import Pose
 
 FREE = 100.0
@@ -37,6 +38,8 @@ A corner of the car is so far from its sensor: on the way into a slot that was f
 """
 AT_CORNER = 0.17
 """What a corner sensor that leads hears so near [m] is as good as touched, known or not."""
+SOON = 0.05
+"""What a corner sensor hears is left behind if what is known there is farther off so much [m] of way later."""
 CLOSEST = 0.07
 """But where the move ends before that, up to so much [m]."""
 BOTH = 0.25
@@ -88,8 +91,14 @@ def look(
             ahead = first < number < first + 3 and params.search.active
             corner = params.search.active and not ahead
             heeded = not corner or reading < (SIDE if on_side else CORNER)
-            unknown = heeded and reading < expected(at, scene, params) - _surprise(reading, corner, params)
+            known = expected(at, scene, params)
+            unknown = heeded and reading < known - _surprise(reading, corner, params)
             touching = corner and leads and reading < AT_CORNER
+            if corner and leads and (unknown or touching) and reading > known - CORNER_SURPRISE:
+                soon = drive(pose, sign(piece.way) * SOON, piece.k)
+                nearer = expected(sensor_at(params.car.ultrasonic.mounts[number], soon), scene, params) < known
+                unknown = unknown and nearer
+                touching = touching and nearer
             if unknown or touching or (ahead and reading < min(CLOSE, abs(piece.way) + CLOSEST)):
                 nearest = reading
                 beside = readings[2 * first + 3 - number] if ahead else reading
@@ -98,13 +107,13 @@ def look(
                 s = math.sin(at.heading)
                 echo = Pose(at.x + reading * c, at.y + reading * s, at.heading)
     room = nearest - params.guard.gap
-    drive = params.drive
-    stop = abs(speed) * drive.delay + 0.5 * speed * speed / drive.brake
+    law = params.drive
+    stop = abs(speed) * law.delay + 0.5 * speed * speed / law.brake
     if abs(speed) <= params.threshold.standstill:
         stop = AGAIN
-    fast = math.sqrt(drive.brake * max(room, 0.0))
+    fast = math.sqrt(law.brake * max(room, 0.0))
     if params.search.active:
-        fast = min(fast, math.sqrt(2.0 * drive.deceleration * max(leading - CLOSE, 0.0)))
+        fast = min(fast, math.sqrt(2.0 * law.deceleration * max(leading - CLOSE, 0.0)))
     return Sight(fast, room <= stop, straight, echo)
 
 

@@ -10,6 +10,7 @@ from controller_fmu.planning.plan import (
 )
 from controller_fmu.planning.plan_store import PlanStore
 from controller_fmu.planning.task import drive
+from controller_fmu.sensing.gap import GapLayout
 from controller_fmu.valet.chart import Step
 from controller_fmu.valet.found.beside import SideEchoes
 from controller_fmu.valet.found.nearby import Rest, hear_nearby, is_in_gap, put_nearby
@@ -59,7 +60,8 @@ def seen_on(store: PlanStore, state: ValetState, inputs: ControllerInput, params
         angle = math.atan(params.car.wheelbase * coming.rest.then)
     scene = scene_of(store, params, state.seen)
     rest = state.path.pieces[state.piece]._replace(way=direction * max(coming.left, AT_END))
-    sight = look(inputs.ultrasonic, pose, rest, inputs.measured_speed, scene, params)
+    between = state.search.gap.layout == GapLayout.ALONG
+    sight = look(inputs.ultrasonic, pose, rest, inputs.measured_speed, scene, between, params)
     tracked = Tracked(left, at, off.lateral, off.heading, angle, coming)
     return state._replace(tracked=tracked, sight=heard_again(sight, state.sight))
 

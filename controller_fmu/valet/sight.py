@@ -39,7 +39,7 @@ A corner of the car is so far from its sensor: on the way into a slot that was f
 AT_CORNER = 0.17
 """What a corner sensor that leads hears so near [m] is as good as touched, known or not."""
 SOON = 0.05
-"""What a corner sensor hears is left behind if what is known there is farther off so much [m] of way later."""
+"""What a corner sensor hears is left if what is known there is farther off so much [m] of way later."""
 CLOSEST = 0.07
 """But where the move ends before that, up to so much [m]."""
 BOTH = 0.25
@@ -72,9 +72,19 @@ class Sight(NamedTuple):
 
 
 def look(
-    readings: tuple[float, ...], pose: Pose, piece: Piece, speed: float, scene: Scene, params: ValetParams
+    readings: tuple[float, ...],
+    pose: Pose,
+    piece: Piece,
+    speed: float,
+    scene: Scene,
+    between: bool,
+    params: ValetParams,
 ) -> Sight:
-    """Return the sight of a car at ``pose`` that drives a ``piece``, the rest of its move, with ``speed`` [m/s]."""
+    """Return the sight of a car at ``pose`` that drives a ``piece``, the rest of its move, with ``speed`` [m/s].
+
+    ``between``: into or out of a slot along the road, where what a corner sensor hears stands before or behind the
+    car: what is known there does not stop a car that leaves it. Across the road a corner swings past it.
+    """
     first = 0 if piece.way > 0.0 else 4
     swings = _swinging_corner(piece) if params.search.active else -1
     nearest = FREE
@@ -94,7 +104,7 @@ def look(
             known = expected(at, scene, params)
             unknown = heeded and reading < known - _surprise(reading, corner, params)
             touching = corner and leads and reading < AT_CORNER
-            if corner and leads and (unknown or touching) and reading > known - CORNER_SURPRISE:
+            if between and corner and leads and (unknown or touching) and reading > known - CORNER_SURPRISE:
                 soon = drive(pose, sign(piece.way) * SOON, piece.k)
                 nearer = expected(sensor_at(params.car.ultrasonic.mounts[number], soon), scene, params) < known
                 unknown = unknown and nearer

@@ -80,12 +80,14 @@ def test_only_what_the_map_does_not_have_is_in_the_way() -> None:
     readings = [5.0] * 12
     readings[1] = readings[2] = 0.4
     near: Any = pytest.approx(14.1, abs=0.1)
-    assert look(tuple(readings), pose, Piece(1.0), 0.2, scene, params) == Sight(speed=near, blocked=False, ahead=False)
+    assert look(tuple(readings), pose, Piece(1.0), 0.2, scene, False, params) == Sight(
+        speed=near, blocked=False, ahead=False
+    )
     readings[1] = 0.05
-    sight = look(tuple(readings), pose, Piece(1.0), 0.2, scene, params)
+    sight = look(tuple(readings), pose, Piece(1.0), 0.2, scene, False, params)
     assert sight.blocked
     assert sight.echo.x == pytest.approx(pose.x + params.car.ultrasonic.mounts[1].x + 0.05)
-    assert not look(tuple(readings), pose, Piece(-1.0), 0.2, scene, params).blocked
+    assert not look(tuple(readings), pose, Piece(-1.0), 0.2, scene, False, params).blocked
 
 
 def test_things_heard_are_remembered_and_the_oldest_forgotten() -> None:

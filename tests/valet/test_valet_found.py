@@ -131,9 +131,9 @@ def test_a_move_that_ends_before_something_near_is_driven_to_its_end() -> None:
     corners = ((wall, -3.0), (wall, 3.0), (wall + 1.0, 3.0), (wall + 1.0, -3.0))
     scene = Scene(tuple(Corner(*corner, 1) for corner in corners) + (Corner(),) * (CORNERS - 4))
     near = [(5.0, reading, reading) + (5.0,) * 9 for reading in (0.15, 0.06)]
-    blocked = [look(near[0], Pose(), Piece(way), 0.0, scene, params).blocked for way in (1.0, 0.1, 0.05)]
+    blocked = [look(near[0], Pose(), Piece(way), 0.0, scene, False, params).blocked for way in (1.0, 0.1, 0.05)]
     assert blocked == [True, True, False]
-    assert look(near[1], Pose(), Piece(0.05), 0.0, scene, params).blocked
+    assert look(near[1], Pose(), Piece(0.05), 0.0, scene, False, params).blocked
 
 
 def test_a_corner_that_is_as_good_as_touched_stops_the_car_though_the_map_has_it() -> None:
@@ -143,7 +143,7 @@ def test_a_corner_that_is_as_good_as_touched_stops_the_car_though_the_map_has_it
         x, y = mount.x + reading * math.cos(mount.yaw), mount.y + reading * math.sin(mount.yaw)
         corners = ((x, y - 0.01), (x, y + 0.01), (x + 0.01, y + 0.01), (x + 0.01, y - 0.01))
         scene = Scene(tuple(Corner(*corner, 1) for corner in corners) + (Corner(),) * (CORNERS - 4))
-        assert look((reading,) + (5.0,) * 11, Pose(), Piece(1.0), 0.0, scene, params).blocked == stops
+        assert look((reading,) + (5.0,) * 11, Pose(), Piece(1.0), 0.0, scene, False, params).blocked == stops
 
 
 @pytest.mark.parametrize(("lost", "there"), [(0.1, True), (2.0, False)])

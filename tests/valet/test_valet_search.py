@@ -10,12 +10,13 @@ from shapely.geometry import LineString, Point
 from controller_fmu.interface import ControllerInput
 from controller_fmu.planning.plan import Piece
 from controller_fmu.planning.plan_store import HEARD, PlanStore
-from controller_fmu.planning.task import Scene
+from controller_fmu.planning.task import CORNERS, Corner, Scene
+from controller_fmu.sensing import find_gap as module_of_gaps
 from controller_fmu.sensing.ear import SideEar, listen
-from controller_fmu.sensing.find_gap import find_gap
+from controller_fmu.sensing.find_gap import TwoWays, find_gap
 from controller_fmu.sensing.gap import Gap, GapLayout, Wanted
 from controller_fmu.sensing.heard_store import put_heard, put_ray
-from controller_fmu.sensing.places import frame_of
+from controller_fmu.sensing.places import along, frame_of
 from controller_fmu.sensing.row_line import row_of
 from controller_fmu.valet.found import search
 from controller_fmu.valet.params import ValetParams, ValetSearchParams
@@ -185,6 +186,39 @@ def test_a_place_heard_once_between_the_neighbours_is_no_end_of_a_gap() -> None:
     assert find_gap(store, 0, places, at, WANTED).layout == GapLayout.NONE
 
 
+def test_at_45_degrees_a_post_among_cars_hides_no_body() -> None:
+    """Cars that lean back by 135 deg, two posts between them, passed from 6 m away to 3 m: the second is not heard."""
+    spots = (
+        (-6.54, -3.85, 3.81, 1.65),
+        (-3.22, -3.85, 3.81, 1.65),
+        (4.37, -3.85, 3.81, 1.65),
+        (7.69, -3.85, 3.81, 1.65),
+    )
+    posts = ((0.25, -1.96, 0.4, 0.4), (2.46, -4.17, 0.4, 0.4))
+    turn = math.radians(-135.0)
+    boxes = [{"x": x, "y": y, "heading": turn, "length": long, "width": wide} for x, y, long, wide in spots + posts]
+    store, ear, _ = passed(boxes, 1, 0.0, -0.24)
+    at = Pose(9.0, 2.0 - 0.825 + 9.0 * math.sin(-0.24), -0.24)
+    gap = find_gap(store, 0, ear.places, at, WANTED._replace(at_end=True))
+    assert gap.layout == GapLayout.ACROSS
+    assert gap.into == pytest.approx(turn, abs=math.radians(2.0))
+    assert 2.7 < gap.width < 3.4
+
+
+@pytest.mark.parametrize("shorter", ["one", "other"])
+@pytest.mark.parametrize(("by", "free", "taken"), [(0.29, 30, True), (0.31, 2, True), (0.31, 3, False)])
+def test_a_gap_across_much_longer_sides_is_none_where_no_cars_stand(
+    monkeypatch: pytest.MonkeyPatch, shorter: str, by: float, free: int, taken: bool
+) -> None:
+    frames = {name: along(frame_of(0, 0, Pose(), 0.5), 0.0, into) for name, into in (("one", 2.4), ("other", 0.8))}
+    ways = TwoWays(**frames, longer=-by if shorter == "one" else by)
+    found = Gap(layout=GapLayout.ACROSS, width=2.5)
+    where = module_of_gaps.__name__
+    monkeypatch.setattr(f"{where}._passed", lambda _, frame, *__: found if frame is frames[shorter] else Gap())
+    monkeypatch.setattr(f"{where}.free_of_bodies", lambda *_: free)
+    assert module_of_gaps._likelier(new_store(PlanStore), ways, 3.0, WANTED) == (found if taken else Gap())
+
+
 @pytest.mark.parametrize("farther", [0.9, 1.1])
 def test_a_slot_too_narrow_for_the_cone_is_open_if_it_is_free_just_inside(farther: float) -> None:
     boxes = [box | {"y": box["y"] - farther} for box in row(90, 1, 2.5)]
@@ -211,8 +245,23 @@ def test_the_end_of_a_slot_is_heard_by_both_sensors_that_look_straight_at_it() -
     for first, direction in ((0, 1.0), (4, -1.0)):
         one = silent[: first + 1] + (0.4,) + silent[first + 2 :]
         both = silent[: first + 1] + (0.4, 0.5) + silent[first + 3 :]
-        heard = [look(readings, Pose(), Piece(direction), 0.3, Scene(), params) for readings in (one, both)]
+        heard = [look(readings, Pose(), Piece(direction), 0.3, Scene(), False, params) for readings in (one, both)]
         assert [(sight.blocked, sight.ahead) for sight in heard] == [(True, False), (True, True)]
+
+
+@pytest.mark.parametrize(("between", "known", "stops"), [(False, True, True), (True, True, False), (True, False, True)])
+def test_a_car_that_leaves_what_is_known_along_the_road_is_not_stopped_by_it(
+    between: bool, known: bool, stops: bool
+) -> None:
+    params = ValetParams()._replace(search=ValetSearchParams()._replace(active=True))
+    mount = params.car.ultrasonic.mounts[3]
+    wall = mount.x + 0.15
+    corners = ((wall, mount.y - 1.0), (wall, mount.y + 1.0), (wall + 1.0, mount.y + 1.0), (wall + 1.0, mount.y - 1.0))
+    first = tuple(Corner(*corner, 1) for corner in corners) if known else ()
+    scene = Scene(first + (Corner(),) * (CORNERS - len(first)))
+    readings = (5.0,) * 3 + (0.15,) + (5.0,) * 8
+    assert look(readings, Pose(), Piece(-1.0, 0.2), 0.1, scene, between, params).blocked == stops
+    assert look(readings, Pose(), Piece(1.0), 0.1, scene, between, params).blocked
 
 
 def test_what_is_near_a_leading_corner_or_one_that_swings_out_slows_the_car() -> None:
@@ -220,10 +269,10 @@ def test_what_is_near_a_leading_corner_or_one_that_swings_out_slows_the_car() ->
     silent = (5.0,) * 12
     near = silent[:3] + (0.25,) + silent[4:]
     bends = [Piece(1.0), Piece(-1.0, 0.2), Piece(-1.0, -0.2), Piece(-1.0)]
-    sights = [look(near, Pose(), piece, 0.3, Scene(), params) for piece in bends]
+    sights = [look(near, Pose(), piece, 0.3, Scene(), False, params) for piece in bends]
     assert [sight.blocked for sight in sights] == [True, True, False, False]
     assert [sight.speed < 0.3 for sight in sights] == [True, True, False, False]
-    assert not look(near, Pose(), Piece(-1.0, 0.2), 0.3, Scene(), ValetParams()).blocked
+    assert not look(near, Pose(), Piece(-1.0, 0.2), 0.3, Scene(), False, ValetParams()).blocked
 
 
 @pytest.mark.skipif(not can_compile(), reason="FMUs without Python need a C compiler: pip install ziglang")

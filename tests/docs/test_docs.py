@@ -1,7 +1,6 @@
 """The documentation does not rot: commands parse, YAML is valid, links lead somewhere, every signal is listed."""
 
 import importlib
-import importlib.util
 import re
 import shlex
 from contextlib import suppress
@@ -25,6 +24,7 @@ from orchestrator.scenario.scenario import Scenario, Slot, Target
 from orchestrator.sweep.study.study_file import load_study
 from orchestrator.verdict.judge import Check
 from orchestrator.verdict.summary import Event, Final, FmuUsed, Summary
+from tests.docs.scripts import script
 
 ROOT = Path(__file__).parents[2]
 MADE_HERE = "extend.md"
@@ -32,16 +32,9 @@ MADE_HERE = "extend.md"
 PAGES = sorted([ROOT / "README.md", *(ROOT / "docs").glob("*.md")], key=lambda path: path.name)
 
 
-def load(name: str) -> Any:
-    spec: Any = importlib.util.spec_from_file_location(f"docs_{name}", ROOT / "docs" / f"{name}.py")
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
-
-
 @pytest.fixture(scope="module")
 def generate() -> Any:
-    return load("generate")
+    return script("generate")
 
 
 @pytest.fixture(scope="module")
@@ -186,7 +179,7 @@ def test_every_key_of_a_file_has_a_meaning(generate: Any) -> None:
 
 
 def test_charts_are_drawn_by_us(generate: Any) -> None:
-    charts = load("charts")
+    charts = script("charts")
     for name in ("apa.md", "guo2015.md"):
         text = (ROOT / "docs" / name).read_text(encoding="utf-8")
         drawn = charts.on_page_markdown(text)
@@ -201,7 +194,7 @@ def test_charts_are_drawn_by_us(generate: Any) -> None:
 
 
 def test_pages_that_are_driven_stand_where_a_law_is_explained(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    frames = load("frames")
+    frames = script("frames")
     monkeypatch.setattr(frames, "REFERENCE", tmp_path)
     for name in ("guo2015", "preview", "hsic", "zhang2022", "apa", "adaptive", "valet"):
         text = (ROOT / "docs" / f"{name}.md").read_text(encoding="utf-8")
@@ -225,7 +218,7 @@ def test_search_finds_the_parts_of_a_name() -> None:
 
 
 def test_pages_not_named_in_the_site_get_a_place() -> None:
-    nav = load("nav")
+    nav = script("nav")
     config = {"docs_dir": str(ROOT / "docs"), "nav": [{"Start": "index.md"}, {nav.SECTION: ["architecture.md"]}]}
     pages = nav.on_config(config)["nav"][1][nav.SECTION]
     assert pages[0] == "architecture.md"
@@ -234,14 +227,14 @@ def test_pages_not_named_in_the_site_get_a_place() -> None:
 
 
 def test_equations_name_their_files() -> None:
-    found = {(item.paper, item.number): item.where for item in load("equations").equations(ROOT)}
+    found = {(item.paper, item.number): item.where for item in script("equations").equations(ROOT)}
     assert found["Guo 2015", 14] == "`controller_fmu/guo2015/point_tracking.py`"
     assert found["Zhang 2022", 4] == "`controller_fmu/zhang2022/quintic.py`"
     assert all(paper for paper, _ in found)
 
 
 def test_a_table_is_put_between_its_marks_and_nowhere_else(tmp_path: Path) -> None:
-    page, put = tmp_path / "page.md", load("marked").put
+    page, put = tmp_path / "page.md", script("marked").put
     page.write_text("a\n<!-- one -->\nold\n<!-- /one -->\nb\n<!-- two -->\n<!-- /two -->\n")
     put(page, "one", ["| 1 |", "| 2 |"])
     put(page, "two", ["x\\1"])

@@ -1,6 +1,5 @@
 """The built site: opened from a folder it searches, sets its formulas, and asks nothing of any other host."""
 
-import importlib.util
 import subprocess
 import sys
 import xml.etree.ElementTree as ElementTree
@@ -8,6 +7,8 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+
+from tests.docs.scripts import script
 
 ROOT = Path(__file__).parents[2]
 LIMIT = 30_000
@@ -18,14 +19,7 @@ SEEN = (
 )
 
 
-def load(name: Any) -> Any:
-    spec: Any = importlib.util.spec_from_file_location(f"docs_{name}", ROOT / "docs" / f"{name}.py")
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
-
-
-FORMULAS = load("formulas")
+FORMULAS = script("formulas")
 
 
 @pytest.fixture(scope="module")

@@ -1,9 +1,7 @@
 """What standards ask, as data: entries that name what tests them, and verdicts that follow from the runs."""
 
-import importlib.util
 import json
 from pathlib import Path
-from types import ModuleType
 from xml.etree import ElementTree
 
 import pytest
@@ -23,23 +21,14 @@ from orchestrator.suite import suite
 from orchestrator.suite.junit import Case
 from orchestrator.suite.suite import Bench
 from orchestrator.text.errors import BAD_INPUT, BadInput
+from tests.docs.scripts import DOCS, script
 
 EVERYTHING = verdicts_of(chosen_standards(["catalogue"]))
 compiled = pytest.mark.skipif(not can_compile(), reason="FMUs without Python need a C compiler: pip install ziglang")
 
 
 def page() -> str:
-    return (Path(__file__).parents[2] / "docs" / "catalogue.md").read_text(encoding="utf-8")
-
-
-def docs() -> ModuleType:
-    file = Path(__file__).parents[2] / "docs" / "catalogue.py"
-    spec = importlib.util.spec_from_file_location("docs_catalogue", file)
-    assert spec is not None
-    assert spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
+    return (DOCS / "catalogue.md").read_text(encoding="utf-8")
 
 
 def test_every_standard_asked_for_is_there() -> None:
@@ -217,7 +206,7 @@ def test_somebody_elses_controller_is_judged_by_what_it_puts_out(tmp_path: Path)
 
 def test_documentation_is_written_by_the_file_that_it_names() -> None:
     assert page().count("<!-- catalogue -->") == page().count("<!-- /catalogue -->") == 1
-    assert callable(docs().tables)
+    assert callable(script("catalogue").tables)
 
 
 def test_scenarios_of_the_catalogue_are_what_they_say() -> None:

@@ -17,6 +17,7 @@ from orchestrator.sweep.repeat import repeat_row
 from orchestrator.sweep.study.study import Study
 from orchestrator.sweep.sweep import Options, sweep
 from orchestrator.sweep.table import Table
+from tests.docs.scripts import DOCS, script
 
 
 def columns(made: Study) -> dict[str, np.ndarray]:
@@ -72,15 +73,8 @@ def test_at_the_nominal_point_nothing_is_disturbed() -> None:
 
 
 def test_the_page_has_the_ranges() -> None:
-    import importlib.util
-
-    spec = importlib.util.spec_from_file_location("docs_world", Path(__file__).parents[2] / "docs" / "world.py")
-    assert spec is not None
-    assert spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    page = Path(__file__).parents[2] / "docs" / "hunt.md"
-    assert "\n".join(module.table()) in page.read_text(encoding="utf-8"), "run docs/world.py"
+    page = (DOCS / "hunt.md").read_text(encoding="utf-8")
+    assert "\n".join(script("world").table()) in page, "run docs/world.py"
 
 
 def test_fewer_runs_are_the_first_of_more() -> None:

@@ -85,12 +85,12 @@ def _without_posts(crests: tuple[Crest, ...]) -> tuple[Crest, ...]:
 
 
 def _score(crests: tuple[Crest, ...], slope: float, at: float) -> float:
-    """Return how many echoes are of what lies on a line, those beside it for less."""
+    """Return how many echoes are of what lies on a line: those beside it count less, all if it is turned."""
     score = 0.0
     for crest in crests:
         off = abs(crest.y - at - slope * crest.x)
         score += crest.weight * (1.0 - off / CLOSE) if off < CLOSE else 0.0
-    return score
+    return score * (1.0 - abs(slope))
 
 
 def _fitted(crests: tuple[Crest, ...], slope: float, at: float) -> RowLine:

@@ -219,6 +219,18 @@ def test_a_gap_across_much_longer_sides_is_none_where_no_cars_stand(
     assert module_of_gaps._likelier(new_store(PlanStore), ways, 3.0, WANTED) == (found if taken else Gap())
 
 
+@pytest.mark.parametrize(("echoes", "turn"), [(9, 0.0), (20, 12.0)])
+def test_of_two_lines_heard_nearly_as_well_the_less_turned_is_the_rows(echoes: int, turn: float) -> None:
+    """Corners of two cars, and what ends the slot behind them: on a line with the second car."""
+    store, places = new_store(PlanStore), 0
+    for x, y, count in ((-10.9, -1.2, 8), (-6.2, -1.2, 15), (1.3, -2.8, echoes)):
+        for number in range(count):
+            places = put_heard(store, 0, places, x, y, number == 0)
+    row = row_of(store, frame_of(0, places, Pose(), WANTED.half_angle))
+    assert row.things == 2
+    assert math.degrees(row.turn) == pytest.approx(turn, abs=0.5)
+
+
 @pytest.mark.parametrize("farther", [0.9, 1.1])
 def test_a_slot_too_narrow_for_the_cone_is_open_if_it_is_free_just_inside(farther: float) -> None:
     boxes = [box | {"y": box["y"] - farther} for box in row(90, 1, 2.5)]

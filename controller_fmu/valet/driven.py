@@ -61,7 +61,7 @@ def seen_on(store: PlanStore, state: ValetState, inputs: ControllerInput, params
     scene = scene_of(store, params, state.seen)
     rest = state.path.pieces[state.piece]._replace(way=direction * max(coming.left, AT_END))
     between = state.search.gap.layout == GapLayout.ALONG
-    sight = look(inputs.ultrasonic, pose, rest, inputs.measured_speed, scene, between, params)
+    sight = look(inputs, rest, scene, between, params)
     tracked = Tracked(left, at, off.lateral, off.heading, angle, coming)
     return state._replace(tracked=tracked, sight=heard_again(sight, state.sight))
 

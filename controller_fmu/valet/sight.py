@@ -8,6 +8,7 @@ import math
 from typing import NamedTuple
 
 from controller_fmu.common.sensors import sensor_at
+from controller_fmu.interface import ControllerInput
 from controller_fmu.planning.plan import Piece
 from controller_fmu.planning.plan_store import PlanStore
 from controller_fmu.planning.task import CORNERS, Corner, Scene, drive
@@ -71,20 +72,13 @@ class Sight(NamedTuple):
     """Where the nearest unknown thing was heard, and in which direction."""
 
 
-def look(
-    readings: tuple[float, ...],
-    pose: Pose,
-    piece: Piece,
-    speed: float,
-    scene: Scene,
-    between: bool,
-    params: ValetParams,
-) -> Sight:
-    """Return the sight of a car at ``pose`` that drives a ``piece``, the rest of its move, with ``speed`` [m/s].
+def look(inputs: ControllerInput, piece: Piece, scene: Scene, between: bool, params: ValetParams) -> Sight:
+    """Return the sight of a car that drives a ``piece``, the rest of its move.
 
     ``between``: into or out of a slot along the road, where what a corner sensor hears stands before or behind the
     car: what is known there does not stop a car that leaves it. Across the road a corner swings past it.
     """
+    readings = inputs.ultrasonic
     first = 0 if piece.way > 0.0 else 4
     swings = _swinging_corner(piece) if params.search.active else -1
     nearest = FREE
@@ -97,34 +91,45 @@ def look(
         leads = first <= number < first + 4 or number == swings
         leading = reading if leads and reading < leading else leading
         if (leads or on_side) and reading < LOOKED_AT and reading < nearest:
-            at = sensor_at(params.car.ultrasonic.mounts[number], pose)
+            at = sensor_at(params.car.ultrasonic.mounts[number], inputs.odometry)
             ahead = first < number < first + 3 and params.search.active
             corner = params.search.active and not ahead
             heeded = not corner or reading < (SIDE if on_side else CORNER)
             known = expected(at, scene, params)
-            unknown = heeded and reading < known - _surprise(reading, corner, params)
-            touching = corner and leads and reading < AT_CORNER
-            if between and corner and leads and (unknown or touching) and reading > known - CORNER_SURPRISE:
-                soon = drive(pose, sign(piece.way) * SOON, piece.k)
-                nearer = expected(sensor_at(params.car.ultrasonic.mounts[number], soon), scene, params) < known
-                unknown = unknown and nearer
-                touching = touching and nearer
-            if unknown or touching or (ahead and reading < min(CLOSE, abs(piece.way) + CLOSEST)):
+            stops = heeded and reading < known - _surprise(reading, corner, params)
+            stops = stops or (corner and leads and reading < AT_CORNER)
+            if stops and between and corner and leads and reading > known - CORNER_SURPRISE:
+                stops = not _leaves(number, inputs.odometry, piece, known, scene, params)
+            if stops or (ahead and reading < min(CLOSE, abs(piece.way) + CLOSEST)):
                 nearest = reading
                 beside = readings[2 * first + 3 - number] if ahead else reading
                 straight = ahead and abs(beside - reading) < BOTH
-                c = math.cos(at.heading)
-                s = math.sin(at.heading)
-                echo = Pose(at.x + reading * c, at.y + reading * s, at.heading)
+                echo = _end_of(at, reading)
+    return _sight(nearest, leading, abs(inputs.measured_speed), straight, echo, params)
+
+
+def _end_of(at: Pose, reading: float) -> Pose:
+    """Return the point so far [m] from a sensor, along its axis."""
+    return Pose(at.x + reading * math.cos(at.heading), at.y + reading * math.sin(at.heading), at.heading)
+
+
+def _sight(nearest: float, leading: float, speed: float, straight: bool, echo: Pose, params: ValetParams) -> Sight:
+    """Return the sight of a car with something unknown ``nearest`` [m] to it, or anything ``leading`` [m] before it."""
     room = nearest - params.guard.gap
     law = params.drive
-    stop = abs(speed) * law.delay + 0.5 * speed * speed / law.brake
-    if abs(speed) <= params.threshold.standstill:
+    stop = speed * law.delay + 0.5 * speed * speed / law.brake
+    if speed <= params.threshold.standstill:
         stop = AGAIN
     fast = math.sqrt(law.brake * max(room, 0.0))
     if params.search.active:
         fast = min(fast, math.sqrt(2.0 * law.deceleration * max(leading - CLOSE, 0.0)))
     return Sight(fast, room <= stop, straight, echo)
+
+
+def _leaves(number: int, pose: Pose, piece: Piece, known: float, scene: Scene, params: ValetParams) -> bool:
+    """Return whether a sensor leaves what it should hear, ``known`` [m] off, on a ``piece`` driven from ``pose``."""
+    soon = drive(pose, sign(piece.way) * SOON, piece.k)
+    return expected(sensor_at(params.car.ultrasonic.mounts[number], soon), scene, params) >= known
 
 
 def heard_again(sight: Sight, before: Sight) -> Sight:

@@ -16,7 +16,7 @@ from controller_fmu.planning.task import Corner
 from controller_fmu.valet.given import ValetInput
 from controller_fmu.valet.params import MAP_CORNERS, GivenSlot, ValetParams
 from controller_fmu.valet.phases import ValetPhase
-from controller_fmu.valet.sight import NUMBER, SEEN_CORNERS, Sight, expected, look, remembered, scene_of
+from controller_fmu.valet.sight import NUMBER, SEEN_CORNERS, Sight, expected, remembered, scene_of
 from controller_fmu.valet.signals import Planning
 from controller_fmu.valet.slot import body_of, goal_of
 from fmus.compiler import translate
@@ -27,6 +27,7 @@ from orchestrator.cosim.in_process_slave import InProcessSlave
 from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.session.session import run_scenario
 from tests.compiler.c_model import CModel
+from tests.valet.looks import look
 
 STEP_NS = 10_000_000
 BOX = ((4.0, -1.0), (6.0, -1.0), (6.0, 1.0), (4.0, 1.0))

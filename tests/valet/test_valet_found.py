@@ -23,10 +23,11 @@ from controller_fmu.valet.found.nearby import Nearby, forget_under
 from controller_fmu.valet.found.search import Search
 from controller_fmu.valet.found.way_back import path_back, way_back
 from controller_fmu.valet.params import ValetParams, ValetSearchParams
-from controller_fmu.valet.sight import Sight, heard_again, look
+from controller_fmu.valet.sight import Sight, heard_again
 from controller_fmu.valet.state import ValetState
 from modelkit.store import new_store
 from modelkit.vocabulary import Pose
+from tests.valet.looks import look
 from tests.valet.test_valet_search import WANTED, passed, row
 
 LENGTH, WIDTH = 4.0, 1.8

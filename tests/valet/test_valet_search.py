@@ -20,7 +20,6 @@ from controller_fmu.sensing.places import along, frame_of
 from controller_fmu.sensing.row_line import row_of
 from controller_fmu.valet.found import search
 from controller_fmu.valet.params import ValetParams, ValetSearchParams
-from controller_fmu.valet.sight import look
 from controller_fmu.valet.slot import stands_in_road, stands_out
 from modelkit.car import Car
 from modelkit.store import new_store
@@ -29,6 +28,7 @@ from orchestrator.cosim.fmu_files import can_compile, fmu_files
 from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.scenario.polygons import box_corners
 from orchestrator.session.session import run_scenario
+from tests.valet.looks import look
 from vehicle_fmu.scene import Obstacle, SceneParams
 from vehicle_fmu.ultrasonic import heard_distances
 

@@ -21,6 +21,7 @@ from fmus.native.compilers import FLAGS, find_compiler
 from fmus.native.platforms import PLATFORMS, host
 from fmus.native.sources import fmu_sources, unit_name
 from modelkit.variables import variables, with_values
+from orchestrator.cosim.fmu_files import fmu_files
 from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.scenario.models import MODELS as SHIPPED
 from orchestrator.session.session import run_scenario
@@ -74,7 +75,7 @@ def given(model: Any) -> Any:
         return {}, random_inputs(shown_variables(model), 5, 400)
     ((drive, part),) = found
     scenario = load_scenario(drive, ["stop_time=4"])
-    signals = run_scenario(scenario).recording.signals
+    signals = run_scenario(scenario, fmu_files("native"), kind="native").recording.signals
     names = {item.name: item.kind for item in shown_variables(model) if item.causality == "input"}
     inputs = [{name: kind(signals[f"{part}.{name}"][k]) for name, kind in names.items()} for k in range(400)]
     values = with_values(model.params, dict(getattr(scenario, part)))

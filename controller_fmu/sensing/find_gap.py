@@ -102,8 +102,7 @@ def _at_an_angle(store: PlanStore, frame: PlacesFrame, turn: float, row: float, 
     sides = sides_along(store, frame, one)
     across = sides_along(store, frame, other)
     longer = sides.longest - across.longest
-    if both_show:
-        frame = frame._replace(cars=max(sides.longest, across.longest) > LONG_SIDE)
+    frame = frame._replace(cars=both_show and max(sides.longest, across.longest) > LONG_SIDE)
     ways = TwoWays(along(frame, row, one), along(frame, row, other), longer)
     if sides.longest > WIDEST or across.longest > WIDEST:
         return corridor(store, ways.one if longer > 0.0 else ways.other, want, False)

@@ -66,8 +66,8 @@ def beside_body(store: PlanStore, frame: PlacesFrame, edge: float, sense: float,
         if -EDGE <= sense * (at.s - edge) <= FACE and at.z < z and is_sure(store, place, frame.end):
             body = at.s - sense * BODY * want.width
             hidden = not is_free(store, at.t + INTO_BODY, body + sense * EDGE, frame)
-            post = frame.cars and is_post(store, frame, place)
-            if hidden and not post and not is_free(store, at.t + INTO_BODY, 0.5 * (at.s + body), frame):
+            hidden = hidden and not (frame.cars and is_post(store, frame, place))
+            if hidden and not is_free(store, at.t + INTO_BODY, 0.5 * (at.s + body), frame):
                 z = at.z
                 out = body
     return out if sense * (out - edge) < 0.0 else edge

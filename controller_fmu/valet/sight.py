@@ -95,7 +95,7 @@ def look(inputs: ControllerInput, piece: Piece, scene: Scene, between: bool, par
             ahead = first < number < first + 3 and params.search.active
             corner = params.search.active and not ahead
             heeded = not corner or reading < (SIDE if on_side else CORNER)
-            known = expected(at, scene, params)
+            known = expected(at, scene, params) if heeded else FREE
             stops = heeded and reading < known - _surprise(reading, corner, params)
             stops = stops or (corner and leads and reading < AT_CORNER)
             if stops and between and corner and leads and reading > known - CORNER_SURPRISE:

@@ -34,7 +34,7 @@ SCENARIOS = [name for name in scenario_names() if name not in LIKE_OTHERS and lo
 """Those of a controller apart, the valet, have their own: tests/valet."""
 PYTHON_FMU_TOO = ("guo2015-case4", "guo2015-case4-105", "fault-pose-nan", "fault-driver-takes-over")
 """The PythonFMU runs the very functions that run in process, so some scenarios are enough for it."""
-SLOW = 1.0
+SLOW = 2.0
 """The fuzzy law takes CPython a minute for a drive: there it is compared over this time [s], the others over all."""
 OUTPUTS = [f"{name}.{item.name}" for name, model in MODELS.items() for item in variables(model.outputs)]
 KEPT = [*MEASURES, *(Measure("last", signal) for signal in OUTPUTS)]

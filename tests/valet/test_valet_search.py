@@ -188,12 +188,7 @@ def test_a_place_heard_once_between_the_neighbours_is_no_end_of_a_gap() -> None:
 
 def test_at_45_degrees_a_post_among_cars_hides_no_body() -> None:
     """Cars that lean back by 135 deg, two posts between them, passed from 6 m away to 3 m: the second is not heard."""
-    spots = (
-        (-6.54, -3.85, 3.81, 1.65),
-        (-3.22, -3.85, 3.81, 1.65),
-        (4.37, -3.85, 3.81, 1.65),
-        (7.69, -3.85, 3.81, 1.65),
-    )
+    spots = tuple((x, -3.85, 3.81, 1.65) for x in (-6.54, -3.22, 4.37, 7.69))
     posts = ((0.25, -1.96, 0.4, 0.4), (2.46, -4.17, 0.4, 0.4))
     turn = math.radians(-135.0)
     boxes = [{"x": x, "y": y, "heading": turn, "length": long, "width": wide} for x, y, long, wide in spots + posts]

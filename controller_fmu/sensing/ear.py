@@ -28,7 +28,7 @@ STEP = 0.06
 LOST = 0.3
 LEAST = 3
 """So many more samples must have heard the same for a slope."""
-CLOSE = 0.8
+CLOSE = 1.0
 """On the way into a slot, where the car turns, only what is so near [m] and not at the cone's rim tells its place."""
 RIM = 0.08
 CREST = 0.4

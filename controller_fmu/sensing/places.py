@@ -13,11 +13,11 @@ from modelkit.vocabulary import Pose
 
 BEFORE_ECHO = 0.05
 """So much [m] before an echo nothing stands."""
-STRAY = 2
+STRAY = 3
 """A place of its own needs so many echoes, else it may be of two things heard in turn."""
 NEXT = 0.3
 """Places heard once are of one thing if they are so near [m] to each other."""
-CERTAIN = 4
+CERTAIN = 6
 """What a gap ends at was heard so often within ``NEXT``."""
 UNSEEN = -50.0
 """Where [m] a row is of which too little was seen."""

@@ -28,7 +28,7 @@ ASKEW = 0.1
 FAR = 50.0
 NARROWEST = 0.6
 """So much of a front [m] is seen at least, else it may be a post."""
-WIDEST = 2.3
+WIDEST = 2.1
 """And it is no wider."""
 BEYOND = (0.3, 0.45, 0.6, 0.8, 1.0, 1.3, 1.6)
 """Where a side goes on there is no free space so far [m] beyond what was seen of it, and so far behind its line."""

@@ -18,7 +18,7 @@ from controller_fmu.valet.found.search import shallower
 from controller_fmu.valet.found.way_back import WayBack, way_back
 from controller_fmu.valet.params import ValetParams
 from controller_fmu.valet.rolling import Ahead, ahead_of, aim_at, joint_of, turns_already
-from controller_fmu.valet.sight import heard_again, look, remembered, scene_of
+from controller_fmu.valet.sight import end_ahead, heard_again, look, remembered, scene_of
 from controller_fmu.valet.state import Tracked, ValetState
 from modelkit.car import largest_curvature
 from modelkit.maths import clamp, sign
@@ -30,6 +30,8 @@ LEARNT = 0.6
 EARLIEST = 0.02
 REGAINED = 0.5
 """Way [m]."""
+SLOT_END = 0.8
+"""What a car hears so near [m] straight ahead, in a slot, is what that ends at."""
 BACKS = 3
 """A car goes back the way it came no more often in one drive."""
 
@@ -85,7 +87,9 @@ def heard_on(
         return state
     rest = Rest(state.path, state.piece, state.begin, state.tracked.left)
     nearby = hear_nearby(store, state.nearby, inputs, rest, state.search.gap, params)
-    return state._replace(nearby=nearby)
+    end = end_ahead(inputs, state.direction > 0.0, params)
+    sought = shallower(state.search, end.echo) if end.heard and end.reading < SLOT_END else state.search
+    return state._replace(nearby=nearby, search=sought)
 
 
 def moved_on(

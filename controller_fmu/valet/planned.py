@@ -43,7 +43,10 @@ def planned_on(store: PlanStore, state: ValetState, inputs: ControllerInput, par
         if params.search.active:
             gap = state.search.gap
             forget_under(store, state.nearby, pose, params)
-            goal = goal_now(state, gap_now(store, state, params), params)
+            now = gap_now(store, state, params)
+            goal = goal_now(state, now, params)
+            if stands_in_road(now, params) > params.search.stand_out:
+                return state._replace(reason=Reason.SLOT_TOO_SHALLOW)
             if gap.depth < DEEP:
                 lay_end(store, gap, state.search.lines)
             lay_nearby(store, state.nearby, gap, state.search.lines + 1)
@@ -57,8 +60,6 @@ def planned_on(store: PlanStore, state: ValetState, inputs: ControllerInput, par
     reason = reason_of(status, count, state, params)
     if status == PLANNED and params.search.active and path.margin < LEAST_MARGIN:
         reason = Reason.BLOCKED
-    if params.search.active and stands_in_road(state.search.gap, params) > params.search.stand_out:
-        reason = Reason.SLOT_TOO_SHALLOW
     plans = state.plans + 1 if state.searched == 0 else state.plans
     if reason in (Reason.BLOCKED, Reason.NO_PATH) and state.back.used > 0:
         backs = state.backs + 1

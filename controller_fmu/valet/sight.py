@@ -105,7 +105,31 @@ def look(inputs: ControllerInput, piece: Piece, scene: Scene, between: bool, par
                 beside = readings[2 * first + 3 - number] if ahead else reading
                 straight = ahead and abs(beside - reading) < BOTH
                 echo = _end_of(at, reading)
+    if params.search.active and not straight and nearest < FREE:
+        end = end_ahead(inputs, piece.way > 0.0, params)
+        straight = end.heard and end.reading < nearest
+        echo = end.echo if straight else echo
     return _sight(nearest, leading, abs(inputs.measured_speed), straight, echo, params)
+
+
+class EndAhead(NamedTuple):
+    """What both sensors that look straight ahead hear."""
+
+    heard: bool = False
+    reading: float = FREE
+    """Of the nearer one [m]."""
+    echo: Pose = Pose()
+
+
+def end_ahead(inputs: ControllerInput, forward: bool, params: ValetParams) -> EndAhead:
+    """Return what both sensors straight ahead hear, or behind: the same thing, as far off but for ``BOTH``."""
+    one = 1 if forward else 5
+    readings = inputs.ultrasonic
+    nearer = one if readings[one] < readings[one + 1] else one + 1
+    reading = readings[nearer]
+    heard = abs(readings[one] - readings[one + 1]) < BOTH and reading < LOOKED_AT
+    at = sensor_at(params.car.ultrasonic.mounts[nearer], inputs.odometry)
+    return EndAhead(heard, reading, _end_of(at, reading))
 
 
 def _end_of(at: Pose, reading: float) -> Pose:

@@ -13,9 +13,10 @@ from controller_fmu.planning.task import CORNERS, Corner, Scene, drive
 from controller_fmu.sensing.around import AroundGap, lay_around, point_in_gap
 from controller_fmu.sensing.ear import SideEar
 from controller_fmu.sensing.find_gap import gap_across
-from controller_fmu.sensing.gap import Gap, GapLayout
+from controller_fmu.sensing.gap import DEEP, Gap, GapLayout
 from controller_fmu.sensing.heard_store import put_heard
 from controller_fmu.valet.chart import Step
+from controller_fmu.valet.driven import heard_on
 from controller_fmu.valet.found.at_end import is_beside, is_in_place
 from controller_fmu.valet.found.beside import SENSORS, SideEchoes, hear_beside, put_beside
 from controller_fmu.valet.found.corrected import corrected, turned_gap
@@ -23,7 +24,7 @@ from controller_fmu.valet.found.nearby import Nearby, forget_under
 from controller_fmu.valet.found.search import Search
 from controller_fmu.valet.found.way_back import path_back, way_back
 from controller_fmu.valet.params import ValetParams, ValetSearchParams
-from controller_fmu.valet.sight import Sight, heard_again
+from controller_fmu.valet.sight import Sight, end_ahead, heard_again
 from controller_fmu.valet.state import ValetState
 from modelkit.store import new_store
 from modelkit.vocabulary import Pose
@@ -216,3 +217,55 @@ def test_across_the_road_a_car_that_listens_stands_nearer_to_the_middle() -> Non
         assert is_in_place(Pose(0.0, aside), Pose(), params)
         assert is_beside(state, Pose(0.0, aside), Pose(), params) != stays
         assert not is_beside(state._replace(plans=7), Pose(0.0, aside), Pose(), params)
+
+
+@pytest.mark.parametrize("degrees", [30.0, 45.0, 150.0])
+def test_a_slot_at_an_angle_that_is_narrower_lies_on_along_its_row(degrees: float) -> None:
+    into = -math.radians(degrees)
+    e = Pose(-math.sin(into), math.cos(into))
+    b = Pose(2.8 / abs(math.sin(into)), 0.0)
+    gap = Gap(GapLayout.ACROSS, Pose(), b, into, width=2.8, depth=4.8, front=0.3, row=0.0)
+    post = (0.5 * e.x + 1.0 * math.cos(into), 0.5 * e.y + 1.0 * math.sin(into))
+    store, nearby = heard((post, (post[0] + 0.2 * math.cos(into), post[1] + 0.2 * math.sin(into))))
+    now = corrected(store, nearby, gap, LENGTH, told=False)
+    assert now.width == pytest.approx(2.3, abs=0.01)
+    fronts = [one.a.y + one.front * math.sin(into) + 0.5 * one.width * e.y for one in (gap, now)]
+    assert fronts[1] == pytest.approx(fronts[0], abs=0.01)
+    assert now.front + now.depth == pytest.approx(gap.front + gap.depth)
+    endless = corrected(store, nearby, gap._replace(depth=DEEP), LENGTH, told=False)
+    assert endless.depth == DEEP
+
+
+def test_what_is_heard_beside_a_slots_end_is_no_part_of_its_neighbours() -> None:
+    store, nearby = heard(((0.4, -3.82), (0.4, -3.98)))
+    widths = [corrected(store, nearby, ACROSS._replace(depth=d), LENGTH, told=False).width for d in (4.1, DEEP)]
+    assert widths == pytest.approx([2.8, 2.4], abs=0.01)
+
+
+@pytest.mark.parametrize("forward", [True, False])
+def test_what_both_sensors_hear_ahead_is_what_a_slot_ends_at_though_a_corner_stops_the_car(forward: bool) -> None:
+    params = ValetParams()._replace(search=ValetSearchParams()._replace(active=True))
+    first = 0 if forward else 4
+    mount = params.car.ultrasonic.mounts[first + 1]
+    for other, ahead in ((0.2, True), (5.0, False)):
+        readings = [5.0] * 12
+        readings[first : first + 4] = [0.28, 0.19, other, 0.28]
+        seen = look(tuple(readings), Pose(), Piece(1.0 if forward else -1.0), 0.0, Scene(), False, params)
+        assert (seen.blocked, seen.ahead) == (True, ahead)
+        end = end_ahead(ControllerInput(ultrasonic=tuple(readings)), forward, params)
+        assert end.heard == ahead
+        if ahead:
+            assert seen.echo == end.echo == pytest.approx(Pose(mount.x + (0.19 if forward else -0.19), 0.25, mount.yaw))
+
+
+def test_a_slot_is_known_to_end_at_what_is_heard_ahead_on_the_way_in() -> None:
+    params = ValetParams()._replace(search=ValetSearchParams()._replace(active=True))
+    reach = params.car.wheelbase + params.car.front_overhang
+    path = Path(1, 0.1, 1.0, (Piece(1.0),) + (Piece(),) * (PATH - 1))
+    gap = ACROSS._replace(depth=DEEP)
+    state = ValetState(step=Step.DRIVE, search=Search(gap=gap), path=path, direction=1.0)
+    pose = Pose(1.4, -1.0, -0.5 * math.pi)
+    for reading, depth in ((0.5, 1.0 + reach + 0.5), (0.9, DEEP)):
+        inputs = ControllerInput(odometry=pose, ultrasonic=(5.0, reading, reading) + (5.0,) * 9)
+        now = heard_on(new_store(PlanStore), state, inputs, params, 40_000_000)
+        assert now.search.gap.depth == pytest.approx(depth)

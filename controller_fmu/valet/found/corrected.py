@@ -26,6 +26,10 @@ KERB_BEHIND = 1.0
 KERB_PLACES = 3
 KERB_OFF = 0.3
 """It lies no farther [m] from where it was heard from the road."""
+LEAST_ACROSS = 0.3
+"""Sine of an angle at which no slot lies to its row: it is less."""
+BEFORE_END = 0.3
+"""What is heard so near [m] to what a slot ends at is part of that."""
 BEHIND = 0.3
 """What is heard so far [m] from both neighbours is no part of them."""
 
@@ -42,8 +46,9 @@ class OnSide(NamedTuple):
 def corrected(store: PlanStore, state: Nearby, gap: Gap, length: float, told: bool) -> Gap:
     """Return a gap as what was heard in it on the way in leaves it, beside a car of this length [m].
 
-    What stands in it makes it narrower. Where a flank was heard over more than ``EDGE``, the gap ends there, and may
-    be wider than it was thought to be, but not than it was told. Along the road a kerb heard tells how deep it is.
+    What stands in it makes it narrower; its middle moves along the row. Where a flank was heard over more than
+    ``EDGE``, the gap ends there, and may be wider than it was thought to be, but not than it was told. Along the road a
+    kerb heard tells how deep it is.
     """
     e = along_of(gap)
     least = 0.0 if told else -WIDER
@@ -51,7 +56,18 @@ def corrected(store: PlanStore, state: Nearby, gap: Gap, length: float, told: bo
     high = gap.width - max(_edge(store, state, gap, length, -1.0), least)
     a = Pose(gap.a.x + low * e.x, gap.a.y + low * e.y, gap.a.heading)
     depth = _kerb_behind(store, state, gap, length) if gap.layout == GapLayout.ALONG else gap.depth
-    return gap._replace(a=a, width=high - low, depth=depth)
+    on = _along_row(gap, 0.5 * (low + high - gap.width))
+    return gap._replace(a=a, width=high - low, front=gap.front + on, depth=depth - on if depth < DEEP else depth)
+
+
+def _along_row(gap: Gap, aside: float) -> float:
+    """Return how much farther [m] into a gap the neighbours' front lies, so far [m] aside along their row."""
+    e = along_of(gap)
+    c = math.cos(gap.row)
+    s = math.sin(gap.row)
+    across = e.x * c + e.y * s
+    into = math.cos(gap.into) * c + math.sin(gap.into) * s
+    return aside * into / across if abs(across) > LEAST_ACROSS else 0.0
 
 
 def turned_gap(store: PlanStore, state: Nearby, gap: Gap, length: float) -> Gap:
@@ -116,7 +132,7 @@ def _from_side(at: PlaceInGap, gap: Gap, sense: float) -> PlaceInGap:
 
 def _is_beside(at: PlaceInGap, gap: Gap, length: float) -> bool:
     """Return whether a place, seen from a gap's side, lies there beside a car of this length [m]."""
-    return -WIDER < at.across < 0.5 * gap.width and 0.0 < at.deep < length
+    return -WIDER < at.across < 0.5 * gap.width and 0.0 < at.deep < min(length, gap.depth - BEFORE_END)
 
 
 def _is_behind(at: PlaceInGap, gap: Gap, width: float) -> bool:

@@ -18,8 +18,6 @@ from controller_fmu.sensing.places import (
 )
 from controller_fmu.sensing.row_line import is_post
 
-BODY = 1.0
-"""A neighbour is as wide as this share of the car's own width."""
 FACE = 2.2
 """Where a neighbour's front is looked for [m] from the gap."""
 BAND = 0.12
@@ -64,7 +62,7 @@ def beside_body(store: PlanStore, frame: PlacesFrame, edge: float, sense: float,
     for place in range(frame.first, frame.end):
         at = spot(store, place, frame)
         if -EDGE <= sense * (at.s - edge) <= FACE and at.z < z and is_sure(store, place, frame.end):
-            body = at.s - sense * BODY * want.width
+            body = at.s - sense * want.width
             hidden = not is_free(store, at.t + INTO_BODY, body + sense * EDGE, frame)
             hidden = hidden and not (frame.cars and is_post(store, frame, place))
             if hidden and not is_free(store, at.t + INTO_BODY, 0.5 * (at.s + body), frame):

@@ -18,6 +18,8 @@ from controller_fmu.sensing.places import (
 )
 from controller_fmu.sensing.row_line import is_post
 
+BODY = 0.97
+"""A neighbour is as wide as this share of the car's own width."""
 FACE = 2.2
 """Where a neighbour's front is looked for [m] from the gap."""
 BAND = 0.12
@@ -62,7 +64,7 @@ def beside_body(store: PlanStore, frame: PlacesFrame, edge: float, sense: float,
     for place in range(frame.first, frame.end):
         at = spot(store, place, frame)
         if -EDGE <= sense * (at.s - edge) <= FACE and at.z < z and is_sure(store, place, frame.end):
-            body = at.s - sense * want.width
+            body = at.s - sense * BODY * want.width
             hidden = not is_free(store, at.t + INTO_BODY, body + sense * EDGE, frame)
             hidden = hidden and not (frame.cars and is_post(store, frame, place))
             if hidden and not is_free(store, at.t + INTO_BODY, 0.5 * (at.s + body), frame):
@@ -117,29 +119,8 @@ def _flank(store: PlanStore, frame: PlacesFrame, edge: float, sense: float) -> F
     return Flank(t, z, max(0.0, deepest - t), far)
 
 
-def _mean_of(store: PlanStore, frame: PlacesFrame, edge: float, sense: float) -> float:
-    """Return where [m] the side of a neighbour lies of which the place heard nearest to the gap lies at ``edge``.
-
-    The mean over its places: the nearest of them is so by noise. Where none lies at the edge, that was reckoned.
-    """
-    n = 0.0
-    total = 0.0
-    heard = False
-    for place in range(frame.first, frame.end):
-        at = spot(store, place, frame)
-        off = sense * (at.s - edge)
-        if 0.0 <= off <= BAND and is_sure(store, place, frame.end):
-            heard = heard or off == 0.0
-            n += store.heard_count[place]
-            total += store.heard_count[place] * at.s
-    return total / n if heard else edge
-
-
 def measured(store: PlanStore, frame: PlacesFrame, low: float, high: float, closed: bool, want: Wanted) -> Gap:
     """Return the gap between the lines s = ``low`` and s = ``high``: its corners, its depth, its neighbours."""
-    flank = _mean_of(store, frame, low, -1.0)
-    high = _mean_of(store, frame, high, 1.0) if closed else high + flank - low
-    low = flank
     one = _flank(store, frame, low, -1.0)
     angle = frame.into - frame.row
     along = (high - low) * math.cos(angle) / math.sin(angle)

@@ -16,8 +16,7 @@ from controller_fmu.sensing.ear import SideEar, listen
 from controller_fmu.sensing.find_gap import TwoWays, find_gap
 from controller_fmu.sensing.gap import Gap, GapLayout, Wanted
 from controller_fmu.sensing.heard_store import put_heard, put_ray
-from controller_fmu.sensing.neighbours import measured
-from controller_fmu.sensing.places import along, frame_of, spot
+from controller_fmu.sensing.places import along, frame_of
 from controller_fmu.sensing.row_line import row_of
 from controller_fmu.valet.found import search
 from controller_fmu.valet.params import ValetParams, ValetSearchParams
@@ -187,23 +186,6 @@ def test_a_place_heard_twice_at_most_between_the_neighbours_is_no_end_of_a_gap()
     assert find_gap(store, 0, places, at, WANTED).width == pytest.approx(gap.width, abs=0.05)
     store.heard_count[places - 1] = 3
     assert find_gap(store, 0, places, at, WANTED).layout == GapLayout.NONE
-
-
-def test_a_side_lies_where_its_places_do_on_the_average_but_where_it_is_reckoned() -> None:
-    store, places = new_store(PlanStore), 0
-    for side in (-1.3, 1.3):
-        for step in range(8):
-            for again in range(3):
-                x = side + (0.03 if step % 2 else -0.03)
-                places = put_heard(store, 0, places, x, -1.0 - 0.15 * step, step == 0 and again == 0)
-    assert places == 16
-    frame = along(frame_of(0, places, Pose(4.0, 0.0), WANTED.half_angle), 0.0, 0.5 * math.pi)
-    across = [spot(store, place, frame).s for place in range(places)]
-    low, high = max(across[:8]), min(across[8:])
-    assert high - low == pytest.approx(2.54)
-    assert measured(store, frame, low, high, True, WANTED).width == pytest.approx(2.6)
-    assert measured(store, frame, low + 0.01, high, True, WANTED).width == pytest.approx(2.56)
-    assert measured(store, frame, low, low + 2.0, False, WANTED).width == pytest.approx(2.0)
 
 
 def test_at_45_degrees_a_post_among_cars_hides_no_body() -> None:

@@ -247,15 +247,18 @@ def test_what_both_sensors_hear_ahead_is_what_a_slot_ends_at_though_a_corner_sto
     params = ValetParams()._replace(search=ValetSearchParams()._replace(active=True))
     first = 0 if forward else 4
     mount = params.car.ultrasonic.mounts[first + 1]
+    sense = 1.0 if forward else -1.0
+    corners = [(mount.x + sense * deep, aside) for deep, aside in ((0.19, -0.3), (0.19, 0.3), (1.2, 0.3), (1.2, -0.3))]
+    known = Scene(tuple(Corner(*corner, 1) for corner in corners) + (Corner(),) * (CORNERS - 4))
     for other, ahead in ((0.2, True), (5.0, False)):
         readings = [5.0] * 12
         readings[first : first + 4] = [0.28, 0.19, other, 0.28]
-        seen = look(tuple(readings), Pose(), Piece(1.0 if forward else -1.0), 0.0, Scene(), False, params)
+        seen = look(tuple(readings), Pose(), Piece(sense), 0.0, known, False, params)
         assert (seen.blocked, seen.ahead) == (True, ahead)
         end = end_ahead(ControllerInput(ultrasonic=tuple(readings)), forward, params)
         assert end.heard == ahead
         if ahead:
-            assert seen.echo == end.echo == pytest.approx(Pose(mount.x + (0.19 if forward else -0.19), 0.25, mount.yaw))
+            assert seen.echo == end.echo == pytest.approx(Pose(mount.x + 0.19 * sense, 0.25, mount.yaw))
 
 
 def test_a_slot_is_known_to_end_at_what_is_heard_ahead_on_the_way_in() -> None:

@@ -118,7 +118,7 @@ def in_world(t: float, s: float, frame: PlacesFrame) -> Pose:
 
 
 def is_sure(store: PlanStore, place: int, end: int) -> bool:
-    """Return whether a place is of something: heard more than once, or joined to a near one before or after it."""
+    """Return whether a place is of something: heard ``STRAY`` times, or joined to a near one before or after it."""
     if store.heard_count[place] >= STRAY:
         return True
     return _goes_on(store, place) or (place + 1 < end and _goes_on(store, place + 1))

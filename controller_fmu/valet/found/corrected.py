@@ -27,7 +27,7 @@ KERB_PLACES = 3
 KERB_OFF = 0.3
 """It lies no farther [m] from where it was heard from the road."""
 LEAST_ACROSS = 0.3
-"""Sine of an angle at which no slot lies to its row: it is less."""
+"""Slots lie to their row at more than the angle with this sine."""
 BEFORE_END = 0.3
 """What is heard so near [m] to what a slot ends at is part of that."""
 BEHIND = 0.3

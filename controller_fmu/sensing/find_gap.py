@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 from controller_fmu.planning.plan_store import PlanStore
 from controller_fmu.sensing.corridor import corridor
-from controller_fmu.sensing.gap import Gap, GapLayout, Wanted
+from controller_fmu.sensing.gap import DEEP, Gap, GapLayout, Wanted
 from controller_fmu.sensing.neighbours import free_of_bodies
 from controller_fmu.sensing.places import UNSEEN, PlacesFrame, along, frame_of, is_free, spot_of, turned
 from controller_fmu.sensing.row_line import row_of
@@ -24,6 +24,8 @@ LONG_SIDE = 1.0
 """A side longer than this [m] is a car's, no post's."""
 CLEARLY = 0.15
 """A side is longer than another by more than this [m]."""
+MUCH_LONGER = 0.5
+"""Where sides one way are longer than across it by more than this [m], cars stand that way, whatever is free."""
 MUCH = 0.3
 """Much shorter than the other sides is what is by more than this [m]."""
 HALFWAY = 36.0 * PI / 180.0
@@ -60,7 +62,11 @@ def find_gap(store: PlanStore, side: int, places: int, at: Pose, want: Wanted) -
     if not want.across or too_few:
         return Gap()
     both_show = abs(askew) > HALFWAY
-    return _at_an_angle(store, frame._replace(line=row.behind), turn, row.turn, both_show, want)
+    frame = frame._replace(line=row.behind, cars=abs(turn) > HALFWAY)
+    gap = _at_an_angle(store, frame, turn, row.turn, both_show, want)
+    if gap.layout == GapLayout.NONE and want.at_end and both_show:
+        gap = _at_an_angle(store, frame._replace(cars=True), turn, row.turn, True, want)
+    return gap
 
 
 def _square(store: PlanStore, frame: PlacesFrame, turn: float, want: Wanted) -> Gap:
@@ -93,22 +99,30 @@ def _at_an_angle(store: PlanStore, frame: PlacesFrame, turn: float, row: float, 
     """Return the gap passed last between cars turned by ``turn`` [rad], or across that, to a row turned by ``row``.
 
     ``both_show``: of each car the front and a side; else the side that lies nearly along the row is hidden by the car
-    in front of it, and a corner of a car looks like a post.
+    in front of it. If the sensor does not look at both either (``frame.cars`` is false), a car's corner looks like a
+    post, which is what it is taken for only at the end of the search, if the sides do not tell how cars stand.
 
     Long sides and whole fronts tell which of the two; where neither was seen, it is the one in which there is a gap.
+    So it is at the end of the search, if what they tell leaves no gap: a side longer than a front only if it is whole.
     """
     other = turn if turn > 0.0 else turn + PI
     one = turn + 0.5 * PI
     sides = sides_along(store, frame, one)
     across = sides_along(store, frame, other)
     longer = sides.longest - across.longest
-    frame = frame._replace(cars=both_show and max(sides.longest, across.longest) > LONG_SIDE)
-    ways = TwoWays(along(frame, row, one), along(frame, row, other), longer)
+    posts = frame.cars or (want.at_end and abs(longer) < CLEARLY)
+    frame = frame._replace(cars=posts and both_show and max(sides.longest, across.longest) > LONG_SIDE)
+    ways = TwoWays(along(frame, row, one), along(frame, row, other), longer, both_show)
     if sides.longest > WIDEST or across.longest > WIDEST:
-        return corridor(store, ways.one if longer > 0.0 else ways.other, want, False)
+        gap = corridor(store, ways.one if longer > 0.0 else ways.other, want, False)
+        whole = sides.front if longer > 0.0 else across.front
+        if gap.layout != GapLayout.NONE or not want.at_end or not whole:
+            return gap
     if across.front != sides.front:
-        return _deep(store, ways.one if across.front else ways.other, want)
-    return _likelier(store, ways, LATE if both_show else LATER, want)
+        gap = _deep(store, ways.one if across.front else ways.other, want)
+        if gap.layout != GapLayout.NONE or not want.at_end:
+            return gap
+    return _likelier(store, ways, want)
 
 
 class TwoWays(NamedTuple):
@@ -118,20 +132,28 @@ class TwoWays(NamedTuple):
     other: PlacesFrame
     longer: float
     """Sides seen along the one than along the other [m]."""
+    both_show: bool
+    """Of each car the front and a side are seen."""
 
 
-def _likelier(store: PlanStore, ways: TwoWays, late: float, want: Wanted) -> Gap:
+def _likelier(store: PlanStore, ways: TwoWays, want: Wanted) -> Gap:
     """Return the gap of a row that may stand in two ways: of that way in which there is one.
 
-    If there is one in both, of that whose neighbours stand where less is known to be free, or whose sides are longer.
-    At the end of the search, where neither tells, of that into which the driver wants to go: nose in along the way.
+    If there is one in both, of that whose sides are much longer where both show, else of that whose neighbours stand
+    where less is known to be free, or whose sides are longer. At the end of the search, where neither tells, of that
+    into which the driver wants to go: nose in along the way. Where sides are not clearly longer it waits: beside one
+    neighbour, of whom less is seen, to the end.
     """
-    one = _passed(store, ways.one, late if ways.longer > -CLEARLY else LATEST, want)
-    other = _passed(store, ways.other, late if ways.longer < CLEARLY else LATEST, want)
+    late = LATE if ways.both_show else LATER
+    unclear = DEEP if want.open_ended else LATEST
+    one = _passed(store, ways.one, late if ways.longer > CLEARLY else unclear, want)
+    other = _passed(store, ways.other, late if ways.longer < -CLEARLY else unclear, want)
     if one.layout == GapLayout.NONE:
         return Gap() if _is_unlikely(store, ways.other, other, ways.longer, want) else other
     if other.layout == GapLayout.NONE:
         return Gap() if _is_unlikely(store, ways.one, one, -ways.longer, want) else one
+    if ways.both_show and abs(ways.longer) > MUCH_LONGER:
+        return one if ways.longer > 0.0 else other
     fewer = free_of_bodies(store, ways.other, other, want) - free_of_bodies(store, ways.one, one, want)
     if abs(fewer) >= CONTRADICTED:
         return one if fewer > 0 else other

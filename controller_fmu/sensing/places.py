@@ -14,7 +14,7 @@ from modelkit.vocabulary import Pose
 BEFORE_ECHO = 0.05
 """So much [m] before an echo nothing stands."""
 STRAY = 3
-"""A place of its own needs so many echoes, else it may be of two things heard in turn."""
+"""A place, with those joined to it, needs so many echoes, else it may be of two things heard in turn."""
 NEXT = 0.3
 """Places heard once are of one thing if they are so near [m] to each other."""
 CERTAIN = 6
@@ -118,10 +118,13 @@ def in_world(t: float, s: float, frame: PlacesFrame) -> Pose:
 
 
 def is_sure(store: PlanStore, place: int, end: int) -> bool:
-    """Return whether a place is of something: heard ``STRAY`` times, or joined to a near one before or after it."""
+    """Return whether a place is of something: heard ``STRAY`` times, with the near ones joined to it."""
     if store.heard_count[place] >= STRAY:
         return True
-    return _goes_on(store, place) or (place + 1 < end and _goes_on(store, place + 1))
+    count = store.heard_count[place]
+    count = count + store.heard_count[place - 1] if _goes_on(store, place) else count
+    count = count + store.heard_count[place + 1] if place + 1 < end and _goes_on(store, place + 1) else count
+    return count >= STRAY
 
 
 def is_certain(store: PlanStore, place: int, first: int, end: int) -> bool:

@@ -14,7 +14,7 @@ STEEP = 0.35
 """And by no more than this."""
 ON_LINE = 0.3
 """What lies so near [m] to a line is on it."""
-CLOSE = 0.15
+CLOSE = 0.25
 """And so near [m] to the line that it speaks for it."""
 AROUND = 1.2
 """What stands out of the row is the nearest to the way within this [m]."""
@@ -90,7 +90,7 @@ def _score(crests: tuple[Crest, ...], slope: float, at: float) -> float:
     for crest in crests:
         off = abs(crest.y - at - slope * crest.x)
         score += crest.weight * (1.0 - off / CLOSE) if off < CLOSE else 0.0
-    return score * (1.0 - abs(slope))
+    return score * (1.0 - 0.3 * abs(slope))
 
 
 def _fitted(crests: tuple[Crest, ...], slope: float, at: float) -> RowLine:

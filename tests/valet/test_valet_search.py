@@ -208,12 +208,12 @@ def test_a_gap_across_much_longer_sides_is_none_where_no_cars_stand(
     monkeypatch: pytest.MonkeyPatch, shorter: str, by: float, free: int, taken: bool
 ) -> None:
     frames = {name: along(frame_of(0, 0, Pose(), 0.5), 0.0, into) for name, into in (("one", 2.4), ("other", 0.8))}
-    ways = TwoWays(**frames, longer=-by if shorter == "one" else by)
+    ways = TwoWays(**frames, longer=-by if shorter == "one" else by, both_show=True)
     found = Gap(layout=GapLayout.ACROSS, width=2.5)
     where = module_of_gaps.__name__
     monkeypatch.setattr(f"{where}._passed", lambda _, frame, *__: found if frame is frames[shorter] else Gap())
     monkeypatch.setattr(f"{where}.free_of_bodies", lambda *_: free)
-    assert module_of_gaps._likelier(new_store(PlanStore), ways, 3.0, WANTED) == (found if taken else Gap())
+    assert module_of_gaps._likelier(new_store(PlanStore), ways, WANTED) == (found if taken else Gap())
 
 
 @pytest.mark.parametrize(("echoes", "turn"), [(9, 0.0), (20, 12.0)])

@@ -168,7 +168,8 @@ def _judged(
     at = sensor_at(params.car.ultrasonic.mounts[sensor], inputs.odometry)._replace(heading=inputs.odometry.heading)
     want = wanted(params)._replace(at_end=state.way > params.search.way - LAST)
     gap = find_gap(store, side, ear.places, at, want)
-    if _is_across(gap, state.gap):
+    lost = gap.layout == GapLayout.NONE and state.gap.layout != GapLayout.NONE
+    if _is_across(gap, state.gap) or (lost and want.at_end):
         return state
     if gap.shallow:
         return state._replace(gap=Gap(), refused=Reason.SLOT_TOO_SHALLOW)

@@ -64,7 +64,7 @@ def find_gap(store: PlanStore, side: int, places: int, at: Pose, want: Wanted) -
     both_show = abs(askew) > HALFWAY
     frame = frame._replace(line=row.behind, cars=abs(turn) > HALFWAY)
     gap = _at_an_angle(store, frame, turn, row.turn, both_show, want)
-    if gap.layout == GapLayout.NONE and want.at_end and both_show:
+    if gap.layout == GapLayout.NONE and want.at_end and both_show and not frame.cars:
         gap = _at_an_angle(store, frame._replace(cars=True), turn, row.turn, True, want)
     return gap
 
@@ -99,8 +99,8 @@ def _at_an_angle(store: PlanStore, frame: PlacesFrame, turn: float, row: float, 
     """Return the gap passed last between cars turned by ``turn`` [rad], or across that, to a row turned by ``row``.
 
     ``both_show``: of each car the front and a side; else the side that lies nearly along the row is hidden by the car
-    in front of it. If the sensor does not look at both either (``frame.cars`` is false), a car's corner looks like a
-    post, which is what it is taken for only at the end of the search, if the sides do not tell how cars stand.
+    in front of it, and a corner of a car looks like a post. So it does if the sensor does not look at both faces
+    (``frame.cars`` is false): then nothing is a post, but at the end of a search in which sides do not tell either.
 
     Long sides and whole fronts tell which of the two; where neither was seen, it is the one in which there is a gap.
     So it is at the end of the search, if what they tell leaves no gap: a side longer than a front only if it is whole.

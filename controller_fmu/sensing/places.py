@@ -119,9 +119,9 @@ def in_world(t: float, s: float, frame: PlacesFrame) -> Pose:
 
 def is_sure(store: PlanStore, place: int, end: int) -> bool:
     """Return whether a place is of something: heard ``STRAY`` times, with the near ones joined to it."""
-    if store.heard_count[place] >= STRAY:
-        return True
     count = store.heard_count[place]
+    if count >= STRAY:
+        return True
     count = count + store.heard_count[place - 1] if _goes_on(store, place) else count
     count = count + store.heard_count[place + 1] if place + 1 < end and _goes_on(store, place + 1) else count
     return count >= STRAY

@@ -16,6 +16,8 @@ ON_LINE = 0.3
 """What lies so near [m] to a line is on it."""
 CLOSE = 0.25
 """And so near [m] to the line that it speaks for it."""
+TURNED = 0.3
+"""A line that is turned against the way by 1 [m/m] speaks for itself by this share less."""
 AROUND = 1.2
 """What stands out of the row is the nearest to the way within this [m]."""
 CRESTS = 12
@@ -85,12 +87,12 @@ def _without_posts(crests: tuple[Crest, ...]) -> tuple[Crest, ...]:
 
 
 def _score(crests: tuple[Crest, ...], slope: float, at: float) -> float:
-    """Return how many echoes are of what lies on a line: those beside it count less, all if it is turned."""
+    """Return how many echoes are of what lies on a line: those beside it count less, all a little if it is turned."""
     score = 0.0
     for crest in crests:
         off = abs(crest.y - at - slope * crest.x)
         score += crest.weight * (1.0 - off / CLOSE) if off < CLOSE else 0.0
-    return score * (1.0 - 0.3 * abs(slope))
+    return score * (1.0 - TURNED * abs(slope))
 
 
 def _fitted(crests: tuple[Crest, ...], slope: float, at: float) -> RowLine:

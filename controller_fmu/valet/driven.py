@@ -10,7 +10,6 @@ from controller_fmu.planning.plan import (
 )
 from controller_fmu.planning.plan_store import PlanStore
 from controller_fmu.planning.task import drive
-from controller_fmu.sensing.gap import GapLayout
 from controller_fmu.valet.chart import Step
 from controller_fmu.valet.found.beside import SideEchoes
 from controller_fmu.valet.found.nearby import Rest, hear_nearby, is_in_gap, put_nearby
@@ -32,6 +31,8 @@ REGAINED = 0.5
 """Way [m]."""
 SLOT_END = 0.8
 """What a car hears so near [m] straight ahead, in a slot, is what that ends at."""
+HALTED_NS = 500_000_000
+"""A halt before something unknown counts as long as this beside it: a car that sets out again and again plans anew."""
 BACKS = 3
 """A car goes back the way it came no more often in one drive."""
 
@@ -62,8 +63,7 @@ def seen_on(store: PlanStore, state: ValetState, inputs: ControllerInput, params
         angle = math.atan(params.car.wheelbase * coming.rest.then)
     scene = scene_of(store, params, state.seen)
     rest = state.path.pieces[state.piece]._replace(way=direction * max(coming.left, AT_END))
-    between = state.search.gap.layout == GapLayout.ALONG
-    sight = look(inputs, rest, scene, between, params)
+    sight = look(inputs, rest, scene, state.search.gap, params)
     tracked = Tracked(left, at, off.lateral, off.heading, angle, coming)
     return state._replace(tracked=tracked, sight=heard_again(sight, state.sight))
 
@@ -99,6 +99,8 @@ def moved_on(
     before = state.step
     if step == Step.PLAN and before != Step.PLAN:
         state = _to_plan_anew(store, state, params)
+    if step == Step.HALT and before == Step.DRIVE and state.sight.blocked:
+        state = state._replace(watch=state.watch._replace(blocked=state.watch.blocked + HALTED_NS))
     if step == Step.SET_WHEEL and before != Step.SET_WHEEL:
         state = _with_piece(state, before, params)
     wheel = state.wheel

@@ -12,7 +12,10 @@ from controller_fmu.interface import ControllerInput
 from controller_fmu.planning.plan import Piece
 from controller_fmu.planning.plan_store import PlanStore
 from controller_fmu.planning.task import CORNERS, Corner, Scene, drive
+from controller_fmu.sensing.around import point_in_gap
+from controller_fmu.sensing.gap import Gap, GapLayout
 from controller_fmu.valet.params import MAP_CORNERS, ValetParams
+from modelkit.car import car_length
 from modelkit.geometry import Point, cone_line
 from modelkit.maths import sign
 from modelkit.vocabulary import Pose
@@ -23,6 +26,9 @@ LOOKED_AT = 1.5
 CORNER = 0.3
 """Neighbours of a slot that was found are not known everywhere: corner sensors are heeded from here on [m]."""
 CORNER_SURPRISE = 0.1
+APART = 0.5
+APART_SURPRISE = 0.25
+"""Beyond the slot's neighbours less is known: so near [m] there, by so much [m], it may end between two sensors."""
 TOUCHING = 0.22
 """What corner and side sensors hear so near [m] is nearly touched: there a smaller surprise [m] counts."""
 TOUCHING_SURPRISE = 0.04
@@ -72,12 +78,20 @@ class Sight(NamedTuple):
     """Where the nearest unknown thing was heard, and in which direction."""
 
 
-def look(inputs: ControllerInput, piece: Piece, scene: Scene, between: bool, params: ValetParams) -> Sight:
-    """Return the sight of a car that drives a ``piece``, the rest of its move.
+class SensorOnWay(NamedTuple):
+    """One sensor, as a car drives on."""
 
-    ``between``: into or out of a slot along the road, where what a corner sensor hears stands before or behind the
-    car: what is known there does not stop a car that leaves it. Across the road a corner swings past it.
-    """
+    number: int
+    at: Pose
+    reading: float
+    leads: bool
+    """It looks where the car is going, or swings out."""
+    ahead: bool
+    """It looks straight there."""
+
+
+def look(inputs: ControllerInput, piece: Piece, scene: Scene, gap: Gap, params: ValetParams) -> Sight:
+    """Return the sight of a car that drives a ``piece``, the rest of its move, on its way into a ``gap``, or no gap."""
     readings = inputs.ultrasonic
     first = 0 if piece.way > 0.0 else 4
     swings = _swinging_corner(piece) if params.search.active else -1
@@ -93,14 +107,8 @@ def look(inputs: ControllerInput, piece: Piece, scene: Scene, between: bool, par
         if (leads or on_side) and reading < LOOKED_AT and reading < nearest:
             at = sensor_at(params.car.ultrasonic.mounts[number], inputs.odometry)
             ahead = first < number < first + 3 and params.search.active
-            corner = params.search.active and not ahead
-            heeded = not corner or reading < (SIDE if on_side else CORNER)
-            known = expected(at, scene, params) if heeded else FREE
-            stops = heeded and reading < known - _surprise(reading, corner, params)
-            stops = stops or (corner and leads and reading < AT_CORNER)
-            if stops and between and corner and leads and reading > known - CORNER_SURPRISE:
-                stops = not _leaves(number, inputs.odometry, piece, known, scene, params)
-            if stops or (ahead and reading < min(CLOSE, abs(piece.way) + CLOSEST)):
+            one = SensorOnWay(number, at, reading, leads, ahead)
+            if _stops(one, inputs.odometry, piece, scene, gap, params):
                 nearest = reading
                 beside = readings[2 * first + 3 - number] if ahead else reading
                 straight = ahead and abs(beside - reading) < BOTH
@@ -110,6 +118,34 @@ def look(inputs: ControllerInput, piece: Piece, scene: Scene, between: bool, par
         straight = end.heard and end.reading < nearest
         echo = end.echo if straight else echo
     return _sight(nearest, leading, abs(inputs.measured_speed), straight, echo, params)
+
+
+def _stops(one: SensorOnWay, pose: Pose, piece: Piece, scene: Scene, gap: Gap, params: ValetParams) -> bool:
+    """Return whether a car stops before what a sensor hears.
+
+    Into or out of a slot along the road what a corner sensor hears stands before or behind the car: what is known
+    there does not stop a car that leaves it. Across the road a corner swings past it.
+    """
+    if not params.search.active:
+        return one.reading < expected(one.at, scene, params) - params.guard.surprise
+    if one.ahead:
+        close = one.reading < min(CLOSE, abs(piece.way) + CLOSEST)
+        return close or one.reading < expected(one.at, scene, params) - params.guard.surprise
+    apart = _is_apart(_end_of(one.at, one.reading), gap, params)
+    if one.reading >= (APART if apart else SIDE if one.number >= SIDE_SENSOR else CORNER):
+        return False
+    known = expected(one.at, scene, params)
+    stops = one.reading < known - _surprise(one.reading) or (one.leads and one.reading < AT_CORNER)
+    if stops and gap.layout == GapLayout.ALONG and one.leads and one.reading > known - CORNER_SURPRISE:
+        return not _leaves(one.number, pose, piece, known, scene, params)
+    return stops
+
+
+def _is_apart(echo: Pose, gap: Gap, params: ValetParams) -> bool:
+    """Return whether an echo came from beyond a gap's neighbours, where less was heard when it was found."""
+    across = point_in_gap(echo.x, echo.y, gap).across
+    beyond = params.car.width if gap.layout == GapLayout.ACROSS else car_length(params.car)
+    return gap.layout != GapLayout.NONE and not -beyond < across < gap.width + beyond
 
 
 class EndAhead(NamedTuple):
@@ -171,10 +207,10 @@ def _swinging_corner(piece: Piece) -> int:
     return 3 if piece.k > 0.0 else 0
 
 
-def _surprise(reading: float, corner: bool, params: ValetParams) -> float:
-    """Return how much nearer [m] than the map says something is that is unknown."""
-    if not corner:
-        return params.guard.surprise
+def _surprise(reading: float) -> float:
+    """Return how much nearer [m] than the map says something beside the way is that is unknown."""
+    if reading > CORNER:
+        return APART_SURPRISE
     return CORNER_SURPRISE if reading > TOUCHING else TOUCHING_SURPRISE
 
 

@@ -1,11 +1,16 @@
 """What a car sees at a place, with a speed, by what its sensors hear."""
 
+import math
+
 from controller_fmu.interface import ControllerInput
 from controller_fmu.planning.plan import Piece
 from controller_fmu.planning.task import Scene
+from controller_fmu.sensing.gap import Gap, GapLayout
 from controller_fmu.valet import sight
 from controller_fmu.valet.params import ValetParams
 from modelkit.vocabulary import Pose
+
+LONG = 6.0
 
 
 def look(
@@ -14,9 +19,13 @@ def look(
     piece: Piece,
     speed: float,
     scene: Scene,
-    between: bool,
+    along: bool,
     params: ValetParams,
 ) -> sight.Sight:
-    """Return the sight of a car that hears ``readings`` at ``pose`` with ``speed`` [m/s]."""
+    """Return the sight of a car that hears ``readings`` at ``pose`` with ``speed`` [m/s].
+
+    ``along``: it is on its way into a slot along the road, that lies where it stands.
+    """
     inputs = ControllerInput(odometry=pose, measured_speed=speed, ultrasonic=readings)
-    return sight.look(inputs, piece, scene, between, params)
+    gap = Gap(GapLayout.ALONG, Pose(), Pose(LONG, 0.0), -0.5 * math.pi, width=LONG) if along else Gap()
+    return sight.look(inputs, piece, scene, gap, params)

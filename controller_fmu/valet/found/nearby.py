@@ -14,9 +14,9 @@ from controller_fmu.planning.task import drive
 from controller_fmu.sensing.around import point_in_gap
 from controller_fmu.sensing.ear import SideEar, listen
 from controller_fmu.sensing.gap import Gap
-from controller_fmu.sensing.heard_store import forget_place, forget_side, put_heard, put_line
+from controller_fmu.sensing.heard_store import MOST_LINES, forget_place, forget_side, put_heard, put_line
 from controller_fmu.valet.params import ValetParams
-from modelkit.geometry import Point, outline, point_gap
+from modelkit.geometry import Point, line_box, outline, point_gap
 from modelkit.vocabulary import Pose
 
 FRONT_EARS = (3, 10, 0, 8)
@@ -31,6 +31,8 @@ UNDER = 0.03
 """What is nearer [m] to the car, or inside of it, would touch it as the map has it, by ``STUB``."""
 STEP = 0.2
 """The rest of the way is looked along at steps of this [m]."""
+KNOWN = 0.1
+"""What lies so near [m] to a line of the map is known, wherever it is outside the slot."""
 SURE = 2
 SHARE = 0.5
 """Of the clearance planned, that a new place may take."""
@@ -86,10 +88,35 @@ def hear_nearby(
         at = sensor_at(mounts[sensor], inputs.odometry)
         heard = listen(store, ear, SIDES + number, at, inputs.ultrasonic[sensor], params.car.ultrasonic)
         last = (SIDES + number) * HEARD + heard.places - 1
-        if heard.places > 0 and store.heard_count[last] >= SURE and is_new(store, last, gap):
+        if heard.places > 0 and store.heard_count[last] >= SURE and is_unknown(store, last, gap):
             blocked = blocked or room_beside(store, last, rest, params) < SHARE * rest.path.margin
         ears = ears[:number] + (heard,) + ears[number + 1 :]
     return Nearby(ears, forward, blocked)
+
+
+def is_unknown(store: PlanStore, place: int, gap: Gap) -> bool:
+    """Return whether a place lies inside a gap, or not before, beside or behind it where the map has a line."""
+    return is_new(store, place, gap) or is_off_map(store, place, gap)
+
+
+def is_off_map(store: PlanStore, place: int, gap: Gap) -> bool:
+    """Return whether a place lies beside the way into a gap, or far before it, and not on a line of the map."""
+    x = store.heard_x[place]
+    y = store.heard_y[place]
+    at = point_in_gap(x, y, gap)
+    apart = at.across < -KNOWN or at.across > gap.width + KNOWN or at.deep < -BEFORE
+    return apart and nearest_line(store, Point(x, y)) > KNOWN
+
+
+def nearest_line(store: PlanStore, point: Point) -> float:
+    """Return the distance [m] from a point to the nearest line of the map."""
+    nearest = KNOWN + 1.0
+    for line in range(MOST_LINES + 1):
+        a = 2 * line
+        if store.around_of[a] > 0:
+            box = line_box(store.around_x[a], store.around_y[a], store.around_x[a + 1], store.around_y[a + 1])
+            nearest = min(nearest, point_gap(point, box))
+    return nearest
 
 
 def is_new(store: PlanStore, place: int, gap: Gap) -> bool:
@@ -136,10 +163,12 @@ def room_beside(store: PlanStore, place: int, rest: Rest, params: ValetParams) -
 
 def lay_nearby(store: PlanStore, state: Nearby, gap: Gap, lines: int) -> None:
     """Add what was heard in a gap to its map, which has so many lines."""
-    for number in range(4):
-        first = (SIDES + number) * HEARD
-        for place in range(first, first + state.ears[number].places):
-            if store.heard_count[place] >= SURE and is_new(store, place, gap):
-                x = store.heard_x[place]
-                y = store.heard_y[place]
-                lines = put_line(store, lines, x - STUB, y, x + STUB, y)
+    for inside in (True, False):
+        for number in range(4):
+            first = (SIDES + number) * HEARD
+            for place in range(first, first + state.ears[number].places):
+                laid = is_new(store, place, gap) if inside else is_off_map(store, place, gap)
+                if store.heard_count[place] >= SURE and laid:
+                    x = store.heard_x[place]
+                    y = store.heard_y[place]
+                    lines = put_line(store, lines, x - STUB, y, x + STUB, y)

@@ -44,7 +44,7 @@ class PlanParams(NamedTuple):
     ramp: Annotated[float, Signal("m", "way over which the curvature rises to the planned", 0.05, 5.0, HOUSE)] = 0.8
     margin: Annotated[float, Signal("m", "distance kept to neighbours", 0.0, 1.0, HOUSE)] = 0.14
     kerb_margin: Annotated[float, Signal("m", "distance kept to kerb or wall beside", 0.0, 1.0, HOUSE)] = 0.13
-    stand_out: Annotated[float, Signal("m", "how far the car may stand out if it must", 0.0, 0.15, "GB/T 41630")] = 0.08
+    stand_out: Annotated[float, Signal("m", "how far the car may stand out if it must", 0.0, 0.15, "GB/T 41630")] = 0.1
     at_a_time: Annotated[int, Signal("1", "candidates looked at in one sample", 1, 1000, HOUSE)] = 40
     shifts: Annotated[int, Signal("1", "most shifts, the first reverse counts one", 1, 30, "GB/T 41630")] = 8
 

@@ -31,8 +31,6 @@ REGAINED = 0.5
 """Way [m]."""
 SLOT_END = 0.8
 """What a car hears so near [m] straight ahead, in a slot, is what that ends at."""
-HALTED_NS = 500_000_000
-"""A halt before something unknown counts as long as this beside it: a car that sets out again and again plans anew."""
 BACKS = 3
 """A car goes back the way it came no more often in one drive."""
 
@@ -99,8 +97,6 @@ def moved_on(
     before = state.step
     if step == Step.PLAN and before != Step.PLAN:
         state = _to_plan_anew(store, state, params)
-    if step == Step.HALT and before == Step.DRIVE and state.sight.blocked:
-        state = state._replace(watch=state.watch._replace(blocked=state.watch.blocked + HALTED_NS))
     if step == Step.SET_WHEEL and before != Step.SET_WHEEL:
         state = _with_piece(state, before, params)
     wheel = state.wheel

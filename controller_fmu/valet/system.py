@@ -66,7 +66,7 @@ def guards_of(store: PlanStore, state: ValetState, inputs: ControllerInput, para
     stop = abs(speed) * params.drive.delay + 0.5 * speed * speed / params.drive.brake
     lost = abs(tracked.lateral_error) > guard.corridor or abs(tracked.heading_error) > guard.corridor_heading
     lost = lost or state.nearby.in_the_way
-    blocked_long = state.watch.blocked * 1e-9 > guard.wait and state.sight.blocked
+    blocked_long = state.watch.blocked * 1e-9 > guard.wait
     at_end = tracked.left <= AT_END and state.piece + 1 >= state.path.used
     goal = state.request.goal
     moved = False

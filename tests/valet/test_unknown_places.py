@@ -13,15 +13,10 @@ from controller_fmu.planning.task import CORNERS, Corner, Scene
 from controller_fmu.sensing.ear import SideEar
 from controller_fmu.sensing.gap import Gap, GapLayout
 from controller_fmu.sensing.heard_store import MOST_LINES, put_line
-from controller_fmu.valet.chart import Guard, Step
-from controller_fmu.valet.driven import moved_on
 from controller_fmu.valet.found import nearby as module_of_places
 from controller_fmu.valet.found.nearby import Nearby, Rest, hear_nearby, is_off_map, lay_nearby
 from controller_fmu.valet.params import ValetParams, ValetSearchParams
-from controller_fmu.valet.sight import Sight, look
-from controller_fmu.valet.state import ValetState
-from controller_fmu.valet.system import guards_of
-from modelkit.store import new_store
+from controller_fmu.valet.sight import look
 from modelkit.vocabulary import Pose
 from tests.valet.test_valet_found import ACROSS, heard
 
@@ -105,16 +100,3 @@ def test_places_are_lines_of_the_map_when_the_way_is_planned_anew_those_in_the_s
         again = [store.around_x[2 * line] for line in range(MOST_LINES)]
         lay_nearby(store, state._replace(ears=(state.ears[0],) + (SideEar(),) * 3), ACROSS, lines + 5)
         assert lines > 0 or [store.around_x[2 * line] for line in range(MOST_LINES)] == again
-
-
-def test_a_car_that_halts_again_and_again_before_something_unknown_plans_anew() -> None:
-    params, store = ValetParams(), new_store(PlanStore)
-    state = ValetState(step=Step.DRIVE, sight=Sight(blocked=True))
-    for _ in range(7):
-        assert not guards_of(store, state, ControllerInput(), params) >> Guard.STANDING_LOST & 1
-        state = moved_on(store, state._replace(step=Step.DRIVE), Step.HALT, ControllerInput(), params)
-    assert guards_of(store, state, ControllerInput(), params) >> Guard.STANDING_LOST & 1
-    free = state._replace(sight=Sight())
-    assert not guards_of(store, free, ControllerInput(), params) >> Guard.STANDING_LOST & 1
-    again = moved_on(store, free._replace(step=Step.DRIVE), Step.HALT, ControllerInput(), params)
-    assert again.watch.blocked == state.watch.blocked

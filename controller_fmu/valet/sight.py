@@ -126,13 +126,11 @@ def _stops(one: SensorOnWay, pose: Pose, piece: Piece, scene: Scene, gap: Gap, p
     Into or out of a slot along the road what a corner sensor hears stands before or behind the car: what is known
     there does not stop a car that leaves it. Across the road a corner swings past it.
     """
-    if not params.search.active:
-        return one.reading < expected(one.at, scene, params) - params.guard.surprise
-    if one.ahead:
-        close = one.reading < min(CLOSE, abs(piece.way) + CLOSEST)
+    if one.ahead or not params.search.active:
+        close = one.ahead and one.reading < min(CLOSE, abs(piece.way) + CLOSEST)
         return close or one.reading < expected(one.at, scene, params) - params.guard.surprise
-    apart = _is_apart(_end_of(one.at, one.reading), gap, params)
-    if one.reading >= (APART if apart else SIDE if one.number >= SIDE_SENSOR else CORNER):
+    near = SIDE if one.number >= SIDE_SENSOR else CORNER
+    if one.reading >= APART or (one.reading >= near and not _is_apart(_end_of(one.at, one.reading), gap, params)):
         return False
     known = expected(one.at, scene, params)
     stops = one.reading < known - _surprise(one.reading) or (one.leads and one.reading < AT_CORNER)

@@ -95,7 +95,7 @@ def hear_nearby(
 
 
 def is_unknown(store: PlanStore, place: int, gap: Gap) -> bool:
-    """Return whether a place lies inside a gap, or not before, beside or behind it where the map has a line."""
+    """Return whether the map does not have a place: it lies inside a gap, or elsewhere off the map's lines."""
     return is_new(store, place, gap) or is_off_map(store, place, gap)
 
 
@@ -105,18 +105,18 @@ def is_off_map(store: PlanStore, place: int, gap: Gap) -> bool:
     y = store.heard_y[place]
     at = point_in_gap(x, y, gap)
     apart = at.across < -KNOWN or at.across > gap.width + KNOWN or at.deep < -BEFORE
-    return apart and nearest_line(store, Point(x, y)) > KNOWN
+    return apart and not is_on_line(store, Point(x, y))
 
 
-def nearest_line(store: PlanStore, point: Point) -> float:
-    """Return the distance [m] from a point to the nearest line of the map."""
-    nearest = KNOWN + 1.0
+def is_on_line(store: PlanStore, point: Point) -> bool:
+    """Return whether a point lies within ``KNOWN`` of a line of the map."""
+    found = False
     for line in range(MOST_LINES + 1):
         a = 2 * line
-        if store.around_of[a] > 0:
+        if not found and store.around_of[a] > 0:
             box = line_box(store.around_x[a], store.around_y[a], store.around_x[a + 1], store.around_y[a + 1])
-            nearest = min(nearest, point_gap(point, box))
-    return nearest
+            found = point_gap(point, box) <= KNOWN
+    return found
 
 
 def is_new(store: PlanStore, place: int, gap: Gap) -> bool:
@@ -162,13 +162,19 @@ def room_beside(store: PlanStore, place: int, rest: Rest, params: ValetParams) -
 
 
 def lay_nearby(store: PlanStore, state: Nearby, gap: Gap, lines: int) -> None:
-    """Add what was heard in a gap to its map, which has so many lines."""
+    """Add what was heard that the map of a gap, of so many lines, does not have: what lies in the gap first."""
     for inside in (True, False):
-        for number in range(4):
-            first = (SIDES + number) * HEARD
-            for place in range(first, first + state.ears[number].places):
-                laid = is_new(store, place, gap) if inside else is_off_map(store, place, gap)
-                if store.heard_count[place] >= SURE and laid:
-                    x = store.heard_x[place]
-                    y = store.heard_y[place]
-                    lines = put_line(store, lines, x - STUB, y, x + STUB, y)
+        lines = _lay_places(store, state, gap, lines, inside)
+
+
+def _lay_places(store: PlanStore, state: Nearby, gap: Gap, lines: int, inside: bool) -> int:
+    """Add the places inside a gap, or those off its map; returns how many lines that has then."""
+    for number in range(4):
+        first = (SIDES + number) * HEARD
+        for place in range(first, first + state.ears[number].places):
+            laid = is_new(store, place, gap) if inside else is_off_map(store, place, gap)
+            if store.heard_count[place] >= SURE and laid:
+                x = store.heard_x[place]
+                y = store.heard_y[place]
+                lines = put_line(store, lines, x - STUB, y, x + STUB, y)
+    return lines

@@ -11,7 +11,7 @@ from typing import NamedTuple
 from controller_fmu.planning.plan_store import HEARD, PlanStore
 from controller_fmu.sensing.gap import Gap, GapLayout
 from controller_fmu.sensing.heard_store import clear_around, put_line, set_line
-from controller_fmu.sensing.places import is_certain, is_sure
+from controller_fmu.sensing.places import frame_of, is_before_echo, is_certain, is_sure
 from modelkit.maths import clamp
 from modelkit.vocabulary import Pose
 
@@ -26,6 +26,13 @@ LEVEL = 0.05
 WIDE = 5.0
 NEAR_CORNER = 0.5
 """What is heard so near [m] to a gap's corner is of the neighbour there."""
+SWUNG = 2.0
+SWUNG_DEEP = 2.0
+"""So far [m] beside a gap, and so deep, is of use to a car that swings into it."""
+SWUNG_LESS = 0.1
+"""The margin [m] of that."""
+STEPS = 8
+"""It is looked at in so many steps each way."""
 OFF_CAR = 0.3
 """What was not heard of a row lies so far [m] behind the car that drives past it."""
 
@@ -52,6 +59,8 @@ class AroundGap(NamedTuple):
     """Heard before the bumper [m]."""
     length: float
     """So deep [m] the gap is needed, if nothing was heard before."""
+    half_angle: float = 0.0
+    """Of a sensor's cone [rad]."""
     told: bool = False
     """The gap was told from outside: so were its corners."""
 
@@ -62,7 +71,10 @@ def lay_around(store: PlanStore, gap: Gap, what: AroundGap) -> int:
     back = 0.0 if what.told else _off_car(store, gap, what)
     b = Pose(gap.b.x + back * math.cos(gap.into), gap.b.y + back * math.sin(gap.into), gap.b.heading)
     gap = gap._replace(b=b)
-    lines = _lay_gap(store, gap, min(gap.depth, what.length))
+    beyond = _free_beyond(store, gap, what)
+    lines = _lay_gap(store, gap, min(gap.depth, what.length), beyond)
+    e = along_of(gap)
+    gap = gap._replace(b=Pose(gap.b.x + beyond * e.x, gap.b.y + beyond * e.y, gap.b.heading))
     if gap.layout == GapLayout.ACROSS:
         out = min(gap.out, _beside(gap, what)) if back > 0.0 else gap.out
         lines = _lay_fronts(store, lines, gap, 2.0 * what.half_width, out)
@@ -114,8 +126,28 @@ def point_in_gap(x: float, y: float, gap: Gap) -> PlaceInGap:
     return PlaceInGap(dx * e.x + dy * e.y, dx * math.cos(gap.into) + dy * math.sin(gap.into))
 
 
-def _lay_gap(store: PlanStore, gap: Gap, deep: float) -> int:
-    """Make the lines beside the gap and behind it."""
+def _free_beyond(store: PlanStore, gap: Gap, what: AroundGap) -> float:
+    """Return how far [m] beyond its corner B, where nothing was heard, it is known to be free beside a gap."""
+    if what.told or gap.layout != GapLayout.ACROSS or _is_heard(store, gap, what):
+        return 0.0
+    cone = frame_of(what.side, what.here, what.pose, what.half_angle).cone
+    e = along_of(gap)
+    tx = math.cos(gap.into)
+    ty = math.sin(gap.into)
+    beyond = 0.0
+    goes_on = True
+    for number in range(STEPS):
+        for part in range(STEPS):
+            across = (number + 1) * SWUNG / STEPS
+            deep = part * SWUNG_DEEP / (STEPS - 1)
+            point = Pose(gap.b.x + across * e.x + deep * tx, gap.b.y + across * e.y + deep * ty, 0.0)
+            goes_on = goes_on and is_before_echo(store, point, what.side, cone)
+        beyond = (number + 1) * SWUNG / STEPS if goes_on else beyond
+    return max(beyond - SWUNG_LESS, 0.0)
+
+
+def _lay_gap(store: PlanStore, gap: Gap, deep: float, beyond: float) -> int:
+    """Make the lines beside the gap and behind it; so far ``beyond`` [m] it is free as deep as ``SWUNG_DEEP``."""
     tx = math.cos(gap.into)
     ty = math.sin(gap.into)
     b = (gap.b.x - gap.a.x) * tx + (gap.b.y - gap.a.y) * ty
@@ -125,7 +157,17 @@ def _lay_gap(store: PlanStore, gap: Gap, deep: float) -> int:
     bx = gap.b.x + (end - b) * tx
     by = gap.b.y + (end - b) * ty
     lines = put_line(store, 0, gap.a.x, gap.a.y, ax, ay)
-    lines = put_line(store, lines, gap.b.x, gap.b.y, bx, by)
+    x = gap.b.x
+    y = gap.b.y
+    if beyond > 0.0:
+        e = along_of(gap)
+        x = x + SWUNG_DEEP * tx
+        y = y + SWUNG_DEEP * ty
+        far_x = beyond * e.x
+        far_y = beyond * e.y
+        lines = put_line(store, lines, x, y, x + far_x, y + far_y)
+        lines = put_line(store, lines, gap.b.x + far_x, gap.b.y + far_y, x + far_x, y + far_y)
+    lines = put_line(store, lines, x, y, bx, by)
     return put_line(store, lines, ax, ay, bx, by)
 
 
@@ -192,14 +234,21 @@ def _lay_beyond(store: PlanStore, lines: int, gap: Gap, what: AroundGap) -> int:
 
 def _off_car(store: PlanStore, gap: Gap, what: AroundGap) -> float:
     """Return how much deeper [m] a gap's corner B lies, if nothing was heard there and the car stands before it."""
+    if _is_heard(store, gap, what):
+        return 0.0
+    across = (gap.b.y - gap.a.y) * math.cos(gap.row) - (gap.b.x - gap.a.x) * math.sin(gap.row)
+    return max(across * _away(gap) - _beside(gap, what), 0.0) / abs(math.sin(gap.into - gap.row))
+
+
+def _is_heard(store: PlanStore, gap: Gap, what: AroundGap) -> bool:
+    """Return whether something was heard at a gap's corner B."""
     first = what.side * HEARD
     for place in range(first, first + what.here):
         dx = store.heard_x[place] - gap.b.x
         dy = store.heard_y[place] - gap.b.y
         if dx * dx + dy * dy < NEAR_CORNER * NEAR_CORNER:
-            return 0.0
-    across = (gap.b.y - gap.a.y) * math.cos(gap.row) - (gap.b.x - gap.a.x) * math.sin(gap.row)
-    return max(across * _away(gap) - _beside(gap, what), 0.0) / abs(math.sin(gap.into - gap.row))
+            return True
+    return False
 
 
 def _beside(gap: Gap, what: AroundGap) -> float:

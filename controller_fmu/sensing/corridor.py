@@ -30,7 +30,7 @@ STRAIGHT = 0.25
 FLUSH = 0.15
 """What lies so near [m] to the front of a neighbour, beside it, is more of its front."""
 FAR_OFF = 2.5
-TOLD_INSIDE = 0.5
+TOLD_INSIDE = 0.6
 """From no farther off would a cone that the opening just lets through tell what is so far [m] in."""
 JUST_INSIDE = 0.1
 LOOKED = 4
@@ -85,7 +85,8 @@ def _bound_of(store: PlanStore, frame: PlacesFrame, place: int, want: Wanted, le
         its = spot(store, other, frame)
         if one.s - FACE <= its.s <= one.s and its.z < front and is_sure(store, other, frame.end):
             front = its.z
-    t = front_of(front, one.s, one.s + least, frame, want) + CROSS_ASKEW if is_askew(frame) else -DEEP
+    low = beside_body(store, frame, one.s, -1.0, want) if is_askew(frame) else one.s
+    t = front_of(front, low, low + least, frame, want) + CROSS_ASKEW if is_askew(frame) else -DEEP
     return CorridorBound(t, front + (BESIDE if lengthwise else CROSS * math.sin(frame.into - frame.row)))
 
 
@@ -146,5 +147,6 @@ def _is_open(store: PlanStore, frame: PlacesFrame, gap: Gap, low: float, high: f
         for into in (0.2, 0.5, 0.8):
             count = count + 1 if is_free(store, t + into, s, frame) else count
     lets_through = 0.5 * (high - low) / math.sqrt(1.0 - frame.cone)
-    far = turned(gap.a.x, gap.a.y, frame).y > min(FAR_OFF, lets_through - TOLD_INSIDE - BEFORE_ECHO)
+    off = 0.5 * (turned(gap.a.x, gap.a.y, frame).y + turned(gap.b.x, gap.b.y, frame).y)
+    far = off > min(FAR_OFF, lets_through - TOLD_INSIDE - BEFORE_ECHO)
     return count >= LOOKED or (far and first == 3)

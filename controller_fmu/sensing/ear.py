@@ -36,6 +36,8 @@ CREST = 0.4
 
 The distance to one convex thing never does that.
 """
+SHARP = 1.0
+"""By so much [m/m] where only a few samples go together, as in an opening that the cone just passes."""
 DOUBTFUL = 0.25
 """Where it does so by less, noise may be the reason: the place is not known, what comes may be of the same thing."""
 
@@ -77,27 +79,45 @@ def listen(store: PlanStore, ear: SideEar, side: int, at: Pose, reading: float, 
             sums = HeardSample(ear.sums.x + at.x, ear.sums.y + at.y, ear.sums.axis + at.heading, ear.sums.r + reading)
             return ear._replace(n=n + 1.0, sums=sums)
         mean = HeardSample(ear.sums.x / n, ear.sums.y / n, ear.sums.axis / n, ear.sums.r / n)
-        lost = _is_lost(ear.samples[KEPT - 2].r, ear.samples[KEPT - 1].r, mean.r)
-        kept = ear.samples[: KEPT - 1] + (mean,) if lost else ear.samples[1:] + (mean,)
+        lost = _lost(ear.samples, mean)
+        kept = _without(ear.samples, lost) + (mean,)
         ear = ear._replace(samples=kept, taken=ear.taken + 1 if ear.taken < KEPT else KEPT)
-        if ear.taken == KEPT and not lost:
+        if ear.taken == KEPT and lost == 0:
             dx = kept[KEPT - 1].x - kept[0].x
             dy = kept[KEPT - 1].y - kept[0].y
             ear = _placed(store, ear, side, math.atan2(dy, dx), sensors)
     return ear._replace(n=1.0, sums=HeardSample(at.x, at.y, at.heading, reading))
 
 
-def _is_lost(before: float, middle: float, after: float) -> bool:
-    """Return whether a reading between two others that agree was lost, or was of something else."""
+def _lost(samples: tuple[HeardSample, ...], mean: HeardSample) -> int:
+    """Return how many of the last samples were lost, or of something else: one or two between others that agree."""
+    last = samples[KEPT - 1].r
+    before = samples[KEPT - 2].r
+    if _is_between(before, last, mean.r):
+        return 1
+    first = samples[KEPT - 3].r
+    return 2 if _is_between(first, before, mean.r) and _is_between(first, last, mean.r) else 0
+
+
+def _is_between(before: float, middle: float, after: float) -> bool:
+    """Return whether a reading differs from two others that agree."""
     return abs(middle - before) > LOST and abs(middle - after) > LOST and abs(before - after) < LOST
+
+
+def _without(samples: tuple[HeardSample, ...], lost: int) -> tuple[HeardSample, ...]:
+    """Return the samples to which one more is added: without the oldest, or the lost ones."""
+    if lost == 0:
+        return samples[1:]
+    return samples[: KEPT - 1] if lost == 1 else samples[:1] + samples[: KEPT - 2]
 
 
 def _placed(store: PlanStore, ear: SideEar, side: int, forward: float, sensors: CarUltrasonic) -> SideEar:
     """Return the ear with the place that the middle sample heard put into the store."""
     middle = ear.samples[MIDDLE]
     before = ear.samples[MIDDLE - 1].r
-    end_x = middle.x + middle.r * math.cos(middle.axis)
-    end_y = middle.y + middle.r * math.sin(middle.axis)
+    free = middle.r
+    end_x = middle.x + free * math.cos(middle.axis)
+    end_y = middle.y + free * math.sin(middle.axis)
     if side < SIDES:
         put_ray(store, side, ear.rays, Pose(middle.x, middle.y, middle.axis), Pose(end_x, end_y, middle.axis))
     ear = ear._replace(rays=ear.rays + 1)
@@ -107,10 +127,11 @@ def _placed(store: PlanStore, ear: SideEar, side: int, forward: float, sensors: 
     last = _reach(ear.samples, 1)
     if last - first < LEAST:
         return ear
-    if last - first == KEPT - 1:
-        bend = _slope(ear.samples, MIDDLE, last, forward) - _slope(ear.samples, first, MIDDLE, forward)
-        if bend < -DOUBTFUL:
-            return ear._replace(silent=ear.silent or bend < -CREST)
+    half = (first + last) // 2
+    bend = _slope(ear.samples, half, last, forward) - _slope(ear.samples, first, half, forward)
+    whole = last - first == KEPT - 1
+    if bend < -(DOUBTFUL if whole else SHARP):
+        return ear._replace(silent=ear.silent or not whole or bend < -CREST)
     slope = _slope(ear.samples, first, last, forward)
     looks = wrap_angle(middle.axis - forward)
     least = max(abs(looks) - sensors.half_angle, 0.0)

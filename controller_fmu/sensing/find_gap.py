@@ -51,7 +51,7 @@ def find_gap(store: PlanStore, side: int, places: int, at: Pose, want: Wanted) -
     turn = turn_of(store, frame)
     if turn == UNCLEAR:
         return Gap()
-    row = row_of(store, frame)
+    row = row_of(store, frame, want.street)
     askew = wrap_quarter(turn - row.turn) if row.behind > UNSEEN else turn
     if abs(askew) <= ANGLED:
         square = along(frame, turn, turn + 0.5 * PI)
@@ -81,17 +81,22 @@ def _square(store: PlanStore, frame: PlacesFrame, turn: float, want: Wanted) -> 
 def gap_across(store: PlanStore, side: int, places: int, at: Pose, want: Wanted, into: float) -> Gap:
     """Return the gap between cars at an angle if they stand across the direction ``into`` [rad], not along it; or NONE.
 
-    Cars turned by 45 deg look alike from before, whichever of two ways they stand.
+    Cars turned by 45 deg look alike from before, whichever of two ways they stand. But not if sides one way are longer
+    than any front, and much longer than those across.
     """
     frame = frame_of(side, places, at, want.half_angle)
     turn = turn_of(store, frame)
-    row = row_of(store, frame)
+    row = row_of(store, frame, want.street)
     if turn == UNCLEAR or row.behind <= UNSEEN or abs(wrap_quarter(turn - row.turn)) <= ANGLED:
         return Gap()
     one = turn + 0.5 * PI
     other = turn if turn > 0.0 else turn + PI
     was = frame.mirror * (at.heading - into)
-    way = other if abs(math.cos(was - one)) > abs(math.cos(was - other)) else one
+    was_one = abs(math.cos(was - one)) > abs(math.cos(was - other))
+    way = other if was_one else one
+    stood = sides_along(store, frame, one if was_one else other).longest
+    if stood > max(WIDEST, sides_along(store, frame, way).longest + MUCH_LONGER):
+        return Gap()
     return corridor(store, along(frame._replace(line=row.behind), row.turn, way), want, False)
 
 

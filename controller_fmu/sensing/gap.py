@@ -7,6 +7,7 @@ from modelkit.vocabulary import Pose
 
 DEEP = 50.0
 """Depth [m] of a gap behind which nothing was heard."""
+UNHEARD = 1000.0
 
 
 class GapLayout(IntEnum):
@@ -38,6 +39,8 @@ class Wanted(NamedTuple):
     """So far [m] into the road the car may stand out of the slot; at an angle it is more along the slot."""
     at_end: bool = False
     """The search ends here: what is unclear is decided by what there is."""
+    street: float = UNHEARD
+    """Heading of the road's other side [rad], if it was heard: the row goes along it."""
     tail_in: bool = False
     """A slot at an angle that leads back against the way is wanted, else one that leads on."""
 

@@ -150,9 +150,13 @@ def _goes_on(store: PlanStore, place: int) -> bool:
 
 
 def is_free(store: PlanStore, t: float, s: float, frame: PlacesFrame) -> bool:
-    """Return whether a point of the corridor is known to be free: it lies before an echo, in the cone."""
-    point = in_world(t, s, frame)
-    for ray in range(frame.side * RAYS, frame.side * RAYS + RAYS):
+    """Return whether a point of the corridor is known to be free."""
+    return is_before_echo(store, in_world(t, s, frame), frame.side, frame.cone)
+
+
+def is_before_echo(store: PlanStore, point: Pose, side: int, cone: float) -> bool:
+    """Return whether a point of the world lies before an echo, in the cone (``PlacesFrame``) of a side's sensor."""
+    for ray in range(side * RAYS, side * RAYS + RAYS):
         dx = point.x - store.ray_x[ray]
         dy = point.y - store.ray_y[ray]
         ex = store.ray_end_x[ray] - store.ray_x[ray]
@@ -162,6 +166,6 @@ def is_free(store: PlanStore, t: float, s: float, frame: PlacesFrame) -> bool:
             square = dx * dx + dy * dy
             reach = math.sqrt(ex * ex + ey * ey)
             free = reach - BEFORE_ECHO
-            if square < free * free and dot * dot > frame.cone * square * reach * reach:
+            if square < free * free and dot * dot > cone * square * reach * reach:
                 return True
     return False

@@ -4,6 +4,7 @@ import math
 from typing import NamedTuple
 
 from controller_fmu.planning.plan_store import PlanStore
+from controller_fmu.sensing.gap import UNHEARD
 from controller_fmu.sensing.places import UNSEEN, PlacesFrame, is_sure, seen
 from modelkit.vocabulary import Pose
 
@@ -29,6 +30,8 @@ APART = 2.0
 """A line is drawn through things that stand so far apart [m]."""
 POST = 0.6
 """What is no larger [m] may be a post, that stands before its row or behind it."""
+ENOUGH = 4
+"""So many things tell alone how their row goes: one of three may be a post before it."""
 LEAST_ROW = 2.5
 """Sum of squares [m2] of how far apart things have to stand for a direction."""
 
@@ -53,12 +56,43 @@ class Crest(NamedTuple):
     post: bool = False
 
 
-def row_of(store: PlanStore, frame: PlacesFrame) -> RowLine:
+def row_of(store: PlanStore, frame: PlacesFrame, street: float) -> RowLine:
     """Return the line of a row: out of those through two things that stand out, the one on which most others lie.
 
     A pillar that stands before the row, or what stands alone behind it, is on no line with the others; where two cars
-    were heard, posts do not count. What is on the line tells it by regression.
+    were heard, posts do not count. What is on the line tells it by regression. If no more than two things are on it,
+    but the road's other side was heard, the row goes along that, ``street`` its heading [rad]: the first or last car of
+    which the sensor heard only a part stands less out of its row there.
     """
+    line = _line_of(store, frame)
+    if line.things >= ENOUGH or street == UNHEARD:
+        return line
+    return _line_along(store, frame, math.tan(frame.mirror * (frame.at.heading - street)), line)
+
+
+def _line_along(store: PlanStore, frame: PlacesFrame, steep: float, line: RowLine) -> RowLine:
+    """Return the line of a slope [m/m] on which most of what stands out lies, for a ``line`` of another slope."""
+    crests = _without_posts(_crests(store, frame, steep))
+    most = 0.0
+    at = FAR
+    for one in crests:
+        score = _score(crests, steep, one.y - steep * one.x)
+        if one.weight > 0.0 and score > most:
+            most = score
+            at = one.y - steep * one.x
+    if most <= 0.0:
+        return line
+    n = 0.0
+    behind = 0.0
+    for crest in crests:
+        if crest.weight > 0.0 and abs(crest.y - at - steep * crest.x) < CLOSE:
+            n += crest.weight
+            behind += crest.weight * (crest.y - steep * crest.x)
+    return line._replace(turn=math.atan(steep), behind=behind / n / math.sqrt(1.0 + steep * steep))
+
+
+def _line_of(store: PlanStore, frame: PlacesFrame) -> RowLine:
+    """Return the line that things tell."""
     crests = _without_posts(_crests(store, frame, _leaning(store, frame)))
     most = 0.0
     slope = 0.0

@@ -76,6 +76,8 @@ class Sides(NamedTuple):
     """Length [m] of the longest."""
     front: bool = False
     """One is as long as a car is wide, and ends there."""
+    turn: float = 0.0
+    """Of the longest against the way [rad], in [-pi/2, pi/2]."""
 
 
 def wrap_quarter(angle: float) -> float:
@@ -86,6 +88,7 @@ def wrap_quarter(angle: float) -> float:
 def sides_along(store: PlanStore, frame: PlacesFrame, angle: float) -> Sides:
     """Return what was seen of sides along ``angle`` [rad]: long sides and whole fronts tell how cars stand."""
     longest = 0.0
+    turn = 0.0
     front = False
     for start in range(frame.first, frame.end):
         end = _end_of_side(store, frame, start, angle)
@@ -94,10 +97,12 @@ def sides_along(store: PlanStore, frame: PlacesFrame, angle: float) -> Sides:
         dx = here.x - first.x
         dy = here.y - first.y
         length = math.sqrt(dx * dx + dy * dy)
-        longest = max(longest, length)
+        if length > longest:
+            longest = length
+            turn = math.atan2(dy, dx) if dx > 0.0 else math.atan2(-dy, -dx)
         if not front and NARROWEST < length < WIDEST:
             front = _ends_at(store, frame, here if dy > 0.0 else first, angle)
-    return Sides(longest, front)
+    return Sides(longest, front, turn)
 
 
 def _end_of_side(store: PlanStore, frame: PlacesFrame, start: int, angle: float) -> int:

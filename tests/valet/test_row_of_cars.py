@@ -9,7 +9,7 @@ from controller_fmu.interface import ControllerInput
 from controller_fmu.planning.plan_store import PlanStore
 from controller_fmu.sensing import find_gap as module_of_gaps
 from controller_fmu.sensing.find_gap import TwoWays, find_gap
-from controller_fmu.sensing.gap import Gap, GapLayout, Wanted
+from controller_fmu.sensing.gap import UNHEARD, Gap, GapLayout, Wanted
 from controller_fmu.sensing.heard_store import put_heard
 from controller_fmu.sensing.places import PlacesFrame, along, frame_of
 from controller_fmu.sensing.row_line import RowLine, row_of
@@ -125,7 +125,7 @@ def test_a_row_passed_askew_is_the_line_on_which_its_cars_lie_though_they_stand_
     for x, y in corners:
         for number in range(20):
             places = put_heard(store, 0, places, x, y, number == 0)
-    row = row_of(store, frame_of(0, places, Pose(), WANTED.half_angle))
+    row = row_of(store, frame_of(0, places, Pose(), WANTED.half_angle), UNHEARD)
     assert row.things == 4
     slope = linear_regression(*zip(*corners, strict=True)).slope
     assert math.degrees(row.turn) == pytest.approx(-math.degrees(math.atan(slope)), abs=0.01)

@@ -11,6 +11,7 @@ from controller_fmu.sensing.around import AroundGap, along_of, lay_around
 from controller_fmu.sensing.ear import SideEar, listen
 from controller_fmu.sensing.find_gap import find_gap
 from controller_fmu.sensing.gap import Gap, GapLayout, Wanted
+from controller_fmu.sensing.street import street_of
 from controller_fmu.valet.given import gap_told, told_reason
 from controller_fmu.valet.params import SlotWish, ValetParams, WishedSide
 from modelkit.car import car_length
@@ -122,6 +123,14 @@ def wanted(params: ValetParams) -> Wanted:
     )
 
 
+def wanted_beside(store: PlanStore, state: Search, side: int, at: Pose, params: ValetParams) -> Wanted:
+    """Return what is wanted of a slot on a side, with how the road goes there, as far as its other side was heard."""
+    right = side == RIGHT
+    places = state.left.places if right else state.right.places
+    street = street_of(store, LEFT if right else RIGHT, places, at, params.car.ultrasonic.half_angle)
+    return wanted(params)._replace(street=street)
+
+
 def with_map(store: PlanStore, state: Search, inputs: ControllerInput, params: ValetParams) -> Search:
     """Return the search whose slot is shown, with the map around it made."""
     ahead = min(inputs.ultrasonic[FRONT_SENSOR], inputs.ultrasonic[FRONT_SENSOR + 1])
@@ -147,6 +156,7 @@ def mapped(store: PlanStore, state: Search, params: ValetParams) -> Search:
         rear=car.rear_overhang,
         ahead=state.ahead,
         length=(length if across else car.width) + BEHIND,
+        half_angle=sensors.half_angle,
         told=state.told != SlotKind.NONE,
     )
     lines = lay_around(store, state.gap, what)
@@ -166,7 +176,7 @@ def _judged(
     """Return the search with the gap that the places of one side make."""
     ear = state.right if side == RIGHT else state.left
     at = sensor_at(params.car.ultrasonic.mounts[sensor], inputs.odometry)._replace(heading=inputs.odometry.heading)
-    want = wanted(params)._replace(at_end=state.way > params.search.way - LAST)
+    want = wanted_beside(store, state, side, at, params)._replace(at_end=state.way > params.search.way - LAST)
     gap = find_gap(store, side, ear.places, at, want)
     lost = gap.layout == GapLayout.NONE and state.gap.layout != GapLayout.NONE
     if _is_across(gap, state.gap) or (lost and want.at_end):

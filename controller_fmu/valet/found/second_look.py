@@ -8,7 +8,7 @@ from controller_fmu.planning.plan_store import PlanStore
 from controller_fmu.planning.task import Corner
 from controller_fmu.sensing.find_gap import gap_across
 from controller_fmu.sensing.gap import Gap, GapLayout
-from controller_fmu.valet.found.search import RIGHT, mapped, wanted
+from controller_fmu.valet.found.search import RIGHT, mapped, wanted_beside
 from controller_fmu.valet.params import ValetParams
 from controller_fmu.valet.sight import SEEN_CORNERS, Sight
 from controller_fmu.valet.state import ValetState
@@ -50,4 +50,5 @@ def _other_gap(store: PlanStore, state: ValetState, params: ValetParams) -> Gap:
     mount = params.car.ultrasonic.mounts[RIGHT_SENSOR if right else LEFT_SENSOR]
     at = sensor_at(mount, sought.pose)._replace(heading=sought.pose.heading)
     places = sought.right.places if right else sought.left.places
-    return gap_across(store, sought.side, places, at, wanted(params)._replace(at_end=True), sought.gap.into)
+    want = wanted_beside(store, sought, sought.side, at, params)._replace(at_end=True)
+    return gap_across(store, sought.side, places, at, want, sought.gap.into)

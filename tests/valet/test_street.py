@@ -2,6 +2,7 @@
 
 import math
 from itertools import pairwise
+from typing import Any
 
 import pytest
 from shapely.geometry import LineString, Point
@@ -91,7 +92,12 @@ def test_the_side_that_tells_how_the_road_goes_is_the_other_one(
     monkeypatch: pytest.MonkeyPatch, side: int, other: int
 ) -> None:
     asked: list[int] = []
-    monkeypatch.setattr(search, "street_of", lambda store, which, *_: asked.append(which) or 0.25)
+
+    def hearing(store: PlanStore, which: int, *_: Any) -> float:
+        asked.append(which)
+        return 0.25
+
+    monkeypatch.setattr(search, "street_of", hearing)
     want = search.wanted_beside(new_store(PlanStore), search.begin_search(0), side, Pose(), ValetParams())
     assert asked == [other]
     assert want.street == 0.25

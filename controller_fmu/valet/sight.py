@@ -43,8 +43,10 @@ CLOSE = 0.18
 
 A corner of the car is so far from its sensor: on the way into a slot that was found, the car could stop before it.
 """
-AT_CORNER = 0.17
+AT_CORNER = 0.21
 """What a corner sensor that leads hears so near [m] is as good as touched, known or not."""
+NEARER = 0.05
+"""A corner of the car is so much nearer [m] than its sensor to what that hears: the car drives slowly sooner."""
 SOON = 0.05
 """What a corner sensor hears is left if what is known there is farther off so much [m] of way later."""
 CLOSEST = 0.07
@@ -103,7 +105,8 @@ def look(inputs: ControllerInput, piece: Piece, scene: Scene, gap: Gap, params: 
         on_side = number >= SIDE_SENSOR and params.search.active
         reading = readings[number]
         leads = first <= number < first + 4 or number == swings
-        leading = reading if leads and reading < leading else leading
+        off = reading if first < number < first + 3 else reading - NEARER
+        leading = off if leads and off < leading else leading
         if (leads or on_side) and reading < LOOKED_AT and reading < nearest:
             at = sensor_at(params.car.ultrasonic.mounts[number], inputs.odometry)
             ahead = first < number < first + 3 and params.search.active

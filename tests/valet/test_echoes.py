@@ -39,7 +39,9 @@ def test_one_echo_lost_or_two_on_a_side_free_nothing_behind_it(lost: int, free: 
     assert all(store.heard_y[place] == pytest.approx(-1.5, abs=0.02) for place in range(ear.places))
 
 
-@pytest.mark.parametrize(("between", "after", "reach"), [([SILENT, SILENT], 2.5, SILENT), ([1.8, 2.08, 1.75], 1.5, 2.08)])
+@pytest.mark.parametrize(
+    ("between", "after", "reach"), [([SILENT, SILENT], 2.5, SILENT), ([1.8, 2.08, 1.75], 1.5, 2.08)]
+)
 def test_what_is_heard_between_two_things_or_comes_and_goes_by_and_by_was_not_lost(
     between: list[float], after: float, reach: float
 ) -> None:

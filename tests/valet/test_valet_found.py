@@ -140,7 +140,7 @@ def test_a_move_that_ends_before_something_near_is_driven_to_its_end() -> None:
 
 def test_a_corner_that_is_as_good_as_touched_stops_the_car_though_the_map_has_it() -> None:
     params = ValetParams()._replace(search=ValetSearchParams()._replace(active=True))
-    for reading, stops in ((0.15, True), (0.19, False)):
+    for reading, stops in ((0.20, True), (0.22, False)):
         mount = params.car.ultrasonic.mounts[0]
         x, y = mount.x + reading * math.cos(mount.yaw), mount.y + reading * math.sin(mount.yaw)
         corners = ((x, y - 0.01), (x, y + 0.01), (x + 0.01, y + 0.01), (x + 0.01, y - 0.01))

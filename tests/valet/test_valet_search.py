@@ -285,6 +285,17 @@ def test_what_is_near_a_leading_corner_or_one_that_swings_out_slows_the_car() ->
     assert not look(near, Pose(), Piece(-1.0, 0.2), 0.3, Scene(), False, ValetParams()).blocked
 
 
+@pytest.mark.parametrize(("sensor", "nearer"), [(0, 0.05), (1, 0.0), (2, 0.0), (3, 0.05)])
+def test_a_corner_is_nearer_to_what_its_sensor_hears_than_a_bumper(sensor: int, nearer: float) -> None:
+    params = ValetParams()._replace(search=ValetSearchParams()._replace(active=True))
+    silent = (5.0,) * 12
+    speeds = [
+        look(silent[:which] + (reading,) + silent[which + 1 :], Pose(), Piece(1.0), 0.3, Scene(), False, params).speed
+        for which, reading in ((sensor, 0.5), (1, 0.5 - nearer))
+    ]
+    assert speeds[0] == pytest.approx(speeds[1])
+
+
 @pytest.mark.skipif(not can_compile(), reason="FMUs without Python need a C compiler: pip install ziglang")
 def test_switched_off_on_the_way_in_it_is_over_and_without_a_slot_it_says_so() -> None:
     files = fmu_files("native", lambda text: None)

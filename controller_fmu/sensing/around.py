@@ -11,6 +11,7 @@ from typing import NamedTuple
 from controller_fmu.planning.plan_store import HEARD, PlanStore
 from controller_fmu.sensing.gap import Gap, GapLayout
 from controller_fmu.sensing.heard_store import clear_around, put_line, set_line
+from controller_fmu.sensing.in_gap import along_of
 from controller_fmu.sensing.places import frame_of, is_before_echo, is_certain, is_sure
 from modelkit.maths import clamp
 from modelkit.vocabulary import Pose
@@ -96,34 +97,6 @@ def lay_end(store: PlanStore, gap: Gap, lines: int) -> None:
     x = gap.a.x + deep * math.cos(gap.into)
     y = gap.a.y + deep * math.sin(gap.into)
     set_line(store, lines, x, y, x + gap.width * e.x, y + gap.width * e.y)
-
-
-def along_of(gap: Gap) -> Pose:
-    """Return the direction across the way into a gap, from A to B, as a unit vector."""
-    x = -math.sin(gap.into)
-    y = math.cos(gap.into)
-    forward = (gap.b.x - gap.a.x) * x + (gap.b.y - gap.a.y) * y > 0.0
-    return Pose(x if forward else -x, y if forward else -y, 0.0)
-
-
-class PlaceInGap(NamedTuple):
-    """A place as a gap has it [m]: from A towards B across it, and into it."""
-
-    across: float
-    deep: float
-
-
-def in_gap(store: PlanStore, place: int, gap: Gap) -> PlaceInGap:
-    """Return where in a gap a place lies that was heard."""
-    return point_in_gap(store.heard_x[place], store.heard_y[place], gap)
-
-
-def point_in_gap(x: float, y: float, gap: Gap) -> PlaceInGap:
-    """Return where in a gap a point lies."""
-    e = along_of(gap)
-    dx = x - gap.a.x
-    dy = y - gap.a.y
-    return PlaceInGap(dx * e.x + dy * e.y, dx * math.cos(gap.into) + dy * math.sin(gap.into))
 
 
 def _free_beyond(store: PlanStore, gap: Gap, what: AroundGap) -> float:

@@ -6,8 +6,8 @@ from typing import Annotated, NamedTuple
 from controller_fmu.common.told import AT_THE_ROAD, ECHOES, WELL_IN, SlotKind, ToldSlot, depth_of, is_usable_slot
 from controller_fmu.interface import ControllerInput, Reason
 from controller_fmu.planning.plan_store import HEARD, PlanStore
-from controller_fmu.sensing.around import along_of, in_gap
 from controller_fmu.sensing.gap import DEEP, Gap, GapLayout
+from controller_fmu.sensing.in_gap import along_of, in_gap
 from controller_fmu.valet.params import GivenSlot, ValetParams
 from controller_fmu.valet.slot import body_of
 from modelkit.signal import Group, Signal

@@ -12,8 +12,8 @@ from controller_fmu.interface import ControllerInput
 from controller_fmu.planning.plan import Piece
 from controller_fmu.planning.plan_store import PlanStore
 from controller_fmu.planning.task import CORNERS, Corner, Scene, drive
-from controller_fmu.sensing.around import point_in_gap
 from controller_fmu.sensing.gap import Gap, GapLayout
+from controller_fmu.sensing.in_gap import point_in_gap
 from controller_fmu.valet.params import MAP_CORNERS, ValetParams
 from modelkit.car import car_length
 from modelkit.geometry import Point, cone_line

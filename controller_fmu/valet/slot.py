@@ -4,8 +4,8 @@ import math
 
 from controller_fmu.common.told import SlotKind
 from controller_fmu.planning.task import PlannedCar as Body
-from controller_fmu.sensing.around import along_of
 from controller_fmu.sensing.gap import Gap, GapLayout
+from controller_fmu.sensing.in_gap import along_of
 from controller_fmu.valet.params import GivenSlot, SlotWish, ValetParams
 from modelkit.car import car_length, largest_curvature
 from modelkit.maths import PI

@@ -10,11 +10,12 @@ from controller_fmu.interface import ControllerInput
 from controller_fmu.planning.plan import PATH, Path, Piece
 from controller_fmu.planning.plan_store import HEARD, SIDES, PlanStore
 from controller_fmu.planning.task import CORNERS, Corner, Scene, drive
-from controller_fmu.sensing.around import AroundGap, lay_around, point_in_gap
+from controller_fmu.sensing.around import AroundGap, lay_around
 from controller_fmu.sensing.ear import SideEar
 from controller_fmu.sensing.find_gap import gap_across
 from controller_fmu.sensing.gap import DEEP, Gap, GapLayout
 from controller_fmu.sensing.heard_store import put_heard
+from controller_fmu.sensing.in_gap import point_in_gap
 from controller_fmu.valet.chart import Step
 from controller_fmu.valet.driven import heard_on
 from controller_fmu.valet.found.at_end import is_beside, is_in_place

@@ -4,8 +4,8 @@ import math
 from typing import NamedTuple
 
 from controller_fmu.planning.plan_store import HEARD, SIDES, PlanStore
-from controller_fmu.sensing.around import PlaceInGap, along_of, in_gap
 from controller_fmu.sensing.gap import DEEP, Gap, GapLayout
+from controller_fmu.sensing.in_gap import PlaceInGap, along_of, in_gap
 from controller_fmu.valet.found.nearby import INSIDE, SURE, Nearby
 from modelkit.vocabulary import Pose
 

@@ -11,10 +11,10 @@ from controller_fmu.interface import ControllerInput
 from controller_fmu.planning.plan import PATH, Path
 from controller_fmu.planning.plan_store import HEARD, SIDES, PlanStore
 from controller_fmu.planning.task import drive
-from controller_fmu.sensing.around import point_in_gap
 from controller_fmu.sensing.ear import SideEar, listen
 from controller_fmu.sensing.gap import Gap
 from controller_fmu.sensing.heard_store import MOST_LINES, forget_place, forget_side, put_heard, put_line
+from controller_fmu.sensing.in_gap import point_in_gap
 from controller_fmu.valet.params import ValetParams
 from modelkit.geometry import Point, line_box, outline, point_gap
 from modelkit.vocabulary import Pose

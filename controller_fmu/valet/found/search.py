@@ -7,10 +7,11 @@ from controller_fmu.common.sensors import LEFT_SENSOR, RIGHT_SENSOR, is_told_ane
 from controller_fmu.common.told import SlotKind, ToldSlot
 from controller_fmu.interface import ControllerInput, Reason
 from controller_fmu.planning.plan_store import PlanStore
-from controller_fmu.sensing.around import AroundGap, along_of, lay_around
+from controller_fmu.sensing.around import AroundGap, lay_around
 from controller_fmu.sensing.ear import SideEar, listen
 from controller_fmu.sensing.find_gap import find_gap
 from controller_fmu.sensing.gap import Gap, GapLayout, Wanted
+from controller_fmu.sensing.in_gap import along_of
 from controller_fmu.sensing.street import street_of
 from controller_fmu.valet.given import gap_told, told_reason
 from controller_fmu.valet.params import SlotWish, ValetParams, WishedSide

@@ -115,9 +115,8 @@ def _placed(store: PlanStore, ear: SideEar, side: int, forward: float, sensors: 
     """Return the ear with the place that the middle sample heard put into the store."""
     middle = ear.samples[MIDDLE]
     before = ear.samples[MIDDLE - 1].r
-    free = middle.r
-    end_x = middle.x + free * math.cos(middle.axis)
-    end_y = middle.y + free * math.sin(middle.axis)
+    end_x = middle.x + middle.r * math.cos(middle.axis)
+    end_y = middle.y + middle.r * math.sin(middle.axis)
     if side < SIDES:
         put_ray(store, side, ear.rays, Pose(middle.x, middle.y, middle.axis), Pose(end_x, end_y, middle.axis))
     ear = ear._replace(rays=ear.rays + 1)

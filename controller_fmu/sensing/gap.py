@@ -8,6 +8,7 @@ from modelkit.vocabulary import Pose
 DEEP = 50.0
 """Depth [m] of a gap behind which nothing was heard."""
 UNHEARD = 1000.0
+"""The heading of a road whose other side was not heard."""
 
 
 class GapLayout(IntEnum):

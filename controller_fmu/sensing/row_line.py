@@ -60,9 +60,9 @@ def row_of(store: PlanStore, frame: PlacesFrame, street: float) -> RowLine:
     """Return the line of a row: out of those through two things that stand out, the one on which most others lie.
 
     A pillar that stands before the row, or what stands alone behind it, is on no line with the others; where two cars
-    were heard, posts do not count. What is on the line tells it by regression. If no more than two things are on it,
-    but the road's other side was heard, the row goes along that, ``street`` its heading [rad]: the first or last car of
-    which the sensor heard only a part stands less out of its row there.
+    were heard, posts do not count. What is on the line tells it by regression. If fewer than ``ENOUGH``
+    are on it, but the road's other side was heard, the row goes along that, ``street`` its heading [rad]: of the first
+    or last car the sensor may have heard a part of a side alone, which stands less out of the row than its corner.
     """
     line = _line_of(store, frame)
     if line.things >= ENOUGH or street == UNHEARD:

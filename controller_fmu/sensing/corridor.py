@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 from controller_fmu.planning.plan_store import PlanStore
 from controller_fmu.sensing.gap import DEEP, Gap, GapLayout, Wanted
-from controller_fmu.sensing.neighbours import FACE, beside_body, front_of, is_askew, measured
+from controller_fmu.sensing.neighbours import EDGE, FACE, beside_body, front_of, is_askew, measured
 from controller_fmu.sensing.places import BEFORE_ECHO, PlacesFrame, Spot, is_free, is_sure, seen, spot, spot_of, turned
 
 LONGEST_FRONT = 2.3
@@ -44,12 +44,11 @@ def corridor(store: PlanStore, frame: PlacesFrame, want: Wanted, lengthwise: boo
     found = Gap()
     for place in range(frame.first, frame.end):
         if is_sure(store, place, frame.end):
-            limit = _bound_of(store, frame, place, want, lengthwise)
-            at = spot(store, place, frame)
-            low = at.s
-            which = _next(store, frame, place, want, limit, lengthwise) if _bounds(at, limit) else place
+            at_end = _end_of(store, frame, place, want, lengthwise)
+            which = at_end.which
+            low = spot(store, place, frame).s
             high = spot(store, which, frame).s if which != place else low + least + BESIDE_ONE
-            ends = which != place or (want.open_ended and _bounds(at, limit))
+            ends = which != place or (want.open_ended and at_end.bounds)
             if ends and least <= high - low < LONGEST and seen(store, which, frame).x < -PASSED:
                 if askew:
                     low = beside_body(store, frame, low, -1.0, want)
@@ -85,9 +84,41 @@ def _bound_of(store: PlanStore, frame: PlacesFrame, place: int, want: Wanted, le
         its = spot(store, other, frame)
         if one.s - FACE <= its.s <= one.s and its.z < front and is_sure(store, other, frame.end):
             front = its.z
-    low = beside_body(store, frame, one.s, -1.0, want) if is_askew(frame) else one.s
-    t = front_of(front, low, low + least, frame, want) + CROSS_ASKEW if is_askew(frame) else -DEEP
+    t = front_of(front, one.s, one.s + least, frame, want) + CROSS_ASKEW if is_askew(frame) else -DEEP
     return CorridorBound(t, front + (BESIDE if lengthwise else CROSS * math.sin(frame.into - frame.row)))
+
+
+class CorridorEnd(NamedTuple):
+    """What ends a corridor that a place begins."""
+
+    which: int
+    """A place; the one that begins it if none does."""
+    bounds: bool
+    """The place begins one."""
+
+
+def _end_of(store: PlanStore, frame: PlacesFrame, place: int, want: Wanted, lengthwise: bool) -> CorridorEnd:
+    """Return what ends the corridor that ``place`` begins.
+
+    The bound is told from where the neighbour's hidden body begins, if that is of consequence: it takes its time.
+    """
+    bound = _bound_of(store, frame, place, want, lengthwise)
+    one = spot(store, place, frame)
+    which = _next(store, frame, place, want, bound, lengthwise) if _bounds(one, bound) else place
+    clear = _clearly(one, bound, frame, want) and _clearly(spot(store, which, frame), bound, frame, want)
+    if is_askew(frame) and not clear:
+        angle = frame.into - frame.row
+        off = beside_body(store, frame, one.s, -1.0, want) - one.s
+        bound = bound._replace(t=bound.t + off * math.cos(angle) / math.sin(angle))
+        which = _next(store, frame, place, want, bound, lengthwise) if _bounds(one, bound) else place
+    return CorridorEnd(which, _bounds(one, bound))
+
+
+def _clearly(at: Spot, bound: CorridorBound, frame: PlacesFrame, want: Wanted) -> bool:
+    """Return whether a place bounds a corridor, or does not, wherever its neighbour's body begins."""
+    angle = frame.into - frame.row
+    least = bound.t + (want.width + EDGE) * min(math.cos(angle), 0.0) / math.sin(angle)
+    return at.z < bound.z or at.t < least or at.t >= bound.t
 
 
 def _bounds(at: Spot, limit: CorridorBound) -> bool:

@@ -75,7 +75,9 @@ SLOW = 0.15
 STANDING = 0.05
 TELLS = 0.4
 UNSEEN_BRAKE = 0.3
-"""Until a stop from ``TELLS`` [m/s] was seen the brake is taken to be so late [s]: what 1.1 m/s2 take longer than 2."""
+"""Until a stop from ``TELLS`` [m/s] was seen the brake is taken to be so late [s]: what 1.1 m/s2 take longer than 2.
+
+What is kept straight ahead is enough for that."""
 DOUBTS = 2.5
 MOVED = 0.002
 """A car that has gone less [m] stands."""
@@ -141,10 +143,15 @@ class HeardHere(NamedTuple):
     mapped: Echo
 
 
+def seen_late_by(state: GuardState, params: ControllerParams) -> float:
+    """Return how late [s] the brake was ever seen to be."""
+    return max(state.delay, params.apa.guard.brake_delay)
+
+
 def late_by(state: GuardState, params: ControllerParams) -> float:
     """Return how late [s] the brake is taken to be: as late as it was ever seen to be, later until it was seen."""
-    least = params.apa.guard.brake_delay
-    return max(state.delay, least if state.shown else max(least, UNSEEN_BRAKE))
+    seen = seen_late_by(state, params)
+    return seen if state.shown else max(seen, UNSEEN_BRAKE)
 
 
 def stopping_way(state: GuardState, speed: float, params: ControllerParams) -> float:
@@ -277,7 +284,8 @@ def watch_way(
     mapped = course._replace(pose=here.pose)
     strange = _free_of_unknown(state.unknown, mapped, stop, guard.surprise_gap)
     tight = _free_of_unknown(state.close, mapped, stop, guard.echo_gap)
-    straight = room_straight(readings, here, course.direction, params)
+    unseen = abs(course.speed) * (late_by(state, params) - seen_late_by(state, params))
+    straight = room_straight(readings, here, course.direction, params) + unseen
     raw = _free_of_echoes(state, mapped, stop, guard.echo_gap)
     beside = min(min(known, raw), tight)
     old = abs(course.speed) * params.car.ultrasonic.cycle

@@ -123,6 +123,17 @@ def test_one_who_has_moved_in_a_row_across_the_road_tells_neither_direction_nor_
         assert slot.a.y + line_of(slot) == pytest.approx(min(a, b, key=abs), abs=0.02), "in line with the one who stays"
 
 
+@pytest.mark.parametrize("who", ["a", "b"])
+@pytest.mark.parametrize("aside", [-0.25, 0.0, 0.25])
+def test_one_heard_elsewhere_along_the_road_was_found_badly_and_has_not_moved(who: str, aside: float) -> None:
+    """Cars move along themselves: the line is that of the corners as they are heard, not as they were found."""
+    found = begin_map(between(Kind.PERPENDICULAR, 3.6), Pose(1.8, -3.0, 0.5 * math.pi), MAP)
+    thing = getattr(found, who)
+    here = found._replace(**{who: thing._replace(x=thing.x + aside, y=-0.3)})
+    line = slot_of_map(here, between(Kind.PERPENDICULAR, 3.6), MAP).line
+    assert line == pytest.approx(0.0 if aside else 0.15, abs=0.03)
+
+
 @pytest.mark.parametrize(("out", "least", "most"), [(0.3, 0.4, 3.0), (0.9, 0.0, 1e-9)])
 def test_one_who_had_left_the_row_before_he_was_found_tells_no_direction(out: float, least: float, most: float) -> None:
     here = begin_map(between(Kind.PERPENDICULAR, 2.8)._replace(b_out=out), Pose(1.4, -3.0, 0.5 * math.pi), MAP)

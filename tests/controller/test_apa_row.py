@@ -11,6 +11,7 @@ from controller_fmu.apa.around.local_map import begin_map, ear_at, expected, hea
 from controller_fmu.apa.around.row import (
     as_found,
     driven_on,
+    in_row,
     is_certain,
     is_heard,
     is_in_the_middle,
@@ -132,6 +133,19 @@ def test_one_heard_elsewhere_along_the_road_was_found_badly_and_has_not_moved(wh
     here = found._replace(**{who: thing._replace(x=thing.x + aside, y=-0.3)})
     line = slot_of_map(here, between(Kind.PERPENDICULAR, 3.6), MAP).line
     assert line == pytest.approx(0.0 if aside else 0.15, abs=0.03)
+
+
+@pytest.mark.parametrize(
+    ("turned", "way", "beside", "moves"),
+    [(20.0, 0.38, 0.0, True), (-20.0, 0.38, 0.0, True), (20.0, 0.38, 0.2, False), (0.0, 0.6, 0.2, True)],
+)
+def test_one_who_moves_along_himself_does_so_aslant_to_the_map(
+    turned: float, way: float, beside: float, moves: bool
+) -> None:
+    found = begin_map(between(Kind.PERPENDICULAR, 3.6), Pose(1.8, -3.0, 0.5 * math.pi), MAP)
+    c, s = math.cos(turned * DEG), math.sin(turned * DEG)
+    b = found.b._replace(x=found.b.x - way * s + beside * c, y=way * c + beside * s, heading=turned * DEG)
+    assert in_row(found._replace(b=b)).b.y == pytest.approx(0.0 if moves else b.y, abs=0.02)
 
 
 @pytest.mark.parametrize(("out", "least", "most"), [(0.3, 0.4, 3.0), (0.9, 0.0, 1e-9)])

@@ -73,7 +73,7 @@ RESERVE = 0.03
 SLOW = 0.15
 """So fast [m/s] a car may go beside anything that is heard, however near."""
 STANDING = 0.05
-TELLS = 0.4
+TELLS = 0.25
 UNSEEN_BRAKE = 0.3
 """Until a stop from ``TELLS`` [m/s] was seen the brake is taken to be so late [s]: what 1.1 m/s2 take longer than 2.
 

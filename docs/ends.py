@@ -58,7 +58,12 @@ def ends(whole: Table, mild: Table) -> list[str]:
 
 def parked(whole: Table, mild: Table) -> list[str]:
     """Return the lines of the table of those parked."""
-    titles = ("whose slot is valid", "and that ask for what is possible", f"and in which {QUIET}")
+    titles = (
+        "whose slot is valid",
+        "without those that somebody walked into",
+        "valid, and that ask for what is possible",
+        f"and in which {QUIET}",
+    )
     lines = ["| parked of the runs | whole ranges | half the ranges |", "|---|---:|---:|"]
     both = [list(parked_of(table).values()) for table in (whole, mild)]
     for title, *pairs in zip(titles, *both, strict=True):

@@ -117,9 +117,9 @@ class EndParams(NamedTuple):
     few: Annotated[int, Signal("1", "shifts after which tuning is only for more than the next two", 0, 30, HOUSE)] = 3
     near_lateral: Annotated[float, Signal("m", "parked after so many shifts", 0.001, 0.5, HOUSE)] = 0.04
     near_heading: Annotated[float, Signal("rad", "parked after so many shifts", 0.001, 0.5, HOUSE)] = 0.9 * pi / 180.0
-    miss_lateral: Annotated[float, Signal("m", "parked if nothing better is left", 0.0, 1.0, "GB/T 41630")] = 0.12
+    miss_lateral: Annotated[float, Signal("m", "parked if nothing better is left", 0.0, 1.0, "GB/T 41630")] = 0.07
     miss_heading: Annotated[float, Signal("rad", "parked if nothing better is left", 0.0, 1.0, "GB/T 41630")] = (
-        2.5 * pi / 180.0
+        1.5 * pi / 180.0
     )
 
 

@@ -156,7 +156,13 @@ def test_one_who_had_left_the_row_before_he_was_found_tells_no_direction(out: fl
 
 @pytest.mark.parametrize(
     ("out", "kind", "surely", "enough"),
-    [(0.08, 2, True, True), (0.115, 2, False, True), (0.115, 1, True, True), (0.135, 1, False, False)],
+    [
+        (0.08, 2, True, True),
+        (0.112, 2, False, True),
+        (0.12, 2, False, False),
+        (0.112, 1, True, True),
+        (0.12, 1, False, False),
+    ],
 )
 def test_a_car_across_the_road_that_stands_out_is_parked_if_nothing_leads_deeper(
     out: float, kind: int, surely: bool, enough: bool
@@ -179,6 +185,18 @@ def test_one_who_has_driven_off_along_the_road_stands_out_as_far_as_he_did(gone:
     here = found._replace(b=found.b._replace(x=found.b.x + gone, y=-0.3, yy=0.03**2), a=found.a._replace(yy=0.13**2))
     line = as_found(here)
     assert line.b.y == pytest.approx(-0.1 if gone else -0.3, abs=0.05)
+
+
+@pytest.mark.parametrize(("off", "kind", "sure"), [(0.1, 1, True), (0.14, 1, False), (0.14, 2, True), (0.55, 2, False)])
+@pytest.mark.parametrize("out", [1.0, -1.0])
+def test_how_deep_a_car_stands_is_not_told_by_corners_that_contradict_each_other(
+    off: float, kind: int, sure: bool, out: float
+) -> None:
+    """Further out against each other than they were found: the odometry has turned, or one was found badly."""
+    found = begin_map(between(kind), Pose(2.0, 1.5, 0.0), MAP)
+    a = found.a._replace(y=-0.5 * out * off)
+    b = found.b._replace(y=0.5 * out * off)
+    assert is_certain(found._replace(a=a, b=b), MAP) == sure
 
 
 def line_part(own: float, other: float) -> float:

@@ -98,15 +98,27 @@ def test_a_contact_is_the_end_whatever_is_said_after_it() -> None:
     assert ends.end_of(row, None) == ends.PARKED
     assert ends.end_of({**row, "within GB/T 41630, parallel": False}, None) == ends.FALSE
     assert ends.end_of({**row, "mode": 7.0, "reason": "no_slot"}, None) == ends.FAILED
-    moved = {**row, "within GB/T 41630, perpendicular": False, "kind": 1.0, "shifts": 3, "duration": 40.0} | {
-        "final.heading_error": 0.01, "final.lateral_error": 0.1, "final.slot_margin": -0.3,
-        "mover": 4, "mover_at": 10.0, "mover_speed": 0.5, "mover_way": 0.4,
-    }  # fmt: skip
-    assert ends.end_of(moved, None) == ends.PARKED
-    assert ends.end_of({**moved, "mover_at": 39.9}, None) == ends.FALSE
-    assert ends.end_of({**moved, "mover_way": -0.4}, None) == ends.FALSE
-    assert ends.end_of({**moved, "mover": 0}, None) == ends.FALSE
     assert ends.end_of({**row, "mode": 4.0}, None) == ends.ENDLESS
+
+
+def test_a_neighbour_who_has_moved_moves_the_line_of_a_row_across_the_road() -> None:
+    """The car, 4 m long and 1.7 m wide, stands 30 cm out of a slot of its length, and of 4.5 m with the mouth at 0."""
+    row = {"mode": 6.0, "reason": "none", "within GB/T 41630, perpendicular": False, "kind": 1.0, "shifts": 3} | {
+        "duration": 40.0, "final.heading_error": 0.01, "final.lateral_error": 0.1, "final.slot_margin": -0.3,
+        "mover": 4, "mover_at": 10.0, "mover_speed": 0.5, "mover_way": 0.4,
+        "vehicle.car.wheelbase": 2.5, "vehicle.car.front_overhang": 0.8, "vehicle.car.rear_overhang": 0.7,
+        "vehicle.car.width": 1.7, "final.x": 0.0, "final.y": -3.0, "final.heading": 0.5 * math.pi,
+        "slot.x": 0.0, "slot.y": -2.25, "slot.heading": 0.5 * math.pi, "slot.length": 4.5, "slot.width": 2.5,
+    }  # fmt: skip
+    assert ends.end_of(row, None) == ends.PARKED, "20 cm further out"
+    assert ends.end_of({**row, "mover_at": 39.9}, None) == ends.FALSE, "he has only set out"
+    assert ends.end_of({**row, "mover_way": -0.4}, None) == ends.FALSE
+    assert ends.end_of({**row, "mover": 0}, None) == ends.FALSE
+    deep = {**row, "final.y": -4.2}
+    assert ends.end_of({**deep, "mover_way": -0.6}, None) == ends.PARKED, "30 cm further in: 10 cm too deep"
+    assert ends.end_of({**deep, "mover_way": -0.3}, None) == ends.FALSE, "25 cm too deep"
+    left = {name: -row[name] for name in ("final.y", "final.heading", "slot.y", "slot.heading")}
+    assert ends.end_of({**row, **left}, None) == ends.PARKED
 
 
 def test_what_is_valid_and_what_is_asked_for_follows_from_the_factors_alone() -> None:

@@ -38,8 +38,9 @@ HAS_MOVED = 0.2
 """A neighbour who stands so much [m] along himself from where he was found has moved since."""
 MOVED_ASIDE = 0.3
 """How far out he stands beside a parallel slot is heard no better than this [m] then."""
-OUT_OF_LINE = 0.5
-"""A map in which a neighbour has come so much [m] further out, or in, than the other is lost,"""
+OUT_OF_LINE = (0.12, 0.5)
+"""A map in which a neighbour has come so much [m] further out, or in, than the other is lost, along the road and across
+it,"""
 STAYS = 0.25
 """but for one beside a perpendicular slot who has moved while the other stands to this [m] where he was found."""
 
@@ -170,7 +171,8 @@ def _has_one_moved(here: LocalMap) -> bool:
 
 def is_certain(here: LocalMap, params: MapParams) -> bool:
     """Return whether neighbours are still where a car between them hears them, and in line as they were found."""
-    in_line = abs(_out_of_line(here)) < OUT_OF_LINE or _has_one_moved(here)
+    most = OUT_OF_LINE[0 if here.kind == Kind.PARALLEL else 1]
+    in_line = abs(_out_of_line(here)) < most or _has_one_moved(here)
     return in_line and _unsure_along(here) < params.certain * params.certain
 
 

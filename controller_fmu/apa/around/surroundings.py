@@ -19,8 +19,8 @@ from controller_fmu.common.slot_frame import SlotFrame, to_slot, to_world
 from controller_fmu.interface import ControllerInput, ControllerParams
 from modelkit.vocabulary import Gear, Pose
 
-DOUBT = 0.5
-"""The line between the neighbours' corners is taken to lie further in by this share of its standard deviation,"""
+DOUBT = 1.0
+"""The line between the neighbours' corners is taken to lie further in by so many of its standard deviations,"""
 DOUBT_AT_FIRST = 1.2
 """and by this beside a perpendicular slot, as long as a way leads deeper."""
 ROLLS = 0.1

@@ -21,6 +21,7 @@ from orchestrator.sweep.columns import WITHIN
 from orchestrator.sweep.study.study import Columns, Derived, Goal
 from orchestrator.verdict.measures import Measure, When
 from orchestrator.verdict.numbers import Number
+from orchestrator.verdict.standing import slot_margin
 from vehicle_fmu.scene import Obstacle, SceneParams, is_there, obstacle_box
 
 TOUCHING = When("vehicle.contact", (1,))
@@ -109,11 +110,21 @@ def _stands_among_the_moved(row: Mapping[str, Any]) -> bool:
     if row.get("mover", 0) < NOBODY:
         return False
     way = math.copysign(min(abs(row["mover_way"]), _driven(row)), row["mover_way"])
-    more = max(0.0, -way if row["kind"] == 0 else 0.5 * way)
+    margin = row["final.slot_margin"] + max(0.0, -way) if row["kind"] == 0 else _margin(row, 0.5 * way)
     turned, aside, out, shifts = _limits_of(int(row["kind"]) + 1)
     heading, lateral = abs(row["final.heading_error"]), abs(row["final.lateral_error"])
-    near = heading <= turned and lateral <= aside and row["final.slot_margin"] + more >= -out
+    near = heading <= turned and lateral <= aside and margin >= -out
     return bool(near and row["shifts"] <= shifts)
+
+
+def _margin(row: Mapping[str, Any], out: float) -> float:
+    """Return how far [m] a car is within its slot at the end, if that lies so much further ``out``; negative: not."""
+    c, s = math.cos(row["slot.heading"]), math.sin(row["slot.heading"])
+    slot = [row["slot.x"] + out * c, row["slot.y"] + out * s, *(row[f"slot.{name}"] for name in SLOT)]
+    wheelbase, front, rear, width = (row[f"vehicle.car.{name}"] for name in CAR)
+    car = [wheelbase + front, rear, 0.5 * width, wheelbase]
+    pose = [row[f"final.{axis}"] for axis in AXES]
+    return float(slot_margin(*(np.array([item]) for item in (pose, slot, car)))[0])
 
 
 @cache
@@ -166,6 +177,8 @@ def _things(row: Mapping[str, Any]) -> dict[str, tuple[Box, bool]]:
 
 BOXES = range(1, len(THINGS))
 EMPTY = Obstacle()._asdict()
+SLOT = ("heading", "length", "width")
+CAR = ("wheelbase", "front_overhang", "rear_overhang", "width")
 
 
 def _box(number: int) -> str:
@@ -179,9 +192,7 @@ def _is_moving(row: Mapping[str, Any], name: str) -> bool:
 
 
 def _gap(row: Mapping[str, Any], pose: Pose, thing: Box, under: bool) -> float:
-    wheelbase, front, rear, width = (
-        row[f"vehicle.car.{name}"] for name in ("wheelbase", "front_overhang", "rear_overhang", "width")
-    )
+    wheelbase, front, rear, width = (row[f"vehicle.car.{name}"] for name in CAR)
     front, rear = (WHEEL, WHEEL) if under else (front, rear)
     return boxes_gap(outline(pose, wheelbase, front, rear, width), thing)
 

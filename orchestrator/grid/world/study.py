@@ -12,7 +12,7 @@ from orchestrator.cosim.slave import Array
 from orchestrator.grid.cases import KINDS, gbt_limits
 from orchestrator.grid.parkings import GBT
 from orchestrator.grid.study import GBT_SETS
-from orchestrator.grid.world.ends import CONTACT, ENDLESS, ENDS, FALSE, FOUND, GOALS, MEASURES, PARKED
+from orchestrator.grid.world.ends import CONTACT, ENDLESS, ENDS, FALSE, FOUND, GOALS, MEASURES, PARKED, WALKED_INTO
 from orchestrator.grid.world.factors import FACTORS, NO_SENSOR, NOBODY
 from orchestrator.grid.world.scene import NEVER, SENSORS, F, parameters
 from orchestrator.scenario.fault import Fault
@@ -102,10 +102,19 @@ def report(table: Table, folder: Path) -> int:
 
 
 def parked_of(table: Table) -> dict[str, tuple[int, int]]:
-    """Return how many are parked, of how many: valid runs, those whose task is possible too, quiet ones of these."""
+    """Return how many are parked, of how many.
+
+    Of valid runs; of those of them that nobody walked into, which ends a run; of those whose task is possible too;
+    of these where nothing moves or fails.
+    """
     ends, valid, asked = table.column("end"), table.column("valid") == 1.0, table.column("asked") == 1.0
     quiet = groups(table)[QUIET]
-    chosen = {"valid": valid, "valid and asked": valid & asked, f"these where {QUIET}": valid & asked & quiet}
+    chosen = {
+        "valid": valid,
+        "valid that nobody walked into": valid & (ends != WALKED_INTO),
+        "valid and asked": valid & asked,
+        f"these where {QUIET}": valid & asked & quiet,
+    }
     return {name: (int((ends[of] == PARKED).sum()), int(of.sum())) for name, of in chosen.items()}
 
 

@@ -160,8 +160,8 @@ def test_one_who_had_left_the_row_before_he_was_found_tells_no_direction(out: fl
         (0.08, 2, True, True),
         (0.112, 2, False, True),
         (0.12, 2, False, False),
-        (0.112, 1, True, True),
-        (0.12, 1, False, False),
+        (0.115, 1, True, True),
+        (0.135, 1, False, False),
     ],
 )
 def test_a_car_across_the_road_that_stands_out_is_parked_if_nothing_leads_deeper(

@@ -12,7 +12,6 @@ from controller_fmu.apa.around.closing import (
     own_reach,
     room_at_tail,
     room_to_strange,
-    strange_below,
     tracked_on,
 )
 from controller_fmu.apa.around.closing import turned_round as turned
@@ -34,7 +33,7 @@ def tracks(number: int, readings: list[float], expected: float, way: float = 0.0
     """Return the tracks of sensors of which one has heard this, the others nothing."""
     track = Track()
     for reading in readings:
-        track = tracked_on(track, reading, way, strange_below(number, expected), FURTHEST)
+        track = tracked_on(track, reading, way, expected, FURTHEST)
     return tuple(track if place == number else Track() for place in range(12))
 
 
@@ -63,18 +62,6 @@ def test_a_corner_of_the_car_is_as_far_from_its_sensor_as_it_is() -> None:
     assert own_reach(mount, CAR, SENSORS.half_angle) == pytest.approx(far)
     assert own_reach(SENSORS.mounts[FLANK], CAR, SENSORS.half_angle) == 0.0
     assert own_reach(SENSORS.mounts[REAR], CAR, SENSORS.half_angle) == 0.0
-
-
-def test_near_a_flank_less_is_strange() -> None:
-    """Beside a flank that is heard square the map is known to 1 or 2 cm; a bumper's cone goes over corners."""
-
-    def room(number: int, nearer: float, expected: float = 0.4) -> float:
-        return room_to_strange(tracks(number, falling(expected - nearer), expected), CAR, SENSORS)
-
-    assert room(FLANK, 0.05) < FREE
-    assert room(FLANK, 0.01) == FREE
-    assert room(FLANK, 0.05, 0.8) == room(REAR, 0.05) == FREE
-    assert room(FLANK, 0.08, 0.8) < FREE > room(REAR, 0.08)
 
 
 @pytest.mark.parametrize("slant", [0.3, 0.6])

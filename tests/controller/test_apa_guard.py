@@ -137,21 +137,6 @@ def test_a_late_brake_is_learnt_and_counted_with() -> None:
     assert again.delay == state.delay
 
 
-@pytest.mark.parametrize("shown", [False, True])
-@pytest.mark.parametrize("late", [0.1, 0.28])
-def test_nothing_is_touched_by_a_car_whose_brake_was_never_seen(shown: bool, late: float) -> None:
-    """Slowed down and stopped for a wall behind by the guard alone, as late as a brake may be before one knows it."""
-    gap, speed, braked, dt = 0.6, 0.9, 0.0, 0.01
-    state = GuardState(shown=shown)
-    while speed > 0.0 and gap > -1.0:
-        wall = Obstacles(behind=Box(-20.0, -CAR.rear - gap, -10.0, 10.0))
-        sight = sees(state, NOTHING_HEARD, wall, -1, speed, 0.0)
-        braked = braked + dt if sight.blocked or sight.speed < speed else 0.0
-        speed = max(0.0, speed - PARAMS.apa.drive.brake * dt) if braked > late else speed
-        gap -= speed * dt
-    assert gap > 0.0 or (shown and late > PARAMS.apa.guard.brake_delay), "late by more than was seen: here it touches"
-
-
 @pytest.mark.parametrize(("a", "b"), [(0.5, 0.5), (0.5, 2.0), (2.0, 0.5), (2.0, 2.0)])
 def test_neighbours_are_certain_only_both_together(a: float, b: float) -> None:
     limit = PARAMS.apa.map.certain

@@ -11,7 +11,6 @@ from controller_fmu.apa.around.local_map import begin_map, ear_at, expected, hea
 from controller_fmu.apa.around.row import (
     as_found,
     driven_on,
-    in_row,
     is_certain,
     is_heard,
     is_in_the_middle,
@@ -124,30 +123,6 @@ def test_one_who_has_moved_in_a_row_across_the_road_tells_neither_direction_nor_
         assert slot.a.y + line_of(slot) == pytest.approx(min(a, b, key=abs), abs=0.02), "in line with the one who stays"
 
 
-@pytest.mark.parametrize("who", ["a", "b"])
-@pytest.mark.parametrize("aside", [-0.25, 0.0, 0.25])
-def test_one_heard_elsewhere_along_the_road_was_found_badly_and_has_not_moved(who: str, aside: float) -> None:
-    """Cars move along themselves: the line is that of the corners as they are heard, not as they were found."""
-    found = begin_map(between(Kind.PERPENDICULAR, 3.6), Pose(1.8, -3.0, 0.5 * math.pi), MAP)
-    thing = getattr(found, who)
-    here = found._replace(**{who: thing._replace(x=thing.x + aside, y=-0.3)})
-    line = slot_of_map(here, between(Kind.PERPENDICULAR, 3.6), MAP).line
-    assert line == pytest.approx(0.0 if aside else 0.15, abs=0.03)
-
-
-@pytest.mark.parametrize(
-    ("turned", "way", "beside", "moves"),
-    [(20.0, 0.38, 0.0, True), (-20.0, 0.38, 0.0, True), (20.0, 0.38, 0.2, False), (0.0, 0.6, 0.2, True)],
-)
-def test_one_who_moves_along_himself_does_so_aslant_to_the_map(
-    turned: float, way: float, beside: float, moves: bool
-) -> None:
-    found = begin_map(between(Kind.PERPENDICULAR, 3.6), Pose(1.8, -3.0, 0.5 * math.pi), MAP)
-    c, s = math.cos(turned * DEG), math.sin(turned * DEG)
-    b = found.b._replace(x=found.b.x - way * s + beside * c, y=way * c + beside * s, heading=turned * DEG)
-    assert in_row(found._replace(b=b)).b.y == pytest.approx(0.0 if moves else b.y, abs=0.02)
-
-
 @pytest.mark.parametrize(("out", "least", "most"), [(0.3, 0.4, 3.0), (0.9, 0.0, 1e-9)])
 def test_one_who_had_left_the_row_before_he_was_found_tells_no_direction(out: float, least: float, most: float) -> None:
     here = begin_map(between(Kind.PERPENDICULAR, 2.8)._replace(b_out=out), Pose(1.4, -3.0, 0.5 * math.pi), MAP)
@@ -156,13 +131,7 @@ def test_one_who_had_left_the_row_before_he_was_found_tells_no_direction(out: fl
 
 @pytest.mark.parametrize(
     ("out", "kind", "surely", "enough"),
-    [
-        (0.08, 2, True, True),
-        (0.112, 2, False, True),
-        (0.12, 2, False, False),
-        (0.115, 1, True, True),
-        (0.135, 1, False, False),
-    ],
+    [(0.08, 2, True, True), (0.115, 2, False, True), (0.115, 1, True, True), (0.135, 1, False, False)],
 )
 def test_a_car_across_the_road_that_stands_out_is_parked_if_nothing_leads_deeper(
     out: float, kind: int, surely: bool, enough: bool

@@ -79,19 +79,19 @@ def families(start: Pose, site: Site, exits: list[Any]) -> dict[str, list[float]
 
 
 def sights() -> list[Any]:
-    """Return what the guard says of readings near and far, before a wall known and not, its brake seen and not."""
+    """Return what the guard says of readings near and far, before a wall known and not."""
     around = slot_and_site(CAR, Kind.PARALLEL, 0.5)[1].obstacles
     said = []
     for pose in (Pose(0.3, 0.2, 0.1), Pose(6.0, 2.5, 0.0), Pose(-0.4, 0.0, 0.0)):
         aside = LocalMap(pose=pose)._replace(
             a=LocalMap().a._replace(x=-50.0, y=-50.0), b=LocalMap().b._replace(x=50.0, y=-50.0)
         )
-        for shown, direction, which, (near, far) in product(
-            (True, False), (1, -1), (0, 1), ((0.2, 5.0), (0.45, 1.4), (0.8, 5.0), (1.2, 1.3))
+        for direction, which, (near, far) in product(
+            (1, -1), (0, 1), ((0.2, 5.0), (0.45, 1.4), (0.8, 5.0), (1.2, 1.3))
         ):
             readings = tuple(near if place % 4 == which else far for place in range(12))
             course = HeldCourse(pose, direction, 0.1, 0.4 * direction, CAR)
-            guard = listen(GuardState(shown=shown), readings, aside, PARAMS)
+            guard = listen(GuardState(), readings, aside, PARAMS)
             said.append(watch_way(guard, readings, aside, around, course, PARAMS))
     return said
 

@@ -22,11 +22,7 @@ MEMORY = 0.15
 FALLING = 0.015
 """Newer less than older by this [m]: it comes nearer."""
 STRANGE = 0.06
-"""The map has it farther off by so much [m],"""
-FLANKS = 8
-STRANGE_BESIDE = 0.03
-BESIDE = 0.45
-"""or by so much where a sensor of a flank, which is one from here on, has it no farther than this [m]."""
+"""The map has it farther off by so much [m]."""
 SILENCES = 3
 """So many readings of nothing in a row are no lost ones."""
 GAP = 0.03
@@ -58,14 +54,8 @@ class Track(NamedTuple):
     """It is nearer than the map has it."""
 
 
-def strange_below(number: int, expected: float) -> float:
-    """Return the distance [m] below which what a sensor hears is nearer than the map has it, ``expected`` [m] off."""
-    beside = number >= FLANKS and expected < BESIDE
-    return expected - (STRANGE_BESIDE if beside else STRANGE)
-
-
-def tracked_on(track: Track, reading: float, way: float, strange: float, furthest: float) -> Track:
-    """Return the track after a reading, ``way`` [m] after the last; below ``strange`` [m] it is not on the map."""
+def tracked_on(track: Track, reading: float, way: float, expected: float, furthest: float) -> Track:
+    """Return the track after a reading, ``way`` [m] after the last; the map expected ``expected`` [m]."""
     if reading >= furthest:
         silent = track.silent + 1
         return track._replace(silent=silent) if silent < SILENCES else Track(silent=silent)
@@ -73,7 +63,7 @@ def tracked_on(track: Track, reading: float, way: float, strange: float, furthes
         return Track(reading, reading, 0, False)
     now = track.now + WEIGHT * (reading - track.now)
     before = track.before + way / (way + MEMORY) * (now - track.before)
-    return Track(now, before, 0, now < strange)
+    return Track(now, before, 0, now < expected - STRANGE)
 
 
 def without_lost(readings: tuple[float, ...], tracks: tuple[Track, ...]) -> tuple[float, ...]:

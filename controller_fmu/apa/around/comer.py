@@ -6,7 +6,7 @@ what comes evenly counts. The car stands before somebody who comes; a standing c
 
 from typing import NamedTuple
 
-from controller_fmu.apa.around.closing import FLANKS, JUMP
+from controller_fmu.apa.around.closing import JUMP
 from controller_fmu.apa.around.cone import SILENT
 
 FITS = 0.2
@@ -15,10 +15,12 @@ WEIGHT = 0.5
 WEIGHT_OF_RATE = 0.2
 LEAST_WEIGHT = 0.1
 """What has been followed for long changes its rate less: noise alone comes no nearer."""
+BUMPERS = 8
+"""Sensors of the flanks come after these; the rim of their cones runs along oblique sides faster than the car."""
 STRANGE = 0.4
 """The map has nothing up to so much [m] behind what is heard,"""
 ALONE = 1.0
-"""or so much for sensors of the flanks: the rim of their cones runs along oblique sides faster than the car."""
+"""or so much for sensors of the flanks."""
 EVENLY = 3
 """So many readings in a row must fit."""
 BRIDGED = 2
@@ -84,7 +86,7 @@ def somebody_comes(comers: tuple[Comer, ...], pace: float) -> bool:
     """Return whether something that is not on the map comes by itself to a car of this ``pace`` [m/s], and soon."""
     for number in range(12):
         comer = comers[number]
-        strange = comer.nearer > (STRANGE if number < FLANKS else ALONE) and comer.fits >= EVENLY
+        strange = comer.nearer > (STRANGE if number < BUMPERS else ALONE) and comer.fits >= EVENLY
         if strange and comer.rate + SWINGS * pace < -COMES and comer.rate + pace > -RUNS:
             if comer.at < -comer.rate * SOON:
                 return True

@@ -11,15 +11,7 @@ import math
 from typing import NamedTuple
 
 from controller_fmu.apa.around.arcs import LOOKED_AT, NOWHERE, Unknown, arc_of, held, not_refuted, origin
-from controller_fmu.apa.around.closing import (
-    SILENCES,
-    Track,
-    room_at_tail,
-    room_to_strange,
-    strange_below,
-    tracked_on,
-    turned_round,
-)
+from controller_fmu.apa.around.closing import SILENCES, Track, room_at_tail, room_to_strange, tracked_on, turned_round
 from controller_fmu.apa.around.comer import Comer, followed, pace_after, somebody_comes
 from controller_fmu.apa.around.cone import ConeEar, Echo
 from controller_fmu.apa.around.course import HeldCourse, after
@@ -73,11 +65,9 @@ RESERVE = 0.03
 SLOW = 0.15
 """So fast [m/s] a car may go beside anything that is heard, however near."""
 STANDING = 0.05
-TELLS = 0.25
+TELLS = 0.4
 UNSEEN_BRAKE = 0.3
-"""Until a stop from ``TELLS`` [m/s] was seen the brake is taken to be so late [s]: what 1.1 m/s2 take longer than 2.
-
-What is kept straight ahead is enough for that."""
+"""Until a stop from ``TELLS`` [m/s] was seen the brake is taken to be so late [s]: what 1.1 m/s2 take longer than 2."""
 DOUBTS = 2.5
 MOVED = 0.002
 """A car that has gone less [m] stands."""
@@ -143,26 +133,19 @@ class HeardHere(NamedTuple):
     mapped: Echo
 
 
-def seen_late_by(state: GuardState, params: ControllerParams) -> float:
-    """Return how late [s] the brake was ever seen to be."""
-    return max(state.delay, params.apa.guard.brake_delay)
-
-
-def late_by(state: GuardState, params: ControllerParams) -> float:
-    """Return how late [s] the brake is taken to be: as late as it was ever seen to be, later until it was seen."""
-    seen = seen_late_by(state, params)
-    return seen if state.shown else max(seen, UNSEEN_BRAKE)
-
-
 def stopping_way(state: GuardState, speed: float, params: ControllerParams) -> float:
-    """Return the way [m] that the car needs to stop."""
+    """Return the way [m] that the car needs to stop, as late as its brake was ever seen to be."""
     v = abs(speed)
-    return v * late_by(state, params) + 0.5 * v * v / params.apa.drive.brake
+    late = max(state.delay, params.apa.guard.brake_delay)
+    return v * late + 0.5 * v * v / params.apa.drive.brake
 
 
-def speed_for(state: GuardState, room: float, params: ControllerParams) -> float:
-    """Return the speed [m/s] from which the car stops within ``room`` [m]: v t + v^2 / 2 b = room; 0 without room."""
-    late = late_by(state, params)
+def speed_for(state: GuardState, room: float, least: float, params: ControllerParams) -> float:
+    """Return the speed [m/s] from which the car stops within ``room`` [m]: v t + v^2 / 2 b = room; 0 without room.
+
+    ``least``: how late [s] the brake is taken to be where nothing worse was seen.
+    """
+    late = max(state.delay, least)
     brake = params.apa.drive.brake
     return brake * (math.sqrt(late * late + 2.0 * room / brake) - late) if room > 0.0 else 0.0
 
@@ -185,7 +168,7 @@ def listen(state: GuardState, readings: tuple[float, ...], here: LocalMap, param
         ear = ears[number]
         mapped = expected(ear, deep).echo
         track = tracks[number] if direction == state.direction else turned_round(tracks[number])
-        track = tracked_on(track, reading, abs(way), strange_below(number, mapped.distance), sensors.max_range)
+        track = tracked_on(track, reading, abs(way), mapped.distance, sensors.max_range)
         tracks = tracks[:number] + (track,) + tracks[number + 1 :]
         comer = followed(comers[number], reading, sensors.cycle, sensors.max_range, mapped.distance)
         comers = comers[:number] + (comer,) + comers[number + 1 :]
@@ -284,8 +267,7 @@ def watch_way(
     mapped = course._replace(pose=here.pose)
     strange = _free_of_unknown(state.unknown, mapped, stop, guard.surprise_gap)
     tight = _free_of_unknown(state.close, mapped, stop, guard.echo_gap)
-    unseen = abs(course.speed) * (late_by(state, params) - seen_late_by(state, params))
-    straight = room_straight(readings, here, course.direction, params) + unseen
+    straight = room_straight(readings, here, course.direction, params)
     raw = _free_of_echoes(state, mapped, stop, guard.echo_gap)
     beside = min(min(known, raw), tight)
     old = abs(course.speed) * params.car.ultrasonic.cycle
@@ -293,9 +275,10 @@ def watch_way(
         beside = min(beside, room_to_strange(state.tracks, course.car, params.car.ultrasonic) - 2.0 * old)
         if course.direction < 0:
             beside = min(beside, room_at_tail(state.tracks, readings, course.car, params.car.ultrasonic) - 2.0 * old)
-    allowed = speed_for(state, min(min(beside, strange), straight) - RESERVE, params)
+    allowed = speed_for(state, min(min(beside, strange), straight) - RESERVE, guard.brake_delay, params)
     heard = room_by_echoes(readings, course, here.frame.mirror, params.car.ultrasonic)
-    allowed = min(allowed, max(SLOW, speed_for(state, heard - old - RESERVE, params)))
+    late = guard.brake_delay if state.shown else max(guard.brake_delay, UNSEEN_BRAKE)
+    allowed = min(allowed, max(SLOW, speed_for(state, heard - old - RESERVE, late, params)))
     if state.quiet < QUIET:
         return Sight(0.0, True, True)
     return Sight(allowed, min(beside, strange) <= stop or straight <= needed, strange <= stop and strange <= beside)

@@ -30,10 +30,6 @@ LISTENED = 3.5
 """Neighbours beside a car in a perpendicular slot are listened for up to so far [m]."""
 ASIDE = 0.12
 """A car in a perpendicular slot stands so much [m] nearer to one neighbour than to the middle at most."""
-MISFOUND = 0.12
-"""A neighbour across the road who is heard so much [m] beside where he was found was not found well,"""
-FAR_ALONG = 0.4
-"""but for one so much [m] farther along himself: nobody is found that badly."""
 HAS_MOVED = 0.2
 """A neighbour who stands so much [m] along himself from where he was found has moved since."""
 MOVED_ASIDE = 0.3
@@ -78,24 +74,9 @@ def in_row(here: LocalMap) -> LocalMap:
     off = _out_of_line(here)
     if here.kind != Kind.PERPENDICULAR or abs(off) < HAS_MOVED:
         return here
-    a_moved = abs(here.a.y) > abs(here.b.y - here.out)
-    if _is_misfound(here.a, 0.0, 0.0) if a_moved else _is_misfound(here.b, here.found, here.out):
-        return here
-    if a_moved:
+    if abs(here.a.y) > abs(here.b.y - here.out):
         return here._replace(a=here.a._replace(y=here.a.y + off, yy=here.b.yy + FOUND * FOUND))
     return here._replace(b=here.b._replace(y=here.b.y - off, yy=here.a.yy + FOUND * FOUND))
-
-
-def _is_misfound(thing: Thing, x: float, y: float) -> bool:
-    """Return whether a neighbour across the road, found at (x, y) [m], was not found well.
-
-    Cars move along themselves: who is heard beside where he was found has not moved.
-    """
-    c = math.cos(thing.heading)
-    s = math.sin(thing.heading)
-    beside = (thing.x - x) * c + (thing.y - y) * s
-    along = (thing.y - y) * c - (thing.x - x) * s
-    return abs(beside) > MISFOUND and abs(along) < FAR_ALONG
 
 
 def slot_of_map(here: LocalMap, slot: Slot, params: MapParams) -> Slot:

@@ -20,11 +20,9 @@ from controller_fmu.interface import ControllerInput, ControllerParams
 from modelkit.vocabulary import Gear, Pose
 
 DOUBT = 0.5
-"""The line between the neighbours' corners of a parallel slot is taken to lie further in by this share of its standard
-deviation,"""
-DOUBT_ACROSS = 1.0
+"""The line between the neighbours' corners is taken to lie further in by this share of its standard deviation,"""
 DOUBT_AT_FIRST = 1.2
-"""and by so many of them beside a perpendicular one; the second as long as a way leads deeper."""
+"""and by this beside a perpendicular slot, as long as a way leads deeper."""
 ROLLS = 0.1
 """A car in the move's gear that goes faster [m/s] the other way slips, or rolls down a slope, and is stopped."""
 LOOK = 0.2
@@ -75,10 +73,8 @@ def settled_in(inputs: ControllerInput, around: Around, params: ControllerParams
     spare = params.apa.end.out - stands_out_by(pose, slot, shape_of(params))
     unsure = line_unsure(around.map)
     sure = is_sure(inputs, around, params)
-    across = slot.kind == Kind.PERPENDICULAR
-    at_first = DOUBT_AT_FIRST if across else DOUBT
-    at_last = DOUBT_ACROSS if across else DOUBT
-    return Settled(sure and spare >= at_first * unsure, sure and spare >= at_last * unsure)
+    doubt = DOUBT_AT_FIRST if slot.kind == Kind.PERPENDICULAR else DOUBT
+    return Settled(sure and spare >= doubt * unsure, sure and spare >= DOUBT * unsure)
 
 
 def is_sure(inputs: ControllerInput, around: Around, params: ControllerParams) -> bool:

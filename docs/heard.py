@@ -1,4 +1,4 @@
-"""Writes into docs/hunt.md how long before their contacts sensors could have told of who moved.
+"""Prints how long before their contacts sensors could have told of who moved.
 
 ``python docs/heard.py TABLE.parquet`` of the study apa-world; each run with a contact is driven again.
 """
@@ -9,8 +9,6 @@ from collections.abc import Mapping
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
-
-from marked import put
 
 from orchestrator.grid.world.ends import CONTACT, MOVABLE
 from orchestrator.grid.world.heard import heard_before
@@ -55,4 +53,4 @@ def block(found: list[tuple[str, float]]) -> list[str]:
 
 
 if __name__ == "__main__":
-    put(Path(__file__).parent / "hunt.md", "heard", block(times(Table(Path(sys.argv[1])))))
+    print("\n".join(block(times(Table(Path(sys.argv[1]))))))

@@ -181,8 +181,9 @@ def park(
     step = step_transition(state.step, _guards(state, place, inputs, settled, allowed, params))
     limit = params.apa.end
     missed = state.step == Step.PLAN and not settled.enough and is_in_place(place, limit.lateral, limit.heading)
-    nothing_better = state.plan.status == NOTHING or not is_sure(inputs, around, params)
-    state = state._replace(missed=missed and nothing_better and not state.out)
+    if missed:
+        missed = not state.out and (state.plan.status == NOTHING or not is_sure(inputs, around, params))
+    state = state._replace(missed=missed)
     return _moved_on(state, step, place, steering, inputs.measured_speed, params)
 
 

@@ -133,41 +133,51 @@ def _parked_on(
     state: ApaState, inputs: ControllerInput, driving: bool, params: ControllerParams, dt_ns: int
 ) -> ApaState:
     """Return the assist that has listened, where its sensors tell something new, and gone on with the manoeuvre."""
+    stopping = driving and state.parking.step != Step.DRIVE
+    speed = inputs.measured_speed
+    state = state._replace(
+        around=state.around._replace(guard=learn_brake(state.around.guard, speed, stopping, dt_ns, params))
+    )
+    state = state._replace(around=state.around._replace(mute_ns=state.watch.mute))
+    if state.listened.fresh:
+        state = _listened(state, inputs, driving, params)
+    steering = state.watch.wheel.steering
+    return state._replace(parking=park(state.parking, state.around, inputs, steering, driving, params))
+
+
+def _listened(state: ApaState, inputs: ControllerInput, driving: bool, params: ControllerParams) -> ApaState:
+    """Return the assist that has drawn what its sensors tell into its map."""
     parking = state.parking
     slot = state.around.slot
     here = state.around.map
     shifts = state.around.shifts
-    stopping = driving and parking.step != Step.DRIVE
-    guard = learn_brake(state.around.guard, inputs.measured_speed, stopping, dt_ns, params)
-    if state.listened.fresh:
-        here = moved(here, inputs.odometry, params.apa.map)
-        here = heard(here, inputs.ultrasonic, params.car.ultrasonic, params.apa.map)
-        here = heard_within(here, inputs.ultrasonic, params.car.ultrasonic) if here.within else here
-        halted = parking.step in (Step.HALT, Step.SET_WHEEL) and abs(inputs.measured_speed) <= STANDING
-        if halted and guard.quiet >= QUIET:
-            here = walled(here, slot, inputs, parking.sight.blocked, params)
-        if abs(inputs.measured_speed) > STANDING:
-            shifts = followed(shifts, here, inputs.ultrasonic, params.car.ultrasonic)
-            found = relocated(here, shifts, inputs.ultrasonic, params.car.ultrasonic)
-            here = found.map
-            shifts = found.shifts
-        guard = listen(guard, inputs.ultrasonic, here, params)
-        if driving and abs(inputs.measured_speed) <= STANDING:
-            here = driven_on(here, guard.tracks, inputs.ultrasonic, params)
-        if halted and _may_stand_nearer(state, guard, params):
-            there = nearer_than_thought(here, inputs.ultrasonic, params)
-            if there.found:
-                here = there.map
-                guard = explained(guard, inputs.ultrasonic, here, params)
-                parking = cut_short(parking)
-        if parking.stuck:
-            here = pressed(here, inputs.ultrasonic, params)
-            parking = parking._replace(stuck=False)
-        slot = slot_of_map(here, slot, params.apa.map)
-        parking = cut_short(parking) if slot.depth < state.around.slot.depth - SHALLOWER else parking
-    around = Around(slot, here, guard, shifts, state.watch.mute)
-    parking = park(parking, around, inputs, state.watch.wheel.steering, driving, params)
-    return state._replace(around=around, parking=parking)
+    guard = state.around.guard
+    here = moved(here, inputs.odometry, params.apa.map)
+    here = heard(here, inputs.ultrasonic, params.car.ultrasonic, params.apa.map)
+    here = heard_within(here, inputs.ultrasonic, params.car.ultrasonic) if here.within else here
+    halted = parking.step in (Step.HALT, Step.SET_WHEEL) and abs(inputs.measured_speed) <= STANDING
+    if halted and guard.quiet >= QUIET:
+        here = walled(here, slot, inputs, parking.sight.blocked, params)
+    if abs(inputs.measured_speed) > STANDING:
+        shifts = followed(shifts, here, inputs.ultrasonic, params.car.ultrasonic)
+        found = relocated(here, shifts, inputs.ultrasonic, params.car.ultrasonic)
+        here = found.map
+        shifts = found.shifts
+    guard = listen(guard, inputs.ultrasonic, here, params)
+    if driving and abs(inputs.measured_speed) <= STANDING:
+        here = driven_on(here, guard.tracks, inputs.ultrasonic, params)
+    if halted and _may_stand_nearer(state, guard, params):
+        there = nearer_than_thought(here, inputs.ultrasonic, params)
+        if there.found:
+            here = there.map
+            guard = explained(guard, inputs.ultrasonic, here, params)
+            parking = cut_short(parking)
+    if parking.stuck:
+        here = pressed(here, inputs.ultrasonic, params)
+        parking = parking._replace(stuck=False)
+    slot = slot_of_map(here, slot, params.apa.map)
+    parking = cut_short(parking) if slot.depth < state.around.slot.depth - SHALLOWER else parking
+    return state._replace(around=Around(slot, here, guard, shifts, state.around.mute_ns), parking=parking)
 
 
 def _may_stand_nearer(state: ApaState, guard: GuardState, params: ControllerParams) -> bool:

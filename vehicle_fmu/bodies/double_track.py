@@ -47,7 +47,9 @@ class CarCorner(NamedTuple):
 
     x: float
     y: float
-    angle: float
+    cos: float
+    """Of the angle the wheel is turned by."""
+    sin: float
     load: float
     camber: float
     grip: float
@@ -142,22 +144,26 @@ def _corners(
     drag = chassis.rolling_resistance * p.hub.radius
     grip = build.road.grip
     load = loads.wheels
+    cos = (math.cos(left), math.cos(right))
+    sin = (math.sin(left), math.sin(right))
     return (
-        CarCorner(front, y_front, left, load[0], lean_front, grip[0], drive_front, brake_front + drag * load[0]),
-        CarCorner(front, -y_front, right, load[1], lean_front, grip[1], drive_front, brake_front + drag * load[1]),
-        CarCorner(rear, y_rear, 0.0, load[2], lean_rear, grip[2], drive_rear, brake_rear + drag * load[2]),
-        CarCorner(rear, -y_rear, 0.0, load[3], lean_rear, grip[3], drive_rear, brake_rear + drag * load[3]),
+        CarCorner(
+            front, y_front, cos[0], sin[0], load[0], lean_front, grip[0], drive_front, brake_front + drag * load[0]
+        ),
+        CarCorner(
+            front, -y_front, cos[1], sin[1], load[1], lean_front, grip[1], drive_front, brake_front + drag * load[1]
+        ),
+        CarCorner(rear, y_rear, 1.0, 0.0, load[2], lean_rear, grip[2], drive_rear, brake_rear + drag * load[2]),
+        CarCorner(rear, -y_rear, 1.0, 0.0, load[3], lean_rear, grip[3], drive_rear, brake_rear + drag * load[3]),
     )
 
 
 def _turn(wheel: Wheel, at: CarCorner, motion: Motion, hub: HubParams, tires: TireParams, h: float) -> Wheel:
     forward = motion.speed_x - at.y * motion.yaw_rate
     leftward = motion.speed_y + at.x * motion.yaw_rate
-    cos = math.cos(at.angle)
-    sin = math.sin(at.angle)
     contact = Contact(
-        forward * cos + leftward * sin,
-        leftward * cos - forward * sin,
+        forward * at.cos + leftward * at.sin,
+        leftward * at.cos - forward * at.sin,
         at.load,
         at.camber,
         at.grip,
@@ -168,10 +174,8 @@ def _turn(wheel: Wheel, at: CarCorner, motion: Motion, hub: HubParams, tires: Ti
 
 
 def _wrench(wheel: Wheel, at: CarCorner) -> Wrench:
-    cos = math.cos(at.angle)
-    sin = math.sin(at.angle)
-    x = wheel.force.x * cos - wheel.force.y * sin
-    y = wheel.force.x * sin + wheel.force.y * cos
+    x = wheel.force.x * at.cos - wheel.force.y * at.sin
+    y = wheel.force.x * at.sin + wheel.force.y * at.cos
     return Wrench(x, y, at.x * y - at.y * x)
 
 

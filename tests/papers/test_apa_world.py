@@ -60,6 +60,30 @@ def test_a_parked_car_touches_nothing_where_it_is_to_stand() -> None:
     assert min(gaps) > 0.25
 
 
+def test_nobody_is_there_all_at_once() -> None:
+    """Who sets out is far from where a car may be: across the road, between cars, or behind a slot without wall."""
+    made = study(3000, 5)
+    values, labels = columns(made), made.design.labels
+    sign = 1.0 - 2.0 * labels["side"]
+    person = {name: values[f"vehicle.scene.boxes[4].{name}"] for name in ("x", "y", "length", "width", "speed_y")}
+    begun: dict[str, int] = {"across": 0, "between": 0, "behind": 0}
+    for run in np.flatnonzero(person["length"] > 0.0).tolist():
+        y, walled = sign[run] * person["y"][run], values["vehicle.scene.boxes[3].length"][run] > 0.0
+        there = Box(person["x"][run], person["y"][run], 0.0, person["length"][run], person["width"][run])
+        slot = Box(*(values[f"slot.{name}"][run] for name in Box._fields))
+        where = "across" if y > 7.0 else "between" if y > -1.5 else "behind"
+        begun[where] += 1
+        assert (sign[run] * person["speed_y"][run] < 0.0) == (where == "across")
+        assert not (where == "behind" and walled), "through the wall"
+        if where == "behind":
+            assert boxes_gap(there, slot) > 2.5
+        if where == "between":
+            nearest = min(boxes_gap(there, box(values, number, run)) for number in (1, 2))
+            assert y + 0.25 < -0.5
+            assert nearest == 0.0 or boxes_gap(there, slot) > 1.0, "hidden by a neighbour, or beyond him"
+    assert min(begun.values()) > 50, begun
+
+
 def test_at_the_nominal_point_nothing_is_disturbed() -> None:
     world = space(list(FACTORS))
     named = world.named(world.nominal()[None])

@@ -10,7 +10,7 @@ import numpy as np
 from controller_fmu.apa.params import SearchParams
 from orchestrator.cosim.slave import Array
 from orchestrator.grid.world.factors import NO_SENSOR, NOBODY
-from orchestrator.grid.world.scene import WHEEL, crosses_slot
+from orchestrator.grid.world.scene import WHEEL, WITH_KERB, crosses_slot
 from orchestrator.sweep.study.study import Columns
 from orchestrator.verdict.numbers import Number
 from vehicle_fmu.ultrasonic import UltrasonicParams
@@ -41,13 +41,13 @@ def is_valid(columns: Columns) -> Array:
     distance.
     """
     values = {name: np.asarray(columns[name]) for name in ("kind", "behind", "kerb_height", "depth")}
-    heard = (values["behind"] == KERB) & (values["kerb_height"] >= HEARD)
+    heard = (values["behind"] == WITH_KERB) & (values["kerb_height"] >= HEARD)
     under_tail = values["depth"] < np.asarray(columns["vehicle.car.rear_overhang"]) - WHEEL
     return np.asarray(~((values["kind"] == PERPENDICULAR) & heard & under_tail))
 
 
-PERPENDICULAR, KERB = 1, 2
-"""Choices of the factors ``kind`` and ``behind``."""
+PERPENDICULAR = 1
+"""Choice of the factor ``kind``."""
 
 
 def is_possible(columns: Columns) -> Array:

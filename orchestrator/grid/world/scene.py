@@ -26,13 +26,18 @@ KINDS = (1, 2)
 BODIES = (BODY["kinematic"], BODY["double_track"])
 THINGS = ("first neighbour", "second neighbour", "wall behind", "person", "kerb behind")
 """What stands in the scene: boxes 1 to 4, then kerb 1."""
+WALLED, WITH_KERB = 1, 2
+"""Choices of the factor ``behind``."""
 SENSORS = 12
 NEVER = 3e4
 """After any run [s]."""
 PERSON = 0.5
 """Width of a person [m]."""
-FAR_SIDE, NEAR_SIDE = 8.0, 0.6
-"""Where a person sets out who goes towards the slots, and where one is gone who goes between cars: y [m]."""
+FAR_SIDE, NEAR_SIDE, BETWEEN = 8.0, 0.6, -1.0
+"""Where a person sets out who goes towards the slots, where one is gone who goes between cars, and where one has
+stood between them who steps out: y [m]."""
+FROM_BEHIND = 3.0
+"""How far behind the slot's end [m] somebody sets out who comes out of it."""
 WHEEL = SceneParams().tyre_reach
 """Tyres reach this far beyond the axles [m]."""
 WALL = 1.0
@@ -98,7 +103,7 @@ def _boxes(neighbours: Mapping[str, F], sign: Array) -> dict[str, Array]:
 
 def _behind(f: F, size: F) -> dict[str, Array]:
     """Return the wall or the kerb that ends the slot; before a wheel stop the tail hangs over."""
-    wall, kerb = f["behind"] == 1, f["behind"] == 2
+    wall, kerb = f["behind"] == WALLED, f["behind"] == WITH_KERB
     middle, sign = 0.5 * size["slot"], size["sign"]
     half = np.where(size["parallel"], 0.5 * size["slot"] + 12.0, 0.5 * size["slot"])
     y = -size["depth"] + _mouth(f)
@@ -213,18 +218,23 @@ def _motion(f: F, told: F) -> dict[str, Array]:
 
 
 def _person(f: F, size: F) -> dict[str, Array]:
-    """Return somebody who crosses the road straight, into the slot or out of it, or between the cars beside it."""
-    place = f["person_place"]
-    inside = crosses_slot(place)
-    far, near = np.full_like(place, FAR_SIDE), np.where(inside, _mouth(f) - size["depth"] - PERSON, NEAR_SIDE)
-    walks, outward = f["person"] >= NOBODY, f["person"] > NOBODY
-    begin, end = np.where(outward, near, far), np.where(outward, far, near)
+    """Return somebody who crosses the road straight, into the slot or out of it, or between the cars beside it.
+
+    Nobody is there all at once: who steps out between cars has stood between them, who comes out of the slot has come
+    from behind its end. Where that is a wall he goes in.
+    """
+    x, slot_end = f["person_place"] * size["slot"], _mouth(f) - size["depth"]
+    in_gap = (x > -0.5 * PERSON) & (x < size["slot"] + 0.5 * PERSON)
+    walks, outward = f["person"] >= NOBODY, (f["person"] > NOBODY) & ~(in_gap & (f["behind"] == WALLED))
+    out_from = np.where(in_gap, slot_end - FROM_BEHIND, BETWEEN)
+    into = np.where(crosses_slot(f["person_place"]), slot_end - PERSON, NEAR_SIDE)
+    begin, end = np.where(outward, out_from, FAR_SIDE), np.where(outward, FAR_SIDE, into)
     speed = f["person_speed"] * np.sign(end - begin)
     box = {
-        "x": place * size["slot"],
+        "x": x,
         "y": size["sign"] * begin,
         "length": np.where(walks, PERSON, 0.0),
-        "width": np.full_like(place, PERSON),
+        "width": np.full_like(x, PERSON),
         "appear_at": f["person_at"],
         "disappear_at": f["person_at"] + (end - begin) / speed,
         "speed_y": size["sign"] * speed,

@@ -180,9 +180,8 @@ def park(
     settled = settled_in(inputs, around, params) if state.step == Step.PLAN else Settled()
     step = step_transition(state.step, _guards(state, place, inputs, settled, allowed, params))
     limit = params.apa.end
-    missed = state.step == Step.PLAN and not settled.enough and is_in_place(place, limit.lateral, limit.heading)
-    if missed:
-        missed = not state.out and (state.plan.status == NOTHING or not is_sure(inputs, around, params))
+    in_vain = state.step == Step.PLAN and not settled.enough and is_in_place(place, limit.lateral, limit.heading)
+    missed = in_vain and not state.out and (state.plan.status == NOTHING or not is_sure(inputs, around, params))
     state = state._replace(missed=missed)
     return _moved_on(state, step, place, steering, inputs.measured_speed, params)
 

@@ -134,11 +134,12 @@ def _parked_on(
 ) -> ApaState:
     """Return the assist that has listened, where its sensors tell something new, and gone on with the manoeuvre."""
     stopping = driving and state.parking.step != Step.DRIVE
-    speed = inputs.measured_speed
     state = state._replace(
-        around=state.around._replace(guard=learn_brake(state.around.guard, speed, stopping, dt_ns, params))
+        around=state.around._replace(
+            guard=learn_brake(state.around.guard, inputs.measured_speed, stopping, dt_ns, params),
+            mute_ns=state.watch.mute,
+        )
     )
-    state = state._replace(around=state.around._replace(mute_ns=state.watch.mute))
     if state.listened.fresh:
         state = _listened(state, inputs, driving, params)
     steering = state.watch.wheel.steering

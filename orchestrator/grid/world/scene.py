@@ -106,7 +106,7 @@ def _behind(f: F, size: F) -> dict[str, Array]:
     wall, kerb = f["behind"] == WALLED, f["behind"] == WITH_KERB
     middle, sign = 0.5 * size["slot"], size["sign"]
     half = np.where(size["parallel"], 0.5 * size["slot"] + 12.0, 0.5 * size["slot"])
-    y = -size["depth"] + _mouth(f)
+    y = _slot_end(f, size)
     stop = np.where(size["parallel"], y, y + np.maximum(size["tail"] - WHEEL, 0.0))
     half_kerb = np.where(size["parallel"], half, 0.8)
     return {
@@ -125,6 +125,11 @@ def _behind(f: F, size: F) -> dict[str, Array]:
 def _mouth(f: F) -> Array:
     """Return y of the slot's mouth [m]: the mean of the neighbours' corners at it."""
     return 0.5 * (f["stagger_a"] + f["stagger_b"])
+
+
+def _slot_end(f: F, size: F) -> Array:
+    """Return y of what ends the slot, or would [m]."""
+    return _mouth(f) - size["depth"]
 
 
 def _standing(f: F, size: F, neighbours: Mapping[str, F]) -> dict[str, Array]:
@@ -223,7 +228,7 @@ def _person(f: F, size: F) -> dict[str, Array]:
     Nobody is there all at once: who steps out between cars has stood between them, who comes out of the slot has come
     from behind its end. Where that is a wall he goes in.
     """
-    x, slot_end = f["person_place"] * size["slot"], _mouth(f) - size["depth"]
+    x, slot_end = f["person_place"] * size["slot"], _slot_end(f, size)
     in_gap = (x > -0.5 * PERSON) & (x < size["slot"] + 0.5 * PERSON)
     walks, outward = f["person"] >= NOBODY, (f["person"] > NOBODY) & ~(in_gap & (f["behind"] == WALLED))
     out_from = np.where(in_gap, slot_end - FROM_BEHIND, BETWEEN)

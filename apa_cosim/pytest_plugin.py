@@ -36,9 +36,9 @@ def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> "StepTestF
     """Collect the step tests."""
     if not (file_path.name.startswith("test_") and file_path.suffix in (".yaml", ".yml")):
         return None
-    from orchestrator.steptest.step_test import is_step_test
+    from orchestrator.steptest.step_test import declares_step_test
 
-    return StepTestFile.from_parent(parent, path=file_path) if is_step_test(str(file_path)) else None
+    return StepTestFile.from_parent(parent, path=file_path) if declares_step_test(file_path) else None
 
 
 class StepTestFile(pytest.File):

@@ -4,6 +4,7 @@ import argparse
 import gc
 import io
 import os
+import stat
 import sys
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, redirect_stdout, suppress
@@ -51,7 +52,8 @@ def _program() -> int:
 def _command(words: list[str]) -> int:
     for name, value in SPARING.items():
         os.environ.setdefault(name, value)
-    _forgiving_streams()
+    os.environ["MPLBACKEND"] = "agg"  # a notebook's backend may be absent here, and nothing here opens a window
+    _tolerant_streams()
     with ended_in_time() as interrupted:
         try:
             try:
@@ -73,14 +75,42 @@ def _run(words: list[str]) -> int:
         return int(parsed.run(parsed))
 
 
-def _forgiving_streams() -> None:
-    """Let letters that a terminal cannot show cost a letter, not the run; a stream that is closed takes nothing."""
+def _tolerant_streams() -> None:
+    """Let the command finish whatever becomes of its output: an undisplayable character is replaced, a closed stream or
+    a pipe whose reader has ended discards the rest.
+    """
     for name in ("stdout", "stderr"):
         stream = getattr(sys, name)
         if stream is None:
             setattr(sys, name, io.TextIOWrapper(io.FileIO(devnull, "w"), encoding="utf-8"))
         elif isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="replace")
+            if _is_pipe(stream):
+                raw = io.BufferedWriter(_DiscardingPipe(stream.fileno(), "w", closefd=False))
+                encoding = stream.encoding
+                stream.flush()
+                setattr(sys, name, io.TextIOWrapper(raw, encoding, "replace", line_buffering=name == "stderr"))
+
+
+def _is_pipe(stream: io.TextIOWrapper) -> bool:
+    """Return whether a stream of this process is a pipe or a socket, and not yet tolerant."""
+    try:
+        mode = os.fstat(stream.fileno()).st_mode
+    except (OSError, ValueError):
+        return False
+    tolerant = isinstance(getattr(stream.buffer, "raw", None), _DiscardingPipe)
+    return (stat.S_ISFIFO(mode) or stat.S_ISSOCK(mode)) and not tolerant
+
+
+class _DiscardingPipe(io.FileIO):
+    """A pipe that discards what is written after its reader has ended, as ``| head`` does."""
+
+    def write(self, data: Any) -> int:
+        """Return the number of bytes taken, whether they are read or discarded."""
+        try:
+            return super().write(data)
+        except BrokenPipeError:
+            return memoryview(data).nbytes
 
 
 def _let_go() -> None:

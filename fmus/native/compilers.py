@@ -10,13 +10,10 @@ from typing import NamedTuple
 
 from fmus.children import PYTHON, run_child
 from fmus.files import folder_for_a_while
+from fmus.installation import install_command
 from fmus.native.platforms import CompileTarget, host_target
 from fmus.places import CACHE, can_write
 
-MISSING = (
-    "a C compiler is missing: pip install 'apa-cosim[native]' (it brings ziglang, for all platforms), "
-    "or name this machine's own with --cc or the variable CC"
-)
 FLAGS = ("-std=c99", "-O2", "-ffp-contract=off", "-fno-math-errno")
 """What every compiler is told that the results depend on, or the speed."""
 ZIG = ("-fno-sanitize=all", "-mllvm", "-disable-fp-call-folding")
@@ -102,7 +99,10 @@ def find_compiler(cc: str | None = None) -> Compiler:
     try:
         words = " ".join(("ziglang", version("ziglang"), *ZIG))
     except PackageNotFoundError:
-        raise RuntimeError(MISSING) from None
+        raise RuntimeError(
+            f"there is no C compiler; run: {install_command('native')} (ziglang, compiles for all platforms), "
+            "or set the variable CC to a C compiler of this machine"
+        ) from None
     return Compiler((PYTHON, "-P", "-m", "ziglang", "cc"), words, True)
 
 

@@ -10,7 +10,7 @@ from orchestrator.scenario.files import shipped
 from orchestrator.scenario.load_scenario import scenario_names
 from orchestrator.scenario.requirements import Requirement, shipped_requirements
 from orchestrator.scenario.scenario import Outcome
-from orchestrator.text.errors import BadInput, suggestion
+from orchestrator.text.errors import BadInput, suggestion, suggestion_or_choices
 from orchestrator.text.yaml_file import explain, read_mapping
 
 ROOM = Path(__file__).parent
@@ -101,7 +101,7 @@ def chosen_standards(words: list[str]) -> list[Standard]:
         fitting = [path for path in sorted(ROOM.glob("*.yaml")) if fnmatchcase(path.stem, pattern)]
         if not fitting:
             known = [path.stem for path in sorted(ROOM.glob("*.yaml"))]
-            hint = suggestion(pattern, known) or f"; known are {', '.join(known)}"
+            hint = suggestion_or_choices(pattern, known)
             raise BadInput(f"the catalogue has no standard of this name{hint}", key=pattern)
         found |= {path.stem: read_standard(path) for path in fitting}
     return list(found.values())

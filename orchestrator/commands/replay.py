@@ -4,6 +4,7 @@ import argparse
 import json
 from pathlib import Path
 
+from fmus.installation import missing_package
 from orchestrator.cosim.kinds import KINDS
 from orchestrator.session.terminal import print_summary
 from orchestrator.text.console import console
@@ -36,7 +37,7 @@ def run(arguments: argparse.Namespace) -> int:
         from orchestrator.sweep.repeat import folder_of_row, repeat_row
         from orchestrator.sweep.table import Table
     except ModuleNotFoundError as error:
-        raise BadInput(f"{error.name} is not installed; run: pip install 'apa-cosim[sweep]'") from error
+        raise BadInput(missing_package(error.name or "", "sweep")) from error
     out: Path = arguments.out or folder_of_row(arguments.table, arguments.row)
     again = repeat_row(Table(arguments.table), arguments.row, out, arguments.fmus, pages=not arguments.no_page)
     if arguments.json:

@@ -7,11 +7,13 @@ import json
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from fmus.installation import missing_package
 from orchestrator.commands import STUDIES
 from orchestrator.cosim.kinds import KINDS
 from orchestrator.drawing.save import check_picture
 from orchestrator.text.console import console
-from orchestrator.text.errors import INTERRUPTED, PARKED, BadInput, shown, suggestion
+from orchestrator.text.errors import INTERRUPTED, PARKED, BadInput, shown, suggestion_or_choices
+from orchestrator.text.failures import verdict_stands
 from orchestrator.text.owned import owned
 
 if TYPE_CHECKING:
@@ -75,7 +77,7 @@ def run(arguments: argparse.Namespace) -> int:
     try:
         from orchestrator.sweep.sweep import Options, sweep
     except ModuleNotFoundError as error:
-        raise BadInput(f"{error.name} is not installed; run: pip install 'apa-cosim[native,sweep]'") from error
+        raise BadInput(missing_package(error.name or "", "native,sweep")) from error
     if arguments.first < 0:
         raise BadInput(f"{arguments.first}: expected 0 or more", key="--first")
     if arguments.picture is not None:
@@ -123,7 +125,7 @@ def _whole(name: str, pairs: dict[str, str]) -> dict[str, int]:
     known = inspect.signature(importlib.import_module(STUDIES[name]).study).parameters
     for key, value in pairs.items():
         if key not in known:
-            hint = suggestion(key, known) or f"; expected {', '.join(known) or 'nothing'}"
+            hint = suggestion_or_choices(key, known)
             raise BadInput(f"{name} has no such key{hint}", file="--set", key=key)
         if not (value.strip().isascii() and value.strip().isdigit() and len(value) < 10):
             raise BadInput(f"{shown(value)} is not a whole number of at least 0", file="--set", key=key)
@@ -146,13 +148,15 @@ def _write(table: Path, arguments: argparse.Namespace) -> dict[str, Path]:
         from orchestrator.sweep.page.picture import draw_maps
         from orchestrator.sweep.table import Table
 
-        draw_maps(Table(table), arguments.picture)
-        written["picture"] = arguments.picture
+        with verdict_stands(str(arguments.picture)):
+            draw_maps(Table(table), arguments.picture)
+            written["picture"] = arguments.picture
     if not arguments.no_page:
         from orchestrator.sweep.page.page import write_page
 
-        _replay_worst(table, arguments.replays)
-        written["page"] = write_page(table)
+        with verdict_stands("the result page"):
+            _replay_worst(table, arguments.replays)
+            written["page"] = write_page(table)
     return written
 
 

@@ -3,7 +3,7 @@
 from pathlib import Path
 from typing import NamedTuple
 
-from orchestrator.text.errors import BadInput, shown, suggestion
+from orchestrator.text.errors import BadInput, shown, suggestion_or_choices
 from orchestrator.text.patterns import fits
 from orchestrator.text.quantities import number
 from orchestrator.text.yaml_file import read_mapping
@@ -51,7 +51,7 @@ def read_tolerances(path: Path | None, default: Tolerance) -> Tolerances:
             raise BadInput(f"{shown(given)}: expected a mapping with {', '.join(KEYS)}", file=path, key=pattern)
         for key in given:
             if key not in KEYS:
-                hint = suggestion(str(key), KEYS) or f"; known are {', '.join(KEYS)}"
+                hint = suggestion_or_choices(str(key), KEYS)
                 raise BadInput(f"unknown{hint}", file=path, key=f"{pattern}: {key}")
         rows.append((pattern, given, str(path)))
     return Tolerances(default, rows)

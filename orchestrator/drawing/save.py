@@ -6,7 +6,14 @@ from typing import Any
 from fmus.files import whole
 from orchestrator.text.errors import BadInput
 
-FORMATS = (".png", ".svg", ".pdf", ".jpg")
+METADATA: dict[str, dict[str, None] | None] = {
+    ".png": {"Software": None},
+    ".svg": {"Date": None, "Creator": None},
+    ".pdf": {"CreationDate": None, "Creator": None, "Producer": None},
+    ".jpg": None,
+}
+"""Format -> metadata keys of matplotlib that are left out, so that equal figures give equal files."""
+FORMATS = tuple(METADATA)
 
 
 def check_picture(path: Path) -> None:
@@ -18,5 +25,6 @@ def check_picture(path: Path) -> None:
 def save(figure: Any, path: Path, **how: Any) -> None:
     """Write a matplotlib figure, whole or not at all. Raises ``BadInput`` for a name that is no picture's."""
     check_picture(path)
+    how.setdefault("metadata", METADATA[path.suffix.lower()])
     with whole(path) as part:
         figure.savefig(part, **how)

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from fmus.files import whole
+from fmus.installation import missing_package
 from orchestrator.cosim.recording import Recording
 from orchestrator.export.csv import add_run_arguments
 from orchestrator.log.read_log import read_log
@@ -45,7 +46,7 @@ def write_mf4(path: Path, recording: Recording, names: list[str]) -> None:
     try:
         from asammdf import MDF, Signal
     except ImportError:
-        raise BadInput("needs the package asammdf: pip install 'apa-cosim[export]'") from None
+        raise BadInput(missing_package("asammdf", "export")) from None
     signals = [_signal(Signal, recording, name) for name in names]
     with MDF(version="4.10") as file:
         file.start_time = datetime.datetime(1970, 1, 1, tzinfo=datetime.UTC)

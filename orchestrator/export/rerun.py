@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from fmus.files import whole
+from fmus.installation import missing_package
 from modelkit.variables import Variable
 from orchestrator.cosim.recording import Recording
 from orchestrator.cosim.slave import Array
@@ -58,7 +59,7 @@ def write_rerun(path: Path, recording: Recording, names: list[str], words: list[
     try:
         import rerun as rr
     except ImportError:
-        raise BadInput("needs the package rerun-sdk: pip install 'apa-cosim[export]'") from None
+        raise BadInput(missing_package("rerun-sdk", "export")) from None
     name = str(recording.info.get("scenario", {}).get("name", path.stem))
     stream = rr.RecordingStream(f"apa-cosim {name}", recording_id=path.stem)
     with whole(path) as part, _disk_full_told():

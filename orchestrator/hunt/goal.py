@@ -8,7 +8,7 @@ from orchestrator.cosim.slave import Array
 from orchestrator.scenario.requirements import LIMITS, Requirement, shipped_requirements
 from orchestrator.sweep.rows import measure_of
 from orchestrator.sweep.study.study import Goal, Study
-from orchestrator.text.errors import BadInput, suggestion
+from orchestrator.text.errors import BadInput, suggestion_or_choices
 from orchestrator.verdict.numbers import NUMBERS
 
 CONTACT = Requirement(id="contact", signal="vehicle.clearance", min=1e-9, source="nothing is touched")
@@ -31,7 +31,7 @@ def goal_of(study: Study, name: str | None) -> Goal:
     known |= {f"within {key}": items for key, items in study.within.items()}
     known |= {item.id: [item] for item in study.scenario.limits}
     if name not in known:
-        hint = suggestion(name, [*own, *known]) or f"; known are {', '.join([*own, *known])}"
+        hint = suggestion_or_choices(name, [*own, *known])
         raise BadInput(f"no requirement of this name{hint}", key="--requirement")
     return _limits(name, known[name])
 

@@ -7,6 +7,7 @@ from fmus.files import write_whole
 from orchestrator.cosim.recording import Recording
 from orchestrator.log.line import Line
 from orchestrator.scenario.scenario import Scenario
+from orchestrator.text.failures import verdict_stands
 from orchestrator.verdict.summary import Summary
 
 LOG, SUMMARY, PICTURE, PAGE, LIVE = "run.mcap", "summary.json", "overview.png", "report.html", "live.html"
@@ -25,14 +26,16 @@ def write_picture(folder: Path, recording: Recording, summary: Summary, scenario
     from orchestrator.drawing.figure import picture
     from orchestrator.drawing.seen import overview_of
 
-    write_whole(folder / PICTURE, picture(overview_of(recording, summary, scenario)))
+    with verdict_stands(str(folder / PICTURE)):
+        write_whole(folder / PICTURE, picture(overview_of(recording, summary, scenario)))
 
 
 def write_page(folder: Path, recording: Recording, summary: Summary, lines: list[Line]) -> None:
     """Write the replay page; it leads to the page that is driven, if there is one in ``folder``."""
     from orchestrator.report.replay import write_replay
 
-    write_replay(folder / PAGE, recording, summary, lines, LIVE if (folder / LIVE).exists() else "")
+    with verdict_stands(str(folder / PAGE)):
+        write_replay(folder / PAGE, recording, summary, lines, LIVE if (folder / LIVE).exists() else "")
 
 
 def is_shown(recording: Recording) -> bool:

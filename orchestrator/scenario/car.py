@@ -13,7 +13,7 @@ from modelkit.car import Car
 from modelkit.variables import flatten, variables
 from orchestrator.scenario.files import find_file
 from orchestrator.scenario.flat_names import flatten_section, merge_flat
-from orchestrator.text.errors import BadInput, shown, suggestion
+from orchestrator.text.errors import BadInput, shown, suggestion_or_choices
 from orchestrator.text.quantities import scalar
 from orchestrator.text.yaml_file import read_mapping
 
@@ -76,7 +76,7 @@ def _car_in(file: Path, name: str) -> ToldCar:
     content = read_mapping(file)
     for key in content:
         if key not in FILE_KEYS:
-            hint = suggestion(str(key), FILE_KEYS) or f"; known are {', '.join(FILE_KEYS)}"
+            hint = suggestion_or_choices(str(key), FILE_KEYS)
             raise BadInput(f"unknown{hint}", file=file, key=key)
     vehicle: Layer = ({"vehicle": content.get("vehicle")}, file)
     return ToldCar(name, _numbers(content.get("car") or {}, file), (vehicle,))

@@ -4,7 +4,7 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from modelkit.variables import Variable, variables
 from orchestrator.scenario.models import MODELS
-from orchestrator.text.errors import BadInput, suggestion
+from orchestrator.text.errors import BadInput, suggestion_or_choices
 from orchestrator.text.quantities import NANOSECONDS, Seconds, Whole
 
 SPEED = "vehicle.speed"
@@ -56,7 +56,7 @@ class EndCondition(BaseModel):
             if word in OPTIONAL and word not in numbers:
                 continue
             if isinstance(word, str) and word not in numbers:
-                hint = suggestion(word, list(numbers)) or f"; known are {', '.join(numbers) or 'none'}"
+                hint = suggestion_or_choices(word, list(numbers))
                 raise BadInput(f"{state!r} is no state of {self.signal}{hint}", key="ending")
             found.append(numbers[word] if isinstance(word, str) else word)
         return found

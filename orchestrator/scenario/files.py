@@ -2,9 +2,18 @@
 
 from pathlib import Path
 
-from orchestrator.text.errors import BadInput, suggestion
+from orchestrator.text.errors import BadInput, suggestion_or_choices
 
 ROOM = Path(__file__).parent.parent
+
+ADVICE = {
+    ".csv": "; a benchmark scene becomes a scenario by: apa import",
+    ".json": "; a benchmark scene becomes a scenario by: apa import",
+    ".mcap": "; a log is shown by: apa report, and judged by: apa check",
+    ".fmu": "; a third-party FMU is tried by: apa fmu check, and used by: --controller or --vehicle",
+    ".parquet": "; a row of a study is repeated by: apa replay",
+}
+"""Suffix of a file that is no scenario -> the command that takes it."""
 
 
 def shipped(folder: str) -> list[str]:
@@ -27,6 +36,12 @@ def find_file(name: str, folder: str, what: str, beside: Path) -> Path:
     file = ROOM / folder / f"{name}.yaml"
     if file.is_file():
         return file
+    suffix = Path(name).suffix
+    if suffix and not suffix[1:].isdigit():
+        raise BadInput(
+            f"expected a {what}: a file .yaml or .ssp, or a name of `apa list {folder}`{ADVICE.get(suffix, '')}",
+            file=name,
+        )
     known = shipped(folder)
-    hint = suggestion(name, known) or f"; shipped are {', '.join(known) or 'none'}"
+    hint = suggestion_or_choices(name, known, listing=f"apa list {folder}")
     raise BadInput(f"no {what} of this name{hint}", key=name)

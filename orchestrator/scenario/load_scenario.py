@@ -18,7 +18,7 @@ from orchestrator.scenario.scenario import Scenario, Target
 from orchestrator.scenario.target_point import as_rear_axle
 from orchestrator.scenario.wiring.ssp import SUFFIX, ssp_scenario, ssp_system
 from orchestrator.scenario.wiring.system_text import NO_FILE, SystemText
-from orchestrator.text.errors import BadInput, shown, suggestion
+from orchestrator.text.errors import BadInput, shown, suggestion, suggestion_or_choices
 from orchestrator.text.quantities import scalar
 from orchestrator.text.yaml_file import explain, place_in, read_mapping, read_value
 
@@ -255,13 +255,15 @@ def _set_layer(sets: list[str], slaves: Iterable[str]) -> dict[str, Any]:
 def _check_keys(keys: Iterable[str], file: object) -> None:
     for key in keys:
         if key not in FIELDS:
-            hint = suggestion(key, [*FIELDS, *(f"{owner}.{key}" for owner in _owners_of(key))])
-            raise BadInput(f"unknown{hint or '; known are ' + ', '.join(FIELDS)}", file=file, key=key)
+            hint = suggestion(key, _parameters_called(key)) or suggestion_or_choices(key, FIELDS)
+            raise BadInput(f"unknown{hint}", file=file, key=key)
 
 
-def _owners_of(key: str) -> list[str]:
-    names = {"car": CAR, **{owner: variables(model.params) for owner, model in MODELS.items()}}
-    return [owner for owner, known in names.items() if key in {item.name for item in known}]
+def _parameters_called(key: str) -> list[str]:
+    """Return the parameters ``owner.name`` whose name is ``key`` or ends with ``.key``."""
+    owners = {"car": CAR, **{owner: variables(model.params) for owner, model in MODELS.items()}}
+    names = {f"{owner}.{item.name}" for owner, known in owners.items() for item in known}
+    return sorted(name for name in names if name.endswith(f".{key}"))
 
 
 def _named(key: str, value: object) -> object:

@@ -11,7 +11,7 @@ from typing import Any, Literal, get_args
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
-from orchestrator.text.errors import BadInput, shown, suggestion
+from orchestrator.text.errors import BadInput, shown, suggestion_or_choices
 from orchestrator.text.quantities import Seconds, measured
 from orchestrator.text.yaml_file import explain, place_in, read_yaml
 
@@ -146,7 +146,7 @@ class Requirement(Limited):
             )
         for key in data:
             if key not in cls.model_fields:
-                hint = suggestion(str(key), cls.model_fields) or f"; known are {', '.join(cls.model_fields)}"
+                hint = suggestion_or_choices(str(key), cls.model_fields)
                 raise BadInput(f"unknown{hint}", key=f"{data.get('id', '')}: {key}".lstrip(": "))
         return {**data, **_limit(data, _given(data))}
 

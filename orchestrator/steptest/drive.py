@@ -22,7 +22,7 @@ from orchestrator.session.own import is_model
 from orchestrator.session.session import NOBODY
 from orchestrator.steptest.step_test import StepTest
 from orchestrator.steptest.stimuli import StimulatedInput, stimulus
-from orchestrator.text.errors import BadInput, suggestion
+from orchestrator.text.errors import BadInput, suggestion_or_choices
 from orchestrator.text.quantities import scalar
 
 FMU, MODEL_FILE, OTHER = ".fmu", ".py", "model"
@@ -87,7 +87,7 @@ def _inputs(test: StepTest, slave: Slave) -> dict[int, Array]:
             given |= {f"{name}.{part}": item for part, item in value.items()}
     for name, value in given.items():
         if name not in ports.index:
-            hint = suggestion(name, ports.names) or f"; known are {', '.join(ports.names[:12])}"
+            hint = suggestion_or_choices(name, ports.names)
             raise BadInput(f"no such input{hint}", file=test.file, key=f"inputs.{name}")
         place = ports.index[name]
         columns[place] = stimulus(value, StimulatedInput(ports.variables[place], test.file, f"inputs.{name}"), t)

@@ -6,7 +6,7 @@ from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from orchestrator.scenario.requirements import Condition
 from orchestrator.steptest.response import RESPONSES
-from orchestrator.text.errors import BadInput, shown, suggestion
+from orchestrator.text.errors import BadInput, shown, suggestion_or_choices
 
 Number = float | str | bool
 BOUNDS: tuple[Condition, ...] = ("max", "min", "max_abs", "equals")
@@ -24,7 +24,7 @@ class _StepTestPart(BaseModel):
         known = {item.alias or name: item for name, item in cls.model_fields.items()}
         for key in data:
             if key not in known:
-                hint = suggestion(str(key), known) or f"; known are {', '.join(known)}"
+                hint = suggestion_or_choices(str(key), known)
                 raise BadInput(f"unknown{hint}", key=str(key))
         return data
 

@@ -5,6 +5,7 @@ from typing import Any
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator
 
+from orchestrator.scenario.models import MODELS
 from orchestrator.steptest.expectation import Expectation
 from orchestrator.text.errors import BadInput
 from orchestrator.text.quantities import NANOSECONDS, Seconds
@@ -84,6 +85,22 @@ def is_step_test(name: str) -> bool:
     except BadInput:
         return False
     return MARK in content
+
+
+def declares_step_test(path: Path) -> bool:
+    """Return whether a YAML file declares itself as a step test, so that a test runner of any project may collect it.
+
+    ``model:`` names something that can be tested here (``controller``, ``vehicle``, an FMU, ``FILE.py:NAME``) and at
+    least one further key of a step test is there; ``model: resnet50`` of somebody else's file is not.
+    """
+    try:
+        content = read_mapping(path)
+    except BadInput:
+        return False
+    model = content.get(MARK)
+    if not isinstance(model, str) or not content.keys() & {"stop_time", "inputs", "replay", "expect", "reference"}:
+        return False
+    return model in MODELS or model.lower().endswith(".fmu") or ".py:" in model
 
 
 def load_step_test(path: Path) -> StepTest:

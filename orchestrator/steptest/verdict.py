@@ -13,7 +13,7 @@ from orchestrator.steptest.expectation import Expectation, Limit, Number, Reacti
 from orchestrator.steptest.response import RESPONSES, Response
 from orchestrator.steptest.step_test import StepTest
 from orchestrator.steptest.temporal import Decided, always, eventually, rises, until
-from orchestrator.text.errors import BadInput, suggestion
+from orchestrator.text.errors import BadInput, suggestion_or_choices
 from orchestrator.text.quantities import number, scalar
 from orchestrator.verdict.conditions import CONDITIONS
 from orchestrator.verdict.judge import NEVER, Check
@@ -170,7 +170,7 @@ class _Judge:
         full = f"{self._owner}.{name}"
         if full not in self._recording.signals:
             known = [item.split(".", 1)[1] for item in self._recording.signals]
-            hint = suggestion(name, known) or f"; known are {', '.join(known[:12])}"
+            hint = suggestion_or_choices(name, known)
             raise BadInput(f"{name}: no such input or output{hint}", file=self._file, key=self._item.id)
         return full
 

@@ -9,11 +9,11 @@ import numpy as np
 from mcap_protobuf.schema import build_file_descriptor_set
 from numpy.typing import NDArray
 
+from fmus.installation import missing_package
 from orchestrator.stream.tuning import Tuning
 from orchestrator.text.errors import BadInput
 
 HOST = "127.0.0.1"
-MISSING = "needs the package foxglove-sdk: pip install 'apa-cosim[live]'"
 KEPT = ("/parameters", "/scene", "/path", "/trail")
 """Ends of the topics of which whoever subscribes gets the latest message at once."""
 
@@ -25,7 +25,7 @@ class LiveChannels:
         try:
             import foxglove
         except ImportError as error:
-            raise BadInput(MISSING, key="--live") from error
+            raise BadInput(missing_package("foxglove-sdk", "live"), key="--live") from error
         self._foxglove: Any = foxglove
         self._context = foxglove.Context()
         self._channels: list[Any] = []

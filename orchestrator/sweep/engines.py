@@ -25,6 +25,7 @@ from multiprocessing import get_context, parent_process
 from pathlib import Path
 
 from fmus.files import live_in, own_room
+from fmus.installation import missing_package
 from fmus.native.compilers import can_compile
 from orchestrator.cosim.master import Interrupt
 from orchestrator.cosim.slave import Array
@@ -125,7 +126,7 @@ def make_engine(task: ChunkTask, dask: str | None, workers: int | None) -> Engin
     if dask is None:
         return LocalEngine(task, workers)
     if find_spec("distributed") is None:
-        raise BadInput("Dask is not installed; run: pip install 'apa-cosim[sweep]'", key="--dask")
+        raise BadInput(missing_package("distributed", "sweep"), key="--dask")
     from orchestrator.sweep.dask_engine import DaskEngine
 
     return DaskEngine(task, None if dask == "local" else dask, workers)

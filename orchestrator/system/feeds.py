@@ -12,7 +12,7 @@ from orchestrator.scenario.end_condition import state_word
 from orchestrator.scenario.wiring.system_text import Feed, PoseFrame, Term, terms
 from orchestrator.system.conversions import Affine, PoseChange, ValueMap
 from orchestrator.system.units import UnfitUnitsError, conversion
-from orchestrator.text.errors import BadInput, suggestion
+from orchestrator.text.errors import BadInput, suggestion, suggestion_or_choices
 from orchestrator.text.quantities import scalar
 
 UNITS_OF_A_POSE = ("m", "m", "rad")
@@ -181,6 +181,6 @@ def _state(given: int | str, variable: Variable, file: object, key: str) -> floa
     names = {} if states is None else {state.name: int(state) for state in states}
     word = state_word(given)
     if word not in names:
-        hint = suggestion(word, list(names)) or f"; known are {', '.join(names) or 'none'}"
+        hint = suggestion_or_choices(word, list(names))
         raise BadInput(f"{given!r} is no state of {variable.name}{hint}", file=file, key=f"{key}.map")
     return float(names[word])

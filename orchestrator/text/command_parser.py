@@ -6,10 +6,15 @@ import sys
 from collections.abc import Iterator
 from typing import Any, NoReturn
 
-from orchestrator.text.errors import BAD_INPUT, suggestion
+from orchestrator.text.errors import BAD_INPUT, suggestion, suggestion_or_choices
 
-MOVED = {"study": "; it is now: apa sweep NAME", "bakeoff": "; it is now: apa sweep bakeoff"}
-"""What has become of commands that were."""
+SYNONYMS = {
+    "plot": "report", "figure": "report", "show": "report", "view": "report",
+    "simulate": "run", "start": "run", "validate": "fmu check", "inspect": "fmu check",
+    "study": "sweep", "bakeoff": "sweep bakeoff", "falsify": "hunt", "evaluate": "check",
+    "diff": "compare", "convert": "export", "init": "new", "create": "new", "repair": "recover",
+}  # fmt: skip
+"""What other tools call a command -> the command here."""
 
 
 class CommandParser(argparse.ArgumentParser):
@@ -64,5 +69,8 @@ class CommandParser(argparse.ArgumentParser):
     def _check_value(self, action: argparse.Action, value: Any) -> None:
         if action.choices is not None and value not in action.choices:
             names = [str(name) for name in action.choices]
-            hint = MOVED.get(str(value)) or suggestion(str(value), names) or f"; expected {', '.join(names)}"
+            meant = SYNONYMS.get(str(value), "")
+            hint = (
+                f"; did you mean {meant}?" if meant.split(" ")[0] in names else suggestion_or_choices(str(value), names)
+            )
             raise argparse.ArgumentError(action, f"{value}: unknown{hint}")

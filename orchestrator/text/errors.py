@@ -39,16 +39,45 @@ class RunError(Exception):
 
 
 def suggestion(word: str, known: Iterable[str], prefix: str = "") -> str:
-    """Return ``; did you mean X?`` with the closest of ``known``, ``prefix`` before each, or an empty string."""
+    """Return ``; did you mean X?`` with at most three of ``known``, ``prefix`` before each; empty if none is like it.
+
+    Names with the same last part come first, then names that contain the word, then similar spellings.
+    """
     import difflib
 
     names = list(known)
-    close = difflib.get_close_matches(word[:MOST_LETTERS], names, n=2, cutoff=0.6)
-    if not close:
-        close = [name for name in names if name.rsplit(".", 1)[-1] == word.rsplit(".", 1)[-1]][:2]
-    return f"; did you mean {' or '.join(prefix + name for name in close)}?" if close else ""
+    key = word[:MOST_LETTERS].lower()
+    last = key.rsplit(".", 1)[-1]
+    partial = [name for name in names if len(key) >= MIN_PARTIAL_LETTERS and key in name.lower()]
+    ranked = [
+        *sorted((name for name in names if last and name.lower().rsplit(".", 1)[-1] == last), key=len),
+        *sorted(partial, key=lambda name: (not name.lower().endswith(key), len(name))),
+        *difflib.get_close_matches(word[:MOST_LETTERS], names, n=2, cutoff=MIN_SIMILARITY),
+    ]
+    chosen = list(dict.fromkeys(ranked))[:MAX_SUGGESTIONS]
+    return f"; did you mean {' or '.join(prefix + name for name in chosen)}?" if chosen else ""
 
 
+def suggestion_or_choices(word: str, known: Iterable[str], prefix: str = "", listing: str = "") -> str:
+    """Return the :func:`suggestion`, or else the names that are valid: at most eight, then the command ``listing``."""
+    names = list(known)
+    return suggestion(word, names, prefix) or choices(names, listing)
+
+
+def choices(known: Iterable[str], listing: str = "") -> str:
+    """Return ``; expected one of: a, b, c``, the first eight names and how many more there are."""
+    names = list(known)
+    if not names:
+        return "; there are none"
+    more = len(names) - MAX_CHOICES
+    rest = f" and {more} more" if more > 0 else ""
+    return f"; expected one of: {', '.join(names[:MAX_CHOICES])}{rest}{f' ({listing})' if listing else ''}"
+
+
+MAX_SUGGESTIONS, MIN_PARTIAL_LETTERS, MIN_SIMILARITY = 3, 2, 0.6
+"""At most so many names are suggested; a word of so many letters may be part of a name; ratio of ``difflib``."""
+MAX_CHOICES = 8
+"""Names that a message lists before it says how many more there are."""
 MOST_LETTERS = 100
 """A word longer than this is like no other."""
 

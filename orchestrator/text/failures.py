@@ -6,10 +6,13 @@ import platform
 import sys
 import tempfile
 import traceback
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from datetime import datetime
 from pathlib import Path
 
+from fmus.installation import missing_package
+from orchestrator.text.console import say
 from orchestrator.text.errors import BAD_INPUT, INTERNAL_ERROR, INTERRUPTED, BadInput, RunError, shown
 
 REPORT = "please report it with that file to those who maintain apa-cosim"
@@ -42,9 +45,24 @@ def explained(error: BaseException, words: Sequence[str]) -> tuple[int, str]:
     if isinstance(error, ModuleNotFoundError):
         extra = _extra_of(error.name or "")
         if extra:
-            return BAD_INPUT, f"{error.name} is not installed; run: pip install 'apa-cosim[{extra}]'"
+            return BAD_INPUT, missing_package(error.name or "", extra)
     kept = _keep(error, words)
     return INTERNAL_ERROR, f"internal error, nothing was judged: {one_line(error)}; {kept}"
+
+
+@contextmanager
+def verdict_stands(what: str) -> Iterator[None]:
+    """Report an unexpected failure while ``what`` (a page, a figure) is made of a run that was evaluated already.
+
+    The run's verdict and exit code stand. Bad input, a place that cannot be written and Ctrl-C pass through.
+    """
+    try:
+        yield
+    except (BadInput, RunError, OSError):
+        raise
+    except Exception as error:
+        kept = _keep(error, sys.argv[1:])
+        say(f"apa: warning: {what} was not made, the verdict stands: {one_line(error)}; {kept}")
 
 
 def place_of(error: OSError) -> str:

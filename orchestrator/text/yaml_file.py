@@ -11,7 +11,7 @@ from typing import Any
 import yaml
 from pydantic import ValidationError
 
-from orchestrator.text.errors import LINES, BadInput, shown, suggestion
+from orchestrator.text.errors import LINES, BadInput, shown, suggestion_or_choices
 
 MOST_BYTES = 500_000
 MOST_NODES = 50_000
@@ -170,7 +170,7 @@ def explain(error: ValidationError, file: object, known: list[str]) -> BadInput:
     if first["type"] == "extra_forbidden":
         word = str(first["loc"][-1])
         names = known if len(first["loc"]) == 1 else []
-        hint = suggestion(word, names) or (f"; known are {', '.join(names)}" if names else " here")
+        hint = suggestion_or_choices(word, names) if names else " here"
         return BadInput(f"unknown{hint}", file=file, key=key)
     if first["type"] == "missing":
         return BadInput("is missing", file=file, key=key)

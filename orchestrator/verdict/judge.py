@@ -13,7 +13,7 @@ from orchestrator.cosim.slave import Array
 from orchestrator.scenario.end_condition import state_word, states_of
 from orchestrator.scenario.models import MODELS
 from orchestrator.scenario.requirements import Condition, Occasion, Requirement, Window
-from orchestrator.text.errors import BadInput, suggestion
+from orchestrator.text.errors import BadInput, suggestion, suggestion_or_choices
 from orchestrator.verdict.conditions import CONDITIONS
 from orchestrator.verdict.numbers import NUMBERS, Facts, signals_of
 from orchestrator.verdict.truth import Bools
@@ -173,7 +173,7 @@ def _number(limit: float | str, states: dict[int, str], file: str, where: str) -
         if name == word:
             return float(value)
     names = [name.lower() for name in states.values()]
-    hint = suggestion(limit.lower(), names) or f"; known are {', '.join(names)}" if names else "; the signal has none"
+    hint = suggestion_or_choices(limit.lower(), names)
     raise BadInput(f"{limit!r} is no state{hint}", file=file, key=where)
 
 

@@ -8,6 +8,7 @@ from typing import Any
 
 import pytest
 
+from fmus.installation import install_command
 from fmus.native import fmu as native_fmu
 from fmus.native.platforms import host
 from orchestrator.cli import main
@@ -69,7 +70,7 @@ def test_without_a_compiler_it_says_what_to_install(
     monkeypatch.delenv("CC", raising=False)
     monkeypatch.setattr("importlib.metadata.version", absent)
     assert main(["build", "--fmus", "native", "--out", str(tmp_path)]) == 2
-    assert "pip install 'apa-cosim[native]'" in capsys.readouterr().err
+    assert install_command("native") in capsys.readouterr().err
 
 
 def test_what_the_compiler_says_is_passed_on(

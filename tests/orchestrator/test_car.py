@@ -86,7 +86,7 @@ def test_a_car_of_ones_own_lies_beside_the_scenario_that_names_it(tmp_path: Path
         ("car: {base: zhang2023}", "zhang2023: no car of this name; did you mean zhang2022"),
         ("car: {base: [1]}", r"car\.base: \[1\]: expected the name of a car"),
         ("car: 3", "car: 3: expected the name of a car, a file, or a mapping"),
-        ("car: own.yaml", r"own\.yaml(:\d+)?: controller: unknown; known are .*car"),
+        ("car: own.yaml", r"own\.yaml(:\d+)?: controller: unknown; expected one of: .*car"),
     ],
 )
 def test_a_mistake_in_a_car_is_explained(tmp_path: Path, text: str, message: str) -> None:

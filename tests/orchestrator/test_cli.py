@@ -359,7 +359,7 @@ def test_a_container_says_that_it_needs_a_compiler(
     monkeypatch.delenv("CC", raising=False)
     monkeypatch.setattr("importlib.metadata.version", lambda name: (_ for _ in ()).throw(PackageNotFoundError(name)))
     assert main(["export", "container", "guo2015-case4", "--out", str(tmp_path / "c.fmu")]) == 2
-    assert "a C compiler is missing: pip install" in capsys.readouterr().err
+    assert "there is no C compiler; run: " in capsys.readouterr().err
     assert list(tmp_path.iterdir()) == []
 
 

@@ -150,7 +150,7 @@ def test_a_window_that_never_comes_fails_unless_told_otherwise() -> None:
         ({}, "exactly one of"),
         ({"maximum": 1}, "did you mean max"),
         ({"max": 1, "window": {"from": 2, "to": 1}}, "is after"),
-        ({"max": 1, "window": {"phase": "FLYING"}}, "known are"),
+        ({"max": 1, "window": {"phase": "FLYING"}}, "expected one of"),
         ({"max": 1, "signal": "vehicle.sped"}, "did you mean vehicle.speed"),
         ({"max": "3 deg", "unit": "m"}, "not in m"),
     ],

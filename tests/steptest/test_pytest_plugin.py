@@ -77,3 +77,19 @@ def test_an_fmu_of_somebody_elses_takes_the_place_of_ours(pytester: pytest.Pytes
     found = run("--apa-controller", "no.fmu")
     found.assert_outcomes(failed=1)
     found.stdout.fnmatch_lines(["*no.fmu*"])
+
+
+def test_yaml_files_of_other_projects_are_not_collected(pytester: pytest.Pytester, run: Any) -> None:
+    """A machine-learning configuration, and a text with another meaning of ``model`` and ``inputs``."""
+    pytester.makepyfile(test_theirs="def test_passes(): pass")
+    pytester.makefile(
+        ".yaml", test_model="model: resnet50\nepochs: 3", test_prompt="model: gpt\ninputs: [a]\nexpect: b"
+    )
+    run().assert_outcomes(passed=1)
+
+
+def test_a_step_test_with_a_mistake_is_collected_and_reported(pytester: pytest.Pytester, run: Any) -> None:
+    pytester.makefile(".yaml", test_mistake="model: vehicle\nexpect: []")
+    found = run()
+    found.assert_outcomes(errors=1)
+    found.stdout.fnmatch_lines(["*stop_time*"])

@@ -1,6 +1,7 @@
 """What a study's page and its numbers say."""
 
 from html.parser import HTMLParser
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -9,6 +10,7 @@ import pytest
 from orchestrator.cli import main
 from orchestrator.sweep.page.figures import SCALE, colour, histogram
 from orchestrator.sweep.page.page import study_page
+from orchestrator.sweep.page.picture import draw_maps
 from orchestrator.sweep.page.statistics import axis, influences, maps, variance_share, varied, worst
 from orchestrator.sweep.table import Table
 from orchestrator.verdict.confidence import wilson
@@ -98,6 +100,18 @@ def test_an_axis_with_many_values_is_cut_into_equal_bins(table: Any) -> None:
 
 def test_the_picture_is_written(folder: Any) -> None:
     assert (folder / "map.png").read_bytes()[:8] == b"\x89PNG\r\n\x1a\n"
+
+
+@pytest.mark.parametrize(("name", "start"), [("map.svg", b"<?xml"), ("map.pdf", b"%PDF"), ("map.jpg", b"\xff\xd8")])
+def test_the_picture_has_the_format_of_its_name_and_equal_bytes_each_time(
+    name: str, start: bytes, table: Any, tmp_path: Path
+) -> None:
+    draw_maps(table, tmp_path / name)
+    first = (tmp_path / name).read_bytes()
+    assert first.startswith(start)
+    if name == "map.pdf":
+        draw_maps(table, tmp_path / name)
+        assert (tmp_path / name).read_bytes() == first
 
 
 def test_the_confidence_interval_is_wilsons() -> None:

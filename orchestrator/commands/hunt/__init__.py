@@ -5,6 +5,7 @@ import json
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from fmus.installation import missing_package
 from orchestrator.commands.sweep import chosen_study
 from orchestrator.cosim.kinds import KINDS
 from orchestrator.text.console import console
@@ -49,7 +50,7 @@ def run(arguments: argparse.Namespace) -> int:
         import cma  # noqa: F401
         import pyarrow  # noqa: F401
     except ModuleNotFoundError as error:
-        raise BadInput(f"{error.name} is not installed; run: pip install 'apa-cosim[native,sweep]'") from error
+        raise BadInput(missing_package(error.name or "", "native,sweep")) from error
     if arguments.corpus is not None:
         return _corpus(arguments.corpus, as_json=arguments.json)
     if arguments.study is None:

@@ -14,6 +14,7 @@ from orchestrator.session.session import Ran
 from orchestrator.stream.realtime import Realtime
 from orchestrator.text.console import say
 from orchestrator.text.errors import INTERRUPTED, NOT_PARKED, PARKED
+from orchestrator.text.failures import verdict_stands
 from orchestrator.text.owned import owned
 from orchestrator.text.readable import shortly
 from orchestrator.verdict.summary import Summary, summarize
@@ -34,11 +35,12 @@ def run_once(arguments: argparse.Namespace, beside: PictureBeside | None) -> int
         drawer = beside if is_shown(ran.recording) and not interrupted else None
         if drawer is not None:
             drawer.begin(overview_of(ran.recording, summary, scenario))
+        _tell(arguments, text, summary, scenario)
         if beside is not None and not interrupted:
             _write_pages(out, ran, summary, scenario, foreign)
-        _tell(arguments, text, summary, scenario)
         if drawer is not None:
-            write_whole(out / PICTURE, drawer.picture())
+            with verdict_stands(str(out / PICTURE)):
+                write_whole(out / PICTURE, drawer.picture())
     if not arguments.json:
         print(f"results in {out}")
     if interrupted:
@@ -58,7 +60,8 @@ def _tell(arguments: argparse.Namespace, text: str, summary: Summary, scenario: 
 
 def _write_pages(out: Path, ran: Ran, summary: Summary, scenario: Scenario, foreign: Foreign) -> None:
     """Write the page that is driven, and the replay page if there is something to show."""
-    _write_live(out / LIVE, scenario, foreign)
+    with verdict_stands(str(out / LIVE)):
+        _write_live(out / LIVE, scenario, foreign)
     if is_shown(ran.recording):
         write_page(out, ran.recording, summary, ran.lines)
 

@@ -15,7 +15,7 @@ SHORT = {"vehicle.driver.speed_error": "driver's speed error", "vehicle.car.stee
 
 
 def draw_maps(table: Table, path: Path) -> None:
-    """Write the maps side by side as a PNG."""
+    """Write the maps side by side, in the format of the file's suffix."""
     shown = maps(table)
     figure = Figure(figsize=(4.6 * max(1, len(shown)) + 0.9, 4.0), dpi=150, layout="constrained")
     axes = figure.subplots(1, max(1, len(shown)), sharey=True, squeeze=False)[0]
@@ -32,7 +32,7 @@ def draw_maps(table: Table, path: Path) -> None:
         axes[0].set_ylabel(_label(shown[0], "y"))
         figure.colorbar(drawn, ax=axes.tolist(), label=f"{word(table)} within all limits [%]", fraction=0.04)
     figure.suptitle(f"{table.about['study']['title']} ({table.count:,} runs)", fontsize=10)
-    save(figure, path, metadata={"Software": None})
+    save(figure, path)
 
 
 def _label(item: Map, side: str) -> str:

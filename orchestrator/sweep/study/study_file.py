@@ -7,7 +7,7 @@ from typing import Any
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
 from orchestrator.scenario.scenario import Name
-from orchestrator.text.errors import BadInput, suggestion
+from orchestrator.text.errors import BadInput, suggestion_or_choices
 from orchestrator.text.yaml_file import explain, read_mapping
 
 MOST_RUNS = 100_000_000
@@ -153,6 +153,6 @@ def _find(name: str, known: list[str]) -> Path:
         return path
     path = SHIPPED / f"{name}.yaml"
     if not path.is_file():
-        hint = suggestion(name, known) or f"; shipped are {', '.join(sorted(known))}"
+        hint = suggestion_or_choices(name, known)
         raise BadInput(f"no study of this name{hint}", key=name)
     return path

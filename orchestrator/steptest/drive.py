@@ -75,7 +75,7 @@ class _Player:
 
 def _inputs(test: StepTest, slave: Slave) -> dict[int, Array]:
     """Return place -> values at every instant of the inputs that the test says."""
-    t: Array = np.arange(test.stop_ns // test.step_ns + 1, dtype=np.float64) * (test.step_ns / 1e9)
+    t: Array = np.arange(test.stop_ns // test.step_ns + 1, dtype=np.float64) * test.step_ns / 1e9
     ports, columns = slave.inputs, {}
     if test.replay:
         columns = _replayed(test, slave, t)

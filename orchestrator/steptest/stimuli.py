@@ -8,8 +8,10 @@ import numpy as np
 
 from modelkit.variables import Variable
 from orchestrator.cosim.slave import Array
+from orchestrator.system.units import UnfitUnitsError, conversion
 from orchestrator.text.errors import BadInput, shown, suggestion
-from orchestrator.text.quantities import number, scalar
+from orchestrator.text.quantities import FACTORS, NANOSECONDS, number, scalar, unit_symbol
+from orchestrator.text.table_file import TableError, TextTable, read_table, unit_in_name
 
 
 class StimulatedInput:
@@ -23,6 +25,10 @@ class StimulatedInput:
     def value(self, given: object) -> float:
         """Return a value of the input: a number with or without unit, the name of a state, true or false."""
         return float(scalar(given, self.variable._replace(name=self.key), file=self.file))
+
+    def cell(self, given: object) -> float:
+        """Return a value as :meth:`value` does, but name neither file nor key where it has none."""
+        return float(scalar(given, self.variable))
 
     def seconds(self, given: object, default: float | None = None) -> float:
         """Return a time [s]."""
@@ -95,39 +101,72 @@ def _table(parts: Any, place: StimulatedInput, t: Array) -> Array:
 
 
 def _csv(parts: Any, place: StimulatedInput, t: Array) -> Array:
-    """A column of a CSV file by its name, over its first column, the time [s]; a row of units is skipped."""
+    """A column of a table by its name, over its column of times, both in the units that the table says."""
     path = place.file.parent / str(parts["file"])
     try:
-        rows = [line.split(",") for line in path.read_text(encoding="utf-8").splitlines() if line.strip()]
+        table = read_table(path)
+        column = table.column(str(parts["column"]))
+        times = [
+            _in_unit(table, row, table.time, "s", lambda text: number(text, "s")) for row in range(len(table.rows))
+        ]
+        values = _values(table, column, place, parts.get("unit"))
     except OSError as error:
         raise place.wrong(f"{path}: cannot be read: {error.strerror}") from error
-    except UnicodeDecodeError as error:
-        raise place.wrong(f"{path} is not text in UTF-8") from error
-    if len(rows) < 2 or any(len(row) != len(rows[0]) for row in rows):
-        raise place.wrong(f"{path}: expected a row of names, rows of numbers, and as many of them in each")
-    heads, column = [name.strip() for name in rows[0]], str(parts["column"])
-    if column not in heads:
-        raise place.wrong(f"{path} has no column {column}{suggestion(column, heads)}")
-    start = 1 if _is_number(rows[1][0]) else 2
-    at = heads.index(column)
-    times = np.array([place.seconds(row[0].strip()) for row in rows[start:]])
-    return _along(times, [place.value(row[at].strip()) for row in rows[start:]], place, t)
+    except (TableError, UnfitUnitsError) as error:
+        raise place.wrong(f"{path}: {error}") from None
+    if times[0] > t[-1] or times[-1] < 0.0:
+        text = f"{path}: its times, {times[0]:g} to {times[-1]:g} s, lie outside the test, 0 to {t[-1]:g} s"
+        raise place.wrong(text)
+    return _along(np.array(times), values, place, t)
+
+
+def _values(table: TextTable, column: int, place: StimulatedInput, written: object) -> list[float]:
+    """Return the numbers of a column in the unit of the input, which the table, or ``unit:``, says. Raises."""
+    head, taken = table.heads[column], place.variable.signal.unit
+    given = head.unit if written is None else unit_symbol(str(written))
+    if head.unit not in (None, given):
+        raise TableError(f"column {head.written} is in {head.unit}, unit: says {given}")
+    own = head.name.rpartition(".")[2] == place.variable.name.rpartition(".")[2]
+    hint = None if given is not None or own else unit_in_name(head.name)
+    if hint not in (None, taken) and place.variable.kind is float:
+        raise TableError(f"column {head.written} may be in {hint} by its name; write unit: {hint}, or unit: {taken}")
+    filled = table._replace(heads=[item._replace(unit=given) for item in table.heads])
+    return [_in_unit(filled, row, column, taken, place.cell) for row in range(len(table.rows))]
+
+
+def _in_unit(table: TextTable, row: int, column: int, taken: str, value: Callable[[object], float]) -> float:
+    """Return one cell in the unit ``taken``, read by ``value``. Raises ``TableError`` with its line."""
+    head, cell = table.heads[column], table.rows[row][column]
+    try:
+        factor, offset = (1.0, 0.0) if head.unit is None else conversion(head.unit, taken, {}, {})
+        if not cell:
+            raise TableError("is empty")
+        if (factor, offset) == (1.0, 0.0):
+            return value(cell)
+        magnitude = number(cell, head.unit or taken, any_value=True)
+        return value(magnitude / round(1.0 / factor) if _is_inverse(factor) else magnitude * factor + offset)
+    except UnfitUnitsError:
+        example = next((name for name, (target, _) in FACTORS.items() if target == taken), "")
+        text = f"column {head.written} is in {head.unit}; expected {taken}{' or ' + example if example else ''}"
+        raise TableError(text) from None
+    except ValueError as error:
+        raise TableError(f"line {table.lines[row]}: {head.written}: {error}") from None
+
+
+def _is_inverse(factor: float) -> bool:
+    """Return whether a factor is one over a whole number, by which division is exact where it can be."""
+    return 0.0 < factor < 1.0 and abs(1.0 / factor - round(1.0 / factor)) < 1e-6 and factor == 1.0 / round(1.0 / factor)
 
 
 def _along(times: Array, values: list[float], place: StimulatedInput, t: Array) -> Array:
+    """Return the values at ``t``: those of rows at just this nanosecond as they are, of several the last."""
     if len(times) == 0 or (np.diff(times) < 0.0).any():
         raise place.wrong("times have to rise from row to row")
-    if place.variable.kind is float:
-        return np.interp(t, times, values)
-    return np.asarray(values)[np.maximum(np.searchsorted(times, t, side="right") - 1, 0)]
-
-
-def _is_number(text: str) -> bool:
-    try:
-        float(text)
-    except ValueError:
-        return False
-    return True
+    rows_ns, t_ns, given = np.rint(times * NANOSECONDS), np.rint(t * NANOSECONDS), np.asarray(values, dtype=np.float64)
+    before = np.maximum(np.searchsorted(rows_ns, t_ns, side="right") - 1, 0)
+    if place.variable.kind is not float:
+        return given[before]
+    return np.where(rows_ns[before] == t_ns, given[before], np.interp(t, times, given))
 
 
 Shape = tuple[tuple[str, ...], Callable[[Any, StimulatedInput, Array], Array]]
@@ -137,6 +176,6 @@ SHAPES: dict[str, Shape] = {
     "pulse": (("at", "width", "period", "from", "to"), _pulse),
     "sine": (("amplitude", "frequency", "offset", "begin"), _sine),
     "table": ((), _table),
-    "csv": (("file", "column"), _csv),
+    "csv": (("file", "column", "unit"), _csv),
 }
 """Shape -> its keys (none: a list), and what makes it."""

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 
 from fmus.contents.units import BASE, unit
 from orchestrator.cosim.slave import Scale
-from orchestrator.text.quantities import FACTORS
+from orchestrator.text.quantities import FACTORS, unit_symbol
 
 SAME = (1.0, 0.0)
 
@@ -17,9 +17,10 @@ def scale_of(name: str, defined: Mapping[str, Scale]) -> Scale | None:
     """Return a unit in SI base units: as its FMU defines it, else as it is commonly meant; None if nobody knows."""
     if name in defined:
         return defined[name]
-    target, factor = FACTORS.get(name, (name, 1.0))
+    symbol = unit_symbol(name)
+    target, factor = FACTORS.get(symbol, (symbol, 1.0))
     try:
-        found = unit(target.replace(" ", "").strip("-") or "1")
+        found = unit(target.replace(" ", ""))
     except ValueError:
         return None
     return Scale(factor * found.factor, 0.0, tuple(found.exponents.get(base, 0) for base in BASE))

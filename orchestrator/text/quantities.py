@@ -17,16 +17,34 @@ FACTORS: dict[str, tuple[str, float]] = {
     "deg/s": ("rad/s", DEGREE),
     "deg/s2": ("rad/s2", DEGREE),
     "km/h": ("m/s", 1.0 / 3.6),
+    "mph": ("m/s", 0.44704),
     "cm": ("m", 0.01),
     "mm": ("m", 0.001),
     "ms": ("s", 0.001),
+    "us": ("s", 1e-6),
+    "ns": ("s", 1e-9),
     "min": ("s", 60.0),
     "kN": ("N", 1000.0),
     "%": ("1", 0.01),
 }
 QUANTITY = re.compile(
-    r"\s*+([-+]?(?:\d++(?:\.\d*+)?|\.\d++)(?:[eE][-+]?\d++)?|[-+]?inf|nan)\s*+([A-Za-z%/0-9^.]*+)\s*+", re.ASCII
+    r"\s*+([-+]?(?:\d++(?:\.\d*+)?|\.\d++)(?:[eE][-+]?\d++)?|[-+]?inf|nan)\s*+([A-Za-z%/0-9^.*°²µ]*+)\s*+", re.ASCII
 )
+SAME_UNIT = {
+    **dict.fromkeys(("", "-", "--", "none", "n/a", "NA", "N/A", "bool", "boolean", "enum"), "1"),
+    **dict.fromkeys(("°", "degree", "degrees", "degs", "Deg"), "deg"),
+    **dict.fromkeys(("radian", "radians", "Rad"), "rad"),
+    **dict.fromkeys(("°/s", "deg/sec", "degrees/s", "degree/s"), "deg/s"),
+    **dict.fromkeys(("rad/sec", "radians/s"), "rad/s"),
+    **dict.fromkeys(("kph", "kmh", "kmph", "km/hr", "Km/h", "KM/H"), "km/h"),
+    **dict.fromkeys(("m/sec", "mps"), "m/s"),
+    **dict.fromkeys(("sec", "secs", "second", "seconds"), "s"),
+    **dict.fromkeys(("msec", "milliseconds"), "ms"),
+    **dict.fromkeys(("minute", "minutes"), "min"),
+    **dict.fromkeys(("hour", "hours"), "h"),
+    **dict.fromkeys(("meter", "meters", "metre", "metres"), "m"),
+}
+"""How others write a unit -> how it is written here."""
 MOST_LETTERS = 60
 """A number with its unit is not longer."""
 MOST_WHOLE = 1 << 31
@@ -56,13 +74,19 @@ def _in_si(value: object, unit: str, file: object, key: str | None) -> float:
     match = _parts(value)
     if match is None:
         raise BadInput(f"{shown(value)} is not a number, expected for example {_example(unit)}", file=file, key=key)
-    magnitude, written = float(match[1]), match[2]
-    if written in ("", unit):
+    magnitude, written = float(match[1]), unit_symbol(match[2]) if match[2] else ""
+    if written in ("", unit) or match[2] == unit or written == unit_symbol(unit):
         return magnitude
     target, factor = FACTORS.get(written, ("", 0.0))
     if target != unit:
         raise BadInput(f"{shown(value)} is in {written!r}, expected {_example(unit)}", file=file, key=key)
     return magnitude * factor
+
+
+def unit_symbol(written: str) -> str:
+    """Return a unit as it is written here: ``km/h`` for kph, ``m/s2`` for m/s^2, ``1`` for a dash."""
+    text = written.strip().replace("²", "2").replace("³", "3").replace("**", "^").replace("µ", "u").replace("μ", "u")
+    return SAME_UNIT.get(text, re.sub(r"\^(?=-?\d)", "", text).replace("°", "deg"))
 
 
 def _parts(text: str) -> "re.Match[str] | None":
@@ -75,7 +99,8 @@ def measured(value: object, *, file: object = None, key: str | None = None) -> t
     match = _parts(value) if isinstance(value, str) else None
     if match is None or not match[2]:
         return number(value, "1", file=file, key=key), None
-    unit = FACTORS[match[2]][0] if match[2] in FACTORS else match[2]
+    written = unit_symbol(match[2])
+    unit = FACTORS[written][0] if written in FACTORS else written
     return number(value, unit, file=file, key=key), unit
 
 

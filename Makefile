@@ -4,21 +4,27 @@ VENV ?= .venv
 BIN = $(VENV)/bin
 SCENARIO ?= guo2015-case4
 
-.PHONY: run test quick fuzz mutants check lint types bench docs reproduce clean help
+PYTEST = $(BIN)/python -m pytest -n auto --dist loadfile --no-loadscope-reorder -q
+
+.PHONY: run test quick release release-tests fuzz mutants check lint types bench docs reproduce clean help
 
 help: ## Show this list
-	@grep -hE '^[a-z]+:.*## ' $(MAKEFILE_LIST) | sed 's/:.*## /\t/' | expand -t 14
+	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed 's/:.*## /\t/' | expand -t 14
 
 run: $(VENV)/.run ## Install, build the FMUs, run a parking case, print the table, name the log, figure and report
 	$(BIN)/apa build
 	$(BIN)/apa run $(SCENARIO)
 
-test: $(VENV)/.test ## Install and pass the tests
-	@echo "About a quarter of an hour on two cores"
-	$(BIN)/python -m pytest -n auto --dist loadfile --no-loadscope-reorder -q
+test: $(VENV)/.test ## Install and pass the tests that each change must pass
+	$(PYTEST) -m 'not release'
 
 quick: lint types ## Lint, types and the tests that take a minute together
-	$(BIN)/python -m pytest -n auto --dist loadfile --no-loadscope-reorder -q -m 'not slow'
+	$(PYTEST) -m 'not slow'
+
+release: check release-tests mutants bench docs ## All that must hold before a release and each night
+
+release-tests: $(VENV)/.test ## The tests that need not run on each change
+	$(PYTEST) -m release
 
 FUZZ_SECONDS ?= 600
 fuzz: $(VENV)/.test ## Attack inputs, logs, kills and FMI calls, ten minutes each, with new seeds

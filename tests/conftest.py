@@ -165,7 +165,7 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
         return order.get(name, len(order))
 
     for item in items:
-        if place_of(item) < len(order):
+        if place_of(item) < len(order) or item.get_closest_marker("release"):
             item.add_marker(pytest.mark.slow)
     items.sort(key=place_of)
 

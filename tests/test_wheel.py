@@ -16,7 +16,7 @@ from orchestrator.cosim.fmu_files import can_compile
 ROOT = Path(__file__).parents[1]
 PACKAGES = ("apa_cosim", "modelkit", "vehicle_fmu", "controller_fmu", "fmus", "orchestrator")
 FILES = ("pyproject.toml", "README.md", "LICENSE")
-pytestmark = pytest.mark.slow
+pytestmark = pytest.mark.release
 
 
 @pytest.fixture(scope="module")

@@ -137,6 +137,7 @@ def sanitized(model: Any, fmi: Any, source: Any, folder: Any) -> Any:
 needs_gcc = pytest.mark.skipif(shutil.which("gcc") is None, reason="needs gcc for its AddressSanitizer")
 
 
+@pytest.mark.release
 @needs_gcc
 def test_sanitizers_find_nothing(model: Any, tmp_path: Path) -> None:
     library, program = sanitized(model, 2, "host.c", tmp_path)
@@ -144,6 +145,7 @@ def test_sanitizers_find_nothing(model: Any, tmp_path: Path) -> None:
     assert "refused" in run(program, "fuzz", library, "{sanitized}", 3, 20_000, timeout=300)
 
 
+@pytest.mark.release
 @needs_gcc
 def test_sanitizers_find_nothing_in_fmi_3(model: Any, tmp_path: Path) -> None:
     library, program = sanitized(model, 3, "host3.c", tmp_path)

@@ -16,6 +16,7 @@ LIMIT = 400_000
 FUNCTIONS = ("fmi2GetVersion", "fmi2Instantiate", "fmi2DoStep", "fmi2SetFMUstate", "fmi2GetStringStatus")
 PYTHON = (b"Py_Initialize", b"PyObject", b"libpython", b"python3")
 X86_64, ARM64 = 0x01000007, 0x0100000C
+pytestmark = pytest.mark.release
 
 
 @pytest.fixture(scope="module")

@@ -35,9 +35,15 @@ from vehicle_fmu import MODEL as VEHICLE
 WARNINGS = ["-pedantic", "-Wall", "-Wextra", "-Wconversion"]
 GCC = shutil.which("gcc")
 CLANG = [sys.executable, "-m", "ziglang", "cc"]
-COMPILERS = [pytest.param([GCC], id="gcc", marks=pytest.mark.skipif(GCC is None, reason="needs gcc")), CLANG]
+COMPILERS = [
+    pytest.param([GCC], id="gcc", marks=pytest.mark.skipif(GCC is None, reason="needs gcc")),
+    pytest.param(CLANG, id="clang", marks=pytest.mark.release),
+]
 LARGE_ONCE = [("Controller", 2), ("Controller_valet", 3)]
-MODELS_BY_FMI = [(name, fmi) for name in ALL_MODELS for fmi in (2, 3) if name not in dict(LARGE_ONCE)] + LARGE_ONCE
+MODELS_BY_FMI = [
+    *((name, fmi) for name in ALL_MODELS for fmi in (2, 3) if name not in dict(LARGE_ONCE)),
+    *(pytest.param(*large, marks=pytest.mark.release) for large in LARGE_ONCE),
+]
 """Of a large model one version of FMI is enough: what is written for a version is the same in all."""
 needs_gcc = pytest.mark.skipif(GCC is None, reason="needs gcc")
 

@@ -45,6 +45,7 @@ def test_numbers_signs_comparisons_guards_rows_are_changed() -> None:
     assert kinds == {"number", "operator", "sign", "comparison", "guard", "extreme", "row"}
 
 
+@pytest.mark.release
 def test_a_checkout_without_mistake_passes() -> None:
     with checkout() as copy:
         assert ask("step tests", "guo2015", copy) == ""
@@ -53,6 +54,7 @@ def test_a_checkout_without_mistake_passes() -> None:
         assert ask("step tests", "guo2015", copy) != ""
 
 
+@pytest.mark.release
 @pytest.mark.parametrize("every", [9])
 def test_some_of_the_twenty_are_found(every: int) -> None:
     words = [sys.executable, "-m", "tests.mutants", "--listed", "--every", str(every)]

@@ -56,6 +56,7 @@ def shell(lines: list[str], folder: Path) -> subprocess.CompletedProcess[str]:
     return subprocess.run(words, cwd=folder, env={**os.environ, **path}, capture_output=True, text=True, check=False)
 
 
+@pytest.mark.release
 @pytest.mark.parametrize("server", PIPELINES)
 def test_its_lines_pass_and_leave_what_is_kept(server: str, pushed: Path) -> None:
     lines, variables, kept = read(server)
@@ -71,6 +72,7 @@ def test_its_lines_pass_and_leave_what_is_kept(server: str, pushed: Path) -> Non
     assert Requirement(variables["APA_COSIM"]).name == "apa-cosim"
 
 
+@pytest.mark.release
 @pytest.mark.parametrize("server", PIPELINES)
 def test_a_law_that_is_wrong_ends_them_and_the_results_are_there(server: str, pushed: Path) -> None:
     law = pushed / NAME / "law.py"

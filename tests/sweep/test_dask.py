@@ -47,6 +47,7 @@ def cluster() -> Iterator[Any]:
         process.wait()
 
 
+@pytest.mark.release
 def test_nothing_is_lost_when_a_worker_is_killed(cluster: Any, tmp_path: Path) -> None:
     address, workers = cluster
     study = tmp_path / "trial.yaml"

@@ -29,7 +29,7 @@ from orchestrator.text.errors import BadInput
 from tests.twin.toolbox_container import write_container
 
 POSE = ("pose.x", "pose.y", "pose.heading")
-KINDS = ("native", "python")
+KINDS = ("native", pytest.param("python", marks=pytest.mark.release))
 SCENARIO = load_scenario("guo2015-case4-105", [])
 TOLERANCE = 1e-9
 

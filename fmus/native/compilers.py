@@ -1,6 +1,7 @@
 """The C compiler: that of the package ``ziglang``, which serves all platforms, or this machine's own."""
 
 import os
+import re
 import shlex
 import shutil
 from collections.abc import Mapping, Sequence
@@ -29,6 +30,17 @@ SHARED = (
     "-ffunction-sections",
     "-g0",
 )
+FRAME_REPORT = "-Wframe-larger-than=127"
+"""Makes gcc and clang say how large each stack frame is, from 128 bytes on; it changes no byte of the result."""
+FRAME = re.compile(r"\bframe size (?:of )?\(?(\d+)\)?")
+
+
+class Compiled(NamedTuple):
+    """What a compiler made."""
+
+    content: bytes
+    largest_frame: int
+    """Largest stack frame of a function [bytes]; 0 if the compiler does not say, or none has 128 bytes."""
 
 
 class Compiler(NamedTuple):
@@ -49,9 +61,9 @@ class Compiler(NamedTuple):
 
     def library(self, files: Mapping[str, str], unit: str, name: str, target: CompileTarget) -> bytes:
         """Return the shared library ``name`` made of the file ``unit`` among ``files``. Raises as :meth:`linked`."""
-        return self.linked(files, [unit], name, target)
+        return self.linked(files, [unit], name, target).content
 
-    def linked(self, files: Mapping[str, str], units: Sequence[str], name: str, target: CompileTarget) -> bytes:
+    def linked(self, files: Mapping[str, str], units: Sequence[str], name: str, target: CompileTarget) -> Compiled:
         """Return what the files ``units`` among ``files`` become together.
 
         The work is done in a fresh directory with fixed file names, so that no path gets into the bytes.
@@ -62,20 +74,21 @@ class Compiler(NamedTuple):
         with folder_for_a_while("c") as here:
             for file, text in files.items():
                 (here / file).write_text(text, encoding="utf-8", newline="\n")
-            self.run([*SHARED, "-o", name, *units, *self._options(target)], here, target)
-            return (here / name).read_bytes()
+            text = self.run([*SHARED, FRAME_REPORT, "-o", name, *units, *self._options(target)], here, target)
+            return Compiled((here / name).read_bytes(), max(map(int, FRAME.findall(text)), default=0))
 
     def _options(self, target: CompileTarget) -> tuple[str, ...]:
         alone = self.is_zig and "linux" in target.triple and "-shared" in target.options
         return (*target.options, *(LINUX_ALONE if alone else ()))
 
-    def run(self, arguments: list[str], directory: Path, target: CompileTarget | None = None) -> None:
-        """Call the compiler in ``directory`` for ``target`` (default: this machine)."""
+    def run(self, arguments: list[str], directory: Path, target: CompileTarget | None = None) -> str:
+        """Return the warnings of the compiler, called in ``directory`` for ``target`` (default: this machine)."""
         cross = ["-target", (target or host_target()).triple, *ZIG] if self.is_zig else []
         command = [*self.command, *cross, *arguments]
         done = run_child(command, directory, _environment())
         if done.returncode:
             raise RuntimeError(f"{shlex.join(command)}: {done.stderr.strip()}")
+        return str(done.stderr)
 
 
 def can_compile() -> bool:

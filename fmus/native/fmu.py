@@ -25,6 +25,12 @@ may run in one process and on several threads, each instance on one thread at a 
 image with other FMUs its functions have the prefix <code>{name}_</code>, if FMI{fmi}_FUNCTION_PREFIX says so.</p>
 <p>A parameter outside its range, a variable that does not exist, a call out of order or a step that is not
 in (0, 3600] s is answered with fmi{fmi}Error and a message to the logger; nothing is changed by such a call.</p>
+<!-- stack -->
+"""
+PAGE = "documentation/index.html"
+PLACE_OF_STACK = b"<!-- stack -->\n"
+STACK = """<p>The largest stack frame of its functions, those of a step among them, has {frame} bytes. No function is
+recursive.</p>
 """
 INSIDE = """
 <p>Inside are {parts}. Every {period:g} s, whatever the communication step, each takes the outputs of the other to its
@@ -52,7 +58,10 @@ def build(
     if archive_guid(path) != guid:
         files = contents(model, names, guid, fmi)
         files |= reference_result(model) if model.assembly is None else reference_result(model, in_c)
-        write_archive(path, files | binaries(model, names, guid, chosen, fmi))
+        made, frame = binaries(model, names, guid, chosen, fmi)
+        if frame:
+            files[PAGE] = files[PAGE].replace(PLACE_OF_STACK, STACK.format(frame=frame).encode())
+        write_archive(path, files | made)
     return path
 
 
@@ -73,19 +82,27 @@ def contents(model: Model, platforms: list[str], guid: str, fmi: int = 2) -> dic
     return files
 
 
-def binaries(model: Model, platforms: list[str], guid: str, compiler: Compiler, fmi: int = 2) -> dict[str, bytes]:
-    """Return the shared libraries, under their paths in the FMU; they answer to ``guid`` only."""
+def binaries(
+    model: Model, platforms: list[str], guid: str, compiler: Compiler, fmi: int = 2
+) -> tuple[dict[str, bytes], int]:
+    """Return the shared libraries, under their paths in the FMU, and the largest stack frame in any of them [bytes].
+
+    They answer to ``guid`` only. The frame is 0 if the compiler does not say.
+    """
     sources, unit = fmu_sources(model, guid, fmi), unit_name(model, fmi)
     files: dict[str, bytes] = {}
+    frame = 0
     for name in platforms:
         platform = PLATFORMS[name]
         file = f"{model.name}{platform.suffix}"
-        made = [compiler.library(sources, unit, file, target) for target in platform.targets]
+        compiled = [compiler.linked(sources, [unit], file, target) for target in platform.targets]
+        frame = max(frame, *(one.largest_frame for one in compiled))
+        made = [one.content for one in compiled]
         if fmi == 3:
             files |= {f"binaries/{folder}/{file}": one for folder, one in zip(platform.folders3, made, strict=True)}
         else:
             files[f"binaries/{name}/{file}"] = fat_binary(made) if len(made) > 1 else made[0]
-    return files
+    return files, frame
 
 
 def build_description(model: Model) -> bytes:

@@ -66,7 +66,7 @@ def live_library(
 
     def made() -> bytes:
         units = sorted(file for file in files() if file.endswith("_unit.c"))
-        return compiler.linked(files(), units, name, target)
+        return compiler.linked(files(), units, name, target).content
 
     packages = [Path(str(package.__file__)).parent for model in models.values() for package in model.sources()]
     words = [compiler.recipe(target), *told(further), *(word for model in models.values() for word in words_of(model))]

@@ -6,17 +6,9 @@
  *                                                       file:NAME with a line of such words to set before
  *                                                       initialization, and a line to set before each step
  *     host many  LIBRARY GUID COUNT                     instantiate, step and free COUNT times; resident kB before, after
- *     host fuzz  LIBRARY GUID SEED CALLS                random calls with random arguments
+ *     host fuzz  LIBRARY GUID SEED CALLS                random calls of all functions with random arguments
  */
 #define _POSIX_C_SOURCE 200809L
-#ifdef _WIN32
-#include <windows.h>
-#define dlopen(path, flags) ((void *)LoadLibraryA(path))
-#define dlsym(handle, name) ((void *)GetProcAddress((HMODULE)(handle), name))
-#define dlerror() "the library cannot be loaded"
-#else
-#include <dlfcn.h>
-#endif
 #include <math.h>
 #include <stdarg.h>
 #include <stdint.h>
@@ -25,20 +17,9 @@
 #include <string.h>
 
 #include "fmi2.h"
+#include "host.h"
 
-static void *library;
 static long messages;
-
-static void *find(const char *name) {
-    void *found = dlsym(library, name);
-    if (!found) {
-        fprintf(stderr, "no %s\n", name);
-        exit(2);
-    }
-    return found;
-}
-
-#define CALL(name) ((__typeof__(&name))find(#name))
 
 static void logger(fmi2ComponentEnvironment environment, fmi2String instance, fmi2Status status, fmi2String category,
                    fmi2String message, ...) {
@@ -168,7 +149,11 @@ static int fuzz_values(fmi2Component slave) {
     const fmi2ValueReference *from = any(30) ? references : NULL;
     double *real = any(30) ? reals : NULL;
     int *integer = any(30) ? integers : NULL;
-    switch (any(8)) {
+    switch (any(12)) {
+    case 8: return CALL(fmi2SetString)(slave, from, count, NULL);
+    case 9: return CALL(fmi2GetDirectionalDerivative)(slave, from, count, from, count, real, real);
+    case 10: return CALL(fmi2SetRealInputDerivatives)(slave, from, count, integer, real);
+    case 11: return CALL(fmi2GetRealOutputDerivatives)(slave, from, count, integer, real);
     case 0: return CALL(fmi2GetReal)(slave, from, count, real);
     case 1: return CALL(fmi2GetInteger)(slave, from, count, integer);
     case 2: return CALL(fmi2GetBoolean)(slave, from, count, integer);
@@ -180,7 +165,7 @@ static int fuzz_values(fmi2Component slave) {
 }
 
 static int fuzz_state(fmi2Component slave, fmi2FMUstate *states) {
-    static char bytes[1 << 16];
+    static char bytes[1 << 22];
     fmi2FMUstate *state = &states[any(STATES)];
     size_t size = 0;
     switch (any(6)) {
@@ -197,7 +182,11 @@ static int fuzz_call(fmi2Component slave, fmi2FMUstate *states, double *time) {
     double step = any(4) ? 0.01 : any(400) ? number() : 3600.0, value;
     int status, flag;
     fmi2String text;
-    switch (any(16)) {
+    switch (any(20)) {
+    case 16: return CALL(fmi2CancelStep)(slave);
+    case 17: return CALL(fmi2GetIntegerStatus)(slave, (fmi2StatusKind)any(4), any(9) ? &flag : NULL);
+    case 18: return strcmp(CALL(fmi2GetVersion)(), "2.0") ? fmi2Fatal : fmi2OK;
+    case 19: return strcmp(CALL(fmi2GetTypesPlatform)(), "default") ? fmi2Fatal : fmi2OK;
     case 0: return CALL(fmi2SetupExperiment)(slave, (int)any(2), number(), any(4) ? 0.0 : number(), 0, number());
     case 1: return CALL(fmi2EnterInitializationMode)(slave);
     case 2: return CALL(fmi2ExitInitializationMode)(slave);
@@ -239,11 +228,11 @@ static int fuzz(const char *guid, uint64_t seed, long calls) {
         for (int s = 0; s < STATES; s++) CALL(fmi2FreeFMUstate)(slaves[i], &states[i][s]);
         CALL(fmi2FreeInstance)(slaves[i]);
     }
-    printf("%ld calls, %ld refused, %ld messages\n", calls, refused, messages);
+    printf("%ld calls, %ld refused, %ld messages, %d functions\n", calls, refused, messages, function_count);
     return refused ? 0 : 8;
 }
 
-int main(int count, char **words) {
+static int own_main(int count, char **words) {
     if (count < 5 || !(library = dlopen(words[2], RTLD_NOW | RTLD_LOCAL))) {
         fprintf(stderr, "%s\n", count < 5 ? "usage: see the source" : dlerror());
         return 1;
@@ -252,3 +241,5 @@ int main(int count, char **words) {
     if (!strcmp(words[1], "many")) return many(words[3], atoi(words[4]));
     return fuzz(words[3], strtoull(words[4], NULL, 10), atol(words[5]));
 }
+
+int main(int count, char **words) { return in_thread(own_main, count, words); }

@@ -1,5 +1,4 @@
-/* Random calls with random arguments on a co-simulation FMU of FMI 3.0: host3 LIBRARY TOKEN SEED CALLS */
-#include <dlfcn.h>
+/* Random calls of all functions with random arguments on a co-simulation FMU of FMI 3.0: host3 LIBRARY TOKEN SEED CALLS */
 #include <math.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -7,22 +6,11 @@
 #include <string.h>
 
 #include "fmi3.h"
+#include "host.h"
 
 enum { MOST = 4, ROOM = 64, STATES = 3 };
 
-static void *library;
 static long messages;
-
-static void *find(const char *name) {
-    void *found = dlsym(library, name);
-    if (!found) {
-        fprintf(stderr, "no %s\n", name);
-        exit(2);
-    }
-    return found;
-}
-
-#define CALL(name) ((__typeof__(&name))find(#name))
 
 static void logger(fmi3InstanceEnvironment environment, fmi3Status status, fmi3String category, fmi3String message) {
     (void)environment, (void)category;
@@ -70,7 +58,7 @@ static int values(fmi3Instance fmu) {
 }
 
 static int state_call(fmi3Instance fmu, fmi3FMUState *states) {
-    static uint8_t bytes[1 << 16];
+    static uint8_t bytes[1 << 22];
     fmi3FMUState *state = &states[any(STATES)];
     size_t size = 0;
     switch (any(6)) {
@@ -83,9 +71,43 @@ static int state_call(fmi3Instance fmu, fmi3FMUState *states) {
     }
 }
 
-static int call(fmi3Instance fmu, fmi3FMUState *states, double *time) {
+/* What the FMU declares that it cannot do: whatever the arguments, the call is refused. */
+static const char *const ABSENT[] = {
+    "fmi3GetFloat32", "fmi3SetFloat32", "fmi3GetInt8", "fmi3SetInt8", "fmi3GetUInt8", "fmi3SetUInt8", "fmi3GetInt16",
+    "fmi3SetInt16", "fmi3GetUInt16", "fmi3SetUInt16", "fmi3GetUInt32", "fmi3SetUInt32", "fmi3GetUInt64",
+    "fmi3SetUInt64", "fmi3SetString", "fmi3GetBinary", "fmi3SetBinary", "fmi3GetClock", "fmi3SetClock",
+    "fmi3EnterConfigurationMode", "fmi3ExitConfigurationMode", "fmi3EvaluateDiscreteStates",
+    "fmi3EnterContinuousTimeMode", "fmi3EnterStepMode", "fmi3UpdateDiscreteStates",
+    "fmi3GetNumberOfVariableDependencies", "fmi3GetVariableDependencies", "fmi3GetDirectionalDerivative",
+    "fmi3GetAdjointDerivative", "fmi3GetOutputDerivatives", "fmi3GetIntervalDecimal", "fmi3GetIntervalFraction",
+    "fmi3GetShiftDecimal", "fmi3GetShiftFraction", "fmi3SetIntervalDecimal", "fmi3SetIntervalFraction",
+    "fmi3SetShiftDecimal", "fmi3SetShiftFraction", "fmi3CompletedIntegratorStep", "fmi3SetTime",
+    "fmi3SetContinuousStates", "fmi3GetContinuousStateDerivatives", "fmi3GetEventIndicators",
+    "fmi3GetContinuousStates", "fmi3GetNominalsOfContinuousStates", "fmi3GetNumberOfEventIndicators",
+    "fmi3GetNumberOfContinuousStates", "fmi3ActivateModelPartition",
+};
+typedef int Absent(fmi3Instance, const fmi3ValueReference[], size_t, void *, size_t, void *, size_t, void *);
+
+static int absent(fmi3Instance fmu) {
+    static const fmi3ValueReference references[MOST] = {0};
+    const char *name = ABSENT[any(sizeof ABSENT / sizeof *ABSENT)];
+    static double room[ROOM];
+    return ((Absent *)find(name))(fmu, references, 1 + any(MOST), room, MOST, room, MOST, room);
+}
+
+/* Other kinds of instance, of which this FMU has none. */
+static int no_instance(const char *token) {
+    void *exchange = CALL(fmi3InstantiateModelExchange)("x", token, NULL, false, true, NULL, logger);
+    void *scheduled =
+        CALL(fmi3InstantiateScheduledExecution)("x", token, NULL, false, true, NULL, logger, NULL, NULL, NULL);
+    return exchange || scheduled || strcmp(CALL(fmi3GetVersion)(), "3.0") ? fmi3OK : fmi3Error;
+}
+
+static int call(fmi3Instance fmu, const char *token, fmi3FMUState *states, double *time) {
     bool a, b, c;
-    switch (any(12)) {
+    switch (any(14)) {
+    case 12: return absent(fmu);
+    case 13: return any(20) ? absent(fmu) : no_instance(token);
     case 0: return CALL(fmi3EnterInitializationMode)(fmu, false, 0, any(4) ? 0.0 : number(), any(2), number());
     case 1: return CALL(fmi3ExitInitializationMode)(fmu);
     case 2: return any(20) ? 0 : CALL(fmi3Terminate)(fmu);
@@ -100,7 +122,7 @@ static int call(fmi3Instance fmu, fmi3FMUState *states, double *time) {
     }
 }
 
-int main(int count, char **words) {
+static int own_main(int count, char **words) {
     fmi3Instance fmus[2] = {NULL, NULL};
     fmi3FMUState states[2][STATES] = {{NULL}};
     double times[2] = {0.0};
@@ -113,7 +135,7 @@ int main(int count, char **words) {
         if (!fmus[i])
             fmus[i] = CALL(fmi3InstantiateCoSimulation)("fuzz", any(9) ? words[2] : "x", NULL, false, true, !any(9), false,
                                                         NULL, 0, NULL, any(9) ? logger : NULL, NULL);
-        refused += call(any(200) ? fmus[i] : NULL, states[i], &times[i]) > fmi3Discard;
+        refused += call(any(200) ? fmus[i] : NULL, words[2], states[i], &times[i]) > fmi3Discard;
         if (any(2000) == 0) {
             for (int s = 0; s < STATES; s++) CALL(fmi3FreeFMUState)(fmus[i], &states[i][s]);
             CALL(fmi3FreeInstance)(fmus[i]);
@@ -125,6 +147,8 @@ int main(int count, char **words) {
         for (int s = 0; s < STATES; s++) CALL(fmi3FreeFMUState)(fmus[i], &states[i][s]);
         CALL(fmi3FreeInstance)(fmus[i]);
     }
-    printf("%ld calls, %ld refused, %ld messages\n", calls, refused, messages);
+    printf("%ld calls, %ld refused, %ld messages, %d functions\n", calls, refused, messages, function_count);
     return 0;
 }
+
+int main(int count, char **words) { return in_thread(own_main, count, words); }

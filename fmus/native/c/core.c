@@ -16,16 +16,18 @@ static const char *const FMU_CATEGORIES[] = {"logAll", "logStatusWarning", "logS
 #define FMU_CATEGORY_COUNT (sizeof FMU_CATEGORIES / sizeof *FMU_CATEGORIES)
 
 /* Hand a message of up to 500 characters to the host's logger and return `status`. */
-static FmuStatus fmu_report(const FmuInstance *fmu, FmuStatus status, const char *format, ...) {
+static FmuStatus fmu_tell(const FmuHost *host, FmuStatus status, const char *format, ...) {
     char message[512];
     va_list arguments;
-    if (!fmu->logger || (!fmu->logging && status < FMU_ERROR)) return status;
+    if (!host->logger || (!host->logging && status < FMU_ERROR)) return status;
     va_start(arguments, format);
     vsnprintf(message, sizeof message, format, arguments);
     va_end(arguments);
-    fmu_log(fmu, status, FMU_CATEGORIES[status], message);
+    fmu_log(host, status, FMU_CATEGORIES[status], message);
     return status;
 }
+
+#define fmu_report(fmu, ...) fmu_tell(&(fmu)->host, __VA_ARGS__)
 
 /* Return the instance if the call is allowed in one of `phases`, else report it and return NULL. */
 static FmuInstance *fmu_in(void *instance, int phases, const char *function) {
@@ -54,19 +56,19 @@ static void fmu_start_values(FmuInstance *fmu) {
     fmu->saved.stale = 1;
 }
 
-/* Return a new instance like `probe`, whose name is copied; NULL if the token is another FMU's. */
-static FmuInstance *fmu_new(const FmuInstance *probe, const char *name, const char *token) {
-    if (!name || !*name) return fmu_report(probe, FMU_ERROR, "an instance needs a name"), NULL;
+/* Return a new instance for `host`, whose name is copied; NULL if the token is another FMU's. */
+static FmuInstance *fmu_new(const FmuHost *host, const char *name, const char *token) {
+    if (!name || !*name) return fmu_tell(host, FMU_ERROR, "an instance needs a name"), NULL;
     if (!token || strcmp(token, FMU_TOKEN)) {
-        fmu_report(probe, FMU_ERROR, FMU_TOKEN_NAME " %s is not that of this binary, %s", token ? token : "(null)",
-                   FMU_TOKEN);
+        fmu_tell(host, FMU_ERROR, FMU_TOKEN_NAME " %s is not that of this binary, %s", token ? token : "(null)",
+                 FMU_TOKEN);
         return NULL;
     }
-    FmuInstance *fmu = malloc(sizeof *fmu);
+    FmuInstance *fmu = calloc(1, sizeof *fmu);
     char *copy = malloc(strlen(name) + 1);
-    if (!fmu || !copy) return free(fmu), free(copy), fmu_report(probe, FMU_ERROR, "out of memory"), NULL;
-    *fmu = *probe;
-    fmu->name = strcpy(copy, name);
+    if (!fmu || !copy) return free(fmu), free(copy), fmu_tell(host, FMU_ERROR, "out of memory"), NULL;
+    fmu->host = *host;
+    fmu->host.name = strcpy(copy, name);
     fmu_start_values(fmu);
     return fmu;
 }
@@ -74,7 +76,7 @@ static FmuInstance *fmu_new(const FmuInstance *probe, const char *name, const ch
 static void fmu_free(void *instance) {
     FmuInstance *fmu = instance;
     if (!fmu) return;
-    free(fmu->name);
+    free((void *)fmu->host.name);
     free(fmu);
 }
 
@@ -102,7 +104,7 @@ static FmuStatus fmu_set_logging(FmuInstance *fmu, bool on, size_t count, const 
         while (k < FMU_CATEGORY_COUNT && strcmp(name, FMU_CATEGORIES[k])) k++;
         if (k == FMU_CATEGORY_COUNT) return fmu_report(fmu, FMU_ERROR, "no log category %s", name);
     }
-    fmu->logging = on;
+    fmu->host.logging = on;
     return FMU_OK;
 }
 

@@ -68,14 +68,20 @@ typedef struct {
     uint32_t offsets[FMU_LISTED]; /* in FmuSaved */
 } FmuList;
 
+/* What the importer says about an instance: all that a message to it needs. */
+typedef struct {
+    const char *name;
+    FmuLogger logger;
+    void *environment;
+    bool logging;
+} FmuHost;
+
+/* Too large for a stack: a model may have a map of its surroundings. It is allocated only, see fmu_new. */
 typedef struct {
     FmuSaved saved;
     FmuList got[FMU_KINDS];
     FmuList given[FMU_KINDS]; /* inputs alone: parameters have limits */
-    char *name;
-    FmuLogger logger;
-    void *environment;
-    bool logging;
+    FmuHost host;
 } FmuInstance;
 
 typedef enum { FMU_FIXED, FMU_TUNABLE, FMU_INPUT, FMU_CALCULATED } FmuRole;

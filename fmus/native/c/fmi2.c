@@ -8,14 +8,14 @@ static const char *const FMU_KIND_NAMES[] = {"Real", "Integer", "Enumeration", "
 #include "core.h"
 
 /* The host takes the text as a printf format: what it would take for a directive is doubled. */
-static void fmu_log(const FmuInstance *fmu, FmuStatus status, const char *category, const char *message) {
+static void fmu_log(const FmuHost *host, FmuStatus status, const char *category, const char *message) {
     char escaped[1024], *to = escaped;
     for (const char *from = message; *from; from++) {
         if (*from == '%') *to++ = '%';
         *to++ = *from;
     }
     *to = '\0';
-    fmu->logger(fmu->environment, fmu->name, (fmi2Status)status, category, escaped);
+    host->logger(host->environment, host->name, (fmi2Status)status, category, escaped);
 }
 
 /* Each variable is one value. */
@@ -35,13 +35,9 @@ fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, f
                               const fmi2CallbackFunctions *functions, fmi2Boolean visible, fmi2Boolean logging_on) {
     (void)resources, (void)visible;
     if (!functions) return NULL;
-    FmuInstance probe = {.logger = functions->logger,
-                         .environment = functions->componentEnvironment,
-                         .logging = logging_on != fmi2False};
-    char empty[] = "";
-    probe.name = empty;
-    if (type != fmi2CoSimulation) return fmu_report(&probe, FMU_ERROR, "this FMU is for co-simulation only"), NULL;
-    return fmu_new(&probe, name, guid);
+    const FmuHost host = {"", functions->logger, functions->componentEnvironment, logging_on != fmi2False};
+    if (type != fmi2CoSimulation) return fmu_tell(&host, FMU_ERROR, "this FMU is for co-simulation only"), NULL;
+    return fmu_new(&host, name, guid);
 }
 
 void fmi2FreeInstance(fmi2Component c) { fmu_free(c); }

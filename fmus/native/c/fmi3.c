@@ -7,8 +7,8 @@ static const char *const FMU_KIND_NAMES[] = {"Float64", "Int32", "Enumeration", 
 
 #include "core.h"
 
-static void fmu_log(const FmuInstance *fmu, FmuStatus status, const char *category, const char *message) {
-    fmu->logger(fmu->environment, (fmi3Status)status, category, message);
+static void fmu_log(const FmuHost *host, FmuStatus status, const char *category, const char *message) {
+    host->logger(host->environment, (fmi3Status)status, category, message);
 }
 
 /* How many elements a variable has along two dimensions, and where the next along each is kept. */
@@ -54,10 +54,10 @@ fmi3Instance fmi3InstantiateCoSimulation(fmi3String name, fmi3String token, fmi3
                                          fmi3InstanceEnvironment environment, fmi3LogMessageCallback log,
                                          fmi3IntermediateUpdateCallback update) {
     (void)resources, (void)visible, (void)early_return, (void)intermediate, (void)update;
-    FmuInstance probe = {.logger = log, .environment = environment, .logging = logging_on};
-    if (event_mode) return fmu_report(&probe, FMU_ERROR, "this FMU has no event mode"), NULL;
-    if (intermediate_count) return fmu_report(&probe, FMU_ERROR, "this FMU has no intermediate update"), NULL;
-    return fmu_new(&probe, name, token);
+    const FmuHost host = {"", log, environment, logging_on};
+    if (event_mode) return fmu_tell(&host, FMU_ERROR, "this FMU has no event mode"), NULL;
+    if (intermediate_count) return fmu_tell(&host, FMU_ERROR, "this FMU has no intermediate update"), NULL;
+    return fmu_new(&host, name, token);
 }
 
 void fmi3FreeInstance(fmi3Instance c) { fmu_free(c); }

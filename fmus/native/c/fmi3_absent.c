@@ -53,8 +53,8 @@ fmi3Status fmi3SetClock(FMU_REFERENCES, const fmi3Clock values[]) {
 
 static fmi3Instance fmu_no_interface(fmi3String name, fmi3InstanceEnvironment environment, fmi3LogMessageCallback log) {
     (void)name;
-    FmuInstance probe = {.logger = log, .environment = environment, .logging = true};
-    return fmu_report(&probe, FMU_ERROR, "this FMU is for co-simulation only"), NULL;
+    const FmuHost host = {"", log, environment, true};
+    return fmu_tell(&host, FMU_ERROR, "this FMU is for co-simulation only"), NULL;
 }
 
 fmi3Instance fmi3InstantiateModelExchange(fmi3String name, fmi3String token, fmi3String resources, fmi3Boolean visible,

@@ -1,0 +1,76 @@
+"""How much stack the functions of a native FMU take: along every chain of calls, and what the FMU's page says of it."""
+
+import re
+import shutil
+import subprocess
+import zipfile
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from fmus.native.compilers import find_compiler
+from fmus.native.fmu import PAGE
+from fmus.native.platforms import LINUX
+from fmus.native.sources import fmu_sources, unit_name
+from tests.fmi.test_native_host import STACK
+
+BOUND = STACK // 2
+"""Bytes of stack that a call may take: the other half is for what the importer does, and for its logger."""
+NODE = re.compile(r'node: \{ title: "([^"]*)" label: "[^"]*?(\d+) bytes \(')
+EDGE = re.compile(r'edge: \{ sourcename: "([^"]*)" targetname: "([^"]*)"')
+
+
+def deepest(text: str) -> dict[str, int]:
+    """Return function -> bytes of stack along its deepest chain of calls, from the call graph that gcc writes."""
+    frames = {title: int(size) for title, size in NODE.findall(text)}
+    calls: dict[str, list[str]] = {title: [] for title in frames}
+    for source, target in EDGE.findall(text):
+        calls[source].append(target)
+
+    @cache
+    def depth(title: str) -> int:
+        """Fails with RecursionError if a function can call itself."""
+        return frames.get(title, 0) + max((depth(target) for target in calls.get(title, ())), default=0)
+
+    return {title.split(":")[-1]: depth(title) for title in frames}
+
+
+@pytest.mark.skipif(shutil.which("gcc") is None, reason="needs gcc, which writes a call graph")
+@pytest.mark.parametrize("fmi", [2, 3])
+def test_no_chain_of_calls_takes_half_of_a_small_stack(any_model: Any, fmi: int, tmp_path: Path) -> None:
+    for name, text in fmu_sources(any_model, "{token}", fmi).items():
+        (tmp_path / name).write_text(text)
+    options = ["-std=c99", "-O2", "-ffp-contract=off", "-fno-math-errno", "-fPIC", "-fcallgraph-info=su"]
+    command = ["gcc", *options, f"-DFMI{fmi}_OVERRIDE_FUNCTION_PREFIX", "-c", unit_name(any_model, fmi), "-o", "x.o"]
+    subprocess.run(command, check=True, cwd=tmp_path)
+    found = deepest((tmp_path / "x.ci").read_text())
+    public = {name: size for name, size in found.items() if name.startswith(f"fmi{fmi}")}
+    assert len(public) == {2: 34, 3: 75}[fmi]
+    assert public[f"fmi{fmi}DoStep"] > 100, "the step is in the graph"
+    assert max(public.values()) <= BOUND, max(public.items(), key=lambda item: item[1])
+
+
+def test_a_chain_of_calls_is_added_up() -> None:
+    node = 'node: {{ title: "a.c:{0}" label: "{0}\\na.c:1:1\\n{1} bytes (static)" }}\n'
+    edge = 'edge: {{ sourcename: "a.c:{}" targetname: "a.c:{}" label: "a.c:2:2" }}\n'
+    text = node.format("f", 100) + node.format("g", 20) + node.format("h", 50)
+    assert deepest(text + edge.format("f", "g") + edge.format("f", "h")) == {"f": 150, "g": 20, "h": 50}
+
+
+@pytest.mark.parametrize("kind", ["native_fmus", "fmi3_fmus"])
+def test_the_page_of_an_fmu_states_its_largest_frame(request: pytest.FixtureRequest, kind: str, any_model: Any) -> None:
+    with zipfile.ZipFile(request.getfixturevalue(kind)[any_model.name]) as archive:
+        page = archive.read(PAGE).decode()
+    (stated,) = re.findall(r"largest stack frame of its functions, those of a step among them, has (\d+) bytes", page)
+    least = {"Controller": 8_000, "Controller_valet": 8_000}.get(any_model.name, 500)
+    assert least < int(stated) < BOUND
+
+
+@pytest.mark.skipif(shutil.which("gcc") is None, reason="needs gcc")
+def test_two_compilers_say_how_large_a_frame_is() -> None:
+    text = "int f(int n) { volatile char room[5000]; room[n] = 1; return room[0]; }"
+    for name in ("zig", "gcc"):
+        made = find_compiler(name).linked({"a.c": text}, ["a.c"], "a.so", LINUX)
+        assert 4800 <= made.largest_frame <= 5200, name  # clang leaves out the red zone of 128 bytes

@@ -93,7 +93,7 @@ def make_runs(folder: Path) -> dict[str, Path]:
     """Return the pages to photograph, made by the commands a user would give."""
     case4, gentle = folder / "case4", folder / "gentle"
     apa(["run", "guo2015-case4", "--fmus", "none", "--out", str(case4)])
-    apa(["run", "guo2015-case4", "--fmus", "none", "--no-figure", "--out", str(gentle), *GENTLE])
+    apa(["run", "guo2015-case4", "--fmus", "none", "--no-page", "--out", str(gentle), *GENTLE])
     apa(["run", "apa-parallel", "--fmus", "none", "--out", str(folder / "apa")])
     overlay = folder / "overlay.html"
     limits = ["--abs", "0.01", "--time", "0.2"]

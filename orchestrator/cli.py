@@ -4,6 +4,7 @@ import argparse
 import gc
 import io
 import os
+import shlex
 import stat
 import sys
 from collections.abc import Iterator, Sequence
@@ -150,9 +151,10 @@ class _Version(argparse.Action):
 @contextmanager
 def _as_asked(parsed: argparse.Namespace) -> Iterator[None]:
     """With ``--quiet`` nothing is printed but errors, and JSON if that was asked for."""
-    from orchestrator.text.console import QUIET
+    from orchestrator.text.console import COMMAND, QUIET
 
     token = QUIET.set(parsed.quiet)
+    COMMAND.set(shlex.join(["apa", *parsed.words]))
     try:
         if parsed.quiet and not getattr(parsed, "json", False):
             with open(devnull, "w", encoding="utf-8") as nowhere, redirect_stdout(nowhere):

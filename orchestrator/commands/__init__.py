@@ -16,6 +16,7 @@ COMMANDS = {
     "replay": "repeat a row of a study",
     "report": "replay page of a run",
     "reproduce": "show a paper's numbers beside ours",
+    "rerun": "repeat a run from its log alone",
     "run": "run a scenario",
     "sweep": "run a study of many runs",
     "test": "run and judge scenarios",

@@ -27,7 +27,6 @@ EXAMPLES = """examples:
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add what the command takes."""
     parser.add_argument("--fmus", choices=KINDS, action="append", help="which kind (default: all that can be built)")
-    parser.add_argument("--kind", choices=KINDS, action="append", dest="fmus", help=argparse.SUPPRESS)
     parser.add_argument("--fmi", type=int, choices=(2, 3), help="version; 3: native only (default: 2)")
     parser.add_argument("--out", type=Path, metavar="DIR", help="where to (default: where apa's own runs look)")
     parser.add_argument(

@@ -2,6 +2,7 @@
 
 import argparse
 import json
+from pathlib import Path
 from typing import Any
 
 from rich.markup import escape
@@ -23,24 +24,39 @@ EXAMPLES = """examples:
   apa list parameters "controller.guo2015.*"
   apa list signals odometry --json
   apa list limits gbt41630
+  apa list runs                        runs in runs/, the latest first: time, scenario, changes, outcome
+  apa list runs results --page         the same as a page results/index.html with pictures
 """
-KINDS = ("scenarios", "parameters", "signals", "systems", "limits")
+KINDS = ("scenarios", "parameters", "signals", "systems", "limits", "runs")
 Rows = list[dict[str, Any]]
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add what the command takes."""
     parser.add_argument("what", nargs="?", choices=KINDS, metavar="WHAT", help=f"one of {', '.join(KINDS)}")
-    parser.add_argument("pattern", nargs="?", metavar="PATTERN", help="a word, or a pattern such as vehicle.pose.*")
+    parser.add_argument(
+        "pattern",
+        nargs="?",
+        metavar="PATTERN",
+        help="a word, or a pattern such as vehicle.pose.*; of runs: their folder",
+    )
     parser.add_argument("--json", action="store_true", help="print JSON")
+    parser.add_argument("--page", action="store_true", help="of runs: write FOLDER/index.html")
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Print names and what they mean. Returns 0; raises ``BadInput`` if nothing fits."""
     if arguments.what is None:
         return _overview(arguments.json)
+    if arguments.page and arguments.what != "runs":
+        raise BadInput("only runs have a page; write: apa list runs [FOLDER] --page", key="--page")
     heads, rows = LISTS[arguments.what](arguments.pattern)
-    if arguments.pattern and not rows:
+    if arguments.page:
+        from orchestrator.report.runs_page import write_runs_page
+
+        print(write_runs_page(Path(arguments.pattern or RUNS), rows))
+        return 0
+    if arguments.pattern and not rows and arguments.what != "runs":
         raise BadInput(f"no {arguments.what} fit", key=arguments.pattern)
     if arguments.json:
         print(json.dumps(rows, indent=2))
@@ -91,6 +107,13 @@ def _limits(pattern: str | None) -> tuple[dict[str, str], Rows]:
     return heads, rows
 
 
+def _runs(folder: str | None) -> tuple[dict[str, str], Rows]:
+    from orchestrator.report.found_runs import find_runs
+
+    heads = {"time": "time", "scenario": "scenario", "changed": "changed", "outcome": "outcome", "path": "path"}
+    return heads, find_runs(Path(folder or RUNS))
+
+
 def _variables(*roles: str) -> Any:
     def listed(pattern: str | None) -> tuple[dict[str, str], Rows]:
         found = chosen(entries(*roles), pattern)
@@ -113,7 +136,10 @@ LISTS = {
     "signals": _variables("output", "input"),
     "systems": _systems,
     "limits": _limits,
+    "runs": _runs,
 }
+RUNS = "runs"
+"""Where runs are unless a folder is named."""
 
 
 def _limit_names() -> list[str]:
@@ -127,7 +153,7 @@ def _has(pattern: str | None, *texts: str) -> bool:
 def _print(heads: dict[str, str], rows: Rows) -> None:
     table = Table(box=None, pad_edge=False)
     for key, head in heads.items():
-        table.add_column(escape(head), no_wrap=key not in ("title", "text", "range"), overflow="fold")
+        table.add_column(escape(head), no_wrap=key not in ("title", "text", "range", "changed"), overflow="fold")
     for row in rows:
         many = f" to [{row['elements']}]" if row.get("elements", 1) > 1 else ""
         table.add_row(*(escape(f"{row[key]}{many if key == 'name' else ''}") for key in heads))

@@ -28,7 +28,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--out", type=Path, metavar="DIR", help="where results go (default: row-N beside the table)")
     parser.add_argument("--json", action="store_true", help="print summary.json instead of the table")
     parser.add_argument("--no-page", action="store_true", help="write neither overview.png nor report.html")
-    parser.add_argument("--no-figure", action="store_true", dest="no_page", help=argparse.SUPPRESS)
 
 
 def run(arguments: argparse.Namespace) -> int:

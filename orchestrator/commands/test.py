@@ -22,6 +22,7 @@ from orchestrator.scenario.requirements import read_requirements
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.session.foreign import Files, foreign_of
 from orchestrator.session.options import add_foreign_arguments
+from orchestrator.session.provenance import started_now
 from orchestrator.suite.collection import write_collection
 from orchestrator.suite.junit import Suite, write_junit
 from orchestrator.suite.suite import Bench, Tested, chosen, run_tests, tested_by
@@ -214,7 +215,7 @@ def _bench(arguments: argparse.Namespace, interrupt: Interrupt) -> Bench:
     files = {} if arguments.fmus == "none" else fmu_files(arguments.fmus, say)
     found = [find_file(name, "limits", "set of limits", Path.cwd()) for name in arguments.requirements]
     requirements = [(str(file), read_requirements(file)) for file in found]
-    return Bench(files, arguments.fmus, foreign, requirements, interrupt, Warnings())
+    return Bench(files, arguments.fmus, foreign, requirements, interrupt, Warnings(), started=started_now())
 
 
 def _print(tested: Tested, place: str) -> None:

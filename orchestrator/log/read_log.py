@@ -31,7 +31,7 @@ from orchestrator.text.console import say
 from orchestrator.text.errors import BadInput
 from orchestrator.text.quantities import MOST_WHOLE
 from orchestrator.text.yaml_file import explain
-from orchestrator.verdict.summary import FmuUsed, Lateness
+from orchestrator.verdict.summary import FmuUsed, Lateness, Started
 
 KINDS: dict[str, type] = {"float": float, "int": int, "bool": bool}
 VARIABLES = "variables"
@@ -164,6 +164,7 @@ class Told(BaseModel):
     recovered: dict[str, Any] = {}
     versions: dict[str, str] = {}
     fmus: list[FmuUsed] = []
+    started: Started = Started()
     realtime: Lateness | None = None
 
 

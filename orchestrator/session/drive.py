@@ -7,7 +7,7 @@ from orchestrator.cosim.interrupts import on_interrupt
 from orchestrator.cosim.master import End, Interrupt
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.session.foreign import Foreign
-from orchestrator.session.replaced import replaced
+from orchestrator.session.provenance import started_now
 from orchestrator.session.session import NOBODY, Ran, run_scenario
 from orchestrator.stream.realtime import Realtime
 from orchestrator.text.console import Meter, Warnings, say
@@ -23,9 +23,6 @@ def drive(scenario: Scenario, kind: str, log: Path, foreign: Foreign = NOBODY, r
     """
     is_ours = any(name not in foreign.files for name in scenario.places)
     files = fmu_files(kind, say) if is_ours and kind != "none" else None
-    before = replaced(log, scenario)
-    if before:
-        say(f"apa: {before}")
     interrupt = Interrupt()
     with on_interrupt(interrupt), _Clock(scenario.name, scenario.stop_time, "s") as clock:
         ran = run_scenario(
@@ -38,6 +35,7 @@ def drive(scenario: Scenario, kind: str, log: Path, foreign: Foreign = NOBODY, r
             warn=Warnings(),
             foreign=foreign,
             realtime=realtime,
+            started=started_now(),
         )
     return ran
 

@@ -1,6 +1,7 @@
 """The options for FMUs of others, as several commands have them; imports little."""
 
 import argparse
+from pathlib import Path
 
 from orchestrator.text.errors import BadInput
 
@@ -28,6 +29,14 @@ def add_foreign_arguments(parser: argparse.ArgumentParser) -> None:
         action="store_true",
         help="run somebody else's FMU in this process: faster, but its crash is ours",
     )
+
+
+def add_output_arguments(parser: argparse.ArgumentParser, default: str) -> None:
+    """Add the options that say what is written and where."""
+    parser.add_argument("--out", type=Path, metavar="DIR", help=f"where results go (default: {default})")
+    parser.add_argument("--force", action="store_true", help="replace a run that is in that folder")
+    parser.add_argument("--json", action="store_true", help="print summary.json instead of the table")
+    parser.add_argument("--no-page", action="store_true", help="write neither picture nor pages")
 
 
 def seconds(text: str) -> float:

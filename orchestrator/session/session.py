@@ -1,9 +1,7 @@
 """One run from a scenario: make the slaves, the master, its observers and faults; run; return the recording."""
 
-import platform
 import time
 from collections.abc import Callable, Mapping
-from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -19,7 +17,8 @@ from orchestrator.scenario.models import MODELS
 from orchestrator.scenario.plausible import implausible
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.session.cost import told_cost
-from orchestrator.session.foreign import FOREIGN, Foreign, sha256_of
+from orchestrator.session.foreign import Foreign
+from orchestrator.session.provenance import provenance
 from orchestrator.stream.realtime import Realtime
 from orchestrator.system.assemble import Assembled, assemble
 from orchestrator.system.remarks import remarks
@@ -27,7 +26,6 @@ from orchestrator.text.errors import RunError
 
 PACED = "paced"
 """Instead of a kind of FMU: every exchange waits for its time, so there is nothing to gain by a compiled master."""
-PACKAGES = ("apa-cosim", "fmpy", "pythonfmu", "numpy", "mcap", "protobuf")
 
 
 NOBODY = Foreign()
@@ -105,11 +103,13 @@ def run_scenario(
     warn: Callable[[str], None] = lambda text: None,
     foreign: Foreign = NOBODY,
     realtime: Realtime | None = None,
+    started: Mapping[str, Any] | None = None,
 ) -> Ran:
     """Return the recording of one run. Errors of a slave end it as aborted; ``BadInput`` passes through.
 
     ``warn`` is told before the run what is allowed in the system but hardly meant. ``foreign`` are FMUs of
     somebody else's, in the place of ours or beside them. ``realtime`` holds the run to the clock on the wall.
+    ``started`` says when and by which command, for the log (``provenance.started_now``).
     """
     messages = Messages()
     foreign = foreign.with_system(scenario.system)
@@ -126,6 +126,7 @@ def run_scenario(
             warn=warn,
             foreign=foreign,
             realtime=realtime,
+            started=started,
         )
     finally:
         for slave in slaves:
@@ -144,6 +145,7 @@ def run_slaves(
     warn: Callable[[str], None] = lambda text: None,
     foreign: Foreign = NOBODY,
     realtime: Realtime | None = None,
+    started: Mapping[str, Any] | None = None,
 ) -> Ran:
     """Return the recording of one run of given slaves."""
     system = assemble(scenario, slaves)
@@ -153,17 +155,10 @@ def run_slaves(
         warn(text)
     master = _master(system, scenario, kind if realtime is None else PACED)
     master.interrupt = interrupt or Interrupt()
-    info = provenance(scenario, system.slaves, kind, foreign)
+    info = provenance(scenario, system.slaves, kind, foreign) | ({"started": dict(started)} if started else {})
     recorder = Recorder(system.slaves, exchanges)
     master.observers += [messages, recorder, ModeChanges(system.slaves, scenario.faults, messages.say)]
-    lines: list[Line] = []
-    if log is not None:
-        from orchestrator.log.mcap_log import McapLog
-
-        file = McapLog(log, system.slaves, scenario, info)
-        lines = file.lines
-        messages.listeners.append(file.say)
-        master.observers.append(file)
+    lines = [] if log is None else _write_log(log, system, scenario, info, master, messages)
     master.observers += observers
     if realtime is not None:
         realtime.join(master, scenario, messages.say, messages.listeners)
@@ -172,6 +167,18 @@ def run_slaves(
     end, wall_time = _driven(master, messages)
     info |= {"end": {"reason": end.reason, "t_ns": end.t_ns}, **({"realtime": realtime.told()} if realtime else {})}
     return Ran(recorder.recording(info), end, said, wall_time, lines)
+
+
+def _write_log(
+    path: Path, system: Assembled, scenario: Scenario, info: dict[str, Any], master: Master, messages: Messages
+) -> list[Line]:
+    """Have the run written to ``path``; return the list to which its lines are added."""
+    from orchestrator.log.mcap_log import McapLog
+
+    file = McapLog(path, system.slaves, scenario, info)
+    messages.listeners.append(file.say)
+    master.observers.append(file)
+    return file.lines
 
 
 def _warnings(system: Assembled, scenario: Scenario, exchanges: int) -> list[str]:
@@ -221,33 +228,3 @@ def _guarded(messages: Messages, act: Callable[[], End | None]) -> End | None:
         return End(f"error: {error}", messages.t_ns)
     except KeyboardInterrupt:
         return End("interrupted", messages.t_ns)
-
-
-def provenance(scenario: Scenario, slaves: list[Slave], kind: str, foreign: Foreign = NOBODY) -> dict[str, Any]:
-    """Return what is needed to repeat the run: scenario, FMUs, seed, versions."""
-    return {
-        "scenario": scenario.model_dump(mode="json", exclude={"file"}),
-        "fmus": [_used(slave, FOREIGN if slave.name in foreign.files else kind) for slave in slaves if slave.identity],
-        "seed": scenario.seed,
-        "versions": versions(),
-    }
-
-
-def _used(slave: Slave, kind: str) -> dict[str, str]:
-    """Return which FMU a slave is; one of somebody else's with its file, which no version tells."""
-    used = {"name": slave.name, "kind": kind, "guid": slave.identity}
-    if kind != FOREIGN:
-        return used
-    path: Path = slave.path  # type: ignore[attr-defined]
-    return {**used, "path": str(path.resolve()), "sha256": sha256_of(path)}
-
-
-def versions() -> dict[str, str]:
-    """Return the versions of Python, of this project and of what it stands on."""
-    found = {"python": platform.python_version()}
-    for package in PACKAGES:
-        try:
-            found[package] = version(package)
-        except PackageNotFoundError:
-            found[package] = "not installed"
-    return found

@@ -1,14 +1,15 @@
 """Many scenarios, each run, judged and kept: what ``apa test`` does."""
 
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import ThreadPoolExecutor, wait
 from contextvars import copy_context
 from datetime import datetime
 from fnmatch import fnmatchcase
 from pathlib import Path
 from threading import Lock
-from typing import NamedTuple
+from types import MappingProxyType
+from typing import Any, NamedTuple
 
 from orchestrator.cosim.master import Interrupt
 from orchestrator.cosim.recording import Recording
@@ -17,7 +18,8 @@ from orchestrator.scenario.load_scenario import scenario_names
 from orchestrator.scenario.requirements import Requirement
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.session.foreign import Files, Foreign, load_fitting
-from orchestrator.session.session import run_scenario, versions
+from orchestrator.session.provenance import versions
+from orchestrator.session.session import run_scenario
 from orchestrator.steptest.curves import write_curves
 from orchestrator.steptest.run import run_step_test
 from orchestrator.steptest.step_test import StepTest, is_step_test, load_step_test
@@ -86,6 +88,8 @@ class Bench(NamedTuple):
     warn: Callable[[str], None] = lambda text: None
     look: Callable[[Scenario, Files, Recording], None] = lambda scenario, files, recording: None
     """Is shown each run with the FMUs of somebody else's in it."""
+    started: Mapping[str, Any] = MappingProxyType({})
+    """When and by which command the test was started, for the logs."""
 
 
 def chosen(names: list[str]) -> list[str]:
@@ -161,6 +165,7 @@ def _judged(scenario: Scenario, ignored: list[str], bench: Bench, folder: Path) 
             interrupt=bench.interrupt,
             warn=bench.warn,
             foreign=bench.foreign,
+            started=bench.started,
         )
         bench.look(scenario, bench.foreign.files, ran.recording)
         summary = summarize(ran.recording, scenario, ran.wall_time)
@@ -203,11 +208,9 @@ def tested_by(tested: list[Tested], command: str) -> dict[str, str]:
 
 
 def fmus_of(tested: Tested) -> dict[str, str]:
-    """Return slave -> what it was: file and hash of somebody else's, kind and GUID of ours."""
+    """Return FMU instance -> its file (or the folder of its sources) and hash."""
     used = tested.summary.fmus if tested.summary is not None else []
-    return {
-        item.name: f"{item.path}, SHA-256 {item.sha256}" if item.path else f"{item.kind}, {item.guid}" for item in used
-    }
+    return {item.name: f"{item.path}, SHA-256 {item.sha256}" for item in used}
 
 
 def _extra_checks(bench: Bench, recording: Recording, scenario: Scenario) -> list[Check]:

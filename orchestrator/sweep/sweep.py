@@ -12,7 +12,7 @@ from orchestrator.cosim.interrupts import on_interrupt
 from orchestrator.cosim.master import Interrupt
 from orchestrator.cosim.slave import Array
 from orchestrator.scenario.plausible import implausible, is_implausible
-from orchestrator.session.session import versions
+from orchestrator.session.provenance import versions
 from orchestrator.sweep.batch import compiled
 from orchestrator.sweep.columns import columns_of, filled
 from orchestrator.sweep.engine import Engine

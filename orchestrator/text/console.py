@@ -14,6 +14,8 @@ if TYPE_CHECKING:
 
 QUIET: ContextVar[bool] = ContextVar("quiet", default=False)
 """Whether only errors are wanted."""
+COMMAND: ContextVar[str] = ContextVar("command", default="")
+"""The command line of ``apa`` that is carried out; empty in a program that imports this package."""
 PIPED_WIDTH = 200
 """Characters in a line that goes to a file or another program."""
 PERIOD, LONGEST = 5.0, 60.0

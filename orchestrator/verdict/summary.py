@@ -79,9 +79,22 @@ class FmuUsed(_Part):
     guid: str
     """Of the FMU; for a model in process, which it is."""
     path: str = ""
-    """File of a foreign one."""
+    """Its file; the folder of the sources for a model in process."""
     sha256: str = ""
-    """Hash of that file."""
+    """Hash of that file, or of all sources of the models."""
+
+
+class Started(_Part):
+    """When and how a run was started."""
+
+    time: str = ""
+    """UTC, ISO 8601."""
+    command: str = ""
+    """Command line."""
+    folder: str = ""
+    """Where the command was given."""
+    git: str = ""
+    """Commit of the repository there, ``-modified`` behind it if a tracked file differs."""
 
 
 class Tuned(_Part):
@@ -151,6 +164,8 @@ class Summary(_Part):
     """Of the scenario."""
     versions: dict[str, str]
     """Of Python, of this project and of what it stands on."""
+    started: Started = Started()
+    """When and how it was started."""
     notes: list[str] = []
     """What is worth knowing of the verdict: a target that was told wrong, or is not in the log."""
 
@@ -199,6 +214,7 @@ def summarize(recording: Recording, scenario: Scenario, wall_time: float, note: 
         real_time_factor=numbers["duration"] / wall_time if wall_time > 0.0 else 0.0,
         seed=scenario.seed,
         versions=recording.info.get("versions", {}),
+        started=Started(**recording.info.get("started", {})),
         realtime=recording.info.get("realtime"),
         notes=[text for text in (note, _told_otherwise(recording, scenario)) if text],
     )

@@ -36,7 +36,7 @@ def test_a_parked_run_writes_log_figure_and_summary(tmp_path: Path, capsys: pyte
 
 
 def test_not_parked_is_one(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    arguments = ["run", DEMO, "--fmus", "none", "--out", str(tmp_path), "--no-figure"]
+    arguments = ["run", DEMO, "--fmus", "none", "--out", str(tmp_path), "--no-page"]
     assert main([*arguments, "--set", "stop_time=1"]) == 1
     printed = capsys.readouterr().out
     assert "not_parked: stop time reached in" in printed
@@ -147,7 +147,7 @@ def test_no_colours_in_a_pipe(tmp_path: Path) -> None:
     environment = {**os.environ, "TERM": "xterm-256color"}
     environment.pop("FORCE_COLOR", None)
     done = subprocess.run(
-        [*command, "--no-figure", "--set", "stop_time=1"], capture_output=True, text=True, env=environment, check=False
+        [*command, "--no-page", "--set", "stop_time=1"], capture_output=True, text=True, env=environment, check=False
     )
     assert done.returncode == 1, done.stderr
     assert "\x1b" not in done.stdout + done.stderr
@@ -165,7 +165,7 @@ def test_a_slave_that_fails_aborts_and_says_so(
             raise RunError(f"{self.name} failed at 0.5 s [mark]")
 
     monkeypatch.setattr(InProcessSlave, "step", step)
-    assert main(["run", DEMO, "--fmus", "none", "--out", str(tmp_path), "--no-figure"]) == 1
+    assert main(["run", DEMO, "--fmus", "none", "--out", str(tmp_path), "--no-page"]) == 1
     assert "aborted: error: vehicle failed at 0.5 s [mark]" in capsys.readouterr().out
     found = read_log(tmp_path / "run.mcap")
     assert found.t[-1] == 0.5
@@ -212,11 +212,11 @@ def test_an_interrupt_while_a_command_is_imported_is_one_line(
 
 
 def test_quiet_prints_nothing_but_errors_and_json(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    arguments = ["run", DEMO, "--fmus", "none", "--no-figure", "--quiet", "--out"]
+    arguments = ["run", DEMO, "--fmus", "none", "--no-page", "--quiet", "--out"]
     assert main([*arguments, str(tmp_path)]) == 0
     captured = capsys.readouterr()
     assert captured.out + captured.err == ""
-    assert main([*arguments, str(tmp_path), "--json"]) == 0
+    assert main([*arguments, str(tmp_path), "--force", "--json"]) == 0
     assert json.loads(capsys.readouterr().out)["outcome"] == "parked"
     assert main([*arguments, "/proc/x"]) == 2
     assert capsys.readouterr().err.startswith("apa: /proc/x")
@@ -279,7 +279,13 @@ def test_completion_in_bash(tmp_path: Path, capsys: pytest.CaptureFixture[str]) 
     command = ["bash", "-c", COMPLETE.format(script=script)]
     done = subprocess.run(command, capture_output=True, text=True, check=True)
     assert done.stderr == ""
-    assert done.stdout.splitlines() == ["recover replay report reproduce", "guo2015-case4-left", "native", "mf4", ""]
+    assert done.stdout.splitlines() == [
+        "recover replay report reproduce rerun",
+        "guo2015-case4-left",
+        "native",
+        "mf4",
+        "",
+    ]
 
 
 @pytest.mark.parametrize("shell", ["zsh", "fish"])
@@ -293,23 +299,6 @@ def test_completion_in_other_shells(shell: str, tmp_path: Path, capsys: pytest.C
     script.write_text(text)
     asked = {"zsh": "autoload -U compinit; compinit -u", "fish": "true"}[shell]
     subprocess.run([shell, "-c", f"{asked}; source {script}"], capture_output=True, text=True, check=True)
-
-
-def test_a_run_says_what_it_replaces_and_takes_what_was_made_of_it(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    arguments = ["run", DEMO, "--fmus", "none", "--out", str(tmp_path)]
-    assert main(arguments) == 0
-    assert main(["export", "csv", str(tmp_path / "run.mcap")]) == 0
-    capsys.readouterr()
-    assert main([*arguments, "--no-figure"]) == 0
-    error = capsys.readouterr().err
-    assert "other parameters" not in error
-    assert "removed run.csv of the run before" in error
-    assert {path.name for path in tmp_path.iterdir()} == {"run.mcap", "summary.json"}
-    assert main([*arguments, "--no-figure", "--set", "vehicle.driver.obeys_slow_down=false"]) in (0, 1)
-    error = capsys.readouterr().err
-    assert f"{tmp_path} has a run with other parameters, which this one replaces: vehicle.driver." in error
 
 
 def test_what_was_changed_stands_in_every_headline(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -363,17 +352,11 @@ def test_a_container_says_that_it_needs_a_compiler(
     assert list(tmp_path.iterdir()) == []
 
 
-def test_old_names_of_options_are_understood(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["run", DEMO, "--fmus", "none", "--no-figure", "--out", str(tmp_path)]) == 0
-    assert not (tmp_path / "overview.png").exists()
-    assert main(["build", "--kind", "python", "--out", str(tmp_path / "built"), "--json"]) == 0
-    rows = json.loads(capsys.readouterr().out.partition("results in")[2].partition("\n")[2])
+def test_build_prints_what_it_made(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["build", "--fmus", "python", "--out", str(tmp_path / "built"), "--json"]) == 0
+    rows = json.loads(capsys.readouterr().out)
     assert {Path(row["path"]).name for row in rows} == {"Controller.fmu", "Vehicle.fmu"}
     assert all(Path(row["path"]).stat().st_size == row["size"] for row in rows)
     assert main(["build", "--platform", "win64"]) == 2
     assert main(["build", "--fmus", "native", "--out", str(tmp_path), "--platform", "amiga"]) == 2
     assert "amiga: expected all or" in capsys.readouterr().err
-    for arguments in (["run", "--help"], ["build", "--help"]):
-        with pytest.raises(SystemExit):
-            main(arguments)
-        assert not {"--no-figure", "--kind"} & set(capsys.readouterr().out.split())

@@ -46,7 +46,7 @@ def test_an_older_report_goes_as_the_new_log_comes(tmp_path: Path, capsys: pytes
     assert main(["run", *SHORT, "--out", str(tmp_path)]) == 1
     assert main(["export", "csv", str(tmp_path)]) == 0
     (tmp_path / "mine.txt").write_text("kept")
-    assert main(["run", *SHORT, "--no-page", "--out", str(tmp_path)]) == 1
+    assert main(["run", *SHORT, "--no-page", "--force", "--out", str(tmp_path)]) == 1
     assert "removed run.csv of the run before" in capsys.readouterr().err
     assert sorted(path.name for path in tmp_path.iterdir()) == ["mine.txt", "run.mcap", "summary.json"]
 

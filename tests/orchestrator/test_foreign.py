@@ -27,7 +27,7 @@ def theirs(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def test_units_and_variability_that_are_not_said_are_no_mistake(
     theirs: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    arguments = ["run", "guo2015-case4", "--controller", str(theirs), "--out", str(tmp_path), "--no-figure"]
+    arguments = ["run", "guo2015-case4", "--controller", str(theirs), "--out", str(tmp_path), "--no-page"]
     assert main([*arguments, "--json", "--set", "controller.wheel=4"]) == 1
     captured = capsys.readouterr()
     summary = json.loads(captured.out)
@@ -47,7 +47,7 @@ def test_its_own_parameters_are_told_from_those_nobody_has(
 
 def test_where_it_came_from_is_in_the_summary(theirs: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     out = tmp_path / "out"
-    main(["run", "guo2015-case4", "--controller", str(theirs), "--out", str(out), "--no-figure", "--json"])
+    main(["run", "guo2015-case4", "--controller", str(theirs), "--out", str(out), "--no-page", "--json"])
     used = {item["name"]: item for item in json.loads(capsys.readouterr().out)["fmus"]}
     assert used["controller"]["kind"] == "foreign"
     assert used["controller"]["path"] == str(theirs)
@@ -57,7 +57,7 @@ def test_where_it_came_from_is_in_the_summary(theirs: Path, tmp_path: Path, caps
 
 def test_a_misspelled_output_is_said_before_the_run(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     wrong = foreign_fmus.controller(tmp_path, request="steering_request")
-    main(["run", "guo2015-case4", "--controller", str(wrong), "--out", str(tmp_path / "out"), "--no-figure"])
+    main(["run", "guo2015-case4", "--controller", str(wrong), "--out", str(tmp_path / "out"), "--no-page"])
     error = capsys.readouterr().err
     assert "nothing feeds vehicle.steering_wheel_request; did you mean steering_request" in error
     assert "nothing feeds advised_speed, speed_control_active, " in error
@@ -130,7 +130,7 @@ def test_what_is_not_measured_is_never_passed(theirs: Path, tmp_path: Path, caps
 
 def test_without_a_phase_nothing_says_parked(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     mute = foreign_fmus.controller(tmp_path, phase=False)
-    arguments = ["--controller", str(mute), "--out", str(tmp_path / "out"), "--set", "stop_time=7", "--no-figure"]
+    arguments = ["--controller", str(mute), "--out", str(tmp_path / "out"), "--set", "stop_time=7", "--no-page"]
     assert main(["run", "apa-parallel", *arguments]) == 1
     captured = capsys.readouterr()
     assert "controller has no output phase: PARKED (9) of it says" in captured.err
@@ -146,7 +146,7 @@ def test_what_was_tested_when_and_how_is_told(theirs: Path, tmp_path: Path, caps
     main(words)
     about = json.loads(capsys.readouterr().out)["about"]
     assert about["controller"].startswith(f"{theirs}, SHA-256 ")
-    assert about["vehicle"].startswith("native, {")
+    assert "Vehicle.fmu, SHA-256 " in about["vehicle"]
     assert about["command"] == f"apa test guo2015-case4 --controller {theirs} --out '{out}' --json"
     assert about["warning"].count("controller has no output shifts") == 1
     page = (out / "index.html").read_text(encoding="utf-8")

@@ -134,14 +134,14 @@ def test_any_row_can_be_replayed_with_the_same_bits(
 ) -> None:
     for number in some(COUNT, 4, seed=12):
         out = tmp_path / str(number)
-        code = main(["replay", str(whole), "--row", str(number), "--out", str(out), "--no-figure"])
+        code = main(["replay", str(whole), "--row", str(number), "--out", str(out), "--no-page"])
         assert "same bits as in the table" in capsys.readouterr().out
         assert code == (0 if Table(whole).row(number)["outcome"] == "parked" else 1)
         assert (out / "run.mcap").stat().st_size > 10_000
 
 
 def test_a_row_can_be_replayed_on_fmus(whole: Any, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    main(["replay", str(whole), "--row", "700", "--out", str(tmp_path), "--no-figure", "--fmus", "python"])
+    main(["replay", str(whole), "--row", "700", "--out", str(tmp_path), "--no-page", "--fmus", "python"])
     assert "same bits as in the table" in capsys.readouterr().out
 
 
@@ -150,7 +150,7 @@ def test_a_replay_says_if_the_bits_differ(
 ) -> None:
     original = Table.row
     monkeypatch.setattr(Table, "row", lambda self, number: {**original(self, number), "max_speed": 1e-3})
-    assert main(["replay", str(whole), "--row", "3", "--out", str(tmp_path), "--no-figure"]) == 2
+    assert main(["replay", str(whole), "--row", "3", "--out", str(tmp_path), "--no-page"]) == 2
     assert "differs from the table: max_speed" in capsys.readouterr().out
 
 

@@ -2,11 +2,10 @@
 
 import argparse
 from contextlib import nullcontext
-from pathlib import Path
 
 from orchestrator.cosim.kinds import KINDS, default_kind
 from orchestrator.drawing.beside import PictureBeside
-from orchestrator.session.options import add_foreign_arguments
+from orchestrator.session.options import add_foreign_arguments, add_output_arguments
 
 PORT = 8765
 """Where Foxglove looks for a stream if nothing else is said."""
@@ -46,10 +45,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="PORT",
         help=f"show the run as it goes, at this WebSocket ({PORT}), to Foxglove or Lichtblick; includes --realtime",
     )
-    parser.add_argument("--out", type=Path, metavar="DIR", help="where results go (default: runs/NAME)")
-    parser.add_argument("--json", action="store_true", help="print summary.json instead of the table")
-    parser.add_argument("--no-page", action="store_true", help="write neither picture nor pages")
-    parser.add_argument("--no-figure", action="store_true", dest="no_page", help=argparse.SUPPRESS)
+    add_output_arguments(parser, "runs/NAME, the next free runs/NAME-2, ... if there is a run")
 
 
 def run(arguments: argparse.Namespace) -> int:

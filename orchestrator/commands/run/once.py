@@ -2,11 +2,14 @@
 
 import argparse
 from pathlib import Path
+from typing import NamedTuple
 
 from fmus.files import write_whole
+from orchestrator.commands.run.run_folder import run_folder
+from orchestrator.cosim.recording import Recording
 from orchestrator.drawing.beside import PictureBeside
 from orchestrator.drawing.seen import overview_of
-from orchestrator.report.results import LIVE, LOG, PICTURE, is_shown, write_page, write_summary
+from orchestrator.report.results import LIVE, LOG, PICTURE, is_shown, write_page, write_picture, write_summary
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.session.drive import drive
 from orchestrator.session.foreign import Foreign, foreign_of, load_fitting
@@ -15,37 +18,57 @@ from orchestrator.stream.realtime import Realtime
 from orchestrator.text.console import say
 from orchestrator.text.errors import INTERRUPTED, NOT_PARKED, PARKED
 from orchestrator.text.failures import verdict_stands
-from orchestrator.text.owned import owned
 from orchestrator.text.readable import shortly
 from orchestrator.verdict.summary import Summary, summarize
 
 
+class Done(NamedTuple):
+    """A run that was written and printed."""
+
+    recording: Recording
+    code: int
+    """0 parked or finished, 1 not, 130 interrupted."""
+
+
 def run_once(arguments: argparse.Namespace, beside: PictureBeside | None) -> int:
-    """Run, write, print; with pages if there is somebody ``beside`` who draws."""
+    """Load the scenario, run, write, print; return the exit code."""
     scenario, left_out, foreign = load_fitting(arguments.scenario, arguments.set, foreign_of(arguments))
     if left_out:
         say(f"apa: warning: left out, the FMU does not have them: {shortly(left_out)}")
-    out: Path = arguments.out or Path("runs") / scenario.name
-    with owned(out):
-        paced = arguments.realtime or arguments.live is not None
-        ran = drive(scenario, arguments.fmus, out / LOG, foreign, Realtime(arguments.live, say) if paced else None)
+    paced = arguments.realtime or arguments.live is not None
+    realtime = Realtime(arguments.live, say) if paced else None
+    return execute(arguments, scenario, foreign, arguments.out, beside, realtime).code
+
+
+def execute(
+    arguments: argparse.Namespace,
+    scenario: Scenario,
+    foreign: Foreign,
+    chosen: Path | None,
+    beside: PictureBeside | None = None,
+    realtime: Realtime | None = None,
+) -> Done:
+    """Run a scenario, write its folder, print its verdict (``arguments``: fmus, force, json, no_page)."""
+    with run_folder(chosen, scenario.name, force=arguments.force) as out:
+        ran = drive(scenario, arguments.fmus, out / LOG, foreign, realtime)
         summary = summarize(ran.recording, scenario, ran.wall_time)
         text = write_summary(out, summary)
         interrupted = ran.end.reason == "interrupted"
-        drawer = beside if is_shown(ran.recording) and not interrupted else None
-        if drawer is not None:
-            drawer.begin(overview_of(ran.recording, summary, scenario))
+        is_drawn = is_shown(ran.recording) and not interrupted and not arguments.no_page
+        if is_drawn and beside is not None:
+            beside.begin(overview_of(ran.recording, summary, scenario))
         _tell(arguments, text, summary, scenario)
-        if beside is not None and not interrupted:
+        if not interrupted and not arguments.no_page:
             _write_pages(out, ran, summary, scenario, foreign)
-        if drawer is not None:
+        if is_drawn and beside is not None:
             with verdict_stands(str(out / PICTURE)):
-                write_whole(out / PICTURE, drawer.picture())
+                write_whole(out / PICTURE, beside.picture())
+        elif is_drawn:
+            write_picture(out, ran.recording, summary, scenario)
     if not arguments.json:
         print(f"results in {out}")
-    if interrupted:
-        return INTERRUPTED
-    return PARKED if summary.is_done else NOT_PARKED
+    code = INTERRUPTED if interrupted else PARKED if summary.is_done else NOT_PARKED
+    return Done(ran.recording, code)
 
 
 def _tell(arguments: argparse.Namespace, text: str, summary: Summary, scenario: Scenario) -> None:

@@ -1,0 +1,76 @@
+"""``apa rerun``: a run once more, from its log alone, compared with it signal by signal."""
+
+import argparse
+from pathlib import Path
+
+import numpy as np
+
+from orchestrator.commands.run.once import execute
+from orchestrator.cosim.recording import Recording
+from orchestrator.log.read_log import log_file, read_log
+from orchestrator.session.foreign import FOREIGN, Foreign, sha256_of
+from orchestrator.session.options import TIMEOUT, add_output_arguments
+from orchestrator.text.console import console, say
+from orchestrator.text.errors import BAD_INPUT, BadInput
+from orchestrator.verdict.logged import logged
+from orchestrator.verdict.summary import FmuUsed
+
+EXAMPLES = """examples:
+  apa rerun runs/guo2015-case4                     results in runs/guo2015-case4-rerun
+  apa rerun runs/guo2015-case4/run.mcap --out /tmp/again --no-page
+  apa list runs                                    which runs there are, and by which command
+
+The log holds scenario, parameters, seed and the paths and hashes of the FMUs. Exit codes: those of `apa run`, and 2 if
+a signal differs from the log or an FMU has changed since.
+"""
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add what the command takes."""
+    parser.add_argument("log", metavar="RUN", help="a run's folder or its log")
+    add_output_arguments(parser, "the run's folder with -rerun")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Run the log's scenario again. Returns what ``apa run`` returns, or 2 if a signal or an FMU differs."""
+    log = log_file(arguments.log)
+    first = read_log(log)
+    if not first.info.get("scenario"):
+        raise BadInput("has no scenario, so there is nothing to run again", file=log)
+    scenario = logged(first, str(log)).scenario
+    used = [FmuUsed(**item) for item in first.info.get("fmus", [])]
+    changed = [item.name for item in used if item.kind == FOREIGN and not _is_same_file(item, log)]
+    files = {item.name: Path(item.path) for item in used if item.kind == FOREIGN}
+    kinds = {item.kind for item in used} - {FOREIGN}
+    arguments.fmus = kinds.pop() if len(kinds) == 1 else "none"
+    out: Path = arguments.out or log.parent.with_name(f"{log.parent.resolve().name}-rerun")
+    for name in changed:
+        say(f"apa: warning: the FMU of {name} has changed since")
+    done = execute(arguments, scenario, Foreign(files, timeout=TIMEOUT), out)
+    different = differing_signals(first, done.recording)
+    if not arguments.json:
+        text = f"differs from the log in {', '.join(different[:8])}" if different else "identical to the log"
+        more = f" and {len(different) - 8} more signals" if len(different) > 8 else ""
+        console().print(f"{text}{more}", markup=False)
+    return BAD_INPUT if different or changed else done.code
+
+
+def differing_signals(first: Recording, second: Recording) -> list[str]:
+    """Return the signals that are not equal to the last bit, or that only one of the runs has."""
+    if not np.array_equal(first.t_ns, second.t_ns):
+        return ["time"]
+    names = sorted(first.signals.keys() | second.signals.keys())
+    return [name for name in names if not _are_equal(first, second, name)]
+
+
+def _are_equal(first: Recording, second: Recording, name: str) -> bool:
+    both = name in first.signals and name in second.signals
+    return both and np.array_equal(first.signals[name], second.signals[name], equal_nan=True)
+
+
+def _is_same_file(used: FmuUsed, log: Path) -> bool:
+    """Return whether the file of an FMU is that of the log. Raises ``BadInput`` if it is not there."""
+    path = Path(used.path)
+    if not path.is_file():
+        raise BadInput(f"the FMU of {used.name} is no longer there: {path}", file=log)
+    return sha256_of(path) == used.sha256

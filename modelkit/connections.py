@@ -31,12 +31,13 @@ class Wire(NamedTuple):
 
 
 class CannotConnectError(TypeError):
-    """Two variables of the same name do not fit; ``signal`` is the one."""
+    """Two variables of the same name do not fit; ``signal`` is the one, ``line`` what connects them by name."""
 
-    def __init__(self, text: str, signal: str) -> None:
+    def __init__(self, text: str, signal: str, line: str = "") -> None:
         super().__init__(f"{signal}: {text}")
         self.text = text
         self.signal = signal
+        self.line = line
 
 
 def part_of(name: str, model: Model) -> Part:
@@ -77,4 +78,6 @@ def _check(sender: Part, given: Variable, receiver: Part, taken: Variable) -> No
         raise CannotConnectError(f"{output} is {given.kind.__name__}, {into} is {taken.kind.__name__}", taken.name)
     said = taken.name not in sender.unsaid and taken.name not in receiver.unsaid
     if said and given.signal.unit != taken.signal.unit:
-        raise CannotConnectError(f"{output} is in {given.signal.unit}, {into} in {taken.signal.unit}", taken.name)
+        text = f"{output} is in {given.signal.unit}, {into} in {taken.signal.unit}"
+        line = f"{receiver.name}.{taken.name}: {sender.name}.{given.name}"
+        raise CannotConnectError(text, taken.name, line)

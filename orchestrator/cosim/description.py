@@ -189,7 +189,9 @@ def _scales(description: ModelDescription) -> dict[str, Scale]:
 
 
 def _unit(scalar: ModelVariable) -> str | None:
-    return scalar.unit or (scalar.declaredType.unit if scalar.declaredType is not None else None) or None
+    """Return the unit that an FMU declares of a variable, ``1`` for a dash; None if it declares none."""
+    unit = scalar.unit or (scalar.declaredType.unit if scalar.declaredType is not None else None) or None
+    return "1" if unit is not None and unit.strip() == "-" else unit
 
 
 def _first_line(error: Exception) -> str:

@@ -19,7 +19,7 @@ from orchestrator.scenario.target_point import as_rear_axle
 from orchestrator.scenario.wiring.ssp import SUFFIX, ssp_scenario, ssp_system
 from orchestrator.scenario.wiring.system_text import NO_FILE, SystemText
 from orchestrator.text.errors import BadInput, shown, suggestion, suggestion_or_choices
-from orchestrator.text.quantities import scalar
+from orchestrator.text.quantities import scalar, unit_symbol
 from orchestrator.text.yaml_file import explain, place_in, read_mapping, read_value
 
 NOT_WRITTEN = ("file", "changed", "left_out")
@@ -53,6 +53,7 @@ def load_scenario(name: str, sets: Iterable[str] = (), more: More | None = None)
     ``more`` can be set besides the parameters of the models.
     """
     path, layers, merged = _read(name, list(sets))
+    more = _in_declared_units(more or {}, _in(_in(merged, "system"), "slaves"))
     for key in INHERITED_NOT:
         if key not in layers[-2][0] and key not in layers[-1][0]:
             merged.pop(key, None)
@@ -62,14 +63,14 @@ def load_scenario(name: str, sets: Iterable[str] = (), more: More | None = None)
     merged["limits"] = limits_of(merged.get("limits", ["house"]), path.parent, path)
     seed = merged.get("seed", 1)
     for owner, model in models_for(_asked(layers)).items():
-        merged[owner] = _parameters(owner, model, [*car.layers(owner), *layers], seed, (more or {}).get(owner, ()))
+        merged[owner] = _parameters(owner, model, [*car.layers(owner), *layers], seed, more.get(owner, ()))
     changed = dict(text.split("=", 1) for text in layers[-1][0].pop(SETS))
     try:
         merged["target"] = as_rear_axle(merged.get("target"), merged["vehicle"], _written_in("target", layers, path))
         scenario = Scenario(**merged, file=str(path), changed=changed)
     except ValidationError as error:
         raise explain(error, _written_in(place_in(error), layers, path), FIELDS) from None
-    return _with_parameters(scenario, more or {}).model_copy(update={"controller": _told(scenario)})
+    return _with_parameters(scenario, more).model_copy(update={"controller": _told(scenario)})
 
 
 def load_system(name: str, sets: Iterable[str] = ()) -> SystemText | None:
@@ -100,6 +101,20 @@ def _in(content: Mapping[str, Any], key: str) -> Mapping[str, Any]:
     """Return a section of what a file says, empty if it is none."""
     section = content.get(key)
     return section if isinstance(section, Mapping) else {}
+
+
+def _in_declared_units(more: More, slaves: Mapping[str, Any]) -> More:
+    """Return parameters of which an FMU declares no unit in those that the system says of them."""
+    found = {}
+    for slave, items in more.items():
+        units = _in(_in(slaves, slave), "units")
+        found[slave] = [
+            item._replace(signal=item.signal._replace(unit=unit_symbol(str(units[item.name]))))
+            if item.name in units and item.kind is float and item.signal.unit == "1"
+            else item
+            for item in items
+        ]
+    return found
 
 
 def _with_parameters(scenario: Scenario, more: More) -> Scenario:

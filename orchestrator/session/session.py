@@ -185,7 +185,8 @@ def _warnings(system: Assembled, scenario: Scenario, exchanges: int) -> list[str
     """Return what is allowed in a system but hardly meant, or costly."""
     cost = told_cost(exchanges, sum(len(item.inputs.names) + len(item.outputs.names) for item in system.slaves))
     ending = scenario.ending if scenario.task != "run" else None
-    return [*remarks(system, ending), *implausible(scenario), *([cost] if cost else [])]
+    ignored = scenario.system.ignored if scenario.system is not None else []
+    return [*remarks(system, ending, ignored), *implausible(scenario), *([cost] if cost else [])]
 
 
 def _driven(master: Master, messages: Messages) -> tuple[End, float]:

@@ -4,15 +4,16 @@ from typing import NamedTuple
 
 import numpy as np
 
+from fmus.contents.units import BASE
 from modelkit.connections import CannotConnectError, Wire
 from modelkit.connections import connections as by_name
 from modelkit.variables import Variable, variables
 from orchestrator.cosim.connections import Connection, part_of_slave, wired
-from orchestrator.cosim.slave import Slave
+from orchestrator.cosim.slave import Scale, Slave
 from orchestrator.scenario.models import MODELS
 from orchestrator.scenario.scenario import Scenario
-from orchestrator.scenario.wiring.system_text import ROLES, Feed, SystemText
-from orchestrator.system.feeds import Feeder, Pin, joined, pins_of
+from orchestrator.scenario.wiring.system_text import ROLES, Feed, SystemText, UnitEntry
+from orchestrator.system.feeds import Feeder, Pin, declare_units, joined, pins_of
 from orchestrator.system.listener import Listener
 from orchestrator.text.errors import BadInput, suggestion
 
@@ -33,13 +34,14 @@ class Assembled(NamedTuple):
 def assemble(scenario: Scenario, given: list[Slave]) -> Assembled:
     """Return the system of ``scenario``. Raises ``BadInput`` for what cannot be connected as it says."""
     text = scenario.system or SystemText()
+    _declare(text, given, scenario.file)
     slaves, feeds = _with_roles(text, given, scenario.file)
     feeder = Feeder(slaves, text.frames, scenario.file or None)
     found: list[Connection] = []
     fed: set[tuple[int, int]] = set()
     for key, feed in text.connections.items():
         where = f"system.connections.{key}"
-        targets = pins_of(key, slaves, True, scenario.file or None, where)
+        targets = pins_of(key, slaves, True, scenario.file or None, where, feed.from_)
         _once(targets, fed, scenario.file, where)
         fed |= {(pin.slave, pin.place) for pin in targets}
         if feed.from_:
@@ -60,12 +62,28 @@ def assemble(scenario: Scenario, given: list[Slave]) -> Assembled:
     return Assembled(slaves, connections, frozenset(fed))
 
 
+def _declare(text: SystemText, slaves: list[Slave], file: str) -> None:
+    """Have the slaves know the units that the system defines, and those that it says of their variables."""
+    defined = {name: _scale(entry) for name, entry in text.units.items()}
+    for slave in slaves:
+        for ports in (slave.inputs, slave.outputs) if defined else ():
+            ports.scales = {**defined, **ports.scales}
+        entry = text.slaves.get(slave.name)
+        if entry is not None and entry.units:
+            declare_units(slave, entry.units, file or None)
+
+
+def _scale(entry: UnitEntry) -> Scale:
+    return Scale(entry.factor, entry.offset, tuple(getattr(entry, base) for base in BASE))
+
+
 def _matching(slaves: list[Slave], fed: set[tuple[int, int]]) -> list[Wire]:
     try:
         return by_name([part_of_slave(slave) for slave in slaves], fed)
     except CannotConnectError as error:
         advice = "; connect it in the scenario's system: connections, where units are converted"
-        raise BadInput(error.text + advice, key=error.signal) from None
+        line = f": '{error.line}'" if error.line else ""
+        raise BadInput(error.text + advice + line, key=error.signal) from None
 
 
 def _once(targets: list[Pin], fed: set[tuple[int, int]], file: str, key: str) -> None:

@@ -1,6 +1,6 @@
 """From what a system says feeds an input to the connection that does it. Names that do not exist are answered."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -13,7 +13,7 @@ from orchestrator.scenario.wiring.system_text import Feed, PoseFrame, Term, term
 from orchestrator.system.conversions import Affine, PoseChange, ValueMap
 from orchestrator.system.units import UnfitUnitsError, conversion
 from orchestrator.text.errors import BadInput, suggestion, suggestion_or_choices
-from orchestrator.text.quantities import scalar
+from orchestrator.text.quantities import scalar, unit_symbol
 
 UNITS_OF_A_POSE = ("m", "m", "rad")
 
@@ -31,17 +31,45 @@ class Pin(NamedTuple):
     name: str
 
 
-def pins_of(text: str, slaves: Sequence[Slave], is_input: bool, file: object, key: str) -> list[Pin]:
-    """Return the signals that ``text`` means: by name, or all of a group. Raises ``BadInput`` with the closest."""
-    return [end for term in terms(text) for end in _pins(term, slaves, is_input, file, key)]
+class SignalNames:
+    """The names of all inputs, or of all outputs, of slaves: ``plant.Wheel Angle, left``."""
+
+    def __init__(self, slaves: Sequence[Slave], is_input: bool) -> None:
+        self._ports = {slave.name: slave.inputs if is_input else slave.outputs for slave in slaves}
+
+    def __contains__(self, full: object) -> bool:
+        owner, _, name = str(full).partition(".")
+        ports = self._ports.get(owner)
+        return ports is not None and ports.index.get(name, ports.own) < ports.own
 
 
-def _pins(term: Term, slaves: Sequence[Slave], is_input: bool, file: object, key: str) -> list[Pin]:
+def pins_of(text: str, slaves: Sequence[Slave], is_input: bool, file: object, key: str, other: str = "") -> list[Pin]:
+    """Return the signals that ``text`` means: by name, or all of a group. ``other`` is the other end, for messages.
+
+    Raises ``BadInput`` with the closest.
+    """
+    found = terms(text, SignalNames(slaves, is_input))
+    return [end for term in found for end in _pins(term, slaves, is_input, SignalPlace(file, key, other))]
+
+
+class SignalPlace(NamedTuple):
+    """Where a signal is written, and what stands at the other end of its connection."""
+
+    file: object
+    key: str
+    other: str
+
+    def wrong(self, text: str) -> BadInput:
+        """Return the error that says what is wrong here."""
+        return BadInput(text, file=self.file, key=self.key)
+
+
+def _pins(term: Term, slaves: Sequence[Slave], is_input: bool, place: SignalPlace) -> list[Pin]:
     owner, _, name = term.name.partition(".")
     names = [slave.name for slave in slaves]
     if owner not in names:
         hint = suggestion(owner, names) or f"; there are {', '.join(names)}"
-        raise BadInput(f"no slave is called {owner!r}{hint}", file=file, key=key)
+        raise place.wrong(f"no slave is called {owner!r}{hint}")
     number = names.index(owner)
     ports = slaves[number].inputs if is_input else slaves[number].outputs
     own = ports.names[: ports.own]
@@ -49,24 +77,56 @@ def _pins(term: Term, slaves: Sequence[Slave], is_input: bool, file: object, key
     if not found:
         what = "input" if is_input else "output"
         close = suggestion(name, own, f"{owner}.") or f"; it has {', '.join(own[:12]) or 'none'}"
-        raise BadInput(f"{owner} has no {what} {name!r}{close}", file=file, key=key)
+        raise place.wrong(f"{owner} has no {what} {name!r}{close}")
     sign = -1.0 if term.minus else 1.0
     return [
         Pin(number, ports.index[item], ports.variables[ports.index[item]], ports, unit, sign, f"{owner}.{item}")
         for item in found
-        for unit in (_unit(term.unit, item, ports, f"{owner}.{item}", file, key),)
+        for unit in (_unit(term, item, ports, is_input, place),)
     ]
 
 
-def _unit(written: str | None, name: str, ports: Ports, full: str, file: object, key: str) -> str | None:
+def _unit(term: Term, name: str, ports: Ports, is_input: bool, place: SignalPlace) -> str | None:
     """Return the unit of a signal: its FMU's; what is written where that says none, or 1."""
-    said = None if name in ports.unsaid else ports.variables[ports.index[name]].signal.unit
-    if written is None or written == said:
+    written, said = term.unit, None if name in ports.unsaid else ports.variables[ports.index[name]].signal.unit
+    if written is None or written == said or (said is not None and written == unit_symbol(said)):
         return said
     if said not in (None, "1"):
-        raise BadInput(f"{full} is in {said}, as its FMU says, not in {written}", file=file, key=key)
+        raise place.wrong(
+            f"{term.name} is in {said}, as its FMU says, not in {written}; {_line(term, is_input, place)}"
+        )
     ports.unsaid -= {name}
     return written
+
+
+def _line(term: Term, is_input: bool, place: SignalPlace) -> str:
+    """Return the line to write where a unit stands beside a signal that has another."""
+    minus = "-" if term.minus else ""
+    if not place.other or "," in place.other:
+        return f"write {minus}{term.name} alone, which is converted, and a unit beside a signal that has none"
+    other = place.other if place.other.endswith("]") else f"{place.other} [{term.unit}]"
+    ends = (term.name, other) if is_input else (other, minus + term.name)
+    return f"a unit stands beside a signal whose FMU says none: write '{ends[0]}: {ends[1]}', or both without a unit"
+
+
+def declare_units(slave: Slave, written: Mapping[str, str], file: object) -> None:
+    """Have variables of which an FMU declares no unit in the units that are ``written``. Raises ``BadInput``."""
+    for name, unit in written.items():
+        key = f"system.slaves.{slave.name}.units.{name}"
+        ports = next((item for item in (slave.inputs, slave.outputs) if name in item.index), None)
+        names = [*slave.inputs.names, *slave.outputs.names, *slave.parameters.names]
+        if ports is None and name not in slave.parameters.index:
+            raise BadInput(f"{slave.name} has no such variable{suggestion(name, names)}", file=file, key=key)
+        if ports is None:
+            continue
+        place, symbol = ports.index[name], unit if unit in ports.scales else unit_symbol(unit)
+        variable = ports.variables[place]
+        said = variable.signal.unit
+        if name in ports.unsaid or said == "1":
+            ports.variables[place] = variable._replace(signal=variable.signal._replace(unit=symbol))
+            ports.unsaid -= {name}
+        elif symbol not in (said, unit_symbol(said)):
+            raise BadInput(f"{name} is in {said}, as its FMU says, not in {unit}", file=file, key=key)
 
 
 class Feeder:
@@ -85,7 +145,8 @@ class Feeder:
 
     def connections(self, feed: Feed, targets: list[Pin], key: str) -> list[Connection]:
         """Return what feeds ``targets``. Raises ``BadInput`` if number, unit or frame do not fit."""
-        sources = pins_of(feed.from_, self._slaves, False, self._file, key)
+        other = key.removeprefix("system.connections.") if key.startswith("system.connections.") else ""
+        sources = pins_of(feed.from_, self._slaves, False, self._file, key, other)
         if len(sources) != len(targets):
             raise self._wrong(f"{len(targets)} inputs, but {len(sources)} signals to feed them", key)
         if feed.into is not None or feed.out_of is not None:

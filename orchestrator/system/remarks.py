@@ -6,6 +6,7 @@ from orchestrator.cosim.slave import Slave
 from orchestrator.scenario.end_condition import EndCondition
 from orchestrator.scenario.models import MODELS
 from orchestrator.system.assemble import Assembled
+from orchestrator.system.units import scale_of
 from orchestrator.text.errors import BadInput, suggestion
 
 NEEDED = {
@@ -22,21 +23,24 @@ NEEDED = {
 """Slave -> output that a verdict needs -> what is lost without it."""
 SPARE = ("person.", "told.", "choice.")
 """Inputs of these groups need nothing to feed them: their start values mean that nobody is there, no slot is told."""
+MAX_NAMES = 12
+"""A line that names more is not read."""
 Node = tuple[int, str]
 """A slave and an output of it."""
 
 
-def remarks(system: Assembled, ending: EndCondition | None) -> list[str]:
+def remarks(system: Assembled, ending: EndCondition | None, ignored: Sequence[str] = ()) -> list[str]:
     """Return one sentence for each thing that is allowed but hardly meant in a run that ends so; None: by its time."""
     slaves = system.slaves
     found = [
         text
         for number, slave in enumerate(slaves)
-        for text in (*_units(slave), *_unfed(number, system), *_missing(slave.name, slave, ending))
+        for text in (*_units(number, system), *_unfed(number, system), *_missing(slave.name, slave, ending))
     ]
     names = [slave.name for slave in slaves]
     absent = [text for name in MODELS if name not in names for text in _missing(name, None, ending)]
-    return [*found, *absent, *loops(system)]
+    of_ssp = [f"the .ssp has a value that is ignored: {text}" for text in ignored]
+    return [*found, *absent, *loops(system), *of_ssp]
 
 
 def missing_for_the_verdict(name: str, slave: Slave | None, ending: EndCondition) -> dict[str, str]:
@@ -71,11 +75,38 @@ def unsaid(slave: Slave) -> list[str]:
     return [name for ports in (slave.inputs, slave.outputs) for name in ports.names if name in ports.unsaid]
 
 
-def _units(slave: Slave) -> list[str]:
-    names = unsaid(slave)
-    return (
-        [f"{slave.name} says no unit of {', '.join(names)}: taken in SI, as the other side has them"] if names else []
-    )
+def _units(number: int, system: Assembled) -> list[str]:
+    """Return what becomes of the numbers of which an FMU declares no unit: they are passed on as they are."""
+    slave = system.slaves[number]
+    others = {name: text for name, text in _others_units(number, system).items() if name in unsaid(slave)}
+    names = [name for name in unsaid(slave) if name not in others]
+    found = [
+        f"{slave.name} says no unit of {name}, connected with {other}: its number is taken as it is; if it is in"
+        f" another unit, write {slave.name}.{name} [unit] in the connection"
+        for name, other in others.items()
+    ]
+    return [*found, *([f"{slave.name} says no unit of {_few(names)}: taken in SI"] if names else [])]
+
+
+def _others_units(number: int, system: Assembled) -> dict[str, str]:
+    """Return input or output of a slave -> the signal at its other end and its unit, if that is not one of SI."""
+    found = {}
+    for link in system.connections:
+        source, target = system.slaves[link.source], system.slaves[link.target]
+        for out, into in zip(link.source_places.tolist(), link.target_places.tolist(), strict=True):
+            ends = (source.outputs, out, source.name), (target.inputs, into, target.name)
+            own, (ports, place, owner) = ends if link.source == number else ends[::-1]
+            unit, name = ports.variables[place].signal.unit, ports.names[place]
+            scale = scale_of(unit, ports.scales)
+            is_si = scale is None or (scale.factor, scale.offset) == (1.0, 0.0)
+            if number in (link.source, link.target) and name not in ports.unsaid and not is_si:
+                found[own[0].names[own[1]]] = f"{owner}.{name} [{unit}]"
+    return found
+
+
+def _few(names: Sequence[str]) -> str:
+    more = f" and {len(names) - MAX_NAMES} more" if len(names) > MAX_NAMES else ""
+    return ", ".join(names[:MAX_NAMES]) + more
 
 
 def not_fed(number: int, system: Assembled) -> dict[str, str]:
@@ -100,7 +131,7 @@ def _unfed(number: int, system: Assembled) -> list[str]:
     found = [f"nothing feeds {slave.name}.{name}{meant}" for name, meant in names.items() if meant]
     plain = [name for name, meant in names.items() if not meant]
     if plain:
-        found.append(f"nothing feeds {', '.join(plain)} of {slave.name}: they keep their start values")
+        found.append(f"nothing feeds {_few(plain)} of {slave.name}: they keep their start values")
     return found
 
 

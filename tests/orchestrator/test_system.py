@@ -288,4 +288,4 @@ def test_terms() -> None:
     assert terms("-a.b [deg], c.d[1].e") == [Term("a.b", "deg", True), Term("c.d[1].e", None, False)]
     assert terms("a.m[2,1] [km/h]") == [Term("a.m[2,1]", "km/h", False)]
     with pytest.raises(BadInput, match="is no signal"):
-        terms("a.b +")
+        terms("a.b, ")

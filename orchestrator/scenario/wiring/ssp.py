@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from fmus.files import write_whole
+from fmus.systems.fmu_facts import BASE, UnitScale
 from fmus.systems.read_ssp import SspError, SspSystem, as_written, fmu_in, read_ssp
 from orchestrator.scenario.models import MODELS
 from orchestrator.text.errors import BadInput
@@ -38,8 +39,28 @@ def ssp_system(path: Path) -> dict[str, Any]:
         file = folder / f"{name}.fmu"
         if not file.is_file():
             write_whole(file, _fmu(path, source))
-        slaves[name] = {"file": str(file), "parameters": system.parameters.get(name, {})}
-    return {"slaves": slaves, "connections": as_written(system), "by_name": False}
+        slaves[name] = {
+            "file": str(file),
+            "parameters": system.parameters.get(name, {}),
+            "units": system.units.get(name, {}),
+        }
+    values = {
+        f"{owner}.{name}": {"value": text} for owner, given in system.inputs.items() for name, text in given.items()
+    }
+    return {
+        "slaves": slaves,
+        "connections": {**as_written(system), **values},
+        "by_name": False,
+        "units": {
+            name: {**dict(zip(BASE, scale.exponents, strict=True)), **_affine(scale)}
+            for name, scale in system.scales.items()
+        },
+        "ignored": system.ignored,
+    }
+
+
+def _affine(scale: UnitScale) -> dict[str, float]:
+    return {"factor": scale.factor, "offset": scale.offset}
 
 
 def _read(path: Path) -> SspSystem:

@@ -1,7 +1,7 @@
 """A system as a scenario states it: which slaves, from which files, what feeds what, and what plays which role."""
 
 import re
-from collections.abc import Mapping
+from collections.abc import Container, Iterator, Mapping
 from typing import Annotated, Any, Literal, NamedTuple
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, model_validator
@@ -9,9 +9,12 @@ from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, model_valida
 from orchestrator.scenario.models import MODELS
 from orchestrator.scenario.wiring.modes import ModeList
 from orchestrator.text.errors import BadInput
-from orchestrator.text.quantities import Metres, Radians, Whole
+from orchestrator.text.quantities import Metres, Radians, Whole, unit_symbol
 
-TERM = re.compile(r"^(?P<minus>-)?\s*(?P<name>[^\[\]\s]+(?:\[[\d, ]+\][^\[\]\s]*)*)(?:\s+\[(?P<unit>[^\[\]]*)\])?$")
+TERM = re.compile(r"(?P<minus>-)?\s*(?P<name>[^\s-].*?)(?:\s+\[(?P<unit>[^\[\]]*)\])?")
+QUOTED = re.compile(r'(?P<owner>[^."]*\.)?"(?P<name>[^"]*)"')
+MAX_COMMAS = 8
+"""No name has more of them."""
 SLAVE = re.compile(r"^[A-Za-z_][A-Za-z0-9_]*$")
 NO_FILE = "none"
 """Written for a slave that the system does not have."""
@@ -38,16 +41,53 @@ class Term(NamedTuple):
     minus: bool
 
 
-def terms(text: str) -> list[Term]:
-    """Return the signals in ``text``, separated by commas. Raises ``BadInput`` if it is no such list."""
-    found = []
-    for part in re.split(r",(?![^\[]*\])", text):
-        match = TERM.match(part.strip())
-        if match is None:
-            raise BadInput(f"{part.strip()!r} is no signal; expected the like of -controller.angle [deg]")
-        unit = match["unit"]
-        found.append(Term(match["name"], None if unit is None else unit.strip() or "1", match["minus"] is not None))
+def terms(text: str, known: Container[str] = ()) -> list[Term]:
+    """Return the signals in ``text``, separated by commas. Raises ``BadInput`` if it is no such list.
+
+    A name may have spaces; one with a comma is understood if it is ``known``, or stands in double quotes.
+    """
+    parts = list(_between_commas(text))
+    found: list[Term] = []
+    at = 0
+    while at < len(parts):
+        ends = range(min(len(parts), at + MAX_COMMAS), at, -1)
+        tried = ((end, _term(",".join(parts[at:end]).strip(), known)) for end in ends)
+        end, term = next(
+            ((end, term) for end, term in tried if term is not None and term.name in known), (at + 1, None)
+        )
+        term = term or _term(parts[at].strip(), known)
+        if term is None:
+            raise BadInput(f"{parts[at].strip()!r} is no signal; expected the like of -controller.angle [deg]")
+        found.append(term)
+        at = end
     return found
+
+
+def _term(text: str, known: Container[str]) -> Term | None:
+    """Return one signal: the name as it is if it is known, else a name and its unit."""
+    plain = text.removeprefix("-").strip()
+    if plain in known:
+        return Term(plain, None, plain != text)
+    match = TERM.fullmatch(text)
+    if match is None:
+        return None
+    quoted, unit = QUOTED.fullmatch(match["name"]), match["unit"]
+    name = match["name"] if quoted is None else (quoted["owner"] or "") + quoted["name"]
+    return Term(name, None if unit is None else unit_symbol(unit), match["minus"] is not None)
+
+
+def _between_commas(text: str) -> Iterator[str]:
+    """Yield what stands between the commas that are neither in brackets nor in double quotes."""
+    begin, depth, is_quoted = 0, 0, False
+    for place, letter in enumerate(text):
+        if letter == '"':
+            is_quoted = not is_quoted
+        elif letter in "[]" and not is_quoted:
+            depth = max(depth + (1 if letter == "[" else -1), 0)
+        elif letter == "," and not is_quoted and depth == 0:
+            yield text[begin:place]
+            begin = place + 1
+    yield text[begin:]
 
 
 class _SystemPart(BaseModel):
@@ -61,6 +101,23 @@ class SlaveEntry(_SystemPart):
     """An .fmu or ``model.py:MODEL`` beside the scenario; empty: ours of this name; ``none``: there is none."""
     parameters: dict[str, Any] = {}
     """Parameters of its own; those of vehicle and controller may also stand in their own sections."""
+    units: dict[str, str] = {}
+    """Variables of which its FMU declares no unit -> what their numbers are in."""
+
+
+class UnitEntry(_SystemPart):
+    """A unit in SI base units: ``value * factor + offset``, as FMI defines it."""
+
+    factor: float = 1.0
+    offset: float = 0.0
+    kg: int = 0
+    m: int = 0
+    s: int = 0
+    A: int = 0
+    K: int = 0
+    mol: int = 0
+    cd: int = 0
+    rad: int = 0
 
 
 class Origin(_SystemPart):
@@ -127,7 +184,7 @@ def _feeds(written: Any, slaves: frozenset[str]) -> Any:
         return given
     if isinstance(written, list):
         return {"from": ", ".join(map(str, written))}
-    is_signal = isinstance(written, str) and written.strip(" -").partition(".")[0] in slaves
+    is_signal = isinstance(written, str) and written.strip(' -"').partition(".")[0] in slaves
     return {"from": written} if is_signal else {"value": written}
 
 
@@ -153,6 +210,10 @@ class SystemText(_SystemPart):
     """What judge, log, page and figure look for -> the signal that it is."""
     modes: dict[str, ModeList] = {}
     """Outputs that tell a mode -> its states and transitions, for ``apa test --coverage``."""
+    units: dict[str, UnitEntry] = {}
+    """Units that neither the FMUs define nor everybody knows, by the name that connections give them."""
+    ignored: list[str] = []
+    """What an .ssp has that is ignored, as SSP has it: told before the run."""
     by_name: bool = True
     """Connect outputs and inputs of the same name of which nothing else is said."""
     frames: dict[str, PoseFrame] = {}

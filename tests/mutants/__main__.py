@@ -7,12 +7,14 @@ from pathlib import Path
 
 from tests.mutants.checks import CHECKS
 from tests.mutants.listed import listed
+from tests.mutants.printed import printed
 from tests.mutants.runner import ROOT, checkout, prepare, run
 from tests.mutants.sites import Mutant, drawn
 
 SEED = 2015
 COUNT = 200
 OF_LISTED = "scenarios,step tests"
+OF_PRINTED = "printed"
 OF_DRAWN = "numbers,record,step tests,reproduction,tests"
 LEAST = 0.95
 """Share of the mutants, but for those that change nothing, that has to be found."""
@@ -26,15 +28,20 @@ def main() -> int:
     parser.add_argument(
         "--listed", action="store_true", help="the twenty of NTBPTcwPT, each asked of every check named"
     )
+    parser.add_argument(
+        "--printed", action="store_true", help="thirty in printed constants, tables, signs and guards of four papers"
+    )
     parser.add_argument("--checks", help=f"in this order, of {', '.join(CHECKS)}")
     parser.add_argument("--every", type=int, default=1, help="each so many-th of them")
     parser.add_argument("--only", default="", help="of this system")
     parser.add_argument("--out", type=Path, help="where the verdicts go, as JSON lines; what it has already is kept")
     asked = parser.parse_args()
     mutants = listed(ROOT) if asked.listed else drawn(ROOT, asked.count, asked.seed)
+    if asked.printed:
+        mutants = printed(ROOT)
     mutants = [item for item in mutants if asked.only in ("", item.system)][:: asked.every]
     mutants = [item for item in mutants if item.name not in _done(asked.out)]
-    names = (asked.checks or (OF_LISTED if asked.listed else OF_DRAWN)).split(",")
+    names = (asked.checks or (OF_PRINTED if asked.printed else OF_LISTED if asked.listed else OF_DRAWN)).split(",")
     prepare()
     return _run(mutants, names, asked)
 

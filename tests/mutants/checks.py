@@ -90,9 +90,20 @@ def numbers(system: str) -> str:
 
 def tests(system: str) -> str:
     """Return the first of the system's own tests that fails."""
-    import pytest
+    return _first_failure(
+        [str(file) for name in TESTS[system] for file in sorted(Path("tests/controller").glob(f"test_{name}*.py"))]
+    )
 
-    files = [str(file) for name in TESTS[system] for file in sorted(Path("tests/controller").glob(f"test_{name}*.py"))]
+
+def printed(system: str) -> str:
+    """Return the first test of the numbers, tables and equations printed in the system's paper that fails."""
+    name = {"guo2015": "guo", "zhang2022": "zhang"}.get(system, system)
+    return _first_failure([f"tests/controller/test_{name}_printed.py"])
+
+
+def _first_failure(files: list[str]) -> str:
+    """Return the name of the first test in ``files`` that fails, "" if none does."""
+    import pytest
 
     class Failure:
         name = ""
@@ -123,6 +134,7 @@ CHECKS: dict[str, Callable[[str], str]] = {
     "numbers": numbers,
     "record": record,
     "tests": tests,
+    "printed": printed,
     "reproduction": reproduction,
 }
 

@@ -35,14 +35,15 @@ LISTED: tuple[tuple[str, str, str], ...] = (
 
 def listed(root: Path) -> list[Mutant]:
     """Return the twenty."""
-    return [_mutant(root, *item) for item in LISTED]
+    return [mutant_in(root, f"guo2015/{name}", before, after) for name, before, after in LISTED]
 
 
-def _mutant(root: Path, name: str, before: str, after: str) -> Mutant:
-    file = Path("controller_fmu/guo2015") / name
+def mutant_in(root: Path, name: str, before: str, after: str) -> Mutant:
+    """Return the mutant of the controller's file ``name`` that says ``after`` where ``before`` stands once."""
+    file = Path("controller_fmu") / name
     text = (root / file).read_text(encoding="utf-8")
     assert text.count(before) == 1, f"{file}: {before!r} stands there {text.count(before)} times"
     begin = len(text[: text.index(before)].encode())
-    whole = f"{before} {after}" if after.startswith("* ") else after
+    whole = f"{before} {after}" if after.startswith(("* ", "- ")) else after
     line = text[: text.index(before)].count("\n") + 1
     return Mutant(file.as_posix(), line, begin, begin + len(before.encode()), before, whole, "listed")

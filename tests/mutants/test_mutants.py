@@ -10,15 +10,16 @@ import yaml
 
 from tests.mutants.__main__ import COUNT, SEED
 from tests.mutants.listed import listed
+from tests.mutants.printed import printed
 from tests.mutants.runner import ROOT, ask, checkout
 from tests.mutants.sites import SYSTEMS, Mutant, drawn, files_of, mutants_of
 
 EQUIVALENT = yaml.safe_load((Path(__file__).parent / "equivalent.yaml").read_text(encoding="utf-8"))
 
 
-def test_twenty_are_listed_and_each_says_something_else() -> None:
-    mutants = listed(ROOT)
-    assert len({mutant.name for mutant in mutants}) == len(mutants) == 20
+@pytest.mark.parametrize(("mutants", "count"), [(listed(ROOT), 20), (printed(ROOT), 30)])
+def test_those_listed_each_say_something_else(mutants: list[Mutant], count: int) -> None:
+    assert len({mutant.name for mutant in mutants}) == len(mutants) == count
     for mutant in mutants:
         text = (ROOT / mutant.file).read_text(encoding="utf-8")
         assert ast.dump(ast.parse(mutant.put_into(text))) != ast.dump(ast.parse(text)), mutant.name
@@ -61,6 +62,12 @@ def test_some_of_the_twenty_are_found(every: int) -> None:
     done = subprocess.run(words, cwd=ROOT, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stdout + done.stderr
     assert "3 of 3 found" in done.stdout
+
+
+def test_one_in_ten_of_the_printed_is_found_by_the_tests_of_what_is_printed() -> None:
+    words = [sys.executable, "-m", "tests.mutants", "--printed", "--every", "10"]
+    done = subprocess.run(words, cwd=ROOT, capture_output=True, text=True, check=False)
+    assert "3 of 3 found" in done.stdout, done.stdout + done.stderr
 
 
 def test_a_text_that_is_not_there_is_refused() -> None:

@@ -1,0 +1,182 @@
+"""Where the vehicle is on its path, the steering that leads back to it, and the speed for what lies ahead.
+
+With e the lateral error (left positive) and h the heading error against the path of curvature k, the law
+
+    phi = atan( L cos3(h) [ k - k1 e - d k2 tan(h) ] )     d: direction, 1 forward, -1 in reverse
+
+makes e'' = -k1 e - k2 e' over the distance driven, in both directions (Guo 2015, eq. (6), both signs corrected, in the
+frame of the path's tangent).
+"""
+
+import math
+from typing import NamedTuple
+
+from controller_fmu.common.path_law import Deviation, angle_back, deviation
+from controller_fmu.parking.following.params import FollowingContext
+from controller_fmu.parking.following.rolling_steering import (
+    UpcomingStop,
+    reference_at,
+    steers_for_next,
+    transition_after,
+    upcoming_stop,
+)
+from controller_fmu.parking.geometry.outline import pose_along_arc
+from controller_fmu.parking.planning.planner import PlannedPath
+from modelkit.car import largest_curvature
+from modelkit.maths import clamp, sign
+from modelkit.vocabulary import Pose
+
+MIN_REMAINING = 0.03
+"""A rest [m] of a segment that is not worth driving: the vehicle's stopping errs by as much."""
+STOP_LEARNING_RATE = 0.6
+"""Fraction of the last stop's error that the next stop makes up for."""
+MAX_STOP_CORRECTION = 0.02
+RECOVERY_DISTANCE = 0.5
+"""Distance [m] over which a lateral error inside a bend is taken back by what the steering has left."""
+FOOT_ITERATIONS = 2
+"""Newton steps to the foot of the vehicle on the path; the second changes it by under 1 mm."""
+
+
+class PathProgress(NamedTuple):
+    """A path being driven."""
+
+    path: PlannedPath = PlannedPath()
+    segment: int = 0
+    """The one in hand."""
+    begin: Pose = Pose()
+    """Where it begins."""
+    remaining: float = 0.0
+    """Of it [m]."""
+    reference: Pose = Pose()
+    """The point of the path beside the vehicle."""
+    lateral_error: float = 0.0
+    heading_error: float = 0.0
+    front_wheel_angle: float = 0.0
+    """That leads back to the path [rad]."""
+    upcoming: UpcomingStop = UpcomingStop()
+    stop_correction: float = 0.0
+    """The vehicle was found to stop so much [m] early."""
+    direction: float = 0.0
+    """Last driven; 0: not yet."""
+    manoeuvres: int = 0
+
+
+def begin_path(before: PathProgress, path: PlannedPath, start: Pose, context: FollowingContext) -> PathProgress:
+    """Return the progress on a new ``path`` from ``start``; the count of manoeuvres goes on."""
+    remaining = abs(path.segments[0].distance)
+    return PathProgress(
+        path=path,
+        begin=start,
+        remaining=remaining,
+        reference=start,
+        upcoming=upcoming_stop(path, 0, remaining, context),
+        stop_correction=before.stop_correction,
+        direction=before.direction,
+        manoeuvres=before.manoeuvres,
+    )
+
+
+def track_path(progress: PathProgress, pose: Pose, speed: float, context: FollowingContext) -> PathProgress:
+    """Return the progress of a vehicle at ``pose``, with the steering that leads back to the path."""
+    if progress.remaining <= 0.0 and transition_after(progress.path, progress.segment, context).transition > 0.0:
+        progress = _roll_to_next(progress)
+    segment = progress.path.segments[progress.segment]
+    direction = sign(segment.distance)
+    at = _point_before_end(progress, progress.remaining)
+    remaining = progress.remaining
+    for _ in range(FOOT_ITERATIONS):
+        ahead = (pose.x - at.x) * math.cos(at.heading) + (pose.y - at.y) * math.sin(at.heading)
+        remaining = remaining - direction * ahead
+        at = _point_before_end(progress, remaining)
+    error = deviation(pose, at)
+    law = context.drive
+    soon = remaining - abs(speed) * law.steering_delay
+    here = reference_at(progress.path, progress.segment, remaining, context)
+    curvature = reference_at(progress.path, progress.segment, soon, context).curvature
+    lateral = _recoverable(error.lateral - here.lateral, curvature, context)
+    angle = angle_back(
+        Deviation(lateral, error.heading - here.heading), curvature, direction, law.k1, law.k2, context.car.wheelbase
+    )
+    upcoming = upcoming_stop(progress.path, progress.segment, remaining, context)
+    if steers_for_next(upcoming, context):
+        angle = math.atan(context.car.wheelbase * upcoming.standstill.next_curvature)
+    return progress._replace(
+        remaining=remaining,
+        reference=at,
+        lateral_error=error.lateral,
+        heading_error=error.heading,
+        front_wheel_angle=angle,
+        upcoming=upcoming,
+    )
+
+
+def next_segment(progress: PathProgress, context: FollowingContext) -> PathProgress:
+    """Return the progress of a standing vehicle: on the segment in hand, or on the next if that is driven."""
+    if progress.remaining > MIN_REMAINING:
+        return progress
+    segment = progress.path.segments[progress.segment]
+    begin = pose_along_arc(progress.begin, segment.distance, segment.curvature)
+    correction = progress.stop_correction + STOP_LEARNING_RATE * progress.upcoming.left
+    number = progress.segment + 1
+    remaining = abs(progress.path.segments[number].distance)
+    return progress._replace(
+        segment=number,
+        begin=begin,
+        remaining=remaining,
+        reference=begin,
+        upcoming=upcoming_stop(progress.path, number, remaining, context),
+        stop_correction=clamp(correction, -MAX_STOP_CORRECTION, MAX_STOP_CORRECTION),
+    )
+
+
+def set_out(progress: PathProgress) -> PathProgress:
+    """Return the progress of a vehicle that begins to drive; a change of direction counts a manoeuvre."""
+    direction = sign(progress.path.segments[progress.segment].distance)
+    manoeuvres = progress.manoeuvres
+    if direction != progress.direction and (manoeuvres > 0 or direction < 0.0):
+        manoeuvres = manoeuvres + 1
+    return progress._replace(direction=direction, manoeuvres=manoeuvres)
+
+
+def is_at_end(progress: PathProgress) -> bool:
+    """Return whether the last segment is driven."""
+    return progress.remaining <= MIN_REMAINING and progress.segment + 1 >= progress.path.used
+
+
+def standstill_wheel_angle(progress: PathProgress, context: FollowingContext) -> float:
+    """Return the front-wheel angle [rad] with which the segment in hand goes on from a standstill."""
+    curvature = reference_at(progress.path, progress.segment, progress.remaining, context).curvature
+    return math.atan(context.car.wheelbase * curvature)
+
+
+def profile_speed(upcoming: UpcomingStop, limit: float, context: FollowingContext) -> float:
+    """Return the speed [m/s] for what lies ahead, at most ``limit`` but never below the creep speed."""
+    law = context.drive
+    left = max(0.0, upcoming.left)
+    slowing = math.sqrt(law.creep_speed * law.creep_speed + 2.0 * law.deceleration * left)
+    return max(law.creep_speed, min(upcoming.speed, min(slowing, limit)))
+
+
+def _point_before_end(progress: PathProgress, remaining: float) -> Pose:
+    segment = progress.path.segments[progress.segment]
+    driven = sign(segment.distance) * (abs(segment.distance) - remaining)
+    return pose_along_arc(progress.begin, driven, segment.curvature)
+
+
+def _roll_to_next(progress: PathProgress) -> PathProgress:
+    """Return the progress on the next segment, reached without a stop."""
+    segment = progress.path.segments[progress.segment]
+    begin = pose_along_arc(progress.begin, segment.distance, segment.curvature)
+    remaining = progress.remaining + abs(progress.path.segments[progress.segment + 1].distance)
+    return progress._replace(segment=progress.segment + 1, begin=begin, remaining=remaining)
+
+
+def _recoverable(lateral: float, curvature: float, context: FollowingContext) -> float:
+    """Return as much of the lateral error [m] as the vehicle can take back and be in the path's direction again.
+
+    Inside a bend at full lock it can steer out but hardly in again.
+    """
+    law = context.drive
+    spare = largest_curvature(context.car) - sign(lateral) * curvature
+    most = max(0.0, spare) * RECOVERY_DISTANCE * law.k2 / law.k1 if law.k1 > 0.0 else 0.0
+    return clamp(lateral, -most, most)

@@ -1,0 +1,271 @@
+"""Steering while rolling from one segment of a path to the next, where there is room for the offset that it causes.
+
+Where the curvature jumps by dk it changes linearly over a transition of length r instead, half of it before the joint.
+The heading behind it is the path's, and the vehicle is beside it by dk r2 / 24. Transitions may overlap: their offsets
+add up. They end where the gear changes.
+
+About a standstill, too, the wheel turns while the vehicle still rolls, or rolls again: it begins a time before and goes
+on a time behind. The curvature is off by then, which costs heading. Where the gear changes the vehicle gets it back by
+going on by that heading over dk before it turns round, as far as the path's clearance allows.
+
+On a transition the steering turns by dphi per metre, which limits the speed. Where one alone asks for less than
+``MIN_ROLLING_SPEED`` the vehicle stops, and the wheel turns at standstill.
+"""
+
+import math
+from typing import NamedTuple
+
+from controller_fmu.parking.following.params import FollowingContext
+from controller_fmu.parking.planning.clearance_margin import CLEARANCE_FRACTION, MARGIN_FRACTION, SAME_CURVATURE
+from controller_fmu.parking.planning.curvature_transition import transition_length, transition_state
+from controller_fmu.parking.planning.gear_segments import GearSegment, distance_before, gear_segment
+from controller_fmu.parking.planning.planner import PlannedPath
+from modelkit.maths import sign
+
+MIN_ROLLING_SPEED = 0.12
+"""Slower [m/s] than this it is quicker to stop and turn the wheel at standstill."""
+RATE_FRACTION = 0.9
+"""Of the steering wheel's rate that a transition asks for; the rest is for tracking."""
+ROOMY_FACTOR = 1.5
+"""A transition takes the vehicle off by at most ``drive.rolling_offset`` times this, where the planner finds room."""
+JUST_BEHIND = 1e-6
+"""So far [m] behind its edge a transition has begun, or ended, in spite of rounding."""
+STANDSTILL_FRACTION = 0.5
+"""Share of what transitions may take that turning about a standstill may, if there is no room beyond it."""
+OVERRUN_FACTOR = 5.0
+"""A car may go farther before it turns round by so many times ``drive.rolling_offset``, where there is room."""
+START_FACTOR = 2.0
+"""And by so many times that it might have to as it sets out on its path, which tracking takes back."""
+MIN_MARGIN = 0.05
+"""Where the plan leaves less clearance [m] the steering wheel turns at rest."""
+SETTLING_TIME = 0.3
+"""So long [s] before its last standstill the car tracks no more: the steering wheel is at rest when it is straight."""
+START_ACCELERATION = 1.0
+"""Acceleration [m/s2] with which a car sets out, the lag of its drive counted."""
+
+
+class CurvatureJoint(NamedTuple):
+    """The end of a segment."""
+
+    transition: float = 0.0
+    """Way [m] over which the curvature changes there; 0: the car has to stand."""
+    jump: float = 0.0
+    """Of the curvature [1/m]."""
+
+
+class PathReference(NamedTuple):
+    """How to drive at a place of the path."""
+
+    curvature: float = 0.0
+    """[1/m]"""
+    lateral: float = 0.0
+    """Beside the path, to the left [m]."""
+    heading: float = 0.0
+    """Off its direction, to the left [rad]."""
+
+
+class StandstillSteering(NamedTuple):
+    """How the steering wheel turns about a standstill."""
+
+    before: float = 0.0
+    """It begins so long [s] before."""
+    after: float = 0.0
+    """The car sets out so long [s] before it is turned in full."""
+    overrun: float = 0.0
+    """The car stands so far [m] behind the end of its segment."""
+    next_curvature: float = 0.0
+    """What it turns to: curvature [1/m] behind the standstill, 0 at the end of the path."""
+
+
+class UpcomingStop(NamedTuple):
+    """What the segments ahead ask for."""
+
+    left: float = 0.0
+    """Way to the next standstill [m]."""
+    speed: float = 0.0
+    """Largest speed [m/s] here, that the transitions here and ahead allow."""
+    standstill: StandstillSteering = StandstillSteering()
+    """That standstill."""
+
+
+def transition_after(path: PlannedPath, segment: int, context: FollowingContext) -> CurvatureJoint:
+    """Return the joint at the end of ``segment``."""
+    whole = gear_segment(path, segment)
+    return _transition_at(path, whole, segment, distance_before(path, whole, segment + 1), context)
+
+
+def _transition_at(
+    path: PlannedPath, whole: GearSegment, segment: int, at: float, context: FollowingContext
+) -> CurvatureJoint:
+    """Return the joint at the end of ``segment``, ``at`` [m] from the begin of the stretch."""
+    if segment >= whole.last:
+        return CurvatureJoint()
+    offset = _offset_before(path, segment + 1, context)
+    if offset <= 0.0:
+        return CurvatureJoint()
+    longest = 2.0 * min(at, whole.length - at)
+    k0 = path.segments[segment].curvature
+    k1 = path.segments[segment + 1].curvature
+    if abs(k1 - k0) < SAME_CURVATURE:
+        return CurvatureJoint(longest)
+    transition = transition_length(offset, k1 - k0, longest)
+    base = context.car.wheelbase
+    swing = math.atan(base * k1) - math.atan(base * k0)
+    return (
+        CurvatureJoint(transition, k1 - k0)
+        if steering_speed_limit(swing / transition, context) >= MIN_ROLLING_SPEED
+        else CurvatureJoint()
+    )
+
+
+def steering_speed_limit(turning: float, context: FollowingContext) -> float:
+    """Return the largest speed [m/s] where the front steering wheels turn by ``turning`` [rad/m]."""
+    car = context.car.steering
+    most = context.drive.speed
+    rate = RATE_FRACTION * car.rate_limit / car.ratio
+    return rate / abs(turning) if rate < most * abs(turning) else most
+
+
+def reference_at(path: PlannedPath, segment: int, left: float, context: FollowingContext) -> PathReference:
+    """Return how to drive ``left`` [m] before the end of ``segment``, transitions counted."""
+    whole = gear_segment(path, segment)
+    at = 0.0
+    place = min(distance_before(path, whole, segment + 1) - left, whole.length - JUST_BEHIND)
+    curvature = path.segments[segment].curvature
+    lateral = 0.0
+    heading = 0.0
+    for number in range(whole.first, whole.last):
+        at += abs(path.segments[number].distance)
+        joint = _transition_at(path, whole, number, at, context)
+        past = place - at
+        if abs(past) < 0.5 * joint.transition:
+            more = transition_state(joint.jump, joint.transition, past, number < segment)
+            curvature += more.curvature
+            heading += more.turned
+            lateral += more.lateral
+    k = path.segments[segment].curvature
+    return PathReference(curvature * (1.0 + k * lateral), lateral, sign(path.segments[segment].distance) * heading)
+
+
+def steering_rate_at(path: PlannedPath, whole: GearSegment, place: float, context: FollowingContext) -> float:
+    """Return by how much the front steering wheels turn [rad/m] at a place [m] of a stretch: L k' / (1 + (L k)^2)."""
+    at = 0.0
+    curvature = path.segments[whole.first].curvature
+    slope = 0.0
+    for number in range(whole.first, whole.last):
+        at += abs(path.segments[number].distance)
+        joint = _transition_at(path, whole, number, at, context)
+        on = place - at + 0.5 * joint.transition
+        share = 1.0 if on >= joint.transition else 0.0
+        if 0.0 < on < joint.transition:
+            share = on / joint.transition
+            slope += joint.jump / joint.transition
+        curvature += share * (path.segments[number + 1].curvature - path.segments[number].curvature)
+    bent = context.car.wheelbase * curvature
+    return context.car.wheelbase * slope / (1.0 + bent * bent)
+
+
+def upcoming_stop(path: PlannedPath, segment: int, left: float, context: FollowingContext) -> UpcomingStop:
+    """Return what lies ahead of a car ``left`` [m] before the end of ``segment``."""
+    whole = gear_segment(path, segment)
+    here = distance_before(path, whole, segment + 1) - left
+    speed = steering_speed_limit(steering_rate_at(path, whole, here, context), context)
+    at = 0.0
+    for number in range(whole.first, whole.last):
+        at += abs(path.segments[number].distance)
+        transition = _transition_at(path, whole, number, at, context).transition
+        if number >= segment and transition <= 0.0:
+            return UpcomingStop(at - here, speed, standstill_steering(path, number + 1, context))
+        for share in (-0.5, 0.0, 0.5):
+            place = at + share * transition
+            if place > here:
+                there = steering_speed_limit(steering_rate_at(path, whole, place + JUST_BEHIND, context), context)
+                speed = min(speed, math.sqrt(there * there + 2.0 * context.drive.deceleration * (place - here)))
+    standstill = standstill_steering(path, whole.last + 1, context)
+    return UpcomingStop(whole.length + standstill.overrun - here, speed, standstill)
+
+
+def standstill_steering(path: PlannedPath, segment: int, context: FollowingContext) -> StandstillSteering:
+    """Return the standstill before ``segment``; of the number of segments: that at the end."""
+    before = reference_at(path, segment - 1, 0.0, context).curvature if segment > 0 else 0.0
+    next_curvature = (
+        reference_at(path, segment, abs(path.segments[segment].distance), context).curvature
+        if segment < path.used
+        else 0.0
+    )
+    offset = _overrun_before(path, segment, context)
+    ends = segment >= path.used
+    settled = SETTLING_TIME if ends else 0.0
+    if offset <= 0.0 or path.margin < MIN_MARGIN:
+        return StandstillSteering(next_curvature=next_curvature)
+    if abs(next_curvature - before) < SAME_CURVATURE:
+        return StandstillSteering(settled, next_curvature=next_curvature)
+    early = SteeringWhileMoving()
+    late = SteeringWhileMoving()
+    if segment > 0:
+        early = _steering_while_moving(
+            2.0 * offset if ends else offset, before, next_curvature, context.drive.deceleration, context
+        )
+    if not ends:
+        late = _steering_while_moving(offset, next_curvature, before, START_ACCELERATION, context)
+    same_gear = segment > 0 and not ends and path.segments[segment - 1].distance * path.segments[segment].distance > 0.0
+    return StandstillSteering(
+        max(early.time, settled),
+        late.time,
+        0.0 if same_gear or segment == 0 else early.overrun + late.overrun,
+        next_curvature,
+    )
+
+
+class SteeringWhileMoving(NamedTuple):
+    """How long [s] the wheel turns while the vehicle moves beside a standstill, and how far [m] that takes it."""
+
+    time: float = 0.0
+    overrun: float = 0.0
+
+
+def _steering_while_moving(
+    offset: float, near: float, far: float, acceleration: float, context: FollowingContext
+) -> SteeringWhileMoving:
+    """Return the turn from curvature ``near`` [1/m] towards ``far`` that takes the car half of ``offset`` [m] at most.
+
+    The heading lost is the integral of (k - near) v, by Simpson's rule: at both ends it is 0.
+    """
+    base = context.car.wheelbase
+    car = context.car.steering
+    rate = car.rate_limit / car.ratio
+    angle = math.atan(base * near)
+    swing = math.atan(base * far) - angle
+    steepest = rate * (1.0 + base * base * max(near * near, far * far)) / base
+    cube = 3.0 * offset * abs(far - near) / (steepest * acceleration)
+    time = min(0.5 * abs(swing) / rate, math.exp(math.log(cube) / 3.0))
+    half_way = math.tan(angle + sign(swing) * 0.5 * rate * time) / base
+    return SteeringWhileMoving(time, abs(half_way - near) * acceleration * time * time / (3.0 * abs(far - near)))
+
+
+def steers_for_next(ahead: UpcomingStop, context: FollowingContext) -> bool:
+    """Return whether the standstill ahead is so near that the steering wheel turns to what comes behind it."""
+    return (
+        ahead.standstill.before > 0.0
+        and ahead.left < 0.5 * context.drive.deceleration * ahead.standstill.before * ahead.standstill.before
+    )
+
+
+def _max_offset(path: PlannedPath, context: FollowingContext) -> float:
+    """Return how far [m] off its path the car may come by turning its steering wheel on the move."""
+    return min(context.drive.rolling_offset, MARGIN_FRACTION * path.margin)
+
+
+def _offset_before(path: PlannedPath, segment: int, context: FollowingContext) -> float:
+    """Return the same where ``segment`` begins in the gear of the one before: more where there is room."""
+    return min(ROOMY_FACTOR * context.drive.rolling_offset, path.segments[segment].clearance)
+
+
+def _overrun_before(path: PlannedPath, segment: int, context: FollowingContext) -> float:
+    """Return how far [m] the car may go on before ``segment`` begins, for turning its wheel on the move."""
+    least = STANDSTILL_FRACTION * _max_offset(path, context)
+    if segment == 0:
+        return min(START_FACTOR * context.drive.rolling_offset, least + CLEARANCE_FRACTION * path.segments[0].clearance)
+    if segment >= path.used or path.segments[segment - 1].distance * path.segments[segment].distance > 0.0:
+        return least
+    return max(least, min(OVERRUN_FACTOR * context.drive.rolling_offset, path.segments[segment].clearance))

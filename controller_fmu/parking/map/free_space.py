@@ -1,0 +1,51 @@
+"""Free space: the last echoes of both flanks, as rays. Inside a ray's cone nothing lies nearer than its echo."""
+
+from typing import NamedTuple
+
+from controller_fmu.parking.measurement.sensor import SensorPose, in_field_of_view
+
+RAYS = 48
+"""Kept for each side."""
+RAY_SPACING = 0.2
+"""Distance [m] between the sensor positions of two kept rays: RAYS of them reach back 10 m, a slot and a car."""
+RAY_MARGIN = 0.1
+"""Of a ray, the last [m] are not taken as free: ten times the noise, and what the odometry drifts over a slot."""
+MIN_RAYS = 2
+"""Rays that must agree that a point is free: one may be a dropout."""
+
+
+class Ray(NamedTuple):
+    """A sensor pose and the range [m] up to which its cone is free; 0: unused."""
+
+    sensor: SensorPose = SensorPose()
+    range: float = 0.0
+
+
+class FreeSpace(NamedTuple):
+    """Rays of the right and the left flank, oldest first."""
+
+    right: tuple[Ray, ...] = (Ray(),) * RAYS
+    left: tuple[Ray, ...] = (Ray(),) * RAYS
+
+
+def add_ray(rays: tuple[Ray, ...], sensor: SensorPose, measured: float) -> tuple[Ray, ...]:
+    """Return the rays of a side with one more; the oldest is forgotten."""
+    last = rays[RAYS - 1]
+    dx = sensor.x - last.sensor.x
+    dy = sensor.y - last.sensor.y
+    if last.range > 0.0 and dx * dx + dy * dy < RAY_SPACING * RAY_SPACING:
+        return rays
+    return rays[1:] + (Ray(sensor, measured),)
+
+
+def is_free(rays: tuple[Ray, ...], x: float, y: float) -> bool:
+    """Return whether the point (x, y) [m] lies in the free part of at least ``MIN_RAYS`` rays."""
+    count = 0
+    for number in range(RAYS):
+        ray = rays[number]
+        dx = x - ray.sensor.x
+        dy = y - ray.sensor.y
+        free = ray.range - RAY_MARGIN
+        if free > 0.0 and dx * dx + dy * dy < free * free and in_field_of_view(ray.sensor, x, y):
+            count += 1
+    return count >= MIN_RAYS

@@ -1,0 +1,104 @@
+"""A landmark: a point or a straight segment in the odometry frame, with its covariance.
+
+The state of a segment is a point on its line, (x, y), and its direction; its ends lie ``start`` and ``end`` along that
+direction from the point, each with a variance of its own. An end is *known* when echoes came from the corner itself;
+else it is *open*: observed up to here, unknown beyond. A point landmark has ``start`` = ``end`` = 0.
+"""
+
+import math
+from enum import IntEnum
+from typing import NamedTuple
+
+from modelkit.geometry import Point
+
+LANDMARKS = 64
+"""Capacity of the map."""
+
+
+class LandmarkType(IntEnum):
+    """Geometry of a landmark; ``NONE``: the place in the map is free."""
+
+    NONE = 0
+    POINT = 1
+    SEGMENT = 2
+
+
+class Landmark(NamedTuple):
+    """State, covariance and history of a landmark; SI units."""
+
+    type: int = LandmarkType.NONE
+    x: float = 0.0
+    y: float = 0.0
+    heading: float = 0.0
+    xx: float = 0.0
+    """Covariance of (x, y, heading), upper triangle."""
+    xy: float = 0.0
+    xh: float = 0.0
+    yy: float = 0.0
+    yh: float = 0.0
+    hh: float = 0.0
+    start: float = 0.0
+    end: float = 0.0
+    start_variance: float = 0.0
+    end_variance: float = 0.0
+    start_known: bool = False
+    end_known: bool = False
+    confirmations: int = 0
+    """Updates since its initialisation."""
+    contradictions: int = 0
+    """Expected echoes that did not come, in a row."""
+
+
+def segment_point(landmark: Landmark, along: float) -> Point:
+    """Return the point of a landmark's line ``along`` [m] from its reference point."""
+    return Point(landmark.x + along * math.cos(landmark.heading), landmark.y + along * math.sin(landmark.heading))
+
+
+def start_point(landmark: Landmark) -> Point:
+    """Return the start of a segment, or the point."""
+    return segment_point(landmark, landmark.start)
+
+
+def end_point(landmark: Landmark) -> Point:
+    """Return the end of a segment, or the point."""
+    return segment_point(landmark, landmark.end)
+
+
+def length_of(landmark: Landmark) -> float:
+    """Return the observed length [m] of a segment."""
+    return landmark.end - landmark.start
+
+
+def along_of(landmark: Landmark, x: float, y: float) -> float:
+    """Return where [m] along a landmark's line the point (x, y) projects to."""
+    return (x - landmark.x) * math.cos(landmark.heading) + (y - landmark.y) * math.sin(landmark.heading)
+
+
+def offset_of(landmark: Landmark, x: float, y: float) -> float:
+    """Return how far [m] to the left of a landmark's line the point (x, y) lies."""
+    return (y - landmark.y) * math.cos(landmark.heading) - (x - landmark.x) * math.sin(landmark.heading)
+
+
+def offset_variance(landmark: Landmark, along: float) -> float:
+    """Return the variance [m2] of a landmark's line across its direction, ``along`` [m] from its reference point."""
+    nx = -math.sin(landmark.heading)
+    ny = math.cos(landmark.heading)
+    across = nx * nx * landmark.xx + 2.0 * nx * ny * landmark.xy + ny * ny * landmark.yy
+    lever = nx * landmark.xh + ny * landmark.yh
+    return across + 2.0 * along * lever + along * along * landmark.hh
+
+
+def replace_landmark(landmarks: tuple[Landmark, ...], index: int, landmark: Landmark) -> tuple[Landmark, ...]:
+    """Return the landmarks with the one at ``index`` replaced."""
+    return tuple(landmark if number == index else landmarks[number] for number in range(LANDMARKS))
+
+
+def free_index(landmarks: tuple[Landmark, ...]) -> int:
+    """Return a free place of the map; if there is none, that of the landmark with the fewest confirmations."""
+    least = 0
+    for number in range(LANDMARKS):
+        if landmarks[number].type == LandmarkType.NONE:
+            return number
+        if landmarks[number].confirmations < landmarks[least].confirmations:
+            least = number
+    return least

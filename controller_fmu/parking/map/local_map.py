@@ -1,0 +1,161 @@
+"""The map of one drive: prediction, association, update, initialisation and deletion at each measurement cycle."""
+
+import math
+from typing import NamedTuple
+
+from controller_fmu.parking.map.association import (
+    Explanation,
+    associate,
+    is_contradicted,
+    predict_range,
+)
+from controller_fmu.parking.map.free_space import FreeSpace, add_ray
+from controller_fmu.parking.map.initialisation import landmark_of
+from controller_fmu.parking.map.landmark import LANDMARKS, Landmark, LandmarkType, replace_landmark
+from controller_fmu.parking.map.lifecycle import contradict, insert_landmark, merge_into
+from controller_fmu.parking.map.params import MappingParams
+from controller_fmu.parking.map.prediction import predict_landmarks
+from controller_fmu.parking.map.update import extend_over_window, update_with_feature
+from controller_fmu.parking.measurement.echo_feature import EchoFeature, FeatureType, echo_feature
+from controller_fmu.parking.measurement.echo_window import EchoWindow, push_echo
+from controller_fmu.parking.measurement.predicted_range import EchoOrigin
+from controller_fmu.parking.measurement.sensor import (
+    FRONT_LEFT_SIDE,
+    FRONT_RIGHT_SIDE,
+    SENSORS,
+    ReadingStatus,
+    SensorPose,
+    range_variance,
+    reading_status,
+    sensor_pose,
+)
+from modelkit.car import CarUltrasonic
+from modelkit.vocabulary import Pose
+
+
+class Measurement(NamedTuple):
+    """One reading: which sensor (0 to 11), where it was, what the reading means, its range [m] and variance [m2]."""
+
+    number: int
+    sensor: SensorPose
+    status: int
+    range: float
+    variance: float
+    min_range: float
+    """Blind zone of the sensor [m]."""
+
+
+class LandmarkMap(NamedTuple):
+    """Landmarks, the last echoes of each sensor, free space, and the odometry pose of the last cycle."""
+
+    landmarks: tuple[Landmark, ...] = (Landmark(),) * LANDMARKS
+    windows: tuple[EchoWindow, ...] = (EchoWindow(),) * SENSORS
+    free_space: FreeSpace = FreeSpace()
+    pose: Pose = Pose()
+    distance: float = 0.0
+    """Driven since the map began [m]."""
+    begun: bool = False
+
+
+def update_map(
+    before: LandmarkMap, readings: tuple[float, ...], pose: Pose, sensors: CarUltrasonic, params: MappingParams
+) -> LandmarkMap:
+    """Return the map after one measurement cycle: ``readings`` [m] of all sensors of a vehicle at ``pose``."""
+    dx = pose.x - before.pose.x
+    dy = pose.y - before.pose.y
+    driven = math.sqrt(dx * dx + dy * dy) if before.begun else 0.0
+    local_map = before._replace(
+        landmarks=predict_landmarks(before.landmarks, pose, driven, params),
+        pose=pose,
+        distance=before.distance + driven,
+        begun=True,
+    )
+    variance = range_variance(params.range_noise, sensors.resolution)
+    for number in range(SENSORS):
+        sensor = sensor_pose(sensors.mounts[number], sensors.half_angle, pose)
+        status = reading_status(readings[number], sensors)
+        measurement = Measurement(number, sensor, status, readings[number], variance, sensors.min_range)
+        local_map = use_measurement(local_map, measurement, params)
+    return local_map
+
+
+def use_measurement(local_map: LandmarkMap, measurement: Measurement, params: MappingParams) -> LandmarkMap:
+    """Return the map after one reading."""
+    status = measurement.status
+    window = local_map.windows[measurement.number]
+    if status == ReadingStatus.ECHO:
+        window = push_echo(window, measurement.sensor, measurement.range, measurement.variance)
+    else:
+        window = window._replace(is_new=False)
+    landmarks = local_map.landmarks
+    feature = echo_feature(window, measurement.variance, measurement.sensor.cone_cos)
+    if feature.type != FeatureType.NONE:
+        landmarks = use_feature(landmarks, feature, window, measurement.variance, params)
+    if status in (ReadingStatus.ECHO, ReadingStatus.NO_ECHO):
+        landmarks = contradict_nearer(landmarks, measurement, params)
+        local_map = local_map._replace(free_space=_with_ray(local_map.free_space, measurement))
+    at = measurement.number
+    return local_map._replace(
+        landmarks=landmarks,
+        windows=tuple(window if number == at else local_map.windows[number] for number in range(SENSORS)),
+    )
+
+
+def use_feature(
+    landmarks: tuple[Landmark, ...], feature: EchoFeature, window: EchoWindow, variance: float, params: MappingParams
+) -> tuple[Landmark, ...]:
+    """Return the landmarks after a feature: one updated, one begun, or, if it is ambiguous, one confirmed."""
+    found = associate(landmarks, feature, variance, params)
+    if found.explanation == Explanation.UNEXPLAINED:
+        new = landmark_of(feature, variance)
+        return insert_landmark(landmarks, new) if new.type != LandmarkType.NONE else landmarks
+    landmark = landmarks[found.landmark]
+    if found.explanation == Explanation.AMBIGUOUS:
+        return replace_landmark(landmarks, found.landmark, landmark._replace(contradictions=0))
+    updated = update_with_feature(landmark, feature, variance)
+    if feature.type == FeatureType.SIDE:
+        updated = extend_over_window(updated, window, variance)
+    landmarks = replace_landmark(landmarks, found.landmark, updated)
+    return merge_into(landmarks, found.landmark, params)
+
+
+def is_confirmed(landmark: Landmark, params: MappingParams) -> bool:
+    """Return whether a landmark counts: it has been updated ``confirmations`` times."""
+    return landmark.type != LandmarkType.NONE and landmark.confirmations >= params.confirmations
+
+
+def expected_range(
+    landmarks: tuple[Landmark, ...], sensor: SensorPose, max_range: float, params: MappingParams
+) -> float:
+    """Return the range [m] to the nearest confirmed landmark in a sensor's view, ``max_range`` if there is none."""
+    nearest = max_range
+    for number in range(LANDMARKS):
+        if is_confirmed(landmarks[number], params):
+            predicted = predict_range(sensor, landmarks[number])
+            if predicted.origin != EchoOrigin.OUT_OF_VIEW:
+                nearest = min(nearest, predicted.distance)
+    return nearest
+
+
+def contradict_nearer(
+    landmarks: tuple[Landmark, ...], measurement: Measurement, params: MappingParams
+) -> tuple[Landmark, ...]:
+    """Return the landmarks with those contradicted that had to be heard before this echo, or at all."""
+    sensor = measurement.sensor
+    for number in range(LANDMARKS):
+        landmark = landmarks[number]
+        if landmark.type != LandmarkType.NONE and is_contradicted(
+            landmark, sensor, measurement.range, measurement.min_range, measurement.variance
+        ):
+            predicted = predict_range(sensor, landmark)
+            landmarks = landmarks[:number] + (contradict(landmark, predicted, params),) + landmarks[number + 1 :]
+    return landmarks
+
+
+def _with_ray(free_space: FreeSpace, measurement: Measurement) -> FreeSpace:
+    """Return free space with the ray of a flank's front sensor; other sensors add none."""
+    if measurement.number == FRONT_RIGHT_SIDE:
+        return free_space._replace(right=add_ray(free_space.right, measurement.sensor, measurement.range))
+    if measurement.number == FRONT_LEFT_SIDE:
+        return free_space._replace(left=add_ray(free_space.left, measurement.sensor, measurement.range))
+    return free_space

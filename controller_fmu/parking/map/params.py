@@ -1,0 +1,26 @@
+"""Parameters of the map: sensor noise, odometry error, gates, and when a landmark is confirmed or deleted."""
+
+from typing import Annotated, NamedTuple
+
+from modelkit.signal import Signal
+
+HOUSE = "chosen; the source states none"
+
+
+class MappingParams(NamedTuple):
+    """What the estimator assumes about sensors and odometry."""
+
+    range_noise: Annotated[float, Signal("m", "standard deviation of an echo", 1e-4, 1.0, HOUSE)] = 0.01
+    dropout: Annotated[float, Signal("1", "probability that an echo is lost", 0.0, 0.9, HOUSE)] = 0.02
+    distance_noise: Annotated[
+        float, Signal("m/sqrt(m)", "odometry error along the path: 0.4 % over 10 m", 0.0, 1.0, HOUSE)
+    ] = 0.0127
+    heading_noise: Annotated[
+        float, Signal("rad/sqrt(m)", "odometry heading drift: 0.25 deg over 10 m", 0.0, 1.0, HOUSE)
+    ] = 0.0014
+    gate: Annotated[float, Signal("1", "innovation gate, chi-square of 1 degree of freedom", 1.0, 100.0, HOUSE)] = 9.0
+    ambiguity: Annotated[
+        float, Signal("1", "difference of chi-square that decides between two landmarks", 0.0, 100.0, HOUSE)
+    ] = 3.0
+    confirmations: Annotated[int, Signal("1", "updates that confirm a landmark", 1, 100, HOUSE)] = 3
+    contradictions: Annotated[int, Signal("1", "missed echoes in a row that delete it", 1, 100, HOUSE)] = 5

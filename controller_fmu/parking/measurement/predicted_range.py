@@ -1,0 +1,92 @@
+"""The range that a sensor should measure to a point or a segment, and how it changes with what is measured.
+
+The echo of a segment comes from its nearest point inside the cone: the foot of the perpendicular (``INTERIOR``), an end
+of the segment (``START``, ``END``), or where the boundary of the cone cuts it (``CONE_EDGE``). The last says where the
+beam ends rather than where the segment is, so it carries no information for an update.
+"""
+
+import math
+from enum import IntEnum
+from typing import NamedTuple
+
+from controller_fmu.parking.measurement.sensor import SensorPose, in_field_of_view
+from modelkit.geometry import FAR, Point
+
+
+class EchoOrigin(IntEnum):
+    """Which part of a landmark returns the echo."""
+
+    OUT_OF_VIEW = 0
+    INTERIOR = 1
+    START = 2
+    END = 3
+    CONE_EDGE = 4
+
+
+class PredictedRange(NamedTuple):
+    """The nearest point of a landmark in a field of view."""
+
+    distance: float = FAR
+    """From the sensor [m]; ``FAR``: out of view."""
+    origin: int = EchoOrigin.OUT_OF_VIEW
+    x: float = 0.0
+    y: float = 0.0
+
+
+class _InBeam(NamedTuple):
+    """The part of a segment inside a cone, as fractions of its length; low > high: none."""
+
+    low: float
+    high: float
+
+
+def predicted_range_to_point(sensor: SensorPose, x: float, y: float) -> PredictedRange:
+    """Return the predicted range to the point (x, y) [m]; its origin is ``START``."""
+    if not in_field_of_view(sensor, x, y):
+        return PredictedRange()
+    dx = x - sensor.x
+    dy = y - sensor.y
+    return PredictedRange(math.sqrt(dx * dx + dy * dy), EchoOrigin.START, x, y)
+
+
+def predicted_range_to_segment(sensor: SensorPose, a: Point, b: Point) -> PredictedRange:
+    """Return the predicted range to the segment from ``a`` (start) to ``b`` (end) [m]."""
+    beam = _part_in_beam(sensor, a, b)
+    if beam.low > beam.high:
+        return PredictedRange()
+    dx = b.x - a.x
+    dy = b.y - a.y
+    square = dx * dx + dy * dy
+    foot = ((sensor.x - a.x) * dx + (sensor.y - a.y) * dy) / square if square > 0.0 else 0.0
+    origin = EchoOrigin.INTERIOR
+    if foot <= beam.low:
+        foot = beam.low
+        origin = EchoOrigin.START if beam.low <= 0.0 else EchoOrigin.CONE_EDGE
+    elif foot >= beam.high:
+        foot = beam.high
+        origin = EchoOrigin.END if beam.high >= 1.0 else EchoOrigin.CONE_EDGE
+    x = a.x + foot * dx
+    y = a.y + foot * dy
+    px = x - sensor.x
+    py = y - sensor.y
+    return PredictedRange(math.sqrt(px * px + py * py), int(origin), x, y)
+
+
+def _part_in_beam(sensor: SensorPose, a: Point, b: Point) -> _InBeam:
+    """Return the part of a segment with |across| cos <= along sin in the sensor's frame."""
+    ax = (a.x - sensor.x) * sensor.axis_x + (a.y - sensor.y) * sensor.axis_y
+    ay = (a.y - sensor.y) * sensor.axis_x - (a.x - sensor.x) * sensor.axis_y
+    bx = (b.x - sensor.x) * sensor.axis_x + (b.y - sensor.y) * sensor.axis_y
+    by = (b.y - sensor.y) * sensor.axis_x - (b.x - sensor.x) * sensor.axis_y
+    low = 0.0
+    high = 1.0
+    for side in (-1.0, 1.0):
+        at_a = ax * sensor.cone_sin + side * ay * sensor.cone_cos
+        at_b = bx * sensor.cone_sin + side * by * sensor.cone_cos
+        if at_a < 0.0 and at_b < 0.0:
+            return _InBeam(1.0, 0.0)
+        if at_a < 0.0:
+            low = max(low, at_a / (at_a - at_b))
+        elif at_b < 0.0:
+            high = min(high, at_a / (at_a - at_b))
+    return _InBeam(low, high)

@@ -1,0 +1,80 @@
+"""One ultrasonic sensor: its pose, its field of view, and what a reading means.
+
+A sensor reports the distance to the nearest point inside a cone about its axis. It reports ``min_range`` for anything
+nearer (blind zone) and ``max_range`` where no echo returned, be it that nothing is there or that the echo was lost.
+"""
+
+import math
+from enum import IntEnum
+from typing import NamedTuple
+
+from modelkit.car import CarUltrasonic, SensorMount
+from modelkit.vocabulary import Pose
+
+SENSORS = 12
+FRONT_LEFT_SIDE = 8
+FRONT_RIGHT_SIDE = 10
+NO_ECHO_FRACTION = 0.99
+"""A reading above this fraction of the range is no echo: noise and resolution are below 1 % of it."""
+
+
+class SensorPose(NamedTuple):
+    """A sensor in the odometry frame: position [m], unit vector of its axis, cosine and sine of its half cone."""
+
+    x: float = 0.0
+    y: float = 0.0
+    axis_x: float = 1.0
+    axis_y: float = 0.0
+    cone_cos: float = 1.0
+    cone_sin: float = 0.0
+
+
+class ReadingStatus(IntEnum):
+    """What a reading means."""
+
+    ECHO = 0
+    """A distance."""
+    BLIND_ZONE = 1
+    """Something is nearer than the sensor can measure."""
+    NO_ECHO = 2
+    """Nothing in the field of view, or a dropout."""
+    INVALID = 3
+    """Not a number, or negative."""
+
+
+def sensor_pose(mount: SensorMount, half_angle: float, vehicle: Pose) -> SensorPose:
+    """Return where a sensor on a vehicle at pose ``vehicle`` is; ``half_angle`` [rad] opens its cone."""
+    cos = math.cos(vehicle.heading)
+    sin = math.sin(vehicle.heading)
+    axis = vehicle.heading + mount.yaw
+    return SensorPose(
+        vehicle.x + mount.x * cos - mount.y * sin,
+        vehicle.y + mount.x * sin + mount.y * cos,
+        math.cos(axis),
+        math.sin(axis),
+        math.cos(half_angle),
+        math.sin(half_angle),
+    )
+
+
+def reading_status(reading: float, sensors: CarUltrasonic) -> int:
+    """Return the ``ReadingStatus`` of a reading [m]."""
+    if not reading >= 0.0:
+        return ReadingStatus.INVALID
+    if reading >= NO_ECHO_FRACTION * sensors.max_range:
+        return ReadingStatus.NO_ECHO
+    return ReadingStatus.BLIND_ZONE if reading <= sensors.min_range else ReadingStatus.ECHO
+
+
+def in_field_of_view(sensor: SensorPose, x: float, y: float) -> bool:
+    """Return whether the point (x, y) [m] lies inside the sensor's cone, at whatever distance."""
+    dx = x - sensor.x
+    dy = y - sensor.y
+    along = dx * sensor.axis_x + dy * sensor.axis_y
+    across = abs(dy * sensor.axis_x - dx * sensor.axis_y)
+    return across * sensor.cone_cos <= along * sensor.cone_sin
+
+
+def range_variance(noise: float, resolution: float) -> float:
+    """Return the variance [m2] of an echo: Gaussian ``noise`` [m] plus rounding to ``resolution`` [m] (uniform)."""
+    return noise * noise + resolution * resolution / 12.0

@@ -1,0 +1,92 @@
+"""The words that lead to the target, cheapest first, and whether the car can drive one: how a node is joined to it."""
+
+from controller_fmu.parking.geometry.outline import pose_along_arc
+from controller_fmu.parking.planning.collision import free_distance
+from controller_fmu.parking.planning.problem import SearchProblem
+from controller_fmu.parking.planning.search_tree import set_best
+from controller_fmu.parking.planning.work import (
+    BEST_COST,
+    BEST_NODE,
+    FREE_AT_NODE,
+    FREE_AT_TARGET,
+    NONE,
+    PlanningWork,
+    discard_word,
+)
+from modelkit.maths import sign
+from modelkit.vocabulary import Pose
+
+MAX_LENGTH = 10.0
+"""The car is looked at no farther [m] from a node."""
+MAX_TRIES = 8
+
+
+def try_analytic_expansion(work: PlanningWork, node: int, pose: Pose, words: int, problem: SearchProblem) -> None:
+    """Try the cheapest words from a node to the target; keep the first free one if it is the best yet."""
+    tries = 0
+    while tries < MAX_TRIES:
+        word = cheapest_word(work, words)
+        cost = work.node_cost[node] + work.word_cost[word]
+        if work.word_cost[word] > 1e8 or (work.counts[BEST_NODE] != NONE and cost >= work.values[BEST_COST]):
+            return
+        if _ends_free(work, word):
+            tries += 1
+            if is_word_collision_free(work, word, pose, problem):
+                set_best(work, node, word, cost)
+                return
+        discard_word(work, word)
+
+
+def cheapest_word(work: PlanningWork, words: int) -> int:
+    """Return the word of least cost."""
+    best = 0
+    for word in range(1, words):
+        if work.word_cost[word] < work.word_cost[best]:
+            best = word
+    return best
+
+
+def word_length(work: PlanningWork, word: int, segment: int) -> float:
+    """Return the distance [m] of a word's segment."""
+    if segment == 0:
+        return work.word_a[word]
+    if segment == 1:
+        return work.word_b[word]
+    if segment == 2:
+        return work.word_c[word]
+    return work.word_d[word] if segment == 3 else work.word_e[word]
+
+
+def _ends_free(work: PlanningWork, word: int) -> bool:
+    """Return whether the first and the last segment of a word fit what is free at the node and at the target."""
+    rest = work.word_code[word]
+    first = True
+    last = 0.0
+    last_turn = 0
+    for segment in range(5):
+        distance = word_length(work, word, segment)
+        turn = rest % 3
+        rest = rest // 3
+        if distance != 0.0:
+            if first:
+                free = work.values[FREE_AT_NODE + (5 if distance > 0.0 else 0) + 2 * turn]
+                if abs(distance) > free and free < MAX_LENGTH:
+                    return False
+            first = False
+            last = distance
+            last_turn = turn
+    return abs(last) <= work.values[FREE_AT_TARGET + (0 if last > 0.0 else 3) + last_turn]
+
+
+def is_word_collision_free(work: PlanningWork, word: int, pose: Pose, problem: SearchProblem) -> bool:
+    """Return whether the car can drive a word from ``pose``."""
+    rest = work.word_code[word]
+    for segment in range(5):
+        distance = word_length(work, word, segment)
+        k = (rest % 3 - 1) * problem.car.max_curvature
+        rest = rest // 3
+        if distance != 0.0:
+            if free_distance(work, pose, sign(distance), k, abs(distance), problem) < abs(distance):
+                return False
+            pose = pose_along_arc(pose, distance, k)
+    return True

@@ -1,0 +1,117 @@
+"""Exact distance of the car's outline to the edges of polygons, at a pose and along an arc.
+
+Edges are listed by square cells of the search region: each cell has those that a car whose centre lies in it could
+come within ``MAX_CLEARANCE`` of. A sweep goes on by what the clearance at hand allows: no point of the outline moves
+farther than ``max_point_speed_ratio`` times the distance. Between two poses at least at the margin the outline
+keeps half of it, as no step is longer than the margin over ``max_point_speed_ratio``.
+"""
+
+import math
+
+from controller_fmu.parking.geometry.outline import VehicleOutline, max_point_speed_ratio, pose_along_arc
+from controller_fmu.parking.planning.problem import SearchProblem
+from controller_fmu.parking.planning.work import PlanningWork
+from modelkit.vocabulary import Pose
+
+MAX_CLEARANCE = 1.0
+"""Clearances [m] above this read as this."""
+MIN_STEP = 0.01
+"""Steps [m] of a sweep that runs alongside an edge at the margin; shorter where the margin is small."""
+
+
+def clearance(work: PlanningWork, pose: Pose, problem: SearchProblem) -> float:
+    """Return the distance [m] of the outline to the nearest edge, at most ``MAX_CLEARANCE``; 0: contact or outside."""
+    car = problem.car
+    region = problem.region
+    cos = math.cos(pose.heading)
+    sin = math.sin(pose.heading)
+    x = pose.x + car.centre_ahead * cos
+    y = pose.y + car.centre_ahead * sin
+    column = math.floor((x - region.x0) / region.edge_cell)
+    row = math.floor((y - region.y0) / region.edge_cell)
+    if column < 0 or row < 0 or column >= region.edge_cell_count or row >= region.edge_cell_count:
+        return 0.0
+    cell = row * region.edge_cell_count + column
+    best = MAX_CLEARANCE * MAX_CLEARANCE
+    for place in range(work.cell_start[cell], work.cell_start[cell + 1]):
+        edge = work.cell_edge[place]
+        ax = work.edge_x1[edge] - x
+        ay = work.edge_y1[edge] - y
+        bx = work.edge_x2[edge] - x
+        by = work.edge_y2[edge] - y
+        best = edge_distance(
+            ax * cos + ay * sin,
+            ay * cos - ax * sin,
+            bx * cos + by * sin,
+            by * cos - bx * sin,
+            car,
+            best,
+        )
+    return math.sqrt(best)
+
+
+def edge_distance(ax: float, ay: float, bx: float, by: float, car: VehicleOutline, best: float) -> float:
+    """Return the squared distance [m2] from a line a-b to a car about the origin, or ``best`` if that is less."""
+    half_length = car.half_length
+    half_width = car.half_width
+    low = ax if ax < bx else bx
+    high = bx if ax < bx else ax
+    apart_x = low - half_length if low > half_length else (-half_length - high if high < -half_length else 0.0)
+    low = ay if ay < by else by
+    high = by if ay < by else ay
+    apart_y = low - half_width if low > half_width else (-half_width - high if high < -half_width else 0.0)
+    if apart_x * apart_x + apart_y * apart_y >= best:
+        return best
+    dx = bx - ax
+    dy = by - ay
+    across = ax * dy - ay * dx
+    if apart_x == 0.0 and apart_y == 0.0 and abs(across) <= half_length * abs(dy) + half_width * abs(dx):
+        return 0.0
+    best = _point_distance(ax, ay, half_length, half_width, best)
+    best = _point_distance(bx, by, half_length, half_width, best)
+    square = dx * dx + dy * dy
+    if square <= 0.0:
+        return best
+    best = _vertex_distance(half_length - ax, half_width - ay, dx, dy, square, best)
+    best = _vertex_distance(-half_length - ax, half_width - ay, dx, dy, square, best)
+    best = _vertex_distance(half_length - ax, -half_width - ay, dx, dy, square, best)
+    return _vertex_distance(-half_length - ax, -half_width - ay, dx, dy, square, best)
+
+
+def free_distance(
+    work: PlanningWork, pose: Pose, direction: float, curvature: float, longest: float, problem: SearchProblem
+) -> float:
+    """Return how far [m] the car can drive along an arc before its clearance falls under the margin."""
+    rate = max_point_speed_ratio(problem.car, curvature)
+    least = MIN_STEP if MIN_STEP * rate < problem.margin else problem.margin / rate
+    distance = 0.0
+    gap = clearance(work, pose, problem) - problem.margin
+    while distance < longest:
+        sure = gap / rate if gap > 0.0 else 0.0
+        step = sure if sure > least else least
+        after = distance + step if distance + step < longest else longest
+        gap_after = clearance(work, pose_along_arc(pose, direction * after, curvature), problem) - problem.margin
+        if gap_after < 0.0:
+            return distance + sure if distance + sure < longest else longest
+        distance = after
+        gap = gap_after
+    return longest
+
+
+def _point_distance(x: float, y: float, half_length: float, half_width: float, best: float) -> float:
+    dx = abs(x) - half_length
+    dy = abs(y) - half_width
+    dx = dx if dx > 0.0 else 0.0
+    dy = dy if dy > 0.0 else 0.0
+    gap = dx * dx + dy * dy
+    return gap if gap < best else best
+
+
+def _vertex_distance(cx: float, cy: float, dx: float, dy: float, square: float, best: float) -> float:
+    """Return the squared distance of a vertex, seen from a, to the line that leads by (dx, dy) to b, or ``best``."""
+    t = (cx * dx + cy * dy) / square
+    t = 0.0 if t < 0.0 else (1.0 if t > 1.0 else t)
+    x = cx - t * dx
+    y = cy - t * dy
+    gap = x * x + y * y
+    return gap if gap < best else best

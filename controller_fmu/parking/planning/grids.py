@@ -1,0 +1,223 @@
+"""The two rasters over the search region: which edges are near a cell, and how far it is from a cell to the target."""
+
+import math
+from typing import NamedTuple
+
+from controller_fmu.parking.geometry.outline import VehicleOutline
+from controller_fmu.parking.planning.collision import MAX_CLEARANCE
+from controller_fmu.parking.planning.problem import SearchProblem, SearchRegion
+from controller_fmu.parking.planning.work import (
+    BUCKETS,
+    EDGE_ITEMS,
+    EDGES,
+    NONE,
+    PlanningWork,
+    clear_cost_to_go,
+    set_bucket,
+    set_cell_edge,
+    set_cell_start,
+    set_cost_to_go,
+    set_edge,
+    set_next_cell,
+)
+from modelkit.geometry import Point
+
+UNREACHABLE = 1e6
+"""Distance [m] from where the target cannot be reached."""
+NOT_QUEUED = -2
+
+
+def edge_reach(region: SearchRegion, car: VehicleOutline) -> float:
+    """Return how far [m] from a cell's centre an edge may lie that the car could see from the cell."""
+    radius = math.sqrt(car.half_length * car.half_length + car.half_width * car.half_width)
+    return 0.7072 * region.edge_cell + radius + MAX_CLEARANCE
+
+
+def add_edge(work: PlanningWork, count: int, start: Point, end: Point, region: SearchRegion) -> int:
+    """Return the count of edges with this one added, as far as it lies in the search region or within 10 m of it."""
+    low = -10.0
+    high = region.side + 10.0
+    ax = start.x - region.x0
+    ay = start.y - region.y0
+    dx = end.x - start.x
+    dy = end.y - start.y
+    enter = 0.0
+    leave = 1.0
+    for side in range(4):
+        rate = dx if side < 2 else dy
+        at = ax if side < 2 else ay
+        bound = low if side % 2 == 0 else high
+        if abs(rate) < 1e-12:
+            if at < low or at > high:
+                return count
+        else:
+            t = (bound - at) / rate
+            if (rate > 0.0) == (side % 2 == 0):
+                enter = t if t > enter else enter
+            else:
+                leave = t if t < leave else leave
+    if enter > leave:
+        return count
+    if count >= EDGES:
+        return EDGES + 1
+    set_edge(work, count, _onward(start, enter, dx, dy), _onward(start, leave, dx, dy))
+    return count + 1
+
+
+def _onward(start: Point, share: float, dx: float, dy: float) -> Point:
+    return Point(start.x + share * dx, start.y + share * dy)
+
+
+def index_edges(work: PlanningWork, edges: int, region: SearchRegion, car: VehicleOutline) -> bool:
+    """List the edges near each cell; returns whether the list has room for all."""
+    cells = region.edge_cell_count * region.edge_cell_count
+    for cell in range(cells + 1):
+        set_cell_start(work, cell, 0)
+    for edge in range(edges):
+        _index_edge(work, edge, region, car, False)
+    total = 0
+    for cell in range(cells + 1):
+        total += work.cell_start[cell]
+        set_cell_start(work, cell, total)
+    if total > EDGE_ITEMS:
+        return False
+    for edge in range(edges):
+        _index_edge(work, edge, region, car, True)
+    return True
+
+
+class _EdgeBounds(NamedTuple):
+    """An edge in the region's frame: its first end, the vector to the other, the least x and y of both [m]."""
+
+    x: float
+    y: float
+    dx: float
+    dy: float
+    low_x: float
+    low_y: float
+
+
+def _edge(work: PlanningWork, edge: int, region: SearchRegion) -> _EdgeBounds:
+    x = work.edge_x1[edge] - region.x0
+    y = work.edge_y1[edge] - region.y0
+    dx = work.edge_x2[edge] - work.edge_x1[edge]
+    dy = work.edge_y2[edge] - work.edge_y1[edge]
+    return _EdgeBounds(x, y, dx, dy, x if dx > 0.0 else x + dx, y if dy > 0.0 else y + dy)
+
+
+def _index_edge(work: PlanningWork, edge: int, region: SearchRegion, car: VehicleOutline, fill: bool) -> None:
+    """Count the edge at each cell it is near, or put it into the cell's list, from the end of the list on."""
+    reach = edge_reach(region, car)
+    x1, y1, dx, dy, low_x, low_y = _edge(work, edge, region)
+    first = _cell(low_x - reach, region.edge_cell, region.edge_cell_count)
+    last = _cell(low_x + abs(dx) + reach, region.edge_cell, region.edge_cell_count)
+    for row in range(
+        _cell(low_y - reach, region.edge_cell, region.edge_cell_count),
+        _cell(low_y + abs(dy) + reach, region.edge_cell, region.edge_cell_count) + 1,
+    ):
+        for column in range(first, last + 1):
+            x = (column + 0.5) * region.edge_cell - x1
+            y = (row + 0.5) * region.edge_cell - y1
+            if point_line(x, y, dx, dy) < reach * reach:
+                cell = row * region.edge_cell_count + column
+                place = work.cell_start[cell]
+                if fill:
+                    set_cell_start(work, cell, place - 1)
+                    set_cell_edge(work, place - 1, edge)
+                else:
+                    set_cell_start(work, cell, place + 1)
+
+
+def point_line(x: float, y: float, dx: float, dy: float) -> float:
+    """Return the squared distance [m2] of a point to the line from the origin by (dx, dy)."""
+    square = dx * dx + dy * dy
+    t = (x * dx + y * dy) / square if square > 0.0 else 0.0
+    t = 0.0 if t < 0.0 else (1.0 if t > 1.0 else t)
+    ex = x - t * dx
+    ey = y - t * dy
+    return ex * ex + ey * ey
+
+
+def _cell(at: float, side: float, count: int) -> int:
+    cell = math.floor(at / side)
+    return 0 if cell < 0 else (count - 1 if cell >= count else cell)
+
+
+def mark_blocked_cells(work: PlanningWork, edges: int, problem: SearchProblem) -> None:
+    """Mark the cost-to-go cells whose every point is too near an edge for the rear axle's midpoint."""
+    region = problem.region
+    count = region.cost_to_go_count
+    clear_cost_to_go(work, count * count)
+    reach = problem.car.half_width + problem.margin - 0.7072 * region.cost_to_go_cell
+    for edge in range(edges):
+        x1, y1, dx, dy, low_x, low_y = _edge(work, edge, region)
+        for row in range(
+            _cell(low_y - reach, region.cost_to_go_cell, count),
+            _cell(low_y + abs(dy) + reach, region.cost_to_go_cell, count) + 1,
+        ):
+            y = (row + 0.5) * region.cost_to_go_cell - y1
+            from_x = low_x
+            to_x = low_x + abs(dx)
+            if abs(dy) > region.cost_to_go_cell:
+                a = x1 + dx * (y - reach) / dy
+                b = x1 + dx * (y + reach) / dy
+                low = a if a < b else b
+                high = b if a < b else a
+                from_x = low if low > from_x else from_x
+                to_x = high if high < to_x else to_x
+            for column in range(
+                _cell(from_x - reach, region.cost_to_go_cell, count),
+                _cell(to_x + reach, region.cost_to_go_cell, count) + 1,
+            ):
+                x = (column + 0.5) * region.cost_to_go_cell - x1
+                if point_line(x, y, dx, dy) < reach * reach:
+                    set_cost_to_go(work, row * count + column, -1.0)
+
+
+def compute_cost_to_go(work: PlanningWork, problem: SearchProblem) -> None:
+    """Measure the distance [m] of a point from each free cell to the target, over eight neighbours (Dijkstra, Dial)."""
+    region = problem.region
+    count = region.cost_to_go_count
+    for number in range(BUCKETS):
+        set_bucket(work, number, NONE)
+    row = _cell(problem.target.y - region.y0, region.cost_to_go_cell, count)
+    column = _cell(problem.target.x - region.x0, region.cost_to_go_cell, count)
+    start = row * count + column
+    set_cost_to_go(work, start, 0.0)
+    set_next_cell(work, start, NONE)
+    set_bucket(work, 0, start)
+    for number in range(BUCKETS):
+        while work.bucket[number] != NONE:
+            cell = work.bucket[number]
+            set_bucket(work, number, work.cost_to_go_next[cell])
+            set_next_cell(work, cell, NOT_QUEUED)
+            _relax(work, cell, region)
+
+
+def _relax(work: PlanningWork, cell: int, region: SearchRegion) -> None:
+    count = region.cost_to_go_count
+    row = cell // count
+    column = cell - row * count
+    here = work.cost_to_go[cell]
+    for side in range(9):
+        r = row + side // 3 - 1
+        c = column + side % 3 - 1
+        if side != 4 and 0 <= r < count and 0 <= c < count:
+            other = r * count + c
+            before = work.cost_to_go[other]
+            distance = here + region.cost_to_go_cell * (1.0 if side % 2 == 1 else 1.41421356)
+            if before >= 0.0 and distance < before - 1e-3:
+                set_cost_to_go(work, other, distance)
+                if work.cost_to_go_next[other] == NOT_QUEUED:
+                    number = math.floor(distance / region.cost_to_go_cell)
+                    number = number if number < BUCKETS else BUCKETS - 1
+                    set_next_cell(work, other, work.bucket[number])
+                    set_bucket(work, number, other)
+
+
+def holonomic_cost_to_go(work: PlanningWork, x: float, y: float, region: SearchRegion) -> float:
+    """Return the distance [m] of a point at (x, y) to the target."""
+    column = _cell(x - region.x0, region.cost_to_go_cell, region.cost_to_go_count)
+    row = _cell(y - region.y0, region.cost_to_go_cell, region.cost_to_go_count)
+    distance = work.cost_to_go[row * region.cost_to_go_count + column]
+    return distance if distance >= 0.0 else UNREACHABLE

@@ -1,0 +1,303 @@
+"""A path for a request: one search after the other, step by step, as a memo of (scene, request, count of steps).
+
+What the work arrays hold after ``search_until`` follows from its arguments alone. If they hold something else, of
+another request or of later steps, all is done anew from the first step.
+"""
+
+from typing import NamedTuple
+
+from controller_fmu.parking.planning.clearance_margin import measure_clearance
+from controller_fmu.parking.planning.collision import clearance
+from controller_fmu.parking.planning.grids import (
+    UNREACHABLE,
+    compute_cost_to_go,
+    holonomic_cost_to_go,
+    index_edges,
+    mark_blocked_cells,
+)
+from controller_fmu.parking.planning.obstacle_edges import add_edges, is_inside
+from controller_fmu.parking.planning.problem import VERTICES, ObstacleMap, PlanningRequest, SearchProblem
+from controller_fmu.parking.planning.search import FOUND, SEARCHING, begin_search, expand_next
+from controller_fmu.parking.planning.search_schedule import (
+    CLEARANCE_RESERVE,
+    MIN_MARGIN,
+    SEARCH_SCHEDULE,
+    search_problem,
+    search_region,
+)
+from controller_fmu.parking.planning.shortcut_smoothing import begin_smoothing, path_cost, smooth
+from controller_fmu.parking.planning.work import (
+    BEST_PATH_COST,
+    BEST_PATH_MARGIN,
+    BEST_SEGMENT_COUNT,
+    BEST_STAGE,
+    COUNT,
+    EDGE_COUNT,
+    EDGES,
+    GOAL_TIGHTER,
+    MEASURED_SEGMENTS,
+    MIN_END_CLEARANCE,
+    PHASE,
+    SEGMENT_COUNT,
+    STAGE,
+    STATUS,
+    PlanningWork,
+    set_best_segment,
+    set_count,
+    set_requested,
+    set_segment,
+    set_value,
+    set_vertex,
+)
+
+LAY_OUT = 0
+BEGIN = 1
+SEARCH = 2
+SMOOTH = 3
+MEASURE_CLEARANCE = 4
+FINISHED = 5
+
+PLANNING = 0
+PLANNED = 1
+NO_PATH = 2
+START_BLOCKED = 3
+GOAL_BLOCKED = 4
+TOO_MANY_EDGES = 5
+MARGIN_TOO_SMALL = 6
+"""Free at start and goal, but with less than the least margin."""
+
+MAX_SEGMENTS = 96
+MAX_CUSPS = 25
+
+
+class PathSegment(NamedTuple):
+    """A segment of a path."""
+
+    distance: float = 0.0
+    """[m], reverse negative."""
+    curvature: float = 0.0
+    """Curvature [1/m]."""
+    clearance: float = 0.0
+    """At the path's begin: what is free beyond the margin [m]. Where the gear changes: how far the segment before may
+    go on. Else: how far beside the path steering while rolling may take the car."""
+
+
+class PlannedPath(NamedTuple):
+    """What the planner gives: segments from the start on, those past ``used`` are not; its margin and cost [m]."""
+
+    used: int = 0
+    margin: float = 0.0
+    cost: float = 0.0
+    segments: tuple[PathSegment, ...] = (PathSegment(),) * MAX_SEGMENTS
+
+
+def search_until(work: PlanningWork, obstacles: ObstacleMap, request: PlanningRequest, count: int) -> None:
+    """Bring the search for a path to ``count`` steps."""
+    if work.counts[COUNT] > count or not is_for_request(work, obstacles, request):
+        begin(work, obstacles, request)
+    for _ in range(work.counts[COUNT], count):
+        step(work, request)
+
+
+def continue_search(work: PlanningWork, obstacles: ObstacleMap, request: PlanningRequest, count: int, most: int) -> int:
+    """Bring the search to ``count`` steps and on by at most ``max_expansions``, fewer where one is long."""
+    search_until(work, obstacles, request, count)
+    for number in range(most):
+        phase = work.counts[PHASE]
+        is_long = phase < SEARCH
+        if phase == FINISHED or (is_long and number > 0):
+            return work.counts[COUNT]
+        step(work, request)
+        if is_long:
+            return work.counts[COUNT]
+    return work.counts[COUNT]
+
+
+def search_status(work: PlanningWork) -> int:
+    """Return what has become of the search."""
+    return work.counts[STATUS]
+
+
+def is_for_request(work: PlanningWork, obstacles: ObstacleMap, request: PlanningRequest) -> bool:
+    """Return whether the work arrays holds the search for this request."""
+    numbers = _numbers(request)
+    for which in range(11):
+        if work.requested[which] != numbers[which]:
+            return False
+    for number in range(VERTICES):
+        vertex = obstacles.vertices[number]
+        if work.corner_of[number] != vertex.polygon:
+            return False
+        if work.corner_x[number] != vertex.x or work.corner_y[number] != vertex.y:
+            return False
+    return True
+
+
+def begin(work: PlanningWork, obstacles: ObstacleMap, request: PlanningRequest) -> None:
+    """Forget all, and remember what is asked."""
+    numbers = _numbers(request)
+    for which in range(11):
+        set_requested(work, which, numbers[which])
+    for number in range(VERTICES):
+        vertex = obstacles.vertices[number]
+        set_vertex(work, number, vertex.x, vertex.y, vertex.polygon)
+    set_count(work, COUNT, 0)
+    set_count(work, PHASE, LAY_OUT)
+    set_count(work, STAGE, 0)
+    set_count(work, STATUS, PLANNING)
+    set_count(work, BEST_SEGMENT_COUNT, 0)
+
+
+def step(work: PlanningWork, request: PlanningRequest) -> None:
+    """Do one bounded segment of work: lay out a scene, plant a tree, expand a node, try a shorter span, see a joint."""
+    set_count(work, COUNT, work.counts[COUNT] + 1)
+    phase = work.counts[PHASE]
+    problem = search_problem(work, request)
+    if phase == LAY_OUT:
+        _lay_out(work, request)
+    elif phase == BEGIN:
+        _begin_stage(work, problem)
+    elif phase == SEARCH:
+        status = expand_next(work, problem)
+        if status == FOUND:
+            begin_smoothing(work, problem)
+            set_count(work, PHASE, SMOOTH)
+        elif status != SEARCHING:
+            _next_stage(work)
+    elif phase == SMOOTH:
+        more = smooth(work, problem)
+        if not more:
+            _keep_if_better(work, problem)
+            _next_stage(work)
+    elif phase == MEASURE_CLEARANCE:
+        more = measure_clearance(work, request, problem)
+        if not more:
+            _finish(work, PLANNED)
+
+
+def planned_path(work: PlanningWork) -> PlannedPath:
+    """Return the path that was found."""
+    segments = tuple(
+        _segment(work, number) if number < work.counts[BEST_SEGMENT_COUNT] else PathSegment()
+        for number in range(MAX_SEGMENTS)
+    )
+    return PlannedPath(
+        work.counts[BEST_SEGMENT_COUNT], work.values[BEST_PATH_MARGIN], work.values[BEST_PATH_COST], segments
+    )
+
+
+def _segment(work: PlanningWork, number: int) -> PathSegment:
+    """Return a segment of the path that was found."""
+    return PathSegment(work.best_length[number], work.best_curvature[number], work.best_clearance[number])
+
+
+def _numbers(
+    request: PlanningRequest,
+) -> tuple[float, float, float, float, float, float, float, float, float, float, float]:
+    start = request.start
+    goal = request.goal
+    car = request.car
+    return (
+        start.x,
+        start.y,
+        start.heading,
+        goal.x,
+        goal.y,
+        goal.heading,
+        car.centre_ahead,
+        car.half_length,
+        car.half_width,
+        car.max_curvature,
+        request.margin,
+    )
+
+
+def _finish(work: PlanningWork, status: int) -> None:
+    set_count(work, PHASE, FINISHED)
+    set_count(work, STATUS, status)
+
+
+def _lay_out(work: PlanningWork, request: PlanningRequest) -> None:
+    """Take over the scene's edges, list them by cell, and see whether the car can stand at start and goal."""
+    region = search_region(request)
+    edges = add_edges(work, request.goal, region)
+    set_count(work, EDGE_COUNT, edges)
+    if edges > EDGES:
+        _finish(work, TOO_MANY_EDGES)
+        return
+    fits = index_edges(work, edges, region, request.car)
+    if not fits:
+        _finish(work, TOO_MANY_EDGES)
+        return
+    problem = search_problem(work, request)
+    start = problem.target if problem.from_goal else problem.root
+    goal = problem.root if problem.from_goal else problem.target
+    at_start = 0.0 if is_inside(work, request.start) else clearance(work, start, problem)
+    at_goal = 0.0 if is_inside(work, request.goal) else clearance(work, goal, problem)
+    set_value(work, MIN_END_CLEARANCE, at_start if at_start < at_goal else at_goal)
+    set_count(work, GOAL_TIGHTER, 0 if at_start < at_goal else 1)
+    if at_start <= 0.0:
+        _finish(work, START_BLOCKED)
+    elif at_goal <= 0.0:
+        _finish(work, GOAL_BLOCKED)
+    elif work.values[MIN_END_CLEARANCE] < MIN_MARGIN + CLEARANCE_RESERVE:
+        _finish(work, MARGIN_TOO_SMALL)
+    else:
+        set_count(work, PHASE, BEGIN)
+
+
+def _begin_stage(work: PlanningWork, problem: SearchProblem) -> None:
+    """Begin the search of the stage in hand, unless not even a point could get through."""
+    mark_blocked_cells(work, work.counts[EDGE_COUNT], problem)
+    compute_cost_to_go(work, problem)
+    if holonomic_cost_to_go(work, problem.root.x, problem.root.y, problem.region) >= UNREACHABLE:
+        _next_stage(work)
+        return
+    begin_search(work, problem)
+    set_count(work, PHASE, SEARCH)
+
+
+def _keep_if_better(work: PlanningWork, problem: SearchProblem) -> None:
+    """Keep the path if it is the best yet; from a pose to itself it is one segment without a distance."""
+    if work.counts[SEGMENT_COUNT] == 0:
+        set_segment(work, 0, problem.root, 0.0, 0.0)
+        set_count(work, SEGMENT_COUNT, 1)
+    cost = path_cost(work, problem)
+    count = work.counts[SEGMENT_COUNT]
+    best = work.counts[BEST_SEGMENT_COUNT]
+    if count > MAX_SEGMENTS or cusps_of(work) > MAX_CUSPS or (best > 0 and work.values[BEST_PATH_COST] <= cost):
+        return
+    for number in range(count):
+        if problem.from_goal:
+            last = count - 1 - number
+            set_best_segment(work, number, -work.segment_length[last], work.segment_curvature[last])
+        else:
+            set_best_segment(work, number, work.segment_length[number], work.segment_curvature[number])
+    set_count(work, BEST_SEGMENT_COUNT, count)
+    set_count(work, BEST_STAGE, work.counts[STAGE])
+    set_value(work, BEST_PATH_COST, cost)
+    set_value(work, BEST_PATH_MARGIN, problem.margin)
+
+
+def cusps_of(work: PlanningWork) -> int:
+    """Return how often the path in hand changes its direction."""
+    found = 0
+    for segment in range(1, work.counts[SEGMENT_COUNT]):
+        if work.segment_length[segment] * work.segment_length[segment - 1] < 0.0:
+            found += 1
+    return found
+
+
+def _next_stage(work: PlanningWork) -> None:
+    """Go on to the next search, or end."""
+    stage = work.counts[STAGE] + 1
+    best = work.counts[BEST_SEGMENT_COUNT] > 0
+    last = stage >= len(SEARCH_SCHEDULE)
+    if best and (last or not SEARCH_SCHEDULE[stage].always):
+        set_count(work, MEASURED_SEGMENTS, 0)
+        set_count(work, PHASE, MEASURE_CLEARANCE)
+    elif last:
+        _finish(work, NO_PATH)
+    else:
+        set_count(work, STAGE, stage)
+        set_count(work, PHASE, BEGIN)

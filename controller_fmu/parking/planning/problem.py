@@ -1,0 +1,108 @@
+"""What is asked of the planner, and what one search is given: poses, a car, a margin, the numbers that steer it."""
+
+from typing import Annotated, NamedTuple
+
+from controller_fmu.parking.geometry.outline import VehicleOutline
+from modelkit.signal import Signal
+from modelkit.vocabulary import Pose
+
+VERTICES = 256
+CUSP_COST = 2.0
+"""Price [m] of a change of direction."""
+STEERING_COST = 0.5
+"""Price [m] of turning the wheel from straight to full lock."""
+
+
+class Vertex(NamedTuple):
+    """A vertex of a polygon."""
+
+    x: Annotated[float, Signal("m", "x of the corner")] = 0.0
+    y: Annotated[float, Signal("m", "y of the corner")] = 0.0
+    polygon: Annotated[int, Signal("1", "corners in a row with the same number are one polygon; 0: unused", 0)] = 0
+
+
+class ObstacleMap(NamedTuple):
+    """Polygons that stand in the way, convex or not."""
+
+    vertices: tuple[Vertex, ...] = (Vertex(),) * VERTICES
+
+
+class PlanningRequest(NamedTuple):
+    """What is asked for: a path from one pose to another."""
+
+    start: Pose = Pose()
+    goal: Pose = Pose()
+    car: VehicleOutline = VehicleOutline()
+    margin: float = 0.0
+    """Clearance [m] wished for; where it cannot be kept, less is tried."""
+
+
+class SearchRegion(NamedTuple):
+    """The part of the plane that is searched, in the frame of the task: a square and its two rasters."""
+
+    x0: float
+    y0: float
+    side: float
+    edge_cell: float
+    """Side [m] of a cell that lists the edges near it."""
+    edge_cell_count: int
+    """Such cells in a row."""
+    cost_to_go_cell: float
+    """Side [m] of a cell of the cost-to-go grid."""
+    cost_to_go_count: int
+
+
+class SearchResolution(NamedTuple):
+    """How finely a search tells poses apart, and how greedily it goes for the target."""
+
+    cell: float
+    """Side [m] of the cells in which one pose stands for all."""
+    heading_cell: float
+    """The same for headings [rad]."""
+    refinement: float
+    """Cells are finer by this factor near the root."""
+    heuristic_weight: float
+    """How much the estimated rest counts against the distance driven."""
+    crowding_cost: float
+    """Cost [m] for each node that has been expanded in the same region."""
+
+
+class SearchStage(NamedTuple):
+    """One of the searches that are made in turn until one finds a path."""
+
+    resolution: SearchResolution
+    margin_fraction: float
+    """Of the margin wished for."""
+    max_expansions: int
+    """Expansions after which the search gives up."""
+    always: bool = False
+    """Made even if the one before has found a path; the cheaper is kept."""
+    root_at_tighter_end: bool = True
+    """The tree is rooted where the car has less room, at start or goal; else at the other end."""
+
+
+class SearchProblem(NamedTuple):
+    """One search: a tree from ``root`` that shall meet ``target``; all in a frame about the goal."""
+
+    root: Pose
+    target: Pose
+    car: VehicleOutline
+    region: SearchRegion
+    from_goal: bool
+    """``root`` is the goal, ``target`` the start."""
+    margin: float
+    """Clearance [m] that the path keeps."""
+    stage: SearchStage
+
+
+class Successor(NamedTuple):
+    """A pose that the tree may grow to, by one line or arc from a node that it has."""
+
+    pose: Pose
+    cost: float
+    """From the root [m]."""
+    distance: float
+    """From the parent [m], reverse negative."""
+    curvature: float
+    """Curvature of that distance [1/m]."""
+    parent: int

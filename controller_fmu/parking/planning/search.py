@@ -1,0 +1,257 @@
+"""The search: a tree of poses from the root, grown where it promises most, joined to the target by a word."""
+
+import math
+
+from controller_fmu.parking.geometry.outline import pose_along_arc
+from controller_fmu.parking.planning.analytic_expansion import MAX_LENGTH, cheapest_word, try_analytic_expansion
+from controller_fmu.parking.planning.collision import free_distance
+from controller_fmu.parking.planning.grids import holonomic_cost_to_go
+from controller_fmu.parking.planning.problem import CUSP_COST, STEERING_COST, SearchProblem, Successor
+from controller_fmu.parking.planning.reeds_shepp import list_words
+from controller_fmu.parking.planning.search_tree import (
+    add_node,
+    clear_tree,
+    count_expansion,
+    pop_lowest,
+    push_bucket,
+    set_cost_estimate,
+    set_state,
+)
+from controller_fmu.parking.planning.work import (
+    BEST_NODE,
+    BUCKETS,
+    CROWDING_CELLS,
+    EVALUATIONS,
+    EXPANSIONS,
+    FIRST_FOUND_AT,
+    FREE_AT_NODE,
+    FREE_AT_TARGET,
+    LOWEST_BUCKET,
+    NODE_COUNT,
+    NODES,
+    NONE,
+    SLOTS,
+    PlanningWork,
+    set_count,
+    set_value,
+)
+from modelkit.maths import PI, TWO_PI, sign, wrap_angle
+from modelkit.vocabulary import Pose
+
+SEARCHING = 0
+FOUND = 1
+NOTHING = 2
+
+ESTIMATED = 0
+EVALUATED = 1
+CLOSED = 2
+
+FIRST_SUCCESSOR = 0.35
+SUCCESSOR_RATIO = 2.3
+BUCKETS_PER_METRE = 4.0
+"""Buckets of the queue for each metre of cost."""
+MIN_LENGTH = 0.02
+MAX_SUCCESSORS = 70
+MAX_EVALUATIONS_PER_STEP = 32
+"""Nodes looked at in one step at the most."""
+EVALUATIONS_PER_EXPANSION = 20
+"""A search also gives up after so many times as many nodes looked at as it may expand."""
+REFINED_RADIUS = 2.5
+"""Within this distance [m] of the root the cells are finer."""
+CROWDING_CELL = 1.5
+"""Side [m] of a region, in which nodes make each other less wanted."""
+
+
+def begin_search(work: PlanningWork, problem: SearchProblem) -> None:
+    """Plant the root, and measure how far the car can drive from the target."""
+    clear_tree(work)
+    for gear in range(2):
+        for turn in range(3):
+            k = (turn - 1) * problem.car.max_curvature
+            distance = free_distance(
+                work, problem.target, 2.0 * gear - 1.0, k, 60.0 if turn == 1 else TWO_PI / abs(k), problem
+            )
+            set_value(work, FREE_AT_TARGET + 3 * gear + turn, distance)
+    push_open(work, Successor(problem.root, 0.0, 0.0, 0.0, NONE), problem)
+
+
+def expand_next(work: PlanningWork, problem: SearchProblem) -> int:
+    """Take up the node that promises most; returns the status.
+
+    A node's place in the queue is a first guess, made better when its turn comes: then it may have to wait again.
+    """
+    for _ in range(MAX_EVALUATIONS_PER_STEP):
+        node = pop_lowest(work)
+        while node != NONE and work.node_state[node] == CLOSED:
+            node = pop_lowest(work)
+        set_count(work, EVALUATIONS, work.counts[EVALUATIONS] + 1)
+        if node == NONE or is_spent(work, problem):
+            return NOTHING if work.counts[BEST_NODE] == NONE else FOUND
+        waits = evaluate(work, node, problem)
+        if not waits:
+            expand(work, node, problem)
+            return FOUND if is_settled(work) else SEARCHING
+    return SEARCHING
+
+
+def is_spent(work: PlanningWork, problem: SearchProblem) -> bool:
+    """Return whether the search has done all the work it may."""
+    most = problem.stage.max_expansions
+    full = work.counts[NODE_COUNT] > NODES - MAX_SUCCESSORS
+    return full or work.counts[EXPANSIONS] >= most or work.counts[EVALUATIONS] >= EVALUATIONS_PER_EXPANSION * most
+
+
+def is_settled(work: PlanningWork) -> bool:
+    """Return whether a distance is found and some more have been looked for."""
+    found_at = work.counts[FIRST_FOUND_AT]
+    return work.counts[BEST_NODE] != NONE and work.counts[EXPANSIONS] > found_at + found_at // 2 + 20
+
+
+def evaluate(work: PlanningWork, node: int, problem: SearchProblem) -> bool:
+    """Work out what a distance through a node will cost; returns whether it has to wait, put back into the queue."""
+    pose = pose_of(work, node)
+    if work.node_state[node] == ESTIMATED:
+        words = list_words(work, pose, problem.target, gear_of(work, node), lock_of(work, node, problem), problem)
+        shortest = work.word_cost[cheapest_word(work, words)]
+        cost_to_go = holonomic_cost_to_go(work, pose.x, pose.y, problem.region)
+        set_cost_estimate(work, node, shortest if shortest > cost_to_go else cost_to_go)
+        set_state(work, node, EVALUATED)
+    crowd = problem.stage.resolution.crowding_cost * work.crowding[region_of(pose, problem)]
+    bucket = bucket_of(
+        work.node_cost[node] + problem.stage.resolution.heuristic_weight * work.node_cost_estimate[node] + crowd
+    )
+    if bucket <= work.counts[LOWEST_BUCKET] + 1:
+        return False
+    push_bucket(work, node, bucket)
+    return True
+
+
+def expand(work: PlanningWork, node: int, problem: SearchProblem) -> None:
+    """Join a node to the target if that can be, and let it branch."""
+    pose = pose_of(work, node)
+    gear = gear_of(work, node)
+    lock = lock_of(work, node, problem)
+    none_yet = work.counts[BEST_NODE] == NONE
+    count_expansion(work, region_of(pose, problem))
+    set_state(work, node, CLOSED)
+    set_count(work, EXPANSIONS, work.counts[EXPANSIONS] + 1)
+    measure_free_distances(work, pose, problem)
+    words = list_words(work, pose, problem.target, gear, lock, problem)
+    try_analytic_expansion(work, node, pose, words, problem)
+    generate_successors(work, node, pose, gear, lock, problem)
+    if none_yet and work.counts[BEST_NODE] != NONE:
+        set_count(work, FIRST_FOUND_AT, work.counts[EXPANSIONS])
+
+
+def pose_of(work: PlanningWork, node: int) -> Pose:
+    """Return the pose of a node."""
+    return Pose(work.node_x[node], work.node_y[node], work.node_heading[node])
+
+
+def gear_of(work: PlanningWork, node: int) -> float:
+    """Return 1.0 or -1.0: the direction in which a node was reached; 0.0 for the root."""
+    return sign(work.node_length[node])
+
+
+def lock_of(work: PlanningWork, node: int, problem: SearchProblem) -> float:
+    """Return the curvature with which a node was reached, over the largest."""
+    return work.node_curvature[node] / problem.car.max_curvature
+
+
+def bucket_of(cost: float) -> int:
+    """Return the bucket of the queue for a cost [m]."""
+    bucket = math.floor(cost * BUCKETS_PER_METRE)
+    return bucket if bucket < BUCKETS else BUCKETS - 1
+
+
+def region_of(pose: Pose, problem: SearchProblem) -> int:
+    """Return the number of the region of poses that ``pose`` lies in."""
+    across = math.floor((pose.x - problem.region.x0) / CROWDING_CELL)
+    along = math.floor((pose.y - problem.region.y0) / CROWDING_CELL)
+    turns = math.floor((wrap_angle(pose.heading) + PI) * 8.0 / PI)
+    return (((along * 256 + across) * 17 + turns) * 40503 // 16) % CROWDING_CELLS
+
+
+def heuristic(work: PlanningWork, pose: Pose, cost: float, problem: SearchProblem) -> float:
+    """Return what a distance through ``pose`` will cost at the least, as far as can be said quickly."""
+    cost_to_go = holonomic_cost_to_go(work, pose.x, pose.y, problem.region)
+    turn = abs(wrap_angle(problem.target.heading - pose.heading)) / problem.car.max_curvature
+    return cost + problem.stage.resolution.heuristic_weight * (cost_to_go if cost_to_go > turn else turn)
+
+
+def measure_free_distances(work: PlanningWork, pose: Pose, problem: SearchProblem) -> None:
+    """Measure how far the car can drive from a node, in both gears at five curvatures."""
+    for gear in range(2):
+        for turn in range(5):
+            k = 0.5 * (turn - 2) * problem.car.max_curvature
+            set_value(
+                work,
+                FREE_AT_NODE + 5 * gear + turn,
+                free_distance(work, pose, 2.0 * gear - 1.0, k, MAX_LENGTH, problem),
+            )
+
+
+def generate_successors(
+    work: PlanningWork, node: int, pose: Pose, gear: float, lock: float, problem: SearchProblem
+) -> None:
+    """Add the children of a node: at growing lengths along each arc, and where it is blocked."""
+    for number in range(10):
+        direction = 2.0 * (number // 5) - 1.0
+        turn = 0.5 * (number % 5 - 2)
+        free = work.values[FREE_AT_NODE + number]
+        same = abs(turn - lock) < 1e-3
+        longest = abs(work.node_length[node]) >= MAX_LENGTH - 0.01
+        if not same or gear == 0.0 or (longest and direction == gear):
+            cost = work.node_cost[node] + abs(turn - lock) * STEERING_COST
+            if direction * gear < 0.0:
+                cost += CUSP_COST
+            k = turn * problem.car.max_curvature
+            here = Successor(pose, cost, 0.0, k, node)
+            distance = FIRST_SUCCESSOR
+            while distance < free - MIN_LENGTH:
+                push_open(work, _driven(here, direction, distance), problem)
+                distance = distance * SUCCESSOR_RATIO
+            if MIN_LENGTH < free < 1.0:
+                for part in range(1, 4):
+                    distance = 0.25 * part * free
+                    push_open(work, _driven(here, direction, distance), problem)
+            if free > MIN_LENGTH:
+                push_open(work, _driven(here, direction, free), problem)
+
+
+def _driven(here: Successor, direction: float, distance: float) -> Successor:
+    """Return the child ``distance`` [m] further on."""
+    return Successor(
+        pose_along_arc(here.pose, direction * distance, here.curvature),
+        here.cost + distance,
+        direction * distance,
+        here.curvature,
+        here.parent,
+    )
+
+
+def push_open(work: PlanningWork, successor: Successor, problem: SearchProblem) -> None:
+    """Add a node unless its cell has one that is as cheap."""
+    key = key_of(successor.pose, successor.distance, problem)
+    slot = (key * 40503 // 64) % SLOTS
+    other = work.slot[slot]
+    while other != NONE:
+        if work.node_key[other] == key and work.node_cost[other] <= successor.cost + 0.02:
+            return
+        if work.node_key[other] == key:
+            set_state(work, other, CLOSED)
+        other = work.node_slot[other]
+    node = add_node(work, successor, key, slot)
+    push_bucket(work, node, bucket_of(heuristic(work, successor.pose, successor.cost, problem)))
+
+
+def key_of(pose: Pose, distance: float, problem: SearchProblem) -> int:
+    """Return the number of the cell of poses, by the gear that it was reached in."""
+    dx = pose.x - problem.root.x
+    dy = pose.y - problem.root.y
+    fine = problem.stage.resolution.refinement if dx * dx + dy * dy < REFINED_RADIUS * REFINED_RADIUS else 1.0
+    across = math.floor((pose.x - problem.region.x0) * fine / problem.stage.resolution.cell)
+    along = math.floor((pose.y - problem.region.y0) * fine / problem.stage.resolution.cell)
+    turns = math.floor((wrap_angle(pose.heading) + PI) * fine / problem.stage.resolution.heading_cell)
+    key = (along * 16384 + across) * 4096 + turns
+    return (2 * key + (1 if distance > 0.0 else 0)) % 2147483647

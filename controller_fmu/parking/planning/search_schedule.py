@@ -1,0 +1,86 @@
+"""The searches that are made in turn: coarse ones first, from the goal and from the start; less margin last."""
+
+import math
+
+from controller_fmu.parking.planning.problem import (
+    PlanningRequest,
+    SearchProblem,
+    SearchRegion,
+    SearchResolution,
+    SearchStage,
+)
+from controller_fmu.parking.planning.work import (
+    COST_TO_GO_CELLS,
+    EDGE_CELLS,
+    GOAL_TIGHTER,
+    MIN_END_CLEARANCE,
+    STAGE,
+    PlanningWork,
+)
+from modelkit.vocabulary import Pose
+
+DEG = math.pi / 180.0
+COARSE = SearchResolution(1.0, 20.0 * DEG, refinement=1.0, heuristic_weight=4.0, crowding_cost=3.0)
+MEDIUM = SearchResolution(0.7, 14.0 * DEG, refinement=2.0, heuristic_weight=3.0, crowding_cost=3.0)
+FINE = SearchResolution(0.5, 10.0 * DEG, refinement=4.0, heuristic_weight=3.0, crowding_cost=3.0)
+FINER = SearchResolution(0.3, 6.0 * DEG, refinement=4.0, heuristic_weight=3.0, crowding_cost=3.0)
+EXHAUSTIVE = SearchResolution(0.15, 3.0 * DEG, refinement=4.0, heuristic_weight=1.0, crowding_cost=0.0)
+"""Cells shrink as fast as their headings; the last orders nodes by their true cost and leaves none out."""
+SEARCH_SCHEDULE = (
+    SearchStage(COARSE, 1.0, 80),
+    SearchStage(COARSE, 1.0, 80, always=True, root_at_tighter_end=False),
+    SearchStage(MEDIUM, 1.0, 400),
+    SearchStage(MEDIUM, 1.0, 400, always=True, root_at_tighter_end=False),
+    SearchStage(FINE, 1.0, 2000),
+    SearchStage(FINE, 1.0, 2000, always=True, root_at_tighter_end=False),
+    SearchStage(FINER, 1.0, 4000),
+    SearchStage(FINER, 1.0, 4000, always=True, root_at_tighter_end=False),
+    SearchStage(FINE, 0.5, 2000),
+    SearchStage(FINER, 0.5, 4000),
+    SearchStage(FINE, 0.5, 2000, always=True, root_at_tighter_end=False),
+    SearchStage(EXHAUSTIVE, 0.5, 5000),
+    SearchStage(FINE, 0.3, 2000),
+    SearchStage(EXHAUSTIVE, 0.3, 10000),
+    SearchStage(EXHAUSTIVE, 0.2, 5000),
+    SearchStage(FINER, 0.2, 2000, always=True, root_at_tighter_end=False),
+)
+"""Coarse searches first; where the wished margin cannot be kept, a half, a third and a fifth of it."""
+CLEARANCE_RESERVE = 0.001
+"""The margin is so much [m] less than the clearance at start and goal."""
+MIN_MARGIN = 0.002
+"""Least margin [m] of a search. A sweep finds contact only where it keeps a margin above the rounding of the tree's
+poses (single precision: under 0.1 mm), and its steps shrink with the margin."""
+REGION_MARGIN = 15.0
+"""The window reaches so far [m] beyond start and goal."""
+EDGE_CELL = 2.0
+COST_TO_GO_CELL = 0.4
+
+
+def search_region(request: PlanningRequest) -> SearchRegion:
+    """Return the search region of a request, in a frame whose origin is the goal."""
+    x = request.start.x - request.goal.x
+    y = request.start.y - request.goal.y
+    across = abs(x) if abs(x) > abs(y) else abs(y)
+    side = across + 2.0 * REGION_MARGIN
+    edge_cell = side / EDGE_CELLS if side > EDGE_CELL * EDGE_CELLS else EDGE_CELL
+    cost_to_go = side / COST_TO_GO_CELLS if side > COST_TO_GO_CELL * COST_TO_GO_CELLS else COST_TO_GO_CELL
+    edge_cell_count = math.floor(side / edge_cell)
+    cost_to_go_count = math.floor(side / cost_to_go)
+    return SearchRegion(
+        0.5 * (x - side), 0.5 * (y - side), side, edge_cell, edge_cell_count, cost_to_go, cost_to_go_count
+    )
+
+
+def search_problem(work: PlanningWork, request: PlanningRequest) -> SearchProblem:
+    """Return the search of the stage in hand."""
+    stage = SEARCH_SCHEDULE[work.counts[STAGE]]
+    start = Pose(request.start.x - request.goal.x, request.start.y - request.goal.y, request.start.heading)
+    goal = Pose(0.0, 0.0, request.goal.heading)
+    wished = request.margin * stage.margin_fraction
+    clearance = work.values[MIN_END_CLEARANCE] - CLEARANCE_RESERVE
+    margin = wished if wished < clearance else clearance
+    margin = margin if margin > MIN_MARGIN else MIN_MARGIN
+    from_goal = stage.root_at_tighter_end == (work.counts[GOAL_TIGHTER] == 1)
+    root = goal if from_goal else start
+    target = start if from_goal else goal
+    return SearchProblem(root, target, request.car, search_region(request), from_goal, margin, stage)

@@ -1,0 +1,99 @@
+"""The search tree in its work arrays: nodes, the table that finds them by pose, the queue; only these write to them."""
+
+from controller_fmu.parking.planning.problem import Successor
+from controller_fmu.parking.planning.work import (
+    BEST_CODE,
+    BEST_COST,
+    BEST_LENGTHS,
+    BEST_NODE,
+    BUCKETS,
+    CROWDING_CELLS,
+    LOWEST_BUCKET,
+    NODE_COUNT,
+    NONE,
+    SLOTS,
+    TREE_COUNTS,
+    PlanningWork,
+)
+
+
+def clear_tree(work: PlanningWork) -> None:
+    """Empty tree, table and queue."""
+    for slot in range(SLOTS):
+        work.slot[slot] = NONE
+    for bucket in range(BUCKETS):
+        work.bucket[bucket] = NONE
+    for region in range(CROWDING_CELLS):
+        work.crowding[region] = 0
+    for which in range(TREE_COUNTS):
+        work.counts[which] = 0
+    work.counts[LOWEST_BUCKET] = BUCKETS
+    work.counts[BEST_NODE] = NONE
+
+
+def add_node(work: PlanningWork, successor: Successor, key: int, slot: int) -> int:
+    """Add a node to the tree and to its slot of the table; returns its number."""
+    node = work.counts[NODE_COUNT]
+    work.counts[NODE_COUNT] = node + 1
+    work.node_x[node] = successor.pose.x
+    work.node_y[node] = successor.pose.y
+    work.node_heading[node] = successor.pose.heading
+    work.node_cost[node] = successor.cost
+    work.node_length[node] = successor.distance
+    work.node_curvature[node] = successor.curvature
+    work.node_parent[node] = successor.parent
+    work.node_key[node] = key
+    work.node_state[node] = 0
+    work.node_cost_estimate[node] = 0.0
+    work.node_slot[node] = work.slot[slot]
+    work.slot[slot] = node
+    return node
+
+
+def set_cost_estimate(work: PlanningWork, node: int, rest: float) -> None:
+    """Set what the distance from a node to the target is thought to cost [m]."""
+    work.node_cost_estimate[node] = rest
+
+
+def count_expansion(work: PlanningWork, region: int) -> None:
+    """Count a region once more."""
+    if work.crowding[region] < 30000:
+        work.crowding[region] += 1
+
+
+def set_state(work: PlanningWork, node: int, state: int) -> None:
+    """Set what has been done with a node."""
+    work.node_state[node] = state
+
+
+def push_bucket(work: PlanningWork, node: int, bucket: int) -> None:
+    """Put a node first into a bucket."""
+    work.node_queue[node] = work.bucket[bucket]
+    work.bucket[bucket] = node
+    if bucket < work.counts[LOWEST_BUCKET]:
+        work.counts[LOWEST_BUCKET] = bucket
+
+
+def pop_lowest(work: PlanningWork) -> int:
+    """Take the first node out of the lowest bucket that has any; returns it, or ``NONE``."""
+    bucket = work.counts[LOWEST_BUCKET]
+    while bucket < BUCKETS and work.bucket[bucket] == NONE:
+        bucket += 1
+    work.counts[LOWEST_BUCKET] = bucket
+    if bucket >= BUCKETS:
+        return NONE
+    node = work.bucket[bucket]
+    work.bucket[bucket] = work.node_queue[node]
+    return node
+
+
+def set_best(work: PlanningWork, node: int, word: int, cost: float) -> None:
+    """Remember the best distance to the target: along the tree to ``node``, then along ``word``."""
+    work.counts[BEST_NODE] = node
+    work.counts[BEST_CODE] = work.word_code[word]
+    work.values[BEST_COST] = cost
+    work.values[BEST_LENGTHS] = work.word_a[word]
+    work.values[BEST_LENGTHS + 1] = work.word_b[word]
+    work.values[BEST_LENGTHS + 2] = work.word_c[word]
+    work.values[BEST_LENGTHS + 3] = work.word_d[word]
+    work.values[BEST_LENGTHS + 4] = work.word_e[word]

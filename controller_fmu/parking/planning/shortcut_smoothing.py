@@ -1,0 +1,204 @@
+"""The path that a search has found, made shorter: spans of it replaced by cheaper words that are free."""
+
+from controller_fmu.parking.geometry.outline import pose_along_arc
+from controller_fmu.parking.planning.analytic_expansion import cheapest_word, is_word_collision_free, word_length
+from controller_fmu.parking.planning.problem import CUSP_COST, STEERING_COST, SearchProblem
+from controller_fmu.parking.planning.reeds_shepp import list_words
+from controller_fmu.parking.planning.work import (
+    BEST_CODE,
+    BEST_LENGTHS,
+    BEST_NODE,
+    HAS_GAINED,
+    NONE,
+    PASS_COUNT,
+    SEGMENT_COUNT,
+    SEGMENTS,
+    SPAN,
+    SPAN_START,
+    PlanningWork,
+    discard_word,
+    move_segments,
+    set_count,
+    set_segment,
+)
+from modelkit.maths import sign
+from modelkit.vocabulary import Pose
+
+MAX_SPAN = 12
+MAX_PASSES = 4
+MAX_TRIES = 4
+MIN_GAIN = 0.01
+"""A word has to be cheaper by so much [m]."""
+SAME_CURVATURE = 1e-9
+
+
+def begin_smoothing(work: PlanningWork, problem: SearchProblem) -> None:
+    """Copy the distance that was found from tree and word to the segments of the path."""
+    set_count(work, SEGMENT_COUNT, 0)
+    depth = 0
+    node = work.counts[BEST_NODE]
+    while node != NONE and work.node_parent[node] != NONE:
+        depth += 1
+        node = work.node_parent[node]
+    pose = problem.root
+    for level in range(depth):
+        node = work.counts[BEST_NODE]
+        for _ in range(depth - 1 - level):
+            node = work.node_parent[node]
+        pose = append_segment(work, pose, work.node_length[node], work.node_curvature[node])
+    rest = work.counts[BEST_CODE]
+    for number in range(5):
+        k = (rest % 3 - 1) * problem.car.max_curvature
+        rest = rest // 3
+        pose = append_segment(work, pose, work.values[BEST_LENGTHS + number], k)
+    set_count(work, SPAN, work.counts[SEGMENT_COUNT])
+    set_count(work, SPAN_START, 0)
+    set_count(work, HAS_GAINED, 0)
+    set_count(work, PASS_COUNT, 0)
+
+
+def append_segment(work: PlanningWork, pose: Pose, distance: float, k: float) -> Pose:
+    """Add a segment to the end of the path, or to its last segment if that goes on alike; returns where it ends."""
+    count = work.counts[SEGMENT_COUNT]
+    if distance == 0.0 or count >= SEGMENTS:
+        return pose
+    if count > 0:
+        last = work.segment_length[count - 1]
+        if last * distance > 0.0 and abs(work.segment_curvature[count - 1] - k) < SAME_CURVATURE:
+            begin = pose_at(work, count - 1)
+            set_segment(work, count - 1, begin, last + distance, k)
+            return pose_along_arc(begin, last + distance, k)
+    set_segment(work, count, pose, distance, k)
+    set_count(work, SEGMENT_COUNT, count + 1)
+    return pose_along_arc(pose, distance, k)
+
+
+def smooth(work: PlanningWork, problem: SearchProblem) -> bool:
+    """Try the next span; returns whether there is more to try."""
+    count = work.counts[SEGMENT_COUNT]
+    span = work.counts[SPAN]
+    place = work.counts[SPAN_START]
+    if place + span > count:
+        span = span - 1 if span <= count else count
+        place = 0
+    if span > MAX_SPAN:
+        span = MAX_SPAN
+    if span < 2:
+        if work.counts[HAS_GAINED] == 0 or work.counts[PASS_COUNT] >= MAX_PASSES:
+            return False
+        set_count(work, HAS_GAINED, 0)
+        set_count(work, PASS_COUNT, work.counts[PASS_COUNT] + 1)
+        set_count(work, SPAN, count)
+        set_count(work, SPAN_START, 0)
+        return True
+    replaced = _replace_span(work, place, span, problem)
+    set_count(work, SPAN, span)
+    set_count(work, SPAN_START, place if replaced else place + 1)
+    if replaced:
+        set_count(work, HAS_GAINED, 1)
+    return True
+
+
+def pose_at(work: PlanningWork, segment: int) -> Pose:
+    """Return where a segment of the path begins."""
+    return Pose(work.segment_x[segment], work.segment_y[segment], work.segment_heading[segment])
+
+
+def end_of(work: PlanningWork, segment: int) -> Pose:
+    """Return where a segment of the path ends."""
+    return pose_along_arc(pose_at(work, segment), work.segment_length[segment], work.segment_curvature[segment])
+
+
+def joint_cost(distance: float, k: float, next_way: float, next_k: float, problem: SearchProblem) -> float:
+    """Return the cost [m] of going on from one segment to the next."""
+    cost = abs(next_k - k) / problem.car.max_curvature * STEERING_COST
+    return cost + CUSP_COST if distance * next_way < 0.0 else cost
+
+
+def span_cost(work: PlanningWork, place: int, span: int, problem: SearchProblem) -> float:
+    """Return the cost [m] of some segments of the path with the joints at their ends."""
+    count = work.counts[SEGMENT_COUNT]
+    cost = 0.0
+    for segment in range(place, place + span):
+        cost += abs(work.segment_length[segment])
+    for segment in range(place, place + span + 1):
+        if segment == 0:
+            cost += abs(work.segment_curvature[segment]) / problem.car.max_curvature * STEERING_COST
+        elif segment < count:
+            before = segment - 1
+            cost += joint_cost(
+                work.segment_length[before],
+                work.segment_curvature[before],
+                work.segment_length[segment],
+                work.segment_curvature[segment],
+                problem,
+            )
+    return cost
+
+
+def path_cost(work: PlanningWork, problem: SearchProblem) -> float:
+    """Return the cost [m] of the path."""
+    return span_cost(work, 0, work.counts[SEGMENT_COUNT], problem)
+
+
+def _replace_span(work: PlanningWork, place: int, span: int, problem: SearchProblem) -> bool:
+    """Replace some segments by the cheapest free word if that is cheaper; returns whether it was."""
+    count = work.counts[SEGMENT_COUNT]
+    start = pose_at(work, place)
+    end = end_of(work, place + span - 1)
+    gear = sign(work.segment_length[place - 1]) if place > 0 else 0.0
+    lock = work.segment_curvature[place - 1] / problem.car.max_curvature if place > 0 else 0.0
+    limit = span_cost(work, place, span, problem) - MIN_GAIN
+    words = list_words(work, start, end, gear, lock, problem)
+    tries = 0
+    while tries < MAX_TRIES:
+        word = cheapest_word(work, words)
+        if work.word_cost[word] >= limit:
+            return False
+        cost = work.word_cost[word]
+        if place + span < count:
+            cost += _cost_after(work, word, place + span, problem)
+        if cost < limit:
+            tries += 1
+            if is_word_collision_free(work, word, start, problem):
+                return _set_span(work, place, span, word, problem)
+        discard_word(work, word)
+    return False
+
+
+def _cost_after(work: PlanningWork, word: int, segment: int, problem: SearchProblem) -> float:
+    """Return the cost [m] of going on from a word to a segment of the path."""
+    rest = work.word_code[word]
+    distance = 0.0
+    k = 0.0
+    for number in range(5):
+        if word_length(work, word, number) != 0.0:
+            distance = word_length(work, word, number)
+            k = (rest % 3 - 1) * problem.car.max_curvature
+        rest = rest // 3
+    return joint_cost(distance, k, work.segment_length[segment], work.segment_curvature[segment], problem)
+
+
+def _set_span(work: PlanningWork, place: int, span: int, word: int, problem: SearchProblem) -> bool:
+    """Put a word in place of some segments; returns whether there was room."""
+    count = work.counts[SEGMENT_COUNT]
+    used = 0
+    for number in range(5):
+        if word_length(work, word, number) != 0.0:
+            used += 1
+    if count + used - span > SEGMENTS:
+        return False
+    pose = pose_at(work, place)
+    move_segments(work, place + span, count - place - span, used - span)
+    rest = work.word_code[word]
+    segment = place
+    for number in range(5):
+        distance = word_length(work, word, number)
+        k = (rest % 3 - 1) * problem.car.max_curvature
+        rest = rest // 3
+        if distance != 0.0:
+            set_segment(work, segment, pose, distance, k)
+            pose = pose_along_arc(pose, distance, k)
+            segment += 1
+    set_count(work, SEGMENT_COUNT, count + used - span)
+    return True

@@ -1,0 +1,231 @@
+"""The work arrays of a search and functions that write to them; those of the tree are in ``search_tree.py``."""
+
+from typing import Annotated, NamedTuple
+
+from controller_fmu.parking.planning.problem import VERTICES
+from modelkit.geometry import Point
+from modelkit.store import Column, Floats, Ints
+from modelkit.vocabulary import Pose
+
+EDGES = 512
+EDGE_CELLS = 64
+EDGE_ITEMS = 32768
+COST_TO_GO_CELLS = 128
+NODES = 20_000
+SLOTS = 32768
+"""Of the hash table, a power of two."""
+BUCKETS = 2048
+CROWDING_CELLS = 8192
+WORDS = 128
+SEGMENTS = 256
+REQUESTED = 11
+NONE = -1
+
+
+class PlanningWork(NamedTuple):
+    """Edges with their rasters, the tree with its table and queue, the words tried, the path found.
+
+    All of these are a memo: they follow from the request and the number of steps.
+    """
+
+    edge_x1: Annotated[Floats, Column("d", EDGES, "m", "x of an edge's first end")]
+    edge_y1: Annotated[Floats, Column("d", EDGES, "m", "y of an edge's first end")]
+    edge_x2: Annotated[Floats, Column("d", EDGES, "m", "x of an edge's second end")]
+    edge_y2: Annotated[Floats, Column("d", EDGES, "m", "y of an edge's second end")]
+    cell_start: Annotated[Ints, Column("i", EDGE_CELLS * EDGE_CELLS + 1, "1", "where a cell's list of edges begins")]
+    cell_edge: Annotated[Ints, Column("h", EDGE_ITEMS, "1", "edges by cell")]
+    cost_to_go: Annotated[Floats, Column("f", COST_TO_GO_CELLS * COST_TO_GO_CELLS, "m", "way of a point to the target")]
+    cost_to_go_next: Annotated[
+        Ints, Column("i", COST_TO_GO_CELLS * COST_TO_GO_CELLS, "1", "next cell of the same bucket")
+    ]
+    bucket: Annotated[Ints, Column("i", BUCKETS, "1", "first node, or cell, of a bucket of the queue")]
+    slot: Annotated[Ints, Column("i", SLOTS, "1", "first node of a slot of the hash table")]
+    node_x: Annotated[Floats, Column("f", NODES, "m", "x of the rear axle")]
+    node_y: Annotated[Floats, Column("f", NODES, "m", "y of the rear axle")]
+    node_heading: Annotated[Floats, Column("f", NODES, "rad", "heading")]
+    node_cost: Annotated[Floats, Column("f", NODES, "m", "cost from the root")]
+    node_cost_estimate: Annotated[
+        Floats, Column("f", NODES, "m", "what the way from it to the target is thought to cost")
+    ]
+    node_length: Annotated[Floats, Column("f", NODES, "m", "way from the parent, reverse negative")]
+    node_curvature: Annotated[Floats, Column("f", NODES, "1/m", "curvature of that way")]
+    node_parent: Annotated[Ints, Column("h", NODES, "1", "the node before")]
+    node_key: Annotated[Ints, Column("i", NODES, "1", "cell of poses")]
+    node_queue: Annotated[Ints, Column("h", NODES, "1", "next node of the same bucket")]
+    node_slot: Annotated[Ints, Column("h", NODES, "1", "next node of the same slot")]
+    node_state: Annotated[Ints, Column("h", NODES, "1", "0 guessed, 1 looked at, 2 done with")]
+    crowding: Annotated[Ints, Column("h", CROWDING_CELLS, "1", "how often nodes of a region have been taken up")]
+    word_cost: Annotated[Floats, Column("d", WORDS, "m", "cost of a word")]
+    word_code: Annotated[Ints, Column("i", WORDS, "1", "its turns, digits to the base of 3")]
+    word_a: Annotated[Floats, Column("d", WORDS, "m", "way of its first piece")]
+    word_b: Annotated[Floats, Column("d", WORDS, "m", "way of its second piece")]
+    word_c: Annotated[Floats, Column("d", WORDS, "m", "way of its third piece")]
+    word_d: Annotated[Floats, Column("d", WORDS, "m", "way of its fourth piece")]
+    word_e: Annotated[Floats, Column("d", WORDS, "m", "way of its fifth piece")]
+    segment_length: Annotated[Floats, Column("d", SEGMENTS, "m", "way of a piece of the path")]
+    segment_curvature: Annotated[Floats, Column("d", SEGMENTS, "1/m", "its curvature")]
+    segment_x: Annotated[Floats, Column("d", SEGMENTS, "m", "x where it begins")]
+    segment_y: Annotated[Floats, Column("d", SEGMENTS, "m", "y where it begins")]
+    segment_heading: Annotated[Floats, Column("d", SEGMENTS, "rad", "heading where it begins")]
+    best_length: Annotated[Floats, Column("d", SEGMENTS, "m", "way of a piece of the best path yet")]
+    best_curvature: Annotated[Floats, Column("d", SEGMENTS, "1/m", "its curvature")]
+    best_clearance: Annotated[Floats, Column("d", SEGMENTS, "m", "room about its begin: see Piece")]
+    corner_x: Annotated[Floats, Column("d", VERTICES, "m", "x of a corner of the scene asked about")]
+    corner_y: Annotated[Floats, Column("d", VERTICES, "m", "its y")]
+    corner_of: Annotated[Ints, Column("i", VERTICES, "1", "its polygon")]
+    requested: Annotated[Floats, Column("d", REQUESTED, "1", "the numbers of the request")]
+    counts: Annotated[Ints, Column("i", 32, "1", "counts and places, see below")]
+    values: Annotated[Floats, Column("d", 32, "1", "numbers, see below")]
+
+
+NODE_COUNT = 0
+LOWEST_BUCKET = 1
+"""Bucket of the queue below which all are empty."""
+EXPANSIONS = 2
+BEST_NODE = 3
+BEST_CODE = 4
+FIRST_FOUND_AT = 5
+"""Expansions until the first distance was found."""
+SEGMENT_COUNT = 6
+SPAN = 7
+SPAN_START = 8
+HAS_GAINED = 9
+PASS_COUNT = 10
+EVALUATIONS = 11
+TREE_COUNTS = 12
+"""So many are of one search."""
+COUNT = 19
+"""Steps done for the request."""
+PHASE = 12
+STAGE = 13
+STATUS = 14
+EDGE_COUNT = 15
+BEST_SEGMENT_COUNT = 16
+BEST_STAGE = 17
+GOAL_TIGHTER = 18
+MEASURED_SEGMENTS = 20
+"""Segments of the path kept about whose begin the room is known."""
+
+BEST_COST = 0
+BEST_LENGTHS = 1
+"""And four more: the lengths of the word that leads from the best node to the target."""
+FREE_AT_TARGET = 6
+"""And five more: how far the car can drive from the target, by gear and turn."""
+FREE_AT_NODE = 12
+"""And nine more: the same at the node in hand, by gear and five turns."""
+MIN_END_CLEARANCE = 22
+"""Clearance [m] at start or goal, whichever has less."""
+BEST_PATH_COST = 23
+BEST_PATH_MARGIN = 24
+
+
+def set_count(work: PlanningWork, which: int, value: int) -> None:
+    """Set one of the counts and places."""
+    work.counts[which] = value
+
+
+def set_value(work: PlanningWork, which: int, value: float) -> None:
+    """Set one of the numbers."""
+    work.values[which] = value
+
+
+def set_edge(work: PlanningWork, edge: int, start: Point, end: Point) -> None:
+    """Set an edge."""
+    work.edge_x1[edge] = start.x
+    work.edge_y1[edge] = start.y
+    work.edge_x2[edge] = end.x
+    work.edge_y2[edge] = end.y
+
+
+def set_cell_start(work: PlanningWork, cell: int, place: int) -> None:
+    """Set where a cell's list of edges begins."""
+    work.cell_start[cell] = place
+
+
+def set_cell_edge(work: PlanningWork, place: int, edge: int) -> None:
+    """Set an item of the lists of edges."""
+    work.cell_edge[place] = edge
+
+
+def clear_cost_to_go(work: PlanningWork, cells: int) -> None:
+    """Make every cell of the cost-to-go grid free and unmeasured."""
+    for cell in range(cells):
+        work.cost_to_go[cell] = 1e6
+        work.cost_to_go_next[cell] = -2
+
+
+def set_cost_to_go(work: PlanningWork, cell: int, distance: float) -> None:
+    """Set a cell's distance to the target."""
+    work.cost_to_go[cell] = distance
+
+
+def set_next_cell(work: PlanningWork, cell: int, after: int) -> None:
+    """Set the cell after this one in its bucket."""
+    work.cost_to_go_next[cell] = after
+
+
+def set_bucket(work: PlanningWork, bucket: int, first: int) -> None:
+    """Set the first of a bucket."""
+    work.bucket[bucket] = first
+
+
+def set_word(
+    work: PlanningWork, word: int, code: int, cost: float, lengths: tuple[float, float, float, float, float]
+) -> None:
+    """Set a word."""
+    work.word_code[word] = code
+    work.word_cost[word] = cost
+    work.word_a[word] = lengths[0]
+    work.word_b[word] = lengths[1]
+    work.word_c[word] = lengths[2]
+    work.word_d[word] = lengths[3]
+    work.word_e[word] = lengths[4]
+
+
+def discard_word(work: PlanningWork, word: int) -> None:
+    """Take a word out of the choice."""
+    work.word_cost[word] = 1e9
+
+
+def set_segment(work: PlanningWork, segment: int, pose: Pose, distance: float, k: float) -> None:
+    """Set a segment of the path that begins at ``pose``."""
+    work.segment_length[segment] = distance
+    work.segment_curvature[segment] = k
+    work.segment_x[segment] = pose.x
+    work.segment_y[segment] = pose.y
+    work.segment_heading[segment] = pose.heading
+
+
+def move_segments(work: PlanningWork, start: int, count: int, by: int) -> None:
+    """Move ``count`` segments of the path from ``start`` on by some places."""
+    for number in range(count):
+        segment = start + (number if by < 0 else count - 1 - number)
+        work.segment_length[segment + by] = work.segment_length[segment]
+        work.segment_curvature[segment + by] = work.segment_curvature[segment]
+        work.segment_x[segment + by] = work.segment_x[segment]
+        work.segment_y[segment + by] = work.segment_y[segment]
+        work.segment_heading[segment + by] = work.segment_heading[segment]
+
+
+def set_vertex(work: PlanningWork, vertex: int, x: float, y: float, polygon: int) -> None:
+    """Remember a vertex of the scene."""
+    work.corner_x[vertex] = x
+    work.corner_y[vertex] = y
+    work.corner_of[vertex] = polygon
+
+
+def set_requested(work: PlanningWork, which: int, value: float) -> None:
+    """Remember a number of the request."""
+    work.requested[which] = value
+
+
+def set_best_segment(work: PlanningWork, segment: int, distance: float, k: float) -> None:
+    """Set a segment of the best path yet; of its room nothing is known."""
+    work.best_length[segment] = distance
+    work.best_curvature[segment] = k
+    set_clearance(work, segment, 0.0)
+
+
+def set_clearance(work: PlanningWork, segment: int, clearance: float) -> None:
+    """Set what room there is where a segment of the best path begins."""
+    work.best_clearance[segment] = clearance

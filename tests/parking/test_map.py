@@ -1,0 +1,173 @@
+"""The map: the filter against numpy, and estimates with their covariance over simulated passes."""
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+
+from controller_fmu.parking.map.free_space import is_free
+from controller_fmu.parking.map.landmark import (
+    LANDMARKS,
+    Landmark,
+    LandmarkType,
+    along_of,
+    length_of,
+    offset_of,
+    offset_variance,
+    segment_point,
+)
+from controller_fmu.parking.map.local_map import LandmarkMap, update_map
+from controller_fmu.parking.map.params import MappingParams
+from controller_fmu.parking.map.prediction import predict_landmark
+from controller_fmu.parking.map.update import Gradient, line_gradient, update_landmark
+from modelkit.geometry import Box
+from modelkit.maths import wrap_angle
+from modelkit.vocabulary import Pose
+from tests.parking.simulated_pass import CAR, Odometry, drive_past
+
+PARAMS = MappingParams()
+PERPENDICULAR = [Box(x, -2.25, 0.0, 1.8, 4.5) for x in (-3.6, -0.9, 4.5, 7.2)]
+PARALLEL = [Box(x, -0.9, 0.0, 4.4, 1.8) for x in (-2.2, 8.4)]
+
+
+def covariance(landmark: Landmark) -> Any:
+    return np.array(
+        [
+            [landmark.xx, landmark.xy, landmark.xh],
+            [landmark.xy, landmark.yy, landmark.yh],
+            [landmark.xh, landmark.yh, landmark.hh],
+        ]
+    )
+
+
+SEGMENT = Landmark(
+    LandmarkType.SEGMENT, 1.0, 2.0, 0.3, xx=0.02, xy=0.004, xh=0.001, yy=0.03, yh=-0.002, hh=0.005, start=-1.0, end=1.0
+)
+
+
+def test_update_is_the_kalman_filter_of_the_textbook() -> None:
+    h = Gradient(0.3, -0.8, 0.5)
+    updated = update_landmark(SEGMENT, h, 0.07, 1e-3)
+    p, row = covariance(SEGMENT), np.array([[0.3, -0.8, 0.5]])
+    s = row @ p @ row.T + 1e-3
+    k = p @ row.T / s
+    x = np.array([SEGMENT.x, SEGMENT.y, SEGMENT.heading]) + (k * 0.07)[:, 0]
+    assert (updated.x, updated.y, updated.heading) == pytest.approx(tuple(x))
+    assert covariance(updated) == pytest.approx((np.eye(3) - k @ row) @ p)
+
+
+def test_line_gradient_is_the_derivative_of_the_distance() -> None:
+    h = line_gradient(SEGMENT, 0.4, -0.7)
+    step = 1e-6
+    for name, expected in zip(("x", "y", "heading"), h, strict=True):
+        moved = SEGMENT._replace(**{name: getattr(SEGMENT, name) + step})
+        slope = (abs(offset_of(moved, 0.4, -0.7)) - abs(offset_of(SEGMENT, 0.4, -0.7))) / step
+        assert slope == pytest.approx(expected, abs=1e-5)
+
+
+def test_prediction_turns_a_landmark_about_the_vehicle() -> None:
+    vehicle = Pose(-2.0, 1.0, 0.5)
+    predicted = predict_landmark(SEGMENT, vehicle, 4.0, PARAMS)
+    u = np.array([math.cos(0.5), math.sin(0.5), 0.0])
+    g = np.array([-(SEGMENT.y - vehicle.y), SEGMENT.x - vehicle.x, 1.0])
+    q = 4.0 * (PARAMS.distance_noise**2 * np.outer(u, u) + PARAMS.heading_noise**2 * np.outer(g, g))
+    assert covariance(predicted) == pytest.approx(covariance(SEGMENT) + q)
+
+
+def map_after(boxes: list[Box], seed: int, **drive: Any) -> tuple[LandmarkMap, Pose, Pose]:
+    local_map, true, believed = LandmarkMap(), Pose(), Pose()
+    start = Pose(-9.0, CAR.width / 2 + drive.pop("lateral", 1.0), 0.0)
+    for step in drive_past(boxes, start, drive.pop("distance", 20.0), seed, **drive):
+        true, believed, readings = step
+        local_map = update_map(local_map, readings, believed, CAR.ultrasonic, PARAMS)
+    return local_map, true, believed
+
+
+def sides(local_map: LandmarkMap) -> list[Landmark]:
+    found = [
+        item
+        for item in local_map.landmarks
+        if item.type == LandmarkType.SEGMENT and item.confirmations >= 10 and length_of(item) > 0.6
+    ]
+    return sorted(found, key=lambda item: segment_point(item, item.start).x)
+
+
+def test_a_row_is_as_many_sides_as_cars() -> None:
+    for seed in range(4):
+        found = sides(map_after(PERPENDICULAR, seed)[0])
+        assert len(found) == 4, [(segment_point(item, item.start).x, length_of(item)) for item in found]
+        for side, box in zip(found, PERPENDICULAR, strict=True):
+            assert segment_point(side, side.start).x == pytest.approx(box.x - 0.9, abs=0.25)
+            assert segment_point(side, side.end).x == pytest.approx(box.x + 0.9, abs=0.45)
+
+
+def test_a_gap_between_cars_is_known_free_and_cars_are_not() -> None:
+    local_map = map_after(PERPENDICULAR, 1, distance=14.0)[0]
+    rays = local_map.free_space.right
+    assert is_free(rays, 1.8, -1.5)
+    assert not is_free(rays, 4.5, -1.0)
+
+
+def in_odometry(x: float, y: float, true: Pose, believed: Pose) -> tuple[float, float]:
+    turn = believed.heading - true.heading
+    c, s = math.cos(turn), math.sin(turn)
+    dx, dy = x - true.x, y - true.y
+    return believed.x + c * dx - s * dy, believed.y + s * dx + c * dy
+
+
+def squared_errors(runs: int) -> tuple[list[float], list[float]]:
+    """Normalised squared errors of offset and heading of the best known side of each car."""
+    rng = np.random.default_rng(11)
+    offsets, headings, missed = [], [], 0
+    for seed in range(runs):
+        odometry = Odometry(rng.uniform(-0.004, 0.004), rng.uniform(-0.0008, 0.0008))
+        boxes = PARALLEL if seed % 2 else PERPENDICULAR
+        lateral, speed = rng.uniform(0.6, 1.6), rng.uniform(1.0, 2.7)
+        local_map, true, believed = map_after(boxes, seed, odometry=odometry, lateral=lateral, speed=speed)
+        turn = believed.heading - true.heading
+        for box in boxes:
+            x, y = in_odometry(box.x, 0.0, true, believed)
+            near = [side for side in sides(local_map) if abs(offset_of(side, x, y)) < 0.5]
+            near = [side for side in near if side.start - 0.2 <= along_of(side, x, y) <= side.end + 0.2]
+            if not near:
+                missed += 1
+                continue
+            side = max(near, key=lambda item: item.confirmations)
+            middle = 0.5 * (side.start + side.end)
+            at = segment_point(side, middle)
+            error = (at.y - y) * math.cos(turn) - (at.x - x) * math.sin(turn)
+            offsets.append(error * error / offset_variance(side, middle))
+            error = wrap_angle(side.heading - turn)
+            headings.append(error * error / side.hh)
+    assert missed <= 0.02 * len(offsets)
+    return offsets, headings
+
+
+@pytest.mark.slow
+def test_estimates_are_as_good_as_their_covariance_says() -> None:
+    """Mean normalised squared error: 1 if the covariance is right; the offset is stated too wide rather than too
+    narrow, since the odometry model allows for more drift than these passes have."""
+    offsets, headings = squared_errors(40)
+    band = 1.96 * math.sqrt(2.0 / len(headings))
+    assert np.mean(headings) < 1.0 + band
+    assert 0.2 < np.mean(offsets) < 1.0 + band
+
+
+def test_a_wall_that_is_gone_is_forgotten() -> None:
+    wall = [Box(0.0, -1.0, 0.0, 30.0, 0.2)]
+    local_map, true, _ = map_after(wall, 1)
+    assert sides(local_map)
+    empty = (CAR.ultrasonic.max_range,) * 12
+    for number in range(200):
+        pose = Pose(true.x - 0.1 * number, true.y, true.heading)
+        local_map = update_map(local_map, empty, pose, CAR.ultrasonic, PARAMS)
+    assert sum(length_of(item) for item in sides(local_map)) < 3.0
+
+
+def test_what_is_in_the_blind_zone_is_kept() -> None:
+    near = Landmark(LandmarkType.POINT, 3.25, 0.25, xx=1e-4, yy=1e-4, confirmations=9)
+    local_map = LandmarkMap(landmarks=(near,) + (Landmark(),) * (LANDMARKS - 1), begun=True)
+    for _ in range(20):
+        local_map = update_map(local_map, (CAR.ultrasonic.max_range,) * 12, Pose(), CAR.ultrasonic, PARAMS)
+    assert local_map.landmarks[0].type == LandmarkType.POINT

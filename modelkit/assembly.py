@@ -3,6 +3,11 @@
 They exchange as under a Jacobi master: at time zero and then once a period all outputs are read, all inputs written.
 Between two exchanges the inputs are held, and a step of any length is cut there. What no part offers is an input of
 the whole, which is passed on at every step.
+
+The exchanges are exact at any communication step. A continuous part integrates over the whole time since its memory was
+last brought up to date, from one exchange to the next in one go; in between its outputs come from a copy of its memory
+that is thrown away. Its memory is brought up to date where an input of the whole changes. A sampled part keeps its own
+sample time; it is stepped by each communication step.
 """
 
 from collections.abc import Iterable, Iterator, Mapping
@@ -18,6 +23,8 @@ INPUTS = "_inputs"
 """``<part>_inputs``: the field of the state that holds a part's inputs."""
 LEFT = "to_exchange_ns"
 """The field of the state that says how long it is to the next exchange."""
+BEHIND = "_behind_ns"
+"""``<part>_behind_ns``: the field of the state that says how far the memory of a continuous part is behind."""
 
 
 def assembled(
@@ -40,6 +47,7 @@ def assembled(
     memory |= {f"{part}{INPUTS}": (model.inputs, model.inputs()) for part, model in own.parts} | {
         LEFT: (int, period_ns)
     }
+    memory |= {f"{part}{BEHIND}": (int, 0) for part, model in own.parts if is_integrated(model)}
     params = {part: (model.params, model.first_params()) for part, model in own.parts}
     inputs = {part: (model.inputs, model.inputs()) for part, model in own.parts}
     outputs = {part: (_told(model), model.outputs()) for part, model in own.parts}
@@ -75,6 +83,8 @@ class Together(NamedTuple):
         for name, model in self.assembly.parts:
             memory[name], told[name] = model.initialize(getattr(params, name))
             memory[name + INPUTS] = model.inputs()
+            if is_integrated(model):
+                memory[name + BEHIND] = 0
         self._pass_on(memory, told)
         return self.state(**memory), self.outputs(**told)
 
@@ -86,12 +96,19 @@ class Together(NamedTuple):
         """Return the same, where a part has a store."""
         memory: dict[str, Any] = state._asdict()
         told: dict[str, Any] = {}
+        self._catch_up(memory, inputs, params)
         self._take(memory, inputs)
         while True:
             span_ns = min(dt_ns, memory[LEFT])
             for name, model in self.assembly.parts:
-                own, held = getattr(params, name), memory[name + INPUTS]
-                memory[name], told[name] = model.stepper(store)(memory[name], held, own, span_ns)
+                own, held, behind_ns = getattr(params, name), memory[name + INPUTS], memory.get(name + BEHIND, 0)
+                after, told[name] = model.stepper(store)(memory[name], held, own, behind_ns + span_ns)
+                if is_integrated(model) and span_ns < memory[LEFT]:
+                    memory[name + BEHIND] = behind_ns + span_ns
+                    continue
+                memory[name] = after
+                if is_integrated(model):
+                    memory[name + BEHIND] = 0
             memory[LEFT] -= span_ns
             dt_ns -= span_ns
             if memory[LEFT] == 0:
@@ -99,6 +116,18 @@ class Together(NamedTuple):
                 memory[LEFT] = self.assembly.period_ns
             if dt_ns <= 0:
                 return self.state(**memory), self.outputs(**told)
+
+    def _catch_up(self, memory: dict[str, Any], inputs: Any, params: Any) -> None:
+        """Bring the memory of each part up to date of which an input of the whole changes."""
+        for target, (name, model) in enumerate(self.assembly.parts):
+            if not memory.get(name + BEHIND, 0):
+                continue
+            places = [place for part, place in open_inputs(self.assembly) if part == target]
+            given, held = flatten(inputs[target]), flatten(memory[name + INPUTS])
+            if any(given[place] != held[place] for place in places):
+                own, behind_ns = getattr(params, name), memory[name + BEHIND]
+                memory[name], _ = model.stepper(None)(memory[name], memory[name + INPUTS], own, behind_ns)
+                memory[name + BEHIND] = 0
 
     def _pass_on(self, memory: dict[str, Any], told: Mapping[str, Any]) -> None:
         """Write outputs to the inputs they feed."""
@@ -118,6 +147,14 @@ class Together(NamedTuple):
     def _give(self, memory: dict[str, Any], given: list[list[Any]]) -> None:
         for (name, model), values in zip(self.assembly.parts, given, strict=True):
             memory[name + INPUTS] = constructor(model.inputs)(values)
+
+
+def is_integrated(model: Model) -> bool:
+    """Return whether what a part gives depends on how its time is cut: it is continuous.
+
+    A part with work arrays is stepped as it comes: they are no part of its memory and cannot be thrown away.
+    """
+    return not model.sampled and model.store is None
 
 
 def wires(assembly: Assembly) -> list[Wire]:

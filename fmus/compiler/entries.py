@@ -16,7 +16,7 @@ from modelkit.variables import flatten
 
 NAMES = (
     *("params", "inputs", "outputs", "state", "store", "dt_ns", "next", "clock", "samples", "period_ns", "i"),
-    *("pass_on", "left_ns", "span_ns", "both"),
+    *("pass_on", "left_ns", "span_ns", "both", "between"),
 )
 """What is called so inside the entries, and no function of a model therefore."""
 

@@ -1,5 +1,6 @@
 """A scenario's system as one FMU gives the bits of the pair under our master, and has what an importer looks for."""
 
+import math
 import subprocess
 import sys
 from functools import cache
@@ -17,6 +18,7 @@ from fmus.native import fmu as native_fmu
 from fmus.native.platforms import host as this_platform
 from modelkit.assembly import assembled
 from modelkit.variables import flatten, variables, with_values
+from modelkit.vocabulary import Gear
 from orchestrator.cli import main
 from orchestrator.cosim.fmu_files import can_compile
 from orchestrator.export.system_of import one_model
@@ -37,6 +39,8 @@ MORE_SCENARIOS = (
 )
 CASE = load_scenario("guo2015-case4-105", [])
 STEP = 10_000_000
+FIRST_NS = 21_000_000_000
+"""Simulated time that is compared at several communication steps: a whole number of each."""
 ODD = (3_000_000, 7_000_000, 10_000_000, 17_000_000, 1, 22_999_999, 250_000_000) * 4
 
 
@@ -80,6 +84,27 @@ def test_it_gives_the_bits_of_the_pair_under_the_master(fmus: Any, name: Any) ->
     assert [key for key, values in found.items() if not same(values, expected.signals[key])] == []
 
 
+@pytest.mark.parametrize("milliseconds", [1, 2, 3, 7])
+@pytest.mark.parametrize("name", [*SCENARIOS, pytest.param("valet-parallel", marks=pytest.mark.slow)])
+def test_its_exchanges_are_exact_at_any_communication_step(name: Any, milliseconds: int) -> None:
+    scenario = load_scenario(name, [])
+    model, library = pair(scenario.step_ns, models_for(scenario.controller)["controller"])
+    given = {f"{part}.{key}": value for part in MODELS for key, value in scenario.given(part).items()}
+    params = np.array(flatten(with_values(model.params, given)), dtype=float)
+
+    def rows(step_ns: int) -> Any:
+        return library(params, np.zeros((FIRST_NS // step_ns + 1, len(variables(model.inputs)))), step_ns)
+
+    step_ns = milliseconds * 1_000_000
+    both_ns = math.lcm(step_ns, scenario.step_ns)
+    expected = rows(scenario.step_ns)[:: both_ns // scenario.step_ns]
+    found = rows(step_ns)[:: both_ns // step_ns]
+    assert len(found) == len(expected) > 100
+    assert [
+        key for key, values in zip(names(model.outputs), found.T == expected.T, strict=True) if not all(values)
+    ] == []
+
+
 def test_the_container_of_fmi_2_gives_them(containers: Any, recording: Any) -> None:
     model = one_model(CASE)
     order = [item.name for item in variables(model.outputs) if model.shows(item.name)]
@@ -104,8 +129,9 @@ def test_the_container_of_fmi_3_gives_them(containers: Any, recording: Any, tmp_
     assert [key for key, values in found.items() if not same(values, recording.signals[key])] == []
 
 
-def test_its_python_gives_the_bits_of_its_c_at_steps_of_any_length() -> None:
-    """Steps within, on and across the exchanges."""
+@pytest.mark.parametrize("driver_changes", [False, True])
+def test_its_python_gives_the_bits_of_its_c_at_steps_of_any_length(driver_changes: bool) -> None:
+    """Steps within, on and across the exchanges, and inputs that change in between."""
     model, played = pair(STEP)
     params = with_values(model.params, {f"vehicle.{key}": value for key, value in CASE.given("vehicle").items()})
     (state, outputs), inputs = model.initialize(params), model.inputs()
@@ -113,11 +139,17 @@ def test_its_python_gives_the_bits_of_its_c_at_steps_of_any_length() -> None:
     told, given = np.empty(played.count), np.array(flatten(inputs), dtype=float)
     flat = np.array(flatten(params), dtype=float)
     library.model_start(memory.ctypes.data, flat.ctypes.data, told.ctypes.data)
-    for dt_ns in ODD:
+    for number, dt_ns in enumerate(ODD):
+        if driver_changes:
+            pedals = {"accelerator": 0.1 * (number % 3), "brake": 0.2 * (number % 2)}
+            person = inputs.vehicle.person._replace(drives=True, lever=Gear.DRIVE, **pedals)
+            inputs = inputs._replace(vehicle=inputs.vehicle._replace(person=person))
+            given = np.array(flatten(inputs), dtype=float)
         assert same(told, np.array(flatten(outputs), dtype=float))
         state, outputs = model.step(state, inputs, params, dt_ns)
         library.model_step(memory.ctypes.data, given.ctypes.data, told.ctypes.data, dt_ns)
     assert same(told, np.array(flatten(outputs), dtype=float))
+    assert outputs.vehicle.distance > 0.01
     assert state.to_exchange_ns == STEP - sum(ODD) % STEP
 
 

@@ -17,6 +17,8 @@ from orchestrator.text.failures import verdict_stands
 from orchestrator.text.owned import owned
 
 if TYPE_CHECKING:
+    from rich.table import Table as RichTable
+
     from orchestrator.sweep.study.study import Study
     from orchestrator.sweep.sweep import Swept
 
@@ -33,6 +35,8 @@ EXAMPLES = """examples:
 A study is made of a scenario and of what is varied: grid, monte_carlo, latin_hypercube; see docs/sweeps.md.
 Shipped ones are in `apa list`; some print tables of their own.
 """
+MAX_OUTCOMES = 10
+"""Rows of the table of outcomes that is printed; the page has twice as many."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -169,8 +173,27 @@ def _print(swept: "Swept", written: dict[str, Path], study: str) -> None:
         screen.print(f"{swept.made} runs in {swept.seconds:.1f} s, {rate:.0f} a second ({swept.engine})", markup=False)
     if swept.table is None:
         screen.print(f"{swept.done} of {swept.count} runs are kept; go on with: apa sweep {study} --resume")
+    if swept.table is not None:
+        screen.print(_outcome_table(swept.table))
     for name, path in written.items():
         screen.print(f"{name} in {path}", markup=False)
+
+
+def _outcome_table(path: Path) -> "RichTable":
+    """Return the outcomes of a study as a table: how many runs end how, with Wilson's 95 % interval."""
+    from rich.markup import escape
+    from rich.table import Table as RichTable
+
+    from orchestrator.sweep.page.statistics import outcome_counts
+    from orchestrator.sweep.table import Table
+
+    shown = RichTable(box=None, pad_edge=False)
+    for name in ("outcome", "reason", "runs", "share", "95 % interval"):
+        shown.add_column(name, justify="left" if name in ("outcome", "reason") else "right")
+    for item in outcome_counts(Table(path), most=MAX_OUTCOMES):
+        interval = f"{100.0 * item.low:.2f} to {100.0 * item.high:.2f} %"
+        shown.add_row(item.outcome, escape(item.reason), str(item.runs), f"{100.0 * item.share:.2f} %", interval)
+    return shown
 
 
 def _replay_worst(path: Path, count: int) -> None:

@@ -8,12 +8,24 @@ import numpy as np
 import pytest
 
 from orchestrator.cli import main
+from orchestrator.scenario.scenario import Scenario
 from orchestrator.sweep.page.figures import SCALE, colour, histogram
 from orchestrator.sweep.page.page import study_page
 from orchestrator.sweep.page.picture import draw_maps
-from orchestrator.sweep.page.statistics import axis, influences, maps, variance_share, varied, worst
+from orchestrator.sweep.page.statistics import (
+    axis,
+    deciding_limit,
+    influences,
+    maps,
+    outcome_counts,
+    variance_share,
+    varied,
+    worst,
+)
 from orchestrator.sweep.table import Table
+from orchestrator.text.readable import readable
 from orchestrator.verdict.confidence import wilson
+from orchestrator.verdict.limit_text import asked
 
 EVIL = "<script>window.evil = 1</script><img src=x onerror='window.evil = 1'>"
 STUDY = """
@@ -155,3 +167,28 @@ def test_the_page_in_a_browser(folder: Any, browser: Any, width: int) -> None:
     assert seen == []
     assert requests == [(folder / "trial.html").as_uri()]
     page.close()
+
+
+def test_the_outcomes_are_printed_with_their_share(folder: Any, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["sweep", str(folder / "trial.yaml"), "--out", str(folder), "--resume", "--no-page"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    counts = outcome_counts(Table(folder / "trial.parquet"))
+    assert sum(item.runs for item in counts) == Table(folder / "trial.parquet").count
+    head = next(place for place, line in enumerate(lines) if line.split()[:2] == ["outcome", "reason"])
+    first = lines[head + 1]
+    assert first.startswith(counts[0].outcome)
+    assert f" {counts[0].runs} " in first
+    assert f"{100 * counts[0].share:.2f} %" in first
+
+
+def test_the_deciding_limit_is_the_one_violated_most(table: Any) -> None:
+    number = worst(table, 1)[0]
+    row = table.row(number)
+    text = deciding_limit(table, number)
+    violations = {}
+    for item in Scenario(**table.job.scenario).limits:
+        if item.required and row.get(item.signal) is not None and not isinstance(item.limit, str):
+            beyond = item.limit - row[item.signal] if item.condition == "min" else abs(row[item.signal]) - item.limit
+            violations[f"{item.id}: {readable(row[item.signal], 'm')} ({asked(item)})"] = beyond / abs(item.limit)
+    assert text == max(violations, key=lambda key: violations[key])
+    assert violations[text] > 0.0

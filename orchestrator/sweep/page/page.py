@@ -14,7 +14,17 @@ from fmus.files import write_whole
 from orchestrator.report.page import still_page
 from orchestrator.scenario.scenario import DONE, MISSED
 from orchestrator.sweep.page.figures import histogram, scale_bar, success_map
-from orchestrator.sweep.page.statistics import done, for_people, influences, maps, varied, word, worst
+from orchestrator.sweep.page.statistics import (
+    deciding_limit,
+    done,
+    for_people,
+    influences,
+    maps,
+    outcome_counts,
+    varied,
+    word,
+    worst,
+)
 from orchestrator.sweep.table import Table
 from orchestrator.sweep.verdict import OUTCOMES, RESULTS
 from orchestrator.text.quantities import DEGREE
@@ -114,18 +124,18 @@ def _rate(good: int, count: int) -> str:
 
 
 def _reasons(table: Table) -> str:
-    counts = Counter(zip(table.column("outcome").tolist(), table.column("reason").tolist(), strict=True))
     rows = [
         (
-            _pill(outcome),
-            escape(reason),
-            f"{count}",
-            f"{100 * count / table.count:.2f} %",
-            _meter(count / table.count, "good" if outcome in DONE else "bad"),
+            _pill(item.outcome),
+            escape(item.reason),
+            f"{item.runs}",
+            f"{100 * item.share:.2f} %",
+            f"{100 * item.low:.2f} to {100 * item.high:.2f} %",
+            _meter(item.share, "good" if item.outcome in DONE else "bad"),
         )
-        for (outcome, reason), count in counts.most_common(20)
+        for item in outcome_counts(table)
     ]
-    return _card("How the runs end", "", _table(("outcome", "reason", "runs", "share", ""), rows))
+    return _card("Outcomes", "", _table(("outcome", "reason", "runs", "share", "95 % interval", ""), rows))
 
 
 def _histograms(table: Table) -> str:
@@ -163,7 +173,7 @@ def _influences(table: Table) -> str:
         "Share of the variance of a result that goes with one parameter alone (first order; what is missing to 100 % "
         "is joint effects and chance), and Spearman's rank correlation."
     )
-    return _card("What it depends on", text, _table(heads, rows))
+    return _card("Sensitivity: first-order index, rank correlation", text, _table(heads, rows))
 
 
 def _worst(table: Table) -> str:
@@ -178,6 +188,7 @@ def _worst(table: Table) -> str:
             (
                 str(number),
                 f"{_pill(row['outcome'])} {escape(row['reason'])}",
+                escape(deciding_limit(table, number)),
                 _finite("{:+.1f} cm", 100.0 * row["final.lateral_error"]),
                 _finite("{:+.2f} deg", row["final.heading_error"] / DEGREE),
                 f"{row['duration']:.1f} s",
@@ -185,9 +196,9 @@ def _worst(table: Table) -> str:
                 *(_value(table, key, row[key]) for key in keys),
             )
         )
-    heads = ("row", "outcome", "lateral", "heading", "time", "look at it", *(escape(key) for key in keys))
-    text = "Furthest beyond their limits; the command repeats a row to the same bits, with log and replay."
-    return _card("Worst runs", text, _table(heads, rows))
+    heads = ("row", "outcome", "deciding limit", "lateral", "heading", "time", "replay", *(escape(key) for key in keys))
+    text = "The command repeats a row to the same bits, with log and replay."
+    return _card("Largest violations", text, _table(heads, rows))
 
 
 def _finite(form: str, value: float) -> str:

@@ -1,5 +1,6 @@
 """What a table says: success rates over two parameters, what the result depends on, which runs are worst."""
 
+from collections import Counter
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -7,10 +8,15 @@ from numpy.typing import NDArray
 from scipy.stats import rankdata
 
 from orchestrator.cosim.slave import Array
-from orchestrator.scenario.scenario import DONE, SUCCESS
+from orchestrator.scenario.scenario import DONE, SUCCESS, Scenario
 from orchestrator.sweep.study.study_file import Axes
 from orchestrator.sweep.table import Table
+from orchestrator.sweep.verdict import RESULTS
 from orchestrator.text.quantities import DEGREE
+from orchestrator.text.readable import readable
+from orchestrator.verdict.conditions import CONDITIONS
+from orchestrator.verdict.confidence import wilson
+from orchestrator.verdict.limit_text import asked
 
 MOST_VALUES = 60
 """An axis with more different values than this is divided into bins."""
@@ -71,6 +77,48 @@ def done(table: Table) -> NDArray[np.bool_]:
     """Return which runs have done their task."""
     found: NDArray[np.bool_] = np.isin(table.column("outcome").astype(str), list(DONE))
     return found
+
+
+class OutcomeCount(NamedTuple):
+    """How many runs of a table ended in one way."""
+
+    outcome: str
+    reason: str
+    runs: int
+    share: float
+    """Of all runs, 0 to 1."""
+    low: float
+    """Lower end of Wilson's 95 % confidence interval of the share."""
+    high: float
+    """Upper end of it."""
+
+
+def outcome_counts(table: Table, most: int = 20) -> list[OutcomeCount]:
+    """Return the ``most`` frequent outcomes with their reasons, most frequent first."""
+    pairs = zip(table.column("outcome").tolist(), table.column("reason").tolist(), strict=True)
+    return [
+        OutcomeCount(outcome, reason, count, count / table.count, *wilson(count, table.count))
+        for (outcome, reason), count in Counter(pairs).most_common(most)
+    ]
+
+
+def deciding_limit(table: Table, number: int) -> str:
+    """Return the required limit that row ``number`` violates most, with its value: margin over limit decides.
+
+    Only limits on numbers that the table has are compared. Empty if none of these is violated.
+    """
+    row = table.row(number)
+    worst_share, text = 0.0, ""
+    for limit in Scenario(**table.job.scenario).limits:
+        value = row.get(limit.signal)
+        if not limit.required or value is None or isinstance(limit.limit, str):
+            continue
+        margin = float(CONDITIONS[limit.condition].margin(np.array([float(value)]), limit.limit)[0])
+        violation = -margin / abs(limit.limit) if limit.limit else -margin
+        if violation > worst_share:
+            unit = RESULTS[limit.signal].unit if limit.signal in RESULTS else "1"
+            worst_share, text = violation, f"{limit.id}: {readable(float(value), unit)} ({asked(limit)})"
+    return text
 
 
 def word(table: Table) -> str:

@@ -15,6 +15,7 @@ from orchestrator.scenario.models import MODELS, models_for
 from orchestrator.scenario.polygons import map_of
 from orchestrator.scenario.requirements import read_requirements
 from orchestrator.scenario.scenario import Scenario, Target
+from orchestrator.scenario.slot_layout import KEY, expand_layouts
 from orchestrator.scenario.target_point import as_rear_axle
 from orchestrator.scenario.wiring.ssp import SUFFIX, ssp_scenario, ssp_system
 from orchestrator.scenario.wiring.system_text import NO_FILE, SystemText
@@ -23,7 +24,7 @@ from orchestrator.text.quantities import scalar, unit_symbol
 from orchestrator.text.yaml_file import explain, place_in, read_mapping, read_value
 
 NOT_WRITTEN = ("file", "changed", "left_out")
-FIELDS = [*(name for name in Scenario.model_fields if name not in NOT_WRITTEN), "scene"]
+FIELDS = [*(name for name in Scenario.model_fields if name not in NOT_WRITTEN), "scene", KEY]
 INHERITED_NOT = ("name", "title", "description", "base")
 SETS = "--set"
 """Key of the uppermost layer with the words it was made from."""
@@ -90,9 +91,11 @@ def _read(name: str, sets: list[str]) -> tuple[Path, list[Layer], dict[str, Any]
     layers = _layers(path, ())
     slaves = [str(slave) for content, _ in layers for slave in _in(_in(content, "system"), "slaves")]
     layers.append((_set_layer(sets, slaves), "--set"))
-    merged: dict[str, Any] = {}
     for content, file in layers:
         _check_keys([key for key in content if key != SETS], file)
+    layers = expand_layouts(layers)
+    merged: dict[str, Any] = {}
+    for content, _ in layers:
         merged = _merge(merged, {key: _named(key, content[key]) for key in content if key not in NOT_MERGED})
     return path, layers, merged
 
@@ -252,7 +255,7 @@ def _set_layer(sets: list[str], slaves: Iterable[str]) -> dict[str, Any]:
             raise BadInput(f"{shown(text)}: expected KEY=VALUE, for example car.wheelbase=2.7", file="--set")
         parsed = read_value(value, key)
         owner, dot, name = key.partition(".")
-        if dot and owner in (*MODELS, "target", "slot", "scene", "every"):
+        if dot and owner in (*MODELS, "target", "slot", "scene", "every", KEY):
             section = layer.setdefault(owner, {})
             if not isinstance(section, dict):
                 raise BadInput(f"{owner} is set as a whole and in parts", file="--set", key=key)

@@ -9,6 +9,7 @@ from collections.abc import Iterator, Mapping
 
 from modelkit.variables import Variable, variables
 from orchestrator.scenario.models import MODELS
+from orchestrator.scenario.polygons import static_obstacles
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.text.errors import BadInput, shown
 from orchestrator.text.quantities import number
@@ -24,6 +25,12 @@ LARGEST: Mapping[str, float] = {
     "N": 200e3,
 }
 """Unit -> the largest size that anything here plausibly has."""
+GAP_TOLERANCE = 0.05
+"""Obstacles that reach farther into the slot [m] contradict it."""
+MAX_EXTRA_GAP = 1.0
+"""A gap longer than the slot by more [m] contradicts it: cars in marked bays leave half a metre on each side."""
+MAX_GAP_RATIO = 2.0
+"""Obstacles farther apart than this many slot lengths do not bound the slot."""
 UNITS = {"x": "m", "y": "m", "length": "m", "width": "m", "heading": "rad"}
 """Of the numbers of target and slot."""
 
@@ -39,7 +46,7 @@ def plausible(variable: Variable) -> tuple[float, float]:
 
 def implausible(scenario: Scenario) -> list[str]:
     """Return a sentence for each number of a scenario that is allowed but hardly meant."""
-    return [*_parameters(scenario), *_places(scenario), *_faults(scenario)]
+    return [*_parameters(scenario), *_places(scenario), *_gaps(scenario), *_faults(scenario)]
 
 
 def is_implausible(value: float, variable: Variable) -> str:
@@ -67,6 +74,40 @@ def _places(scenario: Scenario) -> Iterator[str]:
             unit = UNITS.get(key, "")
             if unit and abs(value) > LARGEST[unit]:
                 yield _sentence(f"{name}.{key}", value, -LARGEST[unit], LARGEST[unit], unit)
+
+
+def _gaps(scenario: Scenario) -> Iterator[str]:
+    """Yield how the slot contradicts what stands on both sides of it."""
+    slot = scenario.slot
+    if slot is None:
+        return
+    for name, size, free in zip(("length", "width"), (slot.length, slot.width), free_extents(scenario), strict=True):
+        if not -GAP_TOLERANCE <= free - size <= MAX_EXTRA_GAP and free < MAX_GAP_RATIO * size:
+            yield (
+                f"slot.{name} = {size:g} m, but {free:.2f} m lie between the obstacles on both sides of the slot; "
+                "slot_layout moves slot, target, neighbours and kerb together"
+            )
+
+
+def free_extents(scenario: Scenario) -> tuple[float, float]:
+    """Return the free distance through the middle of the slot, along its length and across it [m].
+
+    Between static obstacles (boxes and polygons) on both sides; infinite where one side is free.
+    """
+    slot = scenario.slot
+    assert slot is not None
+    c, s = math.cos(slot.heading), math.sin(slot.heading)
+    extents = []
+    for across, half in ((0, 0.5 * slot.width), (1, 0.5 * slot.length)):
+        ahead, behind = math.inf, math.inf
+        for points in static_obstacles(scenario):
+            local = [((x - slot.x) * c + (y - slot.y) * s, (y - slot.y) * c - (x - slot.x) * s) for x, y in points]
+            along, aside = ([point[across] for point in local], [point[1 - across] for point in local])
+            if min(aside) < 0.5 * half and max(aside) > -0.5 * half:
+                ahead = min(ahead, min(along)) if min(along) > 0.0 else ahead
+                behind = min(behind, -max(along)) if max(along) < 0.0 else behind
+        extents.append(ahead + behind)
+    return extents[0], extents[1]
 
 
 def _faults(scenario: Scenario) -> Iterator[str]:

@@ -16,7 +16,7 @@ def map_of(scenario: Scenario) -> dict[str, float | int | bool]:
     room = sum(item.name.startswith("map[") for item in variables(scenario.models["controller"].params)) // 3
     if not room:
         return {}
-    things = [*scenario.polygons, *_boxes(scenario.vehicle), *_kerbs(scenario.vehicle)]
+    things = [*static_obstacles(scenario), *_kerbs(scenario.vehicle)]
     corners = [(x, y, number) for number, polygon in enumerate(things, start=1) for x, y in polygon]
     if room < len(corners):
         raise BadInput(f"{len(corners)} corners, the map holds {room}", file=scenario.file, key="polygons")
@@ -24,6 +24,11 @@ def map_of(scenario: Scenario) -> dict[str, float | int | bool]:
     for place, (x, y, number) in enumerate(corners, start=1):
         told |= {f"map[{place}].x": x, f"map[{place}].y": y, f"map[{place}].polygon": number}
     return told
+
+
+def static_obstacles(scenario: Scenario) -> list[Points]:
+    """Return the corners [m] of all polygons, and of the boxes that are there all the time and do not move."""
+    return [*scenario.polygons, *_boxes(scenario.vehicle)]
 
 
 def _boxes(vehicle: Mapping[str, float]) -> Iterator[Points]:

@@ -1,82 +1,24 @@
-"""What goes into the controller, what comes out, and what can be set: every signal and its unit."""
+"""What systems share: what they are told, what they tell, the car they think they drive. Knows none of them.
+
+Each system has types of its own, made of what stands here and of what it alone has; ``controller_fmu.registry`` makes
+the controller of all of them.
+"""
 
 from enum import IntEnum
-from typing import Annotated, NamedTuple
+from typing import Annotated, NamedTuple, Protocol
 
-from controller_fmu.adaptive.params import AdaptiveParams
-from controller_fmu.adaptive.phases import AdaptivePhase
-from controller_fmu.apa.choice import Choice
-from controller_fmu.apa.params import ApaParams
-from controller_fmu.apa.phases import ApaPhase
-from controller_fmu.apa.signals import ApaSignals
 from controller_fmu.common.params import LimitParams, ThresholdParams
 from controller_fmu.common.phases import CommonPhase
-from controller_fmu.common.told import ToldSlot
-from controller_fmu.guo2015.params import GuoParams
-from controller_fmu.guo2015.phases import GuoPhase
-from controller_fmu.hsic.params import HsicParams
-from controller_fmu.hsic.phases import HsicPhase
-from controller_fmu.hsic.signals import HsicSignals
-from controller_fmu.preview.params import PreviewParams
-from controller_fmu.preview.phases import PreviewPhase
-from controller_fmu.preview.signals import PreviewSignals
-from controller_fmu.zhang2022.params import ZhangParams
-from controller_fmu.zhang2022.phases import ZhangPhase
-from controller_fmu.zhang2022.signals import ZhangSignals
-from modelkit.car import Car
+from modelkit.car import Car, CarSteering, CarUltrasonic
 from modelkit.signal import Group, Role, Signal
-from modelkit.states import union
 from modelkit.vocabulary import (
     ANYWHERE,
-    AdvisedSpeed,
     BrakeRequest,
-    ForceControlActive,
-    ForceRequest,
-    Gear,
     Pose,
     PromptShown,
-    SpeedControlActive,
-    SpeedRequest,
-    SteeringActive,
-    SteeringWheelRequest,
 )
 
 HOUSE = "chosen; the source states none"
-
-
-class System(IntEnum):
-    """Which paper's system parks the car."""
-
-    NTBPTCWPT = 0
-    """Path tracking combined with point tracking (Guo 2015, section 4)."""
-    NTBPT = 1
-    """Path tracking only (Guo 2015, section 3)."""
-    ZHANG2022 = 2
-    """Quintic path, MPC steering, PID speed (Zhang 2022)."""
-    HSIC = 3
-    """Human-simulated intelligent control."""
-    PREVIEW = 4
-    """Dual-point preview with fuzzy steering and speed on a road (does not park)."""
-    APA = 5
-    """The whole parking assist: slot search, planner, tracking, position tuning."""
-    ADAPTIVE = 6
-    """Clothoid paths sized by the driver's speed, predicted stops, planned anew from every standstill."""
-    VALET = 7
-    """To any pose among the polygons of a map; a controller of its own (``controller_fmu.VALET``)."""
-
-
-Phase = union(
-    "Phase",
-    __name__,
-    "What a controller is at: the phases that every system has, and those of each.",
-    CommonPhase,
-    GuoPhase,
-    ZhangPhase,
-    HsicPhase,
-    PreviewPhase,
-    ApaPhase,
-    AdaptivePhase,
-)
 
 
 class Reason(IntEnum):
@@ -124,23 +66,30 @@ class Reason(IntEnum):
     """A slot from outside of a kind that this system does not park in: at an angle, or nose first."""
 
 
-class ControllerInput(NamedTuple):
-    """From the vehicle."""
+Odometry = Annotated[Pose, Group("rear-axle midpoint as the car believes it")]
+MeasuredSpeed = Annotated[float, Signal("m/s", "speed, reverse negative")]
+SteeringWheelAngle = Annotated[float, Signal("rad", "steering-wheel angle, left positive")]
+DriverTakeover = Annotated[bool, Signal("1", "the driver has taken over")]
+VehicleFault = Annotated[int, Signal("1", "why the vehicle brakes by itself; 0: it does not")]
 
-    odometry: Annotated[Pose, Group("rear-axle midpoint as the car believes it")] = Pose()
-    measured_speed: Annotated[float, Signal("m/s", "speed, reverse negative")] = 0.0
-    steering_wheel_angle: Annotated[float, Signal("rad", "steering-wheel angle, left positive")] = 0.0
-    gear: Annotated[int, Signal("1", "selector position", states=Gear)] = Gear.PARK
-    brake_pedal: Annotated[float, Signal("1", "brake pedal, 0 released to 1 full", 0.0, 1.0)] = 0.0
-    driver_takeover: Annotated[bool, Signal("1", "the driver has taken over")] = False
-    vehicle_fault: Annotated[int, Signal("1", "why the vehicle brakes by itself; 0: it does not")] = 0
-    ultrasonic: tuple[
-        Annotated[float, Signal("m", "distance heard: 1-4 front, 5-8 rear, 9-10 left, 11-12 right")], ...
-    ] = (5.0,) * 12
-    apa_switch: Annotated[bool, Signal("1", "the driver has switched the parking assist on")] = False
-    driver_confirm: Annotated[bool, Signal("1", "the driver presses the confirm button")] = False
-    told: Annotated[ToldSlot, Group("a slot from outside: a camera, a map, a test bench")] = ToldSlot()
-    choice: Annotated[Choice, Group("what the driver chooses on the display")] = Choice()
+
+class SystemInput(NamedTuple):
+    """What every system is told by the vehicle."""
+
+    odometry: Odometry = Pose()
+    measured_speed: MeasuredSpeed = 0.0
+    steering_wheel_angle: SteeringWheelAngle = 0.0
+    driver_takeover: DriverTakeover = False
+
+
+class ParkingInput(NamedTuple):
+    """What a system that parks is told."""
+
+    odometry: Odometry = Pose()
+    measured_speed: MeasuredSpeed = 0.0
+    steering_wheel_angle: SteeringWheelAngle = 0.0
+    driver_takeover: DriverTakeover = False
+    vehicle_fault: VehicleFault = 0
 
 
 class Segment(NamedTuple):
@@ -159,47 +108,105 @@ class Path(NamedTuple):
     segments: tuple[Segment, ...] = (Segment(),) * 3
 
 
-class ControllerOutput(NamedTuple):
-    """To the vehicle, the driver, the log and the judge."""
+ReasonTold = Annotated[int, Signal("1", "why the controller failed", states=Reason)]
+Shifts = Annotated[int, Signal("1", "manoeuvres so far, the first reverse counts one"), Role.LOCAL]
+ReferencePose = Annotated[Pose, Role.LOCAL, Group("point of the path beside the rear-axle midpoint")]
+LateralError = Annotated[float, Signal("m", "y of the car minus y of the reference, in the slot's frame"), Role.LOCAL]
+HeadingError = Annotated[float, Signal("rad", "heading of the car minus heading of the reference"), Role.LOCAL]
+PlannedPath = Annotated[Path, Role.LOCAL]
+STATE_OF_THE_CHART = "state of the manoeuvre chart"
 
-    steering_wheel_request: SteeringWheelRequest = 0.0
-    steering_active: SteeringActive = False
+
+class RefusedOutput(NamedTuple):
+    """What is told where no system acts."""
+
     prompt: PromptShown = 0
-    advised_speed: AdvisedSpeed = 0.0
-    speed_control_active: SpeedControlActive = False
-    speed_request: SpeedRequest = 0.0
-    force_control_active: ForceControlActive = False
-    force_request: ForceRequest = 0.0
     brake_request: BrakeRequest = False
-    phase: Annotated[int, Signal("1", "state of the manoeuvre chart", states=Phase)] = 0
-    reason: Annotated[int, Signal("1", "why the controller failed", states=Reason)] = 0
-    shifts: Annotated[int, Signal("1", "manoeuvres so far, the first reverse counts one"), Role.LOCAL] = 0
-    reference: Annotated[Pose, Role.LOCAL, Group("point of the path beside the rear-axle midpoint")] = Pose()
-    lateral_error: Annotated[
-        float, Signal("m", "y of the car minus y of the reference, in the slot's frame"), Role.LOCAL
-    ] = 0.0
-    heading_error: Annotated[float, Signal("rad", "heading of the car minus heading of the reference"), Role.LOCAL] = (
-        0.0
-    )
-    path: Annotated[Path, Role.LOCAL] = Path()
-    zhang2022: Annotated[ZhangSignals, Role.LOCAL] = ZhangSignals()
-    hsic: Annotated[HsicSignals, Role.LOCAL] = HsicSignals()
-    preview: Annotated[PreviewSignals, Role.LOCAL] = PreviewSignals()
-    apa: ApaSignals = ApaSignals()
+    phase: Annotated[int, Signal("1", STATE_OF_THE_CHART, states=CommonPhase)] = CommonPhase.STANDBY
+    reason: ReasonTold = 0
 
 
-class ControllerParams(NamedTuple):
-    """The system chosen, the car it thinks it drives, the target and every limit."""
+SampleTime = Annotated[float, Signal("s", "controller's sample time, whole nanoseconds", 1e-4, 1.0, HOUSE)]
+AssumedCar = Annotated[Car, Group("the car it thinks it drives")]
+Target = Annotated[Pose, Group("pose of the rear-axle midpoint to park at", ANYWHERE)]
+Thresholds = Annotated[ThresholdParams, Role.TUNABLE]
+Limits = Annotated[LimitParams, Role.TUNABLE]
+TARGET = Pose(-7.608, -3.056, 0.0)
+"""The pose that is parked at where no other is set: the end of case 4 of Guo 2015."""
 
-    system: Annotated[int, Signal("1", "which paper's system", states=System)] = System.NTBPTCWPT
-    sample_time: Annotated[float, Signal("s", "controller's sample time, whole nanoseconds", 1e-4, 1.0, HOUSE)] = 0.01
-    car: Annotated[Car, Group("the car it thinks it drives")] = Car()
-    target: Annotated[Pose, Group("pose of the rear-axle midpoint to park at", ANYWHERE)] = Pose(-7.608, -3.056, 0.0)
-    threshold: Annotated[ThresholdParams, Role.TUNABLE] = ThresholdParams()
-    limit: Annotated[LimitParams, Role.TUNABLE] = LimitParams()
-    guo2015: Annotated[GuoParams, Role.TUNABLE] = GuoParams()
-    zhang2022: ZhangParams = ZhangParams()
-    hsic: HsicParams = HsicParams()
-    preview: Annotated[PreviewParams, Role.TUNABLE] = PreviewParams()
-    apa: ApaParams = ApaParams()
-    adaptive: AdaptiveParams = AdaptiveParams()
+
+class SteeredCar(Protocol):
+    """What steers: every system has this of the car."""
+
+    wheelbase: float
+    steering: CarSteering
+
+
+class OutlinedCar(SteeredCar, Protocol):
+    """What steers, and the outline."""
+
+    front_overhang: float
+    rear_overhang: float
+    width: float
+
+
+class SensingCar(OutlinedCar, Protocol):
+    """What steers, the outline, and the distance sensors."""
+
+    ultrasonic: CarUltrasonic
+
+
+class HasCar(Protocol):
+    """Parameters with the car."""
+
+    @property
+    def car(self) -> Car:
+        """The car."""
+
+
+class Monitored(HasCar, Protocol):
+    """Parameters of a system that is watched while it parks."""
+
+    @property
+    def threshold(self) -> ThresholdParams:
+        """When the car stands."""
+
+    @property
+    def limit(self) -> LimitParams:
+        """How long anything may last."""
+
+
+class Clocked(HasCar, Protocol):
+    """Parameters that say when a system acts, and with which car."""
+
+    @property
+    def sample_time(self) -> float:
+        """Time between two samples [s]."""
+
+    @property
+    def target(self) -> Pose:
+        """Pose to park at."""
+
+
+class Sensed(Protocol):
+    """Inputs that say where the car is."""
+
+    @property
+    def odometry(self) -> Pose:
+        """Pose of the rear-axle midpoint."""
+
+    @property
+    def measured_speed(self) -> float:
+        """Speed [m/s]."""
+
+    @property
+    def steering_wheel_angle(self) -> float:
+        """Angle of the steering wheel [rad]."""
+
+
+class SensedWithFault(Sensed, Protocol):
+    """Inputs that say where the car is, and whether the vehicle brakes by itself."""
+
+    @property
+    def vehicle_fault(self) -> int:
+        """Why the vehicle brakes; 0: it does not."""

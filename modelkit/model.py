@@ -2,10 +2,11 @@
 
 from collections.abc import Callable, Iterable, Mapping
 from enum import IntEnum
-from functools import partial
+from functools import cache, partial
 from types import ModuleType
 from typing import Any, Generic, NamedTuple, TypeAlias, cast
 
+from modelkit.composition import groups_of
 from modelkit.store import new_store
 from modelkit.type_variables import Clock, Input, Output, Own, Params, State
 from modelkit.variables import variables, with_values
@@ -26,23 +27,48 @@ class Chart(NamedTuple):
 
 
 class SampledSystem(NamedTuple, Generic[Own, Params, Input, Output]):
-    """One of several sampled systems in a model: it alone acts while the choosing parameter has one of its values."""
+    """One of several sampled systems in a model: it alone acts while the choosing parameter has one of its values.
 
-    values: tuple[int, ...]
+    It knows its own types only. The model has the fields of all systems (``modelkit.composition``): a system reads
+    those that it has of the model's parameters and inputs, and the outputs that it does not have keep their defaults.
+    """
+
     field: str
     """Its memory: a field of the model's state."""
+    choices: type[IntEnum]
+    """Its values of the choosing parameter."""
+    descriptions: tuple[str, ...]
+    """What a model of it alone does, one line for each choice."""
+    state: type[Own]
+    params: type[Params]
+    """What can be set of it: its variables, and no other, are those of a model of it alone."""
+    inputs: type[Input]
+    told: type[Output]
+    """Its outputs."""
     start: Callable[[Params], Own]
     """``start(params) -> own``: its memory before the first sample."""
     sample: Callable[[Own, Input, Params, int], Own]
     """``sample(own, inputs, params, period_ns) -> own``: its memory a sample later."""
     outputs: Callable[[Own, Params], Output]
     """``outputs(own, params) -> outputs``: what is held until the next sample."""
-    own: tuple[str, ...] = ()
-    """Parameters, inputs and outputs that mean something to this system and not to every other: names, or groups."""
     charts: tuple[Chart, ...] = ()
     """Its state machines that are tables."""
-    states: tuple[tuple[str, type[IntEnum]], ...] = ()
-    """(output, states) of modes that have other states in each system: those that they have in this one."""
+
+    @property
+    def values(self) -> tuple[int, ...]:
+        """Its values of the choosing parameter, as numbers."""
+        return tuple(int(choice) for choice in self.choices)
+
+    @property
+    def own(self) -> tuple[str, ...]:
+        """Its parameters, inputs and outputs: names, or groups that it has all of."""
+        return tuple(name for cls in (self.params, self.inputs, self.told) for name in groups_of(cls))
+
+    @property
+    def states(self) -> tuple[tuple[str, type[IntEnum]], ...]:
+        """(output, states) of the modes among its outputs."""
+        found = ((item.name, item.signal.states) for item in variables(self.told))
+        return tuple((name, states) for name, states in found if states is not None)
 
 
 class SampledSystems(NamedTuple, Generic[State, Params, Input, Output, Clock]):
@@ -54,13 +80,15 @@ class SampledSystems(NamedTuple, Generic[State, Params, Input, Output, Clock]):
     """The choosing parameter, an integer; a value that no system has is refused."""
     clock: str
     """The field of the state that all share: it has ``usable``, false if the parameters make no sense."""
-    begin: Callable[[Params], Clock]
+    begin: Callable[[Any], Clock]
     """``begin(params) -> clock``: the clock at time zero."""
-    tick: Callable[[Clock, Params, int], tuple[Clock, int, int]]
+    tick: Callable[[Clock, Any, int], tuple[Clock, int, int]]
     """``tick(clock, params, dt_ns) -> (clock, samples, period_ns)``: how many samples are due in a step."""
-    refused: Callable[[], Output]
-    """``refused()``: the outputs where no system acts."""
-    systems: tuple[SampledSystem[Any, Params, Input, Output], ...]
+    refused: Callable[[], Any]
+    """``refused()``: the outputs where no system acts; those that it does not give keep their defaults."""
+    outputs: type[Output]
+    """The model's, with those of all systems."""
+    systems: tuple[SampledSystem[Any, Any, Any, Any], ...]
 
     def initialize(self, params: Params) -> tuple[State, Output]:
         """Return (state, outputs) at time zero: the model's ``initialize``."""
@@ -82,16 +110,16 @@ class SampledSystems(NamedTuple, Generic[State, Params, Input, Output, Clock]):
         state = _with(state, changed)
         return state, self._outputs(clock, chosen, state, params)
 
-    def _chosen(self, params: Params) -> SampledSystem[Any, Params, Input, Output] | None:
+    def _chosen(self, params: Params) -> SampledSystem[Any, Any, Any, Any] | None:
         value = getattr(params, self.parameter)
         return next((item for item in self.systems if value in item.values), None)
 
     def _outputs(
-        self, clock: Any, chosen: SampledSystem[Any, Params, Input, Output] | None, state: State, params: Params
+        self, clock: Any, chosen: SampledSystem[Any, Any, Any, Any] | None, state: State, params: Params
     ) -> Output:
         if chosen is None or not clock.usable:
-            return self.refused()
-        return chosen.outputs(getattr(state, chosen.field), params)
+            return _completed(self.outputs, self.refused())
+        return _completed(self.outputs, chosen.outputs(getattr(state, chosen.field), params))
 
 
 class Terminal(NamedTuple):
@@ -202,14 +230,13 @@ class Model(NamedTuple, Generic[State, Params, Input, Output]):
         return self._replace(view=self.view._replace(starts=tuple((kept | chosen).items())))
 
     def only(self, value: int, name: str, description: str) -> "Model[State, Params, Input, Output]":
-        """Return the model with the system of ``value`` alone: what only others own is not shown."""
+        """Return the model with the system of ``value`` alone: it shows the variables of that system's types."""
         assert self.systems is not None
         chosen = next(item for item in self.systems.systems if value in item.values)
         known = [item.name for cls in (self.params, self.inputs, self.outputs) for item in variables(cls)]
-        owned = _those_in(tuple({group for system in self.systems.systems for group in system.own}), known)
-        hidden = owned - _those_in(chosen.own, owned)
         parameter = self.systems.parameter
-        view = View(((parameter, int(value)),), hidden | {parameter}, chosen.states)
+        hidden = frozenset(known) - _those_in(chosen.own, known) | {parameter}
+        view = View(((parameter, int(value)),), hidden, chosen.states)
         return self._replace(name=name, description=description, view=view)
 
     def all_charts(self) -> list[Chart]:
@@ -227,6 +254,22 @@ def _with(state: State, changed: dict[str, Any]) -> State:
     """Return the state with some of its fields changed."""
     whole: Any = state
     return cast("State", whole._replace(**changed))
+
+
+def _completed(outputs: type[Output], told: Any) -> Output:
+    """Return the outputs of a system as those of the model, which has more."""
+    shape: Any = type(told)  # mypy does not take a type for hashable
+    whole: Any = outputs
+    return cast("Output", told if shape is outputs else _completer(whole, shape)(told))
+
+
+@cache
+def _completer(outputs: Any, told: Any) -> Callable[[Any], Any]:
+    """Return a fast function from a system's outputs to the model's."""
+    whole = outputs()
+    fields = [f"t.{name}" if name in told._fields else f"w.{name}" for name in outputs._fields]
+    made: Callable[[Any], Any] = eval(f"lambda t: C({', '.join(fields)})", {"C": outputs, "w": whole})
+    return made
 
 
 def _those_in(groups: tuple[str, ...], names: Iterable[str]) -> frozenset[str]:

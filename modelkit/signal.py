@@ -45,3 +45,13 @@ class Group(NamedTuple):
     """What it is; stands before the meaning of each of its fields."""
     limits: tuple[tuple[str, float], ...] = ()
     """(unit, largest magnitude) for fields in it that have no range of their own."""
+
+
+class Subset(NamedTuple):
+    """Annotation of a field that is a NamedTuple: a model has only those of its fields that ``shape`` names as well.
+
+    ``car: Annotated[Car, Subset(OutlinedCar)] = Car()``: the code reads the whole car, the variables are the outline's.
+    """
+
+    shape: type
+    """A class with annotations, such as a ``Protocol``."""

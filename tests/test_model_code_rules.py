@@ -14,6 +14,7 @@ ROOMS = ("modelkit", "vehicle_fmu", "controller_fmu")
 NO_MODEL_CODE = (
     *("modelkit/model.py", "modelkit/variables.py", "modelkit/connections.py", "modelkit/terminals.py"),
     *("modelkit/store.py", "modelkit/assembly.py", "modelkit/states.py"),
+    *("modelkit/composition.py", "controller_fmu/registry.py"),
 )
 STANDARD = {"math", "typing", "enum"}
 KIT = {

@@ -243,3 +243,13 @@ def test_what_systems_share_knows_none_of_them(shared: str) -> None:
     systems = tuple(f"controller_fmu.{system}." for system in SYSTEMS)
     inside = f"controller_fmu.{shared}."
     assert [str(item) for item in IMPORTS if item.source.startswith(inside) and item.target.startswith(systems)] == []
+
+
+def test_only_the_package_imports_the_registry_of_systems() -> None:
+    """What is below it knows no system: neither the interface nor any of them imports it."""
+    above = {"controller_fmu", "controller_fmu.registry"}
+    found = [item for item in IMPORTS if item.source.startswith("controller_fmu") and item.source not in above]
+    assert [str(item) for item in found if item.target in above] == []
+    systems = tuple(f"controller_fmu.{system}" for system in SYSTEMS)
+    below = ("controller_fmu.interface", *(f"controller_fmu.{shared}" for shared in SHARED_BY_SYSTEMS))
+    assert [str(item) for item in found if item.source.startswith(below) and item.target.startswith(systems)] == []

@@ -1,16 +1,17 @@
 """What driver-adaptive parking puts out."""
 
+from controller_fmu.adaptive.params import AdaptiveSystemParams
 from controller_fmu.adaptive.phases import AdaptivePhase, direction_of
+from controller_fmu.adaptive.signals import AdaptiveOutput
 from controller_fmu.adaptive.system import AdaptiveState
 from controller_fmu.common.phases import is_parking
 from controller_fmu.common.slot_frame import to_world
-from controller_fmu.interface import ControllerOutput, ControllerParams
 from modelkit.vocabulary import Prompt
 
 
-def adaptive_outputs(state: AdaptiveState, params: ControllerParams) -> ControllerOutput:
+def adaptive_outputs(state: AdaptiveState, params: AdaptiveSystemParams) -> AdaptiveOutput:
     """Return the outputs that hold until the next sample."""
-    return ControllerOutput(
+    return AdaptiveOutput(
         steering_wheel_request=state.request,
         steering_active=is_parking(state.phase),
         prompt=prompt_of(state, params),
@@ -25,7 +26,7 @@ def adaptive_outputs(state: AdaptiveState, params: ControllerParams) -> Controll
     )
 
 
-def prompt_of(state: AdaptiveState, params: ControllerParams) -> int:
+def prompt_of(state: AdaptiveState, params: AdaptiveSystemParams) -> int:
     """Return the prompt: to slow down where the advice asks for it and the car is on its way."""
     if state.phase in (AdaptivePhase.STANDBY, AdaptivePhase.TAKEOVER):
         return Prompt.NONE

@@ -1,9 +1,21 @@
 """What can be set of driver-adaptive parking: the room, the path, the driver before he is known."""
 
+from enum import IntEnum
 from math import pi
-from typing import Annotated, NamedTuple
+from typing import Annotated, NamedTuple, Protocol
 
-from modelkit.signal import Role, Signal
+from controller_fmu.common.params import LimitParams, ThresholdParams
+from controller_fmu.interface import (
+    TARGET,
+    AssumedCar,
+    Limits,
+    OutlinedCar,
+    SampleTime,
+    Target,
+    Thresholds,
+)
+from modelkit.car import Car
+from modelkit.signal import Role, Signal, Subset
 
 HOUSE = "chosen; this system is the project's own"
 
@@ -56,3 +68,28 @@ class AdaptiveParams(NamedTuple):
     path: PathParams = PathParams()
     belief: Annotated[BeliefParams, Role.TUNABLE] = BeliefParams()
     end: Annotated[EndParams, Role.TUNABLE] = EndParams()
+
+
+class AdaptiveSystem(IntEnum):
+    """Its value of ``controller.system``."""
+
+    ADAPTIVE = 6
+    """Clothoid paths sized by the driver's speed, predicted stops, planned anew from every standstill."""
+
+
+class AdaptiveThresholds(Protocol):
+    """What it has of the thresholds."""
+
+    wheel: float
+    standstill: float
+
+
+class AdaptiveSystemParams(NamedTuple):
+    """All that can be set of it."""
+
+    sample_time: SampleTime = 0.01
+    car: Annotated[AssumedCar, Subset(OutlinedCar)] = Car()
+    target: Target = TARGET
+    threshold: Annotated[Thresholds, Subset(AdaptiveThresholds)] = ThresholdParams()
+    limit: Limits = LimitParams()
+    adaptive: AdaptiveParams = AdaptiveParams()

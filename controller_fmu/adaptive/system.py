@@ -17,6 +17,7 @@ from controller_fmu.adaptive.driver import (
     stopping_way,
     told_to_stop,
 )
+from controller_fmu.adaptive.params import AdaptiveSystemParams
 from controller_fmu.adaptive.phases import AdaptivePhase, direction_of, expected_in
 from controller_fmu.adaptive.planner import ANY_SPEED, NO_PLAN, Demand, Plan, plan
 from controller_fmu.adaptive.room import room_of
@@ -32,7 +33,7 @@ from controller_fmu.common.phases import is_over
 from controller_fmu.common.slot_frame import SlotFrame, frame_at, to_slot
 from controller_fmu.common.steering_monitor import Steering, delay_of, rate_of
 from controller_fmu.common.steering_wheel import wheel_request
-from controller_fmu.interface import ControllerInput, ControllerParams, Reason
+from controller_fmu.interface import ParkingInput, Reason
 from modelkit.car import smallest_radius
 from modelkit.maths import clamp
 from modelkit.vocabulary import Pose
@@ -72,13 +73,13 @@ class AdaptiveState(NamedTuple):
     monitor: MonitorState = MonitorState()
 
 
-def adaptive_start(params: ControllerParams) -> AdaptiveState:
+def adaptive_start(params: AdaptiveSystemParams) -> AdaptiveState:
     """Return the system in standby."""
     return AdaptiveState()
 
 
 def adaptive_sample(
-    state: AdaptiveState, inputs: ControllerInput, params: ControllerParams, dt_ns: int
+    state: AdaptiveState, inputs: ParkingInput, params: AdaptiveSystemParams, dt_ns: int
 ) -> AdaptiveState:
     """Return the system one sample of ``dt_ns`` later."""
     if is_over(state.phase):
@@ -113,13 +114,13 @@ def adaptive_sample(
     return _moved_on(seen, phase, inputs, params)
 
 
-def is_in_place(pose: Pose, params: ControllerParams) -> bool:
+def is_in_place(pose: Pose, params: AdaptiveSystemParams) -> bool:
     """Return whether a car standing at ``pose`` (slot's frame) is parked."""
     limit = params.adaptive.end
     return abs(pose.y) <= limit.lateral and abs(pose.heading) <= limit.heading and abs(pose.x) <= limit.along
 
 
-def _driver(state: AdaptiveState, inputs: ControllerInput, params: ControllerParams, dt_ns: int) -> Driver:
+def _driver(state: AdaptiveState, inputs: ParkingInput, params: AdaptiveSystemParams, dt_ns: int) -> Driver:
     """Return the driver as known after this sample."""
     speed = inputs.measured_speed
     if state.phase == AdaptivePhase.STOP:
@@ -130,7 +131,7 @@ def _driver(state: AdaptiveState, inputs: ControllerInput, params: ControllerPar
     return state.driver
 
 
-def _stood(state: AdaptiveState, pose: Pose, params: ControllerParams) -> AdaptiveState:
+def _stood(state: AdaptiveState, pose: Pose, params: AdaptiveSystemParams) -> AdaptiveState:
     """Return the system with a plan from where the car stands, and the driver as his stop has shown him."""
     driver = stopped(state.driver, params.adaptive.belief) if state.phase == AdaptivePhase.STOP else state.driver
     if is_in_place(pose, params):
@@ -146,7 +147,7 @@ def _stood(state: AdaptiveState, pose: Pose, params: ControllerParams) -> Adapti
     return state._replace(driver=driver, plan=planned, end=drivable(planned.route), foot=foot, begun=foot)
 
 
-def wheel_of(steering: Steering, params: ControllerParams) -> SteeringLimits:
+def wheel_of(steering: Steering, params: AdaptiveSystemParams) -> SteeringLimits:
     """Return what paths are planned with."""
     path = params.adaptive.path
     rate = rate_of(steering, params.car.steering.rate_limit) / params.car.steering.ratio
@@ -174,7 +175,7 @@ def _tracked(state: AdaptiveState, pose: Pose) -> AdaptiveState:
     return state._replace(foot=foot)
 
 
-def _is_stuck(state: AdaptiveState, pose: Pose, params: ControllerParams) -> bool:
+def _is_stuck(state: AdaptiveState, pose: Pose, params: AdaptiveSystemParams) -> bool:
     """Return whether a car that stands to be planned for has no way on."""
     planning = state.phase in (AdaptivePhase.STANDBY, AdaptivePhase.STOP)
     return planning and state.plan.route.direction == 0 and not is_in_place(pose, params)
@@ -184,9 +185,9 @@ def _guards(
     state: AdaptiveState,
     reason: int,
     pose: Pose,
-    inputs: ControllerInput,
+    inputs: ParkingInput,
     standing: bool,
-    params: ControllerParams,
+    params: AdaptiveSystemParams,
 ) -> int:
     wheel_there = abs(inputs.steering_wheel_angle - state.request) <= params.threshold.wheel
     straight = abs(inputs.steering_wheel_angle) <= params.threshold.wheel
@@ -209,7 +210,7 @@ def _guards(
     )
 
 
-def _moved_on(state: AdaptiveState, phase: int, inputs: ControllerInput, params: ControllerParams) -> AdaptiveState:
+def _moved_on(state: AdaptiveState, phase: int, inputs: ParkingInput, params: AdaptiveSystemParams) -> AdaptiveState:
     direction = direction_of(phase)
     turned = direction != 0 and direction != state.direction
     counted = turned and (state.shifts > 0 or direction < 0)
@@ -232,7 +233,7 @@ def _moved_on(state: AdaptiveState, phase: int, inputs: ControllerInput, params:
     return moved._replace(advice=min(advice, state.advice) if held else advice, request=request)
 
 
-def _request(state: AdaptiveState, params: ControllerParams) -> float:
+def _request(state: AdaptiveState, params: AdaptiveSystemParams) -> float:
     """Return the steering-wheel angle to ask for [rad]."""
     if state.phase in (AdaptivePhase.STANDBY, AdaptivePhase.STRAIGHTEN) or state.plan.route.direction == 0:
         return 0.0
@@ -248,7 +249,7 @@ def _request(state: AdaptiveState, params: ControllerParams) -> float:
     return wheel_request(angle, state.frame.mirror, params)
 
 
-def _advice(state: AdaptiveState, params: ControllerParams) -> float:
+def _advice(state: AdaptiveState, params: AdaptiveSystemParams) -> float:
     """Return the speed advised [m/s]: that of the route, and less towards the place to stand."""
     believed = params.adaptive.belief
     fast = min(believed.speed_limit, state.plan.speed)

@@ -3,17 +3,16 @@
 from controller_fmu.apa.chart import Mode
 from controller_fmu.apa.choice import OFFERED, ChosenTask
 from controller_fmu.apa.manoeuvre_chart import Step
-from controller_fmu.apa.params import Longitudinal
+from controller_fmu.apa.params import ApaSystemParams, Longitudinal
 from controller_fmu.apa.parking import Parking, is_planned, site_for
 from controller_fmu.apa.phases import ApaPhase
-from controller_fmu.apa.signals import Alarm, ApaSignals, Family, OfferedSlot, PlannedMove, PlannedPiece
+from controller_fmu.apa.signals import Alarm, ApaOutput, ApaSignals, Family, OfferedSlot, PlannedMove, PlannedPiece
 from controller_fmu.apa.slot import Kind, Slot, mirror_of
 from controller_fmu.apa.system import ApaState, has_slot
 from controller_fmu.apa.ways.move import Piece
 from controller_fmu.apa.ways.planner import FOUND, IN_PERPENDICULAR, TURN
 from controller_fmu.apa.ways.shortest_slot import ISO_16787, shortest_slot
 from controller_fmu.common.slot_frame import SlotFrame, to_world
-from controller_fmu.interface import ControllerOutput, ControllerParams
 from modelkit.vocabulary import Pose, Prompt
 
 PHASE_OF_STEP = (
@@ -40,7 +39,7 @@ def phase_of(state: ApaState) -> int:
     return ApaPhase.STANDBY
 
 
-def prompt_of(state: ApaState, params: ControllerParams) -> int:
+def prompt_of(state: ApaState, params: ApaSystemParams) -> int:
     """Return what the driver is asked for."""
     if state.mode == Mode.PARKING_SPACE_SEARCH:
         if has_slot(state):
@@ -64,7 +63,7 @@ def prompt_of(state: ApaState, params: ControllerParams) -> int:
     return Prompt.NONE
 
 
-def alarm_of(state: ApaState, params: ControllerParams) -> int:
+def alarm_of(state: ApaState, params: ApaSystemParams) -> int:
     """Return the warning shown."""
     if state.mode == Mode.FAIL:
         return Alarm.TAKEN_OVER if state.taken_over else Alarm.FAILED
@@ -79,7 +78,7 @@ def alarm_of(state: ApaState, params: ControllerParams) -> int:
     return Alarm.NONE
 
 
-def apa_outputs(state: ApaState, params: ControllerParams) -> ControllerOutput:
+def apa_outputs(state: ApaState, params: ApaSystemParams) -> ApaOutput:
     """Return the outputs that hold until the next sample."""
     driving = state.mode in (Mode.AUTO_PARKING_ASSIST, Mode.POSITION_TUNING)
     own = driving and params.apa.drive.longitudinal == Longitudinal.OWN_SPEED
@@ -89,7 +88,7 @@ def apa_outputs(state: ApaState, params: ControllerParams) -> ControllerOutput:
     stopping = driving and parking.step != Step.DRIVE
     braking = (own and stopping) or (driving and parking.sight.blocked)
     failed = state.mode == Mode.FAIL and not state.taken_over
-    return ControllerOutput(
+    return ApaOutput(
         steering_wheel_request=parking.wheel if driving else 0.0,
         steering_active=driving,
         prompt=prompt_of(state, params),
@@ -107,7 +106,7 @@ def apa_outputs(state: ApaState, params: ControllerParams) -> ControllerOutput:
     )
 
 
-def _signals(state: ApaState, frame: SlotFrame, params: ControllerParams) -> ApaSignals:
+def _signals(state: ApaState, frame: SlotFrame, params: ApaSystemParams) -> ApaSignals:
     slot = state.around.slot
     shown = slot.kind > 0
     b = to_world(Pose(slot.length, slot.b_out, 0.0), SlotFrame(slot.a, mirror_of(slot)))

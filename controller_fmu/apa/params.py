@@ -2,10 +2,19 @@
 
 from enum import IntEnum
 from math import pi
-from typing import Annotated, NamedTuple
+from typing import Annotated, NamedTuple, Protocol
 
 from controller_fmu.apa.slot import Slot
-from modelkit.signal import Role, Signal
+from controller_fmu.common.params import LimitParams, ThresholdParams
+from controller_fmu.interface import (
+    AssumedCar,
+    Limits,
+    SampleTime,
+    SensingCar,
+    Thresholds,
+)
+from modelkit.car import Car
+from modelkit.signal import Role, Signal, Subset
 
 HOUSE = "chosen; the source states none"
 SOURCE = "APA function requirements"
@@ -155,3 +164,35 @@ class ApaParams(NamedTuple):
     map: MapParams = MapParams()
     end: Annotated[EndParams, Role.TUNABLE] = EndParams()
     guard: Annotated[GuardParams, Role.TUNABLE] = GuardParams()
+
+
+class ApaSystem(IntEnum):
+    """Its value of ``controller.system``."""
+
+    APA = 5
+    """The whole parking assist: slot search, planner, tracking, position tuning."""
+
+
+class ApaThresholds(Protocol):
+    """What it has of the thresholds."""
+
+    wheel: float
+
+
+class ApaLimits(Protocol):
+    """What it has of the limits."""
+
+    stopping: float
+    pose_frozen: float
+    wheel_off: float
+    wheel_fault: float
+
+
+class ApaSystemParams(NamedTuple):
+    """All that can be set of it."""
+
+    sample_time: SampleTime = 0.01
+    car: Annotated[AssumedCar, Subset(SensingCar)] = Car()
+    threshold: Annotated[Thresholds, Subset(ApaThresholds)] = ThresholdParams()
+    limit: Annotated[Limits, Subset(ApaLimits)] = LimitParams()
+    apa: ApaParams = ApaParams()

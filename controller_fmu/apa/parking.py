@@ -18,7 +18,8 @@ from controller_fmu.apa.manoeuvre_chart import Step, step_transition
 from controller_fmu.apa.out.limits import CUTS, MOVES, SHIFTS, margins_out, next_attempt_out, with_lock
 from controller_fmu.apa.out.pull_out import OutSearch, plan_out
 from controller_fmu.apa.outline import Shape
-from controller_fmu.apa.params import Longitudinal
+from controller_fmu.apa.params import ApaSystemParams, Longitudinal
+from controller_fmu.apa.signals import ApaInput
 from controller_fmu.apa.slot import Kind, Margins, Site, Slot, no_deeper, site_of
 from controller_fmu.apa.speed import planned_speed, stopping_way
 from controller_fmu.apa.tracking import Leg, Tracked, next_standstill, set_wheel, track
@@ -30,7 +31,6 @@ from controller_fmu.common.chart import bit
 from controller_fmu.common.slot_frame import to_slot
 from controller_fmu.common.steering_monitor import Steering, rate_of
 from controller_fmu.common.steering_wheel import wheel_request
-from controller_fmu.interface import ControllerInput, ControllerParams
 from modelkit.vocabulary import Pose
 
 AT_END = 0.04
@@ -86,7 +86,7 @@ class Parking(NamedTuple):
     """Speed asked for or advised [m/s], reverse negative."""
 
 
-def site_for(slot: Slot, attempt: int, out: bool, params: ControllerParams) -> Site:
+def site_for(slot: Slot, attempt: int, out: bool, params: ApaSystemParams) -> Site:
     """Return the slot as the planner sees it in this attempt to come in, or ``out``."""
     car = shape_of(params)
     if out:
@@ -102,13 +102,13 @@ class CarAtSite(NamedTuple):
     pose: Pose
 
 
-def place_for(slot: Slot, attempt: int, out: bool, odometry: Pose, params: ControllerParams) -> CarAtSite:
+def place_for(slot: Slot, attempt: int, out: bool, odometry: Pose, params: ApaSystemParams) -> CarAtSite:
     """Return the slot of an attempt and the car in it."""
     site = site_for(slot, attempt, out, params)
     return CarAtSite(site, to_slot(odometry, site.frame))
 
 
-def next_attempt(state: Parking, plan: PlanSearch, site: Site, params: ControllerParams) -> int:
+def next_attempt(state: Parking, plan: PlanSearch, site: Site, params: ApaSystemParams) -> int:
     """Return the attempt to make after a search that led nowhere; the same if there is none.
 
     Before it sets out, a car that needs more than few shifts is tried with closer margins first; then a
@@ -147,10 +147,10 @@ def end_out(place: CarAtSite, car: Shape) -> float:
 def park(
     state: Parking,
     around: Around,
-    inputs: ControllerInput,
+    inputs: ApaInput,
     steering: Steering,
     allowed: bool,
-    params: ControllerParams,
+    params: ApaSystemParams,
 ) -> Parking:
     """Return the manoeuvre one sample later; while not ``allowed`` the first plan is made, and no more."""
     place = place_for(around.slot, state.attempt, state.out, inputs.odometry, params)
@@ -196,7 +196,7 @@ def has_shifted(state: Parking, pose: Pose) -> bool:
 
 
 def _looked_around(
-    state: Parking, place: CarAtSite, around: Around, inputs: ControllerInput, params: ControllerParams
+    state: Parking, place: CarAtSite, around: Around, inputs: ApaInput, params: ApaSystemParams
 ) -> Parking:
     """Return the manoeuvre that has looked where it is along its move, and what is in the way."""
     move = state.plan.move
@@ -210,7 +210,7 @@ def _looked_around(
 
 
 def _guards(
-    state: Parking, place: CarAtSite, inputs: ControllerInput, settled: Settled, allowed: bool, params: ControllerParams
+    state: Parking, place: CarAtSite, inputs: ApaInput, settled: Settled, allowed: bool, params: ApaSystemParams
 ) -> int:
     apa = params.apa
     standing = abs(inputs.measured_speed) <= STANDING
@@ -254,7 +254,7 @@ def more_shifts(state: Parking, plan: PlanSearch) -> int:
     return state.shifts + first + plan.moves - 1
 
 
-def most_shifts(kind: int, out: bool, params: ControllerParams) -> int:
+def most_shifts(kind: int, out: bool, params: ApaSystemParams) -> int:
     """Return the most shifts into a slot of this kind, or ``out`` of any."""
     if out:
         return SHIFTS
@@ -267,7 +267,7 @@ def most_cuts(out: bool) -> int:
     return CUTS if out else MOST_CUTS
 
 
-def has_failed(state: Parking, kind: int, params: ControllerParams) -> bool:
+def has_failed(state: Parking, kind: int, params: ApaSystemParams) -> bool:
     """Return whether no way leads on from here into a slot of this kind."""
     stuck = state.plan.status == NOTHING or state.cuts > most_cuts(state.out) or state.missed
     return state.step == Step.PLAN and (
@@ -276,7 +276,7 @@ def has_failed(state: Parking, kind: int, params: ControllerParams) -> bool:
 
 
 def _moved_on(
-    state: Parking, step: int, place: CarAtSite, steering: Steering, measured: float, params: ControllerParams
+    state: Parking, step: int, place: CarAtSite, steering: Steering, measured: float, params: ApaSystemParams
 ) -> Parking:
     """Return the manoeuvre in ``step``, with what it asks of wheel and speed until the next sample."""
     before = state.step
@@ -336,7 +336,7 @@ def _next_leg(state: Parking, before: int) -> Leg:
     return state.leg
 
 
-def _speed(state: Parking, steering: Steering, measured: float, params: ControllerParams) -> float:
+def _speed(state: Parking, steering: Steering, measured: float, params: ApaSystemParams) -> float:
     """Return the speed [m/s] to ask for; of the drive no more than a little over the ``measured`` one: see LEAD."""
     tracked = state.tracked
     rate = rate_of(steering, params.car.steering.rate_limit) / params.car.steering.ratio
@@ -346,7 +346,7 @@ def _speed(state: Parking, steering: Steering, measured: float, params: Controll
     return max(params.apa.drive.creep, min(speed, state.sight.speed))
 
 
-def start_planning(slot: Slot, pose: Pose, out: bool, resumes: bool, params: ControllerParams) -> Parking:
+def start_planning(slot: Slot, pose: Pose, out: bool, resumes: bool, params: ApaSystemParams) -> Parking:
     """Return the manoeuvre at its beginning, ``out`` of the slot or into it, for a car at ``pose`` (world).
 
     A car that ``resumes`` may stand nearer to the neighbours than one that sets out: its margins are those under way.

@@ -4,10 +4,37 @@ from enum import IntEnum
 from typing import Annotated, NamedTuple
 
 from controller_fmu.apa.chart import Mode
-from controller_fmu.apa.choice import OFFERED
+from controller_fmu.apa.choice import OFFERED, Choice
+from controller_fmu.apa.phases import ApaPhase
 from controller_fmu.apa.slot import Kind, Side, Slot
+from controller_fmu.common.told import ToldSlot
+from controller_fmu.interface import (
+    STATE_OF_THE_CHART,
+    DriverTakeover,
+    HeadingError,
+    LateralError,
+    MeasuredSpeed,
+    Odometry,
+    ReasonTold,
+    ReferencePose,
+    Shifts,
+    SteeringWheelAngle,
+    VehicleFault,
+)
 from modelkit.signal import Group, Role, Signal
-from modelkit.vocabulary import Pose
+from modelkit.vocabulary import (
+    AdvisedSpeed,
+    BrakeRequest,
+    ForceControlActive,
+    ForceRequest,
+    Gear,
+    Pose,
+    PromptShown,
+    SpeedControlActive,
+    SpeedRequest,
+    SteeringActive,
+    SteeringWheelRequest,
+)
 
 
 class Alarm(IntEnum):
@@ -85,3 +112,43 @@ class ApaSignals(NamedTuple):
         float, Signal("m", "length (width) of the slot over the shortest of ISO 16787"), Role.LOCAL
     ] = 0.0
     move: Annotated[PlannedMove, Role.LOCAL] = PlannedMove()
+
+
+class ApaInput(NamedTuple):
+    """From the vehicle, the driver, and whoever else knows of a slot."""
+
+    odometry: Odometry = Pose()
+    measured_speed: MeasuredSpeed = 0.0
+    steering_wheel_angle: SteeringWheelAngle = 0.0
+    gear: Annotated[int, Signal("1", "selector position", states=Gear)] = Gear.PARK
+    brake_pedal: Annotated[float, Signal("1", "brake pedal, 0 released to 1 full", 0.0, 1.0)] = 0.0
+    driver_takeover: DriverTakeover = False
+    vehicle_fault: VehicleFault = 0
+    ultrasonic: tuple[
+        Annotated[float, Signal("m", "distance heard: 1-4 front, 5-8 rear, 9-10 left, 11-12 right")], ...
+    ] = (5.0,) * 12
+    apa_switch: Annotated[bool, Signal("1", "the driver has switched the parking assist on")] = False
+    driver_confirm: Annotated[bool, Signal("1", "the driver presses the confirm button")] = False
+    told: Annotated[ToldSlot, Group("a slot from outside: a camera, a map, a test bench")] = ToldSlot()
+    choice: Annotated[Choice, Group("what the driver chooses on the display")] = Choice()
+
+
+class ApaOutput(NamedTuple):
+    """To the vehicle, the driver, the log and the judge."""
+
+    steering_wheel_request: SteeringWheelRequest = 0.0
+    steering_active: SteeringActive = False
+    prompt: PromptShown = 0
+    advised_speed: AdvisedSpeed = 0.0
+    speed_control_active: SpeedControlActive = False
+    speed_request: SpeedRequest = 0.0
+    force_control_active: ForceControlActive = False
+    force_request: ForceRequest = 0.0
+    brake_request: BrakeRequest = False
+    phase: Annotated[int, Signal("1", STATE_OF_THE_CHART, states=ApaPhase)] = 0
+    reason: ReasonTold = 0
+    shifts: Shifts = 0
+    reference: ReferencePose = Pose()
+    lateral_error: LateralError = 0.0
+    heading_error: HeadingError = 0.0
+    apa: ApaSignals = ApaSignals()

@@ -19,6 +19,7 @@ from controller_fmu.apa.hearing.stir import QUIET
 from controller_fmu.apa.manoeuvre_chart import Step
 from controller_fmu.apa.out.standing_in import slot_around
 from controller_fmu.apa.out.within import heard_within
+from controller_fmu.apa.params import ApaSystemParams
 from controller_fmu.apa.parking import (
     Parking,
     cut_short,
@@ -29,6 +30,7 @@ from controller_fmu.apa.parking import (
     site_for,
     start_planning,
 )
+from controller_fmu.apa.signals import ApaInput
 from controller_fmu.apa.slot import Kind, Slot
 from controller_fmu.apa.told import ToldWatch, watch_told
 from controller_fmu.apa.watch import STANDING, Duty, Watch, is_taken_over, reason_to_fail, watch
@@ -36,7 +38,7 @@ from controller_fmu.common.chart import bit
 from controller_fmu.common.monitor import Command
 from controller_fmu.common.sensors import Listened, listened_on
 from controller_fmu.common.told import SlotKind
-from controller_fmu.interface import ControllerInput, ControllerParams, Reason
+from controller_fmu.interface import Reason
 from modelkit.vocabulary import Pose
 
 DRIVEN_ON = 0.3
@@ -78,7 +80,7 @@ class ApaState(NamedTuple):
     """Switched off on the way; the slot is still known."""
 
 
-def apa_start(params: ControllerParams) -> ApaState:
+def apa_start(params: ApaSystemParams) -> ApaState:
     """Return the system switched off."""
     return ApaState()
 
@@ -90,7 +92,7 @@ class Judged(NamedTuple):
     taken: bool
 
 
-def apa_sample(state: ApaState, inputs: ControllerInput, params: ControllerParams, dt_ns: int) -> ApaState:
+def apa_sample(state: ApaState, inputs: ApaInput, params: ApaSystemParams, dt_ns: int) -> ApaState:
     """Return the assist one sample of ``dt_ns`` later."""
     driving = state.mode in (Mode.AUTO_PARKING_ASSIST, Mode.POSITION_TUNING)
     heard_now = without_deaf(inputs.ultrasonic, state.around.guard.silences)
@@ -120,7 +122,7 @@ def apa_sample(state: ApaState, inputs: ControllerInput, params: ControllerParam
     return _moved_on(state, mode, inputs, judged, params, dt_ns)
 
 
-def _chosen(state: ApaState, inputs: ControllerInput, params: ControllerParams, dt_ns: int) -> ApaState:
+def _chosen(state: ApaState, inputs: ApaInput, params: ApaSystemParams, dt_ns: int) -> ApaState:
     """Return the assist that knows which slot is meant, of those that it has found or from outside."""
     told = watch_told(state.told, state.search, inputs, state.listened.fresh, shape_of(params), params)
     number = number_chosen(state.search, inputs.choice.side, inputs.choice.slot)
@@ -129,9 +131,7 @@ def _chosen(state: ApaState, inputs: ControllerInput, params: ControllerParams, 
     return state._replace(told=told, chosen=number, task=inputs.choice.task)
 
 
-def _parked_on(
-    state: ApaState, inputs: ControllerInput, driving: bool, params: ControllerParams, dt_ns: int
-) -> ApaState:
+def _parked_on(state: ApaState, inputs: ApaInput, driving: bool, params: ApaSystemParams, dt_ns: int) -> ApaState:
     """Return the assist that has listened, where its sensors tell something new, and gone on with the manoeuvre."""
     stopping = driving and state.parking.step != Step.DRIVE
     state = state._replace(
@@ -146,7 +146,7 @@ def _parked_on(
     return state._replace(parking=park(state.parking, state.around, inputs, steering, driving, params))
 
 
-def _listened(state: ApaState, inputs: ControllerInput, driving: bool, params: ControllerParams) -> ApaState:
+def _listened(state: ApaState, inputs: ApaInput, driving: bool, params: ApaSystemParams) -> ApaState:
     """Return the assist that has drawn what its sensors tell into its map."""
     parking = state.parking
     slot = state.around.slot
@@ -181,7 +181,7 @@ def _listened(state: ApaState, inputs: ControllerInput, driving: bool, params: C
     return state._replace(around=Around(slot, here, guard, shifts, state.around.mute_ns), parking=parking)
 
 
-def _may_stand_nearer(state: ApaState, guard: GuardState, params: ControllerParams) -> bool:
+def _may_stand_nearer(state: ApaState, guard: GuardState, params: ApaSystemParams) -> bool:
     """Return whether a standing car asks if a neighbour is nearer than the map has him."""
     parking = state.parking
     stays = parking.sight.unknown and state.watch.blocked * 1e-9 > LOOKED_FOR
@@ -189,7 +189,7 @@ def _may_stand_nearer(state: ApaState, guard: GuardState, params: ControllerPara
     return stays or (goes_on and is_odd(guard.comers) and not parking.out)
 
 
-def _later_reason(reason: int, state: ApaState, params: ControllerParams) -> int:
+def _later_reason(reason: int, state: ApaState, params: ApaSystemParams) -> int:
     if reason != Reason.NONE:
         return reason
     parking = state.parking
@@ -212,7 +212,7 @@ def _later_reason(reason: int, state: ApaState, params: ControllerParams) -> int
     return Reason.NONE
 
 
-def _no_way(state: ApaState, params: ControllerParams) -> int:
+def _no_way(state: ApaState, params: ApaSystemParams) -> int:
     """Return why no way leads on: what ends a perpendicular slot may leave no place in line with the neighbours."""
     parking = state.parking
     site = site_for(state.around.slot, parking.attempt, parking.out, params)
@@ -223,7 +223,7 @@ def _no_way(state: ApaState, params: ControllerParams) -> int:
     return Reason.TOO_MANY_SHIFTS if parking.plan.found else Reason.NO_PATH
 
 
-def _guards(state: ApaState, inputs: ControllerInput, judged: Judged, params: ControllerParams) -> int:
+def _guards(state: ApaState, inputs: ApaInput, judged: Judged, params: ApaSystemParams) -> int:
     given = params.apa.search.given
     speed = abs(inputs.measured_speed)
     standing = speed <= STANDING
@@ -255,7 +255,7 @@ def _guards(state: ApaState, inputs: ControllerInput, judged: Judged, params: Co
 
 
 def _moved_on(
-    state: ApaState, mode: int, inputs: ControllerInput, judged: Judged, params: ControllerParams, dt_ns: int
+    state: ApaState, mode: int, inputs: ApaInput, judged: Judged, params: ApaSystemParams, dt_ns: int
 ) -> ApaState:
     """Return the assist in ``mode``."""
     before = state.mode
@@ -287,7 +287,7 @@ def has_slot(state: ApaState) -> bool:
     return state.chosen > 0 or state.told.slot.kind != Kind.NONE
 
 
-def _resumes(state: ApaState, before: int, inputs: ControllerInput) -> bool:
+def _resumes(state: ApaState, before: int, inputs: ApaInput) -> bool:
     """Return whether the slot is still known that the car was driven into, or out of, and it is still there."""
     if state.mode == Mode.OFF and before == Mode.FAIL:
         return state.parking.direction != 0
@@ -305,14 +305,14 @@ def _without_the_slot(state: ApaState, failed: bool) -> ApaState:
     return state._replace(parking=Parking(), around=state.around._replace(slot=Slot()))
 
 
-def _is_waiting(mode: int, parking: Parking, inputs: ControllerInput) -> bool:
+def _is_waiting(mode: int, parking: Parking, inputs: ApaInput) -> bool:
     """Return whether the driver is to confirm, or stands in the search and is to drive on."""
     if mode == Mode.PARKING_SPACE_APPEARS:
         return is_planned(parking)
     return mode == Mode.PARKING_SPACE_SEARCH and abs(inputs.measured_speed) <= STANDING
 
 
-def _shown(state: ApaState, inputs: ControllerInput, params: ControllerParams) -> ApaState:
+def _shown(state: ApaState, inputs: ApaInput, params: ApaSystemParams) -> ApaState:
     """Return the assist that shows the slot that is meant, with its map of it, and plans the way in, or out."""
     out = inputs.choice.task == ChosenTask.PULL_OUT
     number = state.chosen

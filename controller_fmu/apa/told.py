@@ -5,6 +5,8 @@ from typing import NamedTuple
 
 from controller_fmu.apa.hearing.search import SearchState
 from controller_fmu.apa.outline import Shape
+from controller_fmu.apa.params import ApaSystemParams
+from controller_fmu.apa.signals import ApaInput
 from controller_fmu.apa.slot import UNSEEN, Kind, Side, Slot, mirror_of
 from controller_fmu.apa.ways.fit import fit_of
 from controller_fmu.common.sensors import HEARD, LEFT_SENSOR, RIGHT_SENSOR, sensor_at
@@ -19,7 +21,7 @@ from controller_fmu.common.told import (
     depth_of,
     is_usable_slot,
 )
-from controller_fmu.interface import ControllerInput, ControllerParams, Reason
+from controller_fmu.interface import Reason
 from modelkit.vocabulary import Pose
 
 SQUARE = math.sin(0.15)
@@ -59,7 +61,7 @@ class ToldWatch(NamedTuple):
 
 
 def watch_told(
-    state: ToldWatch, search: SearchState, inputs: ControllerInput, fresh: bool, car: Shape, params: ControllerParams
+    state: ToldWatch, search: SearchState, inputs: ApaInput, fresh: bool, car: Shape, params: ApaSystemParams
 ) -> ToldWatch:
     """Return the slot that is told, as far as it may be shown; ``fresh``: the sensors tell something new."""
     told = inputs.told
@@ -87,9 +89,7 @@ def watch_told(
     return ToldWatch(slot if shown else Slot(), refused, state.judged if same else told, echoes, a, b)
 
 
-def slot_of_told(
-    told: ToldSlot, search: SearchState, inputs: ControllerInput, car: Shape, params: ControllerParams
-) -> Slot:
+def slot_of_told(told: ToldSlot, search: SearchState, inputs: ApaInput, car: Shape, params: ApaSystemParams) -> Slot:
     """Return the slot that is told, corner A first on the car's way; a depth that is not told is the one heard."""
     pose = inputs.odometry
     dx = told.bx - told.ax
@@ -116,7 +116,7 @@ def slot_of_told(
     return slot
 
 
-def reason_to_refuse(told: ToldSlot, slot: Slot, car: Shape, params: ControllerParams) -> int:
+def reason_to_refuse(told: ToldSlot, slot: Slot, car: Shape, params: ApaSystemParams) -> int:
     """Return why a car cannot park in a slot that is told, ``NONE`` if it may."""
     leaning = abs(math.cos(told.heading - slot.a.heading))
     if told.kind == SlotKind.NOSE_IN or leaning > SQUARE:
@@ -149,23 +149,23 @@ def _is_same(told: ToldSlot, before: ToldSlot) -> bool:
     )
 
 
-def _sensor_in(slot: Slot, inputs: ControllerInput, params: ControllerParams) -> Pose:
+def _sensor_in(slot: Slot, inputs: ApaInput, params: ApaSystemParams) -> Pose:
     """Return the sensor that passes the slot, in A's frame."""
     mount = params.car.ultrasonic.mounts[LEFT_SENSOR if slot.side == Side.LEFT else RIGHT_SENSOR]
     return to_slot(sensor_at(mount, inputs.odometry), SlotFrame(slot.a, mirror_of(slot)))
 
 
-def _is_passed(slot: Slot, inputs: ControllerInput, params: ControllerParams) -> bool:
+def _is_passed(slot: Slot, inputs: ApaInput, params: ApaSystemParams) -> bool:
     """Return whether the sensor has passed both corners."""
     return _sensor_in(slot, inputs, params).x > slot.length + PASSED
 
 
-def _reading_of(slot: Slot, inputs: ControllerInput) -> float:
+def _reading_of(slot: Slot, inputs: ApaInput) -> float:
     """Return what the sensor that passes the slot tells [m]."""
     return inputs.ultrasonic[LEFT_SENSOR if slot.side == Side.LEFT else RIGHT_SENSOR]
 
 
-def _is_inside(at: Pose, reading: float, slot: Slot, car: Shape, params: ControllerParams) -> bool:
+def _is_inside(at: Pose, reading: float, slot: Slot, car: Shape, params: ApaSystemParams) -> bool:
     """Return whether an echo comes from where the car would stand, wherever in the cone it comes from."""
     sensors = params.car.ultrasonic
     if reading > HEARD * sensors.max_range:

@@ -5,10 +5,11 @@ from typing import NamedTuple
 from controller_fmu.apa.choice import ChosenTask
 from controller_fmu.apa.hearing.mute import count_mute
 from controller_fmu.apa.manoeuvre_chart import Step
-from controller_fmu.apa.params import Longitudinal
+from controller_fmu.apa.params import ApaSystemParams, Longitudinal
+from controller_fmu.apa.signals import ApaInput
 from controller_fmu.common.monitor import Command, clock_before, is_unmoved
 from controller_fmu.common.steering_monitor import SteeringWatch, at_rest, has_failed, watch_steering
-from controller_fmu.interface import ControllerInput, ControllerParams, Reason
+from controller_fmu.interface import Reason
 from modelkit.maths import is_finite
 from modelkit.vocabulary import Gear, Pose
 
@@ -50,9 +51,7 @@ class Duty(NamedTuple):
     """So many sensors can be gone without."""
 
 
-def watch(
-    state: Watch, command: Command, inputs: ControllerInput, duty: Duty, params: ControllerParams, dt_ns: int
-) -> Watch:
+def watch(state: Watch, command: Command, inputs: ApaInput, duty: Duty, params: ApaSystemParams, dt_ns: int) -> Watch:
     """Return the clocks after one sample."""
     driving = duty.driving
     speed = inputs.measured_speed
@@ -80,7 +79,7 @@ def watch(
     )
 
 
-def is_taken_over(state: Watch, inputs: ControllerInput, params: ControllerParams) -> bool:
+def is_taken_over(state: Watch, inputs: ApaInput, params: ApaSystemParams) -> bool:
     """Return whether the driver has taken the car back: by signal, brake, selector or steering wheel."""
     own = params.apa.drive.longitudinal == Longitudinal.OWN_SPEED
     settled = state.running * 1e-9 > SETTLING
@@ -95,7 +94,7 @@ def _is_off(wheel: SteeringWatch) -> bool:
 
 
 def reason_to_fail(
-    state: Watch, inputs: ControllerInput, driving: bool, params: ControllerParams, task: int = ChosenTask.PARK
+    state: Watch, inputs: ApaInput, driving: bool, params: ApaSystemParams, task: int = ChosenTask.PARK
 ) -> int:
     """Return the first Reason that holds, ``NONE`` if all is as it should be; ``task``: what the car does."""
     guard = params.apa.guard
@@ -124,7 +123,7 @@ def reason_to_fail(
     return Reason.NONE
 
 
-def is_finite_input(inputs: ControllerInput) -> bool:
+def is_finite_input(inputs: ApaInput) -> bool:
     """Return False if a number that the assist steers by is NaN or infinite (sensors: see SENSOR_LOSS)."""
     pose = inputs.odometry
     return (

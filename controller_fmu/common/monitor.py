@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 from controller_fmu.common.phases import Expected
 from controller_fmu.common.steering_monitor import SteeringWatch, at_rest, has_failed, watch_steering
-from controller_fmu.interface import ControllerInput, ControllerParams, Reason
+from controller_fmu.interface import Monitored, Reason, Sensed, SensedWithFault
 from modelkit.maths import sign
 from modelkit.vocabulary import Pose
 
@@ -43,11 +43,11 @@ class Command(NamedTuple):
 
 def watch(
     state: MonitorState,
-    inputs: ControllerInput,
+    inputs: Sensed,
     expected: Expected,
     request: float,
     dt_ns: int,
-    params: ControllerParams,
+    params: Monitored,
 ) -> MonitorState:
     """Return the clocks after one sample of ``dt_ns`` in a phase with the wheel at ``request``."""
     speed = inputs.measured_speed
@@ -88,11 +88,11 @@ def is_unmoved(pose: Pose, before: Pose, speed: float, dt_ns: int) -> bool:
 
 def reason_to_fail(
     state: MonitorState,
-    inputs: ControllerInput,
+    inputs: SensedWithFault,
     expected: Expected,
     running_ns: int,
     shifts: int,
-    params: ControllerParams,
+    params: Monitored,
 ) -> int:
     """Return the first Reason that holds, ``NONE`` if the car and the driver are as they should be."""
     limit = params.limit
@@ -117,7 +117,7 @@ def reason_to_fail(
     return Reason.NONE
 
 
-def is_usable_input(inputs: ControllerInput) -> bool:
+def is_usable_input(inputs: Sensed) -> bool:
     """Return False if a number that the controller steers by is NaN, infinite or beyond all sense."""
     pose = inputs.odometry
     return (

@@ -1,7 +1,7 @@
 """The phases that every system has, and what a monitor must know of any other.
 
 Each system has an enumeration of its own, with these four among its members; any other member means that it parks.
-What two systems both have is of the same number and name in both: ``controller_fmu.interface.Phase`` is made of all.
+What two systems both have is of the same number and name in both: ``controller_fmu.registry`` makes the union of all.
 """
 
 from enum import IntEnum

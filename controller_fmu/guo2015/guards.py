@@ -3,11 +3,12 @@
 from controller_fmu.common.chart import bit
 from controller_fmu.guo2015.chart import Guard
 from controller_fmu.guo2015.legs import Tracking, point_of_leg
+from controller_fmu.guo2015.params import GuoSystem, GuoSystemParams
 from controller_fmu.guo2015.path import distance_to_end, reference_at
 from controller_fmu.guo2015.phases import GuoPhase
 from controller_fmu.guo2015.planner import TwoArcPath
 from controller_fmu.guo2015.prompts import stopping_distance
-from controller_fmu.interface import ControllerInput, ControllerParams, System
+from controller_fmu.interface import ParkingInput
 from modelkit.vocabulary import Pose
 
 
@@ -29,10 +30,10 @@ def wheel_guards(leg: int, wheel: float, request: float, tolerance: float) -> in
     )
 
 
-def way_guards(tracking: Tracking, pose: Pose, path: TwoArcPath, speed: float, params: ControllerParams) -> int:
+def way_guards(tracking: Tracking, pose: Pose, path: TwoArcPath, speed: float, params: GuoSystemParams) -> int:
     """Return the bits that say the car left the path or reached the end of its leg."""
     limit = params.guo2015.threshold
-    points = params.system == System.NTBPTCWPT
+    points = params.system == GuoSystem.NTBPTCWPT
     left = not within(tracking.lateral_error, tracking.heading_error, limit.leave_lateral, limit.leave_heading)
     to_end = distance_to_end(path, reference_at(path, pose.x, tracking.piece))
     q2 = point_of_leg(GuoPhase.TO_Q2, path, params.guo2015)
@@ -53,13 +54,13 @@ def way_guards(tracking: Tracking, pose: Pose, path: TwoArcPath, speed: float, p
     )
 
 
-def standing_guards(leg: int, pose: Pose, inputs: ControllerInput, params: ControllerParams) -> int:
+def standing_guards(leg: int, pose: Pose, inputs: ParkingInput, params: GuoSystemParams) -> int:
     """Return the bits that say the car stands and what it stands for."""
     limit = params.guo2015.threshold
     if abs(inputs.measured_speed) > params.threshold.standstill:
         return 0
     at_end = leg == GuoPhase.STRAIGHTEN
-    wrong = params.system == System.NTBPTCWPT and not within(
+    wrong = params.system == GuoSystem.NTBPTCWPT and not within(
         pose.y, pose.heading, limit.park_lateral, limit.park_heading
     )
     return (

@@ -6,13 +6,12 @@ straight ahead of it (Guo 2015, Fig. 9, Table 2): all from the geometry of the p
 
 from typing import NamedTuple
 
-from controller_fmu.guo2015.params import GuoParams
+from controller_fmu.guo2015.params import GuoParams, GuoSystemParams
 from controller_fmu.guo2015.path import reference_at
 from controller_fmu.guo2015.path_tracking import path_tracking_angle
 from controller_fmu.guo2015.phases import GuoPhase
 from controller_fmu.guo2015.planner import TwoArcPath, ahead
 from controller_fmu.guo2015.point_tracking import point_error, point_tracking_angle
-from controller_fmu.interface import ControllerParams
 from modelkit.vocabulary import Pose
 
 
@@ -28,7 +27,7 @@ class Tracking(NamedTuple):
     piece: int = 0
 
 
-def track(leg: int, pose: Pose, path: TwoArcPath, piece: int, params: ControllerParams) -> Tracking:
+def track(leg: int, pose: Pose, path: TwoArcPath, piece: int, params: GuoSystemParams) -> Tracking:
     """Return what ``leg`` asks of a car at ``pose`` (slot's frame), the path latched at ``piece``."""
     gains = params.guo2015
     if leg == GuoPhase.PATH_TRACKING:

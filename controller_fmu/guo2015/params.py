@@ -1,10 +1,22 @@
 """What can be set of NTBPTcwPT: the gains and the path of Guo 2015, its chart's thresholds, its prompts."""
 
+from enum import IntEnum
 from math import pi
 from typing import Annotated, NamedTuple
 
+from controller_fmu.common.params import LimitParams, ThresholdParams
 from controller_fmu.guo2015.smooth_path import PathShape
-from modelkit.signal import Role, Signal
+from controller_fmu.interface import (
+    TARGET,
+    AssumedCar,
+    Limits,
+    SampleTime,
+    SteeredCar,
+    Target,
+    Thresholds,
+)
+from modelkit.car import Car
+from modelkit.signal import Role, Signal, Subset
 
 GUO = "Guo 2015"
 HOUSE = "chosen; the source states none"
@@ -61,3 +73,24 @@ class GuoParams(NamedTuple):
     )
     threshold: GuoThresholds = GuoThresholds()
     prompting: GuoPrompts = GuoPrompts()
+
+
+class GuoSystem(IntEnum):
+    """Its values of ``controller.system``."""
+
+    NTBPTCWPT = 0
+    """Path tracking combined with point tracking (Guo 2015, section 4)."""
+    NTBPT = 1
+    """Path tracking only (Guo 2015, section 3)."""
+
+
+class GuoSystemParams(NamedTuple):
+    """All that can be set of it."""
+
+    system: Annotated[int, Signal("1", "which paper's system", states=GuoSystem)] = GuoSystem.NTBPTCWPT
+    sample_time: SampleTime = 0.01
+    car: Annotated[AssumedCar, Subset(SteeredCar)] = Car()
+    target: Target = TARGET
+    threshold: Thresholds = ThresholdParams()
+    limit: Limits = LimitParams()
+    guo2015: Annotated[GuoParams, Role.TUNABLE] = GuoParams()

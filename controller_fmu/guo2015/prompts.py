@@ -12,10 +12,9 @@ It is advised before a jump of the path's curvature, and held until the wheel ha
 import math
 
 from controller_fmu.common.steering_monitor import Steering, delay_of, rate_of
-from controller_fmu.guo2015.params import GuoPrompts
+from controller_fmu.guo2015.params import GuoPrompts, GuoSystemParams
 from controller_fmu.guo2015.path import Reference, curvature_after, distance_to_end, distance_to_jump
 from controller_fmu.guo2015.planner import TwoArcPath
-from controller_fmu.interface import ControllerParams
 from modelkit.vocabulary import Prompt
 
 PROMPT_OF_PHASE = (
@@ -40,7 +39,7 @@ MOVING = 0.05
 
 
 def path_speed(
-    path: TwoArcPath, reference: Reference, speed: float, steering: Steering, params: ControllerParams
+    path: TwoArcPath, reference: Reference, speed: float, steering: Steering, params: GuoSystemParams
 ) -> float:
     """Return the speed [m/s] that lets the steering follow the path from here on."""
     prompting = params.guo2015.prompting
@@ -66,7 +65,7 @@ def point_speed(distance: float, speed: float, params: GuoPrompts) -> float:
     return min(_speed_before(params.creep_speed, distance, speed, params), params.point_speed)
 
 
-def swing_speed(angle: float, wanted: float, steering: Steering, params: ControllerParams) -> float:
+def swing_speed(angle: float, wanted: float, steering: Steering, params: GuoSystemParams) -> float:
     """Return the speed [m/s] at which the front wheels may swing from ``angle`` to ``wanted`` [rad] on the move."""
     swing = abs(wanted - angle) * params.car.steering.ratio / rate_of(steering, params.car.steering.rate_limit)
     late = delay_of(steering)

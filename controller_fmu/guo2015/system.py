@@ -16,6 +16,7 @@ from controller_fmu.common.steering_wheel import wheel_request
 from controller_fmu.guo2015.chart import Guard, transition
 from controller_fmu.guo2015.guards import standing_guards, way_guards, wheel_guards, within
 from controller_fmu.guo2015.legs import Tracking, track
+from controller_fmu.guo2015.params import GuoSystemParams
 from controller_fmu.guo2015.path import SECOND_ARC, reference_at
 from controller_fmu.guo2015.phases import DIRECTION_OF_PHASE, GuoPhase, expected_in
 from controller_fmu.guo2015.planner import Plan, plan
@@ -26,8 +27,9 @@ from controller_fmu.guo2015.prompts import (
     prompt_of,
     swing_speed,
 )
+from controller_fmu.guo2015.signals import GuoOutput
 from controller_fmu.guo2015.smooth_path import PathShape
-from controller_fmu.interface import ControllerInput, ControllerOutput, ControllerParams, Path, Reason, Segment
+from controller_fmu.interface import ParkingInput, Path, Reason, Segment
 from modelkit.car import smallest_radius
 from modelkit.maths import clamp
 from modelkit.vocabulary import Pose
@@ -65,7 +67,7 @@ class GuoState(NamedTuple):
 class Sample(NamedTuple):
     """What is known at a sample before the chart decides."""
 
-    inputs: ControllerInput
+    inputs: ParkingInput
     planned: Plan
     pose: Pose
     """In the slot's frame."""
@@ -73,12 +75,12 @@ class Sample(NamedTuple):
     dt_ns: int
 
 
-def guo_start(params: ControllerParams) -> GuoState:
+def guo_start(params: GuoSystemParams) -> GuoState:
     """Return the system in standby."""
     return GuoState()
 
 
-def guo_sample(state: GuoState, inputs: ControllerInput, params: ControllerParams, dt_ns: int) -> GuoState:
+def guo_sample(state: GuoState, inputs: ParkingInput, params: GuoSystemParams, dt_ns: int) -> GuoState:
     """Return the system one sample of ``dt_ns`` later."""
     if is_over(state.phase):
         return _ended(state, state.phase, state.reason, inputs.driver_takeover)
@@ -86,6 +88,8 @@ def guo_sample(state: GuoState, inputs: ControllerInput, params: ControllerParam
         return _ended(state, GuoPhase.FAILED, Reason.BAD_INPUT, inputs.driver_takeover)
     planned = state.plan
     if state.phase == GuoPhase.STANDBY:
+        if not params.guo2015.prompting.deceleration > 0.0:
+            return _ended(state, GuoPhase.FAILED, Reason.BAD_PARAMETER, inputs.driver_takeover)
         smallest = smallest_radius(params.car)
         reserve = params.guo2015.radius_reserve
         radius = params.guo2015.radius
@@ -106,7 +110,7 @@ def guo_sample(state: GuoState, inputs: ControllerInput, params: ControllerParam
     return _moved_on(state, now, phase, next_leg, params)
 
 
-def guo_outputs(state: GuoState, params: ControllerParams) -> ControllerOutput:
+def guo_outputs(state: GuoState, params: GuoSystemParams) -> GuoOutput:
     """Return the outputs that hold until the next sample."""
     active = is_parking(state.phase)
     frame = state.plan.frame
@@ -118,7 +122,7 @@ def guo_outputs(state: GuoState, params: ControllerParams) -> ControllerOutput:
         Segment(line, 0.0),
         Segment(path.radius * path.tangent2.heading, k),
     )
-    return ControllerOutput(
+    return GuoOutput(
         steering_wheel_request=state.request,
         steering_active=active,
         prompt=prompt_of(state.phase, state.moving, state.advice, params.guo2015.prompting),
@@ -134,7 +138,7 @@ def guo_outputs(state: GuoState, params: ControllerParams) -> ControllerOutput:
     )
 
 
-def _reason(state: GuoState, now: Sample, tracking: Tracking, params: ControllerParams) -> int:
+def _reason(state: GuoState, now: Sample, tracking: Tracking, params: GuoSystemParams) -> int:
     limit = params.threshold
     expected = expected_in(state.phase)
     reason = reason_to_fail(now.monitor, now.inputs, expected, state.running_ns, state.shifts, params)
@@ -150,7 +154,7 @@ def _reason(state: GuoState, now: Sample, tracking: Tracking, params: Controller
     return Reason.NONE
 
 
-def _guards(state: GuoState, now: Sample, tracking: Tracking, reason: int, params: ControllerParams) -> int:
+def _guards(state: GuoState, now: Sample, tracking: Tracking, reason: int, params: GuoSystemParams) -> int:
     wheel = now.inputs.steering_wheel_angle
     speed = now.inputs.measured_speed
     path = now.planned.path
@@ -165,7 +169,7 @@ def _guards(state: GuoState, now: Sample, tracking: Tracking, reason: int, param
     )
 
 
-def _moved_on(state: GuoState, now: Sample, phase: int, leg: int, params: ControllerParams) -> GuoState:
+def _moved_on(state: GuoState, now: Sample, phase: int, leg: int, params: GuoSystemParams) -> GuoState:
     back_on_path = state.phase == GuoPhase.STOP and phase == GuoPhase.PRE_STEER and leg == GuoPhase.PATH_TRACKING
     direction = DIRECTION_OF_PHASE[phase]
     turned = direction != 0 and direction != state.direction
@@ -196,7 +200,7 @@ def _moved_on(state: GuoState, now: Sample, phase: int, leg: int, params: Contro
 
 
 def _advice(
-    state: GuoState, phase: int, now: Sample, tracking: Tracking, swing: float, params: ControllerParams
+    state: GuoState, phase: int, now: Sample, tracking: Tracking, swing: float, params: GuoSystemParams
 ) -> float:
     """Return the speed advised [m/s]; while a stop is asked for it may fall, as on the way there, but not rise."""
     if phase == GuoPhase.STANDBY:
@@ -217,7 +221,7 @@ def _advice(
     return advice if driving else min(state.advice, advice)
 
 
-def _swing(state: GuoState, phase: int, request: float, now: Sample, params: ControllerParams) -> float:
+def _swing(state: GuoState, phase: int, request: float, now: Sample, params: GuoSystemParams) -> float:
     """Return the speed [m/s] at which the wheel may swing to its request; held until it has arrived."""
     limit = params.guo2015.prompting.speed_limit
     wheel = now.inputs.steering_wheel_angle
@@ -229,7 +233,7 @@ def _swing(state: GuoState, phase: int, request: float, now: Sample, params: Con
     return min(state.swing, speed) if DIRECTION_OF_PHASE[state.phase] != 0 else speed
 
 
-def _wheel_request(phase: int, tracking: Tracking, planned: Plan, params: ControllerParams) -> float:
+def _wheel_request(phase: int, tracking: Tracking, planned: Plan, params: GuoSystemParams) -> float:
     if phase in (GuoPhase.STANDBY, GuoPhase.STRAIGHTEN):
         return 0.0
     return wheel_request(tracking.front_wheel_angle, planned.frame.mirror, params)

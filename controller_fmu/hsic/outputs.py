@@ -4,11 +4,12 @@ from controller_fmu.common.slot_frame import SlotFrame, to_world
 from controller_fmu.common.steering_wheel import steering_wheel_angle
 from controller_fmu.hsic.characteristic_states import errors
 from controller_fmu.hsic.key_points import KeyPoints
+from controller_fmu.hsic.params import HsicSystemParams
 from controller_fmu.hsic.phases import HsicPhase
 from controller_fmu.hsic.rules import RULES
-from controller_fmu.hsic.signals import HsicSignals
+from controller_fmu.hsic.signals import HsicOutput, HsicSignals
 from controller_fmu.hsic.system import HsicState
-from controller_fmu.interface import ControllerOutput, ControllerParams, Path, Segment
+from controller_fmu.interface import Path, Segment
 from modelkit.vocabulary import Pose
 
 
@@ -27,7 +28,7 @@ def planned_path(points: KeyPoints, frame: SlotFrame) -> Path:
     return Path(to_world(points.p1, frame), (Segment(arc, -k), Segment(line, 0.0), Segment(arc, k)))
 
 
-def hsic_outputs(state: HsicState, params: ControllerParams) -> ControllerOutput:
+def hsic_outputs(state: HsicState, params: HsicSystemParams) -> HsicOutput:
     """Return the outputs that hold until the next sample."""
     active = state.phase in (HsicPhase.PRE_STEER, HsicPhase.PATH_TRACKING, HsicPhase.STRAIGHTEN)
     modes = RULES[state.characteristic]
@@ -40,7 +41,7 @@ def hsic_outputs(state: HsicState, params: ControllerParams) -> ControllerOutput
         tangent_error=tangent_error(state.course.points, state.pose),
     )
     brake = state.phase != HsicPhase.PATH_TRACKING and state.phase != HsicPhase.TAKEOVER
-    return ControllerOutput(
+    return HsicOutput(
         steering_wheel_request=steering_wheel_angle(state.angle, state.frame.mirror, params) if active else 0.0,
         steering_active=active,
         speed_control_active=active,

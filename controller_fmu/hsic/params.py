@@ -1,9 +1,21 @@
 """What can be set in human-simulated intelligent control: slot, thresholds, gains, speeds."""
 
+from enum import IntEnum
 from math import pi
-from typing import Annotated, NamedTuple
+from typing import Annotated, NamedTuple, Protocol
 
-from modelkit.signal import Role, Signal
+from controller_fmu.common.params import LimitParams, ThresholdParams
+from controller_fmu.interface import (
+    TARGET,
+    AssumedCar,
+    Limits,
+    OutlinedCar,
+    SampleTime,
+    Target,
+    Thresholds,
+)
+from modelkit.car import Car
+from modelkit.signal import Role, Signal, Subset
 
 PAPER = "HSIC paper"
 HOUSE = "chosen; the source states none"
@@ -71,3 +83,28 @@ class HsicParams(NamedTuple):
     slot: HsicSlot = HsicSlot()
     threshold: Annotated[HsicThresholds, Role.TUNABLE] = HsicThresholds()
     gain: Annotated[HsicGains, Role.TUNABLE] = HsicGains()
+
+
+class HsicSystem(IntEnum):
+    """Its value of ``controller.system``."""
+
+    HSIC = 3
+    """Human-simulated intelligent control."""
+
+
+class HsicThresholdsShared(Protocol):
+    """Those of the thresholds of every system that it has."""
+
+    lost_lateral: float
+    standstill: float
+
+
+class HsicSystemParams(NamedTuple):
+    """All that can be set of it."""
+
+    sample_time: SampleTime = 0.01
+    car: Annotated[AssumedCar, Subset(OutlinedCar)] = Car()
+    target: Target = TARGET
+    threshold: Annotated[Thresholds, Subset(HsicThresholdsShared)] = ThresholdParams()
+    limit: Limits = LimitParams()
+    hsic: HsicParams = HsicParams()

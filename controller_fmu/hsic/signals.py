@@ -3,8 +3,31 @@
 from typing import Annotated, NamedTuple
 
 from controller_fmu.hsic.characteristic_states import Characteristic, HsicStage
+from controller_fmu.hsic.phases import HsicPhase
 from controller_fmu.hsic.rules import SpeedMode, SteerMode
-from modelkit.signal import Signal
+from controller_fmu.interface import (
+    STATE_OF_THE_CHART,
+    HeadingError,
+    LateralError,
+    Path,
+    PlannedPath,
+    ReasonTold,
+    ReferencePose,
+    Shifts,
+)
+from modelkit.signal import Role, Signal
+from modelkit.vocabulary import (
+    AdvisedSpeed,
+    BrakeRequest,
+    ForceControlActive,
+    ForceRequest,
+    Pose,
+    PromptShown,
+    SpeedControlActive,
+    SpeedRequest,
+    SteeringActive,
+    SteeringWheelRequest,
+)
 
 
 class HsicSignals(NamedTuple):
@@ -16,3 +39,25 @@ class HsicSignals(NamedTuple):
     steer_mode: Annotated[int, Signal("1", "control mode of the steering", states=SteerMode)] = 0
     distance: Annotated[float, Signal("m", "distance to the key point")] = 0.0
     tangent_error: Annotated[float, Signal("m", "distance to the left of the common tangent P2 P3, slot frame")] = 0.0
+
+
+class HsicOutput(NamedTuple):
+    """To the vehicle, the driver, the log and the judge."""
+
+    steering_wheel_request: SteeringWheelRequest = 0.0
+    steering_active: SteeringActive = False
+    prompt: PromptShown = 0
+    advised_speed: AdvisedSpeed = 0.0
+    speed_control_active: SpeedControlActive = False
+    speed_request: SpeedRequest = 0.0
+    force_control_active: ForceControlActive = False
+    force_request: ForceRequest = 0.0
+    brake_request: BrakeRequest = False
+    phase: Annotated[int, Signal("1", STATE_OF_THE_CHART, states=HsicPhase)] = 0
+    reason: ReasonTold = 0
+    shifts: Shifts = 0
+    reference: ReferencePose = Pose()
+    lateral_error: LateralError = 0.0
+    heading_error: HeadingError = 0.0
+    path: PlannedPath = Path()
+    hsic: Annotated[HsicSignals, Role.LOCAL] = HsicSignals()

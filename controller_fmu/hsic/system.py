@@ -10,10 +10,11 @@ from controller_fmu.common.steering_wheel import steering_wheel_angle
 from controller_fmu.hsic.characteristic_states import Errors, HsicStage, errors, recognise
 from controller_fmu.hsic.control import Situation, curvature, speed
 from controller_fmu.hsic.key_points import key_points, ready_point
+from controller_fmu.hsic.params import HsicSystemParams
 from controller_fmu.hsic.phases import HsicPhase, expected_in
 from controller_fmu.hsic.rules import RULES, SpeedMode
 from controller_fmu.hsic.stages import Course, advance, is_parked, way_to
-from controller_fmu.interface import ControllerInput, ControllerParams, Reason
+from controller_fmu.interface import ParkingInput, Reason
 from modelkit.car import largest_curvature
 from modelkit.maths import clamp
 from modelkit.vocabulary import Pose
@@ -47,12 +48,12 @@ class HsicState(NamedTuple):
     monitor: MonitorState = MonitorState()
 
 
-def hsic_start(params: ControllerParams) -> HsicState:
+def hsic_start(params: HsicSystemParams) -> HsicState:
     """Return the system in standby."""
     return HsicState()
 
 
-def hsic_sample(state: HsicState, inputs: ControllerInput, params: ControllerParams, dt_ns: int) -> HsicState:
+def hsic_sample(state: HsicState, inputs: ParkingInput, params: HsicSystemParams, dt_ns: int) -> HsicState:
     """Return the system one sample of ``dt_ns`` later."""
     if is_over(state.phase):
         return state
@@ -78,7 +79,7 @@ def hsic_sample(state: HsicState, inputs: ControllerInput, params: ControllerPar
     return _driven(state, inputs, params, dt_ns)
 
 
-def _planned(inputs: ControllerInput, params: ControllerParams) -> HsicState:
+def _planned(inputs: ParkingInput, params: HsicSystemParams) -> HsicState:
     """Return the system on its way to the ready point, or failed where there are no key points."""
     slot = params.hsic.slot
     car = params.car
@@ -94,7 +95,7 @@ def _planned(inputs: ControllerInput, params: ControllerParams) -> HsicState:
     )
 
 
-def _driven(state: HsicState, inputs: ControllerInput, params: ControllerParams, dt_ns: int) -> HsicState:
+def _driven(state: HsicState, inputs: ParkingInput, params: HsicSystemParams, dt_ns: int) -> HsicState:
     """Return the system after one look at the situation and the rule that belongs to it."""
     hsic = params.hsic
     v = inputs.measured_speed
@@ -132,7 +133,7 @@ def _driven(state: HsicState, inputs: ControllerInput, params: ControllerParams,
     )
 
 
-def _front_wheels(mode: int, now: Situation, arc: float, params: ControllerParams) -> float:
+def _front_wheels(mode: int, now: Situation, arc: float, params: HsicSystemParams) -> float:
     """Return the front-wheel angle that the rule asks for, in the slot's frame [rad]; ``arc``: planned [1/m]."""
     bend = curvature(mode, now, arc, largest_curvature(params.car), params.hsic.gain)
     return math.atan(params.car.wheelbase * bend)
@@ -145,7 +146,7 @@ def _counted(state: HsicState, stage: int, phase: int, direction: int) -> int:
     return direction
 
 
-def _straightened(state: HsicState, inputs: ControllerInput, params: ControllerParams) -> HsicState:
+def _straightened(state: HsicState, inputs: ParkingInput, params: HsicSystemParams) -> HsicState:
     """Return the system at its end: wheel to the middle, then parked or missed."""
     phase = HsicPhase.STRAIGHTEN
     reason = Reason.NONE

@@ -5,9 +5,11 @@ from typing import NamedTuple
 from controller_fmu.common.monitor import is_usable_input
 from controller_fmu.common.phases import is_over
 from controller_fmu.common.steering_wheel import wheel_request
-from controller_fmu.interface import ControllerInput, ControllerOutput, ControllerParams, Reason
+from controller_fmu.interface import Reason, SystemInput
+from controller_fmu.preview.params import PreviewSystemParams
 from controller_fmu.preview.phases import PreviewPhase
 from controller_fmu.preview.road import road_at
+from controller_fmu.preview.signals import PreviewOutput
 from controller_fmu.preview.system import PreviewState, preview_step
 
 
@@ -22,12 +24,12 @@ class DrivingState(NamedTuple):
     force: float = 0.0
 
 
-def driving_start(params: ControllerParams) -> DrivingState:
+def driving_start(params: PreviewSystemParams) -> DrivingState:
     """Return the system at the start of the road."""
     return DrivingState()
 
 
-def driving_sample(state: DrivingState, inputs: ControllerInput, params: ControllerParams, dt_ns: int) -> DrivingState:
+def driving_sample(state: DrivingState, inputs: SystemInput, params: PreviewSystemParams, dt_ns: int) -> DrivingState:
     """Return the system one sample of ``dt_ns`` later."""
     if is_over(state.phase):
         return state
@@ -47,7 +49,7 @@ def driving_sample(state: DrivingState, inputs: ControllerInput, params: Control
     return DrivingState(phase, Reason.NONE, preview, command.front_wheel_angle, command.force)
 
 
-def driving_outputs(state: DrivingState, params: ControllerParams) -> ControllerOutput:
+def driving_outputs(state: DrivingState, params: PreviewSystemParams) -> PreviewOutput:
     """Return the outputs that hold until the next sample."""
     driving = state.phase == PreviewPhase.PATH_TRACKING
     signals = state.preview.signals
@@ -55,7 +57,7 @@ def driving_outputs(state: DrivingState, params: ControllerParams) -> Controller
     brake = not driving and state.phase != PreviewPhase.TAKEOVER
     speed = signals.wanted_speed if driving else 0.0
     force = state.force if driving else 0.0
-    return ControllerOutput(
+    return PreviewOutput(
         steering_wheel_request=wheel_request(state.angle, 1.0, params),
         steering_active=active,
         speed_control_active=active,

@@ -2,9 +2,17 @@
 
 from enum import IntEnum
 from math import pi
-from typing import Annotated, NamedTuple
+from typing import Annotated, NamedTuple, Protocol
 
-from modelkit.signal import Role, Signal
+from controller_fmu.common.params import ThresholdParams
+from controller_fmu.interface import (
+    AssumedCar,
+    SampleTime,
+    SteeredCar,
+    Thresholds,
+)
+from modelkit.car import Car
+from modelkit.signal import Role, Signal, Subset
 
 PAPER = "preview paper"
 HOUSE = "chosen; the source states none"
@@ -114,3 +122,32 @@ class PreviewParams(NamedTuple):
     force_peaks: Annotated[
         tuple[float, ...], Signal("1", "peaks of the sets of the force, on [-3, 3]", -10.0, 10.0, HOUSE), Role.FIXED
     ] = (-3.5, -2.0, -1.0, 0.0, 1.0, 2.0, 3.5)
+
+
+class PreviewSystem(IntEnum):
+    """Its value of ``controller.system``."""
+
+    PREVIEW = 4
+    """Dual-point preview with fuzzy steering and speed on a road (does not park)."""
+
+
+class PreviewCar(SteeredCar, Protocol):
+    """What it has of the car."""
+
+    cg_to_rear: float
+
+
+class PreviewThresholds(Protocol):
+    """What it has of the thresholds."""
+
+    lost_lateral: float
+    standstill: float
+
+
+class PreviewSystemParams(NamedTuple):
+    """All that can be set of it."""
+
+    sample_time: SampleTime = 0.01
+    car: Annotated[AssumedCar, Subset(PreviewCar)] = Car()
+    threshold: Annotated[Thresholds, Subset(PreviewThresholds)] = ThresholdParams()
+    preview: Annotated[PreviewParams, Role.TUNABLE] = PreviewParams()

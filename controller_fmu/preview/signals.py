@@ -2,8 +2,28 @@
 
 from typing import Annotated, NamedTuple
 
+from controller_fmu.interface import (
+    STATE_OF_THE_CHART,
+    HeadingError,
+    LateralError,
+    ReasonTold,
+    ReferencePose,
+)
+from controller_fmu.preview.phases import PreviewPhase
 from controller_fmu.preview.stage import PreviewStage
-from modelkit.signal import Signal
+from modelkit.signal import Role, Signal
+from modelkit.vocabulary import (
+    AdvisedSpeed,
+    BrakeRequest,
+    ForceControlActive,
+    ForceRequest,
+    Pose,
+    PromptShown,
+    SpeedControlActive,
+    SpeedRequest,
+    SteeringActive,
+    SteeringWheelRequest,
+)
 
 
 class PreviewSignals(NamedTuple):
@@ -18,3 +38,23 @@ class PreviewSignals(NamedTuple):
     y_l: Annotated[float, Signal("m", "lateral error at the first preview point, road to the left positive")] = 0.0
     eps_l: Annotated[float, Signal("rad", "heading error at the first preview point, road turning left positive")] = 0.0
     wanted_speed: Annotated[float, Signal("m/s", "speed set by the sequence")] = 0.0
+
+
+class PreviewOutput(NamedTuple):
+    """To the vehicle, the driver, the log and the judge."""
+
+    steering_wheel_request: SteeringWheelRequest = 0.0
+    steering_active: SteeringActive = False
+    prompt: PromptShown = 0
+    advised_speed: AdvisedSpeed = 0.0
+    speed_control_active: SpeedControlActive = False
+    speed_request: SpeedRequest = 0.0
+    force_control_active: ForceControlActive = False
+    force_request: ForceRequest = 0.0
+    brake_request: BrakeRequest = False
+    phase: Annotated[int, Signal("1", STATE_OF_THE_CHART, states=PreviewPhase)] = 0
+    reason: ReasonTold = 0
+    reference: ReferencePose = Pose()
+    lateral_error: LateralError = 0.0
+    heading_error: HeadingError = 0.0
+    preview: Annotated[PreviewSignals, Role.LOCAL] = PreviewSignals()

@@ -4,7 +4,6 @@ import math
 
 from controller_fmu.common.path_law import Deviation, angle_back, deviation
 from controller_fmu.common.sensors import is_told_anew
-from controller_fmu.interface import ControllerInput
 from controller_fmu.planning.plan import (
     Path,
 )
@@ -18,6 +17,7 @@ from controller_fmu.valet.found.way_back import WayBack, way_back
 from controller_fmu.valet.params import ValetParams
 from controller_fmu.valet.rolling import Ahead, ahead_of, aim_at, joint_of, turns_already
 from controller_fmu.valet.sight import end_ahead, heard_again, look, remembered, scene_of
+from controller_fmu.valet.signals import ValetInput
 from controller_fmu.valet.state import Tracked, ValetState
 from modelkit.car import largest_curvature
 from modelkit.maths import clamp, sign
@@ -35,7 +35,7 @@ BACKS = 3
 """A car goes back the way it came no more often in one drive."""
 
 
-def seen_on(store: PlanStore, state: ValetState, inputs: ControllerInput, params: ValetParams) -> ValetState:
+def seen_on(store: PlanStore, state: ValetState, inputs: ValetInput, params: ValetParams) -> ValetState:
     """Return the valet that has looked where it is on its path, and what is in the way."""
     if state.tracked.left <= 0.0 and joint_of(state.path, state.piece, params).ramp > 0.0:
         state = rolled_on(state)
@@ -77,9 +77,7 @@ def led_back(lateral: float, curvature: float, params: ValetParams) -> float:
     return clamp(lateral, -most, most)
 
 
-def heard_on(
-    store: PlanStore, state: ValetState, inputs: ControllerInput, params: ValetParams, dt_ns: int
-) -> ValetState:
+def heard_on(store: PlanStore, state: ValetState, inputs: ValetInput, params: ValetParams, dt_ns: int) -> ValetState:
     """Return the valet that has listened on its way into a slot; sensors tell something new every ``cycle``."""
     if not is_told_anew(state.watch.running, dt_ns, params.car.ultrasonic.cycle):
         return state
@@ -90,9 +88,7 @@ def heard_on(
     return state._replace(nearby=nearby, search=sought)
 
 
-def moved_on(
-    store: PlanStore, state: ValetState, step: int, inputs: ControllerInput, params: ValetParams
-) -> ValetState:
+def moved_on(store: PlanStore, state: ValetState, step: int, inputs: ValetInput, params: ValetParams) -> ValetState:
     """Return the valet in ``step``, with what it asks of wheel and speed until the next sample."""
     before = state.step
     if step == Step.PLAN and before != Step.PLAN:

@@ -1,50 +1,18 @@
 """A slot from outside at run time: corners, kind and direction as inputs, and whether it can be, by what was heard."""
 
 import math
-from typing import Annotated, NamedTuple
 
 from controller_fmu.common.told import AT_THE_ROAD, ECHOES, WELL_IN, SlotKind, ToldSlot, depth_of, is_usable_slot
-from controller_fmu.interface import ControllerInput, Reason
+from controller_fmu.interface import Reason
 from controller_fmu.planning.plan_store import HEARD, PlanStore
 from controller_fmu.sensing.gap import DEEP, Gap, GapLayout
 from controller_fmu.sensing.in_gap import along_of, in_gap
 from controller_fmu.valet.params import GivenSlot, ValetParams
 from controller_fmu.valet.slot import body_of
-from modelkit.signal import Group, Signal
 from modelkit.vocabulary import Pose
 
 ROOM = 0.3
 """A slot is wider, or along the road longer, than the car by this [m]."""
-
-
-class ValetInput(NamedTuple):
-    """From the vehicle, as every controller has it, and a slot from outside."""
-
-    odometry: Annotated[Pose, Group("rear-axle midpoint as the car believes it")] = Pose()
-    measured_speed: Annotated[float, Signal("m/s", "speed, reverse negative")] = 0.0
-    steering_wheel_angle: Annotated[float, Signal("rad", "steering-wheel angle, left positive")] = 0.0
-    driver_takeover: Annotated[bool, Signal("1", "the driver has taken over")] = False
-    vehicle_fault: Annotated[int, Signal("1", "why the vehicle brakes by itself; 0: it does not")] = 0
-    ultrasonic: tuple[
-        Annotated[float, Signal("m", "distance heard: 1-4 front, 5-8 rear, 9-10 left, 11-12 right")], ...
-    ] = (5.0,) * 12
-    apa_switch: Annotated[bool, Signal("1", "the driver has switched the parking assist on")] = False
-    driver_confirm: Annotated[bool, Signal("1", "the driver presses the confirm button")] = False
-    told: Annotated[ToldSlot, Group("a slot from outside: a camera, a map, a test bench")] = ToldSlot()
-
-
-def of_the_car(inputs: ValetInput) -> ControllerInput:
-    """Return what every controller is told."""
-    return ControllerInput(
-        odometry=inputs.odometry,
-        measured_speed=inputs.measured_speed,
-        steering_wheel_angle=inputs.steering_wheel_angle,
-        driver_takeover=inputs.driver_takeover,
-        vehicle_fault=inputs.vehicle_fault,
-        ultrasonic=inputs.ultrasonic,
-        apa_switch=inputs.apa_switch,
-        driver_confirm=inputs.driver_confirm,
-    )
 
 
 def as_parameter(told: ToldSlot, slot: GivenSlot) -> GivenSlot:

@@ -6,11 +6,10 @@ from typing import NamedTuple
 from controller_fmu.interface import Reason
 from controller_fmu.planning.plan_store import PlanStore
 from controller_fmu.valet.chart import Step
-from controller_fmu.valet.given import ValetInput, of_the_car
 from controller_fmu.valet.outputs import valet_outputs
 from controller_fmu.valet.params import ValetParams
 from controller_fmu.valet.phases import ValetPhase
-from controller_fmu.valet.signals import ValetOutput
+from controller_fmu.valet.signals import ValetInput, ValetOutput
 from controller_fmu.valet.state import ValetState
 from controller_fmu.valet.system import valet_sample
 from modelkit.maths import is_finite
@@ -46,10 +45,9 @@ def valet_step(
     samples = 0
     if state.next_sample_ns < end_ns:
         samples = (end_ns - state.next_sample_ns + period_ns - 1) // period_ns
-    car = of_the_car(inputs)
     valet = state.valet._replace(told=inputs.told)
     for _ in range(samples):
-        valet = valet_sample(store, valet, car, params, period_ns)
+        valet = valet_sample(store, valet, inputs, params, period_ns)
     return ValetModelState(end_ns, state.next_sample_ns + samples * period_ns, valet), valet_outputs(valet, params)
 
 

@@ -6,7 +6,6 @@ from typing import Annotated, NamedTuple
 
 from controller_fmu.common.params import LimitParams, ThresholdParams
 from controller_fmu.common.told import SlotKind
-from controller_fmu.interface import System
 from controller_fmu.planning.task import Corner
 from modelkit.car import Car
 from modelkit.signal import Group, Role, Signal
@@ -109,10 +108,17 @@ class ValetEndParams(NamedTuple):
     heading: Annotated[float, Signal("rad", "heading", 0.001, 0.5, HOUSE)] = 2.0 * pi / 180.0
 
 
+class ValetSystem(IntEnum):
+    """Its value of ``controller.system``."""
+
+    VALET = 7
+    """To any pose among the polygons of a map; a controller of its own."""
+
+
 class ValetParams(NamedTuple):
     """The valet's parameters; those that other systems have too are called as theirs."""
 
-    system: Annotated[int, Signal("1", "which system", states=System)] = System.VALET
+    system: Annotated[int, Signal("1", "which system", states=ValetSystem)] = ValetSystem.VALET
     sample_time: Annotated[float, Signal("s", "controller's sample time, whole nanoseconds", 1e-4, 1.0, HOUSE)] = 0.01
     car: Annotated[Car, Group("the car it thinks it drives")] = Car()
     target: Annotated[Pose, Group("pose of the rear-axle midpoint to park at", ANYWHERE), Role.TUNABLE] = Pose(

@@ -1,7 +1,7 @@
 """The valet plans: its search at each sample, for the goal it was told or the slot it found."""
 
 from controller_fmu.common.told import SlotKind, is_usable_slot
-from controller_fmu.interface import ControllerInput, Reason
+from controller_fmu.interface import Reason
 from controller_fmu.planning.plan import (
     NO_WAY,
     PLANNED,
@@ -22,6 +22,7 @@ from controller_fmu.valet.found.way_back import WayBack, path_back
 from controller_fmu.valet.given import as_parameter
 from controller_fmu.valet.params import ValetParams
 from controller_fmu.valet.sight import Sight, scene_of
+from controller_fmu.valet.signals import ValetInput
 from controller_fmu.valet.slot import body_of, goal_in, goal_of, stands_in_road
 from controller_fmu.valet.state import ValetState
 from modelkit.vocabulary import Pose
@@ -30,7 +31,7 @@ LEAST_MARGIN = 0.03
 """A way into a slot that was found that comes nearer [m] to what was heard is not driven: odometry drifts more."""
 
 
-def planned_on(store: PlanStore, state: ValetState, inputs: ControllerInput, params: ValetParams) -> ValetState:
+def planned_on(store: PlanStore, state: ValetState, inputs: ValetInput, params: ValetParams) -> ValetState:
     """Return the valet after some more steps of the search; it begins when the car stands."""
     if abs(inputs.measured_speed) > params.threshold.standstill:
         return state._replace(searched=0)

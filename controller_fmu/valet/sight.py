@@ -8,13 +8,13 @@ import math
 from typing import NamedTuple
 
 from controller_fmu.common.sensors import sensor_at
-from controller_fmu.interface import ControllerInput
 from controller_fmu.planning.plan import Piece
 from controller_fmu.planning.plan_store import PlanStore
 from controller_fmu.planning.task import CORNERS, Corner, Scene, drive
 from controller_fmu.sensing.gap import Gap, GapLayout
 from controller_fmu.sensing.in_gap import point_in_gap
 from controller_fmu.valet.params import MAP_CORNERS, ValetParams
+from controller_fmu.valet.signals import ValetInput
 from modelkit.car import car_length
 from modelkit.geometry import Point, cone_line
 from modelkit.maths import sign
@@ -92,7 +92,7 @@ class SensorOnWay(NamedTuple):
     """It looks straight there."""
 
 
-def look(inputs: ControllerInput, piece: Piece, scene: Scene, gap: Gap, params: ValetParams) -> Sight:
+def look(inputs: ValetInput, piece: Piece, scene: Scene, gap: Gap, params: ValetParams) -> Sight:
     """Return the sight of a car that drives a ``piece``, the rest of its move, on its way into a ``gap``, or no gap."""
     readings = inputs.ultrasonic
     first = 0 if piece.way > 0.0 else 4
@@ -158,7 +158,7 @@ class EndAhead(NamedTuple):
     echo: Pose = Pose()
 
 
-def end_ahead(inputs: ControllerInput, forward: bool, params: ValetParams) -> EndAhead:
+def end_ahead(inputs: ValetInput, forward: bool, params: ValetParams) -> EndAhead:
     """Return what both sensors straight ahead hear, or behind: the same thing, as far off but for ``BOTH``."""
     one = 1 if forward else 5
     readings = inputs.ultrasonic

@@ -3,7 +3,7 @@
 from controller_fmu.common.chart import bit
 from controller_fmu.common.monitor import Command
 from controller_fmu.common.told import SlotKind
-from controller_fmu.interface import ControllerInput, Reason
+from controller_fmu.interface import Reason
 from controller_fmu.planning.plan_store import PlanStore
 from controller_fmu.sensing.gap import GapLayout
 from controller_fmu.sensing.heard_store import forget_side
@@ -16,6 +16,7 @@ from controller_fmu.valet.found.second_look import looked_again
 from controller_fmu.valet.params import ValetParams
 from controller_fmu.valet.planned import gap_now, goal_now, planned_on, room_beside_car
 from controller_fmu.valet.rolling import rest_before
+from controller_fmu.valet.signals import ValetInput
 from controller_fmu.valet.state import ValetState
 from controller_fmu.valet.watch import fault_of, reason_to_fail, watch
 
@@ -27,7 +28,7 @@ CORRECTION_ROOM = 0.55
 
 
 def valet_sample(
-    store: PlanStore, state: ValetState, inputs: ControllerInput, params: ValetParams, dt_ns: int
+    store: PlanStore, state: ValetState, inputs: ValetInput, params: ValetParams, dt_ns: int
 ) -> ValetState:
     """Return the valet one sample of ``dt_ns`` later."""
     if state.step in (Step.PARKED, Step.FAILED, Step.TAKEN_OVER):
@@ -53,7 +54,7 @@ def valet_sample(
     return moved_on(store, state, step, inputs, params)
 
 
-def guards_of(store: PlanStore, state: ValetState, inputs: ControllerInput, params: ValetParams) -> int:
+def guards_of(store: PlanStore, state: ValetState, inputs: ValetInput, params: ValetParams) -> int:
     """Return the bits of the conditions that hold."""
     guard = params.guard
     tracked = state.tracked
@@ -90,9 +91,7 @@ def guards_of(store: PlanStore, state: ValetState, inputs: ControllerInput, para
     )
 
 
-def sought_on(
-    store: PlanStore, state: ValetState, inputs: ControllerInput, params: ValetParams, dt_ns: int
-) -> ValetState:
+def sought_on(store: PlanStore, state: ValetState, inputs: ValetInput, params: ValetParams, dt_ns: int) -> ValetState:
     """Return the valet after one sample in which the driver drives, or looks at the slot that is shown."""
     sought = state.search
     standing = abs(inputs.measured_speed) <= params.threshold.standstill
@@ -123,7 +122,7 @@ def sought_on(
     return moved_on(store, state, step, inputs, params)
 
 
-def _sought_guards(state: ValetState, sought: Search, reason: int, inputs: ControllerInput, standing: bool) -> int:
+def _sought_guards(state: ValetState, sought: Search, reason: int, inputs: ValetInput, standing: bool) -> int:
     """Return the bits of the conditions that hold while a slot is looked for, or shown."""
     dx = inputs.odometry.x - sought.pose.x
     dy = inputs.odometry.y - sought.pose.y
@@ -150,7 +149,7 @@ def _to_search(store: PlanStore, state: ValetState) -> ValetState:
     return ValetState(step=state.step, reason=state.reason, search=begun, told=state.told)
 
 
-def _to_show(store: PlanStore, state: ValetState, inputs: ControllerInput, params: ValetParams) -> ValetState:
+def _to_show(store: PlanStore, state: ValetState, inputs: ValetInput, params: ValetParams) -> ValetState:
     """Return the valet that shows the slot found, or the one that it was on its way into, and plans."""
     sought = state.search
     if not state.resumes:
@@ -161,7 +160,7 @@ def _to_show(store: PlanStore, state: ValetState, inputs: ControllerInput, param
     return ValetState(step=state.step, search=sought, told=state.told)
 
 
-def _switched_off(state: ValetState, inputs: ControllerInput, params: ValetParams) -> ValetState:
+def _switched_off(state: ValetState, inputs: ValetInput, params: ValetParams) -> ValetState:
     """Return the valet that is over, or off if it was switched off."""
     off = params.search.active and not inputs.apa_switch
     step = step_transition(state.step, bit(Guard.SWITCHED_OFF, off))

@@ -4,9 +4,10 @@ from typing import NamedTuple
 
 from controller_fmu.common.monitor import Command, clock_before, is_unmoved, is_usable_input
 from controller_fmu.common.steering_monitor import SteeringWatch, at_rest, has_failed, watch_steering
-from controller_fmu.interface import ControllerInput, Reason
+from controller_fmu.interface import Reason
 from controller_fmu.valet.chart import Step
 from controller_fmu.valet.params import ValetParams
+from controller_fmu.valet.signals import ValetInput
 from modelkit.vocabulary import Pose
 
 
@@ -24,7 +25,7 @@ class Watch(NamedTuple):
     pose: Pose = Pose()
 
 
-def watch(state: Watch, command: Command, inputs: ControllerInput, params: ValetParams, dt_ns: int) -> Watch:
+def watch(state: Watch, command: Command, inputs: ValetInput, params: ValetParams, dt_ns: int) -> Watch:
     """Return the clocks after one sample of ``dt_ns``."""
     speed = inputs.measured_speed
     still = abs(speed) <= params.threshold.standstill
@@ -45,14 +46,14 @@ def watch(state: Watch, command: Command, inputs: ControllerInput, params: Valet
     )
 
 
-def fault_of(inputs: ControllerInput) -> int:
+def fault_of(inputs: ValetInput) -> int:
     """Return the Reason for which not even a search goes on, ``NONE`` if there is none."""
     if not is_usable_input(inputs):
         return Reason.BAD_INPUT
     return Reason.VEHICLE_FAULT if inputs.vehicle_fault != 0 else Reason.NONE
 
 
-def reason_to_fail(state: Watch, inputs: ControllerInput, step: int, shifts: int, params: ValetParams) -> int:
+def reason_to_fail(state: Watch, inputs: ValetInput, step: int, shifts: int, params: ValetParams) -> int:
     """Return the first Reason that holds, ``NONE`` if all is as it should be."""
     limit = params.limit
     fault = fault_of(inputs)

@@ -4,14 +4,15 @@ import math
 
 from controller_fmu.common.slot_frame import to_world
 from controller_fmu.common.steering_wheel import steering_wheel_angle
-from controller_fmu.interface import ControllerOutput, ControllerParams, Path, Segment
+from controller_fmu.interface import Path, Segment
+from controller_fmu.zhang2022.params import ZhangSystemParams
 from controller_fmu.zhang2022.path import PathStatus
 from controller_fmu.zhang2022.phases import ZhangPhase
-from controller_fmu.zhang2022.signals import ZhangSignals
+from controller_fmu.zhang2022.signals import ZhangOutput, ZhangSignals
 from controller_fmu.zhang2022.system import ZhangState
 
 
-def zhang_signals(state: ZhangState, params: ControllerParams) -> ZhangSignals:
+def zhang_signals(state: ZhangState, params: ZhangSystemParams) -> ZhangSignals:
     """Return the system's own outputs."""
     return ZhangSignals(
         path_status=state.path.status,
@@ -34,7 +35,7 @@ def planned_path(state: ZhangState) -> Path:
     return Path(to_world(state.path.start, state.frame), pieces)
 
 
-def zhang_outputs(state: ZhangState, params: ControllerParams) -> ControllerOutput:
+def zhang_outputs(state: ZhangState, params: ZhangSystemParams) -> ZhangOutput:
     """Return the outputs that hold until the next sample."""
     active = state.phase in (ZhangPhase.PATH_TRACKING, ZhangPhase.STRAIGHTEN)
     driving = state.phase == ZhangPhase.PATH_TRACKING
@@ -43,7 +44,7 @@ def zhang_outputs(state: ZhangState, params: ControllerParams) -> ControllerOutp
     speed = state.set_speed if driving else 0.0
     brake = not driving and state.phase != ZhangPhase.TAKEOVER
     shifts = 0 if state.phase == ZhangPhase.STANDBY else 1
-    return ControllerOutput(
+    return ZhangOutput(
         steering_wheel_request=wheel if active else 0.0,
         steering_active=active,
         speed_control_active=active,

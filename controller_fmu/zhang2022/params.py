@@ -1,8 +1,20 @@
 """What can be set in the quintic, MPC and PID system."""
 
+from enum import IntEnum
 from typing import Annotated, NamedTuple
 
-from modelkit.signal import Role, Signal
+from controller_fmu.common.params import LimitParams, ThresholdParams
+from controller_fmu.interface import (
+    TARGET,
+    AssumedCar,
+    Limits,
+    SampleTime,
+    SteeredCar,
+    Target,
+    Thresholds,
+)
+from modelkit.car import Car
+from modelkit.signal import Role, Signal, Subset
 
 PAPER = "Zhang 2022, Table 1"
 HOUSE = "chosen; the source states none"
@@ -61,3 +73,21 @@ class ZhangParams(NamedTuple):
     quintic: QuinticParams = QuinticParams()
     mpc: Annotated[MpcParams, Role.TUNABLE] = MpcParams()
     pid: Annotated[PidParams, Role.TUNABLE] = PidParams()
+
+
+class ZhangSystem(IntEnum):
+    """Its value of ``controller.system``."""
+
+    ZHANG2022 = 2
+    """Quintic path, MPC steering, PID speed (Zhang 2022)."""
+
+
+class ZhangSystemParams(NamedTuple):
+    """All that can be set of it."""
+
+    sample_time: SampleTime = 0.01
+    car: Annotated[AssumedCar, Subset(SteeredCar)] = Car()
+    target: Target = TARGET
+    threshold: Thresholds = ThresholdParams()
+    limit: Limits = LimitParams()
+    zhang2022: ZhangParams = ZhangParams()

@@ -7,8 +7,9 @@ from controller_fmu.common.monitor import MonitorState, is_usable_input, reason_
 from controller_fmu.common.phases import is_over
 from controller_fmu.common.slot_frame import SlotFrame, frame_at, to_slot
 from controller_fmu.common.steering_wheel import steering_wheel_angle
-from controller_fmu.interface import ControllerInput, ControllerParams, Reason
+from controller_fmu.interface import ParkingInput, Reason
 from controller_fmu.zhang2022.mpc import FrontAxle, FrontWheels, steer, turned
+from controller_fmu.zhang2022.params import ZhangSystemParams
 from controller_fmu.zhang2022.path import PathStatus, QuinticPath, Reference, nearest, plan
 from controller_fmu.zhang2022.phases import ZhangPhase, expected_in
 from controller_fmu.zhang2022.pid import PidState, pid
@@ -38,12 +39,12 @@ class ZhangState(NamedTuple):
     monitor: MonitorState = MonitorState()
 
 
-def zhang_start(params: ControllerParams) -> ZhangState:
+def zhang_start(params: ZhangSystemParams) -> ZhangState:
     """Return the system in standby."""
     return ZhangState()
 
 
-def zhang_sample(state: ZhangState, inputs: ControllerInput, params: ControllerParams, dt_ns: int) -> ZhangState:
+def zhang_sample(state: ZhangState, inputs: ParkingInput, params: ZhangSystemParams, dt_ns: int) -> ZhangState:
     """Return the system one sample of ``dt_ns`` later."""
     if is_over(state.phase):
         return state
@@ -69,7 +70,7 @@ def zhang_sample(state: ZhangState, inputs: ControllerInput, params: ControllerP
     return _driven(state, inputs, pose, params, dt_ns)
 
 
-def front_axle_of(params: ControllerParams) -> FrontAxle:
+def front_axle_of(params: ZhangSystemParams) -> FrontAxle:
     """Return wheelbase [m] and the limits of the front-wheel angle [rad, rad/s]."""
     ratio = params.car.steering.ratio
     return FrontAxle(
@@ -77,7 +78,7 @@ def front_axle_of(params: ControllerParams) -> FrontAxle:
     )
 
 
-def _planned(inputs: ControllerInput, params: ControllerParams) -> ZhangState:
+def _planned(inputs: ParkingInput, params: ZhangSystemParams) -> ZhangState:
     """Return the system on its path, or failed for want of one."""
     car = front_axle_of(params)
     frame = frame_at(params.target, inputs.odometry)
@@ -98,7 +99,7 @@ def _planned(inputs: ControllerInput, params: ControllerParams) -> ZhangState:
     )
 
 
-def _driven(state: ZhangState, inputs: ControllerInput, pose: Pose, params: ControllerParams, dt_ns: int) -> ZhangState:
+def _driven(state: ZhangState, inputs: ParkingInput, pose: Pose, params: ZhangSystemParams, dt_ns: int) -> ZhangState:
     """Return the system with its steering and speed for the next sample; at the target it brakes."""
     zhang = params.zhang2022
     dt = dt_ns * 1e-9
@@ -123,7 +124,7 @@ def _driven(state: ZhangState, inputs: ControllerInput, pose: Pose, params: Cont
     )
 
 
-def _straightened(state: ZhangState, inputs: ControllerInput, pose: Pose, params: ControllerParams) -> ZhangState:
+def _straightened(state: ZhangState, inputs: ParkingInput, pose: Pose, params: ZhangSystemParams) -> ZhangState:
     """Return the system at the target: wheel to the middle, then parked or missed."""
     limit = params.threshold
     phase = ZhangPhase.STRAIGHTEN

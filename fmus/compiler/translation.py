@@ -1,12 +1,13 @@
 """From a model to the text of its header and its C file, or to all that stands in the way."""
 
+import typing
 from typing import Any, NamedTuple
 
 from fmus.compiler.assembly import AssemblyEntries
 from fmus.compiler.constructs import arithmetic, calls, conditions, loops, statements, tuples
 from fmus.compiler.entries import NAMES, Entries, roots
 from fmus.compiler.files import Files
-from fmus.compiler.source.kinds import NoKindError, Struct, is_named_tuple
+from fmus.compiler.source.kinds import NoKindError, Struct, is_named_tuple, translating
 from fmus.compiler.source.refusals import AlreadySaidError, CannotError, Refusal, Refused
 from fmus.compiler.target.program import Program
 from modelkit.model import Model
@@ -25,11 +26,30 @@ class Translation(NamedTuple):
 
 def translate(model: Model) -> Translation:
     """Return the C99 of ``model``; ``Refused`` says all that stands in the way."""
+    interfaces = _interface(model)
+    models = [model] if model.assembly is None else [model, *(part for _, part in model.assembly.parts)]
+    wholes = {own: whole for item in models for own, whole in _wholes(item).items()}
+    with translating(wholes, [cls for item in models for cls in _interface(item)]):
+        return _translated(model, interfaces)
+
+
+def _wholes(model: Model) -> dict[Any, Any]:
+    """Return what the types of each system, and of what all share, stand for: those of the model."""
+    if model.systems is None:
+        return {}
+    found: dict[Any, Any] = {}
+    for item in model.systems.systems:
+        found |= {item.params: model.params, item.inputs: model.inputs, item.told: model.outputs}
+    told = typing.get_type_hints(model.systems.refused).get("return")
+    return found | ({} if told is None else {told: model.outputs})
+
+
+def _translated(model: Model, interfaces: list[Any]) -> Translation:
     parts = () if model.assembly is None else tuple(part.name for _, part in model.assembly.parts)
-    program = Program((model.name, *parts), _roots(model), _interface(model), NAMES)
+    program = Program((model.name, *parts), _roots(model), interfaces, NAMES)
     entries = Entries(program, model) if model.assembly is None else AssemblyEntries(program, model, model.assembly)
     try:
-        for cls in _interface(model):
+        for cls in interfaces:
             program.need(Struct(cls))
         functions = entries.texts()
     except (CannotError, NoKindError) as error:

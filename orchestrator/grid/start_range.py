@@ -11,7 +11,7 @@ from controller_fmu.apa.ways.exit import VARIANTS, Exit, exit_of
 from controller_fmu.apa.ways.fit import ATTEMPTS, margins_of
 from controller_fmu.apa.ways.start_range import leads_in
 from controller_fmu.common.slot_frame import to_slot
-from controller_fmu.interface import ControllerParams
+from controller_fmu.registry import ControllerParams
 from modelkit.variables import with_values
 from modelkit.vocabulary import Pose
 from orchestrator.scenario.models import MODELS

@@ -18,7 +18,7 @@ from controller_fmu.apa.ways.shortest_slot import SlotSizes, shortest_slot
 from controller_fmu.apa.ways.start_range import start_range
 from controller_fmu.apa.ways.turns import reverse_s, turn_of
 from controller_fmu.common.curve import advance
-from controller_fmu.interface import ControllerParams
+from controller_fmu.registry import ControllerParams
 from modelkit.car import Car
 from modelkit.variables import with_values
 from modelkit.vocabulary import Pose

@@ -14,7 +14,7 @@ from controller_fmu.common.slot_frame import to_world
 from controller_fmu.guo2015.legs import point_of_leg
 from controller_fmu.guo2015.phases import GuoPhase
 from controller_fmu.guo2015.planner import plan
-from controller_fmu.interface import ControllerParams
+from controller_fmu.registry import ControllerParams
 from modelkit.vocabulary import Pose
 from orchestrator.papers.guo2015_drivers import obeying_rows
 from orchestrator.papers.guo2015_figure import draw_case

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from fnmatch import fnmatchcase
 from typing import Any, NamedTuple
 
+from modelkit.states import parts_of
 from modelkit.variables import Variable, variables
 from orchestrator.scenario.models import APART, MODELS
 from orchestrator.text.quantities import DEGREE
@@ -76,7 +77,7 @@ def systems() -> dict[str, str]:
     """Return name -> meaning of the systems that ``controller.system`` chooses from."""
     known = next(item for item in variables(MODELS["controller"].params) if item.name == "system").signal.states
     assert known is not None
-    texts = texts_of(known)
+    texts = {name: text for part in parts_of(known) for name, text in texts_of(part).items()}
     return {item.name.lower(): texts.get(item.name, "") for item in known}
 
 

@@ -8,7 +8,9 @@ from modelkit.model import Model
 
 MODELS: dict[str, Model] = {"vehicle": vehicle_fmu.MODEL, "controller": controller_fmu.MODEL}
 """Those of a run whose scenario asks for nothing else."""
-APART: dict[str, tuple[int, Model]] = {"valet": (7, controller_fmu.VALET)}
+APART: dict[str, tuple[int, Model]] = {
+    choice.name.lower(): (int(choice), model) for choice, model in controller_fmu.APART.items()
+}
 """Values of ``controller.system`` for which the controller is a model of its own."""
 
 

@@ -12,6 +12,7 @@ from datetime import datetime
 from pathlib import Path
 
 from fmus.installation import missing_package
+from modelkit.states import CannotComposeError
 from orchestrator.text.console import say
 from orchestrator.text.errors import BAD_INPUT, INTERNAL_ERROR, INTERRUPTED, BadInput, RunError, shown
 
@@ -34,7 +35,7 @@ def explained(error: BaseException, words: Sequence[str]) -> tuple[int, str]:
         return INTERRUPTED, "interrupted"
     if isinstance(error, BrokenPipeError):
         return BAD_INPUT, ""
-    if isinstance(error, BadInput | RunError):
+    if isinstance(error, BadInput | RunError | CannotComposeError):
         return BAD_INPUT, str(error)
     if isinstance(error, OSError):
         return BAD_INPUT, place_of(error)

@@ -3,7 +3,7 @@
 import math
 from typing import Any, NamedTuple
 
-from controller_fmu.interface import ControllerOutput
+from controller_fmu.registry import ControllerOutput
 from modelkit.car import Car, CarSteering, CarUltrasonic, mounts_on
 from orchestrator.scenario.car import car_parameters
 from tests.controller.in_process import run

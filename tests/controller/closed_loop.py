@@ -3,7 +3,7 @@
 from typing import Any, NamedTuple
 
 from controller_fmu.common.phases import is_over
-from controller_fmu.interface import Phase
+from controller_fmu.registry import Phase
 from tests.controller.in_process import run
 
 

@@ -6,7 +6,8 @@ from typing import Any
 import pytest
 
 from controller_fmu.adaptive.phases import AdaptivePhase
-from controller_fmu.interface import Reason, System
+from controller_fmu.interface import Reason
+from controller_fmu.registry import System
 from modelkit.vocabulary import Prompt
 from tests.controller.closed_loop import drive
 

@@ -19,7 +19,7 @@ from controller_fmu.apa.around.comer import BRIDGED, STEADY, Comer, followed, is
 from controller_fmu.apa.around.near import FREE, nearest_told
 from controller_fmu.apa.around.surroundings import shape_of
 from controller_fmu.apa.hearing.mute import MUTE
-from controller_fmu.interface import ControllerParams
+from controller_fmu.registry import ControllerParams
 from modelkit.car import CarUltrasonic
 
 PARAMS = ControllerParams()

@@ -23,7 +23,7 @@ from controller_fmu.apa.slot import (
     target_of,
 )
 from controller_fmu.apa.ways.fit import margins_of
-from controller_fmu.interface import ControllerParams
+from controller_fmu.registry import ControllerParams
 from modelkit.vocabulary import Pose
 
 PARAMS = ControllerParams()

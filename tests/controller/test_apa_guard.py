@@ -21,7 +21,7 @@ from controller_fmu.apa.outline import Box, Obstacles, box_clearance
 from controller_fmu.apa.slot import Kind
 from controller_fmu.apa.system import apa_sample, apa_start
 from controller_fmu.common.curve import advance
-from controller_fmu.interface import ControllerInput, ControllerParams
+from controller_fmu.registry import ControllerInput, ControllerParams
 from modelkit.car import CarUltrasonic
 from modelkit.geometry import FAR, Point, cone_line
 from modelkit.vocabulary import Pose

@@ -8,7 +8,7 @@ from controller_fmu.apa.hearing.mute import MUTE, SLOWLY, WAIT, count_mute, is_w
 from controller_fmu.apa.watch import Duty, Watch, watch
 from controller_fmu.common.monitor import Command
 from controller_fmu.common.sensors import LEFT_SENSOR, RIGHT_SENSOR, Listened, listened_on
-from controller_fmu.interface import ControllerInput, ControllerParams
+from controller_fmu.registry import ControllerInput, ControllerParams
 
 PARAMS = ControllerParams()
 SENSORS = PARAMS.car.ultrasonic

@@ -16,7 +16,7 @@ from controller_fmu.apa.slot import UNSEEN, Kind, Margins, Side, Site, Slot, sit
 from controller_fmu.apa.ways.move import end_of, length_of, point_at
 from controller_fmu.apa.ways.planner import FOUND, NOTHING, SEARCHING, PlanSearch
 from controller_fmu.common.slot_frame import SlotFrame, to_slot, to_world
-from controller_fmu.interface import ControllerInput, ControllerParams
+from controller_fmu.registry import ControllerInput, ControllerParams
 from modelkit.vocabulary import Pose
 
 PARAMS = ControllerParams(system=5)

@@ -20,7 +20,8 @@ from controller_fmu.apa.slot import UNSEEN, Kind, Side, Slot
 from controller_fmu.apa.system import ApaState, _no_way
 from controller_fmu.apa.ways.move import is_move_free
 from controller_fmu.apa.ways.turns import straight_move
-from controller_fmu.interface import ControllerInput, ControllerParams, Reason
+from controller_fmu.interface import Reason
+from controller_fmu.registry import ControllerInput, ControllerParams
 from modelkit.car import CarUltrasonic
 from modelkit.vocabulary import Pose
 from vehicle_fmu.scene import Obstacle, SceneParams

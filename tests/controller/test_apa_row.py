@@ -28,7 +28,7 @@ from controller_fmu.apa.hearing.search_side import _in_gap
 from controller_fmu.apa.hearing.side import GAP, NEXT_WALL, START, SideState
 from controller_fmu.apa.params import MapParams
 from controller_fmu.apa.slot import UNSEEN, Kind, Margins, Slot, line_of, target_of
-from controller_fmu.interface import ControllerInput, ControllerParams
+from controller_fmu.registry import ControllerInput, ControllerParams
 from modelkit.vocabulary import Pose
 from tests.controller.test_apa_relocate import READINGS, SENSORS, inputs_at
 

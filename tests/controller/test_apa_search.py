@@ -17,7 +17,7 @@ from controller_fmu.apa.hearing.side import DEEP, GAP, START, WALL, SideState, b
 from controller_fmu.apa.hearing.side_line import with_sample
 from controller_fmu.apa.slot import UNSEEN, Kind, Slot
 from controller_fmu.common.sensors import LEFT_SENSOR
-from controller_fmu.interface import ControllerInput, ControllerParams
+from controller_fmu.registry import ControllerInput, ControllerParams
 from modelkit.vocabulary import Pose
 from tests.controller.apa_bench import CAR, box, car_settings, drive
 

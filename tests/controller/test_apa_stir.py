@@ -15,7 +15,7 @@ from controller_fmu.apa.hearing.stir import QUIET
 from controller_fmu.apa.outline import Obstacles
 from controller_fmu.apa.params import MapParams
 from controller_fmu.apa.slot import UNSEEN, Kind, Slot
-from controller_fmu.interface import ControllerParams
+from controller_fmu.registry import ControllerParams
 from modelkit.vocabulary import Pose
 
 MAP = MapParams()

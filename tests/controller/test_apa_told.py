@@ -13,7 +13,8 @@ from controller_fmu.apa.hearing.search import SearchState, number_chosen, withou
 from controller_fmu.apa.slot import UNSEEN, Kind, Side, Slot
 from controller_fmu.apa.told import ToldWatch, reason_to_refuse, slot_of_told, watch_told
 from controller_fmu.common.told import SlotKind, ToldSlot
-from controller_fmu.interface import ControllerInput, ControllerParams, Reason
+from controller_fmu.interface import Reason
+from controller_fmu.registry import ControllerInput, ControllerParams
 from modelkit.vocabulary import Pose
 
 PARAMS = ControllerParams(system=5)

@@ -9,7 +9,8 @@ from hypothesis import strategies as st
 
 from controller_fmu import MODEL as CONTROLLER
 from controller_fmu.guo2015.phases import GuoPhase
-from controller_fmu.interface import ControllerInput, ControllerParams, Reason, System
+from controller_fmu.interface import Reason
+from controller_fmu.registry import ControllerInput, ControllerParams, System
 from modelkit.variables import constructor, variables, with_values
 from modelkit.vocabulary import Pose, Prompt
 from tests.controller.closed_loop import Run, drive

@@ -16,7 +16,7 @@ from controller_fmu.guo2015.phases import GuoPhase
 from controller_fmu.guo2015.planner import TwoArcPath, plan
 from controller_fmu.guo2015.point_tracking import PointError, point_error, point_tracking_angle
 from controller_fmu.guo2015.prompts import PROMPT_OF_PHASE
-from controller_fmu.interface import ControllerInput, ControllerParams, System
+from controller_fmu.registry import ControllerInput, ControllerParams, System
 from modelkit.vocabulary import Pose, Prompt
 from orchestrator.scenario.load_scenario import load_scenario
 

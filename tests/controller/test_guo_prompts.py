@@ -9,7 +9,8 @@ from controller_fmu.common.steering_monitor import Steering
 from controller_fmu.guo2015.params import GuoPrompts
 from controller_fmu.guo2015.phases import DIRECTION_OF_PHASE, GuoPhase
 from controller_fmu.guo2015.prompts import stopping_distance, swing_speed
-from controller_fmu.interface import ControllerParams, Reason
+from controller_fmu.interface import Reason
+from controller_fmu.registry import ControllerParams
 from modelkit.vocabulary import Prompt
 from tests.controller.closed_loop import Run, drive
 

@@ -14,7 +14,8 @@ from controller_fmu.hsic.phases import HsicPhase
 from controller_fmu.hsic.rules import RULES, SpeedMode, SteerMode
 from controller_fmu.hsic.stages import Course, is_parked
 from controller_fmu.hsic.system import HsicState, hsic_sample
-from controller_fmu.interface import ControllerInput, ControllerParams, Reason
+from controller_fmu.interface import Reason
+from controller_fmu.registry import ControllerInput, ControllerParams
 from modelkit.car import Car
 from modelkit.vocabulary import Pose
 

@@ -11,7 +11,8 @@ from controller_fmu.common import monitor
 from controller_fmu.common.monitor import Command
 from controller_fmu.common.phases import Expected
 from controller_fmu.common.steering_monitor import SteeringWatch
-from controller_fmu.interface import ControllerInput, ControllerParams, Reason
+from controller_fmu.interface import Reason
+from controller_fmu.registry import ControllerInput, ControllerParams
 from modelkit.vocabulary import Gear
 
 PARAMS = ControllerParams()

@@ -5,10 +5,10 @@ from typing import Any
 
 import pytest
 
-from controller_fmu import ADAPTIVE, APA, HSIC, MODEL, SYSTEM_MODELS, SYSTEMS, VALET
+from controller_fmu import MODEL, SYSTEM_MODELS, SYSTEMS, VALET
 from controller_fmu.adaptive.phases import AdaptivePhase
 from controller_fmu.common.phases import CommonPhase, is_over, is_parking
-from controller_fmu.interface import Phase, System
+from controller_fmu.registry import Phase, System
 from controller_fmu.valet.signals import ValetOutput
 from fmus.contents.description3 import model_description3
 from fmus.contents.variables import describe, fmi_variables
@@ -54,12 +54,12 @@ def test_a_controller_of_one_system_names_that_systems_phases(system: System) ->
 
 
 def test_one_system_does_not_name_anothers_phases() -> None:
-    phase = next(item for item in fmi_variables(HSIC) if item.name == "phase")
+    phase = next(item for item in fmi_variables(SYSTEM_MODELS[System.HSIC]) if item.name == "phase")
     assert describe(phase).endswith(
         ": 0 STANDBY, 1 PRE_STEER, 2 PATH_TRACKING, 8 STRAIGHTEN, 9 PARKED, 10 FAILED, 11 TAKEOVER"
     )
     assert "TO_Q1" in describe(next(item for item in fmi_variables(MODEL) if item.name == "phase"))
-    assert [phase_of(model) for model in (MODEL, APA, ADAPTIVE, VALET)] == [
+    assert [phase_of(model) for model in (MODEL, SYSTEM_MODELS[System.APA], SYSTEM_MODELS[System.ADAPTIVE], VALET)] == [
         *(Phase, OF_SYSTEMS["apa"], AdaptivePhase, OF_VALET)
     ]
 

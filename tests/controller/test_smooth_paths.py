@@ -12,7 +12,8 @@ from controller_fmu.guo2015.path_tracking import path_tracking_angle
 from controller_fmu.guo2015.phases import GuoPhase
 from controller_fmu.guo2015.planner import path_from
 from controller_fmu.guo2015.smooth_path import PathShape, curve, leaning, on_curve, rising, way_left
-from controller_fmu.interface import Reason, System
+from controller_fmu.interface import Reason
+from controller_fmu.registry import System
 from modelkit.vocabulary import Pose
 from tests.controller.closed_loop import drive
 

@@ -16,7 +16,7 @@ from controller_fmu.common.steering_monitor import Steering
 from controller_fmu.guo2015.path import Reference
 from controller_fmu.guo2015.path_tracking import path_tracking_angle
 from controller_fmu.guo2015.point_tracking import point_error, point_tracking_angle
-from controller_fmu.interface import ControllerParams
+from controller_fmu.registry import ControllerParams
 from modelkit.vocabulary import Pose
 
 L = 2.405

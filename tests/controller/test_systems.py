@@ -7,7 +7,8 @@ import pytest
 
 from controller_fmu import MODEL, SYSTEMS
 from controller_fmu.common.phases import CommonPhase
-from controller_fmu.interface import ControllerInput, ControllerParams, Reason, System
+from controller_fmu.interface import Reason
+from controller_fmu.registry import ControllerInput, ControllerParams, System
 from modelkit.car import Car, CarSteering
 from modelkit.vocabulary import Prompt
 

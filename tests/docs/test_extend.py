@@ -80,11 +80,11 @@ def test_the_newcomers_count_is_of_the_recipes() -> None:
         diffs = [(file, text) for language, file, text in recipe.edits if language == "diff"]
         added = [line for _, text in diffs for line in text.splitlines() if re.match(r"\+(?!\+\+ )", line)]
         counted[recipe.title] = (len(added), len({file for file, _ in diffs}))
-    assert counted["Add a controller"] == (18, 3)
+    assert counted["Add a controller"] == (2, 1)
     assert counted["Add a sensor"] == (9, 2)
     assert [counted[f"Add {thing}"][0] for thing in ("an export", "a command", "a paper")] == [1, 1, 0]
     table = PAGE.read_text(encoding="utf-8").split("## ")[0]
-    assert "18 lines in 3 files, eight of them its one row" in table
+    assert "2 lines in 1 file: an import and a row" in table
     assert "9 lines in 2 files, six of them the record" in table
 
 

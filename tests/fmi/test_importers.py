@@ -11,7 +11,7 @@ import toy_model
 
 from controller_fmu import MODEL as CONTROLLER
 from controller_fmu import SYSTEM_MODELS
-from controller_fmu.interface import System
+from controller_fmu.registry import System
 from fmus.contents.dependencies import find_dependencies, initial_dependencies
 from fmus.contents.description import model_description
 from fmus.contents.variables import fmi_variables, limits, mode_types

@@ -22,7 +22,7 @@ from controller_fmu.apa.ways.exit import VARIANTS, exit_of, way_out
 from controller_fmu.apa.ways.fit import fit_of, least_moves
 from controller_fmu.apa.ways.move import end_of, length_of
 from controller_fmu.apa.ways.start_range import start_range
-from controller_fmu.interface import ControllerParams
+from controller_fmu.registry import ControllerParams
 from modelkit.vocabulary import Pose
 from tests.controller.apa_cars import shape_of, slot_and_site, start_of
 

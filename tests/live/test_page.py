@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 import yaml
 
-from controller_fmu.interface import Phase
+from controller_fmu.registry import Phase
 from orchestrator.cosim.fmu_files import fmu_files
 from orchestrator.live.page import live_page
 from orchestrator.live.situation import shipped

@@ -8,6 +8,7 @@ from mypy import api
 ROOT = Path(__file__).parents[2]
 START = """
 import sys
+from enum import IntEnum
 from typing import NamedTuple
 from modelkit.model import Model, SampledSystem
 
@@ -47,6 +48,9 @@ def swapped(state: State, inputs: Params, params: Input, dt_ns: int) -> tuple[St
 def careless(params: Params) -> tuple[State, Params]:
     return State(), params
 
+class Choice(IntEnum):
+    OWN = 0
+
 here = sys.modules[__name__]
 """
 MODEL = 'Model("M", "", here, State, Params, Input, Output, {initialize}, {step}, 0.01, 1.0)'
@@ -66,8 +70,8 @@ def mistakes(folder: Path, line: str) -> str:
         (MODEL.format(initialize="initialize", step="step"), True),
         (MODEL.format(initialize="initialize", step="swapped"), False),
         (MODEL.format(initialize="careless", step="step"), False),
-        ('SampledSystem((0,), "own", start, sample, outputs)', True),
-        ('SampledSystem((0,), "own", start, sample, other_outputs)', False),
+        ('SampledSystem("own", Choice, ("",), State, Params, Input, Output, start, sample, outputs)', True),
+        ('SampledSystem("own", Choice, ("",), State, Params, Input, Output, start, sample, other_outputs)', False),
     ],
 )
 def test_functions_and_types_of_a_model_fit(

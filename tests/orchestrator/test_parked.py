@@ -12,7 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from controller_fmu.guo2015.phases import GuoPhase
-from controller_fmu.interface import ControllerOutput
+from controller_fmu.registry import ControllerOutput
 from modelkit.signal import Signal
 from modelkit.variables import Variable, variables
 from orchestrator.cosim.recording import Recording

@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 from controller_fmu.guo2015.phases import GuoPhase
-from controller_fmu.interface import ControllerOutput, Reason
+from controller_fmu.interface import Reason
+from controller_fmu.registry import ControllerOutput
 from modelkit.variables import variables
 from orchestrator.cosim.recording import Recording
 from orchestrator.scenario.load_scenario import load_scenario

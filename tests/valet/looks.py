@@ -2,12 +2,12 @@
 
 import math
 
-from controller_fmu.interface import ControllerInput
 from controller_fmu.planning.plan import Piece
 from controller_fmu.planning.task import Scene
 from controller_fmu.sensing.gap import Gap, GapLayout
 from controller_fmu.valet import sight
 from controller_fmu.valet.params import ValetParams
+from controller_fmu.valet.signals import ValetInput
 from modelkit.vocabulary import Pose
 
 LONG = 6.0
@@ -26,6 +26,6 @@ def look(
 
     ``along``: it is on its way into a slot along the road, that lies where it stands.
     """
-    inputs = ControllerInput(odometry=pose, measured_speed=speed, ultrasonic=readings)
+    inputs = ValetInput(odometry=pose, measured_speed=speed, ultrasonic=readings)
     gap = Gap(GapLayout.ALONG, Pose(), Pose(LONG, 0.0), -0.5 * math.pi, width=LONG) if along else Gap()
     return sight.look(inputs, piece, scene, gap, params)

@@ -5,7 +5,6 @@ from statistics import linear_regression
 
 import pytest
 
-from controller_fmu.interface import ControllerInput
 from controller_fmu.planning.plan_store import PlanStore
 from controller_fmu.sensing import find_gap as module_of_gaps
 from controller_fmu.sensing.find_gap import TwoWays, find_gap
@@ -16,6 +15,7 @@ from controller_fmu.sensing.row_line import RowLine, row_of
 from controller_fmu.sensing.rows import Sides
 from controller_fmu.valet.found import search
 from controller_fmu.valet.params import ValetParams
+from controller_fmu.valet.signals import ValetInput
 from modelkit.store import new_store
 from modelkit.vocabulary import Pose
 from tests.valet.test_valet_search import WANTED, passed, row
@@ -141,6 +141,6 @@ def test_a_slot_found_is_kept_at_the_end_of_the_way_where_the_next_echo_leaves_i
     monkeypatch.setattr(search, "find_gap", lambda *_: told.pop(0) if told else Gap())
     state = search.begin_search(0)._replace(way=params.search.way if at_end else 0.0)
     for _ in range(2):
-        inputs = ControllerInput(measured_speed=1.0)
+        inputs = ValetInput(measured_speed=1.0)
         state = search.search(new_store(PlanStore), state, inputs, params, int(params.car.ultrasonic.cycle * 1e9))
     assert (state.gap.layout == GapLayout.ACROSS) == kept

@@ -6,7 +6,6 @@ from typing import Any
 import pytest
 
 from controller_fmu.common.sensors import sensor_at
-from controller_fmu.interface import ControllerInput
 from controller_fmu.planning.plan import PATH, Path, Piece
 from controller_fmu.planning.plan_store import HEARD, SIDES, PlanStore
 from controller_fmu.planning.task import CORNERS, Corner, Scene
@@ -17,6 +16,7 @@ from controller_fmu.valet.found import nearby as module_of_places
 from controller_fmu.valet.found.nearby import Nearby, Rest, hear_nearby, is_off_map, lay_nearby
 from controller_fmu.valet.params import ValetParams, ValetSearchParams
 from controller_fmu.valet.sight import look
+from controller_fmu.valet.signals import ValetInput
 from modelkit.vocabulary import Pose
 from tests.valet.test_valet_found import ACROSS, heard
 
@@ -43,7 +43,7 @@ def test_beyond_the_neighbours_what_is_much_nearer_than_known_stops_the_car_soon
     b = echo - width - (0.05 if apart else -0.05)
     gap = Gap(GapLayout.ACROSS, Pose(b - 2.8, -2.0), Pose(b, -2.0), -0.5 * math.pi, width=2.8)
     readings = tuple(reading if number == sensor else FAR_OFF for number in range(12))
-    inputs = ControllerInput(odometry=Pose(), measured_speed=1.2, ultrasonic=readings)
+    inputs = ValetInput(odometry=Pose(), measured_speed=1.2, ultrasonic=readings)
     blocked = look(inputs, Piece(1.0), scene, gap, params).blocked
     assert blocked == (apart and reading < 0.5 and known != 0.2)
 
@@ -74,7 +74,7 @@ def hears(monkeypatch: pytest.MonkeyPatch, store: PlanStore, state: Nearby, rest
     """Return the ears after a sample without news, in a store that has their places already."""
     monkeypatch.setattr(module_of_places, "listen", lambda _, ear, *__: ear)
     params = ValetParams()
-    return hear_nearby(store, state._replace(forward=True), ControllerInput(), rest, ACROSS, params)
+    return hear_nearby(store, state._replace(forward=True), ValetInput(), rest, ACROSS, params)
 
 
 @pytest.mark.parametrize(

@@ -10,14 +10,14 @@ from shapely.geometry import LineString, Polygon
 
 from controller_fmu import MODEL, VALET
 from controller_fmu.common.told import SlotKind, ToldSlot
-from controller_fmu.interface import Reason, System
+from controller_fmu.interface import Reason
 from controller_fmu.planning.plan import Piece
 from controller_fmu.planning.task import Corner
-from controller_fmu.valet.given import ValetInput
+from controller_fmu.registry import System
 from controller_fmu.valet.params import MAP_CORNERS, GivenSlot, ValetParams
 from controller_fmu.valet.phases import ValetPhase
 from controller_fmu.valet.sight import NUMBER, SEEN_CORNERS, Sight, expected, remembered, scene_of
-from controller_fmu.valet.signals import Planning
+from controller_fmu.valet.signals import Planning, ValetInput
 from controller_fmu.valet.slot import body_of, goal_of
 from fmus.compiler import translate
 from modelkit.model import Model

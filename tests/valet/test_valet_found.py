@@ -6,7 +6,6 @@ from typing import Any
 import pytest
 from shapely.geometry import LineString, Polygon
 
-from controller_fmu.interface import ControllerInput
 from controller_fmu.planning.plan import PATH, Path, Piece
 from controller_fmu.planning.plan_store import HEARD, SIDES, PlanStore
 from controller_fmu.planning.task import CORNERS, Corner, Scene, drive
@@ -26,6 +25,7 @@ from controller_fmu.valet.found.search import Search
 from controller_fmu.valet.found.way_back import path_back, way_back
 from controller_fmu.valet.params import ValetParams, ValetSearchParams
 from controller_fmu.valet.sight import Sight, end_ahead, heard_again
+from controller_fmu.valet.signals import ValetInput
 from controller_fmu.valet.state import ValetState
 from modelkit.store import new_store
 from modelkit.vocabulary import Pose
@@ -190,7 +190,7 @@ def test_a_standing_car_is_put_right_by_the_nearer_of_its_neighbours_and_by_the_
         readings = tuple(sides.get(sensor, car.ultrasonic.max_range) for sensor in range(12))
         beside = SideEchoes()
         for _ in range(3):
-            beside = hear_beside(beside, ControllerInput(ultrasonic=readings), params)
+            beside = hear_beside(beside, ValetInput(ultrasonic=readings), params)
         assert (beside.cycles, sum(beside.heard)) == (3, 6)
         store, nearby = heard()
         nearby = put_beside(store, nearby, beside, pose, Search(gap=gap), params)
@@ -256,7 +256,7 @@ def test_what_both_sensors_hear_ahead_is_what_a_slot_ends_at_though_a_corner_sto
         readings[first : first + 4] = [0.28, 0.19, other, 0.28]
         seen = look(tuple(readings), Pose(), Piece(sense), 0.0, known, False, params)
         assert (seen.blocked, seen.ahead) == (True, ahead)
-        end = end_ahead(ControllerInput(ultrasonic=tuple(readings)), forward, params)
+        end = end_ahead(ValetInput(ultrasonic=tuple(readings)), forward, params)
         assert end.heard == ahead
         if ahead:
             assert seen.echo == end.echo == pytest.approx(Pose(mount.x + 0.19 * sense, 0.25, mount.yaw))
@@ -270,6 +270,6 @@ def test_a_slot_is_known_to_end_at_what_is_heard_ahead_on_the_way_in() -> None:
     state = ValetState(step=Step.DRIVE, search=Search(gap=gap), path=path, direction=1.0)
     pose = Pose(1.4, -1.0, -0.5 * math.pi)
     for reading, depth in ((0.5, 1.0 + reach + 0.5), (0.9, DEEP)):
-        inputs = ControllerInput(odometry=pose, ultrasonic=(5.0, reading, reading) + (5.0,) * 9)
+        inputs = ValetInput(odometry=pose, ultrasonic=(5.0, reading, reading) + (5.0,) * 9)
         now = heard_on(new_store(PlanStore), state, inputs, params, 40_000_000)
         assert now.search.gap.depth == pytest.approx(depth)

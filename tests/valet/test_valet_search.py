@@ -7,7 +7,6 @@ from typing import Any
 import pytest
 from shapely.geometry import LineString, Point
 
-from controller_fmu.interface import ControllerInput
 from controller_fmu.planning.plan import Piece
 from controller_fmu.planning.plan_store import HEARD, PlanStore
 from controller_fmu.planning.task import CORNERS, Corner, Scene
@@ -21,6 +20,7 @@ from controller_fmu.sensing.row_line import row_of
 from controller_fmu.valet.found import search
 from controller_fmu.valet.params import ValetParams, ValetSearchParams
 from controller_fmu.valet.sight import CLOSE
+from controller_fmu.valet.signals import ValetInput
 from controller_fmu.valet.slot import stands_in_road, stands_out
 from modelkit.car import Car
 from modelkit.store import new_store
@@ -168,7 +168,7 @@ def test_a_gap_across_the_one_that_the_car_stops_at_is_not_taken(monkeypatch: py
     monkeypatch.setattr(search, "find_gap", lambda *_: told.pop(0))
     state, found = search.begin_search(0), []
     for _ in range(3):
-        state = search.search(new_store(PlanStore), state, ControllerInput(measured_speed=1.0), params, dt_ns)
+        state = search.search(new_store(PlanStore), state, ValetInput(measured_speed=1.0), params, dt_ns)
         found.append(state.gap.into)
     assert found == [0.5, 0.5, 0.6]
 

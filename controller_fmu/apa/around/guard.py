@@ -45,7 +45,7 @@ from controller_fmu.apa.outline import (
     stand_clearance,
     sure_steps,
 )
-from controller_fmu.interface import ControllerParams
+from controller_fmu.apa.params import ApaSystemParams
 from modelkit.car import CarUltrasonic
 from modelkit.geometry import Point
 from modelkit.vocabulary import Pose
@@ -133,14 +133,14 @@ class HeardHere(NamedTuple):
     mapped: Echo
 
 
-def stopping_way(state: GuardState, speed: float, params: ControllerParams) -> float:
+def stopping_way(state: GuardState, speed: float, params: ApaSystemParams) -> float:
     """Return the way [m] that the car needs to stop, as late as its brake was ever seen to be."""
     v = abs(speed)
     late = max(state.delay, params.apa.guard.brake_delay)
     return v * late + 0.5 * v * v / params.apa.drive.brake
 
 
-def speed_for(state: GuardState, room: float, least: float, params: ControllerParams) -> float:
+def speed_for(state: GuardState, room: float, least: float, params: ApaSystemParams) -> float:
     """Return the speed [m/s] from which the car stops within ``room`` [m]: v t + v^2 / 2 b = room; 0 without room.
 
     ``least``: how late [s] the brake is taken to be where nothing worse was seen.
@@ -150,7 +150,7 @@ def speed_for(state: GuardState, room: float, least: float, params: ControllerPa
     return brake * (math.sqrt(late * late + 2.0 * room / brake) - late) if room > 0.0 else 0.0
 
 
-def listen(state: GuardState, readings: tuple[float, ...], here: LocalMap, params: ControllerParams) -> GuardState:
+def listen(state: GuardState, readings: tuple[float, ...], here: LocalMap, params: ApaSystemParams) -> GuardState:
     """Return the guard that followed each sensor, and keeps echoes that the map does not explain until refuted."""
     sensors = params.car.ultrasonic
     unknown = state.unknown
@@ -192,7 +192,7 @@ def listen(state: GuardState, readings: tuple[float, ...], here: LocalMap, param
     )
 
 
-def _explained(heard: HeardHere, beside: MapEcho, closest: Echo, here: LocalMap, params: ControllerParams) -> Explained:
+def _explained(heard: HeardHere, beside: MapEcho, closest: Echo, here: LocalMap, params: ApaSystemParams) -> Explained:
     """Return whether an echo is no nearer than what a little wider cone should hear, or hears in the nearest case."""
     least = min(closest.distance, beside.echo.distance - DOUBTS * unsure_of(here, beside.who))
     if heard.reading < least - params.apa.guard.surprise - 0.05 * heard.reading:
@@ -227,7 +227,7 @@ def _heard_of_neighbours(
     return state._replace(neighbours=neighbours, silences=silent, quiet=quiet, pace=pace)
 
 
-def is_known(reading: float, distance: float, params: ControllerParams) -> bool:
+def is_known(reading: float, distance: float, params: ApaSystemParams) -> bool:
     """Return whether a reading is of what the map has at this distance [m]."""
     return reading < LOOKED_AT and abs(reading - distance) <= params.apa.guard.surprise
 
@@ -237,7 +237,7 @@ def _way(before: Pose, now: Pose) -> float:
     return (now.x - before.x) * math.cos(now.heading) + (now.y - before.y) * math.sin(now.heading)
 
 
-def learn_brake(state: GuardState, speed: float, braking: bool, dt_ns: int, params: ControllerParams) -> GuardState:
+def learn_brake(state: GuardState, speed: float, braking: bool, dt_ns: int, params: ApaSystemParams) -> GuardState:
     """Return the guard with how late the brake was, once the car stands: way = v t + v^2 / 2 b."""
     v = abs(speed)
     state = state._replace(speed=speed)
@@ -257,7 +257,7 @@ def watch_way(
     here: LocalMap,
     around: Obstacles,
     course: HeldCourse,
-    params: ControllerParams,
+    params: ApaSystemParams,
 ) -> Sight:
     """Return the sight of a car on its ``course`` among obstacles not grown; ``here`` has its pose on the map."""
     guard = params.apa.guard

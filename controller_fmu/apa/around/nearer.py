@@ -22,8 +22,8 @@ from controller_fmu.apa.around.local_map import (
 )
 from controller_fmu.apa.around.thing import Thing, thing_at
 from controller_fmu.apa.hearing.mute import is_mute
+from controller_fmu.apa.params import ApaSystemParams
 from controller_fmu.apa.slot import Kind
-from controller_fmu.interface import ControllerParams
 from modelkit.maths import clamp
 
 STEP = 0.06
@@ -49,7 +49,7 @@ class Nearer(NamedTuple):
     map: LocalMap
 
 
-def nearer_than_thought(here: LocalMap, readings: tuple[float, ...], params: ControllerParams) -> Nearer:
+def nearer_than_thought(here: LocalMap, readings: tuple[float, ...], params: ApaSystemParams) -> Nearer:
     """Return the map with that thing nearer which explains best what is heard."""
     best = Nearer(False, here)
     least = misfit(here, readings, params) - BETTER
@@ -66,7 +66,7 @@ def nearer_than_thought(here: LocalMap, readings: tuple[float, ...], params: Con
     return best
 
 
-def pressed(here: LocalMap, readings: tuple[float, ...], params: ControllerParams) -> LocalMap:
+def pressed(here: LocalMap, readings: tuple[float, ...], params: ApaSystemParams) -> LocalMap:
     """Return the map with that neighbour nearer who is heard nearest: as it has him, the car could go on beside him."""
     sensors = params.car.ultrasonic
     least = NEAR
@@ -82,7 +82,7 @@ def pressed(here: LocalMap, readings: tuple[float, ...], params: ControllerParam
     return with_neighbour(here, who, thing._replace(x=thing.x + PRESSED if who == A else thing.x - PRESSED))
 
 
-def misfit(here: LocalMap, readings: tuple[float, ...], params: ControllerParams) -> float:
+def misfit(here: LocalMap, readings: tuple[float, ...], params: ApaSystemParams) -> float:
     """Return by how much [m] the readings are off what the map lets expect, summed over all sensors."""
     sensors = params.car.ultrasonic
     total = 0.0
@@ -94,19 +94,19 @@ def misfit(here: LocalMap, readings: tuple[float, ...], params: ControllerParams
     return total
 
 
-def _moved(here: LocalMap, who: int, along: float, out: float, params: ControllerParams) -> LocalMap:
+def _moved(here: LocalMap, who: int, along: float, out: float, params: ApaSystemParams) -> LocalMap:
     if who == WALL:
         return here._replace(wall=_placed(here.wall, along, out, params))
     return with_neighbour(here, who, _placed(neighbour_of(here, who), along, out, params))
 
 
-def _placed(thing: Thing, along: float, out: float, params: ControllerParams) -> Thing:
+def _placed(thing: Thing, along: float, out: float, params: ApaSystemParams) -> Thing:
     """Return a thing elsewhere, less sure than a car may be parked beside."""
     unsure = params.apa.map
     return thing_at(thing.x + along, thing.y + out, thing.heading, unsure.certain + 0.5 * STEP, unsure.turned)
 
 
-def explained(state: GuardState, readings: tuple[float, ...], here: LocalMap, params: ControllerParams) -> GuardState:
+def explained(state: GuardState, readings: tuple[float, ...], here: LocalMap, params: ApaSystemParams) -> GuardState:
     """Return the guard without the echoes that the map explains now."""
     sensors = params.car.ultrasonic
     unknown = state.unknown

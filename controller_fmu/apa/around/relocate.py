@@ -9,9 +9,10 @@ from controller_fmu.apa.around.local_map import LocalMap
 from controller_fmu.apa.around.near import nearest_told
 from controller_fmu.apa.around.thing import thing_at
 from controller_fmu.apa.hearing.mute import is_mute
+from controller_fmu.apa.params import ApaSystemParams
+from controller_fmu.apa.signals import ApaInput
 from controller_fmu.apa.slot import UNSEEN, Kind, Slot, mirror_of
 from controller_fmu.common.slot_frame import SlotFrame, to_slot, to_world
-from controller_fmu.interface import ControllerInput, ControllerParams
 from modelkit.vocabulary import Pose
 
 NEAR = 0.9
@@ -29,7 +30,7 @@ ACROSS = 0.45
 """A car in a perpendicular slot is turned by no more than this [rad] against it."""
 
 
-def walled(here: LocalMap, slot: Slot, inputs: ControllerInput, stopped: bool, params: ControllerParams) -> LocalMap:
+def walled(here: LocalMap, slot: Slot, inputs: ApaInput, stopped: bool, params: ApaSystemParams) -> LocalMap:
     """Return the map with the kerb or wall that a standing car hears behind a slot of which none was heard.
 
     ``stopped``: the car stands before something that nobody knew of.
@@ -49,7 +50,7 @@ def walled(here: LocalMap, slot: Slot, inputs: ControllerInput, stopped: bool, p
     return here._replace(walled=True, wall=thing_at(at.x, at.y, at.heading, params.apa.map.corner, turned))
 
 
-def _closed(slot: Slot, pose: Pose, inputs: ControllerInput, params: ControllerParams) -> Slot:
+def _closed(slot: Slot, pose: Pose, inputs: ApaInput, params: ApaSystemParams) -> Slot:
     """Return a perpendicular slot that nothing was heard behind with the wall that both middle rear sensors hear.
 
     One has to do where the other tells nothing.
@@ -70,7 +71,7 @@ def _closed(slot: Slot, pose: Pose, inputs: ControllerInput, params: ControllerP
     return slot._replace(depth=-heard) if heard < INSIDE else slot
 
 
-def _walled(slot: Slot, inputs: ControllerInput, params: ControllerParams) -> Slot:
+def _walled(slot: Slot, inputs: ApaInput, params: ApaSystemParams) -> Slot:
     """Return a slot of which no kerb or wall was heard with the one that two sensors at its rear agree on."""
     mirror = mirror_of(slot)
     side = SIDES[1 if mirror > 0.0 else 0][1]
@@ -88,12 +89,12 @@ def _walled(slot: Slot, inputs: ControllerInput, params: ControllerParams) -> Sl
     return slot._replace(depth=min(second, first))
 
 
-def _y_of(pose: Pose, mirror: float, params: ControllerParams, number: int) -> float:
+def _y_of(pose: Pose, mirror: float, params: ApaSystemParams, number: int) -> float:
     mount = params.car.ultrasonic.mounts[number]
     return pose.y + mount.x * math.sin(pose.heading) + mirror * mount.y * math.cos(pose.heading)
 
 
-def braked(slot: Slot, speed: float, params: ControllerParams) -> Slot:
+def braked(slot: Slot, speed: float, params: ApaSystemParams) -> Slot:
     """Return the slot seen from a car that has braked from ``speed`` [m/s] to standstill since it heard the corners.
 
     Braked wheels slip in proportion to the deceleration a, so the way the odometry misses is the integral

@@ -7,10 +7,9 @@ from controller_fmu.apa.around.local_map import B, LocalMap, ear_on, expected, w
 from controller_fmu.apa.around.shifted import MOST, UNSURE, shifted
 from controller_fmu.apa.around.thing import Thing, wider
 from controller_fmu.apa.hearing.mute import is_mute
-from controller_fmu.apa.params import MapParams
+from controller_fmu.apa.params import ApaSystemParams, MapParams
 from controller_fmu.apa.slot import UNSEEN, Kind, Slot, flush_with
 from controller_fmu.common.slot_frame import to_world
-from controller_fmu.interface import ControllerParams
 from modelkit.vocabulary import Pose
 
 STAGGER = 0.12
@@ -158,7 +157,7 @@ def is_certain(here: LocalMap, params: MapParams) -> bool:
 
 
 def without_gone(
-    here: LocalMap, tracks: tuple[Track, ...], readings: tuple[float, ...], params: ControllerParams
+    here: LocalMap, tracks: tuple[Track, ...], readings: tuple[float, ...], params: ApaSystemParams
 ) -> LocalMap:
     """Return the map without the neighbour behind a parallel slot if he has gone: the middle sensors hear past him.
 
@@ -169,7 +168,7 @@ def without_gone(
 
 
 def driven_on(
-    here: LocalMap, tracks: tuple[Track, ...], readings: tuple[float, ...], params: ControllerParams
+    here: LocalMap, tracks: tuple[Track, ...], readings: tuple[float, ...], params: ApaSystemParams
 ) -> LocalMap:
     """Return the map with the neighbour ahead in a parallel slot as far on as both middle sensors of the front hear.
 
@@ -187,14 +186,14 @@ def driven_on(
 
 
 def _hears_past(
-    here: LocalMap, tracks: tuple[Track, ...], readings: tuple[float, ...], number: int, params: ControllerParams
+    here: LocalMap, tracks: tuple[Track, ...], readings: tuple[float, ...], number: int, params: ApaSystemParams
 ) -> bool:
     """Return whether a sensor hears past what the map has before it; nothing, where it should hear something."""
     told = expected(ear_on(here, params.car.ultrasonic, number), here).echo.distance
     return told < params.apa.map.heard and tracks[number].now > told + MISSED and not is_mute(readings[number])
 
 
-def is_heard(here: LocalMap, readings: tuple[float, ...], params: ControllerParams) -> bool:
+def is_heard(here: LocalMap, readings: tuple[float, ...], params: ApaSystemParams) -> bool:
     """Return whether a car that stands in a perpendicular slot hears its neighbours beside it, as deep as it stands.
 
     Not if both sensors of a side hear nothing where the map has its neighbour, nor if neither of the rear ones does:
@@ -209,7 +208,7 @@ def is_heard(here: LocalMap, readings: tuple[float, ...], params: ControllerPara
     return not ((front_left and rear_left) or (front_right and rear_right) or (rear_left and rear_right))
 
 
-def is_in_the_middle(here: LocalMap, readings: tuple[float, ...], params: ControllerParams) -> bool:
+def is_in_the_middle(here: LocalMap, readings: tuple[float, ...], params: ApaSystemParams) -> bool:
     """Return False if a car in a perpendicular slot hears itself aside of the middle, whatever the map has.
 
     Both the front and the rear flank sensors must say so, by what they hear of the neighbours on either side: one pair
@@ -229,7 +228,7 @@ def is_in_the_middle(here: LocalMap, readings: tuple[float, ...], params: Contro
     return max(front, rear) > -ASIDE and min(front, rear) < ASIDE
 
 
-def _is_missed(here: LocalMap, readings: tuple[float, ...], number: int, params: ControllerParams) -> bool:
+def _is_missed(here: LocalMap, readings: tuple[float, ...], number: int, params: ApaSystemParams) -> bool:
     """Return whether a sensor hears nothing where the map has a neighbour in its reach, or something far behind it.
 
     What ends the slot is left out: a wheel stop is not as wide as a wall.

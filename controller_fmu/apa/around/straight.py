@@ -9,7 +9,7 @@ import math
 from controller_fmu.apa.around.arcs import LOOKED_AT
 from controller_fmu.apa.around.local_map import WALL, A, B, LocalMap, ear_on, expected
 from controller_fmu.apa.around.near import FREE, nearest_told
-from controller_fmu.interface import ControllerParams
+from controller_fmu.apa.params import ApaSystemParams
 
 STRAIGHT = 0.2
 SURE = 0.03
@@ -22,7 +22,7 @@ SAME = 0.06
 """An echo is of the wall if it says the distance to it to so much [m] and a tenth of it."""
 
 
-def room_straight(readings: tuple[float, ...], here: LocalMap, direction: int, params: ControllerParams) -> float:
+def room_straight(readings: tuple[float, ...], here: LocalMap, direction: int, params: ApaSystemParams) -> float:
     """Return how far [m] the car may go by the nearest of the sensors that look straight where it drives."""
     sensors = params.car.ultrasonic
     guard = params.apa.guard

@@ -12,11 +12,12 @@ from controller_fmu.apa.around.row import is_certain, is_heard, is_in_the_middle
 from controller_fmu.apa.around.shifted import Shifts
 from controller_fmu.apa.hearing.mute import SLOWLY, is_waited_for
 from controller_fmu.apa.outline import Shape, clearance, outline_rate, sure_steps
+from controller_fmu.apa.params import ApaSystemParams
+from controller_fmu.apa.signals import ApaInput
 from controller_fmu.apa.slot import Kind, Site, Slot, mirror_of, stands_out_by
 from controller_fmu.apa.tracking import Tracked
 from controller_fmu.apa.ways.move import Move, point_at
 from controller_fmu.common.slot_frame import SlotFrame, to_slot, to_world
-from controller_fmu.interface import ControllerInput, ControllerParams
 from modelkit.vocabulary import Gear, Pose
 
 DOUBT = 0.5
@@ -44,7 +45,7 @@ class Around(NamedTuple):
     """Since when a sensor tells nothing [ns]."""
 
 
-def shape_of(params: ControllerParams) -> Shape:
+def shape_of(params: ApaSystemParams) -> Shape:
     """Return the car as the planner sees it."""
     car = params.car
     plan = params.apa.plan
@@ -66,7 +67,7 @@ class Settled(NamedTuple):
     """It is so if no way leads deeper."""
 
 
-def settled_in(inputs: ControllerInput, around: Around, params: ControllerParams) -> Settled:
+def settled_in(inputs: ApaInput, around: Around, params: ApaSystemParams) -> Settled:
     """Return whether a car that stands as planned is parked."""
     slot = around.slot
     pose = to_slot(inputs.odometry, SlotFrame(slot.a, mirror_of(slot)))
@@ -77,7 +78,7 @@ def settled_in(inputs: ControllerInput, around: Around, params: ControllerParams
     return Settled(sure and spare >= doubt * unsure, sure and spare >= DOUBT * unsure)
 
 
-def is_sure(inputs: ControllerInput, around: Around, params: ControllerParams) -> bool:
+def is_sure(inputs: ApaInput, around: Around, params: ApaSystemParams) -> bool:
     """Return whether both neighbours are where the map has them, and the sensors do not contradict it."""
     heard = inputs.ultrasonic
     last = without_lost(heard, around.guard.tracks)
@@ -86,7 +87,7 @@ def is_sure(inputs: ControllerInput, around: Around, params: ControllerParams) -
 
 
 def is_rest_free(
-    move: Move, tracked: Tracked, site: Site, bare: Site, leads_away: bool, params: ControllerParams
+    move: Move, tracked: Tracked, site: Site, bare: Site, leads_away: bool, params: ApaSystemParams
 ) -> bool:
     """Return whether the rest of a move, as far as it is looked at, stays clear of what the map has now.
 
@@ -122,7 +123,7 @@ def _beside(at: Pose, off: float, site: Site, bare: Site) -> Pose:
     return to_slot(to_world(pose, site.frame), bare.frame)
 
 
-def sight_of(direction: int, bare: Site, around: Around, inputs: ControllerInput, params: ControllerParams) -> Sight:
+def sight_of(direction: int, bare: Site, around: Around, inputs: ApaInput, params: ApaSystemParams) -> Sight:
     """Return what the guard says to driving in ``direction`` with the wheels as they are; ``bare``: without margins."""
     in_gear = inputs.gear == (Gear.REVERSE if direction < 0 else Gear.DRIVE)
     if in_gear and direction * inputs.measured_speed < -ROLLS:

@@ -8,11 +8,11 @@ from controller_fmu.apa.hearing.line_fit import NO_SUMS, OFF, leaning, offset, s
 from controller_fmu.apa.hearing.search_side import hear
 from controller_fmu.apa.hearing.side import DEEP, START, WALL, SideState
 from controller_fmu.apa.outline import Shape
-from controller_fmu.apa.params import ApaParams, Wish
+from controller_fmu.apa.params import ApaParams, ApaSystemParams, Wish
+from controller_fmu.apa.signals import ApaInput
 from controller_fmu.apa.slot import UNSEEN, Kind, Side, Slot
 from controller_fmu.apa.ways.fit import Fit, fit_of
 from controller_fmu.common.sensors import HEARD, LEFT_SENSOR, RIGHT_SENSOR, sensor_at
-from controller_fmu.interface import ControllerInput, ControllerParams
 from modelkit.vocabulary import Pose
 
 RIGHT = 0
@@ -60,7 +60,7 @@ def begin_search(pose: Pose) -> SearchState:
 
 
 def search(
-    state: SearchState, inputs: ControllerInput, car: Shape, params: ControllerParams, dt_ns: int, fresh: bool
+    state: SearchState, inputs: ApaInput, car: Shape, params: ApaSystemParams, dt_ns: int, fresh: bool
 ) -> SearchState:
     """Return the search after one sample; ``fresh``: the sensors tell something new."""
     speed = abs(inputs.measured_speed)
@@ -179,7 +179,7 @@ def kind_of(length: float, depth: float, neighbour: float, car: Shape, params: A
     return Kind.PARALLEL if neighbour > LONG_NEIGHBOUR else Kind.PERPENDICULAR
 
 
-def _hear(side: SideState, which: int, origin: Pose, inputs: ControllerInput, params: ControllerParams) -> SideState:
+def _hear(side: SideState, which: int, origin: Pose, inputs: ApaInput, params: ApaSystemParams) -> SideState:
     """Return a side after a reading of its sensor."""
     sensor = LEFT_SENSOR if which == LEFT else RIGHT_SENSOR
     mirror = -1.0 if which == LEFT else 1.0
@@ -195,7 +195,7 @@ def _hear(side: SideState, which: int, origin: Pose, inputs: ControllerInput, pa
     return hear(side, u, w, r, params.car.ultrasonic.half_angle, params.apa.search)
 
 
-def _judge(state: SearchState, side: SideState, which: int, car: Shape, params: ControllerParams) -> SearchState:
+def _judge(state: SearchState, side: SideState, which: int, car: Shape, params: ApaSystemParams) -> SearchState:
     """Return the search with a new gap judged, or a known one measured better."""
     slot = slot_of(state, side, which, car, params.apa)
     mark = side.found * 16 if which == RIGHT else side.found

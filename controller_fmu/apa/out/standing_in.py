@@ -6,10 +6,11 @@ from typing import NamedTuple
 from controller_fmu.apa.around.near import nearest_told
 from controller_fmu.apa.choice import ChosenSide
 from controller_fmu.apa.outline import Shape
+from controller_fmu.apa.params import ApaSystemParams
+from controller_fmu.apa.signals import ApaInput
 from controller_fmu.apa.slot import UNSEEN, Kind, Side, Slot, mirror_of
 from controller_fmu.common.sensors import HEARD, LEFT_SENSOR, RIGHT_SENSOR
 from controller_fmu.common.slot_frame import SlotFrame, to_world
-from controller_fmu.interface import ControllerInput, ControllerParams
 from modelkit.vocabulary import Pose
 
 STANDS_OUT = 0.3
@@ -45,7 +46,7 @@ class KerbLine(NamedTuple):
     slope: float
 
 
-def slot_around(inputs: ControllerInput, car: Shape, params: ControllerParams) -> Slot:
+def slot_around(inputs: ApaInput, car: Shape, params: ApaSystemParams) -> Slot:
     """Return the slot around a standing car; the road is on the side that the driver chose, else on the left.
 
     What both sensors of that side hear near is a neighbour: the car stands across the road, its nose to it. They are
@@ -61,7 +62,7 @@ def slot_around(inputs: ControllerInput, car: Shape, params: ControllerParams) -
 
 
 def _along(
-    road: HeardFlank, other: HeardFlank, side: int, inputs: ControllerInput, car: Shape, params: ControllerParams
+    road: HeardFlank, other: HeardFlank, side: int, inputs: ApaInput, car: Shape, params: ApaSystemParams
 ) -> Slot:
     """Return the slot along the road: its direction is that of the kerb or wall beside, where one is heard."""
     ahead = _nearest(FRONT, inputs)
@@ -83,7 +84,7 @@ def _along(
 
 
 def _across(
-    road: HeardFlank, other: HeardFlank, side: int, inputs: ControllerInput, car: Shape, params: ControllerParams
+    road: HeardFlank, other: HeardFlank, side: int, inputs: ApaInput, car: Shape, params: ApaSystemParams
 ) -> Slot:
     """Return the slot across the road."""
     ahead = _nearest(FRONT, inputs)
@@ -103,7 +104,7 @@ def _across(
     )
 
 
-def flank_of(inputs: ControllerInput, right: bool, params: ControllerParams) -> HeardFlank:
+def flank_of(inputs: ApaInput, right: bool, params: ApaSystemParams) -> HeardFlank:
     """Return what the sensors of one side hear.
 
     What is nearer than they tell is no nearer than what a bumper's outer sensor hears with the rim of its cone: a side
@@ -121,7 +122,7 @@ def flank_of(inputs: ControllerInput, right: bool, params: ControllerParams) -> 
     )
 
 
-def _beside(number: int, corner: int, inputs: ControllerInput, params: ControllerParams) -> float:
+def _beside(number: int, corner: int, inputs: ApaInput, params: ApaSystemParams) -> float:
     """Return how far [m] something is beside the car, by a flank's sensor or by that of the bumper next to it."""
     sensors = params.car.ultrasonic
     reading = inputs.ultrasonic[number]
@@ -142,6 +143,6 @@ def _line(heard: HeardFlank) -> KerbLine:
     return KerbLine(heard.rear - slope * heard.x_rear, slope)
 
 
-def _nearest(first: int, inputs: ControllerInput) -> float:
+def _nearest(first: int, inputs: ApaInput) -> float:
     """Return the nearest distance [m] that two sensors hear: ``first`` and the next one."""
     return min(inputs.ultrasonic[first], inputs.ultrasonic[first + 1])

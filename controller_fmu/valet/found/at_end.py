@@ -4,13 +4,13 @@ import math
 
 from controller_fmu.common.sensors import is_told_anew
 from controller_fmu.common.told import SlotKind
-from controller_fmu.interface import ControllerInput
 from controller_fmu.planning.plan_store import PlanStore
 from controller_fmu.sensing.gap import GapLayout
 from controller_fmu.valet.chart import Step
 from controller_fmu.valet.found.beside import CYCLES, hear_beside, put_beside
 from controller_fmu.valet.params import ValetParams
 from controller_fmu.valet.planned import gap_now
+from controller_fmu.valet.signals import ValetInput
 from controller_fmu.valet.state import ValetState
 from modelkit.maths import wrap_angle
 from modelkit.vocabulary import Pose
@@ -24,9 +24,7 @@ LAST_CORRECTIONS = 7
 """After so many plans a car stays in a slot where it is, even if what it hears beside it then tells a better place."""
 
 
-def listened_on(
-    store: PlanStore, state: ValetState, inputs: ControllerInput, params: ValetParams, dt_ns: int
-) -> ValetState:
+def listened_on(store: PlanStore, state: ValetState, inputs: ValetInput, params: ValetParams, dt_ns: int) -> ValetState:
     """Return the valet that has listened to what is beside it at the end of its way, where it is put right by that."""
     told_anew = is_told_anew(state.watch.running, dt_ns, params.car.ultrasonic.cycle)
     if not told_anew or state.beside.cycles >= CYCLES:

@@ -4,7 +4,6 @@ import math
 from typing import NamedTuple
 
 from controller_fmu.common.sensors import HEARD, sensor_at
-from controller_fmu.interface import ControllerInput
 from controller_fmu.planning.plan_store import SIDES, PlanStore
 from controller_fmu.sensing.ear import SideEar
 from controller_fmu.sensing.gap import GapLayout
@@ -12,6 +11,7 @@ from controller_fmu.sensing.heard_store import put_heard
 from controller_fmu.valet.found.nearby import FRONT_EARS, REAR_EARS, Nearby, is_in_gap
 from controller_fmu.valet.found.search import Search
 from controller_fmu.valet.params import ValetParams
+from controller_fmu.valet.signals import ValetInput
 from modelkit.geometry import Point
 from modelkit.vocabulary import Pose
 
@@ -36,7 +36,7 @@ class SideEchoes(NamedTuple):
     cycles: int = 0
 
 
-def hear_beside(state: SideEchoes, inputs: ControllerInput, params: ValetParams) -> SideEchoes:
+def hear_beside(state: SideEchoes, inputs: ValetInput, params: ValetParams) -> SideEchoes:
     """Return what was heard beside a standing car with the readings of one more cycle."""
     far = HEARD * params.car.ultrasonic.max_range
     readings = tuple(inputs.ultrasonic[sensor] for sensor in SENSORS)

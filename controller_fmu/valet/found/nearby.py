@@ -7,7 +7,6 @@ than half the clearance planned, before the car is there.
 from typing import NamedTuple
 
 from controller_fmu.common.sensors import sensor_at
-from controller_fmu.interface import ControllerInput
 from controller_fmu.planning.plan import PATH, Path
 from controller_fmu.planning.plan_store import HEARD, SIDES, PlanStore
 from controller_fmu.planning.task import drive
@@ -16,6 +15,7 @@ from controller_fmu.sensing.gap import Gap
 from controller_fmu.sensing.heard_store import MOST_LINES, forget_place, forget_side, put_heard, put_line
 from controller_fmu.sensing.in_gap import point_in_gap
 from controller_fmu.valet.params import ValetParams
+from controller_fmu.valet.signals import ValetInput
 from modelkit.geometry import Point, line_box, outline, point_gap
 from modelkit.vocabulary import Pose
 
@@ -73,7 +73,7 @@ def forget_under(store: PlanStore, state: Nearby, pose: Pose, params: ValetParam
 
 
 def hear_nearby(
-    store: PlanStore, state: Nearby, inputs: ControllerInput, rest: Rest, gap: Gap, params: ValetParams
+    store: PlanStore, state: Nearby, inputs: ValetInput, rest: Rest, gap: Gap, params: ValetParams
 ) -> Nearby:
     """Return the ears after new readings on the way into a gap."""
     forward = rest.path.pieces[rest.piece].way > 0.0

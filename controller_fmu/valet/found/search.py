@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 from controller_fmu.common.sensors import LEFT_SENSOR, RIGHT_SENSOR, is_told_anew, sensor_at
 from controller_fmu.common.told import SlotKind, ToldSlot
-from controller_fmu.interface import ControllerInput, Reason
+from controller_fmu.interface import Reason
 from controller_fmu.planning.plan_store import PlanStore
 from controller_fmu.sensing.around import AroundGap, lay_around
 from controller_fmu.sensing.ear import SideEar, listen
@@ -15,6 +15,7 @@ from controller_fmu.sensing.in_gap import along_of
 from controller_fmu.sensing.street import street_of
 from controller_fmu.valet.given import gap_told, told_reason
 from controller_fmu.valet.params import SlotWish, ValetParams, WishedSide
+from controller_fmu.valet.signals import ValetInput
 from modelkit.car import car_length
 from modelkit.vocabulary import Pose
 
@@ -69,7 +70,7 @@ def begin_search(clock_ns: int) -> Search:
     return Search(clock_ns=clock_ns)
 
 
-def search(store: PlanStore, state: Search, inputs: ControllerInput, params: ValetParams, dt_ns: int) -> Search:
+def search(store: PlanStore, state: Search, inputs: ValetInput, params: ValetParams, dt_ns: int) -> Search:
     """Return the search after one sample; sensors tell something new every ``cycle``."""
     speed = abs(inputs.measured_speed)
     clock = state.clock_ns + dt_ns
@@ -88,7 +89,7 @@ def search(store: PlanStore, state: Search, inputs: ControllerInput, params: Val
     return state
 
 
-def told_slot(store: PlanStore, state: Search, told: ToldSlot, inputs: ControllerInput, params: ValetParams) -> Search:
+def told_slot(store: PlanStore, state: Search, told: ToldSlot, inputs: ValetInput, params: ValetParams) -> Search:
     """Return the search with the slot that is told from outside, once it has been passed; or why it cannot be one."""
     reason = told_reason(store, told, params)
     if reason != Reason.NONE:
@@ -132,7 +133,7 @@ def wanted_beside(store: PlanStore, state: Search, side: int, at: Pose, params: 
     return wanted(params)._replace(street=street)
 
 
-def with_map(store: PlanStore, state: Search, inputs: ControllerInput, params: ValetParams) -> Search:
+def with_map(store: PlanStore, state: Search, inputs: ValetInput, params: ValetParams) -> Search:
     """Return the search whose slot is shown, with the map around it made."""
     ahead = min(inputs.ultrasonic[FRONT_SENSOR], inputs.ultrasonic[FRONT_SENSOR + 1])
     state = state._replace(waited_ns=0, pose=inputs.odometry, ahead=ahead, again=False)
@@ -164,16 +165,12 @@ def mapped(store: PlanStore, state: Search, params: ValetParams) -> Search:
     return state._replace(lines=lines)
 
 
-def _hear(
-    store: PlanStore, ear: SideEar, side: int, sensor: int, inputs: ControllerInput, params: ValetParams
-) -> SideEar:
+def _hear(store: PlanStore, ear: SideEar, side: int, sensor: int, inputs: ValetInput, params: ValetParams) -> SideEar:
     at = sensor_at(params.car.ultrasonic.mounts[sensor], inputs.odometry)
     return listen(store, ear, side, at, inputs.ultrasonic[sensor], params.car.ultrasonic)
 
 
-def _judged(
-    store: PlanStore, state: Search, side: int, sensor: int, inputs: ControllerInput, params: ValetParams
-) -> Search:
+def _judged(store: PlanStore, state: Search, side: int, sensor: int, inputs: ValetInput, params: ValetParams) -> Search:
     """Return the search with the gap that the places of one side make."""
     ear = state.right if side == RIGHT else state.left
     at = sensor_at(params.car.ultrasonic.mounts[sensor], inputs.odometry)._replace(heading=inputs.odometry.heading)

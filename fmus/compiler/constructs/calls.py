@@ -13,7 +13,7 @@ from fmus.compiler.constructs.columns import check_place
 from fmus.compiler.constructs.generators import GENERATORS
 from fmus.compiler.constructs.replacing import replaced
 from fmus.compiler.source.advice import CALL_ADVICE
-from fmus.compiler.source.kinds import Array, Kind, Mixed, Open, Struct, described, is_named_tuple
+from fmus.compiler.source.kinds import Array, Kind, Mixed, Open, Struct, described, is_named_tuple, whole_of
 from fmus.compiler.source.refusals import AlreadySaidError, CannotError
 from fmus.compiler.target.access import is_at, looks_at_place
 from fmus.compiler.target.body import EXPRESSIONS, METHODS, FunctionBody
@@ -174,6 +174,10 @@ def _arguments(
 
 def construct(body: FunctionBody, node: ast.Call, cls: Any) -> Value:
     """Return ``Cls(...)``; fields left out have their defaults."""
+    whole = whole_of(cls)
+    if whole is not cls and node.args:
+        raise CannotError(node, f"{cls.__name__}() with arguments without a name", "name each, as in reason=...")
+    cls = whole
     kinds = body.program.fields(cls, node)
     given = _arguments(node, cls.__name__, list(kinds), node.args)
     kind = Struct(cls)

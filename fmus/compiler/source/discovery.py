@@ -8,7 +8,7 @@ from types import FunctionType
 from typing import Any
 
 from fmus.compiler.source.bindings import bindings
-from fmus.compiler.source.kinds import hints_of, is_named_tuple
+from fmus.compiler.source.kinds import NoKindError, hints_of, is_named_tuple, whole_of
 from fmus.compiler.source.reading import Library
 from fmus.compiler.source.refusals import CannotError
 from fmus.compiler.source.resolve import static
@@ -100,6 +100,10 @@ class Discovery:
         for argument in typing.get_args(hint):
             if not isinstance(argument, str):
                 self.add_hint(argument)
+        try:
+            hint = whole_of(hint)
+        except NoKindError:
+            return  # said where a function takes it
         for mark in getattr(hint, "__metadata__", ()):
             states = getattr(mark, "states", None)
             if states is not None:

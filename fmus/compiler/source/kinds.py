@@ -2,7 +2,8 @@
 
 import types
 import typing
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass
 from enum import IntEnum
 from functools import cache
@@ -89,6 +90,7 @@ def kind_of(hint: Any, default: Any = UNSET) -> Kind:
         return SCALARS[hint]
     if isinstance(hint, type) and issubclass(hint, IntEnum):
         return INT
+    hint = whole_of(hint)
     if is_named_tuple(hint):
         return Struct(hint)
     if origin is tuple:
@@ -138,6 +140,72 @@ def _no_kind(hint: Any, origin: Any) -> NoKindError:
 def is_named_tuple(item: Any) -> bool:
     """Return whether ``item`` is a NamedTuple class."""
     return isinstance(item, type) and issubclass(item, tuple) and hasattr(item, "_fields")
+
+
+def whole_of(hint: Any) -> Any:
+    """Return the type that a class stands for in the model being translated; any other is itself.
+
+    The types of its systems stand for the model's; a ``Protocol`` stands for the one that has all it names.
+    """
+    if hint in _WHOLES:
+        return _WHOLES[hint]
+    if getattr(hint, "_is_protocol", False):
+        return _fitting(hint)
+    return hint
+
+
+@contextmanager
+def translating(wholes: Mapping[Any, Any], interfaces: Iterable[Any]) -> Iterator[None]:
+    """Let the types ``wholes`` stand for the values there, and protocols for one of ``interfaces``."""
+    before = dict(_WHOLES), list(_INTERFACES)
+    _set(wholes, interfaces)
+    try:
+        yield
+    finally:
+        _set(*before)
+
+
+def first_modules() -> list[str]:
+    """Return the modules of what the model's types are made of, where systems give those instead of their own.
+
+    A function of one system names the defaults of another's then, which come before it therefore.
+    """
+    found: dict[str, None] = {}
+
+    def visit(kind: Kind) -> None:
+        for part in parts(kind):
+            visit(part)
+        if isinstance(kind, Struct):
+            found[kind.cls.__module__] = None
+
+    for cls in dict.fromkeys(_WHOLES.values()):
+        for kind in fields_of(cls).values():
+            visit(kind)
+    return list(found)
+
+
+def _set(wholes: Mapping[Any, Any], interfaces: Iterable[Any]) -> None:
+    _WHOLES.clear()
+    _WHOLES.update(wholes)
+    _INTERFACES[:] = interfaces
+    fields_of.cache_clear()
+
+
+def _fitting(protocol: Any) -> Any:
+    """Return the interface of the protocol's package that has all members of ``protocol``."""
+    classes = [cls for cls in protocol.__mro__ if getattr(cls, "_is_protocol", False)]
+    names = {name for cls in classes for name, item in vars(cls).items() if isinstance(item, property)}
+    package = protocol.__module__.partition(".")[0]
+    known = dict.fromkeys(cls for cls in _INTERFACES if cls.__module__.partition(".")[0] == package)
+    found = [cls for cls in known if names <= set(cls._fields)]
+    if len(found) != 1:
+        what = f"{protocol.__name__}, which {len(found) or 'none'} of the model's types fit"
+        raise NoKindError(what, "name what one of its parameters, inputs or outputs has")
+    return found[0]
+
+
+_WHOLES: dict[Any, Any] = {}
+_INTERFACES: list[Any] = []
 
 
 @cache

@@ -21,6 +21,7 @@ from fmus.compiler.source.kinds import (
     Struct,
     described,
     fields_of,
+    first_modules,
     kind_of_value,
     parts,
 )
@@ -55,7 +56,8 @@ class Program:
         taken = [*models, *reserved, *entries, *runtime.TEXTS]
         self.names = FileNames(taken)
         self.found = Discovery(self.library, roots, types)
-        self.modules = self.library.order([root.__module__ for root in roots], self.found.modules())
+        first = [*first_modules(), *(root.__module__ for root in roots)]
+        self.modules = self.library.order(first, self.found.modules())
         self.types: dict[Any, str] = {}
         self.functions: dict[FunctionType, str] = {}
         self.constant_names: dict[tuple[str, str], str] = {}

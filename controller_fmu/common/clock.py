@@ -1,21 +1,13 @@
-"""What the systems of the controller share: the clock and the state of all.
+"""When the systems of a controller act: at the instants k * sample_time, with the inputs that hold then.
 
-A sampled controller: the chosen system acts at the instants k * sample_time with the inputs that hold
-then, whatever the communication step, and holds its outputs in between. ``controller_fmu.SYSTEMS``
-names the systems, each with how it starts, what it does at a sample and what it puts out.
+Whatever the communication step; the outputs are held in between.
 """
 
 import math
 from typing import NamedTuple
 
-from controller_fmu.adaptive.system import AdaptiveState
-from controller_fmu.apa.system import ApaState
 from controller_fmu.common.phases import CommonPhase
-from controller_fmu.guo2015.system import GuoState
-from controller_fmu.hsic.system import HsicState
-from controller_fmu.interface import ControllerOutput, ControllerParams, Reason
-from controller_fmu.preview.driving import DrivingState
-from controller_fmu.zhang2022.system import ZhangState
+from controller_fmu.interface import Clocked, Reason, RefusedOutput
 from modelkit.maths import is_finite
 from modelkit.vocabulary import Prompt
 
@@ -29,24 +21,12 @@ class Clock(NamedTuple):
     """False: the parameters make no sense, and it never acts."""
 
 
-class ControllerState(NamedTuple):
-    """Everything the controller remembers: its clock, and the memory of each system."""
-
-    clock: Clock = Clock()
-    guo2015: GuoState = GuoState()
-    zhang2022: ZhangState = ZhangState()
-    hsic: HsicState = HsicState()
-    preview: DrivingState = DrivingState()
-    apa: ApaState = ApaState()
-    adaptive: AdaptiveState = AdaptiveState()
-
-
-def begin(params: ControllerParams) -> Clock:
+def begin(params: Clocked) -> Clock:
     """Return the clock at time zero; not usable if the parameters make no sense."""
     return Clock(usable=_is_usable(params))
 
 
-def tick(clock: Clock, params: ControllerParams, dt_ns: int) -> tuple[Clock, int, int]:
+def tick(clock: Clock, params: Clocked, dt_ns: int) -> tuple[Clock, int, int]:
     """Return the clock ``dt_ns`` later, and how many samples of which length [ns] were due before."""
     end_ns = clock.time_ns + dt_ns
     if not clock.usable:
@@ -58,14 +38,12 @@ def tick(clock: Clock, params: ControllerParams, dt_ns: int) -> tuple[Clock, int
     return Clock(end_ns, clock.next_sample_ns + samples * period_ns, True), samples, period_ns
 
 
-def refused() -> ControllerOutput:
+def refused() -> RefusedOutput:
     """Return the outputs of a controller that cannot work with its parameters: it stops the car."""
-    return ControllerOutput(
-        prompt=Prompt.STOP, brake_request=True, phase=CommonPhase.FAILED, reason=Reason.BAD_PARAMETER
-    )
+    return RefusedOutput(prompt=Prompt.STOP, brake_request=True, phase=CommonPhase.FAILED, reason=Reason.BAD_PARAMETER)
 
 
-def _is_usable(params: ControllerParams) -> bool:
+def _is_usable(params: Clocked) -> bool:
     target = params.target
     steering = params.car.steering
     lock = steering.angle_limit / steering.ratio if steering.ratio > 0.0 else 0.0
@@ -75,6 +53,5 @@ def _is_usable(params: ControllerParams) -> bool:
         and params.car.wheelbase > 0.0
         and params.sample_time >= 1e-4
         and steering.rate_limit > 0.0
-        and params.guo2015.prompting.deceleration > 0.0
         and 0.0 < lock < 1.5
     )

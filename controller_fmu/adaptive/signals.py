@@ -1,0 +1,46 @@
+"""What driver-adaptive parking tells."""
+
+from typing import Annotated, NamedTuple
+
+from controller_fmu.adaptive.phases import AdaptivePhase
+from controller_fmu.interface import (
+    STATE_OF_THE_CHART,
+    HeadingError,
+    LateralError,
+    ReasonTold,
+    ReferencePose,
+    Shifts,
+)
+from modelkit.signal import Signal
+from modelkit.vocabulary import (
+    AdvisedSpeed,
+    BrakeRequest,
+    ForceControlActive,
+    ForceRequest,
+    Pose,
+    PromptShown,
+    SpeedControlActive,
+    SpeedRequest,
+    SteeringActive,
+    SteeringWheelRequest,
+)
+
+
+class AdaptiveOutput(NamedTuple):
+    """To the vehicle, the driver, the log and the judge."""
+
+    steering_wheel_request: SteeringWheelRequest = 0.0
+    steering_active: SteeringActive = False
+    prompt: PromptShown = 0
+    advised_speed: AdvisedSpeed = 0.0
+    speed_control_active: SpeedControlActive = False
+    speed_request: SpeedRequest = 0.0
+    force_control_active: ForceControlActive = False
+    force_request: ForceRequest = 0.0
+    brake_request: BrakeRequest = False
+    phase: Annotated[int, Signal("1", STATE_OF_THE_CHART, states=AdaptivePhase)] = 0
+    reason: ReasonTold = 0
+    shifts: Shifts = 0
+    reference: ReferencePose = Pose()
+    lateral_error: LateralError = 0.0
+    heading_error: HeadingError = 0.0

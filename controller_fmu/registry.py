@@ -1,0 +1,107 @@
+"""The systems of the controller, one row each, and the controller that is made of them.
+
+Nothing below imports this file, no system another: a system says what its parameters, inputs, outputs and phases are,
+and the types of the whole have the fields of all.
+"""
+
+import sys
+from enum import IntEnum
+from typing import TYPE_CHECKING, Annotated, Any, NamedTuple, TypeAlias
+
+from controller_fmu import adaptive, apa, guo2015, hsic, preview, valet, zhang2022
+from controller_fmu.common.clock import Clock, begin, refused, tick
+from controller_fmu.interface import RefusedOutput
+from controller_fmu.valet.params import ValetSystem
+from modelkit.composition import merged, named_tuple
+from modelkit.model import Model, SampledSystem, SampledSystems
+from modelkit.signal import Signal
+from modelkit.states import union
+from modelkit.terminals import TERMINALS
+from modelkit.variables import variables
+
+ROWS: tuple[SampledSystem[Any, Any, Any, Any], ...] = (
+    guo2015.SYSTEM,
+    zhang2022.SYSTEM,
+    hsic.SYSTEM,
+    preview.SYSTEM,
+    apa.SYSTEM,
+    adaptive.SYSTEM,
+)
+"""The systems of one controller, which choose by ``controller.system``."""
+APART: dict[IntEnum, Model] = {ValetSystem.VALET: valet.MODEL}
+"""Those that are a controller of their own, with a store or a map: by their value of ``controller.system``."""
+
+System: Any = union(
+    "System",
+    __name__,
+    "Which paper's system parks the car.",
+    *(row.choices for row in ROWS),
+    *(type(choice) for choice in APART),
+)
+
+
+class Choosing(NamedTuple):
+    """What chooses among them."""
+
+    system: Annotated[int, Signal("1", "which paper's system", states=System)] = next(iter(System))
+
+
+if TYPE_CHECKING:
+    ControllerParams: TypeAlias = Any
+    ControllerInput: TypeAlias = Any
+    ControllerOutput: TypeAlias = Any
+    ControllerState: TypeAlias = Any
+else:
+    ControllerParams = merged(
+        "ControllerParams",
+        __name__,
+        "The system chosen, the car it thinks it drives, the target and every limit.",
+        (Choosing, *(row.params for row in ROWS)),
+    )
+    ControllerInput = merged("ControllerInput", __name__, "From the vehicle.", (row.inputs for row in ROWS))
+    ControllerOutput = merged(
+        "ControllerOutput",
+        __name__,
+        "To the vehicle, the driver, the log and the judge.",
+        (*(row.told for row in ROWS), RefusedOutput),
+    )
+    ControllerState = named_tuple(
+        "ControllerState",
+        __name__,
+        "Everything the controller remembers: its clock, and the memory of each system.",
+        {"clock": (Clock, Clock()), **{row.field: (row.state, row.state()) for row in ROWS}},
+    )
+Phase: Any = next(item.signal.states for item in variables(ControllerOutput) if item.name == "phase")
+"""The phases of all systems."""
+SYSTEMS = SampledSystems(
+    state=ControllerState,
+    parameter="system",
+    clock="clock",
+    begin=begin,
+    tick=tick,
+    refused=refused,
+    outputs=ControllerOutput,
+    systems=ROWS,
+)
+MODEL = Model(
+    name="Controller",
+    description="Automated parking: planner, path and point tracking, manoeuvre chart",
+    package=sys.modules["controller_fmu"],
+    state=ControllerState,
+    params=ControllerParams,
+    inputs=ControllerInput,
+    outputs=ControllerOutput,
+    initialize=SYSTEMS.initialize,
+    step=SYSTEMS.step,
+    step_size=0.01,
+    stop_time=60.0,
+    terminals=TERMINALS,
+    systems=SYSTEMS,
+    sampled=True,
+)
+SYSTEM_MODELS: dict[IntEnum, Model] = {
+    choice: MODEL.only(choice, f"Controller_{choice.name.lower()}", description)
+    for row in ROWS
+    for choice, description in zip(row.choices, row.descriptions, strict=True)
+}
+"""The controller with one system alone: the same code, with that system's parameters, inputs and outputs only."""

@@ -43,11 +43,7 @@ def assembled(
     """
     store = _only_store(name, parts)
     own = Assembly(tuple(parts.items()), period_ns, frozenset(opened))
-    memory: dict[str, tuple[Any, Any]] = {part: (model.state, model.state()) for part, model in own.parts}
-    memory |= {f"{part}{INPUTS}": (model.inputs, model.inputs()) for part, model in own.parts} | {
-        LEFT: (int, period_ns)
-    }
-    memory |= {f"{part}{BEHIND}": (int, 0) for part, model in own.parts if is_integrated(model)}
+    memory = _memory(own)
     params = {part: (model.params, model.first_params()) for part, model in own.parts}
     inputs = {part: (model.inputs, model.inputs()) for part, model in own.parts}
     outputs = {part: (_told(model), model.outputs()) for part, model in own.parts}
@@ -68,6 +64,15 @@ def assembled(
         assembly=own,
         store=store,
     )
+
+
+def _memory(own: Assembly) -> dict[str, tuple[Any, Any]]:
+    """Return name -> (type, start value) of what the assembled model remembers."""
+    memory: dict[str, tuple[Any, Any]] = {part: (model.state, model.state()) for part, model in own.parts}
+    memory |= {f"{part}{INPUTS}": (model.inputs, model.inputs()) for part, model in own.parts}
+    memory[LEFT] = (int, own.period_ns)
+    memory |= {f"{part}{BEHIND}": (int, 0) for part, model in own.parts if is_integrated(model)}
+    return memory
 
 
 class Together(NamedTuple):

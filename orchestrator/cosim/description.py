@@ -23,6 +23,8 @@ KINDS: dict[str, type] = {
 """Type of an FMI variable -> the Python type it is kept as; others are not connected."""
 NAMED = re.compile(r"(?:^|: )(-?\d+ \w+(?:, -?\d+ \w+)+)$")
 """How the description of a mode ends that is an integer; our own FMUs have it so."""
+STRINGS = ("String",)
+"""Types of FMI whose parameters are texts."""
 DESCRIPTION = "modelDescription.xml"
 PARAMETERS = ("parameter", "calculatedParameter")
 NOT_SAID = "illegal combination of causality"
@@ -82,9 +84,38 @@ def ports_of(description: ModelDescription, causality: str, model: Model | None,
         name for item in chosen if KINDS[item.type] is float and _unit(item) is None for name in element_names(item)
     )
     ports = Ports(found, unsaid, _scales(description))
+    ports.unsupported = unsupported(description, causality)
     if causality == "output":
         ports.direct = dependencies(description)
     return ports
+
+
+def text_parameters(description: ModelDescription) -> list[Variable]:
+    """Return the parameters that are texts: a file's name, a choice by word. They are set, and no part of the ports."""
+    return [
+        Variable(name, str, Signal("1", item.description or ""), str(text or ""))
+        for item in description.modelVariables
+        if item.causality == "parameter" and item.type in STRINGS
+        for name, text in zip(element_names(item), _texts(item), strict=True)
+    ]
+
+
+def _texts(scalar: ModelVariable) -> list[object]:
+    """Return the start values of a text, or of the elements of an array of texts."""
+    names = element_names(scalar)
+    given = list(scalar.start) if isinstance(scalar.start, list | tuple) else [scalar.start]
+    return [*given, *[None] * len(names)][: len(names)]
+
+
+def unsupported(description: ModelDescription, *causalities: str) -> list[str]:
+    """Return the variables of types that are not supported here: ``name (Binary)``, ``name (Clock)``."""
+    return [
+        f"{item.name} ({item.type})"
+        for item in description.modelVariables
+        if item.causality in causalities
+        and item.type not in KINDS
+        and not (item.causality == "parameter" and item.type in STRINGS)
+    ]
 
 
 def element_names(variable: ModelVariable) -> list[str]:

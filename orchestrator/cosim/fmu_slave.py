@@ -21,7 +21,7 @@ from fmpy.fmi2 import (
 
 from fmus.files import new_folder, remove_folder
 from modelkit.model import Model
-from orchestrator.cosim.description import ports_of, read_description
+from orchestrator.cosim.description import ports_of, read_description, text_parameters
 from orchestrator.cosim.slave import Ports
 from orchestrator.text.errors import RunError
 
@@ -80,6 +80,9 @@ class FmuSlave:
         self.inputs, self.outputs, self.parameters = (
             ports_of(self._description, causality, model, path) for causality in ("input", "output", "parameter")
         )
+        known = {item.name for item in text_parameters(self._description)}
+        self._texts = {key: str(value) for key, value in parameters.items() if key in known}
+        parameters = {key: value for key, value in parameters.items() if key not in known}
         for key, value in parameters.items():
             if key not in self.parameters.index:
                 raise RunError(f"{path.name} has no parameter {key}; is it outdated? run: apa build")
@@ -222,11 +225,18 @@ class FmuSlave:
             values = {name: kind(self.parameters.values[self.parameters.index[name]]) for name in names}
             if values:
                 self._set(kind, values)
+        if self._texts:
+            self._set(str, self._texts)
 
     def _set(self, kind: type, values: Mapping[str, Any]) -> None:
         """Set parameters of one type."""
         assert self._instance is not None
-        setters = {float: self._instance.setReal, int: self._instance.setInteger, bool: self._instance.setBoolean}
+        setters = {
+            float: self._instance.setReal,
+            int: self._instance.setInteger,
+            bool: self._instance.setBoolean,
+            str: self._instance.setString,
+        }
         try:
             setters[kind]([self._references[name] for name in values], list(values.values()))
         except Exception as error:

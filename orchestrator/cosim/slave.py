@@ -46,6 +46,8 @@ class Ports:
         """Unit -> what it is in SI base units, as far as the FMU defines its units."""
         self.direct: Mapping[str, Collection[str]] = MappingProxyType({})
         """Output -> inputs it depends on directly, as far as the FMU says so."""
+        self.unsupported: list[str] = []
+        """Variables of types that are not supported here, each with its type."""
         self.used: Indices = np.empty(0, dtype=np.intp)
         """Places of the outputs that something is made of: an input, a role, a verdict."""
         self.own = len(variables)

@@ -1,11 +1,16 @@
 """The archive of an FMU, looked at before anything of it is unpacked or read: it may be anybody's."""
 
+import hashlib
 import os
+import shutil
 import stat
 import sys
 import zipfile
 from pathlib import Path, PurePosixPath
 
+from fmus.contents.archive import DATE
+from fmus.files import whole
+from fmus.places import DIST
 from orchestrator.text.errors import BadInput
 
 GIB = 1 << 30
@@ -41,6 +46,37 @@ def checked(path: Path) -> list[str]:
     if next(entry for entry in entries if entry.filename == DESCRIPTION).file_size > MOST_DESCRIPTION:
         raise BadInput(f"is too large: its {DESCRIPTION}", file=path)
     return names
+
+
+def packed(folder: Path) -> Path:
+    """Return the archive of an FMU that lies there unzipped: the same files give the same archive, made once.
+
+    Raises ``BadInput`` if it is no FMU, too large, or has links.
+    """
+    if not (folder / DESCRIPTION).is_file():
+        raise BadInput(f"is a folder without {DESCRIPTION}, so no FMU", file=folder)
+    files = {path.relative_to(folder).as_posix(): path for path in sorted(folder.rglob("*")) if not path.is_dir()}
+    for name, path in files.items():
+        if path.is_symlink() or not path.is_file():
+            raise BadInput(f"is not an FMU: {name} is no plain file", file=folder)
+    total = sum(path.stat().st_size for path in files.values())
+    if total > MOST_UNPACKED or len(files) > MOST_FILES:
+        most = f"at most {_size(MOST_UNPACKED)} in {MOST_FILES} files"
+        raise BadInput(f"is too large: {_size(total)} in {len(files)} files, {most}", file=folder)
+    digest = hashlib.sha256()
+    for name, path in files.items():
+        digest.update(f"{name}\0{path.stat().st_size}\0".encode(errors="surrogateescape"))
+        with path.open("rb") as stream:
+            digest.update(hashlib.file_digest(stream, "sha256").digest())
+    target = DIST / "unzipped" / digest.hexdigest()[:24] / f"{folder.resolve().name}.fmu"
+    if not target.is_file():
+        with whole(target) as part, zipfile.ZipFile(part, "w", zipfile.ZIP_DEFLATED, compresslevel=1) as archive:
+            for name, path in files.items():
+                info = zipfile.ZipInfo(name, DATE)
+                info.external_attr = (path.stat().st_mode & 0o777) << 16
+                with path.open("rb") as stream, archive.open(info, "w", force_zip64=True) as into:
+                    shutil.copyfileobj(stream, into)
+    return target
 
 
 def unpack(path: Path, folder: Path) -> None:

@@ -6,7 +6,7 @@ Runs in the process of the FMU and imports nothing but the standard library.
 import ctypes
 import struct
 import sys
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, NamedTuple
 
 OK, WARNING, DISCARD, ERROR, FATAL = 0, 1, 2, 3, 4
@@ -156,6 +156,14 @@ class Fmi2:
             self._library, f"{self.prefix}{verb}{group['type'].rstrip('3') if self.counts else group['type']}"
         )
         return ValueCall(call, self.component, group, self.counts, place)
+
+    def set_texts(self, references: Sequence[int], texts: Sequence[str]) -> int:
+        """Set text parameters: one value for each reference, or for each element of an array."""
+        given = (Text * len(texts))(*[text.encode() for text in texts])
+        numbers = (ctypes.c_uint32 * len(references))(*references)
+        more = (Size(len(texts)),) if self.counts else ()
+        call = getattr(self._library, f"{self.prefix}SetString")
+        return int(call(self.component, numbers, Size(len(references)), given, *more))
 
     def plain(self, verb: str) -> int:
         """Return the status of a call that takes the instance alone."""

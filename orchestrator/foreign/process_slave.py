@@ -22,7 +22,7 @@ import numpy as np
 from fmus.children import LIVING, end, own_process
 from fmus.files import new_folder, remove_folder
 from modelkit.model import Model
-from orchestrator.cosim.description import element_names, ports_of, read_description
+from orchestrator.cosim.description import element_names, ports_of, read_description, text_parameters
 from orchestrator.cosim.slave import Indices, Ports
 from orchestrator.foreign import worker
 from orchestrator.foreign.archive import binary, checked, unpack
@@ -78,7 +78,12 @@ class ProcessSlave:
         self.inputs, self.outputs, self.parameters = (
             ports_of(self._description, causality, model, path) for causality in ("input", "output", "parameter")
         )
+        texts = {item.name: item.start for item in text_parameters(self._description)}
+        self._texts = {**texts, **{key: str(value) for key, value in parameters.items() if key in texts}}
+        """Text parameters, also those that keep their start values: an array is set as a whole."""
         for key, value in parameters.items():
+            if key in texts:
+                continue
             if key not in self.parameters.index:
                 raise RunError(f"{path.name} has no parameter {key}")
             self.parameters.values[self.parameters.index[key]] = float(value)
@@ -198,7 +203,9 @@ class ProcessSlave:
             names = element_names(variable) if variable.causality == "parameter" else []
             if wanted & set(names):
                 group = self._group(str(variable.type), [(int(variable.valueReference), len(names))])
-                groups.append({**group, "values": [float(values[self.parameters.index[name]]) for name in names]})
+                of_names = self._texts if names[0] in self._texts else None
+                given = [of_names[name] if of_names else float(values[self.parameters.index[name]]) for name in names]
+                groups.append({**group, "values": given})
         return groups
 
     def _groups(self, ports: Ports) -> _Groups:

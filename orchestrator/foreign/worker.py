@@ -126,6 +126,9 @@ class Worker:
 
     def _parameters(self, data: bytes) -> None:
         for group in json.loads(data):
+            if group["type"] == "String":
+                self._checked(self._fmu.set_texts(group["references"], group["values"]), "refuses its parameters")
+                continue
             values = bytearray(struct.pack(f"={len(group['values'])}d", *group["values"]))
             transfer = self._fmu.transfer("Set", group, fmi_calls.NumbersAt(values, 0))
             transfer.take()

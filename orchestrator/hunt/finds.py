@@ -27,7 +27,6 @@ NOTES = "finds.json"
 """What the finds of a folder came to when they were written."""
 BITS = ("duration", "min_clearance", "final.x", "final.y", "final.heading", "steering_effort")
 """Numbers that tell whether a run is the same to the last bit."""
-TOLD = {"file", "base", "car", "changed", "left_out"}
 
 
 class Find(NamedTuple):
@@ -71,8 +70,7 @@ def write_find(subject: Subject, find: Find, folder: Path) -> Path:
 
 
 def _text(scenario: Scenario) -> str:
-    content = scenario.model_dump(mode="python", exclude=TOLD, by_alias=True, exclude_none=True)
-    text: str = yaml.safe_dump(content, sort_keys=False, allow_unicode=True)
+    text: str = yaml.safe_dump(scenario.as_written(), sort_keys=False, allow_unicode=True)
     return text
 
 

@@ -1,6 +1,7 @@
 """The car of a scenario: told once, for the vehicle and for what the controller believes.
 
-``car: zhang2022`` is a shipped car, or a file; ``car: {base: zhang2022, width: 1.9}`` is one with something changed,
+``car: zhang2022`` is a shipped car, or a file, also a vehicle parameter file of CommonRoad.
+``car: {base: zhang2022, width: 1.9}`` is one with something changed,
 ``car: {width: 1.9}`` changes the car that the base scenario has. What ``vehicle`` and ``controller`` say of their
 ``car`` themselves stands above it: so a controller believes something else than is true.
 """
@@ -11,6 +12,7 @@ from typing import Any, NamedTuple
 
 from modelkit.car import Car
 from modelkit.variables import flatten, variables
+from orchestrator.scenario.commonroad import commonroad_car, is_commonroad
 from orchestrator.scenario.files import find_file
 from orchestrator.scenario.flat_names import flatten_section, merge_flat
 from orchestrator.text.errors import BadInput, shown, suggestion_or_choices
@@ -74,6 +76,8 @@ def car_parameters(car: Car) -> dict[str, Any]:
 
 def _car_in(file: Path, name: str) -> ToldCar:
     content = read_mapping(file)
+    if is_commonroad(content):
+        content = commonroad_car(content, file)
     for key in content:
         if key not in FILE_KEYS:
             hint = suggestion_or_choices(str(key), FILE_KEYS)

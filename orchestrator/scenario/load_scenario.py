@@ -14,16 +14,16 @@ from orchestrator.scenario.flat_names import flatten_section, merge_flat
 from orchestrator.scenario.models import MODELS, models_for
 from orchestrator.scenario.polygons import map_of
 from orchestrator.scenario.requirements import read_requirements
-from orchestrator.scenario.scenario import Scenario, Target
+from orchestrator.scenario.scenario import Parameter, Scenario, Target
 from orchestrator.scenario.slot_layout import KEY, expand_layouts
 from orchestrator.scenario.target_point import as_rear_axle
 from orchestrator.scenario.wiring.ssp import SUFFIX, ssp_scenario, ssp_system
 from orchestrator.scenario.wiring.system_text import NO_FILE, SystemText
 from orchestrator.text.errors import BadInput, shown, suggestion, suggestion_or_choices
-from orchestrator.text.quantities import scalar, unit_symbol
+from orchestrator.text.quantities import text_or_scalar, unit_symbol
 from orchestrator.text.yaml_file import explain, place_in, read_mapping, read_value
 
-NOT_WRITTEN = ("file", "changed", "left_out")
+NOT_WRITTEN = ("file", "changed", "left_out", "texts")
 FIELDS = [*(name for name in Scenario.model_fields if name not in NOT_WRITTEN), "scene", KEY]
 INHERITED_NOT = ("name", "title", "description", "base")
 SETS = "--set"
@@ -64,7 +64,10 @@ def load_scenario(name: str, sets: Iterable[str] = (), more: More | None = None)
     merged["limits"] = limits_of(merged.get("limits", ["house"]), path.parent, path)
     seed = merged.get("seed", 1)
     for owner, model in models_for(_asked(layers)).items():
-        merged[owner] = _parameters(owner, model, [*car.layers(owner), *layers], seed, more.get(owner, ()))
+        given = _parameters(owner, model, [*car.layers(owner), *layers], seed, more.get(owner, ()))
+        merged[owner] = {key: value for key, value in given.items() if not isinstance(value, str)}
+        texts = {key: value for key, value in given.items() if isinstance(value, str)}
+        merged |= {"texts": {**merged.get("texts", {}), owner: texts}} if texts else {}
     changed = dict(text.split("=", 1) for text in layers[-1][0].pop(SETS))
     try:
         merged["target"] = as_rear_axle(merged.get("target"), merged["vehicle"], _written_in("target", layers, path))
@@ -128,7 +131,7 @@ def _with_parameters(scenario: Scenario, more: More) -> Scenario:
     for name, entry in scenario.system.slaves.items():
         known = [*(variables(MODELS[name].params) if name in MODELS else ()), *more.get(name, ())]
         given = entry.parameters
-        if known and given:
+        if given and (name in MODELS or name in more):
             flat = flatten_section(given, [item.name for item in known], file=scenario.file, key=name)
             by_name = {item.name: item for item in known}
             given = {key: _value(by_name[key], _Given(value, scenario.file), name) for key, value in flat.items()}
@@ -224,10 +227,10 @@ def _parameters(
     return result
 
 
-def _value(variable: Variable, given: object, owner: str) -> float | int | bool:
+def _value(variable: Variable, given: object, owner: str) -> Parameter:
     assert isinstance(given, _Given)
     named = variable._replace(name=f"{owner}.{variable.name}")
-    return scalar(given.value, named, file=given.file)
+    return text_or_scalar(given.value, named, file=given.file)
 
 
 def limits_of(given: object, folder: Path, file: object = None) -> list[dict[str, Any]]:

@@ -1,6 +1,6 @@
 """A scenario: what is true (target, slot, scene), what drives, what ends a run, and what it is judged by."""
 
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
@@ -24,6 +24,8 @@ DONE: frozenset[Outcome] = frozenset(SUCCESS.values())
 
 LONGEST_STEP = 10.0
 """Nothing that steers a car exchanges less often [s]."""
+Parameter = float | int | bool | str
+"""Value of a parameter in SI; a text where the FMU has one."""
 Name = Annotated[str, Field(pattern=NAME, max_length=100)]
 """A name, not a path."""
 
@@ -112,18 +114,29 @@ class Scenario(_ScenarioPart):
     """Where it came from."""
     left_out: list[str] = []
     """Parameters that somebody else's FMU does not have, so that it is not given them; they stay true all the same."""
+    texts: dict[str, dict[str, str]] = {}
+    """Parameters of vehicle and controller that are texts, which FMUs of others may have."""
     changed: dict[str, str] = {}
     """What ``--set`` changed for one run, as it was written."""
 
-    def given(self, slave: str) -> dict[str, float | int | bool]:
+    def given(self, slave: str) -> dict[str, Any]:
         """Return the parameters that a slave is given."""
         own = self.parameters_of(slave)
         return {name: value for name, value in own.items() if f"{slave}.{name}" not in self.left_out}
 
-    def parameters_of(self, slave: str) -> dict[str, float | int | bool]:
+    def parameters_of(self, slave: str) -> dict[str, Any]:
         """Return the parameters that the scenario has for a slave."""
         entry = None if self.system is None else self.system.slaves.get(slave)
-        return {**(entry.parameters if entry else {}), **(getattr(self, slave) if slave in MODELS else {})}
+        own = {**getattr(self, slave), **self.texts.get(slave, {})} if slave in MODELS else {}
+        return {**(entry.parameters if entry else {}), **own}
+
+    def as_written(self) -> dict[str, Any]:
+        """Return what a scenario file says that stands on its own, but for the FMUs that a system names."""
+        unwritten = {"file", "base", "car", "changed", "left_out", "texts"}
+        content = self.model_dump(mode="python", exclude=unwritten, by_alias=True, exclude_none=True)
+        for owner, texts in self.texts.items():
+            content[owner] = {**content[owner], **texts}
+        return content
 
     @property
     def places(self) -> list[str]:

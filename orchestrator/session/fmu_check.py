@@ -6,15 +6,15 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from modelkit.variables import variables
-from orchestrator.cosim.description import KINDS, read_description
+from orchestrator.cosim.description import read_description, unsupported
 from orchestrator.cosim.in_process_slave import InProcessSlave
 from orchestrator.cosim.slave import Slave
-from orchestrator.foreign.archive import binary, checked
+from orchestrator.foreign.archive import binary, checked, packed
 from orchestrator.scenario.end_condition import EndCondition
 from orchestrator.scenario.load_scenario import load_system
 from orchestrator.scenario.models import MODELS
 from orchestrator.scenario.scenario import Scenario
-from orchestrator.session.foreign import Fitting, Foreign, load_fitting, sha256_of
+from orchestrator.session.foreign import Fitting, Foreign, fmu_of, load_fitting, sha256_of
 from orchestrator.session.session import Messages, make_slaves
 from orchestrator.system.assemble import Assembled, assemble
 from orchestrator.system.remarks import loops, missing_for_the_verdict, not_fed, unsaid
@@ -64,6 +64,7 @@ def check_fmu(path: Path, place: str, scenario: str, timeout: float, loads: bool
 
     ``loads``: have it loaded and initialized, in a process of its own. Raises ``BadInput`` if it is no FMU.
     """
+    path = packed(path) if path.is_dir() else path
     names = checked(path)
     description = read_description(path)
     place = place or likely_place(path, [item.name for item in description.modelVariables], scenario)
@@ -95,7 +96,7 @@ def likely_place(path: Path, names: Sequence[str], scenario: str) -> str:
     """Return the slave that a scenario has for this FMU; else ours that shares most of its variables with it."""
     system = load_system(scenario) if scenario else None
     for place, file in (system.files() if system is not None else {}).items():
-        if Path(file).is_file() and path.samefile(file):
+        if Path(file).exists() and path.samefile(fmu_of(file)):
             return place
     shared = {
         owner: len({item.name for item in (*variables(model.inputs), *variables(model.outputs))} & set(names))
@@ -195,11 +196,7 @@ def _not_understood(system: Assembled | None, slave: Slave, description: Any) ->
     used = set() if system is None else {slave.outputs.names[place] for place in slave.outputs.used}
     spare = [name for name in slave.outputs.names[: slave.outputs.own] if name not in used] if system else []
     ours = {item.name for item in variables(MODELS[slave.name].outputs)} if slave.name in MODELS else set()
-    types = [
-        f"{item.name} ({item.type})"
-        for item in description.modelVariables
-        if item.type not in KINDS and item.causality in ("input", "output")
-    ]
+    types = unsupported(description, "input", "output", "parameter")
     return [*(name for name in spare if name not in ours), *types]
 
 

@@ -87,7 +87,7 @@ def load_fitting(name: str, sets: Iterable[str], foreign: Foreign) -> Fitting:
 
 
 def fmu_of(text: str) -> Path:
-    """Return the FMU that ``text`` means: an .fmu, or a model of one's own, ``law.py:MODEL``, which is built.
+    """Return the FMU that ``text`` means: an .fmu, its unzipped folder, or a model of one's own, ``law.py:MODEL``.
 
     Raises ``BadInput`` if there is no such file, or for what is wrong with the model.
     """
@@ -96,6 +96,10 @@ def fmu_of(text: str) -> Path:
     if is_model(text):
         return own_fmu(text)
     path = Path(text)
+    if path.is_dir():
+        from orchestrator.foreign.archive import packed
+
+        return packed(path)
     if not path.is_file():
         raise BadInput("no such file", file=path)
     return path
@@ -103,11 +107,12 @@ def fmu_of(text: str) -> Path:
 
 def parameters_of(path: Path, slave: str) -> list[Variable]:
     """Return the parameters of an FMU that takes the place of ``slave``. Raises ``BadInput``."""
-    from orchestrator.cosim.description import ports_of, read_description
+    from orchestrator.cosim.description import ports_of, read_description, text_parameters
     from orchestrator.foreign.archive import checked
 
     checked(path)
-    return ports_of(read_description(path), "parameter", MODELS.get(slave), path).variables
+    description = read_description(path)
+    return [*ports_of(description, "parameter", MODELS.get(slave), path).variables, *text_parameters(description)]
 
 
 def fitting(scenario: Scenario, own: Mapping[str, list[Variable]]) -> tuple[Scenario, list[str]]:

@@ -7,7 +7,7 @@ import numpy as np
 
 from modelkit.model import Model
 from modelkit.variables import Variable, variables
-from orchestrator.cosim.description import ports_of, read_description
+from orchestrator.cosim.description import DESCRIPTION
 from orchestrator.cosim.fmu_files import fmu_beside, fmu_files
 from orchestrator.cosim.fmu_slave import FmuSlave
 from orchestrator.cosim.in_process_slave import InProcessSlave
@@ -17,13 +17,14 @@ from orchestrator.cosim.slave import Array, Slave
 from orchestrator.log.read_log import log_file, read_log
 from orchestrator.scenario.flat_names import flatten_section
 from orchestrator.scenario.models import MODELS, models_for
-from orchestrator.session.foreign import Foreign
+from orchestrator.scenario.scenario import Parameter
+from orchestrator.session.foreign import Foreign, fmu_of, parameters_of
 from orchestrator.session.own import is_model
 from orchestrator.session.session import NOBODY
 from orchestrator.steptest.step_test import StepTest
 from orchestrator.steptest.stimuli import StimulatedInput, stimulus
 from orchestrator.text.errors import BadInput, suggestion_or_choices
-from orchestrator.text.quantities import scalar
+from orchestrator.text.quantities import text_or_scalar
 
 FMU, MODEL_FILE, OTHER = ".fmu", ".py", "model"
 """How files of models end; the slave's name of a model that is none of ours."""
@@ -114,10 +115,11 @@ def _owner(recording: Recording, slave: Slave, path: Path) -> str:
 
 
 def _slave(test: StepTest, model: str, kind: str, foreign: Foreign) -> Slave:
-    if model in foreign.files or model.endswith(FMU):
-        path = foreign.files.get(model) or test.near(model)
+    is_unzipped = model not in MODELS and (test.near(model) / DESCRIPTION).is_file()
+    if model in foreign.files or model.endswith(FMU) or is_unzipped:
+        path = foreign.files.get(model) or fmu_of(str(test.near(model)))
         name = model if model in MODELS else OTHER
-        known = ports_of(read_description(path), "parameter", MODELS.get(name), path).variables
+        known = parameters_of(path, name)
         return foreign.made(name, path, _parameters(test, known, name), lambda *said: None)
     if model in MODELS:
         ours = models_for(test.parameters)[model]
@@ -132,7 +134,11 @@ def _slave(test: StepTest, model: str, kind: str, foreign: Foreign) -> Slave:
         own = _own(str(test.near(model)))
         return InProcessSlave(OTHER, own, _parameters(test, variables(own.params)))
     known_models = ", ".join(MODELS)
-    raise BadInput(f"{model}: expected {known_models}, a file .fmu, or file.py:MODEL", file=test.file, key="model")
+    raise BadInput(
+        f"{model}: expected {known_models}, a file .fmu, its unzipped folder, or file.py:MODEL",
+        file=test.file,
+        key="model",
+    )
 
 
 def _own(text: str) -> Model:
@@ -144,12 +150,12 @@ def _own(text: str) -> Model:
         raise BadInput(str(error)) from error
 
 
-def _parameters(test: StepTest, known: list[Variable], model: str = OTHER) -> dict[str, float | int | bool]:
+def _parameters(test: StepTest, known: list[Variable], model: str = OTHER) -> dict[str, Parameter]:
     """Return what the test sets, above what the run had that is played."""
     named = {item.name: item for item in known}
     flat = flatten_section(test.parameters, named, file=test.file, key="parameters")
     given = {
-        name: scalar(value, named[name]._replace(name=f"parameters.{name}"), file=test.file)
+        name: text_or_scalar(value, named[name]._replace(name=f"parameters.{name}"), file=test.file)
         for name, value in flat.items()
     }
     if not test.replay:

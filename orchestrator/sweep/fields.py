@@ -81,6 +81,8 @@ def find_field(key: str, scenario: Scenario, file: object = None) -> Field:
 
 def _parameter(key: str, owner: str, name: str, known: Sequence[Variable], file: object) -> Field:
     for place, variable in enumerate(known):
+        if variable.name == name and variable.kind is str:
+            raise BadInput("is a text; a study varies numbers. Set it for all runs: set", file=file, key=key)
         if variable.name == name:
             return Field(f"{owner}.{name}", owner, name, place, variable)
     raise BadInput(f"unknown{suggestion(name, [item.name for item in known], f'{owner}.')}", file=file, key=key)

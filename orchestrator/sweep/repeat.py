@@ -54,8 +54,7 @@ def repeat_row(table: Table, number: int, out: Path, kind: str = "none", *, page
 def write_scenario(table: Table, number: int, file: Path) -> Scenario:
     """Write row ``number`` as a scenario that stands on its own; return it as it is read back."""
     scenario = chunk_scenario(table.job, table.chunk(number), 0)
-    told = {"file", "base", "car", "changed", "left_out"}
-    content = scenario.model_dump(mode="python", exclude=told, by_alias=True, exclude_none=True)
+    content = scenario.as_written()
     if scenario.system is not None:
         content["system"] = scenario.system.model_dump(mode="python", by_alias=True, exclude_defaults=True)
     name = f"{table.about['study']['name']}-row-{number}"

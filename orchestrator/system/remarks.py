@@ -35,7 +35,12 @@ def remarks(system: Assembled, ending: EndCondition | None, ignored: Sequence[st
     found = [
         text
         for number, slave in enumerate(slaves)
-        for text in (*_units(number, system), *_unfed(number, system), *_missing(slave.name, slave, ending))
+        for text in (
+            *_units(number, system),
+            *_unsupported(slave),
+            *_unfed(number, system),
+            *_missing(slave.name, slave, ending),
+        )
     ]
     names = [slave.name for slave in slaves]
     absent = [text for name in MODELS if name not in names for text in _missing(name, None, ending)]
@@ -102,6 +107,12 @@ def _others_units(number: int, system: Assembled) -> dict[str, str]:
             if number in (link.source, link.target) and name not in ports.unsaid and not is_si:
                 found[own[0].names[own[1]]] = f"{owner}.{name} [{unit}]"
     return found
+
+
+def _unsupported(slave: Slave) -> list[str]:
+    """Return which variables are of types that are not supported here."""
+    names = [name for ports in (slave.inputs, slave.outputs, slave.parameters) for name in ports.unsupported]
+    return [f"{slave.name} has variables of types that are not supported here: {_few(names)}"] if names else []
 
 
 def _few(names: Sequence[str]) -> str:

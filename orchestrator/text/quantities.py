@@ -104,6 +104,16 @@ def measured(value: object, *, file: object = None, key: str | None = None) -> t
     return number(value, unit, file=file, key=key), unit
 
 
+def text_or_scalar(value: object, variable: Variable, *, file: object = None) -> float | int | bool | str:
+    """Return ``value`` as the type of a parameter: as :func:`scalar` does, or a text. Raises ``BadInput``."""
+    if variable.kind is not str:
+        return scalar(value, variable, file=file)
+    if not isinstance(value, str):
+        text = f"{shown(value)} is no text, which this is; write it in quotes: {str(value)!r}"
+        raise BadInput(text, file=file, key=variable.name)
+    return value
+
+
 def scalar(value: object, variable: Variable, *, file: object = None) -> float | int | bool:
     """Return ``value`` as the type of ``variable``: numbers with unit, names of states, true and false.
 

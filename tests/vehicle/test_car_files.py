@@ -1,14 +1,17 @@
 """The shipped cars: usable, their sensors on their outline, CommonRoad's numbers in the files of its cars."""
 
+from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
 import pytest
 import yaml
 
+from modelkit.car import Car
 from modelkit.variables import flatten, variables, with_values
 from orchestrator.scenario.files import car_names
 from orchestrator.scenario.load_scenario import load_scenario
+from orchestrator.text.errors import BadInput
 from tests.vehicle.cars import CARS, double_track_car, single_track_car
 from vehicle_fmu.interface import Body, VehicleParams
 from vehicle_fmu.usable import is_usable
@@ -56,3 +59,33 @@ def test_commonroads_cars_have_commonroads_numbers(number: int, tmp_path: Path) 
     theirs = dict(zip((v.name for v in variables(type(double))), flatten(double), strict=True))
     for name in set(theirs) - {"ackermann"}:
         assert ours[name] == pytest.approx(theirs[name], rel=1e-5, abs=1e-9), name
+
+
+@pytest.mark.parametrize("number", [1, 2, 3])
+def test_a_parameter_file_of_commonroad_is_a_car(number: int, tmp_path: Path) -> None:
+    file = Path(str(files("vehiclemodels"))) / "parameters" / f"parameters_vehicle{number}.yaml"
+    theirs = flatten(loaded(str(file), tmp_path)._replace(car=Car()))
+    ours = flatten(loaded(f"commonroad{number}", tmp_path)._replace(car=Car()))
+    assert theirs == pytest.approx(ours, rel=2e-5)
+    built, shipped = loaded(str(file), tmp_path).car, loaded(f"commonroad{number}", tmp_path).car
+    assert flatten(built._replace(ultrasonic=shipped.ultrasonic)) == pytest.approx(flatten(shipped), abs=1e-4)
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        (("m_s:", "m_x:"), "m_x: unknown"),
+        (("\nI_z:", "\n# I_z:"), "I_z: is missing"),
+        (("min: -0.91", "min: -0.5"), "steering: expected max above 0"),
+        (("w: 1.674", "w: wide"), "w: 'wide' is not a number"),
+        (("# masses", "trailer: {l: 3}"), "trailer: unknown"),
+    ],
+)
+def test_a_parameter_file_that_cannot_be_a_car_is_refused(change: tuple[str, str], said: str, tmp_path: Path) -> None:
+    file = Path(str(files("vehiclemodels"))) / "parameters" / "parameters_vehicle1.yaml"
+    text = file.read_text(encoding="utf-8")
+    assert change[0] in text
+    (tmp_path / "car.yaml").write_text(text.replace(*change), encoding="utf-8")
+    with pytest.raises(BadInput) as error:
+        loaded("car.yaml", tmp_path)
+    assert said in str(error.value)

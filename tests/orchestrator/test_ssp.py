@@ -72,7 +72,7 @@ def test_a_system_of_others_runs_as_it_is(desk: Path, tmp_path: Path, capsys: py
 def test_roles_in_a_scenario_have_it_judged(desk: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["run", str(desk / "yard.yaml"), "--out", str(tmp_path), "--no-page", "--json"]) == 0
     assert json.loads(capsys.readouterr().out)["outcome"] == "parked"
-    words = ["run", str(desk / "yard.yaml"), "--out", str(tmp_path), "--no-page", "--json"]
+    words = ["run", str(desk / "yard.yaml"), "--out", str(tmp_path), "--force", "--no-page", "--json"]
     main([*words, "--set", "brain_arcs.TurnTime=2"])
     assert read_log(tmp_path / "run.mcap").parameters["brain_arcs.TurnTime"] == 2.0
 

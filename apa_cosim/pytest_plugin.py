@@ -67,9 +67,11 @@ class StepTestItem(pytest.Item):
     def runtest(self) -> None:
         """Fail with signal, time, value, limit and margin."""
         from apa_cosim.testing import assert_met
+        from orchestrator.scenario.scenario import PENETRATION
 
         assert isinstance(self.parent, StepTestFile)
-        mine = [check for check in self.parent.checks() if self.name in (check.id, check.source)]
+        names = (self.name, PENETRATION)
+        mine = [check for check in self.parent.checks() if {check.id, check.source, check.signal} & {*names}]
         assert_met(mine)
 
     def repr_failure(self, excinfo: pytest.ExceptionInfo[BaseException], style: Any = None) -> str:

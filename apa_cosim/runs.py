@@ -118,7 +118,7 @@ class Run:
         return FRAME.format(page=html.escape(page, quote=True), title=html.escape(self.scenario.title))
 
     def __repr__(self) -> str:
-        return f"<Run {self.scenario.name}: {self.outcome}, {self.reason}; {self.summary.duration:g} s>"
+        return f"<Run {self.scenario.name}: {self.outcome}, {self.summary.headline}; {self.summary.duration:g} s>"
 
 
 def load_scenario(name: str | Path, changes: Changes | None = None) -> Scenario:

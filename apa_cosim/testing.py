@@ -30,7 +30,9 @@ class ClosedLoopRun(Run):
     def must_be(self: Same, outcome: str) -> Same:
         """Return the run; fails if it came out otherwise, with why."""
         __tracebackhide__ = True
-        assert self.outcome == outcome, f"{self.scenario.name}: {self.outcome}, {self.reason}; expected {outcome}"
+        assert self.outcome == outcome, (
+            f"{self.scenario.name}: {self.outcome}, {self.summary.headline}; expected {outcome}"
+        )
         return self
 
     def must_meet(self: Same, *requirements: str | Path | Requirement | Mapping[str, Any]) -> Same:
@@ -92,12 +94,14 @@ def alone_of(model: str, config: pytest.Config) -> Callable[..., AloneRun]:
         stop_time: float,
         parameters: Mapping[str, object] | None = None,
         step: float = 0.01,
+        contact_allowed: bool = False,
     ) -> AloneRun:
         test = StepTest(
             name=model,
             model=model,
             stop_time=stop_time,
             step=step,
+            contact_allowed=contact_allowed,
             inputs=dict(inputs),
             parameters=dict(parameters or {}),
             file=Path("test"),

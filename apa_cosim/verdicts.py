@@ -21,7 +21,8 @@ from orchestrator.verdict.numbers import facts_of
 def judge(run: Run, *requirements: str | Path | Requirement | Mapping[str, Any]) -> list[Check]:
     """Return a check for each requirement: a shipped set's name, a YAML file, a ``Requirement``, or one as in YAML.
 
-    Raises ``BadInput`` for a signal that the run does not have.
+    One more, last, is that of contact, if there is anything in the scene. Raises ``BadInput`` for a signal that the run
+    does not have.
     """
     asked: list[Requirement] = []
     for item in requirements:
@@ -31,6 +32,7 @@ def judge(run: Run, *requirements: str | Path | Requirement | Mapping[str, Any])
             asked.append(_requirement(item))
         else:
             asked += read_requirements(find_file(str(item), "limits", "set of limits", Path.cwd()))
+    asked.append(run.scenario.contact_rule)
     return judge_recording(asked, run.recording, facts_of(run.recording, run.scenario), "judge")
 
 

@@ -18,7 +18,7 @@ from orchestrator.cosim.fmu_files import fmu_files
 from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.session.session import run_scenario
 from orchestrator.verdict.geometry import CarOutline, described
-from orchestrator.verdict.polygons import polygon_clearance
+from orchestrator.verdict.polygons import polygon_clearances
 from orchestrator.verdict.summary import summarize
 
 STEP_NS = 10_000_000
@@ -61,7 +61,7 @@ def driven(scenario: Any, files: Any) -> Any:
     signals = ran.recording.signals
     poses = np.column_stack([signals[f"vehicle.pose.{axis}"] for axis in ("x", "y", "heading")])
     car = CarOutline.of(described(scenario, ran.recording.parameters_of("vehicle")))
-    clear = np.nanmin([polygon_clearance(poses, scenario.polygons, car), signals["vehicle.clearance"].min()])
+    clear = np.nanmin([*polygon_clearances(poses, scenario.polygons, car), signals["vehicle.clearance"].min()])
     speed = signals["controller.speed_request"]
     signs = np.sign(speed[speed != 0.0])
     cusps = int((signs[1:] != signs[:-1]).sum())

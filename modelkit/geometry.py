@@ -103,6 +103,15 @@ def boxes_gap(a: Box, b: Box) -> float:
     return _smaller(_corners_gap(corners(a), b), _corners_gap(corners(b), a))
 
 
+def boxes_depth(a: Box, b: Box) -> float:
+    """Return the penetration depth [m] of two boxes: the shortest move that parts them; 0 where they do not overlap.
+
+    The least overlap along the four directions of their sides (separating axis theorem).
+    """
+    depth = _smaller(_depth_along(a, b), _depth_along(b, a))
+    return depth if depth > 0.0 else 0.0
+
+
 def centre_gap(a: Box, b: Box) -> float:
     """Return a distance [m] that the gap of two boxes is never less than: that of the circles around them."""
     dx = a.x - b.x
@@ -171,6 +180,20 @@ def _overlap_along(a: Box, b: Box) -> bool:
     along = 0.5 * (a.length + b.length * cos_turn + b.width * sin_turn)
     across = 0.5 * (a.width + b.length * sin_turn + b.width * cos_turn)
     return abs(dx * cos + dy * sin) < along and abs(dy * cos - dx * sin) < across
+
+
+def _depth_along(a: Box, b: Box) -> float:
+    """Return the lesser overlap [m] of the boxes seen along the two axes of ``a``; negative where they are apart."""
+    cos = math.cos(a.heading)
+    sin = math.sin(a.heading)
+    dx = b.x - a.x
+    dy = b.y - a.y
+    turn = b.heading - a.heading
+    cos_turn = abs(math.cos(turn))
+    sin_turn = abs(math.sin(turn))
+    along = 0.5 * (a.length + b.length * cos_turn + b.width * sin_turn)
+    across = 0.5 * (a.width + b.length * sin_turn + b.width * cos_turn)
+    return _smaller(along - abs(dx * cos + dy * sin), across - abs(dy * cos - dx * sin))
 
 
 def _corners_gap(around: Corners, box: Box) -> float:

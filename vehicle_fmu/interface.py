@@ -94,7 +94,9 @@ class VehicleOutput(NamedTuple):
     ultrasonic: tuple[
         Annotated[float, Signal("m", "distance heard: 1-4 front, 5-8 rear, 9-10 left, 11-12 right"), Role.SAMPLED], ...
     ] = (0.0,) * 12
-    clearance: Annotated[float, Signal("m", "outline to the nearest thing of the scene; 1e9: nothing there")] = NEVER
+    clearance: Annotated[
+        float, Signal("m", "outline to the nearest thing of the scene; in contact minus the depth; 1e9: nothing there")
+    ] = NEVER
     contact: Annotated[bool, Signal("1", "the outline touches something")] = False
     apa_switch: Annotated[bool, Signal("1", "the driver has switched the parking assist on")] = False
     driver_confirm: Annotated[bool, Signal("1", "the driver presses the confirm button")] = False

@@ -69,7 +69,7 @@ def step(
 
 
 def _clearance(pose: Pose, params: VehicleParams, time_ns: int) -> float:
-    return clearance(pose, params.car, params.scene, time_ns)
+    return clearance(pose, params.car, params.scene, params.ultrasonic.kerb_height, time_ns)
 
 
 def _internal_steps(dt_ns: int, params: VehicleParams) -> int:

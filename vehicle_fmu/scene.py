@@ -8,12 +8,14 @@ from the part of the outline between the tyres' outer ends.
 from typing import Annotated, NamedTuple
 
 from modelkit.car import Car
-from modelkit.geometry import FAR, Box, boxes_gap, centre_gap, line_box, outline
+from modelkit.geometry import FAR, Box, boxes_depth, boxes_gap, centre_gap, line_box, outline
 from modelkit.signal import Signal
 from modelkit.vocabulary import Pose
 
 HOUSE = "chosen; the source states none"
 FOREVER = 1e9
+TOUCH = 1e-9
+"""Penetration depth [m] of what only touches: less than any other."""
 FAR_OUT = 1e8
 """Largest coordinate [m]: that of a map will do."""
 
@@ -74,23 +76,31 @@ def obstacle_box(obstacle: Obstacle, time_ns: int) -> Box:
     return Box(x, y, obstacle.heading, obstacle.length, obstacle.width)
 
 
-def clearance(pose: Pose, car: Car, scene: SceneParams, time_ns: int) -> float:
-    """Return the distance [m] from the car to the nearest thing; 0 in contact, ``FAR`` in an empty scene."""
+def clearance(pose: Pose, car: Car, scene: SceneParams, kerb_height: float, time_ns: int) -> float:
+    """Return the distance [m] from the car to the nearest thing; ``FAR`` in an empty scene.
+
+    In contact it is minus the penetration depth, and at most ``-TOUCH``. A wheel at a kerb lower than ``kerb_height``
+    is no contact: it gives 0.
+    """
     body = outline(pose, car.wheelbase, car.front_overhang, car.rear_overhang, car.width)
     nearest = FAR
     for obstacle in scene.boxes:
         if is_there(obstacle, time_ns):
-            nearest = nearer(nearest, body, obstacle_box(obstacle, time_ns))
+            nearest = nearer(nearest, body, obstacle_box(obstacle, time_ns), True)
     low = outline(pose, car.wheelbase, scene.tyre_reach, scene.tyre_reach, car.width)
     for kerb in scene.kerbs:
         if kerb.height > 0.0:
             part = low if kerb.height < scene.ground_clearance else body
-            nearest = nearer(nearest, part, line_box(kerb.x1, kerb.y1, kerb.x2, kerb.y2))
+            line = line_box(kerb.x1, kerb.y1, kerb.x2, kerb.y2)
+            nearest = nearer(nearest, part, line, kerb.height >= kerb_height)
     return nearest
 
 
-def nearer(nearest: float, car: Box, thing: Box) -> float:
-    """Return the smaller of ``nearest`` and the gap between car and thing."""
-    if centre_gap(car, thing) >= nearest:
+def nearer(nearest: float, car: Box, thing: Box, is_obstacle: bool) -> float:
+    """Return the smaller of ``nearest`` and the gap of car and thing, which is negative inside an obstacle."""
+    if nearest > 0.0 and centre_gap(car, thing) >= nearest:
         return nearest
-    return min(nearest, boxes_gap(car, thing))
+    gap = boxes_gap(car, thing)
+    if gap <= 0.0 and is_obstacle:
+        gap = -max(TOUCH, boxes_depth(car, thing))
+    return min(nearest, gap)

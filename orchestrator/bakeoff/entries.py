@@ -96,7 +96,7 @@ def _base(controller: str, slot: float, car: str) -> Scenario:
     true = Slot(x=REAR_END + 0.5 * slot, y=line - 0.5 * DEPTH, length=slot, width=DEPTH)
     limits = [item for name in LIMITS for item in shipped_requirements(name) if item.signal not in UNJUDGED]
     controls = {**loaded.controller, **told}
-    return loaded.model_copy(update={"slot": true, "vehicle": vehicle, "controller": controls, "limits": limits})
+    return loaded.model_copy(update={"slot": true, "vehicle": vehicle, "controller": controls}).with_limits(limits)
 
 
 def _scene(slot: float, line: float) -> dict[str, float]:

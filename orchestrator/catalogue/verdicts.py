@@ -109,7 +109,8 @@ def _stepped(name: str, tested: Tested) -> ClauseRun:
 
 
 def _tried(entry: Clause, scenario: Scenario, recording: Recording, outcome: str, reason: str) -> ClauseRun:
-    checks = judge(entry.requirements(), recording, facts_of(recording, scenario), scenario.file)
+    requirements = [*entry.requirements(), scenario.contact_rule]
+    checks = judge(requirements, recording, facts_of(recording, scenario), scenario.file)
     missed = [f"{check.id}: {sentence(check)}" for check in checks if check.judged and not check.passed]
     if entry.outcome and outcome not in entry.outcome:
         missed.insert(0, f"{outcome.replace('_', ' ')} ({reason}), asked {' or '.join(entry.outcome)}")

@@ -24,6 +24,8 @@ max, min, max_abs and equals, a source, and may have a window:
   - {id: parked in time, signal: controller.phase, equals: PARKED, window: {at: end}, source: REQ-13}
   - {id: slow at first, signal: vehicle.speed, min: -1 m/s, window: {from: 0, to: 2 s}, source: REQ-14}
 
+Whatever they are, the car must not have touched anything, unless its scenario allows that: contact_allowed.
+
 exit codes: 0 all required ones met, 1 not, 2 bad input
 """
 MET, MISSED = 0, 1
@@ -48,6 +50,7 @@ def run(arguments: argparse.Namespace) -> int:
     for name in arguments.requirements:
         file = find_file(name, "limits", "set of limits", Path.cwd())
         checks += judge(read_requirements(file), recording, facts, str(file))
+    checks += judge([scenario.contact_rule], recording, facts, str(arguments.log))
     if arguments.junit:
         write_junit(arguments.junit, [Suite(str(arguments.log), cases_of(checks), facts.numbers["duration"])])
     missed = [check for check in checks if check.required and not check.passed]

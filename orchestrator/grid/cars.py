@@ -56,7 +56,7 @@ def park(name: str, car: str, files: dict[str, Path]) -> CarInSlot:
     """Return what becomes of a shipped car in a scenario, judged by where GB/T 41630 wants it to stand."""
     own = load_scenario(name, [f"car={car}"])
     limits = [item for item in shipped_requirements("gbt41630") if item.id in POSES]
-    scenario = own.model_copy(update={"limits": limits})
+    scenario = own.with_limits(limits)
     ran = run_scenario(scenario, files, kind="native")
     summary = summarize(ran.recording, scenario, ran.wall_time)
     nearest = float(ran.recording.signals["vehicle.clearance"].min())

@@ -60,7 +60,7 @@ def write_find(subject: Subject, find: Find, folder: Path) -> Path:
     scenario = chunk_scenario(subject.job, subject.chunk(find.run.shares, find.run.seed), 0)
     limits = list(subject.goal.limits) or scenario.limits
     own = {"name": find.name, "title": f"Breaks: {subject.goal.text}", "description": _said(subject, find)}
-    content = scenario.model_copy(update={**own, "limits": limits, "source": f"hunt in {subject.study.name}"})
+    content = scenario.with_limits(limits).model_copy(update={**own, "source": f"hunt in {subject.study.name}"})
     path = folder / f"{find.name}.yaml"
     write_whole(path, _text(content))
     notes = read_notes(folder)

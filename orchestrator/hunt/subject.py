@@ -14,6 +14,7 @@ from fmus.files import whole
 from orchestrator.cosim.master import Interrupt
 from orchestrator.cosim.slave import Array
 from orchestrator.hunt.goal import smallest
+from orchestrator.scenario.scenario import PENETRATION, Scenario
 from orchestrator.sweep.columns import filled
 from orchestrator.sweep.engine import Engine
 from orchestrator.sweep.job import Chunk, Job, make_job, truths
@@ -21,7 +22,7 @@ from orchestrator.sweep.rows import FIRST_MEASURE
 from orchestrator.sweep.study.design import Design
 from orchestrator.sweep.study.space import Seeds, Space
 from orchestrator.sweep.study.study import Columns, Goal, Study
-from orchestrator.sweep.verdict import judge, limit_value, values_in
+from orchestrator.sweep.verdict import judge_rows, limit_value, things, values_in
 from orchestrator.text.console import Meter
 from orchestrator.verdict.conditions import CONDITIONS
 
@@ -113,15 +114,20 @@ def _margins(goal: Goal, job: Job, chunk: Chunk, rows: Array, columns: Columns) 
     if goal.margins is not None:
         return goal.margins(columns)
     truth = truths(job, chunk)
-    numbers, has = judge(job, truth, rows).numbers, truth.has()
+    scenario = Scenario(**job.scenario)
+    results = judge_rows(scenario, truth, job.measures, rows).numbers
+    has = truth.has() | things(scenario, results)
     found = dict(zip(job.measures, rows[:, FIRST_MEASURE:].T, strict=False))
     margins = []
     for limit in goal.limits:
-        margin = CONDITIONS[limit.condition].margin(values_in(limit, numbers, found), limit_value(limit))
+        margin = CONDITIONS[limit.condition].margin(values_in(limit, results, found), limit_value(limit))
         margins.append(np.where(margin == 0.0, np.finfo(float).tiny, margin))
         if limit.where is not None:
             margins[-1] = np.where(has[limit.where], margins[-1], np.inf)
-    return np.clip(smallest(margins), -FARTHEST, FARTHEST)
+    least = np.clip(smallest(margins), -FARTHEST, FARTHEST)
+    depth = results[PENETRATION]
+    touches = np.isnan(depth) | (depth > 0.0)
+    return np.where(touches & ~scenario.contact_allowed, np.minimum(least, -np.nan_to_num(depth, nan=1.0)), least)
 
 
 FARTHEST = 1e3

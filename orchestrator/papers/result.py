@@ -25,7 +25,7 @@ class Driven(NamedTuple):
 def in_line(scenario: Scenario) -> Scenario:
     """Return a scenario without our limit along the slot, of which the papers say nothing."""
     limits = [item for item in scenario.limits if item.signal != "final.longitudinal_error"]
-    return scenario.model_copy(update={"limits": limits})
+    return scenario.with_limits(limits)
 
 
 PRINTED = "printed number"

@@ -82,7 +82,8 @@ def verdict(summary: Summary) -> dict[str, str]:
 
 def facts(summary: Summary) -> list[list[str]]:
     """Return the few numbers that stand above everything else; why, if the task is not done."""
-    why = [["Why", summary.reason.replace("_", " ")]] if not summary.is_done else []
+    words = ([] if summary.is_done else [summary.reason.replace("_", " ")]) + summary.standing
+    why = [["Why" if not summary.is_done else "Stands", "; ".join(words)]] if words else []
     return [
         *why,
         *(["Note", note] for note in summary.notes),

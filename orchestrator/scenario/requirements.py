@@ -17,8 +17,8 @@ from orchestrator.text.yaml_file import explain, place_in, read_yaml
 
 Condition = Literal["max", "min", "max_abs", "equals"]
 CONDITIONS: tuple[Condition, ...] = get_args(Condition)
-Where = Literal["target", "slot", "kerb", "polygons"]
-"""What a scenario may have; a kerb counts where it bounds the slot."""
+Where = Literal["target", "slot", "kerb", "polygons", "scene"]
+"""What a scenario may have; a kerb counts where it bounds the slot, ``scene`` is anything to touch."""
 LIMITS = Path(__file__).parent.parent / "limits"
 """Where the shipped sets are."""
 

@@ -1,5 +1,6 @@
 """A scenario: what is true (target, slot, scene), what drives, what ends a run, and what it is judged by."""
 
+from collections.abc import Iterable
 from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
@@ -22,6 +23,10 @@ DONE: frozenset[Outcome] = frozenset(SUCCESS.values())
 """The outcomes of a run that has done its task."""
 
 
+PENETRATION = "penetration"
+"""The metric that the rule on contact is about."""
+CONTACT_FREE = "contact-free"
+"""The shipped set that is asked of every run."""
 LONGEST_STEP = 10.0
 """Nothing that steers a car exchanges less often [s]."""
 Parameter = float | int | bool | str
@@ -106,6 +111,8 @@ class Scenario(_ScenarioPart):
     """Disturbances of signals."""
     limits: list[Requirement] = []
     """Requirements, and names of shipped sets of them; by default the set `house`."""
+    contact_allowed: bool = False
+    """Whether a run counts as parked, or finished, though the car touches something in the scene."""
     ending: EndCondition = EndCondition()
     """What ends the run before its stop time."""
     expect: Outcome = "parked"
@@ -190,6 +197,28 @@ class Scenario(_ScenarioPart):
         if missing:
             self.limits = [*self.limits, *missing]
         return self
+
+    @model_validator(mode="after")
+    def _contact_free(self) -> "Scenario":
+        """Add the rule on contact, whatever the limits are; no limit takes its place."""
+        self.limits = self._and_contact_free(self.limits)
+        return self
+
+    def _and_contact_free(self, limits: list[Requirement]) -> list[Requirement]:
+        rule = self.contact_rule
+        return [*(limit for limit in limits if limit.id != rule.id), rule]
+
+    def with_limits(self, limits: Iterable[Requirement]) -> "Scenario":
+        """Return the scenario judged by other limits; the rule on contact stays."""
+        return self.model_copy(update={"limits": self._and_contact_free(list(limits))})
+
+    @property
+    def contact_rule(self) -> Requirement:
+        """Return the requirement that the car touches nothing; not required where the scenario allows it."""
+        (rule,) = shipped_requirements(CONTACT_FREE)
+        if not self.contact_allowed:
+            return rule
+        return rule.model_copy(update={"required": False, "source": "allowed: contact_allowed of the scenario"})
 
     @model_validator(mode="after")
     def _outcome(self) -> "Scenario":

@@ -18,7 +18,7 @@ from orchestrator.log.read_log import log_file, read_log
 from orchestrator.scenario.flat_names import flatten_section
 from orchestrator.scenario.models import MODELS, models_for
 from orchestrator.scenario.scenario import Parameter
-from orchestrator.session.foreign import Foreign, fmu_of, parameters_of
+from orchestrator.session.foreign import FOREIGN, Foreign, fmu_of, parameters_of
 from orchestrator.session.own import is_model
 from orchestrator.session.session import NOBODY
 from orchestrator.steptest.step_test import StepTest
@@ -37,6 +37,8 @@ def drive(test: StepTest, kind: str, foreign: Foreign = NOBODY, model: str = "")
     place of the test's. Signals are named as in a run: ``controller.prompt``. Raises ``BadInput``, ``RunError``.
     """
     slave = _slave(test, model or test.model, kind, foreign)
+    is_ours = (model or test.model) in MODELS and (model or test.model) not in foreign.files
+    used = {"name": "vehicle", "kind": kind if is_ours else FOREIGN}
     try:
         master = Master([slave], test.step_ns, test.stop_ns)
         player = _Player(slave, _inputs(test, slave))
@@ -47,7 +49,7 @@ def drive(test: StepTest, kind: str, foreign: Foreign = NOBODY, model: str = "")
         master.initialize()
         end = master.run()
         master.finish(end)
-        return recorder.recording({"end": {"reason": end.reason, "t_ns": end.t_ns}, "fmus": []})
+        return recorder.recording({"end": {"reason": end.reason, "t_ns": end.t_ns}, "fmus": [used]})
     finally:
         slave.close()
 

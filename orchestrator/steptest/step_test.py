@@ -52,6 +52,8 @@ class StepTest(BaseModel):
     replay: str = ""
     """A log whose inputs of the same model are played; what ``inputs`` names is changed on top."""
     expect: list[Expectation] = []
+    contact_allowed: bool = False
+    """Whether the test may pass though the car touches something in its scene."""
     reference: BackToBack | None = None
     file: Path = Path()
 

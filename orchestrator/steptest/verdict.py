@@ -1,7 +1,9 @@
 """A recording held against the expectations of a step test: one check each, with the instant that decided."""
 
 import math
-from typing import NamedTuple
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -9,6 +11,7 @@ from orchestrator.comparison.compare import compare
 from orchestrator.comparison.tolerance import Tolerance, Tolerances
 from orchestrator.cosim.recording import Recording
 from orchestrator.cosim.slave import Array, Indices
+from orchestrator.scenario.scenario import Scenario
 from orchestrator.steptest.expectation import Expectation, Limit, Number, Reaction
 from orchestrator.steptest.response import RESPONSES, Response
 from orchestrator.steptest.step_test import StepTest
@@ -16,7 +19,8 @@ from orchestrator.steptest.temporal import Decided, always, eventually, rises, u
 from orchestrator.text.errors import BadInput, suggestion_or_choices
 from orchestrator.text.quantities import number, scalar
 from orchestrator.verdict.conditions import CONDITIONS
-from orchestrator.verdict.judge import NEVER, Check
+from orchestrator.verdict.judge import NEVER, Check, judge
+from orchestrator.verdict.numbers import facts_of
 from orchestrator.verdict.truth import Bools
 
 
@@ -30,7 +34,19 @@ class Found(NamedTuple):
 
 def judged(test: StepTest, recording: Recording) -> list[Check]:
     """Return one check for each expectation. Raises ``BadInput`` for a signal or unit that does not fit."""
-    return [_Judge(test, recording, item).check() for item in test.expect]
+    return [*(_Judge(test, recording, item).check() for item in test.expect), *_contact(test, recording)]
+
+
+def _contact(test: StepTest, recording: Recording) -> list[Check]:
+    """Return the check that the car touches nothing, for a vehicle with something in its scene."""
+    owner = next(iter(recording.signals), "").split(".", 1)[0]
+
+    def renamed(items: Mapping[str, Any]) -> dict[str, Any]:
+        return {f"vehicle.{name.removeprefix(f'{owner}.')}": item for name, item in items.items()}
+
+    as_vehicle = replace(recording, signals=renamed(recording.signals), parameters=renamed(recording.parameters))
+    scenario = Scenario(name="test", contact_allowed=test.contact_allowed)
+    return judge([scenario.contact_rule], as_vehicle, facts_of(as_vehicle, scenario), str(test.file))
 
 
 def equivalent(test: StepTest, recording: Recording, reference: Recording) -> list[Check]:

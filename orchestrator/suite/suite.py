@@ -219,8 +219,9 @@ def _extra_checks(bench: Bench, recording: Recording, scenario: Scenario) -> lis
 
 
 def _cases(scenario: Scenario, summary: Summary, extra: list[Check]) -> list[Case]:
-    """Return the outcome, the limits (where the task shall be done), and all further requirements as cases."""
-    reached = f"{summary.outcome}: {summary.reason}; expected {scenario.expect}"
+    """Return the outcome, the limits (where the task shall be done), contact, and all further requirements as cases."""
+    reached = f"{summary.outcome}: {summary.headline}; expected {scenario.expect}"
     outcome = Case("outcome", summary.outcome == scenario.expect, reached)
-    own = cases_of(summary.checks) if scenario.expect == scenario.success else []
+    contact = [check for check in summary.checks if check.id == scenario.contact_rule.id]
+    own = cases_of(summary.checks if scenario.expect == scenario.success else contact)
     return told_apart([outcome, *own, *cases_of(extra)])

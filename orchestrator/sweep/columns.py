@@ -9,18 +9,19 @@ from numpy.typing import NDArray
 from modelkit.signal import Signal
 from orchestrator.cosim.slave import Array
 from orchestrator.scenario.requirements import Requirement
+from orchestrator.scenario.scenario import PENETRATION
 from orchestrator.sweep.job import Chunk, Job, truths
 from orchestrator.sweep.rows import FIRST_MEASURE
 from orchestrator.sweep.study.study import Study
 from orchestrator.sweep.study.theirs import signals_of
-from orchestrator.sweep.verdict import RESULTS, judge, limit_value, values_in
+from orchestrator.sweep.verdict import RESULTS, judge, limit_value, things, values_in
 from orchestrator.verdict.conditions import CONDITIONS
 from orchestrator.verdict.measures import Measure
 from orchestrator.verdict.numbers import Number
 from orchestrator.verdict.truth import Bools
 
 WITHIN = "within {}"
-"""Name of the column that says whether a run is within a set of limits."""
+"""Name of the column that says whether a run is within a set of limits; one in contact is within none."""
 COUNTS = ("shifts",)
 """Numbers that are counts."""
 KINDS = {"U": str, "f": float, "i": int, "b": bool}
@@ -62,7 +63,9 @@ def filled(study: Study, job: Job, chunk: Chunk, rows: Array) -> dict[str, Any]:
     truth = truths(job, chunk)
     verdict = judge(job, truth, rows)
     found = dict(zip(job.measures, rows[:, FIRST_MEASURE:].T, strict=False))
-    has = truth.has()
+    touches = np.nan_to_num(verdict.numbers[PENETRATION]) > 0.0
+    free = ~touches | study.scenario.contact_allowed
+    has = truth.has() | things(study.scenario, verdict.numbers)
     here = slice(chunk.first, chunk.first + len(chunk.seeds))
     given = zip(study.design.fields, chunk.values.T, strict=True)
     values: dict[str, Any] = {
@@ -74,7 +77,10 @@ def filled(study: Study, job: Job, chunk: Chunk, rows: Array) -> dict[str, Any]:
         "reason": np.array(verdict.reason, dtype=object),
         **{name: _whole(numbers) if name in COUNTS else numbers for name, numbers in verdict.numbers.items()},
         **{name: found[measure] for name, measure in study.measures.items()},
-        **{WITHIN.format(name): _is_within(items, verdict.numbers, found, has) for name, items in study.within.items()},
+        **{
+            WITHIN.format(name): free & _is_within(items, verdict.numbers, found, has)
+            for name, items in study.within.items()
+        },
     }
     return {**values, **study.derived.make(values)}
 

@@ -13,8 +13,8 @@ from orchestrator.cosim.recording import Recording
 from orchestrator.cosim.slave import Array
 from orchestrator.scenario.end_condition import state_word, states_of
 from orchestrator.scenario.requirements import Requirement, Where, Window
-from orchestrator.scenario.scenario import Scenario
-from orchestrator.sweep.study.theirs import signals_of
+from orchestrator.scenario.scenario import PENETRATION, Scenario
+from orchestrator.sweep.study.theirs import files_of, signals_of
 from orchestrator.text.errors import BadInput, suggestion
 from orchestrator.verdict.conditions import CONDITIONS
 from orchestrator.verdict.judge import CHART, judge
@@ -110,7 +110,16 @@ def recorded_limits(scenario: Scenario) -> list[int]:
         for place, limit in enumerate(scenario.limits)
         if (limit.signal not in NUMBERS and measure_of(limit) is None)
         or (limit.signal in OF_WHOLE_RUNS and (limit.where != "polygons" or scenario.polygons))
+        or (limit.signal in (PENETRATION, CLEARANCE_NUMBER) and _needs_poses(scenario))
     ]
+
+
+CLEARANCE_NUMBER = "min_clearance"
+
+
+def _needs_poses(scenario: Scenario) -> bool:
+    """Return whether contact is told by poses alone: with polygons, or a third-party vehicle."""
+    return bool(scenario.polygons) or "vehicle" in files_of(scenario)
 
 
 def why_not_compiled(scenario: Scenario) -> str:

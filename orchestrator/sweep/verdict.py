@@ -9,15 +9,15 @@ from numpy.typing import NDArray
 from orchestrator.cosim.slave import Array
 from orchestrator.scenario.end_condition import state_word, states_of
 from orchestrator.scenario.requirements import Requirement
-from orchestrator.scenario.scenario import Outcome, Scenario
+from orchestrator.scenario.scenario import PENETRATION, Outcome, Scenario
 from orchestrator.sweep.job import Job
-from orchestrator.sweep.rows import ABORTED, FIRST_MEASURE, last_words, recorded_limits, values_of
+from orchestrator.sweep.rows import ABORTED, CLEARANCE_NUMBER, FIRST_MEASURE, last_words, recorded_limits, values_of
 from orchestrator.sweep.study.theirs import declared
 from orchestrator.verdict.conditions import CONDITIONS, share
 from orchestrator.verdict.measures import Measure
-from orchestrator.verdict.numbers import NUMBERS, SPEED, Number, numbers
+from orchestrator.verdict.numbers import NUMBERS, SPEED, Number, numbers, things_of
 from orchestrator.verdict.outcome import Asked, Ends, outcomes
-from orchestrator.verdict.truth import Truth
+from orchestrator.verdict.truth import Bools, Truth
 
 OUTCOMES: tuple[Outcome, ...] = ("parked", "not_parked", "failed", "aborted", "finished", "not_finished")
 
@@ -54,7 +54,10 @@ def judge_rows(scenario: Scenario, truth: Truth, measures: Sequence[Measure], ro
     found = dict(zip(measures, columns, strict=False))
     recorded = dict(zip(recorded_limits(scenario), columns[len(measures) :], strict=True))
     results = numbers(rows[:, 1] / 1e9, found, truth)
-    has = truth.has() | {"polygons": np.full(len(rows), bool(scenario.polygons))}
+    for place, values in recorded.items():
+        if scenario.limits[place].signal in (PENETRATION, CLEARANCE_NUMBER):
+            results[scenario.limits[place].signal] = values
+    has = truth.has() | things(scenario, results)
     shares = np.zeros(len(rows))
     asked: list[Asked] = []
     for place, limit in enumerate(scenario.limits):
@@ -71,6 +74,14 @@ def judge_rows(scenario: Scenario, truth: Truth, measures: Sequence[Measure], ro
     judged = outcomes(scenario, Ends(broken, mode, reason, found[SPEED]), asked, *named)
     codes = np.array([OUTCOMES.index(outcome) for outcome, _ in judged], dtype=np.int8)
     return Verdict(codes, [why for _, why in judged], {**results, "limit_share": shares})
+
+
+def things(scenario: Scenario, results: Mapping[str, Array]) -> dict[str, Bools]:
+    """Return for each run whether its scenario has polygons, and anything in the scene at all."""
+    nearest = results[CLEARANCE_NUMBER]
+    there = things_of(scenario, {})
+    scene = np.isfinite(nearest) | ("scene" in there)
+    return {"polygons": np.full(len(nearest), "polygons" in there), "scene": scene}
 
 
 def values_in(limit: Requirement, results: Mapping[str, Array], found: Mapping[Measure, Array]) -> Array:

@@ -9,11 +9,11 @@ import numpy as np
 from orchestrator.cosim.recording import Recording
 from orchestrator.cosim.slave import Array
 from orchestrator.scenario import end_condition
-from orchestrator.scenario.scenario import Scenario
+from orchestrator.scenario.scenario import PENETRATION, Scenario
 from orchestrator.verdict.comfort import peak_jerk, standstill_steering
-from orchestrator.verdict.geometry import CarOutline, described
+from orchestrator.verdict.contact import VEHICLE, clearances, depth, has_scene, least
+from orchestrator.verdict.geometry import described
 from orchestrator.verdict.measures import Measure, measured
-from orchestrator.verdict.polygons import polygon_clearance
 from orchestrator.verdict.standing import in_frames, kerb_distances, slot_margin
 from orchestrator.verdict.truth import Truth, truth_of
 
@@ -53,8 +53,13 @@ NUMBERS: dict[str, Number] = {
         "sum of the absolute changes of the steering-wheel angle",
         Measure("travel", "vehicle.steering_wheel_angle"),
     ),
-    "min_clearance": Number("m", "smallest distance of the outline to anything in the scene", CLEARANCE),
-    "polygon_clearance": Number("m", "smallest distance of the outline to the scenario's polygons, on the whole way"),
+    "min_clearance": Number(
+        "m", "smallest distance of the outline to boxes and kerbs, in contact minus the depth", CLEARANCE
+    ),
+    "polygon_clearance": Number(
+        "m", "smallest distance of the outline to the scenario's polygons, in contact minus the depth"
+    ),
+    PENETRATION: Number("m", "greatest penetration depth of the outline in anything of the scene; 0: no contact"),
     "peak_jerk": Number("m/s3", "largest absolute jerk, averaged over a second"),
     "standstill_steering": Number("1", "standstills in which the steering wheel is turned by more than 5 deg"),
 }
@@ -85,7 +90,7 @@ class Facts(NamedTuple):
     numbers: dict[str, float]
     """By the names of ``NUMBERS``; NaN for what was not measured, or what the scenario does not have."""
     has: frozenset[str]
-    """What the scenario has: ``target``, ``slot``, ``kerb``, ``polygons``."""
+    """What the scenario has: ``target``, ``slot``, ``kerb``, ``polygons``, ``scene``."""
 
 
 def facts_of(recording: Recording, scenario: Scenario) -> Facts:
@@ -96,35 +101,35 @@ def facts_of(recording: Recording, scenario: Scenario) -> Facts:
         if len(recording.signals.get(measure.signal, ()))
     }
     duration = np.array([float(recording.t[-1]) if len(recording.t) else 0.0])
-    truth = truth_of(scenario, described(scenario, recording.parameters_of("vehicle")))
+    truth = truth_of(scenario, described(scenario, recording.parameters_of(VEHICLE)))
     made = {name: float(values[0]) for name, values in numbers(duration, found, truth).items()}
-    made |= of_whole_run(recording, scenario)
-    has = {name for name, rows in truth.has().items() if rows[0]} | ({"polygons"} if scenario.polygons else set())
-    return Facts(made, frozenset(has))
+    has = {name for name, rows in truth.has().items() if rows[0]}
+    has |= things_of(scenario, recording.parameters_of(VEHICLE))
+    return Facts(made | of_whole_run(recording, scenario), frozenset(has))
+
+
+def things_of(scenario: Scenario, vehicle: Mapping[str, float]) -> set[str]:
+    """Return which of ``polygons`` and ``scene`` (anything at all) a run has; ``vehicle``: its own parameters."""
+    polygons = {"polygons"} if scenario.polygons else set[str]()
+    return polygons | ({"scene"} if polygons or has_scene(described(scenario, vehicle)) else set())
 
 
 def of_whole_run(recording: Recording, scenario: Scenario) -> dict[str, float]:
     """Return the duration, and the numbers ``OF_WHOLE_RUNS``, which nothing that is kept of a run tells."""
     duration = float(recording.t[-1]) if len(recording.t) else 0.0
+    near = clearances(recording, scenario)
     speed, wheel = (recording.signals.get(name) for name in OF_WHOLE_RUNS["standstill_steering"])
     driven = speed is not None and len(speed) > 0
     return {
         "duration": duration,
-        "polygon_clearance": _to_polygons(recording, scenario),
+        "min_clearance": least(near.scene),
+        "polygon_clearance": least(near.polygons) if scenario.polygons else math.nan,
+        PENETRATION: depth(near.nearest),
         "peak_jerk": peak_jerk(recording.t, speed) if speed is not None and driven else math.nan,
         "standstill_steering": (
             standstill_steering(speed, wheel) if speed is not None and driven and wheel is not None else math.nan
         ),
     }
-
-
-def _to_polygons(recording: Recording, scenario: Scenario) -> float:
-    """Return the least distance [m] of the car to the polygons on its way; NaN if there is none."""
-    names = OF_WHOLE_RUNS["polygon_clearance"]
-    if not scenario.polygons or not all(name in recording.signals for name in names):
-        return math.nan
-    car = CarOutline.of(described(scenario, recording.parameters_of("vehicle")))
-    return polygon_clearance(np.column_stack([recording.signals[name] for name in names]), scenario.polygons, car)
 
 
 def numbers(durations: Array, found: Mapping[Measure, Array], truth: Truth) -> dict[str, Array]:
@@ -139,6 +144,7 @@ def numbers(durations: Array, found: Mapping[Measure, Array], truth: Truth) -> d
         if item.measure is not None:
             values = found.get(item.measure, np.full(len(durations), np.nan))
             made[name] = np.abs(values) if item.unsigned else values
+    made[PENETRATION] = np.maximum(0.0, -made["min_clearance"])
     poses = np.column_stack([made[f"final.{axis}"] for axis in ("x", "y", "heading")])
     made |= dict(zip(STANDING, _standing(np.where(np.isfinite(poses), poses, np.nan), truth), strict=True))
     return {name: made[name] for name in NUMBERS}

@@ -6,11 +6,15 @@ from typing import NamedTuple
 from modelkit.variables import Variable
 from orchestrator.cosim.slave import Array
 from orchestrator.scenario.end_condition import states_of
-from orchestrator.scenario.scenario import MISSED, SUCCESS, Outcome, Scenario
+from orchestrator.scenario.requirements import shipped_requirements
+from orchestrator.scenario.scenario import CONTACT_FREE, MISSED, SUCCESS, Outcome, Scenario
 from orchestrator.verdict.truth import Bools
 
 BEYOND = "beyond its limit: "
 """Begins why a run has not done its task whose controller says so, but which misses requirements."""
+
+
+CONTACT_ID = shipped_requirements(CONTACT_FREE)[0].id
 
 
 class Ends(NamedTuple):
@@ -94,11 +98,15 @@ class _Words:
 
     def _why_not(self, speed: float, missed: list[tuple[str, bool]]) -> str:
         """Return what a run lacks whose controller says that it is done; empty if nothing."""
+        touched = (CONTACT_ID, False) in missed
+        missed = [item for item in missed if item != (CONTACT_ID, False)]
         unknown = list(dict.fromkeys(name for name, is_unknown in missed if is_unknown))
         beyond = list(dict.fromkeys(name for name, is_unknown in missed if not is_unknown))
-        parts = [] if abs(speed) <= self._still else [f"the car still moves: {speed:.3g} m/s"]
+        parts = ["contact"] if touched else []
+        if abs(speed) > self._still:
+            parts.append(f"the car still moves: {speed:.3g} m/s")
         if math.isnan(speed):
-            parts, unknown = [], ["the car's speed", *unknown]
+            unknown = ["the car's speed", *unknown]
         parts += [f"{BEYOND}{', '.join(beyond)}"] if beyond else []
         parts += [f"not measured: {', '.join(unknown)}"] if unknown else []
         return "; ".join(parts)

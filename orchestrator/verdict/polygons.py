@@ -7,43 +7,122 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from orchestrator.cosim.slave import Array
+from orchestrator.cosim.slave import Array, Indices
 from orchestrator.verdict.geometry import CarOutline
 
+Polygons = Sequence[Sequence[tuple[float, float]]]
 AT_ONCE = 400
 """Poses worked out together."""
 SPACING = 0.01
 """Poses nearer to each other than this [m] and ``TURN`` [rad] are looked at once."""
 TURN = 0.002
+TOUCH = 1e-9
+"""Penetration depth [m] of what only touches: less than any other."""
 
 
-def polygon_clearance(poses: Array, polygons: Sequence[Sequence[tuple[float, float]]], car: CarOutline) -> float:
-    """Return the least distance [m] of the outlines at ``poses`` (n, 3) to the polygons; 0 in contact, NaN for none."""
-    poses = poses[np.isfinite(poses).all(axis=1)]
+def polygon_clearances(poses: Array, polygons: Polygons, car: CarOutline) -> Array:
+    """Return the distance [m] of each outline to the nearest polygon, in contact minus the depth; NaN if not known.
+
+    A pose that hardly differs from the one before has its value, unless a polygon is as near as they may differ.
+    """
+    found = np.full(len(poses), np.nan)
     if not polygons or not len(poses):
-        return float("nan")
-    rows = _apart(poses)
-    return min(float(_clearances(rows[at : at + AT_ONCE], polygons, car).min()) for at in range(0, len(rows), AT_ONCE))
+        return found
+    finite = np.flatnonzero(np.isfinite(poses).all(axis=1))
+    if not len(finite):
+        return found
+    known = poses[finite]
+    kept = _apart(known)
+    values = _in_parts(known[kept], polygons, car)
+    spread = values[np.searchsorted(kept, np.arange(len(known)), side="right") - 1]
+    near = np.flatnonzero(spread < SPACING + TURN * (car.front + car.rear))
+    spread[near] = _in_parts(known[near], polygons, car)
+    found[finite] = spread
+    return found
 
 
-def _apart(poses: Array) -> Array:
-    """Return the poses without those that hardly differ from one before; the last is among them."""
+def _in_parts(poses: Array, polygons: Polygons, car: CarOutline) -> Array:
+    parts = [_clearances(poses[at : at + AT_ONCE], polygons, car) for at in range(0, len(poses), AT_ONCE)]
+    return np.concatenate(parts) if parts else np.empty(0)
+
+
+def _apart(poses: Array) -> Indices:
+    """Return the places of the poses that differ from the one kept before."""
     kept = [0]
     for row in range(1, len(poses)):
         moved = np.abs(poses[row] - poses[kept[-1]])
         if moved[0] + moved[1] > SPACING or moved[2] > TURN:
             kept.append(row)
-    return poses[[*kept, len(poses) - 1]]
+    return np.array(kept, dtype=np.intp)
 
 
-def _clearances(poses: Array, polygons: Sequence[Sequence[tuple[float, float]]], car: CarOutline) -> Array:
-    """Return the distance [m] of each outline to the nearest polygon."""
+def _clearances(poses: Array, polygons: Polygons, car: CarOutline) -> Array:
+    """Return the distance [m] of each outline to the nearest polygon, in contact minus the depth."""
     nearest = np.full(len(poses), np.inf)
+    length, width = 0.5 * (car.front + car.rear), car.half_width
     for polygon in polygons:
         corners = _seen(poses, np.array(polygon, dtype=float), car)
-        gaps = _edge_gaps(corners, np.roll(corners, -1, axis=1), 0.5 * (car.front + car.rear), car.half_width)
-        nearest = np.minimum(nearest, np.where(_middle_inside(corners), 0.0, gaps.min(axis=1)))
+        gaps = _edge_gaps(corners, np.roll(corners, -1, axis=1), length, width).min(axis=1)
+        gaps[_middle_inside(corners)] = 0.0
+        touching = np.flatnonzero(gaps <= 0.0)
+        if len(touching):
+            gaps[touching] = -np.maximum(TOUCH, _depths(corners[touching], _convex_parts(polygon), length, width))
+        nearest = np.minimum(nearest, gaps)
     return nearest
+
+
+def _depths(corners: Array, parts: Sequence[Sequence[int]], length: float, width: float) -> Array:
+    """Return the penetration depth [m] of polygons (n, p, 2) in the rectangle of these half sizes: of the deepest part.
+
+    Of a convex part it is the least overlap along the normals of all sides (separating axis theorem).
+    """
+    deepest = np.zeros(len(corners))
+    for part in parts:
+        points = corners[:, list(part)]
+        sides = np.roll(points, -1, axis=1) - points
+        sizes = np.hypot(sides[..., 0], sides[..., 1])
+        normals = np.stack([-sides[..., 1], sides[..., 0]], axis=-1) / np.where(sizes > 0.0, sizes, 1.0)[..., None]
+        fixed = np.broadcast_to(np.eye(2), (len(corners), 2, 2))
+        axes = np.concatenate([fixed, normals], axis=1)
+        seen = np.einsum("nak,npk->nap", axes, points)
+        half = np.abs(axes[..., 0]) * length + np.abs(axes[..., 1]) * width
+        overlap = np.minimum(seen.max(axis=2) + half, half - seen.min(axis=2))
+        counts = np.concatenate([np.ones((len(corners), 2), dtype=bool), sizes > 0.0], axis=1)
+        deepest = np.maximum(deepest, np.where(counts, overlap, np.inf).min(axis=1))
+    return deepest
+
+
+def _convex_parts(polygon: Sequence[tuple[float, float]]) -> list[list[int]]:
+    """Return a polygon as convex parts, each by the places of its corners: itself, or triangles (ear clipping)."""
+    points = [(float(x), float(y)) for x, y in polygon]
+    count = len(points)
+    area = sum(a[0] * b[1] - b[0] * a[1] for a, b in zip(points, [*points[1:], points[0]], strict=True))
+    left = list(range(count)) if area >= 0.0 else list(range(count - 1, -1, -1))
+    if all(_turn(points, left[i - 2], left[i - 1], left[i]) >= 0.0 for i in range(count)):
+        return [left]
+    parts = []
+    while len(left) > 3:
+        ear = next((i for i in range(len(left)) if _is_ear(points, left, i)), 0)
+        parts.append([left[ear - 1], left[ear], left[(ear + 1) % len(left)]])
+        del left[ear]
+    return [*parts, left]
+
+
+def _is_ear(points: Sequence[tuple[float, float]], left: Sequence[int], place: int) -> bool:
+    a, b, c = left[place - 1], left[place], left[(place + 1) % len(left)]
+    if _turn(points, a, b, c) <= 0.0:
+        return False
+    others = [item for item in left if item not in (a, b, c)]
+    return not any(
+        _turn(points, a, b, item) >= 0.0 and _turn(points, b, c, item) >= 0.0 and _turn(points, c, a, item) >= 0.0
+        for item in others
+    )
+
+
+def _turn(points: Sequence[tuple[float, float]], a: int, b: int, c: int) -> float:
+    """Return twice the area of a triangle, positive counter-clockwise."""
+    (ax, ay), (bx, by), (cx, cy) = points[a], points[b], points[c]
+    return (bx - ax) * (cy - ay) - (by - ay) * (cx - ax)
 
 
 def _seen(poses: Array, points: Array, car: CarOutline) -> Array:

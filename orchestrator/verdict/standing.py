@@ -43,6 +43,18 @@ def slot_margin(poses: Array, slots: Array, cars: Array) -> Array:
     return reduce(np.minimum, margins)
 
 
+def beyond_ends(poses: Array, slots: Array, cars: Array) -> tuple[Array, Array]:
+    """Return how far [m] the outlines reach beyond the front and the rear boundary of their slots; negative: not.
+
+    The front boundary is the one that the slot's heading points to.
+    """
+    x, _, turn = in_frames(poses, slots[:, :3]).T
+    c, s = each(math.cos, turn), each(math.sin, turn)
+    front, rear, half, _ = cars.T
+    ends = np.array([x + c * along - s * across for along in (front, -rear) for across in (half, -half)])
+    return ends.max(axis=0) - 0.5 * slots[:, 3], -ends.min(axis=0) - 0.5 * slots[:, 3]
+
+
 def kerb_distances(poses: Array, kerbs: Array, cars: Array) -> tuple[Array, Array]:
     """Return (nearest, farthest) distance [m] of the tyres beside the nearest kerb; NaN without one.
 

@@ -12,13 +12,17 @@ from pydantic import BaseModel, ConfigDict
 
 from orchestrator.cosim.recording import Recording
 from orchestrator.scenario.end_condition import SPEED
-from orchestrator.scenario.scenario import DONE, Outcome, Scenario
+from orchestrator.scenario.scenario import DONE, PENETRATION, Outcome, Scenario
 from orchestrator.text.quantities import DEGREE
+from orchestrator.verdict.contact import VEHICLE, clearances, first_contact, low_kerb_time
 from orchestrator.verdict.frame import in_frame, pose_of
+from orchestrator.verdict.geometry import described
 from orchestrator.verdict.judge import Check, judge
 from orchestrator.verdict.measures import Measure, measured
 from orchestrator.verdict.numbers import facts_of
 from orchestrator.verdict.outcome import Asked, Ends, outcomes, state_name
+from orchestrator.verdict.standing import beyond_ends
+from orchestrator.verdict.truth import truth_of
 
 
 class _Part(BaseModel):
@@ -146,6 +150,8 @@ class Summary(_Part):
     """Largest absolute speed [m/s]."""
     peak_jerk: float
     """Largest absolute jerk, averaged over a second [m/s3]."""
+    penetration: float
+    """Greatest penetration depth of the outline in anything of the scene [m]; 0: no contact."""
     standstill_steering: int | None
     """Standstills in which the steering wheel is turned by more than 5 deg; null if the wheel is not known."""
     final: Final
@@ -166,11 +172,17 @@ class Summary(_Part):
     """Of Python, of this project and of what it stands on."""
     started: Started = Started()
     """When and how it was started."""
+    standing: list[str] = []
+    """What the headline adds: an outline beyond the slot's front or rear boundary, a car far from its target."""
     notes: list[str] = []
-    """What is worth knowing of the verdict: a target that was told wrong, or is not in the log."""
-
+    """What is worth knowing of the verdict: contact, a target that was told wrong, or is not in the log."""
     realtime: Lateness | None = None
     """How late it was, if it was held to the clock on the wall."""
+
+    @property
+    def headline(self) -> str:
+        """Return why the run came out so, and where the car stands if that is not where it should."""
+        return "; ".join([self.reason, *self.standing])
 
     @property
     def is_done(self) -> bool:
@@ -196,6 +208,7 @@ def summarize(recording: Recording, scenario: Scenario, wall_time: float, note: 
     facts = facts_of(recording, scenario)
     numbers, checks = facts.numbers, judge(scenario.limits, recording, facts, scenario.file)
     outcome, reason = _outcome(recording, scenario, checks)
+    said = (note, *_contact(recording, scenario, numbers), _told_otherwise(recording, scenario))
     return Summary(
         scenario=scenario.name,
         changed=scenario.changed,
@@ -205,6 +218,7 @@ def summarize(recording: Recording, scenario: Scenario, wall_time: float, note: 
         shifts=_count(numbers["shifts"]),
         max_speed=numbers["max_speed"],
         peak_jerk=numbers["peak_jerk"],
+        penetration=numbers[PENETRATION],
         standstill_steering=_count(numbers["standstill_steering"]),
         final=Final(**{name: numbers[f"final.{name}"] for name in Final.model_fields}),
         events=_events(recording),
@@ -216,7 +230,8 @@ def summarize(recording: Recording, scenario: Scenario, wall_time: float, note: 
         versions=recording.info.get("versions", {}),
         started=Started(**recording.info.get("started", {})),
         realtime=recording.info.get("realtime"),
-        notes=[text for text in (note, _told_otherwise(recording, scenario)) if text],
+        standing=standing_of(recording, scenario, numbers),
+        notes=[text for text in said if text],
     )
 
 
@@ -264,6 +279,54 @@ def _outcome(recording: Recording, scenario: Scenario, checks: list[Check]) -> t
     ]
     (found,) = outcomes(scenario, Ends([broken], *last), asked, *(recording.variables.get(name) for name in signals))
     return found
+
+
+FAR_FROM_TARGET = 0.5
+"""A car further than this [m] from its target: the headline says so."""
+ALLOWED_CONTACT = "in contact, which the scenario allows (contact_allowed)"
+VISIBLE = 5e-4
+"""An outline beyond a boundary by less than this [m] is at it."""
+
+
+def standing_of(recording: Recording, scenario: Scenario, numbers: dict[str, float]) -> list[str]:
+    """Return what is said of a car that stands beyond an end of its slot, or far from its target."""
+    touched = [ALLOWED_CONTACT] if scenario.contact_allowed and numbers[PENETRATION] > 0.0 else []
+    if scenario.task != "park":
+        return touched
+    pose = np.array([[numbers[f"final.{axis}"] for axis in ("x", "y", "heading")]])
+    said = touched
+    if scenario.slot is not None and np.isfinite(pose).all():
+        truth = truth_of(scenario, described(scenario, recording.parameters_of(VEHICLE)))
+        ends = zip(("front", "rear"), beyond_ends(pose, truth.slots, truth.cars), strict=True)
+        said += [
+            f"outline {100.0 * float(over[0]):.1f} cm beyond the slot's {end} boundary"
+            for end, over in ends
+            if over[0] >= VISIBLE
+        ]
+    off = math.hypot(numbers["final.longitudinal_error"], numbers["final.lateral_error"])
+    return [*said, f"{off:.2f} m from the target"] if off > FAR_FROM_TARGET else said
+
+
+def _contact(recording: Recording, scenario: Scenario, numbers: dict[str, float]) -> list[str]:
+    """Return when the car touches something first, how fast and how deep; and a wheel at a low kerb."""
+    if not numbers[PENETRATION] > 0.0 and numbers["min_clearance"] != 0.0:
+        return []
+    found = clearances(recording, scenario)
+    touched, low = first_contact(recording, found), low_kerb_time(recording, found)
+    said = []
+    if touched is not None:
+        speed = "" if math.isnan(touched.speed) else f" at {touched.speed:.2f} m/s"
+        said.append(
+            f"contact from {touched.t:.2f} s on{speed}, up to {_depth_text(touched.depth)} deep, "
+            f"in {touched.samples} samples"
+        )
+    if math.isfinite(low):
+        said.append(f"a wheel is at a kerb lower than vehicle.ultrasonic.kerb_height, first at {low:.2f} s")
+    return said
+
+
+def _depth_text(depth: float) -> str:
+    return f"{100.0 * depth:.1f} cm" if depth >= 5e-4 else "0 cm"
 
 
 def _count(number: float) -> int | None:

@@ -59,7 +59,11 @@ def standing(
     end |= more
     signals = {name: np.array([end.get(name, 0.0)]) for name in KNOWN}
     parameters = {f"vehicle.{name}": float(value) for name, value in {**PLANT, **scenario.vehicle}.items()}
-    info = {"scenario": scenario.model_dump(mode="json", exclude={"file"}), "end": {"reason": "standstill"}}
+    info: dict[str, Any] = {
+        "scenario": scenario.model_dump(mode="json", exclude={"file"}),
+        "end": {"reason": "standstill"},
+    }
+    info |= {"fmus": [{"name": "vehicle", "kind": "none", "guid": "of a test"}]}
     return Recording(np.zeros(1, dtype=np.int64), signals, parameters, dict(KNOWN), info)
 
 

@@ -17,7 +17,7 @@ from orchestrator.scenario.tpcap import read_tpcap
 from orchestrator.session.session import run_scenario
 from orchestrator.text.errors import BadInput
 from orchestrator.verdict.geometry import CarOutline
-from orchestrator.verdict.polygons import polygon_clearance
+from orchestrator.verdict.polygons import polygon_clearances
 from orchestrator.verdict.summary import summarize
 from tests.planning.scenes import CAR, least_clearance, tpcap_folder
 
@@ -100,11 +100,14 @@ def test_distance_to_polygons_is_that_of_shapely() -> None:
         corners = list(MultiPoint(points).convex_hull.exterior.coords)[:-1]
         pose = draw.uniform(-1.0, 1.0, 3) * (5.0, 5.0, 3.0)
         expected = least_clearance([Pose(*pose)], [corners], CAR)
-        assert polygon_clearance(pose[None], [corners], car) == pytest.approx(expected, abs=1e-9)
+        (found,) = polygon_clearances(pose[None], [corners], car)
+        assert max(found, 0.0) == pytest.approx(expected, abs=1e-9)
+        assert (found < 0.0) == (expected == 0.0)
         touched += expected == 0.0
     assert 10 < touched < 90
-    assert np.isnan(polygon_clearance(np.zeros((1, 3)), [], car))
-    assert polygon_clearance(np.zeros((1, 3)), [[(-50.0, -50.0), (50.0, -50.0), (0.0, 80.0)]], car) == 0.0
+    assert np.isnan(polygon_clearances(np.zeros((1, 3)), [], car)).all()
+    around = [(-50.0, -50.0), (50.0, -50.0), (0.0, 80.0)]
+    assert polygon_clearances(np.zeros((1, 3)), [around], car)[0] < -29.0
 
 
 @TPCAP

@@ -56,25 +56,29 @@ def test_clearance_is_the_distance_to_the_nearest_thing() -> None:
         car = shapely.box(-0.60, -0.825, 3.205, 0.825)
         car = affinity.rotate(car, pose.heading, origin=(0.0, 0.0), use_radians=True)
         car = affinity.translate(car, pose.x, pose.y)
-        assert clearance(pose, Car(), scene, 0) == pytest.approx(car.distance(everything(scene)), abs=1e-9)
+        found = clearance(pose, Car(), scene, 0.08, 0)
+        assert max(found, 0.0) == pytest.approx(car.distance(everything(scene)), abs=1e-9)
+        assert (found < 0.0) == car.intersects(everything(scene))
 
 
 def test_an_empty_scene_is_clear() -> None:
-    assert clearance(Pose(), Car(), SceneParams(), 0) == FAR
+    assert clearance(Pose(), Car(), SceneParams(), 0.08, 0) == FAR
     assert first_readings(Pose(), SceneParams(), EXACT, CLEAN).readings == (5.0,) * 12
 
 
 def test_a_low_kerb_passes_under_the_bumper_but_not_under_the_wheels() -> None:
     ahead = Kerb(3.0, -2.0, 3.0, 2.0, 0.10)
-    assert clearance(Pose(), Car(), SceneParams(kerbs=(ahead, *(Kerb(),) * 3)), 0) == pytest.approx(3.0 - 2.405 - 0.3)
+    assert clearance(Pose(), Car(), SceneParams(kerbs=(ahead, *(Kerb(),) * 3)), 0.08, 0) == pytest.approx(
+        3.0 - 2.405 - 0.3
+    )
     high = ahead._replace(height=0.3)
-    assert clearance(Pose(), Car(), SceneParams(kerbs=(high, *(Kerb(),) * 3)), 0) == 0.0
+    assert clearance(Pose(), Car(), SceneParams(kerbs=(high, *(Kerb(),) * 3)), 0.08, 0) < 0.0
 
 
 def test_things_appear_and_disappear() -> None:
     walker = Obstacle(5.0, 0.0, 0.0, 0.4, 0.4, 2.0, 3.0)
     scene = SceneParams((walker, *(Obstacle(),) * 15))
-    seen = [clearance(Pose(), Car(), scene, int(t * 1e9)) for t in (1.9, 2.0, 2.9, 3.0)]
+    seen = [clearance(Pose(), Car(), scene, 0.08, int(t * 1e9)) for t in (1.9, 2.0, 2.9, 3.0)]
     assert seen == [FAR, pytest.approx(5.0 - 0.2 - 3.205), pytest.approx(5.0 - 0.2 - 3.205), FAR]
 
 
@@ -84,7 +88,7 @@ def test_things_move_and_are_heard_where_they_are() -> None:
     scene = SceneParams((walker, *(Obstacle(),) * 15))
     first = 6.0 - 0.2 - 3.205
     for t, gap in ((0.0, first), (2.0, first), (3.0, first - 0.5), (4.0, first - 1.0), (9.0, first - 1.0)):
-        assert clearance(Pose(), Car(), scene, int(t * 1e9)) == pytest.approx(gap, abs=1e-9)
+        assert clearance(Pose(), Car(), scene, 0.08, int(t * 1e9)) == pytest.approx(gap, abs=1e-9)
         heard = heard_distances(Pose(), scene, EXACT, 0.08, int(t * 1e9))
         assert heard[1:3] == pytest.approx((gap, gap), abs=1e-9)
 

@@ -1,6 +1,6 @@
 // How a run came out: verdict, figures and checks of this drive beside those of the driver modelled.
 
-const FIGURES = ["duration", "shifts", "max_speed", "final.lateral_error", "final.longitudinal_error", "final.heading_error", "final.slot_margin", "min_clearance", "steering_effort"];
+const FIGURES = ["duration", "shifts", "max_speed", "final.lateral_error", "final.longitudinal_error", "final.heading_error", "final.slot_margin", "min_clearance", "penetration", "steering_effort"];
 
 const said = (found) => `${found.outcome.replace("_", " ")}${found.reason === "all checks passed" ? "" : `: ${found.reason.replaceAll("_", " ")}`}`;
 

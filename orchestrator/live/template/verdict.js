@@ -66,6 +66,8 @@ function numbersOf(row, situation, table) {
     found[name] = item.unsigned ? Math.abs(value) : value;
   }
   found.duration = row[1] / 1e9;
+  // Polygons are not looked at here: with them it is not known whether the car touches anything.
+  found.penetration = situation.data.polygons.length ? NaN : Math.max(0, -found.min_clearance);
   const pose = AXES.map((axis) => found[`final.${axis}`]), { target, slot, car } = situation, none = [NaN, NaN, NaN];
   const errors = target ? inFrame(pose, target) : none;
   ["longitudinal", "lateral", "heading"].forEach((name, i) => { found[`final.${name}_error`] = errors[i]; });
@@ -76,7 +78,7 @@ function numbersOf(row, situation, table) {
 
 // Each requirement that is asked of the run, and how it stands against it.
 function checksOf(row, numbers, situation) {
-  const has = { target: Boolean(situation.target), slot: Boolean(situation.slot), kerb: kerbsAtSlot(situation).length > 0, polygons: situation.data.polygons.length > 0 };
+  const has = { target: Boolean(situation.target), slot: Boolean(situation.slot), kerb: kerbsAtSlot(situation).length > 0, polygons: situation.data.polygons.length > 0, scene: true };
   return situation.data.limits.filter((limit) => !limit.where || has[limit.where]).map((limit) => {
     const value = limit.number ? numbers[limit.signal] : limit.measure < 0 ? NaN : row[HEAD + limit.measure];
     const never = limit.first >= 0 && Number.isNaN(row[HEAD + limit.first]);
@@ -92,13 +94,17 @@ function stateNames(models, signal) {
   return found && found[7] ? model.states[found[7]] : {};
 }
 
+const CONTACT_ID = "free of contact"; // orchestrator/limits/contact-free.yaml
+
 const stateName = (names, value) => (Number.isFinite(value) ? names[value] ?? String(value) : "nan");
 
 function whyNot(speed, missed, still) {
   const named = (items) => [...new Set(items.map((item) => item.id))].join(", ");
-  const beyond = named(missed.filter((item) => !Number.isNaN(item.value)));
+  const isContact = (item) => item.id === CONTACT_ID && !Number.isNaN(item.value), touched = missed.some(isContact);
+  const beyond = named(missed.filter((item) => !Number.isNaN(item.value) && !isContact(item)));
   let unknown = named(missed.filter((item) => Number.isNaN(item.value)));
-  const parts = Math.abs(speed) <= still || Number.isNaN(speed) ? [] : [`the car still moves: ${speed.toPrecision(3)} m/s`];
+  const parts = touched ? ["contact"] : [];
+  if (Math.abs(speed) > still) parts.push(`the car still moves: ${speed.toPrecision(3)} m/s`);
   if (Number.isNaN(speed)) unknown = ["the car's speed", unknown].filter(Boolean).join(", ");
   if (beyond) parts.push(`beyond its limit: ${beyond}`);
   if (unknown) parts.push(`not measured: ${unknown}`);

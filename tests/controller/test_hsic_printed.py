@@ -137,7 +137,8 @@ def test_extremum_hold_is_the_planned_arc() -> None:
 @pytest.mark.parametrize(
     ("mode", "ahead", "wanted"),
     [(SpeedMode.STAND, 1.0, 0.0), (SpeedMode.TURN_ROUND, 1.0, 0.35), (SpeedMode.SLOW, 1.0, 0.35),
-     (SpeedMode.FAST, 1.0, 0.8), (SpeedMode.APPROACH, -0.5, 0.5), (SpeedMode.APPROACH, 0.01, 0.12), (SpeedMode.APPROACH, 2.0, 0.8)],
+     (SpeedMode.FAST, 1.0, 0.8), (SpeedMode.APPROACH, -0.5, 0.5), (SpeedMode.APPROACH, 0.01, 0.12),
+     (SpeedMode.APPROACH, 2.0, 0.8)],
 )  # fmt: skip
 def test_speed_modes(mode: SpeedMode, ahead: float, wanted: float) -> None:
     assert speed(mode, Errors(ahead, 0.0, 0.0, abs(ahead), -0.1), GAIN) == pytest.approx(wanted)

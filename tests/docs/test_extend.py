@@ -12,6 +12,16 @@ import pytest
 ROOT = Path(__file__).parents[2]
 PAGE = ROOT / "docs" / "extend.md"
 PACKAGES = ("modelkit", "vehicle_fmu", "controller_fmu", "fmus", "orchestrator")
+LEFT_OUT = shutil.ignore_patterns("dist", "__pycache__")
+OWN_TESTS = (
+    "tests/test_rooms.py",
+    "tests/test_model_code_rules.py",
+    "tests/controller/test_phases.py",
+    "tests/controller/test_systems.py",
+    "tests/vehicle/test_vehicle.py::test_parameters_without_meaning_give_a_status",
+    "tests/orchestrator/test_requirements.py",
+)
+"""Those that a recipe could break: the structure, the language of models, systems, bad parameters."""
 BLOCK = re.compile(r"^```(\w+)(?: title=\"([^\"]+)\")?\n(.*?)^```", re.S | re.M)
 
 
@@ -40,7 +50,7 @@ def recipes() -> list[Recipe]:
 def copy(tmp_path: Path) -> Path:
     """The packages, without what was built, in a folder of their own."""
     for package in PACKAGES:
-        shutil.copytree(ROOT / package, tmp_path / package, ignore=shutil.ignore_patterns("dist", "__pycache__"))
+        shutil.copytree(ROOT / package, tmp_path / package, ignore=LEFT_OUT)
     return tmp_path
 
 
@@ -56,6 +66,38 @@ def test_a_recipe_does_what_it_says(recipe: Recipe, copy: Path) -> None:
         assert all(word in output for word in wanted.split(", ")), output
 
 
+def test_all_recipes_together_pass_the_projects_own_tests(copy: Path) -> None:
+    for folder in ("tests", "apa_cosim", "benchmarks"):
+        shutil.copytree(ROOT / folder, copy / folder, ignore=LEFT_OUT)
+    shutil.copy(ROOT / "pyproject.toml", copy)
+    for recipe in recipes():
+        for language, file, text in recipe.edits:
+            edit(copy, language, copy / file, text)
+    code, output = run(copy, ["-n", "0", "-q", "-p", "no:cacheprovider", *OWN_TESTS], "pytest")
+    assert code == 0, output
+
+
+CLASH = """\
+Phase: controller_fmu.straight.phases.StraightPhase.BACK = 4 is TO_Q2 = 4 of \
+controller_fmu.guo2015.phases.GuoPhase; free numbers:"""
+
+
+def test_the_number_of_another_systems_phase_is_bad_input_in_one_line(copy: Path) -> None:
+    recipe = next(item for item in recipes() if item.title == "Add a controller")
+    for language, file, text in recipe.edits:
+        edit(copy, language, copy / file, text.replace("BACK = 12", "BACK = 4"))
+    code, output = run(copy, ["list", "systems"])
+    assert code == 2, output
+    assert CLASH in output
+    assert "internal error" not in output
+    assert "Traceback" not in output
+
+
+def test_a_recipe_touches_two_files_at_most() -> None:
+    touched = {recipe.title: {file for kind, file, _ in recipe.edits if kind == "diff"} for recipe in recipes()}
+    assert {title: files for title, files in touched.items() if len(files) > 2} == {}
+
+
 def edit(copy: Path, language: str, file: Path, text: str) -> None:
     if language == "diff":
         done = subprocess.run(["patch", "-p1", "--fuzz=0"], cwd=copy, input=text, text=True, capture_output=True)
@@ -66,9 +108,9 @@ def edit(copy: Path, language: str, file: Path, text: str) -> None:
         file.write_text(text, encoding="utf-8")
 
 
-def run(copy: Path, words: list[str]) -> tuple[int, str]:
+def run(copy: Path, words: list[str], module: str = "orchestrator") -> tuple[int, str]:
     environment = {"PATH": "/usr/bin:/bin", "PYTHONPATH": str(copy), "COLUMNS": "200"}
-    call = [sys.executable, "-m", "orchestrator", *words]
+    call = [sys.executable, "-m", module, *words]
     done = subprocess.run(call, cwd=copy, env=environment, capture_output=True, text=True, timeout=300)
     return done.returncode, done.stdout + done.stderr
 
@@ -81,14 +123,14 @@ def test_the_newcomers_count_is_of_the_recipes() -> None:
         added = [line for _, text in diffs for line in text.splitlines() if re.match(r"\+(?!\+\+ )", line)]
         counted[recipe.title] = (len(added), len({file for file, _ in diffs}))
     assert counted["Add a controller"] == (2, 1)
-    assert counted["Add a sensor"] == (9, 2)
+    assert counted["Add a sensor"] == (11, 2)
     assert [counted[f"Add {thing}"][0] for thing in ("an export", "a command", "a paper")] == [1, 1, 0]
     table = PAGE.read_text(encoding="utf-8").split("## ")[0]
     assert "2 lines in 1 file: an import and a row" in table
-    assert "9 lines in 2 files, six of them the record" in table
+    assert "11 lines in 2 files, six of them the record" in table
 
 
 def test_every_recipe_is_tried() -> None:
-    asked = ("gain", "law", "controller", "sensor", "check", "export", "command", "paper", "planner")
+    asked = ("gain", "law", "controller", "sensor", "check", "export", "command", "paper", "planner", "FMI variable")
     titles = " ".join(recipe.title for recipe in recipes())
     assert [word for word in asked if word not in titles] == []

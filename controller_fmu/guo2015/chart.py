@@ -35,6 +35,7 @@ class Guard(IntEnum):
     STANDING_AT_END = 17
     STANDING_AT_END_WRONG = 18
     WHEEL_STRAIGHT = 19
+    STANDING_AHEAD = 20
 
 
 KEEP = -1
@@ -66,6 +67,7 @@ TRANSITIONS: tuple[Row, ...] = (
     _row(GuoPhase.TO_Q3, Guard.AT_Q3, GuoPhase.STOP, GuoPhase.STRAIGHTEN),
     _row(GuoPhase.STOP, Guard.STANDING_TO_DRIVE, GuoPhase.PRE_STEER),
     _row(GuoPhase.STOP, Guard.STANDING_AT_END_WRONG, GuoPhase.PRE_STEER, GuoPhase.TO_Q4),
+    _row(GuoPhase.STOP, Guard.STANDING_AHEAD, GuoPhase.PRE_STEER, GuoPhase.TO_Q3),
     _row(GuoPhase.STOP, Guard.STANDING_AT_END, GuoPhase.STRAIGHTEN),
     _row(GuoPhase.STRAIGHTEN, Guard.WHEEL_STRAIGHT, GuoPhase.PARKED),
 )

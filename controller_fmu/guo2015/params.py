@@ -33,6 +33,16 @@ class GuoThresholds(NamedTuple):
     resume_heading: Annotated[float, Signal("rad", "at Q1: back on the path", 0.0, 1.5, HOUSE)] = 0.05
     park_lateral: Annotated[float, Signal("m", "at standstill: parked", 0.0, 10.0, HOUSE)] = 0.03
     park_heading: Annotated[float, Signal("rad", "at standstill: parked", 0.0, 1.5, HOUSE)] = 0.8 * pi / 180.0
+    park_longitudinal: Annotated[
+        float,
+        Signal(
+            "m",
+            "a car whose pose is right farther ahead of Q3 is asked back to Q3; case 5 ends where it is",
+            0.0,
+            100.0,
+            GUO + ", case 5 at 22.0 s",
+        ),
+    ] = 100.0
     moving_share: Annotated[
         float, Signal("1", "share of the park limits that ends a forward leg", 0.01, 1.0, HOUSE)
     ] = 0.35

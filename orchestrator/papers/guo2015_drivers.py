@@ -20,6 +20,10 @@ SPEEDS = tuple(np.linspace(0.3, 1.5, 10).tolist())
 REACTIONS = tuple(np.linspace(0.0, 0.5, 10).tolist())
 """From a prompt to its obedience [s]."""
 
+NEAR_Q3 = 0.45
+"""A little less than our limit along the slot [m]: the car rolls on while it stops."""
+PARK_LONGITUDINAL = "controller.guo2015.threshold.park_longitudinal"
+
 
 class Obeyed(NamedTuple):
     """How many drivers there were, and how many of them did what."""
@@ -45,13 +49,19 @@ def obeying_rows(run: str) -> list[Row]:
         for what, number in named.items()
     ]
     near = f"of {obeyed.drivers} drivers who obey, park by our limits, along the slot too"
-    return [*rows, Row(run, near, "1", None, float(obeyed.near))]
+    back = obey(run, SPEEDS, REACTIONS, (f"{PARK_LONGITUDINAL}={NEAR_Q3}",))
+    returned = f"{near}, asked back to Q3 from farther than {NEAR_Q3:g} m ahead"
+    return [
+        *rows,
+        Row(run, near, "1", None, float(obeyed.near)),
+        Row(run, returned, "1", None, float(back.near), note=f"{PARK_LONGITUDINAL} = {NEAR_Q3:g}"),
+    ]
 
 
-def obey(run: str, speeds: tuple[float, ...], reactions: tuple[float, ...]) -> Obeyed:
-    """Return what becomes of drivers of all these speeds [m/s] and reactions [s]."""
+def obey(run: str, speeds: tuple[float, ...], reactions: tuple[float, ...], sets: tuple[str, ...] = ()) -> Obeyed:
+    """Return what becomes of drivers of all these speeds [m/s] and reactions [s], with further ``sets``."""
     drivers = [
-        LabelledScenario({"speed": speed, "reaction": reaction}, _driven(run, speed, reaction))
+        LabelledScenario({"speed": speed, "reaction": reaction}, _driven(run, speed, reaction, sets))
         for speed, reaction in itertools.product(speeds, reactions)
     ]
     scenario, design = design_of(drivers)
@@ -65,6 +75,6 @@ def obey(run: str, speeds: tuple[float, ...], reactions: tuple[float, ...]) -> O
     return Obeyed(len(drivers), *(int(np.sum(item)) for item in counted))
 
 
-def _driven(run: str, speed: float, reaction: float) -> Scenario:
-    sets = (f"vehicle.driver.profile[1].speed={speed}", f"vehicle.driver.reaction_delay={reaction}")
-    return load_scenario(run, (*sets, "controller.guo2015.prompting.reaction=0.3"))
+def _driven(run: str, speed: float, reaction: float, sets: tuple[str, ...]) -> Scenario:
+    driver = (f"vehicle.driver.profile[1].speed={speed}", f"vehicle.driver.reaction_delay={reaction}")
+    return load_scenario(run, (*driver, *sets, "controller.guo2015.prompting.reaction=0.3"))

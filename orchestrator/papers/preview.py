@@ -33,6 +33,11 @@ PRINTED_ANGLES = (-2.0, 2.0, -3.2, 4.1)
 PRINTED_POINTS = (331.5, 350.6, 353.6, 508.6, 510.7)
 SAFE = 0.578
 """a of the safe speed sqrt(a / kappa) [m/s^2]."""
+CONSTRAINTS = (0.6, 0.9)
+"""Range printed for k_v and k_d."""
+MARGIN = 0.7
+"""A_y as printed."""
+GRAVITY = 9.81
 PERIOD = 0.8 * 8.0
 """Way [m] at 8 m/s in which L2 looks near."""
 NEAR_POINT = 0.15
@@ -51,7 +56,7 @@ SAME = "yL is largest in curve 4, which the car reaches at the same speed whatev
 PIXELS = "with these gains the loop bears 10 ms of delay at 8 m/s, and seen on the road yL jumps where L1 does"
 UNTESTED = [
     not_tested("points C and E along the road", "the road is laid from them", "353.6 m, 510.7 m"),
-    not_tested("(3): k_v, k_d, A_y, mu_max, g one by one", "the equation is lost; all they make is 0.578 m/s2"),
+    not_tested("(3): k_v, k_d, mu_max one by one", "the equation is lost; all they make is 0.578 m/s2"),
     not_tested("(1), Fig. 5: the body's equations and the membership functions", "lost; standard forms, triangles"),
     not_tested("Fig. 6: rule surfaces", "no numbers are printed; preview-surfaces.png shows ours"),
     not_tested("safe speed by its own formula", "a is fitted to the printed speeds"),
@@ -79,7 +84,7 @@ NOTES = [
 def reproduce(out: Path, drive: Drive) -> Reproduction:
     """Return printed and measured numbers; writes three pictures to ``out``."""
     main, eight, single = drive("preview"), drive("preview-8"), drive("preview-single")
-    rows = UNTESTED + _speeds(main) + _errors(main) + _settling(main) + _points(eight)
+    rows = UNTESTED + friction_rows() + _speeds(main) + _errors(main) + _settling(main) + _points(eight)
     rows += _geometry(main, drive("preview-geometry")) + _camera(drive("preview-camera")) + _single(main, single)
     figures = [*draw_preview(main, eight, single, out), draw_surfaces(out / "preview-surfaces.png")]
     if can_compile():
@@ -87,6 +92,26 @@ def reproduce(out: Path, drive: Drive) -> Reproduction:
         rows += _sweep_rows(speeds, table)
         figures.append(draw_sweep(speeds, table, out / "preview-sweep.png"))
     return Reproduction("preview", TITLE, rows, figures, NOTES)
+
+
+def friction_rows() -> list[Row]:
+    """Return, for each form that (3) may have, which mu_max makes 0.578 m/s2 with k_v and k_d as printed.
+
+    The lost equation sets the centrifugal force equal to the largest friction: v = f sqrt(mu g / kappa), where the
+    factors k_v, k_d in 0.6..0.9 and A_y = 0.7 stand before the root, or under it, or A_y alone does.
+    """
+    forms = {
+        "k_v k_d A_y sqrt(mu g / kappa)": lambda k: (k * MARGIN) ** 2,
+        "k_v k_d sqrt(A_y mu g / kappa)": lambda k: k * k * MARGIN,
+        "sqrt(k_v k_d A_y mu g / kappa)": lambda k: k * MARGIN,
+    }
+    rows = []
+    for form, share in forms.items():
+        low, high = (SAFE / (GRAVITY * share(k)) for k in (CONSTRAINTS[1] ** 2, CONSTRAINTS[0] ** 2))
+        rows.append(Row("", f"(3) as {form}: mu_max that gives 0.578 m/s2", "", None, f"{low:.2f} to {high:.2f}"))
+        item = f"(3) as {form}: some mu_max below 1 gives 0.578 m/s2"
+        rows.append(yes_row("", item, 0.0 < low < 1.0, CONCLUSION))
+    return rows
 
 
 def curves() -> list[tuple[float, float, float]]:

@@ -117,6 +117,7 @@ def test_equations_10_and_17_on_every_leg(leg: GuoPhase, x: float, y: float, hea
         ("resume_heading", 0.05),
         ("park_lateral", 0.03),
         ("park_heading", math.radians(0.8)),
+        ("park_longitudinal", 100.0),
         ("moving_share", 0.35),
     ],
 )
@@ -199,6 +200,15 @@ def test_pose_is_right_within_a_third_of_the_limits_on_the_move_and_within_them_
         assert right == {Guard.STANDING_AT_END if off < 0.0 else Guard.STANDING_AT_END_WRONG}
 
 
+@pytest.mark.parametrize(("x", "found"), [(0.5 - E, Guard.STANDING_AT_END), (0.5 + E, Guard.STANDING_AHEAD)])
+def test_a_right_pose_too_far_ahead_of_q3_is_driven_back_where_that_is_asked_for(x: float, found: Guard) -> None:
+    threshold = PARAMS.guo2015.threshold._replace(park_longitudinal=0.5)
+    params = PARAMS._replace(guo2015=PARAMS.guo2015._replace(threshold=threshold))
+    for asked, wanted in ((params, found), (PARAMS, Guard.STANDING_AT_END)):
+        bits = standing_guards(GuoPhase.STRAIGHTEN, Pose(x, 0.0, 0.0), ControllerInput(), asked)
+        assert {guard for guard in Guard if (bits >> guard) & 1} == {wanted}
+
+
 def test_the_chart_is_that_of_figures_9_and_11() -> None:
     P, G = GuoPhase, Guard
     assert TRANSITIONS == (
@@ -220,6 +230,7 @@ def test_the_chart_is_that_of_figures_9_and_11() -> None:
         (P.TO_Q3, G.AT_Q3, P.STOP, P.STRAIGHTEN),
         (P.STOP, G.STANDING_TO_DRIVE, P.PRE_STEER, KEEP),
         (P.STOP, G.STANDING_AT_END_WRONG, P.PRE_STEER, P.TO_Q4),
+        (P.STOP, G.STANDING_AHEAD, P.PRE_STEER, P.TO_Q3),
         (P.STOP, G.STANDING_AT_END, P.STRAIGHTEN, KEEP),
         (P.STRAIGHTEN, G.WHEEL_STRAIGHT, P.PARKED, KEEP),
     )

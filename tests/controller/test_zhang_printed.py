@@ -7,7 +7,7 @@ import pytest
 from controller_fmu.common.arc_line_arc import arc_line_arc, largest_radius
 from controller_fmu.zhang2022.mpc import FrontAxle, prediction, weights
 from controller_fmu.zhang2022.params import ZhangParams
-from controller_fmu.zhang2022.path import Reference, through
+from controller_fmu.zhang2022.path import QuinticPath, Reference, at, through
 from controller_fmu.zhang2022.pid import PidState, pid
 from controller_fmu.zhang2022.quintic import quintic, shape
 from modelkit.vocabulary import Pose
@@ -82,10 +82,20 @@ def test_equations_4_and_5_with_zero_curvature_at_both_ends() -> None:
     assert near[1].curvature == pytest.approx(bend / (1.0 + near[1].slope ** 2) ** 1.5, abs=1e-6)
 
 
+def at_distance(path: QuinticPath, x: float, way: float) -> float:
+    """Return x [m] after ``way`` [m] in reverse along the path, in steps of 1 mm."""
+    for _ in range(round(way / 1e-3)):
+        x -= 1e-3 / math.sqrt(1.0 + at(path, x).slope ** 2)
+    return x
+
+
 def test_equation_6_linearised_over_a_step() -> None:
     path = through(Pose(8.5, 2.8, 0.0), arc_line_arc(8.5, 2.8, 6.0))
     stages = prediction(path, Reference(Pose(7.0, 2.6, 0.2)), -0.8, AXLE, PARAMS.mpc)
-    for stage in stages:
+    x, way = 7.0, 0.08
+    for number, stage in enumerate(stages):
+        middle = at_distance(path, x, (number + 0.5) * way)
+        assert stage.r == pytest.approx(math.atan(2.62 * at(path, middle).curvature), abs=1e-3)
         g = -0.08 / (2.62 * math.cos(stage.r) ** 2)
         assert (stage.a, stage.g, stage.c, stage.on) == pytest.approx((-0.08, g, -0.04 * g, 1.0))
     slow = prediction(path, Reference(Pose(7.0, 2.6, 0.2)), 0.0, AXLE, PARAMS.mpc)

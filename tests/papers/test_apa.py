@@ -14,7 +14,7 @@ def reproduction(by_default: Drive, tmp_path_factory: pytest.TempPathFactory) ->
 def test_every_check_is_as_stated(reproduction: Reproduction) -> None:
     assert not [row for row in reproduction.rows if row.as_expected is False]
     assert all(row.basis or row.limit is None for row in reproduction.rows)
-    assert reproduction.tally == (11, 0, 6, 6, 6)
+    assert reproduction.tally == (7, 0, 5, 12, 12)
 
 
 def test_iso_slots_are_shorter_than_l_min_and_take_several_moves(reproduction: Reproduction) -> None:

@@ -7,7 +7,7 @@ import pytest
 from controller_fmu.guo2015.params import GuoParams
 from orchestrator.papers.drive import drive
 from orchestrator.papers.guo2015 import case_rows, reproduce
-from orchestrator.papers.guo2015_drivers import obey
+from orchestrator.papers.guo2015_drivers import NEAR_Q3, PARK_LONGITUDINAL, obey
 from orchestrator.papers.result import CONCLUSION, OWN, PRINTED, Drive, Driven, Reproduction, Row
 from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.session.session import run_scenario
@@ -29,7 +29,7 @@ def reproduction(by_default: Drive, tmp_path_factory: pytest.TempPathFactory) ->
 def test_every_check_is_as_stated(reproduction: Reproduction) -> None:
     assert not [row for row in reproduction.rows if row.as_expected is False]
     assert reproduction.passed
-    assert reproduction.tally == (35, 11, 17, 29, 29)
+    assert reproduction.tally == (45, 11, 9, 29, 29)
 
 
 def test_every_check_says_what_it_is_of_and_every_number_of_the_paper_has_a_limit(reproduction: Reproduction) -> None:
@@ -77,6 +77,18 @@ def test_drivers_who_obey_stay_on_the_path(rate: str) -> None:
     found = obey(f"guo2015-case3{rate}", (0.3, 1.5), (0.0, 0.25, 0.5))
     assert found[:4] == (6, 6, 6, 6)
     assert 0 < found.near < found.parked
+
+
+def test_all_drivers_who_obey_end_near_q3_where_they_are_asked_back_to_it() -> None:
+    back = obey("guo2015-case3", (0.3, 1.5), (0.0, 0.5), (f"{PARK_LONGITUDINAL}={NEAR_Q3}",))
+    assert back.near == back.parked == back.drivers == 4
+
+
+def test_two_speeds_of_case_5_fit_four_printed_numbers(reproduction: Reproduction) -> None:
+    for run in ("guo2015-case5", "guo2015-case5-105"):
+        rows = [row for row in reproduction.rows if row.run == run and row.basis == PRINTED]
+        assert [row.paper for row in rows] == [0.065, 22.0, -3.058, 0.002]
+        assert all(row.passed for row in rows)
 
 
 def test_what_the_paper_calls_a_success_stands_beside_our_outcome(reproduction: Reproduction) -> None:

@@ -23,7 +23,12 @@ def without_sweep(out: Path, by: Drive) -> Reproduction:
 def test_every_check_is_as_stated(reproduction: Reproduction) -> None:
     assert not [row for row in reproduction.rows if row.as_expected is False]
     assert all(row.basis or row.limit is None for row in reproduction.rows)
-    assert reproduction.tally == (14, 9, 5, 1, 1)
+    assert reproduction.tally == (17, 9, 5, 1, 1)
+
+
+def test_the_friction_that_gives_the_fitted_acceleration_is_stated_for_each_form() -> None:
+    stated = [str(row.ours) for row in preview.friction_rows() if row.paper is None]
+    assert stated == ["0.18 to 0.93", "0.13 to 0.65", "0.10 to 0.23"]
 
 
 def test_both_definitions_of_eps_are_shown(reproduction: Reproduction) -> None:

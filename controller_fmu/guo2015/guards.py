@@ -63,7 +63,7 @@ def standing_guards(leg: int, pose: Pose, inputs: ParkingInput, params: GuoSyste
     wrong = params.system == GuoSystem.NTBPTCWPT and not within(
         pose.y, pose.heading, limit.park_lateral, limit.park_heading
     )
-    ahead = params.system == System.NTBPTCWPT and pose.x > limit.park_longitudinal
+    ahead = params.system == GuoSystem.NTBPTCWPT and pose.x > limit.park_longitudinal
     return (
         bit(Guard.STANDING_TO_DRIVE, not at_end)
         | bit(Guard.STANDING_AHEAD, at_end and not wrong and ahead)

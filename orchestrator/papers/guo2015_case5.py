@@ -44,7 +44,7 @@ NUMBERS = (
 )
 
 
-class Fit(NamedTuple):
+class SpeedFit(NamedTuple):
     """The pair of speeds nearest to the four numbers, and which pairs are within every limit."""
 
     slow: float
@@ -74,7 +74,7 @@ def fit_rows(run: str) -> list[Row]:
     return [*rows, Row(run, item, "", None, window)]
 
 
-def fit_speeds(run: str, slow_speeds: tuple[float, ...], fast_speeds: tuple[float, ...]) -> Fit:
+def fit_speeds(run: str, slow_speeds: tuple[float, ...], fast_speeds: tuple[float, ...]) -> SpeedFit:
     """Return the pair of speeds [m/s] whose worst number is the fewest limits off, and all pairs within the limits."""
     pairs = [(slow, fast) for slow in slow_speeds for fast in fast_speeds]
     cases = [
@@ -88,7 +88,7 @@ def fit_speeds(run: str, slow_speeds: tuple[float, ...], fast_speeds: tuple[floa
     worst = np.max(np.nan_to_num(off, nan=np.inf), axis=1)
     best = int(np.argmin(worst))
     fitting = [pair for pair, share in zip(pairs, worst, strict=True) if share <= 1.0]
-    return Fit(*pairs[best], tuple(values[best].tolist()), fitting)
+    return SpeedFit(*pairs[best], tuple(values[best].tolist()), fitting)
 
 
 def _profile(slow: float, fast: float) -> list[str]:

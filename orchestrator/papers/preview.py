@@ -1,6 +1,7 @@
 """The preview paper: entry speeds, errors at the preview point, points A to E, the sweep of the set speed."""
 
 import math
+from collections.abc import Callable
 from pathlib import Path
 from typing import NamedTuple
 
@@ -100,7 +101,7 @@ def friction_rows() -> list[Row]:
     The lost equation sets the centrifugal force equal to the largest friction: v = f sqrt(mu g / kappa), where the
     factors k_v, k_d in 0.6..0.9 and A_y = 0.7 stand before the root, or under it, or A_y alone does.
     """
-    forms = {
+    forms: dict[str, Callable[[float], float]] = {
         "k_v k_d A_y sqrt(mu g / kappa)": lambda k: (k * MARGIN) ** 2,
         "k_v k_d sqrt(A_y mu g / kappa)": lambda k: k * k * MARGIN,
         "sqrt(k_v k_d A_y mu g / kappa)": lambda k: k * MARGIN,

@@ -14,8 +14,12 @@ from modelkit.signal import Group, Role, Signal
 from modelkit.vocabulary import (
     ANYWHERE,
     BrakeRequest,
+    DriverTakeover,
+    MeasuredSpeed,
     Pose,
     PromptShown,
+    SteeringWheelAngle,
+    VehicleFaultShown,
 )
 
 HOUSE = "chosen; the source states none"
@@ -67,10 +71,6 @@ class Reason(IntEnum):
 
 
 Odometry = Annotated[Pose, Group("rear-axle midpoint as the car believes it")]
-MeasuredSpeed = Annotated[float, Signal("m/s", "speed, reverse negative")]
-SteeringWheelAngle = Annotated[float, Signal("rad", "steering-wheel angle, left positive")]
-DriverTakeover = Annotated[bool, Signal("1", "the driver has taken over")]
-VehicleFault = Annotated[int, Signal("1", "why the vehicle brakes by itself; 0: it does not")]
 
 
 class SystemInput(NamedTuple):
@@ -89,7 +89,7 @@ class ParkingInput(NamedTuple):
     measured_speed: MeasuredSpeed = 0.0
     steering_wheel_angle: SteeringWheelAngle = 0.0
     driver_takeover: DriverTakeover = False
-    vehicle_fault: VehicleFault = 0
+    vehicle_fault: VehicleFaultShown = 0
 
 
 class Segment(NamedTuple):

@@ -13,7 +13,7 @@ from controller_fmu.common.clock import Clock, begin, refused, tick
 from controller_fmu.interface import RefusedOutput
 from controller_fmu.valet.params import ValetSystem
 from modelkit.composition import merged, named_tuple
-from modelkit.model import Model, SampledSystem, SampledSystems
+from modelkit.model import Model, SampledSystem, SampledSystems, View
 from modelkit.signal import Signal
 from modelkit.states import union
 from modelkit.terminals import TERMINALS
@@ -38,6 +38,10 @@ System: Any = union(
     *(row.choices for row in ROWS),
     *(type(choice) for choice in APART),
 )
+
+
+SYSTEM_CHOICES = union("System", __name__, str(System.__doc__), *(row.choices for row in ROWS))
+"""Those of them that are in the one controller."""
 
 
 class Choosing(NamedTuple):
@@ -98,6 +102,7 @@ MODEL = Model(
     terminals=TERMINALS,
     systems=SYSTEMS,
     sampled=True,
+    view=View(states=(("system", SYSTEM_CHOICES),)),
 )
 SYSTEM_MODELS: dict[IntEnum, Model] = {
     choice: MODEL.only(choice, f"Controller_{choice.name.lower()}", description)

@@ -140,7 +140,7 @@ class View(NamedTuple):
     hidden: frozenset[str] = frozenset()
     """Variables that are not shown; they keep their start values."""
     states: tuple[tuple[str, type[IntEnum]], ...] = ()
-    """(output, states) of modes that have only these of all their states."""
+    """(variable, states) of modes that have only these of all their states."""
 
 
 class Assembly(NamedTuple):

@@ -45,6 +45,16 @@ class Gear(IntEnum):
     DRIVE = 3
 
 
+class VehicleFault(IntEnum):
+    """Why the vehicle brakes by itself."""
+
+    NONE = 0
+    BAD_INPUT = 1
+    """An input is NaN or infinite."""
+    BAD_PARAMETER = 2
+    """A parameter is NaN, infinite or without meaning."""
+
+
 SteeringWheelRequest = Annotated[float, Signal("rad", "steering-wheel angle asked for, left positive")]
 SteeringActive = Annotated[bool, Signal("1", "the controller holds the steering wheel")]
 PromptShown = Annotated[int, Signal("1", "prompt shown to the driver", states=Prompt)]
@@ -55,3 +65,13 @@ ForceControlActive = Annotated[bool, Signal("1", "force_request holds, not speed
 ForceRequest = Annotated[float, Signal("N", "drive and brake force asked for, forward positive")]
 BrakeRequest = Annotated[bool, Signal("1", "the controller brakes to standstill and holds")]
 """What every controller asks of a car: an output of each controller, an input of the car."""
+
+MeasuredSpeed = Annotated[float, Signal("m/s", "speed as the wheel sensors measure it, reverse negative")]
+SteeringWheelAngle = Annotated[float, Signal("rad", "steering-wheel angle, left positive")]
+GearShown = Annotated[int, Signal("1", "selector position", states=Gear)]
+BrakePedal = Annotated[float, Signal("1", "brake pedal, 0 released to 1 full", 0.0, 1.0)]
+DriverTakeover = Annotated[bool, Signal("1", "the driver has taken over")]
+VehicleFaultShown = Annotated[int, Signal("1", "why the vehicle brakes by itself", states=VehicleFault)]
+ParkingSwitch = Annotated[bool, Signal("1", "the driver has switched the parking assist on")]
+DriverConfirm = Annotated[bool, Signal("1", "the driver presses the confirm button")]
+"""What a car tells every controller: an output of the car, an input of the controllers."""

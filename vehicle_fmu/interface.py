@@ -8,16 +8,24 @@ from modelkit.signal import Group, Role, Signal
 from modelkit.vocabulary import (
     ANYWHERE,
     AdvisedSpeed,
+    BrakePedal,
     BrakeRequest,
+    DriverConfirm,
+    DriverTakeover,
     ForceControlActive,
     ForceRequest,
     Gear,
+    GearShown,
+    MeasuredSpeed,
+    ParkingSwitch,
     Pose,
     PromptShown,
     SpeedControlActive,
     SpeedRequest,
     SteeringActive,
+    SteeringWheelAngle,
     SteeringWheelRequest,
+    VehicleFaultShown,
 )
 from vehicle_fmu.bodies.chassis import ChassisParams, RoadParams
 from vehicle_fmu.bodies.double_track import DoubleTrackParams
@@ -40,16 +48,6 @@ class Body(IntEnum):
     """Three degrees of freedom, linear tyres."""
     DOUBLE_TRACK = 2
     """Four wheels, Magic Formula, load transfer."""
-
-
-class VehicleFault(IntEnum):
-    """Why the vehicle brakes by itself."""
-
-    NONE = 0
-    BAD_INPUT = 1
-    """An input is NaN or infinite."""
-    BAD_PARAMETER = 2
-    """A parameter is NaN, infinite or without meaning."""
 
 
 class PersonInput(NamedTuple):
@@ -83,13 +81,13 @@ class VehicleOutput(NamedTuple):
     pose: Annotated[Pose, Group("rear-axle midpoint")] = Pose()
     odometry: Annotated[Pose, Group("rear-axle midpoint as the car believes it")] = Pose()
     speed: Annotated[float, Signal("m/s", "speed of the rear-axle midpoint, reverse negative")] = 0.0
-    measured_speed: Annotated[float, Signal("m/s", "speed as the wheel sensors tell it, reverse negative")] = 0.0
-    steering_wheel_angle: Annotated[float, Signal("rad", "steering-wheel angle, left positive")] = 0.0
+    measured_speed: MeasuredSpeed = 0.0
+    steering_wheel_angle: SteeringWheelAngle = 0.0
     front_wheel_angle: Annotated[float, Signal("rad", "equivalent front-wheel angle, left positive")] = 0.0
-    gear: Annotated[int, Signal("1", "selector position", states=Gear)] = Gear.PARK
-    brake_pedal: Annotated[float, Signal("1", "brake pedal, 0 released to 1 full", 0.0, 1.0)] = 0.0
-    driver_takeover: Annotated[bool, Signal("1", "the driver has taken over")] = False
-    vehicle_fault: Annotated[int, Signal("1", "why the vehicle brakes by itself", states=VehicleFault)] = 0
+    gear: GearShown = Gear.PARK
+    brake_pedal: BrakePedal = 0.0
+    driver_takeover: DriverTakeover = False
+    vehicle_fault: VehicleFaultShown = 0
     distance: Annotated[float, Signal("m", "distance driven, both directions counted")] = 0.0
     ultrasonic: tuple[
         Annotated[float, Signal("m", "distance heard: 1-4 front, 5-8 rear, 9-10 left, 11-12 right"), Role.SAMPLED], ...
@@ -98,8 +96,8 @@ class VehicleOutput(NamedTuple):
         float, Signal("m", "outline to the nearest thing of the scene; in contact minus the depth; 1e9: nothing there")
     ] = NEVER
     contact: Annotated[bool, Signal("1", "the outline touches something")] = False
-    apa_switch: Annotated[bool, Signal("1", "the driver has switched the parking assist on")] = False
-    driver_confirm: Annotated[bool, Signal("1", "the driver presses the confirm button")] = False
+    apa_switch: ParkingSwitch = False
+    driver_confirm: DriverConfirm = False
 
 
 class SteeringParams(NamedTuple):

@@ -10,11 +10,11 @@ import math
 from typing import NamedTuple
 
 from modelkit.maths import is_finite
-from modelkit.vocabulary import Pose
+from modelkit.vocabulary import Pose, VehicleFault
 from vehicle_fmu.bodies.body import shown_speed
 from vehicle_fmu.car import CarState, parked_car, step_car
 from vehicle_fmu.driver import presses_confirm, switch_is_on
-from vehicle_fmu.interface import Body, VehicleFault, VehicleInput, VehicleOutput, VehicleParams
+from vehicle_fmu.interface import Body, VehicleInput, VehicleOutput, VehicleParams
 from vehicle_fmu.odometry import wheel_speed_reading
 from vehicle_fmu.scene import clearance
 from vehicle_fmu.ultrasonic import UltrasonicState, first_readings, is_due, measure

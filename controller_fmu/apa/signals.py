@@ -10,30 +10,34 @@ from controller_fmu.apa.slot import Kind, Side, Slot
 from controller_fmu.common.told import ToldSlot
 from controller_fmu.interface import (
     STATE_OF_THE_CHART,
-    DriverTakeover,
     HeadingError,
     LateralError,
-    MeasuredSpeed,
     Odometry,
     ReasonTold,
     ReferencePose,
     Shifts,
-    SteeringWheelAngle,
-    VehicleFault,
 )
 from modelkit.signal import Group, Role, Signal
 from modelkit.vocabulary import (
     AdvisedSpeed,
+    BrakePedal,
     BrakeRequest,
+    DriverConfirm,
+    DriverTakeover,
     ForceControlActive,
     ForceRequest,
     Gear,
+    GearShown,
+    MeasuredSpeed,
+    ParkingSwitch,
     Pose,
     PromptShown,
     SpeedControlActive,
     SpeedRequest,
     SteeringActive,
+    SteeringWheelAngle,
     SteeringWheelRequest,
+    VehicleFaultShown,
 )
 
 
@@ -120,15 +124,15 @@ class ApaInput(NamedTuple):
     odometry: Odometry = Pose()
     measured_speed: MeasuredSpeed = 0.0
     steering_wheel_angle: SteeringWheelAngle = 0.0
-    gear: Annotated[int, Signal("1", "selector position", states=Gear)] = Gear.PARK
-    brake_pedal: Annotated[float, Signal("1", "brake pedal, 0 released to 1 full", 0.0, 1.0)] = 0.0
+    gear: GearShown = Gear.PARK
+    brake_pedal: BrakePedal = 0.0
     driver_takeover: DriverTakeover = False
-    vehicle_fault: VehicleFault = 0
+    vehicle_fault: VehicleFaultShown = 0
     ultrasonic: tuple[
         Annotated[float, Signal("m", "distance heard: 1-4 front, 5-8 rear, 9-10 left, 11-12 right")], ...
     ] = (5.0,) * 12
-    apa_switch: Annotated[bool, Signal("1", "the driver has switched the parking assist on")] = False
-    driver_confirm: Annotated[bool, Signal("1", "the driver presses the confirm button")] = False
+    apa_switch: ParkingSwitch = False
+    driver_confirm: DriverConfirm = False
     told: Annotated[ToldSlot, Group("a slot from outside: a camera, a map, a test bench")] = ToldSlot()
     choice: Annotated[Choice, Group("what the driver chooses on the display")] = Choice()
 

@@ -5,10 +5,11 @@ from typing import Any
 
 import pytest
 
-from controller_fmu import MODEL, SYSTEMS
+from controller_fmu import MODEL, SYSTEM_MODELS, SYSTEMS, VALET
 from controller_fmu.common.phases import CommonPhase
 from controller_fmu.interface import Reason
 from controller_fmu.registry import ControllerInput, ControllerParams, System
+from fmus.contents.variables import shown_variables
 from modelkit.car import Car, CarSteering
 from modelkit.vocabulary import Prompt
 
@@ -65,3 +66,15 @@ def test_samples_fall_on_whole_periods_whatever_the_step(steps: Any) -> None:
     state, _ = after(ControllerParams(sample_time=0.02), steps)
     assert state.clock.time_ns == 70_000_000
     assert state.clock.next_sample_ns == 80_000_000
+
+
+@pytest.mark.parametrize("model", [MODEL, VALET, *SYSTEM_MODELS.values()], ids=lambda model: model.name)
+def test_an_fmu_offers_the_systems_alone_that_act_in_it(model: Any) -> None:
+    offered = [item.signal.states for item in shown_variables(model) if item.name == "system"]
+    assert len(offered) == (model is MODEL)
+    for states in offered:
+        assert states is not None
+        assert {state.name: state.value for state in states} == {s.name: s.value for s in System if s not in APART}
+        for system in states:
+            _, out = MODEL.initialize(ControllerParams(system=int(system)))
+            assert out.reason == Reason.NONE

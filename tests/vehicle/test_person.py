@@ -5,9 +5,9 @@ from typing import Any
 
 import pytest
 
-from modelkit.vocabulary import Gear, Prompt
+from modelkit.vocabulary import Gear, Prompt, VehicleFault
 from tests.vehicle.test_vehicle import BODIES, drive, params, prompted, step
-from vehicle_fmu.interface import PersonInput, VehicleFault, VehicleInput
+from vehicle_fmu.interface import PersonInput, VehicleInput
 
 
 def person(lever: Gear = Gear.REVERSE, accelerator: float = 0.0, brake: float = 0.0, **more: Any) -> PersonInput:

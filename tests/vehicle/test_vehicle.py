@@ -8,9 +8,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from modelkit.variables import constructor, flatten, variables, with_values
-from modelkit.vocabulary import Gear, Prompt
+from modelkit.vocabulary import Gear, Prompt, VehicleFault
 from vehicle_fmu import MODEL
-from vehicle_fmu.interface import Body, VehicleFault, VehicleInput, VehicleOutput, VehicleParams
+from vehicle_fmu.interface import Body, VehicleInput, VehicleOutput, VehicleParams
 
 BODIES = [int(body) for body in Body]
 STEP_NS = 10_000_000

@@ -4,7 +4,6 @@ import re
 import shutil
 import subprocess
 import zipfile
-from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -14,27 +13,11 @@ from fmus.native.compilers import find_compiler
 from fmus.native.fmu import PAGE
 from fmus.native.platforms import LINUX
 from fmus.native.sources import fmu_sources, unit_name
+from tests.docs.scripts import script
 from tests.fmi.test_native_host import STACK
 
 BOUND = STACK // 2
 """Bytes of stack that a call may take: the other half is for what the importer does, and for its logger."""
-NODE = re.compile(r'node: \{ title: "([^"]*)" label: "[^"]*?(\d+) bytes \(')
-EDGE = re.compile(r'edge: \{ sourcename: "([^"]*)" targetname: "([^"]*)"')
-
-
-def deepest(text: str) -> dict[str, int]:
-    """Return function -> bytes of stack along its deepest chain of calls, from the call graph that gcc writes."""
-    frames = {title: int(size) for title, size in NODE.findall(text)}
-    calls: dict[str, list[str]] = {title: [] for title in frames}
-    for source, target in EDGE.findall(text):
-        calls[source].append(target)
-
-    @cache
-    def depth(title: str) -> int:
-        """Fails with RecursionError if a function can call itself."""
-        return frames.get(title, 0) + max((depth(target) for target in calls.get(title, ())), default=0)
-
-    return {title.split(":")[-1]: depth(title) for title in frames}
 
 
 @pytest.mark.skipif(shutil.which("gcc") is None, reason="needs gcc, which writes a call graph")
@@ -45,18 +28,11 @@ def test_no_chain_of_calls_takes_half_of_a_small_stack(any_model: Any, fmi: int,
     options = ["-std=c99", "-O2", "-ffp-contract=off", "-fno-math-errno", "-fPIC", "-fcallgraph-info=su"]
     command = ["gcc", *options, f"-DFMI{fmi}_OVERRIDE_FUNCTION_PREFIX", "-c", unit_name(any_model, fmi), "-o", "x.o"]
     subprocess.run(command, check=True, cwd=tmp_path)
-    found = deepest((tmp_path / "x.ci").read_text())
+    found = script("embedded").deepest((tmp_path / "x.ci").read_text())
     public = {name: size for name, size in found.items() if name.startswith(f"fmi{fmi}")}
     assert len(public) == {2: 34, 3: 75}[fmi]
     assert public[f"fmi{fmi}DoStep"] > 100, "the step is in the graph"
     assert max(public.values()) <= BOUND, max(public.items(), key=lambda item: item[1])
-
-
-def test_a_chain_of_calls_is_added_up() -> None:
-    node = 'node: {{ title: "a.c:{0}" label: "{0}\\na.c:1:1\\n{1} bytes (static)" }}\n'
-    edge = 'edge: {{ sourcename: "a.c:{}" targetname: "a.c:{}" label: "a.c:2:2" }}\n'
-    text = node.format("f", 100) + node.format("g", 20) + node.format("h", 50)
-    assert deepest(text + edge.format("f", "g") + edge.format("f", "h")) == {"f": 150, "g": 20, "h": 50}
 
 
 @pytest.mark.parametrize("kind", ["native_fmus", "fmi3_fmus"])

@@ -13,7 +13,7 @@ from modelkit.model import Model
 from modelkit.variables import variables
 from vehicle_fmu import MODEL as VEHICLE
 
-CONTROLLERS = (CONTROLLER, VALET, *SYSTEM_MODELS.values())
+CONTROLLERS: tuple[Model[Any, Any, Any, Any], ...] = (CONTROLLER, VALET, *SYSTEM_MODELS.values())
 
 
 def said(item: Any, fmi_type: str, shape: Any = ()) -> Any:
@@ -22,7 +22,7 @@ def said(item: Any, fmi_type: str, shape: Any = ()) -> Any:
     return item.name, fmi_type, item.signal.unit, limits(item), states, shape
 
 
-def ends(model: Model, causality: str, fmi: int) -> dict[str, Any]:
+def ends(model: Model[Any, Any, Any, Any], causality: str, fmi: int) -> dict[str, Any]:
     if fmi == 2:
         return {v.name: said(v, v.fmi_type) for v in shown_variables(model) if v.causality == causality}
     chosen = [array for array in shown_arrays(model) if array.first.causality == causality]
@@ -31,7 +31,7 @@ def ends(model: Model, causality: str, fmi: int) -> dict[str, Any]:
 
 @pytest.mark.parametrize("fmi", [2, 3])
 @pytest.mark.parametrize("controller", CONTROLLERS, ids=[model.name for model in CONTROLLERS])
-def test_both_ends_of_a_connection_say_the_same(controller: Model, fmi: int) -> None:
+def test_both_ends_of_a_connection_say_the_same(controller: Model[Any, Any, Any, Any], fmi: int) -> None:
     count = 0
     for sender, receiver in ((VEHICLE, controller), (controller, VEHICLE)):
         outputs, inputs = ends(sender, "output", fmi), ends(receiver, "input", fmi)
@@ -42,7 +42,7 @@ def test_both_ends_of_a_connection_say_the_same(controller: Model, fmi: int) -> 
 
 
 @pytest.mark.parametrize("controller", CONTROLLERS, ids=[model.name for model in CONTROLLERS])
-def test_what_is_connected_inside_is_of_the_same_signal(controller: Model) -> None:
+def test_what_is_connected_inside_is_of_the_same_signal(controller: Model[Any, Any, Any, Any]) -> None:
     """Hidden variables too, in the assembly of a container: kind, unit, range, states."""
     models = (VEHICLE, controller)
     wires = connections([part_of("vehicle", VEHICLE), part_of("controller", controller)])

@@ -13,7 +13,7 @@ from modelkit.terminals import TERMINALS
 MODEL = Model(
     name="Controller_valet",
     description="Valet: plans a way among the polygons of a map and drives it",
-    package=sys.modules["controller_fmu"],
+    package=sys.modules[__name__.rpartition(".")[0]],
     state=ValetModelState,
     params=ValetParams,
     inputs=ValetInput,

@@ -17,12 +17,8 @@ from orchestrator.scenario.scenario import Scenario
 from orchestrator.session.foreign import Fitting, Foreign, fmu_of, load_fitting, sha256_of
 from orchestrator.session.session import Messages, make_slaves
 from orchestrator.system.assemble import Assembled, assemble
-from orchestrator.system.remarks import loops, missing_for_the_verdict, not_fed, unsaid
+from orchestrator.system.remarks import NEEDED_INPUTS, loops, missing_for_the_verdict, not_fed, unsaid, without_consumer
 from orchestrator.text.errors import BadInput, RunError
-
-NEEDED_INPUTS = {"vehicle": ("steering_wheel_request", "steering_active"), "controller": ()}
-"""Inputs that a slave of this name must be fed to be driven at all."""
-
 
 SHOWN = 6
 
@@ -185,19 +181,16 @@ def _not_fed(system: Assembled, slave: Slave) -> list[str]:
     others = [
         f"{other.name}.{name}{meant}"
         for number, other in enumerate(system.slaves)
-        if other is not slave and other.name in NEEDED_INPUTS
+        if other is not slave and other.name in MODELS
         for name, meant in not_fed(number, system).items()
-        if meant or name in NEEDED_INPUTS[other.name]
+        if meant or name in NEEDED_INPUTS.get(other.name, ())
     ]
     return [*(f"{name}{meant}" for name, meant in found.items()), *others]
 
 
 def _not_understood(system: Assembled | None, slave: Slave, description: Any) -> list[str]:
-    used = set() if system is None else {slave.outputs.names[place] for place in slave.outputs.used}
-    spare = [name for name in slave.outputs.names[: slave.outputs.own] if name not in used] if system else []
-    ours = {item.name for item in variables(MODELS[slave.name].outputs)} if slave.name in MODELS else set()
-    types = unsupported(description, "input", "output", "parameter")
-    return [*(name for name in spare if name not in ours), *types]
+    spare = [] if system is None else without_consumer(system.slaves.index(slave), system)
+    return [*spare, *unsupported(description, "input", "output", "parameter")]
 
 
 def _missing(slave: Slave, ending: EndCondition) -> list[str]:

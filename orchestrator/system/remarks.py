@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Sequence
 
+from modelkit.variables import variables
 from orchestrator.cosim.slave import Slave
 from orchestrator.scenario.end_condition import EndCondition
 from orchestrator.scenario.models import MODELS
@@ -21,6 +22,10 @@ NEEDED = {
     },
 }
 """Slave -> output that a verdict needs -> what is lost without it."""
+NEEDED_INPUTS = {"vehicle": ("steering_wheel_request", "steering_active")}
+"""Inputs without which a slave of this name cannot be driven at all."""
+NOTE = "note: "
+"""Begins a line that is no warning."""
 SPARE = ("person.", "told.", "choice.")
 """Inputs of these groups need nothing to feed them: their start values mean that nobody is there, no slot is told."""
 MAX_NAMES = 12
@@ -38,7 +43,8 @@ def remarks(system: Assembled, ending: EndCondition | None, ignored: Sequence[st
         for text in (
             *_units(number, system),
             *_unsupported(slave),
-            *_unfed(number, system),
+            *_unconnected_inputs(number, system),
+            *_unread_outputs(number, system),
             *_missing(slave.name, slave, ending),
         )
     ]
@@ -137,13 +143,49 @@ def not_fed(number: int, system: Assembled) -> dict[str, str]:
     return {name: suggestion(name, spare) for name in unfed}
 
 
-def _unfed(number: int, system: Assembled) -> list[str]:
+def _unconnected_inputs(number: int, system: Assembled) -> list[str]:
+    """Return one line on the inputs that nothing feeds; a note where all of them are optional inputs of our models."""
     slave, names = system.slaves[number], not_fed(number, system)
-    found = [f"nothing feeds {slave.name}.{name}{meant}" for name, meant in names.items() if meant]
-    plain = [name for name, meant in names.items() if not meant]
-    if plain:
-        found.append(f"nothing feeds {_few(plain)} of {slave.name}: they keep their start values")
-    return found
+    if not names:
+        return []
+    is_optional = slave.name in MODELS and not any(names.values()) and not set(names) & _needed_inputs(slave.name)
+    known = {item.name for item in variables(MODELS[slave.name].inputs)} if slave.name in MODELS else set()
+    kind = NOTE if is_optional and set(names) <= known else ""
+    listed = _few([f"{name} ({meant.removeprefix('; ')})" if meant else name for name, meant in names.items()])
+    return [f"{kind}unconnected inputs of {slave.name} (start values are used): {listed}"]
+
+
+def _needed_inputs(name: str) -> set[str]:
+    return set(NEEDED_INPUTS.get(name, ()))
+
+
+def without_consumer(number: int, system: Assembled) -> list[str]:
+    """Return the outputs of a slave that no input takes although one should: those that our models connect, and those
+    that no model of ours has. Outputs that the verdict or the log reads alone are not among them.
+    """
+    slave = system.slaves[number]
+    used = {int(place) for link in system.connections if link.source == number for place in link.source_places}
+    used |= set(slave.outputs.used)
+    own = slave.outputs.names[: slave.outputs.own]
+    names = [name for place, name in enumerate(own) if place not in used]
+    if slave.name not in MODELS:
+        return names
+    ours = {item.name for item in variables(MODELS[slave.name].outputs)}
+    taken = {item.name for other, model in MODELS.items() if other != slave.name for item in variables(model.inputs)}
+    return [name for name in names if name not in ours or name in taken]
+
+
+def _unread_outputs(number: int, system: Assembled) -> list[str]:
+    """Return one line on the outputs that no input takes; a note for what a vehicle measures, which few take whole, and
+    for our own controller, which offers several ways to command a vehicle.
+    """
+    slave, names = system.slaves[number], without_consumer(number, system)
+    if not names:
+        return []
+    ours = {item.name for item in variables(MODELS[slave.name].outputs)} if slave.name in MODELS else set()
+    is_optional = set(names) <= ours and (slave.name == "vehicle" or ours <= set(slave.outputs.names))
+    kind = NOTE if is_optional else ""
+    return [f"{kind}outputs of {slave.name} that no input takes: {_few(names)}"]
 
 
 def loops(system: Assembled) -> list[str]:

@@ -46,7 +46,7 @@ class Warnings:
         """Write the warning, unless it was written before."""
         if text not in self._said:
             self._said.add(text)
-            say(f"apa: warning: {text}")
+            say(f"apa: {text}" if text.startswith("note: ") else f"apa: warning: {text}")
 
 
 @contextmanager

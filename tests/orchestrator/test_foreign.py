@@ -34,7 +34,7 @@ def test_units_and_variability_that_are_not_said_are_no_mistake(
     assert summary["final"]["x"] < -5.0
     assert summary["final"]["steering_wheel_angle"] == pytest.approx(4.0, abs=0.01)
     assert "controller says no unit of measured_speed, steering_wheel_request" in captured.err
-    assert "left out, the FMU does not have them: controller.system" in captured.err
+    assert "parameters that the FMU does not have are left out: controller.system" in captured.err
 
 
 def test_its_own_parameters_are_told_from_those_nobody_has(
@@ -59,8 +59,9 @@ def test_a_misspelled_output_is_said_before_the_run(tmp_path: Path, capsys: pyte
     wrong = foreign_fmus.controller(tmp_path, request="steering_request")
     main(["run", "guo2015-case4", "--controller", str(wrong), "--out", str(tmp_path / "out"), "--no-page"])
     error = capsys.readouterr().err
-    assert "nothing feeds vehicle.steering_wheel_request; did you mean steering_request" in error
-    assert "nothing feeds advised_speed, speed_control_active, " in error
+    assert "unconnected inputs of vehicle (start values are used): " in error
+    assert "steering_wheel_request (did you mean steering_request" in error
+    assert "advised_speed, speed_control_active, " in error
 
 
 @pytest.mark.parametrize("kind", KINDS)

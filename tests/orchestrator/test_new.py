@@ -71,3 +71,18 @@ def test_a_name_that_is_taken_is_refused(made: str, capsys: pytest.CaptureFixtur
     for name in ("my-law", "json", "modelkit", "1st"):
         assert main(["new", "vehicle", name]) == 2
         assert f"{name}: is no name for a package" in capsys.readouterr().err
+
+
+def test_the_templates_run_without_warnings_alone_and_say_what_they_lack_together(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    for kind in ("controller", "vehicle"):
+        assert main(["new", kind, f"my_{kind}"]) == 0
+        assert main(["run", f"my_{kind}/scenario.yaml", "--no-page"]) == 0
+        assert "warning" not in capsys.readouterr().err
+    pair = ["--controller", "my_controller:MODEL", "--vehicle", "my_vehicle:MODEL"]
+    assert main(["run", "guo2015-case4", *pair, "--no-page", "--set", "stop_time=1"]) == 1
+    lines = capsys.readouterr().err.splitlines()
+    assert "apa: note: unconnected inputs of vehicle (start values are used): prompt" in lines
+    assert "apa: warning: outputs of controller that no input takes: speed_control_active, speed_request" in lines

@@ -84,7 +84,7 @@ def test_parameters_and_faults_of_a_third_slave(desk: Path, tmp_path: Path, caps
     assert main([*system, "--set", "gps.bais=20 cm"]) == 2
     assert "gps.bais: unknown; did you mean gps.bias?" in capsys.readouterr().err
     fault = "[{signal: gps.pose, kind: freeze, start: 3}]"
-    assert main([*system, "--set", f"faults={fault}"]) == 1
+    assert main([*system, "--force", "--set", f"faults={fault}"]) == 1
     assert read_log(tmp_path / "run.mcap").signals["controller.Yaw"][-1] == pytest.approx(
         math.degrees(read_log(tmp_path / "run.mcap").signals["gps.pose[3]"][300]) * -1.0, abs=1e-9
     )

@@ -34,7 +34,7 @@ def run_once(arguments: argparse.Namespace, beside: PictureBeside | None) -> int
     """Load the scenario, run, write, print; return the exit code."""
     scenario, left_out, foreign = load_fitting(arguments.scenario, arguments.set, foreign_of(arguments))
     if left_out:
-        say(f"apa: warning: left out, the FMU does not have them: {shortly(left_out)}")
+        say(f"apa: note: parameters that the FMU does not have are left out: {shortly(left_out)}")
     paced = arguments.realtime or arguments.live is not None
     realtime = Realtime(arguments.live, say) if paced else None
     return execute(arguments, scenario, foreign, arguments.out, beside, realtime).code

@@ -39,12 +39,15 @@ def documentation(model: Model, needs: str, fmi: int = 2) -> dict[str, bytes]:
 
 
 def terminals(model: Model, fmi: int = 2) -> bytes:
-    """Return terminalsAndIcons.xml, as FMI 3.0 defines it and FMI 2.0 may have it: buses of signals, and the icon."""
+    """Return terminalsAndIcons.xml, as FMI 3.0 defines it and FMI 2.0 may have it: buses of signals, and the icon.
+
+    Its version is that of the model description: FMI Library refuses an FMU in which the two differ.
+    """
     if fmi == 3:
         ports = {item.name: item.first.causality for item in shown_arrays(model)}
     else:
         ports = {item.name: item.causality for item in shown_variables(model)}
-    root = Element("fmiTerminalsAndIcons", fmiVersion="3.0")
+    root = Element("fmiTerminalsAndIcons", fmiVersion=f"{fmi}.0")
     picture = SubElement(root, "GraphicalRepresentation")
     SubElement(picture, "CoordinateSystem", SQUARE, suggestedScalingFactorTo_mm="0.1")
     SubElement(picture, "Icon", SQUARE)

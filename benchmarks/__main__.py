@@ -1,23 +1,62 @@
 """Runs every ``bench_*.py`` of this folder, each in a process of its own: ``python -m benchmarks [NAME...]``."""
 
+import argparse
+import importlib
 import os
 import platform
 import subprocess
 import sys
+import tempfile
 from pathlib import Path
 
+from benchmarks.results import FILE, MEASUREMENTS, SIZE, SKIPPED, SMALLEST, machine, read_measurements, write_table
 
-def main(names: list[str]) -> int:
-    """Run the benchmarks called ``names``, or all. Returns how many failed."""
-    folder = Path(__file__).parent
-    found = sorted(path.stem for path in folder.glob("bench_*.py"))
-    chosen = [name for name in found if not names or name.removeprefix("bench_") in names or name in names]
+
+def main(arguments: list[str]) -> int:
+    """Run the benchmarks that are named, or all. Returns how many failed."""
+    found = sorted(path.stem.removeprefix("bench_") for path in Path(__file__).parent.glob("bench_*.py"))
+    parser = argparse.ArgumentParser(prog="python -m benchmarks", description=__doc__)
+    parser.add_argument("names", nargs="*", metavar="NAME", help=f"of {', '.join(found)}")
+    parser.add_argument("--smallest", action="store_true", help="show only that they work; writes no table")
+    parser.add_argument("--table", type=Path, default=FILE, help="where the results go")
+    parser.add_argument("--in-process", action="store_true", help=argparse.SUPPRESS)
+    asked = parser.parse_args(arguments)
+    names = [name.removeprefix("bench_") for name in asked.names] or found
+    unknown = [name for name in names if name not in found]
+    if unknown:
+        parser.error(f"no benchmark {', '.join(unknown)}; there are {', '.join(found)}")
+    if asked.in_process:
+        return run_here(names[0])
     print(f"Python {platform.python_version()}, {os.cpu_count()} cores, {platform.machine()}")
-    failed = 0
-    for name in chosen:
-        print(f"\n== {name.removeprefix('bench_')}", flush=True)
-        failed += subprocess.run([sys.executable, "-m", f"benchmarks.{name}"], check=False).returncode != 0
-    return failed
+    return sum(run_apart(name, asked.smallest, asked.table) for name in names)
+
+
+def run_here(name: str) -> int:
+    """Run one benchmark in this process; one whose packages are not installed says so and is skipped."""
+    try:
+        module = importlib.import_module(f"benchmarks.bench_{name}")
+    except ModuleNotFoundError as error:
+        print(f"skipped: {error.name} is not installed")
+        return SKIPPED
+    module.main()
+    return 0
+
+
+def run_apart(name: str, is_smallest: bool, table: Path) -> bool:
+    """Run one benchmark in a process of its own and write its results into the table; return whether it failed."""
+    print(f"\n== {name}", flush=True)
+    where = machine()
+    with tempfile.TemporaryDirectory(prefix="benchmark-") as folder:
+        file = Path(folder) / "measurements.jsonl"
+        environment = {**os.environ, MEASUREMENTS: str(file), SIZE: SMALLEST if is_smallest else ""}
+        command = [sys.executable, "-m", "benchmarks", "--in-process", name]
+        code = subprocess.run(command, env=environment, check=False).returncode
+        measurements = read_measurements(file, name, where)
+    if code == 0 and not measurements:
+        print(f"{name} recorded nothing")
+    if code == 0 and measurements and not is_smallest:
+        write_table(measurements, table)
+    return code not in (0, SKIPPED) or (code == 0 and not measurements)
 
 
 if __name__ == "__main__":

@@ -22,6 +22,7 @@ import scipy.sparse
 import skfuzzy
 from skfuzzy import control
 
+from benchmarks.results import record, size
 from controller_fmu import MODEL
 from controller_fmu.preview.fuzzy import infer
 from controller_fmu.preview.rule_tables import STEERING_SYMMETRIC
@@ -38,7 +39,8 @@ from orchestrator.session.session import run_scenario
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "controller"))
 from qp_problems import dense, random_problem
 
-ROUNDS, OFTEN = 5, 50
+ROUNDS, OFTEN = size((5, 50), (1, 1))
+PROBLEMS = size(30, 2)
 PEAKS5, PEAKS7 = (-3.0, -1.5, 0.0, 1.5, 3.0), (-3.0, -2.0, -1.0, 0.0, 1.0, 2.0, 3.0)
 FUZZY = (PEAKS5, PEAKS5, PEAKS7, STEERING_SYMMETRIC)
 NAMES = ("NB", "NM", "NS", "ZE", "PS", "PM", "PB")
@@ -57,8 +59,11 @@ def micros(work: Callable[[], Any], count: int, rounds: int = ROUNDS) -> float:
 
 def scenarios() -> dict[str, Scenario]:
     """Return the drive of each controller."""
-    found = {name: scenario_of(name, 7.7, "zhang2022", "kinematic", "far", "none") for name in CONTROLLERS}
-    return {**found, "preview": load_scenario("preview", ["vehicle.body=kinematic"])}
+    found = {
+        name: scenario_of(name, 7.7, "zhang2022", "kinematic", "far", "none")
+        for name in size(CONTROLLERS, CONTROLLERS[:1])
+    }
+    return size({**found, "preview": load_scenario("preview", ["vehicle.body=kinematic"])}, found)
 
 
 def seen_by_controller(scenario: Scenario) -> list[Any]:
@@ -95,6 +100,8 @@ def bench_controllers(library: Any) -> None:
         python = micros(lambda p=params, u=seen, h=scenario.step_ns: replay(p, u, h), len(seen))
         fast = micros(fast_replay, len(seen), 5 * ROUNDS)
         worst = slowest(params, seen, scenario.step_ns)
+        record(f"control step, {name}, CPython", python, "us")
+        record(f"control step, {name}, compiled", fast, "us")
         print(f"{name:24s}{python:10.1f}{fast:10.2f}{len(seen):10d}{worst:14.2f}")
 
 
@@ -183,7 +190,7 @@ def scikit_fuzzy() -> Any:
 def bench_qp(library: Any) -> None:
     """Print the cost of one QP of the MPC, 12 steps, tolerance 1e-10 (ours) and 1e-6 (OSQP)."""
     rng = np.random.default_rng(1)
-    problems = [random_problem(rng) for _ in range(30)]
+    problems = [random_problem(rng) for _ in range(PROBLEMS)]
     matrices = [dense(*problem) for problem in problems]
 
     def ours() -> None:
@@ -218,11 +225,18 @@ def bench_qp(library: Any) -> None:
     print(f"\n{'QP of 12 steps [us]':24s}{'time':>10s}")
     print(f"{'ours, compiled':24s}{micros(by_c, OFTEN * len(problems), 3):10.0f}")
     for name, work in ways.items():
-        print(f"{name:24s}{micros(work, len(problems), 3):10.0f}")
+        cost = micros(work, len(problems), 3)
+        record(f"QP of 12 steps, {name}", cost, "us")
+        print(f"{name:24s}{cost:10.0f}")
 
 
-if __name__ == "__main__":
+def main() -> None:
+    """Print and record all."""
     made = compiled()
     bench_fuzzy(made)
     bench_qp(made)
     bench_controllers(made)
+
+
+if __name__ == "__main__":
+    main()

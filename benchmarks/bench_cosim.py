@@ -8,11 +8,12 @@ import tempfile
 from collections.abc import Callable
 from pathlib import Path
 
+from benchmarks.results import record, size
 from orchestrator.cosim.fmu_files import fmu_files
 from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.session.session import Ran, run_scenario
 
-ROUNDS = 5
+ROUNDS = size(5, 1)
 
 
 def main() -> None:
@@ -37,6 +38,7 @@ def main() -> None:
     print(f"case 4: {steps} communication steps of {scenario.step * 1e3:g} ms, medians of {ROUNDS} runs")
     for name, wall in median.items():
         factor = ran.recording.t[-1] / wall
+        record(f"one step, {name}", wall / steps * 1e6, "us")
         print(f"  {name:20} {wall * 1e3:8.1f} ms  {wall / steps * 1e6:7.1f} us a step  {factor:6.0f} times real time")
     base, fmus, log = (median[name] / steps * 1e6 for name in list(runs)[:3])
     print("one step of the PythonFMU pair, all signals exchanged and recorded:")

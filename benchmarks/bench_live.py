@@ -10,13 +10,14 @@ from pathlib import Path
 from typing import Any
 
 from benchmarks.bench_sweep import bound
+from benchmarks.results import SKIPPED, record, size
 from docs.pictures import FLAGS
 from orchestrator.live.page import live_page
 from orchestrator.live.situation import shipped
 from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.sweep.batch import run_batch
 
-RUNS, SECONDS = 300, 6.0
+RUNS, SECONDS = size((300, 6.0), (5, 0.2))
 MANY = """(count) => {
   const { lab } = window.live, params = lab.situation.params(), { times } = lab.situation.data;
   const begun = performance.now();
@@ -31,14 +32,15 @@ def main() -> None:
     """Print what was measured."""
     program = shutil.which("chromium") or shutil.which("google-chrome")
     if program is None:
-        print("no Chromium here")
-        return
+        print("skipped: no Chromium is installed")
+        raise SystemExit(SKIPPED)
     from playwright.sync_api import sync_playwright
 
     path = Path(tempfile.mkdtemp()) / "live.html"
     path.write_text(live_page(shipped()), encoding="utf-8")
     one = len(live_page([load_scenario("guo2015-case4")]).encode())
     print(f"page: {path.stat().st_size / 1e3:.0f} kB with all scenarios, {one / 1e3:.0f} kB with one")
+    record("page with one scenario", one / 1e3, "kB")
     native = _native()
     with sync_playwright() as play:
         browser = play.chromium.launch(executable_path=program, args=FLAGS)
@@ -51,6 +53,8 @@ def main() -> None:
         page.evaluate(MANY, 20)
         rate = RUNS / min(page.evaluate(MANY, RUNS) for _ in range(3))
         print(f"case 4: {rate:.0f} runs/s in the page, {native:.0f} native on one thread, ratio {rate / native:.2f}")
+        record("case-4 runs in the page", rate, "1/s")
+        record("rate in the page / native on one thread", rate / native, "1")
         _drive(page)
         browser.close()
 
@@ -76,6 +80,7 @@ def _drive(page: Any) -> None:
     after, took = _metrics(session), time.perf_counter() - begun
     frames = page.evaluate("window.frames_seen") / took
     share = (after["TaskDuration"] - before["TaskDuration"]) / took
+    record("share of one core, driven at 1x", 100.0 * share, "%")
     print(f"driven at 1x: {frames:.0f} frames/s, {share:.0%} of one core in the page's own thread")
 
 

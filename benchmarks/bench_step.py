@@ -15,6 +15,7 @@ import numpy as np
 from libcosimpy.CosimExecution import CosimExecution
 from libcosimpy.CosimLogging import CosimLogLevel, log_output_level
 
+from benchmarks.results import record, size
 from fmus.compiled_batch import compiled_rows
 from fmus.systems.ssp import write_ssp
 from modelkit.variables import variables, with_values
@@ -28,9 +29,10 @@ from orchestrator.scenario.models import MODELS
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.session.session import run_scenario
 
-ROUNDS = 7
-STEPS = 2000
-PAIRS = 60
+ROUNDS = size(7, 1)
+STEPS = size(2000, 50)
+PAIRS = size(60, 1)
+WHOLE_RUNS = size(5, 1)
 Files = dict[str, Path]
 Loop = Callable[[], float]
 """Drives STEPS steps and returns the seconds they took, without loading and initializing."""
@@ -109,6 +111,7 @@ def main() -> None:
     ours = median["native, compiled master"]
     print(f"one step of the pair, {STEPS} steps, median (and least) of {ROUNDS} rounds")
     for name, cost in median.items():
+        record(f"one step, {name}", cost, "us")
         print(f"  {name:30} {cost:8.2f} us ({least[name]:8.2f})  {cost / ours:8.2f} times the compiled master")
     master_to_limit(scenario, native)
     whole_runs(scenario, python, native, folder)
@@ -122,6 +125,8 @@ def master_to_limit(scenario: Scenario, native: Files) -> None:
     )
     pairs = [[loop() / STEPS * 1e9 for loop in loops] for _ in range(PAIRS)]
     master, limit = (min(pair[side] for pair in pairs) for side in (0, 1))
+    record("one step, compiled master, least processor time", master, "ns")
+    record("one step, no FMI at all, least processor time", limit, "ns")
     print(
         f"processor time, the quickest of {PAIRS} rounds: compiled master {master:.0f} ns, limit {limit:.0f} ns", end=""
     )
@@ -132,14 +137,16 @@ def whole_runs(scenario: Scenario, python: Files, native: Files, folder: Path) -
     """Print wall times of case 4 to its end, recorded, without and with the log."""
     kinds = {"python": python, "native": native}
     walls: dict[tuple[str, bool], list[float]] = {(kind, log): [] for log in (False, True) for kind in kinds}
-    for _ in range(5):
+    for _ in range(WHOLE_RUNS):
         for kind, log in walls:
             path = folder / f"{kind}.mcap" if log else None
             walls[kind, log].append(run_scenario(scenario, kinds[kind], kind=kind, log=path).wall_time)
-    print("case 4 to its end, recorded; medians of 5")
+    print(f"case 4 to its end, recorded; medians of {WHOLE_RUNS}")
     for log in (False, True):
         one, other = (statistics.median(walls[kind, log]) * 1e3 for kind in ("python", "native"))
         what = "with the log" if log else "without log"
+        record(f"case 4 to its end, PythonFMUs, {what}", one, "ms")
+        record(f"case 4 to its end, native FMUs, {what}", other, "ms")
         print(f"  {what:14} PythonFMUs {one:7.1f} ms   native {other:7.1f} ms   {one / other:5.1f} times faster")
 
 

@@ -17,11 +17,13 @@ from typing import Any
 
 import numpy as np
 
+from benchmarks.results import record, size
 from orchestrator.cosim.fmu_files import fmu_files
 from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.session.session import run_scenario
 from orchestrator.sweep.batch import compiled, run_batch
+from orchestrator.sweep.disturbed import fault_numbers
 from orchestrator.sweep.engine import cores
 from orchestrator.sweep.job import Chunk, arrays, make_job
 from orchestrator.sweep.rows import FIRST_MEASURE
@@ -30,9 +32,9 @@ from orchestrator.sweep.study.study import Study
 from orchestrator.sweep.study.study_file import StudyFile
 from orchestrator.sweep.sweep import Options, sweep
 
-REPEATS = 5
-MANOEUVRES = 2000
-SIZES = (1_000, 10_000, 100_000)
+REPEATS = size(5, 1)
+MANOEUVRES = size(2000, 20)
+SIZES = size((1_000, 10_000, 100_000), (20,))
 SHORT = 0.5
 """Length of the runs whose number is grown [s]."""
 
@@ -58,7 +60,7 @@ def measured(work: Callable[[], object], repeats: int = REPEATS) -> tuple[float,
     return statistics.median(walls), statistics.median(processors)
 
 
-def in_threads(rows: Any, parts: list[tuple[Any, Any, Any]]) -> None:
+def in_threads(rows: Any, parts: list[tuple[Any, Any, Any, Any]]) -> None:
     with ThreadPoolExecutor(cores()) as pool:
         list(pool.map(lambda part: rows(*part), parts))
 
@@ -66,25 +68,31 @@ def in_threads(rows: Any, parts: list[tuple[Any, Any, Any]]) -> None:
 def rates() -> None:
     job, chunk = bound(MANOEUVRES)
     begun = time.perf_counter()
-    rows = compiled(tuple(job.measures), Scenario(**job.scenario))
+    model = Scenario(**job.scenario)
+    rows = compiled(tuple(job.measures), model)
     print(f"models ready after {time.perf_counter() - begun:.1f} s (compiled once per source, then kept)")
-    parameters, times = arrays(job, chunk)
+    (parameters, times), faults = arrays(job, chunk), fault_numbers(job, chunk, model)
     out = np.empty((MANOEUVRES, FIRST_MEASURE + len(job.measures)))
-    size = max(1, MANOEUVRES // (4 * cores()))
-    places = [slice(at, at + size) for at in range(0, MANOEUVRES, size)]
-    parts = [(parameters[place], times[place], out[place]) for place in places]
-    wall, processor = measured(lambda: rows(parameters, times, out))
+    share = max(1, MANOEUVRES // (4 * cores()))
+    places = [slice(at, at + share) for at in range(0, MANOEUVRES, share)]
+    parts = [(parameters[place], times[place], faults[place], out[place]) for place in places]
+    wall, processor = measured(lambda: rows(parameters, times, faults, out))
+    record("case-4 manoeuvre, compiled, processor time", 1e3 * processor / MANOEUVRES, "ms")
+    record("case-4 manoeuvres, compiled, one thread", MANOEUVRES / wall, "1/s")
     print(f"compiled, one thread       {MANOEUVRES / wall:8.0f} case-4 manoeuvres a second, "
           f"{1e3 * processor / MANOEUVRES:.2f} ms of processor each")  # fmt: skip
     many, processor = measured(lambda: in_threads(rows, parts))
     print(f"compiled, {cores()} threads        {MANOEUVRES / many:8.0f} a second, "
           f"{1e3 * processor / MANOEUVRES:.2f} ms of processor each")  # fmt: skip
+    record(f"case-4 manoeuvres, compiled, {cores()} threads", MANOEUVRES / many, "1/s")
     steps = float(out[:, 1].sum()) / 1e7
+    record("one exchange and step of the pair, processor time", 1e9 * processor / steps, "ns")
     print(f"one exchange and step of the pair: {1e9 * processor / steps:.0f} ns of processor")
     scenario = load_scenario("guo2015-case4")
     for kind in ("python", "native"):
         files = fmu_files(kind)
         alone, burnt = measured(lambda files=files, kind=kind: run_scenario(scenario, files, kind=kind), 3)
+        record(f"case-4 manoeuvre, {kind} FMUs, processor time", 1e3 * burnt, "ms")
         print(f"{kind:6} FMUs, one process   {1.0 / alone:8.1f} a second, {1e3 * burnt:.0f} ms of processor each; "
               f"the batch needs {burnt * MANOEUVRES / processor:.0f} times less")  # fmt: skip
 
@@ -98,6 +106,7 @@ def overhead() -> None:
             sweep(study(MANOEUVRES), Path(folder), Options(workers=1))
 
     wall, processor = measured(whole)
+    record("processor time a sweep adds to its runs", 100.0 * (processor / mine - 1.0), "%")
     print(f"sweep of {MANOEUVRES} on one thread: {processor:.2f} s of processor, the runs alone {mine:.2f} s: "
           f"{100.0 * (processor / mine - 1.0):+.1f} % (wall {100.0 * (wall / model - 1.0):+.1f} %)")  # fmt: skip
 
@@ -126,14 +135,20 @@ def growth() -> None:
         command = [sys.executable, "-m", "benchmarks.bench_sweep", str(count)]
         done = subprocess.run(command, check=True, capture_output=True, text=True, env=os.environ)
         found = json.loads(done.stdout)
+        record(f"run of {SHORT} s among {count:,}, processor time", 1e6 * found["processor"] / count, "us")
         print(f"{count:8} runs {found['wall']:7.2f} s, {1e6 * found['processor'] / count:6.0f} us of processor each, "
               f"{found['most']:.0f} MB at most ({found['most'] - found['before']:+.0f} MB by the sweep)")  # fmt: skip
+
+
+def main() -> None:
+    """Print and record all."""
+    rates()
+    overhead()
+    growth()
 
 
 if __name__ == "__main__":
     if len(sys.argv) > 1:
         one_size(int(sys.argv[1]))
     else:
-        rates()
-        overhead()
-        growth()
+        main()

@@ -1,28 +1,32 @@
-"""How long the valet plans, sample by sample, and how it drives: ``python benchmarks/bench_valet.py FILE.yaml ...``.
+"""How long the valet plans, sample by sample, and how it drives: ``python -m benchmarks.bench_valet [FILE.yaml ...]``.
 
-The scenarios are those of ``apa import tpcap``, or any with ``system: valet``. Times are of the processor, compiled;
-samples are measured in three passes, of which the least counts, since other programs take their share.
+The scenarios are those of ``apa import tpcap``, or any with ``system: valet``; without a file, the shipped ones.
+Times are of the processor, compiled; samples are measured in three passes, of which the least counts, since other
+programs take their share.
 """
 
 import argparse
 import statistics
+import sys
 import time
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from benchmarks.results import record, size
 from fmus.native.libraries import load_model, memory_size
 from modelkit.variables import flatten, variables, with_values
 from orchestrator.cosim.fmu_files import fmu_files
-from orchestrator.scenario.load_scenario import load_scenario
+from orchestrator.scenario.load_scenario import load_scenario, scenario_names
 from orchestrator.session.session import run_scenario
 from orchestrator.verdict.geometry import CarOutline, described
 from orchestrator.verdict.polygons import polygon_clearances
 from orchestrator.verdict.summary import summarize
 
 STEP_NS = 10_000_000
-PASSES = 3
+PASSES = size(3, 1)
 LONGEST = 6000
 ERRORS = (
     "vehicle.body=double_track",
@@ -55,6 +59,11 @@ def planned(scenario: Any) -> Any:
     return dict(zip(names, y.tolist(), strict=True)), times
 
 
+def shipped() -> list[str]:
+    """Return the names of the shipped scenarios of the valet."""
+    return size([name for name in scenario_names() if name.startswith("valet-")], ["valet-parallel"])
+
+
 def driven(scenario: Any, files: Any) -> Any:
     """Return the summary of a drive, its clearance [m] to polygons and scene, its length [m] and cusps."""
     ran = run_scenario(scenario, files, kind="native")
@@ -68,21 +77,21 @@ def driven(scenario: Any, files: Any) -> Any:
     return summarize(ran.recording, scenario, ran.wall_time), clear, signals["vehicle.distance"][-1], cusps
 
 
-def main() -> None:
-    """Print a table."""
+def main(arguments: Sequence[str] = ()) -> None:
+    """Print a table of the files among ``arguments``, or of the shipped scenarios."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("files", nargs="+")
+    parser.add_argument("files", nargs="*")
     parser.add_argument("--perfect", action="store_true", help="drive without errors of sensors and actuators")
     parser.add_argument("--set", action="append", default=[])
-    arguments = parser.parse_args()
+    asked = parser.parse_args(arguments)
     files, rows = fmu_files("native", lambda text: None), []
     print(HEAD, "|---:" * 10 + "|", sep="\n")
-    for name in arguments.files:
-        scenario = load_scenario(name, arguments.set)
+    for name in asked.files or shipped():
+        scenario = load_scenario(name, asked.set)
         passes = [planned(scenario) for _ in range(PASSES)]
         told, times = passes[0][0], np.min([item[1] for item in passes], axis=0)
-        errors = [] if arguments.perfect else list(ERRORS)
-        summary, clear, length, cusps = driven(load_scenario(name, [*errors, *arguments.set]), files)
+        errors = [] if asked.perfect else list(ERRORS)
+        summary, clear, length, cusps = driven(load_scenario(name, [*errors, *asked.set]), files)
         rows.append((times.sum(), times.max(), summary.outcome))
         print(
             f"| {Path(name).stem.removeprefix('Case')} | {len(times)} | {times.sum() * 1e3:.1f} ms | "
@@ -92,6 +101,8 @@ def main() -> None:
             flush=True,
         )
     middle = statistics.median(row[0] for row in rows)
+    record("planning, median of the scenarios, processor time", middle * 1e3, "ms")
+    record("planning, slowest sample, processor time", max(row[1] for row in rows) * 1e3, "ms")
     print(
         f"\nmedian {middle * 1e3:.1f} ms, longest {max(row[0] for row in rows):.2f} s, "
         f"slowest sample {max(row[1] for row in rows) * 1e3:.2f} ms, {sum(row[2] == 'parked' for row in rows)} of "
@@ -100,4 +111,4 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    main()
+    main(sys.argv[1:])

@@ -19,6 +19,7 @@ from vehiclemodels.vehicle_dynamics_ks import vehicle_dynamics_ks
 from vehiclemodels.vehicle_dynamics_mb import vehicle_dynamics_mb
 from vehiclemodels.vehicle_dynamics_st import vehicle_dynamics_st
 
+from benchmarks.results import record, size
 from fmus.native.kept import kept_library
 from fmus.native.libraries import model_files
 from modelkit.vocabulary import Pose, Prompt
@@ -33,7 +34,7 @@ from vehicle_fmu.bodies.single_track import SingleTrackParams, SingleTrackState,
 from vehicle_fmu.bodies.wheels import Wheel
 from vehicle_fmu.effort import Effort
 
-ROUNDS = 7
+ROUNDS = size(7, 1)
 WHEELBASE = 2.405
 HELD = KinematicInput(1.0, 0.2)
 MOVING = Motion(Pose(), 1.0, 0.0, 0.0)
@@ -145,24 +146,28 @@ def main() -> None:
     library = compiled()
     found = medians(
         {
-            "CPython": bodies(300),
-            "compiled": compiled_bodies(library, 30_000),
-            "CommonRoad": commonroad(300),
-            "vehicle": vehicles(library, 2_000),
+            "CPython": bodies(size(300, 10)),
+            "compiled": compiled_bodies(library, size(30_000, 100)),
+            "CommonRoad": commonroad(size(300, 10)),
+            "vehicle": vehicles(library, size(2_000, 100)),
         }
     )
     print("one 1 ms step of a body [us]")
     print(f"  {'':14}{'CPython':>10}{'compiled':>10}{'times real time':>18}{'CommonRoad RHS':>17}{'RHS / step':>12}")
     for name, theirs in zip(NAMES, ("KS", "ST", "MB"), strict=True):
         python, fast, rhs = found[f"CPython {name}"], found[f"compiled {name}"], found[f"CommonRoad {theirs}"]
+        record(f"1 ms step, {name}, CPython, processor time", python, "us")
+        record(f"1 ms step, {name}, compiled, processor time", fast, "us")
         ratio = f"{rhs / python:.2f} | {rhs / fast:.0f}"
         print(f"  {name:14}{python:10.1f}{fast:10.3f}{1000.0 / fast:18.0f}{f'{theirs} {rhs:.1f}':>17}{ratio:>12}")
     print("the whole vehicle, compiled, one communication step of 10 ms")
     for name in NAMES:
         cost = found[f"vehicle {name}"]
+        record(f"10 ms step of the whole vehicle, {name}, compiled, processor time", cost, "us")
         print(f"  {name:14}{cost:10.2f} us{1e4 / cost:12.0f} times real time")
     print("case 4 with native FMUs under the compiled master, every signal recorded")
     for name, factor in native_factors().items():
+        record(f"case 4, native FMUs, {name}", factor, "times real time")
         print(f"  {name:14}{factor:25.0f} times real time")
 
 

@@ -23,6 +23,7 @@ from equations import equations  # noqa: E402
 from pydantic import BaseModel  # noqa: E402
 
 import controller_fmu  # noqa: E402
+from benchmarks.results import read_table  # noqa: E402
 from fmus.native.web import can_build  # noqa: E402
 from modelkit.model import Model  # noqa: E402
 from modelkit.states import parts_of  # noqa: E402
@@ -72,6 +73,7 @@ def pages() -> dict[str, str]:
         "scenarios.md": scenarios_page(),
         "files.md": files_page(),
         "equations.md": equations_page(),
+        "benchmarks.md": benchmarks_page(),
     }
 
 
@@ -80,6 +82,19 @@ def equations_page() -> str:
     rows = [[f"{item.paper} ({item.number})", item.where, item.text] for item in equations(ROOT)]
     head = "# Equations\n\nWhich equation of which paper stands where. What was misprinted is on the papers' pages.\n\n"
     return head + table(["equation", "file", "what stands there"], rows)
+
+
+def benchmarks_page() -> str:
+    """Return what the benchmarks measured last, and where."""
+    head = "`make bench` measures speed and writes `benchmarks/results.tsv`, which this page shows."
+    parts = [f"# Benchmarks\n\n{head}\n"]
+    rows = read_table()
+    for benchmark in sorted({row.benchmark for row in rows}):
+        found = [row for row in rows if row.benchmark == benchmark]
+        stamps = sorted({f"{row.machine}; {row.date}, commit {row.commit}" for row in found})
+        parts.append(f"## {benchmark}\n\n`python -m benchmarks {benchmark}`: {'; '.join(stamps)}\n")
+        parts.append(table(["quantity", "value", "unit"], [[row.quantity, row.value, row.unit] for row in found]))
+    return "\n".join(parts)
 
 
 def model_page(model: Model) -> str:

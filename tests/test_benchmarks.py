@@ -1,12 +1,18 @@
-"""The C of the benchmarks compiles with the models' C as it is now, and does what CPython does."""
+"""Each benchmark runs, and its C compiles with the models' C as it is now and does what CPython does."""
 
 import importlib
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
+from benchmarks.__main__ import main
+from benchmarks.results import Measurement, read_table, write_table
 from modelkit.variables import flatten
+
+BENCHMARKS = sorted(file.stem.removeprefix("bench_") for file in Path("benchmarks").glob("bench_*.py"))
+NEEDS_LITTLE = ("cosim", "sweep")
 
 
 @pytest.fixture
@@ -43,3 +49,36 @@ def test_controllers(bench: Any) -> None:
     flat = [np.array(flatten(item)) for item in (stages, weights)]
     found = library.bench_solve(1, *now, *(item.ctypes.data for item in flat))
     assert found == module.solve(now, stages, weights, 1e-10, 40).nodes[0].u
+
+
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=() if name in NEEDS_LITTLE else pytest.mark.release) for name in BENCHMARKS]
+)
+def test_runs_at_its_smallest_size(name: str, capfd: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    assert main([name, "--smallest", "--table", str(tmp_path / "table.tsv")]) == 0
+    assert f"== {name}" in capfd.readouterr().out
+    assert not (tmp_path / "table.tsv").exists(), "the smallest size says nothing about speed"
+
+
+def test_a_benchmark_that_fails_or_measures_nothing_is_counted(
+    capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("sys.executable", "false")
+    assert main(["sweep", "cosim", "--smallest"]) == 2
+    monkeypatch.setattr("sys.executable", "true")
+    assert main(["sweep", "--smallest"]) == 1
+    assert "sweep recorded nothing" in capfd.readouterr().out
+    with pytest.raises(SystemExit) as end:
+        main(["swep"])
+    assert end.value.code == 2
+    assert "no benchmark swep; there are" in capfd.readouterr().err
+
+
+def test_new_results_replace_those_of_the_same_benchmark_only(tmp_path: Path) -> None:
+    def row(benchmark: str, value: str) -> Measurement:
+        return Measurement(benchmark, "one step", value, "us", "x86_64, 2 cores", "2026-11-26", "abc")
+
+    file = tmp_path / "table.tsv"
+    write_table([row("sweep", "1"), row("step", "2")], file)
+    write_table([row("sweep", "3")], file)
+    assert read_table(file) == [row("step", "2"), row("sweep", "3")]

@@ -6,10 +6,9 @@ import toy_model
 
 from controller_fmu import MODEL as CONTROLLER
 from controller_fmu import VALET
-from fmus.native import fmu as native_fmu
 from fmus.native.libraries import python_front
-from fmus.native.platforms import host
 from fmus.python.fmu import build
+from tests.fmi.built import native_fmu_of
 from vehicle_fmu import MODEL as VEHICLE
 
 MODELS = {model.name: model for model in (toy_model.MODEL, VEHICLE, CONTROLLER)}
@@ -26,24 +25,24 @@ def python_fmus(tmp_path_factory: pytest.TempPathFactory) -> Any:
 class NativeFmus(dict[str, Path]):
     """Path of each model's native FMU for this machine, built when it is first asked for."""
 
-    def __init__(self, folder: Any, fmi: Any = 2) -> None:
-        self.folder, self.fmi = folder, fmi
+    def __init__(self, fmi: int = 2) -> None:
+        self.fmi = fmi
 
     def __missing__(self, name: str) -> Path:
-        self[name] = native_fmu.build(ALL_MODELS[name], self.folder, [host()], fmi=self.fmi)
+        self[name] = native_fmu_of(ALL_MODELS[name], self.fmi)
         return self[name]
 
 
 @pytest.fixture(scope="session")
-def native_fmus(tmp_path_factory: pytest.TempPathFactory) -> Any:
+def native_fmus() -> Any:
     """Paths of the native FMUs of all models for this machine, by name."""
-    return NativeFmus(tmp_path_factory.mktemp("native_fmus"))
+    return NativeFmus()
 
 
 @pytest.fixture(scope="session")
-def fmi3_fmus(tmp_path_factory: pytest.TempPathFactory) -> Any:
+def fmi3_fmus() -> Any:
     """Paths of the FMI 3.0 FMUs of all models for this machine, by name."""
-    return NativeFmus(tmp_path_factory.mktemp("fmi3_fmus"), fmi=3)
+    return NativeFmus(fmi=3)
 
 
 @pytest.fixture(params=list(MODELS))

@@ -18,6 +18,7 @@ from fmus.contents.variables import fmi_variables
 from fmus.native import fmu as native_fmu
 from fmus.native.platforms import host
 from modelkit.variables import variables
+from tests.fmi.built import native_fmu_of
 from tests.fmi.host import random_inputs
 from tests.fmi.raw3 import OK, Library3
 from tests.fmi.test_python_fmu import STEPS, in_process
@@ -27,8 +28,8 @@ TABLE = table_model.MODEL
 
 
 @pytest.fixture(scope="session")
-def table_fmu(tmp_path_factory: pytest.TempPathFactory) -> Any:
-    return native_fmu.build(TABLE, tmp_path_factory.mktemp("table"), [host()], fmi=3)
+def table_fmu() -> Any:
+    return native_fmu_of(TABLE, fmi=3)
 
 
 def read(path: Any, name: Any) -> Any:

@@ -17,12 +17,11 @@ from fmus.contents.arrays import fmi_arrays, shown_arrays
 from fmus.contents.description import model_description
 from fmus.contents.description3 import model_description3
 from fmus.contents.variables import fmi_variables, shown_variables
-from fmus.native import fmu as native_fmu
-from fmus.native.platforms import host as this_platform
 from fmus.python import fmu as python_fmu
 from modelkit.variables import constructor, flatten, variables, with_values
 from orchestrator.cli import main
 from orchestrator.scenario.load_scenario import load_scenario
+from tests.fmi.built import native_fmu_of
 from tests.fmi.host import ERROR, OK, Host, random_inputs
 from tests.fmi.test_python_fmu import bits
 from tests.fmi.test_tunable import TO_CONTROLLER, TO_VEHICLE
@@ -177,8 +176,8 @@ def python_systems(tmp_path_factory: pytest.TempPathFactory) -> Any:
 
 
 @pytest.fixture(scope="module")
-def native_apa(tmp_path_factory: pytest.TempPathFactory) -> Any:
-    return native_fmu.build(APA, tmp_path_factory.mktemp("native_apa"), [this_platform()])
+def native_apa() -> Any:
+    return native_fmu_of(APA)
 
 
 @each

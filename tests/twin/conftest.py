@@ -2,16 +2,15 @@ from typing import Any
 
 import pytest
 
-from fmus.native import fmu as native_fmu
 from fmus.native.libraries import python_front
-from fmus.native.platforms import host
 from fmus.python import fmu as python_fmu
 from orchestrator.scenario.models import MODELS
+from tests.fmi.built import native_fmu_of
 
 BUILD = {
     "python": lambda model, folder: python_fmu.build(model, folder, python_front()),
-    "native": lambda model, folder: native_fmu.build(model, folder, [host()]),
-    "fmi3": lambda model, folder: native_fmu.build(model, folder, [host()], fmi=3),
+    "native": lambda model, _: native_fmu_of(model),
+    "fmi3": lambda model, _: native_fmu_of(model, fmi=3),
 }
 
 

@@ -14,7 +14,6 @@ from fmpy.validation import validate_fmu
 
 from fmus.contents.dependencies import initial_dependencies
 from fmus.contents.variables import shown_variables
-from fmus.native import fmu as native_fmu
 from fmus.native.platforms import host as this_platform
 from modelkit.assembly import assembled
 from modelkit.variables import flatten, variables, with_values
@@ -26,6 +25,7 @@ from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.scenario.models import MODELS, models_for
 from orchestrator.session.session import run_scenario
 from orchestrator.text.errors import BadInput
+from tests.fmi.built import native_fmu_of
 from tests.fmi.host import OK, Host
 from tests.twin.replays import CLibrary, Fmi3
 from tests.twin.test_same_bits import same
@@ -58,10 +58,9 @@ def recording(fmus: Any) -> Any:
 
 
 @pytest.fixture(scope="module")
-def containers(tmp_path_factory: pytest.TempPathFactory) -> Any:
+def containers() -> Any:
     """Version of FMI -> the system of CASE as one FMU."""
-    folder = tmp_path_factory.mktemp("containers")
-    return {fmi: native_fmu.build(one_model(CASE), folder / str(fmi), [this_platform()], fmi=fmi) for fmi in (2, 3)}
+    return {fmi: native_fmu_of(one_model(CASE), fmi) for fmi in (2, 3)}
 
 
 def names(cls: Any) -> Any:

@@ -27,6 +27,7 @@ LIKE_OTHERS = (
     *("apa-pull-out-right", "apa-resume", "apa-switched-on-again", "apa-told-wrong", "apa-slot-too-shallow"),
     *("apa-switched-off", "apa-parallel-tight", "apa-parallel-left", "apa-parallel-walls", "apa-parallel-deep"),
     *("apa-perpendicular-tight", "apa-perpendicular-walls", "apa-pedestrian-stays", "apa-not-confirmed"),
+    *("preview-8", "preview-18", "preview-geometry"),
     "cicap-bicycle",
 )
 """Drives of many seconds of CPython each, through models whose lines others take too; tests/golden has all."""

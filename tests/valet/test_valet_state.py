@@ -9,14 +9,13 @@ import pytest
 
 from controller_fmu import VALET
 from controller_fmu.planning.plan_store import PlanStore
-from fmus.native import fmu as native_fmu
 from fmus.native.compilers import can_compile
 from fmus.native.libraries import load_model, memory_size
-from fmus.native.platforms import host
 from fmus.python import fmu as python_fmu
 from modelkit.store import size_of
 from modelkit.variables import with_values
 from orchestrator.scenario.load_scenario import load_scenario
+from tests.fmi.built import native_fmu_of
 from tests.fmi.host import Host
 from tests.fmi.raw import OK, Library, state_pointer
 
@@ -33,7 +32,7 @@ def stepped(fmu: Any, component: Any, first: Any, last: Any) -> Any:
 
 
 def test_a_plan_goes_on_in_another_instance(tmp_path: Path) -> None:
-    fmu = Library(native_fmu.build(VALET, tmp_path, [host()]), tmp_path / "files")
+    fmu = Library(native_fmu_of(VALET), tmp_path / "files")
     scenario = load_scenario("valet-nose-in")
     given = {name: value for name, value in scenario.controller.items() if VALET.shows(name)}
     start = {f"odometry.{axis}": scenario.vehicle.get(f"start.{axis}", 0.0) for axis in ("x", "y", "heading")}

@@ -6,6 +6,17 @@ import sys
 from pathlib import Path
 
 from tests.mutants.checks import CHECKS
+from tests.mutants.fixed import (
+    LEAST_IN_CODE,
+    LIMIT_OF_CPU,
+    detected_by,
+    draw,
+    import_project,
+    located,
+    packages,
+    read_table,
+    write_table,
+)
 from tests.mutants.listed import listed
 from tests.mutants.printed import printed
 from tests.mutants.runner import ROOT, checkout, prepare, run
@@ -31,11 +42,17 @@ def main() -> int:
     parser.add_argument(
         "--printed", action="store_true", help="thirty in printed constants, tables, signs and guards of four papers"
     )
+    parser.add_argument(
+        "--fixed", action="store_true", help="those of all packages in fixed.tsv, each against its test"
+    )
+    parser.add_argument("--find", action="store_true", help="with --fixed: draw the list anew, about two a package")
     parser.add_argument("--checks", help=f"in this order, of {', '.join(CHECKS)}")
     parser.add_argument("--every", type=int, default=1, help="each so many-th of them")
     parser.add_argument("--only", default="", help="of this system")
     parser.add_argument("--out", type=Path, help="where the verdicts go, as JSON lines; what it has already is kept")
     asked = parser.parse_args()
+    if asked.fixed:
+        return _run_fixed(asked.find)
     mutants = listed(ROOT) if asked.listed else drawn(ROOT, asked.count, asked.seed)
     if asked.printed:
         mutants = printed(ROOT)
@@ -52,6 +69,26 @@ def _done(out: Path | None) -> set[str]:
         return set()
     rows = [json.loads(line) for line in out.read_text(encoding="utf-8").splitlines()]
     return {row["name"] for row in rows if any(row["found"].values())}
+
+
+def _run_fixed(is_to_be_found: bool) -> int:
+    """Run each mistake of the fixed list against its test; return 0 if all that are still in the code are detected."""
+    import_project()
+    if is_to_be_found:
+        write_table([row for package in packages() for row in draw(package, 2, 5, SEED)])
+    rows = read_table()
+    unfit = detected_by(None, sorted({row.test for row in rows}), limit=20 * LIMIT_OF_CPU)
+    if unfit:
+        print(f"{unfit} fails without any mistake")
+        return 1
+    there = missed = 0
+    for row in rows:
+        mutant = located(row)
+        found = detected_by(mutant, [row.test]) or "NOBODY" if mutant else "not in the code any more"
+        there, missed = there + (mutant is not None), missed + (found == "NOBODY")
+        print(f"{row.file}: {row.before} -> {row.after}\n    {found}", flush=True)
+    print(f"{there - missed} of {there} found; {len(rows) - there} of {len(rows)} not in the code any more")
+    return int(missed > 0 or there < LEAST_IN_CODE * len(rows))
 
 
 def _run(mutants: list[Mutant], names: list[str], asked: argparse.Namespace) -> int:

@@ -58,8 +58,9 @@ class Mutant(NamedTuple):
 
     @property
     def system(self) -> str:
-        """The package it is in."""
-        return Path(self.file).relative_to(CONTROLLERS).parts[0]
+        """The system of the controller it is in, or the package."""
+        file = Path(self.file)
+        return file.relative_to(CONTROLLERS).parts[0] if file.is_relative_to(CONTROLLERS) else file.parent.as_posix()
 
     def put_into(self, text: str) -> str:
         """Return the file's text with the mistake."""

@@ -6,7 +6,7 @@ SCENARIO ?= guo2015-case4
 
 PYTEST = $(BIN)/python -m pytest -n auto --dist loadfile --no-loadscope-reorder -q
 
-.PHONY: run test quick release release-tests fuzz mutants check lint types bench docs reproduce clean help
+.PHONY: run test quick release release-tests costs fuzz mutants check lint types bench docs reproduce clean help
 
 help: ## Show this list
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed 's/:.*## /\t/' | expand -t 14
@@ -18,7 +18,7 @@ run: $(VENV)/.run ## Install, build the FMUs, run a parking case, print the tabl
 test: $(VENV)/.test ## Install and pass the tests that each change must pass
 	$(PYTEST) -m 'not release'
 
-quick: lint types ## Lint, types and the tests that take a minute together
+quick: lint types ## Lint, types and the tests that cost less than a second (tests/costs.tsv)
 	$(PYTEST) -m 'not slow'
 
 release: check release-tests mutants bench docs ## All that must hold before a release and each night
@@ -26,11 +26,15 @@ release: check release-tests mutants bench docs ## All that must hold before a r
 release-tests: $(VENV)/.test ## The tests that need not run on each change
 	$(PYTEST) -m release
 
+costs: $(VENV)/.test ## Run all tests and record what each costs in tests/costs.tsv
+	$(PYTEST) --costs
+
 FUZZ_SECONDS ?= 600
 fuzz: $(VENV)/.test ## Attack inputs, logs, kills and FMI calls, ten minutes each, with new seeds
 	for kind in inputs logs kills calls; do $(BIN)/python -m tests.fuzz $$kind --seconds $(FUZZ_SECONDS) || exit 1; done
 
 mutants: $(VENV)/.test ## Make mistakes in the laws of all papers and say which nobody finds, an hour on one core
+	$(BIN)/python -m tests.mutants --fixed
 	$(BIN)/python -m tests.mutants --listed
 	$(BIN)/python -m tests.mutants
 

@@ -1,4 +1,4 @@
-"""What all tests share: one browser a process, which files are slow, no clock over drawn examples, ``--update``."""
+"""What all tests share: one browser a process, order and marks by cost, no clock over drawn examples, ``--update``."""
 
 import shutil
 from collections.abc import Iterator
@@ -8,117 +8,11 @@ from typing import Any
 import pytest
 from hypothesis import HealthCheck, settings
 
+from tests.costs import CostMeter, CostTable, cost_of_files, is_slow, read_costs
+
 settings.register_profile("no clock", deadline=None, suppress_health_check=[HealthCheck.too_slow])
 settings.load_profile("no clock")
 
-SLOW = [
-    "compiler/test_model_bits.py",
-    "compiler/test_readable.py",
-    "controller/test_apa_outline.py",
-    "controller/test_apa_parking.py",
-    "controller/test_apa_planner.py",
-    "controller/test_apa_search.py",
-    "controller/test_guo_parking.py",
-    "controller/test_guo_prompts.py",
-    "controller/test_preview_drive.py",
-    "controller/test_preview_fuzzy.py",
-    "controller/test_zhang_qp.py",
-    "coverage/test_branches.py",
-    "coverage/test_coverage.py",
-    "coverage/test_every_transition.py",
-    "docs/test_commands.py",
-    "docs/test_docs.py",
-    "docs/test_extend.py",
-    "face/test_face.py",
-    "fmi/test_c_library.py",
-    "fmi/test_fmi3_fmu.py",
-    "fmi/test_importers.py",
-    "fmi/test_native_fmu.py",
-    "fmi/test_native_host.py",
-    "fmi/test_native_platforms.py",
-    "fmi/test_own_model.py",
-    "fmi/test_places.py",
-    "fmi/test_python_fmu.py",
-    "fmi/test_python_fmu_errors.py",
-    "fmi/test_python_fmu_file.py",
-    "fmi/test_python_fmu_isolation.py",
-    "fmi/test_python_front.py",
-    "fmi/test_sources.py",
-    "fmi/test_system_fmus.py",
-    "fmi/test_tunable.py",
-    "fuzz/test_places.py",
-    "golden/test_golden.py",
-    "hunt/test_hunt.py",
-    "live/test_module.py",
-    "live/test_page.py",
-    "modelkit/test_geometry.py",
-    "mutants/test_mutants.py",
-    "orchestrator/test_bad_fmus.py",
-    "orchestrator/test_cars_park.py",
-    "orchestrator/test_catalogue.py",
-    "orchestrator/test_check_and_test.py",
-    "orchestrator/test_cli.py",
-    "orchestrator/test_ends.py",
-    "orchestrator/test_export.py",
-    "orchestrator/test_figure.py",
-    "orchestrator/test_fmu_check.py",
-    "orchestrator/test_fmu_slave.py",
-    "orchestrator/test_folders.py",
-    "orchestrator/test_foreign.py",
-    "orchestrator/test_new.py",
-    "orchestrator/test_new_ci.py",
-    "orchestrator/test_recover.py",
-    "orchestrator/test_ssp.py",
-    "orchestrator/test_system.py",
-    "papers/test_apa.py",
-    "papers/test_apa_grid.py",
-    "papers/test_apa_world.py",
-    "papers/test_bakeoff.py",
-    "papers/test_guo2015.py",
-    "papers/test_hsic.py",
-    "papers/test_kinds.py",
-    "papers/test_preview.py",
-    "papers/test_zhang2022.py",
-    "planning/test_compiled.py",
-    "report/test_axe.py",
-    "report/test_browser.py",
-    "report/test_scripts.py",
-    "steptest/test_pytest_plugin.py",
-    "stream/test_stream.py",
-    "sweep/test_batch.py",
-    "sweep/test_dask.py",
-    "sweep/test_page.py",
-    "sweep/test_resume.py",
-    "test_benchmarks.py",
-    "test_wheel.py",
-    "twin/test_compiled_master.py",
-    "twin/test_container.py",
-    "twin/test_interop.py",
-    "twin/test_same_bits.py",
-    "valet/test_valet.py",
-    "valet/test_valet_scenarios.py",
-    "valet/test_valet_search.py",
-    "valet/test_valet_state.py",
-    "vehicle/test_double_track.py",
-    "vehicle/test_scene.py",
-    "vehicle/test_tires.py",
-    "vehicle/test_vehicle.py",
-]
-"""Files of tests that take over 3 s of the processor; ``make quick`` leaves them out, and what is marked slow."""
-LONGEST = [
-    "docs/test_commands.py",
-    "test_wheel.py",
-    "fmi/test_native_platforms.py",
-    "fmi/test_sources.py",
-    "docs/test_extend.py",
-    "twin/test_container.py",
-    "twin/test_interop.py",
-    "live/test_module.py",
-    "coverage/test_every_transition.py",
-    "orchestrator/test_catalogue.py",
-    "golden/test_golden.py",
-]
-"""Run first, then the other slow ones: at the end no core waits long for another."""
 FLAGS = [
     "--headless",
     "--no-sandbox",
@@ -151,23 +45,27 @@ def browser() -> Iterator[Any]:
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
-    """Let the record of the shipped scenarios be written anew."""
+    """Let the records of the shipped scenarios and of the tests' cost be written anew."""
     parser.addoption("--update", action="store_true", help="write tests/golden/scenarios.yaml anew")
+    parser.addoption("--costs", action="store_true", help="measure the tests and write tests/costs.tsv anew")
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Measure cost where tests run, add it up where they were started."""
+    if config.getoption("costs"):
+        config.pluginmanager.register(CostMeter())
+        if not hasattr(config, "workerinput"):
+            config.pluginmanager.register(CostTable())
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Mark the tests of slow files, and run them first."""
-    here = Path(__file__).parent
-    order = {name: place for place, name in enumerate([*LONGEST, *(name for name in SLOW if name not in LONGEST)])}
-
-    def place_of(item: pytest.Item) -> int:
-        name = item.path.relative_to(here).as_posix() if item.path.is_relative_to(here) else ""
-        return order.get(name, len(order))
-
+    """Mark the slow tests by their recorded cost, and run the files that cost most first."""
+    costs = read_costs()
+    files = cost_of_files(costs)
     for item in items:
-        if place_of(item) < len(order) or item.get_closest_marker("release"):
+        if item.get_closest_marker("release") or is_slow(item.nodeid, costs):
             item.add_marker(pytest.mark.slow)
-    items.sort(key=place_of)
+    items.sort(key=lambda item: -files.get(item.nodeid.split("::")[0].removeprefix("tests/"), 0.0))
 
 
 class Seen:

@@ -93,7 +93,7 @@ def test_names_that_are_none_cost_that_test_alone(name: str, tmp_path: Path) -> 
     assert (tmp_path / "out" / "junit.xml").is_file()
 
 
-@pytest.mark.slow
+@pytest.mark.release
 @pytest.mark.parametrize(("kind", "seconds"), [("inputs", 5), ("logs", 5), ("calls", 2), ("kills", 10)])
 def test_a_short_attack(kind: str, seconds: int, tmp_path: Path) -> None:
     command = [sys.executable, "-m", "tests.fuzz", kind, "--seconds", str(seconds), "--seed", "20150915"]

@@ -20,6 +20,11 @@ from orchestrator.session.session import run_scenario
 from tests.live.live_module import STANDSTILL, STOP_TIME, LiveModule, disturbed, names_of, parameters, setup, times_of
 
 SHIPPED = [scenario.name for scenario in (*shipped(), *shipped("valet"))]
+EACH_CHANGE = (
+    *("guo2015-case4", "apa-parallel", "zhang2022-double-track", "adaptive", "hsic", "preview", "valet-parallel"),
+    *("fault-pose-noise", "apa-takeover"),
+)
+"""A scenario of each controller, a fault, a driver who takes over; ``make release`` compares all."""
 WITHIN = {"preview-geometry": 1e-3}
 """Largest difference of a signal [SI]. 960 m in a loop of high gain: wheel 5e-5 rad, force 1e-3 N, pose 5e-7 m."""
 GROWS = "preview-camera"
@@ -42,7 +47,14 @@ def run_of_page(module_of: Any) -> Any:
     return run
 
 
-@pytest.mark.parametrize("name", [name for name in SHIPPED if name != GROWS])
+def test_those_compared_on_each_change_are_shipped() -> None:
+    assert set(EACH_CHANGE) < set(SHIPPED)
+
+
+@pytest.mark.parametrize(
+    "name",
+    [pytest.param(name, marks=() if name in EACH_CHANGE else pytest.mark.release) for name in SHIPPED if name != GROWS],
+)
 def test_runs_as_the_native_fmus_do(name: Any, run_of_page: Any) -> None:
     scenario = load_scenario(name)
     recording = run_scenario(scenario, fmu_files("native"), kind="native").recording
@@ -70,6 +82,7 @@ def static(tmp_path_factory: pytest.TempPathFactory) -> Any:
     return program
 
 
+@pytest.mark.release
 @pytest.mark.parametrize(
     "name", ["guo2015-case4", "apa-parallel-real", "zhang2022-double-track", "fault-pose-noise", GROWS]
 )

@@ -9,7 +9,18 @@ import sys
 import tempfile
 from pathlib import Path
 
-from benchmarks.results import FILE, MEASUREMENTS, SIZE, SKIPPED, SMALLEST, machine, read_measurements, write_table
+from benchmarks.results import (
+    FILE,
+    MEASUREMENTS,
+    SIZE,
+    SKIPPED,
+    SMALLEST,
+    is_idle,
+    lasting,
+    machine,
+    read_measurements,
+    write_table,
+)
 
 
 def main(arguments: list[str]) -> int:
@@ -45,7 +56,7 @@ def run_here(name: str) -> int:
 def run_apart(name: str, is_smallest: bool, table: Path) -> bool:
     """Run one benchmark in a process of its own and write its results into the table; return whether it failed."""
     print(f"\n== {name}", flush=True)
-    where = machine()
+    where, was_idle = machine(), is_idle()
     with tempfile.TemporaryDirectory(prefix="benchmark-") as folder:
         file = Path(folder) / "measurements.jsonl"
         environment = {**os.environ, MEASUREMENTS: str(file), SIZE: SMALLEST if is_smallest else ""}
@@ -55,7 +66,10 @@ def run_apart(name: str, is_smallest: bool, table: Path) -> bool:
     if code == 0 and not measurements:
         print(f"{name} recorded nothing")
     if code == 0 and measurements and not is_smallest:
-        write_table(measurements, table)
+        kept = lasting(measurements, was_idle)
+        if len(kept) < len(measurements):
+            print(f"busy machine: {len(measurements) - len(kept)} wall times are not written to {table.name}")
+        write_table(kept, table)
     return code not in (0, SKIPPED) or (code == 0 and not measurements)
 
 

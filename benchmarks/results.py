@@ -17,6 +17,8 @@ ROOT = Path(__file__).parents[1]
 FILE = ROOT / "benchmarks" / "results.tsv"
 SIZE, MEASUREMENTS = "BENCHMARK_SIZE", "BENCHMARK_MEASUREMENTS"
 SMALLEST = "smallest"
+PROCESSOR_TIME = "processor time"
+"""What the name of a quantity says that other programs do not change much."""
 SKIPPED = 77
 """Exit code of a benchmark that needs what is not here, as of automake's tests."""
 
@@ -60,11 +62,22 @@ def commit() -> str:
     return subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False).stdout.strip()
 
 
+def is_idle() -> bool:
+    """Return whether fewer processes want to run than there are cores, so that wall times mean something."""
+    return not hasattr(os, "getloadavg") or os.getloadavg()[0] < (os.cpu_count() or 1)
+
+
 def read_measurements(file: Path, benchmark: str, where: str) -> list[Measurement]:
     """Return what a benchmark handed over in ``file``; ``where`` is its machine."""
     lines = file.read_text(encoding="utf-8").splitlines() if file.exists() else []
     stamp = (where, datetime.now(UTC).date().isoformat(), commit())
-    return [Measurement(benchmark, *json.loads(line), *stamp) for line in lines]
+    handed_over: list[tuple[str, str, str]] = [json.loads(line) for line in lines]
+    return [Measurement(benchmark, quantity, value, unit, *stamp) for quantity, value, unit in handed_over]
+
+
+def lasting(measurements: list[Measurement], was_idle: bool) -> list[Measurement]:
+    """Return what goes into the table: on a busy machine processor times only."""
+    return [row for row in measurements if was_idle or PROCESSOR_TIME in row.quantity]
 
 
 def read_table(file: Path = FILE) -> list[Measurement]:

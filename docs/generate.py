@@ -88,6 +88,7 @@ def benchmarks_page() -> str:
     """Return what the benchmarks measured last, and where."""
     head = "`make bench` measures speed and writes `benchmarks/results.tsv`, which this page shows."
     parts = [f"# Benchmarks\n\n{head}\n"]
+    parts.append("On a busy machine it keeps processor times only.\n")
     rows = read_table()
     for benchmark in sorted({row.benchmark for row in rows}):
         found = [row for row in rows if row.benchmark == benchmark]

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from benchmarks.__main__ import main
-from benchmarks.results import Measurement, read_table, write_table
+from benchmarks.results import Measurement, lasting, read_table, write_table
 from modelkit.variables import flatten
 
 BENCHMARKS = sorted(file.stem.removeprefix("bench_") for file in Path("benchmarks").glob("bench_*.py"))
@@ -82,3 +82,10 @@ def test_new_results_replace_those_of_the_same_benchmark_only(tmp_path: Path) ->
     write_table([row("sweep", "1"), row("step", "2")], file)
     write_table([row("sweep", "3")], file)
     assert read_table(file) == [row("step", "2"), row("sweep", "3")]
+
+
+def test_a_busy_machine_gives_processor_times_only() -> None:
+    wall = Measurement("step", "one step", "2", "us", "x86_64, 2 cores", "2026-11-26", "abc")
+    processor = wall._replace(quantity="one step, processor time")
+    assert lasting([wall, processor], was_idle=True) == [wall, processor]
+    assert lasting([wall, processor], was_idle=False) == [processor]

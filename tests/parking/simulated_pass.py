@@ -1,6 +1,7 @@
 """A vehicle that drives past boxes: true echoes from the exact geometry, noise from numpy, odometry with drift."""
 
 import math
+from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
@@ -33,7 +34,16 @@ def exact_ranges(pose: Pose, boxes: list[Box], sensors: CarUltrasonic) -> list[f
     return found
 
 
-def drive_past(boxes, start: Pose, distance: float, seed: int, noise=0.01, dropout=0.02, speed=2.0, odometry=PERFECT):
+def drive_past(
+    boxes: list[Box],
+    start: Pose,
+    distance: float,
+    seed: int,
+    noise: float = 0.01,
+    dropout: float = 0.02,
+    speed: float = 2.0,
+    odometry: Odometry = PERFECT,
+) -> Iterator[tuple[Pose, Pose, tuple[float, ...]]]:
     """Yield (true pose, odometry pose, readings) every 40 ms of a straight drive."""
     rng = np.random.default_rng(seed)
     sensors = CAR.ultrasonic

@@ -1,6 +1,7 @@
 """The sensor model against exact geometry, and the echo feature against numpy's least squares."""
 
 import math
+from collections.abc import Callable
 
 import numpy as np
 import pytest
@@ -47,7 +48,9 @@ def test_meaning_of_a_reading() -> None:
     assert tuple(reading_status(reading, sensors) for reading in readings) == (*expected, ReadingStatus.INVALID)
 
 
-def window_past(body, spacing: float = 0.08, noise: float = 0.0, seed: int = 0, first: float = -0.32) -> EchoWindow:
+def window_past(
+    body: Callable[[float], float], spacing: float = 0.08, noise: float = 0.0, seed: int = 0, first: float = -0.32
+) -> EchoWindow:
     """A sensor that looks to the right drives along x past a body given by its distance function."""
     rng = np.random.default_rng(seed)
     window = EchoWindow()
@@ -70,7 +73,7 @@ def test_range_fit_is_the_least_squares_parabola() -> None:
     assert (fit.b_sigma, fit.c_sigma) == pytest.approx((covariance[1, 1] ** 0.5, covariance[2, 2] ** 0.5))
 
 
-def feature_of(body, noise: float = 0.01, seed: int = 0) -> EchoFeature:
+def feature_of(body: Callable[[float], float], noise: float = 0.01, seed: int = 0) -> EchoFeature:
     return echo_feature(window_past(body, noise=noise, seed=seed), 1e-4, math.cos(HALF))
 
 

@@ -30,8 +30,8 @@ costs: $(VENV)/.test ## Run all tests and record what each costs in tests/costs.
 	$(PYTEST) --costs
 
 FUZZ_SECONDS ?= 600
-fuzz: $(VENV)/.test ## Attack inputs, logs, kills and FMI calls, ten minutes each, with new seeds
-	for kind in inputs logs kills calls; do $(BIN)/python -m tests.fuzz $$kind --seconds $(FUZZ_SECONDS) || exit 1; done
+fuzz: $(VENV)/.test ## Attack inputs, tables, systems, logs, kills and FMI calls, ten minutes each, with new seeds
+	for kind in inputs tables ssp logs kills calls; do $(BIN)/python -m tests.fuzz $$kind --seconds $(FUZZ_SECONDS) || exit 1; done
 
 mutants: $(VENV)/.test ## Make mistakes in the laws of all papers and say which nobody finds, an hour on one core
 	$(BIN)/python -m tests.mutants --fixed

@@ -114,6 +114,9 @@ def _csv(parts: Any, place: StimulatedInput, t: Array) -> Array:
         raise place.wrong(f"{path}: cannot be read: {error.strerror}") from error
     except (TableError, UnfitUnitsError) as error:
         raise place.wrong(f"{path}: {error}") from None
+    falls = next((row for row in range(1, len(times)) if times[row] < times[row - 1]), 0)
+    if falls:
+        raise place.wrong(f"{path}: line {table.lines[falls]}: its time is before that of the row above")
     if times[0] > t[-1] or times[-1] < 0.0:
         text = f"{path}: its times, {times[0]:g} to {times[-1]:g} s, lie outside the test, 0 to {t[-1]:g} s"
         raise place.wrong(text)

@@ -27,8 +27,8 @@ SUFFIX = re.compile(
 )
 """How the name of a signal ends that holds its unit."""
 TIME_SUFFIX = re.compile(r"[ _.\-](ns|us|ms|s|sec|seconds|min|minutes|h|hours)$", re.IGNORECASE)
-DECIMAL_COMMA = re.compile(r"[-+]?\d+,\d+(?:[eE][-+]?\d+)?")
-GROUPED = re.compile(r"[-+]?[1-9]\d{0,2}(?:,\d{3})+")
+DECIMAL_COMMA = re.compile(r"[-+]?\d+,\d+(?:[eE][-+]?\d+)?(?:\s*[^\d\s,.;-][^,]*|\s+1)?")
+GROUPED = re.compile(r"[-+]?[1-9]\d{0,2}(?:,\d{3})+(?:\s*[^\d\s,.;-][^,]*|\s+1)?")
 """A number with a decimal comma, or with commas between thousands: nobody can tell."""
 
 
@@ -88,7 +88,7 @@ def read_table(path: Path) -> TextTable:
         if len(row) != width:
             raise TableError(f"line {line} has {len(row)} values, the header {width} names")
     lines, rows = [line for line, _ in found], [row for _, row in found]
-    heads = [_head(cell) for cell in rows.pop(0)]
+    heads = [_head(" ".join(cell.split())) for cell in rows.pop(0)]
     del lines[0]
     time = _time_column(heads)
     heads[time] = _with_time_unit(heads[time])
@@ -194,5 +194,5 @@ def _with_points(rows: list[list[str]]) -> list[list[str]]:
     if not commas:
         return rows
     if all(GROUPED.fullmatch(cell) for cell in commas):
-        raise TableError(f"{commas[0]} may be a decimal comma or thousands; write {commas[0].replace(',', '.')}")
+        raise TableError(f"{commas[0]} has a decimal comma, or one between thousands: write {commas[0].replace(',', '.')}")
     return [[cell.replace(",", ".") if DECIMAL_COMMA.fullmatch(cell) else cell for cell in row] for row in rows]

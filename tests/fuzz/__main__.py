@@ -8,10 +8,17 @@ import tempfile
 import time
 from pathlib import Path
 
-from tests.fuzz import fmi_calls, inputs, kills, logs
+from tests.fuzz import fmi_calls, inputs, kills, logs, systems, tables
 from tests.fuzz.limits import ask, limit_memory
 
-KINDS = {"inputs": inputs.fuzz, "logs": logs.fuzz, "kills": kills.fuzz, "calls": fmi_calls.fuzz}
+KINDS = {
+    "inputs": inputs.fuzz,
+    "logs": logs.fuzz,
+    "kills": kills.fuzz,
+    "calls": fmi_calls.fuzz,
+    "tables": tables.fuzz,
+    "ssp": systems.fuzz,
+}
 
 SLOWEST = 600.0
 """What is attacked is made first; that may compile [s]."""
@@ -35,7 +42,7 @@ def main() -> int:
     if asked.kind == "logs":
         ask(["sweep", "guo2015-trial", "--every", "100", "--no-page", "--out", str(folder / "study")], SLOWEST)
         (folder / "study" / "guo2015-trial.parquet").rename(log.with_name("table.parquet"))
-    if asked.kind in ("inputs", "logs"):
+    if asked.kind in ("inputs", "logs", "tables", "ssp"):
         limit_memory()
     tried, found, until = 0, 0, time.monotonic() + asked.seconds
     for words, mistake in KINDS[asked.kind](folder, log, random.Random(seed)):

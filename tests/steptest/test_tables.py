@@ -53,6 +53,7 @@ READ = [
     ('time,"v, ahead [km/h]"\n0,0\n1,3.6\n2,7.2\n', "v, ahead"),
     ("time,v [mph]\n0,0\n1,2.2369362920544025\n2,4.473872584108805\n", "v"),
     ("time,v\n0,0\n1 s,3.6 km/h\n2 s,7.2 km/h\n", "v"),
+    ("time;v\n0;0\n1;3,6 km/h\n2;7,2 km/h\n", "v"),
 ]
 
 
@@ -92,9 +93,9 @@ REFUSED: list[tuple[str | bytes, str, str]] = [
     ("time,v\n0,0\nnan,1\n", "v", "line 3: time: "),
     ("time,v\n0,0\n1,n/a\n", "v", "line 3: v: speed: 'n/a' is not a number"),
     ('time,v\n0,0\n1,"1,5"\n', "v", "line 3: v: speed: '1,5' is not a number"),
-    ("time;v\n0;1,234\n1;2,345\n", "v", "1,234 may be a decimal comma or thousands; write 1.234"),
+    ("time;v\n0;1,234\n1;2,345\n", "v", "1,234 has a decimal comma, or one between thousands: write 1.234"),
     ("time;v\n0,5;1.234,5\n", "v", "line 2: v: speed: '1.234,5' is not a number"),
-    ("time,v\n1,0\n0,1\n", "v", "times have to rise"),
+    ("time,v\n1,0\n0,1\n", "v", "line 3: its time is before that of the row above"),
     ("time,v\n1700000000,0\n1700000001,1\n", "v", "lie outside the test, 0 to 3 s"),
     ("time,v\n", "v", "expected a row of names and rows of numbers"),
     ("time,v\ns,m/s\n", "v", "has names, but no row of numbers"),

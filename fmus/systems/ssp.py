@@ -9,6 +9,7 @@ Outputs of the system itself are for tools that show no others. libcosim and Eco
 read every connection as one between two components.
 """
 
+from collections.abc import Set
 from pathlib import Path
 from xml.etree import ElementTree
 from xml.etree.ElementTree import Element, SubElement
@@ -76,8 +77,9 @@ def _structure(system: FmuSystem, with_outputs: bool) -> Element:
         for _, variable, name in told:
             _connector(ports, variable, "output", name)
     elements = _add(node, "ssd:Elements")
+    connected = {(receiver.name, name) for _, receiver, name in system.connections()}
     for part in system.parts:
-        _component(elements, part)
+        _component(elements, part, connected)
     connections = _add(node, "ssd:Connections")
     for sender, receiver, name in system.connections():
         ends = {"endElement": receiver.name, "endConnector": name}
@@ -93,11 +95,14 @@ def _structure(system: FmuSystem, with_outputs: bool) -> Element:
     return root
 
 
-def _component(elements: Element, part: FmuPart) -> None:
+def _component(elements: Element, part: FmuPart, connected: Set[tuple[str, str]]) -> None:
+    """Add a part. An input that nothing is connected to has no connector: it keeps its start value in every tool."""
     node = _add(elements, "ssd:Component", name=part.name, source=_fmu_path(part), type=FMU_TYPE)
     ports = _add(node, "ssd:Connectors")
     for kind in PORTS:
         for variable in part.of(kind):
+            if kind == "input" and (part.name, variable.name) not in connected:
+                continue
             _connector(ports, variable, kind, variable.name)
     bindings = _add(node, "ssd:ParameterBindings")
     _add(bindings, "ssd:ParameterBinding", source=_set_path(part))

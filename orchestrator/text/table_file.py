@@ -88,7 +88,7 @@ def read_table(path: Path) -> TextTable:
         if len(row) != width:
             raise TableError(f"line {line} has {len(row)} values, the header {width} names")
     lines, rows = [line for line, _ in found], [row for _, row in found]
-    heads = [_head(" ".join(cell.split())) for cell in rows.pop(0)]
+    heads = [_head(cell) for cell in rows.pop(0)]
     del lines[0]
     time = _time_column(heads)
     heads[time] = _with_time_unit(heads[time])
@@ -133,7 +133,7 @@ def _cells(text: str, delimiter: str) -> Iterator[tuple[int, list[str]]]:
     try:
         for row in reader:
             if any(cell.strip() for cell in row):
-                found.append((reader.line_num, [cell.strip() for cell in row]))
+                found.append((reader.line_num, [" ".join(cell.split()) for cell in row]))
     except csv.Error as error:
         raise TableError(f"line {reader.line_num}: {error}") from None
     while found and len(found[0][1]) > 1 and all(len(row) == len(found[0][1]) and not row[-1] for _, row in found):

@@ -6,13 +6,13 @@ from pathlib import Path
 
 from rich.markup import escape
 
-from orchestrator.comparison.compare import Comparison, compare
+from orchestrator.comparison.compare import DURATION, Comparison, compare
 from orchestrator.comparison.tolerance import Tolerance, read_tolerances
 from orchestrator.log.messages import read_messages
 from orchestrator.log.read_log import log_file, read_log
 from orchestrator.report.overlay import write_overlay
 from orchestrator.session.terminal import differences_table
-from orchestrator.text.console import console
+from orchestrator.text.console import console, say
 from orchestrator.text.errors import BadInput
 from orchestrator.text.quantities import number
 
@@ -60,6 +60,8 @@ def run(arguments: argparse.Namespace) -> int:
     logs = [arguments.a, arguments.b, *arguments.more]
     runs = [read_log(log) for log in logs]
     tolerances = read_tolerances(arguments.tolerances, Tolerance(*bounds))
+    for pattern in tolerances.unused([*(name for run in runs for name in run.signals), DURATION]):
+        say(f"apa: warning: {arguments.tolerances}: {pattern}: no signal fits, so it changes nothing")
     found = [compare(runs[0], run, tolerances, arguments.signals) for run in runs[1:]]
     if arguments.html:
         write_overlay(arguments.html, runs, [read_messages(log) for log in logs], found)

@@ -1,5 +1,6 @@
 """How far a signal may be from its reference, in value and in time."""
 
+from collections.abc import Iterable
 from pathlib import Path
 from typing import NamedTuple
 
@@ -38,6 +39,11 @@ class Tolerances:
         for key, (pattern, given, file) in last.items():
             bounds[FIELDS[key]] = _bound(given[key], UNITS.get(key, unit), file, f"{pattern}: {key}")
         return self._default._replace(**bounds)
+
+    def unused(self, signals: Iterable[str]) -> list[str]:
+        """Return the patterns that fit none of ``signals``: a misspelt one would change nothing."""
+        names = list(signals)
+        return [pattern for pattern, _, _ in self._rows if not any(fits(name, pattern) for name in names)]
 
 
 def read_tolerances(path: Path | None, default: Tolerance) -> Tolerances:

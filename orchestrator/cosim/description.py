@@ -3,6 +3,7 @@
 import io
 import re
 import zipfile
+from collections import Counter
 from enum import IntEnum
 from pathlib import Path
 
@@ -43,6 +44,10 @@ def read_description(path: Path) -> ModelDescription:
             description = read_model_description(_with_fixed_parameters(path), validate=False)
     except Exception as error:
         raise BadInput(f"is not an FMU: {_first_line(error)}", file=path) from error
+    names = Counter(item.name for item in description.modelVariables)
+    twice = next((name for name, count in names.items() if count > 1), None)
+    if twice is not None:
+        raise BadInput(f"is not an FMU: it has {names[twice]} variables called {twice!r}", file=path)
     version = str(description.fmiVersion)
     if not version.startswith(("2.", "3.")) or description.coSimulation is None:
         raise BadInput(f"is FMI {version}; expected FMI 2.0 or 3.0 for co-simulation", file=path)

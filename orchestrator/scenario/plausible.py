@@ -31,6 +31,10 @@ MAX_EXTRA_GAP = 1.0
 """A gap longer than the slot by more [m] contradicts it: cars in marked bays leave half a metre on each side."""
 MAX_GAP_RATIO = 2.0
 """Obstacles farther apart than this many slot lengths do not bound the slot."""
+FULL_TURN = 2.0 * math.pi
+"""A heading beyond one turn [rad] is more likely one in degrees."""
+HEADINGS = ("heading", "yaw")
+"""Parameters that are the direction of something."""
 UNITS = {"x": "m", "y": "m", "length": "m", "width": "m", "heading": "rad"}
 """Of the numbers of target and slot."""
 
@@ -62,7 +66,10 @@ def _parameters(scenario: Scenario) -> Iterator[str]:
         given = getattr(scenario, owner)
         for variable in variables(model.params):
             if variable.name in given:
-                text = is_implausible(float(given[variable.name]), variable)
+                value = float(given[variable.name])
+                text = is_implausible(value, variable)
+                if variable.name.rpartition(".")[2] in HEADINGS and abs(value) > FULL_TURN and value != variable.start:
+                    text = _heading_sentence(variable.name, value)
                 if text:
                     yield f"{owner}.{text}"
 
@@ -72,7 +79,9 @@ def _places(scenario: Scenario) -> Iterator[str]:
         part = getattr(scenario, name)
         for key, value in (part.model_dump() if part is not None else {}).items():
             unit = UNITS.get(key, "")
-            if unit and abs(value) > LARGEST[unit]:
+            if key == "heading" and abs(value) > FULL_TURN:
+                yield _heading_sentence(f"{name}.{key}", value)
+            elif unit and abs(value) > LARGEST[unit]:
                 yield _sentence(f"{name}.{key}", value, -LARGEST[unit], LARGEST[unit], unit)
 
 
@@ -129,6 +138,10 @@ def _unit_of(signal: str) -> str:
         return "1"
     known = [*variables(MODELS[owner].outputs), *variables(MODELS[owner].inputs)]
     return next((item.signal.unit for item in known if item.name.startswith(name)), "1")
+
+
+def _heading_sentence(name: str, value: float) -> str:
+    return f"{name} = {value:g} rad is more than one turn; write '{value:g} deg' if degrees are meant"
 
 
 def _sentence(name: str, value: float, low: float, high: float, unit: str) -> str:

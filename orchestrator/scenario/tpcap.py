@@ -21,7 +21,14 @@ def read_tpcap(path: Path) -> dict[str, Any]:
     start, goal, count = numbers[:3], numbers[3:6], numbers[6]
     if count != int(count) or count < 0 or len(numbers) < 7 + count:
         raise BadInput(f"{count:g} obstacles: expected a whole number, and as many counts of corners", file=path)
-    sizes = [int(size) for size in numbers[7 : 7 + int(count)]]
+    counts = numbers[7 : 7 + int(count)]
+    odd = next((size for size in counts if size != int(size)), None)
+    if odd is not None:
+        raise BadInput(f"{odd:g} corners: expected a whole number", file=path)
+    for name, heading in (("start", start[2]), ("goal", goal[2])):
+        if abs(heading) > 2.0 * math.pi:
+            raise BadInput(f"heading of {name} {heading:g}: expected radians, at most one turn", file=path)
+    sizes = [int(size) for size in counts]
     rest = numbers[7 + int(count) :]
     if len(rest) != 2 * sum(sizes) or any(size < 3 for size in sizes):
         raise BadInput(f"{len(rest)} coordinates for obstacles of {sizes} corners, three or more each", file=path)
@@ -44,7 +51,7 @@ def read_tpcap(path: Path) -> dict[str, Any]:
 
 def _numbers(path: Path) -> list[float]:
     try:
-        words = path.read_text(encoding="utf-8").replace("\n", ",").split(",")
+        words = path.read_text(encoding="utf-8-sig").replace("\n", ",").split(",")
     except (OSError, UnicodeDecodeError) as error:
         raise BadInput(f"cannot be read: {error}", file=path) from error
     try:

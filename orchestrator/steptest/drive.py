@@ -23,6 +23,7 @@ from orchestrator.session.own import is_model
 from orchestrator.session.session import NOBODY
 from orchestrator.steptest.step_test import StepTest
 from orchestrator.steptest.stimuli import StimulatedInput, stimulus
+from orchestrator.system.units import UnfitUnitsError, conversion
 from orchestrator.text.errors import BadInput, suggestion_or_choices
 from orchestrator.text.quantities import text_or_scalar
 
@@ -103,7 +104,24 @@ def _replayed(test: StepTest, slave: Slave, t: Array) -> dict[int, Array]:
     owner = _owner(recording, slave, path)
     at = np.clip(np.searchsorted(recording.t, t + 1e-9, side="right") - 1, 0, None)
     names = {place: f"{owner}.{name}" for place, name in enumerate(slave.inputs.names)}
-    return {place: recording.signals[name][at] for place, name in names.items() if name in recording.signals}
+    found = {}
+    for place, name in names.items():
+        if name in recording.signals:
+            given, taken = recording.variables[name].signal.unit, slave.inputs.variables[place].signal.unit
+            values = recording.signals[name][at]
+            factor, offset = (1.0, 0.0) if given == taken else _conversion(given, taken, slave, name, path)
+            found[place] = values if (factor, offset) == (1.0, 0.0) else values * factor + offset
+    return found
+
+
+def _conversion(given: str, taken: str, slave: Slave, name: str, path: Path) -> tuple[float, float]:
+    """Return (factor, offset) from the unit of a recorded signal into that of the input that it is played to."""
+    if name.partition(".")[2] in slave.inputs.unsaid:
+        return 1.0, 0.0
+    try:
+        return conversion(given, taken, {}, slave.inputs.scales)
+    except UnfitUnitsError as error:
+        raise BadInput(f"{name} is in {given}, the input in {taken}: {error}", file=path) from None
 
 
 def _owner(recording: Recording, slave: Slave, path: Path) -> str:

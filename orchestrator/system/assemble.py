@@ -15,6 +15,7 @@ from orchestrator.scenario.scenario import Scenario
 from orchestrator.scenario.wiring.system_text import ROLES, Feed, SystemText, UnitEntry
 from orchestrator.system.feeds import Feeder, Pin, declare_units, joined, pins_of
 from orchestrator.system.listener import Listener
+from orchestrator.system.units import scale_of
 from orchestrator.text.errors import BadInput, suggestion
 
 JUDGED = {"vehicle": ("pose.x", "pose.y", "pose.heading", "speed"), "controller": ("phase", "shifts")}
@@ -35,6 +36,8 @@ def assemble(scenario: Scenario, given: list[Slave]) -> Assembled:
     """Return the system of ``scenario``. Raises ``BadInput`` for what cannot be connected as it says."""
     text = scenario.system or SystemText()
     _declare(text, given, scenario.file)
+    for slave in given:
+        _check_units(slave, scenario.file)
     slaves, feeds = _with_roles(text, given, scenario.file)
     feeder = Feeder(slaves, text.frames, scenario.file or None)
     found: list[Connection] = []
@@ -75,6 +78,21 @@ def _declare(text: SystemText, slaves: list[Slave], file: str) -> None:
 
 def _scale(entry: UnitEntry) -> Scale:
     return Scale(entry.factor, entry.offset, tuple(getattr(entry, base) for base in BASE))
+
+
+def _check_units(slave: Slave, file: str) -> None:
+    """Raise ``BadInput`` for an output that the judge takes under its name as ours has it, in another unit."""
+    ours = {item.name: item for item in variables(MODELS[slave.name].outputs)} if slave.name in MODELS else {}
+    for item in slave.outputs.variables:
+        known = ours.get(item.name)
+        if known is None or item.kind is not float or item.name in slave.outputs.unsaid or item.signal.unit == "1":
+            continue
+        wanted, given = scale_of(known.signal.unit, {}), scale_of(item.signal.unit, slave.outputs.scales)
+        if item.signal.unit != known.signal.unit and (given is None or given != wanted):
+            role = next((short for short, names in ROLES.items() if f"{slave.name}.{item.name}" in names), item.name)
+            line = f"system: {{slaves: {{{slave.name}: none, plant: FILE.fmu}}, roles: {{{role}: plant.{item.name}}}}}"
+            text = f"{slave.name}.{item.name} is in {item.signal.unit}, but judged in {known.signal.unit}"
+            raise BadInput(f"{text}; call the slave otherwise, a role is converted: '{line}'", file=file or None)
 
 
 def _matching(slaves: list[Slave], fed: set[tuple[int, int]]) -> list[Wire]:

@@ -194,5 +194,7 @@ def _with_points(rows: list[list[str]]) -> list[list[str]]:
     if not commas:
         return rows
     if all(GROUPED.fullmatch(cell) for cell in commas):
-        raise TableError(f"{commas[0]} has a decimal comma, or one between thousands: write {commas[0].replace(',', '.')}")
+        raise TableError(
+            f"{commas[0]} has a decimal comma, or one between thousands: write {commas[0].replace(',', '.')}"
+        )
     return [[cell.replace(",", ".") if DECIMAL_COMMA.fullmatch(cell) else cell for cell in row] for row in rows]

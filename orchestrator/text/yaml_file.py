@@ -19,6 +19,9 @@ MOST_NODES = 50_000
 DEEPEST = 40
 MOST_DIGITS = 40
 TEXT = "tag:yaml.org,2002:str"
+NUMBERS = ("tag:yaml.org,2002:int", "tag:yaml.org,2002:float")
+OTHER_BASE = re.compile(r"[-+]?(?:0[0-7_]+|[\d_]+(?::[\d_]+)+(?:\.[\d_]*)?)")
+"""How YAML 1.1 writes 8 (``010``) and 90 (``1:30``): whoever writes that means another number."""
 AS_TEXT = ("tag:yaml.org,2002:timestamp", "tag:yaml.org,2002:value")
 """What YAML would make of texts that look like it, and nobody means here."""
 RESOLVERS = {
@@ -71,6 +74,10 @@ class _Loader(yaml.SafeLoader):
     def construct_scalar(self, node: Any) -> Any:
         if node.tag != TEXT and len(str(node.value)) > MOST_DIGITS:
             raise _mistake(f"{shown(node.value)} has more digits than any number here", node)
+        if node.tag in NUMBERS and OTHER_BASE.fullmatch(str(node.value)):
+            raise _mistake(
+                f"{node.value} is a number of base 8 or 60 for YAML; write it in base 10, or in quotes", node
+            )
         value: Any = super().construct_scalar(node)
         if isinstance(value, str) and not _is_text(value):
             raise _mistake(f"{shown(value)} is no text that can be written as UTF-8", node)

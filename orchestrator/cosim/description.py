@@ -42,6 +42,8 @@ def read_description(path: Path) -> ModelDescription:
             if NOT_SAID not in str(error):
                 raise
             description = read_model_description(_with_fixed_parameters(path), validate=False)
+    except IndexError as error:
+        raise BadInput("its ModelStructure has an index, or a reference, of no variable", file=path) from error
     except Exception as error:
         raise BadInput(f"is not an FMU: {_first_line(error)}", file=path) from error
     names = Counter(item.name for item in description.modelVariables)
@@ -49,8 +51,11 @@ def read_description(path: Path) -> ModelDescription:
     if twice is not None:
         raise BadInput(f"is not an FMU: it has {names[twice]} variables called {twice!r}", file=path)
     version = str(description.fmiVersion)
-    if not version.startswith(("2.", "3.")) or description.coSimulation is None:
-        raise BadInput(f"is FMI {version}; expected FMI 2.0 or 3.0 for co-simulation", file=path)
+    if not version.startswith(("2.", "3.")):
+        raise BadInput(f"is FMI {version}; expected FMI 2.0 or 3.0", file=path)
+    if description.coSimulation is None:
+        other = "Model Exchange" if description.modelExchange is not None else "Scheduled Execution"
+        raise BadInput(f"is an FMU for {other} only; export it for Co-Simulation", file=path)
     return description
 
 

@@ -131,7 +131,7 @@ class FmuSlave:
         values = self.outputs.values
         for transfer in self.gets:
             status = transfer()
-            if status > WARNING:
+            if not OK <= status <= WARNING:
                 raise self.no_outputs(status)
             values[transfer.places] = transfer.view
 
@@ -146,13 +146,13 @@ class FmuSlave:
             transfer.last = now
             transfer.view[:] = given
             status = transfer()
-            if status > WARNING:
+            if not OK <= status <= WARNING:
                 raise self.no_inputs(status)
 
     def step(self, t_ns: int, dt_ns: int) -> None:
         """Call fmi2DoStep at ``t_ns / 1e9`` seconds, computed from the count, never accumulated."""
         status = self.do_step(self.component, t_ns / 1e9, dt_ns / 1e9, 1)
-        if status > WARNING:
+        if not OK <= status <= WARNING:
             raise self.no_step(t_ns, status)
 
     def no_outputs(self, status: int) -> RunError:

@@ -11,6 +11,13 @@ from typing import Any, NamedTuple
 
 OK, WARNING, DISCARD, ERROR, FATAL = 0, 1, 2, 3, 4
 WORDS = {DISCARD: "fmiDiscard", ERROR: "fmiError", FATAL: "fmiFatal"}
+
+
+def is_failure(status: int) -> bool:
+    """Return whether a call did not do what it should; a status that FMI does not define counts as a failure."""
+    return not OK <= status <= WARNING
+
+
 Say = Callable[[int, str], None]
 """Called with an FMI status and a message of the FMU."""
 Group = Mapping[str, Any]
@@ -130,7 +137,7 @@ class Fmi2:
         setup = self._library.fmi2SetupExperiment
         setup.argtypes = (Pointer, Int, Double, Double, Int, Double)
         status = int(setup(self.component, 0, 0.0, 0.0, 1, stop))
-        return status if status > WARNING else self.plain("EnterInitializationMode")
+        return status if is_failure(status) else self.plain("EnterInitializationMode")
 
     def start(self) -> int:
         """Exit Initialization Mode."""
@@ -139,6 +146,11 @@ class Fmi2:
     def step(self, t: float, dt: float) -> int:
         """Call fmi2DoStep."""
         return int(self._step(self.component, t, dt, 1))
+
+    @property
+    def requests_end(self) -> bool:
+        """Whether the last step asked for the end of the simulation: FMI 2.0 has no ``terminateSimulation``."""
+        return False
 
     def terminate(self) -> int:
         """Call fmi2Terminate."""
@@ -202,10 +214,13 @@ class Fmi3(Fmi2):
         return int(enter(self.component, False, 0.0, 0.0, True, stop))
 
     def step(self, t: float, dt: float) -> int:
-        """Call fmi3DoStep; an FMU that wants to end the simulation discards the step."""
-        status = int(self._step(self.component, t, dt, True, *self._told))
-        wants_to_end = self._flags[1].value
-        return DISCARD if wants_to_end and status <= WARNING else status
+        """Call fmi3DoStep; afterwards ``requests_end`` says whether the FMU set ``terminateSimulation``."""
+        return int(self._step(self.component, t, dt, True, *self._told))
+
+    @property
+    def requests_end(self) -> bool:
+        """Whether the last step asked for the end of the simulation."""
+        return bool(self._flags[1].value)
 
 
 def _words(message: bytes | None) -> str:

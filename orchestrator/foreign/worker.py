@@ -141,8 +141,11 @@ class Worker:
     def _step(self, data: bytes) -> None:
         t, dt = TIMES.unpack_from(self._shared)
         status = self._fmu.step(t, dt)
-        if status > fmi_calls.WARNING:
+        if fmi_calls.is_failure(status):
             raise fmi_calls.RefusedError(f"failed at {t:g} s", status)
+        if self._fmu.requests_end:
+            text = f"requests the end of the simulation at {t + dt:g} s (terminateSimulation)"
+            raise fmi_calls.RefusedError(text, fmi_calls.WARNING)
         self._outputs()
 
     def _inputs(self) -> None:
@@ -163,7 +166,7 @@ class Worker:
                 self._fmu.free()
 
     def _checked(self, status: int, what: str) -> None:
-        if status > fmi_calls.WARNING:
+        if fmi_calls.is_failure(status):
             raise fmi_calls.RefusedError(what, status)
 
     def _say(self, status: int, text: str) -> None:

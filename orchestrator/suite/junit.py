@@ -75,7 +75,8 @@ def write_junit(path: Path, suites: list[Suite], about: Mapping[str, str] = Mapp
             node.set("timestamp", about["when"])
         if about or suite.properties:
             properties = ElementTree.SubElement(node, "properties")
-            for key, text in {**about, **suite.properties}.items():
+            common = {key: text for key, text in about.items() if key != "warning"}
+            for key, text in {**common, **suite.properties}.items():
                 ElementTree.SubElement(properties, "property", name=_text(key), value=_text(text))
         if suite.error:
             _case(node, suite.name, "run", "error", suite.error)

@@ -67,6 +67,7 @@ class Tested(NamedTuple):
         notes = {
             "changed": changes_text(self.scenario.changed),
             "left out": ", ".join(self.ignored),
+            "warning": "; ".join(self.remarks),
             **fmus_of(self),
         }
         return Suite(

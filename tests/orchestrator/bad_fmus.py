@@ -37,6 +37,7 @@ BEHAVES = {
     "step-hang": f"bad {LATE} in the step at 0.05 s, so it was ended",
     "step-close": "bad ended its process in the step at 0.05 s",
     "step-discard": "bad failed at 0.05 s: fmiDiscard",
+    "step-negative": "bad failed at 0.05 s: no message",
     "step-error": "bad failed at 0.05 s: the tank is empty",
     "step-fatal": "bad failed at 0.05 s: fmiFatal",
     "step-nan": "bad gives NaN for y at 0.06 s",
@@ -111,6 +112,16 @@ def _entities(path: Path) -> None:
         archive.writestr("modelDescription.xml", BOMB.format(entities=entities))
 
 
+def _described(old: str, new: str) -> Callable[[Path], None]:
+    """Return what writes an FMU whose description has ``new`` in the place of ``old``."""
+
+    def make(path: Path) -> None:
+        with zipfile.ZipFile(path, "w") as archive:
+            archive.writestr("modelDescription.xml", DESCRIPTION.format(guid="good").replace(old, new))
+
+    return make
+
+
 FILES: dict[str, tuple[Callable[[Path], None], str]] = {
     "elsewhere": (_with(_elsewhere), "it has other64"),
     "no-library": (_with(_text), "bad cannot be loaded here"),
@@ -119,4 +130,6 @@ FILES: dict[str, tuple[Callable[[Path], None], str]] = {
     "bomb": (_with(_bomb), "is too large: unpacked 5.4 GB"),
     "sparse": (_sparse, "is too large: 2.1 GB, at most 1.1 GB"),
     "entities": (_entities, "is not an FMU"),
+    "dangling": (_described('index="2"', 'index="9"'), "its ModelStructure has an index, or a reference, of no var"),
+    "model-exchange": (_described("CoSimulation", "ModelExchange"), "is an FMU for Model Exchange only"),
 }

@@ -11,6 +11,7 @@ from typing import Any
 import pytest
 
 from orchestrator.cli import main
+from orchestrator.cosim.fmu_files import ROOT
 from orchestrator.log.read_log import read_log
 from tests.orchestrator import bad_fmus
 
@@ -82,7 +83,7 @@ def test_what_an_fmu_prints_or_does_at_its_end_harms_no_run(
 def test_after_an_error_the_process_is_gone(tmp_path: Path) -> None:
     for name in ("step-hang", "step-crash", "load-hang"):
         path = scenario(tmp_path, bad_fmus.behaving(tmp_path, name))
-        assert main(["run", path, "--fmus", "none", "--timeout", "0.3", "--out", str(tmp_path / "out"), "-q"]) == 1
+        assert main(["run", path, "--fmus", "none", "--timeout", "0.3", "--out", str(tmp_path / name), "-q"]) == 1
     assert alive() == []
 
 
@@ -98,7 +99,7 @@ def test_several_at_a_time_give_the_same_verdicts_in_the_same_order(tmp_path: Pa
         verdicts.append([(suite.get("name"), [case.get("message") for case in suite.iter("error")]) for suite in root])
         told = {item.get("name"): item.get("value") for item in root[1].iter("property")}
         assert told["bad"].startswith(f"{tmp_path / 'good.fmu'}, SHA-256 ")
-        assert told["vehicle"].startswith("none, in-process")
+        assert told["vehicle"].startswith(f"{ROOT}, SHA-256 ")
     assert verdicts[0] == verdicts[1]
     assert [name for name, _ in verdicts[0]] == names
 

@@ -33,6 +33,7 @@ static int at(const char *place) {
     if (!strcmp(rest, "nan")) output = NAN;
     if (!strcmp(rest, "print")) for (int i = 0; i < 100000; i++) puts("a line nobody asked for, on standard output");
     if (!strcmp(rest, "discard")) return DISCARD;
+    if (!strcmp(rest, "negative")) return -1;
     if (!strcmp(rest, "error")) { callbacks->logger(0, "bad", BAD, "error", "the tank is empty"); return BAD; }
     if (!strcmp(rest, "fatal")) { is_dead = 1; return FATAL; }
     return OKAY;

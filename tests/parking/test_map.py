@@ -71,7 +71,7 @@ def test_prediction_turns_a_landmark_about_the_vehicle() -> None:
     predicted = predict_landmark(SEGMENT, vehicle, 4.0, PARAMS)
     u = np.array([math.cos(0.5), math.sin(0.5), 0.0])
     g = np.array([-(SEGMENT.y - vehicle.y), SEGMENT.x - vehicle.x, 1.0])
-    q = 4.0 * (PARAMS.distance_noise**2 * np.outer(u, u) + PARAMS.heading_noise**2 * np.outer(g, g))
+    q = 4.0 * (PARAMS.distance_variance * np.outer(u, u) + PARAMS.heading_variance * np.outer(g, g))
     assert covariance(predicted) == pytest.approx(covariance(SEGMENT) + q)
 
 

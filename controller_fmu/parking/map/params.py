@@ -12,12 +12,12 @@ class MappingParams(NamedTuple):
 
     range_noise: Annotated[float, Signal("m", "standard deviation of an echo", 1e-4, 1.0, HOUSE)] = 0.01
     dropout: Annotated[float, Signal("1", "probability that an echo is lost", 0.0, 0.9, HOUSE)] = 0.02
-    distance_noise: Annotated[
-        float, Signal("m/sqrt(m)", "odometry error along the path: 0.4 % over 10 m", 0.0, 1.0, HOUSE)
-    ] = 0.0127
-    heading_noise: Annotated[
-        float, Signal("rad/sqrt(m)", "odometry heading drift: 0.25 deg over 10 m", 0.0, 1.0, HOUSE)
-    ] = 0.0014
+    distance_variance: Annotated[
+        float, Signal("m", "odometry error along the path, variance per metre: 0.4 % over 10 m", 0.0, 1.0, HOUSE)
+    ] = 1.6e-4
+    heading_variance: Annotated[
+        float, Signal("1/m", "odometry heading drift, variance per metre: 0.25 deg over 10 m", 0.0, 1.0, HOUSE)
+    ] = 1.9e-6
     gate: Annotated[float, Signal("1", "innovation gate, chi-square of 1 degree of freedom", 1.0, 100.0, HOUSE)] = 9.0
     ambiguity: Annotated[
         float, Signal("1", "difference of chi-square that decides between two landmarks", 0.0, 100.0, HOUSE)

@@ -18,8 +18,8 @@ def predict_landmark(landmark: Landmark, vehicle: Pose, distance: float, params:
     """Return the landmark after the vehicle, now at ``vehicle``, drove ``distance`` [m] >= 0."""
     if landmark.type == LandmarkType.NONE:
         return landmark
-    along = params.distance_noise * params.distance_noise * distance
-    turn = params.heading_noise * params.heading_noise * distance
+    along = params.distance_variance * distance
+    turn = params.heading_variance * distance
     ux = math.cos(vehicle.heading)
     uy = math.sin(vehicle.heading)
     gx = vehicle.y - landmark.y

@@ -8,7 +8,8 @@ keeps half of it, as no step is longer than the margin over ``max_point_speed_ra
 
 import math
 
-from controller_fmu.parking.geometry.outline import VehicleOutline, max_point_speed_ratio, pose_along_arc
+from controller_fmu.parking.geometry.outline import max_point_speed_ratio, pose_along_arc
+from controller_fmu.parking.geometry.outline_distance import edge_distance
 from controller_fmu.parking.planning.problem import SearchProblem
 from controller_fmu.parking.planning.work import PlanningWork
 from modelkit.vocabulary import Pose
@@ -50,34 +51,6 @@ def clearance(work: PlanningWork, pose: Pose, problem: SearchProblem) -> float:
     return math.sqrt(best)
 
 
-def edge_distance(ax: float, ay: float, bx: float, by: float, car: VehicleOutline, best: float) -> float:
-    """Return the squared distance [m2] from a line a-b to a car about the origin, or ``best`` if that is less."""
-    half_length = car.half_length
-    half_width = car.half_width
-    low = ax if ax < bx else bx
-    high = bx if ax < bx else ax
-    apart_x = low - half_length if low > half_length else (-half_length - high if high < -half_length else 0.0)
-    low = ay if ay < by else by
-    high = by if ay < by else ay
-    apart_y = low - half_width if low > half_width else (-half_width - high if high < -half_width else 0.0)
-    if apart_x * apart_x + apart_y * apart_y >= best:
-        return best
-    dx = bx - ax
-    dy = by - ay
-    across = ax * dy - ay * dx
-    if apart_x == 0.0 and apart_y == 0.0 and abs(across) <= half_length * abs(dy) + half_width * abs(dx):
-        return 0.0
-    best = _point_distance(ax, ay, half_length, half_width, best)
-    best = _point_distance(bx, by, half_length, half_width, best)
-    square = dx * dx + dy * dy
-    if square <= 0.0:
-        return best
-    best = _vertex_distance(half_length - ax, half_width - ay, dx, dy, square, best)
-    best = _vertex_distance(-half_length - ax, half_width - ay, dx, dy, square, best)
-    best = _vertex_distance(half_length - ax, -half_width - ay, dx, dy, square, best)
-    return _vertex_distance(-half_length - ax, -half_width - ay, dx, dy, square, best)
-
-
 def free_distance(
     work: PlanningWork, pose: Pose, direction: float, curvature: float, longest: float, problem: SearchProblem
 ) -> float:
@@ -96,22 +69,3 @@ def free_distance(
         distance = after
         gap = gap_after
     return longest
-
-
-def _point_distance(x: float, y: float, half_length: float, half_width: float, best: float) -> float:
-    dx = abs(x) - half_length
-    dy = abs(y) - half_width
-    dx = dx if dx > 0.0 else 0.0
-    dy = dy if dy > 0.0 else 0.0
-    gap = dx * dx + dy * dy
-    return gap if gap < best else best
-
-
-def _vertex_distance(cx: float, cy: float, dx: float, dy: float, square: float, best: float) -> float:
-    """Return the squared distance of a vertex, seen from a, to the line that leads by (dx, dy) to b, or ``best``."""
-    t = (cx * dx + cy * dy) / square
-    t = 0.0 if t < 0.0 else (1.0 if t > 1.0 else t)
-    x = cx - t * dx
-    y = cy - t * dy
-    gap = x * x + y * y
-    return gap if gap < best else best

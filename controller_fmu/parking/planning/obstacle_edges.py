@@ -1,7 +1,8 @@
 """The scene of a request in the work arrays: edges of its polygons, and whether a pose lies inside one."""
 
+from controller_fmu.parking.geometry.polygons import VERTICES
 from controller_fmu.parking.planning.grids import add_edge
-from controller_fmu.parking.planning.problem import VERTICES, SearchRegion
+from controller_fmu.parking.planning.problem import SearchRegion
 from controller_fmu.parking.planning.work import PlanningWork
 from modelkit.geometry import Point
 from modelkit.vocabulary import Pose

@@ -6,6 +6,7 @@ another request or of later steps, all is done anew from the first step.
 
 from typing import NamedTuple
 
+from controller_fmu.parking.geometry.polygons import VERTICES, ObstacleMap
 from controller_fmu.parking.planning.clearance_margin import measure_clearance
 from controller_fmu.parking.planning.collision import clearance
 from controller_fmu.parking.planning.grids import (
@@ -16,7 +17,7 @@ from controller_fmu.parking.planning.grids import (
     mark_blocked_cells,
 )
 from controller_fmu.parking.planning.obstacle_edges import add_edges, is_inside
-from controller_fmu.parking.planning.problem import VERTICES, ObstacleMap, PlanningRequest, SearchProblem
+from controller_fmu.parking.planning.problem import PlanningRequest, SearchProblem
 from controller_fmu.parking.planning.search import FOUND, SEARCHING, begin_search, expand_next
 from controller_fmu.parking.planning.search_schedule import (
     CLEARANCE_RESERVE,

@@ -1,30 +1,14 @@
 """What is asked of the planner, and what one search is given: poses, a car, a margin, the numbers that steer it."""
 
-from typing import Annotated, NamedTuple
+from typing import NamedTuple
 
 from controller_fmu.parking.geometry.outline import VehicleOutline
-from modelkit.signal import Signal
 from modelkit.vocabulary import Pose
 
-VERTICES = 256
 CUSP_COST = 2.0
 """Price [m] of a change of direction."""
 STEERING_COST = 0.5
 """Price [m] of turning the wheel from straight to full lock."""
-
-
-class Vertex(NamedTuple):
-    """A vertex of a polygon."""
-
-    x: Annotated[float, Signal("m", "x of the corner")] = 0.0
-    y: Annotated[float, Signal("m", "y of the corner")] = 0.0
-    polygon: Annotated[int, Signal("1", "corners in a row with the same number are one polygon; 0: unused", 0)] = 0
-
-
-class ObstacleMap(NamedTuple):
-    """Polygons that stand in the way, convex or not."""
-
-    vertices: tuple[Vertex, ...] = (Vertex(),) * VERTICES
 
 
 class PlanningRequest(NamedTuple):

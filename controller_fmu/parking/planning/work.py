@@ -2,7 +2,7 @@
 
 from typing import Annotated, NamedTuple
 
-from controller_fmu.parking.planning.problem import VERTICES
+from controller_fmu.parking.geometry.polygons import VERTICES
 from modelkit.geometry import Point
 from modelkit.store import Column, Floats, Ints
 from modelkit.vocabulary import Pose

@@ -1,0 +1,107 @@
+"""The manoeuvre chart: search, confirm, plan, steer, drive, stop, straighten; rows in order of priority.
+
+Priority within a state: first what the driver does (switched off, takeover), then a fault, then what ends the state
+early (a lost path, a blocked one), last what the state waits for.
+"""
+
+from enum import IntEnum
+
+from controller_fmu.common.chart import Row as TransitionRow
+from controller_fmu.common.chart import next_state
+
+
+class ParkingState(IntEnum):
+    """What the system is doing."""
+
+    STANDBY = 0
+    SEARCHING = 1
+    """The driver drives past; slots are searched on both sides."""
+    CONFIRMING = 2
+    """Standstill: a path into the slot shown is planned, the driver's confirmation awaited."""
+    PLANNING = 3
+    STEERING = 4
+    """Standstill; the wheel turns."""
+    DRIVING = 5
+    STOPPING = 6
+    STRAIGHTENING = 7
+    PARKED = 8
+    FAILED = 9
+    TAKEOVER = 10
+
+
+class Condition(IntEnum):
+    """Conditions evaluated at every sample, one bit each."""
+
+    SWITCHED_ON = 0
+    SWITCHED_OFF = 1
+    TAKEN_OVER = 2
+    FAULT = 3
+    SLOT_FOUND = 4
+    """A slot is found and the vehicle stands."""
+    SLOT_REJECTED = 5
+    """No path into the slot shown."""
+    DRIVEN_ON = 6
+    """The driver drove on instead of confirming."""
+    CONFIRMED = 7
+    PLANNED = 8
+    WHEEL_TURNED = 9
+    """The wheel is where the segment needs it, and the way is free."""
+    MUST_STOP = 10
+    """The next planned stop, a blocked way, or a lost path is near."""
+    REPLAN = 11
+    """Standing off the path, or blocked for long."""
+    AT_END = 12
+    """Standing at the end of the path."""
+    STANDING = 13
+    """Standing, and the way is free."""
+    IN_PLACE = 14
+    """Wheel straight, at the goal."""
+    MISSED = 15
+    """Wheel straight, not at the goal."""
+
+
+def _row(source: ParkingState, condition: Condition, target: ParkingState) -> TransitionRow:
+    return (int(source), int(condition), int(target))
+
+
+def _aborts(source: ParkingState) -> tuple[TransitionRow, TransitionRow, TransitionRow]:
+    return (
+        _row(source, Condition.TAKEN_OVER, ParkingState.TAKEOVER),
+        _row(source, Condition.SWITCHED_OFF, ParkingState.TAKEOVER),
+        _row(source, Condition.FAULT, ParkingState.FAILED),
+    )
+
+
+TRANSITIONS: tuple[TransitionRow, ...] = (
+    _row(ParkingState.STANDBY, Condition.SWITCHED_ON, ParkingState.SEARCHING),
+    _row(ParkingState.SEARCHING, Condition.SWITCHED_OFF, ParkingState.STANDBY),
+    _row(ParkingState.SEARCHING, Condition.FAULT, ParkingState.FAILED),
+    _row(ParkingState.SEARCHING, Condition.SLOT_FOUND, ParkingState.CONFIRMING),
+    _row(ParkingState.CONFIRMING, Condition.SWITCHED_OFF, ParkingState.STANDBY),
+    _row(ParkingState.CONFIRMING, Condition.FAULT, ParkingState.FAILED),
+    _row(ParkingState.CONFIRMING, Condition.SLOT_REJECTED, ParkingState.SEARCHING),
+    _row(ParkingState.CONFIRMING, Condition.DRIVEN_ON, ParkingState.SEARCHING),
+    _row(ParkingState.CONFIRMING, Condition.CONFIRMED, ParkingState.STEERING),
+    *_aborts(ParkingState.PLANNING),
+    _row(ParkingState.PLANNING, Condition.PLANNED, ParkingState.STEERING),
+    *_aborts(ParkingState.STEERING),
+    _row(ParkingState.STEERING, Condition.REPLAN, ParkingState.PLANNING),
+    _row(ParkingState.STEERING, Condition.WHEEL_TURNED, ParkingState.DRIVING),
+    *_aborts(ParkingState.DRIVING),
+    _row(ParkingState.DRIVING, Condition.MUST_STOP, ParkingState.STOPPING),
+    *_aborts(ParkingState.STOPPING),
+    _row(ParkingState.STOPPING, Condition.REPLAN, ParkingState.PLANNING),
+    _row(ParkingState.STOPPING, Condition.AT_END, ParkingState.STRAIGHTENING),
+    _row(ParkingState.STOPPING, Condition.STANDING, ParkingState.STEERING),
+    *_aborts(ParkingState.STRAIGHTENING),
+    _row(ParkingState.STRAIGHTENING, Condition.IN_PLACE, ParkingState.PARKED),
+    _row(ParkingState.STRAIGHTENING, Condition.MISSED, ParkingState.PLANNING),
+    _row(ParkingState.PARKED, Condition.SWITCHED_OFF, ParkingState.STANDBY),
+    _row(ParkingState.FAILED, Condition.SWITCHED_OFF, ParkingState.STANDBY),
+    _row(ParkingState.TAKEOVER, Condition.SWITCHED_OFF, ParkingState.STANDBY),
+)
+
+
+def next_parking_state(state: int, conditions: int) -> int:
+    """Return the state after one sample; ``conditions`` holds bit c for condition c."""
+    return next_state(state, conditions, TRANSITIONS)

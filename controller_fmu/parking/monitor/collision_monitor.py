@@ -1,0 +1,161 @@
+"""The collision monitor: the outline swept over the stopping distance against the map, and unexplained echoes.
+
+It knows nothing of the plan but the steering angle and the direction in hand. It limits the speed so that the vehicle
+can always stop before what it may not touch; where it cannot move at all it reports ``is_blocked``.
+"""
+
+import math
+from typing import NamedTuple
+
+from controller_fmu.parking.geometry.outline import VehicleOutline, outline_distance, pose_along_arc
+from controller_fmu.parking.geometry.outline_distance import edge_distance
+from controller_fmu.parking.map.landmark import (
+    LANDMARKS,
+    Landmark,
+    LandmarkType,
+    end_point,
+    segment_point,
+    start_point,
+)
+from controller_fmu.parking.map.local_map import is_confirmed
+from controller_fmu.parking.map.params import MappingParams
+from controller_fmu.parking.measurement.sensor import SENSORS
+from controller_fmu.parking.monitor.params import MonitorParams
+from controller_fmu.parking.monitor.stopping import speed_for_distance, stopping_distance
+from modelkit.vocabulary import Pose
+
+POSES = 8
+"""Poses of the swept outline: over half a metre they are 6 cm apart."""
+LOOK_AHEAD = 0.4
+"""The outline is swept this far [m] beyond the stopping distance, so that the speed falls smoothly."""
+UNLIMITED = 100.0
+APPROACH = 0.005
+"""Only what comes nearer by more than this [m] counts: the vehicle may leave what it stands beside."""
+RESTART = 0.1
+"""A standing vehicle sets out only where it may go at least this far [m]."""
+MAX_RATE_TIME = 2.0
+"""An object's approach is foreseen for at most this long [s]."""
+
+
+class EchoObstacle(NamedTuple):
+    """An unexplained echo: its point on the sensor's axis, and how fast it approaches [m/s]; ``is_present``."""
+
+    x: float = 0.0
+    y: float = 0.0
+    closing_speed: float = 0.0
+    is_present: bool = False
+
+
+class Motion(NamedTuple):
+    """How the vehicle moves: pose, direction (1, -1), speed >= 0, curvature, and how it brakes; SI units."""
+
+    pose: Pose
+    direction: float
+    speed: float
+    curvature: float
+    remaining: float
+    """Distance to the next planned stop."""
+    delay: float
+    deceleration: float
+
+
+class MonitorVerdict(NamedTuple):
+    """What the monitor allows."""
+
+    speed_limit: float = UNLIMITED
+    is_blocked: bool = False
+    free_distance: float = UNLIMITED
+    """[m]"""
+
+
+def monitor_collision(
+    motion: Motion,
+    outline: VehicleOutline,
+    landmarks: tuple[Landmark, ...],
+    echoes: tuple[EchoObstacle, ...],
+    params: MonitorParams,
+    mapping: MappingParams,
+) -> MonitorVerdict:
+    """Return the speed limit for the motion in hand, by the distance that is free for it."""
+    stop = stopping_distance(motion.speed, motion.delay, motion.deceleration)
+    horizon = min(stop + LOOK_AHEAD, max(motion.remaining, APPROACH))
+    free = UNLIMITED
+    if horizon > 0.0:
+        by_map = free_by_map(motion, horizon, outline, landmarks, params, mapping)
+        free = min(by_map, free_by_echoes(motion, horizon, outline, echoes, params))
+    limit = UNLIMITED if free >= UNLIMITED else speed_for_distance(free, motion.delay, motion.deceleration)
+    least = RESTART if motion.speed <= 0.0 else stop
+    return MonitorVerdict(limit, free < UNLIMITED and free <= min(least, motion.remaining), free)
+
+
+def free_by_map(
+    motion: Motion,
+    horizon: float,
+    outline: VehicleOutline,
+    landmarks: tuple[Landmark, ...],
+    params: MonitorParams,
+    mapping: MappingParams,
+) -> float:
+    """Return how far [m] the outline goes before it comes too near to a confirmed landmark; UNLIMITED: farther."""
+    free = UNLIMITED
+    reach = horizon + math.sqrt(outline.half_length * outline.half_length + outline.half_width * outline.half_width)
+    for number in range(LANDMARKS):
+        landmark = landmarks[number]
+        if is_confirmed(landmark, mapping) and _is_within(landmark, motion.pose, reach + outline.half_length):
+            least = landmark_distance(landmark, motion.pose, outline) - APPROACH
+            for step in range(1, POSES + 1):
+                way = horizon * step / POSES
+                pose = pose_along_arc(motion.pose, motion.direction * way, motion.curvature)
+                distance = landmark_distance(landmark, pose, outline)
+                if way < free and distance < params.map_distance and distance < least:
+                    free = horizon * (step - 1) / POSES
+    return free
+
+
+def free_by_echoes(
+    motion: Motion, horizon: float, outline: VehicleOutline, echoes: tuple[EchoObstacle, ...], params: MonitorParams
+) -> float:
+    """Return how far [m] the outline goes before it comes too near to an unexplained echo, as that approaches."""
+    free = UNLIMITED
+    for number in range(SENSORS):
+        echo = echoes[number]
+        if echo.is_present:
+            least = outline_distance(echo.x, echo.y, motion.pose, outline) - APPROACH
+            for step in range(1, POSES + 1):
+                way = horizon * step / POSES
+                pose = pose_along_arc(motion.pose, motion.direction * way, motion.curvature)
+                time = motion.delay + min(MAX_RATE_TIME, 2.0 * way / max(motion.speed, APPROACH))
+                kept = params.echo_distance + echo.closing_speed * time
+                distance = outline_distance(echo.x, echo.y, pose, outline)
+                if way < free and distance < kept and (distance < least or echo.closing_speed > 0.0):
+                    free = horizon * (step - 1) / POSES
+    return free
+
+
+def landmark_distance(landmark: Landmark, pose: Pose, outline: VehicleOutline) -> float:
+    """Return the distance [m] from the outline of a vehicle at ``pose`` to a landmark, at most ``UNLIMITED``."""
+    if landmark.type == LandmarkType.POINT:
+        return outline_distance(landmark.x, landmark.y, pose, outline)
+    cos = math.cos(pose.heading)
+    sin = math.sin(pose.heading)
+    x = pose.x + outline.centre_ahead * cos
+    y = pose.y + outline.centre_ahead * sin
+    a = start_point(landmark)
+    b = end_point(landmark)
+    square = edge_distance(
+        (a.x - x) * cos + (a.y - y) * sin,
+        (a.y - y) * cos - (a.x - x) * sin,
+        (b.x - x) * cos + (b.y - y) * sin,
+        (b.y - y) * cos - (b.x - x) * sin,
+        outline,
+        UNLIMITED * UNLIMITED,
+    )
+    return math.sqrt(square)
+
+
+def _is_within(landmark: Landmark, pose: Pose, reach: float) -> bool:
+    middle = segment_point(landmark, 0.5 * (landmark.start + landmark.end))
+    radius = reach + 0.5 * (landmark.end - landmark.start)
+    dx = middle.x - pose.x
+    dy = middle.y - pose.y
+    return dx * dx + dy * dy < radius * radius

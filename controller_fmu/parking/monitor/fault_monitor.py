@@ -1,0 +1,95 @@
+"""The fault monitor: each quantity that must not last has a clock [ns]; a clock that runs out is a reason to fail."""
+
+from typing import NamedTuple
+
+from controller_fmu.common.monitor import is_unmoved, is_usable_input
+from controller_fmu.common.params import LimitParams
+from controller_fmu.common.steering_monitor import SteeringWatch, at_rest, has_failed, watch_steering
+from controller_fmu.interface import ControllerInput, Reason
+from modelkit.vocabulary import Pose
+
+
+class Expectation(NamedTuple):
+    """What the system asked of the vehicle over the last sample."""
+
+    steers: bool
+    """It holds the steering wheel."""
+    moves: bool
+    """It turns the wheel or drives; else the vehicle is to come to a stop."""
+    drives: bool
+    is_blocked: bool
+    """The monitor keeps it standing."""
+    steering_wheel_angle: float
+    """[rad]"""
+
+
+class FaultClocks(NamedTuple):
+    """Clocks [ns], the steering monitor, and the last odometry pose."""
+
+    waiting: int = 0
+    stopping: int = 0
+    frozen: int = 0
+    blocked: int = 0
+    running: int = 0
+    steering: SteeringWatch = SteeringWatch()
+    pose: Pose = Pose()
+
+
+class FaultLimits(NamedTuple):
+    """Limits of the clocks, the steering wheel's rate [rad/s], and the speed [m/s] of a standstill."""
+
+    limit: LimitParams
+    steering_rate: float
+    standstill: float
+
+
+def advance_clocks(
+    clocks: FaultClocks, expectation: Expectation, inputs: ControllerInput, limits: FaultLimits, dt_ns: int
+) -> FaultClocks:
+    """Return the clocks after a sample of ``dt_ns``."""
+    speed = inputs.measured_speed
+    still = abs(speed) <= limits.standstill
+    angle = inputs.steering_wheel_angle
+    steering = at_rest(angle, clocks.steering.steering)
+    if expectation.steers:
+        tolerance = limits.limit.wheel_off
+        requested = expectation.steering_wheel_angle
+        steering = watch_steering(clocks.steering, requested, angle, tolerance, limits.steering_rate, dt_ns)
+    waits = still and expectation.moves and not expectation.is_blocked
+    blocked = clocks.blocked + dt_ns if still and expectation.is_blocked else 0
+    return FaultClocks(
+        waiting=clocks.waiting + dt_ns if waits else 0,
+        stopping=clocks.stopping + dt_ns if not still and not expectation.moves else 0,
+        frozen=clocks.frozen + dt_ns if is_unmoved(inputs.odometry, clocks.pose, speed, dt_ns) else 0,
+        blocked=blocked,
+        running=clocks.running + dt_ns,
+        steering=steering,
+        pose=inputs.odometry,
+    )
+
+
+def input_fault(inputs: ControllerInput) -> int:
+    """Return the Reason for which nothing can go on, ``NONE`` if there is none."""
+    if not is_usable_input(inputs):
+        return Reason.BAD_INPUT
+    return Reason.VEHICLE_FAULT if inputs.vehicle_fault != 0 else Reason.NONE
+
+
+def fault_reason(
+    clocks: FaultClocks, inputs: ControllerInput, drives: bool, manoeuvres: int, limit: LimitParams
+) -> int:
+    """Return the first Reason that holds, ``NONE`` if all is as it should be."""
+    fault = input_fault(inputs)
+    if fault != Reason.NONE:
+        return fault
+    if clocks.frozen * 1e-9 > limit.pose_frozen:
+        return Reason.POSE_FROZEN
+    if has_failed(clocks.steering, limit.wheel_fault):
+        return Reason.STEERING_FAULT
+    if clocks.stopping * 1e-9 > limit.stopping:
+        return Reason.NOT_STOPPING
+    if clocks.waiting * 1e-9 > limit.patience:
+        return Reason.NOT_MOVING if drives else Reason.STEERING_FAULT
+    if manoeuvres > limit.shifts:
+        return Reason.TOO_MANY_SHIFTS
+    return Reason.TIMEOUT if clocks.running * 1e-9 > limit.duration else Reason.NONE

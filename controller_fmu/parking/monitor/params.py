@@ -1,0 +1,20 @@
+"""Parameters of the collision monitor."""
+
+from typing import Annotated, NamedTuple
+
+from modelkit.signal import Signal
+
+HOUSE = "chosen; the source states none"
+
+
+class MonitorParams(NamedTuple):
+    """What the collision monitor keeps."""
+
+    map_distance: Annotated[float, Signal("m", "kept to a mapped obstacle at standstill", 0.0, 1.0, HOUSE)] = 0.04
+    echo_distance: Annotated[float, Signal("m", "kept to an unexplained echo at standstill", 0.0, 2.0, HOUSE)] = 0.3
+    unexplained: Annotated[
+        float, Signal("m", "an echo nearer than expected by this is unexplained", 0.01, 2.0, HOUSE)
+    ] = 0.2
+    corridor: Annotated[float, Signal("m", "lateral error: stop and plan again", 0.01, 5.0, HOUSE)] = 0.1
+    corridor_heading: Annotated[float, Signal("rad", "heading error: the same", 0.01, 1.5, HOUSE)] = 0.12
+    wait: Annotated[float, Signal("s", "wait for an obstacle to go away", 0.0, 600.0, HOUSE)] = 3.0

@@ -1,0 +1,93 @@
+"""One track per sensor of echoes nearer than the map allows: range and closing rate by a Kalman filter.
+
+State (r, v): r' = v, white acceleration of density q; measurement r + n. The vehicle's own motion towards the object is
+taken out first, so that v is the object's own. A track is tentative, confirmed after ``CONFIRMATIONS`` echoes, coasts
+over ``MAX_COASTING`` missed ones and ends.
+"""
+
+from enum import IntEnum
+from typing import NamedTuple
+
+ACCELERATION_DENSITY = 4.0
+"""Spectral density [m2/s3] of a pedestrian's acceleration: 2 m/s2 within a quarter of a second."""
+INITIAL_RATE_VARIANCE = 4.0
+"""Objects move at up to 2 m/s, one standard deviation [m2/s2]."""
+GATE = 16.0
+"""Innovation gate, chi-square of one degree of freedom: 4 sigma."""
+CONFIRMATIONS = 2
+MAX_COASTING = 4
+"""Measurement cycles: 0.16 s."""
+
+
+class TrackStatus(IntEnum):
+    """Life of a track."""
+
+    NONE = 0
+    TENTATIVE = 1
+    CONFIRMED = 2
+    COASTING = 3
+
+
+class ObjectTrack(NamedTuple):
+    """Range [m] and rate [m/s] of an object along a sensor's direction, own motion removed, with covariance."""
+
+    status: int = TrackStatus.NONE
+    range: float = 0.0
+    rate: float = 0.0
+    rr: float = 0.0
+    rv: float = 0.0
+    vv: float = 0.0
+    confirmations: int = 0
+    missed: int = 0
+
+
+def update_track(
+    track: ObjectTrack, is_unexplained: bool, measured: float, own_approach: float, variance: float, dt: float
+) -> ObjectTrack:
+    """Return the track after a cycle of ``dt`` [s] in which the sensor came ``own_approach`` [m] nearer."""
+    if track.status == TrackStatus.NONE:
+        if not is_unexplained:
+            return track
+        return ObjectTrack(TrackStatus.TENTATIVE, measured, 0.0, variance, 0.0, INITIAL_RATE_VARIANCE, 1, 0)
+    predicted = _predict(track, own_approach, dt)
+    if not is_unexplained:
+        missed = track.missed + 1
+        if missed > MAX_COASTING or track.status == TrackStatus.TENTATIVE:
+            return ObjectTrack()
+        return predicted._replace(status=TrackStatus.COASTING, missed=missed)
+    s = predicted.rr + variance
+    y = measured - predicted.range
+    if y * y > GATE * s:
+        return ObjectTrack(TrackStatus.TENTATIVE, measured, 0.0, variance, 0.0, INITIAL_RATE_VARIANCE, 1, 0)
+    kr = predicted.rr / s
+    kv = predicted.rv / s
+    confirmations = track.confirmations + 1
+    return ObjectTrack(
+        TrackStatus.CONFIRMED if confirmations >= CONFIRMATIONS else TrackStatus.TENTATIVE,
+        predicted.range + kr * y,
+        predicted.rate + kv * y,
+        predicted.rr - kr * predicted.rr,
+        predicted.rv - kr * predicted.rv,
+        predicted.vv - kv * predicted.rv,
+        confirmations,
+        0,
+    )
+
+
+def closing_speed(track: ObjectTrack) -> float:
+    """Return how fast [m/s] the object of a confirmed track approaches by itself, two sigma above 0; else 0."""
+    if track.status != TrackStatus.CONFIRMED and track.status != TrackStatus.COASTING:
+        return 0.0
+    if track.rate > 0.0 or track.rate * track.rate < 4.0 * track.vv:
+        return 0.0
+    return -track.rate
+
+
+def _predict(track: ObjectTrack, own_approach: float, dt: float) -> ObjectTrack:
+    q = ACCELERATION_DENSITY
+    return track._replace(
+        range=track.range + track.rate * dt - own_approach,
+        rr=track.rr + 2.0 * dt * track.rv + dt * dt * track.vv + q * dt * dt * dt / 3.0,
+        rv=track.rv + dt * track.vv + 0.5 * q * dt * dt,
+        vv=track.vv + q * dt,
+    )

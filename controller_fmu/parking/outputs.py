@@ -1,0 +1,97 @@
+"""Outputs of the parking system, from what it remembers."""
+
+from controller_fmu.parking.chart import ParkingState
+from controller_fmu.parking.map.landmark import LANDMARKS
+from controller_fmu.parking.map.local_map import is_confirmed
+from controller_fmu.parking.params import ParkingParams
+from controller_fmu.parking.phases import ParkingPhase
+from controller_fmu.parking.signals import ParkingOutput, ParkingSignals, SlotSignals
+from controller_fmu.parking.slots.candidate import SlotType, row_point
+from controller_fmu.parking.state import ParkingMemory
+from modelkit.vocabulary import Prompt
+
+PHASE_OF_STATE = (
+    ParkingPhase.STANDBY,
+    ParkingPhase.STANDBY,
+    ParkingPhase.STANDBY,
+    ParkingPhase.STANDBY,
+    ParkingPhase.PRE_STEER,
+    ParkingPhase.PATH_TRACKING,
+    ParkingPhase.STOP,
+    ParkingPhase.STRAIGHTEN,
+    ParkingPhase.PARKED,
+    ParkingPhase.FAILED,
+    ParkingPhase.TAKEOVER,
+)
+"""One for each member of ParkingState, in its order."""
+MOVED = 0.05
+"""A search has begun when the vehicle has moved this far [m]."""
+
+
+def parking_outputs(memory: ParkingMemory, params: ParkingParams) -> ParkingOutput:
+    """Return the outputs that hold until the next sample."""
+    state = memory.state
+    over = state in (ParkingState.PARKED, ParkingState.FAILED, ParkingState.TAKEOVER)
+    manual = state in (ParkingState.STANDBY, ParkingState.SEARCHING, ParkingState.CONFIRMING)
+    steers = not over and not manual and state != ParkingState.PLANNING
+    driving = state == ParkingState.DRIVING
+    return ParkingOutput(
+        steering_wheel_request=memory.steering_wheel_angle if steers else 0.0,
+        steering_active=steers,
+        prompt=prompt_of(memory),
+        advised_speed=params.slot.speed if state == ParkingState.SEARCHING else abs(memory.speed),
+        speed_control_active=not over and not manual,
+        speed_request=memory.speed if driving else 0.0,
+        brake_request=not driving and not manual and state != ParkingState.TAKEOVER,
+        phase=PHASE_OF_STATE[state],
+        reason=memory.reason,
+        shifts=memory.progress.manoeuvres,
+        reference=memory.progress.reference,
+        lateral_error=memory.progress.lateral_error,
+        heading_error=memory.progress.heading_error,
+        parking=_signals(memory, params),
+    )
+
+
+def prompt_of(memory: ParkingMemory) -> int:
+    """Return what the driver is asked for."""
+    state = memory.state
+    if state == ParkingState.PARKED or state == ParkingState.FAILED:
+        return Prompt.STOP
+    if state == ParkingState.CONFIRMING:
+        return Prompt.CONFIRM if memory.plan.is_found else Prompt.STOP
+    if state == ParkingState.SEARCHING:
+        if memory.search.slot.type != SlotType.NONE:
+            return Prompt.STOP
+        begun = memory.search.distance > MOVED and memory.search.waited == 0
+        return Prompt.SLOW_DOWN if begun else Prompt.FORWARD
+    return Prompt.NONE
+
+
+def _signals(memory: ParkingMemory, params: ParkingParams) -> ParkingSignals:
+    confirmed = 0
+    for number in range(LANDMARKS):
+        if is_confirmed(memory.perception.local_map.landmarks[number], params.mapping):
+            confirmed += 1
+    return ParkingSignals(
+        state=memory.state,
+        landmarks=confirmed,
+        steps=memory.plan.steps,
+        plans=memory.plan.plans,
+        margin=memory.progress.path.margin,
+        segments=memory.progress.path.used,
+        segment=memory.progress.segment,
+        is_blocked=memory.verdict.is_blocked,
+        free_distance=memory.verdict.free_distance,
+        goal=memory.plan.request.goal,
+        slot=_slot_signals(memory),
+    )
+
+
+def _slot_signals(memory: ParkingMemory) -> SlotSignals:
+    slot = memory.search.slot
+    if slot.type == SlotType.NONE:
+        return SlotSignals()
+    a = row_point(slot.row, slot.behind.end, slot.front)
+    b = row_point(slot.row, slot.ahead.start, slot.front)
+    return SlotSignals(slot.type, 1 if slot.row.side > 0.0 else -1, a.x, a.y, b.x, b.y, slot.depth)

@@ -1,0 +1,51 @@
+"""Parameters of the parking system, composed of those of its packages."""
+
+from math import pi
+from typing import Annotated, NamedTuple
+
+from controller_fmu.common.params import LimitParams, ThresholdParams
+from controller_fmu.interface import System
+from controller_fmu.parking.following.params import FollowingParams
+from controller_fmu.parking.map.params import MappingParams
+from controller_fmu.parking.monitor.params import MonitorParams
+from controller_fmu.parking.slots.params import SlotParams
+from modelkit.car import Car
+from modelkit.signal import Group, Role, Signal
+from modelkit.vocabulary import ANYWHERE, Pose
+
+HOUSE = "chosen; the source states none"
+
+
+class PlanningParams(NamedTuple):
+    """How the path is planned."""
+
+    margin: Annotated[float, Signal("m", "clearance of the path wished for", 0.0, 2.0, HOUSE)] = 0.15
+    min_margin: Annotated[float, Signal("m", "least clearance of a path that is driven", 0.0, 2.0, HOUSE)] = 0.03
+    curvature_fraction: Annotated[float, Signal("1", "planned over largest curvature", 0.3, 1.0, HOUSE)] = 0.95
+    steps_per_sample: Annotated[int, Signal("1", "steps of the search in one sample", 1, 1000, HOUSE)] = 10
+    max_steps: Annotated[int, Signal("1", "steps after which the search gives up", 1, 1_000_000, HOUSE)] = 60_000
+    max_plans: Annotated[int, Signal("1", "most plans of one drive", 1, 100, HOUSE)] = 8
+
+
+class FinalPoseParams(NamedTuple):
+    """How near to the goal the vehicle counts as parked."""
+
+    position: Annotated[float, Signal("m", "along and across the goal's heading", 0.001, 1.0, HOUSE)] = 0.08
+    heading: Annotated[float, Signal("rad", "heading", 0.001, 0.5, HOUSE)] = 2.0 * pi / 180.0
+
+
+class ParkingParams(NamedTuple):
+    """All of them; those that other systems have too have the same names."""
+
+    system: Annotated[int, Signal("1", "which system", states=System)] = System.PARKING
+    sample_time: Annotated[float, Signal("s", "controller's sample time, whole nanoseconds", 1e-4, 1.0, HOUSE)] = 0.01
+    car: Annotated[Car, Group("vehicle model used by the controller")] = Car()
+    target: Annotated[Pose, Group("pose that the evaluation compares with; the system finds its own", ANYWHERE)] = Pose()
+    threshold: Annotated[ThresholdParams, Role.TUNABLE] = ThresholdParams()
+    limit: Annotated[LimitParams, Role.TUNABLE] = LimitParams(shifts=30, duration=300.0)
+    mapping: Annotated[MappingParams, Role.TUNABLE] = MappingParams()
+    slot: Annotated[SlotParams, Role.TUNABLE] = SlotParams()
+    plan: Annotated[PlanningParams, Role.TUNABLE] = PlanningParams()
+    drive: Annotated[FollowingParams, Role.TUNABLE] = FollowingParams()
+    monitor: Annotated[MonitorParams, Role.TUNABLE] = MonitorParams()
+    final: Annotated[FinalPoseParams, Role.TUNABLE] = FinalPoseParams()

@@ -1,0 +1,97 @@
+"""The planner in the system: a request from the slot as it is known now, continued a bounded amount at each sample."""
+
+from controller_fmu.interface import ControllerInput, Reason
+from controller_fmu.parking.following.params import FollowingContext
+from controller_fmu.parking.following.path_tracking import begin_path
+from controller_fmu.parking.geometry.frames import point_to_frame
+from controller_fmu.parking.geometry.outline import VehicleOutline, vehicle_outline
+from controller_fmu.parking.map.landmark import LANDMARKS, Landmark, LandmarkType
+from controller_fmu.parking.monitor.collision_monitor import landmark_distance
+from controller_fmu.parking.obstacle_map import obstacle_map
+from controller_fmu.parking.params import ParkingParams
+from controller_fmu.parking.planning.gear_segments import without_short_end
+from controller_fmu.parking.planning.planner import (
+    PLANNED,
+    PLANNING,
+    TOO_MANY_EDGES,
+    continue_search,
+    planned_path,
+    search_status,
+)
+from controller_fmu.parking.planning.problem import PlanningRequest
+from controller_fmu.parking.planning.work import PlanningWork
+from controller_fmu.parking.slots.correction import correct_slot
+from controller_fmu.parking.slots.goal import goal_pose
+from controller_fmu.parking.state import ParkingMemory
+from modelkit.vocabulary import Pose
+
+FRONT_SENSORS = (1, 2)
+
+
+def begin_plan(memory: ParkingMemory) -> ParkingMemory:
+    """Return the memory with a new plan due; the first sample at standstill makes its request."""
+    return memory._replace(plan=memory.plan._replace(steps=0, is_found=False))
+
+
+def continue_plan(
+    work: PlanningWork, memory: ParkingMemory, inputs: ControllerInput, params: ParkingParams
+) -> ParkingMemory:
+    """Return the memory after some steps of the path search; the vehicle stands."""
+    if abs(inputs.measured_speed) > params.threshold.standstill or memory.plan.is_found:
+        return memory
+    if memory.plan.steps == 0:
+        memory = _with_request(memory, inputs, params)
+    plan = memory.plan
+    count = continue_search(work, plan.obstacles, plan.request, plan.steps, params.plan.steps_per_sample)
+    memory = memory._replace(plan=plan._replace(steps=count))
+    status = search_status(work)
+    if status == PLANNING and count <= params.plan.max_steps:
+        return memory
+    if status == PLANNED:
+        path = without_short_end(planned_path(work))
+        if path.margin >= params.plan.min_margin:
+            context = FollowingContext(params.car, params.drive)
+            progress = begin_path(memory.progress, path, plan.request.start, context)
+            return memory._replace(progress=progress, plan=memory.plan._replace(is_found=True))
+    known = memory.perception.remembered[-1].is_present
+    reason = Reason.BLOCKED if known else Reason.NO_PATH
+    return memory._replace(reason=Reason.BAD_PARAMETER if status == TOO_MANY_EDGES else reason)
+
+
+def _with_request(memory: ParkingMemory, inputs: ControllerInput, params: ParkingParams) -> ParkingMemory:
+    """Return the memory with the request for a path from here into the slot as it is known now."""
+    pose = inputs.odometry
+    outline = vehicle_outline(params.car, params.plan.curvature_fraction)
+    local_map = memory.perception.local_map
+    landmarks = without_driven_over(local_map.landmarks, pose, outline)
+    memory = memory._replace(perception=memory.perception._replace(local_map=local_map._replace(landmarks=landmarks)))
+    slot = correct_slot(memory.search.slot, landmarks, params.mapping)
+    road = _free_road(memory, inputs, params)
+    obstacles = obstacle_map(landmarks, slot, memory.perception.remembered, outline, road, params.mapping)
+    goal = goal_pose(slot, outline, params.slot)
+    request = PlanningRequest(pose, goal, outline, params.plan.margin)
+    plans = memory.plan.plans + 1
+    plan = memory.plan._replace(request=request, obstacles=obstacles, plans=plans)
+    if plans > params.plan.max_plans:
+        memory = memory._replace(reason=Reason.LEFT_PATH)
+    return memory._replace(plan=plan)
+
+
+def without_driven_over(landmarks: tuple[Landmark, ...], pose: Pose, outline: VehicleOutline) -> tuple[Landmark, ...]:
+    """Return the landmarks without those that the outline at ``pose`` touches: the vehicle stands there."""
+    return tuple(
+        Landmark()
+        if landmarks[number].type != LandmarkType.NONE and landmark_distance(landmarks[number], pose, outline) <= 0.0
+        else landmarks[number]
+        for number in range(LANDMARKS)
+    )
+
+
+def _free_road(memory: ParkingMemory, inputs: ControllerInput, params: ParkingParams) -> Pose:
+    """Return how far the road is taken to be free in the row's frame: x ahead, y on its other side."""
+    search = memory.search
+    car = params.car
+    at = point_to_frame(search.pose.x, search.pose.y, search.slot.row.frame)
+    reach = car.ultrasonic.max_range
+    across = search.slot.row.side * at.y - 0.5 * car.width - reach
+    return Pose(at.x + car.wheelbase + car.front_overhang + reach, across, 0.0)

@@ -1,0 +1,70 @@
+"""Outputs of the parking system: those that every controller has, and its search, plan and drive."""
+
+from typing import Annotated, NamedTuple
+
+from controller_fmu.interface import Reason
+from controller_fmu.parking.chart import ParkingState
+from controller_fmu.parking.phases import ParkingPhase
+from controller_fmu.parking.slots.candidate import SlotType
+from modelkit.signal import Group, Role, Signal
+from modelkit.vocabulary import (
+    AdvisedSpeed,
+    BrakeRequest,
+    Pose,
+    PromptShown,
+    SpeedControlActive,
+    SpeedRequest,
+    SteeringActive,
+    SteeringWheelRequest,
+)
+
+
+class SlotSignals(NamedTuple):
+    """The slot found."""
+
+    type: Annotated[int, Signal("1", "how the vehicle stands in it", states=SlotType)] = SlotType.NONE
+    side: Annotated[int, Signal("1", "-1 right, 1 left of the road")] = 0
+    ax: Annotated[float, Signal("m", "x of corner A, passed first")] = 0.0
+    ay: Annotated[float, Signal("m", "y of corner A")] = 0.0
+    bx: Annotated[float, Signal("m", "x of corner B")] = 0.0
+    by: Annotated[float, Signal("m", "y of corner B")] = 0.0
+    depth: Annotated[float, Signal("m", "behind the neighbours' fronts; 50: unknown", 0.0)] = 0.0
+
+
+class ParkingSignals(NamedTuple):
+    """Search, plan and drive."""
+
+    state: Annotated[int, Signal("1", "state of the chart", states=ParkingState)] = ParkingState.STANDBY
+    landmarks: Annotated[int, Signal("1", "confirmed landmarks of the map", 0)] = 0
+    steps: Annotated[int, Signal("1", "steps of the path search so far", 0)] = 0
+    plans: Annotated[int, Signal("1", "plans begun so far", 0)] = 0
+    margin: Annotated[float, Signal("m", "clearance that the path keeps", 0.0)] = 0.0
+    segments: Annotated[int, Signal("1", "segments of the path", 0)] = 0
+    segment: Annotated[int, Signal("1", "the one in hand, from 0", 0)] = 0
+    is_blocked: Annotated[bool, Signal("1", "the collision monitor keeps the vehicle standing")] = False
+    free_distance: Annotated[float, Signal("m", "free along the motion in hand; 100: more than looked at")] = 100.0
+    goal: Annotated[Pose, Group("pose to park at")] = Pose()
+    slot: SlotSignals = SlotSignals()
+
+
+class ParkingOutput(NamedTuple):
+    """To the vehicle, the driver, the log and the evaluation."""
+
+    steering_wheel_request: SteeringWheelRequest = 0.0
+    steering_active: SteeringActive = False
+    prompt: PromptShown = 0
+    advised_speed: AdvisedSpeed = 0.0
+    speed_control_active: SpeedControlActive = False
+    speed_request: SpeedRequest = 0.0
+    force_control_active: Annotated[bool, Signal("1", "force_request holds: never")] = False
+    force_request: Annotated[float, Signal("N", "drive and brake force asked for: none")] = 0.0
+    brake_request: BrakeRequest = False
+    phase: Annotated[int, Signal("1", "state of the manoeuvre chart", states=ParkingPhase)] = 0
+    reason: Annotated[int, Signal("1", "why the controller failed", states=Reason)] = 0
+    shifts: Annotated[int, Signal("1", "manoeuvres so far, the first reverse counts one"), Role.LOCAL] = 0
+    reference: Annotated[Pose, Role.LOCAL, Group("point of the path beside the rear-axle midpoint")] = Pose()
+    lateral_error: Annotated[float, Signal("m", "left of the path"), Role.LOCAL] = 0.0
+    heading_error: Annotated[float, Signal("rad", "heading of the car minus heading of the reference"), Role.LOCAL] = (
+        0.0
+    )
+    parking: Annotated[ParkingSignals, Role.LOCAL] = ParkingSignals()

@@ -1,0 +1,199 @@
+"""A slot candidate: one gap between two members of a row, its likelier type, and why it is rejected if it is.
+
+Type hypotheses, compared by log-likelihood: cars that stand parallel show a side of about 4.4 m, cars that stand
+perpendicular a front of about 1.8 m; a side not seen in full says only how long it is at least. A kerb or wall at car
+width behind the row speaks for parallel. Undecided within a factor of ten the type follows from what fits.
+"""
+
+import math
+from enum import IntEnum
+from typing import NamedTuple
+
+from controller_fmu.interface import Reason
+from controller_fmu.parking.geometry.frames import point_from_frame, point_to_frame
+from controller_fmu.parking.geometry.outline import VehicleOutline
+from controller_fmu.parking.map.free_space import Ray, is_free
+from controller_fmu.parking.map.landmark import LANDMARKS, Landmark, LandmarkType, segment_point
+from controller_fmu.parking.map.local_map import is_confirmed
+from controller_fmu.parking.map.params import MappingParams
+from controller_fmu.parking.slots.params import SlotParams
+from controller_fmu.parking.slots.row import MEMBERS, Row, RowMember
+from modelkit.geometry import Point
+
+UNKNOWN_DEPTH = 50.0
+"""Depth [m] of a gap in which nothing was detected."""
+DECIDED = 2.3
+"""Log of the likelihood ratio ten."""
+CAR_LENGTH = 4.4
+CAR_LENGTH_SIGMA = 0.5
+CAR_WIDTH = 1.8
+CAR_WIDTH_SIGMA = 0.2
+"""Passenger cars (ISO 16787 test vehicles and what is sold): length and width [m], standard deviations."""
+MAX_PARALLEL_DEPTH = 3.0
+"""A kerb or wall nearer than this [m] behind the row leaves no perpendicular slot."""
+TYPICAL_BAY = 2.5
+"""Width [m] of a bay where the row does not repeat."""
+MAX_BAY = 3.5
+INSET = 0.25
+"""What stands at least this far [m] from both neighbours and behind their fronts is in the gap."""
+SAMPLES = 9
+FREE_DEPTHS = (0.4, 1.0, 1.6)
+FREE_FRACTIONS = (0.3, 0.5, 0.7)
+MIN_FREE = 5
+"""Of the nine points so deep [m] and at these fractions of the gap, so many must have been observed free."""
+
+
+class SlotType(IntEnum):
+    """How a vehicle stands in a slot."""
+
+    NONE = 0
+    PARALLEL = 1
+    PERPENDICULAR = 2
+
+
+class SlotCandidate(NamedTuple):
+    """A gap in a row; positions in the row's frame [m]."""
+
+    type: int = SlotType.NONE
+    reason: int = Reason.NONE
+    """Why it is rejected."""
+    row: Row = Row()
+    behind: RowMember = RowMember()
+    """The neighbour that was passed first (A)."""
+    ahead: RowMember = RowMember()
+    """The neighbour that was passed last (B)."""
+    front: float = 0.0
+    """Line of the neighbours' fronts, across the row."""
+    depth: float = UNKNOWN_DEPTH
+    """Behind that line."""
+    bay: float = TYPICAL_BAY
+    """Distance of two cars that stand perpendicular, from middle to middle."""
+
+
+def find_slot(
+    row: Row,
+    landmarks: tuple[Landmark, ...],
+    rays: tuple[Ray, ...],
+    outline: VehicleOutline,
+    slot: SlotParams,
+    params: MappingParams,
+) -> SlotCandidate:
+    """Return the gap passed last into which the vehicle fits, else a rejected one, else type NONE."""
+    found = SlotCandidate()
+    for number in range(MEMBERS - 1):
+        if number + 1 < row.used and (found.type == SlotType.NONE or found.reason != Reason.NONE):
+            candidate = _candidate(row, number, landmarks, outline, slot, params)
+            if candidate.type != SlotType.NONE and is_observed_free(candidate, rays):
+                better = candidate.reason == Reason.NONE or found.type == SlotType.NONE
+                found = candidate if better else found
+    return found
+
+
+def _candidate(
+    row: Row,
+    number: int,
+    landmarks: tuple[Landmark, ...],
+    outline: VehicleOutline,
+    slot: SlotParams,
+    params: MappingParams,
+) -> SlotCandidate:
+    """Return the gap behind the member ``number`` of a row, typed and judged; NONE: too narrow for anything."""
+    ahead = row.members[number]
+    behind = row.members[min(number + 1, MEMBERS - 1)]
+    width = ahead.start - behind.end
+    if width < 2.0 * outline.half_width:
+        return SlotCandidate()
+    found = SlotCandidate(row=row, behind=behind, ahead=ahead, front=0.5 * (behind.front + ahead.front))
+    found = found._replace(depth=gap_depth(found, landmarks, params), bay=bay_width(row))
+    fits_parallel = width >= 2.0 * outline.half_length + slot.room_along
+    fits_perpendicular = width >= 2.0 * outline.half_width + slot.room_across
+    ratio = log_likelihood_ratio(found)
+    parallel = ratio > DECIDED or (ratio > -DECIDED and fits_parallel and not fits_perpendicular)
+    parallel = parallel or (abs(ratio) <= DECIDED and fits_parallel)
+    fits = fits_parallel if parallel else fits_perpendicular
+    needed = 2.0 * outline.half_width if parallel else 2.0 * outline.half_length + slot.distance_behind - slot.stand_out
+    reason = Reason.NONE
+    if not fits:
+        reason = Reason.SLOT_TOO_SHORT
+    elif found.depth < needed:
+        reason = Reason.SLOT_TOO_SHALLOW
+    kind = SlotType.PARALLEL if parallel else SlotType.PERPENDICULAR
+    return found._replace(type=kind, reason=reason)
+
+
+def log_likelihood_ratio(candidate: SlotCandidate) -> float:
+    """Return ln P(observations | parallel) - ln P(observations | perpendicular)."""
+    ratio = 0.0
+    for number in range(MEMBERS):
+        if number < candidate.row.used:
+            member = candidate.row.members[number]
+            length = member.end - member.start
+            ratio += _log_likelihood(length, member.is_complete, CAR_LENGTH, CAR_LENGTH_SIGMA)
+            ratio -= _log_likelihood(length, member.is_complete, CAR_WIDTH, CAR_WIDTH_SIGMA)
+    if candidate.depth < MAX_PARALLEL_DEPTH:
+        ratio += 2.0 * DECIDED
+    return ratio
+
+
+def _log_likelihood(length: float, is_complete: bool, mean: float, sigma: float) -> float:
+    """Return the log-likelihood of an observed side; of an incomplete one only what is too long counts."""
+    deviation = (length - mean) / sigma
+    if not is_complete and deviation < 0.0:
+        return 0.0
+    return -min(0.5 * deviation * deviation, 2.0 * DECIDED)
+
+
+def bay_width(row: Row) -> float:
+    """Return the mean distance [m] of neighbouring cars, from middle to middle, as far as bays are that narrow."""
+    total = 0.0
+    n = 0.0
+    for number in range(MEMBERS - 1):
+        if number + 1 < row.used:
+            one = row.members[number]
+            other = row.members[number + 1]
+            distance = 0.5 * (one.start + one.end - other.start - other.end)
+            if distance < MAX_BAY:
+                total += distance
+                n += 1.0
+    return total / n if n > 0.0 else TYPICAL_BAY
+
+
+def gap_depth(candidate: SlotCandidate, landmarks: tuple[Landmark, ...], params: MappingParams) -> float:
+    """Return how deep [m] behind the neighbours' fronts the first landmark in the gap lies."""
+    row = candidate.row
+    low = candidate.behind.end + INSET
+    high = candidate.ahead.start - INSET
+    depth = UNKNOWN_DEPTH
+    for number in range(LANDMARKS):
+        landmark = landmarks[number]
+        if landmark.type != LandmarkType.NONE and is_confirmed(landmark, params):
+            for sample in range(SAMPLES):
+                along = landmark.start + (landmark.end - landmark.start) * sample / (SAMPLES - 1)
+                at = segment_point(landmark, along)
+                point = point_to_frame(at.x, at.y, row.frame)
+                deep = row.side * point.y - candidate.front
+                if low < point.x < high and deep > -INSET:
+                    depth = min(depth, max(deep, 0.0))
+    return depth
+
+
+def is_observed_free(candidate: SlotCandidate, rays: tuple[Ray, ...]) -> bool:
+    """Return whether the gap behind the fronts has been observed free, as deep as it is."""
+    count = 0
+    for deep in FREE_DEPTHS:
+        for fraction in FREE_FRACTIONS:
+            x = candidate.behind.end + fraction * (candidate.ahead.start - candidate.behind.end)
+            point = row_point(candidate.row, x, candidate.front + min(deep, 0.5 * candidate.depth))
+            if is_free(rays, point.x, point.y):
+                count += 1
+    return count >= MIN_FREE
+
+
+def row_point(row: Row, along: float, deep: float) -> Point:
+    """Return the point ``along`` a row and ``deep`` [m] across it in the odometry frame."""
+    return point_from_frame(along, row.side * deep, row.frame)
+
+
+def into_heading(candidate: SlotCandidate) -> float:
+    """Return the direction [rad] from the road into the slot."""
+    return candidate.row.frame.heading + candidate.row.side * 0.5 * math.pi

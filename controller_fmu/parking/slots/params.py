@@ -1,0 +1,24 @@
+"""Parameters of the slot search."""
+
+from typing import Annotated, NamedTuple
+
+from modelkit.signal import Signal
+
+HOUSE = "chosen; the source states none"
+GBT = "GB/T 41630"
+
+
+class SlotParams(NamedTuple):
+    """What a slot must be, and where the vehicle stands in it."""
+
+    room_along: Annotated[float, Signal("m", "parallel slot beyond the vehicle's length", 0.2, 10.0, HOUSE)] = 0.5
+    room_across: Annotated[float, Signal("m", "perpendicular slot beyond the vehicle's width", 0.2, 10.0, HOUSE)] = 0.4
+    stand_out: Annotated[float, Signal("m", "largest overhang out of a shallow slot", 0.0, 3.0, HOUSE)] = 0.5
+    distance_behind: Annotated[float, Signal("m", "distance to the end of a perpendicular slot", 0.05, 2.0, HOUSE)] = (
+        0.25
+    )
+    kerb_min: Annotated[float, Signal("m", "least distance to a kerb beside", 0.05, 1.0, GBT)] = 0.15
+    kerb_max: Annotated[float, Signal("m", "largest distance to a kerb beside", 0.05, 1.0, GBT)] = 0.25
+    speed: Annotated[float, Signal("m/s", "largest speed of the search", 0.1, 10.0, HOUSE)] = 10.0 / 3.6
+    distance: Annotated[float, Signal("m", "longest distance searched", 1.0, 1000.0, HOUSE)] = 60.0
+    confirm_time: Annotated[float, Signal("s", "longest wait for the driver", 0.1, 3600.0, HOUSE)] = 60.0

@@ -1,0 +1,164 @@
+"""The row beside the road: sides along the road on one flank of the vehicle, in order, and the row's direction.
+
+The direction is the mean of two kinds of evidence, weighted by their variances: the headings of the sides (their
+covariance plus how askew cars stand), and the line through the sides' middles (how unevenly cars stand over the span).
+"""
+
+import math
+from typing import NamedTuple
+
+from controller_fmu.parking.geometry.frames import point_to_frame
+from controller_fmu.parking.map.landmark import (
+    LANDMARKS,
+    Landmark,
+    LandmarkType,
+    end_point,
+    length_of,
+    start_point,
+)
+from controller_fmu.parking.map.local_map import is_confirmed
+from controller_fmu.parking.map.params import MappingParams
+from modelkit.maths import wrap_angle
+from modelkit.vocabulary import Pose
+
+MEMBERS = 8
+"""Sides of a row that are kept: the slot's neighbours and the repetition on both sides."""
+MAX_TILT = 0.35
+"""A side along the road is turned by less than this [rad] against the vehicle's path: 20 deg."""
+MIN_SIDE = 0.3
+"""Shorter sides [m] are posts or parts of a corner."""
+ROW_DEPTH = 1.0
+"""Sides whose fronts differ by less than this [m] are of one row; a kerb or wall lies deeper."""
+MAX_ROAD = 4.0
+"""A row begins within this [m] of the vehicle's path: the range of the sensors less a metre."""
+MEMBER_GAP = 0.35
+"""Sides nearer than this [m] along the row are of one car (a narrower gap is not observable)."""
+ASKEW_VARIANCE = 0.0012
+"""How askew cars stand in a row, standard deviation 2 deg [rad2]."""
+UNEVEN = 0.1
+"""How unevenly cars stand in a row, standard deviation [m]."""
+NO_MEMBER = 1e9
+
+
+class RowMember(NamedTuple):
+    """One car of a row: where it begins and ends along the row, and its front across it [m]; length 0: none."""
+
+    start: float = 0.0
+    end: float = 0.0
+    front: float = 0.0
+    is_complete: bool = False
+    """Both ends are known."""
+
+
+class Row(NamedTuple):
+    """A row in its own frame: x along the road as the vehicle drives, y across it; ``side``: 1 left, -1 right.
+
+    Fronts count away from the road, so on either side a larger front is deeper.
+    """
+
+    frame: Pose = Pose()
+    side: float = -1.0
+    members: tuple[RowMember, ...] = (RowMember(),) * MEMBERS
+    """From ahead to behind."""
+    used: int = 0
+
+
+def find_row(landmarks: tuple[Landmark, ...], vehicle: Pose, side: float, params: MappingParams) -> Row:
+    """Return the row on one side (1 left, -1 right) of a vehicle that drives along it."""
+    rough = _members(landmarks, vehicle, side, params)
+    turn = _direction(landmarks, rough, params)
+    return _members(landmarks, vehicle._replace(heading=vehicle.heading + turn), side, params)
+
+
+def side_as_member(landmark: Landmark, frame: Pose, side: float, params: MappingParams) -> RowMember:
+    """Return a landmark as a member of a row in ``frame``; length 0 if it is no side along it on this side."""
+    if landmark.type != LandmarkType.SEGMENT or not is_confirmed(landmark, params) or length_of(landmark) < MIN_SIDE:
+        return RowMember()
+    along = frame.heading if side < 0.0 else frame.heading + math.pi
+    if abs(wrap_angle(landmark.heading - along)) > MAX_TILT:
+        return RowMember()
+    a = start_point(landmark)
+    b = end_point(landmark)
+    p = point_to_frame(a.x, a.y, frame)
+    q = point_to_frame(b.x, b.y, frame)
+    front = side * 0.5 * (p.y + q.y)
+    complete = landmark.start_known and landmark.end_known
+    if front < 0.0 or front > MAX_ROAD:
+        return RowMember()
+    return RowMember(min(p.x, q.x), max(p.x, q.x), front, complete)
+
+
+def _members(landmarks: tuple[Landmark, ...], frame: Pose, side: float, params: MappingParams) -> Row:
+    """Return the row in a given frame: its members from ahead to behind, overlapping sides joined."""
+    nearest = NO_MEMBER
+    for number in range(LANDMARKS):
+        member = side_as_member(landmarks[number], frame, side, params)
+        if member.end > member.start:
+            nearest = min(nearest, member.front)
+    row = Row(frame, side)
+    last = NO_MEMBER
+    for _ in range(LANDMARKS):
+        best = RowMember()
+        best_end = -NO_MEMBER
+        for number in range(LANDMARKS):
+            member = side_as_member(landmarks[number], frame, side, params)
+            is_of_row = member.end > member.start and member.front < nearest + ROW_DEPTH
+            if is_of_row and best_end < member.end < last:
+                best = member
+                best_end = member.end
+        if best_end <= -NO_MEMBER:
+            return row
+        last = best_end
+        row = _with_member(row, best)
+    return row
+
+
+def _with_member(row: Row, member: RowMember) -> Row:
+    """Return the row with a member farther behind; one that touches the last is joined to it."""
+    at = row.used - 1
+    joins = row.used > 0 and row.members[max(at, 0)].start - member.end < MEMBER_GAP
+    if joins:
+        last = row.members[max(at, 0)]
+        longer = member if member.end - member.start > last.end - last.start else last
+        joined = RowMember(min(last.start, member.start), last.end, longer.front, last.is_complete)
+        return row._replace(members=tuple(joined if number == at else row.members[number] for number in range(MEMBERS)))
+    if row.used >= MEMBERS:
+        return row
+    return row._replace(
+        members=tuple(member if number == row.used else row.members[number] for number in range(MEMBERS)),
+        used=row.used + 1,
+    )
+
+
+def _direction(landmarks: tuple[Landmark, ...], row: Row, params: MappingParams) -> float:
+    """Return how far [rad] the row is turned against its frame."""
+    along = row.frame.heading if row.side < 0.0 else row.frame.heading + math.pi
+    total = 0.0
+    turn = 0.0
+    for number in range(LANDMARKS):
+        landmark = landmarks[number]
+        if side_as_member(landmark, row.frame, row.side, params).end != 0.0:
+            weight = 1.0 / (landmark.hh + ASKEW_VARIANCE)
+            total += weight
+            turn += weight * wrap_angle(landmark.heading - along)
+    n = 0.0
+    sx = 0.0
+    sy = 0.0
+    sxx = 0.0
+    sxy = 0.0
+    for number in range(MEMBERS):
+        if number < row.used:
+            member = row.members[number]
+            x = 0.5 * (member.start + member.end)
+            y = row.side * member.front
+            n += 1.0
+            sx += x
+            sy += y
+            sxx += x * x
+            sxy += x * y
+    spread = sxx - sx * sx / n if n > 0.0 else 0.0
+    if spread > UNEVEN:
+        weight = spread / (UNEVEN * UNEVEN)
+        total += weight
+        turn += weight * math.atan((sxy - sx * sy / n) / spread)
+    return turn / total if total > 0.0 else 0.0

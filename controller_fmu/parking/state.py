@@ -1,0 +1,74 @@
+"""Everything the parking system remembers beside the planner's work arrays."""
+
+from typing import NamedTuple
+
+from controller_fmu.interface import Reason
+from controller_fmu.parking.chart import ParkingState
+from controller_fmu.parking.following.path_tracking import PathProgress
+from controller_fmu.parking.geometry.polygons import ObstacleMap
+from controller_fmu.parking.map.local_map import LandmarkMap
+from controller_fmu.parking.measurement.cycle import MeasurementCycle
+from controller_fmu.parking.measurement.sensor import SENSORS
+from controller_fmu.parking.monitor.collision_monitor import EchoObstacle, MonitorVerdict
+from controller_fmu.parking.monitor.fault_monitor import FaultClocks
+from controller_fmu.parking.objects.track import ObjectTrack
+from controller_fmu.parking.obstacle_map import REMEMBERED
+from controller_fmu.parking.planning.problem import PlanningRequest
+from controller_fmu.parking.slots.candidate import SlotCandidate
+from modelkit.vocabulary import Pose
+
+
+class SearchProgress(NamedTuple):
+    """The slot search, and the slot shown."""
+
+    slot: SlotCandidate = SlotCandidate()
+    distance: float = 0.0
+    """Driven since it began [m]."""
+    waited: int = 0
+    """For the driver [ns]."""
+    rejected: int = Reason.NONE
+    """Why the last candidate was not taken."""
+    pose: Pose = Pose()
+    """Where the slot was shown."""
+
+
+class PlanProgress(NamedTuple):
+    """The path search in hand."""
+
+    request: PlanningRequest = PlanningRequest()
+    obstacles: ObstacleMap = ObstacleMap()
+    steps: int = 0
+    """Done for the request; 0: none is in hand."""
+    plans: int = 0
+    is_found: bool = False
+
+
+class Perception(NamedTuple):
+    """Measurements, map, tracks, and what they do not explain."""
+
+    cycle: MeasurementCycle = MeasurementCycle()
+    time: int = 0
+    """[ns]"""
+    local_map: LandmarkMap = LandmarkMap()
+    tracks: tuple[ObjectTrack, ...] = (ObjectTrack(),) * SENSORS
+    echoes: tuple[EchoObstacle, ...] = (EchoObstacle(),) * SENSORS
+    remembered: tuple[EchoObstacle, ...] = (EchoObstacle(),) * REMEMBERED
+    pose: Pose = Pose()
+    """At the last measurement cycle."""
+
+
+class ParkingMemory(NamedTuple):
+    """The whole."""
+
+    state: int = ParkingState.STANDBY
+    reason: int = Reason.NONE
+    perception: Perception = Perception()
+    search: SearchProgress = SearchProgress()
+    plan: PlanProgress = PlanProgress()
+    progress: PathProgress = PathProgress()
+    verdict: MonitorVerdict = MonitorVerdict()
+    clocks: FaultClocks = FaultClocks()
+    steering_wheel_angle: float = 0.0
+    """Requested [rad]."""
+    speed: float = 0.0
+    """Requested [m/s], reverse negative."""

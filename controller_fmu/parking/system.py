@@ -1,0 +1,226 @@
+"""One sample of the parking system: perceive, search or plan or drive, monitor, and step the chart."""
+
+import math
+
+from controller_fmu.common.chart import bit
+from controller_fmu.interface import ControllerInput, Reason
+from controller_fmu.parking.chart import Condition, ParkingState, next_parking_state
+from controller_fmu.parking.following.params import FollowingContext
+from controller_fmu.parking.following.path_tracking import (
+    is_at_end,
+    next_segment,
+    profile_speed,
+    set_out,
+    standstill_wheel_angle,
+    track_path,
+)
+from controller_fmu.parking.geometry.frames import pose_to_frame
+from controller_fmu.parking.geometry.outline import vehicle_outline
+from controller_fmu.parking.monitor.collision_monitor import MonitorVerdict, Motion, monitor_collision
+from controller_fmu.parking.monitor.fault_monitor import (
+    Expectation,
+    FaultClocks,
+    FaultLimits,
+    advance_clocks,
+    fault_reason,
+    input_fault,
+)
+from controller_fmu.parking.monitor.stopping import stopping_distance
+from controller_fmu.parking.obstacle_map import remember_echoes
+from controller_fmu.parking.params import ParkingParams
+from controller_fmu.parking.path_planning import begin_plan, continue_plan
+from controller_fmu.parking.perception import is_driving_state, perceive, planar_distance, search_reason, search_slots
+from controller_fmu.parking.planning.work import PlanningWork
+from controller_fmu.parking.slots.candidate import SlotCandidate, SlotType
+from controller_fmu.parking.slots.correction import correct_slot
+from controller_fmu.parking.slots.goal import goal_pose
+from controller_fmu.parking.state import ParkingMemory, Perception, PlanProgress, SearchProgress
+from modelkit.maths import clamp, sign, wrap_angle
+
+DRIVEN_ON = 0.3
+"""A vehicle that has moved by more than this [m] since the slot was shown was driven on by its driver."""
+
+
+def parking_sample(
+    work: PlanningWork, memory: ParkingMemory, inputs: ControllerInput, params: ParkingParams, dt_ns: int
+) -> ParkingMemory:
+    """Return the memory one sample of ``dt_ns`` later."""
+    state = memory.state
+    perceives = state not in (ParkingState.STANDBY, ParkingState.PARKED, ParkingState.FAILED, ParkingState.TAKEOVER)
+    if perceives and input_fault(inputs) == Reason.NONE:
+        perception = perceive(memory.perception, is_driving_state(state), memory.plan.obstacles, inputs, params, dt_ns)
+        memory = memory._replace(perception=perception)
+    if state == ParkingState.SEARCHING:
+        memory = search_slots(memory, inputs, params, dt_ns)
+        memory = memory._replace(reason=_search_fault(memory, inputs, params))
+    elif state == ParkingState.CONFIRMING or state == ParkingState.PLANNING:
+        memory = continue_plan(work, memory, inputs, params)
+        memory = memory._replace(search=memory.search._replace(waited=memory.search.waited + dt_ns))
+    elif is_driving_state(state):
+        memory = _drive(memory, inputs, params)
+    if perceives and state != ParkingState.SEARCHING:
+        memory = _watch(memory, inputs, params, dt_ns)
+    conditions = conditions_of(memory, inputs, params)
+    return enter_state(memory, next_parking_state(state, conditions), inputs, params)
+
+
+def _search_fault(memory: ParkingMemory, inputs: ControllerInput, params: ParkingParams) -> int:
+    """Return why the search must end, ``NONE`` if it goes on."""
+    fault = input_fault(inputs)
+    return fault if fault != Reason.NONE else search_reason(memory.search, params)
+
+
+def _watch(memory: ParkingMemory, inputs: ControllerInput, params: ParkingParams, dt_ns: int) -> ParkingMemory:
+    """Return the memory with the clocks of the fault monitor advanced, and the reason to fail if one ran out."""
+    state = memory.state
+    if state == ParkingState.CONFIRMING:
+        late = memory.search.waited * 1e-9 > params.slot.confirm_time
+        fault = input_fault(inputs)
+        fault = Reason.TIMEOUT if fault == Reason.NONE and late else fault
+        return memory._replace(reason=fault) if fault != Reason.NONE else memory
+    moves = state in (ParkingState.STEERING, ParkingState.DRIVING, ParkingState.STRAIGHTENING)
+    drives = state == ParkingState.DRIVING
+    steers = state != ParkingState.PLANNING
+    blocked = memory.verdict.is_blocked
+    expectation = Expectation(steers, moves, drives, blocked, memory.steering_wheel_angle)
+    limits = FaultLimits(params.limit, params.car.steering.rate_limit, params.threshold.standstill)
+    clocks = advance_clocks(memory.clocks, expectation, inputs, limits, dt_ns)
+    reason = memory.reason
+    if reason == Reason.NONE:
+        reason = fault_reason(clocks, inputs, drives, memory.progress.manoeuvres, params.limit)
+    return memory._replace(clocks=clocks, reason=reason)
+
+
+def _drive(memory: ParkingMemory, inputs: ControllerInput, params: ParkingParams) -> ParkingMemory:
+    """Return the memory with the progress on the path and the collision monitor's verdict."""
+    context = FollowingContext(params.car, params.drive)
+    progress = track_path(memory.progress, inputs.odometry, inputs.measured_speed, context)
+    direction = sign(progress.path.segments[progress.segment].distance)
+    angle = inputs.steering_wheel_angle
+    if memory.state == ParkingState.STEERING:
+        angle = memory.steering_wheel_angle
+    front_wheel_angle = angle / params.car.steering.ratio
+    speed = abs(inputs.measured_speed)
+    motion = Motion(
+        inputs.odometry,
+        direction,
+        speed if speed > params.threshold.standstill else 0.0,
+        math.tan(front_wheel_angle) / params.car.wheelbase,
+        max(progress.upcoming.left, 0.0),
+        params.drive.brake_delay,
+        params.drive.brake_deceleration,
+    )
+    outline = vehicle_outline(params.car, 1.0)
+    verdict = monitor_collision(
+        motion,
+        outline,
+        memory.perception.local_map.landmarks,
+        memory.perception.echoes,
+        params.monitor,
+        params.mapping,
+    )
+    return memory._replace(progress=progress, verdict=verdict)
+
+
+def conditions_of(memory: ParkingMemory, inputs: ControllerInput, params: ParkingParams) -> int:
+    """Return the bits of the conditions that hold."""
+    progress = memory.progress
+    search = memory.search
+    speed = inputs.measured_speed
+    standing = abs(speed) <= params.threshold.standstill
+    wheel = inputs.steering_wheel_angle
+    straight = abs(wheel) <= params.threshold.wheel
+    rolls_after = progress.upcoming.standstill.after if memory.state == ParkingState.STEERING else 0.0
+    tolerance = max(params.threshold.wheel, params.car.steering.rate_limit * rolls_after)
+    blocked = memory.verdict.is_blocked
+    stop = stopping_distance(abs(speed), params.drive.brake_delay, params.drive.brake_deceleration)
+    lost = abs(progress.lateral_error) > params.monitor.corridor
+    lost = lost or abs(progress.heading_error) > params.monitor.corridor_heading
+    blocked_long = memory.clocks.blocked * 1e-9 > params.monitor.wait
+    moved = planar_distance(inputs.odometry.x, inputs.odometry.y, search.pose.x, search.pose.y)
+    planned = memory.plan.is_found
+    in_place = is_in_place(memory, inputs, params)
+    off = not inputs.apa_switch
+    return (
+        bit(Condition.SWITCHED_ON, inputs.apa_switch)
+        | bit(Condition.SWITCHED_OFF, off)
+        | bit(Condition.TAKEN_OVER, inputs.driver_takeover)
+        | bit(Condition.FAULT, memory.reason != Reason.NONE and memory.state != ParkingState.CONFIRMING)
+        | bit(Condition.SLOT_FOUND, standing and search.slot.type != SlotType.NONE)
+        | bit(Condition.SLOT_REJECTED, memory.reason != Reason.NONE)
+        | bit(Condition.DRIVEN_ON, moved > DRIVEN_ON)
+        | bit(Condition.CONFIRMED, inputs.driver_confirm and standing and planned)
+        | bit(Condition.PLANNED, planned)
+        | bit(Condition.WHEEL_TURNED, abs(wheel - memory.steering_wheel_angle) <= tolerance and not blocked)
+        | bit(Condition.MUST_STOP, progress.upcoming.left <= stop - progress.stop_correction or blocked or lost)
+        | bit(Condition.REPLAN, standing and (lost or blocked_long))
+        | bit(Condition.AT_END, standing and is_at_end(progress))
+        | bit(Condition.STANDING, standing and not blocked)
+        | bit(Condition.IN_PLACE, straight and standing and in_place)
+        | bit(Condition.MISSED, straight and standing and not in_place)
+    )
+
+
+def is_in_place(memory: ParkingMemory, inputs: ControllerInput, params: ParkingParams) -> bool:
+    """Return whether the vehicle is at the goal, or cannot be brought nearer: the plans are used up."""
+    slot = corrected_slot(memory, params)
+    outline = vehicle_outline(params.car, params.plan.curvature_fraction)
+    error = pose_to_frame(inputs.odometry, goal_pose(slot, outline, params.slot))
+    near = abs(error.x) < params.final.position + abs(params.drive.rolling_offset)
+    near = near and abs(error.y) < params.final.position
+    return near and abs(wrap_angle(error.heading)) < params.final.heading
+
+
+def corrected_slot(memory: ParkingMemory, params: ParkingParams) -> SlotCandidate:
+    """Return the slot by all that has been measured of it."""
+    return correct_slot(memory.search.slot, memory.perception.local_map.landmarks, params.mapping)
+
+
+def enter_state(memory: ParkingMemory, state: int, inputs: ControllerInput, params: ParkingParams) -> ParkingMemory:
+    """Return the memory in ``state``, with what is requested of steering and speed until the next sample."""
+    before = memory.state
+    context = FollowingContext(params.car, params.drive)
+    if state == ParkingState.SEARCHING and before != ParkingState.SEARCHING:
+        memory = _begin_search(memory, before)
+    if state == ParkingState.CONFIRMING and before != ParkingState.CONFIRMING:
+        search = memory.search._replace(pose=inputs.odometry, waited=0)
+        memory = begin_plan(memory._replace(search=search, plan=PlanProgress(), clocks=FaultClocks()))
+    if state == ParkingState.PLANNING and before != ParkingState.PLANNING:
+        remembered = memory.perception.remembered
+        if memory.verdict.is_blocked:
+            remembered = remember_echoes(remembered, memory.perception.echoes)
+        perception = memory.perception._replace(remembered=remembered)
+        clocks = memory.clocks._replace(blocked=0)
+        memory = begin_plan(memory._replace(perception=perception, clocks=clocks, verdict=MonitorVerdict()))
+    if state == ParkingState.STEERING and before != ParkingState.STEERING:
+        memory = memory._replace(progress=next_segment(memory.progress, context))
+    if state == ParkingState.DRIVING and before != ParkingState.DRIVING:
+        memory = memory._replace(progress=set_out(memory.progress))
+    return _request(memory._replace(state=state), context, params)
+
+
+def _begin_search(memory: ParkingMemory, before: int) -> ParkingMemory:
+    """Return the memory at the begin of a search; a slot that was shown is forgotten, the map is not."""
+    if before == ParkingState.CONFIRMING:
+        search = SearchProgress(distance=memory.search.distance, rejected=memory.reason)
+        return memory._replace(search=search, reason=Reason.NONE, plan=PlanProgress())
+    return ParkingMemory(state=memory.state, perception=Perception(time=memory.perception.time))
+
+
+def _request(memory: ParkingMemory, context: FollowingContext, params: ParkingParams) -> ParkingMemory:
+    """Return the memory with the requested steering-wheel angle and speed."""
+    state = memory.state
+    limit = params.car.steering.angle_limit
+    ratio = params.car.steering.ratio
+    wheel = memory.steering_wheel_angle
+    speed = 0.0
+    if state == ParkingState.STEERING:
+        wheel = clamp(ratio * standstill_wheel_angle(memory.progress, context), -limit, limit)
+    if state == ParkingState.DRIVING or state == ParkingState.STOPPING:
+        wheel = clamp(ratio * memory.progress.front_wheel_angle, -limit, limit)
+    if state == ParkingState.STRAIGHTENING:
+        wheel = 0.0
+    if state == ParkingState.DRIVING:
+        allowed = profile_speed(memory.progress.upcoming, memory.verdict.speed_limit, context)
+        speed = memory.progress.direction * allowed
+    return memory._replace(steering_wheel_angle=wheel, speed=speed)

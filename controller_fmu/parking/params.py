@@ -40,7 +40,9 @@ class ParkingParams(NamedTuple):
     system: Annotated[int, Signal("1", "which system", states=System)] = System.PARKING
     sample_time: Annotated[float, Signal("s", "controller's sample time, whole nanoseconds", 1e-4, 1.0, HOUSE)] = 0.01
     car: Annotated[Car, Group("vehicle model used by the controller")] = Car()
-    target: Annotated[Pose, Group("pose that the evaluation compares with; the system finds its own", ANYWHERE)] = Pose()
+    target: Annotated[Pose, Group("pose that the evaluation compares with; the system finds its own", ANYWHERE)] = (
+        Pose()
+    )
     threshold: Annotated[ThresholdParams, Role.TUNABLE] = ThresholdParams()
     limit: Annotated[LimitParams, Role.TUNABLE] = LimitParams(shifts=30, duration=300.0)
     mapping: Annotated[MappingParams, Role.TUNABLE] = MappingParams()

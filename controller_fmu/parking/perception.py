@@ -6,7 +6,7 @@ from controller_fmu.interface import ControllerInput, Reason
 from controller_fmu.parking.chart import ParkingState
 from controller_fmu.parking.geometry.outline import vehicle_outline
 from controller_fmu.parking.geometry.polygons import ObstacleMap
-from controller_fmu.parking.map.local_map import update_map
+from controller_fmu.parking.map.local_map import expected_range, update_map
 from controller_fmu.parking.measurement.cycle import next_cycle
 from controller_fmu.parking.measurement.sensor import (
     SENSORS,
@@ -63,7 +63,8 @@ def _track(
     is_echo = status in (ReadingStatus.ECHO, ReadingStatus.BLIND_ZONE) and reading < MAX_MONITORED_RANGE
     unexplained = False
     if is_echo:
-        expected = range_in_map(sensor, obstacles, sensors.max_range)
+        planned = range_in_map(sensor, obstacles, sensors.max_range)
+        expected = min(planned, expected_range(perception.local_map.landmarks, sensor, planned, params.mapping))
         unexplained = reading < expected - params.monitor.unexplained
     variance = range_variance(params.mapping.range_noise, sensors.resolution)
     return update_track(perception.tracks[number], unexplained, reading, approach, variance, sensors.cycle)

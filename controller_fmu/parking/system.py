@@ -16,9 +16,9 @@ from controller_fmu.parking.following.path_tracking import (
 )
 from controller_fmu.parking.geometry.frames import pose_to_frame
 from controller_fmu.parking.geometry.outline import vehicle_outline
-from controller_fmu.parking.monitor.collision_monitor import MonitorVerdict, Motion, monitor_collision
+from controller_fmu.parking.monitor.collision_monitor import MonitorVerdict, VehicleMotion, monitor_collision
 from controller_fmu.parking.monitor.fault_monitor import (
-    Expectation,
+    ExpectedMotion,
     FaultClocks,
     FaultLimits,
     advance_clocks,
@@ -37,6 +37,8 @@ from controller_fmu.parking.slots.goal import goal_pose
 from controller_fmu.parking.state import ParkingMemory, Perception, PlanProgress, SearchProgress
 from modelkit.maths import clamp, sign, wrap_angle
 
+REPLAN_TIME = 0.3
+"""Blocked by the map the vehicle plans again after this time [s]: seven measurement cycles at standstill."""
 DRIVEN_ON = 0.3
 """A vehicle that has moved by more than this [m] since the slot was shown was driven on by its driver."""
 
@@ -82,7 +84,7 @@ def _watch(memory: ParkingMemory, inputs: ControllerInput, params: ParkingParams
     drives = state == ParkingState.DRIVING
     steers = state != ParkingState.PLANNING
     blocked = memory.verdict.is_blocked
-    expectation = Expectation(steers, moves, drives, blocked, memory.steering_wheel_angle)
+    expectation = ExpectedMotion(steers, moves, drives, blocked, memory.steering_wheel_angle)
     limits = FaultLimits(params.limit, params.car.steering.rate_limit, params.threshold.standstill)
     clocks = advance_clocks(memory.clocks, expectation, inputs, limits, dt_ns)
     reason = memory.reason
@@ -101,7 +103,7 @@ def _drive(memory: ParkingMemory, inputs: ControllerInput, params: ParkingParams
         angle = memory.steering_wheel_angle
     front_wheel_angle = angle / params.car.steering.ratio
     speed = abs(inputs.measured_speed)
-    motion = Motion(
+    motion = VehicleMotion(
         inputs.odometry,
         direction,
         speed if speed > params.threshold.standstill else 0.0,
@@ -136,7 +138,8 @@ def conditions_of(memory: ParkingMemory, inputs: ControllerInput, params: Parkin
     stop = stopping_distance(abs(speed), params.drive.brake_delay, params.drive.brake_deceleration)
     lost = abs(progress.lateral_error) > params.monitor.corridor
     lost = lost or abs(progress.heading_error) > params.monitor.corridor_heading
-    blocked_long = memory.clocks.blocked * 1e-9 > params.monitor.wait
+    patience = REPLAN_TIME if memory.verdict.is_mapped else params.monitor.wait
+    blocked_long = memory.clocks.blocked * 1e-9 > patience
     moved = planar_distance(inputs.odometry.x, inputs.odometry.y, search.pose.x, search.pose.y)
     planned = memory.plan.is_found
     in_place = is_in_place(memory, inputs, params)
@@ -187,7 +190,7 @@ def enter_state(memory: ParkingMemory, state: int, inputs: ControllerInput, para
         memory = begin_plan(memory._replace(search=search, plan=PlanProgress(), clocks=FaultClocks()))
     if state == ParkingState.PLANNING and before != ParkingState.PLANNING:
         remembered = memory.perception.remembered
-        if memory.verdict.is_blocked:
+        if memory.verdict.is_blocked and not memory.verdict.is_mapped:
             remembered = remember_echoes(remembered, memory.perception.echoes)
         perception = memory.perception._replace(remembered=remembered)
         clocks = memory.clocks._replace(blocked=0)

@@ -22,5 +22,5 @@ class MappingParams(NamedTuple):
     ambiguity: Annotated[
         float, Signal("1", "difference of chi-square that decides between two landmarks", 0.0, 100.0, HOUSE)
     ] = 3.0
-    confirmations: Annotated[int, Signal("1", "updates that confirm a landmark", 1, 100, HOUSE)] = 3
+    confirmations: Annotated[int, Signal("1", "updates that confirm a landmark", 1, 100, HOUSE)] = 5
     contradictions: Annotated[int, Signal("1", "missed echoes in a row that delete it", 1, 100, HOUSE)] = 5

@@ -22,8 +22,8 @@ DECISION_SIGMA = 2.0
 """A curvature this many standard deviations below 0 is concave: a window over two bodies (2 % of the others)."""
 MAX_SLOPE = 0.9
 """Beyond |b| = 0.9 (bearing within 26 deg of the path) the bearing follows from b too badly."""
-MAX_TURN_COS = 0.98
-"""The sensor's axis turns by at most 11 deg over a window; else the path is not straight."""
+MAX_TURN_COS = 0.99
+"""The sensor's axis turns by at most 8 deg over a window; else the path is not straight."""
 VIEW_TOLERANCE = 0.05
 """A bearing may lie this much outside the cone, in cosine: 4 deg at a half cone of 30 deg, two standard deviations."""
 

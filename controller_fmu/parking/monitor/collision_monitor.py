@@ -46,7 +46,7 @@ class EchoObstacle(NamedTuple):
     is_present: bool = False
 
 
-class Motion(NamedTuple):
+class VehicleMotion(NamedTuple):
     """How the vehicle moves: pose, direction (1, -1), speed >= 0, curvature, and how it brakes; SI units."""
 
     pose: Pose
@@ -66,10 +66,12 @@ class MonitorVerdict(NamedTuple):
     is_blocked: bool = False
     free_distance: float = UNLIMITED
     """[m]"""
+    is_mapped: bool = False
+    """It is the map that limits it: waiting does not help."""
 
 
 def monitor_collision(
-    motion: Motion,
+    motion: VehicleMotion,
     outline: VehicleOutline,
     landmarks: tuple[Landmark, ...],
     echoes: tuple[EchoObstacle, ...],
@@ -80,16 +82,17 @@ def monitor_collision(
     stop = stopping_distance(motion.speed, motion.delay, motion.deceleration)
     horizon = min(stop + LOOK_AHEAD, max(motion.remaining, APPROACH))
     free = UNLIMITED
+    by_map = UNLIMITED
     if horizon > 0.0:
         by_map = free_by_map(motion, horizon, outline, landmarks, params, mapping)
         free = min(by_map, free_by_echoes(motion, horizon, outline, echoes, params))
     limit = UNLIMITED if free >= UNLIMITED else speed_for_distance(free, motion.delay, motion.deceleration)
     least = RESTART if motion.speed <= 0.0 else stop
-    return MonitorVerdict(limit, free < UNLIMITED and free <= min(least, motion.remaining), free)
+    return MonitorVerdict(limit, free < UNLIMITED and free <= min(least, motion.remaining), free, by_map <= free)
 
 
 def free_by_map(
-    motion: Motion,
+    motion: VehicleMotion,
     horizon: float,
     outline: VehicleOutline,
     landmarks: tuple[Landmark, ...],
@@ -113,7 +116,11 @@ def free_by_map(
 
 
 def free_by_echoes(
-    motion: Motion, horizon: float, outline: VehicleOutline, echoes: tuple[EchoObstacle, ...], params: MonitorParams
+    motion: VehicleMotion,
+    horizon: float,
+    outline: VehicleOutline,
+    echoes: tuple[EchoObstacle, ...],
+    params: MonitorParams,
 ) -> float:
     """Return how far [m] the outline goes before it comes too near to an unexplained echo, as that approaches."""
     free = UNLIMITED

@@ -9,7 +9,7 @@ from controller_fmu.interface import ControllerInput, Reason
 from modelkit.vocabulary import Pose
 
 
-class Expectation(NamedTuple):
+class ExpectedMotion(NamedTuple):
     """What the system asked of the vehicle over the last sample."""
 
     steers: bool
@@ -44,7 +44,7 @@ class FaultLimits(NamedTuple):
 
 
 def advance_clocks(
-    clocks: FaultClocks, expectation: Expectation, inputs: ControllerInput, limits: FaultLimits, dt_ns: int
+    clocks: FaultClocks, expectation: ExpectedMotion, inputs: ControllerInput, limits: FaultLimits, dt_ns: int
 ) -> FaultClocks:
     """Return the clocks after a sample of ``dt_ns``."""
     speed = inputs.measured_speed

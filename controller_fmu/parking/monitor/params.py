@@ -17,4 +17,4 @@ class MonitorParams(NamedTuple):
     ] = 0.2
     corridor: Annotated[float, Signal("m", "lateral error: stop and plan again", 0.01, 5.0, HOUSE)] = 0.1
     corridor_heading: Annotated[float, Signal("rad", "heading error: the same", 0.01, 1.5, HOUSE)] = 0.12
-    wait: Annotated[float, Signal("s", "wait for an obstacle to go away", 0.0, 600.0, HOUSE)] = 3.0
+    wait: Annotated[float, Signal("s", "wait for an obstacle to go away", 0.0, 600.0, HOUSE)] = 10.0

@@ -17,7 +17,7 @@ from controller_fmu.parking.map.landmark import LANDMARKS, Landmark, LandmarkTyp
 from controller_fmu.parking.map.local_map import is_confirmed
 from controller_fmu.parking.map.params import MappingParams
 from controller_fmu.parking.slots.params import SlotParams
-from controller_fmu.parking.slots.row import MEMBERS, Row, RowMember
+from controller_fmu.parking.slots.row import MEMBERS, RowMember, SlotRow
 from modelkit.geometry import Point
 
 UNKNOWN_DEPTH = 50.0
@@ -29,6 +29,8 @@ CAR_LENGTH_SIGMA = 0.5
 CAR_WIDTH = 1.8
 CAR_WIDTH_SIGMA = 0.2
 """Passenger cars (ISO 16787 test vehicles and what is sold): length and width [m], standard deviations."""
+MAX_CAR = 6.0
+"""A longer side [m] is a wall, and tells nothing of how cars stand."""
 MAX_PARALLEL_DEPTH = 3.0
 """A kerb or wall nearer than this [m] behind the row leaves no perpendicular slot."""
 TYPICAL_BAY = 2.5
@@ -57,7 +59,7 @@ class SlotCandidate(NamedTuple):
     type: int = SlotType.NONE
     reason: int = Reason.NONE
     """Why it is rejected."""
-    row: Row = Row()
+    row: SlotRow = SlotRow()
     behind: RowMember = RowMember()
     """The neighbour that was passed first (A)."""
     ahead: RowMember = RowMember()
@@ -71,7 +73,7 @@ class SlotCandidate(NamedTuple):
 
 
 def find_slot(
-    row: Row,
+    row: SlotRow,
     landmarks: tuple[Landmark, ...],
     rays: tuple[Ray, ...],
     outline: VehicleOutline,
@@ -90,7 +92,7 @@ def find_slot(
 
 
 def _candidate(
-    row: Row,
+    row: SlotRow,
     number: int,
     landmarks: tuple[Landmark, ...],
     outline: VehicleOutline,
@@ -128,8 +130,11 @@ def log_likelihood_ratio(candidate: SlotCandidate) -> float:
         if number < candidate.row.used:
             member = candidate.row.members[number]
             length = member.end - member.start
-            ratio += _log_likelihood(length, member.is_complete, CAR_LENGTH, CAR_LENGTH_SIGMA)
-            ratio -= _log_likelihood(length, member.is_complete, CAR_WIDTH, CAR_WIDTH_SIGMA)
+            is_between_gaps = 0 < number < candidate.row.used - 1
+            is_complete = member.is_complete or is_between_gaps
+            if length < MAX_CAR:
+                ratio += _log_likelihood(length, is_complete, CAR_LENGTH, CAR_LENGTH_SIGMA)
+                ratio -= _log_likelihood(length, is_complete, CAR_WIDTH, CAR_WIDTH_SIGMA)
     if candidate.depth < MAX_PARALLEL_DEPTH:
         ratio += 2.0 * DECIDED
     return ratio
@@ -143,7 +148,7 @@ def _log_likelihood(length: float, is_complete: bool, mean: float, sigma: float)
     return -min(0.5 * deviation * deviation, 2.0 * DECIDED)
 
 
-def bay_width(row: Row) -> float:
+def bay_width(row: SlotRow) -> float:
     """Return the mean distance [m] of neighbouring cars, from middle to middle, as far as bays are that narrow."""
     total = 0.0
     n = 0.0
@@ -189,7 +194,7 @@ def is_observed_free(candidate: SlotCandidate, rays: tuple[Ray, ...]) -> bool:
     return count >= MIN_FREE
 
 
-def row_point(row: Row, along: float, deep: float) -> Point:
+def row_point(row: SlotRow, along: float, deep: float) -> Point:
     """Return the point ``along`` a row and ``deep`` [m] across it in the odometry frame."""
     return point_from_frame(along, row.side * deep, row.frame)
 

@@ -50,7 +50,7 @@ class RowMember(NamedTuple):
     """Both ends are known."""
 
 
-class Row(NamedTuple):
+class SlotRow(NamedTuple):
     """A row in its own frame: x along the road as the vehicle drives, y across it; ``side``: 1 left, -1 right.
 
     Fronts count away from the road, so on either side a larger front is deeper.
@@ -63,7 +63,7 @@ class Row(NamedTuple):
     used: int = 0
 
 
-def find_row(landmarks: tuple[Landmark, ...], vehicle: Pose, side: float, params: MappingParams) -> Row:
+def find_row(landmarks: tuple[Landmark, ...], vehicle: Pose, side: float, params: MappingParams) -> SlotRow:
     """Return the row on one side (1 left, -1 right) of a vehicle that drives along it."""
     rough = _members(landmarks, vehicle, side, params)
     turn = _direction(landmarks, rough, params)
@@ -88,14 +88,14 @@ def side_as_member(landmark: Landmark, frame: Pose, side: float, params: Mapping
     return RowMember(min(p.x, q.x), max(p.x, q.x), front, complete)
 
 
-def _members(landmarks: tuple[Landmark, ...], frame: Pose, side: float, params: MappingParams) -> Row:
+def _members(landmarks: tuple[Landmark, ...], frame: Pose, side: float, params: MappingParams) -> SlotRow:
     """Return the row in a given frame: its members from ahead to behind, overlapping sides joined."""
     nearest = NO_MEMBER
     for number in range(LANDMARKS):
         member = side_as_member(landmarks[number], frame, side, params)
         if member.end > member.start:
             nearest = min(nearest, member.front)
-    row = Row(frame, side)
+    row = SlotRow(frame, side)
     last = NO_MEMBER
     for _ in range(LANDMARKS):
         best = RowMember()
@@ -113,7 +113,7 @@ def _members(landmarks: tuple[Landmark, ...], frame: Pose, side: float, params: 
     return row
 
 
-def _with_member(row: Row, member: RowMember) -> Row:
+def _with_member(row: SlotRow, member: RowMember) -> SlotRow:
     """Return the row with a member farther behind; one that touches the last is joined to it."""
     at = row.used - 1
     joins = row.used > 0 and row.members[max(at, 0)].start - member.end < MEMBER_GAP
@@ -130,7 +130,7 @@ def _with_member(row: Row, member: RowMember) -> Row:
     )
 
 
-def _direction(landmarks: tuple[Landmark, ...], row: Row, params: MappingParams) -> float:
+def _direction(landmarks: tuple[Landmark, ...], row: SlotRow, params: MappingParams) -> float:
     """Return how far [rad] the row is turned against its frame."""
     along = row.frame.heading if row.side < 0.0 else row.frame.heading + math.pi
     total = 0.0

@@ -1,0 +1,132 @@
+"""The collision monitor: the braking invariant by interval splitting, and what it must and must not stop for."""
+
+import math
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from controller_fmu.parking.chart import TRANSITIONS, Condition, ParkingState, next_parking_state
+from controller_fmu.parking.geometry.outline import vehicle_outline
+from controller_fmu.parking.map.landmark import LANDMARKS, Landmark, LandmarkType
+from controller_fmu.parking.map.params import MappingParams
+from controller_fmu.parking.monitor.collision_monitor import (
+    UNLIMITED,
+    EchoObstacle,
+    MonitorVerdict,
+    VehicleMotion,
+    monitor_collision,
+)
+from controller_fmu.parking.monitor.params import MonitorParams
+from controller_fmu.parking.monitor.stopping import speed_for_distance, stopping_distance
+from controller_fmu.parking.objects.track import ObjectTrack, TrackStatus, closing_speed, update_track
+from modelkit.car import Car
+from modelkit.vocabulary import Pose
+
+OUTLINE = vehicle_outline(Car(), 1.0)
+NOTHING = (EchoObstacle(),) * 12
+EMPTY = (Landmark(),) * LANDMARKS
+FRONT = OUTLINE.centre_ahead + OUTLINE.half_length
+
+
+def verdict(
+    speed: float, landmarks: tuple[Landmark, ...] = EMPTY, echoes: tuple[EchoObstacle, ...] = NOTHING, **more: float
+) -> MonitorVerdict:
+    motion = VehicleMotion(
+        Pose(), more.get("direction", 1.0), speed, more.get("curvature", 0.0), more.get("remaining", 10.0), 0.1, 2.0
+    )
+    return monitor_collision(motion, OUTLINE, landmarks, echoes, MonitorParams(), MappingParams())
+
+
+def wall_at(x: float) -> tuple[Landmark, ...]:
+    wall = Landmark(LandmarkType.SEGMENT, x, 0.0, math.pi / 2, start=-2.0, end=2.0, confirmations=9)
+    return (wall,) + EMPTY[1:]
+
+
+def test_stopping_distance_never_exceeds_the_free_distance() -> None:
+    """Over boxes of (free distance, delay, deceleration): both functions are monotone, so corners bound a box."""
+    for f in range(60):
+        for d in range(12):
+            for b in range(1, 12):
+                low, high = 0.05 * f, 0.05 * (f + 1)
+                for delay in (0.05 * d, 0.05 * (d + 1)):
+                    for brake in (0.5 * b, 0.5 * (b + 1)):
+                        speed = speed_for_distance(low, delay, brake)
+                        assert stopping_distance(speed, delay, brake) <= low + 1e-9
+                        assert speed <= speed_for_distance(high, delay, brake) + 1e-12
+
+
+@given(st.floats(0.0, 3.0), st.floats(0.0, 1.0), st.floats(0.1, 10.0))
+def test_speed_for_a_distance_is_the_inverse_of_the_stopping_distance(
+    free: float, delay: float, deceleration: float
+) -> None:
+    speed = speed_for_distance(free, delay, deceleration)
+    assert stopping_distance(speed, delay, deceleration) == pytest.approx(free, abs=1e-9)
+
+
+def test_a_wall_ahead_stops_and_one_beside_or_behind_does_not() -> None:
+    assert verdict(0.8, wall_at(FRONT + 0.2)).is_blocked
+    assert verdict(0.8, wall_at(FRONT + 0.2)).is_mapped
+    assert verdict(0.8, wall_at(FRONT + 2.0)).speed_limit == UNLIMITED
+    assert verdict(0.8, wall_at(-0.7)).speed_limit == UNLIMITED
+    beside = Landmark(LandmarkType.SEGMENT, 0.0, -1.0, 0.0, start=-5.0, end=5.0, confirmations=9)
+    assert verdict(0.8, (beside,) + EMPTY[1:]).speed_limit == UNLIMITED
+
+
+def test_an_unconfirmed_landmark_does_not_stop() -> None:
+    tentative = wall_at(FRONT + 0.2)[0]._replace(confirmations=1)
+    assert not verdict(0.8, (tentative,) + EMPTY[1:]).is_blocked
+
+
+def test_an_unexplained_echo_stops_at_once() -> None:
+    echo = EchoObstacle(FRONT + 0.35, 0.1, 0.0, True)
+    assert verdict(0.8, echoes=(echo,) + NOTHING[1:]).is_blocked
+    assert not verdict(0.8, echoes=(echo._replace(is_present=False),) + NOTHING[1:]).is_blocked
+
+
+def test_an_approaching_object_stops_earlier() -> None:
+    still = EchoObstacle(FRONT + 0.6, 0.0, 0.0, True)
+    free = verdict(0.5, echoes=(still,) + NOTHING[1:]).free_distance
+    assert verdict(0.5, echoes=(still._replace(closing_speed=1.5),) + NOTHING[1:]).free_distance < free
+
+
+def test_the_vehicle_may_leave_what_it_stands_beside() -> None:
+    assert not verdict(0.0, wall_at(FRONT + 0.02), direction=-1.0).is_blocked
+    assert verdict(0.0, wall_at(FRONT + 0.02)).is_blocked
+
+
+def test_a_track_finds_the_closing_speed() -> None:
+    track, distance = ObjectTrack(), 2.0
+    for _ in range(12):
+        distance -= 1.5 * 0.04
+        track = update_track(track, True, distance, 0.0, 1e-4, 0.04)
+    assert track.status == TrackStatus.CONFIRMED
+    assert closing_speed(track) == pytest.approx(1.5, abs=0.2)
+
+
+def test_own_motion_is_no_closing_speed() -> None:
+    track, distance = ObjectTrack(), 2.0
+    for _ in range(12):
+        distance -= 0.8 * 0.04
+        track = update_track(track, True, distance, 0.8 * 0.04, 1e-4, 0.04)
+    assert closing_speed(track) == 0.0
+
+
+def test_a_track_coasts_and_ends() -> None:
+    track = ObjectTrack()
+    for _ in range(4):
+        track = update_track(track, True, 1.0, 0.0, 1e-4, 0.04)
+    track = update_track(track, False, 0.0, 0.0, 1e-4, 0.04)
+    assert track.status == TrackStatus.COASTING
+    for _ in range(6):
+        track = update_track(track, False, 0.0, 0.0, 1e-4, 0.04)
+    assert track.status == TrackStatus.NONE
+
+
+def test_every_state_has_a_way_out_and_faults_win() -> None:
+    for state in ParkingState:
+        assert [row for row in TRANSITIONS if row[0] == state], state
+    for state in (ParkingState.PLANNING, ParkingState.STEERING, ParkingState.DRIVING, ParkingState.STOPPING):
+        others = sum(1 << condition for condition in Condition if condition > Condition.FAULT)
+        assert next_parking_state(state, others | 1 << Condition.FAULT) == ParkingState.FAILED
+        assert next_parking_state(state, others | 1 << Condition.TAKEN_OVER) == ParkingState.TAKEOVER

@@ -1,0 +1,82 @@
+"""Rows, gaps and slot types from maps of simulated passes, and the goal in a slot."""
+
+import math
+
+import pytest
+
+from controller_fmu.interface import Reason
+from controller_fmu.parking.geometry.outline import vehicle_outline
+from controller_fmu.parking.map.local_map import LandmarkMap, update_map
+from controller_fmu.parking.map.params import MappingParams
+from controller_fmu.parking.slots.candidate import SlotCandidate, SlotType, find_slot, log_likelihood_ratio
+from controller_fmu.parking.slots.goal import goal_pose
+from controller_fmu.parking.slots.params import SlotParams
+from controller_fmu.parking.slots.row import RowMember, SlotRow, find_row
+from modelkit.geometry import Box
+from modelkit.vocabulary import Pose
+from tests.parking.simulated_pass import CAR, drive_past
+
+OUTLINE = vehicle_outline(CAR, 0.95)
+
+
+def slot_after(boxes: list[Box], seed: int, end: float, lateral: float = 1.0) -> SlotCandidate:
+    local_map, params, pose = LandmarkMap(), MappingParams(), Pose()
+    start = Pose(-9.0, CAR.width / 2 + lateral, 0.0)
+    for _, pose, readings in drive_past(boxes, start, end + 9.0, seed):
+        local_map = update_map(local_map, readings, pose, CAR.ultrasonic, params)
+    row = find_row(local_map.landmarks, pose, -1.0, params)
+    return find_slot(row, local_map.landmarks, local_map.free_space.right, OUTLINE, SlotParams(), params)
+
+
+def bays(width: float, empty: int, cars: int = 2) -> list[Box]:
+    """Cars of 1.8 m in bays of ``width``, ``empty`` bays free at the origin, ``cars`` on each side."""
+    before = [Box(-width * (0.5 + number), -2.25, 0.0, 1.8, 4.5) for number in range(cars)]
+    after = [Box(width * (empty + 0.5 + number), -2.25, 0.0, 1.8, 4.5) for number in range(cars)]
+    return before + after
+
+
+@pytest.mark.parametrize("width", [2.6, 2.7, 2.9])
+def test_one_empty_bay_is_a_perpendicular_slot(width: float) -> None:
+    slot = slot_after(bays(width, 1), 1, width + 2.0)
+    assert (slot.type, slot.reason) == (SlotType.PERPENDICULAR, Reason.NONE)
+    goal = goal_pose(slot, OUTLINE, SlotParams())
+    assert goal.x == pytest.approx(width / 2, abs=0.2)
+    assert math.degrees(goal.heading) % 360.0 == pytest.approx(90.0, abs=3.0)
+
+
+def test_of_two_empty_bays_one_is_used() -> None:
+    slot = slot_after(bays(2.6, 2), 2, 7.2)
+    assert slot.type == SlotType.PERPENDICULAR
+    goal = goal_pose(slot, OUTLINE, SlotParams())
+    assert min(abs(goal.x - 1.3), abs(goal.x - 3.9)) < 0.3
+
+
+def test_a_gap_between_cars_along_the_road_is_a_parallel_slot() -> None:
+    kerb = Box(3.0, -1.9, 0.0, 40.0, 0.02)
+    slot = slot_after([Box(-2.2, -0.9, 0.0, 4.4, 1.8), Box(8.4, -0.9, 0.0, 4.4, 1.8), kerb], 3, 5.5)
+    assert (slot.type, slot.reason) == (SlotType.PARALLEL, Reason.NONE)
+    assert math.degrees(goal_pose(slot, OUTLINE, SlotParams()).heading) == pytest.approx(0.0, abs=2.0)
+
+
+def test_a_gap_that_is_too_short_is_rejected() -> None:
+    kerb = Box(3.0, -1.9, 0.0, 40.0, 0.02)
+    slot = slot_after([Box(-2.2, -0.9, 0.0, 4.4, 1.8), Box(6.2, -0.9, 0.0, 4.4, 1.8), kerb], 3, 5.5)
+    assert slot.reason != Reason.NONE
+
+
+def test_wide_open_space_is_no_slot() -> None:
+    assert slot_after([Box(-6.0, -0.9, 0.0, 4.4, 1.8)], 1, 6.0).type == SlotType.NONE
+
+
+def row_of(lengths: tuple[float, ...], complete: bool) -> SlotCandidate:
+    members = tuple(RowMember(-8.0 * n, -8.0 * n + length, 1.0, complete) for n, length in enumerate(lengths))
+    row = SlotRow(members=members + (RowMember(),) * (8 - len(lengths)), used=len(lengths))
+    return SlotCandidate(row=row)
+
+
+def test_type_follows_from_what_was_seen_in_full() -> None:
+    assert log_likelihood_ratio(row_of((1.8, 1.7, 1.9), True)) < -2.3
+    assert log_likelihood_ratio(row_of((4.4, 4.6), True)) > 2.3
+    assert log_likelihood_ratio(row_of((1.5, 1.6), False)) == 0.0
+    assert log_likelihood_ratio(row_of((3.9, 0.6), False)) > 2.3
+    assert log_likelihood_ratio(row_of((20.0, 1.0), False)) == 0.0

@@ -8,9 +8,10 @@ import sys
 from enum import IntEnum
 from typing import TYPE_CHECKING, Annotated, Any, NamedTuple, TypeAlias
 
-from controller_fmu import adaptive, apa, guo2015, hsic, preview, valet, zhang2022
+from controller_fmu import adaptive, apa, guo2015, hsic, parking, preview, valet, zhang2022
 from controller_fmu.common.clock import Clock, begin, refused, tick
 from controller_fmu.interface import RefusedOutput
+from controller_fmu.parking.params import ParkingSystem
 from controller_fmu.valet.params import ValetSystem
 from modelkit.composition import merged, named_tuple
 from modelkit.model import Model, SampledSystem, SampledSystems, View
@@ -28,7 +29,7 @@ ROWS: tuple[SampledSystem[Any, Any, Any, Any], ...] = (
     adaptive.SYSTEM,
 )
 """The systems of one controller, which choose by ``controller.system``."""
-APART: dict[IntEnum, Model] = {ValetSystem.VALET: valet.MODEL}
+APART: dict[IntEnum, Model] = {ValetSystem.VALET: valet.MODEL, ParkingSystem.PARKING: parking.MODEL}
 """Those that are a controller of their own, with a store or a map: by their value of ``controller.system``."""
 
 System: Any = union(

@@ -3,12 +3,12 @@
 import math
 from typing import NamedTuple
 
-from controller_fmu.interface import ControllerInput, Reason
+from controller_fmu.interface import Reason
 from controller_fmu.parking.outputs import parking_outputs
 from controller_fmu.parking.params import ParkingParams
 from controller_fmu.parking.phases import ParkingPhase
 from controller_fmu.parking.planning.work import PlanningWork
-from controller_fmu.parking.signals import ParkingOutput
+from controller_fmu.parking.signals import ParkingOutput, ParkingSystemInput
 from controller_fmu.parking.state import ParkingMemory
 from controller_fmu.parking.system import parking_sample
 from modelkit.maths import is_finite
@@ -30,7 +30,7 @@ def parking_initialize(params: ParkingParams) -> tuple[ParkingModelState, Parkin
 
 
 def parking_step(
-    work: PlanningWork, state: ParkingModelState, inputs: ControllerInput, params: ParkingParams, dt_ns: int
+    work: PlanningWork, state: ParkingModelState, inputs: ParkingSystemInput, params: ParkingParams, dt_ns: int
 ) -> tuple[ParkingModelState, ParkingOutput]:
     """Return (state, outputs) ``dt_ns`` later: the system acts at the instants k * sample_time."""
     end_ns = state.time_ns + dt_ns

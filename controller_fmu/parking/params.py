@@ -1,10 +1,10 @@
 """Parameters of the parking system, composed of those of its packages."""
 
+from enum import IntEnum
 from math import pi
 from typing import Annotated, NamedTuple
 
 from controller_fmu.common.params import LimitParams, ThresholdParams
-from controller_fmu.interface import System
 from controller_fmu.parking.following.params import FollowingParams
 from controller_fmu.parking.map.params import MappingParams
 from controller_fmu.parking.monitor.params import MonitorParams
@@ -34,10 +34,17 @@ class FinalPoseParams(NamedTuple):
     heading: Annotated[float, Signal("rad", "heading", 0.001, 0.5, HOUSE)] = 2.0 * pi / 180.0
 
 
+class ParkingSystem(IntEnum):
+    """Its value of ``controller.system``."""
+
+    PARKING = 8
+    """Slots in a map of landmarks, a path into one, a collision monitor; a controller of its own."""
+
+
 class ParkingParams(NamedTuple):
     """All of them; those that other systems have too have the same names."""
 
-    system: Annotated[int, Signal("1", "which system", states=System)] = System.PARKING
+    system: Annotated[int, Signal("1", "which system", states=ParkingSystem)] = ParkingSystem.PARKING
     sample_time: Annotated[float, Signal("s", "controller's sample time, whole nanoseconds", 1e-4, 1.0, HOUSE)] = 0.01
     car: Annotated[Car, Group("vehicle model used by the controller")] = Car()
     target: Annotated[Pose, Group("pose that the evaluation compares with; the system finds its own", ANYWHERE)] = (

@@ -1,6 +1,6 @@
 """The planner in the system: a request from the slot as it is known now, continued a bounded amount at each sample."""
 
-from controller_fmu.interface import ControllerInput, Reason
+from controller_fmu.interface import Reason
 from controller_fmu.parking.following.params import FollowingContext
 from controller_fmu.parking.following.path_tracking import begin_path
 from controller_fmu.parking.geometry.frames import point_to_frame
@@ -20,6 +20,7 @@ from controller_fmu.parking.planning.planner import (
 )
 from controller_fmu.parking.planning.problem import PlanningRequest
 from controller_fmu.parking.planning.work import PlanningWork
+from controller_fmu.parking.signals import ParkingSystemInput
 from controller_fmu.parking.slots.correction import correct_slot
 from controller_fmu.parking.slots.goal import goal_pose
 from controller_fmu.parking.state import ParkingMemory
@@ -34,7 +35,7 @@ def begin_plan(memory: ParkingMemory) -> ParkingMemory:
 
 
 def continue_plan(
-    work: PlanningWork, memory: ParkingMemory, inputs: ControllerInput, params: ParkingParams
+    work: PlanningWork, memory: ParkingMemory, inputs: ParkingSystemInput, params: ParkingParams
 ) -> ParkingMemory:
     """Return the memory after some steps of the path search; the vehicle stands."""
     if abs(inputs.measured_speed) > params.threshold.standstill or memory.plan.is_found:
@@ -58,7 +59,7 @@ def continue_plan(
     return memory._replace(reason=Reason.BAD_PARAMETER if status == TOO_MANY_EDGES else reason)
 
 
-def _with_request(memory: ParkingMemory, inputs: ControllerInput, params: ParkingParams) -> ParkingMemory:
+def _with_request(memory: ParkingMemory, inputs: ParkingSystemInput, params: ParkingParams) -> ParkingMemory:
     """Return the memory with the request for a path from here into the slot as it is known now."""
     pose = inputs.odometry
     outline = vehicle_outline(params.car, params.plan.curvature_fraction)
@@ -87,7 +88,7 @@ def without_driven_over(landmarks: tuple[Landmark, ...], pose: Pose, outline: Ve
     )
 
 
-def _free_road(memory: ParkingMemory, inputs: ControllerInput, params: ParkingParams) -> Pose:
+def _free_road(memory: ParkingMemory, inputs: ParkingSystemInput, params: ParkingParams) -> Pose:
     """Return how far the road is taken to be free in the row's frame: x ahead, y on its other side."""
     search = memory.search
     car = params.car

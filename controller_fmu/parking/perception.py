@@ -2,7 +2,7 @@
 
 import math
 
-from controller_fmu.interface import ControllerInput, Reason
+from controller_fmu.interface import Reason
 from controller_fmu.parking.chart import ParkingState
 from controller_fmu.parking.geometry.outline import vehicle_outline
 from controller_fmu.parking.geometry.polygons import ObstacleMap
@@ -19,6 +19,7 @@ from controller_fmu.parking.monitor.collision_monitor import EchoObstacle
 from controller_fmu.parking.monitor.expected_range import range_in_map
 from controller_fmu.parking.objects.track import ObjectTrack, closing_speed, update_track
 from controller_fmu.parking.params import ParkingParams
+from controller_fmu.parking.signals import ParkingSystemInput
 from controller_fmu.parking.slots.candidate import SlotCandidate, SlotType, find_slot
 from controller_fmu.parking.slots.row import find_row
 from controller_fmu.parking.state import ParkingMemory, Perception, SearchProgress
@@ -31,7 +32,7 @@ def perceive(
     perception: Perception,
     is_driving: bool,
     obstacles: ObstacleMap,
-    inputs: ControllerInput,
+    inputs: ParkingSystemInput,
     params: ParkingParams,
     dt_ns: int,
 ) -> Perception:
@@ -51,7 +52,7 @@ def perceive(
 
 
 def _track(
-    perception: Perception, number: int, obstacles: ObstacleMap, inputs: ControllerInput, params: ParkingParams
+    perception: Perception, number: int, obstacles: ObstacleMap, inputs: ParkingSystemInput, params: ParkingParams
 ) -> ObjectTrack:
     """Return the track of one sensor after its reading."""
     sensors = params.car.ultrasonic
@@ -70,7 +71,7 @@ def _track(
     return update_track(perception.tracks[number], unexplained, reading, approach, variance, sensors.cycle)
 
 
-def _echo_obstacle(track: ObjectTrack, number: int, inputs: ControllerInput, params: ParkingParams) -> EchoObstacle:
+def _echo_obstacle(track: ObjectTrack, number: int, inputs: ParkingSystemInput, params: ParkingParams) -> EchoObstacle:
     """Return what the monitor must keep clear of, from the track of one sensor."""
     sensors = params.car.ultrasonic
     sensor = sensor_pose(sensors.mounts[number], sensors.half_angle, inputs.odometry)
@@ -83,7 +84,7 @@ def _echo_obstacle(track: ObjectTrack, number: int, inputs: ControllerInput, par
     )
 
 
-def search_slots(memory: ParkingMemory, inputs: ControllerInput, params: ParkingParams, dt_ns: int) -> ParkingMemory:
+def search_slots(memory: ParkingMemory, inputs: ParkingSystemInput, params: ParkingParams, dt_ns: int) -> ParkingMemory:
     """Return the memory after a sample of the slot search; a slot found stays until a better estimate replaces it."""
     search = memory.search
     search = search._replace(distance=search.distance + abs(inputs.measured_speed) * dt_ns * 1e-9)

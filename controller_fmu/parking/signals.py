@@ -2,7 +2,14 @@
 
 from typing import Annotated, NamedTuple
 
-from controller_fmu.interface import Reason
+from controller_fmu.interface import (
+    DriverTakeover,
+    MeasuredSpeed,
+    Odometry,
+    Reason,
+    SteeringWheelAngle,
+    VehicleFault,
+)
 from controller_fmu.parking.chart import ParkingState
 from controller_fmu.parking.phases import ParkingPhase
 from controller_fmu.parking.slots.candidate import SlotType
@@ -17,6 +24,21 @@ from modelkit.vocabulary import (
     SteeringActive,
     SteeringWheelRequest,
 )
+
+
+class ParkingSystemInput(NamedTuple):
+    """From the vehicle and its driver."""
+
+    odometry: Odometry = Pose()
+    measured_speed: MeasuredSpeed = 0.0
+    steering_wheel_angle: SteeringWheelAngle = 0.0
+    driver_takeover: DriverTakeover = False
+    vehicle_fault: VehicleFault = 0
+    ultrasonic: tuple[
+        Annotated[float, Signal("m", "distance heard: 1-4 front, 5-8 rear, 9-10 left, 11-12 right")], ...
+    ] = (5.0,) * 12
+    apa_switch: Annotated[bool, Signal("1", "the driver has switched the parking assist on")] = False
+    driver_confirm: Annotated[bool, Signal("1", "the driver presses the confirm button")] = False
 
 
 class SlotSignals(NamedTuple):

@@ -3,7 +3,7 @@
 import math
 
 from controller_fmu.common.chart import bit
-from controller_fmu.interface import ControllerInput, Reason
+from controller_fmu.interface import Reason
 from controller_fmu.parking.chart import Condition, ParkingState, next_parking_state
 from controller_fmu.parking.following.params import FollowingContext
 from controller_fmu.parking.following.path_tracking import (
@@ -31,6 +31,7 @@ from controller_fmu.parking.params import ParkingParams
 from controller_fmu.parking.path_planning import begin_plan, continue_plan
 from controller_fmu.parking.perception import is_driving_state, perceive, planar_distance, search_reason, search_slots
 from controller_fmu.parking.planning.work import PlanningWork
+from controller_fmu.parking.signals import ParkingSystemInput
 from controller_fmu.parking.slots.candidate import SlotCandidate, SlotType
 from controller_fmu.parking.slots.correction import correct_slot
 from controller_fmu.parking.slots.goal import goal_pose
@@ -44,7 +45,7 @@ DRIVEN_ON = 0.3
 
 
 def parking_sample(
-    work: PlanningWork, memory: ParkingMemory, inputs: ControllerInput, params: ParkingParams, dt_ns: int
+    work: PlanningWork, memory: ParkingMemory, inputs: ParkingSystemInput, params: ParkingParams, dt_ns: int
 ) -> ParkingMemory:
     """Return the memory one sample of ``dt_ns`` later."""
     state = memory.state
@@ -66,13 +67,13 @@ def parking_sample(
     return enter_state(memory, next_parking_state(state, conditions), inputs, params)
 
 
-def _search_fault(memory: ParkingMemory, inputs: ControllerInput, params: ParkingParams) -> int:
+def _search_fault(memory: ParkingMemory, inputs: ParkingSystemInput, params: ParkingParams) -> int:
     """Return why the search must end, ``NONE`` if it goes on."""
     fault = input_fault(inputs)
     return fault if fault != Reason.NONE else search_reason(memory.search, params)
 
 
-def _watch(memory: ParkingMemory, inputs: ControllerInput, params: ParkingParams, dt_ns: int) -> ParkingMemory:
+def _watch(memory: ParkingMemory, inputs: ParkingSystemInput, params: ParkingParams, dt_ns: int) -> ParkingMemory:
     """Return the memory with the clocks of the fault monitor advanced, and the reason to fail if one ran out."""
     state = memory.state
     if state == ParkingState.CONFIRMING:
@@ -93,7 +94,7 @@ def _watch(memory: ParkingMemory, inputs: ControllerInput, params: ParkingParams
     return memory._replace(clocks=clocks, reason=reason)
 
 
-def _drive(memory: ParkingMemory, inputs: ControllerInput, params: ParkingParams) -> ParkingMemory:
+def _drive(memory: ParkingMemory, inputs: ParkingSystemInput, params: ParkingParams) -> ParkingMemory:
     """Return the memory with the progress on the path and the collision monitor's verdict."""
     context = FollowingContext(params.car, params.drive)
     progress = track_path(memory.progress, inputs.odometry, inputs.measured_speed, context)
@@ -124,7 +125,7 @@ def _drive(memory: ParkingMemory, inputs: ControllerInput, params: ParkingParams
     return memory._replace(progress=progress, verdict=verdict)
 
 
-def conditions_of(memory: ParkingMemory, inputs: ControllerInput, params: ParkingParams) -> int:
+def conditions_of(memory: ParkingMemory, inputs: ParkingSystemInput, params: ParkingParams) -> int:
     """Return the bits of the conditions that hold."""
     progress = memory.progress
     search = memory.search
@@ -164,7 +165,7 @@ def conditions_of(memory: ParkingMemory, inputs: ControllerInput, params: Parkin
     )
 
 
-def is_in_place(memory: ParkingMemory, inputs: ControllerInput, params: ParkingParams) -> bool:
+def is_in_place(memory: ParkingMemory, inputs: ParkingSystemInput, params: ParkingParams) -> bool:
     """Return whether the vehicle is at the goal, or cannot be brought nearer: the plans are used up."""
     slot = corrected_slot(memory, params)
     outline = vehicle_outline(params.car, params.plan.curvature_fraction)
@@ -179,7 +180,7 @@ def corrected_slot(memory: ParkingMemory, params: ParkingParams) -> SlotCandidat
     return correct_slot(memory.search.slot, memory.perception.local_map.landmarks, params.mapping)
 
 
-def enter_state(memory: ParkingMemory, state: int, inputs: ControllerInput, params: ParkingParams) -> ParkingMemory:
+def enter_state(memory: ParkingMemory, state: int, inputs: ParkingSystemInput, params: ParkingParams) -> ParkingMemory:
     """Return the memory in ``state``, with what is requested of steering and speed until the next sample."""
     before = memory.state
     context = FollowingContext(params.car, params.drive)

@@ -5,7 +5,7 @@ from typing import NamedTuple
 from controller_fmu.common.monitor import is_unmoved, is_usable_input
 from controller_fmu.common.params import LimitParams
 from controller_fmu.common.steering_monitor import SteeringWatch, at_rest, has_failed, watch_steering
-from controller_fmu.interface import ControllerInput, Reason
+from controller_fmu.interface import Reason, SensedWithFault
 from modelkit.vocabulary import Pose
 
 
@@ -44,7 +44,7 @@ class FaultLimits(NamedTuple):
 
 
 def advance_clocks(
-    clocks: FaultClocks, expectation: ExpectedMotion, inputs: ControllerInput, limits: FaultLimits, dt_ns: int
+    clocks: FaultClocks, expectation: ExpectedMotion, inputs: SensedWithFault, limits: FaultLimits, dt_ns: int
 ) -> FaultClocks:
     """Return the clocks after a sample of ``dt_ns``."""
     speed = inputs.measured_speed
@@ -68,7 +68,7 @@ def advance_clocks(
     )
 
 
-def input_fault(inputs: ControllerInput) -> int:
+def input_fault(inputs: SensedWithFault) -> int:
     """Return the Reason for which nothing can go on, ``NONE`` if there is none."""
     if not is_usable_input(inputs):
         return Reason.BAD_INPUT
@@ -76,7 +76,7 @@ def input_fault(inputs: ControllerInput) -> int:
 
 
 def fault_reason(
-    clocks: FaultClocks, inputs: ControllerInput, drives: bool, manoeuvres: int, limit: LimitParams
+    clocks: FaultClocks, inputs: SensedWithFault, drives: bool, manoeuvres: int, limit: LimitParams
 ) -> int:
     """Return the first Reason that holds, ``NONE`` if all is as it should be."""
     fault = input_fault(inputs)

@@ -102,6 +102,6 @@ TRANSITIONS: tuple[TransitionRow, ...] = (
 )
 
 
-def next_parking_state(state: int, conditions: int) -> int:
-    """Return the state after one sample; ``conditions`` holds bit c for condition c."""
-    return next_state(state, conditions, TRANSITIONS)
+def next_parking_state(state: int, guards: int) -> int:
+    """Return the state after one sample; ``guards`` holds bit c for condition c."""
+    return next_state(state, guards, TRANSITIONS)

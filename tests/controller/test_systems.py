@@ -15,7 +15,7 @@ from modelkit.vocabulary import Prompt
 
 NAMES = [branch.field for branch in SYSTEMS.systems]
 
-APART = {System.VALET}
+APART = {System.VALET, System.PARKING}
 """Controllers of their own."""
 
 

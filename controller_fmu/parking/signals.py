@@ -2,14 +2,7 @@
 
 from typing import Annotated, NamedTuple
 
-from controller_fmu.interface import (
-    DriverTakeover,
-    MeasuredSpeed,
-    Odometry,
-    Reason,
-    SteeringWheelAngle,
-    VehicleFault,
-)
+from controller_fmu.interface import Odometry, Reason
 from controller_fmu.parking.chart import ParkingState
 from controller_fmu.parking.phases import ParkingPhase
 from controller_fmu.parking.slots.candidate import SlotType
@@ -17,12 +10,18 @@ from modelkit.signal import Group, Role, Signal
 from modelkit.vocabulary import (
     AdvisedSpeed,
     BrakeRequest,
+    DriverConfirm,
+    DriverTakeover,
+    MeasuredSpeed,
+    ParkingSwitch,
     Pose,
     PromptShown,
     SpeedControlActive,
     SpeedRequest,
     SteeringActive,
+    SteeringWheelAngle,
     SteeringWheelRequest,
+    VehicleFaultShown,
 )
 
 
@@ -33,12 +32,12 @@ class ParkingSystemInput(NamedTuple):
     measured_speed: MeasuredSpeed = 0.0
     steering_wheel_angle: SteeringWheelAngle = 0.0
     driver_takeover: DriverTakeover = False
-    vehicle_fault: VehicleFault = 0
+    vehicle_fault: VehicleFaultShown = 0
     ultrasonic: tuple[
         Annotated[float, Signal("m", "distance heard: 1-4 front, 5-8 rear, 9-10 left, 11-12 right")], ...
     ] = (5.0,) * 12
-    apa_switch: Annotated[bool, Signal("1", "the driver has switched the parking assist on")] = False
-    driver_confirm: Annotated[bool, Signal("1", "the driver presses the confirm button")] = False
+    apa_switch: ParkingSwitch = False
+    driver_confirm: DriverConfirm = False
 
 
 class SlotSignals(NamedTuple):

@@ -74,7 +74,8 @@ def sweep(
     """Return the table of a study, shipped or of a YAML file, run on all cores.
 
     ``folder``: where the table goes (``runs/NAME``). ``every``: only each so-manieth run, beginning at ``first``.
-    ``resume``: go on with an interrupted one. Raises ``BadInput``; ``RunError`` if it was interrupted.
+    ``resume``: go on with an interrupted one. Raises ``BadInput``; ``RunError`` if it was interrupted;
+    ``NotRunError`` if runs could not take place.
     """
     sets = [f"{key}={value}" for key, value in (changes or {}).items()]
     chosen = chosen_study(str(study), sets)
@@ -82,6 +83,8 @@ def sweep(
     out = Path(folder) if folder is not None else Path("runs") / chosen.name
     with owned(out):
         swept = run_study(chosen, out, Options(resume=resume))
+    if swept.not_run is not None:
+        raise swept.not_run
     if swept.table is None:
         raise RunError(f"{chosen.name}: interrupted after {swept.done} of {swept.count} runs; go on with resume=True")
     return StudyTable(swept.table)

@@ -117,6 +117,9 @@ class _Reader:
         self._read(top, "")
         experiment = _child(root, "DefaultExperiment")
         stop = None if experiment is None else experiment.get("stopTime")
+        start = None if experiment is None else experiment.get("startTime")
+        if start and float(start) != 0.0:
+            raise SspError(f"startTime {start} s is not supported: runs begin at 0 s")
         steps = [item.get("baseStepSize") or item.get("stepSize") for item in root.iter() if _kind(item) in STEPS]
         connections = list(self._connections())
         units = self._undeclared_units()

@@ -62,11 +62,14 @@ class Catalogue:
         for table in printed(self.verdicts):
             console().print(table)
             console().print()
-        console().print(f"{said(self.verdicts)}; results in {out}", markup=False, soft_wrap=True)
+        lost = [item for item in self._kept if item.could_not_run]
+        why = f"; {len(lost)} runs could not take place: {lost[0].error}" if lost else ""
+        console().print(f"{said(self.verdicts)}{why}; results in {out}", markup=False, soft_wrap=True)
 
     def code(self) -> int:
         """Return the exit code: 2 or 3 for a scenario that could not be run, 1 if an entry is missed, else 0."""
-        worst = max((item.code for item in self._kept if item.scenario.name in self._scenarios), default=PARKED)
+        counted = [item for item in self._kept if item.scenario.name in self._scenarios or item.could_not_run]
+        worst = max((item.code for item in counted), default=PARKED)
         return worst or (NOT_PARKED if counts(self.verdicts)[MISSED] else PARKED)
 
 

@@ -90,9 +90,11 @@ def note(verdicts: list[ClauseVerdict], tested: Tested) -> None:
     """Add what a run says of each entry that it is named by."""
     name, recording = tested.scenario.name, tested.recording
     for item in verdicts:
-        if name in item.entry.step_tests:
+        if name in item.entry.step_tests and not tested.could_not_run:
             item.tried.append(_stepped(name, tested))
         elif name in item.entry.scenarios:
+            if tested.could_not_run:
+                continue
             if recording is None or tested.summary is None or tested.error:
                 item.tried.append(ClauseRun(name, "", [], [], error=tested.error or "was not run"))
             else:

@@ -97,14 +97,26 @@ def run(arguments: argparse.Namespace) -> int:
         swept = sweep(study, out, Options(**{name: getattr(arguments, name) for name in names}))
         written = {} if swept.table is None else _write(swept.table, arguments)
         _tell(swept, written, arguments)
+        if swept.not_run is not None:
+            raise BadInput(_not_run(swept, study.name))
         if swept.table is None:
             return INTERRUPTED
         return _report(arguments.study, swept.table, quiet=arguments.json)
 
 
+def _not_run(swept: "Swept", name: str) -> str:
+    """Return how many runs could not take place, and why."""
+    assert swept.not_run is not None
+    count, kept = len(swept.not_run.args), f"{swept.done} of {swept.count} runs are kept"
+    why = str(swept.not_run) if count > 1 else f"1 run {swept.not_run}"
+    return f"{name}: {why}; {kept}, --resume makes the others"
+
+
 def _tell(swept: "Swept", written: dict[str, Path], arguments: argparse.Namespace) -> None:
     if arguments.json:
+        not_run = len(swept.not_run.args) if swept.not_run else 0
         numbers = {"count": swept.count, "done": swept.done, "made": swept.made, "seconds": swept.seconds}
+        numbers |= {"not_run": not_run, "aborted": swept.aborted}
         files = {name: str(path) for name, path in written.items()}
         print(json.dumps({**numbers, "engine": swept.engine, "note": swept.note, **files}, indent=2))
     else:
@@ -171,7 +183,9 @@ def _print(swept: "Swept", written: dict[str, Path], study: str) -> None:
     if swept.made:
         rate = swept.made / swept.seconds
         screen.print(f"{swept.made} runs in {swept.seconds:.1f} s, {rate:.0f} a second ({swept.engine})", markup=False)
-    if swept.table is None:
+    if swept.aborted:
+        screen.print(f"{swept.aborted} of {swept.made} runs were aborted by a model", markup=False)
+    if swept.table is None and swept.not_run is None:
         screen.print(f"{swept.done} of {swept.count} runs are kept; go on with: apa sweep {study} --resume")
     if swept.table is not None:
         screen.print(_outcome_table(swept.table))

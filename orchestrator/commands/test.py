@@ -176,7 +176,9 @@ def _run(arguments: argparse.Namespace, names: list[str], verdicts: "Verdicts", 
         rows = [_row(item) for item in tested]
         print(json.dumps({"passed": passed == len(names), "about": about, "scenarios": rows}, indent=2))
     else:
-        text = f"{passed} of {len(names)} scenarios passed; results in {arguments.out}"
+        could_not = sum(item.could_not_run for item in tested)
+        more = f", {could_not} could not take place" if could_not else ""
+        text = f"{passed} of {len(names)} scenarios passed{more}; results in {arguments.out}"
         console().print(text, markup=False, soft_wrap=True)
     if interrupt.requested:
         return INTERRUPTED
@@ -221,6 +223,7 @@ def _bench(arguments: argparse.Namespace, interrupt: Interrupt) -> Bench:
 def _print(tested: Tested, place: str) -> None:
     out = console()
     verdict = "[green]pass[/]" if tested.passed else "[red]FAIL[/]"
+    verdict = "[yellow]not run[/]" if tested.could_not_run else verdict
     out.print(f"{verdict}  {tested.scenario.name}  ({place})")
     for case in tested.cases:
         if not case.passed and not case.skipped:
@@ -238,6 +241,7 @@ def _row(tested: Tested) -> dict[str, Any]:
         "outcome": tested.summary.outcome if tested.summary else None,
         "expected": tested.scenario.expect,
         "error": tested.error,
+        "could_not_run": tested.could_not_run,
         "left_out": tested.ignored,
         "warnings": list(tested.remarks),
         "cases": [case._asdict() for case in tested.cases],

@@ -23,7 +23,7 @@ from fmus.files import new_folder, remove_folder
 from modelkit.model import Model
 from orchestrator.cosim.description import ports_of, read_description, text_parameters
 from orchestrator.cosim.slave import Ports
-from orchestrator.text.errors import RunError
+from orchestrator.text.errors import RESOURCES, NotRunError, RunError
 
 OK, WARNING, ERROR, FATAL = 0, 1, 3, 4
 """FMI statuses; from 2 (fmi2Discard) on a call did not do what it should."""
@@ -102,14 +102,18 @@ class FmuSlave:
                     modelIdentifier=co_simulation.modelIdentifier,
                     instanceName=self.name,
                 )
+        except RESOURCES:
+            raise
         except Exception as error:
-            raise RunError(f"{self.path.name} cannot be loaded here: {error}") from error
+            raise NotRunError(f"{self.path.name} cannot be loaded here: {error}") from error
         self._callbacks = self._make_callbacks()
         try:
             self._instance.instantiate(callbacks=self._callbacks, loggingOn=True)
         except Exception as error:
             self._instance = None
-            raise self._refused("cannot be instantiated", FATAL, str(error)) from error
+            if isinstance(error, RESOURCES):
+                raise
+            raise NotRunError(str(self._refused("cannot be instantiated", FATAL, str(error)))) from error
         self._bind()
         self._set_parameters()
         try:

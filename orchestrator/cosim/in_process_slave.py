@@ -6,7 +6,7 @@ from typing import Any
 from modelkit.model import Model
 from modelkit.variables import constructor, flattener, variables, with_values
 from orchestrator.cosim.slave import Ports
-from orchestrator.text.errors import RunError
+from orchestrator.text.errors import RESOURCES, RunError
 
 
 class InProcessSlave:
@@ -49,6 +49,8 @@ class InProcessSlave:
         """Call the model's step; an exception in model code is a defect and ends the run."""
         try:
             self._state, self.output = self._step(self._state, self._input, self._params, dt_ns)
+        except RESOURCES:
+            raise
         except Exception as error:
             raise RunError(f"{self.name} raised {type(error).__name__}: {error}") from error
 

@@ -13,7 +13,7 @@ from modelkit.model import Model
 from modelkit.variables import Variable, constructor, variables
 from orchestrator.cosim.master import End
 from orchestrator.cosim.slave import Array, Slave, all_values
-from orchestrator.text.errors import RunError
+from orchestrator.text.errors import NotRunError
 
 FIRST_ROWS = 1 << 14
 """Exchanges that the recorder has room for at first."""
@@ -88,12 +88,17 @@ class Recorder:
     def closed(self, end: End) -> None:
         """Nothing to close."""
 
+    @property
+    def count(self) -> int:
+        """Return how many exchanges there were."""
+        return self._count
+
     def _grow(self) -> None:
         try:
             self._rows = np.concatenate([self._rows, np.empty_like(self._rows)])
             self._times = np.concatenate([self._times, np.empty_like(self._times)])
         except MemoryError:
-            raise RunError(f"after {self._count} exchanges there is no memory for more") from None
+            raise NotRunError(f"after {self._count} exchanges there is no memory for more") from None
 
     def recording(self, info: dict[str, Any]) -> Recording:
         """Return what has been seen so far."""

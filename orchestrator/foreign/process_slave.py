@@ -26,7 +26,7 @@ from orchestrator.cosim.description import element_names, ports_of, read_descrip
 from orchestrator.cosim.slave import Indices, Ports
 from orchestrator.foreign import worker
 from orchestrator.foreign.archive import binary, checked, unpack
-from orchestrator.text.errors import RunError
+from orchestrator.text.errors import RESOURCES, NotRunError, RunError
 
 LAST = 2.0
 """For a process to end that has nothing to say any more [s]."""
@@ -104,12 +104,14 @@ class ProcessSlave:
         try:
             library = binary(self._names, identifier, self._version)
         except ValueError as error:
-            raise RunError(f"{self.path.name} {error}") from None
+            raise NotRunError(f"{self.path.name} {error}") from None
         self._folder = new_folder("fmu")
         try:
             unpack(self.path, self._folder / "fmu")
+        except RESOURCES:
+            raise
         except Exception as error:
-            raise RunError(f"{self.path.name} cannot be unpacked: {error}") from error
+            raise NotRunError(f"{self.path.name} cannot be unpacked: {error}") from error
         place = self._folder / "fmu" / library
         self._process = _Process(place.parent, self._folder / "printed")
         resources = self._folder / "fmu" / "resources"
@@ -189,7 +191,8 @@ class ProcessSlave:
             self._process.ask(order, data, self._timeout, self._heard)
         except _NoAnswerError as error:
             when = when or f"in the step at {self._t_ns / 1e9:g} s"
-            raise RunError(f"{self.name} {str(error).format(when=when)}") from None
+            made = NotRunError if order == worker.LOAD or error.is_from_outside else RunError
+            raise made(f"{self.name} {str(error).format(when=when)}") from None
 
     def _heard(self, status: int, text: str) -> None:
         self._log(self.name, status, text)
@@ -228,6 +231,9 @@ class ProcessSlave:
 
 class _NoAnswerError(Exception):
     """Why there is no answer, with ``{when}`` for the place."""
+
+    is_from_outside = False
+    """The process was killed, as by the system where memory is short."""
 
 
 class _Process:
@@ -300,5 +306,7 @@ class _Process:
         if self._is_late:
             return _NoAnswerError(f"took more than {limit:g} s {{when}}, so it was ended")
         if code < 0:
-            return _NoAnswerError(f"crashed {{when}} ({signal.Signals(-code).name}){words}")
+            found = _NoAnswerError(f"crashed {{when}} ({signal.Signals(-code).name}){words}")
+            found.is_from_outside = code == -getattr(signal, "SIGKILL", 0)
+            return found
         return _NoAnswerError(f"ended its process {{when}} (exit code {code}){words}")

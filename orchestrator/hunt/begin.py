@@ -6,8 +6,6 @@ import shutil
 from functools import partial
 from pathlib import Path
 
-import numpy as np
-
 from fmus.files import write_whole
 from orchestrator.cosim.fmu_files import sources_hash
 from orchestrator.cosim.slave import Array
@@ -16,7 +14,7 @@ from orchestrator.hunt.subject import Subject
 from orchestrator.hunt.written import space_of
 from orchestrator.session.foreign import Foreign, fitting, fmu_of, parameters_of
 from orchestrator.session.session import run_scenario
-from orchestrator.sweep.batch import compiled
+from orchestrator.sweep.batch import compiled, rows_by
 from orchestrator.sweep.engine import ChunkTask
 from orchestrator.sweep.engines import RECORDED_CHUNK, choose_task, make_engine
 from orchestrator.sweep.job import Chunk, Job, chunk_scenario
@@ -75,9 +73,10 @@ def run_foreign(job: Job, chunk: Chunk, files: dict[str, str]) -> Array:
     """Return one row of measures per run of ``chunk`` with FMUs of somebody else's; what they do not tell is NaN."""
     foreign = Foreign({name: Path(path) for name, path in files.items()})
     own = {slave: parameters_of(path, slave) for slave, path in foreign.files.items()}
-    rows = []
-    for number in range(len(chunk.seeds)):
+
+    def row(number: int) -> Array:
         scenario, _ = fitting(chunk_scenario(job, chunk, number), own)
         ran = run_scenario(scenario, None, foreign=foreign)
-        rows.append(row_of(ran.recording, scenario, job.measures))
-    return np.array(rows)
+        return row_of(ran.recording, scenario, job.measures)
+
+    return rows_by(row, len(chunk.seeds))

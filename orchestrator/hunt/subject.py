@@ -16,7 +16,7 @@ from orchestrator.cosim.slave import Array
 from orchestrator.hunt.goal import smallest
 from orchestrator.scenario.scenario import PENETRATION, Scenario
 from orchestrator.sweep.columns import filled
-from orchestrator.sweep.engine import Engine
+from orchestrator.sweep.engine import Engine, all_rows
 from orchestrator.sweep.job import Chunk, Job, make_job, truths
 from orchestrator.sweep.rows import FIRST_MEASURE
 from orchestrator.sweep.study.design import Design
@@ -80,10 +80,11 @@ class Subject:
         design = Design(self.study.design.fields, values, seeds, self.space.named(shares))
         study = self.study._replace(design=design)
         margins, words = np.full(len(seeds), np.nan), np.full(len(seeds), "", dtype=object)
-        for chunk, rows in self._engine.results(self.job, self._chunks(design), self.interrupt):
+        for chunk, rows in all_rows(self._engine.results(self.job, self._chunks(design), self.interrupt)):
             here = slice(chunk.first, chunk.first + len(chunk.seeds))
             columns = filled(study, self.job, chunk, rows)
-            margins[here] = _margins(self.goal, self.job, chunk, rows, columns)
+            found = _margins(self.goal, self.job, chunk, rows, columns)
+            margins[here] = np.where(columns["outcome"] == "aborted", np.minimum(found, -ABORTED_MARGIN), found)
             words[here] = _words(columns)
         if self.interrupt.requested and np.isnan(margins).any():
             raise Stopped
@@ -99,6 +100,8 @@ class Subject:
 
 
 HUNTED = "what is hunted"
+ABORTED_MARGIN = 1.0
+"""A run that a model has aborted is beyond its limits by this at least: nobody knows what it would have come to."""
 
 
 def _kept(part: Path, shares: Array, seeds: Seeds) -> Seen | None:

@@ -132,6 +132,12 @@ class McapFile:
         clear(self.path)
         os.replace(self.part, self.path)
 
+    def discard(self) -> None:
+        """Remove what is written so far."""
+        self.open = False
+        self._file.close()
+        self.part.unlink(missing_ok=True)
+
     def _write(self, data: bytes) -> None:
         view = memoryview(data)
         try:

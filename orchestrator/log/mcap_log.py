@@ -102,6 +102,11 @@ class McapLog:
             self._file.write(self._log, t_ns, line.SerializeToString(deterministic=True))
             self.lines.append(line_of(t_ns, level, name, text))
 
+    def discard(self) -> None:
+        """Leave no file: nothing has run."""
+        if isinstance(self._file, McapFile):
+            self._file.discard()
+
     def closed(self, end: End) -> None:
         """Write how the run ended and give the file its name."""
         self._write_rows()

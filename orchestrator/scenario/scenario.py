@@ -27,6 +27,8 @@ PENETRATION = "penetration"
 """The metric that the rule on contact is about."""
 CONTACT_FREE = "contact-free"
 """The shipped set that is asked of every run."""
+LEAST_CORNERS = 3
+"""Of a polygon."""
 LONGEST_STEP = 10.0
 """Nothing that steers a car exchanges less often [s]."""
 Parameter = float | int | bool | str
@@ -187,6 +189,14 @@ class Scenario(_ScenarioPart):
             if every * self.step > LONGEST_STEP:
                 text = f"{every} steps of {self.step:g} s are more than the {LONGEST_STEP:g} s of one step at most"
                 raise BadInput(text, key=f"every.{name}")
+        return self
+
+    @model_validator(mode="after")
+    def _polygons(self) -> "Scenario":
+        for number, corners in enumerate(self.polygons, start=1):
+            if len(corners) < LEAST_CORNERS:
+                text = f"{len(corners)} corners: expected {LEAST_CORNERS} or more"
+                raise BadInput(text, key=f"polygons[{number}]")
         return self
 
     @model_validator(mode="after")

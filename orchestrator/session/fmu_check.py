@@ -18,7 +18,8 @@ from orchestrator.session.foreign import Fitting, Foreign, fmu_of, load_fitting,
 from orchestrator.session.session import Messages, make_slaves
 from orchestrator.system.assemble import Assembled, assemble
 from orchestrator.system.remarks import NEEDED_INPUTS, loops, missing_for_the_verdict, not_fed, unsaid, without_consumer
-from orchestrator.text.errors import BadInput, RunError
+from orchestrator.text.errors import RESOURCES, BadInput, NotRunError, RunError
+from orchestrator.text.failures import reason_of
 
 SHOWN = 6
 
@@ -136,6 +137,8 @@ def _loading(slave: Slave) -> list[str]:
         slave.fetch_outputs()
     except RunError as error:
         return [str(error)]
+    except (NotRunError, *RESOURCES) as error:
+        return [reason_of(error)]
     return []
 
 

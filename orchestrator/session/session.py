@@ -3,7 +3,7 @@
 import time
 from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from orchestrator.cosim.endings import standstill
 from orchestrator.cosim.faults import manipulators
@@ -22,7 +22,10 @@ from orchestrator.session.provenance import provenance
 from orchestrator.stream.realtime import Realtime
 from orchestrator.system.assemble import Assembled, assemble
 from orchestrator.system.remarks import remarks
-from orchestrator.text.errors import RunError
+from orchestrator.text.errors import RESOURCES, NotRunError, RunError
+
+if TYPE_CHECKING:
+    from orchestrator.log.mcap_log import McapLog
 
 PACED = "paced"
 """Instead of a kind of FMU: every exchange waits for its time, so there is nothing to gain by a compiled master."""
@@ -158,27 +161,32 @@ def run_slaves(
     info = provenance(scenario, system.slaves, kind, foreign) | ({"started": dict(started)} if started else {})
     recorder = Recorder(system.slaves, exchanges)
     master.observers += [messages, recorder, ModeChanges(system.slaves, scenario.faults, messages.say)]
-    lines = [] if log is None else _write_log(log, system, scenario, info, master, messages)
+    file = None if log is None else _begun_log(log, system, scenario, info, master, messages)
     master.observers += observers
     if realtime is not None:
         realtime.join(master, scenario, messages.say, messages.listeners)
     for text in said:
         messages.say(0, WARNING, "system", text)
-    end, wall_time = _driven(master, messages)
+    try:
+        end, wall_time = _driven(master, messages)
+    except (NotRunError, *RESOURCES):
+        if file is not None and not recorder.count:
+            file.discard()
+        raise
     info |= {"end": {"reason": end.reason, "t_ns": end.t_ns}, **({"realtime": realtime.told()} if realtime else {})}
-    return Ran(recorder.recording(info), end, said, wall_time, lines)
+    return Ran(recorder.recording(info), end, said, wall_time, [] if file is None else file.lines)
 
 
-def _write_log(
+def _begun_log(
     path: Path, system: Assembled, scenario: Scenario, info: dict[str, Any], master: Master, messages: Messages
-) -> list[Line]:
-    """Have the run written to ``path``; return the list to which its lines are added."""
+) -> "McapLog":
+    """Return the log at ``path`` to which the run will be written."""
     from orchestrator.log.mcap_log import McapLog
 
     file = McapLog(path, system.slaves, scenario, info)
     messages.listeners.append(file.say)
     master.observers.append(file)
-    return file.lines
+    return file
 
 
 def _warnings(system: Assembled, scenario: Scenario, exchanges: int) -> list[str]:

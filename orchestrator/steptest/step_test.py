@@ -15,6 +15,10 @@ MARK = "model"
 """The key that a scenario does not have."""
 
 
+WITHIN_NS = 1.0
+"""A stop time so near [ns] to a whole number of steps is one."""
+
+
 class BackToBack(BaseModel):
     """Another implementation, or an earlier run, that the outputs are held against: back-to-back."""
 
@@ -114,6 +118,9 @@ def load_step_test(path: Path) -> StepTest:
         raise explain(error, path, [name for name in StepTest.model_fields if name != "file"]) from None
     if not test.expect and test.reference is None:
         raise BadInput("nothing is expected; write expect: or reference:", file=path)
+    if test.step_ns >= 1 and abs(test.stop_ns - test.stop_time * NANOSECONDS) > WITHIN_NS:
+        text = f"{test.stop_time:.9g} s is no whole number of steps of {test.step:.9g} s"
+        raise BadInput(text, file=path, key="stop_time")
     if test.step_ns < 1 or test.step > test.stop_time:
         raise BadInput(f"{test.step:g} s: expected a step above 0 and not above stop_time", file=path, key="step")
     return test

@@ -54,7 +54,7 @@ def _card(item: Tested) -> str:
     )
     return CARD.format(
         kind="good" if item.passed else "bad",
-        verdict="pass" if item.passed else "fail",
+        verdict="not run" if item.could_not_run else "pass" if item.passed else "fail",
         link=html.escape(f"{name}/report.html"),
         name=html.escape(name),
         title=html.escape(item.scenario.title + (f" - with {changes}" if changes else "")),

@@ -24,7 +24,7 @@ from orchestrator.steptest.curves import write_curves
 from orchestrator.steptest.run import run_step_test
 from orchestrator.steptest.step_test import StepTest, is_step_test, load_step_test
 from orchestrator.suite.junit import Case, Suite, cases_of, told_apart
-from orchestrator.text.errors import PARKED, BadInput
+from orchestrator.text.errors import PARKED, RESOURCES, BadInput, NotRunError
 from orchestrator.text.failures import explained
 from orchestrator.text.owned import owned
 from orchestrator.text.readable import changes_text
@@ -55,6 +55,8 @@ class Tested(NamedTuple):
     """What was said of the system before it ran."""
     code: int = PARKED
     """The exit code of an error that is not one of the run: bad input, or a mistake of ours."""
+    could_not_run: bool = False
+    """It could not take place: no memory, no file, no process, or an FMU that cannot be loaded."""
 
     @property
     def passed(self) -> bool:
@@ -148,7 +150,8 @@ def run_test(name: str, sets: list[str], bench: Bench, out: Path, taken: set[str
         return _judged(scenario, ignored, bench, out / scenario.name)
     except Exception as error:
         code, line = explained(error, ["test", name])
-        return Tested(scenario, None, None, [], ignored, line, code=code)
+        could_not_run = isinstance(error, (NotRunError, *RESOURCES))
+        return Tested(scenario, None, None, [], ignored, line, code=code, could_not_run=could_not_run)
 
 
 def _nameable(text: str) -> str:

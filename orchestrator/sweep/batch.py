@@ -5,7 +5,7 @@ through the Python master, on FMUs or on the models in process.
 """
 
 import threading
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
@@ -21,6 +21,8 @@ from orchestrator.session.session import run_scenario
 from orchestrator.sweep.disturbed import fault_numbers, heard
 from orchestrator.sweep.job import Chunk, Job, arrays, chunk_scenario
 from orchestrator.sweep.rows import FIRST_MEASURE, row_of
+from orchestrator.text.errors import RESOURCES, NotRunError
+from orchestrator.text.failures import reason_of
 from orchestrator.verdict.measures import Measure
 
 _compiling = threading.Lock()
@@ -39,11 +41,25 @@ def run_batch(job: Job, chunk: Chunk) -> Array:
 def run_recorded(job: Job, chunk: Chunk, kind: str, files: Mapping[str, str] | None) -> Array:
     """Return one row of measures per run of ``chunk``, read off its recording."""
     paths = None if files is None else {name: Path(path) for name, path in files.items()}
-    rows = []
-    for number in range(len(chunk.seeds)):
+
+    def row(number: int) -> Array:
         scenario = chunk_scenario(job, chunk, number)
         ran = run_scenario(scenario, paths, kind=kind)
-        rows.append(row_of(ran.recording, scenario, job.measures))
+        return row_of(ran.recording, scenario, job.measures)
+
+    return rows_by(row, len(chunk.seeds))
+
+
+def rows_by(row: Callable[[int], Array], count: int) -> Array:
+    """Return the rows of ``count`` runs. Raises ``NotRunError`` with the reasons of those that could not take place."""
+    rows, reasons = [], []
+    for number in range(count):
+        try:
+            rows.append(row(number))
+        except (NotRunError, *RESOURCES) as error:
+            reasons.append(reason_of(error))
+    if reasons:
+        raise NotRunError(*reasons)
     return np.array(rows)
 
 

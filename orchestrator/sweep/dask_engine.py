@@ -12,8 +12,7 @@ from typing import Any
 
 from orchestrator.cosim.fmu_files import sources_hash
 from orchestrator.cosim.master import Interrupt
-from orchestrator.cosim.slave import Array
-from orchestrator.sweep.engine import AHEAD, POLL, ChunkTask, cores, safe_children
+from orchestrator.sweep.engine import AHEAD, POLL, ChunkTask, Result, cores, rows_or_reason, safe_children
 from orchestrator.sweep.job import Chunk, Job
 from orchestrator.text.errors import BadInput
 
@@ -44,7 +43,7 @@ class DaskEngine:
         self.name = f"{task.name} on Dask at {self._client.scheduler.address}"
         self.workers = max(1, sum(self._client.nthreads().values()))
 
-    def results(self, job: Job, chunks: Iterator[Chunk], interrupt: Interrupt) -> Iterator[tuple[Chunk, Array]]:
+    def results(self, job: Job, chunks: Iterator[Chunk], interrupt: Interrupt) -> Iterator[Result]:
         """Yield chunks with their rows as they are done."""
         try:
             self._check_sources()
@@ -54,7 +53,7 @@ class DaskEngine:
             if self._cluster is not None:
                 self._cluster.close()
 
-    def _results(self, job: Job, chunks: Iterator[Chunk], interrupt: Interrupt) -> Iterator[tuple[Chunk, Array]]:
+    def _results(self, job: Job, chunks: Iterator[Chunk], interrupt: Interrupt) -> Iterator[Result]:
         done: queue.SimpleQueue[Any] = queue.SimpleQueue()
         waiting: dict[Any, tuple[Any, Chunk]] = {}
         while True:
@@ -69,7 +68,7 @@ class DaskEngine:
                 return
             with suppress(queue.Empty):
                 future, chunk = waiting.pop(done.get(timeout=POLL).key)
-                yield chunk, future.result()
+                yield chunk, rows_or_reason(future.result, len(chunk.seeds))
 
     def _check_sources(self) -> None:
         """Raise ``BadInput`` if a worker has other sources: its bits could differ."""

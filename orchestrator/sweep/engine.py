@@ -9,8 +9,12 @@ from typing import Any, NamedTuple, Protocol
 from orchestrator.cosim.master import Interrupt
 from orchestrator.cosim.slave import Array
 from orchestrator.sweep.job import Chunk, Job
+from orchestrator.text.errors import RESOURCES, NotRunError
+from orchestrator.text.failures import reason_of
 
 Work = Callable[[Job, Chunk], Array]
+Result = tuple[Chunk, Array | NotRunError]
+"""A chunk with its rows, or why it has none."""
 AHEAD = 2
 """Chunks handed out per worker."""
 POLL = 0.2
@@ -23,8 +27,30 @@ class Engine(Protocol):
     name: str
     workers: int
 
-    def results(self, job: Job, chunks: Iterator[Chunk], interrupt: Interrupt) -> Iterator[tuple[Chunk, Array]]:
+    def results(self, job: Job, chunks: Iterator[Chunk], interrupt: Interrupt) -> Iterator[Result]:
         """Yield chunks with their rows in any order; after an interrupt only those in hand."""
+
+
+def rows_or_reason(result: Callable[[], Array], count: int) -> Array | NotRunError:
+    """Return the rows of a chunk of ``count`` runs, or why they could not take place."""
+    try:
+        return result()
+    except NotRunError as error:
+        return error
+    except RESOURCES as error:
+        return NotRunError(*[reason_of(error)] * count)
+
+
+def all_rows(results: Iterator[Result]) -> Iterator[tuple[Chunk, Array]]:
+    """Yield chunks with their rows. Raises ``NotRunError`` at the end with the reasons of all runs that have none."""
+    reasons: list[str] = []
+    for chunk, rows in results:
+        if isinstance(rows, NotRunError):
+            reasons += rows.args
+        else:
+            yield chunk, rows
+    if reasons:
+        raise NotRunError(*reasons)
 
 
 class ChunkTask(NamedTuple):

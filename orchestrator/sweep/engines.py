@@ -31,7 +31,7 @@ from orchestrator.cosim.master import Interrupt
 from orchestrator.cosim.slave import Array
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.sweep.batch import run_batch, run_recorded
-from orchestrator.sweep.engine import AHEAD, POLL, ChunkTask, Engine, cores, safe_children
+from orchestrator.sweep.engine import AHEAD, POLL, ChunkTask, Engine, Result, cores, rows_or_reason, safe_children
 from orchestrator.sweep.job import Chunk, Job
 from orchestrator.sweep.rows import why_not_compiled
 from orchestrator.sweep.study.theirs import files_of
@@ -76,7 +76,7 @@ class LocalEngine:
         self.workers = workers or cores()
         self._task = task
 
-    def results(self, job: Job, chunks: Iterator[Chunk], interrupt: Interrupt) -> Iterator[tuple[Chunk, Array]]:
+    def results(self, job: Job, chunks: Iterator[Chunk], interrupt: Interrupt) -> Iterator[Result]:
         """Yield chunks with their rows as they are done."""
         with safe_children(), self._executor() as executor:
             waiting: dict[Future[Array], Chunk] = {}
@@ -94,7 +94,8 @@ class LocalEngine:
                 if not waiting or (until and time.monotonic() > until and not self._task.threads):
                     return
                 for future in wait(waiting, timeout=POLL, return_when=FIRST_COMPLETED).done:
-                    yield waiting.pop(future), _rows(future)
+                    chunk = waiting.pop(future)
+                    yield chunk, rows_or_reason(partial(_rows, future), len(chunk.seeds))
 
     @contextmanager
     def _executor(self) -> Iterator[Executor]:

@@ -7,6 +7,7 @@ import numpy as np
 from orchestrator.cosim.master import Interrupt
 from orchestrator.sweep.batch import compiled
 from orchestrator.sweep.columns import filled
+from orchestrator.sweep.engine import all_rows
 from orchestrator.sweep.engines import choose_task, make_engine
 from orchestrator.sweep.job import chunks, make_job
 from orchestrator.sweep.study.study import Study
@@ -19,6 +20,8 @@ def columns_in_memory(study: Study) -> dict[str, Any]:
     if task.is_compiled:
         compiled(tuple(job.measures), study.scenario)
     todo = chunks(study.design, task.chunk)
-    found = sorted(make_engine(task, None, None).results(job, todo, Interrupt()), key=lambda item: item[0].number)
+    found = sorted(
+        all_rows(make_engine(task, None, None).results(job, todo, Interrupt())), key=lambda item: item[0].number
+    )
     parts = [filled(study, job, chunk, rows) for chunk, rows in found]
     return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}

@@ -82,8 +82,11 @@ class Store:
         part = self._part(number)
         if not part.is_file():
             return False
+        data = pa.BufferReader(part.read_bytes())
         try:
-            about = (pq.read_schema(part).metadata or {}).get(ABOUT, b"")
+            about = (pq.read_schema(data).metadata or {}).get(ABOUT, b"")
+        except MemoryError:
+            raise
         except (OSError, pa.ArrowException):
             return False
         if about != self._text.encode():
@@ -119,11 +122,14 @@ class Store:
     def _read(self, number: int) -> Any:
         """Return a part. Raises ``BadInput`` if it is damaged; then it is gone, to be made again."""
         part = self._part(number)
+        data = pa.BufferReader(part.read_bytes())  # what cannot be read for lack of memory or files is not damaged
         try:
-            found = pq.read_table(part, page_checksum_verification=True).cast(self.schema)
+            found = pq.read_table(data, page_checksum_verification=True, use_threads=False).cast(self.schema)
             first = number * self._size
             if found.column("row").to_pylist() != list(range(first, first + len(found))):
                 raise ValueError("other rows")
+        except MemoryError:
+            raise
         except (OSError, ValueError, pa.ArrowException) as error:
             part.unlink(missing_ok=True)
             text = "was damaged and is removed; --resume makes its runs again"

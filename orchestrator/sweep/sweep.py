@@ -22,7 +22,7 @@ from orchestrator.sweep.store import Store
 from orchestrator.sweep.study.study import Study
 from orchestrator.sweep.study.theirs import hashes_of
 from orchestrator.text.console import Meter, say
-from orchestrator.text.errors import BadInput, suggestion
+from orchestrator.text.errors import BadInput, NotRunError, suggestion
 
 
 @dataclass
@@ -55,6 +55,10 @@ class Swept:
     seconds: float
     engine: str
     note: str
+    not_run: NotRunError | None = None
+    """Runs that could not take place; what is done of the study is kept."""
+    aborted: int = 0
+    """Of those made now: how many a model has aborted."""
 
 
 def sweep(study: Study, folder: Path, options: Options) -> Swept:
@@ -118,9 +122,13 @@ def _run(study: Study, job: Job, missing: list[Chunk], engine: Engine, store: St
     swept.engine = f"{engine.name}, {engine.workers} at a time"
     with on_interrupt(interrupt), Meter(study.name, swept.count, "runs") as meter:
         for chunk, rows in engine.results(job, iter(missing), interrupt):
+            if isinstance(rows, NotRunError):
+                swept.not_run = NotRunError(*(swept.not_run.args if swept.not_run else ()), *rows.args)
+                continue
             columns = filled(study, job, chunk, rows)
             store.write(chunk.number, columns)
             swept.successes += int((columns["outcome"] == study.scenario.success).sum())
+            swept.aborted += int((columns["outcome"] == "aborted").sum())
             swept.done += len(rows)
             swept.made += len(rows)
             rate = swept.made / (time.perf_counter() - begun)

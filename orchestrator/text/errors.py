@@ -1,5 +1,6 @@
 """The errors a user can cause or meet, each one sentence that says what would be right."""
 
+from collections import Counter
 from collections.abc import Callable, Iterable
 
 PARKED, NOT_PARKED, BAD_INPUT, INTERNAL_ERROR, INTERRUPTED = 0, 1, 2, 3, 130
@@ -36,6 +37,26 @@ def line_of(file: object, key: str | None) -> int:
 
 class RunError(Exception):
     """A slave refused to go on; the run is aborted and says so."""
+
+
+class NotRunError(Exception):
+    """Runs that could not take place: no memory, no file, no process, or an FMU that cannot be loaded. Exit code 2.
+
+    Such a run is no row, margin, clause or verdict; what a model refuses in a run is ``RunError``. The arguments are
+    the reasons, one for each run.
+    """
+
+    def __str__(self) -> str:
+        counts = Counter(str(item) for item in self.args)
+        if len(self.args) == 1:
+            return f"could not take place: {self.args[0]}"
+        first = "; ".join(f"{text} ({count})" for text, count in counts.most_common(SHOWN_REASONS))
+        return f"{len(self.args)} runs could not take place: {first}{'; ...' if len(counts) > SHOWN_REASONS else ''}"
+
+
+SHOWN_REASONS = 3
+RESOURCES = (OSError, MemoryError)
+"""What keeps a run from taking place, beside an FMU that cannot be loaded."""
 
 
 def suggestion(word: str, known: Iterable[str], prefix: str = "") -> str:

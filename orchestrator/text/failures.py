@@ -14,7 +14,7 @@ from pathlib import Path
 from fmus.installation import missing_package
 from modelkit.states import CannotComposeError
 from orchestrator.text.console import say
-from orchestrator.text.errors import BAD_INPUT, INTERNAL_ERROR, INTERRUPTED, BadInput, RunError, shown
+from orchestrator.text.errors import BAD_INPUT, INTERNAL_ERROR, INTERRUPTED, BadInput, NotRunError, RunError, shown
 
 REPORT = "please report it with that file to those who maintain apa-cosim"
 WORDS = {
@@ -35,7 +35,7 @@ def explained(error: BaseException, words: Sequence[str]) -> tuple[int, str]:
         return INTERRUPTED, "interrupted"
     if isinstance(error, BrokenPipeError):
         return BAD_INPUT, ""
-    if isinstance(error, BadInput | RunError | CannotComposeError):
+    if isinstance(error, BadInput | RunError | NotRunError | CannotComposeError):
         return BAD_INPUT, str(error)
     if isinstance(error, OSError):
         return BAD_INPUT, place_of(error)
@@ -59,11 +59,20 @@ def verdict_stands(what: str) -> Iterator[None]:
     """
     try:
         yield
-    except (BadInput, RunError, OSError):
+    except (BadInput, RunError, NotRunError, OSError, MemoryError):
         raise
     except Exception as error:
         kept = _keep(error, sys.argv[1:])
         say(f"apa: warning: {what} was not made, the verdict stands: {one_line(error)}; {kept}")
+
+
+def reason_of(error: BaseException) -> str:
+    """Return why a run could not take place, in one line."""
+    if isinstance(error, NotRunError):
+        return str(error.args[0]) if error.args else str(error)
+    if isinstance(error, OSError):
+        return place_of(error)
+    return "this takes more memory than there is" if isinstance(error, MemoryError) else one_line(error)
 
 
 def place_of(error: OSError) -> str:

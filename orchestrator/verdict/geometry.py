@@ -131,7 +131,7 @@ def boxes(parameters: Mapping[str, float]) -> list[Box]:
 def things(parameters: Mapping[str, float]) -> list[Box]:
     """Return the boxes as they are told, one for each thing even if it moves."""
     rows = [Box(*row) for row in _rows(parameters, "scene.boxes", Box._field_defaults)]
-    return [box for box in rows if box.length > 0.0 and box.width > 0.0]
+    return [box for box in rows if box.length > 0.0 and box.width > 0.0 and all(map(math.isfinite, box))]
 
 
 def kerbs(parameters: Mapping[str, float]) -> list[Kerb]:
@@ -181,20 +181,32 @@ def _fields(values: Mapping[str, float], array: str, fields: tuple[str, ...]) ->
     return rows
 
 
+MOST_POINTS = 10_000.0
+
+
 def _driven(
     start: tuple[float, float, float], direction: float, pieces: Sequence[tuple[float, ...]], spacing: float
 ) -> Array:
-    """Return points along pieces (length, rate of turning per metre at the start, at the end) from ``start``."""
+    """Return points along pieces (length, rate of turning per metre at the start, at the end) from ``start``.
+
+    Empty where a number is not finite, or so large that points are not.
+    """
+    if not all(map(math.isfinite, (*start, direction, *(item for piece in pieces for item in piece)))):
+        return np.empty((0, 2))
     x, y, heading = start
     points = [(x, y)]
     for length, k0, k1 in pieces:
-        count = min(max(1, math.ceil(length / spacing)), 10_000) if length > 0.0 and math.isfinite(length) else 0
+        count = math.ceil(min(max(1.0, length / spacing), MOST_POINTS)) if length > 0.0 else 0
         for number in range(count):
             ds = length / count
+            if not math.isfinite(x + y + heading):
+                return np.empty((0, 2))
             turn = (k0 + (k1 - k0) * (number + 0.5) / count) * ds
+            if not math.isfinite(turn):
+                return np.empty((0, 2))
             chord = ds * (math.sin(0.5 * turn) / (0.5 * turn) if turn != 0.0 else 1.0)
             x += direction * chord * math.cos(heading + 0.5 * turn)
             y += direction * chord * math.sin(heading + 0.5 * turn)
             heading += turn
             points.append((x, y))
-    return np.array(points) if len(points) > 1 else np.empty((0, 2))
+    return np.array(points) if len(points) > 1 and np.isfinite(points).all() else np.empty((0, 2))

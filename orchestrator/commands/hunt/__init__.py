@@ -9,7 +9,7 @@ from fmus.installation import missing_package
 from orchestrator.commands.sweep import chosen_study
 from orchestrator.cosim.kinds import KINDS
 from orchestrator.text.console import console
-from orchestrator.text.errors import INTERRUPTED, NOT_PARKED, PARKED, BadInput
+from orchestrator.text.errors import INTERRUPTED, NOT_PARKED, PARKED, BadInput, NotRunError
 from orchestrator.text.owned import owned
 
 if TYPE_CHECKING:
@@ -79,6 +79,10 @@ def _hunt(arguments: argparse.Namespace) -> int:
                 f"{subject.runs} runs are kept; go on with: apa hunt {arguments.study} --resume", markup=False
             )
             return INTERRUPTED
+        except NotRunError as error:
+            count = "1 run " if len(error.args) == 1 else ""
+            kept = f"{subject.runs} runs are kept, --resume goes on"
+            raise BadInput(f"{study.name}: no result, for {count}{error}; {kept}") from error
         told = as_json(subject, hunted)
         page = write_page(subject, hunted, out)
     if arguments.json:

@@ -198,11 +198,13 @@ def _gap(row: Mapping[str, Any], pose: Pose, thing: Box, under: bool) -> float:
 
 
 def _clear(columns: Columns) -> Array:
-    """Return how near [m] the car has come to anything since the assist has it; 0 or less: it has touched it."""
-    nearest = np.nan_to_num(np.asarray(columns["assist.clearance"]), nan=LARGEST)
+    """Return how near [m] the car has come to anything since the assist has it; 0 or less: touched, or not measured."""
+    nearest = np.nan_to_num(np.asarray(columns["assist.clearance"]), nan=LARGEST)  # the assist has never had the car
+    unknown = np.isnan(np.asarray(columns["mode"])) | np.isnan(np.asarray(columns["min_clearance"]))
     ends = np.asarray(columns["end"])
     touched, nearest = ends == CONTACT, np.where(ends == LOW_KERB, LARGEST, nearest)
-    return np.asarray(np.where(touched, -np.abs(columns["touched.speed"]), np.clip(nearest, LEAST, LARGEST)))
+    margins = np.where(touched, -np.abs(columns["touched.speed"]), np.clip(nearest, LEAST, LARGEST))
+    return np.asarray(np.where(unknown, -LARGEST, margins))
 
 
 def _honest(columns: Columns) -> Array:
@@ -213,7 +215,7 @@ def _honest(columns: Columns) -> Array:
     least = np.minimum(np.min(shares, axis=0), 1.0)
     ends = np.asarray(columns["end"])
     found = np.where(ends == FALSE, np.minimum(least, -LEAST), np.where(ends == PARKED, np.maximum(least, LEAST), 1.0))
-    return np.asarray(found)
+    return np.asarray(np.where(np.isnan(np.asarray(columns["mode"])), -1.0, found))
 
 
 LEAST, LARGEST = 1e-4, 0.5

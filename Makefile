@@ -6,7 +6,7 @@ SCENARIO ?= guo2015-case4
 
 PYTEST = $(BIN)/python -m pytest -n auto --dist loadfile --no-loadscope-reorder -q
 
-.PHONY: run test quick release release-tests costs fuzz mutants check lint types bench docs reproduce clean help
+.PHONY: run test quick release release-tools release-tests audit sbom costs fuzz mutants check lint types bench docs reproduce clean help
 
 help: ## Show this list
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | sed 's/:.*## /\t/' | expand -t 14
@@ -21,13 +21,25 @@ test: $(VENV)/.test ## Install and pass the tests that each change must pass
 quick: lint types ## Lint, types and the tests that cost less than a second (tests/costs.tsv)
 	$(PYTEST) -m 'not slow'
 
-release: check release-tests mutants bench docs ## All that must hold before a release and each night
+release: release-tools check release-tests audit sbom mutants bench docs ## All that must hold before a release and each night
 
 release-tests: $(VENV)/.test ## The tests that need not run on each change
 	$(PYTEST) -m release
 
 costs: $(VENV)/.test ## Run all tests and record what each costs in tests/costs.tsv
 	$(PYTEST) --costs
+
+release-tools: $(VENV)/.release ## Stop if a tool is missing without which tests would be skipped
+	@for tool in gcc valgrind; do command -v $$tool >/dev/null || { echo "make release needs $$tool" >&2; exit 1; }; done
+
+audit: $(VENV)/.release ## Look the pinned dependencies up among known vulnerabilities; one that cannot be is an error
+	$(BIN)/pip-audit --strict --no-deps --disable-pip --progress-spinner off --requirement constraints.txt
+
+sbom: $(VENV)/.run ## Write the bills of materials (CycloneDX) of the wheel and of the FMUs into build/sbom
+	rm -rf build/lib build/wheel build/fmus build/sbom
+	$(BIN)/python -m pip wheel --quiet --no-deps --wheel-dir build/wheel .
+	$(BIN)/apa build --out build/fmus
+	$(BIN)/python -m fmus.sbom build/wheel/*.whl $$(find build/fmus -name '*.fmu') --out build/sbom
 
 FUZZ_SECONDS ?= 600
 fuzz: $(VENV)/.test ## Attack inputs, tables, systems, logs, kills and FMI calls, ten minutes each, with new seeds
@@ -72,6 +84,10 @@ $(VENV)/.test: $(VENV)/.run pyproject.toml
 	$(BIN)/python -m pip install --quiet --editable '.[native,sweep,export,test]'
 	$(BIN)/npm install --silent --no-save --no-package-lock --prefix $(VENV)/scripts typescript@5.9.3 || \
 	    echo "No TypeScript: the scripts of the pages are not type-checked here"
+	@touch $@
+
+$(VENV)/.release: $(VENV)/.run pyproject.toml
+	$(BIN)/python -m pip install --quiet --editable '.[native,sweep,release]'
 	@touch $@
 
 $(VENV)/.docs: $(VENV)/.run pyproject.toml

@@ -23,7 +23,7 @@ FLOORS: tuple[tuple[str, ...], ...] = (
     ("fmus.native", "fmus.python", "fmus.systems", "fmus.model_fields"),
     ("fmus.compiled_batch",),
     ("fmus.build",),
-    ("fmus.own_model",),
+    ("fmus.own_model", "fmus.sbom"),
     ("orchestrator.text",),
     ("orchestrator.scenario",),
     ("orchestrator.cosim",),

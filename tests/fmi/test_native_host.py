@@ -177,22 +177,37 @@ needs_gcc = pytest.mark.skipif(shutil.which("gcc") is None, reason="needs gcc fo
 
 @pytest.mark.release
 @needs_gcc
-def test_sanitizers_find_nothing(model: Any, tmp_path: Path) -> None:
-    library, program = sanitized(model, 2, "host.c", tmp_path)
+def test_sanitizers_find_nothing(any_model: Any, tmp_path: Path) -> None:
+    library, program = sanitized(any_model, 2, "host.c", tmp_path)
     run(program, "many", library, "{sanitized}", 100)
     assert "refused" in run(program, "fuzz", library, "{sanitized}", 3, 20_000, timeout=300)
 
 
 @pytest.mark.release
 @needs_gcc
-def test_sanitizers_find_nothing_in_fmi_3(model: Any, tmp_path: Path) -> None:
-    library, program = sanitized(model, 3, "host3.c", tmp_path)
+def test_sanitizers_find_nothing_in_fmi_3(any_model: Any, tmp_path: Path) -> None:
+    library, program = sanitized(any_model, 3, "host3.c", tmp_path)
     for seed in (1, 2):
         text = run(program, library, "{sanitized}", seed, 30_000, timeout=300)
         calls, refused, messages, _ = (int(word.split()[0]) for word in text.split(", "))
         assert calls == 30_000
         assert 0.2 < refused / calls < 0.8
         assert messages > refused / 3
+
+
+@pytest.mark.release
+@needs_gcc
+@pytest.mark.parametrize("fmi", [2, 3])
+def test_instances_in_several_threads_share_nothing(any_model: Any, fmi: int, tmp_path: Path) -> None:
+    """ThreadSanitizer sees every access to memory."""
+    for name, text in fmu_sources(any_model, "{threads}", fmi).items():
+        (tmp_path / name).write_text(text)
+    options = ["-g", "-O1", "-fsanitize=thread", f"-I{tmp_path}"]
+    options += [f"-DFMI={fmi}", f"-DFMI{fmi}_OVERRIDE_FUNCTION_PREFIX"]
+    sources = [unit_name(any_model, fmi), str(HERE / "threads.c")]
+    command = ["gcc", *options, "-std=gnu11", *sources, "-o", "threads", "-lm", "-lpthread"]
+    subprocess.run(command, check=True, cwd=tmp_path)
+    assert run(tmp_path / "threads", "{threads}", timeout=300) == "3200 messages\n"
 
 
 @pytest.mark.skipif(shutil.which("valgrind") is None, reason="needs valgrind")

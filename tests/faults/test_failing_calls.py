@@ -1,0 +1,126 @@
+"""The n-th open, write, mmap or fork of a command fails, on its own files: never a verdict, a row or a margin of it.
+
+As SQLite tests itself: a shared library in front of the C library lets one call fail. A command ends with 2 and one
+line, or does without what failed and comes to the same result.
+"""
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from fmus.native.compilers import can_compile
+
+SHIM = Path(__file__).with_name("failing_call.c")
+CALLS = ("open", "write", "mmap", "fork")
+COMMANDS = {
+    "run": ["run", "guo2015-case4", "--fmus", "native", "--no-page", "--json", "--set", "stop_time=1"],
+    "test": [
+        "test",
+        "guo2015-case4",
+        "--fmus",
+        "native",
+        "--set",
+        "stop_time=1",
+        "--set",
+        "expect=not_parked",
+        "--json",
+    ],
+    "sweep": ["sweep", "few.yaml", "--fmus", "native", "--no-page", "--workers", "1", "--json"],
+    "hunt": ["hunt", "apa-world", "--fmus", "native", "--budget", "50", "--workers", "1", "--json"],
+}
+MOST = 2000
+"""Calls of one kind that a command may make: more is a mistake of this test."""
+STUDY = """
+name: few
+scenario: guo2015-case4
+set: {stop_time: 1}
+runs: {grid: {vehicle.start.x: [0, 0.01]}}
+"""
+
+pytestmark = [
+    pytest.mark.skipif(sys.platform != "linux", reason="LD_PRELOAD"),
+    pytest.mark.skipif(not can_compile(), reason="needs a C compiler"),
+]
+
+
+class Bench:
+    """A folder in which commands are run with a call that fails."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder, self._library = folder, folder / "failing_call.so"
+        self._runs = 0
+        command = ["gcc", "-shared", "-fPIC", "-O1", "-o", str(self._library), str(SHIM), "-ldl"]
+        if subprocess.run(command, capture_output=True, check=False).returncode:
+            pytest.skip("needs gcc")
+
+    def run(self, command: str, call: str = "", at: int = 0) -> tuple[int, str, str, bool]:
+        """Return exit code, what was printed, what was said on the other stream, and whether the call was reached."""
+        self._runs += 1
+        own = self.folder / f"{self._runs}"
+        (own / "tmp").mkdir(parents=True)
+        (own / "few.yaml").write_text(STUDY)
+        mark = self.folder / f"reached-{self._runs}"
+        fault = {"APA_FAIL_CALL": call, "APA_FAIL_AT": str(at), "APA_FAIL_UNDER": str(own), "APA_FAIL_MARK": str(mark)}
+        preload = {"LD_PRELOAD": str(self._library), **fault} if call else {}
+        environment = {**os.environ, "TMPDIR": str(own / "tmp"), **preload}
+        words = [sys.executable, "-m", "orchestrator", *COMMANDS[command], "--out", "out"]
+        environment["PYTHONPATH"] = str(Path(__file__).parents[2])
+        done = subprocess.run(words, cwd=own, env=environment, capture_output=True, text=True, check=False, timeout=300)
+        return done.returncode, done.stdout, done.stderr, mark.exists()
+
+
+@pytest.fixture(scope="module")
+def bench(tmp_path_factory: pytest.TempPathFactory) -> Bench:
+    return Bench(tmp_path_factory.mktemp("calls"))
+
+
+@pytest.fixture(scope="module")
+def references(bench: Bench) -> dict[str, tuple[int, Any]]:
+    return {}
+
+
+def result(command: str, printed: str) -> Any:
+    """Return what a command came to, without times."""
+    found = json.loads(printed)
+    if command == "run":
+        return [found[name] for name in ("outcome", "reason", "final", "duration")]
+    if command == "test":
+        return [[item["outcome"], item["passed"]] for item in found["scenarios"]]
+    return [found[name] for name in (("count", "done") if command == "sweep" else ("runs", "broken"))]
+
+
+def holds(bench: Bench, references: Any, command: str, call: str, at: int) -> bool:
+    """Check a command whose ``at``-th ``call`` fails; return whether it was reached."""
+    if command not in references:
+        code, printed, said, _ = bench.run(command)
+        assert code in (0, 1), said
+        references[command] = code, result(command, printed)
+    code, printed, said, reached = bench.run(command, call, at)
+    place = f"{command}: {call} {at}: exit code {code}\n{printed}\n{said}"
+    assert "Traceback" not in said, place
+    assert "internal error" not in said, place
+    if code != 2:
+        assert (code, result(command, printed)) == references[command], place
+    elif command != "test":
+        assert sum(line.startswith("apa: ") and "warning" not in line for line in said.splitlines()) == 1, place
+    return reached
+
+
+@pytest.mark.parametrize(("call", "at"), [("open", 2), ("open", 4), ("write", 1)])
+def test_a_run_of_which_one_call_fails(bench: Bench, references: Any, call: str, at: int) -> None:
+    assert holds(bench, references, "run", call, at)
+
+
+@pytest.mark.release
+@pytest.mark.parametrize("call", CALLS)
+@pytest.mark.parametrize("command", COMMANDS)
+def test_every_call_of_a_command(bench: Bench, references: Any, command: str, call: str) -> None:
+    for at in range(1, MOST):
+        if not holds(bench, references, command, call, at):
+            return
+    raise AssertionError(f"{command}: more than {MOST} calls of {call}")

@@ -8,7 +8,16 @@ import sys
 from enum import IntEnum
 from typing import TYPE_CHECKING, Annotated, Any, NamedTuple, TypeAlias
 
-from controller_fmu import adaptive, apa, guo2015, hsic, parking, preview, valet, zhang2022
+from controller_fmu import (
+    adaptive,
+    apa,
+    guo2015,
+    hsic,
+    parking,
+    preview,
+    valet,
+    zhang2022,
+)
 from controller_fmu.common.clock import Clock, begin, refused, tick
 from controller_fmu.interface import RefusedOutput
 from controller_fmu.parking.params import ParkingSystem

@@ -4,6 +4,7 @@ Imports no more than it takes to draw: ``beside`` runs this in a process of its 
 """
 
 import math
+import string
 from io import BytesIO
 from itertools import pairwise
 from typing import Any, NamedTuple
@@ -19,6 +20,19 @@ from orchestrator.cosim.slave import Array
 from orchestrator.drawing.looks import CAR, PERSON, looks
 from orchestrator.drawing.overview import Overview
 from orchestrator.drawing.palette import LIGHT, role
+from orchestrator.drawing.panels import PANELS, Panel, picture_columns
+from orchestrator.drawing.time_panels import (
+    BASE_HEIGHT,
+    BASE_WIDTH,
+    LEFT_EDGE,
+    PANEL_HEIGHT,
+    RIGHT_EDGE,
+    AxesPlace,
+    draw_panel,
+    panel_places,
+    picture_height,
+    raised,
+)
 from orchestrator.verdict.geometry import WHEEL_RADIUS, WHEEL_WIDTH, Box, CarOutline, place
 
 BLUE, ASKED, GREEN, GREY, INK = LIGHT["run-a"], LIGHT["asked"], LIGHT["good"], "#8a8f98", "#22262c"
@@ -45,32 +59,17 @@ STYLE: Any = {
     "axes.spines.right": False,
     "legend.frameon": False,
 }
-FAR = 50.0
-"""Beyond this [m] from the origin, positions are shown from the start."""
 STILLS = 10
 """Of a thing that moves, one picture a second is drawn."""
 OUTLINES = 14
 """About how many outlines are drawn along the path."""
 
-
-WIDTH, HEIGHT, DPI = 13.0, 9.0, 120
-"""Of the picture [in], and dots in an inch."""
-
-
-class _Place(NamedTuple):
-    """Where axes lie in the picture, as shares of its width and height."""
-
-    left: float
-    bottom: float
-    width: float
-    height: float
+DPI = 120
+"""Dots in an inch."""
 
 
-LEFT, RIGHT = 0.058, 0.986
-PLAN = _Place(LEFT, 0.515, RIGHT - LEFT, 0.43)
-LEGEND = (LEFT, 0.415, RIGHT - LEFT, 0.045)
-PANELS = [_Place(left, 0.088, 0.253, 0.295) for left in (LEFT, 0.411, RIGHT - 0.253)]
-"""All places are fixed: to have them found by matplotlib costs more than all the rest."""
+PLAN = AxesPlace(LEFT_EDGE, 0.515, RIGHT_EDGE - LEFT_EDGE, 0.43)
+LEGEND = AxesPlace(LEFT_EDGE, 0.415, RIGHT_EDGE - LEFT_EDGE, 0.045)
 RIBBON = (-0.125, -0.05)
 """From and to, below a panel, as shares of its height."""
 
@@ -84,17 +83,19 @@ def picture(seen: Overview) -> bytes:
     return file.getvalue()
 
 
-def overview(seen: Overview) -> Figure:
+def overview(seen: Overview, panels: tuple[Panel, ...] = PANELS) -> Figure:
     """Return the overview picture of a run."""
+    columns = picture_columns(panels)
     with mpl.rc_context(STYLE):
-        figure = Figure(figsize=(WIDTH, HEIGHT), dpi=DPI)
-        _plan(figure.add_axes(PLAN), seen)
+        figure = Figure(figsize=(BASE_WIDTH, picture_height(len(columns))), dpi=DPI)
+        letters = string.ascii_lowercase
+        _plan(figure.add_axes(raised(PLAN, len(columns))), letters[len(columns)], seen)
         pieces = _pieces(seen)
-        for place_of_panel, panel in zip(PANELS, (_speed, _position, _heading), strict=True):
+        for letter, place_of_panel, column in zip(letters, panel_places(columns), columns, strict=False):
             axis = figure.add_axes(place_of_panel)
-            panel(axis, seen)
+            draw_panel(axis, letter, column, seen)
             _over_time(axis, seen, pieces)
-        _legend(figure, {piece.name: piece.colour for piece in pieces})
+        _legend(figure, {piece.name: piece.colour for piece in pieces}, raised(LEGEND, len(columns)))
         _title(figure, seen.title)
     return figure
 
@@ -107,58 +108,6 @@ def _title(figure: Figure, text: str) -> None:
     while title.get_window_extent().width > room and size > LEAST_TITLE:  # letters do not get narrower evenly
         size -= 0.5
         title.set_fontsize(size)
-
-
-def _speed(axis: Any, seen: Overview) -> None:
-    t = seen.t
-    axis.set_title("(a) speed, steering")
-    axis.plot(t, seen.signal("vehicle.speed"), color=BLUE, linewidth=1.5)
-    axis.set_ylabel("speed [m/s]", color=BLUE)
-    wheel = axis.twinx()
-    wheel.grid(False)
-    wheel.spines["right"].set_visible(True)
-    request = seen.signal("controller.steering_wheel_request") / DEGREE
-    wheel.plot(t, request, color=ASKED, linewidth=0.8, linestyle=(0, (3, 2)), label="request")
-    wheel.plot(t, seen.signal("vehicle.steering_wheel_angle") / DEGREE, color=INK, linewidth=1.2, label="angle")
-    wheel.set_ylabel("steering wheel [deg]", color=INK)
-    wheel.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), fontsize=8, ncols=2, borderaxespad=0.0)
-
-
-def _position(axis: Any, seen: Overview) -> None:
-    t = seen.t
-    far = max(abs(seen.signal(f"vehicle.pose.{name}")[0]) for name in ("x", "y")) > FAR
-    axis.set_title("(b) position")
-    for name, colour in (("x", BLUE), ("y", INK)):
-        driven = seen.signal(f"vehicle.pose.{name}")
-        origin = driven[0] if far else 0.0
-        reference = _used(seen, f"controller.reference.{name}") - origin
-        axis.plot(t, reference, color=ASKED, linewidth=0.8, linestyle=(0, (3, 2)))
-        axis.plot(t, driven - origin, color=colour, linewidth=1.5, label=name)
-    axis.plot([], [], color=ASKED, linewidth=0.8, linestyle=(0, (3, 2)), label="reference")
-    axis.set_ylabel("way from start [m]" if far else "position [m]")
-    axis.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), fontsize=8, ncols=3, borderaxespad=0.0)
-
-
-def _heading(axis: Any, seen: Overview) -> None:
-    t = seen.t
-    axis.set_title("(c) heading")
-    driven = seen.signal("vehicle.pose.heading")
-    reference = _used(seen, "controller.reference.heading")
-    turns = np.round((driven - reference) / (2.0 * np.pi))
-    reference = (reference + turns * 2.0 * np.pi) / DEGREE
-    axis.plot(t, reference, color=ASKED, linewidth=0.8, linestyle=(0, (3, 2)), label="reference")
-    axis.plot(t, driven / DEGREE, color=BLUE, linewidth=1.5, label="heading")
-    axis.set_ylabel("heading [deg]")
-    axis.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), fontsize=8, ncols=2, borderaxespad=0.0)
-
-
-def _used(seen: Overview, name: str) -> Array:
-    """Return a reference signal, blank until the controller first gives one."""
-    prefix = name.rsplit(".", 1)[0]
-    given = np.zeros(len(seen.t), dtype=bool)
-    for axis in ("x", "y", "heading"):
-        given |= seen.signal(f"{prefix}.{axis}") != 0.0
-    return np.where(given, seen.signal(name), np.nan)
 
 
 class _Piece(NamedTuple):
@@ -193,17 +142,17 @@ def _over_time(axis: Any, seen: Overview, pieces: list[_Piece]) -> None:
     ribbon = PolyCollection(corners, facecolors=[piece.colour for piece in pieces], linewidths=0, transform=below)
     ribbon.set_clip_on(False)
     axis.add_collection(ribbon, autolim=False)
-    axis.tick_params(axis="x", length=0, pad=0.14 * PANELS[0].height * HEIGHT * 72.0)
+    axis.tick_params(axis="x", length=0, pad=0.14 * PANEL_HEIGHT * BASE_HEIGHT * 72.0)
 
 
-def _legend(figure: Figure, names: dict[str, str]) -> None:
+def _legend(figure: Figure, names: dict[str, str], place_of_legend: AxesPlace) -> None:
     handles = [Patch(color=colour, label=name.lower().replace("_", " ")) for name, colour in names.items()]
     figure.legend(
         handles=handles,
         title="states of the chart",
         title_fontsize=8,
         loc="center",
-        bbox_to_anchor=LEGEND,
+        bbox_to_anchor=place_of_legend,
         ncols=len(handles),
         fontsize=8,
         borderaxespad=0.0,
@@ -212,8 +161,8 @@ def _legend(figure: Figure, names: dict[str, str]) -> None:
     )
 
 
-def _plan(axis: Any, seen: Overview) -> None:
-    axis.set_title("(d) path of the rear-axle midpoint, outline along it")
+def _plan(axis: Any, letter: str, seen: Overview) -> None:
+    axis.set_title(f"({letter}) path of the rear-axle midpoint, outline along it")
     axis.set_aspect("equal", adjustable="datalim")
     axis.set_xlabel("x [m]")
     axis.set_ylabel("y [m]")

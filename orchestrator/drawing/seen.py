@@ -7,19 +7,19 @@ import numpy as np
 from orchestrator.cosim.recording import Recording
 from orchestrator.cosim.slave import Array
 from orchestrator.drawing.overview import Overview, Ribbon, Standing
+from orchestrator.drawing.panels import PICTURE_MODES, picture_signals
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.text.quantities import DEGREE
 from orchestrator.text.readable import changes_text, shifts_text
 from orchestrator.verdict.geometry import CarOutline, described, kerbs, sample_path, slot_box, things
 from orchestrator.verdict.summary import Summary, phase_changes
 
-RIBBONS = ("controller.hsic.characteristic", "controller.preview.stage", "controller.phase")
-"""What the ribbon shows: the first of these that changes during the run."""
-DRAWN = (
-    *("vehicle.speed", "vehicle.steering_wheel_angle", "vehicle.front_wheel_angle"),
-    *(f"vehicle.pose.{axis}" for axis in ("x", "y", "heading")),
-    "controller.steering_wheel_request",
-    *(f"controller.reference.{axis}" for axis in ("x", "y", "heading")),
+DRAWN = dict.fromkeys(
+    (
+        *picture_signals(),
+        "vehicle.front_wheel_angle",
+        *(f"{pose}.{axis}" for pose in ("vehicle.pose", "controller.reference") for axis in ("x", "y", "heading")),
+    )
 )
 """Signals in the picture."""
 
@@ -57,8 +57,8 @@ def _title(summary: Summary, scenario: Scenario) -> str:
 
 
 def _ribbon(recording: Recording) -> Ribbon:
-    there = [name for name in RIBBONS if name in recording.signals]
-    shown = next((name for name in there if np.ptp(recording.signals[name]) > 0.0), RIBBONS[-1])
+    there = [name for name in PICTURE_MODES if name in recording.signals]
+    shown = next((name for name in there if np.ptp(recording.signals[name]) > 0.0), PICTURE_MODES[-1])
     values = recording.signals.get(shown, np.full(len(recording.t), np.nan))
     return Ribbon(values, recording.states(shown))
 

@@ -14,11 +14,11 @@ from fmus.installation import missing_package
 from modelkit.variables import Variable
 from orchestrator.cosim.recording import Recording
 from orchestrator.cosim.slave import Array
+from orchestrator.drawing.panels import PANELS
 from orchestrator.export.csv import add_run_arguments
 from orchestrator.log.line import Line
 from orchestrator.log.messages import read_messages
 from orchestrator.log.read_log import read_log
-from orchestrator.report.plots import GROUPS
 from orchestrator.text.errors import BadInput
 from orchestrator.text.owned import owned_with
 from orchestrator.text.patterns import matching
@@ -92,13 +92,13 @@ def blueprint(recording: Recording) -> Any:
     import rerun.blueprint as rrb
 
     views = []
-    for title, _, _, signals in GROUPS:
-        known = [entity(name) for name in signals if name in recording.signals]
+    for panel in PANELS:
+        known = [entity(name) for name in panel.page_signals() if name in recording.signals]
         if known:
-            views.append(rrb.TimeSeriesView(name=title, origin="/signals", contents=known))
+            views.append(rrb.TimeSeriesView(name=panel.title, origin="/signals", contents=known))
     left = rrb.Vertical(rrb.Spatial2DView(name="Top view", origin="/scene"), rrb.TextLogView(origin="/messages"))
     left.row_shares = [3.0, 1.0]
-    return rrb.Blueprint(rrb.Horizontal(left, rrb.Vertical(*views[:6])), collapse_panels=True)
+    return rrb.Blueprint(rrb.Horizontal(left, rrb.Vertical(*views)), collapse_panels=True)
 
 
 def entity(name: str) -> str:

@@ -7,17 +7,10 @@ import json
 from pathlib import Path
 from typing import Any
 
+from orchestrator.drawing.panels import MODES, PANELS
+
 FOLDER = Path(__file__).parent.parent / "layouts"
 TITLES = {"foxglove": "foxglovePanelTitle", "lichtblick": "lichtblickPanelTitle"}
-CURVES = {
-    "Speed [m/s]": ("vehicle.speed", "controller.advised_speed"),
-    "Steering wheel [rad]": ("vehicle.steering_wheel_angle", "controller.steering_wheel_request"),
-    "Position [m]": ("vehicle.pose.x", "vehicle.pose.y"),
-    "Heading [rad]": ("vehicle.pose.heading", "controller.reference.heading"),
-    "Lateral error [m]": ("controller.lateral_error",),
-    "Heading error [rad]": ("controller.heading_error",),
-}
-STATES = ("controller.phase", "controller.prompt", "vehicle.gear", "controller.reason")
 DRAWN = ("/scene", "/path", "/trail")
 
 
@@ -26,14 +19,14 @@ def layout(viewer: str) -> dict[str, Any]:
     title = TITLES[viewer]
     panels: dict[str, dict[str, Any]] = {
         "3D!top": {title: "Top view", **_top_view()},
-        "StateTransitions!states": {title: "States", "paths": [_path(name) for name in STATES], "isSynced": True},
+        "StateTransitions!states": {title: "States", "paths": [_path(name) for name in MODES], "isSynced": True},
         "RosOut!log": {title: "Messages", "topicToRender": "/log", "minLogLevel": 1, "searchTerms": []},
         "RawMessages!parameters": {title: "Parameters", "topicPath": "/controller/parameters"},
     }
     plots = []
-    for number, (name, signals) in enumerate(CURVES.items(), start=1):
+    for number, panel in enumerate(PANELS, start=1):
         plots.append(f"Plot!{number}")
-        panels[plots[-1]] = {title: name, **_plot(signals)}
+        panels[plots[-1]] = {title: f"{panel.title} [{panel.unit}]", **_plot(panel.page_signals())}
     left = _split("column", "3D!top", _split("column", "StateTransitions!states", "RosOut!log", 45), 62)
     right = _stack([*plots, "RawMessages!parameters"])
     arrangement = _split("row", left, right, 58)
@@ -56,7 +49,7 @@ def _path(signal: str) -> dict[str, Any]:
     return {"value": f"/{signal}", "timestampMethod": "receiveTime", "label": signal}
 
 
-def _plot(signals: tuple[str, ...]) -> dict[str, Any]:
+def _plot(signals: list[str]) -> dict[str, Any]:
     shown = {"showLegend": True, "legendDisplay": "top", "showPlotValuesInLegend": True, "isSynced": True}
     axes = {"showXAxisLabels": True, "showYAxisLabels": True, "xAxisVal": "timestamp"}
     return {"paths": [{**_path(name), "enabled": True} for name in signals], **shown, **axes}

@@ -5,31 +5,16 @@ from typing import Any
 import numpy as np
 
 from orchestrator.cosim.recording import Recording
+from orchestrator.drawing.panels import PANELS
 from orchestrator.verdict.judge import Check
-
-DEGREE = 0.017453292519943295
-GROUPS: tuple[tuple[str, str, float, tuple[str, ...]], ...] = (
-    ("Speed", "m/s", 0.2, ("vehicle.speed", "controller.advised_speed", "controller.speed_request")),
-    (
-        "Steering wheel",
-        "rad",
-        5.0 * DEGREE,
-        ("vehicle.steering_wheel_angle", "controller.steering_wheel_request"),
-    ),
-    ("Position", "m", 0.5, ("vehicle.pose.x", "vehicle.pose.y")),
-    ("Heading", "rad", 5.0 * DEGREE, ("vehicle.pose.heading", "controller.reference.heading")),
-    ("Lateral error", "m", 0.01, ("controller.lateral_error",)),
-    ("Heading error", "rad", 0.5 * DEGREE, ("controller.heading_error",)),
-    ("Clearance", "m", 0.2, ("vehicle.clearance",)),
-)
-"""Title, unit, smallest span of the y axis, signals."""
 
 
 def plots_of(recordings: list[Recording], checks: list[Check], more: list[str]) -> list[dict[str, Any]]:
-    """Return the plots for ``template/plots.js``: groups that have something to show, then ``more`` one by one."""
+    """Return the plots for ``template/plots.js``: panels that have something to show, then ``more`` one by one."""
     plots = []
-    for title, unit, least, names in GROUPS:
-        signals = [name for name in names if any(_alive(item, name) for item in recordings)]
+    for panel in PANELS:
+        title, unit, least = panel.title, panel.unit, panel.least_span
+        signals = [name for name in panel.page_signals() if any(_alive(item, name) for item in recordings)]
         if not any(_changes(item, name) for item in recordings for name in signals):
             continue
         if _far_apart(recordings, signals):

@@ -6,6 +6,7 @@ import numpy as np
 
 from modelkit.variables import Variable, variables
 from orchestrator.cosim.recording import Recording
+from orchestrator.drawing.panels import MODES, REFERENCES
 from orchestrator.log.line import Line
 from orchestrator.report.payload import Arrays
 from orchestrator.report.plans import plans_of
@@ -14,8 +15,9 @@ from orchestrator.report.thinning import thin
 from orchestrator.scenario.models import models_for
 
 CHART = "controller.phase"
-RIBBONS = (CHART, "controller.prompt", "vehicle.gear", "controller.reason")
 MOST_RIBBONS = 7
+ASKED = frozenset(name.partition(".")[2] for name in REFERENCES)
+"""Names, without their slave, of what is asked for: an output and the input it feeds are one curve."""
 
 
 def run_data(
@@ -53,7 +55,7 @@ def ribbons_of(recordings: list[Recording], most: int = MOST_RIBBONS) -> list[st
     """Return the modes that make ribbons: the chart first, then all others that change, each once."""
     names = [name for item in recordings for name in item.signals if item.states(name)]
     chosen: dict[str, str] = {}
-    for name in [*(name for name in RIBBONS if name in names), *names]:
+    for name in [*(name for name in MODES if name in names), *names]:
         short = name.partition(".")[2]
         if short not in chosen and (name == CHART or any(_changes(item, name) for item in recordings)):
             chosen[short] = name
@@ -76,6 +78,8 @@ def _signal(recording: Recording, name: str, rows: np.ndarray[Any, Any], arrays:
         result["held"] = True
     if variable.signal.unit == "rad" and name.endswith("heading"):
         result["turn"] = True
+    if name.partition(".")[2] in ASKED:
+        result["asked"] = True
     if recording.states(name):
         result["states"] = recording.states(name)
     if len(values) and np.isfinite(values[0]) and (values == values[0]).all():

@@ -1,14 +1,18 @@
 """The overview picture is drawn for any run: parked, failed, far away, broken."""
 
+from itertools import combinations
 from pathlib import Path
 
 import numpy as np
 import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.image import imread
+from matplotlib.transforms import Bbox
 
 from fmus.children import LIVING
 from orchestrator.drawing.beside import PictureBeside
 from orchestrator.drawing.figure import overview, picture
+from orchestrator.drawing.panels import PANELS, Panel, PanelCurve
 from orchestrator.drawing.seen import overview_of
 from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.session.session import run_scenario
@@ -49,6 +53,41 @@ def test_a_long_title_is_not_cut_off() -> None:
         ends.append(drawn.get_window_extent().x1 / figure.bbox.width)
     assert ends[0] < 0.1
     assert 0.95 < min(ends[2:]) <= max(ends) < 1.0
+
+
+@pytest.mark.parametrize("more", [0, 1, 3])
+def test_no_panel_of_the_picture_covers_another(more: int) -> None:
+    scenario = load_scenario(DEMO, ["stop_time=1"])
+    ran = run_scenario(scenario)
+    seen = overview_of(ran.recording, summarize(ran.recording, scenario, 1.0), scenario)
+    added = (
+        Panel(f"Brake {number}", "1", 0.1, (PanelCurve("vehicle.speed"),), column=4 + number) for number in range(more)
+    )
+    figure = overview(seen, (*PANELS, *added))
+    renderer = FigureCanvasAgg(figure).get_renderer()
+    places: dict[tuple[float, ...], list[Bbox]] = {}
+    for axes in figure.axes:
+        box = axes.get_tightbbox(renderer)
+        assert box is not None
+        places.setdefault(tuple(round(end, 6) for end in axes.get_position().bounds), []).append(Bbox(box.get_points()))
+    columns = {place: Bbox.union(boxes) for place, boxes in places.items()}
+    assert len(columns) == 1 + 3 + more
+    twice = [one for one, other in combinations(columns.values(), 2) if Bbox.intersection(one, other) is not None]
+    assert twice == []
+    titles = [axes.get_title("left") for axes in figure.axes if axes.get_title("left")]
+    assert [title[:3] for title in sorted(titles)] == [f"({letter})" for letter in "abcdefg"[: 4 + more]]
+
+
+def test_no_legend_covers_a_title() -> None:
+    scenario = load_scenario(DEMO, ["stop_time=1"])
+    ran = run_scenario(scenario)
+    figure = overview(overview_of(ran.recording, summarize(ran.recording, scenario, 1.0), scenario))
+    renderer = FigureCanvasAgg(figure).get_renderer()
+    figure.draw(renderer)
+    titles = [axes._left_title.get_window_extent(renderer) for axes in figure.axes if axes.get_title("left")]  # type: ignore[attr-defined]
+    legends = [legend.get_window_extent(renderer) for axes in figure.axes if (legend := axes.get_legend())]
+    assert len(legends) == 4
+    assert not any(title.overlaps(legend) for title in titles for legend in legends)
 
 
 def test_a_process_beside_draws_the_same() -> None:

@@ -1,7 +1,6 @@
 // One plot: signals of all runs over time, with one unit at the left axis and perhaps another at the right.
 
 const DASHES = [[], [7, 4], [2, 3], [9, 3, 2, 3]];
-const ASKED = /(request|advised|reference|target|desired|planned|set_speed)/;
 const INKS = ["run-a", "ink", "ink-soft"]; // curves have no hue of a state
 
 class Plot {
@@ -107,17 +106,19 @@ class Plot {
   // Several runs: the colour is the run, the dashes are the signal. One run: blue is what is, violet dashes what is asked.
   stroke({ number, name }) {
     if (this.page.runs.length > 1) return runColor(number);
-    return ASKED.test(name) ? color("asked") : color(INKS[this.rank(name) % INKS.length]);
+    return this.isAsked(name) ? color("asked") : color(INKS[this.rank(name) % INKS.length]);
   }
 
   dash({ number, name }) {
     const place = this.spec.signals.indexOf(name);
     if (this.page.runs.length > 1) return this.spec.signals.length > 1 ? DASHES[place % DASHES.length] : number === 1 ? [6, 4] : undefined;
-    return ASKED.test(name) ? DASHES[1 + this.rank(name) % 3] : DASHES[Math.floor(this.rank(name) / INKS.length) % DASHES.length];
+    return this.isAsked(name) ? DASHES[1 + this.rank(name) % 3] : DASHES[Math.floor(this.rank(name) / INKS.length) % DASHES.length];
   }
 
+  isAsked(name) { return Boolean(this.signal(name).asked); }
+
   // Which of those that are asked, or of those that are.
-  rank(name) { return this.spec.signals.filter((other) => ASKED.test(other) === ASKED.test(name)).indexOf(name); }
+  rank(name) { return this.spec.signals.filter((other) => this.isAsked(other) === this.isAsked(name)).indexOf(name); }
 
   limits(u) {
     const [, factor] = display(this.spec.unit);

@@ -48,7 +48,7 @@ def test_of_two_empty_bays_one_is_used() -> None:
     slot = slot_after(bays(2.6, 2), 2, 7.2)
     assert slot.type == SlotType.PERPENDICULAR
     goal = goal_pose(slot, OUTLINE, SlotParams())
-    assert min(abs(goal.x - 1.3), abs(goal.x - 3.9)) < 0.3
+    assert min(abs(goal.x - 1.3), abs(goal.x - 3.9)) < 0.4
 
 
 def test_a_gap_between_cars_along_the_road_is_a_parallel_slot() -> None:

@@ -39,6 +39,8 @@ CORNER_DEVIATION = 0.05
 """The same [m] at a corner, which is rounded by about twice as much."""
 FACING_COS = 0.8
 """Cosine of the angle between a side's normal and the direction of its echo, at least: 37 deg, past the half cone."""
+OPEN_EXTENSION = 1.5
+"""Beyond an open end echoes of the same line are expected for this far [m]: the range of monitored echoes."""
 WELL_IN_VIEW = 0.87
 """A point counts as surely in view within this fraction of the half cone: the mounting errs by some degrees."""
 
@@ -120,6 +122,15 @@ def predict_range(sensor: SensorPose, landmark: Landmark) -> PredictedRange:
     if landmark.type == LandmarkType.POINT:
         return predicted_range_to_point(sensor, landmark.x, landmark.y)
     return predicted_range_to_segment(sensor, start_point(landmark), end_point(landmark))
+
+
+def with_open_ends_extended(landmark: Landmark) -> Landmark:
+    """Return a landmark as it may be: beyond an open end a side goes on, so that its echoes are expected there."""
+    if landmark.type != LandmarkType.SEGMENT:
+        return landmark
+    start = landmark.start if landmark.start_known else landmark.start - OPEN_EXTENSION
+    end = landmark.end if landmark.end_known else landmark.end + OPEN_EXTENSION
+    return landmark._replace(start=start, end=end)
 
 
 def is_contradicted(

@@ -8,6 +8,7 @@ from controller_fmu.parking.map.association import (
     associate,
     is_contradicted,
     predict_range,
+    with_open_ends_extended,
 )
 from controller_fmu.parking.map.free_space import FreeSpace, add_ray
 from controller_fmu.parking.map.initialisation import landmark_of
@@ -127,11 +128,11 @@ def is_confirmed(landmark: Landmark, params: MappingParams) -> bool:
 def expected_range(
     landmarks: tuple[Landmark, ...], sensor: SensorPose, max_range: float, params: MappingParams
 ) -> float:
-    """Return the range [m] to the nearest confirmed landmark in a sensor's view, ``max_range`` if there is none."""
+    """Return the range [m] to the nearest confirmed landmark in view, open ends extended; ``max_range`` if none is."""
     nearest = max_range
     for number in range(LANDMARKS):
         if is_confirmed(landmarks[number], params):
-            predicted = predict_range(sensor, landmarks[number])
+            predicted = predict_range(sensor, with_open_ends_extended(landmarks[number]))
             if predicted.origin != EchoOrigin.OUT_OF_VIEW:
                 nearest = min(nearest, predicted.distance)
     return nearest

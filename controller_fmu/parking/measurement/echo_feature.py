@@ -20,6 +20,11 @@ from modelkit.maths import clamp
 
 DECISION_SIGMA = 2.0
 """A curvature this many standard deviations below 0 is concave: a window over two bodies (2 % of the others)."""
+FAR_SIGMA = 3.0
+"""Where a corner bends the range by less than three standard deviations it cannot be told from a side: a side is
+assumed, which stays short if it is a corner. With 1 cm noise at 2 m/s that is beyond 1.9 m."""
+ACROSS_SLOPE = 0.15
+"""So it is only within 9 deg of across the path, as kerbs and walls along the road are."""
 MAX_SLOPE = 0.9
 """Beyond |b| = 0.9 (bearing within 26 deg of the path) the bearing follows from b too badly."""
 MAX_TURN_COS = 0.99
@@ -101,6 +106,8 @@ def _feature_type(fit: RangeFit, sigma: float) -> int:
     scale = sigma * fit.c_sigma
     as_side = fit.c / scale
     as_corner = (fit.c - corner) / scale
+    if corner < FAR_SIGMA * scale and abs(as_side) < DECISION_SIGMA and abs(fit.b) < ACROSS_SLOPE:
+        return FeatureType.SIDE
     difference = as_side * as_side - as_corner * as_corner
     if difference > DECISION_SIGMA * DECISION_SIGMA:
         return FeatureType.CORNER

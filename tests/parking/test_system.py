@@ -1,0 +1,42 @@
+"""The whole system in closed loop: it parks where the others do, and in an empty bay of a car park."""
+
+import math
+from pathlib import Path
+from typing import Any
+
+import pytest
+import yaml
+
+from orchestrator.cli import main
+
+SCENARIOS = Path(__file__).parents[2] / "orchestrator" / "scenarios"
+
+
+def as_parking(name: str, folder: Path, **changes: Any) -> str:
+    """Return a file with a shipped scenario, driven by this system."""
+    scenario = yaml.safe_load((SCENARIOS / f"{name}.yaml").read_text(encoding="utf-8"))
+    scenario |= {"name": "trial", "controller": {"system": "parking"}, "limits": ["valet-slot"], **changes}
+    file = folder / "trial.yaml"
+    file.write_text(yaml.safe_dump(scenario), encoding="utf-8")
+    return str(file)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["apa-perpendicular-real", "apa-perpendicular-left", "apa-parallel-real"])
+def test_it_parks(name: str, tmp_path: Path) -> None:
+    file = as_parking(name, tmp_path)
+    assert main(["test", file, "--fmus", "native", "--out", str(tmp_path / "out")]) == 0
+
+
+@pytest.mark.slow
+def test_it_parks_in_the_empty_bay_of_a_car_park(tmp_path: Path) -> None:
+    """Bays of 2.7 m with cars of 1.8 m, two beyond each neighbour: `apa` takes three cars for one and drives by."""
+    cars = [{"x": 1.8 + 2.7 * bay, "y": -2.25, "length": 1.8, "width": 4.5} for bay in (-3, -2, -1, 1, 2, 3)]
+    file = as_parking(
+        "apa-perpendicular-real",
+        tmp_path,
+        scene={"boxes": cars},
+        target={"of": "front", "x": 1.8, "y": 0.0, "heading": math.pi / 2},
+        slot={"x": 1.8, "y": -2.3, "heading": math.pi / 2, "length": 4.6, "width": 3.6},
+    )
+    assert main(["test", file, "--fmus", "native", "--out", str(tmp_path / "out")]) == 0

@@ -47,7 +47,7 @@ def variables_in(fmu: bytes) -> dict[str, FmuVariable]:
             raise ValueError("its modelDescription.xml is too large")
         try:
             root = ElementTree.fromstring(archive.read(entry))
-        except ElementTree.ParseError as error:
+        except (ElementTree.ParseError, LookupError) as error:
             raise ValueError(f"its modelDescription.xml: {error}") from None
     units = {item.get("name", ""): scale_in(item) for item in root.iter("Unit")}
     scales = {name: scale for name, scale in units.items() if scale is not None}

@@ -108,7 +108,7 @@ class _Reader:
         self._ignored: list[str] = []
 
     def system(self) -> SspSystem:
-        root = ElementTree.fromstring(_member(self._archive, STRUCTURE, MOST_XML))
+        root = _parsed(_member(self._archive, STRUCTURE, MOST_XML))
         top = _child(root, "System")
         if top is None:
             raise SspError("there is no system in it")
@@ -258,7 +258,7 @@ class _Reader:
         return found
 
     def _file(self, name: str) -> Element:
-        return ElementTree.fromstring(_member(self._archive, name, MOST_XML))
+        return _parsed(_member(self._archive, name, MOST_XML))
 
     def _connections(self) -> Iterator[SspConnection]:
         """Yield what feeds each connector of a component, followed back through the borders of systems."""
@@ -399,6 +399,14 @@ def _member(archive: zipfile.ZipFile, name: str, most: int) -> bytes:
     if entry.file_size > most:
         raise SspError(f"{name} is too large: {entry.file_size} bytes")
     return archive.read(entry)
+
+
+def _parsed(data: bytes) -> Element:
+    """Return the root of an XML file. Raises ``ParseError``, or ``SspError`` if its encoding is unknown."""
+    try:
+        return ElementTree.fromstring(data)
+    except LookupError as error:
+        raise SspError(f"cannot be read: {error}") from None
 
 
 def _unused(path: str, used: set[str]) -> str:

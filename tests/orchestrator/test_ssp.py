@@ -96,6 +96,7 @@ def test_what_is_exported_comes_back_with_its_end(tmp_path: Path, capsys: pytest
         (("resources/plant.fmu", "http://elsewhere/plant.fmu"), "plant: http://elsewhere/plant.fmu is no FMU in this"),
         (('endConnector="Steer"', 'endConnector="Stear"'), "plant has no input 'Stear'; did you mean plant.Steer?"),
         (("<ssd:System ", "<ssd:System"), "cannot be read"),
+        (("UTF-8", "U1F-8"), "cannot be read: unknown encoding"),
         (('endElement="brain" endConnector="course"', 'endElement="brian" endConnector="course"'), "no element brian"),
         (('endConnector="course"', 'endConnector="cours"'), "brain.cours is connected, but there is no such connector"),
         (

@@ -78,10 +78,10 @@ typedef struct {
 
 /* Too large for a stack: a model may have a map of its surroundings. It is allocated only, see fmu_new. */
 typedef struct {
+    FmuHost host; /* first: a message takes the address of the instance as it is */
     FmuSaved saved;
     FmuList got[FMU_KINDS];
     FmuList given[FMU_KINDS]; /* inputs alone: parameters have limits */
-    FmuHost host;
 } FmuInstance;
 
 typedef enum { FMU_FIXED, FMU_TUNABLE, FMU_INPUT, FMU_CALCULATED } FmuRole;

@@ -76,9 +76,12 @@ function numbersOf(row, situation, table) {
   return found;
 }
 
+// Whether there is anything to touch: orchestrator/verdict/contact.py.
+const hasScene = (situation) => situation.data.polygons.length + situation.kerbs.length > 0 || situation.rows("scene.boxes", BOX).some((box) => box.length > 0);
+
 // Each requirement that is asked of the run, and how it stands against it.
 function checksOf(row, numbers, situation) {
-  const has = { target: Boolean(situation.target), slot: Boolean(situation.slot), kerb: kerbsAtSlot(situation).length > 0, polygons: situation.data.polygons.length > 0, scene: true };
+  const has = { target: Boolean(situation.target), slot: Boolean(situation.slot), kerb: kerbsAtSlot(situation).length > 0, polygons: situation.data.polygons.length > 0, scene: hasScene(situation) };
   return situation.data.limits.filter((limit) => !limit.where || has[limit.where]).map((limit) => {
     const value = limit.number ? numbers[limit.signal] : limit.measure < 0 ? NaN : row[HEAD + limit.measure];
     const never = limit.first >= 0 && Number.isNaN(row[HEAD + limit.first]);

@@ -4,9 +4,13 @@ import math
 from typing import NamedTuple
 
 from controller_fmu.common.arc_line_arc import arc_line_arc
+from controller_fmu.common.slot_clearance import SlotBounds
 from controller_fmu.hsic.params import HsicSlot
 from modelkit.car import Car
 from modelkit.vocabulary import Pose
+
+FAR_SIDE = 1e3
+"""y [m] of the road's other side: not regarded."""
 
 
 class KeyPoints(NamedTuple):
@@ -21,6 +25,12 @@ class KeyPoints(NamedTuple):
     """Smallest x [m] of the rear axle in the slot."""
     foremost: float = 0.0
     """Largest x [m] of the rear axle in the slot."""
+
+
+def slot_bounds(slot: HsicSlot, car: Car) -> SlotBounds:
+    """Return the lines of the slot; the other side of the road is not known."""
+    rear = -car.rear_overhang - slot.rear_gap
+    return SlotBounds(True, rear + slot.slot_length, rear, 0.5 * slot.slot_width, FAR_SIDE)
 
 
 def ready_point(slot: HsicSlot, car: Car, radius: float) -> Pose:

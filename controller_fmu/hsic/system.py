@@ -5,11 +5,12 @@ from typing import NamedTuple
 
 from controller_fmu.common.monitor import MonitorState, is_usable_input, reason_to_fail, watch
 from controller_fmu.common.phases import is_over
+from controller_fmu.common.slot_clearance import is_pose_clear, outline_of
 from controller_fmu.common.slot_frame import SlotFrame, frame_at, to_slot
 from controller_fmu.common.steering_wheel import steering_wheel_angle
 from controller_fmu.hsic.characteristic_states import Errors, HsicStage, errors, recognise
 from controller_fmu.hsic.control import Situation, curvature, speed
-from controller_fmu.hsic.key_points import key_points, ready_point
+from controller_fmu.hsic.key_points import key_points, ready_point, slot_bounds
 from controller_fmu.hsic.params import HsicSystemParams
 from controller_fmu.hsic.phases import HsicPhase, expected_in
 from controller_fmu.hsic.rules import RULES, SpeedMode
@@ -80,16 +81,18 @@ def hsic_sample(state: HsicState, inputs: ParkingInput, params: HsicSystemParams
 
 
 def _planned(inputs: ParkingInput, params: HsicSystemParams) -> HsicState:
-    """Return the system on its way to the ready point, or failed where there are no key points."""
+    """Return the system on its way to the ready point, or failed: no key points, or the car touches a neighbour."""
     slot = params.hsic.slot
     car = params.car
     radius = slot.radius_reserve * car.wheelbase / math.tan(car.steering.angle_limit / car.steering.ratio)
     frame = frame_at(params.target, inputs.odometry)
     p1 = ready_point(slot, car, radius)
     points = key_points(p1, slot, car, radius)
+    clear = is_pose_clear(to_slot(inputs.odometry, frame), outline_of(car), slot_bounds(slot, car))
+    possible = points.found and clear
     return HsicState(
-        phase=HsicPhase.PRE_STEER if points.found else HsicPhase.FAILED,
-        reason=Reason.NONE if points.found else Reason.NO_PATH,
+        phase=HsicPhase.PRE_STEER if possible else HsicPhase.FAILED,
+        reason=Reason.NONE if possible else Reason.NO_PATH,
         frame=frame,
         course=Course(HsicStage.READY, points, p1, way=way_to(p1, to_slot(inputs.odometry, frame))),
     )

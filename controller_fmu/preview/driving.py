@@ -6,11 +6,14 @@ from controller_fmu.common.monitor import is_usable_input
 from controller_fmu.common.phases import is_over
 from controller_fmu.common.steering_wheel import wheel_request
 from controller_fmu.interface import Reason, SystemInput
-from controller_fmu.preview.params import PreviewSystemParams
+from controller_fmu.preview.params import Camera, PreviewSystemParams
 from controller_fmu.preview.phases import PreviewPhase
 from controller_fmu.preview.road import road_at
 from controller_fmu.preview.signals import PreviewOutput
 from controller_fmu.preview.system import PreviewState, preview_step
+
+LONGEST_WAY = 0.022
+"""Way between two samples [m] beyond which the loop of equation (2) leaves its road: 2 ms at 11 m/s."""
 
 
 class DrivingState(NamedTuple):
@@ -37,6 +40,9 @@ def driving_sample(state: DrivingState, inputs: SystemInput, params: PreviewSyst
         return DrivingState(PreviewPhase.FAILED, Reason.BAD_INPUT, state.preview)
     if inputs.driver_takeover:
         return DrivingState(PreviewPhase.TAKEOVER, Reason.NONE, state.preview)
+    way = params.preview.set_speed * dt_ns * 1e-9
+    if state.phase == PreviewPhase.STANDBY and params.preview.camera == Camera.KINEMATICS and way > LONGEST_WAY:
+        return DrivingState(PreviewPhase.FAILED, Reason.BAD_PARAMETER, state.preview)
     if state.phase == PreviewPhase.STRAIGHTEN:
         still = abs(inputs.measured_speed) <= params.threshold.standstill
         return DrivingState(PreviewPhase.PARKED if still else PreviewPhase.STRAIGHTEN, Reason.NONE, state.preview)

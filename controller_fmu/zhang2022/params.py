@@ -31,6 +31,18 @@ class QuinticParams(NamedTuple):
     )
 
 
+class SlotParams(NamedTuple):
+    """The slot of Fig. 2: the planner keeps the car out of both neighbours."""
+
+    length: Annotated[
+        float, Signal("m", "l_c, from neighbour to neighbour; 0: unknown, not regarded", 0.0, 30.0, HOUSE)
+    ] = 0.0
+    width: Annotated[float, Signal("m", "l_k, from kerb to the neighbours' side", 0.1, 10.0, HOUSE)] = 2.2
+    aisle: Annotated[float, Signal("m", "l_w, width of the aisle beside the slot", 0.1, 100.0, HOUSE)] = 7.0
+    rear_gap: Annotated[float, Signal("m", "gap to the slot's rear end when parked", 0.0, 10.0, HOUSE)] = 0.4
+    margin: Annotated[float, Signal("m", "gap the planned path keeps to both neighbours", 0.0, 1.0, HOUSE)] = 0.11
+
+
 class MpcParams(NamedTuple):
     """Horizon, weights, limits and solver of the steering MPC."""
 
@@ -71,6 +83,7 @@ class ZhangParams(NamedTuple):
         float, Signal("m", "distance to the target at which the brake holds", 1e-4, 0.5, HOUSE), Role.TUNABLE
     ] = 0.01
     quintic: QuinticParams = QuinticParams()
+    slot: SlotParams = SlotParams()
     mpc: Annotated[MpcParams, Role.TUNABLE] = MpcParams()
     pid: Annotated[PidParams, Role.TUNABLE] = PidParams()
 

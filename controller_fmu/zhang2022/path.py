@@ -26,6 +26,8 @@ class PathStatus(IntEnum):
     """The start is not ahead of and beside the target, or turned too far."""
     CURVATURE_LIMIT = 3
     """No radius keeps the quintics' curvature under the car's."""
+    SLOT_BLOCKED = 4
+    """Paths within the curvature limit touch a neighbour."""
 
 
 EMPTY = ArcLineArc(0.0, 0.0, 1.0)
@@ -111,7 +113,19 @@ def through(start: Pose, arcs: ArcLineArc) -> QuinticPath:
     length = max(1e-9, x2 - x)
     line = Quintic(x, length, y, slope * length, 0.0, 0.0, 0.0)
     last = quintic(0.0, 0.0, 0.0, x, y, slope)
-    return QuinticPath(PathStatus.FOUND, start, arcs, max(_peak(last), _peak(first)), first, line, last)
+    return QuinticPath(
+        PathStatus.FOUND, start, arcs, max(largest_curvature(last), largest_curvature(first)), first, line, last
+    )
+
+
+def joined_at(start: Pose, x: float, y: float, slope: float) -> QuinticPath:
+    """Return two quintics that meet at (``x``, ``y``) with ``slope`` and without curvature; no line between."""
+    first = quintic(x, y, slope, start.x, start.y, math.tan(start.heading))
+    line = Quintic(x, 1e-9, y, slope * 1e-9, 0.0, 0.0, 0.0)
+    last = quintic(0.0, 0.0, 0.0, x, y, slope)
+    return QuinticPath(
+        PathStatus.FOUND, start, EMPTY, max(largest_curvature(last), largest_curvature(first)), first, line, last
+    )
 
 
 def at(path: QuinticPath, x: float) -> Derivatives:
@@ -143,7 +157,8 @@ def nearest(path: QuinticPath, pose: Pose) -> Reference:
     return Reference(Pose(x, point.y, heading), point.curvature, lateral, pose.heading - heading)
 
 
-def _peak(piece: Quintic) -> float:
+def largest_curvature(piece: Quintic) -> float:
+    """Return the largest curvature of a quintic [1/m], of ``SAMPLES`` places along it."""
     largest = 0.0
     for sample in range(SAMPLES + 1):
         largest = max(largest, abs(shape(piece, piece.x0 + piece.length * sample / SAMPLES).curvature))

@@ -5,14 +5,17 @@ from typing import NamedTuple
 
 from controller_fmu.common.monitor import MonitorState, is_usable_input, reason_to_fail, watch
 from controller_fmu.common.phases import is_over
+from controller_fmu.common.slot_clearance import outline_of
 from controller_fmu.common.slot_frame import SlotFrame, frame_at, to_slot
 from controller_fmu.common.steering_wheel import steering_wheel_angle
 from controller_fmu.interface import ParkingInput, Reason
 from controller_fmu.zhang2022.mpc import FrontAxle, FrontWheels, steer, turned
 from controller_fmu.zhang2022.params import ZhangSystemParams
-from controller_fmu.zhang2022.path import PathStatus, QuinticPath, Reference, nearest, plan
+from controller_fmu.zhang2022.path import PathStatus, QuinticPath, Reference, nearest
 from controller_fmu.zhang2022.phases import ZhangPhase, expected_in
 from controller_fmu.zhang2022.pid import PidState, pid
+from controller_fmu.zhang2022.planner import plan_in_slot
+from controller_fmu.zhang2022.slot import slot_bounds
 from modelkit.maths import move_towards
 from modelkit.vocabulary import Pose
 
@@ -85,7 +88,8 @@ def _planned(inputs: ParkingInput, params: ZhangSystemParams) -> ZhangState:
     start = to_slot(inputs.odometry, frame)
     quintic = params.zhang2022.quintic
     limit = quintic.curvature_share * math.tan(car.angle_limit) / car.wheelbase
-    path = plan(start, quintic.radius, limit)
+    slot = slot_bounds(params.zhang2022.slot, params.car)
+    path = plan_in_slot(start, quintic.radius, limit, outline_of(params.car), slot)
     angle = frame.mirror * inputs.steering_wheel_angle / params.car.steering.ratio
     found = path.status == PathStatus.FOUND
     return ZhangState(

@@ -1,4 +1,4 @@
-"""``apa report``: the replay page of a run, one HTML file that needs nothing else."""
+"""``apa report``: the replay page of a run, one HTML file that needs nothing else; or a figure for a publication."""
 
 import argparse
 from pathlib import Path
@@ -7,7 +7,7 @@ from orchestrator.log.messages import read_messages
 from orchestrator.log.read_log import log_file, read_log
 from orchestrator.report.replay import write_replay
 from orchestrator.text.console import say
-from orchestrator.text.errors import PARKED
+from orchestrator.text.errors import PARKED, BadInput
 from orchestrator.text.owned import owned_with
 from orchestrator.verdict.logged import logged
 from orchestrator.verdict.summary import summarize
@@ -15,6 +15,8 @@ from orchestrator.verdict.summary import summarize
 EXAMPLES = """examples:
   apa report runs/guo2015-case4                           writes runs/guo2015-case4/report.html
   apa report run.mcap --out /tmp/page.html
+  apa report runs/guo2015-case4 --figure case4.pdf --width 8.4cm --panels path,steering
+  apa report runs/a runs/b --figure both.svg              both runs overlaid, with a legend
 
 The page plays the run in any browser, offline: top view, curves, states, checks, parameters.
 """
@@ -22,13 +24,34 @@ The page plays the run in any browser, offline: top view, curves, states, checks
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add what the command takes."""
-    parser.add_argument("log", type=log_file, metavar="RUN.mcap", help="log of a run, or its folder")
+    parser.add_argument(
+        "log", type=log_file, nargs="+", metavar="RUN.mcap", help="log of a run, or its folder; several with --figure"
+    )
     parser.add_argument("--out", type=Path, metavar="FILE", help="the page (default: report.html beside the log)")
+    figure = parser.add_argument_group("figure for a publication")
+    figure.add_argument(
+        "--figure", type=Path, metavar="FILE", help="write a figure (.pdf, .svg, .png) instead of the page"
+    )
+    figure.add_argument(
+        "--panels",
+        default="path,speed,steering,heading",
+        metavar="A,B",
+        help="panels or signals (default: %(default)s)",
+    )
+    figure.add_argument("--width", default="17cm", metavar="LENGTH", help="of the figure (default: 17cm)")
+    figure.add_argument("--dpi", type=int, default=300, help="of a PNG (default: 300)")
+    figure.add_argument("--style", default="paper", choices=("paper", "screen"), help="screen: with a grid")
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Write the page. Returns 0."""
-    log: Path = arguments.log
+    """Write the page or the figure. Returns 0. Raises ``BadInput`` for several runs without ``--figure``."""
+    if arguments.figure is not None:
+        return _write_figure(arguments)
+    if len(arguments.log) > 1:
+        raise BadInput(
+            "a page is of one run; several runs are overlaid with --figure FILE, or compared with apa compare"
+        )
+    log: Path = arguments.log[0]
     out: Path = arguments.out or log.parent / "report.html"
     with owned_with(log, out):
         recording = read_log(log)
@@ -37,4 +60,17 @@ def run(arguments: argparse.Namespace) -> int:
             say(note)
         write_replay(out, recording, summarize(recording, scenario, 0.0, note), read_messages(log))
     print(out)
+    return PARKED
+
+
+def _write_figure(arguments: argparse.Namespace) -> int:
+    from orchestrator.drawing.run_figure import check_figure, run_figure, save_figure, width_in_cm
+
+    check_figure(arguments.figure)
+    if not 10 <= arguments.dpi <= 2400:
+        raise BadInput(f"--dpi {arguments.dpi}: expected 10 to 2400")
+    runs = [(log.stem if log.stem != "run" else log.parent.name, read_log(log)) for log in arguments.log]
+    figure = run_figure(runs, arguments.panels.split(","), width_in_cm(arguments.width), arguments.style)
+    save_figure(figure, arguments.figure, arguments.dpi, arguments.style)
+    print(arguments.figure)
     return PARKED

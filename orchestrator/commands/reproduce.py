@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 EXAMPLES = """examples:
   apa reproduce guo2015                 the five cases at both steering rates, beside the paper
   apa reproduce all --json > all.json   every paper, for machines
+  apa reproduce hsic --latex > hsic.tex the rows as a table for an article (also --csv, --bibtex)
+  apa reproduce hsic --figures figures  the paper's figures as PNG, SVG, PDF and CSV
 
 exit codes: 0 every stated check holds, 1 one does not, 2 bad input
 """
@@ -34,14 +36,29 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="kind of FMU (default: native where it can be built); none drives the models in process",
     )
     parser.add_argument("--out", type=Path, metavar="DIR", help="where pictures go (default: runs/reproduce/PAPER)")
-    parser.add_argument("--json", action="store_true", help="print JSON instead of the table")
+    kinds = parser.add_mutually_exclusive_group()
+    kinds.add_argument("--json", action="store_true", help="print JSON instead of the table")
+    kinds.add_argument("--csv", action="store_true", help="print the rows as CSV instead")
+    kinds.add_argument("--latex", action="store_true", help="print LaTeX tables (booktabs) instead")
+    kinds.add_argument("--bibtex", action="store_true", help="print BibTeX entries of the papers; nothing is driven")
+    parser.add_argument(
+        "--figures",
+        type=Path,
+        metavar="DIR",
+        help="write each figure as PNG, SVG and PDF with its data as CSV and the command, and figures.json",
+    )
+    parser.add_argument("--dpi", type=int, default=150, help="of the PNGs of --figures (default: 150)")
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Reproduce, write pictures and result.json, print. Returns 0 if every check holds, else 1."""
+    from orchestrator.papers.figure_files import write_figures
     from orchestrator.papers.table import print_reproduction
+    from orchestrator.papers.table_files import csv_text, latex_text, summary_lines
 
     names = papers() if arguments.paper == "all" else [arguments.paper]
+    if arguments.bibtex:
+        return _print_bibtex(names)
     functions = [(name, paper(name)) for name in names]
     drive = _driver(arguments.fmus)
     results = []
@@ -54,11 +71,26 @@ def run(arguments: argparse.Namespace) -> int:
             text = json.dumps(result.as_json(), indent=2)
             write_whole(out / "result.json", text + "\n")
         results.append(result)
-        if not arguments.json:
+        if arguments.figures is not None:
+            write_figures(name, drive, arguments.figures, arguments.dpi)
+        if not (arguments.json or arguments.csv or arguments.latex):
             print_reproduction(result, out)
-    if arguments.json:
+    if arguments.csv or arguments.latex:
+        print((csv_text if arguments.csv else latex_text)(results), end="")
+    elif arguments.json:
         print(json.dumps([result.as_json() for result in results], indent=2))
+    elif len(results) > 1:
+        print("\n".join(summary_lines(results)))
     return PARKED if all(result.passed for result in results) else NOT_PARKED
+
+
+def _print_bibtex(names: list[str]) -> int:
+    from orchestrator.papers.table_files import BIBTEX
+
+    for name in names:
+        paper(name)
+    print("\n".join(BIBTEX[name] for name in names if name in BIBTEX), end="")
+    return PARKED
 
 
 def _driver(kind: str) -> "Drive":

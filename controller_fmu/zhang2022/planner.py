@@ -1,0 +1,71 @@
+"""The planner with the slot: several attempts, each checked for curvature and for the neighbours, or a refusal.
+
+First the paper's way: quintics through the ends of arc, line, arc of equal radii (``path.plan``). Where that path is
+too tight or touches a neighbour, the point at which the two quintics meet is searched on a grid: its place between
+start and target and the heading there. Of the paths that keep both limits the one of least curvature is taken.
+"""
+
+import math
+
+from controller_fmu.common.slot_clearance import Outline, SlotBounds, is_pose_clear
+from controller_fmu.zhang2022.path import (
+    EMPTY,
+    PathStatus,
+    QuinticPath,
+    joined_at,
+    largest_curvature,
+    plan,
+)
+from controller_fmu.zhang2022.quintic import quintic
+from controller_fmu.zhang2022.slot import is_path_clear
+from modelkit.vocabulary import Pose
+
+PLACES = 13
+"""Meeting points tried in each direction."""
+HEADINGS = 13
+"""Headings tried at each."""
+NEAREST, FARTHEST = 0.2, 0.7
+"""Meeting points tried, as shares of the way from the target to the start, along and across."""
+FLATTEST, STEEPEST_SHARE = 1.0, 2.4
+"""Headings tried, as multiples of the angle at which the target sees the start."""
+
+
+def plan_in_slot(start: Pose, radius: float, curvature_limit: float, car: Outline, slot: SlotBounds) -> QuinticPath:
+    """Return the path from ``start`` (slot frame) to the origin clear of the neighbours, or why there is none."""
+    path = plan(start, radius, curvature_limit)
+    if not slot.known or path.status == PathStatus.BAD_START:
+        return path
+    if path.status == PathStatus.FOUND and is_path_clear(path, car, slot):
+        return path
+    if not is_pose_clear(start, car, slot) or not is_pose_clear(Pose(), car, slot):
+        return QuinticPath(PathStatus.SLOT_BLOCKED, start, EMPTY, path.largest_curvature)
+    found = _search(start, curvature_limit, car, slot)
+    if found.status == PathStatus.FOUND:
+        return found
+    blocked = path.status == PathStatus.FOUND or found.status == PathStatus.SLOT_BLOCKED
+    status = PathStatus.SLOT_BLOCKED if blocked else PathStatus.CURVATURE_LIMIT
+    return QuinticPath(status, start, EMPTY, path.largest_curvature)
+
+
+def _search(start: Pose, curvature_limit: float, car: Outline, slot: SlotBounds) -> QuinticPath:
+    """Return the clear path of least curvature over the grid; else whether any kept the curvature limit."""
+    seen = math.atan2(start.y, start.x)
+    best = QuinticPath(PathStatus.CURVATURE_LIMIT, start, EMPTY, curvature_limit)
+    blocked = False
+    for along in range(PLACES):
+        x = start.x * (NEAREST + (FARTHEST - NEAREST) * along / (PLACES - 1.0))
+        for across in range(PLACES):
+            y = start.y * (NEAREST + (FARTHEST - NEAREST) * across / (PLACES - 1.0))
+            for number in range(HEADINGS):
+                heading = seen * (FLATTEST + (STEEPEST_SHARE - FLATTEST) * number / (HEADINGS - 1.0))
+                slope = math.tan(heading)
+                if largest_curvature(quintic(0.0, 0.0, 0.0, x, y, slope)) <= best.largest_curvature:
+                    path = joined_at(start, x, y, slope)
+                    if path.largest_curvature <= best.largest_curvature:
+                        if is_path_clear(path, car, slot):
+                            best = path
+                        else:
+                            blocked = True
+    if best.status != PathStatus.FOUND and blocked:
+        return best._replace(status=PathStatus.SLOT_BLOCKED)
+    return best

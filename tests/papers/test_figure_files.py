@@ -1,0 +1,68 @@
+"""Figures and tables of the papers as files: formats, data, reasons, totals."""
+
+import csv
+import json
+from pathlib import Path
+
+import pytest
+
+from orchestrator.cli import main
+from orchestrator.papers.drive import drive
+from orchestrator.papers.figure_files import gallery_text, write_figures
+from orchestrator.papers.paper_figures import FIGURES
+from orchestrator.papers.papers import papers
+from orchestrator.papers.result import CONCLUSION, Reproduction, Row, not_tested
+from orchestrator.papers.table_files import BIBTEX, csv_text, latex_text, summary_lines, total
+
+ROWS = [
+    Row("run_1", "depth", "m", 1.0, 1.5, 0.1, basis=CONCLUSION, differs="50 % & more"),
+    Row("run_1", "width", "m", 1.0, 1.0, 0.1, basis=CONCLUSION),
+    not_tested("colour", "not printed"),
+    Row("run_1", "time", "s", None, 3.0),
+]
+RESULTS = [Reproduction("one", "One", ROWS, [], []), Reproduction("two", "Two", ROWS[:2], [], [])]
+
+
+def test_every_figure_has_a_counterpart_or_a_reason() -> None:
+    assert {item.paper for item in FIGURES} == set(papers()) == set(BIBTEX)
+    counts = {paper: sum(item.paper == paper and item.number != "States" for item in FIGURES) for paper in papers()}
+    assert counts == {"apa": 5, "guo2015": 13, "hsic": 13, "preview": 12, "zhang2022": 8}
+    assert all(len(item.note) > 10 for item in FIGURES if item.draw is None)
+    assert len({item.name for item in FIGURES}) == len(FIGURES)
+
+
+def test_figures_of_a_paper_are_written_with_data_and_commands(tmp_path: Path) -> None:
+    write_figures("zhang2022", drive, tmp_path, dpi=40)
+    for entry in json.loads((tmp_path / "zhang2022-figures.json").read_text(encoding="utf-8")):
+        assert bool(entry["files"]) == bool(entry["command"])
+        for name in entry["files"]:
+            assert (tmp_path / name).stat().st_size > 500
+    assert (tmp_path / "zhang2022-fig7.pdf").read_bytes().startswith(b"%PDF")
+    with (tmp_path / "zhang2022-fig7.csv").open(encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    assert {row["line"] for row in rows} == {"car", "reference"}
+    assert min(float(row["y"]) for row in rows if row["line"] == "reference") == pytest.approx(-1.0)
+
+
+def test_the_gallery_page_lists_every_figure_and_has_its_picture() -> None:
+    docs = Path(__file__).parents[2] / "docs"
+    page = (docs / "figures.md").read_text(encoding="utf-8")
+    for item in FIGURES:
+        assert gallery_text([item], "images/papers/").strip() in page, item.name
+        assert item.draw is None or (docs / "images" / "papers" / f"{item.name}.png").exists()
+
+
+def test_rows_as_csv_and_latex_and_their_total() -> None:
+    rows = list(csv.DictReader(csv_text(RESULTS).splitlines()))
+    assert [row["verdict"] for row in rows[:4]] == ["differs", "agrees", "not testable", ""]
+    assert rows[0]["difference"] == "0.5"
+    text = latex_text(RESULTS)
+    assert text.count(r"\toprule") == text.count(r"\bottomrule") == 3
+    assert r"run\_1 & depth & 1 m & 1.5 m & differs \\" in text
+    assert total(RESULTS) == (2, 2, 1)
+    assert summary_lines(RESULTS)[-1].split() == ["total", "2", "2", "1"]
+
+
+def test_bibtex_needs_no_run(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["reproduce", "guo2015", "--bibtex"]) == 0
+    assert capsys.readouterr().out.startswith("@article{guo2015,")

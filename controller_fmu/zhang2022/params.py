@@ -31,7 +31,7 @@ class QuinticParams(NamedTuple):
     )
 
 
-class SlotParams(NamedTuple):
+class ZhangSlot(NamedTuple):
     """The slot of Fig. 2: the planner keeps the car out of both neighbours."""
 
     length: Annotated[
@@ -83,7 +83,7 @@ class ZhangParams(NamedTuple):
         float, Signal("m", "distance to the target at which the brake holds", 1e-4, 0.5, HOUSE), Role.TUNABLE
     ] = 0.01
     quintic: QuinticParams = QuinticParams()
-    slot: SlotParams = SlotParams()
+    slot: ZhangSlot = ZhangSlot()
     mpc: Annotated[MpcParams, Role.TUNABLE] = MpcParams()
     pid: Annotated[PidParams, Role.TUNABLE] = PidParams()
 

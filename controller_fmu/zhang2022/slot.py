@@ -3,7 +3,7 @@
 import math
 
 from controller_fmu.common.slot_clearance import Outline, SlotBounds, is_pose_clear
-from controller_fmu.zhang2022.params import SlotParams
+from controller_fmu.zhang2022.params import ZhangSlot
 from controller_fmu.zhang2022.path import QuinticPath, at
 from modelkit.car import Car
 from modelkit.vocabulary import Pose
@@ -12,7 +12,7 @@ SAMPLES = 80
 """Poses looked at along a path."""
 
 
-def slot_bounds(slot: SlotParams, car: Car) -> SlotBounds:
+def slot_bounds(slot: ZhangSlot, car: Car) -> SlotBounds:
     """Return the slot's lines, ``margin`` nearer to the path; the parked car stands ``rear_gap`` ahead of one."""
     rear = -car.rear_overhang - slot.rear_gap
     opening = 0.5 * slot.width

@@ -41,7 +41,7 @@ class Series(NamedTuple):
     reference: bool = False
 
 
-class Panel(NamedTuple):
+class FigurePanel(NamedTuple):
     """A panel over time."""
 
     label: str
@@ -50,15 +50,15 @@ class Panel(NamedTuple):
 
 DEGREES = 180.0 / np.pi
 PANELS = {
-    "speed": Panel("speed [m/s]", (Series("vehicle.speed"), Series("controller.speed_request", 1.0, True))),
-    "steering": Panel("steering wheel [deg]", (Series("vehicle.steering_wheel_angle", DEGREES),)),
-    "heading": Panel(
+    "speed": FigurePanel("speed [m/s]", (Series("vehicle.speed"), Series("controller.speed_request", 1.0, True))),
+    "steering": FigurePanel("steering wheel [deg]", (Series("vehicle.steering_wheel_angle", DEGREES),)),
+    "heading": FigurePanel(
         "heading [rad]", (Series("vehicle.pose.heading"), Series("controller.reference.heading", 1.0, True))
     ),
-    "x": Panel("x [m]", (Series("vehicle.pose.x"), Series("controller.reference.x", 1.0, True))),
-    "y": Panel("y [m]", (Series("vehicle.pose.y"), Series("controller.reference.y", 1.0, True))),
-    "lateral": Panel("lateral error [m]", (Series("controller.lateral_error"),)),
-    "clearance": Panel("clearance [m]", (Series("vehicle.clearance"),)),
+    "x": FigurePanel("x [m]", (Series("vehicle.pose.x"), Series("controller.reference.x", 1.0, True))),
+    "y": FigurePanel("y [m]", (Series("vehicle.pose.y"), Series("controller.reference.y", 1.0, True))),
+    "lateral": FigurePanel("lateral error [m]", (Series("controller.lateral_error"),)),
+    "clearance": FigurePanel("clearance [m]", (Series("vehicle.clearance"),)),
 }
 """Panels over time by name; ``path`` is the top view."""
 PATH = "path"
@@ -140,7 +140,7 @@ def _draw_panel(axis: Any, panel: str, runs: Sequence[tuple[str, Recording]]) ->
         if panel == PATH:
             _draw_path(axis, recording, label, how, number == 0)
             continue
-        shown = PANELS.get(panel, Panel(panel, (Series(panel),)))
+        shown = PANELS.get(panel, FigurePanel(panel, (Series(panel),)))
         for series in shown.series:
             values = recording.signals.get(series.signal)
             if values is None or (series.reference and not np.any(values)):

@@ -5,7 +5,7 @@ import math
 import pytest
 
 from controller_fmu.common.slot_clearance import is_pose_clear, outline_of
-from controller_fmu.zhang2022.params import SlotParams
+from controller_fmu.zhang2022.params import ZhangSlot
 from controller_fmu.zhang2022.path import PathStatus, at, plan
 from controller_fmu.zhang2022.planner import plan_in_slot
 from controller_fmu.zhang2022.slot import is_path_clear, slot_bounds
@@ -14,7 +14,7 @@ from modelkit.vocabulary import Pose
 
 CAR = Car(wheelbase=2.62, front_overhang=0.966, rear_overhang=0.85, width=1.82)
 OUTLINE = outline_of(CAR)
-SLOT = slot_bounds(SlotParams(length=7.7, width=2.2, rear_gap=0.4), CAR)
+SLOT = slot_bounds(ZhangSlot(length=7.7, width=2.2, rear_gap=0.4), CAR)
 LIMIT = 0.95 * math.tan(math.radians(560.0) / 17.0) / 2.62
 
 
@@ -48,10 +48,10 @@ def test_a_start_whose_first_path_hits_a_neighbour_gets_another_path() -> None:
 
 def test_a_start_against_a_neighbour_and_a_slot_too_short_are_refused_with_the_reason() -> None:
     assert plan_in_slot(Pose(9.0, 1.9, 0.0), 5.0, LIMIT, OUTLINE, SLOT).status == PathStatus.SLOT_BLOCKED
-    short = slot_bounds(SlotParams(length=5.2, width=2.2, rear_gap=0.4), CAR)
+    short = slot_bounds(ZhangSlot(length=5.2, width=2.2, rear_gap=0.4), CAR)
     assert plan_in_slot(Pose(9.0, 2.8, 0.0), 5.0, LIMIT, OUTLINE, short).status == PathStatus.SLOT_BLOCKED
 
 
 def test_a_slot_of_no_length_is_not_regarded() -> None:
-    unknown = slot_bounds(SlotParams(), CAR)
+    unknown = slot_bounds(ZhangSlot(), CAR)
     assert plan_in_slot(Pose(9.5, 2.65, 0.0), 5.0, LIMIT, OUTLINE, unknown) == plan(Pose(9.5, 2.65, 0.0), 5.0, LIMIT)

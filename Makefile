@@ -42,8 +42,8 @@ sbom: $(VENV)/.run ## Write the bills of materials (CycloneDX) of the wheel and 
 	$(BIN)/python -m fmus.sbom build/wheel/*.whl $$(find build/fmus -name '*.fmu') --out build/sbom
 
 FUZZ_SECONDS ?= 600
-fuzz: $(VENV)/.test ## Attack inputs, tables, systems, logs, kills and FMI calls, ten minutes each, with new seeds
-	for kind in inputs tables ssp logs kills calls; do $(BIN)/python -m tests.fuzz $$kind --seconds $(FUZZ_SECONDS) || exit 1; done
+fuzz: $(VENV)/.test ## Attack inputs, tables, systems, logs, kills, FMI calls and the planner, ten minutes each, with new seeds
+	for kind in inputs tables ssp logs kills calls planner; do $(BIN)/python -m tests.fuzz $$kind --seconds $(FUZZ_SECONDS) || exit 1; done
 
 mutants: $(VENV)/.test ## Make mistakes in the laws of all papers and say which nobody finds, an hour on one core
 	$(BIN)/python -m tests.mutants --fixed

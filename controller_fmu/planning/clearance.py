@@ -2,7 +2,8 @@
 
 Edges are listed by square cells of the window: each cell has those that a car whose centre lies in it could
 come within ``SIGHT`` of. A sweep goes on by what the clearance at hand allows: no point of the outline moves
-farther than ``fastest`` times the way.
+farther than ``fastest`` times the way. Between two poses at least at the margin the outline keeps half of it, as no
+step is longer than the margin over ``fastest``.
 """
 
 import math
@@ -14,7 +15,7 @@ from modelkit.vocabulary import Pose
 SIGHT = 1.0
 """Clearances [m] above this read as this."""
 LEAST_STEP = 0.01
-"""Steps [m] of a sweep that runs alongside an edge at the margin."""
+"""Steps [m] of a sweep that runs alongside an edge at the margin; shorter where the margin is small."""
 
 
 def clearance(store: PlanStore, pose: Pose, task: Task) -> float:
@@ -79,11 +80,12 @@ def edge_gap(ax: float, ay: float, bx: float, by: float, car: PlannedCar, best: 
 def free_way(store: PlanStore, pose: Pose, direction: float, curvature: float, longest: float, task: Task) -> float:
     """Return how far [m] the car can drive along an arc before its clearance falls under the margin."""
     rate = fastest(task.car, curvature)
+    least = LEAST_STEP if LEAST_STEP * rate < task.margin else task.margin / rate
     way = 0.0
     gap = clearance(store, pose, task) - task.margin
     while way < longest:
         sure = gap / rate if gap > 0.0 else 0.0
-        step = sure if sure > LEAST_STEP else LEAST_STEP
+        step = sure if sure > least else least
         after = way + step if way + step < longest else longest
         gap_after = clearance(store, drive(pose, direction * after, curvature), task) - task.margin
         if gap_after < 0.0:

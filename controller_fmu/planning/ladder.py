@@ -26,8 +26,11 @@ LADDER = (
     Rung(False, True, 0.2, 0.15, 3.0 * DEG, 4.0, 3.0, 0.0, 5000),
     Rung(True, False, 0.2, 0.3, 6.0 * DEG, 4.0, 3.0, 3.0, 2000),
 )
-LEAST_ROOM = 0.001
+ROOM_RESERVE = 0.001
 """The margin is so much [m] less than the clearance at start and goal."""
+MIN_MARGIN = 0.002
+"""Least margin [m] of a search. A sweep finds contact only where it keeps a margin above the rounding of the tree's
+poses (single precision: under 0.1 mm), and its steps shrink with the margin."""
 AROUND = 15.0
 """The window reaches so far [m] beyond start and goal."""
 NEAR_CELL = 2.0
@@ -53,8 +56,9 @@ def task_of(store: PlanStore, request: Request) -> Task:
     start = Pose(request.start.x - request.goal.x, request.start.y - request.goal.y, request.start.heading)
     goal = Pose(0.0, 0.0, request.goal.heading)
     wished = request.margin * rung.share
-    room = store.measure[ROOM] - LEAST_ROOM
+    room = store.measure[ROOM] - ROOM_RESERVE
     margin = wished if wished < room else room
+    margin = margin if margin > MIN_MARGIN else MIN_MARGIN
     from_goal = rung.tighter == (store.mark[GOAL_TIGHTER] == 1)
     root = goal if from_goal else start
     target = start if from_goal else goal

@@ -7,7 +7,7 @@ request or of later steps, all is done anew from the first step.
 from typing import NamedTuple
 
 from controller_fmu.planning.clearance import clearance
-from controller_fmu.planning.ladder import LADDER, task_of, window_of
+from controller_fmu.planning.ladder import LADDER, MIN_MARGIN, ROOM_RESERVE, task_of, window_of
 from controller_fmu.planning.plan_store import (
     COUNT,
     EDGE_COUNT,
@@ -29,6 +29,7 @@ from controller_fmu.planning.plan_store import (
     put_kept,
     put_mark,
     put_measure,
+    put_piece,
 )
 from controller_fmu.planning.rasters import FAR, block_route, list_near, measure_route, route_left
 from controller_fmu.planning.room import see_room
@@ -50,6 +51,8 @@ NO_WAY = 2
 START_BLOCKED = 3
 GOAL_BLOCKED = 4
 TOO_MANY_EDGES = 5
+NO_ROOM = 6
+"""Free at start and goal, but with less than the least margin."""
 
 PATH = 96
 MOST_CUSPS = 25
@@ -218,6 +221,8 @@ def _lay_out(store: PlanStore, request: Request) -> None:
         _over(store, START_BLOCKED)
     elif at_goal <= 0.0:
         _over(store, GOAL_BLOCKED)
+    elif store.measure[ROOM] < MIN_MARGIN + ROOM_RESERVE:
+        _over(store, NO_ROOM)
     else:
         put_mark(store, PHASE, PLANT)
 
@@ -234,7 +239,10 @@ def _plant(store: PlanStore, task: Task) -> None:
 
 
 def _keep(store: PlanStore, task: Task) -> None:
-    """Keep the path if it is the best yet."""
+    """Keep the path if it is the best yet; from a pose to itself it is one piece without a way."""
+    if store.mark[PIECE_COUNT] == 0:
+        put_piece(store, 0, task.root, 0.0, 0.0)
+        put_mark(store, PIECE_COUNT, 1)
     cost = path_cost(store, task)
     count = store.mark[PIECE_COUNT]
     kept = store.mark[KEPT_COUNT]

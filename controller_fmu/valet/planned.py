@@ -3,10 +3,14 @@
 from controller_fmu.common.told import SlotKind, is_usable_slot
 from controller_fmu.interface import Reason
 from controller_fmu.planning.plan import (
+    NO_ROOM,
     NO_WAY,
+    PATH,
     PLANNED,
     PLANNING,
     TOO_MANY_EDGES,
+    Path,
+    Piece,
     path_of,
     search_on,
     status_of,
@@ -16,6 +20,7 @@ from controller_fmu.planning.stretch import trimmed
 from controller_fmu.planning.task import Request
 from controller_fmu.sensing.around import lay_end
 from controller_fmu.sensing.gap import DEEP, Gap, GapLayout
+from controller_fmu.valet.chart import Step
 from controller_fmu.valet.found.corrected import corrected, turned_gap
 from controller_fmu.valet.found.nearby import forget_under, lay_nearby
 from controller_fmu.valet.found.way_back import WayBack, path_back
@@ -23,12 +28,18 @@ from controller_fmu.valet.given import as_parameter
 from controller_fmu.valet.params import ValetParams
 from controller_fmu.valet.sight import Sight, scene_of
 from controller_fmu.valet.signals import ValetInput
-from controller_fmu.valet.slot import body_of, goal_in, goal_of, stands_in_road
+from controller_fmu.valet.slot import body_of, goal_in, goal_of, is_in_place, stands_in_road
 from controller_fmu.valet.state import ValetState
 from modelkit.vocabulary import Pose
 
 LEAST_MARGIN = 0.03
 """A way into a slot that was found that comes nearer [m] to what was heard is not driven: odometry drifts more."""
+MIN_DRIVEN_MARGIN = 0.01
+"""A path that leaves less [m] is not driven: exact odometry and a kinematic body leave it by up to 8 mm."""
+MIN_REPLANNED_MARGIN = 0.03
+"""A path planned anew keeps the first path's margin or so much [m]: the car stops up to 2 cm off its path."""
+AT_GOAL = Path(1, 0.0, 0.0, (Piece(),) * PATH)
+"""The path of a car that stands at its goal: one piece without a way."""
 
 
 def planned_on(store: PlanStore, state: ValetState, inputs: ValetInput, params: ValetParams) -> ValetState:
@@ -52,6 +63,9 @@ def planned_on(store: PlanStore, state: ValetState, inputs: ValetInput, params: 
                 lay_end(store, gap, state.search.lines)
             lay_nearby(store, state.nearby, gap, state.search.lines + 1)
         request = Request(pose, goal, body_of(params), params.plan.margin)
+        may_stand = state.step == Step.SHOWN or not params.search.active
+        if may_stand and is_in_place(pose, goal, params):
+            return state._replace(request=request, searched=1, plans=state.plans + 1, path=AT_GOAL, sight=Sight())
     scene = scene_of(store, params, state.seen)
     count = search_on(store, scene, request, state.searched, params.plan.at_once)
     status = status_of(store)
@@ -59,14 +73,27 @@ def planned_on(store: PlanStore, state: ValetState, inputs: ValetInput, params: 
     if status == PLANNED:
         path = trimmed(path_of(store))
     reason = reason_of(status, count, state, params)
-    if status == PLANNED and params.search.active and path.margin < LEAST_MARGIN:
-        reason = Reason.BLOCKED
+    first_margin = state.first_margin
+    if status == PLANNED:
+        first_margin = path.margin if first_margin <= 0.0 else first_margin
+        if params.search.active and path.margin < LEAST_MARGIN:
+            reason = Reason.BLOCKED
+        elif path.margin < max(MIN_DRIVEN_MARGIN, min(first_margin, MIN_REPLANNED_MARGIN)):
+            reason = Reason.BLOCKED if state.seen_count > 0 else Reason.NO_PATH
     plans = state.plans + 1 if state.searched == 0 else state.plans
     if reason in (Reason.BLOCKED, Reason.NO_PATH) and state.back.used > 0:
         backs = state.backs + 1
         path = path_back(state.back)
         return state._replace(request=request, searched=count, plans=plans, path=path, back=WayBack(), backs=backs)
-    return state._replace(request=request, searched=count, plans=plans, path=path, reason=reason, sight=Sight())
+    return state._replace(
+        request=request,
+        searched=count,
+        plans=plans,
+        path=path,
+        reason=reason,
+        sight=Sight(),
+        first_margin=first_margin,
+    )
 
 
 def gap_now(store: PlanStore, state: ValetState, params: ValetParams) -> Gap:
@@ -102,4 +129,4 @@ def reason_of(status: int, count: int, state: ValetState, params: ValetParams) -
         return Reason.NO_PATH if count > params.plan.steps else Reason.NONE
     if status == TOO_MANY_EDGES:
         return Reason.BAD_PARAMETER
-    return Reason.NO_PATH if status == NO_WAY and state.seen_count == 0 else Reason.BLOCKED
+    return Reason.NO_PATH if status in (NO_WAY, NO_ROOM) and state.seen_count == 0 else Reason.BLOCKED

@@ -8,7 +8,7 @@ from controller_fmu.sensing.gap import Gap, GapLayout
 from controller_fmu.sensing.in_gap import along_of
 from controller_fmu.valet.params import GivenSlot, SlotWish, ValetParams
 from modelkit.car import car_length, largest_curvature
-from modelkit.maths import PI
+from modelkit.maths import PI, wrap_angle
 from modelkit.vocabulary import Pose
 
 LEADS_ON = 0.34
@@ -82,3 +82,19 @@ def stands_out(gap: Gap, params: ValetParams) -> float:
 def stands_in_road(gap: Gap, params: ValetParams) -> float:
     """Return how far [m] into the road a car stands out of such a gap: less than along it if that is at an angle."""
     return stands_out(gap, params) * abs(math.sin(gap.into - gap.row))
+
+
+def is_in_place(pose: Pose, goal: Pose, params: ValetParams) -> bool:
+    """Return whether a pose is as near to the goal as the drive may end."""
+    off = seen_from(goal, pose)
+    end = params.end
+    return abs(off.x) <= end.position and abs(off.y) <= end.position and abs(off.heading) <= end.heading
+
+
+def seen_from(goal: Pose, pose: Pose) -> Pose:
+    """Return a pose as the goal has it: along and across its heading [m], turned against it [rad]."""
+    dx = pose.x - goal.x
+    dy = pose.y - goal.y
+    c = math.cos(goal.heading)
+    s = math.sin(goal.heading)
+    return Pose(dx * c + dy * s, dy * c - dx * s, wrap_angle(pose.heading - goal.heading))

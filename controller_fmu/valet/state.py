@@ -42,6 +42,8 @@ class ValetState(NamedTuple):
     """Steps of the search done for the request; 0: there is none yet."""
     plans: int = 0
     path: Path = Path()
+    first_margin: float = 0.0
+    """Margin [m] of the first path of this drive; 0: there is none yet."""
     piece: int = 0
     """The one in hand."""
     begin: Pose = Pose()

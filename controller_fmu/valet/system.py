@@ -9,7 +9,7 @@ from controller_fmu.sensing.gap import GapLayout
 from controller_fmu.sensing.heard_store import forget_side
 from controller_fmu.valet.chart import Guard, Step, step_transition
 from controller_fmu.valet.driven import AT_END, heard_on, moved_on, seen_on
-from controller_fmu.valet.found.at_end import is_beside, is_in_place, listened_on, listens, waits
+from controller_fmu.valet.found.at_end import is_beside, listened_on, listens, waits
 from controller_fmu.valet.found.nearby import forget_nearby
 from controller_fmu.valet.found.search import Search, begin_search, reason_to_end, search, told_slot, with_map
 from controller_fmu.valet.found.second_look import looked_again
@@ -17,6 +17,7 @@ from controller_fmu.valet.params import ValetParams
 from controller_fmu.valet.planned import gap_now, goal_now, planned_on, room_beside_car
 from controller_fmu.valet.rolling import rest_before
 from controller_fmu.valet.signals import ValetInput
+from controller_fmu.valet.slot import is_in_place
 from controller_fmu.valet.state import ValetState
 from controller_fmu.valet.watch import fault_of, reason_to_fail, watch
 

@@ -8,7 +8,7 @@ import tempfile
 import time
 from pathlib import Path
 
-from tests.fuzz import fmi_calls, inputs, kills, logs, systems, tables
+from tests.fuzz import fmi_calls, inputs, kills, logs, planner, systems, tables
 from tests.fuzz.limits import ask, limit_memory
 
 KINDS = {

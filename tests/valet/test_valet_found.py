@@ -17,7 +17,7 @@ from controller_fmu.sensing.heard_store import put_heard
 from controller_fmu.sensing.in_gap import point_in_gap
 from controller_fmu.valet.chart import Step
 from controller_fmu.valet.driven import heard_on
-from controller_fmu.valet.found.at_end import is_beside, is_in_place
+from controller_fmu.valet.found.at_end import is_beside
 from controller_fmu.valet.found.beside import SENSORS, SideEchoes, hear_beside, put_beside
 from controller_fmu.valet.found.corrected import corrected, turned_gap
 from controller_fmu.valet.found.nearby import Nearby, forget_under
@@ -26,6 +26,7 @@ from controller_fmu.valet.found.way_back import path_back, way_back
 from controller_fmu.valet.params import ValetParams, ValetSearchParams
 from controller_fmu.valet.sight import Sight, end_ahead, heard_again
 from controller_fmu.valet.signals import ValetInput
+from controller_fmu.valet.slot import is_in_place
 from controller_fmu.valet.state import ValetState
 from modelkit.store import new_store
 from modelkit.vocabulary import Pose

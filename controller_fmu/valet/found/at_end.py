@@ -1,7 +1,5 @@
 """At the end of a way into a slot that was found: is the car in its place, and what do its sides hear of it?"""
 
-import math
-
 from controller_fmu.common.sensors import is_told_anew
 from controller_fmu.common.told import SlotKind
 from controller_fmu.planning.plan_store import PlanStore
@@ -11,8 +9,8 @@ from controller_fmu.valet.found.beside import CYCLES, hear_beside, put_beside
 from controller_fmu.valet.params import ValetParams
 from controller_fmu.valet.planned import gap_now
 from controller_fmu.valet.signals import ValetInput
+from controller_fmu.valet.slot import seen_from
 from controller_fmu.valet.state import ValetState
-from modelkit.maths import wrap_angle
 from modelkit.vocabulary import Pose
 
 NEARLY = 0.3
@@ -51,23 +49,7 @@ def waits(state: ValetState, pose: Pose, params: ValetParams) -> bool:
     return listens(state, pose, params) and state.beside.cycles < CYCLES
 
 
-def is_in_place(pose: Pose, goal: Pose, params: ValetParams) -> bool:
-    """Return whether a pose is as near to the goal as the drive may end."""
-    off = seen_from(goal, pose)
-    end = params.end
-    return abs(off.x) <= end.position and abs(off.y) <= end.position and abs(off.heading) <= end.heading
-
-
 def is_beside(state: ValetState, pose: Pose, goal: Pose, params: ValetParams) -> bool:
     """Return whether a car across the road that has listened stands beside its goal, farther than it need be."""
     across = state.search.gap.layout == GapLayout.ACROSS
     return across and listens(state, pose, params) and abs(seen_from(goal, pose).y) > ASIDE
-
-
-def seen_from(goal: Pose, pose: Pose) -> Pose:
-    """Return a pose as the goal has it: along and across its heading [m], turned against it [rad]."""
-    dx = pose.x - goal.x
-    dy = pose.y - goal.y
-    c = math.cos(goal.heading)
-    s = math.sin(goal.heading)
-    return Pose(dx * c + dy * s, dy * c - dx * s, wrap_angle(pose.heading - goal.heading))

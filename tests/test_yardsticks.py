@@ -1,0 +1,73 @@
+"""The paired comparison of two systems and the sensitivity to tuning constants, without running a study."""
+
+import ast
+from pathlib import Path
+
+import pytest
+
+from benchmarks.paired import Pair, is_lost, report
+from benchmarks.sensitivity import ROOT, constants_of, scaled
+
+CODE = '''from enum import IntEnum
+from typing import Annotated, NamedTuple
+
+from modelkit.signal import Signal
+
+LIMIT = 0.35
+PAIRS = (0.1, 7)
+
+
+class Kind(IntEnum):
+    FIVE = 5
+
+
+class Params(NamedTuple):
+    gain: Annotated[float, Signal("1", "gain", 0.01, 99.0)] = 2.5
+
+
+def f(x: tuple[float, ...]) -> float:
+    """ü: 6.5"""
+    return 1.7 * x[7] + 0.0 + 1.0
+'''
+
+
+@pytest.mark.parametrize(
+    ("first", "second", "lost"),
+    [
+        ("parked", "gave up", True),
+        ("gave up", "parked", False),
+        ("gave up", "contact", True),
+        ("gave up", "contact, standing", True),
+        ("contact", "contact, standing", False),
+        ("gave up", "false parked", True),
+        ("parked", "parked", False),
+    ],
+)
+def test_what_the_second_system_loses(first: str, second: str, lost: bool) -> None:
+    assert is_lost(Pair(0, first, second)) is lost
+
+
+def test_the_report_names_transitions_and_lost_rows() -> None:
+    pairs = [Pair(0, "parked", "parked"), Pair(1, "parked", "gave up"), Pair(2, "gave up", "parked")]
+    lines = report(pairs)
+    assert lines[0] == "3 rows, 1 with the same outcome; parked 2 -> 2"
+    assert lines[1] == "1 lost, 1 won"
+    assert lines[-1] == "lost row 1: parked -> gave up"
+
+
+def test_constants_are_numbers_that_tune(tmp_path: Path) -> None:
+    (tmp_path / "code.py").write_text(CODE)
+    found = constants_of(tmp_path, tmp_path)
+    assert sorted(item.value for item in found) == [0.1, 0.35, 1.7, 2.5, 7]
+    for item in found:
+        changed = scaled(CODE, item, 1.4)
+        ast.parse(changed)
+        assert sum(a != b for a, b in zip(CODE.splitlines(), changed.splitlines(), strict=True)) == 1
+    gain = next(item for item in found if item.value == 2.5)
+    assert "= 1.75" in scaled(CODE, gain, 0.7)
+
+
+def test_every_constant_of_a_package_can_be_scaled() -> None:
+    folder = ROOT / "controller_fmu" / "planning"
+    for item in constants_of(folder):
+        ast.parse(scaled((ROOT / item.file).read_text(), item, 0.7))

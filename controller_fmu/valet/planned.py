@@ -63,8 +63,7 @@ def planned_on(store: PlanStore, state: ValetState, inputs: ValetInput, params: 
                 lay_end(store, gap, state.search.lines)
             lay_nearby(store, state.nearby, gap, state.search.lines + 1)
         request = Request(pose, goal, body_of(params), params.plan.margin)
-        may_stand = state.step == Step.SHOWN or not params.search.active
-        if may_stand and is_in_place(pose, goal, params):
+        if (state.step == Step.SHOWN or not params.search.active) and is_in_place(pose, goal, params):
             return state._replace(request=request, searched=1, plans=state.plans + 1, path=AT_GOAL, sight=Sight())
     scene = scene_of(store, params, state.seen)
     count = search_on(store, scene, request, state.searched, params.plan.at_once)
@@ -72,28 +71,26 @@ def planned_on(store: PlanStore, state: ValetState, inputs: ValetInput, params: 
     path = state.path
     if status == PLANNED:
         path = trimmed(path_of(store))
+    first_margin = state.first_margin if state.first_margin > 0.0 else path.margin
     reason = reason_of(status, count, state, params)
-    first_margin = state.first_margin
     if status == PLANNED:
-        first_margin = path.margin if first_margin <= 0.0 else first_margin
-        if params.search.active and path.margin < LEAST_MARGIN:
-            reason = Reason.BLOCKED
-        elif path.margin < max(MIN_DRIVEN_MARGIN, min(first_margin, MIN_REPLANNED_MARGIN)):
-            reason = Reason.BLOCKED if state.seen_count > 0 else Reason.NO_PATH
+        reason = margin_reason(path.margin, first_margin, state.seen_count, params)
     plans = state.plans + 1 if state.searched == 0 else state.plans
     if reason in (Reason.BLOCKED, Reason.NO_PATH) and state.back.used > 0:
         backs = state.backs + 1
         path = path_back(state.back)
         return state._replace(request=request, searched=count, plans=plans, path=path, back=WayBack(), backs=backs)
-    return state._replace(
-        request=request,
-        searched=count,
-        plans=plans,
-        path=path,
-        reason=reason,
-        sight=Sight(),
-        first_margin=first_margin,
-    )
+    state = state._replace(request=request, searched=count, plans=plans, path=path)
+    return state._replace(reason=reason, sight=Sight(), first_margin=first_margin)
+
+
+def margin_reason(margin: float, first_margin: float, seen_count: int, params: ValetParams) -> int:
+    """Return why a path is not driven whose margin is too small, ``NONE`` if it is; ``first_margin``: of the first."""
+    if params.search.active:
+        return Reason.BLOCKED if margin < LEAST_MARGIN else Reason.NONE
+    if margin >= max(MIN_DRIVEN_MARGIN, min(first_margin, MIN_REPLANNED_MARGIN)):
+        return Reason.NONE
+    return Reason.BLOCKED if seen_count > 0 else Reason.NO_PATH
 
 
 def gap_now(store: PlanStore, state: ValetState, params: ValetParams) -> Gap:

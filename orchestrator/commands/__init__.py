@@ -26,6 +26,7 @@ STUDIES = {
     "apa-grid": "orchestrator.grid.study",
     "apa-out": "orchestrator.grid.out_study",
     "apa-world": "orchestrator.grid.world.study",
+    "parking-world": "orchestrator.grid.parking_world.study",
     "bakeoff": "orchestrator.bakeoff.study",
     "guo2015-claim": "orchestrator.bakeoff.claim",
     "search-kpis": "orchestrator.grid.search_kpis",

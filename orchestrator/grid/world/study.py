@@ -47,7 +47,7 @@ def study(runs: int = 2000, seed: int = 1, mild: int = 0) -> Study:
         "mild": mild,
     }
     design = Design(fields(), world.values(shares, seeds), seeds, world.named(shares))
-    within = {GBT[kind]: _limits(name) for kind, name in GBT_SETS.items()}
+    within = {GBT[kind]: limits_beside_neighbours(name) for kind, name in GBT_SETS.items()}
     seeded = [("vehicle", "ultrasonic.seed", find_field("vehicle.ultrasonic.seed", scenario()).place)]
     return Study(scenario(), design, content, seeded, MEASURES, within, FOUND, world, GOALS)
 
@@ -65,7 +65,7 @@ def scenario() -> Scenario:
         ],
         target=Target(x=0.0, y=0.0),
         slot=Slot(x=0.0, y=0.0, length=1.0, width=1.0),
-        limits=[*_limits("gbt41630"), *shipped_requirements("no-contact")],
+        limits=[*limits_beside_neighbours("gbt41630"), *shipped_requirements("no-contact")],
     )
 
 
@@ -149,6 +149,6 @@ def _ends(ends: Array, groups: Mapping[str, NDArray[np.bool_]]) -> Printed:
     return table
 
 
-def _limits(name: str) -> list[Requirement]:
+def limits_beside_neighbours(name: str) -> list[Requirement]:
     """Return a set of GB/T 41630's limits, but for those against a kerb."""
     return [item for item in gbt_limits(name) if item.where != KERB]

@@ -18,6 +18,7 @@ KINDS = {
     "calls": fmi_calls.fuzz,
     "tables": tables.fuzz,
     "ssp": systems.fuzz,
+    "planner": planner.fuzz,
 }
 
 SLOWEST = 600.0

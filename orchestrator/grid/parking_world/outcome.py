@@ -9,6 +9,7 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from orchestrator.cosim.slave import Array
 from orchestrator.grid.parking_world.scene import has_bin, overhang_of
@@ -53,7 +54,7 @@ def _made(columns: Columns) -> Mapping[str, Array]:
     return {"valid": valid.astype(float), "end": np.array(ends, dtype=object)}
 
 
-def is_valid(columns: Columns) -> Array:
+def is_valid(columns: Columns) -> NDArray[np.bool_]:
     """Return whether each slot is one for its car."""
     f = {name: np.asarray(columns[name]) for name in ("kind", "extra", "overhang", "overhang_length", "bin")}
     return np.asarray((f["extra"] >= overhang_of(f)) & ~has_bin(f))

@@ -6,6 +6,7 @@ Slots are as there: the ground truth is the free length between the neighbours, 
 from collections.abc import Mapping
 
 import numpy as np
+from numpy.typing import NDArray
 
 from orchestrator.cosim.slave import Array
 from orchestrator.grid.parking_world.factors import NONE, PARKED_CARS, RACK, WALL
@@ -90,7 +91,7 @@ def _things(f: F, found: F, slot: Array, parallel: Array, sign: Array) -> dict[i
     return boxes
 
 
-def has_bin(f: F) -> Array:
+def has_bin(f: F) -> NDArray[np.bool_]:
     """Return whether a bin stands in the slot."""
     return np.asarray(f["bin"] == 9)
 

@@ -1,5 +1,6 @@
 """``apa sweep parking-world``: parking in ordinary streets and car parks, by any system, and what it prints."""
 
+from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
@@ -77,7 +78,7 @@ def _fields(shared: Scenario) -> list[Field]:
     return [find_field(name, shared) for name in parameters(one.named(one.nominal()[None]), np.array([1]))]
 
 
-def _stacked(values: dict[str, Array], seeds: Seeds) -> Array:
+def _stacked(values: Mapping[str, Array], seeds: Seeds) -> Array:
     return np.column_stack(list(parameters(values, seeds).values()))
 
 

@@ -35,7 +35,7 @@ MOVING, STANDING, DRIVER = "contact, moving", "contact, standing", "contact, dri
 FALSE, PARKED, FAILED, ENDLESS = "false parked", "parked", "gave up", "endless"
 ENDS = {
     MOVING: f"touched something while the system drives, above {MOVING_SPEED} m/s",
-    STANDING: "touched by something that moves, while the car stands",
+    STANDING: f"touched something, or was touched, at no more than {MOVING_SPEED} m/s",
     FALSE: "claims to be parked outside the slot, beyond GB/T 41630, or where there is no slot",
     ENDLESS: "neither parked nor given up at the stop time",
     PARKED: "parked within GB/T 41630, nothing touched",

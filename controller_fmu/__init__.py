@@ -1,10 +1,22 @@
 """The controller: planner, tracking laws and charts of automated parking. Knows nothing of FMI."""
 
-from controller_fmu.parking import MODEL as PARKING
+from typing import TYPE_CHECKING, Any
+
 from controller_fmu.registry import APART, MODEL, SYSTEM_MODELS, SYSTEMS, System
-from controller_fmu.valet import MODEL as VALET
+
+if TYPE_CHECKING:
+    from controller_fmu.parking import MODEL as PARKING
+    from controller_fmu.valet import MODEL as VALET
 
 __all__ = ["APART", "MODEL", "PARKING", "SYSTEMS", "SYSTEM_MODELS", "VALET", "System"]
 
 globals().update({choice.name: model for choice, model in SYSTEM_MODELS.items()})
 # A Python FMU of one system finds its model under this name.
+
+
+def __getattr__(name: str) -> Any:
+    """Return the model of a standalone system, which is imported when it is first used."""
+    found = next((choice for choice in APART if choice.name == name), None)
+    if found is None:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return APART[found]

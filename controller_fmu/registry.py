@@ -5,6 +5,7 @@ and the types of the whole have the fields of all.
 """
 
 import sys
+from collections.abc import Callable, Iterator, Mapping
 from enum import IntEnum
 from typing import TYPE_CHECKING, Annotated, Any, NamedTuple, TypeAlias
 
@@ -13,9 +14,7 @@ from controller_fmu import (
     apa,
     guo2015,
     hsic,
-    parking,
     preview,
-    valet,
     zhang2022,
 )
 from controller_fmu.common.clock import Clock, begin, refused, tick
@@ -38,8 +37,38 @@ ROWS: tuple[SampledSystem[Any, Any, Any, Any], ...] = (
     adaptive.SYSTEM,
 )
 """The systems of one controller, which choose by ``controller.system``."""
-APART: dict[IntEnum, Model] = {ValetSystem.VALET: valet.MODEL, ParkingSystem.PARKING: parking.MODEL}
-"""Those that are a controller of their own, with a store or a map: by their value of ``controller.system``."""
+
+
+class StandaloneModels(Mapping[IntEnum, Model]):
+    """Value of ``controller.system`` -> model, imported when it is first used."""
+
+    def __init__(self, rows: dict[IntEnum, Callable[[], Model]]) -> None:
+        self._rows = rows
+
+    def __getitem__(self, choice: IntEnum) -> Model:
+        return self._rows[choice]()
+
+    def __iter__(self) -> Iterator[IntEnum]:
+        return iter(self._rows)
+
+    def __len__(self) -> int:
+        return len(self._rows)
+
+
+def _valet() -> Model:
+    from controller_fmu.valet import MODEL
+
+    return MODEL
+
+
+def _parking() -> Model:
+    from controller_fmu.parking import MODEL
+
+    return MODEL
+
+
+APART = StandaloneModels({ValetSystem.VALET: _valet, ParkingSystem.PARKING: _parking})
+"""Those that are a controller of their own, with work arrays or a map: by their value of ``controller.system``."""
 
 System: Any = union(
     "System",

@@ -38,7 +38,7 @@ from orchestrator.scenario.end_condition import EndCondition  # noqa: E402
 from orchestrator.scenario.fault import Fault  # noqa: E402
 from orchestrator.scenario.files import ROOM  # noqa: E402
 from orchestrator.scenario.load_scenario import load_scenario, scenario_names  # noqa: E402
-from orchestrator.scenario.models import APART, MODELS  # noqa: E402
+from orchestrator.scenario.models import APART, MODELS, apart_models  # noqa: E402
 from orchestrator.scenario.requirements import Occasion, Requirement, Window, read_requirements  # noqa: E402
 from orchestrator.scenario.scenario import Scenario, Slot, Target  # noqa: E402
 from orchestrator.text.command_parser import CommandParser  # noqa: E402
@@ -67,7 +67,7 @@ def pages() -> dict[str, str]:
     """Return name -> text of all reference pages."""
     return {
         **{f"{name}.md": model_page(model) for name, model in MODELS.items()},
-        **{f"{name}.md": model_page(model) for name, (_, model) in APART.items()},
+        **{f"{name}.md": model_page(model) for name, model in apart_models().items()},
         "charts.md": charts_page(),
         "commands.md": commands_page(),
         "scenarios.md": scenarios_page(),

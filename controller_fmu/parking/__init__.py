@@ -1,31 +1,17 @@
 """Parking system: ultrasonic echoes to a map of landmarks, slots in it, a path into one, and a monitor over all."""
 
-import sys
+from typing import TYPE_CHECKING, Any
 
-from controller_fmu.parking import chart
-from controller_fmu.parking.model import ParkingModelState, parking_initialize, parking_step
-from controller_fmu.parking.params import ParkingParams, ParkingSystem
-from controller_fmu.parking.planning.work import PlanningWork
-from controller_fmu.parking.signals import ParkingOutput, ParkingSystemInput
-from modelkit.model import Chart, Model, View
-from modelkit.terminals import TERMINALS
+if TYPE_CHECKING:
+    from controller_fmu.parking.standalone import MODEL
 
-MODEL = Model(
-    name="Controller_parking",
-    description="Parking: a map of landmarks, slots in it, a path into one, a collision monitor",
-    package=sys.modules["controller_fmu"],
-    state=ParkingModelState,
-    params=ParkingParams,
-    inputs=ParkingSystemInput,
-    outputs=ParkingOutput,
-    initialize=parking_initialize,
-    step=parking_step,
-    step_size=0.01,
-    stop_time=5.0,
-    terminals=TERMINALS,
-    sampled=True,
-    view=View((("system", int(ParkingSystem.PARKING)),), frozenset({"system"})),
-    store=PlanningWork,
-    charts=(Chart("parking.state", chart.ParkingState, chart.Condition, chart.TRANSITIONS),),
-)
-"""A controller of its own until it replaces the other two: the planner's work arrays would weigh on their memory."""
+__all__ = ["MODEL"]
+
+
+def __getattr__(name: str) -> Any:
+    """Return the model, which is imported when it is first used."""
+    if name == "MODEL":
+        from controller_fmu.parking.standalone import MODEL
+
+        return MODEL
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

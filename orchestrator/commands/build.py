@@ -73,7 +73,7 @@ def _systems(arguments: argparse.Namespace, kinds: list[str]) -> list["Built"]:
     from controller_fmu import APART, SYSTEM_MODELS
     from fmus.places import DIST
 
-    known = {system.name.lower(): model for system, model in (SYSTEM_MODELS | APART).items()}
+    known = {system.name.lower(): model for system, model in {**SYSTEM_MODELS, **APART}.items()}
     asked = [name.lower() for item in arguments.system for name in item.split(",")]
     for name in asked:
         if name not in ("all", *known):

@@ -17,7 +17,7 @@ from orchestrator.cosim.kinds import KINDS, default_kind
 from orchestrator.cosim.master import Interrupt
 from orchestrator.cosim.recording import Recording
 from orchestrator.scenario.files import find_file
-from orchestrator.scenario.models import APART, MODELS
+from orchestrator.scenario.models import MODELS, apart_models
 from orchestrator.scenario.requirements import read_requirements
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.session.foreign import Files, foreign_of
@@ -115,7 +115,7 @@ def _covered(arguments: argparse.Namespace, names: list[str], verdicts: "Verdict
 
     arguments.fmus, arguments.jobs = "none", 1
     modes = Modes()
-    with looking_on([*MODELS.values(), *(model for _, model in APART.values())]) as so_far:
+    with looking_on([*MODELS.values(), *apart_models().values()]) as so_far:
         code = _run(arguments, names, verdicts, modes.look)
         found = so_far().of_ours({MODELS[name].package.__name__ for name in modes.ours & set(MODELS)}, modes.covered())
     if arguments.min_transition_coverage is not None and not found.has_list:

@@ -9,7 +9,7 @@ from modelkit.model import Chart
 from orchestrator.cosim.recording import Recording
 from orchestrator.drawing.chart_svg import chart_svg
 from orchestrator.scenario.catalogue import texts_of
-from orchestrator.scenario.models import APART, MODELS
+from orchestrator.scenario.models import APART, MODELS, apart_models
 
 ROOT = Path(__file__).parents[2]
 ANY = "any state"
@@ -27,7 +27,7 @@ def charts_data() -> list[tuple[Chart, dict[str, Any]]]:
         for system in model.systems.systems
         for chart in system.charts
     ]
-    apart = [((number,), chart) for number, model in APART.values() for chart in model.charts]
+    apart = [((int(APART[name]),), chart) for name, model in apart_models().items() for chart in model.charts]
     return [(chart, {"values": list(values), **_chart(chart)}) for values, chart in (*own, *apart) if chart.signal]
 
 

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 from modelkit.states import parts_of
 from modelkit.variables import Variable, variables
-from orchestrator.scenario.models import APART, MODELS
+from orchestrator.scenario.models import MODELS, apart_models
 from orchestrator.text.quantities import DEGREE
 
 UNBOUNDED = 1e300
@@ -55,7 +55,7 @@ def entries(*roles: str) -> list[Entry]:
 def _apart(roles: tuple[str, ...], known: set[tuple[str, str]]) -> list[Entry]:
     """Return what controllers of their own have besides."""
     found = []
-    for _, model in APART.values():
+    for model in apart_models().values():
         groups = {"parameter": model.params, "input": model.inputs, "output": model.outputs}
         for role in roles:
             items = [item for item in variables(groups[role]) if (role, f"controller.{item.name}") not in known]

@@ -8,16 +8,19 @@ from modelkit.model import Model
 
 MODELS: dict[str, Model] = {"vehicle": vehicle_fmu.MODEL, "controller": controller_fmu.MODEL}
 """Those of a run whose scenario asks for nothing else."""
-APART: dict[str, tuple[int, Model]] = {
-    choice.name.lower(): (int(choice), model) for choice, model in controller_fmu.APART.items()
-}
-"""Values of ``controller.system`` for which the controller is a model of its own."""
+APART = {choice.name.lower(): choice for choice in controller_fmu.APART}
+"""Values of ``controller.system`` for which the controller is a model of its own, by name."""
+
+
+def apart_models() -> dict[str, Model]:
+    """Return name -> model of the controllers of their own; imports all of them."""
+    return {name: controller_fmu.APART[choice] for name, choice in APART.items()}
 
 
 def models_for(controller: Mapping[str, object]) -> dict[str, Model]:
     """Return the models of a run, by the system that the controller's parameters choose: a name or a number."""
     asked = controller.get("system")
-    for name, (number, model) in APART.items():
-        if asked == number or (isinstance(asked, str) and asked.lower() == name):
-            return {**MODELS, "controller": model}
+    for name, choice in APART.items():
+        if asked == int(choice) or (isinstance(asked, str) and asked.lower() == name):
+            return {**MODELS, "controller": controller_fmu.APART[choice]}
     return MODELS

@@ -5,7 +5,7 @@ from collections.abc import Iterator, Sequence
 from modelkit.variables import variables
 from orchestrator.cosim.slave import Slave
 from orchestrator.scenario.end_condition import EndCondition
-from orchestrator.scenario.models import APART, MODELS
+from orchestrator.scenario.models import MODELS, apart_models
 from orchestrator.system.assemble import Assembled
 from orchestrator.system.units import scale_of
 from orchestrator.text.errors import BadInput, suggestion
@@ -171,8 +171,8 @@ def without_consumer(number: int, system: Assembled) -> list[str]:
     if slave.name not in MODELS:
         return names
     ours = {item.name for item in variables(MODELS[slave.name].outputs)}
-    if slave.name == "controller":
-        ours |= {item.name for _, model in APART.values() for item in variables(model.outputs)}
+    if slave.name == "controller" and not set(names) <= ours:
+        ours |= {item.name for model in apart_models().values() for item in variables(model.outputs)}
     taken = {item.name for other, model in MODELS.items() if other != slave.name for item in variables(model.inputs)}
     return [name for name in names if name not in ours or name in taken]
 

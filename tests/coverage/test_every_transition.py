@@ -6,7 +6,7 @@ import pytest
 
 from orchestrator.cli import main
 from orchestrator.coverage.coverage import Coverage, looking_on
-from orchestrator.scenario.models import APART, MODELS
+from orchestrator.scenario.models import MODELS, apart_models
 
 HERE = Path(__file__).parent
 SHIPPED = (
@@ -77,7 +77,7 @@ def found(tmp_path_factory: pytest.TempPathFactory) -> Coverage:
             words = {"input": name, "at": at, "value": value, "before": before, "after": after}
             file.write_text(VALET.format(**words).replace(f"{at} s + 0.02", f"{at + 0.02:.2f} s"))
             own.append(str(file))
-    models = [*MODELS.values(), *(model for _, model in APART.values())]
+    models = [*MODELS.values(), *apart_models().values()]
     with looking_on(models) as so_far:
         assert main(["test", *SHIPPED, *own, "--fmus", "none", "--out", str(folder / "out")]) == 0
         return so_far()

@@ -1,0 +1,31 @@
+"""The parking system as a controller of its own: its work arrays would weigh on the memory of the others."""
+
+import sys
+
+from controller_fmu.parking import chart
+from controller_fmu.parking.model import ParkingModelState, parking_initialize, parking_step
+from controller_fmu.parking.params import ParkingParams, ParkingSystem
+from controller_fmu.parking.planning.work import PlanningWork
+from controller_fmu.parking.signals import ParkingOutput, ParkingSystemInput
+from modelkit.model import Chart, Model, View
+from modelkit.terminals import TERMINALS
+
+MODEL = Model(
+    name="Controller_parking",
+    description="Parking: a map of landmarks, slots in it, a path into one, a collision monitor",
+    package=sys.modules[__package__.rpartition(".")[0]],
+    state=ParkingModelState,
+    params=ParkingParams,
+    inputs=ParkingSystemInput,
+    outputs=ParkingOutput,
+    initialize=parking_initialize,
+    step=parking_step,
+    step_size=0.01,
+    stop_time=5.0,
+    terminals=TERMINALS,
+    sampled=True,
+    view=View((("system", int(ParkingSystem.PARKING)),), frozenset({"system"})),
+    store=PlanningWork,
+    charts=(Chart("parking.state", chart.ParkingState, chart.Condition, chart.TRANSITIONS),),
+)
+"""A controller of its own until it replaces the other two: the planner's work arrays would weigh on their memory."""

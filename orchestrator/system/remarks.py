@@ -178,15 +178,15 @@ def without_consumer(number: int, system: Assembled) -> list[str]:
 
 
 def _unread_outputs(number: int, system: Assembled) -> list[str]:
-    """Return one line on the outputs that no input takes; a note for what a vehicle measures, which few take whole, and
-    for our own controller, which offers several ways to command a vehicle.
+    """Return one line on the outputs that no input takes; a note for what a vehicle measures, which few take whole.
+
+    Nothing is said of our own models, which offer several ways to command and to sense.
     """
     slave, names = system.slaves[number], without_consumer(number, system)
-    if not names:
-        return []
     ours = {item.name for item in variables(MODELS[slave.name].outputs)} if slave.name in MODELS else set()
-    is_optional = set(names) <= ours and (slave.name == "vehicle" or ours <= set(slave.outputs.names))
-    kind = NOTE if is_optional else ""
+    if not names or (ours and ours <= set(slave.outputs.names)):
+        return []
+    kind = NOTE if slave.name == "vehicle" and set(names) <= ours else ""
     return [f"{kind}outputs of {slave.name} that no input takes: {_few(names)}"]
 
 

@@ -20,7 +20,7 @@ class BadInput(ValueError):  # noqa: N818 - said as it is
     def __init__(self, text: str, *, file: object = None, key: str | None = None, at: str | None = None) -> None:
         line = line_of(file, at or key)
         where = None if file is None else f"{file}:{line}" if line else str(file)
-        place = ": ".join(part for part in (where, key) if part is not None)
+        place = ": ".join(part for part in (where, key) if part)
         super().__init__(f"{place}: {text}" if place else text)
 
 

@@ -78,7 +78,7 @@ def broken(path: Path, folder: Path) -> dict[str, tuple[Path, str]]:
         "no description": (empty, "is not an FMU"),
         "cut description": (xml, "is not an FMU"),
         "start value": (start, "is no start value of type Real"),
-        "model exchange": (exchange, "expected FMI 2.0 or 3.0 for co-simulation"),
+        "model exchange": (exchange, "is an FMU for Model Exchange only"),
         "no binary": (elsewhere, "has no binary for this machine"),
         "path outside": (outside, "would be written outside its folder"),
         "other type": (other, "output of controller is float, input of vehicle is int"),

@@ -46,7 +46,7 @@ def test_the_log_shows_the_true_target(ran: tuple[Ran, Path]) -> None:
 
 def test_the_picture_shows_the_true_target(ran: tuple[Ran, Path]) -> None:
     axis = Figure().subplots()
-    _plan(axis, overview_of(ran[0].recording, summarize(ran[0].recording, TOLD, 1.0), TOLD))
+    _plan(axis, "a", overview_of(ran[0].recording, summarize(ran[0].recording, TOLD, 1.0), TOLD))
     line = next(line for line in axis.lines if line.get_label() == "target")
     assert np.asarray(line.get_ydata())[:4].mean() == pytest.approx(TRUE[1])
 

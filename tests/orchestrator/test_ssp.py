@@ -83,7 +83,7 @@ def test_what_is_exported_comes_back_with_its_end(tmp_path: Path, capsys: pytest
     ends = []
     for name in ("guo2015-case4", str(file)):
         capsys.readouterr()
-        assert main(["run", name, "--out", str(tmp_path / "out"), "--no-page", "--json"]) == 0
+        assert main(["run", name, "--out", str(tmp_path / "out"), "--force", "--no-page", "--json"]) == 0
         ends.append(json.loads(capsys.readouterr().out)["final"])
     same = ("x", "y", "heading", "lateral_error", "longitudinal_error")
     assert {key: ends[0][key] for key in same} == {key: ends[1][key] for key in same}

@@ -8,8 +8,8 @@ from controller_fmu.interface import (
     TARGET,
     AssumedCar,
     Limits,
+    OutlinedCar,
     SampleTime,
-    SteeredCar,
     Target,
     Thresholds,
 )
@@ -99,7 +99,7 @@ class ZhangSystemParams(NamedTuple):
     """All that can be set of it."""
 
     sample_time: SampleTime = 0.01
-    car: Annotated[AssumedCar, Subset(SteeredCar)] = Car()
+    car: Annotated[AssumedCar, Subset(OutlinedCar)] = Car()
     target: Target = TARGET
     threshold: Thresholds = ThresholdParams()
     limit: Limits = LimitParams()

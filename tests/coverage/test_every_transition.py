@@ -36,6 +36,8 @@ SEARCH = (
     ("SHOWN", "CONFIRMED"),
 )
 SEARCHED = "a drive of the valet's search takes minutes in CPython; tests/valet/test_valet_search.py has some, compiled"
+UNDER_CONSTRUCTION = ("parking",)
+"""Systems whose chart is tested by itself (tests/parking) until they replace another."""
 NEVER_TAKEN = {
     (
         "apa.manoeuvre_chart",
@@ -77,7 +79,8 @@ def found(tmp_path_factory: pytest.TempPathFactory) -> Coverage:
             words = {"input": name, "at": at, "value": value, "before": before, "after": after}
             file.write_text(VALET.format(**words).replace(f"{at} s + 0.02", f"{at + 0.02:.2f} s"))
             own.append(str(file))
-    models = [*MODELS.values(), *apart_models().values()]
+    apart = {name: model for name, model in apart_models().items() if name not in UNDER_CONSTRUCTION}
+    models = [*MODELS.values(), *apart.values()]
     with looking_on(models) as so_far:
         assert main(["test", *SHIPPED, *own, "--fmus", "none", "--out", str(folder / "out")]) == 0
         return so_far()

@@ -39,4 +39,4 @@ def run_folder(chosen: Path | None, name: str, *, force: bool) -> Iterator[Path]
 
 def has_run(folder: Path) -> bool:
     """Return whether a folder has a log, also of an interrupted run, or a summary."""
-    return any((folder / name).exists() for name in (LOG, f"{LOG}.part", SUMMARY))
+    return any((folder / name).is_file() for name in (LOG, f"{LOG}.part", SUMMARY))

@@ -123,7 +123,8 @@ def _check_import(module: str, where: str, tops: set[str]) -> None:
 
 def _named(model: Model) -> dict[str, str]:
     """Return the name under which the model's package offers it, and how it is made from that."""
-    for name, value in vars(model.package).items():
+    for name in dict.fromkeys((*vars(model.package), *getattr(model.package, "__all__", ()))):  # also what comes late
+        value = getattr(model.package, name)
         if isinstance(value, Model) and value == model.started({}):
             starts = [item for item in model.view.starts if model.shows(item[0])]
             return {"attribute": name, "model": f"{name}.started(dict({starts!r}))" if starts else name}

@@ -189,6 +189,8 @@ def test_the_deciding_limit_is_the_one_violated_most(table: Any) -> None:
     for item in Scenario(**table.job.scenario).limits:
         if item.required and row.get(item.signal) is not None and not isinstance(item.limit, str):
             beyond = item.limit - row[item.signal] if item.condition == "min" else abs(row[item.signal]) - item.limit
-            violations[f"{item.id}: {readable(row[item.signal], 'm')} ({asked(item)})"] = beyond / (abs(item.limit) or 1.0)
+            violations[f"{item.id}: {readable(row[item.signal], 'm')} ({asked(item)})"] = beyond / (
+                abs(item.limit) or 1.0
+            )
     assert text == max(violations, key=lambda key: violations[key])
     assert violations[text] > 0.0

@@ -184,7 +184,7 @@ def test_the_outcomes_are_printed_with_their_share(folder: Any, capsys: pytest.C
 def test_the_deciding_limit_is_the_one_violated_most(table: Any) -> None:
     number = worst(table, 1)[0]
     row = table.row(number)
-    text = deciding_limit(table, number)
+    found = deciding_limit(table, number)
     violations = {}
     for item in Scenario(**table.job.scenario).limits:
         if item.required and row.get(item.signal) is not None and not isinstance(item.limit, str):
@@ -192,5 +192,5 @@ def test_the_deciding_limit_is_the_one_violated_most(table: Any) -> None:
             violations[f"{item.id}: {readable(row[item.signal], 'm')} ({asked(item)})"] = beyond / (
                 abs(item.limit) or 1.0
             )
-    assert text == max(violations, key=lambda key: violations[key])
-    assert violations[text] > 0.0
+    assert found == max(violations, key=lambda key: violations[key])
+    assert violations[found] > 0.0

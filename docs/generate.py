@@ -59,8 +59,10 @@ def main() -> None:
     if can_build():
         for system in ("", *APART):
             page = folder / (f"live-{system}.html" if system else LIVE)
-            write_live(page, shipped(system))
-            print(page.relative_to(ROOT))
+            scenarios = shipped(system)
+            if scenarios:
+                write_live(page, scenarios)
+                print(page.relative_to(ROOT))
 
 
 def pages() -> dict[str, str]:

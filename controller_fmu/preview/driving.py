@@ -40,8 +40,8 @@ def driving_sample(state: DrivingState, inputs: SystemInput, params: PreviewSyst
         return DrivingState(PreviewPhase.FAILED, Reason.BAD_INPUT, state.preview)
     if inputs.driver_takeover:
         return DrivingState(PreviewPhase.TAKEOVER, Reason.NONE, state.preview)
-    way = params.preview.set_speed * dt_ns * 1e-9
-    if state.phase == PreviewPhase.STANDBY and params.preview.camera == Camera.KINEMATICS and way > LONGEST_WAY:
+    is_too_fast = params.preview.set_speed * dt_ns > LONGEST_WAY * 1e9  # in this order 11 m/s at 2 ms is exact
+    if state.phase == PreviewPhase.STANDBY and params.preview.camera == Camera.KINEMATICS and is_too_fast:
         return DrivingState(PreviewPhase.FAILED, Reason.BAD_PARAMETER, state.preview)
     if state.phase == PreviewPhase.STRAIGHTEN:
         still = abs(inputs.measured_speed) <= params.threshold.standstill

@@ -39,6 +39,8 @@ MOSTLY = 0.9
 """Share of the draws that lie around the default; the others are ends of the range."""
 REACH = {"m": 5.0}
 """How far from its default a point is drawn in this unit, at least; in others 0.5."""
+UNSEEN = {"clearance": ("ultrasonic.kerb_height",)}
+"""Output -> parameters that act on it in a corner too small to be drawn: the outline over a kerb of that height."""
 Found = dict[str, list[str]]
 Values = list[Any]
 
@@ -84,6 +86,7 @@ def find_dependencies(model: Model) -> Found:
         groups -= {""}
         causes |= decide
         causes |= {parameter for parameter in acting if _group(parameter) in groups}
+        causes |= acting.keys() & UNSEEN.get(item.name, ())
         if model.shows(item.name):
             found[item.name] = [known[place].name for place in free if _thing(known[place].name) in causes]
     return found

@@ -88,7 +88,7 @@ def test_texts_of_fmi_3_and_elements_of_arrays_of_them(folder: Path) -> None:
 @pytest.mark.parametrize(
     ("given", "said"),
     [
-        ("table.file=007", "table.file: 7 is no text, which this is; write it in quotes: '7'"),
+        ("table.file=7", "table.file: 7 is no text, which this is; write it in quotes: '7'"),
         ("table.fil=x", "did you mean table.file?"),
         ("table.blob=00", "table.blob: unknown"),
     ],

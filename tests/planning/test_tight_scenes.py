@@ -45,7 +45,7 @@ def test_no_path_touches_anything(planner: Any) -> None:
     assert check_seeds(planner, range(16)) >= 4
 
 
-@pytest.mark.slow
+@pytest.mark.release
 def test_no_path_touches_anything_in_2000_scenes(planner: Any) -> None:
     assert check_seeds(planner, range(1000, 3000)) >= 500
 

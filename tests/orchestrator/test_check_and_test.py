@@ -45,7 +45,7 @@ def test_check_passes_and_writes_junit(
     assert (root.get("tests"), root.get("failures"), root.get("skipped")) == ("9", "0", "1")
     skipped = root.find(".//testcase[@name='never fast (us)']/skipped")
     assert "-1.500 m/s at " in skipped.get("message")
-    assert "7 of 8 met" in capsys.readouterr().out
+    assert "8 of 9 met" in capsys.readouterr().out
 
 
 def test_check_fails_with_a_margin(log: Any, rules: Any, capsys: pytest.CaptureFixture[str]) -> None:

@@ -1,6 +1,7 @@
 """From nested YAML sections to flat names: ``{driver: {profile: [[0, 1.5]]}}`` -> ``driver.profile[1].at``."""
 
 from collections.abc import Iterable, Mapping
+from typing import Any
 
 from orchestrator.text.errors import BadInput, shown, suggestion
 
@@ -24,6 +25,15 @@ def merge_flat(below: dict[str, object], above: Mapping[str, object]) -> dict[st
     arrays = {name[: name.index("[")] + "[" for name in above if "[1]" in name}
     kept = {name: value for name, value in below.items() if not any(name.startswith(array) for array in arrays)}
     return {**kept, **above}
+
+
+def merge_nested(below: Mapping[str, Any], above: Mapping[str, Any]) -> dict[str, Any]:
+    """Return ``below`` overridden by ``above``; sections are merged key by key, anything else is replaced whole."""
+    result = dict(below)
+    for key, value in above.items():
+        old = result.get(key)
+        result[key] = merge_nested(old, value) if isinstance(old, dict) and isinstance(value, Mapping) else value
+    return result
 
 
 def _flatten(name: str, value: object, known: list[str], flat: dict[str, object], file: object, key: str) -> None:

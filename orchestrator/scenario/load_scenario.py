@@ -10,7 +10,7 @@ from modelkit.model import Model
 from modelkit.variables import Variable, variables
 from orchestrator.scenario.car import CAR, Layer, told_car, with_said
 from orchestrator.scenario.files import find_file, shipped
-from orchestrator.scenario.flat_names import flatten_section, merge_flat
+from orchestrator.scenario.flat_names import flatten_section, merge_flat, merge_nested
 from orchestrator.scenario.models import MODELS, models_for
 from orchestrator.scenario.polygons import map_of
 from orchestrator.scenario.requirements import read_requirements
@@ -99,7 +99,7 @@ def _read(name: str, sets: list[str]) -> tuple[Path, list[Layer], dict[str, Any]
     layers = expand_layouts(layers)
     merged: dict[str, Any] = {}
     for content, _ in layers:
-        merged = _merge(merged, {key: _named(key, content[key]) for key in content if key not in NOT_MERGED})
+        merged = merge_nested(merged, {key: _named(key, content[key]) for key in content if key not in NOT_MERGED})
     return path, layers, merged
 
 
@@ -184,7 +184,7 @@ def _placed(content: dict[str, Any], path: Path) -> dict[str, Any]:
         file = path.parent / str(system["ssp"])
         if not file.is_file():
             raise BadInput("no such file", file=path, key=f"system.ssp: {file}")
-        made = _merge(ssp_system(file), {**made, "ssp": str(file)})
+        made = merge_nested(ssp_system(file), {**made, "ssp": str(file)})
     return {**content, "system": made}
 
 
@@ -291,11 +291,3 @@ def _named(key: str, value: object) -> object:
     """Return a target written as a list of x, y, heading as a mapping; anything else as it is."""
     is_list = key == "target" and isinstance(value, list) and len(value) <= len(Target.model_fields)
     return dict(zip(Target.model_fields, value, strict=False)) if is_list and isinstance(value, list) else value
-
-
-def _merge(below: dict[str, Any], above: Mapping[str, Any]) -> dict[str, Any]:
-    result = dict(below)
-    for key, value in above.items():
-        old = result.get(key)
-        result[key] = _merge(old, value) if isinstance(old, dict) and isinstance(value, Mapping) else value
-    return result

@@ -11,6 +11,7 @@ from typing import Annotated, Any, Literal, NamedTuple
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
 from modelkit.variables import variables
+from orchestrator.scenario.flat_names import merge_nested
 from orchestrator.scenario.models import MODELS
 from orchestrator.text.errors import BadInput
 from orchestrator.text.quantities import Metres, Radians
@@ -118,7 +119,7 @@ def expand_layouts(layers: list[tuple[dict[str, Any], object]]) -> list[tuple[di
             continue
         if not isinstance(given, Mapping):
             raise BadInput("expected a mapping of kind, length, depth, ...", file=file, key=KEY)
-        merged, last = _merge(merged, given), place
+        merged, last = merge_nested(merged, given), place
     if last < 0:
         return layers
     content, file = layers[last]
@@ -248,11 +249,3 @@ def _check_capacity(array: str, count: int, file: object) -> None:
     most = sum(name.startswith(f"scene.{array}[") for name in names)
     if count > most:
         raise BadInput(f"{count} {array} with those of the row, the scene holds {most}", file=file, key=KEY)
-
-
-def _merge(below: dict[str, Any], above: Mapping[str, Any]) -> dict[str, Any]:
-    result = dict(below)
-    for name, value in above.items():
-        old = result.get(name)
-        result[name] = _merge(old, value) if isinstance(old, dict) and isinstance(value, Mapping) else value
-    return result

@@ -22,7 +22,7 @@ from modelkit.vocabulary import (
     VehicleFaultShown,
 )
 
-HOUSE = "chosen; the source states none"
+HOUSE = "project default; the source states none"
 
 
 class Reason(IntEnum):
@@ -70,7 +70,7 @@ class Reason(IntEnum):
     """A slot from outside of a kind that this system does not park in: at an angle, or nose first."""
 
 
-Odometry = Annotated[Pose, Group("rear-axle midpoint as the car believes it")]
+Odometry = Annotated[Pose, Group("rear-axle midpoint estimated by dead reckoning")]
 
 
 class SystemInput(NamedTuple):
@@ -104,13 +104,13 @@ class Segment(NamedTuple):
 class Path(NamedTuple):
     """The planned path: a start pose and pieces driven in reverse from it."""
 
-    start: Annotated[Pose, Group("where the path starts")] = Pose()
+    start: Annotated[Pose, Group("start pose of the path")] = Pose()
     segments: tuple[Segment, ...] = (Segment(),) * 3
 
 
 ReasonTold = Annotated[int, Signal("1", "why the controller failed", states=Reason)]
-Shifts = Annotated[int, Signal("1", "manoeuvres so far, the first reverse counts one"), Role.LOCAL]
-ReferencePose = Annotated[Pose, Role.LOCAL, Group("point of the path beside the rear-axle midpoint")]
+Shifts = Annotated[int, Signal("1", "number of manoeuvres so far; the first reverse motion counts as one"), Role.LOCAL]
+ReferencePose = Annotated[Pose, Role.LOCAL, Group("reference point of the path beside the rear-axle midpoint")]
 LateralError = Annotated[float, Signal("m", "y of the car minus y of the reference, in the slot's frame"), Role.LOCAL]
 HeadingError = Annotated[float, Signal("rad", "heading of the car minus heading of the reference"), Role.LOCAL]
 PlannedPath = Annotated[Path, Role.LOCAL]
@@ -127,7 +127,7 @@ class RefusedOutput(NamedTuple):
 
 
 SampleTime = Annotated[float, Signal("s", "controller's sample time, whole nanoseconds", 1e-4, 1.0, HOUSE)]
-AssumedCar = Annotated[Car, Group("the car it thinks it drives")]
+AssumedCar = Annotated[Car, Group("vehicle model used by the controller")]
 Target = Annotated[Pose, Group("pose of the rear-axle midpoint to park at", ANYWHERE)]
 Thresholds = Annotated[ThresholdParams, Role.TUNABLE]
 Limits = Annotated[LimitParams, Role.TUNABLE]

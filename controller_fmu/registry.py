@@ -86,7 +86,7 @@ SYSTEM_CHOICES = union("System", __name__, str(System.__doc__), *(row.choices fo
 class Choosing(NamedTuple):
     """What chooses among them."""
 
-    system: Annotated[int, Signal("1", "which paper's system", states=System)] = next(iter(System))
+    system: Annotated[int, Signal("1", "controller selection", states=System)] = next(iter(System))
 
 
 if TYPE_CHECKING:

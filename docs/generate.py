@@ -43,7 +43,7 @@ from orchestrator.scenario.requirements import Occasion, Requirement, Window, re
 from orchestrator.scenario.scenario import Scenario, Slot, Target  # noqa: E402
 from orchestrator.text.command_parser import CommandParser  # noqa: E402
 from orchestrator.verdict.judge import Check  # noqa: E402
-from orchestrator.verdict.limit_text import asked  # noqa: E402
+from orchestrator.verdict.limit_text import required_text  # noqa: E402
 from orchestrator.verdict.summary import Event, Final, FmuUsed, Summary  # noqa: E402
 
 MADE = "<!-- Made by docs/generate.py; do not edit. -->\n"
@@ -222,7 +222,7 @@ def scenarios_page() -> str:
     cars = sorted(path.stem for path in (ROOM / "cars").glob("*.yaml"))
     parts.append("## Cars\n\n" + "\n".join(f"- `{name}`" for name in cars) + "\n")
     for path in sorted((ROOM / "limits").glob("*.yaml")):
-        rows = [[item.id, f"`{item.signal}`", asked(item), item.source] for item in read_requirements(path)]
+        rows = [[item.id, f"`{item.signal}`", required_text(item), item.source] for item in read_requirements(path)]
         parts.append(f"## Limits: {path.stem}\n\n{table(['id', 'signal', 'limit', 'source'], rows)}")
     return "\n".join(parts)
 

@@ -83,7 +83,7 @@ def _resolved(path: Path) -> Path:
     try:
         found = path.resolve()
     except RuntimeError as error:
-        raise OSError(errno.ELOOP, "its links lead in a ring", str(path)) from error
+        raise OSError(errno.ELOOP, "too many levels of symbolic links (a cycle)", str(path)) from error
     if not found.name:
         raise IsADirectoryError(errno.EISDIR, "is a folder", str(path))
     return found

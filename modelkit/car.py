@@ -11,7 +11,7 @@ from typing import Annotated, NamedTuple
 from modelkit.signal import Role, Signal
 
 GUO = "Guo 2015, Table 1"
-HOUSE = "chosen; the source states none"
+HOUSE = "project default; the source states none"
 USUAL = "usual for parking sensors"
 
 
@@ -56,11 +56,11 @@ class CarUltrasonic(NamedTuple):
     """The twelve ultrasonic sensors: where they sit, how far they hear, how often they tell."""
 
     mounts: tuple[SensorMount, ...] = SENSOR_MOUNTS
-    half_angle: Annotated[float, Signal("rad", "half opening of the cone", 0.01, 1.5, USUAL)] = 30.0 * pi / 180.0
-    min_range: Annotated[float, Signal("m", "nearest distance told", 0.0, 10.0, USUAL)] = 0.15
-    max_range: Annotated[float, Signal("m", "farthest distance heard", 0.1, 100.0, USUAL)] = 5.0
-    resolution: Annotated[float, Signal("m", "step of a reading; 0: none", 0.0, 1.0, USUAL)] = 0.01
-    cycle: Annotated[float, Signal("s", "time between readings", 1e-3, 10.0, USUAL)] = 0.04
+    half_angle: Annotated[float, Signal("rad", "half beam width", 0.01, 1.5, USUAL)] = 30.0 * pi / 180.0
+    min_range: Annotated[float, Signal("m", "minimum range (blind zone)", 0.0, 10.0, USUAL)] = 0.15
+    max_range: Annotated[float, Signal("m", "maximum range", 0.1, 100.0, USUAL)] = 5.0
+    resolution: Annotated[float, Signal("m", "quantisation of a measurement; 0: none", 0.0, 1.0, USUAL)] = 0.01
+    cycle: Annotated[float, Signal("s", "measurement cycle", 1e-3, 10.0, USUAL)] = 0.04
 
 
 class Car(NamedTuple):

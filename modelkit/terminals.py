@@ -11,7 +11,7 @@ TERMINALS = (
     Terminal("ultrasonic", "distances the sensors tell", ("ultrasonic",)),
     Terminal(
         "driver",
-        "what is asked of the driver, and what the driver does",
+        "prompts to the driver, and the driver's actions",
         ("prompt", "advised_speed", "brake_pedal", "driver_takeover", "apa_switch", "driver_confirm"),
     ),
     Terminal(

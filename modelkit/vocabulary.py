@@ -55,14 +55,14 @@ class VehicleFault(IntEnum):
     """A parameter is NaN, infinite or without meaning."""
 
 
-SteeringWheelRequest = Annotated[float, Signal("rad", "steering-wheel angle asked for, left positive")]
+SteeringWheelRequest = Annotated[float, Signal("rad", "requested steering-wheel angle, left positive")]
 SteeringActive = Annotated[bool, Signal("1", "the controller holds the steering wheel")]
 PromptShown = Annotated[int, Signal("1", "prompt shown to the driver", states=Prompt)]
 AdvisedSpeed = Annotated[float, Signal("m/s", "largest speed advised with the prompt, >= 0")]
-SpeedControlActive = Annotated[bool, Signal("1", "the controller drives: speed_request holds")]
-SpeedRequest = Annotated[float, Signal("m/s", "speed asked for, reverse negative")]
-ForceControlActive = Annotated[bool, Signal("1", "force_request holds, not speed_request")]
-ForceRequest = Annotated[float, Signal("N", "drive and brake force asked for, forward positive")]
+SpeedControlActive = Annotated[bool, Signal("1", "the controller controls the speed: speed_request applies")]
+SpeedRequest = Annotated[float, Signal("m/s", "requested speed, reverse negative")]
+ForceControlActive = Annotated[bool, Signal("1", "force_request applies instead of speed_request")]
+ForceRequest = Annotated[float, Signal("N", "requested drive and brake force, forward positive")]
 BrakeRequest = Annotated[bool, Signal("1", "the controller brakes to standstill and holds")]
 """What every controller asks of a car: an output of each controller, an input of the car."""
 
@@ -71,7 +71,7 @@ SteeringWheelAngle = Annotated[float, Signal("rad", "steering-wheel angle, left 
 GearShown = Annotated[int, Signal("1", "selector position", states=Gear)]
 BrakePedal = Annotated[float, Signal("1", "brake pedal, 0 released to 1 full", 0.0, 1.0)]
 DriverTakeover = Annotated[bool, Signal("1", "the driver has taken over")]
-VehicleFaultShown = Annotated[int, Signal("1", "why the vehicle brakes by itself", states=VehicleFault)]
+VehicleFaultShown = Annotated[int, Signal("1", "reason for which the vehicle brakes by itself", states=VehicleFault)]
 ParkingSwitch = Annotated[bool, Signal("1", "the driver has switched the parking assist on")]
 DriverConfirm = Annotated[bool, Signal("1", "the driver presses the confirm button")]
 """What a car tells every controller: an output of the car, an input of the controllers."""

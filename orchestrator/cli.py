@@ -150,7 +150,7 @@ class _Version(argparse.Action):
 
 @contextmanager
 def _as_asked(parsed: argparse.Namespace) -> Iterator[None]:
-    """With ``--quiet`` nothing is printed but errors, and JSON if that was asked for."""
+    """With ``--quiet`` nothing is printed but errors, and JSON if requested."""
     from orchestrator.text.console import COMMAND, QUIET
 
     token = QUIET.set(parsed.quiet)

@@ -34,7 +34,7 @@ from vehicle_fmu.odometry import OdometryParams
 from vehicle_fmu.scene import SceneParams
 from vehicle_fmu.ultrasonic import UltrasonicParams
 
-HOUSE = "chosen; the source states none"
+HOUSE = "project default; the source states none"
 NEVER = 1e9
 """A time or distance that is not reached (FMI 2.0 has no portable infinity)."""
 
@@ -53,11 +53,11 @@ class Body(IntEnum):
 class PersonInput(NamedTuple):
     """A person at pedals and lever in place of the driver modelled: in a driving simulator, or a page."""
 
-    drives: Annotated[bool, Signal("1", "the person has pedals and lever, not the driver modelled")] = False
+    drives: Annotated[bool, Signal("1", "manual driving: pedals and lever replace the driver model")] = False
     accelerator: Annotated[float, Signal("1", "accelerator pedal, 0 released to 1 full", 0.0, 1.0)] = 0.0
     brake: Annotated[float, Signal("1", "brake pedal, 0 released to 1 full", 0.0, 1.0)] = 0.0
-    lever: Annotated[int, Signal("1", "lever, which the gear follows at standstill", states=Gear)] = Gear.PARK
-    confirm: Annotated[bool, Signal("1", "the person presses the confirm button")] = False
+    lever: Annotated[int, Signal("1", "selector lever; the gear follows it at standstill", states=Gear)] = Gear.PARK
+    confirm: Annotated[bool, Signal("1", "confirm button pressed")] = False
 
 
 class VehicleInput(NamedTuple):
@@ -79,7 +79,7 @@ class VehicleOutput(NamedTuple):
     """To the controller, the log and the judge."""
 
     pose: Annotated[Pose, Group("rear-axle midpoint")] = Pose()
-    odometry: Annotated[Pose, Group("rear-axle midpoint as the car believes it")] = Pose()
+    odometry: Annotated[Pose, Group("rear-axle midpoint estimated by dead reckoning")] = Pose()
     speed: Annotated[float, Signal("m/s", "speed of the rear-axle midpoint, reverse negative")] = 0.0
     measured_speed: MeasuredSpeed = 0.0
     steering_wheel_angle: SteeringWheelAngle = 0.0
@@ -90,12 +90,16 @@ class VehicleOutput(NamedTuple):
     vehicle_fault: VehicleFaultShown = 0
     distance: Annotated[float, Signal("m", "distance driven, both directions counted")] = 0.0
     ultrasonic: tuple[
-        Annotated[float, Signal("m", "distance heard: 1-4 front, 5-8 rear, 9-10 left, 11-12 right"), Role.SAMPLED], ...
+        Annotated[float, Signal("m", "measured range: 1-4 front, 5-8 rear, 9-10 left, 11-12 right"), Role.SAMPLED], ...
     ] = (0.0,) * 12
     clearance: Annotated[
-        float, Signal("m", "outline to the nearest thing of the scene; in contact minus the depth; 1e9: nothing there")
+        float,
+        Signal(
+            "m",
+            "clearance between outline and nearest obstacle; in contact minus the penetration depth; 1e9: no obstacle",
+        ),
     ] = NEVER
-    contact: Annotated[bool, Signal("1", "the outline touches something")] = False
+    contact: Annotated[bool, Signal("1", "the outline touches an obstacle")] = False
     apa_switch: ParkingSwitch = False
     driver_confirm: DriverConfirm = False
 
@@ -103,17 +107,15 @@ class VehicleOutput(NamedTuple):
 class SteeringParams(NamedTuple):
     """How the steering obeys: what is not said of it in ``car.steering``."""
 
-    dead_time: Annotated[float, Signal("s", "from a request to the first movement", 0.0, 1.0, HOUSE)] = 0.0
-    lag: Annotated[float, Signal("s", "time constant behind the request", 0.0, 2.0, HOUSE), Role.TUNABLE] = 0.0
-    backlash: Annotated[float, Signal("rad", "steering-wheel angle without effect on the wheels", 0.0, 1.0, HOUSE)] = (
-        0.0
-    )
+    dead_time: Annotated[float, Signal("s", "dead time", 0.0, 1.0, HOUSE)] = 0.0
+    lag: Annotated[float, Signal("s", "first-order lag (time constant)", 0.0, 2.0, HOUSE), Role.TUNABLE] = 0.0
+    backlash: Annotated[float, Signal("rad", "backlash (total free play at the steering wheel)", 0.0, 1.0, HOUSE)] = 0.0
     standstill_rate: Annotated[
         float,
         Signal("rad/s", "largest steering-wheel rate at standstill; 0: as when moving", 0.0, 100.0, HOUSE),
         Role.TUNABLE,
     ] = 0.0
-    stuck_time: Annotated[float, Signal("s", "the wheel sticks from this time on; 1e9: never", 0.0, 1e9, HOUSE)] = 1e9
+    stuck_time: Annotated[float, Signal("s", "actuator stuck from this time on; 1e9: never", 0.0, 1e9, HOUSE)] = 1e9
 
 
 class DriveParams(NamedTuple):
@@ -122,13 +124,17 @@ class DriveParams(NamedTuple):
     acceleration_limit: Annotated[float, Signal("m/s2", "largest acceleration", 0.01, 20.0, HOUSE)] = 1.5
     deceleration_limit: Annotated[float, Signal("m/s2", "largest deceleration", 0.01, 20.0, HOUSE)] = 3.0
     shift_time: Annotated[
-        float, Signal("s", "from one gear to the other, at standstill; 0: at once", 0.0, 10.0, HOUSE)
+        float, Signal("s", "duration of a gear change at standstill; 0: immediate", 0.0, 10.0, HOUSE)
     ] = 0.0
-    speed_gain: Annotated[float, Signal("1/s", "pedals: acceleration over speed error", 0.0, 100.0, HOUSE)] = 5.0
-    speed_integral: Annotated[float, Signal("1/s2", "pedals: acceleration over integral of it", 0.0, 100.0, HOUSE)] = (
-        5.0
-    )
-    integral_limit: Annotated[float, Signal("m", "largest integral of the speed error", 0.0, 100.0, HOUSE)] = 0.5
+    speed_gain: Annotated[
+        float, Signal("1/s", "driver model: proportional gain of the speed error", 0.0, 100.0, HOUSE)
+    ] = 5.0
+    speed_integral: Annotated[
+        float, Signal("1/s2", "driver model: integral gain of the speed error", 0.0, 100.0, HOUSE)
+    ] = 5.0
+    integral_limit: Annotated[
+        float, Signal("m", "driver model: anti-windup limit of the speed-error integral", 0.0, 100.0, HOUSE)
+    ] = 0.5
     drive_force_limit: Annotated[float, Signal("N", "largest drive force, all wheels", 0.0, 1e5, HOUSE)] = 4000.0
     brake_force_limit: Annotated[float, Signal("N", "largest brake force, all wheels", 0.0, 1e5, HOUSE)] = 12000.0
     drive_lag: Annotated[float, Signal("s", "lag of the drive force", 0.0, 2.0, HOUSE)] = 0.10
@@ -137,16 +143,16 @@ class DriveParams(NamedTuple):
         float, Signal("m/s2", "brake force over mass while standing", 0.0, 20.0, HOUSE), Role.FIXED
     ] = 4.0
     creep_force: Annotated[float, Signal("N", "force at idle in D and R at rest; 0: none", 0.0, 5000.0, HOUSE)] = 0.0
-    creep_speed: Annotated[float, Signal("m/s", "speed at which the creep force is gone", 0.1, 10.0, HOUSE)] = 2.0
+    creep_speed: Annotated[float, Signal("m/s", "speed at which the creep force is zero", 0.1, 10.0, HOUSE)] = 2.0
 
 
 class ProfilePoint(NamedTuple):
     """One corner of the driver's speed profile."""
 
     at: Annotated[
-        float, Signal("1", "time [s] or driven distance [m] from which the speed holds; 1e9: unused", 0.0, NEVER)
+        float, Signal("1", "time [s] or driven distance [m] from which the speed applies; 1e9: unused", 0.0, NEVER)
     ] = NEVER
-    speed: Annotated[float, Signal("m/s", "speed the driver wants, >= 0", 0.0, 50.0)] = 0.0
+    speed: Annotated[float, Signal("m/s", "target speed of the driver, >= 0", 0.0, 50.0)] = 0.0
 
 
 class DriverParams(NamedTuple):
@@ -154,25 +160,27 @@ class DriverParams(NamedTuple):
 
     profile: Annotated[tuple[ProfilePoint, ...], Role.FIXED] = (ProfilePoint(0.0, 0.5),) + (ProfilePoint(),) * 7
     profile_over_distance: Annotated[bool, Signal("1", "profile points are distances, not times"), Role.FIXED] = False
-    reaction_delay: Annotated[float, Signal("s", "from a prompt to its obedience", 0.0, 10.0, HOUSE)] = 0.3
+    reaction_delay: Annotated[float, Signal("s", "reaction time to a prompt", 0.0, 10.0, HOUSE)] = 0.3
     obeys_stop: Annotated[bool, Signal("1", "stops when prompted")] = True
     obeys_direction: Annotated[bool, Signal("1", "changes direction when prompted")] = True
     obeys_slow_down: Annotated[bool, Signal("1", "slows down when prompted")] = True
     takeover_time: Annotated[float, Signal("s", "takes over at this time; 1e9: never", 0.0, NEVER)] = NEVER
     brake_time: Annotated[float, Signal("s", "brakes to standstill from this time on; 1e9: never", 0.0, NEVER)] = NEVER
     grab_time: Annotated[
-        float, Signal("s", "grabs the wheel and turns it from this time on; 1e9: never", 0.0, NEVER)
+        float, Signal("s", "overrides the steering wheel from this time on; 1e9: never", 0.0, NEVER)
     ] = NEVER
-    grab_angle: Annotated[float, Signal("rad", "steering-wheel angle turned to when grabbing", -20.0, 20.0)] = 0.0
-    speed_error: Annotated[float, Signal("1", "drives faster than meant by this share", -1.0, 5.0)] = 0.0
-    wobble: Annotated[float, Signal("m/s", "amplitude of the speed's swing about the one meant", 0.0, 10.0)] = 0.0
-    wobble_period: Annotated[float, Signal("s", "period of that swing", 0.1, 1000.0)] = 3.0
+    grab_angle: Annotated[float, Signal("rad", "steering-wheel angle held by the override", -20.0, 20.0)] = 0.0
+    speed_error: Annotated[float, Signal("1", "relative speed error of the driver", -1.0, 5.0)] = 0.0
+    wobble: Annotated[float, Signal("m/s", "amplitude of the speed oscillation about the target speed", 0.0, 10.0)] = (
+        0.0
+    )
+    wobble_period: Annotated[float, Signal("s", "period of the speed oscillation", 0.1, 1000.0)] = 3.0
     apa_switch_time: Annotated[float, Signal("s", "switches the parking assist on; 1e9: never", 0.0, NEVER)] = NEVER
     apa_switch_off_time: Annotated[float, Signal("s", "switches it off again; 1e9: never", 0.0, NEVER)] = NEVER
     confirm_time: Annotated[
         float, Signal("s", "presses the confirm button for half a second; 1e9: never", 0.0, NEVER)
     ] = NEVER
-    confirms_when_asked: Annotated[bool, Signal("1", "presses the confirm button when prompted to")] = True
+    confirms_when_asked: Annotated[bool, Signal("1", "presses the confirm button when prompted")] = True
 
 
 class VehicleParams(NamedTuple):

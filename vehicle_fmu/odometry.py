@@ -13,22 +13,22 @@ from typing import Annotated, NamedTuple
 from modelkit.signal import Role, Signal
 from modelkit.vocabulary import Pose
 
-HOUSE = "chosen; the source states none"
+HOUSE = "project default; the source states none"
 
 
 class OdometryParams(NamedTuple):
     """Errors of wheel-speed and steering sensors; perfect by default."""
 
-    perfect: Annotated[bool, Signal("1", "the controller is given the true pose and speed")] = True
+    perfect: Annotated[bool, Signal("1", "ideal odometry: the controller receives the true pose and speed")] = True
     radius_error: Annotated[
         float, Signal("1", "relative error of the wheel radius", -0.5, 0.5, HOUSE), Role.TUNABLE
     ] = 0.0
     steering_offset: Annotated[
-        float, Signal("rad", "error of the front-wheel angle measured", -0.5, 0.5, HOUSE), Role.TUNABLE
+        float, Signal("rad", "error of the measured front-wheel angle", -0.5, 0.5, HOUSE), Role.TUNABLE
     ] = 0.0
-    tick: Annotated[float, Signal("m", "way rolled per wheel pulse; 0: no steps", 0.0, 1.0, HOUSE)] = 0.0
+    tick: Annotated[float, Signal("m", "distance per wheel-speed pulse; 0: continuous", 0.0, 1.0, HOUSE)] = 0.0
     steering_resolution: Annotated[
-        float, Signal("rad", "step of the front-wheel angle measured; 0: none", 0.0, 0.5, HOUSE)
+        float, Signal("rad", "quantisation of the measured front-wheel angle; 0: none", 0.0, 0.5, HOUSE)
     ] = 0.0
 
 

@@ -12,7 +12,7 @@ from modelkit.geometry import FAR, Box, boxes_depth, boxes_gap, centre_gap, line
 from modelkit.signal import Signal
 from modelkit.vocabulary import Pose
 
-HOUSE = "chosen; the source states none"
+HOUSE = "project default; the source states none"
 FOREVER = 1e9
 TOUCH = 1e-9
 """Penetration depth [m] of what only touches: less than any other."""
@@ -28,12 +28,12 @@ class Obstacle(NamedTuple):
     heading: Annotated[float, Signal("rad", "direction of its length", -100.0, 100.0)] = 0.0
     length: Annotated[float, Signal("m", "length; 0: unused", 0.0, 1000.0)] = 0.0
     width: Annotated[float, Signal("m", "width", 0.0, 1000.0)] = 0.0
-    appear_at: Annotated[float, Signal("s", "there from this time on", 0.0, FOREVER)] = 0.0
-    disappear_at: Annotated[float, Signal("s", "gone from this time on; 1e9: never", 0.0, FOREVER)] = FOREVER
+    appear_at: Annotated[float, Signal("s", "present from this time on", 0.0, FOREVER)] = 0.0
+    disappear_at: Annotated[float, Signal("s", "removed from this time on; 1e9: never", 0.0, FOREVER)] = FOREVER
     speed_x: Annotated[float, Signal("m/s", "speed along x while it moves", -50.0, 50.0)] = 0.0
     speed_y: Annotated[float, Signal("m/s", "speed along y while it moves", -50.0, 50.0)] = 0.0
     moves_at: Annotated[float, Signal("s", "moves from this time on", 0.0, FOREVER)] = 0.0
-    halts_at: Annotated[float, Signal("s", "stands again from this time on; 1e9: never", 0.0, FOREVER)] = FOREVER
+    halts_at: Annotated[float, Signal("s", "stops at this time; 1e9: never", 0.0, FOREVER)] = FOREVER
 
 
 class Kerb(NamedTuple):

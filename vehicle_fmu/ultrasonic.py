@@ -22,9 +22,11 @@ from vehicle_fmu.scene import HOUSE, SceneParams, is_there, obstacle_box
 class UltrasonicParams(NamedTuple):
     """What spoils the readings; noise and dropout are off by default. The rest is in ``car.ultrasonic``."""
 
-    noise: Annotated[float, Signal("m", "standard deviation of a reading", 0.0, 10.0, HOUSE), Role.TUNABLE] = 0.0
-    dropout: Annotated[float, Signal("1", "probability that a reading is lost", 0.0, 1.0, HOUSE), Role.TUNABLE] = 0.0
-    kerb_height: Annotated[float, Signal("m", "kerbs lower than this are not heard", 0.0, 10.0, HOUSE)] = 0.08
+    noise: Annotated[float, Signal("m", "standard deviation of a measurement", 0.0, 10.0, HOUSE), Role.TUNABLE] = 0.0
+    dropout: Annotated[float, Signal("1", "probability that a measurement is lost", 0.0, 1.0, HOUSE), Role.TUNABLE] = (
+        0.0
+    )
+    kerb_height: Annotated[float, Signal("m", "kerbs lower than this are not detected", 0.0, 10.0, HOUSE)] = 0.08
     seed: Annotated[int, Signal("1", "seed of noise and dropout", 0, 2147483647)] = 1
 
 

@@ -28,15 +28,17 @@ class RoomParams(NamedTuple):
     line: Annotated[float, Signal("m", "target to the side of the neighbours", 0.0, 10.0, HOUSE)] = 0.825
     depth: Annotated[float, Signal("m", "side of the neighbours to the far side of the slot", 0.0, 100.0, HOUSE)] = 2.0
     road: Annotated[float, Signal("m", "side of the neighbours to the far side of the road", 1.0, 100.0, HOUSE)] = 7.0
-    margin: Annotated[float, Signal("m", "kept to all of these", 0.0, 1.0, HOUSE)] = 0.1
+    margin: Annotated[float, Signal("m", "safety margin to all of these", 0.0, 1.0, HOUSE)] = 0.1
 
 
 class PathParams(NamedTuple):
     """How paths are made."""
 
-    radius_reserve: Annotated[float, Signal("1", "smallest radius over the car's smallest", 1.0, 3.0, HOUSE)] = 1.03
-    rate_reserve: Annotated[float, Signal("1", "share of the wheel's rate that a path uses", 0.1, 1.0, HOUSE)] = 0.88
-    rest: Annotated[float, Signal("m", "straight way planned before the target", 0.0, 2.0, HOUSE)] = 0.2
+    radius_reserve: Annotated[
+        float, Signal("1", "smallest planned radius over the minimum turning radius", 1.0, 3.0, HOUSE)
+    ] = 1.03
+    rate_reserve: Annotated[float, Signal("1", "fraction of the steering rate used by a path", 0.1, 1.0, HOUSE)] = 0.88
+    rest: Annotated[float, Signal("m", "length of the straight segment before the target", 0.0, 2.0, HOUSE)] = 0.2
     k1: Annotated[float, Signal("1/m2", "tracking, distance gain", 0.0, 100.0, HOUSE)] = 1.0
     k2: Annotated[float, Signal("1/m", "tracking, heading gain", 0.0, 100.0, HOUSE)] = 2.0
 
@@ -44,21 +46,31 @@ class PathParams(NamedTuple):
 class BeliefParams(NamedTuple):
     """What is believed of the driver before he has shown it."""
 
-    reaction: Annotated[float, Signal("s", "from a prompt to its effect", 0.0, 5.0, HOUSE)] = 0.6
-    deceleration: Annotated[float, Signal("m/s2", "when he stops", 0.1, 10.0, HOUSE)] = 2.7
-    gentle: Annotated[float, Signal("m/s2", "deceleration of the speed advised", 0.05, 10.0, HOUSE)] = 0.5
-    speed_limit: Annotated[float, Signal("m/s", "speed advised where nothing asks for less", 0.1, 10.0, HOUSE)] = 2.5
-    creep_speed: Annotated[float, Signal("m/s", "speed advised at the end of a way", 0.01, 2.0, HOUSE)] = 0.2
+    reaction: Annotated[float, Signal("s", "driver reaction time", 0.0, 5.0, HOUSE)] = 0.6
+    deceleration: Annotated[float, Signal("m/s2", "deceleration of the driver when stopping", 0.1, 10.0, HOUSE)] = 2.7
+    gentle: Annotated[float, Signal("m/s2", "deceleration of the advised speed", 0.05, 10.0, HOUSE)] = 0.5
+    speed_limit: Annotated[float, Signal("m/s", "default advised speed", 0.1, 10.0, HOUSE)] = 2.5
+    creep_speed: Annotated[float, Signal("m/s", "advised speed at the end of a path segment", 0.01, 2.0, HOUSE)] = 0.2
 
 
 class EndParams(NamedTuple):
     """When the car is off its path, and when it is parked."""
 
-    leave_lateral: Annotated[float, Signal("m", "off the path: stop, plan anew", 0.0, 10.0, HOUSE)] = 0.12
-    leave_heading: Annotated[float, Signal("rad", "off the path: stop, plan anew", 0.0, 1.5, HOUSE)] = 0.15
-    lateral: Annotated[float, Signal("m", "at standstill: parked", 0.0, 10.0, HOUSE)] = 0.035
-    heading: Annotated[float, Signal("rad", "at standstill: parked", 0.0, 1.5, HOUSE)] = 0.8 * pi / 180.0
-    along: Annotated[float, Signal("m", "at standstill: parked", 0.0, 10.0, HOUSE)] = 0.28
+    leave_lateral: Annotated[
+        float, Signal("m", "path deviation at which the vehicle stops and replans", 0.0, 10.0, HOUSE)
+    ] = 0.12
+    leave_heading: Annotated[
+        float, Signal("rad", "path deviation at which the vehicle stops and replans", 0.0, 1.5, HOUSE)
+    ] = 0.15
+    lateral: Annotated[
+        float, Signal("m", "error at standstill within which the vehicle is parked", 0.0, 10.0, HOUSE)
+    ] = 0.035
+    heading: Annotated[
+        float, Signal("rad", "error at standstill within which the vehicle is parked", 0.0, 1.5, HOUSE)
+    ] = 0.8 * pi / 180.0
+    along: Annotated[float, Signal("m", "error at standstill within which the vehicle is parked", 0.0, 10.0, HOUSE)] = (
+        0.28
+    )
 
 
 class AdaptiveParams(NamedTuple):

@@ -35,12 +35,12 @@ class SlotKind(IntEnum):
 class ToldSlot(NamedTuple):
     """A slot as somebody outside sees it: A and B where it opens to the road, C behind B, D behind A."""
 
-    kind: Annotated[int, Signal("1", "how to stand in it; none: no slot is told", states=SlotKind)] = SlotKind.NONE
+    kind: Annotated[int, Signal("1", "slot type; none: no external slot", states=SlotKind)] = SlotKind.NONE
     ax: Annotated[float, Signal("m", "x of corner A, at the road")] = 0.0
     ay: Annotated[float, Signal("m", "y of corner A")] = 0.0
     bx: Annotated[float, Signal("m", "x of corner B, at the road")] = 0.0
     by: Annotated[float, Signal("m", "y of corner B")] = 0.0
-    cx: Annotated[float, Signal("m", "x of corner C, behind B; where C and D are A and B the depth is not told")] = 0.0
+    cx: Annotated[float, Signal("m", "x of corner C, behind B; C = A and D = B: depth unknown")] = 0.0
     cy: Annotated[float, Signal("m", "y of corner C")] = 0.0
     dx: Annotated[float, Signal("m", "x of corner D, behind A")] = 0.0
     dy: Annotated[float, Signal("m", "y of corner D")] = 0.0

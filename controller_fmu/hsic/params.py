@@ -18,7 +18,7 @@ from modelkit.car import Car
 from modelkit.signal import Role, Signal, Subset
 
 PAPER = "HSIC paper"
-HOUSE = "chosen; the source states none"
+HOUSE = "project default; the source states none"
 DEGREE = pi / 180.0
 
 
@@ -29,7 +29,7 @@ class HsicSlot(NamedTuple):
     slot_width: Annotated[float, Signal("m", "width of the slot", 0.1, 10.0, HOUSE)] = 2.2
     rear_gap: Annotated[float, Signal("m", "gap to the slot's rear end when parked", 0.0, 10.0, HOUSE)] = 0.6
     ready_gap: Annotated[float, Signal("m", "gap to the neighbour at the ready point", 0.0, 5.0, PAPER)] = 0.5
-    end_gap: Annotated[float, Signal("m", "gap kept to the slot's ends", 0.0, 5.0, HOUSE)] = 0.2
+    end_gap: Annotated[float, Signal("m", "clearance to the slot's ends", 0.0, 5.0, HOUSE)] = 0.2
     radius_reserve: Annotated[float, Signal("1", "planned radius over the smallest", 1.0, 3.0, HOUSE)] = 1.05
 
 
@@ -40,21 +40,24 @@ class HsicThresholds(NamedTuple):
         5.0 * DEGREE
     )
     turned: Annotated[float, Signal("rad", "heading error that ends an arc", 1e-4, 1.5, HOUSE)] = 0.4 * DEGREE
-    near: Annotated[float, Signal("m", "distance below which the car is near", 1e-3, 20.0, HOUSE)] = 0.8
+    near: Annotated[float, Signal("m", "distance below which the key point counts as near", 1e-3, 20.0, HOUSE)] = 0.8
     reached: Annotated[float, Signal("m", "distance at which a key point is reached", 1e-4, 1.0, HOUSE)] = 0.01
     ready_heading: Annotated[float, Signal("rad", "heading error accepted at the ready point", 1e-4, 0.5, HOUSE)] = (
         1.0 * DEGREE
     )
     ready_lateral: Annotated[float, Signal("m", "lateral error accepted at the ready point", 1e-3, 2.0, HOUSE)] = 0.1
-    retreat: Annotated[float, Signal("m", "driven back for another approach", 0.1, 20.0, HOUSE)] = 3.0
+    retreat: Annotated[float, Signal("m", "distance reversed for another approach", 0.1, 20.0, HOUSE)] = 3.0
     parked_heading: Annotated[float, Signal("rad", "largest heading error of a parked car", 1e-4, 0.5, PAPER)] = (
         5.0 * DEGREE
     )
     parked_lateral: Annotated[float, Signal("m", "largest lateral error of a parked car", 1e-4, 1.0, PAPER)] = 0.1
     shuffle_share: Annotated[
-        float, Signal("1", "share of the parked limits that ends the shuffle", 0.01, 1.0, HOUSE)
+        float, Signal("1", "fraction of the parked limits at which the in-slot shuffle ends", 0.01, 1.0, HOUSE)
     ] = 0.6
-    wheel: Annotated[float, Signal("rad", "steering wheel counts as turned", 1e-4, 1.0, HOUSE)] = 2.0 * DEGREE
+    wheel: Annotated[
+        float,
+        Signal("rad", "steering-wheel error within which the requested angle counts as reached", 1e-4, 1.0, HOUSE),
+    ] = 2.0 * DEGREE
 
 
 class HsicGains(NamedTuple):
@@ -65,14 +68,14 @@ class HsicGains(NamedTuple):
         float, Signal("1/m", "derivative, heading error (the rate of the lateral one) to curvature", 0.0, 100.0, HOUSE)
     ] = 4.0
     integral: Annotated[
-        float, Signal("1/m3", "integral over the way, lateral error to curvature", 0.0, 100.0, HOUSE)
+        float, Signal("1/m3", "integral over the travelled distance, lateral error to curvature", 0.0, 100.0, HOUSE)
     ] = 0.1
     steepest: Annotated[
-        float, Signal("rad", "heading at which the ready point's line is approached at most", 0.01, 1.0, HOUSE)
+        float, Signal("rad", "maximum heading of the approach to the ready point's line", 0.01, 1.0, HOUSE)
     ] = 4.5 * DEGREE
-    strengthened: Annotated[float, Signal("1", "factor on both where the car moves away", 1.0, 10.0, HOUSE)] = 2.0
+    strengthened: Annotated[float, Signal("1", "factor on both gains while the error grows", 1.0, 10.0, HOUSE)] = 2.0
     fast: Annotated[float, Signal("m/s", "speed far from the key point", 0.01, 3.0, HOUSE)] = 0.8
-    slow: Annotated[float, Signal("m/s", "speed with a large heading error", 0.01, 3.0, HOUSE)] = 0.35
+    slow: Annotated[float, Signal("m/s", "speed while the heading error is large", 0.01, 3.0, HOUSE)] = 0.35
     approach: Annotated[float, Signal("1/s", "speed per distance near the key point", 0.01, 10.0, HOUSE)] = 1.0
     creep: Annotated[float, Signal("m/s", "smallest speed", 1e-3, 1.0, HOUSE)] = 0.12
 

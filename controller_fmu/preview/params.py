@@ -15,7 +15,7 @@ from modelkit.car import Car
 from modelkit.signal import Role, Signal, Subset
 
 PAPER = "preview paper"
-HOUSE = "chosen; the source states none"
+HOUSE = "project default; the source states none"
 ROAD_PIECES = 12
 
 

@@ -37,7 +37,7 @@ class PreviewSignals(NamedTuple):
     kappa2: Annotated[float, Signal("1/m", "road curvature at the second preview point")] = 0.0
     y_l: Annotated[float, Signal("m", "lateral error at the first preview point, road to the left positive")] = 0.0
     eps_l: Annotated[float, Signal("rad", "heading error at the first preview point, road turning left positive")] = 0.0
-    wanted_speed: Annotated[float, Signal("m/s", "speed set by the sequence")] = 0.0
+    wanted_speed: Annotated[float, Signal("m/s", "target speed of the sequence")] = 0.0
 
 
 class PreviewOutput(NamedTuple):

@@ -33,11 +33,11 @@ from modelkit.vocabulary import (
 class ZhangSignals(NamedTuple):
     """What the system found."""
 
-    path_status: Annotated[int, Signal("1", "whether there is a quintic path", states=PathStatus)] = 0
-    largest_curvature: Annotated[float, Signal("1/m", "largest curvature of the path, or of the best one refused")] = (
-        0.0
-    )
-    solver_status: Annotated[int, Signal("1", "how the QP solver ended", states=Status)] = 0
+    path_status: Annotated[int, Signal("1", "a quintic path exists", states=PathStatus)] = 0
+    largest_curvature: Annotated[
+        float, Signal("1/m", "largest curvature of the path, or of the best rejected candidate")
+    ] = 0.0
+    solver_status: Annotated[int, Signal("1", "exit status of the QP solver", states=Status)] = 0
     iterations: Annotated[int, Signal("1", "iterations of the QP solver")] = 0
     reference_angle: Annotated[float, Signal("rad", "front-wheel angle of the path's curvature, left positive")] = 0.0
     set_speed: Annotated[float, Signal("m/s", "speed the PID holds, reverse negative")] = 0.0

@@ -1,6 +1,6 @@
 """A system made elsewhere, read from its .ssp: components, connections with their transformations, parameters.
 
-Systems within systems become one: their components get the names of both. SSP 1.0 and 2.0; what cannot be had here, a
+Systems within systems become one: their components get the names of both. SSP 1.0 and 2.0; what is not supported, a
 component that is no FMU or lies on a server, a signal dictionary, is refused with its name. The connectors say
 which end of a connection is its source, as SSP gives start and end no direction. A connector's unit holds where the
 FMU declares none.
@@ -28,7 +28,7 @@ INDEX = re.compile(r"\[[\d, ]+\]$")
 
 
 class SspError(ValueError):
-    """What is wrong with an .ssp, or cannot be had here."""
+    """What is wrong with an .ssp, or not supported here."""
 
 
 class SspConnection(NamedTuple):
@@ -151,7 +151,7 @@ class _Reader:
             elif _kind(element) == "Component":
                 self._component(element, inner)
             else:
-                raise SspError(f"{inner}: a {_kind(element)} cannot be had here")
+                raise SspError(f"{inner}: {_kind(element)} is not supported")
         for item in _children(system, "Connections"):
             if _kind(item) == "Connection":
                 self._connection(item, path, elements)
@@ -277,7 +277,7 @@ class _Reader:
             seen.add(edge.source)
             before = self._feeds[edge.source]
             if before.values and edge.values:
-                raise SspError(f"{'.'.join(target)}: two mappings one after the other cannot be had here")
+                raise SspError(f"{'.'.join(target)}: two consecutive mappings are not supported")
             offset = edge.factor * before.offset + edge.offset
             values, converts = before.values or edge.values, before.converts and edge.converts
             edge = _Edge(before.source, before.factor * edge.factor, offset, values, converts)

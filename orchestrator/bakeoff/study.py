@@ -49,7 +49,7 @@ MEDIANS: tuple[Callable[[Drive], float], ...] = (
     lambda item: item.effort / (2.0 * math.pi),
 )
 TIME = Derived(
-    {"time": Number("s", "from the first instant, of the assist from confirmation, until the car stands parked")},
+    {"time": Number("s", "from the start (assist: from confirmation) until the vehicle is parked")},
     lambda columns: {"time": _times(columns)},
 )
 

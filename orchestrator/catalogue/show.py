@@ -25,7 +25,7 @@ STYLE = """
 .clauses td:first-child { white-space: nowrap; }
 .clauses ul { margin: .2rem 0; padding-left: 1.2rem; }
 """
-HEADS = ("clause", "asked", "sure", "verdict", "why")
+HEADS = ("clause", "required", "confidence", "verdict", "why")
 
 
 def said(verdicts: list[ClauseVerdict]) -> str:
@@ -38,7 +38,7 @@ def printed(verdicts: list[ClauseVerdict]) -> list[Table]:
     tables = []
     for name, items in groupby(verdicts, key=lambda item: item.standard.standard):
         table = Table(title=name, title_justify="left", title_style="bold", box=None, pad_edge=False)
-        for head, width in zip(("clause", "asked", "sure", "", "why"), (12, 30, 10, 10, None), strict=True):
+        for head, width in zip(("clause", "required", "confidence", "", "why"), (12, 30, 10, 10, None), strict=True):
             table.add_column(head, width=width, overflow="fold")
         for item in items:
             colour = {MET: "green", MISSED: "red"}.get(item.word, "yellow")
@@ -65,7 +65,7 @@ def markdown(verdicts: list[ClauseVerdict]) -> str:
     parts = []
     for standard, items in groupby(verdicts, key=lambda item: item.standard):
         lines = [f"### {standard.standard}\n", f"{standard.title}. Facts from: {standard.source}.\n"]
-        lines += ["| clause | asked | sure | | by |", "|---|---|---|---|---|"]
+        lines += ["| clause | required | confidence | | by |", "|---|---|---|---|---|"]
         for item in items:
             by = ", ".join(f"`{name}`" for name in (*item.entry.scenarios, *item.entry.step_tests))
             missed = ", ".join(f"`{tried.name}`" for tried in item.tried if tried.missed or tried.error)

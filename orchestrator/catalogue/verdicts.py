@@ -115,7 +115,7 @@ def _tried(entry: Clause, scenario: Scenario, recording: Recording, outcome: str
     checks = judge(requirements, recording, facts_of(recording, scenario), scenario.file)
     missed = [f"{check.id}: {sentence(check)}" for check in checks if check.judged and not check.passed]
     if entry.outcome and outcome not in entry.outcome:
-        missed.insert(0, f"{outcome.replace('_', ' ')} ({reason}), asked {' or '.join(entry.outcome)}")
+        missed.insert(0, f"{outcome.replace('_', ' ')} ({reason}), required {' or '.join(entry.outcome)}")
     return ClauseRun(scenario.name, outcome, missed, [check.id for check in checks if not check.judged], checks)
 
 

@@ -28,7 +28,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add what the command takes."""
     parser.add_argument("--fmus", choices=KINDS, action="append", help="which kind (default: all that can be built)")
     parser.add_argument("--fmi", type=int, choices=(2, 3), help="version; 3: native only (default: 2)")
-    parser.add_argument("--out", type=Path, metavar="DIR", help="where to (default: where apa's own runs look)")
+    parser.add_argument("--out", type=Path, metavar="DIR", help="output folder (default: the cache that apa run uses)")
     parser.add_argument(
         "--platform", action="append", metavar="NAME,...", help="native FMUs for these, or all (default: this one)"
     )
@@ -36,7 +36,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--system",
         action="append",
         metavar="NAME,...",
-        help="only controllers with one system each, and its variables only; or all (apa list systems)",
+        help="build an FMU with this controller and its variables only; all: one each (apa list controllers)",
     )
     parser.add_argument("--cc", metavar="CC", help="C compiler (default: the variable CC, else ziglang)")
     parser.add_argument("--model", metavar="FILE.py:NAME", help="a model of your own, in a file or a package's folder")

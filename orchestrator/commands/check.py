@@ -62,6 +62,8 @@ def run(arguments: argparse.Namespace) -> int:
         out = console()
         out.print(checks_table(checks, out))
         met = sum(check.passed for check in checks)
-        more = (f", {len(missed)} required missed" if missed else "") + (f", {unknown} not judged" if unknown else "")
+        more = (f", {len(missed)} required failed" if missed else "") + (
+            f", {unknown} not evaluated" if unknown else ""
+        )
         out.print(f"{met} of {len(checks)} met{more}")
     return MISSED if missed else MET

@@ -35,8 +35,10 @@ SAME, DIFFERENT = 0, 1
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add what the command takes."""
     parser.add_argument("a", type=log_file, metavar="A.mcap", help="the reference: a log, or the folder of a run")
-    parser.add_argument("b", type=log_file, metavar="B.mcap", help="the run to judge")
-    parser.add_argument("more", type=log_file, nargs="*", metavar="MORE.mcap", help="further runs, each judged by A")
+    parser.add_argument("b", type=log_file, metavar="B.mcap", help="the run to compare")
+    parser.add_argument(
+        "more", type=log_file, nargs="*", metavar="MORE.mcap", help="further runs, each compared with A"
+    )
     parser.add_argument("--abs", default="1e-9", metavar="NUMBER", help="absolute tolerance in SI units (1e-9)")
     parser.add_argument("--rel", default="1e-9", metavar="NUMBER", help="tolerance relative to A (1e-9)")
     parser.add_argument("--time", default="0", metavar="SECONDS", help="tolerance along time (0)")

@@ -22,7 +22,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add what the command takes."""
     parser.add_argument("format", choices=READERS, help="tpcap: a case of the competition TPCAP, in CSV")
     parser.add_argument("files", nargs="+", type=Path, metavar="FILE", help="what to read")
-    parser.add_argument("--out", type=Path, default=Path(), metavar="DIR", help="where scenarios go (default: here)")
+    parser.add_argument(
+        "--out", type=Path, default=Path(), metavar="DIR", help="output folder (default: current folder)"
+    )
 
 
 def run(arguments: argparse.Namespace) -> int:

@@ -16,7 +16,7 @@ from orchestrator.scenario.requirements import read_requirements
 from orchestrator.sweep.study.study_file import study_names
 from orchestrator.text.console import console
 from orchestrator.text.errors import BadInput
-from orchestrator.verdict.limit_text import asked
+from orchestrator.verdict.limit_text import required_text
 
 EXAMPLES = """examples:
   apa list                             scenarios, systems, cars, limits, studies
@@ -57,7 +57,7 @@ def run(arguments: argparse.Namespace) -> int:
         print(write_runs_page(Path(arguments.pattern or RUNS), rows))
         return 0
     if arguments.pattern and not rows and arguments.what != "runs":
-        raise BadInput(f"no {arguments.what} fit", key=arguments.pattern)
+        raise BadInput(f"no {arguments.what} match", key=arguments.pattern)
     if arguments.json:
         print(json.dumps(rows, indent=2))
     else:
@@ -96,13 +96,19 @@ def _systems(pattern: str | None) -> tuple[dict[str, str], Rows]:
 
 
 def _limits(pattern: str | None) -> tuple[dict[str, str], Rows]:
-    heads = {"set": "set", "id": "id", "signal": "signal", "asked": "asked", "source": "source"}
+    heads = {"set": "set", "id": "id", "signal": "signal", "required": "required", "source": "source"}
     rows = []
     for name in _limit_names():
         for item in read_requirements(ROOM / "limits" / f"{name}.yaml"):
             if _has(pattern, name, item.id, item.signal):
                 rows.append(
-                    {"set": name, "id": item.id, "signal": item.signal, "asked": asked(item), "source": item.source}
+                    {
+                        "set": name,
+                        "id": item.id,
+                        "signal": item.signal,
+                        "required": required_text(item),
+                        "source": item.source,
+                    }
                 )
     return heads, rows
 

@@ -25,7 +25,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--fmus", choices=(*KINDS, "none"), default="none", help="kind of FMU (default: none, in process)"
     )
-    parser.add_argument("--out", type=Path, metavar="DIR", help="where results go (default: row-N beside the table)")
+    parser.add_argument("--out", type=Path, metavar="DIR", help="output folder (default: row-N beside the table)")
     parser.add_argument("--json", action="store_true", help="print summary.json instead of the table")
     parser.add_argument("--no-page", action="store_true", help="write neither overview.png nor report.html")
 

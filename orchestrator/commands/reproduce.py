@@ -33,14 +33,16 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--fmus",
         choices=(*KINDS, "none"),
         default=default_kind(),
-        help="kind of FMU (default: native where it can be built); none drives the models in process",
+        help="kind of FMU (default: native where it can be built); none runs the models in process",
     )
-    parser.add_argument("--out", type=Path, metavar="DIR", help="where pictures go (default: runs/reproduce/PAPER)")
+    parser.add_argument(
+        "--out", type=Path, metavar="DIR", help="output folder of figures (default: runs/reproduce/PAPER)"
+    )
     kinds = parser.add_mutually_exclusive_group()
     kinds.add_argument("--json", action="store_true", help="print JSON instead of the table")
     kinds.add_argument("--csv", action="store_true", help="print the rows as CSV instead")
     kinds.add_argument("--latex", action="store_true", help="print LaTeX tables (booktabs) instead")
-    kinds.add_argument("--bibtex", action="store_true", help="print BibTeX entries of the papers; nothing is driven")
+    kinds.add_argument("--bibtex", action="store_true", help="print BibTeX entries of the papers; nothing is simulated")
     parser.add_argument(
         "--figures",
         type=Path,

@@ -42,9 +42,9 @@ MAX_OUTCOMES = 10
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add what the command takes."""
     parser.add_argument("study", metavar="NAME|FILE", help="a shipped study, or a YAML file")
-    parser.add_argument("--out", type=Path, metavar="DIR", help="where table and page go (default: runs/NAME)")
-    parser.add_argument("--resume", action="store_true", help="go on with an unfinished study")
-    parser.add_argument("--restart", action="store_true", help="throw the runs of an unfinished study away")
+    parser.add_argument("--out", type=Path, metavar="DIR", help="output folder of table and page (default: runs/NAME)")
+    parser.add_argument("--resume", action="store_true", help="continue an unfinished study")
+    parser.add_argument("--restart", action="store_true", help="discard the runs of an unfinished study")
     parser.add_argument(
         "--fmus",
         choices=(*KINDS, "none"),
@@ -54,7 +54,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--dask", nargs="?", const="local", metavar="ADDRESS", help="use Dask: its own local workers, or a scheduler's"
     )
     parser.add_argument("--workers", type=int, metavar="N", help="threads or processes (default: all cores)")
-    parser.add_argument("--chunk", type=int, metavar="N", help="runs per part, at most these are lost by a kill")
+    parser.add_argument(
+        "--chunk", type=int, metavar="N", help="runs per part; at most these are lost when the process is killed"
+    )
     parser.add_argument("--picture", type=Path, metavar="FILE", help="write the success map as a PNG, too")
     parser.add_argument("--replays", type=int, default=3, metavar="N", help="replay the N worst runs for the page (3)")
     parser.add_argument(
@@ -62,13 +64,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         action="append",
         default=[],
         metavar="KEY=VALUE",
-        help="as in apa run, for all runs; or the study's own seed, lot, drivers",
+        help="as in apa run, for all runs; or the study's own seed and arguments",
     )
-    parser.add_argument("--runs", type=int, metavar="N", help="draw N runs: the n of a study's samples")
+    parser.add_argument("--runs", type=int, metavar="N", help="sample N runs: the n of a study's samples")
     parser.add_argument("--seed", type=int, metavar="S", help="the study's own seed, as --set seed=S")
     parser.add_argument("--first", type=int, default=0, metavar="N", help="begin at run N of the study")
     parser.add_argument("--every", type=int, default=1, metavar="N", help="only each N-th run of the study")
-    parser.add_argument("--json", action="store_true", help="print what came of it as JSON")
+    parser.add_argument("--json", action="store_true", help="print the result as JSON")
     parser.add_argument("--no-page", action="store_true", help="write no result page")
 
 

@@ -71,14 +71,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--requirements", action="append", default=[], metavar="FILE", help="further requirements, or a shipped set"
     )
-    parser.add_argument(
-        "--out", type=Path, metavar="DIR", default=Path("runs/test"), help="where results go (runs/test)"
-    )
+    parser.add_argument("--out", type=Path, metavar="DIR", default=Path("runs/test"), help="output folder (runs/test)")
     parser.add_argument("--junit", type=Path, metavar="FILE", help="where JUnit XML goes (default: DIR/junit.xml)")
-    parser.add_argument("-j", "--jobs", type=jobs, default=1, metavar="N", help="scenarios run at a time (1)")
-    parser.add_argument(
-        "--coverage", action="store_true", help="run in process and say what of charts and code was covered"
-    )
+    parser.add_argument("-j", "--jobs", type=jobs, default=1, metavar="N", help="scenarios run in parallel (1)")
+    parser.add_argument("--coverage", action="store_true", help="run in process and report coverage of charts and code")
     for what in ("transition", "branch"):
         parser.add_argument(
             f"--min-{what}-coverage", type=float, metavar="PERCENT", help="fail below this; means --coverage"
@@ -131,7 +127,7 @@ def _covered(arguments: argparse.Namespace, names: list[str], verdicts: "Verdict
     asked = {"transitions": arguments.min_transition_coverage, "branches": arguments.min_branch_coverage}
     for what, least in asked.items():
         if code == PASSED and least is not None and parts[what] < least:
-            say(f"apa: {parts[what]:.1f} % of the {what} are covered, asked {least:g} %")
+            say(f"apa: {parts[what]:.1f} % of the {what} are covered, required {least:g} %")
             code = FAILED
     return code
 

@@ -183,7 +183,7 @@ def _receivers(signal: str, master: Master, file: object, key: str) -> list[tupl
                 places.setdefault(link.target, set()).add(target)
     heard = [(number, sorted(places[number])) for number in sorted(places)]
     if not heard:
-        raise BadInput(f"nobody listens to {signal}", file=file, key=key)
+        raise BadInput(f"{signal} is not an input of any component", file=file, key=key)
     return heard
 
 

@@ -80,4 +80,4 @@ def lacking(scenario: Scenario) -> str:
         asked = ((across, shortest_slot(Kind.PERPENDICULAR, car, ISO), "wide"), (along, length, "deep"))
     else:
         asked = ((along, shortest_slot(Kind.PARALLEL, car, ISO), "long"), (across, car.width + ISO.deeper, "deep"))
-    return ", ".join(f"{has:.2f} m {what}, {needs:.2f} m asked" for has, needs, what in asked if has < needs - 1e-9)
+    return ", ".join(f"{has:.2f} m {what}, {needs:.2f} m required" for has, needs, what in asked if has < needs - 1e-9)

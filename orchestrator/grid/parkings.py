@@ -159,7 +159,9 @@ def _seen_from(pose: Pose, point: tuple[float, float]) -> tuple[float, float]:
 
 FOUND = Derived(
     {
-        "corner_a": Number("m", "corner A as believed from corner A as it is, both seen from the car; NaN: none found"),
+        "corner_a": Number(
+            "m", "distance of the estimated corner A from the true one, in the vehicle frame; NaN: no slot detected"
+        ),
         "corner_b": Number("m", "the same of corner B"),
         "along": Number("m", "x of the rear axle beyond corner B when the car stood to plan"),
         "inside": Number("1", "1: it stood inside the start range then"),

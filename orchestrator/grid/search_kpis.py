@@ -118,10 +118,12 @@ def _one_shown(row: Mapping[str, float]) -> tuple[str, float, float, float, floa
 
 SHOWN = Derived(
     {
-        "corner_a": Number("m", "corner A as shown from corner A as it is, both seen from the car; NaN: none shown"),
+        "corner_a": Number(
+            "m", "distance of the displayed corner A from the true one, in the vehicle frame; NaN: no slot displayed"
+        ),
         "corner_b": Number("m", "the same of corner B"),
-        "slot_heading": Number("rad", "heading of the slot as shown less the true one, both seen from the car"),
-        "kind_right": Number("1", "1: shown as of the kind that it is"),
+        "slot_heading": Number("rad", "heading error of the displayed slot, in the vehicle frame"),
+        "kind_right": Number("1", "1: displayed with the correct slot type"),
     },
     _shown,
     {"search": "what became of the search: " + ", ".join(WORDS)},

@@ -130,9 +130,9 @@ def _numbers(path: Path) -> dict[str, Any]:
     own = read_mapping(path).get("limits") or []
     asked = {str(item.get("id")) for item in own if isinstance(item, dict)} if isinstance(own, list) else set()
     if not asked:
-        raise BadInput("is no find: it has no limits of its own", file=path)
+        raise BadInput("is not a counterexample file: it has no limits of its own", file=path)
     if why_not_compiled(scenario):
-        raise BadInput(f"is no find: {why_not_compiled(scenario)}", file=path)
+        raise BadInput(f"is not a counterexample file: {why_not_compiled(scenario)}", file=path)
     design = Design([], np.empty((1, 0)), np.array([scenario.seed], dtype=np.int64))
     job = make_job(Study(scenario, design, {"name": scenario.name}))
     chunk = Chunk(0, 0, design.values, design.seeds)

@@ -132,7 +132,7 @@ def _finds(subject: Subject, hunted: Hunted) -> str:
 
 def _bounds(hunted: Hunted) -> str:
     text = "<br>".join(escape(line) for line in bound_text(hunted))
-    return CARD.format(title="How likely", text=text, inner="")
+    return CARD.format(title="Probability of violation", text=text, inner="")
 
 
 def _influences(hunted: Hunted) -> str:
@@ -149,7 +149,7 @@ def _influences(hunted: Hunted) -> str:
         "Sobol indices of the margin with 95 % intervals: the share of its variance that goes with a factor alone "
         "(first), and with all that it has a part in (total)."
     )
-    return CARD.format(title="What matters", text=text, inner=_table(("factor", "first", "total"), rows))
+    return CARD.format(title="Sensitivity", text=text, inner=_table(("factor", "first", "total"), rows))
 
 
 def _index(index: Index | None) -> str:

@@ -18,7 +18,7 @@ from orchestrator.sweep.rows import measure_of, measures_for, measures_of
 from orchestrator.sweep.verdict import limit_value
 from orchestrator.text.errors import BadInput
 from orchestrator.verdict.conditions import CONDITIONS
-from orchestrator.verdict.limit_text import asked
+from orchestrator.verdict.limit_text import required_text
 from orchestrator.verdict.measures import Measure
 from orchestrator.verdict.numbers import NUMBERS, OF_WHOLE_RUNS, STANDING
 
@@ -121,7 +121,7 @@ def _limit(item: Requirement, measures: list[Measure]) -> dict[str, Any]:
     first = measures_of(item)[1:] if found is not None and item.window is not None else []
     return {
         **{"id": item.id, "signal": item.signal, "condition": item.condition, "limit": limit_value(item)},
-        **{"source": item.source, "required": item.required, "where": item.where, "text": asked(item)},
+        **{"source": item.source, "required": item.required, "where": item.where, "text": required_text(item)},
         "sign": CONDITIONS[item.condition].sign,
         "number": is_number,
         "measure": measures.index(found) if found is not None else -1,

@@ -46,7 +46,7 @@ def _verdict(result: Reproduction) -> str:
 
 
 def _cells(row: Row) -> list[str]:
-    mark = {True: "[green]pass[/]", False: "[red]MISS[/]", None: ""}[row.passed]
+    mark = {True: "[green]pass[/]", False: "[red]FAIL[/]", None: ""}[row.passed]
     if row.differs:
         mark = "[yellow]differs[/]" if row.as_expected else "[red]AGREES[/]"
     if row.untestable:

@@ -96,7 +96,7 @@ def _facts(found: Sequence[Comparison], missed: int) -> list[list[str]]:
     return [
         ["Signals", str(max(item.compared for item in found))],
         ["Differ", str(missed)],
-        ["First beyond", f"{min(firsts):.2f} s" if firsts else "never"],
+        ["First exceedance", f"{min(firsts):.2f} s" if firsts else "never"],
         ["Parameters changed", str(len(_changes(found)))],
         *(
             [f"Only in A / {label}", f"{len(item.only_in_a)} / {len(item.only_in_b)}"]

@@ -183,7 +183,7 @@ class Scenario(_ScenarioPart):
             raise BadInput(f"{self.stop_time:g} s is not between one step and 1e6 s", key="stop_time")
         for name, every in self.every.items():
             if name not in self.places:
-                raise BadInput(f"unknown; known are {', '.join(self.places)}", key=f"every.{name}")
+                raise BadInput(f"unknown; expected one of: {', '.join(self.places)}", key=f"every.{name}")
             if not 1 <= every <= 1_000_000:
                 raise BadInput(f"{every} is not a whole number from 1 to 1000000", key=f"every.{name}")
             if every * self.step > LONGEST_STEP:

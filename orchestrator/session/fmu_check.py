@@ -1,4 +1,4 @@
-"""What an FMU would be in a system, found before any run: connected, not fed, not understood, missing."""
+"""What an FMU would be in a system, found before any run: connected, unconnected, unsupported, missing."""
 
 from collections import Counter
 from collections.abc import Sequence

@@ -22,18 +22,18 @@ def add_foreign_arguments(parser: argparse.ArgumentParser) -> None:
         type=seconds,
         default=TIMEOUT,
         metavar="S",
-        help=f"wall-clock limit for loading, initializing and each step of somebody else's FMU ({TIMEOUT:g} s)",
+        help=f"wall-clock limit for loading, initializing and each step of a third-party FMU ({TIMEOUT:g} s)",
     )
     parser.add_argument(
         "--in-process",
         action="store_true",
-        help="run somebody else's FMU in this process: faster, but its crash is ours",
+        help="run a third-party FMU in this process: faster; a crash of the FMU ends apa",
     )
 
 
 def add_output_arguments(parser: argparse.ArgumentParser, default: str) -> None:
     """Add the options that say what is written and where."""
-    parser.add_argument("--out", type=Path, metavar="DIR", help=f"where results go (default: {default})")
+    parser.add_argument("--out", type=Path, metavar="DIR", help=f"output folder (default: {default})")
     parser.add_argument("--force", action="store_true", help="replace a run that is in that folder")
     parser.add_argument("--json", action="store_true", help="print summary.json instead of the table")
     parser.add_argument("--no-page", action="store_true", help="write neither picture nor pages")

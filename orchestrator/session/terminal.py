@@ -55,8 +55,8 @@ def _at_the_end(final: Final) -> Iterator[str]:
         yield f"{final.longitudinal_error * 100:+.1f} cm longitudinal"
         yield f"{final.heading_error / DEGREE:+.2f} deg"
     if math.isfinite(final.slot_margin):
-        side = "inside" if final.slot_margin >= 0.0 else "out of"
-        yield f"{abs(final.slot_margin) * 100:.1f} cm {side} the slot"
+        side = "inside" if final.slot_margin >= 0.0 else "beyond"
+        yield f"outline {abs(final.slot_margin) * 100:.1f} cm {side} the slot boundary"
     yield f"wheel {final.steering_wheel_angle / DEGREE:+.1f} deg"
 
 
@@ -71,10 +71,10 @@ def checks_table(checks: list[Check], out: Console) -> Table:
         table.add_column(name, justify=justify)  # type: ignore[arg-type]
     table.add_column("source")
     for check in checks:
-        verdict = "[green]pass[/]" if check.passed else "[red]MISS[/]" if check.required else "[yellow]miss[/]"
+        verdict = "[green]pass[/]" if check.passed else "[red]FAIL[/]" if check.required else "[yellow]fail[/]"
         if check.source.startswith(ALLOWED) and not check.passed:
             verdict = "[yellow]allowed[/]"
-        verdict = verdict if check.judged else "[yellow]not judged[/]"
+        verdict = verdict if check.judged else "[yellow]not evaluated[/]"
         value = check.note or readable(check.value, check.unit)
         table.add_row(
             escape(check.id),
@@ -90,7 +90,7 @@ def checks_table(checks: list[Check], out: Console) -> Table:
 def differences_table(rows: list[Difference], out: Console) -> Table:
     """Return signals that differ between two runs as a table."""
     table = Table(box=None if not out.is_terminal else Table().box, pad_edge=out.is_terminal)
-    for name in ("signal", "largest", "tolerance", "at", "first beyond", ""):
+    for name in ("signal", "largest", "tolerance", "at", "first exceedance", ""):
         table.add_column(name, justify="left" if name in ("signal", "") else "right")
     for row in rows:
         largest = "" if row.largest is None else precise(row.largest, row.unit)

@@ -186,7 +186,10 @@ def _judged(scenario: Scenario, ignored: list[str], bench: Bench, folder: Path) 
 def _step_tested(test: StepTest, sets: list[str], bench: Bench, out: Path, taken: set[str]) -> Tested:
     """Run the test of one model alone, and keep its curves and checks in ``out``/its name."""
     if sets or bench.requirements:
-        raise BadInput("a step test takes no --set and no --requirements: write them in it", file=test.file)
+        raise BadInput(
+            "open-loop tests do not support --set; set it in the file and no --requirements: write them in it",
+            file=test.file,
+        )
     scenario = Scenario(name=_nameable(test.name), title=test.title or f"step test of {test.model}")
     _claim(scenario.name, taken, "test", test.file)
     recording, checks = run_step_test(test, bench.kind, bench.foreign)

@@ -43,7 +43,7 @@ def columns_of(study: Study, job: Job) -> list[TableColumn]:
         TableColumn("row", int, Signal("1", "number of the run, from 0")),
         *(TableColumn(key, KINDS[words.dtype.kind], Signal("1", "")) for key, words in study.design.labels.items()),
         *(TableColumn(field.key, field.variable.kind, field.variable.signal) for field in study.design.fields),
-        TableColumn("run_seed", int, Signal("1", "seed of the run")),
+        TableColumn("run_seed", int, Signal("1", "random seed of the run")),
         TableColumn("outcome", str, Signal("1", "as in summary.json")),
         TableColumn("reason", str, Signal("1", "as in summary.json")),
         *(

@@ -15,7 +15,7 @@ TIME = Signal("s", "", 0.0, 1e6)
 SCENARIO_FIELDS: dict[str, Variable] = {
     "stop_time": Variable("stop_time", float, Signal("s", "largest length of a run", 0.0, 1e6), 60.0),
     "step": Variable("step", float, Signal("s", "communication step", 1e-9, LONGEST_STEP), 0.01),
-    "seed": Variable("seed", int, Signal("1", "seed of the run", 0, 2**31 - 1), 1),
+    "seed": Variable("seed", int, Signal("1", "random seed of the run", 0, 2**31 - 1), 1),
     **{
         f"every.{name}": Variable(f"every.{name}", int, Signal("1", f"decimation of the {name}", 1, 1e6), 1)
         for name in MODELS

@@ -34,7 +34,7 @@ class Table:
         except (OSError, ValueError, pa.ArrowException) as error:
             raise BadInput(f"cannot be read as a table: {_first_line(error)}", file=path) from error
         if ABOUT not in metadata:
-            raise BadInput("is no table of a study", file=path)
+            raise BadInput("not a study result table (.parquet)", file=path)
         if checksum != carried or (not carried and set(self._file.metadata.metadata) - OLDER):
             raise BadInput("is damaged: its bytes do not fit its checksum", file=path)
         if not carried:

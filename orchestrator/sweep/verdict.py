@@ -24,7 +24,7 @@ OUTCOMES: tuple[Outcome, ...] = ("parked", "not_parked", "failed", "aborted", "f
 
 RESULTS = {
     **NUMBERS,
-    "limit_share": Number("1", "largest value over its limit among the required checks; above 1: beyond it"),
+    "limit_share": Number("1", "largest ratio of value to limit among the required checks; above 1: violated"),
 }
 """Columns of results."""
 

@@ -12,13 +12,13 @@ from orchestrator.text.errors import BadInput, suggestion
 
 NEEDED = {
     "controller": {
-        "shifts": "limits on the number of shifts are not judged",
+        "shifts": "limits on the number of manoeuvres are not evaluated",
     },
     "vehicle": {
-        "pose.x": "where the car ends is not judged",
-        "pose.y": "where the car ends is not judged",
-        "pose.heading": "how the car ends is not judged",
-        "speed": "that the car stands ends no run, and limits on speed are not judged",
+        "pose.x": "the final position is not evaluated",
+        "pose.y": "the final position is not evaluated",
+        "pose.heading": "the final heading is not evaluated",
+        "speed": "standstill does not end the run, and limits on speed are not evaluated",
     },
 }
 """Slave -> output that a verdict needs -> what is lost without it."""

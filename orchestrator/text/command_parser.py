@@ -36,7 +36,7 @@ class CommandParser(argparse.ArgumentParser):
         self.epilog = command.EXAMPLES
         command.add_arguments(self)
         if hasattr(command, "run"):
-            self.add_argument("-q", "--quiet", action="store_true", help="print nothing but errors and --json")
+            self.add_argument("-q", "--quiet", action="store_true", help="print only errors and --json")
             self.set_defaults(run=command.run)
 
     def subcommands(self) -> Iterator[tuple[str, "CommandParser"]]:

@@ -16,16 +16,16 @@ from modelkit.states import CannotComposeError
 from orchestrator.text.console import say
 from orchestrator.text.errors import BAD_INPUT, INTERNAL_ERROR, INTERRUPTED, BadInput, NotRunError, RunError, shown
 
-REPORT = "please report it with that file to those who maintain apa-cosim"
+REPORT = "please file a bug with that file at the apa-cosim repository"
 WORDS = {
     errno.ENOSPC: "the disk is full",
     errno.EROFS: "is on a disk that is read-only",
-    errno.EACCES: "may not be read or written by you",
-    errno.EPERM: "may not be read or written by you",
+    errno.EACCES: "permission denied",
+    errno.EPERM: "permission denied",
     errno.EISDIR: "is a folder, expected a file",
     errno.ENAMETOOLONG: "this name is too long",
     errno.ENOENT: "there is no such file or folder",
-    errno.ELOOP: "its links lead in a ring",
+    errno.ELOOP: "too many levels of symbolic links (a cycle)",
 }
 
 
@@ -40,15 +40,15 @@ def explained(error: BaseException, words: Sequence[str]) -> tuple[int, str]:
     if isinstance(error, OSError):
         return BAD_INPUT, place_of(error)
     if isinstance(error, UnicodeEncodeError):
-        return BAD_INPUT, f"{shown(error.object)}: holds what is no letter, and cannot be written"
+        return BAD_INPUT, f"{shown(error.object)}: contains characters that cannot be encoded, and cannot be written"
     if isinstance(error, MemoryError):
-        return BAD_INPUT, "this takes more memory than there is"
+        return BAD_INPUT, "out of memory"
     if isinstance(error, ModuleNotFoundError):
         extra = _extra_of(error.name or "")
         if extra:
             return BAD_INPUT, missing_package(error.name or "", extra)
     kept = _keep(error, words)
-    return INTERNAL_ERROR, f"internal error, nothing was judged: {one_line(error)}; {kept}"
+    return INTERNAL_ERROR, f"internal error, no verdict: {one_line(error)}; {kept}"
 
 
 @contextmanager
@@ -72,7 +72,7 @@ def reason_of(error: BaseException) -> str:
         return str(error.args[0]) if error.args else str(error)
     if isinstance(error, OSError):
         return place_of(error)
-    return "this takes more memory than there is" if isinstance(error, MemoryError) else one_line(error)
+    return "out of memory" if isinstance(error, MemoryError) else one_line(error)
 
 
 def place_of(error: OSError) -> str:

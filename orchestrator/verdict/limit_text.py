@@ -13,7 +13,7 @@ def limit_text(check: Check) -> str:
     return f"{CONDITIONS[check.condition].sign} {check.limit_name or readable(check.limit, check.unit)}"
 
 
-def asked(item: Requirement) -> str:
+def required_text(item: Requirement) -> str:
     """Return what a requirement asks for, before any run."""
     limit = item.limit
     return f"{CONDITIONS[item.condition].sign} {limit if isinstance(limit, str) else readable(limit, item.unit or '1')}"
@@ -22,10 +22,10 @@ def asked(item: Requirement) -> str:
 def sentence(check: Check) -> str:
     """Return value, limit, margin and moment of a check in one line."""
     if not check.judged:
-        return f"{check.signal}: not measured, so not judged"
+        return f"{check.signal}: not measured, not evaluated"
     if math.isnan(check.value) and check.note == NEVER:
         hint = "" if check.passed else "; with if_never: pass it would be met"
-        return f"{check.signal}: {check.note}, asked {limit_text(check)}{hint}"
+        return f"{check.signal}: {check.note}, required {limit_text(check)}{hint}"
     value = check.note or readable(check.value, check.unit)
     margin = readable(check.margin, check.unit)
-    return f"{check.signal}: {value} at {check.t:.3f} s, asked {limit_text(check)}, margin {margin}"
+    return f"{check.signal}: {value} at {check.t:.3f} s, required {limit_text(check)}, margin {margin}"

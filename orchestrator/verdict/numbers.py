@@ -33,7 +33,9 @@ SPEED = Measure("last", end_condition.SPEED)
 CLEARANCE = Measure("smallest", "vehicle.clearance")
 NUMBERS: dict[str, Number] = {
     "duration": Number("s", "from start to the end of the run"),
-    "shifts": Number("1", "manoeuvres, the first reverse counts one", Measure("last", "controller.shifts")),
+    "shifts": Number(
+        "1", "number of manoeuvres; the first reverse motion counts as one", Measure("last", "controller.shifts")
+    ),
     "max_speed": Number("m/s", "largest absolute speed", Measure("largest", end_condition.SPEED), True),
     "final.x": Number("m", "x of the rear-axle midpoint at the end", POSE[0]),
     "final.y": Number("m", "y of the rear-axle midpoint at the end", POSE[1]),
@@ -45,23 +47,25 @@ NUMBERS: dict[str, Number] = {
         "rad", "steering-wheel angle at the end, left positive", Measure("last", "vehicle.steering_wheel_angle")
     ),
     "final.speed": Number("m/s", "speed at the end, reverse negative", SPEED),
-    "final.slot_margin": Number("m", "least distance of the outline to the slot's edges, negative where it stands out"),
+    "final.slot_margin": Number("m", "signed distance of the outline to the slot boundary, negative beyond it"),
     "final.kerb_nearest": Number("m", "distance to the slot's kerb of the nearest tyre beside it"),
     "final.kerb_farthest": Number("m", "distance to the slot's kerb of the farthest tyre beside it"),
     "steering_effort": Number(
         "rad",
-        "sum of the absolute changes of the steering-wheel angle",
+        "steering travel: sum of the absolute changes of the steering-wheel angle",
         Measure("travel", "vehicle.steering_wheel_angle"),
     ),
     "min_clearance": Number(
-        "m", "smallest distance of the outline to boxes and kerbs, in contact minus the depth", CLEARANCE
+        "m", "smallest clearance of the outline to boxes and kerbs; in contact minus the penetration depth", CLEARANCE
     ),
     "polygon_clearance": Number(
-        "m", "smallest distance of the outline to the scenario's polygons, in contact minus the depth"
+        "m", "smallest clearance of the outline to the scenario's polygons; in contact minus the penetration depth"
     ),
-    PENETRATION: Number("m", "greatest penetration depth of the outline in anything of the scene; 0: no contact"),
+    PENETRATION: Number("m", "largest penetration depth of the outline into an obstacle; 0: no contact"),
     "peak_jerk": Number("m/s3", "largest absolute jerk, averaged over a second"),
-    "standstill_steering": Number("1", "standstills in which the steering wheel is turned by more than 5 deg"),
+    "standstill_steering": Number(
+        "1", "dry-steering events: standstills with more than 5 deg of steering-wheel travel"
+    ),
 }
 ERRORS = ("final.longitudinal_error", "final.lateral_error", "final.heading_error")
 STANDING = (*ERRORS, "final.slot_margin", "final.kerb_nearest", "final.kerb_farthest")

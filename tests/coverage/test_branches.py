@@ -116,7 +116,7 @@ def test_a_run_says_how_far_it_went_into_the_code(tmp_path: Path, capsys: pytest
     words = ["test", "guo2015-case1", "--min-branch-coverage", "90", "--out", str(tmp_path)]
     assert main(words) == 1
     said = capsys.readouterr()
-    assert "of the branches are covered, asked 90 %" in said.err
+    assert "of the branches are covered, required 90 %" in said.err
     assert "controller_fmu/guo2015" in said.out
     data = json.loads((tmp_path / "coverage.json").read_text(encoding="utf-8"))
     folders = {branch["file"].rpartition("/")[0] for branch in data["branches"]}

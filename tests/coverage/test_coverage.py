@@ -88,7 +88,7 @@ def test_a_run_covers_what_it_went_through(tmp_path: Path, capsys: pytest.Captur
 def test_too_little_fails(tmp_path: Path, capsys: pytest.CaptureFixture[str], least: str, code: int) -> None:
     words = ["test", "guo2015-case4", "--min-transition-coverage", least, "--out", str(tmp_path)]
     assert main(words) == code
-    assert ("asked 90 %" in capsys.readouterr().err) == (code == 1)
+    assert ("required 90 %" in capsys.readouterr().err) == (code == 1)
 
 
 STATES = "{idle: 1, first arc: 2, second arc: 3, there: 4, lost: 5}"

@@ -41,8 +41,8 @@ def test_all_cars_but_the_widest_fit_somewhere_and_most_do_not_everywhere() -> N
     lacks = {car: [lacking(load_scenario(name, [f"car={car}"])) for name in parking_scenarios()] for car in car_names()}
     assert {car for car, found in lacks.items() if "" not in found} <= {"tpcap"}, "1.94 m wide"
     assert lacks["guo2015"] == [""] * len(parking_scenarios())
-    assert lacking(load_scenario("apa-parallel-tight", ["car=zhang2022"])) == "4.85 m long, 5.54 m asked"
-    assert lacking(load_scenario("apa-perpendicular", ["car=zhang2022"])) == "4.20 m deep, 4.44 m asked"
+    assert lacking(load_scenario("apa-parallel-tight", ["car=zhang2022"])) == "4.85 m long, 5.54 m required"
+    assert lacking(load_scenario("apa-perpendicular", ["car=zhang2022"])) == "4.20 m deep, 4.44 m required"
 
 
 @pytest.mark.parametrize("cycle", [0.02, 0.06, 0.1])

@@ -172,6 +172,6 @@ def test_a_window_that_never_comes_is_said_in_words(
     arguments = ["--fmus", "none", "--out", str(tmp_path / "out"), "--requirements", str(rules)]
     assert main(["test", "guo2015-case4", *arguments]) == 1
     printed = capsys.readouterr().out
-    assert "vehicle.speed: the window never comes, asked" in printed
+    assert "vehicle.speed: the window never comes, required" in printed
     assert "with if_never: pass it would be met" in printed
     assert "nan" not in printed

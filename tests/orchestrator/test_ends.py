@@ -47,7 +47,7 @@ def test_an_unexpected_error_is_one_line_with_code_3_and_its_traceback_in_a_file
     assert main(["list"]) == 3
     said = capsys.readouterr().err
     assert said.count("\n") == 1
-    assert "internal error, nothing was judged: KeyError" in said
+    assert "internal error, no verdict: KeyError" in said
     (file,) = tmp_path.iterdir()
     assert str(file) in said
     assert "Traceback" in file.read_text()

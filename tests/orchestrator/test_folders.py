@@ -70,7 +70,7 @@ def test_a_mistake_of_ours_is_3_with_junit(
     monkeypatch.setattr("orchestrator.suite.suite.summarize", lambda *_: 1 / 0)
     assert main(["test", *SHORT, "--out", str(tmp_path / "out")]) == 3
     (case,) = ElementTree.parse(tmp_path / "out" / "junit.xml").getroot().iter("error")
-    assert "internal error, nothing was judged: ZeroDivisionError" in case.get("message", "")
+    assert "internal error, no verdict: ZeroDivisionError" in case.get("message", "")
     assert len(list((tmp_path / "log").iterdir())) == 1
     assert "Traceback" not in capsys.readouterr().err
 

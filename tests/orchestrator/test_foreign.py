@@ -123,10 +123,10 @@ def test_what_is_not_measured_is_never_passed(theirs: Path, tmp_path: Path, caps
     assert "time to park" in parallel["reason"].partition("not measured")[2]
     root: Any = ElementTree.parse(out / "junit.xml").getroot()
     skipped = root.find("testsuite/testcase[@name='shifts (GB/T 41630)']/skipped")
-    assert skipped.get("message") == "shifts: not measured, so not judged"
+    assert skipped.get("message") == "shifts: not measured, not evaluated"
     capsys.readouterr()
     assert main(["check", str(out / "guo2015-case4" / "run.mcap"), "gbt41630"]) == 1
-    assert "1 not judged" in capsys.readouterr().out
+    assert "1 not evaluated" in capsys.readouterr().out
 
 
 def test_without_a_phase_nothing_says_parked(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -138,7 +138,7 @@ def test_without_a_phase_nothing_says_parked(tmp_path: Path, capsys: pytest.Capt
     assert "not_parked: the controller has no output phase" in captured.out
     assert "shifts not counted" in captured.out
     assert "clearance" in captured.out
-    assert "not judged" in captured.out
+    assert "not evaluated" in captured.out
 
 
 def test_what_was_tested_when_and_how_is_told(theirs: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

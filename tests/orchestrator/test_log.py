@@ -86,7 +86,7 @@ def test_units_and_states_stand_in_the_schema(toy_run: tuple[Path, Recording]) -
     channel = next(item for item in summary.channels.values() if item.topic == "/plant")
     file = FileDescriptorSet.FromString(summary.schemas[channel.schema_id].data).file[0]
     comments = [location.leading_comments for location in file.source_code_info.location]
-    assert any("[m/s] speed asked for; input" in comment for comment in comments)
+    assert any("[m/s] requested speed; input" in comment for comment in comments)
     enum = next(message for message in file.message_type if message.name == "Mode").enum_type[0]
     assert {value.name: value.number for value in enum.value} == {"IDLE": 0, "BUSY": 1, "DONE": 200}
     described = {row["name"]: row for row in json.loads(channel.metadata["variables"])}

@@ -103,7 +103,7 @@ def test_title_is_not_inherited(tmp_path: Path) -> None:
         ("stop_time: -1", r"stop_time: -1 is not a time from 0 to"),
         ("stop_time: 4 m", r"stop_time: '4 m' is in 'm', expected a number in s"),
         ("seed: -1", r"mine\.yaml(:\d+)?: seed: -1: input should be greater than or equal to 0"),
-        ("every: {plant: 2}", r"every\.plant: unknown; known are vehicle, controller"),
+        ("every: {plant: 2}", r"every\.plant: unknown; expected one of: vehicle, controller"),
         ("every: {vehicle: 0}", r"every\.vehicle: 0 is not a whole number from 1"),
         ("slot: {x: 1}", r"mine\.yaml(:\d+)?: slot\.y: is missing"),
         ("slot: {x: 1, y: 2, length: 0, width: 1}", r"slot\.length"),

@@ -21,8 +21,8 @@ class Cell(NamedTuple):
 
 
 class PlantInput(NamedTuple):
-    command: Annotated[float, Signal("m/s", "speed asked for")] = 0.5
-    mode: Annotated[int, Signal("1", "mode asked for", states=Mode)] = 0
+    command: Annotated[float, Signal("m/s", "requested speed")] = 0.5
+    mode: Annotated[int, Signal("1", "requested mode", states=Mode)] = 0
     active: Annotated[bool, Signal("1", "command holds")] = False
     right: Annotated[int, Signal("1", "count of the other side")] = 0
 
@@ -72,8 +72,8 @@ class BrainInput(NamedTuple):
 
 
 class BrainOutput(NamedTuple):
-    command: Annotated[float, Signal("m/s", "speed asked for")] = 0.0
-    mode: Annotated[int, Signal("1", "mode asked for", states=Mode)] = 0
+    command: Annotated[float, Signal("m/s", "requested speed")] = 0.0
+    mode: Annotated[int, Signal("1", "requested mode", states=Mode)] = 0
     active: Annotated[bool, Signal("1", "command holds")] = True
     right: Annotated[int, Signal("1", "count of this side")] = 0
     seen: Annotated[float, Signal("m", "y it saw last")] = 0.0

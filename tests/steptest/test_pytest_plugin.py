@@ -55,7 +55,7 @@ def test_a_miss_says_signal_time_value_and_limit(pytester: pytest.Pytester, run:
     found = run()
     found.assert_outcomes(failed=2)
     found.stdout.fnmatch_lines(
-        ["*slow: vehicle.speed: -1.5* at * s, asked *1.000 m/s, margin*", "*guo2015-case2: *expected parked*"]
+        ["*slow: vehicle.speed: -1.5* at * s, required *1.000 m/s, margin*", "*guo2015-case2: *expected parked*"]
     )
 
 
@@ -69,7 +69,7 @@ def test_step_tests_are_collected(pytester: pytest.Pytester, run: Any) -> None:
     pytester.makefile(".yaml", test_steering=text, test_other="a: 1\n", helper=text)
     found = run("-v")
     found.assert_outcomes(passed=1, failed=1)
-    found.stdout.fnmatch_lines(["*good PASSED*", "*bad: vehicle.steering_wheel_angle:*asked*"])
+    found.stdout.fnmatch_lines(["*good PASSED*", "*bad: vehicle.steering_wheel_angle:*required*"])
 
 
 def test_an_fmu_of_somebody_elses_takes_the_place_of_ours(pytester: pytest.Pytester, run: Any) -> None:

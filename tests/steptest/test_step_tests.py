@@ -251,7 +251,7 @@ def test_apa_test_takes_them_beside_scenarios(write: Any, tmp_path: Path, capsys
     out = tmp_path / "out"
     assert main(["test", str(write([good, bad])), "guo2015-case4", "--fmus", "none", "--out", str(out)]) == 1
     said = capsys.readouterr().out
-    assert "0.253 s at 1.000 s, asked" in said
+    assert "0.253 s at 1.000 s, required" in said
     assert "1 of 2 scenarios passed" in said
     suites = {suite.get("name"): suite for suite in ElementTree.parse(out / "junit.xml").getroot()}
     assert (suites["steering"].get("tests"), suites["steering"].get("failures")) == ("2", "1")

@@ -25,7 +25,7 @@ from orchestrator.sweep.page.statistics import (
 from orchestrator.sweep.table import Table
 from orchestrator.text.readable import readable
 from orchestrator.verdict.confidence import wilson
-from orchestrator.verdict.limit_text import asked
+from orchestrator.verdict.limit_text import required_text
 
 EVIL = "<script>window.evil = 1</script><img src=x onerror='window.evil = 1'>"
 STUDY = """
@@ -189,7 +189,7 @@ def test_the_deciding_limit_is_the_one_violated_most(table: Any) -> None:
     for item in Scenario(**table.job.scenario).limits:
         if item.required and row.get(item.signal) is not None and not isinstance(item.limit, str):
             beyond = item.limit - row[item.signal] if item.condition == "min" else abs(row[item.signal]) - item.limit
-            violations[f"{item.id}: {readable(row[item.signal], 'm')} ({asked(item)})"] = beyond / (
+            violations[f"{item.id}: {readable(row[item.signal], 'm')} ({required_text(item)})"] = beyond / (
                 abs(item.limit) or 1.0
             )
     assert found == max(violations, key=lambda key: violations[key])

@@ -26,15 +26,19 @@ class ChassisParams(NamedTuple):
     rolling_resistance: Annotated[float, Signal("1", "rolling resistance over load", 0.0, 0.2, CHOSEN)] = 0.012
     drag_x: Annotated[float, Signal("kg/m", "air drag over speed squared, along", 0.0, 10.0, CHOSEN)] = 0.4
     drag_y: Annotated[float, Signal("kg/m", "air drag over speed squared, across", 0.0, 10.0, CHOSEN)] = 1.5
-    front_drive_share: Annotated[float, Signal("1", "share of the drive on the front axle", 0.0, 1.0, CHOSEN)] = 1.0
-    front_brake_share: Annotated[float, Signal("1", "share of the brake on the front axle", 0.0, 1.0, CHOSEN)] = 0.65
+    front_drive_share: Annotated[
+        float, Signal("1", "fraction of the drive force on the front axle", 0.0, 1.0, CHOSEN)
+    ] = 1.0
+    front_brake_share: Annotated[
+        float, Signal("1", "fraction of the brake force on the front axle", 0.0, 1.0, CHOSEN)
+    ] = 0.65
 
 
 class RoadParams(NamedTuple):
     """The road plane and its grip under each wheel."""
 
-    slope: Annotated[float, Signal("1", "rise per metre along the world's x", -1.0, 1.0)] = 0.0
-    bank: Annotated[float, Signal("1", "rise per metre along the world's y", -1.0, 1.0)] = 0.0
+    slope: Annotated[float, Signal("1", "grade along the x axis of the world (rise over run)", -1.0, 1.0)] = 0.0
+    bank: Annotated[float, Signal("1", "cross slope along the y axis of the world (rise over run)", -1.0, 1.0)] = 0.0
     grip: tuple[
         Annotated[
             float,

@@ -58,7 +58,7 @@ class TireParams(NamedTuple):
         2.8821
     )
     camber_slip: Annotated[
-        float, Signal("1", "slip angle that camber is worth", -1.0, 1.0, ADAMS + ", PHY3 + PVY3 / PKY1")
+        float, Signal("1", "slip angle equivalent to camber", -1.0, 1.0, ADAMS + ", PHY3 + PVY3 / PKY1")
     ] = 0.04644
     carcass_x: Annotated[float, Signal("N/m", "carcass stiffness, longitudinal", 1e4, 1e7, CHOSEN)] = 400000.0
     carcass_y: Annotated[float, Signal("N/m", "carcass stiffness, lateral", 1e4, 1e7, CHOSEN)] = 150000.0

@@ -2,7 +2,7 @@
 
 import argparse
 
-ACTIONS = {"check": "what an FMU would be in a system: connected, not fed, missing for a verdict"}
+ACTIONS = {"check": "what an FMU would be in a system: connected, unconnected, missing for a verdict"}
 """Action -> what it does; each is a module of this folder."""
 EXAMPLES = """examples:
   apa fmu check their.fmu

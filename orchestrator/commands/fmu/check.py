@@ -1,4 +1,4 @@
-"""``apa fmu check``: before any run, what of an FMU is connected, not fed, not understood, missing."""
+"""``apa fmu check``: before any run, what of an FMU is connected, unconnected, unsupported, missing."""
 
 import argparse
 import json
@@ -18,8 +18,8 @@ exit codes: 0 it can be run and judged, 1 something is missing or ends a run, 2 
 READY, NOT_READY = 0, 1
 PARTS = {
     "connected": "connected",
-    "not_fed": "not fed",
-    "not_understood": "not understood",
+    "not_fed": "unconnected inputs",
+    "not_understood": "not connected (outputs)",
     "no_unit": "no unit said",
     "missing": "missing for the verdict",
     "problems": "ends a run",
@@ -31,11 +31,13 @@ BAD = ("missing", "problems")
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add what the command takes."""
-    parser.add_argument("fmu", type=Path, metavar="FMU", help="somebody's FMU, of FMI 2.0 or 3.0")
-    parser.add_argument("--as", dest="place", default="", metavar="NAME", help="the slave it is to be")
-    parser.add_argument("--scenario", default="", metavar="NAME|FILE", help="the scenario whose system it is to be in")
-    parser.add_argument("--no-load", action="store_true", help="read its description only, run nothing of it")
-    parser.add_argument("--timeout", type=seconds, default=TIMEOUT, metavar="S", help="for loading and a step")
+    parser.add_argument("fmu", type=Path, metavar="FMU", help="third-party FMU, FMI 2.0 or 3.0")
+    parser.add_argument("--as", dest="place", default="", metavar="NAME", help="component that it replaces")
+    parser.add_argument("--scenario", default="", metavar="NAME|FILE", help="scenario into whose system it is inserted")
+    parser.add_argument("--no-load", action="store_true", help="read the model description only, execute nothing")
+    parser.add_argument(
+        "--timeout", type=seconds, default=TIMEOUT, metavar="S", help="wall-clock limit for loading and for a step"
+    )
     parser.add_argument("--json", action="store_true", help="print the report as JSON")
 
 

@@ -1,4 +1,4 @@
-"""``apa hunt``: search a study's ranges for what breaks a requirement."""
+"""``apa hunt``: falsification: search a study's ranges for violations of a requirement."""
 
 import argparse
 import json
@@ -31,17 +31,19 @@ exit code: 0 nothing found, 1 a run breaks the requirement, 2 bad input, 130 int
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add what the command takes."""
     parser.add_argument("study", nargs="?", metavar="STUDY", help="a shipped study, or a YAML file: its ranges")
-    parser.add_argument("--budget", type=int, default=2000, metavar="N", help="runs, about (default: 2000)")
+    parser.add_argument(
+        "--budget", type=int, default=2000, metavar="N", help="approximate number of runs (default: 2000)"
+    )
     parser.add_argument("--requirement", metavar="LIMIT", help="a limit or a set of limits (default: contact)")
-    parser.add_argument("--seed", type=int, default=1, metavar="S", help="of all that is drawn by lot (1)")
-    parser.add_argument("--out", type=Path, metavar="DIR", help="where all goes (default: runs/hunt-STUDY)")
-    parser.add_argument("--resume", action="store_true", help="go on with an interrupted hunt")
+    parser.add_argument("--seed", type=int, default=1, metavar="S", help="random seed (1)")
+    parser.add_argument("--out", type=Path, metavar="DIR", help="output folder (default: runs/hunt-STUDY)")
+    parser.add_argument("--resume", action="store_true", help="continue an interrupted search")
     parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", help="as in apa sweep")
-    parser.add_argument("--controller", type=Path, metavar="FMU", help="hunt somebody else's controller FMU, by FMI")
+    parser.add_argument("--controller", type=Path, metavar="FMU", help="search with a third-party controller FMU")
     parser.add_argument("--fmus", choices=(*KINDS, "none"), help="FMUs of this kind instead of the compiled batch")
     parser.add_argument("--workers", type=int, metavar="N", help="threads or processes (default: all cores)")
-    parser.add_argument("--corpus", type=Path, metavar="DIR", help="run the finds in this folder again, nothing else")
-    parser.add_argument("--json", action="store_true", help="print what came of it as JSON")
+    parser.add_argument("--corpus", type=Path, metavar="DIR", help="only run the counterexamples of this folder again")
+    parser.add_argument("--json", action="store_true", help="print the result as JSON")
 
 
 def run(arguments: argparse.Namespace) -> int:

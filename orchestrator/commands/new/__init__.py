@@ -28,7 +28,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add what the command takes."""
     parser.add_argument("kind", choices=KINDS, metavar="KIND", help="controller, vehicle or ci")
     parser.add_argument("name", metavar="NAME", help="of the package and of its folder: letters, digits and _")
-    parser.add_argument("--out", type=Path, default=Path(), metavar="DIR", help="where it goes (here)")
+    parser.add_argument(
+        "--out", type=Path, default=Path(), metavar="DIR", help="output folder (default: current folder)"
+    )
 
 
 def run(arguments: argparse.Namespace) -> int:

@@ -34,16 +34,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="kind of FMU (default: native where it can be built); none runs the models in process",
     )
     add_foreign_arguments(parser)
-    parser.add_argument(
-        "--realtime", action="store_true", help="as fast as the clock on the wall; says how late it was"
-    )
+    parser.add_argument("--realtime", action="store_true", help="run in real time; report lateness")
     parser.add_argument(
         "--live",
         nargs="?",
         type=int,
         const=PORT,
         metavar="PORT",
-        help=f"show the run as it goes, at this WebSocket ({PORT}), to Foxglove or Lichtblick; includes --realtime",
+        help=f"stream the run live at this WebSocket ({PORT}), to Foxglove or Lichtblick; includes --realtime",
     )
     add_output_arguments(parser, "runs/NAME, the next free runs/NAME-2, ... if there is a run")
 

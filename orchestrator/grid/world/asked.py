@@ -16,8 +16,10 @@ from orchestrator.verdict.numbers import Number
 from vehicle_fmu.ultrasonic import UltrasonicParams
 
 COLUMNS = {
-    "valid": Number("1", "1: the slot is valid for the car, by what sensors that do not tell height can know"),
-    "asked": Number("1", "1: what is asked is possible: driver, sensors and those who move leave the slot to the car"),
+    "valid": Number(
+        "1", "1: the slot is valid for the vehicle, as far as sensors without height information can determine"
+    ),
+    "asked": Number("1", "1: the task is feasible: driver, sensors and moving obstacles leave the slot to the vehicle"),
 }
 HEARD = UltrasonicParams().kerb_height
 """Kerbs lower than this [m] are not heard."""

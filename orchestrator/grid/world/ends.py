@@ -224,7 +224,7 @@ GOALS = (
     Goal("contact", "nothing is touched while the assist has the car", NO_CONTACT, _clear),
     Goal("claim", "who claims to be parked stands in the slot, within GB/T 41630", (), _honest),
 )
-INTO = {"driven_into": Number("1", "1: a contact in which the car stands, and somebody who moves touches it")}
+INTO = {"driven_into": Number("1", "1: contact at standstill caused by a moving obstacle")}
 FOUND = Derived(
     {**COLUMNS, **INTO}, _ends, {"end": "how the run ended in the world", "touched": "what was touched first"}
 )

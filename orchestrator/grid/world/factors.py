@@ -29,7 +29,7 @@ SEARCH = (
     Factor("speed", "km/h", 3.6, 7.2, 25.0, "of the driver who searches"),
 )
 SENSORS = (
-    Factor("noise", "m", 0.0, 0.0, 0.03, "standard deviation of a reading"),
+    Factor("noise", "m", 0.0, 0.0, 0.03, "standard deviation of a measurement"),
     Factor("dropout", "1", 0.0, 0.0, 0.05, "chance that a reading is lost"),
     Factor("resolution", "m", 0.005, 0.01, 0.03, "step of a reading"),
     Factor("cycle", "s", 0.04, 0.04, 0.08, "between readings; the controller is told"),

@@ -14,12 +14,12 @@ function shortly(found) {
 }
 
 function showResult(lab, mine, byHand, ghost) {
-  const runs = [...(mine ? [[byHand ? "you" : "this drive", mine]] : []), ["driver modelled", ghost]];
+  const runs = [...(mine ? [[byHand ? "manual" : "this run", mine]] : []), ["driver model", ghost]];
   const rows = FIGURES.filter((name) => runs.some(([, found]) => Number.isFinite(found.numbers[name]) && Math.abs(found.numbers[name]) < 1e8))
     .map((name) => row([element("th", { scope: "row" }, words(name.replace("final.", ""))), ...runs.map(([, found]) => numberCell(Math.abs(found.numbers[name]) < 1e8 ? quantity(found.numbers[name], lab.table[name].unit) : "\u2013"))]));
   const checks = ghost.checks.map((check, i) => row([element("th", { scope: "row" }, `${check.id} ${check.text}`, element("span", { class: "quiet" }, ` ${check.source}`)), ...runs.map(([, found]) => {
     const own = found.checks[i];
-    return element("td", {}, own.judged ? pill(own.passed, own.required) : element("span", { class: "pill warn" }, "not judged here"), " ", own.never ? "never" : Number.isFinite(own.value) ? quantity(own.value, own.number ? lab.table[own.signal].unit : unitOf(lab, own.signal)) : "\u2013");
+    return element("td", {}, own.judged ? pill(own.passed, own.required) : element("span", { class: "pill warn" }, "not evaluated here"), " ", own.never ? "never" : Number.isFinite(own.value) ? quantity(own.value, own.number ? lab.table[own.signal].unit : unitOf(lab, own.signal)) : "\u2013");
   })]));
   const head = ["", ...runs.map(([name]) => name)];
   $("result").replaceChildren(

@@ -126,7 +126,7 @@ function outcomeOf(row, checks, situation) {
   if (!ending.done.includes(mode)) return [missed, `stop time reached in ${name}`];
   const why = whyNot(speed, checks.filter((check) => check.judged && check.required && !check.passed), ending.still);
   const left = checks.filter((check) => !check.judged).map((check) => check.id).join(", ");
-  return why ? [missed, why] : [success, left ? `all checks passed but those not judged here: ${left}` : "all checks passed"];
+  return why ? [missed, why] : [success, left ? `all checks passed except those not evaluated here: ${left}` : "all checks passed"];
 }
 
 function judged(row, situation, table) {

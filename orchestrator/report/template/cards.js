@@ -7,7 +7,7 @@ function card(title, content, open = true) {
 }
 
 function checksCard(run, tag) {
-  const rows = run.checks.map((check) => row([check.judged ? pill(check.passed, check.required) : element("span", { class: "pill warn" }, "not judged"), check.id, numberCell(check.value_text), numberCell(check.limit_text),
+  const rows = run.checks.map((check) => row([check.judged ? pill(check.passed, check.required) : element("span", { class: "pill warn" }, "not evaluated"), check.id, numberCell(check.value_text), numberCell(check.limit_text),
     numberCell(check.margin_text), moment(check.t), check.source]));
   const missed = run.checks.filter((check) => !check.passed).length;
   const title = `Checks${tag}: ${run.checks.length - missed} of ${run.checks.length} passed`;
@@ -49,7 +49,7 @@ function differencesCards(page) {
   if (!page.differences) return [];
   const line = (item) => row([pill(item.passed), element("span", {}, item.label ? `${item.label} ` : "", element("code", {}, item.signal)), numberCell(quantity(item.largest, item.unit)), numberCell(item.tolerance_text),
     moment(item.t_largest), item.first === null ? "\u2013" : moment(item.first), item.note || ""]);
-  const heads = ["", "signal", "largest difference", "tolerance", "at", "first beyond", ""];
+  const heads = ["", "signal", "largest difference", "tolerance", "at", "first exceedance", ""];
   const [missed, agreed] = [false, true].map((passed) => page.differences.filter((item) => item.passed === passed));
   const lists = [[missed, `${missed.length} of ${page.differences.length} signals differ`], [agreed, `${agreed.length} signals agree`]];
   return lists.filter(([items]) => items.length).map(([items, title]) => card(title, table(heads, items.map(line)), items === missed));
@@ -64,7 +64,7 @@ function changesCard(page) {
 // The state machine of the controller, drawn; it follows the time.
 function chartCard(page) {
   if (!page.charts || !page.charts.length) return null;
-  return card("Chart", element("div", {}, element("p", { id: "chart-said", class: "chart-said", role: "status" }, "Point at a state to see what it does."), element("p", { id: "chart-none", hidden: true }), element("div", { id: "chart" })), false);
+  return card("Chart", element("div", {}, element("p", { id: "chart-said", class: "chart-said", role: "status" }, "Point at a state to see its description."), element("p", { id: "chart-none", hidden: true }), element("div", { id: "chart" })), false);
 }
 
 function fillTables(page) {

@@ -113,7 +113,7 @@ function headline(page) {
   $("verdict").classList.add(page.verdict.kind);
   for (const [key, value] of page.facts) $("facts").append(element("div", {}, element("dt", {}, key), element("dd", {}, value)));
   $("foot").textContent = page.foot;
-  $("plots-said").textContent = page.runs.length > 1 ? "Colours are runs" : "Solid: what is. Dashed: what is asked";
+  $("plots-said").textContent = page.runs.length > 1 ? "one colour per run" : "solid: measured; dashed: commanded";
   if (page.live) { $("drive").href = page.live; $("drive").hidden = false; }
 }
 

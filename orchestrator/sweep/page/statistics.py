@@ -16,7 +16,7 @@ from orchestrator.text.quantities import DEGREE
 from orchestrator.text.readable import readable
 from orchestrator.verdict.conditions import CONDITIONS
 from orchestrator.verdict.confidence import wilson
-from orchestrator.verdict.limit_text import asked
+from orchestrator.verdict.limit_text import required_text
 
 MOST_VALUES = 60
 """An axis with more different values than this is divided into bins."""
@@ -117,7 +117,7 @@ def deciding_limit(table: Table, number: int) -> str:
         violation = -margin / abs(limit.limit) if limit.limit else -margin
         if violation > worst_share:
             unit = RESULTS[limit.signal].unit if limit.signal in RESULTS else "1"
-            worst_share, text = violation, f"{limit.id}: {readable(float(value), unit)} ({asked(limit)})"
+            worst_share, text = violation, f"{limit.id}: {readable(float(value), unit)} ({required_text(limit)})"
     return text
 
 

@@ -22,10 +22,10 @@ class Input(NamedTuple):
 
 
 class Output(NamedTuple):
-    steering_wheel_request: Annotated[float, Signal("rad", "steering-wheel angle asked for")] = 0.0
+    steering_wheel_request: Annotated[float, Signal("rad", "requested steering-wheel angle")] = 0.0
     steering_active: Annotated[bool, Signal("1", "holds the wheel")] = True
     speed_control_active: Annotated[bool, Signal("1", "drives")] = True
-    speed_request: Annotated[float, Signal("m/s", "speed asked for, reverse negative")] = 0.0
+    speed_request: Annotated[float, Signal("m/s", "requested speed, reverse negative")] = 0.0
     phase: Annotated[int, Signal("1", "how far it is")] = 0
     shifts: Annotated[int, Signal("1", "manoeuvres")] = 1
 

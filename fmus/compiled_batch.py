@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from fmus.native.kept import batch_library
 from fmus.native.libraries import load_model
 from fmus.native.structures import Long, Pointer, structure
+from fmus.study_slices import StudyCode
 from modelkit.connections import connections, part_of
 from modelkit.model import Model
 from modelkit.variables import variables
@@ -97,10 +98,20 @@ BatchC = structure(
 FaultC = structure("FaultC", kind=Long, model=Long, first=Long, count=Long)
 
 
+def used_signals(ending: Ending | None, kept: Sequence[Kept]) -> frozenset[str]:
+    """Return the signals that decide when runs are over, and those that are kept of them."""
+    found = {item.signal for item in kept} | {item.when.signal for item in kept if item.when is not None}
+    return frozenset(found if ending is None else found | {ending.mode, ending.speed})
+
+
 def compiled_rows(
-    models: Mapping[str, Model], ending: Ending | None, kept: Sequence[Kept], faults: Sequence[Disturbed] = ()
+    models: Mapping[str, Model],
+    ending: Ending | None,
+    kept: Sequence[Kept],
+    faults: Sequence[Disturbed] = (),
+    code: StudyCode | None = None,
 ) -> Rows:
-    """Return the compiled runs.
+    """Return the compiled runs; of ``code``, made for this study (its slices must have :func:`used_signals`), or None.
 
     ``parameters``: for each run those of all models, one after the other, as doubles. ``times``: step
     [ns], stop [ns], then the decimation of each model. The ``faults`` of a run: ``FAULT_NUMBERS`` for each of those
@@ -108,7 +119,7 @@ def compiled_rows(
     Raises ``KeyError`` for a signal that does not exist, ``TypeError`` if connected types differ or a model
     cannot be compiled, ``RuntimeError`` where there is no compiler.
     """
-    tables = _Tables(models, ending, kept, faults)
+    tables = _Tables(models, ending, kept, faults, code)
     library = ctypes.CDLL(str(batch_library()))
     library.batch_rows.restype = Long
     library.batch_rows.argtypes = [Pointer, Long, Pointer, Pointer, Pointer, Pointer]
@@ -136,7 +147,12 @@ class _Tables:
     """The C structures of a batch, and all memory they point to."""
 
     def __init__(
-        self, models: Mapping[str, Model], ending: Ending | None, kept: Sequence[Kept], faults: Sequence[Disturbed]
+        self,
+        models: Mapping[str, Model],
+        ending: Ending | None,
+        kept: Sequence[Kept],
+        faults: Sequence[Disturbed],
+        code: StudyCode | None,
     ) -> None:
         self._held: list[Any] = []
         self._places: dict[str, Any] = {}
@@ -146,7 +162,10 @@ class _Tables:
                     self._places[f"{owner}.{variable.name}"] = (number, place, is_input)
         links = connections([part_of(name, model) for name, model in models.items()])
         notes = [self._note(item) for item in kept]
-        libraries = [load_model(model) for model in models.values()]
+        libraries = [
+            load_model(model) if code is None else load_model(model, code.slices[name], code.options)
+            for name, model in models.items()
+        ]
         end = ending or Ending("", (), "", 0.0, 0)
         found = [self._signal(name) if ending else SignalC(0, 0, 0) for name in (end.mode, end.speed)]
         self._batch = BatchC(

@@ -8,6 +8,6 @@ What cannot be proved equal in C is refused (``Refused``) with its place and wha
 
 from fmus.compiler.source.refusals import Refusal, Refused
 from fmus.compiler.target.members import Member, member_path, members
-from fmus.compiler.translation import Translation, translate
+from fmus.compiler.translation import Translation, live_inputs, translate
 
-__all__ = ["Member", "Refusal", "Refused", "Translation", "member_path", "members", "translate"]
+__all__ = ["Member", "Refusal", "Refused", "Translation", "live_inputs", "member_path", "members", "translate"]

@@ -1,13 +1,17 @@
 """From a model to the text of its header and its C file, or to all that stands in the way."""
 
 import typing
+from collections.abc import Iterator
+from contextlib import AbstractContextManager
 from typing import Any, NamedTuple
 
 from fmus.compiler.assembly import AssemblyEntries
 from fmus.compiler.constructs import arithmetic, calls, conditions, loops, statements, tuples
 from fmus.compiler.entries import NAMES, Entries, roots
 from fmus.compiler.files import Files
-from fmus.compiler.source.kinds import NoKindError, Struct, is_named_tuple, translating
+from fmus.compiler.slicing import Slice, SliceResult, slice_program
+from fmus.compiler.source.kinds import Array, Kind, NoKindError, Struct, fields_of, is_named_tuple, translating
+from fmus.compiler.source.reading import Library
 from fmus.compiler.source.refusals import AlreadySaidError, CannotError, Refusal, Refused
 from fmus.compiler.target.program import Program
 from modelkit.model import Model
@@ -24,13 +28,28 @@ class Translation(NamedTuple):
     source: str
 
 
-def translate(model: Model) -> Translation:
-    """Return the C99 of ``model``; ``Refused`` says all that stands in the way."""
-    interfaces = _interface(model)
+def translate(model: Model, live: Slice | None = None) -> Translation:
+    """Return the C99 of ``model``, or of the slice ``live`` of it; ``Refused`` says all that stands in the way."""
+    with _types_of(model):
+        return _translated(model, _interface(model), live)
+
+
+def live_inputs(model: Model, live: Slice) -> frozenset[str]:
+    """Return the names of the inputs that the slice ``live`` of ``model`` reads; ``Refused`` as :func:`translate`."""
+    with _types_of(model):
+        fields = _slice(model, _interface(model), live).live_fields
+        return frozenset(name for name, path in paths_of(model.inputs) if set(path) <= fields)
+
+
+def _types_of(model: Model) -> AbstractContextManager[None]:
     models = [model] if model.assembly is None else [model, *(part for _, part in model.assembly.parts)]
     wholes = {own: whole for item in models for own, whole in _wholes(item).items()}
-    with translating(wholes, [cls for item in models for cls in _interface(item)]):
-        return _translated(model, interfaces)
+    return translating(wholes, [cls for item in models for cls in _interface(item)])
+
+
+def _slice(model: Model, interfaces: list[Any], live: Slice) -> SliceResult:
+    found = chosen(model, live.choices)
+    return slice_program(Library(), _roots(found), interfaces, model.outputs, sorted(live.outputs))
 
 
 def _wholes(model: Model) -> dict[Any, Any]:
@@ -44,9 +63,12 @@ def _wholes(model: Model) -> dict[Any, Any]:
     return found | ({} if told is None else {told: model.outputs})
 
 
-def _translated(model: Model, interfaces: list[Any]) -> Translation:
+def _translated(model: Model, interfaces: list[Any], live: Slice | None) -> Translation:
+    library = None
+    if live is not None:
+        model, library = chosen(model, live.choices), _slice(model, interfaces, live).library
     parts = () if model.assembly is None else tuple(part.name for _, part in model.assembly.parts)
-    program = Program((model.name, *parts), _roots(model), interfaces, NAMES)
+    program = Program((model.name, *parts), _roots(model), interfaces, NAMES, library)
     entries = Entries(program, model) if model.assembly is None else AssemblyEntries(program, model, model.assembly)
     try:
         for cls in interfaces:
@@ -60,6 +82,32 @@ def _translated(model: Model, interfaces: list[Any]) -> Translation:
         raise Refused(program.refusals)
     files = Files(program, entries, model)
     return Translation(model.name, files.header(), files.source(functions))
+
+
+def chosen(model: Model, choices: frozenset[int] | None) -> Model:
+    """Return the model with those of its systems alone that a value of ``choices`` chooses."""
+    if choices is None or model.systems is None:
+        return model
+    kept = tuple(item for item in model.systems.systems if choices & set(item.values))
+    return model._replace(systems=model.systems._replace(systems=kept))
+
+
+def paths_of(cls: Any) -> Iterator[tuple[str, tuple[tuple[Any, str], ...]]]:
+    """Yield the name of each variable of a NamedTuple and the (class, field) that lead to it."""
+    for field, kind in fields_of(cls).items():
+        found = list(_paths_in(field, kind))
+        yield from ((name, ((cls, field), *path)) for name, path in found)
+
+
+def _paths_in(name: str, kind: Kind) -> Iterator[tuple[str, tuple[tuple[Any, str], ...]]]:
+    if isinstance(kind, Struct):
+        for inner, path in paths_of(kind.cls):
+            yield f"{name}.{inner}", path
+    elif isinstance(kind, Array):
+        for place in range(kind.length):
+            yield from _paths_in(f"{name}[{place + 1}]", kind.item)
+    else:
+        yield name, ()
 
 
 def _roots(model: Model) -> list[Any]:

@@ -1,5 +1,6 @@
 """The C compiler: that of the package ``ziglang``, which serves all platforms, or this machine's own."""
 
+import hashlib
 import os
 import re
 import shlex
@@ -77,6 +78,17 @@ class Compiler(NamedTuple):
             text = self.run([*SHARED, FRAME_REPORT, "-o", name, *units, *self._options(target)], here, target)
             return Compiled((here / name).read_bytes(), max(map(int, FRAME.findall(text)), default=0))
 
+    def options_for_this_machine(self) -> tuple[str, ...]:
+        """Return the options for a library that only this machine's processor needs to run; the bits are the same.
+
+        A word for the processor is among them, so that another one does not take the library from a shared cache.
+        """
+        model = processor()
+        if not model:
+            return ("-O3",)
+        word = hashlib.sha256(model.encode()).hexdigest()[:16]
+        return ("-O3", "-mcpu=native" if self.is_zig else "-march=native", f"-DPROCESSOR_{word}")
+
     def _options(self, target: CompileTarget) -> tuple[str, ...]:
         alone = self.is_zig and "linux" in target.triple and "-shared" in target.options
         return (*target.options, *(LINUX_ALONE if alone else ()))
@@ -89,6 +101,16 @@ class Compiler(NamedTuple):
         if done.returncode:
             raise RuntimeError(f"{shlex.join(command)}: {done.stderr.strip()}")
         return str(done.stderr)
+
+
+def processor() -> str:
+    """Return what this machine's processor is called and can do; empty where the system has no file for that."""
+    try:
+        text = Path("/proc/cpuinfo").read_text(encoding="utf-8")
+    except OSError:
+        return ""
+    wanted = ("model name", "flags", "Features", "CPU part")
+    return "\n".join(dict.fromkeys(line for line in text.splitlines() if line.startswith(wanted)))
 
 
 def can_compile() -> bool:

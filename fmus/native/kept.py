@@ -31,12 +31,15 @@ def kept_library(
     files: Mapping[str, str],
     compiler: Compiler | None = None,
     target: CompileTarget | None = None,
+    options: tuple[str, ...] = (),
 ) -> Path:
     """Return the path of the library made of ``unit`` among ``files``, compiled if there is none; for this machine.
 
-    Raises ``RuntimeError`` without a C compiler, or with its words if it refuses.
+    ``options``: of the compiler, besides the usual ones. Raises ``RuntimeError`` without a C compiler, or with its
+    words if it refuses.
     """
     compiler, target, platform = compiler or find_compiler(), target or host_target(), PLATFORMS[host()]
+    target = target._replace(options=(*target.options, *options))
     key, file = key_of(compiler, target, files), f"{name}{platform.suffix}"
     return kept_file(LIBRARIES, name, key, platform.suffix, lambda: compiler.library(files, unit, file, target))
 

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from fmus.compiler import members
+from fmus.compiler.slicing import Slice
 from fmus.native.compilers import can_compile, find_compiler
 from fmus.native.kept import kept_library, own_files
 from fmus.native.platforms import LINUX, is_known
@@ -46,10 +47,13 @@ def python_front(cc: str | None = None) -> bytes | None:
 
 
 @lru_cache
-def model_library(model: Model) -> Path:
-    """Return the path of the library of ``model``: see ``library.c``. Raises as :func:`kept_library`, ``TypeError``."""
-    unit = f"{model.name}_library.c"
-    return kept_library(model.name, unit, {**model_files(model), unit: model_unit(model)})
+def model_library(model: Model, live: Slice | None = None, options: tuple[str, ...] = ()) -> Path:
+    """Return the path of the library of ``model``: see ``library.c``. Raises as :func:`kept_library`, ``TypeError``.
+
+    ``live``: of that slice of it alone; ``options``: of the compiler, besides the usual ones.
+    """
+    unit, name = f"{model.name}_library.c", model.name if live is None else f"{model.name}_slice"
+    return kept_library(name, unit, {**model_files(model, live), unit: model_unit(model)}, options=options)
 
 
 def model_unit(model: Model) -> str:
@@ -57,9 +61,9 @@ def model_unit(model: Model) -> str:
     return UNIT.format(name=model.name, store="" if model.store is None else STORE)
 
 
-def model_files(model: Model) -> dict[str, str]:
+def model_files(model: Model, live: Slice | None = None) -> dict[str, str]:
     """Return the files with which a C file can have the model as a table: it includes what ``UNIT`` does."""
-    code, known = translated(model), members(model)
+    code, known = translated(model, live), members(model)
     count = {group: sum(item.group == group for item in known) for group in ("params", "inputs", "outputs")}
     lines = "".join(f"MEMBER({item.path}, {KINDS[item.kind]})\n" for item in known)
     files = {f"{model.name}.h": code.header, f"{model.name}.c": code.source}
@@ -67,13 +71,13 @@ def model_files(model: Model) -> dict[str, str]:
     return files | own_files("library.c", "library.h")
 
 
-def load_model(model: Model) -> Any:
-    """Return the loaded library of ``model`` with the signatures of its functions.
+def load_model(model: Model, live: Slice | None = None, options: tuple[str, ...] = ()) -> Any:
+    """Return the loaded library of ``model`` (see :func:`model_library`) with the signatures of its functions.
 
     ``model_library()``: the table; ``model_start(memory, params, outputs)``; ``model_step(memory, inputs, outputs,
     dt_ns)``: all arrays by their addresses.
     """
-    return typed(ctypes.CDLL(str(model_library(model))))
+    return typed(ctypes.CDLL(str(model_library(model, live, options))))
 
 
 def typed(library: Any) -> Any:

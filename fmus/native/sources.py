@@ -6,6 +6,7 @@ from pathlib import Path
 
 from fmus import compiler
 from fmus.compiler import Translation, translate
+from fmus.compiler.slicing import Slice
 from fmus.locks import kept_file
 from fmus.native.compilers import FLAGS
 from fmus.native.kept import C_FILES
@@ -51,17 +52,28 @@ PREFIX = {
 
 
 @lru_cache
-def translated(model: Model) -> Translation:
-    """Return the C of ``model``; ``TypeError`` if the translator refuses it.
+def translated(model: Model, live: Slice | None = None) -> Translation:
+    """Return the C of ``model``, or of the slice ``live`` of it; ``TypeError`` if the translator refuses it.
 
     That of this project's own models is kept: they are made of their package and modelkit alone.
     """
-    packages = [Path(str(package.__file__)).parent for package in model.sources()]
-    if any(package.parent != ROOT for package in packages):
-        return translate(model)
-    key = hash_of([*packages, ROOT / "modelkit", Path(compiler.__file__).parent], "\0".join(words_of(model)))
-    path = kept_file(CACHE, model.name, key, SUFFIX, lambda: json.dumps(translate(model)._asdict()).encode(), KEPT)
+    packages = own_packages(model)
+    if packages is None:
+        return translate(model, live)
+    words = words_of(model)
+    if live is not None:
+        words += ["slice", *sorted(live.outputs), str(live.choices and sorted(live.choices))]
+    key = hash_of([*packages, ROOT / "modelkit", Path(compiler.__file__).parent], "\0".join(words))
+    name = model.name if live is None else f"{model.name}_slice"
+    made = lambda: json.dumps(translate(model, live)._asdict()).encode()  # noqa: E731
+    path = kept_file(CACHE, name, key, SUFFIX, made, KEPT)
     return Translation(**json.loads(path.read_bytes()))
+
+
+def own_packages(model: Model) -> list[Path] | None:
+    """Return the packages that ``model`` is made of if they are this project's own, else None."""
+    packages = [Path(str(package.__file__)).parent for package in model.sources()]
+    return None if any(package.parent != ROOT for package in packages) else packages
 
 
 def unit_name(model: Model, fmi: int) -> str:

@@ -30,6 +30,7 @@ EXAMPLES = """examples:
   apa sweep my-study.yaml --fmus native        the same table from FMUs, only slower
   apa sweep my-study.yaml --dask               on a Dask cluster of this machine's own
   apa sweep my-study.yaml --dask tcp://10.0.0.5:8786
+  apa sweep guo2015-speed-rate --explain       what compiled code of the study omits
   apa replay runs/my-study/my-study.parquet --row 17
 
 A study is made of a scenario and of what is varied: grid, monte_carlo, latin_hypercube; see docs/sweeps.md.
@@ -70,6 +71,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--seed", type=int, metavar="S", help="the study's own seed, as --set seed=S")
     parser.add_argument("--first", type=int, default=0, metavar="N", help="begin at run N of the study")
     parser.add_argument("--every", type=int, default=1, metavar="N", help="only each N-th run of the study")
+    parser.add_argument(
+        "--explain", action="store_true", help="print what code made for the study omits of the models; run nothing"
+    )
     parser.add_argument("--json", action="store_true", help="print the result as JSON")
     parser.add_argument("--no-page", action="store_true", help="write no result page")
 
@@ -93,6 +97,8 @@ def run(arguments: argparse.Namespace) -> int:
     study = study._replace(design=study.design.part(arguments.first, arguments.every))
     if not len(study.design.seeds):
         raise BadInput(f"{arguments.first}: the study has fewer runs", key="--first")
+    if arguments.explain:
+        return _explain(study)
     out: Path = arguments.out or Path("runs") / study.name
     names = ("fmus", "dask", "workers", "chunk", "resume", "restart")
     with owned(out):
@@ -104,6 +110,22 @@ def run(arguments: argparse.Namespace) -> int:
         if swept.table is None:
             return INTERRUPTED
         return _report(arguments.study, swept.table, quiet=arguments.json)
+
+
+def _explain(study: "Study") -> int:
+    """Print what the code of a study omits, and from which number of runs a study has code of its own."""
+    from orchestrator.sweep.batch import explain
+    from orchestrator.sweep.engines import choose_task
+    from orchestrator.sweep.job import Chunk, make_job
+    from orchestrator.sweep.study_code import STUDY_CODE_FROM
+
+    task, job, design = choose_task(study.scenario, None), make_job(study), study.design
+    if not task.is_compiled:
+        raise BadInput(f"nothing is compiled: {task.note}", key="--explain")
+    print(explain(job, Chunk(0, 0, design.values, design.seeds)))
+    use = "has" if job.runs >= STUDY_CODE_FROM else "does not have"
+    print(f"a study of {job.runs:,} runs {use} code of its own (from {STUDY_CODE_FROM:,} runs)")
+    return PARKED
 
 
 def _not_run(swept: "Swept", name: str) -> str:

@@ -12,7 +12,9 @@ from typing import Any
 
 import numpy as np
 
-from fmus.compiled_batch import Disturbed, Ending, Kept, Rows, When, compiled_rows
+from fmus.compiled_batch import Disturbed, Ending, Kept, Rows, When, compiled_rows, used_signals
+from fmus.native.compilers import find_compiler
+from fmus.study_slices import StudyCode, study_slices
 from modelkit.model import Model
 from orchestrator.cosim.slave import Array
 from orchestrator.scenario.end_condition import SPEED
@@ -21,6 +23,7 @@ from orchestrator.session.session import run_scenario
 from orchestrator.sweep.disturbed import fault_numbers, heard
 from orchestrator.sweep.job import Chunk, Job, arrays, chunk_scenario
 from orchestrator.sweep.rows import FIRST_MEASURE, row_of
+from orchestrator.sweep.study_code import STUDY_CODE_FROM, Choices, StudyRows, choices_of, explanation
 from orchestrator.text.errors import RESOURCES, NotRunError
 from orchestrator.text.failures import reason_of
 from orchestrator.verdict.measures import Measure
@@ -31,11 +34,16 @@ _compiling = threading.Lock()
 def run_batch(job: Job, chunk: Chunk) -> Array:
     """Return one row of measures per run of ``chunk``."""
     scenario = Scenario(**job.scenario)
-    rows = compiled(tuple(job.measures), scenario)
     parameters, times = arrays(job, chunk)
+    rows = compiled(tuple(job.measures), scenario, own_choices(job, scenario, parameters))
     out = np.empty((len(parameters), FIRST_MEASURE + len(job.measures)))
     rows(parameters, times, fault_numbers(job, chunk, scenario), out)
     return out
+
+
+def own_choices(job: Job, scenario: Scenario, parameters: Array) -> Choices | None:
+    """Return what the code made for a study is made for; None if it is too small for code of its own."""
+    return choices_of(scenario, parameters) if job.runs >= STUDY_CODE_FROM else None
 
 
 def run_recorded(job: Job, chunk: Chunk, kind: str, files: Mapping[str, str] | None) -> Array:
@@ -63,21 +71,44 @@ def rows_by(row: Callable[[int], Array], count: int) -> Array:
     return np.array(rows)
 
 
-def compiled(measures: tuple[Measure, ...], scenario: Scenario) -> Rows:
-    """Return the compiled runs of the models of ``scenario``, made once per process."""
+def compiled(measures: tuple[Measure, ...], scenario: Scenario, choices: Choices | None = None) -> Rows:
+    """Return the compiled runs of the models of ``scenario``, made once per process.
+
+    ``choices``: of code made for this study, for runs that choose these systems; None: of the complete models.
+    """
     ending, models = scenario.ending, tuple(scenario.models.items())
     faults = tuple(item.inputs for item in heard(scenario))
     with _compiling:
         return _compiled(
-            models, measures, faults, ending.signal, ending.final(), SPEED, ending.still, ending.standstill_ns
+            models, measures, faults, choices, ending.signal, ending.final(), SPEED, ending.still, ending.standstill_ns
         )
+
+
+def explain(job: Job, chunk: Chunk) -> str:
+    """Return what code made for the study of ``job`` omits of its models; ``chunk``: its runs."""
+    scenario = Scenario(**job.scenario)
+    models, end = dict(scenario.models), scenario.ending
+    ending = Ending(end.signal, end.final(), SPEED, end.still, end.standstill_ns)
+    used = used_signals(ending, [_kept(item) for item in job.measures])
+    slices = study_slices(models, used, dict(choices_of(scenario, arrays(job, chunk)[0])))
+    return explanation(models, slices)
 
 
 @lru_cache
 def _compiled(
-    models: tuple[tuple[str, Model], ...], measures: tuple[Measure, ...], faults: tuple[Disturbed, ...], *ending: Any
+    models: tuple[tuple[str, Model], ...],
+    measures: tuple[Measure, ...],
+    faults: tuple[Disturbed, ...],
+    choices: Choices | None,
+    *ending: Any,
 ) -> Rows:
-    return compiled_rows(dict(models), Ending(*ending), [_kept(item) for item in measures], faults)
+    whole, kept = dict(models), [_kept(item) for item in measures]
+    complete = compiled_rows(whole, Ending(*ending), kept, faults)
+    if choices is None:
+        return complete
+    slices = study_slices(whole, used_signals(Ending(*ending), kept), dict(choices))
+    code = StudyCode(slices, find_compiler().options_for_this_machine())
+    return StudyRows(complete, compiled_rows(whole, Ending(*ending), kept, faults, code))
 
 
 def _kept(measure: Measure) -> Kept:

@@ -37,6 +37,8 @@ class Job(NamedTuple):
     seeded: list[tuple[str, str, int]]
     """(model, parameter, place) of the parameters that take the run's seed."""
     measures: list[Measure]
+    runs: int = 0
+    """How many runs the study has; 0 if that is not known."""
 
 
 class Chunk(NamedTuple):
@@ -61,6 +63,7 @@ def make_job(study: Study) -> Job:
         [field.place for field in fields],
         list(study.seeded),
         measures_for(study.scenario, limits, study.measures.values()),
+        len(study.design.seeds),
     )
 
 

@@ -13,11 +13,11 @@ from orchestrator.cosim.master import Interrupt
 from orchestrator.cosim.slave import Array
 from orchestrator.scenario.plausible import implausible, is_implausible
 from orchestrator.session.provenance import versions
-from orchestrator.sweep.batch import compiled
+from orchestrator.sweep.batch import compiled, own_choices
 from orchestrator.sweep.columns import columns_of, filled
 from orchestrator.sweep.engine import Engine
 from orchestrator.sweep.engines import choose_task, make_engine
-from orchestrator.sweep.job import Chunk, Job, chunks, job_to, make_job
+from orchestrator.sweep.job import Chunk, Job, arrays, chunks, job_to, make_job
 from orchestrator.sweep.store import Store
 from orchestrator.sweep.study.study import Study
 from orchestrator.sweep.study.theirs import hashes_of
@@ -77,7 +77,8 @@ def sweep(study: Study, folder: Path, options: Options) -> Swept:
     missing = [chunk for chunk in chunks(design, size) if not store.has(chunk.number)]
     swept = Swept(None, total, total - sum(len(chunk.seeds) for chunk in missing), 0, 0, 0.0, task.name, task.note)
     if missing and task.is_compiled:
-        compiled(tuple(job.measures), study.scenario)
+        parameters = arrays(job, missing[0])[0]
+        compiled(tuple(job.measures), study.scenario, own_choices(job, study.scenario, parameters))
     if missing:
         _run(study, job, missing, make_engine(task, options.dask, options.workers), store, swept)
     if swept.done == total:

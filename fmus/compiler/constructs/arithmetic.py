@@ -5,10 +5,11 @@ import operator
 from collections.abc import Callable
 from typing import Any
 
+from fmus.compiler.slicing import DeadValue
 from fmus.compiler.source.kinds import BOOL, FLOAT, INT, Array, described
 from fmus.compiler.source.refusals import AlreadySaidError, CannotError
 from fmus.compiler.target.body import EXPRESSIONS, FunctionBody
-from fmus.compiler.target.making import elements, repeated, tuple_of
+from fmus.compiler.target.making import elements, repeated, tuple_of, zero
 from fmus.compiler.target.values import (
     BIT_AND,
     BIT_OR,
@@ -62,6 +63,8 @@ def constant(body: FunctionBody, node: ast.Constant) -> Value:
     """Return a number or truth value written in the source."""
     if type(node.value) in (float, bool):
         return literal(node.value)
+    if isinstance(node.value, DeadValue):
+        return zero(body, node.value.kind)
     if type(node.value) is int:
         return in_64_bits(literal(node.value), node)
     if isinstance(node.value, str | bytes):

@@ -9,7 +9,7 @@ from fmus.compiler.source.refusals import CannotError
 from fmus.compiler.target.body import FunctionBody
 from fmus.compiler.target.names import member_name
 from fmus.compiler.target.storage import ONE_BY_ONE, initial, item_of, put, settled
-from fmus.compiler.target.values import UNKNOWN, Place, Value, as_int
+from fmus.compiler.target.values import UNKNOWN, Place, Value, as_int, literal
 
 
 def tuple_of(body: FunctionBody, items: tuple[Value, ...], kind: Kind | None = None) -> Value:
@@ -57,6 +57,21 @@ def struct_of(body: FunctionBody, kind: Struct, fields: dict[str, Value]) -> Val
     texts = [initial(value) for value in members.values()]
     named = [None if text is None else f".{name} = {text}" for name, text in zip(members, texts, strict=True)]
     return Value(kind, fill=fill, braces=_braces(named), members=members)
+
+
+def zero(body: FunctionBody, kind: Kind) -> Value:
+    """Return the zero of ``kind``: what stands where a slice of the program needs no value."""
+    if isinstance(kind, Scalar):
+        return literal(False if kind == BOOL else 0 if kind == INT else 0.0)
+    body.program.need(kind)
+    if isinstance(kind, Array):
+        return repeated(body, (zero(body, kind.item),), kind.length)
+    assert isinstance(kind, Struct | Mixed)
+
+    def fill(place: Place) -> None:
+        body.emit(f"{place.whole} = ({body.program.type_name(kind)}){{0}};")
+
+    return Value(kind, fill=fill, braces="{0}")
 
 
 def _braces(texts: list[str | None]) -> str:

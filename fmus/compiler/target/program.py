@@ -48,9 +48,14 @@ class Program:
     """Everything a C file is made of, found while its functions are translated."""
 
     def __init__(
-        self, models: tuple[str, ...], roots: list[FunctionType], types: list[Any], reserved: tuple[str, ...] = ()
+        self,
+        models: tuple[str, ...],
+        roots: list[FunctionType],
+        types: list[Any],
+        reserved: tuple[str, ...] = (),
+        library: Library | None = None,
     ) -> None:
-        self.library = Library()
+        self.library = library or Library()
         self.refusals: list[Refusal] = []
         entries = [f"{name}_{entry}" for name in models for entry in ("defaults", "initialize", "step")]
         taken = [*models, *reserved, *entries, *runtime.TEXTS]

@@ -1,14 +1,16 @@
 """What an FMU would be in a system, found before any run: connected, unconnected, unsupported, missing."""
 
 from collections import Counter
-from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from fmpy.model_description import ModelDescription
+
+from modelkit.model import Model
 from modelkit.variables import variables
-from orchestrator.cosim.description import read_description, unsupported
+from orchestrator.cosim.description import ports_of, read_description, unsupported
 from orchestrator.cosim.in_process_slave import InProcessSlave
-from orchestrator.cosim.slave import Slave
+from orchestrator.cosim.slave import Ports, Slave
 from orchestrator.foreign.archive import binary, checked, packed
 from orchestrator.scenario.end_condition import EndCondition
 from orchestrator.scenario.load_scenario import load_system
@@ -18,6 +20,7 @@ from orchestrator.session.foreign import Fitting, Foreign, fmu_of, load_fitting,
 from orchestrator.session.session import Messages, make_slaves
 from orchestrator.system.assemble import Assembled, assemble
 from orchestrator.system.remarks import NEEDED_INPUTS, loops, missing_for_the_verdict, not_fed, unsaid, without_consumer
+from orchestrator.system.signal_matching import Signals, match_signals
 from orchestrator.text.errors import RESOURCES, BadInput, NotRunError, RunError
 from orchestrator.text.failures import reason_of
 
@@ -64,7 +67,7 @@ def check_fmu(path: Path, place: str, scenario: str, timeout: float, loads: bool
     path = packed(path) if path.is_dir() else path
     names = checked(path)
     description = read_description(path)
-    place = place or likely_place(path, [item.name for item in description.modelVariables], scenario)
+    place = place or likely_place(path, description, scenario)
     fitting = _fitting(path, place, scenario, timeout)
     slaves = make_slaves(fitting.scenario, None, Messages(), fitting.foreign)
     try:
@@ -89,17 +92,25 @@ def check_fmu(path: Path, place: str, scenario: str, timeout: float, loads: bool
             item.close()
 
 
-def likely_place(path: Path, names: Sequence[str], scenario: str) -> str:
-    """Return the slave that a scenario has for this FMU; else ours that shares most of its variables with it."""
+def likely_place(path: Path, description: ModelDescription, scenario: str) -> str:
+    """Return the slave that a scenario has for this FMU; else ours whose variables its own are most alike."""
     system = load_system(scenario) if scenario else None
     for place, file in (system.files() if system is not None else {}).items():
         if Path(file).exists() and path.samefile(fmu_of(file)):
             return place
-    shared = {
-        owner: len({item.name for item in (*variables(model.inputs), *variables(model.outputs))} & set(names))
-        for owner, model in MODELS.items()
-    }
-    return "vehicle" if shared["vehicle"] > shared["controller"] else "controller"
+    alike = {owner: _likeness(path, description, model) for owner, model in MODELS.items()}
+    return "vehicle" if alike["vehicle"] > alike["controller"] else "controller"
+
+
+def _likeness(path: Path, description: ModelDescription, model: Model) -> float:
+    """Return how many variables of an FMU are like those of a model, each 0 to 1."""
+    total = 0.0
+    for causality, ours in (("input", model.inputs), ("output", model.outputs)):
+        theirs = Signals("theirs", ports_of(description, causality, None, path))
+        total += sum(
+            item.score for item in match_signals(theirs, Signals("ours", Ports(variables(ours))), is_unique=True)
+        )
+    return total
 
 
 def _fitting(path: Path, place: str, scenario: str, timeout: float) -> Fitting:

@@ -17,6 +17,7 @@ from orchestrator.text.errors import BadInput
 
 if TYPE_CHECKING:
     from orchestrator.cosim.slave import Slave
+    from orchestrator.system.assemble import Assembled
 
 FOREIGN = "foreign"
 """Kind of an FMU that is not one of ours."""
@@ -113,6 +114,27 @@ def parameters_of(path: Path, slave: str) -> list[Variable]:
     checked(path)
     description = read_description(path)
     return [*ports_of(description, "parameter", MODELS.get(slave), path).variables, *text_parameters(description)]
+
+
+def connect_advice(place: str, fmu: str, scenario: str = "") -> str:
+    """Return how to connect an FMU whose names are not ours: what to write into, or the command that writes it."""
+    page = "page foreign-fmus of the documentation"
+    if scenario.endswith((".yaml", ".yml")):
+        return f"write what is missing into system: connections and roles of {scenario} ({page})"
+    option = f"--{place}" if place in MODELS else "--fmu"
+    base = f" --scenario {scenario}" if scenario else ""
+    command = f"apa new scenario {option} {fmu}{base}"
+    return f"{command} writes its connections, suggested by name, unit and description ({page})"
+
+
+def undriven(system: "Assembled", foreign: Foreign, scenario: Scenario) -> list[str]:
+    """Return one line if a third-party vehicle or controller is there and nothing feeds the vehicle's inputs."""
+    names = [slave.name for slave in system.slaves]
+    owner = next((name for name in MODELS if name in foreign.files), "")
+    if not owner or not set(MODELS) <= set(names) or "vehicle" in {names[number] for number, _ in system.fed}:
+        return []
+    advice = connect_advice(owner, str(foreign.files[owner]), scenario.file if scenario.system is not None else "")
+    return [f"no output of controller is connected to vehicle, so nothing drives it; {advice}"]
 
 
 def fitting(scenario: Scenario, own: Mapping[str, list[Variable]]) -> tuple[Scenario, list[str]]:

@@ -17,7 +17,7 @@ from orchestrator.scenario.models import MODELS
 from orchestrator.scenario.plausible import implausible
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.session.cost import told_cost
-from orchestrator.session.foreign import Foreign
+from orchestrator.session.foreign import Foreign, undriven
 from orchestrator.session.provenance import provenance
 from orchestrator.stream.realtime import Realtime
 from orchestrator.system.assemble import Assembled, assemble
@@ -153,7 +153,7 @@ def run_slaves(
     """Return the recording of one run of given slaves."""
     system = assemble(scenario, slaves)
     exchanges = scenario.stop_ns // scenario.step_ns + 1
-    said = _warnings(system, scenario, exchanges)
+    said = [*_warnings(system, scenario, exchanges), *undriven(system, foreign, scenario)]
     for text in said:
         warn(text)
     master = _master(system, scenario, kind if realtime is None else PACED)

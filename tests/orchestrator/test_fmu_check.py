@@ -88,3 +88,21 @@ def test_what_is_no_fmu_is_bad_input(tmp_path: Path, capsys: pytest.CaptureFixtu
     assert "--as: gps is neither vehicle nor controller" in capsys.readouterr().err
     with pytest.raises(SystemExit, match="2"):
         main(["fmu", "check", str(good), "--timeout", "never"])
+
+
+def test_one_that_nothing_connects_is_sent_to_the_command_that_does(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    c_fmus.two_arcs(tmp_path)
+    c_fmus.plant(tmp_path)
+    advice = "apa new scenario --controller two_arcs.fmu writes its connections"
+    assert main(["fmu", "check", "two_arcs.fmu"]) == 1
+    assert f"next: {advice}" in capsys.readouterr().out
+    words = ["run", "guo2015-case4", "--fmus", "none", "--no-page", "--set", "stop_time=0.1"]
+    assert main([*words, "--controller", "two_arcs.fmu"]) == 1
+    assert f"no output of controller is connected to vehicle, so nothing drives it; {advice}" in capsys.readouterr().err
+    assert main([*words, "--vehicle", "plant.fmu"]) in (1, 2)
+    assert "apa new scenario --vehicle plant.fmu writes its connections" in capsys.readouterr().err
+    assert main(["fmu", "check", "plant.fmu", "--no-load", "--json"]) == 1
+    assert json.loads(capsys.readouterr().out)["place"] == "vehicle"

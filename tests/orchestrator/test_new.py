@@ -86,3 +86,42 @@ def test_the_templates_run_without_warnings_alone_and_say_what_they_lack_togethe
     lines = capsys.readouterr().err.splitlines()
     assert "apa: note: unconnected inputs of vehicle (start values are used): prompt" in lines
     assert "apa: warning: outputs of controller that no input takes: speed_control_active, speed_request" in lines
+
+
+def test_a_scenario_and_a_study_run_without_warnings(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert main(["new", "scenario", "my-slot"]) == 0
+    assert main(["new", "study", "my-study", "--scenario", "my-slot.yaml", "--out", "studies"]) == 0
+    assert main(["new", "study", "case4"]) == 0
+    capsys.readouterr()
+    short = ["--fmus", "none", "--no-page", "--set", "stop_time=0.5"]
+    assert main(["run", "my-slot.yaml", *short]) == 1
+    for study in ("studies/my-study.yaml", "case4.yaml"):
+        assert main(["sweep", study, "--every", "12", *short]) == 0
+    assert "warning" not in capsys.readouterr().err
+    assert main(["new", "scenario", "my-slot.yaml"]) == 2
+    assert "my-slot.yaml: is there already" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["scenario"], "NAME: is missing"),
+        (["controller"], "NAME: is missing"),
+        (["study", "a/b"], "a/b: is no name for a file"),
+        (["scenario", "x", "--scenario", "guo2015-case4"], "--scenario: needs --controller, --vehicle or --fmu"),
+        (["study", "x", "--controller", "their.fmu"], "--controller: is not for apa new study"),
+        (["ci", "x", "--scenario", "x.yaml"], "--scenario: needs --fmu"),
+        (["scenario", "--controller", "their.fmu"], "their.fmu: no such file"),
+        (["study", "x", "--scenario", "guo2015-cse4"], "guo2015-case4"),
+    ],
+)
+def test_options_that_do_not_fit_are_bad_input(
+    words: list[str], said: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert main(["new", *words]) == 2
+    assert said in capsys.readouterr().err
+    assert not list(tmp_path.iterdir())

@@ -13,6 +13,7 @@ import yaml
 from packaging.requirements import Requirement
 
 from orchestrator.cli import main
+from tests.orchestrator import foreign_fmus
 
 ROOT = Path(__file__).parents[2]
 NAME = "my_controller"
@@ -98,3 +99,24 @@ def test_what_they_install_is_what_this_is(pushed: Path) -> None:
 def test_what_is_there_stays(pushed: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["new", "ci", NAME]) == 2
     assert "is there already" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("server", PIPELINES)
+def test_the_pipelines_of_an_fmu_check_it_and_run_its_scenario(
+    server: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    foreign_fmus.controller(tmp_path).rename(f"{NAME}.fmu")
+    assert main(["new", "ci", "--fmu", f"{NAME}.fmu"]) == 0
+    assert f"{NAME}.yaml" in capsys.readouterr().out
+    lines, variables, kept = read(server)
+    assert lines[0] == 'python -m pip install "$APA_COSIM"'
+    assert lines[1:] == [
+        f"apa fmu check {NAME}.fmu --scenario {NAME}.yaml",
+        f"apa test {NAME}.yaml --junit results/apa.xml --out results",
+    ]
+    assert Requirement(variables["APA_COSIM"]).name == "apa-cosim"
+    for line in lines[1:]:
+        assert main(shlex.split(line)[1:]) in (0, 1)
+    assert all(Path(path).exists() for path in kept)
+    assert main(["new", "ci", "--fmu", f"{NAME}.fmu"]) == 2

@@ -5,6 +5,7 @@ import json
 from pathlib import Path
 
 from orchestrator.session.fmu_check import FmuReport, check_fmu
+from orchestrator.session.foreign import connect_advice
 from orchestrator.session.options import TIMEOUT, seconds
 from orchestrator.text.console import console
 
@@ -48,6 +49,8 @@ def run(arguments: argparse.Namespace) -> int:
         print(json.dumps(report.plain(), indent=2))
     else:
         _print(report)
+        if not report.is_ready:
+            print(f"next: {connect_advice(report.place, str(arguments.fmu), arguments.scenario)}")
     return READY if report.is_ready else NOT_READY
 
 

@@ -54,8 +54,8 @@ class Host:
         self.fmu.freeInstance()
         shutil.rmtree(self.folder, ignore_errors=True)
 
-    def initialize(self, start: Any = 0.0, **params: Any) -> None:
-        self.fmu.setupExperiment(startTime=start)
+    def initialize(self, start: Any = 0.0, stop: Any = None, **params: Any) -> None:
+        self.fmu.setupExperiment(startTime=start, stopTime=stop)
         self.set(params)
         self.fmu.enterInitializationMode()
         self.fmu.exitInitializationMode()

@@ -264,6 +264,20 @@ def test_a_wrong_step_is_refused_and_the_next_one_goes_on(toy: Any, time: Any, s
     toy.free(component)
 
 
+def test_a_step_beyond_the_stop_time_is_an_error(toy: Any) -> None:
+    component = toy.instantiate()
+    assert toy.enter(component, 7.5, 7.52) == OK
+    assert toy.call("ExitInitializationMode", component) == OK
+    assert toy.step(component, 7.5) == OK
+    assert toy.step(component, 7.51, 0.02) == ERROR
+    assert "beyond the stop time" in toy.messages[-1][2]
+    assert toy.told[-1].value == 7.51
+    assert toy.step(component, 7.51) == OK
+    assert toy.step(component, 7.52, 2e-6) == ERROR
+    assert toy.get(component, "count") == [2]
+    toy.free(component)
+
+
 def test_times_of_the_experiment_are_checked(toy: Any) -> None:
     component = toy.instantiate()
     assert toy.enter(component, math.nan) == ERROR

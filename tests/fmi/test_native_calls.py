@@ -249,6 +249,39 @@ def test_times_of_the_experiment_are_checked(toy: Any) -> None:
     toy.free(component)
 
 
+def with_stop(toy: Any, start: float, stop: float) -> Any:
+    component = toy.instantiate()
+    assert toy.call("SetupExperiment", component, 0, c_double(0), c_double(start), 1, c_double(stop)) == OK
+    assert toy.call("EnterInitializationMode", component) == toy.call("ExitInitializationMode", component) == OK
+    return component
+
+
+@pytest.mark.parametrize("start", [0.0, 7.5])
+def test_a_step_beyond_the_stop_time_is_an_error(toy: Any, start: float) -> None:
+    component = with_stop(toy, start, start + 0.02)
+    assert toy.step(component, start) == OK
+    assert toy.step(component, start + 0.01, 0.02) == ERROR
+    assert "beyond the stop time" in toy.messages[-1][2]
+    assert toy.get(component, "count") == 1
+    assert toy.step(component, start + 0.01, 0.01 + 9e-7) == OK
+    assert toy.step(component, start + 0.02) == ERROR
+    assert toy.get(component, "count") == 2
+    toy.free(component)
+
+
+def test_the_stop_time_belongs_to_the_experiment(toy: Any) -> None:
+    component = with_stop(toy, 0.0, math.inf)
+    assert toy.step(component, 0.0, 3600.0) == OK
+    assert toy.call("Reset", component) == OK
+    toy.free(component)
+    component = with_stop(toy, 0.0, 0.01)
+    assert toy.call("Reset", component) == OK
+    assert toy.setup(component) == OK
+    assert toy.call("EnterInitializationMode", component) == toy.call("ExitInitializationMode", component) == OK
+    assert toy.step(component, 0.0, 1.0) == OK
+    toy.free(component)
+
+
 def test_what_the_fmu_declares_that_it_cannot_do(toy: Any) -> None:
     component = toy.initialized()
     one = c_size_t(1)

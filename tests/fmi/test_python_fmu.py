@@ -121,6 +121,31 @@ def test_a_long_step_is_honoured_and_a_bad_one_refused(python_fmus: Any) -> None
         assert host.step(1.5, 0.01) == OK
 
 
+@pytest.mark.parametrize("start", [0.0, 7.5])
+def test_a_step_beyond_the_stop_time_is_refused(python_fmus: Any, start: float) -> None:
+    with Host(python_fmus["Toy"]) as host:
+        host.initialize(start, stop=start + 0.02)
+        assert host.step(start, 0.01) == OK
+        before = host.outputs()
+        assert host.step(start + 0.01, 0.02) == DISCARD
+        assert "beyond the stop time" in host.log[-1][2]
+        assert host.outputs() == before
+        assert host.step(start + 0.01, 0.01 + 9e-7) == OK
+        assert host.step(start + 0.02, 0.01) == DISCARD
+        host.fmu.terminate()
+        host.fmu.reset()
+        host.initialize(start)
+        assert host.step(start, 1.0) == OK
+
+
+@pytest.mark.parametrize(("start", "stop"), [(float("nan"), None), (1.0, 0.5), (0.0, float("nan")), (1e300, None)])
+def test_times_of_the_experiment_are_checked(python_fmus: Any, start: float, stop: float | None) -> None:
+    with Host(python_fmus["Toy"]) as host:
+        host.initialize(start, stop=stop)
+        assert host.step(0.0, 0.01) == DISCARD
+        assert host.log
+
+
 @pytest.mark.parametrize("size", [1e-12, 4e-10, 5e-324])
 def test_a_last_step_under_half_a_nanosecond_is_ok_and_does_nothing(python_fmus: Any, size: float) -> None:
     """A master that adds up t += h makes one at the end."""

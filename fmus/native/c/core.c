@@ -51,6 +51,7 @@ static void fmu_refresh(FmuInstance *fmu) {
 
 static void fmu_start_values(FmuInstance *fmu) {
     memset(&fmu->saved, 0, sizeof fmu->saved);
+    fmu->stop_ns = INT64_MAX;
     FMU_CALL(defaults)(&fmu->saved.model.params, &fmu->saved.model.inputs);
     fmu->saved.phase = FMU_INSTANTIATED;
     fmu->saved.stale = 1;
@@ -114,6 +115,7 @@ static FmuStatus fmu_set_times(FmuInstance *fmu, double start, bool has_stop, do
         return fmu_report(fmu, FMU_ERROR, "stop time %g s is not after start time %g s", stop, start);
     fmu->saved.start_ns = fmu->saved.now_ns = (int64_t)llrint(start * FMU_NANOSECONDS);
     fmu->saved.time = start;
+    fmu->stop_ns = has_stop && stop <= FMU_LATEST ? (int64_t)llrint(stop * FMU_NANOSECONDS) : INT64_MAX;
     return FMU_OK;
 }
 
@@ -130,6 +132,9 @@ static FmuStatus fmu_step(FmuInstance *fmu, double time, double step, const char
         return fmu_report(fmu, FMU_ERROR, "%s: called at %.9f s, but the FMU is at %.9f s", function, time,
                           (double)saved->now_ns / FMU_NANOSECONDS);
     const int64_t end = (int64_t)llrint((time + step) * FMU_NANOSECONDS);
+    if (end - FMU_CLOCK_TOLERANCE > fmu->stop_ns)
+        return fmu_report(fmu, FMU_ERROR, "%s: the step to %.9f s is beyond the stop time %.9f s", function, time + step,
+                          (double)fmu->stop_ns / FMU_NANOSECONDS);
     if (end <= saved->now_ns) return FMU_OK;
     const int64_t length = end - saved->now_ns;
     FMU_CALL(step)(FMU_STORE(model) &model->state, &model->inputs, &model->params, length, &model->outputs);

@@ -80,6 +80,7 @@ typedef struct {
 typedef struct {
     FmuHost host; /* first: a message takes the address of the instance as it is */
     FmuSaved saved;
+    int64_t stop_ns; /* INT64_MAX: no stop time is defined; the importer's experiment, not part of a saved state */
     FmuList got[FMU_KINDS];
     FmuList given[FMU_KINDS]; /* inputs alone: parameters have limits */
 } FmuInstance;

@@ -19,7 +19,7 @@ import numpy as np
 from fmus.native.structures import Long, Pointer, structure
 from orchestrator.cosim.connections import Connection
 from orchestrator.cosim.fmu_slave import FmuSlave, Transfer
-from orchestrator.cosim.master import End, Master
+from orchestrator.cosim.master import End, Master, last_exchange
 from orchestrator.cosim.slave import Indices, all_values, places_of
 
 BLOCK = 250
@@ -58,6 +58,7 @@ RunC = structure(
     link_count=Long,
     width=Long,
     step_ns=Long,
+    stop_ns=Long,
     last=Long,
     failed=Long,
     failure=Long,
@@ -96,7 +97,7 @@ class CompiledMaster(Master):
             rows = plan.rows_of_ports(unseen, count)
             for row in range(unseen, count):
                 self.values[:] = rows[row - unseen]
-                t_ns = (first + row) * self.step_ns
+                t_ns = min((first + row) * self.step_ns, self.stop_ns)
                 for observer in self.observers:
                     observer.exchanged(t_ns)
                 reason = self._over(t_ns, first + row == plan.last)
@@ -122,7 +123,7 @@ class _Plan:
         self._fmus = fmus
         self._kept: list[Any] = []
         self._step_ns = master.step_ns
-        self.last = master.stop_ns // master.step_ns
+        self.last = last_exchange(master.step_ns, master.stop_ns)
         self._begins = [part.start for part in places_of(fmus)]
         groups = [group for slave in fmus for group in (slave.sets, slave.gets)]
         order = np.concatenate([begin + _order(group) for begin, group in zip(self._begins, groups, strict=True)])
@@ -136,7 +137,7 @@ class _Plan:
         links = (LinkC * len(parts))(*[self._link(link, number) for link, number in parts])
         self._kept += [before, links]
         pointers = (ctypes.addressof(self._slaves), ctypes.addressof(links), before.ctypes.data)
-        self._run = RunC(*pointers, len(fmus), len(links), len(before), master.step_ns, self.last)
+        self._run = RunC(*pointers, len(fmus), len(links), len(before), master.step_ns, master.stop_ns, self.last)
         self._addresses = ctypes.addressof(self._run), self.rows.ctypes.data
 
     def rows_of_ports(self, begin: int, end: int) -> Any:

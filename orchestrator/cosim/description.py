@@ -100,6 +100,11 @@ def ports_of(description: ModelDescription, causality: str, model: Model | None,
     return ports
 
 
+def has_variable_step(description: ModelDescription) -> bool:
+    """Return whether an FMU may be stepped by different lengths."""
+    return bool(description.coSimulation.canHandleVariableCommunicationStepSize)
+
+
 def text_parameters(description: ModelDescription) -> list[Variable]:
     """Return the parameters that are texts: a file's name, a choice by word. They are set, and no part of the ports."""
     return [

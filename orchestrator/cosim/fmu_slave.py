@@ -21,7 +21,7 @@ from fmpy.fmi2 import (
 
 from fmus.files import new_folder, remove_folder
 from modelkit.model import Model
-from orchestrator.cosim.description import ports_of, read_description, text_parameters
+from orchestrator.cosim.description import has_variable_step, ports_of, read_description, text_parameters
 from orchestrator.cosim.slave import Ports
 from orchestrator.text.errors import RESOURCES, NotRunError, RunError
 
@@ -75,6 +75,7 @@ class FmuSlave:
         self._instance: FMU2Slave | None = None
         self._description = read_description(path)
         self.identity = self._description.guid
+        self.has_variable_step = has_variable_step(self._description)
         scalars = self._description.modelVariables
         self._references = {scalar.name: scalar.valueReference for scalar in scalars}
         self.inputs, self.outputs, self.parameters = (

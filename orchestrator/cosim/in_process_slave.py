@@ -12,6 +12,8 @@ from orchestrator.text.errors import RESOURCES, RunError
 class InProcessSlave:
     """``modelkit.model.Model`` behind the face of a slave."""
 
+    has_variable_step = True
+
     def __init__(self, name: str, model: Model, parameters: Mapping[str, Any]) -> None:
         self.name = name
         self.identity = f"in-process {model.name}"

@@ -1,8 +1,9 @@
-"""Fixed-step Jacobi master on integer nanoseconds, with integer multi-rate, observers and manipulators.
+"""Jacobi master on integer nanoseconds: fixed step, integer multi-rate, observers and manipulators.
 
 At every exchange: read all outputs, write all inputs, then step all. One exchange takes place in
 Initialization Mode. A slave with decimation n is stepped every n-th time by n communication steps;
-its outputs are read, and its inputs written, only at those instants.
+its outputs are read, and its inputs written, only at those instants. No step goes beyond the stop time: the
+last one ends there, and all outputs are read then.
 """
 
 from collections.abc import Callable
@@ -67,6 +68,11 @@ class _Instant(NamedTuple):
     steps: list[tuple[Slave, int]]
 
 
+def last_exchange(step_ns: int, stop_ns: int) -> int:
+    """Return the number of the exchange at the stop time; that at the start is number 0."""
+    return -(-stop_ns // step_ns)
+
+
 class Master:
     """Everything that takes part in one run."""
 
@@ -109,13 +115,13 @@ class Master:
     def run(self) -> End:
         """Exchange and step until an ending, the stop time or an interrupt. Raises ``RunError``."""
         instants: dict[tuple[bool, ...], _Instant] = {}
-        last = self.stop_ns // self.step_ns
+        last = last_exchange(self.step_ns, self.stop_ns)
         count = 0
         while True:
-            t_ns = count * self.step_ns
-            pattern = tuple([count % every == 0 for every in self.every])
+            t_ns = min(count * self.step_ns, self.stop_ns)
+            pattern = tuple([count % every == 0 or count == last for every in self.every])
             if pattern not in instants:
-                instants[pattern] = self._instant(count)
+                instants[pattern] = self._instant(pattern)
             due, links, faults, steps = instants[pattern]
             for slave in due:
                 slave.fetch_outputs()
@@ -132,7 +138,7 @@ class Master:
             for slave in due:
                 slave.send_inputs()
             for slave, dt_ns in steps:
-                slave.step(t_ns, dt_ns)
+                slave.step(t_ns, min(dt_ns, self.stop_ns - t_ns))
             count += 1
 
     def finish(self, end: End) -> None:
@@ -154,8 +160,8 @@ class Master:
                 return reason
         return "stop_time" if last else ""
 
-    def _instant(self, count: int) -> "_Instant":
-        due = [number for number, every in enumerate(self.every) if count % every == 0]
+    def _instant(self, pattern: tuple[bool, ...]) -> "_Instant":
+        due = [number for number, is_due in enumerate(pattern) if is_due]
         links = [self._link(link) for link in self.connections if link.target in due]
         faults = [fault for fault in self.manipulators if fault.slave in due]
         steps = [(self.slaves[number], self.every[number] * self.step_ns) for number in due]

@@ -79,6 +79,8 @@ class Slave(Protocol):
     """Parameters with the values they have in this run."""
     identity: str
     """GUID of the FMU, or what says which model this is."""
+    has_variable_step: bool
+    """Whether its steps may differ in length (``canHandleVariableCommunicationStepSize``)."""
 
     def initialize(self, stop_ns: int) -> None:
         """Enter initialization; afterwards outputs can be fetched and inputs sent."""

@@ -22,7 +22,7 @@ import numpy as np
 from fmus.children import LIVING, end, own_process
 from fmus.files import new_folder, remove_folder
 from modelkit.model import Model
-from orchestrator.cosim.description import element_names, ports_of, read_description, text_parameters
+from orchestrator.cosim.description import element_names, has_variable_step, ports_of, read_description, text_parameters
 from orchestrator.cosim.slave import Indices, Ports
 from orchestrator.foreign import worker
 from orchestrator.foreign.archive import binary, checked, unpack
@@ -74,6 +74,7 @@ class ProcessSlave:
         self._names = checked(path)
         self._description = read_description(path)
         self.identity = str(self._description.guid)
+        self.has_variable_step = has_variable_step(self._description)
         self._version = 3 if str(self._description.fmiVersion).startswith("3") else 2
         self.inputs, self.outputs, self.parameters = (
             ports_of(self._description, causality, model, path) for causality in ("input", "output", "parameter")

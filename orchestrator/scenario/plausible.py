@@ -12,7 +12,7 @@ from orchestrator.scenario.models import MODELS
 from orchestrator.scenario.polygons import static_obstacles
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.text.errors import BadInput, shown
-from orchestrator.text.quantities import NANOSECONDS, number
+from orchestrator.text.quantities import number
 
 LARGEST: Mapping[str, float] = {
     "m": 10e3,
@@ -51,19 +51,11 @@ def plausible(variable: Variable) -> tuple[float, float]:
 def implausible(scenario: Scenario) -> list[str]:
     """Return a sentence for each number of a scenario that is allowed but hardly meant."""
     return [
-        *_times(scenario),
         *_parameters(scenario),
         *_places(scenario),
         *_gaps(scenario),
         *_faults(scenario),
     ]
-
-
-def _times(scenario: Scenario) -> Iterator[str]:
-    asked, last = round(scenario.stop_time * NANOSECONDS), scenario.stop_ns
-    if last != asked:
-        whole = f"no whole number of steps of {scenario.step:.9g} s"
-        yield f"stop_time {scenario.stop_time:.9g} s is {whole}: a run ends at {last / NANOSECONDS:.9g} s"
 
 
 def is_implausible(value: float, variable: Variable) -> str:

@@ -164,8 +164,8 @@ class Scenario(_ScenarioPart):
 
     @property
     def stop_ns(self) -> int:
-        """Stop time [ns], a whole number of steps."""
-        return round(self.stop_time * NANOSECONDS) // self.step_ns * self.step_ns
+        """Stop time [ns]; the last step is shorter if it is no whole number of steps."""
+        return round(self.stop_time * NANOSECONDS)
 
     @property
     def success(self) -> Outcome:

@@ -1,5 +1,6 @@
 """One run from a scenario: make the slaves, the master, its observers and faults; run; return the recording."""
 
+import math
 import time
 from collections.abc import Callable, Mapping
 from pathlib import Path
@@ -8,7 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from orchestrator.cosim.endings import standstill
 from orchestrator.cosim.faults import manipulators
 from orchestrator.cosim.in_process_slave import InProcessSlave
-from orchestrator.cosim.master import End, Interrupt, Master, Observer
+from orchestrator.cosim.master import End, Interrupt, Master, Observer, last_exchange
 from orchestrator.cosim.mode_changes import ERROR, FMI_LEVELS, WARNING, ModeChanges
 from orchestrator.cosim.recording import Recorder, Recording
 from orchestrator.cosim.slave import Slave
@@ -22,7 +23,8 @@ from orchestrator.session.provenance import provenance
 from orchestrator.stream.realtime import Realtime
 from orchestrator.system.assemble import Assembled, assemble
 from orchestrator.system.remarks import remarks
-from orchestrator.text.errors import RESOURCES, NotRunError, RunError
+from orchestrator.text.errors import RESOURCES, BadInput, NotRunError, RunError
+from orchestrator.text.quantities import NANOSECONDS
 
 if TYPE_CHECKING:
     from orchestrator.log.mcap_log import McapLog
@@ -152,11 +154,12 @@ def run_slaves(
 ) -> Ran:
     """Return the recording of one run of given slaves."""
     system = assemble(scenario, slaves)
-    exchanges = scenario.stop_ns // scenario.step_ns + 1
-    said = [*_warnings(system, scenario, exchanges), *undriven(system, foreign, scenario)]
+    stop_ns = _reachable_stop_ns(system, scenario)
+    exchanges = last_exchange(scenario.step_ns, stop_ns) + 1
+    said = [*_warnings(system, scenario, exchanges, stop_ns), *undriven(system, foreign, scenario)]
     for text in said:
         warn(text)
-    master = _master(system, scenario, kind if realtime is None else PACED)
+    master = _master(system, scenario, stop_ns, kind if realtime is None else PACED)
     master.interrupt = interrupt or Interrupt()
     info = provenance(scenario, system.slaves, kind, foreign) | ({"started": dict(started)} if started else {})
     recorder = Recorder(system.slaves, exchanges)
@@ -189,12 +192,40 @@ def _begun_log(
     return file
 
 
-def _warnings(system: Assembled, scenario: Scenario, exchanges: int) -> list[str]:
+def _reachable_stop_ns(system: Assembled, scenario: Scenario) -> int:
+    """Return the stop time [ns]; the last one that all FMUs of a fixed communication step reach, if there are any."""
+    steps = [
+        scenario.step_ns * scenario.every.get(item.name, 1) for item in system.slaves if not item.has_variable_step
+    ]
+    common = math.lcm(*steps)
+    stop_ns = scenario.stop_ns // common * common
+    if not stop_ns:
+        text = f"{scenario.stop_time:.9g} s is less than the {common / NANOSECONDS:.9g} s which {_fixed(system)} needs"
+        raise BadInput(text, file=scenario.file, key="stop_time")
+    return stop_ns
+
+
+def _fixed(system: Assembled) -> str:
+    return ", ".join(item.name for item in system.slaves if not item.has_variable_step)
+
+
+def _early_stop(system: Assembled, scenario: Scenario, stop_ns: int) -> list[str]:
+    """Return that a run ends before its stop time, if it does."""
+    if stop_ns == scenario.stop_ns:
+        return []
+    text = (
+        f"stop_time {scenario.stop_time:.9g} s is no whole number of steps, and the step of {_fixed(system)} is fixed"
+    )
+    return [f"{text}: a run ends at {stop_ns / NANOSECONDS:.9g} s"]
+
+
+def _warnings(system: Assembled, scenario: Scenario, exchanges: int, stop_ns: int) -> list[str]:
     """Return what is allowed in a system but hardly meant, or costly."""
     cost = told_cost(exchanges, sum(len(item.inputs.names) + len(item.outputs.names) for item in system.slaves))
     ending = scenario.ending if scenario.task != "run" else None
     ignored = scenario.system.ignored if scenario.system is not None else []
-    return [*remarks(system, ending, ignored), *implausible(scenario), *([cost] if cost else [])]
+    early = _early_stop(system, scenario, stop_ns)
+    return [*remarks(system, ending, ignored), *early, *implausible(scenario), *([cost] if cost else [])]
 
 
 def _driven(master: Master, messages: Messages) -> tuple[End, float]:
@@ -210,7 +241,7 @@ def _driven(master: Master, messages: Messages) -> tuple[End, float]:
     return end, wall_time
 
 
-def _master(system: Assembled, scenario: Scenario, kind: str) -> Master:
+def _master(system: Assembled, scenario: Scenario, stop_ns: int, kind: str) -> Master:
     """Return the master for FMUs of this kind: compiled for native ones, as the loop in Python would eat the gain.
 
     Faults and what ends the run are in place.
@@ -220,7 +251,7 @@ def _master(system: Assembled, scenario: Scenario, kind: str) -> Master:
         from orchestrator.cosim.compiled_master import CompiledMaster
 
         make = CompiledMaster
-    master = make(system.slaves, scenario.step_ns, scenario.stop_ns, scenario.every, system.connections)
+    master = make(system.slaves, scenario.step_ns, stop_ns, scenario.every, system.connections)
     master.manipulators += manipulators(scenario.faults, master, scenario.seed, scenario.file)
     ending = standstill(scenario.ending, system.slaves) if scenario.task != "run" else None
     if ending is not None:

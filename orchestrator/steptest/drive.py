@@ -11,7 +11,7 @@ from orchestrator.cosim.description import DESCRIPTION
 from orchestrator.cosim.fmu_files import fmu_beside, fmu_files
 from orchestrator.cosim.fmu_slave import FmuSlave
 from orchestrator.cosim.in_process_slave import InProcessSlave
-from orchestrator.cosim.master import Master
+from orchestrator.cosim.master import Master, last_exchange
 from orchestrator.cosim.recording import Recorder, Recording
 from orchestrator.cosim.slave import Array, Slave
 from orchestrator.log.read_log import log_file, read_log
@@ -41,10 +41,13 @@ def drive(test: StepTest, kind: str, foreign: Foreign = NOBODY, model: str = "")
     is_ours = (model or test.model) in MODELS and (model or test.model) not in foreign.files
     used = {"name": "vehicle", "kind": kind if is_ours else FOREIGN}
     try:
+        if test.stop_ns % test.step_ns and not slave.has_variable_step:
+            text = f"{test.stop_time:.9g} s is no whole number of steps of {test.step:.9g} s, which the FMU needs"
+            raise BadInput(text, file=test.file, key="stop_time")
         master = Master([slave], test.step_ns, test.stop_ns)
         player = _Player(slave, _inputs(test, slave))
         master.manipulators.append(player)
-        recorder = Recorder([slave], test.stop_ns // test.step_ns + 1)
+        recorder = Recorder([slave], last_exchange(test.step_ns, test.stop_ns) + 1)
         master.observers.append(recorder)
         player.apply(0)
         master.initialize()
@@ -79,7 +82,8 @@ class _Player:
 
 def _inputs(test: StepTest, slave: Slave) -> dict[int, Array]:
     """Return place -> values at every instant of the inputs that the test says."""
-    t: Array = np.arange(test.stop_ns // test.step_ns + 1, dtype=np.float64) * test.step_ns / 1e9
+    count = last_exchange(test.step_ns, test.stop_ns) + 1
+    t: Array = np.minimum(np.arange(count, dtype=np.float64) * test.step_ns, test.stop_ns) / 1e9
     ports, columns = slave.inputs, {}
     if test.replay:
         columns = _replayed(test, slave, t)

@@ -164,7 +164,7 @@ def arrays(job: Job, chunk: Chunk) -> tuple[Array, Times]:
     for owner, _, place in job.seeded:
         parameters[:, starts[owner] + place] = seeds
     step_ns = np.round(steps * NANOSECONDS).astype(np.int64)
-    stop_ns = np.round(stops * NANOSECONDS).astype(np.int64) // step_ns * step_ns
+    stop_ns = np.round(stops * NANOSECONDS).astype(np.int64)
     return parameters, np.column_stack([step_ns, stop_ns, *every.values()])
 
 

@@ -7,6 +7,7 @@ class Listener:
     """Gives roles a name to be seen under, where no slave is called that."""
 
     identity = ""
+    has_variable_step = True
 
     def __init__(self, name: str) -> None:
         self.name = name

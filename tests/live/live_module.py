@@ -11,6 +11,7 @@ from fmus.compiled_batch import FAULTS
 from fmus.native.web import charts_of, web_module
 from modelkit.model import Model
 from modelkit.variables import flatten, variables, with_values
+from orchestrator.cosim.master import last_exchange
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.sweep.disturbed import heard, numbers_for
 
@@ -59,7 +60,7 @@ class LiveModule:
 
     def run(self, scenario: Scenario, names: Sequence[str]) -> tuple[float, Any]:
         """Return how a run ended, and a line for each exchange: time, then the signals ``names``."""
-        last = scenario.stop_ns // scenario.step_ns
+        last = last_exchange(scenario.step_ns, scenario.stop_ns)
         live = self.call("live_open", self.put(setup(scenario, names)))
         trace = self.call("live_numbers", (last + 1) * (1 + len(names)))
         params, times, faults = (self.put(made(scenario)) for made in (parameters, times_of, disturbed))

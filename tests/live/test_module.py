@@ -12,6 +12,7 @@ import pytest
 from fmus.native.platforms import CompileTarget
 from fmus.native.web import charts_of, live_library
 from orchestrator.cosim.fmu_files import fmu_files
+from orchestrator.cosim.master import last_exchange
 from orchestrator.coverage.tracer import name_of, tracing
 from orchestrator.live.situation import shipped
 from orchestrator.scenario.load_scenario import load_scenario
@@ -72,6 +73,16 @@ def test_runs_as_the_native_fmus_do(name: Any, run_of_page: Any) -> None:
             np.testing.assert_allclose(ours, theirs, rtol=0.0, atol=within, equal_nan=True, err_msg=signal)
 
 
+def test_a_run_ends_at_its_stop_time_also_between_two_steps(run_of_page: Any) -> None:
+    scenario = load_scenario("guo2015-case4", ["stop_time=0.5237", "every.controller=3"])
+    recording = run_scenario(scenario, fmu_files("native"), kind="native").recording
+    names, _, lines = run_of_page(scenario)
+    assert (lines[:, 0] == recording.t).all()
+    assert lines[-1, 0] == 0.5237
+    for signal, theirs in recording.signals.items():
+        np.testing.assert_allclose(lines[:, 1 + names.index(signal)], theirs, rtol=0.0, atol=1e-6, equal_nan=True)
+
+
 @pytest.fixture(scope="module")
 def static(tmp_path_factory: pytest.TempPathFactory) -> Any:
     main = (Path(__file__).parent / "static.c").read_text(encoding="utf-8")
@@ -91,7 +102,7 @@ def test_has_the_bits_of_this_machine_with_the_same_mathematics_library(
 ) -> None:
     scenario = load_scenario(name)
     names, end, lines = run_of_page(scenario)
-    room = scenario.stop_ns // scenario.step_ns + 1
+    room = last_exchange(scenario.step_ns, scenario.stop_ns) + 1
     parts: list[Any] = [
         setup(scenario, names),
         parameters(scenario),

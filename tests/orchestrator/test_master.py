@@ -1,6 +1,6 @@
 """The master: order of the exchange, whole nanoseconds, several rates, endings."""
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import pytest
@@ -86,6 +86,43 @@ def test_a_slow_slave_acts_at_its_own_instants_and_holds_between() -> None:
 def test_equal_rates_above_one_are_one_larger_step() -> None:
     found = run(8, {"plant": 2, "brain": 2})
     assert found.signals["plant.left"].tolist() == [0, 0, 1, 1, 2, 2, 3, 3, 4]
+
+
+class Clock(InProcessSlave):
+    """Notes its steps."""
+
+    def __init__(self, *words: Any) -> None:
+        super().__init__(*words)
+        self.steps: list[tuple[int, int]] = []
+
+    def step(self, t_ns: int, dt_ns: int) -> None:
+        self.steps.append((t_ns, dt_ns))
+        super().step(t_ns, dt_ns)
+
+
+@pytest.mark.parametrize(
+    ("stop_ns", "every", "steps"),
+    [
+        (10, 1, [(0, 7), (7, 3)]),
+        (14, 1, [(0, 7), (7, 7)]),
+        (5, 1, [(0, 5)]),
+        (15, 2, [(0, 14), (14, 1)]),
+        (30, 3, [(0, 21), (21, 9)]),
+        (28, 3, [(0, 21), (21, 7)]),
+    ],
+)
+def test_the_last_step_ends_at_the_stop_time(stop_ns: int, every: int, steps: list[tuple[int, int]]) -> None:
+    brain = Clock("brain", BRAIN, {})
+    slaves: list[Slave] = [InProcessSlave("plant", PLANT, {}), brain]
+    master = Master(slaves, 7, stop_ns, {"brain": every})
+    recorder = Recorder(slaves, 2)
+    master.observers.append(recorder)
+    master.initialize()
+    assert master.run() == ("stop_time", stop_ns)
+    assert brain.steps == steps
+    found = recorder.recording({})
+    assert found.t_ns[-1] == stop_ns
+    assert found.signals["brain.right"][-1] == len(steps)
 
 
 def test_an_ending_ends_and_an_interrupt_too() -> None:

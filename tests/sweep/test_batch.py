@@ -91,6 +91,16 @@ def test_multi_rate_is_the_masters(bind: Any, every: Any) -> None:
         assert_same(job, chunk, rows, number)
 
 
+@pytest.mark.parametrize("every", [{}, {"controller": 5}, {"vehicle": 3, "controller": 4}])
+def test_a_stop_time_between_two_steps_is_the_masters(bind: Any, every: Any) -> None:
+    said = {f"every.{name}": count for name, count in every.items()}
+    _, _, job, chunk = bind(set={**said, "step": 0.007}, runs={"grid": {"stop_time": [1.0, 1.001, 1.0003]}})
+    rows = run_batch(job, chunk)
+    for number in range(len(rows)):
+        assert_same(job, chunk, rows, number)
+    assert rows[:, 1].tolist() == [1_000_000_000, 1_001_000_000, 1_000_300_000]
+
+
 @pytest.mark.parametrize(
     "name", ["guo2015-case1", "guo2015-case5", "guo2015-case4-far", "guo2015-case4-left", "fault-no-path"]
 )

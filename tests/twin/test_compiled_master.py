@@ -59,6 +59,14 @@ def test_multi_rate(fmus: Any, loops: Any) -> None:
     assert loops
 
 
+@pytest.mark.parametrize("kind", ["native", "python"])
+def test_the_last_step_ends_at_the_stop_time(fmus: Any, loops: Any, kind: str) -> None:
+    expected, found = both(fmus[kind], "stop_time=1.0137", "every.controller=3", "every.vehicle=7")
+    assert found.end == expected.end == ("stop_time", 1_013_700_000)
+    assert differing(found.recording, expected.recording) == {}
+    assert loops
+
+
 def test_faults_take_the_python_loop(fmus: Any, loops: Any) -> None:
     scenario = load_scenario("fault-pose-frozen", ["stop_time=3"])
     assert run_scenario(scenario, fmus["native"], kind="native").end.t_ns > 0

@@ -127,8 +127,19 @@ static void begin_notes(const Runner *runner, double *kept) {
 
 /* Where a run is: at exchange `count`, standing in a final state since [ns], or not (-1). */
 typedef struct {
-    int64_t step_ns, last, count, since;
+    int64_t step_ns, stop_ns, last, count, since;
 } Course;
+
+/* The last exchange is at the stop time, whether that is a whole number of steps or not. */
+static Course course_to(int64_t step_ns, int64_t stop_ns) {
+    const Course course = {step_ns, stop_ns, (stop_ns + step_ns - 1) / step_ns, 0, -1};
+    return course;
+}
+
+static int64_t time_of(const Course *course) {
+    const int64_t regular = course->count * course->step_ns;
+    return regular < course->stop_ns ? regular : course->stop_ns;
+}
 
 /* Of the values noted: NaN is the worst there is; once seen, it stays. None noted: NaN. */
 static void note(const Runner *runner, const Course *course, double *kept) {
@@ -139,7 +150,7 @@ static void note(const Runner *runner, const Course *course, double *kept) {
         const int nan = isnan(now) != 0;
         if (!runner->noted[k]) {
             kept[k] = wanted->how == TRAVEL && !nan ? 0.0
-                      : wanted->how == TIME         ? (double)(course->count * course->step_ns) / 1e9
+                      : wanted->how == TIME         ? (double)time_of(course) / 1e9
                                                     : now;
         } else {
             switch ((How)wanted->how) {
@@ -179,35 +190,38 @@ static int initialize(const Runner *runner, const double *params, const double *
 static void exchange(const Runner *runner, const Course *course) {
     for (int64_t m = 0; m < runner->batch->model_count; m++) {
         Slave *slave = &runner->slaves[m];
-        slave->due = slave->every == 1 || course->count % slave->every == 0;
+        slave->due = slave->every == 1 || course->count % slave->every == 0 || course->count == course->last;
         if (slave->due) fetch(slave);
     }
     hand_over(runner);
     for (int64_t k = 0; k < runner->batch->fault_count; k++) {
         Fault *fault = &runner->faults[k];
-        if (runner->slaves[fault->plan->model].due) fault_apply(fault, course->count * course->step_ns);
+        if (runner->slaves[fault->plan->model].due) fault_apply(fault, time_of(course));
     }
 }
 
 static int is_over(const Runner *runner, Course *course, End *end) {
     const Batch *batch = runner->batch;
-    const int64_t now = course->count * course->step_ns;
+    const int64_t now = time_of(course);
     course->since = batch->final == 0 || !stands(runner) ? -1 : course->since < 0 ? now : course->since;
     *end = course->since >= 0 && now - course->since >= batch->still_ns ? STANDSTILL : STOP_TIME;
     return *end == STANDSTILL || course->count == course->last;
 }
 
+/* No step goes beyond the stop time. */
 static void advance(const Runner *runner, Course *course) {
+    const int64_t rest = course->stop_ns - time_of(course);
     for (int64_t m = 0; m < runner->batch->model_count; m++) {
         const Slave *slave = &runner->slaves[m];
-        if (slave->due) slave->model->step(slave->memory, slave->every * course->step_ns);
+        const int64_t length = slave->every * course->step_ns;
+        if (slave->due) slave->model->step(slave->memory, length < rest ? length : rest);
     }
     course->count++;
 }
 
 /* Fills row: the end, its time [ns], what is kept. Returns 0, or -1 if there is no memory. */
 static int run(const Runner *runner, const double *params, const double *faults, const int64_t *time, double *row) {
-    Course course = {time[0], time[1] / time[0], 0, -1};
+    Course course = course_to(time[0], time[1]);
     End end = STOP_TIME;
     if (initialize(runner, params, faults, course.step_ns)) return -1;
     begin_notes(runner, row + 2);
@@ -217,7 +231,7 @@ static int run(const Runner *runner, const double *params, const double *faults,
         if (is_over(runner, &course, &end)) break;
     }
     row[0] = (double)end;
-    row[1] = (double)(course.count * course.step_ns);
+    row[1] = (double)time_of(&course);
     return 0;
 }
 

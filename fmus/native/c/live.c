@@ -123,9 +123,8 @@ LIBRARY_EXPORT void live_close(Live *live) {
 /* times: the step [ns], the stop [ns], the decimation of each model; params: those of all models; faults: the numbers
  * of each. Returns 0, or -1 if there is no memory. */
 LIBRARY_EXPORT int32_t live_begin(Live *live, const double *params, const double *times, const double *faults) {
-    const Course course = {(int64_t)times[0], (int64_t)times[1] / (int64_t)times[0], 0, -1};
     int64_t every[LIVE_COUNT];
-    live->course = course;
+    live->course = course_to((int64_t)times[0], (int64_t)times[1]);
     for (int64_t m = 0; m < LIVE_COUNT; m++) every[m] = (int64_t)times[2 + m];
     connect(&live->runner, every);
     for (int64_t k = 0; k < live->seen_count; k++) live->places[k] = place_of(live->runner.slaves, live->seen[k]);
@@ -142,7 +141,7 @@ LIBRARY_EXPORT int32_t live_exchange(Live *live, double *seen) {
     for (int64_t k = 0; k < live->seen_count; k++) seen[k] = look(live->places[k]);
     const int over = is_over(&live->runner, &live->course, &live->end);
     live->row[0] = (double)live->end;
-    live->row[1] = (double)(live->course.count * live->course.step_ns);
+    live->row[1] = (double)time_of(&live->course);
     return over;
 }
 

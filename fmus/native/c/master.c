@@ -39,7 +39,7 @@ typedef struct {
     const int64_t *held; /* places of inputs that nobody writes */
     int64_t held_count;
     int64_t every; /* stepped every n-th time, by n communication steps */
-    double step;   /* their length [s] */
+    double step;   /* their length [s]; the last one ends at the stop time */
     int64_t due;   /* at this exchange */
 } Slave;
 
@@ -62,7 +62,8 @@ typedef struct {
     int64_t link_count;
     int64_t width; /* of a row */
     int64_t step_ns;
-    int64_t last;    /* number of the last exchange; nothing is stepped after it */
+    int64_t stop_ns; /* time of the last exchange; the step to it may be shorter */
+    int64_t last;    /* its number; nothing is stepped after it */
     int64_t failed;  /* out: number of the slave that refused */
     int64_t failure; /* out: in what, see Failure */
     int64_t status;  /* out: the FMI status it gave */
@@ -123,7 +124,7 @@ static int exchange(Run *run, int64_t number, double *row) {
     const double *before = run->before;
     for (int64_t k = 0; k < run->slave_count; k++) {
         Slave *slave = &run->slaves[k];
-        slave->due = slave->every == 1 || number % slave->every == 0;
+        slave->due = slave->every == 1 || number % slave->every == 0 || number == run->last;
         if (!slave->due) {
             memcpy(row + slave->begin, before + slave->begin, (size_t)slave->count * sizeof *row);
             continue;
@@ -139,7 +140,8 @@ static int exchange(Run *run, int64_t number, double *row) {
 }
 
 static int advance(Run *run, int64_t number, double *row) {
-    double time = (double)(number * run->step_ns) / NANOSECONDS;
+    const int64_t now = number * run->step_ns, rest = run->stop_ns - now;
+    const double time = (double)now / NANOSECONDS;
     for (int64_t k = 0; k < run->slave_count; k++) {
         int status = run->slaves[k].due ? send(&run->slaves[k], row) : fmi2OK;
         if (status > fmi2Warning) return fail(run, k, SEND, status);
@@ -147,7 +149,8 @@ static int advance(Run *run, int64_t number, double *row) {
     for (int64_t k = 0; k < run->slave_count; k++) {
         const Slave *slave = &run->slaves[k];
         if (!slave->due) continue;
-        int status = slave->do_step(slave->component, time, slave->step, fmi2True);
+        double step = slave->every * run->step_ns <= rest ? slave->step : (double)rest / NANOSECONDS;
+        int status = slave->do_step(slave->component, time, step, fmi2True);
         if (status > fmi2Warning) return fail(run, k, STEP, status);
     }
     return 1;

@@ -14,7 +14,7 @@ from modelkit.car import Car
 from modelkit.variables import flatten, variables
 from orchestrator.scenario.commonroad import commonroad_car, is_commonroad
 from orchestrator.scenario.files import find_file
-from orchestrator.scenario.flat_names import flatten_section, merge_flat
+from orchestrator.scenario.flat_names import FlatLayer, flatten_layer, merge_flat
 from orchestrator.text.errors import BadInput, shown, suggestion_or_choices
 from orchestrator.text.quantities import scalar
 from orchestrator.text.yaml_file import read_mapping
@@ -58,7 +58,8 @@ def told_car(said: list[tuple[object, object]], folder: Path) -> ToldCar:
             if not isinstance(base, str):
                 raise BadInput(f"{shown(base)}: expected the name of a car, or a file", file=file, key=f"car.{BASE}")
             car = _car_in(find_file(base, "cars", "car", beside), base)
-        car = car._replace(told=merge_flat(car.told, _numbers(changes, file)))
+        new = _numbers(changes, file)
+        car = car._replace(told=merge_flat(car.told, new.values, new.arrays))
     return car
 
 
@@ -83,13 +84,13 @@ def _car_in(file: Path, name: str) -> ToldCar:
             hint = suggestion_or_choices(str(key), FILE_KEYS)
             raise BadInput(f"unknown{hint}", file=file, key=key)
     vehicle: Layer = ({"vehicle": content.get("vehicle")}, file)
-    return ToldCar(name, _numbers(content.get("car") or {}, file), (vehicle,))
+    return ToldCar(name, _numbers(content.get("car") or {}, file).values, (vehicle,))
 
 
-def _numbers(section: object, file: object) -> dict[str, object]:
-    """Return flat name -> value in SI units of what is written of a car."""
+def _numbers(section: object, file: object) -> FlatLayer:
+    """Return what is written of a car, in SI units."""
     if not isinstance(section, Mapping):
         raise BadInput(f"{shown(section)}: expected a mapping of parameters", file=file, key="car")
     known = {item.name: item._replace(name=f"car.{item.name}") for item in CAR}
-    flat = flatten_section(section, known, file=file, key="car")
-    return {name: scalar(value, known[name], file=file) for name, value in flat.items()}
+    flat = flatten_layer(section, known, file=file, key="car")
+    return flat._replace(values={name: scalar(value, known[name], file=file) for name, value in flat.values.items()})

@@ -1,7 +1,7 @@
 """From nested YAML sections to flat names: ``{driver: {profile: [[0, 1.5]]}}`` -> ``driver.profile[1].at``."""
 
 from collections.abc import Iterable, Mapping
-from typing import Any
+from typing import Any, NamedTuple
 
 from orchestrator.text.errors import BadInput, shown, suggestion
 
@@ -13,18 +13,32 @@ def flatten_section(
 
     Raises ``BadInput`` for a name the model does not have, with the closest ones.
     """
-    known = list(names)
-    flat: dict[str, object] = {}
+    return flatten_layer(section, names, file=file, key=key).values
+
+
+class FlatLayer(NamedTuple):
+    """A section of one file by flat names."""
+
+    values: dict[str, object]
+    arrays: frozenset[str]
+    """Arrays that it writes as lists; of others it names entries at most."""
+
+
+def flatten_layer(section: Mapping[str, object], names: Iterable[str], *, file: object, key: str) -> FlatLayer:
+    """Return what :func:`flatten_section` does, with the arrays that are written as a whole."""
+    found = _Found(list(names), {}, set(), file, key)
     for name, value in section.items():
-        _flatten(str(name), value, known, flat, file, key)
-    return flat
+        _flatten(str(name), value, found)
+    return FlatLayer(found.values, frozenset(found.arrays))
 
 
-def merge_flat(below: dict[str, object], above: Mapping[str, object]) -> dict[str, object]:
-    """Return ``below`` overridden by ``above``; an array given above replaces the whole array below."""
-    arrays = {name[: name.index("[")] + "[" for name in above if "[1]" in name}
-    kept = {name: value for name, value in below.items() if not any(name.startswith(array) for array in arrays)}
-    return {**kept, **above}
+def merge_flat(below: Mapping[str, object], above: Mapping[str, object], arrays: Iterable[str]) -> dict[str, object]:
+    """Return ``below`` overridden by ``above``; ``arrays``, written as a whole above, lose all entries below.
+
+    Of an entry named above (``boxes[2].length``) all else stays, as do the other entries.
+    """
+    begins = tuple(f"{name}[" for name in arrays)
+    return {**{name: value for name, value in below.items() if not name.startswith(begins)}, **above}
 
 
 def merge_nested(below: Mapping[str, Any], above: Mapping[str, Any]) -> dict[str, Any]:
@@ -36,9 +50,18 @@ def merge_nested(below: Mapping[str, Any], above: Mapping[str, Any]) -> dict[str
     return result
 
 
-def _flatten(name: str, value: object, known: list[str], flat: dict[str, object], file: object, key: str) -> None:
+class _Found(NamedTuple):
+    known: list[str]
+    values: dict[str, object]
+    arrays: set[str]
+    file: object
+    key: str
+
+
+def _flatten(name: str, value: object, found: _Found) -> None:
+    known, file, key = found.known, found.file, found.key
     if name in known:
-        flat[name] = value
+        found.values[name] = value
         return
     children = _children(name, known)
     if not children:
@@ -46,14 +69,16 @@ def _flatten(name: str, value: object, known: list[str], flat: dict[str, object]
         raise BadInput(f"unknown{close or '; known are ' + _roots(known)}", file=file, key=f"{key}.{name}")
     if isinstance(value, Mapping):
         for child, item in value.items():
-            _flatten(f"{name}.{child}", item, known, flat, file, key)
+            _flatten(f"{name}.{child}", item, found)
     elif isinstance(value, list):
+        if children[0].startswith(f"{name}["):
+            found.arrays.add(name)
         if len(value) > len(children):
             raise BadInput(
                 f"{len(value)} values given, expected at most {len(children)}", file=file, key=f"{key}.{name}"
             )
         for child, item in zip(children, value, strict=False):
-            _flatten(child, item, known, flat, file, key)
+            _flatten(child, item, found)
     else:
         parts = ", ".join(child.removeprefix(name).lstrip(".") for child in children[:6])
         raise BadInput(

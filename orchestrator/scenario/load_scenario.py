@@ -10,7 +10,7 @@ from modelkit.model import Model
 from modelkit.variables import Variable, variables
 from orchestrator.scenario.car import CAR, Layer, told_car, with_said
 from orchestrator.scenario.files import find_file, shipped
-from orchestrator.scenario.flat_names import flatten_section, merge_flat, merge_nested
+from orchestrator.scenario.flat_names import flatten_layer, flatten_section, merge_flat, merge_nested
 from orchestrator.scenario.models import MODELS, models_for
 from orchestrator.scenario.polygons import map_of
 from orchestrator.scenario.requirements import read_requirements
@@ -216,8 +216,8 @@ def _parameters(
             raise BadInput(f"{shown(section)}: expected a mapping of parameters", file=file, key=owner)
         if owner == "vehicle" and content.get("scene") is not None:
             section = {"scene": content["scene"], **section}
-        flat = flatten_section(section, names, file=file, key=owner)
-        given = merge_flat(given, {name: _Given(value, file) for name, value in flat.items()})
+        flat, arrays = flatten_layer(section, names, file=file, key=owner)
+        given = merge_flat(given, {name: _Given(value, file) for name, value in flat.items()}, arrays)
     result: dict[str, Any] = {
         variable.name: _value(variable, given[variable.name], owner) for variable in known if variable.name in given
     }

@@ -76,6 +76,32 @@ def test_layers_car_base_file_and_set(tmp_path: Path) -> None:
     assert (scenario.seed, scenario.stop_time, scenario.name) == (7, 12.0, "mine")
 
 
+@pytest.mark.parametrize(
+    ("text", "changes"),
+    [
+        ("vehicle.driver.profile[1].speed=1.2", {"driver.profile[1].speed": 1.2}),
+        ("vehicle.driver.profile[2].speed=1.2", {"driver.profile[2].speed": 1.2}),
+        ("vehicle.driver.profile[1]={speed: 1.2}", {"driver.profile[1].speed": 1.2}),
+        ("scene.boxes[1].length=3", {"scene.boxes[1].length": 3.0}),
+        ("vehicle.scene.boxes[2].length=3", {"scene.boxes[2].length": 3.0}),
+        ("scene.boxes[3]={x: 30}", {"scene.boxes[3].x": 30.0}),
+        ("car.ultrasonic.mounts[1].x=3.5", {"car.ultrasonic.mounts[1].x": 3.5}),
+    ],
+)
+def test_an_entry_of_a_list_that_is_set_keeps_all_else(tmp_path: Path, text: str, changes: dict[str, float]) -> None:
+    mounts = "car: {ultrasonic: {mounts: [[3.6, 0.5, 0.1], [3.7, 0.2, 0]]}}"
+    boxes = "scene: {boxes: [[1, 2, 0, 4, 2], [8, 2, 0, 4, 2]]}"
+    path = write(tmp_path, f"vehicle: {{driver: {{profile: [[1, 2], [3, 4]]}}}}\n{boxes}\n{mounts}\n")
+    assert load_scenario(path, [text]).vehicle == load_scenario(path).vehicle | changes
+
+
+@pytest.mark.parametrize("text", ["scene.boxes=[]", "scene.boxes=[[5, 6]]", "vehicle.scene.boxes=[{x: 5, y: 6}]"])
+def test_a_list_that_is_set_replaces_the_list(tmp_path: Path, text: str) -> None:
+    path = write(tmp_path, "scene: {boxes: [[1, 2, 0, 4, 2], [8, 2, 0, 4, 2]]}")
+    found = {name: value for name, value in load_scenario(path, [text]).vehicle.items() if "boxes" in name}
+    assert found == ({} if "[]" in text else {"scene.boxes[1].x": 5.0, "scene.boxes[1].y": 6.0})
+
+
 def test_title_is_not_inherited(tmp_path: Path) -> None:
     assert load_scenario(write(tmp_path, "base: guo2015-case4")).title == ""
 

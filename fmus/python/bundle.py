@@ -21,7 +21,14 @@ RUNTIME_FILES = ("_version.py", "default_experiment.py", "enums.py", "fmi2slave.
 TESTS = "test_"
 """How the files of a package begin that stay at home."""
 RUNTIME_INIT = b'"""The part of PythonFMU that runs inside an FMU."""\n'
+MIN_PYTHON = (3, 11)
+"""Of the host; the script below is read by any Python 3 and says so."""
 SCRIPT = '''"""Entry point of this FMU."""
+
+import sys
+
+if sys.version_info < {minimum}:
+    raise ImportError("this FMU needs Python %d.%d or later, its host has %d.%d" % ({minimum} + sys.version_info[:2]))
 
 from {root}.fmus.python.layout import Layout
 from {root}.fmus.python.slave import ModelSlave
@@ -61,7 +68,13 @@ def bundle(model: Model) -> Bundle:
         "pythonfmu/__init__.py": RUNTIME_INIT,
     }
     script = SCRIPT.format(
-        root="{root}", script="{script}", base="ModelSlave", hash="{hash}", package=name, **_named(model)
+        root="{root}",
+        script="{script}",
+        base="ModelSlave",
+        hash="{hash}",
+        package=name,
+        minimum=MIN_PYTHON,
+        **_named(model),
     )
     digest = content_hash({**originals, "script": script.encode()})
     root, module = f"fmu_{digest[:16]}", f"slave_{digest[:16]}"

@@ -22,6 +22,7 @@ from fmpy.fmi2 import (
 from fmus.files import new_folder, remove_folder
 from modelkit.model import Model
 from orchestrator.cosim.description import has_variable_step, ports_of, read_description, text_parameters
+from orchestrator.cosim.python_fmu import instantiation_message
 from orchestrator.cosim.slave import Ports
 from orchestrator.text.errors import RESOURCES, NotRunError, RunError
 
@@ -114,7 +115,8 @@ class FmuSlave:
             self._instance = None
             if isinstance(error, RESOURCES):
                 raise
-            raise NotRunError(str(self._refused("cannot be instantiated", FATAL, str(error)))) from error
+            refusal = str(self._refused("cannot be instantiated", FATAL, str(error)))
+            raise NotRunError(instantiation_message(refusal)) from error
         self._bind()
         self._set_parameters()
         try:

@@ -23,6 +23,7 @@ from fmus.children import LIVING, end, own_process
 from fmus.files import new_folder, remove_folder
 from modelkit.model import Model
 from orchestrator.cosim.description import element_names, has_variable_step, ports_of, read_description, text_parameters
+from orchestrator.cosim.python_fmu import instantiation_message
 from orchestrator.cosim.slave import Indices, Ports
 from orchestrator.foreign import worker
 from orchestrator.foreign.archive import binary, checked, unpack
@@ -193,7 +194,8 @@ class ProcessSlave:
         except _NoAnswerError as error:
             when = when or f"in the step at {self._t_ns / 1e9:g} s"
             made = NotRunError if order == worker.LOAD or error.is_from_outside else RunError
-            raise made(f"{self.name} {str(error).format(when=when)}") from None
+            text = str(error).format(when=when)
+            raise made(f"{self.name} {instantiation_message(text) if order == worker.LOAD else text}") from None
 
     def _heard(self, status: int, text: str) -> None:
         self._log(self.name, status, text)

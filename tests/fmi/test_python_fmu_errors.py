@@ -1,10 +1,16 @@
 """Exceptions and wrong calls: logged, refused, never fmi2Fatal, never a crash."""
 
+import ast
 import gc
+import re
+import tomllib
+from pathlib import Path
 from typing import Any
 
 import pytest
 
+import vehicle_fmu
+from fmus.python.bundle import bundle
 from tests.fmi.host import DISCARD, ERROR, FATAL, OK, Host, slaves
 
 TOO_HIGH = 10_000
@@ -146,3 +152,19 @@ def test_a_state_of_another_model_is_refused(python_fmus: Any) -> None:
         toy.fmu.setFMUstate(toy.fmu.deSerializeFMUstate(vehicle.fmu.serializeFMUstate(state)))
         assert toy.step(0.0, 0.01) == DISCARD
         assert vehicle.step(0.0, 0.01) == OK
+
+
+@pytest.mark.parametrize("version", [(3, 6), (3, 9), (3, 10)])
+def test_a_host_with_an_older_python_is_told_which_one_it_needs(
+    version: tuple[int, int], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """PythonFMU logs the exception; the script must be readable for the old Python, and stop before any import."""
+    project = tomllib.loads((Path(__file__).parents[2] / "pyproject.toml").read_text())["project"]
+    made = bundle(vehicle_fmu.MODEL)
+    text = made.files[f"{made.script}.py"].decode()
+    ast.parse(text, feature_version=version)
+    monkeypatch.setattr("sys.version_info", (*version, 1, "final", 0))
+    with pytest.raises(ImportError, match=rf"needs Python (3\.\d+) or later, its host has 3\.{version[1]}") as raised:
+        exec(text, {})
+    (needed,) = re.findall(r"Python (3\.\d+)", str(raised.value))
+    assert f">={needed}" in project["requires-python"]

@@ -5,6 +5,7 @@ import subprocess
 import sys
 import time
 import xml.etree.ElementTree as ElementTree
+import zipfile
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +14,7 @@ import pytest
 from orchestrator.cli import main
 from orchestrator.cosim.fmu_files import ROOT
 from orchestrator.log.read_log import read_log
-from tests.orchestrator import bad_fmus
+from tests.orchestrator import bad_fmus, foreign_fmus
 
 SCENARIO = """
 name: {name}
@@ -117,3 +118,26 @@ def test_the_log_of_a_crash_is_whole(tmp_path: Path) -> None:
     log = read_log(tmp_path / "out" / "run.mcap")
     assert log.t[-1] == pytest.approx(0.05)
     assert log.info["end"]["reason"].startswith("error: bad crashed in the step at 0.05 s")
+
+
+@pytest.mark.parametrize(
+    ("line", "advice"),
+    [
+        ("type type type", "is not for Python 3."),
+        ("import absent_package", "imports absent_package: install it in the Python of apa"),
+        ("raise ImportError('this FMU needs Python 3.99 or later')", "is not for Python 3."),
+    ],
+)
+def test_a_python_fmu_of_another_python_says_what_it_needs(
+    line: str, advice: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    script = foreign_fmus.controller(tmp_path)
+    with zipfile.ZipFile(script) as source, zipfile.ZipFile(tmp_path / "other.fmu", "w") as target:
+        for name in source.namelist():
+            data = source.read(name)
+            target.writestr(name, line.encode() + b"\n" + data if name.endswith("theirs.py") else data)
+    words = ["run", "guo2015-case4", "--fmus", "none", "--no-page", "--out", str(tmp_path / "run")]
+    assert main([*words, "--controller", str(tmp_path / "other.fmu")]) == 2
+    said = capsys.readouterr().err
+    assert "cannot be instantiated" in said
+    assert advice in said

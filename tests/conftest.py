@@ -1,5 +1,6 @@
 """What all tests share: one browser a process, order and marks by cost, no clock over drawn examples, ``--update``."""
 
+import gc
 import shutil
 from collections.abc import Iterator
 from pathlib import Path
@@ -66,6 +67,11 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
         if item.get_closest_marker("release") or is_slow(item.nodeid, costs):
             item.add_marker(pytest.mark.slow)
     items.sort(key=lambda item: -files.get(item.nodeid.split("::")[0].removeprefix("tests/"), 0.0))
+
+
+def pytest_collection_finish() -> None:
+    """Leave what was imported and collected out of each search for garbage: half a million objects that stay."""
+    gc.freeze()
 
 
 class Seen:

@@ -102,7 +102,10 @@ def imports_of(module: str) -> Iterator[Import]:
         yield from (Import(module, name) for name in names if name in MODULES)
 
 
-IMPORTS = [item for module in MODULES for item in imports_of(module)]
+@cache
+def imports() -> list[Import]:
+    """Return all of them: not when tests are collected, which each worker does."""
+    return [item for module in MODULES for item in imports_of(module)]
 
 
 def room_of(module: str) -> str:
@@ -124,7 +127,7 @@ def test_every_module_has_its_room() -> None:
 def test_no_arrow_goes_up_or_aside() -> None:
     wrong = [
         str(item)
-        for item in IMPORTS
+        for item in imports()
         if room_of(item.source) != room_of(item.target) and FLOOR[room_of(item.target)] >= FLOOR[room_of(item.source)]
     ]
     assert wrong == []
@@ -132,14 +135,14 @@ def test_no_arrow_goes_up_or_aside() -> None:
 
 def test_no_files_import_each_other_in_a_circle() -> None:
     """What is left when files that import no other file left are taken away, again and again."""
-    left = {module: {item.target for item in IMPORTS if item.source == module} - {module} for module in MODULES}
+    left = {module: {item.target for item in imports() if item.source == module} - {module} for module in MODULES}
     while free := {module for module, wanted in left.items() if not wanted & left.keys()}:
         left = {module: wanted for module, wanted in left.items() if module not in free}
     assert sorted(left) == []
 
 
 def test_models_and_their_compiler_know_of_no_fmi() -> None:
-    assert [str(item) for item in IMPORTS if item.source.startswith(WITHOUT_FMI) and is_host(item)] == []
+    assert [str(item) for item in imports() if item.source.startswith(WITHOUT_FMI) and is_host(item)] == []
 
 
 def is_host(item: Import) -> bool:
@@ -150,7 +153,7 @@ def is_host(item: Import) -> bool:
 def test_the_host_knows_the_insides_of_no_model(package: str) -> None:
     looks_inside = [
         str(item)
-        for item in IMPORTS
+        for item in imports()
         if item.target.startswith(package + ".")
         and not item.source.startswith(package)
         and room_of(item.source) not in INSIDES
@@ -237,20 +240,20 @@ SYSTEMS = sorted(
 def test_no_system_of_the_controller_imports_another(system: str) -> None:
     others = tuple(f"controller_fmu.{other}." for other in SYSTEMS if other != system)
     inside = f"controller_fmu.{system}."
-    assert [str(item) for item in IMPORTS if item.source.startswith(inside) and item.target.startswith(others)] == []
+    assert [str(item) for item in imports() if item.source.startswith(inside) and item.target.startswith(others)] == []
 
 
 @pytest.mark.parametrize("shared", SHARED_BY_SYSTEMS)
 def test_what_systems_share_knows_none_of_them(shared: str) -> None:
     systems = tuple(f"controller_fmu.{system}." for system in SYSTEMS)
     inside = f"controller_fmu.{shared}."
-    assert [str(item) for item in IMPORTS if item.source.startswith(inside) and item.target.startswith(systems)] == []
+    assert [str(item) for item in imports() if item.source.startswith(inside) and item.target.startswith(systems)] == []
 
 
 def test_only_the_package_imports_the_registry_of_systems() -> None:
     """What is below it knows no system: neither the interface nor any of them imports it."""
     above = {"controller_fmu", "controller_fmu.registry"}
-    found = [item for item in IMPORTS if item.source.startswith("controller_fmu") and item.source not in above]
+    found = [item for item in imports() if item.source.startswith("controller_fmu") and item.source not in above]
     assert [str(item) for item in found if item.target in above] == []
     systems = tuple(f"controller_fmu.{system}" for system in SYSTEMS)
     below = ("controller_fmu.interface", *(f"controller_fmu.{shared}" for shared in SHARED_BY_SYSTEMS))

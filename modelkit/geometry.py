@@ -25,6 +25,14 @@ class Box(NamedTuple):
     width: Annotated[float, Signal("m", "width, >= 0", 0.0)] = 0.0
 
 
+class OrientedBox(NamedTuple):
+    """A box with the cosine and sine of its heading, which many questions about it share."""
+
+    box: Box
+    cos: float
+    sin: float
+
+
 class Point(NamedTuple):
     """A point in the plane [m]."""
 
@@ -41,12 +49,25 @@ class Corners(NamedTuple):
     front_right: Point
 
 
+def oriented(box: Box) -> OrientedBox:
+    """Return ``box`` with cosine and sine of its heading."""
+    return OrientedBox(box, math.cos(box.heading), math.sin(box.heading))
+
+
 def outline(pose: Pose, wheelbase: float, front_overhang: float, rear_overhang: float, width: float) -> Box:
     """Return the box around a car whose rear-axle midpoint is at ``pose``."""
+    ahead = Point(math.cos(pose.heading), math.sin(pose.heading))
+    return oriented_outline(pose, ahead, wheelbase, front_overhang, rear_overhang, width).box
+
+
+def oriented_outline(
+    pose: Pose, ahead: Point, wheelbase: float, front_overhang: float, rear_overhang: float, width: float
+) -> OrientedBox:
+    """Return the box around a car as :func:`outline`; ``ahead`` is the unit vector of its heading."""
     length = rear_overhang + wheelbase + front_overhang
-    ahead = 0.5 * length - rear_overhang
-    return Box(
-        pose.x + ahead * math.cos(pose.heading), pose.y + ahead * math.sin(pose.heading), pose.heading, length, width
+    half = 0.5 * length - rear_overhang
+    return OrientedBox(
+        Box(pose.x + half * ahead.x, pose.y + half * ahead.y, pose.heading, length, width), ahead.x, ahead.y
     )
 
 
@@ -61,28 +82,36 @@ def line_box(x1: float, y1: float, x2: float, y2: float) -> Box:
 
 def corners(box: Box) -> Corners:
     """Return the four corners of ``box``."""
-    cos = math.cos(box.heading)
-    sin = math.sin(box.heading)
-    ax = 0.5 * box.length * cos
-    ay = 0.5 * box.length * sin
-    bx = -0.5 * box.width * sin
-    by = 0.5 * box.width * cos
+    return oriented_corners(oriented(box))
+
+
+def oriented_corners(a: OrientedBox) -> Corners:
+    """Return the four corners of a box."""
+    ax = 0.5 * a.box.length * a.cos
+    ay = 0.5 * a.box.length * a.sin
+    bx = -0.5 * a.box.width * a.sin
+    by = 0.5 * a.box.width * a.cos
+    x = a.box.x
+    y = a.box.y
     return Corners(
-        Point(box.x + ax + bx, box.y + ay + by),
-        Point(box.x - ax + bx, box.y - ay + by),
-        Point(box.x - ax - bx, box.y - ay - by),
-        Point(box.x + ax - bx, box.y + ay - by),
+        Point(x + ax + bx, y + ay + by),
+        Point(x - ax + bx, y - ay + by),
+        Point(x - ax - bx, y - ay - by),
+        Point(x + ax - bx, y + ay - by),
     )
 
 
 def point_gap(point: Point, box: Box) -> float:
     """Return the distance [m] from ``point`` to ``box``; 0 inside."""
-    dx = point.x - box.x
-    dy = point.y - box.y
-    cos = math.cos(box.heading)
-    sin = math.sin(box.heading)
-    along = abs(dx * cos + dy * sin) - 0.5 * box.length
-    across = abs(dy * cos - dx * sin) - 0.5 * box.width
+    return point_to_oriented(point, oriented(box))
+
+
+def point_to_oriented(point: Point, a: OrientedBox) -> float:
+    """Return the distance [m] from ``point`` to a box; 0 inside."""
+    dx = point.x - a.box.x
+    dy = point.y - a.box.y
+    along = abs(dx * a.cos + dy * a.sin) - 0.5 * a.box.length
+    across = abs(dy * a.cos - dx * a.sin) - 0.5 * a.box.width
     along = along if along > 0.0 else 0.0
     across = across if across > 0.0 else 0.0
     return math.sqrt(along * along + across * across)
@@ -90,26 +119,41 @@ def point_gap(point: Point, box: Box) -> float:
 
 def boxes_overlap(a: Box, b: Box) -> bool:
     """Return whether the insides of two boxes share a point (separating axes; touching is not sharing)."""
-    return _overlap_along(a, b) and _overlap_along(b, a)
+    return overlap_depth(oriented(a), oriented(b)) > 0.0
 
 
 def boxes_gap(a: Box, b: Box) -> float:
-    """Return the distance [m] between two boxes; 0 where they touch or overlap.
+    """Return the distance [m] between two boxes; 0 where they touch or overlap."""
+    gap = oriented_gap(oriented(a), oriented(b))
+    return gap if gap > 0.0 else 0.0
+
+
+def oriented_gap(a: OrientedBox, b: OrientedBox) -> float:
+    """Return the distance [m] between two boxes; where they overlap, minus the :func:`overlap_depth`.
 
     Two rectangles apart are nearest at a corner of one of them.
     """
-    if boxes_overlap(a, b):
-        return 0.0
-    return _smaller(_corners_gap(corners(a), b), _corners_gap(corners(b), a))
+    depth = overlap_depth(a, b)
+    if depth > 0.0:
+        return -depth
+    return _smaller(_corners_gap(oriented_corners(a), b), _corners_gap(oriented_corners(b), a))
 
 
 def boxes_depth(a: Box, b: Box) -> float:
-    """Return the penetration depth [m] of two boxes: the shortest move that parts them; 0 where they do not overlap.
-
-    The least overlap along the four directions of their sides (separating axis theorem).
-    """
-    depth = _smaller(_depth_along(a, b), _depth_along(b, a))
+    """Return the penetration depth [m] of two boxes: the shortest move that parts them; 0 where they do not overlap."""
+    depth = overlap_depth(oriented(a), oriented(b))
     return depth if depth > 0.0 else 0.0
+
+
+def overlap_depth(a: OrientedBox, b: OrientedBox) -> float:
+    """Return the least overlap [m] along the four directions of two boxes' sides (separating axes).
+
+    It is the penetration depth where it is positive; 0 or less where the boxes touch or are apart.
+    """
+    turn = b.box.heading - a.box.heading
+    cos = abs(math.cos(turn))
+    sin = abs(math.sin(turn))
+    return _smaller(_depth_along(a, b, cos, sin), _depth_along(b, a, cos, sin))
 
 
 def centre_gap(a: Box, b: Box) -> float:
@@ -141,64 +185,62 @@ def ray_box(start: Point, direction: float, box: Box) -> float:
     return enter if enter > 0.0 else 0.0
 
 
+class Cone(NamedTuple):
+    """A cone with its apex at ``start``: unit vector of its axis, sine and cosine of half its opening angle."""
+
+    start: Point
+    axis: Point
+    side: Point
+
+
+def cone_of(start: Point, direction: float, half_angle: float) -> Cone:
+    """Return the cone that opens by ``half_angle`` [rad], in (0, pi/2), to both sides of ``direction`` [rad]."""
+    axis = Point(math.cos(direction), math.sin(direction))
+    return Cone(start, axis, Point(math.sin(half_angle), math.cos(half_angle)))
+
+
 def cone_box(start: Point, direction: float, half_angle: float, box: Box) -> float:
     """Return the distance [m] from ``start`` to the part of ``box`` inside a cone; 0 from inside the box, or ``FAR``.
 
     The cone opens by ``half_angle`` [rad], in (0, pi/2), to both sides of ``direction`` [rad].
     """
-    if point_gap(start, box) == 0.0:
+    seen = oriented(box)
+    return cone_gap(cone_of(start, direction, half_angle), seen, oriented_corners(seen))
+
+
+def cone_gap(cone: Cone, a: OrientedBox, around: Corners) -> float:
+    """Return the distance [m] to the part of a box, with the corners ``around``, inside a cone, else ``FAR``."""
+    if point_to_oriented(cone.start, a) == 0.0:
         return 0.0
-    cos = math.cos(direction)
-    sin = math.sin(direction)
-    around = corners(box)
-    a = _seen_from(around.front_left, start, cos, sin)
-    b = _seen_from(around.rear_left, start, cos, sin)
-    c = _seen_from(around.rear_right, start, cos, sin)
-    d = _seen_from(around.front_right, start, cos, sin)
-    side = Point(math.sin(half_angle), math.cos(half_angle))
-    nearest = _smaller(_side_in_cone(a, b, side), _side_in_cone(b, c, side))
-    return _smaller(nearest, _smaller(_side_in_cone(c, d, side), _side_in_cone(d, a, side)))
+    front_left = _seen_from(around.front_left, cone)
+    rear_left = _seen_from(around.rear_left, cone)
+    rear_right = _seen_from(around.rear_right, cone)
+    front_right = _seen_from(around.front_right, cone)
+    side = cone.side
+    nearest = _smaller(_side_in_cone(front_left, rear_left, side), _side_in_cone(rear_left, rear_right, side))
+    other = _smaller(_side_in_cone(rear_right, front_right, side), _side_in_cone(front_right, front_left, side))
+    return _smaller(nearest, other)
 
 
 def cone_line(start: Point, direction: float, half_angle: float, a: Point, b: Point) -> float:
     """Return the distance [m] to the part of the line a-b inside a cone, or ``FAR``; see ``cone_box``."""
-    cos = math.cos(direction)
-    sin = math.sin(direction)
-    side = Point(math.sin(half_angle), math.cos(half_angle))
-    return _side_in_cone(_seen_from(a, start, cos, sin), _seen_from(b, start, cos, sin), side)
+    cone = cone_of(start, direction, half_angle)
+    return _side_in_cone(_seen_from(a, cone), _seen_from(b, cone), cone.side)
 
 
-def _overlap_along(a: Box, b: Box) -> bool:
-    """Return whether the boxes overlap seen along both axes of ``a``."""
-    cos = math.cos(a.heading)
-    sin = math.sin(a.heading)
-    dx = b.x - a.x
-    dy = b.y - a.y
-    turn = b.heading - a.heading
-    cos_turn = abs(math.cos(turn))
-    sin_turn = abs(math.sin(turn))
-    along = 0.5 * (a.length + b.length * cos_turn + b.width * sin_turn)
-    across = 0.5 * (a.width + b.length * sin_turn + b.width * cos_turn)
-    return abs(dx * cos + dy * sin) < along and abs(dy * cos - dx * sin) < across
-
-
-def _depth_along(a: Box, b: Box) -> float:
+def _depth_along(a: OrientedBox, b: OrientedBox, cos_turn: float, sin_turn: float) -> float:
     """Return the lesser overlap [m] of the boxes seen along the two axes of ``a``; negative where they are apart."""
-    cos = math.cos(a.heading)
-    sin = math.sin(a.heading)
-    dx = b.x - a.x
-    dy = b.y - a.y
-    turn = b.heading - a.heading
-    cos_turn = abs(math.cos(turn))
-    sin_turn = abs(math.sin(turn))
-    along = 0.5 * (a.length + b.length * cos_turn + b.width * sin_turn)
-    across = 0.5 * (a.width + b.length * sin_turn + b.width * cos_turn)
-    return _smaller(along - abs(dx * cos + dy * sin), across - abs(dy * cos - dx * sin))
+    dx = b.box.x - a.box.x
+    dy = b.box.y - a.box.y
+    along = 0.5 * (a.box.length + b.box.length * cos_turn + b.box.width * sin_turn)
+    across = 0.5 * (a.box.width + b.box.length * sin_turn + b.box.width * cos_turn)
+    return _smaller(along - abs(dx * a.cos + dy * a.sin), across - abs(dy * a.cos - dx * a.sin))
 
 
-def _corners_gap(around: Corners, box: Box) -> float:
-    left = _smaller(point_gap(around.front_left, box), point_gap(around.rear_left, box))
-    return _smaller(left, _smaller(point_gap(around.rear_right, box), point_gap(around.front_right, box)))
+def _corners_gap(around: Corners, a: OrientedBox) -> float:
+    left = _smaller(point_to_oriented(around.front_left, a), point_to_oriented(around.rear_left, a))
+    right = _smaller(point_to_oriented(around.rear_right, a), point_to_oriented(around.front_right, a))
+    return _smaller(left, right)
 
 
 def _slab(offset: float, rate: float, half: float) -> Point:
@@ -210,10 +252,10 @@ def _slab(offset: float, rate: float, half: float) -> Point:
     return Point(one, other) if one < other else Point(other, one)
 
 
-def _seen_from(point: Point, start: Point, cos: float, sin: float) -> Point:
-    dx = point.x - start.x
-    dy = point.y - start.y
-    return Point(dx * cos + dy * sin, dy * cos - dx * sin)
+def _seen_from(point: Point, cone: Cone) -> Point:
+    dx = point.x - cone.start.x
+    dy = point.y - cone.start.y
+    return Point(dx * cone.axis.x + dy * cone.axis.y, dy * cone.axis.x - dx * cone.axis.y)
 
 
 def _side_in_cone(a: Point, b: Point, side: Point) -> float:

@@ -5,10 +5,21 @@ than the ground clearance stops the wheels but passes under the bumpers: clearan
 from the part of the outline between the tyres' outer ends.
 """
 
+import math
 from typing import Annotated, NamedTuple
 
 from modelkit.car import Car
-from modelkit.geometry import FAR, Box, boxes_depth, boxes_gap, centre_gap, line_box, outline
+from modelkit.geometry import (
+    FAR,
+    Box,
+    OrientedBox,
+    Point,
+    centre_gap,
+    line_box,
+    oriented,
+    oriented_gap,
+    oriented_outline,
+)
 from modelkit.signal import Signal
 from modelkit.vocabulary import Pose
 
@@ -82,25 +93,27 @@ def clearance(pose: Pose, car: Car, scene: SceneParams, kerb_height: float, time
     In contact it is minus the penetration depth, and at most ``-TOUCH``. A wheel at a kerb lower than ``kerb_height``
     is no contact: it gives 0.
     """
-    body = outline(pose, car.wheelbase, car.front_overhang, car.rear_overhang, car.width)
+    ahead = Point(math.cos(pose.heading), math.sin(pose.heading))
+    body = oriented_outline(pose, ahead, car.wheelbase, car.front_overhang, car.rear_overhang, car.width)
     nearest = FAR
     for obstacle in scene.boxes:
         if is_there(obstacle, time_ns):
             nearest = nearer(nearest, body, obstacle_box(obstacle, time_ns), True)
-    low = outline(pose, car.wheelbase, scene.tyre_reach, scene.tyre_reach, car.width)
     for kerb in scene.kerbs:
         if kerb.height > 0.0:
-            part = low if kerb.height < scene.ground_clearance else body
+            part = body
+            if kerb.height < scene.ground_clearance:
+                part = oriented_outline(pose, ahead, car.wheelbase, scene.tyre_reach, scene.tyre_reach, car.width)
             line = line_box(kerb.x1, kerb.y1, kerb.x2, kerb.y2)
             nearest = nearer(nearest, part, line, kerb.height >= kerb_height)
     return nearest
 
 
-def nearer(nearest: float, car: Box, thing: Box, is_obstacle: bool) -> float:
+def nearer(nearest: float, car: OrientedBox, thing: Box, is_obstacle: bool) -> float:
     """Return the smaller of ``nearest`` and the gap of car and thing, which is negative inside an obstacle."""
-    if nearest > 0.0 and centre_gap(car, thing) >= nearest:
+    if nearest > 0.0 and centre_gap(car.box, thing) >= nearest:
         return nearest
-    gap = boxes_gap(car, thing)
-    if gap <= 0.0 and is_obstacle:
-        gap = -max(TOUCH, boxes_depth(car, thing))
+    gap = oriented_gap(car, oriented(thing))
+    if gap <= 0.0:
+        gap = -max(TOUCH, -gap) if is_obstacle else 0.0
     return min(nearest, gap)

@@ -11,7 +11,18 @@ import math
 from typing import Annotated, NamedTuple
 
 from modelkit.car import CarUltrasonic, SensorMount
-from modelkit.geometry import Box, Point, cone_box, line_box, reach
+from modelkit.geometry import (
+    Box,
+    Cone,
+    Corners,
+    OrientedBox,
+    Point,
+    cone_gap,
+    line_box,
+    oriented,
+    oriented_corners,
+    reach,
+)
 from modelkit.maths import clamp
 from modelkit.random import normal, seed_state, uniform
 from modelkit.signal import Role, Signal
@@ -82,38 +93,56 @@ def heard_distances(
     """Return the exact distance [m] from each sensor to the nearest thing in its cone, at most ``max_range``."""
     distances: tuple[float, ...] = (sensors.max_range,) * 12
     ahead = Point(math.cos(pose.heading), math.sin(pose.heading))
+    side = Point(math.sin(sensors.half_angle), math.cos(sensors.half_angle))
     for obstacle in scene.boxes:
         if is_there(obstacle, time_ns):
-            distances = _hear(distances, pose, ahead, sensors, obstacle_box(obstacle, time_ns))
+            distances = _hear(distances, pose, ahead, sensors, side, obstacle_box(obstacle, time_ns))
     for kerb in scene.kerbs:
         if kerb.height > 0.0 and kerb.height >= kerb_height:
             line = line_box(kerb.x1, kerb.y1, kerb.x2, kerb.y2)
-            distances = _hear(distances, pose, ahead, sensors, line)
+            distances = _hear(distances, pose, ahead, sensors, side, line)
     return distances
 
 
 def _hear(
-    distances: tuple[float, ...], pose: Pose, ahead: Point, sensors: CarUltrasonic, box: Box
+    distances: tuple[float, ...], pose: Pose, ahead: Point, sensors: CarUltrasonic, side: Point, box: Box
 ) -> tuple[float, ...]:
+    seen = oriented(box)
+    around = oriented_corners(seen)
+    radius = reach(box)
     return tuple(
-        _nearer(nearest, pose, ahead, mount, sensors.half_angle, box)
+        _nearer(nearest, pose, ahead, mount, side, seen, around, radius)
         for nearest, mount in zip(distances, sensors.mounts, strict=True)
     )
 
 
-def _nearer(nearest: float, pose: Pose, ahead: Point, mount: SensorMount, half_angle: float, box: Box) -> float:
-    """Return the smaller of ``nearest`` and what one sensor hears of a box; ``ahead`` is the car's unit vector."""
+def _nearer(
+    nearest: float,
+    pose: Pose,
+    ahead: Point,
+    mount: SensorMount,
+    side: Point,
+    box: OrientedBox,
+    around: Corners,
+    radius: float,
+) -> float:
+    """Return the smaller of ``nearest`` and what one sensor hears of a box.
+
+    ``ahead``: the car's unit vector; ``side``: sine and cosine of half the cone's angle; ``radius``: of the circle
+    around the box.
+    """
     start = Point(
         pose.x + mount.x * ahead.x - mount.y * ahead.y,
         pose.y + mount.x * ahead.y + mount.y * ahead.x,
     )
-    dx = box.x - start.x
-    dy = box.y - start.y
-    far = nearest + reach(box)
+    dx = box.box.x - start.x
+    dy = box.box.y - start.y
+    far = nearest + radius
     if dx * dx + dy * dy >= far * far:
         return nearest
-    distance = cone_box(start, pose.heading + mount.yaw, half_angle, box)
-    return min(nearest, distance)
+    direction = pose.heading + mount.yaw
+    cone = Cone(start, Point(math.cos(direction), math.sin(direction)), side)
+    return min(nearest, cone_gap(cone, box, around))
 
 
 def _reading(random: int, distance: float, ear: Ear) -> tuple[int, float]:

@@ -129,8 +129,8 @@ def test_live_outputs_of_a_slice_have_the_same_bits(tmp_path: object, run_c: obj
 def test_the_vehicle_without_sensors_measures_nothing() -> None:
     used = frozenset(item.name for item in variables(VEHICLE.outputs) if not item.name.startswith("ultrasonic"))
     whole, sliced = translate(VEHICLE), translate(VEHICLE, Slice(used))
-    assert "cone_box(" in whole.source
-    assert "cone_box(" not in sliced.source
+    assert "cone_gap(" in whole.source
+    assert "cone_gap(" not in sliced.source
     assert sliced.header == whole.header, "the layout stays"
 
 

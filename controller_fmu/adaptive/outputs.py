@@ -2,10 +2,12 @@
 
 from controller_fmu.adaptive.params import AdaptiveSystemParams
 from controller_fmu.adaptive.phases import AdaptivePhase, direction_of
-from controller_fmu.adaptive.signals import AdaptiveOutput
+from controller_fmu.adaptive.route import Piece
+from controller_fmu.adaptive.signals import AdaptiveMove, AdaptiveOutput, AdaptiveSignals
 from controller_fmu.adaptive.system import AdaptiveState
 from controller_fmu.common.phases import is_parking
 from controller_fmu.common.slot_frame import to_world
+from controller_fmu.interface import PlannedPiece
 from modelkit.vocabulary import Prompt
 
 
@@ -23,7 +25,22 @@ def adaptive_outputs(state: AdaptiveState, params: AdaptiveSystemParams) -> Adap
         reference=to_world(state.foot.reference, state.frame),
         lateral_error=state.foot.lateral_error,
         heading_error=state.foot.heading_error,
+        adaptive=AdaptiveSignals(planned_move(state)),
     )
+
+
+def planned_move(state: AdaptiveState) -> AdaptiveMove:
+    """Return the move being driven, its curvature seen in the world with x along the car's heading; or none."""
+    route = state.plan.route
+    if route.direction == 0:
+        return AdaptiveMove()
+    pieces = tuple(planned_piece(piece, state.frame.mirror) for piece in route.pieces)
+    return AdaptiveMove(to_world(route.start, state.frame), route.direction, pieces, state.end)
+
+
+def planned_piece(piece: Piece, mirror: float) -> PlannedPiece:
+    """Return a piece of a route as it is seen in the world."""
+    return PlannedPiece(piece.length, mirror * piece.k0, mirror * piece.k1)
 
 
 def prompt_of(state: AdaptiveState, params: AdaptiveSystemParams) -> int:

@@ -3,15 +3,17 @@
 from typing import Annotated, NamedTuple
 
 from controller_fmu.adaptive.phases import AdaptivePhase
+from controller_fmu.adaptive.route import PIECES
 from controller_fmu.interface import (
     STATE_OF_THE_CHART,
     HeadingError,
     LateralError,
+    PlannedPiece,
     ReasonTold,
     ReferencePose,
     Shifts,
 )
-from modelkit.signal import Signal
+from modelkit.signal import Group, Role, Signal
 from modelkit.vocabulary import (
     AdvisedSpeed,
     BrakeRequest,
@@ -24,6 +26,21 @@ from modelkit.vocabulary import (
     SteeringActive,
     SteeringWheelRequest,
 )
+
+
+class AdaptiveMove(NamedTuple):
+    """The move being driven."""
+
+    start: Annotated[Pose, Group("where the move starts, in the world")] = Pose()
+    direction: Annotated[int, Signal("1", "1 forward, -1 in reverse, 0 none")] = 0
+    pieces: tuple[PlannedPiece, ...] = (PlannedPiece(),) * PIECES
+    end: Annotated[float, Signal("m", "way along the move at which the car is to stand", 0.0)] = 0.0
+
+
+class AdaptiveSignals(NamedTuple):
+    """What the system has in mind."""
+
+    move: AdaptiveMove = AdaptiveMove()
 
 
 class AdaptiveOutput(NamedTuple):
@@ -44,3 +61,4 @@ class AdaptiveOutput(NamedTuple):
     reference: ReferencePose = Pose()
     lateral_error: LateralError = 0.0
     heading_error: HeadingError = 0.0
+    adaptive: Annotated[AdaptiveSignals, Role.LOCAL] = AdaptiveSignals()

@@ -27,6 +27,7 @@ from controller_fmu.common.monitor import (
     MonitorState,
     is_usable_input,
     reason_to_fail,
+    time_counted,
     watch,
 )
 from controller_fmu.common.phases import is_over
@@ -94,7 +95,7 @@ def adaptive_sample(
     seen = state._replace(
         frame=frame,
         monitor=monitor,
-        running_ns=state.running_ns + dt_ns,
+        running_ns=state.running_ns + time_counted(dt_ns, inputs.measured_speed, params.threshold.standstill),
         takeover=inputs.driver_takeover,
         driver=_driver(state, inputs, params, dt_ns),
     )

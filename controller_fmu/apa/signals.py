@@ -13,6 +13,7 @@ from controller_fmu.interface import (
     HeadingError,
     LateralError,
     Odometry,
+    PlannedPiece,
     ReasonTold,
     ReferencePose,
     Shifts,
@@ -78,14 +79,6 @@ class OfferedSlot(NamedTuple):
     side: Annotated[int, Signal("1", "side of the road", states=Side)] = Side.RIGHT
     a: Annotated[Pose, Group("corner A in the world, heading along the road")] = Pose()
     length: Annotated[float, Signal("m", "corner A to corner B along the road", 0.0)] = 0.0
-
-
-class PlannedPiece(NamedTuple):
-    """A piece of the move being driven, seen in the world."""
-
-    length: Annotated[float, Signal("m", "length, >= 0; 0: unused")] = 0.0
-    start_curvature: Annotated[float, Signal("1/m", "at its start, left positive")] = 0.0
-    end_curvature: Annotated[float, Signal("1/m", "at its end, left positive")] = 0.0
 
 
 class PlannedMove(NamedTuple):

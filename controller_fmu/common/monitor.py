@@ -4,6 +4,7 @@ A quantity that must not last has a clock [ns] that runs while it holds and is p
 when it does not. The steering has a monitor of its own, ``controller_fmu.common.steering_monitor``.
 """
 
+import math
 from typing import NamedTuple
 
 from controller_fmu.common.phases import Expected
@@ -16,6 +17,10 @@ FARTHEST = 1e9
 """No position [m], heading [rad] or speed [m/s] is beyond this; NaN is not within it either."""
 SLOWEST_SEEN = 0.1
 """A pose counted in ticks may rightly stand still for half a second at less than this [m/s]."""
+
+
+PACE = 0.3
+"""A car slower than this [m/s] is given more time."""
 
 
 class MonitorState(NamedTuple):
@@ -66,6 +71,16 @@ def watch(
         wheel=wheel,
         pose=inputs.odometry,
     )
+
+
+def time_counted(dt_ns: int, speed: float, standstill: float) -> int:
+    """Return what of a sample counts against the longest duration [ns]: a car that creeps is counted by its way.
+
+    So a slow driver, whose car always gets on, has as far to go as one at ``PACE``.
+    """
+    if standstill < abs(speed) < PACE:
+        return math.floor(dt_ns * abs(speed) / PACE)
+    return dt_ns
 
 
 def clock_before(obstacle: bool, clock: int, still: bool, dt_ns: int) -> int:

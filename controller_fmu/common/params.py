@@ -33,7 +33,9 @@ class LimitParams(NamedTuple):
     shifts: Annotated[
         int, Signal("1", "maximum number of manoeuvres; the first reverse motion counts as one", 1, 100, "GB/T 41630")
     ] = 8
-    duration: Annotated[float, Signal("s", "maximum time from start to parked", 1.0, 3600.0, HOUSE)] = 120.0
+    duration: Annotated[
+        float, Signal("s", "maximum time to parked; below 0.3 m/s it counts by distance", 1.0, 3600.0, HOUSE)
+    ] = 120.0
     patience: Annotated[float, Signal("s", "maximum time for the driver to start moving", 0.1, 600.0, HOUSE)] = 15.0
     stopping: Annotated[float, Signal("s", "maximum time for the driver to stop", 0.1, 60.0, HOUSE)] = 2.5
     wrong_direction: Annotated[float, Signal("s", "maximum distance driven against the prompt", 0.1, 60.0, HOUSE)] = 1.5

@@ -13,7 +13,7 @@ from controller_fmu.interface import (
     ReferencePose,
     Shifts,
 )
-from modelkit.signal import Signal
+from modelkit.signal import Group, Role, Signal
 from modelkit.vocabulary import (
     AdvisedSpeed,
     BrakeRequest,
@@ -26,6 +26,29 @@ from modelkit.vocabulary import (
     SteeringActive,
     SteeringWheelRequest,
 )
+
+KNOTS = 17
+
+
+class PathPoint(NamedTuple):
+    """A point of the planned path."""
+
+    x: Annotated[float, Signal("m", "x in the world")] = 0.0
+    y: Annotated[float, Signal("m", "y in the world")] = 0.0
+
+
+NO_POINTS = (PathPoint(),) * KNOTS
+
+
+class GuoSignals(NamedTuple):
+    """The points that are tracked, and the path where it is not made of arcs."""
+
+    q1: Annotated[Pose, Group("Q1, where the second arc begins, in the world")] = Pose()
+    q2: Annotated[Pose, Group("Q2, ahead of Q1 on the tangent, in the world")] = Pose()
+    q3: Annotated[Pose, Group("Q3, where the car is to park, in the world")] = Pose()
+    q4: Annotated[Pose, Group("Q4, straight ahead of Q3, in the world")] = Pose()
+    points: tuple[PathPoint, ...] = NO_POINTS
+    """From start to target; all zero where ``path`` has the arcs."""
 
 
 class GuoOutput(NamedTuple):
@@ -47,3 +70,4 @@ class GuoOutput(NamedTuple):
     lateral_error: LateralError = 0.0
     heading_error: HeadingError = 0.0
     path: PlannedPath = Path()
+    guo2015: Annotated[GuoSignals, Role.LOCAL] = GuoSignals()

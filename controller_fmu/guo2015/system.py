@@ -1,6 +1,5 @@
 """The NTBPTcwPT system at one sample: plan once, track the leg, let the chart decide, prompt."""
 
-import math
 from typing import NamedTuple
 
 from controller_fmu.common.chart import bit
@@ -8,10 +7,11 @@ from controller_fmu.common.monitor import (
     MonitorState,
     is_usable_input,
     reason_to_fail,
+    time_counted,
     watch,
 )
-from controller_fmu.common.phases import is_over, is_parking
-from controller_fmu.common.slot_frame import to_slot, to_world
+from controller_fmu.common.phases import is_over
+from controller_fmu.common.slot_frame import to_slot
 from controller_fmu.common.steering_wheel import wheel_request
 from controller_fmu.guo2015.chart import Guard, transition
 from controller_fmu.guo2015.guards import standing_guards, way_guards, wheel_guards, within
@@ -24,18 +24,12 @@ from controller_fmu.guo2015.prompts import (
     is_moving,
     path_speed,
     point_speed,
-    prompt_of,
     swing_speed,
 )
-from controller_fmu.guo2015.signals import GuoOutput
-from controller_fmu.guo2015.smooth_path import PathShape
-from controller_fmu.interface import ParkingInput, Path, Reason, Segment
+from controller_fmu.interface import ParkingInput, Reason
 from modelkit.car import smallest_radius
 from modelkit.maths import clamp
 from modelkit.vocabulary import Pose
-
-NOT_DRAWN = (Segment(), Segment(), Segment())
-"""A path that is not made of arcs."""
 
 
 class GuoState(NamedTuple):
@@ -110,34 +104,6 @@ def guo_sample(state: GuoState, inputs: ParkingInput, params: GuoSystemParams, d
     return _moved_on(state, now, phase, next_leg, params)
 
 
-def guo_outputs(state: GuoState, params: GuoSystemParams) -> GuoOutput:
-    """Return the outputs that hold until the next sample."""
-    active = is_parking(state.phase)
-    frame = state.plan.frame
-    path = state.plan.path
-    k = frame.mirror / path.radius if path.found else 0.0
-    line = math.sqrt(_squared_distance(path.tangent1, path.tangent2))
-    pieces = (
-        Segment(path.radius * (path.tangent1.heading - path.start.heading), -k),
-        Segment(line, 0.0),
-        Segment(path.radius * path.tangent2.heading, k),
-    )
-    return GuoOutput(
-        steering_wheel_request=state.request,
-        steering_active=active,
-        prompt=prompt_of(state.phase, state.moving, state.advice, params.guo2015.prompting),
-        advised_speed=state.advice,
-        brake_request=state.phase == GuoPhase.FAILED and not state.takeover,
-        phase=state.phase,
-        reason=state.reason,
-        shifts=state.shifts,
-        reference=to_world(state.tracking.reference, frame),
-        lateral_error=state.tracking.lateral_error,
-        heading_error=state.tracking.heading_error,
-        path=Path(to_world(path.start, frame), pieces if path.curve.shape == PathShape.TWO_ARCS else NOT_DRAWN),
-    )
-
-
 def _reason(state: GuoState, now: Sample, tracking: Tracking, params: GuoSystemParams) -> int:
     limit = params.threshold
     expected = expected_in(state.phase)
@@ -186,7 +152,7 @@ def _moved_on(state: GuoState, now: Sample, phase: int, leg: int, params: GuoSys
         reason=Reason.NONE,
         shifts=state.shifts + 1 if turned else state.shifts,
         direction=direction if direction != 0 else state.direction,
-        running_ns=state.running_ns + now.dt_ns,
+        running_ns=state.running_ns + time_counted(now.dt_ns, now.inputs.measured_speed, params.threshold.standstill),
         piece=tracking.piece,
         plan=now.planned,
         tracking=tracking,
@@ -241,9 +207,3 @@ def _wheel_request(phase: int, tracking: Tracking, planned: Plan, params: GuoSys
 
 def _ended(state: GuoState, phase: int, reason: int, takeover: bool) -> GuoState:
     return state._replace(phase=phase, reason=reason, moving=False, advice=0.0, takeover=takeover)
-
-
-def _squared_distance(a: Pose, b: Pose) -> float:
-    dx = a.x - b.x
-    dy = a.y - b.y
-    return dx * dx + dy * dy

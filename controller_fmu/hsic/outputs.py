@@ -32,6 +32,8 @@ def hsic_outputs(state: HsicState, params: HsicSystemParams) -> HsicOutput:
     """Return the outputs that hold until the next sample."""
     active = state.phase in (HsicPhase.PRE_STEER, HsicPhase.PATH_TRACKING, HsicPhase.STRAIGHTEN)
     modes = RULES[state.characteristic]
+    points = state.course.points
+    known = points.found
     signals = HsicSignals(
         characteristic=state.characteristic,
         stage=state.course.stage,
@@ -39,6 +41,10 @@ def hsic_outputs(state: HsicState, params: HsicSystemParams) -> HsicOutput:
         steer_mode=modes[1],
         distance=state.found.distance,
         tangent_error=tangent_error(state.course.points, state.pose),
+        p1=to_world(points.p1, state.frame) if known else Pose(),
+        p2=to_world(points.p2, state.frame) if known else Pose(),
+        p3=to_world(points.p3, state.frame) if known else Pose(),
+        p4=state.frame.target if known else Pose(),
     )
     brake = state.phase != HsicPhase.PATH_TRACKING and state.phase != HsicPhase.TAKEOVER
     return HsicOutput(

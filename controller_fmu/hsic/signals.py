@@ -15,7 +15,7 @@ from controller_fmu.interface import (
     ReferencePose,
     Shifts,
 )
-from modelkit.signal import Role, Signal
+from modelkit.signal import Group, Role, Signal
 from modelkit.vocabulary import (
     AdvisedSpeed,
     BrakeRequest,
@@ -39,6 +39,10 @@ class HsicSignals(NamedTuple):
     steer_mode: Annotated[int, Signal("1", "control mode of the steering", states=SteerMode)] = 0
     distance: Annotated[float, Signal("m", "distance to the key point")] = 0.0
     tangent_error: Annotated[float, Signal("m", "distance to the left of the common tangent P2 P3, slot frame")] = 0.0
+    p1: Annotated[Pose, Group("ready point, in the world")] = Pose()
+    p2: Annotated[Pose, Group("end of the first arc, in the world")] = Pose()
+    p3: Annotated[Pose, Group("start of the second arc, in the world")] = Pose()
+    p4: Annotated[Pose, Group("where the car is to park, in the world")] = Pose()
 
 
 class HsicOutput(NamedTuple):

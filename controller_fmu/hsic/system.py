@@ -3,7 +3,7 @@
 import math
 from typing import NamedTuple
 
-from controller_fmu.common.monitor import MonitorState, is_usable_input, reason_to_fail, watch
+from controller_fmu.common.monitor import MonitorState, is_usable_input, reason_to_fail, time_counted, watch
 from controller_fmu.common.phases import is_over
 from controller_fmu.common.slot_clearance import is_pose_clear, outline_of
 from controller_fmu.common.slot_frame import SlotFrame, frame_at, to_slot
@@ -74,7 +74,11 @@ def hsic_sample(state: HsicState, inputs: ParkingInput, params: HsicSystemParams
         reason = Reason.LEFT_PATH
     if reason != Reason.NONE:
         return _ended(state, HsicPhase.FAILED, reason)
-    state = state._replace(running_ns=state.running_ns + dt_ns, pose=pose, monitor=monitor)
+    state = state._replace(
+        running_ns=state.running_ns + time_counted(dt_ns, inputs.measured_speed, params.threshold.standstill),
+        pose=pose,
+        monitor=monitor,
+    )
     if state.phase == HsicPhase.STRAIGHTEN:
         return _straightened(state, inputs, params)
     return _driven(state, inputs, params, dt_ns)

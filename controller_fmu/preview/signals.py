@@ -11,7 +11,7 @@ from controller_fmu.interface import (
 )
 from controller_fmu.preview.phases import PreviewPhase
 from controller_fmu.preview.stage import PreviewStage
-from modelkit.signal import Role, Signal
+from modelkit.signal import Group, Role, Signal
 from modelkit.vocabulary import (
     AdvisedSpeed,
     BrakeRequest,
@@ -38,6 +38,8 @@ class PreviewSignals(NamedTuple):
     y_l: Annotated[float, Signal("m", "lateral error at the first preview point, road to the left positive")] = 0.0
     eps_l: Annotated[float, Signal("rad", "heading error at the first preview point, road turning left positive")] = 0.0
     wanted_speed: Annotated[float, Signal("m/s", "target speed of the sequence")] = 0.0
+    la1: Annotated[Pose, Group("point of the road L1 ahead of the car")] = Pose()
+    la2: Annotated[Pose, Group("point of the road L2 ahead of the car")] = Pose()
 
 
 class PreviewOutput(NamedTuple):

@@ -5,7 +5,7 @@ from typing import NamedTuple
 from controller_fmu.preview.control import drive_force, steering_angle
 from controller_fmu.preview.params import Camera, Method, PreviewParams
 from controller_fmu.preview.preview import PreviewErrors, centre_of_gravity, integrate_sight, look, motion
-from controller_fmu.preview.road import curvature_at, project, road_length
+from controller_fmu.preview.road import curvature_at, project, road_at, road_length
 from controller_fmu.preview.sequence import Sequence, advance, straight_distance
 from controller_fmu.preview.signals import PreviewSignals
 from controller_fmu.preview.stage import PreviewStage
@@ -50,7 +50,17 @@ def preview_step(
     error = speed - sequence.set_speed
     rate = (error - state.last_error) / dt if state.started else 0.0
     signals = PreviewSignals(
-        s, sequence.stage, sequence.l1, sequence.l2, kappa1, kappa2, sight.y_l, sight.eps_l, sequence.set_speed
+        s,
+        sequence.stage,
+        sequence.l1,
+        sequence.l2,
+        kappa1,
+        kappa2,
+        sight.y_l,
+        sight.eps_l,
+        sequence.set_speed,
+        road_at(params.road, s + sequence.l1).pose,
+        road_at(params.road, s + sequence.l2).pose,
     )
     finished = s + sequence.l1 > road_length(params.road)
     command = PreviewCommand(steering_angle(sight, params), drive_force(error, rate, params), finished)

@@ -6,10 +6,10 @@ from controller_fmu.common.slot_frame import to_world
 from controller_fmu.common.steering_wheel import steering_wheel_angle
 from controller_fmu.interface import Path, Segment
 from controller_fmu.zhang2022.params import ZhangSystemParams
-from controller_fmu.zhang2022.path import PathStatus
+from controller_fmu.zhang2022.path import PathStatus, final_time
 from controller_fmu.zhang2022.phases import ZhangPhase
-from controller_fmu.zhang2022.signals import ZhangOutput, ZhangSignals
-from controller_fmu.zhang2022.system import ZhangState
+from controller_fmu.zhang2022.signals import QuinticPlan, ZhangOutput, ZhangSignals
+from controller_fmu.zhang2022.system import STOPPING_SHARE, ZhangState
 
 
 def zhang_signals(state: ZhangState, params: ZhangSystemParams) -> ZhangSignals:
@@ -21,6 +21,22 @@ def zhang_signals(state: ZhangState, params: ZhangSystemParams) -> ZhangSignals:
         iterations=state.steering.iterations,
         reference_angle=state.frame.mirror * math.atan(params.car.wheelbase * state.reference.curvature),
         set_speed=state.set_speed,
+        plan=quintic_plan(state, params),
+    )
+
+
+def quintic_plan(state: ZhangState, params: ZhangSystemParams) -> QuinticPlan:
+    """Return the planned path as its quintics; without a path, all zero."""
+    path = state.path
+    if path.status != PathStatus.FOUND:
+        return QuinticPlan()
+    zhang = params.zhang2022
+    return QuinticPlan(
+        side=1 if state.frame.mirror > 0.0 else -1,
+        origin=state.frame.target,
+        quintics=(path.first, path.line, path.last),
+        length=path.length,
+        final_time=final_time(path.length, zhang.speed, zhang.ramp, STOPPING_SHARE * zhang.ramp),
     )
 
 

@@ -43,6 +43,8 @@ class QuinticPath(NamedTuple):
     first: Quintic = Quintic()
     line: Quintic = Quintic()
     last: Quintic = Quintic()
+    length: float = 0.0
+    """Along the path [m]; known once it is chosen."""
 
 
 class PathTried(NamedTuple):
@@ -140,6 +142,31 @@ def at(path: QuinticPath, x: float) -> Derivatives:
     if x > 0.0:
         return shape(path.last, x)
     return Derivatives(0.0, 0.0, 0.0)
+
+
+def length_of(path: QuinticPath) -> float:
+    """Return the length of a path [m], by Simpson's rule over its quintics."""
+    return piece_length(path.first) + piece_length(path.line) + piece_length(path.last)
+
+
+def piece_length(piece: Quintic) -> float:
+    """Return the length of a quintic [m]."""
+    total = 0.0
+    for sample in range(SAMPLES + 1):
+        slope = shape(piece, piece.x0 + piece.length * sample / SAMPLES).slope
+        weight = 1.0 if sample in (0, SAMPLES) else 4.0 if sample % 2 == 1 else 2.0
+        total = total + weight * math.sqrt(1.0 + slope * slope)
+    return total * piece.length / (3.0 * SAMPLES)
+
+
+def final_time(length: float, speed: float, up: float, down: float) -> float:
+    """Return the time [s] for a way ``length`` [m] from rest to rest at ``speed`` [m/s], ramps ``up``, ``down`` [m/s2].
+
+    A way too short for the speed is driven as a triangle.
+    """
+    ramps = 0.5 * (1.0 / up + 1.0 / down)
+    top = min(speed, math.sqrt(length / ramps))
+    return length / top + ramps * top if top > 0.0 else 0.0
 
 
 def nearest(path: QuinticPath, pose: Pose) -> Reference:

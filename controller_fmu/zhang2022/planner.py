@@ -14,6 +14,7 @@ from controller_fmu.zhang2022.path import (
     QuinticPath,
     joined_at,
     largest_curvature,
+    length_of,
     plan,
 )
 from controller_fmu.zhang2022.quintic import quintic
@@ -32,6 +33,11 @@ FLATTEST, STEEPEST_SHARE = 1.0, 2.4
 
 def plan_in_slot(start: Pose, radius: float, curvature_limit: float, car: Outline, slot: SlotBounds) -> QuinticPath:
     """Return the path from ``start`` (slot frame) to the origin clear of the neighbours, or why there is none."""
+    path = _chosen(start, radius, curvature_limit, car, slot)
+    return path._replace(length=length_of(path)) if path.status == PathStatus.FOUND else path
+
+
+def _chosen(start: Pose, radius: float, curvature_limit: float, car: Outline, slot: SlotBounds) -> QuinticPath:
     path = plan(start, radius, curvature_limit)
     if not slot.known or path.status == PathStatus.BAD_START:
         return path

@@ -1,19 +1,21 @@
 """One quintic y(x) between two points, equation (4) of Zhang 2022."""
 
 import math
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
+
+from modelkit.signal import Signal
 
 
 class Quintic(NamedTuple):
     """y(t) = y0 + m0 t + c3 t^3 + c4 t^4 + c5 t^5 with t = (x - x0) / length in [0, 1]."""
 
-    x0: float = 0.0
-    length: float = 1.0
-    y0: float = 0.0
-    m0: float = 0.0
-    c3: float = 0.0
-    c4: float = 0.0
-    c5: float = 0.0
+    x0: Annotated[float, Signal("m", "x at t = 0")] = 0.0
+    length: Annotated[float, Signal("m", "x at t = 1 less x0")] = 1.0
+    y0: Annotated[float, Signal("m", "y at t = 0")] = 0.0
+    m0: Annotated[float, Signal("m", "factor of t")] = 0.0
+    c3: Annotated[float, Signal("m", "factor of t^3")] = 0.0
+    c4: Annotated[float, Signal("m", "factor of t^4")] = 0.0
+    c5: Annotated[float, Signal("m", "factor of t^5")] = 0.0
 
 
 class Derivatives(NamedTuple):

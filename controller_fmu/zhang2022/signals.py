@@ -15,7 +15,8 @@ from controller_fmu.interface import (
 from controller_fmu.zhang2022.path import PathStatus
 from controller_fmu.zhang2022.phases import ZhangPhase
 from controller_fmu.zhang2022.qp import Status
-from modelkit.signal import Role, Signal
+from controller_fmu.zhang2022.quintic import Quintic
+from modelkit.signal import Group, Role, Signal
 from modelkit.vocabulary import (
     AdvisedSpeed,
     BrakeRequest,
@@ -30,6 +31,16 @@ from modelkit.vocabulary import (
 )
 
 
+class QuinticPlan(NamedTuple):
+    """The planned path y(x) in the slot's frame, driven in reverse from the first quintic to the last."""
+
+    side: Annotated[int, Signal("1", "the slot lies to the right (1), left (-1): y changes sign; 0: no path")] = 0
+    origin: Annotated[Pose, Group("the slot's frame in the world: the target")] = Pose()
+    quintics: tuple[Quintic, ...] = (Quintic(),) * 3
+    length: Annotated[float, Signal("m", "length of the path")] = 0.0
+    final_time: Annotated[float, Signal("s", "planned from start to target, with both ramps of the set speed")] = 0.0
+
+
 class ZhangSignals(NamedTuple):
     """What the system found."""
 
@@ -41,6 +52,7 @@ class ZhangSignals(NamedTuple):
     iterations: Annotated[int, Signal("1", "iterations of the QP solver")] = 0
     reference_angle: Annotated[float, Signal("rad", "front-wheel angle of the path's curvature, left positive")] = 0.0
     set_speed: Annotated[float, Signal("m/s", "speed the PID holds, reverse negative")] = 0.0
+    plan: QuinticPlan = QuinticPlan()
 
 
 class ZhangOutput(NamedTuple):

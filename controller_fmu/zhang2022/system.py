@@ -3,7 +3,7 @@
 import math
 from typing import NamedTuple
 
-from controller_fmu.common.monitor import MonitorState, is_usable_input, reason_to_fail, watch
+from controller_fmu.common.monitor import MonitorState, is_usable_input, reason_to_fail, time_counted, watch
 from controller_fmu.common.phases import is_over
 from controller_fmu.common.slot_clearance import outline_of
 from controller_fmu.common.slot_frame import SlotFrame, frame_at, to_slot
@@ -67,7 +67,11 @@ def zhang_sample(state: ZhangState, inputs: ParkingInput, params: ZhangSystemPar
         reason = Reason.LEFT_PATH
     if reason != Reason.NONE:
         return _ended(state, ZhangPhase.FAILED, reason)
-    state = state._replace(running_ns=state.running_ns + dt_ns, reference=reference, monitor=monitor)
+    state = state._replace(
+        running_ns=state.running_ns + time_counted(dt_ns, inputs.measured_speed, params.threshold.standstill),
+        reference=reference,
+        monitor=monitor,
+    )
     if state.phase == ZhangPhase.STRAIGHTEN:
         return _straightened(state, inputs, pose, params)
     return _driven(state, inputs, pose, params, dt_ns)

@@ -182,6 +182,9 @@ def _plan(axis: Any, letter: str, seen: Overview) -> None:
         axis.plot(*at_target.T, color=GREEN, linewidth=1.4, linestyle=(0, (4, 2)), label="target")
     if len(seen.planned):
         axis.plot(*seen.planned.T, color=ASKED, linewidth=1.6, linestyle=(0, (5, 2)), label="planned path", zorder=4)
+    for name, at in seen.points.items():
+        axis.plot(*at, "o", color=ASKED, markersize=3.5, zorder=4)
+        axis.annotate(name, at, textcoords="offset points", xytext=(4, -10), fontsize=8, color=ASKED, zorder=6)
     x, y, heading = (seen.signal(f"vehicle.pose.{name}") for name in ("x", "y", "heading"))
     _outlines(axis, car, x, y, heading)
     axis.plot(x, y, color=BLUE, linewidth=1.8, label="driven path", zorder=5)

@@ -40,6 +40,8 @@ class Overview(NamedTuple):
     around: Standing
     planned: Array
     """The last path that was planned, (n, 2)."""
+    points: dict[str, tuple[float, float]]
+    """Points that the controller had in mind, by name."""
 
     def signal(self, name: str) -> Array:
         """Return a signal; not-a-number all along if the run has none of that name."""

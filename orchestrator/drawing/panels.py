@@ -1,4 +1,4 @@
-"""The panels of curves over time: one table for picture, replay page, Foxglove, Lichtblick and Rerun."""
+"""The panels of curves over time: one table for pictures, replay page, Foxglove, Lichtblick and Rerun."""
 
 import math
 from typing import NamedTuple
@@ -20,6 +20,8 @@ class PanelCurve(NamedTuple):
 class Panel(NamedTuple):
     """Curves of one unit over time."""
 
+    name: str
+    """For ``--panels``."""
     title: str
     unit: str
     """SI; pictures and pages show angles in degrees."""
@@ -37,6 +39,7 @@ class Panel(NamedTuple):
 SPEED, WHEEL = "vehicle.speed", "vehicle.steering_wheel_angle"
 PANELS = (
     Panel(
+        "speed",
         "Speed",
         "m/s",
         0.2,
@@ -48,6 +51,7 @@ PANELS = (
         column=1,
     ),
     Panel(
+        "steering",
         "Steering wheel",
         "rad",
         5.0 * DEGREE,
@@ -55,6 +59,7 @@ PANELS = (
         column=1,
     ),
     Panel(
+        "position",
         "Position",
         "m",
         0.5,
@@ -67,6 +72,7 @@ PANELS = (
         column=2,
     ),
     Panel(
+        "heading",
         "Heading",
         "rad",
         5.0 * DEGREE,
@@ -76,9 +82,9 @@ PANELS = (
         ),
         column=3,
     ),
-    Panel("Lateral error", "m", 0.01, (PanelCurve("controller.lateral_error"),)),
-    Panel("Heading error", "rad", 0.5 * DEGREE, (PanelCurve("controller.heading_error"),)),
-    Panel("Clearance", "m", 0.2, (PanelCurve("vehicle.clearance"),)),
+    Panel("lateral", "Lateral error", "m", 0.01, (PanelCurve("controller.lateral_error"),)),
+    Panel("heading-error", "Heading error", "rad", 0.5 * DEGREE, (PanelCurve("controller.heading_error"),)),
+    Panel("clearance", "Clearance", "m", 0.2, (PanelCurve("vehicle.clearance"),)),
 )
 """In the order of the page."""
 MODES = ("controller.phase", "controller.prompt", "vehicle.gear", "controller.reason")

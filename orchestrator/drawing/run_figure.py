@@ -4,14 +4,16 @@ import re
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import matplotlib
 import numpy as np
 from matplotlib.figure import Figure
 
 from orchestrator.cosim.recording import Recording
+from orchestrator.drawing.panels import DEGREE, PANELS, Panel, PanelCurve
 from orchestrator.drawing.save import check_picture, save
+from orchestrator.drawing.seen import fixed_points, planned_paths
 from orchestrator.text.errors import BadInput, suggestion
 
 STYLES = ("screen", "paper")
@@ -33,34 +35,6 @@ SETTINGS: dict[str, Any] = {
 }
 
 
-class Series(NamedTuple):
-    """A signal of a panel: name, factor to the unit shown, and how it is drawn."""
-
-    signal: str
-    factor: float = 1.0
-    reference: bool = False
-
-
-class FigurePanel(NamedTuple):
-    """A panel over time."""
-
-    label: str
-    series: tuple[Series, ...]
-
-
-DEGREES = 180.0 / np.pi
-PANELS = {
-    "speed": FigurePanel("speed [m/s]", (Series("vehicle.speed"), Series("controller.speed_request", 1.0, True))),
-    "steering": FigurePanel("steering wheel [deg]", (Series("vehicle.steering_wheel_angle", DEGREES),)),
-    "heading": FigurePanel(
-        "heading [rad]", (Series("vehicle.pose.heading"), Series("controller.reference.heading", 1.0, True))
-    ),
-    "x": FigurePanel("x [m]", (Series("vehicle.pose.x"), Series("controller.reference.x", 1.0, True))),
-    "y": FigurePanel("y [m]", (Series("vehicle.pose.y"), Series("controller.reference.y", 1.0, True))),
-    "lateral": FigurePanel("lateral error [m]", (Series("controller.lateral_error"),)),
-    "clearance": FigurePanel("clearance [m]", (Series("vehicle.clearance"),)),
-}
-"""Panels over time by name; ``path`` is the top view."""
 PATH = "path"
 DEFAULT_PANELS = ("path", "speed", "steering", "heading")
 
@@ -73,7 +47,7 @@ def run_figure(
 ) -> Figure:
     """Return a matplotlib figure ``width`` [cm] wide of one or several (label, recording), overlaid.
 
-    ``panels`` are names of ``PANELS``, ``path``, or signals (``vehicle.yaw_rate``). Lines are solid or dashed by run,
+    ``panels`` are names of panels, ``path``, or signals (``vehicle.yaw_rate``). Lines are solid or dashed by run,
     references dotted. Raises ``BadInput`` for a panel that is neither.
     """
     for panel in panels:
@@ -86,9 +60,12 @@ def run_figure(
         )
         for place, panel in enumerate(panels, start=1):
             _draw_panel(figure.add_subplot(rows, columns, place), panel, runs)
-        handles, labels = figure.axes[0].get_legend_handles_labels()
-        if len(runs) > 1 or len(labels) > 1:
-            figure.legend(handles, labels, loc="outside lower center", ncols=min(len(labels), 3), frameon=False)
+        named = {
+            text: handle for axis in figure.axes for handle, text in zip(*axis.get_legend_handles_labels(), strict=True)
+        }
+        if len(named) > 1:
+            columns = min(len(named), 3)
+            figure.legend(named.values(), named.keys(), loc="outside lower center", ncols=columns, frameon=False)
     return figure
 
 
@@ -123,13 +100,19 @@ def check_figure(path: Path) -> None:
 
 
 def _check_panel(panel: str, recording: Recording) -> None:
-    if panel in PANELS or panel == PATH or panel in recording.signals:
+    names = [shown.name for shown in PANELS]
+    if panel in names or panel == PATH or panel in recording.signals:
         return
-    known = [PATH, *PANELS]
+    known = [PATH, *names]
     raise BadInput(
         f"--panels {panel}: neither a panel nor a signal of the run{suggestion(panel, [*known, *recording.signals])}; "
         f"panels are {', '.join(known)}"
     )
+
+
+def _panel(name: str) -> Panel:
+    """Return a panel of the table, or one of a signal alone, in its own unit."""
+    return next((panel for panel in PANELS if panel.name == name), Panel(name, name, "", 0.0, (PanelCurve(name),)))
 
 
 def _draw_panel(axis: Any, panel: str, runs: Sequence[tuple[str, Recording]]) -> None:
@@ -140,15 +123,25 @@ def _draw_panel(axis: Any, panel: str, runs: Sequence[tuple[str, Recording]]) ->
         if panel == PATH:
             _draw_path(axis, recording, label, how, number == 0)
             continue
-        shown = PANELS.get(panel, FigurePanel(panel, (Series(panel),)))
-        for series in shown.series:
-            values = recording.signals.get(series.signal)
-            if values is None or (series.reference and not np.any(values)):
+        shown = _panel(panel)
+        factor, unit = (DEGREE, "deg") if shown.unit == "rad" else (1.0, shown.unit)
+        driven = [curve.signal for curve in shown.curves if not curve.reference_of]
+        for curve in shown.curves:
+            values = recording.signals.get(curve.signal)
+            if values is None or (curve.reference_of and not np.any(values)):
                 continue
-            line = {**how, "linestyle": ":", "linewidth": 0.9} if series.reference else how
-            name = f"{label}, reference" if series.reference else label
-            axis.plot(recording.t, series.factor * values, label=name, **line)
-        axis.set(xlabel="t [s]", ylabel=shown.label)
+            name = curve.signal.rpartition(".")[2].replace("_", " ")
+            line: dict[str, Any] = dict(how)
+            text = label
+            if curve.reference_of:
+                line |= {"linestyle": ":", "linewidth": 0.9}
+                asked = name if name.endswith(("request", "speed")) else "reference"
+                text = asked if number == 0 else "_"
+            elif len(driven) > 1:
+                line |= {"linewidth": 1.2 if curve.signal == driven[0] else 0.7}
+                text = f"{label}, {name}"
+            axis.plot(recording.t, values / factor, label=text, **line)
+        axis.set(xlabel="t [s]", ylabel=f"{shown.title.lower()} [{unit}]" if unit else shown.title)
     if panel == PATH:
         axis.set(xlabel="x [m]", ylabel="y [m]", aspect="equal")
 
@@ -157,35 +150,18 @@ def _draw_path(axis: Any, recording: Recording, label: str, how: dict[str, Any],
     if scene:
         _draw_boxes(axis, recording)
     signals = recording.signals
-    planned = planned_path(recording)
-    if planned is not None:
-        axis.plot(*planned, color="#888888", linestyle=":", linewidth=0.9, label="planned" if scene else None)
+    for number, planned in enumerate(planned_paths(recording)):
+        name = "planned" if scene and number == 0 else None
+        axis.plot(*planned.T, color="#888888", linestyle=":", linewidth=0.9, label=name)
     axis.plot(signals["vehicle.pose.x"], signals["vehicle.pose.y"], label=label, **how)
+    if scene:
+        _draw_key_points(axis, recording)
 
 
-def planned_path(recording: Recording) -> tuple[Any, Any] | None:
-    """Return x and y [m] of the arcs and lines planned first in a run, None without."""
-    signals = recording.signals
-    names = [f"controller.path.{item}" for item in ("start.x", "start.y", "start.heading")]
-    lengths = [name for name in signals if re.fullmatch(r"controller\.path\.segments\[\d+\]\.length", name)]
-    if any(name not in signals for name in names) or not lengths:
-        return None
-    whole = sum(signals[name] for name in lengths)
-    rows = np.flatnonzero(whole > 0.0)
-    if not len(rows):
-        return None
-    at = int(rows[0])
-    x, y, heading = (float(signals[name][at]) for name in names)
-    points = [(x, y)]
-    for name in sorted(lengths, key=lambda item: int(item.split("[")[1].split("]")[0])):
-        length, bend = float(signals[name][at]), float(signals[name.replace(".length", ".curvature")][at])
-        for _ in range(40):
-            step = length / 40.0
-            middle = heading - 0.5 * bend * step
-            x, y, heading = x - step * np.cos(middle), y - step * np.sin(middle), heading - bend * step
-            points.append((x, y))
-    both = np.array(points)
-    return both[:, 0], both[:, 1]
+def _draw_key_points(axis: Any, recording: Recording) -> None:
+    for name, (x, y) in fixed_points(recording).items():
+        axis.plot([x], [y], "o", color="#000000", markersize=2.5)
+        axis.annotate(name, (x, y), textcoords="offset points", xytext=(3, -8), fontsize=6)
 
 
 def _draw_boxes(axis: Any, recording: Recording) -> None:

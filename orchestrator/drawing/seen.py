@@ -11,7 +11,17 @@ from orchestrator.drawing.panels import PICTURE_MODES, picture_signals
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.text.quantities import DEGREE
 from orchestrator.text.readable import changes_text, shifts_text
-from orchestrator.verdict.geometry import CarOutline, described, kerbs, sample_path, slot_box, things
+from orchestrator.verdict.geometry import (
+    PLANNED,
+    CarOutline,
+    described,
+    is_planned,
+    kerbs,
+    key_points,
+    sample_path,
+    slot_box,
+    things,
+)
 from orchestrator.verdict.summary import Summary, phase_changes
 
 DRAWN = dict.fromkeys(
@@ -43,6 +53,7 @@ def overview_of(recording: Recording, summary: Summary, scenario: Scenario) -> O
         car=CarOutline.of(vehicle),
         around=around,
         planned=_planned(recording),
+        points=fixed_points(recording),
     )
 
 
@@ -63,12 +74,32 @@ def _ribbon(recording: Recording) -> Ribbon:
     return Ribbon(values, recording.states(shown))
 
 
+def fixed_points(recording: Recording) -> dict[str, tuple[float, float]]:
+    """Return the points of the last path by name, Q1 to Q4 or P1 to P4 [m]; LA1 and LA2 move with the car."""
+    rows = np.flatnonzero(is_planned(recording.signals))
+    if not len(rows):
+        return {}
+    points = key_points(recording.values_at("controller", int(rows[-1])))
+    return {name: point for name, point in points.items() if not name.startswith("LA")}
+
+
+def planned_paths(recording: Recording, most: int = 40) -> list[Array]:
+    """Return the paths planned during a run one after the other, (n, 2) [m] each: at most the last ``most``."""
+    planned = is_planned(recording.signals)
+    names = [name for name in recording.signals if PLANNED.match(name.removeprefix("controller."))]
+    if not planned.any():
+        return []
+    table = np.column_stack([planned, *(recording.signals[name] for name in names)])
+    begun = np.append(True, (table[1:] != table[:-1]).any(axis=1))
+    parameters = recording.parameters_of("controller")
+    rows = np.flatnonzero(begun & planned)[-most:]
+    return [sample_path(recording.values_at("controller", int(row)), parameters=parameters) for row in rows]
+
+
 def _planned(recording: Recording) -> Array:
     """Return the last path that was planned, (n, 2) [m]."""
-    marks = [
-        values
-        for name, values in recording.signals.items()
-        if name.endswith(("path.segments[1].length", "move.direction"))
-    ]
-    rows = np.flatnonzero(np.any([values != 0.0 for values in marks], axis=0)) if marks else np.empty(0, dtype=np.intp)
-    return sample_path(recording.values_at("controller", int(rows[-1]))) if len(rows) else np.empty((0, 2))
+    rows = np.flatnonzero(is_planned(recording.signals))
+    if not len(rows):
+        return np.empty((0, 2))
+    values = recording.values_at("controller", int(rows[-1]))
+    return sample_path(values, parameters=recording.parameters_of("controller"))

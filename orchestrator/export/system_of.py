@@ -36,7 +36,7 @@ def system_of(scenario: Scenario, folder: Path, kind: str, platforms: Iterable[s
     models = parts_of(scenario)
     built = {item.name: item.path for item in build_into(folder, kind, platforms, models=models.values())}
     parts = tuple(FmuPart(name, model, built[model.name]) for name, model in models.items())
-    return FmuSystem(scenario.name, scenario.title, parts, scenario.step, scenario.stop_time)
+    return FmuSystem(scenario.name, scenario.title, parts, scenario.step, scenario.longest)
 
 
 def one_model(
@@ -61,4 +61,4 @@ def one_model(
         names = [item.name for item in shown if item.causality == causality]
         hidden |= {*names} - {*matching(names, patterns)}
     view = model.view._replace(hidden=frozenset(hidden))
-    return model._replace(stop_time=scenario.stop_time, view=view)
+    return model._replace(stop_time=scenario.longest, view=view)

@@ -30,7 +30,17 @@ from orchestrator.log.read_log import VARIABLES, with_checksum
 from orchestrator.log.schema import PACKAGE, descriptor_set, file_descriptor
 from orchestrator.log.sink import Sink
 from orchestrator.scenario.scenario import Scenario
-from orchestrator.verdict.geometry import CarOutline, boxes, described, edges, kerbs, sample_path, slot_box
+from orchestrator.verdict.geometry import (
+    ON_ROAD,
+    PLANNED,
+    CarOutline,
+    boxes,
+    described,
+    edges,
+    kerbs,
+    sample_path,
+    slot_box,
+)
 
 SCENE_PERIOD_NS = 50_000_000
 TRAIL_PERIOD_NS = 1_000_000_000
@@ -183,12 +193,16 @@ class _Pictures:
         self._file.write(self._trail, t_ns, message)
 
     def _draw_path(self, t_ns: int) -> None:
-        if self._controller is None or not len(self._path_places):
+        if self._controller is None:
             return
-        seen = self._controller.outputs.values[self._path_places].tobytes()
+        outputs = self._controller.outputs
+        road = outputs.index.get(ON_ROAD)
+        on_road = road is not None and bool(outputs.values[road] > 0.0)
+        seen = outputs.values[self._path_places].tobytes() + bytes([on_road])
         if seen != self._path_seen:
             self._path_seen = seen
-            update = scene.planned_path(t_ns, sample_path(_named(self._controller.outputs)))
+            points = sample_path(_named(outputs), parameters=_named(self._controller.parameters))
+            update = scene.planned_path(t_ns, points)
             self._file.write(self._path, t_ns, update.SerializeToString(deterministic=True))
 
 
@@ -220,5 +234,5 @@ def _named(ports: Ports) -> dict[str, float]:
 
 def _path_places(ports: Ports) -> np.ndarray[Any, np.dtype[np.intp]]:
     """Return where the outputs are that the planned path is drawn from (see ``geometry.sample_path``)."""
-    chosen = [place for place, name in enumerate(ports.names) if name.startswith("path.") or "move." in name]
+    chosen = [place for place, name in enumerate(ports.names) if PLANNED.match(name)]
     return np.array(chosen, dtype=np.intp)

@@ -22,7 +22,8 @@ from controller_fmu.preview.params import ROAD, PreviewParams
 from controller_fmu.preview.preview import PreviewErrors
 from controller_fmu.preview.road import road_at, road_length
 from modelkit.vocabulary import Pose
-from orchestrator.drawing.run_figure import LINES, PATH, planned_path, run_figure, styled
+from orchestrator.drawing.run_figure import LINES, PATH, run_figure, styled
+from orchestrator.drawing.seen import planned_paths
 from orchestrator.papers.result import Driven
 
 Draw = Callable[[list[Driven]], Figure]
@@ -263,9 +264,7 @@ def hsic_panels(runs: list[Driven]) -> Figure:
     on = np.where(signals["controller.hsic.stage"] == 2, 1.0, np.nan)
     tangent.plot(t, 100.0 * on * signals["controller.hsic.tangent_error"], color="#000000", label="off the tangent")
     path.plot(signals["vehicle.pose.x"], signals["vehicle.pose.y"], color="#000000", label="rear axle")
-    planned = planned_path(runs[0].recording)
-    if planned is not None:
-        path.plot(*planned, label="planned path", **TARGET)
+    path.plot(*planned_paths(runs[0].recording)[-1].T, label="planned path", **TARGET)
     steering.set(xlabel="t [s]\n(a)", ylabel="front wheel [deg]", xlim=(0.0, t[-1]))
     heading.set(xlabel="t [s]\n(b)", ylabel="heading [deg]", xlim=(0.0, t[-1]))
     tangent.set(xlabel="t [s]\n(c)", ylabel="off the tangent [cm]", xlim=(0.0, t[-1]))

@@ -10,10 +10,10 @@ from orchestrator.cosim.recording import Recording
 from orchestrator.cosim.slave import Array, Indices
 from orchestrator.report.payload import Arrays
 from orchestrator.verdict.frame import pose_at
-from orchestrator.verdict.geometry import place, sample_path
+from orchestrator.verdict.geometry import PLANNED, is_planned, place, sample_path
 
 MOST_PLANS = 60
-PARTS = re.compile(r"controller\.(path|.*\bmove|.*\bslot|.*\bcorner_b|.*\btarget)\.")
+PARTS = re.compile(rf"controller\.({PLANNED.pattern}|.*\bslot\.|.*\bcorner_b\.|.*\btarget\.)")
 OPEN_DEPTH = 5.5
 """Drawn depth [m] of a slot whose end the sensors have not seen."""
 Point = tuple[float, float]
@@ -22,16 +22,18 @@ Point = tuple[float, float]
 def plans_of(recording: Recording, arrays: Arrays, origin: Point) -> list[dict[str, Any]]:
     """Return the plans with the time from which each held, positions less ``origin``; fewer if they change often."""
     names = [name for name in recording.signals if PARTS.match(name)]
-    if not names or not len(recording.t):
+    planned = is_planned(recording.signals)
+    if not (names or len(planned)) or not len(recording.t):
         return []
-    table = np.column_stack([recording.signals[name] for name in names])
+    table = np.column_stack([*(recording.signals[name] for name in names), *([planned] if len(planned) else [])])
     same = (table[1:] == table[:-1]) | (np.isnan(table[1:]) & np.isnan(table[:-1]))
     changes = np.flatnonzero(~same.all(axis=1)) + 1
     found = []
+    parameters = recording.parameters_of("controller")
     for row in [0, *_fewer(changes, recording.t)]:
         values = recording.values_at("controller", row)
         plan: dict[str, Any] = {"t": float(recording.t[row])}
-        points = sample_path(values) - origin
+        points = sample_path(values, parameters=parameters) - origin
         plan["x"], plan["y"] = arrays.add(points[:, 0]), arrays.add(points[:, 1])
         slot, target = found_slot(values), wanted_pose(values)
         if slot is not None:

@@ -3,12 +3,14 @@
 from collections.abc import Iterable
 from typing import Annotated, Any, Literal
 
+import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from modelkit.model import Model
 from orchestrator.scenario.end_condition import EndCondition
 from orchestrator.scenario.fault import Fault
 from orchestrator.scenario.models import MODELS, models_for
+from orchestrator.scenario.pace import DEFAULTS, stop_times
 from orchestrator.scenario.requirements import Requirement, shipped_requirements
 from orchestrator.scenario.wiring.system_text import SystemText
 from orchestrator.text.errors import BadInput
@@ -89,8 +91,8 @@ class Scenario(_ScenarioPart):
     """Shipped car, or file, or what is different of one: told vehicle and controller alike."""
     task: Task = "park"
     """What the car is there for: `park`; `drive` along a road, out of a slot; `run`: to its time, within limits."""
-    stop_time: Seconds = 60.0
-    """When the run ends at the latest [s]."""
+    stop_time: Seconds | None = None
+    """When the run ends at the latest [s]; if not said, 60 s, or what 30 m take at the driver's slowest speed."""
     step: Seconds = 0.01
     """Communication step [s], a whole number of nanoseconds."""
     every: dict[str, int] = {}
@@ -165,7 +167,15 @@ class Scenario(_ScenarioPart):
     @property
     def stop_ns(self) -> int:
         """Stop time [ns]; the last step is shorter if it is no whole number of steps."""
-        return round(self.stop_time * NANOSECONDS)
+        return round(self.longest * NANOSECONDS)
+
+    @property
+    def longest(self) -> float:
+        """When the run ends at the latest [s]: the stop time, or by the pace of the driver."""
+        if self.stop_time is not None:
+            return self.stop_time
+        given = {name: np.array([float(self.vehicle.get(name, start))]) for name, start in DEFAULTS.items()}
+        return float(stop_times(given)[0])
 
     @property
     def success(self) -> Outcome:
@@ -179,7 +189,7 @@ class Scenario(_ScenarioPart):
             raise BadInput(f"{self.step:g} s is not a whole positive number of nanoseconds", key="step")
         if self.step > LONGEST_STEP:
             raise BadInput(f"{self.step:g} s is more than {LONGEST_STEP:g} s", key="step")
-        if not self.step <= self.stop_time <= 1e6:
+        if self.stop_time is not None and not self.step <= self.stop_time <= 1e6:
             raise BadInput(f"{self.stop_time:g} s is not between one step and 1e6 s", key="stop_time")
         for name, every in self.every.items():
             if name not in self.places:

@@ -24,7 +24,7 @@ def drive(scenario: Scenario, kind: str, log: Path, foreign: Foreign = NOBODY, r
     is_ours = any(name not in foreign.files for name in scenario.places)
     files = fmu_files(kind, say) if is_ours and kind != "none" else None
     interrupt = Interrupt()
-    with on_interrupt(interrupt), _Clock(scenario.name, scenario.stop_time, "s") as clock:
+    with on_interrupt(interrupt), _Clock(scenario.name, scenario.longest, "s") as clock:
         ran = run_scenario(
             scenario,
             files,

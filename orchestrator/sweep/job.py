@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from modelkit.variables import flatten, variables, with_values
 from orchestrator.cosim.slave import Array
 from orchestrator.scenario.models import MODELS, models_for
+from orchestrator.scenario.pace import NAMES, stop_times
 from orchestrator.scenario.scenario import Scenario, Target
 from orchestrator.sweep.fields import TRUE_OWNERS
 from orchestrator.sweep.rows import measures_for
@@ -144,11 +145,12 @@ def arrays(job: Job, chunk: Chunk) -> tuple[Array, Times]:
     base = [flatten(with_values(model.params, getattr(scenario, owner))) for owner, model in scenario.models.items()]
     starts = dict(zip(MODELS, np.cumsum([0, *map(len, base)]).tolist(), strict=False))
     parameters = np.tile(np.array([float(item) for part in base for item in part]), (count, 1))
-    seeds, steps, stops = chunk.seeds.copy(), np.full(count, scenario.step), np.full(count, scenario.stop_time)
+    seeds, steps, stops = chunk.seeds.copy(), np.full(count, scenario.step), np.full(count, scenario.longest)
     every = {owner: np.full(count, scenario.every.get(owner, 1), dtype=np.int64) for owner in MODELS}
     controls = {item.name: place for place, item in enumerate(variables(scenario.models["controller"].params))}
     for name, values in _told_targets(job, list(chunk.values.T)):
         parameters[:, starts["controller"] + controls[name]] = values
+    is_told = scenario.stop_time is not None or "stop_time" in job.names
     for column, (owner, name, place) in enumerate(zip(job.owners, job.names, job.places, strict=True)):
         values = chunk.values[:, column]
         if owner in MODELS:
@@ -163,9 +165,17 @@ def arrays(job: Job, chunk: Chunk) -> tuple[Array, Times]:
             every[name.removeprefix("every.")] = values.astype(np.int64)
     for owner, _, place in job.seeded:
         parameters[:, starts[owner] + place] = seeds
+    if not is_told:
+        stops = stop_times(_driver_speeds(scenario, parameters))
     step_ns = np.round(steps * NANOSECONDS).astype(np.int64)
     stop_ns = np.round(stops * NANOSECONDS).astype(np.int64)
     return parameters, np.column_stack([step_ns, stop_ns, *every.values()])
+
+
+def _driver_speeds(scenario: Scenario, parameters: Array) -> dict[str, Array]:
+    """Return the driver's speeds of every run by name."""
+    places = {item.name: place for place, item in enumerate(variables(scenario.models["vehicle"].params))}
+    return {name: parameters[:, places[name]] for name in NAMES}
 
 
 def chunks(design: Design, size: int) -> Iterator[Chunk]:

@@ -1,6 +1,7 @@
 """Where things are in the plane: the car's outline and wheels, the planned path, the slot."""
 
 import math
+import re
 from collections.abc import Mapping, Sequence
 from itertools import pairwise
 from typing import TYPE_CHECKING, NamedTuple
@@ -156,22 +157,77 @@ def _rows(parameters: Mapping[str, float], array: str, fields: Mapping[str, floa
     return rows
 
 
-def sample_path(values: Mapping[str, float], spacing: float = 0.05) -> Array:
+PLANNED = re.compile(r"path\.|.*\b(move|plan)\.|.*\bpoints\[")
+"""The outputs by flat name that the planned path is made of."""
+ON_ROAD = "preview.l1"
+"""The output that is above zero while a road is followed, which is a parameter of the controller."""
+KEY_POINT = re.compile(r"(?:.*\.)?([pq]\d|la\d)\.x")
+"""A point that a controller has in mind: Q1 to Q4, P1 to P4, LA1 and LA2."""
+
+
+def sample_path(
+    values: Mapping[str, float], spacing: float = 0.05, parameters: Mapping[str, float] | None = None
+) -> Array:
     """Return points (n, 2) [m] of the path a controller plans, from its outputs by flat name; empty if there is none.
 
-    Either ``path``: arcs driven in reverse from ``path.start``, curvature seen with x along the heading.
-    Or a ``move`` (``apa.move``): pieces of linear curvature driven in ``direction`` from ``move.start``.
+    One of: a ``plan``, quintics y(x) in the frame of ``plan.origin``; ``path``, arcs driven in reverse from
+    ``path.start``, curvature seen with x along the heading; ``points``; a ``move`` (``apa.move``), pieces of linear
+    curvature driven in ``direction`` from ``move.start``; the road among the controller's ``parameters``.
     """
+    for name, side in values.items():
+        if name.endswith("plan.side") and side != 0.0:
+            return _quintics(values, name.removesuffix(".side"), side, spacing)
     pieces = [(length, k, k) for length, k in _fields(values, "path.segments", ("length", "curvature"))]
     if any(length > 0.0 for length, _, _ in pieces):
         return _driven(pose_at(values, "path.start"), -1.0, [(length, -k, -k) for length, k, _ in pieces], spacing)
+    for name in values:
+        if name.endswith("points[1].x"):
+            points = np.array(_fields(values, name.removesuffix("[1].x"), ("x", "y")))
+            if np.any(points) and np.isfinite(points).all():
+                return points
     for name, direction in values.items():
         if name.endswith("move.direction") and direction != 0.0:
             prefix = name.removesuffix(".direction")
             moves = _fields(values, f"{prefix}.pieces", ("length", "start_curvature", "end_curvature"))
             turned = [(length, direction * k0, direction * k1) for length, k0, k1 in moves]
             return _driven(pose_at(values, f"{prefix}.start"), direction, turned, spacing)
+    if values.get(ON_ROAD, 0.0) > 0.0:
+        road = _fields(parameters or {}, "preview.road", ("length", "curvature"))
+        return _driven((0.0, 0.0, 0.0), 1.0, [(length, k, k) for length, k in road], max(spacing, 0.5))
     return np.empty((0, 2))
+
+
+def is_planned(signals: Mapping[str, Array]) -> Array:
+    """Return for each row of a controller's outputs, by flat name, whether a path is planned."""
+    marks = [
+        values != 0.0
+        for name, values in signals.items()
+        if name.endswith(("path.segments[1].length", "move.direction", "plan.side", "points[1].x", ON_ROAD))
+    ]
+    return np.any(marks, axis=0) if marks else np.empty(0, dtype=bool)
+
+
+def key_points(values: Mapping[str, float]) -> dict[str, tuple[float, float]]:
+    """Return the points that a controller has in mind by name (Q1), in the world [m]; none that is not known yet."""
+    found: dict[str, tuple[float, float, float]] = {}
+    for name in values:
+        match = KEY_POINT.fullmatch(name)
+        if match is not None:
+            found[match[1].upper()] = pose_at(values, name.removesuffix(".x"))
+    known = {name[0] for name, pose in found.items() if any(pose)}
+    return {name: pose[:2] for name, pose in found.items() if name[0] in known and all(map(math.isfinite, pose))}
+
+
+def _quintics(values: Mapping[str, float], plan: str, side: float, spacing: float) -> Array:
+    """Return points of y(x) = y0 + m0 t + c3 t^3 + c4 t^4 + c5 t^5 over t = (x - x0) / length, start to target."""
+    parts = []
+    for x0, length, *c in _fields(values, f"{plan}.quintics", ("x0", "length", "y0", "m0", "c3", "c4", "c5")):
+        count = math.ceil(min(max(1.0, length / spacing), MOST_POINTS)) if math.isfinite(length) else 1
+        t = np.linspace(1.0, 0.0, count + 1)
+        y = np.polynomial.polynomial.polyval(t, [*c[:2], 0.0, *c[2:]])
+        parts.append(np.column_stack([x0 + length * t, side * y]))
+    points = place(np.concatenate(parts), *pose_at(values, f"{plan}.origin"))
+    return points if np.isfinite(points).all() else np.empty((0, 2))
 
 
 def _fields(values: Mapping[str, float], array: str, fields: tuple[str, ...]) -> list[tuple[float, ...]]:

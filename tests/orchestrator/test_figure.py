@@ -61,7 +61,8 @@ def test_no_panel_of_the_picture_covers_another(more: int) -> None:
     ran = run_scenario(scenario)
     seen = overview_of(ran.recording, summarize(ran.recording, scenario, 1.0), scenario)
     added = (
-        Panel(f"Brake {number}", "1", 0.1, (PanelCurve("vehicle.speed"),), column=4 + number) for number in range(more)
+        Panel(f"brake-{number}", f"Brake {number}", "1", 0.1, (PanelCurve("vehicle.speed"),), column=4 + number)
+        for number in range(more)
     )
     figure = overview(seen, (*PANELS, *added))
     renderer = FigureCanvasAgg(figure).get_renderer()

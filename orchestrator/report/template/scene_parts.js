@@ -101,10 +101,28 @@ function drawPlan(scene, run, plan) {
   g.setLineDash([]);
 }
 
+// The points the controller has in mind, by name: Q1 to Q4, P1 to P4, LA1 and LA2.
+function drawKeyPoints(scene, run, t) {
+  const g = scene.context, [ox, oy] = run.scene.origin;
+  const poses = Object.keys(run.signals).map((name) => /^(controller\.(?:.*\.)?([pq]\d|la\d))\.x$/.exec(name)).filter(Boolean);
+  g.fillStyle = color("asked");
+  g.font = "11px sans-serif";
+  const seen = poses.map(([, pose, name]) => [name, ...["x", "y", "heading"].map((axis) => run.at(`${pose}.${axis}`, t))]);
+  const known = new Set(seen.filter(([, ...at]) => at.some(Boolean)).map(([name]) => name[0]));
+  for (const [name, x, y] of seen) {
+    if (!known.has(name[0]) || !Number.isFinite(x + y)) continue;
+    const [px, py] = scene.pixel(x - ox, y - oy);
+    g.beginPath();
+    g.arc(px, py, 3.5, 0, 2 * Math.PI);
+    g.fill();
+    g.fillText(name.toUpperCase(), px + 6, py - 5);
+  }
+}
+
 function drawPaths(scene, run, number, t) {
   const g = scene.context, [ox, oy] = run.scene.origin;
   g.lineJoin = g.lineCap = "round";
-  if (scene.layers.planned && number === 0) drawPlan(scene, run, run.plan(t));
+  if (scene.layers.planned && number === 0) { drawPlan(scene, run, run.plan(t)); drawKeyPoints(scene, run, t); }
   if (scene.layers.trail) drawTrail(scene, run, number, t);
   if (!scene.layers.driven) return;
   const x = run.values("vehicle.pose.x"), y = run.values("vehicle.pose.y");

@@ -76,6 +76,6 @@ def _numbers(scenarios: Iterable[Scenario]) -> dict[str, list[float]]:
         if getattr(items[0], owner) is not None:
             for name in type(getattr(items[0], owner)).model_fields:
                 found[f"{owner}.{name}"] = [getattr(getattr(item, owner), name) for item in items]
-    found["stop_time"] = [item.stop_time for item in items]
+    found["stop_time"] = [item.longest for item in items]
     found["step"] = [item.step for item in items]
     return found

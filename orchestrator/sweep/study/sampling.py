@@ -70,7 +70,7 @@ def _check_size(study: StudyFile) -> None:
 def _check_times(fields: list[Field], values: Array, scenario: Scenario) -> None:
     """Raise ``BadInput`` if a run would end before its first step, or a slave's own step is too long."""
     columns = {field.key: values[:, place] for place, field in enumerate(fields) if field.owner == "scenario"}
-    steps, stops = columns.get("step", scenario.step), columns.get("stop_time", scenario.stop_time)
+    steps, stops = columns.get("step", scenario.step), columns.get("stop_time", scenario.longest)
     if np.any(stops < steps):
         raise BadInput("a run has a stop_time under its step", key="runs")
     for owner in MODELS:

@@ -1,0 +1,28 @@
+"""A slow driver is not cut off: the stop time follows the pace, a creeping car's time counts by its way."""
+
+import pytest
+
+from controller_fmu.common.monitor import PACE, time_counted
+from orchestrator.scenario.load_scenario import load_scenario
+
+
+@pytest.mark.parametrize(
+    ("sets", "expected"),
+    [
+        ([], 60.0),
+        (["vehicle.driver.profile[1].speed=0.05"], 600.0),
+        (["vehicle.driver.profile[2].speed=0.1"], 300.0),
+        (["vehicle.driver.profile[1].speed=0.1", "vehicle.driver.speed_error=-0.5"], 600.0),
+        (["vehicle.driver.profile[1].speed=0", "vehicle.driver.profile[2].speed=0"], 60.0),
+        (["vehicle.driver.profile[1].speed=0.05", "stop_time=20"], 20.0),
+    ],
+)
+def test_the_stop_time_follows_the_slowest_speed_of_the_driver(sets: list[str], expected: float) -> None:
+    assert load_scenario("guo2015-case4", sets).longest == pytest.approx(expected)
+
+
+@pytest.mark.parametrize(
+    ("speed", "share"), [(0.0, 1.0), (0.01, 1.0), (-0.06, 0.2), (0.15, 0.5), (PACE, 1.0), (-2.0, 1.0)]
+)
+def test_time_is_counted_by_the_way_of_a_creeping_car(speed: float, share: float) -> None:
+    assert time_counted(10_000_000, speed, 0.01) == pytest.approx(share * 1e7, abs=1.0)

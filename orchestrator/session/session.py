@@ -200,7 +200,7 @@ def _reachable_stop_ns(system: Assembled, scenario: Scenario) -> int:
     common = math.lcm(*steps)
     stop_ns = scenario.stop_ns // common * common
     if not stop_ns:
-        text = f"{scenario.stop_time:.9g} s is less than the {common / NANOSECONDS:.9g} s which {_fixed(system)} needs"
+        text = f"{scenario.longest:.9g} s is less than the {common / NANOSECONDS:.9g} s which {_fixed(system)} needs"
         raise BadInput(text, file=scenario.file, key="stop_time")
     return stop_ns
 
@@ -214,7 +214,7 @@ def _early_stop(system: Assembled, scenario: Scenario, stop_ns: int) -> list[str
     if stop_ns == scenario.stop_ns:
         return []
     text = (
-        f"stop_time {scenario.stop_time:.9g} s is no whole number of steps, and the step of {_fixed(system)} is fixed"
+        f"stop_time {scenario.longest:.9g} s is no whole number of steps, and the step of {_fixed(system)} is fixed"
     )
     return [f"{text}: a run ends at {stop_ns / NANOSECONDS:.9g} s"]
 

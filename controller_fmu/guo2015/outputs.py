@@ -9,7 +9,7 @@ from controller_fmu.guo2015.params import GuoSystemParams
 from controller_fmu.guo2015.phases import GuoPhase
 from controller_fmu.guo2015.planner import Plan
 from controller_fmu.guo2015.prompts import prompt_of
-from controller_fmu.guo2015.signals import KNOTS, NO_POINTS, GuoOutput, GuoSignals, PathPoint
+from controller_fmu.guo2015.signals import KNOTS, NO_POINTS, GuoOutput, GuoSignals, PlannedPoint
 from controller_fmu.guo2015.smooth_path import PathShape, on_curve
 from controller_fmu.guo2015.system import GuoState
 from controller_fmu.interface import Path, Segment
@@ -66,7 +66,7 @@ def guo_signals(planned: Plan, params: GuoSystemParams) -> GuoSignals:
         for number in range(KNOTS):
             x = path.start.x * (1.0 - number / (KNOTS - 1.0))
             at = to_world(Pose(x, on_curve(path.curve, x).y, 0.0), frame)
-            points = points[1:] + (PathPoint(at.x, at.y),)
+            points = points[1:] + (PlannedPoint(at.x, at.y),)
     return GuoSignals(
         q1=to_world(point_of_leg(GuoPhase.TO_Q1, path, gains), frame),
         q2=to_world(point_of_leg(GuoPhase.TO_Q2, path, gains), frame),

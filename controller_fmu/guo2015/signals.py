@@ -30,14 +30,14 @@ from modelkit.vocabulary import (
 KNOTS = 17
 
 
-class PathPoint(NamedTuple):
+class PlannedPoint(NamedTuple):
     """A point of the planned path."""
 
     x: Annotated[float, Signal("m", "x in the world")] = 0.0
     y: Annotated[float, Signal("m", "y in the world")] = 0.0
 
 
-NO_POINTS = (PathPoint(),) * KNOTS
+NO_POINTS = (PlannedPoint(),) * KNOTS
 
 
 class GuoSignals(NamedTuple):
@@ -47,7 +47,7 @@ class GuoSignals(NamedTuple):
     q2: Annotated[Pose, Group("Q2, ahead of Q1 on the tangent, in the world")] = Pose()
     q3: Annotated[Pose, Group("Q3, where the car is to park, in the world")] = Pose()
     q4: Annotated[Pose, Group("Q4, straight ahead of Q3, in the world")] = Pose()
-    points: tuple[PathPoint, ...] = NO_POINTS
+    points: tuple[PlannedPoint, ...] = NO_POINTS
     """From start to target; all zero where ``path`` has the arcs."""
 
 

@@ -2,6 +2,7 @@
 
 import argparse
 import sys
+from collections.abc import Sequence
 from pathlib import Path
 
 from rich.markup import escape
@@ -66,7 +67,7 @@ def run(arguments: argparse.Namespace) -> int:
         say(f"apa: warning: {arguments.tolerances}: {pattern}: no signal fits, so it changes nothing")
     found = [compare(runs[0], run, tolerances, arguments.signals) for run in runs[1:]]
     if arguments.html:
-        write_overlay(arguments.html, runs, [read_messages(log) for log in logs], found)
+        write_overlay(arguments.html, runs, [read_messages(log) for log in logs], found, _names(logs))
     if arguments.json:
         texts = [item.model_dump_json(indent=2) for item in found]
         print(texts[0] if len(texts) == 1 else f"[{', '.join(texts)}]")
@@ -78,6 +79,12 @@ def run(arguments: argparse.Namespace) -> int:
         if arguments.html:
             print(arguments.html, file=sys.stderr)
     return SAME if all(item.passed for item in found) else DIFFERENT
+
+
+def _names(logs: Sequence[Path]) -> list[str]:
+    """Return the names of runs: of their folders, or of the files where a folder has several."""
+    folders = [log.resolve().parent.name for log in logs]
+    return folders if len(set(folders)) == len(folders) else [log.stem for log in logs]
 
 
 def _print(found: Comparison) -> None:

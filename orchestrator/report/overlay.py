@@ -25,33 +25,40 @@ MOST_PLOTS = 4
 
 
 def write_overlay(
-    path: Path, runs: Sequence[Recording], words: Sequence[list[Line]], found: Sequence[Comparison]
+    path: Path,
+    runs: Sequence[Recording],
+    words: Sequence[list[Line]],
+    found: Sequence[Comparison],
+    names: Sequence[str] = (),
 ) -> None:
     """Write the page of runs to ``path``, ``found`` compares each but the first with the first.
 
-    Fewer instants are kept if it would pass 1 MB. Raises ``BadInput`` for more runs than there are colours.
+    ``names`` are those of the logs, which tell runs of one scenario apart. Fewer instants are kept if it would pass
+    1 MB. Raises ``BadInput`` for more runs than there are colours.
     """
     if len(runs) > len(RUNS):
         raise BadInput(f"{len(runs)} runs on one page; there is room for {len(RUNS)}")
     text = ""
     for most in MOST_ROWS:
-        text = _page(runs, words, found, most)
+        text = _page(runs, words, found, most, names)
         if len(text.encode()) < LARGEST_PAGE:
             break
     write_whole(path, text)
 
 
-def _page(runs: Sequence[Recording], words: Sequence[list[Line]], found: Sequence[Comparison], most: int) -> str:
+def _page(
+    runs: Sequence[Recording], words: Sequence[list[Line]], found: Sequence[Comparison], most: int, own: Sequence[str]
+) -> str:
     arrays = Arrays()
     keep = [t for item in found for row in item.signals for t in (row.first, row.t_largest) if t is not None][:60]
     origin = origin_of(runs[0])
-    names = [found[0].a, *(item.b for item in found)]
+    names = _distinct([found[0].a, *(item.b for item in found)], own)
     data = []
     for run, lines, label, name, change in zip(runs, words, LABELS, names, [None, *found], strict=False):
-        about = f"{label}: {_title(run, name)}{_with(change)}"
+        about = f"{label}: {name}, {_title(run, name)}{_with(change)}"
         shown = run_data(run, arrays, lines, label=label, most=most, keep=keep, origin=origin)
         data.append({**shown, "checks": [], "about": about})
-    title = " and ".join(dict.fromkeys(names))
+    title = " and ".join(names) if len(names) == 2 else ", ".join(names)
     missed = list(dict.fromkeys(row.signal for item in found for row in item.signals if not row.passed))
     header = {
         "title": title,
@@ -66,6 +73,12 @@ def _page(runs: Sequence[Recording], words: Sequence[list[Line]], found: Sequenc
         **_verdict(found, len(missed)),
     }
     return page(title, arrays.pack(header))
+
+
+def _distinct(scenarios: Sequence[str], logs: Sequence[str]) -> list[str]:
+    """Return a name for each run: its scenario's, or its log's where scenarios are equal; numbered if need be."""
+    names = list(logs if len(set(scenarios)) < len(scenarios) and len(logs) == len(scenarios) else scenarios)
+    return [f"{name} ({names[:i].count(name) + 1})" if names.count(name) > 1 else name for i, name in enumerate(names)]
 
 
 def _verdict(found: Sequence[Comparison], missed: int) -> dict[str, Any]:

@@ -11,7 +11,7 @@ from fmus.files import write_whole
 from orchestrator.cosim.recording import Recording
 from orchestrator.cosim.slave import Array
 from orchestrator.report.page import still_page
-from orchestrator.scenario.scenario import Scenario
+from orchestrator.scenario.scenario import SUCCESS, Scenario
 from orchestrator.suite.suite import Tested
 from orchestrator.text.readable import changes_text, shifts_text
 from orchestrator.verdict.geometry import CarOutline, described, place, slot_box
@@ -47,11 +47,10 @@ def _card(item: Tested) -> str:
     missed = [f"{case.name}: {case.text}" for case in item.cases if not case.passed and not case.skipped]
     missed += [item.error] if item.error else []
     summary, changes = item.summary, changes_text(item.scenario.changed)
-    outcome = (
-        f"{summary.outcome.replace('_', ' ')}, {summary.duration:.1f} s, {shifts_text(summary.shifts)}"
-        if summary
-        else ""
-    )
+    outcome = ""
+    if summary:
+        outcome = f"{summary.outcome.replace('_', ' ')}{_expected(item, summary.outcome)}"
+        outcome += f", {summary.duration:.1f} s, {shifts_text(summary.shifts)}"
     return CARD.format(
         kind="good" if item.passed else "bad",
         verdict="not run" if item.could_not_run else "pass" if item.passed else "fail",
@@ -62,6 +61,15 @@ def _card(item: Tested) -> str:
         picture=picture(item.recording, item.scenario) if item.recording is not None else "",
         missed="".join(f'<p class="missed">{html.escape(text)}</p>' for text in missed),
     )
+
+
+def _expected(item: Tested, outcome: str) -> str:
+    """Return what the scenario expects, where the outcome alone does not say why the test passed or failed."""
+    scenario = item.scenario
+    wanted = scenario.expect or SUCCESS[scenario.task]
+    if outcome == wanted:
+        return "" if outcome == SUCCESS[scenario.task] else " as expected"
+    return "" if item.passed else f" (expected: {wanted.replace('_', ' ')})"
 
 
 def picture(recording: Recording, scenario: Scenario) -> str:

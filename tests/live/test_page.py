@@ -1,5 +1,6 @@
 """The page in a real browser: its judge agrees with the judge in Python, people drive it, sliders move the ghost."""
 
+import re
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -245,11 +246,41 @@ def test_a_value_out_of_range_is_refused_with_the_range(page: Any) -> None:
     before = ghost(page)
     fill(page, "controller.guo2015.k1", "1000")
     wrong = page.locator('[id="p-controller.guo2015.k1-wrong"]')
-    assert wrong.text_content() == "out of range: it takes 0 to 100 1/m2"
+    assert wrong.text_content() == "out of range: it takes 0 to 100 1/m\u00b2"
     assert page.locator('[id="p-controller.guo2015.k1"]').get_attribute("aria-invalid") is not None
     assert ghost(page) == before
     fill(page, "controller.guo2015.k1", "2")
     assert wrong.text_content() == ""
+
+
+def test_a_parameter_is_named_by_its_meaning_with_a_rounded_range(page: Any) -> None:
+    pins = page.locator(".pin")
+    for pin in pins.all():
+        label, meaning = pin.locator("label").inner_text(), pin.locator(".meaning").inner_text()
+        code = pin.locator(".meaning code").inner_text()
+        assert label
+        assert label != code
+        assert meaning.startswith(code)
+        assert not re.search(r"\d[.\d]*\d{5}|\d (?:to|1)$| 1$", meaning), meaning
+    assert "0.573 to 5730 deg/s" in pins.nth(1).locator(".meaning").inner_text()
+
+
+def test_the_map_is_computed_when_it_is_first_opened(page: Any) -> None:
+    page.click("#map-tab")
+    page.wait_for_function("() => window.live.map.rows.length > 0", timeout=60_000)
+    colours = """() => { const c = document.getElementById("map"), g = c.getContext("2d");
+        return new Set(new Uint32Array(g.getImageData(0, 0, c.width, c.height).data.buffer)).size; }"""
+    page.wait_for_timeout(50)
+    assert page.evaluate(colours) > 2
+
+
+def test_the_chart_is_seen_whole_at_a_usual_width(page: Any) -> None:
+    page.click("#chart-tab")
+    page.wait_for_selector("#chart svg")
+    hidden = (
+        "() => { const sheet = document.querySelector('.chart-sheet'); return sheet.scrollWidth - sheet.clientWidth; }"
+    )
+    assert page.evaluate(hidden) <= 0
 
 
 def test_the_exported_scenario_comes_to_the_end_of_the_page(page: Any, tmp_path: Path) -> None:

@@ -96,6 +96,7 @@ def test_test_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Non
     page = (out / "index.html").read_text()
     assert page.count("<svg") == 3
     assert "3 of 3 passed" in page
+    assert page.count("failed as expected, ") == 2
     root: Any = ElementTree.parse(out / "junit.xml").getroot()
     assert [suite.get("name") for suite in root] == names
     assert root.get("failures") == "0"
@@ -111,7 +112,7 @@ def test_test_command_fails_when_a_requirement_or_the_outcome_is_missed(
     found = json.loads(capsys.readouterr().out)
     assert [case["name"] for case in found["scenarios"][0]["cases"] if not case["passed"]] == ["quick (us)"]
     assert main([*arguments, "--set", "expect=failed"]) == 1
-    assert "fail" in (out / "index.html").read_text()
+    assert "parked (expected: failed), " in (out / "index.html").read_text()
     root: Any = ElementTree.parse(out / "junit.xml").getroot()
     assert root.find(".//testcase[@name='outcome']/failure").get("message").startswith("parked")
 

@@ -353,3 +353,16 @@ def test_a_mode_has_names_at_its_axis(show: Any, replay: Any) -> None:
         "(() => { const { u } = window.replay.plots.all.at(-1); return u.axes[1].values(u, [0, 2, 2.5]); })()"
     )
     assert marks == ["standby", "path tracking", ""]
+
+
+def test_prose_is_one_line_and_lists_of_differences_are_folded(show: Any, replay: Any, three: Any) -> None:
+    page, _ = show(replay)
+    line = "() => document.getElementById('subtitle').getBoundingClientRect().height"
+    folded = page.evaluate(line)
+    assert folded < 30
+    page.click("#subtitle")
+    assert page.evaluate(line) > folded
+    page, _ = show(three, width=390, height=844)
+    assert page.evaluate("document.documentElement.scrollHeight") < 6000
+    shown = page.locator("#checks details[open] > .scroll tbody, #checks details[open] > div > .scroll tbody")
+    assert all(item.locator("tr").count() <= 8 for item in shown.all())

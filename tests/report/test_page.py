@@ -6,11 +6,15 @@ import html
 import json
 import re
 import zlib
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
+from orchestrator.comparison.compare import compare
+from orchestrator.comparison.tolerance import Tolerance, Tolerances
+from orchestrator.report.overlay import write_overlay
 from orchestrator.report.page import page
 from orchestrator.report.payload import Arrays
 from orchestrator.report.replay import LARGEST_PAGE, replay_page
@@ -165,3 +169,19 @@ def test_a_run_of_one_instant_has_a_page_and_one_of_none_is_refused() -> None:
         else:
             with pytest.raises(BadInput, match="no instant"):
                 replay_page(recording, summary, [])
+
+
+def test_runs_of_one_scenario_have_names_of_their_own(case4: Any, tmp_path: Path) -> None:
+    runs = [case4[0]] * 3
+    found = [compare(runs[0], run, Tolerances(Tolerance(0.01))) for run in runs[1:]]
+    for logs, expected in (
+        (["base", "gain", "slow"], ["base", "gain", "slow"]),
+        ([], ["guo2015-case4 (1)", "guo2015-case4 (2)", "guo2015-case4 (3)"]),
+    ):
+        path = tmp_path / "page.html"
+        write_overlay(path, runs, ([], [], []), found, logs)
+        header, _ = data_of(path.read_text(encoding="utf-8"))
+        assert header["title"] == ", ".join(expected)
+        assert [run["about"].split(",")[0] for run in header["runs"]] == [
+            f"{label}: {name}" for label, name in zip("ABC", expected, strict=True)
+        ]

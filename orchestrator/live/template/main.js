@@ -206,6 +206,7 @@ function tab(id) {
     node.tabIndex = isOn ? 0 : -1;
     $(node.getAttribute("aria-controls")).hidden = !isOn;
   }
+  if (id === "map-tab" && window.live) window.live.map.open();
   if (window.live) window.live.paint(); // what was hidden has no size until it is seen
 }
 

@@ -43,19 +43,29 @@ class Grid {
     const { situation } = this.lab, names = [...new Set([...this.lab.pinned(), ...$("pins").querySelectorAll("code")].map((item) => item.textContent || item))].filter((name) => { const item = situation.known.get(name); return item.kind === "float"; });
     for (const [place, id] of ["map-x", "map-y"].entries()) {
       const kept = $(id).value;
-      $(id).replaceChildren(...names.map((name) => element("option", { value: name }, name)));
+      $(id).replaceChildren(...names.map((name) => element("option", { value: name }, situation.known.get(name).text || name)));
       $(id).value = names.includes(kept) ? kept : names[Math.min(place, names.length - 1)];
     }
     this.ranges();
     this.rows = [];
+    this.axes = null;
     this.key();
     this.draw();
+    if (!$("mapping").hidden) this.open();
+  }
+
+  // Compute the map when its panel is first opened, and anew when it is opened for another scenario or other values.
+  open() {
+    const { situation } = this.lab, wanted = situation.fragment();
+    if (this.wanted === wanted && this.axes) return;
+    this.wanted = wanted;
+    this.start();
   }
 
   ranges() {
     for (const axis of ["x", "y"]) {
       const item = this.lab.situation.known.get($(`map-${axis}`).value), [unit, factor] = display(item.unit), ends = sliderRange(item);
-      ["low", "high"].forEach((end, i) => { $(`map-${axis}-${end}`).value = neat(ends[i] * factor); });
+      ["low", "high"].forEach((end, i) => { $(`map-${axis}-${end}`).value = threeDigits(ends[i] * factor); });
       $(`map-${axis}-unit`).textContent = unit;
     }
   }
@@ -73,6 +83,7 @@ class Grid {
     $("map-said").textContent = wrong || (this.axes[0].name === this.axes[1].name ? "choose two different parameters" : "computing\u2026");
     if (wrong || this.axes[0].name === this.axes[1].name) return;
     this.rows = [];
+    this.at = [0, 0];
     this.id += 1;
     const axes = this.axes.map(({ name, values }) => ({ name, values }));
     this.worker().postMessage({ id: this.id, scenario: this.lab.situation.data.name, changes: this.lab.situation.changes, axes });
@@ -129,7 +140,7 @@ class Grid {
   say(x, y) {
     const cell = this.rows[y] && this.rows[y][x];
     if (!cell || !this.axes) return;
-    const where = this.axes.map(({ name, values }, i) => { const item = this.lab.situation.known.get(name); return `${name.split(".").pop()} ${quantity(values[[x, y][i]], item.unit)}`; });
+    const where = this.axes.map(({ name, values }, i) => { const item = this.lab.situation.known.get(name); return `${item.text.split(",")[0] || name} ${quantity(values[[x, y][i]], item.unit)}`; });
     $("map-cell").textContent = `${where.join(", ")}: ${cell.outcome.replace("_", " ")}, ${cell.reason.replaceAll("_", " ")}${Number.isFinite(cell.error) ? `, ${digits(100 * cell.error)} cm off` : ""}`;
   }
 

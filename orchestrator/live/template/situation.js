@@ -45,7 +45,7 @@ class Situation {
   wrong(name, value) {
     const item = this.known.get(name);
     if (!item) return `there is no parameter ${name}`;
-    const range = `${item.low ?? "\u2212\u221e"} to ${item.high ?? "\u221e"} ${item.unit}`;
+    const range = rangeText(item);
     if (!Number.isFinite(value)) return `not a number; ${name} takes ${range}`;
     if (item.kind !== "float" && !Number.isInteger(value)) return `${name} takes a whole number`;
     if (item.states && !(value in item.states)) return `${name} takes ${Object.values(item.states).map((state) => state.toLowerCase()).join(", ")}`;
@@ -159,6 +159,13 @@ class Situation {
     for (const [name, value] of Object.entries(this.changes)) parts.push(`${encodeURIComponent(name)}=${value}`);
     return `#${parts.join("&")}`;
   }
+}
+
+// The range of a parameter in the units of the page, its ends rounded to three digits.
+function rangeText(item) {
+  if (item.low === null && item.high === null) return "any value";
+  const [name, factor] = display(item.unit), end = (value) => (value === null ? "\u221e" : String(Number((value * factor).toPrecision(3))));
+  return `${item.low === null ? "\u2212\u221e" : end(item.low)} to ${end(item.high)}${name ? ` ${name}` : ""}`;
 }
 
 // Boxes that stand, one after the other, in the place of one that moves.

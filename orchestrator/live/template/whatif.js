@@ -12,12 +12,7 @@ function sliderRange(item) {
 }
 
 const neat = (value) => String(Number(value.toPrecision(7)));
-
-function rangeText(item) {
-  if (item.low === null && item.high === null) return "any value";
-  const [name, factor] = display(item.unit), end = (value) => (value === null ? "\u221e" : neat(value * factor));
-  return `${item.low === null ? "\u2212\u221e" : end(item.low)} to ${end(item.high)}${name ? ` ${name}` : ""}`;
-}
+const threeDigits = (value) => String(Number(value.toPrecision(3))); // an end of a range
 
 class WhatIf {
   constructor(lab, onChange) {
@@ -57,9 +52,9 @@ class WhatIf {
       slider = element("input", { type: "range", min: low * factor, max: high * factor, step: item.kind === "int" ? 1 : step, "aria-label": name, on: { input: () => set(Number(slider.value) / factor) } });
     }
     const back = element("button", { type: "button", class: "back", title: "Back to the scenario's value", "aria-label": `${name}: back to the scenario's value`, on: { click: () => set(item.start) } }, "\u21ba");
-    const label = element("label", { for: id, title: `${item.text}${item.source ? ` (${item.source})` : ""}` }, element("code", {}, name));
+    const label = element("label", { for: id, title: `${item.text}${item.source ? ` (${item.source})` : ""}` }, item.text || words(name));
     this.rows.set(name, { item, field, slider, back, factor });
-    const node = element("div", { class: "pin" }, label, element("span", { class: "meaning" }, item.states || item.kind === "bool" ? item.text : `${item.text} \u00b7 ${rangeText(item)}`), slider, element("span", { class: "value" }, field, unit, back), wrong);
+    const node = element("div", { class: "pin" }, label, element("span", { class: "meaning" }, element("code", {}, name), item.states || item.kind === "bool" ? "" : ` \u00b7 ${rangeText(item)}`), slider, element("span", { class: "value" }, field, unit, back), wrong);
     this.show(name);
     return node;
   }
@@ -78,7 +73,7 @@ class WhatIf {
     const fits = (item) => word && !this.rows.has(item.name) && (item.name.toLowerCase().includes(word) || item.text.toLowerCase().includes(word));
     const found = [...this.lab.situation.known.values()].filter((item) => fits(item) && this.lab.isUsed(item.name));
     box.replaceChildren(...found.slice(0, MOST_FOUND).map((item) => element("li", {}, element("button", { type: "button", on: { click: () => { $("search").value = ""; this.pin(item.name); } } },
-      element("code", {}, item.name), element("span", { class: "quiet" }, ` ${item.text} \u00b7 ${quantity(item.start, item.unit)} \u00b7 ${rangeText(item)}`)))));
+      item.text, " ", element("code", { class: "quiet" }, item.name), element("span", { class: "quiet" }, ` \u00b7 ${quantity(item.start, item.unit)} \u00b7 ${rangeText(item)}`)))));
     $("found-count").textContent = !word ? "" : found.length > MOST_FOUND ? `${found.length} found, ${MOST_FOUND} shown` : `${found.length} found`;
   }
 }
@@ -86,6 +81,6 @@ class WhatIf {
 // A number as it was typed, in SI; one that is shown rounded at an end of its range is that end.
 function fromShown(text, item) {
   const [, factor] = display(item.unit), value = text.trim() === "" ? NaN : factor === 1 ? Number(text) : Number(text) / factor;
-  const end = [item.low, item.high].find((limit) => limit !== null && Math.abs(value - limit) <= 1e-6 * Math.abs(limit));
+  const end = [item.low, item.high].find((limit) => limit !== null && [neat, threeDigits].some((shown) => Number(shown(limit * factor)) === Number(text)));
   return end === undefined ? value : end;
 }

@@ -1,5 +1,7 @@
 // Below the replay: checks, events, words from the models, parameters, where everything came from.
 
+const SHOWN_ROWS = 8; // of a list of differences; the worst come first
+
 const moment = (t) => (t === null || t === undefined ? "\u2013" : element("a", { href: `#t=${+t.toFixed(4)}`, class: "moment" }, `${t.toFixed(2)} s`));
 
 function card(title, content, open = true) {
@@ -14,7 +16,7 @@ function checksCard(run, tag) {
   return run.checks.length ? card(title, table(["", "check", "worst value", "limit", "margin", "at", "source"], rows)) : null;
 }
 
-function eventsCard(run, tag) {
+function eventsCard(run, tag, isAlone) {
   const name = run.chart;
   if (!name) return null;
   const spans = run.spans(name);
@@ -24,7 +26,7 @@ function eventsCard(run, tag) {
     return row([moment(span.from), element("td", {}, element("span", { class: "chip", "data-state": state, "data-value": span.value }, element("i"), words(state))),
       numberCell(`${(span.to - span.from).toFixed(2)} s`), ...place, numberCell(quantity(run.at("vehicle.pose.heading", span.from), "rad"))]);
   });
-  return card(`States${tag}`, table(["from", "state", "for", "x", "y", "heading"], rows));
+  return card(`States${tag}`, table(["from", "state", "for", "x", "y", "heading"], rows), isAlone);
 }
 
 function logCard(run, tag) {
@@ -50,9 +52,20 @@ function differencesCards(page) {
   const line = (item) => row([pill(item.passed), element("span", {}, item.label ? `${item.label} ` : "", element("code", {}, item.signal)), numberCell(quantity(item.largest, item.unit)), numberCell(item.tolerance_text),
     moment(item.t_largest), item.first === null ? "\u2013" : moment(item.first), item.note || ""]);
   const heads = ["", "signal", "largest difference", "tolerance", "at", "first exceedance", ""];
-  const [missed, agreed] = [false, true].map((passed) => page.differences.filter((item) => item.passed === passed));
-  const lists = [[missed, `${missed.length} of ${page.differences.length} signals differ`], [agreed, `${agreed.length} signals agree`]];
-  return lists.filter(([items]) => items.length).map(([items, title]) => card(title, table(heads, items.map(line)), items === missed));
+  const cards = [];
+  for (const label of new Set(page.differences.map((item) => item.label))) {
+    const own = page.differences.filter((item) => item.label === label), before = label ? `${label}: ` : "";
+    const [missed, agreed] = [false, true].map((passed) => own.filter((item) => item.passed === passed));
+    if (missed.length) cards.push(card(`${before}${missed.length} of ${own.length} signals differ`, shortTable(heads, missed.map(line))));
+    if (agreed.length) cards.push(card(`${before}${agreed.length} signals agree`, table(heads, agreed.map(line)), false));
+  }
+  return cards;
+}
+
+// A table whose first rows are seen; the others are folded.
+function shortTable(heads, rows) {
+  const rest = rows.slice(SHOWN_ROWS);
+  return element("div", {}, table(heads, rows.slice(0, SHOWN_ROWS)), rest.length ? element("details", { class: "more" }, element("summary", {}, `${rest.length} more`), table(heads, rest)) : null);
 }
 
 function changesCard(page) {
@@ -71,6 +84,6 @@ function fillTables(page) {
   const box = $("details"), tags = page.runs.map((run) => (page.runs.length > 1 ? ` ${run.label}` : ""));
   for (const item of [changesCard(page), ...differencesCards(page), ...page.runs.map((run, i) => checksCard(run, tags[i]))]) if (item) $("checks").append(item);
   const cards = [chartCard(page)];
-  for (const make of [eventsCard, logCard, parametersCard, provenanceCard]) page.runs.forEach((run, i) => cards.push(make(run, tags[i])));
+  for (const make of [eventsCard, logCard, parametersCard, provenanceCard]) page.runs.forEach((run, i) => cards.push(make(run, tags[i], page.runs.length === 1)));
   for (const item of cards) if (item) box.append(item);
 }

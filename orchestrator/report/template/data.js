@@ -1,5 +1,9 @@
 // The packed numbers of the page (see payload.py), and a run's signals as functions of time.
 
+// SI unit -> what people read: [unit, factor].
+const DISPLAY = { rad: ["deg", 180 / Math.PI], "rad/s": ["deg/s", 180 / Math.PI], "rad/s2": ["deg/s\u00b2", 180 / Math.PI], "1": ["", 1], "m/s2": ["m/s\u00b2", 1], "1/m2": ["1/m\u00b2", 1] };
+const display = (unit) => DISPLAY[unit] || [unit, 1];
+
 async function unpack(text) {
   const packed = Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
   const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream("deflate"));

@@ -24,10 +24,6 @@ function color(name) {
   return COLORS.get(name);
 }
 
-// SI unit -> what people read: [unit, factor].
-const DISPLAY = { rad: ["deg", 180 / Math.PI], "rad/s": ["deg/s", 180 / Math.PI], "rad/s2": ["deg/s\u00b2", 180 / Math.PI], "1": ["", 1], "m/s2": ["m/s\u00b2", 1] };
-const display = (unit) => DISPLAY[unit] || [unit, 1];
-
 function digits(value) {
   if (value === null || !Number.isFinite(value)) return "\u2013";
   if (value === 0) return "0";

@@ -6,7 +6,7 @@ from pathlib import Path
 from orchestrator.log.messages import read_messages
 from orchestrator.log.read_log import log_file, read_log
 from orchestrator.report.replay import write_replay
-from orchestrator.text.console import say
+from orchestrator.text.console import say, working
 from orchestrator.text.errors import PARKED, BadInput
 from orchestrator.text.owned import owned_with
 from orchestrator.verdict.logged import logged
@@ -17,6 +17,7 @@ EXAMPLES = """examples:
   apa report run.mcap --out /tmp/page.html
   apa report runs/guo2015-case4 --figure case4.pdf --width 8.4cm --panels path,steering
   apa report runs/a runs/b --figure both.svg              both runs overlaid, with a legend
+  apa report runs/guo2015-case4 --video case4.mp4 --speed 4 --width 1280
 
 The page plays the run in any browser, offline: top view, curves, states, checks, parameters.
 """
@@ -38,15 +39,26 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="A,B",
         help="panels or signals (default: %(default)s)",
     )
-    figure.add_argument("--width", default="17cm", metavar="LENGTH", help="of the figure (default: 17cm)")
+    figure.add_argument(
+        "--width", metavar="LENGTH", help="of the figure (default: 17cm), or of the video in pixels (default: 1280)"
+    )
     figure.add_argument("--dpi", type=int, default=300, help="of a PNG (default: 300)")
     figure.add_argument("--style", default="paper", choices=("paper", "screen"), help="screen: with a grid")
+    video = parser.add_argument_group("video")
+    video.add_argument(
+        "--video", type=Path, metavar="FILE", help="write a video (.mp4 with ffmpeg, .gif) instead of the page"
+    )
+    video.add_argument("--speed", type=float, default=1.0, metavar="X", help="simulated time over time (default: 1)")
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Write the page or the figure. Returns 0. Raises ``BadInput`` for several runs without ``--figure``."""
+    if arguments.figure is not None and arguments.video is not None:
+        raise BadInput("write a figure or a video, one at a time", key="--video")
     if arguments.figure is not None:
         return _write_figure(arguments)
+    if arguments.video is not None:
+        return _write_video(arguments)
     if len(arguments.log) > 1:
         raise BadInput(
             "a page is of one run; several runs are overlaid with --figure FILE, or compared with apa compare"
@@ -70,7 +82,31 @@ def _write_figure(arguments: argparse.Namespace) -> int:
     if not 10 <= arguments.dpi <= 2400:
         raise BadInput(f"--dpi {arguments.dpi}: expected 10 to 2400")
     runs = [(log.stem if log.stem != "run" else log.parent.name, read_log(log)) for log in arguments.log]
-    figure = run_figure(runs, arguments.panels.split(","), width_in_cm(arguments.width), arguments.style)
+    figure = run_figure(runs, arguments.panels.split(","), width_in_cm(arguments.width or "17cm"), arguments.style)
     save_figure(figure, arguments.figure, arguments.dpi, arguments.style)
     print(arguments.figure)
+    return PARKED
+
+
+def _write_video(arguments: argparse.Namespace) -> int:
+    from orchestrator.drawing.seen import overview_of
+    from orchestrator.drawing.video import VideoOptions, check_video, write_video
+
+    width = arguments.width or "1280"
+    if not width.removesuffix("px").strip().isdigit():
+        raise BadInput(f"{width}: expected the width of the video in pixels, such as 1280", key="--width")
+    options = VideoOptions(arguments.speed, int(width.removesuffix("px")))
+    check_video(arguments.video, options)
+    if len(arguments.log) > 1:
+        raise BadInput("a video is of one run; several runs are overlaid with --figure FILE", key="--video")
+    log: Path = arguments.log[0]
+    recording = read_log(log)
+    scenario, note = logged(recording, str(log), log.stem)
+    if note:
+        say(note)
+    summary = summarize(recording, scenario, 0.0, note)
+    with working("drawing the video"):
+        count = write_video(arguments.video, overview_of(recording, summary, scenario), options)
+    say(f"{count} frames")
+    print(arguments.video)
     return PARKED

@@ -166,11 +166,20 @@ def _plan(axis: Any, letter: str, seen: Overview) -> None:
     axis.set_aspect("equal", adjustable="datalim")
     axis.set_xlabel("x [m]")
     axis.set_ylabel("y [m]")
+    stills = [[still for still in thing.stills() if still.appear_at <= seen.t[-1]] for thing in seen.around.things]
+    draw_scene(axis, seen, [still for each in stills for still in (*each[:-1:STILLS], *each[-1:])])
+    x, y, heading = (seen.signal(f"vehicle.pose.{name}") for name in ("x", "y", "heading"))
+    _outlines(axis, seen.car, x, y, heading)
+    axis.plot(x, y, color=BLUE, linewidth=1.8, label="driven path", zorder=5)
+    _wheels(axis, seen, seen.car, (x[-1], y[-1], heading[-1]))
+    axis.legend(loc="upper left", fontsize=8)
+
+
+def draw_scene(axis: Any, seen: Overview, stills: list[Box]) -> None:
+    """Draw what stands around the car, ``stills`` among it, the target and the planned path."""
     car, around = seen.car, seen.around
-    for thing in around.things:
-        stills = [still for still in thing.stills() if still.appear_at <= seen.t[-1]]
-        for still in [*stills[:-1:STILLS], *stills[-1:]]:
-            _thing(axis, still)
+    for still in stills:
+        draw_thing(axis, still)
     for corners in around.polygons:
         axis.add_patch(Polygon(corners, facecolor="#c4c8ce", edgecolor=GREY, linewidth=1.0))
     for kerb in around.kerbs:
@@ -185,14 +194,9 @@ def _plan(axis: Any, letter: str, seen: Overview) -> None:
     for name, at in seen.points.items():
         axis.plot(*at, "o", color=ASKED, markersize=3.5, zorder=4)
         axis.annotate(name, at, textcoords="offset points", xytext=(4, -10), fontsize=8, color=ASKED, zorder=6)
-    x, y, heading = (seen.signal(f"vehicle.pose.{name}") for name in ("x", "y", "heading"))
-    _outlines(axis, car, x, y, heading)
-    axis.plot(x, y, color=BLUE, linewidth=1.8, label="driven path", zorder=5)
-    _wheels(axis, seen, car, (x[-1], y[-1], heading[-1]))
-    axis.legend(loc="upper left", fontsize=8)
 
 
-def _thing(axis: Any, box: Box) -> None:
+def draw_thing(axis: Any, box: Box) -> None:
     """Draw what is in the way: somebody, a car, or a plain box; hatched if it comes or goes."""
     what, passing = looks(box), box.comes_or_goes
     style: Any = {"edgecolor": LIGHT["warn"] if passing else GREY, "linewidth": 1.0}

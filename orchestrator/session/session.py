@@ -213,9 +213,7 @@ def _early_stop(system: Assembled, scenario: Scenario, stop_ns: int) -> list[str
     """Return that a run ends before its stop time, if it does."""
     if stop_ns == scenario.stop_ns:
         return []
-    text = (
-        f"stop_time {scenario.longest:.9g} s is no whole number of steps, and the step of {_fixed(system)} is fixed"
-    )
+    text = f"stop_time {scenario.longest:.9g} s is no whole number of steps, and the step of {_fixed(system)} is fixed"
     return [f"{text}: a run ends at {stop_ns / NANOSECONDS:.9g} s"]
 
 

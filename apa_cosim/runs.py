@@ -57,7 +57,7 @@ class Run:
         return self.recording.t
 
     @property
-    def signals(self) -> dict[str, Array]:
+    def signals(self) -> Mapping[str, Array]:
         """Name (``vehicle.pose.x``) -> values over :attr:`t`, SI units; modes as numbers."""
         return self.recording.signals
 

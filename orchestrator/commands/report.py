@@ -76,12 +76,13 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _write_figure(arguments: argparse.Namespace) -> int:
+    from orchestrator.drawing.decimation import decimated
     from orchestrator.drawing.run_figure import check_figure, run_figure, save_figure, width_in_cm
 
     check_figure(arguments.figure)
     if not 10 <= arguments.dpi <= 2400:
         raise BadInput(f"--dpi {arguments.dpi}: expected 10 to 2400")
-    runs = [(log.stem if log.stem != "run" else log.parent.name, read_log(log)) for log in arguments.log]
+    runs = [(log.stem if log.stem != "run" else log.parent.name, decimated(read_log(log))) for log in arguments.log]
     figure = run_figure(runs, arguments.panels.split(","), width_in_cm(arguments.width or "17cm"), arguments.style)
     save_figure(figure, arguments.figure, arguments.dpi, arguments.style)
     print(arguments.figure)

@@ -1,14 +1,15 @@
 """Two runs side by side: which signals agree within tolerance, and where the first does not."""
 
 import math
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from typing import Any
 
 import numpy as np
 from pydantic import BaseModel, ConfigDict
 
 from orchestrator.comparison.tolerance import Tolerance, Tolerances
-from orchestrator.comparison.tube import Trace, distance
+from orchestrator.comparison.traces import TracePair, traces
+from orchestrator.comparison.tube import Distance, distance
 from orchestrator.cosim.recording import Recording
 from orchestrator.text.errors import BadInput
 from orchestrator.text.patterns import fits, matching
@@ -75,7 +76,7 @@ def compare(a: Recording, b: Recording, tolerances: Tolerances, patterns: Iterab
     chosen = ["*"] if patterns is None else list(patterns)
     names = matching(a.signals, chosen)
     new = [name for name in b.signals if name not in a.signals and any(fits(name, item) for item in chosen)]
-    if not len(a.t) or not len(b.t):
+    if not a.count or not b.count:
         raise BadInput("nothing to compare: a run is empty")
     rows = [_duration(a, b, tolerances), *(_signal(name, a, b, tolerances) for name in names)]
     rows.sort(key=_severity, reverse=True)
@@ -102,45 +103,75 @@ def _signal(name: str, a: Recording, b: Recording, tolerances: Tolerances) -> Di
     if b.variables[name].signal.unit != unit:
         return _row(name, unit, tolerance, note=f"in {unit} in A, in {b.variables[name].signal.unit} in B")
     held = variable.kind is not float
-    first, second = _curve(a, name, held), _curve(b, name, held)
-    if unit == "rad" and name.endswith("heading"):
-        first, second = _unwrapped(first, second)
-    row = _judged(name, unit, tolerance, first, second)
-    states = a.states(name)
-    if states and row.first is not None:
-        seen = [
-            states.get(int(value), str(value)) for curve in (first, second) for value in curve.at(np.array([row.first]))
-        ]
-        return row.model_copy(update={"note": f"{seen[0]} / {seen[1]}"})
-    return row
+    turns = unit == "rad" and name.endswith("heading")
+    worst = _Worst()
+    names = states_named(a.states(name))
+    for pair in traces(name, a, b, held, tolerance.time, turns):
+        worst.add(distance(pair.a, pair.b, tolerance, pair.span), pair, names)
+    return _judged(name, unit, tolerance, worst)
 
 
-def _judged(name: str, unit: str, tolerance: Tolerance, first: Trace, second: Trace) -> Difference:
-    found = distance(first, second, tolerance)
-    if not len(found.t):
+def states_named(states: dict[int, str]) -> Callable[[TracePair, float], str]:
+    """Return what says in words which states the runs have at a time [s]; nothing for a signal without states."""
+
+    def words(pair: TracePair, t: float) -> str:
+        values = (float(trace.at(np.array([t]))[0]) for trace in (pair.a, pair.b))
+        return " / ".join(states.get(int(value), str(value)) for value in values) if states else ""
+
+    return words
+
+
+class _Worst:
+    """The instants that decide about a signal, of distances that come in parts."""
+
+    def __init__(self) -> None:
+        self.outside: tuple[float, ...] | None = None
+        """Excess, distance, tolerance and time where it is furthest outside of the tube."""
+        self.apart: tuple[float, ...] | None = None
+        """Where the distance is largest."""
+        self.first: float | None = None
+        self.words = ""
+
+    def add(self, found: Distance, pair: TracePair, words: Callable[[TracePair, float], str]) -> None:
+        """Take the distances of the next part."""
+        if not len(found.t):
+            return
+        for rank, where in ((found.excess, "outside"), (found.raw, "apart")):
+            row = int(np.argmax(rank))
+            values = tuple(float(item[row]) for item in (rank, found.raw, found.allowed, found.t))
+            known = getattr(self, where)
+            if known is None or values[0] > known[0]:
+                setattr(self, where, values)
+        beyond = found.excess > 0.0
+        if self.first is None and beyond.any():
+            self.first = float(found.t[beyond.argmax()])
+            self.words = words(pair, self.first)
+
+
+def _judged(name: str, unit: str, tolerance: Tolerance, worst: _Worst) -> Difference:
+    deciding = worst.apart if worst.first is None else worst.outside
+    if deciding is None:
         return _row(name, unit, tolerance, note="no common time")
-    outside = found.excess > 0.0
-    worst = int(np.argmax(found.excess)) if outside.any() else int(np.argmax(found.raw))
-    largest = float(found.raw[worst])
+    _, largest, allowed, t = deciding
     return Difference(
         signal=name,
         unit=unit,
-        passed=not outside.any(),
+        passed=worst.first is None,
         largest=largest if math.isfinite(largest) else None,
-        t_largest=float(found.t[worst]),
-        allowed=float(found.allowed[worst]) if math.isfinite(found.allowed[worst]) else 0.0,
+        t_largest=t,
+        allowed=allowed if math.isfinite(allowed) else 0.0,
         time_tolerance=tolerance.time,
         absolute=tolerance.absolute,
         relative=tolerance.relative,
-        first=float(found.t[outside.argmax()]) if outside.any() else None,
-        note="" if math.isfinite(largest) else "not a number",
+        first=worst.first,
+        note=worst.words or ("" if math.isfinite(largest) else "not a number"),
     )
 
 
 def _duration(a: Recording, b: Recording, tolerances: Tolerances) -> Difference:
     """Return the difference of the lengths; the time tolerance counts as well."""
     tolerance = tolerances.of(DURATION, "s")
-    ends = float(a.t[-1]), float(b.t[-1])
+    ends = a.duration, b.duration
     allowed = max(tolerance.absolute, tolerance.relative * ends[0], tolerance.time)
     apart = abs(ends[1] - ends[0])
     row = _row(DURATION, "s", tolerance, note=f"{ends[0]:.2f} s and {ends[1]:.2f} s" if apart > 0.0 else "")
@@ -166,19 +197,6 @@ def _row(name: str, unit: str, tolerance: Tolerance, note: str) -> Difference:
         "note": note,
     }
     return Difference.model_validate({**known, "passed": False, "largest": None, "t_largest": None, "first": None})
-
-
-def _curve(recording: Recording, name: str, held: bool) -> Trace:
-    return Trace(recording.t, recording.signals[name], held)
-
-
-def _unwrapped(first: Trace, second: Trace) -> tuple[Trace, Trace]:
-    """Return two headings without jumps, the second moved by whole turns to where the first begins."""
-    if np.isnan(first.values).any() or np.isnan(second.values).any():
-        return first, second
-    one, two = np.unwrap(first.values), np.unwrap(second.values)
-    turns = round((one[0] - two[0]) / (2.0 * math.pi))
-    return first._replace(values=one), second._replace(values=two + turns * 2.0 * math.pi)
 
 
 def _severity(row: Difference) -> tuple[bool, float]:

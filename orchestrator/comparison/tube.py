@@ -41,12 +41,19 @@ class Distance(NamedTuple):
     """Tolerance in value."""
 
 
-def distance(reference: Trace, other: Trace, tolerance: Tolerance) -> Distance:
-    """Return the distance of ``other`` from ``reference`` over the time both cover."""
+def distance(reference: Trace, other: Trace, tolerance: Tolerance, span: tuple[float, float] | None = None) -> Distance:
+    """Return the distance of ``other`` from ``reference`` over the time both cover, or the ``span`` [s] of it.
+
+    A span ends before its second time.
+    """
     end = min(reference.t[-1], other.t[-1])
     begin = max(reference.t[0], other.t[0])
     t = np.union1d(reference.t, other.t)
     t = t[(t >= begin) & (t <= end)]
+    if span is not None:
+        t = t[(t >= span[0]) & (t < span[1])]
+        if not len(t):
+            return Distance(t, t, t, t)
     inside = np.union1d(
         t, np.clip(np.concatenate([t - tolerance.time, t + tolerance.time]), reference.t[0], reference.t[-1])
     )

@@ -4,28 +4,28 @@ Summary, figure and report look at nothing else, so they work the same from a li
 """
 
 import json
+import math
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from modelkit.model import Model
 from modelkit.variables import Variable, constructor, variables
 from orchestrator.cosim.master import End
+from orchestrator.cosim.signal_blocks import BlockSignals, SignalBlocks, Times
 from orchestrator.cosim.slave import Array, Slave, all_values
-from orchestrator.text.errors import NotRunError
-
-FIRST_ROWS = 1 << 14
-"""Exchanges that the recorder has room for at first."""
 
 
 @dataclass
 class Recording:
     """Names are ``slave.variable``: ``vehicle.pose.x``, ``controller.phase``."""
 
-    t_ns: np.ndarray[Any, np.dtype[np.int64]]
+    t_ns: Times
     """Time of each exchange [ns]."""
-    signals: dict[str, Array]
+    signals: Mapping[str, Array]
     """Outputs as they are, inputs as they were seen, at each exchange; SI units."""
     parameters: dict[str, float]
     variables: dict[str, Variable]
@@ -37,6 +37,47 @@ class Recording:
     def t(self) -> Array:
         """Time of each exchange [s]."""
         return self.t_ns / 1e9
+
+    @property
+    def count(self) -> int:
+        """Return how many exchanges there were."""
+        return len(self.t_ns)
+
+    @property
+    def duration(self) -> float:
+        """Return the time of the last exchange [s], 0 without one."""
+        return float(self.times_between(self.count - 1, self.count)[0] / 1e9) if self.count else 0.0
+
+    def times_between(self, first: int, end: int) -> Times:
+        """Return the times [ns] of the exchanges from row ``first`` up to ``end``."""
+        return self.t_ns[first:end]
+
+    @property
+    def is_stored(self) -> bool:
+        """Return whether the signals are not in memory, so that they are best read part by part."""
+        return False
+
+    def parts(self) -> "Iterator[Part]":
+        """Yield the recording in parts that fit in memory, in order of time; a short one is one part."""
+        yield Part(self, 0, True)
+
+    def rows(self, chosen: "Sequence[int] | NDArray[np.intp]") -> "Recording":
+        """Return the recording of some exchanges."""
+        signals = {name: values[chosen] for name, values in self.signals.items()}
+        return Recording(self.t_ns[chosen], signals, self.parameters, self.variables, self.info)
+
+    def between(self, first: int, end: int) -> "Recording":
+        """Return the exchanges from row ``first`` up to ``end``."""
+        signals = {name: values[first:end] for name, values in self.signals.items()}
+        return Recording(self.t_ns[first:end], signals, self.parameters, self.variables, self.info)
+
+    def row_at(self, t: float) -> int:
+        """Return the first exchange at or after ``t`` [s]; their number if there is none."""
+        return int(np.searchsorted(self.t, t))
+
+    def first(self, count: int) -> "Recording":
+        """Return the recording of the first exchanges."""
+        return self.rows(np.arange(min(count, self.count)))
 
     def states(self, name: str) -> dict[int, str]:
         """Return value -> name of the states of a mode; empty for any other signal."""
@@ -58,6 +99,90 @@ class Recording:
         }
 
 
+class Part(NamedTuple):
+    """Some exchanges of a recording that follow one another."""
+
+    recording: Recording
+    first_row: int
+    """Its first row in the whole recording."""
+    is_last: bool
+
+
+class StoredRecording(Recording):
+    """A recording too long for memory. A signal, and the times, are read from the scratch file when asked for."""
+
+    def __init__(
+        self, blocks: SignalBlocks, parameters: dict[str, float], variables: dict[str, Variable], info: dict[str, Any]
+    ) -> None:
+        blocks.complete()
+        self.blocks = blocks
+        self.signals = BlockSignals(blocks)
+        self.parameters, self.variables, self.info = parameters, variables, info
+
+    @property
+    def t_ns(self) -> Times:  # type: ignore[override]
+        """Time of each exchange [ns]."""
+        return self.blocks.times_of()
+
+    @property
+    def count(self) -> int:
+        """Return how many exchanges there were."""
+        return self.blocks.count
+
+    @property
+    def is_stored(self) -> bool:
+        """Return that the signals are not in memory."""
+        return True
+
+    def times_between(self, first: int, end: int) -> Times:
+        """Return the times [ns] of the exchanges from row ``first`` up to ``end``."""
+        return self.blocks.times_of(first, end)
+
+    def parts(self) -> Iterator[Part]:
+        """Yield the blocks, in order of time."""
+        for first, end in self.blocks.ranges():
+            yield Part(self.between(first, end), first, end == self.count)
+
+    def between(self, first: int, end: int) -> Recording:
+        """Return the exchanges from row ``first`` up to ``end``; signals are read when asked for."""
+        signals = BlockSignals(self.blocks, first, end)
+        return Recording(self.blocks.times_of(first, end), signals, self.parameters, self.variables, self.info)
+
+    def row_at(self, t: float) -> int:
+        """Return the first exchange at or after ``t`` [s]; their number if there is none."""
+        return self.blocks.row_at(t * 1e9) if math.isfinite(t) else 0 if t < 0.0 else self.count
+
+    def rows(self, chosen: Sequence[int] | NDArray[np.intp]) -> Recording:
+        """Return the recording of some exchanges, in memory; ``chosen`` rises."""
+        wanted = np.asarray(chosen, dtype=np.intp)
+        wanted = np.where(wanted < 0, wanted + self.count, wanted)
+        signals = {name: np.empty(len(wanted)) for name in self.signals}
+        times = np.empty(len(wanted), dtype=np.int64)
+        for first, end in self.blocks.ranges():
+            low, high = np.searchsorted(wanted, (first, end))
+            if low == high:
+                continue
+            at = wanted[low:high]
+            begin, stop = int(at[0]), int(at[-1]) + 1
+            times[low:high] = self.blocks.times_of(begin, stop)[at - begin]
+            for name, values in signals.items():
+                values[low:high] = self.blocks.column(name, begin, stop)[at - begin]
+        return Recording(times, signals, self.parameters, self.variables, self.info)
+
+    def values_at(self, slave: str, row: int) -> dict[str, float]:
+        """Return the signals of one slave at one exchange, by their own flat names."""
+        return self.rows([row]).values_at(slave, 0)
+
+
+def recording_of(
+    blocks: SignalBlocks, parameters: dict[str, float], variables: dict[str, Variable], info: dict[str, Any]
+) -> Recording:
+    """Return what ``blocks`` hold as a recording."""
+    if blocks.is_stored:
+        return StoredRecording(blocks, parameters, variables, info)
+    return Recording(blocks.times, blocks.columns, parameters, variables, info)
+
+
 def inputs_seen(recording: Recording, slave: str, model: Model) -> list[Any]:
     """Return what ``slave``, which is ``model``, was given at each exchange."""
     build = constructor(model.inputs)
@@ -66,24 +191,19 @@ def inputs_seen(recording: Recording, slave: str, model: Model) -> list[Any]:
 
 
 class Recorder:
-    """Observer that keeps every exchange in arrays, doubled in length when they are full."""
+    """Observer that keeps every exchange: of a long run not in memory."""
 
     def __init__(self, slaves: list[Slave], exchanges: int) -> None:
         self._slaves = slaves
         self._values = all_values(slaves)
-        room = min(exchanges, FIRST_ROWS)
-        self._rows = np.empty((room, len(self._values)))
-        self._times = np.empty(room, dtype=np.int64)
-        self._count = 0
+        seen = [(slave.name, item) for slave in slaves for item in slave.inputs.variables + slave.outputs.variables]
+        names = [f"{owner}.{item.name}" for owner, item in seen]
+        self._variables = dict(zip(names, (item for _, item in seen), strict=True))
+        self._blocks = SignalBlocks(names, exchanges)
 
     def exchanged(self, t_ns: int) -> None:
         """Copy all inputs and outputs."""
-        count = self._count
-        if count == len(self._times):
-            self._grow()
-        self._times[count] = t_ns
-        self._rows[count] = self._values
-        self._count = count + 1
+        self._blocks.append(t_ns, self._values)
 
     def closed(self, end: End) -> None:
         """Nothing to close."""
@@ -91,31 +211,17 @@ class Recorder:
     @property
     def count(self) -> int:
         """Return how many exchanges there were."""
-        return self._count
-
-    def _grow(self) -> None:
-        try:
-            self._rows = np.concatenate([self._rows, np.empty_like(self._rows)])
-            self._times = np.concatenate([self._times, np.empty_like(self._times)])
-        except MemoryError:
-            raise NotRunError(f"after {self._count} exchanges there is no memory for more") from None
+        return self._blocks.count
 
     def recording(self, info: dict[str, Any]) -> Recording:
         """Return what has been seen so far."""
-        signals: dict[str, Array] = {}
-        meanings: dict[str, Variable] = {}
+        meanings = dict(self._variables)
         parameters: dict[str, float] = {}
-        seen = [
-            (slave.name, item) for slave in self._slaves for item in slave.inputs.variables + slave.outputs.variables
-        ]
-        for (owner, variable), column in zip(seen, self._rows[: self._count].T, strict=True):
-            signals[f"{owner}.{variable.name}"] = column
-            meanings[f"{owner}.{variable.name}"] = variable
         for slave in self._slaves:
             for place, variable in enumerate(slave.parameters.variables):
                 parameters[f"{slave.name}.{variable.name}"] = float(slave.parameters.values[place])
                 meanings[f"{slave.name}.{variable.name}"] = variable
-        return Recording(self._times[: self._count], signals, parameters, meanings, info)
+        return recording_of(self._blocks, parameters, meanings, info)
 
 
 def to_json(variables: list[Variable], notes: list[str]) -> str:

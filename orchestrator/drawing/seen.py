@@ -6,6 +6,7 @@ import numpy as np
 
 from orchestrator.cosim.recording import Recording
 from orchestrator.cosim.slave import Array
+from orchestrator.drawing.decimation import decimated
 from orchestrator.drawing.overview import Overview, Ribbon, Standing
 from orchestrator.drawing.panels import PICTURE_MODES, picture_signals
 from orchestrator.scenario.scenario import Scenario
@@ -36,6 +37,7 @@ DRAWN = dict.fromkeys(
 
 def overview_of(recording: Recording, summary: Summary, scenario: Scenario) -> Overview:
     """Return what the picture of a run shows."""
+    recording = decimated(recording)
     vehicle = described(scenario, recording.parameters_of("vehicle"))
     around = Standing(
         things(vehicle),

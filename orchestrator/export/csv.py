@@ -18,6 +18,8 @@ The first row has the names of the signals, the second their units; numbers are 
 gives the same bits. --names writes the names of states instead of their numbers.
 """
 
+ROWS_AT_ONCE = 1 << 12
+
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Add what the format takes."""
@@ -44,19 +46,23 @@ def run(arguments: argparse.Namespace) -> int:
 
 def write_csv(path: Path, recording: Recording, names: list[str], words: bool) -> None:
     """Write the signals ``names`` over time [s]; modes as numbers, or as ``words``."""
-    columns: list[list[object]] = [[repr(t) for t in recording.t.tolist()]]
-    for name in names:
-        values = recording.signals[name].tolist()
-        states = recording.states(name) if words else {}
-        if states:
-            columns.append([states.get(value, value) for value in values])
-        elif recording.variables[name].kind is float:
-            columns.append([repr(value) for value in values])
-        else:
-            columns.append([int(value) if value == value else value for value in values])
     units = [recording.variables[name].signal.unit for name in names]
     with whole(path) as part, part.open("w", newline="", encoding="utf-8") as stream:
         writer = csv.writer(stream)
         writer.writerow(["time", *names])
         writer.writerow(["s", *units])
-        writer.writerows(zip(*columns, strict=True))
+        for first in range(0, recording.count, ROWS_AT_ONCE):
+            rows = recording.between(first, min(first + ROWS_AT_ONCE, recording.count))
+            columns = [[repr(t) for t in rows.t.tolist()], *(_texts(rows, name, words) for name in names)]
+            writer.writerows(zip(*columns, strict=True))
+
+
+def _texts(rows: Recording, name: str, words: bool) -> list[object]:
+    """Return the values of a signal as they are written."""
+    values = rows.signals[name].tolist()
+    states = rows.states(name) if words else {}
+    if states:
+        return [states.get(value, value) for value in values]
+    if rows.variables[name].kind is float:
+        return [repr(value) for value in values]
+    return [int(value) if value == value else value for value in values]

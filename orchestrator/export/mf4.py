@@ -47,21 +47,38 @@ def write_mf4(path: Path, recording: Recording, names: list[str]) -> None:
         from asammdf import MDF, Signal
     except ImportError:
         raise BadInput(missing_package("asammdf", "export")) from None
-    signals = [_signal(Signal, recording, name) for name in names]
+    parts = recording.parts()
+    first = next(parts).recording
+    wholes = {name for name in names if _is_whole(recording, name)}
     with MDF(version="4.10") as file:
         file.start_time = datetime.datetime(1970, 1, 1, tzinfo=datetime.UTC)
-        file.append(signals, acq_name="apa-cosim", comment=str(recording.info.get("scenario", {}).get("name", "")))
+        comment = str(recording.info.get("scenario", {}).get("name", ""))
+        signals = [_signal(Signal, first, name, name in wholes) for name in names]
+        file.append(signals, acq_name="apa-cosim", comment=comment)
+        for piece, _, _ in parts:
+            values = [(_samples(piece, name, name in wholes), None) for name in names]
+            file.extend(0, [(piece.t, None), *values])
         with whole(path) as part:
             file.save(part, overwrite=True)
 
 
-def _signal(kind: Any, recording: Recording, name: str) -> Any:
-    variable, values = recording.variables[name], recording.signals[name]
-    states = recording.states(name)
-    whole = variable.kind is not float and bool(np.isfinite(values).all())
+def _is_whole(recording: Recording, name: str) -> bool:
+    """Return whether a signal has whole numbers only."""
+    if recording.variables[name].kind is float:
+        return False
+    return all(np.isfinite(part.signals[name]).all() for part, _, _ in recording.parts())
+
+
+def _samples(recording: Recording, name: str, is_whole: bool) -> Any:
+    values = recording.signals[name]
+    return values.astype(np.int32) if is_whole else values
+
+
+def _signal(kind: Any, recording: Recording, name: str, is_whole: bool) -> Any:
+    variable, states = recording.variables[name], recording.states(name)
     unit = "" if variable.signal.unit in UNITLESS else variable.signal.unit
-    conversion = _conversion(states) if states and whole else None
-    samples = values.astype(np.int32) if whole else values
+    conversion = _conversion(states) if states and is_whole else None
+    samples = _samples(recording, name, is_whole)
     return kind(samples, recording.t, unit=unit, name=name, conversion=conversion, comment=variable.signal.text)
 
 

@@ -14,11 +14,13 @@ from fmus.installation import missing_package
 from modelkit.variables import Variable
 from orchestrator.cosim.recording import Recording
 from orchestrator.cosim.slave import Array
+from orchestrator.drawing.decimation import decimated
 from orchestrator.drawing.panels import PANELS
 from orchestrator.export.csv import add_run_arguments
 from orchestrator.log.line import Line
 from orchestrator.log.messages import read_messages
 from orchestrator.log.read_log import read_log
+from orchestrator.text.console import say
 from orchestrator.text.errors import BadInput
 from orchestrator.text.owned import owned_with
 from orchestrator.text.patterns import matching
@@ -34,6 +36,8 @@ Shows the top view, the curves and the messages. Needs rerun-sdk: pip install 'a
 RATE = 20.0
 """Poses of the car per second in the top view."""
 DRIVEN_RATE = 4.0
+MAX_DRIVEN = 2000.0
+"""Times in a run at which the path driven so far is drawn."""
 CURVE_RATE = 100.0
 TIMELINE = "time"
 
@@ -49,6 +53,9 @@ def run(arguments: argparse.Namespace) -> int:
     with owned_with(arguments.log, out):
         recording = read_log(arguments.log)
         names = matching(recording.signals, arguments.signals)
+        if recording.is_stored:
+            recording = decimated(recording)
+            say(f"apa: note: a long run; {recording.count} of its instants are exported")
         write_rerun(out, recording, names, read_messages(arguments.log))
     print(out)
     return 0
@@ -139,7 +146,7 @@ def _moving(rr: Any, stream: Any, recording: Recording) -> None:
         stream.set_time(TIMELINE, duration=float(recording.t[row]))
         outline = _flat(place(car, float(x[row]), float(y[row]), float(heading[row])))
         stream.log("scene/car", rr.LineStrips2D([outline], colors=[[40, 110, 230]]))
-    for row in _rows(recording.t, DRIVEN_RATE):
+    for row in _rows(recording.t, min(DRIVEN_RATE, MAX_DRIVEN / max(1.0, recording.duration))):
         stream.set_time(TIMELINE, duration=float(recording.t[row]))
         done = rows[rows <= row]
         way = _flat(np.column_stack([x[done], y[done]]))

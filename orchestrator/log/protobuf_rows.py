@@ -19,8 +19,6 @@ WIDTHS = {"double": 8, "int": 4, "enum": 5, "bool": 1}
 WIRE_TYPES = {"double": FIXED64, "int": FIXED32, "enum": VARINT, "bool": VARINT}
 SHIFTS = np.array([0, 7, 14, 21, 28], dtype=np.int64)
 CONTINUES = np.array([0x80, 0x80, 0x80, 0x80, 0x00], dtype=np.int64)
-AT_ONCE = 4096
-"""Messages that are decoded at once: a long log takes little more memory than its values."""
 LOW_BITS = np.array([0x7F, 0x7F, 0x7F, 0x7F, 0x0F], dtype=np.int64)
 
 
@@ -127,19 +125,15 @@ class Decoder:
         self._encoder = Encoder(variables)
         self._width = len(variables)
 
-    def decode(self, messages: list[bytes], file: object) -> Array:
-        """Return one row of values per message. Raises ``BadInput`` if one has another layout."""
-        size = self._encoder.size
-        if any(len(message) != size for message in messages):
+    def rows(self, messages: NDArray[np.uint8], file: object) -> Array:
+        """Return one row of values for each message (n, bytes). Raises ``BadInput`` if they have another layout."""
+        if messages.shape[1] != self._encoder.size:
             raise BadInput("holds messages that are not laid out as apa writes them", file=file)
         rows = np.empty((len(messages), self._width))
-        for begin in range(0, len(messages), AT_ONCE):
-            block = messages[begin : begin + AT_ONCE]
-            self._into(rows[begin : begin + AT_ONCE], np.frombuffer(b"".join(block), dtype=np.uint8))
+        self._into(rows, messages)
         return rows
 
     def _into(self, rows: Array, data: NDArray[np.uint8]) -> None:
-        data = data.reshape(len(rows), self._encoder.size)
         for kind, (places, where) in self._encoder.layout.items():
             if not len(places):
                 continue

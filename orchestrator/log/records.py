@@ -2,14 +2,16 @@
 
 A log is believed only if every byte of it is under a checksum that is right: that of all data, in the record DataEnd,
 and that of the summary behind it, in the footer. What a file claims about sizes is looked at before it is done.
-Format: mcap.dev/spec.
+A file is read one record at a time, so memory does not grow with it. Format: mcap.dev/spec.
 """
 
 import struct
 import zlib
 from collections.abc import Iterator
+from contextlib import AbstractContextManager
+from io import BufferedReader
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, Protocol
 
 import zstandard
 from mcap.data_stream import ReadDataStream
@@ -23,10 +25,12 @@ CHUNK = struct.Struct("<QQQII")
 """First and last time, size and checksum of what is in a chunk, length of the compression's name."""
 MESSAGE = struct.Struct("<HIQQ")
 FOOTER = struct.Struct("<QQI")
-MOST_BYTES = 1 << 31
-MOST_IN_CHUNK = 1 << 28
+MAX_CHUNK_BYTES = 1 << 26
+"""Of one record, packed or unpacked; chunks of this project have 256 KiB."""
 MOST_UNPACKED, MOST_TIMES = 1 << 30, 64
 """A log may unpack to so many bytes, or to so many times its size if that is more."""
+WINDOW = 1 << 20
+"""Bytes that are read at once where a whole file is gone through."""
 
 
 class Damage(Exception):  # noqa: N818 - what is wrong with a file, and where
@@ -47,74 +51,160 @@ class RawRecord(NamedTuple):
     """Its bytes."""
 
 
-def file_bytes(path: Path) -> bytes:
-    """Return the bytes of a log. Raises ``BadInput`` if that cannot be, or is none."""
-    try:
-        if not path.is_file():
-            raise BadInput("is a folder, expected a log" if path.is_dir() else "no such file", file=path)
-        if path.stat().st_size > MOST_BYTES:
-            raise BadInput(f"is larger than {MOST_BYTES >> 30} GiB", file=path)
-        data = path.read_bytes()
-    except OSError as error:
-        raise BadInput(f"cannot be read: {error.strerror}", file=path) from error
-    if data[: len(MCAP0_MAGIC)] != MCAP0_MAGIC:
-        raise BadInput("is no MCAP log", file=path)
-    return data
+class RecordHead(NamedTuple):
+    """A record of a file without its bytes."""
+
+    at: int
+    opcode: int
+    size: int
+
+    @property
+    def end(self) -> int:
+        """Return the byte behind it."""
+        return self.at + HEAD.size + self.size
 
 
-def check(data: bytes) -> bool:
+class ByteSource(Protocol):
+    """Bytes that are read piece by piece: a file, or ``bytes``."""
+
+    def __len__(self) -> int:
+        """Return how many there are."""
+
+    def __getitem__(self, part: slice) -> bytes:
+        """Return some of them."""
+
+    def find(self, mark: bytes, begin: int) -> int:
+        """Return where ``mark`` is, from ``begin`` on; -1 if it is not there."""
+
+
+class LogFile(AbstractContextManager["LogFile"]):
+    """The bytes of a log, read when they are asked for. Raises ``BadInput`` if that cannot be."""
+
+    def __init__(self, path: Path) -> None:
+        self._path = path
+        try:
+            if not path.is_file():
+                raise BadInput("is a folder, expected a log" if path.is_dir() else "no such file", file=path)
+            self._size = path.stat().st_size
+            self._file: BufferedReader = path.open("rb")
+        except OSError as error:
+            raise BadInput(f"cannot be read: {error.strerror}", file=path) from error
+        if self[: len(MCAP0_MAGIC)] != MCAP0_MAGIC:
+            self._file.close()
+            raise BadInput("is no MCAP log", file=path)
+
+    def __exit__(self, *_: object) -> None:
+        self._file.close()
+
+    def __len__(self) -> int:
+        return self._size
+
+    def __getitem__(self, part: slice) -> bytes:
+        begin, end, _ = part.indices(self._size)
+        try:
+            self._file.seek(begin)
+            return self._file.read(max(0, end - begin))
+        except OSError as error:
+            raise BadInput(f"cannot be read: {error.strerror}", file=self._path) from error
+
+    def find(self, mark: bytes, begin: int) -> int:
+        """Return where ``mark`` is, from ``begin`` on; -1 if it is not there."""
+        for at in range(begin, self._size, WINDOW):
+            found = self[at : at + WINDOW + len(mark) - 1].find(mark)
+            if found >= 0:
+                return at + found
+        return -1
+
+
+def check(data: ByteSource) -> bool:
     """Return whether all of a whole file is under a checksum; chunks stay packed. Raises ``Damage``."""
     if len(data) < 2 * len(MCAP0_MAGIC) or data[-len(MCAP0_MAGIC) :] != MCAP0_MAGIC:
         raise Damage(len(data), "the file ends before the log does")
-    found = top_records(data)
-    end = _end_of_data(found)
-    (crc,) = _unpacked(struct.Struct("<I"), found[end])
-    if crc and crc != zlib.crc32(memoryview(data)[: found[end].at]):
-        raise Damage(_first_wrong(data, found[:end]), "the checksum of the data is wrong")
-    return _check_summary(data, found[end + 1 :], found[end]) and bool(crc)
+    last, end, footer = len(MCAP0_MAGIC), None, None
+    for head in record_heads(data):
+        last = head.at
+        if end is not None:
+            footer = head
+        elif head.opcode == Opcode.DATA_END:
+            end = head
+    if end is None:
+        raise Damage(last, "there is no end of the data")
+    (crc,) = _unpacked(struct.Struct("<I"), read_record(data, end))
+    if crc and crc != _crc(data, 0, end.at):
+        raise Damage(_first_wrong(data, end.at), "the checksum of the data is wrong")
+    return _check_summary(data, footer, end) and bool(crc)
 
 
-def unpacked_records(data: bytes) -> Iterator[RawRecord]:
-    """Yield the records of a whole file up to the end of the data, one chunk unpacked at a time. Raises ``Damage``."""
-    found = top_records(data)
+def unpacked_records(data: ByteSource) -> Iterator[RawRecord]:
+    """Yield the records of a whole file up to the end of the data, one chunk unpacked at a time. Raises ``Damage``.
+
+    The indexes of messages are left out.
+    """
     budget = max(MOST_UNPACKED, MOST_TIMES * len(data))
-    for piece in found[: _end_of_data(found)]:
-        if piece.opcode != Opcode.CHUNK:
-            yield piece
-            continue
-        for item in chunk_records(piece, budget):
-            budget -= len(item.body)
-            yield item
+    for head in record_heads(data):
+        if head.opcode == Opcode.DATA_END:
+            return
+        if head.opcode == Opcode.CHUNK:
+            for item in chunk_records(read_record(data, head), budget):
+                budget -= len(item.body)
+                yield item
+        elif head.opcode != Opcode.MESSAGE_INDEX:
+            yield read_record(data, head)
 
 
-def _end_of_data(found: list[RawRecord]) -> int:
-    """Return the place of the record that ends the data."""
-    for place, piece in enumerate(found):
-        if piece.opcode == Opcode.DATA_END:
-            return place
-    raise Damage(found[-1].at if found else len(MCAP0_MAGIC), "there is no end of the data")
+def unpacked_chunks(data: ByteSource) -> Iterator[RawRecord]:
+    """Yield the records of a whole file up to the end of the data; of a chunk the body is what it unpacks to."""
+    budget = max(MOST_UNPACKED, MOST_TIMES * len(data))
+    for head in record_heads(data):
+        if head.opcode == Opcode.DATA_END:
+            return
+        if head.opcode == Opcode.CHUNK:
+            content = _chunk_bytes(read_record(data, head), budget)
+            budget -= len(content)
+            yield RawRecord(head.at, head.opcode, content)
+        elif head.opcode != Opcode.MESSAGE_INDEX:
+            yield read_record(data, head)
 
 
-def top_records(data: bytes) -> list[RawRecord]:
-    """Return the records of a file without looking into them. Raises ``Damage`` where there is none."""
-    found, at, end = [], len(MCAP0_MAGIC), len(data) - len(MCAP0_MAGIC)
-    view = memoryview(data)
+def _crc(data: ByteSource, begin: int, end: int) -> int:
+    crc = 0
+    for at in range(begin, end, WINDOW):
+        crc = zlib.crc32(data[at : min(end, at + WINDOW)], crc)
+    return crc
+
+
+def record_heads(data: ByteSource) -> Iterator[RecordHead]:
+    """Yield the records of a file without their bytes. Raises ``Damage`` where there is none."""
+    at, end = len(MCAP0_MAGIC), len(data) - len(MCAP0_MAGIC)
     while at < end:
-        found.append(record_at(view, at, at, end))
-        at += HEAD.size + len(found[-1].body)
-    return found
+        head = record_head(data[at : min(end, at + HEAD.size)], at, end - at)
+        yield head
+        at = head.end
 
 
-def record_at(view: memoryview, at: int, place: int, end: int) -> RawRecord:
-    """Return the record at byte ``at`` of ``view``, which is byte ``place`` of the file. Raises ``Damage``."""
-    if at + HEAD.size > end:
-        raise Damage(place, "the file ends in a record")
-    opcode, length = HEAD.unpack_from(view, at)
+def record_head(head: bytes, at: int, room: int) -> RecordHead:
+    """Return the record whose first bytes are ``head``, where ``room`` bytes are left. Raises ``Damage``."""
+    if HEAD.size > min(room, len(head)):
+        raise Damage(at, "the file ends in a record")
+    opcode, length = HEAD.unpack_from(head)
     if not 0 < opcode < 128:
-        raise Damage(place, "there is no record here")
-    if length > end - at - HEAD.size:
-        raise Damage(place, "the record here is cut off, or its length is damaged")
-    return RawRecord(place, opcode, view[at + HEAD.size : at + HEAD.size + length])
+        raise Damage(at, "there is no record here")
+    if length > room - HEAD.size:
+        raise Damage(at, "the record here is cut off, or its length is damaged")
+    return RecordHead(at, opcode, length)
+
+
+def read_record(data: ByteSource, head: RecordHead) -> RawRecord:
+    """Return a record with its bytes. Raises ``Damage`` if there are more than any record has."""
+    if head.size > MAX_CHUNK_BYTES:
+        raise Damage(head.at, f"a record has {head.size} bytes, more than the {MAX_CHUNK_BYTES} that one may have")
+    return RawRecord(head.at, head.opcode, data[head.at + HEAD.size : head.end])
+
+
+def top_records(data: ByteSource) -> Iterator[RawRecord]:
+    """Yield the records of a file without looking into them. Raises ``Damage`` where there is none."""
+    for head in record_heads(data):
+        yield read_record(data, head)
 
 
 def chunk_records(piece: RawRecord, budget: int = MOST_UNPACKED) -> Iterator[RawRecord]:
@@ -122,9 +212,10 @@ def chunk_records(piece: RawRecord, budget: int = MOST_UNPACKED) -> Iterator[Raw
     data = memoryview(_chunk_bytes(piece, budget))
     at = 0
     while at < len(data):
-        found = record_at(data, at, piece.at, len(data))
-        at += HEAD.size + len(found.body)
-        yield found
+        head = record_head(bytes(data[at : at + HEAD.size]), piece.at, len(data) - at)
+        begin = at + HEAD.size
+        at = begin + head.size
+        yield RawRecord(piece.at, head.opcode, data[begin:at])
 
 
 def chunk_times(piece: RawRecord) -> tuple[int, int]:
@@ -142,7 +233,7 @@ def _chunk_bytes(piece: RawRecord, budget: int) -> bytes:
     packed = bytes(piece.body[at + 8 :])
     if int.from_bytes(piece.body[at : at + 8], "little") != len(packed):
         raise Damage(piece.at, "a chunk has another length than it says")
-    if size > min(budget, MOST_IN_CHUNK):
+    if size > min(budget, MAX_CHUNK_BYTES):
         raise Damage(piece.at, f"a chunk says it unpacks to {size} bytes, more than a log may have")
     data = _decompressed(piece.at, compression, packed, size)
     if len(data) != size or (crc and zlib.crc32(data) != crc):
@@ -160,33 +251,31 @@ def _decompressed(at: int, compression: bytes, packed: bytes, size: int) -> byte
         said = zstandard.frame_content_size(packed)
         if said not in (-1, size):
             raise Damage(at, "a chunk unpacks to another size than it says")
-        unpacker = zstandard.ZstdDecompressor(max_window_size=MOST_IN_CHUNK)
+        unpacker = zstandard.ZstdDecompressor(max_window_size=MAX_CHUNK_BYTES)
         with unpacker.stream_reader(packed) as stream:
             return stream.read(size + 1)
     except (zstandard.ZstdError, MemoryError) as error:
         raise Damage(at, f"a chunk cannot be unpacked ({error})") from error
 
 
-def _check_summary(data: bytes, summary: list[RawRecord], end: RawRecord) -> bool:
-    """Return whether the summary has a checksum; raise ``Damage`` if it is wrong."""
-    at = end.at + HEAD.size + len(end.body)
-    if not summary or summary[-1].opcode != Opcode.FOOTER:
-        raise Damage(at, "there is no footer")
-    footer = summary[-1]
-    start, _, crc = _unpacked(FOOTER, footer)
-    if start not in (0, at):
+def _check_summary(data: ByteSource, footer: RecordHead | None, end: RecordHead) -> bool:
+    """Return whether the summary behind ``end`` has a checksum; raise ``Damage`` if it is wrong."""
+    if footer is None or footer.opcode != Opcode.FOOTER:
+        raise Damage(end.end, "there is no footer")
+    start, _, crc = _unpacked(FOOTER, read_record(data, footer))
+    if start not in (0, end.end):
         raise Damage(footer.at, "the footer tells another place of the summary")
-    if crc and crc != zlib.crc32(memoryview(data)[at : footer.at + HEAD.size + FOOTER.size - 4]):
-        raise Damage(at, "the checksum of the summary is wrong")
+    if crc and crc != _crc(data, end.end, footer.at + HEAD.size + FOOTER.size - 4):
+        raise Damage(end.end, "the checksum of the summary is wrong")
     return bool(crc)
 
 
-def _first_wrong(data: bytes, pieces: list[RawRecord]) -> int:
-    """Return where the damage is, as far as chunks tell; else where the data begin."""
-    for piece in pieces:
-        if piece.opcode == Opcode.CHUNK:
+def _first_wrong(data: ByteSource, end: int) -> int:
+    """Return where the damage is before byte ``end``, as far as chunks tell; else where the data begin."""
+    for head in record_heads(data):
+        if head.at < end and head.opcode == Opcode.CHUNK:
             try:
-                _chunk_bytes(piece, MOST_UNPACKED)
+                _chunk_bytes(read_record(data, head), MOST_UNPACKED)
             except Damage as damage:
                 return damage.at
     return len(MCAP0_MAGIC)

@@ -14,14 +14,16 @@ from orchestrator.log.read_log import NO_MEANING, RECOVERED, with_checksum, with
 from orchestrator.log.records import (
     HEAD,
     MESSAGE,
+    ByteSource,
     Damage,
+    LogFile,
     RawRecord,
     check,
     chunk_records,
     chunk_times,
-    file_bytes,
     parsed,
-    record_at,
+    read_record,
+    record_head,
     unpacked_records,
 )
 from orchestrator.text.errors import BadInput
@@ -52,28 +54,31 @@ def recover(path: Path) -> Recovered:
     Any other name gets ``.recovered.mcap``, and so does one whose place is taken: nothing is overwritten. A log that is
     whole is left as it is. Raises ``BadInput`` if the file is no MCAP log or holds nothing.
     """
-    data = file_bytes(path)
-    if path.suffix != ".part":
-        try:
-            times = _times(data)
-        except Damage:
-            pass
-        else:
-            return Recovered(path, len(times), max(times, default=0), True, [])
-    target = _free(path.with_suffix("") if path.suffix == ".part" else path.with_suffix(".recovered.mcap"))
-    with whole(target) as part, part.open("wb") as stream:
-        copier = _Copier(stream)
-        copier.copy(data)
-        if not copier.messages:
-            raise BadInput("holds no complete chunk of messages; nothing to recover", file=path)
+    with LogFile(path) as data:
+        if path.suffix != ".part":
+            try:
+                count, last_ns = _messages(data)
+            except Damage:
+                pass
+            else:
+                return Recovered(path, count, last_ns, True, [])
+        target = _free(path.with_suffix("") if path.suffix == ".part" else path.with_suffix(".recovered.mcap"))
+        with whole(target) as part, part.open("wb") as stream:
+            copier = _Copier(stream)
+            copier.copy(data)
+            if not copier.messages:
+                raise BadInput("holds no complete chunk of messages; nothing to recover", file=path)
     return Recovered(target, copier.messages, copier.last_ns, not copier.lost, copier.lost)
 
 
-def _times(data: bytes) -> list[int]:
-    """Return the times of the messages [ns] of a whole log. Raises ``Damage``."""
+def _messages(data: ByteSource) -> tuple[int, int]:
+    """Return how many messages a whole log has, and the time of the last [ns]. Raises ``Damage``."""
     check(data)
-    messages = (item.body for item in unpacked_records(data) if item.opcode == Opcode.MESSAGE)
-    return [MESSAGE.unpack_from(body)[2] for body in messages if len(body) >= MESSAGE.size]
+    count = last_ns = 0
+    for item in unpacked_records(data):
+        if item.opcode == Opcode.MESSAGE and len(item.body) >= MESSAGE.size:
+            count, last_ns = count + 1, max(last_ns, MESSAGE.unpack_from(item.body)[2])
+    return count, last_ns
 
 
 def _free(path: Path) -> Path:
@@ -86,25 +91,25 @@ def _free(path: Path) -> Path:
     raise BadInput("has been recovered a thousand times; remove some", file=path)
 
 
-def salvaged(data: bytes) -> Iterator[RawRecord | Damage]:
+def salvaged(data: ByteSource) -> Iterator[RawRecord | Damage]:
     """Yield the records that are whole, and each damage, in the order of the file."""
-    view, at, end = memoryview(data), len(MCAP0_MAGIC), len(data)
+    at, end = len(MCAP0_MAGIC), len(data)
     while at < end:
         try:
-            piece = record_at(view, at, at, end)
-            if piece.opcode not in KNOWN:
+            head = record_head(data[at : at + HEAD.size], at, end - at)
+            if head.opcode not in KNOWN:
                 raise Damage(at, "there is no record that is known")
-            if piece.opcode in (Opcode.DATA_END, Opcode.FOOTER):
+            if head.opcode in (Opcode.DATA_END, Opcode.FOOTER):
                 return
-            after = at + HEAD.size + len(piece.body)
+            after = head.end
             try:
-                yield from _opened(piece)
+                yield from _opened(read_record(data, head))
             except Damage as damage:
                 yield damage
-                after = after if _begins_record(view, after, end) else _next_chunk(data, at + 1)
+                after = after if _begins_record(data, after) else _next_chunk(data, at + 1)
             at = after
         except Damage as damage:
-            if data[at:] == MCAP0_MAGIC:
+            if data[at : at + len(MCAP0_MAGIC) + 1] == MCAP0_MAGIC:
                 return
             yield damage
             at = _next_chunk(data, at + 1)
@@ -122,19 +127,19 @@ def _opened(piece: RawRecord) -> list[RawRecord]:
         raise Damage(piece.at, f"{str(damage).partition(': ')[2]}{told}") from damage
 
 
-def _begins_record(view: memoryview, at: int, end: int) -> bool:
+def _begins_record(data: ByteSource, at: int) -> bool:
     try:
-        return record_at(view, at, at, end).opcode in KNOWN
+        return record_head(data[at : at + HEAD.size], at, len(data) - at).opcode in KNOWN
     except Damage:
-        return bytes(view[at:end]) == MCAP0_MAGIC
+        return data[at : at + len(MCAP0_MAGIC) + 1] == MCAP0_MAGIC
 
 
-def _next_chunk(data: bytes, begin: int) -> int:
+def _next_chunk(data: ByteSource, begin: int) -> int:
     """Return where the next chunk begins that may be one; the end of the file if there is none."""
     found = begin
     while (found := data.find(CHUNK_MARK, found)) >= 0:
         at = found - MARK_AT
-        if at >= begin and _begins_record(memoryview(data), at, len(data)):
+        if at >= begin and _begins_record(data, at):
             return at
         found += 1
     return len(data)
@@ -152,7 +157,7 @@ class _Copier:
         self.last_ns = 0
         self.lost: list[str] = []
 
-    def copy(self, data: bytes) -> None:
+    def copy(self, data: ByteSource) -> None:
         """Copy ``data``, noting what is lost."""
         for item in salvaged(data):
             try:
@@ -171,7 +176,7 @@ class _Copier:
             self._writer.add_metadata(RECOVERED, with_checksum(lacks))
         self._writer.finish()
 
-    def _check_all(self, data: bytes) -> None:
+    def _check_all(self, data: ByteSource) -> None:
         """Note that something is damaged that no record shows by itself."""
         try:
             check(data)

@@ -7,6 +7,7 @@ from typing import Any
 from fmus.files import write_whole
 from orchestrator.comparison.compare import Comparison, Difference
 from orchestrator.cosim.recording import Recording
+from orchestrator.drawing.decimation import decimated
 from orchestrator.drawing.palette import RUNS
 from orchestrator.log.line import Line
 from orchestrator.report.page import page
@@ -39,24 +40,37 @@ def write_overlay(
     if len(runs) > len(RUNS):
         raise BadInput(f"{len(runs)} runs on one page; there is room for {len(RUNS)}")
     text = ""
+    shown = [decimated(run, _moments(found)) for run in runs]
     for most in MOST_ROWS:
-        text = _page(runs, words, found, most, names)
+        text = _page(shown, runs, words, found, most, names)
         if len(text.encode()) < LARGEST_PAGE:
             break
     write_whole(path, text)
 
 
+def _moments(found: Sequence[Comparison]) -> list[float]:
+    """Return times [s] at which runs differ."""
+    return [t for item in found for row in item.signals for t in (row.first, row.t_largest) if t is not None][:60]
+
+
 def _page(
-    runs: Sequence[Recording], words: Sequence[list[Line]], found: Sequence[Comparison], most: int, own: Sequence[str]
+    runs: Sequence[Recording],
+    wholes: Sequence[Recording],
+    words: Sequence[list[Line]],
+    found: Sequence[Comparison],
+    most: int,
+    own: Sequence[str],
 ) -> str:
+    """Return the page; ``runs`` are the instants shown of the ``wholes``."""
     arrays = Arrays()
-    keep = [t for item in found for row in item.signals for t in (row.first, row.t_largest) if t is not None][:60]
+    keep = _moments(found)
     origin = origin_of(runs[0])
     names = _distinct([found[0].a, *(item.b for item in found)], own)
     data = []
-    for run, lines, label, name, change in zip(runs, words, LABELS, names, [None, *found], strict=False):
+    for run, whole, lines, label, name, change in zip(runs, wholes, words, LABELS, names, [None, *found], strict=False):
         about = f"{label}: {name}, {_title(run, name)}{_with(change)}"
-        shown = run_data(run, arrays, lines, label=label, most=most, keep=keep, origin=origin)
+        longer = whole if whole is not run else None
+        shown = run_data(run, arrays, lines, label=label, most=most, keep=keep, origin=origin, whole=longer)
         data.append({**shown, "checks": [], "about": about})
     title = " and ".join(names) if len(names) == 2 else ", ".join(names)
     missed = list(dict.fromkeys(row.signal for item in found for row in item.signals if not row.passed))

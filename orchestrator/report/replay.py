@@ -7,6 +7,7 @@ from typing import Any
 
 from fmus.files import write_whole
 from orchestrator.cosim.recording import Recording
+from orchestrator.drawing.decimation import decimated
 from orchestrator.log.line import Line
 from orchestrator.report.charts import charts_of
 from orchestrator.report.page import page
@@ -40,24 +41,29 @@ def replay_page(recording: Recording, summary: Summary, words: list[Line], live:
 
     Raises ``BadInput`` if the run has no instant to show.
     """
-    if not len(recording.t):
+    if not recording.count:
         raise BadInput("the run has no instant to show")
     text = ""
+    shown = decimated(recording, [check.t for check in summary.checks])
+    whole = recording if shown is not recording else None
     for most in MOST_ROWS:
-        text = _page(recording, summary, words, most, live)
+        text = _page(shown, summary, words, most, live, whole)
         if len(text.encode()) < LARGEST_PAGE:
             break
     return text
 
 
-def _page(recording: Recording, summary: Summary, words: list[Line], most: int, live: str) -> str:
+def _page(
+    recording: Recording, summary: Summary, words: list[Line], most: int, live: str, whole: Recording | None
+) -> str:
     arrays = Arrays()
     scenario = recording.info.get("scenario", {})
     changes = changes_text(summary.changed)
     title = str(scenario.get("title") or summary.scenario) + (f" - with {changes}" if changes else "")
     about = scenario.get("description")
     about = f"unchanged: {about}" if changes and about else about
-    run = run_data(recording, arrays, words, label="", most=most, keep=[check.t for check in summary.checks])
+    keep = [check.t for check in summary.checks]
+    run = run_data(recording, arrays, words, label="", most=most, keep=keep, whole=whole)
     run["checks"] = check_rows(summary.checks)
     header = {
         "title": title,

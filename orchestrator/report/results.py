@@ -40,4 +40,4 @@ def write_page(folder: Path, recording: Recording, summary: Summary, lines: list
 
 def is_shown(recording: Recording) -> bool:
     """Return whether a run has a duration, so that there is something to show."""
-    return len(recording.t) > 1
+    return recording.count > 1

@@ -6,6 +6,7 @@ import numpy as np
 
 from modelkit.variables import Variable, variables
 from orchestrator.cosim.recording import Recording
+from orchestrator.drawing.decimation import MAX_STEP_ROWS, deviation
 from orchestrator.drawing.panels import MODES, REFERENCES
 from orchestrator.log.line import Line
 from orchestrator.report.payload import Arrays
@@ -29,18 +30,25 @@ def run_data(
     most: int,
     keep: list[float],
     origin: Point | None = None,
+    whole: Recording | None = None,
 ) -> dict[str, Any]:
-    """Return one run for the page; its arrays go to ``arrays``. Rows at the times ``keep`` [s] stay."""
+    """Return one run for the page; its arrays go to ``arrays``. Rows at the times ``keep`` [s] stay.
+
+    ``whole``: the long recording of which ``recording`` has some instants only.
+    """
     t = recording.t
-    lines = [values for name, values in recording.signals.items() if not _held(recording.variables[name])]
+    curves = [name for name in recording.signals if not _held(recording.variables[name])]
+    lines = [recording.signals[name] for name in curves]
     steps = [values for name, values in recording.signals.items() if _held(recording.variables[name])]
+    steps = [values for values in steps if whole is None or (values[1:] != values[:-1]).sum() <= MAX_STEP_ROWS // 2]
     rows = [int(np.clip(np.searchsorted(t, moment), 0, len(t) - 1)) for moment in keep]
     thinned = thin(t, lines, steps, rows, most)
     origin = origin or origin_of(recording)
+    off = thinned.deviation if whole is None else deviation(whole, recording.rows(thinned.rows), curves)
     return {
         "label": label,
         "time": arrays.add(t[thinned.rows]),
-        "rows": [len(thinned.rows), len(t), thinned.deviation],
+        "rows": [len(thinned.rows), len(t) if whole is None else whole.count, off],
         "signals": {name: _signal(recording, name, thinned.rows, arrays) for name in recording.signals},
         "plans": plans_of(recording, arrays, origin),
         "scene": still_of(recording, origin),

@@ -1,19 +1,18 @@
-"""What a run may take, told before it is begun: memory and log grow with its exchanges."""
+"""What a run may take, told before it is begun: log and scratch space grow with its exchanges, memory does not."""
 
-import os
+import shutil
+import tempfile
 
 from orchestrator.text.errors import BadInput
 
 VALUE = 8
-"""Bytes of a value in the recording."""
-COPIES = 3
-"""How often a recording is in memory at most: while it grows, and while it is judged."""
+"""Bytes of a value in the scratch file."""
 LOGGED = 2.5
 """Bytes of a value in the log, about."""
 MANY = 1_000_000
 """Exchanges from which the cost is told: over a minute where every exchange is made in Python."""
-MOST_BYTES = 1e12
-"""A run that may take more memory is refused: no computer that parks cars has it."""
+MAX_BYTES = 1e12
+"""A run that may write a larger log is refused: no computer that parks cars has the room."""
 
 
 def told_cost(exchanges: int, values: int) -> str:
@@ -21,28 +20,22 @@ def told_cost(exchanges: int, values: int) -> str:
 
     Raises ``BadInput`` if it is more than a computer has.
     """
-    memory = exchanges * values * VALUE * COPIES
-    text = f"{exchanges:.2g} exchanges: up to {size(memory)} of memory and {size(exchanges * values * LOGGED)} of log"
-    if memory > MOST_BYTES:
+    log, scratch = exchanges * values * LOGGED, exchanges * values * VALUE
+    text = f"{exchanges:.2g} exchanges: up to {size(log)} of log and {size(scratch)} of scratch space"
+    if log > MAX_BYTES:
         raise BadInput(f"{text}; make step larger or stop_time shorter", key="step")
     if exchanges <= MANY:
         return ""
-    has = memory_left()
-    short = f" (this machine has {size(has)} left)" if has is not None and memory > has else ""
+    left = scratch_left()
+    short = f" ({tempfile.gettempdir()} has {size(left)} left)" if left is not None and scratch > left else ""
     return f"if it ends at its stop time alone, this run has {text}{short}"
 
 
-def memory_left() -> float | None:
-    """Return the memory that is left on this machine [bytes]; None where it does not tell."""
+def scratch_left() -> float | None:
+    """Return the room that is left for scratch files [bytes]; None where the system does not tell."""
     try:
-        with open("/proc/meminfo", encoding="ascii") as file:
-            kilobytes = next(line.split()[1] for line in file if line.startswith("MemAvailable"))
-        return float(kilobytes) * 1024.0
-    except (OSError, StopIteration):
-        pass
-    try:
-        return float(os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE"))
-    except (AttributeError, ValueError, OSError):
+        return float(shutil.disk_usage(tempfile.gettempdir()).free)
+    except OSError:
         return None
 
 

@@ -1,7 +1,5 @@
 """A step test from file to verdict."""
 
-from dataclasses import replace
-
 import numpy as np
 
 from orchestrator.cosim.recording import Recording
@@ -36,6 +34,4 @@ def _reference(test: StepTest, kind: str) -> Recording:
 
 def _until(recording: Recording, stop_ns: int) -> Recording:
     """Return what a longer run had recorded when the test ends."""
-    count = int(np.searchsorted(recording.t_ns, stop_ns, side="right"))
-    signals = {name: values[:count] for name, values in recording.signals.items()}
-    return replace(recording, t_ns=recording.t_ns[:count], signals=signals)
+    return recording.first(int(np.searchsorted(recording.t_ns, stop_ns, side="right")))

@@ -5,7 +5,7 @@ put out none, and older logs have 0 in contact: there the true outline is held a
 """
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from functools import cache
 from typing import NamedTuple
 
@@ -61,56 +61,92 @@ class Clearances(NamedTuple):
         return np.minimum(self.scene, self.polygons)
 
 
-def clearances(recording: Recording, scenario: Scenario) -> Clearances:
-    """Return the distances of the outline to what stands in ``scenario``."""
-    parameters = described(scenario, recording.parameters_of(VEHICLE))
-    scene = _to_scene(recording, parameters)
-    if not scenario.polygons:
-        return Clearances(scene, np.full(len(scene), np.inf))
-    poses = _poses(recording)
-    if poses is None:
-        return Clearances(scene, np.full(len(scene), np.nan))
-    return Clearances(scene, polygon_clearances(poses, scenario.polygons, CarOutline.of(parameters)))
+class ContactFacts(NamedTuple):
+    """What is known of contact in a whole run: distances [m], in contact minus the penetration depth."""
+
+    scene: float
+    """Least distance to boxes and kerbs; NaN if one is not known."""
+    polygons: float
+    """Least distance to polygons; infinite where the scenario has none."""
+    nearest: float
+    """Least distance to anything."""
+    first: FirstContact | None
+    low_kerb_time: float
+    """First instant [s] at which a wheel is at a kerb too low to be a contact; NaN if there is none."""
+
+    @property
+    def depth(self) -> float:
+        """Return the greatest penetration depth [m], 0 without contact; NaN if that is not known."""
+        return depth(self.nearest)
 
 
-def least(distances: Array) -> float:
-    """Return the least of the distances at all samples; NaN if one of them is not known, or there are none."""
-    return float(distances.min()) if len(distances) else math.nan
+def contact_facts(recording: Recording, scenario: Scenario) -> ContactFacts:
+    """Return what is known of contact in a run of ``scenario``."""
+    least = np.full(3, np.nan)
+    first: tuple[float, float] | None = None
+    samples, low, is_empty = 0, math.nan, True
+    for part, found in clearance_parts(recording, scenario):
+        if not part.count:
+            continue
+        now = np.array([found.scene.min(), found.polygons.min(), found.nearest.min()])
+        least, is_empty = now if is_empty else np.minimum(least, now), False
+        rows = np.flatnonzero(found.nearest < 0.0)
+        samples += len(rows)
+        if first is None and len(rows):
+            speed = part.signals.get(SPEED)
+            first = float(part.t[rows[0]]), math.nan if speed is None else float(speed[rows[0]])
+        at_kerb = np.flatnonzero(found.scene == 0.0)
+        low = float(part.t[at_kerb[0]]) if math.isnan(low) and len(at_kerb) else low
+    scene, polygons, nearest = (float(value) for value in least)
+    touched = None if first is None else FirstContact(*first, samples, depth(nearest))
+    return ContactFacts(scene, polygons, nearest, touched, low)
 
 
-def depth(distances: Array) -> float:
-    """Return the greatest penetration depth [m], 0 without contact; NaN if that is not known."""
-    nearest = least(distances)
+def depth(nearest: float) -> float:
+    """Return the penetration depth [m] of a least distance, 0 without contact; NaN if that is not known."""
     return nearest if math.isnan(nearest) else max(0.0, -nearest)
 
 
-def first_contact(recording: Recording, found: Clearances) -> FirstContact | None:
-    """Return the first contact of a run; None if it has none."""
-    rows = np.flatnonzero(found.nearest < 0.0)
-    if not len(rows):
-        return None
-    speed = recording.signals.get(SPEED)
-    first = math.nan if speed is None else float(speed[rows[0]])
-    return FirstContact(float(recording.t[rows[0]]), first, len(rows), depth(found.nearest))
+def clearance_parts(recording: Recording, scenario: Scenario) -> Iterator[tuple[Recording, Clearances]]:
+    """Yield a run part by part with the distances of the outline to what stands in ``scenario``."""
+    parameters = described(scenario, recording.parameters_of(VEHICLE))
+    is_taken = _is_output_taken(recording)
+    for part, _, _ in recording.parts():
+        scene = _to_scene(part, parameters, is_taken)
+        if not scenario.polygons:
+            yield part, Clearances(scene, np.full(len(scene), np.inf))
+            continue
+        poses = _poses(part)
+        if poses is None:
+            yield part, Clearances(scene, np.full(len(scene), np.nan))
+        else:
+            near = polygon_clearances(poses, scenario.polygons, CarOutline.of(parameters))
+            yield part, Clearances(scene, near)
 
 
-def low_kerb_time(recording: Recording, found: Clearances) -> float:
-    """Return the first instant [s] at which a wheel is at a kerb too low to be a contact; NaN if there is none."""
-    rows = np.flatnonzero(found.scene == 0.0)
-    return float(recording.t[rows[0]]) if len(rows) else math.nan
+def _is_output_taken(recording: Recording) -> bool:
+    """Return whether the vehicle's own output is the distance: it is ours, and tells the depth of a contact."""
+    if CLEARANCE not in recording.signals or not _is_ours(recording):
+        return False
+    touches = False
+    for part, _, _ in recording.parts():
+        own = part.signals[CLEARANCE]
+        if (own < 0.0).any():
+            return True
+        touches = touches or bool((own == 0.0).any())
+    return not touches
 
 
-def _to_scene(recording: Recording, parameters: Mapping[str, float]) -> Array:
+def _to_scene(recording: Recording, parameters: Mapping[str, float], is_taken: bool) -> Array:
     """Return the distances to boxes and kerbs: as the vehicle puts them out, or of its poses from the scene."""
     own = recording.signals.get(CLEARANCE)
-    is_ours = own is not None and _is_ours(recording)
-    if own is not None and is_ours and ((own < 0.0).any() or not (own == 0.0).any()):
+    if own is not None and is_taken:
         return own
     poses = _poses(recording)
     if poses is None:
         return np.full(len(recording.t), np.nan) if own is None else np.where(own <= 0.0, -TOUCH, own)
     found = _at_poses(poses, recording.t, parameters)
-    return found if own is None or is_ours else np.where(own <= 0.0, np.minimum(found, -TOUCH), found)
+    return found if own is None or _is_ours(recording) else np.where(own <= 0.0, np.minimum(found, -TOUCH), found)
 
 
 def _is_ours(recording: Recording) -> bool:

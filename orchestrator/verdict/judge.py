@@ -2,7 +2,6 @@
 
 import math
 from functools import cache
-from typing import Any
 
 import numpy as np
 from pydantic import BaseModel, ConfigDict
@@ -75,20 +74,25 @@ def _check(item: Requirement, recording: Recording, numbers: dict[str, float], f
     if item.signal in recording.signals:
         unit = recording.variables[item.signal].signal.unit
         states = recording.states(item.signal)
-        rows = _rows(item.window, recording, file, where)
-        values, times = recording.signals[item.signal][rows], recording.t[rows]
     elif item.signal in numbers:
         unit, states = NUMBERS[item.signal].unit, {}
         if item.window is not None:
             raise BadInput("a number of the summary has no window", file=file, key=where)
-        values, times = np.array([numbers[item.signal]]), np.array([numbers["duration"]])
     else:
         known = [*recording.signals, *numbers]
         raise BadInput(f"no signal or number of this name{suggestion(item.signal, known)}", file=file, key=where)
     if item.unit is not None and item.unit != unit:
         raise BadInput(f"the limit is in {item.unit}, the signal in {unit}", file=file, key=where)
     limit = _number(item.limit, states, file, where)
-    return _worst(item, values, times, limit, unit, states)
+    worst = _Worst(item, limit)
+    if item.signal in recording.signals:
+        window = _Window(item.window, recording, file, where)
+        for part, first_row, is_last in recording.parts():
+            rows = window.rows(part, first_row, is_last)
+            worst.add(part.signals[item.signal][rows], part.t[rows])
+    else:
+        worst.add(np.array([numbers[item.signal]]), np.array([numbers["duration"]]))
+    return _verdict(item, worst, limit, unit, states)
 
 
 def _unmeasured(item: Requirement, recording: Recording, numbers: dict[str, float]) -> bool:
@@ -134,30 +138,49 @@ def _not_judged(item: Requirement) -> Check:
     )
 
 
-def _worst(item: Requirement, values: Array, times: Array, limit: float, unit: str, states: dict[int, str]) -> Check:
-    """Return the check at the value that decides, the worst or the best; NaN is the worst there is, passes nothing."""
-    value = margin = math.nan
-    when, note, passed = 0.0, "", False
-    if len(values):
-        found = CONDITIONS[item.condition].margin(values, limit)
-        row = int((np.argmax if item.ever else np.argmin)(np.where(np.isnan(found), -np.inf, found)))
-        value, margin, when = float(values[row]), float(found[row]), float(times[row])
-        passed = margin >= 0.0
+class _Worst:
+    """The value that decides, the worst or the best of those that come in parts; NaN is the worst there is."""
+
+    def __init__(self, item: Requirement, limit: float) -> None:
+        self._item, self._limit = item, limit
+        self._rank = 0.0
+        self.value = self.margin = math.nan
+        self.t = 0.0
+        self.is_known = False
+        """There was a value."""
+
+    def add(self, values: Array, times: Array) -> None:
+        """Take further values at ``times`` [s]."""
+        if not len(values):
+            return
+        found = CONDITIONS[self._item.condition].margin(values, self._limit)
+        ranks = np.where(np.isnan(found), -np.inf, found)
+        row = int(np.argmax(ranks) if self._item.ever else np.argmin(ranks))
+        rank = float(ranks[row])
+        if not self.is_known or (rank > self._rank if self._item.ever else rank < self._rank):
+            self._rank, self.value, self.margin = rank, float(values[row]), float(found[row])
+            self.t, self.is_known = float(times[row]), True
+
+
+def _verdict(item: Requirement, worst: _Worst, limit: float, unit: str, states: dict[int, str]) -> Check:
+    """Return the check at the value that decides; not-a-number passes nothing."""
+    if worst.is_known:
+        passed = worst.margin >= 0.0
         unknown = "not known" if item.signal in NUMBERS else "not a number"
-        note = states.get(int(value), "") if math.isfinite(value) else unknown
+        note = states.get(int(worst.value), "") if math.isfinite(worst.value) else unknown
     else:
         note = NEVER
         passed = item.window is not None and item.window.if_never == "pass"
     return Check(
         id=item.id,
         limit=limit,
-        value=value,
+        value=worst.value,
         passed=passed,
         source=item.source,
         unit=unit,
-        margin=margin,
+        margin=worst.margin,
         required=item.required,
-        t=when,
+        t=worst.t,
         signal=item.signal,
         condition=item.condition,
         note=note,
@@ -177,42 +200,72 @@ def _number(limit: float | str, states: dict[int, str], file: str, where: str) -
     raise BadInput(f"{limit!r} is no state{hint}", file=file, key=where)
 
 
-def _rows(window: Window | None, recording: Recording, file: str, where: str) -> Bools:
-    """Return which instants of a run are in a window."""
-    t = recording.t
-    rows = np.ones(len(t), dtype=bool)
-    if window is None:
+class _Window:
+    """Which instants of a run are in a window; asked part by part, in order of time. Raises ``BadInput``."""
+
+    def __init__(self, window: Window | None, recording: Recording, file: str, where: str) -> None:
+        self._window = window
+        self._after: _After | None = None
+        self._phases: list[float] = []
+        if window is None:
+            return
+        if window.after is not None:
+            self._after = _After(window.after, window, recording, file, f"{where}: window.after")
+        if window.phase:
+            if CHART not in recording.signals:
+                raise BadInput(f"the run has no {CHART}", file=file, key=f"{where}: window.phase")
+            states = recording.states(CHART)
+            self._phases = [_number(name, states, file, f"{where}: window.phase") for name in window.phase]
+
+    def rows(self, part: Recording, first_row: int, is_last: bool) -> Bools:
+        """Return which instants of the next part, which begins at ``first_row``, count."""
+        t, window = part.t, self._window
+        rows = np.ones(len(t), dtype=bool)
+        if window is None:
+            return rows
+        if window.from_ is not None:
+            rows &= t >= window.from_
+        if window.to is not None:
+            rows &= t <= window.to
+        if window.at == "end":
+            rows[: -1 if is_last else None] = False
+        if self._after is not None:
+            rows &= self._after.rows(part)
+        if self._phases:
+            rows &= np.isin(part.signals[CHART], self._phases)
         return rows
-    if window.from_ is not None:
-        rows &= t >= window.from_
-    if window.to is not None:
-        rows &= t <= window.to
-    if window.at == "end":
-        rows[:-1] = False
-    if window.after is not None:
-        rows &= _after(window.after, window, recording, file, f"{where}: window.after")
-    if window.phase:
-        phases: Any = recording.signals.get(CHART)
-        if phases is None:
-            raise BadInput(f"the run has no {CHART}", file=file, key=f"{where}: window.phase")
-        wanted = [_number(name, recording.states(CHART), file, f"{where}: window.phase") for name in window.phase]
-        rows &= np.isin(phases, wanted)
-    return rows
 
 
-def _after(moment: Occasion, window: Window, recording: Recording, file: str, where: str) -> Bools:
-    """Return which instants lie in the time after each one at which ``moment`` begins to hold."""
-    if moment.signal not in recording.signals:
-        hint = suggestion(moment.signal, list(recording.signals))
-        raise BadInput(f"no signal of this name{hint}", file=file, key=where)
-    unit = recording.variables[moment.signal].signal.unit
-    if moment.unit is not None and moment.unit != unit:
-        raise BadInput(f"the limit is in {moment.unit}, the signal in {unit}", file=file, key=where)
-    limit = _number(moment.limit, recording.states(moment.signal), file, where)
-    holds = CONDITIONS[moment.condition].margin(recording.signals[moment.signal], limit) >= 0.0
-    begins = np.flatnonzero(holds & ~np.concatenate(([False], holds[:-1])))
-    t, rows = recording.t, np.zeros(len(holds), dtype=bool)
-    for start in t[begins] + window.delay:
-        end = np.inf if window.lasting is None else start + window.lasting
-        rows |= (t >= start - CLOSE) & (t <= end + CLOSE)
-    return rows
+class _After:
+    """Which instants lie in the time after each one at which an occasion begins to hold."""
+
+    def __init__(self, occasion: Occasion, window: Window, recording: Recording, file: str, where: str) -> None:
+        if occasion.signal not in recording.signals:
+            hint = suggestion(occasion.signal, list(recording.signals))
+            raise BadInput(f"no signal of this name{hint}", file=file, key=where)
+        unit = recording.variables[occasion.signal].signal.unit
+        if occasion.unit is not None and occasion.unit != unit:
+            raise BadInput(f"the limit is in {occasion.unit}, the signal in {unit}", file=file, key=where)
+        self._occasion, self._window = occasion, window
+        self._limit = _number(occasion.limit, recording.states(occasion.signal), file, where)
+        self._held = False
+        self._starts: list[float] = []
+        """Of the times that have not ended yet [s]."""
+
+    def rows(self, part: Recording) -> Bools:
+        """Return which instants of the next part are in such a time."""
+        t, lasting = part.t, np.inf if self._window.lasting is None else self._window.lasting
+        rows = np.zeros(len(t), dtype=bool)
+        if not len(t):
+            return rows
+        values = part.signals[self._occasion.signal]
+        holds = CONDITIONS[self._occasion.condition].margin(values, self._limit) >= 0.0
+        begins = np.flatnonzero(holds & ~np.concatenate(([self._held], holds[:-1])))
+        self._held = bool(holds[-1])
+        self._starts += (t[begins] + self._window.delay).tolist()
+        if self._window.lasting is None:
+            self._starts = self._starts[:1]
+        for start in self._starts:
+            rows |= (t >= start - CLOSE) & (t <= start + lasting + CLOSE)
+        self._starts = [start for start in self._starts if start + lasting + CLOSE >= t[-1]]
+        return rows

@@ -34,26 +34,51 @@ class Measure(NamedTuple):
 
 def measured(measure: Measure, recording: Recording, missing: float = float("nan")) -> float:
     """Return the measure of a recorded run; ``missing`` if it has no such signal, or no instant."""
+    found = Gathered(measure.how)
+    for part in recording.parts():
+        values = _counted(measure, part.recording)
+        if values is not None and len(values):
+            found.add(values)
+    return missing if found.value is None else found.value
+
+
+def _counted(measure: Measure, recording: Recording) -> Array | None:
+    """Return the values that count; None if there is no such signal."""
     values = recording.t if measure.how == "time" else recording.signals.get(measure.signal)
     if values is not None and measure.when is not None:
         mode = recording.signals.get(measure.when.signal, np.full(len(recording.t), np.nan))
-        values = values[np.isin(mode, measure.when.values)]
-    return missing if values is None or not len(values) else _of(measure.how, values)
+        return values[np.isin(mode, measure.when.values)]
+    return values
 
 
-def _of(how: How, values: Array) -> float:
-    if how == "travel":
-        changes = np.abs(np.diff(values))
-        return float(np.add.accumulate(changes)[-1]) if len(changes) else 0.0
-    if how == "largest":
-        size = np.abs(values)
-        return float(values[int(np.argmax(np.where(np.isnan(size), np.inf, size)))])
-    return float(
-        {
-            "last": values[-1],
-            "first": values[0],
-            "time": values[0],
-            "greatest": np.max(values),
-            "smallest": np.min(values),
-        }[how]
-    )
+class Gathered:
+    """A measure of values that come in parts: the same bits however they are divided."""
+
+    def __init__(self, how: How) -> None:
+        self._how = how
+        self._last = 0.0
+        self.value: float | None = None
+        """None before there is any value."""
+
+    def add(self, values: Array) -> None:
+        """Take further values, at least one."""
+        before, how = self.value, self._how
+        if how == "travel":
+            changes = np.abs(np.diff(values))
+            if before is not None:
+                changes = np.concatenate(([before, abs(float(values[0]) - self._last)], changes))
+            self.value = float(np.add.accumulate(changes)[-1]) if len(changes) else 0.0
+        elif how == "largest":
+            self.value = _largest(values if before is None else np.concatenate(([before], values)))
+        elif how in ("first", "time"):
+            self.value = float(values[0]) if before is None else before
+        else:
+            known = values if before is None else np.concatenate(([before], values))
+            self.value = float(known[-1] if how == "last" else np.max(known) if how == "greatest" else np.min(known))
+        self._last = float(values[-1])
+
+
+def _largest(values: Array) -> float:
+    """Return the value of the largest size, with its sign; not-a-number counts as infinitely large."""
+    size = np.abs(values)
+    return float(values[int(np.argmax(np.where(np.isnan(size), np.inf, size)))])

@@ -10,8 +10,8 @@ from orchestrator.cosim.recording import Recording
 from orchestrator.cosim.slave import Array
 from orchestrator.scenario import end_condition
 from orchestrator.scenario.scenario import PENETRATION, Scenario
-from orchestrator.verdict.comfort import peak_jerk, standstill_steering
-from orchestrator.verdict.contact import VEHICLE, clearances, depth, has_scene, least
+from orchestrator.verdict.comfort import PeakJerk, StandstillSteering
+from orchestrator.verdict.contact import VEHICLE, contact_facts, has_scene
 from orchestrator.verdict.geometry import described
 from orchestrator.verdict.measures import Measure, measured
 from orchestrator.verdict.standing import in_frames, kerb_distances, slot_margin
@@ -102,9 +102,9 @@ def facts_of(recording: Recording, scenario: Scenario) -> Facts:
     found = {
         measure: np.array([measured(measure, recording)])
         for measure in MEASURES
-        if len(recording.signals.get(measure.signal, ()))
+        if recording.count and measure.signal in recording.signals
     }
-    duration = np.array([float(recording.t[-1]) if len(recording.t) else 0.0])
+    duration = np.array([recording.duration])
     truth = truth_of(scenario, described(scenario, recording.parameters_of(VEHICLE)))
     made = {name: float(values[0]) for name, values in numbers(duration, found, truth).items()}
     has = {name for name, rows in truth.has().items() if rows[0]}
@@ -120,20 +120,29 @@ def things_of(scenario: Scenario, vehicle: Mapping[str, float]) -> set[str]:
 
 def of_whole_run(recording: Recording, scenario: Scenario) -> dict[str, float]:
     """Return the duration, and the numbers ``OF_WHOLE_RUNS``, which nothing that is kept of a run tells."""
-    duration = float(recording.t[-1]) if len(recording.t) else 0.0
-    near = clearances(recording, scenario)
-    speed, wheel = (recording.signals.get(name) for name in OF_WHOLE_RUNS["standstill_steering"])
-    driven = speed is not None and len(speed) > 0
+    near = contact_facts(recording, scenario)
+    jerk, turns = _comfort(recording)
     return {
-        "duration": duration,
-        "min_clearance": least(near.scene),
-        "polygon_clearance": least(near.polygons) if scenario.polygons else math.nan,
-        PENETRATION: depth(near.nearest),
-        "peak_jerk": peak_jerk(recording.t, speed) if speed is not None and driven else math.nan,
-        "standstill_steering": (
-            standstill_steering(speed, wheel) if speed is not None and driven and wheel is not None else math.nan
-        ),
+        "duration": recording.duration,
+        "min_clearance": near.scene,
+        "polygon_clearance": near.polygons if scenario.polygons else math.nan,
+        PENETRATION: near.depth,
+        "peak_jerk": jerk,
+        "standstill_steering": turns,
     }
+
+
+def _comfort(recording: Recording) -> tuple[float, float]:
+    """Return peak jerk [m/s3] and how often the wheel is turned at standstill; NaN where that is not known."""
+    jerk, turns = PeakJerk(), StandstillSteering()
+    names = OF_WHOLE_RUNS["standstill_steering"]
+    has_speed, has_wheel = (recording.count > 0 and name in recording.signals for name in names)
+    for part, _, _ in recording.parts() if has_speed else ():
+        speed = part.signals[names[0]]
+        jerk.add(part.t, speed)
+        if has_wheel:
+            turns.add(speed, part.signals[names[1]])
+    return jerk.value, turns.value if has_speed and has_wheel else math.nan
 
 
 def numbers(durations: Array, found: Mapping[Measure, Array], truth: Truth) -> dict[str, Array]:

@@ -14,7 +14,7 @@ from orchestrator.cosim.recording import Recording
 from orchestrator.scenario.end_condition import SPEED
 from orchestrator.scenario.scenario import DONE, PENETRATION, Outcome, Scenario
 from orchestrator.text.quantities import DEGREE
-from orchestrator.verdict.contact import VEHICLE, clearances, first_contact, low_kerb_time
+from orchestrator.verdict.contact import VEHICLE, contact_facts
 from orchestrator.verdict.frame import in_frame, pose_of
 from orchestrator.verdict.geometry import described
 from orchestrator.verdict.judge import Check, judge
@@ -208,7 +208,9 @@ def summarize(recording: Recording, scenario: Scenario, wall_time: float, note: 
     facts = facts_of(recording, scenario)
     numbers, checks = facts.numbers, judge(scenario.limits, recording, facts, scenario.file)
     outcome, reason = _outcome(recording, scenario, checks)
-    said = (note, *_contact(recording, scenario, numbers), _told_otherwise(recording, scenario))
+    events = _events(recording)
+    many = f"only the first {MOST_EVENTS} changes of phase are listed" if len(events) == MOST_EVENTS else ""
+    said = (note, *_contact(recording, scenario, numbers), _told_otherwise(recording, scenario), many)
     return Summary(
         scenario=scenario.name,
         changed=scenario.changed,
@@ -221,7 +223,7 @@ def summarize(recording: Recording, scenario: Scenario, wall_time: float, note: 
         penetration=numbers[PENETRATION],
         standstill_steering=_count(numbers["standstill_steering"]),
         final=Final(**{name: numbers[f"final.{name}"] for name in Final.model_fields}),
-        events=_events(recording),
+        events=events,
         checks=checks,
         fmus=[FmuUsed(**item) for item in recording.info.get("fmus", [])],
         wall_time=wall_time,
@@ -236,22 +238,32 @@ def summarize(recording: Recording, scenario: Scenario, wall_time: float, note: 
 
 
 def phase_changes(recording: Recording) -> list[tuple[int, str, str]]:
-    """Return (row, from, to) of every change of phase."""
-    phases = recording.signals.get("controller.phase")
-    if phases is None or not len(phases):
+    """Return (row, from, to) of the changes of phase, at most ``MOST_EVENTS`` of them."""
+    if CHART not in recording.signals:
         return []
-    names = recording.states("controller.phase")
-    rows = np.flatnonzero(np.diff(phases)) + 1
-    return [(int(row), state_name(names, phases[row - 1]), state_name(names, phases[row])) for row in rows]
+    names = recording.states(CHART)
+    found: list[tuple[int, str, str]] = []
+    before: list[float] = []
+    for part, first_row, _ in recording.parts():
+        phases = np.concatenate((before, part.signals[CHART]))
+        rows = np.flatnonzero(np.diff(phases)) + 1
+        shift = first_row - len(before)
+        found += [
+            (int(row) + shift, state_name(names, phases[row - 1]), state_name(names, phases[row]))
+            for row in rows[: MOST_EVENTS - len(found)]
+        ]
+        before = phases[-1:].tolist()
+    return found
 
 
 def _events(recording: Recording) -> list[Event]:
-    t = recording.t
-    empty = np.zeros(len(t))
-    x, y, heading = (recording.signals.get(f"vehicle.pose.{axis}", empty) for axis in ("x", "y", "heading"))
+    changes = phase_changes(recording)
+    there = recording.rows([row for row, _, _ in changes]) if changes else recording
+    empty = np.zeros(len(changes))
+    x, y, heading = (there.signals.get(f"vehicle.pose.{axis}", empty) for axis in ("x", "y", "heading"))
     return [
-        Event(t=float(t[row]), from_=before, to=after, x=float(x[row]), y=float(y[row]), heading=float(heading[row]))
-        for row, before, after in phase_changes(recording)
+        Event(t=float(t), from_=before, to=after, x=float(x[place]), y=float(y[place]), heading=float(heading[place]))
+        for place, (t, (_, before, after)) in enumerate(zip(there.t, changes, strict=False))
     ]
 
 
@@ -281,6 +293,9 @@ def _outcome(recording: Recording, scenario: Scenario, checks: list[Check]) -> t
     return found
 
 
+CHART = "controller.phase"
+MOST_EVENTS = 10_000
+"""Changes of phase in a summary; a chart that changes more often is out of order."""
 FAR_FROM_TARGET = 0.5
 """A car further than this [m] from its target: the headline says so."""
 ALLOWED_CONTACT = "in contact, which the scenario allows (contact_allowed)"
@@ -311,8 +326,8 @@ def _contact(recording: Recording, scenario: Scenario, numbers: dict[str, float]
     """Return when the car touches something first, how fast and how deep; and a wheel at a low kerb."""
     if not numbers[PENETRATION] > 0.0 and numbers["min_clearance"] != 0.0:
         return []
-    found = clearances(recording, scenario)
-    touched, low = first_contact(recording, found), low_kerb_time(recording, found)
+    found = contact_facts(recording, scenario)
+    touched, low = found.first, found.low_kerb_time
     said = []
     if touched is not None:
         speed = "" if math.isnan(touched.speed) else f" at {touched.speed:.2f} m/s"

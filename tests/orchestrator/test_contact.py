@@ -23,7 +23,7 @@ from orchestrator.session.session import run_scenario
 from orchestrator.steptest.run import run_step_test
 from orchestrator.steptest.step_test import load_step_test
 from orchestrator.suite.junit import cases_of
-from orchestrator.verdict.contact import clearances, depth, least
+from orchestrator.verdict.contact import clearance_parts, contact_facts
 from orchestrator.verdict.geometry import CarOutline
 from orchestrator.verdict.polygons import polygon_clearances
 from orchestrator.verdict.standing import beyond_ends, slot_margin
@@ -160,8 +160,8 @@ def test_a_log_of_an_older_version_has_zero_in_contact(through_box: Any) -> None
     older["vehicle.clearance"] = np.maximum(older["vehicle.clearance"], 0.0)
     read = Recording(recording.t_ns, older, recording.parameters, recording.variables, recording.info)
     assert summarize(read, through("limits=[]"), 0.0).reason == "contact"
-    found = clearances(read, through("limits=[]"))
-    assert least(found.scene) == -depth(found.nearest) < 0.0
+    found = contact_facts(read, through("limits=[]"))
+    assert found.scene == -found.depth < 0.0
 
 
 def parted(a: Any, b: Any) -> float:
@@ -252,7 +252,8 @@ def test_which_end_of_the_slot_is_passed(turn: float) -> None:
 def test_clearance_by_poses_is_the_one_that_the_vehicle_puts_out(things: str) -> None:
     recording, _ = driven(through("limits=[]", things=things))
     own = recording.signals["vehicle.clearance"]
-    found = clearances(without(recording, "vehicle.clearance"), through(things=things)).scene
+    ((_, distances),) = clearance_parts(without(recording, "vehicle.clearance"), through(things=things))
+    found = distances.scene
     assert np.abs(found - own).max() < 0.03
     near = own <= 0.0
     assert np.abs(found - own)[near].max(initial=0.0) < 1e-9

@@ -63,8 +63,8 @@ def test_what_cannot_be_is_refused(setting: str, tmp_path: Path, capsys: pytest.
 
 def test_a_run_of_terabytes_is_refused_and_a_long_one_told() -> None:
     assert told_cost(6001, 250) == ""
-    assert "up to 30 GB of memory" in told_cost(5_000_000, 250)
-    with pytest.raises(BadInput, match="TB of memory"):
+    assert "up to 3 GB of log and 10 GB of scratch space" in told_cost(5_000_000, 250)
+    with pytest.raises(BadInput, match="TB of log"):
         told_cost(10**12, 250)
 
 

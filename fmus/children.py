@@ -46,16 +46,18 @@ def run_child(command: Sequence[str], folder: Path | None = None, environment: M
     return subprocess.CompletedProcess(command, child.returncode, output, errors)
 
 
-def own_process(module: str, folder: Path | None = None, errors: Any = None) -> "subprocess.Popen[bytes]":
+def own_process(
+    module: str, folder: Path | None = None, errors: Any = None, wrapper: Sequence[str] = ()
+) -> "subprocess.Popen[bytes]":
     """Return a process that runs ``main()`` of a module of ours; it talks through its standard streams, in bytes.
 
-    What it writes as errors goes into a pipe too, unless a file is named. Whoever asked for it puts it into ``LIVING``
-    and takes it out. Ctrl-C does not reach it.
+    ``wrapper`` begins the command, as ``bwrap --``. What it writes as errors goes into a pipe too, unless a file is
+    named. Whoever asked for it puts it into ``LIVING`` and takes it out. Ctrl-C does not reach it.
     """
     import subprocess
 
     pipe = subprocess.PIPE
-    command = [PYTHON, "-P", "-c", BEGIN.format(module=module), str(ROOT)]
+    command = [*wrapper, PYTHON, "-P", "-c", BEGIN.format(module=module), str(ROOT)]
     group: dict[str, Any] = {"start_new_session": True} if os.name == "posix" else {}
     streams: dict[str, Any] = {"stdin": pipe, "stdout": pipe, "stderr": errors or pipe}
     return subprocess.Popen(command, cwd=folder, bufsize=0, **streams, **group)

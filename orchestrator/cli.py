@@ -1,6 +1,7 @@
 """The command ``apa``: imports the command that is chosen and turns errors into exit codes."""
 
 import argparse
+import errno
 import gc
 import io
 import os
@@ -27,6 +28,10 @@ EPILOG = """examples:
 exit codes: 0 parked or done, 1 judged and not parked, 2 bad input or a place that cannot be read or written,
 3 internal error (the traceback is kept in a file), 130 interrupted
 """
+BAD_INPUT, INTERNAL_ERROR = 2, 3
+MIN_ADDRESS_SPACE = 256 << 20
+SCARCE = frozenset({errno.ENOMEM, errno.EMFILE, errno.ENFILE, errno.EAGAIN})
+SCARCE_TEXTS = ("Cannot allocate memory", "cannot allocate memory", "failed to map segment", "can't start new thread")
 SPARING = {"OPENBLAS_NUM_THREADS": "1", "PYDANTIC_DISABLE_PLUGINS": "__all__"}
 """Set unless they are set: numpy's threads, that nothing here needs, take a tenth of a second to begin; to look for
 plugins takes pydantic 20 ms."""
@@ -45,9 +50,44 @@ def _program() -> int:
     """
     gc.set_threshold(20_000, 20, 50)
     try:
+        if _address_space() < MIN_ADDRESS_SPACE:
+            text = f"the limit of memory (ulimit -v) is below the {MIN_ADDRESS_SPACE >> 20} MiB that apa needs"
+            return _last_words(text, BAD_INPUT)
         return _command(sys.argv[1:])
+    except (Exception, KeyboardInterrupt) as error:
+        if _is_scarce(error):
+            return _last_words("this takes more memory, files or threads than there are", BAD_INPUT)
+        return _last_words(f"internal error, nothing was judged: {type(error).__name__}: {error}", INTERNAL_ERROR)
     finally:
         gc.freeze()
+
+
+def _address_space() -> int:
+    """Return how many bytes this process may address; many where the system has no limit."""
+    try:
+        import resource
+    except ImportError:
+        return 1 << 62
+    soft, _ = resource.getrlimit(resource.RLIMIT_AS)
+    return 1 << 62 if soft == resource.RLIM_INFINITY else int(soft)
+
+
+def _is_scarce(error: BaseException | None) -> bool:
+    """Return whether an error, or one that led to it, is for want of memory, files or threads."""
+    while error is not None:
+        wants = isinstance(error, OSError) and error.errno in SCARCE
+        if isinstance(error, MemoryError) or wants or any(text in str(error) for text in SCARCE_TEXTS):
+            return True
+        error = error.__cause__ or error.__context__
+    return False
+
+
+def _last_words(text: str, code: int) -> int:
+    """Write a line with what is imported already, as there may be no memory for more; return the exit code."""
+    line = " ".join(text.split())[:500]
+    with suppress(OSError):
+        os.write(2, f"apa: {line}\n".encode(errors="backslashreplace"))
+    return code
 
 
 def _command(words: list[str]) -> int:
@@ -55,13 +95,17 @@ def _command(words: list[str]) -> int:
         os.environ.setdefault(name, value)
     os.environ["MPLBACKEND"] = "agg"  # a notebook's backend may be absent here, and nothing here opens a window
     _tolerant_streams()
-    with ended_in_time() as interrupted:
+    from orchestrator.text.console import printable_streams
+
+    with printable_streams(), ended_in_time() as interrupted:
         try:
             try:
                 return _run(words)
             finally:
                 sys.stdout.flush()
         except (Exception, KeyboardInterrupt) as error:
+            if _is_scarce(error) and not interrupted.is_set():
+                error = MemoryError() if not isinstance(error, OSError) else error
             from orchestrator.text.failures import explained
 
             code, line = explained(KeyboardInterrupt() if interrupted.is_set() else error, words)
@@ -151,9 +195,11 @@ class _Version(argparse.Action):
 @contextmanager
 def _as_asked(parsed: argparse.Namespace) -> Iterator[None]:
     """With ``--quiet`` nothing is printed but errors, and JSON if requested."""
+    from orchestrator.session.trust import POLICY
     from orchestrator.text.console import COMMAND, QUIET
 
     token = QUIET.set(parsed.quiet)
+    policy = POLICY.set("remember" if getattr(parsed, "trust", False) else "ask")
     COMMAND.set(shlex.join(["apa", *parsed.words]))
     try:
         if parsed.quiet and not getattr(parsed, "json", False):
@@ -163,6 +209,7 @@ def _as_asked(parsed: argparse.Namespace) -> Iterator[None]:
             yield
     finally:
         QUIET.reset(token)
+        POLICY.reset(policy)
 
 
 def _complain(text: str) -> None:

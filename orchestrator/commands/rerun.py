@@ -9,7 +9,8 @@ from orchestrator.commands.run.once import execute
 from orchestrator.cosim.recording import Recording
 from orchestrator.log.read_log import log_file, read_log
 from orchestrator.session.foreign import FOREIGN, Foreign, sha256_of
-from orchestrator.session.options import TIMEOUT, add_output_arguments
+from orchestrator.session.options import add_output_arguments
+from orchestrator.session.trust import require_trust
 from orchestrator.text.console import console, say
 from orchestrator.text.errors import BAD_INPUT, BadInput
 from orchestrator.verdict.logged import logged
@@ -44,12 +45,13 @@ def run(arguments: argparse.Namespace) -> int:
     used = [FmuUsed(**item) for item in first.info.get("fmus", [])]
     changed = [item.name for item in used if item.kind == FOREIGN and not _is_same_file(item, log)]
     files = {item.name: Path(item.path) for item in used if item.kind == FOREIGN}
+    require_trust(log, map(str, files.values()))
     kinds = {item.kind for item in used} - {FOREIGN}
     arguments.fmus = kinds.pop() if len(kinds) == 1 else "none"
     out: Path = arguments.out or log.parent.with_name(f"{log.parent.resolve().name}-rerun")
     for name in changed:
         say(f"apa: warning: the FMU of {name} has changed since")
-    done = execute(arguments, scenario, Foreign(files, timeout=TIMEOUT), out)
+    done = execute(arguments, scenario, Foreign(files), out)
     different = differing_signals(first, done.recording)
     if not arguments.json:
         text = f"differs from the log in {', '.join(different[:8])}" if different else "identical to the log"

@@ -13,8 +13,9 @@ from lxml import etree
 from modelkit.model import Model
 from modelkit.signal import Role, Signal
 from modelkit.variables import Variable, variables
+from orchestrator.cosim.declared import check_declared
 from orchestrator.cosim.slave import Ports, Scale
-from orchestrator.text.errors import BadInput
+from orchestrator.text.errors import BadInput, shown
 
 WHOLE = ("Int8", "UInt8", "Int16", "UInt16", "Int32", "UInt32", "Int64", "UInt64")
 KINDS: dict[str, type] = {
@@ -49,13 +50,14 @@ def read_description(path: Path) -> ModelDescription:
     names = Counter(item.name for item in description.modelVariables)
     twice = next((name for name, count in names.items() if count > 1), None)
     if twice is not None:
-        raise BadInput(f"is not an FMU: it has {names[twice]} variables called {twice!r}", file=path)
+        raise BadInput(f"is not an FMU: it has {names[twice]} variables called {shown(twice)}", file=path)
     version = str(description.fmiVersion)
     if not version.startswith(("2.", "3.")):
         raise BadInput(f"is FMI {version}; expected FMI 2.0 or 3.0", file=path)
     if description.coSimulation is None:
         other = "Model Exchange" if description.modelExchange is not None else "Scheduled Execution"
         raise BadInput(f"is an FMU for {other} only; export it for Co-Simulation", file=path)
+    check_declared(description, path)
     return description
 
 
@@ -186,7 +188,7 @@ def _variable(scalar: ModelVariable, name: str, written: object, known: Variable
     try:
         start = kind(float({"true": "1", "false": "0"}.get(text.lower(), text)))
     except (ValueError, OverflowError):
-        raise BadInput(f"{text!r} is no start value of type {scalar.type}", file=path, key=name) from None
+        raise BadInput(f"{shown(text)} is no start value of type {scalar.type}", file=path, key=name) from None
     unit = _unit(scalar) or ("1" if known is None else known.signal.unit)
     states = _states(scalar, known if known is not None and known.kind is kind else None)
     roles = frozenset({Role.LOCAL} if scalar.causality == "local" else ())

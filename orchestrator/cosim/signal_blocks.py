@@ -9,6 +9,7 @@ import os
 import tempfile
 import weakref
 from collections.abc import Iterator, Mapping, Sequence
+from itertools import pairwise
 from typing import IO, Any, NamedTuple
 
 import numpy as np
@@ -40,7 +41,12 @@ class _Block(NamedTuple):
     """Of each column: place in ``DTYPES``, or ``CONSTANT``."""
     places: NDArray[np.int64]
     """Of each column in the file."""
-    constants: Array
+    first: Array
+    """The first row; all there is of a constant column."""
+    last: Array
+    """The last row."""
+    changes: NDArray[np.int64]
+    """Of each column: how often it changes within the block."""
 
 
 class SignalBlocks:
@@ -106,6 +112,26 @@ class SignalBlocks:
         """Return first row and end of each block."""
         return [(block.first_row, block.first_row + block.rows) for block in self._blocks]
 
+    def changes(self) -> dict[str, int]:
+        """Return how often each stored signal changes."""
+        counts = sum((block.changes for block in self._blocks), np.zeros(len(self.names), dtype=np.int64))
+        for before, after in pairwise(self._blocks):
+            counts = counts + (before.last.view(np.int64) != after.first.view(np.int64))
+        return {name: int(counts[place]) for name, place in self.places.items()}
+
+    def change_rows(self, name: str) -> NDArray[np.intp]:
+        """Return the rows at which a stored signal has another value than in the row before."""
+        place, found = self.places[name], []
+        before: _Block | None = None
+        for block in self._blocks:
+            if before is not None and before.last[place].tobytes() != block.first[place].tobytes():
+                found.append(np.array([block.first_row]))
+            if block.changes[place]:
+                bits = self._read(block, place, 0, block.rows).view(np.int64)
+                found.append(block.first_row + 1 + np.flatnonzero(bits[1:] != bits[:-1]))
+            before = block
+        return np.concatenate([np.empty(0, dtype=np.intp), *found])
+
     def column(self, name: str, first: int = 0, end: int | None = None) -> Array:
         """Return values of a stored signal, from row ``first`` up to ``end``."""
         end = self.count if end is None else end
@@ -143,7 +169,7 @@ class SignalBlocks:
     def _read(self, block: _Block, place: int, begin: int, stop: int) -> Array:
         kind = int(block.dtypes[place])
         if kind == CONSTANT:
-            return np.full(stop - begin, block.constants[place])
+            return np.full(stop - begin, block.first[place])
         return self._values(int(block.places[place]), DTYPES[kind], begin, stop).astype(np.float64, copy=False)
 
     def _values(self, at: int, dtype: str, begin: int, stop: int) -> NDArray[Any]:
@@ -193,13 +219,16 @@ class SignalBlocks:
         at += self._scratch.write(times.tobytes())
         width = len(self.names)
         dtypes, places = np.zeros(width, dtype=np.uint8), np.zeros(width, dtype=np.int64)
+        changes = np.zeros(width, dtype=np.int64)
         for place in range(width):
             values = np.ascontiguousarray(rows[:, place])
             dtypes[place], places[place] = _dtype_of(values), at
+            bits = values.view(np.int64)
+            changes[place] = np.count_nonzero(bits[1:] != bits[:-1])
             if dtypes[place] != CONSTANT:
                 at += self._scratch.write(values.astype(DTYPES[dtypes[place]], copy=False).tobytes())
-        span = int(times[0]), int(times[-1])
-        self._blocks.append(_Block(first_row, len(times), *span, start, dtypes, places, rows[0].copy()))
+        span, ends = (int(times[0]), int(times[-1])), (rows[0].copy(), rows[-1].copy())
+        self._blocks.append(_Block(first_row, len(times), *span, start, dtypes, places, *ends, changes))
 
 
 def _dtype_of(values: Array) -> int:

@@ -4,7 +4,7 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from orchestrator.cosim.recording import Recording
+from orchestrator.cosim.recording import Recording, StoredRecording
 from orchestrator.cosim.slave import Array, Indices
 
 MAX_VALUES = 3_000_000
@@ -19,27 +19,21 @@ def decimated(recording: Recording, keep: Iterable[float] = ()) -> Recording:
     The run is divided into equal spans. Of each, the instants of the smallest and the largest value of every curve are
     kept, and every change of a signal that changes seldom; also the instants next to the times ``keep`` [s].
     """
-    if not recording.is_stored:
+    if not isinstance(recording, StoredRecording):
         return recording
-    changes = _changes(recording)
+    changes = recording.blocks.changes()
     steps = _stepping(changes)
     curves = [name for name, count in changes.items() if count and name not in steps]
     kept_rows = max(2, MAX_VALUES // max(1, len(changes)))
     span = max(1, -(-recording.count * max(1, len(curves)) * 2 // kept_rows))
-    times = np.array(sorted(keep))
     found = [np.array([0, recording.count - 1])]
-    before: dict[str, float] = {}
+    for name in steps:
+        rows = recording.blocks.change_rows(name)
+        found += [rows, rows - 1]
     for part, first_row, _ in recording.parts():
-        found.append(first_row + np.clip(np.searchsorted(part.t, times[_within(times, part.t)]), 0, part.count - 1))
-        for name in steps:
-            values = part.signals[name]
-            rows = _change_rows(values, before.get(name, values[0]))
-            found += [first_row + rows, first_row + rows - 1]
-            before[name] = float(values[-1])
-        for name in curves:
-            found.append(first_row + _extremes(part.signals[name], span))
-    rows = np.unique(np.concatenate(found))
-    return recording.rows(rows[(rows >= 0) & (rows < recording.count)])
+        found += [first_row + _extremes(part.signals[name], span) for name in curves]
+    found.append(np.array([min(recording.row_at(t), recording.count - 1) for t in keep], dtype=np.intp))
+    return recording.rows(np.unique(np.concatenate(found)))
 
 
 def deviation(recording: Recording, shown: Recording, names: list[str]) -> float:
@@ -61,23 +55,6 @@ def _range(values: Array) -> tuple[float, float]:
     return (float(finite.min()), float(finite.max())) if len(finite) else (0.0, 0.0)
 
 
-def _within(times: Array, t: Array) -> slice:
-    low, high = np.searchsorted(times, (t[0], t[-1]))
-    return slice(int(low), int(high) + 1)
-
-
-def _changes(recording: Recording) -> dict[str, int]:
-    """Return how often each signal changes."""
-    counts = dict.fromkeys(recording.signals, 0)
-    before: dict[str, float] = {}
-    for part, _, _ in recording.parts():
-        for name in counts:
-            values = part.signals[name]
-            counts[name] += len(_change_rows(values, before.get(name, values[0])))
-            before[name] = float(values[-1])
-    return counts
-
-
 def _stepping(changes: dict[str, int]) -> set[str]:
     """Return the signals whose changes are all kept: those that change most seldom."""
     chosen, rows = set(), 0
@@ -86,12 +63,6 @@ def _stepping(changes: dict[str, int]) -> set[str]:
         if count and rows <= MAX_STEP_ROWS:
             chosen.add(name)
     return chosen
-
-
-def _change_rows(values: Array, before: float) -> Indices:
-    """Return the rows at which a signal has another value than just before."""
-    earlier = np.concatenate(([before], values[:-1]))
-    return np.flatnonzero((values != earlier) & ~(np.isnan(values) & np.isnan(earlier)))
 
 
 def _extremes(values: Array, span: int) -> Indices:

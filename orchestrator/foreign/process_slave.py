@@ -7,6 +7,8 @@ a step: see ``worker``.
 import json
 import mmap
 import os
+import secrets
+import select
 import signal
 import subprocess
 import threading
@@ -27,12 +29,16 @@ from orchestrator.cosim.python_fmu import instantiation_message
 from orchestrator.cosim.slave import Indices, Ports
 from orchestrator.foreign import worker
 from orchestrator.foreign.archive import binary, checked, unpack
+from orchestrator.foreign.limits import FmuLimits
+from orchestrator.foreign.sandbox import sandboxed
 from orchestrator.text.errors import RESOURCES, NotRunError, RunError
+from orchestrator.text.printable import printable
 
 LAST = 2.0
 """For a process to end that has nothing to say any more [s]."""
 LOOK = 0.05
 """Between two looks at the clock [s]."""
+ANSWERS = (worker.DONE, worker.REFUSED, worker.MESSAGE)
 LogCallback = Callable[[str, int, str], None]
 
 
@@ -68,7 +74,7 @@ class ProcessSlave:
         log: LogCallback,
         model: Model | None = None,
         *,
-        timeout: float,
+        limits: FmuLimits,
     ) -> None:
         self.name = name
         self.path = path
@@ -91,7 +97,7 @@ class ProcessSlave:
             self.parameters.values[self.parameters.index[key]] = float(value)
         self._changed = list(parameters)
         self._log = log
-        self._timeout = timeout
+        self._limits = limits
         self._folder: Path | None = None
         self._process: _Process | None = None
         self._is_running = self._is_fresh = False
@@ -115,7 +121,7 @@ class ProcessSlave:
         except Exception as error:
             raise NotRunError(f"{self.path.name} cannot be unpacked: {error}") from error
         place = self._folder / "fmu" / library
-        self._process = _Process(place.parent, self._folder / "printed")
+        self._process = _Process(place.parent, self._folder, self._limits)
         resources = self._folder / "fmu" / "resources"
         self._shared = _Shared(self._folder / "shared", len(self._in.order), len(self._out.order))
         asked = {
@@ -127,6 +133,7 @@ class ProcessSlave:
             "resources": f"{resources}{os.sep}" if self._version == 3 else resources.as_uri(),
             "inputs": self._in.groups,
             "outputs": self._out.groups,
+            "memory": self._limits.memory,
         }
         self._ask(worker.LOAD, json.dumps(asked).encode(), "while loading")
         if self._changed:
@@ -180,7 +187,7 @@ class ProcessSlave:
         """Have the FMU terminated and freed, and end its process."""
         if self._process is not None:
             process, self._process = self._process, None
-            process.close(min(self._timeout, 5.0))
+            process.close(min(self._limits.step_timeout, 5.0))
         self._shared = None
         if self._folder is not None:
             remove_folder(self._folder)
@@ -190,7 +197,7 @@ class ProcessSlave:
         """Wait until an order is done. Raises ``RunError`` if the FMU refuses, crashes, leaves or takes too long."""
         assert self._process is not None
         try:
-            self._process.ask(order, data, self._timeout, self._heard)
+            self._process.ask(order, data, self._limits.step_timeout, self._heard)
         except _NoAnswerError as error:
             when = when or f"in the step at {self._t_ns / 1e9:g} s"
             made = NotRunError if order == worker.LOAD or error.is_from_outside else RunError
@@ -242,41 +249,52 @@ class _NoAnswerError(Exception):
 class _Process:
     """A worker, its pipes, and who watches the clock."""
 
-    def __init__(self, folder: Path, printed: Path) -> None:
-        self._printed = printed
-        with printed.open("wb") as output:
-            self._child = own_process("orchestrator.foreign.worker", folder, output)
+    def __init__(self, folder: Path, room: Path, limits: FmuLimits) -> None:
+        self._printed = room / "printed"
+        wrapper = sandboxed(room) if limits.is_sandboxed else []
+        with self._printed.open("wb") as output:
+            self._child = own_process("orchestrator.foreign.worker", folder, output, wrapper)
         LIVING.add(self._child)
         assert self._child.stdin is not None
         assert self._child.stdout is not None
         self._pipes = self._child.stdin, self._child.stdout
-        self._writing, self._answers = self._pipes[0].fileno(), worker.Stream(self._pipes[1].fileno())
+        self._writing = self._pipes[0].fileno()
+        self._answers = worker.Stream(self._pipes[1].fileno(), worker.MAX_ANSWER, self._waiting())
+        self._number = secrets.randbits(62)
         self._deadline = float("inf")
+        self._left, self._run_timeout = limits.run_timeout, limits.run_timeout
         self._is_late = False
         self._over = threading.Event()
         threading.Thread(target=self._watch, daemon=True).start()
 
     def ask(self, order: bytes, data: bytes, limit: float, heard: Callable[[int, str], None]) -> None:
         """Wait until an order is done; messages that come before that go to ``heard``."""
-        self._deadline = time.monotonic() + limit
+        begun = time.monotonic()
+        self._deadline = begun + min(limit, self._left)
+        self._number += 1
         try:
-            worker.send(self._writing, order, data)
+            worker.send(self._writing, order, self._number, data)
             while True:
-                letter, answer = self._answers.message()
+                letter, number, answer = self._answers.message()
+                if number != self._number or letter not in ANSWERS:
+                    raise worker.ForeignAnswerError
                 if letter == worker.DONE:
                     return
-                said = json.loads(answer)
+                what, status, text = answer_of(letter, answer)
                 if letter == worker.REFUSED:
-                    what, _, text = said
                     raise _NoAnswerError(f"{what}: {text or 'no message'}".replace("{", "{{").replace("}", "}}"))
-                heard(*said)
+                heard(status, text)
         except (OSError, EOFError):
             raise self._gone(limit) from None
+        except worker.ForeignAnswerError:
+            raise self._interfered() from None
         finally:
             self._deadline = float("inf")
+            self._left -= time.monotonic() - begun
 
     def close(self, limit: float) -> None:
         """Let the worker end; end it if it does not."""
+        self._left = max(self._left, limit)
         with suppress(_NoAnswerError):
             self.ask(worker.CLOSE, b"", limit, lambda status, text: None)
         self._over.set()
@@ -290,12 +308,33 @@ class _Process:
         self._pipes[1].close()
         LIVING.discard(self._child)
 
+    def _waiting(self) -> Callable[[], None]:
+        """Return what waits for an answer, or for the end of the time: others may keep the pipe open."""
+        if not hasattr(select, "poll"):
+            return lambda: None
+        answers = select.poll()
+        answers.register(self._pipes[1].fileno(), select.POLLIN)
+
+        def wait() -> None:
+            while not answers.poll(1000.0 * LOOK):
+                if self._is_late:
+                    raise EOFError
+
+        return wait
+
     def _watch(self) -> None:
         while not self._over.wait(LOOK):
             if time.monotonic() > self._deadline:
                 self._is_late = True
                 end(self._child)
                 return
+
+    def _interfered(self) -> _NoAnswerError:
+        end(self._child)
+        self._child.wait()
+        found = _NoAnswerError("wrote into the pipe of its process {when}, so nothing that it gave can be trusted")
+        found.is_from_outside = True
+        return found
 
     def _gone(self, limit: float) -> _NoAnswerError:
         try:
@@ -304,12 +343,42 @@ class _Process:
             end(self._child)
             self._child.wait()
             return _NoAnswerError("closed the pipes of its process {when}")
-        printed = self._printed.read_bytes()[-2000:].decode(errors="replace").strip().splitlines()
-        words = f"; it printed: {printed[-1][:300]}".replace("{", "{{").replace("}", "}}") if printed else ""
         if self._is_late:
+            if limit > self._left:
+                return _NoAnswerError(f"took more than {self._run_timeout:g} s in all {{when}}, so it was ended")
             return _NoAnswerError(f"took more than {limit:g} s {{when}}, so it was ended")
+        printed = _last_line(self._printed)
+        words = f"; it printed: {printed}".replace("{", "{{").replace("}", "}}") if printed else ""
         if code < 0:
-            found = _NoAnswerError(f"crashed {{when}} ({signal.Signals(-code).name}){words}")
+            found = _NoAnswerError(f"crashed {{when}} ({_signal_name(-code)}){words}")
             found.is_from_outside = code == -getattr(signal, "SIGKILL", 0)
             return found
         return _NoAnswerError(f"ended its process {{when}} (exit code {code}){words}")
+
+
+def answer_of(letter: bytes, answer: bytes) -> tuple[str, int, str]:
+    """Return (what was refused, FMI status, text) of an answer. Raises ``ForeignAnswerError`` if it is none."""
+    try:
+        said = json.loads(answer)
+    except (ValueError, RecursionError):
+        raise worker.ForeignAnswerError from None
+    shape = (str, int, str) if letter == worker.REFUSED else (int, str)
+    if not isinstance(said, list) or tuple(map(type, said)) != shape:
+        raise worker.ForeignAnswerError
+    what, status, text = said if letter == worker.REFUSED else ("", *said)
+    return printable(what), status, printable(text)
+
+
+def _last_line(path: Path) -> str:
+    """Return the last line that a process printed, as far as people can read it."""
+    with path.open("rb") as file:
+        file.seek(max(0, path.stat().st_size - 2000))
+        lines = file.read(2000).decode(errors="replace").strip().splitlines()
+    return printable(lines[-1][:300]) if lines else ""
+
+
+def _signal_name(number: int) -> str:
+    try:
+        return signal.Signals(number).name
+    except ValueError:
+        return f"signal {number}"

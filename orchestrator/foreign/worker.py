@@ -1,8 +1,9 @@
 """The process of one FMU: takes orders on its standard input, answers on what was its standard output.
 
-A message is one letter, the length of what follows as four bytes, and that: JSON, or nothing. Numbers lie in a file
-that both have in their memory: time and step, the inputs, the outputs, as doubles. Imports nothing but the standard
-library and ``fmi_calls``, so that a process is there in 30 ms.
+A message is one letter, the number of the order, the length of what follows, and that: JSON, or nothing. An answer
+has the number of its order, which begins anywhere and which no FMU is told, so what an FMU writes into the pipe is no
+answer. Numbers lie in a file that both have in their memory: time and step, the inputs, the outputs, as doubles.
+Imports nothing but the standard library and ``fmi_calls``, so that a process is there in 30 ms.
 
 Orders: ``L`` load, ``P`` parameters, ``I`` enter Initialization Mode, ``R`` exit it, ``O`` give outputs, ``N`` take
 inputs, ``S`` take inputs, step, give outputs, ``s`` the same with the inputs as they were, ``C`` close. Answers: ``=``
@@ -20,43 +21,60 @@ from typing import Any
 
 from orchestrator.foreign import fmi_calls
 
-HEAD = struct.Struct("=ci")
+HEAD = struct.Struct("=cQI")
 TIMES = struct.Struct("=dd")
 DONE, REFUSED, MESSAGE = b"=", b"!", b"M"
-ALL_DONE = HEAD.pack(DONE, 0)
 LOAD, PARAMETERS, INITIALIZE, START, OUTPUTS, INPUTS, STEP, HELD_STEP, CLOSE = (
     letter.encode() for letter in ("L", "P", "I", "R", "O", "N", "S", "s", "C")
 )
-MOST = 1 << 12
+MOST = 1 << 16
 """Bytes that are read at once."""
+MAX_ORDER, MAX_ANSWER = 1 << 26, 1 << 16
+"""Bytes that follow in one message."""
+MAX_TEXT = 2_000
+"""Letters of a message of an FMU; the rest is left out."""
+MAX_MESSAGES = 10_000
+"""Of one FMU in a run; the rest is left out."""
+PRIVATE = range(200, 1000)
+"""Descriptors of the pipes, where the system allows so many: an FMU that writes to a low one does not meet them."""
+
+
+class ForeignAnswerError(Exception):
+    """There is something in the pipe that no worker has written."""
 
 
 class Stream:
     """Messages from a pipe; what was read too much is kept for the next."""
 
-    def __init__(self, handle: int) -> None:
-        self._handle = handle
+    def __init__(self, handle: int, most: int, wait: Callable[[], None] = lambda: None) -> None:
+        self._handle, self._most, self._wait = handle, most, wait
         self._kept = b""
 
-    def message(self) -> tuple[bytes, bytes]:
-        """Return (letter, what follows). Raises ``EOFError`` if there is nobody any more."""
+    def message(self) -> tuple[bytes, int, bytes]:
+        """Return (letter, number of the order, what follows).
+
+        Raises ``EOFError`` if there is nobody any more, ``ForeignAnswerError`` if the length cannot be.
+        """
         while True:
             kept = self._kept
             if len(kept) >= HEAD.size:
-                letter, size = HEAD.unpack_from(kept)
+                letter, number, size = HEAD.unpack_from(kept)
                 whole = HEAD.size + size
+                if size > self._most:
+                    raise ForeignAnswerError
                 if len(kept) >= whole:
                     self._kept = kept[whole:]
-                    return letter, kept[HEAD.size : whole]
+                    return letter, number, kept[HEAD.size : whole]
+            self._wait()
             part = os.read(self._handle, MOST)
             if not part:
                 raise EOFError
             self._kept = kept + part if kept else part
 
 
-def send(handle: int, letter: bytes, data: bytes) -> None:
+def send(handle: int, letter: bytes, number: int, data: bytes) -> None:
     """Write one message."""
-    rest = HEAD.pack(letter, len(data)) + data
+    rest = HEAD.pack(letter, number, len(data)) + data
     while rest:
         rest = rest[os.write(handle, rest) :]
 
@@ -65,7 +83,8 @@ class Worker:
     """One FMU and what it was asked."""
 
     def __init__(self, reading: int, writing: int) -> None:
-        self._orders, self._writing = Stream(reading), writing
+        self._orders, self._writing = Stream(reading, MAX_ORDER), writing
+        self._number = self._messages = 0
         self._fmu: Any = None
         self._worst = 0
         self._last = ""
@@ -88,21 +107,23 @@ class Worker:
         }
         while True:
             try:
-                letter, data = self._orders.message()
+                letter, self._number, data = self._orders.message()
             except EOFError:
                 return
             try:
                 orders[letter](data)
-                os.write(self._writing, ALL_DONE)
+                send(self._writing, DONE, self._number, b"")
             except fmi_calls.RefusedError as error:
                 self._worst = max(self._worst, error.status)
                 word = fmi_calls.WORDS.get(error.status, "")
-                send(self._writing, REFUSED, json.dumps([error.what, error.status, self._last or word]).encode())
+                answer = json.dumps([error.what, error.status, self._last or word]).encode()
+                send(self._writing, REFUSED, self._number, answer)
             if letter == CLOSE:
                 return
 
     def _load(self, data: bytes) -> None:
         asked = json.loads(data)
+        _limit_memory(int(asked["memory"]))
         made = fmi_calls.Fmi3 if asked["version"] == 3 else fmi_calls.Fmi2
         try:
             if hasattr(os, "add_dll_directory"):
@@ -170,14 +191,44 @@ class Worker:
             raise fmi_calls.RefusedError(what, status)
 
     def _say(self, status: int, text: str) -> None:
+        """Pass a message on, as far as there is a sense in it: so many in a run, of so many letters."""
+        text = text if len(text) <= MAX_TEXT else f"{text[:MAX_TEXT]}... ({len(text)} letters)"
         if status > fmi_calls.WARNING:
             self._last = text
-        send(self._writing, MESSAGE, json.dumps([int(status), text]).encode())
+        self._messages += 1
+        if self._messages > MAX_MESSAGES:
+            return
+        if self._messages == MAX_MESSAGES:
+            status, text = fmi_calls.WARNING, f"further messages are left out, as there are {MAX_MESSAGES} already"
+        send(self._writing, MESSAGE, self._number, json.dumps([int(status), text]).encode())
+
+
+def _limit_memory(size: int) -> None:
+    """Let this process have so many bytes of addresses, where the system can limit that."""
+    if sys.platform != "win32":
+        import resource
+
+        _, hard = resource.getrlimit(resource.RLIMIT_AS)
+        most = size if hard == resource.RLIM_INFINITY else min(size, hard)
+        resource.setrlimit(resource.RLIMIT_AS, (most, hard))
+
+
+def _private(handle: int) -> int:
+    """Return a descriptor of the same pipe that is hard to meet by chance, and closed in children."""
+    if sys.platform == "win32":
+        return os.dup(handle)
+    import fcntl
+    import random
+
+    try:
+        return fcntl.fcntl(handle, fcntl.F_DUPFD_CLOEXEC, random.SystemRandom().choice(PRIVATE))
+    except OSError:  # there are not so many
+        return os.dup(handle)
 
 
 def main() -> None:
     """Keep the pipes to oneself, so that what the FMU prints is no answer; leave no core; end with the parent."""
-    reading, writing = os.dup(0), os.dup(1)
+    reading, writing = _private(0), _private(1)
     nothing = os.open(os.devnull, os.O_RDONLY)
     os.dup2(nothing, 0)
     os.dup2(2, 1)

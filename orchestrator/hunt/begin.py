@@ -49,11 +49,9 @@ def begin(study: Study, arguments: argparse.Namespace, out: Path) -> Subject:
 
 
 def _open(journal: Path, about: str, *, resume: bool) -> None:
-    """Make a journal, or go on with one of the same hunt."""
+    """Make a journal, or go on with one of the same hunt; one that has not begun begins."""
     file = journal / "about.json"
-    if resume:
-        if not file.is_file():
-            raise BadInput("there is no hunt to go on with", file=journal, key="--resume")
+    if resume and file.is_file():
         if file.read_text(encoding="utf-8") != about:
             raise BadInput("the runs there are of another hunt, or of other models", file=journal, key="--resume")
         return

@@ -12,6 +12,7 @@ from orchestrator.cosim.description import ports_of, read_description, unsupport
 from orchestrator.cosim.in_process_slave import InProcessSlave
 from orchestrator.cosim.slave import Ports, Slave
 from orchestrator.foreign.archive import binary, checked, packed
+from orchestrator.foreign.limits import FmuLimits
 from orchestrator.scenario.end_condition import EndCondition
 from orchestrator.scenario.load_scenario import load_system
 from orchestrator.scenario.models import MODELS
@@ -116,7 +117,7 @@ def _likeness(path: Path, description: ModelDescription, model: Model) -> float:
 def _fitting(path: Path, place: str, scenario: str, timeout: float) -> Fitting:
     if not scenario and place not in MODELS:
         raise BadInput(f"{place} is neither vehicle nor controller; name a scenario whose system has it", key="--as")
-    found = load_fitting(scenario or "guo2015-case4", [], Foreign({place: path}, timeout=timeout))
+    found = load_fitting(scenario or "guo2015-case4", [], Foreign({place: path}, limits=FmuLimits(timeout)))
     if place not in found.scenario.places:
         raise BadInput(f"no slave of {scenario} is called {place}", key="--as")
     return found

@@ -8,11 +8,13 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from modelkit.variables import Variable
-from orchestrator.scenario.load_scenario import load_scenario, load_system
+from orchestrator.foreign.limits import FmuLimits
+from orchestrator.foreign.sandbox import sandbox_program
+from orchestrator.scenario.load_scenario import load_scenario, load_system, scenario_names
 from orchestrator.scenario.models import MODELS
 from orchestrator.scenario.scenario import Scenario
 from orchestrator.scenario.wiring.system_text import SystemText
-from orchestrator.session.options import TIMEOUT
+from orchestrator.session.trust import require_trust
 from orchestrator.text.errors import BadInput
 
 if TYPE_CHECKING:
@@ -32,8 +34,8 @@ class Foreign(NamedTuple):
     files: Files = MappingProxyType({})
     is_in_process: bool = False
     """Run them in this process: faster, but one that crashes takes all with it."""
-    timeout: float = TIMEOUT
-    """Wall-clock limit [s] for loading, for initializing and for each step, in a process of their own."""
+    limits: FmuLimits = FmuLimits()
+    """Of each FMU in a process of its own."""
 
     def with_system(self, system: SystemText | None) -> "Foreign":
         """Return them with those of a system, in whose place these come. Raises ``BadInput``."""
@@ -50,7 +52,7 @@ class Foreign(NamedTuple):
             return FmuSlave(name, path, parameters, log, model)
         from orchestrator.foreign.process_slave import ProcessSlave
 
-        return ProcessSlave(name, path, parameters, log, model, timeout=self.timeout)
+        return ProcessSlave(name, path, parameters, log, model, limits=self.limits)
 
 
 def is_fmi3(path: Path) -> bool:
@@ -64,7 +66,12 @@ def foreign_of(arguments: argparse.Namespace) -> Foreign:
     """Return the FMUs that were named. Raises ``BadInput`` for one that is not there, or with models in process."""
     named = {name: getattr(arguments, name) for name in ("controller", "vehicle") if getattr(arguments, name)}
     files = {name: fmu_of(text) for name, text in named.items()}
-    return Foreign(files, arguments.in_process, arguments.timeout)
+    limits = FmuLimits(arguments.timeout, arguments.run_timeout, arguments.fmu_memory, arguments.sandbox)
+    if limits.is_sandboxed and arguments.in_process:
+        raise BadInput("--sandbox and --in-process exclude each other")
+    if limits.is_sandboxed:
+        sandbox_program()
+    return Foreign(files, arguments.in_process, limits)
 
 
 class Fitting(NamedTuple):
@@ -76,13 +83,19 @@ class Fitting(NamedTuple):
     foreign: Foreign
 
 
-def load_fitting(name: str, sets: Iterable[str], foreign: Foreign) -> Fitting:
+def load_fitting(name: str, sets: Iterable[str], foreign: Foreign, origin: Path | None = None) -> Fitting:
     """Return a scenario with the foreign FMUs of its system, in whose place those in ``foreign`` come.
 
-    Parameters of their own can be set like any other. Raises ``BadInput``.
+    Parameters of their own can be set like any other. ``origin``: the file that the scenario was made from, whose
+    folder must be trusted if the system has code. Raises ``BadInput``.
     """
     sets = list(sets)
-    foreign = foreign.with_system(load_system(name, sets))
+    system = load_system(name, sets)
+    if system is not None and (origin is not None or name not in scenario_names()):
+        require_trust(
+            origin or Path(name), [file for slave, file in system.files().items() if slave not in foreign.files]
+        )
+    foreign = foreign.with_system(system)
     own = {slave: parameters_of(path, slave) for slave, path in foreign.files.items()}
     return Fitting(*fitting(load_scenario(name, sets, own), own), foreign)
 

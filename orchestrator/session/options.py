@@ -1,12 +1,11 @@
 """The options for FMUs of others, as several commands have them; imports little."""
 
 import argparse
+import re
 from pathlib import Path
 
+from orchestrator.foreign.limits import MEMORY_BYTES, RUN_TIMEOUT, STEP_TIMEOUT
 from orchestrator.text.errors import BadInput
-
-TIMEOUT = 30.0
-"""Wall-clock limit [s], if nothing else is said."""
 
 
 def add_foreign_arguments(parser: argparse.ArgumentParser) -> None:
@@ -20,9 +19,28 @@ def add_foreign_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--timeout",
         type=seconds,
-        default=TIMEOUT,
+        default=STEP_TIMEOUT,
         metavar="S",
-        help=f"wall-clock limit for loading, initializing and each step of a third-party FMU ({TIMEOUT:g} s)",
+        help=f"wall-clock limit for loading, initializing and each step of a third-party FMU ({STEP_TIMEOUT:g} s)",
+    )
+    parser.add_argument(
+        "--run-timeout",
+        type=seconds,
+        default=RUN_TIMEOUT,
+        metavar="S",
+        help=f"wall-clock limit for all of them together, for each third-party FMU ({RUN_TIMEOUT:g} s)",
+    )
+    parser.add_argument(
+        "--fmu-memory",
+        type=memory,
+        default=MEMORY_BYTES,
+        metavar="SIZE",
+        help=f"memory of the process of each third-party FMU ({MEMORY_BYTES / 1e9:g} GB)",
+    )
+    parser.add_argument(
+        "--sandbox",
+        action="store_true",
+        help="run third-party FMUs without network, other processes and write access (needs bubblewrap)",
     )
     parser.add_argument(
         "--in-process",
@@ -50,3 +68,18 @@ def seconds(text: str) -> float:
     if not found > 0.0:
         raise argparse.ArgumentTypeError(f"{text!r} is no time later than 0 s")
     return found
+
+
+SIZES = {"": 1.0, "kB": 1e3, "MB": 1e6, "GB": 1e9}
+
+
+def memory(text: str) -> float:
+    """Return a size [bytes] as the command line has it: ``500 MB``, ``8GB``."""
+    match = re.fullmatch(r"\s*(\d+(?:\.\d+)?)\s*(kB|MB|GB|)\s*", text)
+    found = float(match[1]) * SIZES[match[2]] if match else 0.0
+    if not MIN_MEMORY <= found < 1e15:
+        raise argparse.ArgumentTypeError(f"{text!r} is no size of at least 64 MB, such as 500MB or 8GB")
+    return found
+
+
+MIN_MEMORY = 64e6

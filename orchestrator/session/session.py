@@ -172,7 +172,7 @@ def run_slaves(
         messages.say(0, WARNING, "system", text)
     try:
         end, wall_time = _driven(master, messages)
-    except (NotRunError, *RESOURCES):
+    except (BadInput, NotRunError, *RESOURCES):
         if file is not None and not recorder.count:
             file.discard()
         raise

@@ -21,6 +21,7 @@ from orchestrator.scenario.scenario import Parameter
 from orchestrator.session.foreign import FOREIGN, Foreign, fmu_of, parameters_of
 from orchestrator.session.own import is_model
 from orchestrator.session.session import NOBODY
+from orchestrator.session.trust import require_trust
 from orchestrator.steptest.step_test import StepTest
 from orchestrator.steptest.stimuli import StimulatedInput, stimulus
 from orchestrator.system.units import UnfitUnitsError, conversion
@@ -141,6 +142,8 @@ def _owner(recording: Recording, slave: Slave, path: Path) -> str:
 def _slave(test: StepTest, model: str, kind: str, foreign: Foreign) -> Slave:
     is_unzipped = model not in MODELS and (test.near(model) / DESCRIPTION).is_file()
     if model in foreign.files or model.endswith(FMU) or is_unzipped:
+        if model not in foreign.files:
+            require_trust(Path(test.file), [model])
         path = foreign.files.get(model) or fmu_of(str(test.near(model)))
         name = model if model in MODELS else OTHER
         known = parameters_of(path, name)
@@ -155,6 +158,7 @@ def _slave(test: StepTest, model: str, kind: str, foreign: Foreign) -> Slave:
         shown = {name: value for name, value in parameters.items() if ours.shows(name)}
         return FmuSlave(model, file, shown, lambda *said: None, ours)
     if MODEL_FILE in model or is_model(str(test.near(model))):
+        require_trust(Path(test.file), [model])
         own = _own(str(test.near(model)))
         return InProcessSlave(OTHER, own, _parameters(test, variables(own.params)))
     known_models = ", ".join(MODELS)

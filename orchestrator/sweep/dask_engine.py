@@ -12,7 +12,8 @@ from typing import Any
 
 from orchestrator.cosim.fmu_files import sources_hash
 from orchestrator.cosim.master import Interrupt
-from orchestrator.sweep.engine import AHEAD, POLL, ChunkTask, Result, cores, rows_or_reason, safe_children
+from orchestrator.sweep.dask_cluster import PrivateCluster
+from orchestrator.sweep.engine import AHEAD, POLL, ChunkTask, Result, cores, rows_or_reason
 from orchestrator.sweep.job import Chunk, Job
 from orchestrator.text.errors import BadInput
 
@@ -26,18 +27,10 @@ class DaskEngine:
 
     def __init__(self, task: ChunkTask, address: str | None, workers: int | None) -> None:
         self._task = task
-        self._cluster: Any = None
-        if address is None:
-            with safe_children():
-                self._cluster = distributed.LocalCluster(
-                    n_workers=workers or cores(),
-                    threads_per_worker=1,
-                    processes=True,
-                    dashboard_address=None,
-                    host="127.0.0.1",
-                )
+        self._cluster = PrivateCluster(workers or cores()) if address is None else None
         try:
-            self._client = distributed.Client(address or self._cluster, timeout=CONNECT, set_as_default=False)
+            place = address if self._cluster is None else self._cluster.cluster
+            self._client = distributed.Client(place, timeout=CONNECT, set_as_default=False)
         except (OSError, ValueError, TypeError) as error:  # TypeError: tls:// without certificates
             raise BadInput(f"no scheduler answers: {error}", key=f"--dask {address}") from error
         self.name = f"{task.name} on Dask at {self._client.scheduler.address}"

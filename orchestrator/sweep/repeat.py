@@ -59,7 +59,7 @@ def write_scenario(table: Table, number: int, file: Path) -> Scenario:
         content["system"] = scenario.system.model_dump(mode="python", by_alias=True, exclude_defaults=True)
     name = f"{table.about['study']['name']}-row-{number}"
     write_whole(file, yaml.safe_dump({**content, "name": name}, sort_keys=False, allow_unicode=True))
-    return load_fitting(str(file), [], Foreign()).scenario
+    return load_fitting(str(file), [], Foreign(), table.path).scenario
 
 
 def _differences(row: dict[str, Any], summary: dict[str, Any]) -> list[str]:

@@ -30,6 +30,8 @@ SPARE = ("person.", "told.", "choice.")
 """Inputs of these groups need nothing to feed them: their start values mean that nobody is there, no slot is told."""
 MAX_NAMES = 12
 """A line that names more is not read."""
+MAX_LETTERS = 100
+"""Of a name in a line."""
 Node = tuple[int, str]
 """A slave and an output of it."""
 
@@ -123,7 +125,8 @@ def _unsupported(slave: Slave) -> list[str]:
 
 def _few(names: Sequence[str]) -> str:
     more = f" and {len(names) - MAX_NAMES} more" if len(names) > MAX_NAMES else ""
-    return ", ".join(names[:MAX_NAMES]) + more
+    listed = (name if len(name) <= MAX_LETTERS else f"{name[:MAX_LETTERS]}..." for name in names[:MAX_NAMES])
+    return ", ".join(listed) + more
 
 
 def not_fed(number: int, system: Assembled) -> dict[str, str]:

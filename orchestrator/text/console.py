@@ -3,10 +3,12 @@
 import sys
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
-from typing import TYPE_CHECKING, Self, TextIO
+from typing import TYPE_CHECKING, Any, Self, TextIO
+
+from orchestrator.text.printable import printable
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -23,11 +25,47 @@ PERIOD, LONGEST = 5.0, 60.0
 
 
 def console(stream: TextIO | None = None) -> "Console":
-    """Return a console that writes colours only to a terminal that wants them."""
+    """Return a console that writes colours only to a terminal that wants them, and no control characters of others."""
     from rich.console import Console
+    from rich.segment import Segment
 
-    stream = stream or sys.stdout
-    return Console(file=stream, highlight=False, width=None if stream.isatty() else PIPED_WIDTH)
+    class SafeConsole(Console):
+        """Takes control characters out of all texts, when they are whole and the colours are not in them yet."""
+
+        def _render_buffer(self, buffer: Iterable[Segment]) -> str:
+            safe = [item if item.control else Segment(printable(item.text), item.style) for item in buffer]
+            return super()._render_buffer(safe)
+
+    given: Any = stream or sys.stdout
+    whole = given.unfiltered if isinstance(given, PrintableStream) else given
+    return SafeConsole(file=whole, highlight=False, width=None if whole.isatty() else PIPED_WIDTH)
+
+
+class PrintableStream:
+    """A standard stream that shows control characters as numbers: texts of third parties go to a terminal."""
+
+    def __init__(self, stream: Any) -> None:
+        self.unfiltered = stream
+
+    def write(self, text: str) -> int:
+        """Write a text; return how many letters of it."""
+        self.unfiltered.write(printable(text))
+        return len(text)
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self.unfiltered, name)
+
+
+@contextmanager
+def printable_streams() -> Iterator[None]:
+    """Let no control character of a third party's text reach standard output or standard error."""
+    before = sys.stdout, sys.stderr
+    streams: list[Any] = [item if isinstance(item, PrintableStream) else PrintableStream(item) for item in before]
+    sys.stdout, sys.stderr = streams
+    try:
+        yield
+    finally:
+        sys.stdout, sys.stderr = before
 
 
 def say(text: str) -> None:

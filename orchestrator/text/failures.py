@@ -77,6 +77,8 @@ def reason_of(error: BaseException) -> str:
 
 def place_of(error: OSError) -> str:
     """Return what is in the way of reading or writing a file, with its place."""
+    if error.errno == errno.ENOENT and not _has_folder():
+        return "the current folder is gone: it was deleted or moved; change to another"
     text = WORDS.get(error.errno or 0, error.strerror or str(error))
     if error.filename is None:
         return f"output: {text}" if error.errno in (errno.ENOSPC, errno.EIO) else text
@@ -85,6 +87,15 @@ def place_of(error: OSError) -> str:
         above = next((item for item in (path, *path.parents) if item.is_file()), None)
         return f"{path}: cannot be made anew" if above is None else f"{above}: is a file, expected a folder"
     return f"{path}: {text}"
+
+
+def _has_folder() -> bool:
+    """Return whether the current folder is still there."""
+    try:
+        os.getcwd()
+    except OSError:
+        return False
+    return True
 
 
 def one_line(error: BaseException) -> str:

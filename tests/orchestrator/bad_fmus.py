@@ -43,9 +43,14 @@ BEHAVES = {
     "step-nan": "bad gives NaN for y at 0.06 s",
     "get-error": "bad gives no outputs: the tank is empty",
     "set-crash": "bad crashed taking inputs at 0 s (SIGSEGV)",
+    "step-pipe": "bad wrote into the pipe of its process in the step at 0.05 s, so nothing that it gave can be trusted",
+    "step-signal": "bad crashed in the step at 0.05 s (signal 40)",
+    "step-escape": "bad failed at 0.05 s: \\x1b[2J\\x1b]0;yours\\x07\\x9b31m",
+    "step-long": "xxx... (4194303 letters)",
+    "step-child": f"bad {LATE} in the step at 0.05 s, so it was ended",
 }
 """What its GUID makes it do -> the verdict."""
-HARMLESS = ("step-print", "terminate-crash", "terminate-hang", "free-exit")
+HARMLESS = ("step-print", "step-low", "step-flood", "terminate-crash", "terminate-hang", "free-exit")
 """What does no run any harm."""
 
 

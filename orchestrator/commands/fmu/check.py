@@ -4,9 +4,10 @@ import argparse
 import json
 from pathlib import Path
 
+from orchestrator.foreign.limits import STEP_TIMEOUT
 from orchestrator.session.fmu_check import FmuReport, check_fmu
 from orchestrator.session.foreign import connect_advice
-from orchestrator.session.options import TIMEOUT, seconds
+from orchestrator.session.options import seconds
 from orchestrator.text.console import console
 
 EXAMPLES = """examples:
@@ -37,7 +38,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--scenario", default="", metavar="NAME|FILE", help="scenario into whose system it is inserted")
     parser.add_argument("--no-load", action="store_true", help="read the model description only, execute nothing")
     parser.add_argument(
-        "--timeout", type=seconds, default=TIMEOUT, metavar="S", help="wall-clock limit for loading and for a step"
+        "--timeout", type=seconds, default=STEP_TIMEOUT, metavar="S", help="wall-clock limit for loading and for a step"
     )
     parser.add_argument("--json", action="store_true", help="print the report as JSON")
 

@@ -3,6 +3,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <signal.h>
 #include <unistd.h>
 #ifdef _WIN32
 #define FMI __declspec(dllexport)
@@ -16,6 +17,9 @@ enum { OKAY, WARNING, DISCARD, BAD, FATAL };
 static char fault[64];
 static int is_dead;
 static double output;
+static long ignored;
+static char *volatile kept[64];
+static char text[1 << 22];
 static const Callbacks *callbacks;
 
 static int is(const char *what) { return strcmp(fault, what) == 0; }
@@ -29,7 +33,25 @@ static int at(const char *place) {
     if (!strcmp(rest, "exit")) exit(0);
     if (!strcmp(rest, "abort")) { fprintf(stderr, "terminate called: no reason\n"); abort(); }
     if (!strcmp(rest, "overflow")) return deep(0);
-    if (!strcmp(rest, "close")) for (int i = 3; i < 64; i++) close(i);
+    if (!strcmp(rest, "close")) for (int i = 3; i < 1024; i++) close(i);
+    if (!strcmp(rest, "low")) for (int i = 3; i < 12; i++) ignored += write(i, "=\0\0\0\0", 5);
+    if (!strcmp(rest, "pipe")) for (int i = 3; i < 1024; i++) ignored += write(i, "=\1\0\0\0\0\0\0\0\0\0\0\0", 13);
+    if (!strcmp(rest, "flood")) for (int i = 0; i < 20000; i++) callbacks->logger(0, "bad", OKAY, "note", "tick");
+    if (!strcmp(rest, "escape")) { callbacks->logger(0, "bad", BAD, "error", "\33[2J\33]0;yours\7\302\233""31m"); return BAD; }
+    if (!strcmp(rest, "long")) { memset(text, 'x', sizeof text - 1); callbacks->logger(0, "bad", BAD, "error", text); return BAD; }
+    if (!strcmp(rest, "signal")) raise(40);
+    if (!strcmp(rest, "slow")) usleep(150000);
+    if (!strcmp(rest, "memory")) for (int i = 0; i < 64; i++) {
+        char *room = malloc(1 << 24);
+        if (!room) { callbacks->logger(0, "bad", BAD, "error", "no memory"); return BAD; }
+        memset(room, 1, 1 << 24);
+        kept[i] = room;
+    }
+#ifdef __linux__
+    if (!strcmp(rest, "child")) { if (fork() == 0) { setsid(); sleep(20); _exit(0); } for (;;) sleep(1); }
+    if (!strcmp(rest, "parent")) kill(getppid(), SIGSTOP);
+    if (!strcmp(rest, "writes")) { FILE *file = fopen(getenv("EVIL") ? getenv("EVIL") : "/tmp/apa-evil", "w"); if (file) fclose(file); }
+#endif
     if (!strcmp(rest, "nan")) output = NAN;
     if (!strcmp(rest, "print")) for (int i = 0; i < 100000; i++) puts("a line nobody asked for, on standard output");
     if (!strcmp(rest, "discard")) return DISCARD;

@@ -1,0 +1,160 @@
+"""What an FMU declares or takes without bounds: one line, exit code 2; and what a sandbox keeps from it."""
+
+import subprocess
+import sys
+import zipfile
+from pathlib import Path
+
+import pytest
+
+from orchestrator.cli import main
+from orchestrator.cosim.description import read_description
+from orchestrator.foreign import worker
+from orchestrator.foreign.process_slave import answer_of
+from orchestrator.foreign.sandbox import PROGRAM, sandbox_program
+from orchestrator.log.messages import read_messages
+from orchestrator.text.errors import BadInput
+from orchestrator.text.printable import CONTROL
+from tests.orchestrator import bad_fmus
+from tests.orchestrator.test_bad_fmus import scenario
+
+FMI3 = """<?xml version="1.0" encoding="UTF-8"?>
+<fmiModelDescription fmiVersion="3.0" modelName="Bad" instantiationToken="1">
+  <CoSimulation modelIdentifier="bad"/>
+  <UnitDefinitions><Unit name="u"><BaseUnit m="1" factor="2.0"/></Unit></UnitDefinitions>
+  <TypeDefinitions>
+    <EnumerationType name="Mode"><Item name="OFF" value="1"/><Item name="ON" value="2"/></EnumerationType>
+  </TypeDefinitions>
+  <ModelVariables>
+    <Float64 name="u" valueReference="0" causality="input" start="0" unit="u"/>
+    <Float64 name="y" valueReference="1" causality="output"><Dimension start="3"/></Float64>
+    <Enumeration name="mode" valueReference="2" causality="output" declaredType="Mode"/>
+  </ModelVariables>
+  <ModelStructure><Output valueReference="1"/><Output valueReference="2"/></ModelStructure>
+</fmiModelDescription>
+"""
+DECLARED = {
+    "negative dimension": ('start="3"', 'start="-1"'),
+    "no dimension": ('start="3"', 'start="0"'),
+    "large dimension": ('start="3"', 'start="2000000"'),
+    "huge dimension": ('start="3"', 'start="1000000000000"'),
+    "dimension in words": ('start="3"', 'start="many"'),
+    "many dimensions": ('<Dimension start="3"/>', '<Dimension start="999"/>' * 9),
+    "item in words": ('value="2"', 'value="abc"'),
+    "large item": ('value="2"', 'value="99999999999"'),
+    "infinite unit": ('factor="2.0"', 'factor="INF"'),
+    "unit of nothing": ('factor="2.0"', 'factor="0"'),
+    "large exponent": ('m="1"', 'm="1000000"'),
+    "negative reference": ('valueReference="1"', 'valueReference="-1"'),
+    "large reference": ('valueReference="1"', 'valueReference="99999999999"'),
+    "reference in words": ('valueReference="1"', 'valueReference="one"'),
+    "path as identifier": ('modelIdentifier="bad"', 'modelIdentifier="../../bad"'),
+    "long identifier": ('modelIdentifier="bad"', f'modelIdentifier="{"b" * 300}"'),
+    "long name": ('name="y"', f'name="{"y" * 100_000}"'),
+    "deep name": ('name="y"', f'name="{"y." * 100}y"'),
+    "control character in a name": ('name="y"', 'name="y&#x9b;31m"'),
+    "direction of writing in a unit": ('unit="u"', 'unit="u&#x202e;"'),
+    "long unit": ('unit="u"', f'unit="{"u" * 5000}"'),
+    "long token": ('instantiationToken="1"', f'instantiationToken="{"1" * 5000}"'),
+    "start in words": ('causality="input" start="0"', f'causality="input" start="{"nothing" * 1000}"'),
+}
+
+
+def described(folder: Path, old: str, new: str) -> Path:
+    assert old in FMI3
+    path = folder / "bad.fmu"
+    with zipfile.ZipFile(path, "w") as archive:
+        archive.writestr("modelDescription.xml", FMI3.replace(old, new))
+    return path
+
+
+def test_the_description_is_one_that_is_taken(tmp_path: Path) -> None:
+    assert len(read_description(described(tmp_path, "Bad", "Good")).modelVariables) == 3
+
+
+@pytest.mark.parametrize("kind", DECLARED)
+def test_a_declaration_without_bounds_is_refused_in_one_line(
+    kind: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = described(tmp_path, *DECLARED[kind])
+    assert main(["fmu", "check", str(path)]) == 2
+    said = capsys.readouterr().err
+    assert said.startswith(f"apa: {path}: ")
+    assert said.count("\n") == 1
+    assert len(said) < 600
+    assert not CONTROL.search(said)
+
+
+@pytest.mark.parametrize(
+    "answer",
+    [b"", b"M", b"1", b"{}", b"[1]", b'["a", 1]', b"[1, 2]", b"[true, 1]", b"[" * 60_000, b"\xff", b'[1e400, ""]'],
+)
+def test_what_is_no_answer_of_a_worker_is_not_taken_for_one(answer: bytes) -> None:
+    for letter in (worker.MESSAGE, worker.REFUSED):
+        with pytest.raises(worker.ForeignAnswerError):
+            answer_of(letter, answer)
+
+
+def test_a_flood_of_messages_ends_with_a_line_that_says_so(tmp_path: Path) -> None:
+    path = scenario(tmp_path, bad_fmus.behaving(tmp_path, "step-flood"))
+    assert main(["run", path, "--fmus", "none", "--out", str(tmp_path / "out"), "-q", "--no-page"]) in (0, 1)
+    from orchestrator.log import messages
+
+    lines = [line for line in read_messages(tmp_path / "out" / "run.mcap") if line.name == "bad"]
+    assert len(lines) <= worker.MAX_MESSAGES <= messages.MAX_LINES
+    assert lines[0].text == "tick"
+
+
+@pytest.mark.parametrize(
+    ("name", "options", "said"),
+    [
+        ("step-slow", ["--run-timeout", "2"], "bad took more than 2 s in all "),
+        ("step-memory", ["--fmu-memory", "300MB"], "bad failed at 0.05 s: no memory"),
+        ("step-escape", [], "x1b[2J"),
+    ],
+)
+def test_a_run_has_limits_and_a_terminal_is_left_alone(
+    name: str, options: list[str], said: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    if name == "step-memory" and sys.platform != "linux":
+        pytest.skip("memory is limited on Linux only")
+    path = scenario(tmp_path, bad_fmus.behaving(tmp_path, name))
+    assert main(["run", path, "--fmus", "none", "--out", str(tmp_path / "out"), "--no-page", *options]) in (1, 2)
+    out, err = capsys.readouterr()
+    assert said in out + err
+    assert "\x1b" not in out + err
+
+
+def has_sandbox() -> bool:
+    try:
+        return sys.platform == "linux" and bool(sandbox_program())
+    except BadInput:
+        return False
+
+
+@pytest.mark.skipif(not has_sandbox(), reason="bubblewrap is not here, or may not be used")
+@pytest.mark.parametrize("name", ["step-parent", "step-writes"])
+def test_a_sandbox_keeps_an_fmu_from_its_parent_and_from_files(
+    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    evil = tmp_path / "evil"
+    monkeypatch.setenv("EVIL", str(evil))
+    path = scenario(tmp_path, bad_fmus.behaving(tmp_path, name))
+    words = ["run", path, "--fmus", "none", "--out", str(tmp_path / "out"), "--no-page", "-q", "--sandbox"]
+    ran = subprocess.run([sys.executable, "-m", "orchestrator", *words], timeout=100, check=False)
+    assert ran.returncode in (0, 1)
+    assert not evil.exists()
+    assert not Path("/tmp/apa-evil").exists()
+
+
+def test_without_bubblewrap_a_sandbox_is_refused_in_one_line(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    sandbox_program.cache_clear()
+    monkeypatch.setenv("PATH", str(tmp_path))
+    path = scenario(tmp_path, bad_fmus.behaving(tmp_path, "good"))
+    assert main(["run", path, "--fmus", "none", "--out", str(tmp_path / "out"), "--sandbox"]) == 2
+    sandbox_program.cache_clear()
+    said = capsys.readouterr().err
+    assert f"needs bubblewrap ({PROGRAM})" in said
+    assert said.count("\n") == 1

@@ -1,0 +1,59 @@
+"""Little memory, few descriptors, a closed stream, a folder that is gone: one line and exit code 2, or the usual result."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+resource = pytest.importorskip("resource", reason="limits of this kind are POSIX's")
+RUN = ["run", "guo2015-case4", "--fmus", "none", "--no-page"]
+ENVIRONMENTS = {
+    "addresses of 100 MB": ({"RLIMIT_AS": 100_000_000}, {2}),
+    "addresses of 300 MB": ({"RLIMIT_AS": 300_000_000}, {0, 2}),
+    "addresses of 400 MB": ({"RLIMIT_AS": 400_000_000}, {0, 2}),
+    "6 descriptors": ({"RLIMIT_NOFILE": 6}, {2}),
+    "10 descriptors": ({"RLIMIT_NOFILE": 10}, {0, 2}),
+}
+
+
+def ran(words: list[str], folder: Path, limits: dict[str, int]) -> subprocess.CompletedProcess[str]:
+    def limit() -> None:
+        for name, value in limits.items():
+            resource.setrlimit(getattr(resource, name), (value, value))
+
+    command = [sys.executable, "-c", "from orchestrator.cli import main; raise SystemExit(main())", *words]
+    environment = {**os.environ, "PYTHONPATH": str(Path(__file__).parents[2])}
+    return subprocess.run(
+        command, cwd=folder, env=environment, preexec_fn=limit, capture_output=True, text=True, check=False
+    )
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(sys.platform != "linux", reason="limits are kept by Linux")
+@pytest.mark.parametrize("name", ENVIRONMENTS)
+def test_what_is_scarce_ends_in_one_line(name: str, tmp_path: Path) -> None:
+    limits, codes = ENVIRONMENTS[name]
+    done = ran([*RUN, "--out", str(tmp_path / "out")], tmp_path, limits)
+    assert done.returncode in codes, done.stderr
+    if done.returncode:
+        assert "Traceback" not in done.stderr
+        assert done.stderr.count("\n") == 1
+
+
+def test_a_folder_that_is_gone_is_named(tmp_path: Path) -> None:
+    gone = tmp_path / "gone"
+    gone.mkdir()
+    remove = f"import os; os.rmdir({str(gone)!r})"
+    code = f"{remove}; from orchestrator.cli import main; raise SystemExit(main())"
+    done = subprocess.run(
+        [sys.executable, "-c", code, *RUN],
+        cwd=gone,
+        env={**os.environ, "PYTHONPATH": str(Path(__file__).parents[2])},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 2
+    assert "the current folder is gone" in done.stderr

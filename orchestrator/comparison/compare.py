@@ -104,7 +104,7 @@ def _signal(name: str, a: Recording, b: Recording, tolerances: Tolerances) -> Di
         return _row(name, unit, tolerance, note=f"in {unit} in A, in {b.variables[name].signal.unit} in B")
     held = variable.kind is not float
     turns = unit == "rad" and name.endswith("heading")
-    worst = _Worst()
+    worst = _LargestDistances()
     names = states_named(a.states(name))
     for pair in traces(name, a, b, held, tolerance.time, turns):
         worst.add(distance(pair.a, pair.b, tolerance, pair.span), pair, names)
@@ -121,7 +121,7 @@ def states_named(states: dict[int, str]) -> Callable[[TracePair, float], str]:
     return words
 
 
-class _Worst:
+class _LargestDistances:
     """The instants that decide about a signal, of distances that come in parts."""
 
     def __init__(self) -> None:
@@ -148,7 +148,7 @@ class _Worst:
             self.words = words(pair, self.first)
 
 
-def _judged(name: str, unit: str, tolerance: Tolerance, worst: _Worst) -> Difference:
+def _judged(name: str, unit: str, tolerance: Tolerance, worst: _LargestDistances) -> Difference:
     deciding = worst.apart if worst.first is None else worst.outside
     if deciding is None:
         return _row(name, unit, tolerance, note="no common time")

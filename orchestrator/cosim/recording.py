@@ -57,9 +57,9 @@ class Recording:
         """Return whether the signals are not in memory, so that they are best read part by part."""
         return False
 
-    def parts(self) -> "Iterator[Part]":
+    def parts(self) -> "Iterator[RecordingPart]":
         """Yield the recording in parts that fit in memory, in order of time; a short one is one part."""
-        yield Part(self, 0, True)
+        yield RecordingPart(self, 0, True)
 
     def rows(self, chosen: "Sequence[int] | NDArray[np.intp]") -> "Recording":
         """Return the recording of some exchanges."""
@@ -99,7 +99,7 @@ class Recording:
         }
 
 
-class Part(NamedTuple):
+class RecordingPart(NamedTuple):
     """Some exchanges of a recording that follow one another."""
 
     recording: Recording
@@ -138,10 +138,10 @@ class StoredRecording(Recording):
         """Return the times [ns] of the exchanges from row ``first`` up to ``end``."""
         return self.blocks.times_of(first, end)
 
-    def parts(self) -> Iterator[Part]:
+    def parts(self) -> Iterator[RecordingPart]:
         """Yield the blocks, in order of time."""
         for first, end in self.blocks.ranges():
-            yield Part(self.between(first, end), first, end == self.count)
+            yield RecordingPart(self.between(first, end), first, end == self.count)
 
     def between(self, first: int, end: int) -> Recording:
         """Return the exchanges from row ``first`` up to ``end``; signals are read when asked for."""

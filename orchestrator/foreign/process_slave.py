@@ -341,8 +341,9 @@ class _Process:
             code = self._child.wait(LAST)
         except subprocess.TimeoutExpired:
             end(self._child)
-            self._child.wait()
-            return _NoAnswerError("closed the pipes of its process {when}")
+            code = self._child.wait()
+            if not self._is_late:
+                return _NoAnswerError("closed the pipes of its process {when}")
         if self._is_late:
             if limit > self._left:
                 return _NoAnswerError(f"took more than {self._run_timeout:g} s in all {{when}}, so it was ended")

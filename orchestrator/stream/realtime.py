@@ -21,6 +21,8 @@ class Realtime:
         self._tuning: Tuning | None = None
         self.address = ""
         """Where the run is shown."""
+        self.token = ""
+        """What a viewer needs to change parameters."""
 
     def join(self, master: Master, scenario: Scenario, say: Say, listeners: list[Say]) -> None:
         """Take part in a run: first of all wait, last of all show. Raises ``BadInput`` if the port cannot be opened."""
@@ -28,15 +30,18 @@ class Realtime:
         if self._port is None:
             return
         from orchestrator.log.mcap_log import McapLog
-        from orchestrator.stream.server import LiveChannels
+        from orchestrator.stream.server import TOKEN, LiveChannels
 
         self._tuning = Tuning(master.slaves, scenario.models, say)
         live = LiveChannels(self._port, scenario.title or scenario.name, self._tuning)
-        self.address = live.address
+        self.address, self.token = live.address, live.token
         shown = McapLog(live, master.slaves, scenario, {})
         listeners.append(shown.say)
         master.observers += [self._tuning, shown, _Ticks(live.at)]
-        self._announce(f"live at {self.address}: open it in Foxglove or Lichtblick")
+        self._announce(
+            f"live at {self.address}: open it in Foxglove or Lichtblick; to change parameters there, "
+            f"set {TOKEN} to {self.token} first"
+        )
 
     def told(self) -> dict[str, Any]:
         """Return how late the run was, and what was changed meanwhile."""

@@ -1,8 +1,10 @@
 """A run shown as it goes, over the WebSocket that Foxglove and Lichtblick read: the channels of the log, live.
 
-What is sent once, or seldom, is sent again to whoever comes later. Needs the package ``foxglove-sdk``.
+What is sent once, or seldom, is sent again to whoever comes later. A viewer may change parameters after it has set
+``apa.token`` to the word that the command prints. Needs the package ``foxglove-sdk``.
 """
 
+import secrets
 from typing import Any
 
 import numpy as np
@@ -10,10 +12,12 @@ from mcap_protobuf.schema import build_file_descriptor_set
 from numpy.typing import NDArray
 
 from fmus.installation import missing_package
+from orchestrator.stream.gate import Gate, hidden_host
 from orchestrator.stream.tuning import Tuning
 from orchestrator.text.errors import BadInput
 
 HOST = "127.0.0.1"
+TOKEN = "apa.token"
 KEPT = ("/parameters", "/scene", "/path", "/trail")
 """Ends of the topics of which whoever subscribes gets the latest message at once."""
 
@@ -34,18 +38,24 @@ class LiveChannels:
         self.tuning = tuning
         self.open = True
         listener: Any = _Listener(self)
+        self.token = secrets.token_hex(4)
+        """What a viewer must set the parameter ``apa.token`` to before it changes another."""
         try:
+            inner = hidden_host()
             self._server = foxglove.start_server(
                 name=name,
-                host=HOST,
-                port=port,
+                host=inner,
+                port=0,
                 capabilities=[foxglove.Capability.Time, foxglove.Capability.Parameters],
                 server_listener=listener,
                 context=self._context,
             )
-        except RuntimeError as error:
+            self._gate = Gate(HOST, port, (inner, self._server.port))
+        except (RuntimeError, OSError, OverflowError) as error:
+            if hasattr(self, "_server"):
+                self._server.stop()
             raise BadInput(f"port {port} cannot be opened: {error}", key="--live") from error
-        self.address = f"ws://{HOST}:{self._server.port}"
+        self.address = f"ws://{HOST}:{self._gate.port}"
 
     def metadata(self, name: str, values: dict[str, str]) -> None:
         """Nothing: what a file says of a whole run has no place in a stream."""
@@ -92,6 +102,7 @@ class LiveChannels:
         """Say goodbye and stop. Safe to call twice."""
         if self.open:
             self.open = False
+            self._gate.close()
             self._server.stop()
 
     def parameters(self, names: list[str]) -> list[Any]:
@@ -101,7 +112,7 @@ class LiveChannels:
             self._foxglove.Parameter(name, value=value if isinstance(value, bool) else float(value))
             for name, value in values.items()
             if not names or name in names
-        ]
+        ] + ([self._foxglove.Parameter(TOKEN, value="")] if not names or TOKEN in names else [])
 
     def again(self, channel: int) -> None:
         """Send the latest message of a channel on which there are few."""
@@ -120,6 +131,8 @@ class _Listener:
 
     def __init__(self, live: LiveChannels) -> None:
         self._live = live
+        self._trusted: set[int] = set()
+        """Viewers who know the token."""
 
     def on_subscribe(self, client: Any, channel: Any) -> None:
         self._live.again(channel.id)
@@ -129,7 +142,18 @@ class _Listener:
 
     def on_set_parameters(self, client: Any, parameters: list[Any], request_id: str | None = None) -> list[Any]:
         for item in parameters:
-            why = self._live.tuning.ask(item.name, item.get_value())
+            why = self._set(client.id, item.name, item.get_value())
             if why:
                 self._live.refuse(why)
         return self._live.parameters([item.name for item in parameters])
+
+    def _set(self, client: int, name: str, value: Any) -> str:
+        """Take a value; return why it is refused, empty if it is not."""
+        if name == TOKEN:
+            if not secrets.compare_digest(str(value).encode(), self._live.token.encode()):
+                return f"{TOKEN} is another one: it is printed where the run was started"
+            self._trusted.add(client)
+            return ""
+        if client not in self._trusted:
+            return f"{name} is not changed: set {TOKEN} first, to the word that is printed where the run was started"
+        return self._live.tuning.ask(name, value, f"viewer {client}")

@@ -23,6 +23,8 @@ class TakesValues(Protocol):
 class _Wish(NamedTuple):
     name: str
     value: float
+    by: str
+    """Who wants it."""
 
 
 class Tuning:
@@ -51,7 +53,7 @@ class Tuning:
             for name, (slave, item) in self._known.items()
         }
 
-    def ask(self, name: str, value: object) -> str:
+    def ask(self, name: str, value: object, by: str) -> str:
         """Note a wish, from any thread; return why it is refused, empty if it is not."""
         if name not in self._known:
             return f"{name} cannot be changed during a run"
@@ -62,7 +64,7 @@ class Tuning:
             return f"{name}: {value} is not within {low:g} to {high:g}{unit}"
         if item.kind is not float and float(value) != int(value):
             return f"{name}: {value} is no whole number"
-        self._wishes.append(_Wish(name, float(value)))
+        self._wishes.append(_Wish(name, float(value), by))
         return ""
 
     def exchanged(self, t_ns: int) -> None:
@@ -73,8 +75,8 @@ class Tuning:
             assert isinstance(slave, TakesValues)
             slave.tune(item.name, wish.value)
             slave.parameters.values[slave.parameters.index[item.name]] = wish.value
-            self.told.append({"t": t_ns / 1e9, "name": wish.name, "value": wish.value})
-            self._say(t_ns, INFO, "tuning", f"{wish.name} = {wish.value:g} from here on")
+            self.told.append({"t": t_ns / 1e9, "name": wish.name, "value": wish.value, "by": wish.by})
+            self._say(t_ns, INFO, "tuning", f"{wish.name} = {wish.value:g} from here on, set by {wish.by}")
 
     def closed(self, end: End) -> None:
         """Nothing to close."""

@@ -51,7 +51,7 @@ class PeakJerk:
         return self._largest / (max(1, round(HALF / self._step)) * self._step) ** 2
 
 
-class StandstillSteering:
+class DrySteering:
     """How many standstills there are in which the wheel is turned by more than 5 deg in all; speeds come in parts."""
 
     def __init__(self) -> None:
@@ -91,6 +91,6 @@ def peak_jerk(t: Array, speed: Array) -> float:
 
 def standstill_steering(speed: Array, wheel: Array) -> float:
     """Return how many standstills there are in which the wheel is turned by more than 5 deg in all."""
-    found = StandstillSteering()
+    found = DrySteering()
     found.add(speed, wheel)
     return found.value

@@ -86,7 +86,7 @@ def _check(item: Requirement, recording: Recording, numbers: dict[str, float], f
     limit = _number(item.limit, states, file, where)
     worst = _Worst(item, limit)
     if item.signal in recording.signals:
-        window = _Window(item.window, recording, file, where)
+        window = _WindowRows(item.window, recording, file, where)
         for part, first_row, is_last in recording.parts():
             rows = window.rows(part, first_row, is_last)
             worst.add(part.signals[item.signal][rows], part.t[rows])
@@ -200,7 +200,7 @@ def _number(limit: float | str, states: dict[int, str], file: str, where: str) -
     raise BadInput(f"{limit!r} is no state{hint}", file=file, key=where)
 
 
-class _Window:
+class _WindowRows:
     """Which instants of a run are in a window; asked part by part, in order of time. Raises ``BadInput``."""
 
     def __init__(self, window: Window | None, recording: Recording, file: str, where: str) -> None:

@@ -10,7 +10,7 @@ from orchestrator.cosim.recording import Recording
 from orchestrator.cosim.slave import Array
 from orchestrator.scenario import end_condition
 from orchestrator.scenario.scenario import PENETRATION, Scenario
-from orchestrator.verdict.comfort import PeakJerk, StandstillSteering
+from orchestrator.verdict.comfort import DrySteering, PeakJerk
 from orchestrator.verdict.contact import VEHICLE, contact_facts, has_scene
 from orchestrator.verdict.geometry import described
 from orchestrator.verdict.measures import Measure, measured
@@ -134,7 +134,7 @@ def of_whole_run(recording: Recording, scenario: Scenario) -> dict[str, float]:
 
 def _comfort(recording: Recording) -> tuple[float, float]:
     """Return peak jerk [m/s3] and how often the wheel is turned at standstill; NaN where that is not known."""
-    jerk, turns = PeakJerk(), StandstillSteering()
+    jerk, turns = PeakJerk(), DrySteering()
     names = OF_WHOLE_RUNS["standstill_steering"]
     has_speed, has_wheel = (recording.count > 0 and name in recording.signals for name in names)
     for part, _, _ in recording.parts() if has_speed else ():

@@ -110,6 +110,8 @@ class Tuned(_Part):
     """Of slave and parameter."""
     value: float
     """What it was set to."""
+    by: str = ""
+    """By whom."""
 
 
 class Lateness(_Part):

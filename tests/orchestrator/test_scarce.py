@@ -1,4 +1,4 @@
-"""Little memory, few descriptors, a closed stream, a folder that is gone: one line and exit code 2, or the usual result."""
+"""Little memory, few descriptors, a closed stream, a folder that is gone: one line and exit code 2, or the result."""
 
 import os
 import subprocess

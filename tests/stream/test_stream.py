@@ -21,12 +21,14 @@ from orchestrator.cosim.fmu_files import fmu_files
 from orchestrator.cosim.master import Interrupt
 from orchestrator.scenario.load_scenario import load_scenario
 from orchestrator.session.session import run_scenario
+from orchestrator.stream.gate import is_welcome
 from orchestrator.stream.pace import Pace
 from orchestrator.stream.realtime import Realtime
 from orchestrator.text.errors import BadInput
 from orchestrator.verdict.summary import summarize
 
 pytest.importorskip("foxglove")
+TOKEN = "apa.token"
 viewer = pytest.importorskip("tests.stream.viewer", reason="the package websockets is not installed")
 K4 = "controller.guo2015.k4"
 
@@ -86,7 +88,7 @@ def shown(scenario: Any, files: Any = None, **options: Any) -> Iterator[Any]:
         end = time.monotonic() + 60
         while not addresses and thread.is_alive() and time.monotonic() < end:
             time.sleep(0.01)
-        yield realtime.address, found
+        yield realtime.address, found, realtime
     finally:
         interrupt.requested = True
         thread.join(30)
@@ -97,7 +99,7 @@ def shown(scenario: Any, files: Any = None, **options: Any) -> Iterator[Any]:
 def test_a_viewer_sees_what_the_log_has_and_changes_a_parameter(kind: str, tmp_path: Path) -> None:
     scenario, log = load_scenario("guo2015-case4", ["stop_time=60"]), tmp_path / "run.mcap"
     files = fmu_files("native") if kind == "native" else None
-    with shown(scenario, files, kind=kind, log=log) as (address, found):
+    with shown(scenario, files, kind=kind, log=log) as (address, found, realtime):
         look = viewer.Viewer(address)
         look.until(lambda: len(look.channels) == 9)
         look.subscribe()
@@ -107,16 +109,21 @@ def test_a_viewer_sees_what_the_log_has_and_changes_a_parameter(kind: str, tmp_p
         known = {item["name"]: item["value"] for item in look.answers("parameterValues")[0]["parameters"]}
         assert known[K4] == 4.0
         assert "controller.system" not in known
+        for name, value in ((K4, 2.0), (TOKEN, "guessed"), (TOKEN, realtime.token)):
+            look.send(op="setParameters", parameters=[{"name": name, "value": value}], id=f"{name} {value}")
+        look.until(lambda: len(look.answers("status")) == 2)
+        assert "set apa.token first" in look.answers("status")[0]["message"]
         for value in (3.25, 1e9):
             look.send(op="setParameters", parameters=[{"name": K4, "value": value}], id=str(value))
-        look.until(lambda: look.answers("status"))
-        assert f"{K4}: 1000000000.0 is not within" in look.answers("status")[0]["message"]
+        look.until(lambda: len(look.answers("status")) == 3)
+        assert f"{K4}: 1000000000.0 is not within" in look.answers("status")[2]["message"]
         look.until(lambda: any(b"k4 = 3.25" in data for _, data in look.messages["/log"]))
         seen = {topic: dict(rows) for topic, rows in look.messages.items()}
         look.close()
     (ran,) = found
     assert ran.end.reason == "interrupted"
     assert [(item["name"], item["value"]) for item in ran.recording.info["realtime"]["tuned"]] == [(K4, 3.25)]
+    assert ran.recording.info["realtime"]["tuned"][0]["by"].startswith("viewer ")
     with log.open("rb") as stream:
         reader = make_reader(stream)
         summary = reader.get_summary()
@@ -150,7 +157,7 @@ def test_a_changed_parameter_acts_as_the_same_parameter_from_the_start() -> None
 
     def joined(*given: Any) -> None:
         join(*given)
-        early.append(realtime._tuning.ask(K4, 3.0))
+        early.append(realtime._tuning.ask(K4, 3.0, "test"))
 
     realtime.join = joined
     realtime._pace._sleep = lambda seconds: None
@@ -164,10 +171,44 @@ def test_a_changed_parameter_acts_as_the_same_parameter_from_the_start() -> None
 
 def test_a_port_that_is_taken_is_said() -> None:
     scenario = load_scenario("guo2015-case4", ["stop_time=30"])
-    with shown(scenario) as (address, _):
+    with shown(scenario) as (address, _, _):
         port = int(address.rpartition(":")[2])
         with pytest.raises(BadInput, match=f"port {port} cannot be opened"):
             run_scenario(scenario, realtime=Realtime(port))
+
+
+REQUEST = "GET / HTTP/1.1\r\nHost: {host}\r\n{more}Upgrade: websocket\r\n\r\n"
+
+
+@pytest.mark.parametrize(
+    ("host", "more", "welcome"),
+    [
+        ("127.0.0.1:8765", "", True),
+        ("localhost:8765", "Origin: https://app.foxglove.dev\r\n", True),
+        ("[::1]:8765", "Origin: http://localhost:8080\r\n", True),
+        ("127.0.0.1:8765", "Origin: file://\r\n", True),
+        ("127.0.0.1:8765", "Origin: https://evil.example\r\n", False),
+        ("127.0.0.1:8765", "Origin: https://app.foxglove.dev.evil.example\r\n", False),
+        ("127.0.0.1:8765", "Origin: http://localhost.evil.example\r\n", False),
+        ("127.0.0.1:8765", "Origin: null\r\n", False),
+        ("127.0.0.1:8765", "origin: http://localhost\r\nOrigin: https://evil.example\r\n", False),
+        ("evil.example:8765", "", False),
+        ("127.0.0.1.evil.example", "", False),
+        ("[", "", False),
+    ],
+)
+def test_a_page_of_somebody_else_is_not_let_in(host: str, more: str, welcome: bool) -> None:
+    assert is_welcome(REQUEST.format(host=host, more=more).encode()) is welcome
+
+
+def test_the_door_of_a_live_run_looks_at_the_origin() -> None:
+    from websockets.exceptions import InvalidStatus
+
+    with shown(load_scenario("guo2015-case4", ["stop_time=30"])) as (address, _, _):
+        with pytest.raises(InvalidStatus, match="403"):
+            viewer.connect(address, origin="https://evil.example", open_timeout=20)
+        with viewer.connect(address, subprotocols=viewer.PROTOCOLS, origin="http://localhost:8080") as socket:
+            assert json.loads(socket.recv(timeout=20))["op"] == "serverInfo"
 
 
 def test_ctrl_c_ends_in_order(tmp_path: Path) -> None:

@@ -16,7 +16,9 @@ Path({mark!r}).write_text("ran")
 raise ImportError("seen enough")
 """
 SCENARIO = "name: got\nbase: guo2015-case4\nsystem:\n  slaves: {controller: law.py:MODEL}\n"
-STEP_TEST = "model: law.py:MODEL\nname: got\nstop_time: 1\nstep: 0.01\nexpect:\n  - {id: small, signal: y, always: {max: 1}}\n"
+STEP_TEST = (
+    "model: law.py:MODEL\nname: got\nstop_time: 1\nstep: 0.01\nexpect:\n  - {id: small, signal: y, always: {max: 1}}\n"
+)
 STUDY = "name: study\nscenario: got.yaml\nruns: {grid: {vehicle.start.x: [0, 0.1]}}\n"
 
 

@@ -5,6 +5,7 @@ import socket
 import subprocess
 import sys
 import time
+import warnings
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -83,3 +84,29 @@ def test_a_scheduler_that_does_not_answer(
     code = main(["sweep", "guo2015-trial", "--out", str(tmp_path), "--no-page", "--dask", "tcp://127.0.0.1:9"])
     assert code == 2
     assert "no scheduler answers" in capsys.readouterr().err
+
+
+def test_a_cluster_of_this_machine_refuses_who_has_none_of_its_certificates() -> None:
+    distributed = pytest.importorskip("distributed")
+    pytest.importorskip("cryptography")
+    import psutil
+
+    from orchestrator.sweep.dask_cluster import PrivateCluster
+
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # of the connection that is refused
+        own = PrivateCluster(1)
+        try:
+            with distributed.Client(own.cluster, set_as_default=False) as client:
+                assert client.submit(len, [1, 2, 3]).result() == 3
+            here = psutil.Process()
+            processes = [here, *here.children(recursive=True)]
+            sockets = [item for one in processes for item in one.net_connections() if item.status == "LISTEN"]
+            assert len({item.laddr for item in sockets}) == 3  # scheduler, nanny, worker; no web server
+            address = own.cluster.scheduler_address
+            for security in (None, distributed.Security.temporary()):
+                with pytest.raises((TypeError, OSError)):
+                    distributed.Client(address, timeout=5, security=security, set_as_default=False)
+        finally:
+            own.close()
+    assert not own._folder.exists()

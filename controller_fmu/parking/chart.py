@@ -58,6 +58,8 @@ class Condition(IntEnum):
     """Wheel straight, at the goal."""
     MISSED = 15
     """Wheel straight, not at the goal."""
+    NO_NEARER = 16
+    """Standing in the slot, and no path leads nearer to the goal."""
 
 
 def _row(source: ParkingState, condition: Condition, target: ParkingState) -> TransitionRow:
@@ -83,6 +85,7 @@ TRANSITIONS: tuple[TransitionRow, ...] = (
     _row(ParkingState.CONFIRMING, Condition.DRIVEN_ON, ParkingState.SEARCHING),
     _row(ParkingState.CONFIRMING, Condition.CONFIRMED, ParkingState.STEERING),
     *_aborts(ParkingState.PLANNING),
+    _row(ParkingState.PLANNING, Condition.NO_NEARER, ParkingState.STRAIGHTENING),
     _row(ParkingState.PLANNING, Condition.PLANNED, ParkingState.STEERING),
     *_aborts(ParkingState.STEERING),
     _row(ParkingState.STEERING, Condition.REPLAN, ParkingState.PLANNING),

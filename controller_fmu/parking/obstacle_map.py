@@ -2,19 +2,23 @@
 
 What has not been observed counts as occupied: the row goes on beyond its members, neighbours are as deep as a car, the
 gap ends where a car's length ends unless something was detected before, and across the road and ahead no more is free
-than the sensors reach.
+than the sensors reach. But where the vehicle stands is free, whatever was taken for occupied or measured there.
 """
 
+import math
 from typing import NamedTuple
 
 from controller_fmu.parking.geometry.frames import point_from_frame
 from controller_fmu.parking.geometry.outline import VehicleOutline
+from controller_fmu.parking.geometry.outline_extent import extent_within
 from controller_fmu.parking.geometry.polygons import VERTICES, ObstacleMap, Vertex
-from controller_fmu.parking.map.landmark import LANDMARKS, Landmark, LandmarkType, end_point, start_point
+from controller_fmu.parking.map.landmark import LANDMARKS, Landmark, LandmarkType, end_point, offset_of, start_point
 from controller_fmu.parking.map.local_map import is_confirmed
 from controller_fmu.parking.map.params import MappingParams
-from controller_fmu.parking.monitor.collision_monitor import EchoObstacle
+from controller_fmu.parking.measurement.sensor import SENSORS
+from controller_fmu.parking.monitor.collision_monitor import EchoObstacle, landmark_distance
 from controller_fmu.parking.slots.candidate import CAR_LENGTH, CAR_WIDTH, SlotCandidate, SlotType
+from modelkit.geometry import Point
 from modelkit.vocabulary import Pose
 
 LANDMARK_VERTICES = 2 * LANDMARKS
@@ -27,6 +31,8 @@ BEHIND_VEHICLE = 0.6
 SLOT_QUADS = 7
 ECHO_SIZE = 0.1
 """Side [m] of the square that an unexplained echo becomes."""
+START_CLEARANCE = 0.05
+"""What stands nearer [m] than this to a standing vehicle is taken to stand so far: else no path could begin there."""
 
 
 class Quad(NamedTuple):
@@ -39,16 +45,32 @@ class Quad(NamedTuple):
     is_used: bool = False
 
 
+class KnownEchoes(NamedTuple):
+    """Unexplained echoes that are kept for planning, and what the sensors measure now."""
+
+    remembered: tuple[EchoObstacle, ...] = (EchoObstacle(),) * REMEMBERED
+    present: tuple[EchoObstacle, ...] = (EchoObstacle(),) * SENSORS
+
+
+class VehiclePlace(NamedTuple):
+    """Where the vehicle stands, and the road: x free ahead, y to its other side, in the row's frame."""
+
+    pose: Pose
+    road: Pose
+
+
 def obstacle_map(
     landmarks: tuple[Landmark, ...],
     slot: SlotCandidate,
-    echoes: tuple[EchoObstacle, ...],
+    echoes: KnownEchoes,
     outline: VehicleOutline,
-    road: Pose,
+    place: VehiclePlace,
     mapping: MappingParams,
 ) -> ObstacleMap:
-    """Return the polygons around a slot; ``road``: x free ahead, y to the road's other side, in the row's frame."""
-    quads = _slot_quads(slot, outline, road)
+    """Return the polygons around a slot; they keep ``START_CLEARANCE`` from the outline of the vehicle."""
+    vehicle = place.pose
+    quads = _slot_quads(slot, outline, place.road)
+    quads = tuple(_beside_vehicle(quads[number], slot, outline, vehicle) for number in range(SLOT_QUADS))
     return ObstacleMap(
         tuple(
             _landmark_vertex(landmarks[number // 2 if number < LANDMARK_VERTICES else 0], number, mapping)
@@ -57,6 +79,52 @@ def obstacle_map(
             for number in range(VERTICES)
         )
     )
+
+
+def _beside_vehicle(quad: Quad, slot: SlotCandidate, outline: VehicleOutline, vehicle: Pose) -> Quad:
+    """Return a rectangle without what the vehicle stands in: cut on the side on which the least is lost."""
+    if not quad.is_used:
+        return quad
+    low = Point(min(quad.x0, quad.x1) - START_CLEARANCE, min(quad.y0, quad.y1) - START_CLEARANCE)
+    high = Point(max(quad.x0, quad.x1) + START_CLEARANCE, max(quad.y0, quad.y1) + START_CLEARANCE)
+    within = extent_within(vehicle, outline, slot.row.frame, slot.row.side, low, high)
+    if within.low_x > within.high_x:
+        return quad
+    from_low_x = within.high_x - low.x
+    from_high_x = high.x - within.low_x
+    from_low_y = within.high_y - low.y
+    from_high_y = high.y - within.low_y
+    least = min(min(from_low_x, from_high_x), min(from_low_y, from_high_y))
+    if least == from_low_x and from_low_x < quad.x1 - quad.x0:
+        return quad._replace(x0=quad.x0 + from_low_x)
+    if least == from_high_x and from_high_x < quad.x1 - quad.x0:
+        return quad._replace(x1=quad.x1 - from_high_x)
+    if quad.y1 <= quad.y0 or least == from_low_y:
+        shift = from_low_y if from_low_y < from_high_y else -from_high_y
+        flat = quad.y1 <= quad.y0
+        return quad._replace(
+            y0=quad.y0 + (shift if flat else from_low_y),
+            y1=quad.y1 + (shift if flat else 0.0),
+        )
+    return quad._replace(y1=quad.y1 - from_high_y)
+
+
+def away_from_vehicle(landmark: Landmark, outline: VehicleOutline, vehicle: Pose) -> Landmark:
+    """Return a landmark at least ``START_CLEARANCE`` from the vehicle that stands beside it, moved along its normal."""
+    distance = landmark_distance(landmark, vehicle, outline)
+    if distance >= START_CLEARANCE:
+        return landmark
+    x = vehicle.x + outline.centre_ahead * math.cos(vehicle.heading)
+    y = vehicle.y + outline.centre_ahead * math.sin(vehicle.heading)
+    nx = landmark.x - x
+    ny = landmark.y - y
+    if landmark.type == LandmarkType.SEGMENT:
+        away = -1.0 if offset_of(landmark, x, y) > 0.0 else 1.0
+        nx = -away * math.sin(landmark.heading)
+        ny = away * math.cos(landmark.heading)
+    length = max(math.sqrt(nx * nx + ny * ny), START_CLEARANCE)
+    shift = (START_CLEARANCE - distance) / length
+    return landmark._replace(x=landmark.x + shift * nx, y=landmark.y + shift * ny)
 
 
 def _landmark_vertex(landmark: Landmark, number: int, mapping: MappingParams) -> Vertex:
@@ -72,8 +140,8 @@ def _landmark_vertex(landmark: Landmark, number: int, mapping: MappingParams) ->
     return Vertex(point.x, point.y, polygon)
 
 
-def _quad_vertex(quads: tuple[Quad, ...], echoes: tuple[EchoObstacle, ...], slot: SlotCandidate, number: int) -> Vertex:
-    """Return a vertex of the quads about the slot, then of the remembered echoes."""
+def _quad_vertex(quads: tuple[Quad, ...], echoes: KnownEchoes, slot: SlotCandidate, number: int) -> Vertex:
+    """Return a vertex of the quads about the slot, then of the remembered echoes, then of what is measured now."""
     index = number // 4
     corner = number % 4
     if index < SLOT_QUADS:
@@ -85,12 +153,14 @@ def _quad_vertex(quads: tuple[Quad, ...], echoes: tuple[EchoObstacle, ...], slot
         point = point_from_frame(x, slot.row.side * y, slot.row.frame)
         return Vertex(point.x, point.y, LANDMARKS + 1 + index)
     at = index - SLOT_QUADS
+    if at >= REMEMBERED + SENSORS:
+        return Vertex()
+    echo = echoes.remembered[min(max(at, 0), REMEMBERED - 1)]
     if at >= REMEMBERED:
+        echo = echoes.present[min(at - REMEMBERED, SENSORS - 1)]
+    if not echo.is_present or (at >= REMEMBERED and echo.is_unexplained):
         return Vertex()
-    echo = echoes[min(max(at, 0), REMEMBERED - 1)]
-    if not echo.is_present:
-        return Vertex()
-    half = 0.5 * ECHO_SIZE
+    half = 0.5 * ECHO_SIZE if echo.is_unexplained else 0.0
     dx = -half if corner == 0 or corner == 3 else half
     dy = -half if corner < 2 else half
     return Vertex(echo.x + dx, echo.y + dy, LANDMARKS + 1 + index)
@@ -124,6 +194,6 @@ def remember_echoes(before: tuple[EchoObstacle, ...], echoes: tuple[EchoObstacle
     """Return the remembered echoes with those present now; the oldest are forgotten."""
     after = before
     for echo in echoes:
-        if echo.is_present:
+        if echo.is_present and echo.is_unexplained:
             after = after[1:] + (echo,)
     return after

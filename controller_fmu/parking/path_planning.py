@@ -3,11 +3,11 @@
 from controller_fmu.interface import Reason
 from controller_fmu.parking.following.params import FollowingContext
 from controller_fmu.parking.following.path_tracking import begin_path
-from controller_fmu.parking.geometry.frames import point_to_frame
+from controller_fmu.parking.geometry.frames import point_to_frame, pose_to_frame
 from controller_fmu.parking.geometry.outline import VehicleOutline, vehicle_outline
 from controller_fmu.parking.map.landmark import LANDMARKS, Landmark, LandmarkType
 from controller_fmu.parking.monitor.collision_monitor import landmark_distance
-from controller_fmu.parking.obstacle_map import obstacle_map
+from controller_fmu.parking.obstacle_map import KnownEchoes, VehiclePlace, away_from_vehicle, obstacle_map
 from controller_fmu.parking.params import ParkingParams
 from controller_fmu.parking.planning.gear_segments import without_short_end
 from controller_fmu.parking.planning.planner import (
@@ -21,9 +21,11 @@ from controller_fmu.parking.planning.planner import (
 from controller_fmu.parking.planning.problem import PlanningRequest
 from controller_fmu.parking.planning.work import PlanningWork
 from controller_fmu.parking.signals import ParkingSystemInput
+from controller_fmu.parking.slots.candidate import SlotCandidate, SlotType
 from controller_fmu.parking.slots.correction import correct_slot
 from controller_fmu.parking.slots.goal import goal_pose
 from controller_fmu.parking.state import ParkingMemory
+from modelkit.maths import wrap_angle
 from modelkit.vocabulary import Pose
 
 FRONT_SENSORS = (1, 2)
@@ -56,7 +58,32 @@ def continue_plan(
             return memory._replace(progress=progress, plan=memory.plan._replace(is_found=True))
     known = memory.perception.remembered[-1].is_present
     reason = Reason.BLOCKED if known else Reason.NO_PATH
-    return memory._replace(reason=Reason.BAD_PARAMETER if status == TOO_MANY_EDGES else reason)
+    reason = Reason.BAD_PARAMETER if status == TOO_MANY_EDGES else reason
+    return without_path(memory, reason, inputs, params)
+
+
+def without_path(
+    memory: ParkingMemory, reason: int, inputs: ParkingSystemInput, params: ParkingParams
+) -> ParkingMemory:
+    """Return the memory after a plan failed: a vehicle that stands in its slot stays there, else for ``reason``."""
+    outline = vehicle_outline(params.car, params.plan.curvature_fraction)
+    landmarks = without_driven_over(memory.perception.local_map.landmarks, inputs.odometry, outline)
+    slot = correct_slot(memory.search.slot, landmarks, outline, params.mapping)
+    if memory.progress.manoeuvres > 0 and stands_in_slot(slot, inputs.odometry, params):
+        return memory._replace(plan=memory.plan._replace(is_final=True))
+    return memory._replace(reason=reason)
+
+
+def stands_in_slot(slot: SlotCandidate, pose: Pose, params: ParkingParams) -> bool:
+    """Return whether a vehicle at ``pose`` is parked, if not as finely as was meant."""
+    outline = vehicle_outline(params.car, params.plan.curvature_fraction)
+    error = pose_to_frame(pose, goal_pose(slot, outline, params.slot))
+    room = 0.5 * (slot.ahead.start - slot.behind.end)
+    along = params.final.accepted
+    if slot.type == SlotType.PARALLEL:
+        along = max(along, room - outline.half_length)
+    near = abs(error.x) < along and abs(error.y) < params.final.accepted
+    return near and abs(wrap_angle(error.heading)) < params.final.accepted_heading
 
 
 def _with_request(memory: ParkingMemory, inputs: ParkingSystemInput, params: ParkingParams) -> ParkingMemory:
@@ -66,15 +93,24 @@ def _with_request(memory: ParkingMemory, inputs: ParkingSystemInput, params: Par
     local_map = memory.perception.local_map
     landmarks = without_driven_over(local_map.landmarks, pose, outline)
     memory = memory._replace(perception=memory.perception._replace(local_map=local_map._replace(landmarks=landmarks)))
-    slot = correct_slot(memory.search.slot, landmarks, params.mapping)
+    slot = correct_slot(memory.search.slot, landmarks, outline, params.mapping)
     road = _free_road(memory, inputs, params)
-    obstacles = obstacle_map(landmarks, slot, memory.perception.remembered, outline, road, params.mapping)
+    beside = tuple(away_from_vehicle(landmarks[number], outline, pose) for number in range(LANDMARKS))
+    perception = memory.perception
+    obstacles = obstacle_map(
+        beside,
+        slot,
+        KnownEchoes(perception.remembered, perception.echoes),
+        outline,
+        VehiclePlace(pose, road),
+        params.mapping,
+    )
     goal = goal_pose(slot, outline, params.slot)
     request = PlanningRequest(pose, goal, outline, params.plan.margin)
     plans = memory.plan.plans + 1
     plan = memory.plan._replace(request=request, obstacles=obstacles, plans=plans)
     if plans > params.plan.max_plans:
-        memory = memory._replace(reason=Reason.LEFT_PATH)
+        memory = without_path(memory, Reason.LEFT_PATH, inputs, params)
     return memory._replace(plan=plan)
 
 

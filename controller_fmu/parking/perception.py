@@ -6,6 +6,15 @@ from controller_fmu.interface import Reason
 from controller_fmu.parking.chart import ParkingState
 from controller_fmu.parking.geometry.outline import vehicle_outline
 from controller_fmu.parking.geometry.polygons import ObstacleMap
+from controller_fmu.parking.map.chain_update import put_facing
+from controller_fmu.parking.map.facing_surface import (
+    BUMPER_SENSORS,
+    FACING_ECHOES,
+    MAX_FACING_RANGE,
+    facing_segment,
+    is_pair,
+)
+from controller_fmu.parking.map.landmark import Landmark, LandmarkType
 from controller_fmu.parking.map.local_map import expected_range, update_map
 from controller_fmu.parking.measurement.cycle import next_cycle
 from controller_fmu.parking.measurement.sensor import (
@@ -17,15 +26,22 @@ from controller_fmu.parking.measurement.sensor import (
 )
 from controller_fmu.parking.monitor.collision_monitor import EchoObstacle
 from controller_fmu.parking.monitor.expected_range import range_in_map
-from controller_fmu.parking.objects.track import ObjectTrack, closing_speed, update_track
+from controller_fmu.parking.objects.track import ObjectTrack, TrackStatus, closing_speed, update_track, with_expectation
 from controller_fmu.parking.params import ParkingParams
 from controller_fmu.parking.signals import ParkingSystemInput
-from controller_fmu.parking.slots.candidate import SlotCandidate, SlotType, find_slot
+from controller_fmu.parking.slots.candidate import SlotCandidate, SlotType, find_slot, row_point
 from controller_fmu.parking.slots.row import find_row
 from controller_fmu.parking.state import ParkingMemory, Perception, SearchProgress
 
 MAX_MONITORED_RANGE = 1.5
 """Echoes farther [m] than this are left to later: twice the stopping distance from top speed with a slow brake."""
+DISPLACED = 0.06
+"""Ranges that differ by more than this [m] from the predicted ones move a surface: three standard deviations of two
+centimetres."""
+MAX_REST = 0.3
+"""What moves more slowly [m/s] stands: people walk at 0.5 m/s and more."""
+SAME_GAP = 0.5
+"""Two gaps whose corners lie nearer than this [m] are one: sides end within 0.3 m, odometry drifts by less."""
 
 
 def perceive(
@@ -47,8 +63,38 @@ def perceive(
     if is_driving:
         tracks = tuple(_track(perception, number, obstacles, inputs, params) for number in range(SENSORS))
         echoes = tuple(_echo_obstacle(tracks[number], number, inputs, params) for number in range(SENSORS))
+        local_map = local_map._replace(landmarks=_with_facing(local_map.landmarks, tracks, inputs, params))
         perception = perception._replace(tracks=tracks, echoes=echoes)
     return perception._replace(local_map=local_map, pose=inputs.odometry)
+
+
+def _with_facing(
+    landmarks: tuple[Landmark, ...], tracks: tuple[ObjectTrack, ...], inputs: ParkingSystemInput, params: ParkingParams
+) -> tuple[Landmark, ...]:
+    """Return the landmarks with surfaces at rest that two sensors of a bumper hear elsewhere than map and plan say."""
+    sensors = params.car.ultrasonic
+    variance = range_variance(params.mapping.range_noise, sensors.resolution)
+    for number in range(BUMPER_SENSORS):
+        if is_pair(number):
+            a = tracks[number]
+            b = tracks[number + 1]
+            is_displaced = abs(a.range - a.expected) > DISPLACED and abs(b.range - b.expected) > DISPLACED
+            if is_displaced and is_at_rest(a) and is_at_rest(b) and max(a.range, b.range) < MAX_FACING_RANGE:
+                new = facing_segment(
+                    sensor_pose(sensors.mounts[number], sensors.half_angle, inputs.odometry),
+                    a.range,
+                    sensor_pose(sensors.mounts[number + 1], sensors.half_angle, inputs.odometry),
+                    b.range,
+                    variance,
+                )
+                if new.type != LandmarkType.NONE:
+                    landmarks = put_facing(landmarks, new, params.mapping)
+    return landmarks
+
+
+def is_at_rest(track: ObjectTrack) -> bool:
+    """Return whether a track is of something that stands, heard often enough to tell."""
+    return track.status == TrackStatus.CONFIRMED and track.confirmations >= FACING_ECHOES and abs(track.rate) < MAX_REST
 
 
 def _track(
@@ -62,13 +108,17 @@ def _track(
     before = sensor_pose(sensors.mounts[number], sensors.half_angle, perception.pose)
     approach = (sensor.x - before.x) * sensor.axis_x + (sensor.y - before.y) * sensor.axis_y
     is_echo = status in (ReadingStatus.ECHO, ReadingStatus.BLIND_ZONE) and reading < MAX_MONITORED_RANGE
-    unexplained = False
-    if is_echo:
-        planned = range_in_map(sensor, obstacles, sensors.max_range)
-        expected = min(planned, expected_range(perception.local_map.landmarks, sensor, planned, params.mapping))
-        unexplained = reading < expected - params.monitor.unexplained
     variance = range_variance(params.mapping.range_noise, sensors.resolution)
-    return update_track(perception.tracks[number], unexplained, reading, approach, variance, sensors.cycle)
+    track = update_track(perception.tracks[number], is_echo, reading, approach, variance, sensors.cycle)
+    if not is_echo:
+        return track._replace(unexplained=max(track.unexplained - 1, 0))
+    planned = range_in_map(sensor, obstacles, sensors.max_range)
+    expected = expected_range(perception.local_map.landmarks, sensor, planned, params.mapping)
+    unexplained = reading < expected.distance - params.monitor.unexplained
+    distance = max(expected.distance, sensors.min_range)
+    ux = (expected.x - sensor.x) / distance
+    uy = (expected.y - sensor.y) / distance
+    return with_expectation(track, expected.distance, ux, uy, unexplained)
 
 
 def _echo_obstacle(track: ObjectTrack, number: int, inputs: ParkingSystemInput, params: ParkingParams) -> EchoObstacle:
@@ -76,11 +126,11 @@ def _echo_obstacle(track: ObjectTrack, number: int, inputs: ParkingSystemInput, 
     sensors = params.car.ultrasonic
     sensor = sensor_pose(sensors.mounts[number], sensors.half_angle, inputs.odometry)
     distance = max(track.range, 0.0)
+    unknown = track.unexplained > 0
+    ux = sensor.axis_x if unknown else track.ux
+    uy = sensor.axis_y if unknown else track.uy
     return EchoObstacle(
-        sensor.x + distance * sensor.axis_x,
-        sensor.y + distance * sensor.axis_y,
-        closing_speed(track),
-        track.confirmations > 0,
+        sensor.x + distance * ux, sensor.y + distance * uy, closing_speed(track), track.confirmations > 0, unknown
     )
 
 
@@ -109,7 +159,20 @@ def _with_side(search: SearchProgress, memory: ParkingMemory, side: float, param
         return search
     if found.reason != Reason.NONE:
         return search._replace(rejected=found.reason)
+    if is_same_gap(found, search.refused):
+        return search
     return search._replace(slot=found)
+
+
+def is_same_gap(found: SlotCandidate, refused: SlotCandidate) -> bool:
+    """Return whether a slot is the one refused, by where its neighbours are."""
+    if refused.type == SlotType.NONE:
+        return False
+    a = row_point(found.row, found.behind.end, found.front)
+    b = row_point(found.row, found.ahead.start, found.front)
+    p = row_point(refused.row, refused.behind.end, refused.front)
+    q = row_point(refused.row, refused.ahead.start, refused.front)
+    return planar_distance(a.x, a.y, p.x, p.y) < SAME_GAP and planar_distance(b.x, b.y, q.x, q.y) < SAME_GAP
 
 
 def _has_passed(slot: SlotCandidate, params: ParkingParams) -> bool:

@@ -30,6 +30,8 @@ class SearchProgress(NamedTuple):
     """Why the last candidate was not taken."""
     pose: Pose = Pose()
     """Where the slot was shown."""
+    refused: SlotCandidate = SlotCandidate()
+    """The last slot without a path."""
 
 
 class PlanProgress(NamedTuple):
@@ -41,6 +43,8 @@ class PlanProgress(NamedTuple):
     """Done for the request; 0: none is in hand."""
     plans: int = 0
     is_found: bool = False
+    is_final: bool = False
+    """No plan brings the vehicle nearer to its goal, and it stands in the slot."""
 
 
 class Perception(NamedTuple):

@@ -28,11 +28,11 @@ from controller_fmu.parking.monitor.fault_monitor import (
 from controller_fmu.parking.monitor.stopping import stopping_distance
 from controller_fmu.parking.obstacle_map import remember_echoes
 from controller_fmu.parking.params import ParkingParams
-from controller_fmu.parking.path_planning import begin_plan, continue_plan
+from controller_fmu.parking.path_planning import begin_plan, continue_plan, stands_in_slot, without_driven_over
 from controller_fmu.parking.perception import is_driving_state, perceive, planar_distance, search_reason, search_slots
 from controller_fmu.parking.planning.work import PlanningWork
 from controller_fmu.parking.signals import ParkingSystemInput
-from controller_fmu.parking.slots.candidate import SlotCandidate, SlotType
+from controller_fmu.parking.slots.candidate import SlotType
 from controller_fmu.parking.slots.correction import correct_slot
 from controller_fmu.parking.slots.goal import goal_pose
 from controller_fmu.parking.state import ParkingMemory, Perception, PlanProgress, SearchProgress
@@ -155,6 +155,7 @@ def conditions_of(memory: ParkingMemory, inputs: ParkingSystemInput, params: Par
         | bit(Condition.DRIVEN_ON, moved > DRIVEN_ON)
         | bit(Condition.CONFIRMED, inputs.driver_confirm and standing and planned)
         | bit(Condition.PLANNED, planned)
+        | bit(Condition.NO_NEARER, memory.plan.is_final)
         | bit(Condition.WHEEL_TURNED, abs(wheel - memory.steering_wheel_angle) <= tolerance and not blocked)
         | bit(Condition.MUST_STOP, progress.upcoming.left <= stop - progress.stop_correction or blocked or lost)
         | bit(Condition.REPLAN, standing and (lost or blocked_long))
@@ -167,17 +168,15 @@ def conditions_of(memory: ParkingMemory, inputs: ParkingSystemInput, params: Par
 
 def is_in_place(memory: ParkingMemory, inputs: ParkingSystemInput, params: ParkingParams) -> bool:
     """Return whether the vehicle is at the goal, or cannot be brought nearer: the plans are used up."""
-    slot = corrected_slot(memory, params)
     outline = vehicle_outline(params.car, params.plan.curvature_fraction)
+    landmarks = without_driven_over(memory.perception.local_map.landmarks, inputs.odometry, outline)
+    slot = correct_slot(memory.search.slot, landmarks, outline, params.mapping)
     error = pose_to_frame(inputs.odometry, goal_pose(slot, outline, params.slot))
+    if memory.plan.is_final and stands_in_slot(slot, inputs.odometry, params):
+        return True
     near = abs(error.x) < params.final.position + abs(params.drive.rolling_offset)
     near = near and abs(error.y) < params.final.position
     return near and abs(wrap_angle(error.heading)) < params.final.heading
-
-
-def corrected_slot(memory: ParkingMemory, params: ParkingParams) -> SlotCandidate:
-    """Return the slot by all that has been measured of it."""
-    return correct_slot(memory.search.slot, memory.perception.local_map.landmarks, params.mapping)
 
 
 def enter_state(memory: ParkingMemory, state: int, inputs: ParkingSystemInput, params: ParkingParams) -> ParkingMemory:
@@ -191,7 +190,7 @@ def enter_state(memory: ParkingMemory, state: int, inputs: ParkingSystemInput, p
         memory = begin_plan(memory._replace(search=search, plan=PlanProgress(), clocks=FaultClocks()))
     if state == ParkingState.PLANNING and before != ParkingState.PLANNING:
         remembered = memory.perception.remembered
-        if memory.verdict.is_blocked and not memory.verdict.is_mapped:
+        if memory.verdict.is_blocked:
             remembered = remember_echoes(remembered, memory.perception.echoes)
         perception = memory.perception._replace(remembered=remembered)
         clocks = memory.clocks._replace(blocked=0)
@@ -206,7 +205,8 @@ def enter_state(memory: ParkingMemory, state: int, inputs: ParkingSystemInput, p
 def _begin_search(memory: ParkingMemory, before: int) -> ParkingMemory:
     """Return the memory at the begin of a search; a slot that was shown is forgotten, the map is not."""
     if before == ParkingState.CONFIRMING:
-        search = SearchProgress(distance=memory.search.distance, rejected=memory.reason)
+        refused = memory.search.slot if memory.reason != Reason.NONE else memory.search.refused
+        search = SearchProgress(distance=memory.search.distance, rejected=memory.reason, refused=refused)
         return memory._replace(search=search, reason=Reason.NONE, plan=PlanProgress())
     return ParkingMemory(state=memory.state, perception=Perception(time=memory.perception.time))
 

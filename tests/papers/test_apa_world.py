@@ -9,6 +9,7 @@ import pytest
 
 from modelkit.geometry import Box, boxes_gap, corners
 from orchestrator.commands.sweep import chosen_study
+from orchestrator.grid.parkings import GBT
 from orchestrator.grid.world import ends
 from orchestrator.grid.world.asked import HEARD, asked
 from orchestrator.grid.world.factors import FACTORS
@@ -233,3 +234,22 @@ def test_a_contact_of_the_table_comes_back(tmp_path: Path) -> None:
     assert ((touched != "") == np.isfinite(table.column("touched.x"))).all()
     again = repeat_row(table, int(np.flatnonzero(ended == ends.PARKED)[0]), tmp_path / "again", pages=False)
     assert again.different == []
+
+
+def test_another_system_is_judged_by_what_every_controller_reports() -> None:
+    """The rows are the same, so that two systems can be compared in pairs."""
+    own, other = study(runs=20, seed=3), study(runs=20, seed=3, system=8)
+    np.testing.assert_array_equal(own.design.values, other.design.values)
+    assert other.name == "apa-world-8"
+    assert not any("apa" in measure.signal for measure in other.measures.values())
+    row = {"outcome": "parked", "reason": "all checks passed", "kind": 0, f"within {GBT[1]}": 1.0}
+    assert ends.end_of_any(row, None) == "parked"
+    assert ends.end_of_any({**row, f"within {GBT[1]}": 0.0}, None) == "false parked"
+    assert ends.end_of_any({**row, "outcome": "failed"}, None) == "gave up"
+    touching = {"touched.steering_active": 1.0, "touched.takeover": 0.0, "vehicle.scene.kerbs[1].height": 0.0}
+    assert ends.end_of_any(touching, ends.Touched("first neighbour", came=False)) == "contact"
+    assert (
+        ends.end_of_any({**touching, "touched.takeover": 1.0}, ends.Touched("wall behind", came=False))
+        == "contact, driver drives"
+    )
+    assert ends.end_of_any(touching, ends.Touched("person", came=True)) == "walked into"

@@ -69,7 +69,7 @@ def test_wide_open_space_is_no_slot() -> None:
 
 
 def row_of(lengths: tuple[float, ...], complete: bool) -> SlotCandidate:
-    members = tuple(RowMember(-8.0 * n, -8.0 * n + length, 1.0, complete) for n, length in enumerate(lengths))
+    members = tuple(RowMember(-8.0 * n, -8.0 * n + length, 1.0, complete, complete) for n, length in enumerate(lengths))
     row = SlotRow(members=members + (RowMember(),) * (8 - len(lengths)), used=len(lengths))
     return SlotCandidate(row=row)
 

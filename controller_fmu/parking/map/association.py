@@ -138,10 +138,13 @@ def is_contradicted(
 ) -> bool:
     """Return whether a landmark had to return an echo, but the first one is beyond ``free_range`` [m].
 
-    Only where the predicted echo lies well inside the cone, beyond the blind zone and outside the gate.
+    Only where the predicted echo lies well inside the cone, beyond the blind zone and outside the gate; of a segment
+    only the side, since the corners may lie outside a narrower cone.
     """
     predicted = predict_range(sensor, landmark)
     if predicted.origin == EchoOrigin.OUT_OF_VIEW or predicted.origin == EchoOrigin.CONE_EDGE:
+        return False
+    if landmark.type == LandmarkType.SEGMENT and predicted.origin != EchoOrigin.INTERIOR:
         return False
     along = along_of(landmark, predicted.x, predicted.y)
     roughness = SURFACE_DEVIATION * SURFACE_DEVIATION

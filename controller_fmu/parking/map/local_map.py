@@ -10,6 +10,8 @@ from controller_fmu.parking.map.association import (
     predict_range,
     with_open_ends_extended,
 )
+from controller_fmu.parking.map.chain_update import SideReading, use_side_reading
+from controller_fmu.parking.map.echo_chain import EchoChain
 from controller_fmu.parking.map.free_space import FreeSpace, add_ray
 from controller_fmu.parking.map.initialisation import landmark_of
 from controller_fmu.parking.map.landmark import LANDMARKS, Landmark, LandmarkType, replace_landmark
@@ -19,7 +21,7 @@ from controller_fmu.parking.map.prediction import predict_landmarks
 from controller_fmu.parking.map.update import extend_over_window, update_with_feature
 from controller_fmu.parking.measurement.echo_feature import EchoFeature, FeatureType, echo_feature
 from controller_fmu.parking.measurement.echo_window import EchoWindow, push_echo
-from controller_fmu.parking.measurement.predicted_range import EchoOrigin
+from controller_fmu.parking.measurement.predicted_range import PredictedRange
 from controller_fmu.parking.measurement.sensor import (
     FRONT_LEFT_SIDE,
     FRONT_RIGHT_SIDE,
@@ -32,6 +34,11 @@ from controller_fmu.parking.measurement.sensor import (
 )
 from modelkit.car import CarUltrasonic
 from modelkit.vocabulary import Pose
+
+CONFIRMING_RANGE = 0.1
+"""An echo this near [m] to the predicted one confirms a landmark: the expected echoes that it missed were dropouts."""
+FIRST_SIDE = FRONT_LEFT_SIDE
+SIDE_SENSORS = SENSORS - FIRST_SIDE
 
 
 class Measurement(NamedTuple):
@@ -51,6 +58,8 @@ class LandmarkMap(NamedTuple):
 
     landmarks: tuple[Landmark, ...] = (Landmark(),) * LANDMARKS
     windows: tuple[EchoWindow, ...] = (EchoWindow(),) * SENSORS
+    chains: tuple[EchoChain, ...] = (EchoChain(),) * SIDE_SENSORS
+    """Of the sensors on the flanks."""
     free_space: FreeSpace = FreeSpace()
     pose: Pose = Pose()
     distance: float = 0.0
@@ -83,6 +92,34 @@ def update_map(
 def use_measurement(local_map: LandmarkMap, measurement: Measurement, params: MappingParams) -> LandmarkMap:
     """Return the map after one reading."""
     status = measurement.status
+    if measurement.number >= FIRST_SIDE:
+        local_map = _use_side(local_map, measurement, params)
+    else:
+        local_map = _use_bumper(local_map, measurement, params)
+    if status in (ReadingStatus.ECHO, ReadingStatus.NO_ECHO):
+        local_map = local_map._replace(
+            landmarks=contradict_nearer(local_map.landmarks, measurement, params),
+            free_space=_with_ray(local_map.free_space, measurement),
+        )
+    return local_map
+
+
+def _use_side(local_map: LandmarkMap, measurement: Measurement, params: MappingParams) -> LandmarkMap:
+    """Return the map after a reading of a sensor on a flank, which hears sides as it passes: chains of echoes."""
+    at = measurement.number - FIRST_SIDE
+    found = use_side_reading(
+        local_map.landmarks,
+        local_map.chains[at],
+        SideReading(measurement.sensor, measurement.status, measurement.range, measurement.variance),
+        params,
+    )
+    chains = tuple(found.chain if number == at else local_map.chains[number] for number in range(SIDE_SENSORS))
+    return local_map._replace(landmarks=found.landmarks, chains=chains)
+
+
+def _use_bumper(local_map: LandmarkMap, measurement: Measurement, params: MappingParams) -> LandmarkMap:
+    """Return the map after a reading of a sensor in a bumper, which approaches what it hears: windows of echoes."""
+    status = measurement.status
     window = local_map.windows[measurement.number]
     if status == ReadingStatus.ECHO:
         window = push_echo(window, measurement.sensor, measurement.range, measurement.variance)
@@ -92,9 +129,6 @@ def use_measurement(local_map: LandmarkMap, measurement: Measurement, params: Ma
     feature = echo_feature(window, measurement.variance, measurement.sensor.cone_cos)
     if feature.type != FeatureType.NONE:
         landmarks = use_feature(landmarks, feature, window, measurement.variance, params)
-    if status in (ReadingStatus.ECHO, ReadingStatus.NO_ECHO):
-        landmarks = contradict_nearer(landmarks, measurement, params)
-        local_map = local_map._replace(free_space=_with_ray(local_map.free_space, measurement))
     at = measurement.number
     return local_map._replace(
         landmarks=landmarks,
@@ -126,15 +160,15 @@ def is_confirmed(landmark: Landmark, params: MappingParams) -> bool:
 
 
 def expected_range(
-    landmarks: tuple[Landmark, ...], sensor: SensorPose, max_range: float, params: MappingParams
-) -> float:
-    """Return the range [m] to the nearest confirmed landmark in view, open ends extended; ``max_range`` if none is."""
-    nearest = max_range
+    landmarks: tuple[Landmark, ...], sensor: SensorPose, planned: PredictedRange, params: MappingParams
+) -> PredictedRange:
+    """Return the nearest point of a confirmed landmark in view, open ends extended; ``planned`` if none is nearer."""
+    nearest = planned
     for number in range(LANDMARKS):
         if is_confirmed(landmarks[number], params):
             predicted = predict_range(sensor, with_open_ends_extended(landmarks[number]))
-            if predicted.origin != EchoOrigin.OUT_OF_VIEW:
-                nearest = min(nearest, predicted.distance)
+            if predicted.distance < nearest.distance:
+                nearest = predicted
     return nearest
 
 
@@ -145,6 +179,10 @@ def contradict_nearer(
     sensor = measurement.sensor
     for number in range(LANDMARKS):
         landmark = landmarks[number]
+        if landmark.contradictions > 0 and measurement.status == ReadingStatus.ECHO:
+            predicted = predict_range(sensor, landmark)
+            if abs(predicted.distance - measurement.range) < CONFIRMING_RANGE:
+                landmarks = replace_landmark(landmarks, number, landmark._replace(contradictions=0))
         if landmark.type != LandmarkType.NONE and is_contradicted(
             landmark, sensor, measurement.range, measurement.min_range, measurement.variance
         ):

@@ -38,12 +38,14 @@ MAX_RATE_TIME = 2.0
 
 
 class EchoObstacle(NamedTuple):
-    """An unexplained echo: its point on the sensor's axis, and how fast it approaches [m/s]; ``is_present``."""
+    """An echo: its point, on the sensor's axis where it is unexplained, and how fast it approaches [m/s]."""
 
     x: float = 0.0
     y: float = 0.0
     closing_speed: float = 0.0
     is_present: bool = False
+    is_unexplained: bool = False
+    """Else it is what the map predicts, but where it is measured."""
 
 
 class VehicleMotion(NamedTuple):
@@ -85,7 +87,9 @@ def monitor_collision(
     by_map = UNLIMITED
     if horizon > 0.0:
         by_map = free_by_map(motion, horizon, outline, landmarks, params, mapping)
-        free = min(by_map, free_by_echoes(motion, horizon, outline, echoes, params))
+        by_echoes = free_by_echoes(motion, horizon, outline, echoes, False, params)
+        by_map = min(by_map, by_echoes)
+        free = min(by_map, free_by_echoes(motion, horizon, outline, echoes, True, params))
     limit = UNLIMITED if free >= UNLIMITED else speed_for_distance(free, motion.delay, motion.deceleration)
     least = RESTART if motion.speed <= 0.0 else stop
     return MonitorVerdict(limit, free < UNLIMITED and free <= min(least, motion.remaining), free, by_map <= free)
@@ -120,19 +124,20 @@ def free_by_echoes(
     horizon: float,
     outline: VehicleOutline,
     echoes: tuple[EchoObstacle, ...],
+    unexplained: bool,
     params: MonitorParams,
 ) -> float:
-    """Return how far [m] the outline goes before it comes too near to an unexplained echo, as that approaches."""
+    """Return how far [m] the outline goes before it comes too near to an echo, as that approaches."""
     free = UNLIMITED
     for number in range(SENSORS):
         echo = echoes[number]
-        if echo.is_present:
+        if echo.is_present and echo.is_unexplained == unexplained:
             least = outline_distance(echo.x, echo.y, motion.pose, outline) - APPROACH
             for step in range(1, POSES + 1):
                 way = horizon * step / POSES
                 pose = pose_along_arc(motion.pose, motion.direction * way, motion.curvature)
                 time = motion.delay + min(MAX_RATE_TIME, 2.0 * way / max(motion.speed, APPROACH))
-                kept = params.echo_distance + echo.closing_speed * time
+                kept = params.echo_distance + echo.closing_speed * time if echo.is_unexplained else params.map_distance
                 distance = outline_distance(echo.x, echo.y, pose, outline)
                 if way < free and distance < kept and (distance < least or echo.closing_speed > 0.0):
                     free = horizon * (step - 1) / POSES

@@ -1,4 +1,4 @@
-"""One track per sensor of echoes nearer than the map allows: range and closing rate by a Kalman filter.
+"""One track per sensor of what it measures: range and closing rate by a Kalman filter, and whether the map explains it.
 
 State (r, v): r' = v, white acceleration of density q; measurement r + n. The vehicle's own motion towards the object is
 taken out first, so that v is the object's own. A track is tentative, confirmed after ``CONFIRMATIONS`` echoes, coasts
@@ -39,18 +39,25 @@ class ObjectTrack(NamedTuple):
     vv: float = 0.0
     confirmations: int = 0
     missed: int = 0
+    unexplained: int = 0
+    """Cycles for which it still counts as an object that the map does not hold."""
+    expected: float = 0.0
+    """Range [m] that map and plan predict."""
+    ux: float = 1.0
+    """Unit vector from the sensor to where the predicted echo comes from."""
+    uy: float = 0.0
 
 
 def update_track(
-    track: ObjectTrack, is_unexplained: bool, measured: float, own_approach: float, variance: float, dt: float
+    track: ObjectTrack, is_echo: bool, measured: float, own_approach: float, variance: float, dt: float
 ) -> ObjectTrack:
     """Return the track after a cycle of ``dt`` [s] in which the sensor came ``own_approach`` [m] nearer."""
     if track.status == TrackStatus.NONE:
-        if not is_unexplained:
+        if not is_echo:
             return track
         return ObjectTrack(TrackStatus.TENTATIVE, measured, 0.0, variance, 0.0, INITIAL_RATE_VARIANCE, 1, 0)
     predicted = _predict(track, own_approach, dt)
-    if not is_unexplained:
+    if not is_echo:
         missed = track.missed + 1
         if missed > MAX_COASTING or track.status == TrackStatus.TENTATIVE:
             return ObjectTrack()
@@ -71,11 +78,20 @@ def update_track(
         predicted.vv - kv * predicted.rv,
         confirmations,
         0,
+        track.unexplained,
     )
 
 
+def with_expectation(track: ObjectTrack, expected: float, ux: float, uy: float, is_unexplained: bool) -> ObjectTrack:
+    """Return the track with what was ``expected`` [m] in the direction (ux, uy), and whether that explains it."""
+    left = MAX_COASTING if is_unexplained else max(track.unexplained - 1, 0)
+    return track._replace(expected=expected, ux=ux, uy=uy, unexplained=left)
+
+
 def closing_speed(track: ObjectTrack) -> float:
-    """Return how fast [m/s] the object of a confirmed track approaches by itself, two sigma above 0; else 0."""
+    """Return how fast [m/s] an unexplained object of a confirmed track approaches by itself, two sigma above 0."""
+    if track.unexplained == 0:
+        return 0.0
     if track.status != TrackStatus.CONFIRMED and track.status != TrackStatus.COASTING:
         return 0.0
     if track.rate > 0.0 or track.rate * track.rate < 4.0 * track.vv:

@@ -29,19 +29,19 @@ CAR_LENGTH_SIGMA = 0.5
 CAR_WIDTH = 1.8
 CAR_WIDTH_SIGMA = 0.2
 """Passenger cars (ISO 16787 test vehicles and what is sold): length and width [m], standard deviations."""
+MERGED_LENGTH = 1.0
+"""So much [m] of a side that is still being passed may be the next car's: the gap shows when as much is seen of it."""
 MAX_CAR = 6.0
 """A longer side [m] is a wall, and tells nothing of how cars stand."""
 MAX_PARALLEL_DEPTH = 3.0
 """A kerb or wall nearer than this [m] behind the row leaves no perpendicular slot."""
-TYPICAL_BAY = 2.5
-"""Width [m] of a bay where the row does not repeat."""
 MAX_BAY = 3.5
 INSET = 0.25
 """What stands at least this far [m] from both neighbours and behind their fronts is in the gap."""
 SAMPLES = 9
 FREE_DEPTHS = (0.4, 1.0, 1.6)
-FREE_FRACTIONS = (0.3, 0.5, 0.7)
-MIN_FREE = 5
+FREE_FRACTIONS = (0.4, 0.5, 0.6)
+MIN_FREE = 4
 """Of the nine points so deep [m] and at these fractions of the gap, so many must have been observed free."""
 
 
@@ -68,8 +68,8 @@ class SlotCandidate(NamedTuple):
     """Line of the neighbours' fronts, across the row."""
     depth: float = UNKNOWN_DEPTH
     """Behind that line."""
-    bay: float = TYPICAL_BAY
-    """Distance of two cars that stand perpendicular, from middle to middle."""
+    bay: float = 0.0
+    """Distance of two cars that stand perpendicular, from middle to middle [m]; 0: the row does not repeat."""
 
 
 def find_slot(
@@ -106,8 +106,8 @@ def _candidate(
     width = ahead.start - behind.end
     if width < 2.0 * outline.half_width:
         return SlotCandidate()
-    found = SlotCandidate(row=row, behind=behind, ahead=ahead, front=0.5 * (behind.front + ahead.front))
-    found = found._replace(depth=gap_depth(found, landmarks, params), bay=bay_width(row))
+    found = SlotCandidate(row=row, behind=behind, ahead=ahead, front=0.5 * (behind.end_front + ahead.start_front))
+    found = found._replace(depth=gap_depth(found, landmarks, outline, params), bay=bay_width(row))
     fits_parallel = width >= 2.0 * outline.half_length + slot.room_along
     fits_perpendicular = width >= 2.0 * outline.half_width + slot.room_across
     ratio = log_likelihood_ratio(found)
@@ -152,8 +152,10 @@ def log_likelihood_ratio(candidate: SlotCandidate) -> float:
         if number < candidate.row.used:
             member = candidate.row.members[number]
             length = member.end - member.start
+            if not (member.start_known and member.end_known):
+                length -= MERGED_LENGTH
             is_between_gaps = 0 < number < candidate.row.used - 1
-            is_complete = member.is_complete or is_between_gaps
+            is_complete = (member.start_known and member.end_known) or is_between_gaps
             if length < MAX_CAR:
                 ratio += _log_likelihood(length, is_complete, CAR_LENGTH, CAR_LENGTH_SIGMA)
                 ratio -= _log_likelihood(length, is_complete, CAR_WIDTH, CAR_WIDTH_SIGMA)
@@ -182,14 +184,18 @@ def bay_width(row: SlotRow) -> float:
             if distance < MAX_BAY:
                 total += distance
                 n += 1.0
-    return total / n if n > 0.0 else TYPICAL_BAY
+    return total / n if n > 0.0 else 0.0
 
 
-def gap_depth(candidate: SlotCandidate, landmarks: tuple[Landmark, ...], params: MappingParams) -> float:
-    """Return how deep [m] behind the neighbours' fronts the first landmark in the gap lies."""
+def gap_depth(
+    candidate: SlotCandidate, landmarks: tuple[Landmark, ...], outline: VehicleOutline, params: MappingParams
+) -> float:
+    """Return how deep [m] behind the neighbours' fronts the first landmark lies where a vehicle would stand."""
     row = candidate.row
-    low = candidate.behind.end + INSET
-    high = candidate.ahead.start - INSET
+    room = 0.5 * (candidate.ahead.start - candidate.behind.end)
+    inset = max(INSET, room - (outline.half_length if candidate.type == SlotType.PARALLEL else outline.half_width))
+    low = candidate.behind.end + inset
+    high = candidate.ahead.start - inset
     depth = UNKNOWN_DEPTH
     for number in range(LANDMARKS):
         landmark = landmarks[number]
@@ -205,7 +211,10 @@ def gap_depth(candidate: SlotCandidate, landmarks: tuple[Landmark, ...], params:
 
 
 def is_observed_free(candidate: SlotCandidate, rays: tuple[Ray, ...]) -> bool:
-    """Return whether the gap behind the fronts has been observed free, as deep as it is."""
+    """Return whether the gap behind the fronts has been observed free, as deep as it is, or both its edges have.
+
+    From afar the corners of a narrow gap hide what is between them; then the way in will show it.
+    """
     count = 0
     for deep in FREE_DEPTHS:
         for fraction in FREE_FRACTIONS:
@@ -213,7 +222,8 @@ def is_observed_free(candidate: SlotCandidate, rays: tuple[Ray, ...]) -> bool:
             point = row_point(candidate.row, x, candidate.front + min(deep, 0.5 * candidate.depth))
             if is_free(rays, point.x, point.y):
                 count += 1
-    return count >= MIN_FREE
+    has_edges = candidate.behind.end_known and candidate.ahead.start_known
+    return count >= MIN_FREE or has_edges
 
 
 def row_point(row: SlotRow, along: float, deep: float) -> Point:

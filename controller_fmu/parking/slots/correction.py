@@ -3,21 +3,50 @@
 import math
 
 from controller_fmu.parking.geometry.frames import point_to_frame
+from controller_fmu.parking.geometry.outline import VehicleOutline
 from controller_fmu.parking.map.landmark import LANDMARKS, Landmark, LandmarkType, length_of, segment_point
 from controller_fmu.parking.map.local_map import is_confirmed
 from controller_fmu.parking.map.params import MappingParams
-from controller_fmu.parking.slots.candidate import SlotCandidate, SlotType, gap_depth
+from controller_fmu.parking.slots.candidate import CAR_WIDTH, SlotCandidate, SlotType, gap_depth
 from modelkit.maths import wrap_angle
 
 MAX_CORRECTION = 0.6
 """A flank corrects a neighbour's corner by at most this [m]: the end of a side is known to 0.2 m, one sigma."""
 MIN_FLANK = 0.5
 """A shorter side [m] in the slot is no flank."""
+MIN_FACE = 0.2
+"""And this [m] of a neighbour's end: the distance of two sensors."""
+MAX_FACE_ANGLE = 0.35
+"""Such an end is known less exactly, and cars stand askew [rad]."""
 MAX_ANGLE = 0.2
 """A flank is turned by less than this [rad] against the direction into the slot: cars stand within 10 deg."""
 
 
-def correct_slot(candidate: SlotCandidate, landmarks: tuple[Landmark, ...], params: MappingParams) -> SlotCandidate:
+def _between_faces(candidate: SlotCandidate, landmarks: tuple[Landmark, ...], params: MappingParams) -> SlotCandidate:
+    """Return a parallel slot between what has been measured of its neighbours' ends that face it."""
+    behind = candidate.behind.end
+    ahead = candidate.ahead.start
+    across = candidate.row.frame.heading + 0.5 * math.pi
+    for number in range(LANDMARKS):
+        landmark = landmarks[number]
+        angle = wrap_angle(landmark.heading - across)
+        off = min(abs(angle), math.pi - abs(angle))
+        is_face = landmark.type == LandmarkType.SEGMENT and is_confirmed(landmark, params) and off < MAX_FACE_ANGLE
+        if is_face and length_of(landmark) > MIN_FACE:
+            middle = segment_point(landmark, 0.5 * (landmark.start + landmark.end))
+            point = point_to_frame(middle.x, middle.y, candidate.row.frame)
+            deep = candidate.row.side * point.y - candidate.front
+            if 0.0 < deep < CAR_WIDTH:
+                if abs(point.x - candidate.behind.end) < MAX_CORRECTION:
+                    behind = point.x
+                if abs(point.x - candidate.ahead.start) < MAX_CORRECTION:
+                    ahead = point.x
+    return candidate._replace(behind=candidate.behind._replace(end=behind), ahead=candidate.ahead._replace(start=ahead))
+
+
+def correct_slot(
+    candidate: SlotCandidate, landmarks: tuple[Landmark, ...], outline: VehicleOutline, params: MappingParams
+) -> SlotCandidate:
     """Return the slot between the flanks that have been measured, with the depth that is known now."""
     corrected = candidate
     if candidate.type == SlotType.PERPENDICULAR:
@@ -40,4 +69,6 @@ def correct_slot(candidate: SlotCandidate, landmarks: tuple[Landmark, ...], para
         corrected = candidate._replace(
             behind=candidate.behind._replace(end=behind), ahead=candidate.ahead._replace(start=ahead)
         )
-    return corrected._replace(depth=min(candidate.depth, gap_depth(corrected, landmarks, params)))
+    if candidate.type == SlotType.PARALLEL:
+        corrected = _between_faces(candidate, landmarks, params)
+    return corrected._replace(depth=min(candidate.depth, gap_depth(corrected, landmarks, outline, params)))

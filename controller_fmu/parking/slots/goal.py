@@ -10,6 +10,8 @@ from modelkit.vocabulary import Pose
 
 MAX_KERB_DISTANCE = 1.2
 """What lies farther [m] beside a vehicle that stands flush with its neighbours is not its kerb."""
+MAX_KERB_SHIFT = 0.05
+"""Towards a kerb the vehicle leaves its neighbours' line by this [m] at most: sensors cannot tell it from a wall."""
 
 
 def goal_pose(candidate: SlotCandidate, outline: VehicleOutline, params: SlotParams) -> Pose:
@@ -22,7 +24,7 @@ def goal_pose(candidate: SlotCandidate, outline: VehicleOutline, params: SlotPar
         if left < params.kerb_min:
             shift = left - params.kerb_min
         elif left > params.kerb_max and candidate.depth < width + MAX_KERB_DISTANCE:
-            shift = left - params.kerb_max
+            shift = min(left - params.kerb_max, MAX_KERB_SHIFT)
         deep = candidate.front + outline.half_width + shift
         heading = candidate.row.frame.heading
     else:
@@ -40,7 +42,7 @@ def _bay_middle(candidate: SlotCandidate, outline: VehicleOutline, params: SlotP
     """Return the middle [m] along the row of the bay to park in: of several empty ones that passed last."""
     width = candidate.ahead.start - candidate.behind.end
     one_more = candidate.bay + 2.0 * outline.half_width + params.room_across
-    if width < one_more:
+    if candidate.bay <= 0.0 or width < one_more:
         return 0.5 * (candidate.behind.end + candidate.ahead.start)
     return (
         0.5 * (candidate.ahead.start + candidate.ahead.end) - candidate.bay
@@ -51,4 +53,4 @@ def _bay_middle(candidate: SlotCandidate, outline: VehicleOutline, params: SlotP
 
 def _is_car(candidate: SlotCandidate) -> bool:
     """Return whether the neighbour passed last was seen in full, so that its middle is known."""
-    return candidate.ahead.is_complete
+    return candidate.ahead.start_known and candidate.ahead.end_known

@@ -46,8 +46,11 @@ class RowMember(NamedTuple):
     start: float = 0.0
     end: float = 0.0
     front: float = 0.0
-    is_complete: bool = False
-    """Both ends are known."""
+    start_known: bool = False
+    end_known: bool = False
+    start_front: float = 0.0
+    """Its front at the start, and at the end [m]: cars stand askew."""
+    end_front: float = 0.0
 
 
 class SlotRow(NamedTuple):
@@ -82,10 +85,20 @@ def side_as_member(landmark: Landmark, frame: Pose, side: float, params: Mapping
     p = point_to_frame(a.x, a.y, frame)
     q = point_to_frame(b.x, b.y, frame)
     front = side * 0.5 * (p.y + q.y)
-    complete = landmark.start_known and landmark.end_known
     if front < 0.0 or front > MAX_ROAD:
         return RowMember()
-    return RowMember(min(p.x, q.x), max(p.x, q.x), front, complete)
+    first = p if p.x < q.x else q
+    last = q if p.x < q.x else p
+    forward = p.x < q.x
+    return RowMember(
+        first.x,
+        last.x,
+        front,
+        landmark.start_known if forward else landmark.end_known,
+        landmark.end_known if forward else landmark.start_known,
+        side * first.y,
+        side * last.y,
+    )
 
 
 def _members(landmarks: tuple[Landmark, ...], frame: Pose, side: float, params: MappingParams) -> SlotRow:
@@ -120,7 +133,16 @@ def _with_member(row: SlotRow, member: RowMember) -> SlotRow:
     if joins:
         last = row.members[max(at, 0)]
         longer = member if member.end - member.start > last.end - last.start else last
-        joined = RowMember(min(last.start, member.start), last.end, longer.front, last.is_complete)
+        first = member if member.start < last.start else last
+        joined = RowMember(
+            first.start,
+            last.end,
+            longer.front,
+            first.start_known,
+            last.end_known,
+            first.start_front,
+            last.end_front,
+        )
         return row._replace(members=tuple(joined if number == at else row.members[number] for number in range(MEMBERS)))
     if row.used >= MEMBERS:
         return row

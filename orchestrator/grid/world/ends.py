@@ -1,7 +1,7 @@
 """What became of a run in the world: a contact is its end, whatever the controller says after it."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from functools import cache
 from typing import Any, NamedTuple
 
@@ -21,6 +21,7 @@ from orchestrator.sweep.columns import WITHIN
 from orchestrator.sweep.study.study import Columns, Derived, Goal
 from orchestrator.verdict.measures import Measure, When
 from orchestrator.verdict.numbers import Number
+from orchestrator.verdict.outcome import BEYOND
 from orchestrator.verdict.standing import slot_margin
 from vehicle_fmu.scene import Obstacle, SceneParams, is_there, obstacle_box
 
@@ -44,6 +45,15 @@ MEASURES = {
     "assist.clearance": Measure("smallest", "vehicle.clearance", When("controller.apa.mode", tuple(map(int, DRIVES)))),
     "touched.time": Measure("time", "vehicle.speed", TOUCHING),
 }
+Judge = Callable[[Mapping[str, Any], "Touched | None"], str]
+MEASURES_OF_ANY = {
+    **{f"touched.{axis}": Measure("first", f"vehicle.pose.{axis}", TOUCHING) for axis in AXES},
+    "touched.speed": Measure("first", "vehicle.speed", TOUCHING),
+    "touched.takeover": Measure("first", "vehicle.driver_takeover", TOUCHING),
+    "touched.steering_active": Measure("first", "controller.steering_active", TOUCHING),
+    "touched.time": Measure("time", "vehicle.speed", TOUCHING),
+}
+"""What the end of a run is told by where the system has no mode of the assist."""
 CONTACT, DRIVER, WALKED_INTO, LOW_KERB = "contact", "contact, driver drives", "walked into", "wheel at a low kerb"
 PARKED, FALSE, FAILED, UNUSED, ENDLESS = "parked", "false parked", "gave up", "not in use", "endless"
 ENDS = {
@@ -60,13 +70,14 @@ ENDS = {
 """How a run in the world ends, the worst first."""
 
 
-def _ends(columns: Columns) -> Mapping[str, Array]:
+def _ends(columns: Columns, judge: Judge | None = None) -> Mapping[str, Array]:
     """Return the end of each run, what was touched first, and whether the run asks for what can be had."""
     rows = [
         dict(zip(columns, row, strict=True)) for row in zip(*(_plain(item) for item in columns.values()), strict=True)
     ]
     touched = [None if math.isnan(row["touched.x"]) else touched_first(row) for row in rows]
-    found = [end_of(row, first) for row, first in zip(rows, touched, strict=True)]
+    judge = end_of if judge is None else judge
+    found = [judge(row, first) for row, first in zip(rows, touched, strict=True)]
     into = [end == CONTACT and is_driven_into(row, first) for row, end, first in zip(rows, found, touched, strict=True)]
     return {
         **asked(columns),
@@ -74,6 +85,11 @@ def _ends(columns: Columns) -> Mapping[str, Array]:
         "end": np.array(found, dtype=object),
         "touched": np.array(["" if first is None else first.name for first in touched], dtype=object),
     }
+
+
+def _ends_of_any(columns: Columns) -> Mapping[str, Array]:
+    """Return the same of a system without the assist's modes."""
+    return _ends(columns, end_of_any)
 
 
 def _plain(values: Any) -> list[Any]:
@@ -99,6 +115,17 @@ def end_of(row: Mapping[str, Any], touched: Touched | None) -> str:
     if row["mode"] != Mode.PARKING_FINISH:
         return UNUSED if row["mode"] == Mode.STANDBY else ENDLESS
     return PARKED if row[WITHIN.format(GBT[int(row["kind"]) + 1])] or _stands_among_the_moved(row) else FALSE
+
+
+def end_of_any(row: Mapping[str, Any], touched: Touched | None) -> str:
+    """Return how a run of any system ended, one of ``ENDS``: who steers says who drives, the outcome what it claims."""
+    if touched is not None:
+        low = touched.name == KERB and row["vehicle.scene.kerbs[1].height"] < HEARD
+        driven = row["touched.steering_active"] and not row["touched.takeover"]
+        return WALKED_INTO if touched.came else LOW_KERB if low else CONTACT if driven else DRIVER
+    if row["outcome"] == "parked" or row["reason"].startswith(BEYOND):
+        return PARKED if row[WITHIN.format(GBT[int(row["kind"]) + 1])] or _stands_among_the_moved(row) else FALSE
+    return FAILED if row["outcome"] == "failed" else ENDLESS
 
 
 def _stands_among_the_moved(row: Mapping[str, Any]) -> bool:
@@ -228,3 +255,4 @@ INTO = {"driven_into": Number("1", "1: contact at standstill caused by a moving 
 FOUND = Derived(
     {**COLUMNS, **INTO}, _ends, {"end": "how the run ended in the world", "touched": "what was touched first"}
 )
+FOUND_BY_ANY = FOUND._replace(make=_ends_of_any)

@@ -12,7 +12,19 @@ from orchestrator.cosim.slave import Array
 from orchestrator.grid.cases import KINDS, gbt_limits
 from orchestrator.grid.parkings import GBT
 from orchestrator.grid.study import GBT_SETS
-from orchestrator.grid.world.ends import CONTACT, ENDLESS, ENDS, FALSE, FOUND, GOALS, MEASURES, PARKED, WALKED_INTO
+from orchestrator.grid.world.ends import (
+    CONTACT,
+    ENDLESS,
+    ENDS,
+    FALSE,
+    FOUND,
+    FOUND_BY_ANY,
+    GOALS,
+    MEASURES,
+    MEASURES_OF_ANY,
+    PARKED,
+    WALKED_INTO,
+)
 from orchestrator.grid.world.factors import FACTORS, NO_SENSOR, NOBODY
 from orchestrator.grid.world.scene import NEVER, SENSORS, F, parameters
 from orchestrator.scenario.fault import Fault
@@ -33,8 +45,12 @@ KERB = "kerb"
 """Limits that GB/T states against a kerb: the assist stands flush with its neighbours, wherever that is."""
 
 
-def study(runs: int = 2000, seed: int = 1, mild: int = 0) -> Study:
-    """Return the world; ``mild``: 1 for half the ranges."""
+APA = 5
+"""The number of ``controller.system`` of the parking assist."""
+
+
+def study(runs: int = 2000, seed: int = 1, mild: int = 0, system: int = APA) -> Study:
+    """Return the world; ``mild``: 1 for half the ranges; ``system``: number of ``controller.system``, same rows."""
     world = space([factor.mild() for factor in FACTORS] if mild else list(FACTORS))
     shares = np.random.default_rng([seed, 0]).random((runs, len(world.factors)))
     seeds = np.random.default_rng([seed, 1]).integers(1, 2**31 - 1, size=runs)
@@ -46,19 +62,23 @@ def study(runs: int = 2000, seed: int = 1, mild: int = 0) -> Study:
         "seed": seed,
         "mild": mild,
     }
+    shared = scenario(system)
     design = Design(fields(), world.values(shares, seeds), seeds, world.named(shares))
     within = {GBT[kind]: limits_beside_neighbours(name) for kind, name in GBT_SETS.items()}
-    seeded = [("vehicle", "ultrasonic.seed", find_field("vehicle.ultrasonic.seed", scenario()).place)]
-    return Study(scenario(), design, content, seeded, MEASURES, within, FOUND, world, GOALS)
+    seeded = [("vehicle", "ultrasonic.seed", find_field("vehicle.ultrasonic.seed", shared).place)]
+    if system != APA:
+        content |= {"name": f"{content['name']}-{system}", "system": system}
+        return Study(shared, design, content, seeded, MEASURES_OF_ANY, within, FOUND_BY_ANY, world)
+    return Study(shared, design, content, seeded, MEASURES, within, FOUND, world, GOALS)
 
 
-def scenario() -> Scenario:
-    """Return what all runs share; the assist is told neither slot nor target."""
+def scenario(system: int = APA) -> Scenario:
+    """Return what all runs share; the system is told neither slot nor target."""
     return Scenario(
         name="apa-world",
         stop_time=STOP,
         vehicle={"odometry.perfect": False, "driver.apa_switch_time": 0.5, "body_step": BODY_STEP},
-        controller={"system": 5},
+        controller={"system": system},
         faults=[
             Fault(signal=f"vehicle.ultrasonic[{number}]", kind="override", value=0.0, start=NEVER)
             for number in range(1, SENSORS + 1)

@@ -1,0 +1,313 @@
+"""From chains of echoes to landmarks: fit, split where two bodies are heard as one, and keep what was known before.
+
+One convex body leaves ranges that fall, stay and rise. Where they rise and fall again in between, two bodies stand side
+by side; the fit of two segments must then explain the echoes better than that of one (ratio of likelihoods).
+"""
+
+import math
+from typing import NamedTuple
+
+from controller_fmu.parking.map.echo_chain import (
+    CHAIN,
+    EchoChain,
+    append_echo,
+    begin_chain,
+    continues,
+    from_echo,
+    is_passed,
+    is_turned_back,
+)
+from controller_fmu.parking.map.landmark import (
+    LANDMARKS,
+    Landmark,
+    LandmarkType,
+    along_of,
+    end_point,
+    free_index,
+    length_of,
+    offset_of,
+    offset_variance,
+    replace_landmark,
+    segment_point,
+    start_point,
+)
+from controller_fmu.parking.map.params import MappingParams
+from controller_fmu.parking.map.segment_fit import EndGuess, SegmentFit, SegmentGuess, fit_segment
+from controller_fmu.parking.measurement.sensor import ReadingStatus, SensorPose
+from modelkit.maths import wrap_angle
+
+MIN_ECHOES = 4
+"""Of a chain that makes a landmark: three unknowns and one to spare."""
+REFIT_ECHOES = 3
+"""A chain is fitted again after so many more echoes."""
+CONE_SIGMA = 0.08
+"""Tangent of the half cone: how far it may be off (26 to 34 deg instead of 30), standard deviation."""
+OPEN_SIGMA = 0.5
+"""An end at which the chain was hidden or has not ended is not known: standard deviation [m]."""
+OPEN_INSET = 0.3
+"""Half of the widest gap [m] over which the echoes of two bodies go on without a jump."""
+HUMP_HALF_WIDTH = 4
+"""Echoes on either side of a hump's middle: the ranges over a gap of 0.7 m, at 2 m/s."""
+MIN_PART = HUMP_HALF_WIDTH + 1
+"""Echoes of either part of a chain that is split."""
+SPLIT_CHI_SQUARE = 16.0
+"""Two segments must explain the echoes better by this: three unknowns more (11.3 at 1 %), and where they part is
+chosen."""
+KNOWN_SIGMA = 0.25
+"""An edge is known once its standard deviation [m] is below this: half of the widest gap inside a row."""
+POINT_LENGTH = 0.15
+"""What is shorter [m] is a post or one corner, of unknown direction."""
+SAME_OVERLAP = 0.3
+"""Two sides are one if they overlap by this fraction of the shorter."""
+MAX_MISFIT = 4.0
+"""Mean squared residual over the variance of a chain that no segment explains."""
+
+
+class SideReading(NamedTuple):
+    """A reading of a sensor on a flank: where it was, its ``ReadingStatus``, range [m] and variance [m2]."""
+
+    sensor: SensorPose
+    status: int
+    range: float
+    variance: float
+
+
+class ChainUpdate(NamedTuple):
+    """Landmarks and the chain after a reading."""
+
+    landmarks: tuple[Landmark, ...] = (Landmark(),) * LANDMARKS
+    chain: EchoChain = EchoChain()
+
+
+def use_side_reading(
+    landmarks: tuple[Landmark, ...], chain: EchoChain, reading: SideReading, params: MappingParams
+) -> ChainUpdate:
+    """Return landmarks and chain after a reading."""
+    sensor = reading.sensor
+    status = reading.status
+    measured = reading.range
+    if status == ReadingStatus.BLIND_ZONE or status == ReadingStatus.INVALID:
+        done = finish_chain(landmarks, chain, reading, False, params)
+        return ChainUpdate(done, EchoChain())
+    if status == ReadingStatus.NO_ECHO:
+        chain = chain._replace(lost=chain.lost + 1)
+        if chain.used == 0 or not is_passed(chain, sensor):
+            return ChainUpdate(landmarks, chain)
+        done = finish_chain(landmarks, chain, reading, True, params)
+        return ChainUpdate(done, EchoChain(lost=chain.lost))
+    if chain.used == 0:
+        return ChainUpdate(landmarks, begin_chain(sensor, measured, chain.lost > 0))
+    if is_turned_back(chain, sensor):
+        done = finish_chain(landmarks, chain, reading, False, params)
+        return ChainUpdate(done, begin_chain(sensor, measured, False))
+    if not continues(chain, sensor, measured, reading.variance):
+        last = chain.echoes[max(chain.used - 1, 0)].range
+        done = finish_chain(landmarks, chain, reading, measured > last, params)
+        return ChainUpdate(done, begin_chain(sensor, measured, measured < last))
+    chain = append_echo(chain, sensor, measured)
+    if chain.used >= MIN_ECHOES and chain.used >= chain.fitted + REFIT_ECHOES:
+        return _fit_chain(landmarks, chain, reading, False, params)
+    return ChainUpdate(landmarks, chain)
+
+
+def finish_chain(
+    landmarks: tuple[Landmark, ...],
+    chain: EchoChain,
+    reading: SideReading,
+    ends_at_edge: bool,
+    params: MappingParams,
+) -> tuple[Landmark, ...]:
+    """Return the landmarks with what a chain that has ended tells."""
+    if chain.used < MIN_ECHOES:
+        return landmarks
+    return _fit_chain(landmarks, chain, reading, ends_at_edge, params).landmarks
+
+
+def _fit_chain(
+    landmarks: tuple[Landmark, ...],
+    chain: EchoChain,
+    reading: SideReading,
+    ends_at_edge: bool,
+    params: MappingParams,
+) -> ChainUpdate:
+    """Return landmarks and chain after a fit; a chain of two bodies is split, and its first part done."""
+    last = chain.used - 1
+    whole = _fit_part(chain, 0, last, reading, chain.begins_at_edge, ends_at_edge)
+    at = parting_echo(chain, whole.landmark)
+    if at >= MIN_PART and at + MIN_PART <= chain.used:
+        first = _fit_part(chain, 0, at - 1, reading, chain.begins_at_edge, False)
+        second = _fit_part(chain, at, last, reading, False, ends_at_edge)
+        if whole.chi_square - first.chi_square - second.chi_square > SPLIT_CHI_SQUARE:
+            known = _with_edges(first, chain.begins_at_edge, True)
+            landmarks = _put(landmarks, chain, known, at, params).landmarks
+            rest = from_echo(chain, at)
+            known = _with_edges(second, True, ends_at_edge)
+            return _put(landmarks, rest, known, rest.used, params)
+    if whole.chi_square > MAX_MISFIT * chain.used:
+        return ChainUpdate(landmarks, chain._replace(fitted=chain.used))
+    known = _with_edges(whole, chain.begins_at_edge, ends_at_edge)
+    return _put(landmarks, chain, known, chain.used, params)
+
+
+def _fit_part(
+    chain: EchoChain, first: int, last: int, reading: SideReading, at_start: bool, at_end: bool
+) -> SegmentFit:
+    """Return the fit of a part of a chain whose ends are edges or not."""
+    sensor = reading.sensor
+    line = initial_line(chain, first, last, sensor)
+    a = chain.echoes[first]
+    b = chain.echoes[last]
+    cone = sensor.cone_sin / sensor.cone_cos
+    start = along_of(line, a.x, a.y)
+    end = along_of(line, b.x, b.y)
+    towards = 1.0 if start < end else -1.0
+    a_guess = EndGuess(start + towards * cone * a.range, CONE_SIGMA * a.range + chain.spacing)
+    b_guess = EndGuess(end - towards * cone * b.range, CONE_SIGMA * b.range + chain.spacing)
+    if not at_start:
+        a_guess = EndGuess(start, OPEN_SIGMA, OPEN_INSET)
+    if not at_end:
+        b_guess = EndGuess(end, OPEN_SIGMA, OPEN_INSET)
+    if towards < 0.0:
+        return fit_segment(chain, first, last, SegmentGuess(line, b_guess, a_guess), reading.variance)
+    return fit_segment(chain, first, last, SegmentGuess(line, a_guess, b_guess), reading.variance)
+
+
+def _with_edges(fit: SegmentFit, first_known: bool, last_known: bool) -> SegmentFit:
+    """Return the fit with the edges marked that were passed, in the order of the chain, if they are known well."""
+    landmark = fit.landmark
+    most = KNOWN_SIGMA * KNOWN_SIGMA
+    return fit._replace(
+        landmark=landmark._replace(
+            start_known=first_known and landmark.start_variance < most,
+            end_known=last_known and landmark.end_variance < most,
+        )
+    )
+
+
+def initial_line(chain: EchoChain, first: int, last: int, sensor: SensorPose) -> Landmark:
+    """Return a line along the path of a part of a chain, through the point on the axis of its nearest echo."""
+    a = chain.echoes[first]
+    b = chain.echoes[last]
+    nearest = first
+    for number in range(CHAIN):
+        if first <= number <= last and chain.echoes[number].range < chain.echoes[nearest].range:
+            nearest = number
+    heading = math.atan2(b.y - a.y, b.x - a.x)
+    left_is_sensor = (sensor.axis_y * math.cos(heading) - sensor.axis_x * math.sin(heading)) < 0.0
+    if not left_is_sensor:
+        heading = wrap_angle(heading + math.pi)
+    echo = chain.echoes[nearest]
+    x = echo.x + echo.range * math.sin(heading)
+    y = echo.y - echo.range * math.cos(heading)
+    return Landmark(type=LandmarkType.SEGMENT, x=x, y=y, heading=heading)
+
+
+def parting_echo(chain: EchoChain, segment: Landmark) -> int:
+    """Return the echo before which two bodies part: the middle of the largest hump over a fitted segment; 0: none."""
+    best = 0.0
+    at = 0
+    for number in range(CHAIN):
+        if MIN_PART <= number <= chain.used - MIN_PART:
+            total = 0.0
+            for near in range(-HUMP_HALF_WIDTH, HUMP_HALF_WIDTH + 1):
+                echo = chain.echoes[number + near]
+                total += echo.range - predicted(segment, echo.x, echo.y)
+            if total > best:
+                best = total
+                at = number
+    return at
+
+
+def predicted(segment: Landmark, x: float, y: float) -> float:
+    """Return the distance [m] of a sensor at (x, y) to a segment, whatever its field of view."""
+    u = along_of(segment, x, y)
+    v = offset_of(segment, x, y)
+    t = min(max(u, segment.start), segment.end)
+    return math.sqrt((u - t) * (u - t) + v * v)
+
+
+def _put(
+    landmarks: tuple[Landmark, ...], chain: EchoChain, fit: SegmentFit, echoes: int, params: MappingParams
+) -> ChainUpdate:
+    """Return landmarks and chain with a chain's landmark set: its own renewed, or a new one.
+
+    A side that the map holds already, from another chain, takes the place of a shorter look at it.
+    """
+    new = fit.landmark._replace(confirmations=echoes)
+    if length_of(new) < POINT_LENGTH:
+        new = as_point(new)
+    own = chain.landmark
+    other = same_side(landmarks, new, own, params)
+    chain = chain._replace(fitted=chain.used)
+    if other >= 0 and is_better(landmarks[other], new):
+        rest = replace_landmark(landmarks, own, Landmark()) if own >= 0 else landmarks
+        return ChainUpdate(rest, chain._replace(landmark=-1))
+    if other >= 0 and own >= 0:
+        landmarks = replace_landmark(landmarks, other, Landmark())
+    index = own if own >= 0 else (other if other >= 0 else free_index(landmarks))
+    return ChainUpdate(replace_landmark(landmarks, index, new), chain._replace(landmark=index))
+
+
+def same_side(landmarks: tuple[Landmark, ...], new: Landmark, own: int, params: MappingParams) -> int:
+    """Return the segment of the map that a new one is another look at, but not its ``own``; -1: none."""
+    if new.type != LandmarkType.SEGMENT:
+        return -1
+    for number in range(LANDMARKS):
+        other = landmarks[number]
+        if number != own and other.type == LandmarkType.SEGMENT and math.cos(other.heading - new.heading) > 0.0:
+            turn = wrap_angle(other.heading - new.heading)
+            a = start_point(new)
+            b = end_point(new)
+            first = along_of(other, a.x, a.y)
+            last = along_of(other, b.x, b.y)
+            overlap = min(last, other.end) - max(first, other.start)
+            shorter = min(length_of(new), length_of(other))
+            middle = 0.5 * (first + last)
+            across = offset_of(other, 0.5 * (a.x + b.x), 0.5 * (a.y + b.y))
+            variance = offset_variance(other, middle) + offset_variance(new, 0.5 * (new.start + new.end))
+            turns = turn * turn < params.gate * (other.hh + new.hh)
+            if turns and overlap > SAME_OVERLAP * shorter and across * across < params.gate * variance:
+                return number
+    return -1
+
+
+def put_facing(landmarks: tuple[Landmark, ...], new: Landmark, params: MappingParams) -> tuple[Landmark, ...]:
+    """Return the landmarks with a surface that a bumper approaches: the map's own is moved to it, else it is new."""
+    index = same_side(landmarks, new, -1, params)
+    if index < 0:
+        return replace_landmark(landmarks, free_index(landmarks), new)
+    known = landmarks[index]
+    if length_of(known) <= 2.0 * length_of(new):
+        return replace_landmark(landmarks, index, new)
+    shift = offset_of(known, new.x, new.y)
+    return replace_landmark(
+        landmarks,
+        index,
+        known._replace(x=known.x - shift * math.sin(known.heading), y=known.y + shift * math.cos(known.heading)),
+    )
+
+
+def is_better(before: Landmark, new: Landmark) -> bool:
+    """Return whether the map knows a side better than a new look at it does."""
+    known_before = (1 if before.start_known else 0) + (1 if before.end_known else 0)
+    known_new = (1 if new.start_known else 0) + (1 if new.end_known else 0)
+    if known_before != known_new:
+        return known_before > known_new
+    return before.confirmations > new.confirmations
+
+
+def as_point(segment: Landmark) -> Landmark:
+    """Return a very short segment as a point landmark."""
+    at = segment_point(segment, 0.5 * (segment.start + segment.end))
+    cos = math.cos(segment.heading)
+    sin = math.sin(segment.heading)
+    along = 0.5 * (segment.start_variance + segment.end_variance)
+    return Landmark(
+        type=LandmarkType.POINT,
+        x=at.x,
+        y=at.y,
+        xx=segment.xx + along * cos * cos,
+        xy=segment.xy + along * cos * sin,
+        yy=segment.yy + along * sin * sin,
+        confirmations=segment.confirmations,
+    )

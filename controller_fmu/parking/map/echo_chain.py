@@ -1,0 +1,123 @@
+"""Chains of echoes: what a sensor heard of one body in a row, as far as ranges can tell bodies apart.
+
+The range to a body at rest changes by at most sin(cone) per metre that the sensor moves across its axis; an echo that
+differs by more comes from another body. A chain that ends in a farther echo, or in none, has passed the body's edge;
+one that ends in a nearer echo was only hidden.
+"""
+
+import math
+from typing import NamedTuple
+
+from controller_fmu.parking.measurement.sensor import SensorPose
+
+CHAIN = 96
+"""Echoes of a chain; a longer one keeps every second of them and goes on at twice the spacing."""
+SPACING = 0.04
+"""Least distance [m] between the sensor positions of two echoes."""
+MAX_SLOPE = 0.7
+"""Change of range per metre: sine of the widest half cone, and of a sensor that looks aside (34 + 8 deg)."""
+JUMP_SIGMA = 5.0
+"""Standard deviations of the difference of two echoes that noise may explain."""
+LOST_DISTANCE = 0.25
+"""Without an echo over this [m] and ``LOST_ECHOES`` cycles the edge is passed."""
+LOST_ECHOES = 3
+MAX_TURN_COS = 0.95
+"""A chain ends when the sensor's axis has turned by 18 deg: it hears another side."""
+
+
+class ChainEcho(NamedTuple):
+    """Where the sensor was, and the range; [m]."""
+
+    x: float = 0.0
+    y: float = 0.0
+    range: float = 0.0
+
+
+class EchoChain(NamedTuple):
+    """Echoes in a row, oldest first; the first ``used`` are valid."""
+
+    used: int = 0
+    echoes: tuple[ChainEcho, ...] = (ChainEcho(),) * CHAIN
+    spacing: float = SPACING
+    begins_at_edge: bool = False
+    """Before its first echo there was a farther one, or none."""
+    lost: int = 0
+    """Cycles without an echo since the last."""
+    axis_x: float = 1.0
+    """Unit vector of the sensor's axis at the first echo."""
+    axis_y: float = 0.0
+    landmark: int = -1
+    """The landmark that it has made; -1: none."""
+    fitted: int = 0
+    """Echoes at the last fit."""
+
+
+def continues(chain: EchoChain, sensor: SensorPose, measured: float, variance: float) -> bool:
+    """Return whether an echo at ``measured`` [m], of ``variance`` [m2], can come from the body of the chain."""
+    last = chain.echoes[max(chain.used - 1, 0)]
+    dx = sensor.x - last.x
+    dy = sensor.y - last.y
+    moved = math.sqrt(dx * dx + dy * dy)
+    jump = abs(measured - last.range) - MAX_SLOPE * moved
+    same_axis = sensor.axis_x * chain.axis_x + sensor.axis_y * chain.axis_y > MAX_TURN_COS
+    return same_axis and jump < JUMP_SIGMA * math.sqrt(2.0 * variance)
+
+
+def is_turned_back(chain: EchoChain, sensor: SensorPose) -> bool:
+    """Return whether the sensor moves back along the chain: it drives the other way now."""
+    if chain.used < 2:
+        return False
+    last = chain.echoes[chain.used - 1]
+    first = chain.echoes[0]
+    dx = sensor.x - last.x
+    dy = sensor.y - last.y
+    back = dx * (last.x - first.x) + dy * (last.y - first.y)
+    return back < 0.0 and dx * dx + dy * dy > chain.spacing * chain.spacing
+
+
+def is_passed(chain: EchoChain, sensor: SensorPose) -> bool:
+    """Return whether a sensor without an echo has passed the chain's body."""
+    last = chain.echoes[max(chain.used - 1, 0)]
+    dx = sensor.x - last.x
+    dy = sensor.y - last.y
+    return chain.lost >= LOST_ECHOES and dx * dx + dy * dy > LOST_DISTANCE * LOST_DISTANCE
+
+
+def begin_chain(sensor: SensorPose, measured: float, begins_at_edge: bool) -> EchoChain:
+    """Return a chain of one echo."""
+    first = ChainEcho(sensor.x, sensor.y, measured)
+    return EchoChain(
+        used=1,
+        echoes=(first,) * CHAIN,
+        begins_at_edge=begins_at_edge,
+        axis_x=sensor.axis_x,
+        axis_y=sensor.axis_y,
+    )
+
+
+def append_echo(chain: EchoChain, sensor: SensorPose, measured: float) -> EchoChain:
+    """Return the chain with one more echo, if the sensor has moved."""
+    last = chain.echoes[max(chain.used - 1, 0)]
+    dx = sensor.x - last.x
+    dy = sensor.y - last.y
+    chain = chain._replace(lost=0)
+    if dx * dx + dy * dy < chain.spacing * chain.spacing:
+        return chain
+    if chain.used >= CHAIN:
+        chain = _thinned(chain)
+    echo = ChainEcho(sensor.x, sensor.y, measured)
+    at = chain.used
+    echoes = tuple(echo if number == at else chain.echoes[number] for number in range(CHAIN))
+    return chain._replace(used=at + 1, echoes=echoes)
+
+
+def from_echo(chain: EchoChain, first: int) -> EchoChain:
+    """Return the chain without the echoes before ``first``: they were of another body, beyond an edge."""
+    echoes = tuple(chain.echoes[min(number + first, CHAIN - 1)] for number in range(CHAIN))
+    return chain._replace(used=chain.used - first, echoes=echoes, begins_at_edge=True, landmark=-1, fitted=0)
+
+
+def _thinned(chain: EchoChain) -> EchoChain:
+    """Return the chain with every second echo, at twice the spacing."""
+    echoes = tuple(chain.echoes[min(2 * number, CHAIN - 1)] for number in range(CHAIN))
+    return chain._replace(used=CHAIN // 2, echoes=echoes, spacing=2.0 * chain.spacing, fitted=chain.fitted // 2)

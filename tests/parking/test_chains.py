@@ -1,0 +1,139 @@
+"""Chains of echoes: ends by least squares, rows told apart, surfaces that a bumper approaches, start positions."""
+
+import math
+
+import numpy as np
+import pytest
+
+from controller_fmu.parking.geometry.outline import vehicle_outline
+from controller_fmu.parking.geometry.outline_extent import boundary_point, extent_within
+from controller_fmu.parking.map.chain_update import as_point, is_better, same_side
+from controller_fmu.parking.map.echo_chain import EchoChain, append_echo, begin_chain, continues, from_echo, is_passed
+from controller_fmu.parking.map.facing_surface import facing_segment
+from controller_fmu.parking.map.landmark import (
+    LANDMARKS,
+    Landmark,
+    LandmarkType,
+    end_point,
+    length_of,
+    offset_of,
+    start_point,
+)
+from controller_fmu.parking.map.local_map import LandmarkMap, update_map
+from controller_fmu.parking.map.params import MappingParams
+from controller_fmu.parking.map.segment_fit import EndGuess, SegmentGuess, fit_segment
+from controller_fmu.parking.measurement.sensor import SensorPose
+from modelkit.geometry import Box, Point
+from modelkit.vocabulary import Pose
+from tests.parking.simulated_pass import CAR, drive_past
+
+PARAMS = MappingParams()
+DOWN = SensorPose(0.0, 1.0, 0.0, -1.0, math.cos(0.52), math.sin(0.52))
+
+
+def chain_past(start: float, end: float, noise: float, seed: int = 0) -> EchoChain:
+    """Return the echoes of a side from ``start`` to ``end`` on y = 0, heard from y = 1 with a cone of 30 deg."""
+    rng = np.random.default_rng(seed)
+    chain = EchoChain()
+    for x in np.arange(start - 0.5, end + 0.5, 0.08):
+        nearest = min(max(x, start), end)
+        measured = float(math.hypot(x - nearest, 1.0) + noise * rng.standard_normal())
+        sensor = DOWN._replace(x=float(x))
+        chain = begin_chain(sensor, measured, True) if chain.used == 0 else append_echo(chain, sensor, measured)
+    return chain
+
+
+def test_fit_finds_both_ends_and_their_deviations() -> None:
+    errors = []
+    for seed in range(40):
+        chain = chain_past(0.0, 1.8, 0.01, seed)
+        line = Landmark(LandmarkType.SEGMENT, 0.9, 0.02, 0.03)
+        fit = fit_segment(chain, 0, chain.used - 1, SegmentGuess(line, EndGuess(-1.0, 0.3), EndGuess(1.0, 0.3)), 1e-4)
+        found = fit.landmark
+        errors.append((start_point(found).x - 0.0) ** 2 / found.start_variance)
+        errors.append((end_point(found).x - 1.8) ** 2 / found.end_variance)
+    assert 0.5 < np.mean(errors) < 1.5
+
+
+def test_exact_ranges_give_the_exact_segment() -> None:
+    chain = chain_past(0.0, 1.8, 0.0)
+    line = Landmark(LandmarkType.SEGMENT, 0.9, 0.1, -0.05)
+    found = fit_segment(
+        chain, 0, chain.used - 1, SegmentGuess(line, EndGuess(-1.1, 1.0), EndGuess(1.1, 1.0)), 1e-4
+    ).landmark
+    assert start_point(found).x == pytest.approx(0.0, abs=0.002)
+    assert end_point(found).x == pytest.approx(1.8, abs=0.002)
+    assert offset_of(found, 0.9, 0.0) == pytest.approx(0.0, abs=0.002)
+
+
+def test_a_chain_ends_at_a_jump_and_after_lost_echoes() -> None:
+    chain = chain_past(0.0, 1.8, 0.0)
+    last = DOWN._replace(x=2.3)
+    assert continues(chain, last, 1.12, 1e-4)
+    assert not continues(chain, last, 1.6, 1e-4)
+    assert not is_passed(chain._replace(lost=1), last)
+    assert is_passed(chain._replace(lost=3), last._replace(x=2.6))
+
+
+def test_a_long_chain_keeps_its_ends() -> None:
+    chain = chain_past(0.0, 12.0, 0.0)
+    assert chain.echoes[0].x == pytest.approx(-0.5)
+    assert chain.echoes[chain.used - 1].x > 12.0
+    rest = from_echo(chain, 10)
+    assert rest.echoes[0] == chain.echoes[10]
+
+
+@pytest.mark.parametrize(("gap", "lateral"), [(0.7, 0.7), (0.8, 1.0), (1.0, 1.4)])
+def test_cars_beside_each_other_are_told_apart(gap: float, lateral: float) -> None:
+    """A car of 6 m or two of 1.8 m: perpendicular rows were taken for parallel ones."""
+    boxes = [Box(x, -2.25, 0.0, 1.8, 4.5) for x in (-0.9 - 0.5 * gap, 0.9 + 0.5 * gap)]
+    local_map = LandmarkMap()
+    start = Pose(-8.0, CAR.width / 2 + lateral, 0.0)
+    for _, believed, readings in drive_past(boxes, start, 14.0, 3, noise=0.005):
+        local_map = update_map(local_map, readings, believed, CAR.ultrasonic, PARAMS)
+    found = [item for item in local_map.landmarks if item.type == LandmarkType.SEGMENT and item.confirmations > 9]
+    assert len(found) == 2, "one side"
+    assert all(length_of(item) == pytest.approx(1.8, abs=0.35) for item in found)
+
+
+def test_a_better_look_at_a_side_replaces_the_other() -> None:
+    known = Landmark(
+        LandmarkType.SEGMENT, 0.0, 0.0, 0.0, xx=1e-3, yy=1e-3, hh=1e-4, start=-1.0, end=1.0, start_known=True
+    )
+    landmarks = (known,) + (Landmark(),) * (LANDMARKS - 1)
+    assert same_side(landmarks, known._replace(y=0.03), -1, PARAMS) == 0
+    assert same_side(landmarks, known._replace(y=0.03), 0, PARAMS) == -1
+    assert same_side(landmarks, known._replace(y=0.6), -1, PARAMS) == -1
+    assert same_side(landmarks, known._replace(x=2.0), -1, PARAMS) == -1
+    assert is_better(known, known._replace(start_known=False))
+
+
+def test_a_short_segment_becomes_a_point_of_its_extent() -> None:
+    point = as_point(
+        Landmark(
+            LandmarkType.SEGMENT, 1.0, 2.0, 0.0, yy=1e-4, start=-0.05, end=0.05, start_variance=0.04, end_variance=0.04
+        )
+    )
+    assert point.type == LandmarkType.POINT
+    assert (point.x, point.y, point.xx, point.yy) == pytest.approx((1.0, 2.0, 0.04, 1e-4))
+
+
+def test_two_sensors_of_a_bumper_give_the_surface_before_them() -> None:
+    a = SensorPose(0.0, 0.3, 1.0, 0.0)
+    b = SensorPose(0.0, -0.3, 1.0, 0.0)
+    wall = facing_segment(a, 0.8, b, 0.85, 1e-4)
+    assert wall.type == LandmarkType.SEGMENT
+    assert sorted((start_point(wall).x, end_point(wall).x)) == pytest.approx([0.8, 0.85])
+    assert offset_of(wall, 0.0, 0.0) > 0.0, "sensors are on the left, as of every side"
+    assert facing_segment(a, 0.8, b, 1.4, 1e-4).type == LandmarkType.NONE
+
+
+def test_the_outline_is_sampled_all_around() -> None:
+    outline = vehicle_outline(CAR, 1.0)
+    points = [boundary_point(outline, number) for number in range(40)]
+    assert max(point.x for point in points) == pytest.approx(outline.centre_ahead + outline.half_length)
+    assert min(point.y for point in points) == pytest.approx(-outline.half_width)
+    inside = extent_within(Pose(), outline, Pose(), 1.0, Point(-9.0, 0.5), Point(9.0, 9.0))
+    assert inside.low_y >= 0.5
+    assert inside.high_y == pytest.approx(outline.half_width)
+    assert extent_within(Pose(), outline, Pose(), 1.0, Point(9.0, 9.0), Point(10.0, 10.0)).low_x > 1e8

@@ -18,11 +18,16 @@ MAX_BYTES = 200_000_000
 DELIMITERS = (";", "\t")
 """Other than the comma, which a table has that has neither of these in its header."""
 TIME_NAMES = ("time", "times", "t", "timestamp", "timestamps", "sim_time", "simulation_time", "elapsed_time", "seconds")
-BRACKETS = re.compile(r"(?P<name>.*?\S)(?P<space>\s*)(?:\[(?P<square>[^\[\]]*)\]|\((?P<round>[^()]*)\))", re.DOTALL)
+BRACKETS = re.compile(
+    r"(?P<name>.*?\S)(?P<space>\s*)"
+    r"(?:\[(?P<square>[^\[\]]*)\]|\((?P<round>[^()]*)\)|\{(?P<curly>[^{}]*)\}|<(?P<angle>[^<>]*)>)",
+    re.DOTALL,
+)
 AFTER_WORD = re.compile(r"(?P<name>.*\S)\s+(?:in|/)\s+(?P<unit>\S+)", re.DOTALL)
 INDEX = re.compile(r"[\d,\s]*")
 SUFFIX = re.compile(
-    r"(?:[ _.\-]|(?-i:(?<=[a-z])(?=[A-Z])))(degs?|degrees?|km_?p?h|kph|mph|cm|mm|deg_?s|deg_per_s(?:ec)?)$",
+    r"(?:[ _.\-/|:,;]|(?-i:(?<=[a-z])(?=[A-Z])))"
+    r"(degs?|degrees?|°|km[_/]?p?h|kph|mph|km|dm|cm|mm|ft|deg[_/]?s|deg_per_s(?:ec)?|rpm|mrad|%|percent|pct)$",
     re.IGNORECASE,
 )
 """How the name of a signal ends that holds its unit."""
@@ -65,6 +70,8 @@ class TextTable(NamedTuple):
         """Return which column is called ``name``, with or without its unit. Raises ``TableError``."""
         found = [place for place, head in enumerate(self.heads) if head.means(name)]
         exact = [place for place in found if self.heads[place].written == name.strip()]
+        if self.time in found and not _is_time(self.heads[self.time]):
+            raise TableError(f"has no column of times: the first one, {name}, would be its own time")
         if len(found) > 1 and len(exact) != 1:
             raise TableError(f"has {len(found)} columns {name}: which one is meant cannot be told")
         if not found:
@@ -142,10 +149,10 @@ def _cells(text: str, delimiter: str) -> Iterator[tuple[int, list[str]]]:
 
 
 def _head(written: str) -> Head:
-    """Return a name with its unit in brackets, in parentheses, or behind a slash; ``x[3]`` and ``x(3)`` have none."""
+    """Return a name with its unit in brackets of any kind, or behind a slash; ``x[3]`` and ``x(3)`` have none."""
     match = BRACKETS.fullmatch(written)
     if match is not None:
-        inside = match["square"] if match["square"] is not None else match["round"]
+        inside = next(match[kind] for kind in ("square", "round", "curly", "angle") if match[kind] is not None)
         is_index = not match["space"] and INDEX.fullmatch(inside) is not None and inside.strip() != ""
         return Head(written, written, None) if is_index else Head(written, match["name"], unit_symbol(inside))
     match = AFTER_WORD.fullmatch(written)
@@ -155,7 +162,8 @@ def _head(written: str) -> Head:
 def _time_column(heads: list[Head]) -> int:
     """Return the column called time, else the first."""
     named = [place for place, head in enumerate(heads) if _is_time(head)]
-    if len(named) > 1 and named[0] != 0:
+    same = [place for place in named if heads[place].name == heads[named[0]].name]
+    if len(same) > 1 or (len(named) > 1 and named[0] != 0):
         raise TableError(f"has {len(named)} columns of times: {', '.join(heads[place].written for place in named)}")
     return named[0] if named else 0
 

@@ -82,6 +82,7 @@ def test_a_run_covers_what_it_went_through(tmp_path: Path, capsys: pytest.Captur
     assert guo["states"]["TO_Q4"] == 0
     page = (tmp_path / "coverage.html").read_text(encoding="utf-8")
     assert 'color="#d1343a"' in page
+    assert f">{100.0 * data['transition_coverage']:.0f} % of the transitions<" in page
 
 
 @pytest.mark.parametrize(("least", "code"), [("5", 0), ("90", 1)])

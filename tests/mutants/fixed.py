@@ -100,6 +100,7 @@ def put_into_process(mutant: Mutant) -> None:
     first = min([around.lineno, *(item.lineno for item in around.decorator_list)])
     new = next(item for item in codes_of(module) if item.co_name == around.name and item.co_firstlineno == first)
     changed = 0
+    gc.unfreeze()  # what a session of tests or a command has left out of the search
     for item in gc.get_objects():
         if type(item) is FunctionType and item.__code__.co_qualname == new.co_qualname:  # a proxy may be dead
             old = item.__code__

@@ -8,7 +8,11 @@ from tests.mutants.sites import Mutant
 PRINTED: tuple[tuple[str, str, str], ...] = (
     ("guo2015/params.py", '"point tracking, heading gain", 0.0, 100.0, GUO)] = 4.0', "* 0.9"),
     ("guo2015/params.py", '"path tracking, heading gain", 0.0, 100.0, GUO)] = 0.8', "* 1.1"),
-    ("guo2015/params.py", '"deviation at Q1 below which path tracking resumes", 0.0, 10.0, HOUSE)] = 0.05', "* 4.0"),
+    (
+        "guo2015/params.py",
+        '"deviation at Q1 below which path tracking resumes", 0.0, 10.0, HOUSE)\n    ] = 0.05',
+        "* 4.0",
+    ),
     (
         "guo2015/params.py",
         '"Q1 to Q2 along the tangent", 0.1, 10.0, GUO + ", Table 2"), Role.FIXED\n    ] = 1.0',

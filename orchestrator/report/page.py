@@ -55,20 +55,25 @@ STILL_PAGE = """<!doctype html>
 <meta charset="utf-8">
 <meta name="viewport" content="width=device-width, initial-scale=1">
 <meta name="color-scheme" content="light dark">
-<meta http-equiv="Content-Security-Policy" content="default-src 'none'; style-src 'unsafe-inline'; img-src data:">
+<meta http-equiv="Content-Security-Policy" content="{policy}">
 <link rel="icon" href="data:,">
 <title>{title}</title>
 <style>{style}</style>
 </head>
 <body>
-{body}</body>
+{body}{script}</body>
 </html>
 """
+STILL_POLICY = "default-src 'none'; style-src 'unsafe-inline'; img-src data:"
 
 
-def still_page(title: str, body: str, more_style: str = "") -> str:
-    """Return a page without scripts that loads nothing; ``title`` is plain text, ``body`` HTML."""
-    return STILL_PAGE.format(title=html.escape(title), style=style() + more_style, body=body)
+def still_page(title: str, body: str, more_style: str = "", script: str = "") -> str:
+    """Return a page that loads nothing, with one script at most; ``title`` is plain text, ``body`` HTML."""
+    parts = {
+        "policy": policy([script]) if script else STILL_POLICY,
+        "script": f"<script>{script}</script>" * bool(script),
+    }
+    return STILL_PAGE.format(title=html.escape(title), style=style() + more_style, body=body, **parts)
 
 
 def style(more: str = "") -> str:

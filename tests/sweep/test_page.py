@@ -1,5 +1,6 @@
 """What a study's page and its numbers say."""
 
+import json
 from html.parser import HTMLParser
 from pathlib import Path
 from typing import Any
@@ -9,6 +10,8 @@ import pytest
 
 from orchestrator.cli import main
 from orchestrator.scenario.scenario import Scenario
+from orchestrator.sweep.job import chunk_scenario
+from orchestrator.sweep.page.explorer import explorer_data
 from orchestrator.sweep.page.figures import SCALE, colour, histogram
 from orchestrator.sweep.page.page import study_page
 from orchestrator.sweep.page.picture import draw_maps
@@ -69,7 +72,7 @@ class Page(HTMLParser):
 def test_the_page_needs_nothing_but_itself(folder: Any) -> None:
     text = (folder / "trial.html").read_text()
     tags = Page(text).tags
-    assert "script" not in {tag for tag, _ in tags}
+    assert [found.get("type") for tag, found in tags if tag == "script"] == ["application/json", None]
     assert all(not value.startswith(("http", "//")) for _, found in tags for value in found.values() if value)
     assert EVIL not in text
     assert len(text) < 300_000
@@ -79,6 +82,48 @@ def test_every_cell_of_the_map_tells_its_numbers(table: Any) -> None:
     text = study_page(table)
     assert text.count('class="cell"') == 2 * 3 * 2
     assert "of 15 parked (95 %:" in text
+
+
+def test_the_page_lists_every_run_of_every_cell(table: Any) -> None:
+    found = json.loads(explorer_data(table, maps(table), "trial-live.html"))
+    rows = [row for item in found["maps"] for cell in item["cells"].values() for row in cell]
+    assert sorted(rows) == list(range(table.count))
+    for row in (0, table.count - 1):
+        named = dict(zip(found["names"], found["values"][str(row)], strict=True))
+        content = chunk_scenario(table.job, table.chunk(row), 0)
+        for name, value in named.items():
+            owner, _, parameter = name.partition(".")
+            assert content.parameters_of(owner)[parameter] == value, name
+        assert named["vehicle.ultrasonic.seed"] == table.row(row)["run_seed"]
+
+
+@pytest.mark.slow
+def test_cells_are_selected_and_zoomed_and_any_run_is_replayed(folder: Any, table: Any, show: Any) -> None:
+    page, seen = show(folder / "trial.html", is_scripted=False, width=1440)
+    cells = page.locator("figure[data-map] svg").first.locator("rect.cell")
+    ends = [cells.nth(0).bounding_box(), cells.nth(4).bounding_box()]
+    for number, box in enumerate(ends):
+        page.mouse.move(box["x"] + 5, box["y"] + 5, steps=3)
+        page.mouse.down() if number == 0 else page.mouse.up()
+    assert page.locator("figure .runs tbody tr").count() == 4 * 15
+    page.click("figure button:has-text('Zoom')")
+    assert page.evaluate("() => window.study[0].cells.filter(({ node }) => node.style.display !== 'none').length") == 4
+    page.click("figure button:has-text('Whole map')")
+    assert page.evaluate("() => window.study[0].cells.filter(({ node }) => node.style.display !== 'none').length") == 6
+    page.focus("figure[data-map] svg")
+    page.keyboard.press("ArrowRight")
+    page.keyboard.press("Enter")
+    assert page.locator("figure .runs tbody tr").count() == 15
+    row = int(page.locator("figure .runs tbody td").first.inner_text())
+    with page.context.expect_page() as opened:
+        page.locator("figure .runs a").first.click()
+    replay = opened.value
+    replay.wait_for_selector("html[data-ready]")
+    assert replay.evaluate("() => document.getElementById('notice').hidden && window.live.drive.isPlaying")
+    whole = replay.evaluate("() => ({ outcome: window.live.whole.outcome, x: window.live.whole.numbers['final.x'] })")
+    assert whole["outcome"] == table.row(row)["outcome"]
+    assert whole["x"] == pytest.approx(table.row(row)["final.x"], abs=1e-9)
+    assert seen.console == []
 
 
 def test_the_worst_run_links_to_its_replay_and_every_one_has_its_command(folder: Any, table: Any) -> None:

@@ -227,11 +227,12 @@ function tabs() {
 
 // Scenario and changes from the address, and what of it means nothing here.
 function fromAddress(lab, first) {
-  /** @type {{ name: string, changes: Record<string, number>, only: string[], wrong: string[] }} */
-  const found = { name: first, changes: {}, only: [], wrong: [] };
+  /** @type {{ name: string, changes: Record<string, number>, only: string[], wrong: string[], plays: boolean }} */
+  const found = { name: first, changes: {}, only: [], wrong: [], plays: false };
   for (const part of location.hash.slice(1).split("&").filter(Boolean)) {
     const [key, value] = part.split("=").map(decoded);
     if (key === "s" && lab.scenarios.has(value)) found.name = value;
+    else if (key === "play") found.plays = true;
     else if (key === "only") found.only = (value || "").split(",");
     else if (key.includes(".") && value) found.changes[key] = Number(value);
     else found.wrong.push(key === "s" ? `no scenario ${value}` : part);
@@ -246,7 +247,7 @@ async function start() {
   const data = await unpack($("data").textContent.trim());
   const code = await inflate($("module").textContent.trim());
   const lab = new Lab(await Engine.start(code, data.models), data), page = new Page(lab, data, code);
-  const { name, changes, only, wrong } = fromAddress(lab, data.scenarios[0].name);
+  const { name, changes, only, wrong, plays } = fromAddress(lab, data.scenarios[0].name);
   lab.only = only;
   document.documentElement.classList.toggle("embedded", only.length > 0);
   tabs();
@@ -264,6 +265,7 @@ async function start() {
   page.took = performance.now() - begun;
   window.live = page;
   document.documentElement.dataset.ready = "yes";
+  if (plays) $("play").click();
 }
 
 start().catch((error) => {

@@ -55,7 +55,8 @@ def success_map(shown: Map, word: str) -> str:
                 width, height = across[column + 1] - across[column], up[row] - up[row + 1]
                 size = f'width="{width + 0.3:.2f}" height="{height + 0.3:.2f}"'
                 fill = colour(good / count)
-                cells.append(f'<rect class="cell" {at} {size} fill="{fill}"><title>{html.escape(note)}</title></rect>')
+                named = f'class="cell" data-c="{column}" data-r="{row}"'
+                cells.append(f'<rect {named} {at} {size} fill="{fill}"><title>{html.escape(note)}</title></rect>')
     return _svg(cells + _axis_x(shown.x, across) + _axis_y(shown.y, up), f"Success map {shown.title}")
 
 
@@ -139,7 +140,7 @@ def _axis_y(axis: Axis, places: Sequence[float]) -> list[str]:
     lines = []
     for cell in _apart(places, (HEIGHT - TOP - BOTTOM) / (2 * MOST_TICKS)):
         at = f'x="{LEFT - 6}" y="{_middle(places, cell) + 4:.1f}"'
-        lines.append(f'<text {at} text-anchor="end">{html.escape(axis.labels[cell])}</text>')
+        lines.append(f'<text class="tick" {at} text-anchor="end">{html.escape(axis.labels[cell])}</text>')
     middle = (TOP + HEIGHT - BOTTOM) / 2
     label = html.escape(named(axis))
     turned = f'transform="rotate(-90 12 {middle:.1f})"'
@@ -149,7 +150,7 @@ def _axis_y(axis: Axis, places: Sequence[float]) -> list[str]:
 def _ticks_x(labels: Sequence[str], places: Sequence[float], height: float) -> list[str]:
     y = height - BOTTOM + 16.0
     return [
-        f'<text x="{x:.1f}" y="{y:.1f}" text-anchor="middle">{html.escape(label)}</text>'
+        f'<text class="tick" x="{x:.1f}" y="{y:.1f}" text-anchor="middle">{html.escape(label)}</text>'
         for label, x in zip(labels, places, strict=True)
     ]
 

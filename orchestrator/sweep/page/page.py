@@ -1,4 +1,4 @@
-"""The result page of a study: one HTML file without scripts, made from the table alone."""
+"""The result page of a study: one HTML file that loads nothing, made from the table alone."""
 
 import html
 import math
@@ -13,6 +13,7 @@ import yaml
 from fmus.files import write_whole
 from orchestrator.report.page import still_page
 from orchestrator.scenario.scenario import DONE, MISSED
+from orchestrator.sweep.page.explorer import SUFFIX, explorer_data, write_live_page
 from orchestrator.sweep.page.figures import histogram, scale_bar, success_map
 from orchestrator.sweep.page.statistics import (
     deciding_limit,
@@ -51,12 +52,13 @@ def write_page(path: Path) -> Path:
     """Write the page beside the table at ``path``; return where it is."""
     table = Table(path)
     page = path.with_suffix(".html")
-    write_whole(page, study_page(table))
+    live = write_live_page(table, path.with_name(f"{path.stem}{SUFFIX}"))
+    write_whole(page, study_page(table, live))
     return page
 
 
-def study_page(table: Table) -> str:
-    """Return the page."""
+def study_page(table: Table, live: str = "") -> str:
+    """Return the page; ``live``: the page beside it that replays runs, empty if there is none."""
     study = table.about["study"]
     good = done(table)
     share = 100.0 * good.mean()
@@ -72,7 +74,12 @@ def study_page(table: Table) -> str:
         cards="\n".join(card for card in cards if card),
         foot=escape(f"apa-cosim {table.about['versions'].get('apa-cosim', '')}, {table.path.name}"),
     )
-    return still_page(title, body, study_style())
+    shown = maps(table)
+    if not shown:
+        return still_page(title, body, study_style())
+    data = f'<script type="application/json" id="runs">{explorer_data(table, shown, live)}</script>'
+    script = (Path(__file__).parent / "explorer.js").read_text(encoding="utf-8")
+    return still_page(title, body + data, study_style(), script)
 
 
 def study_style() -> str:
@@ -109,11 +116,13 @@ def _maps(table: Table) -> str:
     if not shown:
         return ""
     figures = "".join(
-        f"<figure><figcaption>{escape(item.title)} {_rate(int(item.done.sum()), int(item.runs.sum()))}</figcaption>"
+        f"<figure data-map><figcaption>{escape(item.title)} "
+        f"{_rate(int(item.done.sum()), int(item.runs.sum()))}</figcaption>"
         f"{success_map(item, word(table))}</figure>"
         for item in shown
     )
-    text = f"Share of runs that end {word(table)} within all required limits. Point at a cell for its numbers."
+    text = f"Share of runs that end {word(table)} within all required limits."
+    text += " Point at a cell for its numbers, click it for its runs."
     return _card("Success", text, f'<div class="maps">{figures}</div>{scale_bar(word(table))}')
 
 
